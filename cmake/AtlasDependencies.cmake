@@ -1,0 +1,37 @@
+# Every third-party package is looked up here and nowhere else, so that a missing one is reported
+# at once and with its Debian package name (see scripts/install-deps.sh).
+
+find_package(PkgConfig REQUIRED)
+find_package(Threads REQUIRED)
+find_package(TBB REQUIRED)                # libtbb-dev: threads
+find_package(Eigen3 REQUIRED NO_MODULE)   # libeigen3-dev: sparse solvers
+find_package(glm REQUIRED)                # libglm-dev: vectors and matrices
+find_package(fmt REQUIRED)                # libfmt-dev: text
+find_package(nlohmann_json REQUIRED)      # nlohmann-json3-dev: reports
+find_package(ZLIB REQUIRED)               # zlib1g-dev: gzipped worlds
+set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
+find_package(CGAL REQUIRED)               # libcgal-dev: exact predicates
+pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)  # libopenimageio-dev: image files
+
+find_path(OPENMESH_INCLUDE_DIR OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh REQUIRED)
+find_library(OPENMESH_CORE_LIBRARY OpenMeshCore REQUIRED)     # libopenmesh-dev: half-edges
+add_library(atlas_openmesh INTERFACE)
+target_include_directories(atlas_openmesh SYSTEM INTERFACE ${OPENMESH_INCLUDE_DIR})
+target_link_libraries(atlas_openmesh INTERFACE ${OPENMESH_CORE_LIBRARY})
+
+if(LIBATLAS_BUILD_TESTS)
+  find_package(GTest REQUIRED)            # libgtest-dev
+  include(GoogleTest)
+endif()
+if(LIBATLAS_BUILD_BENCHMARKS)
+  find_package(benchmark REQUIRED)        # libbenchmark-dev
+endif()
+if(LIBATLAS_BUILD_APPS OR LIBATLAS_BUILD_EXAMPLES)
+  find_package(CLI11 REQUIRED)            # libcli11-dev: command lines
+endif()
+if(LIBATLAS_BUILD_EXAMPLES)
+  find_package(embree 4 QUIET)            # libembree-dev: the sample scene's light
+  if(NOT embree_FOUND)
+    find_package(embree 3 REQUIRED)
+  endif()
+endif()

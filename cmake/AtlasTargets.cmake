@@ -1,0 +1,47 @@
+# The project's own target helpers: compile options in one place, one static library a folder.
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+add_library(atlas_options INTERFACE)
+target_include_directories(atlas_options INTERFACE ${PROJECT_SOURCE_DIR})
+# Contraction would let the compiler fuse a*b+c differently on different targets: results must be
+# the same on every machine, so it is off.
+target_compile_options(atlas_options INTERFACE -Wall -Wextra -Wshadow -ffp-contract=off
+                                               $<$<BOOL:${LIBATLAS_WERROR}>:-Werror>)
+if(CMAKE_BUILD_TYPE STREQUAL "RelWithDebInfo" OR CMAKE_BUILD_TYPE STREQUAL "Release")
+  target_compile_options(atlas_options INTERFACE -O3 -g1)
+endif()
+
+# atlas_module(NAME SOURCES a.cpp ... [DEPENDS core scene ...] [PRIVATE_LIBS target ...])
+# Declares libatlas/NAME as the static library atlas_NAME. DEPENDS names folders of libatlas;
+# PRIVATE_LIBS are third-party targets that no public header of the folder shows.
+function(atlas_module name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_LIBS" ${ARGN})
+  add_library(atlas_${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(atlas_${name} PUBLIC atlas_options)
+  foreach(dep IN LISTS ARG_DEPENDS)
+    target_link_libraries(atlas_${name} PUBLIC atlas_${dep})
+  endforeach()
+  target_link_libraries(atlas_${name} PRIVATE ${ARG_PRIVATE_LIBS})
+  set_property(GLOBAL APPEND PROPERTY ATLAS_MODULES ${name})
+  set_property(GLOBAL APPEND PROPERTY ATLAS_PRIVATE_LIBS ${ARG_PRIVATE_LIBS})
+endfunction()
+
+# atlas_test(NAME SOURCES ... MODULES core scene ... [LIBS target ...] [LABEL quick|heavy])
+# One GoogleTest program; each of its cases becomes a ctest entry carrying LABEL (quick by default).
+function(atlas_test name)
+  cmake_parse_arguments(ARG "" "LABEL" "SOURCES;MODULES;LIBS" ${ARGN})
+  if(NOT ARG_LABEL)
+    set(ARG_LABEL quick)
+  endif()
+  add_executable(test_${name} ${ARG_SOURCES})
+  foreach(module IN LISTS ARG_MODULES)
+    target_link_libraries(test_${name} PRIVATE atlas_${module})
+  endforeach()
+  target_link_libraries(test_${name} PRIVATE ${ARG_LIBS} GTest::gtest GTest::gtest_main)
+  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
+                       PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 600)
+endfunction()

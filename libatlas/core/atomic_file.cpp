@@ -1,0 +1,57 @@
+#include "libatlas/core/atomic_file.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+namespace atlas {
+namespace fs = std::filesystem;
+
+AtomicFiles::~AtomicFiles() {
+  std::error_code ignored;  // a file that was never created is not there to remove
+  for (const Entry& entry : entries_) fs::remove(entry.temporary, ignored);
+}
+
+fs::path AtomicFiles::path_for(const fs::path& target) {
+  fs::path temporary = target;
+  temporary.replace_filename(
+      fmt::format(".{}.{}.part{}", target.stem().string(), ::getpid(), target.extension().string()));
+  entries_.push_back({temporary, target});
+  return temporary;
+}
+
+Status AtomicFiles::commit() {
+  std::error_code error;
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    fs::rename(entries_[i].temporary, entries_[i].target, error);
+    if (!error) continue;
+    std::error_code ignored;
+    for (std::size_t j = 0; j < i; ++j) fs::remove(entries_[j].target, ignored);
+    return {ErrorCode::io, fmt::format("{}: cannot be put in place: {}",
+                                       entries_[i].target.string(), error.message())};
+  }
+  entries_.clear();
+  return {};
+}
+
+Status write_file(const fs::path& target, std::string_view bytes) {
+  AtomicFiles files;
+  const fs::path path = files.path_for(target);
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  if (!file) {
+    return {ErrorCode::io, fmt::format("{}: cannot be written: {}", target.string(),
+                                       std::strerror(errno))};
+  }
+  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  const int write_error = errno;
+  if (std::fclose(file) != 0 || !written) {
+    return {ErrorCode::io, fmt::format("{}: writing failed: {}", target.string(),
+                                       std::strerror(written ? errno : write_error))};
+  }
+  return files.commit();
+}
+
+}  // namespace atlas

@@ -1,0 +1,40 @@
+// Output files that are either whole or absent: written under a temporary name beside the target,
+// renamed on commit, removed otherwise.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "libatlas/core/status.h"
+
+namespace atlas {
+
+// Collects the files of one export. Ask path_for() where to write each; commit() renames them all
+// into place in the order they were asked for; the destructor removes what was not committed.
+class AtomicFiles {
+ public:
+  AtomicFiles() = default;
+  ~AtomicFiles();
+  AtomicFiles(const AtomicFiles&) = delete;
+  AtomicFiles& operator=(const AtomicFiles&) = delete;
+
+  // The temporary path to write `target` under. It keeps the extension, since image writers choose
+  // the format by it.
+  std::filesystem::path path_for(const std::filesystem::path& target);
+
+  // Renames every file to its target. On failure no temporary name is left, and targets that this
+  // call had already renamed are removed again.
+  Status commit();
+
+ private:
+  struct Entry {
+    std::filesystem::path temporary, target;
+  };
+  std::vector<Entry> entries_;
+};
+
+// Writes `bytes` to `target` under a temporary name, then renames it.
+Status write_file(const std::filesystem::path& target, std::string_view bytes);
+
+}  // namespace atlas

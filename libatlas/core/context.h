@@ -1,0 +1,31 @@
+// What long work is given: how many threads, where progress goes, and whether to stop.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string_view>
+
+namespace atlas {
+
+// Passed by const reference to every stage. Default-constructed: all cores, silent, not cancellable.
+struct Context {
+  // Threads to use; 0 means as many as the machine has. Results never depend on it.
+  int threads = 0;
+  // Called as (stage, fraction in [0, 1]), from any thread but never from two at once.
+  std::function<void(std::string_view stage, double fraction)> progress;
+  // Called with one line of text about something skipped, repaired or worth knowing.
+  std::function<void(std::string_view line)> warn;
+  // Raised by the caller (a signal handler may) to end the work; polled by every long loop. The
+  // stage then returns Status::cancelled() and leaves nothing half-written.
+  const std::atomic<bool>* cancel = nullptr;
+
+  bool cancelled() const { return cancel && cancel->load(std::memory_order_relaxed); }
+  void report(std::string_view stage, double fraction) const {
+    if (progress) progress(stage, fraction);
+  }
+  void say(std::string_view line) const {
+    if (warn) warn(line);
+  }
+};
+
+}  // namespace atlas

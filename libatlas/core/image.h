@@ -1,0 +1,28 @@
+// Images in memory: row-major texels of interleaved channels, row 0 at the bottom (see core/rect.h).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace atlas {
+
+template <class T>
+struct Image {
+  int width = 0, height = 0, channels = 0;
+  std::vector<T> texels;  // width * height * channels
+
+  Image() = default;
+  Image(int w, int h, int c, T fill = T{})
+      : width(w), height(h), channels(c), texels(std::size_t(w) * h * c, fill) {}
+
+  T* at(int x, int y) { return texels.data() + (std::size_t(y) * width + x) * channels; }
+  const T* at(int x, int y) const {
+    return texels.data() + (std::size_t(y) * width + x) * channels;
+  }
+};
+
+using ImageF = Image<float>;
+using Image8 = Image<std::uint8_t>;
+
+}  // namespace atlas

@@ -1,0 +1,18 @@
+// Parallel loops (oneTBB behind the .cpp) whose results cannot depend on the number of threads:
+// the range is cut into chunks by `grain` alone, and chunks write disjoint outputs.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+#include "libatlas/core/context.h"
+
+namespace atlas {
+
+// Calls body(begin, end) over [0, n) in chunks of at most `grain` (>= 1) indices, on up to
+// context.threads threads. Once context.cancelled(), chunks not yet begun are skipped: the caller
+// checks context.cancelled() afterwards.
+void parallel_for(const Context& context, std::size_t n, std::size_t grain,
+                  const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+}  // namespace atlas

@@ -1,0 +1,42 @@
+#include "libatlas/core/predicates.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+
+#include <algorithm>
+
+namespace atlas {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+Kernel::Point_2 point(Vec2d p) { return {p.x, p.y}; }
+
+// With a, b, p collinear: whether p lies strictly between a and b.
+bool strictly_between(Vec2d a, Vec2d b, Vec2d p) {
+  if (a.x != b.x) return std::min(a.x, b.x) < p.x && p.x < std::max(a.x, b.x);
+  return std::min(a.y, b.y) < p.y && p.y < std::max(a.y, b.y);
+}
+
+}  // namespace
+
+int orientation(Vec2d a, Vec2d b, Vec2d c) {
+  return static_cast<int>(CGAL::orientation(point(a), point(b), point(c)));
+}
+
+bool segments_cross(Vec2d a, Vec2d b, Vec2d c, Vec2d d) {
+  if (std::max(a.x, b.x) < std::min(c.x, d.x) || std::max(c.x, d.x) < std::min(a.x, b.x) ||
+      std::max(a.y, b.y) < std::min(c.y, d.y) || std::max(c.y, d.y) < std::min(a.y, b.y)) {
+    return false;
+  }
+  const int c_side = orientation(a, b, c), d_side = orientation(a, b, d);
+  const int a_side = orientation(c, d, a), b_side = orientation(c, d, b);
+  if (c_side * d_side < 0 && a_side * b_side < 0) return true;
+  if (c_side == 0 && strictly_between(a, b, c)) return true;
+  if (d_side == 0 && strictly_between(a, b, d)) return true;
+  if (a_side == 0 && strictly_between(c, d, a)) return true;
+  if (b_side == 0 && strictly_between(c, d, b)) return true;
+  const bool same = (a == c && b == d) || (a == d && b == c);
+  return same && !(a == b);
+}
+
+}  // namespace atlas

@@ -1,0 +1,29 @@
+// Image files in and out. The one place that knows OpenImageIO; rows are bottom-up in memory
+// (core/image.h) and turned here.
+#pragma once
+
+#include <filesystem>
+
+#include "libatlas/core/image.h"
+#include "libatlas/core/status.h"
+
+namespace atlas {
+
+// Reads any format that OpenImageIO knows as 8-bit values, all channels, without any colour
+// conversion (an sRGB file stays sRGB-encoded).
+Result<Image8> read_image8(const std::filesystem::path& path);
+
+// The same as floats; integer files are scaled to [0, 1].
+Result<ImageF> read_image_float(const std::filesystem::path& path);
+
+struct PngOptions {
+  int compression = 3;  // zlib level, 0 (none) to 9
+};
+
+// Writes a 1 to 4 channel PNG. `path` is written directly: see core/atomic_file.h for whole-or-absent.
+Status write_png(const std::filesystem::path& path, const Image8& image, const PngOptions& options);
+
+// Writes a half-float, ZIP-compressed OpenEXR file of scene-linear values.
+Status write_exr(const std::filesystem::path& path, const ImageF& image);
+
+}  // namespace atlas

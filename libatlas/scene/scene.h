@@ -1,0 +1,50 @@
+// The input of everything: one indexed triangle mesh with materials, textures and illumination.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "libatlas/core/image.h"
+#include "libatlas/core/vec.h"
+
+namespace atlas {
+
+// Lambertian reflectance: diffuse (linear RGB, 0..1) times the texture, if there is one.
+struct Material {
+  std::string name;
+  Vec3f diffuse{1, 1, 1};
+  std::int32_t texture = -1;  // index into Scene::textures, or -1
+};
+
+// A diffuse texture. Values are 8-bit sRGB-encoded, repeat outside [0, 1]², origin bottom left.
+struct Texture {
+  std::filesystem::path path;  // where it was read from, for messages
+  Image8 image;                // at least 1 channel; grey is channel 0, colour channels 0..2
+};
+
+// Flat arrays. A triangle t has corners 3t, 3t+1, 3t+2; input order is kept.
+struct Scene {
+  Vec3d origin;                       // added to every position gives the coordinates of the file
+  double metres_per_unit = 1;         // length of one scene unit
+  std::vector<Vec3f> positions;       // finite, relative to origin
+  std::vector<Vec3f> illumination;    // linear RGB a vertex, unbounded, finite; empty: none given
+  std::vector<Vec2f> texcoords;       // finite; may lie outside [0, 1]
+  std::vector<std::uint32_t> indices;           // 3 a triangle, into positions
+  std::vector<std::uint32_t> texcoord_indices;  // 3 a triangle, into texcoords, kNoTexcoord where
+                                                // the file gives none; empty: no triangle has any
+  std::vector<std::uint32_t> triangle_material;  // 1 a triangle, into materials
+  std::vector<std::uint32_t> triangle_object;    // 1 a triangle, into object_names
+  std::vector<Material> materials;               // at least one when there are triangles
+  std::vector<Texture> textures;
+  std::vector<std::string> object_names;
+
+  static constexpr std::uint32_t kNoTexcoord = 0xffffffffu;
+
+  std::size_t triangle_count() const { return indices.size() / 3; }
+  bool lit() const { return !illumination.empty(); }
+  bool textured() const { return !textures.empty(); }
+};
+
+}  // namespace atlas
