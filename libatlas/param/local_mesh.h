@@ -1,0 +1,27 @@
+// The mesh that every function of this folder works on: one chart (or candidate chart) with its own
+// compact vertex numbering.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "libatlas/core/vec.h"
+
+namespace atlas {
+
+// A view of `triangles` over `positions`; what it points at must outlive it. Every index is below
+// positions.size() and the positions are finite. Unless a function says otherwise the triangles
+// form one connected, consistently oriented manifold with a border. Zero-area triangles, needles
+// and coincident positions are allowed, a triangle that names a vertex twice is not. Results do not
+// depend on the unit of length; subtract a common origin first, so that no digits are lost to a far
+// offset.
+struct LocalMesh {
+  std::span<const Vec3d> positions;
+  std::span<const std::array<std::uint32_t, 3>> triangles;
+  // Linear density wanted a triangle (uv length per surface length, > 0), 1 a triangle; empty: 1
+  // everywhere. Distortion is measured against the surface scaled by it.
+  std::span<const double> density = {};
+};
+
+}  // namespace atlas

@@ -1,0 +1,58 @@
+// One chart in, its flat coordinates out: injective and within the stretch bound, or a list of the
+// triangles that stand in the way.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libatlas/core/vec.h"
+#include "libatlas/param/distortion.h"
+#include "libatlas/param/injectivity.h"
+#include "libatlas/param/isometric.h"
+#include "libatlas/param/local_mesh.h"
+
+namespace atlas {
+
+enum class ParamMethod {
+  automatic,  // planar where that is within the bound, else isometric
+  planar,     // projection only
+  isometric,  // never the projection
+};
+
+struct ParamOptions {
+  double max_stretch = 1.25;  // bound on Distortion::stretch_999; > 1
+  // The projection is taken when its own stretch_999 is at most this; <= max_stretch. 0:
+  // max_stretch.
+  double max_planar_stretch = 0;
+  ParamMethod method = ParamMethod::automatic;
+  Vec3d axis;                   // of the projection; (0, 0, 0): the mean normal
+  IsometricStart start;         // what the isometric solver starts from
+  int iterations = 4;           // local/global steps before the bound is looked at
+  int squeeze_iterations = 12;  // reweighted steps at most, when the bound is missed
+  double min_altitude =
+      0;  // uv units: triangles are kept this thick where possible (rounding of what is written)
+};
+
+struct ParamResult {
+  std::vector<Vec2d> uvs;  // 1 a vertex; uv area = surface area (times density squared), positive
+  Distortion distortion;
+  bool planar = false;        // the projection was enough
+  bool injective = false;     // certain: exact predicates (injectivity.h)
+  bool within_bound = false;  // stretch_999 <= max_stretch
+  // Empty if both hold. Else triangles in the way, worst first: flipped ones, those at border
+  // crossings, those beyond the bound. Cutting the chart near or between them helps.
+  std::vector<std::uint32_t> offenders;
+  std::vector<BorderCrossing>
+      crossings;      // pairs that overlap; cutting between the two of a pair helps
+  int unflipped = 0;  // triangles that the barrier step turned right
+};
+
+// Precondition: the mesh is a disc (see local_mesh.h); other sets are flattened too, if connected,
+// but may then need cuts that no offender points at. Deterministic; reentrant with one workspace a
+// thread. A single triangle always succeeds with stretch 1; a triangle without area is given
+// min_altitude.
+ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
+                         ParamWorkspace& workspace);
+
+}  // namespace atlas
