@@ -1,0 +1,46 @@
+// Stage 5, second half: rasterising the light of the fine triangles into one atlas page.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "libatlas/bake/placement.h"
+#include "libatlas/core/context.h"
+#include "libatlas/core/image.h"
+#include "libatlas/core/status.h"
+#include "libatlas/texture/chart_textures.h"
+
+namespace atlas {
+
+enum class BakeMethod {
+  // The texels whose bilinear interpolation is nearest to the light over the chart, in the least
+  // squares sense (see docs/bake.md). Default: measured better than `average`.
+  least_squares,
+  // As published: each texel is the mean over all triangles that touch it, weighted by the
+  // area they cover, repeated on shifted grids and averaged.
+  average,
+};
+
+struct BakeOptions {
+  int page_width = 2048, page_height = 2048;
+  int shifts = 4;      // K: sub-texel sample grids, 1..64; rounded up to a square
+  int mip_levels = 2;  // lookups at levels 0..mip_levels stay inside the chart's own texels
+  BakeMethod method = BakeMethod::least_squares;
+  bool linear = false;  // also give scene-linear floats (for EXR)
+};
+
+struct BakedPage {
+  Image8 display;                    // RGB, tone-mapped, sRGB-encoded; row 0 at the bottom
+  ImageF linear;                     // RGB, scene-linear luminance; empty unless asked for
+  std::uint64_t triangles = 0;       // baked
+  std::uint64_t covered_texels = 0;  // touched by a triangle
+  std::uint64_t filled_texels = 0;   // of boxes and pads, filled from the covered ones
+};
+
+// Bakes the given placements, all of one page, in parallel over charts; deterministic for any
+// thread count. Texels outside every box are black.
+// Errors: bad_option; bad_input when a box with its pad leaves the page; cancelled.
+Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacement> placements,
+                            const BakeOptions& options, const Context& context);
+
+}  // namespace atlas

@@ -1,0 +1,79 @@
+// Tone mapping: from linear luminance to what a display shows.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "libatlas/core/context.h"
+#include "libatlas/core/status.h"
+#include "libatlas/core/vec.h"
+#include "libatlas/texture/luminance.h"
+
+namespace atlas {
+
+// Area-weighted statistics of the surface's luminance; scene units of LuminanceSampler.
+struct LuminanceStatistics {
+  double lit_area = 0;  // surface whose luminance is not exactly zero
+  double unlit_area = 0;
+  double percentile99 = 0;  // of max(R, G, B) over the lit surface
+  double maximum = 0;       // of max(R, G, B) over the samples
+  double log_average = 0;   // exp(mean ln Y) over the lit surface, Y = luma (Rec. 709 weights)
+  double mean = 0;          // of Y over the lit surface
+  Vec3f mean_rgb;           // over the lit surface
+  double minimum_log = 0, maximum_log = 0;     // ln Y at the 1st and 99th percentile
+  std::uint64_t not_finite = 0, negative = 0;  // samples left out / counted as zero
+};
+
+// Samples every triangle in proportion to its area. Deterministic.
+// Errors: bad_input when no triangle has area; cancelled.
+Result<LuminanceStatistics> measure_luminance(const LuminanceSampler& sampler,
+                                              const Context& context);
+
+enum class ToneOperator {
+  linear,           // clip at white
+  reinhard,         // Reinhard et al. 2002, eq. 4: global, with a white point
+  drago,            // Drago et al. 2003: adaptive logarithmic, bias 0.85
+  reinhard_devlin,  // Reinhard and Devlin 2005: photoreceptor, adapts to the scene's mean
+};
+
+// "linear", "reinhard", "drago", "reinhard-devlin". Errors: bad_option, naming the choices.
+Result<ToneOperator> parse_tone_operator(std::string_view name);
+std::string_view tone_operator_name(ToneOperator op);
+
+struct ToneOptions {
+  ToneOperator op = ToneOperator::linear;
+  // Scene luminance that becomes display white; 0: automatic. linear: the 99th percentile;
+  // reinhard, drago, reinhard_devlin: the largest luminance (its 99.9th percentile would burn out
+  // lamps; a white of the user's own is allowed to).
+  double white = 0;
+  double exposure_stops = 0;        // brightens (+) or darkens (-) by powers of two
+  double key = 0.18;                // reinhard: middle grey
+  double bias = 0.85;               // drago: 0.5..1
+  double contrast = 0;              // reinhard_devlin: m, 0: automatic, else 0.3..1
+  double chromatic_adaptation = 0;  // reinhard_devlin: c, 0..1
+  double light_adaptation = 1;      // reinhard_devlin: a, 0..1
+};
+
+// A tone curve with all its numbers fixed. Cheap to copy, thread-safe.
+//
+// Colour: `linear` works per channel. `reinhard` and `drago` map luma Y and scale RGB by
+// curve(Y) / Y, which keeps hue and saturation; channels that then exceed 1 clip. `reinhard_devlin`
+// is per channel, as published.
+struct ToneMapping {
+  ToneOperator op = ToneOperator::linear;
+  float scale = 1;                    // multiplies luminance first
+  float white = 1;                    // scaled luminance that becomes 1
+  float parameter[4] = {0, 0, 0, 0};  // the operator's own constants, see tone.cpp
+  float offset[3] = {0, 0, 0};        // reinhard_devlin: the adaptation term of each channel
+
+  // Linear display value of each channel, in [0, 1]. Negative and NaN inputs count as 0.
+  Vec3f map(Vec3f luminance) const;
+  // The same, sRGB-encoded: what an 8-bit texture stores, in [0, 1].
+  Vec3f display(Vec3f luminance) const;
+};
+
+// Errors: bad_option, naming the option.
+Result<ToneMapping> make_tone_mapping(const ToneOptions& options,
+                                      const LuminanceStatistics& statistics);
+
+}  // namespace atlas
