@@ -3,13 +3,16 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace atlas {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-Kernel::Point_2 point(Vec2d p) { return {p.x, p.y}; }
+Kernel::Point_2 point(Vec2d p) {
+  return {p.x, p.y};
+}
 
 // With a, b, p collinear: whether p lies strictly between a and b.
 bool strictly_between(Vec2d a, Vec2d b, Vec2d p) {
@@ -20,6 +23,12 @@ bool strictly_between(Vec2d a, Vec2d b, Vec2d p) {
 }  // namespace
 
 int orientation(Vec2d a, Vec2d b, Vec2d c) {
+  // Shewchuk 1997, "Adaptive precision floating-point arithmetic and fast robust geometric
+  // predicates", section 4.1: beyond this bound rounding cannot have changed the sign. It presumes
+  // that no product underflowed, hence the second condition.
+  const double left = (b.x - a.x) * (c.y - a.y), right = (b.y - a.y) * (c.x - a.x);
+  const double determinant = left - right, size = std::abs(left) + std::abs(right);
+  if (std::abs(determinant) > 3.4e-16 * size && size > 1e-280) return determinant > 0 ? 1 : -1;
   return static_cast<int>(CGAL::orientation(point(a), point(b), point(c)));
 }
 

@@ -1,0 +1,138 @@
+#include "libatlas/param/distortion.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "libatlas/param/rest_shape.h"
+
+namespace atlas {
+namespace {
+
+using param::cross;
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+// Triangles below this part of the mean area say nothing but rounding noise.
+constexpr double negligible_area = 1e-14;
+
+TriangleStretch measure_triangle(const LocalMesh& mesh, std::span<const Vec2d> uvs, std::size_t t) {
+  const param::RestShape rest = param::rest_shape(mesh, t);
+  const glm::dvec2 u0 = to_glm(uvs[rest.v[0]]), u1 = to_glm(uvs[rest.v[1]]),
+                   u2 = to_glm(uvs[rest.v[2]]);
+  TriangleStretch out;
+  out.area = rest.area();
+  out.uv_area = 0.5 * cross(u1 - u0, u2 - u0);
+  if (!(out.area > 0)) return out;
+  const param::SingularValues sigma = param::singular_values(param::jacobian(rest, u0, u1, u2));
+  out.s1 = sigma.small != 0 ? static_cast<float>(1 / std::abs(sigma.small)) : infinity;
+  out.s2 = sigma.large > 0 ? static_cast<float>(1 / sigma.large) : infinity;
+  return out;
+}
+
+float stretch(const TriangleStretch& t, double scale) {
+  return static_cast<float>(std::max(t.s1 * scale, 1 / (t.s2 * scale)));
+}
+
+struct WeightedValue {
+  float value, area;
+};
+
+// The smallest value that at least 99.9 % of the area does not exceed.
+double percentile_999(std::vector<WeightedValue>& values, double total_area) {
+  if (values.empty()) return 1;
+  const double budget = 0.001 * total_area;
+  const auto above = [](const WeightedValue& a, const WeightedValue& b) {
+    return a.value > b.value;
+  };
+  // Only the upper tail need be sorted; take a longer one until it holds the budget.
+  for (std::size_t tail = values.size() / 256 + 16;; tail *= 4) {
+    tail = std::min(tail, values.size());
+    const auto end = values.begin() + static_cast<std::ptrdiff_t>(tail);
+    if (tail < values.size()) std::nth_element(values.begin(), end, values.end(), above);
+    double area = 0;
+    for (auto v = values.begin(); v != end; ++v) area += v->area;
+    if (area <= budget && tail < values.size()) continue;
+    std::sort(values.begin(), end, above);
+    area = 0;
+    for (auto v = values.begin(); v != end; ++v) {
+      area += v->area;
+      if (area > budget) return v->value;
+    }
+    return (end - 1)->value;
+  }
+}
+
+}  // namespace
+
+void measure_triangles(const LocalMesh& mesh, std::span<const Vec2d> uvs,
+                       std::span<TriangleStretch> out) {
+  assert(uvs.size() == mesh.positions.size() && out.size() == mesh.triangles.size());
+  for (std::size_t t = 0; t < out.size(); ++t) out[t] = measure_triangle(mesh, uvs, t);
+}
+
+Distortion summarize_distortion(std::span<const TriangleStretch> triangles, double scale) {
+  Distortion d;
+  for (const TriangleStretch& t : triangles) {
+    d.surface_area += t.area;
+    d.uv_area += std::abs(t.uv_area);
+    d.flips += t.uv_area < 0;
+  }
+  if (!(d.surface_area > 0)) return d;
+  if (scale == 0) scale = std::sqrt(d.uv_area / d.surface_area);
+  const double least = negligible_area * d.surface_area / static_cast<double>(triangles.size());
+  std::vector<WeightedValue> values;
+  values.reserve(triangles.size());
+  double sum_l2 = 0, sum_conformal = 0, sum_area = 0, largest = 1;
+  d.area_min = std::numeric_limits<double>::infinity();
+  d.area_max = 0;
+  for (const TriangleStretch& t : triangles) {
+    if (!(t.area > least)) continue;
+    d.degenerate += t.uv_area == 0;
+    const double s1 = t.s1 * scale, s2 = t.s2 * scale, quotient = s1 / s2;
+    sum_l2 += 0.5 * (s1 * s1 + s2 * s2) * t.area;
+    sum_conformal += quotient * t.area;
+    sum_area += t.area;
+    const float worst = stretch(t, scale);
+    largest = std::max<double>(largest, worst);
+    d.conformal_max = std::max(d.conformal_max, quotient);
+    d.area_min = std::min(d.area_min, s1 * s2);
+    d.area_max = std::max(d.area_max, s1 * s2);
+    // In units of the total: float areas would vanish for a mesh of nanometres.
+    values.push_back({worst, static_cast<float>(t.area / d.surface_area)});
+  }
+  d.stretch_l2 = std::sqrt(sum_l2 / sum_area);
+  d.conformal_mean = sum_conformal / sum_area;
+  d.stretch_linf = largest;
+  d.stretch_999 = percentile_999(values, sum_area / d.surface_area);
+  return d;
+}
+
+Distortion measure_distortion(const LocalMesh& mesh, std::span<const Vec2d> uvs,
+                              std::span<double> per_triangle) {
+  std::vector<TriangleStretch> triangles(mesh.triangles.size());
+  measure_triangles(mesh, uvs, triangles);
+  const Distortion d = summarize_distortion(triangles);
+  if (!per_triangle.empty()) {
+    assert(per_triangle.size() == triangles.size());
+    const double scale = d.surface_area > 0 ? std::sqrt(d.uv_area / d.surface_area) : 1;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      const bool bad =
+          triangles[t].uv_area < 0 || (triangles[t].uv_area == 0 && triangles[t].area > 0);
+      per_triangle[t] = bad                     ? std::numeric_limits<double>::infinity()
+                        : triangles[t].area > 0 ? stretch(triangles[t], scale)
+                                                : 1;
+    }
+  }
+  return d;
+}
+
+double area_preserving_scale(const Distortion& distortion) {
+  if (!(distortion.uv_area > 0) || !(distortion.surface_area > 0)) return 0;
+  return std::sqrt(distortion.surface_area / distortion.uv_area);
+}
+
+}  // namespace atlas

@@ -1,0 +1,46 @@
+// Internal: which halves of a triangle set's edges have no opposite, and walks along them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libatlas/param/local_mesh.h"
+
+namespace atlas::param {
+
+// The half-edge 3 t + k runs from corner k of triangle t to corner k + 1.
+class HalfEdges {
+ public:
+  static constexpr std::uint32_t none = 0xffffffff;
+
+  // Finds opposites in O(n). Where more than two triangles meet in an edge, pairs are made in order
+  // of id.
+  void build(const LocalMesh& mesh);
+
+  std::uint32_t opposite(std::uint32_t h) const { return opposite_[h]; }
+  static std::uint32_t next(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
+  static std::uint32_t triangle(std::uint32_t h) { return h / 3; }
+  std::uint32_t from(std::uint32_t h) const { return triangles_[h / 3][h % 3]; }
+  std::uint32_t to(std::uint32_t h) const { return from(next(h)); }
+
+  // The border half-edge that follows h along its loop.
+  std::uint32_t next_border(std::uint32_t h) const {
+    h = next(h);
+    while (opposite_[h] != none) h = next(opposite_[h]);
+    return h;
+  }
+
+  // Half-edges without opposite, loop after loop; loop_start holds each loop's first place and the
+  // total at the end.
+  struct Border {
+    std::vector<std::uint32_t> half_edges, loop_start;
+  };
+  void border(Border& out) const;
+
+ private:
+  std::span<const std::array<std::uint32_t, 3>> triangles_;
+  std::vector<std::uint32_t> opposite_, first_, out_;
+};
+
+}  // namespace atlas::param

@@ -1,0 +1,225 @@
+#include "libatlas/param/injectivity.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "libatlas/core/predicates.h"
+#include "libatlas/param/halfedges.h"
+#include "libatlas/param/rest_shape.h"
+
+namespace atlas {
+namespace {
+
+using param::cross;
+using param::HalfEdges;
+
+struct Box {
+  double x0, y0, x1, y1;
+};
+
+struct Edge {
+  Vec2d a, b;
+  std::uint32_t from, to, triangle;
+};
+
+double distance(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
+  const glm::dvec2 d = b - a;
+  const double squared = glm::dot(d, d);
+  const double t = squared > 0 ? std::clamp(glm::dot(p - a, d) / squared, 0.0, 1.0) : 0;
+  return glm::length(p - a - t * d);
+}
+
+// Of two edges that do not cross. With a common vertex: how far the shorter one's other end is from
+// the longer one, which says how little would turn it over.
+double gap(const Edge& e, const Edge& f) {
+  const glm::dvec2 ea = to_glm(e.a), eb = to_glm(e.b), fa = to_glm(f.a), fb = to_glm(f.b);
+  const bool shared = e.to == f.from || f.to == e.from;
+  if (!shared) {
+    return std::min(
+        {distance(ea, fa, fb), distance(eb, fa, fb), distance(fa, ea, eb), distance(fb, ea, eb)});
+  }
+  const bool e_shorter = glm::dot(eb - ea, eb - ea) < glm::dot(fb - fa, fb - fa);
+  const bool forward = e.to == f.from;  // e then f
+  if (e_shorter) return distance(forward ? ea : eb, fa, fb);
+  return distance(forward ? fb : fa, ea, eb);
+}
+
+// A binary tree of boxes over the border in its own order: neighbours on the border are neighbours
+// in the plane, so the boxes are as tight as sorting would make them, whatever the lengths of
+// edges.
+class BorderTree {
+ public:
+  BorderTree(std::span<const Edge> edges, const InjectivityOptions& options, Injectivity& result)
+      : edges_(edges), options_(options), result_(result) {
+    if (edges_.empty()) return;
+    boxes_.resize(4 * ((edges_.size() + leaf - 1) / leaf));
+    build(1, 0, static_cast<std::uint32_t>(edges_.size()));
+  }
+
+  void find_pairs() {
+    if (edges_.empty()) return;
+    const Node root{1, 0, static_cast<std::uint32_t>(edges_.size())};
+    visit(root, root);
+  }
+
+ private:
+  static constexpr std::uint32_t leaf = 4;
+  struct Node {
+    std::uint32_t id, begin, end;
+    bool is_leaf() const { return end - begin <= leaf; }
+    // Cut at a multiple of the leaf size, so that there are never more nodes than twice the leaves
+    // rounded up to a power of two.
+    std::uint32_t middle() const {
+      const std::uint32_t leaves = (end - begin + leaf - 1) / leaf;
+      return begin + leaves / 2 * leaf;
+    }
+    Node left() const { return {2 * id, begin, middle()}; }
+    Node right() const { return {2 * id + 1, middle(), end}; }
+  };
+
+  Box& box(std::uint32_t id) {
+    if (id >= boxes_.size()) boxes_.resize(2 * id);
+    return boxes_[id];
+  }
+
+  void build(std::uint32_t id, std::uint32_t begin, std::uint32_t end) {
+    const Node node{id, begin, end};
+    constexpr double inf = std::numeric_limits<double>::infinity();
+    Box b{inf, inf, -inf, -inf};
+    if (node.is_leaf()) {
+      for (std::uint32_t i = begin; i < end; ++i) {
+        const Edge& e = edges_[i];
+        b = {std::min({b.x0, e.a.x, e.b.x}), std::min({b.y0, e.a.y, e.b.y}),
+             std::max({b.x1, e.a.x, e.b.x}), std::max({b.y1, e.a.y, e.b.y})};
+      }
+    } else {
+      build(2 * id, begin, node.middle());
+      build(2 * id + 1, node.middle(), end);
+      const Box &l = box(2 * id), &r = box(2 * id + 1);
+      b = {std::min(l.x0, r.x0), std::min(l.y0, r.y0), std::max(l.x1, r.x1), std::max(l.y1, r.y1)};
+    }
+    box(id) = b;
+  }
+
+  bool apart(std::uint32_t i, std::uint32_t j) const {
+    const Box &a = boxes_[i], &b = boxes_[j];
+    const double c = options_.clearance;
+    return a.x1 + c < b.x0 || b.x1 + c < a.x0 || a.y1 + c < b.y0 || b.y1 + c < a.y0;
+  }
+
+  bool full() const {
+    return result_.crossings.size() >= std::max<std::size_t>(options_.max_crossings, 1);
+  }
+
+  void visit(const Node& i, const Node& j) {
+    if (full() || apart(i.id, j.id)) return;
+    if (i.id == j.id) {
+      if (i.is_leaf()) return test(i, j);
+      visit(i.left(), i.left());
+      visit(i.right(), i.right());
+      return visit(i.left(), i.right());
+    }
+    if (i.is_leaf() && j.is_leaf()) return test(i, j);
+    if (j.is_leaf() || (!i.is_leaf() && i.end - i.begin >= j.end - j.begin)) {
+      visit(i.left(), j);
+      return visit(i.right(), j);
+    }
+    visit(i, j.left());
+    visit(i, j.right());
+  }
+
+  void test(const Node& i, const Node& j) {
+    for (std::uint32_t k = i.begin; k < i.end; ++k) {
+      for (std::uint32_t l = i.id == j.id ? k + 1 : j.begin; l < j.end; ++l)
+        test(edges_[k], edges_[l]);
+    }
+  }
+
+  void test(const Edge& e, const Edge& f) {
+    if (full()) return;
+    const BorderCrossing pair{{e.from, e.to}, {f.from, f.to}, e.triangle, f.triangle};
+    if (segments_cross(e.a, e.b, f.a, f.b)) {
+      result_.crossings.push_back(pair);
+    } else if (options_.clearance > 0 && e.triangle != f.triangle &&
+               result_.close.size() < options_.max_crossings && gap(e, f) < options_.clearance) {
+      result_.close.push_back(pair);
+    }
+  }
+
+  std::span<const Edge> edges_;
+  const InjectivityOptions& options_;
+  Injectivity& result_;
+  std::vector<Box> boxes_;
+};
+
+// The turning sense of a simple closed polygon, exactly: the turn at its lexicographically lowest
+// corner.
+int turning_sense(std::span<const Edge> loop) {
+  std::size_t low = 0;
+  const auto before = [](Vec2d a, Vec2d b) { return a.x != b.x ? a.x < b.x : a.y < b.y; };
+  for (std::size_t i = 1; i < loop.size(); ++i) {
+    if (before(loop[i].a, loop[low].a)) low = i;
+  }
+  const Vec2d corner = loop[low].a;
+  const std::size_t n = loop.size();
+  for (std::size_t i = 1; i < n; ++i) {
+    const Vec2d next = loop[(low + i) % n].a;
+    if (next == corner) continue;
+    for (std::size_t j = 1; j < n; ++j) {
+      const Vec2d previous = loop[(low + n - j) % n].a;
+      if (previous == corner) continue;
+      return orientation(previous, corner, next);
+    }
+  }
+  return 0;
+}
+
+void check_triangles(const LocalMesh& mesh, std::span<const Vec2d> uvs, double clearance,
+                     Injectivity& out) {
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& tri = mesh.triangles[t];
+    const Vec2d a = uvs[tri[0]], b = uvs[tri[1]], c = uvs[tri[2]];
+    if (orientation(a, b, c) <= 0) {
+      out.flipped.push_back(t);
+    } else if (clearance > 0) {
+      const glm::dvec2 e = to_glm(b) - to_glm(a), f = to_glm(c) - to_glm(a), g = f - e;
+      const double longest = std::max({glm::dot(e, e), glm::dot(f, f), glm::dot(g, g)});
+      if (cross(e, f) < clearance * std::sqrt(longest)) out.thin.push_back(t);
+    }
+  }
+}
+
+}  // namespace
+
+Injectivity check_injectivity(const LocalMesh& mesh, std::span<const Vec2d> uvs,
+                              const InjectivityOptions& options) {
+  assert(uvs.size() == mesh.positions.size());
+  Injectivity out;
+  check_triangles(mesh, uvs, options.clearance, out);
+  HalfEdges half_edges;
+  half_edges.build(mesh);
+  HalfEdges::Border border;
+  half_edges.border(border);
+  out.loops = static_cast<std::uint32_t>(border.loop_start.size() - 1);
+  std::vector<Edge> edges;
+  edges.reserve(border.half_edges.size());
+  for (const std::uint32_t h : border.half_edges) {
+    const std::uint32_t a = half_edges.from(h), b = half_edges.to(h);
+    edges.push_back({uvs[a], uvs[b], a, b, HalfEdges::triangle(h)});
+  }
+  BorderTree(edges, options, out).find_pairs();
+  if (out.crossings.empty()) {
+    int counter_clockwise = 0;
+    for (std::uint32_t l = 0; l < out.loops; ++l) {
+      const std::uint32_t begin = border.loop_start[l], end = border.loop_start[l + 1];
+      counter_clockwise += turning_sense(std::span(edges).subspan(begin, end - begin)) > 0;
+    }
+    out.nested = out.flipped.empty() && counter_clockwise != 1;
+  }
+  out.injective = out.flipped.empty() && out.crossings.empty() && !out.nested;
+  return out;
+}
+
+}  // namespace atlas

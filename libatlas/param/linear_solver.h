@@ -1,0 +1,44 @@
+// Internal: solvers for the stiffness systems, two right-hand sides (u and v) at once.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "libatlas/param/stiffness.h"
+
+namespace atlas::param {
+
+// Cholesky factorisation within the envelope of the reordered matrix (reverse Cuthill-McKee), O(n²)
+// at worst for a disc of n vertices and faster than anything cleverer up to a thousand or so. Rows
+// whose pivot vanishes against their diagonal (one for each connected piece) get the solution 0.
+class EnvelopeSolver {
+ public:
+  void factorize(const SymmetricMatrix& matrix);
+  // Overwrites x with the solution for the right-hand side `load`.
+  void solve(std::span<const glm::dvec2> load, std::span<glm::dvec2> x);
+
+ private:
+  void order(const SymmetricMatrix& matrix);
+  std::uint32_t sweep(const SymmetricMatrix& matrix, std::uint32_t start);
+
+  std::vector<std::uint32_t> order_, position_, first_, queue_;
+  std::vector<std::size_t> row_;  // where row i's entries first_[i] .. i - 1 start
+  std::vector<double> factor_, inverse_pivot_;
+  std::vector<glm::dvec2> work_;
+};
+
+// Eigen's simplicial LDLT behind a pointer, so that its headers stay in one file.
+class SparseDirectSolver {
+ public:
+  SparseDirectSolver();
+  ~SparseDirectSolver();
+  bool factorize(const SymmetricMatrix& matrix);  // false: not definite to working precision
+  void solve(std::span<const glm::dvec2> load, std::span<glm::dvec2> x);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace atlas::param

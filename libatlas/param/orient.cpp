@@ -1,0 +1,181 @@
+#include "libatlas/param/orient.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "libatlas/core/predicates.h"
+#include "libatlas/param/rest_shape.h"
+
+namespace atlas {
+namespace {
+
+using param::cross;
+
+// Keeps the points that may be on the hull: those not inside the quadrilateral of the extreme ones.
+std::vector<Vec2d> hull_candidates(std::span<const Vec2d> points) {
+  std::array<Vec2d, 4> corner = {points[0], points[0], points[0], points[0]};
+  for (const Vec2d p : points) {
+    if (p.x + p.y < corner[0].x + corner[0].y) corner[0] = p;
+    if (p.x - p.y > corner[1].x - corner[1].y) corner[1] = p;
+    if (p.x + p.y > corner[2].x + corner[2].y) corner[2] = p;
+    if (p.x - p.y < corner[3].x - corner[3].y) corner[3] = p;
+  }
+  std::vector<Vec2d> kept;
+  for (const Vec2d p : points) {
+    bool inside = true;
+    for (int k = 0; k < 4 && inside; ++k) {
+      const glm::dvec2 a = to_glm(corner[k]), b = to_glm(corner[(k + 1) % 4]);
+      inside = cross(b - a, to_glm(p) - a) > 0;
+    }
+    if (!inside) kept.push_back(p);
+  }
+  return kept;
+}
+
+// Counter-clockwise convex hull without collinear points, from the lexicographically lowest one
+// (Andrew 1979, monotone chain).
+std::vector<Vec2d> convex_hull(std::span<const Vec2d> points) {
+  std::vector<Vec2d> p = hull_candidates(points);
+  std::sort(p.begin(), p.end(),
+            [](Vec2d a, Vec2d b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  p.erase(std::unique(p.begin(), p.end()), p.end());
+  if (p.size() < 3) return p;
+  std::vector<Vec2d> hull(2 * p.size());
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    while (k >= 2 && orientation(hull[k - 2], hull[k - 1], p[i]) <= 0) --k;
+    hull[k++] = p[i];
+  }
+  const std::size_t lower = k + 1;
+  for (std::size_t i = p.size() - 1; i-- > 0;) {
+    while (k >= lower && orientation(hull[k - 2], hull[k - 1], p[i]) <= 0) --k;
+    hull[k++] = p[i];
+  }
+  hull.resize(k - 1);
+  return hull;
+}
+
+struct Box {
+  glm::dvec2 low, high;
+  double width() const { return high.x - low.x; }
+  double height() const { return high.y - low.y; }
+  double area() const { return width() * height(); }
+};
+
+// Box of the points in the frame whose first axis is the unit vector d.
+Box box_along(std::span<const Vec2d> points, glm::dvec2 d) {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  Box box{{inf, inf}, {-inf, -inf}};
+  for (const Vec2d p : points) {
+    const glm::dvec2 q(d.x * p.x + d.y * p.y, d.x * p.y - d.y * p.x);
+    box.low = glm::min(box.low, q);
+    box.high = glm::max(box.high, q);
+  }
+  return box;
+}
+
+// Direction of the hull edge whose box is the smallest. The calipers move their other three
+// contacts forward only, so that all edges together cost O(hull).
+glm::dvec2 smallest_box(const std::vector<Vec2d>& hull) {
+  const std::size_t n = hull.size();
+  if (n < 2) return {1, 0};
+  if (n == 2) return glm::normalize(to_glm(hull[1]) - to_glm(hull[0]));
+  const auto at = [&](std::size_t i) { return to_glm(hull[i % n]); };
+  glm::dvec2 best(1, 0);
+  double best_area = std::numeric_limits<double>::infinity();
+  std::size_t right = 1, top = 1, left = 1;
+  for (std::size_t i = 0; i < n; ++i) {
+    const glm::dvec2 d = glm::normalize(at(i + 1) - at(i)), up(-d.y, d.x);
+    right = std::max(right, i + 1);
+    while (glm::dot(at(right + 1) - at(right), d) > 0) ++right;
+    top = std::max(top, right);
+    while (glm::dot(at(top + 1) - at(top), up) > 0) ++top;
+    left = std::max(left, top);
+    while (glm::dot(at(left + 1) - at(left), d) < 0) ++left;
+    const double area = glm::dot(at(right) - at(left), d) * glm::dot(at(top) - at(i), up);
+    if (area < best_area * (1 - 1e-12)) {
+      best_area = area;
+      best = d;
+    }
+  }
+  return best;
+}
+
+// The direction modulo 90 degrees that carries most border length, if it carries enough.
+bool straight_direction(std::span<const Vec2d> uvs,
+                        std::span<const std::array<std::uint32_t, 2>> edges, glm::dvec2* out) {
+  constexpr int bins = 180;  // half a degree each
+  std::array<double, bins> length{};
+  double total = 0;
+  const auto bin_of = [&](glm::dvec2 e) {
+    double turn = std::atan2(e.y, e.x) / (0.5 * std::numbers::pi);
+    turn -= std::floor(turn);
+    return std::min(static_cast<int>(turn * bins), bins - 1);
+  };
+  for (const auto& [a, b] : edges) {
+    const glm::dvec2 e = to_glm(uvs[b]) - to_glm(uvs[a]);
+    const double l = glm::length(e);
+    if (!(l > 0)) continue;
+    length[bin_of(e)] += l;
+    total += l;
+  }
+  int best = 0;  // the pair of neighbouring bins best, best + 1
+  const auto pair = [&](int k) { return length[k] + length[(k + 1) % bins]; };
+  for (int k = 1; k < bins; ++k) {
+    if (pair(k) > pair(best)) best = k;
+  }
+  if (!(pair(best) >= 0.2 * total) || !(total > 0)) return false;
+  // The mean direction of those edges: quadrupled angles make directions modulo 90 degrees add up.
+  double c = 0, s = 0;
+  for (const auto& [a, b] : edges) {
+    const glm::dvec2 e = to_glm(uvs[b]) - to_glm(uvs[a]);
+    const double l = glm::length(e);
+    if (!(l > 0)) continue;
+    const int bin = bin_of(e);
+    if (bin != best && bin != (best + 1) % bins) continue;
+    const double angle = 4 * std::atan2(e.y, e.x);
+    c += l * std::cos(angle);
+    s += l * std::sin(angle);
+  }
+  const double angle = std::atan2(s, c) / 4;
+  *out = {std::cos(angle), std::sin(angle)};
+  return true;
+}
+
+}  // namespace
+
+Orientation orient_for_packing(std::span<Vec2d> uvs,
+                               std::span<const std::array<std::uint32_t, 2>> border_edges,
+                               double straight_slack) {
+  Orientation out;
+  if (uvs.empty()) return out;
+  const std::vector<Vec2d> hull = convex_hull(uvs);
+  glm::dvec2 d = smallest_box(hull);
+  Box box = box_along(hull, d);
+  glm::dvec2 straight;
+  if (straight_direction(uvs, border_edges, &straight)) {
+    const Box other = box_along(hull, straight);
+    if (other.area() <= box.area() * (1 + straight_slack)) {
+      d = straight;
+      box = other;
+    }
+  }
+  if (box.height() > box.width()) {
+    d = {-d.y, d.x};
+    box = box_along(hull, d);
+  }
+  for (Vec2d& p : uvs) {
+    // Rounding may put a point a digit outside of the box, hence the max.
+    p = {std::max(d.x * p.x + d.y * p.y - box.low.x, 0.0),
+         std::max(d.x * p.y - d.y * p.x - box.low.y, 0.0)};
+  }
+  out.cosine = d.x;
+  out.sine = -d.y;
+  out.size = {box.width(), box.height()};
+  return out;
+}
+
+}  // namespace atlas

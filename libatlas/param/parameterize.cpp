@@ -1,0 +1,88 @@
+#include "libatlas/param/parameterize.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/param/planar.h"
+
+namespace atlas {
+namespace {
+
+void scale_to_surface_area(ParamResult& r) {
+  const double scale = area_preserving_scale(r.distortion);
+  if (!(scale > 0) || scale == 1) return;
+  for (Vec2d& p : r.uvs) p = {p.x * scale, p.y * scale};
+  r.distortion.uv_area *= scale * scale;
+}
+
+// Flipped triangles first, then those at crossings, then those beyond the bound, worst first.
+void list_offenders(ParamResult& r, const Injectivity& check, std::span<const double> stretch,
+                    double bound) {
+  r.crossings = check.crossings;
+  r.offenders = check.flipped;
+  std::vector<bool> listed(stretch.size(), false);
+  for (const std::uint32_t t : r.offenders) listed[t] = true;
+  const auto add = [&](std::uint32_t t) {
+    if (!listed[t]) r.offenders.push_back(t);
+    listed[t] = true;
+  };
+  for (const BorderCrossing& c : check.crossings) {
+    add(c.triangle_a);
+    add(c.triangle_b);
+  }
+  if (r.within_bound) return;
+  std::vector<std::uint32_t> beyond;
+  for (std::uint32_t t = 0; t < stretch.size(); ++t) {
+    if (stretch[t] > bound) beyond.push_back(t);
+  }
+  std::stable_sort(beyond.begin(), beyond.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return stretch[a] > stretch[b]; });
+  for (const std::uint32_t t : beyond) add(t);
+}
+
+// Measures, scales and judges r.uvs.
+void finish(const LocalMesh& mesh, const ParamOptions& options, ParamResult& r) {
+  std::vector<double> stretch(mesh.triangles.size());
+  r.distortion = measure_distortion(mesh, r.uvs, stretch);
+  scale_to_surface_area(r);
+  const Injectivity check = check_injectivity(mesh, r.uvs);
+  r.injective = check.injective;
+  r.within_bound = r.distortion.stretch_999 <= options.max_stretch;
+  list_offenders(r, check, stretch, options.max_stretch);
+}
+
+}  // namespace
+
+ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
+                         ParamWorkspace& workspace) {
+  ParamResult r;
+  r.uvs.resize(mesh.positions.size());
+  const bool given_axis = options.axis.x != 0 || options.axis.y != 0 || options.axis.z != 0;
+  const Vec3d axis = given_axis ? options.axis : mean_normal(mesh);
+  project_planar(mesh, axis, r.uvs);
+  const double planar_bound =
+      options.max_planar_stretch > 0 ? options.max_planar_stretch : options.max_stretch;
+  if (options.method != ParamMethod::isometric) {
+    const Distortion d = measure_distortion(mesh, r.uvs);
+    if (options.method == ParamMethod::planar || (d.stretch_999 <= planar_bound && d.flips == 0)) {
+      r.planar = true;
+      finish(mesh, options, r);
+      if (r.injective || options.method == ParamMethod::planar) return r;
+      r = {};
+      r.uvs.resize(mesh.positions.size());
+      project_planar(mesh, axis, r.uvs);
+    }
+  }
+  IsometricStart start = options.start;
+  // Within a hemisphere the projection is as good a start as any, and free of holonomy.
+  if (start.uvs.empty() && start.frames.empty() && planar_stretch_bound(mesh, axis) < 4) {
+    start.uvs = r.uvs;
+  }
+  flatten_isometric(mesh, start, {options.iterations, options.min_altitude}, r.uvs, workspace);
+  finish(mesh, options, r);
+  return r;
+}
+
+}  // namespace atlas

@@ -1,0 +1,121 @@
+#include "libatlas/param/stiffness.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace atlas::param {
+
+void build_elements(const LocalMesh& mesh, double min_altitude, std::vector<Element>& out) {
+  constexpr double relative_floor = 1e-9;
+  // Several zero-length triangles must not make the matrix overflow, hence a floor by the whole's
+  // size.
+  double longest = 0;
+  out.resize(mesh.triangles.size());
+  for (std::size_t t = 0; t < out.size(); ++t) {
+    const RestShape s = rest_shape(mesh, t);
+    Element& e = out[t];
+    e.v = s.v;
+    e.length = s.length;
+    e.foot = s.foot;
+    e.altitude = std::max({s.altitude, relative_floor * s.length, min_altitude});
+    longest = std::max(longest, s.length);
+  }
+  if (!(longest > 0)) longest = 1;  // nothing but points: any size will do
+  const double speck = std::max(min_altitude, relative_floor * longest);
+  for (std::size_t t = 0; t < out.size(); ++t) {
+    Element& e = out[t];
+    if (e.length < speck) {
+      if (!(e.length > 0)) e.v = mesh.triangles[t];
+      e.length = speck;
+      e.foot = std::min(e.foot, speck);
+      e.altitude = std::max(e.altitude, min_altitude > 0 ? speck : relative_floor * speck);
+    }
+    e.inverse_length = 1 / e.length;
+    e.inverse_altitude = 1 / e.altitude;
+    e.weight = 1;
+  }
+}
+
+void CornerLists::build(std::span<const Element> elements, std::size_t vertices) {
+  first.assign(vertices + 1, 0);
+  for (const Element& e : elements) {
+    for (const std::uint32_t v : e.v) ++first[v + 1];
+  }
+  for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
+  corner.resize(3 * elements.size());
+  for (std::uint32_t t = 0; t < elements.size(); ++t) {
+    for (std::uint32_t k = 0; k < 3; ++k) corner[first[elements[t].v[k]]++] = 3 * t + k;
+  }
+  for (std::size_t v = first.size() - 1; v > 0; --v) first[v] = first[v - 1];
+  first[0] = 0;
+}
+
+void build_stiffness(std::span<const Element> elements, const CornerLists& corners,
+                     SymmetricMatrix& out) {
+  constexpr std::uint32_t unseen = std::numeric_limits<std::uint32_t>::max();
+  const std::size_t n = corners.first.size() - 1;
+  out.diagonal.assign(n, 0);
+  out.first.resize(n + 1);
+  out.column.clear();
+  out.value.clear();
+  std::vector<std::uint32_t>& place = out.scratch;  // of a column within the current row
+  place.assign(n, unseen);
+  for (std::uint32_t row = 0; row < n; ++row) {
+    const std::size_t begin = out.column.size();
+    out.first[row] = static_cast<std::uint32_t>(begin);
+    for (std::uint32_t i = corners.first[row]; i < corners.first[row + 1]; ++i) {
+      const Element& e = elements[corners.corner[i] / 3];
+      const std::uint32_t k = corners.corner[i] % 3;
+      const auto g = e.area_gradients();
+      const glm::dvec2 own = g[k] * (e.weight / e.area());
+      out.diagonal[row] += glm::dot(own, g[k]);
+      for (const std::uint32_t other : {(k + 1) % 3, (k + 2) % 3}) {
+        const std::uint32_t column = e.v[other];
+        if (place[column] == unseen || place[column] < begin) {
+          place[column] = static_cast<std::uint32_t>(out.column.size());
+          out.column.push_back(column);
+          out.value.push_back(0);
+        }
+        out.value[place[column]] += glm::dot(own, g[other]);
+      }
+    }
+  }
+  out.first[n] = static_cast<std::uint32_t>(out.column.size());
+}
+
+void local_rotations(std::span<const Element> elements, std::span<const Vec2d> uvs,
+                     Rotations& out) {
+  out.resize(elements.size());
+  for (std::size_t t = 0; t < elements.size(); ++t) {
+    const Element& e = elements[t];
+    out[t] =
+        nearest_rotation(e.jacobian(to_glm(uvs[e.v[0]]), to_glm(uvs[e.v[1]]), to_glm(uvs[e.v[2]])));
+  }
+}
+
+void rotation_load(std::span<const Element> elements, const Rotations& rotations,
+                   std::span<glm::dvec2> out) {
+  std::fill(out.begin(), out.end(), glm::dvec2(0));
+  for (std::size_t t = 0; t < elements.size(); ++t) {
+    const Element& e = elements[t];
+    const glm::dvec2 r = rotations[t] * e.weight;
+    const auto g = e.area_gradients();
+    for (int k = 0; k < 3; ++k) {
+      out[e.v[k]] += glm::dvec2(r.x * g[k].x - r.y * g[k].y, r.y * g[k].x + r.x * g[k].y);
+    }
+  }
+}
+
+IsometricResult measure_energy(std::span<const Element> elements, std::span<const Vec2d> uvs) {
+  IsometricResult out;
+  for (const Element& e : elements) {
+    const Jacobian j = e.jacobian(to_glm(uvs[e.v[0]]), to_glm(uvs[e.v[1]]), to_glm(uvs[e.v[2]]));
+    const glm::dvec2 r = nearest_rotation(j);
+    const glm::dvec2 dx = j.x - r, dy = j.y - glm::dvec2(-r.y, r.x);
+    out.energy += e.area() * (glm::dot(dx, dx) + glm::dot(dy, dy));
+    out.flips += !(j.det() > 0);
+  }
+  return out;
+}
+
+}  // namespace atlas::param

@@ -1,0 +1,23 @@
+// Internal: what a ParamWorkspace holds.
+#pragma once
+
+#include "libatlas/param/halfedges.h"
+#include "libatlas/param/isometric.h"
+#include "libatlas/param/linear_solver.h"
+#include "libatlas/param/stiffness.h"
+
+namespace atlas {
+
+struct ParamWorkspace::Impl {
+  std::vector<param::Element> elements;
+  param::CornerLists corners;
+  param::SymmetricMatrix stiffness;
+  param::Rotations rotations;
+  param::EnvelopeSolver envelope;
+  param::SparseDirectSolver direct;
+  param::HalfEdges half_edges;
+  std::vector<glm::dvec2> load, solution;
+  std::vector<std::uint32_t> queue;
+};
+
+}  // namespace atlas
