@@ -1,7 +1,11 @@
 #include "libatlas/image/image_io.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
 
 namespace atlas {
 namespace {
@@ -17,7 +21,8 @@ OIIO::TypeDesc type_of<float>() {
   return OIIO::TypeDesc::FLOAT;
 }
 
-// OpenImageIO walks rows by stride: starting at the last row with a negative stride turns the image.
+// OpenImageIO walks rows by stride: starting at the last row with a negative stride turns the
+// image.
 template <class T>
 OIIO::stride_t row_bytes(const Image<T>& image) {
   return OIIO::stride_t(sizeof(T)) * image.width * image.channels;
@@ -28,23 +33,46 @@ Status failure(const std::filesystem::path& path, const char* what, const std::s
 }
 
 template <class T>
+Result<Image<T>> read_pixels(OIIO::ImageInput& input, const std::filesystem::path& path) {
+  const OIIO::ImageSpec& spec = input.spec();
+  Image<T> image(spec.width, spec.height, spec.nchannels);
+  const OIIO::stride_t stride = row_bytes(image);
+  T* top_row = image.texels.data() + std::size_t(spec.height - 1) * spec.width * spec.nchannels;
+  if (!input.read_image(0, 0, 0, spec.nchannels, type_of<T>(), top_row, OIIO::AutoStride,
+                        -stride)) {
+    return failure(path, "image is damaged", input.geterror());
+  }
+  return image;
+}
+
+OIIO::ImageSpec input_settings() {
+  OIIO::ImageSpec config;
+  config["oiio:UnassociatedAlpha"] = 1;  // colours as stored, not multiplied by alpha
+  return config;
+}
+
+template <class T>
 Result<Image<T>> read(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) {
     return Status(ErrorCode::not_found, fmt::format("{}: no such image", path.string()));
   }
-  OIIO::ImageSpec config;
-  config["oiio:UnassociatedAlpha"] = 1;  // colours as stored, not multiplied by alpha
+  const OIIO::ImageSpec config = input_settings();
   auto input = OIIO::ImageInput::open(path.string(), &config);
   if (!input) return failure(path, "cannot be read as an image", OIIO::geterror());
-  const OIIO::ImageSpec& spec = input->spec();
-  Image<T> image(spec.width, spec.height, spec.nchannels);
-  const OIIO::stride_t stride = row_bytes(image);
-  T* top_row = image.texels.data() + std::size_t(spec.height - 1) * spec.width * spec.nchannels;
-  if (!input->read_image(0, 0, 0, spec.nchannels, type_of<T>(), top_row, OIIO::AutoStride,
-                         -stride)) {
-    return failure(path, "image is damaged", input->geterror());
-  }
-  return image;
+  return read_pixels<T>(*input, path);
+}
+
+// OpenImageIO picks its reader by extension; the signature at the start tells the common formats.
+const char* extension_of(std::span<const std::uint8_t> bytes) {
+  const auto starts_with = [&](std::string_view signature) {
+    return bytes.size() >= signature.size() &&
+           std::equal(signature.begin(), signature.end(), bytes.begin(),
+                      [](char a, std::uint8_t b) { return std::uint8_t(a) == b; });
+  };
+  if (starts_with("\x89PNG")) return ".png";
+  if (starts_with("\xff\xd8")) return ".jpg";
+  if (starts_with("RIFF")) return ".webp";
+  return nullptr;
 }
 
 template <class T>
@@ -65,9 +93,23 @@ Status write(const std::filesystem::path& path, const Image<T>& image, OIIO::Ima
 
 }  // namespace
 
-Result<Image8> read_image8(const std::filesystem::path& path) { return read<std::uint8_t>(path); }
+Result<Image8> read_image8(const std::filesystem::path& path) {
+  return read<std::uint8_t>(path);
+}
 
-Result<ImageF> read_image_float(const std::filesystem::path& path) { return read<float>(path); }
+Result<Image8> decode_image8(std::span<const std::uint8_t> bytes, const std::string& name) {
+  const char* extension = extension_of(bytes);
+  if (!extension) return failure(name, "cannot be read as an image", "not PNG, JPEG or WebP");
+  const OIIO::ImageSpec config = input_settings();
+  OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
+  auto input = OIIO::ImageInput::open(std::string("embedded") + extension, &config, &memory);
+  if (!input) return failure(name, "cannot be read as an image", OIIO::geterror());
+  return read_pixels<std::uint8_t>(*input, name);
+}
+
+Result<ImageF> read_image_float(const std::filesystem::path& path) {
+  return read<float>(path);
+}
 
 Status write_png(const std::filesystem::path& path, const Image8& image,
                  const PngOptions& options) {

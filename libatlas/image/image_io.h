@@ -2,7 +2,10 @@
 // (core/image.h) and turned here.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
+#include <string>
 
 #include "libatlas/core/image.h"
 #include "libatlas/core/status.h"
@@ -13,6 +16,10 @@ namespace atlas {
 // conversion (an sRGB file stays sRGB-encoded).
 Result<Image8> read_image8(const std::filesystem::path& path);
 
+// The same for an encoded file held in memory; `name` is for messages, the format is found out
+// from the bytes.
+Result<Image8> decode_image8(std::span<const std::uint8_t> bytes, const std::string& name);
+
 // The same as floats; integer files are scaled to [0, 1].
 Result<ImageF> read_image_float(const std::filesystem::path& path);
 
@@ -20,7 +27,8 @@ struct PngOptions {
   int compression = 3;  // zlib level, 0 (none) to 9
 };
 
-// Writes a 1 to 4 channel PNG. `path` is written directly: see core/atomic_file.h for whole-or-absent.
+// Writes a 1 to 4 channel PNG. `path` is written directly: see core/atomic_file.h for
+// whole-or-absent.
 Status write_png(const std::filesystem::path& path, const Image8& image, const PngOptions& options);
 
 // Writes a half-float, ZIP-compressed OpenEXR file of scene-linear values.

@@ -26,14 +26,14 @@ struct Texture {
 
 // Flat arrays. A triangle t has corners 3t, 3t+1, 3t+2; input order is kept.
 struct Scene {
-  Vec3d origin;                       // added to every position gives the coordinates of the file
-  double metres_per_unit = 1;         // length of one scene unit
-  std::vector<Vec3f> positions;       // finite, relative to origin
-  std::vector<Vec3f> illumination;    // linear RGB a vertex, unbounded, finite; empty: none given
-  std::vector<Vec2f> texcoords;       // finite; may lie outside [0, 1]
-  std::vector<std::uint32_t> indices;           // 3 a triangle, into positions
-  std::vector<std::uint32_t> texcoord_indices;  // 3 a triangle, into texcoords, kNoTexcoord where
-                                                // the file gives none; empty: no triangle has any
+  Vec3d origin;                        // added to every position gives the coordinates of the file
+  double metres_per_unit = 1;          // length of one scene unit
+  std::vector<Vec3f> positions;        // finite, relative to origin
+  std::vector<Vec3f> illumination;     // linear RGB a vertex, unbounded, finite; empty: none given
+  std::vector<Vec2f> texcoords;        // finite; may lie outside [0, 1]
+  std::vector<std::uint32_t> indices;  // 3 a triangle, into positions
+  std::vector<std::uint32_t> texcoord_indices;   // 3 a triangle, into texcoords, kNoTexcoord where
+                                                 // the file gives none; empty: no triangle has any
   std::vector<std::uint32_t> triangle_material;  // 1 a triangle, into materials
   std::vector<std::uint32_t> triangle_object;    // 1 a triangle, into object_names
   std::vector<Material> materials;               // at least one when there are triangles

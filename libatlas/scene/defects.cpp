@@ -1,0 +1,72 @@
+#include "libatlas/scene/defects.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace atlas {
+namespace {
+
+struct Names {
+  std::string_view name, description;
+};
+
+constexpr Names kNames[] = {
+    {"index_out_of_range", "triangles left out: a corner names a vertex that does not exist"},
+    {"too_few_corners", "faces left out: fewer than three corners"},
+    {"bad_position_used", "triangles left out: a corner's position is not finite"},
+    {"position_not_finite", "vertices whose position is not a finite number"},
+    {"polygon_too_large", "very large concave polygons cut as fans"},
+    {"texcoord_out_of_range",
+     "triangles without texture: a corner names a texture coordinate that does not exist"},
+    {"texcoord_partial", "triangles without texture: only some corners have texture coordinates"},
+    {"texcoord_not_finite", "texture coordinates that are not finite, replaced by 0"},
+    {"illumination_not_finite", "illumination values that are not finite, replaced by 0"},
+    {"illumination_negative", "negative illumination values, kept"},
+    {"illumination_missing", "vertices without illumination where others have it, taken as 0"},
+    {"material_file_missing", "material files not found, their materials are white"},
+    {"material_unknown", "materials used but not defined, taken as white"},
+    {"texture_missing", "textures not found, plain diffuse colour used"},
+    {"texture_unreadable", "textures that cannot be decoded, plain diffuse colour used"},
+    {"texture_option_ignored", "texture options ignored"},
+    {"element_ignored", "elements ignored (not a surface, or an unknown keyword)"},
+};
+
+const Names& names(DefectKind kind) {
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+}  // namespace
+
+std::string_view describe(DefectKind kind) {
+  return names(kind).description;
+}
+std::string_view name_of(DefectKind kind) {
+  return names(kind).name;
+}
+
+std::uint64_t DefectReport::count(DefectKind kind) const {
+  for (const Defect& defect : defects) {
+    if (defect.kind == kind) return defect.count;
+  }
+  return 0;
+}
+
+Defect& DefectReport::find_or_insert(DefectKind kind) {
+  const auto at = std::lower_bound(defects.begin(), defects.end(), kind,
+                                   [](const Defect& d, DefectKind k) { return d.kind < k; });
+  if (at != defects.end() && at->kind == kind) return *at;
+  return *defects.insert(at, Defect{kind, 0, {}});
+}
+
+std::vector<std::string> DefectReport::lines() const {
+  std::vector<std::string> result;
+  for (const Defect& defect : defects) {
+    result.push_back(fmt::format("{} x {} (first at {})", defect.count, describe(defect.kind),
+                                 fmt::join(defect.first_places, ", ")));
+  }
+  return result;
+}
+
+}  // namespace atlas

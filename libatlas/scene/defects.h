@@ -1,0 +1,71 @@
+// What was wrong with a file that could still be used: counted by kind, the first few named.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace atlas {
+
+// Readers distinguish two cases. *Malformed*: the file breaks the grammar of its format (a line of
+// a known keyword that cannot be parsed, a header that contradicts itself, data that ends early) or
+// holds no usable triangle; reading fails with a Status that names file and line. *Defective*:
+// every element parses, but some cannot be used; they are left out or replaced as said below,
+// and each is counted here.
+enum class DefectKind : std::uint8_t {
+  index_out_of_range,       // triangle left out: a corner names a vertex that does not exist
+  too_few_corners,          // face left out: fewer than three corners
+  bad_position_used,        // triangle left out: a corner's position is not a finite float
+  position_not_finite,      // vertex with a NaN, infinite or beyond-float coordinate
+  polygon_too_large,        // concave polygon too large to clip ears: cut as a fan
+  texcoord_out_of_range,    // triangle kept without texture coordinates: no such coordinate
+  texcoord_partial,         // triangle kept without texture coordinates: some corners lack one
+  texcoord_not_finite,      // texture coordinate replaced by (0, 0)
+  illumination_not_finite,  // value replaced by 0
+  illumination_negative,    // value kept as it is
+  illumination_missing,     // vertex without a value where others have one: 0
+  material_file_missing,    // its materials are white
+  material_unknown,         // white is used
+  texture_missing,          // the material's plain diffuse colour is used
+  texture_unreadable,       // likewise
+  texture_option_ignored,   // a texture option that has no counterpart here
+  element_ignored,          // lines, points, curves, unknown keywords: nothing to bake
+};
+
+// One line of text for people: what the kind means and what was done about it.
+std::string_view describe(DefectKind kind);
+// The enumerator's name, for reports.
+std::string_view name_of(DefectKind kind);
+
+struct Defect {
+  DefectKind kind{};
+  std::uint64_t count = 0;
+  std::vector<std::string> first_places;  // "file:line" or "file: face 12", at most 5
+};
+
+struct DefectReport {
+  std::vector<Defect> defects;           // one per kind met, in the order of DefectKind
+  std::uint64_t triangles_left_out = 0;  // elements that would have been triangles or polygons
+
+  static constexpr std::size_t kMaxPlaces = 5;
+
+  bool empty() const { return defects.empty(); }
+  std::uint64_t count(DefectKind kind) const;
+
+  // Counts one more; `place` is called only while places are still collected.
+  template <class Place>
+  void add(DefectKind kind, const Place& place, std::uint64_t times = 1) {
+    Defect& defect = find_or_insert(kind);
+    defect.count += times;
+    if (defect.first_places.size() < kMaxPlaces) defect.first_places.push_back(place());
+  }
+
+  // "12 x description (first at a, b, ...)", one string a kind.
+  std::vector<std::string> lines() const;
+
+ private:
+  Defect& find_or_insert(DefectKind kind);
+};
+
+}  // namespace atlas

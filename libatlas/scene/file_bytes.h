@@ -1,0 +1,27 @@
+// Internal: a whole file in memory.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string_view>
+
+#include "libatlas/core/status.h"
+
+namespace atlas {
+
+// The bytes of a file, followed by one newline that is not part of them, so that scanners of
+// lines need no end test for each character.
+struct FileBytes {
+  std::unique_ptr<char[]> data;
+  std::size_t size = 0;
+
+  const char* begin() const { return data.get(); }
+  const char* end() const { return data.get() + size; }
+  std::string_view text() const { return {data.get(), size}; }
+};
+
+// Errors: not_found; io (a directory, unreadable).
+Result<FileBytes> read_file_bytes(const std::filesystem::path& path);
+
+}  // namespace atlas

@@ -1,0 +1,68 @@
+// Illumination from a second file.
+#include <fmt/format.h>
+
+#include "libatlas/scene/file_bytes.h"
+#include "libatlas/scene/formats.h"
+#include "libatlas/scene/text_scanner.h"
+
+namespace atlas {
+namespace fs = std::filesystem;
+namespace {
+
+// One `r g b`, or one grey value, a line; blank lines and # comments are skipped.
+Result<std::vector<Vec3f>> read_text(const fs::path& path) {
+  auto bytes = read_file_bytes(path);
+  if (!bytes.ok()) return bytes.status();
+  TextScanner scan(bytes->begin(), bytes->end());
+  std::vector<Vec3f> values;
+  for (; !scan.at_end(); scan.next_line()) {
+    if (scan.at_line_end()) continue;
+    const std::uint32_t line = scan.line() + 1;
+    double n[3];
+    int count = 0;
+    while (count < 3 && !scan.at_line_end() && scan.number(n[count])) ++count;
+    if ((count != 1 && count != 3) || !scan.at_line_end()) {
+      return Status(
+          ErrorCode::bad_input,
+          fmt::format("{}:{}: not an illumination value (write `r g b`, or one number, for "
+                      "each vertex)",
+                      path.string(), line));
+    }
+    if (count == 1) n[1] = n[2] = n[0];
+    values.push_back({float(n[0]), float(n[1]), float(n[2])});
+  }
+  return values;
+}
+
+Result<std::vector<Vec3f>> read_values(const fs::path& path, const Context& context) {
+  SceneBuilder other(path);
+  const Status status = read_by_extension(path, other, context);
+  if (status.code() == ErrorCode::unsupported && !known_extension(path)) return read_text(path);
+  if (!status.ok()) return status;
+  if (other.illumination.empty()) {
+    return Status(
+        ErrorCode::bad_input,
+        fmt::format("{}: its vertices carry no illumination (name the file that holds the "
+                    "simulation's result)",
+                    path.string()));
+  }
+  return std::move(other.illumination);
+}
+
+}  // namespace
+
+Status read_illumination(const fs::path& path, SceneBuilder& builder, const Context& context) {
+  auto values = read_values(path, context);
+  if (!values.ok()) return values.status();
+  if (values->size() != builder.positions.size()) {
+    return {
+        ErrorCode::bad_input,
+        fmt::format("{}: {} values for the {} vertices of {} (both files must come from the same "
+                    "mesh)",
+                    path.string(), values->size(), builder.positions.size(), builder.file)};
+  }
+  builder.illumination = std::move(*values);
+  return {};
+}
+
+}  // namespace atlas

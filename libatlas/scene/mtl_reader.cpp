@@ -1,0 +1,142 @@
+// MTL: the diffuse part of it.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "libatlas/scene/file_bytes.h"
+#include "libatlas/scene/formats.h"
+#include "libatlas/scene/text_scanner.h"
+
+namespace atlas {
+namespace fs = std::filesystem;
+namespace {
+
+class MtlParser {
+ public:
+  MtlParser(const fs::path& path, const FileBytes& bytes, SceneBuilder& builder)
+      : path_(path), scan_(bytes.begin(), bytes.end()), builder_(builder) {}
+
+  Status run() {
+    while (!scan_.at_end()) {
+      if (!scan_.at_line_end()) {
+        line_ = scan_.line() + 1;
+        if (Status s = parse_line(); !s.ok()) return s;
+      }
+      scan_.next_line();
+    }
+    return {};
+  }
+
+ private:
+  std::string place() const { return fmt::format("{}:{}", path_.string(), line_); }
+  Status malformed(std::string_view what) const {
+    return {ErrorCode::bad_input, fmt::format("{}: {} (correct the line)", place(), what)};
+  }
+
+  Status parse_line() {
+    const std::string_view keyword = scan_.word();
+    if (keyword == "newmtl") {
+      builder_.materials.push_back({});
+      builder_.materials.back().name = scan_.rest();
+      inside_ = true;
+      return {};
+    }
+    if (keyword != "Kd" && keyword != "map_Kd") return {};
+    if (!inside_) return malformed(fmt::format("{} before the first newmtl", keyword));
+    return keyword == "Kd" ? parse_colour() : parse_map();
+  }
+
+  Status parse_colour() {
+    double c[3];
+    int count = 0;
+    for (; count < 3 && !scan_.at_line_end(); ++count) {
+      if (!scan_.number(c[count]) || !std::isfinite(c[count])) {
+        return malformed(fmt::format("'{}' is not a number of Kd r g b", scan_.word()));
+      }
+    }
+    if (count == 0 || count == 2) return malformed("Kd needs three numbers, or one");
+    if (count == 1) c[1] = c[2] = c[0];
+    builder_.materials.back().diffuse = {float(c[0]), float(c[1]), float(c[2])};
+    return {};
+  }
+
+  // Options come first; what follows them is the name, which may have blanks.
+  Status parse_map() {
+    std::string_view rest = scan_.rest();
+    while (rest.size() > 1 && rest[0] == '-') {
+      const std::string_view option = next_word(rest);
+      if (Status s = parse_option(option, rest); !s.ok()) return s;
+    }
+    if (rest.empty()) return malformed("map_Kd names no file");
+    std::string name(rest);
+    std::replace(name.begin(), name.end(), '\\', '/');
+    const fs::path file = path_.parent_path() / name;
+    auto& textures = builder_.textures;
+    const auto same = std::find_if(textures.begin(), textures.end(), [&](const RawTexture& t) {
+      return t.bytes.empty() && t.path == file;
+    });
+    builder_.materials.back().texture = static_cast<std::int32_t>(same - textures.begin());
+    if (same == textures.end()) textures.push_back({file, {}, place()});
+    return {};
+  }
+
+  Status parse_option(std::string_view option, std::string_view& rest) {
+    RawMaterial& material = builder_.materials.back();
+    if (option == "-o" || option == "-s" || option == "-t") {
+      double values[3] = {option == "-s" ? 1.0 : 0.0, option == "-s" ? 1.0 : 0.0, 0};
+      if (!take_numbers(rest, values, 1, 3)) {
+        return malformed(fmt::format("{} of map_Kd needs a number", option));
+      }
+      if (option == "-o") material.uv_offset = {values[0], values[1]};
+      if (option == "-s") material.uv_scale = {values[0], values[1]};
+      if (option != "-t") return {};
+    } else if (option == "-mm") {
+      double values[3];
+      if (!take_numbers(rest, values, 2, 2)) return malformed("-mm of map_Kd needs two numbers");
+      if (values[0] == 0 && values[1] == 1) return {};
+    } else {  // one argument: on|off, a number, or a channel's letter
+      const std::string_view argument = next_word(rest);
+      if (argument == "off" || option == "-blendu" || option == "-blendv") return {};
+    }
+    builder_.defects.add(DefectKind::texture_option_ignored,
+                         [&] { return fmt::format("{}: {}", place(), option); });
+    return {};
+  }
+
+  static std::string_view next_word(std::string_view& rest) {
+    const std::string_view word = rest.substr(0, rest.find_first_of(" \t"));
+    rest.remove_prefix(word.size());
+    rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
+    return word;
+  }
+
+  static bool take_numbers(std::string_view& rest, double* values, int least, int most) {
+    int count = 0;
+    while (count < most) {
+      std::string_view left = rest;
+      const std::string_view word = next_word(left);
+      const auto [stop, error] =
+          std::from_chars(word.data(), word.data() + word.size(), values[count]);
+      if (error != std::errc{} || stop != word.data() + word.size()) break;
+      rest = left;
+      ++count;
+    }
+    return count >= least;
+  }
+
+  fs::path path_;
+  TextScanner scan_;
+  SceneBuilder& builder_;
+  std::uint32_t line_ = 1;
+  bool inside_ = false;
+};
+
+}  // namespace
+
+Status read_mtl(const fs::path& path, SceneBuilder& builder) {
+  auto bytes = read_file_bytes(path);
+  if (!bytes.ok()) return bytes.status();
+  return MtlParser(path, *bytes, builder).run();
+}
+
+}  // namespace atlas

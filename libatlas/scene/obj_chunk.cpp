@@ -1,0 +1,173 @@
+#include "libatlas/scene/obj_chunk.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "libatlas/scene/text_scanner.h"
+
+namespace atlas {
+namespace {
+
+// Keywords of the format that carry nothing for us: normals, smoothing, and settings of viewers.
+constexpr std::string_view kSilent[] = {"vn",     "vp",       "s",          "mg",
+                                        "bevel",  "c_interp", "lod",        "usemap",
+                                        "maplib", "d_interp", "shadow_obj", "trace_obj"};
+
+std::int32_t clamp_index(std::int64_t index) {
+  constexpr std::int64_t kMax = std::numeric_limits<std::int32_t>::max();
+  return static_cast<std::int32_t>(std::clamp(index, -kMax, kMax));
+}
+
+class Parser {
+ public:
+  Parser(const char* begin, const char* end) : scan_(begin, end) {
+    const auto bytes = static_cast<std::size_t>(end - begin);
+    chunk_.positions.reserve(bytes / 100);  // typical: 100 bytes a vertex with its two faces
+    chunk_.corner_position.reserve(bytes / 16);
+    chunk_.face_end.reserve(bytes / 48);
+    chunk_.face_line.reserve(bytes / 48);
+  }
+
+  ObjChunk run() {
+    while (!scan_.at_end() && chunk_.error.empty()) {
+      if (!scan_.at_line_end()) parse_line();
+      if (chunk_.error.empty()) scan_.next_line();
+    }
+    chunk_.lines = scan_.line();
+    return std::move(chunk_);
+  }
+
+ private:
+  void parse_line() {
+    line_ = scan_.line();
+    const std::string_view keyword = scan_.word();
+    if (keyword == "v") return parse_position();
+    if (keyword == "f" || keyword == "fo") return parse_face();
+    if (keyword == "vt") return parse_texcoord();
+    if (keyword == "o") return add_event(ObjEvent::object);
+    if (keyword == "g") return add_event(ObjEvent::group);
+    if (keyword == "usemtl") return add_event(ObjEvent::material);
+    if (keyword == "mtllib") return add_event(ObjEvent::library);
+    if (std::find(std::begin(kSilent), std::end(kSilent), keyword) == std::end(kSilent)) {
+      chunk_.ignored.push_back(line_);
+    }
+  }
+
+  void fail(std::string what) {
+    chunk_.error = std::move(what);
+    chunk_.error_line = line_;
+  }
+
+  // Up to `most` numbers until the line's end; -1 after an error.
+  int parse_numbers(double* values, int most, const char* what) {
+    int count = 0;
+    while (count < most && !scan_.at_line_end()) {
+      if (!scan_.number(values[count])) {
+        fail(fmt::format("'{}' is not a number of a {}", scan_.word().substr(0, 40), what));
+        return -1;
+      }
+      ++count;
+    }
+    return count;
+  }
+
+  void parse_position() {
+    double n[8];
+    const int count = parse_numbers(n, 8, "vertex (v x y z [r g b])");
+    if (count < 0) return;
+    if (count < 3 || count == 5) {
+      return fail(fmt::format(
+          "a vertex needs 3 coordinates, then none or 3 values; it has {} numbers", count));
+    }
+    chunk_.positions.push_back({n[0], n[1], n[2]});
+    if (count >= 6) {
+      add_colour({float(n[3]), float(n[4]), float(n[5])});
+    } else if (!chunk_.colours.empty()) {
+      chunk_.colours.push_back({NAN, 0, 0});
+    }
+  }
+
+  void add_colour(Vec3f c) {
+    if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z)) {
+      chunk_.bad_values.push_back(line_);
+      for (float* value : {&c.x, &c.y, &c.z}) {
+        if (!std::isfinite(*value)) *value = 0;
+      }
+    }
+    if (chunk_.colours.empty()) {
+      chunk_.colours.reserve(chunk_.positions.capacity());
+      chunk_.colours.resize(chunk_.positions.size() - 1, {NAN, 0, 0});
+    }
+    chunk_.colours.push_back(c);
+  }
+
+  void parse_texcoord() {
+    double n[3] = {0, 0, 0};
+    const int count = parse_numbers(n, 3, "texture coordinate (vt u v)");
+    if (count == 0) fail("a texture coordinate needs at least one number");
+    if (count > 0) chunk_.texcoords.push_back({float(n[0]), float(n[1])});
+  }
+
+  void parse_face() {
+    while (!scan_.at_line_end()) {
+      if (!parse_corner()) {
+        return fail(fmt::format("'{}' is not a corner of a face (v, v/vt, v//vn or v/vt/vn)",
+                                scan_.word().substr(0, 40)));
+      }
+    }
+    chunk_.face_end.push_back(static_cast<std::uint32_t>(chunk_.corner_position.size()));
+    chunk_.face_line.push_back(line_);
+  }
+
+  bool parse_corner() {
+    std::int64_t v = 0, t = 0, normal = 0;
+    bool has_t = false;
+    if (!scan_.integer_here(v)) return false;
+    if (scan_.take('/')) {
+      has_t = scan_.integer_here(t);
+      if (scan_.take('/') && !scan_.integer_here(normal) && !has_t) return false;
+    }
+    if (!scan_.at_blank()) return false;
+    chunk_.corner_position.push_back(
+        resolve(v, chunk_.positions.size(), chunk_.relative_position, chunk_.corner_position));
+    if (has_t && chunk_.corner_texcoord.empty()) {
+      chunk_.corner_texcoord.reserve(chunk_.corner_position.capacity());
+      chunk_.corner_texcoord.resize(chunk_.corner_position.size() - 1, ObjChunk::kNoUv);
+    }
+    if (has_t) {
+      chunk_.corner_texcoord.push_back(
+          resolve(t, chunk_.texcoords.size(), chunk_.relative_texcoord, chunk_.corner_texcoord));
+    } else if (!chunk_.corner_texcoord.empty()) {
+      chunk_.corner_texcoord.push_back(ObjChunk::kNoUv);
+    }
+    return true;
+  }
+
+  static std::int32_t resolve(std::int64_t index, std::size_t so_far,
+                              std::vector<std::uint32_t>& relative,
+                              const std::vector<std::int32_t>& corners) {
+    if (index >= 0) return clamp_index(index - 1);
+    relative.push_back(static_cast<std::uint32_t>(corners.size()));
+    return clamp_index(static_cast<std::int64_t>(so_far) + index);
+  }
+
+  void add_event(ObjEvent::Kind kind) {
+    chunk_.events.push_back(
+        {kind, static_cast<std::uint32_t>(chunk_.face_end.size()), line_, scan_.rest()});
+  }
+
+  TextScanner scan_;
+  ObjChunk chunk_;
+  std::uint32_t line_ = 0;
+};
+
+}  // namespace
+
+ObjChunk parse_obj_chunk(const char* begin, const char* end) {
+  return Parser(begin, end).run();
+}
+
+}  // namespace atlas

@@ -1,0 +1,45 @@
+// Internal: one piece of an OBJ file, parsed on its own so that pieces can be parsed in parallel.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libatlas/core/vec.h"
+#include "libatlas/scene/defects.h"
+
+namespace atlas {
+
+// A line that changes the state of the faces after it.
+struct ObjEvent {
+  enum Kind { object, group, material, library };
+  Kind kind{};
+  std::uint32_t face = 0;  // number of faces of the chunk before it
+  std::uint32_t line = 0;
+  std::string_view text;
+};
+
+// Lines count from 0 at the chunk's start. Corners hold index - 1 as the file gives it; those
+// listed in relative_* were negative and hold (elements of the chunk so far) + index, to which
+// the elements of the chunks before have to be added.
+struct ObjChunk {
+  static constexpr std::int32_t kNoUv = -0x7fffffff - 1;
+
+  std::vector<Vec3d> positions;
+  std::vector<Vec3f> colours;  // empty, or 1 a position; x is NaN where the line has none
+  std::vector<Vec2f> texcoords;
+  std::vector<std::int32_t> corner_position, corner_texcoord;  // the latter empty: no face has any
+  std::vector<std::uint32_t> relative_position, relative_texcoord;
+  std::vector<std::uint32_t> face_end, face_line;  // face i has the corners up to face_end[i]
+  std::vector<ObjEvent> events;
+  std::vector<std::uint32_t> bad_values, ignored;  // lines of non-finite colours; of other elements
+  std::uint32_t lines = 0;
+  std::string error;  // not empty: malformed at error_line
+  std::uint32_t error_line = 0;
+};
+
+// Parses [begin, end), which starts and ends at line borders. Never fails but by chunk.error.
+ObjChunk parse_obj_chunk(const char* begin, const char* end);
+
+}  // namespace atlas

@@ -1,0 +1,260 @@
+// OBJ: cut into pieces at line ends, parsed in parallel, merged in file order.
+#include <fmt/format.h>
+
+#include <map>
+
+#include "libatlas/core/parallel.h"
+#include "libatlas/scene/file_bytes.h"
+#include "libatlas/scene/formats.h"
+#include "libatlas/scene/obj_chunk.h"
+
+namespace atlas {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kChunkBytes = std::size_t{4} << 20;
+
+// Borders of pieces of about kChunkBytes; a line that a backslash continues is not cut.
+std::vector<const char*> cut(const FileBytes& bytes) {
+  std::vector<const char*> borders{bytes.begin()};
+  for (;;) {
+    const char* at = borders.back();
+    if (static_cast<std::size_t>(bytes.end() - at) <= kChunkBytes) break;
+    for (at += kChunkBytes; at < bytes.end(); ++at) {
+      if (at[-1] != '\n') continue;
+      const char* before = at - 2;
+      if (*before == '\r') --before;
+      if (*before != '\\') break;
+    }
+    if (at >= bytes.end()) break;
+    borders.push_back(at);
+  }
+  borders.push_back(bytes.end());
+  return borders;
+}
+
+class Merger {
+ public:
+  Merger(const fs::path& path, SceneBuilder& builder) : path_(path), builder_(builder) {
+    builder_.materials.push_back({});  // for faces before the first usemtl
+    builder_.objects.push_back({});
+    material_id_[""] = object_id_[""] = 0;
+  }
+
+  Status merge(std::vector<ObjChunk>& chunks) {
+    if (Status s = merge_vertices(chunks); !s.ok()) return s;
+    if (Status s = read_libraries(chunks); !s.ok()) return s;
+    line_ = 1;
+    std::int64_t position_base = 0, texcoord_base = 0;
+    for (ObjChunk& chunk : chunks) {
+      for (const std::uint32_t k : chunk.relative_position) {
+        chunk.corner_position[k] += static_cast<std::int32_t>(position_base);
+      }
+      for (const std::uint32_t k : chunk.relative_texcoord) {
+        chunk.corner_texcoord[k] += static_cast<std::int32_t>(texcoord_base);
+      }
+      position_base += position_counts_[&chunk - chunks.data()];
+      texcoord_base += texcoord_counts_[&chunk - chunks.data()];
+      merge_faces(chunk);
+      line_ += chunk.lines;
+      chunk = {};
+    }
+    return {};
+  }
+
+ private:
+  std::string place(std::uint32_t line) const {
+    return fmt::format("{}:{}", builder_.file, line_ + line);
+  }
+
+  Status merge_vertices(std::vector<ObjChunk>& chunks) {
+    std::size_t positions = 0, texcoords = 0, faces = 0;
+    bool coloured = false;
+    for (const ObjChunk& chunk : chunks) {
+      if (!chunk.error.empty()) {
+        return {ErrorCode::bad_input, fmt::format("{}: {} (correct the line or export again)",
+                                                  place(chunk.error_line), chunk.error)};
+      }
+      line_ += chunk.lines;
+      positions += chunk.positions.size();
+      texcoords += chunk.texcoords.size();
+      faces += chunk.face_end.size();
+      coloured |= !chunk.colours.empty();
+      position_counts_.push_back(static_cast<std::int64_t>(chunk.positions.size()));
+      texcoord_counts_.push_back(static_cast<std::int64_t>(chunk.texcoords.size()));
+    }
+    if (positions > 0x7fffffff || texcoords > 0x7fffffff) {
+      return {ErrorCode::unsupported, builder_.file + ": more than 2^31 vertices (split the file)"};
+    }
+    builder_.positions.reserve(positions);
+    builder_.texcoords.reserve(texcoords);
+    if (coloured) builder_.illumination.reserve(positions);
+    builder_.reserve_triangles(faces, texcoords != 0);
+    line_ = 1;
+    for (ObjChunk& chunk : chunks) {
+      append_vertices(chunk, coloured);
+      line_ += chunk.lines;
+    }
+    builder_.check_positions(
+        [&](std::size_t i) { return fmt::format("{}: vertex {}", builder_.file, i + 1); });
+    return {};
+  }
+
+  void append_vertices(ObjChunk& chunk, bool coloured) {
+    SceneBuilder& b = builder_;
+    b.positions.insert(b.positions.end(), chunk.positions.begin(), chunk.positions.end());
+    b.texcoords.insert(b.texcoords.end(), chunk.texcoords.begin(), chunk.texcoords.end());
+    if (coloured) {
+      chunk.colours.resize(chunk.positions.size(), {NAN, 0, 0});
+      for (Vec3f& value : chunk.colours) {
+        if (std::isnan(value.x)) {
+          const std::size_t vertex = b.illumination.size() + 1;
+          b.defects.add(DefectKind::illumination_missing,
+                        [&] { return fmt::format("{}: vertex {}", b.file, vertex); });
+          value = {};
+        }
+        b.illumination.push_back(value);
+      }
+    }
+    for (const std::uint32_t line : chunk.bad_values) {
+      b.defects.add(DefectKind::illumination_not_finite, [&] { return place(line); });
+    }
+    for (const std::uint32_t line : chunk.ignored) {
+      b.defects.add(DefectKind::element_ignored, [&] { return place(line); });
+    }
+    std::vector<Vec3d>().swap(chunk.positions);
+    std::vector<Vec3f>().swap(chunk.colours);
+    std::vector<Vec2f>().swap(chunk.texcoords);
+  }
+
+  // `mtllib` names several files apart by blanks, or one whose name has blanks: the longest run of
+  // words that is a file wins.
+  Status read_libraries(const std::vector<ObjChunk>& chunks) {
+    line_ = 1;
+    for (const ObjChunk& chunk : chunks) {
+      for (const ObjEvent& event : chunk.events) {
+        has_objects_ |= event.kind == ObjEvent::object;
+        if (event.kind != ObjEvent::library) continue;
+        if (Status s = read_library_list(event); !s.ok()) return s;
+      }
+      line_ += chunk.lines;
+    }
+    for (std::size_t i = 1; i < builder_.materials.size(); ++i) {
+      material_id_.try_emplace(builder_.materials[i].name, static_cast<std::uint32_t>(i));
+    }
+    return {};
+  }
+
+  Status read_library_list(const ObjEvent& event) {
+    std::string_view rest = event.text;
+    while (!rest.empty()) {
+      std::size_t length = rest.size();
+      while (length != rest.npos && !is_file(rest.substr(0, length))) {
+        length = length == 0 ? rest.npos : rest.find_last_of(" \t", length - 1);
+      }
+      if (length == rest.npos || length == 0) {
+        length = std::min(rest.find_first_of(" \t"), rest.size());
+        builder_.defects.add(DefectKind::material_file_missing, [&] {
+          return fmt::format("{} ({})", library(rest.substr(0, length)).string(),
+                             place(event.line));
+        });
+      } else if (Status s = read_mtl(library(rest.substr(0, length)), builder_); !s.ok()) {
+        return s;
+      }
+      rest.remove_prefix(length);
+      rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
+    }
+    return {};
+  }
+
+  fs::path library(std::string_view name) const { return path_.parent_path() / fs::path(name); }
+  bool is_file(std::string_view name) const {
+    std::error_code ignored;  // a name that cannot be asked about is not a file
+    return fs::is_regular_file(library(name), ignored);
+  }
+
+  void merge_faces(const ObjChunk& chunk) {
+    std::size_t next_event = 0;
+    std::uint32_t begin = 0;
+    std::vector<std::int64_t> vertices, uvs;
+    for (std::size_t face = 0; face < chunk.face_end.size(); ++face) {
+      while (next_event < chunk.events.size() && chunk.events[next_event].face <= face) {
+        apply(chunk.events[next_event++]);
+      }
+      const std::uint32_t end = chunk.face_end[face];
+      vertices.assign(chunk.corner_position.begin() + begin, chunk.corner_position.begin() + end);
+      uvs.clear();
+      if (!chunk.corner_texcoord.empty()) {
+        for (std::uint32_t k = begin; k < end; ++k) {
+          const std::int32_t t = chunk.corner_texcoord[k];
+          uvs.push_back(t == ObjChunk::kNoUv ? SceneBuilder::kNoIndex : t);
+        }
+      }
+      builder_.add_face(vertices, uvs, [&] { return place(chunk.face_line[face]); });
+      begin = end;
+    }
+    while (next_event < chunk.events.size()) apply(chunk.events[next_event++]);
+  }
+
+  void apply(const ObjEvent& event) {
+    const std::string name(event.text);
+    if (event.kind == ObjEvent::material) {
+      const auto next = static_cast<std::uint32_t>(builder_.materials.size());
+      const auto [at, is_new] = material_id_.try_emplace(name, next);
+      if (is_new) {
+        builder_.materials.push_back({});
+        builder_.materials.back().name = name;
+        builder_.defects.add(DefectKind::material_unknown,
+                             [&] { return fmt::format("{}: '{}'", place(event.line), name); });
+      }
+      builder_.material = at->second;
+    } else if (event.kind == (has_objects_ ? ObjEvent::object : ObjEvent::group)) {
+      const auto next = static_cast<std::uint32_t>(builder_.objects.size());
+      const auto [at, is_new] = object_id_.try_emplace(name, next);
+      if (is_new) builder_.objects.push_back(name);
+      builder_.object = at->second;
+    }
+  }
+
+  fs::path path_;
+  SceneBuilder& builder_;
+  std::uint32_t line_ = 1;    // of the file, where the chunk at hand begins
+  bool has_objects_ = false;  // then groups do not count as objects
+  std::vector<std::int64_t> position_counts_, texcoord_counts_;
+  std::map<std::string, std::uint32_t> material_id_, object_id_;
+};
+
+// A face at the very end that lost its corners, in a last line without a line end, was cut off.
+Status check_tail(const fs::path& path, const FileBytes& bytes, const ObjChunk& last,
+                  std::uint32_t lines) {
+  if (bytes.size == 0 || bytes.end()[-1] == '\n' || last.face_end.empty()) return {};
+  const std::size_t faces = last.face_end.size();
+  const std::uint32_t begin = faces > 1 ? last.face_end[faces - 2] : 0;
+  if (last.face_line.back() != last.lines || last.face_end.back() - begin >= 3) return {};
+  return {
+      ErrorCode::bad_input,
+      fmt::format("{}:{}: the file ends in the middle of a face (it was cut short: export or copy "
+                  "it again)",
+                  path.string(), lines)};
+}
+
+}  // namespace
+
+Status read_obj(const fs::path& path, SceneBuilder& builder, const Context& context) {
+  auto bytes = read_file_bytes(path);
+  if (!bytes.ok()) return bytes.status();
+  const std::vector<const char*> borders = cut(*bytes);
+  std::vector<ObjChunk> chunks(borders.size() - 1);
+  parallel_for(context, chunks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      chunks[i] = parse_obj_chunk(borders[i], borders[i + 1]);
+    }
+  });
+  if (context.cancelled()) return Status::cancelled();
+  std::uint32_t lines = 1;
+  for (const ObjChunk& chunk : chunks) lines += chunk.lines;
+  if (Status s = check_tail(path, *bytes, chunks.back(), lines); !s.ok()) return s;
+  return Merger(path, builder).merge(chunks);
+}
+
+}  // namespace atlas

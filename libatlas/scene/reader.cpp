@@ -1,0 +1,58 @@
+#include "libatlas/scene/reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "libatlas/scene/formats.h"
+
+namespace atlas {
+namespace fs = std::filesystem;
+
+namespace {
+
+using Reader = Status (*)(const fs::path&, SceneBuilder&, const Context&);
+
+Reader reader_for(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".obj") return read_obj;
+  return nullptr;
+}
+
+}  // namespace
+
+bool known_extension(const fs::path& path) {
+  return reader_for(path) != nullptr;
+}
+
+Status read_by_extension(const fs::path& path, SceneBuilder& builder, const Context& context) {
+  if (const Reader read = reader_for(path)) return read(path, builder, context);
+  return {ErrorCode::unsupported,
+          fmt::format("{}: no reader for '{}' (use .obj, .ply, .gltf, .glb, or a .wrl or .wrz "
+                      "written by this program)",
+                      path.string(), path.extension().string())};
+}
+
+Result<LoadedScene> read_scene(const fs::path& path, const ReadOptions& options,
+                               const Context& context) {
+  if (!(options.metres_per_unit > 0) || !std::isfinite(options.metres_per_unit)) {
+    return Status(ErrorCode::bad_option,
+                  fmt::format("{} metres a unit: the unit's length must be positive",
+                              options.metres_per_unit));
+  }
+  context.report("reading", 0);
+  SceneBuilder builder(path);
+  if (Status s = read_by_extension(path, builder, context); !s.ok()) return s;
+  if (!options.illumination_file.empty()) {
+    if (Status s = read_illumination(options.illumination_file, builder, context); !s.ok())
+      return s;
+  }
+  auto result = builder.finish(options, context);
+  context.report("reading", 1);
+  return result;
+}
+
+}  // namespace atlas

@@ -1,0 +1,43 @@
+// Reading illuminated scenes: OBJ + MTL, PLY, glTF 2.0 and GLB, and worlds written by exporters/.
+#pragma once
+
+#include <filesystem>
+
+#include "libatlas/core/context.h"
+#include "libatlas/core/status.h"
+#include "libatlas/scene/defects.h"
+#include "libatlas/scene/scene.h"
+
+namespace atlas {
+
+struct ReadOptions {
+  double metres_per_unit = 1;  // length of one unit of the file, > 0
+  // Takes the illumination from this file instead: OBJ, PLY or glTF with the same vertices in the
+  // same order, or plain text with one `r g b` (or one grey value) a line.
+  std::filesystem::path illumination_file;
+  bool load_textures = true;  // false: materials have their diffuse colour only
+};
+
+struct LoadedScene {
+  Scene scene;
+  DefectReport defects;  // what was left out or replaced
+};
+
+// Reads the scene at `path`; the extension (.obj .ply .gltf .glb .wrl .wrz, any case) chooses the
+// format.
+//
+// Positions are parsed in double. When the centre of the box of the used vertices is farther from 0
+// than 8 times the box's diagonal, Scene::origin is that centre rounded to a multiple of the
+// next power of two above the diagonal, and positions are stored relative to it; otherwise the
+// origin is 0 and positions are the file's own, rounded to float. Materials and objects without a
+// triangle are not listed; those that are come in the order of first use.
+// Illumination: OBJ `v x y z r g b`; PLY red/green/blue, r/g/b or illuminance_r/g/b (integers are
+// normalised); glTF _ILLUMINANCE, else COLOR_0. Values are never clamped.
+//
+// Errors: not_found (no such file, no such buffer); bad_input (see scene/defects.h for what counts
+// as malformed; also: no usable triangle, an illumination file with another vertex count);
+// unsupported (unknown extension, compressed glTF); bad_option; cancelled.
+Result<LoadedScene> read_scene(const std::filesystem::path& path, const ReadOptions& options,
+                               const Context& context);
+
+}  // namespace atlas

@@ -1,0 +1,200 @@
+#include "libatlas/scene/scene_builder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "libatlas/image/image_io.h"
+
+namespace atlas {
+namespace {
+
+// Beyond this many box diagonals from 0, floats would lose three bits and more to the offset.
+constexpr double kFarDiagonals = 8;
+
+struct Box {
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+
+  void add(const Vec3d& p) {
+    const double c[3] = {p.x, p.y, p.z};
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], c[i]);
+      high[i] = std::max(high[i], c[i]);
+    }
+  }
+};
+
+Vec3d choose_origin(const Box& box) {
+  double centre[3], diagonal = 0, distance = 0;
+  for (int i = 0; i < 3; ++i) {
+    centre[i] = box.low[i] + (box.high[i] - box.low[i]) / 2;
+    diagonal = std::hypot(diagonal, box.high[i] - box.low[i]);
+    distance = std::hypot(distance, centre[i]);
+  }
+  if (!(diagonal > 0) || distance <= kFarDiagonals * diagonal) return {};
+  const double step = std::exp2(std::ceil(std::log2(diagonal)));
+  for (double& c : centre) c = std::round(c / step) * step;
+  return {centre[0], centre[1], centre[2]};
+}
+
+constexpr std::uint32_t kUnset = 0xffffffffu;
+
+// Renumbers ids by first use; returns the old id of each new one.
+std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& ids, std::size_t count) {
+  std::vector<std::uint32_t> to(count, kUnset), used;
+  for (std::uint32_t& id : ids) {
+    if (to[id] == kUnset) {
+      to[id] = static_cast<std::uint32_t>(used.size());
+      used.push_back(id);
+    }
+    id = to[id];
+  }
+  return used;
+}
+
+}  // namespace
+
+void SceneBuilder::reserve_triangles(std::size_t count, bool with_texcoords) {
+  indices_.reserve(count * 3);
+  texcoord_indices_.reserve(with_texcoords ? count * 3 : 0);
+  triangle_material_.reserve(count);
+  triangle_object_.reserve(count);
+}
+
+void SceneBuilder::sanitise_values() {
+  const auto vertex = [&](std::size_t i) { return fmt::format("{}: vertex {}", file, i + 1); };
+  for (std::size_t i = 0; i < illumination.size(); ++i) {
+    float* values[3] = {&illumination[i].x, &illumination[i].y, &illumination[i].z};
+    bool finite = true, negative = false;
+    for (float* value : values) {
+      if (!std::isfinite(*value)) *value = 0, finite = false;
+      negative |= *value < 0;
+    }
+    if (!finite) defects.add(DefectKind::illumination_not_finite, [&] { return vertex(i); });
+    if (negative) defects.add(DefectKind::illumination_negative, [&] { return vertex(i); });
+  }
+  for (std::size_t i = 0; i < texcoords.size(); ++i) {
+    if (std::isfinite(texcoords[i].x) && std::isfinite(texcoords[i].y)) continue;
+    texcoords[i] = {};
+    defects.add(DefectKind::texcoord_not_finite,
+                [&] { return fmt::format("{}: texture coordinate {}", file, i + 1); });
+  }
+}
+
+void SceneBuilder::place_positions(Scene& scene) const {
+  std::vector<bool> used(positions.size(), false);
+  for (const std::uint32_t v : indices_) used[v] = true;
+  Box box;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (used[i]) box.add(positions[i]);
+  }
+  const Vec3d origin = choose_origin(box);
+  scene.origin = origin;
+  scene.positions.resize(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Vec3d& p = positions[i];
+    const Vec3f q{float(p.x - origin.x), float(p.y - origin.y), float(p.z - origin.z)};
+    // A vertex that no triangle uses may be anything; the array promises finite numbers.
+    const bool finite = std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z);
+    scene.positions[i] = finite ? q : Vec3f{};
+  }
+}
+
+void SceneBuilder::keep_used(Scene& scene) {
+  for (const std::uint32_t old : compact(triangle_object_, objects.size())) {
+    scene.object_names.push_back(std::move(objects[old]));
+  }
+  std::vector<RawMaterial> kept;
+  for (const std::uint32_t old : compact(triangle_material_, materials.size())) {
+    kept.push_back(std::move(materials[old]));
+  }
+  materials = std::move(kept);
+  std::vector<std::int32_t> texture_to(textures.size(), -1);
+  std::vector<RawTexture> kept_textures;
+  for (RawMaterial& m : materials) {
+    if (m.texture < 0) continue;
+    std::int32_t& to = texture_to[m.texture];
+    if (to < 0) {
+      to = static_cast<std::int32_t>(kept_textures.size());
+      kept_textures.push_back(std::move(textures[m.texture]));
+    }
+    m.texture = to;
+  }
+  textures = std::move(kept_textures);
+}
+
+void SceneBuilder::move_texcoords() {
+  std::vector<std::unordered_map<std::uint32_t, std::uint32_t>> moved(materials.size());
+  for (std::size_t k = 0; k < texcoord_indices_.size(); ++k) {
+    const std::uint32_t m = triangle_material_[k / 3];
+    if (texcoord_indices_[k] == Scene::kNoTexcoord || !materials[m].moves_uv()) continue;
+    const auto next = static_cast<std::uint32_t>(texcoords.size());
+    const auto [at, is_new] = moved[m].try_emplace(texcoord_indices_[k], next);
+    if (is_new) {
+      const Vec2f uv = texcoords[texcoord_indices_[k]];
+      const RawMaterial& raw = materials[m];
+      texcoords.push_back({float(uv.x * raw.uv_scale[0] + raw.uv_offset[0]),
+                           float(uv.y * raw.uv_scale[1] + raw.uv_offset[1])});
+    }
+    texcoord_indices_[k] = at->second;
+  }
+}
+
+void SceneBuilder::load_textures(Scene& scene) {
+  std::vector<std::int32_t> loaded(textures.size(), -1);
+  for (std::size_t i = 0; i < textures.size(); ++i) {
+    const RawTexture& raw = textures[i];
+    auto image =
+        raw.bytes.empty() ? read_image8(raw.path) : decode_image8(raw.bytes, raw.path.string());
+    if (image.ok()) {
+      loaded[i] = static_cast<std::int32_t>(scene.textures.size());
+      scene.textures.push_back({raw.path, std::move(*image)});
+      continue;
+    }
+    const bool missing = image.status().code() == ErrorCode::not_found;
+    defects.add(missing ? DefectKind::texture_missing : DefectKind::texture_unreadable, [&] {
+      return raw.place.empty() ? raw.path.string()
+                               : fmt::format("{} ({})", raw.path.string(), raw.place);
+    });
+  }
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const std::int32_t t = materials[i].texture;
+    scene.materials[i].texture = t < 0 ? -1 : loaded[t];
+  }
+}
+
+Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Context& context) {
+  if (triangle_count() == 0) {
+    const std::string why = defects.triangles_left_out == 0
+                                ? "it holds no face"
+                                : fmt::format("all {} faces are unusable: {}",
+                                              defects.triangles_left_out, defects.lines().front());
+    return Status(
+        ErrorCode::bad_input,
+        fmt::format("{}: no triangle to work on: {} (export the scene as a triangle mesh)", file,
+                    why));
+  }
+  sanitise_values();
+  LoadedScene loaded;
+  Scene& scene = loaded.scene;
+  scene.metres_per_unit = options.metres_per_unit;
+  place_positions(scene);
+  std::vector<Vec3d>().swap(positions);
+  if (context.cancelled()) return Status::cancelled();
+  keep_used(scene);
+  move_texcoords();
+  for (const RawMaterial& m : materials) scene.materials.push_back({m.name, m.diffuse, -1});
+  if (options.load_textures) load_textures(scene);
+  scene.indices = std::move(indices_);
+  if (any_texcoord_) scene.texcoord_indices = std::move(texcoord_indices_);
+  scene.texcoords = std::move(texcoords);
+  scene.triangle_material = std::move(triangle_material_);
+  scene.triangle_object = std::move(triangle_object_);
+  scene.illumination = std::move(illumination);
+  loaded.defects = std::move(defects);
+  if (context.cancelled()) return Status::cancelled();
+  return loaded;
+}
+
+}  // namespace atlas
