@@ -1,0 +1,127 @@
+#include "libatlas/shadow/fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+struct Sphere {
+  glm::dvec3 centre{0};
+  double radius = 0;
+};
+
+Sphere around(const std::array<glm::dvec3, 8>& points) {
+  Sphere s;
+  for (const glm::dvec3& p : points) s.centre += p / 8.0;
+  for (const glm::dvec3& p : points) s.radius = std::max(s.radius, glm::length(p - s.centre));
+  return s;
+}
+
+std::array<glm::dvec3, 8> corners(const Box3& box) {
+  std::array<glm::dvec3, 8> c;
+  for (int i = 0; i < 8; ++i)
+    c[i] = {i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y,
+            i & 4 ? box.high.z : box.low.z};
+  return c;
+}
+
+bool finite(const glm::dvec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// Columns right, up, towards the light.
+struct Basis {
+  glm::dvec3 right, up, back;
+};
+
+Basis light_basis(const glm::dvec3& direction, const Vec3d& wanted_up) {
+  glm::dvec3 up = to_glm(wanted_up);
+  // Within about 0.6 degrees of the vertical any other axis serves better than rounding noise.
+  if (glm::length(glm::cross(up, direction)) < 0.01 * glm::length(up) || !finite(up)) {
+    const glm::dvec3 a = glm::abs(direction);
+    up = a.x <= a.y && a.x <= a.z ? glm::dvec3(1, 0, 0)
+                                  : (a.y <= a.z ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1));
+  }
+  Basis b;
+  b.back = direction;
+  b.right = glm::normalize(glm::cross(up, direction));
+  b.up = glm::cross(direction, b.right);
+  return b;
+}
+
+}  // namespace
+
+Vec3d transform_point(const Matrix4& m, const Vec3d& p) {
+  return {m[0] * p.x + m[4] * p.y + m[8] * p.z + m[12],
+          m[1] * p.x + m[5] * p.y + m[9] * p.z + m[13],
+          m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14]};
+}
+
+Vec3d transform_vector(const Matrix4& m, const Vec3d& v) {
+  return {m[0] * v.x + m[4] * v.y + m[8] * v.z, m[1] * v.x + m[5] * v.y + m[9] * v.z,
+          m[2] * v.x + m[6] * v.y + m[10] * v.z};
+}
+
+Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene, const FitOptions& options) {
+  const glm::dvec3 low = to_glm(scene.low), high = to_glm(scene.high);
+  const double length = glm::length(to_glm(direction));
+  if (!(length > 0) || !std::isfinite(length))
+    return Status{ErrorCode::bad_option, "shadow map: the light's direction is zero or not finite"};
+  if (!finite(low) || !finite(high) || low.x > high.x || low.y > high.y || low.z > high.z)
+    return Status{ErrorCode::bad_option, "shadow map: the scene's bounds are empty or not finite"};
+  const double free = 1 - 2 * options.border_texels / options.resolution;
+  if (options.resolution < 1 || !(free > 0))
+    return Status{ErrorCode::bad_option,
+                  fmt::format("shadow map: {} texels a side are too few for a border of {} texels",
+                              options.resolution, options.border_texels)};
+
+  const Basis basis = light_basis(to_glm(direction) / length, options.up);
+  const Sphere whole = around(corners(scene));
+  Sphere fitted = whole;
+  if (options.view) {
+    std::array<glm::dvec3, 8> points;
+    for (int i = 0; i < 8; ++i) points[i] = to_glm(options.view_corners[i]);
+    const Sphere view = around(points);
+    if (view.radius > 0 && finite(view.centre) && view.radius < whole.radius) fitted = view;
+  }
+  // A scene of one point still needs a map of some size.
+  const double smallest = std::max(glm::length(fitted.centre) * 1e-9, 1e-30);
+  double side = std::max(2 * fitted.radius, smallest) / free;
+  if (options.snap && options.view)
+    side = std::exp2(std::ceil(std::log2(side) * 8) / 8);  // sizes in steps of 9 %, for zooming
+  const double texel = side / options.resolution;
+
+  double x = glm::dot(basis.right, fitted.centre), y = glm::dot(basis.up, fitted.centre);
+  if (options.snap) {
+    // Distances from the scene's centre, not from the origin: far-off scenes snap as finely.
+    const double cx = glm::dot(basis.right, whole.centre), cy = glm::dot(basis.up, whole.centre);
+    x = cx + std::round((x - cx) / texel) * texel;
+    y = cy + std::round((y - cy) / texel) * texel;
+  }
+  const double range = 2 * std::max(whole.radius, smallest) * 1.0001;
+  const double nearest = glm::dot(basis.back, whole.centre) + range / 2;
+
+  LightFit fit;
+  fit.direction = from_glm(basis.back);
+  fit.texel = texel;
+  fit.depth_range = range;
+  const glm::dvec3 rows[3] = {basis.right / side, basis.up / side, -basis.back / range};
+  const double shift[3] = {0.5 - x / side, 0.5 - y / side, nearest / range};
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) {
+      fit.to_texture[c * 4 + r] = rows[r][c];
+      fit.to_clip[c * 4 + r] = 2 * rows[r][c];
+    }
+    fit.to_texture[12 + r] = shift[r];
+    fit.to_clip[12 + r] = 2 * shift[r] - 1;
+  }
+  fit.to_texture[15] = fit.to_clip[15] = 1;
+  return fit;
+}
+
+}  // namespace atlas

@@ -1,0 +1,137 @@
+#include "libatlas/shadow/schedule.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libatlas/shadow/blend.h"
+
+namespace atlas {
+namespace {
+
+// Two directions closer than this draw the same map: at 4096 texels across, a hundredth of a texel.
+constexpr double kSameAngle = 2e-6;
+
+bool same(const Vec3d& a, const Vec3d& b) {
+  return angle_between(a, b) < kSameAngle;
+}
+
+double degrees_between(const Vec3d& a, const Vec3d& b) {
+  return angle_between(a, b) * 180 / std::numbers::pi;
+}
+
+}  // namespace
+
+KeySchedule::KeySchedule(const ScheduleOptions& options) : options_(options) {
+  options_.interval_frames = std::max(1, options_.interval_frames);
+  options_.max_frames = std::max(1, options_.max_frames);
+}
+
+// Frames from the key `start` frames ahead to the one after it.
+int KeySchedule::interval_from(int start, const Ahead& ahead) const {
+  const bool by_degrees = options_.interval_degrees > 0;
+  const int longest = by_degrees ? options_.max_frames : options_.interval_frames;
+  if (!ahead) return options_.interval_frames;
+  const double limit =
+      by_degrees ? std::min(options_.interval_degrees, kMaxKeyDegrees) : kMaxKeyDegrees;
+  const Vec3d first = ahead(start);
+  Vec3d previous = first;
+  for (int n = 1; n <= longest; ++n) {
+    const Vec3d d = ahead(start + n);
+    const double moved = degrees_between(first, d);
+    if (n > 1 && (moved > kMaxKeyDegrees || degrees_between(previous, d) > options_.jump_degrees))
+      return n - 1;
+    if (moved >= limit * (1 - 1e-9)) return n;
+    previous = d;
+  }
+  return longest;
+}
+
+int KeySchedule::free_slot() const {
+  for (int slot = 0; slot < kSlots; ++slot)
+    if (slot != from_.slot && slot != to_.slot) return slot;
+  return 0;  // not reached: two keys cannot hold three slots
+}
+
+void KeySchedule::draw_whole(int slot, const Vec3d& direction, FramePlan& plan) {
+  plan.work.push_back({slot, direction, 0, 1});
+  ++passes_;
+}
+
+void KeySchedule::refresh(const Vec3d& now, const Ahead& ahead, FramePlan& plan) {
+  plan.refreshed = true;
+  from_ = to_ = {0, now};
+  draw_whole(0, now, plan);
+  length_ = interval_from(0, ahead);
+  // A light that jumps in every frame gets one map a frame, like the classic method, not two.
+  if (!ahead || degrees_between(ahead(1), now) > options_.jump_degrees) return;
+  const Vec3d end = ahead(length_);
+  if (!same(end, now)) {
+    to_ = {1, end};
+    draw_whole(1, end, plan);
+  }
+}
+
+// from_ and to_ are set; chooses what to draw during this interval for the one after it.
+void KeySchedule::begin_interval(const Vec3d& now, const Ahead& ahead) {
+  frame_ = 0;
+  coming_ = to_;
+  coming_needs_work_ = false;
+  next_length_ = interval_from(length_, ahead);
+  // A jump before the interval ends will refresh everything: nothing drawn now would be sampled.
+  for (int n = 0; ahead && n < length_; ++n)
+    if (degrees_between(ahead(n), ahead(n + 1)) > options_.jump_degrees) return;
+  const Vec3d target = ahead ? ahead(length_ + next_length_) : now;
+  coming_needs_work_ = !same(target, to_.direction);
+  if (coming_needs_work_) coming_ = {free_slot(), target};
+}
+
+FramePlan KeySchedule::next_unblended(const Vec3d& now) {
+  FramePlan plan;
+  plan.refreshed = !valid_ || degrees_between(last_, now) > options_.jump_degrees;
+  const bool due = options_.interval_degrees > 0 ? degrees_between(from_.direction, now) >=
+                                                       options_.interval_degrees * (1 - 1e-9)
+                                                 : ++frame_ >= options_.interval_frames;
+  if (plan.refreshed || (due && !same(from_.direction, now))) {
+    from_ = {0, now};
+    draw_whole(0, now, plan);
+    frame_ = 0;
+  }
+  valid_ = true;
+  last_ = now;
+  plan.from_direction = plan.to_direction = from_.direction;
+  return plan;
+}
+
+FramePlan KeySchedule::next(const Vec3d& now, const Ahead& ahead) {
+  if (!options_.blend) return next_unblended(now);
+  FramePlan plan;
+  const bool jumped = valid_ && degrees_between(last_, now) > options_.jump_degrees;
+  if (!valid_ || jumped) {
+    refresh(now, ahead, plan);
+    begin_interval(now, ahead);
+    valid_ = true;
+  } else if (++frame_ >= length_) {
+    from_ = to_;
+    to_ = coming_;
+    length_ = next_length_;
+    begin_interval(now, ahead);
+  }
+  last_ = now;
+  if (coming_needs_work_) {
+    const double n = length_;
+    if (frame_ == 0) ++passes_;
+    if (options_.sliced)
+      plan.work.push_back({coming_.slot, coming_.direction, frame_ / n, (frame_ + 1) / n});
+    else if (frame_ == 0)
+      plan.work.push_back({coming_.slot, coming_.direction, 0, 1});
+  }
+  plan.from = from_.slot;
+  plan.to = to_.slot;
+  plan.from_direction = from_.direction;
+  plan.to_direction = to_.direction;
+  plan.t = plan.from == plan.to ? 0 : double(frame_) / length_;
+  return plan;
+}
+
+}  // namespace atlas

@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "libatlas/shadow/fit.h"
+
+namespace atlas {
+namespace {
+
+Vec3d random_direction(std::mt19937& rng) {
+  std::normal_distribution<double> n;
+  return {n(rng), n(rng), n(rng)};
+}
+
+TEST(Fit, EveryPointOfTheSceneIsInTheMapForEveryLight) {
+  std::mt19937 rng(7);
+  std::uniform_real_distribution<double> in(0, 1);
+  const Box3 boxes[] = {{{-1, -2, -3}, {4, 5, 6}},
+                        {{1e6, 0, 0}, {1e6 + 1, 1, 1}},
+                        {{0, 0, 0}, {1e-5, 2e-5, 0}},
+                        {{0, 0, 0}, {100, 0, 100}}};
+  for (const Box3& box : boxes)
+    for (int i = 0; i < 200; ++i) {
+      const Vec3d light = i == 0 ? Vec3d{0, 1, 0} : random_direction(rng);
+      FitOptions o;
+      o.resolution = 512;
+      const Result<LightFit> fit = fit_light(light, box, o);
+      ASSERT_TRUE(fit.ok());
+      const double border = o.border_texels / o.resolution * 0.99;
+      for (int p = 0; p < 20; ++p) {
+        const Vec3d q{box.low.x + in(rng) * (box.high.x - box.low.x),
+                      box.low.y + in(rng) * (box.high.y - box.low.y),
+                      box.low.z + in(rng) * (box.high.z - box.low.z)};
+        const Vec3d m = transform_point(fit->to_texture, q);
+        EXPECT_TRUE(m.x >= border && m.x <= 1 - border && m.y >= border && m.y <= 1 - border);
+        EXPECT_TRUE(m.z >= 0 && m.z <= 1) << m.z;
+        const Vec3d c = transform_point(fit->to_clip, q);
+        EXPECT_NEAR(c.x, 2 * m.x - 1, 1e-6);
+        EXPECT_NEAR(c.z, 2 * m.z - 1, 1e-6);
+      }
+    }
+}
+
+TEST(Fit, ItIsASimilarityWithTheStatedTexelAndDepth) {
+  std::mt19937 rng(8);
+  const Box3 box{{0, 0, 0}, {3, 2, 7}};
+  for (int i = 0; i < 100; ++i) {
+    FitOptions o;
+    const LightFit fit = *fit_light(random_direction(rng), box, o);
+    // Going towards the light by one unit changes the depth by 1/range and nothing else.
+    const Vec3d along = transform_vector(fit.to_texture, fit.direction);
+    EXPECT_NEAR(along.x, 0, 1e-12);
+    EXPECT_NEAR(along.y, 0, 1e-12);
+    EXPECT_NEAR(along.z * fit.depth_range, -1, 1e-9);
+    // Any step has the length that texel and range say.
+    const Vec3d v = random_direction(rng), m = transform_vector(fit.to_texture, v);
+    const double scale = fit.texel * o.resolution;
+    EXPECT_NEAR(std::hypot(m.x * scale, m.y * scale, m.z * fit.depth_range),
+                std::hypot(v.x, v.y, v.z), 1e-9);
+  }
+}
+
+TEST(Fit, ATurningLightKeepsItsTexelSize) {
+  const Box3 box{{0, 0, 0}, {3, 2, 7}};
+  const double texel = fit_light({1, 1, 0}, box, {})->texel;
+  for (double a = 0; a < 6; a += 0.1)
+    EXPECT_DOUBLE_EQ(fit_light({std::cos(a), 1, std::sin(a)}, box, {})->texel, texel);
+}
+
+TEST(Fit, AMovingCameraMovesTheMapByWholeTexels) {
+  const Box3 box{{-50, 0, -50}, {50, 10, 50}};
+  std::mt19937 rng(9);
+  std::uniform_real_distribution<double> in(-20, 20);
+  const Vec3d point{1.234, 0.5, -2.345};
+  double first_x = 0, first_y = 0, texel = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Vec3d at{in(rng), 1, in(rng)};
+    FitOptions o;
+    o.view = true;
+    for (int c = 0; c < 8; ++c)
+      o.view_corners[c] = {at.x + (c & 1 ? 4 : -4), at.y + (c & 2 ? 3 : -3),
+                           at.z + (c & 4 ? 5 : -5)};
+    const LightFit fit = *fit_light({0.3, 1, 0.4}, box, o);
+    const Vec3d m = transform_point(fit.to_texture, point);
+    const double x = m.x * o.resolution, y = m.y * o.resolution;
+    if (i == 0) {
+      first_x = x;
+      first_y = y;
+      texel = fit.texel;
+    }
+    EXPECT_DOUBLE_EQ(fit.texel, texel);
+    EXPECT_NEAR(x - first_x, std::round(x - first_x), 1e-6);
+    EXPECT_NEAR(y - first_y, std::round(y - first_y), 1e-6);
+    for (const Vec3d& corner : o.view_corners) {
+      const Vec3d v = transform_point(fit.to_texture, corner);
+      EXPECT_TRUE(v.x > 0 && v.x < 1 && v.y > 0 && v.y < 1);
+    }
+    // A caster anywhere in the scene keeps its depth in range though it may lie beside the map.
+    for (double y1 : {0.0, 10.0}) {
+      const Vec3d v = transform_point(fit.to_texture, {-50, y1, 50});
+      EXPECT_TRUE(v.z >= 0 && v.z <= 1);
+    }
+  }
+}
+
+TEST(Fit, SaysWhatIsWrong) {
+  const Box3 box{{0, 0, 0}, {1, 1, 1}};
+  EXPECT_FALSE(fit_light({0, 0, 0}, box, {}).ok());
+  EXPECT_FALSE(fit_light({0, std::nan(""), 0}, box, {}).ok());
+  EXPECT_FALSE(fit_light({0, 1, 0}, {{1, 0, 0}, {0, 1, 1}}, {}).ok());
+  FitOptions tiny;
+  tiny.resolution = 8;
+  EXPECT_FALSE(fit_light({0, 1, 0}, box, tiny).ok());
+  EXPECT_TRUE(fit_light({0, 1, 0}, {{5, 5, 5}, {5, 5, 5}}, {}).ok());  // a single point
+}
+
+}  // namespace
+}  // namespace atlas

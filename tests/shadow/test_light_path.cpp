@@ -1,0 +1,147 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "libatlas/shadow/blend.h"
+#include "libatlas/shadow/light_path.h"
+
+namespace atlas {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+LightPath must(const LightPathOptions& options) {
+  Result<LightPath> path = LightPath::make(options);
+  EXPECT_TRUE(path.ok()) << path.status().message();
+  return *path;
+}
+
+double dot(const Vec3d& a, const Vec3d& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+TEST(LightPath, ArcRunsAtItsSpeedOnTheGreatCircle) {
+  LightPathOptions o;
+  o.kind = PathKind::arc;
+  o.end = PathEnd::stop;
+  o.directions = {{2, 0, 0}, {0, 0, 3}};
+  const LightPath path = must(o);
+  EXPECT_NEAR(path.length(), 90, 1e-9);
+  for (double s = 0; s <= 90; s += 7.5) {
+    const Vec3d d = path.direction(s);
+    EXPECT_NEAR(d.x, std::cos(s * kDegree), 1e-12);
+    EXPECT_NEAR(d.z, std::sin(s * kDegree), 1e-12);
+    EXPECT_NEAR(d.y, 0, 1e-12);
+  }
+  EXPECT_NEAR(path.direction(1000).z, 1, 1e-12);
+  EXPECT_NEAR(path.direction(-5).x, 1, 1e-12);
+  EXPECT_NEAR(path.direction(std::nan("")).x, 1, 1e-12);
+}
+
+TEST(LightPath, LineStaysOnTheChord) {
+  LightPathOptions o;
+  o.kind = PathKind::line;
+  o.directions = {{1, 1, 0}, {-1, 1, 0}};
+  const LightPath path = must(o);
+  const Vec3d d = path.direction(path.length() / 4);
+  EXPECT_NEAR(d.x / d.y, 0.5, 1e-12);  // a quarter of the way from x = 1 to x = -1 at y = 1
+  EXPECT_NEAR(dot(d, d), 1, 1e-12);
+}
+
+TEST(LightPath, EndsLoopReturnOrStay) {
+  LightPathOptions o;
+  o.kind = PathKind::keys;
+  o.directions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (PathEnd end : {PathEnd::loop, PathEnd::back, PathEnd::stop}) {
+    o.end = end;
+    const LightPath path = must(o);
+    EXPECT_NEAR(path.length(), 180, 1e-9);
+    EXPECT_NEAR(path.direction(90).y, 1, 1e-9);
+    EXPECT_NEAR(path.direction(180).z, 1, 1e-9);
+    const Vec3d d = path.direction(180 + 90 + 30);
+    const Vec3d want = end == PathEnd::loop   ? path.direction(120)
+                       : end == PathEnd::back ? path.direction(60)
+                                              : path.direction(180);
+    EXPECT_LT(angle_between(d, want), 1e-9);
+  }
+}
+
+// Known positions of the real sun, not of this formula: noon elevation is 90 - latitude +
+// declination, the pole's sun circles level, the equinox sun rises due east at six.
+TEST(LightPath, TheSunIsWhereItIs) {
+  SunOptions s;
+  s.latitude = 50;
+  s.day_of_year = 172;  // summer solstice, declination 23.44 degrees
+  const Vec3d noon = sun_direction(s, 12);
+  EXPECT_NEAR(std::asin(noon.y) / kDegree, 90 - 50 + 23.44, 0.6);
+  EXPECT_GT(noon.z, 0);  // due south: north is -z
+  EXPECT_NEAR(noon.x, 0, 1e-12);
+  s.day_of_year = 355;  // winter solstice
+  EXPECT_NEAR(std::asin(sun_direction(s, 12).y) / kDegree, 90 - 50 - 23.44, 0.6);
+  s.day_of_year = 80;  // spring equinox
+  const Vec3d morning = sun_direction(s, 6);
+  EXPECT_NEAR(morning.y, 0, 0.012);
+  EXPECT_GT(morning.x, 0.99);  // east is +x when up is +y and north is -z
+  s.latitude = 90;
+  s.day_of_year = 172;
+  for (double h = 0; h < 24; h += 3)
+    EXPECT_NEAR(std::asin(sun_direction(s, h).y) / kDegree, 23.44, 0.6);
+}
+
+TEST(LightPath, SunPathStaysAboveTheHorizonAtConstantSpeed) {
+  for (double latitude : {-66.0, -35.0, 0.0, 50.45, 66.0, 80.0}) {
+    LightPathOptions o;
+    o.sun.latitude = latitude;
+    o.sun.start_hour = 9;
+    const LightPath path = must(o);
+    Vec3d previous = path.direction(0);
+    int jumps = 0;
+    for (int i = 1; i < 1000; ++i) {
+      const Vec3d d = path.direction(i * 0.5);
+      EXPECT_GE(d.y, -1e-6) << latitude;
+      const double step = angle_between(previous, d) / kDegree;
+      // Chords of a small circle are a little longer or shorter than its arc, never by much.
+      if (step > 0.6)
+        ++jumps;
+      else
+        EXPECT_NEAR(step, 0.5, 0.01) << latitude << " " << i;
+      previous = d;
+    }
+    EXPECT_LE(jumps, int(500 / path.length()) + 1);
+  }
+}
+
+TEST(LightPath, SaysWhatIsWrong) {
+  LightPathOptions o;
+  o.kind = PathKind::arc;
+  o.directions = {{1, 0, 0}};
+  EXPECT_FALSE(LightPath::make(o).ok());
+  o.directions = {{1, 0, 0}, {-1, 0, 0}};
+  EXPECT_NE(LightPath::make(o).status().message().find("opposite"), std::string::npos);
+  o.directions = {{1, 0, 0}, {0, 0, 0}};
+  EXPECT_NE(LightPath::make(o).status().message().find("direction 2"), std::string::npos);
+  LightPathOptions sun;
+  sun.sun.latitude = 80;
+  sun.sun.day_of_year = 355;
+  EXPECT_NE(LightPath::make(sun).status().message().find("does not rise"), std::string::npos);
+  sun.sun.latitude = 91;
+  EXPECT_FALSE(LightPath::make(sun).ok());
+  sun = {};
+  sun.sun.north = sun.sun.up;
+  EXPECT_FALSE(LightPath::make(sun).ok());
+}
+
+TEST(LightPath, Text) {
+  EXPECT_EQ(parse_light_path("sun:10,-33.5,8", {})->sun.latitude, -33.5);
+  EXPECT_EQ(parse_light_path("sun", {})->kind, PathKind::sun);
+  const Result<LightPathOptions> arc = parse_light_path("arc:1,2,3;-1,.5,1e1", {});
+  ASSERT_TRUE(arc.ok());
+  EXPECT_EQ(arc->directions[1], (Vec3d{-1, 0.5, 10}));
+  for (const char* bad : {"", "moon:1,2,3", "arc", "arc:", "arc:1,2", "arc:1,2,3;", "sun:1,2",
+                          "sun:1,2,x", "fixed:1,2,3,4", "sun:1e99,0,0", "fixed:1,,2"})
+    EXPECT_FALSE(parse_light_path(bad, {}).ok()) << bad;
+}
+
+}  // namespace
+}  // namespace atlas

@@ -1,0 +1,218 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <random>
+
+#include "libatlas/shadow/blend.h"
+#include "libatlas/shadow/light_path.h"
+#include "libatlas/shadow/schedule.h"
+
+namespace atlas {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+Vec3d turned(double degrees) {
+  return {std::cos(degrees * kDegree), std::sin(degrees * kDegree), 0.2};
+}
+
+// What a renderer would hold: for each slot the direction and how much of it is drawn. Checks every
+// rule that a plan must keep, and counts.
+struct FakeRenderer {
+  struct Map {
+    Vec3d direction;
+    double done = -1;
+  };
+  std::map<int, Map> maps;
+  double work = 0, most = 0;
+  int begun = 0;
+
+  void run(const FramePlan& plan) {
+    double now = 0;
+    for (const MapWork& w : plan.work) {
+      Map& map = maps[w.slot];
+      ASSERT_GE(w.slot, 0);
+      ASSERT_LT(w.slot, KeySchedule::kSlots);
+      if (w.begin == 0) {
+        map = {w.direction, 0};
+        ++begun;
+      }
+      ASSERT_EQ(map.direction, w.direction) << "a map is drawn for one direction only";
+      ASSERT_NEAR(map.done, w.begin, 1e-12) << "slices leave no gap";
+      map.done = w.end;
+      now += w.end - w.begin;
+    }
+    work += now;
+    most = std::max(most, now);
+    for (const auto& [slot, direction] :
+         {std::pair{plan.from, plan.from_direction}, {plan.to, plan.to_direction}}) {
+      ASSERT_EQ(maps[slot].done, 1) << "a sampled map is complete";
+      ASSERT_EQ(maps[slot].direction, direction) << "a map is sampled with its own direction";
+    }
+    ASSERT_GE(plan.t, 0);
+    ASSERT_LT(plan.t, 1);
+  }
+};
+
+TEST(Schedule, KeysAreExactAndWorkIsEven) {
+  for (int k : {1, 2, 3, 8, 32}) {
+    ScheduleOptions o;
+    o.interval_frames = k;
+    KeySchedule schedule(o);
+    FakeRenderer r;
+    for (int f = 0; f < 10 * k; ++f) {
+      const FramePlan plan =
+          schedule.next(turned(f * 0.5), [&](int n) { return turned((f + n) * 0.5); });
+      r.run(plan);
+      if (f == 0) r.most = r.work = 0;  // the first frame draws two maps at once, and says so
+      EXPECT_EQ(plan.refreshed, f == 0);
+      EXPECT_LT(angle_between(plan.from_direction, turned(f / k * k * 0.5)), 1e-9);
+      EXPECT_LT(angle_between(plan.to_direction, turned((f / k + 1) * k * 0.5)), 1e-9);
+      EXPECT_NEAR(plan.t, double(f % k) / k, 1e-12);
+    }
+    // Every frame draws exactly 1/k of a map.
+    EXPECT_NEAR(r.most, 1.0 / k, 1e-12);
+    EXPECT_NEAR(r.work, (10 * k - 1) * 1.0 / k, 1e-9);
+    EXPECT_EQ(schedule.passes(), r.begun);
+  }
+}
+
+TEST(Schedule, AStaticLightDrawsExactlyOneMap) {
+  for (bool blend : {false, true})
+    for (bool scripted : {false, true})
+      for (double degrees : {0.0, 4.0}) {
+        ScheduleOptions o;
+        o.blend = blend;
+        o.interval_degrees = degrees;
+        KeySchedule schedule(o);
+        FakeRenderer r;
+        for (int f = 0; f < 600; ++f)
+          r.run(schedule.next(
+              {1, 2, 3}, scripted ? [](int) { return Vec3d{1, 2, 3}; } : KeySchedule::Ahead()));
+        EXPECT_EQ(r.begun, 1);
+        EXPECT_EQ(schedule.passes(), 1);
+      }
+}
+
+TEST(Schedule, AJumpRefreshesAtOnce) {
+  ScheduleOptions o;
+  KeySchedule schedule(o);
+  FakeRenderer r;
+  const auto at = [](int f) { return turned(f < 50 ? f * 0.5 : 90 + f * 0.5); };
+  for (int f = 0; f < 100; ++f) {
+    const FramePlan plan = schedule.next(at(f), [&](int n) { return at(f + n); });
+    r.run(plan);
+    EXPECT_EQ(plan.refreshed, f == 0 || f == 50) << f;
+    // No frame mixes keys from both sides of the jump.
+    const double low = f < 50 ? 0 : 115, high = f < 50 ? 24.6 : 150;
+    if (plan.t > 0)
+      for (const Vec3d& d : {plan.from_direction, plan.to_direction}) {
+        const double degrees = std::atan2(d.y, d.x) / kDegree;
+        EXPECT_TRUE(degrees > low - 1e-6 && degrees < high) << f << " " << degrees;
+      }
+  }
+}
+
+TEST(Schedule, ALightThatJumpsInEveryFrameCostsOneMapAFrame) {
+  KeySchedule schedule({});
+  FakeRenderer r;
+  for (int f = 0; f < 40; ++f)
+    r.run(schedule.next(turned(f * 40), [&](int n) { return turned((f + n) * 40); }));
+  EXPECT_LE(r.begun, 80);
+  EXPECT_LE(r.work, 40 * 1.2);
+}
+
+TEST(Schedule, ChangeOfTheSceneRefreshesAtOnce) {
+  KeySchedule schedule({});
+  FakeRenderer r;
+  for (int f = 0; f < 30; ++f) {
+    if (f == 13) schedule.invalidate();
+    const FramePlan plan = schedule.next(turned(f), [&](int n) { return turned(f + n); });
+    r.run(plan);
+    EXPECT_EQ(plan.refreshed, f == 0 || f == 13);
+  }
+}
+
+TEST(Schedule, KeysByDegrees) {
+  ScheduleOptions o;
+  o.interval_degrees = 4;
+  KeySchedule schedule(o);
+  FakeRenderer r;
+  for (int f = 0; f < 200; ++f) {
+    const FramePlan plan =
+        schedule.next(turned(f * 0.5), [&](int n) { return turned((f + n) * 0.5); });
+    r.run(plan);
+    const double apart = angle_between(plan.from_direction, plan.to_direction) / kDegree;
+    EXPECT_NEAR(apart, 4, 0.5);
+  }
+}
+
+TEST(Schedule, KeysAreNeverMoreThanNinetyDegreesApart) {
+  ScheduleOptions o;
+  o.interval_frames = 32;
+  KeySchedule schedule(o);
+  FakeRenderer r;
+  for (int f = 0; f < 300; ++f) {
+    const FramePlan plan =
+        schedule.next(turned(f * 15), [&](int n) { return turned((f + n) * 15); });
+    r.run(plan);
+    EXPECT_LE(angle_between(plan.from_direction, plan.to_direction), 90.001 * kDegree);
+  }
+}
+
+// Moved by hand: blended shadows arrive after at most two intervals, one map serves when it rests.
+TEST(Schedule, AHandMovedLightArrivesWithTheStatedDelay) {
+  ScheduleOptions o;
+  KeySchedule schedule(o);
+  FakeRenderer r;
+  for (int f = 0; f < 100; ++f) {
+    const Vec3d d = turned(f < 20 ? 0 : f < 60 ? (f - 20) * 0.5 : 20);
+    const FramePlan plan = schedule.next(d, nullptr);
+    r.run(plan);
+    const double shown = (1 - plan.t) * std::atan2(plan.from_direction.y, plan.from_direction.x) +
+                         plan.t * std::atan2(plan.to_direction.y, plan.to_direction.x);
+    const double late = std::atan2(d.y, d.x) - shown;
+    EXPECT_GE(late, -1e-9);
+    EXPECT_LE(late, (2 * o.interval_frames + 1) * 0.5 * kDegree);
+    if (f > 80) {
+      EXPECT_NEAR(late, 0, 1e-9);
+    }
+  }
+}
+
+TEST(Schedule, HoldDrawsAWholeMapEveryKFrames) {
+  ScheduleOptions o;
+  o.blend = false;
+  o.interval_frames = 8;
+  KeySchedule schedule(o);
+  FakeRenderer r;
+  for (int f = 0; f < 80; ++f) {
+    const FramePlan plan = schedule.next(turned(f * 0.5), nullptr);
+    r.run(plan);
+    EXPECT_EQ(plan.work.size(), f % 8 == 0 ? 1u : 0u);
+    EXPECT_EQ(plan.from, plan.to);
+  }
+  EXPECT_EQ(r.begun, 10);
+  EXPECT_EQ(r.most, 1);
+}
+
+TEST(Schedule, SunPathOverADayKeepsAllRules) {
+  const LightPath sun = *LightPath::make({});
+  std::mt19937 rng(3);
+  ScheduleOptions o;
+  KeySchedule schedule(o);
+  FakeRenderer r;
+  int refreshes = 0;
+  for (int f = 0; f < 2000; ++f) {
+    const auto at = [&](int n) { return sun.direction((f + n) * 0.5); };
+    const FramePlan plan = schedule.next(at(0), at);
+    r.run(plan);
+    refreshes += plan.refreshed;
+  }
+  EXPECT_EQ(refreshes, 1 + int(2000 * 0.5 / sun.length() + 0.3));
+}
+
+}  // namespace
+}  // namespace atlas
