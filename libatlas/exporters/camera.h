@@ -1,0 +1,27 @@
+// Internal: a view direction as the rotation that file formats store.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+
+// The unit quaternion (x, y, z, w) that takes the default camera of VRML and glTF (looking along
+// -Z, +Y up) to looking along `direction` without roll: a pitch about X, then a yaw about Y.
+inline std::array<double, 4> camera_rotation(glm::dvec3 direction) {
+  direction = glm::normalize(direction);
+  const double yaw = std::atan2(-direction.x, -direction.z) / 2;
+  const double pitch = std::asin(std::clamp(direction.y, -1.0, 1.0)) / 2;
+  return {std::cos(yaw) * std::sin(pitch), std::sin(yaw) * std::cos(pitch),
+          -std::sin(yaw) * std::sin(pitch), std::cos(yaw) * std::cos(pitch)};
+}
+
+// Coordinates of a y-up system for those of a z-up one: what was +Z becomes +Y.
+inline glm::dvec3 z_up_to_y_up(const glm::dvec3& v) {
+  return {v.x, v.z, -v.y};
+}
+
+}  // namespace atlas

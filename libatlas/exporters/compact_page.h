@@ -1,0 +1,38 @@
+// Internal: the vertices that one page uses, numbered for itself.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace atlas {
+
+// Renumbers index lists by first use, one after the other, with memory for one table only.
+class Compactor {
+ public:
+  explicit Compactor(std::size_t count) : to_(count, kUnset) {}
+
+  struct Compact {
+    std::vector<std::uint32_t> used;     // old index of each new one
+    std::vector<std::uint32_t> indices;  // new indices
+  };
+
+  Compact compact(const std::vector<std::uint32_t>& indices) {
+    Compact result;
+    result.indices.reserve(indices.size());
+    for (const std::uint32_t i : indices) {
+      if (to_[i] == kUnset) {
+        to_[i] = static_cast<std::uint32_t>(result.used.size());
+        result.used.push_back(i);
+      }
+      result.indices.push_back(to_[i]);
+    }
+    for (const std::uint32_t i : result.used) to_[i] = kUnset;
+    return result;
+  }
+
+ private:
+  static constexpr std::uint32_t kUnset = 0xffffffffu;
+  std::vector<std::uint32_t> to_;
+};
+
+}  // namespace atlas

@@ -1,0 +1,82 @@
+// Internal: large text files from pieces that are formatted in parallel.
+#pragma once
+
+#include <cassert>
+#include <charconv>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "libatlas/core/context.h"
+#include "libatlas/core/status.h"
+#include "libatlas/exporters/world.h"
+
+namespace atlas {
+
+// Appends numbers without locale. Values must be finite.
+class TextBuffer {
+ public:
+  void text(std::string_view s) { bytes_.append(s); }
+  void character(char c) { bytes_.push_back(c); }
+  template <class T>
+  void number(T value) {
+    if (value == 0) value = 0;  // -0 and 0 are equal and must print alike
+    char digits[40];
+    const auto [stop, error] = std::to_chars(digits, digits + sizeof digits, value);
+    assert(error == std::errc{});
+    bytes_.append(digits, stop);
+  }
+  // A coordinate of the file: the float itself where there is no origin to add.
+  void coordinate(double origin, float offset) {
+    origin == 0 ? number(offset) : number(origin + static_cast<double>(offset));
+  }
+  void position(const World& world, std::uint32_t i) {
+    const Vec3f& p = world.positions[i];
+    coordinate(world.origin.x, p.x);
+    character(' ');
+    coordinate(world.origin.y, p.y);
+    character(' ');
+    coordinate(world.origin.z, p.z);
+  }
+  void uv(const Vec2f& uv) {
+    number(uv.x);
+    character(' ');
+    number(uv.y);
+  }
+  void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+// A file, plain or gzipped, that remembers its first error.
+class TextFile {
+ public:
+  TextFile(const std::filesystem::path& temporary, const std::filesystem::path& target, bool gzip);
+  ~TextFile();
+  TextFile(const TextFile&) = delete;
+  TextFile& operator=(const TextFile&) = delete;
+
+  void write(std::string_view bytes);
+  // Formats items [0, n) in pieces, in parallel, and writes the pieces in order.
+  void write_items(std::size_t n, const Context& context,
+                   const std::function<void(TextBuffer& out, std::size_t item)>& format);
+  // Closes; io with the system's reason if anything failed, cancelled if writing was cut short.
+  Status finish();
+  std::int64_t bytes() const { return bytes_; }
+
+ private:
+  void fail();
+
+  std::filesystem::path target_;
+  std::FILE* plain_ = nullptr;
+  void* zipped_ = nullptr;  // gzFile
+  std::int64_t bytes_ = 0;  // of text, before compression
+  Status status_;
+};
+
+}  // namespace atlas

@@ -1,0 +1,163 @@
+// VRML97 (ISO/IEC 14772-1:1997), the subset that every reader agrees on.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/exporters/camera.h"
+#include "libatlas/exporters/compact_page.h"
+#include "libatlas/exporters/text_output.h"
+#include "libatlas/exporters/world.h"
+
+namespace atlas {
+namespace fs = std::filesystem;
+namespace {
+
+// The inside of an SFString: ASCII, quotes and backslashes escaped.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c >= ' ' && c <= '~' ? c : '?';
+  }
+  return result + '"';
+}
+
+// A relative reference of plain ASCII: readers that split lists at blanks or choke on UTF-8 exist.
+std::string url(const std::string& name) {
+  std::string result = "\"";
+  for (const char c : name) {
+    const bool plain = (c >= '!' && c <= '~') && c != '"' && c != '\\' && c != '%' && c != '#';
+    result += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return result + '"';
+}
+
+void vector(TextBuffer& out, const glm::dvec3& v) {
+  for (int i = 0; i < 3; ++i) {
+    if (i > 0) out.character(' ');
+    out.number(static_cast<float>(v[i]));
+  }
+}
+
+// As axis and angle.
+void orientation(TextBuffer& out, const glm::dvec3& direction) {
+  const std::array<double, 4> q = camera_rotation(direction);
+  const glm::dvec3 axis(q[0], q[1], q[2]);
+  const double sine = glm::length(axis);
+  vector(out, sine > 0 ? axis / sine : glm::dvec3(0, 1, 0));
+  out.character(' ');
+  out.number(static_cast<float>(2 * std::atan2(sine, q[3])));
+}
+
+std::string header(const World& world) {
+  TextBuffer out;
+  out.text("#VRML V2.0 utf8\n");
+  out.text("WorldInfo {\n  title " + quoted(world.title) + "\n  info [\n");
+  for (const std::string& line : world.info) out.text("    " + quoted(line) + "\n");
+  out.text("  ]\n}\nNavigationInfo {\n  headlight FALSE\n  type [ ");
+  out.text(world.viewpoint.inside ? "\"WALK\", \"ANY\" ]\n" : "\"EXAMINE\", \"ANY\" ]\n");
+  // A person: 0.25 m wide, eyes at 1.6 m, stepping over 0.75 m, walking 1.5 m/s.
+  out.text("  avatarSize [ ");
+  for (const double metres : {0.25, 1.6, 0.75}) {
+    out.number(static_cast<float>(metres / world.metres_per_unit));
+    out.character(' ');
+  }
+  out.text("]\n  speed ");
+  out.number(static_cast<float>(1.5 / world.metres_per_unit));
+  out.text("\n}\n");
+  return out.bytes();
+}
+
+// Viewers take +Y of a Viewpoint's own system for up, also when walking: a Transform turns it.
+std::string viewpoint(const World& world) {
+  glm::dvec3 position = to_glm(world.origin) + to_glm(world.viewpoint.position);
+  glm::dvec3 direction = to_glm(world.viewpoint.direction);
+  TextBuffer out;
+  out.text("Transform {\n");
+  if (world.up == Up::z) {
+    out.text("  rotation 1 0 0 1.5707964\n");  // takes +Y to +Z
+    position = z_up_to_y_up(position);
+    direction = z_up_to_y_up(direction);
+  }
+  out.text("  children Viewpoint {\n    description \"start\"\n    position ");
+  vector(out, position);
+  out.text("\n    orientation ");
+  orientation(out, direction);
+  out.text("\n    fieldOfView ");
+  out.number(static_cast<float>(world.viewpoint.fov));
+  out.text("\n  }\n}\n");
+  return out.bytes();
+}
+
+void write_triangles(TextFile& file, const std::vector<std::uint32_t>& indices,
+                     const Context& context) {
+  file.write_items(indices.size() / 3, context, [&](TextBuffer& out, std::size_t t) {
+    for (int c = 0; c < 3; ++c) {
+      out.number(indices[3 * t + c]);
+      out.character(' ');
+    }
+    out.text("-1\n");
+  });
+}
+
+void write_shape(TextFile& file, const World& world, const Compactor::Compact& points,
+                 const Compactor::Compact& uvs, const Context& context) {
+  file.write("    solid FALSE\n    coord Coordinate { point [\n");
+  file.write_items(points.used.size(), context, [&](TextBuffer& out, std::size_t i) {
+    out.position(world, points.used[i]);
+    out.character('\n');
+  });
+  file.write("    ] }\n    coordIndex [\n");
+  write_triangles(file, points.indices, context);
+  file.write("    ]\n    texCoord TextureCoordinate { point [\n");
+  file.write_items(uvs.used.size(), context, [&](TextBuffer& out, std::size_t i) {
+    out.uv(world.uvs[uvs.used[i]]);
+    out.character('\n');
+  });
+  file.write("    ] }\n    texCoordIndex [\n");
+  write_triangles(file, uvs.indices, context);
+  file.write("    ]\n");
+}
+
+std::string appearance(const Page& page) {
+  if (page.image.empty()) return "  appearance Appearance { }\n";
+  return fmt::format(
+      "  appearance Appearance {{\n    texture ImageTexture {{\n      url {}\n"
+      "      repeatS FALSE\n      repeatT FALSE\n    }}\n  }}\n",
+      url(page.image));
+}
+
+}  // namespace
+
+Result<WorldFile> write_vrml(const World& world, const fs::path& path, AtomicFiles& files,
+                             const Context& context) {
+  if (Status s = check_world(world); !s.ok()) return s;
+  WorldFile result;
+  const bool gzip = path.extension() == ".wrz" || path.extension() == ".WRZ";
+  const fs::path temporary = files.path_for(path);
+  TextFile file(temporary, path, gzip);
+  file.write(header(world));
+  file.write(viewpoint(world));
+  Compactor positions(world.positions.size()), texcoords(world.uvs.size());
+  for (std::size_t i = 0; i < world.pages.size(); ++i) {
+    const Page& page = world.pages[i];
+    if (page.indices.empty()) continue;  // an IndexedFaceSet without faces draws warnings
+    const Compactor::Compact points = positions.compact(page.indices);
+    const Compactor::Compact uvs = texcoords.compact(page.uv_indices);
+    file.write(fmt::format("DEF Page_{} Shape {{\n", i));
+    file.write(appearance(page));
+    file.write("  geometry IndexedFaceSet {\n");
+    write_shape(file, world, points, uvs, context);
+    file.write("  }\n}\n");
+    result.triangles += page.indices.size() / 3;
+    result.vertices += points.used.size();
+    result.uvs += uvs.used.size();
+    context.report("writing the world", double(i + 1) / double(world.pages.size()));
+  }
+  if (Status s = file.finish(); !s.ok()) return s;
+  result.bytes = static_cast<std::int64_t>(fs::file_size(temporary));
+  return result;
+}
+
+}  // namespace atlas

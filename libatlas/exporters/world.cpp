@@ -1,0 +1,77 @@
+#include "libatlas/exporters/world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace atlas {
+namespace {
+
+Status wrong(const std::string& what) {
+  return {ErrorCode::bad_input, "the world to write is inconsistent: " + what};
+}
+
+bool in_float_range(double value) {
+  return std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max());
+}
+
+Status check_numbers(const World& world) {
+  for (std::size_t i = 0; i < world.positions.size(); ++i) {
+    const Vec3f& p = world.positions[i];
+    if (!in_float_range(world.origin.x + p.x) || !in_float_range(world.origin.y + p.y) ||
+        !in_float_range(world.origin.z + p.z)) {
+      return wrong(fmt::format("position {} is not a finite float", i));
+    }
+  }
+  for (std::size_t i = 0; i < world.uvs.size(); ++i) {
+    if (!std::isfinite(world.uvs[i].x) || !std::isfinite(world.uvs[i].y)) {
+      return wrong(fmt::format("texture coordinate {} is not finite", i));
+    }
+  }
+  return {};
+}
+
+Status check_viewpoint(const Viewpoint& view) {
+  for (const double value : {view.position.x, view.position.y, view.position.z, view.direction.x,
+                             view.direction.y, view.direction.z}) {
+    if (!in_float_range(value)) return wrong("the viewpoint is not finite");
+  }
+  if (view.direction == Vec3d{}) return wrong("the viewpoint has no direction");
+  if (!(view.fov > 0 && view.fov < 3.14159265)) return wrong("the field of view is out of (0, pi)");
+  return {};
+}
+
+}  // namespace
+
+Status check_world(const World& world) {
+  if (Status s = check_numbers(world); !s.ok()) return s;
+  if (Status s = check_viewpoint(world.viewpoint); !s.ok()) return s;
+  const auto below = [](const std::vector<std::uint32_t>& indices, std::size_t count) {
+    return std::all_of(indices.begin(), indices.end(), [=](std::uint32_t i) { return i < count; });
+  };
+  for (std::size_t i = 0; i < world.pages.size(); ++i) {
+    const Page& page = world.pages[i];
+    if (page.indices.size() % 3 != 0 || page.indices.size() != page.uv_indices.size()) {
+      return wrong(fmt::format("page {} has {} corners and {} texture corners", i,
+                               page.indices.size(), page.uv_indices.size()));
+    }
+    if (!below(page.indices, world.positions.size()) || !below(page.uv_indices, world.uvs.size())) {
+      return wrong(fmt::format("page {} has an index out of range", i));
+    }
+  }
+  return {};
+}
+
+std::string safe_file_name(const std::string& text) {
+  std::string name = text;
+  for (char& c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '-' || c == '_';
+    if (!plain) c = '_';
+  }
+  return name.empty() ? "world" : name;
+}
+
+}  // namespace atlas

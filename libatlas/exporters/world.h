@@ -1,0 +1,78 @@
+// What every exporter writes: a textured, unlit mesh whose textures are the atlas pages.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "libatlas/core/atomic_file.h"
+#include "libatlas/core/context.h"
+#include "libatlas/core/status.h"
+#include "libatlas/core/vec.h"
+
+namespace atlas {
+
+enum class Up { y, z };
+
+// Where a viewer starts, in the coordinates of World::positions (that is, relative to the origin).
+struct Viewpoint {
+  Vec3d position;
+  Vec3d direction{0, 0, -1};  // of view; not zero, not along the up axis
+  double fov = 1.0;           // radians, in (0, pi); of the smaller side of the window
+  bool inside = false;  // the scene surrounds it: viewers walk; otherwise they turn the object
+};
+
+struct Page {
+  std::string image;  // file name beside the world, see safe_file_name(); empty: no texture
+  std::filesystem::path image_source;  // where the finished image lies while the world is written;
+                                       // only .glb needs it, which embeds it
+  std::vector<std::uint32_t> indices;  // 3 a triangle, into World::positions
+  std::vector<std::uint32_t> uv_indices;  // 3 a triangle, into World::uvs
+};
+
+struct World {
+  Vec3d origin;  // added to every position gives the coordinates of the file
+  double metres_per_unit = 1;
+  Up up = Up::y;                 // the scene's up axis; coordinates are written unchanged
+  std::vector<Vec3f> positions;  // finite; shared by all pages
+  std::vector<Vec2f> uvs;        // finite, 0..1, origin bottom left
+  std::vector<Page> pages;
+  std::string title;
+  std::vector<std::string> info;  // one line each, for WorldInfo and comments
+  Viewpoint viewpoint;
+};
+
+struct WorldFile {
+  std::int64_t bytes = 0;                            // written, all files of the world but images
+  std::size_t triangles = 0, vertices = 0, uvs = 0;  // as written: each page has its own
+};
+
+// Writers check the world first (bad_input: an index out of range, a non-finite or beyond-float
+// number, unequal lengths), write under the temporary names of `files`, and leave committing to the
+// caller, so that a world and its images appear together or not at all. Numbers are the shortest
+// decimals that read back to the same float (double, where the origin is not 0), so equal positions
+// are equal text. Other errors: io; cancelled.
+
+// VRML97, gzipped where the name ends in .wrz. One Shape a page: an IndexedFaceSet of triangles
+// with explicit texCoordIndex, unlit (no Material), repeat off, two-sided.
+Result<WorldFile> write_vrml(const World& world, const std::filesystem::path& path,
+                             AtomicFiles& files, const Context& context);
+
+// Wavefront OBJ and, beside it, an MTL of the same name with one material `page<i>` a page.
+Result<WorldFile> write_obj(const World& world, const std::filesystem::path& path,
+                            AtomicFiles& files, const Context& context);
+
+// glTF 2.0: .glb with everything embedded, or .gltf with a .bin beside it. Materials are
+// KHR_materials_unlit; the root node turns the scene's up to +Y, scales to metres and adds the
+// origin, since glTF fixes both.
+Result<WorldFile> write_gltf(const World& world, const std::filesystem::path& path,
+                             AtomicFiles& files, const Context& context);
+
+// The check that writers begin with.
+Status check_world(const World& world);
+
+// A file name of letters, digits, '_' and '-' only, made from any text: what all viewers can load.
+std::string safe_file_name(const std::string& text);
+
+}  // namespace atlas
