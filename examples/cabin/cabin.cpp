@@ -1,0 +1,93 @@
+// The cabin as a whole: its lights, and its coarse mesh of a wished size.
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "examples/cabin/layout.h"
+#include "examples/cabin/lighting.h"
+
+namespace cabin {
+namespace {
+
+// Turns the corners so that they run clockwise seen from the side of `towards`.
+AreaLight make_light(std::vector<glm::vec3> corners, glm::vec3 exitance, glm::vec3 towards) {
+  const glm::vec3 n = glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+  const bool turned = glm::dot(n, towards) > 0;
+  if (turned) std::reverse(corners.begin(), corners.end());
+  return {std::move(corners), exitance, turned ? n : -n};
+}
+
+// The sky in a window's opening. To port it is the side of the low sun: warmer and brighter.
+AreaLight window_light(int side, int bay) {
+  const double height = wall_height(kWindowHeight), x = (bay + 0.5) * kBay;
+  const glm::dvec3 centre = wall_point(side, x, height, -kRevealDepth);
+  const double angle = height / kRadius;
+  const glm::dvec3 up(0, -side * std::sin(angle), std::cos(angle));
+  std::vector<glm::vec3> corners;
+  for (int i = 0; i < 12; ++i) {
+    const double a = (i + 0.5) * std::numbers::pi / 6;
+    const glm::dvec2 p = kRevealScale * window_rim(std::cos(a), std::sin(a));
+    corners.push_back(glm::vec3(centre + glm::dvec3(p.x, 0, 0) + p.y * up));
+  }
+  const glm::vec3 sky = side < 0 ? glm::vec3(1750, 1500, 1180) : glm::vec3(1050, 1250, 1550);
+  return make_light(std::move(corners), sky, {0, -float(side), 0});
+}
+
+Mesh build_at(double edge_length) {
+  Builder builder(edge_length);
+  add_shell(builder);
+  add_ceiling(builder);
+  add_bins(builder);
+  add_seats(builder);
+  add_door(builder);
+  add_galley(builder);
+  return builder.finish(cabin_materials());
+}
+
+}  // namespace
+
+std::vector<AreaLight> cabin_lights() {
+  std::vector<AreaLight> lights;
+  const auto materials = cabin_materials();
+  for (const Strip& strip : light_strips()) {
+    const auto it = std::find_if(materials.begin(), materials.end(), [&](const SurfaceMaterial& m) {
+      return m.name == strip.material;
+    });
+    const double length = (strip.x1 - strip.x0) / strip.pieces;
+    const glm::dvec3 across(0, strip.to.x - strip.from.x, strip.to.y - strip.from.y);
+    const glm::vec3 towards(glm::cross(glm::dvec3(1, 0, 0), across));
+    for (int i = 0; i < strip.pieces; ++i) {
+      const glm::dvec3 a(strip.x0 + i * length, strip.from.x, strip.from.y), along(length, 0, 0);
+      lights.push_back(make_light({glm::vec3(a), glm::vec3(a + along),
+                                   glm::vec3(a + along + across), glm::vec3(a + across)},
+                                  it->emission, towards));
+    }
+  }
+  for (int side : {-1, 1})
+    for (int bay = 0; bay < kBays; ++bay)
+      if (has_window(side, bay)) lights.push_back(window_light(side, bay));
+  return lights;
+}
+
+Sun cabin_sun() {
+  return {glm::normalize(glm::vec3(-0.34f, -1.0f, 0.17f)), glm::vec3(2300, 1750, 1080), 0.009f};
+}
+
+Mesh build_cabin(std::size_t triangles) {
+  // The count falls with the edge length, in steps: bisect for the finest that is not too many.
+  double fine = 0.01, coarse = 2;
+  Mesh best = build_at(coarse);
+  for (int i = 0; i < 12; ++i) {
+    const double middle = std::sqrt(fine * coarse);
+    Mesh mesh = build_at(middle);
+    if (mesh.triangles.size() <= triangles) {
+      coarse = middle;
+      best = std::move(mesh);
+    } else {
+      fine = middle;
+    }
+  }
+  return best;
+}
+
+}  // namespace cabin

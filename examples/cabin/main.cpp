@@ -1,0 +1,111 @@
+// atlas-make-cabin: an aircraft cabin in as many triangles as wished, lit, for demos, tests and
+// measurements that need real work and no download.
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <exception>
+
+#include "examples/cabin/preview.h"
+#include "examples/cabin/refine.h"
+#include "examples/cabin/write.h"
+#include "libatlas/core/clock.h"
+
+namespace {
+
+struct Arguments {
+  std::size_t triangles = 100000;
+  std::string output, preview, up = "z";
+  cabin::LightingOptions lighting;
+  int samples = 0, threads = 0, preview_width = 1280;
+  bool quiet = false;
+};
+
+// Larger meshes get fewer shadow rays a vertex, by default: their triangles average them anyway.
+int default_samples(std::size_t triangles) {
+  return triangles <= 200000 ? 96 : triangles <= 1200000 ? 48 : 32;
+}
+
+void describe(CLI::App& app, Arguments& a) {
+  app.add_option("--triangles,-n", a.triangles, "how many triangles, met within 3 %")
+      ->check(CLI::Range(std::size_t{10000}, std::size_t{20000000}))
+      ->capture_default_str();
+  app.add_option("-o,--output", a.output, "the scene to write: .obj, .ply or .glb");
+  app.add_option("--preview", a.preview, "a picture of it from inside, .png");
+  app.add_option("--preview-width", a.preview_width, "pixels; the height is 9/16 of it")
+      ->check(CLI::Range(16, 8192))
+      ->capture_default_str();
+  app.add_option("--seed", a.lighting.seed, "of the sampling pattern")->capture_default_str();
+  app.add_option("--samples", a.samples,
+                 "shadow rays a vertex (default: 96 up to 200 k triangles, 48 to 1.2 M, then 32)")
+      ->check(CLI::Range(1, 4096));
+  app.add_option("--indirect-samples", a.lighting.indirect_samples,
+                 "hemisphere rays a vertex of the coarse mesh, for the light between surfaces")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
+  app.add_option("--up", a.up, "the axis that points up")
+      ->check(CLI::IsMember({"y", "z"}))
+      ->capture_default_str();
+  app.add_option("--threads", a.threads, "0: as many as there are cores; the files are the same");
+  app.add_flag("--quiet,-q", a.quiet, "print nothing");
+}
+
+atlas::Status run(const Arguments& a) {
+  const double start = atlas::cpu_seconds();
+  atlas::Context context;
+  context.threads = a.threads;
+  const auto say = [&](const std::string& line) {
+    if (!a.quiet) fmt::print("{:7.1f} s  {}\n", atlas::cpu_seconds() - start, line);
+  };
+  // Light between surfaces is gathered on at most this many triangles, whatever the final size: it
+  // varies slowly, and its cost would otherwise be most of the whole.
+  constexpr std::size_t kCoarse = 45000;
+  cabin::Mesh mesh = cabin::build_cabin(std::min(kCoarse, a.triangles * 9 / 20));
+  say(fmt::format("coarse mesh: {} triangles, {} vertices, {} objects", mesh.triangles.size(),
+                  mesh.vertices.size(), mesh.objects.size()));
+  const cabin::Tracer tracer(mesh);
+  const cabin::Lighting lighting(tracer, a.lighting);
+  lighting.light_directly(mesh, 0, context);
+  say("direct light");
+  lighting.light_indirectly(mesh, context);
+  say("indirect light");
+  cabin::refine(mesh, {a.triangles, 6}, lighting, context);
+  cabin::show_emitters(mesh);
+  say(fmt::format("refined: {} triangles, {} vertices", mesh.triangles.size(),
+                  mesh.vertices.size()));
+  if (!a.output.empty()) {
+    const atlas::Status status = cabin::write_scene(a.output, mesh, a.up == "y");
+    if (!status.ok()) return status;
+    say("wrote " + a.output);
+  }
+  if (!a.preview.empty()) {
+    const cabin::PreviewOptions options{a.preview_width, a.preview_width * 9 / 16, 3};
+    const atlas::Status status = cabin::write_preview(a.preview, mesh, options, context);
+    if (!status.ok()) return status;
+    say("wrote " + a.preview);
+  }
+  return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Makes a lit aircraft cabin: a scene for atlas-export, of any size.");
+  Arguments arguments;
+  describe(app, arguments);
+  CLI11_PARSE(app, argc, argv);
+  if (arguments.output.empty() && arguments.preview.empty()) {
+    fmt::print(stderr,
+               "atlas-make-cabin: nothing to write (give -o FILE, --preview FILE or both)\n");
+    return 2;
+  }
+  arguments.lighting.direct_samples =
+      arguments.samples > 0 ? arguments.samples : default_samples(arguments.triangles);
+  try {
+    const atlas::Status status = run(arguments);
+    if (status.ok()) return 0;
+    fmt::print(stderr, "atlas-make-cabin: {}\n", status.message());
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "atlas-make-cabin: {}\n", error.what());
+  }
+  return 1;
+}

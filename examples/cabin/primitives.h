@@ -1,0 +1,54 @@
+// Shapes that the cabin is put together from. All are given in metres, and all give analytic or
+// finite-difference normals, so that refinement can follow the smooth surface.
+#pragma once
+
+#include <functional>
+
+#include "examples/cabin/cabin_mesh.h"
+
+namespace cabin {
+
+using Warp = std::function<glm::dvec3(glm::dvec3)>;             // space to space, orientation kept
+using Surface = std::function<glm::dvec3(double u, double v)>;  // [0, 1]² to space
+
+// A surface sampled at nu x nv quads; its normal is dS/du x dS/dv, or the opposite if `flip`. uv is
+// (u, v) times `tiles`.
+struct GridShape {
+  Surface surface;
+  int nu = 1, nv = 1;
+  glm::dvec2 tiles{1, 1};
+  bool flip = false;
+};
+void add_grid(Builder& builder, const GridShape& shape);
+
+// A box with rounded edges, bent by `warp` if there is one. uv is metres along the faces times
+// tiles_per_metre.
+struct RoundedBox {
+  glm::dvec3 centre{0}, half{0.5};
+  double radius = 0.05;
+  double tiles_per_metre = 1;
+  Warp warp;
+  bool inward = false;   // normals point into it: a closed room
+  int corner_least = 1;  // segments an eighth of a circle, at least
+};
+void add_rounded_box(Builder& builder, const RoundedBox& box);
+
+// A closed profile (superellipse, half sizes `half`, exponent 4) swept along a closed path in the
+// xy plane: a rounded rectangle of half size `path_half` and corner radius `path_radius`.
+struct Ring {
+  glm::dvec2 path_half{0.5}, half{0.03, 0.01};
+  double path_radius = 0.1;
+  double tiles_per_metre = 1;
+  Warp warp;  // from (path x, path y, height over the plane)
+};
+void add_ring(Builder& builder, const Ring& ring);
+
+// A body of revolution about the z axis through `centre`; profile(t) is (radius, z), t in [0, 1].
+struct Revolved {
+  glm::dvec3 centre{0};
+  std::function<glm::dvec2(double)> profile;
+  double largest_radius = 0.1, height = 0.2;
+};
+void add_revolved(Builder& builder, const Revolved& body);
+
+}  // namespace cabin

@@ -1,0 +1,21 @@
+// Adaptive refinement where the light changes quickly, as a lighting simulation does it.
+#pragma once
+
+#include "examples/cabin/lighting.h"
+
+namespace cabin {
+
+struct RefineOptions {
+  std::size_t triangles = 100000;  // to reach, within what one conforming split adds
+  int passes = 6;                  // relighting between them
+};
+
+// Splits edges by falling (change of light along the edge) x (its length) until the mesh has the
+// wished size. Conforming: every triangle with a split edge has its longest edge split too (Rivara
+// 1984), so no vertex lies inside another triangle's edge; vertices at one place on both sides of a
+// crease move together. New vertices lie on the smooth surface (the PN triangle's cubic edge,
+// Vlachos et al. 2001), are lit by `lighting`, and take their indirect light from the edge's ends.
+void refine(Mesh& mesh, const RefineOptions& options, const Lighting& lighting,
+            const atlas::Context& context);
+
+}  // namespace cabin

@@ -1,0 +1,237 @@
+// The lining with its windows, the floor, the bulkheads, the ceiling and the strips of light.
+#include <algorithm>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "examples/cabin/layout.h"
+#include "examples/cabin/primitives.h"
+
+namespace cabin {
+namespace {
+
+constexpr double kBandHalf = 0.25;  // half the height of the band of wall that holds the windows
+
+// A plain piece of wall between two heights, seen from inside.
+void add_wall(Builder& builder, int side, glm::dvec2 x, glm::dvec2 height, glm::ivec2 cells) {
+  GridShape grid;
+  grid.surface = [=](double u, double v) {
+    return wall_point(side, x.x + (x.y - x.x) * u, height.x + (height.y - height.x) * v, 0);
+  };
+  grid.nu = cells.x;
+  grid.nv = cells.y;
+  grid.tiles = {(x.y - x.x) / 0.5, (height.y - height.x) / 0.5};
+  grid.flip = side < 0;
+  add_grid(builder, grid);
+}
+
+Corner wall_corner(int side, double x, double height, double depth, glm::dvec3 normal) {
+  return {wall_point(side, x, height, depth), normal, {x / 0.5, height / 0.5}};
+}
+
+// The inward normal of the wall.
+glm::dvec3 wall_normal(int side, double height) {
+  const double angle = height / kRadius;
+  return {0, -side * std::cos(angle), -std::sin(angle)};
+}
+
+// The border of the square [-1, 1]² in 4 n steps, anticlockwise.
+std::vector<glm::dvec2> square_border(int n) {
+  std::vector<glm::dvec2> border;
+  const glm::dvec2 start[] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+  for (int edge = 0; edge < 4; ++edge)
+    for (int i = 0; i < n; ++i)
+      border.push_back(glm::mix(start[edge], start[(edge + 1) % 4], double(i) / n));
+  return border;
+}
+
+// The piece of wall around a window: rings from the band's rectangle to the window's rim.
+void add_window_wall(Builder& builder, int side, glm::dvec2 centre, int n) {
+  const auto border = square_border(n);
+  const int rings = builder.segments(0.12, 2);
+  const auto corner = [&](int ring, std::size_t i) {
+    const glm::dvec2 q = border[i % border.size()];
+    const glm::dvec2 outer(q.x * kBay / 2, q.y * kBandHalf), inner = window_rim(q.x, q.y);
+    const glm::dvec2 p = centre + glm::mix(inner, outer, double(ring) / rings);
+    return wall_corner(side, p.x, p.y, 0, wall_normal(side, p.y));
+  };
+  for (int ring = 0; ring < rings; ++ring)
+    for (std::size_t i = 0; i < border.size(); ++i)
+      builder.quad(corner(ring, i), corner(ring, i + 1), corner(ring + 1, i + 1),
+                   corner(ring + 1, i));
+}
+
+// The funnel from the rim outwards, and the blind at its end.
+void add_reveal(Builder& builder, int side, int bay, glm::dvec2 centre, int n) {
+  const auto border = square_border(n);
+  builder.begin("window_reveals", "trim");
+  const int rings = builder.segments(kRevealDepth, 2);
+  const auto corner = [&](int ring, std::size_t i) {
+    const glm::dvec2 q = border[i % border.size()];
+    const double t = double(ring) / rings;
+    // Steep at the rim, then straight: a rounded funnel.
+    const double scale = 1 - (1 - kRevealScale) * (1 - (1 - t) * (1 - t));
+    const glm::dvec2 p = centre + scale * window_rim(q.x, q.y);
+    const glm::dvec3 out = wall_normal(side, centre.y);
+    const glm::dvec3 c = wall_point(side, centre.x, centre.y, 0),
+                     at = wall_point(side, p.x, p.y, 0);
+    const glm::dvec3 radial = c - at - out * glm::dot(c - at, out);
+    const glm::dvec3 normal = glm::normalize(glm::normalize(radial) + out * (0.15 + 0.9 * (1 - t)));
+    return Corner{wall_point(side, p.x, p.y, -kRevealDepth * t),
+                  normal,
+                  {double(i) / border.size() * 2, t * 0.2}};
+  };
+  for (int ring = 0; ring < rings; ++ring)
+    for (std::size_t i = 0; i < border.size(); ++i)
+      builder.quad(corner(ring, i), corner(ring, i + 1), corner(ring + 1, i + 1),
+                   corner(ring + 1, i));
+  const double share = blind_share(side, bay);
+  if (share <= 0) return;
+  builder.begin("window_blinds", "blind");
+  GridShape blind;
+  const double top = centre.y + kWindowHalf.y, bottom = top - 2 * kWindowHalf.y * share;
+  blind.surface = [=](double u, double v) {
+    return wall_point(side, centre.x + (2 * u - 1) * kWindowHalf.x, bottom + (top - bottom) * v,
+                      -0.8 * kRevealDepth);
+  };
+  blind.nu = builder.segments(2 * kWindowHalf.x, 2);
+  blind.nv = builder.segments(top - bottom);
+  blind.flip = side < 0;
+  add_grid(builder, blind);
+}
+
+void add_bay(Builder& builder, int side, int bay) {
+  const glm::dvec2 x(bay * kBay, (bay + 1) * kBay);
+  const double middle = wall_height(kWindowHeight), floor = wall_height(0), top = kRadius * 0.66;
+  const int n = builder.segments(kBay, 2);
+  builder.begin("lining", "lining");
+  add_wall(builder, side, x, {middle + kBandHalf, top},
+           {n, builder.segments(top - middle - kBandHalf)});
+  builder.begin("dado", "dado");
+  add_wall(builder, side, x, {floor, middle - kBandHalf},
+           {n, builder.segments(middle - kBandHalf - floor)});
+  builder.begin("lining", "lining");
+  const glm::dvec2 centre((x.x + x.y) / 2, middle);
+  if (!has_window(side, bay))
+    return add_wall(builder, side, x, {middle - kBandHalf, middle + kBandHalf}, {n, n});
+  add_window_wall(builder, side, centre, n);
+  add_reveal(builder, side, bay, centre, n);
+}
+
+// The crown of the fuselage above the bins and the ceiling, where no light comes.
+void add_crown(Builder& builder) {
+  builder.begin("crown", "dado");
+  GridShape crown;
+  crown.surface = [](double u, double v) {
+    return wall_point(1, kLength * u, kRadius * (0.66 + (std::numbers::pi - 1.32) * v), 0);
+  };
+  crown.nu = builder.segments(kLength) / 2 + 1;
+  crown.nv = builder.segments(kRadius * 1.8) / 2 + 2;
+  add_grid(builder, crown);
+}
+
+void add_bulkhead(Builder& builder, double x, bool faces_aft, const std::string& name) {
+  builder.begin(name, faces_aft ? "trim" : "wood_panel");
+  GridShape wall;
+  constexpr double kTop = 2.1;
+  wall.surface = [=](double u, double v) {
+    const double z = kTop * v;
+    return glm::dvec3(x, (2 * u - 1) * half_width(z), z);
+  };
+  wall.nu = builder.segments(2 * kRadius);
+  wall.nv = builder.segments(kTop);
+  wall.tiles = {2.0, 1.5};
+  wall.flip = !faces_aft;
+  add_grid(builder, wall);
+}
+
+void add_floor(Builder& builder) {
+  const double edge = half_width(0), runner = 0.27, entry = 1.9;
+  const auto piece = [&](const char* name, const char* material, glm::dvec2 x, glm::dvec2 y) {
+    builder.begin(name, material);
+    GridShape grid;
+    grid.surface = [=](double u, double v) {
+      return glm::dvec3(x.x + (x.y - x.x) * u, y.x + (y.y - y.x) * v, 0);
+    };
+    grid.nu = builder.segments(x.y - x.x);
+    grid.nv = builder.segments(y.y - y.x);
+    grid.tiles = {(x.y - x.x) / 0.4, (y.y - y.x) / 0.4};
+    add_grid(builder, grid);
+  };
+  piece("floor_entry", "entry_floor", {0, entry}, {-edge, edge});
+  piece("floor", "carpet", {entry, kLength}, {-edge, -runner});
+  piece("floor", "carpet", {entry, kLength}, {runner, edge});
+  piece("aisle", "aisle_carpet", {entry, kLength}, {-runner, runner});
+}
+
+}  // namespace
+
+void add_shell(Builder& builder) {
+  for (int side : {-1, 1})
+    for (int bay = 0; bay < kBays; ++bay) add_bay(builder, side, bay);
+  add_crown(builder);
+  add_floor(builder);
+  add_bulkhead(builder, 0, true, "bulkhead_front");
+  add_bulkhead(builder, kLength, false, "bulkhead_aft");
+  builder.begin("lavatory_door", "trim");
+  RoundedBox door;
+  door.centre = {kLength - 0.02, 0, 0.97};
+  door.half = {0.015, 0.3, 0.95};
+  door.radius = 0.012;
+  add_rounded_box(builder, door);
+  builder.begin("lavatory_handle", "metal");
+  RoundedBox handle;
+  handle.centre = {kLength - 0.05, -0.22, 1.0};
+  handle.half = {0.015, 0.02, 0.09};
+  handle.radius = 0.014;
+  add_rounded_box(builder, handle);
+}
+
+std::vector<Strip> light_strips() {
+  std::vector<Strip> strips;
+  for (int side : {-1, 1}) {
+    // Beside the ceiling, down and inwards.
+    const glm::dvec2 a(side * 0.6, 1.96), b(side * 0.53, 2.0);
+    // On top of the bins, up at the ceiling.
+    const glm::dvec2 c(side * 0.63, 1.975), d(side * 0.70, 1.975);
+    // Below the bins, down the lining.
+    const glm::dvec2 e(side * 1.10, 1.505), f(side * 1.05, 1.505);
+    const bool left = side > 0;
+    strips.push_back({kBinStart, kLength - 0.02, left ? a : b, left ? b : a, 6, "strip"});
+    strips.push_back({kBinStart, kLength - 0.02, left ? c : d, left ? d : c, 6, "cove"});
+    strips.push_back({kBinStart, kLength - 0.02, left ? e : f, left ? f : e, 6, "wash"});
+  }
+  strips.push_back({0.55, 1.35, {0.4, 2.035}, {-0.1, 2.035}, 1, "entry_light"});
+  return strips;
+}
+
+void add_ceiling(Builder& builder) {
+  builder.begin("ceiling", "ceiling");
+  GridShape arch;
+  arch.surface = [](double u, double v) {
+    const double y = 0.85 * (2 * v - 1);
+    return glm::dvec3(kBinStart + (kLength - kBinStart) * u, y, 2.09 - 0.12 * y * y / 0.72);
+  };
+  arch.nu = builder.segments(kLength - kBinStart);
+  arch.nv = builder.segments(1.7, 4);
+  arch.tiles = {4, 1};
+  arch.flip = true;
+  add_grid(builder, arch);
+  builder.begin("ceiling_entry", "ceiling");
+  RoundedBox panel;
+  panel.centre = {0.97, 0, 2.09};
+  panel.half = {0.97, 0.85, 0.05};
+  panel.radius = 0.03;
+  add_rounded_box(builder, panel);
+  for (const Strip& strip : light_strips()) {
+    builder.begin("light_strips", strip.material);
+    GridShape grid;
+    grid.surface = [&](double u, double v) {
+      const glm::dvec2 p = glm::mix(strip.from, strip.to, v);
+      return glm::dvec3(strip.x0 + (strip.x1 - strip.x0) * u, p.x, p.y);
+    };
+    grid.nu = builder.segments(strip.x1 - strip.x0) / 2 + 1;
+    add_grid(builder, grid);
+  }
+}
+
+}  // namespace cabin

@@ -1,0 +1,111 @@
+#include "examples/cabin/tracer.h"
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#define CABIN_EMBREE 4
+#else
+#include <embree3/rtcore.h>
+#define CABIN_EMBREE 3
+#endif
+
+#include <cstring>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <stdexcept>
+
+namespace cabin {
+namespace {
+
+constexpr float kEndless = std::numeric_limits<float>::infinity();
+
+template <class Ray>
+void set_ray(Ray& ray, glm::vec3 origin, glm::vec3 direction, float distance) {
+  ray.org_x = origin.x;
+  ray.org_y = origin.y;
+  ray.org_z = origin.z;
+  ray.dir_x = direction.x;
+  ray.dir_y = direction.y;
+  ray.dir_z = direction.z;
+  ray.tnear = 0;
+  ray.tfar = distance;
+  ray.mask = ~0u;
+  ray.flags = 0;
+  ray.time = 0;
+}
+
+}  // namespace
+
+struct Tracer::Impl {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  ~Impl() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+  }
+};
+
+Tracer::Tracer(const Mesh& mesh) : impl_(std::make_unique<Impl>()) {
+  impl_->device = rtcNewDevice(nullptr);
+  if (!impl_->device) throw std::runtime_error("Embree could not be started");
+  impl_->scene = rtcNewScene(impl_->device);
+  // Robust: no ray slips through the edge between two triangles, wherever the cabin's light leaks
+  // are to be seen. High quality: the tree is built once and asked a hundred million times.
+  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
+  RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* positions = static_cast<float*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                              3 * sizeof(float), mesh.vertices.size()));
+  auto* indices = static_cast<unsigned*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                              3 * sizeof(unsigned), mesh.triangles.size()));
+  if (!positions || !indices) throw std::runtime_error("Embree has no memory for the cabin");
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+    std::memcpy(positions + 3 * i, &mesh.vertices[i].position, 3 * sizeof(float));
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    for (int k = 0; k < 3; ++k) indices[3 * i + k] = mesh.triangles[i].vertex[k];
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(impl_->scene, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(impl_->scene);
+}
+
+Tracer::~Tracer() = default;
+
+Hit Tracer::nearest(glm::vec3 origin, glm::vec3 direction) const {
+  RTCRayHit query;
+  set_ray(query.ray, origin, direction, kEndless);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.primID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+#if CABIN_EMBREE == 4
+  rtcIntersect1(impl_->scene, &query);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(impl_->scene, &context, &query);
+#endif
+  Hit hit;
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
+  hit.triangle = query.hit.primID;
+  hit.u = query.hit.u;
+  hit.v = query.hit.v;
+  hit.distance = query.ray.tfar;
+  hit.front = glm::dot(glm::vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z), direction) < 0;
+  return hit;
+}
+
+bool Tracer::blocked(glm::vec3 origin, glm::vec3 direction, float distance) const {
+  RTCRay ray;
+  set_ray(ray, origin, direction, distance);
+#if CABIN_EMBREE == 4
+  rtcOccluded1(impl_->scene, &ray);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(impl_->scene, &context, &ray);
+#endif
+  return ray.tfar < 0;
+}
+
+}  // namespace cabin

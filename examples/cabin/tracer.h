@@ -1,0 +1,35 @@
+// Rays against the coarse cabin: the one place that knows Embree, version 3 or 4.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <memory>
+
+#include "examples/cabin/cabin_mesh.h"
+
+namespace cabin {
+
+struct Hit {
+  Id triangle = ~0u;   // ~0: nothing was hit
+  float u = 0, v = 0;  // weights of the triangle's second and third corner
+  float distance = 0;
+  bool front = false;  // the ray came from the side that the triangle faces
+};
+
+class Tracer {
+ public:
+  // Keeps its own copy of the positions. Throws std::runtime_error if Embree cannot be started.
+  explicit Tracer(const Mesh& mesh);
+  ~Tracer();
+  Tracer(const Tracer&) = delete;
+  Tracer& operator=(const Tracer&) = delete;
+
+  // Both may be called from many threads at once.
+  Hit nearest(glm::vec3 origin, glm::vec3 direction) const;
+  bool blocked(glm::vec3 origin, glm::vec3 direction, float distance) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace cabin

@@ -1,0 +1,16 @@
+// Lit cabin to files: OBJ with its MTL and textures, PLY, GLB.
+#pragma once
+
+#include <filesystem>
+
+#include "examples/cabin/cabin_mesh.h"
+#include "libatlas/core/status.h"
+
+namespace cabin {
+
+// Writes by the extension of `path`: .obj (v x y z r g b, plus MTL and PNG textures beside it),
+// .ply (binary, colours as floats, without texture coordinates), .glb (attribute _ILLUMINANCE,
+// textures beside it). Illuminance is linear RGB in lux, not yet multiplied by the reflectance.
+atlas::Status write_scene(const std::filesystem::path& path, const Mesh& mesh, bool y_up);
+
+}  // namespace cabin
