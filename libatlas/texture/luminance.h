@@ -11,6 +11,8 @@
 
 namespace atlas {
 
+struct TextureLevels;
+
 // What Scene::illumination holds.
 enum class Quantity {
   illuminance,  // E: the diffuse reflectance still has to be applied
@@ -36,8 +38,8 @@ class LuminanceSampler {
   // textured, corner texture coordinates in units of texture texels.
   struct Triangle {
     float illumination[3][4];  // corner, RGB (already times Kd), 4th lane 0
-    float texcoord[3][2];      // in texels of mip level 0
-    const struct TextureLevels* texture = nullptr;
+    float texcoord[3][2];      // in texels of the mip level `level`
+    const TextureLevels* texture = nullptr;
     int level = 0;          // mip level to read
     bool constant = false;  // one colour over the whole triangle, illumination[0]
   };

@@ -1,19 +1,50 @@
 // The sRGB transfer function (IEC 61966-2-1) and exact 8-bit quantisation.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 namespace atlas {
 
+namespace srgb_detail {
+
+// The encoding curve between 2^-9 and 1 as straight pieces, 128 an octave: a float's upper bits are
+// the index, its lower ones the position in the piece. Below 2^-9 < 0.0031308 it is a line.
+inline constexpr int kPieceBits = 7, kOctaves = 9;
+inline constexpr std::uint32_t kFirst = (127 - kOctaves) << 23;
+
+struct Tables {
+  float decode[256];
+  float threshold[257];  // the linear value from which code i is the nearest
+  float encode[(kOctaves << kPieceBits) + 2];
+  Tables();
+};
+extern const Tables tables;
+
+}  // namespace srgb_detail
+
 // Linear value in [0, 1] of an 8-bit sRGB code. Table look-up.
-float srgb_decode8(std::uint8_t code);
+inline float srgb_decode8(std::uint8_t code) {
+  return srgb_detail::tables.decode[code];
+}
 
 // Linear value of a display value in [0, 1]; inputs outside are clamped. Exact to float rounding.
 float srgb_decode(float display);
 
 // Display value in [0, 1] of a linear value; inputs outside [0, 1] are clamped, NaN gives 0.
 // Table with linear interpolation: within 2e-6 of the definition.
-float srgb_encode(float linear);
+inline float srgb_encode(float linear) {
+  using namespace srgb_detail;
+  if (!(linear > 0)) return 0;
+  if (linear >= 1) return 1;
+  const auto bits = std::bit_cast<std::uint32_t>(linear);
+  if (bits < kFirst) return linear * 12.92f;
+  const std::uint32_t index = (bits - kFirst) >> (23 - kPieceBits);
+  const auto low = static_cast<std::int32_t>(bits & ((1u << (23 - kPieceBits)) - 1));
+  const float t = static_cast<float>(low) * (1.0f / (1 << (23 - kPieceBits)));
+  const float a = tables.encode[index], b = tables.encode[index + 1];
+  return a + t * (b - a);
+}
 
 // The 8-bit code nearest to 255 times the display value of `linear`, ties upwards: exact.
 std::uint8_t srgb_encode8(float linear);

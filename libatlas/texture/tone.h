@@ -8,6 +8,7 @@
 #include "libatlas/core/status.h"
 #include "libatlas/core/vec.h"
 #include "libatlas/texture/luminance.h"
+#include "libatlas/texture/srgb.h"
 
 namespace atlas {
 
@@ -43,9 +44,8 @@ std::string_view tone_operator_name(ToneOperator op);
 struct ToneOptions {
   ToneOperator op = ToneOperator::linear;
   // Scene luminance that becomes display white; 0: automatic. linear: the 99th percentile;
-  // reinhard, drago, reinhard_devlin: the largest luminance (its 99.9th percentile would burn out
-  // lamps; a white of the user's own is allowed to).
-  double white = 0;
+  // the others: the largest luminance.
+  double white = 0;                 // >= 0
   double exposure_stops = 0;        // brightens (+) or darkens (-) by powers of two
   double key = 0.18;                // reinhard: middle grey
   double bias = 0.85;               // drago: 0.5..1
@@ -67,9 +67,22 @@ struct ToneMapping {
   float offset[3] = {0, 0, 0};        // reinhard_devlin: the adaptation term of each channel
 
   // Linear display value of each channel, in [0, 1]. Negative and NaN inputs count as 0.
-  Vec3f map(Vec3f luminance) const;
+  Vec3f map(Vec3f luminance) const {
+    if (op != ToneOperator::linear) return map_curve(luminance);
+    const auto clip = [this](float v) {
+      v *= scale;
+      return v > 0 ? (v < 1 ? v : 1.0f) : 0.0f;
+    };
+    return {clip(luminance.x), clip(luminance.y), clip(luminance.z)};
+  }
   // The same, sRGB-encoded: what an 8-bit texture stores, in [0, 1].
-  Vec3f display(Vec3f luminance) const;
+  Vec3f display(Vec3f luminance) const {
+    const Vec3f v = map(luminance);
+    return {srgb_encode(v.x), srgb_encode(v.y), srgb_encode(v.z)};
+  }
+
+ private:
+  Vec3f map_curve(Vec3f luminance) const;  // the operators other than linear
 };
 
 // Errors: bad_option, naming the option.

@@ -1,0 +1,220 @@
+#include "libatlas/bake/bake.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include "libatlas/bake/least_squares.h"
+#include "libatlas/core/parallel.h"
+#include "libatlas/raster/coverage.h"
+#include "libatlas/raster/sampling.h"
+#include "libatlas/texture/triangle_light.h"
+
+namespace atlas {
+namespace {
+
+// The box of one chart with its pads; positions inside are relative to its corner.
+struct Box {
+  const ChartPlacement& placement;
+  int pad, width, height;
+
+  Box(const ChartPlacement& p, int mip_levels)
+      : placement(p),
+        pad(gutter_pad(mip_levels)),
+        width(p.width + 2 * pad),
+        height(p.height + 2 * pad) {}
+
+  TexelTriangle triangle(const ChartSet& charts, std::uint32_t t) const {
+    TexelTriangle out;
+    for (int k = 0; k < 3; ++k) {
+      const Vec2d q = page_texel(placement, charts.uvs[charts.triangle_uv[3 * std::size_t(t) + k]]);
+      out[k] = {q.x - placement.x + pad, q.y - placement.y + pad};
+    }
+    return out;
+  }
+};
+
+// What one chart's bake needs; `tone` null gives scene-linear values.
+struct Job {
+  const ChartLight& light;
+  const BakeOptions& options;
+  const SampleGrid& grid;
+  const ToneMapping* tone;
+};
+
+// Distance of the samples on the surface, for the choice of the texture's mip level.
+double sample_spacing(const ChartPlacement& p, int side) {
+  return 1 / (std::sqrt(p.texels_per_unit.x * p.texels_per_unit.y) * side);
+}
+
+std::span<const std::uint32_t> triangles_of(const ChartSet& charts, std::uint32_t id) {
+  const Chart& chart = charts.charts[id];
+  return std::span(charts.chart_triangles).subspan(chart.first_triangle, chart.triangle_count);
+}
+
+Lanes lanes(const float rgb[4]) {
+  return Lanes{rgb[0], rgb[1], rgb[2], 1};
+}
+
+// Splats a triangle's samples; texel (0, 0)'s centre is at (0.5, 0.5).
+void splat_triangle(const TexelTriangle& p, const TriangleLight& lit, const Job& job,
+                    const Box& box, LeastSquares& fit) {
+  const float weight = 1.0f / static_cast<float>(job.grid.count);
+  sample_triangle(
+      p, {1, 1, box.width - 2, box.height - 2}, job.grid,
+      [&](int k, int y, int x0, int x1) {
+        const Vec2d o = job.grid.offset[k];
+        const int left = o.x < 0.5 ? -1 : 0, low = o.y < 0.5 ? -1 : 0;
+        const LeastSquares::Splat splat(static_cast<float>(o.x - 0.5 - left),
+                                        static_cast<float>(o.y - 0.5 - low), weight);
+        lit.row({x0 + o.x, y + o.y}, x1 - x0, [&](int i, const float* rgb) {
+          fit.add(x0 + i + left, y + low, splat, lanes(rgb));
+        });
+      },
+      [&](const float* b, float area) {
+        const double x = b[0] * p[0].x + b[1] * p[1].x + b[2] * p[2].x - 0.5;
+        const double y = b[0] * p[0].y + b[1] * p[1].y + b[2] * p[2].y - 0.5;
+        const int i = std::clamp(static_cast<int>(x), 0, box.width - 2);
+        const int j = std::clamp(static_cast<int>(y), 0, box.height - 2);
+        const LeastSquares::Splat splat(static_cast<float>(std::clamp(x - i, 0.0, 1.0)),
+                                        static_cast<float>(std::clamp(y - j, 0.0, 1.0)), area);
+        float rgb[4];
+        lit.at(b, rgb);
+        fit.add(i, j, splat, lanes(rgb));
+      });
+}
+
+void bake_least_squares(const Job& job, const Box& box, TexelGrid& out) {
+  LeastSquares fit(box.width, box.height);
+  const double spacing = sample_spacing(box.placement, job.grid.side);
+  for (const std::uint32_t t : triangles_of(job.light.charts, box.placement.chart)) {
+    const TexelTriangle p = box.triangle(job.light.charts, t);
+    const SampleKind kind = sample_kind(p, job.grid);
+    if (kind == SampleKind::none) continue;
+    TriangleLight lit(job.light.sampler.prepare(t, spacing), job.tone);
+    if (kind == SampleKind::grid) lit.set_position(p);
+    splat_triangle(p, lit, job, box, fit);
+  }
+  const float high = job.tone ? 1.0f : std::numeric_limits<float>::max();
+  fit.solve(0, high, out);
+}
+
+// The published scheme. Shifts move the grid by up to half a texel about the texel's centre.
+void bake_average(const Job& job, const Box& box, TexelGrid& out) {
+  const double spacing = sample_spacing(box.placement, 1);
+  const Rect clip{0, 0, box.width, box.height};
+  for (const std::uint32_t t : triangles_of(job.light.charts, box.placement.chart)) {
+    const TexelTriangle p = box.triangle(job.light.charts, t);
+    if (sample_kind(p, job.grid) == SampleKind::none) continue;
+    TriangleLight lit(job.light.sampler.prepare(t, spacing), job.tone);
+    lit.set_position(p);
+    for (int k = 0; k < job.grid.count; ++k) {
+      const Vec2d shift{job.grid.offset[k].x - 0.5, job.grid.offset[k].y - 0.5};
+      TexelTriangle q = p;
+      for (Vec2d& corner : q) corner = {corner.x - shift.x, corner.y - shift.y};
+      cover_triangle(q, clip, [&](int x, int y, double area, Vec2d c) {
+        lit.row({c.x + shift.x, c.y + shift.y}, 1, [&](int, const float* rgb) {
+          out.rgb[std::size_t(y) * out.width + x] += static_cast<float>(area) * lanes(rgb);
+        });
+      });
+    }
+  }
+  for (std::size_t i = 0; i < out.rgb.size(); ++i) {
+    const float weight = out.rgb[i][3];
+    if (!(weight > 0)) continue;
+    out.rgb[i] /= weight;
+    out.known[i] = 1;
+  }
+}
+
+struct BoxCounts {
+  std::size_t covered = 0, filled = 0;
+};
+
+BoxCounts bake_box(const Job& job, const Box& box, TexelGrid& out) {
+  if (job.options.method == BakeMethod::average)
+    bake_average(job, box, out);
+  else
+    bake_least_squares(job, box, out);
+  BoxCounts counts;
+  counts.filled = fill_unknown(out);
+  counts.covered = out.rgb.size() - counts.filled;
+  return counts;
+}
+
+template <class T, class Convert>
+void copy_box(const TexelGrid& in, const Box& box, Image<T>& page, Convert&& convert) {
+  for (int y = 0; y < box.height; ++y) {
+    const Lanes* row = &in.rgb[std::size_t(y) * box.width];
+    T* to = page.at(box.placement.x - box.pad, box.placement.y - box.pad + y);
+    for (int x = 0; x < box.width; ++x)
+      for (int k = 0; k < 3; ++k) *to++ = convert(row[x][k]);
+  }
+}
+
+Status check(const ChartLight& light, std::span<const ChartPlacement> placements,
+             const BakeOptions& o) {
+  constexpr int kLargest = 1 << 16;
+  if (o.page_width < 1 || o.page_width > kLargest || o.page_height < 1 || o.page_height > kLargest)
+    return {ErrorCode::bad_option, fmt::format("page of {} x {} texels; each side must be 1..{}",
+                                               o.page_width, o.page_height, kLargest)};
+  if (o.shifts < 1 || o.shifts > 64)
+    return {ErrorCode::bad_option, fmt::format("{} shifts; there must be 1..64", o.shifts)};
+  if (o.mip_levels < 0 || o.mip_levels > 10)
+    return {ErrorCode::bad_option, fmt::format("{} mip levels; there must be 0..10", o.mip_levels)};
+  const int pad = gutter_pad(o.mip_levels);
+  for (const ChartPlacement& p : placements) {
+    if (p.chart >= light.charts.charts.size())
+      return {ErrorCode::bad_input, fmt::format("a placement names chart {}, but there are {}",
+                                                p.chart, light.charts.charts.size())};
+    if (p.width < 1 || p.height < 1 || p.x < pad || p.y < pad ||
+        p.x + std::int64_t{p.width} + pad > o.page_width ||
+        p.y + std::int64_t{p.height} + pad > o.page_height)
+      return {ErrorCode::bad_input,
+              fmt::format("chart {}: its box {} x {} at ({}, {}) with {} texels of gutter leaves "
+                          "the page of {} x {}",
+                          p.chart, p.width, p.height, p.x, p.y, pad, o.page_width, o.page_height)};
+    if (!(p.texels_per_unit.x > 0) || !(p.texels_per_unit.y > 0))
+      return {ErrorCode::bad_input,
+              fmt::format("chart {}: its texel density is not above 0", p.chart)};
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacement> placements,
+                            const BakeOptions& options, const Context& context) {
+  if (Status s = check(light, placements, options); !s.ok()) return s;
+  BakedPage page;
+  page.display = Image8(options.page_width, options.page_height, 3);
+  if (options.linear) page.linear = ImageF(options.page_width, options.page_height, 3);
+  const SampleGrid grid(options.shifts);
+  std::mutex counting;
+  std::size_t done = 0;
+  parallel_for(context, placements.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end && !context.cancelled(); ++i) {
+      const Box box(placements[i], options.mip_levels);
+      TexelGrid texels(box.width, box.height);
+      const BoxCounts counts = bake_box({light, options, grid, &light.tone}, box, texels);
+      copy_box(texels, box, page.display, quantize8);
+      if (options.linear) {
+        TexelGrid linear(box.width, box.height);
+        bake_box({light, options, grid, nullptr}, box, linear);
+        copy_box(linear, box, page.linear, [](float v) { return v; });
+      }
+      const std::lock_guard lock(counting);
+      page.triangles += light.charts.charts[placements[i].chart].triangle_count;
+      page.covered_texels += counts.covered;
+      page.filled_texels += counts.filled;
+      context.report("bake", static_cast<double>(++done) / static_cast<double>(placements.size()));
+    }
+  });
+  if (context.cancelled()) return Status::cancelled();
+  return page;
+}
+
+}  // namespace atlas

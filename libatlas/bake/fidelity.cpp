@@ -1,0 +1,202 @@
+#include "libatlas/bake/fidelity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/texture/srgb.h"
+
+namespace atlas {
+namespace {
+
+struct Sample {
+  std::int32_t page = -1;
+  Vec2f texel;      // page position
+  Vec3f luminance;  // of the input
+  Vec3f shown;      // display values found in the atlas
+  bool found = false;
+};
+
+double triangle_area(const Scene& s, std::size_t t) {
+  const glm::dvec3 a = to_dvec(s.positions[s.indices[3 * t]]);
+  const glm::dvec3 b = to_dvec(s.positions[s.indices[3 * t + 1]]) - a;
+  const glm::dvec3 c = to_dvec(s.positions[s.indices[3 * t + 2]]) - a;
+  return 0.5 * glm::length(glm::cross(b, c));
+}
+
+// Uniform in [0, 1), the same on every machine (std distributions are not).
+double uniform(std::mt19937_64& random) {
+  return static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+Vec3f bilinear(const Image8& image, Vec2f at) {
+  const float fx = std::floor(at.x - 0.5f), fy = std::floor(at.y - 0.5f);
+  const float tx = at.x - 0.5f - fx, ty = at.y - 0.5f - fy;
+  const auto column = [&](float x) { return std::clamp(static_cast<int>(x), 0, image.width - 1); };
+  const auto row = [&](float y) { return std::clamp(static_cast<int>(y), 0, image.height - 1); };
+  const std::uint8_t* p[4] = {image.at(column(fx), row(fy)), image.at(column(fx + 1), row(fy)),
+                              image.at(column(fx), row(fy + 1)),
+                              image.at(column(fx + 1), row(fy + 1))};
+  float out[3];
+  for (int k = 0; k < 3; ++k) {
+    const float low = (1 - tx) * p[0][k] + tx * p[1][k], high = (1 - tx) * p[2][k] + tx * p[3][k];
+    out[k] = ((1 - ty) * low + ty * high) * (1.0f / 255);
+  }
+  return {out[0], out[1], out[2]};
+}
+
+double luma(const float c[3]) {
+  return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+}
+
+double decibels(double mean_square) {
+  return mean_square > 0 ? -10 * std::log10(mean_square) : 999;
+}
+
+// Sums over samples, in their order.
+struct Sums {
+  const ToneMapping& tone;
+  Fidelity out;
+  double square[3] = {0, 0, 0}, square_all = 0, scene_square = 0;
+  std::uint64_t all = 0, scene_count = 0;
+  std::vector<float> worst;
+
+  void add(const Sample& s) {
+    if (!s.found) {
+      ++out.unplaced;
+      return;
+    }
+    const Vec3f want = tone.display(s.luminance);
+    const float w[3] = {want.x, want.y, want.z}, g[3] = {s.shown.x, s.shown.y, s.shown.z};
+    const float c[3] = {s.luminance.x, s.luminance.y, s.luminance.z};
+    const bool lit = c[0] != 0 || c[1] != 0 || c[2] != 0;
+    float largest = 0;
+    ++all;
+    for (int k = 0; k < 3; ++k) {
+      const double d = double{g[k]} - w[k];
+      largest = std::max(largest, static_cast<float>(std::fabs(d)));
+      square_all += d * d;
+      if (lit) square[k] += d * d;
+    }
+    ++(lit ? out.lit : out.unlit);
+    if (!lit) return;
+    worst.push_back(largest);
+    if (std::max({w[0], w[1], w[2]}) >= 1) {
+      ++out.clipped;
+    } else if (tone.op == ToneOperator::linear) {
+      float back[3];
+      for (int k = 0; k < 3; ++k) back[k] = srgb_decode(g[k]) / tone.scale;
+      const double d = luma(back) - luma(c);
+      scene_square += d * d;
+      ++scene_count;
+    }
+  }
+
+  double percentile(double q) {
+    if (worst.empty()) return 0;
+    const auto at =
+        std::min(worst.size() - 1, static_cast<std::size_t>(q * static_cast<double>(worst.size())));
+    std::nth_element(worst.begin(), worst.begin() + static_cast<std::ptrdiff_t>(at), worst.end());
+    return worst[at];
+  }
+
+  Fidelity finish() {
+    if (all > 0) out.psnr_all = decibels(square_all / (3.0 * static_cast<double>(all)));
+    if (scene_count > 0) out.rmse = std::sqrt(scene_square / static_cast<double>(scene_count));
+    if (out.lit == 0) return out;
+    const auto n = static_cast<double>(out.lit);
+    for (int k = 0; k < 3; ++k) out.psnr_channel[k] = decibels(square[k] / n);
+    const double mean = (square[0] + square[1] + square[2]) / (3 * n);
+    out.psnr = decibels(mean);
+    out.rmse_display = std::sqrt(mean);
+    out.p95 = percentile(0.95);
+    out.p999 = percentile(0.999);
+    out.maximum = *std::max_element(worst.begin(), worst.end());
+    return out;
+  }
+};
+
+}  // namespace
+
+struct FidelityMeter::State {
+  const ToneMapping& tone;
+  std::vector<Sample> samples;         // in the order drawn
+  std::vector<std::uint32_t> by_page;  // sample ids sorted by page
+};
+
+FidelityMeter::FidelityMeter(const ChartLight& light, std::span<const ChartPlacement> placements,
+                             const FidelityOptions& options)
+    : state_(new State{light.tone, {}, {}}) {
+  const Scene& scene = light.sampler.scene();
+  const ChartSet& charts = light.charts;
+  std::vector<std::int64_t> placed(charts.charts.size(), -1);
+  for (std::size_t i = 0; i < placements.size(); ++i)
+    placed[placements[i].chart] = static_cast<std::int64_t>(i);
+
+  double total = 0;
+  for (std::size_t t = 0; t < scene.triangle_count(); ++t) total += triangle_area(scene, t);
+  if (!(total > 0)) return;
+  // Stratified: one sample at a random place in each equal share of the running area.
+  const double share = total / options.samples;
+  std::mt19937_64 random(options.seed);
+  double area = 0, next = share * uniform(random);
+  std::uint32_t drawn = 0;
+  state_->samples.reserve(options.samples);
+  for (std::size_t t = 0; t < scene.triangle_count() && drawn < options.samples; ++t) {
+    area += triangle_area(scene, t);
+    if (next >= area) continue;
+    const auto id = static_cast<std::uint32_t>(t);
+    const auto lit = light.sampler.prepare(id, 0);
+    while (next < area && drawn < options.samples) {
+      const double r = std::sqrt(uniform(random)), v = uniform(random);
+      const double b[3] = {1 - r, r * (1 - v), r * v};
+      Sample s;
+      s.luminance = LuminanceSampler::sample(lit, static_cast<float>(b[0]),
+                                             static_cast<float>(b[1]), static_cast<float>(b[2]));
+      const std::int64_t at = placed[charts.triangle_chart[t]];
+      if (at >= 0) {
+        Vec2d uv;
+        for (int k = 0; k < 3; ++k) {
+          const Vec2d q = charts.uvs[charts.triangle_uv[3 * t + k]];
+          uv = {uv.x + b[k] * q.x, uv.y + b[k] * q.y};
+        }
+        const Vec2d texel = page_texel(placements[at], uv);
+        s.texel = {static_cast<float>(texel.x), static_cast<float>(texel.y)};
+        s.page = placements[at].page;
+      }
+      state_->samples.push_back(s);
+      ++drawn;
+      next = share * (drawn + uniform(random));
+    }
+  }
+  state_->by_page.resize(state_->samples.size());
+  for (std::uint32_t i = 0; i < state_->by_page.size(); ++i) state_->by_page[i] = i;
+  std::stable_sort(state_->by_page.begin(), state_->by_page.end(),
+                   [&](std::uint32_t a, std::uint32_t b) {
+                     return state_->samples[a].page < state_->samples[b].page;
+                   });
+}
+
+FidelityMeter::~FidelityMeter() = default;
+
+void FidelityMeter::add_page(std::int32_t page, const Image8& display) {
+  auto& samples = state_->samples;
+  const auto& ids = state_->by_page;
+  auto at = std::lower_bound(ids.begin(), ids.end(), page, [&](std::uint32_t id, std::int32_t p) {
+    return samples[id].page < p;
+  });
+  for (; at != ids.end() && samples[*at].page == page; ++at) {
+    samples[*at].shown = bilinear(display, samples[*at].texel);
+    samples[*at].found = true;
+  }
+}
+
+Fidelity FidelityMeter::result() const {
+  Sums sums{state_->tone, {}, {}, 0, 0, 0, 0, {}};
+  for (const Sample& s : state_->samples) sums.add(s);
+  return sums.finish();
+}
+
+}  // namespace atlas

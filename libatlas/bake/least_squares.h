@@ -1,0 +1,70 @@
+// Internal: texels whose bilinear interpolation fits weighted samples best.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "libatlas/bake/texel_grid.h"
+
+namespace atlas {
+
+// Minimises sum_i w_i |bilinear(texels, x_i) - c_i|² plus a small multiple of the squared
+// differences between neighbouring texels, which decides those that hardly any sample sees. The
+// normal equations' matrix couples a texel with its eight neighbours; it is symmetric, so four of
+// the eight are stored, and accumulated sample by sample.
+class LeastSquares {
+ public:
+  LeastSquares(int width, int height)
+      : width_(width), height_(height), cells_(std::size_t(width) * height) {}
+
+  // The four texels around a sample and its bilinear weights, already times its weight.
+  class Splat {
+   public:
+    // (tx, ty): position between the centres of texels (0, 0) and (1, 1), in [0, 1].
+    Splat(float tx, float ty, float weight) {
+      const float w[4] = {(1 - tx) * (1 - ty), tx * (1 - ty), (1 - tx) * ty, tx * ty};
+      for (int k = 0; k < 4; ++k) {
+        const float s = weight * w[k];
+        value_[k] = Lanes{s, s, s, s * w[k]};
+      }
+      pair_[0] = weight * Lanes{w[0] * w[1], w[0] * w[2], w[0] * w[3], 0};
+      pair_[1] = weight * Lanes{0, w[1] * w[3], 0, w[1] * w[2]};
+      pair_[2] = weight * Lanes{w[2] * w[3], 0, 0, 0};
+    }
+
+   private:
+    friend class LeastSquares;
+    Lanes value_[4], pair_[3];
+  };
+
+  // Adds a sample whose lower left texel is (x, y); rgb1 is its colour with a 1 in the 4th lane.
+  void add(int x, int y, const Splat& s, Lanes rgb1) {
+    Cell* c = &cells_[std::size_t(y) * width_ + x];
+    Cell* d = c + width_;
+    c[0].value += s.value_[0] * rgb1;
+    c[0].pair += s.pair_[0];
+    c[1].value += s.value_[1] * rgb1;
+    c[1].pair += s.pair_[1];
+    d[0].value += s.value_[2] * rgb1;
+    d[0].pair += s.pair_[2];
+    d[1].value += s.value_[3] * rgb1;
+  }
+
+  // Writes the solution, clamped to [low, high], and which texels a sample has touched.
+  void solve(float low, float high, TexelGrid& out) const;
+
+ private:
+  struct Cell {
+    Lanes value{};  // right-hand side of R, G, B; diagonal element
+    Lanes pair{};   // with the east, north, north-east neighbours; with the north-west one
+  };
+
+  void start(TexelGrid& out) const;
+  void sweep(bool forward, float low, float high, TexelGrid& x) const;
+
+  int width_, height_;
+  std::vector<Cell> cells_;
+};
+
+}  // namespace atlas

@@ -1,0 +1,25 @@
+// Internal: RGB texels of one chart's box while it is baked.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace atlas {
+
+// Four lanes that the compiler keeps in one SIMD register (GCC and Clang vector extension).
+using Lanes = float __attribute__((vector_size(16)));
+
+struct TexelGrid {
+  int width = 0, height = 0;
+  std::vector<Lanes> rgb;            // 4th lane unspecified
+  std::vector<unsigned char> known;  // 0: no sample came near this texel
+
+  TexelGrid(int w, int h)
+      : width(w), height(h), rgb(std::size_t(w) * h), known(std::size_t(w) * h) {}
+};
+
+// Fills the unknown texels smoothly from the known ones: pull-push over a pyramid of averages
+// (Gortler et al. 1996, section 3.4). Black if nothing is known. Returns how many were filled.
+std::size_t fill_unknown(TexelGrid& grid);
+
+}  // namespace atlas

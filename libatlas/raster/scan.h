@@ -1,0 +1,117 @@
+// Which texels' sample points lie in a triangle: the fill rule of graphics hardware, exactly.
+// Header-only, so that the caller's work per span is inlined.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "libatlas/core/rect.h"
+#include "libatlas/core/vec.h"
+
+namespace atlas {
+
+using TexelTriangle = std::array<Vec2d, 3>;  // corners in texels; texel (i, j) is [i,i+1]x[j,j+1]
+
+// Corners are rounded to this many steps a texel before the exact integer tests, so that triangles
+// that share a corner still share it.
+inline constexpr int kSubTexelBits = 12;
+// Largest coordinate that scan_triangle takes: beyond it the integer products would overflow.
+inline constexpr double kMaxTexelCoordinate = 1 << 17;
+
+namespace raster_detail {
+
+// Nearest integer (ties to even) without a library call, for |x| < 2^51.
+inline std::int64_t round_fixed(double x) {
+  constexpr double kMagic = 0x1.8p52;
+  return std::bit_cast<std::int64_t>(x + kMagic) - std::bit_cast<std::int64_t>(kMagic);
+}
+
+inline std::int64_t floor_div(std::int64_t a, std::int64_t b) {  // b > 0
+  const std::int64_t q = a / b;
+  return q - (a % b < 0);
+}
+
+// One directed edge of a counter-clockwise triangle: value >= 0 means inside. Edges that do not own
+// their points (neither left nor top) have 1 taken off, which makes the test strict.
+struct Edge {
+  std::int64_t dx, dy, ax, ay, bias;
+
+  Edge(const std::int64_t a[2], const std::int64_t b[2])
+      : dx(b[0] - a[0]), dy(b[1] - a[1]), ax(a[0]), ay(a[1]) {
+    const bool left = dy < 0, top = dy == 0 && dx < 0;
+    bias = left || top ? 0 : -1;
+  }
+  std::int64_t value(std::int64_t x, std::int64_t y) const {
+    return dx * (y - ay) - dy * (x - ax) + bias;
+  }
+};
+
+// Narrows [lo, hi] to the i with value + slope * i >= 0.
+inline void clip_span(std::int64_t value, std::int64_t slope, std::int64_t& lo, std::int64_t& hi) {
+  if (slope > 0) {
+    if (value < 0) lo = std::max(lo, (-value + slope - 1) / slope);
+  } else if (slope < 0) {
+    hi = std::min(hi, floor_div(value, -slope));
+  } else if (value < 0) {
+    hi = lo - 1;
+  }
+}
+
+}  // namespace raster_detail
+
+// Calls span(y, x0, x1) for each row of `clip` in which the sample points (x + offset.x,
+// y + offset.y), x0 <= x < x1, lie inside the triangle of either orientation. A point on an edge
+// shared by two triangles belongs to exactly one of them (top-left rule), a triangle without area
+// has none. Coordinates must be finite and within kMaxTexelCoordinate.
+template <class Span>
+void scan_triangle(const TexelTriangle& p, const Rect& clip, Vec2d offset, Span&& span) {
+  using namespace raster_detail;
+  constexpr std::int64_t kOne = std::int64_t{1} << kSubTexelBits;
+  std::int64_t v[3][2];
+  for (int k = 0; k < 3; ++k) {
+    v[k][0] = round_fixed((p[k].x - offset.x) * kOne);
+    v[k][1] = round_fixed((p[k].y - offset.y) * kOne);
+  }
+  const std::int64_t area =
+      (v[1][0] - v[0][0]) * (v[2][1] - v[0][1]) - (v[1][1] - v[0][1]) * (v[2][0] - v[0][0]);
+  if (area == 0) return;
+  if (area < 0) std::swap(v[1], v[2]);
+  const auto up = [](std::int64_t a) { return (a + kOne - 1) >> kSubTexelBits; };
+  const auto down = [](std::int64_t a) { return a >> kSubTexelBits; };
+  const std::int64_t x_lo =
+      std::max<std::int64_t>(clip.x, up(std::min({v[0][0], v[1][0], v[2][0]})));
+  const std::int64_t x_hi =
+      std::min<std::int64_t>(clip.right() - 1, down(std::max({v[0][0], v[1][0], v[2][0]})));
+  const std::int64_t y_lo =
+      std::max<std::int64_t>(clip.y, up(std::min({v[0][1], v[1][1], v[2][1]})));
+  const std::int64_t y_hi =
+      std::min<std::int64_t>(clip.top() - 1, down(std::max({v[0][1], v[1][1], v[2][1]})));
+  if (x_lo > x_hi || y_lo > y_hi) return;
+
+  const Edge edge[3] = {Edge(v[0], v[1]), Edge(v[1], v[2]), Edge(v[2], v[0])};
+  std::int64_t row[3], slope[3];
+  for (int k = 0; k < 3; ++k) {
+    row[k] = edge[k].value(x_lo * kOne, y_lo * kOne);
+    slope[k] = -edge[k].dy * kOne;
+  }
+  for (std::int64_t y = y_lo; y <= y_hi; ++y) {
+    std::int64_t lo = 0, hi = x_hi - x_lo;
+    if (hi < 4) {  // testing a few points is cheaper than three divisions
+      while (lo <= hi &&
+             ((row[0] + slope[0] * lo) | (row[1] + slope[1] * lo) | (row[2] + slope[2] * lo)) < 0)
+        ++lo;
+      while (hi >= lo &&
+             ((row[0] + slope[0] * hi) | (row[1] + slope[1] * hi) | (row[2] + slope[2] * hi)) < 0)
+        --hi;
+    } else {
+      for (int k = 0; k < 3; ++k) clip_span(row[k], slope[k], lo, hi);
+    }
+    if (lo <= hi)
+      span(static_cast<int>(y), static_cast<int>(x_lo + lo), static_cast<int>(x_lo + hi + 1));
+    for (int k = 0; k < 3; ++k) row[k] += edge[k].dx * kOne;
+  }
+}
+
+}  // namespace atlas

@@ -1,0 +1,178 @@
+#include "libatlas/texture/chart_textures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <mutex>
+
+#include "libatlas/core/parallel.h"
+#include "libatlas/texture/downsizing.h"
+#include "libatlas/texture/sample_chart.h"
+
+namespace atlas {
+namespace {
+
+Status check(const TextureOptions& o) {
+  const auto bad = [](std::string_view what, double value, std::string_view rule) {
+    return Status{ErrorCode::bad_option, fmt::format("{} is {}; it must be {}", what, value, rule)};
+  };
+  if (!(o.texel > 0) || !std::isfinite(o.texel)) return bad("texel", o.texel, "a length above 0");
+  if (!std::isfinite(o.threshold))
+    return bad("downsizing threshold", o.threshold, "a display value (0 turns downsizing off)");
+  if (o.min_side < 1) return bad("smallest texture side", o.min_side, "at least 1 texel");
+  if (o.max_side < o.min_side || o.max_side > (1 << 16))
+    return bad("largest texture side", o.max_side, "between the smallest side and 65536 texels");
+  return {};
+}
+
+double uv_area2(const ChartSet& charts, std::size_t t) {
+  const Vec2d a = charts.uvs[charts.triangle_uv[3 * t]];
+  const Vec2d b = charts.uvs[charts.triangle_uv[3 * t + 1]];
+  const Vec2d c = charts.uvs[charts.triangle_uv[3 * t + 2]];
+  return std::fabs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+}
+
+std::span<const std::uint32_t> triangles_of(const ChartSet& charts, const Chart& chart) {
+  return std::span(charts.chart_triangles).subspan(chart.first_triangle, chart.triangle_count);
+}
+
+// Density of the chart's diffuse textures: root mean square over the area, so that the chart gets
+// as many texels as its textures have there.
+double texture_density(const ChartLight& light, const Chart& chart) {
+  double area = 0, texels = 0;
+  for (const std::uint32_t t : triangles_of(light.charts, chart)) {
+    const double a = uv_area2(light.charts, t), d = light.sampler.texture_density(t);
+    area += a;
+    texels += a * d * d;
+  }
+  return area > 0 ? std::sqrt(texels / area) : 0;
+}
+
+// Whether one colour fills the chart, from the corners alone.
+ChartContent content(const ChartLight& light, const Chart& chart) {
+  bool first = true, unlit = true;
+  float colour[3] = {0, 0, 0};
+  for (const std::uint32_t t : triangles_of(light.charts, chart)) {
+    const auto triangle = light.sampler.prepare(t, 0);
+    if (!triangle.constant) return ChartContent::varied;
+    const float* e = triangle.illumination[0];
+    if (first) std::copy_n(e, 3, colour);
+    first = false;
+    if (!std::equal(e, e + 3, colour)) return ChartContent::varied;
+    for (int k = 0; k < 3; ++k) unlit = unlit && e[k] == 0;
+  }
+  return unlit ? ChartContent::unlit : ChartContent::uniform;
+}
+
+// Shrinks each side on its own to min_side: one colour needs no shape.
+void shrink(ChartTexture& texture, Vec2d size, int min_side) {
+  const auto side = [min_side](std::int32_t full, double length, double& density) {
+    if (full <= min_side) return full;
+    density = min_side / length;
+    return static_cast<std::int32_t>(min_side);
+  };
+  texture.width = side(texture.full_width, size.x, texture.texels_per_unit.x);
+  texture.height = side(texture.full_height, size.y, texture.texels_per_unit.y);
+}
+
+struct ChartOutcome {
+  double square_sum = 0;  // of display errors, over covered texels and RGB
+  std::int64_t covered = 0;
+  bool raised = false;
+};
+
+ChartOutcome size_chart(const ChartLight& light, const TextureOptions& options, std::uint32_t id,
+                        ChartTexture& out) {
+  ChartOutcome outcome;
+  const Chart& chart = light.charts.charts[id];
+  double density = 1 / options.texel;
+  if (options.follow_textures) {
+    const double d = texture_density(light, chart);
+    outcome.raised = d > density;
+    density = std::max(density, d);
+  }
+  const double longest = std::max(chart.size.x, chart.size.y);
+  if (longest * density > options.max_side) {
+    density = options.max_side / longest;
+    out.capped = true;
+  }
+  out.full_texels_per_unit = out.texels_per_unit = {density, density};
+  const TexelSize full = texel_size(chart.size, out.full_texels_per_unit);
+  out.full_width = out.width = full.width;
+  out.full_height = out.height = full.height;
+  out.content = content(light, chart);
+  if (options.threshold <= 0) return outcome;
+  if (out.content != ChartContent::varied) {
+    shrink(out, chart.size, options.min_side);
+    return outcome;
+  }
+  if ((std::min(full.width, full.height) + 1) / 2 < options.min_side) return outcome;
+  const Downsizing d = downsize(sample_chart(light, id, density), options);
+  out.halvings = d.halvings;
+  out.width = d.width;
+  out.height = d.height;
+  out.texels_per_unit = {std::ldexp(density, -d.halvings), std::ldexp(density, -d.halvings)};
+  out.max_error = d.max_error;
+  out.rms_error = static_cast<float>(
+      d.covered > 0 ? std::sqrt(d.square_sum / (3.0 * static_cast<double>(d.covered))) : 0);
+  outcome.square_sum = d.square_sum;
+  outcome.covered = d.covered;
+  return outcome;
+}
+
+void add_up(const std::vector<ChartOutcome>& outcomes, TextureResult& result) {
+  double square_sum = 0;
+  std::int64_t covered = 0;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    const ChartTexture& t = result.charts[i];
+    result.full_texels += std::int64_t{t.full_width} * t.full_height;
+    result.final_texels += std::int64_t{t.width} * t.height;
+    result.halved += t.halvings > 0;
+    result.uniform += t.content == ChartContent::uniform;
+    result.unlit += t.content == ChartContent::unlit;
+    result.capped += t.capped;
+    result.raised += outcomes[i].raised;
+    result.max_error = std::max<double>(result.max_error, t.max_error);
+    square_sum += outcomes[i].square_sum;
+    covered += outcomes[i].covered;
+  }
+  if (covered > 0) result.rms_error = std::sqrt(square_sum / (3.0 * static_cast<double>(covered)));
+}
+
+}  // namespace
+
+TexelSize texel_size(Vec2d size, Vec2d texels_per_unit) {
+  // A millionth of a texel more than a whole number is rounding, and sticks out of the box unseen.
+  const auto side = [](double texels) {
+    return static_cast<std::int32_t>(std::clamp(std::ceil(texels - 1e-6), 1.0, 1e9));
+  };
+  return {side(size.x * texels_per_unit.x), side(size.y * texels_per_unit.y)};
+}
+
+Result<TextureResult> size_chart_textures(const ChartLight& light, const TextureOptions& options,
+                                          const Context& context) {
+  if (Status s = check(options); !s.ok()) return s;
+  const std::size_t n = light.charts.charts.size();
+  TextureResult result;
+  result.charts.resize(n);
+  std::vector<ChartOutcome> outcomes(n);
+  std::mutex reporting;
+  std::size_t triangles_done = 0;
+  parallel_for(context, n, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (context.cancelled()) return;
+      outcomes[i] = size_chart(light, options, static_cast<std::uint32_t>(i), result.charts[i]);
+      const std::lock_guard lock(reporting);
+      triangles_done += light.charts.charts[i].triangle_count;
+      context.report("textures", static_cast<double>(triangles_done) /
+                                     static_cast<double>(light.charts.chart_triangles.size()));
+    }
+  });
+  if (context.cancelled()) return Status::cancelled();
+  add_up(outcomes, result);
+  return result;
+}
+
+}  // namespace atlas

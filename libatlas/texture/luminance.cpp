@@ -1,0 +1,184 @@
+#include "libatlas/texture/luminance.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/texture/texture_levels.h"
+
+namespace atlas {
+namespace {
+
+// For each of n outputs of a row of `size` inputs: the first input and the weights of those it
+// spans.
+struct Span {
+  int first = 0, count = 0;
+  float weight[4] = {};
+};
+
+std::vector<Span> box_spans(int size, int n) {
+  std::vector<Span> spans(n);
+  const double step = static_cast<double>(size) / n;  // between 1 and 3
+  for (int i = 0; i < n; ++i) {
+    const double a = i * step, b = std::min<double>((i + 1) * step, size);
+    Span& s = spans[i];
+    s.first = static_cast<int>(a);
+    for (int k = s.first; k < b && s.count < 4; ++k)
+      s.weight[s.count++] =
+          static_cast<float>((std::min<double>(k + 1, b) - std::max<double>(k, a)) / (b - a));
+  }
+  return spans;
+}
+
+Image8 halve(const TextureLevels::Level& in) {
+  const int w = std::max(1, in.width / 2), h = std::max(1, in.height / 2),
+            c = in.channels >= 3 ? 3 : 1;
+  const std::vector<Span> columns = box_spans(in.width, w), rows = box_spans(in.height, h);
+  Image8 out(w, h, c);
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x)
+      for (int k = 0; k < c; ++k) {
+        float sum = 0;
+        for (int j = 0; j < rows[y].count; ++j)
+          for (int i = 0; i < columns[x].count; ++i) {
+            const std::size_t at = std::size_t(rows[y].first + j) * in.width + columns[x].first + i;
+            sum += rows[y].weight[j] * columns[x].weight[i] *
+                   srgb_decode8(in.texels[at * in.channels + k]);
+          }
+        out.at(x, y)[k] = srgb_encode8(sum);
+      }
+  return out;
+}
+
+}  // namespace
+
+TextureLevels::TextureLevels(const Texture& texture) {
+  const Image8& image = texture.image;
+  if (image.width <= 0 || image.height <= 0 || image.channels <= 0) return;
+  Level level{image.width, image.height, image.channels, image.texels.data()};
+  levels.push_back(level);
+  while (level.width > 1 || level.height > 1) {
+    storage.push_back(halve(level));
+    const Image8& small = storage.back();  // its texels stay where they are when storage grows
+    level = {small.width, small.height, small.channels, small.texels.data()};
+    levels.push_back(level);
+  }
+}
+
+struct LuminanceSampler::State {
+  const Scene& scene;
+  Quantity quantity;
+  std::vector<TextureLevels> textures;
+
+  State(const Scene& s, Quantity q) : scene(s), quantity(q) {
+    if (quantity == Quantity::illuminance) {
+      textures.reserve(scene.textures.size());
+      for (const Texture& t : scene.textures) textures.emplace_back(t);
+    }
+  }
+
+  const Material& material(std::uint32_t t) const {
+    return scene.materials[scene.triangle_material[t]];
+  }
+
+  // The texture of triangle t if it has one that can be looked up.
+  const TextureLevels* texture(std::uint32_t t) const {
+    if (quantity != Quantity::illuminance || scene.texcoord_indices.empty()) return nullptr;
+    const std::int32_t id = material(t).texture;
+    if (id < 0 || textures[id].levels.empty()) return nullptr;
+    for (int k = 0; k < 3; ++k)
+      if (scene.texcoord_indices[3 * std::size_t(t) + k] == Scene::kNoTexcoord) return nullptr;
+    return &textures[id];
+  }
+};
+
+LuminanceSampler::LuminanceSampler(const Scene& scene, Quantity quantity)
+    : state_(std::make_unique<const State>(scene, quantity)) {}
+LuminanceSampler::~LuminanceSampler() = default;
+LuminanceSampler::LuminanceSampler(LuminanceSampler&&) noexcept = default;
+LuminanceSampler& LuminanceSampler::operator=(LuminanceSampler&&) noexcept = default;
+
+const Scene& LuminanceSampler::scene() const {
+  return state_->scene;
+}
+Quantity LuminanceSampler::quantity() const {
+  return state_->quantity;
+}
+
+double LuminanceSampler::texture_density(std::uint32_t t) const {
+  const TextureLevels* texture = state_->texture(t);
+  if (!texture) return 0;
+  const Scene& s = state_->scene;
+  glm::dvec3 p[3];
+  glm::dvec2 c[3];
+  for (int k = 0; k < 3; ++k) {
+    p[k] = to_dvec(s.positions[s.indices[3 * std::size_t(t) + k]]);
+    c[k] = to_dvec(s.texcoords[s.texcoord_indices[3 * std::size_t(t) + k]]);
+  }
+  const double surface = glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
+  const glm::dvec2 a = c[1] - c[0], b = c[2] - c[0];
+  const double texels =
+      std::fabs(a.x * b.y - a.y * b.x) * texture->levels[0].width * texture->levels[0].height;
+  return surface > 0 && texels > 0 ? std::sqrt(texels / surface) : 0;
+}
+
+LuminanceSampler::Triangle LuminanceSampler::prepare(std::uint32_t t, double sample_spacing) const {
+  const Scene& s = state_->scene;
+  assert(t < s.triangle_count());
+  Triangle out{};
+  const bool reflect = state_->quantity == Quantity::illuminance;
+  const Vec3f kd = reflect ? state_->material(t).diffuse : Vec3f{1, 1, 1};
+  for (int k = 0; k < 3; ++k) {
+    const Vec3f e = s.lit() ? s.illumination[s.indices[3 * std::size_t(t) + k]] : Vec3f{1, 1, 1};
+    out.illumination[k][0] = e.x * kd.x;
+    out.illumination[k][1] = e.y * kd.y;
+    out.illumination[k][2] = e.z * kd.z;
+  }
+  const bool equal =
+      std::memcmp(out.illumination[0], out.illumination[1], sizeof out.illumination[0]) == 0 &&
+      std::memcmp(out.illumination[0], out.illumination[2], sizeof out.illumination[0]) == 0;
+  out.texture = state_->texture(t);
+  const bool black = equal && out.illumination[0][0] == 0 && out.illumination[0][1] == 0 &&
+                     out.illumination[0][2] == 0;
+  if (!out.texture || black) {
+    out.texture = nullptr;
+    out.constant = equal;
+    return out;
+  }
+  const auto& levels = out.texture->levels;
+  // Slightly more than one texture texel a sample still reads level 0: half a level too sharp
+  // shows less than half a level too blurred.
+  const double ratio = sample_spacing * texture_density(t);
+  if (ratio > 1)
+    out.level =
+        static_cast<int>(std::clamp(std::floor(std::log2(ratio) + 0.25), 0.0, levels.size() - 1.0));
+  const TextureLevels::Level& level = levels[out.level];
+  Vec2f c[3];
+  for (int k = 0; k < 3; ++k) c[k] = s.texcoords[s.texcoord_indices[3 * std::size_t(t) + k]];
+  // Repeats are taken off first, so that far-off coordinates lose no precision.
+  const float u0 = std::floor(std::min({c[0].x, c[1].x, c[2].x}));
+  const float v0 = std::floor(std::min({c[0].y, c[1].y, c[2].y}));
+  for (int k = 0; k < 3; ++k) {
+    out.texcoord[k][0] = (c[k].x - u0) * level.width;
+    out.texcoord[k][1] = (c[k].y - v0) * level.height;
+  }
+  return out;
+}
+
+Vec3f LuminanceSampler::sample(const Triangle& tri, float b0, float b1, float b2) {
+  float rgb[4] = {1, 1, 1, 1};
+  if (tri.texture) {
+    const float x = b0 * tri.texcoord[0][0] + b1 * tri.texcoord[1][0] + b2 * tri.texcoord[2][0];
+    const float y = b0 * tri.texcoord[0][1] + b1 * tri.texcoord[1][1] + b2 * tri.texcoord[2][1];
+    look_up(tri.texture->levels[tri.level], x, y, rgb);
+  }
+  const auto lane = [&](int k) {
+    return rgb[k] * (b0 * tri.illumination[0][k] + b1 * tri.illumination[1][k] +
+                     b2 * tri.illumination[2][k]);
+  };
+  return {lane(0), lane(1), lane(2)};
+}
+
+}  // namespace atlas

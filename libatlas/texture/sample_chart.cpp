@@ -1,0 +1,60 @@
+#include "libatlas/texture/sample_chart.h"
+
+#include <algorithm>
+
+#include "libatlas/raster/sampling.h"
+#include "libatlas/texture/triangle_light.h"
+
+namespace atlas {
+namespace {
+
+void add(SampledChart::Texel& texel, const float rgb[4], float weight) {
+  for (int k = 0; k < 3; ++k) texel.rgb[k] += weight * rgb[k];
+  texel.weight += weight;
+}
+
+}  // namespace
+
+SampledChart sample_chart(const ChartLight& light, std::uint32_t id, double texels_per_unit) {
+  const ChartSet& charts = light.charts;
+  const Chart& chart = charts.charts[id];
+  const TexelSize size = texel_size(chart.size, {texels_per_unit, texels_per_unit});
+  SampledChart out{size.width, size.height, {}};
+  out.texels.resize(std::size_t(size.width) * size.height);
+  const Rect box{0, 0, size.width, size.height};
+  const SampleGrid grid(1);
+  for (std::uint32_t i = 0; i < chart.triangle_count; ++i) {
+    const std::uint32_t t = charts.chart_triangles[chart.first_triangle + i];
+    TexelTriangle p;
+    for (int k = 0; k < 3; ++k) {
+      const Vec2d uv = charts.uvs[charts.triangle_uv[3 * std::size_t(t) + k]];
+      p[k] = {uv.x * texels_per_unit, uv.y * texels_per_unit};
+    }
+    const SampleKind kind = sample_kind(p, grid);
+    if (kind == SampleKind::none) continue;
+    TriangleLight lit(light.sampler.prepare(t, 1 / texels_per_unit), &light.tone);
+    if (kind == SampleKind::grid) lit.set_position(p);
+    sample_triangle(
+        p, box, grid,
+        [&](int, int y, int x0, int x1) {
+          SampledChart::Texel* row = &out.texels[std::size_t(y) * size.width + x0];
+          lit.row({x0 + 0.5, y + 0.5}, x1 - x0,
+                  [&](int j, const float* rgb) { add(row[j], rgb, 1); });
+        },
+        [&](const float* b, float weight) {
+          float rgb[4];
+          lit.at(b, rgb);
+          const double x = b[0] * p[0].x + b[1] * p[1].x + b[2] * p[2].x;
+          const double y = b[0] * p[0].y + b[1] * p[1].y + b[2] * p[2].y;
+          const int i0 = std::clamp(static_cast<int>(x), 0, size.width - 1);
+          const int j0 = std::clamp(static_cast<int>(y), 0, size.height - 1);
+          add(out.texels[std::size_t(j0) * size.width + i0], rgb, weight);
+        });
+  }
+  for (SampledChart::Texel& texel : out.texels)
+    if (texel.weight > 0)
+      for (float& v : texel.rgb) v /= texel.weight;
+  return out;
+}
+
+}  // namespace atlas

@@ -1,0 +1,117 @@
+// Area-weighted luminance statistics for automatic exposure.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/texture/tone.h"
+
+namespace atlas {
+namespace {
+
+// Enough for a 99th percentile of about one part in a hundred of its rank.
+constexpr std::size_t kSamples = 1 << 18;
+
+double triangle_area(const Scene& s, std::size_t t) {
+  const glm::dvec3 a = to_dvec(s.positions[s.indices[3 * t]]);
+  const glm::dvec3 b = to_dvec(s.positions[s.indices[3 * t + 1]]) - a;
+  const glm::dvec3 c = to_dvec(s.positions[s.indices[3 * t + 2]]) - a;
+  return 0.5 * glm::length(glm::cross(b, c));
+}
+
+// Point i of the plastic-number sequence (Roberts 2018), folded into barycentric coordinates.
+void barycentric(std::uint64_t i, float b[3]) {
+  double u = 0.5 + 0.7548776662466927 * static_cast<double>(i);
+  double v = 0.5 + 0.5698402909980532 * static_cast<double>(i);
+  u -= std::floor(u);
+  v -= std::floor(v);
+  if (u + v > 1) u = 1 - u, v = 1 - v;
+  b[0] = static_cast<float>(1 - u - v);
+  b[1] = static_cast<float>(u);
+  b[2] = static_cast<float>(v);
+}
+
+struct Collector {
+  LuminanceStatistics out;
+  std::vector<float> peak, luma;
+  double sum = 0, rgb[3] = {0, 0, 0}, log_sum = 0;
+  std::size_t unlit = 0;
+
+  void add(const Vec3f& c) {
+    if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z)) {
+      ++out.not_finite;
+      return;
+    }
+    out.negative += c.x < 0 || c.y < 0 || c.z < 0;
+    const float v[3] = {std::max(c.x, 0.0f), std::max(c.y, 0.0f), std::max(c.z, 0.0f)};
+    const float top = std::max({v[0], v[1], v[2]});
+    if (top <= 0) {
+      ++unlit;
+      return;
+    }
+    const float y = 0.2126f * v[0] + 0.7152f * v[1] + 0.0722f * v[2];
+    peak.push_back(top);
+    luma.push_back(y);
+    sum += y;
+    for (int k = 0; k < 3; ++k) rgb[k] += v[k];
+    log_sum += std::log(std::max(y, 1e-37f));
+  }
+
+  void finish(double area_per_sample) {
+    const std::size_t n = peak.size();
+    out.lit_area = area_per_sample * static_cast<double>(n);
+    out.unlit_area = area_per_sample * static_cast<double>(unlit);
+    if (n == 0) return;
+    const auto nth = [n](std::vector<float>& v, double q) {
+      const auto at = std::min(n - 1, static_cast<std::size_t>(q * static_cast<double>(n)));
+      std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(at), v.end());
+      return static_cast<double>(v[at]);
+    };
+    out.maximum = *std::max_element(peak.begin(), peak.end());
+    out.percentile99 = nth(peak, 0.99);
+    out.minimum_log = std::log(nth(luma, 0.01));
+    out.maximum_log = std::log(nth(luma, 0.99));
+    const auto count = static_cast<double>(n);
+    out.mean = sum / count;
+    out.log_average = std::exp(log_sum / count);
+    out.mean_rgb = {static_cast<float>(rgb[0] / count), static_cast<float>(rgb[1] / count),
+                    static_cast<float>(rgb[2] / count)};
+  }
+};
+
+}  // namespace
+
+Result<LuminanceStatistics> measure_luminance(const LuminanceSampler& sampler,
+                                              const Context& context) {
+  const Scene& scene = sampler.scene();
+  const std::size_t n = scene.triangle_count();
+  double total = 0;
+  for (std::size_t t = 0; t < n; ++t) {
+    if ((t & 0xffff) == 0 && context.cancelled()) return Status::cancelled();
+    total += triangle_area(scene, t);
+  }
+  if (!(total > 0) || !std::isfinite(total))
+    return Status{ErrorCode::bad_input, "the scene has no triangle with area, so no luminance"};
+
+  // One sample at the middle of each of kSamples equal shares of the running area.
+  const double share = total / kSamples;
+  Collector collector;
+  double area = 0;
+  std::size_t i = 0;
+  for (std::size_t t = 0; t < n && i < kSamples; ++t) {
+    if ((t & 0xffff) == 0 && context.cancelled()) return Status::cancelled();
+    area += triangle_area(scene, t);
+    if ((static_cast<double>(i) + 0.5) * share >= area) continue;
+    const auto triangle = sampler.prepare(static_cast<std::uint32_t>(t), 0);
+    for (; i < kSamples && (static_cast<double>(i) + 0.5) * share < area; ++i) {
+      float b[3];
+      barycentric(i, b);
+      collector.add(LuminanceSampler::sample(triangle, b[0], b[1], b[2]));
+    }
+  }
+  collector.finish(share);
+  return collector.out;
+}
+
+}  // namespace atlas

@@ -1,0 +1,177 @@
+#include "libatlas/texture/tone.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace atlas {
+namespace {
+
+constexpr std::array<std::pair<ToneOperator, std::string_view>, 4> kOperators{{
+    {ToneOperator::linear, "linear"},
+    {ToneOperator::reinhard, "reinhard"},
+    {ToneOperator::drago, "drago"},
+    {ToneOperator::reinhard_devlin, "reinhard-devlin"},
+}};
+
+// Rec. 709 weights. Written so that a NaN or a negative channel counts as 0.
+float luma(const Vec3f& c) {
+  return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
+}
+
+float positive(float v) {
+  return v > 0 ? v : 0.0f;
+}
+
+float clip(float v) {
+  return v > 0 ? std::min(v, 1.0f) : 0.0f;
+}
+
+// The operators' curves, of luminance already scaled.
+
+// Reinhard et al. 2002, eq. 4, divided by y.
+float reinhard_ratio(float y, float white) {
+  return (1 + y / (white * white)) / (1 + y);
+}
+
+// Drago et al. 2003, eq. 4 with Ldmax = 100 cd/m², divided by y. `exponent` is ln(bias) / ln(0.5),
+// `norm` is 1 / log10(1 + white).
+float drago_ratio(float y, float white, float exponent, float norm) {
+  if (y < 1e-12f) return norm / std::log(2.0f);  // the limit at 0
+  return norm * std::log1p(y) / (y * std::log(2 + 8 * std::pow(y / white, exponent)));
+}
+
+// Reinhard and Devlin 2005, eq. 1 to 6, for one channel, without the final normalisation.
+float photoreceptor(float v, float adaptation, float m) {
+  return v > 0 ? v / (v + std::pow(adaptation, m)) : 0.0f;
+}
+
+Status bad(std::string_view what, double value, std::string_view range) {
+  return {ErrorCode::bad_option,
+          fmt::format("tone mapping: {} is {}; it must be {}", what, value, range)};
+}
+
+Status check(const ToneOptions& o) {
+  const auto within = [](double v, double lo, double hi) { return v >= lo && v <= hi; };
+  if (!(o.white >= 0) || !std::isfinite(o.white))
+    return bad("white", o.white, "a luminance above 0, or 0 for automatic");
+  if (!within(o.exposure_stops, -64, 64)) return bad("exposure", o.exposure_stops, "-64..64 stops");
+  if (!within(o.key, 1e-6, 1e6)) return bad("key", o.key, "in 1e-6..1e6 (0.18 is middle grey)");
+  if (!within(o.bias, 0.5, 0.999)) return bad("bias", o.bias, "in 0.5..0.999");
+  if (o.contrast != 0 && !within(o.contrast, 0.01, 1.5))
+    return bad("contrast", o.contrast, "0 (automatic) or in 0.01..1.5");
+  if (!within(o.chromatic_adaptation, 0, 1))
+    return bad("chromatic adaptation", o.chromatic_adaptation, "in 0..1");
+  if (!within(o.light_adaptation, 0, 1))
+    return bad("light adaptation", o.light_adaptation, "in 0..1");
+  return {};
+}
+
+// Reinhard and Devlin 2005, section 3: contrast from the key of the scene.
+double automatic_contrast(const LuminanceStatistics& s) {
+  const double range = s.maximum_log - s.minimum_log;
+  if (!(range > 0)) return 0.3;
+  const double k = (s.maximum_log - std::log(s.log_average)) / range;
+  return 0.3 + 0.7 * std::pow(std::clamp(k, 0.0, 1.0), 1.4);
+}
+
+void set_drago(ToneMapping& tone, const ToneOptions& o, double average, double white) {
+  // Section 3.2: the world adaptation luminance is corrected for the bias.
+  const double adaptation = average / std::pow(1 + o.bias - 0.85, 5);
+  tone.scale = static_cast<float>(1 / adaptation);
+  tone.white = static_cast<float>(white / adaptation);
+  tone.parameter[0] = static_cast<float>(std::log(o.bias) / std::log(0.5));
+  tone.parameter[1] = static_cast<float>(1 / std::log10(1 + white / adaptation));
+}
+
+void set_reinhard_devlin(ToneMapping& tone, const ToneOptions& o, const LuminanceStatistics& s,
+                         double white) {
+  // The published curve depends on the unit of luminance; dividing by the scene's log average
+  // first takes that away.
+  const double average = s.log_average;
+  tone.scale = static_cast<float>(1 / average);
+  tone.white = static_cast<float>(white / average);
+  tone.parameter[0] = static_cast<float>(o.contrast > 0 ? o.contrast : automatic_contrast(s));
+  tone.parameter[1] = static_cast<float>(o.light_adaptation);
+  tone.parameter[2] = static_cast<float>(o.chromatic_adaptation);
+  const float mean[3] = {s.mean_rgb.x, s.mean_rgb.y, s.mean_rgb.z};
+  for (int k = 0; k < 3; ++k)
+    tone.offset[k] = static_cast<float>(o.chromatic_adaptation * mean[k] / average +
+                                        (1 - o.chromatic_adaptation));
+  const auto a = static_cast<float>(o.light_adaptation);
+  const float at_white = photoreceptor(tone.white, a * tone.white + (1 - a), tone.parameter[0]);
+  tone.parameter[3] = 1 / at_white;
+}
+
+}  // namespace
+
+Result<ToneOperator> parse_tone_operator(std::string_view name) {
+  std::string choices;
+  for (const auto& [op, text] : kOperators) {
+    if (text == name) return op;
+    choices += choices.empty() ? "" : ", ";
+    choices += text;
+  }
+  return Status{ErrorCode::bad_option,
+                fmt::format("unknown tone mapping '{}'; choose one of {}", name, choices)};
+}
+
+std::string_view tone_operator_name(ToneOperator op) {
+  return kOperators[static_cast<std::size_t>(op)].second;
+}
+
+Vec3f ToneMapping::map_curve(Vec3f luminance) const {
+  const Vec3f c{scale * positive(luminance.x), scale * positive(luminance.y),
+                scale * positive(luminance.z)};
+  const float y = luma(c);
+  if (!(y > 0)) return {};
+  if (op == ToneOperator::reinhard_devlin) {
+    const float in[3] = {c.x, c.y, c.z};
+    float out[3];
+    for (int k = 0; k < 3; ++k) {
+      const float local = parameter[2] * in[k] + (1 - parameter[2]) * y;
+      const float adaptation = parameter[1] * local + (1 - parameter[1]) * offset[k];
+      out[k] = clip(parameter[3] * photoreceptor(in[k], adaptation, parameter[0]));
+    }
+    return {out[0], out[1], out[2]};
+  }
+  const float ratio = op == ToneOperator::reinhard
+                          ? reinhard_ratio(y, white)
+                          : drago_ratio(y, white, parameter[0], parameter[1]);
+  return {clip(ratio * c.x), clip(ratio * c.y), clip(ratio * c.z)};
+}
+
+Result<ToneMapping> make_tone_mapping(const ToneOptions& options,
+                                      const LuminanceStatistics& statistics) {
+  if (Status s = check(options); !s.ok()) return s;
+  ToneMapping tone;
+  tone.op = options.op;
+  const bool linear = options.op == ToneOperator::linear;
+  double white = options.white;
+  if (white <= 0) white = linear ? statistics.percentile99 : statistics.maximum;
+  if (!(white > 0)) white = 1;  // an unlit scene: any scale shows it black
+  LuminanceStatistics s = statistics;
+  if (!(s.log_average > 0)) s.log_average = white;
+  switch (options.op) {
+    case ToneOperator::linear:
+      tone.scale = static_cast<float>(1 / white);
+      break;
+    case ToneOperator::reinhard:
+      tone.scale = static_cast<float>(options.key / s.log_average);
+      tone.white = static_cast<float>(options.key / s.log_average * white);
+      break;
+    case ToneOperator::drago:
+      set_drago(tone, options, s.log_average, white);
+      break;
+    case ToneOperator::reinhard_devlin:
+      set_reinhard_devlin(tone, options, s, white);
+      break;
+  }
+  tone.scale *= static_cast<float>(std::exp2(options.exposure_stops));
+  return tone;
+}
+
+}  // namespace atlas
