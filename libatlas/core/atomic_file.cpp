@@ -23,6 +23,12 @@ fs::path AtomicFiles::path_for(const fs::path& target) {
   return temporary;
 }
 
+std::vector<fs::path> AtomicFiles::targets() const {
+  std::vector<fs::path> paths;
+  for (const Entry& entry : entries_) paths.push_back(entry.target);
+  return paths;
+}
+
 Status AtomicFiles::commit() {
   std::error_code error;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
@@ -34,6 +40,18 @@ Status AtomicFiles::commit() {
                                        entries_[i].target.string(), error.message())};
   }
   entries_.clear();
+  return {};
+}
+
+Status check_writable(const fs::path& target) {
+  const fs::path directory = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const auto refuse = [&](const char* why) {
+    return Status(ErrorCode::io,
+                  fmt::format("{}: cannot be written: {} {}", target.string(), directory.string(), why));
+  };
+  if (!fs::is_directory(directory)) return refuse("is not a directory (create it first)");
+  if (::access(directory.c_str(), W_OK) != 0) return refuse("does not take files");
+  if (fs::is_directory(target)) return refuse("has a directory of that name");
   return {};
 }
 

@@ -23,6 +23,9 @@ class AtomicFiles {
   // the format by it.
   std::filesystem::path path_for(const std::filesystem::path& target);
 
+  // What commit() will put in place, in the order asked for.
+  std::vector<std::filesystem::path> targets() const;
+
   // Renames every file to its target. On failure no temporary name is left, and targets that this
   // call had already renamed are removed again.
   Status commit();
@@ -33,6 +36,10 @@ class AtomicFiles {
   };
   std::vector<Entry> entries_;
 };
+
+// Whether a file could be written at `target`: its directory exists and takes files. Ask before long
+// work, so that it does not end in vain. Error: io, naming the directory.
+Status check_writable(const std::filesystem::path& target);
 
 // Writes `bytes` to `target` under a temporary name, then renames it.
 Status write_file(const std::filesystem::path& target, std::string_view bytes);

@@ -1,0 +1,169 @@
+#include "apps/atlas-export/command_line.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <string>
+
+#include "apps/common/quantity.h"
+
+namespace atlas::app {
+namespace {
+
+// Options that arrive as text and become quantities once all are known.
+struct RawText {
+  std::string unit = "m", texel, memory, tone = "linear";
+};
+
+template <class T>
+CLI::CheckedTransformer choices(const std::map<std::string, T>& names) {
+  return CLI::CheckedTransformer(names, CLI::ignore_case);
+}
+
+void add_input_options(CLI::App& app, ExportCommand& command, RawText& raw) {
+  app.add_option("scene", command.scene, "Scene: .obj, .ply, .gltf or .glb")->required();
+  app.add_option("-o,--output", command.options.target,
+                 "World to write: .wrl, .wrz, .obj, .gltf or .glb")
+      ->required();
+  app.add_option("--unit", raw.unit, "Length of one scene unit: m, cm, mm, in, ft, km or metres")
+      ->capture_default_str();
+  app.add_option("--illumination", command.read.illumination_file,
+                 "Take the vertices' light from this file (same vertices, or one `r g b` a line)");
+  app.add_option("--quantity", command.options.quantity,
+                 "What the vertices carry: illuminance (reflectance still to apply) or luminance")
+      ->transform(choices<Quantity>(
+          {{"illuminance", Quantity::illuminance}, {"luminance", Quantity::luminance}}));
+  app.add_option("--up", command.options.up, "The scene's up axis: y or z")
+      ->transform(choices<Up>({{"y", Up::y}, {"z", Up::z}}));
+}
+
+void add_chart_options(CLI::App& app, ExportOptions& options) {
+  app.add_option("--cone", options.charts.cone_degrees,
+                 "Largest angle between a chart's axis and its normals, degrees; 0: no limit but "
+                 "--max-stretch")
+      ->capture_default_str();
+  app.add_option("--max-stretch", options.charts.max_stretch,
+                 "Bound on the stretch over 99.9 % of every chart")
+      ->capture_default_str();
+  app.add_option("--crease", options.charts.crease_degrees,
+                 "Edges sharper than this are preferred as seams, degrees")
+      ->capture_default_str();
+  app.add_flag("--keep-uv-charts", options.charts.keep_uv_charts,
+               "Keep the charts of the scene's own texture coordinates");
+  app.add_option("--preset", options.charts.preset, "Chart quality: fast, default or best")
+      ->transform(choices<ChartPreset>({{"fast", ChartPreset::fast},
+                                        {"default", ChartPreset::standard},
+                                        {"best", ChartPreset::best}}));
+  app.add_flag("--charts-only", options.charts_only, "Charts and uvs on one page, no light");
+}
+
+void add_texture_options(CLI::App& app, ExportOptions& options, RawText& raw) {
+  app.add_option("--atlases", options.atlases, "Largest number of atlas pages")
+      ->capture_default_str();
+  app.add_option("--atlas-size", options.atlas_size, "Largest side of a page, a power of two")
+      ->capture_default_str();
+  app.add_option("--memory", raw.memory,
+                 "Graphics memory for all pages, e.g. 800MB: sets --atlases from --atlas-size");
+  app.add_option("--texel", raw.texel,
+                 "Length of a texel on the real surface, e.g. 5mm; default: what the pages can "
+                 "hold, within 1 to 10 mm");
+  app.add_flag("!--ignore-texture-density", options.follow_textures,
+               "Do not refine where the diffuse texture is finer than --texel");
+  app.add_option("--threshold", options.threshold,
+                 "Textures are halved while no display value changes by more (0..1; 0: never)")
+      ->capture_default_str();
+  app.add_option("--min-side", options.min_side, "Halving stops at this side, texels")
+      ->capture_default_str();
+  app.add_option("--tone", raw.tone, "Tone curve: linear, reinhard, drago or reinhard-devlin")
+      ->capture_default_str();
+  app.add_option("--white", options.tone.white,
+                 "Scene luminance that becomes display white; default: measured");
+  app.add_option("--exposure", options.tone.exposure_stops, "Brighter (+) or darker (-), stops");
+}
+
+void add_output_options(CLI::App& app, ExportCommand& command) {
+  ExportOptions& options = command.options;
+  app.add_option("--shifts", options.shifts, "Sub-texel sample grids of the bake")
+      ->capture_default_str();
+  app.add_option("--mips", options.mip_levels,
+                 "Mip levels whose lookups must not see a neighbouring chart")
+      ->capture_default_str();
+  app.add_option("--bake", options.bake_method, "least-squares, or average (as published)")
+      ->transform(choices<BakeMethod>(
+          {{"least-squares", BakeMethod::least_squares}, {"average", BakeMethod::average}}));
+  app.add_option("--packing", options.packing, "Packing effort: fast, default or best")
+      ->transform(choices<PackPreset>({{"fast", PackPreset::fast},
+                                       {"default", PackPreset::standard},
+                                       {"best", PackPreset::best}}));
+  app.add_flag("!--boxes", options.outlines, "Pack the charts' boxes instead of their outlines");
+  app.add_flag("--simplify,!--no-simplify", options.simplify,
+               "Write the coarser mesh (default: yes)");
+  app.add_option("--slip", options.simplify_slip,
+                 "How far the coarser mesh and its texture may slip, texels")
+      ->capture_default_str();
+  app.add_flag("--exr", options.exr, "Also write scene-linear OpenEXR pages");
+  app.add_option("--png-level", options.png_compression, "PNG compression, 0..9")
+      ->capture_default_str();
+  app.add_flag("!--no-error", options.measure_error, "Do not measure the pages' error");
+  app.add_option("--report", command.report, "Write a JSON report of every stage");
+  app.add_flag("--plan", command.plan_only, "Print what would run and why, and stop");
+  app.add_flag("-q,--quiet", command.quiet, "Print errors only");
+  app.add_option("--threads", command.threads, "Threads; 0: all cores")->check(CLI::Range(0, 1024));
+}
+
+constexpr double kBytesPerTexel = 4.0 * 4 / 3;  // RGBA8 and its mip chain
+
+// Turns text into numbers; gives the message of the first that cannot be.
+std::optional<std::string> interpret(const RawText& raw, ExportCommand& command) {
+  ExportOptions& options = command.options;
+  const auto unit = parse_unit(raw.unit);
+  if (!unit) return fmt::format("--unit {}: give m, cm, mm, in, ft, km or metres", raw.unit);
+  command.read.metres_per_unit = *unit;
+  if (!raw.texel.empty()) {
+    const auto texel = parse_length(raw.texel);
+    if (!texel) return fmt::format("--texel {}: give a length such as 5mm", raw.texel);
+    options.texel_metres = *texel;
+  }
+  const auto tone = parse_tone_operator(raw.tone);
+  if (!tone.ok()) return tone.status().message();
+  options.tone.op = *tone;
+  if (!raw.memory.empty()) {
+    const auto bytes = parse_bytes(raw.memory);
+    if (!bytes) return fmt::format("--memory {}: give a size such as 800MB", raw.memory);
+    const auto page = [&] {
+      return kBytesPerTexel * double(options.atlas_size) * double(options.atlas_size);
+    };
+    while (options.atlas_size > 64 && page() > double(*bytes)) options.atlas_size /= 2;
+    options.atlases = std::uint32_t(std::max(1.0, double(*bytes) / page()));
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& exit_code) {
+  CLI::App app(
+      "Turns a scene whose vertices carry illumination into a walkable world with texture atlases.",
+      "atlas-export");
+  ExportCommand command;
+  RawText raw;
+  add_input_options(app, command, raw);
+  add_chart_options(app, command.options);
+  add_texture_options(app, command.options, raw);
+  add_output_options(app, command);
+  exit_code = 2;
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (app.exit(error) == 0) exit_code = 0;
+    return std::nullopt;
+  }
+  if (const auto wrong = interpret(raw, command)) {
+    fmt::print(stderr, "atlas-export: error: {}\n", *wrong);
+    return std::nullopt;
+  }
+  return command;
+}
+
+}  // namespace atlas::app

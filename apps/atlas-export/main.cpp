@@ -1,0 +1,86 @@
+// atlas-export: a lit scene in, a walkable world with texture atlases out.
+#include <fmt/format.h>
+
+#include "apps/atlas-export/command_line.h"
+#include "apps/common/terminal.h"
+#include "libatlas/core/atomic_file.h"
+#include "libatlas/core/clock.h"
+#include "libatlas/pipeline/export_world.h"
+
+namespace {
+
+using namespace atlas;
+
+void print_plan(const ExportPlan& plan, app::Terminal& terminal) {
+  for (const PlanStep& step : plan.steps) {
+    terminal.line(
+        fmt::format("{} {:<12} {}", step.run ? "run " : "skip", step.stage, step.reason));
+  }
+}
+
+void print_result(const ExportReport& report, app::Terminal& terminal) {
+  if (!report.lit) {
+    terminal.line("The scene carries no illumination: the result has plain uvs and no images.");
+  }
+  terminal.line(fmt::format("{}: {} triangles on {} page{}, {:.1f} MiB of graphics memory",
+                            report.target.string(), report.triangles_out, report.pages.size(),
+                            report.pages.size() == 1 ? "" : "s",
+                            double(report.gpu_bytes) / (1024.0 * 1024.0)));
+}
+
+StageReport reading_stage(const LoadedScene& loaded, double cpu, double wall) {
+  StageReport stage;
+  stage.stage = "reading";
+  stage.cpu_seconds = cpu_seconds() - cpu;
+  stage.wall_seconds = wall_seconds() - wall;
+  stage.peak_memory = peak_memory();
+  stage.size_in = loaded.scene.positions.size();
+  stage.size_out = loaded.scene.triangle_count();
+  stage.unit = "triangles";
+  return stage;
+}
+
+Status run(const app::ExportCommand& command, app::Terminal& terminal) {
+  if (Status s = check_options(command.options); !s.ok()) return s;
+  if (Status s = check_writable(command.options.target); !s.ok()) return s;
+  if (!command.report.empty()) {
+    if (Status s = check_writable(command.report); !s.ok()) return s;
+  }
+  const Context context = terminal.context(command.threads);
+  const double cpu = cpu_seconds(), wall = wall_seconds();
+  Result<LoadedScene> loaded = read_scene(command.scene, command.read, context);
+  if (!loaded.ok()) return loaded.status();
+  for (const std::string& line : loaded->defects.lines()) terminal.line("left out: " + line);
+  const ExportPlan plan = make_plan(loaded->scene, command.options);
+  if (command.plan_only) {
+    print_plan(plan, terminal);
+    return {};
+  }
+  const StageReport reading = reading_stage(*loaded, cpu, wall);
+  terminal.line(stage_line(reading));
+  Result<ExportReport> report =
+      export_world(*loaded, command.options,
+                   [&](const StageReport& stage) { terminal.line(stage_line(stage)); }, context);
+  if (!report.ok()) return report.status();
+  report->scene = command.scene;
+  report->stages.insert(report->stages.begin(), reading);
+  report->cpu_seconds += reading.cpu_seconds;
+  report->wall_seconds += reading.wall_seconds;
+  print_result(*report, terminal);
+  if (command.report.empty()) return {};
+  if (Status s = write_json(*report, command.report); !s.ok()) return s;
+  terminal.line(fmt::format("{}: report", command.report.string()));
+  return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int code = 0;
+  const auto command = app::parse_export_command(argc, argv, code);
+  if (!command) return code;
+  app::Terminal terminal("atlas-export", command->quiet);
+  const Status status = run(*command, terminal);
+  if (!status.ok()) terminal.error(status.message());
+  return app::exit_code(status);
+}

@@ -1,0 +1,95 @@
+#include "apps/common/terminal.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+
+#include "libatlas/core/clock.h"
+
+namespace atlas::app {
+namespace {
+
+std::atomic<bool> g_cancelled{false};  // the one thing a signal handler may touch
+
+extern "C" void on_interrupt(int) {
+  // A second ctrl-C ends the program at once, in case a stage does not poll.
+  if (g_cancelled.exchange(true)) std::signal(SIGINT, SIG_DFL);
+}
+
+constexpr int kBarWidth = 28;
+
+}  // namespace
+
+Terminal::Terminal(std::string program, bool quiet)
+    : program_(std::move(program)), quiet_(quiet), is_terminal_(::isatty(STDERR_FILENO) != 0) {
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+}
+
+Terminal::~Terminal() { clear_bar(); }
+
+Context Terminal::context(int threads) {
+  Context context;
+  context.threads = threads;
+  context.cancel = &g_cancelled;
+  context.warn = [this](std::string_view text) { warning(text); };
+  if (!quiet_) {
+    context.progress = [this](std::string_view stage, double fraction) {
+      progress(stage, fraction);
+    };
+  }
+  return context;
+}
+
+void Terminal::line(std::string_view text) {
+  if (quiet_) return;
+  clear_bar();
+  fmt::print("{}\n", text);
+  std::fflush(stdout);
+}
+
+void Terminal::error(std::string_view text) {
+  clear_bar();
+  fmt::print(stderr, "{}: error: {}\n", program_, text);
+}
+
+void Terminal::warning(std::string_view text) {
+  if (quiet_) return;
+  clear_bar();
+  fmt::print(stderr, "{}: {}\n", program_, text);
+}
+
+void Terminal::progress(std::string_view stage, double fraction) {
+  if (stage != stage_) {
+    stage_ = stage;
+    shown_percent_ = -1;
+    stage_start_ = wall_seconds();
+  }
+  const int percent = int(100 * fraction);
+  if (percent <= shown_percent_) return;
+  shown_percent_ = percent;
+  if (is_terminal_) {
+    const int filled = kBarWidth * percent / 100;
+    fmt::print(stderr, "\r{:<14} [{:#<{}}{:.<{}}] {:3d} %", stage_, "", filled, "",
+               kBarWidth - filled, percent);
+    std::fflush(stderr);
+    bar_shown_ = true;
+  }
+  if (percent >= 100) clear_bar();
+}
+
+void Terminal::clear_bar() {
+  if (bar_shown_) fmt::print(stderr, "\r{:60}\r", "");
+  bar_shown_ = false;
+}
+
+int exit_code(const Status& status) {
+  if (status.ok()) return 0;
+  if (status.code() == ErrorCode::cancelled) return 130;
+  return status.code() == ErrorCode::bad_option ? 2 : 1;
+}
+
+}  // namespace atlas::app

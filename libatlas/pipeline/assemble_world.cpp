@@ -1,0 +1,30 @@
+#include "libatlas/pipeline/assemble_world.h"
+
+namespace atlas {
+
+World assemble_world(const Scene& scene, const PlacedCharts& placed, const WorldMesh& mesh) {
+  World world;
+  world.origin = scene.origin;
+  world.positions = scene.positions;
+  const ChartSet& set = placed.charts;
+  world.uvs.resize(set.uvs.size());
+  for (const ChartPlacement& placement : placed.placements) {
+    const Chart& chart = set.charts[placement.chart];
+    const Extent page = placed.pages[std::size_t(placement.page)];
+    for (std::uint32_t i = chart.first_uv; i < chart.first_uv + chart.uv_count; ++i) {
+      const Vec2d texel = page_texel(placement, set.uvs[i]);
+      world.uvs[i] = {float(texel.x / page.width), float(texel.y / page.height)};
+    }
+  }
+  world.pages.resize(placed.pages.size());
+  for (std::size_t t = 0; t < mesh.triangle_chart.size(); ++t) {
+    const ChartPlacement& placement = placed.placements[mesh.triangle_chart[t]];
+    Page& page = world.pages[std::size_t(placement.page)];
+    page.indices.insert(page.indices.end(), &mesh.indices[3 * t], &mesh.indices[3 * t] + 3);
+    page.uv_indices.insert(page.uv_indices.end(), &mesh.uv_indices[3 * t],
+                           &mesh.uv_indices[3 * t] + 3);
+  }
+  return world;
+}
+
+}  // namespace atlas

@@ -1,0 +1,32 @@
+// From charts on pages to the mesh that exporters write.
+#pragma once
+
+#include <span>
+
+#include "libatlas/bake/placement.h"
+#include "libatlas/charts/charts.h"
+#include "libatlas/core/rect.h"
+#include "libatlas/exporters/world.h"
+#include "libatlas/pack/pack.h"
+#include "libatlas/scene/scene.h"
+
+namespace atlas {
+
+// The triangles to write: the scene's own or the coarser mesh's. All spans outlive the call only.
+struct WorldMesh {
+  std::span<const std::uint32_t> indices;         // 3 a triangle, into Scene::positions
+  std::span<const std::uint32_t> uv_indices;      // 3 a triangle, into ChartSet::uvs
+  std::span<const std::uint32_t> triangle_chart;  // 1 a triangle
+};
+
+// The parts that together say where a chart's uv lies on its page.
+struct PlacedCharts {
+  const ChartSet& charts;
+  std::span<const ChartPlacement> placements;  // 1 a chart
+  std::span<const Extent> pages;
+};
+
+// One world page an atlas page, triangles in input order within each; uvs as page fractions.
+World assemble_world(const Scene& scene, const PlacedCharts& placed, const WorldMesh& mesh);
+
+}  // namespace atlas

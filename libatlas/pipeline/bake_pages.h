@@ -1,0 +1,30 @@
+// Bakes the pages one by one, measures each against the input and writes it, holding one at a time.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "libatlas/bake/fidelity.h"
+#include "libatlas/core/atomic_file.h"
+#include "libatlas/pipeline/export_options.h"
+#include "libatlas/pipeline/page_layout.h"
+#include "libatlas/report/export_report.h"
+
+namespace atlas {
+
+struct BakedPages {
+  std::vector<PageReport> pages;
+  std::vector<std::filesystem::path> image_sources;  // 1 a page: where its image lies until commit
+  Fidelity fidelity;              // zero without ExportOptions::measure_error
+  std::uint64_t covered_texels = 0;
+  double bake_cpu = 0, write_cpu = 0, measure_cpu = 0;     // seconds
+  double bake_wall = 0, write_wall = 0, measure_wall = 0;  // seconds
+};
+
+// Images are named after the target (safe_file_name): world.wrl gives world_0.png, world_1.png, ...
+// and, with ExportOptions::exr, world_0.exr, ...; their temporary names are collected in `files`.
+Result<BakedPages> bake_pages(const ChartLight& light, const PageLayout& layout,
+                              const ExportOptions& options, AtomicFiles& files,
+                              const Context& context);
+
+}  // namespace atlas

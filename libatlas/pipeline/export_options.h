@@ -1,0 +1,50 @@
+// Everything a user may ask of an export. The defaults are meant to be good without a thought.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "libatlas/bake/bake.h"
+#include "libatlas/charts/charts.h"
+#include "libatlas/exporters/world.h"
+#include "libatlas/pack/pack.h"
+#include "libatlas/texture/luminance.h"
+#include "libatlas/texture/tone.h"
+
+namespace atlas {
+
+struct ExportOptions {
+  // Its extension chooses the format: .wrl, .wrz, .obj, .gltf, .glb. Images lie beside it.
+  std::filesystem::path target;
+
+  // The budget: at most `atlases` (>= 1) pages of at most atlas_size² texels (a power of two,
+  // 64..16384).
+  std::uint32_t atlases = 8;
+  std::int32_t atlas_size = 2048;
+
+  double texel_metres = 0;           // length of a texel on the real surface; 0: as fine as the
+                                     // budget could hold, within 1 to 10 mm (paper, stage 2)
+  bool follow_textures = true;       // finer where the diffuse texture is finer
+  double threshold = 2.0 / 255;      // of downsizing, in display values; 0: no downsizing
+  std::int32_t min_side = 16;        // downsizing stops here
+  Quantity quantity = Quantity::illuminance;
+  ChartOptions charts;
+  ToneOptions tone;
+
+  std::int32_t mip_levels = 2;       // lookups at mip levels 0..mip_levels stay inside a chart
+  std::int32_t shifts = 4;           // sub-texel sample grids of the bake
+  BakeMethod bake_method = BakeMethod::least_squares;
+  PackPreset packing = PackPreset::standard;
+  bool outlines = true;              // pack charts by their outlines, not their boxes
+
+  bool simplify = true;              // write the coarser mesh
+  double simplify_slip = 0.5;        // texels that surface and texture may slip, > 0
+  Up up = Up::y;
+  bool exr = false;                  // also scene-linear OpenEXR pages
+  std::int32_t png_compression = 3;  // zlib level 0..9
+
+  bool charts_only = false;          // charts and uvs only: no light is baked, no image written
+  bool measure_error = true;         // compare the finished pages with the input's light
+};
+
+}  // namespace atlas

@@ -1,0 +1,379 @@
+#include "libatlas/pipeline/export_world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "libatlas/core/atomic_file.h"
+#include "libatlas/core/clock.h"
+#include "libatlas/exporters/viewpoint.h"
+#include "libatlas/exporters/world.h"
+#include "libatlas/pipeline/assemble_world.h"
+#include "libatlas/pipeline/bake_pages.h"
+#include "libatlas/pipeline/page_layout.h"
+#include "libatlas/simplify/simplify.h"
+#include "libatlas/texture/chart_textures.h"
+
+namespace atlas {
+namespace {
+
+MeshView view_of(const Scene& scene) {
+  MeshView view;
+  view.positions = scene.positions;
+  view.indices = scene.indices;
+  view.materials = scene.triangle_material;
+  view.texcoords = scene.texcoords;
+  view.texcoord_indices = scene.texcoord_indices;
+  return view;
+}
+
+// The state that one stage hands to the next. Each method is one stage: it fills its part of the
+// report and returns early with a Status.
+class Export {
+ public:
+  Export(const LoadedScene& loaded, const ExportOptions& options,
+         const std::function<void(const StageReport&)>& stage_done, const Context& context)
+      : scene_(loaded.scene),
+        options_(options),
+        stage_done_(stage_done),
+        context_(context),
+        plan_(make_plan(scene_, options)) {
+    describe_scene(loaded);
+  }
+
+  Result<ExportReport> run() {
+    const double cpu = cpu_seconds(), wall = wall_seconds();
+    if (Status s = cut_charts(); !s.ok()) return s;
+    if (plan_.bake) {
+      if (Status s = expose(); !s.ok()) return s;
+      if (Status s = size_textures(); !s.ok()) return s;
+    } else {
+      size_plain_uvs();
+    }
+    if (Status s = pack(); !s.ok()) return s;
+    if (plan_.bake) {
+      if (Status s = bake(); !s.ok()) return s;
+    }
+    if (plan_.simplify) {
+      if (Status s = simplify(); !s.ok()) return s;
+    }
+    if (Status s = write(); !s.ok()) return s;
+    report_.cpu_seconds = cpu_seconds() - cpu;
+    report_.wall_seconds = wall_seconds() - wall;
+    report_.peak_memory = peak_memory();
+    return std::move(report_);
+  }
+
+ private:
+  void describe_scene(const LoadedScene& loaded) {
+    report_.target = options_.target;
+    report_.triangles = scene_.triangle_count();
+    report_.vertices = scene_.positions.size();
+    report_.materials = scene_.materials.size();
+    report_.textures = scene_.textures.size();
+    report_.objects = scene_.object_names.size();
+    report_.lit = scene_.lit();
+    report_.metres_per_unit = scene_.metres_per_unit;
+    report_.origin = scene_.origin;
+    report_.defects = loaded.defects;
+    for (const PlanStep& step : plan_.steps) {
+      if (!step.run) report_.skipped.push_back({step.stage, step.reason});
+    }
+  }
+
+  // Starts the clock of a stage; finish_stage() stops it.
+  void begin_stage(std::string name) {
+    stage_ = StageReport{};
+    stage_.stage = std::move(name);
+    stage_.cpu_seconds = -cpu_seconds();
+    stage_.wall_seconds = -wall_seconds();
+    context_.report(stage_.stage, 0);
+  }
+
+  void finish_stage(std::uint64_t in, std::uint64_t out, std::string unit, std::string quality) {
+    stage_.cpu_seconds += cpu_seconds();
+    stage_.wall_seconds += wall_seconds();
+    add_stage(in, out, std::move(unit), std::move(quality));
+  }
+
+  void add_stage(std::uint64_t in, std::uint64_t out, std::string unit, std::string quality) {
+    stage_.peak_memory = peak_memory();
+    stage_.size_in = in;
+    stage_.size_out = out;
+    stage_.unit = std::move(unit);
+    stage_.quality = std::move(quality);
+    context_.report(stage_.stage, 1);
+    report_.stages.push_back(stage_);
+    if (stage_done_) stage_done_(stage_);
+  }
+
+  Status cut_charts() {
+    begin_stage("charts");
+    Result<ChartSet> charts = make_charts(view_of(scene_), options_.charts, context_);
+    if (!charts.ok()) return charts.status();
+    charts_ = std::move(*charts);
+    report_.charts = charts_.charts;
+    report_.distortion = charts_.distortion;
+    report_.seam_length = charts_.seam_length;
+    report_.surface_area = charts_.surface_area;
+    report_.repairs = charts_.repairs;
+    report_.chart_timing = charts_.timing;
+    finish_stage(scene_.triangle_count(), charts_.charts.size(), "charts",
+                 fmt::format("L2 {:.4f}, 99.9 % {:.3f}", charts_.distortion.stretch_l2,
+                             charts_.distortion.stretch_999));
+    return {};
+  }
+
+  Status expose() {
+    begin_stage("exposure");
+    sampler_.emplace(scene_, options_.quantity);
+    Result<LuminanceStatistics> statistics = measure_luminance(*sampler_, context_);
+    if (!statistics.ok()) return statistics.status();
+    Result<ToneMapping> tone = make_tone_mapping(options_.tone, *statistics);
+    if (!tone.ok()) return tone.status();
+    tone_ = *tone;
+    light_.emplace(ChartLight{*sampler_, charts_, tone_});
+    report_.luminance = *statistics;
+    report_.tone = tone_;
+    report_.exposure_white = double(tone_.white) / tone_.scale;
+    finish_stage(scene_.triangle_count(), 1, "tone curve",
+                 fmt::format("white {:.4g}", report_.exposure_white));
+    return {};
+  }
+
+  Status size_textures() {
+    begin_stage("downsizing");
+    TextureOptions texture;
+    texture.texel = plan_.texel_metres / scene_.metres_per_unit;
+    texture.follow_textures = options_.follow_textures;
+    texture.threshold = options_.threshold;
+    texture.min_side = options_.min_side;
+    texture.max_side = options_.atlas_size - 2 * gutter_pad(options_.mip_levels);
+    Result<TextureResult> sized = size_chart_textures(*light_, texture, context_);
+    if (!sized.ok()) return sized.status();
+    for (const ChartTexture& t : sized->charts) {
+      densities_.push_back(t.texels_per_unit);
+      full_densities_.push_back(t.full_texels_per_unit);
+    }
+    report_.texel = texture.texel;
+    report_.full_texels = sized->full_texels;
+    report_.final_texels = sized->final_texels;
+    report_.halved_charts = sized->halved;
+    report_.uniform_charts = sized->uniform;
+    report_.unlit_charts = sized->unlit;
+    report_.capped_charts = sized->capped;
+    report_.raised_charts = sized->raised;
+    report_.downsizing_rms = sized->rms_error;
+    report_.downsizing_max = sized->max_error;
+    finish_stage(std::uint64_t(sized->full_texels), std::uint64_t(sized->final_texels), "texels",
+                 fmt::format("{} charts halved, {} unlit, rms {:.5f}", sized->halved, sized->unlit,
+                             sized->rms_error));
+    return {};
+  }
+
+  // No light asks for no resolution of its own: one page, filled as well as packing can.
+  void size_plain_uvs() {
+    const double page = double(options_.atlas_size) * options_.atlas_size;
+    double area = 0;
+    for (const Chart& chart : charts_.charts) area += chart.distortion.uv_area;
+    const double density = area > 0 ? std::sqrt(page / area) : 1;
+    densities_.assign(charts_.charts.size(), Vec2d{density, density});
+  }
+
+  Status pack() {
+    begin_stage("packing");
+    LayoutOptions layout;
+    layout.page_size = options_.atlas_size;
+    layout.preset = options_.packing;
+    layout.outlines = options_.outlines;
+    if (plan_.bake) {
+      layout.pages = options_.atlases;
+      layout.padding = gutter_pad(options_.mip_levels);
+      layout.alignment = 1 << options_.mip_levels;
+      layout.minimum_side = options_.min_side;
+    } else {
+      layout.pages = 1;
+      layout.padding = 1;
+      layout.alignment = 1;
+      layout.minimum_side = 0;
+    }
+    Result<PageLayout> laid = lay_out_pages(charts_, densities_, layout, context_);
+    if (!laid.ok()) return laid.status();
+    layout_ = std::move(*laid);
+    report_.grouping = layout_.grouping;
+    report_.scale = layout_.scale;
+    report_.utilization = layout_.utilization;
+    report_.uv_utilization = layout_.uv_utilization;
+    report_.outlines = layout.outlines;
+    finish_stage(charts_.charts.size(), layout_.pages.size(), "pages",
+                 fmt::format("scale {:.3f}, {:.0f} % used by charts", layout_.scale,
+                             100 * layout_.uv_utilization));
+    if (!plan_.bake) {
+      for (const Extent& page : layout_.pages) {
+        report_.pages.push_back({"", page.width, page.height, 0, 0});
+      }
+      for (const ChartPlacement& p : layout_.placements) {
+        ++report_.pages[std::size_t(p.page)].charts;
+      }
+    }
+    return {};
+  }
+
+  Status bake() {
+    begin_stage("baking");
+    Result<BakedPages> baked = bake_pages(*light_, layout_, options_, files_, context_);
+    if (!baked.ok()) return baked.status();
+    report_.pages = baked->pages;
+    image_sources_ = std::move(baked->image_sources);
+    std::uint64_t bytes = 0;
+    for (const PageReport& page : baked->pages) {
+      bytes += page.image_bytes;
+      report_.gpu_bytes += std::uint64_t(page.width) * page.height * 4 * 4 / 3;
+    }
+    const std::uint64_t charts = charts_.charts.size(), pages = baked->pages.size();
+    stage_.cpu_seconds = baked->bake_cpu;
+    stage_.wall_seconds = baked->bake_wall;
+    add_stage(scene_.triangle_count(), baked->covered_texels, "texels",
+              fmt::format("{} charts, {} shifts", charts, options_.shifts));
+    stage_.stage = "images";
+    stage_.cpu_seconds = baked->write_cpu;
+    stage_.wall_seconds = baked->write_wall;
+    add_stage(pages, bytes, "bytes", "");
+    if (options_.measure_error) {
+      report_.error_measured = true;
+      report_.fidelity = baked->fidelity;
+      stage_.stage = "error";
+      stage_.cpu_seconds = baked->measure_cpu;
+      stage_.wall_seconds = baked->measure_wall;
+      add_stage(baked->fidelity.lit + baked->fidelity.unlit, pages, "pages",
+                fmt::format("PSNR {:.2f} dB, 95 % {:.4f}", baked->fidelity.psnr,
+                            baked->fidelity.p95));
+    }
+    return {};
+  }
+
+  Status simplify() {
+    begin_stage("simplify");
+    std::vector<double> density(charts_.charts.size());
+    for (std::size_t c = 0; c < density.size(); ++c) {
+      // A texture that shrank because its light is even must not let the surface itself slip
+      // further: the texel meant is that of the full texture, at the pages' common scale.
+      const Vec2d final = layout_.placements[c].texels_per_unit;
+      const Vec2d full = full_densities_[c];
+      density[c] = std::max({final.x, final.y, layout_.scale * std::min(full.x, full.y)});
+    }
+    SimplifyOptions simplify;
+    simplify.max_slip_texels = options_.simplify_slip;
+    Result<SimplifiedMesh> coarse =
+        simplify_charts(view_of(scene_), charts_, density, simplify, context_);
+    if (!coarse.ok()) return coarse.status();
+    coarse_ = std::move(*coarse);
+    report_.simplified = true;
+    report_.slip_texels = coarse_->max_slip_texels;
+    report_.turn_degrees = coarse_->max_turn_degrees;
+    finish_stage(coarse_->triangles_in, coarse_->triangles_out, "triangles",
+                 fmt::format("slip {:.3f} texels", coarse_->max_slip_texels));
+    return {};
+  }
+
+  Status write() {
+    begin_stage("writing");
+    WorldMesh mesh{scene_.indices, charts_.triangle_uv, charts_.triangle_chart};
+    if (coarse_) mesh = {coarse_->indices, coarse_->uv_indices, coarse_->triangle_chart};
+    World world = assemble_world(scene_, {charts_, layout_.placements, layout_.pages}, mesh);
+    world.up = options_.up;
+    world.title = options_.target.stem().string();
+    world.metres_per_unit = scene_.metres_per_unit;
+    world.viewpoint = choose_viewpoint(scene_.positions, scene_.indices, options_.up);
+    for (std::size_t p = 0; p < image_sources_.size(); ++p) {
+      world.pages[p].image = report_.pages[p].image;
+      world.pages[p].image_source = image_sources_[p];
+    }
+    report_.triangles_out = mesh.triangle_chart.size();
+    Result<WorldFile> world_file = write_world(world);
+    if (!world_file.ok()) return world_file.status();
+    if (context_.cancelled()) return Status::cancelled();
+    const std::vector<std::filesystem::path> written = files_.targets();
+    if (Status s = files_.commit(); !s.ok()) return s;
+    std::uint64_t bytes = 0;
+    for (const auto& path : written) {
+      report_.files.emplace_back(path.filename().string(), std::filesystem::file_size(path));
+      bytes += report_.files.back().second;
+    }
+    finish_stage(report_.triangles_out, bytes, "bytes", "");
+    return {};
+  }
+
+  Result<WorldFile> write_world(const World& world) {
+    const std::string extension = options_.target.extension().string();
+    if (extension == ".obj") return write_obj(world, options_.target, files_, context_);
+    if (extension == ".wrl" || extension == ".wrz") {
+      return write_vrml(world, options_.target, files_, context_);
+    }
+    return write_gltf(world, options_.target, files_, context_);
+  }
+
+  const Scene& scene_;
+  const ExportOptions& options_;
+  const std::function<void(const StageReport&)>& stage_done_;
+  const Context& context_;
+  const ExportPlan plan_;
+
+  ChartSet charts_;
+  std::optional<LuminanceSampler> sampler_;
+  ToneMapping tone_;
+  std::optional<ChartLight> light_;
+  std::vector<Vec2d> densities_, full_densities_;  // texels a unit, 1 a chart
+  PageLayout layout_;
+  std::optional<SimplifiedMesh> coarse_;
+  std::vector<std::filesystem::path> image_sources_;  // where the pages' images lie until commit
+  AtomicFiles files_;
+  StageReport stage_;
+  ExportReport report_;
+};
+
+Status out_of_range(const char* option, const std::string& range) {
+  return {ErrorCode::bad_option, fmt::format("{} must be {}", option, range)};
+}
+
+}  // namespace
+
+Status check_options(const ExportOptions& o) {
+  constexpr std::array kFormats{".wrl", ".wrz", ".obj", ".gltf", ".glb"};
+  if (std::find(kFormats.begin(), kFormats.end(), o.target.extension()) == kFormats.end()) {
+    return {ErrorCode::bad_option,
+            fmt::format("{}: the target must end in .wrl, .wrz, .obj, .gltf or .glb",
+                        o.target.string())};
+  }
+  const bool power_of_two = (o.atlas_size & (o.atlas_size - 1)) == 0;
+  if (o.atlases < 1) return out_of_range("--atlases", "at least 1");
+  if (o.atlas_size < 64 || o.atlas_size > 16384 || !power_of_two) {
+    return out_of_range("--atlas-size", "a power of two from 64 to 16384");
+  }
+  if (!(o.texel_metres >= 0)) return out_of_range("--texel", "a positive length");
+  if (!(o.threshold >= 0 && o.threshold <= 1)) return out_of_range("--threshold", "within 0..1");
+  if (o.mip_levels < 0 || o.mip_levels > 5) return out_of_range("--mips", "within 0..5");
+  if (o.shifts < 1 || o.shifts > 64) return out_of_range("--shifts", "within 1..64");
+  if (o.min_side < 1 || o.min_side > 256) return out_of_range("--min-side", "within 1..256");
+  if (!(o.simplify_slip > 0)) return out_of_range("--slip", "positive");
+  if (o.png_compression < 0 || o.png_compression > 9) {
+    return out_of_range("--png-level", "within 0..9");
+  }
+  if (!(o.charts.cone_degrees >= 0 && o.charts.cone_degrees <= 180)) {
+    return out_of_range("--cone", "within 0..180 degrees");
+  }
+  if (!(o.charts.max_stretch > 1)) return out_of_range("--max-stretch", "above 1");
+  return {};
+}
+
+Result<ExportReport> export_world(const LoadedScene& loaded, const ExportOptions& options,
+                                  const std::function<void(const StageReport&)>& stage_done,
+                                  const Context& context) {
+  if (Status s = check_options(options); !s.ok()) return s;
+  return Export(loaded, options, stage_done, context).run();
+}
+
+}  // namespace atlas

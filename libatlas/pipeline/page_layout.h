@@ -1,0 +1,41 @@
+// From chart sizes to positions on pages: stage 4 and the first half of stage 5.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "libatlas/bake/placement.h"
+#include "libatlas/charts/charts.h"
+#include "libatlas/core/context.h"
+#include "libatlas/core/status.h"
+#include "libatlas/pack/fit.h"
+#include "libatlas/pack/grouping.h"
+#include "libatlas/pack/pack.h"
+
+namespace atlas {
+
+struct LayoutOptions {
+  std::uint32_t pages = 8;
+  std::int32_t page_size = 2048;  // largest side, a power of two
+  std::int32_t padding = 2;       // texels kept around each chart
+  std::int32_t alignment = 4;     // of the charts' boxes
+  std::int32_t minimum_side = 16;
+  bool outlines = false;          // pack outlines; the page then keeps page_size
+  PackPreset preset = PackPreset::standard;
+};
+
+struct PageLayout {
+  std::vector<ChartPlacement> placements;  // 1 a chart
+  std::vector<Extent> pages;               // texels
+  double scale = 1;                        // applied to all densities alike
+  double utilization = 0;                  // of the contents the packer saw
+  double uv_utilization = 0;               // area of the charts / area of the pages
+  GroupingResult grouping;
+};
+
+// Places every chart, `texels_per_unit` (1 a chart, > 0) dense before scaling.
+// Errors: no_solution when even the smallest textures do not fit; bad_option; cancelled.
+Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
+                                 const LayoutOptions& options, const Context& context);
+
+}  // namespace atlas

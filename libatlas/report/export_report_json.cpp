@@ -1,0 +1,207 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "libatlas/core/atomic_file.h"
+#include "libatlas/report/export_report.h"
+
+namespace atlas {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kMebibyte = 1024.0 * 1024.0;
+
+// JSON has no infinities: a perfect page's PSNR is written as null.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json json_of(const Distortion& d) {
+  return {{"stretch_l2", d.stretch_l2},         {"stretch_linf", number(d.stretch_linf)},
+          {"stretch_999", d.stretch_999},       {"conformal_mean", d.conformal_mean},
+          {"conformal_max", number(d.conformal_max)}, {"area_min", d.area_min},
+          {"area_max", number(d.area_max)},     {"flips", d.flips},
+          {"degenerate", d.degenerate}};
+}
+
+Json scene_json(const ExportReport& r) {
+  Json defects = Json::array();
+  for (const Defect& defect : r.defects.defects) {
+    defects.push_back({{"kind", name_of(defect.kind)},
+                       {"meaning", describe(defect.kind)},
+                       {"count", defect.count},
+                       {"first", defect.first_places}});
+  }
+  return {{"file", r.scene.string()},
+          {"triangles", r.triangles},
+          {"vertices", r.vertices},
+          {"objects", r.objects},
+          {"materials", r.materials},
+          {"textures", r.textures},
+          {"lit", r.lit},
+          {"metres_per_unit", r.metres_per_unit},
+          {"origin", {r.origin.x, r.origin.y, r.origin.z}},
+          {"triangles_left_out", r.defects.triangles_left_out},
+          {"defects", defects}};
+}
+
+Json stages_json(const ExportReport& r) {
+  Json stages = Json::array();
+  for (const StageReport& s : r.stages) {
+    stages.push_back({{"stage", s.stage},
+                      {"wall_ms", 1e3 * s.wall_seconds},
+                      {"cpu_ms", 1e3 * s.cpu_seconds},
+                      {"peak_mib", double(s.peak_memory) / kMebibyte},
+                      {"in", s.size_in},
+                      {"out", s.size_out},
+                      {"unit", s.unit},
+                      {"quality", s.quality}});
+  }
+  return stages;
+}
+
+Json charts_json(const ExportReport& r) {
+  Json list = Json::array();
+  std::uint64_t planar = 0;
+  double widest_cone = 0;
+  for (const Chart& c : r.charts) {
+    planar += c.planar_projection;
+    widest_cone = std::max(widest_cone, c.cone_degrees);
+    list.push_back({{"triangles", c.triangle_count},
+                    {"size", {c.size.x, c.size.y}},
+                    {"area", c.distortion.surface_area},
+                    {"cone_degrees", c.cone_degrees},
+                    {"planar", c.planar_projection},
+                    {"distortion", json_of(c.distortion)}});
+  }
+  return {{"count", r.charts.size()},
+          {"planar", planar},
+          {"widest_cone_degrees", widest_cone},
+          {"distortion", json_of(r.distortion)},
+          {"seam_length", r.seam_length},
+          {"seam_per_root_area", r.surface_area > 0 ? r.seam_length / std::sqrt(r.surface_area) : 0},
+          {"surface_area", r.surface_area},
+          {"segmentation_cpu_s", r.chart_timing.segmentation_cpu},
+          {"parameterization_cpu_s", r.chart_timing.parameterization_cpu},
+          {"repairs",
+           {{"degenerate_triangles", r.repairs.degenerate_triangles},
+            {"duplicate_triangles", r.repairs.duplicate_triangles},
+            {"nonmanifold_edges", r.repairs.nonmanifold_edges},
+            {"nonmanifold_vertices", r.repairs.nonmanifold_vertices},
+            {"misoriented_edges", r.repairs.misoriented_edges},
+            {"split_charts", r.repairs.split_charts}}},
+          {"charts", list}};
+}
+
+Json light_json(const ExportReport& r) {
+  return {{"tone", tone_operator_name(r.tone.op)},
+          {"white", r.exposure_white},
+          {"percentile99", r.luminance.percentile99},
+          {"maximum", r.luminance.maximum},
+          {"mean", r.luminance.mean},
+          {"log_average", r.luminance.log_average},
+          {"lit_area", r.luminance.lit_area},
+          {"unlit_area", r.luminance.unlit_area},
+          {"not_finite", r.luminance.not_finite},
+          {"negative", r.luminance.negative}};
+}
+
+Json textures_json(const ExportReport& r) {
+  return {{"texel", r.texel},
+          {"full_texels", r.full_texels},
+          {"final_texels", r.final_texels},
+          {"saved_share", r.full_texels > 0 ? 1 - double(r.final_texels) / double(r.full_texels) : 0},
+          {"halved_charts", r.halved_charts},
+          {"uniform_charts", r.uniform_charts},
+          {"unlit_charts", r.unlit_charts},
+          {"capped_charts", r.capped_charts},
+          {"raised_charts", r.raised_charts},
+          {"rms_error", r.downsizing_rms},
+          {"max_error", r.downsizing_max}};
+}
+
+Json grouping_json(const GroupingResult& g) {
+  Json trace = Json::array();
+  for (const GroupingStep& step : g.trace) trace.push_back({step.capacity, step.groups});
+  return {{"groups", g.group_count},        {"capacity", g.capacity},
+          {"largest_group", g.largest_group}, {"imbalance", g.imbalance},
+          {"lower_bound", g.lower_bound},   {"upper_bound", g.upper_bound},
+          {"fits_page", g.fits_page},       {"proved_smallest", g.proved_smallest},
+          {"group_sizes", g.group_size},    {"trace", trace}};
+}
+
+Json pages_json(const ExportReport& r) {
+  Json pages = Json::array();
+  for (const PageReport& p : r.pages) {
+    pages.push_back({{"image", p.image},
+                     {"width", p.width},
+                     {"height", p.height},
+                     {"charts", p.charts},
+                     {"bytes", p.image_bytes}});
+  }
+  return {{"scale", r.scale},
+          {"outlines", r.outlines},
+          {"utilization", r.utilization},
+          {"uv_utilization", r.uv_utilization},
+          {"gpu_bytes", r.gpu_bytes},
+          {"pages", pages}};
+}
+
+Json error_json(const Fidelity& f) {
+  return {{"samples_lit", f.lit},
+          {"samples_unlit", f.unlit},
+          {"samples_clipped", f.clipped},
+          {"samples_unplaced", f.unplaced},
+          {"rmse", f.rmse},
+          {"psnr", number(f.psnr)},
+          {"psnr_rgb", {number(f.psnr_channel[0]), number(f.psnr_channel[1]),
+                        number(f.psnr_channel[2])}},
+          {"psnr_with_unlit", number(f.psnr_all)},
+          {"rmse_display", f.rmse_display},
+          {"p95", f.p95},
+          {"p999", f.p999},
+          {"max", f.maximum}};
+}
+
+}  // namespace
+
+Status write_json(const ExportReport& r, const std::filesystem::path& path) {
+  Json skipped = Json::array();
+  for (const SkippedStage& s : r.skipped) {
+    skipped.push_back({{"stage", s.stage}, {"reason", s.reason}});
+  }
+  Json files = Json::array();
+  for (const auto& [name, bytes] : r.files) files.push_back({{"file", name}, {"bytes", bytes}});
+  Json json{{"target", r.target.string()},
+            {"wall_s", r.wall_seconds},
+            {"cpu_s", r.cpu_seconds},
+            {"peak_mib", double(r.peak_memory) / kMebibyte},
+            {"scene", scene_json(r)},
+            {"stages", stages_json(r)},
+            {"skipped", skipped},
+            {"charts", charts_json(r)},
+            {"packing", pages_json(r)},
+            {"grouping", grouping_json(r.grouping)}};
+  if (r.full_texels > 0) {
+    json["light"] = light_json(r);
+    json["textures"] = textures_json(r);
+  }
+  if (r.simplified) {
+    json["simplify"] = {{"triangles_in", r.triangles},
+                        {"triangles_out", r.triangles_out},
+                        {"slip_texels", r.slip_texels},
+                        {"turn_degrees", r.turn_degrees}};
+  }
+  if (r.error_measured) json["error"] = error_json(r.fidelity);
+  json["files"] = files;
+  // Names come from files: bytes that are no UTF-8 are replaced instead of ending the export.
+  return write_file(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+std::string stage_line(const StageReport& s) {
+  return fmt::format("{:<11} {:>9} {} {:<9} {:<44} {:7.2f} s {:6.0f} MiB", s.stage, s.size_in,
+                     "->", s.size_out, s.unit + (s.quality.empty() ? "" : ", " + s.quality),
+                     s.cpu_seconds, double(s.peak_memory) / kMebibyte);
+}
+
+}  // namespace atlas

@@ -1,0 +1,262 @@
+// atlas-export as its users meet it: exit codes, messages, and what lies on the disk afterwards.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+#include <thread>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Run {
+  int exit_code = -1;
+  std::string output;  // stdout and stderr together
+};
+
+class AtlasExport : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    dir_ = fs::temp_directory_path() / fmt::format("atlas_export_{}_{}", info->name(), ::getpid());
+    fs::create_directories(dir_);
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+
+  fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(dir_ / name, std::ios::binary) << text;
+    return dir_ / name;
+  }
+
+  static Run run(const std::string& arguments) {
+    Run result;
+    FILE* pipe = ::popen(fmt::format("{} {} 2>&1", ATLAS_EXPORT, arguments).c_str(), "r");
+    char buffer[4096];
+    while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) {
+      result.output.append(buffer, n);
+    }
+    const int status = ::pclose(pipe);
+    result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return result;
+  }
+
+  std::set<std::string> files() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(dir_)) {
+      names.insert(entry.path().filename().string());
+    }
+    return names;
+  }
+
+  // Runs on a scene that cannot be exported: one line that contains `expected`, exit 1 or 2,
+  // nothing written.
+  void expect_refusal(const fs::path& scene, const std::string& expected,
+                      const std::string& more = "") {
+    const auto before = files();
+    const Run r = run(fmt::format("{} -o {} {}", scene.string(), (dir_ / "world.wrl").string(), more));
+    EXPECT_TRUE(r.exit_code == 1 || r.exit_code == 2) << r.exit_code << "\n" << r.output;
+    EXPECT_EQ(std::count(r.output.begin(), r.output.end(), '\n'), 1) << r.output;
+    EXPECT_NE(r.output.find(expected), std::string::npos) << r.output;
+    EXPECT_EQ(files(), before);
+  }
+
+  fs::path dir_;
+};
+
+// A room of n x n quads a side seen from inside, lit by a smooth function of the position.
+std::string lit_box(int n) {
+  std::ostringstream obj;
+  int first = 1;
+  for (int side = 0; side < 6; ++side) {
+    for (int j = 0; j <= n; ++j) {
+      for (int i = 0; i <= n; ++i) {
+        double p[3];
+        p[side / 2] = side % 2;
+        p[(side / 2 + 1) % 3] = double(i) / n;
+        p[(side / 2 + 2) % 3] = double(j) / n;
+        const double light = 1 + 0.5 * std::sin(3 * p[0] + 2 * p[1]) * std::cos(2 * p[2]);
+        obj << "v " << p[0] << ' ' << p[1] << ' ' << p[2] << ' ' << light << ' ' << light * 0.9
+            << ' ' << light * 0.7 << '\n';
+      }
+    }
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) {
+        const int a = first + j * (n + 1) + i, b = a + 1, c = a + n + 1, d = c + 1;
+        if (side % 2) {
+          obj << "f " << a << ' ' << c << ' ' << d << ' ' << b << '\n';
+        } else {
+          obj << "f " << a << ' ' << b << ' ' << d << ' ' << c << '\n';
+        }
+      }
+    }
+    first += (n + 1) * (n + 1);
+  }
+  return obj.str();
+}
+
+std::string slurp(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST_F(AtlasExport, WritesWorldImagesAndReport) {
+  const fs::path scene = write("box.obj", lit_box(12));
+  const Run r = run(fmt::format("{0}/box.obj -o {0}/world.wrl --texel 1cm --report {0}/report.json",
+                                dir_.string()));
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  EXPECT_EQ(files(), (std::set<std::string>{"box.obj", "report.json", "world.wrl", "world_0.png"}));
+  const auto report = nlohmann::json::parse(slurp(dir_ / "report.json"));
+  EXPECT_EQ(report["scene"]["triangles"], 12 * 12 * 2 * 6);
+  EXPECT_EQ(report["charts"]["distortion"]["flips"], 0);
+  EXPECT_GT(report["error"]["psnr"].get<double>(), 45);
+  // Six flat sides: two triangles each are enough once the light is in the texture.
+  EXPECT_LE(report["simplify"]["triangles_out"].get<int>(), 6 * 4);
+}
+
+TEST_F(AtlasExport, SameBytesForEveryThreadCount) {
+  write("box.obj", lit_box(20));
+  std::string reference;
+  for (const int threads : {1, 2, 8}) {
+    const Run r = run(fmt::format("{0}/box.obj -o {0}/w.obj --texel 1cm -q --threads {1}",
+                                  dir_.string(), threads));
+    ASSERT_EQ(r.exit_code, 0) << r.output;
+    EXPECT_EQ(r.output, "");
+    const std::string bytes = slurp(dir_ / "w.obj") + slurp(dir_ / "w_0.png");
+    if (reference.empty()) reference = bytes;
+    EXPECT_EQ(bytes, reference) << threads;
+  }
+}
+
+TEST_F(AtlasExport, MissingFile) {
+  expect_refusal(dir_ / "nowhere.obj", "nowhere.obj");
+}
+
+TEST_F(AtlasExport, MalformedLine) {
+  expect_refusal(write("bad.obj", "v 0 0 0 1 1 1\nv 1 zero 0 1 1 1\nv 0 1 0 1 1 1\nf 1 2 3\n"),
+                 "bad.obj:2");
+}
+
+TEST_F(AtlasExport, TruncatedBinary) {
+  expect_refusal(write("cut.ply",
+                       "ply\nformat binary_little_endian 1.0\nelement vertex 1000\n"
+                       "property float x\nproperty float y\nproperty float z\n"
+                       "element face 1\nproperty list uchar int vertex_indices\nend_header\nabc"),
+                 "cut.ply");
+}
+
+TEST_F(AtlasExport, EmptyScene) {
+  expect_refusal(write("empty.obj", "# nothing\n"), "empty.obj");
+}
+
+TEST_F(AtlasExport, OnlyBadTriangles) {
+  expect_refusal(write("range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n"), "range.obj");
+  expect_refusal(write("nan.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), "nan.obj");
+}
+
+TEST_F(AtlasExport, OptionsOutOfRange) {
+  const fs::path scene = write("box.obj", lit_box(2));
+  expect_refusal(scene, "--atlases", "--atlases 0");
+  expect_refusal(scene, "--atlas-size", "--atlas-size 1000");
+  expect_refusal(scene, "--texel", "--texel 5parsec");
+  expect_refusal(scene, "--tone", "--tone sepia");
+  expect_refusal(scene, "--memory", "--memory lots");
+}
+
+TEST_F(AtlasExport, UnwritableTarget) {
+  const fs::path scene = write("box.obj", lit_box(2));
+  const auto before = files();
+  const Run r = run(fmt::format("{} -o {}/no/such/world.wrl", scene.string(), dir_.string()));
+  EXPECT_EQ(r.exit_code, 1);
+  EXPECT_NE(r.output.find("no/such"), std::string::npos) << r.output;
+  EXPECT_EQ(files(), before);
+  expect_refusal(scene, "report", fmt::format("--report {}/no/report.json", dir_.string()));
+}
+
+TEST_F(AtlasExport, UnknownTargetFormat) {
+  const fs::path scene = write("box.obj", lit_box(2));
+  const Run r = run(fmt::format("{} -o {}/world.max", scene.string(), dir_.string()));
+  EXPECT_EQ(r.exit_code, 2);
+  EXPECT_NE(r.output.find(".wrl"), std::string::npos) << r.output;
+}
+
+TEST_F(AtlasExport, SomeBadElementsAreCountedAndNamed) {
+  std::string text = "mtllib none.mtl\nusemtl plaster\n" + lit_box(4);
+  text += "f 1 2 9999\nf 1 2\nv nan 0 0 1 1 1\nf 1 2 151\n";
+  write("some.obj", text);
+  const Run r =
+      run(fmt::format("{0}/some.obj -o {0}/w.wrl --report {0}/r.json", dir_.string()));
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  const auto report = nlohmann::json::parse(slurp(dir_ / "r.json"));
+  EXPECT_EQ(report["scene"]["triangles"], 4 * 4 * 2 * 6);
+  EXPECT_EQ(report["scene"]["triangles_left_out"], 3);
+  std::set<std::string> kinds;
+  for (const auto& defect : report["scene"]["defects"]) {
+    kinds.insert(defect["kind"]);
+    EXPECT_GE(defect["count"].get<int>(), 1);
+    EXPECT_FALSE(defect["first"].empty());
+  }
+  for (const char* kind : {"index_out_of_range", "too_few_corners", "bad_position_used",
+                           "position_not_finite", "material_file_missing"}) {
+    EXPECT_TRUE(kinds.count(kind)) << kind;
+  }
+}
+
+TEST_F(AtlasExport, MissingTextureIsReported) {
+  write("m.mtl", "newmtl wood\nKd 0.5 0.5 0.5\nmap_Kd gone.png\n");
+  write("t.obj", "mtllib m.mtl\nv 0 0 0 1 1 1\nv 1 0 0 1 1 1\nv 0 1 0 1 1 1\n"
+                 "vt 0 0\nvt 1 0\nvt 0 1\nusemtl wood\nf 1/1 2/2 3/3\n");
+  const Run r = run(fmt::format("{0}/t.obj -o {0}/w.wrl", dir_.string()));
+  EXPECT_EQ(r.exit_code, 0) << r.output;
+  EXPECT_NE(r.output.find("gone.png"), std::string::npos) << r.output;
+}
+
+TEST_F(AtlasExport, PlanRunsNothing) {
+  const fs::path scene = write("box.obj", lit_box(4));
+  const auto before = files();
+  const Run r = run(fmt::format("{} -o {}/w.wrl --plan", scene.string(), dir_.string()));
+  EXPECT_EQ(r.exit_code, 0);
+  EXPECT_NE(r.output.find("skip reflectance"), std::string::npos) << r.output;
+  EXPECT_NE(r.output.find("run  baking"), std::string::npos) << r.output;
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(AtlasExport, UnlitSceneGivesPlainUvs) {
+  write("tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Run r = run(fmt::format("{0}/tri.obj -o {0}/w.obj", dir_.string()));
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  EXPECT_NE(r.output.find("no illumination"), std::string::npos) << r.output;
+  EXPECT_NE(slurp(dir_ / "w.obj").find("\nvt "), std::string::npos);
+}
+
+TEST_F(AtlasExport, InterruptLeavesNothing) {
+  write("box.obj", lit_box(150));
+  const auto before = files();
+  for (const int milliseconds : {50, 300, 700, 1200}) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      ::execl(ATLAS_EXPORT, ATLAS_EXPORT, (dir_ / "box.obj").c_str(), "-o",
+              (dir_ / "w.wrl").c_str(), "--texel", "1mm", "--atlases", "16", "-q", nullptr);
+      ::_exit(127);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    ::kill(child, SIGINT);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFEXITED(status) || WIFSIGNALED(status));
+    // Stopped before the handler stood, or by it: either way the folder is as it was.
+    ASSERT_FALSE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "the scene was too small";
+    EXPECT_EQ(files(), before) << milliseconds;
+  }
+}
+
+}  // namespace
