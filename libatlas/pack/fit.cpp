@@ -1,0 +1,321 @@
+#include "libatlas/pack/fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "libatlas/pack/fit_pages.h"
+
+namespace atlas {
+namespace pack {
+namespace {
+
+std::int32_t content_side(double extent, double scale, std::int32_t minimum) {
+  const double least = std::min<double>(minimum, std::ceil(extent));
+  // The small slack keeps 100 texels at scale 0.5 from becoming 51 by rounding error.
+  const double side = std::ceil(extent * scale * (1 - 1e-12));
+  return static_cast<std::int32_t>(std::clamp(side, std::max(least, 1.0), 1e9));
+}
+
+std::int32_t cells(std::int32_t content, const FitOptions& options) {
+  const std::int64_t side = std::int64_t{content} + 2 * std::int64_t{options.padding};
+  return static_cast<std::int32_t>((side + options.alignment - 1) / options.alignment);
+}
+
+}  // namespace
+
+BoxFit::BoxFit(std::span<const FitItem> items, const FitOptions& options, const Context& context)
+    : items_(items), options_(options), context_(context) {
+  const std::int32_t side = options.page_size / options.alignment;
+  page_ = {side, side};
+}
+
+void BoxFit::make_boxes(double scale) {
+  contents_.resize(items_.size());
+  boxes_.resize(items_.size());
+  for (std::size_t i = 0; i < items_.size(); ++i) {
+    contents_[i] = {content_side(items_[i].width, scale, options_.minimum_side),
+                    content_side(items_[i].height, scale, options_.minimum_side)};
+    boxes_[i] = {cells(contents_[i].width, options_), cells(contents_[i].height, options_)};
+  }
+}
+
+double BoxFit::box_area(double scale) {
+  make_boxes(scale);
+  double area = 0;
+  for (const Extent& b : boxes_) area += static_cast<double>(b.area());
+  return area;
+}
+
+bool BoxFit::box_fits_page(const Extent& box) const {
+  return box.width <= page_.width && box.height <= page_.height;
+}
+
+// Whether every single box fits the page and all together do not exceed the pages' area.
+bool BoxFit::may_fit(double scale) {
+  const double area = box_area(scale);
+  for (const Extent& b : boxes_)
+    if (!box_fits_page(b)) return false;
+  return area <= static_cast<double>(page_.area()) * options_.pages;
+}
+
+bool BoxFit::pack_at(double scale, std::uint32_t pages, BoxLayout& layout) {
+  make_boxes(scale);
+  for (const Extent& b : boxes_)
+    if (!box_fits_page(b)) return false;
+  return pack_grouped(pages, layout) || pack_jointly(pages, layout);
+}
+
+// Each group into its own page, largest items first; what is left over goes wherever it fits.
+bool BoxFit::pack_grouped(std::uint32_t pages, BoxLayout& layout) {
+  std::vector<std::uint64_t> areas(boxes_.size());
+  for (std::size_t i = 0; i < areas.size(); ++i)
+    areas[i] = static_cast<std::uint64_t>(boxes_[i].area());
+  GroupingOptions grouping_options;
+  grouping_options.groups = pages;
+  grouping_options.refine_work = 0;
+  Result<GroupingResult> grouping = group_sizes(areas, grouping_options, context_);
+  if (!grouping.ok()) return false;
+  layout.grouping = std::move(*grouping);
+  layout.moved = 0;
+  layout.placements.assign(boxes_.size(), {});
+  std::vector<FreeRects> open(pages, FreeRects(page_));
+  std::vector<std::uint32_t> left;
+  for (std::uint32_t item : sorted_items(boxes_, Order::height)) {
+    const std::uint32_t group = layout.grouping.group[item];
+    if (!place(item, group, open[group], layout)) left.push_back(item);
+  }
+  for (std::uint32_t item : left) {
+    bool placed = false;
+    for (std::uint32_t p = 0; p < pages && !placed; ++p) placed = place(item, p, open[p], layout);
+    if (!placed) return false;
+    ++layout.moved;
+  }
+  layout.pages = pages;
+  return true;
+}
+
+bool BoxFit::place(std::uint32_t item, std::uint32_t page, FreeRects& free,
+                   BoxLayout& layout) const {
+  Spot spot;
+  if (!free.find(boxes_[item], options_.allow_rotation, PlaceRule::bottom_left, spot)) return false;
+  free.place(spot.rect);
+  layout.placements[item] = {page, spot.rect.x, spot.rect.y, spot.rotated};
+  return true;
+}
+
+// First fit over all pages at once: denser than groups when the pages are nearly full, since the
+// small items of all groups fill the gaps of every page.
+bool BoxFit::pack_jointly(std::uint32_t pages, BoxLayout& layout) {
+  Problem problem;
+  problem.items = boxes_;
+  problem.page = page_;
+  problem.allow_rotation = options_.allow_rotation;
+  problem.max_pages = pages;
+  for (Order order : {Order::height, Order::max_side, Order::area}) {
+    if (order != Order::height && options_.preset == PackPreset::fast) break;
+    Layout joint = pack_first_fit(problem, sorted_items(boxes_, order), PlaceRule::bottom_left);
+    if (joint.unplaced > 0) continue;
+    layout.moved = 0;
+    for (std::size_t i = 0; i < boxes_.size(); ++i)
+      layout.moved += joint.placements[i].page != layout.grouping.group[i];
+    layout.placements = std::move(joint.placements);
+    layout.pages = joint.pages;
+    return true;
+  }
+  return false;
+}
+
+// Packs the items of one page again into the smallest page size that holds them.
+Extent BoxFit::shrink_page(std::uint32_t page, BoxLayout& layout) const {
+  std::vector<std::uint32_t> members;
+  std::vector<Extent> sizes;
+  std::int64_t area = 0;
+  for (std::uint32_t i = 0; i < boxes_.size(); ++i)
+    if (layout.placements[i].page == page) {
+      members.push_back(i);
+      sizes.push_back(boxes_[i]);
+      area += boxes_[i].area();
+    }
+  for (const Extent& size : candidate_pages()) {
+    if (size.area() < area) continue;
+    Problem problem;
+    problem.items = sizes;
+    problem.page = size;
+    problem.allow_rotation = options_.allow_rotation;
+    problem.max_pages = 1;
+    const Layout packed =
+        pack_first_fit(problem, sorted_items(sizes, Order::height), PlaceRule::bottom_left);
+    if (packed.unplaced > 0) continue;
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      layout.placements[members[k]] = packed.placements[k];
+      layout.placements[members[k]].page = page;
+    }
+    return size;
+  }
+  return page_;
+}
+
+// Page sizes smaller than the largest, ascending by area, in cells.
+std::vector<Extent> BoxFit::candidate_pages() const {
+  std::vector<Extent> sizes;
+  const auto add = [&](std::int64_t w, std::int64_t h) {
+    const Extent e{static_cast<std::int32_t>(w / options_.alignment),
+                   static_cast<std::int32_t>(h / options_.alignment)};
+    if (e.width > 0 && e.height > 0 && e.area() < page_.area()) sizes.push_back(e);
+  };
+  for (std::int64_t s = 1; s <= options_.page_size; s *= 2) {
+    add(s, s);
+    if (!options_.square && 2 * s <= options_.page_size) add(2 * s, s);
+  }
+  return sizes;
+}
+
+}  // namespace pack
+
+namespace {
+
+using pack::BoxFit;
+using pack::BoxLayout;
+
+Status check(std::span<const FitItem> items, const FitOptions& o) {
+  if (o.pages == 0) return {ErrorCode::bad_option, "fit: pages is 0 (ask for at least one)"};
+  if (o.alignment < 1 || o.padding < 0 || o.page_size < o.alignment + 2 * o.padding ||
+      o.page_size > (1 << 20) || o.minimum_side < 0)
+    return {
+        ErrorCode::bad_option,
+        fmt::format("fit: page_size {}, padding {}, alignment {} and minimum_side {} do not go "
+                    "together (page_size in [alignment + 2 padding, 2^20], others not negative)",
+                    o.page_size, o.padding, o.alignment, o.minimum_side)};
+  if (o.power_of_two && !std::has_single_bit(static_cast<std::uint32_t>(o.page_size)))
+    return {ErrorCode::bad_option,
+            fmt::format("fit: page_size {} is not a power of two (use {})", o.page_size,
+                        std::bit_floor(static_cast<std::uint32_t>(o.page_size)))};
+  if (o.power_of_two && !std::has_single_bit(static_cast<std::uint32_t>(o.alignment)))
+    return {ErrorCode::bad_option, "fit: with power-of-two pages the alignment must be one too"};
+  if (!(o.max_scale > 0) || !std::isfinite(o.max_scale))
+    return {ErrorCode::bad_option, "fit: max_scale must be finite and above 0"};
+  for (std::size_t i = 0; i < items.size(); ++i)
+    if (!(items[i].width >= 0) || !(items[i].height >= 0) || !std::isfinite(items[i].width) ||
+        !std::isfinite(items[i].height))
+      return {ErrorCode::bad_input,
+              fmt::format("fit: item {} has size {} x {} (sizes must be finite and not negative)",
+                          i, items[i].width, items[i].height)};
+  return {};
+}
+
+// The largest scale that was seen to fit, by bisection; the layout of that scale. Each packing
+// halves the interval on average; with 12 of them the scale is within 0.1 % of the threshold.
+bool search_scale(BoxFit& fit, const FitOptions& options, const Context& context, FitResult& result,
+                  BoxLayout& best) {
+  const auto attempt = [&](double scale) {
+    BoxLayout layout;
+    ++result.packings;
+    const bool ok = fit.pack_at(scale, options.pages, layout);
+    result.trace.emplace_back(scale, ok);
+    if (ok) {
+      best = std::move(layout);
+      result.scale = scale;
+    }
+    context.report("pack", std::min(1.0, double(result.packings) / options.max_packings));
+    return ok;
+  };
+  if (fit.may_fit(options.max_scale) && attempt(options.max_scale)) return true;
+  double high = options.max_scale, low = 0;
+  for (int i = 0; i < 60 && high - low > 1e-4 * high; ++i) {  // by area and single boxes: cheap
+    const double middle = (low + high) / 2;
+    (fit.may_fit(middle) ? low : high) = middle;
+  }
+  // Packings reach 90 to 98 % of the area, so a step below the area bound is likely to fit.
+  bool found = false;
+  double step = low * 0.97;
+  low = 0;
+  while (result.packings + 1 < options.max_packings && high > 0) {
+    if (context.cancelled()) return false;
+    const bool ok = attempt(step);
+    (ok ? low : high) = step;
+    found = found || ok;
+    if (found && high - low < 5e-4 * high) break;
+    if (!found && step < 1e-9 * options.max_scale) break;
+    step = found ? (low + high) / 2 : step * 0.85;
+  }
+  return found || attempt(0);  // at scale 0 every item has its minimum side
+}
+
+void finish(const BoxFit& fit, const FitOptions& options, BoxLayout& layout, FitResult& result) {
+  const std::int32_t a = options.alignment;
+  result.pages.assign(layout.pages, {options.page_size, options.page_size});
+  for (std::uint32_t p = 0; p < layout.pages; ++p) {
+    if (options.power_of_two) {
+      const Extent cells = fit.shrink_page(p, layout);
+      if (!(cells == fit.page())) result.pages[p] = {cells.width * a, cells.height * a};
+    } else {
+      result.pages[p] = {0, 0};
+    }
+  }
+  result.placements.resize(layout.placements.size());
+  double content = 0, boxes = 0, area = 0;
+  for (std::size_t i = 0; i < result.placements.size(); ++i) {
+    const Placement& at = layout.placements[i];
+    Extent box = fit.boxes()[i];
+    if (at.rotated) std::swap(box.width, box.height);
+    FitPlacement& out = result.placements[i];
+    out.page = at.page;
+    out.box = {at.x * a, at.y * a, box.width * a, box.height * a};
+    out.content_width = fit.contents()[i].width;
+    out.content_height = fit.contents()[i].height;
+    out.rotated = at.rotated;
+    out.angle = at.rotated ? std::acos(0.0) : 0;
+    content += static_cast<double>(fit.contents()[i].area());
+    boxes += static_cast<double>(out.box.area());
+    if (!options.power_of_two) {
+      Extent& page = result.pages[at.page];
+      page.width = std::max(page.width, out.box.right());
+      page.height = std::max(page.height, out.box.top());
+      if (options.square) page.width = page.height = std::max(page.width, page.height);
+    }
+  }
+  for (const Extent& page : result.pages) area += static_cast<double>(page.area());
+  result.utilization = area > 0 ? content / area : 0;
+  result.box_utilization = area > 0 ? boxes / area : 0;
+  result.moved_items = layout.moved;
+  result.grouping = std::move(layout.grouping);
+}
+
+}  // namespace
+
+Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& options,
+                            const Context& context) {
+  if (Status status = check(items, options); !status.ok()) return status;
+  FitResult result;
+  result.scale = options.max_scale;
+  if (items.empty()) return result;
+  BoxFit fit(items, options, context);
+  BoxLayout best;
+  const bool found = search_scale(fit, options, context, result, best);
+  if (context.cancelled()) return Status::cancelled();
+  if (!found)
+    return Status(ErrorCode::no_solution,
+                  fmt::format("fit: {} charts do not fit {} pages of {} x {} even at their minimum "
+                              "sides (allow more or larger pages, or a smaller minimum_side)",
+                              items.size(), options.pages, options.page_size, options.page_size));
+  // With everything at its largest scale, fewer pages may do.
+  if (result.scale == options.max_scale) {
+    const double pages = fit.box_area(result.scale) / static_cast<double>(fit.page().area());
+    for (auto n = static_cast<std::uint32_t>(std::max(1.0, std::ceil(pages)));
+         n < best.pages && result.packings < options.max_packings; ++n) {
+      BoxLayout fewer;
+      ++result.packings;
+      if (!fit.pack_at(result.scale, n, fewer)) continue;
+      best = std::move(fewer);
+      break;
+    }
+  }
+  fit.make_boxes(result.scale);
+  finish(fit, options, best, result);
+  return result;
+}
+
+}  // namespace atlas

@@ -1,0 +1,45 @@
+// Internal: packing chart boxes into N pages at a given scale.
+#pragma once
+
+#include "libatlas/pack/fit.h"
+#include "libatlas/pack/problem.h"
+
+namespace atlas::pack {
+
+struct BoxLayout {
+  std::vector<Placement> placements;  // 1 an item, cells
+  std::uint32_t pages = 0;
+  std::uint32_t moved = 0;
+  GroupingResult grouping;
+};
+
+// Boxes are in cells of alignment × alignment texels, padding included.
+class BoxFit {
+ public:
+  BoxFit(std::span<const FitItem> items, const FitOptions& options, const Context& context);
+
+  void make_boxes(double scale);
+  double box_area(double scale);  // cells; makes the boxes
+  bool may_fit(double scale);     // necessary conditions only; makes the boxes
+  bool pack_at(double scale, std::uint32_t pages, BoxLayout& layout);
+  Extent shrink_page(std::uint32_t page, BoxLayout& layout) const;
+
+  const std::vector<Extent>& boxes() const { return boxes_; }
+  const std::vector<Extent>& contents() const { return contents_; }
+  Extent page() const { return page_; }
+
+ private:
+  bool box_fits_page(const Extent& box) const;
+  bool pack_grouped(std::uint32_t pages, BoxLayout& layout);
+  bool pack_jointly(std::uint32_t pages, BoxLayout& layout);
+  bool place(std::uint32_t item, std::uint32_t page, FreeRects& free, BoxLayout& layout) const;
+  std::vector<Extent> candidate_pages() const;
+
+  std::span<const FitItem> items_;
+  const FitOptions& options_;
+  const Context& context_;
+  Extent page_;
+  std::vector<Extent> contents_, boxes_;
+};
+
+}  // namespace atlas::pack

@@ -1,0 +1,166 @@
+#include "libatlas/pack/free_rects.h"
+
+#include <algorithm>
+
+namespace atlas::pack {
+namespace {
+
+bool intersect(const Rect& a, const Rect& b) {
+  return a.x < b.right() && b.x < a.right() && a.y < b.top() && b.y < a.top();
+}
+
+bool contains(const Rect& outer, const Rect& inner) {
+  return outer.x <= inner.x && outer.y <= inner.y && outer.right() >= inner.right() &&
+         outer.top() >= inner.top();
+}
+
+bool below_left(const Rect& a, const Rect& b) {
+  if (a.y != b.y) return a.y < b.y;
+  if (a.x != b.x) return a.x < b.x;
+  if (a.width != b.width) return a.width > b.width;
+  return a.height > b.height;
+}
+
+std::int64_t overlap(std::int32_t a0, std::int32_t a1, std::int32_t b0, std::int32_t b1) {
+  return std::max(0, std::min(a1, b1) - std::max(a0, b0));
+}
+
+}  // namespace
+
+FreeRects::FreeRects(Extent page) : page_(page), free_{{0, 0, page.width, page.height}} {
+  measure_room();
+}
+
+bool FreeRects::find(Extent item, bool allow_rotation, PlaceRule rule, Spot& spot) const {
+  const auto one = [&](Extent size, Spot& s) {
+    return rule == PlaceRule::contact ? find_contact(size, s) : find_bottom_left(size, s);
+  };
+  bool found = one(item, spot);
+  if (found) spot.rotated = false;
+  if (allow_rotation && item.width != item.height) {
+    Spot turned;
+    if (one({item.height, item.width}, turned) && (!found || turned.better_than(spot))) {
+      spot = turned;
+      spot.rotated = true;
+      found = true;
+    }
+  }
+  return found;
+}
+
+bool FreeRects::find_bottom_left(Extent item, Spot& spot) const {
+  if (item.width > room_.width || item.height > room_.height || item.area() > room_.area)
+    return false;
+  for (const Rect& f : free_) {
+    if (f.width < item.width || f.height < item.height) continue;
+    spot.rect = {f.x, f.y, item.width, item.height};
+    spot.first = f.y + item.height;
+    spot.second = f.x;
+    spot.third = 0;
+    return true;
+  }
+  return false;
+}
+
+std::int64_t FreeRects::contact_length(const Rect& r) const {
+  std::int64_t length = 0;
+  if (r.x == 0) length += r.height;
+  if (r.right() == page_.width) length += r.height;
+  if (r.y == 0) length += r.width;
+  if (r.top() == page_.height) length += r.width;
+  for (const Rect& p : placed_) {
+    if (p.x == r.right() || p.right() == r.x) length += overlap(p.y, p.top(), r.y, r.top());
+    if (p.y == r.top() || p.top() == r.y) length += overlap(p.x, p.right(), r.x, r.right());
+  }
+  return length;
+}
+
+bool FreeRects::find_contact(Extent item, Spot& spot) const {
+  bool found = false;
+  for (const Rect& f : free_) {
+    if (f.width < item.width || f.height < item.height) continue;
+    Spot s;
+    s.rect = {f.x, f.y, item.width, item.height};
+    s.first = -contact_length(s.rect);
+    s.second = s.rect.top();
+    s.third = f.x;
+    if (!found || s.better_than(spot)) {
+      spot = s;
+      found = true;
+    }
+  }
+  return found;
+}
+
+void FreeRects::split(const Rect& f, const Rect& t) {
+  const auto keep = [&](const Rect& r) {
+    if (r.width >= min_width_ && r.height >= min_height_) fresh_.push_back(r);
+  };
+  if (t.x > f.x) keep({f.x, f.y, t.x - f.x, f.height});
+  if (t.right() < f.right()) keep({t.right(), f.y, f.right() - t.right(), f.height});
+  if (t.y > f.y) keep({f.x, f.y, f.width, t.y - f.y});
+  if (t.top() < f.top()) keep({f.x, t.top(), f.width, f.top() - t.top()});
+}
+
+void FreeRects::place(const Rect& rect) {
+  placed_.push_back(rect);
+  used_height_ = std::max(used_height_, rect.top());
+  fresh_.clear();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    const Rect f = free_[i];
+    if (intersect(f, rect))
+      split(f, rect);
+    else
+      free_[kept++] = f;
+  }
+  free_.resize(kept);
+  keep_maximal();
+  measure_room();
+}
+
+// Survivors stay maximal: a piece lies inside the old maximal rectangle it was cut from, and a
+// survivor inside the piece would have been inside that. So only the pieces need a test, against
+// each other and against the survivors.
+void FreeRects::keep_maximal() {
+  std::sort(fresh_.begin(), fresh_.end(), below_left);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < fresh_.size(); ++i) {
+    const Rect r = fresh_[i];
+    const auto holds = [&](const Rect& o) { return contains(o, r); };
+    bool inside = i > 0 && kept > 0 && fresh_[kept - 1] == r;
+    for (std::size_t k = 0; k < fresh_.size() && !inside; ++k)
+      // Pieces before `kept` are final; those from i on are untouched; the gap holds stale ones.
+      inside = (k < kept || k > i) && contains(fresh_[k], r) && !(fresh_[k] == r);
+    for (std::size_t k = 0; k < free_.size() && !inside; ++k) {
+      if (free_[k].y > r.y) break;
+      inside = holds(free_[k]);
+    }
+    if (!inside) fresh_[kept++] = r;
+  }
+  fresh_.resize(kept);
+  const std::size_t middle = free_.size();
+  free_.insert(free_.end(), fresh_.begin(), fresh_.end());
+  std::inplace_merge(free_.begin(), free_.begin() + middle, free_.end(), below_left);
+}
+
+void FreeRects::drop_smaller(std::int32_t width, std::int32_t height) {
+  if (width <= min_width_ && height <= min_height_) return;
+  min_width_ = std::max(min_width_, width);
+  min_height_ = std::max(min_height_, height);
+  std::erase_if(free_,
+                [&](const Rect& r) { return r.width < min_width_ || r.height < min_height_; });
+  measure_room();
+}
+
+void FreeRects::measure_room() {
+  room_ = {};
+  for (const Rect& f : free_) {
+    room_.width = std::max(room_.width, f.width);
+    room_.height = std::max(room_.height, f.height);
+    room_.small_side = std::max(room_.small_side, std::min(f.width, f.height));
+    room_.area = std::max(room_.area, f.area());
+  }
+}
+
+}  // namespace atlas::pack

@@ -1,0 +1,221 @@
+#include "libatlas/pack/pack.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "libatlas/pack/engines.h"
+#include "libatlas/pack/problem.h"
+
+namespace atlas {
+namespace {
+
+using pack::Layout;
+using pack::Problem;
+
+// Taller than anything a strip can need, small enough that sums of two stay in 32 bits.
+constexpr std::int32_t kOpenHeight = 1 << 30;
+
+Status check(std::span<const Extent> items, const PackOptions& o) {
+  constexpr std::int32_t limit = 1 << 30;
+  const auto bad = [](std::string text) { return Status(ErrorCode::bad_option, std::move(text)); };
+  if (o.page.width < 0 || o.page.height < 0 || o.page.width > limit || o.page.height > limit ||
+      (o.page.width == 0 && o.page.height != 0))
+    return bad(
+        fmt::format("pack: page {} x {} (sides in 1 .. 2^30; height 0 for a strip, both 0 "
+                    "for a free page)",
+                    o.page.width, o.page.height));
+  if (o.padding < 0 || o.border < 0 || o.alignment < 1 || o.padding > (1 << 24) ||
+      o.border > (1 << 24) || o.alignment > (1 << 24))
+    return bad(
+        fmt::format("pack: padding {}, border {}, alignment {} (padding and border in 0 .. "
+                    "2^24, alignment in 1 .. 2^24)",
+                    o.padding, o.border, o.alignment));
+  const auto power = [](std::int32_t v) {
+    return v == 0 || std::has_single_bit(static_cast<std::uint32_t>(v));
+  };
+  if (o.power_of_two && (!power(o.page.width) || !power(o.page.height)))
+    return bad(fmt::format("pack: page {} x {} is no power of two (use {} x {})", o.page.width,
+                           o.page.height, std::bit_floor(static_cast<std::uint32_t>(o.page.width)),
+                           std::bit_floor(static_cast<std::uint32_t>(o.page.height))));
+  if (o.square && o.page.height != 0 && o.page.width != o.page.height)
+    return bad(fmt::format("pack: square pages asked for, but the page is {} x {}", o.page.width,
+                           o.page.height));
+  if (!(o.time_budget >= 0)) return bad("pack: time_budget is negative or not a number");
+  for (std::size_t i = 0; i < items.size(); ++i)
+    if (items[i].width < 0 || items[i].height < 0)
+      return {ErrorCode::bad_input, fmt::format("pack: item {} is {} x {} (sides must not be "
+                                                "negative)",
+                                                i, items[i].width, items[i].height)};
+  return {};
+}
+
+// Maps the user's texels to the packer's cells. An item with its padding to the right and above
+// takes whole cells; the page gains one padding, since none is needed at its far edge.
+class Cells {
+ public:
+  explicit Cells(const PackOptions& o) : options_(o) {
+    origin_ = (o.border + o.alignment - 1) / o.alignment * o.alignment;
+  }
+
+  std::int64_t item(std::int64_t side) const {
+    return (side + options_.padding + options_.alignment - 1) / options_.alignment;
+  }
+  // Cells along a page side; 0 if nothing fits.
+  std::int32_t page(std::int64_t side) const {
+    const std::int64_t inner = side - options_.border - origin_ + options_.padding;
+    return static_cast<std::int32_t>(std::max<std::int64_t>(0, inner / options_.alignment));
+  }
+  // Page side, in texels, that holds this many cells.
+  std::int64_t page_side(std::int64_t cells) const {
+    return origin_ + cells * options_.alignment - options_.padding + options_.border;
+  }
+  std::int32_t texel(std::int32_t cell) const { return origin_ + cell * options_.alignment; }
+  std::int32_t corner() const { return origin_; }
+
+  // The cells that a pinned rectangle and the padding around it keep others out of.
+  Rect pinned(const Rect& r, Extent page_cells) const {
+    const std::int64_t a = options_.alignment, p = options_.padding;
+    const auto down = [&](std::int64_t v) { return v >= 0 ? v / a : -((-v + a - 1) / a); };
+    const auto cut = [](std::int64_t v, std::int32_t high) {
+      return static_cast<std::int32_t>(std::clamp<std::int64_t>(v, 0, high));
+    };
+    const std::int32_t x0 = cut(down(std::int64_t{r.x} - origin_), page_cells.width);
+    const std::int32_t y0 = cut(down(std::int64_t{r.y} - origin_), page_cells.height);
+    const std::int64_t right = std::int64_t{r.x} + r.width + p - origin_;
+    const std::int64_t top = std::int64_t{r.y} + r.height + p - origin_;
+    const std::int32_t x1 = cut(down(right + a - 1), page_cells.width);
+    const std::int32_t y1 = cut(down(top + a - 1), page_cells.height);
+    return {x0, y0, std::max(0, x1 - x0), std::max(0, y1 - y0)};
+  }
+
+ private:
+  const PackOptions& options_;
+  std::int32_t origin_ = 0;
+};
+
+// The items that the engines get to see, in cells, and who they are.
+struct Active {
+  std::vector<Extent> sizes;
+  std::vector<std::uint32_t> ids;
+};
+
+Active select_items(std::span<const Extent> items, const Cells& cells, const PackOptions& options,
+                    PackResult& result) {
+  Active active;
+  const std::int32_t width = options.page.width > 0 ? cells.page(options.page.width) : kOpenHeight;
+  const std::int32_t height =
+      options.page.height > 0 ? cells.page(options.page.height) : kOpenHeight;
+  for (std::uint32_t i = 0; i < items.size(); ++i) {
+    if (items[i].width == 0 || items[i].height == 0) {
+      result.placements[i] = {0, cells.corner(), cells.corner(), false};
+      continue;
+    }
+    const std::int64_t w = cells.item(items[i].width), h = cells.item(items[i].height);
+    const bool fits = w <= width && h <= height;
+    const bool fits_turned = options.allow_rotation && h <= width && w <= height;
+    if (!fits && !fits_turned) {
+      result.unplaced.push_back({i, UnplacedReason::too_large});
+      continue;
+    }
+    active.sizes.push_back({static_cast<std::int32_t>(w), static_cast<std::int32_t>(h)});
+    active.ids.push_back(i);
+  }
+  return active;
+}
+
+// Width for a free page: of a square that the items would fill to 95 %, but wide enough for each.
+std::int32_t free_width(const Active& active) {
+  double area = 0;
+  std::int32_t widest = 1;
+  for (const Extent& e : active.sizes) {
+    area += static_cast<double>(e.area());
+    widest = std::max(widest, e.width);
+  }
+  return std::max(widest, static_cast<std::int32_t>(std::ceil(std::sqrt(area / 0.95))));
+}
+
+Extent shaped(Extent used, const PackOptions& options) {
+  Extent page = options.page;
+  if (options.page.height == 0 || options.crop) page.height = used.height;
+  if (options.page.width == 0 || options.crop) page.width = used.width;
+  const auto round_up = [](std::int32_t v) {
+    return static_cast<std::int32_t>(std::bit_ceil(static_cast<std::uint32_t>(std::max(1, v))));
+  };
+  if (options.power_of_two) page = {round_up(page.width), round_up(page.height)};
+  if (options.square) page.width = page.height = std::max(page.width, page.height);
+  return page;
+}
+
+void describe(std::span<const Extent> items, const PackOptions& options, PackResult& result) {
+  std::uint32_t pages = 0;
+  for (const Placement& p : result.placements)
+    if (p.placed()) pages = std::max(pages, p.page + 1);
+  std::vector<Extent> used(pages);
+  std::vector<double> area(pages), filled(pages);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const Placement& p = result.placements[i];
+    if (!p.placed()) continue;
+    const Extent e = p.rotated ? Extent{items[i].height, items[i].width} : items[i];
+    used[p.page].width = std::max(used[p.page].width, p.x + e.width + options.border);
+    used[p.page].height = std::max(used[p.page].height, p.y + e.height + options.border);
+    filled[p.page] += static_cast<double>(e.area());
+    result.placed_area += e.area();
+  }
+  double total = 0, total_without = 0, filled_without = 0;
+  for (std::uint32_t p = 0; p < pages; ++p) {
+    result.pages.push_back(shaped(used[p], options));
+    area[p] = static_cast<double>(result.pages[p].area());
+    total += area[p];
+    if (p + 1 < pages) total_without += area[p], filled_without += filled[p];
+  }
+  result.utilization = total > 0 ? static_cast<double>(result.placed_area) / total : 0;
+  result.fill_without_last = total_without > 0 ? filled_without / total_without : 1;
+}
+
+}  // namespace
+
+Result<PackResult> pack_rects(std::span<const Extent> items, const PackOptions& options,
+                              const Context& context) {
+  if (Status status = check(items, options); !status.ok()) return status;
+  PackResult result;
+  result.placements.resize(items.size());
+  const Cells cells(options);
+  const Active active = select_items(items, cells, options, result);
+
+  Problem problem;
+  problem.items = active.sizes;
+  problem.allow_rotation = options.allow_rotation;
+  problem.page = {options.page.width > 0 ? cells.page(options.page.width) : free_width(active),
+                  options.page.height > 0 ? cells.page(options.page.height) : kOpenHeight};
+  problem.max_pages = options.page.height == 0 ? 1
+                      : options.max_pages      ? options.max_pages
+                                               : kNoPage;
+  for (const PinnedRect& pin : options.pinned) {
+    if (pin.page >= (1u << 20) || pin.rect.width < 0 || pin.rect.height < 0)
+      return Status(ErrorCode::bad_option,
+                    "pack: a pinned rectangle has a negative side or lies on "
+                    "a page beyond 2^20");
+    const Rect taken = cells.pinned(pin.rect, problem.page);
+    if (pin.page >= problem.pinned.size()) problem.pinned.resize(pin.page + 1);
+    if (taken.area() > 0) problem.pinned[pin.page].push_back(taken);
+  }
+
+  const Layout layout = pack::solve(problem, options, context, result);
+  if (context.cancelled()) return Status::cancelled();
+  for (std::size_t k = 0; k < active.ids.size(); ++k) {
+    const Placement& p = layout.placements[k];
+    if (!p.placed())
+      result.unplaced.push_back({active.ids[k], UnplacedReason::no_room});
+    else
+      result.placements[active.ids[k]] = {p.page, cells.texel(p.x), cells.texel(p.y), p.rotated};
+  }
+  std::sort(result.unplaced.begin(), result.unplaced.end(),
+            [](const UnplacedItem& a, const UnplacedItem& b) { return a.item < b.item; });
+  describe(items, options, result);
+  return result;
+}
+
+}  // namespace atlas

@@ -1,0 +1,77 @@
+// Internal: finds the first open page that may have room for an item in logarithmic time.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "libatlas/pack/free_rects.h"
+
+namespace atlas::pack {
+
+// A tournament tree over what the pages offer at most. A page that passes may still turn out to
+// have no room (its longest and its widest hole are different ones): ask for the next.
+class PageIndex {
+ public:
+  void push_back(const FreeRects::Room& room) {
+    if (count_ == leaves_) grow();
+    update(count_++, room);
+  }
+
+  void update(std::size_t page, const FreeRects::Room& room) {
+    std::size_t node = page + leaves_;
+    tree_[node] = room;
+    for (node /= 2; node >= 1; node /= 2) tree_[node] = join(tree_[2 * node], tree_[2 * node + 1]);
+  }
+
+  // The first page >= from that passes for the item; count() if none.
+  std::size_t next(std::size_t from, Extent item, bool allow_rotation) const {
+    if (from >= count_) return count_;
+    const std::size_t found = descend(1, 0, leaves_, {from, item, allow_rotation});
+    return std::min(found, count_);
+  }
+
+  std::size_t count() const { return count_; }
+
+ private:
+  struct Query {
+    std::size_t from;
+    Extent item;
+    bool allow_rotation;
+  };
+
+  static FreeRects::Room join(const FreeRects::Room& a, const FreeRects::Room& b) {
+    return {std::max(a.width, b.width), std::max(a.height, b.height),
+            std::max(a.small_side, b.small_side), std::max(a.area, b.area)};
+  }
+
+  static bool passes(const FreeRects::Room& room, const Query& q) {
+    if (room.area < q.item.area() || room.small_side < std::min(q.item.width, q.item.height))
+      return false;
+    return (q.item.width <= room.width && q.item.height <= room.height) ||
+           (q.allow_rotation && q.item.height <= room.width && q.item.width <= room.height);
+  }
+
+  std::size_t descend(std::size_t node, std::size_t begin, std::size_t end, const Query& q) const {
+    if (end <= q.from || !passes(tree_[node], q)) return count_;
+    if (end - begin == 1) return begin;
+    const std::size_t middle = begin + (end - begin) / 2;
+    const std::size_t left = descend(2 * node, begin, middle, q);
+    return left < count_ ? left : descend(2 * node + 1, middle, end, q);
+  }
+
+  void grow() {
+    const std::size_t old = leaves_;
+    leaves_ = std::max<std::size_t>(1, 2 * leaves_);
+    std::vector<FreeRects::Room> next(2 * leaves_);
+    for (std::size_t i = 0; i < count_; ++i) next[leaves_ + i] = tree_[old + i];
+    tree_ = std::move(next);
+    for (std::size_t node = leaves_ - 1; node >= 1; --node)
+      tree_[node] = join(tree_[2 * node], tree_[2 * node + 1]);
+  }
+
+  std::size_t leaves_ = 0, count_ = 0;
+  std::vector<FreeRects::Room> tree_;
+};
+
+}  // namespace atlas::pack
