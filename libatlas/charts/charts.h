@@ -15,11 +15,11 @@ namespace atlas {
 
 // A view of a triangle mesh; what it points at must outlive it.
 struct MeshView {
-  std::span<const Vec3f> positions;            // finite
-  std::span<const std::uint32_t> indices;      // 3 a triangle
-  std::span<const std::uint32_t> materials;    // 1 a triangle, or empty: all alike
-  std::span<const float> density;              // relative linear texel density a triangle (> 0), or empty
-  std::span<const Vec2f> texcoords;            // only for ChartOptions::keep_uv_charts
+  std::span<const Vec3f> positions;          // finite
+  std::span<const std::uint32_t> indices;    // 3 a triangle
+  std::span<const std::uint32_t> materials;  // 1 a triangle, or empty: all alike
+  std::span<const float> density;    // relative linear texel density a triangle (> 0), or empty
+  std::span<const Vec2f> texcoords;  // only for ChartOptions::keep_uv_charts
   std::span<const std::uint32_t> texcoord_indices;  // 3 a triangle, likewise
 };
 
@@ -42,10 +42,10 @@ struct ChartOptions {
 struct Chart {
   std::uint32_t first_triangle = 0, triangle_count = 0;  // range of ChartSet::chart_triangles
   std::uint32_t first_uv = 0, uv_count = 0;              // range of ChartSet::uvs
-  std::uint32_t material = 0;  // of its triangles (of the first, if split_at_materials is off)
-  Vec2d size;                  // width >= height of the box of its uvs, whose corner is (0, 0)
-  Vec3f axis;                  // the direction of its normal cone
-  double cone_degrees = 0;     // largest angle between axis and a triangle's normal
+  std::uint32_t material = 0;      // of its triangles (of the first, if split_at_materials is off)
+  Vec2d size;                      // width >= height of the box of its uvs, whose corner is (0, 0)
+  Vec3f axis;                      // the direction of its normal cone
+  double cone_degrees = 0;         // largest angle between axis and a triangle's normal
   bool planar_projection = false;  // the cheap parameterisation was enough
   Distortion distortion;
 };
@@ -59,13 +59,13 @@ struct ChartSet {
   std::vector<std::uint32_t> chart_triangles;  // triangles sorted by chart, then by id
   std::vector<Vec2d> uvs;                      // sorted by chart
   std::vector<std::uint32_t> uv_vertex;        // 1 a uv: a vertex of the mesh at its position
-  std::vector<std::uint32_t> triangle_uv;      // 3 a triangle, into uvs, in the corner order of indices
-                                               // (a triangle whose orientation disagrees with its
-                                               // chart's is listed in flipped_triangles)
+  std::vector<std::uint32_t> triangle_uv;  // 3 a triangle, into uvs, in the corner order of indices
+                                           // (a triangle whose orientation disagrees with its
+                                           // chart's is listed in flipped_triangles)
   std::vector<std::uint32_t> flipped_triangles;  // input orientation opposite to the chart's
   Distortion distortion;                         // of the whole
-  double seam_length = 0;    // of interior edges that are chart borders, scene units
-  double surface_area = 0;   // scene units squared
+  double seam_length = 0;   // of interior edges that are chart borders, scene units
+  double surface_area = 0;  // scene units squared
   struct Repairs {
     std::uint64_t degenerate_triangles = 0, duplicate_triangles = 0, nonmanifold_edges = 0,
                   nonmanifold_vertices = 0, misoriented_edges = 0, split_charts = 0;
@@ -76,9 +76,9 @@ struct ChartSet {
 };
 
 // Cuts the mesh into charts and flattens them. Geometry is scale- and translation-free; the result
-// is the same for every thread count. Sources: Barladian et al., stage 1 (normal cones); Sander et al.
-// 2001 (stretch); see docs/charts.md.
-// Errors: bad_input when there is no triangle or an index is out of range; cancelled.
+// is the same for every thread count. Sources: Barladian et al., stage 1 (normal cones); Sander et
+// al. 2001 (stretch); see docs/charts.md. Errors: bad_input when there is no triangle or an index
+// is out of range; cancelled.
 Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
                              const Context& context);
 

@@ -1,0 +1,319 @@
+#include "libatlas/charts/cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+constexpr float kNormalWeight = 8;  // of the lean in the distance, as published figures were found
+constexpr float kFar = std::numeric_limits<float>::max();
+
+// Small patches of triangles: the graph on which seeds are chosen.
+struct Grains {
+  std::vector<std::uint32_t> of_triangle;
+  std::vector<glm::vec3> centroid, normal;
+  std::vector<float> area;
+  std::vector<std::uint32_t> component;         // ascending: grains of a piece are contiguous
+  std::vector<std::uint32_t> first, neighbour;  // compressed rows
+  std::size_t count() const { return area.size(); }
+};
+
+glm::vec3 centroid(const Topology& topology, std::uint32_t t) {
+  const std::uint32_t* v = &topology.corner_vertex[3 * std::size_t{t}];
+  return (to_glm(topology.points[v[0]]) + to_glm(topology.points[v[1]]) +
+          to_glm(topology.points[v[2]])) *
+         (1.0f / 3.0f);
+}
+
+// The triangles of each piece in order of id.
+struct PieceList {
+  std::vector<std::uint32_t> first, triangles;
+
+  explicit PieceList(const Topology& topology) : first(topology.component_count + 2, 0) {
+    const auto n = static_cast<std::uint32_t>(topology.triangle_count());
+    for (std::uint32_t t = 0; t < n; ++t) {
+      if (topology.component[t] != kNoIndex) ++first[topology.component[t] + 2];
+    }
+    for (std::size_t i = 2; i < first.size(); ++i) first[i] += first[i - 1];
+    triangles.resize(first.back());
+    for (std::uint32_t t = 0; t < n; ++t) {
+      if (topology.component[t] != kNoIndex) triangles[first[topology.component[t] + 1]++] = t;
+    }
+    first.pop_back();
+  }
+};
+
+std::uint32_t cell_budget(std::size_t triangles, const CellOptions& options) {
+  const std::size_t wanted = triangles / options.triangles_per_cell;
+  return static_cast<std::uint32_t>(
+      std::clamp<std::size_t>(wanted, 1, options.max_cells_per_piece));
+}
+
+// Breadth-first patches of about `size` triangles that lean less than 45 degrees to their first.
+class GrainBuilder {
+ public:
+  GrainBuilder(const Topology& topology, const CellOptions& options)
+      : topology_(topology), options_(options) {}
+
+  Grains run() {
+    const PieceList pieces(topology_);
+    grains_.of_triangle.assign(topology_.triangle_count(), kNoIndex);
+    for (std::uint32_t k = 0; k + 1 < pieces.first.size(); ++k) {
+      const std::size_t n = pieces.first[k + 1] - pieces.first[k];
+      const std::size_t size = std::max<std::size_t>(1, n / (12 * cell_budget(n, options_)));
+      for (std::uint32_t i = pieces.first[k]; i < pieces.first[k + 1]; ++i) {
+        if (grains_.of_triangle[pieces.triangles[i]] == kNoIndex) {
+          grow(pieces.triangles[i], k, size);
+        }
+      }
+    }
+    connect();
+    return std::move(grains_);
+  }
+
+ private:
+  void grow(std::uint32_t seed, std::uint32_t component, std::size_t size) {
+    const auto grain = static_cast<std::uint32_t>(grains_.count());
+    const glm::vec3 axis = to_glm(topology_.normals[seed]);
+    queue_.assign(1, seed);
+    grains_.of_triangle[seed] = grain;
+    glm::vec3 normal(0), middle(0);
+    float area = 0;
+    for (std::size_t i = 0; i < queue_.size(); ++i) {
+      const std::uint32_t t = queue_[i];
+      const float a = topology_.areas[t];
+      area += a;
+      normal += a * to_glm(topology_.normals[t]);
+      middle += a * centroid(topology_, t);
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3 && queue_.size() < size; ++h) {
+        const std::uint32_t o = topology_.opposite[h];
+        if (o == kNoIndex || grains_.of_triangle[o / 3] != kNoIndex) continue;
+        if (glm::dot(axis, to_glm(topology_.normals[o / 3])) < 0.7f) continue;
+        grains_.of_triangle[o / 3] = grain;
+        queue_.push_back(o / 3);
+      }
+    }
+    const float length = glm::length(normal);
+    grains_.area.push_back(area);
+    grains_.centroid.push_back(area > 0 ? middle / area : centroid(topology_, seed));
+    grains_.normal.push_back(length > 0 ? normal / length : axis);
+    grains_.component.push_back(component);
+  }
+
+  void connect() {
+    std::vector<std::uint64_t> links;
+    for (std::uint32_t h = 0; h < topology_.opposite.size(); ++h) {
+      const std::uint32_t o = topology_.opposite[h];
+      if (o == kNoIndex) continue;
+      const std::uint64_t a = grains_.of_triangle[h / 3], b = grains_.of_triangle[o / 3];
+      if (a != b) links.push_back(a << 32 | b);
+    }
+    std::sort(links.begin(), links.end());
+    links.erase(std::unique(links.begin(), links.end()), links.end());
+    grains_.first.assign(grains_.count() + 1, 0);
+    for (const std::uint64_t link : links) ++grains_.first[(link >> 32) + 1];
+    for (std::size_t i = 1; i < grains_.first.size(); ++i) grains_.first[i] += grains_.first[i - 1];
+    for (const std::uint64_t link : links) {
+      grains_.neighbour.push_back(static_cast<std::uint32_t>(link));
+    }
+  }
+
+  const Topology& topology_;
+  const CellOptions& options_;
+  Grains grains_;
+  std::vector<std::uint32_t> queue_;
+};
+
+struct Visit {
+  float distance;
+  std::uint32_t node, seed;
+  bool operator>(const Visit& other) const {
+    if (distance != other.distance) return distance > other.distance;
+    return node != other.node ? node > other.node : seed > other.seed;
+  }
+};
+using Heap = std::priority_queue<Visit, std::vector<Visit>, std::greater<>>;
+
+// Chooses seeds among the grains.
+class Seeder {
+ public:
+  Seeder(const Topology& topology, const Grains& grains, const CellOptions& options)
+      : topology_(topology), grains_(grains), options_(options) {}
+
+  // One grain a cell, with the mean normal of what it is to stand for.
+  void run() {
+    distance_.assign(grains_.count(), kFar);
+    owner_.assign(grains_.count(), kNoIndex);
+    std::vector<std::uint32_t> size(topology_.component_count, 0);
+    for (const std::uint32_t k : topology_.component) size[k == kNoIndex ? 0 : k] += k != kNoIndex;
+    for (std::uint32_t first = 0, last = 0; first < grains_.count(); first = last) {
+      while (last < grains_.count() && grains_.component[last] == grains_.component[first]) ++last;
+      sample_piece(first, last, cell_budget(size[grains_.component[first]], options_));
+    }
+    for (int round = 0; round < 2; ++round) recentre();
+  }
+
+  std::vector<std::uint32_t> seeds;  // grains
+  std::vector<glm::vec3> normals;    // 1 a seed
+  const std::vector<std::uint32_t>& owner() const { return owner_; }
+
+ private:
+  float step(std::uint32_t from, std::uint32_t to, const glm::vec3& axis) const {
+    const float lean = 1 - glm::dot(grains_.normal[to], axis);
+    return glm::distance(grains_.centroid[from], grains_.centroid[to]) * (1 + kNormalWeight * lean);
+  }
+
+  void add_seed(std::uint32_t grain) {
+    seeds.push_back(grain);
+    normals.push_back(grains_.normal[grain]);
+    heap_.push({0, grain, static_cast<std::uint32_t>(seeds.size() - 1)});
+    spread();
+  }
+
+  void spread() {
+    while (!heap_.empty()) {
+      const Visit visit = heap_.top();
+      heap_.pop();
+      if (visit.distance >= distance_[visit.node]) continue;
+      distance_[visit.node] = visit.distance;
+      owner_[visit.node] = visit.seed;
+      for (std::uint32_t i = grains_.first[visit.node]; i < grains_.first[visit.node + 1]; ++i) {
+        const std::uint32_t next = grains_.neighbour[i];
+        const float distance = visit.distance + step(visit.node, next, normals[visit.seed]);
+        if (distance < distance_[next]) heap_.push({distance, next, visit.seed});
+      }
+    }
+  }
+
+  void sample_piece(std::uint32_t first, std::uint32_t last, std::uint32_t budget) {
+    add_seed(first);
+    using Entry = std::pair<float, std::uint32_t>;
+    if (budget > 1) {
+      std::priority_queue<Entry> farthest;
+      for (std::uint32_t g = first; g < last; ++g) farthest.push({distance_[g], g});
+      for (std::uint32_t count = 1; count < budget && !farthest.empty();) {
+        const auto [distance, grain] = farthest.top();
+        farthest.pop();
+        if (distance_[grain] <= 0) continue;
+        if (distance != distance_[grain]) {
+          farthest.push({distance_[grain], grain});
+          continue;
+        }
+        add_seed(grain);
+        ++count;
+      }
+    }
+    add_leaning(first, last);
+  }
+
+  // Seeds for what leans too far from its cell, a few at a time.
+  void add_leaning(std::uint32_t first, std::uint32_t last) {
+    const auto limit = static_cast<float>(std::cos(options_.max_lean_degrees * M_PI / 180));
+    const auto cosine = [&](std::uint32_t g) {
+      return glm::dot(grains_.normal[g], normals[owner_[g]]);
+    };
+    for (int round = 0; round < 6; ++round) {
+      std::vector<std::pair<float, std::uint32_t>> leaning;
+      for (std::uint32_t g = first; g < last; ++g) {
+        if (cosine(g) < limit) leaning.push_back({cosine(g), g});
+      }
+      if (leaning.empty()) return;
+      std::sort(leaning.begin(), leaning.end());
+      for (const auto& [worst, g] : leaning) {
+        if (cosine(g) < limit) add_seed(g);
+      }
+    }
+  }
+
+  void recentre() {
+    const std::size_t n = seeds.size();
+    std::vector<glm::vec3> middle(n, glm::vec3(0)), normal(n, glm::vec3(0));
+    std::vector<float> area(n, 0), best(n, kFar);
+    for (std::uint32_t g = 0; g < grains_.count(); ++g) {
+      middle[owner_[g]] += grains_.area[g] * grains_.centroid[g];
+      normal[owner_[g]] += grains_.area[g] * grains_.normal[g];
+      area[owner_[g]] += grains_.area[g];
+    }
+    for (std::uint32_t g = 0; g < grains_.count(); ++g) {
+      const std::uint32_t s = owner_[g];
+      const float d = glm::distance(grains_.centroid[g], middle[s] / area[s]);
+      if (d < best[s]) {
+        best[s] = d;
+        seeds[s] = g;
+      }
+    }
+    std::fill(distance_.begin(), distance_.end(), kFar);
+    for (std::uint32_t s = 0; s < n; ++s) {
+      const float length = glm::length(normal[s]);
+      if (length > 0) normals[s] = normal[s] / length;
+      heap_.push({0, seeds[s], s});
+    }
+    spread();
+  }
+
+  const Topology& topology_;
+  const Grains& grains_;
+  const CellOptions& options_;
+  std::vector<float> distance_;
+  std::vector<std::uint32_t> owner_;
+  Heap heap_;
+};
+
+// The last pass: triangles to seeds.
+Cells grow_triangles(const Topology& topology, const Grains& grains, const Seeder& seeder) {
+  const std::size_t n = topology.triangle_count(), cells = seeder.seeds.size();
+  std::vector<std::uint32_t> seed(cells, kNoIndex);
+  std::vector<float> best(cells, kFar);
+  for (std::uint32_t t = 0; t < n; ++t) {
+    const std::uint32_t g = grains.of_triangle[t];
+    if (g == kNoIndex || seeder.seeds[seeder.owner()[g]] != g) continue;
+    const float d = glm::distance(centroid(topology, t), grains.centroid[g]);
+    const std::uint32_t s = seeder.owner()[g];
+    if (d < best[s]) {
+      best[s] = d;
+      seed[s] = t;
+    }
+  }
+  Cells result;
+  result.count = static_cast<std::uint32_t>(cells);
+  result.of_triangle.assign(n, kNoIndex);
+  Heap heap;
+  for (std::uint32_t s = 0; s < cells; ++s) {
+    if (seed[s] != kNoIndex) heap.push({0, seed[s], s});  // coincident grains may leave one empty
+  }
+  while (!heap.empty()) {
+    const Visit visit = heap.top();
+    heap.pop();
+    if (result.of_triangle[visit.node] != kNoIndex) continue;
+    result.of_triangle[visit.node] = visit.seed;
+    const glm::vec3 from = centroid(topology, visit.node);
+    for (std::uint32_t h = 3 * visit.node; h < 3 * visit.node + 3; ++h) {
+      const std::uint32_t o = topology.opposite[h];
+      if (o == kNoIndex || result.of_triangle[o / 3] != kNoIndex) continue;
+      const float lean = 1 - glm::dot(to_glm(topology.normals[o / 3]), seeder.normals[visit.seed]);
+      const float step = glm::distance(from, centroid(topology, o / 3));
+      heap.push({visit.distance + step * (1 + kNormalWeight * lean), o / 3, visit.seed});
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+Cells grow_cells(const Topology& topology, const CellOptions& options, const Context& context) {
+  if (topology.component_count == 0) {
+    return {std::vector<std::uint32_t>(topology.triangle_count(), kNoIndex), 0};
+  }
+  const Grains grains = GrainBuilder(topology, options).run();
+  Seeder seeder(topology, grains, options);
+  seeder.run();
+  if (context.cancelled()) return {};
+  return grow_triangles(topology, grains, seeder);
+}
+
+}  // namespace atlas

@@ -1,0 +1,49 @@
+// Internal: flattens every chart of a partition, cutting and splitting those that resist.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "libatlas/charts/charts.h"
+#include "libatlas/charts/cone.h"
+#include "libatlas/charts/local_chart.h"
+#include "libatlas/charts/topology.h"
+#include "libatlas/core/context.h"
+
+namespace atlas {
+
+// A chart that is done. Lengths in units of the topology (scaled), times density.
+struct FlatChart {
+  std::vector<std::uint32_t> triangles;               // ascending
+  std::vector<std::array<std::uint32_t, 3>> corners;  // 1 a triangle, into uvs; working order
+  std::vector<std::uint32_t> vertex;                  // 1 a uv: of the topology
+  std::vector<Vec2d> uvs;
+  NormalCone cone;
+  Distortion distortion;
+  Vec2d size;
+  bool planar = false;
+};
+
+struct FlattenInput {
+  const Topology& topology;
+  std::span<const float> density;  // 1 a triangle, or empty
+  const ChartOptions& options;
+  // 1 a triangle, or empty: where the solver starts, see IsometricStart::frames.
+  std::span<const std::array<Vec3f, 2>> frames;
+};
+
+struct FlattenResult {
+  std::vector<FlatChart> charts;   // ordered by first triangle
+  std::uint64_t split_charts = 0;  // that failed and were cut into smaller ones
+};
+
+// Every triangle with a chart in `partition` ends in exactly one FlatChart; each is injective,
+// within the stretch bound and, if asked for, within the cone. `partition` is left as it came out
+// in the end. Charts run in parallel; the result does not depend on how.
+FlattenResult flatten_charts(const FlattenInput& input, Partition& partition,
+                             const Context& context);
+
+}  // namespace atlas

@@ -1,0 +1,95 @@
+#include "libatlas/charts/local_chart.h"
+
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+
+void LocalChart::build(const Topology& topology, Partition& partition,
+                       std::span<const std::uint32_t> triangles) {
+  triangles_ = triangles;
+  const auto n = static_cast<std::uint32_t>(triangles.size());
+  for (std::uint32_t i = 0; i < n; ++i) partition.local[triangles[i]] = i;
+  const std::uint32_t chart = partition.chart[triangles[0]];
+  opposite.assign(3 * std::size_t{n}, kNoIndex);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      const std::uint32_t h = 3 * triangles[i] + c, o = topology.opposite[h];
+      if (o == kNoIndex || partition.chart[o / 3] != chart || partition.seam(h)) continue;
+      opposite[3 * i + c] = 3 * partition.local[o / 3] + o % 3;
+    }
+  }
+  number_vertices(topology);
+  find_loops();
+  find_components();
+}
+
+// A local vertex is a fan of corners joined by edges of the chart, so that a vertex where only
+// corners touch comes apart.
+void LocalChart::number_vertices(const Topology& topology) {
+  const auto n = static_cast<std::uint32_t>(triangles_.size());
+  corners.assign(n, {kNoIndex, kNoIndex, kNoIndex});
+  positions.clear();
+  vertex.clear();
+  density.clear();
+  const auto corner = [&](std::uint32_t h) -> std::uint32_t& { return corners[h / 3][h % 3]; };
+  const Vec3f first = topology.points[topology.corner_vertex[3 * std::size_t{triangles_[0]}]];
+  for (std::uint32_t start = 0; start < 3 * n; ++start) {
+    if (corner(start) != kNoIndex) continue;
+    const auto id = static_cast<std::uint32_t>(positions.size());
+    const std::uint32_t v =
+        topology.corner_vertex[3 * std::size_t{triangles_[start / 3]} + start % 3];
+    vertex.push_back(v);
+    const Vec3f p = topology.points[v];
+    positions.push_back({double(p.x) - first.x, double(p.y) - first.y, double(p.z) - first.z});
+    corner(start) = id;
+    std::uint32_t h = start;
+    for (;;) {
+      const std::uint32_t o = opposite[previous_half_edge(h)];
+      if (o == kNoIndex || o == start) break;
+      h = o;
+      corner(h) = id;
+    }
+    if (opposite[previous_half_edge(h)] != kNoIndex) continue;  // all the way round
+    for (std::uint32_t o = opposite[start]; o != kNoIndex; o = opposite[h]) {
+      h = next_half_edge(o);
+      corner(h) = id;
+    }
+  }
+}
+
+void LocalChart::find_loops() {
+  loops.clear();
+  border_count = 0;
+  seen_.assign(opposite.size(), 0);
+  for (std::uint32_t h = 0; h < opposite.size(); ++h) {
+    if (opposite[h] != kNoIndex || seen_[h]) continue;
+    loops.push_back(h);
+    for (std::uint32_t g = h; !seen_[g]; g = next_border(g)) {
+      seen_[g] = 1;
+      ++border_count;
+    }
+  }
+}
+
+void LocalChart::find_components() {
+  const auto n = static_cast<std::uint32_t>(triangles_.size());
+  component.assign(n, kNoIndex);
+  component_count = 0;
+  for (std::uint32_t seed = 0; seed < n; ++seed) {
+    if (component[seed] != kNoIndex) continue;
+    component[seed] = component_count;
+    queue_.assign(1, seed);
+    while (!queue_.empty()) {
+      const std::uint32_t t = queue_.back();
+      queue_.pop_back();
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        if (opposite[h] == kNoIndex || component[opposite[h] / 3] != kNoIndex) continue;
+        component[opposite[h] / 3] = component_count;
+        queue_.push_back(opposite[h] / 3);
+      }
+    }
+    ++component_count;
+  }
+}
+
+}  // namespace atlas

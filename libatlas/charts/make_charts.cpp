@@ -1,0 +1,233 @@
+#include <algorithm>
+#include <cmath>
+
+#include "libatlas/charts/cells.h"
+#include "libatlas/charts/charts.h"
+#include "libatlas/charts/flatten.h"
+#include "libatlas/charts/merge.h"
+#include "libatlas/charts/topology.h"
+#include "libatlas/core/clock.h"
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+Status check_options(const ChartOptions& options) {
+  if (!(options.cone_degrees >= 0 && options.cone_degrees <= 180)) {
+    return {ErrorCode::bad_option, "cone: must lie in 0..180 degrees (0: no limit)"};
+  }
+  if (!(options.max_stretch > 1) || !std::isfinite(options.max_stretch)) {
+    return {ErrorCode::bad_option, "max-stretch: must be greater than 1"};
+  }
+  if (!(options.crease_degrees > 0 && options.crease_degrees <= 180)) {
+    return {ErrorCode::bad_option, "crease: must lie in 0..180 degrees"};
+  }
+  return {};
+}
+
+// Gathers the flat charts into one ChartSet.
+class Assembler {
+ public:
+  Assembler(const MeshView& mesh, const Topology& topology, ChartSet& set)
+      : mesh_(mesh), topology_(topology), set_(set), unscale_(1 / topology.scale) {}
+
+  void run(std::vector<FlatChart>& charts) {
+    const std::size_t n = topology_.triangle_count();
+    set_.triangle_chart.assign(n, kNoIndex);
+    set_.triangle_uv.assign(3 * n, kNoIndex);
+    set_.chart_triangles.reserve(n);
+    for (FlatChart& chart : charts) append(chart);
+    place_degenerate();
+    number_triangles();
+    for (std::uint32_t t = 0; t < n; ++t) {
+      if (topology_.flags[t] & Topology::kFlipped) set_.flipped_triangles.push_back(t);
+    }
+  }
+
+ private:
+  std::uint32_t material(std::uint32_t t) const {
+    return mesh_.materials.empty() ? 0 : mesh_.materials[t];
+  }
+
+  void append(FlatChart& flat) {
+    const auto id = static_cast<std::uint32_t>(set_.charts.size());
+    const auto base = static_cast<std::uint32_t>(set_.uvs.size());
+    Chart chart;
+    chart.first_uv = base;
+    chart.uv_count = static_cast<std::uint32_t>(flat.uvs.size());
+    chart.material = material(flat.triangles.front());
+    chart.size = {flat.size.x * unscale_, flat.size.y * unscale_};
+    chart.axis = flat.cone.axis;
+    chart.cone_degrees = flat.cone.angle * 180 / M_PI;
+    chart.planar_projection = flat.planar;
+    chart.distortion = flat.distortion;
+    chart.distortion.surface_area *= unscale_ * unscale_;
+    chart.distortion.uv_area *= unscale_ * unscale_;
+    for (const Vec2d uv : flat.uvs) set_.uvs.push_back({uv.x * unscale_, uv.y * unscale_});
+    for (const std::uint32_t v : flat.vertex) {
+      set_.uv_vertex.push_back(topology_.source_vertex[v]);
+    }
+    for (std::size_t i = 0; i < flat.triangles.size(); ++i) {
+      const std::uint32_t t = flat.triangles[i];
+      set_.triangle_chart[t] = id;
+      for (std::uint32_t c = 0; c < 3; ++c) {
+        set_.triangle_uv[topology_.input_corner(3 * t + c)] = base + flat.corners[i][c];
+      }
+    }
+    set_.charts.push_back(chart);
+    flat = FlatChart{};  // its memory is needed no more
+  }
+
+  // A triangle without area is drawn nowhere: it joins the chart of a neighbour at one of its
+  // vertices, all corners on that vertex's uv; if it has none, any chart of its material.
+  void place_degenerate() {
+    if (topology_.defects.degenerate_triangles == 0) return;
+    std::vector<std::uint32_t> uv_at(topology_.points.size(), kNoIndex);
+    std::vector<std::uint32_t> chart_at(topology_.points.size(), kNoIndex);
+    for (std::uint32_t t = 0; t < topology_.triangle_count(); ++t) {
+      if (topology_.degenerate(t)) continue;
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        const std::uint32_t v = topology_.corner_vertex[h];
+        if (uv_at[v] != kNoIndex) continue;
+        uv_at[v] = set_.triangle_uv[topology_.input_corner(h)];
+        chart_at[v] = set_.triangle_chart[t];
+      }
+    }
+    for (std::uint32_t t = 0; t < topology_.triangle_count(); ++t) {
+      if (topology_.degenerate(t)) place_degenerate(t, uv_at, chart_at);
+    }
+  }
+
+  void place_degenerate(std::uint32_t t, const std::vector<std::uint32_t>& uv_at,
+                        const std::vector<std::uint32_t>& chart_at) {
+    std::uint32_t chart = kNoIndex, uv = kNoIndex;
+    for (std::uint32_t h = 3 * t; h < 3 * t + 3 && chart == kNoIndex; ++h) {
+      const std::uint32_t v = topology_.corner_vertex[h];
+      if (chart_at[v] == kNoIndex || set_.charts[chart_at[v]].material != material(t)) continue;
+      chart = chart_at[v];
+      uv = uv_at[v];
+    }
+    if (chart == kNoIndex) {
+      chart = chart_of_material(t);
+      uv = set_.charts[chart].first_uv;
+    }
+    set_.triangle_chart[t] = chart;
+    for (std::uint32_t c = 0; c < 3; ++c) set_.triangle_uv[3 * t + c] = uv;
+  }
+
+  std::uint32_t chart_of_material(std::uint32_t t) {
+    for (std::uint32_t k = 0; k < set_.charts.size(); ++k) {
+      if (set_.charts[k].material == material(t)) return k;
+    }
+    Chart chart;  // a single point
+    chart.first_uv = static_cast<std::uint32_t>(set_.uvs.size());
+    chart.uv_count = 1;
+    chart.material = material(t);
+    chart.axis = {0, 0, 1};
+    chart.planar_projection = true;
+    set_.uvs.push_back({});
+    set_.uv_vertex.push_back(mesh_.indices[3 * std::size_t{t}]);
+    set_.charts.push_back(chart);
+    return static_cast<std::uint32_t>(set_.charts.size() - 1);
+  }
+
+  void number_triangles() {
+    for (const std::uint32_t chart : set_.triangle_chart) ++set_.charts[chart].triangle_count;
+    std::uint32_t first = 0;
+    std::vector<std::uint32_t> next;
+    next.reserve(set_.charts.size());
+    for (Chart& chart : set_.charts) {
+      chart.first_triangle = first;
+      next.push_back(first);
+      first += chart.triangle_count;
+    }
+    set_.chart_triangles.resize(first);
+    for (std::uint32_t t = 0; t < set_.triangle_chart.size(); ++t) {
+      set_.chart_triangles[next[set_.triangle_chart[t]]++] = t;
+    }
+  }
+
+  const MeshView& mesh_;
+  const Topology& topology_;
+  ChartSet& set_;
+  double unscale_;
+};
+
+// Length of the edges that two triangles share in space but not in uv.
+double seam_length(const Topology& topology, const ChartSet& set) {
+  double length = 0;
+  const auto uv = [&](std::uint32_t h) { return set.triangle_uv[topology.input_corner(h)]; };
+  for (std::uint32_t h = 0; h < topology.opposite.size(); ++h) {
+    const std::uint32_t o = topology.opposite[h];
+    if (o == kNoIndex || o < h) continue;
+    if (uv(h) == uv(next_half_edge(o)) && uv(next_half_edge(h)) == uv(o)) continue;
+    length += glm::distance(to_dvec(topology.points[topology.corner_vertex[h]]),
+                            to_dvec(topology.points[topology.corner_vertex[next_half_edge(h)]]));
+  }
+  return length / topology.scale + topology.cut_length;
+}
+
+// All charts together, each at the scale it is given out with.
+Distortion sum_up(const ChartSet& set) {
+  Distortion total;
+  total = Distortion{};
+  double l2 = 0, conformal = 0, area = 0;
+  for (const Chart& chart : set.charts) {
+    const Distortion& d = chart.distortion;
+    l2 += d.stretch_l2 * d.stretch_l2 * d.surface_area;
+    conformal += d.conformal_mean * d.surface_area;
+    area += d.surface_area;
+    total.stretch_linf = std::max(total.stretch_linf, d.stretch_linf);
+    total.stretch_999 = std::max(total.stretch_999, d.stretch_999);
+    total.conformal_max = std::max(total.conformal_max, d.conformal_max);
+    total.area_min = std::min(total.area_min, d.area_min);
+    total.area_max = std::max(total.area_max, d.area_max);
+    total.uv_area += d.uv_area;
+    total.flips += d.flips;
+    total.degenerate += d.degenerate;
+  }
+  total.surface_area = area;
+  if (area > 0) {
+    total.stretch_l2 = std::sqrt(l2 / area);
+    total.conformal_mean = conformal / area;
+  }
+  return total;
+}
+
+}  // namespace
+
+Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
+                             const Context& context) {
+  if (Status status = check_options(options); !status.ok()) return status;
+  const double start = cpu_seconds();
+  context.report("charts", 0);
+  Result<Topology> built = build_topology(
+      mesh, {options.split_at_materials, options.keep_uv_charts && !mesh.texcoords.empty()},
+      context);
+  if (!built.ok()) return built.status();
+  const Topology& topology = *built;
+  ChartSet set;
+  set.repairs = {topology.defects.degenerate_triangles, topology.defects.duplicate_triangles,
+                 topology.defects.nonmanifold_edges,    topology.defects.nonmanifold_vertices,
+                 topology.defects.misoriented_edges,    0};
+  for (const float area : topology.areas) set.surface_area += area;
+  set.surface_area /= topology.scale * topology.scale;
+
+  context.report("charts", 0.1);
+  Segmentation segmentation = segment(topology, options, context);
+  if (context.cancelled()) return Status::cancelled();
+  set.timing.segmentation_cpu = cpu_seconds() - start;
+  context.report("charts", 0.5);
+  FlattenResult flat = flatten_charts({topology, mesh.density, options, segmentation.frames},
+                                      segmentation.partition, context);
+  if (context.cancelled()) return Status::cancelled();
+  set.repairs.split_charts = flat.split_charts;
+  Assembler(mesh, topology, set).run(flat.charts);
+  set.seam_length = seam_length(topology, set);
+  set.distortion = sum_up(set);
+  set.timing.parameterization_cpu = cpu_seconds() - start - set.timing.segmentation_cpu;
+  context.report("charts", 1);
+  return set;
+}
+
+}  // namespace atlas

@@ -1,0 +1,21 @@
+// Internal: charts from micro-cells.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "libatlas/charts/charts.h"
+#include "libatlas/charts/local_chart.h"
+#include "libatlas/charts/topology.h"
+#include "libatlas/core/context.h"
+
+namespace atlas {
+
+struct Segmentation {
+  Partition partition;
+  std::vector<std::array<Vec3f, 2>> frames;  // 1 a triangle, or empty: see IsometricStart::frames
+};
+
+Segmentation segment(const Topology& topology, const ChartOptions& options, const Context& context);
+
+}  // namespace atlas

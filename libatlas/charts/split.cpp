@@ -1,0 +1,174 @@
+#include "libatlas/charts/split.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <queue>
+
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+constexpr double kNormalWeight = 8;    // of the fold at an edge in the distance across it
+constexpr double kCreaseDiscount = 4;  // how much shorter a fully folded edge is to cut along
+constexpr double kFar = std::numeric_limits<double>::max();
+
+struct Visit {
+  double distance;
+  std::uint32_t node, source;
+  bool operator>(const Visit& other) const {
+    if (distance != other.distance) return distance > other.distance;
+    return node != other.node ? node > other.node : source > other.source;
+  }
+};
+using Heap = std::priority_queue<Visit, std::vector<Visit>, std::greater<>>;
+
+glm::dvec3 centroid(const LocalChart& chart, std::uint32_t t) {
+  const auto& v = chart.corners[t];
+  return (to_glm(chart.positions[v[0]]) + to_glm(chart.positions[v[1]]) +
+          to_glm(chart.positions[v[2]])) /
+         3.0;
+}
+
+double fold(const Topology& topology, const LocalChart& chart, std::uint32_t s, std::uint32_t t) {
+  return 1 - glm::dot(to_dvec(topology.normals[chart.triangles()[s]]),
+                      to_dvec(topology.normals[chart.triangles()[t]]));
+}
+
+// Dijkstra over the triangles; owner may be null.
+void spread(const Topology& topology, const LocalChart& chart, Heap& heap,
+            std::vector<double>& distance, std::vector<std::uint8_t>* owner) {
+  while (!heap.empty()) {
+    const Visit visit = heap.top();
+    heap.pop();
+    if (visit.distance >= distance[visit.node]) continue;
+    distance[visit.node] = visit.distance;
+    if (owner) (*owner)[visit.node] = static_cast<std::uint8_t>(visit.source);
+    const glm::dvec3 from = centroid(chart, visit.node);
+    for (std::uint32_t h = 3 * visit.node; h < 3 * visit.node + 3; ++h) {
+      if (chart.opposite[h] == kNoIndex) continue;
+      const std::uint32_t next = chart.opposite[h] / 3;
+      if (distance[next] <= visit.distance) continue;
+      const double step = glm::distance(from, centroid(chart, next)) *
+                          (1 + kNormalWeight * fold(topology, chart, visit.node, next));
+      if (visit.distance + step < distance[next]) {
+        heap.push({visit.distance + step, next, visit.source});
+      }
+    }
+  }
+}
+
+std::uint32_t farthest_from(const Topology& topology, const LocalChart& chart,
+                            std::uint32_t start) {
+  std::vector<double> distance(chart.corners.size(), kFar);
+  Heap heap;
+  heap.push({0, start, 0});
+  spread(topology, chart, heap, distance, nullptr);
+  std::uint32_t farthest = start;
+  for (std::uint32_t t = 0; t < distance.size(); ++t) {
+    if (distance[t] < kFar && distance[t] > distance[farthest]) farthest = t;
+  }
+  if (farthest == start) {  // all in one point: any other triangle will do
+    for (std::uint32_t t = 0; t < distance.size(); ++t) {
+      if (t != start && distance[t] < kFar) return t;
+    }
+  }
+  return farthest;
+}
+
+}  // namespace
+
+std::array<std::uint32_t, 2> far_pair(const Topology& topology, const LocalChart& chart) {
+  const std::uint32_t a = farthest_from(topology, chart, 0);
+  return {a, farthest_from(topology, chart, a)};
+}
+
+std::vector<std::uint8_t> divide(const Topology& topology, const LocalChart& chart,
+                                 std::span<const std::uint32_t> seeds) {
+  std::vector<double> distance(chart.corners.size(), kFar);
+  std::vector<std::uint8_t> owner(chart.corners.size(), 0);
+  Heap heap;
+  for (std::uint32_t s = 0; s < seeds.size(); ++s) {
+    distance[seeds[s]] = 0;  // no other source may take it
+    owner[seeds[s]] = static_cast<std::uint8_t>(s);
+  }
+  for (std::uint32_t s = 0; s < seeds.size(); ++s) {
+    const glm::dvec3 from = centroid(chart, seeds[s]);
+    for (std::uint32_t h = 3 * seeds[s]; h < 3 * seeds[s] + 3; ++h) {
+      if (chart.opposite[h] == kNoIndex) continue;
+      const std::uint32_t next = chart.opposite[h] / 3;
+      heap.push({glm::distance(from, centroid(chart, next)) *
+                     (1 + kNormalWeight * fold(topology, chart, seeds[s], next)),
+                 next, s});
+    }
+  }
+  spread(topology, chart, heap, distance, &owner);
+  return owner;
+}
+
+bool join_loops(const Topology& topology, const LocalChart& chart, Partition& partition) {
+  if (chart.loops.size() < 2) return false;
+  const std::size_t n = chart.positions.size();
+  std::vector<std::uint8_t> on_first(n, 0), on_other(n, 0);
+  const auto from = [&](std::uint32_t h) { return chart.corners[h / 3][h % 3]; };
+  for (std::size_t i = 0; i < chart.loops.size(); ++i) {
+    std::uint32_t h = chart.loops[i];
+    do {
+      (i == 0 ? on_first : on_other)[from(h)] = 1;
+      h = chart.next_border(h);
+    } while (h != chart.loops[i]);
+  }
+  // One half-edge out of each vertex, to walk its fan from.
+  std::vector<std::uint32_t> out(n, kNoIndex), through(n, kNoIndex);
+  for (std::uint32_t h = 0; h < chart.opposite.size(); ++h) {
+    if (out[from(h)] == kNoIndex || chart.opposite[h] == kNoIndex) out[from(h)] = h;
+  }
+  std::vector<double> distance(n, kFar);
+  std::vector<std::uint8_t> done(n, 0);
+  Heap heap;
+  for (std::uint32_t v = 0; v < n; ++v) {
+    if (!on_first[v]) continue;
+    distance[v] = 0;
+    heap.push({0, v, 0});
+  }
+  std::uint32_t reached = kNoIndex;
+  while (!heap.empty()) {
+    const std::uint32_t v = heap.top().node;
+    heap.pop();
+    if (done[v]) continue;
+    done[v] = 1;
+    if (on_other[v]) {
+      reached = v;
+      break;
+    }
+    // From a border half-edge the walk meets every interior edge of the fan once.
+    std::uint32_t h = out[v];
+    do {
+      if (chart.opposite[h] != kNoIndex) {
+        const std::uint32_t to = from(next_half_edge(h));
+        const double sharp = 0.5 * fold(topology, chart, h / 3, chart.opposite[h] / 3);
+        const double step = glm::distance(to_glm(chart.positions[v]), to_glm(chart.positions[to])) /
+                            (1 + kCreaseDiscount * sharp);
+        if (!on_first[to] && distance[v] + step < distance[to]) {
+          distance[to] = distance[v] + step;
+          through[to] = h;
+          heap.push({distance[to], to, 0});
+        }
+      }
+      const std::uint32_t o = chart.opposite[previous_half_edge(h)];
+      h = o;
+    } while (h != kNoIndex && h != out[v]);
+  }
+  if (reached == kNoIndex) return false;
+  const auto mark = [&](std::uint32_t h) {
+    partition.seams[chart.triangles()[h / 3]] |= static_cast<std::uint8_t>(1u << (h % 3));
+  };
+  for (std::uint32_t v = reached; through[v] != kNoIndex; v = from(through[v])) {
+    mark(through[v]);
+    mark(chart.opposite[through[v]]);
+  }
+  return true;
+}
+
+}  // namespace atlas

@@ -1,0 +1,26 @@
+// Internal: how a chart that cannot be flattened is made easier.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libatlas/charts/local_chart.h"
+#include "libatlas/charts/topology.h"
+
+namespace atlas {
+
+// Two local triangles far from each other, or {0, 0} for a single triangle.
+std::array<std::uint32_t, 2> far_pair(const Topology& topology, const LocalChart& chart);
+
+// Grows the chart's triangles from the given local ones, at least two different, at equal speed
+// (slower across creases); returns 1 label a triangle, each label's triangles connected. The chart
+// is connected.
+std::vector<std::uint8_t> divide(const Topology& topology, const LocalChart& chart,
+                                 std::span<const std::uint32_t> seeds);
+
+// Joins two border loops of a connected chart by a shortest path of edges (creases are shorter),
+// marking its half-edges as seams. False if the chart has fewer than two loops.
+bool join_loops(const Topology& topology, const LocalChart& chart, Partition& partition);
+
+}  // namespace atlas

@@ -1,0 +1,434 @@
+#include "libatlas/charts/topology.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+// Twice the area below this share of the longest edge squared is rounding, not shape: double
+// products of float coordinates are good to 1e-16.
+constexpr double kDegenerateShare = 1e-12;
+// Two of several triangles at an edge continue each other if they fold by less than 60 degrees.
+constexpr double kFlatPair = 0.5;
+// Larger fans around one edge are left open rather than paired by a quadratic search.
+constexpr std::size_t kMaxPairedFan = 32;
+
+Status check_input(const MeshView& mesh) {
+  const std::size_t n = mesh.indices.size();
+  if (n < 3) return {ErrorCode::bad_input, "mesh: no triangle (nothing to chart)"};
+  if (n % 3 != 0) {
+    return {ErrorCode::bad_input, fmt::format("mesh: {} indices are not whole triangles", n)};
+  }
+  if (n / 3 >= (std::size_t{1} << 30)) {
+    return {ErrorCode::unsupported, "mesh: more than 2^30 triangles (split it)"};
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint32_t v = mesh.indices[i];
+    if (v >= mesh.positions.size()) {
+      return {ErrorCode::bad_input, fmt::format("triangle {}: vertex index {} out of range ({})",
+                                                i / 3, v, mesh.positions.size())};
+    }
+    const Vec3f& p = mesh.positions[v];
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+      return {ErrorCode::bad_input,
+              fmt::format("triangle {}: vertex {} has a position that is not finite", i / 3, v)};
+    }
+  }
+  if (!mesh.materials.empty() && mesh.materials.size() != n / 3) {
+    return {ErrorCode::bad_input, "mesh: materials must be empty or 1 a triangle"};
+  }
+  if (!mesh.density.empty() && mesh.density.size() != n / 3) {
+    return {ErrorCode::bad_input, "mesh: densities must be empty or 1 a triangle"};
+  }
+  return {};
+}
+
+// The power of two that brings the largest extent of the used vertices into [1, 2).
+double unit_scale(const MeshView& mesh) {
+  glm::vec3 low(std::numeric_limits<float>::max()), high(-low);
+  for (const std::uint32_t v : mesh.indices) {
+    const glm::vec3 p = to_glm(mesh.positions[v]);
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  const glm::dvec3 extent = glm::dvec3(high) - glm::dvec3(low);
+  const double size = std::max({extent.x, extent.y, extent.z});
+  return size > 0 ? std::ldexp(1.0, -std::ilogb(size)) : 1.0;
+}
+
+std::uint64_t hash_position(const std::uint32_t (&key)[3]) {
+  std::uint64_t h = key[0] * 0x9e3779b97f4a7c15ull;
+  h = (h ^ (h >> 32) ^ key[1]) * 0xd6e8feb86659fd93ull;
+  h = (h ^ (h >> 32) ^ key[2]) * 0xd6e8feb86659fd93ull;
+  return h ^ (h >> 32);
+}
+
+// Fills points, source_vertex and corner_vertex. Vertices are numbered in input order.
+void weld(const MeshView& mesh, Topology& topology) {
+  const std::size_t n = mesh.positions.size();
+  std::vector<std::uint8_t> used(n, 0);
+  for (const std::uint32_t v : mesh.indices) used[v] = 1;
+  const std::size_t capacity = std::bit_ceil(std::max<std::size_t>(16, 2 * n));
+  std::vector<std::uint32_t> table(capacity, kNoIndex), id(n, kNoIndex);
+  for (std::uint32_t v = 0; v < n; ++v) {
+    if (!used[v]) continue;
+    Vec3f p = mesh.positions[v];
+    p = {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};  // -0 is 0
+    std::uint32_t key[3];
+    std::memcpy(key, &p, sizeof key);
+    std::size_t slot = hash_position(key) & (capacity - 1);
+    for (;; slot = (slot + 1) & (capacity - 1)) {
+      if (table[slot] == kNoIndex) {
+        table[slot] = static_cast<std::uint32_t>(topology.source_vertex.size());
+        topology.source_vertex.push_back(v);
+        topology.points.push_back(p);
+        break;
+      }
+      if (topology.points[table[slot]] == p) break;
+    }
+    id[v] = table[slot];
+  }
+  topology.corner_vertex.resize(mesh.indices.size());
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+    topology.corner_vertex[i] = id[mesh.indices[i]];
+  }
+  const auto scale = static_cast<float>(topology.scale);
+  for (Vec3f& p : topology.points) p = {p.x * scale, p.y * scale, p.z * scale};
+}
+
+glm::dvec3 point(const Topology& topology, std::uint32_t corner) {
+  return to_dvec(topology.points[topology.corner_vertex[corner]]);
+}
+
+void measure_triangles(Topology& topology) {
+  const std::size_t n = topology.corner_vertex.size() / 3;
+  topology.normals.assign(n, Vec3f{});
+  topology.areas.assign(n, 0.0f);
+  topology.flags.assign(n, 0);
+  for (std::uint32_t t = 0; t < n; ++t) {
+    const glm::dvec3 a = point(topology, 3 * t), b = point(topology, 3 * t + 1),
+                     c = point(topology, 3 * t + 2);
+    const glm::dvec3 cross = glm::cross(b - a, c - a);
+    const double twice = glm::length(cross);
+    const double longest =
+        std::max({glm::dot(b - a, b - a), glm::dot(c - a, c - a), glm::dot(c - b, c - b)});
+    if (!(twice > kDegenerateShare * longest)) {
+      topology.flags[t] = Topology::kDegenerate;
+      ++topology.defects.degenerate_triangles;
+      continue;
+    }
+    topology.normals[t] = from_glm(glm::vec3(cross / twice));
+    topology.areas[t] = static_cast<float>(0.5 * twice);
+  }
+}
+
+// Links half-edges that share an edge.
+class Linker {
+ public:
+  Linker(const MeshView& mesh, const TopologyOptions& options, Topology& topology)
+      : mesh_(mesh), options_(options), topology_(topology) {}
+
+  void run() {
+    sort_by_lower_vertex();
+    topology_.opposite.assign(topology_.corner_vertex.size(), kNoIndex);
+    duplicate_.assign(topology_.triangle_count(), 0);
+    for (std::size_t v = 0; v + 1 < first_.size(); ++v) {
+      link_bucket(edges_.data() + first_[v], edges_.data() + first_[v + 1]);
+    }
+  }
+
+  bool needs_turning() const { return topology_.defects.misoriented_edges > 0; }
+
+ private:
+  struct Edge {
+    std::uint32_t upper, half_edge;
+  };
+
+  std::uint32_t from(std::uint32_t h) const { return topology_.corner_vertex[h]; }
+  std::uint32_t to(std::uint32_t h) const { return topology_.corner_vertex[next_half_edge(h)]; }
+  std::uint32_t third(std::uint32_t h) const {
+    return topology_.corner_vertex[previous_half_edge(h)];
+  }
+
+  void sort_by_lower_vertex() {
+    const auto n = static_cast<std::uint32_t>(topology_.corner_vertex.size());
+    first_.assign(topology_.points.size() + 2, 0);
+    const auto each = [&](auto&& body) {
+      for (std::uint32_t t = 0; t < n / 3; ++t) {
+        if (topology_.degenerate(t)) continue;
+        for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+          const std::uint32_t a = from(h), b = to(h);
+          body(std::min(a, b), std::max(a, b), h);
+        }
+      }
+    };
+    each([&](std::uint32_t low, std::uint32_t, std::uint32_t) { ++first_[low + 2]; });
+    for (std::size_t i = 2; i < first_.size(); ++i) first_[i] += first_[i - 1];
+    edges_.resize(first_.back());
+    each([&](std::uint32_t low, std::uint32_t high, std::uint32_t h) {
+      edges_[first_[low + 1]++] = {high, h};
+    });
+    first_.pop_back();
+  }
+
+  void link_bucket(Edge* begin, Edge* end) {
+    const auto order = [](const Edge& a, const Edge& b) {
+      return a.upper != b.upper ? a.upper < b.upper : a.half_edge < b.half_edge;
+    };
+    if (end - begin <= 12) {
+      for (Edge* i = begin; i < end; ++i) {  // insertion sort: most buckets hold three to six
+        const Edge moved = *i;
+        Edge* j = i;
+        for (; j > begin && order(moved, j[-1]); --j) *j = j[-1];
+        *j = moved;
+      }
+    } else {
+      std::sort(begin, end, order);
+    }
+    for (Edge *i = begin, *j = begin; i < end; i = j) {
+      while (j < end && j->upper == i->upper) ++j;
+      if (j - i == 2) {
+        link_pair(i[0].half_edge, i[1].half_edge);
+      } else if (j - i > 2) {
+        link_fan(i, j);
+      }
+    }
+  }
+
+  void link_pair(std::uint32_t g, std::uint32_t h) {
+    if (third(g) == third(h)) {
+      mark_duplicate(g, h);
+    } else if (!may_link(g, h)) {
+      topology_.cut_length += length(g);
+    } else {
+      link(g, h);
+    }
+  }
+
+  void link_fan(const Edge* begin, const Edge* end) {
+    ++topology_.defects.nonmanifold_edges;
+    std::vector<std::uint32_t> fan;
+    for (const Edge* e = begin; e < end; ++e) fan.push_back(e->half_edge);
+    std::sort(fan.begin(), fan.end(), [&](std::uint32_t g, std::uint32_t h) {
+      return third(g) != third(h) ? third(g) < third(h) : g < h;
+    });
+    std::vector<std::uint32_t> originals, copies;
+    for (std::size_t i = 0; i < fan.size(); ++i) {
+      const bool copy = i > 0 && third(fan[i]) == third(fan[i - 1]);
+      if (copy) mark_duplicate(fan[i - 1], fan[i]);
+      (copy ? copies : originals).push_back(fan[i]);
+    }
+    pair_by_flatness(originals);
+    pair_by_flatness(copies);
+  }
+
+  void pair_by_flatness(const std::vector<std::uint32_t>& fan) {
+    if (fan.size() < 2 || fan.size() > kMaxPairedFan) return;
+    struct Pair {
+      double flatness;
+      std::uint32_t g, h;
+    };
+    std::vector<Pair> pairs;
+    for (std::size_t i = 0; i < fan.size(); ++i) {
+      for (std::size_t j = i + 1; j < fan.size(); ++j) {
+        const double flatness = -glm::dot(wing(fan[i]), wing(fan[j]));
+        if (flatness > kFlatPair && may_link(fan[i], fan[j])) {
+          pairs.push_back({flatness, std::min(fan[i], fan[j]), std::max(fan[i], fan[j])});
+        }
+      }
+    }
+    std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) {
+      if (a.flatness != b.flatness) return a.flatness > b.flatness;
+      return a.g != b.g ? a.g < b.g : a.h < b.h;
+    });
+    for (const Pair& pair : pairs) {
+      if (topology_.opposite[pair.g] == kNoIndex && topology_.opposite[pair.h] == kNoIndex) {
+        link(pair.g, pair.h);
+      }
+    }
+  }
+
+  // The direction in which a triangle leaves its edge, square to the edge.
+  glm::dvec3 wing(std::uint32_t h) const {
+    const std::uint32_t low = from(h) < to(h) ? h : next_half_edge(h);
+    const std::uint32_t high = from(h) < to(h) ? next_half_edge(h) : h;
+    const glm::dvec3 a = point(topology_, low), edge = glm::normalize(point(topology_, high) - a);
+    const glm::dvec3 d = point(topology_, previous_half_edge(h)) - a;
+    return glm::normalize(d - glm::dot(d, edge) * edge);
+  }
+
+  bool may_link(std::uint32_t g, std::uint32_t h) const {
+    const std::uint32_t s = g / 3, t = h / 3;
+    if (options_.cut_at_materials && !mesh_.materials.empty() &&
+        mesh_.materials[s] != mesh_.materials[t]) {
+      return false;
+    }
+    if (!options_.cut_at_uv_seams || mesh_.texcoord_indices.empty()) return true;
+    const bool aligned = from(g) == from(h);
+    return same_texcoord(g, aligned ? h : next_half_edge(h)) &&
+           same_texcoord(next_half_edge(g), aligned ? next_half_edge(h) : h);
+  }
+
+  bool same_texcoord(std::uint32_t i, std::uint32_t j) const {
+    const std::uint32_t a = mesh_.texcoord_indices[i], b = mesh_.texcoord_indices[j];
+    if (a == b) return true;
+    const std::size_t n = mesh_.texcoords.size();
+    return a < n && b < n && mesh_.texcoords[a] == mesh_.texcoords[b];
+  }
+
+  double length(std::uint32_t h) const {
+    return glm::distance(point(topology_, h), point(topology_, next_half_edge(h))) /
+           topology_.scale;
+  }
+
+  void mark_duplicate(std::uint32_t g, std::uint32_t h) {
+    std::uint8_t& mark = duplicate_[std::max(g, h) / 3];
+    if (!mark) ++topology_.defects.duplicate_triangles;
+    mark = 1;
+  }
+
+  void link(std::uint32_t g, std::uint32_t h) {
+    topology_.opposite[g] = h;
+    topology_.opposite[h] = g;
+    if (from(g) == from(h)) ++topology_.defects.misoriented_edges;
+  }
+
+  const MeshView& mesh_;
+  const TopologyOptions& options_;
+  Topology& topology_;
+  std::vector<std::uint32_t> first_;
+  std::vector<Edge> edges_;
+  std::vector<std::uint8_t> duplicate_;
+};
+
+// Numbers the pieces and finds which triangles to turn so that neighbours agree. Where no choice
+// agrees, the link is cut. Each piece keeps the orientation that most of its area has.
+class Pieces {
+ public:
+  explicit Pieces(Topology& topology) : topology_(topology) {}
+
+  void run() {
+    const auto n = static_cast<std::uint32_t>(topology_.triangle_count());
+    topology_.component.assign(n, kNoIndex);
+    turned_.assign(n, 0);
+    for (std::uint32_t t = 0; t < n; ++t) {
+      if (topology_.component[t] == kNoIndex && !topology_.degenerate(t)) flood(t);
+    }
+    if (topology_.defects.misoriented_edges == 0) return;
+    cut_conflicts();
+    for (std::uint32_t t = 0; t < n; ++t) {
+      if (topology_.flags[t] & Topology::kFlipped) turn(t);
+    }
+  }
+
+ private:
+  bool misoriented(std::uint32_t h, std::uint32_t o) const {
+    return topology_.corner_vertex[h] == topology_.corner_vertex[o];
+  }
+
+  void flood(std::uint32_t seed) {
+    queue_.assign(1, seed);
+    topology_.component[seed] = topology_.component_count;
+    double kept = 0, turned = 0;
+    for (std::size_t i = 0; i < queue_.size(); ++i) {
+      const std::uint32_t t = queue_[i];
+      (turned_[t] ? turned : kept) += topology_.areas[t];
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        const std::uint32_t o = topology_.opposite[h];
+        if (o == kNoIndex || topology_.component[o / 3] != kNoIndex) continue;
+        topology_.component[o / 3] = topology_.component_count;
+        turned_[o / 3] = turned_[t] ^ (misoriented(h, o) ? 1 : 0);
+        queue_.push_back(o / 3);
+      }
+    }
+    const std::uint8_t reference = turned > kept ? 1 : 0;
+    if (turned > 0) {
+      for (const std::uint32_t t : queue_) {
+        if (turned_[t] != reference) topology_.flags[t] |= Topology::kFlipped;
+      }
+    }
+    ++topology_.component_count;
+  }
+
+  void cut_conflicts() {
+    for (std::uint32_t h = 0; h < topology_.opposite.size(); ++h) {
+      const std::uint32_t o = topology_.opposite[h];
+      if (o == kNoIndex || o < h) continue;
+      const bool differ = turned_[h / 3] != turned_[o / 3];
+      if (differ == misoriented(h, o)) continue;
+      topology_.opposite[h] = topology_.opposite[o] = kNoIndex;
+      topology_.cut_length +=
+          glm::distance(point(topology_, h), point(topology_, next_half_edge(h))) / topology_.scale;
+    }
+  }
+
+  // Exchanges corners 1 and 2, and with them half-edges 0 and 2.
+  void turn(std::uint32_t t) {
+    const std::uint32_t a = 3 * t, b = 3 * t + 2;
+    std::swap(topology_.corner_vertex[3 * t + 1], topology_.corner_vertex[3 * t + 2]);
+    Vec3f& normal = topology_.normals[t];
+    normal = {-normal.x, -normal.y, -normal.z};
+    const std::uint32_t across_a = topology_.opposite[a], across_b = topology_.opposite[b];
+    topology_.opposite[a] = across_b;
+    topology_.opposite[b] = across_a;
+    if (across_a != kNoIndex) topology_.opposite[across_a] = b;
+    if (across_b != kNoIndex) topology_.opposite[across_b] = a;
+  }
+
+  Topology& topology_;
+  std::vector<std::uint8_t> turned_;
+  std::vector<std::uint32_t> queue_;
+};
+
+// Counts vertices around which the triangles form more than one fan.
+void count_nonmanifold_vertices(Topology& topology) {
+  const std::size_t corners = topology.corner_vertex.size();
+  std::vector<std::uint8_t> fans(topology.points.size(), 0), seen(corners, 0);
+  for (std::uint32_t start = 0; start < corners; ++start) {
+    if (seen[start] || topology.degenerate(start / 3)) continue;
+    std::uint8_t& count = fans[topology.corner_vertex[start]];
+    if (count < 3) ++count;
+    seen[start] = 1;
+    std::uint32_t h = start;
+    for (;;) {  // one way around, until the start or a border
+      const std::uint32_t o = topology.opposite[previous_half_edge(h)];
+      if (o == kNoIndex) break;
+      h = o;
+      if (h == start) break;
+      seen[h] = 1;
+    }
+    if (topology.opposite[previous_half_edge(h)] != kNoIndex) continue;
+    for (std::uint32_t o = topology.opposite[start]; o != kNoIndex; o = topology.opposite[h]) {
+      h = next_half_edge(o);
+      seen[h] = 1;
+    }
+  }
+  for (const std::uint8_t count : fans) topology.defects.nonmanifold_vertices += count > 1;
+}
+
+}  // namespace
+
+Result<Topology> build_topology(const MeshView& mesh, const TopologyOptions& options,
+                                const Context& context) {
+  if (Status status = check_input(mesh); !status.ok()) return status;
+  Topology topology;
+  topology.scale = unit_scale(mesh);
+  weld(mesh, topology);
+  measure_triangles(topology);
+  if (context.cancelled()) return Status::cancelled();
+  Linker(mesh, options, topology).run();
+  if (context.cancelled()) return Status::cancelled();
+  Pieces(topology).run();
+  count_nonmanifold_vertices(topology);
+  return topology;
+}
+
+}  // namespace atlas
