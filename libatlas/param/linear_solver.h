@@ -33,7 +33,9 @@ class SparseDirectSolver {
  public:
   SparseDirectSolver();
   ~SparseDirectSolver();
-  bool factorize(const SymmetricMatrix& matrix);  // false: not definite to working precision
+  // same_pattern: the entries stand where they stood in the last call, so its ordering is kept.
+  // False: not definite to working precision.
+  bool factorize(const SymmetricMatrix& matrix, bool same_pattern);
   void solve(std::span<const glm::dvec2> load, std::span<glm::dvec2> x);
 
  private:

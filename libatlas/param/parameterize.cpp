@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/param/arap_solver.h"
 #include "libatlas/param/planar.h"
 
 namespace atlas {
@@ -53,6 +54,19 @@ void finish(const LocalMesh& mesh, const ParamOptions& options, ParamResult& r) 
   list_offenders(r, check, stretch, options.max_stretch);
 }
 
+// Flips out, then the stretch down; squeezing may flip anew, hence the second round.
+void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolver& solver,
+             ParamResult& r) {
+  for (int round = 0; round < 2; ++round) {
+    if (solver.measure(r.uvs).flips > 0) {
+      r.unflipped += static_cast<int>(solver.remove_flips({}, r.uvs).turned);
+    }
+    if (options.squeeze_iterations <= 0 || round > 0) return;
+    if (measure_distortion(mesh, r.uvs).stretch_999 <= options.max_stretch) return;
+    solver.squeeze(options.max_stretch, options.squeeze_iterations, r.uvs);
+  }
+}
+
 }  // namespace
 
 ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
@@ -80,7 +94,10 @@ ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
   if (start.uvs.empty() && start.frames.empty() && planar_stretch_bound(mesh, axis) < 4) {
     start.uvs = r.uvs;
   }
-  flatten_isometric(mesh, start, {options.iterations, options.min_altitude}, r.uvs, workspace);
+  param::ArapSolver solver(mesh, options.min_altitude, workspace.impl());
+  solver.start(start);
+  solver.iterate(std::max(options.iterations, 1), r.uvs);
+  descend(mesh, options, solver, r);
   finish(mesh, options, r);
   return r;
 }

@@ -15,7 +15,7 @@ struct SparseDirectSolver::Impl {
 SparseDirectSolver::SparseDirectSolver() : impl_(std::make_unique<Impl>()) {}
 SparseDirectSolver::~SparseDirectSolver() = default;
 
-bool SparseDirectSolver::factorize(const SymmetricMatrix& matrix) {
+bool SparseDirectSolver::factorize(const SymmetricMatrix& matrix, bool same_pattern) {
   const int n = static_cast<int>(matrix.rows()) - 1;
   std::vector<Eigen::Triplet<double>> triplets;
   triplets.reserve(static_cast<std::size_t>(n) + matrix.column.size() / 2);
@@ -28,7 +28,8 @@ bool SparseDirectSolver::factorize(const SymmetricMatrix& matrix) {
   }
   impl_->matrix.resize(n, n);
   impl_->matrix.setFromTriplets(triplets.begin(), triplets.end());
-  impl_->factor.compute(impl_->matrix);
+  if (!same_pattern) impl_->factor.analyzePattern(impl_->matrix);
+  impl_->factor.factorize(impl_->matrix);
   return impl_->factor.info() == Eigen::Success && (impl_->factor.vectorD().array() > 0).all();
 }
 

@@ -1,0 +1,219 @@
+#include "libatlas/param/arap_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace atlas::param {
+namespace {
+
+// Up to this many vertices the envelope solver is the faster one (measured).
+constexpr std::size_t envelope_limit = 1500;
+
+void rotations_from_frames(const LocalMesh& mesh, std::span<const Element> elements,
+                           std::span<const std::array<Vec3d, 2>> frames, Rotations& out) {
+  out.resize(elements.size());
+  for (std::size_t t = 0; t < elements.size(); ++t) {
+    const auto& v = elements[t].v;
+    const glm::dvec3 p = to_glm(mesh.positions[v[0]]);
+    const glm::dvec3 e = to_glm(mesh.positions[v[1]]) - p, f = to_glm(mesh.positions[v[2]]) - p;
+    const double squared = glm::dot(e, e);
+    const glm::dvec3 up = squared > 0 ? f - e * (glm::dot(f, e) / squared) : glm::dvec3(0);
+    const double base = std::sqrt(squared), height = glm::length(up);
+    const glm::dvec3 x = base > 0 ? e / base : glm::dvec3(0);
+    const glm::dvec3 y = height > 0 ? up / height : glm::dvec3(0);
+    const glm::dvec3 a = to_glm(frames[t][0]), b = to_glm(frames[t][1]);
+    out[t] = nearest_rotation({{glm::dot(a, x), glm::dot(b, x)}, {glm::dot(a, y), glm::dot(b, y)}});
+  }
+}
+
+std::uint32_t middle_triangle(const LocalMesh& mesh) {
+  glm::dvec3 centre(0);
+  const auto middle = [&](const std::array<std::uint32_t, 3>& tri) {
+    return (to_glm(mesh.positions[tri[0]]) + to_glm(mesh.positions[tri[1]]) +
+            to_glm(mesh.positions[tri[2]])) /
+           3.0;
+  };
+  for (const auto& tri : mesh.triangles) centre += middle(tri);
+  centre /= static_cast<double>(mesh.triangles.size());
+  std::uint32_t best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const glm::dvec3 d = middle(mesh.triangles[t]) - centre;
+    if (glm::dot(d, d) < least) {
+      least = glm::dot(d, d);
+      best = t;
+    }
+  }
+  return best;
+}
+
+// The unit vector from a to b, both corners of e, in e's rest plane.
+glm::dvec2 edge_direction(const Element& e, std::uint32_t a, std::uint32_t b) {
+  const auto place = [&](std::uint32_t v) {
+    return v == e.v[0]   ? glm::dvec2(0)
+           : v == e.v[1] ? glm::dvec2(e.length, 0)
+                         : glm::dvec2(e.foot, e.altitude);
+  };
+  const glm::dvec2 d = place(b) - place(a);
+  const double l = glm::length(d);
+  return l > 0 ? d / l : glm::dvec2(1, 0);
+}
+
+// Unfolds triangle after triangle, breadth-first, each along the edge by which it was reached.
+void carry_rotations(const LocalMesh& mesh, ParamWorkspace::Impl& w) {
+  w.half_edges.build(mesh);
+  w.rotations.assign(mesh.triangles.size(), glm::dvec2(0));
+  const auto flood = [&](std::uint32_t start) {
+    w.rotations[start] = {1, 0};
+    w.queue.assign(1, start);
+    for (std::size_t i = 0; i < w.queue.size(); ++i) {
+      const std::uint32_t t = w.queue[i];
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        const std::uint32_t g = w.half_edges.opposite(h);
+        if (g == HalfEdges::none) continue;
+        const std::uint32_t other = HalfEdges::triangle(g);
+        if (w.rotations[other] != glm::dvec2(0)) continue;
+        const std::uint32_t a = w.half_edges.from(h), b = w.half_edges.to(h);
+        const glm::dvec2 here = edge_direction(w.elements[t], a, b);
+        const glm::dvec2 there = edge_direction(w.elements[other], a, b);
+        // rotation of other = rotation of t * here / there, as complex numbers of unit length
+        const glm::dvec2 r = w.rotations[t];
+        const glm::dvec2 turn(glm::dot(here, there), cross(there, here));
+        const glm::dvec2 carried(r.x * turn.x - r.y * turn.y, r.x * turn.y + r.y * turn.x);
+        w.rotations[other] = carried / glm::length(carried);
+        w.queue.push_back(other);
+      }
+    }
+  };
+  flood(middle_triangle(mesh));
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (w.rotations[t] == glm::dvec2(0)) flood(t);  // a second piece, against the precondition
+  }
+}
+
+}  // namespace
+
+ArapSolver::ArapSolver(const LocalMesh& mesh, double min_altitude, ParamWorkspace::Impl& workspace)
+    : mesh_(mesh), w_(workspace) {
+  build_elements(mesh, min_altitude, w_.elements);
+  w_.corners.build(w_.elements, mesh.positions.size());
+  w_.load.resize(mesh.positions.size());
+  w_.solution.resize(mesh.positions.size());
+  factorize();
+}
+
+void ArapSolver::factorize() {
+  build_stiffness(w_.elements, w_.corners, w_.stiffness);
+  small_ =
+      mesh_.positions.size() <= envelope_limit || !w_.direct.factorize(w_.stiffness, analyzed_);
+  if (small_) w_.envelope.factorize(w_.stiffness);
+  analyzed_ = true;
+}
+
+void ArapSolver::start(const IsometricStart& start) {
+  if (!start.uvs.empty()) {
+    local_rotations(w_.elements, start.uvs, w_.rotations);
+  } else if (!start.frames.empty()) {
+    rotations_from_frames(mesh_, w_.elements, start.frames, w_.rotations);
+  } else {
+    carry_rotations(mesh_, w_);
+  }
+}
+
+void ArapSolver::start(std::span<const Vec2d> uvs) {
+  local_rotations(w_.elements, uvs, w_.rotations);
+}
+
+void ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
+  for (int i = 0; i < steps; ++i) {
+    if (i > 0) local_rotations(w_.elements, uvs, w_.rotations);
+    rotation_load(w_.elements, w_.rotations, w_.load);
+    if (small_) {
+      w_.envelope.solve(w_.load, w_.solution);
+    } else {
+      w_.direct.solve(w_.load, w_.solution);
+    }
+    for (std::size_t v = 0; v < uvs.size(); ++v) uvs[v] = from_glm(w_.solution[v]);
+  }
+}
+
+// Fills w_.stretch with log max(s1, 1/s2) at the area-preserving scale, and returns the value
+// that 99.9 % of the area stays within.
+double ArapSolver::update_stretch(std::span<const Vec2d> uvs) {
+  constexpr double worst = 10;  // for flipped triangles
+  double area = 0, uv_area = 0;
+  w_.stretch.resize(w_.elements.size());
+  w_.sorted.resize(w_.elements.size());
+  w_.sigma.resize(w_.elements.size());
+  for (std::size_t t = 0; t < w_.elements.size(); ++t) {
+    const Element& e = w_.elements[t];
+    const Jacobian j = e.jacobian(to_glm(uvs[e.v[0]]), to_glm(uvs[e.v[1]]), to_glm(uvs[e.v[2]]));
+    w_.sigma[t] = singular_values(j);
+    area += e.area();
+    uv_area += e.area() * std::abs(j.det());
+  }
+  const double scale = uv_area > 0 ? std::sqrt(area / uv_area) : 1;
+  for (std::size_t t = 0; t < w_.elements.size(); ++t) {
+    const SingularValues s = w_.sigma[t];
+    const double r =
+        s.small > 0 ? std::max(std::log(s.large * scale), -std::log(s.small * scale)) : worst;
+    w_.stretch[t] = std::min(r, worst);
+    w_.sorted[t] = static_cast<std::uint32_t>(t);
+  }
+  const auto above = [&](std::uint32_t a, std::uint32_t b) {
+    return w_.stretch[a] != w_.stretch[b] ? w_.stretch[a] > w_.stretch[b] : a < b;
+  };
+  std::sort(w_.sorted.begin(), w_.sorted.end(), above);
+  double sum = 0;
+  for (const std::uint32_t t : w_.sorted) {
+    sum += w_.elements[t].area();
+    if (sum > 0.001 * area) return w_.stretch[t];
+  }
+  return w_.stretch[w_.sorted.back()];
+}
+
+double ArapSolver::squeeze(double goal, int iterations, std::span<Vec2d> uvs) {
+  // The mean of the 12th power of the stretch stands in for its maximum: 6 leaves a tenth of the
+  // gain, 20 gains nothing more. Damped by 1 / (power - 2) the weights settle; undamped they swing
+  // (measured).
+  constexpr double power = 12, damping = 0.1;
+  const double log_goal = std::log(goal);
+  double now = update_stretch(uvs), best = now, before = now;
+  w_.best.assign(uvs.begin(), uvs.end());
+  for (int i = 0; i < iterations && best > log_goal; ++i) {
+    for (std::size_t t = 0; t < w_.elements.size(); ++t) {
+      // The outermost 0.1 % may stay as it is: more weight to it would only spoil the rest.
+      const double r = std::clamp(w_.stretch[t] / now, 0.05, 1.0);
+      double& weight = w_.elements[t].weight;
+      weight = std::exp((1 - damping) * std::log(weight) + damping * (power - 2) * std::log(r));
+    }
+    factorize();
+    for (int k = 0; k < 2; ++k) {
+      start(uvs);
+      iterate(1, uvs);
+    }
+    now = update_stretch(uvs);
+    if (now < best) {
+      before = best;
+      best = now;
+      w_.best.assign(uvs.begin(), uvs.end());
+    }
+    // Steps get shorter: if as many more like the last one do not suffice, none will.
+    const double gain = before - best;
+    if (i >= 2 && best - gain * (iterations - 1 - i) > log_goal) break;
+  }
+  std::copy(w_.best.begin(), w_.best.end(), uvs.begin());
+  return std::exp(best);
+}
+
+Relaxer::Outcome ArapSolver::remove_flips(std::span<const std::uint32_t> also,
+                                          std::span<Vec2d> uvs) {
+  return w_.relaxer.remove_flips(w_.elements, w_.corners, also, uvs);
+}
+
+IsometricResult ArapSolver::measure(std::span<const Vec2d> uvs) const {
+  return measure_energy(w_.elements, uvs);
+}
+
+}  // namespace atlas::param

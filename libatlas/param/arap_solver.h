@@ -1,0 +1,46 @@
+// Internal: the state of one chart's isometric descent.
+#pragma once
+
+#include <span>
+
+#include "libatlas/param/isometric.h"
+#include "libatlas/param/relax.h"
+#include "libatlas/param/workspace.h"
+
+namespace atlas::param {
+
+// Works in the workspace it is given; one at a time for each workspace.
+class ArapSolver {
+ public:
+  // Builds the elements, and what else the steps need, once.
+  ArapSolver(const LocalMesh& mesh, double min_altitude, ParamWorkspace::Impl& workspace);
+
+  // The rotations that the first global step uses.
+  void start(const IsometricStart& start);
+  void start(std::span<const Vec2d> uvs);
+
+  // Global steps, with local steps between them, from the current rotations.
+  void iterate(int steps, std::span<Vec2d> uvs);
+
+  // Lowers the stretch that 99.9 % of the area stays within: triangles are weighted by a power of
+  // their stretch and the system is solved again (iteratively reweighted least squares towards the
+  // maximum norm; Burrus, Barreto and Selesnick 1994, "Iterative reweighted least-squares design of
+  // FIR filters"). Ends when that stretch is at most `goal`, after `iterations`, or when it will
+  // not get there at this rate. uvs becomes the best state seen; returns its stretch.
+  double squeeze(double goal, int iterations, std::span<Vec2d> uvs);
+
+  Relaxer::Outcome remove_flips(std::span<const std::uint32_t> also, std::span<Vec2d> uvs);
+
+  IsometricResult measure(std::span<const Vec2d> uvs) const;
+
+ private:
+  void factorize();
+  double update_stretch(std::span<const Vec2d> uvs);
+
+  const LocalMesh& mesh_;
+  ParamWorkspace::Impl& w_;
+  bool small_ = true;
+  bool analyzed_ = false;
+};
+
+}  // namespace atlas::param

@@ -1,0 +1,219 @@
+#include "libatlas/param/relax.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace atlas::param {
+namespace {
+
+// Partial derivatives of a triangle's energy by f and d.
+struct Derivatives {
+  double f, d, dd, fd;
+};
+
+double untangling(double f, double d, double epsilon) {
+  const double chi = 0.5 * (d + std::sqrt(d * d + epsilon * epsilon));
+  return (f + 1 + d * d) / chi;
+}
+
+Derivatives untangling_derivatives(double f, double d, double epsilon) {
+  const double root = std::sqrt(d * d + epsilon * epsilon);
+  // For negative d the sum cancels; this form of it does not.
+  const double chi = d > 0 ? 0.5 * (d + root) : 0.5 * epsilon * epsilon / (root - d);
+  const double chi1 = chi / root, chi2 = 0.5 * epsilon * epsilon / (root * root * root);
+  const double n = f + 1 + d * d, inverse = 1 / chi, squared = inverse * inverse;
+  Derivatives out;
+  out.f = inverse;
+  out.fd = -chi1 * squared;
+  out.d = 2 * d * inverse + n * out.fd;
+  out.dd = 2 * inverse - 4 * d * chi1 * squared +
+           n * (2 * chi1 * chi1 * squared * inverse - chi2 * squared);
+  return out;
+}
+
+double symmetric_dirichlet(double f, double d) {
+  return d > 0 ? f * (1 + 1 / (d * d)) : std::numeric_limits<double>::infinity();
+}
+
+Derivatives symmetric_dirichlet_derivatives(double f, double d) {
+  const double i = 1 / d, i2 = i * i;
+  return {1 + i2, -2 * f * i2 * i, 6 * f * i2 * i2, -2 * i2 * i};
+}
+
+}  // namespace
+
+Jacobian Relaxer::jacobian(std::uint32_t t) const {
+  const Element& e = elements_[t];
+  return e.jacobian(to_glm(uvs_[e.v[0]]), to_glm(uvs_[e.v[1]]), to_glm(uvs_[e.v[2]]));
+}
+
+void Relaxer::gather(std::span<const std::uint32_t> seeds, int rings) {
+  vertices_.clear();
+  triangles_.clear();
+  const auto take_vertex = [&](std::uint32_t v) {
+    if (!vertex_in_[v]) vertices_.push_back(v);
+    vertex_in_[v] = 1;
+  };
+  for (const std::uint32_t t : seeds) {
+    for (const std::uint32_t v : elements_[t].v) take_vertex(v);
+  }
+  std::size_t begin = 0;
+  for (int ring = 0; ring < rings; ++ring) {
+    const std::size_t end = vertices_.size();
+    for (; begin < end; ++begin) {
+      const std::uint32_t v = vertices_[begin];
+      for (std::uint32_t i = corners_->first[v]; i < corners_->first[v + 1]; ++i) {
+        for (const std::uint32_t w : elements_[corners_->corner[i] / 3].v) take_vertex(w);
+      }
+    }
+  }
+  for (const std::uint32_t v : vertices_) {
+    for (std::uint32_t i = corners_->first[v]; i < corners_->first[v + 1]; ++i) {
+      const std::uint32_t t = corners_->corner[i] / 3;
+      if (!triangle_in_[t]) triangles_.push_back(t);
+      triangle_in_[t] = 1;
+    }
+  }
+  for (const std::uint32_t v : vertices_) vertex_in_[v] = 0;
+  mean_area_ = 0;
+  for (const std::uint32_t t : triangles_) {
+    triangle_in_[t] = 0;
+    mean_area_ += elements_[t].area();
+  }
+  mean_area_ /= static_cast<double>(std::max<std::size_t>(triangles_.size(), 1));
+}
+
+void Relaxer::load_vertex(std::uint32_t v) {
+  local_.clear();
+  for (std::uint32_t i = corners_->first[v]; i < corners_->first[v + 1]; ++i) {
+    const std::uint32_t t = corners_->corner[i] / 3, k = corners_->corner[i] % 3;
+    const Element& e = elements_[t];
+    const Jacobian j = jacobian(t);
+    const glm::dvec2 g = e.area_gradients()[k] / e.area();
+    Local l;
+    l.f = glm::dot(j.x, j.x) + glm::dot(j.y, j.y);
+    l.d = j.det();
+    l.q = glm::dot(g, g);
+    l.a = j.x * g.x + j.y * g.y;
+    l.n = {g.x * j.y.y - g.y * j.x.y, g.y * j.x.x - g.x * j.y.x};
+    // A share of the mean area lets slivers have a say.
+    l.weight = e.area() + 0.1 * mean_area_;
+    local_.push_back(l);
+  }
+}
+
+double Relaxer::energy(glm::dvec2 m) const {
+  double sum = 0;
+  const double squared = glm::dot(m, m);
+  for (const Local& l : local_) {
+    const double f = l.f + 2 * glm::dot(l.a, m) + l.q * squared, d = l.d + glm::dot(l.n, m);
+    sum += l.weight * (epsilon_ > 0 ? untangling(f, d, epsilon_) : symmetric_dirichlet(f, d));
+  }
+  return sum;
+}
+
+// Newton's step with the Hessian's eigenvalues made positive.
+glm::dvec2 Relaxer::newton_step() const {
+  Newton s;
+  for (const Local& l : local_) {
+    const Derivatives p = epsilon_ > 0 ? untangling_derivatives(l.f, l.d, epsilon_)
+                                       : symmetric_dirichlet_derivatives(l.f, l.d);
+    const glm::dvec2 df = 2.0 * l.a;
+    s.gradient += l.weight * (p.f * df + p.d * l.n);
+    const double iso = 2 * p.f * l.q;
+    s.xx += l.weight * (iso + p.dd * l.n.x * l.n.x + 2 * p.fd * df.x * l.n.x);
+    s.yy += l.weight * (iso + p.dd * l.n.y * l.n.y + 2 * p.fd * df.y * l.n.y);
+    s.xy += l.weight * (p.dd * l.n.x * l.n.y + p.fd * (df.x * l.n.y + df.y * l.n.x));
+  }
+  const double mean = 0.5 * (s.xx + s.yy), half = 0.5 * (s.xx - s.yy);
+  const double radius = std::sqrt(half * half + s.xy * s.xy);
+  const double floor = 1e-6 * (std::abs(mean) + radius);
+  const double high = std::max(std::abs(mean + radius), floor);
+  const double low = std::max(std::abs(mean - radius), floor);
+  if (!(high > 0)) return glm::dvec2(0);
+  glm::dvec2 axis(1, 0);  // eigenvector of mean + radius
+  if (radius > 0) {
+    axis = half > 0 ? glm::dvec2(half + radius, s.xy) : glm::dvec2(s.xy, radius - half);
+    axis /= glm::length(axis);
+  }
+  const glm::dvec2 other(-axis.y, axis.x);
+  return -(axis * (glm::dot(axis, s.gradient) / high) +
+           other * (glm::dot(other, s.gradient) / low));
+}
+
+void Relaxer::sweep() {
+  for (const std::uint32_t v : vertices_) {
+    load_vertex(v);
+    const glm::dvec2 step = newton_step();
+    double length = 1;
+    if (epsilon_ == 0) {
+      for (const Local& l : local_) {
+        const double rate = glm::dot(l.n, step);
+        if (rate < 0) length = std::min(length, -0.8 * l.d / rate);
+      }
+    }
+    const double before = energy(glm::dvec2(0));
+    for (int halving = 0; halving < 12; ++halving, length *= 0.5) {
+      if (!(energy(step * length) < before)) continue;
+      uvs_[v] = {uvs_[v].x + length * step.x, uvs_[v].y + length * step.y};
+      break;
+    }
+  }
+}
+
+double Relaxer::least_determinant() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t t : triangles_) least = std::min(least, jacobian(t).det());
+  return least;
+}
+
+// Whether every triangle of the neighbourhood ends up clearly positive.
+bool Relaxer::untangle(int sweeps) {
+  constexpr double clearly = 1e-3;
+  for (int i = 0; i < sweeps; ++i) {
+    const double least = least_determinant();
+    if (least >= clearly) return true;
+    epsilon_ = std::sqrt(1e-4 + 0.04 * std::min(least, 0.0) * std::min(least, 0.0));
+    sweep();
+  }
+  return least_determinant() > 0;
+}
+
+Relaxer::Outcome Relaxer::remove_flips(std::span<const Element> elements,
+                                       const CornerLists& corners,
+                                       std::span<const std::uint32_t> also, std::span<Vec2d> uvs) {
+  constexpr int largest_ring = 16, untangling_sweeps = 40, smoothing_sweeps = 8;
+  elements_ = elements;
+  corners_ = &corners;
+  uvs_ = uvs;
+  vertex_in_.assign(uvs.size(), 0);
+  triangle_in_.assign(elements.size(), 0);
+  std::vector<std::uint32_t> seeds(also.begin(), also.end());
+  const auto find = [&] {
+    for (std::uint32_t t = 0; t < elements.size(); ++t) {
+      if (!(jacobian(t).det() > 0)) seeds.push_back(t);
+    }
+    std::sort(seeds.begin(), seeds.end());
+    seeds.erase(std::unique(seeds.begin(), seeds.end()), seeds.end());
+  };
+  find();
+  Outcome out;
+  const std::uint32_t flipped = static_cast<std::uint32_t>(seeds.size());
+  for (int rings = 1; rings <= largest_ring && !seeds.empty(); rings *= 2) {
+    gather(seeds, rings);
+    if (untangle(untangling_sweeps)) {
+      // Spread what the few triangles took over more of them.
+      gather(seeds, rings + 3);
+      epsilon_ = 0;
+      for (int i = 0; i < smoothing_sweeps; ++i) sweep();
+    }
+    seeds.clear();
+    find();
+    out.left = static_cast<std::uint32_t>(seeds.size());
+  }
+  out.turned = flipped > out.left ? flipped - out.left : 0;
+  return out;
+}
+
+}  // namespace atlas::param

@@ -1,0 +1,63 @@
+// Internal: vertex-by-vertex descent that turns flipped triangles right and keeps the others so.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "libatlas/param/stiffness.h"
+
+namespace atlas::param {
+
+// Newton steps on one vertex at a time over small neighbourhoods, two energies of each triangle's
+// map J with d = det J and f = |J|²:
+// - untangling, (f + 1 + d²) / chi(d, e) with chi = (d + sqrt(d² + e²)) / 2, finite for flipped
+//   triangles; e follows the worst d down (Garanzha, Kaporin, Kudryavtseva, Protais, Ray and
+//   Sokolov 2021, "Foldover-free maps in 50 lines of code");
+// - once all are positive, the symmetric Dirichlet energy f (1 + 1 / d²), a barrier against new
+// flips,
+//   each step limited by the roots of the triangles' determinants (Smith and Schaefer 2015,
+//   "Bijective parameterization with free boundaries").
+class Relaxer {
+ public:
+  struct Outcome {
+    std::uint32_t turned = 0;  // triangles turned right
+    std::uint32_t left = 0;    // still not positive
+  };
+
+  // Moves the vertices near non-positive triangles and no others. Triangles listed in `also` count
+  // as flipped even if their determinant is positive in floating point. Starts with a ring about
+  // them, and doubles the rings while that is not enough.
+  Outcome remove_flips(std::span<const Element> elements, const CornerLists& corners,
+                       std::span<const std::uint32_t> also, std::span<Vec2d> uvs);
+
+ private:
+  struct Local {  // what a triangle's energy depends on while one vertex moves by m
+    double f, d, q, weight;
+    glm::dvec2 a, n;  // f' = f + 2 a.m + q m.m, d' = d + n.m
+  };
+  struct Newton {
+    glm::dvec2 gradient{0};
+    double xx = 0, xy = 0, yy = 0;
+  };
+
+  void gather(std::span<const std::uint32_t> seeds, int rings);
+  void load_vertex(std::uint32_t v);
+  double energy(glm::dvec2 m) const;
+  glm::dvec2 newton_step() const;
+  void sweep();
+  double least_determinant() const;
+  Jacobian jacobian(std::uint32_t t) const;
+  bool untangle(int sweeps);
+
+  std::span<const Element> elements_;
+  const CornerLists* corners_ = nullptr;
+  std::span<Vec2d> uvs_;
+  std::vector<std::uint32_t> vertices_,
+      triangles_;  // the neighbourhood: what moves, what is touched
+  std::vector<std::uint8_t> vertex_in_, triangle_in_;
+  std::vector<Local> local_;
+  double mean_area_ = 0;
+  double epsilon_ = 0;  // 0: symmetric Dirichlet
+};
+
+}  // namespace atlas::param
