@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libatlas/scene/scene_builder.h"
 #include "libatlas/scene/text_scanner.h"
 
 namespace atlas {
@@ -83,6 +84,7 @@ class Parser {
           "a vertex needs 3 coordinates, then none or 3 values; it has {} numbers", count));
     }
     chunk_.positions.push_back({n[0], n[1], n[2]});
+    if (!usable_position(chunk_.positions.back())) chunk_.bad_positions.push_back(line_);
     if (count >= 6) {
       add_colour({float(n[3]), float(n[4]), float(n[5])});
     } else if (!chunk_.colours.empty()) {

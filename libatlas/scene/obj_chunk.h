@@ -33,7 +33,8 @@ struct ObjChunk {
   std::vector<std::uint32_t> relative_position, relative_texcoord;
   std::vector<std::uint32_t> face_end, face_line;  // face i has the corners up to face_end[i]
   std::vector<ObjEvent> events;
-  std::vector<std::uint32_t> bad_values, ignored;  // lines of non-finite colours; of other elements
+  // Lines of positions that are no finite floats, of non-finite colours, of ignored elements.
+  std::vector<std::uint32_t> bad_positions, bad_values, ignored;
   std::uint32_t lines = 0;
   std::string error;  // not empty: malformed at error_line
   std::uint32_t error_line = 0;

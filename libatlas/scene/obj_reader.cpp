@@ -95,8 +95,8 @@ class Merger {
       append_vertices(chunk, coloured);
       line_ += chunk.lines;
     }
-    builder_.check_positions(
-        [&](std::size_t i) { return fmt::format("{}: vertex {}", builder_.file, i + 1); });
+    auto bad = bad_places_.begin();  // in the order of the vertices
+    builder_.check_positions([&](std::size_t) { return *bad++; });
     return {};
   }
 
@@ -115,6 +115,9 @@ class Merger {
         }
         b.illumination.push_back(value);
       }
+    }
+    for (const std::uint32_t line : chunk.bad_positions) {
+      if (bad_places_.size() < DefectReport::kMaxPlaces) bad_places_.push_back(place(line));
     }
     for (const std::uint32_t line : chunk.bad_values) {
       b.defects.add(DefectKind::illumination_not_finite, [&] { return place(line); });
@@ -221,6 +224,7 @@ class Merger {
   std::uint32_t line_ = 1;    // of the file, where the chunk at hand begins
   bool has_objects_ = false;  // then groups do not count as objects
   std::vector<std::int64_t> position_counts_, texcoord_counts_;
+  std::vector<std::string> bad_places_;  // of the first unusable positions
   std::map<std::string, std::uint32_t> material_id_, object_id_;
 };
 

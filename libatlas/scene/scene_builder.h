@@ -34,6 +34,12 @@ struct RawMaterial {
   }
 };
 
+// Whether a position can be kept as floats.
+inline bool usable_position(const Vec3d& p) {
+  constexpr double kMax = std::numeric_limits<float>::max();
+  return std::abs(p.x) <= kMax && std::abs(p.y) <= kMax && std::abs(p.z) <= kMax;
+}
+
 // Readers fill the vertex arrays first, then add faces, then finish.
 class SceneBuilder {
  public:
@@ -57,7 +63,7 @@ class SceneBuilder {
   template <class Place>
   void check_positions(const Place& place_of_vertex) {
     for (std::size_t i = 0; i < positions.size(); ++i) {
-      if (usable(positions[i])) continue;
+      if (usable_position(positions[i])) continue;
       all_usable_ = false;
       defects.add(DefectKind::position_not_finite, [&] { return place_of_vertex(i); });
     }
@@ -77,7 +83,7 @@ class SceneBuilder {
     }
     if (!all_usable_) {
       for (const std::int64_t v : vertices) {
-        if (!usable(positions[v])) return drop(DefectKind::bad_position_used, place);
+        if (!usable_position(positions[v])) return drop(DefectKind::bad_position_used, place);
       }
     }
     if (!uvs.empty() && !check_uvs(uvs, place)) uvs = {};
@@ -97,11 +103,6 @@ class SceneBuilder {
   Result<LoadedScene> finish(const ReadOptions& options, const Context& context);
 
  private:
-  static bool usable(const Vec3d& p) {
-    constexpr double kMax = std::numeric_limits<float>::max();
-    return std::abs(p.x) <= kMax && std::abs(p.y) <= kMax && std::abs(p.z) <= kMax;
-  }
-
   template <class Place>
   void drop(DefectKind kind, const Place& place) {
     defects.add(kind, place);

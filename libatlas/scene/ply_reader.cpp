@@ -1,0 +1,305 @@
+// PLY: ascii and both binary orders.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "libatlas/scene/formats.h"
+#include "libatlas/scene/ply_header.h"
+#include "libatlas/scene/text_scanner.h"
+
+namespace atlas {
+namespace fs = std::filesystem;
+namespace {
+
+// Numbers one after the other, whatever the format. Every type fits a double exactly.
+class Numbers {
+ public:
+  Numbers(const FileBytes& bytes, const PlyHeader& header)
+      : format_(header.format),
+        at_(bytes.begin() + header.bytes),
+        end_(bytes.end()),
+        scan_(at_, end_),
+        first_line_(header.lines) {}
+
+  std::size_t bytes_left() const {
+    return static_cast<std::size_t>(end_ - (format_ == PlyFormat::ascii ? scan_.position() : at_));
+  }
+  bool at_end() const { return bytes_left() == 0; }
+  std::uint32_t line() const { return first_line_ + scan_.line() + 1; }  // ascii only
+
+  void begin_element() {
+    if (format_ != PlyFormat::ascii) return;
+    while (!scan_.at_end() && scan_.at_line_end()) scan_.next_line();
+  }
+  void end_element() {
+    if (format_ == PlyFormat::ascii) scan_.next_line();
+  }
+
+  bool next(PlyType type, double& value) {
+    if (format_ == PlyFormat::ascii) return scan_.number(value);
+    const std::size_t size = ply_size(type);
+    if (static_cast<std::size_t>(end_ - at_) < size) return false;
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, at_, size);
+    if (format_ == PlyFormat::big) bits = __builtin_bswap64(bits) >> (64 - 8 * size);
+    value = interpret(bits, type);
+    at_ += size;
+    return true;
+  }
+
+ private:
+  static double interpret(std::uint64_t bits, PlyType type) {
+    switch (type) {
+      case PlyType::i8:
+        return static_cast<std::int8_t>(bits);
+      case PlyType::i16:
+        return static_cast<std::int16_t>(bits);
+      case PlyType::i32:
+        return static_cast<std::int32_t>(bits);
+      case PlyType::f32:
+        return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+      case PlyType::f64:
+        return std::bit_cast<double>(bits);
+      default:
+        return static_cast<double>(bits);
+    }
+  }
+
+  PlyFormat format_;
+  const char *at_, *end_;
+  TextScanner scan_;
+  std::uint32_t first_line_;
+};
+
+// Integer colours mean fractions of their type's largest value.
+double colour_scale(PlyType type) {
+  return type == PlyType::u8 ? 1 / 255.0 : type == PlyType::u16 ? 1 / 65535.0 : 1;
+}
+
+class PlyParser {
+ public:
+  PlyParser(const FileBytes& bytes, const PlyHeader& header, SceneBuilder& builder)
+      : header_(header), numbers_(bytes, header), builder_(builder) {
+    builder.objects.push_back({});
+    for (const std::string& name : header.texture_files) {
+      const fs::path path = fs::path(builder.file).parent_path() / name;
+      builder.materials.push_back({});
+      builder.materials.back().name = name;
+      builder.materials.back().texture = static_cast<std::int32_t>(builder.textures.size());
+      builder.textures.push_back({path, {}, builder.file});
+    }
+    if (builder.materials.empty()) builder.materials.push_back({});
+  }
+
+  Status run(const Context& context) {
+    for (const PlyElement& element : header_.elements) {
+      if (element.properties.empty()) continue;
+      element_ = &element;
+      if (element.count > numbers_.bytes_left() / element.least_bytes(header_.format) + 1) {
+        return short_file(fmt::format("{} {}s are announced", element.count, element.name));
+      }
+      Status status;
+      if (element.name == "vertex") {
+        status = read_vertices(context);
+      } else if (element.name == "face") {
+        status = read_faces(context);
+      } else {
+        status = skip(context);
+      }
+      if (!status.ok()) return status;
+    }
+    return {};
+  }
+
+ private:
+  Status short_file(std::string_view what) const {
+    return {
+        ErrorCode::bad_input,
+        fmt::format("{}: {}, but the file ends before (it was cut short: copy or export it again)",
+                    builder_.file, what)};
+  }
+
+  std::string place() const {
+    return header_.format == PlyFormat::ascii
+               ? fmt::format("{}:{}", builder_.file, line_)
+               : fmt::format("{}: {} {}", builder_.file, element_->name, index_);
+  }
+
+  Status bad_number(const PlyProperty& property) const {
+    if (numbers_.at_end() || header_.format != PlyFormat::ascii) {
+      return short_file(
+          fmt::format("{} {} of {} is incomplete", element_->name, index_ + 1, element_->count));
+    }
+    return {ErrorCode::bad_input,
+            fmt::format("{}: no number for '{}' of {} {} (correct the line or export again)",
+                        place(), property.name, element_->name, index_)};
+  }
+
+  // Reads one element: scalars into scalars_, lists into lists_.
+  Status read_element(const Context& context) {
+    if (index_ % 65536 == 0 && context.cancelled()) return Status::cancelled();
+    numbers_.begin_element();
+    line_ = numbers_.line();
+    for (std::size_t i = 0; i < element_->properties.size(); ++i) {
+      const PlyProperty& property = element_->properties[i];
+      double& value = scalars_[i];
+      if (!numbers_.next(property.list ? property.length_type : property.type, value)) {
+        return bad_number(property);
+      }
+      if (!property.list) continue;
+      if (!(value >= 0 && value == std::floor(value))) {
+        return {ErrorCode::bad_input, fmt::format("{}: list '{}' has length {} (export again)",
+                                                  place(), property.name, value)};
+      }
+      lists_[i].clear();
+      for (double k = 0; k < value; ++k) {
+        double item;
+        if (!numbers_.next(property.type, item)) return bad_number(property);
+        lists_[i].push_back(item);
+      }
+    }
+    numbers_.end_element();
+    return {};
+  }
+
+  void begin() {
+    scalars_.assign(element_->properties.size(), 0);
+    lists_.assign(element_->properties.size(), {});
+    index_ = 0;
+  }
+
+  Status skip(const Context& context) {
+    begin();
+    for (; index_ < element_->count; ++index_) {
+      if (Status s = read_element(context); !s.ok()) return s;
+      builder_.defects.add(DefectKind::element_ignored, [&] { return place(); });
+    }
+    return {};
+  }
+
+  // The first of several groups of names that the element has in full.
+  std::vector<int> find_group(std::initializer_list<std::vector<const char*>> groups) const {
+    for (const auto& group : groups) {
+      std::vector<int> found;
+      for (const char* name : group) {
+        const int at = element_->find(name);
+        if (at >= 0 && !element_->properties[at].list) found.push_back(at);
+      }
+      if (found.size() == group.size()) return found;
+    }
+    return {};
+  }
+
+  Status read_vertices(const Context& context) {
+    const auto xyz = find_group({{"x", "y", "z"}});
+    if (xyz.empty()) {
+      return {ErrorCode::bad_input,
+              fmt::format("{}: its vertices have no x, y and z (export positions)", builder_.file)};
+    }
+    auto rgb = find_group({{"illuminance_r", "illuminance_g", "illuminance_b"},
+                           {"illumination_r", "illumination_g", "illumination_b"},
+                           {"illuminance"},
+                           {"r", "g", "b"},
+                           {"red", "green", "blue"},
+                           {"diffuse_red", "diffuse_green", "diffuse_blue"}});
+    if (rgb.size() == 1) rgb = {rgb[0], rgb[0], rgb[0]};
+    const auto uv = find_group(
+        {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}});
+    double scale[3] = {1, 1, 1};
+    for (std::size_t c = 0; c < rgb.size(); ++c) {
+      scale[c] = colour_scale(element_->properties[rgb[c]].type);
+    }
+    begin();
+    std::vector<std::string> bad;  // places of the first unusable positions
+    builder_.positions.reserve(element_->count);
+    builder_.illumination.reserve(rgb.empty() ? 0 : element_->count);
+    builder_.texcoords.reserve(uv.empty() ? 0 : element_->count);
+    for (; index_ < element_->count; ++index_) {
+      if (Status s = read_element(context); !s.ok()) return s;
+      const auto& s = scalars_;
+      builder_.positions.push_back({s[xyz[0]], s[xyz[1]], s[xyz[2]]});
+      if (!rgb.empty()) {
+        builder_.illumination.push_back({float(s[rgb[0]] * scale[0]), float(s[rgb[1]] * scale[1]),
+                                         float(s[rgb[2]] * scale[2])});
+      }
+      if (!uv.empty()) builder_.texcoords.push_back({float(s[uv[0]]), float(s[uv[1]])});
+      if (!usable_position(builder_.positions.back()) && bad.size() < DefectReport::kMaxPlaces) {
+        bad.push_back(place());
+      }
+    }
+    vertex_uvs_ = !uv.empty();
+    auto next_bad = bad.begin();
+    builder_.check_positions([&](std::size_t) { return *next_bad++; });
+    return {};
+  }
+
+  Status read_faces(const Context& context) {
+    int list = element_->find("vertex_indices");
+    if (list < 0) list = element_->find("vertex_index");
+    if (list < 0 || !element_->properties[list].list) {
+      return {
+          ErrorCode::bad_input,
+          fmt::format("{}: its faces have no list vertex_indices (export faces)", builder_.file)};
+    }
+    if (builder_.positions.empty()) {
+      return {ErrorCode::unsupported,
+              fmt::format("{}: faces come before vertices (export vertices first)", builder_.file)};
+    }
+    const int wedge = element_->find("texcoord"), number = element_->find("texnumber");
+    begin();
+    builder_.reserve_triangles(element_->count, vertex_uvs_ || wedge >= 0);
+    std::vector<std::int64_t> corners, uvs;
+    for (; index_ < element_->count; ++index_) {
+      if (Status s = read_element(context); !s.ok()) return s;
+      corners.clear();
+      for (const double v : lists_[list]) corners.push_back(to_index(v));
+      uvs.clear();
+      if (wedge >= 0 && lists_[wedge].size() == 2 * corners.size()) {
+        add_wedges(lists_[wedge], uvs);
+      } else if (vertex_uvs_) {
+        uvs = corners;
+      }
+      builder_.material = 0;
+      if (number >= 0 && scalars_[number] >= 0 && scalars_[number] < builder_.materials.size()) {
+        builder_.material = static_cast<std::uint32_t>(scalars_[number]);
+      }
+      builder_.add_face(corners, uvs, [&] { return place(); });
+    }
+    return {};
+  }
+
+  static std::int64_t to_index(double v) {
+    return v >= 0 && v <= 4294967295.0 ? static_cast<std::int64_t>(v) : -1;
+  }
+
+  void add_wedges(const std::vector<double>& list, std::vector<std::int64_t>& uvs) {
+    for (std::size_t k = 0; k + 1 < list.size(); k += 2) {
+      uvs.push_back(static_cast<std::int64_t>(builder_.texcoords.size()));
+      builder_.texcoords.push_back({float(list[k]), float(list[k + 1])});
+    }
+  }
+
+  const PlyHeader& header_;
+  Numbers numbers_;
+  SceneBuilder& builder_;
+  const PlyElement* element_ = nullptr;
+  std::uint64_t index_ = 0;
+  std::uint32_t line_ = 0;  // of the element at hand, in ascii files
+  std::vector<double> scalars_;
+  std::vector<std::vector<double>> lists_;
+  bool vertex_uvs_ = false;
+};
+
+}  // namespace
+
+Status read_ply(const fs::path& path, SceneBuilder& builder, const Context& context) {
+  auto bytes = read_file_bytes(path);
+  if (!bytes.ok()) return bytes.status();
+  auto header = read_ply_header(*bytes, builder.file);
+  if (!header.ok()) return header.status();
+  return PlyParser(*bytes, *header, builder).run(context);
+}
+
+}  // namespace atlas
