@@ -28,9 +28,9 @@ struct SimplifyOptions {
 // Triangles over the *input's* positions and uvs: vertices are only removed, never moved, so that
 // both sides of a seam stay bitwise equal.
 struct SimplifiedMesh {
-  std::vector<std::uint32_t> indices;         // 3 a triangle, into MeshView::positions
-  std::vector<std::uint32_t> uv_indices;      // 3 a triangle, into ChartSet::uvs
-  std::vector<std::uint32_t> triangle_chart;  // 1 a triangle, ascending
+  std::vector<std::uint32_t> indices;          // 3 a triangle, into MeshView::positions
+  std::vector<std::uint32_t> uv_indices;       // 3 a triangle, into ChartSet::uvs
+  std::vector<std::uint32_t> triangle_chart;   // 1 a triangle, ascending
   std::vector<std::uint32_t> source_triangle;  // 1 a triangle: a triangle of the input within it or
                                                // beside it, of the same chart (for its material)
   std::uint64_t triangles_in = 0, triangles_out = 0;

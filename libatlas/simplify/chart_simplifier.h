@@ -1,0 +1,98 @@
+// Internal: removes vertices of one chart while slip and turn stay within their bounds.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "libatlas/core/context.h"
+#include "libatlas/simplify/chart_mesh.h"
+#include "libatlas/simplify/fine_chart.h"
+#include "libatlas/simplify/slip_measure.h"
+
+namespace atlas::simplify {
+
+// What merging a vertex v into its neighbour w would do.
+struct Collapse {
+  std::uint32_t v = kNone, w = kNone;
+  double cost = 0;  // dimensionless: (slip / bound)² + (small factor x length in texels)², worse
+                    // for needles
+  double offset = 0;     // distance in space between v and the new surface at its uv, texels
+  bool outside = false;  // v's uv lies outside the new triangles (border vertices only)
+  std::vector<std::uint32_t> faces;  // that stay and change
+  std::vector<SlipLimits> bounds;    // of these, after check()
+};
+
+// How far a border vertex's removal moves the border, which its chart then reckons with.
+struct BorderStep {
+  double before = 0;  // bound of the coarse border around it so far, texels
+  double step = 0;    // what is added, texels
+};
+
+class ChartSimplifier {
+ public:
+  // `texel` is the length of a texel of this chart on its surface. Limits: slip in texels.
+  ChartSimplifier(const Geometry& geometry, FineChart fine, double texel, const SlipLimits& limits);
+  ~ChartSimplifier();
+  ChartSimplifier(const ChartSimplifier&) = delete;
+  ChartSimplifier& operator=(const ChartSimplifier&) = delete;
+
+  const FineChart& fine() const { return fine_; }
+  double texel() const { return texel_; }
+
+  // Removes inner vertices, cheapest first, as long as they cost at most `limit`.
+  void run(double limit, const Context& context);
+  double next_cost() const;  // of the cheapest vertex still queued, infinity when there is none
+  // Border vertices whose surroundings changed since the last call.
+  std::vector<std::uint32_t> take_touched();
+
+  // For border vertices, whose collapse several charts must agree on: judge() tells whether the new
+  // triangles are well oriented and fills cost and offset; check() whether slip and turn stay
+  // bounded; apply() does it.
+  bool judge(std::uint32_t v, std::uint32_t w, Collapse& out);
+  bool check(const BorderStep& border, Collapse& collapse);
+  void apply(const Collapse& collapse);
+  void ring(std::uint32_t v, Ring& out) const { mesh_.ring(v, out); }
+
+  // Appends the remaining triangles to the result.
+  struct Triangle {
+    std::uint32_t vertices[3];
+    std::uint32_t source;
+  };
+  void collect(std::vector<Triangle>& out) const;
+  SlipLimits worst() const;  // over the remaining triangles, texels and radians
+
+ private:
+  struct Star;
+  struct Entry {
+    float cost;
+    std::uint32_t vertex;
+  };
+  void load(std::uint32_t v);
+  bool judge_target(std::size_t target, Collapse& out) const;
+  bool locate(std::size_t target, Collapse& out) const;
+  double step_slip(std::size_t target) const;
+  double step_turn(std::size_t target) const;
+  void push(std::uint32_t v, float cost);
+  void queue_all();
+  void pick_targets(std::vector<std::size_t>& out) const;
+  bool rank(std::uint32_t v);
+  void process(std::uint32_t v, float cost);
+
+  const Geometry& geometry_;
+  FineChart fine_;
+  double texel_;
+  SlipLimits limits_;
+  ChartMesh mesh_;
+  SlipMeasure measure_;
+  std::vector<float> face_slip_, face_turn_;  // upper bounds, texels and radians
+  std::vector<float> key_;                    // cost under which a vertex is queued, or infinity
+  std::vector<Entry> heap_;
+  std::vector<std::uint32_t> touched_;
+  std::vector<Collapse> candidates_;  // of the vertex at hand, cheapest first
+  std::size_t candidate_count_ = 0;
+  std::unique_ptr<Star> star_;
+};
+
+}  // namespace atlas::simplify

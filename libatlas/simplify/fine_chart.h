@@ -1,0 +1,60 @@
+// Internal: one chart of the fine mesh as a manifold with border: local vertices, neighbours.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "libatlas/charts/charts.h"
+
+namespace atlas::simplify {
+
+inline constexpr std::uint32_t kNone = 0xffffffffu;
+
+// Half-edge h = 3 t + i runs from corner i of triangle t to corner (i + 1) % 3, its triangle on its
+// left in uv.
+inline std::uint32_t next_half(std::uint32_t h) {
+  return h % 3 == 2 ? h - 2 : h + 1;
+}
+inline std::uint32_t previous_half(std::uint32_t h) {
+  return h % 3 == 0 ? h + 2 : h - 1;
+}
+
+// Where vertices lie; shared by all charts.
+struct Geometry {
+  const MeshView* mesh = nullptr;
+  const ChartSet* charts = nullptr;
+
+  const Vec2d& uv(std::uint32_t id) const { return charts->uvs[id]; }
+  std::uint32_t position_of(std::uint32_t uv_id) const { return charts->uv_vertex[uv_id]; }
+  const Vec3f& position(std::uint32_t uv_id) const {
+    return mesh->positions[charts->uv_vertex[uv_id]];
+  }
+};
+
+// Triangles are glued where exactly two of them share an edge between the same two uvs, in opposite
+// directions; every other edge is border. A local vertex is one fan of triangles around one uv, so
+// that each vertex has one disk or one half-disk.
+struct FineChart {
+  std::vector<std::uint32_t> corners;      // 3 a triangle: local vertices
+  std::vector<std::uint32_t> opposite;     // 3 a triangle: the half-edge on the other side or kNone
+  std::vector<std::uint32_t> vertex_half;  // 1 a vertex: a half-edge leaving it; for a border
+                                           // vertex the one along the border
+  std::vector<std::uint32_t> vertex_uv;    // 1 a vertex: into ChartSet::uvs
+  std::vector<std::uint32_t> source;       // 1 a triangle: triangle of the input
+  std::uint64_t dropped = 0;               // triangles with two equal corners
+
+  std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(vertex_uv.size()); }
+  std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(source.size()); }
+  bool border(std::uint32_t v) const { return opposite[vertex_half[v]] == kNone; }
+  std::uint32_t from(std::uint32_t h) const { return corners[h]; }
+  std::uint32_t to(std::uint32_t h) const { return corners[next_half(h)]; }
+  // The half-edge along the border that ends at the border vertex v.
+  std::uint32_t border_into(std::uint32_t v) const;
+};
+
+// `flipped` marks the triangles of the input that the chart turns over.
+FineChart build_fine_chart(const Geometry& geometry, std::uint32_t chart,
+                           const std::vector<bool>& flipped);
+
+}  // namespace atlas::simplify

@@ -1,0 +1,155 @@
+#include "libatlas/simplify/slip_measure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas::simplify {
+namespace {
+
+// A point of the clipped piece: barycentric coordinates in the coarse triangle (two of them; the
+// third is the rest) and the gap between the surfaces there.
+struct Sample {
+  double b[3];
+  glm::dvec3 gap;
+};
+
+Sample between(const Sample& p, const Sample& q, double t) {
+  Sample r;
+  for (int k = 0; k < 3; ++k) r.b[k] = p.b[k] + t * (q.b[k] - p.b[k]);
+  r.gap = p.gap + t * (q.gap - p.gap);
+  return r;
+}
+
+// Clips a convex polygon by the three sides of the coarse triangle.
+struct Piece {
+  Sample points[8];
+  int count = 0;
+
+  void clip(int side) {
+    Sample kept[8];
+    int n = 0;
+    for (int i = 0; i < count; ++i) {
+      const Sample &p = points[i], &q = points[(i + 1) % count];
+      if (p.b[side] >= 0) kept[n++] = p;
+      if ((p.b[side] >= 0) != (q.b[side] >= 0)) {
+        kept[n++] = between(p, q, p.b[side] / (p.b[side] - q.b[side]));
+      }
+    }
+    count = n;
+    std::copy(kept, kept + n, points);
+  }
+  double area() const {
+    double twice = 0;
+    for (int i = 0; i < count; ++i) {
+      const Sample &p = points[i], &q = points[(i + 1) % count];
+      twice += p.b[0] * q.b[1] - p.b[1] * q.b[0];
+    }
+    return std::abs(twice);
+  }
+};
+
+}  // namespace
+
+struct SlipMeasure::Coarse {
+  glm::dvec2 origin, du, dv;  // rows of the map from uv to the last two barycentric coordinates
+  glm::dvec3 p0, e1, e2, normal;
+};
+
+SlipMeasure::SlipMeasure(const Geometry& geometry, const FineChart& fine)
+    : geometry_(geometry), fine_(fine), stamp_(fine.triangle_count(), 0) {}
+
+void SlipMeasure::push(std::uint32_t triangle) {
+  if (stamp_[triangle] == epoch_) return;
+  stamp_[triangle] = epoch_;
+  stack_.push_back(triangle);
+}
+
+void SlipMeasure::push_fan(std::uint32_t vertex) {
+  const std::uint32_t start = fine_.vertex_half[vertex];
+  std::uint32_t h = start;
+  do {
+    push(h / 3);
+    h = fine_.opposite[previous_half(h)];
+  } while (h != kNone && h != start);
+}
+
+bool SlipMeasure::visit(std::uint32_t triangle, const Coarse& coarse, const SlipLimits& limits,
+                        SlipLimits& found) {
+  Piece piece;
+  piece.count = 3;
+  glm::dvec3 p[3];
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t uv_id = fine_.vertex_uv[fine_.corners[std::size_t{3} * triangle + k]];
+    const glm::dvec2 d = to_glm(geometry_.uv(uv_id)) - coarse.origin;
+    p[k] = to_dvec(geometry_.position(uv_id));
+    Sample& s = piece.points[k];
+    s.b[1] = glm::dot(coarse.du, d);
+    s.b[2] = glm::dot(coarse.dv, d);
+    s.b[0] = 1 - s.b[1] - s.b[2];
+    s.gap = coarse.p0 + s.b[1] * coarse.e1 + s.b[2] * coarse.e2 - p[k];
+  }
+  constexpr double kTouch = 1e-12;  // pieces thinner than rounding are left to their neighbours
+  for (int side = 0; side < 3; ++side) {
+    const double top =
+        std::max({piece.points[0].b[side], piece.points[1].b[side], piece.points[2].b[side]});
+    if (top <= kTouch) return true;
+  }
+  for (int side = 0; side < 3; ++side) piece.clip(side);
+  const double area = piece.area();
+  if (piece.count < 3 || area <= kTouch * kTouch) return true;
+  covered_ += area;
+  for (int i = 0; i < piece.count; ++i) {
+    found.slip = std::max(found.slip, glm::length(piece.points[i].gap));
+  }
+  const glm::dvec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);
+  const double length = glm::length(normal);
+  if (length > 0) {
+    const double c = glm::dot(normal, coarse.normal) / length;
+    found.turn = std::max(found.turn, std::acos(std::clamp(c, -1.0, 1.0)));
+  }
+  if (found.slip > limits.slip || found.turn > limits.turn) return false;
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t other = fine_.opposite[std::size_t{3} * triangle + k];
+    if (other != kNone) push(other / 3);
+  }
+  return true;
+}
+
+bool SlipMeasure::measure(const std::array<std::uint32_t, 3>& triangle, const SlipLimits& limits,
+                          SlipLimits& found) {
+  glm::dvec2 uv[3];
+  glm::dvec3 p[3];
+  bool at_border = false;
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t uv_id = fine_.vertex_uv[triangle[k]];
+    uv[k] = to_glm(geometry_.uv(uv_id));
+    p[k] = to_dvec(geometry_.position(uv_id));
+    at_border = at_border || fine_.border(triangle[k]);
+  }
+  Coarse coarse;
+  const glm::dvec2 a = uv[1] - uv[0], b = uv[2] - uv[0];
+  const double det = a.x * b.y - a.y * b.x;
+  coarse.origin = uv[0];
+  coarse.du = glm::dvec2(b.y, -b.x) / det;
+  coarse.dv = glm::dvec2(-a.y, a.x) / det;
+  coarse.p0 = p[0];
+  coarse.e1 = p[1] - p[0];
+  coarse.e2 = p[2] - p[0];
+  coarse.normal = glm::normalize(glm::cross(coarse.e1, coarse.e2));
+  found = {};
+  covered_ = 0;
+  ++epoch_;
+  stack_.clear();
+  for (const std::uint32_t v : triangle) push_fan(v);
+  while (!stack_.empty()) {
+    const std::uint32_t next = stack_.back();
+    stack_.pop_back();
+    if (!visit(next, coarse, limits, found)) return false;
+  }
+  constexpr double kCoverage = 1e-6;  // rounding of the clipped areas' sum
+  return at_border || covered_ > 1 - kCoverage;
+}
+
+}  // namespace atlas::simplify

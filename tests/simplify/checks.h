@@ -1,0 +1,35 @@
+// What a coarse mesh must keep, checked by routes of its own.
+#pragma once
+
+#include <span>
+
+#include "libatlas/simplify/simplify.h"
+#include "tests/simplify/shapes.h"
+
+namespace atlas::simplify_test {
+
+// Edges (pairs of positions) that belong to an odd number of triangles, and their total length.
+struct OpenEdges {
+  std::size_t count = 0;
+  double length = 0;
+};
+OpenEdges open_edges(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices);
+
+// Triangles without positive area in uv or in space, or whose uvs and positions do not belong
+// together, or whose chart is wrong.
+std::size_t broken_triangles(const ChartedMesh& mesh, const SimplifiedMesh& coarse);
+
+// The slip at points strewn over the fine triangles, found by searching the coarse triangle with
+// the same uv; where there is none (a straightened border), the nearest one, and the distance to it
+// in uv counts too. In texels.
+struct SampledSlip {
+  double inside = 0, outside = 0;  // largest
+  double outside_share = 0;        // of the samples
+  double least_cosine = 1;         // between normals there
+};
+SampledSlip sample_slip(const ChartedMesh& mesh, const SimplifiedMesh& coarse,
+                        std::span<const double> texels_per_unit, int samples_per_triangle);
+
+double uv_area(const ChartedMesh& mesh, const SimplifiedMesh& coarse);
+
+}  // namespace atlas::simplify_test

@@ -1,0 +1,61 @@
+// Meshes with charts made by hand, so that these tests do not depend on how charts are grown.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <vector>
+
+#include "libatlas/charts/charts.h"
+
+namespace atlas::simplify_test {
+
+struct ChartedMesh {
+  std::vector<Vec3f> positions;
+  std::vector<std::uint32_t> indices;
+  ChartSet charts;
+
+  MeshView view() const {
+    MeshView mesh;
+    mesh.positions = positions;
+    mesh.indices = indices;
+    return mesh;
+  }
+  std::size_t triangles() const { return indices.size() / 3; }
+};
+
+// Adds charts one by one; positions that are bitwise equal become one vertex.
+class ChartedMeshBuilder {
+ public:
+  struct Vertex {
+    Vec3f position;
+    Vec2d uv;
+  };
+  // Triangles index `vertices`; each vertex becomes one uv.
+  void add_chart(const std::vector<Vertex>& vertices, const std::vector<std::uint32_t>& triangles);
+
+  // A grid of nu x nv quads over [0, 1]²; `at` gives position and uv of a parameter, `keep` leaves
+  // quads out. Diagonals alternate pseudo-randomly.
+  using Map = std::function<Vertex(double s, double t)>;
+  using Keep = std::function<bool(int i, int j)>;
+  void add_grid(int nu, int nv, const Map& at, const Keep& keep = {});
+
+  // Lists triangle t of the input with its corners reversed, as flipped.
+  void flip(std::uint32_t t);
+  ChartedMesh build() const { return mesh_; }
+
+ private:
+  std::uint32_t vertex(const Vec3f& position);
+  ChartedMesh mesh_;
+  std::map<std::array<float, 3>, std::uint32_t> known_;
+};
+
+ChartedMesh box(int n, double size = 1, Vec3d corner = {0, 0, 0});
+ChartedMesh sphere(int n);                   // six projected charts
+ChartedMesh plate_with_hole(int n);          // one flat chart, a square hole
+ChartedMesh cylinder(int n, bool cut);       // one chart that meets itself, or two charts
+ChartedMesh bumpy(int n, double amplitude);  // a height field with noise
+ChartedMesh partition(int n);                // three walls that share one edge: non-manifold
+
+}  // namespace atlas::simplify_test
