@@ -4,7 +4,7 @@
 #include "libatlas/charts/cells.h"
 #include "libatlas/charts/charts.h"
 #include "libatlas/charts/flatten.h"
-#include "libatlas/charts/merge.h"
+#include "libatlas/charts/segment.h"
 #include "libatlas/charts/topology.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"

@@ -1,69 +1,290 @@
 #include "libatlas/charts/merge.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <queue>
 
-#include "libatlas/charts/cells.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/parallel.h"
 
 namespace atlas {
+namespace {
 
-Segmentation segment(const Topology& topology, const ChartOptions& options,
-                     const Context& context) {
-  Cells cells = grow_cells(topology, CellOptions{}, context);
-  Segmentation result;
-  const std::size_t n = topology.triangle_count();
-  std::vector<glm::dvec3> normal(cells.count, glm::dvec3(0));
-  for (std::uint32_t t = 0; t < n; ++t) {
-    if (cells.of_triangle[t] == kNoIndex) continue;
-    normal[cells.of_triangle[t]] += double(topology.areas[t]) * to_dvec(topology.normals[t]);
+using Moments = std::array<double, 6>;
+
+// Eigenvalues of a symmetric 3x3 matrix, smallest first (Smith 1961).
+std::array<double, 3> eigenvalues(const Moments& m) {
+  const double off = m[1] * m[1] + m[2] * m[2] + m[4] * m[4];
+  const double mean = (m[0] + m[3] + m[5]) / 3;
+  const double a = m[0] - mean, d = m[3] - mean, f = m[5] - mean;
+  const double p = std::sqrt((a * a + d * d + f * f + 2 * off) / 6);
+  if (!(p > 0)) return {mean, mean, mean};
+  const double det = a * (d * f - m[4] * m[4]) - m[1] * (m[1] * f - m[4] * m[2]) +
+                     m[2] * (m[1] * m[4] - d * m[2]);
+  const double r = std::clamp(det / (2 * p * p * p), -1.0, 1.0);
+  const double phi = std::acos(r) / 3;
+  const double high = mean + 2 * p * std::cos(phi);
+  const double low = mean + 2 * p * std::cos(phi + 2 * M_PI / 3);
+  return {low, 3 * mean - high - low, high};
+}
+
+struct CoarseChart {
+  std::vector<std::uint32_t> cells;
+  std::vector<std::uint32_t> arcs;  // not joined, in any order
+  Moments moments{};
+  glm::dvec3 normal_sum{0};
+  double area = 0, perimeter = 0;
+  std::uint32_t version = 0;
+};
+
+struct Candidate {
+  double cost;
+  std::uint32_t a, b, version_a, version_b;
+  bool operator>(const Candidate& other) const {
+    if (cost != other.cost) return cost > other.cost;
+    return a != other.a ? a > other.a : b > other.b;
   }
-  std::vector<std::uint32_t> parent(cells.count);
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto find = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  std::vector<std::vector<std::uint32_t>> members(cells.count);
-  for (std::uint32_t i = 0; i < cells.count; ++i) members[i] = {i};
-  std::map<std::pair<std::uint32_t, std::uint32_t>, double> shared;
-  for (std::uint32_t h = 0; h < topology.opposite.size(); ++h) {
-    const std::uint32_t o = topology.opposite[h];
-    if (o == kNoIndex || o < h) continue;
-    const std::uint32_t a = cells.of_triangle[h / 3], b = cells.of_triangle[o / 3];
-    if (a != b) shared[{std::min(a, b), std::max(a, b)}] += 1;
+};
+
+struct Border {
+  std::uint32_t other;
+  double length, crease;
+};
+
+// Merges the cells of one piece of the mesh.
+class Merger {
+ public:
+  Merger(const CoarseMesh& mesh, const MergeOptions& options, std::vector<CoarseChart>& charts,
+         MergeResult& result, Trial& trial)
+      : mesh_(mesh), options_(options), charts_(charts), result_(result), trial_(trial) {}
+
+  void run(const std::vector<std::uint32_t>& cells, const Context& context) {
+    for (const std::uint32_t k : cells) start(k);
+    for (const std::uint32_t k : cells) push_neighbours(k, true);
+    while (!heap_.empty() && !context.cancelled()) {
+      const Candidate candidate = heap_.top();
+      heap_.pop();
+      if (charts_[candidate.a].version != candidate.version_a ||
+          charts_[candidate.b].version != candidate.version_b) {
+        continue;
+      }
+      try_merge(candidate.a, candidate.b);
+    }
   }
-  using Entry = std::pair<double, std::pair<std::uint32_t, std::uint32_t>>;
-  std::vector<Entry> pairs;
-  const double limit = options.cone_degrees > 0 ? std::cos(0.8 * options.cone_degrees * M_PI / 180)
-                                                : std::cos(30 * M_PI / 180);
-  const auto unit = [](const glm::dvec3& v) { return v / std::max(1e-300, glm::length(v)); };
-  for (const auto& [pair, length] : shared) {
-    pairs.push_back({-glm::dot(unit(normal[pair.first]), unit(normal[pair.second])), pair});
+
+  std::uint64_t trials = 0, rejections = 0;
+
+ private:
+  std::uint32_t chart_at(std::uint32_t arc, int side) const {
+    const std::uint32_t cell = mesh_.arcs[arc].cell[side];
+    return cell == kNoIndex ? kNoIndex : result_.chart_of_cell[cell];
   }
-  std::sort(pairs.begin(), pairs.end());
-  for (const auto& [cost, pair] : pairs) {
-    const std::uint32_t a = find(pair.first), b = find(pair.second);
-    if (a == b) continue;
-    const glm::dvec3 axis = unit(normal[a] + normal[b]);
-    bool fits = true;
-    for (const std::uint32_t root : {a, b}) {
-      for (const std::uint32_t m : members[root]) {
-        fits = fits && glm::dot(unit(normal[m]), axis) > limit;
+
+  void start(std::uint32_t k) {
+    const CoarseCell& cell = mesh_.cells[k];
+    CoarseChart& chart = charts_[k];
+    chart.cells = {k};
+    chart.moments = cell.moments;
+    chart.normal_sum = to_glm(cell.normal_sum);
+    chart.area = cell.area;
+    chart.version = 1;
+    result_.chart_of_cell[k] = k;
+    const glm::dvec3 n = to_glm(cell.normal);
+    const glm::dvec3 u = glm::normalize(
+        std::abs(n.x) < 0.6 ? glm::cross(n, glm::dvec3(1, 0, 0)) : glm::cross(n, glm::dvec3(0, 1, 0)));
+    const glm::dvec3 v = glm::cross(n, u);
+    result_.uv.centre[k] = {0, 0};
+    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
+      chart.arcs.push_back(mesh_.slot_arc[s]);
+      chart.perimeter += mesh_.arcs[mesh_.slot_arc[s]].length;
+      const glm::dvec3 d = to_glm(mesh_.slot_position[s]) - to_glm(cell.centre);
+      const glm::dvec2 flat(glm::dot(d, u), glm::dot(d, v));
+      const double length = glm::length(flat);
+      result_.uv.slot[s] = from_glm(length > 0 ? flat * (glm::length(d) / length) : flat);
+    }
+  }
+
+  // The charts that share arcs with `a`, ordered by id.
+  void find_borders(std::uint32_t a) {
+    borders_.clear();
+    for (const std::uint32_t arc : charts_[a].arcs) {
+      const std::uint32_t c0 = chart_at(arc, 0), c1 = chart_at(arc, 1);
+      const std::uint32_t other = c0 == a ? c1 : c0;
+      if (other == kNoIndex || other == a) continue;
+      borders_.push_back({other, mesh_.arcs[arc].length, mesh_.arcs[arc].crease});
+    }
+    std::sort(borders_.begin(), borders_.end(), [](const Border& x, const Border& y) {
+      return x.other != y.other ? x.other < y.other : x.length < y.length;
+    });
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < borders_.size(); ++i) {
+      if (kept > 0 && borders_[kept - 1].other == borders_[i].other) {
+        borders_[kept - 1].length += borders_[i].length;
+        borders_[kept - 1].crease += borders_[i].crease;
+      } else {
+        borders_[kept++] = borders_[i];
       }
     }
-    if (!fits) continue;
-    parent[b] = a;
-    normal[a] += normal[b];
-    members[a].insert(members[a].end(), members[b].begin(), members[b].end());
+    borders_.resize(kept);
   }
-  result.partition.chart = std::move(cells.of_triangle);
-  for (std::uint32_t& c : result.partition.chart) {
-    if (c != kNoIndex) c = find(c);
+
+  void push_neighbours(std::uint32_t a, bool once) {
+    find_borders(a);
+    for (const Border& border : borders_) {
+      if (once && border.other < a) continue;
+      const std::uint32_t low = std::min(a, border.other), high = std::max(a, border.other);
+      heap_.push({cost(a, border), low, high, charts_[low].version, charts_[high].version});
+    }
   }
+
+  double cost(std::uint32_t a, const Border& border) const {
+    const CoarseChart &p = charts_[a], &q = charts_[border.other];
+    const double area = p.area + q.area;
+    const glm::dvec3 mean = (p.normal_sum + q.normal_sum) / area;
+    Moments m;
+    for (int i = 0; i < 6; ++i) m[i] = (p.moments[i] + q.moments[i]) / area;
+    m[0] -= mean.x * mean.x;
+    m[1] -= mean.x * mean.y;
+    m[2] -= mean.x * mean.z;
+    m[3] -= mean.y * mean.y;
+    m[4] -= mean.y * mean.z;
+    m[5] -= mean.z * mean.z;
+    const double spread = std::max(0.0, eigenvalues(m)[0]);
+    const double perimeter = p.perimeter + q.perimeter - 2 * border.length;
+    const double compact = perimeter / std::sqrt(4 * M_PI * area);
+    return spread + options_.compactness_weight * compact +
+           options_.crease_weight * border.crease / border.length;
+  }
+
+  bool within_cone(std::uint32_t a, std::uint32_t b) const {
+    if (options_.cone_degrees <= 0) return true;
+    const glm::dvec3 axis = glm::normalize(charts_[a].normal_sum + charts_[b].normal_sum);
+    const double limit = std::cos(options_.cone_degrees * M_PI / 180);
+    for (const std::uint32_t chart : {a, b}) {
+      for (const std::uint32_t k : charts_[chart].cells) {
+        if (glm::dot(axis, to_glm(mesh_.cells[k].normal)) < limit) return false;
+      }
+    }
+    return true;
+  }
+
+  void try_merge(std::uint32_t a, std::uint32_t b) {
+    if (!within_cone(a, b)) return;
+    if (charts_[a].cells.size() < charts_[b].cells.size()) std::swap(a, b);
+    glue_.clear();
+    for (const std::uint32_t arc : charts_[b].arcs) {
+      const std::uint32_t c0 = chart_at(arc, 0), c1 = chart_at(arc, 1);
+      if ((c0 == a && c1 == b) || (c0 == b && c1 == a)) glue_.push_back(arc);
+    }
+    std::sort(glue_.begin(), glue_.end());
+    TrialOutcome outcome = attempt(a, b);
+    if (!outcome.accepted && outcome.euler < 1 && keep_longest_run()) outcome = attempt(a, b);
+    if (!outcome.accepted) {
+      ++rejections;
+      return;
+    }
+    trial_.commit();
+    absorb(a, b);
+    push_neighbours(a, false);
+  }
+
+  TrialOutcome attempt(std::uint32_t a, std::uint32_t b) {
+    ++trials;
+    return trial_.run(charts_[a].cells, charts_[b].cells, glue_, result_.joined, options_.limits);
+  }
+
+  // Of several separate stretches of common border, keeps the longest: the rest becomes a seam
+  // of the chart with itself. False if there is only one.
+  bool keep_longest_run() {
+    const std::size_t n = glue_.size();
+    std::vector<std::size_t> run(n);
+    std::iota(run.begin(), run.end(), 0u);
+    const auto find = [&](std::size_t i) {
+      while (run[i] != i) i = run[i] = run[run[i]];
+      return i;
+    };
+    const auto ends = [&](std::uint32_t arc) {
+      const CoarseArc& x = mesh_.arcs[arc];
+      return std::pair{mesh_.slot_position[x.slot[0]], mesh_.slot_position[x.slot[1]]};
+    };
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = i + 1; j < n; ++j) {
+        const auto [p, q] = ends(glue_[i]);
+        const auto [r, s] = ends(glue_[j]);
+        if (p == r || p == s || q == r || q == s) run[find(j)] = find(i);
+      }
+    }
+    std::vector<double> length(n, 0);
+    for (std::size_t i = 0; i < n; ++i) length[find(i)] += mesh_.arcs[glue_[i]].length;
+    const std::size_t best =
+        static_cast<std::size_t>(std::max_element(length.begin(), length.end()) - length.begin());
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (find(i) == best) kept.push_back(glue_[i]);
+    }
+    if (kept.size() == n) return false;
+    glue_ = std::move(kept);
+    return true;
+  }
+
+  void absorb(std::uint32_t a, std::uint32_t b) {
+    CoarseChart &p = charts_[a], &q = charts_[b];
+    for (const std::uint32_t k : q.cells) result_.chart_of_cell[k] = a;
+    p.cells.insert(p.cells.end(), q.cells.begin(), q.cells.end());
+    p.arcs.insert(p.arcs.end(), q.arcs.begin(), q.arcs.end());
+    std::erase_if(p.arcs, [&](std::uint32_t arc) { return result_.joined[arc] != 0; });
+    for (const std::uint32_t arc : glue_) p.perimeter -= 2 * mesh_.arcs[arc].length;
+    p.perimeter += q.perimeter;
+    p.area += q.area;
+    p.normal_sum += q.normal_sum;
+    for (int i = 0; i < 6; ++i) p.moments[i] += q.moments[i];
+    ++p.version;
+    q = CoarseChart{};
+    q.version = kNoIndex;
+  }
+
+  const CoarseMesh& mesh_;
+  const MergeOptions& options_;
+  std::vector<CoarseChart>& charts_;
+  MergeResult& result_;
+  Trial& trial_;
+  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> heap_;
+  std::vector<Border> borders_;
+  std::vector<std::uint32_t> glue_;
+};
+
+}  // namespace
+
+MergeResult merge_cells(const CoarseMesh& mesh, const std::vector<std::uint32_t>& piece,
+                        const MergeOptions& options, const Context& context) {
+  const std::size_t n = mesh.cells.size();
+  MergeResult result;
+  result.chart_of_cell.assign(n, kNoIndex);
+  result.joined.assign(mesh.arcs.size(), 0);
+  result.uv.centre.resize(n);
+  result.uv.slot.resize(mesh.slot_position.size());
+  std::vector<CoarseChart> charts(n);
+  std::vector<std::vector<std::uint32_t>> pieces;
+  for (std::uint32_t k = 0; k < n; ++k) {
+    if (piece[k] == kNoIndex) continue;
+    if (piece[k] >= pieces.size()) pieces.resize(piece[k] + 1);
+    pieces[piece[k]].push_back(k);
+  }
+  std::atomic<std::uint64_t> trials{0}, rejections{0};
+  const std::size_t grain = std::max<std::size_t>(1, pieces.size() / 64);
+  parallel_for(context, pieces.size(), grain, [&](std::size_t begin, std::size_t end) {
+    Trial trial(mesh, result.uv);
+    for (std::size_t i = begin; i < end; ++i) {
+      Merger merger(mesh, options, charts, result, trial);
+      merger.run(pieces[i], context);
+      trials += merger.trials;
+      rejections += merger.rejections;
+    }
+  });
+  result.trials = trials;
+  result.rejections = rejections;
   return result;
 }
 

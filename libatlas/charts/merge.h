@@ -1,21 +1,35 @@
-// Internal: charts from micro-cells.
+// Internal: charts from micro-cells, by greedy merging.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
-#include "libatlas/charts/charts.h"
-#include "libatlas/charts/local_chart.h"
-#include "libatlas/charts/topology.h"
+#include "libatlas/charts/coarse.h"
+#include "libatlas/charts/trial.h"
 #include "libatlas/core/context.h"
 
 namespace atlas {
 
-struct Segmentation {
-  Partition partition;
-  std::vector<std::array<Vec3f, 2>> frames;  // 1 a triangle, or empty: see IsometricStart::frames
+struct MergeOptions {
+  TrialLimits limits;
+  double cone_degrees = 0;        // limit on the cells' normals in a chart; 0: none
+  double compactness_weight = 0.02;
+  double crease_weight = 0.02;
 };
 
-Segmentation segment(const Topology& topology, const ChartOptions& options, const Context& context);
+struct MergeResult {
+  std::vector<std::uint32_t> chart_of_cell;
+  std::vector<std::uint8_t> joined;  // 1 an arc: its sides are one edge of one chart
+  CoarseUv uv;                       // every chart's coarse flattening
+  std::uint64_t trials = 0, rejections = 0;
+};
+
+// Merges neighbouring charts, cheapest first: small spread of the normals off a great circle
+// (smallest eigenvalue of their covariance: what unrolls), compact outline, no crease between. Each
+// merge is tried on the coarse mesh first. `piece` (1 a cell) names the connected piece of the mesh
+// that a cell lies in; pieces are merged in parallel.
+MergeResult merge_cells(const CoarseMesh& mesh, const std::vector<std::uint32_t>& piece,
+                        const MergeOptions& options, const Context& context);
 
 }  // namespace atlas

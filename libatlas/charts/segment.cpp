@@ -1,0 +1,101 @@
+#include "libatlas/charts/segment.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "libatlas/charts/cells.h"
+#include "libatlas/charts/coarse.h"
+#include "libatlas/charts/merge.h"
+#include "libatlas/core/clock.h"
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+using Frame = std::array<glm::dvec3, 2>;
+
+// The map from space to the plane that a cell's coarse flattening stands for: the rotation that
+// best takes its fan to its flat coordinates.
+Frame cell_frame(const CoarseMesh& mesh, const CoarseUv& uv, std::uint32_t k) {
+  const CoarseCell& cell = mesh.cells[k];
+  const glm::dvec3 n = to_glm(cell.normal);
+  const glm::dvec3 u = glm::normalize(std::abs(n.x) < 0.6 ? glm::cross(n, glm::dvec3(1, 0, 0))
+                                                          : glm::cross(n, glm::dvec3(0, 1, 0)));
+  const glm::dvec3 v = glm::cross(n, u);
+  double c = 0, s = 0;
+  for (std::uint32_t i = cell.first_slot; i < cell.first_slot + cell.slot_count; ++i) {
+    const glm::dvec3 d = to_glm(mesh.slot_position[i]) - to_glm(cell.centre);
+    const glm::dvec2 a(glm::dot(d, u), glm::dot(d, v));
+    const glm::dvec2 b = to_glm(uv.slot[i]) - to_glm(uv.centre[k]);
+    c += glm::dot(a, b);
+    s += a.x * b.y - a.y * b.x;
+  }
+  const double norm = std::sqrt(c * c + s * s);
+  if (!(norm > 0)) return {u, v};
+  c /= norm;
+  s /= norm;
+  return {c * u - s * v, s * u + c * v};
+}
+
+// Turns a frame with the shortest rotation that takes normal a to normal b.
+Frame transport(const Frame& frame, const glm::dvec3& a, const glm::dvec3& b) {
+  const double cosine = glm::dot(a, b);
+  if (cosine < -0.99) return frame;
+  const glm::dvec3 axis = glm::cross(a, b);
+  const auto turn = [&](const glm::dvec3& x) {
+    return cosine * x + glm::cross(axis, x) + axis * (glm::dot(axis, x) / (1 + cosine));
+  };
+  return {turn(frame[0]), turn(frame[1])};
+}
+
+}  // namespace
+
+Segmentation segment(const Topology& topology, const ChartOptions& options,
+                     const Context& context) {
+  Segmentation result;
+  if (options.keep_uv_charts) {
+    result.partition.chart = topology.component;
+    return result;
+  }
+  const bool trace = std::getenv("TRACE") != nullptr;
+  double t0 = cpu_seconds();
+  Cells cells = grow_cells(topology, CellOptions{}, context);
+  double t1 = cpu_seconds();
+  if (trace) fmt::print(stderr, "  cells {} {:.3f}\n", cells.count, t1 - t0);
+  if (context.cancelled()) return result;
+  const CoarseMesh coarse = build_coarse(topology, options.crease_degrees, cells);
+  t0 = cpu_seconds();
+  if (trace) fmt::print(stderr, "  coarse {} {:.3f}\n", cells.count, t0 - t1);
+  std::vector<std::uint32_t> piece(coarse.cells.size(), kNoIndex);
+  for (std::uint32_t t = 0; t < cells.of_triangle.size(); ++t) {
+    if (cells.of_triangle[t] != kNoIndex) piece[cells.of_triangle[t]] = topology.component[t];
+  }
+  MergeOptions merge;
+  merge.cone_degrees = options.cone_degrees;
+  if (const char* e = std::getenv("L2")) merge.limits.stretch_l2 = std::atof(e);
+  if (const char* e = std::getenv("HIGH")) merge.limits.stretch_high = std::atof(e);
+  if (const char* e = std::getenv("SOLID")) merge.limits.solidity = std::atof(e);
+  if (const char* e = std::getenv("COMPACT")) merge.compactness_weight = std::atof(e);
+  if (const char* e = std::getenv("CREASE")) merge.crease_weight = std::atof(e);
+  const MergeResult merged = merge_cells(coarse, piece, merge, context);
+  t1 = cpu_seconds();
+  if (trace) fmt::print(stderr, "  merge trials {} rejected {} {:.3f}\n", merged.trials, merged.rejections, t1 - t0);
+  result.partition.chart.resize(topology.triangle_count());
+  result.partition.seams.assign(topology.triangle_count(), 0);
+  result.frames.resize(topology.triangle_count());
+  std::vector<Frame> frames(coarse.cells.size());
+  for (std::uint32_t k = 0; k < frames.size(); ++k) frames[k] = cell_frame(coarse, merged.uv, k);
+  for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
+    const std::uint32_t k = cells.of_triangle[t];
+    result.partition.chart[t] = k == kNoIndex ? kNoIndex : merged.chart_of_cell[k];
+    if (k == kNoIndex) continue;
+    const Frame frame =
+        transport(frames[k], to_glm(coarse.cells[k].normal), to_dvec(topology.normals[t]));
+    result.frames[t] = {from_glm(glm::vec3(frame[0])), from_glm(glm::vec3(frame[1]))};
+  }
+  return result;
+}
+
+}  // namespace atlas

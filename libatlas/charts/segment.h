@@ -1,0 +1,22 @@
+// Internal: the whole way from a mesh to a partition into charts.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "libatlas/charts/charts.h"
+#include "libatlas/charts/local_chart.h"
+#include "libatlas/charts/topology.h"
+#include "libatlas/core/context.h"
+
+namespace atlas {
+
+struct Segmentation {
+  Partition partition;
+  std::vector<std::array<Vec3f, 2>> frames;  // 1 a triangle, or empty: see IsometricStart::frames
+};
+
+Segmentation segment(const Topology& topology, const ChartOptions& options,
+                     const Context& context);
+
+}  // namespace atlas

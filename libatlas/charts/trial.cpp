@@ -1,0 +1,285 @@
+#include "libatlas/charts/trial.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+double cross(const Vec2d& o, const Vec2d& a, const Vec2d& b) {
+  return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+}
+
+bool cross_each_other(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& d) {
+  if (std::max(a.x, b.x) < std::min(c.x, d.x) || std::max(c.x, d.x) < std::min(a.x, b.x) ||
+      std::max(a.y, b.y) < std::min(c.y, d.y) || std::max(c.y, d.y) < std::min(a.y, b.y)) {
+    return false;
+  }
+  return (cross(a, b, c) > 0) != (cross(a, b, d) > 0) &&
+         (cross(c, d, a) > 0) != (cross(c, d, b) > 0);
+}
+
+// Area of the convex hull; sorts `points`.
+double hull_area(std::vector<Vec2d>& points, std::vector<Vec2d>& hull) {
+  std::sort(points.begin(), points.end(), [](const Vec2d& a, const Vec2d& b) {
+    return a.x != b.x ? a.x < b.x : a.y < b.y;
+  });
+  hull.clear();
+  for (int pass = 0; pass < 2; ++pass) {
+    const std::size_t base = hull.size();
+    for (const Vec2d& p : points) {
+      while (hull.size() >= base + 2 && cross(hull[hull.size() - 2], hull.back(), p) <= 0) {
+        hull.pop_back();
+      }
+      hull.push_back(p);
+    }
+    hull.pop_back();
+    std::reverse(points.begin(), points.end());
+  }
+  double twice = 0;
+  for (std::size_t i = 2; i < hull.size(); ++i) twice += cross(hull[0], hull[i - 1], hull[i]);
+  return 0.5 * twice;
+}
+
+}  // namespace
+
+std::uint32_t Trial::root(std::uint32_t slot) {
+  while (slot_vertex_[slot] != slot) slot = slot_vertex_[slot] = slot_vertex_[slot_vertex_[slot]];
+  return slot;
+}
+
+void Trial::join(std::uint32_t arc) {
+  const CoarseArc& a = mesh_.arcs[arc];
+  const std::uint32_t next0 = mesh_.next_slot(a.slot[0], mesh_.cells[a.cell[0]]);
+  const std::uint32_t next1 = mesh_.next_slot(a.slot[1], mesh_.cells[a.cell[1]]);
+  slot_vertex_[root(a.slot[0])] = root(next1);
+  slot_vertex_[root(next0)] = root(a.slot[1]);
+}
+
+// Local vertices: the cells' centres in order, then the classes of joined slots.
+void Trial::assemble(const std::vector<std::uint8_t>& joined) {
+  for (const std::uint32_t k : cells_) {
+    const CoarseCell& cell = mesh_.cells[k];
+    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
+      slot_vertex_[s] = s;
+    }
+  }
+  for (const std::uint32_t k : cells_) {
+    const CoarseCell& cell = mesh_.cells[k];
+    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
+      const std::uint32_t arc = mesh_.slot_arc[s];
+      if (joined[arc] && mesh_.arcs[arc].slot[0] == s) join(arc);
+    }
+  }
+  positions_.clear();
+  vertex_slot_.assign(cells_.size(), kNoIndex);
+  const Vec3d origin = mesh_.cells[cells_[0]].centre;
+  const auto add = [&](const Vec3d& p) {
+    positions_.push_back({p.x - origin.x, p.y - origin.y, p.z - origin.z});
+  };
+  for (const std::uint32_t k : cells_) add(mesh_.cells[k].centre);
+  for (const std::uint32_t k : cells_) {
+    const CoarseCell& cell = mesh_.cells[k];
+    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
+      if (slot_vertex_[s] != s) continue;
+      vertex_slot_.push_back(s);
+      add(mesh_.slot_position[s]);
+    }
+  }
+  // Parents become vertices in two steps, for a root may come after its children.
+  roots_.clear();
+  for (const std::uint32_t k : cells_) {
+    const CoarseCell& cell = mesh_.cells[k];
+    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
+      roots_.push_back(root(s));
+    }
+  }
+  for (std::size_t v = cells_.size(); v < vertex_slot_.size(); ++v) {
+    slot_vertex_[vertex_slot_[v]] = static_cast<std::uint32_t>(v);
+  }
+  std::size_t i = 0;
+  for (const std::uint32_t k : cells_) {
+    const CoarseCell& cell = mesh_.cells[k];
+    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s, ++i) {
+      if (roots_[i] != s) slot_vertex_[s] = slot_vertex_[roots_[i]];
+    }
+  }
+  triangles_.clear();
+  for (std::uint32_t c = 0; c < cells_.size(); ++c) {
+    const CoarseCell& cell = mesh_.cells[cells_[c]];
+    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
+      const std::uint32_t a = slot_vertex_[s], b = slot_vertex_[mesh_.next_slot(s, cell)];
+      if (a != b) triangles_.push_back({c, a, b});
+    }
+  }
+}
+
+// Brings the second chart's coordinates next to the first's (rigid Procrustes on the glued slots)
+// and averages where they meet.
+void Trial::align(std::size_t first_cells, std::span<const std::uint32_t> glue) {
+  glm::dvec2 mean_p(0), mean_q(0);
+  std::vector<std::array<std::uint32_t, 2>>& pairs = border_;  // slots of first and second chart
+  pairs.clear();
+  for (const std::uint32_t arc : glue) {
+    const CoarseArc& a = mesh_.arcs[arc];
+    bool zero_is_first = false;
+    for (std::size_t c = 0; c < first_cells; ++c) zero_is_first |= cells_[c] == a.cell[0];
+    const std::uint32_t next0 = mesh_.next_slot(a.slot[0], mesh_.cells[a.cell[0]]);
+    const std::uint32_t next1 = mesh_.next_slot(a.slot[1], mesh_.cells[a.cell[1]]);
+    if (zero_is_first) {
+      pairs.push_back({a.slot[0], next1});
+      pairs.push_back({next0, a.slot[1]});
+    } else {
+      pairs.push_back({next1, a.slot[0]});
+      pairs.push_back({a.slot[1], next0});
+    }
+  }
+  for (const auto& [p, q] : pairs) {
+    mean_p += to_glm(uv_.slot[p]);
+    mean_q += to_glm(uv_.slot[q]);
+  }
+  const double n = std::max<std::size_t>(1, pairs.size());
+  mean_p /= n;
+  mean_q /= n;
+  double c = 0, s = 0;
+  for (const auto& [p, q] : pairs) {
+    const glm::dvec2 a = to_glm(uv_.slot[p]) - mean_p, b = to_glm(uv_.slot[q]) - mean_q;
+    c += glm::dot(a, b);
+    s += b.x * a.y - b.y * a.x;
+  }
+  const double norm = std::sqrt(c * c + s * s);
+  c = norm > 0 ? c / norm : 1;
+  s = norm > 0 ? s / norm : 0;
+  uvs_.assign(positions_.size(), Vec2d{});
+  weight_.assign(positions_.size(), 0);
+  const auto add = [&](std::uint32_t v, Vec2d p, bool second) {
+    if (second) {
+      const double x = p.x - mean_q.x, y = p.y - mean_q.y;
+      p = {c * x - s * y + mean_p.x, s * x + c * y + mean_p.y};
+    }
+    uvs_[v].x += p.x;
+    uvs_[v].y += p.y;
+    weight_[v] += 1;
+  };
+  for (std::uint32_t i = 0; i < cells_.size(); ++i) {
+    const bool second = i >= first_cells;
+    const CoarseCell& cell = mesh_.cells[cells_[i]];
+    add(i, uv_.centre[cells_[i]], second);
+    for (std::uint32_t k = cell.first_slot; k < cell.first_slot + cell.slot_count; ++k) {
+      add(slot_vertex_[k], uv_.slot[k], second);
+    }
+  }
+  for (std::size_t v = 0; v < uvs_.size(); ++v) {
+    uvs_[v].x /= weight_[v];
+    uvs_[v].y /= weight_[v];
+  }
+}
+
+bool Trial::stretch_fits(const TrialLimits& limits, TrialOutcome& outcome) {
+  const LocalMesh mesh{positions_, triangles_, {}};
+  stretch_.resize(triangles_.size());
+  measure_triangles(mesh, uvs_, stretch_);
+  double area = 0, uv_area = 0;
+  for (const TriangleStretch& t : stretch_) {
+    if (t.uv_area <= 0 && t.area > 0) return false;
+    area += t.area;
+    uv_area += t.uv_area;
+  }
+  const double scale = area > 0 ? std::sqrt(uv_area / area) : 1;
+  double l2 = 0;
+  ranked_.clear();
+  for (const TriangleStretch& t : stretch_) {
+    const double s1 = t.s1 * scale, s2 = t.s2 * scale;
+    l2 += 0.5 * (s1 * s1 + s2 * s2) * t.area;
+    ranked_.push_back({std::max(s1, 1 / s2), t.area});
+  }
+  outcome.stretch_l2 = area > 0 ? std::sqrt(l2 / area) : 1;
+  if (outcome.stretch_l2 > limits.stretch_l2) return false;
+  double above = 0;
+  for (const auto& [stretch, weight] : ranked_) {
+    if (stretch > limits.stretch_high) above += weight;
+  }
+  outcome.stretch_high = above;
+  return above <= 0.02 * area;
+}
+
+bool Trial::border_fits(const std::vector<std::uint8_t>& joined, const TrialLimits& limits,
+                        TrialOutcome& outcome) {
+  border_.clear();
+  std::vector<Vec2d> points;
+  for (const std::uint32_t k : cells_) {
+    const CoarseCell& cell = mesh_.cells[k];
+    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
+      const std::uint32_t arc = mesh_.slot_arc[s];
+      if (joined[arc]) continue;
+      border_.push_back({slot_vertex_[s], slot_vertex_[mesh_.next_slot(s, cell)]});
+      points.push_back(uvs_[border_.back()[0]]);
+    }
+  }
+  for (std::size_t i = 0; i < border_.size(); ++i) {
+    const auto& [a, b] = border_[i];
+    for (std::size_t j = i + 1; j < border_.size(); ++j) {
+      const auto& [c, d] = border_[j];
+      if (a == c || a == d || b == c || b == d) continue;
+      if (cross_each_other(uvs_[a], uvs_[b], uvs_[c], uvs_[d])) return false;
+    }
+  }
+  double area = 0;
+  for (const TriangleStretch& t : stretch_) area += t.uv_area;
+  const double hull = hull_area(points, hull_);
+  outcome.solidity = hull > 0 ? area / hull : 1;
+  return outcome.solidity >= limits.solidity;
+}
+
+TrialOutcome Trial::run(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
+                        std::span<const std::uint32_t> glue, std::vector<std::uint8_t>& joined,
+                        const TrialLimits& limits) {
+  for (const std::uint32_t arc : glue) joined[arc] = 1;
+  const TrialOutcome outcome = run_joined(first, second, glue, joined, limits);
+  if (!outcome.accepted) {
+    for (const std::uint32_t arc : glue) joined[arc] = 0;
+  }
+  return outcome;
+}
+
+TrialOutcome Trial::run_joined(std::span<const std::uint32_t> first,
+                               std::span<const std::uint32_t> second,
+                               std::span<const std::uint32_t> glue,
+                               const std::vector<std::uint8_t>& joined,
+                               const TrialLimits& limits) {
+  cells_.assign(first.begin(), first.end());
+  cells_.insert(cells_.end(), second.begin(), second.end());
+  assemble(joined);
+  TrialOutcome outcome;
+  std::size_t rims = 0, joined_sides = 0;
+  for (const std::uint32_t k : cells_) {
+    const CoarseCell& cell = mesh_.cells[k];
+    rims += cell.slot_count;
+    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
+      joined_sides += joined[mesh_.slot_arc[s]];
+    }
+  }
+  outcome.euler = static_cast<int>(positions_.size() + joined_sides / 2) - static_cast<int>(rims);
+  if (outcome.euler > 1 || triangles_.empty()) return outcome;
+  align(first.size(), glue);
+  const LocalMesh mesh{positions_, triangles_, {}};
+  IsometricOptions options;
+  options.iterations = limits.iterations;
+  flatten_isometric(mesh, {uvs_, {}}, options, uvs_, workspace_);
+  outcome.accepted = stretch_fits(limits, outcome) && border_fits(joined, limits, outcome);
+  return outcome;
+}
+
+void Trial::commit() {
+  for (std::uint32_t c = 0; c < cells_.size(); ++c) {
+    uv_.centre[cells_[c]] = uvs_[c];
+    const CoarseCell& cell = mesh_.cells[cells_[c]];
+    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
+      uv_.slot[s] = uvs_[slot_vertex_[s]];
+    }
+  }
+}
+
+}  // namespace atlas

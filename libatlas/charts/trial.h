@@ -1,0 +1,80 @@
+// Internal: would two charts of the coarse mesh flatten well as one?
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libatlas/charts/coarse.h"
+#include "libatlas/param/distortion.h"
+#include "libatlas/param/isometric.h"
+
+namespace atlas {
+
+// The flat coordinates of cells, kept while charts grow.
+struct CoarseUv {
+  std::vector<Vec2d> centre;  // 1 a cell
+  std::vector<Vec2d> slot;    // 1 a slot
+};
+
+struct TrialLimits {
+  double stretch_l2 = 1.01;    // of the merged chart
+  double stretch_high = 1.15;  // over 98 % of its area
+  double solidity = 0.78;      // share of its convex hull that it fills
+  int iterations = 5;
+};
+
+struct TrialOutcome {
+  bool accepted = false;
+  double stretch_l2 = 1, stretch_high = 1, solidity = 1;
+  int euler = 1;
+};
+
+// Works on one candidate at a time; not shared between threads.
+class Trial {
+ public:
+  Trial(const CoarseMesh& mesh, CoarseUv& uv) : mesh_(mesh), uv_(uv) {
+    slot_vertex_.resize(mesh.slot_position.size());
+  }
+
+  // Flattens the cells of two charts (`second` may be empty) with the arcs `glue` joined besides
+  // those where `joined` (1 an arc) is set. If accepted, `glue` is set in `joined`, too; the
+  // coordinates are not kept until commit().
+  TrialOutcome run(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
+                   std::span<const std::uint32_t> glue, std::vector<std::uint8_t>& joined,
+                   const TrialLimits& limits);
+  // Stores the last trial's coordinates.
+  void commit();
+
+ private:
+  TrialOutcome run_joined(std::span<const std::uint32_t> first,
+                          std::span<const std::uint32_t> second,
+                          std::span<const std::uint32_t> glue,
+                          const std::vector<std::uint8_t>& joined, const TrialLimits& limits);
+  void assemble(const std::vector<std::uint8_t>& joined);
+  void join(std::uint32_t arc);
+  void align(std::size_t first_cells, std::span<const std::uint32_t> glue);
+  bool stretch_fits(const TrialLimits& limits, TrialOutcome& outcome);
+  bool border_fits(const std::vector<std::uint8_t>& joined, const TrialLimits& limits,
+                   TrialOutcome& outcome);
+  std::uint32_t root(std::uint32_t slot);
+
+  const CoarseMesh& mesh_;
+  CoarseUv& uv_;
+  std::vector<std::uint32_t> cells_;
+  std::vector<std::uint32_t> slot_vertex_;  // union-find parents, then vertices
+  std::vector<std::uint32_t> vertex_slot_;  // one slot a vertex; centres come first
+  std::vector<Vec3d> positions_;
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
+  std::vector<Vec2d> uvs_;
+  std::vector<double> weight_;
+  std::vector<TriangleStretch> stretch_;
+  std::vector<std::pair<double, double>> ranked_;
+  std::vector<std::array<std::uint32_t, 2>> border_;
+  std::vector<Vec2d> hull_;
+  std::vector<std::uint32_t> roots_;
+  ParamWorkspace workspace_;
+};
+
+}  // namespace atlas
