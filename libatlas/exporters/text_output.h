@@ -16,6 +16,10 @@
 
 namespace atlas {
 
+// A relative reference in plain ASCII without blanks: some readers split lists there, some choke on
+// UTF-8. Names from safe_file_name() stay as they are.
+std::string encode_uri(const std::string& name);
+
 // Appends numbers without locale. Values must be finite.
 class TextBuffer {
  public:

@@ -23,16 +23,6 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-// A relative reference of plain ASCII: readers that split lists at blanks or choke on UTF-8 exist.
-std::string url(const std::string& name) {
-  std::string result = "\"";
-  for (const char c : name) {
-    const bool plain = (c >= '!' && c <= '~') && c != '"' && c != '\\' && c != '%' && c != '#';
-    result += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
-  }
-  return result + '"';
-}
-
 void vector(TextBuffer& out, const glm::dvec3& v) {
   for (int i = 0; i < 3; ++i) {
     if (i > 0) out.character(' ');
@@ -125,7 +115,7 @@ std::string appearance(const Page& page) {
   return fmt::format(
       "  appearance Appearance {{\n    texture ImageTexture {{\n      url {}\n"
       "      repeatS FALSE\n      repeatT FALSE\n    }}\n  }}\n",
-      url(page.image));
+      '"' + encode_uri(page.image) + '"');
 }
 
 }  // namespace

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
+
+#include "libatlas/exporters/text_output.h"
 
 namespace atlas {
 namespace {
@@ -62,6 +65,16 @@ Status check_world(const World& world) {
     }
   }
   return {};
+}
+
+std::string encode_uri(const std::string& name) {
+  std::string result;
+  for (const char c : name) {
+    const bool plain = c >= '!' && c <= '~' &&
+                       std::string_view("\"\\%#?<>^`{|}").find(c) == std::string_view::npos;
+    result += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return result;
 }
 
 std::string safe_file_name(const std::string& text) {

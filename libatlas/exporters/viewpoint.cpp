@@ -1,0 +1,257 @@
+#include "libatlas/exporters/viewpoint.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+constexpr double kEyeMetres = 1.6, kHeadroomMetres = 1.9;
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kFov = 1.0;                  // radians
+constexpr std::size_t kMaxCandidates = 1500;  // places tried; each costs some seventy rays
+constexpr int kHeadings = 24;                 // level directions looked along
+constexpr double kEnclosed = 0.6;  // share of directions that must meet a front face: an inside
+constexpr double kRoomy = 0.1;     // mean free level distance, as a share of the floor's diagonal
+
+// The scene in a frame whose third axis points up, in voxels. Cells know the sum of the
+// area-weighted normals of what they hold, which tells a wall's front from its back.
+class Grid {
+ public:
+  Grid(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices,
+       const ViewpointOptions& options, const Context& context)
+      : up_(options.up) {
+    low_ = glm::dvec3(INFINITY);
+    high_ = glm::dvec3(-INFINITY);
+    for (const std::uint32_t i : indices) {
+      const glm::dvec3 p = to_frame(to_dvec(positions[i]));
+      low_ = glm::min(low_, p);
+      high_ = glm::max(high_, p);
+    }
+    const glm::dvec3 size = high_ - low_;
+    cell_ = std::max({size.x, size.y, size.z}) / std::clamp(options.cells, 8, 512);
+    if (!(cell_ > 0)) cell_ = 1;
+    for (int a = 0; a < 3; ++a) n_[a] = std::max(1, int(std::ceil(size[a] / cell_)));
+    normals_.assign(std::size_t(n_[0]) * n_[1] * n_[2], glm::vec3(0));
+    filled_.assign(normals_.size(), 0);
+    for (std::size_t t = 0; t + 2 < indices.size() && !(t % 65536 == 0 && context.cancelled());
+         t += 3) {
+      mark(to_frame(to_dvec(positions[indices[t]])), to_frame(to_dvec(positions[indices[t + 1]])),
+           to_frame(to_dvec(positions[indices[t + 2]])));
+    }
+  }
+
+  glm::dvec3 to_frame(const glm::dvec3& p) const {
+    return up_ == Up::z ? p : glm::dvec3(p.z, p.x, p.y);
+  }
+  glm::dvec3 from_frame(const glm::dvec3& p) const {
+    return up_ == Up::z ? p : glm::dvec3(p.y, p.z, p.x);
+  }
+
+  int size(int axis) const { return n_[axis]; }
+  double cell() const { return cell_; }
+  glm::dvec3 low() const { return low_; }
+  glm::dvec3 high() const { return high_; }
+  double level_diagonal() const { return std::hypot(high_.x - low_.x, high_.y - low_.y); }
+  bool filled(int x, int y, int z) const { return filled_[index(x, y, z)] != 0; }
+  glm::dvec3 centre(int x, int y, int z) const {
+    return low_ + (glm::dvec3(x, y, z) + 0.5) * cell_;
+  }
+
+  enum class Hit { nothing, front, back };
+  struct Ray {
+    double distance = 0;  // to the first filled cell, or to the box's border
+    Hit hit = Hit::nothing;
+  };
+
+  // Walks in steps of half a cell, which may clip a corner and does not matter here.
+  Ray cast(const glm::dvec3& from, const glm::dvec3& direction) const {
+    Ray ray;
+    const double step = cell_ / 2;
+    for (ray.distance = step;; ray.distance += step) {
+      const glm::dvec3 at = (from + direction * ray.distance - low_) / cell_;
+      int c[3];
+      for (int a = 0; a < 3; ++a) {
+        c[a] = int(std::floor(at[a]));
+        if (c[a] < 0 || c[a] >= n_[a]) return ray;
+      }
+      const std::size_t i = index(c[0], c[1], c[2]);
+      if (!filled_[i]) continue;
+      ray.hit = glm::dot(glm::dvec3(normals_[i]), direction) <= 0 ? Hit::front : Hit::back;
+      return ray;
+    }
+  }
+
+ private:
+  std::size_t index(int x, int y, int z) const { return (std::size_t(z) * n_[1] + y) * n_[0] + x; }
+
+  void mark(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const glm::dvec3 normal = glm::cross(b - a, c - a);
+    const double longest =
+        std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+    const int steps = std::clamp(int(std::ceil(longest / (0.7 * cell_))), 1, 2048);
+    const int samples = (steps + 1) * (steps + 2) / 2;
+    const glm::vec3 share = glm::vec3(normal / (cell_ * cell_) / double(samples));
+    for (int i = 0; i <= steps; ++i) {
+      for (int j = 0; i + j <= steps; ++j) {
+        const glm::dvec3 p = a + (b - a) * (double(i) / steps) + (c - a) * (double(j) / steps);
+        int k[3];
+        for (int axis = 0; axis < 3; ++axis) {
+          k[axis] = std::clamp(int((p[axis] - low_[axis]) / cell_), 0, n_[axis] - 1);
+        }
+        const std::size_t at = index(k[0], k[1], k[2]);
+        filled_[at] = 1;
+        normals_[at] += share;
+      }
+    }
+  }
+
+  Up up_;
+  glm::dvec3 low_, high_;
+  double cell_ = 1;
+  std::array<int, 3> n_{};
+  std::vector<glm::vec3> normals_;
+  std::vector<std::uint8_t> filled_;
+};
+
+struct Eye {
+  glm::dvec3 position{0};
+  int floor = 0;  // cell of the floor below
+};
+
+// For each column of cells, above each floor with air over it.
+std::vector<Eye> eyes_of_columns(const Grid& grid, double metres_per_unit) {
+  const double eye = kEyeMetres / metres_per_unit, headroom = kHeadroomMetres / metres_per_unit;
+  std::vector<Eye> eyes;
+  for (int y = 0; y < grid.size(1); ++y) {
+    for (int x = 0; x < grid.size(0); ++x) {
+      for (int z = 0; z < grid.size(2); ++z) {
+        if (!grid.filled(x, y, z)) continue;
+        const int floor = z;
+        while (z + 1 < grid.size(2) && !grid.filled(x, y, z + 1)) ++z;
+        if (z - floor < 2) continue;
+        const double air = (z - floor) * grid.cell();
+        // Half a cell above the floor's cell there is air for certain.
+        const double height = air >= headroom ? std::max(eye, grid.cell()) : 0.55 * air;
+        glm::dvec3 p = grid.centre(x, y, floor);
+        p.z += grid.cell() / 2 + std::min(height, 0.8 * air);
+        eyes.push_back({p, floor});
+      }
+    }
+  }
+  return eyes;
+}
+
+// At most kMaxCandidates of them, and only those on the floor that most columns share, so that
+// nobody starts on a table. Where people cannot stand that has no meaning and does no harm.
+std::vector<Eye> candidates(const Grid& grid, double metres_per_unit) {
+  const std::vector<Eye> eyes = eyes_of_columns(grid, metres_per_unit);
+  std::vector<std::size_t> columns(grid.size(2) + 1, 0);  // with a floor at z or z + 1
+  for (const Eye& eye : eyes) {
+    ++columns[eye.floor];
+    if (eye.floor > 0) ++columns[eye.floor - 1];
+  }
+  const int common = int(std::max_element(columns.begin(), columns.end()) - columns.begin());
+  std::vector<Eye> standing;
+  for (const Eye& eye : eyes) {
+    if (eye.floor == common || eye.floor == common + 1) standing.push_back(eye);
+  }
+  if (standing.size() <= kMaxCandidates) return standing;
+  std::vector<Eye> some;
+  for (std::size_t i = 0; i < kMaxCandidates; ++i) {
+    some.push_back(standing[i * standing.size() / kMaxCandidates]);
+  }
+  return some;
+}
+
+// Directions spread evenly over the sphere (a Fibonacci lattice).
+std::vector<glm::dvec3> sphere(int count) {
+  std::vector<glm::dvec3> result;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1 - (2 * i + 1.0) / count, r = std::sqrt(1 - z * z);
+    const double angle = kPi * (3 - std::sqrt(5.0)) * i;
+    result.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+  }
+  return result;
+}
+
+struct Judged {
+  double score = 0;  // 0: unusable
+  glm::dvec3 direction{1, 0, 0};
+};
+
+// The best place sees front faces all round, has air at every side, and a long view.
+Judged judge(const Grid& grid, const glm::dvec3& eye, const std::vector<glm::dvec3>& around) {
+  Judged result;
+  std::size_t front = 0;
+  for (const glm::dvec3& d : around) front += grid.cast(eye, d).hit == Grid::Hit::front;
+  const double enclosed = double(front) / double(around.size());
+  if (enclosed < kEnclosed) return result;
+  std::array<double, kHeadings> free{};
+  double nearest = INFINITY, mean = 0;
+  for (int i = 0; i < kHeadings; ++i) {
+    const double angle = 2 * kPi * i / kHeadings;
+    const auto ray = grid.cast(eye, {std::cos(angle), std::sin(angle), 0});
+    free[i] = ray.hit == Grid::Hit::front ? ray.distance : 0.25 * ray.distance;
+    nearest = std::min(nearest, ray.distance);
+    mean += ray.distance / kHeadings;
+  }
+  // A pocket between an object's parts is no room.
+  if (nearest < 1.5 * grid.cell() || mean < kRoomy * grid.level_diagonal()) return result;
+  double best = -1;
+  for (int i = 0; i < kHeadings; ++i) {
+    const double view =
+        free[(i + kHeadings - 1) % kHeadings] + 2 * free[i] + free[(i + 1) % kHeadings];
+    if (view <= best) continue;
+    best = view;
+    const double angle = 2 * kPi * i / kHeadings;
+    result.direction = {std::cos(angle), std::sin(angle), 0};
+  }
+  // A long view counts more than the middle of the room: people stand near a wall to see it all.
+  result.score = enclosed * (best / 4 + mean / 2 + std::min(nearest, 0.15 * best));
+  return result;
+}
+
+Viewpoint from_outside(const Grid& grid) {
+  const glm::dvec3 centre = (grid.low() + grid.high()) / 2.0;
+  const double radius = std::max(glm::distance(grid.low(), grid.high()) / 2, 1e-30);
+  const glm::dvec3 towards = glm::normalize(glm::dvec3(0.75, 0.55, 0.4));  // three sides seen
+  const glm::dvec3 eye = centre + towards * (radius / std::sin(kFov / 2));
+  Viewpoint view;
+  const glm::dvec3 position = grid.from_frame(eye), direction = grid.from_frame(-towards);
+  view.position = from_glm(position);
+  view.direction = from_glm(direction);
+  view.fov = kFov;
+  return view;
+}
+
+}  // namespace
+
+Viewpoint choose_viewpoint(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices,
+                           const ViewpointOptions& options, const Context& context) {
+  if (indices.empty()) return {};
+  const Grid grid(positions, indices, options, context);
+  const std::vector<glm::dvec3> around = sphere(48);
+  Judged best;
+  glm::dvec3 eye(0);
+  for (const Eye& candidate : candidates(grid, options.metres_per_unit)) {
+    if (context.cancelled()) break;
+    const Judged judged = judge(grid, candidate.position, around);
+    if (judged.score <= best.score) continue;
+    best = judged;
+    eye = candidate.position;
+  }
+  if (best.score == 0) return from_outside(grid);
+  Viewpoint view;
+  view.position = from_glm(grid.from_frame(eye));
+  view.direction = from_glm(grid.from_frame(best.direction));
+  view.fov = kFov;
+  view.inside = true;
+  return view;
+}
+
+}  // namespace atlas

@@ -1,0 +1,348 @@
+#include <fstream>  // tinygltf.h forgets it where TINYGLTF_NO_FS is set
+#define TINYGLTF_IMPLEMENTATION
+#include "libatlas/scene/gltf_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <cstring>
+
+#include "libatlas/scene/file_bytes.h"
+
+namespace atlas {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::string_view kUnderstood[] = {"KHR_materials_unlit", "KHR_mesh_quantization",
+                                            "KHR_texture_transform"};
+
+// What the file callbacks of tinygltf are given.
+struct Folder {
+  fs::path path;
+  Status status;  // of the first buffer that could not be read
+};
+
+Status malformed(const fs::path& path, const std::string& what) {
+  return {ErrorCode::bad_input,
+          fmt::format("{}: {} (check it with a glTF validator)", path.string(), what)};
+}
+
+std::uint32_t word_at(std::string_view bytes, std::size_t at) {
+  std::uint32_t word;
+  std::memcpy(&word, bytes.data() + at, 4);
+  return word;
+}
+
+// The JSON of a GLB container whose chunks all lie inside the file (tinygltf's own check of the
+// binary chunk forgets the chunk's header).
+Result<std::string_view> glb_json(const fs::path& path, std::string_view bytes) {
+  if (bytes.size() < 20) return malformed(path, "too short for a GLB file");
+  if (word_at(bytes, 4) != 2) {
+    return malformed(path, fmt::format("GLB version {}, not 2", word_at(bytes, 4)));
+  }
+  const std::size_t length = word_at(bytes, 8), json = word_at(bytes, 12);
+  if (length > bytes.size()) {
+    return malformed(
+        path, fmt::format("cut short: it announces {} bytes and has {}", length, bytes.size()));
+  }
+  if (20 + json > length) return malformed(path, "its JSON chunk is longer than the file");
+  const std::size_t binary = 20 + json;
+  if (binary + 8 <= length && binary + 8 + word_at(bytes, binary) > length) {
+    return malformed(path, "its binary chunk is longer than the file");
+  }
+  return bytes.substr(20, json);
+}
+
+std::int64_t integer(const nlohmann::json& object, const char* key, std::int64_t absent) {
+  const auto at = object.find(key);
+  return at != object.end() && at->is_number_integer() ? at->get<std::int64_t>() : absent;
+}
+
+// tinygltf takes the address of an embedded image's first byte without a look at the ranges.
+bool image_views_fit(const nlohmann::json& json) {
+  const auto element = [&](const char* array, std::int64_t i) -> const nlohmann::json* {
+    const auto at = json.find(array);
+    if (at == json.end() || !at->is_array() || i < 0 || std::size_t(i) >= at->size())
+      return nullptr;
+    return (*at)[i].is_object() ? &(*at)[i] : nullptr;
+  };
+  const auto images = json.find("images");
+  if (images == json.end() || !images->is_array()) return true;
+  for (const auto& image : *images) {
+    if (!image.is_object() || !image.contains("bufferView")) continue;
+    const auto* view = element("bufferViews", integer(image, "bufferView", -1));
+    const auto* buffer = view ? element("buffers", integer(*view, "buffer", -1)) : nullptr;
+    if (!buffer) return false;
+    const std::int64_t offset = integer(*view, "byteOffset", 0);
+    const std::int64_t length = integer(*view, "byteLength", -1);
+    if (offset < 0 || length < 1 || length > integer(*buffer, "byteLength", -1) - offset)
+      return false;
+  }
+  return true;
+}
+
+Status check_json(const fs::path& path, std::string_view text) {
+  nlohmann::json json;
+  try {
+    json = nlohmann::json::parse(text);
+  } catch (const nlohmann::json::parse_error& error) {
+    const auto line =
+        1 + std::count(text.begin(), text.begin() + std::min(error.byte, text.size()), '\n');
+    return {ErrorCode::bad_input,
+            fmt::format("{}:{}: not valid JSON (export the file again)", path.string(), line)};
+  }
+  if (!json.is_object()) return malformed(path, "its JSON is not an object");
+  const auto required = json.find("extensionsRequired");
+  if (required != json.end() && required->is_array()) {
+    for (const auto& name : *required) {
+      const std::string extension = name.is_string() ? name.get<std::string>() : name.dump();
+      if (std::find(std::begin(kUnderstood), std::end(kUnderstood), extension) !=
+          std::end(kUnderstood)) {
+        continue;
+      }
+      return {ErrorCode::unsupported,
+              fmt::format("{}: needs the extension {}, which is not supported (export without it)",
+                          path.string(), extension)};
+    }
+  }
+  if (!image_views_fit(json)) return malformed(path, "an embedded image leaves its buffer");
+  return {};
+}
+
+// Embedded images stay encoded; tinygltf has already put data URIs into `bytes`.
+bool keep_image(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
+                const unsigned char* bytes, int size, void*) {
+  if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
+  return true;
+}
+
+bool read_buffer(std::vector<unsigned char>* out, std::string*, const std::string& name,
+                 void* user) {
+  auto& folder = *static_cast<Folder*>(user);
+  auto bytes = read_file_bytes(name);
+  if (!bytes.ok()) {
+    if (folder.status.ok()) folder.status = bytes.status();
+    return false;
+  }
+  out->assign(bytes->begin(), bytes->end());
+  return true;
+}
+
+// Answers yes for the first candidate, which lies in the scene's folder, so that a missing buffer
+// is reported by read_buffer with its name and never picked up from the working directory.
+bool always_exists(const std::string&, void*) {
+  return true;
+}
+std::string same_path(const std::string& name, void*) {
+  return name;
+}
+bool never_write(std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+  return false;
+}
+
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find('\n'));
+}
+
+std::size_t component_size(int type) {
+  const int size = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(type));
+  return size > 0 ? static_cast<std::size_t>(size) : 0;
+}
+
+template <class T>
+T load(const std::uint8_t* at) {
+  T value;
+  std::memcpy(&value, at, sizeof value);
+  return value;
+}
+
+double component(const std::uint8_t* at, int type, bool normalized) {
+  switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return normalized ? std::max(load<std::int8_t>(at) / 127.0, -1.0) : load<std::int8_t>(at);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return normalized ? *at / 255.0 : *at;
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return normalized ? std::max(load<std::int16_t>(at) / 32767.0, -1.0) : load<std::int16_t>(at);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return normalized ? load<std::uint16_t>(at) / 65535.0 : load<std::uint16_t>(at);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+      return load<std::uint32_t>(at);
+    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+      return load<float>(at);
+    default:
+      return load<double>(at);
+  }
+}
+
+Status bad_accessor(int accessor, const std::string& what) {
+  return {ErrorCode::bad_input, fmt::format("accessor {} {}", accessor, what)};
+}
+
+// Rows of `row_bytes` at `offset` of a view, `stride` apart; all inside.
+struct Rows {
+  const std::uint8_t* data = nullptr;
+  std::size_t stride = 0;
+};
+
+Result<Rows> rows_of(const tinygltf::Model& model, int view, std::size_t offset, std::size_t count,
+                     std::size_t row_bytes) {
+  auto bytes = gltf_view(model, view);
+  if (!bytes.ok()) return bytes.status();
+  const std::size_t given = model.bufferViews[view].byteStride;
+  const std::size_t stride = given == 0 ? row_bytes : given;
+  // Compared by division: offset, stride and count come from the file and could overflow a product.
+  const bool fits = count == 0 || (offset <= bytes->size() && row_bytes <= bytes->size() - offset &&
+                                   count - 1 <= (bytes->size() - offset - row_bytes) / stride);
+  if (!fits) return Status(ErrorCode::bad_input, fmt::format("leaves buffer view {}", view));
+  return Rows{bytes->data() + offset, stride};
+}
+
+// Accessors without a view are zeros that a sparse part fills; their count has no data behind it.
+constexpr std::size_t kMostZeros = std::size_t{1} << 24;
+
+template <class Store>
+Status read_dense(const tinygltf::Model& model, int index, int components, const Store& store) {
+  const tinygltf::Accessor& a = model.accessors[index];
+  const int own = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type));
+  const std::size_t size = component_size(a.componentType);
+  if (own < components || size == 0) {
+    return bad_accessor(index, fmt::format("has {} components, not {}", own, components));
+  }
+  if (a.bufferView < 0) return {};
+  auto rows = rows_of(model, a.bufferView, a.byteOffset, a.count, size * own);
+  if (!rows.ok()) return bad_accessor(index, rows.status().message());
+  for (std::size_t i = 0; i < a.count; ++i) {
+    const std::uint8_t* row = rows->data + i * rows->stride;
+    for (int c = 0; c < components; ++c) {
+      store(i, c, component(row + c * size, a.componentType, a.normalized));
+    }
+  }
+  return {};
+}
+
+template <class Store>
+Status read_sparse(const tinygltf::Model& model, int index, int components, const Store& store) {
+  const tinygltf::Accessor& a = model.accessors[index];
+  if (!a.sparse.isSparse) return {};
+  const std::size_t size = component_size(a.componentType);
+  const std::size_t index_size = component_size(a.sparse.indices.componentType);
+  const auto row = size * tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type));
+  if (a.sparse.count < 0 || a.sparse.indices.byteOffset < 0 || a.sparse.values.byteOffset < 0 ||
+      index_size == 0) {
+    return bad_accessor(index, "has a malformed sparse part");
+  }
+  const auto count = static_cast<std::size_t>(a.sparse.count);
+  auto indices =
+      rows_of(model, a.sparse.indices.bufferView, a.sparse.indices.byteOffset, count, index_size);
+  if (!indices.ok()) return bad_accessor(index, indices.status().message());
+  auto values = rows_of(model, a.sparse.values.bufferView, a.sparse.values.byteOffset, count, row);
+  if (!values.ok()) return bad_accessor(index, values.status().message());
+  for (std::size_t k = 0; k < count; ++k) {
+    const double at =
+        component(indices->data + k * indices->stride, a.sparse.indices.componentType, false);
+    if (!(at >= 0 && at < double(a.count)))
+      return bad_accessor(index, "has a sparse index out of range");
+    for (int c = 0; c < components; ++c) {
+      store(static_cast<std::size_t>(at), c,
+            component(values->data + k * values->stride + c * size, a.componentType, a.normalized));
+    }
+  }
+  return {};
+}
+
+template <class T>
+Result<std::vector<T>> read_accessor(const tinygltf::Model& model, int index, int components) {
+  if (index < 0 || std::size_t(index) >= model.accessors.size()) {
+    return bad_accessor(index, "does not exist");
+  }
+  std::vector<T> values;
+  const tinygltf::Accessor& a = model.accessors[index];
+  const auto store = [&](std::size_t i, int c, double value) {
+    values[i * components + c] = static_cast<T>(value);
+  };
+  // The count must be backed by data before anything is allocated for it.
+  if (a.bufferView >= 0) {
+    auto bytes = gltf_view(model, a.bufferView);
+    if (!bytes.ok()) return bad_accessor(index, bytes.status().message());
+    if (a.count > bytes->size()) return bad_accessor(index, "is longer than its buffer view");
+  } else if (a.count > kMostZeros) {
+    return bad_accessor(index, "has no data for its count");
+  }
+  values.assign(a.count * components, T{});
+  if (Status s = read_dense(model, index, components, store); !s.ok()) return s;
+  if (Status s = read_sparse(model, index, components, store); !s.ok()) return s;
+  return values;
+}
+
+}  // namespace
+
+Result<tinygltf::Model> load_gltf(const fs::path& path) {
+  auto bytes = read_file_bytes(path);
+  if (!bytes.ok()) return bytes.status();
+  if (bytes->size > 0xffffffffu) {
+    return Status(ErrorCode::unsupported, path.string() + ": larger than 4 GiB (split the scene)");
+  }
+  const bool binary = bytes->text().starts_with("glTF");
+  std::string_view json = bytes->text();
+  if (binary) {
+    auto chunk = glb_json(path, bytes->text());
+    if (!chunk.ok()) return chunk.status();
+    json = *chunk;
+  }
+  if (Status s = check_json(path, json); !s.ok()) return s;
+
+  tinygltf::TinyGLTF loader;
+  Folder folder{path.parent_path(), {}};
+  loader.SetImageLoader(keep_image, nullptr);
+  loader.SetFsCallbacks({always_exists, same_path, read_buffer, never_write, &folder});
+  tinygltf::Model model;
+  std::string error, warning;
+  const auto size = static_cast<unsigned>(bytes->size);
+  const std::string base = folder.path.empty() ? "." : folder.path.string();
+  const bool loaded =
+      binary ? loader.LoadBinaryFromMemory(&model, &error, &warning,
+                                           reinterpret_cast<const unsigned char*>(bytes->begin()),
+                                           size, base)
+             : loader.LoadASCIIFromString(&model, &error, &warning, bytes->begin(), size, base);
+  if (!folder.status.ok()) return folder.status;
+  if (!loaded) return malformed(path, error.empty() ? "not a glTF file" : first_line(error));
+  return model;
+}
+
+Result<std::span<const std::uint8_t>> gltf_view(const tinygltf::Model& model, int view) {
+  if (view < 0 || std::size_t(view) >= model.bufferViews.size()) {
+    return Status(ErrorCode::bad_input,
+                  fmt::format("names buffer view {}, which does not exist", view));
+  }
+  const tinygltf::BufferView& v = model.bufferViews[view];
+  if (v.buffer < 0 || std::size_t(v.buffer) >= model.buffers.size()) {
+    return Status(ErrorCode::bad_input,
+                  fmt::format("names buffer {}, which does not exist", v.buffer));
+  }
+  const auto& data = model.buffers[v.buffer].data;
+  if (v.byteOffset > data.size() || v.byteLength > data.size() - v.byteOffset) {
+    return Status(ErrorCode::bad_input,
+                  fmt::format("uses buffer view {}, which leaves its buffer", view));
+  }
+  return std::span<const std::uint8_t>(data.data() + v.byteOffset, v.byteLength);
+}
+
+Result<std::vector<float>> gltf_floats(const tinygltf::Model& model, int accessor, int components) {
+  return read_accessor<float>(model, accessor, components);
+}
+
+Result<std::vector<std::uint32_t>> gltf_integers(const tinygltf::Model& model, int accessor) {
+  if (accessor >= 0 && std::size_t(accessor) < model.accessors.size()) {
+    const int type = model.accessors[accessor].componentType;
+    if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
+        type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+        type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
+      return bad_accessor(accessor, "holds indices that are not unsigned integers");
+    }
+  }
+  return read_accessor<std::uint32_t>(model, accessor, 1);
+}
+
+}  // namespace atlas

@@ -1,0 +1,371 @@
+// glTF 2.0: the nodes of a scene as one mesh in world coordinates.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat4x4.hpp>
+#include <map>
+
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/scene/formats.h"
+#include "libatlas/scene/gltf_file.h"
+
+namespace atlas {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kMaxDepth = 512;  // of nested nodes: deeper ones are a cycle
+
+Vec3f three(const std::vector<float>& values, std::size_t i) {
+  return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+}
+
+glm::dmat4 local_matrix(const tinygltf::Node& node) {
+  glm::dmat4 m(1);
+  if (node.matrix.size() == 16) {
+    for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = node.matrix[i];
+    return m;
+  }
+  if (node.rotation.size() == 4) {
+    const auto& q = node.rotation;
+    m = glm::mat4_cast(glm::normalize(glm::dquat(q[3], q[0], q[1], q[2])));
+  }
+  if (node.scale.size() == 3) {
+    for (int c = 0; c < 3; ++c) m[c] *= node.scale[c];
+  }
+  if (node.translation.size() == 3) {
+    m[3] = {node.translation[0], node.translation[1], node.translation[2], 1};
+  }
+  return m;
+}
+
+// File names in URIs are percent-encoded.
+std::string decode_uri(const std::string& uri) {
+  std::string name;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    int code = 0;
+    if (uri[i] == '%' && i + 2 < uri.size() &&
+        std::from_chars(&uri[i + 1], &uri[i + 1] + 2, code, 16).ptr == &uri[i + 1] + 2) {
+      name += static_cast<char>(code);
+      i += 2;
+    } else {
+      name += uri[i];
+    }
+  }
+  return name;
+}
+
+class GltfParser {
+ public:
+  GltfParser(const tinygltf::Model& model, SceneBuilder& builder, const Context& context)
+      : model_(model), builder_(builder), context_(context) {}
+
+  Status run() {
+    if (Status s = add_textures(); !s.ok()) return s;
+    add_materials();
+    for (const int node : roots()) {
+      if (Status s = add_node(node, glm::dmat4(1), 0); !s.ok()) return s;
+    }
+    if (coloured_ != 0) finish_values();
+    builder_.check_positions(
+        [&](std::size_t i) { return fmt::format("{}: vertex {}", builder_.file, i); });
+    add_faces();
+    return {};
+  }
+
+ private:
+  struct Primitive {
+    std::vector<std::uint32_t> corners;  // 3 a triangle, numbered within the primitive
+    std::size_t base = 0, texcoord_base = 0;
+    bool has_texcoords = false, mirrored = false;
+    std::uint32_t material = 0, object = 0;
+    std::string name;
+  };
+
+  Status malformed(const std::string& where, const std::string& what) const {
+    return {ErrorCode::bad_input,
+            fmt::format("{}: {}: {} (check it with a glTF validator)", builder_.file, where, what)};
+  }
+
+  Status add_textures() {
+    const fs::path folder = fs::path(builder_.file).parent_path();
+    for (std::size_t i = 0; i < model_.images.size(); ++i) {
+      const tinygltf::Image& image = model_.images[i];
+      RawTexture texture;
+      texture.place = fmt::format("{}: image {}", builder_.file, i);
+      texture.path = image.uri.empty() ? fs::path(texture.place) : folder / decode_uri(image.uri);
+      texture.bytes = image.image;
+      if (image.bufferView >= 0) {
+        auto bytes = gltf_view(model_, image.bufferView);
+        if (!bytes.ok()) return malformed(fmt::format("image {}", i), bytes.status().message());
+        texture.bytes.assign(bytes->begin(), bytes->end());
+      }
+      builder_.textures.push_back(std::move(texture));
+    }
+    return {};
+  }
+
+  void add_materials() {
+    for (std::size_t i = 0; i < model_.materials.size(); ++i) {
+      const tinygltf::Material& m = model_.materials[i];
+      const auto& pbr = m.pbrMetallicRoughness;
+      RawMaterial material;
+      material.name = m.name.empty() ? fmt::format("material{}", i) : m.name;
+      if (pbr.baseColorFactor.size() >= 3) {
+        material.diffuse = {float(pbr.baseColorFactor[0]), float(pbr.baseColorFactor[1]),
+                            float(pbr.baseColorFactor[2])};
+      }
+      const int texture = pbr.baseColorTexture.index;
+      texcoord_set_.push_back(pbr.baseColorTexture.texCoord);
+      if (texture >= 0 && std::size_t(texture) < model_.textures.size()) {
+        const int source = model_.textures[texture].source;
+        if (source >= 0 && std::size_t(source) < builder_.textures.size())
+          material.texture = source;
+      }
+      add_transform(pbr.baseColorTexture, material);
+      builder_.materials.push_back(std::move(material));
+    }
+    builder_.materials.push_back({});  // for primitives without one
+    texcoord_set_.push_back(0);
+  }
+
+  // KHR_texture_transform acts on v pointing down; here v points up: v' = 1 - (s (1 - v) + o).
+  void add_transform(const tinygltf::TextureInfo& info, RawMaterial& material) {
+    const auto at = info.extensions.find("KHR_texture_transform");
+    if (at == info.extensions.end() || !at->second.IsObject()) return;
+    const auto pair = [&](const char* key, double absent) {
+      std::array<double, 2> result{absent, absent};
+      const tinygltf::Value& value = at->second.Get(key);
+      for (int i = 0; i < 2 && value.IsArray() && value.ArrayLen() == 2; ++i) {
+        if (value.Get(i).IsNumber()) result[i] = value.Get(i).GetNumberAsDouble();
+      }
+      return result;
+    };
+    const auto scale = pair("scale", 1), offset = pair("offset", 0);
+    material.uv_scale = scale;
+    material.uv_offset = {offset[0], 1 - scale[1] - offset[1]};
+    if (at->second.Has("rotation")) {
+      builder_.defects.add(DefectKind::texture_option_ignored, [&] {
+        return fmt::format("{}: material '{}': texture rotation", builder_.file, material.name);
+      });
+    }
+  }
+
+  // Of the default scene; of all nodes that are nobody's child where the file has no scene.
+  std::vector<int> roots() const {
+    const int chosen = model_.defaultScene >= 0 ? model_.defaultScene : 0;
+    if (std::size_t(chosen) < model_.scenes.size()) return model_.scenes[chosen].nodes;
+    std::vector<bool> child(model_.nodes.size(), false);
+    for (const tinygltf::Node& node : model_.nodes) {
+      for (const int c : node.children) {
+        if (c >= 0 && std::size_t(c) < child.size()) child[c] = true;
+      }
+    }
+    std::vector<int> result;
+    for (std::size_t i = 0; i < child.size(); ++i) {
+      if (!child[i]) result.push_back(static_cast<int>(i));
+    }
+    return result;
+  }
+
+  Status add_node(int index, const glm::dmat4& parent, int depth) {
+    const std::string where = fmt::format("node {}", index);
+    if (index < 0 || std::size_t(index) >= model_.nodes.size()) {
+      return malformed(where, "does not exist");
+    }
+    // A node has one parent; meeting it again means a cycle or a shared child, and both are wrong.
+    visited_.resize(model_.nodes.size(), false);
+    if (visited_[index] || depth > kMaxDepth) return malformed(where, "the nodes form no tree");
+    visited_[index] = true;
+    if (context_.cancelled()) return Status::cancelled();
+    const tinygltf::Node& node = model_.nodes[index];
+    const glm::dmat4 matrix = parent * local_matrix(node);
+    if (node.mesh >= 0) {
+      if (std::size_t(node.mesh) >= model_.meshes.size()) {
+        return malformed(where, "names a mesh that does not exist");
+      }
+      if (Status s = add_mesh(node, matrix); !s.ok()) return s;
+    }
+    for (const int child : node.children) {
+      if (Status s = add_node(child, matrix, depth + 1); !s.ok()) return s;
+    }
+    return {};
+  }
+
+  Status add_mesh(const tinygltf::Node& node, const glm::dmat4& matrix) {
+    const tinygltf::Mesh& mesh = model_.meshes[node.mesh];
+    const auto object = static_cast<std::uint32_t>(builder_.objects.size());
+    builder_.objects.push_back(!node.name.empty() ? node.name : mesh.name);
+    // Primitives often share one set of vertices and differ in their indices and materials.
+    std::map<std::map<std::string, int>, std::pair<std::size_t, std::size_t>> shared;
+    for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
+      const tinygltf::Primitive& raw = mesh.primitives[p];
+      Primitive primitive;
+      primitive.name = fmt::format("mesh {} primitive {}", node.mesh, p);
+      primitive.object = object;
+      primitive.mirrored = glm::determinant(glm::dmat3(matrix)) < 0;
+      primitive.material = raw.material >= 0 && std::size_t(raw.material) < model_.materials.size()
+                               ? static_cast<std::uint32_t>(raw.material)
+                               : static_cast<std::uint32_t>(model_.materials.size());
+      const int mode = raw.mode < 0 ? TINYGLTF_MODE_TRIANGLES : raw.mode;
+      if (mode != TINYGLTF_MODE_TRIANGLES && mode != TINYGLTF_MODE_TRIANGLE_STRIP &&
+          mode != TINYGLTF_MODE_TRIANGLE_FAN) {
+        builder_.defects.add(DefectKind::element_ignored, [&] {
+          return fmt::format("{}: {} (points or lines)", builder_.file, primitive.name);
+        });
+        continue;
+      }
+      const auto [at, is_new] =
+          shared.try_emplace(raw.attributes, builder_.positions.size(), std::size_t{0});
+      if (is_new) {
+        if (Status s = add_vertices(raw, matrix, primitive.name); !s.ok()) return s;
+        at->second.second = builder_.positions.size() - at->second.first;
+      }
+      primitive.base = at->second.first;
+      if (Status s = add_texcoords(raw, primitive); !s.ok()) return s;
+      if (Status s = add_corners(raw, mode, at->second.second, primitive); !s.ok()) return s;
+      primitives_.push_back(std::move(primitive));
+    }
+    return {};
+  }
+
+  static int attribute(const tinygltf::Primitive& raw, const std::string& name) {
+    const auto at = raw.attributes.find(name);
+    return at == raw.attributes.end() ? -1 : at->second;
+  }
+
+  Status add_vertices(const tinygltf::Primitive& raw, const glm::dmat4& matrix,
+                      const std::string& where) {
+    if (attribute(raw, "POSITION") < 0) return malformed(where, "has no POSITION");
+    auto positions = gltf_floats(model_, attribute(raw, "POSITION"), 3);
+    if (!positions.ok()) return malformed(where, positions.status().message());
+    const std::size_t count = positions->size() / 3, base = builder_.positions.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const glm::dvec4 p = matrix * glm::dvec4(to_dvec(three(*positions, i)), 1);
+      builder_.positions.push_back({p.x, p.y, p.z});
+    }
+    int values = attribute(raw, "_ILLUMINANCE");
+    if (values < 0) values = attribute(raw, "COLOR_0");
+    builder_.illumination.resize(base + count, {NAN, NAN, NAN});
+    if (values < 0) return {};
+    auto light = gltf_floats(model_, values, 3);
+    if (!light.ok()) return malformed(where, light.status().message());
+    if (light->size() != positions->size()) {
+      return malformed(where, "has another number of colours than of positions");
+    }
+    for (std::size_t i = 0; i < count; ++i) builder_.illumination[base + i] = three(*light, i);
+    lit_ranges_.emplace_back(base, base + count);
+    coloured_ += count;
+    return {};
+  }
+
+  Status add_texcoords(const tinygltf::Primitive& raw, Primitive& primitive) {
+    const int set = texcoord_set_[primitive.material];
+    const int accessor = attribute(raw, fmt::format("TEXCOORD_{}", set));
+    if (accessor < 0) return {};
+    const auto next = builder_.texcoords.size();
+    const auto [at, is_new] = texcoord_base_.try_emplace(accessor, next);
+    primitive.texcoord_base = at->second;
+    primitive.has_texcoords = true;
+    if (!is_new) return {};
+    auto uvs = gltf_floats(model_, accessor, 2);
+    if (!uvs.ok()) return malformed(primitive.name, uvs.status().message());
+    for (std::size_t i = 0; i + 1 < uvs->size(); i += 2) {
+      builder_.texcoords.push_back({(*uvs)[i], 1 - (*uvs)[i + 1]});
+    }
+    return {};
+  }
+
+  Status add_corners(const tinygltf::Primitive& raw, int mode, std::size_t vertices,
+                     Primitive& primitive) {
+    std::vector<std::uint32_t> list;
+    if (raw.indices >= 0) {
+      auto indices = gltf_integers(model_, raw.indices);
+      if (!indices.ok()) return malformed(primitive.name, indices.status().message());
+      list = std::move(*indices);
+    } else {
+      for (std::size_t i = 0; i < vertices; ++i) list.push_back(static_cast<std::uint32_t>(i));
+    }
+    for (std::uint32_t& i : list) {  // what is out of the primitive is out of everything
+      if (i >= vertices) i = kOutside;
+    }
+    if (mode == TINYGLTF_MODE_TRIANGLES) {
+      if (list.size() % 3 != 0) {
+        builder_.defects.add(DefectKind::too_few_corners, [&] {
+          return fmt::format("{}: {}: its end", builder_.file, primitive.name);
+        });
+        ++builder_.defects.triangles_left_out;
+        list.resize(list.size() / 3 * 3);
+      }
+      primitive.corners = std::move(list);
+      return {};
+    }
+    for (std::size_t i = 2; i < list.size(); ++i) {
+      const bool fan = mode == TINYGLTF_MODE_TRIANGLE_FAN;
+      const std::size_t odd = i % 2;  // every other triangle of a strip turns the other way
+      const std::uint32_t a = fan ? list[0] : list[i - 2 + odd];
+      const std::uint32_t b = fan ? list[i - 1] : list[i - 1 - odd];
+      primitive.corners.insert(primitive.corners.end(), {a, b, list[i]});
+    }
+    return {};
+  }
+
+  // Vertices without values in a scene where others have some.
+  void finish_values() {
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < builder_.illumination.size(); ++i) {
+      while (next < lit_ranges_.size() && i >= lit_ranges_[next].second) ++next;
+      if (next < lit_ranges_.size() && i >= lit_ranges_[next].first) continue;
+      builder_.illumination[i] = {};
+      builder_.defects.add(DefectKind::illumination_missing,
+                           [&] { return fmt::format("{}: vertex {}", builder_.file, i); });
+    }
+  }
+
+  void add_faces() {
+    if (coloured_ == 0) builder_.illumination.clear();
+    std::size_t triangles = 0;
+    for (const Primitive& p : primitives_) triangles += p.corners.size() / 3;
+    builder_.reserve_triangles(triangles, !builder_.texcoords.empty());
+    for (const Primitive& p : primitives_) {
+      builder_.material = p.material;
+      builder_.object = p.object;
+      for (std::size_t t = 0; t < p.corners.size() / 3; ++t) add_face(p, t);
+    }
+  }
+
+  void add_face(const Primitive& p, std::size_t t) {
+    std::int64_t vertices[3], uvs[3];
+    for (int c = 0; c < 3; ++c) {
+      const std::uint32_t local = p.corners[3 * t + (p.mirrored ? 2 - c : c)];
+      vertices[c] = local == kOutside ? -1 : static_cast<std::int64_t>(p.base + local);
+      uvs[c] = static_cast<std::int64_t>(p.texcoord_base + local);
+    }
+    const std::span<const std::int64_t> all_uvs(uvs);
+    builder_.add_face(vertices, p.has_texcoords ? all_uvs : all_uvs.first(0),
+                      [&] { return fmt::format("{}: {} triangle {}", builder_.file, p.name, t); });
+  }
+
+  static constexpr std::uint32_t kOutside = 0xffffffffu;
+
+  const tinygltf::Model& model_;
+  SceneBuilder& builder_;
+  const Context& context_;
+  std::vector<int> texcoord_set_;  // 1 a material
+  std::vector<bool> visited_;
+  std::map<int, std::size_t> texcoord_base_;  // by accessor
+  std::vector<Primitive> primitives_;
+  std::vector<std::pair<std::size_t, std::size_t>> lit_ranges_;  // of vertices, ascending
+  std::size_t coloured_ = 0;
+};
+
+}  // namespace
+
+Status read_gltf(const fs::path& path, SceneBuilder& builder, const Context& context) {
+  auto model = load_gltf(path);
+  if (!model.ok()) return model.status();
+  return GltfParser(*model, builder, context).run();
+}
+
+}  // namespace atlas
