@@ -33,8 +33,8 @@ AreaLight window_light(int side, int bay) {
   return make_light(std::move(corners), sky, {0, -float(side), 0});
 }
 
-Mesh build_at(double edge_length) {
-  Builder builder(edge_length);
+Mesh build_at(double edge_length, bool coarse) {
+  Builder builder(edge_length, coarse);
   add_shell(builder);
   add_ceiling(builder);
   add_bins(builder);
@@ -65,7 +65,7 @@ std::vector<AreaLight> cabin_lights() {
   }
   for (int side : {-1, 1})
     for (int bay = 0; bay < kBays; ++bay)
-      if (has_window(side, bay)) lights.push_back(window_light(side, bay));
+      if (has_window(bay)) lights.push_back(window_light(side, bay));
   return lights;
 }
 
@@ -73,15 +73,17 @@ Sun cabin_sun() {
   return {glm::normalize(glm::vec3(-0.34f, -1.0f, 0.17f)), glm::vec3(2300, 1750, 1080), 0.009f};
 }
 
-Mesh build_cabin(std::size_t triangles) {
+Mesh build_cabin(std::size_t triangles, std::size_t limit) {
+  double fine = 0.01, wide = 0.8;
+  Mesh best = build_at(wide, false);
+  const bool coarse = best.triangles.size() > limit;
+  if (coarse) best = build_at(wide, true);
   // The count falls with the edge length, in steps: bisect for the finest that is not too many.
-  double fine = 0.01, coarse = 2;
-  Mesh best = build_at(coarse);
   for (int i = 0; i < 12; ++i) {
-    const double middle = std::sqrt(fine * coarse);
-    Mesh mesh = build_at(middle);
+    const double middle = std::sqrt(fine * wide);
+    Mesh mesh = build_at(middle, coarse);
     if (mesh.triangles.size() <= triangles) {
-      coarse = middle;
+      wide = middle;
       best = std::move(mesh);
     } else {
       fine = middle;

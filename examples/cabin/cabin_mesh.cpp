@@ -109,6 +109,7 @@ Mesh Builder::finish(std::vector<SurfaceMaterial> materials) const {
     if (p0 != p1 && p1 != p2 && p2 != p0) mesh.triangles.push_back(triangle);
   }
   mesh.points = Id(points.size());
+  mesh.curved = !coarse_;
   return mesh;
 }
 

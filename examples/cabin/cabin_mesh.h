@@ -45,6 +45,7 @@ struct Mesh {
   std::vector<Triangle> triangles;
   std::vector<std::string> objects;
   std::vector<SurfaceMaterial> materials;
+  bool curved = true;               // the normals are good enough to refine along
   Id points = 0;                    // number of distinct Vertex::point
   std::vector<glm::vec3> direct;    // one a vertex, lux
   std::vector<glm::vec3> indirect;  // one a vertex, lux
@@ -60,10 +61,12 @@ struct Corner {
 // Collects triangles as loose corners; finish() welds them.
 class Builder {
  public:
-  explicit Builder(double edge_length) : edge_length_(edge_length) {}
+  Builder(double edge_length, bool coarse) : edge_length_(edge_length), coarse_(coarse) {}
 
   // Largest edge the caller wants; parts choose their segment counts by it.
   double edge_length() const { return edge_length_; }
+  // Whether triangles are so scarce that small parts must do with the fewest.
+  bool coarse() const { return coarse_; }
   // Segments for a length: at least `least`.
   int segments(double length, int least = 1) const;
 
@@ -81,6 +84,7 @@ class Builder {
 
  private:
   double edge_length_;
+  bool coarse_;
   std::vector<Corner> corners_;
   std::vector<std::uint16_t> object_, material_;  // one a triangle
   std::vector<std::string> object_names_, material_names_;

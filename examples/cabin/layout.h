@@ -14,8 +14,8 @@
 namespace cabin {
 
 constexpr double kLength = 6.2;       // between the bulkheads
-constexpr double kRadius = 1.42;      // of the lining
-constexpr double kAxisHeight = 0.75;  // of the fuselage's axis over the floor
+constexpr double kRadius = 1.55;      // of the lining
+constexpr double kAxisHeight = 0.78;  // of the fuselage's axis over the floor
 constexpr int kBays = 12;             // window bays along each side
 constexpr double kBay = kLength / kBays;
 constexpr double kWindowHeight = 1.0;  // of the windows' centres
@@ -41,9 +41,9 @@ inline double half_width(double z) {
   return std::sqrt(std::max(0.0, kRadius * kRadius - (z - kAxisHeight) * (z - kAxisHeight)));
 }
 
-// Which bays have a window: the door is to starboard, the galley to port.
-inline bool has_window(int side, int bay) {
-  return side > 0 ? bay == 0 || bay >= 3 : bay == 0 || bay >= 4;
+// Which bays have a window: the door and the galley take the place of two on each side.
+inline bool has_window(int bay) {
+  return bay <= 1 || bay >= 4;
 }
 // The share of a window that its blind covers.
 inline double blind_share(int side, int bay) {
@@ -83,7 +83,8 @@ std::vector<Strip> light_strips();
 
 std::vector<SurfaceMaterial> cabin_materials();
 
-// The whole cabin in about `triangles` triangles (as near as its segment counts allow), welded.
-Mesh build_cabin(std::size_t triangles);
+// The whole cabin, welded, in at most `triangles` triangles or in as few as its round shapes take.
+// If those are more than `limit`, small parts are left angular.
+Mesh build_cabin(std::size_t triangles, std::size_t limit);
 
 }  // namespace cabin

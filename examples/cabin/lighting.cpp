@@ -111,7 +111,7 @@ glm::vec3 Lighting::direct_at(const Vertex& vertex) const {
   const float sun_cosine = glm::dot(n, sun_.towards);
   if (sun_cosine > 0) {
     const auto [t, b] = frame_of(sun_.towards);
-    const int samples = std::max(4, options_.direct_samples / 8);
+    const int samples = std::max(4, options_.direct_samples / 6);
     int open = 0;
     for (int i = 0; i < samples; ++i) {
       const glm::vec2 r = low_discrepancy(i, shift);

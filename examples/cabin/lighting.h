@@ -20,7 +20,7 @@ struct Sun {
 struct LightingOptions {
   std::uint32_t seed = 1;
   int direct_samples = 64;     // shadow rays a vertex, shared among its lights
-  int indirect_samples = 256;  // gathering rays a vertex of the coarse mesh
+  int indirect_samples = 384;  // gathering rays a vertex of the coarse mesh
 };
 
 class Lighting {

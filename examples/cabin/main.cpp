@@ -22,7 +22,7 @@ struct Arguments {
 
 // Larger meshes get fewer shadow rays a vertex, by default: their triangles average them anyway.
 int default_samples(std::size_t triangles) {
-  return triangles <= 200000 ? 96 : triangles <= 1200000 ? 48 : 32;
+  return triangles <= 200000 ? 192 : triangles <= 1200000 ? 96 : 64;
 }
 
 void describe(CLI::App& app, Arguments& a) {
@@ -36,7 +36,7 @@ void describe(CLI::App& app, Arguments& a) {
       ->capture_default_str();
   app.add_option("--seed", a.lighting.seed, "of the sampling pattern")->capture_default_str();
   app.add_option("--samples", a.samples,
-                 "shadow rays a vertex (default: 96 up to 200 k triangles, 48 to 1.2 M, then 32)")
+                 "shadow rays a vertex (default: 192 up to 200 k triangles, 96 to 1.2 M, then 64)")
       ->check(CLI::Range(1, 4096));
   app.add_option("--indirect-samples", a.lighting.indirect_samples,
                  "hemisphere rays a vertex of the coarse mesh, for the light between surfaces")
@@ -58,8 +58,9 @@ atlas::Status run(const Arguments& a) {
   };
   // Light between surfaces is gathered on at most this many triangles, whatever the final size: it
   // varies slowly, and its cost would otherwise be most of the whole.
-  constexpr std::size_t kCoarse = 45000;
-  cabin::Mesh mesh = cabin::build_cabin(std::min(kCoarse, a.triangles * 9 / 20));
+  constexpr std::size_t kCoarse = 90000;
+  cabin::Mesh mesh =
+      cabin::build_cabin(std::min(kCoarse, a.triangles * 35 / 100), a.triangles * 8 / 10);
   say(fmt::format("coarse mesh: {} triangles, {} vertices, {} objects", mesh.triangles.size(),
                   mesh.vertices.size(), mesh.objects.size()));
   const cabin::Tracer tracer(mesh);
@@ -68,7 +69,7 @@ atlas::Status run(const Arguments& a) {
   say("direct light");
   lighting.light_indirectly(mesh, context);
   say("indirect light");
-  cabin::refine(mesh, {a.triangles, 6}, lighting, context);
+  cabin::refine(mesh, {a.triangles, 12}, lighting, context);
   cabin::show_emitters(mesh);
   say(fmt::format("refined: {} triangles, {} vertices", mesh.triangles.size(),
                   mesh.vertices.size()));

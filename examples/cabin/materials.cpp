@@ -57,7 +57,7 @@ atlas::Image8 wood_texture() {
     const double tone =
         0.55 * std::pow(ring, 1.6) + 0.3 * fibre + 0.15 * noise(3 * u, 3 * v, 3, 3, 15);
     glm::dvec3 c = glm::mix(glm::dvec3(0.46, 0.29, 0.17), glm::dvec3(0.74, 0.54, 0.35), tone);
-    return pore > 0.86 ? c * 0.82 : c;
+    return pore > 0.88 ? c * 0.92 : c;
   });
 }
 
@@ -136,12 +136,12 @@ SurfaceMaterial emitter(const char* name, glm::vec3 exitance) {
 
 std::vector<SurfaceMaterial> cabin_materials() {
   std::vector<SurfaceMaterial> list;
-  list.push_back(plain("lining", {0.78f, 0.76f, 0.72f}));
-  list.push_back(plain("dado", {0.50f, 0.48f, 0.45f}));
+  list.push_back(plain("lining", {0.72f, 0.70f, 0.66f}));
+  list.push_back(plain("dado", {0.40f, 0.37f, 0.33f}));
   list.push_back(plain("trim", {0.80f, 0.79f, 0.77f}));
   list.push_back(plain("blind", {0.66f, 0.64f, 0.60f}));
   list.push_back(plain("ceiling", {0.84f, 0.83f, 0.81f}));
-  list.push_back(plain("bin", {0.76f, 0.75f, 0.73f}));
+  list.push_back(plain("bin", {0.70f, 0.69f, 0.66f}));
   list.push_back(plain("armrest", {0.10f, 0.10f, 0.11f}));
   list.push_back(plain("metal", {0.46f, 0.46f, 0.48f}));
   list.push_back(plain("glass", {0.10f, 0.13f, 0.16f}));
@@ -151,7 +151,7 @@ std::vector<SurfaceMaterial> cabin_materials() {
   list.push_back(textured("wood_panel", "wood.png", wood_texture()));
   list.back().diffuse = {0.85f, 0.8f, 0.78f};
   list.push_back(textured("seat_fabric", "fabric.png",
-                          weave_texture({0.16, 0.30, 0.46}, {0.26, 0.42, 0.56}, 21)));
+                          weave_texture({0.17, 0.25, 0.36}, {0.30, 0.40, 0.50}, 21)));
   list.push_back(textured("carpet", "carpet.png",
                           carpet_texture({0.20, 0.22, 0.27}, {0.42, 0.43, 0.47}, false)));
   list.push_back(textured("aisle_carpet", "aisle_carpet.png",
@@ -160,10 +160,10 @@ std::vector<SurfaceMaterial> cabin_materials() {
   list.push_back(textured("counter", "terrazzo.png", terrazzo_texture()));
   list.back().diffuse = {0.6f, 0.6f, 0.62f};
   list.push_back(emitter("strip", {1900, 1850, 1700}));
-  list.push_back(emitter("cove", {1500, 1480, 1440}));
-  list.push_back(emitter("wash", {1500, 1380, 1150}));
+  list.push_back(emitter("cove", {900, 880, 850}));
+  list.push_back(emitter("wash", {1300, 1130, 850}));
   list.push_back(emitter("entry_light", {1900, 1820, 1640}));
-  list.push_back(emitter("sign", {120, 900, 330}));
+  list.push_back(emitter("sign", {25, 330, 90}));
   for (SurfaceMaterial& m : list) finish_material(m);
   return list;
 }

@@ -14,7 +14,7 @@ namespace cabin {
 namespace {
 
 // Seen by one who has just come in: the door to the left, the galley to the right, the rows ahead.
-const glm::vec3 kEye(0.16f, -0.34f, 1.50f), kTarget(3.2f, 0.16f, 1.02f);
+const glm::vec3 kEye(0.08f, -0.46f, 1.50f), kTarget(3.0f, 0.44f, 1.03f);
 constexpr float kTanHalfWidth = 0.83f;
 
 std::array<float, 256> decode_table() {
@@ -60,12 +60,10 @@ glm::vec3 shade(const Mesh& mesh, const Tracer& tracer, glm::vec3 eye, glm::vec3
   return light * m.diffuse * (m.texture_file.empty() ? glm::vec3(1) : bilinear(m.texture, uv));
 }
 
-// A filmic curve (Hable's form with its white at 6 times the exposure), sRGB-encoded.
+// Reinhard's global operator (2002) with its white point at 5 times the exposure, sRGB-encoded.
 std::uint8_t display(float luminance, float exposure) {
-  const auto curve = [](float x) {
-    return (x * (0.22f * x + 0.03f) + 0.002f) / (x * (0.22f * x + 0.3f) + 0.06f) - 0.02f / 0.6f;
-  };
-  const float c = std::clamp(curve(luminance * exposure) / curve(6.0f), 0.0f, 1.0f);
+  const float x = luminance * exposure;
+  const float c = std::clamp(x * (1 + x / 25) / (1 + x), 0.0f, 1.0f);
   const float s = c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
   return std::uint8_t(std::lround(255 * s));
 }
@@ -96,7 +94,7 @@ atlas::Status write_preview(const std::filesystem::path& path, const Mesh& mesh,
   // The picture's mean luminance is put a little under the middle of the curve.
   double mean = 0;
   for (float v : light.texels) mean += std::log(1.0 + v);
-  const float exposure = float(0.55 / std::expm1(mean / double(light.texels.size())));
+  const float exposure = float(0.42 / std::expm1(mean / double(light.texels.size())));
   atlas::Image8 image(options.width, options.height, 3);
   for (std::size_t i = 0; i < light.texels.size(); ++i)
     image.texels[i] = display(light.texels[i], exposure);

@@ -15,7 +15,7 @@ struct PreviewOptions {
 };
 
 // Renders the mesh as a viewer of the exported world would show it: illuminance times reflectance,
-// interpolated along triangles, through a filmic tone curve.
+// interpolated along triangles, through a global tone curve.
 atlas::Status write_preview(const std::filesystem::path& path, const Mesh& mesh,
                             const PreviewOptions& options, const atlas::Context& context);
 

@@ -32,12 +32,19 @@ struct Station {
   double inner, lean, arc;
 };
 
-std::vector<Station> stations(const Builder& builder, double half, double radius,
-                              int corner_least) {
-  const int corner = std::max(corner_least, std::min(4, builder.segments(radius * kPi / 2)));
-  const double flat = half - radius;
-  const int middle = builder.segments(2 * flat);
+std::vector<Station> stations(const Builder& builder, const RoundedBox& box, int axis) {
+  const double radius = box.radius, flat = box.half[axis] - radius;
+  const int corner = std::max(box.corner_least, std::min(4, builder.segments(radius * kPi / 2)));
+  const int middle = builder.segments(2 * flat, box.least[axis]);
+  const int few = std::min(box.least[axis], 1);
   std::vector<Station> result;
+  if (builder.coarse()) {
+    // The roughest box still has its round normals: a few stations, none where the rounding starts.
+    result.push_back({-flat, -1, -flat - radius * kPi / 4});
+    if (few > 0) result.push_back({0, 0, 0});
+    result.push_back({flat, 1, flat + radius * kPi / 4});
+    return result;
+  }
   for (int i = 0; i < corner; ++i) {
     const double angle = -kPi / 4 * (corner - i) / corner;
     result.push_back({-flat, std::tan(angle), -flat + radius * angle});
@@ -53,46 +60,40 @@ std::vector<Station> stations(const Builder& builder, double half, double radius
   return result;
 }
 
-// The perimeter of a rounded rectangle, anticlockwise from (half.x, 0), by arc length.
-struct Outline {
-  glm::dvec2 half;
-  double radius;
-
-  double length() const { return 4 * (half.x + half.y - 2 * radius) + 2 * kPi * radius; }
-  glm::dvec2 at(double s) const {
-    const glm::dvec2 flat = half - radius;
-    const double quarter = kPi / 2 * radius, total = length();
-    s -= total * std::floor(s / total);
-    const double lengths[] = {flat.y,  quarter,    2 * flat.x, quarter, 2 * flat.y,
-                              quarter, 2 * flat.x, quarter,    flat.y};
-    int part = 0;
-    while (part < 8 && s > lengths[part]) s -= lengths[part++];
-    const double a = radius > 0 ? s / radius : 0;
-    const auto arc = [&](double cx, double cy, double start) {
-      return glm::dvec2(cx + radius * std::cos(start + a), cy + radius * std::sin(start + a));
-    };
-    switch (part) {
-      case 0:
-        return {half.x, s};
-      case 1:
-        return arc(flat.x, flat.y, 0);
-      case 2:
-        return {flat.x - s, half.y};
-      case 3:
-        return arc(-flat.x, flat.y, kPi / 2);
-      case 4:
-        return {-half.x, flat.y - s};
-      case 5:
-        return arc(-flat.x, -flat.y, kPi);
-      case 6:
-        return {-flat.x + s, -half.y};
-      case 7:
-        return arc(flat.x, -flat.y, 3 * kPi / 2);
-      default:
-        return {half.x, -flat.y + s};
-    }
-  }
+// Where a ring passes, and its direction outwards there.
+struct PathPoint {
+  glm::dvec2 place, outwards;
+  double arc = 0;  // length of the path so far
 };
+
+// A rounded rectangle, anticlockwise and closed: corners cut evenly, straights by the edge length.
+std::vector<PathPoint> ring_path(const Builder& builder, const Ring& ring) {
+  const double radius = ring.path_radius;
+  const glm::dvec2 flat = ring.path_half - radius;
+  const int corner = builder.segments(radius * kPi / 2, builder.coarse() ? 2 : 6);
+  std::vector<PathPoint> path;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const glm::dvec2 sign(quarter == 0 || quarter == 3 ? 1 : -1, quarter < 2 ? 1 : -1);
+    for (int i = 0; i <= corner; ++i) {
+      const double angle = kPi / 2 * (quarter + double(i) / corner);
+      const glm::dvec2 out(std::cos(angle), std::sin(angle));
+      path.push_back({sign * flat + radius * out, out});
+    }
+    // The straight to the next corner, without its ends.
+    const double length = 2 * (quarter % 2 == 0 ? flat.x : flat.y);
+    const int cuts = builder.segments(length, builder.coarse()   ? 1
+                                              : quarter % 2 == 0 ? 3
+                                                                 : ring.least);
+    const PathPoint from = path.back();
+    const glm::dvec2 along(-from.outwards.y, from.outwards.x);
+    for (int i = 1; i < cuts; ++i)
+      path.push_back({from.place + along * (length * i / cuts), from.outwards});
+  }
+  path.push_back(path.front());
+  for (std::size_t i = 1; i < path.size(); ++i)
+    path[i].arc = path[i - 1].arc + glm::distance(path[i].place, path[i - 1].place);
+  return path;
+}
 
 double power(double x, double exponent) {
   return std::copysign(std::pow(std::abs(x), exponent), x);
@@ -106,7 +107,9 @@ void add_grid(Builder& builder, const GridShape& shape) {
     for (int i = 0; i <= shape.nu; ++i) {
       const double u = double(i) / shape.nu, v = double(j) / shape.nv;
       const glm::dvec3 n = surface_normal(shape.surface, u, v);
-      row[i] = {shape.surface(u, v), shape.flip ? -n : n, glm::dvec2(u, v) * shape.tiles};
+      const glm::dvec3 p = shape.surface(u, v);
+      row[i] = {p, shape.flip ? -n : n,
+                shape.tiles_of ? shape.tiles_of(p) : glm::dvec2(u, v) * shape.tiles};
     }
     for (int i = 0; j > 0 && i < shape.nu; ++i)
       builder.quad(previous[i], previous[i + 1], row[i + 1], row[i]);
@@ -115,12 +118,11 @@ void add_grid(Builder& builder, const GridShape& shape) {
 }
 
 void add_rounded_box(Builder& builder, const RoundedBox& box) {
-  const double radius =
-      std::min({box.radius, 0.999 * box.half.x, 0.999 * box.half.y, 0.999 * box.half.z});
+  const double radius = box.radius;
   for (int axis = 0; axis < 3; ++axis) {
-    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-    const auto along_a = stations(builder, box.half[a], radius, box.corner_least);
-    const auto along_b = stations(builder, box.half[b], radius, box.corner_least);
+    // v runs upwards wherever it can, so that grain does.
+    const int a = axis == 1 ? 0 : (axis + 1) % 3, b = axis == 1 ? 2 : (axis + 2) % 3;
+    const auto along_a = stations(builder, box, a), along_b = stations(builder, box, b);
     for (double side : {-1.0, 1.0}) {
       const auto corner = [&](const Station& p, const Station& q) {
         glm::dvec3 inner, n;
@@ -148,24 +150,24 @@ void add_rounded_box(Builder& builder, const RoundedBox& box) {
 }
 
 void add_ring(Builder& builder, const Ring& ring) {
-  const Outline outline{ring.path_half, ring.path_radius};
-  const double length = outline.length();
-  const int along = 4 * builder.segments(length / 4, 4),
-            around = 4 * builder.segments(ring.half.x, 2);
-  GridShape shape;
-  shape.surface = [&](double u, double v) {
-    const glm::dvec2 p = outline.at(u * length);
-    const glm::dvec2 tangent =
-        glm::normalize(outline.at(u * length + 1e-4) - outline.at(u * length - 1e-4));
-    const double x = ring.half.x * power(std::cos(2 * kPi * v), 0.5);
-    const double z = ring.half.y * power(std::sin(2 * kPi * v), 0.5);
-    const glm::dvec3 q(p.x + tangent.y * x, p.y - tangent.x * x, z);
-    return ring.warp ? ring.warp(q) : q;
+  const auto path = ring_path(builder, ring);
+  const int around = 4 * builder.segments(ring.half.x, builder.coarse() ? 1 : 2);
+  const auto corner = [&](std::size_t i, int j) {
+    const double angle = 2 * kPi * (j + 0.5) / around, c = std::cos(angle), s = std::sin(angle);
+    const glm::dvec2 out = path[i].outwards,
+                     flat = path[i].place + out * (ring.half.x * power(c, 0.5));
+    const glm::dvec3 place(flat.x, flat.y, ring.half.y * power(s, 0.5));
+    // The gradient of the superellipse's equation.
+    const double nx = power(c, 1.5) / ring.half.x, nz = power(s, 1.5) / ring.half.y;
+    const glm::dvec3 normal = glm::normalize(glm::dvec3(out.x * nx, out.y * nx, nz));
+    const glm::dvec2 uv(path[i].arc, 4 * ring.half.x * j / around);
+    if (!ring.warp) return Corner{place, normal, uv * ring.tiles_per_metre};
+    return Corner{ring.warp(place), warped_normal(ring.warp, place, normal),
+                  uv * ring.tiles_per_metre};
   };
-  shape.nu = along;
-  shape.nv = around;
-  shape.tiles = glm::dvec2(length, 4 * ring.half.x) * ring.tiles_per_metre;
-  add_grid(builder, shape);
+  for (std::size_t i = 0; i + 1 < path.size(); ++i)
+    for (int j = 0; j < around; ++j)
+      builder.quad(corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1));
 }
 
 void add_revolved(Builder& builder, const Revolved& body) {
@@ -174,8 +176,8 @@ void add_revolved(Builder& builder, const Revolved& body) {
     const glm::dvec2 p = body.profile(std::clamp(v, 0.0, 1.0));
     return body.centre + glm::dvec3(p.x * std::cos(2 * kPi * u), p.x * std::sin(2 * kPi * u), p.y);
   };
-  shape.nu = 4 * builder.segments(body.largest_radius * kPi / 2, 2);
-  shape.nv = builder.segments(body.height + body.largest_radius, 6);
+  shape.nu = 4 * builder.segments(body.largest_radius * kPi / 2, builder.coarse() ? 1 : 2);
+  shape.nv = builder.segments(body.height + body.largest_radius, builder.coarse() ? 3 : 6);
   add_grid(builder, shape);
 }
 

@@ -18,6 +18,7 @@ struct GridShape {
   int nu = 1, nv = 1;
   glm::dvec2 tiles{1, 1};
   bool flip = false;
+  std::function<glm::dvec2(glm::dvec3)> tiles_of;  // texture coordinates from the place, if given
 };
 void add_grid(Builder& builder, const GridShape& shape);
 
@@ -30,6 +31,8 @@ struct RoundedBox {
   Warp warp;
   bool inward = false;   // normals point into it: a closed room
   int corner_least = 1;  // segments an eighth of a circle, at least
+  glm::ivec3 least{1};   // segments along the flat part of each axis, at least; where
+                         // triangles are scarce a box of 0 is a plain one
 };
 void add_rounded_box(Builder& builder, const RoundedBox& box);
 
@@ -38,6 +41,7 @@ void add_rounded_box(Builder& builder, const RoundedBox& box);
 struct Ring {
   glm::dvec2 path_half{0.5}, half{0.03, 0.01};
   double path_radius = 0.1;
+  int least = 3;  // segments of the path's long sides, at least
   double tiles_per_metre = 1;
   Warp warp;  // from (path x, path y, height over the plane)
 };

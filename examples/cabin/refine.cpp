@@ -137,7 +137,7 @@ class Splitter {
     middle.normal = glm::normalize(p.normal + q.normal);
     middle.ray_start = (p.ray_start + q.ray_start) * 0.5f;
     middle.position = (p.position + q.position) * 0.5f;
-    if (edges_.edges[edge].smooth) {
+    if (mesh_.curved && edges_.edges[edge].smooth) {
       const glm::vec3 d = q.position - p.position;
       middle.position +=
           (p.normal * glm::dot(p.normal, d) - q.normal * glm::dot(q.normal, d)) * 0.125f;

@@ -7,7 +7,7 @@ namespace cabin {
 
 struct RefineOptions {
   std::size_t triangles = 100000;  // to reach, within what one conforming split adds
-  int passes = 6;                  // relighting between them
+  int passes = 12;                 // relighting between them
 };
 
 // Splits edges by falling (change of light along the edge) x (its length) until the mesh has the

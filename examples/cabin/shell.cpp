@@ -47,7 +47,7 @@ std::vector<glm::dvec2> square_border(int n) {
 // The piece of wall around a window: rings from the band's rectangle to the window's rim.
 void add_window_wall(Builder& builder, int side, glm::dvec2 centre, int n) {
   const auto border = square_border(n);
-  const int rings = builder.segments(0.12, 2);
+  const int rings = builder.segments(0.12, builder.coarse() ? 1 : 2);
   const auto corner = [&](int ring, std::size_t i) {
     const glm::dvec2 q = border[i % border.size()];
     const glm::dvec2 outer(q.x * kBay / 2, q.y * kBandHalf), inner = window_rim(q.x, q.y);
@@ -64,7 +64,7 @@ void add_window_wall(Builder& builder, int side, glm::dvec2 centre, int n) {
 void add_reveal(Builder& builder, int side, int bay, glm::dvec2 centre, int n) {
   const auto border = square_border(n);
   builder.begin("window_reveals", "trim");
-  const int rings = builder.segments(kRevealDepth, 2);
+  const int rings = builder.segments(kRevealDepth, builder.coarse() ? 1 : 2);
   const auto corner = [&](int ring, std::size_t i) {
     const glm::dvec2 q = border[i % border.size()];
     const double t = double(ring) / rings;
@@ -102,16 +102,16 @@ void add_reveal(Builder& builder, int side, int bay, glm::dvec2 centre, int n) {
 void add_bay(Builder& builder, int side, int bay) {
   const glm::dvec2 x(bay * kBay, (bay + 1) * kBay);
   const double middle = wall_height(kWindowHeight), floor = wall_height(0), top = kRadius * 0.66;
-  const int n = builder.segments(kBay, 2);
+  const int n = builder.segments(kBay, builder.coarse() ? 2 : 4);
   builder.begin("lining", "lining");
   add_wall(builder, side, x, {middle + kBandHalf, top},
-           {n, builder.segments(top - middle - kBandHalf)});
+           {n, builder.segments(top - middle - kBandHalf, builder.coarse() ? 2 : 3)});
   builder.begin("dado", "dado");
   add_wall(builder, side, x, {floor, middle - kBandHalf},
-           {n, builder.segments(middle - kBandHalf - floor)});
+           {n, builder.segments(middle - kBandHalf - floor, builder.coarse() ? 3 : 6)});
   builder.begin("lining", "lining");
   const glm::dvec2 centre((x.x + x.y) / 2, middle);
-  if (!has_window(side, bay))
+  if (!has_window(bay))
     return add_wall(builder, side, x, {middle - kBandHalf, middle + kBandHalf}, {n, n});
   add_window_wall(builder, side, centre, n);
   add_reveal(builder, side, bay, centre, n);
@@ -132,20 +132,20 @@ void add_crown(Builder& builder) {
 void add_bulkhead(Builder& builder, double x, bool faces_aft, const std::string& name) {
   builder.begin(name, faces_aft ? "trim" : "wood_panel");
   GridShape wall;
-  constexpr double kTop = 2.1;
+  constexpr double kTop = 2.3;
   wall.surface = [=](double u, double v) {
     const double z = kTop * v;
     return glm::dvec3(x, (2 * u - 1) * half_width(z), z);
   };
   wall.nu = builder.segments(2 * kRadius);
   wall.nv = builder.segments(kTop);
-  wall.tiles = {2.0, 1.5};
   wall.flip = !faces_aft;
+  wall.tiles_of = [](glm::dvec3 p) { return glm::dvec2(p.y, p.z) * 0.8; };
   add_grid(builder, wall);
 }
 
 void add_floor(Builder& builder) {
-  const double edge = half_width(0), runner = 0.27, entry = 1.9;
+  const double edge = half_width(0), runner = 0.29, entry = 1.95;
   const auto piece = [&](const char* name, const char* material, glm::dvec2 x, glm::dvec2 y) {
     builder.begin(name, material);
     GridShape grid;
@@ -189,18 +189,18 @@ void add_shell(Builder& builder) {
 std::vector<Strip> light_strips() {
   std::vector<Strip> strips;
   for (int side : {-1, 1}) {
-    // Beside the ceiling, down and inwards.
-    const glm::dvec2 a(side * 0.6, 1.96), b(side * 0.53, 2.0);
+    // Along the bins' upper edge, inwards.
+    const glm::dvec2 a(side * 0.614, 1.938), b(side * 0.610, 1.986);
     // On top of the bins, up at the ceiling.
-    const glm::dvec2 c(side * 0.63, 1.975), d(side * 0.70, 1.975);
+    const glm::dvec2 c(side * 0.665, 1.975), d(side * 0.735, 1.975);
     // Below the bins, down the lining.
-    const glm::dvec2 e(side * 1.10, 1.505), f(side * 1.05, 1.505);
+    const glm::dvec2 e(side * 1.31, 1.49), f(side * 1.25, 1.49);
     const bool left = side > 0;
     strips.push_back({kBinStart, kLength - 0.02, left ? a : b, left ? b : a, 6, "strip"});
     strips.push_back({kBinStart, kLength - 0.02, left ? c : d, left ? d : c, 6, "cove"});
     strips.push_back({kBinStart, kLength - 0.02, left ? e : f, left ? f : e, 6, "wash"});
   }
-  strips.push_back({0.55, 1.35, {0.4, 2.035}, {-0.1, 2.035}, 1, "entry_light"});
+  strips.push_back({0.75, 1.55, {0.55, 2.105}, {0.05, 2.105}, 1, "entry_light"});
   return strips;
 }
 
@@ -208,18 +208,18 @@ void add_ceiling(Builder& builder) {
   builder.begin("ceiling", "ceiling");
   GridShape arch;
   arch.surface = [](double u, double v) {
-    const double y = 0.85 * (2 * v - 1);
-    return glm::dvec3(kBinStart + (kLength - kBinStart) * u, y, 2.09 - 0.12 * y * y / 0.72);
+    const double y = 0.8 * (2 * v - 1);
+    return glm::dvec3(kBinStart + (kLength - kBinStart) * u, y, 2.2 - 0.1 * y * y / 0.64);
   };
   arch.nu = builder.segments(kLength - kBinStart);
-  arch.nv = builder.segments(1.7, 4);
+  arch.nv = 2 * builder.segments(0.8, 3);
   arch.tiles = {4, 1};
   arch.flip = true;
   add_grid(builder, arch);
   builder.begin("ceiling_entry", "ceiling");
   RoundedBox panel;
-  panel.centre = {0.97, 0, 2.09};
-  panel.half = {0.97, 0.85, 0.05};
+  panel.centre = {0.97, 0, 2.16};
+  panel.half = {0.97, 0.8, 0.05};
   panel.radius = 0.03;
   add_rounded_box(builder, panel);
   for (const Strip& strip : light_strips()) {

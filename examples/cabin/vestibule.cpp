@@ -7,7 +7,7 @@
 namespace cabin {
 namespace {
 
-constexpr double kDoorMiddle = 1.03;
+constexpr double kDoorMiddle = 1.38;
 const double kDoorHeight = (wall_height(0.07) + wall_height(1.86)) / 2;  // of its centre, as arc
 const glm::dvec2 kDoorHalf{0.37, (wall_height(1.86) - wall_height(0.07)) / 2};
 
@@ -49,6 +49,7 @@ void add_pot(Builder& builder, glm::dvec3 at) {
   };
   add_revolved(builder, pot);
   RoundedBox handle;
+  handle.least = glm::ivec3(0);
   handle.centre = at + glm::dvec3(-0.095, 0, 0.13);
   handle.half = {0.012, 0.012, 0.08};
   handle.radius = 0.01;
@@ -58,6 +59,7 @@ void add_pot(Builder& builder, glm::dvec3 at) {
     arm.centre = at + glm::dvec3(-0.075, 0, z);
     arm.half = {0.03, 0.009, 0.009};
     arm.radius = 0.008;
+    arm.least = glm::ivec3(0);
     add_rounded_box(builder, arm);
   }
 }
@@ -87,6 +89,7 @@ void add_cupboards(Builder& builder, const std::string& name, const Cupboards& c
                        door.centre.z + (wide ? height * 0.3 : 0)};
       handle.half = wide ? glm::dvec3(0.06, 0.012, 0.007) : glm::dvec3(0.007, 0.012, 0.06);
       handle.radius = 0.006;
+      handle.least = glm::ivec3(0);
       add_rounded_box(builder, handle);
     }
 }
@@ -108,12 +111,14 @@ void add_door(Builder& builder) {
   panel.centre = {0, 0, 0.016};
   panel.half = {kDoorHalf.x - 0.02, kDoorHalf.y - 0.02, 0.01};
   panel.radius = 0.009;
+  panel.least = {1, 9, 1};
   panel.warp = on_wall;
   add_rounded_box(builder, panel);
   builder.begin("door_frame", "trim");
   Ring frame;
   frame.path_half = kDoorHalf + 0.035;
   frame.path_radius = 0.13;
+  frame.least = 9;
   frame.half = {0.038, 0.016};
   // 8 mm of air behind it: its shadow on the wall is sharp, the case that leaks light into coarse
   // texels.
@@ -141,20 +146,20 @@ void add_door(Builder& builder) {
 }
 
 void add_galley(Builder& builder) {
-  constexpr double kX0 = 0.95, kX1 = 1.87, kFront = -0.62, kBack = -1.36;
+  constexpr double kX0 = 1.1, kX1 = 1.92, kFront = -0.66, kBack = -1.45;
   builder.begin("galley_sides", "wood");
-  add_block(builder, {kX0, kBack, 0}, {kX0 + 0.03, kFront, 2.03}, 0.008);
-  add_block(builder, {kX1 - 0.03, kBack, 0}, {kX1, kFront, 2.03}, 0.008);
+  add_block(builder, {kX0, kBack, 0}, {kX0 + 0.03, kFront, 2.10}, 0.008);
+  add_block(builder, {kX1 - 0.03, kBack, 0}, {kX1, kFront, 2.10}, 0.008);
   builder.begin("galley_body", "dado");
   add_block(builder, {kX0 + 0.03, kBack, 0.08}, {kX1 - 0.03, kFront - 0.03, 0.88}, 0.005);
-  add_block(builder, {kX0 + 0.03, kBack, 1.36}, {kX1 - 0.03, kFront - 0.03, 2.03}, 0.005);
+  add_block(builder, {kX0 + 0.03, kBack, 1.36}, {kX1 - 0.03, kFront - 0.03, 2.10}, 0.005);
   builder.begin("galley_back", "metal");
   add_block(builder, {kX0 + 0.03, kBack + 0.12, 0.88}, {kX1 - 0.03, kBack + 0.14, 1.36}, 0.004);
   builder.begin("galley_counter", "counter");
   add_block(builder, {kX0 + 0.031, kBack + 0.12, 0.88}, {kX1 - 0.031, kFront + 0.02, 0.92}, 0.015);
   const double x0 = kX0 + 0.035, x1 = kX1 - 0.035;
   add_cupboards(builder, "galley_low", {x0, x1, 0.10, 0.87, 2, 2}, kFront - 0.02);
-  add_cupboards(builder, "galley_high", {x0, x1, 1.38, 2.02, 3, 1}, kFront - 0.02);
+  add_cupboards(builder, "galley_high", {x0, x1, 1.38, 2.09, 3, 1}, kFront - 0.02);
   add_pot(builder, {kX0 + 0.25, kFront - 0.2, 0.92});
   add_pot(builder, {kX0 + 0.5, kFront - 0.28, 0.92});
 }
