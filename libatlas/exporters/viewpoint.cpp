@@ -15,8 +15,10 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kFov = 1.0;                  // radians
 constexpr std::size_t kMaxCandidates = 1500;  // places tried; each costs some seventy rays
 constexpr int kHeadings = 24;                 // level directions looked along
-constexpr double kEnclosed = 0.6;  // share of directions that must meet a front face: an inside
-constexpr double kRoomy = 0.1;     // mean free level distance, as a share of the floor's diagonal
+// Share of directions that must meet a front face: a room without a ceiling has some 0.75, a pocket
+// under an overhanging part of a single object up to 0.6.
+constexpr double kEnclosed = 0.68;
+constexpr double kRoomy = 0.1;  // mean free level distance, as a share of the floor's diagonal
 
 // The scene in a frame whose third axis points up, in voxels. Cells know the sum of the
 // area-weighted normals of what they hold, which tells a wall's front from its back.
