@@ -1,6 +1,8 @@
 // Runs pack_rects over a folder of instances ("W H n", then n lines "w h"; H = 0: a strip), checks
 // every layout independently, and prints totals:
 //   pack_sets FOLDER_OR_FILE... [--rotate] [--preset fast|default|best] [--budget S] [--each]
+//   [--strip]
+// --strip ignores H and opens the page upwards; the optimum is taken to be the area bound.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -73,12 +75,14 @@ bool valid(const Instance& in, const atlas::PackResult& result, bool rotate) {
 
 int main(int argc, char** argv) {
   atlas::PackOptions options;
-  bool each = false;
+  bool each = false, strip = false;
   std::vector<std::filesystem::path> files;
   for (int i = 1; i < argc; ++i) {
     const std::string a = argv[i];
     if (a == "--rotate") {
       options.allow_rotation = true;
+    } else if (a == "--strip") {
+      strip = true;
     } else if (a == "--each") {
       each = true;
     } else if (a == "--preset") {
@@ -102,7 +106,8 @@ int main(int argc, char** argv) {
   std::uint64_t bins = 0;
   int strips = 0, invalid = 0;
   for (const auto& file : files) {
-    const Instance in = read_instance(file);
+    Instance in = read_instance(file);
+    if (strip) in.page.height = 0;
     options.page = in.page;
     const double start = atlas::cpu_seconds();
     auto result = atlas::pack_rects(in.items, options, context);

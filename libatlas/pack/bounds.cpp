@@ -1,0 +1,90 @@
+#include <algorithm>
+
+#include "libatlas/pack/engines.h"
+
+namespace atlas::pack {
+namespace {
+
+// U(e) of Fekete and Schepers, times the side: lengths above side - e count as the whole side,
+// lengths below e as nothing. For e <= side / 2 items that fit along one line never count more
+// than one side together.
+std::int64_t dual_feasible(std::int64_t length, std::int64_t side, std::int64_t e) {
+  if (length > side - e) return side;
+  return length < e ? 0 : length;
+}
+
+// Thresholds worth trying: the lengths up to half a side, thinned out to at most 16.
+std::vector<std::int64_t> thresholds(std::vector<std::int64_t> lengths, std::int64_t side) {
+  std::erase_if(lengths, [&](std::int64_t v) { return 2 * v > side; });
+  std::sort(lengths.begin(), lengths.end());
+  lengths.erase(std::unique(lengths.begin(), lengths.end()), lengths.end());
+  std::vector<std::int64_t> chosen{0};
+  constexpr std::size_t most = 16;
+  for (std::size_t k = 0; k < std::min(most, lengths.size()); ++k)
+    chosen.push_back(lengths[k * lengths.size() / std::min(most, lengths.size())]);
+  if (!lengths.empty()) chosen.push_back(lengths.back());
+  chosen.push_back(side / 2);
+  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+  return chosen;
+}
+
+std::int64_t weight(Extent item, const Problem& p, std::int64_t ew, std::int64_t eh) {
+  const auto oriented = [&](Extent e) {
+    if (e.width > p.page.width || e.height > p.page.height)
+      return std::int64_t{p.page.width} * p.page.height;
+    return dual_feasible(e.width, p.page.width, ew) * dual_feasible(e.height, p.page.height, eh);
+  };
+  const std::int64_t upright = oriented(item);
+  return p.allow_rotation ? std::min(upright, oriented({item.height, item.width})) : upright;
+}
+
+}  // namespace
+
+std::uint32_t page_bound(const Problem& problem) {
+  if (problem.items.empty()) return 0;
+  std::vector<std::int64_t> widths, heights;
+  for (const Extent& e : problem.items) {
+    widths.push_back(e.width);
+    heights.push_back(e.height);
+    if (problem.allow_rotation) {
+      widths.push_back(e.height);
+      heights.push_back(e.width);
+    }
+  }
+  std::vector<std::int64_t> along{0}, up{0};
+  if (problem.items.size() <= 2000) {  // beyond that the area alone is nearly as good
+    along = thresholds(std::move(widths), problem.page.width);
+    up = thresholds(std::move(heights), problem.page.height);
+  }
+  const double page = static_cast<double>(problem.page.area());
+  double most = 0;
+  for (std::int64_t ew : along)
+    for (std::int64_t eh : up) {
+      double total = 0;  // exact: sums stay far below 2^53 pages' worth of rounding, see the slack
+      for (const Extent& e : problem.items)
+        total += static_cast<double>(weight(e, problem, ew, eh)) / page;
+      most = std::max(most, total);
+    }
+  const double slack = 1e-9 * most;  // rounding must never raise the bound
+  const auto whole = static_cast<std::uint32_t>(most - slack);
+  return std::max(1u, whole + (most - slack > whole));
+}
+
+std::int64_t height_bound(const Problem& problem) {
+  std::int64_t area_rest = 0, rows = 0, tallest = 0, stacked = 0;
+  for (const Extent& e : problem.items) {
+    // Sums of row counts and rests: the total area may pass 2^63.
+    rows += e.area() / problem.page.width;
+    area_rest += e.area() % problem.page.width;
+    rows += area_rest / problem.page.width;
+    area_rest %= problem.page.width;
+    const std::int32_t small = std::min(e.width, e.height);
+    tallest = std::max<std::int64_t>(tallest, problem.allow_rotation ? small : e.height);
+    // Items wider than half the strip lie above each other.
+    if (2 * std::int64_t{problem.allow_rotation ? small : e.width} > problem.page.width)
+      stacked += problem.allow_rotation ? small : e.height;
+  }
+  return std::max({rows + (area_rest > 0), tallest, stacked});
+}
+
+}  // namespace atlas::pack

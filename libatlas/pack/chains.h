@@ -1,0 +1,62 @@
+// Internal: independent searches in rounds, so that the result depends on the number of rounds
+// only, never on the number of threads.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "libatlas/core/clock.h"
+#include "libatlas/core/parallel.h"
+#include "libatlas/pack/engines.h"
+
+namespace atlas::pack {
+
+// Chain: step() tries one layout; done() tells that the bound is reached; cost() orders chains
+// (pages, then last_used, smaller is better). All chains make the same number of steps a round;
+// the clock is read between rounds only. Returns the best chain, ties to the first.
+template <class Chain>
+std::size_t run_chains(std::vector<Chain>& chains, const SearchLimits& limits,
+                       const Context& context, PackResult& result) {
+  const double start = wall_seconds();
+  std::size_t best = 0;
+  const auto note = [&] {
+    const auto cost = chains[best].cost();
+    if (!result.curve.empty() && result.curve.back().pages == cost.first &&
+        result.curve.back().used_height <= cost.second)
+      return;
+    result.curve.push_back({wall_seconds() - start, result.layouts_tried, cost.first, cost.second});
+  };
+  const auto choose = [&] {
+    for (std::size_t c = 0; c < chains.size(); ++c)
+      if (chains[c].cost() < chains[best].cost()) best = c;
+    note();
+  };
+  choose();
+  std::uint64_t per_round = 4, left = limits.layouts ? limits.layouts : UINT64_MAX;
+  while (!chains[best].done() && left > 0 && !context.cancelled()) {
+    const double elapsed = wall_seconds() - start;
+    if (elapsed >= limits.seconds) break;
+    const std::uint64_t steps =
+        std::max<std::uint64_t>(1, std::min(per_round, left / chains.size()));
+    const auto run = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t c = begin; c < end; ++c)
+        for (std::uint64_t s = 0; s < steps && !chains[c].done(); ++s) chains[c].step();
+    };
+    if (chains.size() == 1)
+      run(0, 1);
+    else
+      parallel_for(context, chains.size(), 1, run);
+    left -= std::min(left, steps * chains.size());
+    result.layouts_tried += steps * chains.size();
+    choose();
+    // Rounds grow to about a fiftieth of the budget, so that the clock costs nothing.
+    const double round = wall_seconds() - start - elapsed;
+    if (round * 50 < limits.seconds && per_round < 4096) per_round *= 2;
+    if (std::isfinite(limits.seconds) && limits.seconds > 0)
+      context.report("pack", std::min(1.0, elapsed / limits.seconds));
+  }
+  return best;
+}
+
+}  // namespace atlas::pack

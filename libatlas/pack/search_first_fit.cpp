@@ -1,0 +1,68 @@
+#include <algorithm>
+
+#include "libatlas/pack/chains.h"
+
+namespace atlas::pack {
+namespace {
+
+// Hill climbing over orders for first fit; slower a layout than the gap searches, but it works
+// around pinned rectangles.
+class OrderChain {
+ public:
+  OrderChain(const Problem& problem, std::uint64_t seed) : problem_(problem), random_(seed) {}
+
+  void start(std::vector<std::uint32_t> order, Layout layout) {
+    order_ = std::move(order);
+    best_ = std::move(layout);
+  }
+  bool done() const { return order_.size() < 2; }
+  std::pair<std::uint32_t, std::int64_t> cost() const {
+    // Unplaced items weigh more than any page.
+    return {best_.pages, best_.last_used + (std::int64_t{best_.unplaced} << 40)};
+  }
+  const Layout& best() const { return best_; }
+
+  void step() {
+    std::vector<std::uint32_t> candidate = order_;
+    const auto n = static_cast<std::uint32_t>(candidate.size());
+    for (std::uint32_t k = 1 + random_.below(3); k > 0; --k)
+      std::swap(candidate[random_.below(n)], candidate[random_.below(n)]);
+    const PlaceRule rule =
+        random_.below(2) && n < 1000 ? PlaceRule::contact : PlaceRule::bottom_left;
+    Layout layout = pack_first_fit(problem_, candidate, rule);
+    if (best_.better_than(layout)) return;
+    best_ = std::move(layout);
+    order_ = std::move(candidate);
+  }
+
+ private:
+  const Problem& problem_;
+  Random random_;
+  std::vector<std::uint32_t> order_;
+  Layout best_;
+};
+
+}  // namespace
+
+Layout search_first_fit(const Problem& problem, const SearchLimits& limits, const Context& context,
+                        PackResult& result) {
+  std::vector<std::uint32_t> start;
+  Layout best;
+  for (Order order : {Order::height, Order::area, Order::max_side}) {
+    std::vector<std::uint32_t> ids = sorted_items(problem.items, order);
+    Layout layout = pack_first_fit(problem, ids, PlaceRule::bottom_left);
+    ++result.layouts_tried;
+    if (!start.empty() && !layout.better_than(best)) continue;
+    start = std::move(ids);
+    best = std::move(layout);
+  }
+  if (limits.layouts == 1) return best;
+  std::vector<OrderChain> chains;
+  for (std::uint32_t c = 0; c < limits.chains; ++c) {
+    chains.emplace_back(problem, limits.seed * 0x10001 + c);
+    chains.back().start(start, best);
+  }
+  return chains[run_chains(chains, limits, context, result)].best();
+}
+
+}  // namespace atlas::pack

@@ -1,0 +1,189 @@
+#include <algorithm>
+#include <cmath>
+
+#include "libatlas/pack/chains.h"
+#include "libatlas/pack/gap_fill.h"
+
+namespace atlas::pack {
+namespace {
+
+struct FilledPage {
+  std::vector<GapPlacement> items;
+  std::int64_t area = 0;
+};
+
+// One search: a division of the items into pages, and steps that empty some of them and fill them
+// anew from a disturbed order. A step is kept if the sum of squared fills grows (full pages and
+// one emptying out are what saves a page), or by simulated annealing at a low constant
+// temperature.
+class PageChain {
+ public:
+  PageChain(const Problem& problem, std::uint32_t bound, std::uint64_t seed)
+      : problem_(problem),
+        fill_(problem.items, problem.page, problem.allow_rotation),
+        bound_(bound),
+        random_(seed) {}
+
+  void start(const std::vector<FilledPage>& pages) {
+    pages_ = best_ = pages;
+    best_cost_ = cost_of(pages_);
+  }
+
+  bool done() const { return best_.size() <= bound_; }
+  std::pair<std::uint32_t, std::int64_t> cost() const { return best_cost_; }
+  const std::vector<FilledPage>& best() const { return best_; }
+
+  void step() {
+    choose_pages();
+    disturb_order();
+    fresh_.clear();
+    double before = 0, after = 0;
+    while (!sequence_.empty() && fresh_.size() < chosen_.size()) {
+      fill_.clear();
+      fill_.fill(sequence_);
+      fresh_.push_back({fill_.placed(), fill_.placed_area()});
+      after += squared(fresh_.back());
+    }
+    if (!sequence_.empty()) return;
+    for (std::size_t p : chosen_) before += squared(pages_[p]);
+    constexpr double temperature = 0.01;  // in squared fills of a page
+    if (after < before && random_.unit() >= std::exp((after - before) / temperature)) return;
+    replace();
+    const auto now = cost_of(pages_);
+    if (now < best_cost_) {
+      best_cost_ = now;
+      best_ = pages_;
+    }
+  }
+
+  static std::pair<std::uint32_t, std::int64_t> cost_of(const std::vector<FilledPage>& pages) {
+    std::int64_t least = pages.empty() ? 0 : pages[0].area;
+    for (const FilledPage& p : pages) least = std::min(least, p.area);
+    return {static_cast<std::uint32_t>(pages.size()), least};
+  }
+
+ private:
+  double squared(const FilledPage& page) const {
+    const double fill = static_cast<double>(page.area) / static_cast<double>(problem_.page.area());
+    return fill * fill;
+  }
+
+  // Two to four pages, the least filled among them in half of the steps.
+  void choose_pages() {
+    const auto count = static_cast<std::uint32_t>(pages_.size());
+    const std::size_t wanted = std::min<std::size_t>(count, 2 + random_.below(3));
+    chosen_.clear();
+    if (random_.below(2)) {
+      std::size_t weakest = 0;
+      for (std::size_t p = 1; p < count; ++p)
+        if (pages_[p].area < pages_[weakest].area) weakest = p;
+      chosen_.push_back(weakest);
+    }
+    while (chosen_.size() < wanted) {
+      const std::size_t p = random_.below(count);
+      if (std::find(chosen_.begin(), chosen_.end(), p) == chosen_.end()) chosen_.push_back(p);
+    }
+    std::sort(chosen_.begin(), chosen_.end());
+  }
+
+  // Sorts the items of the chosen pages by one of four keys, in logarithms, plus noise whose
+  // amplitude is itself random: mostly small, up to a factor of e.
+  void disturb_order() {
+    const std::uint32_t kind = random_.below(4);
+    const double u = random_.unit(), noise = u * u;
+    keyed_.clear();
+    for (std::size_t p : chosen_)
+      for (const GapPlacement& g : pages_[p].items) {
+        const Extent e = problem_.items[g.item];
+        const double w = e.width, h = e.height;
+        const double size = kind == 0   ? w * h
+                            : kind == 1 ? h * h
+                            : kind == 2 ? std::max(w, h) * std::max(w, h)
+                                        : (w + h) * (w + h);
+        keyed_.push_back({-std::log(size) + noise * (2 * random_.unit() - 1), g.item});
+      }
+    std::sort(keyed_.begin(), keyed_.end());
+    sequence_.clear();
+    for (const auto& [key, item] : keyed_) sequence_.push_back(item);
+  }
+
+  void replace() {
+    for (std::size_t k = 0; k < fresh_.size(); ++k) std::swap(pages_[chosen_[k]], fresh_[k]);
+    for (std::size_t k = chosen_.size(); k-- > fresh_.size();)
+      pages_.erase(pages_.begin() + static_cast<std::ptrdiff_t>(chosen_[k]));
+  }
+
+  const Problem& problem_;
+  GapFill fill_;
+  std::uint32_t bound_;
+  Random random_;
+  std::vector<FilledPage> pages_, best_, fresh_;
+  std::pair<std::uint32_t, std::int64_t> best_cost_;
+  std::vector<std::size_t> chosen_;
+  std::vector<std::uint32_t> sequence_;
+  std::vector<std::pair<double, std::uint32_t>> keyed_;
+};
+
+std::vector<FilledPage> fill_in_order(const Problem& problem, Order order) {
+  GapFill fill(problem.items, problem.page, problem.allow_rotation);
+  std::vector<std::uint32_t> sequence = sorted_items(problem.items, order);
+  std::vector<FilledPage> pages;
+  while (!sequence.empty()) {
+    fill.clear();
+    fill.fill(sequence);
+    pages.push_back({fill.placed(), fill.placed_area()});
+  }
+  return pages;
+}
+
+// Fullest pages first; with fewer pages allowed than needed the emptiest are given up.
+Layout to_layout(const Problem& problem, std::vector<FilledPage> pages) {
+  std::stable_sort(pages.begin(), pages.end(),
+                   [](const FilledPage& a, const FilledPage& b) { return a.area > b.area; });
+  Layout layout;
+  layout.placements.resize(problem.items.size());
+  layout.pages = static_cast<std::uint32_t>(pages.size());
+  std::int32_t used = 0;
+  for (std::uint32_t p = 0; p < pages.size(); ++p)
+    for (const GapPlacement& g : pages[p].items) {
+      if (p >= problem.max_pages) {
+        ++layout.unplaced;
+        continue;
+      }
+      layout.placements[g.item] = {p, g.x, g.y, g.rotated};
+      const Extent e = problem.items[g.item];
+      used = std::max(used, g.y + (g.rotated ? e.width : e.height));
+    }
+  layout.pages = std::min(layout.pages, problem.max_pages);
+  if (layout.pages > 0) layout.last_used = layout.pages == 1 ? used : pages[layout.pages - 1].area;
+  return layout;
+}
+
+}  // namespace
+
+Layout search_pages(const Problem& problem, const SearchLimits& limits, const Context& context,
+                    PackResult& result) {
+  std::vector<FilledPage> start;
+  for (Order order : {Order::area, Order::perimeter, Order::height, Order::max_side}) {
+    std::vector<FilledPage> pages = fill_in_order(problem, order);
+    ++result.layouts_tried;
+    if (start.empty() || PageChain::cost_of(pages) < PageChain::cost_of(start))
+      start = std::move(pages);
+    if (start.size() <= 1) break;
+  }
+  // The bound costs more than a layout: asked for only where the area does not settle the matter.
+  double area = 0;
+  for (const Extent& e : problem.items) area += static_cast<double>(e.area());
+  const auto by_area =
+      static_cast<std::uint32_t>(std::ceil(area / static_cast<double>(problem.page.area())));
+  result.page_lower_bound = start.size() > by_area ? page_bound(problem) : by_area;
+  std::vector<PageChain> chains;
+  for (std::uint32_t c = 0; c < limits.chains; ++c) {
+    chains.emplace_back(problem, result.page_lower_bound, limits.seed * 0x10001 + c);
+    chains.back().start(start);
+  }
+  const std::size_t best = run_chains(chains, limits, context, result);
+  return to_layout(problem, chains[best].best());
+}
+
+}  // namespace atlas::pack

@@ -1,0 +1,119 @@
+#include <algorithm>
+#include <cmath>
+
+#include "libatlas/pack/chains.h"
+#include "libatlas/pack/gap_fill.h"
+
+namespace atlas::pack {
+namespace {
+
+// One search over sequences: the strip is filled gap by gap, and the sequence decides between
+// items that fit a gap equally well (the evaluation of Leung et al. 2011; the neighbourhood is
+// theirs, swaps, and single moves).
+class StripChain {
+ public:
+  StripChain(const Problem& problem, std::int64_t bound, std::uint64_t seed)
+      : fill_(problem.items, problem.page, problem.allow_rotation), bound_(bound), random_(seed) {}
+
+  // Starts from the first sequence, and remembers it as the best.
+  void start(std::vector<std::uint32_t> sequence) {
+    current_ = std::move(sequence);
+    current_height_ = evaluate(current_);
+    best_height_ = current_height_;
+    best_ = fill_.placed();
+  }
+
+  bool done() const { return best_height_ <= bound_; }
+  std::pair<std::uint32_t, std::int64_t> cost() const { return {1, best_height_}; }
+  const std::vector<GapPlacement>& best() const { return best_; }
+
+  void step() {
+    const auto n = static_cast<std::uint32_t>(current_.size());
+    if (n < 2) return;
+    candidate_ = current_;
+    const std::uint32_t i = random_.below(n);
+    std::uint32_t j = random_.below(n - 1);
+    j += j >= i;
+    const auto at = [&](std::uint32_t k) { return candidate_.begin() + k; };
+    if (random_.below(2))
+      std::swap(candidate_[i], candidate_[j]);
+    else if (i < j)
+      std::rotate(at(i), at(i + 1), at(j + 1));
+    else
+      std::rotate(at(j), at(i), at(i + 1));
+    const std::int64_t height = evaluate(candidate_);
+    cool_down();
+    const double rise = static_cast<double>(height - current_height_);
+    if (rise <= 0 || random_.unit() < std::exp(-rise / temperature_)) {
+      current_ = candidate_;
+      current_height_ = height;
+    }
+    if (height < best_height_) {
+      best_height_ = height;
+      best_ = fill_.placed();
+    }
+  }
+
+ private:
+  std::int64_t evaluate(const std::vector<std::uint32_t>& sequence) {
+    scratch_ = sequence;
+    fill_.clear();
+    return fill_.fill(scratch_);
+  }
+
+  // Temperature falls linearly from 1 % of the height to zero within a cycle; each cycle is twice
+  // as long as the last. Counted in steps, not seconds, so that runs repeat exactly.
+  void cool_down() {
+    if (++step_ >= cycle_) {
+      step_ = 0;
+      cycle_ *= 2;
+    }
+    const double left = 1 - static_cast<double>(step_) / static_cast<double>(cycle_);
+    temperature_ = std::max(1e-9, 0.01 * left * static_cast<double>(best_height_));
+  }
+
+  GapFill fill_;
+  std::int64_t bound_;
+  Random random_;
+  std::vector<std::uint32_t> current_, candidate_, scratch_;
+  std::int64_t current_height_ = 0, best_height_ = 0;
+  std::vector<GapPlacement> best_;
+  std::uint64_t step_ = 0, cycle_ = 1000;
+  double temperature_ = 1;
+};
+
+}  // namespace
+
+Layout search_strip(const Problem& problem, const SearchLimits& limits, const Context& context,
+                    PackResult& result) {
+  GapFill fill(problem.items, problem.page, problem.allow_rotation);
+  std::vector<std::uint32_t> start;
+  std::int64_t lowest = 0;
+  for (Order order :
+       {Order::area, Order::height, Order::width, Order::max_side, Order::perimeter}) {
+    std::vector<std::uint32_t> sequence = sorted_items(problem.items, order), scratch = sequence;
+    fill.clear();
+    const std::int64_t height = fill.fill(scratch);
+    ++result.layouts_tried;
+    if (!start.empty() && height >= lowest) continue;
+    lowest = height;
+    start = std::move(sequence);
+  }
+  const std::int64_t bound = height_bound(problem);
+  result.page_lower_bound = 1;
+  std::vector<StripChain> chains;
+  for (std::uint32_t c = 0; c < limits.chains; ++c) {
+    chains.emplace_back(problem, bound, limits.seed * 0x10001 + c);
+    chains.back().start(start);
+  }
+  const std::size_t best = run_chains(chains, limits, context, result);
+  Layout layout;
+  layout.placements.resize(problem.items.size());
+  layout.pages = 1;
+  layout.last_used = chains[best].cost().second;
+  for (const GapPlacement& g : chains[best].best())
+    layout.placements[g.item] = {0, g.x, g.y, g.rotated};
+  return layout;
+}
+
+}  // namespace atlas::pack
