@@ -308,6 +308,10 @@ class CoarseBuilder {
       mesh_.arcs[known].slot[1] = slot;
       mesh_.arcs[known].cell[1] = k;
       mesh_.slot_arc.push_back(known);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        mesh_.rim_half_edges.push_back(path[(begin + i) % n]);
+        mesh_.rim_arcs.push_back(known);
+      }
       return;
     }
     CoarseArc arc;
@@ -317,6 +321,8 @@ class CoarseBuilder {
       const std::uint32_t h = path[(begin + i) % n], o = topology_.opposite[h];
       const double length = rims_.edge_length(h);
       arc.length += length;
+      mesh_.rim_half_edges.push_back(h);
+      mesh_.rim_arcs.push_back(static_cast<std::uint32_t>(mesh_.arcs.size()));
       if (o != kNoIndex && glm::dot(to_dvec(topology_.normals[h / 3]),
                                     to_dvec(topology_.normals[o / 3])) < crease_cosine_) {
         arc.crease += length;

@@ -32,9 +32,11 @@ struct CoarseCell {
 
 struct CoarseMesh {
   std::vector<CoarseCell> cells;
-  std::vector<Vec3d> slot_position;      // 1 a slot
-  std::vector<std::uint32_t> slot_arc;   // the arc that starts there
+  std::vector<Vec3d> slot_position;     // 1 a slot
+  std::vector<std::uint32_t> slot_arc;  // the arc that starts there
   std::vector<CoarseArc> arcs;
+  std::vector<std::uint32_t> rim_half_edges;  // of the topology, both sides
+  std::vector<std::uint32_t> rim_arcs;        // 1 a rim half-edge: the arc it belongs to
   std::uint32_t next_slot(std::uint32_t slot, const CoarseCell& cell) const {
     return slot + 1 == cell.first_slot + cell.slot_count ? cell.first_slot : slot + 1;
   }

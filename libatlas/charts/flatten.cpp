@@ -142,6 +142,14 @@ class ChartJob {
     const LocalMesh mesh = chart_.mesh();
     ParamResult result = parameterize(mesh, param_options(mesh), scratch_.workspace);
     const bool single = chart_.triangles().size() == 1;
+    if (std::getenv("TRACE2") && !(result.injective && result.within_bound))
+      fprintf(stderr,
+              "  fail: tris %zu euler %d loops %zu inj %d bound %d s999 %.3f linf %.2f l2 %.4f "
+              "flips %lu offenders %zu cross %zu unfl %d\n",
+              mesh.triangles.size(), chart_.euler(), chart_.loops.size(), result.injective,
+              result.within_bound, result.distortion.stretch_999, result.distortion.stretch_linf,
+              result.distortion.stretch_l2, result.distortion.flips, result.offenders.size(),
+              result.crossings.size(), result.unflipped);
     if (!single && !(result.injective && result.within_bound)) return false;
     FlatChart& flat = outcome.flat;
     flat.uvs = std::move(result.uvs);

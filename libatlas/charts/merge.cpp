@@ -21,8 +21,8 @@ std::array<double, 3> eigenvalues(const Moments& m) {
   const double a = m[0] - mean, d = m[3] - mean, f = m[5] - mean;
   const double p = std::sqrt((a * a + d * d + f * f + 2 * off) / 6);
   if (!(p > 0)) return {mean, mean, mean};
-  const double det = a * (d * f - m[4] * m[4]) - m[1] * (m[1] * f - m[4] * m[2]) +
-                     m[2] * (m[1] * m[4] - d * m[2]);
+  const double det =
+      a * (d * f - m[4] * m[4]) - m[1] * (m[1] * f - m[4] * m[2]) + m[2] * (m[1] * m[4] - d * m[2]);
   const double r = std::clamp(det / (2 * p * p * p), -1.0, 1.0);
   const double phi = std::acos(r) / 3;
   const double high = mean + 2 * p * std::cos(phi);
@@ -92,8 +92,8 @@ class Merger {
     chart.version = 1;
     result_.chart_of_cell[k] = k;
     const glm::dvec3 n = to_glm(cell.normal);
-    const glm::dvec3 u = glm::normalize(
-        std::abs(n.x) < 0.6 ? glm::cross(n, glm::dvec3(1, 0, 0)) : glm::cross(n, glm::dvec3(0, 1, 0)));
+    const glm::dvec3 u = glm::normalize(std::abs(n.x) < 0.6 ? glm::cross(n, glm::dvec3(1, 0, 0))
+                                                            : glm::cross(n, glm::dvec3(0, 1, 0)));
     const glm::dvec3 v = glm::cross(n, u);
     result_.uv.centre[k] = {0, 0};
     for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {

@@ -13,7 +13,7 @@ namespace atlas {
 
 struct MergeOptions {
   TrialLimits limits;
-  double cone_degrees = 0;        // limit on the cells' normals in a chart; 0: none
+  double cone_degrees = 0;  // limit on the cells' normals in a chart; 0: none
   double compactness_weight = 0.02;
   double crease_weight = 0.02;
 };

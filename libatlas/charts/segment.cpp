@@ -8,6 +8,7 @@
 #include "libatlas/charts/cells.h"
 #include "libatlas/charts/coarse.h"
 #include "libatlas/charts/merge.h"
+#include "libatlas/charts/refine.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
 
@@ -81,7 +82,9 @@ Segmentation segment(const Topology& topology, const ChartOptions& options,
   if (const char* e = std::getenv("CREASE")) merge.crease_weight = std::atof(e);
   const MergeResult merged = merge_cells(coarse, piece, merge, context);
   t1 = cpu_seconds();
-  if (trace) fmt::print(stderr, "  merge trials {} rejected {} {:.3f}\n", merged.trials, merged.rejections, t1 - t0);
+  if (trace)
+    fmt::print(stderr, "  merge trials {} rejected {} {:.3f}\n", merged.trials, merged.rejections,
+               t1 - t0);
   result.partition.chart.resize(topology.triangle_count());
   result.partition.seams.assign(topology.triangle_count(), 0);
   result.frames.resize(topology.triangle_count());
@@ -95,6 +98,19 @@ Segmentation segment(const Topology& topology, const ChartOptions& options,
         transport(frames[k], to_glm(coarse.cells[k].normal), to_dvec(topology.normals[t]));
     result.frames[t] = {from_glm(glm::vec3(frame[0])), from_glm(glm::vec3(frame[1]))};
   }
+  for (std::size_t i = 0; i < coarse.rim_half_edges.size(); ++i) {
+    const std::uint32_t h = coarse.rim_half_edges[i], o = topology.opposite[h];
+    if (o == kNoIndex || merged.joined[coarse.rim_arcs[i]] ||
+        result.partition.chart[o / 3] != result.partition.chart[h / 3]) {
+      continue;
+    }
+    result.partition.seams[h / 3] |= static_cast<std::uint8_t>(1u << (h % 3));
+    result.partition.seams[o / 3] |= static_cast<std::uint8_t>(1u << (o % 3));
+  }
+  if (!std::getenv("NOSMOOTH"))
+    smooth_borders(topology, options.crease_degrees, result.partition, result.frames);
+  t0 = cpu_seconds();
+  if (trace) fmt::print(stderr, "  smooth {:.3f}\n", t0 - t1);
   return result;
 }
 

@@ -16,7 +16,6 @@ struct Segmentation {
   std::vector<std::array<Vec3f, 2>> frames;  // 1 a triangle, or empty: see IsometricStart::frames
 };
 
-Segmentation segment(const Topology& topology, const ChartOptions& options,
-                     const Context& context);
+Segmentation segment(const Topology& topology, const ChartOptions& options, const Context& context);
 
 }  // namespace atlas

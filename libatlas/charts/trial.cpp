@@ -23,9 +23,8 @@ bool cross_each_other(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2
 
 // Area of the convex hull; sorts `points`.
 double hull_area(std::vector<Vec2d>& points, std::vector<Vec2d>& hull) {
-  std::sort(points.begin(), points.end(), [](const Vec2d& a, const Vec2d& b) {
-    return a.x != b.x ? a.x < b.x : a.y < b.y;
-  });
+  std::sort(points.begin(), points.end(),
+            [](const Vec2d& a, const Vec2d& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
   hull.clear();
   for (int pass = 0; pass < 2; ++pass) {
     const std::size_t base = hull.size();
@@ -247,8 +246,7 @@ TrialOutcome Trial::run(std::span<const std::uint32_t> first, std::span<const st
 TrialOutcome Trial::run_joined(std::span<const std::uint32_t> first,
                                std::span<const std::uint32_t> second,
                                std::span<const std::uint32_t> glue,
-                               const std::vector<std::uint8_t>& joined,
-                               const TrialLimits& limits) {
+                               const std::vector<std::uint8_t>& joined, const TrialLimits& limits) {
   cells_.assign(first.begin(), first.end());
   cells_.insert(cells_.end(), second.begin(), second.end());
   assemble(joined);

@@ -1,0 +1,165 @@
+#include "libatlas/charts/refine.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+constexpr double kCreaseWeight = 0.25;
+
+bool linked(const Topology& topology, const Partition& partition, std::uint32_t h) {
+  const std::uint32_t o = topology.opposite[h];
+  return o != kNoIndex && partition.chart[o / 3] == partition.chart[h / 3] && !partition.seam(h);
+}
+
+class Smoother {
+ public:
+  Smoother(const Topology& topology, double crease_degrees, Partition& partition, Frames& frames)
+      : topology_(topology),
+        partition_(partition),
+        frames_(frames),
+        crease_cosine_(std::cos(crease_degrees * M_PI / 180)) {}
+
+  void run() {
+    const auto n = static_cast<std::uint32_t>(topology_.triangle_count());
+    queued_.assign(n, 0);
+    std::vector<std::uint32_t> now;
+    for (std::uint32_t t = 0; t < n; ++t) {
+      if (partition_.chart[t] != kNoIndex && at_border(t)) now.push_back(t);
+    }
+    for (int round = 0; round < kMaxRounds && !now.empty(); ++round) {
+      next_.clear();
+      for (const std::uint32_t t : now) queued_[t] = 0;
+      for (const std::uint32_t t : now) improve(t);
+      now.swap(next_);
+      std::sort(now.begin(), now.end());
+    }
+  }
+
+ private:
+  static constexpr int kMaxRounds = 64;  // a seam wanders by at most so many triangles
+
+  bool at_border(std::uint32_t t) const {
+    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+      const std::uint32_t o = topology_.opposite[h];
+      if (o != kNoIndex && partition_.chart[o / 3] != partition_.chart[t]) return true;
+    }
+    return false;
+  }
+
+  double weight(std::uint32_t h) const {
+    const std::uint32_t o = topology_.opposite[h];
+    const double length =
+        glm::distance(to_dvec(topology_.points[topology_.corner_vertex[h]]),
+                      to_dvec(topology_.points[topology_.corner_vertex[next_half_edge(h)]]));
+    const double cosine =
+        glm::dot(to_dvec(topology_.normals[h / 3]), to_dvec(topology_.normals[o / 3]));
+    return cosine < crease_cosine_ ? kCreaseWeight * length : length;
+  }
+
+  void improve(std::uint32_t t) {
+    const std::uint32_t own = partition_.chart[t];
+    double kept = 0, weights[3] = {0, 0, 0};
+    std::uint32_t labels[3];
+    for (int c = 0; c < 3; ++c) {
+      const std::uint32_t h = 3 * t + c, o = topology_.opposite[h];
+      labels[c] = o == kNoIndex || partition_.seam(h) ? kNoIndex : partition_.chart[o / 3];
+      if (labels[c] == kNoIndex) continue;
+      weights[c] = weight(h);
+      if (labels[c] == own) kept += weights[c];
+    }
+    int best = -1;
+    double best_gain = 1e-9 * (weights[0] + weights[1] + weights[2]);
+    for (int c = 0; c < 3; ++c) {
+      if (labels[c] == kNoIndex || labels[c] == own) continue;
+      double gained = 0;
+      for (int d = 0; d < 3; ++d) gained += labels[d] == labels[c] ? weights[d] : 0;
+      if (gained - kept > best_gain) {
+        best_gain = gained - kept;
+        best = c;
+      }
+    }
+    if (best < 0 || !removable(topology_, partition_, t)) return;
+    move_triangle(topology_, 3 * t + static_cast<std::uint32_t>(best), partition_, frames_);
+    push(t);
+    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+      if (topology_.opposite[h] != kNoIndex) push(topology_.opposite[h] / 3);
+    }
+  }
+
+  void push(std::uint32_t t) {
+    if (queued_[t]) return;
+    queued_[t] = 1;
+    next_.push_back(t);
+  }
+
+  const Topology& topology_;
+  Partition& partition_;
+  Frames& frames_;
+  double crease_cosine_;
+  std::vector<std::uint8_t> queued_;
+  std::vector<std::uint32_t> next_;
+};
+
+}  // namespace
+
+std::array<Vec3f, 2> carry_frame(const Topology& topology, const std::array<Vec3f, 2>& frame,
+                                 std::uint32_t from, std::uint32_t to) {
+  const glm::dvec3 a = to_dvec(topology.normals[from]), b = to_dvec(topology.normals[to]);
+  const double cosine = glm::dot(a, b);
+  if (cosine < -0.99) return frame;
+  const glm::dvec3 axis = glm::cross(a, b);
+  const auto turn = [&](const Vec3f& v) {
+    const glm::dvec3 x = to_dvec(v);
+    return from_glm(
+        glm::vec3(cosine * x + glm::cross(axis, x) + axis * (glm::dot(axis, x) / (1 + cosine))));
+  };
+  return {turn(frame[0]), turn(frame[1])};
+}
+
+void move_triangle(const Topology& topology, std::uint32_t h, Partition& partition,
+                   Frames& frames) {
+  const std::uint32_t t = h / 3, to = topology.opposite[h] / 3;
+  partition.chart[t] = partition.chart[to];
+  if (!frames.empty()) frames[t] = carry_frame(topology, frames[to], to, t);
+  for (std::uint32_t g = 3 * t; g < 3 * t + 3; ++g) {
+    if (!partition.seam(g)) continue;
+    const std::uint32_t o = topology.opposite[g];
+    partition.seams[o / 3] &= static_cast<std::uint8_t>(~(1u << (o % 3)));
+  }
+  partition.seams[t] = 0;
+}
+
+bool removable(const Topology& topology, const Partition& partition, std::uint32_t t) {
+  int links = 0;
+  std::uint32_t open = 0;
+  for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+    if (linked(topology, partition, h)) {
+      ++links;
+    } else {
+      open = h;
+    }
+  }
+  if (links <= 1) return true;
+  if (links == 3) return false;
+  // The two links meet at the corner opposite the open edge: walk the fan there from one to the
+  // other without t.
+  const std::uint32_t start = previous_half_edge(open);
+  std::uint32_t h = topology.opposite[previous_half_edge(start)];
+  while (h / 3 != t) {
+    const std::uint32_t back = previous_half_edge(h);
+    if (!linked(topology, partition, back)) return false;
+    h = topology.opposite[back];
+  }
+  return true;
+}
+
+void smooth_borders(const Topology& topology, double crease_degrees, Partition& partition,
+                    Frames& frames) {
+  Smoother(topology, crease_degrees, partition, frames).run();
+}
+
+}  // namespace atlas
