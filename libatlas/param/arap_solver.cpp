@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "libatlas/param/percentile.h"
+
 namespace atlas::param {
 namespace {
 
@@ -138,50 +140,43 @@ void ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
   }
 }
 
-// Fills w_.stretch with log max(s1, 1/s2) at the area-preserving scale, and returns the value
-// that 99.9 % of the area stays within.
-double ArapSolver::update_stretch(std::span<const Vec2d> uvs) {
+// Fills w_.stretch with log max(s1, 1/s2) at the scale asked for, and returns the value that 99.9 %
+// of the area stays within.
+double ArapSolver::update_stretch(std::span<const Vec2d> uvs, bool ratio) {
   constexpr double worst = 10;  // for flipped triangles
-  double area = 0, uv_area = 0;
+  double area = 0, uv_area = 0, large = 0, small = std::numeric_limits<double>::infinity();
   w_.stretch.resize(w_.elements.size());
-  w_.sorted.resize(w_.elements.size());
   w_.sigma.resize(w_.elements.size());
   for (std::size_t t = 0; t < w_.elements.size(); ++t) {
     const Element& e = w_.elements[t];
     const Jacobian j = e.jacobian(to_glm(uvs[e.v[0]]), to_glm(uvs[e.v[1]]), to_glm(uvs[e.v[2]]));
-    w_.sigma[t] = singular_values(j);
+    const SingularValues s = w_.sigma[t] = singular_values(j);
     area += e.area();
     uv_area += e.area() * std::abs(j.det());
+    large = std::max(large, s.large);
+    if (s.small > 0) small = std::min(small, s.small);
   }
-  const double scale = uv_area > 0 ? std::sqrt(area / uv_area) : 1;
+  double scale = uv_area > 0 ? std::sqrt(area / uv_area) : 1;
+  if (ratio && small <= large) scale = 1 / std::sqrt(small * large);
+  w_.tail.clear();
   for (std::size_t t = 0; t < w_.elements.size(); ++t) {
     const SingularValues s = w_.sigma[t];
-    const double r =
-        s.small > 0 ? std::max(std::log(s.large * scale), -std::log(s.small * scale)) : worst;
-    w_.stretch[t] = std::min(r, worst);
-    w_.sorted[t] = static_cast<std::uint32_t>(t);
+    const double r = s.small > 0 ? std::max(s.large * scale, 1 / (s.small * scale)) : worst;
+    w_.stretch[t] = std::log(std::clamp(r, 1.0, worst));
+    w_.tail.push_back({w_.stretch[t], w_.elements[t].area()});
   }
-  const auto above = [&](std::uint32_t a, std::uint32_t b) {
-    return w_.stretch[a] != w_.stretch[b] ? w_.stretch[a] > w_.stretch[b] : a < b;
-  };
-  std::sort(w_.sorted.begin(), w_.sorted.end(), above);
-  double sum = 0;
-  for (const std::uint32_t t : w_.sorted) {
-    sum += w_.elements[t].area();
-    if (sum > 0.001 * area) return w_.stretch[t];
-  }
-  return w_.stretch[w_.sorted.back()];
+  return upper_percentile(w_.tail, 0.001);
 }
 
-double ArapSolver::squeeze(double goal, int iterations, std::span<Vec2d> uvs) {
+double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
   // The mean of the 12th power of the stretch stands in for its maximum: 6 leaves a tenth of the
   // gain, 20 gains nothing more. Damped by 1 / (power - 2) the weights settle; undamped they swing
   // (measured).
   constexpr double power = 12, damping = 0.1;
-  const double log_goal = std::log(goal);
-  double now = update_stretch(uvs), best = now, before = now;
+  const double log_goal = std::log(options.goal);
+  double now = update_stretch(uvs, options.ratio), best = now, before = now;
   w_.best.assign(uvs.begin(), uvs.end());
-  for (int i = 0; i < iterations && best > log_goal; ++i) {
+  for (int i = 0; i < options.iterations && best > log_goal; ++i) {
     for (std::size_t t = 0; t < w_.elements.size(); ++t) {
       // The outermost 0.1 % may stay as it is: more weight to it would only spoil the rest.
       const double r = std::clamp(w_.stretch[t] / now, 0.05, 1.0);
@@ -193,7 +188,7 @@ double ArapSolver::squeeze(double goal, int iterations, std::span<Vec2d> uvs) {
       start(uvs);
       iterate(1, uvs);
     }
-    now = update_stretch(uvs);
+    now = update_stretch(uvs, options.ratio);
     if (now < best) {
       before = best;
       best = now;
@@ -201,7 +196,7 @@ double ArapSolver::squeeze(double goal, int iterations, std::span<Vec2d> uvs) {
     }
     // Steps get shorter: if as many more like the last one do not suffice, none will.
     const double gain = before - best;
-    if (i >= 2 && best - gain * (iterations - 1 - i) > log_goal) break;
+    if (i >= 2 && best - gain * (options.iterations - 1 - i) > log_goal) break;
   }
   std::copy(w_.best.begin(), w_.best.end(), uvs.begin());
   return std::exp(best);

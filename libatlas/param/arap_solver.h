@@ -27,7 +27,14 @@ class ArapSolver {
   // maximum norm; Burrus, Barreto and Selesnick 1994, "Iterative reweighted least-squares design of
   // FIR filters"). Ends when that stretch is at most `goal`, after `iterations`, or when it will
   // not get there at this rate. uvs becomes the best state seen; returns its stretch.
-  double squeeze(double goal, int iterations, std::span<Vec2d> uvs);
+  // With `ratio` the stretch is taken at the scale in the middle of its range instead of the
+  // area-preserving one.
+  struct Squeeze {
+    double goal;
+    int iterations;
+    bool ratio;
+  };
+  double squeeze(const Squeeze& options, std::span<Vec2d> uvs);
 
   Relaxer::Outcome remove_flips(std::span<const std::uint32_t> also, std::span<Vec2d> uvs);
 
@@ -35,7 +42,7 @@ class ArapSolver {
 
  private:
   void factorize();
-  double update_stretch(std::span<const Vec2d> uvs);
+  double update_stretch(std::span<const Vec2d> uvs, bool ratio);
 
   const LocalMesh& mesh_;
   ParamWorkspace::Impl& w_;

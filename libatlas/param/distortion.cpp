@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "libatlas/param/percentile.h"
 #include "libatlas/param/rest_shape.h"
 
 namespace atlas {
@@ -37,35 +38,6 @@ float stretch(const TriangleStretch& t, double scale) {
   return static_cast<float>(std::max(t.s1 * scale, 1 / (t.s2 * scale)));
 }
 
-struct WeightedValue {
-  float value, area;
-};
-
-// The smallest value that at least 99.9 % of the area does not exceed.
-double percentile_999(std::vector<WeightedValue>& values, double total_area) {
-  if (values.empty()) return 1;
-  const double budget = 0.001 * total_area;
-  const auto above = [](const WeightedValue& a, const WeightedValue& b) {
-    return a.value > b.value;
-  };
-  // Only the upper tail need be sorted; take a longer one until it holds the budget.
-  for (std::size_t tail = values.size() / 256 + 16;; tail *= 4) {
-    tail = std::min(tail, values.size());
-    const auto end = values.begin() + static_cast<std::ptrdiff_t>(tail);
-    if (tail < values.size()) std::nth_element(values.begin(), end, values.end(), above);
-    double area = 0;
-    for (auto v = values.begin(); v != end; ++v) area += v->area;
-    if (area <= budget && tail < values.size()) continue;
-    std::sort(values.begin(), end, above);
-    area = 0;
-    for (auto v = values.begin(); v != end; ++v) {
-      area += v->area;
-      if (area > budget) return v->value;
-    }
-    return (end - 1)->value;
-  }
-}
-
 }  // namespace
 
 void measure_triangles(const LocalMesh& mesh, std::span<const Vec2d> uvs,
@@ -84,7 +56,7 @@ Distortion summarize_distortion(std::span<const TriangleStretch> triangles, doub
   if (!(d.surface_area > 0)) return d;
   if (scale == 0) scale = std::sqrt(d.uv_area / d.surface_area);
   const double least = negligible_area * d.surface_area / static_cast<double>(triangles.size());
-  std::vector<WeightedValue> values;
+  std::vector<param::WeightedValue> values;
   values.reserve(triangles.size());
   double sum_l2 = 0, sum_conformal = 0, sum_area = 0, largest = 1;
   d.area_min = std::numeric_limits<double>::infinity();
@@ -101,13 +73,12 @@ Distortion summarize_distortion(std::span<const TriangleStretch> triangles, doub
     d.conformal_max = std::max(d.conformal_max, quotient);
     d.area_min = std::min(d.area_min, s1 * s2);
     d.area_max = std::max(d.area_max, s1 * s2);
-    // In units of the total: float areas would vanish for a mesh of nanometres.
-    values.push_back({worst, static_cast<float>(t.area / d.surface_area)});
+    values.push_back({worst, t.area});
   }
   d.stretch_l2 = std::sqrt(sum_l2 / sum_area);
   d.conformal_mean = sum_conformal / sum_area;
   d.stretch_linf = largest;
-  d.stretch_999 = percentile_999(values, sum_area / d.surface_area);
+  d.stretch_999 = param::upper_percentile(values, 0.001);
   return d;
 }
 

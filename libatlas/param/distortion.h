@@ -40,7 +40,7 @@ void measure_triangles(const LocalMesh& mesh, std::span<const Vec2d> uvs,
 // Sums triangles up: of one chart, or of many charts whose entries stand one after another. scale
 // multiplies s1 and s2; 0 stands for the area-preserving one, sqrt(uv area / surface area).
 // Triangles of less than 1e-14 of the mean area count for flips (if their uv area is negative) and
-// nothing else. Takes O(n); uses memory for n floats. Source: Sander et al. 2001, section 3.
+// nothing else. Takes O(n); uses memory for 2 n doubles. Source: Sander et al. 2001, section 3.
 Distortion summarize_distortion(std::span<const TriangleStretch> triangles, double scale = 0);
 
 // Both steps for one chart. per_triangle (1 a triangle, or empty) receives max(s1, 1/s2) at the

@@ -104,6 +104,26 @@ glm::dvec2 smallest_box(const std::vector<Vec2d>& hull) {
   return best;
 }
 
+// The mean direction, modulo 90 degrees, of the edges near `angle`, taken over narrower and
+// narrower windows, so that long straight borders outweigh those that are merely nearly so.
+glm::dvec2 refine_direction(std::span<const Vec2d> uvs,
+                            std::span<const std::array<std::uint32_t, 2>> edges, double angle) {
+  for (const double window : {0.5, 0.1, 0.02}) {
+    // Quadrupled angles make directions modulo 90 degrees add up.
+    const double limit = std::cos(4 * window * std::numbers::pi / 180);
+    double c = 0, s = 0;
+    for (const auto& [a, b] : edges) {
+      const glm::dvec2 e = to_glm(uvs[b]) - to_glm(uvs[a]);
+      const double turned = 4 * (std::atan2(e.y, e.x) - angle);
+      if (!(std::cos(turned) >= limit)) continue;
+      c += glm::length(e) * std::cos(turned);
+      s += glm::length(e) * std::sin(turned);
+    }
+    if (c > 0) angle += std::atan2(s, c) / 4;
+  }
+  return {std::cos(angle), std::sin(angle)};
+}
+
 // The direction modulo 90 degrees that carries most border length, if it carries enough.
 bool straight_direction(std::span<const Vec2d> uvs,
                         std::span<const std::array<std::uint32_t, 2>> edges, glm::dvec2* out) {
@@ -128,20 +148,7 @@ bool straight_direction(std::span<const Vec2d> uvs,
     if (pair(k) > pair(best)) best = k;
   }
   if (!(pair(best) >= 0.2 * total) || !(total > 0)) return false;
-  // The mean direction of those edges: quadrupled angles make directions modulo 90 degrees add up.
-  double c = 0, s = 0;
-  for (const auto& [a, b] : edges) {
-    const glm::dvec2 e = to_glm(uvs[b]) - to_glm(uvs[a]);
-    const double l = glm::length(e);
-    if (!(l > 0)) continue;
-    const int bin = bin_of(e);
-    if (bin != best && bin != (best + 1) % bins) continue;
-    const double angle = 4 * std::atan2(e.y, e.x);
-    c += l * std::cos(angle);
-    s += l * std::sin(angle);
-  }
-  const double angle = std::atan2(s, c) / 4;
-  *out = {std::cos(angle), std::sin(angle)};
+  *out = refine_direction(uvs, edges, (best + 1) * 0.5 * std::numbers::pi / bins);
   return true;
 }
 

@@ -63,7 +63,7 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
     }
     if (options.squeeze_iterations <= 0 || round > 0) return;
     if (measure_distortion(mesh, r.uvs).stretch_999 <= options.max_stretch) return;
-    solver.squeeze(options.max_stretch, options.squeeze_iterations, r.uvs);
+    solver.squeeze({options.max_stretch, options.squeeze_iterations, options.squeeze_ratio}, r.uvs);
   }
 }
 

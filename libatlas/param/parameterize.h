@@ -26,12 +26,16 @@ struct ParamOptions {
   // max_stretch.
   double max_planar_stretch = 0;
   ParamMethod method = ParamMethod::automatic;
-  Vec3d axis;                   // of the projection; (0, 0, 0): the mean normal
-  IsometricStart start;         // what the isometric solver starts from
+  Vec3d axis = {};              // of the projection; (0, 0, 0): the mean normal
+  IsometricStart start = {};    // what the isometric solver starts from
   int iterations = 4;           // local/global steps before the bound is looked at
   int squeeze_iterations = 12;  // reweighted steps at most, when the bound is missed
-  double min_altitude =
-      0;  // uv units: triangles are kept this thick where possible (rounding of what is written)
+  // The scale at which squeezing measures: the area-preserving one, as in the bound, or whichever
+  // suits best, so that the ratio of the largest to the smallest singular value falls.
+  bool squeeze_ratio = false;
+  // Triangles are kept at least this thick (uv units) where possible, so that rounding of what is
+  // written leaves them positive.
+  double min_altitude = 0;
 };
 
 struct ParamResult {
@@ -43,8 +47,8 @@ struct ParamResult {
   // Empty if both hold. Else triangles in the way, worst first: flipped ones, those at border
   // crossings, those beyond the bound. Cutting the chart near or between them helps.
   std::vector<std::uint32_t> offenders;
-  std::vector<BorderCrossing>
-      crossings;      // pairs that overlap; cutting between the two of a pair helps
+  // Pairs of border edges that overlap; cutting between the two of a pair helps.
+  std::vector<BorderCrossing> crossings;
   int unflipped = 0;  // triangles that the barrier step turned right
 };
 

@@ -4,6 +4,7 @@
 #include "libatlas/param/halfedges.h"
 #include "libatlas/param/isometric.h"
 #include "libatlas/param/linear_solver.h"
+#include "libatlas/param/percentile.h"
 #include "libatlas/param/relax.h"
 #include "libatlas/param/stiffness.h"
 
@@ -18,8 +19,9 @@ struct ParamWorkspace::Impl {
   param::SparseDirectSolver direct;
   param::HalfEdges half_edges;
   std::vector<glm::dvec2> load, solution;
-  std::vector<std::uint32_t> queue, sorted;
+  std::vector<std::uint32_t> queue;
   std::vector<double> stretch;
+  std::vector<param::WeightedValue> tail;
   std::vector<param::SingularValues> sigma;
   std::vector<Vec2d> best;
   param::Relaxer relaxer;

@@ -1,0 +1,38 @@
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/Polygon_2.h>
+#include <CGAL/intersections.h>
+
+#include "tests/param/oracles.h"
+
+namespace atlas::testing {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+using Triangle = Kernel::Triangle_2;
+
+bool share_area(const Triangle& a, const Triangle& b) {
+  if (!CGAL::do_overlap(a.bbox(), b.bbox())) return false;
+  const auto common = CGAL::intersection(a, b);
+  if (!common) return false;
+  if (boost::get<Triangle>(&*common)) return true;
+  return boost::get<std::vector<Kernel::Point_2>>(&*common) != nullptr;
+}
+
+}  // namespace
+
+bool injective_by_pairs(const LocalMesh& mesh, std::span<const Vec2d> uvs) {
+  std::vector<Triangle> triangles;
+  for (const auto& t : mesh.triangles) {
+    const auto point = [&](std::uint32_t v) { return Kernel::Point_2(uvs[v].x, uvs[v].y); };
+    triangles.emplace_back(point(t[0]), point(t[1]), point(t[2]));
+    if (triangles.back().orientation() != CGAL::COUNTERCLOCKWISE) return false;
+  }
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    for (std::size_t j = i + 1; j < triangles.size(); ++j) {
+      if (share_area(triangles[i], triangles[j])) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace atlas::testing

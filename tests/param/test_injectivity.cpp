@@ -1,0 +1,204 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "libatlas/core/predicates.h"
+#include "libatlas/param/injectivity.h"
+#include "tests/param/oracles.h"
+#include "tests/param/shapes.h"
+
+namespace atlas {
+namespace {
+
+using testing::Disc;
+
+std::vector<Vec2d> drop_z(const Disc& d) {
+  std::vector<Vec2d> uv;
+  for (const Vec3d& p : d.positions) uv.push_back({p.x, p.y});
+  return uv;
+}
+
+// A band of quads along a curve of the plane.
+Disc make_band(int n, double width, const std::function<Vec2d(double)>& curve) {
+  return testing::make_grid(static_cast<std::uint32_t>(n), 1, [&](double t, double side) {
+    const Vec2d a = curve(t), b = curve(t + 1e-6);
+    const double l = std::hypot(b.x - a.x, b.y - a.y), w = width * side;
+    return Vec3d{a.x - w * (b.y - a.y) / l, a.y + w * (b.x - a.x) / l, 0};
+  });
+}
+
+TEST(Injectivity, MatchesExactPairsOnShakenGrids) {
+  int injective = 0, not_injective = 0;
+  for (unsigned seed = 0; seed < 300; ++seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> shake(0, 0.02 + 0.0012 * (seed % 50));
+    Disc d = testing::make_grid(5, 4, [](double u, double v) { return Vec3d{u, v, 0}; });
+    auto uv = drop_z(d);
+    for (Vec2d& p : uv) p = {p.x + shake(random), p.y + shake(random)};
+    const bool expected = testing::injective_by_pairs(d.view(), uv);
+    const Injectivity result = check_injectivity(d.view(), uv);
+    EXPECT_EQ(result.injective, expected) << "seed " << seed;
+    (expected ? injective : not_injective)++;
+  }
+  EXPECT_GT(injective, 30);
+  EXPECT_GT(not_injective, 30);
+}
+
+TEST(Injectivity, MatchesExactPairsOnIntegerGrids) {
+  // Small integers make collinear, touching and coincident cases frequent.
+  int injective = 0;
+  for (unsigned seed = 0; seed < 400; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_int_distribution<int> step(-1, 1);
+    Disc d = testing::make_grid(3, 3, [](double u, double v) { return Vec3d{9 * u, 9 * v, 0}; });
+    auto uv = drop_z(d);
+    const int moves = seed % 6;
+    for (int i = 0; i < moves; ++i) {
+      Vec2d& p = uv[random() % uv.size()];
+      p = {std::round(p.x) + 2 * step(random), std::round(p.y) + 2 * step(random)};
+    }
+    const bool expected = testing::injective_by_pairs(d.view(), uv);
+    const Injectivity result = check_injectivity(d.view(), uv);
+    // A border vertex that lies on another border edge counts as a crossing: stricter than sharing
+    // area.
+    if (result.injective) {
+      EXPECT_TRUE(expected) << "seed " << seed;
+    } else if (expected) {
+      EXPECT_FALSE(result.crossings.empty()) << "seed " << seed;
+    }
+    injective += result.injective;
+  }
+  EXPECT_GT(injective, 60);
+}
+
+TEST(Injectivity, SeesSpiralsApart) {
+  const Disc spiral = make_band(200, 0.3, [](double t) {
+    const double a = 6 * std::numbers::pi * t, r = 1 + 0.35 * 3 * t;  // three turns, 0.35 apart
+    return Vec2d{r * std::cos(a), r * std::sin(a)};
+  });
+  const auto uv = drop_z(spiral);
+  EXPECT_TRUE(check_injectivity(spiral.view(), uv).injective);
+  EXPECT_TRUE(testing::injective_by_pairs(spiral.view(), uv));
+}
+
+TEST(Injectivity, ReportsALoopThatOverlapsItself) {
+  // A ring of a turn and a half: every triangle is positive, the band lies on itself.
+  const Disc d = make_band(90, 0.3, [](double t) {
+    const double a = 3 * std::numbers::pi * t;
+    return Vec2d{std::cos(a), std::sin(a)};
+  });
+  const auto uv = drop_z(d);
+  const Injectivity result = check_injectivity(d.view(), uv);
+  EXPECT_TRUE(result.flipped.empty());
+  EXPECT_FALSE(result.injective);
+  EXPECT_FALSE(result.crossings.empty());
+  for (const BorderCrossing& c : result.crossings) {
+    EXPECT_TRUE(segments_cross(uv[c.a[0]], uv[c.a[1]], uv[c.b[0]], uv[c.b[1]]));
+  }
+}
+
+TEST(Injectivity, ReportsAVertexThatIsGoneRoundTwice) {
+  // A fan of twice the full turn about an inner vertex: positive triangles, doubly covered.
+  Disc d;
+  std::vector<Vec2d> uv = {{0, 0}};
+  const int n = 16;
+  for (int i = 0; i < n; ++i) {
+    const double a = 4 * std::numbers::pi * i / n, r = 1 + 0.01 * i;
+    uv.push_back({r * std::cos(a), r * std::sin(a)});
+    d.triangles.push_back({0, 1u + i, 1u + (i + 1) % n});
+  }
+  d.positions.assign(uv.size(), {});
+  const Injectivity result = check_injectivity(d.view(), uv);
+  EXPECT_TRUE(result.flipped.empty());
+  EXPECT_FALSE(result.injective);
+  EXPECT_FALSE(testing::injective_by_pairs(d.view(), uv));
+}
+
+TEST(Injectivity, ReportsTwoPiecesOnTopOfEachOther) {
+  // Concentric squares, not connected: no borders cross, but one lies in the other.
+  Disc d;
+  d.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+  std::vector<Vec2d> uv = {{0, 0}, {3, 0}, {3, 3}, {0, 3}, {1, 1}, {2, 1}, {2, 2}, {1, 2}};
+  d.positions.assign(8, {});
+  const Injectivity result = check_injectivity(d.view(), uv);
+  EXPECT_TRUE(result.crossings.empty());
+  EXPECT_TRUE(result.nested);
+  EXPECT_FALSE(result.injective);
+}
+
+TEST(Injectivity, AcceptsARingWithAHole) {
+  const Disc d = make_band(40, 0.3, [](double t) {
+    const double a = 2 * std::numbers::pi * t;
+    return Vec2d{std::cos(a), std::sin(a)};
+  });
+  Disc closed = d;  // weld the last column to the first
+  for (auto& t : closed.triangles) {
+    for (auto& v : t) v = v == 40 ? 0 : v == 81 ? 41 : v;
+  }
+  const Injectivity result = check_injectivity(closed.view(), drop_z(d));
+  EXPECT_EQ(result.loops, 2u);
+  EXPECT_TRUE(result.injective);
+}
+
+TEST(Injectivity, DecidesTheLastDigit) {
+  Disc d;
+  d.positions.assign(3, {});
+  d.triangles = {{0, 1, 2}};
+  const double next = std::nextafter(0.1, 1);
+  // Points on the diagonal, the middle one a digit aside.
+  EXPECT_FALSE(
+      check_injectivity(d.view(), std::vector<Vec2d>{{0, 0}, {0.3, 0.3}, {0.1, 0.1}}).injective);
+  EXPECT_TRUE(
+      check_injectivity(d.view(), std::vector<Vec2d>{{0, 0}, {0.3, 0.3}, {0.1, next}}).injective);
+  EXPECT_FALSE(
+      check_injectivity(d.view(), std::vector<Vec2d>{{0, 0}, {0.3, 0.3}, {next, 0.1}}).injective);
+}
+
+TEST(Injectivity, ClearanceSurvivesRounding) {
+  const Disc d = testing::make_grid(6, 6, [](double u, double v) { return Vec3d{u, v, 0}; });
+  std::mt19937 random(1);
+  for (const double e : {1e-3, 1e-2}) {
+    auto uv = drop_z(d);
+    std::uniform_real_distribution<double> shake(-0.04, 0.04), error(-e, e);
+    for (Vec2d& p : uv) p = {p.x + shake(random), p.y + shake(random)};
+    const Injectivity result = check_injectivity(d.view(), uv, {.clearance = 3 * e});
+    ASSERT_TRUE(result.injective);
+    ASSERT_TRUE(result.thin.empty() && result.close.empty());
+    for (int i = 0; i < 50; ++i) {
+      auto rounded = uv;
+      for (Vec2d& p : rounded) p = {p.x + error(random), p.y + error(random)};
+      EXPECT_TRUE(check_injectivity(d.view(), rounded).injective);
+    }
+  }
+  const auto uv = drop_z(d);
+  EXPECT_EQ(check_injectivity(d.view(), uv, {.clearance = 0.2}).thin.size(), d.triangles.size());
+}
+
+TEST(Injectivity, FindsACloseSlit) {
+  // A square with a slit from one side whose banks are 1e-6 apart.
+  Disc d;
+  d.triangles = {{0, 1, 3}, {1, 2, 3}, {3, 4, 0}, {4, 5, 0}};
+  const std::vector<Vec2d> uv = {{0, 0}, {2, -1}, {2, -1e-6}, {0.5, 0}, {2, 1e-6}, {2, 1}};
+  d.positions.assign(6, {});
+  const Injectivity result = check_injectivity(d.view(), uv, {.clearance = 1e-4});
+  EXPECT_TRUE(result.injective);
+  bool found = false;
+  for (const BorderCrossing& c : result.close) {
+    found |= (c.a[0] == 3 || c.a[1] == 3) && (c.b[0] == 3 || c.b[1] == 3);
+  }
+  EXPECT_TRUE(found);
+}
+
+TEST(Injectivity, ManyBorderEdgesAreFast) {
+  // 2 * 10^5 border edges of very unequal length; quadratic work would take minutes.
+  const Disc d = make_band(100000, 1e-3, [](double t) {
+    const double a = 40 * std::numbers::pi * t * t, r = 0.1 + a;
+    return Vec2d{r * std::cos(a), r * std::sin(a)};
+  });
+  EXPECT_TRUE(check_injectivity(d.view(), drop_z(d)).injective);
+}
+
+}  // namespace
+}  // namespace atlas

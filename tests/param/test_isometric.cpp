@@ -1,0 +1,143 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "libatlas/param/distortion.h"
+#include "libatlas/param/isometric.h"
+#include "libatlas/param/planar.h"
+#include "tests/param/oracles.h"
+#include "tests/param/shapes.h"
+
+namespace atlas {
+namespace {
+
+using testing::Disc;
+
+std::vector<Vec2d> flatten(const Disc& d, int iterations, const IsometricStart& start = {}) {
+  std::vector<Vec2d> uv(d.positions.size());
+  ParamWorkspace workspace;
+  flatten_isometric(d.view(), start, {iterations, 0}, uv, workspace);
+  return uv;
+}
+
+TEST(Isometric, DevelopablesUnrollFromNoStartAtAll) {
+  for (const Disc& d : {testing::make_cylinder(5.5, 2, 40, 12), testing::make_cone(0.4, 5, 50, 20),
+                        testing::make_cylinder(1, 30, 10, 200)}) {
+    const auto uv = flatten(d, 3);
+    const Distortion m = measure_distortion(d.view(), uv);
+    EXPECT_LT(m.stretch_linf, 1.001);
+    EXPECT_EQ(m.flips, 0u);
+  }
+}
+
+TEST(Isometric, CylinderHasItsLengths) {
+  const double arc = 4, height = 2;
+  const std::uint32_t columns = 30, rows = 10;
+  const Disc d = testing::make_cylinder(arc, height, columns, rows);
+  const auto uv = flatten(d, 3);
+  const double chord = 2 * std::sin(arc / columns / 2) * columns;  // of the inscribed polygon
+  const Vec2d a = uv[0], b = uv[columns], c = uv[(columns + 1) * rows];
+  EXPECT_NEAR(std::hypot(b.x - a.x, b.y - a.y), chord, 1e-9);
+  EXPECT_NEAR(std::hypot(c.x - a.x, c.y - a.y), height, 1e-9);
+  EXPECT_NEAR((b.x - a.x) * (c.x - a.x) + (b.y - a.y) * (c.y - a.y), 0, 1e-9);
+}
+
+TEST(Isometric, EnergyIsTheOneRecomputed) {
+  const Disc d = testing::make_cap(1.2, 12);
+  ParamWorkspace workspace;
+  std::vector<Vec2d> uv(d.positions.size());
+  const IsometricResult result = flatten_isometric(d.view(), {}, {6, 0}, uv, workspace);
+  EXPECT_NEAR(result.energy, testing::arap_energy(d.view(), uv), 1e-9);
+  EXPECT_GT(result.energy, 1e-3);
+}
+
+TEST(Isometric, StepsNeverRaiseTheEnergyAndReachAStationaryPoint) {
+  const Disc d = testing::make_grid(14, 9, [](double u, double v) {
+    return Vec3d{2 * u, v, 0.3 * std::sin(6 * u) * std::cos(5 * v)};
+  });
+  std::vector<Vec2d> uv = flatten(d, 1);
+  double before = testing::arap_energy(d.view(), uv);
+  for (int i = 0; i < 200; ++i) {
+    uv = flatten(d, 1, {.uvs = uv});
+    const double now = testing::arap_energy(d.view(), uv);
+    EXPECT_LE(now, before * (1 + 1e-12));
+    before = now;
+  }
+  // At a minimum no vertex gains by moving.
+  const double step = 1e-4;
+  for (const std::size_t v : {std::size_t{0}, uv.size() / 2, uv.size() - 1}) {
+    for (const Vec2d move : {Vec2d{step, 0}, Vec2d{-step, 0}, Vec2d{0, step}, Vec2d{0, -step}}) {
+      auto moved = uv;
+      moved[v] = {uv[v].x + move.x, uv[v].y + move.y};
+      EXPECT_GT(testing::arap_energy(d.view(), moved), before);
+    }
+  }
+}
+
+TEST(Isometric, FramesAndUvsStartAlike) {
+  const Disc d = testing::make_cap(1, 15);
+  std::vector<Vec2d> uv(d.positions.size());
+  project_planar(d.view(), {0, 0, 1}, uv);
+  const Vec3d u{uv[1].x / std::sin(1. / 15), uv[1].y / std::sin(1. / 15),
+                0};  // vertex 1 lies along +x
+  const std::vector<std::array<Vec3d, 2>> frames(d.triangles.size(),
+                                                 {Vec3d{u.x, -u.y, 0}, Vec3d{u.y, u.x, 0}});
+  const double from_uvs = testing::arap_energy(d.view(), flatten(d, 4, {.uvs = uv}));
+  const double from_frames = testing::arap_energy(d.view(), flatten(d, 4, {.frames = frames}));
+  EXPECT_NEAR(from_frames, from_uvs, 1e-9);
+}
+
+// The solver changes with the size: small discs take one, large ones another. All must agree.
+TEST(Isometric, SolversAgreeAcrossTheirLimits) {
+  for (const std::uint32_t n : {8u, 30u, 45u, 90u, 180u}) {
+    const Disc d = testing::make_cylinder(2.5, 1.5, n, n);
+    const Distortion m = measure_distortion(d.view(), flatten(d, 2));
+    EXPECT_LT(m.stretch_linf, 1 + 1e-5) << n;
+    EXPECT_EQ(m.flips, 0u);
+  }
+}
+
+TEST(Isometric, WorkspaceLeavesNoTrace) {
+  const Disc small = testing::make_cap(1, 4), large = testing::make_cap(1.3, 40);
+  ParamWorkspace shared;
+  for (int i = 0; i < 3; ++i) {
+    for (const Disc* d : {&small, &large}) {
+      std::vector<Vec2d> uv(d->positions.size());
+      flatten_isometric(d->view(), {}, {4, 0}, uv, shared);
+      EXPECT_EQ(uv, flatten(*d, 4));
+    }
+  }
+}
+
+TEST(Isometric, PowersOfTwoChangeNoDigit) {
+  const Disc d = testing::make_cap(1.1, 20);
+  const auto uv = flatten(d, 4);
+  for (const int exponent : {-40, -3, 5, 40}) {
+    Disc scaled = d;
+    const double factor = std::ldexp(1.0, exponent);
+    testing::transform(scaled, factor);
+    const auto other = flatten(scaled, 4);
+    for (std::size_t v = 0; v < uv.size(); ++v) {
+      EXPECT_EQ(other[v].x, uv[v].x * factor);
+      EXPECT_EQ(other[v].y, uv[v].y * factor);
+    }
+  }
+}
+
+TEST(Isometric, EnergyIsNotAboveCgals) {
+  if (!testing::cgal_parameterizers_built())
+    GTEST_SKIP() << "CGAL's parameterisation package is not here";
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    Disc d = testing::make_cap(0.5 + 0.15 * seed, 14);
+    testing::add_radial_noise(d, 0.1 * testing::mean_edge(d), seed);
+    const std::vector<Vec2d> theirs = testing::cgal_arap(d.view(), 50);
+    ASSERT_EQ(theirs.size(), d.positions.size());
+    const double energy = testing::arap_energy(d.view(), flatten(d, 50));
+    EXPECT_LE(energy, testing::arap_energy(d.view(), theirs) * (1 + 1e-6)) << seed;
+  }
+}
+
+}  // namespace
+}  // namespace atlas

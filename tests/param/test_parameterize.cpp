@@ -1,0 +1,245 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "libatlas/param/parameterize.h"
+#include "tests/param/oracles.h"
+#include "tests/param/shapes.h"
+
+namespace atlas {
+namespace {
+
+using testing::Disc;
+
+ParamResult run(const Disc& d, const ParamOptions& options = {}) {
+  ParamWorkspace workspace;
+  return parameterize(d.view(), options, workspace);
+}
+
+// What every result must keep to, whatever the input.
+void expect_consistent(const Disc& d, const ParamResult& r, double max_stretch) {
+  ASSERT_EQ(r.uvs.size(), d.positions.size());
+  for (const Vec2d p : r.uvs) ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y));
+  const Distortion m = measure_distortion(d.view(), r.uvs);
+  EXPECT_NEAR(m.stretch_999, r.distortion.stretch_999, 1e-4 * m.stretch_999);
+  EXPECT_EQ(r.within_bound, r.distortion.stretch_999 <= max_stretch);
+  if (m.surface_area > 0) {
+    EXPECT_NEAR(m.uv_area, m.surface_area, 1e-6 * m.surface_area);
+  }
+  EXPECT_EQ(check_injectivity(d.view(), r.uvs).injective, r.injective);
+  EXPECT_TRUE(!r.injective || m.flips == 0);
+  EXPECT_EQ(r.offenders.empty(), r.injective && r.within_bound);
+}
+
+TEST(Parameterize, ProjectsWhatIsNearlyFlat) {
+  const Disc d = testing::make_grid(20, 20, [](double u, double v) {
+    return Vec3d{u, v, 0.05 * std::sin(4 * u)};
+  });
+  const ParamResult r = run(d);
+  expect_consistent(d, r, 1.25);
+  EXPECT_TRUE(r.planar);
+  EXPECT_TRUE(r.injective && r.within_bound);
+  const ParamResult other = run(d, {.method = ParamMethod::isometric});
+  EXPECT_FALSE(other.planar);
+  EXPECT_LT(other.distortion.stretch_l2, r.distortion.stretch_l2);
+}
+
+// Milnor 1969, "A problem in cartography": no map of a cap of half-angle a has a smaller ratio of
+// its greatest to its least scale than a / sin a, which the azimuthal equidistant projection has.
+TEST(Parameterize, CapsMeetMilnorsOptimum) {
+  for (const double degrees : {20.0, 45.0, 70.0, 90.0}) {
+    const double a = degrees * std::numbers::pi / 180, optimum = a / std::sin(a);
+    const Disc d = testing::make_cap(a, 40);
+    ParamOptions options;
+    options.method = ParamMethod::isometric;
+    options.iterations = 20;
+    options.max_stretch = 1.0001;  // out of reach: squeeze with all steps
+    options.squeeze_iterations = 40;
+    options.squeeze_ratio = true;
+    const ParamResult r = run(d, options);
+    std::vector<TriangleStretch> s(d.triangles.size());
+    measure_triangles(d.view(), r.uvs, s);
+    double greatest = 0, least = 1e300;
+    for (const TriangleStretch& t : s) {
+      greatest = std::max<double>(greatest, t.s1);
+      least = std::min<double>(least, t.s2);
+    }
+    EXPECT_LT(greatest / least, 1.02 * optimum) << degrees;
+    EXPECT_GT(greatest / least, 0.995 * optimum)
+        << degrees;  // below by the polyhedron's coarseness only
+    EXPECT_TRUE(r.injective);
+  }
+}
+
+TEST(Parameterize, SqueezingReachesABoundThatDescentMisses) {
+  const Disc d = testing::make_grid(50, 50, [](double u, double v) {
+    const double x = 2 * u - 1, y = 2 * v - 1;
+    return Vec3d{x, y, 0.9 * std::exp(-6 * (x * x + y * y))};
+  });
+  ParamOptions plain{.method = ParamMethod::isometric, .iterations = 30, .squeeze_iterations = 0};
+  const double reached = run(d, plain).distortion.stretch_999;
+  ParamOptions squeezed = plain;
+  squeezed.max_stretch = 1 + 0.8 * (reached - 1);
+  EXPECT_FALSE(run(d, {.max_stretch = squeezed.max_stretch,
+                       .method = ParamMethod::isometric,
+                       .iterations = 30,
+                       .squeeze_iterations = 0})
+                   .within_bound);
+  squeezed.squeeze_iterations = 12;
+  const ParamResult r = run(d, squeezed);
+  expect_consistent(d, r, squeezed.max_stretch);
+  EXPECT_TRUE(r.within_bound) << reached << " -> " << r.distortion.stretch_999;
+}
+
+TEST(Parameterize, NoisyHemispheresHaveNoFlips) {
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    Disc d = testing::make_cap(0.5 * std::numbers::pi, 24);
+    testing::add_radial_noise(d, 0.15 * testing::mean_edge(d), seed);
+    const ParamResult r = run(d, {.max_stretch = 3, .method = ParamMethod::isometric});
+    expect_consistent(d, r, 3);
+    EXPECT_EQ(r.distortion.flips, 0u);
+    EXPECT_TRUE(r.injective) << seed;
+  }
+}
+
+TEST(Parameterize, RemovesTheFlipsThatRoughNoiseBrings) {
+  int turned = 0;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    Disc d = testing::make_cap(0.45 * std::numbers::pi, 20);
+    testing::add_radial_noise(d, 0.6 * testing::mean_edge(d), seed);
+    const ParamResult r = run(d, {.max_stretch = 50, .method = ParamMethod::isometric});
+    expect_consistent(d, r, 50);
+    EXPECT_EQ(r.distortion.flips, 0u) << seed;
+    turned += r.unflipped;
+  }
+  EXPECT_GT(turned, 0);
+}
+
+TEST(Parameterize, ReportsWhatCannotBeFlattenedWithoutOverlap) {
+  // Two and a half turns of a helicoid's ramp near its axis come to lie on each other.
+  const Disc d = testing::make_grid(100, 6, [](double u, double v) {
+    const double a = 5 * std::numbers::pi * u, r = 1 + 0.5 * v;
+    return Vec3d{r * std::cos(a), r * std::sin(a), 0.05 * a};
+  });
+  const ParamResult r = run(d, {.max_stretch = 1.2});
+  expect_consistent(d, r, 1.2);
+  EXPECT_FALSE(r.planar);
+  EXPECT_FALSE(r.injective);
+  EXPECT_FALSE(r.crossings.empty());
+  EXPECT_FALSE(testing::injective_by_pairs(d.view(), r.uvs));
+}
+
+TEST(Parameterize, ReportsTheTipThatBreaksTheBound) {
+  // A needle on a plate: nothing flattens it within 1.25, and the worst triangles are the needle's.
+  const Disc d = testing::make_rings(12, [](double r, double angle) {
+    return Vec3d{r * std::cos(angle), r * std::sin(angle), r < 0.3 ? 3 * (0.3 - r) : 0};
+  });
+  const ParamResult r = run(d);
+  expect_consistent(d, r, 1.25);
+  ASSERT_FALSE(r.within_bound);
+  const Vec3d p = d.positions[d.triangles[r.offenders[0]][0]];
+  EXPECT_LT(std::hypot(p.x, p.y), 0.6);
+}
+
+TEST(Parameterize, SliversDoNotSinkTheirChart) {
+  for (const double aspect : {1e2, 1e4, 1e6, 1e8, 1e10, 1e12}) {
+    // Columns alternate between wide ones and slivers of the given aspect, on a cylinder.
+    const std::uint32_t n = 20;
+    const Disc d = testing::make_grid(n, n, [&](double u, double v) {
+      const auto i = static_cast<std::uint32_t>(std::lround(u * n));
+      const double a = 2.0 * (i / 2) / (n / 2) + (i % 2) * 0.1 / aspect;
+      return Vec3d{std::cos(a), std::sin(a), 2 * v};
+    });
+    const ParamResult r = run(d, {.method = ParamMethod::isometric});
+    expect_consistent(d, r, 1.25);
+    EXPECT_TRUE(r.injective) << aspect;
+    EXPECT_LT(r.distortion.stretch_999, 1.01) << aspect;
+  }
+}
+
+TEST(Parameterize, ZeroAreaTrianglesGetAPlace) {
+  // A row of the grid collapsed onto its neighbour, a doubled vertex, and a vertex on an edge.
+  Disc d = testing::make_grid(10, 10, [](double u, double v) {
+    return Vec3d{u, std::abs(v - 0.5) < 1e-9 ? 0.4 : v, 0.2 * std::sin(3 * u)};
+  });
+  d.positions[3] = d.positions[4];
+  const ParamResult r = run(d, {.method = ParamMethod::isometric});
+  expect_consistent(d, r, 1.25);
+  EXPECT_TRUE(r.injective);
+  EXPECT_LT(r.distortion.stretch_l2, 1.01);
+}
+
+TEST(Parameterize, NothingButPointsStillHasUvs) {
+  Disc d;
+  d.positions.assign(3, Vec3d{4, 5, 6});
+  d.triangles = {{0, 1, 2}};
+  const ParamResult r = run(d, {.min_altitude = 1e-3});
+  expect_consistent(d, r, 1.25);
+  EXPECT_TRUE(r.injective);
+}
+
+TEST(Parameterize, SingleTrianglesAreIsometric) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 200; ++i) {
+    Disc d;
+    for (int k = 0; k < 3; ++k)
+      d.positions.push_back({normal(random), normal(random), normal(random)});
+    d.triangles = {{0, 1, 2}};
+    const ParamResult r = run(d, {.max_stretch = 1.001});
+    expect_consistent(d, r, 1.001);
+    EXPECT_TRUE(r.injective && r.within_bound);
+    EXPECT_LT(r.distortion.stretch_linf, 1 + 1e-6);
+  }
+}
+
+TEST(Parameterize, ScaleChangesNothing) {
+  Disc d = testing::make_cap(1.2, 16);
+  testing::add_radial_noise(d, 0.05 * testing::mean_edge(d), 3);
+  const ParamResult plain = run(d);
+  for (const double scale : {1e-12, 1e-6, 0.7, 1e6, 1e12}) {
+    Disc scaled = d;
+    testing::transform(scaled, scale);
+    const ParamResult r = run(scaled);
+    expect_consistent(scaled, r, 1.25);
+    EXPECT_NEAR(r.distortion.stretch_l2, plain.distortion.stretch_l2, 1e-6);
+    EXPECT_NEAR(r.distortion.stretch_999, plain.distortion.stretch_999, 1e-4);
+    EXPECT_EQ(r.injective, plain.injective);
+  }
+}
+
+TEST(Parameterize, FanOfAHundredThousandNeedles) {
+  Disc d;
+  const std::uint32_t n = 100000;
+  d.positions.push_back({0, 0, 0.5});
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double a = 2 * std::numbers::pi * i / n;
+    d.positions.push_back({std::cos(a), std::sin(a), 0});
+    d.triangles.push_back({0, 1 + i, 1 + (i + 1) % n});
+  }
+  const ParamResult r = run(d, {.max_stretch = 1.3, .method = ParamMethod::isometric});
+  expect_consistent(d, r, 1.3);
+  EXPECT_TRUE(r.injective);
+}
+
+TEST(Parameterize, MinimumAltitudeSurvivesRounding) {
+  Disc d = testing::make_grid(30, 30, [](double u, double v) {
+    return Vec3d{u, std::abs(v - 0.5) < 1e-9 ? 0.466666667 : v, 0};
+  });
+  const double altitude = 1e-5;
+  const ParamResult r = run(d, {.method = ParamMethod::isometric, .min_altitude = altitude});
+  const Injectivity check = check_injectivity(d.view(), r.uvs, {.clearance = 0.3 * altitude});
+  EXPECT_TRUE(check.injective);
+  EXPECT_TRUE(check.thin.empty()) << check.thin.size();
+}
+
+TEST(Parameterize, SameBytesEveryTime) {
+  Disc d = testing::make_cap(1.3, 40);
+  testing::add_radial_noise(d, 0.3 * testing::mean_edge(d), 9);
+  EXPECT_EQ(run(d).uvs, run(d).uvs);
+}
+
+}  // namespace
+}  // namespace atlas
