@@ -30,7 +30,10 @@ class BorderGraph {
   std::uint32_t edge_of(std::uint32_t s) const { return side_edge_[s]; }
   std::uint32_t low(std::uint32_t edge) const { return sides_[edge_begin_[edge]].low; }
   std::uint32_t high(std::uint32_t edge) const { return sides_[edge_begin_[edge]].high; }
-  bool regular(std::uint32_t point) const { return regular_[point]; }
+  // Whether a chain runs on beyond `point`: all sides of the edge continue into the same next edge.
+  bool through(std::uint32_t edge, std::uint32_t point) const {
+    return through_[std::size_t{2} * edge + (high(edge) == point)];
+  }
 
   // The local vertex of a side at one of its edge's points.
   std::uint32_t vertex_at(std::uint32_t s, std::uint32_t point) const {
@@ -78,7 +81,7 @@ class BorderGraph {
   std::vector<Side> sides_;             // by edge
   std::vector<std::uint32_t> by_half_;  // sides by chart and half-edge
   std::vector<std::uint32_t> edge_begin_, side_edge_;
-  std::vector<bool> regular_;  // 1 a point
+  std::vector<bool> through_;  // 2 an edge: at low, at high
 };
 
 // Points: distinct positions among the border vertices (0 and -0 are the same).
@@ -140,21 +143,21 @@ void BorderGraph::group() {
   });
 }
 
-// A point is regular when two edges meet there, over the same number of sides, and every fan leads
-// from one of them to the other.
+// Where other borders pass through the same point, open borders still run on (meshes that meet with
+// different steps share a point now and then, and an open border hardly moves), but seams end.
 void BorderGraph::connect() {
   std::vector<std::uint8_t> degree(point_count_, 0);
   for (std::uint32_t e = 0; e < edge_count(); ++e) {
     for (const std::uint32_t p : {low(e), high(e)}) degree[p] = std::min(degree[p] + 1, 3);
   }
-  regular_.resize(point_count_);
-  for (std::uint32_t p = 0; p < point_count_; ++p) regular_[p] = degree[p] == 2;
+  through_.assign(std::size_t{2} * edge_count(), true);
   for (std::uint32_t s = 0; s < sides_.size(); ++s) {
+    const std::uint32_t edge = side_edge_[s], count = side_count(edge);
     for (const std::uint32_t p : {sides_[s].low, sides_[s].high}) {
-      if (!regular_[p]) continue;
-      const std::uint32_t other = side_edge_[across(s, p)];
-      if (other == side_edge_[s] || side_count(other) != side_count(side_edge_[s])) {
-        regular_[p] = false;
+      const std::uint32_t next = side_edge_[across(s, p)];
+      const bool same = next == side_edge_[across(side_begin(edge), p)];
+      if (!same || next == edge || side_count(next) != count || (degree[p] > 2 && count > 1)) {
+        through_[std::size_t{2} * edge + (sides_[s].high == p)] = false;
       }
     }
   }
@@ -169,10 +172,12 @@ class ChainFinder {
   void run() {
     for (std::uint32_t e = 0; e < graph_.edge_count(); ++e) {
       if (visited_[e]) continue;
-      if (!graph_.regular(graph_.low(e)))
-        walk(e, graph_.low(e));
-      else if (!graph_.regular(graph_.high(e)))
-        walk(e, graph_.high(e));
+      const std::uint32_t low = graph_.low(e), high = graph_.high(e);
+      if (!graph_.through(e, low)) {
+        walk(e, low);
+      } else if (!graph_.through(e, high)) {
+        walk(e, high);
+      }
     }
     for (std::uint32_t e = 0; e < graph_.edge_count(); ++e) {
       if (!visited_[e]) walk(e, graph_.low(e));
@@ -192,18 +197,22 @@ class ChainFinder {
     for (std::uint32_t k = 0; k < graph_.side_count(edge); ++k) {
       sides_.push_back(graph_.side_begin(edge) + k);
     }
+    const std::uint32_t first = edge;
     std::uint32_t point = start, slots = 1;
+    bool closed = false;
     append(point);
     for (;;) {
       visited_[edge] = true;
       point = other_end(edge, point);
       append(point);
       ++slots;
-      if (!graph_.regular(point) || point == start) break;
+      if (!graph_.through(edge, point)) break;
       for (std::uint32_t& s : sides_) s = graph_.across(s, point);
       edge = graph_.edge_of(sides_[0]);
+      closed = edge == first;
+      if (closed) break;
     }
-    finish(slots, graph_.regular(start) && point == start);
+    finish(slots, closed);
   }
   void finish(std::uint32_t slots, bool closed) {
     const std::uint32_t k = static_cast<std::uint32_t>(sides_.size());

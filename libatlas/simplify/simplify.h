@@ -21,7 +21,7 @@ struct SimplifyOptions {
   // there without sharing a vertex, and a gap would show.
   double max_border_slip_texels = 0.02;
   // Largest angle between a coarse triangle's normal and that of any fine triangle it stands for,
-  // degrees, below 90: nothing flips.
+  // degrees, below 90: nothing flips. Strips narrower than a tenth of max_slip_texels do not count.
   double max_turn_degrees = 60;
 };
 

@@ -8,6 +8,11 @@
 namespace atlas::simplify {
 namespace {
 
+// Strips narrower than this share of the slip's bound do not count for the turn: along a crease uvs
+// are straight up to the solver's tolerance only, so that a triangle on one side covers a sliver of
+// the other.
+constexpr double kStrip = 0.1;
+
 // A point of the clipped piece: barycentric coordinates in the coarse triangle (two of them; the
 // third is the rest) and the gap between the surfaces there.
 struct Sample {
@@ -47,6 +52,15 @@ struct Piece {
       twice += p.b[0] * q.b[1] - p.b[1] * q.b[0];
     }
     return std::abs(twice);
+  }
+  // Area over longest side in space, on a coarse triangle with these edges.
+  double width(const glm::dvec3& e1, const glm::dvec3& e2) const {
+    double longest = 0;
+    for (int i = 0; i < count; ++i) {
+      const Sample &p = points[i], &q = points[(i + 1) % count];
+      longest = std::max(longest, glm::length((q.b[1] - p.b[1]) * e1 + (q.b[2] - p.b[2]) * e2));
+    }
+    return area() * glm::length(glm::cross(e1, e2)) / (2 * longest);
   }
 };
 
@@ -107,7 +121,10 @@ bool SlipMeasure::visit(std::uint32_t triangle, const Coarse& coarse, const Slip
   const double length = glm::length(normal);
   if (length > 0) {
     const double c = glm::dot(normal, coarse.normal) / length;
-    found.turn = std::max(found.turn, std::acos(std::clamp(c, -1.0, 1.0)));
+    const double turn = std::acos(std::clamp(c, -1.0, 1.0));
+    if (turn > found.turn && piece.width(coarse.e1, coarse.e2) > kStrip * limits.slip) {
+      found.turn = turn;
+    }
   }
   if (found.slip > limits.slip || found.turn > limits.turn) return false;
   for (int k = 0; k < 3; ++k) {
