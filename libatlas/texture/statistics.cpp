@@ -6,12 +6,16 @@
 
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/texture/tone.h"
+#include "libatlas/texture/visibility.h"
 
 namespace atlas {
 namespace {
 
 // Enough for a 99th percentile of about one part in a hundred of its rank.
 constexpr std::size_t kSamples = 1 << 18;
+
+// Fewer sightings than this say nothing about a 99th percentile.
+constexpr std::size_t kSeenNeeded = 4096;
 
 double triangle_area(const Scene& s, std::size_t t) {
   const glm::dvec3 a = to_dvec(s.positions[s.indices[3 * t]]);
@@ -32,13 +36,23 @@ void barycentric(std::uint64_t i, float b[3]) {
   b[2] = static_cast<float>(v);
 }
 
+Vec3f point(const Scene& s, std::size_t t, const float b[3]) {
+  Vec3f p;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3f q = s.positions[s.indices[3 * t + k]];
+    p = {p.x + b[k] * q.x, p.y + b[k] * q.y, p.z + b[k] * q.z};
+  }
+  return p;
+}
+
 struct Collector {
   LuminanceStatistics out;
-  std::vector<float> peak, luma;
+  std::vector<SurfaceSample> samples;  // of finite luminance
+  std::vector<float> peak, luma;       // of the lit ones
   double sum = 0, rgb[3] = {0, 0, 0}, log_sum = 0;
   std::size_t unlit = 0;
 
-  void add(const Vec3f& c) {
+  void add(const Vec3f& position, const Vec3f& c) {
     if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z)) {
       ++out.not_finite;
       return;
@@ -46,6 +60,7 @@ struct Collector {
     out.negative += c.x < 0 || c.y < 0 || c.z < 0;
     const float v[3] = {std::max(c.x, 0.0f), std::max(c.y, 0.0f), std::max(c.z, 0.0f)};
     const float top = std::max({v[0], v[1], v[2]});
+    samples.push_back({position, top});
     if (top <= 0) {
       ++unlit;
       return;
@@ -63,13 +78,17 @@ struct Collector {
     out.lit_area = area_per_sample * static_cast<double>(n);
     out.unlit_area = area_per_sample * static_cast<double>(unlit);
     if (n == 0) return;
-    const auto nth = [n](std::vector<float>& v, double q) {
-      const auto at = std::min(n - 1, static_cast<std::size_t>(q * static_cast<double>(n)));
+    const auto nth = [](std::vector<float>& v, double q) {
+      const auto rank = static_cast<std::size_t>(q * static_cast<double>(v.size()));
+      const std::size_t at = std::min(v.size() - 1, rank);
       std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(at), v.end());
       return static_cast<double>(v[at]);
     };
     out.maximum = *std::max_element(peak.begin(), peak.end());
-    out.percentile99 = nth(peak, 0.99);
+    std::vector<float> seen =
+        seen_values(samples, area_per_sample * static_cast<double>(samples.size()));
+    out.seen = seen.size() >= kSeenNeeded;
+    out.percentile99 = nth(out.seen ? seen : peak, 0.99);
     out.minimum_log = std::log(nth(luma, 0.01));
     out.maximum_log = std::log(nth(luma, 0.99));
     const auto count = static_cast<double>(n);
@@ -107,7 +126,7 @@ Result<LuminanceStatistics> measure_luminance(const LuminanceSampler& sampler,
     for (; i < kSamples && (static_cast<double>(i) + 0.5) * share < area; ++i) {
       float b[3];
       barycentric(i, b);
-      collector.add(LuminanceSampler::sample(triangle, b[0], b[1], b[2]));
+      collector.add(point(scene, t, b), LuminanceSampler::sample(triangle, b[0], b[1], b[2]));
     }
   }
   collector.finish(share);

@@ -16,11 +16,14 @@ namespace atlas {
 struct LuminanceStatistics {
   double lit_area = 0;  // surface whose luminance is not exactly zero
   double unlit_area = 0;
-  double percentile99 = 0;  // of max(R, G, B) over the lit surface
-  double maximum = 0;       // of max(R, G, B) over the samples
-  double log_average = 0;   // exp(mean ln Y) over the lit surface, Y = luma (Rec. 709 weights)
-  double mean = 0;          // of Y over the lit surface
-  Vec3f mean_rgb;           // over the lit surface
+  // Of max(R, G, B) over what is visible and lit: rays from the empty space inside the scene's box
+  // (see docs/texture.md); if the scene encloses no space, over the lit surface by area.
+  double percentile99 = 0;
+  bool seen = false;       // the former
+  double maximum = 0;      // of max(R, G, B) over the samples
+  double log_average = 0;  // exp(mean ln Y) over the lit surface, Y = luma (Rec. 709 weights)
+  double mean = 0;         // of Y over the lit surface
+  Vec3f mean_rgb;          // over the lit surface
   double minimum_log = 0, maximum_log = 0;     // ln Y at the 1st and 99th percentile
   std::uint64_t not_finite = 0, negative = 0;  // samples left out / counted as zero
 };
@@ -43,8 +46,8 @@ std::string_view tone_operator_name(ToneOperator op);
 
 struct ToneOptions {
   ToneOperator op = ToneOperator::linear;
-  // Scene luminance that becomes display white; 0: automatic. linear: the 99th percentile;
-  // the others: the largest luminance.
+  // Scene luminance that becomes display white; 0: automatic. linear: the 99th percentile of what
+  // is visible; the others: the largest luminance.
   double white = 0;                 // >= 0
   double exposure_stops = 0;        // brightens (+) or darkens (-) by powers of two
   double key = 0.18;                // reinhard: middle grey

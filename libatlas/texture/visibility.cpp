@@ -1,0 +1,155 @@
+#include "libatlas/texture/visibility.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+namespace atlas {
+namespace {
+
+constexpr int kPoints = 12288, kRays = 16, kNeeded = 10;
+// Samples lie about one spacing apart; a wall is closed to rays when its voxels are larger than
+// that.
+constexpr double kVoxelSpacings = 2.5;
+// Half-angle of 50 degrees: about what a viewer's camera shows.
+constexpr double kViewCosine = 0.64;
+constexpr double kMaxVoxels = 1 << 24;
+
+double uniform(std::mt19937_64& random) {
+  return static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+// A direction within the cone about `axis` whose half-angle has the given cosine, uniform by
+// solid angle; -1: any direction.
+void direction_in_cone(std::mt19937_64& random, const double axis[3], double cosine, double d[3]) {
+  const double z = 1 - (1 - cosine) * uniform(random), phi = 2 * std::numbers::pi * uniform(random);
+  const double s = std::sqrt(std::max(0.0, 1 - z * z)), x = s * std::cos(phi),
+               y = s * std::sin(phi);
+  // An orthonormal frame about the axis without a branch on which component is small (Duff et al.
+  // 2017).
+  const double sign = axis[2] < 0 ? -1 : 1, a = -1 / (sign + axis[2]), b = axis[0] * axis[1] * a;
+  const double u[3] = {1 + sign * axis[0] * axis[0] * a, sign * b, -sign * axis[0]};
+  const double v[3] = {b, sign + axis[1] * axis[1] * a, -axis[1]};
+  for (int k = 0; k < 3; ++k) d[k] = x * u[k] + y * v[k] + z * axis[k];
+}
+
+class VoxelGrid {
+ public:
+  VoxelGrid(std::span<const SurfaceSample> samples, double area) {
+    double high[3];
+    for (int k = 0; k < 3; ++k) low_[k] = std::numeric_limits<double>::max(), high[k] = -low_[k];
+    for (const SurfaceSample& s : samples) {
+      const double p[3] = {s.position.x, s.position.y, s.position.z};
+      for (int k = 0; k < 3; ++k) {
+        low_[k] = std::min(low_[k], p[k]);
+        high[k] = std::max(high[k], p[k]);
+      }
+    }
+    voxel_ = kVoxelSpacings * std::sqrt(area / static_cast<double>(samples.size()));
+    const auto cells = [&] {
+      double n = 1;
+      for (int k = 0; k < 3; ++k) n *= std::floor((high[k] - low_[k]) / voxel_) + 1;
+      return n;
+    };
+    while (cells() > kMaxVoxels) voxel_ *= 1.25;
+    for (int k = 0; k < 3; ++k)
+      size_[k] = static_cast<int>(std::floor((high[k] - low_[k]) / voxel_)) + 1;
+    sort(samples);
+  }
+
+  double size(int k) const { return size_[k]; }
+
+  // The sample met from `from` (in voxels) along `direction`, and how far; or nothing.
+  const float* cast(const double from[3], const double direction[3], std::uint64_t pick,
+                    double& distance) const {
+    distance = 0;
+    int cell[3], step[3];
+    double next[3], delta[3];
+    for (int k = 0; k < 3; ++k) {
+      cell[k] = static_cast<int>(from[k]);
+      step[k] = direction[k] < 0 ? -1 : 1;
+      delta[k] = direction[k] != 0 ? 1 / std::fabs(direction[k]) : 1e30;
+      next[k] = delta[k] * (step[k] > 0 ? cell[k] + 1 - from[k] : from[k] - cell[k]);
+    }
+    for (;;) {
+      const std::size_t at = index(cell);
+      const std::uint32_t n = first_[at + 1] - first_[at];
+      if (n > 0) return &values_[first_[at] + pick % n];
+      int k = next[0] < next[1] ? 0 : 1;
+      if (next[2] < next[k]) k = 2;
+      distance = next[k];
+      cell[k] += step[k];
+      if (cell[k] < 0 || cell[k] >= size_[k]) return nullptr;
+      next[k] += delta[k];
+    }
+  }
+
+  bool empty(const double at[3]) const {
+    const int cell[3] = {static_cast<int>(at[0]), static_cast<int>(at[1]), static_cast<int>(at[2])};
+    const std::size_t i = index(cell);
+    return first_[i] == first_[i + 1];
+  }
+
+ private:
+  std::size_t index(const int cell[3]) const {
+    return (std::size_t(cell[2]) * size_[1] + cell[1]) * size_[0] + cell[0];
+  }
+
+  void sort(std::span<const SurfaceSample> samples) {
+    std::vector<std::size_t> where(samples.size());
+    first_.assign(std::size_t(size_[0]) * size_[1] * size_[2] + 1, 0);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const double p[3] = {samples[i].position.x, samples[i].position.y, samples[i].position.z};
+      int cell[3];
+      for (int k = 0; k < 3; ++k)
+        cell[k] = std::clamp(static_cast<int>((p[k] - low_[k]) / voxel_), 0, size_[k] - 1);
+      where[i] = index(cell);
+      ++first_[where[i] + 1];
+    }
+    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+    values_.resize(samples.size());
+    std::vector<std::uint32_t> fill(first_.begin(), first_.end() - 1);
+    for (std::size_t i = 0; i < samples.size(); ++i) values_[fill[where[i]]++] = samples[i].value;
+  }
+
+  double low_[3], voxel_ = 1;
+  int size_[3];
+  std::vector<std::uint32_t> first_;  // of each voxel's samples; one more at the end
+  std::vector<float> values_;
+};
+
+}  // namespace
+
+std::vector<float> seen_values(std::span<const SurfaceSample> samples, double area) {
+  std::vector<float> seen;
+  if (samples.empty() || !(area > 0)) return seen;
+  const VoxelGrid grid(samples, area);
+  std::mt19937_64 random(1);
+  for (int i = 0; i < kPoints; ++i) {
+    double from[3];
+    for (int k = 0; k < 3; ++k) from[k] = uniform(random) * grid.size(k);
+    if (!grid.empty(from)) continue;
+    double far = -1, gaze[3] = {0, 0, 1};
+    int met = 0;
+    for (int r = 0; r < kRays; ++r) {
+      constexpr double kUp[3] = {0, 0, 1};
+      double direction[3], distance;
+      direction_in_cone(random, kUp, -1, direction);
+      if (!grid.cast(from, direction, 0, distance)) continue;
+      ++met;
+      if (distance > far) far = distance, std::copy_n(direction, 3, gaze);
+    }
+    if (met < kNeeded) continue;
+    for (int r = 0; r < kRays; ++r) {
+      double direction[3], distance;
+      direction_in_cone(random, gaze, kViewCosine, direction);
+      const float* hit = grid.cast(from, direction, random(), distance);
+      if (hit && *hit > 0) seen.push_back(*hit);
+    }
+  }
+  return seen;
+}
+
+}  // namespace atlas
