@@ -1,0 +1,104 @@
+# The installed package: one library out of all folders, the public headers, a CMake package and a
+# pkg-config file. The ATLAS BLAS owns the name libatlas.so on many systems, so the files are called
+# libatlasgeo; the package is libatlas.
+
+# How each third-party target that a folder names is linked by those who use the installed library.
+# Left out: what is headers only, and so ends at our own .cpp files.
+set(ATLAS_LINK_AS_TARGET TBB::tbb fmt::fmt ZLIB::ZLIB PkgConfig::OIIO
+                         glfw PkgConfig::EPOXY PkgConfig::EGL PkgConfig::IMGUI)
+set(ATLAS_HEADERS_ONLY glm::glm Eigen3::Eigen nlohmann_json::nlohmann_json atlas_options)
+
+# atlas_gather(TARGET OUTPUT_NAME module...): a library of all the modules' objects.
+function(atlas_gather target output)
+  set(objects "")
+  set(libraries "")
+  foreach(module IN LISTS ARGN)
+    list(APPEND objects $<TARGET_OBJECTS:atlas_${module}>)
+    get_target_property(linked atlas_${module} LINK_LIBRARIES)
+    foreach(library IN LISTS linked)
+      string(REGEX REPLACE "^\\$<LINK_ONLY:(.*)>$" "\\1" library "${library}")
+      if(library IN_LIST ATLAS_LINK_AS_TARGET)
+        list(APPEND libraries ${library})
+      elseif(library STREQUAL CGAL::CGAL)
+        list(APPEND libraries mpfr gmp)
+      elseif(library STREQUAL atlas_openmesh)
+        list(APPEND libraries OpenMeshCore)
+      elseif(NOT library IN_LIST ATLAS_HEADERS_ONLY AND NOT library MATCHES "^atlas_")
+        message(FATAL_ERROR "cmake/AtlasInstall.cmake does not know how an installed libatlas links "
+                            "${library} (folder ${module}): add it there")
+      endif()
+    endforeach()
+  endforeach()
+  list(REMOVE_DUPLICATES libraries)
+  add_library(${target} ${objects})
+  target_link_libraries(${target} PRIVATE ${libraries} Threads::Threads)
+  target_include_directories(${target} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                                                 $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES OUTPUT_NAME ${output} LINKER_LANGUAGE CXX
+                        VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  install(TARGETS ${target} EXPORT libatlasTargets COMPONENT development
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+endfunction()
+
+# A header is public unless its first line starts with "// Internal"; tests/layering holds the public
+# ones to including nothing else.
+function(atlas_install_headers module)
+  file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${module}/*.h)
+  foreach(header IN LISTS headers)
+    file(STRINGS ${header} first LIMIT_COUNT 1)
+    if(NOT first MATCHES "^// Internal")
+      install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/libatlas/${module}
+              COMPONENT development)
+    endif()
+  endforeach()
+endfunction()
+
+function(atlas_install_package)
+  get_property(modules GLOBAL PROPERTY ATLAS_MODULES)
+  set(view ${modules})
+  list(FILTER view INCLUDE REGEX "^view$")
+  list(REMOVE_ITEM modules view)
+  atlas_gather(libatlas atlasgeo ${modules})
+  set_target_properties(libatlas PROPERTIES EXPORT_NAME libatlas)
+  add_library(libatlas::libatlas ALIAS libatlas)
+  if(view)
+    atlas_gather(libatlas_view atlasgeo_view ${view})
+    target_link_libraries(libatlas_view PUBLIC libatlas)
+    set_target_properties(libatlas_view PROPERTIES EXPORT_NAME view)
+  endif()
+  foreach(module IN LISTS modules view)
+    atlas_install_headers(${module})
+  endforeach()
+
+  include(CMakePackageConfigHelpers)
+  set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/libatlas)
+  set(LIBATLAS_HAS_VIEW OFF)
+  if(view)
+    set(LIBATLAS_HAS_VIEW ON)
+  endif()
+  install(EXPORT libatlasTargets NAMESPACE libatlas:: DESTINATION ${package_dir} COMPONENT development)
+  configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/libatlasConfig.cmake.in
+                                ${PROJECT_BINARY_DIR}/libatlasConfig.cmake
+                                INSTALL_DESTINATION ${package_dir})
+  write_basic_package_version_file(${PROJECT_BINARY_DIR}/libatlasConfigVersion.cmake
+                                   COMPATIBILITY SameMinorVersion)
+  install(FILES ${PROJECT_BINARY_DIR}/libatlasConfig.cmake
+                ${PROJECT_BINARY_DIR}/libatlasConfigVersion.cmake
+          DESTINATION ${package_dir} COMPONENT development)
+
+  # Whoever links a static library links what it needs, too.
+  set(needed_packages "tbb fmt zlib OpenImageIO mpfr gmp")
+  set(needed_libraries "-lOpenMeshCore -lpthread")
+  if(BUILD_SHARED_LIBS)
+    set(PC_PRIVATE "Requires.private: ${needed_packages}\nLibs.private: ${needed_libraries}")
+    set(PC_PUBLIC "")
+  else()
+    set(PC_PRIVATE "Requires: ${needed_packages}")
+    set(PC_PUBLIC " ${needed_libraries}")
+  endif()
+  file(RELATIVE_PATH PC_UP /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/libatlas.pc.in ${PROJECT_BINARY_DIR}/libatlas.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/libatlas.pc
+          DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+endfunction()

@@ -1,0 +1,139 @@
+// The order of the house: a folder of libatlas/ includes only those above it, public headers show
+// nothing internal and no third party's vectors, and each stands on its own.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kRoot = ATLAS_SOURCE_DIR;
+
+std::string read(const fs::path& path) {
+  std::ifstream file(path);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+// The folders in the order in which libatlas/CMakeLists.txt adds them.
+std::vector<std::string> folder_order() {
+  const std::string text = read(kRoot / "libatlas/CMakeLists.txt");
+  std::smatch match;
+  if (!std::regex_search(text, match, std::regex(R"(foreach\(module ([a-z_ \n]+)\))"))) return {};
+  std::istringstream names(match[1]);
+  std::vector<std::string> order;
+  for (std::string name; names >> name;) order.push_back(name);
+  return order;
+}
+
+struct Include {
+  std::string target;  // between the quotes or brackets
+  int line;
+};
+
+std::vector<Include> includes_of(const fs::path& path) {
+  std::ifstream file(path);
+  std::vector<Include> result;
+  const std::regex pattern(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"].*)");
+  std::string text;
+  for (int line = 1; std::getline(file, text); ++line) {
+    std::smatch match;
+    if (std::regex_match(text, match, pattern)) result.push_back({match[1], line});
+  }
+  return result;
+}
+
+std::vector<fs::path> sources(const std::string& extension) {
+  std::vector<fs::path> result;
+  for (const auto& entry : fs::recursive_directory_iterator(kRoot / "libatlas"))
+    if (entry.is_regular_file() &&
+        (extension.empty() ? entry.path().extension() == ".h" || entry.path().extension() == ".cpp"
+                           : entry.path().extension() == extension))
+      result.push_back(entry.path());
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+bool internal(const fs::path& header) {
+  std::ifstream file(header);
+  std::string first;
+  std::getline(file, first);
+  return first.rfind("// Internal", 0) == 0;
+}
+
+std::string place(const fs::path& path, int line) {
+  return fs::relative(path, kRoot).string() + ":" + std::to_string(line);
+}
+
+TEST(Layering, FoldersIncludeOnlyThoseAboveThem) {
+  const auto order = folder_order();
+  ASSERT_GE(order.size(), 10u);
+  const auto rank = [&](const std::string& folder) {
+    return std::find(order.begin(), order.end(), folder) - order.begin();
+  };
+  int seen = 0;
+  for (const fs::path& path : sources("")) {
+    const std::string folder = fs::relative(path, kRoot / "libatlas").begin()->string();
+    ASSERT_LT(rank(folder), std::ptrdiff_t(order.size())) << folder << " is not in the list";
+    for (const Include& include : includes_of(path)) {
+      if (include.target.rfind("libatlas/", 0) != 0) continue;
+      const std::string target = (++fs::path(include.target).begin())->string();
+      ++seen;
+      EXPECT_LE(rank(target), rank(folder))
+          << place(path, include.line) << ": " << folder << "/ may not include " << target << "/";
+      EXPECT_TRUE(fs::exists(kRoot / include.target))
+          << place(path, include.line) << ": no such header";
+    }
+  }
+  EXPECT_GT(seen, 100);
+}
+
+TEST(Layering, PublicHeadersShowNoThirdParty) {
+  const std::regex heavy(
+      R"((glm|Eigen|CGAL|OpenMesh|OpenImageIO|OIIO|tbb|oneapi|nlohmann|fmt|embree[34]|epoxy|GLFW|imgui|boost|CLI)[/.].*|imgui\.h|tiny_gltf\.h|zlib\.h)");
+  int seen = 0;
+  for (const fs::path& path : sources(".h")) {
+    if (internal(path)) continue;
+    ++seen;
+    for (const Include& include : includes_of(path)) {
+      EXPECT_FALSE(std::regex_match(include.target, heavy))
+          << place(path, include.line) << ": a public header includes " << include.target
+          << " (make the header internal, or hide it in the .cpp)";
+    }
+  }
+  EXPECT_GT(seen, 20);
+}
+
+TEST(Layering, PublicHeadersIncludeOnlyPublicOnes) {
+  for (const fs::path& path : sources(".h")) {
+    if (internal(path)) continue;
+    for (const Include& include : includes_of(path)) {
+      if (include.target.rfind("libatlas/", 0) != 0) continue;
+      EXPECT_FALSE(internal(kRoot / include.target))
+          << place(path, include.line) << ": " << include.target << " is not installed";
+    }
+  }
+}
+
+TEST(Layering, HeadersAreGuardedOnce) {
+  for (const fs::path& path : sources(".h"))
+    EXPECT_NE(read(path).find("#pragma once"), std::string::npos) << path;
+}
+
+// Nothing below libatlas/ knows of the programs, the tests or the examples.
+TEST(Layering, TheLibraryKnowsNobodyAboveIt) {
+  for (const fs::path& path : sources(""))
+    for (const Include& include : includes_of(path))
+      for (const char* folder : {"apps/", "tests/", "examples/", "benchmarks/"})
+        EXPECT_NE(include.target.rfind(folder, 0), 0u) << place(path, include.line);
+}
+
+}  // namespace

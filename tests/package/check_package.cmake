@@ -1,0 +1,49 @@
+# Run by ctest with SOURCE, BUILD, CXX and FLAGS set.
+set(prefix ${BUILD}/tests/package/prefix)
+file(REMOVE_RECURSE ${prefix} ${BUILD}/tests/package/minimal)
+
+function(run)
+  execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    list(JOIN ARGV " " command)
+    message(FATAL_ERROR "${command}\nfailed (${result}):\n${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} --component development)
+
+# Nothing may be called libatlas.so or libatlas.a, which belong to the ATLAS BLAS; and what is internal
+# stays at home.
+file(GLOB_RECURSE installed RELATIVE ${prefix} ${prefix}/*)
+foreach(file IN LISTS installed)
+  if(file MATCHES "/libatlas\\.(so|a)")
+    message(FATAL_ERROR "${file} collides with the ATLAS BLAS")
+  endif()
+  if(file MATCHES "_bridge\\.h$")
+    message(FATAL_ERROR "${file} is internal but installed")
+  endif()
+endforeach()
+
+# By find_package.
+run(${CMAKE_COMMAND} -S ${SOURCE}/examples/minimal -B ${BUILD}/tests/package/minimal
+    -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS})
+run(${CMAKE_COMMAND} --build ${BUILD}/tests/package/minimal)
+run(${BUILD}/tests/package/minimal/unwrap)
+if(NOT output MATCHES "2304 triangles, [1-9][0-9]* charts, stretch 1\\.[0-9]+")
+  message(FATAL_ERROR "unwrap printed: ${output}")
+endif()
+message(STATUS "find_package: ${output}")
+
+# By pkg-config.
+file(GLOB_RECURSE pc ${prefix}/*/libatlas.pc)
+get_filename_component(pc_dir ${pc} DIRECTORY)
+run(${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${pc_dir} pkg-config --cflags --libs libatlas)
+separate_arguments(link UNIX_COMMAND "${output}")
+separate_arguments(flags UNIX_COMMAND "${FLAGS}")
+run(${CXX} -std=c++20 ${flags} ${SOURCE}/examples/minimal/unwrap.cpp
+    -o ${BUILD}/tests/package/unwrap_by_pkg_config ${link})
+run(${BUILD}/tests/package/unwrap_by_pkg_config)
+if(NOT output MATCHES "2304 triangles")
+  message(FATAL_ERROR "unwrap by pkg-config printed: ${output}")
+endif()
