@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "libatlas/charts/cone.h"
 #include "libatlas/charts/topology.h"
 #include "libatlas/core/context.h"
 
@@ -27,5 +29,21 @@ struct Cells {
 // 2004 for the alternation) on a graph of grains of some ten triangles, then one pass over the
 // triangles. O(n log n) with a small heap.
 Cells grow_cells(const Topology& topology, const CellOptions& options, const Context& context);
+
+// Divides cells until the normals of each lie within half-angle `cone` (radians) of one direction.
+// Connected cells stay connected.
+void split_by_cone(const Topology& topology, double cone, Cells& cells);
+
+// Normals that stand for those of a cell: a cone of less than a right angle that holds them holds
+// all (they span the cell's convex hull on the sphere, the border of its image in the tangent
+// plane).
+struct ExtremeNormals {
+  std::vector<std::uint32_t> first;  // 1 a cell and the end
+  std::vector<Vec3f> normals;
+  std::span<const Vec3f> of(std::uint32_t k) const {
+    return {normals.data() + first[k], first[k + 1] - first[k]};
+  }
+};
+ExtremeNormals extreme_normals(const Topology& topology, const Cells& cells);
 
 }  // namespace atlas

@@ -12,6 +12,12 @@
 namespace atlas {
 namespace {
 
+// 1 - |mean normal| of what counts as lying in one plane: normals within a thousandth of a radian,
+// the noise of float coordinates.
+constexpr double kFlatSpread = 1e-6;
+constexpr double kConeWeight = 0.25;
+constexpr int kConeSteps = 24;  // towards the axis of the smallest cone (Badoiu and Clarkson 2003)
+
 using Moments = std::array<double, 6>;
 
 // Eigenvalues of a symmetric 3x3 matrix, smallest first (Smith 1961).
@@ -36,6 +42,7 @@ struct CoarseChart {
   Moments moments{};
   glm::dvec3 normal_sum{0};
   double area = 0, perimeter = 0;
+  bool flat = false;  // all cells in one plane
   std::uint32_t version = 0;
 };
 
@@ -90,6 +97,8 @@ class Merger {
     chart.normal_sum = to_glm(cell.normal_sum);
     chart.area = cell.area;
     chart.version = 1;
+    chart.flat = 1 - glm::length(chart.normal_sum) / chart.area < kFlatSpread;
+    if (options_.cone > 0) result_.chart_axis[k] = from_glm(glm::vec3(to_glm(cell.normal)));
     result_.chart_of_cell[k] = k;
     const glm::dvec3 n = to_glm(cell.normal);
     const glm::dvec3 u = glm::normalize(std::abs(n.x) < 0.6 ? glm::cross(n, glm::dvec3(1, 0, 0))
@@ -151,27 +160,49 @@ class Merger {
     m[3] -= mean.y * mean.y;
     m[4] -= mean.y * mean.z;
     m[5] -= mean.z * mean.z;
-    const double spread = std::max(0.0, eigenvalues(m)[0]);
+    // Within a cone limit what counts is how much of the cone is used up.
+    const double spread =
+        options_.cone > 0 ? kConeWeight * (m[0] + m[3] + m[5]) : std::max(0.0, eigenvalues(m)[0]);
     const double perimeter = p.perimeter + q.perimeter - 2 * border.length;
     const double compact = perimeter / std::sqrt(4 * M_PI * area);
     return spread + options_.compactness_weight * compact +
            options_.crease_weight * border.crease / border.length;
   }
 
-  bool within_cone(std::uint32_t a, std::uint32_t b) const {
-    if (options_.cone_degrees <= 0) return true;
-    const glm::dvec3 axis = glm::normalize(charts_[a].normal_sum + charts_[b].normal_sum);
-    const double limit = std::cos(options_.cone_degrees * M_PI / 180);
-    for (const std::uint32_t chart : {a, b}) {
-      for (const std::uint32_t k : charts_[chart].cells) {
-        if (glm::dot(axis, to_glm(mesh_.cells[k].normal)) < limit) return false;
+  // Looks for an axis that all normals lie around within the limit; keeps it in axis_.
+  bool within_cone(std::uint32_t a, std::uint32_t b) {
+    if (options_.cone <= 0) return true;
+    const double least = std::cos(options_.cone);
+    axis_ = unit(charts_[a].normal_sum + charts_[b].normal_sum);
+    for (int step = 0; step < kConeSteps; ++step) {
+      double worst = 2;
+      glm::dvec3 towards(0);
+      for (const std::uint32_t chart : {a, b}) {
+        for (const std::uint32_t k : charts_[chart].cells) {
+          for (const Vec3f& n : options_.cell_normals->of(k)) {
+            const double cosine = glm::dot(axis_, to_dvec(n));
+            if (cosine >= worst) continue;
+            worst = cosine;
+            towards = to_dvec(n);
+          }
+        }
       }
+      if (worst >= least) return true;
+      axis_ = unit(axis_ + (towards - axis_) / double(step + 2));
     }
-    return true;
+    return false;
+  }
+
+  static glm::dvec3 unit(const glm::dvec3& v) {
+    const double length = glm::length(v);
+    return length > 0 ? v / length : glm::dvec3(0, 0, 1);
   }
 
   void try_merge(std::uint32_t a, std::uint32_t b) {
-    if (!within_cone(a, b)) return;
+    if (!within_cone(a, b)) {
+      ++rejections;
+      return;
+    }
     if (charts_[a].cells.size() < charts_[b].cells.size()) std::swap(a, b);
     glue_.clear();
     for (const std::uint32_t arc : charts_[b].arcs) {
@@ -179,6 +210,13 @@ class Merger {
       if ((c0 == a && c1 == b) || (c0 == b && c1 == a)) glue_.push_back(arc);
     }
     std::sort(glue_.begin(), glue_.end());
+    if (coplanar(a, b)) {
+      trial_.join_flat(charts_[a].cells, charts_[b].cells, glue_, result_.joined);
+      trial_.commit();
+      absorb(a, b);
+      push_neighbours(a, false);
+      return;
+    }
     TrialOutcome outcome = attempt(a, b);
     if (!outcome.accepted && outcome.euler < 1 && keep_longest_run()) outcome = attempt(a, b);
     if (!outcome.accepted) {
@@ -188,6 +226,14 @@ class Merger {
     trial_.commit();
     absorb(a, b);
     push_neighbours(a, false);
+  }
+
+  // Pieces of one plane join without a trial, whatever their outline: nothing is stretched, and an
+  // oriented surface in a plane does not overlap itself.
+  bool coplanar(std::uint32_t a, std::uint32_t b) const {
+    const CoarseChart &p = charts_[a], &q = charts_[b];
+    if (!p.flat || !q.flat) return false;
+    return 1 - glm::dot(unit(p.normal_sum), unit(q.normal_sum)) < kFlatSpread;
   }
 
   TrialOutcome attempt(std::uint32_t a, std::uint32_t b) {
@@ -237,6 +283,8 @@ class Merger {
     std::erase_if(p.arcs, [&](std::uint32_t arc) { return result_.joined[arc] != 0; });
     for (const std::uint32_t arc : glue_) p.perimeter -= 2 * mesh_.arcs[arc].length;
     p.perimeter += q.perimeter;
+    p.flat = coplanar(a, b);
+    if (options_.cone > 0) result_.chart_axis[a] = from_glm(glm::vec3(axis_));
     p.area += q.area;
     p.normal_sum += q.normal_sum;
     for (int i = 0; i < 6; ++i) p.moments[i] += q.moments[i];
@@ -253,6 +301,7 @@ class Merger {
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> heap_;
   std::vector<Border> borders_;
   std::vector<std::uint32_t> glue_;
+  glm::dvec3 axis_{0};
 };
 
 }  // namespace
@@ -263,6 +312,7 @@ MergeResult merge_cells(const CoarseMesh& mesh, const std::vector<std::uint32_t>
   MergeResult result;
   result.chart_of_cell.assign(n, kNoIndex);
   result.joined.assign(mesh.arcs.size(), 0);
+  if (options.cone > 0) result.chart_axis.resize(n);
   result.uv.centre.resize(n);
   result.uv.slot.resize(mesh.slot_position.size());
   std::vector<CoarseChart> charts(n);

@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "libatlas/charts/coarse.h"
+#include "libatlas/charts/cone.h"
 #include "libatlas/charts/trial.h"
 #include "libatlas/core/context.h"
 
@@ -13,7 +15,8 @@ namespace atlas {
 
 struct MergeOptions {
   TrialLimits limits;
-  double cone_degrees = 0;  // limit on the cells' normals in a chart; 0: none
+  double cone = 0;                               // limit on a chart's normals, radians; 0: none
+  const ExtremeNormals* cell_normals = nullptr;  // needed when there is a limit
   double compactness_weight = 0.02;
   double crease_weight = 0.02;
 };
@@ -21,6 +24,7 @@ struct MergeOptions {
 struct MergeResult {
   std::vector<std::uint32_t> chart_of_cell;
   std::vector<std::uint8_t> joined;  // 1 an arc: its sides are one edge of one chart
+  std::vector<Vec3f> chart_axis;     // by chart_of_cell; only with a cone limit
   CoarseUv uv;                       // every chart's coarse flattening
   std::uint64_t trials = 0, rejections = 0;
 };

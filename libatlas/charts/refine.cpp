@@ -17,8 +17,10 @@ bool linked(const Topology& topology, const Partition& partition, std::uint32_t 
 
 class Smoother {
  public:
-  Smoother(const Topology& topology, double crease_degrees, Partition& partition, Frames& frames)
+  Smoother(const Topology& topology, double crease_degrees, const ConeLimit& cone,
+           Partition& partition, Frames& frames)
       : topology_(topology),
+        cone_(cone),
         partition_(partition),
         frames_(frames),
         crease_cosine_(std::cos(crease_degrees * M_PI / 180)) {}
@@ -60,6 +62,11 @@ class Smoother {
     return cosine < crease_cosine_ ? kCreaseWeight * length : length;
   }
 
+  bool leaves_cone(std::uint32_t t, std::uint32_t chart) const {
+    return !cone_.axes.empty() &&
+           glm::dot(to_dvec(topology_.normals[t]), to_dvec(cone_.axes[chart])) < cone_.least_cosine;
+  }
+
   void improve(std::uint32_t t) {
     const std::uint32_t own = partition_.chart[t];
     double kept = 0, weights[3] = {0, 0, 0};
@@ -74,7 +81,7 @@ class Smoother {
     int best = -1;
     double best_gain = 1e-9 * (weights[0] + weights[1] + weights[2]);
     for (int c = 0; c < 3; ++c) {
-      if (labels[c] == kNoIndex || labels[c] == own) continue;
+      if (labels[c] == kNoIndex || labels[c] == own || leaves_cone(t, labels[c])) continue;
       double gained = 0;
       for (int d = 0; d < 3; ++d) gained += labels[d] == labels[c] ? weights[d] : 0;
       if (gained - kept > best_gain) {
@@ -97,6 +104,7 @@ class Smoother {
   }
 
   const Topology& topology_;
+  const ConeLimit& cone_;
   Partition& partition_;
   Frames& frames_;
   double crease_cosine_;
@@ -157,9 +165,9 @@ bool removable(const Topology& topology, const Partition& partition, std::uint32
   return true;
 }
 
-void smooth_borders(const Topology& topology, double crease_degrees, Partition& partition,
-                    Frames& frames) {
-  Smoother(topology, crease_degrees, partition, frames).run();
+void smooth_borders(const Topology& topology, double crease_degrees, const ConeLimit& cone,
+                    Partition& partition, Frames& frames) {
+  Smoother(topology, crease_degrees, cone, partition, frames).run();
 }
 
 }  // namespace atlas

@@ -62,10 +62,16 @@ Segmentation segment(const Topology& topology, const ChartOptions& options,
   }
   const bool trace = std::getenv("TRACE") != nullptr;
   double t0 = cpu_seconds();
-  Cells cells = grow_cells(topology, CellOptions{}, context);
+  CellOptions cell_options;
+  if (const char* e = std::getenv("CELLT")) cell_options.triangles_per_cell = std::atoi(e);
+  if (const char* e = std::getenv("CELLMAX")) cell_options.max_cells_per_piece = std::atoi(e);
+  if (const char* e = std::getenv("LEAN")) cell_options.max_lean_degrees = std::atof(e);
+  Cells cells = grow_cells(topology, cell_options, context);
   double t1 = cpu_seconds();
   if (trace) fmt::print(stderr, "  cells {} {:.3f}\n", cells.count, t1 - t0);
   if (context.cancelled()) return result;
+  const double cone = options.cone_degrees * M_PI / 180;
+  if (cone > 0) split_by_cone(topology, cone, cells);
   const CoarseMesh coarse = build_coarse(topology, options.crease_degrees, cells);
   t0 = cpu_seconds();
   if (trace) fmt::print(stderr, "  coarse {} {:.3f}\n", cells.count, t0 - t1);
@@ -74,7 +80,10 @@ Segmentation segment(const Topology& topology, const ChartOptions& options,
     if (cells.of_triangle[t] != kNoIndex) piece[cells.of_triangle[t]] = topology.component[t];
   }
   MergeOptions merge;
-  merge.cone_degrees = options.cone_degrees;
+  ExtremeNormals normals;
+  if (cone > 0) normals = extreme_normals(topology, cells);
+  merge.cone = cone - 2e-5;
+  merge.cell_normals = &normals;
   if (const char* e = std::getenv("L2")) merge.limits.stretch_l2 = std::atof(e);
   if (const char* e = std::getenv("HIGH")) merge.limits.stretch_high = std::atof(e);
   if (const char* e = std::getenv("SOLID")) merge.limits.solidity = std::atof(e);
@@ -108,7 +117,8 @@ Segmentation segment(const Topology& topology, const ChartOptions& options,
     result.partition.seams[o / 3] |= static_cast<std::uint8_t>(1u << (o % 3));
   }
   if (!std::getenv("NOSMOOTH"))
-    smooth_borders(topology, options.crease_degrees, result.partition, result.frames);
+    smooth_borders(topology, options.crease_degrees, {merged.chart_axis, std::cos(cone - 1e-5)},
+                   result.partition, result.frames);
   t0 = cpu_seconds();
   if (trace) fmt::print(stderr, "  smooth {:.3f}\n", t0 - t1);
   return result;

@@ -243,6 +243,15 @@ TrialOutcome Trial::run(std::span<const std::uint32_t> first, std::span<const st
   return outcome;
 }
 
+void Trial::join_flat(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
+                      std::span<const std::uint32_t> glue, std::vector<std::uint8_t>& joined) {
+  for (const std::uint32_t arc : glue) joined[arc] = 1;
+  cells_.assign(first.begin(), first.end());
+  cells_.insert(cells_.end(), second.begin(), second.end());
+  assemble(joined);
+  align(first.size(), glue);
+}
+
 TrialOutcome Trial::run_joined(std::span<const std::uint32_t> first,
                                std::span<const std::uint32_t> second,
                                std::span<const std::uint32_t> glue,

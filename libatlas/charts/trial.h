@@ -44,6 +44,9 @@ class Trial {
   TrialOutcome run(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
                    std::span<const std::uint32_t> glue, std::vector<std::uint8_t>& joined,
                    const TrialLimits& limits);
+  // The same for two charts of one plane: aligned, not flattened, always accepted.
+  void join_flat(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
+                 std::span<const std::uint32_t> glue, std::vector<std::uint8_t>& joined);
   // Stores the last trial's coordinates.
   void commit();
 
