@@ -207,6 +207,10 @@ Relaxer::Outcome ArapSolver::remove_flips(std::span<const std::uint32_t> also,
   return w_.relaxer.remove_flips(w_.elements, w_.corners, also, uvs);
 }
 
+bool ArapSolver::separate_borders(std::span<Vec2d> uvs) {
+  return w_.separator.separate(mesh_, w_.elements, w_.corners, w_.relaxer, uvs);
+}
+
 IsometricResult ArapSolver::measure(std::span<const Vec2d> uvs) const {
   return measure_energy(w_.elements, uvs);
 }

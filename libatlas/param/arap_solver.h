@@ -38,6 +38,10 @@ class ArapSolver {
 
   Relaxer::Outcome remove_flips(std::span<const std::uint32_t> also, std::span<Vec2d> uvs);
 
+  // Draws apart what overlaps a little; all triangles positive. Returns whether uvs are injective
+  // now.
+  bool separate_borders(std::span<Vec2d> uvs);
+
   IsometricResult measure(std::span<const Vec2d> uvs) const;
 
  private:

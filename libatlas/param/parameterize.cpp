@@ -99,6 +99,9 @@ ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
   solver.iterate(std::max(options.iterations, 1), r.uvs);
   descend(mesh, options, solver, r);
   finish(mesh, options, r);
+  if (!r.injective && r.distortion.flips == 0 && solver.separate_borders(r.uvs)) {
+    finish(mesh, options, r);
+  }
   return r;
 }
 

@@ -41,6 +41,10 @@ Derivatives symmetric_dirichlet_derivatives(double f, double d) {
   return {1 + i2, -2 * f * i2 * i, 6 * f * i2 * i2, -2 * i2 * i};
 }
 
+// A spring's stiffness. A vertex among equilateral triangles answers the symmetric Dirichlet energy
+// with about 28 near an isometry, so targets win.
+constexpr double spring_stiffness = 200;
+
 }  // namespace
 
 Jacobian Relaxer::jacobian(std::uint32_t t) const {
@@ -86,6 +90,8 @@ void Relaxer::gather(std::span<const std::uint32_t> seeds, int rings) {
 
 void Relaxer::load_vertex(std::uint32_t v) {
   local_.clear();
+  spring_ = !spring_of_.empty() && spring_of_[v] > 0 ? &springs_[spring_of_[v] - 1] : nullptr;
+  if (spring_) offset_ = to_glm(uvs_[v]) - to_glm(spring_->target);
   for (std::uint32_t i = corners_->first[v]; i < corners_->first[v + 1]; ++i) {
     const std::uint32_t t = corners_->corner[i] / 3, k = corners_->corner[i] % 3;
     const Element& e = elements_[t];
@@ -110,6 +116,7 @@ double Relaxer::energy(glm::dvec2 m) const {
     const double f = l.f + 2 * glm::dot(l.a, m) + l.q * squared, d = l.d + glm::dot(l.n, m);
     sum += l.weight * (epsilon_ > 0 ? untangling(f, d, epsilon_) : symmetric_dirichlet(f, d));
   }
+  if (spring_) sum += spring_stiffness * glm::dot(offset_ + m, offset_ + m);
   return sum;
 }
 
@@ -125,6 +132,11 @@ glm::dvec2 Relaxer::newton_step() const {
     s.xx += l.weight * (iso + p.dd * l.n.x * l.n.x + 2 * p.fd * df.x * l.n.x);
     s.yy += l.weight * (iso + p.dd * l.n.y * l.n.y + 2 * p.fd * df.y * l.n.y);
     s.xy += l.weight * (p.dd * l.n.x * l.n.y + p.fd * (df.x * l.n.y + df.y * l.n.x));
+  }
+  if (spring_) {
+    s.gradient += 2 * spring_stiffness * offset_;
+    s.xx += 2 * spring_stiffness;
+    s.yy += 2 * spring_stiffness;
   }
   const double mean = 0.5 * (s.xx + s.yy), half = 0.5 * (s.xx - s.yy);
   const double radius = std::sqrt(half * half + s.xy * s.xy);
@@ -180,15 +192,40 @@ bool Relaxer::untangle(int sweeps) {
   return least_determinant() > 0;
 }
 
-Relaxer::Outcome Relaxer::remove_flips(std::span<const Element> elements,
-                                       const CornerLists& corners,
-                                       std::span<const std::uint32_t> also, std::span<Vec2d> uvs) {
-  constexpr int largest_ring = 16, untangling_sweeps = 40, smoothing_sweeps = 8;
+void Relaxer::begin(std::span<const Element> elements, const CornerLists& corners,
+                    std::span<Vec2d> uvs) {
   elements_ = elements;
   corners_ = &corners;
   uvs_ = uvs;
   vertex_in_.assign(uvs.size(), 0);
   triangle_in_.assign(elements.size(), 0);
+  spring_of_.clear();
+  spring_ = nullptr;
+}
+
+void Relaxer::pull(std::span<const Element> elements, const CornerLists& corners,
+                   std::span<const Spring> springs, std::span<Vec2d> uvs) {
+  constexpr int rings = 5, sweeps = 12;
+  begin(elements, corners, uvs);
+  springs_ = springs;
+  spring_of_.assign(uvs.size(), 0);
+  std::vector<std::uint32_t> seeds;
+  for (std::uint32_t i = 0; i < springs.size(); ++i) {
+    const std::uint32_t v = springs[i].vertex;
+    spring_of_[v] = i + 1;
+    seeds.push_back(corners.corner[corners.first[v]] / 3);
+  }
+  gather(seeds, rings);
+  epsilon_ = 0;
+  for (int i = 0; i < sweeps; ++i) sweep();
+  spring_of_.clear();
+}
+
+Relaxer::Outcome Relaxer::remove_flips(std::span<const Element> elements,
+                                       const CornerLists& corners,
+                                       std::span<const std::uint32_t> also, std::span<Vec2d> uvs) {
+  constexpr int largest_ring = 16, untangling_sweeps = 40, smoothing_sweeps = 8;
+  begin(elements, corners, uvs);
   std::vector<std::uint32_t> seeds(also.begin(), also.end());
   const auto find = [&] {
     for (std::uint32_t t = 0; t < elements.size(); ++t) {

@@ -24,11 +24,21 @@ class Relaxer {
     std::uint32_t left = 0;    // still not positive
   };
 
+  struct Spring {
+    std::uint32_t vertex;
+    Vec2d target;
+  };
+
   // Moves the vertices near non-positive triangles and no others. Triangles listed in `also` count
   // as flipped even if their determinant is positive in floating point. Starts with a ring about
   // them, and doubles the rings while that is not enough.
   Outcome remove_flips(std::span<const Element> elements, const CornerLists& corners,
                        std::span<const std::uint32_t> also, std::span<Vec2d> uvs);
+
+  // Draws vertices towards targets while the neighbourhood, so many rings wide, follows by the
+  // symmetric Dirichlet energy; nothing flips. All triangles must be positive.
+  void pull(std::span<const Element> elements, const CornerLists& corners,
+            std::span<const Spring> springs, std::span<Vec2d> uvs);
 
  private:
   struct Local {  // what a triangle's energy depends on while one vertex moves by m
@@ -40,6 +50,7 @@ class Relaxer {
     double xx = 0, xy = 0, yy = 0;
   };
 
+  void begin(std::span<const Element> elements, const CornerLists& corners, std::span<Vec2d> uvs);
   void gather(std::span<const std::uint32_t> seeds, int rings);
   void load_vertex(std::uint32_t v);
   double energy(glm::dvec2 m) const;
@@ -56,6 +67,10 @@ class Relaxer {
       triangles_;  // the neighbourhood: what moves, what is touched
   std::vector<std::uint8_t> vertex_in_, triangle_in_;
   std::vector<Local> local_;
+  std::vector<std::uint32_t> spring_of_;  // 1 a vertex: 1 + its place in springs_, or 0
+  std::span<const Spring> springs_;
+  const Spring* spring_ = nullptr;  // of the vertex that is moving
+  glm::dvec2 offset_{0};            // from the spring's target to where that vertex is
   double mean_area_ = 0;
   double epsilon_ = 0;  // 0: symmetric Dirichlet
 };

@@ -6,6 +6,7 @@
 #include "libatlas/param/linear_solver.h"
 #include "libatlas/param/percentile.h"
 #include "libatlas/param/relax.h"
+#include "libatlas/param/separate.h"
 #include "libatlas/param/stiffness.h"
 
 namespace atlas {
@@ -25,6 +26,7 @@ struct ParamWorkspace::Impl {
   std::vector<param::SingularValues> sigma;
   std::vector<Vec2d> best;
   param::Relaxer relaxer;
+  param::Separator separator;
 };
 
 }  // namespace atlas
