@@ -35,3 +35,9 @@ if(LIBATLAS_BUILD_EXAMPLES)
     find_package(embree 3 REQUIRED)
   endif()
 endif()
+if(LIBATLAS_BUILD_PLAYER)
+  find_package(glfw3 3.3 REQUIRED)                              # libglfw3-dev: windows
+  pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)       # libepoxy-dev: OpenGL entry points
+  pkg_check_modules(EGL REQUIRED IMPORTED_TARGET egl)           # libegl-dev: contexts without a window
+  pkg_check_modules(IMGUI REQUIRED IMPORTED_TARGET imgui)       # libimgui-dev: the player's panels
+endif()

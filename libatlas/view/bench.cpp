@@ -1,0 +1,218 @@
+#include "libatlas/view/bench.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "libatlas/core/clock.h"
+
+namespace atlas {
+namespace {
+
+struct Contender {
+  Renderer renderer;
+  BenchRun run;
+  double total = 0;
+};
+
+FrameLight light_at(const LightPath& path, double step, int frame) {
+  return {path.direction(frame * step),
+          [&path, step, frame](int n) { return path.direction((frame + n) * step); }};
+}
+
+Result<FrameTime> timed_frame(Renderer& renderer, const Camera& camera, const FrameLight& light) {
+  const double wall = wall_seconds(), cpu = cpu_seconds();
+  Result<FrameStats> stats = renderer.draw(camera, light);
+  if (!stats.ok()) return stats.status();
+  renderer.finish();
+  FrameTime t;
+  t.wall = float(wall_seconds() - wall);
+  t.cpu = float(cpu_seconds() - cpu);
+  t.gpu_shadow = float(renderer.shadow_seconds());
+  t.gpu_lit = float(renderer.lit_seconds());
+  t.triangles_shadow = stats->triangles_shadow;
+  t.triangles_lit = stats->triangles_lit;
+  return t;
+}
+
+void summarise(BenchRun& run) {
+  std::vector<double> wall, cpu;
+  double shadow = 0, lit = 0;
+  for (const FrameTime& f : run.frames) {
+    wall.push_back(f.wall);
+    cpu.push_back(f.cpu);
+    if (std::isfinite(f.gpu_shadow) && std::isfinite(f.gpu_lit)) {
+      shadow += f.gpu_shadow;
+      lit += f.gpu_lit;
+    }
+    const double work = f.triangles_shadow + f.triangles_lit;
+    run.work_mean += work / double(run.frames.size());
+    run.work_worst = std::max(run.work_worst, work);
+  }
+  run.wall = spread_of(wall);
+  run.cpu = spread_of(cpu);
+  run.shadow_share = shadow + lit > 0 ? shadow / (shadow + lit) : 0;
+}
+
+// Sums over the light positions of one method and interval.
+struct ErrorSums {
+  VisibilityError v;
+  double squares = 0, ssim = 0;
+  std::vector<double> cpu;
+  int count = 0;
+};
+
+void add(ErrorSums& sums, const VisibilityError& e) {
+  sums.v.mean += e.mean;
+  sums.v.wrong += e.wrong;
+  sums.v.mean_off_edges += e.mean_off_edges;
+  sums.v.wrong_off_edges += e.wrong_off_edges;
+  sums.v.edge_share += e.edge_share;
+  ++sums.count;
+}
+
+BenchError finish(const ErrorSums& s, ShadowMethod method, int interval) {
+  const double n = s.count;
+  BenchError e;
+  e.method = method;
+  e.interval = interval;
+  e.visibility = {s.v.mean / n, s.v.wrong / n, s.v.mean_off_edges / n, s.v.wrong_off_edges / n,
+                  s.v.edge_share / n};
+  e.psnr = s.squares > 0 ? 10 * std::log10(n / s.squares) : std::numeric_limits<double>::infinity();
+  e.ssim = s.ssim / n;
+  e.cpu_median = spread_of(s.cpu).p50;
+  return e;
+}
+
+// One method at one interval: draws visibility and colours, sums their errors.
+class ErrorProbe {
+ public:
+  static Result<ErrorProbe> make(const Renderer& first, RenderOptions options) {
+    options.show_visibility = true;
+    Result<Renderer> v = first.share(options);
+    if (!v.ok()) return v.status();
+    options.show_visibility = false;
+    Result<Renderer> c = first.share(options);
+    if (!c.ok()) return c.status();
+    return ErrorProbe(std::move(*v), std::move(*c));
+  }
+
+  // Colours are drawn in every frame too: their keys must be as old as those of the visibility.
+  Status step(const Camera& camera, const FrameLight& light) {
+    Result<FrameTime> t = timed_frame(visibility_, camera, light);
+    if (!t.ok()) return t.status();
+    sums.cpu.push_back(t->cpu);
+    Result<FrameStats> s = colours_.draw(camera, light);
+    return s.ok() ? Status{} : s.status();
+  }
+  Image8 visibility() const { return visibility_.read_image(); }
+  Image8 colours() const { return colours_.read_image(); }
+
+  ErrorSums sums;
+
+ private:
+  ErrorProbe(Renderer v, Renderer c) : visibility_(std::move(v)), colours_(std::move(c)) {}
+  Renderer visibility_, colours_;
+};
+
+Status errors_of_interval(const Renderer& first, const LightPath& path, const BenchOptions& options,
+                          BenchResult& result) {
+  RenderOptions render = options.render;
+  render.shading = Shading::lambert;
+  render.shadows = ShadowMethod::classic;
+  Result<ErrorProbe> truth = ErrorProbe::make(first, render);
+  if (!truth.ok()) return truth.status();
+  std::vector<std::pair<ShadowMethod, ErrorProbe>> probes;
+  for (ShadowMethod method : options.methods) {
+    if (method == ShadowMethod::classic) continue;
+    render.shadows = method;
+    Result<ErrorProbe> probe = ErrorProbe::make(first, render);
+    if (!probe.ok()) return probe.status();
+    probes.emplace_back(method, std::move(*probe));
+  }
+  const int k = render.schedule.interval_frames;
+  const int count = (options.error_frames + k - 1) / k * k;  // whole intervals: every t as often
+  for (int f = 0; f < count; ++f) {
+    const FrameLight light = light_at(path, options.degrees_per_frame, f);
+    if (Status s = truth->step(options.camera, light); !s.ok()) return s;
+    const Image8 v = truth->visibility(), c = truth->colours();
+    for (auto& [method, probe] : probes) {
+      if (Status s = probe.step(options.camera, light); !s.ok()) return s;
+      add(probe.sums, visibility_error(probe.visibility(), v));
+      const Image8 shown = probe.colours();
+      probe.sums.squares += std::pow(10, -psnr(shown, c) / 10);
+      probe.sums.ssim += ssim(shown, c);
+    }
+  }
+  for (const auto& [method, probe] : probes) result.errors.push_back(finish(probe.sums, method, k));
+  return {};
+}
+
+}  // namespace
+
+Spread spread_of(std::vector<double> values) {
+  Spread s;
+  if (values.empty()) return s;
+  std::sort(values.begin(), values.end());
+  for (double v : values) s.mean += v / double(values.size());
+  const auto at = [&](double q) {  // nearest rank
+    const double rank = std::ceil(q * double(values.size()));
+    return values[std::size_t(std::max(rank - 1, 0.0))];
+  };
+  s.p50 = at(0.5);
+  s.p95 = at(0.95);
+  s.p99 = at(0.99);
+  s.p999 = at(0.999);
+  s.worst = values.back();
+  return s;
+}
+
+Status bench_times(const Renderer& first, const LightPath& path, const BenchOptions& options,
+                   BenchResult& result) {
+  std::vector<Contender> contenders;
+  for (Shading shading : options.shadings)
+    for (ShadowMethod method : options.methods) {
+      RenderOptions render = options.render;
+      render.shading = shading;
+      render.shadows = method;
+      render.show_visibility = false;
+      Result<Renderer> made = first.share(render);
+      if (!made.ok()) return made.status();
+      Contender c{std::move(*made), {}, 0};
+      c.run.shading = shading;
+      c.run.method = method;
+      contenders.push_back(std::move(c));
+    }
+  const int warm_up = std::max(options.warm_up, 2 * options.render.schedule.interval_frames);
+  bool more = true;
+  for (int f = 0; more; ++f) {
+    const FrameLight light = light_at(path, options.degrees_per_frame, f);
+    more = f < warm_up;
+    for (Contender& c : contenders) {
+      Result<FrameTime> t = timed_frame(c.renderer, options.camera, light);
+      if (!t.ok()) return t.status();
+      if (f < warm_up) continue;
+      c.run.frames.push_back(*t);
+      c.total += t->wall;
+      more |= int(c.run.frames.size()) < options.frames || c.total < options.seconds;
+    }
+  }
+  for (Contender& c : contenders) {
+    summarise(c.run);
+    result.runs.push_back(std::move(c.run));
+  }
+  return {};
+}
+
+Status bench_errors(const Renderer& first, const LightPath& path, const BenchOptions& options,
+                    BenchResult& result) {
+  for (int k : options.error_intervals) {
+    BenchOptions with_k = options;
+    with_k.render.schedule.interval_frames = k;
+    with_k.render.schedule.interval_degrees = 0;
+    if (Status s = errors_of_interval(first, path, with_k, result); !s.ok()) return s;
+  }
+  return {};
+}
+
+}  // namespace atlas

@@ -1,0 +1,83 @@
+// Measures the shadow methods: frame times and their spread, and the error of each against a
+// classic map of the same light.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "libatlas/core/context.h"
+#include "libatlas/shadow/light_path.h"
+#include "libatlas/view/image_error.h"
+#include "libatlas/view/renderer.h"
+
+namespace atlas {
+
+struct BenchOptions {
+  RenderOptions render;  // size, filter, interval and all the rest; shading and method are varied
+  Camera camera;
+  double degrees_per_frame = 0.5;  // the light's speed along the path
+  std::vector<Shading> shadings{Shading::lambert, Shading::blinn_phong, Shading::ward};
+  std::vector<ShadowMethod> methods{std::begin(kAllMethods), std::end(kAllMethods)};
+  double seconds = 0;  // a combination's measured time at least; 0: `frames` decides
+  int frames = 160;    // a combination's measured frames at least
+  int warm_up = 24;    // frames before, not measured; at least two intervals are warmed up
+  std::vector<int> error_intervals{2, 4, 8, 16, 32};
+  int error_frames = 48;  // light positions at which errors are measured
+};
+
+// Times of one frame, seconds. CPU time is that of all threads of the process: on the software
+// renderer it is the whole cost of the frame, whatever else the machine is doing.
+struct FrameTime {
+  float wall = 0, cpu = 0, gpu_shadow = 0, gpu_lit = 0;
+  std::uint32_t triangles_shadow = 0, triangles_lit = 0;
+};
+
+struct Spread {
+  double mean = 0, p50 = 0, p95 = 0, p99 = 0, p999 = 0, worst = 0;
+};
+Spread spread_of(std::vector<double> values);
+
+struct BenchRun {
+  Shading shading{};
+  ShadowMethod method{};
+  std::vector<FrameTime> frames;
+  Spread wall, cpu;                      // seconds a frame
+  double shadow_share = 0;               // of the GPU time
+  double work_mean = 0, work_worst = 0;  // triangles submitted a frame, both passes
+};
+
+struct BenchError {
+  ShadowMethod method{};
+  int interval = 0;  // k
+  VisibilityError visibility;
+  double psnr = 0, ssim = 0;  // of the shaded pictures; psnr of the mean squared error of all
+  double cpu_median = 0;      // seconds a frame while measuring visibility (same shader output)
+};
+
+struct BenchResult {
+  std::string device, version;
+  bool software = false;
+  int width = 0, height = 0, map_resolution = 0, interval = 0, pcf = 0;
+  std::uint32_t triangles = 0;
+  std::vector<BenchRun> runs;
+  std::vector<BenchError> errors;
+};
+
+// Runs every shading with every method. The combinations take turns frame by frame, so that a busy
+// machine slows all of them alike and their ratios stand.
+Status bench_times(const Renderer& first, const LightPath& path, const BenchOptions& options,
+                   BenchResult& result);
+
+// Errors of every method but none, for every interval in options.error_intervals.
+Status bench_errors(const Renderer& first, const LightPath& path, const BenchOptions& options,
+                    BenchResult& result);
+
+// frames.csv, summary.json, and gnuplot scripts with their data: fps over time for each method (the
+// paper's figures 2 to 5) and error against frame time. Plots are made if gnuplot is there.
+Status write_bench(const BenchResult& result, const std::filesystem::path& folder);
+
+// The table of the summary, for the terminal and for documents (Markdown).
+std::string bench_table(const BenchResult& result);
+
+}  // namespace atlas

@@ -1,0 +1,46 @@
+#include "libatlas/view/context.h"
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+namespace atlas {
+namespace {
+
+std::string text_of(GLenum name) {
+  const GLubyte* text = glGetString(name);
+  return text ? reinterpret_cast<const char*>(text) : "";
+}
+
+void GLAPIENTRY on_debug(GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLchar* message,
+                         const void* user) {
+  if (type == GL_DEBUG_TYPE_ERROR || type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR)
+    static_cast<GlContext*>(const_cast<void*>(user))->note_debug_error(message);
+}
+
+}  // namespace
+
+void GlContext::note_debug_error(const char* message) {
+  if (debug_errors_++ == 0) first_debug_error_ = message;
+}
+
+Status GlContext::initialise(bool debug) {
+  info_.vendor = text_of(GL_VENDOR);
+  info_.renderer = text_of(GL_RENDERER);
+  info_.version = text_of(GL_VERSION);
+  if (epoxy_gl_version() < 45)
+    return {ErrorCode::unsupported,
+            fmt::format("OpenGL 4.5 is needed, {} offers {} (update the driver, or set "
+                        "LIBGL_ALWAYS_SOFTWARE=1 to use Mesa's software renderer)",
+                        info_.renderer, info_.version)};
+  for (const char* name : {"llvmpipe", "softpipe", "swrast", "Software"})
+    info_.software |= info_.renderer.find(name) != std::string::npos;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &info_.max_texture);
+  if (debug) {
+    glEnable(GL_DEBUG_OUTPUT);
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    glDebugMessageCallback(on_debug, this);
+  }
+  return {};
+}
+
+}  // namespace atlas

@@ -1,0 +1,66 @@
+// OpenGL 4.5 core contexts: without a window through EGL (which works on Mesa's software renderer
+// and needs no display), or in a GLFW window.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "libatlas/core/status.h"
+
+struct GLFWwindow;
+
+namespace atlas {
+
+struct GlInfo {
+  std::string vendor, renderer, version;
+  bool software = false;  // the renderer is Mesa's llvmpipe, softpipe or swrast
+  int max_texture = 0;    // texels
+};
+
+// Current on the thread that made it, from construction to destruction.
+class GlContext {
+ public:
+  virtual ~GlContext() = default;
+  const GlInfo& info() const { return info_; }
+  // Errors that the driver has reported through KHR_debug since construction, and the first of
+  // them. Counted only in contexts made with debug == true.
+  std::int64_t debug_errors() const { return debug_errors_; }
+  const std::string& first_debug_error() const { return first_debug_error_; }
+
+  void note_debug_error(const char* message);
+
+ protected:
+  // Reads info_, checks the version and installs the debug callback. `this` must stay in place.
+  Status initialise(bool debug);
+  GlInfo info_;
+  std::int64_t debug_errors_ = 0;
+  std::string first_debug_error_;
+};
+
+struct ContextOptions {
+  bool debug = false;     // a debug context: slower, reports errors with text
+  bool software = false;  // headless only: do not look for a GPU
+};
+
+// A context without any surface: draw into framebuffer objects. A GPU's device is preferred, then
+// Mesa's surfaceless platform. `unsupported` with the reason if there is neither.
+Result<std::unique_ptr<GlContext>> make_headless_context(const ContextOptions& options);
+
+struct WindowOptions {
+  int width = 1280, height = 800;
+  std::string title = "atlas-play";
+  bool vsync = true;
+  bool visible = true;
+};
+
+class GlWindow : public GlContext {
+ public:
+  virtual GLFWwindow* handle() = 0;
+};
+
+// `unsupported` with the reason if there is no display or it has no OpenGL 4.5.
+Result<std::unique_ptr<GlWindow>> make_window(const ContextOptions& options,
+                                              const WindowOptions& window);
+
+}  // namespace atlas

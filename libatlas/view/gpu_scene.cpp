@@ -1,0 +1,109 @@
+#include "libatlas/view/gpu_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace atlas {
+namespace {
+
+template <class T>
+GlBuffer buffer_of(const std::vector<T>& data) {
+  return make_buffer(data.data(), data.size() * sizeof(T));
+}
+
+void attribute(const GlVertexArray& array, GLuint index, const GlBuffer& buffer, int components,
+               GLenum type, int stride) {
+  const GLuint a = array.get();
+  glEnableVertexArrayAttrib(a, index);
+  glVertexArrayAttribFormat(a, index, components, type, type == GL_UNSIGNED_SHORT, 0);
+  glVertexArrayAttribBinding(a, index, index);
+  glVertexArrayVertexBuffer(a, index, buffer.get(), 0, stride);
+}
+
+// Reflectances as 16-bit fractions: half the bytes of floats, finer than any display.
+GlBuffer colour_buffer(const std::vector<Vec3f>& colours) {
+  std::vector<std::uint16_t> packed;
+  packed.reserve(colours.size() * 4);
+  for (const Vec3f& c : colours)
+    for (float v : {c.x, c.y, c.z, 1.0f})
+      packed.push_back(std::uint16_t(std::lround(std::clamp(v, 0.0f, 1.0f) * 65535)));
+  return buffer_of(packed);
+}
+
+Result<GlTexture> texture_of(const Texture& texture) {
+  const Image8& image = texture.image;
+  GLint largest = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+  if (image.width < 1 || image.height < 1 || image.width > largest || image.height > largest)
+    return Status{ErrorCode::unsupported,
+                  fmt::format("{}: a texture of {} x {} texels; the driver takes 1 to {}",
+                              texture.path.string(), image.width, image.height, largest)};
+  const int n = image.channels;
+  // Greys are spread to three channels here: sRGB formats exist for three and four only.
+  std::vector<std::uint8_t> rgba(std::size_t(image.width) * image.height * 4);
+  for (std::size_t i = 0; i < rgba.size() / 4; ++i)
+    for (int c = 0; c < 4; ++c)
+      rgba[i * 4 + c] = c == 3 ? 255 : image.texels[i * n + (n >= 3 ? c : 0)];
+  const int levels = std::bit_width(unsigned(std::max(image.width, image.height)));
+  GlTexture t = make_texture(GL_SRGB8_ALPHA8, image.width, image.height, levels);
+  glTextureSubImage2D(t.get(), 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE,
+                      rgba.data());
+  glGenerateTextureMipmap(t.get());
+  glTextureParameteri(t.get(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  return t;
+}
+
+Status upload_textures(const ViewScene& scene, GpuScene& gpu) {
+  for (const Texture& texture : scene.textures) {
+    Result<GlTexture> made = texture_of(texture);
+    if (!made.ok()) return made.status();
+    gpu.textures.push_back(std::move(made.value()));
+  }
+  const std::uint8_t white[4] = {255, 255, 255, 255};
+  gpu.white = make_texture(GL_RGBA8, 1, 1);
+  glTextureSubImage2D(gpu.white.get(), 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, white);
+  return {};
+}
+
+}  // namespace
+
+Result<GpuScene> upload(const ViewScene& scene) {
+  GpuScene gpu;
+  gpu.positions = buffer_of(scene.positions);
+  gpu.normals = buffer_of(scene.normals);
+  gpu.colours = colour_buffer(scene.colours);
+  gpu.indices = buffer_of(scene.indices);
+  gpu.lit = make_vertex_array();
+  attribute(gpu.lit, 0, gpu.positions, 3, GL_FLOAT, sizeof(Vec3f));
+  attribute(gpu.lit, 1, gpu.normals, 3, GL_FLOAT, sizeof(Vec3f));
+  attribute(gpu.lit, 2, gpu.colours, 3, GL_UNSIGNED_SHORT, 8);
+  if ((gpu.textured = scene.textured())) {
+    gpu.texcoords = buffer_of(scene.texcoords);
+    attribute(gpu.lit, 3, gpu.texcoords, 2, GL_FLOAT, sizeof(Vec2f));
+    if (Status s = upload_textures(scene, gpu); !s.ok()) return s;
+  }
+  if ((gpu.baked_vertices = !scene.illumination.empty())) {
+    gpu.illumination = buffer_of(scene.illumination);
+    attribute(gpu.lit, 4, gpu.illumination, 3, GL_FLOAT, sizeof(Vec3f));
+  }
+  glVertexArrayElementBuffer(gpu.lit.get(), gpu.indices.get());
+
+  gpu.caster_positions = buffer_of(scene.caster_positions);
+  gpu.caster_indices = buffer_of(scene.caster_indices);
+  gpu.casters = make_vertex_array();
+  attribute(gpu.casters, 0, gpu.caster_positions, 3, GL_FLOAT, sizeof(Vec3f));
+  glVertexArrayElementBuffer(gpu.casters.get(), gpu.caster_indices.get());
+
+  gpu.batches = scene.batches;
+  gpu.triangles = std::uint32_t(scene.triangle_count());
+  gpu.bounds = scene.bounds;
+  gpu.baked_textures = scene.textures_hold_light;
+  gpu.light_scale = scene.light_scale;
+  if (Status s = check_gl("uploading the scene"); !s.ok()) return s;
+  return gpu;
+}
+
+}  // namespace atlas

@@ -1,0 +1,28 @@
+// Internal: a ViewScene on the GPU.
+#pragma once
+
+#include <vector>
+
+#include "libatlas/view/gl_objects.h"
+#include "libatlas/view/view_scene.h"
+
+namespace atlas {
+
+struct GpuScene {
+  GlBuffer positions, normals, colours, texcoords, illumination, indices;
+  GlBuffer caster_positions, caster_indices;
+  GlVertexArray lit, casters;
+  std::vector<ViewScene::Batch> batches;
+  std::vector<GlTexture> textures;  // one a scene texture; white where it could not be made
+  GlTexture white;
+  std::uint32_t triangles = 0;
+  Box3 bounds;
+  bool textured = false, baked_vertices = false, baked_textures = false;
+  double light_scale = 1;
+};
+
+// Needs a current context. `unsupported` if a texture is larger than the driver takes or memory
+// runs out.
+Result<GpuScene> upload(const ViewScene& scene);
+
+}  // namespace atlas

@@ -1,0 +1,293 @@
+#include "libatlas/view/renderer.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <limits>
+
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/view/renderer_impl.h"
+
+namespace atlas {
+
+const char* name_of(ShadowMethod method) {
+  constexpr const char* kNames[] = {"none",  "classic",          "hold", "linear",
+                                    "slerp", "slerp-normalised", "march"};
+  return kNames[int(method)];
+}
+
+int maps_of(ShadowMethod method) {
+  if (method == ShadowMethod::none) return 0;
+  return method == ShadowMethod::classic || method == ShadowMethod::hold ? 1 : KeySchedule::kSlots;
+}
+
+ShaderFeatures needed_features(const GpuScene& scene, const RenderOptions& options) {
+  ShaderFeatures f;
+  f.shading = options.shading;
+  f.visibility = options.show_visibility;
+  f.pcf = options.pcf;
+  f.march_steps = options.march_steps;
+  f.textured = scene.textured && !f.visibility;
+  f.baked_textures = scene.baked_textures && f.textured;
+  f.baked_vertices = scene.baked_vertices && !f.visibility;
+  if (options.shading != Shading::unlit) switch (options.shadows) {
+      case ShadowMethod::none:
+        break;
+      case ShadowMethod::classic:
+      case ShadowMethod::hold:
+        f.shadow = ShadowSampling::one;
+        break;
+      case ShadowMethod::march:
+        f.shadow = ShadowSampling::march;
+        break;
+      default:
+        f.shadow = ShadowSampling::two;
+    }
+  return f;
+}
+
+ScheduleOptions schedule_for(const RenderOptions& options) {
+  ScheduleOptions s = options.schedule;
+  s.blend = maps_of(options.shadows) > 1;
+  if (options.shadows == ShadowMethod::classic) {
+    s.interval_frames = 1;
+    s.interval_degrees = 0;
+  }
+  return s;
+}
+
+namespace {
+
+Status check_options(const RenderOptions& o) {
+  if (o.width < 1 || o.height < 1 || o.width > 16384 || o.height > 16384)
+    return {ErrorCode::bad_option,
+            fmt::format("image size {} x {}: 1 to 16384 are possible", o.width, o.height)};
+  if (o.pcf != 0 && o.pcf != 1 && o.pcf != 3 && o.pcf != 5)
+    return {ErrorCode::bad_option, fmt::format("pcf {}: it is 0, 1, 3 or 5", o.pcf)};
+  if (o.march_steps < 1 || o.march_steps > 64)
+    return {ErrorCode::bad_option,
+            fmt::format("{} march steps: 1 to 64 are possible", o.march_steps)};
+  if (o.schedule.interval_frames < 1)
+    return {ErrorCode::bad_option, "keys are at least one frame apart"};
+  return {};
+}
+
+bool same_schedule(const RenderOptions& a, const RenderOptions& b) {
+  const ScheduleOptions x = schedule_for(a), y = schedule_for(b);
+  return x.interval_frames == y.interval_frames && x.interval_degrees == y.interval_degrees &&
+         x.blend == y.blend && x.sliced == y.sliced && x.max_frames == y.max_frames &&
+         x.jump_degrees == y.jump_degrees && a.fit_view == b.fit_view && a.snap == b.snap &&
+         a.view_distance == b.view_distance && a.slope_bias == b.slope_bias && a.up == b.up;
+}
+
+}  // namespace
+
+Status Renderer::Impl::allocate_target(int width, int height) {
+  if (width == target_width && height == target_height) return {};
+  GLuint names[2];
+  glCreateRenderbuffers(2, names);
+  colour = GlRenderbuffer(names[0]);
+  depth = GlRenderbuffer(names[1]);
+  glNamedRenderbufferStorage(names[0], GL_RGBA8, width, height);
+  glNamedRenderbufferStorage(names[1], GL_DEPTH_COMPONENT24, width, height);
+  target = make_framebuffer();
+  glNamedFramebufferRenderbuffer(target.get(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, names[0]);
+  glNamedFramebufferRenderbuffer(target.get(), GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, names[1]);
+  target_width = width;
+  target_height = height;
+  if (glCheckNamedFramebufferStatus(target.get(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+    return {ErrorCode::unsupported,
+            fmt::format("the driver does not draw into an image of {} x {}", width, height)};
+  return check_gl("making the image");
+}
+
+Status Renderer::Impl::apply(const RenderOptions& wanted) {
+  if (Status s = check_options(wanted); !s.ok()) return s;
+  const ShaderFeatures f = needed_features(*scene, wanted);
+  if (!program || !(f == features)) {
+    const ShaderText text = shader_text(f);
+    Result<GlProgram> made = link_program("of the scene", text.vertex, text.fragment);
+    if (!made.ok()) return made.status();
+    program = std::move(made.value());
+    features = f;
+  }
+  if (Status s = allocate_target(wanted.width, wanted.height); !s.ok()) return s;
+  const int maps = f.shadow == ShadowSampling::none ? 0 : maps_of(wanted.shadows);
+  const bool fresh_maps =
+      maps != shadow_maps || (maps && shadow->resolution() != wanted.map_resolution);
+  if (fresh_maps) {
+    shadow.reset();
+    shadow_maps = 0;
+    if (maps) {
+      Result<ShadowPass> made = ShadowPass::make(wanted.map_resolution, maps);
+      if (!made.ok()) return made.status();
+      shadow = std::move(made.value());
+      shadow_maps = maps;
+    }
+  }
+  if (fresh_maps || !schedule || !same_schedule(options, wanted)) {
+    if (schedule) earlier_passes += schedule->passes();
+    schedule.emplace(schedule_for(wanted));
+    view_fit_valid = false;
+  }
+  options = wanted;
+  return {};
+}
+
+Result<LightFit> Renderer::Impl::fit(const Camera& camera, const Vec3d& direction) const {
+  FitOptions f;
+  f.resolution = options.map_resolution;
+  f.up = options.up;
+  f.snap = options.snap;
+  // Room for filters, and for the march to look beside what is fitted.
+  f.border_texels = options.map_resolution / 128.0;
+  if (options.fit_view) {
+    f.view = true;
+    const glm::dvec3 size = to_glm(scene->bounds.high) - to_glm(scene->bounds.low);
+    const double reach = options.view_distance > 0 ? options.view_distance : glm::length(size) / 4;
+    // A third more than is seen: the camera may go some way before the keys have to be drawn anew.
+    f.view_corners = view_corners(camera, double(options.width) / options.height, reach * 1.33);
+  }
+  return fit_light(direction, scene->bounds, f);
+}
+
+bool Renderer::Impl::view_left_the_keys(const Camera& camera) const {
+  if (!options.fit_view || !view_fit_valid) return false;
+  const glm::dvec3 size = to_glm(scene->bounds.high) - to_glm(scene->bounds.low);
+  const double reach = options.view_distance > 0 ? options.view_distance : glm::length(size) / 4;
+  for (const Vec3d& corner : view_corners(camera, double(options.width) / options.height, reach)) {
+    const Vec3d m = transform_point(view_fit.to_texture, corner);
+    if (!(m.x >= 0 && m.x <= 1 && m.y >= 0 && m.y <= 1)) return true;
+  }
+  return false;
+}
+
+Status Renderer::Impl::draw_shadow_maps(const Camera& camera, const FramePlan& plan,
+                                        FrameStats& stats) {
+  ShadowBias bias;
+  // A kernel of n taps reaches n/2 texels from its centre: so far the plane's own slope shadows it.
+  bias.slope = options.slope_bias * std::max(1.0, options.pcf / 2.0);
+  shadow_timer->begin();
+  for (const MapWork& work : plan.work) {
+    Result<LightFit> made = fit(camera, work.direction);
+    if (!made.ok()) {
+      shadow_timer->end();
+      return made.status();
+    }
+    if (work.begin <= 0) {
+      view_fit = *made;
+      view_fit_valid = true;
+    }
+    stats.triangles_shadow += shadow->draw(*scene, work.slot, *made, work.begin, work.end, bias);
+  }
+  shadow_timer->end();
+  return {};
+}
+
+Result<FrameStats> Renderer::Impl::draw(const Camera& camera, const FrameLight& light) {
+  FrameStats stats;
+  FramePlan plan;
+  if (shadow) {
+    if (view_left_the_keys(camera)) schedule->invalidate();
+    plan = schedule->next(light.direction, light.ahead);
+    stats.refreshed = plan.refreshed;
+    stats.t = plan.t;
+    stats.key_degrees = angle_between(plan.from_direction, plan.to_direction) * 57.29577951308232;
+    if (Status s = draw_shadow_maps(camera, plan, stats); !s.ok()) return s;
+  }
+  lit_timer->begin();
+  draw_lit(camera, light, plan, stats);
+  lit_timer->end();
+  if (Status s = check_gl("drawing a frame"); !s.ok()) return s;
+  return stats;
+}
+
+Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+Renderer::~Renderer() = default;
+
+Result<Renderer> Renderer::make(const ViewScene& scene, const RenderOptions& options) {
+  Result<GpuScene> gpu = upload(scene);
+  if (!gpu.ok()) return gpu.status();
+  auto impl = std::make_unique<Impl>();
+  impl->scene = std::make_shared<const GpuScene>(std::move(gpu.value()));
+  Renderer first(std::move(impl));
+  return first.share(options);
+}
+
+Result<Renderer> Renderer::share(const RenderOptions& options) const {
+  auto impl = std::make_unique<Impl>();
+  impl->scene = impl_->scene;
+  impl->shadow_timer.emplace();
+  impl->lit_timer.emplace();
+  if (Status s = impl->apply(options); !s.ok()) return s;
+  return Renderer(std::move(impl));
+}
+
+Status Renderer::set_options(const RenderOptions& options) {
+  return impl_->apply(options);
+}
+const RenderOptions& Renderer::options() const {
+  return impl_->options;
+}
+
+Result<FrameStats> Renderer::draw(const Camera& camera, const FrameLight& light) {
+  return impl_->draw(camera, light);
+}
+
+void Renderer::finish() {
+  glFinish();
+  impl_->shadow_timer->poll();
+  impl_->lit_timer->poll();
+}
+
+double Renderer::shadow_seconds() const {
+  return impl_->shadow ? impl_->shadow_timer->seconds() : 0.0;
+}
+double Renderer::lit_seconds() const {
+  return impl_->lit_timer->seconds();
+}
+
+Image8 Renderer::read_image() const {
+  Image8 image(impl_->target_width, impl_->target_height, 3);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, impl_->target.get());
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, image.width, image.height, GL_RGB, GL_UNSIGNED_BYTE, image.texels.data());
+  return image;
+}
+
+void Renderer::show(int window_width, int window_height) const {
+  glBlitNamedFramebuffer(impl_->target.get(), 0, 0, 0, impl_->target_width, impl_->target_height, 0,
+                         0, window_width, window_height, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+std::int64_t Renderer::shadow_passes() const {
+  return impl_->earlier_passes + (impl_->schedule ? impl_->schedule->passes() : 0);
+}
+
+const Box3& Renderer::bounds() const {
+  return impl_->scene->bounds;
+}
+
+std::vector<std::string> Renderer::plan() const {
+  const Impl& i = *impl_;
+  std::vector<std::string> lines;
+  lines.push_back(fmt::format("compiled: {}", fmt::join(feature_names(i.features), ", ")));
+  if (!i.shadow)
+    lines.push_back(i.options.shading == Shading::unlit
+                        ? "no shadow maps: nothing is lit by the moving light"
+                        : "no shadow maps: shadows are off");
+  else
+    lines.push_back(fmt::format("shadow maps: {} of {}x{} ({})", i.shadow_maps,
+                                i.shadow->resolution(), i.shadow->resolution(),
+                                name_of(i.options.shadows)));
+  if (!i.scene->textured) lines.push_back("no texture code: the scene has no textures");
+  if (!i.scene->baked_vertices && !i.scene->baked_textures)
+    lines.push_back("no baked light: the scene brings none");
+  return lines;
+}
+
+}  // namespace atlas

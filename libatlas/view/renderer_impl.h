@@ -1,0 +1,49 @@
+// Internal: the renderer's state, shared by renderer.cpp and lit_pass.cpp.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "libatlas/view/gpu_scene.h"
+#include "libatlas/view/renderer.h"
+#include "libatlas/view/shadow_pass.h"
+#include "libatlas/view/timers.h"
+
+namespace atlas {
+
+struct Renderer::Impl {
+  std::shared_ptr<const GpuScene> scene;
+  RenderOptions options;
+  ShaderFeatures features;
+  GlProgram program;
+  GlBuffer frame_block;
+  GlFramebuffer target;
+  GlRenderbuffer colour, depth;
+  int target_width = 0, target_height = 0;
+  std::optional<ShadowPass> shadow;
+  int shadow_maps = 0;
+  std::optional<KeySchedule> schedule;
+  std::optional<PassTimer> shadow_timer, lit_timer;
+  std::int64_t earlier_passes = 0;  // of schedules replaced by set_options
+  LightFit view_fit;                // fit_view: what the current keys cover
+  bool view_fit_valid = false;
+
+  Status apply(const RenderOptions& wanted);
+  Status allocate_target(int width, int height);
+  Result<FrameStats> draw(const Camera& camera, const FrameLight& light);
+  Status draw_shadow_maps(const Camera& camera, const FramePlan& plan, FrameStats& stats);
+  Result<LightFit> fit(const Camera& camera, const Vec3d& direction) const;
+  bool view_left_the_keys(const Camera& camera) const;
+  void draw_lit(const Camera& camera, const FrameLight& light, const FramePlan& plan,
+                FrameStats& stats);
+  void fill_block(const Camera& camera, const FrameLight& light, const FramePlan& plan,
+                  int nearest);
+};
+
+// What a scene and its settings need compiled.
+ShaderFeatures needed_features(const GpuScene& scene, const RenderOptions& options);
+ScheduleOptions schedule_for(const RenderOptions& options);
+// Depth textures that a method holds.
+int maps_of(ShadowMethod method);
+
+}  // namespace atlas

@@ -1,0 +1,271 @@
+#include "libatlas/view/shaders.h"
+
+#include <fmt/format.h>
+
+namespace atlas {
+namespace {
+
+// Must agree with struct FrameBlock in lit_pass.cpp (std140).
+constexpr const char* kFrameBlock = R"(
+layout(std140, binding = 0) uniform Frame {
+  mat4 view_projection;
+  mat4 to_map0, to_map1;
+  vec4 eye;
+  vec4 light;       // direction towards it, intensity
+  vec4 ambient;     // rgb, exposure
+  vec4 weights;     // of the two keys, normal offset (world), texel (uv)
+  vec4 march;       // uv shift per depth towards the light, greatest height, tolerance (depth)
+  vec4 specular;    // strength, Blinn-Phong exponent, Ward alpha, 1 / texel
+} frame;
+)";
+
+constexpr const char* kNearest = R"(
+float visibility_at(sampler2DShadow map, vec2 uv, float depth) {
+  return texture(map, vec3((floor(uv * frame.specular.w) + 0.5) * frame.weights.w, depth));
+}
+)";
+
+constexpr const char* kBilinear = R"(
+float visibility_at(sampler2DShadow map, vec2 uv, float depth) {
+  return texture(map, vec3(uv, depth));
+}
+)";
+
+// The mean of 3x3 bilinear taps is a weighted sum over 4x4 texels, and four gathers read those.
+constexpr const char* kPcf3 = R"(
+float visibility_at(sampler2DShadow map, vec2 uv, float depth) {
+  vec2 texel = uv * frame.specular.w - 0.5;
+  vec2 f = fract(texel);
+  vec2 corner = (floor(texel) + 0.0) * frame.weights.w;
+  float s = frame.weights.w;
+  vec4 a = textureGather(map, corner, depth);
+  vec4 b = textureGather(map, corner + vec2(2.0 * s, 0.0), depth);
+  vec4 c = textureGather(map, corner + vec2(0.0, 2.0 * s), depth);
+  vec4 d = textureGather(map, corner + vec2(2.0 * s), depth);
+  vec2 g = 1.0 - f;
+  // Gathers come as (0,1) (1,1) (1,0) (0,0).
+  float row0 = g.x * a.w + a.z + b.w + f.x * b.z;
+  float row1 = g.x * a.x + a.y + b.x + f.x * b.y;
+  float row2 = g.x * c.w + c.z + d.w + f.x * d.z;
+  float row3 = g.x * c.x + c.y + d.x + f.x * d.y;
+  return (g.y * row0 + row1 + row2 + f.y * row3) * (1.0 / 9.0);
+}
+)";
+
+constexpr const char* kPcf5 = R"(
+float visibility_at(sampler2DShadow map, vec2 uv, float depth) {
+  float sum = 0.0;
+  for (int y = -2; y <= 2; ++y)
+    for (int x = -2; x <= 2; ++x)
+      sum += texture(map, vec3(uv + vec2(x, y) * frame.weights.w, depth));
+  return sum * 0.04;
+}
+)";
+
+constexpr const char* kOneMap = R"(
+layout(binding = 1) uniform sampler2DShadow map0;
+float visibility(vec3 p) {
+  vec3 m = (frame.to_map0 * vec4(p, 1.0)).xyz;
+  return visibility_at(map0, m.xy, m.z);
+}
+)";
+
+constexpr const char* kTwoMaps = R"(
+layout(binding = 1) uniform sampler2DShadow map0;
+layout(binding = 2) uniform sampler2DShadow map1;
+float visibility(vec3 p) {
+  vec3 m0 = (frame.to_map0 * vec4(p, 1.0)).xyz;
+  vec3 m1 = (frame.to_map1 * vec4(p, 1.0)).xyz;
+  float v = frame.weights.x * visibility_at(map0, m0.xy, m0.z) +
+            frame.weights.y * visibility_at(map1, m1.xy, m1.z);
+  return min(v, 1.0);
+}
+)";
+
+// See docs/player.md, "Marching". A height is a depth difference towards the key's light; at height
+// h the ray to the current light is over uv + h * shift.
+constexpr const char* kMarch = R"(
+layout(binding = 1) uniform sampler2DShadow map0;
+layout(binding = 3) uniform sampler2D depth0;
+float visibility(vec3 p) {
+  vec3 m = (frame.to_map0 * vec4(p, 1.0)).xyz;
+  vec2 shift = frame.march.xy;
+  float top = min(m.z, frame.march.z);
+  float best = 0.0, gap = 1e9;
+  for (int i = 0; i < MARCH_STEPS; ++i) {
+    float h = top * (float(i) / float(MARCH_STEPS));
+    float d = m.z - texture(depth0, m.xy + h * shift).x;
+    float g = abs(d - h);
+    if (d > frame.march.w && g < gap) {
+      gap = g;
+      best = d;
+    }
+  }
+  float d = m.z - texture(depth0, m.xy + best * shift).x;
+  if (d > frame.march.w && abs(d - best) < gap) best = d;
+  return visibility_at(map0, m.xy + best * shift, m.z - best + frame.march.w);
+}
+)";
+
+constexpr const char* kBlinnPhong = R"(
+float specular(vec3 n, vec3 l, vec3 v, float nl) {
+  return frame.specular.x * pow(max(dot(n, normalize(l + v)), 0.0), frame.specular.y);
+}
+)";
+
+// exp(-tan^2(delta) / a^2) / (4 pi a^2 sqrt(cos_i cos_o)), times cos_i.
+constexpr const char* kWard = R"(
+float specular(vec3 n, vec3 l, vec3 v, float nl) {
+  float nv = max(dot(n, v), 1e-3);
+  float nh = max(dot(n, normalize(l + v)), 1e-3);
+  float a2 = frame.specular.z * frame.specular.z;
+  float tangent2 = 1.0 / (nh * nh) - 1.0;
+  return frame.specular.x * nl * exp(-tangent2 / a2) /
+         (12.5663706 * a2 * sqrt(max(nl, 1e-3) * nv));
+}
+)";
+
+const char* filter_text(int pcf) {
+  return pcf <= 0 ? kNearest : pcf < 3 ? kBilinear : pcf < 5 ? kPcf3 : kPcf5;
+}
+
+const char* sampling_text(ShadowSampling shadow) {
+  switch (shadow) {
+    case ShadowSampling::none:
+      return "";
+    case ShadowSampling::one:
+      return kOneMap;
+    case ShadowSampling::two:
+      return kTwoMaps;
+    case ShadowSampling::march:
+      return kMarch;
+  }
+  return "";
+}
+
+bool lit(const ShaderFeatures& f) {
+  return f.shading != Shading::unlit;
+}
+bool shiny(const ShaderFeatures& f) {
+  return f.shading == Shading::blinn_phong || f.shading == Shading::ward;
+}
+bool coloured(const ShaderFeatures& f) {
+  return !f.visibility;
+}
+
+std::string vertex_text(const ShaderFeatures& f) {
+  std::string s = "#version 450 core\n";
+  s += kFrameBlock;
+  std::string body = "  gl_Position = frame.view_projection * vec4(position, 1.0);\n";
+  s += "layout(location = 0) in vec3 position;\n";
+  const auto pass = [&](int location, const char* type, const char* name) {
+    s += fmt::format("layout(location = {0}) in {1} {2};\nlayout(location = {0}) out {1} v_{2};\n",
+                     location, type, name);
+    body += fmt::format("  v_{0} = {0};\n", name);
+  };
+  if (lit(f)) {
+    s += "layout(location = 0) out vec3 v_world;\n";
+    body += "  v_world = position;\n";
+    pass(1, "vec3", "normal");
+  }
+  if (coloured(f)) pass(2, "vec3", "colour");
+  if (coloured(f) && f.textured) pass(3, "vec2", "texcoord");
+  if (coloured(f) && f.baked_vertices) pass(4, "vec3", "illumination");
+  return s + "void main() {\n" + body + "}\n";
+}
+
+std::string fragment_main(const ShaderFeatures& f) {
+  std::string s = "void main() {\n";
+  if (lit(f)) {
+    s += R"(  vec3 n = normalize(v_normal);
+  vec3 v = normalize(frame.eye.xyz - v_world);
+  if (dot(n, v) < 0.0) n = -n;
+  vec3 l = frame.light.xyz;
+  float nl = dot(n, l);
+)";
+    if (f.shadow == ShadowSampling::none)
+      s += "  float seen = nl > 0.0 ? 1.0 : 0.0;\n";
+    else
+      // The offset grows with the sine of the angle to the light, as the error of a texel does.
+      s += R"(  vec3 p = v_world + n * (frame.weights.z * sqrt(max(1.0 - nl * nl, 0.0)));
+  float seen = nl > 0.0 ? visibility(p) : 0.0;
+)";
+  }
+  if (f.visibility)
+    return s + (lit(f) ? "  result = vec4(seen);\n}\n" : "  result = vec4(1.0);\n}\n");
+  s += "  vec3 reflectance = v_colour;\n";
+  if (f.textured && !f.baked_textures) s += "  reflectance *= texture(diffuse, v_texcoord).rgb;\n";
+  s += "  vec3 light = vec3(0.0);\n";
+  if (f.baked_vertices) s += "  light += v_illumination;\n";
+  if (lit(f)) {
+    s += R"(  light += frame.ambient.rgb;
+  float reach = seen * max(nl, 0.0) * frame.light.w;
+  light += vec3(reach);
+)";
+  } else if (!f.baked_vertices && !f.baked_textures) {
+    s += "  light = vec3(1.0);\n";
+  }
+  s += "  vec3 colour = reflectance * light;\n";
+  if (f.textured && f.baked_textures) s += "  colour += texture(diffuse, v_texcoord).rgb;\n";
+  if (shiny(f))
+    s += "  if (reach > 0.0) colour += vec3(seen * frame.light.w * specular(n, l, v, nl));\n";
+  return s +
+         "  result = vec4(pow(clamp(colour * frame.ambient.w, 0.0, 1.0), vec3(1.0 / 2.2)), "
+         "1.0);\n}\n";
+}
+
+std::string fragment_text(const ShaderFeatures& f) {
+  std::string s = "#version 450 core\n";
+  s += kFrameBlock;
+  if (lit(f))
+    s += "layout(location = 0) in vec3 v_world;\nlayout(location = 1) in vec3 v_normal;\n";
+  if (coloured(f)) s += "layout(location = 2) in vec3 v_colour;\n";
+  if (coloured(f) && f.textured)
+    s += "layout(location = 3) in vec2 v_texcoord;\nlayout(binding = 0) uniform sampler2D "
+         "diffuse;\n";
+  if (coloured(f) && f.baked_vertices) s += "layout(location = 4) in vec3 v_illumination;\n";
+  s += "layout(location = 0) out vec4 result;\n";
+  if (lit(f) && f.shadow != ShadowSampling::none) {
+    s += filter_text(f.pcf);
+    if (f.shadow == ShadowSampling::march)
+      s += fmt::format("#define MARCH_STEPS {}\n", f.march_steps);
+    s += sampling_text(f.shadow);
+  }
+  if (coloured(f) && shiny(f)) s += f.shading == Shading::ward ? kWard : kBlinnPhong;
+  return s + fragment_main(f);
+}
+
+}  // namespace
+
+const char* name_of(Shading shading) {
+  switch (shading) {
+    case Shading::unlit:
+      return "unlit";
+    case Shading::lambert:
+      return "lambert";
+    case Shading::blinn_phong:
+      return "blinn-phong";
+    case Shading::ward:
+      return "ward";
+  }
+  return "";
+}
+
+ShaderText shader_text(const ShaderFeatures& features) {
+  return {vertex_text(features), fragment_text(features)};
+}
+
+std::vector<std::string> feature_names(const ShaderFeatures& f) {
+  std::vector<std::string> names{name_of(f.shading)};
+  if (lit(f) && f.shadow != ShadowSampling::none) {
+    constexpr const char* kSampling[] = {"", "one map", "two keys", "march"};
+    names.push_back(kSampling[int(f.shadow)]);
+    names.push_back(fmt::format("pcf {}", f.pcf));
+  }
+  if (f.textured) names.push_back(f.baked_textures ? "baked textures" : "diffuse textures");
+  if (f.baked_vertices) names.push_back("baked vertex light");
+  if (f.visibility) names.push_back("visibility output");
+  return names;
+}
+
+}  // namespace atlas

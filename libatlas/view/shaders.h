@@ -1,0 +1,49 @@
+// The player's shaders, put together from the pieces that a scene and its settings need: what is
+// not listed in the features is not in the text that the driver compiles.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace atlas {
+
+// How the moving light is reflected. Shadows never darken the ambient term.
+enum class Shading {
+  unlit,        // no moving light: baked light or plain colours
+  lambert,      // ambient + diffuse
+  blinn_phong,  // + specular (N.H)^n (Blinn 1977)
+  ward,         // + isotropic Ward 1992, normalised by 1/(4 pi a^2 sqrt(cos_i cos_o))
+};
+
+// What the fragment shader does with the shadow maps.
+enum class ShadowSampling {
+  none,
+  one,    // one map, in its own matrix: classic and hold
+  two,    // two keys, each in its own matrix, blended: linear and SLERP
+  march,  // the nearer key, entered along the ray to the current light
+};
+
+struct ShaderFeatures {
+  Shading shading = Shading::lambert;
+  ShadowSampling shadow = ShadowSampling::none;
+  bool textured = false;        // diffuse textures
+  bool baked_vertices = false;  // illumination at the vertices
+  bool baked_textures = false;  // the textures hold light (an exported atlas), not reflectance
+  int pcf = 3;              // 0: nearest texel; 1: bilinear; 3, 5: that many bilinear taps a side
+  int march_steps = 4;      // march: map samples along the ray
+  bool visibility = false;  // write the light's visibility instead of a colour
+  bool operator==(const ShaderFeatures&) const = default;
+};
+
+struct ShaderText {
+  std::string vertex, fragment;
+};
+
+ShaderText shader_text(const ShaderFeatures& features);
+
+// One word for each thing compiled in, for the plan: "lambert", "march", "pcf 3", ...
+std::vector<std::string> feature_names(const ShaderFeatures& features);
+
+const char* name_of(Shading shading);
+
+}  // namespace atlas

@@ -1,0 +1,109 @@
+#include "libatlas/view/shadow_pass.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace atlas {
+namespace {
+
+constexpr const char* kVertex = R"(#version 450 core
+layout(location = 0) in vec3 position;
+layout(location = 0) uniform mat4 to_clip;
+void main() { gl_Position = to_clip * vec4(position, 1.0); }
+)";
+constexpr const char* kFragment = "#version 450 core\nvoid main() {}\n";
+
+GlSampler make_sampler(bool compare) {
+  GLuint name = 0;
+  glCreateSamplers(1, &name);
+  const GLint filter = compare ? GL_LINEAR : GL_NEAREST;
+  glSamplerParameteri(name, GL_TEXTURE_MIN_FILTER, filter);
+  glSamplerParameteri(name, GL_TEXTURE_MAG_FILTER, filter);
+  glSamplerParameteri(name, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
+  glSamplerParameteri(name, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+  const float lit[4] = {1, 1, 1, 1};
+  glSamplerParameterfv(name, GL_TEXTURE_BORDER_COLOR, lit);
+  if (compare) {
+    glSamplerParameteri(name, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+    glSamplerParameteri(name, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  }
+  return GlSampler(name);
+}
+
+}  // namespace
+
+Result<ShadowPass> ShadowPass::make(int resolution, int maps) {
+  GLint largest = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+  if (resolution < 16 || resolution > largest)
+    return Status{ErrorCode::bad_option,
+                  fmt::format("shadow map of {} texels a side: the driver takes 16 to {}",
+                              resolution, largest)};
+  Result<GlProgram> program = link_program("shadow map", kVertex, kFragment);
+  if (!program.ok()) return program.status();
+  ShadowPass pass;
+  pass.program_ = std::move(program.value());
+  pass.compare_ = make_sampler(true);
+  pass.plain_ = make_sampler(false);
+  pass.resolution_ = resolution;
+  for (int i = 0; i < maps; ++i) {
+    Map map;
+    map.depth = make_texture(GL_DEPTH_COMPONENT32F, resolution, resolution);
+    map.frame = make_framebuffer();
+    const GLuint f = map.frame.get();
+    glNamedFramebufferTexture(f, GL_DEPTH_ATTACHMENT, map.depth.get(), 0);
+    glNamedFramebufferDrawBuffer(f, GL_NONE);
+    glNamedFramebufferReadBuffer(f, GL_NONE);
+    if (glCheckNamedFramebufferStatus(f, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+      return Status{ErrorCode::unsupported, "the driver does not draw into 32-bit depth textures"};
+    pass.maps_.push_back(std::move(map));
+  }
+  if (Status s = check_gl("making shadow maps"); !s.ok()) return s;
+  return pass;
+}
+
+std::uint32_t ShadowPass::draw(const GpuScene& scene, int slot, const LightFit& fit, double begin,
+                               double end, const ShadowBias& bias) {
+  Map& map = maps_[std::size_t(slot)];
+  glBindFramebuffer(GL_FRAMEBUFFER, map.frame.get());
+  glViewport(0, 0, resolution_, resolution_);
+  if (begin <= 0) {
+    const float far = 1;
+    map.fit = fit;
+    glDepthMask(GL_TRUE);
+    glClearNamedFramebufferfv(map.frame.get(), GL_DEPTH, 0, &far);
+  }
+  const auto at = [&](double fraction) {
+    return std::uint32_t(std::lround(std::min(fraction, 1.0) * scene.triangles));
+  };
+  const std::uint32_t first = at(begin), count = at(end) - first;
+  if (count == 0) return 0;
+  float matrix[16];
+  for (int i = 0; i < 16; ++i) matrix[i] = float(map.fit.to_clip[i]);
+  glUseProgram(program_.get());
+  glUniformMatrix4fv(0, 1, GL_FALSE, matrix);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(float(bias.slope), float(bias.constant));
+  glEnable(GL_DEPTH_CLAMP);  // casters in front of the range still cast
+  glBindVertexArray(scene.casters.get());
+  glDrawElements(GL_TRIANGLES, GLsizei(count * 3), GL_UNSIGNED_INT,
+                 reinterpret_cast<const void*>(std::uintptr_t(first) * 12));
+  glDisable(GL_DEPTH_CLAMP);
+  glDisable(GL_POLYGON_OFFSET_FILL);
+  return count;
+}
+
+void ShadowPass::bind_compare(int slot, int unit) const {
+  glBindTextureUnit(GLuint(unit), maps_[std::size_t(slot)].depth.get());
+  glBindSampler(GLuint(unit), compare_.get());
+}
+
+void ShadowPass::bind_depth(int slot, int unit) const {
+  glBindTextureUnit(GLuint(unit), maps_[std::size_t(slot)].depth.get());
+  glBindSampler(GLuint(unit), plain_.get());
+}
+
+}  // namespace atlas

@@ -1,0 +1,44 @@
+// Internal: shadow maps of one light, and drawing any slice of the casters into one of them.
+#pragma once
+
+#include <vector>
+
+#include "libatlas/shadow/fit.h"
+#include "libatlas/view/gpu_scene.h"
+
+namespace atlas {
+
+struct ShadowBias {
+  double slope = 2.0;     // polygon offset in units of the depth's slope across a texel
+  double constant = 2.0;  // polygon offset in units of the smallest depth step
+};
+
+class ShadowPass {
+ public:
+  // `maps` square depth textures of `resolution` texels a side.
+  static Result<ShadowPass> make(int resolution, int maps);
+
+  // Draws triangles [begin, end) (fractions of all) into map `slot`; begin == 0 clears it first and
+  // remembers `fit`. Returns the number of triangles submitted.
+  std::uint32_t draw(const GpuScene& scene, int slot, const LightFit& fit, double begin, double end,
+                     const ShadowBias& bias);
+
+  const LightFit& fit(int slot) const { return maps_[std::size_t(slot)].fit; }
+  // Binds map `slot` for depth comparison (bilinear, lit outside) or for its depths (nearest).
+  void bind_compare(int slot, int unit) const;
+  void bind_depth(int slot, int unit) const;
+  int resolution() const { return resolution_; }
+
+ private:
+  struct Map {
+    GlTexture depth;
+    GlFramebuffer frame;
+    LightFit fit;
+  };
+  std::vector<Map> maps_;
+  GlSampler compare_, plain_;
+  GlProgram program_;
+  int resolution_ = 0;
+};
+
+}  // namespace atlas

@@ -1,0 +1,213 @@
+#include "libatlas/view/view_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <numeric>
+#include <unordered_map>
+
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+constexpr std::uint32_t kNone = Scene::kNoTexcoord;
+
+// Positions that are equal bit for bit become one: readers keep what files say, and many files
+// repeat every corner, which would make every edge a crease.
+std::vector<std::uint32_t> weld(const std::vector<Vec3f>& positions) {
+  struct Hash {
+    std::size_t operator()(const Vec3f& v) const {
+      std::uint32_t b[3];
+      const float f[3] = {v.x + 0.0f, v.y + 0.0f, v.z + 0.0f};  // -0 and 0 are the same point
+      std::memcpy(b, f, sizeof b);
+      std::uint64_t h = 0x9e3779b97f4a7c15u;
+      for (std::uint32_t x : b) h = (h ^ x) * 0xff51afd7ed558ccdu, h ^= h >> 32;
+      return std::size_t(h);
+    }
+  };
+  std::unordered_map<Vec3f, std::uint32_t, Hash> first;
+  first.reserve(positions.size());
+  std::vector<std::uint32_t> out(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    out[i] = first.try_emplace(positions[i], std::uint32_t(i)).first->second;
+  return out;
+}
+
+// Triangles around each welded vertex, as offsets into a list.
+struct Fans {
+  std::vector<std::uint32_t> begin, triangles;
+};
+
+Fans make_fans(const std::vector<std::uint32_t>& welded,
+               const std::vector<std::uint32_t>& indices) {
+  Fans fans;
+  fans.begin.assign(welded.size() + 1, 0);
+  for (std::uint32_t i : indices) ++fans.begin[welded[i] + 1];
+  std::partial_sum(fans.begin.begin(), fans.begin.end(), fans.begin.begin());
+  fans.triangles.resize(indices.size());
+  std::vector<std::uint32_t> at(fans.begin.begin(), fans.begin.end() - 1);
+  for (std::size_t c = 0; c < indices.size(); ++c)
+    fans.triangles[at[welded[indices[c]]]++] = std::uint32_t(c / 3);
+  return fans;
+}
+
+// Area-weighted normals of all triangles; zero for degenerate ones.
+std::vector<glm::vec3> face_normals(const Scene& scene) {
+  std::vector<glm::vec3> normals(scene.triangle_count());
+  for (std::size_t t = 0; t < normals.size(); ++t) {
+    const glm::dvec3 a = to_dvec(scene.positions[scene.indices[3 * t]]),
+                     b = to_dvec(scene.positions[scene.indices[3 * t + 1]]),
+                     c = to_dvec(scene.positions[scene.indices[3 * t + 2]]);
+    normals[t] = glm::vec3(glm::cross(b - a, c - a));
+  }
+  return normals;
+}
+
+glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) {
+  // In double: the squares of small scenes' areas underflow floats.
+  const glm::dvec3 d(v);
+  const double length = glm::length(d);
+  return length > 0 ? glm::vec3(d / length) : otherwise;
+}
+
+// The normal of one corner: the mean of the faces around its vertex that lie within the crease
+// angle of its own face. Faces of opposite winding count as if they were turned.
+glm::vec3 corner_normal(const Fans& fans, const std::vector<glm::vec3>& faces, std::uint32_t vertex,
+                        std::uint32_t own, float least_cosine) {
+  const glm::vec3 mine = unit_or(faces[own], glm::vec3(0, 0, 1));
+  glm::vec3 sum(0);
+  for (std::uint32_t i = fans.begin[vertex]; i < fans.begin[vertex + 1]; ++i) {
+    const glm::vec3& other = faces[fans.triangles[i]];
+    const float cosine = glm::dot(unit_or(other, mine), mine);
+    if (std::abs(cosine) >= least_cosine) sum += cosine < 0 ? -other : other;
+  }
+  return unit_or(sum, mine);
+}
+
+// One drawn vertex for each different corner.
+struct CornerKey {
+  std::uint32_t position, texcoord, material;
+  std::int16_t normal[3];
+  bool operator==(const CornerKey& o) const {
+    return position == o.position && texcoord == o.texcoord && material == o.material &&
+           std::equal(normal, normal + 3, o.normal);
+  }
+};
+struct CornerHash {
+  std::size_t operator()(const CornerKey& k) const {
+    std::uint64_t h = k.position * 0x9e3779b97f4a7c15u ^ k.texcoord * 0xc2b2ae3d27d4eb4fu ^
+                      k.material * 0x165667b19e3779f9u;
+    for (std::int16_t n : k.normal) h = (h ^ std::uint16_t(n)) * 0xff51afd7ed558ccdu, h ^= h >> 29;
+    return std::size_t(h);
+  }
+};
+
+class Builder {
+ public:
+  Builder(const Scene& scene, const ViewSceneOptions& options)
+      : scene_(scene),
+        welded_(weld(scene.positions)),
+        fans_(make_fans(welded_, scene.indices)),
+        faces_(face_normals(scene)),
+        cosine_(float(std::cos(options.crease_degrees * std::numbers::pi / 180))) {
+    textured_ = scene.textured() && !scene.texcoord_indices.empty();
+  }
+
+  std::int32_t texture_of(std::uint32_t triangle) const {
+    if (!textured_ || scene_.triangle_material.empty()) return -1;
+    return scene_.materials[scene_.triangle_material[triangle]].texture;
+  }
+
+  // Triangles grouped by texture, otherwise in input order.
+  std::vector<std::uint32_t> order() const {
+    std::vector<std::uint32_t> triangles(scene_.triangle_count());
+    std::iota(triangles.begin(), triangles.end(), 0u);
+    std::stable_sort(triangles.begin(), triangles.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return texture_of(a) < texture_of(b);
+    });
+    return triangles;
+  }
+
+  ViewScene build() {
+    for (std::uint32_t t : order()) {
+      const std::int32_t texture = texture_of(t);
+      if (view_.batches.empty() || view_.batches.back().texture != texture)
+        view_.batches.push_back({std::uint32_t(view_.indices.size()), 0, texture});
+      for (int k = 0; k < 3; ++k) view_.indices.push_back(vertex(t, k));
+      view_.batches.back().count += 3;
+    }
+    add_casters();
+    return std::move(view_);
+  }
+
+ private:
+  std::uint32_t vertex(std::uint32_t t, int k) {
+    const std::uint32_t corner = 3 * t + std::uint32_t(k), p = scene_.indices[corner];
+    const glm::vec3 n = corner_normal(fans_, faces_, welded_[p], t, cosine_);
+    CornerKey key{scene_.lit() ? p : welded_[p], kNone, 0, {}};
+    if (!scene_.triangle_material.empty()) key.material = scene_.triangle_material[t];
+    if (textured_) key.texcoord = scene_.texcoord_indices[corner];
+    for (int i = 0; i < 3; ++i) key.normal[i] = std::int16_t(std::lround(n[i] * 16000));
+    const auto [it, fresh] = known_.try_emplace(key, std::uint32_t(view_.positions.size()));
+    if (!fresh) return it->second;
+    view_.positions.push_back(scene_.positions[p]);
+    view_.normals.push_back(from_glm(n));
+    view_.colours.push_back(scene_.materials.empty() ? Vec3f{1, 1, 1}
+                                                     : scene_.materials[key.material].diffuse);
+    if (textured_)
+      view_.texcoords.push_back(key.texcoord == kNone ? Vec2f{} : scene_.texcoords[key.texcoord]);
+    if (scene_.lit()) view_.illumination.push_back(scene_.illumination[p]);
+    return it->second;
+  }
+
+  void add_casters() {
+    std::vector<std::uint32_t> renumbered(scene_.positions.size(), kNone);
+    glm::dvec3 low(1e300), high(-1e300);
+    for (std::uint32_t i : scene_.indices) {
+      const std::uint32_t w = welded_[i];
+      if (renumbered[w] == kNone) {
+        renumbered[w] = std::uint32_t(view_.caster_positions.size());
+        view_.caster_positions.push_back(scene_.positions[w]);
+        low = glm::min(low, to_dvec(scene_.positions[w]));
+        high = glm::max(high, to_dvec(scene_.positions[w]));
+      }
+      view_.caster_indices.push_back(renumbered[w]);
+    }
+    view_.bounds = {from_glm(low), from_glm(high)};
+  }
+
+  const Scene& scene_;
+  std::vector<std::uint32_t> welded_;
+  Fans fans_;
+  std::vector<glm::vec3> faces_;
+  float cosine_;
+  bool textured_ = false;
+  ViewScene view_;
+  std::unordered_map<CornerKey, std::uint32_t, CornerHash> known_;
+};
+
+double light_scale(const std::vector<Vec3f>& illumination) {
+  if (illumination.empty()) return 1;
+  std::vector<float> y;
+  y.reserve(illumination.size());
+  for (const Vec3f& e : illumination) y.push_back(0.2126f * e.x + 0.7152f * e.y + 0.0722f * e.z);
+  const auto at = y.begin() + std::ptrdiff_t(double(y.size() - 1) * 0.99);
+  std::nth_element(y.begin(), at, y.end());
+  return *at > 0 ? 1.0 / *at : 1.0;
+}
+
+}  // namespace
+
+Result<ViewScene> make_view_scene(const Scene& scene, const ViewSceneOptions& options) {
+  if (scene.triangle_count() == 0)
+    return Status{ErrorCode::bad_input, "the scene has no triangles: there is nothing to show"};
+  ViewScene view = Builder(scene, options).build();
+  if (view.textured()) view.textures = scene.textures;
+  view.textures_hold_light = options.textures_hold_light && view.textured();
+  view.light_scale = light_scale(view.illumination);
+  return view;
+}
+
+}  // namespace atlas
