@@ -115,8 +115,15 @@ class Finder {
   double cell_ = 1;
 };
 
+struct Tally {
+  SampledSlip slip;
+  std::size_t outside = 0, all = 0;
+  double least_cosine = 0, turned = 0, area = 0;
+};
+
 void sample(const Flat& fine, const Finder& finder, double density, double texel,
-            std::mt19937& random, SampledSlip& out, std::size_t& outside) {
+            std::mt19937& random, Tally& tally) {
+  SampledSlip& out = tally.slip;
   std::uniform_real_distribution<double> unit(0, 1);
   double x = unit(random), y = unit(random);
   if (x + y > 1) {
@@ -138,10 +145,14 @@ void sample(const Flat& fine, const Finder& finder, double density, double texel
       glm::length(v.x * coarse->p[0] + v.y * coarse->p[1] + v.z * coarse->p[2] - p) / texel;
   if (shift > 1e-7) {
     out.outside = std::max(out.outside, shift + gap);
-    ++outside;
+    ++tally.outside;
   } else {
     out.inside = std::max(out.inside, gap);
-    out.least_cosine = std::min(out.least_cosine, glm::dot(fine.normal(), coarse->normal()));
+    const double twice = glm::length(glm::cross(fine.p[1] - fine.p[0], fine.p[2] - fine.p[0]));
+    if (twice > 0 && glm::dot(fine.normal(), coarse->normal()) < tally.least_cosine) {
+      tally.turned += twice;
+    }
+    tally.area += twice;
   }
 }
 
@@ -190,43 +201,42 @@ std::size_t broken_triangles(const ChartedMesh& mesh, const SimplifiedMesh& coar
 }
 
 SampledSlip sample_slip(const ChartedMesh& mesh, const SimplifiedMesh& coarse,
-                        std::span<const double> texels_per_unit, int samples_per_triangle) {
+                        std::span<const double> texels_per_unit, double max_turn_degrees) {
+  constexpr int kSamplesPerTriangle = 12;
   std::vector<std::vector<Flat>> triangles(mesh.charts.charts.size());
   for (std::size_t t = 0; t < coarse.triangle_chart.size(); ++t) {
     triangles[coarse.triangle_chart[t]].push_back(flat(mesh, &coarse.uv_indices[3 * t]));
   }
-  SampledSlip out;
+  Tally tally;
+  tally.least_cosine = std::cos(max_turn_degrees * 3.14159265358979 / 180) - 1e-6;
   std::mt19937 random(7);
-  std::size_t outside = 0, all = 0;
   for (std::size_t c = 0; c < triangles.size(); ++c) {
     const Finder finder(std::move(triangles[c]));
     const Chart& chart = mesh.charts.charts[c];
+    std::vector<Flat> fine;
     double space = 0, area = 0;
-    for (int pass = 0; pass < 2; ++pass) {
-      for (std::uint32_t i = 0; i < chart.triangle_count; ++i) {
-        const std::uint32_t t = mesh.charts.chart_triangles[chart.first_triangle + i];
-        Flat fine = flat(mesh, &mesh.charts.triangle_uv[std::size_t{3} * t]);
-        double twice = cross(fine.uv[1] - fine.uv[0], fine.uv[2] - fine.uv[0]);
-        if (twice < 0) {
-          std::swap(fine.uv[1], fine.uv[2]);
-          std::swap(fine.p[1], fine.p[2]);
-          twice = -twice;
-        }
-        if (pass == 0) {
-          space += glm::length(glm::cross(fine.p[1] - fine.p[0], fine.p[2] - fine.p[0]));
-          area += twice;
-          continue;
-        }
-        if (!(twice > 0)) continue;
-        const double texel = std::sqrt(space / area) / texels_per_unit[c];
-        for (int s = 0; s < samples_per_triangle; ++s, ++all) {
-          sample(fine, finder, texels_per_unit[c], texel, random, out, outside);
-        }
+    for (std::uint32_t i = 0; i < chart.triangle_count; ++i) {
+      const std::uint32_t t = mesh.charts.chart_triangles[chart.first_triangle + i];
+      Flat f = flat(mesh, &mesh.charts.triangle_uv[std::size_t{3} * t]);
+      double twice = cross(f.uv[1] - f.uv[0], f.uv[2] - f.uv[0]);
+      if (twice < 0) {
+        std::swap(f.uv[1], f.uv[2]);
+        std::swap(f.p[1], f.p[2]);
+      }
+      space += glm::length(glm::cross(f.p[1] - f.p[0], f.p[2] - f.p[0]));
+      area += std::abs(twice);
+      if (twice != 0) fine.push_back(f);
+    }
+    const double texel = std::sqrt(space / area) / texels_per_unit[c];
+    for (const Flat& f : fine) {
+      for (int s = 0; s < kSamplesPerTriangle; ++s, ++tally.all) {
+        sample(f, finder, texels_per_unit[c], texel, random, tally);
       }
     }
   }
-  out.outside_share = all ? double(outside) / double(all) : 0;
-  return out;
+  tally.slip.outside_share = tally.all ? double(tally.outside) / double(tally.all) : 0;
+  tally.slip.turned_share = tally.area > 0 ? tally.turned / tally.area : 0;
+  return tally.slip;
 }
 
 double uv_area(const ChartedMesh& mesh, const SimplifiedMesh& coarse) {

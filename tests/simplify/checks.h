@@ -25,10 +25,10 @@ std::size_t broken_triangles(const ChartedMesh& mesh, const SimplifiedMesh& coar
 struct SampledSlip {
   double inside = 0, outside = 0;  // largest
   double outside_share = 0;        // of the samples
-  double least_cosine = 1;         // between normals there
+  double turned_share = 0;         // of the area: normals there differ by more than the angle given
 };
 SampledSlip sample_slip(const ChartedMesh& mesh, const SimplifiedMesh& coarse,
-                        std::span<const double> texels_per_unit, int samples_per_triangle);
+                        std::span<const double> texels_per_unit, double max_turn_degrees);
 
 double uv_area(const ChartedMesh& mesh, const SimplifiedMesh& coarse);
 

@@ -180,4 +180,89 @@ ChartedMesh partition(int n) {
   return builder.build();
 }
 
+ChartedMesh torus(int n) {
+  ChartedMeshBuilder builder;
+  builder.add_grid(3 * n, n, [n](double s, double t) {
+    const double a = 2 * kPi * (std::lround(s * 3 * n) % (3 * n)) / (3 * n),
+                 b = 2 * kPi * (std::lround(t * n) % n) / n;
+    const double r = 3 + std::cos(b);
+    return ChartedMeshBuilder::Vertex{
+        {as_float(r * std::cos(a)), as_float(r * std::sin(a)), as_float(std::sin(b))},
+        {6 * kPi * s, 2 * kPi * t}};
+  });
+  return builder.build();
+}
+
+ChartedMesh moebius(int n) {
+  ChartedMeshBuilder builder;
+  builder.add_grid(6 * n, n, [n](double s, double t) {
+    const int step = static_cast<int>(std::lround(s * 6 * n)),
+              row = static_cast<int>(std::lround(t * n));
+    // Half a turn further, the row runs the other way.
+    const double a = 2 * kPi * (step % (6 * n)) / (6 * n);
+    const double w = 2.0 * (step == 6 * n ? n - row : row) / n - 1;
+    const double r = 4 + w * std::cos(a / 2);
+    return ChartedMeshBuilder::Vertex{
+        {as_float(r * std::cos(a)), as_float(r * std::sin(a)), as_float(w * std::sin(a / 2))},
+        {8 * kPi * s, 2 * t}};
+  });
+  return builder.build();
+}
+
+ChartedMesh two_sided(int n) {
+  ChartedMeshBuilder builder;
+  for (const bool back : {false, true}) {
+    builder.add_grid(n, n, [back](double s, double t) {
+      return ChartedMeshBuilder::Vertex{{as_float(back ? t : s), as_float(back ? s : t), 0},
+                                        {s, t}};
+    });
+  }
+  return builder.build();
+}
+
+ChartedMesh touching_plates(int n, int m) {
+  ChartedMeshBuilder builder;
+  builder.add_grid(n, n, [](double s, double t) {
+    return ChartedMeshBuilder::Vertex{{as_float(s), as_float(t - 1), 0}, {s, t}};
+  });
+  builder.add_grid(m, m, [](double s, double t) {
+    return ChartedMeshBuilder::Vertex{{as_float(s), 0, as_float(t)}, {s, t}};
+  });
+  return builder.build();
+}
+
+ChartedMesh patchwork(int n, int holes, double amplitude, std::uint32_t seed) {
+  constexpr int kSites = 9, kLabels = 8;
+  const auto label = [&](int i, int j) {
+    int best = 0;
+    double least = 1e300;
+    for (int k = 0; k < kSites; ++k) {
+      const auto id = static_cast<std::uint32_t>(k);
+      const double x = noise(seed, 2 * id) % 1000 / 1000.0 * n,
+                   y = noise(seed, 2 * id + 1) % 1000 / 1000.0 * n;
+      const double d = std::hypot(i - x, j - y) *
+                       (1 + noise(static_cast<std::uint32_t>(i + 31 * j), seed) % 100 / 400.0);
+      if (d < least) {
+        least = d;
+        best = k % kLabels;
+      }
+    }
+    return best;
+  };
+  ChartedMeshBuilder builder;
+  for (int chart = holes; chart < kLabels; ++chart) {
+    bool any = false;
+    for (int i = 0; i < n * n && !any; ++i) any = label(i % n, i / n) == chart;
+    if (!any) continue;
+    builder.add_grid(
+        n, n,
+        [&](double s, double t) {
+          const double h = amplitude * std::sin(5 * s + seed) * std::cos(4 * t);
+          return ChartedMeshBuilder::Vertex{{as_float(s), as_float(t), as_float(h)}, {s, t}};
+        },
+        [&](int i, int j) { return label(i, j) == chart; });
+  }
+  return builder.build();
+}
+
 }  // namespace atlas::simplify_test

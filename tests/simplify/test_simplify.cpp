@@ -1,48 +1,11 @@
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cmath>
-
-#include "tests/simplify/checks.h"
+#include "tests/simplify/expect_sound.h"
 
 namespace atlas {
 namespace {
 
 using namespace simplify_test;
-
-SimplifiedMesh simplify(const ChartedMesh& mesh, double density,
-                        const SimplifyOptions& options = {}, const Context& context = {}) {
-  const std::vector<double> densities(mesh.charts.charts.size(), density);
-  auto result = simplify_charts(mesh.view(), mesh.charts, densities, options, context);
-  EXPECT_TRUE(result.ok()) << result.status().message();
-  return result.ok() ? std::move(*result) : SimplifiedMesh{};
-}
-
-// What holds for every mesh without defects.
-void expect_sound(const ChartedMesh& mesh, const SimplifiedMesh& coarse, double density,
-                  const SimplifyOptions& options = {}) {
-  EXPECT_EQ(coarse.triangles_in, mesh.triangles());
-  EXPECT_EQ(coarse.triangles_out, coarse.triangle_chart.size());
-  EXPECT_EQ(coarse.indices.size(), 3 * coarse.triangle_chart.size());
-  EXPECT_EQ(coarse.uv_indices.size(), coarse.indices.size());
-  EXPECT_EQ(broken_triangles(mesh, coarse), 0U);
-  const OpenEdges before = open_edges(mesh.positions, mesh.indices),
-                  after = open_edges(mesh.positions, coarse.indices);
-  EXPECT_LE(after.count, before.count);
-  EXPECT_NEAR(after.length, before.length, 1e-3 * before.length);
-  const std::vector<double> densities(mesh.charts.charts.size(), density);
-  const SampledSlip slip = sample_slip(mesh, coarse, densities, 12);
-  std::printf(
-      "%zu -> %zu triangles, slip %.4f (sampled %.4f, outside %.4f, share %.4f), turn %.1f, %.3f "
-      "s\n",
-      mesh.triangles(), coarse.triangle_chart.size(), coarse.max_slip_texels, slip.inside,
-      slip.outside, slip.outside_share, coarse.max_turn_degrees, coarse.cpu_seconds);
-  EXPECT_LE(slip.inside, coarse.max_slip_texels + 1e-6);
-  EXPECT_LE(slip.outside, options.max_slip_texels * 1.000001);
-  EXPECT_LE(coarse.max_slip_texels, options.max_slip_texels);
-  EXPECT_LE(coarse.max_turn_degrees, options.max_turn_degrees);
-  EXPECT_GE(slip.least_cosine, std::cos(options.max_turn_degrees * 3.14159265 / 180) - 1e-6);
-}
 
 TEST(Simplify, BoxBecomesTwelveTriangles) {
   const ChartedMesh mesh = box(24);
@@ -92,6 +55,76 @@ TEST(Simplify, WallsThatShareANonManifoldEdge) {
   const SimplifiedMesh coarse = simplify(mesh, 100);
   expect_sound(mesh, coarse, 100);
   EXPECT_EQ(coarse.triangles_out, 6U);
+}
+
+TEST(Simplify, ChartsThatMeetThemselves) {
+  const ChartedMesh ring = torus(24), band = moebius(12);
+  const SimplifiedMesh coarse_ring = simplify(ring, 8), coarse_band = simplify(band, 8);
+  expect_sound(ring, coarse_ring, 8);
+  expect_sound(band, coarse_band, 8);
+  EXPECT_LT(coarse_ring.triangles_out, ring.triangles() / 4);
+  EXPECT_LT(coarse_band.triangles_out, band.triangles() / 4);
+  // The cuts are simplified, too: a vertex of a seam is used by fewer edges than before.
+  EXPECT_EQ(open_edges(ring.positions, coarse_ring.indices).count, 0U);
+}
+
+TEST(Simplify, BothSidesOfAPlate) {
+  const ChartedMesh mesh = two_sided(20);
+  const SimplifiedMesh coarse = simplify(mesh, 100);
+  expect_sound(mesh, coarse, 100);
+  EXPECT_EQ(coarse.triangles_out, 4U);
+}
+
+TEST(Simplify, OpenBordersThatShareSomePoints) {
+  const ChartedMesh mesh = touching_plates(24, 16);
+  const SimplifiedMesh coarse = simplify(mesh, 200);
+  EXPECT_EQ(broken_triangles(mesh, coarse), 0U);
+  EXPECT_EQ(coarse.triangles_out, 4U);
+}
+
+TEST(Simplify, ChartsOfDifferentDensity) {
+  const ChartedMesh mesh = sphere(24);
+  const std::vector<double> densities = {10, 200, 30, 60, 15, 100};
+  auto result = simplify_charts(mesh.view(), mesh.charts, densities, {}, {});
+  ASSERT_TRUE(result.ok());
+  expect_sound(mesh, *result, densities);
+  std::vector<std::size_t> count(6, 0);
+  for (const std::uint32_t c : result->triangle_chart) ++count[c];
+  EXPECT_GT(count[1], 4 * count[0]);
+}
+
+TEST(Simplify, ABoundOfItsOwn) {
+  const ChartedMesh mesh = bumpy(48, 0.05);
+  std::size_t last = mesh.triangles() + 1;
+  for (const double slip : {0.01, 0.1, 0.5, 2.0}) {
+    SimplifyOptions options;
+    options.max_slip_texels = slip;
+    const SimplifiedMesh coarse = simplify(mesh, 200, options);
+    expect_sound(mesh, coarse, 200, options);
+    EXPECT_LT(coarse.triangles_out, last);
+    last = coarse.triangles_out;
+  }
+}
+
+TEST(Simplify, ScaleFree) {
+  const ChartedMesh mesh = sphere(16);
+  ChartedMesh large = mesh;
+  constexpr float kScale = 1024;
+  for (Vec3f& p : large.positions) p = {kScale * p.x, kScale * p.y, kScale * p.z};
+  for (Vec2d& u : large.charts.uvs) u = {kScale * u.x, kScale * u.y};
+  EXPECT_EQ(simplify(mesh, 64).uv_indices, simplify(large, 64.0 / kScale).uv_indices);
+}
+
+// Charts of random outline over a height field: seams of every kind, points where many charts
+// meet, charts in several parts that touch at points, holes.
+TEST(Simplify, Patchworks) {
+  for (std::uint32_t seed = 1; seed <= 24; ++seed) {
+    SCOPED_TRACE(seed);
+    const ChartedMesh mesh = patchwork(28, static_cast<int>(seed % 4), seed % 3 * 0.04, seed);
+    const SimplifiedMesh coarse = simplify(mesh, 60);
+    expect_sound(mesh, coarse, 60);
+    EXPECT_LT(coarse.triangles_out, mesh.triangles());
+  }
 }
 
 TEST(Simplify, SameForEveryThreadCount) {

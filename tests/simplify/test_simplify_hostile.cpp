@@ -1,1 +1,212 @@
 #include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "tests/simplify/expect_sound.h"
+
+namespace atlas {
+namespace {
+
+using namespace simplify_test;
+
+using Vertices = std::vector<ChartedMeshBuilder::Vertex>;
+
+ChartedMeshBuilder::Vertex flat_vertex(double x, double y) {
+  return {{static_cast<float>(x), static_cast<float>(y), 0}, {x, y}};
+}
+
+TEST(SimplifyHostile, FlippedTriangles) {
+  ChartedMesh mesh = box(12);
+  std::mt19937 random(3);
+  for (std::uint32_t t = 0; t < mesh.triangles(); ++t) {
+    if (random() % 3 != 0) continue;
+    std::swap(mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]);
+    std::swap(mesh.charts.triangle_uv[3 * t + 1], mesh.charts.triangle_uv[3 * t + 2]);
+    mesh.charts.flipped_triangles.push_back(t);
+  }
+  const SimplifiedMesh coarse = simplify(mesh, 100);
+  expect_sound(mesh, coarse, 100);
+  EXPECT_EQ(coarse.triangles_out, 12U);
+}
+
+TEST(SimplifyHostile, TrianglesThatAreListedTwiceStay) {
+  ChartedMeshBuilder builder;
+  Vertices vertices;
+  std::vector<std::uint32_t> triangles;
+  constexpr std::uint32_t n = 8;
+  for (std::uint32_t j = 0; j <= n; ++j) {
+    for (std::uint32_t i = 0; i <= n; ++i) vertices.push_back(flat_vertex(i, j));
+  }
+  for (std::uint32_t j = 0; j < n; ++j) {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const std::uint32_t a = j * (n + 1) + i, b = a + 1, d = a + n + 1, c = d + 1;
+      triangles.insert(triangles.end(), {a, b, c, a, c, d});
+      if (i == 3 && j == 4) triangles.insert(triangles.end(), {a, b, c});
+    }
+  }
+  builder.add_chart(vertices, triangles);
+  const ChartedMesh mesh = builder.build();
+  const SimplifiedMesh coarse = simplify(mesh, 10);
+  EXPECT_EQ(broken_triangles(mesh, coarse), 0U);
+  EXPECT_LT(coarse.triangles_out, mesh.triangles() / 2);
+  EXPECT_GE(coarse.triangles_out, 3U);
+}
+
+TEST(SimplifyHostile, DegenerateTrianglesGoOrStayButDoNotMultiply) {
+  ChartedMeshBuilder builder;
+  // A strip whose middle row has triangles without area: corners in line, or two equal.
+  Vertices vertices;
+  std::vector<std::uint32_t> triangles;
+  constexpr std::uint32_t n = 12;
+  for (std::uint32_t i = 0; i <= n; ++i) vertices.push_back(flat_vertex(i, 0));
+  for (std::uint32_t i = 0; i <= n; ++i) vertices.push_back(flat_vertex(i, 1));
+  for (std::uint32_t i = 0; i <= n; ++i) vertices.push_back(flat_vertex(i, 2));
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t a = i, b = i + 1, c = i + n + 1, d = c + 1, e = c + n + 1, f = e + 1;
+    triangles.insert(triangles.end(), {a, b, c, b, d, c});
+    if (i % 4 == 1) {  // a vertex on the edge c d, joined below by a triangle without area
+      const auto m = static_cast<std::uint32_t>(vertices.size());
+      vertices.push_back(flat_vertex(i + 0.5, 1));
+      triangles.insert(triangles.end(), {c, d, m, c, m, e, m, d, f, m, f, e});
+    } else {
+      triangles.insert(triangles.end(), {c, d, f, c, f, e});
+    }
+    if (i % 5 == 0) triangles.insert(triangles.end(), {c, c, e});
+  }
+  builder.add_chart(vertices, triangles);
+  const ChartedMesh mesh = builder.build();
+  const SimplifiedMesh coarse = simplify(mesh, 10);
+  EXPECT_EQ(coarse.degenerate_in, 6U);
+  EXPECT_EQ(coarse.degenerate_dropped, 3U);
+  EXPECT_EQ(coarse.degenerate_kept, 0U);
+  EXPECT_EQ(broken_triangles(mesh, coarse), 0U);
+  EXPECT_EQ(coarse.triangles_out, 2U);
+  EXPECT_NEAR(uv_area(mesh, coarse), 2.0 * n, 1e-9);
+}
+
+TEST(SimplifyHostile, OnlyDegenerateTriangles) {
+  ChartedMeshBuilder builder;
+  builder.add_chart({flat_vertex(0, 0), flat_vertex(1, 0), flat_vertex(2, 0)}, {0, 1, 2, 1, 1, 2});
+  builder.add_chart({flat_vertex(5, 5), flat_vertex(5, 5), flat_vertex(5, 5)}, {0, 1, 2});
+  const ChartedMesh mesh = builder.build();
+  const SimplifiedMesh coarse = simplify(mesh, 10);
+  EXPECT_EQ(coarse.degenerate_in, 3U);
+  EXPECT_EQ(coarse.degenerate_kept + coarse.degenerate_dropped, 3U);
+  EXPECT_EQ(coarse.triangles_out, coarse.degenerate_kept);
+}
+
+TEST(SimplifyHostile, FansThatTouchAtOneVertex) {
+  // Two plates in one chart share a single uv; two more share the position only.
+  ChartedMeshBuilder builder;
+  builder.add_grid(
+      16, 16, [](double s, double t) { return flat_vertex(16 * s, 16 * t); },
+      [](int i, int j) { return (i < 8) == (j < 8); });
+  builder.add_grid(8, 8, [](double s, double t) {
+    return ChartedMeshBuilder::Vertex{{8, static_cast<float>(8 + 8 * s), static_cast<float>(4 * t)},
+                                      {8 * s, 4 * t}};
+  });
+  const ChartedMesh mesh = builder.build();
+  const SimplifiedMesh coarse = simplify(mesh, 5);
+  EXPECT_EQ(broken_triangles(mesh, coarse), 0U);
+  EXPECT_LE(coarse.triangles_out, 12U);
+  EXPECT_NEAR(uv_area(mesh, coarse), 128 + 32, 1e-9);
+}
+
+TEST(SimplifyHostile, RandomSoup) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> unit(0, 1);
+  ChartedMeshBuilder builder;
+  for (int c = 0; c < 60; ++c) {
+    Vertices vertices;
+    for (int k = 0; k < 3; ++k) {
+      const double x = std::round(4 * unit(random)), y = std::round(4 * unit(random));
+      vertices.push_back({{static_cast<float>(x), static_cast<float>(y),
+                           static_cast<float>(std::round(unit(random)))},
+                          {unit(random), unit(random)}});
+    }
+    builder.add_chart(vertices, {0, 1, 2});
+  }
+  const ChartedMesh mesh = builder.build();
+  const SimplifiedMesh coarse = simplify(mesh, 10);
+  EXPECT_EQ(coarse.triangles_out + coarse.degenerate_dropped, mesh.triangles());
+}
+
+TEST(SimplifyHostile, FarFromTheOriginAndTiny) {
+  // A box of a millimetre, a kilometre away: the floats hold about sixteen steps of it.
+  const ChartedMesh mesh = box(10, 1.0 / 1024, {1000, 1000, 1000});
+  const SimplifiedMesh coarse = simplify(mesh, 1e5);
+  EXPECT_LE(coarse.triangles_out, mesh.triangles());
+  EXPECT_LE(coarse.max_slip_texels, 0.5);
+  EXPECT_EQ(open_edges(mesh.positions, coarse.indices).count, 0U);
+}
+
+TEST(SimplifyHostile, EmptyAndSmall) {
+  const ChartedMesh nothing;
+  EXPECT_EQ(simplify(nothing, 1).triangles_out, 0U);
+  ChartedMeshBuilder builder;
+  builder.add_chart({flat_vertex(0, 0), flat_vertex(1, 0), flat_vertex(0, 1)}, {0, 1, 2});
+  const ChartedMesh mesh = builder.build();
+  EXPECT_EQ(simplify(mesh, 0.001).triangles_out, 1U);
+}
+
+TEST(SimplifyHostile, HugeTexelsStillLeaveAMesh) {
+  const ChartedMesh mesh = sphere(12);
+  const SimplifiedMesh coarse = simplify(mesh, 0.01);
+  EXPECT_EQ(broken_triangles(mesh, coarse), 0U);
+  EXPECT_EQ(open_edges(mesh.positions, coarse.indices).count, 0U);
+  EXPECT_GE(coarse.triangles_out, 6U);
+}
+
+TEST(SimplifyHostile, BadOptionsAndInput) {
+  const ChartedMesh mesh = box(2);
+  const std::vector<double> densities(6, 10);
+  const auto code = [&](const SimplifyOptions& options) {
+    return simplify_charts(mesh.view(), mesh.charts, densities, options, {}).status().code();
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double bad : {0.0, -1.0, nan}) {
+    SimplifyOptions slip, border, turn;
+    slip.max_slip_texels = border.max_border_slip_texels = turn.max_turn_degrees = bad;
+    EXPECT_EQ(code(slip), ErrorCode::bad_option);
+    EXPECT_EQ(code(border), ErrorCode::bad_option);
+    EXPECT_EQ(code(turn), ErrorCode::bad_option);
+  }
+  const auto with = [](const ChartedMesh& m, const std::vector<double>& d) {
+    return simplify_charts(m.view(), m.charts, d, {}, {}).status().code();
+  };
+  EXPECT_EQ(with(mesh, {1, 2}), ErrorCode::bad_input);
+  EXPECT_EQ(with(mesh, {1, 1, 1, 0, 1, 1}), ErrorCode::bad_input);
+  ChartedMesh broken = mesh;
+  broken.charts.triangle_uv[5] = 100000;
+  EXPECT_EQ(with(broken, densities), ErrorCode::bad_input);
+  broken = mesh;
+  broken.charts.uv_vertex[3] = 100000;
+  EXPECT_EQ(with(broken, densities), ErrorCode::bad_input);
+  broken = mesh;
+  broken.indices.pop_back();
+  EXPECT_EQ(with(broken, densities), ErrorCode::bad_input);
+}
+
+TEST(SimplifyHostile, Cancelled) {
+  const ChartedMesh mesh = sphere(24);
+  const std::vector<double> densities(6, 50);
+  for (const double when : {0.0, 0.2, 0.99}) {
+    std::atomic<bool> cancel{false};
+    Context context;
+    context.cancel = &cancel;
+    context.progress = [&](std::string_view, double fraction) {
+      if (fraction >= when && fraction < 1) cancel = true;
+    };
+    const auto result = simplify_charts(mesh.view(), mesh.charts, densities, {}, context);
+    if (cancel) {
+      ASSERT_FALSE(result.ok());
+      EXPECT_EQ(result.status().code(), ErrorCode::cancelled);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace atlas
