@@ -1,259 +1,212 @@
 #include "libatlas/charts/flatten.h"
 
 #include <algorithm>
-#include <cmath>
+#include <memory>
 #include <mutex>
 #include <utility>
 
-#include "libatlas/charts/split.h"
-#include "libatlas/core/glm_bridge.h"
+#include "libatlas/charts/chart_job.h"
 #include "libatlas/core/parallel.h"
-#include "libatlas/param/orient.h"
-#include "libatlas/param/parameterize.h"
-#include "libatlas/param/planar.h"
 
 namespace atlas {
 namespace {
 
-// A projection this close to isometric is taken without asking the solver.
-constexpr double kPlanarStretch = 1.01;
-constexpr double kFastPlanarStretch = 1.1;
-// A chart with holes is tried uncut when it is not a tube; a tube's normals exceed this cone.
-constexpr double kOpenCone = 85 * M_PI / 180;
-// Altitude kept for slivers, relative to the square root of the chart's area.
-constexpr double kMinAltitude = 1e-7;
-
-struct Scratch {
-  LocalChart chart;
-  ParamWorkspace workspace;
-  std::vector<std::array<Vec3d, 2>> frames;
-  std::vector<std::array<std::uint32_t, 2>> border;
-};
+// How often a chart may lose triangles to its neighbours before it is divided.
+constexpr int kMaxRemovals = 4;
 
 // One scratch a running thread, handed out and taken back.
 class ScratchPool {
  public:
-  std::unique_ptr<Scratch> take() {
+  std::unique_ptr<ChartScratch> take() {
     const std::lock_guard lock(mutex_);
-    if (free_.empty()) return std::make_unique<Scratch>();
+    if (free_.empty()) return std::make_unique<ChartScratch>();
     auto scratch = std::move(free_.back());
     free_.pop_back();
     return scratch;
   }
-  void give(std::unique_ptr<Scratch> scratch) {
+  void give(std::unique_ptr<ChartScratch> scratch) {
     const std::lock_guard lock(mutex_);
     free_.push_back(std::move(scratch));
   }
 
  private:
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Scratch>> free_;
+  std::vector<std::unique_ptr<ChartScratch>> free_;
 };
 
-// What became of one chart: flat, or divided into parts.
-struct Outcome {
-  FlatChart flat;
-  std::vector<std::uint8_t> parts;  // 1 a triangle; empty: flat holds the result
-  bool failed = false;              // divided because it could not be flattened
-};
-
-class ChartJob {
+// Rounds over all charts that still have to be flattened. Charts run in parallel; what changes the
+// partition happens between rounds, in order.
+class Flattener {
  public:
-  ChartJob(const FlattenInput& input, Partition& partition, Scratch& scratch)
-      : input_(input), partition_(partition), scratch_(scratch), chart_(scratch.chart) {}
+  Flattener(const FlattenInput& input, Partition& partition)
+      : input_(input), partition_(partition) {}
 
-  Outcome run(std::span<const std::uint32_t> triangles) {
-    build(triangles);
-    Outcome outcome;
-    if (chart_.component_count > 1) {
-      outcome.parts = component_parts();
-      return outcome;
+  void run(const Context& context) {
+    partition_.local.resize(partition_.chart.size());
+    partition_.seams.resize(partition_.chart.size(), 0);
+    list_charts();
+    while (!todo_.empty() && !context.cancelled()) {
+      std::stable_sort(todo_.begin(), todo_.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return charts_[a].triangles.size() > charts_[b].triangles.size();
+      });
+      std::vector<ChartOutcome> outcomes(todo_.size());
+      const std::size_t grain = todo_.size() > 512 ? 16 : 1;
+      parallel_for(context, todo_.size(), grain, [&](std::size_t begin, std::size_t end) {
+        auto scratch = pool_.take();
+        for (std::size_t i = begin; i < end; ++i) {
+          outcomes[i] = flatten_chart(input_, partition_, charts_[todo_[i]].triangles, *scratch);
+        }
+        pool_.give(std::move(scratch));
+      });
+      if (!context.cancelled()) settle(outcomes);
     }
-    if (beyond_cone()) {
-      outcome.parts = halves();
-      outcome.failed = true;
-      return outcome;
+  }
+
+  FlattenResult take_result() {
+    FlattenResult result;
+    result.split_charts = split_;
+    for (State& state : charts_) {
+      if (!state.triangles.empty()) result.charts.push_back(std::move(state.flat));
     }
-    for (;;) {
-      const bool disc = chart_.euler() == 1;
-      const auto loops = static_cast<int>(chart_.loops.size());
-      const bool plane_topology = chart_.euler() == 2 - loops;  // genus 0
-      if (loops > 0 && plane_topology && (disc || cone_.angle < kOpenCone) && flatten(outcome)) {
-        return outcome;
-      }
-      if (disc || !plane_topology || !join_loops(input_.topology, chart_, partition_)) break;
-      build(triangles);
-    }
-    outcome.parts = halves();
-    outcome.failed = true;
-    return outcome;
+    std::sort(result.charts.begin(), result.charts.end(),
+              [](const FlatChart& a, const FlatChart& b) {
+                return a.triangles.front() < b.triangles.front();
+              });
+    return result;
   }
 
  private:
-  void build(std::span<const std::uint32_t> triangles) {
-    chart_.build(input_.topology, partition_, triangles);
-    if (!input_.density.empty()) {
-      for (const std::uint32_t t : triangles) chart_.density.push_back(input_.density[t]);
+  struct State {
+    std::vector<std::uint32_t> triangles;  // ascending
+    FlatChart flat;
+    int removals = 0;
+    bool queued = false;
+  };
+
+  // Numbers charts anew, by first triangle.
+  void list_charts() {
+    std::vector<std::uint32_t> place;
+    for (std::uint32_t t = 0; t < partition_.chart.size(); ++t) {
+      std::uint32_t& chart = partition_.chart[t];
+      if (chart == kNoIndex) continue;
+      if (chart >= place.size()) place.resize(chart + 1, kNoIndex);
+      if (place[chart] == kNoIndex) place[chart] = add_chart();
+      chart = place[chart];
+      charts_[chart].triangles.push_back(t);
     }
-    cone_ = normal_cone(input_.topology.normals, triangles);
   }
 
-  bool beyond_cone() const {
-    return input_.options.cone_degrees > 0 && chart_.triangles().size() > 1 &&
-           cone_.angle > input_.options.cone_degrees * M_PI / 180 * (1 + 1e-9);
+  std::uint32_t add_chart() {
+    const auto id = static_cast<std::uint32_t>(charts_.size());
+    charts_.emplace_back();
+    queue(id);
+    return id;
   }
 
-  std::vector<std::uint8_t> component_parts() const {
-    std::vector<std::uint8_t> parts(chart_.component.size());
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      parts[i] = static_cast<std::uint8_t>(std::min(chart_.component[i], 255u));
+  void queue(std::uint32_t chart) {
+    if (charts_[chart].queued) return;
+    charts_[chart].queued = true;
+    todo_.push_back(chart);
+  }
+
+  void settle(std::vector<ChartOutcome>& outcomes) {
+    const std::vector<std::uint32_t> done = std::move(todo_);
+    todo_.clear();
+    for (const std::uint32_t chart : done) charts_[chart].queued = false;
+    for (std::size_t i = 0; i < done.size(); ++i) {
+      if (outcomes[i].parts.empty()) charts_[done[i]].flat = std::move(outcomes[i].flat);
     }
-    return parts;
-  }
-
-  std::vector<std::uint8_t> halves() const {
-    const auto pair = far_pair(input_.topology, chart_);
-    return divide(input_.topology, chart_, pair);
-  }
-
-  ParamOptions param_options(const LocalMesh& mesh) {
-    const ChartOptions& options = input_.options;
-    ParamOptions param;
-    param.max_stretch = options.max_stretch;
-    param.max_planar_stretch =
-        std::min(options.max_stretch,
-                 options.preset == ChartPreset::fast ? kFastPlanarStretch : kPlanarStretch);
-    param.axis = from_glm(glm::dvec3(to_glm(cone_.axis)));
-    double area = 0;
-    for (const std::uint32_t t : chart_.triangles()) area += input_.topology.areas[t];
-    param.min_altitude = kMinAltitude * std::sqrt(area);
-    if (!input_.frames.empty()) {
-      scratch_.frames.resize(mesh.triangles.size());
-      for (std::size_t i = 0; i < scratch_.frames.size(); ++i) {
-        const auto& frame = input_.frames[chart_.triangles()[i]];
-        scratch_.frames[i] = {from_glm(to_dvec(frame[0])), from_glm(to_dvec(frame[1]))};
-      }
-      param.start.frames = scratch_.frames;
+    moved_.clear();
+    for (std::size_t i = 0; i < done.size(); ++i) {
+      if (outcomes[i].parts.empty()) continue;
+      if (remove(done[i], outcomes[i].remove)) continue;
+      split_ += outcomes[i].failed;
+      divide(done[i], outcomes[i].parts);
     }
-    return param;
+    for (const std::uint32_t t : moved_) queue(partition_.chart[t]);
+    relist();
   }
 
-  bool flatten(Outcome& outcome) {
-    const LocalMesh mesh = chart_.mesh();
-    ParamResult result = parameterize(mesh, param_options(mesh), scratch_.workspace);
-    const bool single = chart_.triangles().size() == 1;
-    if (std::getenv("TRACE2") && !(result.injective && result.within_bound))
-      fprintf(stderr,
-              "  fail: tris %zu euler %d loops %zu inj %d bound %d s999 %.3f linf %.2f l2 %.4f "
-              "flips %lu offenders %zu cross %zu unfl %d\n",
-              mesh.triangles.size(), chart_.euler(), chart_.loops.size(), result.injective,
-              result.within_bound, result.distortion.stretch_999, result.distortion.stretch_linf,
-              result.distortion.stretch_l2, result.distortion.flips, result.offenders.size(),
-              result.crossings.size(), result.unflipped);
-    if (!single && !(result.injective && result.within_bound)) return false;
-    FlatChart& flat = outcome.flat;
-    flat.uvs = std::move(result.uvs);
-    scratch_.border.clear();
-    for (std::uint32_t h = 0; h < chart_.opposite.size(); ++h) {
-      if (chart_.opposite[h] == kNoIndex) {
-        scratch_.border.push_back({chart_.corners[h / 3][h % 3],
-                                   chart_.corners[next_half_edge(h) / 3][next_half_edge(h) % 3]});
-      }
+  // False if not all could go.
+  bool remove(std::uint32_t chart, const std::vector<std::uint32_t>& triangles) {
+    if (triangles.empty() || charts_[chart].removals >= kMaxRemovals) return false;
+    ++charts_[chart].removals;
+    bool any = false;
+    for (const std::uint32_t t : triangles) {
+      const std::uint32_t h = way_out(t);
+      if (h == kNoIndex || !removable(input_.topology, partition_, t)) continue;
+      move_triangle(input_.topology, h, partition_, input_.frames);
+      moved_.push_back(t);
+      any = true;
     }
-    flat.size = orient_for_packing(flat.uvs, scratch_.border).size;
-    flat.triangles.assign(chart_.triangles().begin(), chart_.triangles().end());
-    flat.corners = chart_.corners;
-    flat.vertex = chart_.vertex;
-    flat.cone = cone_;
-    flat.distortion = result.distortion;
-    flat.planar = result.planar;
-    return true;
+    if (any) queue(chart);
+    return any;
+  }
+
+  // The longest edge of t to another chart.
+  std::uint32_t way_out(std::uint32_t t) const {
+    std::uint32_t best = kNoIndex;
+    double longest = 0;
+    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+      const std::uint32_t o = input_.topology.opposite[h];
+      if (o == kNoIndex || partition_.chart[o / 3] == partition_.chart[t]) continue;
+      const double length = edge_length(input_.topology, h);
+      if (length <= longest) continue;
+      longest = length;
+      best = h;
+    }
+    return best;
+  }
+
+  void divide(std::uint32_t chart, const std::vector<std::uint8_t>& parts) {
+    // Triangles that came from neighbours in this round stay with part 0.
+    const std::vector<std::uint32_t> triangles = std::move(charts_[chart].triangles);
+    charts_[chart].triangles.clear();
+    std::vector<std::uint32_t> name(1 + *std::max_element(parts.begin(), parts.end()), kNoIndex);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      const std::uint32_t t = triangles[i];
+      if (partition_.chart[t] != chart) continue;
+      std::uint32_t& id = name[parts[i]];
+      if (id == kNoIndex) id = parts[i] == 0 ? chart : add_chart();
+      partition_.chart[t] = id;
+      partition_.seams[t] = 0;
+      charts_[id].triangles.push_back(t);
+    }
+    queue(chart);
+  }
+
+  // Brings the lists up to date with the partition after triangles moved.
+  void relist() {
+    if (moved_.empty()) return;
+    for (const std::uint32_t chart : todo_) {
+      std::erase_if(charts_[chart].triangles,
+                    [&](std::uint32_t t) { return partition_.chart[t] != chart; });
+    }
+    std::sort(moved_.begin(), moved_.end());
+    moved_.erase(std::unique(moved_.begin(), moved_.end()), moved_.end());
+    for (const std::uint32_t t : moved_) {
+      auto& list = charts_[partition_.chart[t]].triangles;
+      const auto at = std::lower_bound(list.begin(), list.end(), t);
+      if (at == list.end() || *at != t) list.insert(at, t);
+    }
+    std::erase_if(todo_, [&](std::uint32_t chart) { return charts_[chart].triangles.empty(); });
   }
 
   const FlattenInput& input_;
   Partition& partition_;
-  Scratch& scratch_;
-  LocalChart& chart_;
-  NormalCone cone_;
+  ScratchPool pool_;
+  std::vector<State> charts_;
+  std::vector<std::uint32_t> todo_, moved_;
+  std::uint64_t split_ = 0;
 };
-
-using TriangleList = std::vector<std::uint32_t>;
-
-// Lists of triangles, ascending; lists ordered by their first.
-std::vector<TriangleList> list_charts(const Partition& partition) {
-  std::vector<std::uint32_t> place;
-  std::vector<TriangleList> lists;
-  for (std::uint32_t t = 0; t < partition.chart.size(); ++t) {
-    const std::uint32_t chart = partition.chart[t];
-    if (chart == kNoIndex) continue;
-    if (chart >= place.size()) place.resize(chart + 1, kNoIndex);
-    if (place[chart] == kNoIndex) {
-      place[chart] = static_cast<std::uint32_t>(lists.size());
-      lists.emplace_back();
-    }
-    lists[place[chart]].push_back(t);
-  }
-  return lists;
-}
-
-std::vector<TriangleList> divide_list(const TriangleList& list,
-                                      const std::vector<std::uint8_t>& parts) {
-  const std::size_t count = 1 + *std::max_element(parts.begin(), parts.end());
-  std::vector<TriangleList> lists(count);
-  for (std::size_t i = 0; i < list.size(); ++i) lists[parts[i]].push_back(list[i]);
-  return lists;
-}
 
 }  // namespace
 
 FlattenResult flatten_charts(const FlattenInput& input, Partition& partition,
                              const Context& context) {
-  FlattenResult result;
-  partition.local.resize(partition.chart.size());
-  partition.seams.resize(partition.chart.size(), 0);
-  std::vector<TriangleList> todo = list_charts(partition);
-  std::uint32_t next_chart = 0;
-  for (const std::uint32_t chart : partition.chart) {
-    if (chart != kNoIndex) next_chart = std::max(next_chart, chart + 1);
-  }
-  ScratchPool pool;
-  while (!todo.empty() && !context.cancelled()) {
-    std::stable_sort(todo.begin(), todo.end(), [](const TriangleList& a, const TriangleList& b) {
-      return a.size() > b.size();
-    });
-    std::vector<Outcome> outcomes(todo.size());
-    const std::size_t grain = todo.size() > 512 ? 16 : 1;
-    parallel_for(context, todo.size(), grain, [&](std::size_t begin, std::size_t end) {
-      auto scratch = pool.take();
-      for (std::size_t i = begin; i < end; ++i) {
-        outcomes[i] = ChartJob(input, partition, *scratch).run(todo[i]);
-      }
-      pool.give(std::move(scratch));
-    });
-    if (context.cancelled()) break;
-    std::vector<TriangleList> again;
-    for (std::size_t i = 0; i < todo.size(); ++i) {
-      if (outcomes[i].parts.empty()) {
-        result.charts.push_back(std::move(outcomes[i].flat));
-        continue;
-      }
-      result.split_charts += outcomes[i].failed;
-      for (TriangleList& part : divide_list(todo[i], outcomes[i].parts)) {
-        if (part.empty()) continue;
-        for (const std::uint32_t t : part) {
-          partition.chart[t] = next_chart;
-          partition.seams[t] = 0;
-        }
-        ++next_chart;
-        again.push_back(std::move(part));
-      }
-    }
-    todo = std::move(again);
-  }
-  std::sort(result.charts.begin(), result.charts.end(), [](const FlatChart& a, const FlatChart& b) {
-    return a.triangles.front() < b.triangles.front();
-  });
-  return result;
+  Flattener flattener(input, partition);
+  flattener.run(context);
+  return flattener.take_result();
 }
 
 }  // namespace atlas

@@ -3,13 +3,13 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "libatlas/charts/charts.h"
 #include "libatlas/charts/cone.h"
 #include "libatlas/charts/local_chart.h"
+#include "libatlas/charts/refine.h"
 #include "libatlas/charts/topology.h"
 #include "libatlas/core/context.h"
 
@@ -31,8 +31,8 @@ struct FlattenInput {
   const Topology& topology;
   std::span<const float> density;  // 1 a triangle, or empty
   const ChartOptions& options;
-  // 1 a triangle, or empty: where the solver starts, see IsometricStart::frames.
-  std::span<const std::array<Vec3f, 2>> frames;
+  // Where the solver starts, or empty; triangles that change charts get new ones.
+  Frames& frames;
 };
 
 struct FlattenResult {

@@ -6,6 +6,7 @@
 
 #include "libatlas/charts/charts.h"
 #include "libatlas/charts/local_chart.h"
+#include "libatlas/charts/refine.h"
 #include "libatlas/charts/topology.h"
 #include "libatlas/core/context.h"
 
@@ -13,7 +14,7 @@ namespace atlas {
 
 struct Segmentation {
   Partition partition;
-  std::vector<std::array<Vec3f, 2>> frames;  // 1 a triangle, or empty: see IsometricStart::frames
+  Frames frames;  // or empty
 };
 
 Segmentation segment(const Topology& topology, const ChartOptions& options, const Context& context);

@@ -23,4 +23,9 @@ std::vector<std::uint8_t> divide(const Topology& topology, const LocalChart& cha
 // marking its half-edges as seams. False if the chart has fewer than two loops.
 bool join_loops(const Topology& topology, const LocalChart& chart, Partition& partition);
 
+// Cuts a disc open from its border to the vertex among the offending triangles' (local ids) where
+// curvature is most concentrated; it stays a disc. False if there is none inside.
+bool cut_to_border(const Topology& topology, const LocalChart& chart,
+                   std::span<const std::uint32_t> offenders, Partition& partition);
+
 }  // namespace atlas

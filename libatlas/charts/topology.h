@@ -56,6 +56,9 @@ inline std::uint32_t previous_half_edge(std::uint32_t h) {
   return h % 3 == 0 ? h + 2 : h - 1;
 }
 
+// Scaled units.
+double edge_length(const Topology& topology, std::uint32_t half_edge);
+
 // Where triangles that share an edge are nevertheless not linked.
 struct TopologyOptions {
   bool cut_at_materials = true;  // where MeshView::materials differ

@@ -1,0 +1,183 @@
+#include "libatlas/charts/chart_job.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "libatlas/charts/split.h"
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/param/orient.h"
+
+namespace atlas {
+namespace {
+
+// A projection this close to isometric is taken without asking the solver.
+constexpr double kPlanarStretch = 1.01;
+constexpr double kFastPlanarStretch = 1.1;
+// A chart with holes is tried uncut when it is not a tube; a tube's normals exceed this cone.
+constexpr double kOpenCone = 85 * M_PI / 180;
+// Altitude kept for slivers, relative to the square root of the chart's area.
+constexpr double kMinAltitude = 1e-7;
+
+// Seams that one chart may get into its inside before it is divided instead.
+constexpr int kMaxCuts = 3;
+
+class ChartJob {
+ public:
+  ChartJob(const FlattenInput& input, Partition& partition, ChartScratch& scratch)
+      : input_(input), partition_(partition), scratch_(scratch), chart_(scratch.chart) {}
+
+  ChartOutcome run(std::span<const std::uint32_t> triangles) {
+    build(triangles);
+    ChartOutcome outcome;
+    if (chart_.component_count > 1) {
+      outcome.parts = component_parts();
+      return outcome;
+    }
+    if (!beyond_cone()) {
+      for (int cuts = 0;; ++cuts) {
+        if (try_flatten(outcome)) return outcome;
+        if (!cut_open(cuts)) break;
+        build(triangles);
+      }
+      list_removable(outcome);
+    }
+    outcome.parts = halves();
+    outcome.failed = true;
+    return outcome;
+  }
+
+ private:
+  void build(std::span<const std::uint32_t> triangles) {
+    chart_.build(input_.topology, partition_, triangles);
+    if (!input_.density.empty()) {
+      for (const std::uint32_t t : triangles) chart_.density.push_back(input_.density[t]);
+    }
+    cone_ = normal_cone(input_.topology.normals, triangles);
+  }
+
+  bool try_flatten(ChartOutcome& outcome) {
+    result_ = ParamResult{};
+    const auto loops = static_cast<int>(chart_.loops.size());
+    const bool flattens = loops > 0 && chart_.euler() == 2 - loops;  // genus 0
+    return flattens && (loops == 1 || cone_.angle < kOpenCone) && flatten(outcome);
+  }
+
+  // A seam that may help: from loop to loop, or to where curvature stretches it too much.
+  bool cut_open(int cuts) {
+    if (chart_.loops.size() > 1) return join_loops(input_.topology, chart_, partition_);
+    if (chart_.euler() != 1 || cuts >= kMaxCuts || result_.within_bound) return false;
+    return !result_.offenders.empty() &&
+           cut_to_border(input_.topology, chart_, result_.offenders, partition_);
+  }
+
+  // Where the border crosses itself in a few places, one triangle of each crossing pair.
+  void list_removable(ChartOutcome& outcome) const {
+    if (!result_.within_bound || result_.crossings.empty()) return;
+    const std::size_t limit = std::max<std::size_t>(2, chart_.triangles().size() / 50);
+    for (const BorderCrossing& crossing : result_.crossings) {
+      const std::uint32_t t = links(crossing.triangle_b) < links(crossing.triangle_a)
+                                  ? crossing.triangle_b
+                                  : crossing.triangle_a;
+      outcome.remove.push_back(chart_.triangles()[t]);
+    }
+    std::sort(outcome.remove.begin(), outcome.remove.end());
+    outcome.remove.erase(std::unique(outcome.remove.begin(), outcome.remove.end()),
+                         outcome.remove.end());
+    if (outcome.remove.size() > limit) outcome.remove.clear();
+  }
+
+  int links(std::uint32_t t) const {
+    int count = 0;
+    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) count += chart_.opposite[h] != kNoIndex;
+    return count;
+  }
+
+  bool beyond_cone() const {
+    return input_.options.cone_degrees > 0 && chart_.triangles().size() > 1 &&
+           cone_.angle > input_.options.cone_degrees * M_PI / 180 * (1 + 1e-9);
+  }
+
+  std::vector<std::uint8_t> component_parts() const {
+    std::vector<std::uint8_t> parts(chart_.component.size());
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      parts[i] = static_cast<std::uint8_t>(std::min(chart_.component[i], 255u));
+    }
+    return parts;
+  }
+
+  std::vector<std::uint8_t> halves() const {
+    const auto pair = far_pair(input_.topology, chart_);
+    return divide(input_.topology, chart_, pair);
+  }
+
+  ParamOptions param_options(const LocalMesh& mesh) {
+    const ChartOptions& options = input_.options;
+    ParamOptions param;
+    param.max_stretch = options.max_stretch;
+    param.max_planar_stretch =
+        std::min(options.max_stretch,
+                 options.preset == ChartPreset::fast ? kFastPlanarStretch : kPlanarStretch);
+    param.axis = from_glm(glm::dvec3(to_glm(cone_.axis)));
+    double area = 0;
+    for (const std::uint32_t t : chart_.triangles()) area += input_.topology.areas[t];
+    param.min_altitude = kMinAltitude * std::sqrt(area);
+    if (!input_.frames.empty()) {
+      scratch_.frames.resize(mesh.triangles.size());
+      for (std::size_t i = 0; i < scratch_.frames.size(); ++i) {
+        const auto& frame = input_.frames[chart_.triangles()[i]];
+        scratch_.frames[i] = {from_glm(to_dvec(frame[0])), from_glm(to_dvec(frame[1]))};
+      }
+      param.start.frames = scratch_.frames;
+    }
+    return param;
+  }
+
+  bool flatten(ChartOutcome& outcome) {
+    const LocalMesh mesh = chart_.mesh();
+    result_ = parameterize(mesh, param_options(mesh), scratch_.workspace);
+    const bool single = chart_.triangles().size() == 1;
+    if (std::getenv("TRACE2") && !(result_.injective && result_.within_bound))
+      fprintf(stderr,
+              "  fail: tris %zu euler %d loops %zu inj %d bound %d s999 %.3f linf %.2f l2 %.4f "
+              "flips %lu offenders %zu cross %zu unfl %d\n",
+              mesh.triangles.size(), chart_.euler(), chart_.loops.size(), result_.injective,
+              result_.within_bound, result_.distortion.stretch_999, result_.distortion.stretch_linf,
+              result_.distortion.stretch_l2, result_.distortion.flips, result_.offenders.size(),
+              result_.crossings.size(), result_.unflipped);
+    if (!single && !(result_.injective && result_.within_bound)) return false;
+    FlatChart& flat = outcome.flat;
+    flat.uvs = std::move(result_.uvs);
+    scratch_.border.clear();
+    for (std::uint32_t h = 0; h < chart_.opposite.size(); ++h) {
+      if (chart_.opposite[h] == kNoIndex) {
+        scratch_.border.push_back({chart_.corners[h / 3][h % 3],
+                                   chart_.corners[next_half_edge(h) / 3][next_half_edge(h) % 3]});
+      }
+    }
+    flat.size = orient_for_packing(flat.uvs, scratch_.border).size;
+    flat.triangles.assign(chart_.triangles().begin(), chart_.triangles().end());
+    flat.corners = chart_.corners;
+    flat.vertex = chart_.vertex;
+    flat.cone = cone_;
+    flat.distortion = result_.distortion;
+    flat.planar = result_.planar;
+    return true;
+  }
+
+  const FlattenInput& input_;
+  Partition& partition_;
+  ChartScratch& scratch_;
+  LocalChart& chart_;
+  NormalCone cone_;
+  ParamResult result_;  // of the last attempt
+};
+
+}  // namespace
+
+ChartOutcome flatten_chart(const FlattenInput& input, Partition& partition,
+                           std::span<const std::uint32_t> triangles, ChartScratch& scratch) {
+  return ChartJob(input, partition, scratch).run(triangles);
+}
+
+}  // namespace atlas

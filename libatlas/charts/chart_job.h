@@ -1,0 +1,35 @@
+// Internal: one chart on its way to flat coordinates.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libatlas/charts/flatten.h"
+#include "libatlas/param/parameterize.h"
+
+namespace atlas {
+
+// Memory that one thread needs at a time.
+struct ChartScratch {
+  LocalChart chart;
+  ParamWorkspace workspace;
+  std::vector<std::array<Vec3d, 2>> frames;
+  std::vector<std::array<std::uint32_t, 2>> border;
+};
+
+// What became of a chart: flat; or to be divided; or to lose a few triangles to its neighbours.
+struct ChartOutcome {
+  FlatChart flat;
+  std::vector<std::uint8_t> parts;    // 1 a triangle: the part it goes to, if not empty
+  std::vector<std::uint32_t> remove;  // triangles whose going would help; parts is set as well, for
+                                      // when no neighbour takes them
+  bool failed = false;                // could not be flattened as it was
+};
+
+// Flattens one chart, cutting it open where that helps (seams of its own triangles only).
+ChartOutcome flatten_chart(const FlattenInput& input, Partition& partition,
+                           std::span<const std::uint32_t> triangles, ChartScratch& scratch);
+
+}  // namespace atlas
