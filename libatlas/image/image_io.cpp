@@ -100,9 +100,11 @@ Result<Image8> read_image8(const std::filesystem::path& path) {
 Result<Image8> decode_image8(std::span<const std::uint8_t> bytes, const std::string& name) {
   const char* extension = extension_of(bytes);
   if (!extension) return failure(name, "cannot be read as an image", "not PNG, JPEG or WebP");
-  const OIIO::ImageSpec config = input_settings();
   OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
-  auto input = OIIO::ImageInput::open(std::string("embedded") + extension, &config, &memory);
+  OIIO::Filesystem::IOProxy* proxy = &memory;
+  OIIO::ImageSpec config = input_settings();
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  auto input = OIIO::ImageInput::open(std::string("embedded") + extension, &config, proxy);
   if (!input) return failure(name, "cannot be read as an image", OIIO::geterror());
   return read_pixels<std::uint8_t>(*input, name);
 }

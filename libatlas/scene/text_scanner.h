@@ -78,7 +78,10 @@ class TextScanner {
   // (and no move) where there is none.
   bool number(double& value) {
     skip_blanks();
-    return number_here(value) && (at_ >= end_ || is_space(*at_) || *at_ == '#' || *at_ == '\\');
+    const char* start = at_;
+    if (number_here(value) && at_blank()) return true;
+    at_ = start;
+    return false;
   }
 
   // Reads a decimal integer here, without skipping blanks; saturates.

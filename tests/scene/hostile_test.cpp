@@ -1,0 +1,145 @@
+// Files that are wrong: each must end in one line that names the file and says what to do.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "libatlas/core/clock.h"
+#include "libatlas/scene/reader.h"
+#include "tests/scene/temp_folder.h"
+
+namespace atlas {
+namespace {
+
+using test::TempFolder;
+
+struct Case {
+  const char* file;
+  std::string bytes;
+  ErrorCode code;
+  const char* says;
+};
+
+const std::string kPly = "ply\nformat ascii 1.0\n";
+const std::string kXyz = "property float x\nproperty float y\nproperty float z\n";
+
+const Case kCases[] = {
+    {"empty.obj", "", ErrorCode::bad_input, "no triangle"},
+    {"no_faces.obj", "v 0 0 0\n", ErrorCode::bad_input, "holds no face"},
+    {"all_bad.obj", "v 0 0 0\nf 1 2 3\n", ErrorCode::bad_input, "all 1 faces are unusable"},
+    {"short_vertex.obj", "v 0 0 0\nv 1 2\n", ErrorCode::bad_input, "short_vertex.obj:2:"},
+    {"five.obj", "v 0 0 0 1 2\n", ErrorCode::bad_input, "five.obj:1:"},
+    {"word.obj", "\n\nv 0 zero 0\n", ErrorCode::bad_input, "word.obj:3: 'zero'"},
+    {"comma.obj", "v 0,5 0 0\n", ErrorCode::bad_input, "comma.obj:1: '0,5'"},
+    {"corner.obj", "v 0 0 0\nf 1/ /2 3\n", ErrorCode::bad_input, "corner.obj:2:"},
+    {"slashes.obj", "v 0 0 0\nf 1// 1 1\n", ErrorCode::bad_input, "slashes.obj:2:"},
+    {"float_index.obj", "v 0 0 0\nf 1.5 1 1\n", ErrorCode::bad_input, "float_index.obj:2:"},
+    {"cut.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2", ErrorCode::bad_input, "cut.obj:5:"},
+    {"empty_vt.obj", "vt\n", ErrorCode::bad_input, "empty_vt.obj:1:"},
+    {"binary.obj", std::string("\0\1\2\n\0\xff\n", 7), ErrorCode::bad_input, "no triangle"},
+    {"mtl.obj", "mtllib mtl.obj.mtl\nv 0 0 0\n", ErrorCode::bad_input, "mtl.obj.mtl:2:"},
+    {"empty.ply", "", ErrorCode::bad_input, "empty.ply:1:"},
+    {"not.ply", "plan\n", ErrorCode::bad_input, "not.ply:1:"},
+    {"headless.ply", "ply\nelement vertex 3\nend_header\n", ErrorCode::bad_input, "no format"},
+    {"open.ply", kPly + "element vertex 3\n", ErrorCode::bad_input, "ends inside the header"},
+    {"format.ply", "ply\nformat middle 1.0\n", ErrorCode::bad_input, "format.ply:2:"},
+    {"count.ply", kPly + "element vertex many\n", ErrorCode::bad_input, "count.ply:3:"},
+    {"negative.ply", kPly + "element vertex -3\n", ErrorCode::bad_input, "negative.ply:3:"},
+    {"type.ply", kPly + "element vertex 1\nproperty quad x\n", ErrorCode::bad_input, "type.ply:4:"},
+    {"xy.ply", kPly + "element vertex 1\nproperty float x\nend_header\n0\n", ErrorCode::bad_input,
+     "no x, y and z"},
+    {"huge.ply", kPly + "element vertex 18446744073709551615\n" + kXyz + "end_header\n0 0 0\n",
+     ErrorCode::bad_input, "announced"},
+    {"huge_faces.ply",
+     "ply\nformat binary_little_endian 1.0\nelement vertex 1\n" + kXyz +
+         "element face 4000000000\nproperty list uchar int vertex_indices\nend_header\n" +
+         std::string(12, '\0'),
+     ErrorCode::bad_input, "announced"},
+    {"huge_list.ply",
+     "ply\nformat binary_little_endian 1.0\nelement vertex 1\n" + kXyz +
+         "element face 1\nproperty list uint int vertex_indices\nend_header\n" +
+         std::string(12, '\0') + "\xff\xff\xff\xff",
+     ErrorCode::bad_input, "incomplete"},
+    {"nothing.ply", kPly + "element hole 18446744073709551615\nend_header\n", ErrorCode::bad_input,
+     "no triangle"},
+    {"letters.ply", kPly + "element vertex 2\n" + kXyz + "end_header\n0 0 0\n0 a 0\n",
+     ErrorCode::bad_input, "letters.ply:9:"},
+    {"faceless.ply",
+     kPly + "element vertex 1\n" + kXyz + "element face 1\nproperty int a\nend_header\n0 0 0\n1\n",
+     ErrorCode::bad_input, "no list vertex_indices"},
+    {"list.ply",
+     kPly + "element vertex 1\n" + kXyz +
+         "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n-1 0 0\n",
+     ErrorCode::bad_input, "length -1"},
+    {"empty.gltf", "", ErrorCode::bad_input, "empty.gltf"},
+    {"broken.gltf", "{\n\"asset\": {\n", ErrorCode::bad_input, "broken.gltf:3:"},
+    {"list.gltf", "[]", ErrorCode::bad_input, "not an object"},
+    {"none.gltf", R"({"asset":{"version":"2.0"}})", ErrorCode::bad_input, "no triangle"},
+    {"draco.gltf",
+     R"({"asset":{"version":"2.0"},"extensionsRequired":["KHR_draco_mesh_compression"]})",
+     ErrorCode::unsupported, "KHR_draco_mesh_compression"},
+    {"buffer.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"uri":"gone.bin","byteLength":4}]})",
+     ErrorCode::not_found, "gone.bin"},
+    {"cycle.gltf",
+     R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"children":[0]}]})",
+     ErrorCode::bad_input, "no tree"},
+    {"node.gltf", R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[7]}]})", ErrorCode::bad_input,
+     "node 7"},
+    {"short.glb", "glTF\2\0\0\0", ErrorCode::bad_input, "too short"},
+    {"cut.glb", std::string("glTF\2\0\0\0\xff\0\0\0\4\0\0\0JSON{}  ", 24), ErrorCode::bad_input,
+     "cut short"},
+    {"chunk.glb", std::string("glTF\2\0\0\0\x18\0\0\0\xff\xff\xff\xffJSON{}  ", 24),
+     ErrorCode::bad_input, "JSON chunk"},
+    {"scene.xyz", "1 2 3\n", ErrorCode::unsupported, "no reader"},
+};
+
+class Hostile : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Hostile, EndsInOneClearLine) {
+  const Case& c = GetParam();
+  const TempFolder folder;
+  folder.write("mtl.obj.mtl", "newmtl a\nKd red\n");
+  const auto path = folder.write(c.file, c.bytes);
+  const auto loaded = read_scene(path, {}, {});
+  ASSERT_FALSE(loaded.ok());
+  const std::string& message = loaded.status().message();
+  EXPECT_EQ(loaded.status().code(), c.code) << message;
+  EXPECT_NE(message.find(c.says), std::string::npos) << message;
+  EXPECT_NE(message.find('('), std::string::npos) << "names no remedy: " << message;
+  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  EXPECT_LT(peak_memory(), std::int64_t{1} << 30) << "allocated what the header announced";
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, Hostile, ::testing::ValuesIn(kCases), [](const auto& test) {
+  std::string name = test.param.file;
+  for (char& ch : name) {
+    if (ch == '.') ch = '_';
+  }
+  return name;
+});
+
+TEST(Reader, MissingFilesFoldersAndOptions) {
+  const TempFolder folder;
+  for (const char* extension : {".obj", ".ply", ".gltf", ".glb"}) {
+    const auto missing = read_scene(folder / (std::string("gone") + extension), {}, {});
+    EXPECT_EQ(missing.status().code(), ErrorCode::not_found);
+    const auto directory = folder / (std::string("folder") + extension);
+    std::filesystem::create_directory(directory);
+    const auto result = read_scene(directory, {}, {});
+    EXPECT_EQ(result.status().code(), ErrorCode::io);
+    EXPECT_NE(result.status().message().find("directory"), std::string::npos);
+  }
+  ReadOptions options;
+  options.metres_per_unit = 0;
+  EXPECT_EQ(read_scene(folder / "any.obj", options, {}).status().code(), ErrorCode::bad_option);
+}
+
+TEST(Reader, CancelEndsIt) {
+  const TempFolder folder;
+  const auto path = folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::atomic<bool> raised{true};
+  Context context;
+  context.cancel = &raised;
+  EXPECT_EQ(read_scene(path, {}, context).status().code(), ErrorCode::cancelled);
+}
+
+}  // namespace
+}  // namespace atlas

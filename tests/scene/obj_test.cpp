@@ -1,0 +1,341 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <random>
+#include <sstream>
+
+#include "libatlas/image/image_io.h"
+#include "libatlas/scene/reader.h"
+#include "libatlas/scene/text_scanner.h"
+#include "tests/scene/temp_folder.h"
+
+namespace atlas {
+namespace {
+
+using test::TempFolder;
+
+LoadedScene load(const std::filesystem::path& path, const ReadOptions& options = {}) {
+  auto loaded = read_scene(path, options, {});
+  EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+  return loaded.ok() ? std::move(*loaded) : LoadedScene{};
+}
+
+TEST(TextScanner, NumbersAgreeWithTheLibrary) {
+  std::mt19937_64 random(7);
+  const char* formats[] = {"{}", "{:.3f}", "{:.17g}", "{:e}", "{:.0f}", "+{}", "{:.25f}"};
+  for (int i = 0; i < 20000; ++i) {
+    const double magnitude = std::exp(std::uniform_real_distribution<>(-40, 40)(random));
+    const std::string text = fmt::format(fmt::runtime(formats[i % 7]), magnitude);
+    for (const std::string& s : {text, text[0] == '+' ? text : "-" + text}) {
+      const std::string line = "  " + s + " x\n";
+      TextScanner scan(line.data(), line.data() + line.size() - 1);
+      double value = 0;
+      ASSERT_TRUE(scan.number(value)) << s;
+      EXPECT_EQ(value, std::strtod(s.c_str(), nullptr)) << s;
+      EXPECT_EQ(scan.word(), "x");
+    }
+  }
+}
+
+TEST(TextScanner, OddNumbers) {
+  const auto parse = [](std::string s, double& value) {
+    s += '\n';
+    TextScanner scan(s.data(), s.data() + s.size() - 1);
+    return scan.number(value);
+  };
+  double v = 0;
+  for (const char* good : {"5.", ".5", "-.5e3", "1e5", "1E-5", "nan", "inf", "-inf", "+3"}) {
+    EXPECT_TRUE(parse(good, v)) << good;
+  }
+  for (const char* bad : {"", ".", "-", "+-3", "1.2.3", "12a", "e5", "0x10", "1,5", "--1"}) {
+    EXPECT_FALSE(parse(bad, v)) << bad;
+  }
+  EXPECT_TRUE(parse("1e999", v) && std::isinf(v));
+  EXPECT_TRUE(parse("-1e999", v) && v < 0 && std::isinf(v));
+  EXPECT_TRUE(parse("1e-999", v) && v == 0);
+  EXPECT_TRUE(parse("1" + std::string(400, '0'), v) && std::isinf(v));
+  EXPECT_TRUE(parse("0." + std::string(400, '0') + "1", v) && v == 0);
+}
+
+TEST(Obj, EverythingAtOnce) {
+  const TempFolder folder;
+  Image8 image(2, 2, 3, 128);
+  ASSERT_TRUE(write_png(folder / "my wood.png", image, {}).ok());
+  folder.write(
+      "a library.mtl",
+      "# two materials\r\nnewmtl wood\r\nKd 0.5 0.25 1\r\n"
+      "map_Kd -s 2 4 1 -o 0.5 0 0 my wood.png\r\n\r\nnewmtl unused\r\nmap_Kd none.png\r\n");
+  folder.write("second.mtl", "newmtl plain\nKd 0.75\n");
+  const auto path = folder.write("scene.obj",
+                                 "# comment\r\n"
+                                 "mtllib a library.mtl second.mtl\r\n"
+                                 "o first\r\n"
+                                 "v 0 0 0 1000.5 -2 3e5\r\n"
+                                 "v 1 0 \\\r\n 0 1 2 3\r\n"
+                                 "v 1 1 0 4 5 6 # end\r\n"
+                                 "v 0 1 0 7 8 9\r\n"
+                                 "vt -1.5 2\r\nvt 1 0\r\nvt 1 1\r\nvt 0 1\r\n"
+                                 "vn 0 0 1\r\n"
+                                 "s off\r\n"
+                                 "usemtl wood\r\n"
+                                 "f 1/1/1 2/2/1 3/3/1 4/4/1\r\n"
+                                 "o second\r\n"
+                                 "usemtl plain\r\n"
+                                 "f -4//-1 -3//-1 -2//-1\r\n"
+                                 "f +1 3 4");
+  const LoadedScene loaded = load(path);
+  const Scene& s = loaded.scene;
+  EXPECT_EQ(s.triangle_count(), 4u);
+  EXPECT_EQ(s.indices, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 2, 3}));
+  ASSERT_EQ(s.illumination.size(), 4u);
+  EXPECT_EQ(s.illumination[0], (Vec3f{1000.5f, -2, 3e5f}));
+  EXPECT_EQ(s.illumination[1], (Vec3f{1, 2, 3}));
+  EXPECT_EQ(s.object_names, (std::vector<std::string>{"first", "second"}));
+  EXPECT_EQ(s.triangle_object, (std::vector<std::uint32_t>{0, 0, 1, 1}));
+  ASSERT_EQ(s.materials.size(), 2u);
+  EXPECT_EQ(s.materials[0].name, "wood");
+  EXPECT_EQ(s.materials[0].diffuse, (Vec3f{0.5f, 0.25f, 1}));
+  EXPECT_EQ(s.materials[0].texture, 0);
+  EXPECT_EQ(s.materials[1].diffuse, (Vec3f{0.75f, 0.75f, 0.75f}));
+  EXPECT_EQ(s.materials[1].texture, -1);
+  ASSERT_EQ(s.textures.size(), 1u);
+  EXPECT_EQ(s.textures[0].image.width, 2);
+  // The texture's own scale and offset are applied to the coordinates of its triangles.
+  ASSERT_EQ(s.texcoord_indices.size(), 12u);
+  EXPECT_EQ(s.texcoords[s.texcoord_indices[0]], (Vec2f{-2.5f, 8}));
+  EXPECT_EQ(s.texcoord_indices[6], Scene::kNoTexcoord);
+  EXPECT_EQ(loaded.defects.count(DefectKind::illumination_negative), 1u);
+  EXPECT_EQ(loaded.defects.defects.size(), 1u);  // nothing else, not even the unused texture
+}
+
+TEST(Obj, GroupsAreObjectsOnlyWithoutObjects) {
+  const TempFolder folder;
+  const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  const auto groups = load(folder.write("g.obj", v + "g a\nf 1 2 3\ng b\nf 1 2 3\ng a\nf 3 2 1\n"));
+  EXPECT_EQ(groups.scene.triangle_object, (std::vector<std::uint32_t>{0, 1, 0}));
+  const auto both = load(folder.write("og.obj", v + "o x\ng a\nf 1 2 3\ng b\nf 1 2 3\n"));
+  EXPECT_EQ(both.scene.object_names, std::vector<std::string>{"x"});
+}
+
+TEST(Obj, BadElementsAreCountedAndNamed) {
+  const TempFolder folder;
+  const auto path = folder.write("bad.obj",
+                                 "mtllib none.mtl\n"
+                                 "usemtl ghost\n"
+                                 "v 0 0 0 1 1 1\n"
+                                 "v 1 0 0 nan 1 inf\n"
+                                 "v 0 1 0\n"
+                                 "v nan 0 0 1 1 1\n"
+                                 "v 1e39 0 0 1 1 1\n"
+                                 "vt nan 0\nvt 1 0\n"
+                                 "f 1/1 2/2 3/1\n"
+                                 "f 1 2 9\n"
+                                 "f 1 2 0\n"
+                                 "f 1 2 -9\n"
+                                 "f 1 2 99999999999999999999\n"
+                                 "f 1 2\n"
+                                 "f 1 2 4\n"
+                                 "f 1 2 5\n"
+                                 "f 1/1 2/7 3/1\n"
+                                 "f 1/1 2 3/1\n"
+                                 "l 1 2\n"
+                                 "nonsense 1\n");
+  const LoadedScene loaded = load(path);
+  const DefectReport& d = loaded.defects;
+  EXPECT_EQ(loaded.scene.triangle_count(), 3u);
+  EXPECT_EQ(d.triangles_left_out, 7u);
+  EXPECT_EQ(d.count(DefectKind::index_out_of_range), 4u);
+  EXPECT_EQ(d.count(DefectKind::too_few_corners), 1u);
+  EXPECT_EQ(d.count(DefectKind::bad_position_used), 2u);
+  EXPECT_EQ(d.count(DefectKind::position_not_finite), 2u);
+  EXPECT_EQ(d.count(DefectKind::texcoord_out_of_range), 1u);
+  EXPECT_EQ(d.count(DefectKind::texcoord_partial), 1u);
+  EXPECT_EQ(d.count(DefectKind::texcoord_not_finite), 1u);
+  EXPECT_EQ(d.count(DefectKind::illumination_not_finite), 1u);
+  EXPECT_EQ(d.count(DefectKind::illumination_missing), 1u);
+  EXPECT_EQ(d.count(DefectKind::material_file_missing), 1u);
+  EXPECT_EQ(d.count(DefectKind::material_unknown), 1u);
+  EXPECT_EQ(d.count(DefectKind::element_ignored), 2u);
+  const auto place_of = [&](DefectKind kind) {
+    for (const Defect& defect : d.defects) {
+      if (defect.kind == kind) return defect.first_places.front();
+    }
+    return std::string();
+  };
+  EXPECT_EQ(place_of(DefectKind::index_out_of_range), path.string() + ":11");
+  EXPECT_EQ(place_of(DefectKind::position_not_finite), path.string() + ":6");
+  EXPECT_EQ(place_of(DefectKind::bad_position_used), path.string() + ":16");
+  EXPECT_EQ(place_of(DefectKind::element_ignored), path.string() + ":20");
+  EXPECT_EQ(place_of(DefectKind::illumination_not_finite), path.string() + ":4");
+  for (const Vec3f& p : loaded.scene.positions) EXPECT_TRUE(std::isfinite(p.x));
+  for (const Vec3f& p : loaded.scene.illumination) EXPECT_TRUE(std::isfinite(p.x + p.y + p.z));
+  EXPECT_EQ(d.lines().size(), d.defects.size());
+}
+
+TEST(Obj, TexturesThatAreMissingOrBrokenFallBackToTheColour) {
+  const TempFolder folder;
+  folder.write("broken.png", "this is no image");
+  folder.write("m.mtl", "newmtl a\nKd 0.1 0.2 0.3\nmap_Kd gone.png\nnewmtl b\nmap_Kd broken.png\n");
+  const auto path = folder.write(
+      "s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");
+  const LoadedScene loaded = load(path);
+  EXPECT_EQ(loaded.defects.count(DefectKind::texture_missing), 1u);
+  EXPECT_EQ(loaded.defects.count(DefectKind::texture_unreadable), 1u);
+  EXPECT_EQ(loaded.scene.materials[0].texture, -1);
+  EXPECT_EQ(loaded.scene.materials[0].diffuse, (Vec3f{0.1f, 0.2f, 0.3f}));
+  ReadOptions options;
+  options.load_textures = false;
+  EXPECT_TRUE(load(path, options).defects.empty());
+}
+
+// A file of several pieces, with every trap at piece borders, against a reader of ten lines.
+std::string large_obj(std::vector<std::array<double, 3>>& vertices,
+                      std::vector<std::array<long, 3>>& faces) {
+  std::mt19937 random(3);
+  std::string text;
+  long n = 0;
+  while (text.size() < (std::size_t{10} << 20)) {
+    for (int k = 0; k < 4; ++k, ++n) {
+      const double x = double(random() % 100000) / 1000, y = double(random() % 1000), z = n;
+      vertices.push_back({x, y, z});
+      text += fmt::format("v {} {} \\\n{}{}", x, y, z, n % 3 == 0 ? "\r\n" : "\n");
+    }
+    const long a = n - long(random() % 4), b = -1 - long(random() % 4);
+    const long c = 1 + long(random() % n);
+    faces.push_back({a - 1, n + b, c - 1});
+    text += fmt::format("f {} \\\r\n{} {}\n", a, b, c);
+  }
+  return text;
+}
+
+TEST(Obj, PiecesGiveWhatOneReaderGives) {
+  const TempFolder folder;
+  std::vector<std::array<double, 3>> vertices;
+  std::vector<std::array<long, 3>> faces;
+  const auto path = folder.write("large.obj", large_obj(vertices, faces));
+  Context one;
+  one.threads = 1;
+  Context four;
+  four.threads = 4;
+  const auto a = read_scene(path, {}, one), b = read_scene(path, {}, four);
+  ASSERT_TRUE(a.ok() && b.ok());
+  EXPECT_TRUE(a->defects.empty());
+  ASSERT_EQ(a->scene.positions.size(), vertices.size());
+  ASSERT_EQ(a->scene.triangle_count(), faces.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const Vec3f& p = a->scene.positions[i];
+    ASSERT_TRUE(p.x == float(vertices[i][0]) && p.y == float(vertices[i][1]) &&
+                p.z == float(vertices[i][2]))
+        << i;
+  }
+  for (std::size_t i = 0; i < faces.size() * 3; ++i) {
+    ASSERT_EQ(long(a->scene.indices[i]), faces[i / 3][i % 3]) << i;
+  }
+  EXPECT_EQ(a->scene.positions, b->scene.positions);
+  EXPECT_EQ(a->scene.indices, b->scene.indices);
+}
+
+TEST(Obj, LineNumbersSurvivePieces) {
+  const TempFolder folder;
+  std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  std::size_t lines = 4;
+  while (text.size() < (std::size_t{9} << 20)) {
+    text += "v 1 2 3 \\\n# joined\nv 0.123456 0.123456 0.123456\n";
+    lines += 3;
+  }
+  const auto with_defect = folder.write("defect.obj", text + "f 1 2 99999999\n");
+  const LoadedScene loaded = load(with_defect);
+  ASSERT_EQ(loaded.defects.defects.size(), 1u);
+  EXPECT_EQ(loaded.defects.defects[0].first_places[0],
+            fmt::format("{}:{}", with_defect.string(), lines + 1));
+  const auto malformed = folder.write("malformed.obj", text + "v 1 x 2\n");
+  const auto result = read_scene(malformed, {}, {});
+  ASSERT_FALSE(result.ok());
+  EXPECT_NE(result.status().message().find(fmt::format(":{}: 'x'", lines + 1)), std::string::npos)
+      << result.status().message();
+}
+
+TEST(Obj, FarScenesGetAnOriginAndKeepTheirShape) {
+  const TempFolder folder;
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> unit(0, 20);
+  std::string near, far;
+  std::vector<std::array<double, 3>> points;
+  for (int i = 0; i < 300; ++i) {
+    points.push_back({unit(random), unit(random), unit(random)});
+    const auto& p = points.back();
+    near += fmt::format("v {} {} {}\n", p[0], p[1], p[2]);
+    far += fmt::format("v {:.9f} {:.9f} {:.9f}\n", p[0] + 4.5e6, p[1] - 7.25e6, p[2] + 100);
+  }
+  for (int i = 1; i + 2 <= 300; ++i) {
+    const std::string face = fmt::format("f {} {} {}\n", i, i + 1, i + 2);
+    near += face;
+    far += face;
+  }
+  // A stray vertex that no triangle uses changes nothing.
+  far += "v 0 0 0\n";
+  EXPECT_EQ(load(folder.write("near.obj", near)).scene.origin, Vec3d{});
+  const LoadedScene loaded = load(folder.write("far.obj", far));
+  const Vec3d& o = loaded.scene.origin;
+  EXPECT_NE(o, Vec3d{});
+  EXPECT_EQ(o.x, std::round(o.x / 32) * 32);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3f& p = loaded.scene.positions[i];
+    EXPECT_NEAR(o.x + p.x, points[i][0] + 4.5e6, 4e-6);
+    EXPECT_NEAR(o.y + p.y, points[i][1] - 7.25e6, 4e-6);
+    EXPECT_NEAR(o.z + p.z, points[i][2] + 100, 4e-6);
+  }
+}
+
+TEST(Illumination, FromASecondFile) {
+  const TempFolder folder;
+  const auto mesh = folder.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.write("light.txt", "# lux\n1 2 3\n4.5 5 6\n\n7\n");
+  folder.write("light.obj", "v 9 9 9 1 2 3\nv 9 9 9 4.5 5 6\nv 9 9 9 7 7 7\n");
+  folder.write(
+      "light.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float r\nproperty float g\nproperty float b\nend_header\n"
+      "0 0 0 1 2 3\n0 0 0 4.5 5 6\n0 0 0 7 7 7\n");
+  for (const char* name : {"light.txt", "light.obj", "light.ply"}) {
+    ReadOptions options;
+    options.illumination_file = folder / name;
+    const LoadedScene loaded = load(mesh, options);
+    EXPECT_EQ(loaded.scene.illumination, (std::vector<Vec3f>{{1, 2, 3}, {4.5f, 5, 6}, {7, 7, 7}}))
+        << name;
+  }
+  const auto status_with = [&](const std::string& name, const std::string& bytes) {
+    ReadOptions options;
+    options.illumination_file = folder.write(name, bytes);
+    return read_scene(mesh, options, {}).status();
+  };
+  EXPECT_EQ(status_with("short.txt", "1 2 3\n").code(), ErrorCode::bad_input);
+  EXPECT_NE(status_with("two.txt", "1 2\n").message().find("two.txt:1:"), std::string::npos);
+  EXPECT_EQ(status_with("none.obj", "v 0 0 0\nv 0 0 0\nv 0 0 0\n").code(), ErrorCode::bad_input);
+  ReadOptions missing;
+  missing.illumination_file = folder / "nowhere.txt";
+  EXPECT_EQ(read_scene(mesh, missing, {}).status().code(), ErrorCode::not_found);
+}
+
+TEST(Obj, AllModelsOfTheDataFolderLoad) {
+  const char* data = std::getenv("LIBATLAS_DATA");
+  if (!data) GTEST_SKIP() << "LIBATLAS_DATA is not set";
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(data) + "/models")) {
+    if (entry.path().extension() != ".obj") continue;
+    const auto loaded = read_scene(entry.path(), {}, {});
+    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+    EXPECT_EQ(loaded->defects.triangles_left_out, 0u) << entry.path();
+    ++count;
+  }
+  EXPECT_GT(count, 10);
+  const auto room = read_scene(std::string(data) + "/room/scene.obj", {}, {});
+  ASSERT_TRUE(room.ok());
+  EXPECT_EQ(room->scene.triangle_count(), 301709u);
+  EXPECT_EQ(room->scene.textures.size(), 2u);
+  EXPECT_TRUE(room->defects.empty());
+}
+
+}  // namespace
+}  // namespace atlas

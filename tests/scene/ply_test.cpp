@@ -1,0 +1,158 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <random>
+
+#include "libatlas/scene/reader.h"
+#include "tests/scene/temp_folder.h"
+
+namespace atlas {
+namespace {
+
+using test::TempFolder;
+
+// Writes one PLY in any format and types, one value after the other.
+class Writer {
+ public:
+  Writer(std::string format, std::string header) : format_(std::move(format)) {
+    bytes_ = "ply\nformat " + format_ + " 1.0\ncomment made by a test\n" + header + "end_header\n";
+  }
+  template <class T>
+  Writer& put(T value) {
+    if (format_ == "ascii") {
+      bytes_ += fmt::format("{} ", value);
+      return *this;
+    }
+    char raw[sizeof(T)];
+    std::memcpy(raw, &value, sizeof(T));
+    if (format_ == "binary_big_endian") std::reverse(raw, raw + sizeof(T));
+    bytes_.append(raw, sizeof(T));
+    return *this;
+  }
+  Writer& end() {
+    if (format_ == "ascii") bytes_ += '\n';
+    return *this;
+  }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string format_, bytes_;
+};
+
+class PlyFormats : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(PlyFormats, ReadAlike) {
+  const TempFolder folder;
+  Writer w(GetParam(),
+           "element camera 1\nproperty float view\nproperty list uchar float row\n"
+           "element vertex 5\nproperty double x\nproperty uchar flag\nproperty float y\n"
+           "property int z\nproperty float red\nproperty float green\nproperty float blue\n"
+           "property float s\nproperty float t\n"
+           "element face 2\nproperty short group\nproperty list ushort int vertex_indices\n"
+           "element edge 1\nproperty int a\n");
+  w.put(1.5f).put(std::uint8_t{2}).put(0.5f).put(0.25f).end();
+  for (int i = 0; i < 5; ++i) {
+    w.put(0.125 * i).put(std::uint8_t(i)).put(float(i * i)).put(std::int32_t(-i));
+    w.put(1000.25f * float(i)).put(-0.5f).put(0.f).put(float(i) * 2 - 3).put(0.75f).end();
+  }
+  w.put(std::int16_t{-1}).put(std::uint16_t{3});
+  for (const int v : {0, 1, 2}) w.put(std::int32_t(v));
+  w.end().put(std::int16_t{7}).put(std::uint16_t{4});
+  for (const int v : {0, 2, 3, 4}) w.put(std::int32_t(v));
+  w.end().put(std::int32_t{3}).end();
+
+  const auto loaded = read_scene(folder.write("a.ply", w.bytes()), {}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  const Scene& s = loaded->scene;
+  EXPECT_EQ(s.triangle_count(), 3u);
+  ASSERT_EQ(s.positions.size(), 5u);
+  EXPECT_EQ(s.positions[3], (Vec3f{0.375f, 9, -3}));
+  EXPECT_EQ(s.illumination[3], (Vec3f{3000.75f, -0.5f, 0}));
+  EXPECT_EQ(s.texcoords[4], (Vec2f{5, 0.75f}));
+  EXPECT_EQ(s.texcoord_indices, s.indices);
+  EXPECT_EQ(loaded->defects.count(DefectKind::element_ignored), 2u);
+}
+
+TEST_P(PlyFormats, IntegerColoursAreFractions) {
+  const TempFolder folder;
+  for (const bool wide : {false, true}) {
+    const std::string type = wide ? "ushort" : "uchar";
+    Writer w(GetParam(),
+             "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+             "property " +
+                 type + " red\nproperty " + type + " green\nproperty " + type +
+                 " blue\nelement face 1\nproperty list uchar uint vertex_index\n");
+    for (int i = 0; i < 3; ++i) {
+      w.put(float(i)).put(float(i * i)).put(0.f);
+      for (const int c : {0, 51, 255}) {
+        wide ? w.put(std::uint16_t(c * 257)) : w.put(std::uint8_t(c));
+      }
+      w.end();
+    }
+    w.put(std::uint8_t{3}).put(0u).put(1u).put(2u).end();
+    const auto loaded = read_scene(folder.write("c.ply", w.bytes()), {}, {});
+    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+    EXPECT_EQ(loaded->scene.illumination[1], (Vec3f{0, 0.2f, 1}));
+  }
+}
+
+// Cutting a file anywhere gives an error, never a crash, and never a scene with fewer triangles.
+TEST_P(PlyFormats, EveryTruncationIsNoticed) {
+  const TempFolder folder;
+  Writer w(GetParam(),
+           "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+           "element face 1\nproperty list uchar int vertex_indices\n");
+  for (int i = 0; i < 3; ++i) w.put(float(i)).put(float(i * i)).put(1.f).end();
+  w.put(std::uint8_t{3}).put(0).put(1).put(2).end();
+  const bool ascii = std::string(GetParam()) == "ascii";
+  const std::size_t needed = w.bytes().size() - (ascii ? 2 : 0);  // the last blank and line end
+  for (std::size_t length = 0; length < needed; ++length) {
+    const auto loaded = read_scene(folder.write("t.ply", w.bytes().substr(0, length)), {}, {});
+    ASSERT_FALSE(loaded.ok()) << length;
+    EXPECT_EQ(loaded.status().code(), ErrorCode::bad_input);
+    EXPECT_NE(loaded.status().message().find("t.ply"), std::string::npos);
+  }
+}
+
+TEST_P(PlyFormats, RandomDamageNeverCrashes) {
+  const TempFolder folder;
+  Writer w(
+      GetParam(),
+      "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
+      "property uchar green\nproperty uchar blue\nelement face 2\n"
+      "property list uchar int vertex_indices\nproperty list uchar float texcoord\n");
+  for (int i = 0; i < 4; ++i) {
+    w.put(float(i)).put(float(i * i)).put(1.f);
+    for (int c = 0; c < 3; ++c) w.put(std::uint8_t(100));
+    w.end();
+  }
+  for (int f = 0; f < 2; ++f) {
+    w.put(std::uint8_t{3}).put(0).put(1 + f).put(2 + f).put(std::uint8_t{6});
+    for (int k = 0; k < 6; ++k) w.put(0.5f);
+    w.end();
+  }
+  std::mt19937 random(5);
+  int survived = 0;
+  for (int round = 0; round < 1500; ++round) {
+    std::string bytes = w.bytes();
+    for (int hits = 1 + int(random() % 3); hits > 0; --hits) {
+      bytes[random() % bytes.size()] = char(random());
+    }
+    const auto loaded = read_scene(folder.write("d.ply", bytes), {}, {});
+    if (!loaded.ok()) continue;
+    ++survived;
+    for (const std::uint32_t i : loaded->scene.indices) {
+      ASSERT_LT(i, loaded->scene.positions.size());
+    }
+    for (const Vec3f& p : loaded->scene.positions) ASSERT_TRUE(std::isfinite(p.x + p.y + p.z));
+  }
+  EXPECT_GT(survived, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, PlyFormats,
+                         ::testing::Values("ascii", "binary_little_endian", "binary_big_endian"));
+
+}  // namespace
+}  // namespace atlas

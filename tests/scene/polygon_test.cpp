@@ -1,0 +1,98 @@
+#include "libatlas/scene/polygon.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+double area2(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+double polygon_area2(const std::vector<Vec2d>& p) {
+  double sum = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const Vec2d &a = p[i], &b = p[(i + 1) % p.size()];
+    sum += a.x * b.y - a.y * b.x;
+  }
+  return sum;
+}
+
+// Lifts a flat polygon into a random plane, triangulates it there, and checks in the plane: n - 2
+// triangles, all turning the polygon's way, whose areas add up. For a simple polygon that means
+// they cover it exactly.
+void check(const std::vector<Vec2d>& polygon, std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  const glm::dvec3 u = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+  const glm::dvec3 w = glm::normalize(glm::cross(u, glm::dvec3(normal(random), normal(random), 1)));
+  const glm::dvec3 at(normal(random) * 50, normal(random) * 50, normal(random));
+  std::vector<Vec3d> corners;
+  for (const Vec2d& p : polygon) corners.push_back(from_glm(at + u * p.x + w * p.y));
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  ASSERT_TRUE(triangulate(corners, triangles));
+  ASSERT_EQ(triangles.size(), polygon.size() - 2);
+  const double total = polygon_area2(polygon);
+  double sum = 0;
+  for (const auto& t : triangles) {
+    const double a = area2(polygon[t[0]], polygon[t[1]], polygon[t[2]]);
+    EXPECT_GE(a / total, -1e-9);
+    sum += a;
+  }
+  EXPECT_NEAR(sum / total, 1, 1e-9);
+}
+
+TEST(Polygon, StarsOfAllSizes) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> radius(0.05, 1);
+  for (int n = 3; n < 60; ++n) {
+    for (int repeat = 0; repeat < 20; ++repeat) {
+      std::vector<Vec2d> p;
+      for (int i = 0; i < n; ++i) {
+        const double r = radius(random), a = 2 * M_PI * i / n;
+        p.push_back({r * std::cos(a), r * std::sin(a)});
+      }
+      check(p, random);
+      std::vector<Vec2d> reversed(p.rbegin(), p.rend());
+      check(reversed, random);
+    }
+  }
+}
+
+TEST(Polygon, CombsSpiralsAndCollinearRuns) {
+  std::mt19937 random(2);
+  std::vector<Vec2d> comb{{0, -1}, {41, -1}};
+  for (int i = 40; i >= 0; --i) comb.push_back({double(i), i % 2 ? 0.1 : 10.0});
+  check(comb, random);
+  std::vector<Vec2d> spiral;
+  for (int i = 0; i < 60; ++i) {
+    spiral.push_back({(10 - i * 0.1) * std::cos(i * 0.3), (10 - i * 0.1) * std::sin(i * 0.3)});
+  }
+  for (int i = 59; i >= 0; --i) {
+    spiral.push_back({(9.5 - i * 0.1) * std::cos(i * 0.3), (9.5 - i * 0.1) * std::sin(i * 0.3)});
+  }
+  check(spiral, random);
+  check({{0, 0}, {1, 0}, {2, 0}, {2, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}, random);
+}
+
+TEST(Polygon, DegenerateOnesStillGiveTriangles) {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  EXPECT_TRUE(triangulate(std::vector<Vec3d>(7, Vec3d{1, 2, 3}), triangles));
+  EXPECT_EQ(triangles.size(), 5u);
+  const std::vector<Vec3d> bow_tie{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}};
+  triangulate(bow_tie, triangles);
+  EXPECT_EQ(triangles.size(), 2u);
+  std::vector<Vec3d> saw;  // concave and larger than ears are clipped for
+  for (int i = 0; i < 6000; ++i) saw.push_back({double(i), i % 2 ? 1.0 : 2.0, 0});
+  saw.push_back({6000, -1, 0});
+  saw.push_back({-1, -1, 0});
+  EXPECT_FALSE(triangulate(saw, triangles));
+  EXPECT_EQ(triangles.size(), saw.size() - 2);
+}
+
+}  // namespace
+}  // namespace atlas
