@@ -55,10 +55,6 @@ std::span<const std::uint32_t> triangles_of(const ChartSet& charts, std::uint32_
   return std::span(charts.chart_triangles).subspan(chart.first_triangle, chart.triangle_count);
 }
 
-Lanes lanes(const float rgb[4]) {
-  return Lanes{rgb[0], rgb[1], rgb[2], 1};
-}
-
 // Splats a triangle's samples; texel (0, 0)'s centre is at (0.5, 0.5).
 void splat_triangle(const TexelTriangle& p, const TriangleLight& lit, const Job& job,
                     const Box& box, LeastSquares& fit) {
@@ -70,9 +66,9 @@ void splat_triangle(const TexelTriangle& p, const TriangleLight& lit, const Job&
         const int left = o.x < 0.5 ? -1 : 0, low = o.y < 0.5 ? -1 : 0;
         const LeastSquares::Splat splat(static_cast<float>(o.x - 0.5 - left),
                                         static_cast<float>(o.y - 0.5 - low), weight);
-        lit.row({x0 + o.x, y + o.y}, x1 - x0, [&](int i, const float* rgb) {
-          fit.add(x0 + i + left, y + low, splat, lanes(rgb));
-        });
+        LeastSquares::Run run(fit, x0 + left, y + low, splat);
+        lit.row({x0 + o.x, y + o.y}, x1 - x0, [&](int, Lanes rgb) { run.add(rgb); });
+        run.finish();
       },
       [&](const float* b, float area) {
         const double x = b[0] * p[0].x + b[1] * p[1].x + b[2] * p[2].x - 0.5;
@@ -81,9 +77,7 @@ void splat_triangle(const TexelTriangle& p, const TriangleLight& lit, const Job&
         const int j = std::clamp(static_cast<int>(y), 0, box.height - 2);
         const LeastSquares::Splat splat(static_cast<float>(std::clamp(x - i, 0.0, 1.0)),
                                         static_cast<float>(std::clamp(y - j, 0.0, 1.0)), area);
-        float rgb[4];
-        lit.at(b, rgb);
-        fit.add(i, j, splat, lanes(rgb));
+        fit.add(i, j, splat, lit.at(b));
       });
 }
 
@@ -116,8 +110,8 @@ void bake_average(const Job& job, const Box& box, TexelGrid& out) {
       TexelTriangle q = p;
       for (Vec2d& corner : q) corner = {corner.x - shift.x, corner.y - shift.y};
       cover_triangle(q, clip, [&](int x, int y, double area, Vec2d c) {
-        lit.row({c.x + shift.x, c.y + shift.y}, 1, [&](int, const float* rgb) {
-          out.rgb[std::size_t(y) * out.width + x] += static_cast<float>(area) * lanes(rgb);
+        lit.row({c.x + shift.x, c.y + shift.y}, 1, [&](int, Lanes rgb) {
+          out.rgb[std::size_t(y) * out.width + x] += static_cast<float>(area) * rgb;
         });
       });
     }

@@ -1,7 +1,5 @@
 #include "libatlas/bake/least_squares.h"
 
-#include <algorithm>
-
 namespace atlas {
 namespace {
 
@@ -9,80 +7,88 @@ namespace {
 // untouched; what it would hold no look-up could tell.
 constexpr float kTouched = 1e-7f;
 
-// Weight of the difference between neighbours: a thousandth of what samples weigh. A hundred times
-// more starts to blur; a hundred times less leaves border texels to rounding.
+// Weight of the difference between neighbours; a texel's samples weigh 1. On a lit interior
+// the error is the same to 0.1 dB from 1e-5 to 1e-2.
 constexpr float kSmoothness = 1e-3f;
 
-// Symmetric Gauss-Seidel halves the error or better with each sweep (the scaled bilinear mass
-// matrix has a condition number of 9); past these the change is below half an 8-bit step.
-constexpr int kSweeps = 6;
-
-Lanes clamped(Lanes v, float low, float high) {
-  for (int k = 0; k < 3; ++k) v[k] = std::clamp(v[k], low, high);
-  return v;
-}
+// Symmetric Gauss-Seidel on the scaled bilinear mass matrix (condition number 9) converges fast: on
+// a lit interior 0, 1, 2, 3, 4 sweeps from the lumped start give 46.15, 49.64, 50.08, 50.16, 50.18
+// dB.
+constexpr int kSweeps = 3;
 
 }  // namespace
 
-// The mean of the samples around each texel, weighted by its tent: the matrix lumped to its
-// diagonal.
-void LeastSquares::start(TexelGrid& out) const {
+// Adds the differences between touched neighbours (north-south and east-west) to the matrix.
+void LeastSquares::smooth() {
+  const auto touched = [](const Cell& c) { return c.value[3] > kTouched; };
+  std::vector<unsigned char> count(cells_.size());
   for (int y = 0; y < height_; ++y)
     for (int x = 0; x < width_; ++x) {
-      const std::size_t at = std::size_t(y) * width_ + x;
-      const Cell& c = cells_[at];
-      const float self = c.value[3];
-      if (!(self > kTouched)) continue;
-      const Cell* w = x > 0 ? &c - 1 : nullptr;
-      const Cell* e = x + 1 < width_ ? &c + 1 : nullptr;
-      const Cell* s = y > 0 ? &c - width_ : nullptr;
-      float row = self + c.pair[0] + c.pair[1] + c.pair[2] + c.pair[3];
-      if (w) row += w->pair[0];
-      if (s) row += s->pair[1];
-      if (s && w) row += (s - 1)->pair[2];
-      if (s && e) row += (s + 1)->pair[3];
-      out.rgb[at] = c.value / row;
-      out.known[at] = 1;
+      const std::size_t at = index(x, y);
+      if (!touched(cells_[at])) continue;
+      const std::size_t neighbours[2] = {at + 1, at + stride_};
+      for (int k = 0; k < 2; ++k) {
+        if (!touched(cells_[neighbours[k]])) continue;
+        cells_[at].pair[k] -= kSmoothness;
+        ++count[at];
+        ++count[neighbours[k]];
+      }
     }
+  for (std::size_t i = 0; i < cells_.size(); ++i)
+    cells_[i].value[3] += kSmoothness * static_cast<float>(count[i]);
 }
 
-void LeastSquares::sweep(bool forward, float low, float high, TexelGrid& out) const {
-  const auto index = [&](int x, int y) { return std::size_t(y) * width_ + x; };
-  for (int row = 0; row < height_; ++row) {
-    const int y = forward ? row : height_ - 1 - row;
-    for (int column = 0; column < width_; ++column) {
-      const int x = forward ? column : width_ - 1 - column;
-      const std::size_t at = index(x, y);
-      if (!out.known[at]) continue;
-      const Cell& c = cells_[at];
-      Lanes sum = c.value;
-      float diagonal = c.value[3];
-      const bool west = x > 0, east = x + 1 < width_, south = y > 0, north = y + 1 < height_;
-      const auto couple = [&](std::size_t other, float a, float smooth) {
-        if (!out.known[other]) return;
-        sum += (smooth - a) * out.rgb[other];
-        diagonal += smooth;
-      };
-      if (east) couple(at + 1, c.pair[0], kSmoothness);
-      if (west) couple(at - 1, cells_[at - 1].pair[0], kSmoothness);
-      if (north) {
-        couple(at + width_, c.pair[1], kSmoothness);
-        if (east) couple(at + width_ + 1, c.pair[2], 0);
-        if (west) couple(at + width_ - 1, c.pair[3], 0);
+// The mean of the samples around each texel, weighted by its tent: the matrix lumped to its
+// diagonal. Diagonal elements become their inverses; 0 where no sample came.
+std::vector<Lanes> LeastSquares::start() {
+  std::vector<Lanes> x(cells_.size(), Lanes{});
+  for (int j = 0; j < height_; ++j)
+    for (int i = 0; i < width_; ++i) {
+      const std::size_t at = index(i, j);
+      Cell& c = cells_[at];
+      const float self = c.value[3];
+      if (!(self > kTouched)) {
+        c = {};
+        continue;
       }
-      if (south) {
-        couple(at - width_, cells_[at - width_].pair[1], kSmoothness);
-        if (west) couple(at - width_ - 1, cells_[at - width_ - 1].pair[2], 0);
-        if (east) couple(at - width_ + 1, cells_[at - width_ + 1].pair[3], 0);
-      }
-      out.rgb[at] = clamped(sum / diagonal, low, high);
+      const Cell *west = &c - 1, *south = &c - stride_;
+      const float row = self + c.pair[0] + c.pair[1] + c.pair[2] + c.pair[3] + west->pair[0] +
+                        south->pair[1] + south[-1].pair[2] + south[1].pair[3];
+      x[at] = c.value / row;
+      c.value[3] = 1 / self;
     }
+  return x;
+}
+
+// Even columns before odd ones: texels of equal parity do not wait for one another.
+void LeastSquares::sweep(bool forward, float low, float high, std::vector<Lanes>& x) const {
+  const auto s = static_cast<std::ptrdiff_t>(stride_);
+  for (int row = 0; row < height_; ++row) {
+    const int j = forward ? row : height_ - 1 - row;
+    for (int pass = 0; pass < 2; ++pass)
+      for (int i = forward ? pass : 1 - pass; i < width_; i += 2) {
+        const std::size_t at = index(i, j);
+        const Cell *c = &cells_[at], *d = c - s;
+        Lanes* v = &x[at];
+        const Lanes across = c->pair[0] * v[1] + c[-1].pair[0] * v[-1];
+        const Lanes above = c->pair[1] * v[s] + c->pair[2] * v[s + 1] + c->pair[3] * v[s - 1];
+        const Lanes below =
+            d->pair[1] * v[-s] + d[-1].pair[2] * v[-s - 1] + d[1].pair[3] * v[-s + 1];
+        *v = clamp_lanes((c->value - across - above - below) * c->value[3], low, high);
+      }
   }
 }
 
-void LeastSquares::solve(float low, float high, TexelGrid& out) const {
-  start(out);
-  for (int i = 0; i < kSweeps; ++i) sweep(i % 2 == 0, low, high, out);
+void LeastSquares::solve(float low, float high, TexelGrid& out) {
+  smooth();
+  std::vector<Lanes> x = start();
+  for (int i = 0; i < kSweeps; ++i) sweep(i % 2 == 0, low, high, x);
+  for (int j = 0; j < height_; ++j)
+    for (int i = 0; i < width_; ++i) {
+      const std::size_t from = index(i, j), to = std::size_t(j) * width_ + i;
+      out.rgb[to] = x[from];
+      out.known[to] = cells_[from].value[3] > 0;
+    }
 }
 
 }  // namespace atlas

@@ -14,9 +14,14 @@ namespace atlas {
 // normal equations' matrix couples a texel with its eight neighbours; it is symmetric, so four of
 // the eight are stored, and accumulated sample by sample.
 class LeastSquares {
+  struct Cell {
+    Lanes value{};  // right-hand side of R, G, B; diagonal element
+    Lanes pair{};   // with the east, north, north-east neighbours; with the north-west one
+  };
+
  public:
   LeastSquares(int width, int height)
-      : width_(width), height_(height), cells_(std::size_t(width) * height) {}
+      : width_(width), height_(height), stride_(width + 2), cells_(stride_ * (height + 2)) {}
 
   // The four texels around a sample and its bilinear weights, already times its weight.
   class Splat {
@@ -40,8 +45,8 @@ class LeastSquares {
 
   // Adds a sample whose lower left texel is (x, y); rgb1 is its colour with a 1 in the 4th lane.
   void add(int x, int y, const Splat& s, Lanes rgb1) {
-    Cell* c = &cells_[std::size_t(y) * width_ + x];
-    Cell* d = c + width_;
+    Cell* c = &cells_[index(x, y)];
+    Cell* d = c + stride_;
     c[0].value += s.value_[0] * rgb1;
     c[0].pair += s.pair_[0];
     c[1].value += s.value_[1] * rgb1;
@@ -51,19 +56,49 @@ class LeastSquares {
     d[1].value += s.value_[3] * rgb1;
   }
 
-  // Writes the solution, clamped to [low, high], and which texels a sample has touched.
-  void solve(float low, float high, TexelGrid& out) const;
+  // Adds samples of one row, one texel apart: each cell is then read and written once for the two
+  // samples beside it.
+  class Run {
+   public:
+    Run(LeastSquares& fit, int x, int y, const Splat& s)
+        : lower_(&fit.cells_[fit.index(x, y)]), upper_(lower_ + fit.stride_), splat_(s) {}
+    void add(Lanes rgb1) {
+      lower_->value += east_lower_ + splat_.value_[0] * rgb1;
+      lower_->pair += east_pair_ + splat_.pair_[0];
+      upper_->value += east_upper_ + splat_.value_[2] * rgb1;
+      upper_->pair += splat_.pair_[2];
+      east_lower_ = splat_.value_[1] * rgb1;
+      east_upper_ = splat_.value_[3] * rgb1;
+      east_pair_ = splat_.pair_[1];
+      ++lower_;
+      ++upper_;
+    }
+    void finish() {
+      lower_->value += east_lower_;
+      lower_->pair += east_pair_;
+      upper_->value += east_upper_;
+    }
 
- private:
-  struct Cell {
-    Lanes value{};  // right-hand side of R, G, B; diagonal element
-    Lanes pair{};   // with the east, north, north-east neighbours; with the north-west one
+   private:
+    Cell *lower_, *upper_;
+    Splat splat_;
+    Lanes east_lower_{}, east_upper_{}, east_pair_{};
   };
 
-  void start(TexelGrid& out) const;
-  void sweep(bool forward, float low, float high, TexelGrid& x) const;
+  // Writes the solution, clamped to [low, high], and which texels a sample has touched. Once only:
+  // the sums are used up.
+  void solve(float low, float high, TexelGrid& out);
+
+ private:
+  // The grid has a border of cells that nothing touches, so that loops need no tests at its sides.
+  std::size_t index(int x, int y) const { return (y + 1) * stride_ + x + 1; }
+
+  void smooth();
+  std::vector<Lanes> start();
+  void sweep(bool forward, float low, float high, std::vector<Lanes>& x) const;
 
   int width_, height_;
+  std::size_t stride_;
   std::vector<Cell> cells_;
 };
 

@@ -4,10 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-namespace atlas {
+#include "libatlas/texture/lanes.h"
 
-// Four lanes that the compiler keeps in one SIMD register (GCC and Clang vector extension).
-using Lanes = float __attribute__((vector_size(16)));
+namespace atlas {
 
 struct TexelGrid {
   int width = 0, height = 0;

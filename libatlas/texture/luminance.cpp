@@ -168,11 +168,11 @@ LuminanceSampler::Triangle LuminanceSampler::prepare(std::uint32_t t, double sam
 }
 
 Vec3f LuminanceSampler::sample(const Triangle& tri, float b0, float b1, float b2) {
-  float rgb[4] = {1, 1, 1, 1};
+  Lanes rgb = splat_lanes(1);
   if (tri.texture) {
     const float x = b0 * tri.texcoord[0][0] + b1 * tri.texcoord[1][0] + b2 * tri.texcoord[2][0];
     const float y = b0 * tri.texcoord[0][1] + b1 * tri.texcoord[1][1] + b2 * tri.texcoord[2][1];
-    look_up(tri.texture->levels[tri.level], x, y, rgb);
+    rgb = look_up(tri.texture->levels[tri.level], x, y);
   }
   const auto lane = [&](int k) {
     return rgb[k] * (b0 * tri.illumination[0][k] + b1 * tri.illumination[1][k] +

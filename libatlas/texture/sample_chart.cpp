@@ -8,7 +8,7 @@
 namespace atlas {
 namespace {
 
-void add(SampledChart::Texel& texel, const float rgb[4], float weight) {
+void add(SampledChart::Texel& texel, Lanes rgb, float weight) {
   for (int k = 0; k < 3; ++k) texel.rgb[k] += weight * rgb[k];
   texel.weight += weight;
 }
@@ -38,17 +38,14 @@ SampledChart sample_chart(const ChartLight& light, std::uint32_t id, double texe
         p, box, grid,
         [&](int, int y, int x0, int x1) {
           SampledChart::Texel* row = &out.texels[std::size_t(y) * size.width + x0];
-          lit.row({x0 + 0.5, y + 0.5}, x1 - x0,
-                  [&](int j, const float* rgb) { add(row[j], rgb, 1); });
+          lit.row({x0 + 0.5, y + 0.5}, x1 - x0, [&](int j, Lanes rgb) { add(row[j], rgb, 1); });
         },
         [&](const float* b, float weight) {
-          float rgb[4];
-          lit.at(b, rgb);
           const double x = b[0] * p[0].x + b[1] * p[1].x + b[2] * p[2].x;
           const double y = b[0] * p[0].y + b[1] * p[1].y + b[2] * p[2].y;
           const int i0 = std::clamp(static_cast<int>(x), 0, size.width - 1);
           const int j0 = std::clamp(static_cast<int>(y), 0, size.height - 1);
-          add(out.texels[std::size_t(j0) * size.width + i0], rgb, weight);
+          add(out.texels[std::size_t(j0) * size.width + i0], lit.at(b), weight);
         });
   }
   for (SampledChart::Texel& texel : out.texels)

@@ -6,145 +6,119 @@
 #include <cmath>
 
 #include "libatlas/raster/scan.h"
+#include "libatlas/texture/lanes.h"
 #include "libatlas/texture/luminance.h"
 #include "libatlas/texture/texture_levels.h"
 #include "libatlas/texture/tone.h"
 
 namespace atlas {
 
-// Display values (with a tone mapping) or scene-linear luminance (without) over a triangle.
+// Display values (with a tone mapping) or scene-linear luminance (without) over a triangle. Colours
+// are R, G, B and a 1.
 class TriangleLight {
  public:
   // `light` as prepared by the sampler; `tone` may be null.
   TriangleLight(const LuminanceSampler::Triangle& light, const ToneMapping* tone)
-      : light_(light), tone_(tone) {
-    if (light_.constant && tone_) show_corners();
+      : tone_(tone), level_(light.texture ? &light.texture->levels[light.level] : nullptr) {
+    for (int k = 0; k < 3; ++k) {
+      const float* e = light.illumination[k];
+      corner_[k] = Lanes{e[0], e[1], e[2], 1};
+      texcoord_[k] = {light.texcoord[k][0], light.texcoord[k][1]};
+    }
+    if (light.constant && tone_) {
+      corner_[0] = corner_[1] = corner_[2] = show(corner_[0]);
+      direct_ = true;
+    }
   }
 
-  // For many samples of a triangle: prepares row(), and where the curve is straight enough between
-  // the corners shows those only and interpolates display values.
+  // For many samples of a triangle: prepares row(). Where the curve is straight enough between the
+  // corners, only those are shown, and display values are interpolated.
   void set_position(const TexelTriangle& p) {
-    if (tone_ && !light_.texture && !direct_) try_direct();
+    if (tone_ && !level_ && !direct_) try_direct();
     const double ax = p[1].x - p[0].x, ay = p[1].y - p[0].y;
     const double bx = p[2].x - p[0].x, by = p[2].y - p[0].y;
     const double inverse = 1 / (ax * by - ay * bx);
     origin_ = p[0];
     gradient_[0] = {by * inverse, -bx * inverse};  // of the second barycentric coordinate
     gradient_[1] = {-ay * inverse, ax * inverse};  // of the third
-    for (int k = 0; k < 3; ++k) {
-      const float* e0 = light_.illumination[0];
-      step_[k] = slope(light_.illumination[1][k] - e0[k], light_.illumination[2][k] - e0[k]);
-    }
-    for (int k = 0; light_.texture && k < 2; ++k)
-      texture_step_[k] = slope(light_.texcoord[1][k] - light_.texcoord[0][k],
-                               light_.texcoord[2][k] - light_.texcoord[0][k]);
+    const auto g0 = static_cast<float>(gradient_[0].x), g1 = static_cast<float>(gradient_[1].x);
+    step_ = g0 * (corner_[1] - corner_[0]) + g1 * (corner_[2] - corner_[0]);
+    texture_step_ = {
+        g0 * (texcoord_[1].x - texcoord_[0].x) + g1 * (texcoord_[2].x - texcoord_[0].x),
+        g0 * (texcoord_[1].y - texcoord_[0].y) + g1 * (texcoord_[2].y - texcoord_[0].y)};
   }
 
-  // rgb[4] (4th lane unspecified) at barycentric coordinates.
-  void at(const float b[3], float rgb[4]) const {
-    float e[3], uv[2] = {0, 0};
-    for (int k = 0; k < 3; ++k)
-      e[k] = b[0] * light_.illumination[0][k] + b[1] * light_.illumination[1][k] +
-             b[2] * light_.illumination[2][k];
-    for (int k = 0; light_.texture && k < 2; ++k)
-      uv[k] = b[0] * light_.texcoord[0][k] + b[1] * light_.texcoord[1][k] +
-              b[2] * light_.texcoord[2][k];
-    finish(e, uv, rgb);
+  // The colour at barycentric coordinates.
+  Lanes at(const float b[3]) const {
+    Lanes e = b[0] * corner_[0] + b[1] * corner_[1] + b[2] * corner_[2];
+    e[3] = 1;
+    if (direct_) return e;
+    Vec2f uv;
+    if (level_)
+      uv = {b[0] * texcoord_[0].x + b[1] * texcoord_[1].x + b[2] * texcoord_[2].x,
+            b[0] * texcoord_[0].y + b[1] * texcoord_[1].y + b[2] * texcoord_[2].y};
+    return finish(e, uv);
   }
 
-  // Calls sample(i, rgb) for i in [0, n) at texel positions (at.x + i, at.y).
+  // Calls sample(i, colour) for i in [0, n), in this order, at texel positions (at.x + i, at.y).
   template <class Sample>
   void row(Vec2d at, int n, Sample&& sample) const {
     const double dx = at.x - origin_.x, dy = at.y - origin_.y;
-    const double b1 = gradient_[0].x * dx + gradient_[0].y * dy;
-    const double b2 = gradient_[1].x * dx + gradient_[1].y * dy;
-    float e[3], uv[2] = {0, 0};
-    for (int k = 0; k < 3; ++k) e[k] = lerp(light_.illumination, k, b1, b2);
-    alignas(16) float rgb[4] = {0, 0, 0, 1};
+    const auto b1 = static_cast<float>(gradient_[0].x * dx + gradient_[0].y * dy);
+    const auto b2 = static_cast<float>(gradient_[1].x * dx + gradient_[1].y * dy);
+    const Lanes e = corner_[0] + b1 * (corner_[1] - corner_[0]) + b2 * (corner_[2] - corner_[0]);
     if (direct_) {
-      for (int i = 0; i < n; ++i) {
-        const auto f = static_cast<float>(i);
-        for (int k = 0; k < 3; ++k) rgb[k] = e[k] + f * step_[k];
-        sample(i, rgb);
-      }
+      for (int i = 0; i < n; ++i) sample(i, e + static_cast<float>(i) * step_);
       return;
     }
-    for (int k = 0; light_.texture && k < 2; ++k) uv[k] = lerp(light_.texcoord, k, b1, b2);
+    Vec2f uv;
+    if (level_)
+      uv = {texcoord_[0].x + b1 * (texcoord_[1].x - texcoord_[0].x) +
+                b2 * (texcoord_[2].x - texcoord_[0].x),
+            texcoord_[0].y + b1 * (texcoord_[1].y - texcoord_[0].y) +
+                b2 * (texcoord_[2].y - texcoord_[0].y)};
     for (int i = 0; i < n; ++i) {
       const auto f = static_cast<float>(i);
-      float ei[3], uvi[2] = {0, 0};
-      for (int k = 0; k < 3; ++k) ei[k] = e[k] + f * step_[k];
-      if (light_.texture)
-        for (int k = 0; k < 2; ++k) uvi[k] = uv[k] + f * texture_step_[k];
-      finish(ei, uvi, rgb);
-      sample(i, rgb);
+      sample(i, finish(e + f * step_, {uv.x + f * texture_step_.x, uv.y + f * texture_step_.y}));
     }
   }
 
  private:
-  float slope(float d1, float d2) const {
-    return static_cast<float>(gradient_[0].x * d1 + gradient_[1].x * d2);
-  }
-  template <int N>
-  static float lerp(const float (&v)[3][N], int k, double b1, double b2) {
-    return static_cast<float>(v[0][k] + b1 * (v[1][k] - v[0][k]) + b2 * (v[2][k] - v[0][k]));
+  Lanes finish(Lanes e, Vec2f uv) const {
+    if (level_) {
+      e *= look_up(*level_, uv.x, uv.y);
+      e[3] = 1;
+    }
+    return tone_ ? show(e) : e;
   }
 
-  void finish(const float e[3], const float uv[2], float rgb[4]) const {
-    if (direct_) {
-      for (int k = 0; k < 3; ++k) rgb[k] = e[k];
-      return;
-    }
-    float r[4] = {1, 1, 1, 1};
-    if (light_.texture) look_up(light_.texture->levels[light_.level], uv[0], uv[1], r);
-    Vec3f c{r[0] * e[0], r[1] * e[1], r[2] * e[2]};
-    if (tone_) c = tone_->display(c);
-    rgb[0] = c.x;
-    rgb[1] = c.y;
-    rgb[2] = c.z;
-  }
-
-  void show_corners() {
-    for (auto& e : light_.illumination) {
-      const Vec3f d = tone_->display({e[0], e[1], e[2]});
-      e[0] = d.x;
-      e[1] = d.y;
-      e[2] = d.z;
-    }
-    direct_ = true;
+  Lanes show(Lanes e) const {
+    if (tone_->op == ToneOperator::linear) return srgb_encode_lanes(e * tone_->scale);
+    const Vec3f v = tone_->map({e[0], e[1], e[2]});
+    return srgb_encode_lanes(Lanes{v.x, v.y, v.z, 1});
   }
 
   // A tenth of an 8-bit step at the middle of the edges is far below what the atlas can hold.
   void try_direct() {
     constexpr float kTolerance = 0.1f / 255;
-    Vec3f d[3];
-    for (int i = 0; i < 3; ++i) {
-      const float* e = light_.illumination[i];
-      d[i] = tone_->display({e[0], e[1], e[2]});
-    }
+    Lanes d[3];
+    for (int i = 0; i < 3; ++i) d[i] = show(corner_[i]);
     for (int i = 0; i < 3; ++i) {
       const int j = i == 2 ? 0 : i + 1;
-      const float *a = light_.illumination[i], *b = light_.illumination[j];
-      const Vec3f m =
-          tone_->display({0.5f * (a[0] + b[0]), 0.5f * (a[1] + b[1]), 0.5f * (a[2] + b[2])});
-      const float off = std::max({std::fabs(m.x - 0.5f * (d[i].x + d[j].x)),
-                                  std::fabs(m.y - 0.5f * (d[i].y + d[j].y)),
-                                  std::fabs(m.z - 0.5f * (d[i].z + d[j].z))});
-      if (!(off <= kTolerance)) return;
+      const Lanes off = show(0.5f * (corner_[i] + corner_[j])) - 0.5f * (d[i] + d[j]);
+      for (int k = 0; k < 3; ++k)
+        if (!(std::fabs(off[k]) <= kTolerance)) return;
     }
-    for (int i = 0; i < 3; ++i) {
-      light_.illumination[i][0] = d[i].x;
-      light_.illumination[i][1] = d[i].y;
-      light_.illumination[i][2] = d[i].z;
-    }
+    std::copy_n(d, 3, corner_);
     direct_ = true;
   }
 
-  LuminanceSampler::Triangle light_;
   const ToneMapping* tone_;
-  bool direct_ = false;  // illumination holds display values
+  const TextureLevels::Level* level_;
+  bool direct_ = false;  // corner_ holds display values
+  Lanes corner_[3], step_{};
+  Vec2f texcoord_[3], texture_step_;
   Vec2d origin_, gradient_[2];
-  float step_[3] = {0, 0, 0}, texture_step_[2] = {0, 0};
 };
 
 }  // namespace atlas
