@@ -38,7 +38,8 @@ struct ExportOptions {
   bool outlines = true;              // pack charts by their outlines, not their boxes
 
   bool simplify = true;              // write the coarser mesh
-  double simplify_slip = 0.5;        // texels that surface and texture may slip, > 0
+  double simplify_slip = 0.2;        // texels that surface and texture may slip, > 0: at 0.5 the test room
+                                     // loses 2 dB, at 0.2 0.7 dB with twice the triangles
   Up up = Up::y;
   bool exr = false;                  // also scene-linear OpenEXR pages
   std::int32_t png_compression = 3;  // zlib level 0..9
