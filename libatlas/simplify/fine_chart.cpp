@@ -1,6 +1,9 @@
 #include "libatlas/simplify/fine_chart.h"
 
 #include <algorithm>
+#include <bit>
+
+#include "libatlas/core/parallel.h"
 
 namespace atlas::simplify {
 namespace {
@@ -78,6 +81,79 @@ void split_fans(FineChart& fine) {
   fine.corners = std::move(local);
 }
 
+std::uint64_t mix(std::uint64_t h) {
+  h = (h ^ (h >> 32)) * 0xd6e8feb86659fd93ULL;
+  h = (h ^ (h >> 32)) * 0xd6e8feb86659fd93ULL;
+  return h ^ (h >> 32);
+}
+
+// Equal positions have equal keys (0 and -0, too). That different ones differ is all but certain,
+// and a needless cut does no harm.
+std::uint64_t point_key(const Vec3f& p) {
+  const auto bits = [](float x) { return std::uint64_t{std::bit_cast<std::uint32_t>(x + 0.0F)}; };
+  return mix(mix(bits(p.x) << 32 | bits(p.y)) + bits(p.z));
+}
+
+std::uint64_t edge_key(std::uint64_t a, std::uint64_t b) {
+  return mix(std::min(a, b)) + std::max(a, b);
+}
+
+// Border edges of all charts by their end points, with a filter for end points in front.
+class BorderIndex {
+ public:
+  BorderIndex(const Geometry& geometry, const std::vector<FineChart>& charts)
+      : geometry_(geometry) {
+    for (const FineChart& chart : charts) {
+      for (std::uint32_t v = 0; v < chart.vertex_count(); ++v) {
+        if (!chart.border(v)) continue;
+        points_.push_back(key(chart, v));
+        edges_.push_back(edge_key(points_.back(), key(chart, chart.to(chart.vertex_half[v]))));
+      }
+    }
+    std::sort(edges_.begin(), edges_.end());
+    filter_.resize(std::bit_ceil(std::max<std::size_t>(64, 16 * points_.size())));
+    for (const std::uint64_t p : points_) filter_[p & (filter_.size() - 1)] = true;
+    points_ = {};
+  }
+  std::uint64_t key(const FineChart& chart, std::uint32_t v) const {
+    return point_key(geometry_.position(chart.vertex_uv[v]));
+  }
+  bool maybe_point(std::uint64_t point) const { return filter_[point & (filter_.size() - 1)]; }
+  bool edge(std::uint64_t a, std::uint64_t b) const {
+    return std::binary_search(edges_.begin(), edges_.end(), edge_key(a, b));
+  }
+
+ private:
+  const Geometry& geometry_;
+  std::vector<std::uint64_t> points_, edges_;
+  std::vector<bool> filter_;
+};
+
+std::uint64_t cut_chart(const BorderIndex& border, FineChart& fine) {
+  std::vector<std::uint64_t> keys(fine.vertex_count(), 0);
+  bool any = false;
+  for (std::uint32_t v = 0; v < fine.vertex_count(); ++v) {
+    const std::uint64_t key = border.key(fine, v);
+    if (border.maybe_point(key)) keys[v] = key;
+    any = any || keys[v] != 0;
+  }
+  std::uint64_t cuts = 0;
+  for (std::uint32_t h = 0; any && h < fine.corners.size(); ++h) {
+    const std::uint32_t twin = fine.opposite[h];
+    if (twin == kNone || twin < h) continue;
+    const std::uint64_t a = keys[fine.from(h)], b = keys[fine.to(h)];
+    if (a == 0 || b == 0 || !border.edge(a, b)) continue;
+    fine.opposite[h] = fine.opposite[twin] = kNone;
+    ++cuts;
+  }
+  if (cuts == 0) return 0;
+  for (std::uint32_t& corner : fine.corners) corner = fine.vertex_uv[corner];
+  fine.vertex_uv.clear();
+  fine.vertex_half.clear();
+  split_fans(fine);
+  return cuts;
+}
+
 }  // namespace
 
 std::uint32_t FineChart::border_into(std::uint32_t v) const {
@@ -94,6 +170,18 @@ FineChart build_fine_chart(const Geometry& geometry, std::uint32_t chart,
   glue(fine, range.first_uv, range.uv_count);
   split_fans(fine);
   return fine;
+}
+
+std::uint64_t cut_shared_edges(const Geometry& geometry, std::vector<FineChart>& charts,
+                               const Context& context) {
+  const BorderIndex border(geometry, charts);
+  std::vector<std::uint64_t> cuts(charts.size(), 0);
+  parallel_for(context, charts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) cuts[c] = cut_chart(border, charts[c]);
+  });
+  std::uint64_t sum = 0;
+  for (const std::uint64_t n : cuts) sum += n;
+  return sum;
 }
 
 }  // namespace atlas::simplify

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libatlas/charts/charts.h"
+#include "libatlas/core/context.h"
 
 namespace atlas::simplify {
 
@@ -56,5 +57,11 @@ struct FineChart {
 // `flipped` marks the triangles of the input that the chart turns over.
 FineChart build_fine_chart(const Geometry& geometry, std::uint32_t chart,
                            const std::vector<bool>& flipped);
+
+// Cuts charts open along edges where the border of another sheet is fixed to them (three walls that
+// share an edge of which two lie in one chart), so that all are simplified alike and none comes
+// off. Returns the number of edges cut.
+std::uint64_t cut_shared_edges(const Geometry& geometry, std::vector<FineChart>& charts,
+                               const Context& context);
 
 }  // namespace atlas::simplify

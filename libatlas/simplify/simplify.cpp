@@ -151,6 +151,7 @@ void Run::build_charts() {
 }
 
 void Run::build_simplifiers() {
+  cut_shared_edges(geometry_, fine_, context_);
   BorderChains chains = find_border_chains(geometry_, fine_);
   const SlipLimits limits{options_.max_slip_texels, options_.max_turn_degrees * kRadians};
   charts_.resize(fine_.size());

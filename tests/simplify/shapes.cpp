@@ -180,6 +180,21 @@ ChartedMesh partition(int n) {
   return builder.build();
 }
 
+ChartedMesh wall_on_field(int n, double amplitude) {
+  const auto height = [amplitude](double s, double t) {
+    return as_float(amplitude * std::sin(5 * s) * std::cos(4 * t));
+  };
+  ChartedMeshBuilder builder;
+  builder.add_grid(n, n, [&](double s, double t) {
+    return ChartedMeshBuilder::Vertex{{as_float(s), as_float(t), height(s, t)}, {s, t}};
+  });
+  builder.add_grid(n / 2, n / 4, [&](double s, double t) {  // over the middle of the field
+    const double x = 0.25 + s / 2, z = height(x, 0.5) * (1 - t) + 0.5 * t;
+    return ChartedMeshBuilder::Vertex{{as_float(x), 0.5F, as_float(z)}, {x, z + 1}};
+  });
+  return builder.build();
+}
+
 ChartedMesh torus(int n) {
   ChartedMeshBuilder builder;
   builder.add_grid(3 * n, n, [n](double s, double t) {

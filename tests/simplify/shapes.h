@@ -57,10 +57,12 @@ ChartedMesh plate_with_hole(int n);          // one flat chart, a square hole
 ChartedMesh cylinder(int n, bool cut);       // one chart that meets itself, or two charts
 ChartedMesh bumpy(int n, double amplitude);  // a height field with noise
 ChartedMesh partition(int n);                // three walls that share one edge: non-manifold
-ChartedMesh torus(int n);                    // one chart that meets itself on two cuts
-ChartedMesh moebius(int n);                  // one chart that meets itself with a twist
-ChartedMesh two_sided(int n);                // a plate and its back, over the same vertices
-ChartedMesh touching_plates(int n, int m);   // two grids of different steps along one line
+// A wall on a height field that is one chart: the edges at its foot have three triangles.
+ChartedMesh wall_on_field(int n, double amplitude);
+ChartedMesh torus(int n);                   // one chart that meets itself on two cuts
+ChartedMesh moebius(int n);                 // one chart that meets itself with a twist
+ChartedMesh two_sided(int n);               // a plate and its back, over the same vertices
+ChartedMesh touching_plates(int n, int m);  // two grids of different steps along one line
 // A height field cut into charts of random outline, with holes where `holes` of 8 random labels
 // fall; charts may be in several parts and touch themselves at single points.
 ChartedMesh patchwork(int n, int holes, double amplitude, std::uint32_t seed);

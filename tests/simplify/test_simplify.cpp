@@ -57,6 +57,15 @@ TEST(Simplify, WallsThatShareANonManifoldEdge) {
   EXPECT_EQ(coarse.triangles_out, 6U);
 }
 
+TEST(Simplify, AWallStaysOnItsFloor) {
+  for (const double amplitude : {0.0, 0.1}) {
+    const ChartedMesh mesh = wall_on_field(32, amplitude);
+    const SimplifiedMesh coarse = simplify(mesh, 50);
+    expect_sound(mesh, coarse, 50);
+    EXPECT_LT(coarse.triangles_out, amplitude > 0 ? mesh.triangles() / 5 : 12);
+  }
+}
+
 TEST(Simplify, ChartsThatMeetThemselves) {
   const ChartedMesh ring = torus(24), band = moebius(12);
   const SimplifiedMesh coarse_ring = simplify(ring, 8), coarse_band = simplify(band, 8);
