@@ -169,7 +169,7 @@ OpenEdges open_edges(std::span<const Vec3f> positions, std::span<const std::uint
   }
   OpenEdges open;
   for (const auto& [edge, n] : count) {
-    if (n % 2 == 0) continue;
+    if (n != 1) continue;
     ++open.count;
     const auto& [a, b] = edge;
     open.length += std::hypot(double(a[0]) - b[0], double(a[1]) - b[1], double(a[2]) - b[2]);

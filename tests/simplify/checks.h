@@ -8,7 +8,7 @@
 
 namespace atlas::simplify_test {
 
-// Edges (pairs of positions) that belong to an odd number of triangles, and their total length.
+// Edges (pairs of positions) that belong to one triangle only, and their total length.
 struct OpenEdges {
   std::size_t count = 0;
   double length = 0;
