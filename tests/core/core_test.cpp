@@ -1,0 +1,150 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <random>
+#include <set>
+
+#include "libatlas/core/atomic_file.h"
+#include "libatlas/core/clock.h"
+#include "libatlas/core/parallel.h"
+#include "libatlas/core/predicates.h"
+#include "libatlas/core/rect.h"
+#include "tests/scene/temp_folder.h"
+
+namespace atlas {
+namespace {
+
+using test::TempFolder;
+
+TEST(AtomicFiles, AppearTogetherOrNotAtAll) {
+  const TempFolder folder;
+  folder.write("a.txt", "old");
+  {
+    AtomicFiles files;
+    std::ofstream(files.path_for(folder / "a.txt")) << "new";
+    std::ofstream(files.path_for(folder / "b.png")) << "picture";
+    EXPECT_EQ(TempFolder::read(folder / "a.txt"), "old");
+    EXPECT_EQ(folder.count(), 3u);
+  }
+  EXPECT_EQ(folder.count(), 1u);  // dropped without a commit
+  EXPECT_EQ(TempFolder::read(folder / "a.txt"), "old");
+  AtomicFiles files;
+  const auto temporary = files.path_for(folder / "b.png");
+  EXPECT_EQ(temporary.extension(), ".png");
+  std::ofstream(temporary) << "picture";
+  std::ofstream(files.path_for(folder / "a.txt")) << "new";
+  ASSERT_TRUE(files.commit().ok());
+  EXPECT_EQ(folder.count(), 2u);
+  EXPECT_EQ(TempFolder::read(folder / "a.txt"), "new");
+}
+
+TEST(AtomicFiles, AFailedCommitTakesBackWhatItDid) {
+  const TempFolder folder;
+  {
+    AtomicFiles files;
+    std::ofstream(files.path_for(folder / "first.txt")) << "1";
+    (void)files.path_for(folder / "never_written.txt");
+    const Status status = files.commit();
+    EXPECT_EQ(status.code(), ErrorCode::io);
+    EXPECT_NE(status.message().find("never_written.txt"), std::string::npos);
+  }
+  EXPECT_EQ(folder.count(), 0u);
+}
+
+TEST(AtomicFiles, WriteFileReportsWhereItCannot) {
+  const TempFolder folder;
+  EXPECT_TRUE(write_file(folder / "x.json", "{}").ok());
+  EXPECT_EQ(TempFolder::read(folder / "x.json"), "{}");
+  const Status status = write_file(folder / "none" / "x.json", "{}");
+  EXPECT_EQ(status.code(), ErrorCode::io);
+  EXPECT_NE(status.message().find("x.json"), std::string::npos);
+  // A folder of that name is in the way.
+  std::filesystem::create_directories(folder / "taken" / "inside");
+  EXPECT_EQ(write_file(folder / "taken", "{}").code(), ErrorCode::io);
+  EXPECT_EQ(folder.count(), 2u);
+}
+
+TEST(ParallelFor, CoversEachIndexOnceInTheSameChunks) {
+  for (const std::size_t n : {0u, 1u, 7u, 64u, 1000u}) {
+    for (const std::size_t grain : {0u, 1u, 3u, 64u, 5000u}) {
+      std::set<std::pair<std::size_t, std::size_t>> expected;
+      for (const int threads : {1, 2, 0}) {
+        Context context;
+        context.threads = threads;
+        std::vector<std::atomic<int>> touched(n);
+        std::set<std::pair<std::size_t, std::size_t>> chunks;
+        std::mutex mutex;
+        parallel_for(context, n, grain, [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) ++touched[i];
+          const std::lock_guard lock(mutex);
+          chunks.emplace(begin, end);
+        });
+        for (const auto& count : touched) ASSERT_EQ(count, 1);
+        if (threads == 1) expected = chunks;
+        EXPECT_EQ(chunks, expected);
+      }
+    }
+  }
+}
+
+TEST(ParallelFor, SkipsWhatIsLeftOnceCancelled) {
+  std::atomic<bool> cancel{false};
+  Context context;
+  context.threads = 1;
+  context.cancel = &cancel;
+  int done = 0;
+  parallel_for(context, 100, 1, [&](std::size_t begin, std::size_t) {
+    ++done;
+    if (begin == 9) cancel = true;
+  });
+  EXPECT_EQ(done, 10);
+}
+
+// Integers small enough for exact 64-bit determinants are the oracle; the predicate sees them moved
+// by a power of two, where doubles still hold them but naive products round.
+TEST(Predicates, OrientationIsExact) {
+  std::mt19937_64 random(4);
+  std::uniform_int_distribution<std::int64_t> small(-3, 3);
+  const double moved = std::exp2(51);
+  for (int i = 0; i < 20000; ++i) {
+    const std::int64_t c[6] = {small(random), small(random), small(random),
+                               small(random), small(random), small(random)};
+    const std::int64_t det = (c[2] - c[0]) * (c[5] - c[1]) - (c[3] - c[1]) * (c[4] - c[0]);
+    const auto at = [&](int k) { return Vec2d{moved + double(c[k]), moved + double(c[k + 1])}; };
+    EXPECT_EQ(orientation(at(0), at(2), at(4)), (det > 0) - (det < 0));
+  }
+  const double e = std::exp2(-53);
+  EXPECT_EQ(orientation({0, 0}, {1, 1}, {0.5, 0.5 + e}), 1);
+  EXPECT_EQ(orientation({0, 0}, {1, 1}, {0.5, 0.5}), 0);
+  EXPECT_EQ(orientation({1e-300, 0}, {1, 1e300}, {1e-300, 0}), 0);
+}
+
+TEST(Predicates, SegmentsCross) {
+  EXPECT_TRUE(segments_cross({0, 0}, {2, 2}, {0, 2}, {2, 0}));
+  EXPECT_FALSE(segments_cross({0, 0}, {1, 1}, {2, 0}, {3, 5}));
+  EXPECT_FALSE(segments_cross({0, 0}, {1, 1}, {1, 1}, {2, 0}));  // a shared end
+  EXPECT_TRUE(segments_cross({0, 0}, {3, 0}, {1, 0}, {5, 0}));   // overlap along a stretch
+  EXPECT_FALSE(segments_cross({0, 0}, {1, 0}, {1, 0}, {2, 0}));  // end to end on one line
+  EXPECT_FALSE(segments_cross({0, 0}, {1, 0}, {2, 0}, {3, 0}));
+}
+
+TEST(Clock, MovesForward) {
+  const double wall = wall_seconds(), cpu = cpu_seconds();
+  volatile double sum = 0;
+  while (cpu_seconds() - cpu < 0.02) sum = sum + 1;
+  EXPECT_GE(wall_seconds() - wall, 0.005);
+  EXPECT_GT(peak_memory(), 1 << 20);
+  EXPECT_LT(peak_memory(), std::int64_t{1} << 40);
+}
+
+TEST(Rect, Edges) {
+  const Rect r{-2, 3, 65536, 65536};
+  EXPECT_EQ(r.right(), 65534);
+  EXPECT_EQ(r.top(), 65539);
+  EXPECT_EQ(r.area(), std::int64_t{1} << 32);
+}
+
+}  // namespace
+}  // namespace atlas

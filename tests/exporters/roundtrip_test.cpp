@@ -1,0 +1,197 @@
+// OBJ and glTF worlds, read back by the library's own scene readers.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "libatlas/exporters/viewpoint.h"
+#include "libatlas/image/image_io.h"
+#include "libatlas/scene/reader.h"
+#include "tests/exporters/worlds.h"
+#include "tests/scene/temp_folder.h"
+
+namespace atlas {
+namespace {
+
+using test::TempFolder;
+using test::wavy_world;
+
+struct Corner {
+  Vec3d position;
+  Vec2f uv;
+};
+
+std::vector<Corner> corners_of(const Scene& s) {
+  std::vector<Corner> result;
+  for (std::size_t k = 0; k < s.indices.size(); ++k) {
+    const Vec3f& p = s.positions[s.indices[k]];
+    result.push_back({{s.origin.x + p.x, s.origin.y + p.y, s.origin.z + p.z},
+                      s.texcoords[s.texcoord_indices[k]]});
+  }
+  return result;
+}
+
+void write_images(const World& world, const TempFolder& folder) {
+  for (const Page& page : world.pages) {
+    Image8 image(8, 8, 3, 50);
+    image.at(0, 0)[1] = 250;  // bottom left
+    ASSERT_TRUE(write_png(folder / page.image, image, {}).ok());
+  }
+}
+
+TEST(ObjWorld, ReadsBackExactly) {
+  const TempFolder folder;
+  const World world = wavy_world(30, 4);
+  write_images(world, folder);
+  AtomicFiles files;
+  const auto written = write_obj(world, folder / "my world.obj", files, {});
+  ASSERT_TRUE(written.ok()) << written.status().message();
+  ASSERT_TRUE(files.commit().ok());
+  const auto loaded = read_scene(folder / "my world.obj", {}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_TRUE(loaded->defects.empty()) << loaded->defects.lines().front();
+  const Scene& s = loaded->scene;
+  EXPECT_EQ(s.textures.size(), 4u);
+  EXPECT_EQ(s.positions.size(), 900u);  // shared by the pages
+  EXPECT_EQ(written->vertices, 900u);
+  const auto corners = corners_of(s);
+  std::size_t k = 0;
+  for (std::size_t p = 0; p < world.pages.size(); ++p) {
+    for (std::size_t c = 0; c < world.pages[p].indices.size(); ++c, ++k) {
+      const Vec3f& v = world.positions[world.pages[p].indices[c]];
+      ASSERT_EQ(corners[k].position, (Vec3d{v.x, v.y, v.z}));
+      ASSERT_EQ(corners[k].uv, world.uvs[world.pages[p].uv_indices[c]]);
+      ASSERT_EQ(s.textures[s.materials[s.triangle_material[k / 3]].texture].path.filename(),
+                world.pages[p].image);
+    }
+  }
+  EXPECT_EQ(k, corners.size());
+}
+
+TEST(GltfWorld, ReadsBackInMetresAndYUp) {
+  for (const char* name : {"w.glb", "w.gltf"}) {
+    const TempFolder folder;
+    World world = wavy_world(30, 3);
+    world.up = Up::z;
+    world.metres_per_unit = 0.5;
+    world.origin = {1024, 512, 2048};
+    for (Page& page : world.pages) page.image_source = folder / page.image;
+    write_images(world, folder);
+    AtomicFiles files;
+    const auto written = write_gltf(world, folder / name, files, {});
+    ASSERT_TRUE(written.ok()) << written.status().message();
+    ASSERT_TRUE(files.commit().ok());
+    if (std::string(name) == "w.glb") {
+      for (const Page& page : world.pages) std::filesystem::remove(folder / page.image);
+    }
+    const auto loaded = read_scene(folder / name, {}, {});
+    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+    EXPECT_TRUE(loaded->defects.empty()) << loaded->defects.lines().front();
+    const Scene& s = loaded->scene;
+    ASSERT_EQ(s.textures.size(), 3u);
+    EXPECT_EQ(s.textures[0].image.at(0, 0)[1], 250);
+    const auto corners = corners_of(s);
+    std::size_t k = 0;
+    for (const Page& page : world.pages) {
+      for (std::size_t c = 0; c < page.indices.size(); ++c, ++k) {
+        const Vec3f& v = world.positions[page.indices[c]];
+        const Vec2f& t = world.uvs[page.uv_indices[c]];
+        ASSERT_NEAR(corners[k].position.x, 0.5 * (1024 + v.x), 1e-3);
+        ASSERT_NEAR(corners[k].position.y, 0.5 * (2048 + v.z), 1e-3);
+        ASSERT_NEAR(corners[k].position.z, -0.5 * (512 + v.y), 1e-3);
+        ASSERT_NEAR(corners[k].uv.x, t.x, 1e-7);
+        ASSERT_NEAR(corners[k].uv.y, t.y, 1e-7);
+      }
+    }
+    EXPECT_EQ(k, corners.size());
+  }
+}
+
+TEST(GltfWorld, FailsWithoutItsImagesOrTriangles) {
+  const TempFolder folder;
+  World world = wavy_world(5, 1);
+  world.pages[0].image_source = folder / "gone.png";
+  {
+    AtomicFiles files;
+    EXPECT_EQ(write_gltf(world, folder / "w.glb", files, {}).status().code(), ErrorCode::io);
+    world.pages.clear();
+    EXPECT_EQ(write_gltf(world, folder / "w.glb", files, {}).status().code(), ErrorCode::bad_input);
+  }
+  EXPECT_EQ(folder.count(), 0u);
+}
+
+// An axis-aligned box; walls face in for a room, out for an object. z is up.
+void add_box(std::vector<Vec3f>& positions, std::vector<std::uint32_t>& indices, Vec3f low,
+             Vec3f high, bool inward) {
+  const auto base = std::uint32_t(positions.size());
+  for (int i = 0; i < 8; ++i) {
+    positions.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
+  }
+  const std::uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                     {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  for (const auto& q : quads) {
+    for (const auto& [a, b, c] : {std::array{0, 1, 2}, std::array{0, 2, 3}}) {
+      const std::uint32_t t[3] = {q[a], q[inward ? c : b], q[inward ? b : c]};
+      for (const std::uint32_t v : t) indices.push_back(base + v);
+    }
+  }
+}
+
+TEST(ViewpointChoice, StandsInTheRoomAndLooksAlongIt) {
+  for (const double metres : {1.0, 0.01, 1000.0}) {  // units of a metre, a centimetre, a kilometre
+    std::vector<Vec3f> positions;
+    std::vector<std::uint32_t> indices;
+    add_box(positions, indices, {0, 0, 0}, {20, 6, 3}, true);
+    add_box(positions, indices, {4, 1, 0}, {6, 3, 1}, false);  // a table
+    for (Vec3f& p : positions) {
+      const float s = float(1 / metres);
+      p = {p.x * s, p.y * s, p.z * s};
+    }
+    for (const Up up : {Up::z, Up::y}) {
+      std::vector<Vec3f> turned = positions;
+      if (up == Up::y) {
+        for (Vec3f& p : turned) p = {p.y, p.z, p.x};
+      }
+      ViewpointOptions options;
+      options.up = up;
+      options.metres_per_unit = metres;
+      const Viewpoint view = choose_viewpoint(turned, indices, options, {});
+      EXPECT_TRUE(view.inside);
+      Vec3d p = view.position, d = view.direction;
+      if (up == Up::y) p = {p.z, p.x, p.y}, d = {d.z, d.x, d.y};
+      EXPECT_NEAR(p.z * metres, 1.6, 0.3);
+      EXPECT_TRUE(p.x * metres > 0 && p.x * metres < 20 && p.y * metres > 0 && p.y * metres < 6);
+      EXPECT_FALSE(p.x * metres > 4 && p.x * metres < 6 && p.y * metres > 1 && p.y * metres < 3);
+      EXPECT_GT(std::abs(d.x), 0.8) << "should look along the room";
+      EXPECT_EQ(d.z, 0);
+      // Most of the room lies ahead.
+      EXPECT_GT(d.x > 0 ? 20 - p.x * metres : p.x * metres, 8);
+    }
+  }
+}
+
+TEST(ViewpointChoice, StaysOutOfSingleObjects) {
+  std::vector<Vec3f> positions;
+  std::vector<std::uint32_t> indices;
+  add_box(positions, indices, {-1, -2, -3}, {1, 2, 3}, false);
+  const Viewpoint view = choose_viewpoint(positions, indices, {}, {});
+  EXPECT_FALSE(view.inside);
+  const Vec3d &p = view.position, &d = view.direction;
+  const double distance = std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
+  EXPECT_GT(distance, std::sqrt(14.0));
+  EXPECT_NEAR((p.x * d.x + p.y * d.y + p.z * d.z) / distance, -1, 1e-6) << "looks at the centre";
+}
+
+TEST(ViewpointChoice, DegenerateScenes) {
+  EXPECT_FALSE(choose_viewpoint({}, {}, {}, {}).inside);
+  const std::vector<Vec3f> point(3, {1, 2, 3});
+  const std::vector<std::uint32_t> one{0, 1, 2};
+  const Viewpoint view = choose_viewpoint(point, one, {}, {});
+  EXPECT_TRUE(std::isfinite(view.position.x) && std::isfinite(view.direction.x));
+  World world;
+  world.positions = point;
+  world.viewpoint = view;
+  EXPECT_TRUE(check_world(world).ok());
+}
+
+}  // namespace
+}  // namespace atlas

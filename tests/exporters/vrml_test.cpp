@@ -1,0 +1,247 @@
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <glm/gtc/quaternion.hpp>
+#include <set>
+
+#include "libatlas/core/glm_bridge.h"
+#include "tests/exporters/vrml_parser.h"
+#include "tests/exporters/worlds.h"
+#include "tests/scene/temp_folder.h"
+
+namespace atlas {
+namespace {
+
+using test::parse_vrml;
+using test::TempFolder;
+using test::vrml_number;
+using test::VrmlNode;
+using test::wavy_world;
+
+std::string write(const World& world, const std::filesystem::path& path) {
+  AtomicFiles files;
+  const auto result = write_vrml(world, path, files, {});
+  EXPECT_TRUE(result.ok()) << result.status().message();
+  EXPECT_TRUE(files.commit().ok());
+  return TempFolder::read(path);
+}
+
+std::vector<double> numbers(const std::vector<std::string>& tokens) {
+  std::vector<double> result;
+  for (const std::string& token : tokens) result.push_back(vrml_number(token));
+  return result;
+}
+
+using Nodes = std::vector<std::shared_ptr<VrmlNode>>;
+
+std::vector<const VrmlNode*> of_type(const Nodes& nodes, const std::string& type) {
+  std::vector<const VrmlNode*> result;
+  for (const auto& node : nodes) {
+    if (node->type == type) result.push_back(node.get());
+  }
+  return result;
+}
+
+// Three indices and a -1, in range, and as often as there are triangles.
+std::vector<int> triangle_list(const VrmlNode& faces, const std::string& field, std::size_t limit) {
+  std::vector<int> corners;
+  const auto list = numbers(faces.field(field));
+  EXPECT_EQ(list.size() % 4, 0u);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (i % 4 == 3) {
+      EXPECT_EQ(list[i], -1);
+      continue;
+    }
+    EXPECT_GE(list[i], 0);
+    EXPECT_LT(list[i], double(limit));
+    corners.push_back(int(list[i]));
+  }
+  return corners;
+}
+
+void expect_shape(const VrmlNode& shape, const World& world, std::size_t number) {
+  const Page& page = world.pages[number];
+  EXPECT_FALSE(shape.child("appearance").has("material"));
+  const VrmlNode& texture = shape.child("appearance").child("texture");
+  EXPECT_EQ(texture.type, "ImageTexture");
+  EXPECT_EQ(texture.field("url"), std::vector<std::string>{'"' + page.image + '"'});
+  EXPECT_EQ(texture.field("repeatS"), std::vector<std::string>{"FALSE"});
+  EXPECT_EQ(texture.field("repeatT"), std::vector<std::string>{"FALSE"});
+  const VrmlNode& faces = shape.child("geometry");
+  EXPECT_EQ(faces.type, "IndexedFaceSet");
+  EXPECT_EQ(faces.field("solid"), std::vector<std::string>{"FALSE"});
+  const auto points = numbers(faces.child("coord").field("point"));
+  const auto uvs = numbers(faces.child("texCoord").field("point"));
+  const auto corners = triangle_list(faces, "coordIndex", points.size() / 3);
+  const auto uv_corners = triangle_list(faces, "texCoordIndex", uvs.size() / 2);
+  ASSERT_EQ(corners.size(), page.indices.size());
+  ASSERT_EQ(uv_corners.size(), page.indices.size());
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const Vec3f& p = world.positions[page.indices[k]];
+    const double* q = &points[3 * corners[k]];
+    const double origin[3] = {world.origin.x, world.origin.y, world.origin.z};
+    const float offset[3] = {p.x, p.y, p.z};
+    for (int i = 0; i < 3; ++i) {  // an axis without an origin keeps its floats
+      if (origin[i] == 0) {
+        ASSERT_EQ(float(q[i]), offset[i]);
+      } else {
+        ASSERT_EQ(q[i], origin[i] + double(offset[i]));
+      }
+    }
+    const double* t = &uvs[2 * uv_corners[k]];
+    ASSERT_EQ((Vec2f{float(t[0]), float(t[1])}), world.uvs[page.uv_indices[k]]);
+  }
+  // Only what is used, and each once.
+  EXPECT_EQ(std::set<int>(corners.begin(), corners.end()).size(), points.size() / 3);
+  EXPECT_EQ(std::set<int>(uv_corners.begin(), uv_corners.end()).size(), uvs.size() / 2);
+}
+
+TEST(Vrml, ReadsBackExactly) {
+  const TempFolder folder;
+  for (const bool far : {false, true}) {
+    World world = wavy_world(40, 3);
+    if (far) world.origin = {4194304, -65536, 0};
+    const Nodes nodes = parse_vrml(write(world, folder / "w.wrl"));
+    const auto shapes = of_type(nodes, "Shape");
+    ASSERT_EQ(shapes.size(), 3u);
+    for (std::size_t i = 0; i < shapes.size(); ++i) expect_shape(*shapes[i], world, i);
+  }
+  EXPECT_EQ(folder.count(), 1u);  // no temporary file is left
+}
+
+TEST(Vrml, InfoAndNavigation) {
+  const TempFolder folder;
+  World world = wavy_world(4, 1);
+  world.metres_per_unit = 0.01;
+  world.viewpoint.inside = true;
+  const Nodes nodes = parse_vrml(write(world, folder / "w.wrl"));
+  const auto info = of_type(nodes, "WorldInfo");
+  ASSERT_EQ(info.size(), 1u);
+  EXPECT_EQ(info[0]->field("title"), std::vector<std::string>{R"("a \"wavy\" \\ sheet")"});
+  EXPECT_EQ(info[0]->field("info").size(), 2u);
+  const auto navigation = of_type(nodes, "NavigationInfo");
+  ASSERT_EQ(navigation.size(), 1u);
+  EXPECT_EQ(navigation[0]->field("headlight"), std::vector<std::string>{"FALSE"});
+  EXPECT_EQ(navigation[0]->field("type")[0], "\"WALK\"");
+  EXPECT_EQ(numbers(navigation[0]->field("avatarSize")), (std::vector<double>{25, 160, 75}));
+  world.viewpoint.inside = false;
+  const Nodes outside = parse_vrml(write(world, folder / "o.wrl"));
+  EXPECT_EQ(of_type(outside, "NavigationInfo")[0]->field("type")[0], "\"EXAMINE\"");
+}
+
+glm::dmat3 rotation_of(const std::vector<double>& r) {
+  return glm::mat3_cast(glm::angleAxis(r[3], glm::normalize(glm::dvec3(r[0], r[1], r[2]))));
+}
+
+// Follows the nodes as a viewer does, and looks where the camera ends up.
+TEST(Vrml, ViewpointLooksWhereItShould) {
+  const TempFolder folder;
+  const glm::dvec3 directions[] = {{0, 0, -1},     {0, 0, 1},      {1, 0, 0},
+                                   {-1, 0.3, 0.2}, {0.1, -0.9, 1}, {0, 0.5, 1}};
+  for (const Up up : {Up::y, Up::z}) {
+    for (glm::dvec3 d : directions) {
+      World world = wavy_world(3, 1);
+      if (up == Up::z) d = {d.x, -d.z, d.y};
+      world.up = up;
+      world.origin = {100, 0, 0};
+      world.viewpoint.position = {1, 2, 3};
+      world.viewpoint.direction = from_glm(d);
+      const Nodes nodes = parse_vrml(write(world, folder / "v.wrl"));
+      const VrmlNode& transform = *of_type(nodes, "Transform").at(0);
+      const VrmlNode& view = transform.child("children");
+      glm::dmat3 outer(1);
+      if (transform.has("rotation")) outer = rotation_of(numbers(transform.field("rotation")));
+      const glm::dmat3 camera = outer * rotation_of(numbers(view.field("orientation")));
+      const auto p = numbers(view.field("position"));
+      EXPECT_LT(glm::distance(outer * glm::dvec3(p[0], p[1], p[2]), glm::dvec3(101, 2, 3)), 1e-4);
+      EXPECT_LT(glm::distance(camera * glm::dvec3(0, 0, -1), glm::normalize(d)), 1e-5);
+      const glm::dvec3 up_axis = up == Up::z ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
+      EXPECT_LT(glm::distance(outer * glm::dvec3(0, 1, 0), up_axis), 1e-6);
+      EXPECT_NEAR(glm::dot(camera * glm::dvec3(1, 0, 0), up_axis), 0, 1e-6) << "the view is tilted";
+      EXPECT_GT(glm::dot(camera * glm::dvec3(0, 1, 0), up_axis), 0) << "upside down";
+    }
+  }
+}
+
+TEST(Vrml, NamesAreEncodedAndPagesMayBeEmptyOrBare) {
+  const TempFolder folder;
+  World world = wavy_world(6, 2);
+  world.pages[0].image = "my caf\xc3\xa9 #1.png";
+  world.pages[1].image.clear();
+  world.pages.push_back({"empty.png", {}, {}, {}});
+  const Nodes nodes = parse_vrml(write(world, folder / "n.wrl"));
+  const auto shapes = of_type(nodes, "Shape");
+  ASSERT_EQ(shapes.size(), 2u);
+  EXPECT_EQ(shapes[0]->child("appearance").child("texture").field("url")[0],
+            "\"my%20caf%C3%A9%20%231.png\"");
+  EXPECT_FALSE(shapes[1]->child("appearance").has("texture"));
+  EXPECT_EQ(safe_file_name("my caf\xc3\xa9 #1"), "my_caf____1");
+}
+
+TEST(Vrml, GzipHoldsTheSameText) {
+  const TempFolder folder;
+  const World world = wavy_world(50, 2);
+  const std::string plain = write(world, folder / "w.wrl");
+  const std::string zipped = write(world, folder / "w.wrz");
+  EXPECT_LT(zipped.size(), plain.size());
+  EXPECT_EQ(zipped.substr(0, 2), "\x1f\x8b");
+  gzFile file = gzopen((folder / "w.wrz").c_str(), "rb");
+  std::string text(plain.size() + 1, '\0');
+  const int size = gzread(file, text.data(), unsigned(text.size()));
+  gzclose(file);
+  ASSERT_EQ(size, int(plain.size()));
+  text.resize(plain.size());
+  EXPECT_EQ(text, plain);
+}
+
+TEST(Vrml, ThreadsDoNotChangeABit) {
+  const TempFolder folder;
+  const World world = wavy_world(250, 2);
+  std::string first;
+  for (const int threads : {1, 2, 5}) {
+    Context context;
+    context.threads = threads;
+    AtomicFiles files;
+    ASSERT_TRUE(write_vrml(world, folder / "t.wrl", files, context).ok());
+    ASSERT_TRUE(files.commit().ok());
+    const std::string text = TempFolder::read(folder / "t.wrl");
+    if (first.empty()) first = text;
+    EXPECT_TRUE(text == first);
+  }
+}
+
+TEST(Vrml, FailuresLeaveNothingBehind) {
+  const TempFolder folder;
+  const auto status = [&](const World& world, const std::filesystem::path& path,
+                          const Context& context) {
+    AtomicFiles files;
+    return write_vrml(world, path, files, context).status();
+  };
+  World bad = wavy_world(5, 1);
+  bad.positions[3].x = NAN;
+  EXPECT_EQ(status(bad, folder / "a.wrl", {}).code(), ErrorCode::bad_input);
+  bad = wavy_world(5, 1);
+  bad.origin.x = 3.4e38;
+  bad.positions[1].x = 3.4e38f;
+  EXPECT_EQ(status(bad, folder / "a.wrl", {}).code(), ErrorCode::bad_input);
+  bad = wavy_world(5, 1);
+  bad.pages[0].uv_indices[2] = 1000000;
+  EXPECT_EQ(status(bad, folder / "a.wrl", {}).code(), ErrorCode::bad_input);
+  bad = wavy_world(5, 1);
+  bad.pages[0].indices.pop_back();
+  EXPECT_EQ(status(bad, folder / "a.wrl", {}).code(), ErrorCode::bad_input);
+  const World good = wavy_world(5, 1);
+  const Status io = status(good, folder / "no/such/folder/a.wrl", {});
+  EXPECT_EQ(io.code(), ErrorCode::io);
+  EXPECT_NE(io.message().find("a.wrl"), std::string::npos);
+  EXPECT_EQ(io.message().find(".part"), std::string::npos) << "names the temporary file";
+  EXPECT_EQ(status(good, "/dev/full/a.wrl", {}).code(), ErrorCode::io);
+  const std::atomic<bool> raised{true};
+  Context context;
+  context.cancel = &raised;
+  EXPECT_EQ(status(good, folder / "a.wrl", context).code(), ErrorCode::cancelled);
+  EXPECT_EQ(folder.count(), 0u);
+}
+
+}  // namespace
+}  // namespace atlas

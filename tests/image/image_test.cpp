@@ -1,0 +1,135 @@
+#include "libatlas/image/image_io.h"
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <cmath>
+#include <random>
+
+#include "tests/scene/temp_folder.h"
+
+namespace atlas {
+namespace {
+
+using test::TempFolder;
+
+Image8 noise(int width, int height, int channels) {
+  Image8 image(width, height, channels);
+  std::mt19937 random(std::uint32_t(width * 31 + channels));
+  for (std::uint8_t& texel : image.texels) texel = std::uint8_t(random());
+  return image;
+}
+
+std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (int i = 0; i < 4; ++i) value = value << 8 | std::uint8_t(bytes[at + i]);
+  return value;
+}
+
+TEST(Image, PngReadsBackExactly) {
+  const TempFolder folder;
+  for (int channels = 1; channels <= 4; ++channels) {
+    for (const int compression : {0, 3, 9}) {
+      const Image8 image = noise(37, 5, channels);
+      ASSERT_TRUE(write_png(folder / "a.png", image, {compression}).ok());
+      const auto read = read_image8(folder / "a.png");
+      ASSERT_TRUE(read.ok()) << read.status().message();
+      EXPECT_EQ(read->width, 37);
+      EXPECT_EQ(read->channels, channels);
+      EXPECT_EQ(read->texels, image.texels) << channels << " channels";
+    }
+  }
+}
+
+// By a second route: the file's own bytes, unfiltered by hand. Row 0 in memory is the bottom one.
+TEST(Image, PngRowsAreTopDownInTheFile) {
+  const TempFolder folder;
+  Image8 image(1, 2, 3, 0);
+  const std::uint8_t bottom[3] = {10, 20, 30}, top[3] = {200, 100, 50};
+  std::copy(bottom, bottom + 3, image.at(0, 0));
+  std::copy(top, top + 3, image.at(0, 1));
+  ASSERT_TRUE(write_png(folder / "a.png", image, {}).ok());
+  const std::string file = TempFolder::read(folder / "a.png");
+  EXPECT_EQ(file.substr(1, 3), "PNG");
+  EXPECT_EQ(big_endian(file, 16), 1u);
+  EXPECT_EQ(big_endian(file, 20), 2u);
+  EXPECT_EQ(file[24], 8);  // bits
+  EXPECT_EQ(file[25], 2);  // RGB without alpha
+  std::string packed;
+  for (std::size_t at = 8; at + 12 <= file.size(); at += 12 + big_endian(file, at)) {
+    if (file.substr(at + 4, 4) == "IDAT") packed += file.substr(at + 8, big_endian(file, at));
+  }
+  unsigned char rows[8];
+  uLongf size = sizeof rows;
+  ASSERT_EQ(uncompress(rows, &size, reinterpret_cast<const Bytef*>(packed.data()), packed.size()),
+            Z_OK);
+  ASSERT_EQ(size, 8u);
+  int first[3], second[3];
+  for (int c = 0; c < 3; ++c) {  // filters none, sub, up, average, paeth, for one texel a row
+    first[c] = rows[1 + c];
+    const int filter = rows[4], above = filter == 0 || filter == 1 ? 0 : first[c];
+    second[c] = (rows[5 + c] + (filter == 3 ? above / 2 : above)) & 255;
+  }
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_EQ(first[c], top[c]);
+    EXPECT_EQ(second[c], bottom[c]);
+  }
+}
+
+TEST(Image, ColoursUnderAlphaStayAsStored) {
+  const TempFolder folder;
+  Image8 image(2, 1, 4, 0);
+  const std::uint8_t texels[8] = {200, 150, 100, 0, 7, 8, 9, 128};
+  std::copy(texels, texels + 8, image.texels.begin());
+  ASSERT_TRUE(write_png(folder / "a.png", image, {}).ok());
+  EXPECT_EQ(read_image8(folder / "a.png")->texels, image.texels);
+}
+
+TEST(Image, DecodesFromMemory) {
+  const TempFolder folder;
+  const Image8 image = noise(9, 7, 3);
+  ASSERT_TRUE(write_png(folder / "a.png", image, {}).ok());
+  const std::string file = TempFolder::read(folder / "a.png");
+  const std::vector<std::uint8_t> bytes(file.begin(), file.end());
+  const auto decoded = decode_image8(bytes, "embedded");
+  ASSERT_TRUE(decoded.ok()) << decoded.status().message();
+  EXPECT_EQ(decoded->texels, image.texels);
+  for (const std::size_t cut :
+       {std::size_t{0}, std::size_t{3}, std::size_t{20}, bytes.size() / 2}) {
+    const auto damaged = decode_image8(std::span(bytes).first(cut), "scene.glb: image 4");
+    ASSERT_FALSE(damaged.ok()) << cut;
+    EXPECT_NE(damaged.status().message().find("scene.glb: image 4"), std::string::npos);
+  }
+}
+
+TEST(Image, ExrKeepsLinearValuesBeyondOne) {
+  const TempFolder folder;
+  ImageF image(3, 2, 3);
+  for (std::size_t i = 0; i < image.texels.size(); ++i) {
+    image.texels[i] = 0.1f * float(i * i * i) + 0.001f;
+  }
+  ASSERT_TRUE(write_exr(folder / "a.exr", image).ok());
+  const auto read = read_image_float(folder / "a.exr");
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  ASSERT_EQ(read->texels.size(), image.texels.size());
+  for (std::size_t i = 0; i < image.texels.size(); ++i) {
+    EXPECT_NEAR(read->texels[i] / image.texels[i], 1, 1.0 / 2048) << i;  // half floats
+  }
+}
+
+TEST(Image, FailuresNameTheFile) {
+  const TempFolder folder;
+  EXPECT_EQ(read_image8(folder / "gone.png").status().code(), ErrorCode::not_found);
+  const auto broken = read_image8(folder.write("broken.png", "no image at all"));
+  EXPECT_EQ(broken.status().code(), ErrorCode::io);
+  EXPECT_NE(broken.status().message().find("broken.png"), std::string::npos);
+  ASSERT_TRUE(write_png(folder / "whole.png", noise(64, 64, 3), {}).ok());
+  const std::string file = TempFolder::read(folder / "whole.png");
+  EXPECT_FALSE(read_image8(folder.write("cut.png", file.substr(0, file.size() / 2))).ok());
+  EXPECT_FALSE(read_image8(folder.path()).ok());
+  EXPECT_EQ(write_png(folder / "no/folder/a.png", noise(2, 2, 3), {}).code(), ErrorCode::io);
+  EXPECT_EQ(write_exr(folder / "no/folder/a.exr", ImageF(2, 2, 3)).code(), ErrorCode::io);
+}
+
+}  // namespace
+}  // namespace atlas
