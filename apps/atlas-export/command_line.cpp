@@ -126,7 +126,7 @@ std::optional<std::string> interpret(const RawText& raw, ExportCommand& command)
     options.texel_metres = *texel;
   }
   const auto tone = parse_tone_operator(raw.tone);
-  if (!tone.ok()) return tone.status().message();
+  if (!tone.ok()) return "--tone: " + tone.status().message();
   options.tone.op = *tone;
   if (!raw.memory.empty()) {
     const auto bytes = parse_bytes(raw.memory);

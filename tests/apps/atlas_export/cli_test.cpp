@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -19,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Run {
+struct RunResult {
   int exit_code = -1;
   std::string output;  // stdout and stderr together
 };
@@ -38,8 +39,8 @@ class AtlasExport : public testing::Test {
     return dir_ / name;
   }
 
-  static Run run(const std::string& arguments) {
-    Run result;
+  static RunResult run(const std::string& arguments) {
+    RunResult result;
     FILE* pipe = ::popen(fmt::format("{} {} 2>&1", ATLAS_EXPORT, arguments).c_str(), "r");
     char buffer[4096];
     while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) {
@@ -63,7 +64,7 @@ class AtlasExport : public testing::Test {
   void expect_refusal(const fs::path& scene, const std::string& expected,
                       const std::string& more = "") {
     const auto before = files();
-    const Run r = run(fmt::format("{} -o {} {}", scene.string(), (dir_ / "world.wrl").string(), more));
+    const RunResult r = run(fmt::format("{} -o {} {}", scene.string(), (dir_ / "world.wrl").string(), more));
     EXPECT_TRUE(r.exit_code == 1 || r.exit_code == 2) << r.exit_code << "\n" << r.output;
     EXPECT_EQ(std::count(r.output.begin(), r.output.end(), '\n'), 1) << r.output;
     EXPECT_NE(r.output.find(expected), std::string::npos) << r.output;
@@ -111,7 +112,7 @@ std::string slurp(const fs::path& path) {
 
 TEST_F(AtlasExport, WritesWorldImagesAndReport) {
   const fs::path scene = write("box.obj", lit_box(12));
-  const Run r = run(fmt::format("{0}/box.obj -o {0}/world.wrl --texel 1cm --report {0}/report.json",
+  const RunResult r = run(fmt::format("{0}/box.obj -o {0}/world.wrl --texel 1cm --report {0}/report.json",
                                 dir_.string()));
   ASSERT_EQ(r.exit_code, 0) << r.output;
   EXPECT_EQ(files(), (std::set<std::string>{"box.obj", "report.json", "world.wrl", "world_0.png"}));
@@ -127,7 +128,7 @@ TEST_F(AtlasExport, SameBytesForEveryThreadCount) {
   write("box.obj", lit_box(20));
   std::string reference;
   for (const int threads : {1, 2, 8}) {
-    const Run r = run(fmt::format("{0}/box.obj -o {0}/w.obj --texel 1cm -q --threads {1}",
+    const RunResult r = run(fmt::format("{0}/box.obj -o {0}/w.obj --texel 1cm -q --threads {1}",
                                   dir_.string(), threads));
     ASSERT_EQ(r.exit_code, 0) << r.output;
     EXPECT_EQ(r.output, "");
@@ -175,7 +176,7 @@ TEST_F(AtlasExport, OptionsOutOfRange) {
 TEST_F(AtlasExport, UnwritableTarget) {
   const fs::path scene = write("box.obj", lit_box(2));
   const auto before = files();
-  const Run r = run(fmt::format("{} -o {}/no/such/world.wrl", scene.string(), dir_.string()));
+  const RunResult r = run(fmt::format("{} -o {}/no/such/world.wrl", scene.string(), dir_.string()));
   EXPECT_EQ(r.exit_code, 1);
   EXPECT_NE(r.output.find("no/such"), std::string::npos) << r.output;
   EXPECT_EQ(files(), before);
@@ -184,7 +185,7 @@ TEST_F(AtlasExport, UnwritableTarget) {
 
 TEST_F(AtlasExport, UnknownTargetFormat) {
   const fs::path scene = write("box.obj", lit_box(2));
-  const Run r = run(fmt::format("{} -o {}/world.max", scene.string(), dir_.string()));
+  const RunResult r = run(fmt::format("{} -o {}/world.max", scene.string(), dir_.string()));
   EXPECT_EQ(r.exit_code, 2);
   EXPECT_NE(r.output.find(".wrl"), std::string::npos) << r.output;
 }
@@ -193,7 +194,7 @@ TEST_F(AtlasExport, SomeBadElementsAreCountedAndNamed) {
   std::string text = "mtllib none.mtl\nusemtl plaster\n" + lit_box(4);
   text += "f 1 2 9999\nf 1 2\nv nan 0 0 1 1 1\nf 1 2 151\n";
   write("some.obj", text);
-  const Run r =
+  const RunResult r =
       run(fmt::format("{0}/some.obj -o {0}/w.wrl --report {0}/r.json", dir_.string()));
   ASSERT_EQ(r.exit_code, 0) << r.output;
   const auto report = nlohmann::json::parse(slurp(dir_ / "r.json"));
@@ -215,7 +216,7 @@ TEST_F(AtlasExport, MissingTextureIsReported) {
   write("m.mtl", "newmtl wood\nKd 0.5 0.5 0.5\nmap_Kd gone.png\n");
   write("t.obj", "mtllib m.mtl\nv 0 0 0 1 1 1\nv 1 0 0 1 1 1\nv 0 1 0 1 1 1\n"
                  "vt 0 0\nvt 1 0\nvt 0 1\nusemtl wood\nf 1/1 2/2 3/3\n");
-  const Run r = run(fmt::format("{0}/t.obj -o {0}/w.wrl", dir_.string()));
+  const RunResult r = run(fmt::format("{0}/t.obj -o {0}/w.wrl", dir_.string()));
   EXPECT_EQ(r.exit_code, 0) << r.output;
   EXPECT_NE(r.output.find("gone.png"), std::string::npos) << r.output;
 }
@@ -223,7 +224,7 @@ TEST_F(AtlasExport, MissingTextureIsReported) {
 TEST_F(AtlasExport, PlanRunsNothing) {
   const fs::path scene = write("box.obj", lit_box(4));
   const auto before = files();
-  const Run r = run(fmt::format("{} -o {}/w.wrl --plan", scene.string(), dir_.string()));
+  const RunResult r = run(fmt::format("{} -o {}/w.wrl --plan", scene.string(), dir_.string()));
   EXPECT_EQ(r.exit_code, 0);
   EXPECT_NE(r.output.find("skip reflectance"), std::string::npos) << r.output;
   EXPECT_NE(r.output.find("run  baking"), std::string::npos) << r.output;
@@ -232,7 +233,7 @@ TEST_F(AtlasExport, PlanRunsNothing) {
 
 TEST_F(AtlasExport, UnlitSceneGivesPlainUvs) {
   write("tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  const Run r = run(fmt::format("{0}/tri.obj -o {0}/w.obj", dir_.string()));
+  const RunResult r = run(fmt::format("{0}/tri.obj -o {0}/w.obj", dir_.string()));
   ASSERT_EQ(r.exit_code, 0) << r.output;
   EXPECT_NE(r.output.find("no illumination"), std::string::npos) << r.output;
   EXPECT_NE(slurp(dir_ / "w.obj").find("\nvt "), std::string::npos);
