@@ -203,9 +203,9 @@ void Relaxer::begin(std::span<const Element> elements, const CornerLists& corner
   spring_ = nullptr;
 }
 
-void Relaxer::pull(std::span<const Element> elements, const CornerLists& corners,
-                   std::span<const Spring> springs, std::span<Vec2d> uvs) {
-  constexpr int rings = 5, sweeps = 12;
+void Relaxer::pull(std::span<const Element> elements, const CornerLists& corners, const Pull& pull,
+                   std::span<Vec2d> uvs) {
+  const std::span<const Spring> springs = pull.springs;
   begin(elements, corners, uvs);
   springs_ = springs;
   spring_of_.assign(uvs.size(), 0);
@@ -215,9 +215,9 @@ void Relaxer::pull(std::span<const Element> elements, const CornerLists& corners
     spring_of_[v] = i + 1;
     seeds.push_back(corners.corner[corners.first[v]] / 3);
   }
-  gather(seeds, rings);
+  gather(seeds, pull.rings);
   epsilon_ = 0;
-  for (int i = 0; i < sweeps; ++i) sweep();
+  for (int i = 0; i < pull.sweeps; ++i) sweep();
   spring_of_.clear();
 }
 

@@ -35,10 +35,15 @@ class Relaxer {
   Outcome remove_flips(std::span<const Element> elements, const CornerLists& corners,
                        std::span<const std::uint32_t> also, std::span<Vec2d> uvs);
 
+  struct Pull {
+    std::span<const Spring> springs;
+    int rings, sweeps;
+  };
+
   // Draws vertices towards targets while the neighbourhood, so many rings wide, follows by the
   // symmetric Dirichlet energy; nothing flips. All triangles must be positive.
-  void pull(std::span<const Element> elements, const CornerLists& corners,
-            std::span<const Spring> springs, std::span<Vec2d> uvs);
+  void pull(std::span<const Element> elements, const CornerLists& corners, const Pull& pull,
+            std::span<Vec2d> uvs);
 
  private:
   struct Local {  // what a triangle's energy depends on while one vertex moves by m

@@ -4,18 +4,25 @@
 #include <cmath>
 #include <limits>
 
-#include "libatlas/core/predicates.h"
-
 namespace atlas::param {
 namespace {
 
-constexpr std::size_t longest_arc = 48;
+constexpr std::size_t longest_arc = 64;
+constexpr int extra_vertices = 2;     // looked after beyond the ends of an overlap
+constexpr double gap_of_edge = 0.01;  // the gap left, as part of an edge's length
 
-glm::dvec2 nearest_on_segment(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
+// Where, from 0 to 1 along ab, the line cd meets it.
+double meeting_place(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
+  const double from = cross(d - c, a - c), to = cross(d - c, b - c);
+  if (from == to) return 0.5;
+  return std::clamp(from / (from - to), 0.0, 1.0);
+}
+
+// The unit vector to the right of the border's direction, away from its triangles.
+glm::dvec2 outward(glm::dvec2 a, glm::dvec2 b) {
   const glm::dvec2 d = b - a;
-  const double squared = glm::dot(d, d);
-  const double t = squared > 0 ? std::clamp(glm::dot(p - a, d) / squared, 0.0, 1.0) : 0;
-  return a + t * d;
+  const double l = glm::length(d);
+  return l > 0 ? glm::dvec2(d.y, -d.x) / l : glm::dvec2(0);
 }
 
 }  // namespace
@@ -31,90 +38,228 @@ void Separator::map_border(const LocalMesh& mesh) {
   }
 }
 
-// From the end of half_edge that lies on the inner side of `other`, along the border to the next
-// crossing.
-bool Separator::walk(std::uint32_t half_edge, std::uint32_t other, std::span<const Vec2d> uvs,
-                     Arc& out) {
-  out.vertices.clear();
-  out.half_edges.assign(1, half_edge);
-  const Vec2d a = uvs[half_edges_.from(other)], b = uvs[half_edges_.to(other)];
-  const bool forward = orientation(a, b, uvs[half_edges_.to(half_edge)]) > 0;
-  if (!forward && orientation(a, b, uvs[half_edges_.from(half_edge)]) <= 0) return true;
-  std::uint32_t h = half_edge;
-  for (std::size_t step = 0; step < longest_arc; ++step) {
-    const std::uint32_t v = forward ? half_edges_.to(h) : half_edges_.from(h);
-    out.vertices.push_back(v);
-    h = forward ? next_[v] : previous_[v];
-    out.half_edges.push_back(h);
-    if (crosses_[h]) return true;
-  }
-  return false;
+bool Separator::collides(std::uint32_t half_edge) const {
+  const auto m = std::lower_bound(meetings_.begin(), meetings_.end(), Meeting{half_edge, 0});
+  return m != meetings_.end() && m->half_edge == half_edge;
 }
 
-// Springs that draw from's vertices towards the nearest points of `to`.
-void Separator::attract(const Arc& from, const Arc& to, std::span<const Vec2d> uvs) {
-  // Both sides move; a side that has no vertices within the overlap cannot, and the other goes all
-  // the way.
-  const double share = to.vertices.empty() ? 1.2 : 0.65;
-  for (const std::uint32_t v : from.vertices) {
-    const glm::dvec2 p = to_glm(uvs[v]);
-    double least = std::numeric_limits<double>::infinity(), length = 0;
-    glm::dvec2 target = p;
-    for (const std::uint32_t h : to.half_edges) {
-      const std::uint32_t a = half_edges_.from(h), b = half_edges_.to(h);
-      if (a == v || b == v) continue;
-      const glm::dvec2 q = nearest_on_segment(p, to_glm(uvs[a]), to_glm(uvs[b]));
-      const double d = glm::length(q - p);
-      if (d >= least) continue;
-      least = d;
-      length = glm::length(to_glm(uvs[b]) - to_glm(uvs[a]));
-      // A few thousandths of the edge beyond: the gap that is left in the end.
-      target = p + (q - p) * (share + (d > 0 ? std::min(0.01 * length / d, 10.0) : 0));
-    }
-    if (!std::isfinite(least)) continue;
-    if (place_[v] == 0) {
-      springs_.push_back({v, from_glm(target)});
-      place_[v] = static_cast<std::uint32_t>(springs_.size());
-      distance_[v] = least;
-    } else if (least < distance_[v]) {
-      springs_[place_[v] - 1].target = from_glm(target);
-      distance_[v] = least;
-    }
+void Separator::widen(Arc& arc, std::uint32_t first, std::uint32_t last) const {
+  for (int i = 0; i < extra_vertices; ++i) {
+    arc.beside.push_back(half_edges_.from(first));
+    arc.beside.push_back(half_edges_.to(last));
+    first = previous(first);
+    last = next(last);
   }
+}
+
+// The angle that the triangles at a vertex fill in uv; beyond a full turn if they overlap there.
+double Separator::corner_angle(std::uint32_t vertex, std::span<const Vec2d> uvs) const {
+  double sum = 0;
+  for (std::uint32_t i = corners_->first[vertex]; i < corners_->first[vertex + 1]; ++i) {
+    const auto& v = elements_[corners_->corner[i] / 3].v;
+    const std::uint32_t k = corners_->corner[i] % 3;
+    const glm::dvec2 p = to_glm(uvs[vertex]);
+    const glm::dvec2 a = to_glm(uvs[v[(k + 1) % 3]]) - p, b = to_glm(uvs[v[(k + 2) % 3]]) - p;
+    sum += std::atan2(cross(a, b), glm::dot(a, b));
+  }
+  return sum;
+}
+
+// A stretch that returns to the very crossing it came from goes round the end of a slit, where the
+// border turns back: keep the bank that it begins with, up to there.
+void Separator::keep_one_bank(Arc& arc, std::span<const Vec2d> uvs) const {
+  std::size_t end = 0;
+  double widest = 0;
+  for (std::size_t i = 0; i < arc.within.size(); ++i) {
+    const double angle = corner_angle(arc.within[i], uvs);
+    if (angle <= widest) continue;
+    widest = angle;
+    end = i;
+  }
+  arc.within.resize(end);
+  arc.half_edges.resize(end + 1);
+}
+
+// The stretch of border that goes through half_edge, where it crosses `other`, into the triangles
+// there, up to its next crossing.
+bool Separator::reach(std::uint32_t half_edge, std::uint32_t other, std::span<const Vec2d> uvs,
+                      Arc& out) {
+  const auto from = [&](std::uint32_t h) { return to_glm(uvs[half_edges_.from(h)]); };
+  const auto to = [&](std::uint32_t h) { return to_glm(uvs[half_edges_.to(h)]); };
+  out.half_edges.assign(1, half_edge);
+  out.within.clear();
+  out.beside.clear();
+  const double side_from = cross(to(other) - from(other), from(half_edge) - from(other));
+  const double side_to = cross(to(other) - from(other), to(half_edge) - from(other));
+  const bool forward = side_to > side_from;
+  const double along = meeting_place(from(half_edge), to(half_edge), from(other), to(other));
+  auto m = std::lower_bound(meetings_.begin(), meetings_.end(), Meeting{half_edge, along});
+  const bool leaves_at_once =
+      forward ? m != meetings_.end() && m + 1 != meetings_.end() && (m + 1)->half_edge == half_edge
+              : m != meetings_.begin() && (m - 1)->half_edge == half_edge;
+  std::uint32_t h = half_edge;
+  if (!leaves_at_once) {
+    do {
+      if (out.within.size() > longest_arc) return false;
+      out.within.push_back(forward ? half_edges_.to(h) : half_edges_.from(h));
+      h = forward ? next(h) : previous(h);
+      out.half_edges.push_back(h);
+    } while (!collides(h) && h != half_edge);
+  }
+  if (h == other) {
+    keep_one_bank(out, uvs);
+    h = out.half_edges.back();
+  }
+  widen(out, forward ? half_edge : h, forward ? h : half_edge);
+  return true;
+}
+
+Separator::Depth Separator::depth(std::uint32_t vertex, bool may_be_within, const Arc& other,
+                                  std::span<const Vec2d> uvs) const {
+  const std::uint32_t before = half_edges_.from(previous_[vertex]);
+  const std::uint32_t after = half_edges_.to(next_[vertex]);
+  const glm::dvec2 p = to_glm(uvs[vertex]);
+  Depth result{std::numeric_limits<double>::infinity(), 0, glm::dvec2(0)};
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t h : other.half_edges) {
+    const std::uint32_t a = half_edges_.from(h), b = half_edges_.to(h);
+    if (a == vertex || b == vertex) continue;
+    const glm::dvec2 pa = to_glm(uvs[a]), pb = to_glm(uvs[b]), d = pb - pa;
+    const double squared = glm::dot(d, d);
+    const double t = squared > 0 ? std::clamp(glm::dot(p - pa, d) / squared, 0.0, 1.0) : 0;
+    // The near end of a neighbouring edge says nothing about sides.
+    if ((t == 0 && (a == before || a == after)) || (t == 1 && (b == before || b == after)))
+      continue;
+    const glm::dvec2 q = pa + t * d;
+    const double distance = glm::length(p - q);
+    if (distance >= least) continue;
+    least = distance;
+    glm::dvec2 out = outward(pa, pb);
+    if (t == 0) out += outward(to_glm(uvs[half_edges_.from(previous(h))]), pa);
+    if (t == 1) out += outward(pb, to_glm(uvs[half_edges_.to(next(h))]));
+    const double norm = glm::length(out);
+    if (norm > 0) out /= norm;
+    const bool inside = may_be_within && glm::dot(p - q, out) < 0;
+    result.margin = gap_of_edge * std::sqrt(squared);
+    result.outside = inside ? -distance : distance;
+    // The shortest way, unless it is too short to have a direction.
+    result.out = distance > 0.1 * result.margin ? (inside ? q - p : p - q) / distance : out;
+  }
+  return result;
+}
+
+void Separator::draw(std::uint32_t vertex, const Depth& depth, double share,
+                     std::span<const Vec2d> uvs) {
+  if (!(depth.outside < depth.margin)) return;
+  const double pull =
+      depth.outside < 0 ? depth.margin - share * depth.outside : depth.margin - depth.outside;
+  if (place_[vertex] == 0) {
+    springs_.push_back({vertex, {}});
+    place_[vertex] = static_cast<std::uint32_t>(springs_.size());
+  } else if (pull <= pulled_[vertex]) {
+    return;
+  }
+  pulled_[vertex] = pull;
+  springs_[place_[vertex] - 1].target = from_glm(to_glm(uvs[vertex]) + depth.out * pull);
+}
+
+void Separator::draw_apart(const Arc& first, const Arc& second, std::span<const Vec2d> uvs) {
+  const auto any_within = [&](const Arc& arc, const Arc& other) {
+    return std::any_of(arc.within.begin(), arc.within.end(),
+                       [&](std::uint32_t v) { return depth(v, true, other, uvs).outside < 0; });
+  };
+  // Both sides move half-way; a side that has no vertices within the other cannot.
+  const double share = any_within(first, second) && any_within(second, first) ? 0.6 : 1.1;
+  const auto draw_side = [&](const Arc& arc, const Arc& other) {
+    for (const std::uint32_t v : arc.within) draw(v, depth(v, true, other, uvs), share, uvs);
+    for (const std::uint32_t v : arc.beside) draw(v, depth(v, false, other, uvs), share, uvs);
+  };
+  draw_side(first, second);
+  draw_side(second, first);
+}
+
+// Loops that nothing crosses but that turn the wrong way: a hole pulled inside out.
+bool Separator::collect_turned_loops(std::span<const Vec2d> uvs) {
+  const std::size_t loops = border_.loop_start.size() - 1;
+  std::vector<double> area(loops, 0);
+  std::size_t outer = 0;
+  for (std::size_t l = 0; l < loops; ++l) {
+    const std::uint32_t begin = border_.loop_start[l], end = border_.loop_start[l + 1];
+    const glm::dvec2 origin = to_glm(uvs[half_edges_.from(border_.half_edges[begin])]);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const std::uint32_t h = border_.half_edges[i];
+      area[l] +=
+          cross(to_glm(uvs[half_edges_.from(h)]) - origin, to_glm(uvs[half_edges_.to(h)]) - origin);
+    }
+    if (std::abs(area[l]) > std::abs(area[outer])) outer = l;
+  }
+  if (loops == 0 || !(area[outer] > 0)) return false;
+  for (std::size_t l = 0; l < loops; ++l) {
+    const std::uint32_t begin = border_.loop_start[l], end = border_.loop_start[l + 1];
+    if (l == outer || area[l] < 0) continue;
+    if (end - begin > 2 * longest_arc) return false;
+    first_.half_edges.assign(border_.half_edges.begin() + begin, border_.half_edges.begin() + end);
+    first_.within.clear();
+    first_.beside.clear();
+    for (const std::uint32_t h : first_.half_edges) first_.within.push_back(half_edges_.from(h));
+    draw_apart(first_, first_, uvs);
+  }
+  return !springs_.empty();
 }
 
 bool Separator::collect(std::span<const BorderCrossing> crossings, std::span<const Vec2d> uvs) {
   springs_.clear();
   place_.assign(uvs.size(), 0);
-  distance_.resize(uvs.size());
-  std::uint32_t largest = 0;
-  for (const std::uint32_t h : border_.half_edges) largest = std::max(largest, h);
-  crosses_.assign(largest + 1, 0);
+  pulled_.resize(uvs.size());
+  if (crossings.empty()) return collect_turned_loops(uvs);
+  meetings_.clear();
   for (const BorderCrossing& c : crossings) {
-    crosses_[next_[c.a[0]]] = 1;
-    crosses_[next_[c.b[0]]] = 1;
+    const glm::dvec2 a = to_glm(uvs[c.a[0]]), b = to_glm(uvs[c.a[1]]);
+    const glm::dvec2 p = to_glm(uvs[c.b[0]]), q = to_glm(uvs[c.b[1]]);
+    meetings_.push_back({next_[c.a[0]], meeting_place(a, b, p, q)});
+    meetings_.push_back({next_[c.b[0]], meeting_place(p, q, a, b)});
   }
+  std::sort(meetings_.begin(), meetings_.end());
   for (const BorderCrossing& c : crossings) {
     const std::uint32_t e = next_[c.a[0]], f = next_[c.b[0]];
-    if (!walk(e, f, uvs, arc_[0]) || !walk(f, e, uvs, arc_[1])) return false;
-    attract(arc_[0], arc_[1], uvs);
-    attract(arc_[1], arc_[0], uvs);
+    if (!reach(e, f, uvs, first_) || !reach(f, e, uvs, second_)) return false;
+    draw_apart(first_, second_, uvs);
   }
   return !springs_.empty();
 }
 
+// Lets the distortion of what moved spread, with the border held where it is now.
+void Separator::settle(const LocalMesh& mesh, Relaxer& relaxer, std::span<Vec2d> uvs) {
+  constexpr int rings = 10, sweeps = 30;
+  saved_.assign(uvs.begin(), uvs.end());
+  std::sort(moved_.begin(), moved_.end());
+  moved_.erase(std::unique(moved_.begin(), moved_.end()), moved_.end());
+  springs_.clear();
+  for (const std::uint32_t v : moved_) springs_.push_back({v, uvs[v]});
+  relaxer.pull(elements_, *corners_, {springs_, rings, sweeps}, uvs);
+  if (!check_injectivity(mesh, uvs).injective) std::copy(saved_.begin(), saved_.end(), uvs.begin());
+}
+
 bool Separator::separate(const LocalMesh& mesh, std::span<const Element> elements,
                          const CornerLists& corners, Relaxer& relaxer, std::span<Vec2d> uvs) {
-  constexpr int rounds = 12;
+  // More sweeps a round would let the rest of the border drift into new crossings (measured).
+  constexpr int rounds = 16, rings = 5, sweeps = 12;
   constexpr std::size_t most_crossings = 256;
+  elements_ = elements;
+  corners_ = &corners;
   map_border(mesh);
   saved_.assign(uvs.begin(), uvs.end());
+  moved_.clear();
   for (int round = 0; round <= rounds; ++round) {
     const Injectivity check = check_injectivity(mesh, uvs, {.max_crossings = most_crossings});
-    if (check.injective) return true;
-    if (!check.flipped.empty() || check.nested || check.crossings.size() >= most_crossings) break;
+    if (check.injective) {
+      if (round > 0) settle(mesh, relaxer, uvs);
+      return true;
+    }
+    if (!check.flipped.empty() || check.crossings.size() >= most_crossings) break;
     if (round == rounds || !collect(check.crossings, uvs)) break;
-    relaxer.pull(elements, corners, springs_, uvs);
+    for (const Relaxer::Spring& s : springs_) moved_.push_back(s.vertex);
+    relaxer.pull(elements, corners, {springs_, rings, sweeps}, uvs);
   }
   std::copy(saved_.begin(), saved_.end(), uvs.begin());
   return false;

@@ -11,33 +11,64 @@
 namespace atlas::param {
 
 // Where two stretches of the border cross, each reaches into the other. Their vertices there are
-// pulled a little more than half-way to the other side's border, the triangles around give way
-// without flipping (Relaxer::pull), and so on until no border crosses. Overlaps deeper than a few
-// dozen border vertices are left alone: those need a cut.
+// drawn out of the other side's triangles, which give way without flipping (Relaxer::pull), and so
+// on until no border crosses. Overlaps deeper than a few dozen border vertices are left alone:
+// those need a cut.
 class Separator {
  public:
   // All triangles positive. Returns whether the map is injective afterwards; uvs are as they were
-  // if not. half_edges: of the mesh.
+  // if not.
   bool separate(const LocalMesh& mesh, std::span<const Element> elements,
                 const CornerLists& corners, Relaxer& relaxer, std::span<Vec2d> uvs);
 
  private:
-  struct Arc {  // what of one border reaches over the other
-    std::vector<std::uint32_t> vertices, half_edges;
+  struct Arc {                              // a stretch of border
+    std::vector<std::uint32_t> half_edges;  // in order, from crossing to crossing
+    std::vector<std::uint32_t> within;  // its vertices that may lie in the other side's triangles
+    std::vector<std::uint32_t> beside;  // vertices a little beyond its ends
   };
+  struct Depth {
+    double outside;  // signed distance from the other side's triangles; negative: within them
+    double margin;   // what it should be
+    glm::dvec2 out;  // unit vector that leads there
+  };
+  struct Meeting {  // of one border half-edge with another
+    std::uint32_t half_edge;
+    double along;  // where on it, 0 to 1
+    bool operator<(const Meeting& other) const {
+      return half_edge != other.half_edge ? half_edge < other.half_edge : along < other.along;
+    }
+  };
+
   void map_border(const LocalMesh& mesh);
   bool collect(std::span<const BorderCrossing> crossings, std::span<const Vec2d> uvs);
-  bool walk(std::uint32_t half_edge, std::uint32_t other, std::span<const Vec2d> uvs, Arc& out);
-  void attract(const Arc& from, const Arc& to, std::span<const Vec2d> uvs);
+  bool collect_turned_loops(std::span<const Vec2d> uvs);
+  bool reach(std::uint32_t half_edge, std::uint32_t other, std::span<const Vec2d> uvs, Arc& out);
+  double corner_angle(std::uint32_t vertex, std::span<const Vec2d> uvs) const;
+  void keep_one_bank(Arc& arc, std::span<const Vec2d> uvs) const;
+  void widen(Arc& arc, std::uint32_t first, std::uint32_t last) const;
+  Depth depth(std::uint32_t vertex, bool may_be_within, const Arc& other,
+              std::span<const Vec2d> uvs) const;
+  void draw(std::uint32_t vertex, const Depth& depth, double share, std::span<const Vec2d> uvs);
+  void draw_apart(const Arc& first, const Arc& second, std::span<const Vec2d> uvs);
+  bool collides(std::uint32_t half_edge) const;
 
+  void settle(const LocalMesh& mesh, Relaxer& relaxer, std::span<Vec2d> uvs);
+
+  std::uint32_t next(std::uint32_t h) const { return next_[half_edges_.to(h)]; }
+  std::uint32_t previous(std::uint32_t h) const { return previous_[half_edges_.from(h)]; }
+
+  std::span<const Element> elements_;
+  const CornerLists* corners_ = nullptr;
   HalfEdges half_edges_;
   HalfEdges::Border border_;
-  std::vector<std::uint32_t> next_, previous_;  // 1 a border vertex: the half-edge to and from it
-  std::vector<std::uint8_t> crosses_;           // 1 a half-edge
-  Arc arc_[2];
+  std::vector<std::uint32_t> next_, previous_;  // 1 a border vertex: the half-edge from and to it
+  std::vector<Meeting> meetings_;               // sorted
+  Arc first_, second_;
   std::vector<Relaxer::Spring> springs_;
-  std::vector<double> distance_;      // 1 a vertex: of its spring
+  std::vector<double> pulled_;        // 1 a vertex: how far its spring reaches
   std::vector<std::uint32_t> place_;  // 1 a vertex: 1 + its spring's place, or 0
+  std::vector<std::uint32_t> moved_;  // vertices that had a spring
   std::vector<Vec2d> saved_;
 };
 
