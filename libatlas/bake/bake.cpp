@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <utility>
 
 #include "libatlas/bake/least_squares.h"
 #include "libatlas/core/parallel.h"
@@ -81,7 +82,7 @@ void splat_triangle(const TexelTriangle& p, const TriangleLight& lit, const Job&
       });
 }
 
-void bake_least_squares(const Job& job, const Box& box, TexelGrid& out) {
+TexelGrid bake_least_squares(const Job& job, const Box& box) {
   LeastSquares fit(box.width, box.height);
   const double spacing = sample_spacing(box.placement, job.grid.side);
   for (const std::uint32_t t : triangles_of(job.light.charts, box.placement.chart)) {
@@ -93,11 +94,12 @@ void bake_least_squares(const Job& job, const Box& box, TexelGrid& out) {
     splat_triangle(p, lit, job, box, fit);
   }
   const float high = job.tone ? 1.0f : std::numeric_limits<float>::max();
-  fit.solve(0, high, out);
+  return std::move(fit).solve(0, high);
 }
 
 // The published scheme. Shifts move the grid by up to half a texel about the texel's centre.
-void bake_average(const Job& job, const Box& box, TexelGrid& out) {
+TexelGrid bake_average(const Job& job, const Box& box) {
+  TexelGrid out(box.width, box.height);
   const double spacing = sample_spacing(box.placement, 1);
   const Rect clip{0, 0, box.width, box.height};
   for (const std::uint32_t t : triangles_of(job.light.charts, box.placement.chart)) {
@@ -110,9 +112,8 @@ void bake_average(const Job& job, const Box& box, TexelGrid& out) {
       TexelTriangle q = p;
       for (Vec2d& corner : q) corner = {corner.x - shift.x, corner.y - shift.y};
       cover_triangle(q, clip, [&](int x, int y, double area, Vec2d c) {
-        lit.row({c.x + shift.x, c.y + shift.y}, 1, [&](int, Lanes rgb) {
-          out.rgb[std::size_t(y) * out.width + x] += static_cast<float>(area) * rgb;
-        });
+        out.rgb[std::size_t(y) * out.width + x] +=
+            static_cast<float>(area) * lit.inside({c.x + shift.x, c.y + shift.y});
       });
     }
   }
@@ -122,21 +123,12 @@ void bake_average(const Job& job, const Box& box, TexelGrid& out) {
     out.rgb[i] /= weight;
     out.known[i] = 1;
   }
+  return out;
 }
 
-struct BoxCounts {
-  std::size_t covered = 0, filled = 0;
-};
-
-BoxCounts bake_box(const Job& job, const Box& box, TexelGrid& out) {
-  if (job.options.method == BakeMethod::average)
-    bake_average(job, box, out);
-  else
-    bake_least_squares(job, box, out);
-  BoxCounts counts;
-  counts.filled = fill_unknown(out);
-  counts.covered = out.rgb.size() - counts.filled;
-  return counts;
+TexelGrid bake_box(const Job& job, const Box& box) {
+  return job.options.method == BakeMethod::average ? bake_average(job, box)
+                                                   : bake_least_squares(job, box);
 }
 
 template <class T, class Convert>
@@ -192,18 +184,19 @@ Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacem
   parallel_for(context, placements.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end && !context.cancelled(); ++i) {
       const Box box(placements[i], options.mip_levels);
-      TexelGrid texels(box.width, box.height);
-      const BoxCounts counts = bake_box({light, options, grid, &light.tone}, box, texels);
+      TexelGrid texels = bake_box({light, options, grid, &light.tone}, box);
+      const std::size_t filled = fill_unknown(texels);
       copy_box(texels, box, page.display, quantize8);
+      const std::size_t covered = texels.rgb.size() - filled;
       if (options.linear) {
-        TexelGrid linear(box.width, box.height);
-        bake_box({light, options, grid, nullptr}, box, linear);
-        copy_box(linear, box, page.linear, [](float v) { return v; });
+        texels = bake_box({light, options, grid, nullptr}, box);
+        fill_unknown(texels);
+        copy_box(texels, box, page.linear, [](float v) { return v; });
       }
       const std::lock_guard lock(counting);
       page.triangles += light.charts.charts[placements[i].chart].triangle_count;
-      page.covered_texels += counts.covered;
-      page.filled_texels += counts.filled;
+      page.covered_texels += covered;
+      page.filled_texels += filled;
       context.report("bake", static_cast<double>(++done) / static_cast<double>(placements.size()));
     }
   });

@@ -1,5 +1,7 @@
 #include "libatlas/bake/least_squares.h"
 
+#include <algorithm>
+
 namespace atlas {
 namespace {
 
@@ -79,16 +81,20 @@ void LeastSquares::sweep(bool forward, float low, float high, std::vector<Lanes>
   }
 }
 
-void LeastSquares::solve(float low, float high, TexelGrid& out) {
+TexelGrid LeastSquares::solve(float low, float high) && {
   smooth();
   std::vector<Lanes> x = start();
   for (int i = 0; i < kSweeps; ++i) sweep(i % 2 == 0, low, high, x);
-  for (int j = 0; j < height_; ++j)
-    for (int i = 0; i < width_; ++i) {
-      const std::size_t from = index(i, j), to = std::size_t(j) * width_ + i;
-      out.rgb[to] = x[from];
-      out.known[to] = cells_[from].value[3] > 0;
-    }
+  std::vector<unsigned char> touched(cells_.size());
+  for (std::size_t i = 0; i < cells_.size(); ++i) touched[i] = cells_[i].value[3] > 0;
+  std::vector<Cell>().swap(cells_);
+  TexelGrid out(width_, height_);
+  for (int j = 0; j < height_; ++j) {
+    const std::size_t from = index(0, j), to = std::size_t(j) * width_;
+    std::copy_n(&x[from], width_, &out.rgb[to]);
+    std::copy_n(&touched[from], width_, &out.known[to]);
+  }
+  return out;
 }
 
 }  // namespace atlas

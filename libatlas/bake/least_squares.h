@@ -85,9 +85,9 @@ class LeastSquares {
     Lanes east_lower_{}, east_upper_{}, east_pair_{};
   };
 
-  // Writes the solution, clamped to [low, high], and which texels a sample has touched. Once only:
-  // the sums are used up.
-  void solve(float low, float high, TexelGrid& out);
+  // The solution, clamped to [low, high], known where a sample has come. Once only: it uses the
+  // sums up, and frees them before it copies.
+  TexelGrid solve(float low, float high) &&;
 
  private:
   // The grid has a border of cells that nothing touches, so that loops need no tests at its sides.

@@ -27,7 +27,7 @@ inline double cross_area(const TexelTriangle& p) {
   return (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
 }
 
-enum class SampleKind { none, points, split, grid };
+enum class SampleKind { none, points, thin, grid };
 
 namespace raster_detail {
 
@@ -35,46 +35,53 @@ inline double length2(Vec2d a, Vec2d b) {
   return (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
 }
 
-struct Bary {
-  float b[3];
-};
-
-inline Bary middle(const Bary& a, const Bary& b) {
-  return {{0.5f * (a.b[0] + b.b[0]), 0.5f * (a.b[1] + b.b[1]), 0.5f * (a.b[2] + b.b[2])}};
-}
-
 // The rule with one point (centroid) or three (exact for quadratics).
 template <class Point>
-void quadrature(const Bary q[3], float area, bool three, Point&& point) {
+void quadrature(float area, bool three, Point&& point) {
   if (!three) {
-    float c[3];
-    for (int k = 0; k < 3; ++k) c[k] = (q[0].b[k] + q[1].b[k] + q[2].b[k]) * (1.0f / 3);
+    const float c[3] = {1.0f / 3, 1.0f / 3, 1.0f / 3};
     point(c, area);
     return;
   }
   for (int i = 0; i < 3; ++i) {
-    float c[3];
-    for (int k = 0; k < 3; ++k)
-      c[k] = (1.0f / 6) * (q[0].b[k] + q[1].b[k] + q[2].b[k]) + 0.5f * q[i].b[k];
+    float c[3] = {1.0f / 6, 1.0f / 6, 1.0f / 6};
+    c[i] += 0.5f;
     point(c, area * (1.0f / 3));
   }
 }
 
-// Bisects the longest edge until none is longer than the limit.
+// Cuts a thin triangle across its longest edge into slices of about `step` and visits their
+// centroids, each with its area.
 template <class Point>
-void split(const TexelTriangle& p, const Bary q[3], float area, double limit2, bool three,
-           Point&& point) {
+void slices(const TexelTriangle& p, float area, double step, Point&& point) {
   const double l[3] = {length2(p[1], p[2]), length2(p[2], p[0]), length2(p[0], p[1])};
   int e = 0;  // the corner opposite the longest edge
   for (int k = 1; k < 3; ++k)
     if (l[k] > l[e]) e = k;
-  if (l[e] <= limit2) return quadrature(q, area, three, point);
-  const int a = (e + 1) % 3, b = (e + 2) % 3;
-  const Vec2d m{0.5 * (p[a].x + p[b].x), 0.5 * (p[a].y + p[b].y)};
-  const Bary mb = middle(q[a], q[b]);
-  const Bary left[3] = {q[e], q[a], mb}, right[3] = {q[e], mb, q[b]};
-  split({p[e], p[a], m}, left, 0.5f * area, limit2, three, point);
-  split({p[e], m, p[b]}, right, 0.5f * area, limit2, three, point);
+  const int ends[2] = {(e + 1) % 3, (e + 2) % 3};
+  const Vec2d a = p[ends[0]], b = p[ends[1]];
+  // Where e's foot divides the longest edge; the part on either side of it tapers to an end.
+  const double foot =
+      std::clamp(((p[e].x - a.x) * (b.x - a.x) + (p[e].y - a.y) * (b.y - a.y)) / l[e], 0.0, 1.0);
+  for (int k = 0; k < 2; ++k) {
+    const double share = k == 0 ? foot : 1 - foot;
+    if (!(share > 0)) continue;
+    const int n = static_cast<int>(std::ceil(share * std::sqrt(l[e]) / step));
+    // The middle of the segment from the foot to corner e.
+    double middle[3];
+    middle[e] = 0.5;
+    middle[ends[0]] = 0.5 * (1 - foot);
+    middle[ends[1]] = 0.5 * foot;
+    for (int i = 0; i < n; ++i) {
+      // Slice i of a triangle cut across: area as i², first moment as i³.
+      const double squares = 2.0 * i + 1, cubes = 3.0 * i * i + 3.0 * i + 1;
+      const double f = 2.0 / 3 * cubes / (squares * n);
+      float c[3];
+      for (int j = 0; j < 3; ++j)
+        c[j] = static_cast<float>(f * middle[j] + (j == ends[k] ? 1 - f : 0));
+      point(c, static_cast<float>(area * share * squares / (double(n) * n)));
+    }
+  }
 }
 
 }  // namespace raster_detail
@@ -89,7 +96,7 @@ inline SampleKind sample_kind(const TexelTriangle& p, const SampleGrid& grid) {
   if (longest2 <= limit * limit) return SampleKind::points;
   // Lower than 0.7 grid steps: whole stretches of it may lie between the grid's points.
   const double low = 0.7 / grid.side;
-  if (area2 * area2 < low * low * longest2) return SampleKind::split;
+  if (area2 * area2 < low * low * longest2) return SampleKind::thin;
   return SampleKind::grid;
 }
 
@@ -98,24 +105,30 @@ inline SampleKind sample_kind(const TexelTriangle& p, const SampleGrid& grid) {
 //   row(k, y, x0, x1): grid samples (x + grid.offset[k].x, y + grid.offset[k].y), x0 <= x < x1,
 //   each
 //     of weight 1 / grid.count, clipped to `clip`;
-//   point(bary, weight): one sample by its barycentric coordinates, float[3].
+//   point(bary, weight): one sample by its barycentric coordinates, float[3]; not clipped.
 template <class Row, class Point>
 void sample_triangle(const TexelTriangle& p, const Rect& clip, const SampleGrid& grid, Row&& row,
                      Point&& point) {
   using namespace raster_detail;
   const SampleKind kind = sample_kind(p, grid);
   if (kind == SampleKind::none) return;
-  if (kind == SampleKind::grid) {
-    for (int k = 0; k < grid.count; ++k)
-      scan_triangle(p, clip, grid.offset[k], [&](int y, int x0, int x1) { row(k, y, x0, x1); });
+  const auto area = static_cast<float>(0.5 * std::fabs(cross_area(p)));
+  if (kind == SampleKind::thin) {
+    slices(p, area, grid.side == 1 ? 1.0 : 2.0 / grid.side, point);
     return;
   }
-  const Bary corners[3] = {{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}};
-  const float area = static_cast<float>(0.5 * std::fabs(cross_area(p)));
-  const double limit = grid.side == 1 ? 1.0 : 2.0 / grid.side;
+  if (kind == SampleKind::grid) {
+    bool any = false;
+    for (int k = 0; k < grid.count; ++k)
+      scan_triangle(p, clip, grid.offset[k], [&](int y, int x0, int x1) {
+        any = true;
+        row(k, y, x0, x1);
+      });
+    if (any) return;  // else it lies between the grid's points, or outside the clip
+  }
   // Far below a texel one point says it all.
   const bool three = grid.side > 1 && area > 0.02f / static_cast<float>(grid.count);
-  split(p, corners, area, limit * limit, three, point);
+  quadrature(area, three, point);
 }
 
 }  // namespace atlas

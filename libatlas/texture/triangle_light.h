@@ -60,6 +60,18 @@ class TriangleLight {
     return finish(e, uv);
   }
 
+  // The colour at a texel position of the triangle, which rounding may have put outside: slivers'
+  // gradients would make much of that.
+  Lanes inside(Vec2d at) const {
+    const double dx = at.x - origin_.x, dy = at.y - origin_.y;
+    const auto within = [](double v, double most) { return v > 0 ? std::min(v, most) : 0.0; };
+    const double b1 = within(gradient_[0].x * dx + gradient_[0].y * dy, 1);
+    const double b2 = within(gradient_[1].x * dx + gradient_[1].y * dy, 1 - b1);
+    const float b[3] = {static_cast<float>(1 - b1 - b2), static_cast<float>(b1),
+                        static_cast<float>(b2)};
+    return this->at(b);
+  }
+
   // Calls sample(i, colour) for i in [0, n), in this order, at texel positions (at.x + i, at.y).
   template <class Sample>
   void row(Vec2d at, int n, Sample&& sample) const {
