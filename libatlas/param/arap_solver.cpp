@@ -12,6 +12,12 @@ namespace {
 // Up to this many vertices the envelope solver is the faster one (measured).
 constexpr std::size_t envelope_limit = 1500;
 
+// Seen edge-on, or from behind, a triangle has no rotation near its map.
+bool trustworthy(const Jacobian& j) {
+  const SingularValues s = singular_values(j);
+  return s.small > 0.25 * s.large;  // within some 75 degrees of the view
+}
+
 void rotations_from_frames(const LocalMesh& mesh, std::span<const Element> elements,
                            std::span<const std::array<Vec3d, 2>> frames, Rotations& out) {
   out.resize(elements.size());
@@ -25,7 +31,8 @@ void rotations_from_frames(const LocalMesh& mesh, std::span<const Element> eleme
     const glm::dvec3 x = base > 0 ? e / base : glm::dvec3(0);
     const glm::dvec3 y = height > 0 ? up / height : glm::dvec3(0);
     const glm::dvec3 a = to_glm(frames[t][0]), b = to_glm(frames[t][1]);
-    out[t] = nearest_rotation({{glm::dot(a, x), glm::dot(b, x)}, {glm::dot(a, y), glm::dot(b, y)}});
+    const Jacobian j{{glm::dot(a, x), glm::dot(b, x)}, {glm::dot(a, y), glm::dot(b, y)}};
+    out[t] = trustworthy(j) ? nearest_rotation(j) : glm::dvec2(0);
   }
 }
 
@@ -62,35 +69,64 @@ glm::dvec2 edge_direction(const Element& e, std::uint32_t a, std::uint32_t b) {
   return l > 0 ? d / l : glm::dvec2(1, 0);
 }
 
-// Unfolds triangle after triangle, breadth-first, each along the edge by which it was reached.
+// Rotation of the triangle beyond half-edge h's edge that unfolds it along that edge.
+glm::dvec2 carried(const ParamWorkspace::Impl& w, std::uint32_t h) {
+  const std::uint32_t t = HalfEdges::triangle(h);
+  const std::uint32_t other = HalfEdges::triangle(w.half_edges.opposite(h));
+  const std::uint32_t a = w.half_edges.from(h), b = w.half_edges.to(h);
+  const glm::dvec2 here = edge_direction(w.elements[t], a, b);
+  const glm::dvec2 there = edge_direction(w.elements[other], a, b);
+  // rotation of other = rotation of t * here / there, as complex numbers of unit length
+  const glm::dvec2 r = w.rotations[t];
+  const glm::dvec2 turn(glm::dot(here, there), cross(there, here));
+  return glm::normalize(glm::dvec2(r.x * turn.x - r.y * turn.y, r.x * turn.y + r.y * turn.x));
+}
+
+// Gives every triangle whose rotation is (0, 0) one, breadth-first from w.queue, each unfolded
+// along the edge by which it is reached.
+void flood_rotations(ParamWorkspace::Impl& w) {
+  for (std::size_t i = 0; i < w.queue.size(); ++i) {
+    const std::uint32_t t = w.queue[i];
+    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+      const std::uint32_t g = w.half_edges.opposite(h);
+      if (g == HalfEdges::none || w.rotations[HalfEdges::triangle(g)] != glm::dvec2(0)) continue;
+      w.rotations[HalfEdges::triangle(g)] = carried(w, h);
+      w.queue.push_back(HalfEdges::triangle(g));
+    }
+  }
+}
+
 void carry_rotations(const LocalMesh& mesh, ParamWorkspace::Impl& w) {
   w.half_edges.build(mesh);
   w.rotations.assign(mesh.triangles.size(), glm::dvec2(0));
   const auto flood = [&](std::uint32_t start) {
     w.rotations[start] = {1, 0};
     w.queue.assign(1, start);
-    for (std::size_t i = 0; i < w.queue.size(); ++i) {
-      const std::uint32_t t = w.queue[i];
-      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-        const std::uint32_t g = w.half_edges.opposite(h);
-        if (g == HalfEdges::none) continue;
-        const std::uint32_t other = HalfEdges::triangle(g);
-        if (w.rotations[other] != glm::dvec2(0)) continue;
-        const std::uint32_t a = w.half_edges.from(h), b = w.half_edges.to(h);
-        const glm::dvec2 here = edge_direction(w.elements[t], a, b);
-        const glm::dvec2 there = edge_direction(w.elements[other], a, b);
-        // rotation of other = rotation of t * here / there, as complex numbers of unit length
-        const glm::dvec2 r = w.rotations[t];
-        const glm::dvec2 turn(glm::dot(here, there), cross(there, here));
-        const glm::dvec2 carried(r.x * turn.x - r.y * turn.y, r.x * turn.y + r.y * turn.x);
-        w.rotations[other] = carried / glm::length(carried);
-        w.queue.push_back(other);
-      }
-    }
+    flood_rotations(w);
   };
   flood(middle_triangle(mesh));
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     if (w.rotations[t] == glm::dvec2(0)) flood(t);  // a second piece, against the precondition
+  }
+}
+
+// Triangles whose map was doubtful were left without a rotation: they take it from their
+// neighbours.
+void complete_rotations(const LocalMesh& mesh, ParamWorkspace::Impl& w) {
+  w.queue.clear();
+  bool complete = true;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    complete &= w.rotations[t] != glm::dvec2(0);
+  }
+  if (complete) return;
+  w.half_edges.build(mesh);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (w.rotations[t] != glm::dvec2(0)) w.queue.push_back(t);
+  }
+  if (w.queue.empty()) return carry_rotations(mesh, w);
+  flood_rotations(w);
+  for (glm::dvec2& r : w.rotations) {
+    if (r == glm::dvec2(0)) r = {1, 0};
   }
 }
 
@@ -114,10 +150,16 @@ void ArapSolver::factorize() {
 }
 
 void ArapSolver::start(const IsometricStart& start) {
+  if (weighted_) {
+    for (Element& e : w_.elements) e.weight = 1;
+    factorize();
+    weighted_ = false;
+  }
   if (!start.uvs.empty()) {
     local_rotations(w_.elements, start.uvs, w_.rotations);
   } else if (!start.frames.empty()) {
     rotations_from_frames(mesh_, w_.elements, start.frames, w_.rotations);
+    complete_rotations(mesh_, w_);
   } else {
     carry_rotations(mesh_, w_);
   }
@@ -183,6 +225,7 @@ double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
       double& weight = w_.elements[t].weight;
       weight = std::exp((1 - damping) * std::log(weight) + damping * (power - 2) * std::log(r));
     }
+    weighted_ = true;
     factorize();
     for (int k = 0; k < 2; ++k) {
       start(uvs);

@@ -15,7 +15,7 @@ class ArapSolver {
   // Builds the elements, and what else the steps need, once.
   ArapSolver(const LocalMesh& mesh, double min_altitude, ParamWorkspace::Impl& workspace);
 
-  // The rotations that the first global step uses.
+  // The rotations that the first global step uses. Weights of an earlier squeeze are dropped.
   void start(const IsometricStart& start);
   void start(std::span<const Vec2d> uvs);
 
@@ -52,6 +52,7 @@ class ArapSolver {
   ParamWorkspace::Impl& w_;
   bool small_ = true;
   bool analyzed_ = false;
+  bool weighted_ = false;
 };
 
 }  // namespace atlas::param

@@ -54,16 +54,22 @@ void finish(const LocalMesh& mesh, const ParamOptions& options, ParamResult& r) 
   list_offenders(r, check, stretch, options.max_stretch);
 }
 
-// Flips out, then the stretch down; squeezing may flip anew, hence the second round.
+// From the solver's rotations to a finished result: flips out, then the stretch down; squeezing may
+// flip anew, hence the second round.
 void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolver& solver,
              ParamResult& r) {
+  solver.iterate(std::max(options.iterations, 1), r.uvs);
   for (int round = 0; round < 2; ++round) {
     if (solver.measure(r.uvs).flips > 0) {
       r.unflipped += static_cast<int>(solver.remove_flips({}, r.uvs).turned);
     }
-    if (options.squeeze_iterations <= 0 || round > 0) return;
-    if (measure_distortion(mesh, r.uvs).stretch_999 <= options.max_stretch) return;
+    if (options.squeeze_iterations <= 0 || round > 0) break;
+    if (measure_distortion(mesh, r.uvs).stretch_999 <= options.max_stretch) break;
     solver.squeeze({options.max_stretch, options.squeeze_iterations, options.squeeze_ratio}, r.uvs);
+  }
+  finish(mesh, options, r);
+  if (!r.injective && r.distortion.flips == 0 && solver.separate_borders(r.uvs)) {
+    finish(mesh, options, r);
   }
 }
 
@@ -94,15 +100,17 @@ ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
   if (start.uvs.empty() && start.frames.empty() && planar_stretch_bound(mesh, axis) < 4) {
     start.uvs = r.uvs;
   }
+  const bool unfolded = start.uvs.empty() && start.frames.empty();
   param::ArapSolver solver(mesh, options.min_altitude, workspace.impl());
   solver.start(start);
-  solver.iterate(std::max(options.iterations, 1), r.uvs);
   descend(mesh, options, solver, r);
-  finish(mesh, options, r);
-  if (!r.injective && r.distortion.flips == 0 && solver.separate_borders(r.uvs)) {
-    finish(mesh, options, r);
-  }
-  return r;
+  if (r.injective || unfolded) return r;
+  // A bad start leaves folds that no descent undoes; unfolding triangle by triangle has none.
+  ParamResult other;
+  other.uvs.resize(mesh.positions.size());
+  solver.start(IsometricStart{});
+  descend(mesh, options, solver, other);
+  return other.injective ? other : r;
 }
 
 }  // namespace atlas
