@@ -143,12 +143,12 @@ ChainSimplifier::Candidate ChainSimplifier::judge(std::uint32_t slot, std::uint3
                                                   double step) {
   const BorderChain& chain = chain_of(slot);
   Candidate candidate{target, 0, step, true};
-  Collapse collapse;
+  Estimate estimate;
   for (std::uint32_t k = 0; k < chain.side_count && candidate.possible; ++k) {
     ChartSimplifier& chart = *charts_[chains_.side_chart[chain.first_side + k]];
     candidate.possible =
-        chart.judge(chains_.vertex(chain, slot, k), chains_.vertex(chain, target, k), collapse);
-    candidate.cost = std::max(candidate.cost, collapse.cost);
+        chart.judge(chains_.vertex(chain, slot, k), chains_.vertex(chain, target, k), estimate);
+    candidate.cost = std::max(candidate.cost, estimate.cost);
   }
   const double relative = step / bound(chain);
   candidate.cost += relative * relative;

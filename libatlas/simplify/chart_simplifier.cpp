@@ -108,7 +108,7 @@ void ChartSimplifier::load(std::uint32_t v) {
 }
 
 // Finds the new triangle that holds v's uv, and the gap there.
-bool ChartSimplifier::locate(std::size_t target, Collapse& out) const {
+bool ChartSimplifier::locate(std::size_t target, Estimate& out) const {
   const Star& star = *star_;
   double best = -std::numeric_limits<double>::infinity();
   const glm::dvec2& o = star.uvs[target];
@@ -129,7 +129,7 @@ bool ChartSimplifier::locate(std::size_t target, Collapse& out) const {
   return best > -std::numeric_limits<double>::infinity();
 }
 
-bool ChartSimplifier::judge_target(std::size_t target, Collapse& out) const {
+bool ChartSimplifier::judge_target(std::size_t target, Estimate& out) const {
   const Star& star = *star_;
   const glm::dvec2& uv = star.uvs[target];
   const glm::dvec3& position = star.positions[target];
@@ -199,7 +199,7 @@ double ChartSimplifier::step_turn(std::size_t target) const {
   return std::acos(std::max(least, -1.0));
 }
 
-bool ChartSimplifier::judge(std::uint32_t v, std::uint32_t w, Collapse& out) {
+bool ChartSimplifier::judge(std::uint32_t v, std::uint32_t w, Estimate& out) {
   load(v);
   const auto& neighbours = star_->ring.vertices;
   const auto at = std::find(neighbours.begin(), neighbours.end(), w);
@@ -288,21 +288,18 @@ void ChartSimplifier::pick_targets(std::vector<std::size_t>& out) const {
 // Judges all targets of an inner vertex and sorts the possible ones by cost.
 bool ChartSimplifier::rank(std::uint32_t v) {
   load(v);
-  static thread_local std::vector<std::size_t> targets;
-  pick_targets(targets);
-  candidate_count_ = 0;
-  for (const std::size_t target : targets) {
-    if (candidates_.size() <= candidate_count_) candidates_.emplace_back();
-    if (judge_target(target, candidates_[candidate_count_]) &&
-        candidates_[candidate_count_].offset <= limits_.slip) {
-      ++candidate_count_;
+  pick_targets(targets_);
+  candidates_.clear();
+  for (const std::size_t target : targets_) {
+    Estimate estimate;
+    if (judge_target(target, estimate) && estimate.offset <= limits_.slip) {
+      candidates_.push_back(estimate);
     }
   }
-  std::sort(candidates_.begin(), candidates_.begin() + candidate_count_,
-            [](const Collapse& a, const Collapse& b) {
-              return a.cost != b.cost ? a.cost < b.cost : a.w < b.w;
-            });
-  return candidate_count_ > 0;
+  std::sort(candidates_.begin(), candidates_.end(), [](const Estimate& a, const Estimate& b) {
+    return a.cost != b.cost ? a.cost < b.cost : a.w < b.w;
+  });
+  return !candidates_.empty();
 }
 
 void ChartSimplifier::queue_all() {
@@ -324,9 +321,10 @@ void ChartSimplifier::process(std::uint32_t v, float cost) {
     push(v, fresh);
     return;
   }
-  for (std::size_t i = 0; i < std::min(candidate_count_, kAttempts); ++i) {
-    if (check({}, candidates_[i])) {
-      apply(candidates_[i]);
+  for (std::size_t i = 0; i < std::min(candidates_.size(), kAttempts); ++i) {
+    static_cast<Estimate&>(attempt_) = candidates_[i];
+    if (check({}, attempt_)) {
+      apply(attempt_);
       return;
     }
   }

@@ -14,12 +14,15 @@
 namespace atlas::simplify {
 
 // What merging a vertex v into its neighbour w would do.
-struct Collapse {
+struct Estimate {
   std::uint32_t v = kNone, w = kNone;
   double cost = 0;  // dimensionless: (slip / bound)² + (small factor x length in texels)², worse
                     // for needles
   double offset = 0;     // distance in space between v and the new surface at its uv, texels
   bool outside = false;  // v's uv lies outside the new triangles (border vertices only)
+};
+
+struct Collapse : Estimate {
   std::vector<std::uint32_t> faces;  // that stay and change
   std::vector<SlipLimits> bounds;    // of these, after check()
 };
@@ -50,7 +53,7 @@ class ChartSimplifier {
   // For border vertices, whose collapse several charts must agree on: judge() tells whether the new
   // triangles are well oriented and fills cost and offset; check() whether slip and turn stay
   // bounded; apply() does it.
-  bool judge(std::uint32_t v, std::uint32_t w, Collapse& out);
+  bool judge(std::uint32_t v, std::uint32_t w, Estimate& out);
   bool check(const BorderStep& border, Collapse& collapse);
   void apply(const Collapse& collapse);
   void ring(std::uint32_t v, Ring& out) const { mesh_.ring(v, out); }
@@ -70,8 +73,8 @@ class ChartSimplifier {
     std::uint32_t vertex;
   };
   void load(std::uint32_t v);
-  bool judge_target(std::size_t target, Collapse& out) const;
-  bool locate(std::size_t target, Collapse& out) const;
+  bool judge_target(std::size_t target, Estimate& out) const;
+  bool locate(std::size_t target, Estimate& out) const;
   double step_slip(std::size_t target) const;
   double step_turn(std::size_t target) const;
   void push(std::uint32_t v, float cost);
@@ -90,8 +93,9 @@ class ChartSimplifier {
   std::vector<float> key_;                    // cost under which a vertex is queued, or infinity
   std::vector<Entry> heap_;
   std::vector<std::uint32_t> touched_;
-  std::vector<Collapse> candidates_;  // of the vertex at hand, cheapest first
-  std::size_t candidate_count_ = 0;
+  std::vector<Estimate> candidates_;  // of the vertex at hand, cheapest first
+  std::vector<std::size_t> targets_;
+  Collapse attempt_;
   std::unique_ptr<Star> star_;
 };
 
