@@ -33,6 +33,13 @@ std::uint16_t index_of(std::vector<std::string>& names, const std::string& name)
 
 }  // namespace
 
+Shell shell_of(const Mesh& mesh) {
+  Shell shell;
+  for (const Vertex& v : mesh.vertices) shell.positions.push_back(v.position);
+  for (const Triangle& t : mesh.triangles) shell.triangles.push_back(t.vertex);
+  return shell;
+}
+
 int Builder::segments(double length, int least) const {
   return std::max(least, int(std::ceil(length / edge_length_ - 1e-9)));
 }

@@ -51,6 +51,13 @@ struct Mesh {
   std::vector<glm::vec3> indirect;  // one a vertex, lux
 };
 
+// What rays are traced against.
+struct Shell {
+  std::vector<glm::vec3> positions;
+  std::vector<std::array<Id, 3>> triangles;
+};
+Shell shell_of(const Mesh& mesh);
+
 // A corner as the modelling functions make it, before welding.
 struct Corner {
   glm::dvec3 position;

@@ -63,7 +63,8 @@ atlas::Status run(const Arguments& a) {
       cabin::build_cabin(std::min(kCoarse, a.triangles * 35 / 100), a.triangles * 8 / 10);
   say(fmt::format("coarse mesh: {} triangles, {} vertices, {} objects", mesh.triangles.size(),
                   mesh.vertices.size(), mesh.objects.size()));
-  const cabin::Tracer tracer(mesh);
+  const cabin::Shell shell = cabin::shell_of(mesh);
+  const cabin::Tracer tracer(shell.positions, shell.triangles);
   const cabin::Lighting lighting(tracer, a.lighting);
   lighting.light_directly(mesh, 0, context);
   say("direct light");

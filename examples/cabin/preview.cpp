@@ -72,7 +72,8 @@ std::uint8_t display(float luminance, float exposure) {
 
 atlas::Status write_preview(const std::filesystem::path& path, const Mesh& mesh,
                             const PreviewOptions& options, const atlas::Context& context) {
-  const Tracer tracer(mesh);
+  const Shell shell = shell_of(mesh);
+  const Tracer tracer(shell.positions, shell.triangles);
   const glm::vec3 forward = glm::normalize(kTarget - kEye);
   const glm::vec3 right = glm::normalize(glm::cross(forward, glm::vec3(0, 0, 1)));
   const glm::vec3 up = glm::cross(right, forward);

@@ -44,26 +44,26 @@ struct Tracer::Impl {
   }
 };
 
-Tracer::Tracer(const Mesh& mesh) : impl_(std::make_unique<Impl>()) {
+Tracer::Tracer(std::span<const glm::vec3> positions,
+               std::span<const std::array<std::uint32_t, 3>> triangles)
+    : impl_(std::make_unique<Impl>()) {
   impl_->device = rtcNewDevice(nullptr);
   if (!impl_->device) throw std::runtime_error("Embree could not be started");
   impl_->scene = rtcNewScene(impl_->device);
-  // Robust: no ray slips through the edge between two triangles, wherever the cabin's light leaks
-  // are to be seen. High quality: the tree is built once and asked a hundred million times.
+  // Robust: no ray slips through the edge between two triangles, where it would look like a light
+  // leak. High quality: the tree is built once and asked a hundred million times.
   rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
   RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* positions = static_cast<float*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                              3 * sizeof(float), mesh.vertices.size()));
-  auto* indices = static_cast<unsigned*>(
+  void* position_buffer = rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), positions.size());
+  void* triangle_buffer =
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                              3 * sizeof(unsigned), mesh.triangles.size()));
-  if (!positions || !indices) throw std::runtime_error("Embree has no memory for the cabin");
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-    std::memcpy(positions + 3 * i, &mesh.vertices[i].position, 3 * sizeof(float));
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    for (int k = 0; k < 3; ++k) indices[3 * i + k] = mesh.triangles[i].vertex[k];
+                              3 * sizeof(std::uint32_t), triangles.size());
+  if (!position_buffer || !triangle_buffer)
+    throw std::runtime_error("Embree has no memory for the mesh");
+  std::memcpy(position_buffer, positions.data(), positions.size_bytes());
+  std::memcpy(triangle_buffer, triangles.data(), triangles.size_bytes());
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(impl_->scene, geometry);
   rtcReleaseGeometry(geometry);

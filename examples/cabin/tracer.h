@@ -1,24 +1,26 @@
-// Rays against the coarse cabin: the one place that knows Embree, version 3 or 4.
+// Rays against a triangle mesh: the one place that knows Embree, version 3 or 4.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
-
-#include "examples/cabin/cabin_mesh.h"
+#include <span>
 
 namespace cabin {
 
 struct Hit {
-  Id triangle = ~0u;   // ~0: nothing was hit
-  float u = 0, v = 0;  // weights of the triangle's second and third corner
+  std::uint32_t triangle = ~0u;  // ~0: nothing was hit
+  float u = 0, v = 0;            // weights of the triangle's second and third corner
   float distance = 0;
   bool front = false;  // the ray came from the side that the triangle faces
 };
 
 class Tracer {
  public:
-  // Keeps its own copy of the positions. Throws std::runtime_error if Embree cannot be started.
-  explicit Tracer(const Mesh& mesh);
+  // Keeps its own copy of everything. Throws std::runtime_error if Embree cannot be started.
+  Tracer(std::span<const glm::vec3> positions,
+         std::span<const std::array<std::uint32_t, 3>> triangles);
   ~Tracer();
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;

@@ -1,0 +1,400 @@
+#include "tests/support/world_mesh.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <deque>
+#include <fstream>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "libatlas/image/image_io.h"
+
+namespace atlas::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_text(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw std::runtime_error(path.string() + ": cannot be opened");
+  std::string text(fs::file_size(path), '\0');
+  file.read(text.data(), std::streamsize(text.size()));
+  return text;
+}
+
+int load_image(WorldMesh& mesh, std::map<std::string, int>& known, const fs::path& path) {
+  const auto [it, fresh] = known.emplace(path.string(), int(mesh.images.size()));
+  if (fresh) {
+    auto image = read_image8(path);
+    if (!image.ok()) throw std::runtime_error(image.status().message());
+    mesh.images.push_back(std::move(*image));
+  }
+  return it->second;
+}
+
+// Words of a text, cut at white space; line ends are told apart.
+class Words {
+ public:
+  explicit Words(std::string_view text) : text_(text) {}
+  bool next_line() {
+    while (at_ < text_.size() && text_[at_] != '\n') ++at_;
+    if (at_ < text_.size()) ++at_;
+    return at_ < text_.size();
+  }
+  std::string_view word() {  // empty at the line's end
+    while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t' || text_[at_] == '\r'))
+      ++at_;
+    const std::size_t first = at_;
+    while (at_ < text_.size() && !std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
+    return text_.substr(first, at_ - first);
+  }
+  bool number(float& value) {
+    const std::string_view w = word();
+    return !w.empty() && std::from_chars(w.data(), w.data() + w.size(), value).ec == std::errc();
+  }
+
+ private:
+  std::string_view text_;
+  std::size_t at_ = 0;
+};
+
+void read_mtl(const fs::path& path, WorldMesh& mesh, std::map<std::string, std::uint32_t>& names,
+              std::map<std::string, int>& images) {
+  const std::string text = read_text(path);
+  Words words(text);
+  do {
+    const std::string_view key = words.word();
+    if (key == "newmtl") {
+      names[std::string(words.word())] = std::uint32_t(mesh.surfaces.size());
+      mesh.surfaces.emplace_back();
+    } else if (key == "Kd") {
+      glm::vec3& d = mesh.surfaces.back().diffuse;
+      words.number(d.x) && words.number(d.y) && words.number(d.z);
+    } else if (key == "map_Kd") {
+      mesh.surfaces.back().image = load_image(mesh, images, path.parent_path() / words.word());
+    }
+  } while (words.next_line());
+}
+
+std::pair<std::uint32_t, std::uint32_t> obj_corner(std::string_view word, const WorldMesh& mesh) {
+  long v = 0, t = 0;
+  const char* end = word.data() + word.size();
+  const char* at = std::from_chars(word.data(), end, v).ptr;
+  if (at != end && *at == '/') std::from_chars(at + 1, end, t);
+  if (v < 0) v += long(mesh.positions.size()) + 1;
+  if (t < 0) t += long(mesh.texcoords.size()) + 1;
+  if (v < 1 || v > long(mesh.positions.size()) || t < 0 || t > long(mesh.texcoords.size()))
+    throw std::runtime_error("OBJ index out of range: " + std::string(word));
+  return {std::uint32_t(v - 1), t > 0 ? std::uint32_t(t - 1) : WorldMesh::kNoTexcoord};
+}
+
+void read_obj(const fs::path& path, WorldMesh& mesh) {
+  const std::string text = read_text(path);
+  std::map<std::string, std::uint32_t> names;
+  std::map<std::string, int> images;
+  mesh.surfaces.emplace_back();
+  std::uint32_t surface = 0;
+  Words words(text);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> corners;
+  do {
+    const std::string_view key = words.word();
+    if (key == "v") {
+      glm::vec3 p, e(1);
+      words.number(p.x) && words.number(p.y) && words.number(p.z);
+      words.number(e.x) && words.number(e.y) && words.number(e.z);
+      mesh.positions.push_back(p);
+      mesh.light.push_back(e);
+    } else if (key == "vt") {
+      glm::vec2 t;
+      words.number(t.x) && words.number(t.y);
+      mesh.texcoords.push_back(t);
+    } else if (key == "mtllib") {
+      read_mtl(path.parent_path() / words.word(), mesh, names, images);
+    } else if (key == "usemtl") {
+      surface = names[std::string(words.word())];
+    } else if (key == "f") {
+      corners.clear();
+      for (std::string_view w = words.word(); !w.empty(); w = words.word())
+        corners.push_back(obj_corner(w, mesh));
+      for (std::size_t k = 2; k < corners.size(); ++k) {
+        mesh.triangles.push_back({corners[0].first, corners[k - 1].first, corners[k].first});
+        mesh.triangle_texcoords.push_back(
+            {corners[0].second, corners[k - 1].second, corners[k].second});
+        mesh.triangle_surface.push_back(surface);
+      }
+    }
+  } while (words.next_line());
+}
+
+// What a VRML field holds.
+struct Value {
+  std::vector<double> numbers;
+  std::vector<std::string> strings;
+  std::vector<struct VrmlNode*> nodes;
+};
+struct VrmlNode {
+  std::string type;
+  std::map<std::string, Value> fields;
+  const Value& field(const std::string& name) const {
+    static const Value none;
+    const auto it = fields.find(name);
+    return it == fields.end() ? none : it->second;
+  }
+  const VrmlNode* node(const std::string& name) const {
+    const Value& value = field(name);
+    return value.nodes.empty() ? nullptr : value.nodes[0];
+  }
+};
+
+class VrmlReader {
+ public:
+  explicit VrmlReader(std::string_view text) : text_(text) {
+    if (text.substr(0, 15) != "#VRML V2.0 utf8")
+      throw std::runtime_error("the VRML header is missing");
+    advance();
+  }
+  std::vector<const VrmlNode*> read() {
+    std::vector<const VrmlNode*> roots;
+    while (kind_ != Kind::end) {
+      if (word_ == "ROUTE") {
+        for (int i = 0; i < 4; ++i) advance();
+      } else if (const VrmlNode* node = read_node()) {
+        roots.push_back(node);
+      }
+    }
+    return roots;
+  }
+
+ private:
+  enum class Kind { end, word, number, string, mark };
+
+  [[noreturn]] void fail(const std::string& wanted) const {
+    throw std::runtime_error("VRML, byte " + std::to_string(at_) + ": expected " + wanted);
+  }
+
+  void advance() {
+    while (at_ < text_.size() && (std::isspace(static_cast<unsigned char>(text_[at_])) ||
+                                  text_[at_] == ',' || text_[at_] == '#')) {
+      if (text_[at_] == '#')
+        while (at_ < text_.size() && text_[at_] != '\n') ++at_;
+      else
+        ++at_;
+    }
+    if (at_ >= text_.size()) {
+      kind_ = Kind::end;
+      word_ = {};
+      return;
+    }
+    const std::size_t first = at_;
+    const char c = text_[at_];
+    if (std::strchr("{}[]", c)) {
+      kind_ = Kind::mark;
+      ++at_;
+    } else if (c == '"') {
+      kind_ = Kind::string;
+      for (++at_; at_ < text_.size() && text_[at_] != '"'; ++at_)
+        if (text_[at_] == '\\') ++at_;
+      if (at_ >= text_.size()) fail("a closing quote");
+      ++at_;
+      word_ = text_.substr(first + 1, at_ - first - 2);
+      return;
+    } else {
+      while (at_ < text_.size() && !std::isspace(static_cast<unsigned char>(text_[at_])) &&
+             !std::strchr("{}[],\"#", text_[at_]))
+        ++at_;
+      const auto [end, error] = std::from_chars(text_.data() + first, text_.data() + at_, number_);
+      kind_ = error == std::errc() && end == text_.data() + at_ ? Kind::number : Kind::word;
+    }
+    word_ = text_.substr(first, at_ - first);
+  }
+
+  VrmlNode* read_node() {
+    if (kind_ != Kind::word) fail("a node");
+    if (word_ == "NULL") return advance(), nullptr;
+    if (word_ == "USE") {
+      advance();
+      VrmlNode* node = defined_[std::string(word_)];
+      if (!node) fail("a DEF before USE " + std::string(word_));
+      return advance(), node;
+    }
+    std::string name;
+    if (word_ == "DEF") {
+      advance();
+      name = word_;
+      advance();
+    }
+    VrmlNode* node = &all_.emplace_back();
+    node->type = word_;
+    if (!name.empty()) defined_[name] = node;
+    advance();
+    if (word_ != "{") fail("{ after " + node->type);
+    advance();
+    while (word_ != "}") {
+      if (kind_ != Kind::word) fail("a field of " + node->type);
+      const std::string field(word_);
+      advance();
+      read_value(node->fields[field]);
+    }
+    advance();
+    return node;
+  }
+
+  void read_value(Value& value) {
+    if (kind_ == Kind::mark && word_ == "[") {
+      for (advance(); !(kind_ == Kind::mark && word_ == "]");) {
+        if (kind_ == Kind::end) fail("]");
+        read_item(value);
+      }
+      advance();
+    } else if (kind_ == Kind::number) {
+      while (kind_ == Kind::number) read_item(value);
+    } else {
+      read_item(value);
+    }
+  }
+
+  void read_item(Value& value) {
+    if (kind_ == Kind::number) {
+      value.numbers.push_back(number_);
+      advance();
+    } else if (kind_ == Kind::string) {
+      value.strings.emplace_back(word_);
+      advance();
+    } else if (word_ == "TRUE" || word_ == "FALSE") {
+      value.numbers.push_back(word_ == "TRUE");
+      advance();
+    } else {
+      value.nodes.push_back(read_node());
+    }
+  }
+
+  std::string_view text_, word_;
+  std::size_t at_ = 0;
+  Kind kind_ = Kind::end;
+  double number_ = 0;
+  std::deque<VrmlNode> all_;
+  std::map<std::string, VrmlNode*> defined_;
+
+ public:
+  // The nodes live as long as their reader.
+  VrmlReader(const VrmlReader&) = delete;
+  VrmlReader& operator=(const VrmlReader&) = delete;
+};
+
+glm::dmat4 transform_of(const VrmlNode& node) {
+  const auto numbers = [&](const char* name, std::vector<double> otherwise) {
+    const auto& n = node.field(name).numbers;
+    return n.size() == otherwise.size() ? n : otherwise;
+  };
+  const auto t = numbers("translation", {0, 0, 0}), r = numbers("rotation", {0, 0, 1, 0}),
+             s = numbers("scale", {1, 1, 1});
+  glm::dmat4 m = glm::translate(glm::dmat4(1), {t[0], t[1], t[2]});
+  if (r[3] != 0) m = glm::rotate(m, r[3], glm::dvec3(r[0], r[1], r[2]));
+  return glm::scale(m, {s[0], s[1], s[2]});
+}
+
+// Gathers the Shapes under a node.
+class Gatherer {
+ public:
+  Gatherer(WorldMesh& mesh, fs::path folder) : mesh_(mesh), folder_(std::move(folder)) {}
+
+  void gather(const VrmlNode* node, glm::dmat4 transform) {
+    if (!node) return;
+    if (node->type == "Transform") transform = transform * transform_of(*node);
+    if (node->type == "Shape") return add_shape(*node, transform);
+    for (const auto& [name, value] : node->fields)
+      for (const VrmlNode* child : value.nodes) gather(child, transform);
+  }
+
+ private:
+  void add_shape(const VrmlNode& shape, const glm::dmat4& transform) {
+    const VrmlNode* faces = shape.node("geometry");
+    if (!faces || faces->type != "IndexedFaceSet") return;
+    WorldMesh::Surface surface;
+    if (const VrmlNode* appearance = shape.node("appearance"))
+      if (const VrmlNode* texture = appearance->node("texture"))
+        if (!texture->field("url").strings.empty())
+          surface.image = load_image(mesh_, images_, folder_ / texture->field("url").strings[0]);
+    mesh_.surfaces.push_back(surface);
+    const VrmlNode* coord = faces->node("coord");
+    const VrmlNode* texcoord = faces->node("texCoord");
+    if (!coord) return;
+    const auto first = std::uint32_t(mesh_.positions.size()),
+               first_uv = std::uint32_t(mesh_.texcoords.size());
+    const auto& points = coord->field("point").numbers;
+    for (std::size_t i = 0; i + 2 < points.size(); i += 3) {
+      mesh_.positions.push_back(
+          glm::vec3(transform * glm::dvec4(points[i], points[i + 1], points[i + 2], 1)));
+      mesh_.light.emplace_back(1);
+    }
+    if (texcoord) {
+      const auto& uvs = texcoord->field("point").numbers;
+      for (std::size_t i = 0; i + 1 < uvs.size(); i += 2)
+        mesh_.texcoords.emplace_back(uvs[i], uvs[i + 1]);
+    }
+    add_faces(*faces, first, first_uv, texcoord != nullptr);
+  }
+
+  void add_faces(const VrmlNode& faces, std::uint32_t first, std::uint32_t first_uv,
+                 bool textured) {
+    const auto& index = faces.field("coordIndex").numbers;
+    const auto& given = faces.field("texCoordIndex").numbers;
+    const auto& uv_index = given.empty() ? index : given;
+    std::vector<std::size_t> polygon;
+    for (std::size_t i = 0; i <= index.size(); ++i) {
+      if (i < index.size() && index[i] >= 0) {
+        polygon.push_back(i);
+        continue;
+      }
+      for (std::size_t k = 2; k < polygon.size(); ++k) {
+        std::array<std::uint32_t, 3> v, t;
+        for (int c = 0; c < 3; ++c) {
+          const std::size_t at = polygon[c == 0 ? 0 : k - 2 + c];
+          v[c] = first + std::uint32_t(index[at]);
+          t[c] = textured && at < uv_index.size() ? first_uv + std::uint32_t(uv_index[at])
+                                                  : WorldMesh::kNoTexcoord;
+          if (v[c] >= mesh_.positions.size() || (textured && t[c] >= mesh_.texcoords.size()))
+            throw std::runtime_error("VRML index out of range");
+        }
+        mesh_.triangles.push_back(v);
+        mesh_.triangle_texcoords.push_back(t);
+        mesh_.triangle_surface.push_back(std::uint32_t(mesh_.surfaces.size() - 1));
+      }
+      polygon.clear();
+    }
+  }
+
+  WorldMesh& mesh_;
+  fs::path folder_;
+  std::map<std::string, int> images_;
+};
+
+}  // namespace
+
+Result<WorldMesh> read_world(const fs::path& path) {
+  WorldMesh mesh;
+  try {
+    if (path.extension() == ".obj") {
+      read_obj(path, mesh);
+    } else if (path.extension() == ".wrl") {
+      const std::string text = read_text(path);
+      VrmlReader reader(text);
+      Gatherer gatherer(mesh, path.parent_path());
+      for (const VrmlNode* root : reader.read()) gatherer.gather(root, glm::dmat4(1));
+    } else {
+      return Status(ErrorCode::unsupported, path.string() + ": neither .obj nor .wrl");
+    }
+  } catch (const std::exception& error) {
+    return Status(ErrorCode::bad_input, path.string() + ": " + error.what());
+  }
+  if (mesh.triangles.empty()) return Status(ErrorCode::bad_input, path.string() + ": no triangles");
+  return mesh;
+}
+
+}  // namespace atlas::test

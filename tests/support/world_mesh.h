@@ -1,0 +1,37 @@
+// Lit scenes and exported worlds as plain triangles, read by code of our own: what judges an export
+// must not share its readers.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "libatlas/core/image.h"
+#include "libatlas/core/status.h"
+
+namespace atlas::test {
+
+struct WorldMesh {
+  struct Surface {
+    glm::vec3 diffuse{1};
+    int image = -1;  // into images, or -1
+  };
+  static constexpr std::uint32_t kNoTexcoord = ~0u;
+
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> light;  // one a position; ones where the file has none
+  std::vector<glm::vec2> texcoords;
+  std::vector<std::array<std::uint32_t, 3>> triangles, triangle_texcoords;
+  std::vector<std::uint32_t> triangle_surface;
+  std::vector<Surface> surfaces;
+  std::vector<Image8> images;  // origin bottom left
+};
+
+// By the ending: .obj (with its MTL; v x y z r g b) or .wrl (Shapes under Transforms,
+// ImageTexture).
+Result<WorldMesh> read_world(const std::filesystem::path& path);
+
+}  // namespace atlas::test
