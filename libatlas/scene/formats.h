@@ -8,6 +8,7 @@ namespace atlas {
 Status read_obj(const std::filesystem::path& path, SceneBuilder& builder, const Context& context);
 Status read_ply(const std::filesystem::path& path, SceneBuilder& builder, const Context& context);
 Status read_gltf(const std::filesystem::path& path, SceneBuilder& builder, const Context& context);
+Status read_vrml(const std::filesystem::path& path, SceneBuilder& builder, const Context& context);
 
 // Appends the materials of an MTL library, and their textures.
 Status read_mtl(const std::filesystem::path& path, SceneBuilder& builder);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/formats.h"
@@ -115,9 +116,8 @@ class MtlParser {
     while (count < most) {
       std::string_view left = rest;
       const std::string_view word = next_word(left);
-      const auto [stop, error] =
-          std::from_chars(word.data(), word.data() + word.size(), values[count]);
-      if (error != std::errc{} || stop != word.data() + word.size()) break;
+      const char* end = word.data() + word.size();
+      if (word.empty() || parse_number(word.data(), end, values[count]) != end) break;
       rest = left;
       ++count;
     }

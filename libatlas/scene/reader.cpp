@@ -19,6 +19,7 @@ Reader reader_for(const fs::path& path) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (extension == ".obj") return read_obj;
+  if (extension == ".wrl" || extension == ".wrz") return read_vrml;
   if (extension == ".gltf" || extension == ".glb") return read_gltf;
   if (extension == ".ply") return read_ply;
   return nullptr;

@@ -1,13 +1,43 @@
 // Internal: numbers and words out of lines of text, without allocation or locale.
 #pragma once
 
-#include <charconv>
 #include <cstdint>
 #include <limits>
 #include <string_view>
-#include <system_error>
 
 namespace atlas {
+
+// Reads a decimal number, "nan" or "inf" at `at`, where text goes on to a non-digit at or before
+// `end`; what is beyond double becomes infinite or 0. Returns where it ends, or null where there is
+// none. Unlike std::from_chars it takes a leading '+', "5." and out-of-range values.
+const char* parse_number_slow(const char* at, const char* end, double& value);
+
+// Up to 15 digits and a power of ten up to 22 are both exact doubles, so one multiplication or
+// division rounds correctly (Clinger 1990); the rest goes to the library.
+inline const char* parse_number(const char* at, const char* end, double& value) {
+  constexpr double kPowers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+  const char* p = at;
+  const bool negative = *p == '-';
+  if (*p == '-' || *p == '+') ++p;
+  std::uint64_t mantissa = 0;
+  int digits = 0, exponent = 0;
+  for (; *p >= '0' && *p <= '9'; ++p, ++digits) mantissa = mantissa * 10 + std::uint64_t(*p - '0');
+  if (*p == '.') {
+    const char* point = ++p;
+    for (; *p >= '0' && *p <= '9'; ++p, ++digits) {
+      mantissa = mantissa * 10 + std::uint64_t(*p - '0');
+    }
+    exponent = -int(p - point);
+  }
+  if (digits == 0 || digits > 15 || *p == 'e' || *p == 'E' || exponent < -22) {
+    return parse_number_slow(at, end, value);
+  }
+  const double magnitude = double(mantissa) / kPowers[-exponent];
+  value = negative ? -magnitude : magnitude;
+  return p;
+}
 
 // Walks over text that ends with a newline at or after `end`. A backslash before a line break joins
 // the lines, as OBJ has it.
@@ -74,12 +104,14 @@ class TextScanner {
     return {start, std::size_t(stop - start)};
   }
 
-  // Reads a decimal number, "nan" or "inf"; what is beyond double becomes infinite or 0. False
-  // (and no move) where there is none.
+  // Reads a number that a blank, a comment or the line's end follows. False (and no move) where
+  // there is none.
   bool number(double& value) {
     skip_blanks();
     const char* start = at_;
-    if (number_here(value) && at_blank()) return true;
+    const char* stop = parse_number(at_, end_, value);
+    at_ = stop ? stop : at_;
+    if (stop && at_blank()) return true;
     at_ = start;
     return false;
   }
@@ -120,54 +152,6 @@ class TextScanner {
     }
     begin_of_line_ = at_;
   }
-
-  // Up to 15 digits and a power of ten up to 22 are both exact doubles, so one multiplication or
-  // division rounds correctly (Clinger 1990); the rest goes to the library.
-  bool number_here(double& value) {
-    const char* p = at_;
-    const bool negative = *p == '-';
-    if (*p == '-' || *p == '+') ++p;
-    std::uint64_t mantissa = 0;
-    int digits = 0, exponent = 0;
-    for (; *p >= '0' && *p <= '9'; ++p, ++digits) mantissa = mantissa * 10 + (*p - '0');
-    if (*p == '.') {
-      const char* point = ++p;
-      for (; *p >= '0' && *p <= '9'; ++p, ++digits) mantissa = mantissa * 10 + (*p - '0');
-      exponent = -int(p - point);
-    }
-    if (digits == 0 || digits > 15 || *p == 'e' || *p == 'E' || exponent < -22) {
-      return number_slow(value);
-    }
-    const double magnitude =
-        exponent < 0 ? double(mantissa) / kPowers[-exponent] : double(mantissa);
-    value = negative ? -magnitude : magnitude;
-    at_ = p;
-    return true;
-  }
-
-  bool number_slow(double& value) {
-    const char* start = *at_ == '+' ? at_ + 1 : at_;
-    if (start > at_ && *start == '-') return false;
-    const auto [stop, error] = std::from_chars(start, end_, value);
-    if (error == std::errc::result_out_of_range) {
-      // Too small or too large: from_chars says only that it is one of them.
-      std::string_view digits(start, std::size_t(stop - start));
-      if (digits.front() == '-') digits.remove_prefix(1);
-      const std::size_t e = digits.find_first_of("eE");
-      const bool tiny = e != digits.npos ? digits[e + 1] == '-'
-                                         : digits.find_first_not_of('0') == digits.find('.');
-      value = tiny ? 0 : std::numeric_limits<double>::infinity();
-      if (*start == '-') value = -value;
-    } else if (error != std::errc{}) {
-      return false;
-    }
-    at_ = stop;
-    return true;
-  }
-
-  static constexpr double kPowers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                       1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                       1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
   const char* at_;
   const char* end_;

@@ -106,6 +106,92 @@ TEST(GltfWorld, ReadsBackInMetresAndYUp) {
   }
 }
 
+TEST(VrmlWorld, ReadsBackExactly) {
+  for (const char* name : {"w.wrl", "w.wrz"}) {
+    const TempFolder folder;
+    World world = wavy_world(30, 3);
+    world.up = Up::z;
+    write_images(world, folder);
+    AtomicFiles files;
+    ASSERT_TRUE(write_vrml(world, folder / name, files, {}).ok());
+    ASSERT_TRUE(files.commit().ok());
+    const auto loaded = read_scene(folder / name, {}, {});
+    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+    EXPECT_TRUE(loaded->defects.empty()) << loaded->defects.lines().front();
+    const Scene& s = loaded->scene;
+    EXPECT_EQ(s.textures.size(), 3u);
+    const auto corners = corners_of(s);
+    std::size_t k = 0;
+    for (const Page& page : world.pages) {
+      for (std::size_t c = 0; c < page.indices.size(); ++c, ++k) {
+        const Vec3f& v = world.positions[page.indices[c]];
+        ASSERT_EQ(corners[k].position, (Vec3d{v.x, v.y, v.z}));
+        ASSERT_EQ(corners[k].uv, world.uvs[page.uv_indices[c]]);
+        ASSERT_EQ(s.textures[s.materials[s.triangle_material[k / 3]].texture].path.filename(),
+                  page.image);
+      }
+    }
+    EXPECT_EQ(k, corners.size());
+  }
+}
+
+TEST(VrmlWorld, TransformsPolygonsAndUnknownNodes) {
+  const TempFolder folder;
+  const auto path = folder.write("t.wrl", R"(#VRML V2.0 utf8
+DEF Sun DirectionalLight { direction 0 -1 0 on TRUE }
+Script { url "javascript: { [ }" field SFBool a FALSE }
+Transform { children [
+    DEF S Shape { geometry IndexedFaceSet { # a quad
+      coord DEF C Coordinate { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0 ] }
+      coordIndex [ 0, 1, 2, 3, -1, 0, 1, 7 ] creaseAngle .5 normal Normal { vector [ 0 0 1 ] }
+      texCoord TextureCoordinate { point [ 0 0 1 0 1 1 0 1 ] } } }
+    Group { children Shape { geometry Box { size 1 2 3 } } } ]
+  translation 10 0 0 scale 2 2 -2 rotation 0 0 1 1.5707963267948966 })");
+  const auto loaded = read_scene(path, {}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  const Scene& s = loaded->scene;
+  EXPECT_EQ(s.indices, (std::vector<std::uint32_t>{3, 2, 1, 3, 1, 0}));  // mirrored: turned round
+  EXPECT_EQ(s.texcoord_indices, s.indices);
+  EXPECT_NEAR(s.positions[1].x, 10, 1e-6);
+  EXPECT_NEAR(s.positions[1].y, 2, 1e-6);
+  EXPECT_EQ(loaded->defects.count(DefectKind::index_out_of_range), 1u);
+  EXPECT_EQ(loaded->defects.count(DefectKind::element_ignored), 1u);
+}
+
+TEST(VrmlWorld, DamageIsNoticed) {
+  const TempFolder folder;
+  AtomicFiles files;
+  ASSERT_TRUE(write_vrml(wavy_world(4, 2), folder / "w.wrl", files, {}).ok());
+  ASSERT_TRUE(write_vrml(wavy_world(4, 2), folder / "w.wrz", files, {}).ok());
+  ASSERT_TRUE(files.commit().ok());
+  for (const char* name : {"w.wrl", "w.wrz"}) {
+    const std::string good = TempFolder::read(folder / name);
+    for (std::size_t length = 0; length + 2 < good.size(); length += 7) {
+      const auto loaded =
+          read_scene(folder.write(std::string("d") + name, good.substr(0, length)), {}, {});
+      // Only between two top-level nodes may a shortened text still be a whole world.
+      if (loaded.ok()) {
+        EXPECT_EQ(good.substr(length - 3).find("\nDEF"), 2u) << length;
+      }
+    }
+    std::mt19937 random(3);
+    for (int round = 0; round < 500; ++round) {
+      std::string bytes = good;
+      bytes[random() % bytes.size()] = char(random());
+      const auto loaded = read_scene(folder.write(std::string("d") + name, bytes), {}, {});
+      if (!loaded.ok()) continue;
+      for (const std::uint32_t i : loaded->scene.indices)
+        ASSERT_LT(i, loaded->scene.positions.size());
+    }
+  }
+  std::string deep = "#VRML V2.0 utf8\n";
+  for (int i = 0; i < 100000; ++i) deep += "Group { children ";
+  EXPECT_EQ(read_scene(folder.write("deep.wrl", deep), {}, {}).status().code(),
+            ErrorCode::bad_input);
+  EXPECT_EQ(read_scene(folder.write("old.wrl", "#VRML V1.0 ascii\n"), {}, {}).status().code(),
+            ErrorCode::bad_input);
+}
+
 TEST(GltfWorld, FailsWithoutItsImagesOrTriangles) {
   const TempFolder folder;
   World world = wavy_world(5, 1);

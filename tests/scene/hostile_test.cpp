@@ -4,6 +4,7 @@
 
 #include "libatlas/core/clock.h"
 #include "libatlas/scene/reader.h"
+#include "libatlas/scene/statistics.h"
 #include "tests/scene/temp_folder.h"
 
 namespace atlas {
@@ -130,6 +131,23 @@ TEST(Reader, MissingFilesFoldersAndOptions) {
   ReadOptions options;
   options.metres_per_unit = 0;
   EXPECT_EQ(read_scene(folder / "any.obj", options, {}).status().code(), ErrorCode::bad_option);
+}
+
+TEST(Statistics, OfAKnownScene) {
+  EXPECT_EQ(scene_statistics({}).area, 0);
+  Scene scene;
+  scene.positions = {{0, 0, 0}, {3, 0, 0}, {0, 4, 0}, {900, 0, 0}};
+  scene.illumination = {{0, 0, 0}, {1, 2, 0}, {7, 1, 1}, {99, 99, 99}};
+  scene.indices = {0, 1, 2, 0, 0, 1};
+  const SceneStatistics s = scene_statistics(scene);
+  EXPECT_EQ(s.area, 6);
+  EXPECT_EQ(s.diagonal, 5);
+  EXPECT_EQ(s.high, (Vec3f{3, 4, 0}));
+  EXPECT_EQ(s.used_vertices, 3u);
+  EXPECT_EQ(s.degenerate_triangles, 1u);
+  EXPECT_EQ(s.illumination_max, 7);
+  EXPECT_EQ(s.illumination_mean, 3);
+  EXPECT_EQ(s.unlit_vertices, 1u);
 }
 
 TEST(Reader, CancelEndsIt) {
