@@ -1,0 +1,214 @@
+// The whole export against the independent evaluator: what was written is measured from the file.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "libatlas/pipeline/export_world.h"
+#include "tests/pipeline/lit_scene.h"
+#include "tests/support/atlas_measure.h"
+#include "tests/support/shapes.h"
+
+namespace atlas::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Folder {
+ public:
+  Folder() : path_(fs::temp_directory_path() / fmt::format("atlas_pipeline_{}", ::getpid())) {
+    fs::create_directories(path_);
+  }
+  ~Folder() { fs::remove_all(path_); }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+ExportOptions small_pages(const Folder& folder) {
+  ExportOptions options;
+  options.target = folder.path() / "world.obj";
+  options.atlases = 3;
+  options.atlas_size = 256;
+  options.simplify = false;
+  return options;
+}
+
+// Corners by place, rotated so that the least comes first: equal for equal oriented triangles.
+using Corners = std::array<std::array<double, 3>, 3>;
+
+Corners sorted_cyclically(Corners c) {
+  std::rotate(c.begin(), std::min_element(c.begin(), c.end()), c.end());
+  return c;
+}
+
+std::vector<Corners> triangles_of(const Scene& scene) {
+  std::vector<Corners> all;
+  for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
+    Corners corners;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3f p = scene.positions[scene.indices[3 * t + k]];
+      corners[k] = {p.x, p.y, p.z};
+    }
+    all.push_back(sorted_cyclically(corners));
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+std::vector<Corners> triangles_of(const UvMesh& mesh) {
+  std::vector<Corners> all;
+  for (const UvMesh::Face& face : mesh.faces) {
+    Corners corners;
+    for (int k = 0; k < 3; ++k) {
+      // The file holds the shortest decimals of floats.
+      const Vec3d p = mesh.positions[face.position[k]];
+      corners[k] = {float(p.x), float(p.y), float(p.z)};
+    }
+    all.push_back(sorted_cyclically(corners));
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+// Mip level m of a page has 1/2^m of its texels a side: no lookup at it may touch two charts.
+void expect_no_neighbour_seen(const UvMesh& mesh, const ExportReport& report, int mip_levels) {
+  for (int level = 0; level <= mip_levels; ++level) {
+    const int width = report.pages[0].width >> level, height = report.pages[0].height >> level;
+    EXPECT_EQ(measure_atlas(mesh, width, height).bleed, 0u) << "mip level " << level;
+  }
+}
+
+bool same_page_sizes(const ExportReport& report) {
+  return std::all_of(report.pages.begin(), report.pages.end(), [&](const PageReport& p) {
+    return p.width == report.pages[0].width && p.height == report.pages[0].height;
+  });
+}
+
+TEST(Export, EveryShapeOfTheZooIsPlacedWithoutOverlap) {
+  const Folder folder;
+  for (const Shape& shape : zoo()) {
+    SCOPED_TRACE(shape.name);
+    const LoadedScene scene = lit_scene(shape);
+    const ExportOptions options = small_pages(folder);
+    const auto report = export_world(scene, options, {}, {});
+    ASSERT_TRUE(report.ok()) << report.status().message();
+    const auto mesh = read_uv_obj(options.target);
+    ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+    EXPECT_EQ(mesh->faces_without_uv, 0u);
+    EXPECT_EQ(mesh->faces.size(), scene.scene.triangle_count());
+    EXPECT_LE(report->pages.size(), 3u);
+    if (!same_page_sizes(*report)) continue;  // the evaluator knows one page size
+    const AtlasMeasures at_twice =
+        measure_atlas(*mesh, 2 * report->pages[0].width, 2 * report->pages[0].height);
+    EXPECT_EQ(at_twice.overlap, 0u);
+    EXPECT_EQ(at_twice.flipped, 0u);
+    EXPECT_EQ(at_twice.mirrored, 0u);
+    EXPECT_EQ(at_twice.outside, 0u);
+    expect_no_neighbour_seen(*mesh, *report, options.mip_levels);
+  }
+}
+
+TEST(Export, KeepsEveryTriangleOnce) {
+  const Folder folder;
+  const LoadedScene scene = lit_room(10);
+  const ExportOptions options = small_pages(folder);
+  ASSERT_TRUE(export_world(scene, options, {}, {}).ok());
+  const auto mesh = read_uv_obj(options.target);
+  ASSERT_TRUE(mesh.ok());
+  EXPECT_EQ(triangles_of(scene.scene), triangles_of(*mesh));
+}
+
+TEST(Export, FewerPagesWhereTheyAreEnough) {
+  const Folder folder;
+  ExportOptions options = small_pages(folder);
+  options.atlases = 40;
+  options.atlas_size = 1024;
+  options.texel_metres = 0.02;
+  const auto report = export_world(lit_room(8), options, {}, {});
+  ASSERT_TRUE(report.ok());
+  EXPECT_EQ(report->pages.size(), 1u);
+  EXPECT_EQ(report->scale, 1.0);
+}
+
+TEST(Export, ScalesAllTexturesAlikeIntoASmallBudget) {
+  const Folder folder;
+  ExportOptions options = small_pages(folder);
+  options.texel_metres = 0.005;
+  options.threshold = 0;
+  const auto report = export_world(lit_room(8), options, {}, {});
+  ASSERT_TRUE(report.ok());
+  EXPECT_LT(report->scale, 0.5);
+  EXPECT_LE(report->pages.size(), 3u);
+  EXPECT_GT(report->fidelity.psnr, 40);
+}
+
+TEST(Export, ErrorFallsWithTheTexel) {
+  const Folder folder;
+  ExportOptions options = small_pages(folder);
+  options.atlas_size = 2048;
+  double previous = 0;
+  for (const double texel : {0.8, 0.4, 0.2}) {
+    options.texel_metres = texel;
+    options.threshold = 0;
+    const auto report = export_world(lit_room(40), options, {}, {});
+    ASSERT_TRUE(report.ok());
+    EXPECT_GT(report->fidelity.psnr, previous) << texel;
+    previous = report->fidelity.psnr;
+  }
+}
+
+TEST(Export, ChartsOnlyNeedsNoLight) {
+  const Folder folder;
+  ExportOptions options = small_pages(folder);
+  options.charts_only = true;
+  options.atlas_size = 1024;
+  LoadedScene scene = lit_scene(torus(48, 24));
+  scene.scene.illumination.clear();
+  const auto report = export_world(scene, options, {}, {});
+  ASSERT_TRUE(report.ok()) << report.status().message();
+  ASSERT_EQ(report->pages.size(), 1u);
+  const auto mesh = read_uv_obj(options.target);
+  ASSERT_TRUE(mesh.ok());
+  const AtlasMeasures m =
+      measure_atlas(*mesh, report->pages[0].width, report->pages[0].height);
+  EXPECT_EQ(m.charts, report->charts.size());
+  EXPECT_EQ(m.bleed, 0u);
+  EXPECT_EQ(m.overlap, 0u);
+  EXPECT_GT(m.utilization, 0.5);
+  EXPECT_NEAR(m.stretch_l2, report->distortion.stretch_l2, 0.01);
+  EXPECT_FALSE(fs::exists(folder.path() / "world_0.png"));
+}
+
+TEST(Export, CancelledBeforeItBeganWritesNothing) {
+  const Folder folder;
+  const std::atomic<bool> cancel{true};
+  Context context;
+  context.cancel = &cancel;
+  const auto report = export_world(lit_room(8), small_pages(folder), {}, context);
+  ASSERT_FALSE(report.ok());
+  EXPECT_EQ(report.status().code(), ErrorCode::cancelled);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(Plan, NamesWhatASceneDoesNotNeed) {
+  LoadedScene dark = lit_room(4);
+  dark.scene.illumination.assign(dark.scene.positions.size(), Vec3f{});
+  ExportOptions options;
+  options.target = "w.wrl";
+  const ExportPlan plan = make_plan(dark.scene, options);
+  EXPECT_FALSE(plan.runs("reflectance"));  // no textures
+  EXPECT_TRUE(plan.runs("baking"));
+  EXPECT_DOUBLE_EQ(plan.unlit_share, 1);
+  options.threshold = 0;
+  EXPECT_FALSE(make_plan(dark.scene, options).runs("downsizing"));
+  dark.scene.illumination.clear();
+  EXPECT_FALSE(make_plan(dark.scene, options).runs("baking"));
+}
+
+}  // namespace
+}  // namespace atlas::test
