@@ -97,8 +97,10 @@ class GltfBuilder {
     const glm::dvec3 eye = turn(to_glm(world_.origin) + to_glm(view.position)) * scale;
     json camera = {{"name", "start"}, {"camera", 0}, {"translation", array(eye)}};
     camera["rotation"] = camera_rotation(turn(to_glm(view.direction)));
-    document_["cameras"] = json::array(
-        {{{"type", "perspective"}, {"perspective", {{"yfov", view.fov}, {"znear", 0.02}}}}});
+    // zfar is optional by the standard, but Castle Game Engine insists on it.
+    const double far = 4 * farthest() * scale;
+    const json lens = {{"yfov", view.fov}, {"znear", std::min(0.02, far * 1e-4)}, {"zfar", far}};
+    document_["cameras"] = json::array({{{"type", "perspective"}, {"perspective", lens}}});
     document_["nodes"] = json::array({root, camera});
     for (std::size_t i = 0; i < document_["meshes"].size(); ++i) {
       document_["nodes"][0]["children"].push_back(i + 2);
@@ -125,6 +127,16 @@ class GltfBuilder {
     bytes_.append(static_cast<const char*>(data), size);
     document_["bufferViews"].push_back(std::move(view));
     return document_["bufferViews"].size() - 1;
+  }
+
+  // From the first viewpoint to a position, in scene units.
+  double farthest() const {
+    const glm::dvec3 eye = to_glm(world_.viewpoint.position);
+    double farthest = 1e-6;
+    for (const Vec3f& p : world_.positions) {
+      farthest = std::max(farthest, glm::distance(eye, to_dvec(p)));
+    }
+    return farthest;
   }
 
   std::size_t add_accessor(json accessor) {

@@ -1,15 +1,21 @@
 #include "tests/exporters/vrml_parser.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
-#include <regex>
 
 namespace atlas::test {
 namespace {
 
 [[noreturn]] void fail(const std::string& what, std::size_t at) {
   throw std::runtime_error(what + " at offset " + std::to_string(at));
+}
+
+bool is_identifier(const std::string& name) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
+  return !name.empty() && !std::isdigit(static_cast<unsigned char>(name[0])) &&
+         std::all_of(name.begin(), name.end(), plain);
 }
 
 class Parser {
@@ -65,7 +71,7 @@ class Parser {
     auto result = std::make_shared<VrmlNode>();
     if (token == "DEF") {
       result->def = next();
-      if (!std::regex_match(result->def, std::regex("[A-Za-z_][A-Za-z0-9_]*"))) {
+      if (!is_identifier(result->def)) {
         fail("the name '" + result->def + "'", at_);
       }
       token = next();
