@@ -33,7 +33,7 @@ AreaLight window_light(int side, int bay) {
   return make_light(std::move(corners), sky, {0, -float(side), 0});
 }
 
-Mesh build_at(double edge_length, bool coarse) {
+Builder model(double edge_length, bool coarse) {
   Builder builder(edge_length, coarse);
   add_shell(builder);
   add_ceiling(builder);
@@ -41,7 +41,7 @@ Mesh build_at(double edge_length, bool coarse) {
   add_seats(builder);
   add_door(builder);
   add_galley(builder);
-  return builder.finish(cabin_materials());
+  return builder;
 }
 
 }  // namespace
@@ -75,21 +75,13 @@ Sun cabin_sun() {
 
 Mesh build_cabin(std::size_t triangles, std::size_t limit) {
   double fine = 0.01, wide = 0.8;
-  Mesh best = build_at(wide, false);
-  const bool coarse = best.triangles.size() > limit;
-  if (coarse) best = build_at(wide, true);
+  const bool coarse = model(wide, false).triangle_count() > limit;
   // The count falls with the edge length, in steps: bisect for the finest that is not too many.
-  for (int i = 0; i < 12; ++i) {
+  for (int i = 0; i < 10; ++i) {
     const double middle = std::sqrt(fine * wide);
-    Mesh mesh = build_at(middle, coarse);
-    if (mesh.triangles.size() <= triangles) {
-      wide = middle;
-      best = std::move(mesh);
-    } else {
-      fine = middle;
-    }
+    (model(middle, coarse).triangle_count() <= triangles ? wide : fine) = middle;
   }
-  return best;
+  return model(wide, coarse).finish(cabin_materials());
 }
 
 }  // namespace cabin

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <cmath>
 #include <exception>
 
 #include "examples/cabin/preview.h"
@@ -74,6 +75,10 @@ atlas::Status run(const Arguments& a) {
   cabin::show_emitters(mesh);
   say(fmt::format("refined: {} triangles, {} vertices", mesh.triangles.size(),
                   mesh.vertices.size()));
+  if (std::abs(double(mesh.triangles.size()) / double(a.triangles) - 1) > 0.03)
+    return {atlas::ErrorCode::no_solution,
+            fmt::format("{} triangles came out instead of {} (ask for more)", mesh.triangles.size(),
+                        a.triangles)};
   if (!a.output.empty()) {
     const atlas::Status status = cabin::write_scene(a.output, mesh, a.up == "y");
     if (!status.ok()) return status;
