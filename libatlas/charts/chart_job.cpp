@@ -114,7 +114,8 @@ class ChartJob {
   ParamOptions param_options(const LocalMesh& mesh) {
     const ChartOptions& options = input_.options;
     ParamOptions param;
-    param.max_stretch = options.max_stretch;
+    param.max_stretch =
+        std::min(options.max_stretch, std::getenv("AIM") ? std::atof(std::getenv("AIM")) : 1.18);
     param.max_planar_stretch =
         std::min(options.max_stretch,
                  options.preset == ChartPreset::fast ? kFastPlanarStretch : kPlanarStretch);
@@ -136,6 +137,7 @@ class ChartJob {
   bool flatten(ChartOutcome& outcome) {
     const LocalMesh mesh = chart_.mesh();
     result_ = parameterize(mesh, param_options(mesh), scratch_.workspace);
+    result_.within_bound = result_.distortion.stretch_999 <= input_.options.max_stretch;
     const bool single = chart_.triangles().size() == 1;
     if (std::getenv("TRACE2") && !(result_.injective && result_.within_bound))
       fprintf(stderr,

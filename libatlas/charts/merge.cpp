@@ -42,7 +42,9 @@ struct CoarseChart {
   Moments moments{};
   glm::dvec3 normal_sum{0};
   double area = 0, perimeter = 0;
-  bool flat = false;  // all cells in one plane
+  double energy = 0;     // area times (L2 stretch squared - 1) of its coarse flattening
+  double high_area = 0;  // of it stretched beyond TrialLimits::stretch_high
+  bool flat = false;     // all cells in one plane
   std::uint32_t version = 0;
 };
 
@@ -68,8 +70,20 @@ class Merger {
       : mesh_(mesh), options_(options), charts_(charts), result_(result), trial_(trial) {}
 
   void run(const std::vector<std::uint32_t>& cells, const Context& context) {
-    for (const std::uint32_t k : cells) start(k);
+    for (const std::uint32_t k : cells) {
+      start(k);
+      piece_area_ += mesh_.cells[k].area;
+    }
     for (const std::uint32_t k : cells) push_neighbours(k, true);
+    empty_heap(context);
+    relaxed_ = true;
+    for (const std::uint32_t k : cells) {
+      if (result_.chart_of_cell[k] == k) push_neighbours(k, true);
+    }
+    empty_heap(context);
+  }
+
+  void empty_heap(const Context& context) {
     while (!heap_.empty() && !context.cancelled()) {
       const Candidate candidate = heap_.top();
       heap_.pop();
@@ -143,6 +157,10 @@ class Merger {
     find_borders(a);
     for (const Border& border : borders_) {
       if (once && border.other < a) continue;
+      if (relaxed_ && std::min(charts_[a].area, charts_[border.other].area) >
+                          options_.small_share * piece_area_) {
+        continue;
+      }
       const std::uint32_t low = std::min(a, border.other), high = std::max(a, border.other);
       heap_.push({cost(a, border), low, high, charts_[low].version, charts_[high].version});
     }
@@ -211,6 +229,7 @@ class Merger {
     }
     std::sort(glue_.begin(), glue_.end());
     if (coplanar(a, b)) {
+      energy_ = high_area_ = 0;
       trial_.join_flat(charts_[a].cells, charts_[b].cells, glue_, result_.joined);
       trial_.commit();
       absorb(a, b);
@@ -238,7 +257,26 @@ class Merger {
 
   TrialOutcome attempt(std::uint32_t a, std::uint32_t b) {
     ++trials;
-    return trial_.run(charts_[a].cells, charts_[b].cells, glue_, result_.joined, options_.limits);
+    double length = 0;
+    for (const std::uint32_t arc : glue_) length += mesh_.arcs[arc].length;
+    const CoarseChart &p = charts_[a], &q = charts_[b];
+    const double area = p.area + q.area;
+    if (relaxed_) length += options_.chart_worth * std::sqrt(piece_area_);
+    // What the merge may cost in stretch is worth the seam that it saves.
+    const double worth = options_.seam_worth * length * std::sqrt(piece_area_);
+    TrialLimits limits = options_.limits;
+    limits.stretch_l2 =
+        std::min(limits.stretch_l2, std::sqrt(1 + (p.energy + q.energy + worth) / area));
+    limits.high_area =
+        p.high_area + q.high_area + options_.tail_worth * length * std::sqrt(piece_area_);
+    if (relaxed_) {
+      limits.solidity = options_.small_solidity;
+      limits.fill = options_.small_fill;
+    }
+    const TrialOutcome outcome = trial_.run(p.cells, q.cells, glue_, result_.joined, limits);
+    high_area_ = outcome.high_area;
+    if (outcome.accepted) energy_ = area * (outcome.stretch_l2 * outcome.stretch_l2 - 1);
+    return outcome;
   }
 
   // Of several separate stretches of common border, keeps the longest: the rest becomes a seam
@@ -284,6 +322,8 @@ class Merger {
     for (const std::uint32_t arc : glue_) p.perimeter -= 2 * mesh_.arcs[arc].length;
     p.perimeter += q.perimeter;
     p.flat = coplanar(a, b);
+    p.energy = energy_;
+    p.high_area = high_area_;
     if (options_.cone > 0) result_.chart_axis[a] = from_glm(glm::vec3(axis_));
     p.area += q.area;
     p.normal_sum += q.normal_sum;
@@ -302,6 +342,9 @@ class Merger {
   std::vector<Border> borders_;
   std::vector<std::uint32_t> glue_;
   glm::dvec3 axis_{0};
+  double piece_area_ = 0;
+  bool relaxed_ = false;
+  double energy_ = 0, high_area_ = 0;  // of the last accepted trial
 };
 
 }  // namespace

@@ -17,8 +17,11 @@ struct MergeOptions {
   TrialLimits limits;
   double cone = 0;                               // limit on a chart's normals, radians; 0: none
   const ExtremeNormals* cell_normals = nullptr;  // needed when there is a limit
-  double compactness_weight = 0.02;
-  double crease_weight = 0.02;
+  double compactness_weight = 0.15;
+  double seam_worth = 1.0 / 800;
+  double small_share = 0.01, small_solidity = 0.6, small_fill = 0.5, chart_worth = 0.3;
+  double tail_worth = 0.0005;
+  double crease_weight = 0.15;
 };
 
 struct MergeResult {

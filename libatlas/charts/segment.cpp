@@ -86,6 +86,13 @@ Segmentation segment(const Topology& topology, const ChartOptions& options,
   merge.cell_normals = &normals;
   if (const char* e = std::getenv("L2")) merge.limits.stretch_l2 = std::atof(e);
   if (const char* e = std::getenv("HIGH")) merge.limits.stretch_high = std::atof(e);
+  if (const char* e = std::getenv("FILL")) merge.limits.fill = std::atof(e);
+  if (const char* e = std::getenv("WORTH")) merge.seam_worth = 1 / std::atof(e);
+  if (const char* e = std::getenv("TAIL")) merge.tail_worth = std::atof(e);
+  if (const char* e = std::getenv("SMALL")) merge.small_share = std::atof(e);
+  if (const char* e = std::getenv("SOLID2")) merge.small_solidity = std::atof(e);
+  if (const char* e = std::getenv("FILL2")) merge.small_fill = std::atof(e);
+  if (const char* e = std::getenv("CWORTH")) merge.chart_worth = std::atof(e);
   if (const char* e = std::getenv("SOLID")) merge.limits.solidity = std::atof(e);
   if (const char* e = std::getenv("COMPACT")) merge.compactness_weight = std::atof(e);
   if (const char* e = std::getenv("CREASE")) merge.crease_weight = std::atof(e);

@@ -42,6 +42,27 @@ double hull_area(std::vector<Vec2d>& points, std::vector<Vec2d>& hull) {
   return 0.5 * twice;
 }
 
+// Area of the smallest rectangle around a convex polygon: one side lies along an edge of it
+// (Freeman and Shapira 1975). Quadratic, for a dozen corners.
+double box_area(const std::vector<Vec2d>& hull) {
+  double smallest = 0;
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Vec2d &a = hull[i], &b = hull[(i + 1) % hull.size()];
+    const double dx = b.x - a.x, dy = b.y - a.y, length2 = dx * dx + dy * dy;
+    if (!(length2 > 0)) continue;
+    double low = 0, high = 0, far = 0;
+    for (const Vec2d& p : hull) {
+      const double along = (p.x - a.x) * dx + (p.y - a.y) * dy;
+      low = std::min(low, along);
+      high = std::max(high, along);
+      far = std::max(far, (p.y - a.y) * dx - (p.x - a.x) * dy);
+    }
+    const double area = (high - low) * far / length2;
+    if (smallest == 0 || area < smallest) smallest = area;
+  }
+  return smallest;
+}
+
 }  // namespace
 
 std::uint32_t Trial::root(std::uint32_t slot) {
@@ -200,8 +221,8 @@ bool Trial::stretch_fits(const TrialLimits& limits, TrialOutcome& outcome) {
   for (const auto& [stretch, weight] : ranked_) {
     if (stretch > limits.stretch_high) above += weight;
   }
-  outcome.stretch_high = above;
-  return above <= 0.02 * area;
+  outcome.high_area = above;
+  return above <= limits.high_area;
 }
 
 bool Trial::border_fits(const std::vector<std::uint8_t>& joined, const TrialLimits& limits,
@@ -229,7 +250,10 @@ bool Trial::border_fits(const std::vector<std::uint8_t>& joined, const TrialLimi
   for (const TriangleStretch& t : stretch_) area += t.uv_area;
   const double hull = hull_area(points, hull_);
   outcome.solidity = hull > 0 ? area / hull : 1;
-  return outcome.solidity >= limits.solidity;
+  if (outcome.solidity < limits.solidity) return false;
+  const double box = box_area(hull_);
+  outcome.fill = box > 0 ? area / box : 1;
+  return outcome.fill >= limits.fill;
 }
 
 TrialOutcome Trial::run(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,

@@ -19,15 +19,17 @@ struct CoarseUv {
 };
 
 struct TrialLimits {
-  double stretch_l2 = 1.01;    // of the merged chart
-  double stretch_high = 1.15;  // over 98 % of its area
-  double solidity = 0.78;      // share of its convex hull that it fills
+  double stretch_l2 = 1.01;   // of the merged chart
+  double stretch_high = 1.2;  // over all but this area:
+  double high_area = 0;
+  double solidity = 0.7;  // share of its convex hull that it fills
+  double fill = 0.58;     // share of its smallest rectangle
   int iterations = 5;
 };
 
 struct TrialOutcome {
   bool accepted = false;
-  double stretch_l2 = 1, stretch_high = 1, solidity = 1;
+  double stretch_l2 = 1, high_area = 0, solidity = 1, fill = 1;
   int euler = 1;
 };
 
