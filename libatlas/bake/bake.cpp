@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "libatlas/bake/least_squares.h"
+#include "libatlas/bake/ownership.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/raster/coverage.h"
 #include "libatlas/raster/sampling.h"
@@ -131,13 +132,25 @@ TexelGrid bake_box(const Job& job, const Box& box) {
                                                    : bake_least_squares(job, box);
 }
 
+// Empty: the chart owns its whole box.
+std::vector<std::uint8_t> owned_texels(const ChartSet& charts, const Box& box, int mip_levels) {
+  if (!box.placement.outlined) return {};
+  std::vector<TexelTriangle> triangles;
+  for (const std::uint32_t t : triangles_of(charts, box.placement.chart))
+    triangles.push_back(box.triangle(charts, t));
+  return owned_texels(triangles, {box.width, box.height, box.pad, 1 << mip_levels});
+}
+
 template <class T, class Convert>
-void copy_box(const TexelGrid& in, const Box& box, Image<T>& page, Convert&& convert) {
+void copy_box(const TexelGrid& in, const Box& box, Image<T>& page, Convert&& convert,
+              const std::vector<std::uint8_t>& owned) {
   for (int y = 0; y < box.height; ++y) {
-    const Lanes* row = &in.rgb[std::size_t(y) * box.width];
+    const std::size_t begin = std::size_t(y) * box.width;
     T* to = page.at(box.placement.x - box.pad, box.placement.y - box.pad + y);
-    for (int x = 0; x < box.width; ++x)
-      for (int k = 0; k < 3; ++k) *to++ = convert(row[x][k]);
+    for (int x = 0; x < box.width; ++x, to += 3) {
+      if (!owned.empty() && !owned[begin + x]) continue;
+      for (int k = 0; k < 3; ++k) to[k] = convert(in.rgb[begin + x][k]);
+    }
   }
 }
 
@@ -186,12 +199,14 @@ Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacem
       const Box box(placements[i], options.mip_levels);
       TexelGrid texels = bake_box({light, options, grid, &light.tone}, box);
       const std::size_t filled = fill_unknown(texels);
-      copy_box(texels, box, page.display, quantize8);
+      const std::vector<std::uint8_t> owned =
+          owned_texels(light.charts, box, options.mip_levels);
+      copy_box(texels, box, page.display, quantize8, owned);
       const std::size_t covered = texels.rgb.size() - filled;
       if (options.linear) {
         texels = bake_box({light, options, grid, nullptr}, box);
         fill_unknown(texels);
-        copy_box(texels, box, page.linear, [](float v) { return v; });
+        copy_box(texels, box, page.linear, [](float v) { return v; }, owned);
       }
       const std::lock_guard lock(counting);
       page.triangles += light.charts.charts[placements[i].chart].triangle_count;

@@ -17,6 +17,12 @@ struct ChartPlacement {
   std::int32_t width = 0, height = 0;  // of the inner box as it lies on the page
   bool rotated = false;                // by 90 degrees counter-clockwise, never mirrored
   Vec2d texels_per_unit;               // along the chart's u and v
+  // Packed by its outline: the boxes of charts may overlap, and of its box a chart owns only the
+  // cells of 2^mip_levels texels a side that lie within `pad` texels of one of its triangles. It is
+  // turned by any angle then, and `rotated` says nothing.
+  bool outlined = false;
+  Vec2d offset;                 // page texels of uv (0, 0)
+  double cosine = 1, sine = 0;  // of the turn, counter-clockwise
 };
 
 // Texels around an inner box so that a trilinear lookup at mip levels 0..mip_levels never sees a
@@ -30,6 +36,8 @@ constexpr int gutter_pad(int mip_levels) {
 // texture coordinates (origin bottom left). Rotated: (u, v) -> (h - v, u).
 inline Vec2d page_texel(const ChartPlacement& p, Vec2d uv) {
   const double u = uv.x * p.texels_per_unit.x, v = uv.y * p.texels_per_unit.y;
+  if (p.outlined)
+    return {p.offset.x + p.cosine * u - p.sine * v, p.offset.y + p.sine * u + p.cosine * v};
   if (p.rotated) return {p.x + (p.width - v), p.y + u};
   return {p.x + u, p.y + v};
 }

@@ -1,0 +1,66 @@
+#include "libatlas/bake/ownership.h"
+
+#include <algorithm>
+
+#include "libatlas/raster/coverage.h"
+
+namespace atlas {
+namespace {
+
+// Every texel within `pad` of a set one along rows becomes set.
+void widen_rows(std::vector<std::uint8_t>& mask, int width, int pad) {
+  std::vector<std::uint8_t> row(static_cast<std::size_t>(width));
+  for (std::size_t begin = 0; begin < mask.size(); begin += row.size()) {
+    const auto first = mask.begin() + static_cast<std::ptrdiff_t>(begin);
+    std::copy_n(first, width, row.begin());
+    for (int x = 0; x < width; ++x) {
+      if (!row[static_cast<std::size_t>(x)]) continue;
+      std::fill(first + std::max(0, x - pad), first + std::min(width, x + pad + 1), 1);
+    }
+  }
+}
+
+std::vector<std::uint8_t> transposed(const std::vector<std::uint8_t>& mask, int width, int height) {
+  std::vector<std::uint8_t> out(mask.size());
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      out[std::size_t(x) * height + y] = mask[std::size_t(y) * width + x];
+  return out;
+}
+
+// A cell with one set texel becomes set as a whole.
+void fill_cells(std::vector<std::uint8_t>& mask, const OwnershipGrid& grid) {
+  for (int y = 0; y < grid.height; y += grid.cell) {
+    const int y1 = std::min(y + grid.cell, grid.height);
+    for (int x = 0; x < grid.width; x += grid.cell) {
+      const int x1 = std::min(x + grid.cell, grid.width);
+      bool any = false;
+      for (int j = y; j < y1; ++j)
+        for (int i = x; i < x1; ++i) any |= mask[std::size_t(j) * grid.width + i] != 0;
+      if (!any) continue;
+      for (int j = y; j < y1; ++j)
+        for (int i = x; i < x1; ++i) mask[std::size_t(j) * grid.width + i] = 1;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> owned_texels(std::span<const TexelTriangle> triangles,
+                                       const OwnershipGrid& grid) {
+  std::vector<std::uint8_t> mask(std::size_t(grid.width) * grid.height, 0);
+  const Rect all{0, 0, grid.width, grid.height};
+  for (const TexelTriangle& triangle : triangles) {
+    cover_triangle(triangle, all, [&](int x, int y, double, Vec2d) {
+      mask[std::size_t(y) * grid.width + x] = 1;
+    });
+  }
+  widen_rows(mask, grid.width, grid.pad);
+  mask = transposed(mask, grid.width, grid.height);
+  widen_rows(mask, grid.height, grid.pad);
+  mask = transposed(mask, grid.height, grid.width);
+  if (grid.cell > 1) fill_cells(mask, grid);
+  return mask;
+}
+
+}  // namespace atlas
