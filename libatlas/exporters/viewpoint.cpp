@@ -17,7 +17,7 @@ constexpr std::size_t kMaxCandidates = 1500;  // places tried; each costs some s
 constexpr int kHeadings = 24;                 // level directions looked along
 // Share of directions that must meet a front face: a room without a ceiling has some 0.75, a pocket
 // under an overhanging part of a single object up to 0.6.
-constexpr double kEnclosed = 0.68;
+constexpr double kEnclosed = 0.68, kTightlyEnclosed = 0.85;  // the latter where nobody can stand
 constexpr double kRoomy = 0.1;  // mean free level distance, as a share of the floor's diagonal
 
 // The scene in a frame whose third axis points up, in voxels. Cells know the sum of the
@@ -122,7 +122,8 @@ class Grid {
 
 struct Eye {
   glm::dvec3 position{0};
-  int floor = 0;  // cell of the floor below
+  int floor = 0;      // cell of the floor below
+  bool tall = false;  // a person can stand there
 };
 
 // For each column of cells, above each floor with air over it.
@@ -141,33 +142,27 @@ std::vector<Eye> eyes_of_columns(const Grid& grid, double metres_per_unit) {
         const double height = air >= headroom ? std::max(eye, grid.cell()) : 0.55 * air;
         glm::dvec3 p = grid.centre(x, y, floor);
         p.z += grid.cell() / 2 + std::min(height, 0.8 * air);
-        eyes.push_back({p, floor});
+        eyes.push_back({p, floor, air >= headroom});
       }
     }
   }
   return eyes;
 }
 
-// At most kMaxCandidates of them, and only those on the floor that most columns share, so that
-// nobody starts on a table. Where people cannot stand that has no meaning and does no harm.
-std::vector<Eye> candidates(const Grid& grid, double metres_per_unit) {
-  const std::vector<Eye> eyes = eyes_of_columns(grid, metres_per_unit);
+// Those where people can stand, on the floor that most such columns share, so that nobody starts on
+// a table or under a seat.
+std::vector<Eye> standing(const Grid& grid, const std::vector<Eye>& eyes) {
   std::vector<std::size_t> columns(grid.size(2) + 1, 0);  // with a floor at z or z + 1
   for (const Eye& eye : eyes) {
-    ++columns[eye.floor];
-    if (eye.floor > 0) ++columns[eye.floor - 1];
+    columns[eye.floor] += eye.tall;
+    if (eye.floor > 0) columns[eye.floor - 1] += eye.tall;
   }
   const int common = int(std::max_element(columns.begin(), columns.end()) - columns.begin());
-  std::vector<Eye> standing;
+  std::vector<Eye> result;
   for (const Eye& eye : eyes) {
-    if (eye.floor == common || eye.floor == common + 1) standing.push_back(eye);
+    if (eye.tall && (eye.floor == common || eye.floor == common + 1)) result.push_back(eye);
   }
-  if (standing.size() <= kMaxCandidates) return standing;
-  std::vector<Eye> some;
-  for (std::size_t i = 0; i < kMaxCandidates; ++i) {
-    some.push_back(standing[i * standing.size() / kMaxCandidates]);
-  }
-  return some;
+  return result;
 }
 
 // Directions spread evenly over the sphere (a Fibonacci lattice).
@@ -187,12 +182,13 @@ struct Judged {
 };
 
 // The best place sees front faces all round, has air at every side, and a long view.
-Judged judge(const Grid& grid, const glm::dvec3& eye, const std::vector<glm::dvec3>& around) {
+Judged judge(const Grid& grid, const Eye& candidate, const std::vector<glm::dvec3>& around) {
+  const glm::dvec3& eye = candidate.position;
   Judged result;
   std::size_t front = 0;
   for (const glm::dvec3& d : around) front += grid.cast(eye, d).hit == Grid::Hit::front;
   const double enclosed = double(front) / double(around.size());
-  if (enclosed < kEnclosed) return result;
+  if (enclosed < (candidate.tall ? kEnclosed : kTightlyEnclosed)) return result;
   std::array<double, kHeadings> free{};
   double nearest = INFINITY, mean = 0;
   for (int i = 0; i < kHeadings; ++i) {
@@ -218,6 +214,25 @@ Judged judge(const Grid& grid, const glm::dvec3& eye, const std::vector<glm::dve
   return result;
 }
 
+struct Best : Judged {
+  glm::dvec3 eye{0};
+};
+
+// Tries at most kMaxCandidates of them, spread over all.
+Best best_of(const Grid& grid, const std::vector<Eye>& eyes, const Context& context) {
+  const std::vector<glm::dvec3> around = sphere(48);
+  Best best;
+  const std::size_t tried = std::min(eyes.size(), kMaxCandidates);
+  for (std::size_t i = 0; i < tried && !context.cancelled(); ++i) {
+    const Eye& eye = eyes[i * eyes.size() / tried];
+    const Judged judged = judge(grid, eye, around);
+    if (judged.score <= best.score) continue;
+    static_cast<Judged&>(best) = judged;
+    best.eye = eye.position;
+  }
+  return best;
+}
+
 Viewpoint from_outside(const Grid& grid) {
   const glm::dvec3 centre = (grid.low() + grid.high()) / 2.0;
   const double radius = std::max(glm::distance(grid.low(), grid.high()) / 2, 1e-30);
@@ -237,19 +252,12 @@ Viewpoint choose_viewpoint(std::span<const Vec3f> positions, std::span<const std
                            const ViewpointOptions& options, const Context& context) {
   if (indices.empty()) return {};
   const Grid grid(positions, indices, options, context);
-  const std::vector<glm::dvec3> around = sphere(48);
-  Judged best;
-  glm::dvec3 eye(0);
-  for (const Eye& candidate : candidates(grid, options.metres_per_unit)) {
-    if (context.cancelled()) break;
-    const Judged judged = judge(grid, candidate.position, around);
-    if (judged.score <= best.score) continue;
-    best = judged;
-    eye = candidate.position;
-  }
+  const std::vector<Eye> eyes = eyes_of_columns(grid, options.metres_per_unit);
+  Best best = best_of(grid, standing(grid, eyes), context);
+  if (best.score == 0) best = best_of(grid, eyes, context);
   if (best.score == 0) return from_outside(grid);
   Viewpoint view;
-  view.position = from_glm(grid.from_frame(eye));
+  view.position = from_glm(grid.from_frame(best.eye));
   view.direction = from_glm(grid.from_frame(best.direction));
   view.fov = kFov;
   view.inside = true;

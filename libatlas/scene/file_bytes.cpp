@@ -1,6 +1,7 @@
 #include "libatlas/scene/file_bytes.h"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -8,6 +9,11 @@
 
 namespace atlas {
 namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kMaxText = std::size_t{1} << 33;  // a small gzip file can hold terabytes
+
+}  // namespace
 
 Result<FileBytes> read_file_bytes(const fs::path& path) {
   std::error_code error;
@@ -39,6 +45,34 @@ Result<FileBytes> read_file_bytes(const fs::path& path) {
   }
   bytes.data[bytes.size] = '\n';
   return bytes;
+}
+
+Result<std::string> read_text_or_gzip(const fs::path& path) {
+  auto bytes = read_file_bytes(path);
+  if (!bytes.ok()) return bytes.status();
+  std::string text;
+  if (!bytes->text().starts_with("\x1f\x8b")) {
+    text = bytes->text();
+    return text + '\n';
+  }
+  gzFile file = gzopen(path.c_str(), "rb");
+  if (!file) return Status(ErrorCode::io, path.string() + ": cannot be read");
+  gzbuffer(file, 1 << 18);
+  std::string piece(std::size_t{1} << 20, '\0');
+  int got = 0;
+  while (text.size() < kMaxText &&
+         (got = gzread(file, piece.data(), static_cast<unsigned>(piece.size()))) > 0) {
+    text.append(piece.data(), static_cast<std::size_t>(got));
+  }
+  int error = Z_OK;
+  gzerror(file, &error);
+  gzclose(file);
+  if (got != 0 || (error != Z_OK && error != Z_STREAM_END)) {
+    return Status(
+        ErrorCode::bad_input,
+        fmt::format("{}: damaged or cut short gzip data (copy the file again)", path.string()));
+  }
+  return text + '\n';
 }
 
 }  // namespace atlas

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include "libatlas/core/status.h"
@@ -23,5 +24,9 @@ struct FileBytes {
 
 // Errors: not_found; io (a directory, unreadable).
 Result<FileBytes> read_file_bytes(const std::filesystem::path& path);
+
+// The text of a plain or gzipped file, followed by a newline. Errors: the same, and bad_input for
+// damaged gzip data or more than 8 GiB of text.
+Result<std::string> read_text_or_gzip(const std::filesystem::path& path);
 
 }  // namespace atlas

@@ -1,7 +1,6 @@
 // VRML97 worlds: the part of the language that this project's exporter writes, and what is like it.
 // Everything else is skipped by its brackets.
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <glm/gtc/quaternion.hpp>
@@ -17,36 +16,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kMaxDepth = 200;  // of nested nodes
-constexpr std::size_t kMaxText = std::size_t{1} << 33;
-
-// The text of a plain or gzipped file, ending in a newline.
-Result<std::string> read_text(const fs::path& path) {
-  auto bytes = read_file_bytes(path);
-  if (!bytes.ok()) return bytes.status();
-  std::string text;
-  if (!bytes->text().starts_with("\x1f\x8b")) {
-    text = bytes->text();
-    return text + '\n';
-  }
-  gzFile file = gzopen(path.c_str(), "rb");
-  if (!file) return Status(ErrorCode::io, path.string() + ": cannot be read");
-  gzbuffer(file, 1 << 18);
-  std::string piece(std::size_t{1} << 20, '\0');
-  int got = 0;
-  while (text.size() < kMaxText &&
-         (got = gzread(file, piece.data(), static_cast<unsigned>(piece.size()))) > 0) {
-    text.append(piece.data(), static_cast<std::size_t>(got));
-  }
-  int error = Z_OK;
-  gzerror(file, &error);
-  gzclose(file);
-  if (got != 0 || (error != Z_OK && error != Z_STREAM_END)) {
-    return Status(
-        ErrorCode::bad_input,
-        fmt::format("{}: damaged or cut short gzip data (copy the file again)", path.string()));
-  }
-  return text + '\n';
-}
 
 // What a Shape holds, before its faces become triangles.
 struct Shape {
@@ -401,7 +370,7 @@ class VrmlParser {
 }  // namespace
 
 Status read_vrml(const fs::path& path, SceneBuilder& builder, const Context& context) {
-  auto text = read_text(path);
+  auto text = read_text_or_gzip(path);
   if (!text.ok()) return text.status();
   return VrmlParser(*text, builder, context).run();
 }
