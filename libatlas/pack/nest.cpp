@@ -1,0 +1,247 @@
+#include "libatlas/pack/nest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "libatlas/core/clock.h"
+#include "libatlas/core/parallel.h"
+#include "libatlas/pack/engines.h"
+
+namespace atlas::pack {
+namespace {
+
+double center_height(const Mask& mask) {
+  double sum = 0;
+  for (std::int32_t r = 0; r < mask.height; ++r)
+    for (const Run& run : mask.row(r)) sum += (r + 0.5) * (run.end - run.begin);
+  return mask.cells > 0 ? sum / static_cast<double>(mask.cells) : 0;
+}
+
+// Where the lower left corner of the box goes when chart and mask turn by 90 degrees: chart point p
+// at origin + q of a box of height h (texels) comes to (h - origin.y - q.y, origin.x + q.x).
+Vec2d turned_origin(Vec2d origin, double box_height) {
+  return {box_height - origin.y, origin.x};
+}
+
+Piece make_piece(const ChartShape& shape, const PieceOptions& options) {
+  Piece piece;
+  const std::uint32_t n = options.directions;
+  const std::uint32_t bases = std::max(1u, n / 4);
+  std::vector<Mask> masks(n);
+  piece.origins.resize(n);
+  for (std::uint32_t b = 0; b < bases; ++b) {
+    RasterOptions raster;
+    raster.factor = options.factor;
+    raster.angle = 2 * std::numbers::pi * b / n;
+    raster.padding = options.padding;
+    raster.cell = options.cell;
+    masks[b] = rasterize(shape, raster, piece.origins[b]);
+    for (std::uint32_t k = b + bases, quarter = 1; k < n; k += bases, ++quarter) {
+      const std::uint32_t from = k - bases;
+      // Two directions are half a turn apart, four a quarter.
+      masks[k] = quarter_turn(masks[from]);
+      piece.origins[k] =
+          turned_origin(piece.origins[from], double(masks[from].height) * options.cell);
+      if (n == 2) {
+        const double height = double(masks[k].height) * options.cell;
+        masks[k] = quarter_turn(masks[k]);
+        piece.origins[k] = turned_origin(piece.origins[k], height);
+      }
+    }
+  }
+  piece.masks = std::move(masks);
+  for (const Mask& m : piece.masks) {
+    piece.tests.push_back(test_order(m));
+    piece.centers.push_back(center_height(m));
+  }
+  return piece;
+}
+
+}  // namespace
+
+std::vector<Piece> make_pieces(std::span<const ChartShape> shapes, const PieceOptions& options,
+                               const Context& context) {
+  std::vector<Piece> pieces(shapes.size());
+  parallel_for(context, shapes.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) pieces[i] = make_piece(shapes[i], options);
+  });
+  return pieces;
+}
+
+std::int32_t longest_run(std::span<const Piece> pieces) {
+  std::int32_t longest = 1;
+  for (const Piece& p : pieces)
+    for (const Mask& m : p.masks)
+      for (const Run& run : m.runs) longest = std::max(longest, run.end - run.begin);
+  return longest;
+}
+
+NestPlan plan_by_size(std::span<const Piece> pieces) {
+  NestPlan plan;
+  plan.order.resize(pieces.size());
+  std::iota(plan.order.begin(), plan.order.end(), 0u);
+  std::stable_sort(plan.order.begin(), plan.order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return pieces[a].cells() > pieces[b].cells();
+  });
+  plan.direction.assign(pieces.size(), kFree);
+  return plan;
+}
+
+namespace {
+
+// The best direction and place of a piece on the page.
+bool find_place(const Piece& piece, std::int32_t only, BitPage& page, NestPlace& place) {
+  BitPage::Window window;
+  double best = std::numeric_limits<double>::infinity();
+  for (std::uint32_t k = 0; k < piece.masks.size(); ++k) {
+    if (only != kFree && k != static_cast<std::uint32_t>(only)) continue;
+    const Mask& mask = piece.masks[k];
+    if (mask.cells == 0) continue;
+    const double lift = 0.5 * mask.height + 0.5 * piece.centers[k];
+    const double most = std::min(1e9, std::ceil(best - lift) - 1);  // higher feet would lose
+    if (most < 0) continue;
+    window.y1 = static_cast<std::int32_t>(most);
+    BitPage::Place at;
+    if (!page.find(mask, piece.tests[k], window, at)) continue;
+    best = at.y + lift;
+    place = {true, k, at};
+  }
+  return place.placed;
+}
+
+}  // namespace
+
+void place_pieces(std::span<const Piece> pieces, const NestPlan& plan, BitPage& page, Nest& nest) {
+  nest.places.resize(pieces.size());
+  for (std::uint32_t id : plan.order) {
+    const Piece& piece = pieces[id];
+    if (piece.cells() == 0) continue;
+    NestPlace& place = nest.places[id];
+    const std::int32_t only = plan.direction[id];
+    if (!find_place(piece, only, page, place) &&
+        (only == kFree || !find_place(piece, kFree, page, place))) {
+      nest.left_over.push_back(id);
+      continue;
+    }
+    page.put(piece.masks[place.direction], place.at);
+    nest.potential +=
+        static_cast<double>(piece.cells()) * (place.at.y + piece.centers[place.direction]);
+  }
+  nest.used_height = page.used_height();
+}
+
+namespace {
+
+// Disturbs a plan: swaps two pieces, moves one, or changes one's direction. Large pieces, which are
+// early in the order, decide the layout and are chosen more often.
+class PlanMoves {
+ public:
+  PlanMoves(std::span<const Piece> pieces, std::uint64_t seed) : pieces_(pieces), random_(seed) {}
+
+  void disturb(NestPlan& plan, const Nest& nest) {
+    const auto n = static_cast<std::uint32_t>(plan.order.size());
+    const std::uint32_t kind = random_.below(n > 1 ? 4 : 1);
+    const std::uint32_t i = kind == 3 ? highest(plan, nest) : pick(n);
+    if (kind == 0) {
+      std::int32_t& direction = plan.direction[plan.order[i]];
+      const auto count = static_cast<std::uint32_t>(pieces_[plan.order[i]].masks.size());
+      direction = random_.below(3) == 0 ? kFree : static_cast<std::int32_t>(random_.below(count));
+      return;
+    }
+    const std::uint32_t j = kind == 3 ? random_.below(i + 1) : pick(n);
+    const auto at = [&](std::uint32_t k) { return plan.order.begin() + k; };
+    if (kind == 1)
+      std::swap(plan.order[i], plan.order[j]);
+    else if (i < j)
+      std::rotate(at(i), at(i + 1), at(j + 1));
+    else
+      std::rotate(at(j), at(i), at(i + 1));
+  }
+  double unit() { return random_.unit(); }
+
+ private:
+  // Position of the piece that ends highest: it comes earlier next time ("squeaky wheel", Joslin
+  // and Clements 1999).
+  std::uint32_t highest(const NestPlan& plan, const Nest& nest) const {
+    std::uint32_t best = 0;
+    std::int32_t top = -1;
+    for (std::uint32_t k = 0; k < plan.order.size(); ++k) {
+      const NestPlace& p = nest.places[plan.order[k]];
+      if (!p.placed) continue;
+      const std::int32_t t = p.at.y + pieces_[plan.order[k]].masks[p.direction].height;
+      if (t > top) {
+        top = t;
+        best = k;
+      }
+    }
+    return best;
+  }
+
+  std::uint32_t pick(std::uint32_t n) {
+    const double u = random_.unit();
+    return std::min(n - 1, static_cast<std::uint32_t>(u * std::sqrt(u) * n));
+  }
+  std::span<const Piece> pieces_;
+  Random random_;
+};
+
+// Height in cells, with the potential as a fraction below one.
+double energy(const Nest& nest, double total_cells) {
+  if (!nest.left_over.empty()) return 1e6 * static_cast<double>(nest.left_over.size());
+  const double mean = nest.potential / std::max(1.0, total_cells);
+  return nest.used_height + mean / std::max(1.0, double(nest.used_height));
+}
+
+}  // namespace
+
+NestPlan improve_plan(std::span<const Piece> pieces, const NestPlan& start,
+                      const NestSearchOptions& options, const Context& context, Nest& best,
+                      std::uint64_t& layouts) {
+  const std::int32_t longest = longest_run(pieces);
+  double total = 0;
+  for (const Piece& p : pieces) total += static_cast<double>(p.cells());
+  std::uint64_t spent = 0, tried = 0;
+  BitPage page(options.width, 1 << 24, longest);
+  const auto evaluate = [&](const NestPlan& plan, Nest& nest) {
+    const std::uint64_t before = page.work();
+    page.clear();
+    nest = {};
+    place_pieces(pieces, plan, page, nest);
+    spent += page.work() - before + 20 * pieces.size();
+    ++layouts;
+    ++tried;
+    return energy(nest, total);
+  };
+  NestPlan plan = start, current = start, best_plan = start;
+  double current_energy = evaluate(start, best), best_energy = current_energy;
+  PlanMoves moves(pieces, options.seed);
+  Nest nest, current_nest = best;
+  const double begun = wall_seconds();
+  while (spent < options.work && tried < options.layouts && !pieces.empty()) {
+    if (context.cancelled() || wall_seconds() - begun > options.seconds) break;
+    if (best.left_over.empty() && best.used_height <= options.enough) break;
+    plan = current;
+    moves.disturb(plan, current_nest);
+    const double e = evaluate(plan, nest);
+    const double left =
+        1 - std::max(static_cast<double>(spent) / static_cast<double>(options.work),
+                     static_cast<double>(tried) / static_cast<double>(options.layouts));
+    const double temperature = std::max(1e-9, 0.004 * best_energy * left * left);
+    if (e <= current_energy || moves.unit() < std::exp((current_energy - e) / temperature)) {
+      current = plan;
+      current_energy = e;
+      current_nest = nest;
+    }
+    if (e < best_energy) {
+      best_energy = e;
+      best_plan = plan;
+      best = nest;
+    }
+  }
+  return best_plan;
+}
+
+}  // namespace atlas::pack

@@ -1,0 +1,75 @@
+// Internal: placing outlines on one page, and the search for a good order.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libatlas/pack/bit_page.h"
+
+namespace atlas::pack {
+
+// One chart in all directions tried: direction k is turned by k · 360 / directions degrees.
+struct Piece {
+  std::vector<Mask> masks;
+  std::vector<std::vector<RowTest>> tests;
+  std::vector<Vec2d> origins;   // see RasterOptions; empty for coarse pieces
+  std::vector<double> centers;  // height of the mask's centre of mass
+  std::int64_t cells() const { return masks.empty() ? 0 : masks[0].cells; }
+};
+
+struct PieceOptions {
+  double factor = 1;  // texels of page a texel of the shape
+  std::int32_t padding = 1, cell = 1;
+  std::uint32_t directions = 4;
+};
+
+// Rasterises shapes in all directions; quarter turns are exact turns of the masks.
+std::vector<Piece> make_pieces(std::span<const ChartShape> shapes, const PieceOptions& options,
+                               const Context& context);
+
+inline constexpr std::int32_t kFree = -1;
+
+// The order in which pieces are placed, and the direction of each (kFree: the best).
+struct NestPlan {
+  std::vector<std::uint32_t> order;
+  std::vector<std::int32_t> direction;  // 1 a piece
+};
+
+NestPlan plan_by_size(std::span<const Piece> pieces);
+
+struct NestPlace {
+  bool placed = false;
+  std::uint32_t direction = 0;
+  BitPage::Place at;
+};
+
+struct Nest {
+  std::vector<NestPlace> places;         // 1 a piece
+  std::vector<std::uint32_t> left_over;  // pieces without room, in order
+  std::int32_t used_height = 0;
+  double potential = 0;  // sum over pieces of cells × height of the centre: breaks ties of height
+};
+
+// Puts the pieces of the plan on the page one after another, each where it ends lowest: the sum of
+// its foot, half its height and half the height of its centre is smallest. Pieces already in
+// nest.places stay.
+void place_pieces(std::span<const Piece> pieces, const NestPlan& plan, BitPage& page, Nest& nest);
+
+std::int32_t longest_run(std::span<const Piece> pieces);
+
+// A search for a plan that makes a strip of this width (cells) low, limited by work in words
+// looked at (2 to 5 ns each), by layouts or by time; deterministic unless time is the limit.
+struct NestSearchOptions {
+  std::int32_t width = 0;
+  std::uint64_t work = UINT64_MAX;     // words
+  std::uint64_t layouts = UINT64_MAX;  // tried at most
+  std::int32_t enough = 0;             // stop when the strip is this low
+  std::uint64_t seed = 1;
+  double seconds = 1e300;  // wall time, for `best`
+};
+NestPlan improve_plan(std::span<const Piece> pieces, const NestPlan& start,
+                      const NestSearchOptions& options, const Context& context, Nest& best,
+                      std::uint64_t& layouts);
+
+}  // namespace atlas::pack

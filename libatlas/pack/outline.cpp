@@ -1,0 +1,261 @@
+#include "libatlas/pack/outline.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libatlas/core/clock.h"
+#include "libatlas/core/parallel.h"
+#include "libatlas/pack/nest.h"
+#include "libatlas/pack/shape_check.h"
+
+namespace atlas {
+namespace pack {
+
+Status check_shapes(std::span<const ChartShape> shapes) {
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const ChartShape& s = shapes[i];
+    const std::size_t n = s.triangles.empty() ? s.corners.size() : s.triangles.size();
+    if (n % 3 != 0)
+      return {ErrorCode::bad_input,
+              fmt::format("outline: shape {} has {} corners (three a triangle)", i, n)};
+    for (const Vec2d& p : s.corners)
+      if (!(std::abs(p.x) < 1e9) || !(std::abs(p.y) < 1e9))
+        return {ErrorCode::bad_input, fmt::format("outline: shape {} has a corner at {}, {} "
+                                                  "(finite and below 1e9 texels, please)",
+                                                  i, p.x, p.y)};
+    for (std::uint32_t k : s.triangles)
+      if (k >= s.corners.size())
+        return {ErrorCode::bad_input,
+                fmt::format("outline: shape {} refers to corner {} of {}", i, k, s.corners.size())};
+  }
+  return {};
+}
+
+Status check_rotations(std::uint32_t rotations) {
+  if (rotations == 1 || rotations == 2 || (rotations > 0 && rotations <= 64 && rotations % 4 == 0))
+    return {};
+  return {ErrorCode::bad_option, fmt::format("outline: rotations is {} (1, 2, 4 or a multiple of 4 "
+                                             "up to 64)",
+                                             rotations)};
+}
+
+void parallel_chains(const Context& context, std::size_t chains,
+                     const std::function<void(std::size_t)>& run) {
+  parallel_for(context, chains, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) run(c);
+  });
+}
+
+// A piece costs about 0.0055 looks at a word a direction and a squared page side in cells.
+double layout_cost(std::size_t count, double side_cells, std::uint32_t directions) {
+  return static_cast<double>(count) * directions * side_cells * side_cells * 0.0055;
+}
+
+GridChoice choose_grid(std::size_t count, std::int32_t page_side, std::int32_t alignment,
+                       std::uint32_t rotations, double affordable) {
+  GridChoice best{alignment, std::min(rotations, 4u)};
+  const double n = static_cast<double>(std::max<std::size_t>(count, 1));
+  // Coarse cells cost half a cell around each chart. A mean chart of 32 cells a side loses a few
+  // percent, and finer grids buy less than more layouts do.
+  const auto cells_a_chart = [&](std::int32_t cell) {
+    return page_side / double(cell) * std::sqrt(0.75 / n);
+  };
+  while (page_side / (2 * best.cell) >= 512 && cells_a_chart(2 * best.cell) >= 32) best.cell *= 2;
+  while (layout_cost(count, page_side / double(best.cell), best.directions) > affordable &&
+         cells_a_chart(2 * best.cell) >= 8)
+    best.cell *= 2;
+  while (best.directions * 2 <= rotations &&
+         layout_cost(count, page_side / double(best.cell), best.directions * 2) <= affordable)
+    best.directions *= 2;
+  while (best.directions > 4 && rotations % best.directions != 0) best.directions -= 4;
+  return best;
+}
+
+}  // namespace pack
+
+namespace {
+
+using pack::BitPage;
+using pack::Nest;
+using pack::NestPlan;
+using pack::Piece;
+
+Status check(std::span<const ChartShape> shapes, const OutlineOptions& o) {
+  if (o.page.width < 1 || o.page.height < 0 || o.page.width > (1 << 17) ||
+      o.page.height > (1 << 17) || o.alignment < 1 || o.padding < 0 || o.border < 0 ||
+      o.alignment > o.page.width || o.padding > (1 << 12) || o.border > (1 << 16))
+    return {ErrorCode::bad_option,
+            fmt::format("outline: page {} x {}, padding {}, border {}, alignment {} (page in 1 .. "
+                        "2^17, height 0 for a strip, alignment 1 .. page width, others not "
+                        "negative)",
+                        o.page.width, o.page.height, o.padding, o.border, o.alignment)};
+  if (!(o.scale > 0) || !std::isfinite(o.scale))
+    return {ErrorCode::bad_option, "outline: scale must be finite and above 0"};
+  if (!(o.time_budget >= 0))
+    return {ErrorCode::bad_option, "outline: time_budget is negative or not a number"};
+  if (Status s = pack::check_rotations(o.rotations); !s.ok()) return s;
+  return pack::check_shapes(shapes);
+}
+
+// The page in cells, after its border.
+struct Grid {
+  std::int32_t cell = 1, origin = 0;  // texels
+  std::uint32_t directions = 4;
+  Extent page;  // cells
+  bool open = false;
+};
+
+constexpr std::int32_t kOpenRows = 1 << 22;
+
+// `standard` spends about this many looks at words, 2 to 5 ns each.
+constexpr double kStandardWork = 60e6, kAffordable = 100e6;
+
+Grid make_grid(std::size_t count, const OutlineOptions& o) {
+  Grid grid;
+  grid.open = o.page.height == 0;
+  const std::int32_t side =
+      grid.open ? o.page.width
+                : static_cast<std::int32_t>(std::sqrt(double(o.page.width) * o.page.height));
+  const std::size_t a_page = o.max_pages > 1 ? count / o.max_pages + 1 : count;
+  const pack::GridChoice choice =
+      o.preset == PackPreset::fast
+          ? pack::choose_grid(a_page, side, o.alignment, std::min(o.rotations, 4u),
+                              0.2 * kAffordable)
+          : pack::choose_grid(a_page, side, o.alignment, o.rotations, kAffordable);
+  grid.cell = choice.cell;
+  grid.directions = choice.directions;
+  // Cells are a power of two times the alignment: the border is rounded up to the alignment only.
+  grid.origin = (o.border + o.alignment - 1) / o.alignment * o.alignment;
+  const auto cells = [&](std::int32_t texels) {
+    return std::max(0, (texels - o.border - grid.origin) / grid.cell);
+  };
+  grid.page = {cells(o.page.width), grid.open ? kOpenRows : cells(o.page.height)};
+  return grid;
+}
+
+// Searches over plans on a single page; returns the best of a few chains in the case of `best`.
+Nest search(std::span<const Piece> pieces, const Grid& grid, const OutlineOptions& o,
+            const Context& context, OutlineResult& result) {
+  pack::NestSearchOptions s;
+  s.width = grid.page.width;
+  s.seed = o.seed;
+  s.enough = grid.open ? 0 : grid.page.height;
+  const NestPlan start = pack::plan_by_size(pieces);
+  if (o.preset == PackPreset::fast) s.layouts = 1;
+  if (o.preset == PackPreset::standard) s.work = static_cast<std::uint64_t>(kStandardWork);
+  const std::size_t chains = o.preset == PackPreset::best ? 4 : 1;
+  if (o.preset == PackPreset::best) {
+    s.seconds = o.time_budget;
+    if (o.effort) s.layouts = std::max<std::uint64_t>(1, o.effort / chains);
+  }
+  std::vector<Nest> nests(chains);
+  std::vector<std::uint64_t> layouts(chains);
+  const double begun = wall_seconds();
+  pack::parallel_chains(context, chains, [&](std::size_t c) {
+    pack::NestSearchOptions own = s;
+    own.seed = s.seed * 0x10001 + c;
+    pack::improve_plan(pieces, start, own, context, nests[c], layouts[c]);
+  });
+  std::size_t best = 0;
+  for (std::size_t c = 0; c < chains; ++c) {
+    result.layouts_tried += layouts[c];
+    if (nests[c].left_over.size() < nests[best].left_over.size() ||
+        (nests[c].left_over.size() == nests[best].left_over.size() &&
+         nests[c].used_height < nests[best].used_height))
+      best = c;
+  }
+  result.curve.push_back({wall_seconds() - begun, result.layouts_tried, 1,
+                          std::int64_t{nests[best].used_height} * grid.cell});
+  return nests[best];
+}
+
+// Fills page after page with what is left, largest first.
+std::vector<Nest> fill_pages(std::span<const Piece> pieces, const Grid& grid,
+                             const OutlineOptions& o) {
+  std::vector<Nest> nests;
+  NestPlan plan = pack::plan_by_size(pieces);
+  const std::int32_t longest = pack::longest_run(pieces);
+  while (!plan.order.empty() && (o.max_pages == 0 || nests.size() < o.max_pages)) {
+    BitPage page(grid.page.width, grid.page.height, longest);
+    Nest nest;
+    pack::place_pieces(pieces, plan, page, nest);
+    if (nest.left_over.size() == plan.order.size()) break;  // nothing fits an empty page
+    plan.order = nest.left_over;
+    nests.push_back(std::move(nest));
+  }
+  return nests;
+}
+
+// Writes one page's nest into the result; pieces that no page holds are counted by the caller.
+void write_page(std::span<const Piece> pieces, const Nest& nest, const Grid& grid,
+                OutlineResult& result) {
+  const auto page = static_cast<std::uint32_t>(result.pages.size());
+  result.pages.emplace_back();
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const pack::NestPlace& p = nest.places[i];
+    if (!p.placed) continue;
+    OutlinePlacement& out = result.placements[i];
+    const pack::Mask& mask = pieces[i].masks[p.direction];
+    out.page = page;
+    out.angle = 2 * std::numbers::pi * p.direction / grid.directions;
+    out.box = {grid.origin + p.at.x * grid.cell, grid.origin + p.at.y * grid.cell,
+               mask.width * grid.cell, mask.height * grid.cell};
+    out.offset = {out.box.x + pieces[i].origins[p.direction].x,
+                  out.box.y + pieces[i].origins[p.direction].y};
+  }
+}
+
+}  // namespace
+
+Result<OutlineResult> pack_outlines(std::span<const ChartShape> shapes,
+                                    const OutlineOptions& options, const Context& context) {
+  if (Status status = check(shapes, options); !status.ok()) return status;
+  OutlineResult result;
+  result.placements.resize(shapes.size());
+  const Grid grid = make_grid(shapes.size(), options);
+  pack::PieceOptions piece_options;
+  piece_options.factor = options.scale;
+  piece_options.padding = options.padding;
+  piece_options.cell = grid.cell;
+  piece_options.directions = grid.directions;
+  const std::vector<Piece> pieces = pack::make_pieces(shapes, piece_options, context);
+  if (context.cancelled()) return Status::cancelled();
+
+  std::vector<Nest> nests;
+  if (options.max_pages == 1 || grid.open) {
+    Nest one = search(pieces, grid, options, context, result);
+    const bool fits = one.left_over.empty() && one.used_height <= grid.page.height;
+    if (fits)
+      nests.push_back(std::move(one));
+    else
+      nests = fill_pages(pieces, grid, options);
+  } else {
+    nests = fill_pages(pieces, grid, options);
+    result.layouts_tried = 1;
+  }
+  if (context.cancelled()) return Status::cancelled();
+
+  double area = 0;
+  for (const Nest& nest : nests) {
+    write_page(pieces, nest, grid, result);
+    Extent& page = result.pages.back();
+    page = options.page;
+    if (grid.open) page.height = grid.origin + nest.used_height * grid.cell + options.border;
+    area += static_cast<double>(page.area());
+  }
+  for (std::uint32_t i = 0; i < shapes.size(); ++i) {
+    if (result.placements[i].page != kNoPage)
+      result.shape_area += pack::shape_area(shapes[i]) * options.scale * options.scale;
+    else if (pieces[i].cells() > 0)
+      result.unplaced.push_back(i);
+    else
+      result.placements[i].page = 0;
+  }
+  result.utilization = area > 0 ? result.shape_area / area : 0;
+  return result;
+}
+
+}  // namespace atlas
