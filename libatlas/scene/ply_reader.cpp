@@ -105,6 +105,8 @@ class PlyParser {
         status = read_vertices(context);
       } else if (element.name == "face") {
         status = read_faces(context);
+      } else if (element.name == "tristrips") {
+        status = read_strips(context);
       } else {
         status = skip(context);
       }
@@ -266,6 +268,30 @@ class PlyParser {
         builder_.material = static_cast<std::uint32_t>(scalars_[number]);
       }
       builder_.add_face(corners, uvs, [&] { return place(); });
+    }
+    return {};
+  }
+
+  // Strips of triangles, one after the other in one list, with a -1 after each.
+  Status read_strips(const Context& context) {
+    const int list = element_->find("vertex_indices");
+    if (list < 0 || !element_->properties[list].list) return skip(context);
+    begin();
+    for (; index_ < element_->count; ++index_) {
+      if (Status s = read_element(context); !s.ok()) return s;
+      const std::vector<double>& strip = lists_[list];
+      std::size_t first = 0;
+      for (std::size_t k = 0; k < strip.size(); ++k) {
+        if (strip[k] == -1) {
+          first = k + 1;
+        } else if (k >= first + 2) {
+          const std::size_t odd = (k - first) % 2;  // every other triangle turns the other way
+          const std::int64_t corners[3] = {to_index(strip[k - 2 + odd]),
+                                           to_index(strip[k - 1 - odd]), to_index(strip[k])};
+          const std::span<const std::int64_t> all(corners);
+          builder_.add_face(all, vertex_uvs_ ? all : all.first(0), [&] { return place(); });
+        }
+      }
     }
     return {};
   }

@@ -98,6 +98,21 @@ TEST_P(PlyFormats, IntegerColoursAreFractions) {
   }
 }
 
+TEST_P(PlyFormats, StripsOfTriangles) {
+  const TempFolder folder;
+  Writer w(GetParam(),
+           "element vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+           "element tristrips 1\nproperty list int int vertex_indices\n");
+  for (int i = 0; i < 5; ++i) w.put(float(i / 2)).put(float(i % 2)).put(0.f).end();
+  w.put(9);
+  for (const int v : {0, 1, 2, 3, -1, 2, 3, 4, 77}) w.put(v);
+  w.end();
+  const auto loaded = read_scene(folder.write("s.ply", w.bytes()), {}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->scene.indices, (std::vector<std::uint32_t>{0, 1, 2, 2, 1, 3, 2, 3, 4}));
+  EXPECT_EQ(loaded->defects.count(DefectKind::index_out_of_range), 1u);
+}
+
 // Cutting a file anywhere gives an error, never a crash, and never a scene with fewer triangles.
 TEST_P(PlyFormats, EveryTruncationIsNoticed) {
   const TempFolder folder;
