@@ -92,7 +92,8 @@ Downsizing downsize(SampledChart full, const TextureOptions& options) {
   const auto threshold = static_cast<float>(options.threshold);
   SampledChart current, next;
   const SampledChart* last = &full;
-  while ((std::min(last->width, last->height) + 1) / 2 >= options.min_side &&
+  while (std::max(last->width, last->height) > 1 &&
+         (std::min(last->width, last->height) + 1) / 2 >= options.min_side &&
          halve(*last, threshold, next)) {
     std::swap(current, next);
     last = &current;

@@ -47,7 +47,7 @@ float srgb_decode(float display) {
 std::uint8_t srgb_encode8(float linear) {
   std::uint8_t code = quantize8(srgb_encode(linear));
   if (code > 0 && !(linear >= srgb_detail::tables.threshold[code])) return code - 1;
-  if (linear >= srgb_detail::tables.threshold[code + 1]) return code + 1;
+  if (code < 255 && linear >= srgb_detail::tables.threshold[code + 1]) return code + 1;
   return code;
 }
 

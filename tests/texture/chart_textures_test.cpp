@@ -1,0 +1,281 @@
+#include "libatlas/texture/chart_textures.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <random>
+
+#include "libatlas/texture/downsizing.h"
+#include "tests/texture/lit_shapes.h"
+
+namespace atlas {
+namespace {
+
+// Display values are the sRGB encoding of luminance: white is 1.
+const ToneMapping kPlain{};
+
+TextureResult size_textures(const LitShape& shape, const TextureOptions& options, int threads = 1) {
+  const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+  Context context;
+  context.threads = threads;
+  auto r = size_chart_textures({sampler, shape.charts, kPlain}, options, context);
+  EXPECT_TRUE(r.ok()) << r.status().message();
+  return *r;
+}
+
+// Illumination whose display value is d.
+Vec3f shown(double d) {
+  const float v = srgb_decode(static_cast<float>(d));
+  return {v, v, v};
+}
+
+TextureOptions options(double texel, double threshold = 2.0 / 255) {
+  TextureOptions o;
+  o.texel = texel;
+  o.threshold = threshold;
+  return o;
+}
+
+TEST(ChartTextures, HaveTheTexelLengthAskedFor) {
+  const LitShape shape =
+      make_sheet({2.5, 1.2, 4, 4}, [](double u, double) { return shown(u / 3); });
+  const ChartTexture t = size_textures(shape, options(0.01, 0)).charts[0];
+  EXPECT_EQ(t.full_width, 250);
+  EXPECT_EQ(t.full_height, 120);
+  EXPECT_EQ(t.width, 250);
+  EXPECT_EQ(t.texels_per_unit, (Vec2d{100, 100}));
+  EXPECT_EQ(t.content, ChartContent::varied);
+}
+
+TEST(ChartTextures, ShrinkChartsOfOneColourToTheSmallestSide) {
+  LitShape shape = make_sheet({4, 1, 9, 9}, [](double, double) { return Vec3f{1, 2, 3}; });
+  append(shape, make_sheet({4, 0.1, 9, 9}, [](double, double) { return Vec3f{}; }), {0, 0, 1});
+  // Lit, but black: unlit as far as a texture goes.
+  append(shape, make_sheet({4, 4, 3, 3, 0, {0, 0, 0}}, [](double u, double) { return shown(u); }),
+         {0, 0, 2});
+  const TextureResult r = size_textures(shape, options(0.01));
+  EXPECT_EQ(r.charts[0].content, ChartContent::uniform);
+  EXPECT_EQ(r.charts[0].width, 16);
+  EXPECT_EQ(r.charts[0].height, 16);
+  EXPECT_NEAR(r.charts[0].texels_per_unit.x, 4, 1e-12);
+  EXPECT_NEAR(r.charts[0].texels_per_unit.y, 16, 1e-12);
+  EXPECT_EQ(r.charts[1].content, ChartContent::unlit);
+  EXPECT_EQ(r.charts[1].width, 16);
+  EXPECT_EQ(r.charts[1].height, 10);  // already smaller
+  EXPECT_EQ(r.charts[2].content, ChartContent::unlit);
+  EXPECT_EQ(r.uniform, 1u);
+  EXPECT_EQ(r.unlit, 2u);
+  EXPECT_EQ(r.max_error, 0);
+  EXPECT_EQ(r.final_texels, 16 * 16 + 16 * 10 + 16 * 16);
+  EXPECT_EQ(r.full_texels, 400 * 100 + 400 * 10 + 400 * 400);
+}
+
+TEST(ChartTextures, FollowFinerDiffuseTexturesAndNoCoarserOnes) {
+  const auto textured = [](float repeats) {
+    LitShape shape = make_sheet({1, 1, 2, 2}, [](double, double) { return shown(0.5); });
+    Image8 image(64, 64, 3);
+    for (std::size_t i = 0; i < image.texels.size(); ++i)
+      image.texels[i] = static_cast<std::uint8_t>(i * 37);
+    add_texture(shape, image, {repeats, repeats});
+    return shape;
+  };
+  const TextureResult fine = size_textures(textured(8), options(0.01));
+  EXPECT_NEAR(fine.charts[0].full_texels_per_unit.x, 512, 1e-3);
+  EXPECT_EQ(fine.raised, 1u);
+  const TextureResult coarse = size_textures(textured(1), options(0.01));
+  EXPECT_EQ(coarse.charts[0].full_texels_per_unit.x, 100);
+  EXPECT_EQ(coarse.raised, 0u);
+  TextureOptions own = options(0.01);
+  own.follow_textures = false;
+  EXPECT_EQ(size_textures(textured(8), own).charts[0].full_texels_per_unit.x, 100);
+}
+
+TEST(ChartTextures, FitThePage) {
+  const LitShape shape =
+      make_sheet({100, 1, 50, 1}, [](double u, double) { return shown(u / 100); });
+  TextureOptions o = options(0.01, 0);
+  o.max_side = 1000;
+  const TextureResult r = size_textures(shape, o);
+  EXPECT_TRUE(r.charts[0].capped);
+  EXPECT_EQ(r.capped, 1u);
+  EXPECT_EQ(r.charts[0].full_width, 1000);
+  EXPECT_EQ(r.charts[0].full_height, 10);
+}
+
+TEST(ChartTextures, HalveARampAsOftenAsItsSlopeAllows) {
+  // Display values rise by `step` a texel along u. A quad's texels are then 2^k step / 2 off its
+  // mean at the halving k (0, 1, ...): allowed while that is below the threshold.
+  for (const double step : {0.0006, 0.0011, 0.0021, 0.0041, 0.0077, 0.0163}) {
+    const int n = 256;
+    // A vertex at every texel centre keeps display values linear in between.
+    const LitShape shape = make_sheet({1, 1, 2 * n, 1}, [&](double u, double) {
+      return shown(std::min(1.0, step * u * n / 4 + 0.2));
+    });
+    int want = 0;
+    while (want < 4 && step / 4 * std::ldexp(0.5, want) < 2.0 / 255) ++want;
+    const ChartTexture t = size_textures(shape, options(1.0 / n)).charts[0];
+    EXPECT_EQ(t.halvings, want) << step;
+    EXPECT_EQ(t.width, n >> want);
+    EXPECT_EQ(t.height, n >> want);
+    EXPECT_EQ(t.texels_per_unit.x, n >> want);
+    // A ramp is linear: up-sampling repeats it but at the ends, where half a coarse texel is
+    // missing.
+    EXPECT_LE(t.max_error, step / 4 * (std::ldexp(0.5, want) - 0.5) + 1e-4);
+    EXPECT_LE(t.rms_error, t.max_error);
+  }
+}
+
+TEST(ChartTextures, DoNotDependOnTheNumberOfThreads) {
+  LitShape shape = make_sheet({1, 1, 40, 40, 0.3}, [](double u, double v) { return shown(u * v); });
+  for (int i = 1; i < 12; ++i)
+    append(shape,
+           make_sheet({1, 1.0 / i, 30, 30, 0.3},
+                      [i](double u, double v) { return shown(0.1 + 0.002 * i * (u + v)); }),
+           {0, 0, static_cast<float>(i)});
+  const TextureResult one = size_textures(shape, options(0.005), 1);
+  const TextureResult four = size_textures(shape, options(0.005), 4);
+  EXPECT_EQ(one.rms_error, four.rms_error);
+  EXPECT_EQ(one.final_texels, four.final_texels);
+  for (std::size_t i = 0; i < one.charts.size(); ++i) {
+    EXPECT_EQ(one.charts[i].width, four.charts[i].width);
+    EXPECT_EQ(one.charts[i].rms_error, four.charts[i].rms_error);
+  }
+}
+
+TEST(ChartTextures, RefuseOptionsOutOfRange) {
+  const LitShape shape = make_sheet({1, 1, 1, 1}, [](double, double) { return shown(1); });
+  const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+  const auto refused = [&](auto change) {
+    TextureOptions o;
+    change(o);
+    const auto r = size_chart_textures({sampler, shape.charts, kPlain}, o, Context{});
+    return !r.ok() && r.status().code() == ErrorCode::bad_option;
+  };
+  EXPECT_TRUE(refused([](TextureOptions& o) { o.texel = 0; }));
+  EXPECT_TRUE(refused([](TextureOptions& o) { o.texel = NAN; }));
+  EXPECT_TRUE(refused([](TextureOptions& o) { o.threshold = NAN; }));
+  EXPECT_TRUE(refused([](TextureOptions& o) { o.min_side = 0; }));
+  EXPECT_TRUE(refused([](TextureOptions& o) { o.max_side = 4; }));
+}
+
+TEST(ChartTextures, StopWhenCancelled) {
+  const LitShape shape = make_sheet({1, 1, 4, 4}, [](double u, double) { return shown(u); });
+  const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+  const std::atomic<bool> stop{true};
+  Context context;
+  context.cancel = &stop;
+  const auto r = size_chart_textures({sampler, shape.charts, kPlain}, {}, context);
+  EXPECT_EQ(r.status().code(), ErrorCode::cancelled);
+}
+
+// --- The halving itself, on random textures with holes, against the definition ---
+
+SampledChart random_texture(std::mt19937& random, double amplitude) {
+  SampledChart c;
+  c.width = 16 + static_cast<int>(random() % 100);
+  c.height = 16 + static_cast<int>(random() % 100);
+  c.texels.resize(std::size_t(c.width) * c.height);
+  for (std::size_t i = 0; i < c.texels.size(); ++i) {
+    const double x = static_cast<double>(i % c.width) / c.width;
+    c.texels[i].weight = random() % 4 ? 1.0f : 0.0f;
+    for (float& v : c.texels[i].rgb)
+      v = static_cast<float>(0.3 + 0.1 * x + amplitude * (random() % 1000) / 1000.0);
+  }
+  return c;
+}
+
+// Largest |mean - texel| over quads; the halved texture in `out`.
+double definition(const SampledChart& in, SampledChart& out) {
+  double worst = 0;
+  out = {(in.width + 1) / 2, (in.height + 1) / 2, {}};
+  out.texels.resize(std::size_t(out.width) * out.height);
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x)
+      for (int k = 0; k < 3; ++k) {
+        std::vector<double> v;
+        for (int q = 0; q < 4; ++q) {
+          const int i = 2 * x + q % 2, j = 2 * y + q / 2;
+          if (i >= in.width || j >= in.height) continue;
+          const auto& t = in.texels[std::size_t(j) * in.width + i];
+          if (t.weight > 0) v.push_back(t.rgb[k]);
+        }
+        if (v.empty()) continue;
+        double mean = 0;
+        for (const double a : v) mean += a / static_cast<double>(v.size());
+        for (const double a : v) worst = std::max(worst, std::fabs(a - mean));
+        auto& t = out.texels[std::size_t(y) * out.width + x];
+        t.rgb[k] = static_cast<float>(mean);
+        t.weight = 1;
+      }
+  return worst;
+}
+
+TEST(Downsizing, FollowsTheDefinition) {
+  std::mt19937 random(8);
+  int counts[4] = {0, 0, 0, 0};
+  for (int trial = 0; trial < 400; ++trial) {
+    const double amplitude = std::pow(10.0, -1 - (random() % 300) / 100.0);
+    const SampledChart full = random_texture(random, amplitude);
+    TextureOptions o;
+    o.min_side = 1 + static_cast<int>(random() % 20);
+    SampledChart current = full, next;
+    int want = 0;
+    bool close = false;
+    for (;;) {
+      if ((std::min(current.width, current.height) + 1) / 2 < o.min_side) break;
+      if (current.width == 1 && current.height == 1) break;
+      const double worst = definition(current, next);
+      close = close || std::fabs(worst - o.threshold) < 1e-6;
+      if (!(worst < o.threshold)) break;
+      current = next;
+      ++want;
+    }
+    if (close) continue;  // rounding decides
+    const Downsizing d = downsize(full, o);
+    ASSERT_EQ(d.halvings, want);
+    ASSERT_EQ(d.width, current.width);
+    ASSERT_EQ(d.height, current.height);
+    ++counts[std::min(want, 3)];
+  }
+  for (const int c : counts) EXPECT_GT(c, 5);
+}
+
+TEST(Downsizing, ReportsTheErrorOfTheUpSampledTexture) {
+  // Noise about one value: up-sampling to full size gives values between the coarse texels', so
+  // that errors can be bounded by hand; one texel sticks out by a known amount.
+  SampledChart c{64, 64, std::vector<SampledChart::Texel>(64 * 64)};
+  for (auto& t : c.texels) {
+    t.weight = 1;
+    for (float& v : t.rgb) v = 0.5f;
+  }
+  c.texels[20 * 64 + 20].rgb[1] = 0.506f;
+  TextureOptions o;
+  o.min_side = 32;
+  const Downsizing d = downsize(c, o);
+  ASSERT_EQ(d.halvings, 1);
+  EXPECT_EQ(d.covered, 64 * 64);
+  // The quad's mean is 0.5015. The look-up at the texel lies a quarter texel off the coarse centre
+  // in x and y: (3/4)² of that rise is found, and the neighbours get the rest of the tent.
+  const double rise = 0.0015, weights[4] = {0.25, 0.75, 0.75, 0.25};
+  double sum = 0, worst = 0;
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 4; ++i) {
+      const double got = rise * weights[i] * weights[j], want = i == 1 && j == 1 ? 0.006 : 0.0;
+      sum += (got - want) * (got - want);
+      worst = std::max(worst, std::fabs(got - want));
+    }
+  EXPECT_NEAR(d.max_error, worst, 1e-6);
+  EXPECT_NEAR(d.square_sum, sum, 1e-8);
+}
+
+TEST(Downsizing, StopsWithoutACrashOnASingleTexel) {
+  SampledChart c{1, 1, std::vector<SampledChart::Texel>(1)};
+  TextureOptions o;
+  o.min_side = 1;
+  EXPECT_EQ(downsize(c, o).halvings, 0);
+}
+
+}  // namespace
+}  // namespace atlas

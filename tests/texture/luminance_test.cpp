@@ -1,0 +1,146 @@
+#include "libatlas/texture/luminance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "libatlas/texture/srgb.h"
+#include "tests/texture/lit_shapes.h"
+
+namespace atlas {
+namespace {
+
+Image8 noise_image(int width, int height, int channels) {
+  Image8 image(width, height, channels);
+  std::mt19937 random(3);
+  for (auto& t : image.texels) t = static_cast<std::uint8_t>(random());
+  return image;
+}
+
+double decode(int code) {
+  const double d = code / 255.0;
+  return d <= 0.04045 ? d / 12.92 : std::pow((d + 0.055) / 1.055, 2.4);
+}
+
+// Repeating bilinear look-up, written from the definition.
+double texel_value(const Image8& image, double u, double v, int channel) {
+  const double x = u * image.width - 0.5, y = v * image.height - 0.5;
+  double sum = 0;
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) {
+      const long cx = std::lround(std::floor(x)) + i, cy = std::lround(std::floor(y)) + j;
+      const double w = (1 - std::fabs(x - static_cast<double>(cx))) *
+                       (1 - std::fabs(y - static_cast<double>(cy)));
+      const long px = ((cx % image.width) + image.width) % image.width;
+      const long py = ((cy % image.height) + image.height) % image.height;
+      const int c = image.channels >= 3 ? channel : 0;
+      sum += w * decode(image.at(static_cast<int>(px), static_cast<int>(py))[c]);
+    }
+  return sum;
+}
+
+TEST(LuminanceSampler, IsIlluminationTimesReflectance) {
+  for (const int channels : {1, 2, 3, 4})
+    for (const Vec2f repeats : {Vec2f{3.3f, 2.7f}, Vec2f{-5.1f, 0.9f}}) {
+      LitShape shape = make_sheet({2, 1, 5, 4, 0.2, {0.5f, 0.25f, 1}}, [](double u, double v) {
+        return Vec3f{static_cast<float>(u), static_cast<float>(v + 1), 7};
+      });
+      const Image8 image = noise_image(13, 8, channels);
+      add_texture(shape, image, repeats);
+      const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+      const float diffuse[3] = {0.5f, 0.25f, 1};
+      std::mt19937 random(4);
+      for (std::uint32_t t = 0; t < shape.scene.triangle_count(); ++t)
+        for (int n = 0; n < 20; ++n) {
+          double b[3] = {(random() % 1000) / 1000.0, 0, 0};
+          b[1] = (1 - b[0]) * (random() % 1000) / 1000.0;
+          b[2] = 1 - b[0] - b[1];
+          double x = 0, y = 0, e[3] = {0, 0, 0};
+          for (int k = 0; k < 3; ++k) {
+            const std::uint32_t i = shape.scene.indices[3 * t + k];
+            x += b[k] * shape.scene.positions[i].x;
+            y += b[k] * shape.scene.positions[i].y;
+            const Vec3f l = shape.scene.illumination[i];
+            e[0] += b[k] * l.x, e[1] += b[k] * l.y, e[2] += b[k] * l.z;
+          }
+          const Vec3f got =
+              LuminanceSampler::sample(sampler.prepare(t, 0), static_cast<float>(b[0]),
+                                       static_cast<float>(b[1]), static_cast<float>(b[2]));
+          const float g[3] = {got.x, got.y, got.z};
+          for (int c = 0; c < 3; ++c)
+            ASSERT_NEAR(g[c],
+                        e[c] * diffuse[c] * texel_value(image, x * repeats.x, y * repeats.y, c),
+                        2e-4);
+        }
+    }
+}
+
+TEST(LuminanceSampler, LeavesReflectanceAloneWhenGivenLuminance) {
+  LitShape shape = make_sheet({1, 1, 1, 1, 0, {0.1f, 0.1f, 0.1f}}, [](double, double) {
+    return Vec3f{3, 4, 5};
+  });
+  add_texture(shape, noise_image(8, 8, 3), {1, 1});
+  const LuminanceSampler sampler(shape.scene, Quantity::luminance);
+  EXPECT_EQ(LuminanceSampler::sample(sampler.prepare(0, 0), 1, 0, 0), (Vec3f{3, 4, 5}));
+  EXPECT_EQ(sampler.texture_density(0), 0);
+  EXPECT_TRUE(sampler.prepare(1, 0).constant);
+}
+
+TEST(LuminanceSampler, TakesIlluminationAsOneWhereThereIsNone) {
+  LitShape shape =
+      make_sheet({1, 1, 1, 1, 0, {0.2f, 0.4f, 0.6f}}, [](double, double) { return Vec3f{}; });
+  shape.scene.illumination.clear();
+  const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+  EXPECT_EQ(LuminanceSampler::sample(sampler.prepare(0, 0), 0, 1, 0), (Vec3f{0.2f, 0.4f, 0.6f}));
+}
+
+TEST(LuminanceSampler, KnowsHowFineATextureIsOnTheSurface) {
+  LitShape shape = make_sheet({4, 2, 2, 2}, [](double, double) { return Vec3f{1, 1, 1}; });
+  add_texture(shape, noise_image(64, 16, 3), {0.5f, 4});  // 32 x 64 texels a unit
+  const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+  for (std::uint32_t t = 0; t < shape.scene.triangle_count(); ++t)
+    EXPECT_NEAR(sampler.texture_density(t), std::sqrt(32.0 * 64.0), 1e-3);
+}
+
+TEST(LuminanceSampler, ReadsCoarserLevelsForWiderSamples) {
+  // A checkerboard of black and white texels: every coarser level is its mean in linear light.
+  Image8 image(64, 64, 3);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x)
+      for (int k = 0; k < 3; ++k) image.at(x, y)[k] = (x + y) % 2 ? 255 : 0;
+  LitShape shape = make_sheet({1, 1, 1, 1}, [](double, double) { return Vec3f{1, 1, 1}; });
+  add_texture(shape, image, {1, 1});
+  const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+  EXPECT_EQ(sampler.prepare(0, 0).level, 0);
+  EXPECT_EQ(sampler.prepare(0, 1.0 / 64).level, 0);
+  EXPECT_EQ(sampler.prepare(0, 2.0 / 64).level, 1);
+  EXPECT_EQ(sampler.prepare(0, 4.2 / 64).level, 2);
+  EXPECT_EQ(sampler.prepare(0, 1e9).level, 6);
+  for (const double spacing : {2.0 / 64, 8.0 / 64, 1e9})
+    EXPECT_NEAR(LuminanceSampler::sample(sampler.prepare(0, spacing), 0.3f, 0.3f, 0.4f).x, 0.5,
+                0.003);
+}
+
+TEST(LuminanceSampler, AveragesLevelsOfOddSizes) {
+  // One white texel in 5 x 3: the mean over the whole is kept by every level.
+  Image8 image(5, 3, 1);
+  image.at(2, 1)[0] = 255;
+  LitShape shape = make_sheet({1, 1, 1, 1}, [](double, double) { return Vec3f{1, 1, 1}; });
+  add_texture(shape, image, {1, 1});
+  const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+  EXPECT_NEAR(LuminanceSampler::sample(sampler.prepare(0, 1e9), 1, 0, 0).x, 1 / 15.0, 0.002);
+}
+
+TEST(LuminanceSampler, TreatsATriangleWithoutCoordinatesAsUntextured) {
+  LitShape shape = make_sheet({1, 1, 1, 1}, [](double, double) { return Vec3f{2, 2, 2}; });
+  add_texture(shape, noise_image(4, 4, 3), {1, 1});
+  shape.scene.texcoord_indices[4] = Scene::kNoTexcoord;
+  const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+  EXPECT_FALSE(sampler.prepare(0, 0).constant);
+  EXPECT_TRUE(sampler.prepare(1, 0).constant);
+  EXPECT_EQ(LuminanceSampler::sample(sampler.prepare(1, 0), 0.2f, 0.3f, 0.5f), (Vec3f{2, 2, 2}));
+}
+
+}  // namespace
+}  // namespace atlas

@@ -1,0 +1,118 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libatlas/texture/tone.h"
+#include "tests/texture/lit_shapes.h"
+
+namespace atlas {
+namespace {
+
+LuminanceStatistics measure(const LitShape& shape) {
+  const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+  const auto s = measure_luminance(sampler, Context{});
+  EXPECT_TRUE(s.ok());
+  return *s;
+}
+
+// A closed box of six sheets, each of one illumination; corner at `at`.
+void add_box(LitShape& to, Vec3f at, float size, float value, float floor_value) {
+  for (int side = 0; side < 6; ++side) {
+    const float v = side == 0 ? floor_value : value;
+    LitShape sheet = make_sheet({size, size, 2, 2}, [&](double, double) { return Vec3f{v, v, v}; });
+    for (Vec3f& p : sheet.scene.positions) {
+      const float far = side % 2 ? size : 0.0f;
+      if (side / 2 == 0) p = {p.x, p.y, far};
+      if (side / 2 == 1) p = {p.x, far, p.y};
+      if (side / 2 == 2) p = {far, p.x, p.y};
+    }
+    append(to, sheet, at);
+  }
+}
+
+TEST(Statistics, AreWeightedByArea) {
+  // Three quarters at 1, one quarter at 4, and as much unlit as lit.
+  LitShape shape = make_sheet({3, 1, 7, 2}, [](double, double) { return Vec3f{1, 1, 1}; });
+  append(shape,
+         make_sheet({1, 1, 30, 30},
+                    [](double, double) {
+                      return Vec3f{4, 4, 4};
+                    }),
+         {9, 0, 0});
+  append(shape, make_sheet({4, 1, 1, 1}, [](double, double) { return Vec3f{}; }), {20, 0, 0});
+  const LuminanceStatistics s = measure(shape);
+  EXPECT_NEAR(s.lit_area, 4, 0.001);
+  EXPECT_NEAR(s.unlit_area, 4, 0.001);
+  EXPECT_NEAR(s.mean, 1.75, 0.001);
+  EXPECT_NEAR(s.log_average, std::pow(4.0, 0.25), 0.001);
+  EXPECT_NEAR(s.maximum, 4, 1e-5);
+  EXPECT_NEAR(s.percentile99, 4, 1e-5);
+  EXPECT_FALSE(s.seen);  // sheets in a plane enclose no space
+  EXPECT_EQ(s.not_finite, 0u);
+}
+
+TEST(Statistics, LeaveOutWhatIsClosedIn) {
+  // A room at 1 with a bright floor at 2 holds many small closed boxes, lit inside at 50.
+  LitShape room;
+  add_box(room, {0, 0, 0}, 10, 1, 2);
+  for (int i = 0; i < 6; ++i) add_box(room, {1.5f + static_cast<float>(i), 5, 5}, 0.7f, 50, 50);
+  const LuminanceStatistics s = measure(room);
+  EXPECT_TRUE(s.seen);
+  // Their outsides are the same surface, so that a few sight lines do end on them; of the surface
+  // they are 3 parts in 100, of what is seen fewer.
+  EXPECT_GT(s.percentile99, 1.5);
+  LitShape empty;
+  add_box(empty, {0, 0, 0}, 10, 1, 2);
+  EXPECT_NEAR(measure(empty).percentile99, 2, 1e-5);
+}
+
+TEST(Statistics, DoNotChangeWithScaleOrPlace) {
+  const auto room = [](float scale, Vec3f at) {
+    LitShape out;
+    add_box(out, at, 4 * scale, 1, 1);
+    for (std::size_t i = 0; i < out.scene.positions.size(); ++i) {
+      const Vec3f p = out.scene.positions[i];
+      const float v = 1 + std::fabs(p.x - at.x) / scale + std::fabs(p.z - at.z) / scale;
+      out.scene.illumination[i] = {v, v / 2, 0};
+    }
+    return measure(out);
+  };
+  const LuminanceStatistics a = room(1, {}), b = room(0x1p-10f, {}), c = room(0x1p12f, {});
+  EXPECT_TRUE(a.seen);
+  EXPECT_EQ(a.percentile99, b.percentile99);
+  EXPECT_EQ(a.percentile99, c.percentile99);
+  EXPECT_EQ(a.log_average, b.log_average);
+  EXPECT_NEAR(room(1, {64, 0, 0}).percentile99, a.percentile99, 0.05 * a.percentile99);
+}
+
+TEST(Statistics, CountWhatIsNoLuminance) {
+  LitShape shape = make_sheet({2, 1, 2, 1}, [](double u, double) {
+    return u == 0 ? Vec3f{NAN, 1, 1} : u == 2 ? Vec3f{-3, -3, -3} : Vec3f{1, 1, 1};
+  });
+  const LuminanceStatistics s = measure(shape);
+  EXPECT_GT(s.not_finite, 1000u);
+  EXPECT_GT(s.negative, 1000u);
+  EXPECT_LE(s.percentile99, 1);
+  EXPECT_GT(s.lit_area, 0);
+}
+
+TEST(Statistics, NeedSurface) {
+  LitShape shape = make_sheet({1, 1, 1, 1}, [](double, double) { return Vec3f{1, 1, 1}; });
+  for (Vec3f& p : shape.scene.positions) p = {1, 2, 3};
+  const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+  const auto s = measure_luminance(sampler, Context{});
+  ASSERT_FALSE(s.ok());
+  EXPECT_EQ(s.status().code(), ErrorCode::bad_input);
+}
+
+TEST(Statistics, StopWhenCancelled) {
+  const LitShape shape = make_sheet({1, 1, 4, 4}, [](double, double) { return Vec3f{1, 1, 1}; });
+  const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+  const std::atomic<bool> stop{true};
+  Context context;
+  context.cancel = &stop;
+  EXPECT_EQ(measure_luminance(sampler, context).status().code(), ErrorCode::cancelled);
+}
+
+}  // namespace
+}  // namespace atlas

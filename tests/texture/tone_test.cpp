@@ -1,0 +1,185 @@
+#include "libatlas/texture/tone.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "libatlas/texture/lanes.h"
+
+namespace atlas {
+namespace {
+
+constexpr ToneOperator kAll[] = {ToneOperator::linear, ToneOperator::reinhard, ToneOperator::drago,
+                                 ToneOperator::reinhard_devlin};
+
+LuminanceStatistics statistics(double scale) {
+  LuminanceStatistics s;
+  s.lit_area = 1;
+  s.percentile99 = 2 * scale;
+  s.maximum = 10 * scale;
+  s.log_average = 0.3 * scale;
+  s.mean = 0.5 * scale;
+  const auto mean = static_cast<float>(0.5 * scale);
+  s.mean_rgb = {mean, mean, mean};
+  s.minimum_log = std::log(0.01 * scale);
+  s.maximum_log = std::log(5 * scale);
+  return s;
+}
+
+ToneMapping mapping(ToneOperator op, double scale, ToneOptions options = {}) {
+  options.op = op;
+  auto tone = make_tone_mapping(options, statistics(scale));
+  EXPECT_TRUE(tone.ok()) << tone.status().message();
+  return *tone;
+}
+
+TEST(ToneMapping, RisesFromBlackToWhite) {
+  for (const ToneOperator op : kAll) {
+    const ToneMapping tone = mapping(op, 1);
+    const float white = op == ToneOperator::linear ? 2.0f : 10.0f;
+    EXPECT_EQ(tone.map({0, 0, 0}), (Vec3f{0, 0, 0}));
+    EXPECT_NEAR(tone.map({white, white, white}).y, 1, 1e-5) << tone_operator_name(op);
+    EXPECT_LT(tone.map({0.95f * white, 0.95f * white, 0.95f * white}).y, 0.9999f);
+    float last = 0;
+    for (float v = 1e-6f; v < 100; v *= 1.05f) {
+      const Vec3f d = tone.map({v, v, v});
+      EXPECT_NEAR(d.x, d.y, 1e-5);
+      EXPECT_NEAR(d.z, d.y, 1e-5);
+      EXPECT_GE(d.y, last) << tone_operator_name(op) << ' ' << v;
+      EXPECT_LE(d.y, 1);
+      EXPECT_TRUE(d.y > last || v >= white / 1.05f) << tone_operator_name(op) << ' ' << v;
+      last = d.y;
+    }
+  }
+}
+
+TEST(ToneMapping, FollowsThePublishedCurves) {
+  // Reinhard et al. 2002, eq. 2 and 4.
+  const ToneMapping reinhard = mapping(ToneOperator::reinhard, 1);
+  const auto expect_reinhard = [&](double y) {
+    const double l = 0.18 * y / 0.3, w = 0.18 * 10 / 0.3;
+    const auto f = static_cast<float>(y);
+    EXPECT_NEAR(reinhard.map({f, f, f}).x, std::min(1.0, l * (1 + l / (w * w)) / (1 + l)), 1e-5);
+  };
+  for (const double y : {0.001, 0.1, 1.0, 3.0, 9.0}) expect_reinhard(y);
+  // Drago et al. 2003, eq. 4, bias 0.85: the exponent of the base's interpolation is
+  // log(b) / log(0.5).
+  const ToneMapping drago = mapping(ToneOperator::drago, 1);
+  for (const double y : {0.001, 0.1, 1.0, 3.0, 9.0}) {
+    const double l = y / 0.3, w = 10 / 0.3;
+    const double want = std::log(l + 1) / std::log10(w + 1) /
+                        std::log(2 + 8 * std::pow(l / w, std::log(0.85) / std::log(0.5)));
+    const auto f = static_cast<float>(y);
+    EXPECT_NEAR(drago.map({f, f, f}).x, want, 1e-5);
+  }
+}
+
+TEST(ToneMapping, DoesNotDependOnTheUnitOfLuminance) {
+  for (const ToneOperator op : kAll) {
+    const ToneMapping one = mapping(op, 1);
+    for (const double scale : {1e-6, 683.0, 1e9}) {
+      const ToneMapping other = mapping(op, scale);
+      for (const Vec3f c : {Vec3f{0.1f, 0.2f, 0.05f}, Vec3f{3, 1, 2}, Vec3f{8, 0, 0}}) {
+        const auto s = static_cast<float>(scale);
+        const Vec3f a = one.display(c), b = other.display({s * c.x, s * c.y, s * c.z});
+        EXPECT_NEAR(a.x, b.x, 1e-4) << tone_operator_name(op) << ' ' << scale;
+        EXPECT_NEAR(a.y, b.y, 1e-4);
+        EXPECT_NEAR(a.z, b.z, 1e-4);
+      }
+    }
+  }
+}
+
+TEST(ToneMapping, KeepsTheRatiosOfChannelsWhereItSaysSo) {
+  for (const ToneOperator op :
+       {ToneOperator::linear, ToneOperator::reinhard, ToneOperator::drago}) {
+    const Vec3f d = mapping(op, 1).map({0.4f, 0.2f, 0.1f});
+    EXPECT_NEAR(d.x / d.y, 2, 1e-4) << tone_operator_name(op);
+    EXPECT_NEAR(d.y / d.z, 2, 1e-4);
+  }
+}
+
+TEST(ToneMapping, EndsWellOnExtremesAndWhatIsNoNumber) {
+  const float inf = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const ToneOperator op : kAll)
+    for (const double scale : {1e-20, 1e-6, 1.0, 1e9, 1e20}) {
+      const ToneMapping tone = mapping(op, scale);
+      for (const float v : {0.0f, 1e-38f, 1e-6f, 1.0f, 1e9f, 3e38f, inf, -1.0f, -inf, nan}) {
+        for (const Vec3f c : {Vec3f{v, v, v}, Vec3f{v, 0, 0}, Vec3f{1, v, 1}}) {
+          const Vec3f d = tone.display(c);
+          for (const float x : {d.x, d.y, d.z})
+            EXPECT_TRUE(x >= 0 && x <= 1) << tone_operator_name(op) << ' ' << v << ' ' << x;
+        }
+      }
+      EXPECT_EQ(tone.display({nan, nan, nan}), (Vec3f{0, 0, 0}));
+      EXPECT_EQ(tone.display({-1, -2, -3}), (Vec3f{0, 0, 0}));
+    }
+}
+
+TEST(ToneMapping, TakesAWhiteAndAnExposureOfTheUsers) {
+  ToneOptions options;
+  options.white = 4;
+  for (const ToneOperator op : kAll)
+    EXPECT_NEAR(mapping(op, 1, options).map({4, 4, 4}).x, 1, 1e-5) << tone_operator_name(op);
+  options.exposure_stops = 1;
+  EXPECT_NEAR(mapping(ToneOperator::linear, 1, options).map({1, 1, 1}).x, 0.5, 1e-6);
+  options.exposure_stops = -2;
+  EXPECT_NEAR(mapping(ToneOperator::linear, 1, options).map({4, 4, 4}).x, 0.25, 1e-6);
+}
+
+TEST(ToneMapping, ShowsAnUnlitSceneBlack) {
+  for (const ToneOperator op : kAll) {
+    ToneOptions options;
+    options.op = op;
+    const auto tone = make_tone_mapping(options, LuminanceStatistics{});
+    ASSERT_TRUE(tone.ok());
+    EXPECT_EQ(tone->display({0, 0, 0}), (Vec3f{0, 0, 0}));
+    EXPECT_GT(tone->display({1, 1, 1}).x, 0);
+  }
+}
+
+TEST(ToneMapping, RefusesOptionsOutOfRange) {
+  const auto refused = [](auto change) {
+    ToneOptions o;
+    change(o);
+    const auto r = make_tone_mapping(o, statistics(1));
+    return !r.ok() && r.status().code() == ErrorCode::bad_option &&
+           r.status().message().find("must be") != std::string::npos;
+  };
+  EXPECT_TRUE(refused([](ToneOptions& o) { o.white = -1; }));
+  EXPECT_TRUE(refused([](ToneOptions& o) { o.white = std::nan(""); }));
+  EXPECT_TRUE(refused([](ToneOptions& o) { o.bias = 0.2; }));
+  EXPECT_TRUE(refused([](ToneOptions& o) { o.key = 0; }));
+  EXPECT_TRUE(refused([](ToneOptions& o) { o.contrast = 9; }));
+  EXPECT_TRUE(refused([](ToneOptions& o) { o.exposure_stops = 1e6; }));
+  EXPECT_TRUE(refused([](ToneOptions& o) { o.chromatic_adaptation = 2; }));
+}
+
+TEST(ToneOperators, AreFoundByName) {
+  for (const ToneOperator op : kAll) {
+    const auto found = parse_tone_operator(tone_operator_name(op));
+    ASSERT_TRUE(found.ok());
+    EXPECT_EQ(*found, op);
+  }
+  const auto wrong = parse_tone_operator("filmic");
+  ASSERT_FALSE(wrong.ok());
+  EXPECT_NE(wrong.status().message().find("reinhard-devlin"), std::string::npos);
+}
+
+TEST(Lanes, EncodeLikeTheScalarFunction) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (int i = 0; i < 200000; ++i) {
+    const float x = std::pow(static_cast<float>(i) / 190000, 3.0f);
+    const Lanes d = srgb_encode_lanes(Lanes{x, -x, 1 - x, 7});
+    ASSERT_EQ(d[0], srgb_encode(x));
+    ASSERT_EQ(d[1], 0);
+    ASSERT_EQ(d[2], srgb_encode(1 - x));
+    ASSERT_EQ(d[3], 1);
+  }
+  EXPECT_EQ(srgb_encode_lanes(splat_lanes(nan))[0], 0);
+}
+
+}  // namespace
+}  // namespace atlas
