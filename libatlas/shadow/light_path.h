@@ -45,6 +45,7 @@ Vec3d sun_direction(const SunOptions& options, double hour);
 
 class LightPath {
  public:
+  LightPath() : options_{PathKind::fixed, PathEnd::loop, {{0, 1, 0}}, {}} {}  // rests at +y
   // bad_option with the reason: too few directions, a zero or non-finite one, two opposite ones
   // (no unique arc, and a line through the origin), a sun that never rises on that day.
   static Result<LightPath> make(const LightPathOptions& options);

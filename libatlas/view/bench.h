@@ -73,8 +73,8 @@ Status bench_times(const Renderer& first, const LightPath& path, const BenchOpti
 Status bench_errors(const Renderer& first, const LightPath& path, const BenchOptions& options,
                     BenchResult& result);
 
-// frames.csv, summary.json, and gnuplot scripts with their data: fps over time for each method (the
-// paper's figures 2 to 5) and error against frame time. Plots are made if gnuplot is there.
+// frames.csv, summary.json, summary.md, and plots.gp with its data: `gnuplot plots.gp` draws frames
+// a second for each method (the paper's figures 2 to 5) and error against frame time.
 Status write_bench(const BenchResult& result, const std::filesystem::path& folder);
 
 // The table of the summary, for the terminal and for documents (Markdown).

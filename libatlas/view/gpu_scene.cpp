@@ -62,9 +62,9 @@ Status upload_textures(const ViewScene& scene, GpuScene& gpu) {
     if (!made.ok()) return made.status();
     gpu.textures.push_back(std::move(made.value()));
   }
-  const std::uint8_t white[4] = {255, 255, 255, 255};
-  gpu.white = make_texture(GL_RGBA8, 1, 1);
-  glTextureSubImage2D(gpu.white.get(), 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, white);
+  const std::uint8_t v = scene.textures_hold_light ? 0 : 255, texel[4] = {v, v, v, 255};
+  gpu.blank = make_texture(GL_RGBA8, 1, 1);
+  glTextureSubImage2D(gpu.blank.get(), 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, texel);
   return {};
 }
 
@@ -97,7 +97,7 @@ Result<GpuScene> upload(const ViewScene& scene) {
   attribute(gpu.casters, 0, gpu.caster_positions, 3, GL_FLOAT, sizeof(Vec3f));
   glVertexArrayElementBuffer(gpu.casters.get(), gpu.caster_indices.get());
 
-  gpu.batches = scene.batches;
+  gpu.clusters = scene.clusters;
   gpu.triangles = std::uint32_t(scene.triangle_count());
   gpu.bounds = scene.bounds;
   gpu.baked_textures = scene.textures_hold_light;

@@ -12,9 +12,9 @@ struct GpuScene {
   GlBuffer positions, normals, colours, texcoords, illumination, indices;
   GlBuffer caster_positions, caster_indices;
   GlVertexArray lit, casters;
-  std::vector<ViewScene::Batch> batches;
-  std::vector<GlTexture> textures;  // one a scene texture; white where it could not be made
-  GlTexture white;
+  std::vector<ViewScene::Cluster> clusters;
+  std::vector<GlTexture> textures;  // one a scene texture
+  GlTexture blank;  // for triangles without one: white, or black where textures hold light
   std::uint32_t triangles = 0;
   Box3 bounds;
   bool textured = false, baked_vertices = false, baked_textures = false;

@@ -1,12 +1,34 @@
 // The pass that the camera sees.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <glm/vec4.hpp>
 
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/view/renderer_impl.h"
 
 namespace atlas {
 namespace {
+
+// The planes of a view volume, inward normals; the far plane is left out.
+struct Frustum {
+  std::array<glm::dvec4, 5> planes;
+  bool touches(const glm::vec3& centre, double radius) const {
+    for (const glm::dvec4& p : planes)
+      if (glm::dot(glm::dvec3(p), glm::dvec3(centre)) + p.w < -radius) return false;
+    return true;
+  }
+};
+
+// Sums and differences of the matrix's rows (Gribb and Hartmann 2001).
+Frustum frustum_of(const Camera& camera, double aspect) {
+  const Matrix4 m = view_projection(camera, aspect);
+  const auto row = [&](int r) { return glm::dvec4(m[r], m[4 + r], m[8 + r], m[12 + r]); };
+  Frustum f{{row(3) + row(0), row(3) - row(0), row(3) + row(1), row(3) - row(1), row(3) + row(2)}};
+  for (glm::dvec4& p : f.planes) p /= glm::length(glm::dvec3(p));
+  return f;
+}
 
 // std140 layout of the shaders' uniform block (shaders.cpp).
 struct FrameBlock {
@@ -17,6 +39,9 @@ struct FrameBlock {
   float ambient[4];
   float weights[4];
   float march[4];
+  float corner[4];
+  float per_step[4];
+  float behind[4];
   float specular[4];
 };
 
@@ -31,9 +56,34 @@ void put(float (&to)[4], double a, double b, double c, double d) {
   to[3] = float(d);
 }
 
+// How far behind a point the march looks for the blocker of an edge that the filter touches: the
+// reach of a 3x3 filter.
+constexpr double kBehindTexels = 1.5;
+
 KeyBlend blend_of(ShadowMethod method) {
   if (method == ShadowMethod::slerp) return KeyBlend::slerp_raw;
   return method == ShadowMethod::slerp_normalised ? KeyBlend::slerp_normalised : KeyBlend::linear;
+}
+
+// The ray to the current light in the map of the nearer key: uv per unit of depth gained.
+void fill_march(FrameBlock& b, const glm::dvec3& l, const LightFit& key, const Box3& box) {
+  const Vec3d ray = transform_vector(key.to_texture, from_glm(l));
+  const double rise = -ray.z;
+  if (rise < 1e-3 / key.depth_range) return;  // more than 89.9 degrees off: sampled where it is
+  const glm::dvec2 shift(ray.x / rise, ray.y / rise);
+  put(b.march, shift.x, shift.y, 1, 2 * key.texel / key.depth_range);
+  double corner[3], per_step[3];
+  const double low[3] = {box.low.x, box.low.y, box.low.z};
+  const double high[3] = {box.high.x, box.high.y, box.high.z};
+  for (int i = 0; i < 3; ++i) {
+    corner[i] = l[i] > 0 ? high[i] : low[i];
+    per_step[i] = std::abs(l[i]) > 1e-6 ? rise / l[i] : (l[i] > 0 ? 1e6 : -1e6) * rise;
+  }
+  put(b.corner, corner[0], corner[1], corner[2], 0);
+  put(b.per_step, per_step[0], per_step[1], per_step[2], 0);
+  const double length = glm::length(shift);
+  const double texels = length > 0 ? kBehindTexels * b.weights[3] / length : 0;
+  put(b.behind, texels * shift.x, texels * shift.y, b.behind[2], 0);
 }
 
 }  // namespace
@@ -48,19 +98,16 @@ void Renderer::Impl::fill_block(const Camera& camera, const FrameLight& light,
   put(b.light, l.x, l.y, l.z, options.intensity);
   const double ambient = scene->baked_vertices || scene->baked_textures ? 0 : options.ambient;
   put(b.ambient, ambient, ambient, ambient, options.exposure);
+  b.behind[2] = float(options.baked_strength * scene->light_scale);
   if (shadow) {
     const LightFit& from = shadow->fit(nearest);
+    const int other = nearest == plan.to ? plan.from : plan.to;
     put(b.to_map[0], from.to_texture);
-    put(b.to_map[1], shadow->fit(plan.to).to_texture);
+    put(b.to_map[1], shadow->fit(other).to_texture);
     const BlendWeights w = blend_weights(blend_of(options.shadows), plan.t,
                                          angle_between(plan.from_direction, plan.to_direction));
     put(b.weights, w.from, w.to, options.normal_offset * from.texel, 1.0 / options.map_resolution);
-    // The ray to the current light in the map of the key: uv per unit of depth gained.
-    const Vec3d ray = transform_vector(from.to_texture, from_glm(l));
-    const double rise = -ray.z;
-    const bool usable = rise > 1e-3 / from.depth_range;
-    put(b.march, usable ? ray.x / rise : 0, usable ? ray.y / rise : 0, 1,
-        2 * from.texel / from.depth_range);
+    fill_march(b, l, from, scene->bounds);
   }
   put(b.specular, options.specular, options.shininess, options.roughness, options.map_resolution);
   glNamedBufferSubData(frame_block.get(), 0, sizeof b, &b);
@@ -95,21 +142,45 @@ void Renderer::Impl::draw_lit(const Camera& camera, const FrameLight& light, con
   if (shadow) {
     shadow->bind_compare(nearest, 1);
     if (features.shadow == ShadowSampling::two) shadow->bind_compare(plan.to, 2);
-    if (features.shadow == ShadowSampling::march) shadow->bind_depth(nearest, 3);
+    if (features.shadow == ShadowSampling::march) {
+      shadow->bind_depth(nearest, 3);
+      shadow->bind_depth(nearest == plan.to ? plan.from : plan.to, 4);
+    }
   }
   glBindVertexArray(scene->lit.get());
   glBindSampler(0, 0);
-  const auto draw = [&](std::uint32_t first, std::uint32_t count) {
-    glDrawElements(GL_TRIANGLES, GLsizei(count), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(std::uintptr_t(first) * 4));
-    stats.triangles_lit += count / 3;
-  };
-  if (!features.textured) return draw(0, scene->triangles * 3);
-  for (const ViewScene::Batch& batch : scene->batches) {
-    const GLuint texture =
-        batch.texture < 0 ? scene->white.get() : scene->textures[std::size_t(batch.texture)].get();
-    glBindTextureUnit(0, texture);
-    draw(batch.first, batch.count);
+  draw_clusters(camera, stats);
+}
+
+// Front to back, without what is out of view: hidden surfaces are then not shaded at all. Textured
+// scenes keep that order within each texture only.
+void Renderer::Impl::draw_clusters(const Camera& camera, FrameStats& stats) {
+  const Frustum frustum = frustum_of(camera, double(target_width) / target_height);
+  const glm::vec3 eye(to_glm(camera.eye));
+  order.clear();
+  for (std::uint32_t i = 0; i < scene->clusters.size(); ++i) {
+    const ViewScene::Cluster& c = scene->clusters[i];
+    const glm::vec3 centre = to_glm(c.centre);
+    if (!frustum.touches(centre, c.radius)) continue;
+    const std::int32_t group = features.textured ? c.texture : 0;
+    order.push_back({group, glm::length(centre - eye) - c.radius, i});
+  }
+  std::sort(order.begin(), order.end());
+  for (std::size_t begin = 0; begin < order.size();) {
+    const std::int32_t group = order[begin].group;
+    counts.clear();
+    offsets.clear();
+    for (; begin < order.size() && order[begin].group == group; ++begin) {
+      const ViewScene::Cluster& c = scene->clusters[order[begin].cluster];
+      counts.push_back(GLsizei(c.count));
+      offsets.push_back(reinterpret_cast<const void*>(std::uintptr_t(c.first) * 4));
+      stats.triangles_lit += c.count / 3;
+    }
+    if (features.textured)
+      glBindTextureUnit(0,
+                        group < 0 ? scene->blank.get() : scene->textures[std::size_t(group)].get());
+    glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(),
+                        GLsizei(counts.size()));
   }
 }
 

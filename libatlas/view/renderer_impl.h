@@ -1,6 +1,7 @@
 // Internal: the renderer's state, shared by renderer.cpp and lit_pass.cpp.
 #pragma once
 
+#include <compare>
 #include <memory>
 #include <optional>
 
@@ -28,6 +29,17 @@ struct Renderer::Impl {
   LightFit view_fit;                // fit_view: what the current keys cover
   bool view_fit_valid = false;
 
+  // A cluster to draw; sorted by texture, then from near to far.
+  struct Visible {
+    std::int32_t group;
+    float distance;
+    std::uint32_t cluster;
+    auto operator<=>(const Visible&) const = default;
+  };
+  std::vector<Visible> order;  // scratch of a frame, as the next two
+  std::vector<GLsizei> counts;
+  std::vector<const void*> offsets;
+
   Status apply(const RenderOptions& wanted);
   Status allocate_target(int width, int height);
   Result<FrameStats> draw(const Camera& camera, const FrameLight& light);
@@ -36,6 +48,7 @@ struct Renderer::Impl {
   bool view_left_the_keys(const Camera& camera) const;
   void draw_lit(const Camera& camera, const FrameLight& light, const FramePlan& plan,
                 FrameStats& stats);
+  void draw_clusters(const Camera& camera, FrameStats& stats);
   void fill_block(const Camera& camera, const FrameLight& light, const FramePlan& plan,
                   int nearest);
 };

@@ -15,6 +15,9 @@ layout(std140, binding = 0) uniform Frame {
   vec4 ambient;     // rgb, exposure
   vec4 weights;     // of the two keys, normal offset (world), texel (uv)
   vec4 march;       // uv shift per depth towards the light, greatest height, tolerance (depth)
+  vec4 corner;      // of the scene's box where rays to the light leave it
+  vec4 per_step;    // depth gained per world unit along each axis of the ray
+  vec4 behind;      // march: uv of a step back along the ray's trace; factor on baked light
   vec4 specular;    // strength, Blinn-Phong exponent, Ward alpha, 1 / texel
 } frame;
 )";
@@ -87,23 +90,33 @@ float visibility(vec3 p) {
 constexpr const char* kMarch = R"(
 layout(binding = 1) uniform sampler2DShadow map0;
 layout(binding = 3) uniform sampler2D depth0;
+layout(binding = 4) uniform sampler2D depth1;
 float visibility(vec3 p) {
   vec3 m = (frame.to_map0 * vec4(p, 1.0)).xyz;
+  vec3 m1 = (frame.to_map1 * vec4(p, 1.0)).xyz;
   vec2 shift = frame.march.xy;
-  float top = min(m.z, frame.march.z);
-  float best = 0.0, gap = 1e9;
+  float least = frame.march.w;
+  // Height at which the ray leaves the scene's box.
+  vec3 leave = (frame.corner.xyz - p) * frame.per_step.xyz;
+  float top = min(min(leave.x, leave.y), leave.z);
+  float best = m.z - texture(depth0, m.xy - frame.behind.xy).x;
+  float gap = 1e3;
+  if (best <= least) best = 0.0;
+  float h = max(m1.z - texture(depth1, m1.xy).x, 0.0);
+  float d = m.z - texture(depth0, m.xy + h * shift).x;
+  if (d > least) { best = d; gap = abs(d - h); }
   for (int i = 0; i < MARCH_STEPS; ++i) {
-    float h = top * (float(i) / float(MARCH_STEPS));
-    float d = m.z - texture(depth0, m.xy + h * shift).x;
+    h = top * (float(i) / float(MARCH_STEPS));
+    d = m.z - texture(depth0, m.xy + h * shift).x;
     float g = abs(d - h);
-    if (d > frame.march.w && g < gap) {
+    if (d > least && g < gap) {
       gap = g;
       best = d;
     }
   }
-  float d = m.z - texture(depth0, m.xy + best * shift).x;
-  if (d > frame.march.w && abs(d - best) < gap) best = d;
-  return visibility_at(map0, m.xy + best * shift, m.z - best + frame.march.w);
+  d = m.z - texture(depth0, m.xy + best * shift).x;
+  if (d > least && abs(d - best) < gap) best = d;
+  return visibility_at(map0, m.xy + best * shift, m.z - 0.5 * best);
 }
 )";
 
@@ -196,7 +209,7 @@ std::string fragment_main(const ShaderFeatures& f) {
   s += "  vec3 reflectance = v_colour;\n";
   if (f.textured && !f.baked_textures) s += "  reflectance *= texture(diffuse, v_texcoord).rgb;\n";
   s += "  vec3 light = vec3(0.0);\n";
-  if (f.baked_vertices) s += "  light += v_illumination;\n";
+  if (f.baked_vertices) s += "  light += v_illumination * frame.behind.z;\n";
   if (lit(f)) {
     s += R"(  light += frame.ambient.rgb;
   float reach = seen * max(nl, 0.0) * frame.light.w;
@@ -206,7 +219,8 @@ std::string fragment_main(const ShaderFeatures& f) {
     s += "  light = vec3(1.0);\n";
   }
   s += "  vec3 colour = reflectance * light;\n";
-  if (f.textured && f.baked_textures) s += "  colour += texture(diffuse, v_texcoord).rgb;\n";
+  if (f.textured && f.baked_textures)
+    s += "  colour += texture(diffuse, v_texcoord).rgb * frame.behind.z;\n";
   if (shiny(f))
     s += "  if (reach > 0.0) colour += vec3(seen * frame.light.w * specular(n, l, v, nl));\n";
   return s +

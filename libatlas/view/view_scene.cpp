@@ -5,6 +5,7 @@
 #include <cstring>
 #include <numbers>
 #include <numeric>
+#include <tuple>
 #include <unordered_map>
 
 #include "libatlas/core/glm_bridge.h"
@@ -86,6 +87,15 @@ glm::vec3 corner_normal(const Fans& fans, const std::vector<glm::vec3>& faces, s
   return unit_or(sum, mine);
 }
 
+// The low 10 bits of a value with two zeros after each: three of them interleave to a Morton code.
+std::uint32_t spread(double value) {
+  std::uint32_t x = std::uint32_t(value) & 1023u;
+  x = (x | x << 16) & 0x030000ffu;
+  x = (x | x << 8) & 0x0300f00fu;
+  x = (x | x << 4) & 0x030c30c3u;
+  return (x | x << 2) & 0x09249249u;
+}
+
 // One drawn vertex for each different corner.
 struct CornerKey {
   std::uint32_t position, texcoord, material;
@@ -120,24 +130,40 @@ class Builder {
     return scene_.materials[scene_.triangle_material[triangle]].texture;
   }
 
-  // Triangles grouped by texture, otherwise in input order.
+  // Triangles grouped by texture and, within one, along a curve that keeps neighbours together.
   std::vector<std::uint32_t> order() const {
-    std::vector<std::uint32_t> triangles(scene_.triangle_count());
+    glm::dvec3 low(1e300), high(-1e300);
+    for (const Vec3f& p : scene_.positions) {
+      low = glm::min(low, to_dvec(p));
+      high = glm::max(high, to_dvec(p));
+    }
+    const glm::dvec3 size = high - low;
+    const double scale = 1023.0 / std::max({size.x, size.y, size.z, 1e-300});
+    std::vector<std::uint32_t> triangles(scene_.triangle_count()), codes(triangles.size());
     std::iota(triangles.begin(), triangles.end(), 0u);
-    std::stable_sort(triangles.begin(), triangles.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return texture_of(a) < texture_of(b);
+    for (std::size_t t = 0; t < codes.size(); ++t) {
+      glm::dvec3 sum(0);
+      for (int k = 0; k < 3; ++k) sum += to_dvec(scene_.positions[scene_.indices[3 * t + k]]);
+      const glm::dvec3 q = (sum / 3.0 - low) * scale;
+      codes[t] = spread(q.x) | spread(q.y) << 1 | spread(q.z) << 2;
+    }
+    std::sort(triangles.begin(), triangles.end(), [&](std::uint32_t a, std::uint32_t b) {
+      const auto key = [&](std::uint32_t t) { return std::tuple(texture_of(t), codes[t], t); };
+      return key(a) < key(b);
     });
     return triangles;
   }
 
-  ViewScene build() {
+  ViewScene build(std::uint32_t cluster_triangles) {
     for (std::uint32_t t : order()) {
       const std::int32_t texture = texture_of(t);
-      if (view_.batches.empty() || view_.batches.back().texture != texture)
-        view_.batches.push_back({std::uint32_t(view_.indices.size()), 0, texture});
+      if (view_.clusters.empty() || view_.clusters.back().texture != texture ||
+          view_.clusters.back().count >= 3 * cluster_triangles)
+        view_.clusters.push_back({std::uint32_t(view_.indices.size()), 0, texture, {}, 0});
       for (int k = 0; k < 3; ++k) view_.indices.push_back(vertex(t, k));
-      view_.batches.back().count += 3;
+      view_.clusters.back().count += 3;
     }
+    for (ViewScene::Cluster& c : view_.clusters) enclose(c);
     add_casters();
     return std::move(view_);
   }
@@ -160,6 +186,21 @@ class Builder {
       view_.texcoords.push_back(key.texcoord == kNone ? Vec2f{} : scene_.texcoords[key.texcoord]);
     if (scene_.lit()) view_.illumination.push_back(scene_.illumination[p]);
     return it->second;
+  }
+
+  // The ball around the middle of the cluster's box.
+  void enclose(ViewScene::Cluster& c) const {
+    glm::vec3 low(1e30f), high(-1e30f);
+    for (std::uint32_t i = c.first; i < c.first + c.count; ++i) {
+      low = glm::min(low, to_glm(view_.positions[view_.indices[i]]));
+      high = glm::max(high, to_glm(view_.positions[view_.indices[i]]));
+    }
+    const glm::vec3 centre = low + (high - low) * 0.5f;
+    c.centre = from_glm(centre);
+    for (std::uint32_t i = c.first; i < c.first + c.count; ++i)
+      c.radius =
+          std::max(c.radius, glm::length(to_glm(view_.positions[view_.indices[i]]) - centre));
+    c.radius *= 1.0001f;  // rounding
   }
 
   void add_casters() {
@@ -203,7 +244,7 @@ double light_scale(const std::vector<Vec3f>& illumination) {
 Result<ViewScene> make_view_scene(const Scene& scene, const ViewSceneOptions& options) {
   if (scene.triangle_count() == 0)
     return Status{ErrorCode::bad_input, "the scene has no triangles: there is nothing to show"};
-  ViewScene view = Builder(scene, options).build();
+  ViewScene view = Builder(scene, options).build(std::max(options.cluster_triangles, 1u));
   if (view.textured()) view.textures = scene.textures;
   view.textures_hold_light = options.textures_hold_light && view.textured();
   view.light_scale = light_scale(view.illumination);

@@ -20,12 +20,15 @@ struct ViewScene {
   std::vector<Vec3f> illumination;  // linear, as given
   std::vector<std::uint32_t> indices;
 
-  // Consecutive triangles with the same texture (-1: none, drawn with a white one).
-  struct Batch {
+  // Consecutive triangles that lie close together and share a texture (-1: none, drawn with a white
+  // one), so that a frame can skip what is out of view and draw the nearest first.
+  struct Cluster {
     std::uint32_t first = 0, count = 0;  // indices
     std::int32_t texture = -1;
+    Vec3f centre;  // of a ball that holds them
+    float radius = 0;
   };
-  std::vector<Batch> batches;
+  std::vector<Cluster> clusters;  // grouped by texture
 
   // What casts shadows: the same triangles over welded positions.
   std::vector<Vec3f> caster_positions;
@@ -44,6 +47,9 @@ struct ViewScene {
 struct ViewSceneOptions {
   double crease_degrees = 40;  // faces that meet at less than this are shaded as one surface
   bool textures_hold_light = false;
+  // Triangles a cluster: few enough to follow the depth order, many enough that their draw calls
+  // cost little (256 to 1024 measured alike on the software renderer).
+  std::uint32_t cluster_triangles = 512;
 };
 
 // bad_input if no triangle is left to draw.

@@ -1,0 +1,194 @@
+#include "apps/atlas-play/command_line.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <map>
+
+namespace atlas::app {
+namespace {
+
+const std::map<std::string, ShadowMethod>& methods() {
+  static const std::map<std::string, ShadowMethod> map = [] {
+    std::map<std::string, ShadowMethod> m;
+    for (ShadowMethod method : kAllMethods) m[name_of(method)] = method;
+    return m;
+  }();
+  return map;
+}
+
+const std::map<std::string, Shading>& shadings() {
+  static const std::map<std::string, Shading> map{{"unlit", Shading::unlit},
+                                                  {"lambert", Shading::lambert},
+                                                  {"blinn-phong", Shading::blinn_phong},
+                                                  {"ward", Shading::ward}};
+  return map;
+}
+
+void add_picture_options(CLI::App& app, CommandLine& l) {
+  app.add_option("--width", l.render.width, "pixels")->capture_default_str();
+  app.add_option("--height", l.render.height, "pixels")->capture_default_str();
+  app.add_option("--camera", l.camera, "where from and where to: x,y,z;x,y,z");
+  app.add_option("--fov", l.fov, "vertical field of view, degrees")
+      ->check(CLI::Range(1.0, 170.0))
+      ->capture_default_str();
+  app.add_option("--shading", l.render.shading, "unlit, lambert, blinn-phong or ward")
+      ->transform(CLI::CheckedTransformer(shadings()))
+      ->default_str("lambert");
+  app.add_option("--ambient", l.render.ambient, "light that no shadow darkens")
+      ->capture_default_str();
+  app.add_option("--sun", l.render.intensity, "strength of the moving light")
+      ->capture_default_str();
+  app.add_option("--baked-light", l.render.baked_strength, "factor on the light in the file")
+      ->capture_default_str();
+  app.add_option("--exposure", l.render.exposure)->capture_default_str();
+  app.add_option("--specular", l.render.specular, "strength of the highlight")
+      ->capture_default_str();
+  app.add_option("--shininess", l.render.shininess, "Blinn-Phong's exponent")
+      ->capture_default_str();
+  app.add_option("--roughness", l.render.roughness, "Ward's alpha")->capture_default_str();
+  app.add_flag("--visibility", l.render.show_visibility, "show the light's visibility as grey");
+}
+
+void add_shadow_options(CLI::App& app, CommandLine& l) {
+  app.add_option("--shadows", l.render.shadows,
+                 "none, classic, hold, linear, slerp, slerp-normalised or march")
+      ->transform(CLI::CheckedTransformer(methods()))
+      ->default_str("march");
+  app.add_option("--map", l.render.map_resolution, "texels a side of a shadow map")
+      ->capture_default_str();
+  app.add_option("--pcf", l.render.pcf, "filter: 0 nearest, 1 bilinear, 3 or 5 taps a side")
+      ->capture_default_str();
+  app.add_option("--march-steps", l.render.march_steps, "samples along the ray")
+      ->capture_default_str();
+  app.add_option("--slope-bias", l.render.slope_bias, "depth slopes per texel")
+      ->capture_default_str();
+  app.add_option("--normal-offset", l.render.normal_offset, "texels")->capture_default_str();
+  app.add_flag("--fit-view", l.render.fit_view, "fit maps to the view, not the whole scene");
+  app.add_option("--view-distance", l.render.view_distance,
+                 "how far shadows reach with --fit-view");
+  app.add_flag("!--no-snap", l.render.snap, "do not snap maps to whole texels");
+  app.add_option("-k,--interval", l.render.schedule.interval_frames, "frames between keys")
+      ->capture_default_str();
+  app.add_option("--interval-degrees", l.render.schedule.interval_degrees,
+                 "keys every so many degrees instead");
+  app.add_flag("!--no-slices", l.render.schedule.sliced, "draw a key in one frame");
+}
+
+void add_run_options(CLI::App& app, CommandLine& l, std::string& light, std::string& end,
+                     std::string& up) {
+  app.add_option("--light", light,
+                 "sun:DAY,LATITUDE,HOUR  fixed:x,y,z  line:x,y,z;x,y,z  arc:...  keys:...;...;...")
+      ->capture_default_str();
+  app.add_option("--light-end", end, "at the path's end: loop, back or stop")
+      ->check(CLI::IsMember({"loop", "back", "stop"}))
+      ->capture_default_str();
+  app.add_option("--up", up, "the axis that points up")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->capture_default_str();
+  app.add_option("--north", l.north,
+                 "the sun's north (default: -z where y is up, +y where x or z is)")
+      ->delimiter(',')
+      ->expected(3);
+  app.add_option("--speed", l.play.degrees_per_second, "degrees a second, in a window")
+      ->capture_default_str();
+  app.add_option("--step", l.play.degrees_per_frame, "degrees a frame, headless and in the bench")
+      ->capture_default_str();
+  app.add_flag("--headless", l.headless, "no window");
+  app.add_flag("--software", l.software, "headless: do not use a GPU");
+  app.add_option("--frames", l.play.frames, "headless: how many")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  app.add_option("--record", l.play.record, "write every frame to this folder");
+  app.add_option("--screenshot", l.play.screenshot, "write the last frame to this PNG file");
+  app.add_flag("--plan", l.plan, "print what is compiled and allocated, and why, and end");
+  app.add_flag("!--no-vsync", l.vsync, "do not wait for the display");
+  app.add_flag("--debug", l.debug, "a debug context: every OpenGL error is reported");
+  app.add_flag("-q,--quiet", l.quiet, "print errors only");
+  app.add_flag("--baked-textures,!--no-baked-textures", l.baked_textures,
+               "the textures hold light (default: for .wrl and for unlit glTF)");
+}
+
+void add_bench_options(CLI::App& app, CommandLine& l) {
+  app.add_option("--bench", l.bench, "measure every shading with every method; results go here");
+  app.add_option("--bench-seconds", l.measure.seconds, "of each combination (the paper: 180)");
+  app.add_option("--bench-frames", l.measure.frames, "of each combination at least")
+      ->capture_default_str();
+  app.add_option("--bench-shadings", l.measure.shadings, "which shadings")
+      ->delimiter(',')
+      ->transform(CLI::CheckedTransformer(shadings()));
+  app.add_option("--bench-methods", l.measure.methods, "which shadow methods")
+      ->delimiter(',')
+      ->transform(CLI::CheckedTransformer(methods()));
+  app.add_option("--bench-intervals", l.measure.error_intervals, "k of the error measurement")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--bench-error-frames", l.measure.error_frames, "light positions")
+      ->capture_default_str();
+  app.add_flag("--no-errors", l.no_errors, "measure times only");
+}
+
+// Texts that CLI11 cannot turn into their values itself.
+Status finish(CommandLine& l, const std::string& light, const std::string& end,
+              const std::string& up) {
+  const Vec3d axis = up == "x" ? Vec3d{1, 0, 0} : up == "y" ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
+  l.render.up = axis;
+  LightPathOptions path;
+  path.sun.up = axis;
+  path.sun.north = up == "z" ? Vec3d{0, 1, 0} : up == "y" ? Vec3d{0, 0, -1} : Vec3d{0, 1, 0};
+  if (l.north.size() == 3) path.sun.north = {l.north[0], l.north[1], l.north[2]};
+  path.end = end == "loop" ? PathEnd::loop : end == "back" ? PathEnd::back : PathEnd::stop;
+  Result<LightPathOptions> parsed = parse_light_path(light, path);
+  if (!parsed.ok()) return parsed.status();
+  Result<LightPath> made = LightPath::make(*parsed);
+  if (!made.ok()) return made.status();
+  l.play.light = *made;
+  return {};
+}
+
+}  // namespace
+
+Result<Camera> camera_of(const CommandLine& line, const Box3& bounds) {
+  Camera camera = camera_for(bounds, line.render.up);
+  camera.fov_degrees = line.fov;
+  if (line.camera.empty()) return camera;
+  Vec3d a, b;
+  char rest = 0;
+  if (std::sscanf(line.camera.c_str(), "%lf,%lf,%lf;%lf,%lf,%lf%c", &a.x, &a.y, &a.z, &b.x, &b.y,
+                  &b.z, &rest) != 6 ||
+      a == b)
+    return Status{
+        ErrorCode::bad_option,
+        fmt::format("--camera {}: two different points x,y,z;x,y,z are needed", line.camera)};
+  camera.eye = a;
+  camera.target = b;
+  fit_planes(camera, bounds);
+  return camera;
+}
+
+Parsed parse_command_line(int argc, char** argv) {
+  Parsed parsed;
+  CommandLine& l = parsed.line;
+  CLI::App app{"Shows a scene, and atlases with baked light, under a moving light with shadows."};
+  std::string light = "sun:172,50.45,9", end = "loop", up = "y";
+  app.add_option("scene", l.scene, "OBJ, PLY, glTF, GLB, VRML")->required();
+  app.set_config("--config", "", "options from a file");
+  add_picture_options(app, l);
+  add_shadow_options(app, l);
+  add_run_options(app, l, light, end, up);
+  add_bench_options(app, l);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    parsed.exit_code = app.exit(e) == 0 ? 0 : 2;
+    return parsed;
+  }
+  if (Status s = finish(l, light, end, up); !s.ok()) {
+    fmt::print(stderr, "atlas-play: error: {}\n", s.message());
+    parsed.exit_code = 2;
+  }
+  return parsed;
+}
+
+}  // namespace atlas::app

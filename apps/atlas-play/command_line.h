@@ -1,0 +1,39 @@
+// The player's command line.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libatlas/view/bench.h"
+#include "libatlas/view/play.h"
+
+namespace atlas::app {
+
+struct CommandLine {
+  std::filesystem::path scene;
+  bool headless = false, software = false, plan = false, quiet = false, debug = false;
+  bool vsync = true;
+  std::optional<bool> baked_textures;  // nothing: chosen by the file
+  std::filesystem::path bench;         // a folder; empty: no bench
+  bool no_errors = false;              // bench: times only
+  std::string camera;                  // "x,y,z;x,y,z"; empty: looks at the whole
+  double fov = 60;
+  std::vector<double> north;  // of the sun; empty: chosen by the up axis
+  RenderOptions render;
+  BenchOptions measure;
+  PlayOptions play;
+};
+
+// What was asked for, or an exit code after the help or a complaint has been printed.
+struct Parsed {
+  CommandLine line;
+  std::optional<int> exit_code;
+};
+Parsed parse_command_line(int argc, char** argv);
+
+// The camera of "eye;target" over a scene; bad_option if the text is something else.
+Result<Camera> camera_of(const CommandLine& line, const Box3& bounds);
+
+}  // namespace atlas::app

@@ -1,0 +1,88 @@
+// atlas-play: shows a scene under a moving light. Parses, calls libatlas/view, prints.
+#include <fmt/format.h>
+
+#include "apps/atlas-play/command_line.h"
+#include "apps/common/terminal.h"
+
+namespace atlas::app {
+namespace {
+
+Status bench(const CommandLine& line, const GlContext& gl, const Renderer& renderer,
+             const ViewScene& scene, Terminal& terminal) {
+  BenchOptions options = line.measure;
+  options.render = line.render;
+  options.camera = line.play.camera;
+  options.degrees_per_frame = line.play.degrees_per_frame;
+  BenchResult result;
+  result.device = gl.info().renderer;
+  result.version = gl.info().version;
+  result.software = gl.info().software;
+  result.width = line.render.width;
+  result.height = line.render.height;
+  result.map_resolution = line.render.map_resolution;
+  result.interval = line.render.schedule.interval_frames;
+  result.pcf = line.render.pcf;
+  result.triangles = std::uint32_t(scene.triangle_count());
+  if (Status s = bench_times(renderer, line.play.light, options, result); !s.ok()) return s;
+  if (!line.no_errors)
+    if (Status s = bench_errors(renderer, line.play.light, options, result); !s.ok()) return s;
+  if (Status s = write_bench(result, line.bench); !s.ok()) return s;
+  terminal.line(bench_table(result));
+  terminal.line(
+      fmt::format("wrote {} (gnuplot plots.gp there draws the figures)", line.bench.string()));
+  return {};
+}
+
+Status play(CommandLine& line, Terminal& terminal, const Context& context) {
+  const bool headless = line.headless || !line.bench.empty() || line.plan;
+  // The scene first: a wrong file name should not open a window.
+  const bool baked = line.baked_textures.value_or(textures_hold_light(line.scene));
+  Result<ViewScene> scene = load_view(line.scene, baked, context);
+  if (!scene.ok()) return scene.status();
+  Result<Camera> camera = camera_of(line, scene->bounds);
+  if (!camera.ok()) return camera.status();
+  line.play.camera = *camera;
+
+  std::unique_ptr<GlContext> gl;
+  GlWindow* window = nullptr;
+  const ContextOptions wanted{line.debug, line.software};
+  if (headless) {
+    auto made = make_headless_context(wanted);
+    if (!made.ok()) return made.status();
+    gl = std::move(made.value());
+  } else {
+    auto made = make_window(
+        wanted, {line.render.width, line.render.height, "atlas-play", line.vsync, true});
+    if (!made.ok()) return made.status();
+    window = made.value().get();
+    gl = std::move(made.value());
+  }
+  Result<Renderer> renderer = Renderer::make(*scene, line.render);
+  if (!renderer.ok()) return renderer.status();
+  terminal.line(fmt::format("{} triangles, OpenGL {} on {}", scene->triangle_count(),
+                            gl->info().version, gl->info().renderer));
+  if (line.plan || !line.quiet)
+    for (const std::string& text : renderer->plan()) terminal.line(text);
+  if (line.plan) return {};
+  if (!line.bench.empty()) return bench(line, *gl, *renderer, *scene, terminal);
+
+  Result<PlaySummary> done = window ? play_in_window(*window, *renderer, line.play, context)
+                                    : play_headless(*gl, *renderer, line.play, context);
+  if (!done.ok()) return done.status();
+  terminal.line(fmt::format("{} frames, median {:.2f} ms, {} shadow maps begun", done->frames,
+                            done->median_seconds * 1e3, done->shadow_passes));
+  return {};
+}
+
+}  // namespace
+}  // namespace atlas::app
+
+int main(int argc, char** argv) {
+  using namespace atlas::app;
+  Parsed parsed = parse_command_line(argc, argv);
+  if (parsed.exit_code) return *parsed.exit_code;
+  Terminal terminal("atlas-play", parsed.line.quiet);
+  const atlas::Status status = play(parsed.line, terminal, terminal.context(0));
+  if (!status.ok()) terminal.error(status.message());
+  return exit_code(status);
+}

@@ -1,0 +1,168 @@
+// The bench's files: CSV, JSON, gnuplot scripts.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "libatlas/core/atomic_file.h"
+#include "libatlas/view/bench.h"
+
+namespace atlas {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+json milliseconds(const Spread& s) {
+  return {{"mean", s.mean * 1e3}, {"p50", s.p50 * 1e3},   {"p95", s.p95 * 1e3},
+          {"p99", s.p99 * 1e3},   {"p999", s.p999 * 1e3}, {"worst", s.worst * 1e3}};
+}
+
+json summary(const BenchResult& r) {
+  json runs = json::array(), errors = json::array();
+  for (const BenchRun& run : r.runs)
+    runs.push_back({{"shading", name_of(run.shading)},
+                    {"shadows", name_of(run.method)},
+                    {"frames", run.frames.size()},
+                    {"fps_mean", run.wall.mean > 0 ? 1 / run.wall.mean : 0},
+                    {"wall_ms", milliseconds(run.wall)},
+                    {"cpu_ms", milliseconds(run.cpu)},
+                    {"shadow_share", run.shadow_share},
+                    {"triangles_mean", run.work_mean},
+                    {"triangles_worst", run.work_worst}});
+  for (const BenchError& e : r.errors) {
+    // JSON has no infinity: equal pictures have no PSNR.
+    const json quality = std::isfinite(e.psnr) ? json(e.psnr) : json();
+    errors.push_back({{"shadows", name_of(e.method)},
+                      {"k", e.interval},
+                      {"mean_visibility_error", e.visibility.mean},
+                      {"wrong_pixels", e.visibility.wrong},
+                      {"mean_visibility_error_off_edges", e.visibility.mean_off_edges},
+                      {"wrong_pixels_off_edges", e.visibility.wrong_off_edges},
+                      {"edge_band", e.visibility.edge_share},
+                      {"psnr_db", quality},
+                      {"ssim", e.ssim},
+                      {"cpu_ms_median", e.cpu_median * 1e3}});
+  }
+  return {{"device", r.device}, {"opengl", r.version}, {"software_renderer", r.software},
+          {"width", r.width},   {"height", r.height},  {"map_resolution", r.map_resolution},
+          {"k", r.interval},    {"pcf", r.pcf},        {"triangles", r.triangles},
+          {"runs", runs},       {"errors", errors}};
+}
+
+std::string frames_csv(const BenchResult& r) {
+  std::string csv =
+      "shading,shadows,frame,wall_ms,cpu_ms,gpu_shadow_ms,gpu_lit_ms,triangles_shadow,"
+      "triangles_lit\n";
+  for (const BenchRun& run : r.runs)
+    for (std::size_t i = 0; i < run.frames.size(); ++i) {
+      const FrameTime& f = run.frames[i];
+      csv += fmt::format("{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{},{}\n", name_of(run.shading),
+                         name_of(run.method), i, f.wall * 1e3, f.cpu * 1e3, f.gpu_shadow * 1e3,
+                         f.gpu_lit * 1e3, f.triangles_shadow, f.triangles_lit);
+    }
+  return csv;
+}
+
+// Frames a second of every run of a method, one gnuplot block a run (the paper's figures 2 to 5).
+std::string fps_data(const BenchResult& r, ShadowMethod method, std::string& plot) {
+  std::string data;
+  int block = 0;
+  for (const BenchRun& run : r.runs) {
+    if (run.method != method) continue;
+    plot += fmt::format("{}'fps-{}.dat' index {} with lines title '{}'", block ? ", " : "plot ",
+                        name_of(method), block, name_of(run.shading));
+    ++block;
+    for (std::size_t i = 0; i < run.frames.size(); ++i)
+      data += fmt::format("{} {:.3f}\n", i, 1 / std::max<double>(run.frames[i].wall, 1e-9));
+    data += "\n\n";
+  }
+  return data;
+}
+
+// Median CPU time of a frame against the mean visibility error, one block a method, one row a k.
+std::string error_data(const BenchResult& r, std::string& plot) {
+  std::string data;
+  int block = 0;
+  for (ShadowMethod method : kAllMethods) {
+    std::string rows;
+    for (const BenchError& e : r.errors)
+      if (e.method == method)
+        rows +=
+            fmt::format("{:.4f} {:.8f} {}\n", e.cpu_median * 1e3, e.visibility.mean, e.interval);
+    if (rows.empty()) continue;
+    plot += fmt::format(
+        "{0}'error.dat' index {1} using 1:2 with linespoints lc {3} title '{2}', '' index {1} "
+        "using 1:2:3 with labels offset 1,0.5 tc lt {3} notitle",
+        block ? ", " : "plot ", block, name_of(method), block + 1);
+    ++block;
+    data += rows + "\n\n";
+  }
+  return data;
+}
+
+}  // namespace
+
+Status write_bench(const BenchResult& result, const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    return {ErrorCode::io,
+            fmt::format("{}: the folder cannot be made ({})", folder.string(), error.message())};
+  std::string script =
+      "set terminal pngcairo size 800,480\nset key outside\nset xlabel 'frame'\n"
+      "set ylabel 'frames a second'\nset yrange [0:*]\n";
+  Status status = write_file(folder / "summary.json", summary(result).dump(2) + "\n");
+  if (status.ok()) status = write_file(folder / "frames.csv", frames_csv(result));
+  if (status.ok()) status = write_file(folder / "summary.md", bench_table(result));
+  for (ShadowMethod method : kAllMethods) {
+    std::string plot;
+    const std::string data = fps_data(result, method, plot);
+    if (data.empty()) continue;
+    if (status.ok()) status = write_file(folder / fmt::format("fps-{}.dat", name_of(method)), data);
+    script += fmt::format("set title 'shadows: {0}'\nset output 'fps-{0}.png'\n{1}\n",
+                          name_of(method), plot);
+  }
+  std::string plot;
+  if (const std::string data = error_data(result, plot); !data.empty()) {
+    if (status.ok()) status = write_file(folder / "error.dat", data);
+    script +=
+        "set title 'error against frame time, labels: k'\nset output 'error.png'\n"
+        "set xlabel 'CPU time of a frame, ms'\nset ylabel 'mean |visibility error|'\n"
+        "set logscale y\nset yrange [*:*]\n" +
+        plot + "\n";
+  }
+  if (status.ok()) status = write_file(folder / "plots.gp", script);
+  return status;
+}
+
+std::string bench_table(const BenchResult& r) {
+  std::string s = fmt::format("{} ({}), {} x {}, maps {}², k = {}, pcf {}, {} triangles\n\n",
+                              r.device, r.software ? "software renderer" : "GPU", r.width, r.height,
+                              r.map_resolution, r.interval, r.pcf, r.triangles);
+  if (!r.runs.empty())
+    s +=
+        "| shading | shadows | mean fps | wall ms: p50 | p95 | p99 | p99.9 | worst | CPU ms: p50 | "
+        "p95 | shadow share | triangles: mean | worst |\n|---|---|---|---|---|---|---|---|---|---|"
+        "---|---|---|\n";
+  for (const BenchRun& b : r.runs)
+    s += fmt::format(
+        "| {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | "
+        "{:.0f} % | {:.0f} | {:.0f} |\n",
+        name_of(b.shading), name_of(b.method), b.wall.mean > 0 ? 1 / b.wall.mean : 0,
+        b.wall.p50 * 1e3, b.wall.p95 * 1e3, b.wall.p99 * 1e3, b.wall.p999 * 1e3, b.wall.worst * 1e3,
+        b.cpu.p50 * 1e3, b.cpu.p95 * 1e3, b.shadow_share * 100, b.work_mean, b.work_worst);
+  if (!r.errors.empty())
+    s +=
+        "\n| shadows | k | mean \\|Δ visibility\\| | wrong pixels | off edges: mean | wrong | PSNR "
+        "dB | SSIM |\n|---|---|---|---|---|---|---|---|\n";
+  for (const BenchError& e : r.errors)
+    s += fmt::format("| {} | {} | {:.5f} | {:.5f} | {:.5f} | {:.5f} | {:.2f} | {:.4f} |\n",
+                     name_of(e.method), e.interval, e.visibility.mean, e.visibility.wrong,
+                     e.visibility.mean_off_edges, e.visibility.wrong_off_edges, e.psnr, e.ssim);
+  return s;
+}
+
+}  // namespace atlas

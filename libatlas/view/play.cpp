@@ -1,0 +1,77 @@
+#include "libatlas/view/play.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "libatlas/core/clock.h"
+#include "libatlas/image/image_io.h"
+#include "libatlas/scene/reader.h"
+#include "libatlas/view/bench.h"
+
+namespace atlas {
+namespace fs = std::filesystem;
+
+bool textures_hold_light(const fs::path& path) {
+  const std::string extension = path.extension().string();
+  if (extension == ".wrl" || extension == ".wrz") return true;
+  if (extension != ".gltf" && extension != ".glb") return false;
+  // The extension is named in the document's text, which GLB puts first.
+  std::ifstream file(path, std::ios::binary);
+  std::string text(std::size_t{1} << 22, '\0');
+  file.read(text.data(), std::streamsize(text.size()));
+  text.resize(std::size_t(std::max<std::streamsize>(file.gcount(), 0)));
+  return text.find("KHR_materials_unlit") != std::string::npos;
+}
+
+Result<ViewScene> load_view(const fs::path& path, bool baked_textures, const Context& context) {
+  Result<LoadedScene> loaded = read_scene(path, {}, context);
+  if (!loaded.ok()) return loaded.status();
+  ViewSceneOptions options;
+  options.textures_hold_light = baked_textures;
+  Result<ViewScene> view = make_view_scene(loaded->scene, options);
+  if (!view.ok())
+    return Status{view.status().code(), path.string() + ": " + view.status().message()};
+  return view;
+}
+
+Result<PlaySummary> play_headless(GlContext& gl, Renderer& renderer, const PlayOptions& options,
+                                  const Context& context) {
+  if (!options.record.empty()) {
+    std::error_code error;
+    fs::create_directories(options.record, error);
+    if (error)
+      return Status{ErrorCode::io, fmt::format("{}: the folder cannot be made ({})",
+                                               options.record.string(), error.message())};
+  }
+  PlaySummary summary;
+  std::vector<double> times;
+  for (int f = 0; f < options.frames; ++f) {
+    if (context.cancelled()) return Status::cancelled();
+    const double step = options.degrees_per_frame, start = wall_seconds();
+    const FrameLight light{options.light.direction(f * step),
+                           [&](int n) { return options.light.direction((f + n) * step); }};
+    Result<FrameStats> stats = renderer.draw(options.camera, light);
+    if (!stats.ok()) return stats.status();
+    renderer.finish();
+    times.push_back(wall_seconds() - start);
+    if (!options.record.empty()) {
+      const fs::path file = options.record / fmt::format("frame{:05}.png", f);
+      if (Status s = write_png(file, renderer.read_image(), {}); !s.ok()) return s;
+    }
+    context.report("frames", double(f + 1) / options.frames);
+  }
+  if (!options.screenshot.empty())
+    if (Status s = write_png(options.screenshot, renderer.read_image(), {}); !s.ok()) return s;
+  summary.frames = options.frames;
+  summary.shadow_passes = renderer.shadow_passes();
+  summary.gl_errors = gl.debug_errors();
+  summary.median_seconds = spread_of(times).p50;
+  if (summary.gl_errors > 0)
+    return Status{ErrorCode::bad_input, fmt::format("OpenGL: {} errors, the first: {}",
+                                                    summary.gl_errors, gl.first_debug_error())};
+  return summary;
+}
+
+}  // namespace atlas

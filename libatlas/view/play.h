@@ -1,0 +1,49 @@
+// Runs the player: without a window for pictures and tests, or in one.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "libatlas/core/context.h"
+#include "libatlas/shadow/light_path.h"
+#include "libatlas/view/context.h"
+#include "libatlas/view/renderer.h"
+
+namespace atlas {
+
+// Whether a file's textures hold light instead of reflectance: VRML worlds (what atlas-export
+// writes), and glTF whose materials are unlit. False if the file cannot be read.
+bool textures_hold_light(const std::filesystem::path& path);
+
+// The scene at `path` as arrays to draw; the readers' errors, or bad_input if nothing is drawn.
+Result<ViewScene> load_view(const std::filesystem::path& path, bool baked_textures,
+                            const Context& context);
+
+struct PlayOptions {
+  LightPath light;
+  Camera camera;                     // where it starts
+  double degrees_per_frame = 0.5;    // headless
+  double degrees_per_second = 15;    // in a window
+  int frames = 1;                    // headless: how many are drawn
+  std::filesystem::path record;      // a folder for frame00000.png and on; empty: none
+  std::filesystem::path screenshot;  // the last frame as PNG; empty: none
+};
+
+struct PlaySummary {
+  int frames = 0;
+  std::int64_t shadow_passes = 0;
+  std::int64_t gl_errors = 0;  // reported by the driver; counted in debug contexts
+  double median_seconds = 0;   // of a frame, wall clock
+};
+
+// Draws options.frames frames. Fails with the first GL error, or when cancelled.
+Result<PlaySummary> play_headless(GlContext& gl, Renderer& renderer, const PlayOptions& options,
+                                  const Context& context);
+
+// Shows the scene until the window is closed: free camera (drag, WASD, QE), panels for every
+// setting, a graph of frame times, screenshots (F12) and recording.
+Result<PlaySummary> play_in_window(GlWindow& window, Renderer& renderer, const PlayOptions& options,
+                                   const Context& context);
+
+}  // namespace atlas

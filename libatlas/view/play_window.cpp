@@ -1,0 +1,272 @@
+// The player in a window.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <utility>
+
+#include "libatlas/core/clock.h"
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/image/image_io.h"
+#include "libatlas/view/bench.h"
+#include "libatlas/view/play.h"
+
+namespace atlas {
+namespace {
+
+class Gui {
+ public:
+  explicit Gui(GLFWwindow* window) {
+    IMGUI_CHECKVERSION();
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;  // leaves no file behind
+    ImGui_ImplGlfw_InitForOpenGL(window, true);
+    ImGui_ImplOpenGL3_Init("#version 450 core");
+  }
+  ~Gui() {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+  }
+  Gui(const Gui&) = delete;
+  Gui& operator=(const Gui&) = delete;
+  void begin() {
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+  }
+  void end() {
+    ImGui::Render();
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  }
+};
+
+class Player {
+ public:
+  Player(GlWindow& window, Renderer& renderer, const PlayOptions& options)
+      : window_(window),
+        renderer_(renderer),
+        options_(options),
+        wanted_(renderer.options()),
+        camera_(options.camera),
+        gui_(window.handle()) {
+    const Box3& b = renderer.bounds();
+    stride_ = glm::length(to_glm(b.high) - to_glm(b.low)) / 8;
+    speed_ = float(options.degrees_per_second);
+  }
+
+  Result<PlaySummary> run(const Context& context) {
+    double last = wall_seconds();
+    while (!glfwWindowShouldClose(window_.handle()) && !context.cancelled()) {
+      glfwPollEvents();
+      const double now = wall_seconds(), elapsed = now - last;
+      last = now;
+      if (Status s = frame(elapsed); !s.ok()) return s;
+    }
+    summary_.shadow_passes = renderer_.shadow_passes();
+    summary_.gl_errors = window_.debug_errors();
+    summary_.median_seconds = spread_of(all_times_).p50;
+    return summary_;
+  }
+
+ private:
+  Status frame(double elapsed) {
+    gui_.begin();
+    steer(elapsed);
+    note_time(elapsed);
+    panel();
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_.handle(), &width, &height);
+    if (width < 1 || height < 1) {  // iconified
+      ImGui::EndFrame();
+      glfwWaitEventsTimeout(0.1);
+      return {};
+    }
+    wanted_.width = width;
+    wanted_.height = height;
+    // A setting that cannot be had is said and the former ones stay.
+    if (Status s = renderer_.set_options(wanted_); !s.ok()) {
+      message_ = s.message();
+      wanted_ = renderer_.options();
+    }
+    if (Status s = draw(elapsed); !s.ok()) return s;
+    renderer_.show(width, height);
+    if (Status s = save(); !s.ok()) message_ = s.message();
+    gui_.end();
+    glfwSwapBuffers(window_.handle());
+    ++summary_.frames;
+    return {};
+  }
+
+  Status draw(double elapsed) {
+    const double step = speed_ * elapsed;
+    if (!paused_) travelled_ += step;
+    FrameLight light;
+    if (by_hand_) {
+      const double a = glm::radians(double(azimuth_)), e = glm::radians(double(elevation_));
+      const glm::dvec3 up = glm::normalize(to_glm(wanted_.up));
+      const glm::dvec3 side = glm::normalize(
+          glm::cross(up, std::abs(up.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+      const glm::dvec3 other = glm::cross(up, side);
+      light.direction =
+          from_glm((side * std::cos(a) + other * std::sin(a)) * std::cos(e) + up * std::sin(e));
+    } else {
+      light.direction = options_.light.direction(travelled_);
+      // The next frames' steps are taken to be as long as a smoothed one: frame times jitter, and
+      // a key a little early or late is still exact for its own direction.
+      smooth_step_ = smooth_step_ > 0 ? 0.95 * smooth_step_ + 0.05 * step : step;
+      const double at = travelled_, ahead = paused_ ? 0 : smooth_step_;
+      light.ahead = [this, at, ahead](int n) { return options_.light.direction(at + n * ahead); };
+    }
+    Result<FrameStats> stats = renderer_.draw(camera_, light);
+    if (!stats.ok()) return stats.status();
+    stats_ = *stats;
+    return {};
+  }
+
+  void steer(double elapsed) {
+    const ImGuiIO& io = ImGui::GetIO();
+    GLFWwindow* w = window_.handle();
+    Vec3d step;
+    double yaw = 0, pitch = 0;
+    if (!io.WantCaptureMouse && (io.MouseDown[0] || io.MouseDown[1])) {
+      yaw = -0.2 * io.MouseDelta.x;
+      pitch = -0.2 * io.MouseDelta.y;
+    }
+    if (!io.WantCaptureKeyboard) {
+      const auto held = [&](int key) { return glfwGetKey(w, key) == GLFW_PRESS ? 1.0 : 0.0; };
+      const double pace = stride_ * elapsed * (held(GLFW_KEY_LEFT_SHIFT) > 0 ? 4 : 1);
+      step = {pace * (held(GLFW_KEY_W) - held(GLFW_KEY_S)),
+              pace * (held(GLFW_KEY_D) - held(GLFW_KEY_A)),
+              pace * (held(GLFW_KEY_E) - held(GLFW_KEY_Q))};
+      const bool f12 = held(GLFW_KEY_F12) > 0;
+      if (f12 && !f12_was_down_) shoot_ = true;
+      f12_was_down_ = f12;
+    }
+    fly(camera_, step, yaw, pitch);
+    fit_planes(camera_, renderer_.bounds());
+  }
+
+  void note_time(double elapsed) {
+    times_[at_++ % times_.size()] = float(elapsed * 1e3);
+    all_times_.push_back(elapsed);
+    if (all_times_.size() > 100000)
+      all_times_.erase(all_times_.begin(), all_times_.begin() + 50000);
+  }
+
+  void panel() {
+    ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
+    ImGui::Begin("atlas-play", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
+    float worst = 0;
+    for (float t : times_) worst = std::max(worst, t);
+    const std::string label =
+        fmt::format("{:.1f} ms, worst {:.1f}", times_[(at_ - 1) % times_.size()], worst);
+    ImGui::PlotLines("##times", times_.data(), int(times_.size()), int(at_ % times_.size()),
+                     label.c_str(), 0, worst * 1.1f, {280, 70});
+    ImGui::Text("shadow %.2f ms, lit %.2f ms, %u + %u triangles", renderer_.shadow_seconds() * 1e3,
+                renderer_.lit_seconds() * 1e3, stats_.triangles_shadow, stats_.triangles_lit);
+    shadow_panel();
+    light_panel();
+    if (ImGui::Button("screenshot (F12)")) shoot_ = true;
+    ImGui::SameLine();
+    ImGui::Checkbox("record", &recording_);
+    for (const std::string& line : renderer_.plan()) ImGui::TextDisabled("%s", line.c_str());
+    if (!message_.empty()) ImGui::TextWrapped("%s", message_.c_str());
+    ImGui::End();
+  }
+
+  void shadow_panel() {
+    int method = int(wanted_.shadows), shading = int(wanted_.shading);
+    ImGui::Combo("shadows", &method,
+                 "none\0classic\0hold\0linear\0slerp\0slerp normalised\0march\0");
+    ImGui::Combo("shading", &shading, "unlit\0lambert\0blinn-phong\0ward\0");
+    wanted_.shadows = ShadowMethod(method);
+    wanted_.shading = Shading(shading);
+    ImGui::SliderInt("key every k frames", &wanted_.schedule.interval_frames, 1, 64);
+    ImGui::Checkbox("spread over frames", &wanted_.schedule.sliced);
+    ImGui::SameLine();
+    ImGui::Checkbox("show visibility", &wanted_.show_visibility);
+    constexpr int kTaps[] = {0, 1, 3, 5};
+    int filter = wanted_.pcf == 5 ? 3 : wanted_.pcf == 3 ? 2 : wanted_.pcf;
+    ImGui::Combo("filter", &filter, "nearest\0bilinear\0003x3\0005x5\0");
+    wanted_.pcf = kTaps[filter];
+    slider("slope bias", wanted_.slope_bias, 0, 8);
+    slider("normal offset", wanted_.normal_offset, 0, 4);
+  }
+
+  void light_panel() {
+    ImGui::Checkbox("pause", &paused_);
+    ImGui::SameLine();
+    ImGui::Checkbox("by hand", &by_hand_);
+    ImGui::SliderFloat("degrees a second", &speed_, 0, 90);
+    if (by_hand_) {
+      ImGui::SliderFloat("azimuth", &azimuth_, 0, 360);
+      ImGui::SliderFloat("elevation", &elevation_, 1, 89);
+    }
+    slider("sun", wanted_.intensity, 0, 4);
+    slider("ambient", wanted_.ambient, 0, 1);
+    slider("baked light", wanted_.baked_strength, 0, 4);
+    slider("exposure", wanted_.exposure, 0.1, 8);
+    slider("specular", wanted_.specular, 0, 1);
+    if (wanted_.shading == Shading::blinn_phong) slider("shininess", wanted_.shininess, 1, 200);
+    if (wanted_.shading == Shading::ward) slider("roughness", wanted_.roughness, 0.02, 1);
+  }
+
+  static void slider(const char* name, double& value, double low, double high) {
+    float v = float(value);
+    if (ImGui::SliderFloat(name, &v, float(low), float(high))) value = v;
+  }
+
+  Status save() {
+    namespace fs = std::filesystem;
+    if (recording_) {
+      const fs::path folder = options_.record.empty() ? "recording" : options_.record;
+      std::error_code error;
+      fs::create_directories(folder, error);
+      if (error) return {ErrorCode::io, folder.string() + ": " + error.message()};
+      const Status s = write_png(folder / fmt::format("frame{:05}.png", recorded_++),
+                                 renderer_.read_image(), {});
+      if (!s.ok()) return s;
+    }
+    if (!std::exchange(shoot_, false)) return {};
+    const fs::path file = options_.screenshot.empty() ? "screenshot.png" : options_.screenshot;
+    message_ = "wrote " + file.string();
+    return write_png(file, renderer_.read_image(), {});
+  }
+
+  GlWindow& window_;
+  Renderer& renderer_;
+  const PlayOptions& options_;
+  RenderOptions wanted_;
+  Camera camera_;
+  Gui gui_;
+  FrameStats stats_;
+  PlaySummary summary_;
+  std::array<float, 240> times_{};
+  std::vector<double> all_times_;
+  std::size_t at_ = 0;
+  double stride_ = 1, travelled_ = 0, smooth_step_ = 0;
+  float speed_ = 15, azimuth_ = 45, elevation_ = 45;
+  bool paused_ = false, by_hand_ = false, recording_ = false, shoot_ = false, f12_was_down_ = false;
+  int recorded_ = 0;
+  std::string message_;
+};
+
+}  // namespace
+
+Result<PlaySummary> play_in_window(GlWindow& window, Renderer& renderer, const PlayOptions& options,
+                                   const Context& context) {
+  Player player(window, renderer, options);
+  return player.run(context);
+}
+
+}  // namespace atlas
