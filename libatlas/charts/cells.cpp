@@ -11,6 +11,9 @@ namespace atlas {
 namespace {
 
 constexpr float kNormalWeight = 8;  // of the lean in the distance, as published figures were found
+constexpr std::size_t kCellsOfSmallMesh = 146;
+constexpr std::uint32_t kCalmGrain = 3;
+constexpr std::uint32_t kLeastPerCell = 3;
 constexpr float kFar = std::numeric_limits<float>::max();
 
 // Small patches of triangles: the graph on which seeds are chosen.
@@ -18,6 +21,7 @@ struct Grains {
   std::vector<std::uint32_t> of_triangle;
   std::vector<glm::vec3> centroid, normal;
   std::vector<float> area;
+  std::vector<std::uint32_t> size;              // triangles
   std::vector<std::uint32_t> component;         // ascending: grains of a piece are contiguous
   std::vector<std::uint32_t> first, neighbour;  // compressed rows
   std::size_t count() const { return area.size(); }
@@ -100,6 +104,7 @@ class GrainBuilder {
     }
     const float length = glm::length(normal);
     grains_.area.push_back(area);
+    grains_.size.push_back(static_cast<std::uint32_t>(queue_.size()));
     grains_.centroid.push_back(area > 0 ? middle / area : centroid(topology_, seed));
     grains_.normal.push_back(length > 0 ? normal / length : axis);
     grains_.component.push_back(component);
@@ -215,7 +220,7 @@ class Seeder {
   void add_leaning(std::uint32_t first, std::uint32_t last) {
     const auto limit = static_cast<float>(std::cos(options_.max_lean_degrees * M_PI / 180));
     const auto cosine = [&](std::uint32_t g) {
-      return glm::dot(grains_.normal[g], normals[owner_[g]]);
+      return glm::dot(calm_normal(g), normals[owner_[g]]);
     };
     for (int round = 0; round < 6; ++round) {
       std::vector<std::pair<float, std::uint32_t>> leaning;
@@ -228,6 +233,19 @@ class Seeder {
         if (cosine(g) < limit) add_seed(g);
       }
     }
+  }
+
+  // A grain's normal; of several triangles, with its neighbours', for a few triangles may lean by
+  // noise alone.
+  glm::vec3 calm_normal(std::uint32_t g) const {
+    if (grains_.size[g] < kCalmGrain) return grains_.normal[g];
+    glm::vec3 sum = grains_.area[g] * grains_.normal[g];
+    for (std::uint32_t i = grains_.first[g]; i < grains_.first[g + 1]; ++i) {
+      const std::uint32_t n = grains_.neighbour[i];
+      sum += grains_.area[n] * grains_.normal[n];
+    }
+    const float length = glm::length(sum);
+    return length > 0 ? sum / length : grains_.normal[g];
   }
 
   void recentre() {
@@ -305,7 +323,11 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
 
 }  // namespace
 
-Cells grow_cells(const Topology& topology, const CellOptions& options, const Context& context) {
+Cells grow_cells(const Topology& topology, const CellOptions& wanted, const Context& context) {
+  CellOptions options = wanted;
+  options.triangles_per_cell =
+      std::clamp(static_cast<std::uint32_t>(topology.triangle_count() / kCellsOfSmallMesh),
+                 std::min(kLeastPerCell, wanted.triangles_per_cell), wanted.triangles_per_cell);
   if (topology.component_count == 0) {
     return {std::vector<std::uint32_t>(topology.triangle_count(), kNoIndex), 0};
   }

@@ -15,6 +15,8 @@ namespace {
 // 1 - |mean normal| of what counts as lying in one plane: normals within a thousandth of a radian,
 // the noise of float coordinates.
 constexpr double kFlatSpread = 1e-6;
+// A seam along a crease is hidden: to remove it is worth this much less.
+static double kHiddenSeam = getenv("HIDDEN") ? atof(getenv("HIDDEN")) : 0.75;
 constexpr double kConeWeight = 0.25;
 constexpr int kConeSteps = 24;  // towards the axis of the smallest cone (Badoiu and Clarkson 2003)
 
@@ -258,7 +260,9 @@ class Merger {
   TrialOutcome attempt(std::uint32_t a, std::uint32_t b) {
     ++trials;
     double length = 0;
-    for (const std::uint32_t arc : glue_) length += mesh_.arcs[arc].length;
+    for (const std::uint32_t arc : glue_) {
+      length += mesh_.arcs[arc].length - kHiddenSeam * mesh_.arcs[arc].crease;
+    }
     const CoarseChart &p = charts_[a], &q = charts_[b];
     const double area = p.area + q.area;
     if (relaxed_) length += options_.chart_worth * std::sqrt(piece_area_);
