@@ -18,6 +18,8 @@ constexpr int kHeadings = 24;                 // level directions looked along
 // Share of directions that must meet a front face: a room without a ceiling has some 0.75, a pocket
 // under an overhanging part of a single object up to 0.6.
 constexpr double kEnclosed = 0.68, kTightlyEnclosed = 0.85;  // the latter where nobody can stand
+// What a view is worth that ends at the back of a wall: thin shells confuse a coarse grid.
+constexpr double kBackFace = 0.7;
 constexpr double kRoomy = 0.1;  // mean free level distance, as a share of the floor's diagonal
 
 // The scene in a frame whose third axis points up, in voxels. Cells know the sum of the
@@ -194,7 +196,7 @@ Judged judge(const Grid& grid, const Eye& candidate, const std::vector<glm::dvec
   for (int i = 0; i < kHeadings; ++i) {
     const double angle = 2 * kPi * i / kHeadings;
     const auto ray = grid.cast(eye, {std::cos(angle), std::sin(angle), 0});
-    free[i] = ray.hit == Grid::Hit::front ? ray.distance : 0.25 * ray.distance;
+    free[i] = ray.hit == Grid::Hit::front ? ray.distance : kBackFace * ray.distance;
     nearest = std::min(nearest, ray.distance);
     mean += ray.distance / kHeadings;
   }
@@ -202,8 +204,9 @@ Judged judge(const Grid& grid, const Eye& candidate, const std::vector<glm::dvec
   if (nearest < 1.5 * grid.cell() || mean < kRoomy * grid.level_diagonal()) return result;
   double best = -1;
   for (int i = 0; i < kHeadings; ++i) {
-    const double view =
-        free[(i + kHeadings - 1) % kHeadings] + 2 * free[i] + free[(i + 1) % kHeadings];
+    // The shorter side counts twice: down the middle of an aisle, not along its wall.
+    const double side = std::min(free[(i + kHeadings - 1) % kHeadings], free[(i + 1) % kHeadings]);
+    const double view = 2 * free[i] + 2 * side;
     if (view <= best) continue;
     best = view;
     const double angle = 2 * kPi * i / kHeadings;
