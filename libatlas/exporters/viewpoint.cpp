@@ -213,7 +213,7 @@ Judged judge(const Grid& grid, const Eye& candidate, const std::vector<glm::dvec
     result.direction = {std::cos(angle), std::sin(angle), 0};
   }
   // A long view counts more than the middle of the room: people stand near a wall to see it all.
-  result.score = enclosed * (best / 4 + mean / 2 + std::min(nearest, 0.15 * best));
+  result.score = enclosed * (best / 4 + mean / 4 + std::min(nearest, 0.05 * best));
   return result;
 }
 
