@@ -29,7 +29,7 @@ AreaLight window_light(int side, int bay) {
     const glm::dvec2 p = kRevealScale * window_rim(std::cos(a), std::sin(a));
     corners.push_back(glm::vec3(centre + glm::dvec3(p.x, 0, 0) + p.y * up));
   }
-  const glm::vec3 sky = side < 0 ? glm::vec3(1750, 1500, 1180) : glm::vec3(1050, 1250, 1550);
+  const glm::vec3 sky = side < 0 ? glm::vec3(1500, 1330, 1100) : glm::vec3(1000, 1130, 1340);
   return make_light(std::move(corners), sky, {0, -float(side), 0});
 }
 
@@ -70,7 +70,7 @@ std::vector<AreaLight> cabin_lights() {
 }
 
 Sun cabin_sun() {
-  return {glm::normalize(glm::vec3(-0.34f, -1.0f, 0.17f)), glm::vec3(2300, 1750, 1080), 0.009f};
+  return {glm::normalize(glm::vec3(-0.34f, -1.0f, 0.17f)), glm::vec3(2100, 1640, 1050), 0.008f};
 }
 
 Mesh build_cabin(std::size_t triangles, std::size_t limit) {

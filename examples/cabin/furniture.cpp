@@ -155,8 +155,8 @@ void add_bins(Builder& builder) {
     // What carries the strips above the bins, and the panel that closes their front end.
     builder.begin("bin_rails", "trim");
     RoundedBox rail;
-    rail.centre = {(kBinStart + kLength) / 2, side * 0.636, 1.962};
-    rail.half = {(kLength - kBinStart) / 2, 0.02, 0.028};
+    rail.centre = {(kBinStart + kLength) / 2, side * 0.637, 1.952};
+    rail.half = {(kLength - kBinStart) / 2, 0.02, 0.042};
     rail.radius = 0.008;
     add_rounded_box(builder, rail);
     builder.begin("bin_ends", "trim");

@@ -244,11 +244,14 @@ void Lighting::light_indirectly(Mesh& mesh, const atlas::Context& context) const
 }
 
 void show_emitters(Mesh& mesh) {
+  // A display's white is put near the brightest surfaces: the full exitance of lamps in plain view
+  // would leave the cabin that they light in the dark.
+  constexpr float kShown = 0.4f;
   for (const Triangle& t : mesh.triangles) {
     const glm::vec3 emission = mesh.materials[t.material].emission;
     if (emission == glm::vec3(0)) continue;
     for (Id v : t.vertex) {
-      mesh.direct[v] = emission;
+      mesh.direct[v] = kShown * emission;
       mesh.indirect[v] = glm::vec3(0);
     }
   }

@@ -49,8 +49,8 @@ class Lighting {
 
 Sun cabin_sun();
 
-// Gives the vertices of emitting surfaces what they shine with as their light: at the end, when
-// nothing gathers any more.
+// Gives the vertices of emitting surfaces a part of what they shine with as their light, so that
+// lamps look lit: at the end, when nothing gathers any more.
 void show_emitters(Mesh& mesh);
 
 // The share (0..1) of an unshadowed polygon's exitance that a surface at `point` with `normal`

@@ -159,9 +159,9 @@ std::vector<SurfaceMaterial> cabin_materials() {
   list.push_back(textured("entry_floor", "terrazzo.png", terrazzo_texture()));
   list.push_back(textured("counter", "terrazzo.png", terrazzo_texture()));
   list.back().diffuse = {0.6f, 0.6f, 0.62f};
-  list.push_back(emitter("strip", {1900, 1850, 1700}));
-  list.push_back(emitter("cove", {900, 880, 850}));
-  list.push_back(emitter("wash", {1300, 1130, 850}));
+  list.push_back(emitter("strip", {1900, 1840, 1700}));
+  list.push_back(emitter("cove", {1900, 1850, 1760}));
+  list.push_back(emitter("wash", {1700, 1500, 1160}));
   list.push_back(emitter("entry_light", {1900, 1820, 1640}));
   list.push_back(emitter("sign", {25, 330, 90}));
   for (SurfaceMaterial& m : list) finish_material(m);

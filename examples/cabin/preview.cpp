@@ -95,7 +95,7 @@ atlas::Status write_preview(const std::filesystem::path& path, const Mesh& mesh,
   // The picture's mean luminance is put a little under the middle of the curve.
   double mean = 0;
   for (float v : light.texels) mean += std::log(1.0 + v);
-  const float exposure = float(0.42 / std::expm1(mean / double(light.texels.size())));
+  const float exposure = float(0.36 / std::expm1(mean / double(light.texels.size())));
   atlas::Image8 image(options.width, options.height, 3);
   for (std::size_t i = 0; i < light.texels.size(); ++i)
     image.texels[i] = display(light.texels[i], exposure);

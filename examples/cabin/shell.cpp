@@ -138,7 +138,7 @@ void add_bulkhead(Builder& builder, double x, bool faces_aft, const std::string&
     return glm::dvec3(x, (2 * u - 1) * half_width(z), z);
   };
   wall.nu = builder.segments(2 * kRadius);
-  wall.nv = builder.segments(kTop);
+  wall.nv = builder.segments(kTop, builder.coarse() ? 6 : 12);
   wall.flip = !faces_aft;
   wall.tiles_of = [](glm::dvec3 p) { return glm::dvec2(p.y, p.z) * 0.8; };
   add_grid(builder, wall);
@@ -190,11 +190,11 @@ std::vector<Strip> light_strips() {
   std::vector<Strip> strips;
   for (int side : {-1, 1}) {
     // Along the bins' upper edge, inwards.
-    const glm::dvec2 a(side * 0.614, 1.938), b(side * 0.610, 1.986);
+    const glm::dvec2 a(side * 0.614, 1.915), b(side * 0.606, 1.99);
     // On top of the bins, up at the ceiling.
-    const glm::dvec2 c(side * 0.665, 1.975), d(side * 0.735, 1.975);
+    const glm::dvec2 c(side * 0.66, 1.975), d(side * 0.80, 1.975);
     // Below the bins, down the lining.
-    const glm::dvec2 e(side * 1.31, 1.49), f(side * 1.25, 1.49);
+    const glm::dvec2 e(side * 1.32, 1.49), f(side * 1.24, 1.49);
     const bool left = side > 0;
     strips.push_back({kBinStart, kLength - 0.02, left ? a : b, left ? b : a, 6, "strip"});
     strips.push_back({kBinStart, kLength - 0.02, left ? c : d, left ? d : c, 6, "cove"});

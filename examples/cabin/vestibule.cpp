@@ -151,10 +151,11 @@ void add_galley(Builder& builder) {
   add_block(builder, {kX0, kBack, 0}, {kX0 + 0.03, kFront, 2.10}, 0.008);
   add_block(builder, {kX1 - 0.03, kBack, 0}, {kX1, kFront, 2.10}, 0.008);
   builder.begin("galley_body", "dado");
-  add_block(builder, {kX0 + 0.03, kBack, 0.08}, {kX1 - 0.03, kFront - 0.03, 0.88}, 0.005);
-  add_block(builder, {kX0 + 0.03, kBack, 1.36}, {kX1 - 0.03, kFront - 0.03, 2.10}, 0.005);
+  add_block(builder, {kX0 + 0.032, kBack, 0.08}, {kX1 - 0.032, kFront - 0.03, 0.878}, 0.005);
+  add_block(builder, {kX0 + 0.032, kBack, 1.36}, {kX1 - 0.032, kFront - 0.03, 2.098}, 0.005);
   builder.begin("galley_back", "metal");
-  add_block(builder, {kX0 + 0.03, kBack + 0.12, 0.88}, {kX1 - 0.03, kBack + 0.14, 1.36}, 0.004);
+  add_block(builder, {kX0 + 0.032, kBack + 0.125, 0.92}, {kX1 - 0.032, kBack + 0.145, 1.362},
+            0.004);
   builder.begin("galley_counter", "counter");
   add_block(builder, {kX0 + 0.031, kBack + 0.12, 0.88}, {kX1 - 0.031, kFront + 0.02, 0.92}, 0.015);
   const double x0 = kX0 + 0.035, x1 = kX1 - 0.035;
