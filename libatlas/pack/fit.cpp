@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libatlas/pack/fit_pages.h"
+#include "libatlas/pack/shape_check.h"
 
 namespace atlas {
 namespace pack {
@@ -139,7 +140,8 @@ Extent BoxFit::shrink_page(std::uint32_t page, BoxLayout& layout) const {
       sizes.push_back(boxes_[i]);
       area += boxes_[i].area();
     }
-  for (const Extent& size : candidate_pages()) {
+  for (const Extent& texels : smaller_pages(options_)) {
+    const Extent size{texels.width / options_.alignment, texels.height / options_.alignment};
     if (size.area() < area) continue;
     Problem problem;
     problem.items = sizes;
@@ -158,17 +160,11 @@ Extent BoxFit::shrink_page(std::uint32_t page, BoxLayout& layout) const {
   return page_;
 }
 
-// Page sizes smaller than the largest, ascending by area, in cells.
-std::vector<Extent> BoxFit::candidate_pages() const {
+std::vector<Extent> smaller_pages(const FitOptions& options) {
   std::vector<Extent> sizes;
-  const auto add = [&](std::int64_t w, std::int64_t h) {
-    const Extent e{static_cast<std::int32_t>(w / options_.alignment),
-                   static_cast<std::int32_t>(h / options_.alignment)};
-    if (e.width > 0 && e.height > 0 && e.area() < page_.area()) sizes.push_back(e);
-  };
-  for (std::int64_t s = 1; s <= options_.page_size; s *= 2) {
-    add(s, s);
-    if (!options_.square && 2 * s <= options_.page_size) add(2 * s, s);
+  for (std::int32_t s = 1; s <= options.page_size / 2; s *= 2) {
+    sizes.push_back({s, s});
+    if (!options.square) sizes.push_back({2 * s, s});
   }
   return sizes;
 }
@@ -197,6 +193,13 @@ Status check(std::span<const FitItem> items, const FitOptions& o) {
     return {ErrorCode::bad_option, "fit: with power-of-two pages the alignment must be one too"};
   if (!(o.max_scale > 0) || !std::isfinite(o.max_scale))
     return {ErrorCode::bad_option, "fit: max_scale must be finite and above 0"};
+  if (!o.shapes.empty()) {
+    if (o.shapes.size() != items.size())
+      return {ErrorCode::bad_option, fmt::format("fit: {} shapes for {} items (one each, or none)",
+                                                 o.shapes.size(), items.size())};
+    if (Status s = pack::check_rotations(o.rotations); !s.ok()) return s;
+    if (Status s = pack::check_shapes(o.shapes); !s.ok()) return s;
+  }
   for (std::size_t i = 0; i < items.size(); ++i)
     if (!(items[i].width >= 0) || !(items[i].height >= 0) || !std::isfinite(items[i].width) ||
         !std::isfinite(items[i].height))
@@ -268,6 +271,7 @@ void finish(const BoxFit& fit, const FitOptions& options, BoxLayout& layout, Fit
     out.content_height = fit.contents()[i].height;
     out.rotated = at.rotated;
     out.angle = at.rotated ? std::acos(0.0) : 0;
+    out.scale = result.scale;
     content += static_cast<double>(fit.contents()[i].area());
     boxes += static_cast<double>(out.box.area());
     if (!options.power_of_two) {
@@ -292,6 +296,7 @@ Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& op
   FitResult result;
   result.scale = options.max_scale;
   if (items.empty()) return result;
+  if (!options.shapes.empty()) return pack::fit_outlines(items, options, context);
   BoxFit fit(items, options, context);
   BoxLayout best;
   const bool found = search_scale(fit, options, context, result, best);

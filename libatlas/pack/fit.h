@@ -31,11 +31,11 @@ struct FitOptions {
   bool allow_rotation = true;      // quarter turns
   PackPreset preset = PackPreset::standard;
   std::uint32_t max_packings = 25;  // full packings spent on the search for the scale, at least 2
-  // Charts as outlines instead of boxes: one an item, or empty. Placements are then of the mask's
-  // box, boxes may overlap, masks never do. See outline.h.
+  // Charts as outlines instead of boxes: one an item in the texels of the items' sizes, or empty.
+  // Placements are then of the mask's box, boxes may overlap, masks never do. See outline.h.
   std::span<const ChartShape> shapes;
-  std::uint32_t rotations = 4;  // directions tried for outlines: multiples of 360/rotations
-                                // degrees; 1, 2, 4 or a multiple of 4
+  std::uint32_t rotations = 4;  // directions tried for outlines at most: multiples of
+                                // 360/rotations degrees; 1, 2, 4 or a multiple of 4
 };
 
 // The box of chart i in its page, padding included, after rotation; content = box without
@@ -43,13 +43,16 @@ struct FitOptions {
 // up (before rotation), placed at (box.x + padding, box.y + padding), and rotated tells whether
 // width and height are swapped (a quarter turn counterclockwise: chart point (u, v) goes to
 // (box.x + padding + content_height - v, box.y + padding + u)).
-// With outlines: chart point p (texels at scale 1) goes to offset + scale · R(angle) · p.
+// With outlines: chart point p (texels at scale 1) goes to offset + scale · R(angle) · p; the
+// content is the shape's own box, and minimum_side holds for its longer side, so that charts keep
+// their proportions.
 struct FitPlacement {
   std::uint32_t page = 0;
   Rect box;
   std::int32_t content_width = 0, content_height = 0;
   bool rotated = false;
   double angle = 0;  // radians, counterclockwise; 0 or pi/2 for boxes
+  double scale = 1;  // of this chart: the common scale, or more where minimum_side asks for it
   Vec2d offset;      // outlines only
 };
 

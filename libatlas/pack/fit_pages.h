@@ -33,7 +33,6 @@ class BoxFit {
   bool pack_grouped(std::uint32_t pages, BoxLayout& layout);
   bool pack_jointly(std::uint32_t pages, BoxLayout& layout);
   bool place(std::uint32_t item, std::uint32_t page, FreeRects& free, BoxLayout& layout) const;
-  std::vector<Extent> candidate_pages() const;
 
   std::span<const FitItem> items_;
   const FitOptions& options_;
@@ -41,5 +40,12 @@ class BoxFit {
   Extent page_;
   std::vector<Extent> contents_, boxes_;
 };
+
+// fit_pages for charts given by their outlines; the arguments have been checked.
+Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions& options,
+                               const Context& context);
+
+// Page sizes with power-of-two sides smaller than the largest, ascending by area, texels.
+std::vector<Extent> smaller_pages(const FitOptions& options);
 
 }  // namespace atlas::pack

@@ -26,7 +26,7 @@ Vec2d turned_origin(Vec2d origin, double box_height) {
   return {box_height - origin.y, origin.x};
 }
 
-Piece make_piece(const ChartShape& shape, const PieceOptions& options) {
+Piece make_piece(const ChartShape& shape, double factor, const PieceOptions& options) {
   Piece piece;
   const std::uint32_t n = options.directions;
   const std::uint32_t bases = std::max(1u, n / 4);
@@ -34,7 +34,7 @@ Piece make_piece(const ChartShape& shape, const PieceOptions& options) {
   piece.origins.resize(n);
   for (std::uint32_t b = 0; b < bases; ++b) {
     RasterOptions raster;
-    raster.factor = options.factor;
+    raster.factor = factor;
     raster.angle = 2 * std::numbers::pi * b / n;
     raster.padding = options.padding;
     raster.cell = options.cell;
@@ -66,7 +66,9 @@ std::vector<Piece> make_pieces(std::span<const ChartShape> shapes, const PieceOp
                                const Context& context) {
   std::vector<Piece> pieces(shapes.size());
   parallel_for(context, shapes.size(), 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) pieces[i] = make_piece(shapes[i], options);
+    for (std::size_t i = begin; i < end; ++i)
+      pieces[i] = make_piece(
+          shapes[i], options.factors.empty() ? options.factor : options.factors[i], options);
   });
   return pieces;
 }

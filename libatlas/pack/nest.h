@@ -19,7 +19,8 @@ struct Piece {
 };
 
 struct PieceOptions {
-  double factor = 1;  // texels of page a texel of the shape
+  double factor = 1;                // texels of page a texel of the shape
+  std::span<const double> factors;  // 1 a shape, instead of the common factor; or empty
   std::int32_t padding = 1, cell = 1;
   std::uint32_t directions = 4;
 };

@@ -17,6 +17,7 @@ struct GridChoice {
   std::int32_t cell = 1;
   std::uint32_t directions = 4;
 };
+double layout_cost(std::size_t count, double side_cells, std::uint32_t directions);
 GridChoice choose_grid(std::size_t count, std::int32_t page_side, std::int32_t alignment,
                        std::uint32_t rotations, double affordable);
 

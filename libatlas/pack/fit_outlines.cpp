@@ -1,0 +1,311 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "libatlas/core/parallel.h"
+#include "libatlas/pack/fit_pages.h"
+#include "libatlas/pack/nest.h"
+#include "libatlas/pack/shape_check.h"
+
+namespace atlas::pack {
+namespace {
+
+struct OutlineLayout {
+  double scale = 0;
+  std::vector<Piece> pieces;
+  std::vector<double> factors;
+  std::vector<std::uint32_t> page;  // 1 a piece
+  std::vector<NestPlace> places;    // 1 a piece
+  std::vector<Extent> page_sizes;   // cells
+  std::uint32_t moved = 0;
+  GroupingResult grouping;
+};
+
+class OutlineFit {
+ public:
+  OutlineFit(std::span<const FitItem> items, const FitOptions& options, const Context& context)
+      : items_(items), options_(options), context_(context) {
+    const std::uint32_t rotations =
+        options.allow_rotation ? options.rotations : std::min(options.rotations, 1u);
+    // A tenth of a second a packing and page, much less with many charts.
+    grid_ = choose_grid(items.size() / options.pages + 1, options.page_size, options.alignment,
+                        rotations, options.preset == PackPreset::fast ? 5e6 : 30e6);
+    side_ = options.page_size / grid_.cell;
+    for (std::size_t i = 0; i < items.size(); ++i) area_ += shape_area(options.shapes[i]);
+  }
+
+  double area() const { return area_; }
+  const GridChoice& grid() const { return grid_; }
+  std::int32_t side() const { return side_; }
+
+  // First with the groups of F(A) = N. They are balanced by area, but the first ones hold the few
+  // largest charts and nothing to fill the gaps with; where they fail, charts are dealt out such
+  // that every page gets large and small ones. A scale at which the groups failed is remembered:
+  // above it they are not tried again.
+  bool pack_at(double scale, std::uint32_t pages, OutlineLayout& layout) {
+    layout = {};
+    layout.scale = scale;
+    prepare(scale, layout);
+    if (!group(pages, layout)) return false;
+    layout.page = layout.grouping.group;
+    if (pages == 1 || scale < groups_fail_at_) {
+      if (pack_pages(pages, layout)) return true;
+      if (pages == 1) return false;
+      groups_fail_at_ = scale;
+    }
+    deal_out(pages, layout);
+    return pack_pages(pages, layout);
+  }
+
+  // Packs the charts of one page again into the smallest page size that holds them.
+  void shrink_page(std::uint32_t page, OutlineLayout& layout) const {
+    NestPlan plan = plan_by_size(layout.pieces);
+    std::erase_if(plan.order, [&](std::uint32_t i) { return layout.page[i] != page; });
+    std::int64_t cells = 0;
+    for (std::uint32_t i : plan.order) cells += layout.pieces[i].cells();
+    for (const Extent& texels : smaller_pages(options_)) {
+      const Extent size{texels.width / grid_.cell, texels.height / grid_.cell};
+      if (size.area() < cells || size.area() == 0) continue;
+      BitPage open(size.width, size.height, longest_run(layout.pieces));
+      Nest nest;
+      place_pieces(layout.pieces, plan, open, nest);
+      if (!nest.left_over.empty()) continue;
+      for (std::uint32_t i : plan.order) layout.places[i] = nest.places[i];
+      layout.page_sizes[page] = size;
+      return;
+    }
+  }
+
+ private:
+  void prepare(double scale, OutlineLayout& layout) const {
+    layout.factors.resize(items_.size());
+    for (std::size_t i = 0; i < items_.size(); ++i) {
+      const double side = std::max(items_[i].width, items_[i].height);
+      const double least = std::min<double>(options_.minimum_side, std::ceil(side));
+      layout.factors[i] =
+          side > 0 ? std::max(scale, std::min(options_.max_scale, least / side)) : scale;
+    }
+    PieceOptions piece_options;
+    piece_options.factors = layout.factors;
+    piece_options.padding = options_.padding;
+    piece_options.cell = grid_.cell;
+    piece_options.directions = grid_.directions;
+    layout.pieces = make_pieces(options_.shapes, piece_options, context_);
+  }
+
+  // Largest first, each to the page with the least in it.
+  void deal_out(std::uint32_t pages, OutlineLayout& layout) const {
+    std::vector<std::int64_t> load(pages);
+    for (std::uint32_t i : plan_by_size(layout.pieces).order) {
+      const auto least = std::min_element(load.begin(), load.end());
+      layout.page[i] = static_cast<std::uint32_t>(least - load.begin());
+      *least += layout.pieces[i].cells();
+    }
+  }
+
+  // Packs every page with the charts that layout.page gives it; what is left over moves.
+  bool pack_pages(std::uint32_t pages, OutlineLayout& layout) const {
+    std::vector<BitPage> open;
+    std::vector<Nest> nests(pages);
+    const std::int32_t longest = longest_run(layout.pieces);
+    for (std::uint32_t p = 0; p < pages; ++p) open.emplace_back(side_, side_, longest);
+    parallel_for(context_, pages, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) fill_group(layout, p, pages, open[p], nests[p]);
+    });
+    layout.places.resize(layout.pieces.size());
+    std::vector<std::uint32_t> left;
+    for (std::uint32_t p = 0; p < pages; ++p) {
+      for (std::uint32_t i = 0; i < layout.pieces.size(); ++i)
+        if (nests[p].places[i].placed) {
+          layout.page[i] = p;
+          layout.places[i] = nests[p].places[i];
+        }
+      left.insert(left.end(), nests[p].left_over.begin(), nests[p].left_over.end());
+    }
+    layout.page_sizes.assign(pages, {side_, side_});
+    return place_left_over(left, open, layout);
+  }
+
+  bool group(std::uint32_t pages, OutlineLayout& layout) const {
+    std::vector<std::uint64_t> cells;
+    std::uint64_t total = 0;
+    for (const Piece& p : layout.pieces) {
+      cells.push_back(static_cast<std::uint64_t>(p.cells()));
+      total += cells.back();
+    }
+    if (total > static_cast<std::uint64_t>(side_) * side_ * pages) return false;
+    GroupingOptions grouping;
+    grouping.groups = pages;
+    grouping.refine_work = 0;
+    Result<GroupingResult> result = group_sizes(cells, grouping, context_);
+    if (!result.ok()) return false;
+    layout.grouping = std::move(*result);
+    return true;
+  }
+
+  void fill_group(const OutlineLayout& layout, std::size_t p, std::uint32_t pages, BitPage& page,
+                  Nest& nest) const {
+    NestPlan plan = plan_by_size(layout.pieces);
+    std::erase_if(plan.order, [&](std::uint32_t i) { return layout.page[i] != p; });
+    place_pieces(layout.pieces, plan, page, nest);
+    if (nest.left_over.empty() || options_.preset == PackPreset::fast) return;
+    // A search over orders is worth it where it can try more than a few.
+    NestSearchOptions search;
+    search.width = search.enough = side_;
+    search.seed = p + 1;
+    search.work = (options_.preset == PackPreset::best ? 400'000'000u : 40'000'000u) / pages;
+    if (layout_cost(plan.order.size(), side_, grid_.directions) * 4 > double(search.work)) return;
+    Nest found;
+    std::uint64_t layouts = 0;
+    improve_plan(layout.pieces, plan, search, context_, found, layouts);
+    if (!found.left_over.empty() || found.used_height > side_) return;
+    page.clear();
+    for (std::uint32_t i : plan.order)
+      if (found.places[i].placed)
+        page.put(layout.pieces[i].masks[found.places[i].direction], found.places[i].at);
+    nest = std::move(found);
+  }
+
+  // Charts without room in their group's page go to the first page that has some, largest first.
+  bool place_left_over(std::vector<std::uint32_t> left, std::vector<BitPage>& open,
+                       OutlineLayout& layout) const {
+    std::stable_sort(left.begin(), left.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return layout.pieces[a].cells() > layout.pieces[b].cells();
+    });
+    layout.moved = static_cast<std::uint32_t>(left.size());
+    for (std::uint32_t i : left) {
+      bool placed = false;
+      for (std::uint32_t p = 0; p < open.size() && !placed; ++p) {
+        NestPlan one;
+        one.order = {i};
+        one.direction.assign(layout.pieces.size(), kFree);
+        Nest nest;
+        place_pieces(layout.pieces, one, open[p], nest);
+        placed = nest.left_over.empty();
+        if (!placed) continue;
+        layout.page[i] = p;
+        layout.places[i] = nest.places[i];
+      }
+      if (!placed || context_.cancelled()) return false;
+    }
+    return true;
+  }
+
+  std::span<const FitItem> items_;
+  const FitOptions& options_;
+  const Context& context_;
+  GridChoice grid_;
+  std::int32_t side_ = 0;
+  double area_ = 0;
+  double groups_fail_at_ = std::numeric_limits<double>::infinity();
+};
+
+// Up by steps while it fits, down while it does not, then halving: few packings, each seen to fit
+// or not. The guess is the scale at which shapes fill 72 % of the pages.
+bool search_scale(OutlineFit& fit, const FitOptions& options, const Context& context,
+                  FitResult& result, OutlineLayout& best) {
+  const auto attempt = [&](double scale) {
+    OutlineLayout layout;
+    ++result.packings;
+    const bool ok = fit.pack_at(scale, options.pages, layout);
+    result.trace.emplace_back(scale, ok);
+    if (ok && scale > best.scale) best = std::move(layout);
+    context.report("pack", std::min(1.0, double(result.packings) / options.max_packings));
+    return ok;
+  };
+  const double pages = double(options.page_size) * options.page_size * options.pages;
+  double scale = fit.area() > 0 ? std::sqrt(0.72 * pages / fit.area()) : options.max_scale;
+  scale = std::min(scale, options.max_scale);
+  double low = 0, high = options.max_scale * (1 + 1e-9), step = 0.97;
+  while (result.packings + 1 < options.max_packings && !context.cancelled()) {
+    const bool ok = attempt(scale);
+    if (ok && scale >= options.max_scale) return true;
+    (ok ? low : high) = scale;
+    if (low > 0 && high - low < 0.004 * high) return true;
+    if (low == 0) {
+      scale *= step;
+      step *= step > 0.5 ? 0.97 : 1;  // faster and faster, should minimum sides be in the way
+    } else {
+      scale = high > options.max_scale ? std::min(options.max_scale, low * 1.02) : (low + high) / 2;
+    }
+  }
+  return low > 0 || attempt(1e-9 * options.max_scale);
+}
+
+void use_fewer_pages(OutlineFit& fit, const FitOptions& options, FitResult& result,
+                     OutlineLayout& best) {
+  double cells = 0;
+  for (const Piece& p : best.pieces) cells += static_cast<double>(p.cells());
+  auto n = static_cast<std::uint32_t>(cells / (0.9 * fit.side() * double(fit.side()))) + 1;
+  for (; n < best.page_sizes.size() && result.packings < options.max_packings; ++n) {
+    OutlineLayout fewer;
+    ++result.packings;
+    if (!fit.pack_at(best.scale, n, fewer)) continue;
+    best = std::move(fewer);
+    return;
+  }
+}
+
+void write_result(const OutlineFit& fit, const FitOptions& options, OutlineLayout& best,
+                  FitResult& result) {
+  const std::int32_t cell = fit.grid().cell;
+  result.scale = best.scale;
+  result.pages.assign(best.page_sizes.size(), {0, 0});
+  if (options.power_of_two)
+    for (std::uint32_t p = 0; p < result.pages.size(); ++p) {
+      if (best.scale == options.max_scale) fit.shrink_page(p, best);
+      const Extent size = best.page_sizes[p];
+      result.pages[p] = {size.width * cell, size.height * cell};
+    }
+  result.placements.resize(best.pieces.size());
+  double shapes = 0, area = 0;
+  for (std::size_t i = 0; i < best.pieces.size(); ++i) {
+    const Piece& piece = best.pieces[i];
+    FitPlacement& out = result.placements[i];
+    out.scale = best.factors[i];
+    out.page = best.page[i];
+    if (piece.cells() == 0) continue;
+    const NestPlace& at = best.places[i];
+    const Mask& mask = piece.masks[at.direction];
+    out.box = {at.at.x * cell, at.at.y * cell, mask.width * cell, mask.height * cell};
+    out.content_width = out.box.width - 2 * options.padding;
+    out.content_height = out.box.height - 2 * options.padding;
+    out.angle = 2 * std::numbers::pi * at.direction / fit.grid().directions;
+    out.offset = {out.box.x + piece.origins[at.direction].x,
+                  out.box.y + piece.origins[at.direction].y};
+    shapes += shape_area(options.shapes[i]) * out.scale * out.scale;
+    if (options.power_of_two) continue;
+    Extent& page = result.pages[out.page];
+    page.width = std::max(page.width, out.box.right());
+    page.height = std::max(page.height, out.box.top());
+    if (options.square) page.width = page.height = std::max(page.width, page.height);
+  }
+  for (const Extent& page : result.pages) area += static_cast<double>(page.area());
+  result.utilization = area > 0 ? shapes / area : 0;
+  result.moved_items = best.moved;
+  result.grouping = std::move(best.grouping);
+}
+
+}  // namespace
+
+Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions& options,
+                               const Context& context) {
+  FitResult result;
+  OutlineFit fit(items, options, context);
+  OutlineLayout best;
+  const bool found = search_scale(fit, options, context, result, best);
+  if (context.cancelled()) return Status::cancelled();
+  if (!found)
+    return Status(ErrorCode::no_solution,
+                  fmt::format("fit: {} charts do not fit {} pages of {} x {} even at their minimum "
+                              "sides (allow more or larger pages, or a smaller minimum_side)",
+                              items.size(), options.pages, options.page_size, options.page_size));
+  if (best.scale == options.max_scale) use_fewer_pages(fit, options, result, best);
+  write_result(fit, options, best, result);
+  return result;
+}
+
+}  // namespace atlas::pack
