@@ -18,16 +18,24 @@
 namespace atlas {
 namespace {
 
-// The box of one chart with its pads; positions inside are relative to its corner.
+// The box of one chart with its pads; positions inside are relative to its corner. It ends where
+// the packer's box does: at a multiple of 2^mip_levels, if it begins at one, so that no texel of
+// the coarsest level is left half filled.
 struct Box {
   const ChartPlacement& placement;
   int pad, width, height;
 
-  Box(const ChartPlacement& p, int mip_levels)
+  Box(const ChartPlacement& p, const BakeOptions& o)
       : placement(p),
-        pad(gutter_pad(mip_levels)),
-        width(p.width + 2 * pad),
-        height(p.height + 2 * pad) {}
+        pad(gutter_pad(o.mip_levels)),
+        width(side(p.x - pad, p.width + 2 * pad, o.page_width, o.mip_levels)),
+        height(side(p.y - pad, p.height + 2 * pad, o.page_height, o.mip_levels)) {}
+
+  static int side(int begin, int length, int page, int mip_levels) {
+    const int unit = 1 << mip_levels;
+    if (begin % unit != 0) return length;
+    return std::min((begin + length + unit - 1) / unit * unit, page) - begin;
+  }
 
   TexelTriangle triangle(const ChartSet& charts, std::uint32_t t) const {
     TexelTriangle out;
@@ -196,17 +204,17 @@ Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacem
   std::size_t done = 0;
   parallel_for(context, placements.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end && !context.cancelled(); ++i) {
-      const Box box(placements[i], options.mip_levels);
+      const Box box(placements[i], options);
       TexelGrid texels = bake_box({light, options, grid, &light.tone}, box);
       const std::size_t filled = fill_unknown(texels);
-      const std::vector<std::uint8_t> owned =
-          owned_texels(light.charts, box, options.mip_levels);
+      const std::vector<std::uint8_t> owned = owned_texels(light.charts, box, options.mip_levels);
       copy_box(texels, box, page.display, quantize8, owned);
       const std::size_t covered = texels.rgb.size() - filled;
       if (options.linear) {
         texels = bake_box({light, options, grid, nullptr}, box);
         fill_unknown(texels);
-        copy_box(texels, box, page.linear, [](float v) { return v; }, owned);
+        copy_box(
+            texels, box, page.linear, [](float v) { return v; }, owned);
       }
       const std::lock_guard lock(counting);
       page.triangles += light.charts.charts[placements[i].chart].triangle_count;

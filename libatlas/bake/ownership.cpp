@@ -51,9 +51,8 @@ std::vector<std::uint8_t> owned_texels(std::span<const TexelTriangle> triangles,
   std::vector<std::uint8_t> mask(std::size_t(grid.width) * grid.height, 0);
   const Rect all{0, 0, grid.width, grid.height};
   for (const TexelTriangle& triangle : triangles) {
-    cover_triangle(triangle, all, [&](int x, int y, double, Vec2d) {
-      mask[std::size_t(y) * grid.width + x] = 1;
-    });
+    cover_triangle(triangle, all,
+                   [&](int x, int y, double, Vec2d) { mask[std::size_t(y) * grid.width + x] = 1; });
   }
   widen_rows(mask, grid.width, grid.pad);
   mask = transposed(mask, grid.width, grid.height);

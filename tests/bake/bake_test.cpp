@@ -1,0 +1,283 @@
+#include "libatlas/bake/bake.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <random>
+
+#include "libatlas/raster/coverage.h"
+#include "tests/bake/bake_fixture.h"
+
+namespace atlas {
+namespace {
+
+// Every point of a chart of display values a + b u + c v, looked up in the page.
+struct WorstErrors {
+  double inside = 0, border = 0;  // a texel or more from the border; nearer
+};
+
+WorstErrors ramp_errors(const Image8& page, const ChartPlacement& p, Vec2d size, double a, double b,
+                        double c) {
+  std::mt19937 random(5);
+  WorstErrors worst;
+  for (int i = 0; i < 20000; ++i) {
+    Vec2d uv{size.x * (random() % 10001) / 10000.0, size.y * (random() % 10001) / 10000.0};
+    if (i % 10 == 0) uv.x = i % 20 ? 0 : size.x;  // the border itself
+    if (i % 15 == 0) uv.y = i % 30 ? 0 : size.y;
+    const double want = a + b * uv.x + c * uv.y;
+    const double error = std::fabs(look_up(page, page_texel(p, uv), 1) / 255 - want);
+    const double to_border =
+        std::min({uv.x * p.texels_per_unit.x, uv.y * p.texels_per_unit.y,
+                  (size.x - uv.x) * p.texels_per_unit.x, (size.y - uv.y) * p.texels_per_unit.y});
+    double& most = to_border < 1 ? worst.border : worst.inside;
+    most = std::max(most, error);
+  }
+  return worst;
+}
+
+TEST(BakePage, ReproducesALinearRampUpToTheBorder) {
+  // Display-linear over fine cells; its texels are then the ramp itself, beyond the border too.
+  const Vec2d size{1.37, 0.61};
+  for (const int cells : {25, 60, 300})  // triangles of 3, 1 and 0.2 texels
+    for (const bool rotated : {false, true})
+      for (const Vec2d density : {Vec2d{53.3, 53.3}, Vec2d{61.7, 40.1}}) {
+        const LitShape shape =
+            make_sheet({size.x, size.y, cells, cells, 0.2},
+                       [](double u, double v) { return shown(0.1 + 0.3 * u + 0.5 * v); });
+        const ChartPlacement p = place(shape.charts, 0, density, {6, 10, 0, 0}, rotated);
+        const auto page = bake(shape, {p}, small_page(128));
+        ASSERT_TRUE(page.ok());
+        const WorstErrors worst = ramp_errors(page->display, p, size, 0.1, 0.3, 0.5);
+        EXPECT_LE(worst.inside, 0.75 / 255) << cells << ' ' << rotated << ' ' << density.x;
+        EXPECT_LE(worst.border, 1.2 / 255) << cells << ' ' << rotated << ' ' << density.x;
+      }
+}
+
+TEST(BakePage, AverageReproducesARampInside) {
+  const LitShape shape = make_sheet(
+      {1, 1, 80, 80, 0.2}, [](double u, double v) { return shown(0.1 + 0.3 * u + 0.5 * v); });
+  const ChartPlacement p = place(shape.charts, 0, {50, 50}, {4, 4, 0, 0});
+  const auto page = bake(shape, {p}, small_page(64, BakeMethod::average));
+  ASSERT_TRUE(page.ok());
+  for (double v = 0.05; v < 0.95; v += 0.013)
+    for (double u = 0.05; u < 0.95; u += 0.017)
+      ASSERT_NEAR(look_up(page->display, page_texel(p, {u, v}), 0) / 255, 0.1 + 0.3 * u + 0.5 * v,
+                  1.0 / 255);
+}
+
+TEST(BakePage, AverageIsTheAreaMeanOverEachTexel) {
+  // Values that jump from vertex to vertex, triangles of 0.1 to 3 texels, against many point
+  // samples.
+  for (const int cells : {8, 30, 90}) {
+    std::mt19937 random(6);
+    const LitShape shape = make_sheet({1, 1, cells, cells, 0.25}, [&](double, double) {
+      return Vec3f{(random() % 100) / 100.0f, 0, 0};
+    });
+    const ChartPlacement p = place(shape.charts, 0, {24, 24}, {2, 2, 0, 0});
+    BakeOptions options = small_page(32, BakeMethod::average);
+    options.shifts = 1;
+    options.mip_levels = 0;
+    const auto page = bake(shape, {p}, options);
+    ASSERT_TRUE(page.ok());
+    // The oracle: 40 x 40 point samples a texel.
+    constexpr int kSide = 40;
+    std::vector<double> sum(24 * 24), count(24 * 24);
+    for (std::size_t t = 0; t < shape.scene.triangle_count(); ++t) {
+      TexelTriangle q;
+      double e[3];
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t v = shape.scene.indices[3 * t + k];
+        q[k] = {shape.charts.uvs[v].x * 24 * kSide, shape.charts.uvs[v].y * 24 * kSide};
+        e[k] = shape.scene.illumination[v].x;
+      }
+      const double area =
+          (q[1].x - q[0].x) * (q[2].y - q[0].y) - (q[1].y - q[0].y) * (q[2].x - q[0].x);
+      scan_triangle(q, {0, 0, 24 * kSide, 24 * kSide}, {0.5, 0.5}, [&](int y, int x0, int x1) {
+        for (int x = x0; x < x1; ++x) {
+          const double px = x + 0.5 - q[0].x, py = y + 0.5 - q[0].y;
+          const double b1 = (px * (q[2].y - q[0].y) - py * (q[2].x - q[0].x)) / area;
+          const double b2 = (py * (q[1].x - q[0].x) - px * (q[1].y - q[0].y)) / area;
+          const std::size_t at = std::size_t(y / kSide) * 24 + x / kSide;
+          sum[at] += srgb_encode(static_cast<float>((1 - b1 - b2) * e[0] + b1 * e[1] + b2 * e[2]));
+          count[at] += 1;
+        }
+      });
+    }
+    for (int y = 0; y < 24; ++y)
+      for (int x = 0; x < 24; ++x) {
+        const double want = sum[y * 24 + x] / count[y * 24 + x];
+        // A part's value is taken at its centroid: exact but for the curve of the display encoding.
+        ASSERT_NEAR(page->display.at(x + 2, y + 2)[0] / 255.0, want, 6.0 / 255)
+            << cells << ' ' << x << ' ' << y;
+      }
+  }
+}
+
+TEST(BakePage, CountsEveryTriangleHoweverSmall) {
+  // A hundred cells a texel, one column in five bright: each texel is near the mean, whatever
+  // the samples' positions.
+  const int n = 200;
+  const LitShape shape = make_sheet({1, 1, n, n}, [&](double u, double) {
+    const int column = static_cast<int>(std::lround(u * n));
+    return shown(column % 5 == 0 ? 1.0 : 0.2);
+  });
+  // Over a triangle pair the display values' mean lies between 0.2 and 1; measured from a fine
+  // bake.
+  const ChartPlacement fine = place(shape.charts, 0, {800, 800}, {4, 4, 0, 0});
+  const auto truth = bake(shape, {fine}, small_page(1024));
+  ASSERT_TRUE(truth.ok());
+  double mean = 0;
+  for (int y = 0; y < 800; ++y)
+    for (int x = 0; x < 800; ++x) mean += truth->display.at(x + 4, y + 4)[0] / 640000.0;
+  for (const BakeMethod method : {BakeMethod::least_squares, BakeMethod::average})
+    for (const int shifts : {1, 4}) {
+      const ChartPlacement p = place(shape.charts, 0, {20, 20}, {4, 4, 0, 0});
+      BakeOptions options = small_page(32, method);
+      options.shifts = shifts;
+      const auto page = bake(shape, {p}, options);
+      ASSERT_TRUE(page.ok());
+      for (int y = 0; y < 20; ++y)
+        for (int x = 0; x < 20; ++x)
+          ASSERT_NEAR(page->display.at(x + 4, y + 4)[0], mean, 6) << shifts << ' ' << x << ' ' << y;
+    }
+}
+
+TEST(BakePage, LeastSquaresIsNearerToTheLightThanTheAverage) {
+  // A soft shadow's edge at a slant, a few texels wide, and fine noise.
+  std::mt19937 random(9);
+  const auto light = [&](double u, double v) {
+    const double edge = 1 / (1 + std::exp(-(u + 0.37 * v - 0.6) * 60));
+    return shown(0.2 + 0.6 * edge + 0.05 * (random() % 100) / 100.0);
+  };
+  const LitShape shape = make_sheet({1, 1, 50, 50, 0.2}, light);
+  const ChartPlacement p = place(shape.charts, 0, {64, 64}, {4, 4, 0, 0});
+  const ChartPlacement fine = place(shape.charts, 0, {960, 960}, {8, 8, 0, 0});
+  const auto truth = bake(shape, {fine}, small_page(1024));
+  ASSERT_TRUE(truth.ok());
+  double square[2] = {0, 0};
+  for (int m = 0; m < 2; ++m) {
+    const auto page =
+        bake(shape, {p}, small_page(128, m ? BakeMethod::average : BakeMethod::least_squares));
+    ASSERT_TRUE(page.ok());
+    for (int j = 0; j < 640; ++j)
+      for (int i = 0; i < 640; ++i) {
+        const Vec2d uv{(i + 0.5) / 640, (j + 0.5) / 640};
+        const double d = look_up(page->display, page_texel(p, uv), 0) -
+                         look_up(truth->display, page_texel(fine, uv), 0);
+        square[m] += d * d;
+      }
+  }
+  EXPECT_LT(square[0], 0.7 * square[1]);
+}
+
+TEST(BakePage, GivesSceneLinearValuesOnRequest) {
+  const LitShape shape = make_sheet({1, 1, 20, 20}, [](double u, double v) {
+    return Vec3f{static_cast<float>(100 * u), static_cast<float>(5000 * v), 0.25f};
+  });
+  const ChartPlacement p = place(shape.charts, 0, {40, 40}, {4, 4, 0, 0});
+  BakeOptions options = small_page(64);
+  options.linear = true;
+  for (const BakeMethod method : {BakeMethod::least_squares, BakeMethod::average}) {
+    options.method = method;
+    const auto page = bake(shape, {p}, options);
+    ASSERT_TRUE(page.ok());
+    for (double v = 0.05; v < 0.95; v += 0.03)
+      for (double u = 0.05; u < 0.95; u += 0.03) {
+        const Vec2d at = page_texel(p, {u, v});
+        ASSERT_NEAR(look_up(page->linear, at, 0), 100 * u, 0.05);
+        ASSERT_NEAR(look_up(page->linear, at, 1), 5000 * v, 2.5);
+        ASSERT_NEAR(look_up(page->linear, at, 2), 0.25, 1e-5);
+      }
+  }
+  options.linear = false;
+  EXPECT_TRUE(bake(shape, {p}, options)->linear.texels.empty());
+}
+
+LitShape many_charts(std::vector<ChartPlacement>& placements) {
+  LitShape shape;
+  int x = 4, y = 4;
+  for (int i = 0; i < 24; ++i) {
+    const double w = 0.3 + 0.1 * (i % 5), h = 0.2 + 0.07 * (i % 7);
+    append(shape,
+           make_sheet({w, h, 3 + 4 * i, 5 + i, 0.3},
+                      [i](double u, double v) { return shown(std::fmod(u * 3 + v * i, 1.0)); }),
+           {0, 0, static_cast<float>(i)});
+    placements.push_back(
+        place(shape.charts, static_cast<std::uint32_t>(i), {60, 60}, {x, y, 0, 0}, i % 3 == 0));
+    x += 52;
+    if (x > 200) x = 4, y += 52;
+  }
+  return shape;
+}
+
+TEST(BakePage, IsTheSameForEveryNumberOfThreads) {
+  std::vector<ChartPlacement> placements;
+  const LitShape shape = many_charts(placements);
+  BakeOptions options = small_page(320);
+  options.linear = true;
+  for (const BakeMethod method : {BakeMethod::least_squares, BakeMethod::average}) {
+    options.method = method;
+    const auto one = bake(shape, placements, options, 1),
+               four = bake(shape, placements, options, 4);
+    ASSERT_TRUE(one.ok() && four.ok());
+    EXPECT_EQ(one->display.texels, four->display.texels);
+    EXPECT_EQ(one->linear.texels, four->linear.texels);
+    EXPECT_EQ(one->triangles, shape.scene.triangle_count());
+    EXPECT_EQ(one->covered_texels, four->covered_texels);
+  }
+}
+
+TEST(BakePage, TakesSliversAndTrianglesWithoutArea) {
+  LitShape shape = make_sheet({1, 1, 12, 12}, [](double u, double v) { return shown(u * v); });
+  std::mt19937 random(3);
+  for (std::size_t i = 0; i < shape.charts.uvs.size(); i += 3) {
+    Vec2d& q = shape.charts.uvs[i];
+    const Vec2d& other = shape.charts.uvs[(i + 1) % shape.charts.uvs.size()];
+    // Onto a neighbour, or nearly so.
+    q = {other.x + (random() % 3) * 1e-13, other.y + (random() % 3) * 1e-9};
+  }
+  for (const BakeMethod method : {BakeMethod::least_squares, BakeMethod::average}) {
+    BakeOptions options = small_page(64, method);
+    options.linear = true;
+    const auto page = bake(shape, {place(shape.charts, 0, {50, 50}, {4, 4, 0, 0})}, options);
+    ASSERT_TRUE(page.ok());
+    for (const float v : page->linear.texels) ASSERT_TRUE(v >= 0 && v <= 1.01f) << v;
+  }
+}
+
+TEST(BakePage, RefusesWhatCannotBe) {
+  const LitShape shape = make_sheet({1, 1, 2, 2}, [](double, double) { return shown(1); });
+  const ChartPlacement good = place(shape.charts, 0, {20, 20}, {4, 4, 0, 0});
+  const auto code = [&](auto change) {
+    BakeOptions o = small_page(32);
+    ChartPlacement p = good;
+    change(o, p);
+    return bake(shape, {p}, o).status().code();
+  };
+  using O = BakeOptions;
+  using P = ChartPlacement;
+  EXPECT_EQ(code([](O&, P&) {}), ErrorCode::ok);
+  EXPECT_EQ(code([](O&, P& p) { p.x = 1; }), ErrorCode::bad_input);  // its pad leaves the page
+  EXPECT_EQ(code([](O&, P& p) { p.y = 11; }), ErrorCode::bad_input);
+  EXPECT_EQ(code([](O&, P& p) { p.x = 2147483647; }), ErrorCode::bad_input);
+  EXPECT_EQ(code([](O&, P& p) { p.width = 0; }), ErrorCode::bad_input);
+  EXPECT_EQ(code([](O&, P& p) { p.chart = 7; }), ErrorCode::bad_input);
+  EXPECT_EQ(code([](O&, P& p) { p.texels_per_unit.y = 0; }), ErrorCode::bad_input);
+  EXPECT_EQ(code([](O& o, P&) { o.shifts = 0; }), ErrorCode::bad_option);
+  EXPECT_EQ(code([](O& o, P&) { o.mip_levels = 30; }), ErrorCode::bad_option);
+  EXPECT_EQ(code([](O& o, P&) { o.page_width = 0; }), ErrorCode::bad_option);
+}
+
+TEST(BakePage, StopsWhenCancelled) {
+  const LitShape shape = make_sheet({1, 1, 2, 2}, [](double, double) { return shown(1); });
+  const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+  const std::atomic<bool> stop{true};
+  Context context;
+  context.cancel = &stop;
+  const std::vector<ChartPlacement> p{place(shape.charts, 0, {20, 20}, {4, 4, 0, 0})};
+  const auto page = bake_page({sampler, shape.charts, kPlain}, p, small_page(32), context);
+  EXPECT_EQ(page.status().code(), ErrorCode::cancelled);
+}
+
+}  // namespace
+}  // namespace atlas

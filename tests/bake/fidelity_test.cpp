@@ -1,0 +1,136 @@
+#include "libatlas/bake/fidelity.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/bake/bake_fixture.h"
+
+namespace atlas {
+namespace {
+
+struct Setup {
+  LitShape shape;
+  LuminanceSampler sampler;
+  std::vector<ChartPlacement> placements;
+  ChartLight light() const { return {sampler, shape.charts, kPlain}; }
+};
+
+// Two lit sheets on pages 0 and 1, an unlit one on page 1, areas 1, 1 and 2.
+std::unique_ptr<Setup> two_pages() {
+  LitShape shape =
+      make_sheet({1, 1, 60, 60}, [](double u, double) { return shown(0.2 + 0.5 * u); });
+  append(shape, make_sheet({1, 1, 60, 60}, [](double, double v) { return shown(0.1 + 0.8 * v); }),
+         {0, 0, 1});
+  append(shape, make_sheet({2, 1, 3, 3}, [](double, double) { return Vec3f{}; }), {0, 0, 2});
+  LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+  auto s = std::unique_ptr<Setup>(new Setup{std::move(shape), std::move(sampler), {}});
+  s->sampler = LuminanceSampler(s->shape.scene, Quantity::illuminance);
+  s->placements = {place(s->shape.charts, 0, {100, 100}, {4, 4, 0, 0}),
+                   place(s->shape.charts, 1, {100, 100}, {4, 4, 0, 0}, true),
+                   place(s->shape.charts, 2, {8, 16}, {108, 4, 0, 0})};
+  s->placements[1].page = s->placements[2].page = 1;
+  return s;
+}
+
+std::vector<Image8> bake_pages(const Setup& s) {
+  std::vector<Image8> pages;
+  for (int page = 0; page < 2; ++page) {
+    std::vector<ChartPlacement> own;
+    for (const auto& p : s.placements)
+      if (p.page == page) own.push_back(p);
+    auto baked = bake_page(s.light(), own, small_page(128), Context{});
+    EXPECT_TRUE(baked.ok());
+    pages.push_back(baked->display);
+  }
+  return pages;
+}
+
+TEST(Fidelity, OfAPerfectBakeIsTheRoundingOfEightBits) {
+  const auto s = two_pages();
+  const std::vector<Image8> pages = bake_pages(*s);
+  FidelityMeter meter(s->light(), s->placements, {});
+  meter.add_page(0, pages[0]);
+  meter.add_page(1, pages[1]);
+  const Fidelity f = meter.result();
+  EXPECT_EQ(f.lit + f.unlit, 100000u);
+  EXPECT_NEAR(static_cast<double>(f.unlit), 50000, 10);  // by area, stratified
+  EXPECT_EQ(f.unplaced, 0u);
+  EXPECT_GT(f.psnr, 56);  // rounding alone: 58.9 dB
+  EXPECT_LT(f.maximum, 1.2 / 255);
+  EXPECT_GT(f.psnr_all, f.psnr);
+  EXPECT_GT(f.rmse, 0);
+  EXPECT_LT(f.rmse, 0.01);
+}
+
+TEST(Fidelity, MeasuresAKnownErrorExactly) {
+  const auto s = two_pages();
+  std::vector<Image8> pages = bake_pages(*s);
+  // One channel off by 20 codes everywhere: its PSNR is -20 log10(20/255) within rounding.
+  for (Image8& page : pages)
+    for (std::size_t i = 1; i < page.texels.size(); i += 3)
+      page.texels[i] = static_cast<std::uint8_t>(page.texels[i] + 20);
+  FidelityMeter meter(s->light(), s->placements, {});
+  meter.add_page(1, pages[1]);
+  meter.add_page(0, pages[0]);
+  const Fidelity f = meter.result();
+  EXPECT_NEAR(f.psnr_channel[1], -20 * std::log10(20.0 / 255), 0.05);
+  EXPECT_GT(f.psnr_channel[0], 56);
+  EXPECT_NEAR(f.psnr, f.psnr_channel[1] + 10 * std::log10(3.0), 0.05);
+  EXPECT_NEAR(f.p95, 20 / 255.0, 0.004);
+  EXPECT_NEAR(f.rmse_display, 20 / 255.0 / std::sqrt(3.0), 0.001);
+}
+
+TEST(Fidelity, DoesNotDependOnTheOrderOfPagesAndRepeats) {
+  const auto s = two_pages();
+  const std::vector<Image8> pages = bake_pages(*s);
+  const auto measure = [&](std::uint64_t seed, bool backwards) {
+    FidelityMeter meter(s->light(), s->placements, {20000, seed});
+    for (int i = 0; i < 2; ++i) meter.add_page(backwards ? 1 - i : i, pages[backwards ? 1 - i : i]);
+    return meter.result();
+  };
+  EXPECT_EQ(measure(1, false).psnr, measure(1, true).psnr);
+  EXPECT_EQ(measure(1, false).p999, measure(1, true).p999);
+  EXPECT_NE(measure(1, false).psnr, measure(2, false).psnr);
+  EXPECT_NEAR(measure(1, false).psnr, measure(2, false).psnr, 0.2);
+}
+
+TEST(Fidelity, CountsWhatHasNoPage) {
+  const auto s = two_pages();
+  const std::vector<Image8> pages = bake_pages(*s);
+  s->placements.pop_back();
+  FidelityMeter meter(s->light(), s->placements, {});
+  meter.add_page(0, pages[0]);  // page 1 never comes
+  const Fidelity f = meter.result();
+  EXPECT_NEAR(static_cast<double>(f.lit), 25000, 10);
+  EXPECT_NEAR(static_cast<double>(f.unplaced), 75000, 20);
+  EXPECT_EQ(f.unlit, 0u);
+  EXPECT_GT(f.psnr, 56);
+}
+
+TEST(Fidelity, LeavesClippedSamplesOutOfTheSceneUnits) {
+  auto s = two_pages();
+  for (Vec3f& e : s->shape.scene.illumination) e = {e.x * 4, e.y * 4, e.z * 4};
+  const std::vector<Image8> pages = bake_pages(*s);
+  FidelityMeter meter(s->light(), s->placements, {});
+  for (int i = 0; i < 2; ++i) meter.add_page(i, pages[i]);
+  const Fidelity f = meter.result();
+  EXPECT_GT(f.clipped, 1000u);
+  EXPECT_LT(f.clipped, f.lit);
+  EXPECT_LT(f.rmse, 0.02);  // clipping would show as tenths
+  EXPECT_GT(f.psnr, 45);
+}
+
+TEST(Fidelity, OfNothingIsNothing) {
+  LitShape shape = make_sheet({1, 1, 1, 1}, [](double, double) { return shown(1); });
+  for (Vec3f& p : shape.scene.positions) p = {};
+  const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+  const ChartLight light{sampler, shape.charts, kPlain};
+  const FidelityMeter meter(light, {}, {});
+  const Fidelity f = meter.result();
+  EXPECT_EQ(f.lit + f.unlit + f.unplaced, 0u);
+  EXPECT_EQ(f.psnr, 0);
+}
+
+}  // namespace
+}  // namespace atlas

@@ -1,0 +1,58 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "libatlas/bake/texel_grid.h"
+
+namespace atlas {
+namespace {
+
+TEST(FillUnknown, KeepsWhatIsKnownAndStaysBetweenItsExtremes) {
+  std::mt19937 random(2);
+  for (int trial = 0; trial < 60; ++trial) {
+    TexelGrid grid(1 + static_cast<int>(random() % 70), 1 + static_cast<int>(random() % 70));
+    const unsigned rarity = 1 + random() % 200;
+    for (std::size_t i = 0; i < grid.rgb.size(); ++i) {
+      if (random() % rarity) continue;
+      grid.known[i] = 1;
+      grid.rgb[i] = Lanes{0.25f + 0.001f * static_cast<float>(random() % 500), 0.5f, 1, 1};
+    }
+    const TexelGrid before = grid;
+    const std::size_t filled = fill_unknown(grid);
+    std::size_t unknown = 0;
+    for (std::size_t i = 0; i < grid.rgb.size(); ++i) unknown += !before.known[i];
+    EXPECT_EQ(filled, unknown);
+    for (std::size_t i = 0; i < grid.rgb.size(); ++i) {
+      if (before.known[i]) {
+        ASSERT_EQ(grid.rgb[i][0], before.rgb[i][0]);
+      }
+      if (unknown == grid.rgb.size()) {
+        ASSERT_EQ(grid.rgb[i][1], 0);  // nothing to go by
+        continue;
+      }
+      ASSERT_NEAR(grid.rgb[i][1], 0.5f, 1e-5);
+      ASSERT_GE(grid.rgb[i][0], 0.25f - 1e-5f);
+      ASSERT_LE(grid.rgb[i][0], 0.75f + 1e-5f);
+    }
+  }
+}
+
+TEST(FillUnknown, GoesSmoothlyFromOneSideToTheOther) {
+  TexelGrid grid(64, 8);
+  for (int y = 0; y < 8; ++y)
+    for (const int x : {0, 63}) {
+      grid.known[std::size_t(y) * 64 + x] = 1;
+      grid.rgb[std::size_t(y) * 64 + x] = splat_lanes(x ? 1.0f : 0.0f);
+    }
+  fill_unknown(grid);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 1; x < 64; ++x) {
+      const float a = grid.rgb[std::size_t(y) * 64 + x - 1][0];
+      const float b = grid.rgb[std::size_t(y) * 64 + x][0];
+      EXPECT_GE(b, a - 1e-5f);
+      EXPECT_LT(b - a, 0.15f);
+    }
+}
+
+}  // namespace
+}  // namespace atlas

@@ -1,0 +1,143 @@
+// No trilinear look-up of a chart sees another's texels: checked with charts of one colour each and
+// a mip chain made as graphics drivers make it.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/bake/bake_fixture.h"
+
+namespace atlas {
+namespace {
+
+ImageF halve(const ImageF& in) {
+  ImageF out(in.width / 2, in.height / 2, in.channels);
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x)
+      for (int k = 0; k < in.channels; ++k)
+        out.at(x, y)[k] = 0.25f * (in.at(2 * x, 2 * y)[k] + in.at(2 * x + 1, 2 * y)[k] +
+                                   in.at(2 * x, 2 * y + 1)[k] + in.at(2 * x + 1, 2 * y + 1)[k]);
+  return out;
+}
+
+// Charts of random sizes in boxes aligned to 2^levels, shelf by shelf, with no space between boxes.
+LitShape tiled(int levels, int page, std::vector<ChartPlacement>& placements) {
+  LitShape shape;
+  std::mt19937 random(17);
+  const int align = 1 << levels, pad = gutter_pad(levels);
+  const auto up = [&](int n) { return (n + align - 1) / align * align; };
+  int x = 0, y = 0, shelf = 0;
+  for (std::uint32_t i = 0;; ++i) {
+    const double w = 0.02 + (random() % 400) / 1000.0, h = 0.02 + (random() % 300) / 1000.0;
+    // Colours far from their neighbours' and from black.
+    const float red = srgb_decode(0.2f + 0.1f * static_cast<float>(i % 8));
+    const float green = srgb_decode(0.2f + 0.1f * static_cast<float>(i / 8 % 8));
+    const LitShape sheet = make_sheet({w, h, 2 + int(i % 5), 2, 0.2}, [&](double, double) {
+      return Vec3f{red, green, 1};
+    });
+    LitShape trial = shape;
+    append(trial, sheet, {0, 0, static_cast<float>(i)});
+    ChartPlacement p = place(trial.charts, i, {97, 97}, {0, 0, 0, 0}, i % 2);
+    const int bw = up(p.width + 2 * pad), bh = up(p.height + 2 * pad);
+    if (x + bw > page) x = 0, y += shelf, shelf = 0;
+    if (y + bh > page) return shape;
+    p.x = x + pad;
+    p.y = y + pad;
+    placements.push_back(p);
+    shape = trial;
+    x += bw;
+    shelf = std::max(shelf, bh);
+  }
+}
+
+TEST(Gutter, NoLookUpSeesANeighbourAtAnyPromisedLevel) {
+  for (const BakeMethod method : {BakeMethod::least_squares, BakeMethod::average})
+    for (int levels = 0; levels <= 4; ++levels) {
+      std::vector<ChartPlacement> placements;
+      const LitShape shape = tiled(levels, 256, placements);
+      ASSERT_GT(placements.size(), levels == 4 ? 8u : 20u);
+      BakeOptions options = small_page(256, method);
+      options.mip_levels = levels;
+      const auto page = bake(shape, placements, options);
+      ASSERT_TRUE(page.ok()) << page.status().message();
+      ImageF mip(256, 256, 3);
+      for (std::size_t i = 0; i < mip.texels.size(); ++i) mip.texels[i] = page->display.texels[i];
+      std::mt19937 random(1);
+      for (int level = 0; level <= levels; ++level) {
+        if (level > 0) mip = halve(mip);
+        for (const ChartPlacement& p : placements) {
+          const Vec3f e = shape.scene.illumination[shape.charts.charts[p.chart].first_uv];
+          const Vec3f want = kPlain.display(e);
+          for (int n = 0; n < 60; ++n) {
+            // Anywhere in the inner box, corners and sides first.
+            const double s = n < 4 ? n % 2 : (random() % 1001) / 1000.0;
+            const double t = n < 4 ? n / 2 : (random() % 1001) / 1000.0;
+            const double scale = std::ldexp(1.0, -level);
+            const Vec2d at{(p.x + s * p.width) * scale, (p.y + t * p.height) * scale};
+            ASSERT_NEAR(look_up(mip, at, 0), 255 * want.x, 0.51) << levels << ' ' << level;
+            ASSERT_NEAR(look_up(mip, at, 1), 255 * want.y, 0.51) << levels << ' ' << level;
+          }
+        }
+      }
+    }
+}
+
+// Two slanting strips whose boxes overlap, as the outline packer lays them.
+TEST(Gutter, OutlinedChartsKeepToTheirCells) {
+  LitShape shape = make_sheet({1, 0.1, 9, 2}, [](double, double) { return shown(0.4); });
+  append(shape, make_sheet({1, 0.1, 9, 2}, [](double, double) { return shown(0.9); }), {0, 0, 1});
+  std::vector<ChartPlacement> placements;
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    ChartPlacement p;
+    p.chart = i;
+    p.page = 0;
+    p.outlined = true;
+    p.cosine = p.sine = std::sqrt(0.5);
+    p.texels_per_unit = {64, 64};
+    p.offset = {16.3 + 28 * i, 10.9};
+    p.x = 8 + 2 + 28 * static_cast<int>(i);
+    p.y = 8 + 2;
+    p.width = p.height = 60 - 4;
+    placements.push_back(p);
+  }
+  for (const bool swapped : {false, true}) {
+    if (swapped) std::swap(placements[0], placements[1]);
+    const auto page = bake(shape, placements, small_page(128));
+    ASSERT_TRUE(page.ok()) << page.status().message();
+    ImageF mip(128, 128, 3);
+    for (std::size_t i = 0; i < mip.texels.size(); ++i) mip.texels[i] = page->display.texels[i];
+    for (int level = 0; level <= 2; ++level) {
+      if (level > 0) mip = halve(mip);
+      for (const ChartPlacement& p : placements)
+        for (int n = 0; n <= 400; ++n) {
+          const Vec2d uv{(n % 101) / 100.0, 0.1 * (n / 101) / 3.0};
+          const Vec2d at = page_texel(p, uv);
+          const double scale = std::ldexp(1.0, -level);
+          ASSERT_NEAR(look_up(mip, {at.x * scale, at.y * scale}, 0), p.chart ? 229.5 : 102, 0.51)
+              << level << ' ' << n;
+        }
+    }
+  }
+}
+
+TEST(Gutter, BoxesKeepWithinThemselves) {
+  std::vector<ChartPlacement> placements;
+  const LitShape shape = tiled(2, 256, placements);
+  const auto all = bake(shape, placements, small_page(256));
+  ASSERT_TRUE(all.ok());
+  // Without one chart the rest is the same, and its box is black.
+  const ChartPlacement gone = placements[5];
+  placements.erase(placements.begin() + 5);
+  const auto rest = bake(shape, placements, small_page(256));
+  ASSERT_TRUE(rest.ok());
+  const auto up = [](int n) { return (n + 3) / 4 * 4; };
+  const int pad = gutter_pad(2), x0 = gone.x - pad, y0 = gone.y - pad;
+  const int x1 = up(gone.x + gone.width + pad), y1 = up(gone.y + gone.height + pad);
+  for (int y = 0; y < 256; ++y)
+    for (int x = 0; x < 256; ++x) {
+      const bool in_box = x >= x0 && x < x1 && y >= y0 && y < y1;
+      ASSERT_EQ(rest->display.at(x, y)[2], in_box ? 0 : all->display.at(x, y)[2]);
+    }
+}
+
+}  // namespace
+}  // namespace atlas
