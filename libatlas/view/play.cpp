@@ -46,6 +46,7 @@ Result<PlaySummary> play_headless(GlContext& gl, Renderer& renderer, const PlayO
                                                options.record.string(), error.message())};
   }
   PlaySummary summary;
+  const std::int64_t errors_before = gl.debug_errors();
   std::vector<double> times;
   for (int f = 0; f < options.frames; ++f) {
     if (context.cancelled()) return Status::cancelled();
@@ -66,7 +67,7 @@ Result<PlaySummary> play_headless(GlContext& gl, Renderer& renderer, const PlayO
     if (Status s = write_png(options.screenshot, renderer.read_image(), {}); !s.ok()) return s;
   summary.frames = options.frames;
   summary.shadow_passes = renderer.shadow_passes();
-  summary.gl_errors = gl.debug_errors();
+  summary.gl_errors = gl.debug_errors() - errors_before;
   summary.median_seconds = spread_of(times).p50;
   if (summary.gl_errors > 0)
     return Status{ErrorCode::bad_input, fmt::format("OpenGL: {} errors, the first: {}",

@@ -1,0 +1,167 @@
+// Classic shadow maps against rays: Embree traces what each pixel sees and from there to the light.
+#include <embree3/rtcore.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <limits>
+
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/shadow/fit.h"
+#include "tests/view/shapes.h"
+
+namespace atlas::testing {
+namespace {
+
+class Rays {
+ public:
+  explicit Rays(const Scene& scene)
+      : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_)) {
+    RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* v = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(
+        g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f), scene.positions.size()));
+    std::copy(scene.positions.begin(), scene.positions.end(), v);
+    auto* i = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+        g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, scene.triangle_count()));
+    std::copy(scene.indices.begin(), scene.indices.end(), i);
+    rtcCommitGeometry(g);
+    rtcAttachGeometry(scene_, g);
+    rtcReleaseGeometry(g);
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    rtcCommitScene(scene_);
+  }
+  ~Rays() {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
+  Rays(const Rays&) = delete;
+  Rays& operator=(const Rays&) = delete;
+
+  struct Hit {
+    bool found = false;
+    glm::dvec3 point{0}, normal{0};
+  };
+  Hit first(const glm::dvec3& from, const glm::dvec3& along) const {
+    RTCRayHit r{};
+    set(r.ray, from, along, 0);
+    r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene_, &context, &r);
+    if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+    glm::dvec3 n = glm::normalize(glm::dvec3(r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z));
+    if (glm::dot(n, along) > 0) n = -n;
+    return {true, from + along * double(r.ray.tfar), n};
+  }
+  bool blocked(const glm::dvec3& from, const glm::dvec3& along) const {
+    RTCRay r{};
+    set(r, from, along, 1e-4f);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(scene_, &context, &r);
+    return r.tfar < 0;
+  }
+
+ private:
+  static void set(RTCRay& r, const glm::dvec3& o, const glm::dvec3& d, float near) {
+    r.org_x = float(o.x), r.org_y = float(o.y), r.org_z = float(o.z);
+    r.dir_x = float(d.x), r.dir_y = float(d.y), r.dir_z = float(d.z);
+    r.tnear = near;
+    r.tfar = std::numeric_limits<float>::infinity();
+    r.mask = 0xffffffffu;
+  }
+  RTCDevice device_;
+  RTCScene scene_;
+};
+
+struct Agreement {
+  int compared = 0, agreed = 0, edge = 0, lit = 0, shadowed = 0;
+};
+
+// The ray through a pixel's centre.
+glm::dvec3 pixel_ray(const Camera& c, int x, int y, int width, int height) {
+  const glm::dvec3 f = glm::normalize(to_glm(c.target) - to_glm(c.eye));
+  const glm::dvec3 r = glm::normalize(glm::cross(f, to_glm(c.up))), u = glm::cross(r, f);
+  const double t = std::tan(glm::radians(c.fov_degrees) / 2);
+  return glm::normalize(f + r * (t * width / height * (2 * (x + 0.5) / width - 1)) +
+                        u * (t * (2 * (y + 0.5) / height - 1)));
+}
+
+Agreement compare(const View& view, const Vec3d& light, const RenderOptions& options) {
+  Renderer renderer = must_render(view.scene, options);
+  EXPECT_TRUE(renderer.draw(view.camera, still(light)).ok());
+  const Image8 image = renderer.read_image();
+  FitOptions f;
+  f.resolution = options.map_resolution;
+  f.border_texels = options.map_resolution / 128.0;
+  const LightFit fit = *fit_light(light, renderer.bounds(), f);
+  const glm::dvec3 l = to_glm(fit.direction);
+  const glm::dvec3 side = glm::normalize(glm::cross(l, glm::dvec3(0.3, 0.9, 0.2)));
+  const glm::dvec3 other = glm::cross(l, side);
+  const Rays rays(view.scene);
+  Agreement a;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const Rays::Hit hit = rays.first(to_glm(view.camera.eye),
+                                       pixel_ray(view.camera, x, y, image.width, image.height));
+      if (!hit.found) continue;
+      const double nl = glm::dot(hit.normal, l);
+      const auto truth = [&](const glm::dvec3& p) {
+        return nl > 0 && !rays.blocked(p + hit.normal * 1e-4, l);
+      };
+      const bool lit = truth(hit.point);
+      // Within 2 texels of an edge if a ray from 2 texels beside, on the same plane, says
+      // otherwise.
+      bool edge = false;
+      for (int i = 0; i < 8 && nl > 0 && !edge; ++i) {
+        const double angle = i * 0.7853981633974483;
+        const glm::dvec3 o = (side * std::cos(angle) + other * std::sin(angle)) * (2 * fit.texel);
+        // Lifted a little: a neighbouring face may bend up into the plane.
+        const glm::dvec3 lift = hit.normal * (0.5 * fit.texel);
+        edge = truth(hit.point + o - l * (glm::dot(o, hit.normal) / nl) + lift) != lit;
+      }
+      if (edge) {
+        ++a.edge;
+        continue;
+      }
+      ++a.compared;
+      (lit ? a.lit : a.shadowed)++;
+      a.agreed += lit == (*image.at(x, y) > 127);
+    }
+  return a;
+}
+
+struct Case {
+  const char* name;
+  View (*view)();
+  Vec3d light;
+};
+
+TEST(Oracle, ClassicShadowsAgreeWithRaysAwayFromEdges) {
+  const Case cases[] = {{"courtyard", courtyard_view, {0.6, 1, 0.35}},
+                        {"courtyard, low sun", courtyard_view, {1, 0.35, -0.2}},
+                        {"room", room_view, {1, 0.7, 0.15}},
+                        {"pavilion", pavilion_view, {0.3, 0.8, 0.7}}};
+  for (int pcf : {0, 3})
+    for (const Case& c : cases) {
+      RenderOptions o;
+      o.width = 320;
+      o.height = 200;
+      o.map_resolution = 1024;
+      o.pcf = pcf;
+      o.shadows = ShadowMethod::classic;
+      o.show_visibility = true;
+      const Agreement a = compare(c.view(), c.light, o);
+      const double share = double(a.agreed) / a.compared;
+      RecordProperty("agreement", std::to_string(share));
+      std::printf("%-20s pcf %d: %.3f %% of %d pixels (%d lit, %d shadowed), %d near edges\n",
+                  c.name, pcf, share * 100, a.compared, a.lit, a.shadowed, a.edge);
+      EXPECT_GE(share, 0.99) << c.name << " pcf " << pcf;
+      EXPECT_GT(a.lit, 1000) << "the case shows light";
+      EXPECT_GT(a.shadowed, 1000) << "the case shows shadow";
+    }
+}
+
+}  // namespace
+}  // namespace atlas::testing

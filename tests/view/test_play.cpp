@@ -1,0 +1,144 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "libatlas/image/image_io.h"
+#include "libatlas/view/bench.h"
+#include "libatlas/view/play.h"
+#include "tests/view/shapes.h"
+
+namespace atlas::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Folder : public ::testing::Test {
+ protected:
+  Folder() {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    path_ = fs::temp_directory_path() / (std::string("atlas-view-") + info->name());
+    fs::remove_all(path_);
+    fs::create_directories(path_);
+  }
+  ~Folder() override { fs::remove_all(path_); }
+  fs::path path_;
+};
+
+using Play = Folder;
+using Bench = Folder;
+
+RenderOptions small() {
+  RenderOptions o;
+  o.width = 48;
+  o.height = 32;
+  o.map_resolution = 128;
+  return o;
+}
+
+TEST_F(Play, RecordsNumberedPicturesAndTheLastOne) {
+  const View view = courtyard_view();
+  Renderer r = must_render(view.scene, small());
+  PlayOptions o;
+  o.camera = view.camera;
+  o.light = *LightPath::make({});
+  o.frames = 3;
+  o.record = path_ / "series";
+  o.screenshot = path_ / "last.png";
+  const Result<PlaySummary> done = play_headless(software_context(), r, o, {});
+  ASSERT_TRUE(done.ok()) << done.status().message();
+  EXPECT_EQ(done->frames, 3);
+  for (const char* name : {"frame00000.png", "frame00001.png", "frame00002.png"}) {
+    const Result<Image8> image = read_image8(o.record / name);
+    ASSERT_TRUE(image.ok());
+    EXPECT_EQ(image->width, 48);
+  }
+  EXPECT_EQ(read_image8(o.record / "frame00002.png")->texels, read_image8(o.screenshot)->texels);
+}
+
+TEST_F(Play, ErrorsAreOneLine) {
+  const View view = courtyard_view();
+  Renderer r = must_render(view.scene, small());
+  PlayOptions o;
+  o.camera = view.camera;
+  std::ofstream(path_ / "file") << "x";
+  o.record = path_ / "file" / "series";
+  const Result<PlaySummary> done = play_headless(software_context(), r, o, {});
+  ASSERT_FALSE(done.ok());
+  EXPECT_EQ(done.status().code(), ErrorCode::io);
+  EXPECT_EQ(done.status().message().find('\n'), std::string::npos);
+  std::atomic<bool> cancel = true;
+  Context context;
+  context.cancel = &cancel;
+  o.record.clear();
+  EXPECT_EQ(play_headless(software_context(), r, o, context).status().code(), ErrorCode::cancelled);
+}
+
+TEST_F(Play, LoadsScenesAndSaysWhatIsWrongWithThem) {
+  std::ofstream(path_ / "one.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  std::ofstream(path_ / "none.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  EXPECT_EQ(load_view(path_ / "one.obj", false, {})->triangle_count(), 1u);
+  for (const char* name : {"none.obj", "absent.obj"}) {
+    const Result<ViewScene> v = load_view(path_ / name, false, {});
+    ASSERT_FALSE(v.ok());
+    EXPECT_NE(v.status().message().find(name), std::string::npos);
+    EXPECT_EQ(v.status().message().find('\n'), std::string::npos);
+  }
+}
+
+TEST_F(Play, KnowsWhichFilesHoldLight) {
+  std::ofstream(path_ / "a.gltf") << R"({"extensionsUsed":["KHR_materials_unlit"]})";
+  std::ofstream(path_ / "b.gltf") << "{}";
+  EXPECT_TRUE(textures_hold_light(path_ / "a.gltf"));
+  EXPECT_FALSE(textures_hold_light(path_ / "b.gltf"));
+  EXPECT_FALSE(textures_hold_light(path_ / "absent.gltf"));
+  EXPECT_TRUE(textures_hold_light("world.wrl"));
+  EXPECT_FALSE(textures_hold_light("scene.obj"));
+}
+
+TEST_F(Bench, MeasuresEveryCombinationAndWritesItsFiles) {
+  const View view = courtyard_view();
+  BenchOptions o;
+  o.render = small();
+  o.render.schedule.interval_frames = 2;
+  o.camera = view.camera;
+  o.frames = 4;
+  o.warm_up = 1;
+  o.error_intervals = {2, 4};
+  o.error_frames = 4;
+  const Renderer first = must_render(view.scene, o.render);
+  BenchResult r;
+  r.device = software_context().info().renderer;
+  const LightPath path = *LightPath::make({});
+  ASSERT_TRUE(bench_times(first, path, o, r).ok());
+  ASSERT_TRUE(bench_errors(first, path, o, r).ok());
+  EXPECT_EQ(r.runs.size(), 3u * 7u);
+  EXPECT_EQ(r.errors.size(), 2u * 6u);
+  for (const BenchRun& run : r.runs) {
+    EXPECT_EQ(run.frames.size(), 4u);
+    EXPECT_LE(run.cpu.p50, run.cpu.worst);
+    // Classic submits every caster in every frame, none never.
+    const std::uint32_t casters = run.frames[0].triangles_shadow;
+    if (run.method == ShadowMethod::classic) {
+      EXPECT_EQ(casters, view.scene.triangle_count());
+    }
+    if (run.method == ShadowMethod::none) {
+      EXPECT_EQ(casters, 0u);
+    }
+  }
+  ASSERT_TRUE(write_bench(r, path_ / "out").ok());
+  std::ifstream json_file(path_ / "out" / "summary.json");
+  const nlohmann::json j = nlohmann::json::parse(json_file);
+  EXPECT_EQ(j["runs"].size(), 21u);
+  EXPECT_EQ(j["errors"].size(), 12u);
+  std::ifstream csv(path_ / "out" / "frames.csv");
+  int lines = 0;
+  for (std::string line; std::getline(csv, line);) ++lines;
+  EXPECT_EQ(lines, 1 + 21 * 4);
+  EXPECT_TRUE(fs::exists(path_ / "out" / "plots.gp"));
+}
+
+}  // namespace
+}  // namespace atlas::testing

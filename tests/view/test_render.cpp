@@ -1,0 +1,188 @@
+// The renderer's promises: passes counted, work even, errors said in a line, no OpenGL errors.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "libatlas/shadow/light_path.h"
+#include "libatlas/view/gl_objects.h"
+#include "tests/view/shapes.h"
+
+namespace atlas::testing {
+namespace {
+
+RenderOptions small() {
+  RenderOptions o;
+  o.width = 160;
+  o.height = 100;
+  o.map_resolution = 256;
+  return o;
+}
+
+FrameLight sun_at(const LightPath& path, int frame) {
+  return {path.direction(frame * 0.5),
+          [&path, frame](int n) { return path.direction((frame + n) * 0.5); }};
+}
+
+TEST(Render, AStaticLightCostsExactlyOneShadowPass) {
+  const View view = courtyard_view();
+  RenderOptions o = small();
+  for (ShadowMethod method : kAllMethods) {
+    o.shadows = method;
+    Renderer r = must_render(view.scene, o);
+    std::uint64_t triangles = 0;
+    for (int f = 0; f < 40; ++f) {
+      const Result<FrameStats> s = r.draw(view.camera, still({1, 2, 0.5}));
+      ASSERT_TRUE(s.ok());
+      triangles += s->triangles_shadow;
+    }
+    const bool none = method == ShadowMethod::none;
+    EXPECT_EQ(r.shadow_passes(), none ? 0 : 1) << name_of(method);
+    EXPECT_EQ(triangles, none ? 0 : view.scene.triangle_count()) << name_of(method);
+  }
+}
+
+TEST(Render, SlicedWorkIsEven) {
+  const View view = pavilion_view();
+  const LightPath path = *LightPath::make({});
+  RenderOptions o = small();
+  o.shadows = ShadowMethod::linear;
+  Renderer r = must_render(view.scene, o);
+  double sum = 0, most = 0;
+  for (int f = 0; f < 65; ++f) {
+    const FrameStats s = *r.draw(view.camera, sun_at(path, f));
+    if (f == 0) continue;
+    const double work = s.triangles_shadow + s.triangles_lit;
+    sum += work / 64;
+    most = std::max(most, work);
+  }
+  EXPECT_LE(most, 1.1 * sum);
+}
+
+// A map drawn in slices over eight frames is the map drawn in one.
+TEST(Render, SlicesMakeTheSameMap) {
+  const View view = courtyard_view();
+  const LightPath path = *LightPath::make({});
+  RenderOptions o = small();
+  o.shadows = ShadowMethod::linear;
+  o.show_visibility = true;
+  Renderer sliced = must_render(view.scene, o);
+  o.schedule.sliced = false;
+  Renderer whole = must_render(view.scene, o);
+  for (int f = 0; f < 30; ++f) {
+    ASSERT_TRUE(sliced.draw(view.camera, sun_at(path, f)).ok());
+    ASSERT_TRUE(whole.draw(view.camera, sun_at(path, f)).ok());
+    ASSERT_EQ(sliced.read_image().texels, whole.read_image().texels) << f;
+  }
+}
+
+TEST(Render, SixHundredFramesOfEverythingWithoutAnError) {
+  const View view = courtyard_view();
+  const LightPath path = *LightPath::make({});
+  GlContext& gl = software_context();
+  RenderOptions o = small();
+  o.width = 64;
+  o.height = 40;
+  Renderer r = must_render(view.scene, o);
+  Camera camera = view.camera;
+  int frame = 0;
+  for (int round = 0; frame < 600; ++round) {
+    o.shading = Shading(round % 4);
+    o.shadows = kAllMethods[round % 7];
+    o.pcf = std::array{0, 1, 3, 5}[round / 2 % 4];
+    o.fit_view = round % 5 == 0;
+    o.show_visibility = round % 3 == 0;
+    o.map_resolution = round % 11 == 0 ? 512 : 256;
+    o.width = 64 + round % 3;
+    ASSERT_TRUE(r.set_options(o).ok());
+    for (int i = 0; i < 12; ++i, ++frame) {
+      fly(camera, {0.02, 0.01, 0}, 0.5, 0.1);
+      fit_planes(camera, r.bounds());
+      const Result<FrameStats> s = r.draw(camera, sun_at(path, frame));
+      ASSERT_TRUE(s.ok()) << s.status().message();
+    }
+  }
+  EXPECT_EQ(gl.debug_errors(), 0) << gl.first_debug_error();
+}
+
+TEST(Render, FittingToTheViewShowsTheSameShadowsFiner) {
+  const View view = courtyard_view();
+  RenderOptions o = small();
+  o.shadows = ShadowMethod::classic;
+  o.show_visibility = true;
+  Renderer whole = must_render(view.scene, o);
+  o.fit_view = true;
+  o.view_distance = 12;
+  Renderer fitted = must_render(view.scene, o);
+  const FrameLight light = still({0.6, 1, 0.35});
+  ASSERT_TRUE(whole.draw(view.camera, light).ok());
+  ASSERT_TRUE(fitted.draw(view.camera, light).ok());
+  const Image8 a = whole.read_image(), b = fitted.read_image();
+  int differ = 0;
+  for (std::size_t i = 0; i < a.texels.size(); i += 3)
+    differ += std::abs(a.texels[i] - b.texels[i]) > 127;
+  EXPECT_LT(differ, 0.02 * 160 * 100);
+}
+
+TEST(Render, ACameraThatLeavesTheFittedPartRefreshesTheKeys) {
+  const View view = pavilion_view();
+  RenderOptions o = small();
+  o.fit_view = true;
+  o.view_distance = 1.5;
+  Renderer r = must_render(view.scene, o);
+  Camera camera = view.camera;
+  ASSERT_TRUE(r.draw(camera, still({0, 1, 0})).ok());
+  EXPECT_FALSE(r.draw(camera, still({0, 1, 0}))->refreshed);
+  fly(camera, {5, 0, 0}, 0, 0);
+  EXPECT_TRUE(r.draw(camera, still({0, 1, 0}))->refreshed);
+}
+
+TEST(Render, ThePlanSaysWhatIsMissingAndWhy) {
+  RenderOptions o = small();
+  o.shading = Shading::unlit;
+  const std::vector<std::string> plan = must_render(courtyard(), o).plan();
+  ASSERT_EQ(plan.size(), 4u);
+  EXPECT_EQ(plan[0], "compiled: unlit");
+  EXPECT_NE(plan[1].find("no shadow maps"), std::string::npos);
+  EXPECT_NE(plan[2].find("no texture"), std::string::npos);
+  EXPECT_NE(plan[3].find("no baked light"), std::string::npos);
+}
+
+TEST(Render, WrongOptionsAreSaidAndChangeNothing) {
+  const View view = courtyard_view();
+  RenderOptions o = small();
+  Renderer r = must_render(view.scene, o);
+  for (int i = 0; i < 6; ++i) {
+    RenderOptions bad = o;
+    if (i == 0) bad.pcf = 2;
+    if (i == 1) bad.width = 0;
+    if (i == 2) bad.height = 1 << 20;
+    if (i == 3) bad.map_resolution = 1 << 20;
+    if (i == 4) bad.march_steps = 0;
+    if (i == 5) bad.schedule.interval_frames = 0;
+    const Status s = r.set_options(bad);
+    EXPECT_EQ(s.code(), ErrorCode::bad_option) << i;
+    EXPECT_EQ(s.message().find('\n'), std::string::npos);
+    EXPECT_TRUE(r.draw(view.camera, still({0, 1, 0})).ok()) << i;
+  }
+}
+
+TEST(Render, AShaderThatDoesNotCompileGivesOneLine) {
+  software_context();
+  const Result<GlProgram> p =
+      link_program("test", "#version 450 core\nvoid main() { gl_Position = vec4(0); }\n",
+                   "#version 450 core\nvoid main() { undefined_thing(); }\n");
+  ASSERT_FALSE(p.ok());
+  EXPECT_NE(p.status().message().find("test (fragment) does not compile"), std::string::npos);
+  EXPECT_EQ(p.status().message().find('\n'), std::string::npos);
+}
+
+TEST(Render, ALightOfNoDirectionGivesOneLine) {
+  const View view = courtyard_view();
+  Renderer r = must_render(view.scene, small());
+  EXPECT_FALSE(r.draw(view.camera, still({0, 0, 0})).ok());
+  EXPECT_TRUE(r.draw(view.camera, still({0, 1, 0})).ok());
+}
+
+}  // namespace
+}  // namespace atlas::testing

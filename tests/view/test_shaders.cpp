@@ -1,0 +1,69 @@
+#include <gtest/gtest.h>
+
+#include "libatlas/view/shaders.h"
+
+namespace atlas {
+namespace {
+
+bool has(const std::string& text, const char* word) {
+  return text.find(word) != std::string::npos;
+}
+
+TEST(Shaders, NothingIsCompiledThatIsNotUsed) {
+  for (Shading shading : {Shading::unlit, Shading::lambert, Shading::blinn_phong, Shading::ward})
+    for (ShadowSampling shadow :
+         {ShadowSampling::none, ShadowSampling::one, ShadowSampling::two, ShadowSampling::march})
+      for (bool textured : {false, true})
+        for (bool baked : {false, true}) {
+          ShaderFeatures f;
+          f.shading = shading;
+          f.shadow = shadow;
+          f.textured = textured;
+          f.baked_vertices = baked;
+          const ShaderText t = shader_text(f);
+          const bool lit = shading != Shading::unlit;
+          const bool shadows = lit && shadow != ShadowSampling::none;
+          EXPECT_EQ(has(t.fragment, "sampler2D diffuse"), textured);
+          EXPECT_EQ(has(t.vertex, "v_texcoord"), textured);
+          EXPECT_EQ(has(t.vertex, "v_illumination"), baked);
+          EXPECT_EQ(has(t.fragment, "v_illumination"), baked);
+          EXPECT_EQ(has(t.vertex, "v_normal"), lit);
+          EXPECT_EQ(has(t.fragment, "v_normal"), lit);
+          EXPECT_EQ(has(t.fragment, "sampler2DShadow"), shadows);
+          EXPECT_EQ(has(t.fragment, "sampler2DShadow map1"),
+                    shadows && shadow == ShadowSampling::two);
+          EXPECT_EQ(has(t.fragment, "sampler2D depth0"),
+                    shadows && shadow == ShadowSampling::march);
+          EXPECT_EQ(has(t.fragment, "float specular("),
+                    shading == Shading::blinn_phong || shading == Shading::ward);
+          EXPECT_EQ(has(t.fragment, "exp("), shading == Shading::ward);
+        }
+}
+
+TEST(Shaders, VisibilityNeedsNoColours) {
+  ShaderFeatures f;
+  f.visibility = true;
+  f.shadow = ShadowSampling::one;
+  f.textured = true;
+  f.baked_vertices = true;
+  const ShaderText t = shader_text(f);
+  for (const char* word : {"v_colour", "v_texcoord", "v_illumination", "diffuse;"}) {
+    EXPECT_FALSE(has(t.fragment, word)) << word;
+    EXPECT_FALSE(has(t.vertex, word)) << word;
+  }
+}
+
+TEST(Shaders, NamesTellWhatIsIn) {
+  ShaderFeatures f;
+  f.shading = Shading::unlit;
+  f.shadow = ShadowSampling::march;
+  EXPECT_EQ(feature_names(f), std::vector<std::string>{"unlit"});
+  f.shading = Shading::ward;
+  f.pcf = 5;
+  f.textured = true;
+  EXPECT_EQ(feature_names(f),
+            (std::vector<std::string>{"ward", "march", "pcf 5", "diffuse textures"}));
+}
+
+}  // namespace
+}  // namespace atlas

@@ -1,0 +1,114 @@
+// Colours of single pixels against the formulas evaluated here, in double.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <numbers>
+
+#include "libatlas/core/glm_bridge.h"
+#include "tests/view/shapes.h"
+
+namespace atlas::testing {
+namespace {
+
+double encoded(double value) {
+  return 255 * std::pow(std::clamp(value, 0.0, 1.0), 1 / 2.2);
+}
+
+class Plane : public ::testing::Test {
+ protected:
+  Plane() {
+    add_quad(scene_, {{-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}});
+    scene_.materials[0].diffuse = {0.6f, 0.4f, 0.2f};
+    camera_.eye = {1, 3, 2};
+    camera_.near_plane = 0.5;
+    options_.width = options_.height = 65;  // a pixel in the very middle
+    options_.map_resolution = 256;
+    options_.shadows = ShadowMethod::classic;
+  }
+  // The middle pixel, which sees the origin.
+  std::array<int, 3> middle(const Vec3d& light) {
+    Renderer r = must_render(scene_, options_);
+    EXPECT_TRUE(r.draw(camera_, still(light)).ok());
+    const Image8 image = r.read_image();
+    const std::uint8_t* p = image.at(32, 32);
+    return {p[0], p[1], p[2]};
+  }
+  Scene scene_;
+  Camera camera_;
+  RenderOptions options_;
+};
+
+TEST_F(Plane, Lambert) {
+  const glm::dvec3 l = glm::normalize(glm::dvec3(1, 2, -1));
+  const auto p = middle({1, 2, -1});
+  const double light = options_.ambient + options_.intensity * l.y;
+  EXPECT_NEAR(p[0], encoded(0.6 * light), 1.5);
+  EXPECT_NEAR(p[1], encoded(0.4 * light), 1.5);
+  EXPECT_NEAR(p[2], encoded(0.2 * light), 1.5);
+}
+
+TEST_F(Plane, SpecularTerms) {
+  const glm::dvec3 n(0, 1, 0), v = glm::normalize(glm::dvec3(1, 3, 2));
+  for (const glm::dvec3& l :
+       {glm::normalize(glm::dvec3(-1, 3, -2)), glm::normalize(glm::dvec3(-1.4, 3, -1.5))}) {
+    const glm::dvec3 h = glm::normalize(l + v);
+    const double nl = glm::dot(n, l), nv = glm::dot(n, v), nh = glm::dot(n, h);
+    options_.intensity = 0.5;
+    options_.specular = 0.2;
+    options_.shininess = 30;
+    options_.roughness = 0.3;
+    const double base = 0.4 * (options_.ambient + 0.5 * nl);
+    options_.shading = Shading::blinn_phong;
+    EXPECT_NEAR(middle(from_glm(l))[1], encoded(base + 0.5 * 0.2 * std::pow(nh, 30)), 1.5);
+    options_.shading = Shading::ward;
+    const double tangent = std::tan(std::acos(std::min(nh, 1.0)));
+    const double ward = 0.2 * std::exp(-tangent * tangent / 0.09) /
+                        (4 * std::numbers::pi * 0.09 * std::sqrt(nl * nv));
+    EXPECT_NEAR(middle(from_glm(l))[1], encoded(base + 0.5 * ward * nl), 1.5);
+  }
+}
+
+TEST_F(Plane, ShadowsNeverDarkenTheAmbientTerm) {
+  add_box(scene_, {-1, 1, -1}, {1, 1.1f, 1});
+  camera_.eye = {3, 0.8, 2.4};
+  for (Shading shading : {Shading::lambert, Shading::blinn_phong, Shading::ward}) {
+    options_.shading = shading;
+    EXPECT_NEAR(middle({0, 1, 0})[0], encoded(0.6 * options_.ambient), 1.5);
+  }
+}
+
+TEST_F(Plane, BakedLightIsShownAndTheSunAdded) {
+  scene_.illumination.assign(scene_.positions.size(), {200, 100, 50});
+  options_.exposure = 0.5;
+  options_.shading = Shading::unlit;
+  // The scale puts the luminance of this even light at one.
+  const double y = 0.2126 * 200 + 0.7152 * 100 + 0.0722 * 50;
+  EXPECT_NEAR(middle({0, 1, 0})[0], encoded(0.5 * 0.6 * 200 / y), 1.5);
+  options_.shading = Shading::lambert;
+  EXPECT_NEAR(middle({0, 1, 0})[0], encoded(0.5 * 0.6 * (200 / y + options_.intensity)), 1.5);
+}
+
+TEST_F(Plane, TexturesReflectOrShine) {
+  Texture t;
+  t.image = Image8(4, 4, 3, 128);  // sRGB 128 is 0.2158 linear
+  scene_.textures.push_back(t);
+  scene_.materials[0].texture = 0;
+  scene_.texcoords = {{0, 0}};
+  scene_.texcoord_indices.assign(scene_.indices.size(), 0);
+  const double light = options_.ambient + options_.intensity;
+  EXPECT_NEAR(middle({0, 1, 0})[0], encoded(0.6 * 0.2158 * light), 1.5);
+  software_context();
+  ViewSceneOptions baked;
+  baked.textures_hold_light = true;
+  const ViewScene view = *make_view_scene(scene_, baked);
+  options_.shading = Shading::unlit;
+  Result<Renderer> r = Renderer::make(view, options_);
+  ASSERT_TRUE(r.ok());
+  ASSERT_TRUE(r->draw(camera_, still({0, 1, 0})).ok());
+  EXPECT_NEAR(*r->read_image().at(32, 32), encoded(0.2158), 1.5);
+}
+
+}  // namespace
+}  // namespace atlas::testing

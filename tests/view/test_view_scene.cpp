@@ -1,0 +1,109 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "libatlas/view/view_scene.h"
+#include "tests/view/shapes.h"
+
+namespace atlas::testing {
+namespace {
+
+TEST(ViewScene, EveryTriangleIsInOneClusterAndInItsBall) {
+  for (const Scene& scene : {courtyard(), room(), pavilion()})
+    for (std::uint32_t size : {1u, 7u, 512u}) {
+      ViewSceneOptions o;
+      o.cluster_triangles = size;
+      const ViewScene v = *make_view_scene(scene, o);
+      EXPECT_EQ(v.indices.size(), scene.indices.size());
+      EXPECT_EQ(v.caster_indices.size(), scene.indices.size());
+      std::uint32_t next = 0;
+      for (const ViewScene::Cluster& c : v.clusters) {
+        EXPECT_EQ(c.first, next);
+        EXPECT_LE(c.count, 3 * size);
+        next = c.first + c.count;
+        for (std::uint32_t i = c.first; i < next; ++i) {
+          const Vec3f p = v.positions[v.indices[i]];
+          EXPECT_LE(std::hypot(p.x - c.centre.x, p.y - c.centre.y, p.z - c.centre.z), c.radius);
+        }
+      }
+      EXPECT_EQ(next, v.indices.size());
+    }
+}
+
+// The same multiset of triangles, by position, whatever order they are drawn in.
+TEST(ViewScene, DrawsAndCastsTheTrianglesOfTheScene) {
+  const Scene scene = room();
+  const ViewScene v = *make_view_scene(scene, {});
+  using Corner = std::tuple<float, float, float>;
+  const auto triangles = [](const std::vector<Vec3f>& p, const std::vector<std::uint32_t>& index) {
+    std::multiset<std::vector<Corner>> all;
+    for (std::size_t t = 0; t < index.size(); t += 3) {
+      std::vector<Corner> c;
+      for (int k = 0; k < 3; ++k)
+        c.emplace_back(p[index[t + k]].x, p[index[t + k]].y, p[index[t + k]].z);
+      all.insert(c);
+    }
+    return all;
+  };
+  const auto wanted = triangles(scene.positions, scene.indices);
+  EXPECT_EQ(triangles(v.positions, v.indices), wanted);
+  EXPECT_EQ(triangles(v.caster_positions, v.caster_indices), wanted);
+}
+
+TEST(ViewScene, NormalsAreFlatOnBoxesAndRadialOnSpheresAtEveryScale) {
+  for (float scale : {1e-4f, 1.0f, 1e4f}) {
+    Scene box, sphere;
+    add_box(box, {-scale, -scale, -scale}, {scale, scale, scale});
+    add_sphere(sphere, {0, 0, 0}, scale, 24);
+    const ViewScene b = *make_view_scene(box, {}), s = *make_view_scene(sphere, {});
+    for (const Vec3f& n : b.normals)
+      EXPECT_NEAR(std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)}), 1, 1e-6);
+    EXPECT_EQ(b.positions.size(), 24u) << "a corner of a box has three normals";
+    EXPECT_EQ(b.caster_positions.size(), 8u);
+    for (std::size_t i = 0; i < s.normals.size(); ++i) {
+      const Vec3f p = s.positions[i], n = s.normals[i];
+      EXPECT_GT((p.x * n.x + p.y * n.y + p.z * n.z) / scale, 0.99);
+    }
+  }
+}
+
+TEST(ViewScene, KeepsLightAndTexcoordsAtTheirVertices) {
+  Scene s;
+  add_quad(s, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  for (std::size_t i = 0; i < s.positions.size(); ++i) {
+    const Vec3f p = s.positions[i];
+    s.illumination.push_back({100 * p.x, 50 * p.y, 1});
+    s.texcoords.push_back({p.x, p.y});
+    s.texcoord_indices.push_back(std::uint32_t(i));
+  }
+  Texture t;
+  t.image = Image8(2, 2, 3, 128);
+  s.textures.push_back(t);
+  s.materials[0].texture = 0;
+  const ViewScene v = *make_view_scene(s, {});
+  ASSERT_TRUE(v.textured());
+  for (std::size_t i = 0; i < v.positions.size(); ++i) {
+    EXPECT_EQ(v.illumination[i].x, 100 * v.positions[i].x);
+    EXPECT_EQ(v.texcoords[i], (Vec2f{v.positions[i].x, v.positions[i].y}));
+  }
+  EXPECT_GT(v.light_scale, 0);
+  EXPECT_LT(v.light_scale, 0.1);
+}
+
+TEST(ViewScene, DegenerateTrianglesGiveFiniteNormals) {
+  Scene s;
+  add_quad(s, {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}});
+  add_quad(s, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}});
+  const ViewScene v = *make_view_scene(s, {});
+  for (const Vec3f& n : v.normals) EXPECT_NEAR(std::hypot(n.x, n.y, n.z), 1, 1e-5);
+}
+
+TEST(ViewScene, ASceneWithoutTrianglesIsSaidToBeOne) {
+  const Result<ViewScene> v = make_view_scene(Scene{}, {});
+  ASSERT_FALSE(v.ok());
+  EXPECT_NE(v.status().message().find("no triangles"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace atlas::testing
