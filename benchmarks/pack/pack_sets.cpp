@@ -2,6 +2,7 @@
 // every layout independently, and prints totals:
 //   pack_sets FOLDER_OR_FILE... [--rotate] [--preset fast|default|best] [--budget S] [--each]
 //   [--strip]
+//   [--engine skyline-bl|skyline-mw|max-rects]
 // --strip ignores H and opens the page upwards; the optimum is taken to be the area bound.
 #include <algorithm>
 #include <cstdio>
@@ -90,6 +91,11 @@ int main(int argc, char** argv) {
       options.preset = p == "fast"   ? atlas::PackPreset::fast
                        : p == "best" ? atlas::PackPreset::best
                                      : atlas::PackPreset::standard;
+    } else if (a == "--engine") {
+      const std::string e = argv[++i];
+      options.engine = e == "skyline-bl"   ? atlas::PackEngine::skyline_bottom_left
+                       : e == "skyline-mw" ? atlas::PackEngine::skyline_min_waste
+                                           : atlas::PackEngine::max_rects;
     } else if (a == "--budget") {
       options.time_budget = std::atof(argv[++i]);
     } else if (std::filesystem::is_directory(a)) {

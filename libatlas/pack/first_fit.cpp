@@ -4,6 +4,7 @@
 
 #include "libatlas/pack/page_index.h"
 #include "libatlas/pack/problem.h"
+#include "libatlas/pack/skyline.h"
 
 namespace atlas::pack {
 namespace {
@@ -61,17 +62,19 @@ std::vector<std::uint32_t> sorted_items(std::span<const Extent> items, Order ord
   return ids;
 }
 
-Layout pack_first_fit(const Problem& problem, std::span<const std::uint32_t> order,
-                      PlaceRule rule) {
+namespace {
+
+template <class Page>
+Layout first_fit(const Problem& problem, std::span<const std::uint32_t> order, PlaceRule rule) {
   Layout layout;
   layout.placements.resize(problem.items.size());
   const RemainingMinimum remaining(problem, order);
-  std::vector<FreeRects> pages;
+  std::vector<Page> pages;
   PageIndex index;
   const auto open_page = [&](Extent smallest) {
-    FreeRects page(problem.page);
+    Page page(problem.page);
     page.drop_smaller(smallest.width, smallest.height);
-    for (const Rect& pin : problem.pinned_on(pages.size())) page.place(pin);
+    for (const Rect& pin : problem.pinned_on(pages.size())) page.block(pin);
     index.push_back(page.room());
     pages.push_back(std::move(page));
   };
@@ -97,13 +100,23 @@ Layout pack_first_fit(const Problem& problem, std::span<const std::uint32_t> ord
     layout.unplaced += !layout.placements[order[i]].placed();
   }
   for (std::size_t p = 0; p < pages.size(); ++p)
-    if (!pages[p].placed().empty()) layout.pages = static_cast<std::uint32_t>(p + 1);
-  if (layout.pages == 1) {
+    if (!pages[p].empty()) layout.pages = static_cast<std::uint32_t>(p + 1);
+  if (layout.pages == 1)
     layout.last_used = pages[0].used_height();
-  } else if (layout.pages > 1) {
-    for (const Rect& r : pages[layout.pages - 1].placed()) layout.last_used += r.area();
-  }
+  else if (layout.pages > 1)
+    layout.last_used = pages[layout.pages - 1].filled();
   return layout;
+}
+
+}  // namespace
+
+Layout pack_first_fit(const Problem& problem, std::span<const std::uint32_t> order,
+                      PlaceRule rule) {
+  return first_fit<FreeRects>(problem, order, rule);
+}
+
+Layout pack_skyline(const Problem& problem, std::span<const std::uint32_t> order, PlaceRule rule) {
+  return first_fit<Skyline>(problem, order, rule);
 }
 
 }  // namespace atlas::pack

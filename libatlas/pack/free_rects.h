@@ -11,7 +11,8 @@ namespace atlas::pack {
 
 enum class PlaceRule {
   bottom_left,  // lowest top edge, then leftmost
-  contact,      // longest touching perimeter, then bottom-left
+  contact,      // longest touching perimeter, then bottom-left (maximal rectangles only)
+  min_waste,    // least area buried, then bottom-left (skyline only)
 };
 
 // A place found for an item; smaller (first, second, third) is better.
@@ -37,6 +38,12 @@ class FreeRects {
   Extent page() const { return page_; }
   const std::vector<Rect>& free() const { return free_; }
   const std::vector<Rect>& placed() const { return placed_; }
+  bool empty() const { return placed_.empty(); }
+  std::int64_t filled() const {
+    std::int64_t area = 0;
+    for (const Rect& r : placed_) area += r.area();
+    return area;
+  }
   std::int32_t used_height() const { return used_height_; }
 
   // Finds the best place by the rule; false if there is none. Sides must be positive.
@@ -44,6 +51,7 @@ class FreeRects {
 
   // Takes `rect`, wherever it lies in the page, out of the free space.
   void place(const Rect& rect);
+  void block(const Rect& rect) { place(rect); }
 
   // Forgets free rectangles that no item of at least these sides fits into.
   void drop_smaller(std::int32_t width, std::int32_t height);

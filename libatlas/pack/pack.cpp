@@ -6,12 +6,14 @@
 #include <bit>
 #include <cmath>
 
+#include "libatlas/pack/cells.h"
 #include "libatlas/pack/engines.h"
 #include "libatlas/pack/problem.h"
 
 namespace atlas {
 namespace {
 
+using pack::Cells;
 using pack::Layout;
 using pack::Problem;
 
@@ -51,50 +53,6 @@ Status check(std::span<const Extent> items, const PackOptions& o) {
                                                 i, items[i].width, items[i].height)};
   return {};
 }
-
-// Maps the user's texels to the packer's cells. An item with its padding to the right and above
-// takes whole cells; the page gains one padding, since none is needed at its far edge.
-class Cells {
- public:
-  explicit Cells(const PackOptions& o) : options_(o) {
-    origin_ = (o.border + o.alignment - 1) / o.alignment * o.alignment;
-  }
-
-  std::int64_t item(std::int64_t side) const {
-    return (side + options_.padding + options_.alignment - 1) / options_.alignment;
-  }
-  // Cells along a page side; 0 if nothing fits.
-  std::int32_t page(std::int64_t side) const {
-    const std::int64_t inner = side - options_.border - origin_ + options_.padding;
-    return static_cast<std::int32_t>(std::max<std::int64_t>(0, inner / options_.alignment));
-  }
-  // Page side, in texels, that holds this many cells.
-  std::int64_t page_side(std::int64_t cells) const {
-    return origin_ + cells * options_.alignment - options_.padding + options_.border;
-  }
-  std::int32_t texel(std::int32_t cell) const { return origin_ + cell * options_.alignment; }
-  std::int32_t corner() const { return origin_; }
-
-  // The cells that a pinned rectangle and the padding around it keep others out of.
-  Rect pinned(const Rect& r, Extent page_cells) const {
-    const std::int64_t a = options_.alignment, p = options_.padding;
-    const auto down = [&](std::int64_t v) { return v >= 0 ? v / a : -((-v + a - 1) / a); };
-    const auto cut = [](std::int64_t v, std::int32_t high) {
-      return static_cast<std::int32_t>(std::clamp<std::int64_t>(v, 0, high));
-    };
-    const std::int32_t x0 = cut(down(std::int64_t{r.x} - origin_), page_cells.width);
-    const std::int32_t y0 = cut(down(std::int64_t{r.y} - origin_), page_cells.height);
-    const std::int64_t right = std::int64_t{r.x} + r.width + p - origin_;
-    const std::int64_t top = std::int64_t{r.y} + r.height + p - origin_;
-    const std::int32_t x1 = cut(down(right + a - 1), page_cells.width);
-    const std::int32_t y1 = cut(down(top + a - 1), page_cells.height);
-    return {x0, y0, std::max(0, x1 - x0), std::max(0, y1 - y0)};
-  }
-
- private:
-  const PackOptions& options_;
-  std::int32_t origin_ = 0;
-};
 
 // The items that the engines get to see, in cells, and who they are.
 struct Active {

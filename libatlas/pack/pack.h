@@ -31,10 +31,18 @@ struct Placement {
 };
 
 enum class PackPreset {
-  fast,      // one pass, skyline bottom-left with a waste map; linear-ish in the number of items
+  fast,      // one pass over the gaps of the skyline, widest item first: O(n log n)
   standard,  // the better of a few passes of free-rectangle and skyline engines within a small
              // effort
   best,      // standard, then local search over orders until a time or effort budget is spent
+};
+
+// Which packer does the work; automatic lets the preset choose.
+enum class PackEngine {
+  automatic,
+  skyline_bottom_left,  // first fit by height over skylines with waste maps, lowest place first
+  skyline_min_waste,    // the same, place with the least buried area first
+  max_rects,            // first fit by height over lists of maximal free rectangles
 };
 
 // A rectangle that must stay where it is. Nothing else is put there; it may lie anywhere in a page.
@@ -57,6 +65,7 @@ struct PackOptions {
   bool power_of_two = false;  // each side rounded up to a power of two (needs page sides to be)
   bool square = false;
   PackPreset preset = PackPreset::standard;
+  PackEngine engine = PackEngine::automatic;
   // Limits of `best`. The result depends on effort and seed only, never on the thread count, as
   // long as the time limit does not strike first.
   double time_budget = 1.0;  // wall seconds; infinity allowed

@@ -47,4 +47,7 @@ std::vector<std::uint32_t> sorted_items(std::span<const Extent> items, Order ord
 // Every item, in this order, into the first page with room, by maximal free rectangles.
 Layout pack_first_fit(const Problem& problem, std::span<const std::uint32_t> order, PlaceRule rule);
 
+// The same by skylines with waste maps.
+Layout pack_skyline(const Problem& problem, std::span<const std::uint32_t> order, PlaceRule rule);
+
 }  // namespace atlas::pack

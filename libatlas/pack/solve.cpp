@@ -50,6 +50,16 @@ Layout solve(const Problem& problem, const PackOptions& options, const Context& 
   if (problem.items.empty()) return {};
   const bool strip = options.page.height == 0;
   const SearchLimits limits = limits_for(problem, options, strip);
+  if (options.engine != PackEngine::automatic) {
+    const std::vector<std::uint32_t> order = sorted_items(problem.items, Order::height);
+    result.layouts_tried = 1;
+    result.page_lower_bound = strip ? 1 : page_bound(problem);
+    if (options.engine == PackEngine::max_rects)
+      return pack_first_fit(problem, order, PlaceRule::bottom_left);
+    return pack_skyline(problem, order,
+                        options.engine == PackEngine::skyline_min_waste ? PlaceRule::min_waste
+                                                                        : PlaceRule::bottom_left);
+  }
   if (!problem.pinned.empty()) {
     SearchLimits pinned = limits;
     if (options.preset != PackPreset::best) pinned.layouts = 1;
