@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <stdexcept>
 #include <unordered_map>
+#include <utility>
 
 namespace cabin {
 namespace {
@@ -115,6 +116,11 @@ Mesh Builder::finish(std::vector<SurfaceMaterial> materials) const {
              p2 = mesh.vertices[v[2]].point;
     if (p0 != p1 && p1 != p2 && p2 != p0) mesh.triangles.push_back(triangle);
   }
+  // Parts are modelled piece by piece; files want each object in one go.
+  std::stable_sort(mesh.triangles.begin(), mesh.triangles.end(),
+                   [](const Triangle& a, const Triangle& b) {
+                     return std::pair(a.object, a.material) < std::pair(b.object, b.material);
+                   });
   mesh.points = Id(points.size());
   mesh.curved = !coarse_;
   return mesh;

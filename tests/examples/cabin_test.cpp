@@ -96,6 +96,18 @@ TEST(Cabin, NamesTheDoorAndItsFrame) {
     EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
 }
 
+// Each object's triangles follow each other, so that files name it once.
+TEST(Cabin, ObjectsAreWhole) {
+  std::set<int> seen;
+  int current = -1;
+  for (const Triangle& t : shared_cabin().triangles) {
+    if (t.object == current) continue;
+    current = t.object;
+    EXPECT_TRUE(seen.insert(current).second) << shared_cabin().objects[t.object];
+  }
+  EXPECT_EQ(seen.size(), shared_cabin().objects.size());
+}
+
 // Refinement may leave no vertex inside an edge: closed objects stay closed, each edge used twice.
 TEST(Cabin, RefinementConforms) {
   const Mesh& mesh = shared_cabin();
