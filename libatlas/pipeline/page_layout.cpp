@@ -2,9 +2,39 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace atlas {
 namespace {
+
+// The charts as the packer sees outlines: corners in texels at scale 1, triangles local to a chart.
+struct Outlines {
+  std::vector<Vec2d> corners;
+  std::vector<std::uint32_t> triangles;
+  std::vector<ChartShape> shapes;
+
+  Outlines(const ChartSet& set, std::span<const Vec2d> density) : corners(set.uvs.size()) {
+    triangles.reserve(3 * set.chart_triangles.size());
+    for (std::size_t c = 0; c < set.charts.size(); ++c) {
+      const Chart& chart = set.charts[c];
+      for (std::uint32_t i = chart.first_uv; i < chart.first_uv + chart.uv_count; ++i) {
+        corners[i] = {set.uvs[i].x * density[c].x, set.uvs[i].y * density[c].y};
+      }
+      for (std::uint32_t i = 0; i < chart.triangle_count; ++i) {
+        const std::size_t t = set.chart_triangles[chart.first_triangle + i];
+        for (int k = 0; k < 3; ++k) {
+          triangles.push_back(set.triangle_uv[3 * t + k] - chart.first_uv);
+        }
+      }
+    }
+    for (const Chart& chart : set.charts) {
+      shapes.push_back({std::span(corners).subspan(chart.first_uv, chart.uv_count),
+                        std::span(triangles)
+                            .subspan(3 * std::size_t(chart.first_triangle),
+                                     3 * std::size_t(chart.triangle_count))});
+    }
+  }
+};
 
 // What is left of a side after the common scale: sides stop at the smallest one allowed.
 double scaled_density(double density, double side, double scale, double minimum_side) {
@@ -12,12 +42,36 @@ double scaled_density(double density, double side, double scale, double minimum_
   return side > 0 ? density * std::max(scale, floor_side / side) : density * scale;
 }
 
-double chart_texel_area(const ChartSet& charts, const std::vector<ChartPlacement>& placements) {
-  double area = 0;
-  for (const ChartPlacement& p : placements) {
+ChartPlacement boxed(const FitPlacement& from, const LayoutOptions& options) {
+  ChartPlacement to;
+  to.rotated = from.rotated;
+  to.width = from.rotated ? from.content_height : from.content_width;
+  to.height = from.rotated ? from.content_width : from.content_height;
+  to.x = from.box.x + options.padding;
+  to.y = from.box.y + options.padding;
+  return to;
+}
+
+ChartPlacement outlined(const FitPlacement& from, const LayoutOptions& options) {
+  ChartPlacement to;
+  to.outlined = true;
+  to.offset = from.offset;
+  to.cosine = std::cos(from.angle);
+  to.sine = std::sin(from.angle);
+  to.x = from.box.x + options.padding;
+  to.y = from.box.y + options.padding;
+  to.width = from.box.width - 2 * options.padding;
+  to.height = from.box.height - 2 * options.padding;
+  return to;
+}
+
+double uv_utilization(const ChartSet& charts, const PageLayout& layout) {
+  double area = 0, page_area = 0;
+  for (const ChartPlacement& p : layout.placements) {
     area += charts.charts[p.chart].distortion.uv_area * p.texels_per_unit.x * p.texels_per_unit.y;
   }
-  return area;
+  for (const Extent& page : layout.pages) page_area += double(page.area());
+  return page_area > 0 ? area / page_area : 0;
 }
 
 }  // namespace
@@ -34,8 +88,13 @@ Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> 
   fit.page_size = options.page_size;
   fit.padding = options.padding;
   fit.alignment = options.alignment;
-  fit.minimum_side = options.minimum_side;
+  fit.minimum_side = options.outlines ? 0 : options.minimum_side;
   fit.preset = options.preset;
+  std::optional<Outlines> outlines;
+  if (options.outlines) {
+    outlines.emplace(charts, texels_per_unit);
+    fit.shapes = outlines->shapes;
+  }
   Result<FitResult> fitted = fit_pages(items, fit, context);
   if (!fitted.ok()) return fitted.status();
 
@@ -48,22 +107,15 @@ Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> 
   for (std::size_t c = 0; c < items.size(); ++c) {
     const FitPlacement& from = fitted->placements[c];
     ChartPlacement& to = layout.placements[c];
+    to = options.outlines ? outlined(from, options) : boxed(from, options);
     to.chart = std::uint32_t(c);
     to.page = std::int32_t(from.page);
-    to.rotated = from.rotated;
-    to.x = from.box.x + options.padding;
-    to.y = from.box.y + options.padding;
-    to.width = from.rotated ? from.content_height : from.content_width;
-    to.height = from.rotated ? from.content_width : from.content_height;
     to.texels_per_unit = {scaled_density(texels_per_unit[c].x, items[c].width, layout.scale,
-                                         options.minimum_side),
+                                         fit.minimum_side),
                           scaled_density(texels_per_unit[c].y, items[c].height, layout.scale,
-                                         options.minimum_side)};
+                                         fit.minimum_side)};
   }
-  double page_area = 0;
-  for (const Extent& page : layout.pages) page_area += double(page.area());
-  layout.uv_utilization =
-      page_area > 0 ? chart_texel_area(charts, layout.placements) / page_area : 0;
+  layout.uv_utilization = uv_utilization(charts, layout);
   return layout;
 }
 
