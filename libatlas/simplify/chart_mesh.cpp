@@ -88,6 +88,18 @@ void ChartMesh::ring(std::uint32_t v, Ring& out) const {
   } while (h != first || out.border);
 }
 
+std::size_t ChartMesh::valence(std::uint32_t v, std::size_t limit) const {
+  const Mesh& mesh = impl_->mesh;
+  const Half first = mesh.halfedge_handle(vertex(v));
+  Half h = first;
+  std::size_t count = 0;
+  do {
+    ++count;
+    h = mesh.opposite_halfedge_handle(mesh.prev_halfedge_handle(h));
+  } while (h != first && count < limit);
+  return count;
+}
+
 bool ChartMesh::can_collapse(std::uint32_t v, std::uint32_t w) {
   const Half h = impl_->mesh.find_halfedge(vertex(v), vertex(w));
   return h.is_valid() && impl_->mesh.is_collapse_ok(h);

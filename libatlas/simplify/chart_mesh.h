@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -25,6 +26,8 @@ class ChartMesh {
   ChartMesh(ChartMesh&&) noexcept;
 
   void ring(std::uint32_t v, Ring& out) const;
+  // Number of neighbours, counted no further than `limit`.
+  std::size_t valence(std::uint32_t v, std::size_t limit) const;
   // Whether v may be merged into its neighbour w without making the mesh non-manifold.
   bool can_collapse(std::uint32_t v, std::uint32_t w);
   void collapse(std::uint32_t v, std::uint32_t w);

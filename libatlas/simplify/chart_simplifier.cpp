@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/predicates.h"
@@ -21,6 +22,10 @@ constexpr double kNeedle = 0.1;
 constexpr double kThinnest = 2e-4, kNoArea = 1e-7;
 // Around a vertex with many neighbours only the nearest are tried as targets.
 constexpr std::size_t kManyNeighbours = 14, kNearest = 8;
+// Collapses do not give a vertex more neighbours than this, and a vertex that has more from the
+// start is looked at once a run only, not after each of its neighbours' collapses: both would take
+// quadratic time.
+constexpr std::size_t kHub = 96;
 constexpr std::size_t kAttempts = 4;  // targets whose bounds are checked before a vertex rests
 
 // Exactly the sign of the orientation; the plain determinant decides when rounding cannot matter.
@@ -240,7 +245,24 @@ bool ChartSimplifier::check(const BorderStep& border, Collapse& collapse) {
     collapse.faces.push_back(star.ring.faces[i]);
     collapse.bounds.push_back(found);
   }
-  return mesh_.can_collapse(collapse.v, collapse.w);
+  return !grows_hub(collapse) && mesh_.can_collapse(collapse.v, collapse.w);
+}
+
+bool ChartSimplifier::grows_hub(const Collapse& collapse) const {
+  const std::size_t neighbours = star_->size();
+  if (neighbours <= 4) return false;
+  const std::size_t now = mesh_.valence(collapse.w, kHub + 1);
+  return now + neighbours - 4 > std::max(kHub, now);
+}
+
+void ChartSimplifier::wake(std::uint32_t v, float cost) {
+  if (key_.empty() || key_[v] != kIdle) return;
+  if (mesh_.valence(v, kHub + 1) <= kHub) {
+    push(v, cost);
+  } else if (!hub_[v]) {
+    hub_[v] = true;
+    hubs_.push_back(v);
+  }
 }
 
 void ChartSimplifier::apply(const Collapse& collapse) {
@@ -253,8 +275,8 @@ void ChartSimplifier::apply(const Collapse& collapse) {
   for (const std::uint32_t u : star_->ring.vertices) {
     if (fine_.border(u)) {
       touched_.push_back(u);
-    } else if (!key_.empty() && key_[u] == kIdle) {
-      push(u, static_cast<float>(collapse.cost));
+    } else {
+      wake(u, static_cast<float>(collapse.cost));
     }
   }
   star_->vertex = kNone;
@@ -304,6 +326,7 @@ bool ChartSimplifier::rank(std::uint32_t v) {
 
 void ChartSimplifier::queue_all() {
   key_.assign(fine_.vertex_count(), kIdle);
+  hub_.assign(fine_.vertex_count(), false);
   for (std::uint32_t v = 0; v < fine_.vertex_count(); ++v) {
     if (fine_.border(v) || !rank(v)) continue;
     key_[v] = static_cast<float>(candidates_[0].cost);
@@ -317,7 +340,7 @@ void ChartSimplifier::queue_all() {
 void ChartSimplifier::process(std::uint32_t v, float cost) {
   if (!rank(v)) return;
   const float fresh = static_cast<float>(candidates_[0].cost);
-  if (fresh > cost && fresh > next_cost()) {
+  if (fresh > cost && fresh > top_cost()) {
     push(v, fresh);
     return;
   }
@@ -332,6 +355,10 @@ void ChartSimplifier::process(std::uint32_t v, float cost) {
 
 void ChartSimplifier::run(double limit, const Context& context) {
   if (key_.empty() && fine_.vertex_count() > 0) queue_all();
+  for (const std::uint32_t v : std::exchange(hubs_, {})) {
+    hub_[v] = false;
+    if (mesh_.vertex_alive(v) && key_[v] == kIdle) push(v, 0.0F);
+  }
   for (std::size_t steps = 0; !heap_.empty() && heap_.front().cost <= limit; ++steps) {
     if (steps % 256 == 0 && context.cancelled()) return;
     const Entry top = heap_.front();
@@ -345,8 +372,12 @@ void ChartSimplifier::run(double limit, const Context& context) {
   }
 }
 
-double ChartSimplifier::next_cost() const {
+double ChartSimplifier::top_cost() const {
   return heap_.empty() ? kIdle : heap_.front().cost;
+}
+
+double ChartSimplifier::next_cost() const {
+  return hubs_.empty() ? top_cost() : 0;
 }
 
 std::vector<std::uint32_t> ChartSimplifier::take_touched() {

@@ -80,6 +80,9 @@ class ChartSimplifier {
   void push(std::uint32_t v, float cost);
   void queue_all();
   void pick_targets(std::vector<std::size_t>& out) const;
+  double top_cost() const;
+  bool grows_hub(const Collapse& collapse) const;
+  void wake(std::uint32_t v, float cost);
   bool rank(std::uint32_t v);
   void process(std::uint32_t v, float cost);
 
@@ -93,6 +96,8 @@ class ChartSimplifier {
   std::vector<float> key_;                    // cost under which a vertex is queued, or infinity
   std::vector<Entry> heap_;
   std::vector<std::uint32_t> touched_;
+  std::vector<std::uint32_t> hubs_;   // vertices with very many neighbours, looked at once a run
+  std::vector<bool> hub_;             // 1 a vertex: is one, and waits in hubs_
   std::vector<Estimate> candidates_;  // of the vertex at hand, cheapest first
   std::vector<std::size_t> targets_;
   Collapse attempt_;

@@ -143,6 +143,25 @@ TEST(SimplifyHostile, FarFromTheOriginAndTiny) {
   EXPECT_EQ(open_edges(mesh.positions, coarse.indices).count, 0U);
 }
 
+TEST(SimplifyHostile, AFanOfManyTriangles) {
+  // A disc with one vertex in the middle and all others on its rim.
+  constexpr std::uint32_t n = 8000;
+  Vertices vertices = {flat_vertex(0, 0)};
+  std::vector<std::uint32_t> triangles;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double angle = 2 * 3.14159265358979 * i / n;
+    vertices.push_back(flat_vertex(std::cos(angle), std::sin(angle)));
+    triangles.insert(triangles.end(), {0, 1 + i, 1 + (i + 1) % n});
+  }
+  ChartedMeshBuilder builder;
+  builder.add_chart(vertices, triangles);
+  const ChartedMesh mesh = builder.build();
+  const SimplifiedMesh coarse = simplify(mesh, 100);
+  EXPECT_EQ(broken_triangles(mesh, coarse), 0U);
+  EXPECT_LT(coarse.triangles_out, 500U);
+  EXPECT_LT(coarse.cpu_seconds, 5);  // ranking the middle again after each would take far longer
+}
+
 TEST(SimplifyHostile, EmptyAndSmall) {
   const ChartedMesh nothing;
   EXPECT_EQ(simplify(nothing, 1).triangles_out, 0U);

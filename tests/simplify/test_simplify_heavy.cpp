@@ -1,0 +1,35 @@
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "libatlas/core/clock.h"
+#include "tests/simplify/checks.h"
+#include "tests/simplify/expect_sound.h"
+
+namespace atlas {
+namespace {
+
+using namespace simplify_test;
+
+TEST(SimplifyHeavy, ThreeMillionTrianglesOfWalls) {
+  const ChartedMesh mesh = box(500);
+  const SimplifiedMesh coarse = simplify(mesh, 3000);
+  EXPECT_EQ(coarse.triangles_in, 3000000U);
+  EXPECT_EQ(coarse.triangles_out, 12U);
+  EXPECT_EQ(broken_triangles(mesh, coarse), 0U);
+  std::printf("%.2f CPU s\n", coarse.cpu_seconds);
+}
+
+TEST(SimplifyHeavy, ThreeMillionTrianglesOfASphere) {
+  const ChartedMesh mesh = sphere(500);
+  const std::int64_t before = peak_memory();
+  const SimplifiedMesh coarse = simplify(mesh, 500);
+  const double bytes = double(peak_memory() - before) / double(coarse.triangles_in);
+  std::printf("%.2f CPU s, %.0f more bytes a triangle than before\n", coarse.cpu_seconds, bytes);
+  EXPECT_LT(bytes, 300);
+  expect_sound(mesh, coarse, 500);
+  EXPECT_LT(coarse.triangles_out, 30000U);
+}
+
+}  // namespace
+}  // namespace atlas
