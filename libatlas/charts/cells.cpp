@@ -235,13 +235,14 @@ class Seeder {
     }
   }
 
-  // A grain's normal; of several triangles, with its neighbours', for a few triangles may lean by
-  // noise alone.
+  // A grain's normal; of several triangles, with its neighbours' in the cell, for a few triangles
+  // may lean by noise alone.
   glm::vec3 calm_normal(std::uint32_t g) const {
     if (grains_.size[g] < kCalmGrain) return grains_.normal[g];
     glm::vec3 sum = grains_.area[g] * grains_.normal[g];
     for (std::uint32_t i = grains_.first[g]; i < grains_.first[g + 1]; ++i) {
       const std::uint32_t n = grains_.neighbour[i];
+      if (owner_[n] != owner_[g]) continue;  // it may lie beyond a crease
       sum += grains_.area[n] * grains_.normal[n];
     }
     const float length = glm::length(sum);

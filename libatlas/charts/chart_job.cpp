@@ -19,13 +19,21 @@ constexpr double kOpenCone = 85 * M_PI / 180;
 // Altitude kept for slivers, relative to the square root of the chart's area.
 constexpr double kMinAltitude = 1e-7;
 
+// Charts of fewer triangles are squeezed towards this stretch even where the bound is wider: it
+// costs them little.
+constexpr std::size_t kLargeChart = 20000;
+constexpr double kAimedStretch = 1.18;
 // Seams that one chart may get into its inside before it is divided instead.
 constexpr int kMaxCuts = 3;
 
 class ChartJob {
  public:
-  ChartJob(const FlattenInput& input, Partition& partition, ChartScratch& scratch)
-      : input_(input), partition_(partition), scratch_(scratch), chart_(scratch.chart) {}
+  ChartJob(const FlattenInput& input, Partition& partition, ChartScratch& scratch, int rings)
+      : input_(input),
+        partition_(partition),
+        scratch_(scratch),
+        chart_(scratch.chart),
+        rings_(rings) {}
 
   ChartOutcome run(std::span<const std::uint32_t> triangles) {
     build(triangles);
@@ -71,20 +79,36 @@ class ChartJob {
            cut_to_border(input_.topology, chart_, result_.offenders, partition_);
   }
 
-  // Where the border crosses itself in a few places, one triangle of each crossing pair.
+  // Where the border crosses itself in a few places: triangles around one side of each crossing,
+  // nearest first.
   void list_removable(ChartOutcome& outcome) const {
     if (!result_.within_bound || result_.crossings.empty()) return;
-    const std::size_t limit = std::max<std::size_t>(2, chart_.triangles().size() / 50);
+    std::vector<std::uint8_t> listed(chart_.triangles().size(), 0);
     for (const BorderCrossing& crossing : result_.crossings) {
       const std::uint32_t t = links(crossing.triangle_b) < links(crossing.triangle_a)
                                   ? crossing.triangle_b
                                   : crossing.triangle_a;
-      outcome.remove.push_back(chart_.triangles()[t]);
+      if (listed[t]) continue;
+      std::size_t begin = outcome.remove.size();
+      listed[t] = 1;
+      outcome.remove.push_back(t);
+      for (int ring = 0; ring < rings_; ++ring) {
+        const std::size_t end = outcome.remove.size();
+        for (; begin < end; ++begin) {
+          for (std::uint32_t h = 3 * outcome.remove[begin]; h < 3 * outcome.remove[begin] + 3;
+               ++h) {
+            const std::uint32_t o = chart_.opposite[h];
+            if (o == kNoIndex || listed[o / 3]) continue;
+            listed[o / 3] = 1;
+            outcome.remove.push_back(o / 3);
+          }
+        }
+      }
     }
-    std::sort(outcome.remove.begin(), outcome.remove.end());
-    outcome.remove.erase(std::unique(outcome.remove.begin(), outcome.remove.end()),
-                         outcome.remove.end());
-    if (outcome.remove.size() > limit) outcome.remove.clear();
+    if (outcome.remove.size() > std::max<std::size_t>(2, chart_.triangles().size() / 20)) {
+      outcome.remove.clear();
+    }
+    for (std::uint32_t& t : outcome.remove) t = chart_.triangles()[t];
   }
 
   int links(std::uint32_t t) const {
@@ -114,8 +138,11 @@ class ChartJob {
   ParamOptions param_options(const LocalMesh& mesh) {
     const ChartOptions& options = input_.options;
     ParamOptions param;
-    param.max_stretch =
-        std::min(options.max_stretch, std::getenv("AIM") ? std::atof(std::getenv("AIM")) : 1.18);
+    param.max_stretch = options.max_stretch;
+    if (mesh.triangles.size() < kLargeChart) {
+      param.max_stretch = std::min(options.max_stretch, kAimedStretch);
+    }
+    if (std::getenv("ITER")) param.iterations = atoi(getenv("ITER"));
     param.max_planar_stretch =
         std::min(options.max_stretch,
                  options.preset == ChartPreset::fast ? kFastPlanarStretch : kPlanarStretch);
@@ -171,6 +198,7 @@ class ChartJob {
   Partition& partition_;
   ChartScratch& scratch_;
   LocalChart& chart_;
+  int rings_;
   NormalCone cone_;
   ParamResult result_;  // of the last attempt
 };
@@ -178,8 +206,9 @@ class ChartJob {
 }  // namespace
 
 ChartOutcome flatten_chart(const FlattenInput& input, Partition& partition,
-                           std::span<const std::uint32_t> triangles, ChartScratch& scratch) {
-  return ChartJob(input, partition, scratch).run(triangles);
+                           std::span<const std::uint32_t> triangles, int rings,
+                           ChartScratch& scratch) {
+  return ChartJob(input, partition, scratch, rings).run(triangles);
 }
 
 }  // namespace atlas

@@ -28,8 +28,10 @@ struct ChartOutcome {
   bool failed = false;                // could not be flattened as it was
 };
 
-// Flattens one chart, cutting it open where that helps (seams of its own triangles only).
+// Flattens one chart, cutting it open where that helps (seams of its own triangles only). `rings`:
+// how many rings of triangles around a crossing of the border are listed for removal.
 ChartOutcome flatten_chart(const FlattenInput& input, Partition& partition,
-                           std::span<const std::uint32_t> triangles, ChartScratch& scratch);
+                           std::span<const std::uint32_t> triangles, int rings,
+                           ChartScratch& scratch);
 
 }  // namespace atlas

@@ -1,6 +1,7 @@
 #include "libatlas/charts/flatten.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -13,6 +14,8 @@ namespace {
 
 // How often a chart may lose triangles to its neighbours before it is divided.
 constexpr int kMaxRemovals = 4;
+
+constexpr double kRemovalWidth = 1.0 / 60;
 
 // One scratch a running thread, handed out and taken back.
 class ScratchPool {
@@ -54,7 +57,9 @@ class Flattener {
       parallel_for(context, todo_.size(), grain, [&](std::size_t begin, std::size_t end) {
         auto scratch = pool_.take();
         for (std::size_t i = begin; i < end; ++i) {
-          outcomes[i] = flatten_chart(input_, partition_, charts_[todo_[i]].triangles, *scratch);
+          const State& state = charts_[todo_[i]];
+          outcomes[i] =
+              flatten_chart(input_, partition_, state.triangles, removal_rings(state), *scratch);
         }
         pool_.give(std::move(scratch));
       });
@@ -82,6 +87,13 @@ class Flattener {
     int removals = 0;
     bool queued = false;
   };
+
+  // Rings of triangles to remove around a crossing: a little of the chart's width at first, twice
+  // as much each time.
+  static int removal_rings(const State& state) {
+    const double width = std::sqrt(static_cast<double>(state.triangles.size()));
+    return std::max(1, static_cast<int>(kRemovalWidth * width)) << state.removals;
+  }
 
   // Numbers charts anew, by first triangle.
   void list_charts() {

@@ -20,7 +20,7 @@ struct MergeOptions {
   double compactness_weight = 0.15;
   double seam_worth = 1.0 / 800;
   double small_share = 0.01, small_solidity = 0.6, small_fill = 0.5, chart_worth = 0.3;
-  double tail_worth = 0.001;
+  double tail_worth = 0.0015;
   double crease_weight = 0.15;
 };
 

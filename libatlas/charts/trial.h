@@ -19,8 +19,8 @@ struct CoarseUv {
 };
 
 struct TrialLimits {
-  double stretch_l2 = 1.01;   // of the merged chart
-  double stretch_high = 1.2;  // over all but this area:
+  double stretch_l2 = 1.01;    // of the merged chart
+  double stretch_high = 1.17;  // over all but this area:
   double high_area = 0;
   double solidity = 0.7;  // share of its convex hull that it fills
   double fill = 0.58;     // share of its smallest rectangle
