@@ -78,19 +78,23 @@ class Finder {
       }
     }
   }
-  // The nearest triangle around u, and the weights of its point.
-  std::pair<const Flat*, glm::dvec3> find(const glm::dvec2& u) const {
+  // The nearest triangle around u, and the weights of its point. Where several cover u (borders
+  // closer to each other than a texel), the one whose point is nearest to p in space.
+  std::pair<const Flat*, glm::dvec3> find(const glm::dvec2& u, const glm::dvec3& p) const {
     const auto [cx, cy] = cell(u);
     const Flat* best = nullptr;
     glm::dvec3 weights(0);
-    double least = INFINITY;
+    std::pair<double, double> least{INFINITY, INFINITY};
     for (int y = std::max(0, cy - 1); y <= std::min(kCells - 1, cy + 1); ++y) {
       for (int x = std::max(0, cx - 1); x <= std::min(kCells - 1, cx + 1); ++x) {
         for (const std::size_t i : cells_[y * kCells + x]) {
           const glm::dvec3 w = nearest(triangles_[i], u);
-          const double far = glm::length(at(triangles_[i], w) - u);
-          if (far < least) {
-            least = far;
+          const Flat& t = triangles_[i];
+          const double far = glm::length(at(t, w) - u);
+          const std::pair<double, double> distance(
+              far > kInside ? far : 0, glm::length(w.x * t.p[0] + w.y * t.p[1] + w.z * t.p[2] - p));
+          if (distance < least) {
+            least = distance;
             best = &triangles_[i];
             weights = w;
           }
@@ -105,6 +109,7 @@ class Finder {
 
  private:
   static constexpr int kCells = 64;
+  static constexpr double kInside = 1e-12;  // of uv lengths about 1
   std::pair<int, int> cell(const glm::dvec2& u) const {
     const auto clamp = [](double x) { return static_cast<int>(std::clamp(x, 0.0, kCells - 1.0)); };
     return {clamp((u.x - low_.x) / cell_), clamp((u.y - low_.y) / cell_)};
@@ -135,7 +140,7 @@ void sample(const Flat& fine, const Finder& finder, double density, double texel
   const glm::dvec3 w(1 - x - y, x, y);
   const glm::dvec2 u = Finder::at(fine, w);
   const glm::dvec3 p = w.x * fine.p[0] + w.y * fine.p[1] + w.z * fine.p[2];
-  const auto [coarse, v] = finder.find(u);
+  const auto [coarse, v] = finder.find(u, p);
   if (!coarse) {
     out.outside = INFINITY;
     return;
@@ -202,7 +207,7 @@ std::size_t broken_triangles(const ChartedMesh& mesh, const SimplifiedMesh& coar
 
 SampledSlip sample_slip(const ChartedMesh& mesh, const SimplifiedMesh& coarse,
                         std::span<const double> texels_per_unit, double max_turn_degrees) {
-  constexpr int kSamplesPerTriangle = 12;
+  const int samples = mesh.triangles() > 100000 ? 2 : 12;  // a triangle
   std::vector<std::vector<Flat>> triangles(mesh.charts.charts.size());
   for (std::size_t t = 0; t < coarse.triangle_chart.size(); ++t) {
     triangles[coarse.triangle_chart[t]].push_back(flat(mesh, &coarse.uv_indices[3 * t]));
@@ -229,7 +234,7 @@ SampledSlip sample_slip(const ChartedMesh& mesh, const SimplifiedMesh& coarse,
     }
     const double texel = std::sqrt(space / area) / texels_per_unit[c];
     for (const Flat& f : fine) {
-      for (int s = 0; s < kSamplesPerTriangle; ++s, ++tally.all) {
+      for (int s = 0; s < samples; ++s, ++tally.all) {
         sample(f, finder, texels_per_unit[c], texel, random, tally);
       }
     }

@@ -28,7 +28,8 @@ void expect_sound(const ChartedMesh& mesh, const SimplifiedMesh& coarse,
   const OpenEdges before = open_edges(mesh.positions, mesh.indices),
                   after = open_edges(mesh.positions, coarse.indices);
   EXPECT_LE(after.count, before.count);
-  EXPECT_NEAR(after.length, before.length, 1e-3 * before.length);
+  // Less is well: borders of different steps along one line may come to match.
+  EXPECT_LE(after.length, before.length * 1.001);
 
   const SampledSlip slip = sample_slip(mesh, coarse, densities, options.max_turn_degrees);
   EXPECT_LE(slip.inside, coarse.max_slip_texels + 1e-6);
