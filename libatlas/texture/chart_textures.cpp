@@ -19,6 +19,7 @@ Status check(const TextureOptions& o) {
     return Status{ErrorCode::bad_option, fmt::format("{} is {}; it must be {}", what, value, rule)};
   };
   if (!(o.texel > 0) || !std::isfinite(o.texel)) return bad("texel", o.texel, "a length above 0");
+  if (!(o.texture_sampling > 0)) return bad("texture sampling", o.texture_sampling, "above 0");
   if (!std::isfinite(o.threshold))
     return bad("downsizing threshold", o.threshold, "a display value (0 turns downsizing off)");
   if (o.min_side < 1) return bad("smallest texture side", o.min_side, "at least 1 texel");
@@ -48,6 +49,11 @@ double texture_density(const ChartLight& light, const Chart& chart) {
     texels += a * d * d;
   }
   return area > 0 ? std::sqrt(texels / area) : 0;
+}
+
+double wanted_density(const ChartLight& light, const TextureOptions& options, const Chart& chart) {
+  const double own = options.follow_textures ? texture_density(light, chart) : 0;
+  return std::max(1 / options.texel, own * options.texture_sampling);
 }
 
 // Whether one colour fills the chart, from the corners alone.
@@ -87,12 +93,8 @@ ChartOutcome size_chart(const ChartLight& light, const TextureOptions& options, 
                         ChartTexture& out) {
   ChartOutcome outcome;
   const Chart& chart = light.charts.charts[id];
-  double density = 1 / options.texel;
-  if (options.follow_textures) {
-    const double d = texture_density(light, chart);
-    outcome.raised = d > density;
-    density = std::max(density, d);
-  }
+  double density = wanted_density(light, options, chart);
+  outcome.raised = density > 1 / options.texel;
   const double longest = std::max(chart.size.x, chart.size.y);
   if (longest * density > options.max_side) {
     density = options.max_side / longest;
@@ -149,6 +151,17 @@ TexelSize texel_size(Vec2d size, Vec2d texels_per_unit) {
     return static_cast<std::int32_t>(std::clamp(std::ceil(texels - 1e-6), 1.0, 1e9));
   };
   return {side(size.x * texels_per_unit.x), side(size.y * texels_per_unit.y)};
+}
+
+std::vector<double> wanted_densities(const ChartLight& light, const TextureOptions& options,
+                                     const Context& context) {
+  constexpr std::size_t kGrain = 16;
+  std::vector<double> densities(light.charts.charts.size());
+  parallel_for(context, densities.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c)
+      densities[c] = wanted_density(light, options, light.charts.charts[c]);
+  });
+  return densities;
 }
 
 Result<TextureResult> size_chart_textures(const ChartLight& light, const TextureOptions& options,

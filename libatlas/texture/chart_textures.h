@@ -24,6 +24,7 @@ struct ChartLight {
 struct TextureOptions {
   double texel = 0.005;          // length of a texel on the surface, scene units; > 0
   bool follow_textures = true;   // raise the density to the diffuse texture's own
+  double texture_sampling = 1;   // times this, > 0: at 1 a texel may straddle two of the texture's
   double threshold = 2.0 / 255;  // largest |mean - texel| that still halves; <= 0: no downsizing
   int min_side = 16;             // halving stops before a side falls below this
   int max_side = 2040;           // longest inner side a page can take: finer charts are coarsened
@@ -50,6 +51,11 @@ struct TextureResult {
   std::uint64_t halved = 0, uniform = 0, unlit = 0, capped = 0, raised = 0;  // counts of charts
   double rms_error = 0, max_error = 0;  // over all covered full texels
 };
+
+// Texels per unit that stage 2 asks for each chart, before any limit of a page: from the texel's
+// length, raised where the chart's diffuse texture is finer.
+std::vector<double> wanted_densities(const ChartLight& light, const TextureOptions& options,
+                                     const Context& context);
 
 // Inner box of a chart of `size` units at the given density: at least 1 x 1.
 struct TexelSize {

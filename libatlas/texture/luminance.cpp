@@ -11,6 +11,9 @@
 namespace atlas {
 namespace {
 
+// Widest triangle that a texture is looked up on, in its texels.
+constexpr float kMostTexels = 1 << 23;
+
 // For each of n outputs of a row of `size` inputs: the first input and the weights of those it
 // spans.
 struct Span {
@@ -163,6 +166,12 @@ LuminanceSampler::Triangle LuminanceSampler::prepare(std::uint32_t t, double sam
   for (int k = 0; k < 3; ++k) {
     out.texcoord[k][0] = (c[k].x - u0) * level.width;
     out.texcoord[k][1] = (c[k].y - v0) * level.height;
+    // Across millions of texels a float knows no position any more: the texture's mean.
+    if (!(out.texcoord[k][0] < kMostTexels) || !(out.texcoord[k][1] < kMostTexels)) {
+      out.level = static_cast<int>(levels.size()) - 1;
+      std::fill_n(&out.texcoord[0][0], 6, 0.0f);
+      break;
+    }
   }
   return out;
 }

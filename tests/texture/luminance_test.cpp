@@ -132,6 +132,18 @@ TEST(LuminanceSampler, AveragesLevelsOfOddSizes) {
   EXPECT_NEAR(LuminanceSampler::sample(sampler.prepare(0, 1e9), 1, 0, 0).x, 1 / 15.0, 0.002);
 }
 
+TEST(LuminanceSampler, GivesTheMeanWhereCoordinatesAreBeyondPrecision) {
+  LitShape shape = make_sheet({1, 1, 1, 1}, [](double, double) { return Vec3f{1, 1, 1}; });
+  Image8 image(2, 2, 1);
+  image.texels = {255, 0, 0, 255};
+  for (const float repeats : {1e9f, -1e30f, 3e38f}) {
+    add_texture(shape, image, {repeats, repeats});
+    const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+    const Vec3f c = LuminanceSampler::sample(sampler.prepare(0, 0), 0.2f, 0.3f, 0.5f);
+    EXPECT_NEAR(c.x, 0.5, 0.003) << repeats;
+  }
+}
+
 TEST(LuminanceSampler, TreatsATriangleWithoutCoordinatesAsUntextured) {
   LitShape shape = make_sheet({1, 1, 1, 1}, [](double, double) { return Vec3f{2, 2, 2}; });
   add_texture(shape, noise_image(4, 4, 3), {1, 1});
