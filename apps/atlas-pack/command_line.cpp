@@ -1,0 +1,129 @@
+#include "apps/atlas-pack/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <map>
+
+namespace atlas::app {
+namespace {
+
+// "2048x1024" or "2048"; "2048x0" is a strip.
+std::string parse_page(const std::string& text, Extent& page) {
+  int w = 0, h = 0;
+  char x = 0, rest = 0;
+  if (std::sscanf(text.c_str(), "%d%c%d%c", &w, &x, &h, &rest) == 3 && x == 'x' && w >= 0 && h >= 0)
+    page = {w, h};
+  else if (std::sscanf(text.c_str(), "%d%c", &w, &rest) == 1 && w > 0)
+    page = {w, w};
+  else
+    return "expected WIDTHxHEIGHT, e.g. 2048x2048 (height 0: as low as possible)";
+  return {};
+}
+
+// "1s", "500ms", "2m" or seconds.
+std::string parse_seconds(const std::string& text, double& seconds) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  const std::string unit = end;
+  const std::map<std::string, double> units{
+      {"", 1}, {"s", 1}, {"ms", 1e-3}, {"m", 60}, {"min", 60}};
+  if (end == text.c_str() || !units.count(unit) || !(value >= 0))
+    return "expected a duration such as 1s, 500ms or 2m";
+  seconds = value * units.at(unit);
+  return {};
+}
+
+void add_page_options(CLI::App& app, PackCommand& c) {
+  app.add_option_function<std::string>("--page",
+                                       [&c](const std::string& t) {
+                                         if (std::string e = parse_page(t, c.options.page);
+                                             !e.empty())
+                                           throw CLI::ValidationError("--page", e);
+                                       })
+      ->type_name("WxH");
+  app.add_option("--max-width", c.options.page.width, "Largest page width, texels");
+  app.add_option("--max-height", c.options.page.height, "Largest page height; 0: open");
+  app.add_option("--max-pages", c.options.max_pages, "Pages at most; 0: as many as needed");
+  app.add_option("--padding", c.options.padding, "Free texels between items");
+  app.add_option("--border", c.options.border, "Free texels along the page's edges");
+  app.add_option("--align", c.options.alignment,
+                 "Items begin at multiples of this (4 for BC/ASTC)");
+  app.add_flag("--pot", c.options.power_of_two, "Page sides are powers of two");
+  app.add_flag("--square", c.options.square, "Square pages");
+  app.add_flag("--crop", c.options.crop, "Cut pages to what is used");
+  app.add_flag("--allow-rotation,--rotate", c.options.allow_rotation, "Allow quarter turns");
+}
+
+void add_effort_options(CLI::App& app, PackCommand& c) {
+  const std::map<std::string, PackPreset> presets{
+      {"fast", PackPreset::fast}, {"default", PackPreset::standard}, {"best", PackPreset::best}};
+  app.add_option("--preset", c.options.preset, "fast, default or best")
+      ->transform(CLI::CheckedTransformer(presets));
+  app.add_option_function<std::string>(
+         "--budget",
+         [&c](const std::string& t) {
+           if (std::string e = parse_seconds(t, c.options.time_budget); !e.empty())
+             throw CLI::ValidationError("--budget", e);
+         })
+      ->type_name("TIME")
+      ->description("Time for --preset best, e.g. 1s or 500ms");
+  app.add_option("--effort", c.options.effort,
+                 "Layouts tried at most by --preset best; with it results repeat exactly");
+  app.add_option("--seed", c.options.seed, "Seed of --preset best");
+  app.add_option("--threads", c.threads, "Threads; 0: all");
+  app.add_option("--preview", c.preview, "Also draw the pages: FILE.svg or FILE.png");
+  app.add_flag("--json", c.json, "Print a summary as JSON on stdout");
+  app.add_flag("--quiet", c.quiet, "Print nothing but errors");
+}
+
+}  // namespace
+
+int parse_command_line(int argc, char** argv, PackCommand& c) {
+  CLI::App app{"atlas-pack: packs rectangles, images or the charts of a mesh into pages"};
+  app.set_version_flag("--version", "atlas-pack 0.1.0");
+  app.require_subcommand(1);
+  c.options.time_budget = 1;
+
+  CLI::App* rects = app.add_subcommand("rects", "A CSV or JSON list of rectangles");
+  rects->add_option("sizes", c.input, "CSV: [name,]width,height a line; JSON: an array")
+      ->required();
+  rects->add_option("-o,--output", c.output, "placed.csv or placed.json")->required();
+  CLI::App* images = app.add_subcommand("images", "A folder of images into sprite pages");
+  images->add_option("folder", c.input, "Read with its subfolders, in the order of names")
+      ->required();
+  images->add_option("-o,--output", c.output, "Base name: pages NAME-0.png and NAME-0.json")
+      ->required();
+  images->add_option("--extrude", c.extrude, "Repeat edge texels outwards this many times")
+      ->check(CLI::Range(0, 256));
+  images->add_option("--trim-threshold", c.trim_threshold, "Alpha up to this is transparent")
+      ->check(CLI::Range(0, 254));
+  images->add_flag("!--no-trim", c.trim, "Keep transparent borders");
+  images->add_flag("!--no-alias", c.alias, "Store identical images each");
+  CLI::App* mesh =
+      app.add_subcommand("mesh", "The uv charts of a mesh, repacked at uniform density");
+  mesh->add_option("mesh", c.input, "OBJ, PLY or glTF with uvs")->required();
+  mesh->add_option("-o,--output", c.output, "OBJ with new uvs, one material a page")->required();
+  mesh->add_option("--pages", c.pages, "Number of pages")->check(CLI::Range(1, 100000));
+  mesh->add_option("--rotations", c.rotations, "Directions tried: 1, 2, 4, 8, 12, 16, ...");
+
+  const std::map<std::string, DataFormat> formats{{"hash", DataFormat::hash},
+                                                  {"array", DataFormat::array}};
+  for (CLI::App* sub : {rects, images, mesh}) {
+    add_page_options(*sub, c);
+    add_effort_options(*sub, c);
+    if (sub != mesh)
+      sub->add_option("--data", c.format, "Layout of the JSON: hash or array")
+          ->transform(CLI::CheckedTransformer(formats));
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  c.kind = *rects    ? PackCommand::Kind::rects
+           : *images ? PackCommand::Kind::images
+                     : PackCommand::Kind::mesh;
+  return -1;
+}
+
+}  // namespace atlas::app

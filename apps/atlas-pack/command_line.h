@@ -1,0 +1,32 @@
+// The options of atlas-pack.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "libatlas/pack/pack.h"
+
+namespace atlas::app {
+
+enum class DataFormat { hash, array };
+
+struct PackCommand {
+  enum class Kind { none, rects, images, mesh } kind = Kind::none;
+  std::filesystem::path input, output, preview;
+  PackOptions options;
+  DataFormat format = DataFormat::hash;
+  bool json = false, quiet = false;
+  int threads = 0;
+  // images
+  bool trim = true, alias = true;
+  int extrude = 0, trim_threshold = 0;
+  // mesh
+  unsigned pages = 1, rotations = 16;
+};
+
+// Fills in the command; returns -1 to go on, or the exit code with which the program should end
+// (help, version, or an error already printed).
+int parse_command_line(int argc, char** argv, PackCommand& command);
+
+}  // namespace atlas::app

@@ -1,0 +1,109 @@
+#include "apps/atlas-pack/packed_atlas.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace atlas::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A name as a CSV field: quoted where it must be.
+std::string csv_field(const std::string& name) {
+  if (name.find_first_of(",\"\n\r") == std::string::npos) return name;
+  std::string quoted = "\"";
+  for (char c : name) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+Json frame_of(const PackedItem& item, bool with_page) {
+  Json frame;
+  frame["frame"] = {
+      {"x", item.at.x}, {"y", item.at.y}, {"w", item.size.width}, {"h", item.size.height}};
+  frame["rotated"] = item.at.rotated;
+  frame["trimmed"] = item.trimmed();
+  frame["spriteSourceSize"] = {
+      {"x", item.trim_x}, {"y", item.trim_y}, {"w", item.size.width}, {"h", item.size.height}};
+  frame["sourceSize"] = {{"w", item.source.width}, {"h", item.source.height}};
+  if (with_page) frame["page"] = item.at.page;
+  return frame;
+}
+
+}  // namespace
+
+PackedAtlas make_atlas(std::vector<PackedItem> items, const PackResult& result) {
+  PackedAtlas atlas;
+  atlas.pages = result.pages;
+  atlas.utilization = result.utilization;
+  atlas.unplaced = result.unplaced.size();
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    Placement at = result.placements[i];
+    if (at.placed() && at.page < atlas.pages.size()) {
+      const std::int32_t height = at.rotated ? items[i].size.width : items[i].size.height;
+      at.y = atlas.pages[at.page].height - at.y - height;
+    }
+    items[i].at = at;
+  }
+  atlas.items = std::move(items);
+  return atlas;
+}
+
+std::string to_csv(const PackedAtlas& atlas) {
+  std::string text = "name,page,x,y,width,height,rotated\n";
+  for (const PackedItem& item : atlas.items) {
+    Extent e = item.size;
+    if (item.at.rotated) std::swap(e.width, e.height);
+    if (item.at.placed())
+      text += fmt::format("{},{},{},{},{},{},{}\n", csv_field(item.name), item.at.page, item.at.x,
+                          item.at.y, e.width, e.height, int(item.at.rotated));
+    else
+      text += fmt::format("{},-1,,,{},{},0\n", csv_field(item.name), e.width, e.height);
+  }
+  return text;
+}
+
+std::string to_json(const PackedAtlas& atlas, DataFormat format, std::uint32_t page) {
+  Json root;
+  Json& frames = root["frames"];
+  frames = format == DataFormat::hash ? Json::object() : Json::array();
+  for (const PackedItem& item : atlas.items) {
+    if (!item.at.placed() || (page != kAllPages && item.at.page != page)) continue;
+    Json frame = frame_of(item, page == kAllPages);
+    if (format == DataFormat::hash) {
+      frames[item.name] = std::move(frame);
+    } else {
+      Json named{{"filename", item.name}};
+      named.update(frame);
+      frames.push_back(std::move(named));
+    }
+  }
+  Json& meta = root["meta"];
+  meta["app"] = "atlas-pack";
+  meta["version"] = "1.0";
+  meta["format"] = "RGBA8888";
+  meta["scale"] = "1";
+  const auto size = [](Extent e) { return Json{{"w", e.width}, {"h", e.height}}; };
+  if (page != kAllPages) {
+    if (page < atlas.images.size()) meta["image"] = atlas.images[page];
+    meta["size"] = size(atlas.pages[page]);
+  } else {
+    meta["pages"] = Json::array();
+    for (Extent e : atlas.pages) meta["pages"].push_back(size(e));
+  }
+  return root.dump(1) + "\n";
+}
+
+std::string to_summary(const PackedAtlas& atlas) {
+  Json root;
+  root["items"] = atlas.items.size();
+  root["unplaced"] = atlas.unplaced;
+  root["aliases"] = atlas.aliases;
+  root["pages"] = Json::array();
+  for (Extent e : atlas.pages) root["pages"].push_back({{"width", e.width}, {"height", e.height}});
+  root["utilization"] = atlas.utilization;
+  root["cpu_seconds"] = atlas.cpu_seconds;
+  return root.dump();
+}
+
+}  // namespace atlas::app

@@ -1,0 +1,146 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "apps/atlas-pack/commands.h"
+#include "apps/atlas-pack/preview.h"
+#include "libatlas/core/atomic_file.h"
+
+namespace atlas::app {
+namespace {
+
+Status bad_line(const PackCommand& c, std::size_t line, const std::string& what) {
+  return {ErrorCode::bad_input, fmt::format("{}:{}: {}", c.input.string(), line, what)};
+}
+
+bool to_side(std::string field, std::int32_t& side) {
+  const auto first = field.find_first_not_of(" \t\r"), last = field.find_last_not_of(" \t\r");
+  if (first == std::string::npos) return false;
+  field = field.substr(first, last - first + 1);
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), side);
+  return error == std::errc() && end == field.data() + field.size();
+}
+
+// Splits at commas (or semicolons, tabs, spaces where there is no comma), minding quotes.
+std::vector<std::string> split(const std::string& line) {
+  const char separator = line.find(',') != std::string::npos    ? ','
+                         : line.find(';') != std::string::npos  ? ';'
+                         : line.find('\t') != std::string::npos ? '\t'
+                                                                : ' ';
+  std::vector<std::string> fields{""};
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char ch = line[i];
+    if (ch == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
+      fields.back() += line[++i];
+    } else if (ch == '"') {
+      quoted = !quoted;
+    } else if (ch == separator && !quoted) {
+      if (separator != ' ' || !fields.back().empty()) fields.emplace_back();
+    } else if (ch != '\r') {
+      fields.back() += ch;
+    }
+  }
+  if (separator == ' ' && fields.back().empty()) fields.pop_back();
+  return fields;
+}
+
+Status read_csv(const PackCommand& c, const std::string& text, std::vector<PackedItem>& items) {
+  std::istringstream lines(text);
+  std::string line;
+  for (std::size_t number = 1; std::getline(lines, line); ++number) {
+    const std::vector<std::string> f = split(line);
+    if (f.empty() || line.find_first_not_of(" \t\r") == std::string::npos || line[0] == '#')
+      continue;
+    PackedItem item;
+    const std::size_t n = f.size();
+    if (n != 2 && n != 3)
+      return bad_line(c, number,
+                      fmt::format("{} fields (expected width,height or "
+                                  "name,width,height)",
+                                  n));
+    const bool numbers = to_side(f[n - 2], item.size.width) && to_side(f[n - 1], item.size.height);
+    if (!numbers && items.empty() && number == 1) continue;  // a header
+    if (!numbers)
+      return bad_line(c, number,
+                      fmt::format("'{}' and '{}' are not two whole numbers (sides in "
+                                  "texels, at most 2147483647)",
+                                  f[n - 2], f[n - 1]));
+    if (item.size.width < 0 || item.size.height < 0)
+      return bad_line(c, number, "a side is negative");
+    item.name = n == 3 ? f[0] : std::to_string(items.size());
+    items.push_back(std::move(item));
+  }
+  return {};
+}
+
+Status read_json(const PackCommand& c, const std::string& text, std::vector<PackedItem>& items) {
+  const auto root = nlohmann::json::parse(text, nullptr, false);
+  const auto bad = [&](const std::string& what) {
+    return Status(ErrorCode::bad_input, fmt::format("{}: {}", c.input.string(), what));
+  };
+  if (root.is_discarded()) return bad("not valid JSON");
+  const nlohmann::json& list = root.is_object() && root.contains("rects") ? root["rects"] : root;
+  if (!list.is_array()) return bad("expected an array of [w, h] or {\"name\", \"w\", \"h\"}");
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const nlohmann::json& e = list[i];
+    const auto side = [&](std::size_t at, const char* brief, const char* full) -> std::int64_t {
+      nlohmann::json v;
+      if (e.is_array() && e.size() == 2) v = e[at];
+      if (e.is_object()) v = e.contains(brief) ? e[brief] : e.value(full, nlohmann::json());
+      return v.is_number_integer() ? v.get<std::int64_t>() : -1;
+    };
+    const std::int64_t w = side(0, "w", "width"), h = side(1, "h", "height");
+    if (w < 0 || h < 0 || w > INT32_MAX || h > INT32_MAX)
+      return bad(
+          fmt::format("element {} has no whole sides of 0 or more (as [w, h] or \"w\", "
+                      "\"h\")",
+                      i));
+    PackedItem item;
+    item.size = {static_cast<std::int32_t>(w), static_cast<std::int32_t>(h)};
+    item.name = e.is_object() && e.contains("name") && e["name"].is_string()
+                    ? e["name"].get<std::string>()
+                    : std::to_string(i);
+    items.push_back(std::move(item));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<PackedAtlas> run_rects(const PackCommand& c, const Context& context) {
+  std::ifstream file(c.input, std::ios::binary);
+  if (!file)
+    return Status(ErrorCode::not_found,
+                  fmt::format("{}: cannot be read (is the name right?)", c.input.string()));
+  std::stringstream buffer;
+  buffer << file.rdbuf();
+  std::vector<PackedItem> items;
+  const bool json = c.input.extension() == ".json";
+  if (Status s = json ? read_json(c, buffer.str(), items) : read_csv(c, buffer.str(), items);
+      !s.ok())
+    return s;
+  std::vector<Extent> sizes;
+  for (PackedItem& item : items) {
+    item.source = item.size;
+    sizes.push_back(item.size);
+  }
+  Result<PackResult> packed = pack_rects(sizes, c.options, context);
+  if (!packed.ok()) return packed.status();
+  for (const UnplacedItem& u : packed->unplaced)
+    context.say(fmt::format(
+        "{} ({} x {}) {}", items[u.item].name, sizes[u.item].width, sizes[u.item].height,
+        u.reason == UnplacedReason::too_large ? "is larger than the page" : "has no room left"));
+  PackedAtlas atlas = make_atlas(std::move(items), *packed);
+  const std::string text =
+      c.output.extension() == ".json" ? to_json(atlas, c.format, kAllPages) : to_csv(atlas);
+  if (Status s = write_file(c.output, text); !s.ok()) return s;
+  if (!c.preview.empty())
+    if (Status s = write_preview(c.preview, atlas); !s.ok()) return s;
+  return atlas;
+}
+
+}  // namespace atlas::app

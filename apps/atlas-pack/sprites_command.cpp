@@ -1,0 +1,198 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "apps/atlas-pack/commands.h"
+#include "apps/atlas-pack/preview.h"
+#include "libatlas/core/atomic_file.h"
+#include "libatlas/core/clock.h"
+#include "libatlas/image/image_io.h"
+
+namespace atlas::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Sprite {
+  std::string name;  // path below the folder, with '/'
+  Image8 image;      // RGBA, trimmed
+  Extent source;
+  std::int32_t trim_x = 0, trim_y = 0;  // from the upper left corner
+  std::int32_t alias_of = -1;           // earlier sprite with the same texels
+};
+
+bool is_image(const fs::path& path) {
+  static const char* const known[] = {".png", ".jpg",  ".jpeg", ".tga", ".bmp",
+                                      ".tif", ".tiff", ".gif",  ".webp"};
+  std::string ending = path.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return std::find(std::begin(known), std::end(known), ending) != std::end(known);
+}
+
+Image8 to_rgba(const Image8& in) {
+  Image8 out(in.width, in.height, 4, std::uint8_t{255});
+  for (int y = 0; y < in.height; ++y)
+    for (int x = 0; x < in.width; ++x) {
+      const std::uint8_t* from = in.at(x, y);
+      std::uint8_t* to = out.at(x, y);
+      for (int k = 0; k < 3; ++k) to[k] = from[in.channels >= 3 ? k : 0];
+      if (in.channels == 2 || in.channels >= 4) to[3] = from[in.channels == 2 ? 1 : 3];
+    }
+  return out;
+}
+
+// Cuts to the box of texels with alpha above the threshold; at least one texel stays.
+void trim(Sprite& sprite, int threshold) {
+  const Image8& in = sprite.image;
+  int x0 = in.width, x1 = -1, y0 = in.height, y1 = -1;
+  for (int y = 0; y < in.height; ++y)
+    for (int x = 0; x < in.width; ++x) {
+      if (in.at(x, y)[3] <= threshold) continue;
+      x0 = std::min(x0, x);
+      x1 = std::max(x1, x);
+      y0 = std::min(y0, y);
+      y1 = std::max(y1, y);
+    }
+  if (x1 < 0) x0 = x1 = 0, y0 = y1 = in.height - 1;
+  Image8 out(x1 - x0 + 1, y1 - y0 + 1, 4);
+  for (int y = y0; y <= y1; ++y)
+    std::copy_n(in.at(x0, y), std::size_t(out.width) * 4, out.at(0, y - y0));
+  sprite.trim_x = x0;
+  sprite.trim_y = in.height - 1 - y1;
+  sprite.image = std::move(out);
+}
+
+Result<std::vector<Sprite>> read_sprites(const PackCommand& c, const Context& context) {
+  std::error_code error;
+  std::vector<fs::path> paths;
+  if (!fs::is_directory(c.input, error))
+    return Status(ErrorCode::not_found,
+                  fmt::format("{}: is no folder (give the folder of images)", c.input.string()));
+  for (fs::recursive_directory_iterator it(c.input, error), end; it != end; it.increment(error)) {
+    if (error) break;
+    if (!it->is_regular_file()) continue;
+    if (is_image(it->path()))
+      paths.push_back(it->path());
+    else
+      context.say(fmt::format("{}: left out, no image by its ending", it->path().string()));
+  }
+  if (error) return Status(ErrorCode::io, fmt::format("{}: {}", c.input.string(), error.message()));
+  if (paths.empty())
+    return Status(
+        ErrorCode::bad_input,
+        fmt::format("{}: holds no image (png, jpg, tga, bmp, tif, gif or webp)", c.input.string()));
+  std::sort(paths.begin(), paths.end());
+  std::vector<Sprite> sprites;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (context.cancelled()) return Status::cancelled();
+    context.report("read", double(i) / double(paths.size()));
+    Result<Image8> image = read_image8(paths[i]);
+    if (!image.ok()) return image.status();
+    Sprite s;
+    s.name = fs::relative(paths[i], c.input).generic_string();
+    s.source = {image->width, image->height};
+    s.image = to_rgba(*image);
+    if (c.trim) trim(s, c.trim_threshold);
+    sprites.push_back(std::move(s));
+  }
+  return sprites;
+}
+
+// Finds images with the same texels; the first by name keeps them.
+void find_aliases(std::vector<Sprite>& sprites) {
+  std::map<std::pair<std::pair<int, int>, std::vector<std::uint8_t>>, std::int32_t> seen;
+  for (std::size_t i = 0; i < sprites.size(); ++i) {
+    const Image8& image = sprites[i].image;
+    const auto [at, fresh] =
+        seen.try_emplace({{image.width, image.height}, image.texels}, static_cast<std::int32_t>(i));
+    if (!fresh) sprites[i].alias_of = at->second;
+  }
+}
+
+// Copies a sprite to its frame, y down, turned clockwise if rotated, edges repeated outwards.
+void blit(const Sprite& sprite, const Placement& at, int extrude, Image8& page) {
+  const Image8& in = sprite.image;
+  const int w = at.rotated ? in.height : in.width, h = at.rotated ? in.width : in.height;
+  for (int y = -extrude; y < h + extrude; ++y)
+    for (int x = -extrude; x < w + extrude; ++x) {
+      const int cx = std::clamp(x, 0, w - 1), cy = std::clamp(y, 0, h - 1);  // frame, y down
+      // Clockwise: the source's upper left corner comes to the upper right.
+      const int sx = at.rotated ? cy : cx, sy = at.rotated ? in.height - 1 - cx : cy;
+      const int px = at.x + x, py = at.y + y;
+      std::copy_n(in.at(sx, in.height - 1 - sy), 4, page.at(px, page.height - 1 - py));
+    }
+}
+
+Status write_pages(const PackCommand& c, const std::vector<Sprite>& sprites, PackedAtlas& atlas) {
+  AtomicFiles files;
+  std::vector<Image8> pages;
+  for (std::size_t p = 0; p < atlas.pages.size(); ++p)
+    atlas.images.push_back(atlas.pages.size() == 1
+                               ? c.output.filename().string() + ".png"
+                               : fmt::format("{}-{}.png", c.output.filename().string(), p));
+  std::vector<Image8> previews;
+  for (std::uint32_t p = 0; p < atlas.pages.size(); ++p) {
+    Image8 page(atlas.pages[p].width, atlas.pages[p].height, 4);
+    for (std::size_t i = 0; i < sprites.size(); ++i)
+      if (sprites[i].alias_of < 0 && atlas.items[i].at.page == p)
+        blit(sprites[i], atlas.items[i].at, c.extrude, page);
+    const fs::path image = c.output.parent_path() / atlas.images[p];
+    if (Status s = write_png(files.path_for(image), page, {}); !s.ok()) return s;
+    fs::path data = image;
+    data.replace_extension(".json");
+    if (Status s = write_file(files.path_for(data), to_json(atlas, c.format, p)); !s.ok()) return s;
+  }
+  return files.commit();
+}
+
+}  // namespace
+
+Result<PackedAtlas> run_images(const PackCommand& c, const Context& context) {
+  Result<std::vector<Sprite>> read = read_sprites(c, context);
+  if (!read.ok()) return read.status();
+  std::vector<Sprite>& sprites = *read;
+  if (c.alias) find_aliases(sprites);
+  std::vector<Extent> sizes;
+  std::vector<PackedItem> items;
+  std::size_t aliases = 0;
+  for (const Sprite& s : sprites) {
+    PackedItem item;
+    item.name = s.name;
+    item.size = {s.image.width, s.image.height};
+    item.source = s.source;
+    item.trim_x = s.trim_x;
+    item.trim_y = s.trim_y;
+    items.push_back(item);
+    // Aliases take no room: sides of 0 are reported at the corner and replaced below.
+    const bool stored = s.alias_of < 0;
+    aliases += !stored;
+    sizes.push_back(stored ? Extent{s.image.width + 2 * c.extrude, s.image.height + 2 * c.extrude}
+                           : Extent{});
+  }
+  Result<PackResult> packed = pack_rects(sizes, c.options, context);
+  if (!packed.ok()) return packed.status();
+  if (!packed->unplaced.empty()) {
+    const UnplacedItem& u = packed->unplaced.front();
+    return Status(
+        ErrorCode::no_solution,
+        fmt::format("{}: {} of {} images have no room, first {} ({} x {}) (allow larger or "
+                    "more pages)",
+                    c.input.string(), packed->unplaced.size(), sprites.size(), sprites[u.item].name,
+                    sizes[u.item].width, sizes[u.item].height));
+  }
+  for (std::size_t i = 0; i < items.size(); ++i) {  // from the extruded box to the frame
+    packed->placements[i].x += c.extrude;
+    packed->placements[i].y += c.extrude;
+  }
+  PackedAtlas atlas = make_atlas(std::move(items), *packed);
+  for (std::size_t i = 0; i < sprites.size(); ++i)
+    if (sprites[i].alias_of >= 0) atlas.items[i].at = atlas.items[sprites[i].alias_of].at;
+  atlas.aliases = aliases;
+  if (Status s = write_pages(c, sprites, atlas); !s.ok()) return s;
+  if (!c.preview.empty())
+    if (Status s = write_preview(c.preview, atlas); !s.ok()) return s;
+  return atlas;
+}
+
+}  // namespace atlas::app
