@@ -15,7 +15,7 @@ struct SimplifyOptions {
   // How far the surface, and the texture on it, may slip: for a point of the fine surface with
   // texture coordinates uv, the distance to the coarse surface's point at the same uv, in texels of
   // its chart; where a chart border is straightened, that distance plus the border's own shift in
-  // uv. 0 keeps everything that is not exactly flat; > 0 otherwise.
+  // uv. Greater than 0.
   double max_slip_texels = 0.5;
   // The same for open borders (edges of one triangle only): small, since another object may end
   // there without sharing a vertex, and a gap would show.

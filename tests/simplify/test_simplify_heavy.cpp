@@ -22,11 +22,11 @@ TEST(SimplifyHeavy, ThreeMillionTrianglesOfWalls) {
 
 TEST(SimplifyHeavy, ThreeMillionTrianglesOfASphere) {
   const ChartedMesh mesh = sphere(500);
-  const std::int64_t before = peak_memory();
   const SimplifiedMesh coarse = simplify(mesh, 500);
-  const double bytes = double(peak_memory() - before) / double(coarse.triangles_in);
-  std::printf("%.2f CPU s, %.0f more bytes a triangle than before\n", coarse.cpu_seconds, bytes);
-  EXPECT_LT(bytes, 300);
+  // Of the whole process, with the mesh, its charts and their making.
+  const double bytes = double(peak_memory()) / double(coarse.triangles_in);
+  std::printf("%.2f CPU s, %.0f bytes a triangle\n", coarse.cpu_seconds, bytes);
+  EXPECT_LT(bytes, 400);
   expect_sound(mesh, coarse, 500);
   EXPECT_LT(coarse.triangles_out, 30000U);
 }
