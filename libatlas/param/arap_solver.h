@@ -45,13 +45,18 @@ class ArapSolver {
   IsometricResult measure(std::span<const Vec2d> uvs) const;
 
  private:
+  enum class Method { envelope, multigrid, direct };
+
   void factorize();
+  void factorize_directly();
+  void solve(double inexactness);
   double update_stretch(std::span<const Vec2d> uvs, bool ratio);
 
   const LocalMesh& mesh_;
   ParamWorkspace::Impl& w_;
-  bool small_ = true;
+  Method method_ = Method::envelope;
   bool analyzed_ = false;
+  double area_ = 0;  // weighted
   bool weighted_ = false;
 };
 

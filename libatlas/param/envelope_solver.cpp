@@ -45,6 +45,7 @@ void EnvelopeSolver::order(const SymmetricMatrix& matrix) {
   const std::uint32_t n = static_cast<std::uint32_t>(matrix.rows());
   order_.clear();
   position_.assign(n, unseen);
+  held_.assign(n, 0);
   for (std::uint32_t v = 0; v < n; ++v) {
     if (position_[v] != unseen) continue;
     std::uint32_t start = v;
@@ -54,6 +55,7 @@ void EnvelopeSolver::order(const SymmetricMatrix& matrix) {
       start = end;
     }
     sweep(matrix, start);
+    held_[start] = 1;  // the last of its piece to be eliminated: its pivot is nothing but rounding
     order_.insert(order_.end(), queue_.begin(), queue_.end());
   }
   std::reverse(order_.begin(), order_.end());
@@ -92,8 +94,8 @@ void EnvelopeSolver::factorize(const SymmetricMatrix& matrix) {
       row[j - first_[i]] = value * inverse_pivot_[j];
       pivot -= row[j - first_[i]] * row[j - first_[i]];
     }
-    // Below this nothing but rounding is left: the vertex that a connected piece may be held by.
-    inverse_pivot_[i] = pivot > 1e-13 * matrix.diagonal[v] ? 1 / std::sqrt(pivot) : 0;
+    const bool regular = held_[v] == 0 && pivot > 1e-15 * matrix.diagonal[v];
+    inverse_pivot_[i] = regular ? 1 / std::sqrt(pivot) : 0;
   }
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "libatlas/core/predicates.h"
+#include "libatlas/param/border_check.h"
 #include "libatlas/param/halfedges.h"
 #include "libatlas/param/rest_shape.h"
 
@@ -193,6 +194,26 @@ void check_triangles(const LocalMesh& mesh, std::span<const Vec2d> uvs, double c
 
 }  // namespace
 
+void param::check_border(const HalfEdges& half_edges, const HalfEdges::Border& border,
+                         std::span<const Vec2d> uvs, const InjectivityOptions& options,
+                         Injectivity& out) {
+  out.loops = static_cast<std::uint32_t>(border.loop_start.size() - 1);
+  std::vector<Edge> edges;
+  edges.reserve(border.half_edges.size());
+  for (const std::uint32_t h : border.half_edges) {
+    const std::uint32_t a = half_edges.from(h), b = half_edges.to(h);
+    edges.push_back({uvs[a], uvs[b], a, b, HalfEdges::triangle(h)});
+  }
+  BorderTree(edges, options, out).find_pairs();
+  if (!out.crossings.empty() || !out.flipped.empty()) return;
+  int counter_clockwise = 0;
+  for (std::uint32_t l = 0; l < out.loops; ++l) {
+    const std::uint32_t begin = border.loop_start[l], end = border.loop_start[l + 1];
+    counter_clockwise += turning_sense(std::span(edges).subspan(begin, end - begin)) > 0;
+  }
+  out.nested = counter_clockwise != 1;
+}
+
 Injectivity check_injectivity(const LocalMesh& mesh, std::span<const Vec2d> uvs,
                               const InjectivityOptions& options) {
   assert(uvs.size() == mesh.positions.size());
@@ -202,22 +223,7 @@ Injectivity check_injectivity(const LocalMesh& mesh, std::span<const Vec2d> uvs,
   half_edges.build(mesh);
   HalfEdges::Border border;
   half_edges.border(border);
-  out.loops = static_cast<std::uint32_t>(border.loop_start.size() - 1);
-  std::vector<Edge> edges;
-  edges.reserve(border.half_edges.size());
-  for (const std::uint32_t h : border.half_edges) {
-    const std::uint32_t a = half_edges.from(h), b = half_edges.to(h);
-    edges.push_back({uvs[a], uvs[b], a, b, HalfEdges::triangle(h)});
-  }
-  BorderTree(edges, options, out).find_pairs();
-  if (out.crossings.empty()) {
-    int counter_clockwise = 0;
-    for (std::uint32_t l = 0; l < out.loops; ++l) {
-      const std::uint32_t begin = border.loop_start[l], end = border.loop_start[l + 1];
-      counter_clockwise += turning_sense(std::span(edges).subspan(begin, end - begin)) > 0;
-    }
-    out.nested = out.flipped.empty() && counter_clockwise != 1;
-  }
+  param::check_border(half_edges, border, uvs, options, out);
   out.injective = out.flipped.empty() && out.crossings.empty() && !out.nested;
   return out;
 }

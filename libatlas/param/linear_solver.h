@@ -10,8 +10,8 @@
 namespace atlas::param {
 
 // Cholesky factorisation within the envelope of the reordered matrix (reverse Cuthill-McKee), O(n²)
-// at worst for a disc of n vertices and faster than anything cleverer up to a thousand or so. Rows
-// whose pivot vanishes against their diagonal (one for each connected piece) get the solution 0.
+// at worst for a disc of n vertices and faster than anything cleverer up to a thousand or so. The
+// kernel holds the constants: one vertex of each connected piece gets the solution 0.
 class EnvelopeSolver {
  public:
   void factorize(const SymmetricMatrix& matrix);
@@ -23,7 +23,8 @@ class EnvelopeSolver {
   std::uint32_t sweep(const SymmetricMatrix& matrix, std::uint32_t start);
 
   std::vector<std::uint32_t> order_, position_, first_, queue_;
-  std::vector<std::size_t> row_;  // where row i's entries first_[i] .. i - 1 start
+  std::vector<std::uint8_t> held_;  // 1 a vertex
+  std::vector<std::size_t> row_;    // where row i's entries first_[i] .. i - 1 start
   std::vector<double> factor_, inverse_pivot_;
   std::vector<glm::dvec2> work_;
 };

@@ -7,6 +7,7 @@
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/param/arap_solver.h"
 #include "libatlas/param/planar.h"
+#include "libatlas/param/rest_shape.h"
 
 namespace atlas {
 namespace {
@@ -54,6 +55,20 @@ void finish(const LocalMesh& mesh, const ParamOptions& options, ParamResult& r) 
   list_offenders(r, check, stretch, options.max_stretch);
 }
 
+bool projection_fits(const LocalMesh& mesh, std::span<const Vec2d> uvs, double bound) {
+  double area = 0, uv_area = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const param::RestShape s = param::rest_shape(mesh, t);
+    const glm::dvec2 a = to_glm(uvs[s.v[0]]), b = to_glm(uvs[s.v[1]]), c = to_glm(uvs[s.v[2]]);
+    area += s.area();
+    uv_area += 0.5 * param::cross(b - a, c - a);
+  }
+  // At the area-preserving scale every triangle's 1 / s2 is the root of this quotient.
+  if (mesh.density.empty() && !(area <= bound * bound * uv_area)) return false;
+  const Distortion d = measure_distortion(mesh, uvs);
+  return d.stretch_999 <= bound && d.flips == 0;
+}
+
 // From the solver's rotations to a finished result: flips out, then the stretch down; squeezing may
 // flip anew, hence the second round.
 void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolver& solver,
@@ -85,8 +100,7 @@ ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
   const double planar_bound =
       options.max_planar_stretch > 0 ? options.max_planar_stretch : options.max_stretch;
   if (options.method != ParamMethod::isometric) {
-    const Distortion d = measure_distortion(mesh, r.uvs);
-    if (options.method == ParamMethod::planar || (d.stretch_999 <= planar_bound && d.flips == 0)) {
+    if (options.method == ParamMethod::planar || projection_fits(mesh, r.uvs, planar_bound)) {
       r.planar = true;
       finish(mesh, options, r);
       if (r.injective || options.method == ParamMethod::planar) return r;
@@ -104,8 +118,9 @@ ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
   param::ArapSolver solver(mesh, options.min_altitude, workspace.impl());
   solver.start(start);
   descend(mesh, options, solver, r);
-  if (r.injective || unfolded) return r;
-  // A bad start leaves folds that no descent undoes; unfolding triangle by triangle has none.
+  const bool folded = r.unflipped > 0 || r.distortion.flips > 0;
+  if (r.injective || unfolded || !folded) return r;
+  // A bad start leaves folds that no descent undoes well; unfolding triangle by triangle has none.
   ParamResult other;
   other.uvs.resize(mesh.positions.size());
   solver.start(IsometricStart{});

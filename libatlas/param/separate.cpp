@@ -4,10 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "libatlas/param/border_check.h"
+
 namespace atlas::param {
 namespace {
 
 constexpr std::size_t longest_arc = 64;
+constexpr std::size_t most_crossings = 256;
 constexpr int extra_vertices = 2;     // looked after beyond the ends of an overlap
 constexpr double gap_of_edge = 0.01;  // the gap left, as part of an edge's length
 
@@ -23,6 +26,10 @@ glm::dvec2 outward(glm::dvec2 a, glm::dvec2 b) {
   const glm::dvec2 d = b - a;
   const double l = glm::length(d);
   return l > 0 ? glm::dvec2(d.y, -d.x) / l : glm::dvec2(0);
+}
+
+bool simple(const Injectivity& border) {
+  return border.crossings.empty() && !border.nested;
 }
 
 }  // namespace
@@ -228,8 +235,15 @@ bool Separator::collect(std::span<const BorderCrossing> crossings, std::span<con
   return !springs_.empty();
 }
 
+// Triangles stay positive all the time, so the border alone decides.
+Injectivity Separator::check(std::span<const Vec2d> uvs) const {
+  Injectivity out;
+  check_border(half_edges_, border_, uvs, {.max_crossings = most_crossings}, out);
+  return out;
+}
+
 // Lets the distortion of what moved spread, with the border held where it is now.
-void Separator::settle(const LocalMesh& mesh, Relaxer& relaxer, std::span<Vec2d> uvs) {
+void Separator::settle(Relaxer& relaxer, std::span<Vec2d> uvs) {
   constexpr int rings = 10, sweeps = 30;
   saved_.assign(uvs.begin(), uvs.end());
   std::sort(moved_.begin(), moved_.end());
@@ -237,27 +251,26 @@ void Separator::settle(const LocalMesh& mesh, Relaxer& relaxer, std::span<Vec2d>
   springs_.clear();
   for (const std::uint32_t v : moved_) springs_.push_back({v, uvs[v]});
   relaxer.pull(elements_, *corners_, {springs_, rings, sweeps}, uvs);
-  if (!check_injectivity(mesh, uvs).injective) std::copy(saved_.begin(), saved_.end(), uvs.begin());
+  if (!simple(check(uvs))) std::copy(saved_.begin(), saved_.end(), uvs.begin());
 }
 
 bool Separator::separate(const LocalMesh& mesh, std::span<const Element> elements,
                          const CornerLists& corners, Relaxer& relaxer, std::span<Vec2d> uvs) {
   // More sweeps a round would let the rest of the border drift into new crossings (measured).
   constexpr int rounds = 16, rings = 5, sweeps = 12;
-  constexpr std::size_t most_crossings = 256;
   elements_ = elements;
   corners_ = &corners;
   map_border(mesh);
   saved_.assign(uvs.begin(), uvs.end());
   moved_.clear();
   for (int round = 0; round <= rounds; ++round) {
-    const Injectivity check = check_injectivity(mesh, uvs, {.max_crossings = most_crossings});
-    if (check.injective) {
-      if (round > 0) settle(mesh, relaxer, uvs);
+    const Injectivity now = check(uvs);
+    if (simple(now)) {
+      if (round > 0) settle(relaxer, uvs);
       return true;
     }
-    if (!check.flipped.empty() || check.crossings.size() >= most_crossings) break;
-    if (round == rounds || !collect(check.crossings, uvs)) break;
+    if (now.crossings.size() >= most_crossings) break;
+    if (round == rounds || !collect(now.crossings, uvs)) break;
     for (const Relaxer::Spring& s : springs_) moved_.push_back(s.vertex);
     relaxer.pull(elements, corners, {springs_, rings, sweeps}, uvs);
   }

@@ -53,7 +53,8 @@ class Separator {
   void draw_apart(const Arc& first, const Arc& second, std::span<const Vec2d> uvs);
   bool collides(std::uint32_t half_edge) const;
 
-  void settle(const LocalMesh& mesh, Relaxer& relaxer, std::span<Vec2d> uvs);
+  Injectivity check(std::span<const Vec2d> uvs) const;
+  void settle(Relaxer& relaxer, std::span<Vec2d> uvs);
 
   std::uint32_t next(std::uint32_t h) const { return next_[half_edges_.to(h)]; }
   std::uint32_t previous(std::uint32_t h) const { return previous_[half_edges_.from(h)]; }

@@ -21,16 +21,26 @@ bool SparseDirectSolver::factorize(const SymmetricMatrix& matrix, bool same_patt
   triplets.reserve(static_cast<std::size_t>(n) + matrix.column.size() / 2);
   for (int i = 0; i < n; ++i) {
     triplets.emplace_back(i, i, matrix.diagonal[i + 1]);
-    for (std::uint32_t k = matrix.first[i + 1]; k < matrix.first[i + 2]; ++k) {
+    for (std::uint32_t k = matrix.first[i + 1]; k < matrix.middle[i + 1]; ++k) {
       const int j = static_cast<int>(matrix.column[k]) - 1;
-      if (j >= 0 && j < i) triplets.emplace_back(i, j, matrix.value[k]);
+      if (j >= 0) triplets.emplace_back(i, j, matrix.value[k]);
     }
   }
   impl_->matrix.resize(n, n);
   impl_->matrix.setFromTriplets(triplets.begin(), triplets.end());
   if (!same_pattern) impl_->factor.analyzePattern(impl_->matrix);
-  impl_->factor.factorize(impl_->matrix);
-  return impl_->factor.info() == Eigen::Success && (impl_->factor.vectorD().array() > 0).all();
+  // Slivers' stiffness can drown what holds them in rounding; a slightly larger diagonal restores
+  // it.
+  for (const double lift : {0.0, 1e-13, 1e-10, 1e-7}) {
+    if (lift > 0) {
+      for (int i = 0; i < n; ++i) impl_->matrix.coeffRef(i, i) += lift * matrix.diagonal[i + 1];
+    }
+    impl_->factor.factorize(impl_->matrix);
+    if (impl_->factor.info() == Eigen::Success && (impl_->factor.vectorD().array() > 0).all()) {
+      return true;
+    }
+  }
+  return false;
 }
 
 void SparseDirectSolver::solve(std::span<const glm::dvec2> load, std::span<glm::dvec2> x) {

@@ -81,6 +81,21 @@ void build_stiffness(std::span<const Element> elements, const CornerLists& corne
     }
   }
   out.first[n] = static_cast<std::uint32_t>(out.column.size());
+  partition_rows(out);
+}
+
+void partition_rows(SymmetricMatrix& matrix) {
+  matrix.middle.resize(matrix.rows());
+  for (std::uint32_t row = 0; row < matrix.rows(); ++row) {
+    std::uint32_t middle = matrix.first[row];
+    for (std::uint32_t k = middle; k < matrix.first[row + 1]; ++k) {
+      if (matrix.column[k] > row) continue;
+      std::swap(matrix.column[k], matrix.column[middle]);
+      std::swap(matrix.value[k], matrix.value[middle]);
+      ++middle;
+    }
+    matrix.middle[row] = middle;
+  }
 }
 
 void local_rotations(std::span<const Element> elements, std::span<const Vec2d> uvs,

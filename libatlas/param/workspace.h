@@ -4,6 +4,7 @@
 #include "libatlas/param/halfedges.h"
 #include "libatlas/param/isometric.h"
 #include "libatlas/param/linear_solver.h"
+#include "libatlas/param/multigrid.h"
 #include "libatlas/param/percentile.h"
 #include "libatlas/param/relax.h"
 #include "libatlas/param/separate.h"
@@ -18,6 +19,7 @@ struct ParamWorkspace::Impl {
   param::Rotations rotations;
   param::EnvelopeSolver envelope;
   param::SparseDirectSolver direct;
+  param::MultigridSolver multigrid;
   param::HalfEdges half_edges;
   std::vector<glm::dvec2> load, solution;
   std::vector<std::uint32_t> queue;

@@ -94,7 +94,7 @@ TEST(Isometric, SolversAgreeAcrossTheirLimits) {
   for (const std::uint32_t n : {8u, 30u, 45u, 90u, 180u}) {
     const Disc d = testing::make_cylinder(2.5, 1.5, n, n);
     const Distortion m = measure_distortion(d.view(), flatten(d, 2));
-    EXPECT_LT(m.stretch_linf, 1 + 1e-5) << n;
+    EXPECT_LT(m.stretch_linf, 1 + 1e-4) << n;
     EXPECT_EQ(m.flips, 0u);
   }
 }

@@ -1,0 +1,67 @@
+// Internal: conjugate gradients preconditioned by algebraic multigrid, for charts whose
+// factorisation would take longer.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "libatlas/param/linear_solver.h"
+#include "libatlas/param/stiffness.h"
+
+namespace atlas::param {
+
+// Smoothed aggregation (Vanek, Mandel and Brezina 1996, "Algebraic multigrid by smoothed
+// aggregation for second and fourth order elliptic problems"): neighbourhoods of strongly joined
+// vertices become the unknowns of the next level, some seven times fewer; a V-cycle of symmetric
+// Gauss-Seidel sweeps preconditions the iteration. Set-up and a step cost O(n). The constant vector
+// is in the matrix's kernel, so solutions are determined up to a shift.
+class MultigridSolver {
+ public:
+  // False: the levels do not shrink (many vertices without strong neighbours, or of huge valence).
+  bool build(const SymmetricMatrix& matrix);
+
+  struct Accuracy {
+    double energy;        // stop when the error's energy, estimated, is at most this
+    int most_iterations;  // ... or after so many
+  };
+  // Improves x for the right-hand side `load`. False: not accurate enough after the iterations.
+  bool solve(const SymmetricMatrix& matrix, std::span<const glm::dvec2> load,
+             const Accuracy& accuracy, std::span<glm::dvec2> x);
+
+ private:
+  struct Level {
+    SymmetricMatrix matrix;  // empty on the finest: that one is the caller's
+    std::vector<double> inverse_diagonal;
+    std::vector<std::uint32_t> aggregate;
+    // Prolongation by rows of this level, and the same by columns.
+    std::vector<std::uint32_t> first, column, column_first, row;
+    std::vector<double> value, column_value;
+    std::vector<glm::dvec2> x, load, residual;
+  };
+
+  struct Product {  // of the matrix and the prolongation, by rows
+    struct Entry {
+      std::uint32_t column;
+      double value;
+    };
+    std::vector<std::uint32_t> first;
+    std::vector<Entry> entries;
+  };
+
+  static std::uint32_t aggregate(const SymmetricMatrix& matrix, Level& level);
+  static void prolongate(const SymmetricMatrix& matrix, std::uint32_t coarse, Level& level);
+  static void transpose(std::uint32_t coarse, Level& level);
+  static bool multiply_prolongation(const SymmetricMatrix& matrix, std::uint32_t coarse,
+                                    const Level& level, Product& out);
+  static bool coarsen(const Product& product, const Level& level, std::size_t most_entries,
+                      SymmetricMatrix& out);
+  void cycle(const SymmetricMatrix& finest, std::size_t level);
+
+  std::vector<Level> levels_;
+  std::size_t depth_ = 0;  // levels in use; the last one is solved directly
+  Product galerkin_;
+  EnvelopeSolver coarsest_;
+  std::vector<glm::dvec2> direction_, product_, residual_;
+};
+
+}  // namespace atlas::param
