@@ -142,7 +142,6 @@ class ChartJob {
     if (mesh.triangles.size() < kLargeChart) {
       param.max_stretch = std::min(options.max_stretch, kAimedStretch);
     }
-    if (std::getenv("ITER")) param.iterations = atoi(getenv("ITER"));
     param.max_planar_stretch =
         std::min(options.max_stretch,
                  options.preset == ChartPreset::fast ? kFastPlanarStretch : kPlanarStretch);
@@ -166,14 +165,6 @@ class ChartJob {
     result_ = parameterize(mesh, param_options(mesh), scratch_.workspace);
     result_.within_bound = result_.distortion.stretch_999 <= input_.options.max_stretch;
     const bool single = chart_.triangles().size() == 1;
-    if (std::getenv("TRACE2") && !(result_.injective && result_.within_bound))
-      fprintf(stderr,
-              "  fail: tris %zu euler %d loops %zu inj %d bound %d s999 %.3f linf %.2f l2 %.4f "
-              "flips %lu offenders %zu cross %zu unfl %d\n",
-              mesh.triangles.size(), chart_.euler(), chart_.loops.size(), result_.injective,
-              result_.within_bound, result_.distortion.stretch_999, result_.distortion.stretch_linf,
-              result_.distortion.stretch_l2, result_.distortion.flips, result_.offenders.size(),
-              result_.crossings.size(), result_.unflipped);
     if (!single && !(result_.injective && result_.within_bound)) return false;
     FlatChart& flat = outcome.flat;
     flat.uvs = std::move(result_.uvs);

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <unordered_map>
 
 #include "libatlas/charts/cells.h"
 #include "libatlas/charts/charts.h"
@@ -78,41 +80,56 @@ class Assembler {
     flat = FlatChart{};  // its memory is needed no more
   }
 
-  // A triangle without area is drawn nowhere: it joins the chart of a neighbour at one of its
-  // vertices, all corners on that vertex's uv; if it has none, any chart of its material.
+  // A triangle without area is drawn nowhere: it joins the chart of a neighbour, one that shares
+  // an edge if there is one, and lies on that edge or on a vertex; else any chart of its material.
   void place_degenerate() {
     if (topology_.defects.degenerate_triangles == 0) return;
-    std::vector<std::uint32_t> uv_at(topology_.points.size(), kNoIndex);
-    std::vector<std::uint32_t> chart_at(topology_.points.size(), kNoIndex);
+    std::vector<std::uint8_t> wanted(topology_.points.size(), 0);
     for (std::uint32_t t = 0; t < topology_.triangle_count(); ++t) {
-      if (topology_.degenerate(t)) continue;
-      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-        const std::uint32_t v = topology_.corner_vertex[h];
-        if (uv_at[v] != kNoIndex) continue;
-        uv_at[v] = set_.triangle_uv[topology_.input_corner(h)];
-        chart_at[v] = set_.triangle_chart[t];
-      }
+      if (!topology_.degenerate(t)) continue;
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) wanted[topology_.corner_vertex[h]] = 1;
+    }
+    std::unordered_map<std::uint64_t, std::uint32_t> around;  // vertex or edge -> a half-edge
+    for (std::uint32_t h = 0; h < topology_.corner_vertex.size(); ++h) {
+      const std::uint32_t a = topology_.corner_vertex[h];
+      const std::uint32_t b = topology_.corner_vertex[next_half_edge(h)];
+      if (topology_.degenerate(h / 3) || !wanted[a]) continue;
+      around.emplace(key(a, a), h);
+      if (wanted[b]) around.emplace(key(std::min(a, b), std::max(a, b)), h);
     }
     for (std::uint32_t t = 0; t < topology_.triangle_count(); ++t) {
-      if (topology_.degenerate(t)) place_degenerate(t, uv_at, chart_at);
+      if (topology_.degenerate(t)) place_degenerate(t, around);
     }
   }
 
-  void place_degenerate(std::uint32_t t, const std::vector<std::uint32_t>& uv_at,
-                        const std::vector<std::uint32_t>& chart_at) {
-    std::uint32_t chart = kNoIndex, uv = kNoIndex;
-    for (std::uint32_t h = 3 * t; h < 3 * t + 3 && chart == kNoIndex; ++h) {
-      const std::uint32_t v = topology_.corner_vertex[h];
-      if (chart_at[v] == kNoIndex || set_.charts[chart_at[v]].material != material(t)) continue;
-      chart = chart_at[v];
-      uv = uv_at[v];
+  static std::uint64_t key(std::uint64_t a, std::uint64_t b) { return a << 32 | b; }
+
+  void place_degenerate(std::uint32_t t,
+                        const std::unordered_map<std::uint64_t, std::uint32_t>& around) {
+    std::array<std::uint32_t, 3> v;
+    for (std::uint32_t c = 0; c < 3; ++c) v[c] = topology_.corner_vertex[3 * t + c];
+    for (const bool edge : {true, false}) {
+      for (std::uint32_t c = 0; c < 3; ++c) {
+        const std::uint32_t a = v[c], b = edge ? v[(c + 1) % 3] : a;
+        if (edge && a == b) continue;
+        const auto found = around.find(key(std::min(a, b), std::max(a, b)));
+        if (found == around.end() || material(found->second / 3) != material(t)) continue;
+        const std::uint32_t h = found->second;
+        const std::uint32_t at_h = set_.triangle_uv[topology_.input_corner(h)];
+        const std::uint32_t at_next = set_.triangle_uv[topology_.input_corner(next_half_edge(h))];
+        set_.triangle_chart[t] = set_.triangle_chart[h / 3];
+        for (std::uint32_t i = 0; i < 3; ++i) {
+          const bool other = edge && v[i] == topology_.corner_vertex[next_half_edge(h)];
+          set_.triangle_uv[3 * t + i] = other ? at_next : at_h;
+        }
+        return;
+      }
     }
-    if (chart == kNoIndex) {
-      chart = chart_of_material(t);
-      uv = set_.charts[chart].first_uv;
-    }
+    const std::uint32_t chart = chart_of_material(t);
     set_.triangle_chart[t] = chart;
-    for (std::uint32_t c = 0; c < 3; ++c) set_.triangle_uv[3 * t + c] = uv;
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      set_.triangle_uv[3 * t + c] = set_.charts[chart].first_uv;
+    }
   }
 
   std::uint32_t chart_of_material(std::uint32_t t) {
@@ -153,24 +170,27 @@ class Assembler {
   double unscale_;
 };
 
-// Length of the edges that two triangles share in space but not in uv.
+// Length of the edges that exactly two triangles share in space, but not in uv.
 double seam_length(const Topology& topology, const ChartSet& set) {
-  double length = 0;
   const auto uv = [&](std::uint32_t h) { return set.triangle_uv[topology.input_corner(h)]; };
-  for (std::uint32_t h = 0; h < topology.opposite.size(); ++h) {
+  const auto seam = [&](std::uint32_t h) {
     const std::uint32_t o = topology.opposite[h];
-    if (o == kNoIndex || o < h) continue;
-    if (uv(h) == uv(next_half_edge(o)) && uv(next_half_edge(h)) == uv(o)) continue;
-    length += glm::distance(to_dvec(topology.points[topology.corner_vertex[h]]),
-                            to_dvec(topology.points[topology.corner_vertex[next_half_edge(h)]]));
+    if (o == kNoIndex || (uv(h) == uv(next_half_edge(o)) && uv(next_half_edge(h)) == uv(o))) {
+      return 0.0;
+    }
+    return edge_length(topology, h);
+  };
+  double length = 0;
+  for (std::uint32_t h = 0; h < topology.opposite.size(); ++h) {
+    if (h < topology.opposite[h]) length += seam(h);
   }
+  for (const std::uint32_t h : topology.fan_links) length -= seam(h);
   return length / topology.scale + topology.cut_length;
 }
 
 // All charts together, each at the scale it is given out with.
 Distortion sum_up(const ChartSet& set) {
   Distortion total;
-  total = Distortion{};
   double l2 = 0, conformal = 0, area = 0;
   for (const Chart& chart : set.charts) {
     const Distortion& d = chart.distortion;

@@ -16,7 +16,7 @@ namespace {
 // the noise of float coordinates.
 constexpr double kFlatSpread = 1e-6;
 // A seam along a crease is hidden: to remove it is worth this much less.
-static double kHiddenSeam = getenv("HIDDEN") ? atof(getenv("HIDDEN")) : 0.75;
+constexpr double kHiddenSeam = 0.75;
 constexpr double kConeWeight = 0.25;
 constexpr int kConeSteps = 24;  // towards the axis of the smallest cone (Badoiu and Clarkson 2003)
 

@@ -1,15 +1,12 @@
 #include "libatlas/charts/segment.h"
 
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "libatlas/charts/cells.h"
 #include "libatlas/charts/coarse.h"
 #include "libatlas/charts/merge.h"
 #include "libatlas/charts/refine.h"
-#include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -51,6 +48,33 @@ Frame transport(const Frame& frame, const glm::dvec3& a, const glm::dvec3& b) {
   return {turn(frame[0]), turn(frame[1])};
 }
 
+// Triangle labels, frames and the seams of charts with themselves, from the merged cells.
+void spread_to_triangles(const Topology& topology, const Cells& cells, const CoarseMesh& coarse,
+                         const MergeResult& merged, Segmentation& result) {
+  const std::size_t n = topology.triangle_count();
+  Partition& partition = result.partition;
+  partition.chart.assign(n, kNoIndex);
+  partition.seams.assign(n, 0);
+  result.frames.resize(n);
+  std::vector<Frame> frames(coarse.cells.size());
+  for (std::uint32_t k = 0; k < frames.size(); ++k) frames[k] = cell_frame(coarse, merged.uv, k);
+  for (std::uint32_t t = 0; t < n; ++t) {
+    const std::uint32_t k = cells.of_triangle[t];
+    if (k == kNoIndex) continue;
+    partition.chart[t] = merged.chart_of_cell[k];
+    const Frame frame =
+        transport(frames[k], to_glm(coarse.cells[k].normal), to_dvec(topology.normals[t]));
+    result.frames[t] = {from_glm(glm::vec3(frame[0])), from_glm(glm::vec3(frame[1]))};
+  }
+  for (std::size_t i = 0; i < coarse.rim_half_edges.size(); ++i) {
+    const std::uint32_t h = coarse.rim_half_edges[i], o = topology.opposite[h];
+    if (o == kNoIndex || merged.joined[coarse.rim_arcs[i]]) continue;
+    if (partition.chart[o / 3] != partition.chart[h / 3]) continue;
+    partition.seams[h / 3] |= static_cast<std::uint8_t>(1u << (h % 3));
+    partition.seams[o / 3] |= static_cast<std::uint8_t>(1u << (o % 3));
+  }
+}
+
 }  // namespace
 
 Segmentation segment(const Topology& topology, const ChartOptions& options,
@@ -60,74 +84,28 @@ Segmentation segment(const Topology& topology, const ChartOptions& options,
     result.partition.chart = topology.component;
     return result;
   }
-  const bool trace = std::getenv("TRACE") != nullptr;
-  double t0 = cpu_seconds();
-  CellOptions cell_options;
-  if (const char* e = std::getenv("CELLT")) cell_options.triangles_per_cell = std::atoi(e);
-  if (const char* e = std::getenv("CELLMAX")) cell_options.max_cells_per_piece = std::atoi(e);
-  if (const char* e = std::getenv("LEAN")) cell_options.max_lean_degrees = std::atof(e);
-  Cells cells = grow_cells(topology, cell_options, context);
-  double t1 = cpu_seconds();
-  if (trace) fmt::print(stderr, "  cells {} {:.3f}\n", cells.count, t1 - t0);
-  if (context.cancelled()) return result;
   const double cone = options.cone_degrees * M_PI / 180;
+  Cells cells = grow_cells(topology, CellOptions{}, context);
+  if (context.cancelled()) return result;
   if (cone > 0) split_by_cone(topology, cone, cells);
   const CoarseMesh coarse = build_coarse(topology, options.crease_degrees, cells);
-  t0 = cpu_seconds();
-  if (trace) fmt::print(stderr, "  coarse {} {:.3f}\n", cells.count, t0 - t1);
   std::vector<std::uint32_t> piece(coarse.cells.size(), kNoIndex);
   for (std::uint32_t t = 0; t < cells.of_triangle.size(); ++t) {
     if (cells.of_triangle[t] != kNoIndex) piece[cells.of_triangle[t]] = topology.component[t];
   }
   MergeOptions merge;
   ExtremeNormals normals;
-  if (cone > 0) normals = extreme_normals(topology, cells);
-  merge.cone = cone - 2e-5;
-  merge.cell_normals = &normals;
-  if (const char* e = std::getenv("L2")) merge.limits.stretch_l2 = std::atof(e);
-  if (const char* e = std::getenv("HIGH")) merge.limits.stretch_high = std::atof(e);
-  if (const char* e = std::getenv("FILL")) merge.limits.fill = std::atof(e);
-  if (const char* e = std::getenv("WORTH")) merge.seam_worth = 1 / std::atof(e);
-  if (const char* e = std::getenv("TAIL")) merge.tail_worth = std::atof(e);
-  if (const char* e = std::getenv("SMALL")) merge.small_share = std::atof(e);
-  if (const char* e = std::getenv("SOLID2")) merge.small_solidity = std::atof(e);
-  if (const char* e = std::getenv("FILL2")) merge.small_fill = std::atof(e);
-  if (const char* e = std::getenv("CWORTH")) merge.chart_worth = std::atof(e);
-  if (const char* e = std::getenv("SOLID")) merge.limits.solidity = std::atof(e);
-  if (const char* e = std::getenv("COMPACT")) merge.compactness_weight = std::atof(e);
-  if (const char* e = std::getenv("CREASE")) merge.crease_weight = std::atof(e);
+  if (cone > 0) {
+    // Ends are kept clear of the limit: what is measured in the end is rounded otherwise.
+    normals = extreme_normals(topology, cells);
+    merge.cone = std::max(1e-9, cone - 2e-5);
+    merge.cell_normals = &normals;
+  }
   const MergeResult merged = merge_cells(coarse, piece, merge, context);
-  t1 = cpu_seconds();
-  if (trace)
-    fmt::print(stderr, "  merge trials {} rejected {} {:.3f}\n", merged.trials, merged.rejections,
-               t1 - t0);
-  result.partition.chart.resize(topology.triangle_count());
-  result.partition.seams.assign(topology.triangle_count(), 0);
-  result.frames.resize(topology.triangle_count());
-  std::vector<Frame> frames(coarse.cells.size());
-  for (std::uint32_t k = 0; k < frames.size(); ++k) frames[k] = cell_frame(coarse, merged.uv, k);
-  for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
-    const std::uint32_t k = cells.of_triangle[t];
-    result.partition.chart[t] = k == kNoIndex ? kNoIndex : merged.chart_of_cell[k];
-    if (k == kNoIndex) continue;
-    const Frame frame =
-        transport(frames[k], to_glm(coarse.cells[k].normal), to_dvec(topology.normals[t]));
-    result.frames[t] = {from_glm(glm::vec3(frame[0])), from_glm(glm::vec3(frame[1]))};
-  }
-  for (std::size_t i = 0; i < coarse.rim_half_edges.size(); ++i) {
-    const std::uint32_t h = coarse.rim_half_edges[i], o = topology.opposite[h];
-    if (o == kNoIndex || merged.joined[coarse.rim_arcs[i]] ||
-        result.partition.chart[o / 3] != result.partition.chart[h / 3]) {
-      continue;
-    }
-    result.partition.seams[h / 3] |= static_cast<std::uint8_t>(1u << (h % 3));
-    result.partition.seams[o / 3] |= static_cast<std::uint8_t>(1u << (o % 3));
-  }
-  if (!std::getenv("NOSMOOTH"))
-    smooth_borders(topology, options.crease_degrees, {merged.chart_axis, std::cos(cone - 1e-5)},
-                   result.partition, result.frames);
-  t0 = cpu_seconds();
-  if (trace) fmt::print(stderr, "  smooth {:.3f}\n", t0 - t1);
+  if (context.cancelled()) return result;
+  spread_to_triangles(topology, cells, coarse, merged, result);
+  smooth_borders(topology, options.crease_degrees, {merged.chart_axis, std::cos(cone - 1e-5)},
+                 result.partition, result.frames);
   return result;
 }
 

@@ -206,6 +206,7 @@ class Linker {
   void link_pair(std::uint32_t g, std::uint32_t h) {
     if (third(g) == third(h)) {
       mark_duplicate(g, h);
+      topology_.cut_length += length(g);
     } else if (!may_link(g, h)) {
       topology_.cut_length += length(g);
     } else {
@@ -252,6 +253,7 @@ class Linker {
     for (const Pair& pair : pairs) {
       if (topology_.opposite[pair.g] == kNoIndex && topology_.opposite[pair.h] == kNoIndex) {
         link(pair.g, pair.h);
+        topology_.fan_links.push_back(pair.g);
       }
     }
   }

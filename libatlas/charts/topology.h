@@ -39,6 +39,8 @@ struct Topology {
   double cut_length = 0;  // of edges that exactly two triangles share without a link, input units
   double scale = 1;       // points = positions * scale, a power of two
   TopologyDefects defects;
+  // Linked half-edges (one of each pair) of edges that more than two triangles share.
+  std::vector<std::uint32_t> fan_links;
 
   std::size_t triangle_count() const { return flags.size(); }
   bool degenerate(std::uint32_t t) const { return flags[t] & kDegenerate; }

@@ -1,0 +1,257 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <random>
+
+#include "libatlas/core/glm_bridge.h"
+#include "tests/charts/chart_checks.h"
+
+namespace atlas::test {
+namespace {
+
+ChartSet charts_of(const Mesh& mesh, const ChartOptions& options = {}, int threads = 1) {
+  Context context;
+  context.threads = threads;
+  Result<ChartSet> result = make_charts(mesh.view(), options, context);
+  EXPECT_TRUE(result.ok()) << result.status().message();
+  return result.ok() ? std::move(*result) : ChartSet{};
+}
+
+// Gaussian noise along vertex normals, sigma in mean edge lengths.
+Shape noisy_along_normals(Shape shape, double sigma) {
+  std::vector<glm::dvec3> normal(shape.positions.size(), glm::dvec3(0));
+  double length = 0;
+  for (std::size_t i = 0; i < shape.indices.size(); i += 3) {
+    const std::uint32_t* v = &shape.indices[i];
+    const glm::dvec3 a = to_dvec(shape.positions[v[0]]), b = to_dvec(shape.positions[v[1]]),
+                     c = to_dvec(shape.positions[v[2]]);
+    for (int k = 0; k < 3; ++k) normal[v[k]] += glm::cross(b - a, c - a);
+    length += glm::distance(a, b) + glm::distance(b, c) + glm::distance(c, a);
+  }
+  std::mt19937 generator(7);
+  std::normal_distribution<double> gauss(0, sigma * length / double(shape.indices.size()));
+  for (std::size_t v = 0; v < normal.size(); ++v) {
+    const double size = glm::length(normal[v]);
+    if (!(size > 0)) continue;
+    shape.positions[v] =
+        from_glm(glm::vec3(to_dvec(shape.positions[v]) + normal[v] * (gauss(generator) / size)));
+  }
+  return shape;
+}
+
+TEST(Charts, EveryShapeOfTheZooComesOutWhole) {
+  for (const Shape& shape : zoo()) {
+    const Mesh mesh(shape);
+    const ChartSet set = charts_of(mesh);
+    const ChartFindings found = check_charts(mesh.view(), set);
+    EXPECT_EQ(found.fault, "") << shape.name;
+    EXPECT_LE(found.stretch_999, 1.25 * (1 + 1e-6)) << shape.name;
+    EXPECT_NEAR(found.seam, set.seam_length, 1e-6 * (1 + set.seam_length)) << shape.name;
+    EXPECT_NEAR(found.stretch_l2, set.distortion.stretch_l2, 1e-3) << shape.name;
+    EXPECT_EQ(set.distortion.flips, 0u) << shape.name;
+  }
+}
+
+TEST(Charts, TheBoundAskedForIsTheBoundMeasured) {
+  const Mesh mesh(sphere(48, 24));
+  std::size_t before = 0;
+  for (const double bound : {1.6, 1.25, 1.1, 1.04}) {
+    ChartOptions options;
+    options.max_stretch = bound;
+    const ChartSet set = charts_of(mesh, options);
+    const ChartFindings found = check_charts(mesh.view(), set);
+    EXPECT_EQ(found.fault, "");
+    EXPECT_LE(found.stretch_999, bound * (1 + 1e-6));
+    EXPECT_GE(set.charts.size() + 2, before) << "a tighter bound needs as many charts or more";
+    before = set.charts.size();
+  }
+}
+
+TEST(Charts, TheConeIsAHardLimit) {
+  for (const Shape& shape :
+       {sphere(40, 20), torus(40, 20), box(6), noisy(sphere(40, 20), 0.02, 3)}) {
+    for (const double cone : {10.0, 30.0, 60.0}) {
+      const Mesh mesh(shape);
+      ChartOptions options;
+      options.cone_degrees = cone;
+      const ChartSet set = charts_of(mesh, options);
+      const ChartFindings found = check_charts(mesh.view(), set);
+      EXPECT_EQ(found.fault, "") << shape.name;
+      EXPECT_LE(found.cone_degrees, cone * (1 + 1e-6) + 1e-4) << shape.name << " cone " << cone;
+    }
+  }
+}
+
+TEST(Charts, AFlatPlateIsOneChartHoweverFine) {
+  for (const int n : {1, 7, 90}) {
+    const Mesh mesh(grid(n, n, 3, 1));
+    const ChartSet set = charts_of(mesh);
+    ASSERT_EQ(set.charts.size(), 1u);
+    EXPECT_TRUE(set.charts[0].planar_projection);
+    EXPECT_NEAR(set.charts[0].size.x, 3, 1e-5);
+    EXPECT_NEAR(set.charts[0].size.y, 1, 1e-5);
+    EXPECT_EQ(set.seam_length, 0);
+  }
+}
+
+TEST(Charts, AFlatPlateWithHolesStaysUncut) {
+  const Shape full = grid(30, 30);
+  Mesh mesh;
+  mesh.positions = full.positions;
+  for (std::size_t t = 0; t < full.triangle_count(); ++t) {
+    const std::size_t quad = t / 2, x = quad % 30, y = quad / 30;
+    const bool hole = (x / 6) % 2 == 1 && (y / 6) % 2 == 1;
+    if (hole) continue;
+    for (int c = 0; c < 3; ++c) mesh.indices.push_back(full.indices[3 * t + c]);
+  }
+  const ChartSet set = charts_of(mesh);
+  EXPECT_EQ(check_charts(mesh.view(), set).fault, "");
+  EXPECT_EQ(set.charts.size(), 1u);
+  EXPECT_EQ(set.seam_length, 0);
+}
+
+TEST(Charts, WhatUnrollsIsUnrolledWithoutStretch) {
+  for (const Shape& shape : {box(8), cylinder(48, 12), cone(48, 12, 0.4)}) {
+    const Mesh mesh(shape);
+    const ChartSet set = charts_of(mesh);
+    const ChartFindings found = check_charts(mesh.view(), set);
+    EXPECT_EQ(found.fault, "") << shape.name;
+    EXPECT_LE(set.charts.size(), 8u) << shape.name;
+    EXPECT_LT(found.stretch_l2, 1.002) << shape.name;
+  }
+}
+
+TEST(Charts, CurvedShapesNeedFewCharts) {
+  const auto count = [](const Shape& shape) { return charts_of(Mesh(shape)).charts.size(); };
+  EXPECT_LE(count(icosphere(4)), 12u);
+  EXPECT_LE(count(torus(96, 48)), 16u);
+  EXPECT_LE(count(plate_with_holes(2, 8)), 16u);
+}
+
+TEST(Charts, ScanNoiseHardlyAddsCharts) {
+  const Shape smooth = icosphere(5);
+  const ChartSet calm = charts_of(Mesh(smooth));
+  const Mesh mesh(noisy_along_normals(smooth, 0.15));
+  const ChartSet set = charts_of(mesh);
+  EXPECT_EQ(check_charts(mesh.view(), set).fault, "");
+  EXPECT_LE(double(set.charts.size()), 1.5 * double(calm.charts.size()) + 1);
+}
+
+TEST(Charts, SameBytesForAnyThreadCount) {
+  Shape many = torus(60, 30);
+  for (int i = 1; i < 6; ++i) many = together(many, moved(sphere(20, 10), 0.4, {3.0 * i, 0, 0}));
+  for (const Shape& shape : {many, noisy(icosphere(4), 0.01, 5)}) {
+    const Mesh mesh(shape);
+    const std::string one = bytes(charts_of(mesh, {}, 1));
+    EXPECT_EQ(one, bytes(charts_of(mesh, {}, 2)));
+    EXPECT_EQ(one, bytes(charts_of(mesh, {}, 8)));
+  }
+}
+
+TEST(Charts, PowersOfTwoChangeNothingButTheScale) {
+  const Shape shape = noisy(torus(60, 30), 0.01, 9);
+  const ChartSet set = charts_of(Mesh(shape));
+  for (const int power : {-20, -1, 7, 20}) {
+    const double factor = std::ldexp(1.0, power);
+    const ChartSet other = charts_of(Mesh(moved(shape, factor)));
+    EXPECT_EQ(set.triangle_chart, other.triangle_chart);
+    ASSERT_EQ(set.uvs.size(), other.uvs.size());
+    for (std::size_t i = 0; i < set.uvs.size(); ++i) {
+      ASSERT_EQ(set.uvs[i].x * factor, other.uvs[i].x);
+      ASSERT_EQ(set.uvs[i].y * factor, other.uvs[i].y);
+    }
+  }
+}
+
+TEST(Charts, AnyScaleGivesAboutTheSameCharts) {
+  const Shape shape = torus(80, 40);
+  const ChartSet set = charts_of(Mesh(shape));
+  for (const double factor : {1e-6, 0.03, 123.4, 1e6}) {
+    const Mesh mesh(moved(shape, factor));
+    const ChartSet other = charts_of(mesh);
+    EXPECT_EQ(check_charts(mesh.view(), other).fault, "");
+    EXPECT_NEAR(double(other.charts.size()), double(set.charts.size()),
+                1 + 0.03 * double(set.charts.size()));
+    EXPECT_NEAR(other.distortion.stretch_l2, set.distortion.stretch_l2, 0.01);
+  }
+}
+
+TEST(Charts, MaterialsStayApartUnlessAllowed) {
+  Mesh mesh(grid(20, 20));
+  for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
+    mesh.materials.push_back(t % 40 < 20 ? 3 : 5);
+  }
+  const ChartSet split = charts_of(mesh);
+  EXPECT_EQ(split.charts.size(), 2u);
+  for (std::size_t t = 0; t < mesh.materials.size(); ++t) {
+    EXPECT_EQ(split.charts[split.triangle_chart[t]].material, mesh.materials[t]);
+  }
+  EXPECT_NEAR(split.seam_length, 1, 1e-5);
+  ChartOptions options;
+  options.split_at_materials = false;
+  EXPECT_EQ(charts_of(mesh, options).charts.size(), 1u);
+}
+
+TEST(Charts, DensityScalesTheCharts) {
+  const Shape shape = together(grid(10, 10), moved(grid(10, 10), 1, {5, 0, 0}));
+  const Mesh mesh(shape);
+  std::vector<float> density(shape.triangle_count(), 1);
+  for (std::size_t t = density.size() / 2; t < density.size(); ++t) density[t] = 4;
+  MeshView view = mesh.view();
+  view.density = density;
+  const Result<ChartSet> set = make_charts(view, {}, {});
+  ASSERT_TRUE(set.ok());
+  ASSERT_EQ(set->charts.size(), 2u);
+  EXPECT_NEAR(set->charts[0].size.x, 1, 1e-5);
+  EXPECT_NEAR(set->charts[1].size.x, 4, 1e-4);
+}
+
+TEST(Charts, GivenUvChartsAreKept) {
+  Mesh mesh(grid(8, 8));
+  for (const Vec3f& p : mesh.positions) mesh.texcoords.push_back({p.x, p.y});
+  for (const Vec3f& p : mesh.positions) mesh.texcoords.push_back({p.x + 2, p.y});
+  const auto apart = static_cast<std::uint32_t>(mesh.positions.size());
+  for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
+    const bool right = (t / 2) % 8 >= 4;
+    for (int c = 0; c < 3; ++c) {
+      mesh.texcoord_indices.push_back(mesh.indices[3 * t + c] + (right ? apart : 0));
+    }
+  }
+  ChartOptions options;
+  options.keep_uv_charts = true;
+  const ChartSet set = charts_of(mesh, options);
+  EXPECT_EQ(set.charts.size(), 2u);
+  EXPECT_NE(set.triangle_chart[0], set.triangle_chart[15]);
+  EXPECT_EQ(check_charts(mesh.view(), set).fault, "");
+}
+
+TEST(Charts, BadInputAndOptionsAreNamed) {
+  const auto code = [](const Mesh& mesh, const ChartOptions& options = {}) {
+    return make_charts(mesh.view(), options, {}).status().code();
+  };
+  EXPECT_EQ(code(Mesh()), ErrorCode::bad_input);
+  Mesh mesh(grid(2, 2));
+  mesh.indices[4] = 1000;
+  EXPECT_EQ(code(mesh), ErrorCode::bad_input);
+  mesh = Mesh(grid(2, 2));
+  mesh.positions[0].y = std::nanf("");
+  EXPECT_EQ(code(mesh), ErrorCode::bad_input);
+  ChartOptions options;
+  options.max_stretch = 1;
+  EXPECT_EQ(code(Mesh(grid(2, 2)), options), ErrorCode::bad_option);
+  options = {};
+  options.cone_degrees = 181;
+  EXPECT_EQ(code(Mesh(grid(2, 2)), options), ErrorCode::bad_option);
+}
+
+TEST(Charts, CancellingEndsTheWork) {
+  const std::atomic<bool> cancel{true};
+  Context context;
+  context.cancel = &cancel;
+  const Mesh mesh(icosphere(3));
+  EXPECT_EQ(make_charts(mesh.view(), {}, context).status().code(), ErrorCode::cancelled);
+}
+
+}  // namespace
+}  // namespace atlas::test

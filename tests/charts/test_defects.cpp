@@ -1,0 +1,147 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/charts/chart_checks.h"
+
+namespace atlas::test {
+namespace {
+
+ChartSet whole(const Mesh& mesh) {
+  Result<ChartSet> set = make_charts(mesh.view(), {}, {});
+  EXPECT_TRUE(set.ok()) << set.status().message();
+  if (!set.ok()) return {};
+  EXPECT_EQ(check_charts(mesh.view(), *set).fault, "");
+  return std::move(*set);
+}
+
+// A band of n quads, turned by half_turns * 180 degrees before its ends meet.
+Mesh band(int n, int half_turns) {
+  Mesh mesh;
+  for (int i = 0; i < n; ++i) {
+    const double a = 2 * M_PI * i / n, tilt = half_turns * a / 2;
+    for (const double r : {-0.3, 0.3}) {
+      const double d = 1 + r * std::cos(tilt);
+      mesh.positions.push_back(
+          {float(d * std::cos(a)), float(d * std::sin(a)), float(r * std::sin(tilt))});
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    const bool turned = i == n - 1 && half_turns % 2;
+    const auto a = std::uint32_t(2 * i), b = a + 1;
+    const auto c = std::uint32_t(2 * ((i + 1) % n) + (turned ? 1 : 0));
+    const auto d = turned ? c - 1 : c + 1;
+    for (const std::uint32_t v : {a, b, c, b, d, c}) mesh.indices.push_back(v);
+  }
+  return mesh;
+}
+
+TEST(Defects, AMoebiusStripIsCut) {
+  const ChartSet set = whole(band(40, 1));
+  EXPECT_LE(set.charts.size(), 6u);
+  EXPECT_GT(set.seam_length, 0.5);
+}
+
+TEST(Defects, PiecesOfMixedOrientationAreTurned) {
+  Mesh mesh(grid(10, 10));
+  for (std::size_t t = 0; t < mesh.indices.size() / 3; t += 3) {
+    std::swap(mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]);
+  }
+  const ChartSet set = whole(mesh);
+  EXPECT_EQ(set.charts.size(), 1u);
+  EXPECT_EQ(set.flipped_triangles.size(), (mesh.indices.size() / 3 + 2) / 3);
+  EXPECT_GT(set.repairs.misoriented_edges, 0u);
+}
+
+TEST(Defects, FansOfSheetsAroundAnEdge) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {0, 0, 1}};
+  for (int i = 0; i < 7; ++i) {
+    const auto v = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.push_back({float(std::cos(0.9 * i)), float(std::sin(0.9 * i)), 0.5f});
+    for (const std::uint32_t k : {0u, 1u, v}) mesh.indices.push_back(k);
+  }
+  const ChartSet set = whole(mesh);
+  EXPECT_EQ(set.repairs.nonmanifold_edges, 1u);
+  EXPECT_LE(set.charts.size(), 7u);
+}
+
+TEST(Defects, TwoConesAtOneVertex) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}};
+  for (const float z : {1.0f, -1.0f}) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (int i = 0; i < 6; ++i) {
+      mesh.positions.push_back({float(std::cos(i * M_PI / 3)), float(std::sin(i * M_PI / 3)), z});
+    }
+    for (std::uint32_t i = 0; i < 6; ++i) {
+      for (const std::uint32_t v : {0u, first + i, first + (i + 1) % 6}) mesh.indices.push_back(v);
+    }
+  }
+  EXPECT_EQ(whole(mesh).repairs.nonmanifold_vertices, 1u);
+}
+
+TEST(Defects, DuplicatesGetPlacesOfTheirOwn) {
+  Mesh mesh(grid(4, 4));
+  const std::vector<std::uint32_t> copy(mesh.indices.begin(), mesh.indices.begin() + 12);
+  mesh.indices.insert(mesh.indices.end(), copy.begin(), copy.end());
+  const ChartSet set = whole(mesh);
+  EXPECT_EQ(set.repairs.duplicate_triangles, 4u);
+}
+
+TEST(Defects, ADoubledSurfaceIsTwoSheets) {
+  Mesh mesh(grid(6, 6));
+  const std::vector<std::uint32_t> front = mesh.indices;
+  for (std::size_t i = 0; i < front.size(); i += 3) {
+    for (const std::size_t k : {i, i + 2, i + 1}) mesh.indices.push_back(front[k]);
+  }
+  EXPECT_LE(whole(mesh).charts.size(), 4u);
+}
+
+TEST(Defects, TrianglesWithoutAreaJoinTheirNeighbours) {
+  Mesh mesh(grid(6, 6));
+  const std::size_t before = mesh.indices.size() / 3;
+  mesh.positions.push_back({0.25f, 0.5f, 0});
+  const auto apart = static_cast<std::uint32_t>(mesh.positions.size() - 1);
+  for (const std::uint32_t v : {0u, 0u, 1u, 0u, 1u, 2u, apart, apart, apart}) {
+    mesh.indices.push_back(v);
+  }
+  const ChartSet set = whole(mesh);
+  EXPECT_EQ(set.repairs.degenerate_triangles, 3u);
+  EXPECT_EQ(set.charts.size(), 1u);
+  EXPECT_EQ(set.triangle_chart.size(), before + 3);
+}
+
+TEST(Defects, NothingButTrianglesWithoutArea) {
+  Mesh mesh;
+  mesh.positions = {{1, 2, 3}, {1, 2, 3}, {4, 5, 6}};
+  mesh.indices = {0, 1, 2, 2, 2, 2};
+  const ChartSet set = whole(mesh);
+  EXPECT_EQ(set.charts.size(), 1u);
+  EXPECT_EQ(set.seam_length, 0);
+}
+
+TEST(Defects, SlicedNeedlesAndSoup) {
+  EXPECT_EQ(whole(Mesh(needles(200, 1e5))).charts.size(), 1u);
+  EXPECT_EQ(whole(Mesh(soup(300, 4))).charts.size(), 300u);
+}
+
+TEST(Defects, ManyTinyPiecesAreQuick) {
+  Shape shape = box(1);
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < 3000; ++i) {
+    const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const Vec3f& p : shape.positions) {
+      mesh.positions.push_back({p.x + 2.0f * float(i % 60), p.y + 2.0f * float(i / 60), p.z});
+    }
+    for (const std::uint32_t v : shape.indices) mesh.indices.push_back(base + v);
+  }
+  const ChartSet set = whole(mesh);
+  EXPECT_LE(set.charts.size(), 3000u * 6);
+  EXPECT_NEAR(set.distortion.stretch_l2, 1, 1e-6);
+  // Seconds on any machine would be a defect: about ten microseconds a triangle are expected.
+  EXPECT_LT(set.timing.segmentation_cpu + set.timing.parameterization_cpu, 10.0);
+}
+
+}  // namespace
+}  // namespace atlas::test
