@@ -140,7 +140,7 @@ bool mean_size(std::span<const std::uint64_t> sizes, std::uint32_t groups, std::
     rest += size % groups;  // < 2 groups, below 2^33
     quotient += size / groups + rest / groups;
     rest %= groups;
-    if (quotient >= limit || size > limit) return false;
+    if (quotient > limit || size > limit) return false;
   }
   mean = quotient + (rest > 0);
   return true;

@@ -1,0 +1,137 @@
+#include "tests/pack/checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace atlas::test {
+
+std::uint64_t Noise::next() {
+  std::uint64_t z = state += 0x9E3779B97F4A7C15u;
+  z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
+  z = (z ^ z >> 27) * 0x94D049BB133111EBu;
+  return z ^ z >> 31;
+}
+
+int Noise::in(int low, int high) {
+  return low + static_cast<int>(next() % static_cast<std::uint64_t>(high - low + 1));
+}
+
+double Noise::unit() {
+  return static_cast<double>(next() >> 11) * 0x1p-53;
+}
+
+std::vector<Extent> log_normal_rects(std::size_t count, std::uint64_t seed) {
+  Noise noise{seed};
+  const auto normal = [&] {
+    double sum = 0;
+    for (int k = 0; k < 12; ++k) sum += noise.unit();
+    return sum - 6;
+  };
+  std::vector<Extent> items;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double z1 = normal(), z2 = normal();
+    const double s = 24 * std::exp(0.9 * z1), a = std::exp(0.35 * z2);
+    items.push_back({static_cast<int>(std::clamp(std::floor(s * a + 0.5), 2.0, 512.0)),
+                     static_cast<int>(std::clamp(std::floor(s / a + 0.5), 2.0, 512.0))});
+  }
+  return items;
+}
+
+namespace {
+
+struct Box {
+  std::int64_t x0, y0, x1, y1;
+};
+
+bool closer_than(const Box& a, const Box& b, std::int64_t gap) {
+  return a.x0 < b.x1 + gap && b.x0 < a.x1 + gap && a.y0 < b.y1 + gap && b.y0 < a.y1 + gap;
+}
+
+}  // namespace
+
+std::string check_layout(std::span<const Extent> items, std::span<const Placement> placements,
+                         std::span<const Extent> pages, const PackOptions& options) {
+  if (placements.size() != items.size()) return "wrong number of placements";
+  std::map<std::uint32_t, std::vector<std::pair<std::size_t, Box>>> by_page;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const Placement& p = placements[i];
+    if (!p.placed() || items[i].area() == 0) continue;
+    const std::string who = "item " + std::to_string(i);
+    if (p.rotated && !options.allow_rotation) return who + " is turned";
+    if (p.page >= pages.size()) return who + " is on no page";
+    Extent e = items[i];
+    if (p.rotated) std::swap(e.width, e.height);
+    const Box b{p.x, p.y, std::int64_t{p.x} + e.width, std::int64_t{p.y} + e.height};
+    const Extent page = pages[p.page];
+    if (b.x0 < options.border || b.y0 < options.border || b.x1 > page.width - options.border ||
+        b.y1 > page.height - options.border)
+      return who + " leaves its page";
+    if (p.x % options.alignment || p.y % options.alignment) return who + " is not aligned";
+    for (const auto& [j, other] : by_page[p.page])
+      if (closer_than(b, other, options.padding)) return who + " meets item " + std::to_string(j);
+    for (const PinnedRect& pin : options.pinned) {
+      const Box r{pin.rect.x, pin.rect.y, std::int64_t{pin.rect.x} + pin.rect.width,
+                  std::int64_t{pin.rect.y} + pin.rect.height};
+      if (pin.page == p.page && pin.rect.area() > 0 && closer_than(b, r, options.padding))
+        return who + " meets a pinned rectangle";
+    }
+    by_page[p.page].emplace_back(i, b);
+  }
+  return {};
+}
+
+std::vector<Vec2d> blob(Noise& noise, double radius, int corners) {
+  std::vector<Vec2d> ring;
+  const double stretch = 0.4 + 0.6 * noise.unit();
+  for (int k = 0; k < corners; ++k) {
+    const double a = 2 * 3.14159265358979 * k / corners, r = radius * (0.4 + 0.6 * noise.unit());
+    ring.push_back({r * std::cos(a), stretch * r * std::sin(a)});
+  }
+  std::vector<Vec2d> fan;
+  for (int k = 0; k < corners; ++k) {
+    fan.push_back({0, 0});
+    fan.push_back(ring[static_cast<std::size_t>(k)]);
+    fan.push_back(ring[static_cast<std::size_t>((k + 1) % corners)]);
+  }
+  return fan;
+}
+
+std::string check_outlines(std::span<const PlacedShape> placed, std::span<const Extent> pages,
+                           int padding) {
+  // Every sample claims the texels within the padding around it; no texel has two owners.
+  const double reach = padding - 0.001;
+  std::vector<std::map<std::pair<int, int>, std::size_t>> owner(pages.size());
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    const PlacedShape& s = placed[i];
+    if (s.page >= pages.size()) return "shape " + std::to_string(i) + " is on no page";
+    const double c = s.scale * std::cos(s.angle), d = s.scale * std::sin(s.angle);
+    const std::vector<Vec2d> corners(s.shape.corners.begin(), s.shape.corners.end());
+    for (std::size_t k = 0; k + 2 < corners.size(); k += 3) {
+      constexpr int n = 8;
+      for (int u = 0; u <= n; ++u)
+        for (int v = 0; u + v <= n; ++v) {
+          const double w[3] = {double(u) / n, double(v) / n, double(n - u - v) / n};
+          double x = 0, y = 0;
+          for (std::size_t j = 0; j < 3; ++j) {
+            x += w[j] * (c * corners[k + j].x - d * corners[k + j].y);
+            y += w[j] * (d * corners[k + j].x + c * corners[k + j].y);
+          }
+          x += s.offset.x;
+          y += s.offset.y;
+          const int x0 = int(std::floor(x - reach)), x1 = int(std::floor(x + reach));
+          const int y0 = int(std::floor(y - reach)), y1 = int(std::floor(y + reach));
+          if (x0 < 0 || y0 < 0 || x1 >= pages[s.page].width || y1 >= pages[s.page].height)
+            return "shape " + std::to_string(i) + " leaves its page";
+          for (int ty = y0; ty <= y1; ++ty)
+            for (int tx = x0; tx <= x1; ++tx)
+              if (const auto at = owner[s.page].try_emplace({tx, ty}, i).first; at->second != i)
+                return "shapes " + std::to_string(at->second) + " and " + std::to_string(i) +
+                       " are too close";
+        }
+    }
+  }
+  return {};
+}
+
+}  // namespace atlas::test

@@ -1,0 +1,154 @@
+#include "libatlas/pack/fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/pack/checks.h"
+
+namespace atlas {
+namespace {
+
+FitResult fit(const std::vector<FitItem>& items, const FitOptions& options) {
+  Result<FitResult> r = fit_pages(items, options, {});
+  EXPECT_TRUE(r.ok()) << r.status().message();
+  return r.ok() ? std::move(*r) : FitResult{};
+}
+
+void expect_valid(const std::vector<FitItem>& items, const FitOptions& o, const FitResult& r) {
+  ASSERT_EQ(r.placements.size(), items.size());
+  ASSERT_LE(r.pages.size(), o.pages);
+  std::vector<Extent> boxes;
+  std::vector<Placement> places;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const FitPlacement& p = r.placements[i];
+    const auto side = [&](double extent) {
+      const double scaled = std::ceil(extent * r.scale - 1e-6);
+      return std::max({1.0, scaled, std::min<double>(o.minimum_side, std::ceil(extent))});
+    };
+    EXPECT_EQ(p.content_width, side(items[i].width));
+    EXPECT_EQ(p.content_height, side(items[i].height));
+    EXPECT_GE(p.box.width, (p.rotated ? p.content_height : p.content_width) + 2 * o.padding);
+    EXPECT_GE(p.box.height, (p.rotated ? p.content_width : p.content_height) + 2 * o.padding);
+    EXPECT_EQ(p.box.width % o.alignment, 0);
+    EXPECT_EQ(p.box.height % o.alignment, 0);
+    boxes.push_back({p.box.width, p.box.height});
+    places.push_back({p.page, p.box.x, p.box.y, false});
+  }
+  PackOptions rules;
+  rules.alignment = o.alignment;
+  EXPECT_EQ(test::check_layout(boxes, places, r.pages, rules), "");
+  if (o.power_of_two) {
+    for (Extent p : r.pages) EXPECT_EQ((p.width & (p.width - 1)) | (p.height & (p.height - 1)), 0);
+  }
+}
+
+std::vector<FitItem> items_of(std::size_t count, double scale, std::uint64_t seed) {
+  std::vector<FitItem> items;
+  for (const Extent& e : test::log_normal_rects(count, seed))
+    items.push_back({e.width * scale + 0.25, e.height * scale});
+  return items;
+}
+
+TEST(FitPages, RandomProblems) {
+  test::Noise noise{2};
+  for (int round = 0; round < 60; ++round) {
+    const auto items =
+        items_of(static_cast<std::size_t>(noise.in(1, 150)), 0.2 + 3 * noise.unit(), noise.next());
+    FitOptions o;
+    o.pages = static_cast<std::uint32_t>(noise.in(1, 4));
+    o.page_size = 512;
+    o.power_of_two = noise.in(0, 1);
+    o.square = noise.in(0, 1);
+    o.padding = noise.in(0, 2);
+    o.alignment = 1 << noise.in(0, 2);
+    o.minimum_side = noise.in(0, 1) ? 16 : 0;
+    o.allow_rotation = noise.in(0, 1);
+    const Result<FitResult> r = fit_pages(items, o, {});
+    if (!r.ok()) {
+      EXPECT_EQ(r.status().code(), ErrorCode::no_solution);
+      continue;
+    }
+    expect_valid(items, o, *r);
+    EXPECT_LE(r->scale, 1);
+    EXPECT_LE(r->packings, o.max_packings);
+  }
+}
+
+TEST(FitPages, FullPagesAtTheLargestScale) {
+  const auto items = items_of(1500, 1, 6);
+  FitOptions o;
+  o.pages = 2;
+  o.page_size = 512;
+  o.padding = 1;
+  o.alignment = 1;
+  o.minimum_side = 0;
+  const FitResult r = fit(items, o);
+  expect_valid(items, o, r);
+  EXPECT_LT(r.scale, 1);
+  EXPECT_GT(r.box_utilization, 0.97);
+  EXPECT_EQ(r.pages.size(), 2u);
+}
+
+TEST(FitPages, SmallContentTakesFewSmallPages) {
+  const std::vector<FitItem> items(4, FitItem{20, 20});
+  FitOptions o;
+  o.pages = 8;
+  const FitResult r = fit(items, o);
+  expect_valid(items, o, r);
+  EXPECT_EQ(r.scale, 1);
+  ASSERT_EQ(r.pages.size(), 1u);
+  EXPECT_EQ(r.pages[0], (Extent{64, 64}));
+}
+
+TEST(FitPages, Failures) {
+  FitOptions o;
+  o.page_size = 64;
+  const std::vector<FitItem> many(100, FitItem{50, 50});
+  EXPECT_EQ(fit_pages(many, o, {}).status().code(), ErrorCode::no_solution);
+  const std::vector<FitItem> bad{{-1, 4}};
+  EXPECT_EQ(fit_pages(bad, o, {}).status().code(), ErrorCode::bad_input);
+  o.pages = 0;
+  EXPECT_EQ(fit_pages(many, o, {}).status().code(), ErrorCode::bad_option);
+  o.pages = 1;
+  o.page_size = 60;
+  EXPECT_EQ(fit_pages(many, o, {}).status().code(), ErrorCode::bad_option);
+  EXPECT_TRUE(fit_pages({}, {}, {}).ok());
+}
+
+TEST(FitPages, OutlinesFitMoreThanBoxes) {
+  test::Noise noise{31};
+  std::vector<std::vector<Vec2d>> blobs;
+  std::vector<ChartShape> shapes;
+  std::vector<FitItem> items;
+  for (int k = 0; k < 120; ++k) blobs.push_back(test::blob(noise, 20 + 60 * noise.unit(), 7));
+  for (const auto& b : blobs) {
+    Vec2d low = b[0], high = b[0];
+    for (const Vec2d& p : b) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+    items.push_back({high.x - low.x, high.y - low.y});
+    shapes.push_back({b, {}});
+  }
+  FitOptions o;
+  o.pages = 2;
+  o.page_size = 256;
+  o.padding = 2;
+  o.alignment = 4;
+  o.minimum_side = 0;
+  const FitResult boxes = fit(items, o);
+  o.shapes = shapes;
+  const FitResult outlines = fit(items, o);
+  EXPECT_GT(outlines.scale, boxes.scale);
+  std::vector<test::PlacedShape> placed;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const FitPlacement& p = outlines.placements[i];
+    EXPECT_GE(p.scale, outlines.scale);
+    placed.push_back({shapes[i], p.page, p.scale, p.angle, p.offset});
+  }
+  EXPECT_EQ(test::check_outlines(placed, outlines.pages, o.padding), "");
+}
+
+}  // namespace
+}  // namespace atlas

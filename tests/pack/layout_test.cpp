@@ -1,0 +1,52 @@
+#include "libatlas/pack/layout.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/pack/checks.h"
+#include "tests/pack/layout_fuzz.h"
+
+namespace atlas {
+namespace {
+
+TEST(AtlasLayout, InsertsRemovesRepacks) {
+  PackOptions o;
+  o.page = {10, 10};
+  Result<AtlasLayout> layout = AtlasLayout::create(o);
+  ASSERT_TRUE(layout.ok());
+  EXPECT_EQ(*layout->insert({10, 6}), 0u);
+  EXPECT_EQ(*layout->insert({10, 4}), 1u);
+  EXPECT_EQ(*layout->insert({10, 5}), 2u);
+  EXPECT_EQ(layout->placement(2).page, 1u);
+  EXPECT_TRUE(layout->remove(0));
+  EXPECT_FALSE(layout->remove(0));
+  EXPECT_FALSE(layout->contains(0));
+  // The freed rows are found again.
+  EXPECT_EQ(*layout->insert({7, 6}), 3u);
+  EXPECT_EQ(layout->placement(3).page, 0u);
+  ASSERT_TRUE(layout->repack({}).ok());
+  EXPECT_EQ(layout->size(), 3u);
+  EXPECT_EQ(layout->page_count(), 2u);
+}
+
+TEST(AtlasLayout, SaysWhyAnItemDoesNotFit) {
+  PackOptions o;
+  o.page = {10, 10};
+  o.max_pages = 1;
+  Result<AtlasLayout> layout = AtlasLayout::create(o);
+  ASSERT_TRUE(layout.ok());
+  EXPECT_EQ(layout->insert({11, 1}).status().code(), ErrorCode::no_solution);
+  EXPECT_EQ(layout->insert({-1, 1}).status().code(), ErrorCode::bad_input);
+  EXPECT_TRUE(layout->insert({10, 10}).ok());
+  EXPECT_EQ(layout->insert({1, 1}).status().code(), ErrorCode::no_solution);
+  EXPECT_TRUE(layout->insert({0, 1}).ok());
+  o.page.height = 0;
+  EXPECT_EQ(AtlasLayout::create(o).status().code(), ErrorCode::bad_option);
+}
+
+TEST(AtlasLayout, RandomOperationsKeepTheRules) {
+  for (std::uint64_t seed = 0; seed < 20000; ++seed)
+    ASSERT_EQ(test::fuzz_layout(seed), "") << "seed " << seed;
+}
+
+}  // namespace
+}  // namespace atlas

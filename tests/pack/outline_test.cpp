@@ -1,0 +1,242 @@
+#include "libatlas/pack/outline.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libatlas/pack/bit_page.h"
+#include "tests/pack/checks.h"
+
+namespace atlas {
+namespace {
+
+std::vector<std::vector<Vec2d>> blobs(int count, double radius, std::uint64_t seed) {
+  test::Noise noise{seed};
+  std::vector<std::vector<Vec2d>> shapes;
+  for (int k = 0; k < count; ++k)
+    shapes.push_back(test::blob(noise, radius * (0.3 + noise.unit()), noise.in(3, 12)));
+  return shapes;
+}
+
+std::vector<ChartShape> views(const std::vector<std::vector<Vec2d>>& shapes) {
+  std::vector<ChartShape> v;
+  for (const auto& s : shapes) v.push_back({s, {}});
+  return v;
+}
+
+std::vector<test::PlacedShape> placed(const std::vector<ChartShape>& shapes, double scale,
+                                      const OutlineResult& r) {
+  std::vector<test::PlacedShape> out;
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+    if (const OutlinePlacement& p = r.placements[i]; p.page != kNoPage)
+      out.push_back({shapes[i], p.page, scale, p.angle, p.offset});
+  return out;
+}
+
+TEST(Outline, ChartsKeepTheirGutters) {
+  for (std::uint32_t rotations : {1u, 2u, 4u, 8u, 16u})
+    for (int padding : {0, 1, 2})
+      for (int alignment : {1, 4}) {
+        const auto shapes = blobs(40, 25, rotations * 100 + unsigned(padding));
+        const auto v = views(shapes);
+        OutlineOptions o;
+        o.page = {256, 0};
+        o.rotations = rotations;
+        o.padding = padding;
+        o.alignment = alignment;
+        o.preset = PackPreset::fast;
+        const Result<OutlineResult> r = pack_outlines(v, o, {});
+        ASSERT_TRUE(r.ok()) << r.status().message();
+        EXPECT_TRUE(r->unplaced.empty());
+        if (padding > 0) {
+          EXPECT_EQ(test::check_outlines(placed(v, 1, *r), r->pages, padding), "")
+              << rotations << " " << padding << " " << alignment;
+        }
+        double area = 0;
+        for (std::size_t i = 0; i < v.size(); ++i) {
+          const Rect& box = r->placements[i].box;
+          EXPECT_EQ(box.x % alignment, 0);
+          EXPECT_EQ(box.width % alignment, 0);
+          for (std::size_t k = 0; k < shapes[i].size(); k += 3) {
+            const Vec2d* p = &shapes[i][k];
+            area += std::abs((p[1].x - p[0].x) * (p[2].y - p[0].y) -
+                             (p[1].y - p[0].y) * (p[2].x - p[0].x)) /
+                    2;
+          }
+        }
+        EXPECT_NEAR(r->utilization, area / double(r->pages[0].area()), 1e-9);
+      }
+}
+
+TEST(Outline, RectanglesAreASpecialCase) {
+  // Sixteen squares of 30 texels with one texel around each fill a page of 128 exactly.
+  const std::vector<Vec2d> square{{0, 0}, {30, 0}, {30, 30}, {0, 0}, {30, 30}, {0, 30}};
+  const std::vector<ChartShape> shapes(16, ChartShape{square, {}});
+  OutlineOptions o;
+  o.page = {128, 128};
+  const Result<OutlineResult> r = pack_outlines(shapes, o, {});
+  ASSERT_TRUE(r.ok());
+  EXPECT_TRUE(r->unplaced.empty());
+  EXPECT_NEAR(r->utilization, 16.0 * 900 / (128 * 128), 1e-12);
+}
+
+TEST(Outline, SearchAndPagesAndThreads) {
+  const auto shapes = blobs(60, 30, 5);
+  const auto v = views(shapes);
+  OutlineOptions o;
+  o.page = {160, 160};
+  o.max_pages = 0;
+  const Result<OutlineResult> pages = pack_outlines(v, o, {});
+  ASSERT_TRUE(pages.ok());
+  EXPECT_GT(pages->pages.size(), 1u);
+  EXPECT_TRUE(pages->unplaced.empty());
+  EXPECT_EQ(test::check_outlines(placed(v, 1, *pages), pages->pages, 1), "");
+  o.page = {256, 0};
+  o.max_pages = 1;
+  o.preset = PackPreset::fast;
+  const Result<OutlineResult> fast = pack_outlines(v, o, {});
+  o.preset = PackPreset::best;
+  o.effort = 40;
+  o.time_budget = 1e9;
+  Context one;
+  one.threads = 1;
+  const Result<OutlineResult> best = pack_outlines(v, o, one);
+  const Result<OutlineResult> again = pack_outlines(v, o, {});
+  ASSERT_TRUE(fast.ok() && best.ok() && again.ok());
+  EXPECT_GE(best->utilization, fast->utilization);
+  EXPECT_EQ(best->pages, again->pages);
+  for (std::size_t i = 0; i < v.size(); ++i)
+    EXPECT_EQ(best->placements[i].box, again->placements[i].box);
+  EXPECT_EQ(test::check_outlines(placed(v, 1, *best), best->pages, 1), "");
+}
+
+TEST(Outline, HostileShapes) {
+  const std::vector<Vec2d> point(3, Vec2d{5, 5}), line{{0, 0}, {20, 7}, {10, 3.5}}, none;
+  const std::vector<Vec2d> huge{{0, 0}, {1e6, 0}, {0, 1e6}};
+  const std::vector<ChartShape> shapes{{point, {}}, {line, {}}, {none, {}}, {huge, {}}};
+  OutlineOptions o;
+  o.page = {64, 64};
+  const Result<OutlineResult> r = pack_outlines(shapes, o, {});
+  ASSERT_TRUE(r.ok());
+  EXPECT_EQ(r->unplaced, std::vector<std::uint32_t>{3});
+  EXPECT_EQ(r->placements[2].page, 0u);
+  const std::vector<Vec2d> bad{{0, 0}, {NAN, 0}, {0, 1}};
+  const std::vector<ChartShape> with_nan{{bad, {}}};
+  EXPECT_EQ(pack_outlines(with_nan, o, {}).status().code(), ErrorCode::bad_input);
+  const std::vector<std::uint32_t> wild{0, 1, 7};
+  const std::vector<ChartShape> out_of_range{{line, wild}};
+  EXPECT_EQ(pack_outlines(out_of_range, o, {}).status().code(), ErrorCode::bad_input);
+  o.rotations = 3;
+  EXPECT_EQ(pack_outlines(shapes, o, {}).status().code(), ErrorCode::bad_option);
+}
+
+using pack::BitPage;
+using pack::Mask;
+using pack::Run;
+
+bool covers(const Mask& m, int x, int y) {
+  if (x < 0 || y < 0 || x >= m.width || y >= m.height) return false;
+  for (const Run& r : m.row(y))
+    if (x >= r.begin && x < r.end) return true;
+  return false;
+}
+
+// The rasteriser against the separating axes of square and triangle, cell by cell.
+TEST(OutlineMask, MatchesSeparatingAxes) {
+  test::Noise noise{3};
+  for (int round = 0; round < 300; ++round) {
+    std::vector<Vec2d> t;
+    for (int k = 0; k < 3; ++k)
+      t.push_back({double(noise.in(0, 40)) / 4, double(noise.in(0, 40)) / 4});
+    pack::RasterOptions o;
+    o.padding = noise.in(0, 2);
+    o.cell = noise.in(1, 3);
+    Vec2d origin;
+    const Mask m = pack::rasterize({t, {}}, o, origin);
+    for (Vec2d& p : t) p = {p.x + origin.x, p.y + origin.y};
+    for (int y = -1; y <= m.height; ++y)
+      for (int x = -1; x <= m.width; ++x) {
+        const double x0 = x * o.cell - o.padding, x1 = (x + 1) * o.cell + o.padding;
+        const double y0 = y * o.cell - o.padding, y1 = (y + 1) * o.cell + o.padding;
+        double gap = -1e300;  // largest separation over the axes; negative: they overlap
+        const auto axis = [&](double ax, double ay) {
+          double lo = 1e300, hi = -1e300, slo = 1e300, shi = -1e300;
+          for (const Vec2d& p : t) {
+            lo = std::min(lo, ax * p.x + ay * p.y);
+            hi = std::max(hi, ax * p.x + ay * p.y);
+          }
+          for (double sx : {x0, x1})
+            for (double sy : {y0, y1}) {
+              slo = std::min(slo, ax * sx + ay * sy);
+              shi = std::max(shi, ax * sx + ay * sy);
+            }
+          gap = std::max(gap, std::max(slo - hi, lo - shi));
+        };
+        axis(1, 0);
+        axis(0, 1);
+        for (int k = 0; k < 3; ++k) {
+          const Vec2d a = t[std::size_t(k)], b = t[std::size_t((k + 1) % 3)];
+          if (a == b) continue;
+          axis(b.y - a.y, a.x - b.x);
+        }
+        if (std::abs(gap) > 1e-9) {
+          EXPECT_EQ(covers(m, x, y), gap < 0) << round << " " << x << " " << y;
+        }
+      }
+  }
+}
+
+TEST(OutlineMask, QuarterTurnsTurn) {
+  test::Noise noise{9};
+  for (int round = 0; round < 50; ++round) {
+    const auto shape = test::blob(noise, 12, noise.in(3, 9));
+    Vec2d origin;
+    const Mask m = pack::rasterize({shape, {}}, {}, origin);
+    const Mask turned = pack::quarter_turn(m);
+    ASSERT_EQ(turned.width, m.height);
+    ASSERT_EQ(turned.height, m.width);
+    for (int y = 0; y < m.height; ++y)
+      for (int x = 0; x < m.width; ++x)
+        ASSERT_EQ(covers(m, x, y), covers(turned, m.height - 1 - y, x));
+    EXPECT_EQ(pack::quarter_turn(pack::quarter_turn(pack::quarter_turn(turned))), m);
+  }
+}
+
+// The search for a place against a scan over all cells.
+TEST(BitPage, FindsTheLowestLeftmostPlace) {
+  test::Noise noise{17};
+  for (int round = 0; round < 60; ++round) {
+    const int width = noise.in(20, 150), height = 60;
+    BitPage page(width, height, width);
+    std::vector<std::vector<bool>> taken(height, std::vector<bool>(std::size_t(width)));
+    for (int k = 0; k < 25; ++k) {
+      const auto shape = test::blob(noise, noise.in(2, 14), noise.in(3, 8));
+      Vec2d origin;
+      const Mask m = pack::rasterize({shape, {}}, {}, origin);
+      const auto free_at = [&](int x, int y) {
+        for (int r = 0; r < m.height; ++r)
+          for (const pack::Run& run : m.row(r))
+            for (int c = run.begin; c < run.end; ++c)
+              if (taken[std::size_t(y + r)][std::size_t(x + c)]) return false;
+        return true;
+      };
+      BitPage::Place expected{-1, -1}, found{-1, -1};
+      for (int y = 0; y + m.height <= height && expected.y < 0; ++y)
+        for (int x = 0; x + m.width <= width && expected.y < 0; ++x)
+          if (free_at(x, y)) expected = {x, y};
+      const bool ok = page.find(m, pack::test_order(m), {}, found);
+      ASSERT_EQ(ok, expected.y >= 0);
+      if (!ok) continue;
+      ASSERT_EQ(found.x, expected.x);
+      ASSERT_EQ(found.y, expected.y);
+      page.put(m, found);
+      for (int r = 0; r < m.height; ++r)
+        for (const pack::Run& run : m.row(r))
+          for (int c = run.begin; c < run.end; ++c)
+            taken[std::size_t(found.y + r)][std::size_t(found.x + c)] = true;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace atlas

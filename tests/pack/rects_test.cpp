@@ -1,0 +1,182 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "libatlas/pack/pack.h"
+#include "tests/pack/checks.h"
+
+namespace atlas {
+namespace {
+
+PackResult pack(const std::vector<Extent>& items, const PackOptions& options, int threads = 0) {
+  Context context;
+  context.threads = threads;
+  Result<PackResult> r = pack_rects(items, options, context);
+  EXPECT_TRUE(r.ok()) << r.status().message();
+  return r.ok() ? std::move(*r) : PackResult{};
+}
+
+TEST(PackRects, RandomOptionsKeepTheRules) {
+  test::Noise noise{1};
+  const PackPreset presets[] = {PackPreset::fast, PackPreset::standard, PackPreset::best};
+  const PackEngine engines[] = {PackEngine::automatic, PackEngine::automatic,
+                                PackEngine::skyline_bottom_left, PackEngine::skyline_min_waste,
+                                PackEngine::max_rects};
+  for (int round = 0; round < 1500; ++round) {
+    std::vector<Extent> items(static_cast<std::size_t>(noise.in(0, 40)));
+    for (Extent& e : items) e = {noise.in(0, 30), noise.in(0, 30)};
+    PackOptions o;
+    o.page = {noise.in(20, 80), noise.in(0, 3) ? noise.in(20, 80) : 0};
+    o.allow_rotation = noise.in(0, 1);
+    o.padding = noise.in(0, 2);
+    o.border = noise.in(0, 3);
+    o.alignment = noise.in(0, 2) ? 1 : 4;
+    o.max_pages = noise.in(0, 2) ? 0u : 2u;
+    o.crop = noise.in(0, 1);
+    o.preset = presets[noise.in(0, 2)];
+    o.engine = engines[noise.in(0, 4)];
+    o.effort = 40;
+    std::vector<PinnedRect> pins;
+    if (noise.in(0, 2) == 0 && o.page.height > 0)
+      for (int k = noise.in(1, 3); k > 0; --k)
+        pins.push_back({static_cast<std::uint32_t>(noise.in(0, 1)),
+                        {noise.in(-5, 60), noise.in(-5, 60), noise.in(0, 20), noise.in(0, 20)}});
+    o.pinned = pins;
+    const PackResult r = pack(items, o, 1);
+    ASSERT_EQ(test::check_layout(items, r.placements, r.pages, o), "") << "round " << round;
+    std::size_t missing = 0;
+    for (std::size_t i = 0; i < items.size(); ++i) missing += !r.placements[i].placed();
+    ASSERT_EQ(missing, r.unplaced.size());
+    for (const UnplacedItem& u : r.unplaced) {
+      if (o.max_pages == 0 && o.page.height > 0) {
+        EXPECT_EQ(u.reason, UnplacedReason::too_large) << "round " << round;
+      }
+    }
+  }
+}
+
+TEST(PackRects, DegenerateSizes) {
+  PackOptions o;
+  o.page = {64, 64};
+  o.allow_rotation = true;
+  const std::vector<Extent> items{{0, 5}, {64, 64}, {65, 1}, {1000000000, 1000000000}, {0, 0}};
+  for (PackPreset preset : {PackPreset::fast, PackPreset::standard, PackPreset::best}) {
+    o.preset = preset;
+    o.effort = 10;
+    const PackResult r = pack(items, o);
+    EXPECT_TRUE(r.placements[0].placed());
+    EXPECT_EQ(r.placements[1], (Placement{0, 0, 0, false}));
+    ASSERT_EQ(r.unplaced.size(), 2u);
+    EXPECT_EQ(r.unplaced[0].item, 2u);
+    EXPECT_EQ(r.unplaced[0].reason, UnplacedReason::too_large);
+    EXPECT_EQ(r.unplaced[1].item, 3u);
+    EXPECT_EQ(r.pages.size(), 1u);
+  }
+}
+
+TEST(PackRects, BadOptionsAreNamed) {
+  const std::vector<Extent> one{{1, 1}};
+  const auto code = [&](auto change) {
+    PackOptions o;
+    change(o);
+    return pack_rects(one, o, {}).status().code();
+  };
+  EXPECT_EQ(code([](PackOptions& o) { o.page = {-1, 5}; }), ErrorCode::bad_option);
+  EXPECT_EQ(code([](PackOptions& o) { o.padding = -1; }), ErrorCode::bad_option);
+  EXPECT_EQ(code([](PackOptions& o) { o.alignment = 0; }), ErrorCode::bad_option);
+  EXPECT_EQ(code([](PackOptions& o) {
+              o.page = {100, 64}, o.power_of_two = true;
+            }),
+            ErrorCode::bad_option);
+  EXPECT_EQ(code([](PackOptions& o) { o.time_budget = std::numeric_limits<double>::quiet_NaN(); }),
+            ErrorCode::bad_option);
+  const std::vector<Extent> negative{{3, -1}};
+  EXPECT_EQ(pack_rects(negative, {}, {}).status().code(), ErrorCode::bad_input);
+}
+
+TEST(PackRects, CancelledWorkSaysSo) {
+  const std::atomic<bool> stop{true};
+  Context context;
+  context.cancel = &stop;
+  const std::vector<Extent> items(50, {3, 4});
+  EXPECT_EQ(pack_rects(items, {}, context).status().code(), ErrorCode::cancelled);
+}
+
+TEST(PackRects, SameResultForEveryThreadCount) {
+  const std::vector<Extent> items = test::log_normal_rects(90, 4);
+  for (bool strip : {false, true}) {
+    PackOptions o;
+    o.page = {256, strip ? 0 : 512};
+    o.page.width = 512;
+    o.preset = PackPreset::best;
+    o.effort = 400;
+    o.time_budget = std::numeric_limits<double>::infinity();
+    const PackResult one = pack(items, o, 1);
+    for (int threads : {2, 3, 8}) EXPECT_EQ(pack(items, o, threads).placements, one.placements);
+  }
+}
+
+// A layout pinned down: whoever changes it on purpose changes the number, and says why.
+TEST(PackRects, GoldenLayout) {
+  const std::vector<Extent> items = test::log_normal_rects(200, 20240601);
+  const auto fingerprint = [&](PackPreset preset) {
+    PackOptions o;
+    o.page = {512, 512};
+    o.allow_rotation = true;
+    o.preset = preset;
+    const PackResult r = pack(items, o);
+    EXPECT_EQ(test::check_layout(items, r.placements, r.pages, o), "");
+    std::uint64_t hash = 1469598103934665603u;
+    for (const Placement& p : r.placements)
+      for (std::uint64_t v : {std::uint64_t{p.page}, std::uint64_t(p.x), std::uint64_t(p.y),
+                              std::uint64_t{p.rotated}})
+        hash = (hash ^ v) * 1099511628211u;
+    return hash;
+  };
+  EXPECT_EQ(fingerprint(PackPreset::fast), 4082645723248373748u);
+  EXPECT_EQ(fingerprint(PackPreset::standard), 14196421012171596673u);
+}
+
+TEST(PackRects, BoundsAreNeverPassed) {
+  test::Noise noise{21};
+  for (int round = 0; round < 200; ++round) {
+    std::vector<Extent> items(static_cast<std::size_t>(noise.in(1, 30)));
+    for (Extent& e : items) e = {noise.in(1, 20), noise.in(1, 20)};
+    PackOptions o;
+    o.page = {20, 20};
+    o.allow_rotation = noise.in(0, 1);
+    const PackResult r = pack(items, o, 1);
+    EXPECT_LE(r.page_lower_bound, r.pages.size());
+    EXPECT_TRUE(r.unplaced.empty());
+  }
+}
+
+TEST(PackRects, ManyLogNormalRectanglesFillTheirPages) {
+  const std::vector<Extent> items = test::log_normal_rects(10000, 20240601);
+  const PackResult r = pack(items, {});
+  EXPECT_EQ(r.pages.size(), 7u);
+  EXPECT_GE(r.fill_without_last, 0.998);
+}
+
+TEST(PackRects, PagesTakeTheShapeAskedFor) {
+  const std::vector<Extent> items = test::log_normal_rects(30, 8);
+  PackOptions o;
+  o.page = {1024, 1024};
+  o.crop = o.power_of_two = true;
+  for (Extent p : pack(items, o).pages) {
+    EXPECT_EQ(p.width & (p.width - 1), 0);
+    EXPECT_EQ(p.height & (p.height - 1), 0);
+  }
+  o = {};
+  o.page = {0, 0};
+  const PackResult free = pack(items, o);
+  ASSERT_EQ(free.pages.size(), 1u);
+  EXPECT_EQ(test::check_layout(items, free.placements, free.pages, o), "");
+  EXPECT_GT(free.utilization, 0.8);
+  o.square = true;
+  const PackResult square = pack(items, o);
+  EXPECT_EQ(square.pages[0].width, square.pages[0].height);
+}
+
+}  // namespace
+}  // namespace atlas
