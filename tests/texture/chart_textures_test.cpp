@@ -87,6 +87,9 @@ TEST(ChartTextures, FollowFinerDiffuseTexturesAndNoCoarserOnes) {
   const TextureResult coarse = size_textures(textured(1), options(0.01));
   EXPECT_EQ(coarse.charts[0].full_texels_per_unit.x, 100);
   EXPECT_EQ(coarse.raised, 0u);
+  TextureOptions finer = options(0.01);
+  finer.texture_sampling = 1.5;
+  EXPECT_NEAR(size_textures(textured(8), finer).charts[0].full_texels_per_unit.x, 768, 1e-3);
   TextureOptions own = options(0.01);
   own.follow_textures = false;
   EXPECT_EQ(size_textures(textured(8), own).charts[0].full_texels_per_unit.x, 100);
@@ -158,6 +161,7 @@ TEST(ChartTextures, RefuseOptionsOutOfRange) {
   EXPECT_TRUE(refused([](TextureOptions& o) { o.threshold = NAN; }));
   EXPECT_TRUE(refused([](TextureOptions& o) { o.min_side = 0; }));
   EXPECT_TRUE(refused([](TextureOptions& o) { o.max_side = 4; }));
+  EXPECT_TRUE(refused([](TextureOptions& o) { o.texture_sampling = 0; }));
 }
 
 TEST(ChartTextures, StopWhenCancelled) {
