@@ -13,8 +13,7 @@ using namespace atlas;
 
 void print_plan(const ExportPlan& plan, app::Terminal& terminal) {
   for (const PlanStep& step : plan.steps) {
-    terminal.line(
-        fmt::format("{} {:<12} {}", step.run ? "run " : "skip", step.stage, step.reason));
+    terminal.line(fmt::format("{} {:<12} {}", step.run ? "run " : "skip", step.stage, step.reason));
   }
 }
 
@@ -58,9 +57,9 @@ Status run(const app::ExportCommand& command, app::Terminal& terminal) {
   }
   const StageReport reading = reading_stage(*loaded, cpu, wall);
   terminal.line(stage_line(reading));
-  Result<ExportReport> report =
-      export_world(*loaded, command.options,
-                   [&](const StageReport& stage) { terminal.line(stage_line(stage)); }, context);
+  Result<ExportReport> report = export_world(
+      *loaded, command.options, [&](const StageReport& stage) { terminal.line(stage_line(stage)); },
+      context);
   if (!report.ok()) return report.status();
   report->scene = command.scene;
   report->stages.insert(report->stages.begin(), reading);

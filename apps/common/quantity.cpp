@@ -11,8 +11,8 @@ namespace {
 
 using Units = std::array<std::pair<std::string_view, double>, 6>;
 
-constexpr Units kLengths{{{"mm", 1e-3}, {"cm", 1e-2}, {"in", 0.0254}, {"ft", 0.3048}, {"km", 1e3},
-                          {"m", 1.0}}};
+constexpr Units kLengths{
+    {{"mm", 1e-3}, {"cm", 1e-2}, {"in", 0.0254}, {"ft", 0.3048}, {"km", 1e3}, {"m", 1.0}}};
 
 // Splits "12.5cm" into the number and the rest.
 std::optional<std::pair<double, std::string_view>> leading_number(const std::string& text) {

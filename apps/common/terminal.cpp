@@ -29,7 +29,9 @@ Terminal::Terminal(std::string program, bool quiet)
   std::signal(SIGTERM, on_interrupt);
 }
 
-Terminal::~Terminal() { clear_bar(); }
+Terminal::~Terminal() {
+  clear_bar();
+}
 
 Context Terminal::context(int threads) {
   Context context;

@@ -9,8 +9,8 @@
 
 namespace atlas::app {
 
-// Draws one progress bar a stage on stderr where that is a terminal, one plain line a finished stage
-// otherwise, nothing when quiet. Ctrl-C raises the context's cancel flag. One at a time.
+// Draws one progress bar a stage on stderr where that is a terminal, one plain line a finished
+// stage otherwise, nothing when quiet. Ctrl-C raises the context's cancel flag. One at a time.
 class Terminal {
  public:
   Terminal(std::string program, bool quiet);
@@ -21,8 +21,8 @@ class Terminal {
   // A context whose progress, warnings and cancel flag are this terminal's; it must not outlive it.
   Context context(int threads);
 
-  void line(std::string_view text);         // to stdout, after clearing the bar; not when quiet
-  void error(std::string_view text);        // to stderr, always, as "program: error: text"
+  void line(std::string_view text);   // to stdout, after clearing the bar; not when quiet
+  void error(std::string_view text);  // to stderr, always, as "program: error: text"
 
  private:
   void progress(std::string_view stage, double fraction);

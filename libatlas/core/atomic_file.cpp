@@ -17,8 +17,8 @@ AtomicFiles::~AtomicFiles() {
 
 fs::path AtomicFiles::path_for(const fs::path& target) {
   fs::path temporary = target;
-  temporary.replace_filename(
-      fmt::format(".{}.{}.part{}", target.stem().string(), ::getpid(), target.extension().string()));
+  temporary.replace_filename(fmt::format(".{}.{}.part{}", target.stem().string(), ::getpid(),
+                                         target.extension().string()));
   entries_.push_back({temporary, target});
   return temporary;
 }
@@ -46,8 +46,8 @@ Status AtomicFiles::commit() {
 Status check_writable(const fs::path& target) {
   const fs::path directory = target.has_parent_path() ? target.parent_path() : fs::path(".");
   const auto refuse = [&](const char* why) {
-    return Status(ErrorCode::io,
-                  fmt::format("{}: cannot be written: {} {}", target.string(), directory.string(), why));
+    return Status(ErrorCode::io, fmt::format("{}: cannot be written: {} {}", target.string(),
+                                             directory.string(), why));
   };
   if (!fs::is_directory(directory)) return refuse("is not a directory (create it first)");
   if (::access(directory.c_str(), W_OK) != 0) return refuse("does not take files");
@@ -60,8 +60,8 @@ Status write_file(const fs::path& target, std::string_view bytes) {
   const fs::path path = files.path_for(target);
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (!file) {
-    return {ErrorCode::io, fmt::format("{}: cannot be written: {}", target.string(),
-                                       std::strerror(errno))};
+    return {ErrorCode::io,
+            fmt::format("{}: cannot be written: {}", target.string(), std::strerror(errno))};
   }
   const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
   const int write_error = errno;

@@ -37,8 +37,8 @@ class AtomicFiles {
   std::vector<Entry> entries_;
 };
 
-// Whether a file could be written at `target`: its directory exists and takes files. Ask before long
-// work, so that it does not end in vain. Error: io, naming the directory.
+// Whether a file could be written at `target`: its directory exists and takes files. Ask before
+// long work, so that it does not end in vain. Error: io, naming the directory.
 Status check_writable(const std::filesystem::path& target);
 
 // Writes `bytes` to `target` under a temporary name, then renames it.

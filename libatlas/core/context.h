@@ -7,7 +7,8 @@
 
 namespace atlas {
 
-// Passed by const reference to every stage. Default-constructed: all cores, silent, not cancellable.
+// Passed by const reference to every stage. Default-constructed: all cores, silent, not
+// cancellable.
 struct Context {
   // Threads to use; 0 means as many as the machine has. Results never depend on it.
   int threads = 0;

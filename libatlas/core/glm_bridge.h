@@ -10,15 +10,35 @@
 
 namespace atlas {
 
-inline glm::vec2 to_glm(Vec2f v) { return {v.x, v.y}; }
-inline glm::dvec2 to_glm(Vec2d v) { return {v.x, v.y}; }
-inline glm::vec3 to_glm(Vec3f v) { return {v.x, v.y, v.z}; }
-inline glm::dvec3 to_glm(Vec3d v) { return {v.x, v.y, v.z}; }
-inline glm::dvec3 to_dvec(Vec3f v) { return {v.x, v.y, v.z}; }
-inline glm::dvec2 to_dvec(Vec2f v) { return {v.x, v.y}; }
-inline Vec2f from_glm(const glm::vec2& v) { return {v.x, v.y}; }
-inline Vec2d from_glm(const glm::dvec2& v) { return {v.x, v.y}; }
-inline Vec3f from_glm(const glm::vec3& v) { return {v.x, v.y, v.z}; }
-inline Vec3d from_glm(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+inline glm::vec2 to_glm(Vec2f v) {
+  return {v.x, v.y};
+}
+inline glm::dvec2 to_glm(Vec2d v) {
+  return {v.x, v.y};
+}
+inline glm::vec3 to_glm(Vec3f v) {
+  return {v.x, v.y, v.z};
+}
+inline glm::dvec3 to_glm(Vec3d v) {
+  return {v.x, v.y, v.z};
+}
+inline glm::dvec3 to_dvec(Vec3f v) {
+  return {v.x, v.y, v.z};
+}
+inline glm::dvec2 to_dvec(Vec2f v) {
+  return {v.x, v.y};
+}
+inline Vec2f from_glm(const glm::vec2& v) {
+  return {v.x, v.y};
+}
+inline Vec2d from_glm(const glm::dvec2& v) {
+  return {v.x, v.y};
+}
+inline Vec3f from_glm(const glm::vec3& v) {
+  return {v.x, v.y, v.z};
+}
+inline Vec3d from_glm(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
 
 }  // namespace atlas

@@ -1,4 +1,5 @@
-// Images in memory: row-major texels of interleaved channels, row 0 at the bottom (see core/rect.h).
+// Images in memory: row-major texels of interleaved channels, row 0 at the bottom (see
+// core/rect.h).
 #pragma once
 
 #include <cstddef>

@@ -28,9 +28,8 @@ void parallel_for(const Context& context, std::size_t n, std::size_t grain,
     limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(context.threads));
   }
   tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
-  arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, chunks, run_chunk, tbb::simple_partitioner());
-  });
+  arena.execute(
+      [&] { tbb::parallel_for(std::size_t{0}, chunks, run_chunk, tbb::simple_partitioner()); });
 }
 
 }  // namespace atlas

@@ -80,12 +80,13 @@ Result<BakedPages> bake_pages(const ChartLight& light, const PageLayout& layout,
       meter->add_page(std::int32_t(p), baked->display);
     }
     Stopwatch watch(result.write_cpu, result.write_wall);
-    const std::string name = fmt::format("{}_{}.png", safe_file_name(options.target.stem().string()), p);
+    const std::string name =
+        fmt::format("{}_{}.png", safe_file_name(options.target.stem().string()), p);
     const auto image = write_page(options.target.parent_path() / name, *baked, options, files);
     if (!image.ok()) return image.status();
     result.image_sources.push_back(*image);
-    result.pages.push_back({name, bake.page_width, bake.page_height,
-                            std::uint32_t(pages[p].size()), std::filesystem::file_size(*image)});
+    result.pages.push_back({name, bake.page_width, bake.page_height, std::uint32_t(pages[p].size()),
+                            std::filesystem::file_size(*image)});
   }
   if (meter) result.fidelity = meter->result();
   return result;

@@ -15,7 +15,7 @@ namespace atlas {
 struct BakedPages {
   std::vector<PageReport> pages;
   std::vector<std::filesystem::path> image_sources;  // 1 a page: where its image lies until commit
-  Fidelity fidelity;              // zero without ExportOptions::measure_error
+  Fidelity fidelity;                                 // zero without ExportOptions::measure_error
   std::uint64_t covered_texels = 0;
   double bake_cpu = 0, write_cpu = 0, measure_cpu = 0;     // seconds
   double bake_wall = 0, write_wall = 0, measure_wall = 0;  // seconds

@@ -22,30 +22,31 @@ struct ExportOptions {
   std::uint32_t atlases = 8;
   std::int32_t atlas_size = 2048;
 
-  double texel_metres = 0;           // length of a texel on the real surface; 0: as fine as the
-                                     // budget could hold, within 1 to 10 mm (paper, stage 2)
-  bool follow_textures = true;       // finer where the diffuse texture is finer
-  double threshold = 2.0 / 255;      // of downsizing, in display values; 0: no downsizing
-  std::int32_t min_side = 16;        // downsizing stops here
+  double texel_metres = 0;       // length of a texel on the real surface; 0: as fine as the
+                                 // budget could hold, within 1 to 10 mm (paper, stage 2)
+  bool follow_textures = true;   // finer where the diffuse texture is finer
+  double threshold = 2.0 / 255;  // of downsizing, in display values; 0: no downsizing
+  std::int32_t min_side = 16;    // downsizing stops here
   Quantity quantity = Quantity::illuminance;
   ChartOptions charts;
   ToneOptions tone;
 
-  std::int32_t mip_levels = 2;       // lookups at mip levels 0..mip_levels stay inside a chart
-  std::int32_t shifts = 4;           // sub-texel sample grids of the bake
+  std::int32_t mip_levels = 2;  // lookups at mip levels 0..mip_levels stay inside a chart
+  std::int32_t shifts = 4;      // sub-texel sample grids of the bake
   BakeMethod bake_method = BakeMethod::least_squares;
   PackPreset packing = PackPreset::standard;
-  bool outlines = true;              // pack charts by their outlines, not their boxes
+  bool outlines = true;  // pack charts by their outlines where that is better than by
+                         // their boxes
 
-  bool simplify = true;              // write the coarser mesh
-  double simplify_slip = 0.2;        // texels that surface and texture may slip, > 0: at 0.5 the test room
-                                     // loses 2 dB, at 0.2 0.7 dB with twice the triangles
+  bool simplify = true;        // write the coarser mesh
+  double simplify_slip = 0.2;  // texels that surface and texture may slip, > 0: at 0.5 the test
+                               // room loses 2 dB, at 0.2 0.7 dB with twice the triangles
   Up up = Up::y;
   bool exr = false;                  // also scene-linear OpenEXR pages
   std::int32_t png_compression = 3;  // zlib level 0..9
 
-  bool charts_only = false;          // charts and uvs only: no light is baked, no image written
-  bool measure_error = true;         // compare the finished pages with the input's light
+  bool charts_only = false;   // charts and uvs only: no light is baked, no image written
+  bool measure_error = true;  // compare the finished pages with the input's light
 };
 
 }  // namespace atlas

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "libatlas/charts/tiles.h"
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/exporters/viewpoint.h"
@@ -49,6 +50,7 @@ class Export {
     if (Status s = cut_charts(); !s.ok()) return s;
     if (plan_.bake) {
       if (Status s = expose(); !s.ok()) return s;
+      if (Status s = cut_long_charts(); !s.ok()) return s;
       if (Status s = size_textures(); !s.ok()) return s;
     } else {
       size_plain_uvs();
@@ -144,14 +146,38 @@ class Export {
     return {};
   }
 
-  Status size_textures() {
-    begin_stage("downsizing");
+  TextureOptions texture_options() const {
     TextureOptions texture;
     texture.texel = plan_.texel_metres / scene_.metres_per_unit;
     texture.follow_textures = options_.follow_textures;
+    // With a texel of the user's own the diffuse texture's density is kept (the paper's rule); else
+    // it is exceeded where the budget lets it, since a texture sampled at its own density blurs.
+    texture.texture_sampling = options_.texel_metres > 0 ? 1 : kTextureSampling;
     texture.threshold = options_.threshold;
     texture.min_side = options_.min_side;
     texture.max_side = options_.atlas_size - 2 * gutter_pad(options_.mip_levels);
+    return texture;
+  }
+
+  // A chart longer than a page would lose density that its neighbours keep.
+  Status cut_long_charts() {
+    begin_stage("tiling");
+    const TextureOptions texture = texture_options();
+    std::vector<double> limits = wanted_densities(*light_, texture, context_);
+    if (context_.cancelled()) return Status::cancelled();
+    for (double& limit : limits) limit = texture.max_side / limit;
+    const std::size_t before = charts_.charts.size();
+    const std::size_t cut = cut_to_limits(view_of(scene_), limits, charts_);
+    report_.charts = charts_.charts;
+    report_.seam_length = charts_.seam_length;
+    finish_stage(before, charts_.charts.size(), "charts",
+                 fmt::format("{} longer than a page", cut));
+    return {};
+  }
+
+  Status size_textures() {
+    begin_stage("downsizing");
+    const TextureOptions texture = texture_options();
     Result<TextureResult> sized = size_chart_textures(*light_, texture, context_);
     if (!sized.ok()) return sized.status();
     for (const ChartTexture& t : sized->charts) {
@@ -207,7 +233,7 @@ class Export {
     report_.scale = layout_.scale;
     report_.utilization = layout_.utilization;
     report_.uv_utilization = layout_.uv_utilization;
-    report_.outlines = layout.outlines;
+    report_.outlines = layout_.outlines;
     finish_stage(charts_.charts.size(), layout_.pages.size(), "pages",
                  fmt::format("scale {:.3f}, {:.0f} % used by charts", layout_.scale,
                              100 * layout_.uv_utilization));
@@ -248,9 +274,9 @@ class Export {
       stage_.stage = "error";
       stage_.cpu_seconds = baked->measure_cpu;
       stage_.wall_seconds = baked->measure_wall;
-      add_stage(baked->fidelity.lit + baked->fidelity.unlit, pages, "pages",
-                fmt::format("PSNR {:.2f} dB, 95 % {:.4f}", baked->fidelity.psnr,
-                            baked->fidelity.p95));
+      add_stage(
+          baked->fidelity.lit + baked->fidelity.unlit, pages, "pages",
+          fmt::format("PSNR {:.2f} dB, 95 % {:.4f}", baked->fidelity.psnr, baked->fidelity.p95));
     }
     return {};
   }
@@ -318,6 +344,8 @@ class Export {
     }
     return write_gltf(world, options_.target, files_, context_);
   }
+
+  static constexpr double kTextureSampling = 1.5;  // of a diffuse texture's texels, along a side
 
   const Scene& scene_;
   const ExportOptions& options_;

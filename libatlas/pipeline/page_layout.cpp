@@ -29,9 +29,8 @@ struct Outlines {
     }
     for (const Chart& chart : set.charts) {
       shapes.push_back({std::span(corners).subspan(chart.first_uv, chart.uv_count),
-                        std::span(triangles)
-                            .subspan(3 * std::size_t(chart.first_triangle),
-                                     3 * std::size_t(chart.triangle_count))});
+                        std::span(triangles).subspan(3 * std::size_t(chart.first_triangle),
+                                                     3 * std::size_t(chart.triangle_count))});
     }
   }
 };
@@ -74,10 +73,9 @@ double uv_utilization(const ChartSet& charts, const PageLayout& layout) {
   return page_area > 0 ? area / page_area : 0;
 }
 
-}  // namespace
-
-Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
-                                 const LayoutOptions& options, const Context& context) {
+// One kind of packing, as options.outlines says.
+Result<PageLayout> lay_out(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
+                           const LayoutOptions& options, const Context& context) {
   std::vector<FitItem> items(charts.charts.size());
   for (std::size_t c = 0; c < items.size(); ++c) {
     items[c] = {charts.charts[c].size.x * texels_per_unit[c].x,
@@ -110,13 +108,41 @@ Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> 
     to = options.outlines ? outlined(from, options) : boxed(from, options);
     to.chart = std::uint32_t(c);
     to.page = std::int32_t(from.page);
-    to.texels_per_unit = {scaled_density(texels_per_unit[c].x, items[c].width, layout.scale,
-                                         fit.minimum_side),
-                          scaled_density(texels_per_unit[c].y, items[c].height, layout.scale,
-                                         fit.minimum_side)};
+    to.texels_per_unit = {
+        scaled_density(texels_per_unit[c].x, items[c].width, layout.scale, fit.minimum_side),
+        scaled_density(texels_per_unit[c].y, items[c].height, layout.scale, fit.minimum_side)};
   }
+  layout.outlines = options.outlines;
   layout.uv_utilization = uv_utilization(charts, layout);
   return layout;
+}
+
+std::int64_t page_texels(const PageLayout& layout) {
+  std::int64_t texels = 0;
+  for (const Extent& page : layout.pages) texels += page.area();
+  return texels;
+}
+
+// More texels for the charts first, then less room for the same.
+bool better(const PageLayout& a, const PageLayout& b) {
+  if (a.scale != b.scale) return a.scale > b.scale;
+  return page_texels(a) < page_texels(b);
+}
+
+}  // namespace
+
+Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
+                                 const LayoutOptions& options, const Context& context) {
+  // Boxes that are this full leave outlines nothing to win.
+  constexpr double kFullBoxes = 0.88;
+  LayoutOptions boxes = options;
+  boxes.outlines = false;
+  Result<PageLayout> boxed = lay_out(charts, texels_per_unit, boxes, context);
+  if (!options.outlines || (boxed.ok() && boxed->uv_utilization > kFullBoxes)) return boxed;
+  Result<PageLayout> outlined = lay_out(charts, texels_per_unit, options, context);
+  if (!outlined.ok()) return boxed;
+  if (!boxed.ok() || better(*outlined, *boxed)) return outlined;
+  return boxed;
 }
 
 }  // namespace atlas

@@ -20,13 +20,14 @@ struct LayoutOptions {
   std::int32_t padding = 2;       // texels kept around each chart
   std::int32_t alignment = 4;     // of the charts' boxes
   std::int32_t minimum_side = 16;
-  bool outlines = false;          // pack outlines; the page then keeps page_size
+  bool outlines = false;  // try outlines too, and take them where they pack better
   PackPreset preset = PackPreset::standard;
 };
 
 struct PageLayout {
   std::vector<ChartPlacement> placements;  // 1 a chart
   std::vector<Extent> pages;               // texels
+  bool outlines = false;                   // outlines won
   double scale = 1;                        // applied to all densities alike
   double utilization = 0;                  // of the contents the packer saw
   double uv_utilization = 0;               // area of the charts / area of the pages

@@ -15,7 +15,9 @@ struct SceneFacts {
   std::uint64_t textured_triangles = 0;
 };
 
-bool is_black(Vec3f v) { return v.x == 0 && v.y == 0 && v.z == 0; }
+bool is_black(Vec3f v) {
+  return v.x == 0 && v.y == 0 && v.z == 0;
+}
 
 SceneFacts gather_facts(const Scene& scene) {
   SceneFacts facts;
@@ -56,8 +58,8 @@ std::string budget_text(const ExportOptions& options) {
 }  // namespace
 
 bool ExportPlan::runs(const std::string& stage) const {
-  const auto step = std::find_if(steps.begin(), steps.end(),
-                                 [&](const PlanStep& s) { return s.stage == stage; });
+  const auto step =
+      std::find_if(steps.begin(), steps.end(), [&](const PlanStep& s) { return s.stage == stage; });
   return step != steps.end() && step->run;
 }
 
@@ -72,8 +74,8 @@ ExportPlan make_plan(const Scene& scene, const ExportOptions& options) {
   plan.unlit_share = facts.area > 0 ? facts.unlit_area / facts.area : 0;
   plan.uniform_share = facts.area > 0 ? facts.uniform_area / facts.area : 0;
   plan.bake = scene.lit() && !options.charts_only;
-  plan.sample_reflectance = plan.bake && facts.textured_triangles > 0 &&
-                            options.quantity == Quantity::illuminance;
+  plan.sample_reflectance =
+      plan.bake && facts.textured_triangles > 0 && options.quantity == Quantity::illuminance;
   plan.simplify = plan.bake && options.simplify;
 
   const auto step = [&](std::string stage, bool run, std::string reason) {
@@ -84,48 +86,49 @@ ExportPlan make_plan(const Scene& scene, const ExportOptions& options) {
           ? fmt::format("normals within {:g}° of a chart's axis: planar stretch at most {:.3f}",
                         options.charts.cone_degrees,
                         1 / std::cos(options.charts.cone_degrees * M_PI / 180))
-          : fmt::format("stretch at most {:g} over 99.9 % of a chart; the solver runs only for "
-                        "charts that a planar projection would stretch more",
-                        options.charts.max_stretch);
+          : fmt::format(
+                "stretch at most {:g} over 99.9 % of a chart; the solver runs only for "
+                "charts that a planar projection would stretch more",
+                options.charts.max_stretch);
   step("charts", true, limit);
   step("exposure", plan.bake,
-       plan.bake ? fmt::format("{} tone curve, {}", tone_operator_name(options.tone.op),
+       plan.bake     ? fmt::format("{} tone curve, {}", tone_operator_name(options.tone.op),
                                options.tone.white > 0 ? "white given" : "white measured")
        : scene.lit() ? "charts only were asked for"
                      : "the scene carries no illumination: plain uvs, no images");
   step("reflectance", plan.sample_reflectance,
-       !plan.bake                                     ? "no light to bake"
-       : options.quantity == Quantity::luminance      ? "the values are luminance already"
-       : facts.textured_triangles == 0                ? "no textures: one colour a material"
-                                                      : fmt::format("{} textured triangles",
-                                                                    facts.textured_triangles));
+       !plan.bake                                ? "no light to bake"
+       : options.quantity == Quantity::luminance ? "the values are luminance already"
+       : facts.textured_triangles == 0
+           ? "no textures: one colour a material"
+           : fmt::format("{} textured triangles", facts.textured_triangles));
   const bool downsize = plan.bake && options.threshold > 0;
   step("downsizing", downsize,
-       !plan.bake    ? "no light to bake"
-       : !downsize   ? "the threshold is 0"
-                     : fmt::format("threshold {:.4f}; {:.0f} % of the surface is unlit and {:.0f} % "
-                                   "of one colour: smallest textures without sampling",
-                                   options.threshold, 100 * plan.unlit_share,
-                                   100 * plan.uniform_share));
+       !plan.bake ? "no light to bake"
+       : !downsize
+           ? "the threshold is 0"
+           : fmt::format("threshold {:.4f}; {:.0f} % of the surface is unlit and {:.0f} % "
+                         "of one colour: smallest textures without sampling",
+                         options.threshold, 100 * plan.unlit_share, 100 * plan.uniform_share));
   const double capacity = double(options.atlases) * options.atlas_size * options.atlas_size;
   const bool group = !options.charts_only && options.atlases > 1;
   step("grouping", group,
-       group ? fmt::format("about {:.1f} M texels of {:.2g} mm before downsizing into {}; no "
-                           "bisection if the pages' own area already gives as few groups",
-                           plan.estimated_texels / 1e6, 1e3 * plan.texel_metres,
-                           budget_text(options))
-             : "one page");
-  step("packing", true, fmt::format("{}, {:.1f} M texels of room", budget_text(options),
-                                    capacity / 1e6));
+       group
+           ? fmt::format("about {:.1f} M texels of {:.2g} mm before downsizing into {}; no "
+                         "bisection if the pages' own area already gives as few groups",
+                         plan.estimated_texels / 1e6, 1e3 * plan.texel_metres, budget_text(options))
+           : "one page");
+  step("packing", true,
+       fmt::format("{}, {:.1f} M texels of room", budget_text(options), capacity / 1e6));
   step("baking", plan.bake,
        plan.bake ? fmt::format("{} shifted grids, gutters for mip levels 0 to {}", options.shifts,
                                options.mip_levels)
                  : "no light to bake");
   step("simplify", plan.simplify,
-       plan.simplify         ? fmt::format("surface and texture slip at most {:g} texels",
-                                           options.simplify_slip)
-       : !options.simplify   ? "switched off"
-                             : "without baked light the fine mesh is the result");
+       plan.simplify
+           ? fmt::format("surface and texture slip at most {:g} texels", options.simplify_slip)
+       : !options.simplify ? "switched off"
+                           : "without baked light the fine mesh is the result");
   step("error", plan.bake && options.measure_error,
        plan.bake && options.measure_error ? "100000 points of the surface against the pages"
                                           : "no baked light to measure");

@@ -19,12 +19,12 @@ struct PlanStep {
 struct ExportPlan {
   std::vector<PlanStep> steps;
   double surface_area_m2 = 0;
-  double texel_metres = 0;          // ExportOptions::texel_metres, or what was chosen for it
-  double estimated_texels = 0;      // at texel_metres, before downsizing
-  double unlit_share = 0;           // of the area, triangles whose corners are all exactly black
-  double uniform_share = 0;         // of the area, triangles whose corners are all equal and lit
-  bool bake = true;                 // there is light to bake
-  bool sample_reflectance = true;   // textures take part
+  double texel_metres = 0;         // ExportOptions::texel_metres, or what was chosen for it
+  double estimated_texels = 0;     // at texel_metres, before downsizing
+  double unlit_share = 0;          // of the area, triangles whose corners are all exactly black
+  double uniform_share = 0;        // of the area, triangles whose corners are all equal and lit
+  bool bake = true;                // there is light to bake
+  bool sample_reflectance = true;  // textures take part
   bool simplify = true;
 
   bool runs(const std::string& stage) const;

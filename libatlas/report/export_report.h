@@ -71,12 +71,12 @@ struct ExportReport {
 
   // Pages
   GroupingResult grouping;
-  double scale = 1;              // applied to all textures alike
-  double utilization = 0;        // chart texels (boxes) or uv area (outlines) / page texels
-  double uv_utilization = 0;     // uv area / page area
+  double scale = 1;           // applied to all textures alike
+  double utilization = 0;     // chart texels (boxes) or uv area (outlines) / page texels
+  double uv_utilization = 0;  // uv area / page area
   bool outlines = false;
   std::vector<PageReport> pages;
-  std::uint64_t gpu_bytes = 0;   // RGBA8 with mip chains
+  std::uint64_t gpu_bytes = 0;  // RGBA8 with mip chains
 
   // The coarser mesh
   bool simplified = false;

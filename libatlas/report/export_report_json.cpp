@@ -14,13 +14,19 @@ using Json = nlohmann::ordered_json;
 constexpr double kMebibyte = 1024.0 * 1024.0;
 
 // JSON has no infinities: a perfect page's PSNR is written as null.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
 
 Json json_of(const Distortion& d) {
-  return {{"stretch_l2", d.stretch_l2},         {"stretch_linf", number(d.stretch_linf)},
-          {"stretch_999", d.stretch_999},       {"conformal_mean", d.conformal_mean},
-          {"conformal_max", number(d.conformal_max)}, {"area_min", d.area_min},
-          {"area_max", number(d.area_max)},     {"flips", d.flips},
+  return {{"stretch_l2", d.stretch_l2},
+          {"stretch_linf", number(d.stretch_linf)},
+          {"stretch_999", d.stretch_999},
+          {"conformal_mean", d.conformal_mean},
+          {"conformal_max", number(d.conformal_max)},
+          {"area_min", d.area_min},
+          {"area_max", number(d.area_max)},
+          {"flips", d.flips},
           {"degenerate", d.degenerate}};
 }
 
@@ -74,23 +80,24 @@ Json charts_json(const ExportReport& r) {
                     {"planar", c.planar_projection},
                     {"distortion", json_of(c.distortion)}});
   }
-  return {{"count", r.charts.size()},
-          {"planar", planar},
-          {"widest_cone_degrees", widest_cone},
-          {"distortion", json_of(r.distortion)},
-          {"seam_length", r.seam_length},
-          {"seam_per_root_area", r.surface_area > 0 ? r.seam_length / std::sqrt(r.surface_area) : 0},
-          {"surface_area", r.surface_area},
-          {"segmentation_cpu_s", r.chart_timing.segmentation_cpu},
-          {"parameterization_cpu_s", r.chart_timing.parameterization_cpu},
-          {"repairs",
-           {{"degenerate_triangles", r.repairs.degenerate_triangles},
-            {"duplicate_triangles", r.repairs.duplicate_triangles},
-            {"nonmanifold_edges", r.repairs.nonmanifold_edges},
-            {"nonmanifold_vertices", r.repairs.nonmanifold_vertices},
-            {"misoriented_edges", r.repairs.misoriented_edges},
-            {"split_charts", r.repairs.split_charts}}},
-          {"charts", list}};
+  return {
+      {"count", r.charts.size()},
+      {"planar", planar},
+      {"widest_cone_degrees", widest_cone},
+      {"distortion", json_of(r.distortion)},
+      {"seam_length", r.seam_length},
+      {"seam_per_root_area", r.surface_area > 0 ? r.seam_length / std::sqrt(r.surface_area) : 0},
+      {"surface_area", r.surface_area},
+      {"segmentation_cpu_s", r.chart_timing.segmentation_cpu},
+      {"parameterization_cpu_s", r.chart_timing.parameterization_cpu},
+      {"repairs",
+       {{"degenerate_triangles", r.repairs.degenerate_triangles},
+        {"duplicate_triangles", r.repairs.duplicate_triangles},
+        {"nonmanifold_edges", r.repairs.nonmanifold_edges},
+        {"nonmanifold_vertices", r.repairs.nonmanifold_vertices},
+        {"misoriented_edges", r.repairs.misoriented_edges},
+        {"split_charts", r.repairs.split_charts}}},
+      {"charts", list}};
 }
 
 Json light_json(const ExportReport& r) {
@@ -107,27 +114,28 @@ Json light_json(const ExportReport& r) {
 }
 
 Json textures_json(const ExportReport& r) {
-  return {{"texel", r.texel},
-          {"full_texels", r.full_texels},
-          {"final_texels", r.final_texels},
-          {"saved_share", r.full_texels > 0 ? 1 - double(r.final_texels) / double(r.full_texels) : 0},
-          {"halved_charts", r.halved_charts},
-          {"uniform_charts", r.uniform_charts},
-          {"unlit_charts", r.unlit_charts},
-          {"capped_charts", r.capped_charts},
-          {"raised_charts", r.raised_charts},
-          {"rms_error", r.downsizing_rms},
-          {"max_error", r.downsizing_max}};
+  return {
+      {"texel", r.texel},
+      {"full_texels", r.full_texels},
+      {"final_texels", r.final_texels},
+      {"saved_share", r.full_texels > 0 ? 1 - double(r.final_texels) / double(r.full_texels) : 0},
+      {"halved_charts", r.halved_charts},
+      {"uniform_charts", r.uniform_charts},
+      {"unlit_charts", r.unlit_charts},
+      {"capped_charts", r.capped_charts},
+      {"raised_charts", r.raised_charts},
+      {"rms_error", r.downsizing_rms},
+      {"max_error", r.downsizing_max}};
 }
 
 Json grouping_json(const GroupingResult& g) {
   Json trace = Json::array();
   for (const GroupingStep& step : g.trace) trace.push_back({step.capacity, step.groups});
-  return {{"groups", g.group_count},        {"capacity", g.capacity},
+  return {{"groups", g.group_count},          {"capacity", g.capacity},
           {"largest_group", g.largest_group}, {"imbalance", g.imbalance},
-          {"lower_bound", g.lower_bound},   {"upper_bound", g.upper_bound},
-          {"fits_page", g.fits_page},       {"proved_smallest", g.proved_smallest},
-          {"group_sizes", g.group_size},    {"trace", trace}};
+          {"lower_bound", g.lower_bound},     {"upper_bound", g.upper_bound},
+          {"fits_page", g.fits_page},         {"proved_smallest", g.proved_smallest},
+          {"group_sizes", g.group_size},      {"trace", trace}};
 }
 
 Json pages_json(const ExportReport& r) {
@@ -154,8 +162,8 @@ Json error_json(const Fidelity& f) {
           {"samples_unplaced", f.unplaced},
           {"rmse", f.rmse},
           {"psnr", number(f.psnr)},
-          {"psnr_rgb", {number(f.psnr_channel[0]), number(f.psnr_channel[1]),
-                        number(f.psnr_channel[2])}},
+          {"psnr_rgb",
+           {number(f.psnr_channel[0]), number(f.psnr_channel[1]), number(f.psnr_channel[2])}},
           {"psnr_with_unlit", number(f.psnr_all)},
           {"rmse_display", f.rmse_display},
           {"p95", f.p95},
@@ -172,16 +180,11 @@ Status write_json(const ExportReport& r, const std::filesystem::path& path) {
   }
   Json files = Json::array();
   for (const auto& [name, bytes] : r.files) files.push_back({{"file", name}, {"bytes", bytes}});
-  Json json{{"target", r.target.string()},
-            {"wall_s", r.wall_seconds},
-            {"cpu_s", r.cpu_seconds},
-            {"peak_mib", double(r.peak_memory) / kMebibyte},
-            {"scene", scene_json(r)},
-            {"stages", stages_json(r)},
-            {"skipped", skipped},
-            {"charts", charts_json(r)},
-            {"packing", pages_json(r)},
-            {"grouping", grouping_json(r.grouping)}};
+  Json json{{"target", r.target.string()}, {"wall_s", r.wall_seconds},
+            {"cpu_s", r.cpu_seconds},      {"peak_mib", double(r.peak_memory) / kMebibyte},
+            {"scene", scene_json(r)},      {"stages", stages_json(r)},
+            {"skipped", skipped},          {"charts", charts_json(r)},
+            {"packing", pages_json(r)},    {"grouping", grouping_json(r.grouping)}};
   if (r.full_texels > 0) {
     json["light"] = light_json(r);
     json["textures"] = textures_json(r);
@@ -199,8 +202,8 @@ Status write_json(const ExportReport& r, const std::filesystem::path& path) {
 }
 
 std::string stage_line(const StageReport& s) {
-  return fmt::format("{:<11} {:>9} {} {:<9} {:<44} {:7.2f} s {:6.0f} MiB", s.stage, s.size_in,
-                     "->", s.size_out, s.unit + (s.quality.empty() ? "" : ", " + s.quality),
+  return fmt::format("{:<11} {:>9} {} {:<9} {:<44} {:7.2f} s {:6.0f} MiB", s.stage, s.size_in, "->",
+                     s.size_out, s.unit + (s.quality.empty() ? "" : ", " + s.quality),
                      s.cpu_seconds, double(s.peak_memory) / kMebibyte);
 }
 

@@ -174,8 +174,7 @@ TEST(Export, ChartsOnlyNeedsNoLight) {
   ASSERT_EQ(report->pages.size(), 1u);
   const auto mesh = read_uv_obj(options.target);
   ASSERT_TRUE(mesh.ok());
-  const AtlasMeasures m =
-      measure_atlas(*mesh, report->pages[0].width, report->pages[0].height);
+  const AtlasMeasures m = measure_atlas(*mesh, report->pages[0].width, report->pages[0].height);
   EXPECT_EQ(m.charts, report->charts.size());
   EXPECT_EQ(m.bleed, 0u);
   EXPECT_EQ(m.overlap, 0u);

@@ -64,7 +64,8 @@ class AtlasExport : public testing::Test {
   void expect_refusal(const fs::path& scene, const std::string& expected,
                       const std::string& more = "") {
     const auto before = files();
-    const RunResult r = run(fmt::format("{} -o {} {}", scene.string(), (dir_ / "world.wrl").string(), more));
+    const RunResult r =
+        run(fmt::format("{} -o {} {}", scene.string(), (dir_ / "world.wrl").string(), more));
     EXPECT_TRUE(r.exit_code == 1 || r.exit_code == 2) << r.exit_code << "\n" << r.output;
     EXPECT_EQ(std::count(r.output.begin(), r.output.end(), '\n'), 1) << r.output;
     EXPECT_NE(r.output.find(expected), std::string::npos) << r.output;
@@ -112,8 +113,8 @@ std::string slurp(const fs::path& path) {
 
 TEST_F(AtlasExport, WritesWorldImagesAndReport) {
   const fs::path scene = write("box.obj", lit_box(12));
-  const RunResult r = run(fmt::format("{0}/box.obj -o {0}/world.wrl --texel 1cm --report {0}/report.json",
-                                dir_.string()));
+  const RunResult r = run(fmt::format(
+      "{0}/box.obj -o {0}/world.wrl --texel 1cm --report {0}/report.json", dir_.string()));
   ASSERT_EQ(r.exit_code, 0) << r.output;
   EXPECT_EQ(files(), (std::set<std::string>{"box.obj", "report.json", "world.wrl", "world_0.png"}));
   const auto report = nlohmann::json::parse(slurp(dir_ / "report.json"));
@@ -129,7 +130,7 @@ TEST_F(AtlasExport, SameBytesForEveryThreadCount) {
   std::string reference;
   for (const int threads : {1, 2, 8}) {
     const RunResult r = run(fmt::format("{0}/box.obj -o {0}/w.obj --texel 1cm -q --threads {1}",
-                                  dir_.string(), threads));
+                                        dir_.string(), threads));
     ASSERT_EQ(r.exit_code, 0) << r.output;
     EXPECT_EQ(r.output, "");
     const std::string bytes = slurp(dir_ / "w.obj") + slurp(dir_ / "w_0.png");
@@ -214,8 +215,9 @@ TEST_F(AtlasExport, SomeBadElementsAreCountedAndNamed) {
 
 TEST_F(AtlasExport, MissingTextureIsReported) {
   write("m.mtl", "newmtl wood\nKd 0.5 0.5 0.5\nmap_Kd gone.png\n");
-  write("t.obj", "mtllib m.mtl\nv 0 0 0 1 1 1\nv 1 0 0 1 1 1\nv 0 1 0 1 1 1\n"
-                 "vt 0 0\nvt 1 0\nvt 0 1\nusemtl wood\nf 1/1 2/2 3/3\n");
+  write("t.obj",
+        "mtllib m.mtl\nv 0 0 0 1 1 1\nv 1 0 0 1 1 1\nv 0 1 0 1 1 1\n"
+        "vt 0 0\nvt 1 0\nvt 0 1\nusemtl wood\nf 1/1 2/2 3/3\n");
   const RunResult r = run(fmt::format("{0}/t.obj -o {0}/w.wrl", dir_.string()));
   EXPECT_EQ(r.exit_code, 0) << r.output;
   EXPECT_NE(r.output.find("gone.png"), std::string::npos) << r.output;
