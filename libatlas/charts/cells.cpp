@@ -12,6 +12,7 @@ namespace {
 
 constexpr float kNormalWeight = 8;  // of the lean in the distance, as published figures were found
 constexpr std::size_t kCellsOfSmallMesh = 146;
+constexpr double kFlatSpread = 1e-6;
 constexpr std::uint32_t kCalmGrain = 3;
 constexpr std::uint32_t kLeastPerCell = 3;
 constexpr float kFar = std::numeric_limits<float>::max();
@@ -158,9 +159,13 @@ class Seeder {
     for (const std::uint32_t k : topology_.component) size[k == kNoIndex ? 0 : k] += k != kNoIndex;
     for (std::uint32_t first = 0, last = 0; first < grains_.count(); first = last) {
       while (last < grains_.count() && grains_.component[last] == grains_.component[first]) ++last;
-      sample_piece(first, last, cell_budget(size[grains_.component[first]], options_));
+      const std::size_t first_seed = seeds.size();
+      const std::uint32_t budget =
+          flat(first, last) ? 1 : cell_budget(size[grains_.component[first]], options_);
+      sample_piece(first, last, budget);
+      if (seeds.size() == first_seed + 1) continue;
+      for (int round = 0; round < 2; ++round) recentre(first, last, first_seed);
     }
-    for (int round = 0; round < 2; ++round) recentre();
   }
 
   std::vector<std::uint32_t> seeds;  // grains
@@ -168,6 +173,17 @@ class Seeder {
   const std::vector<std::uint32_t>& owner() const { return owner_; }
 
  private:
+  // A piece that lies in one plane is one chart whatever its outline, so one cell will do.
+  bool flat(std::uint32_t first, std::uint32_t last) const {
+    glm::dvec3 sum(0);
+    double area = 0;
+    for (std::uint32_t g = first; g < last; ++g) {
+      sum += double(grains_.area[g]) * glm::dvec3(grains_.normal[g]);
+      area += grains_.area[g];
+    }
+    return area > 0 && glm::length(sum) > area * (1 - kFlatSpread);
+  }
+
   float step(std::uint32_t from, std::uint32_t to, const glm::vec3& axis) const {
     const float lean = 1 - glm::dot(grains_.normal[to], axis);
     return glm::distance(grains_.centroid[from], grains_.centroid[to]) * (1 + kNormalWeight * lean);
@@ -249,28 +265,32 @@ class Seeder {
     return length > 0 ? sum / length : grains_.normal[g];
   }
 
-  void recentre() {
-    const std::size_t n = seeds.size();
-    std::vector<glm::vec3> middle(n, glm::vec3(0)), normal(n, glm::vec3(0));
-    std::vector<float> area(n, 0), best(n, kFar);
-    for (std::uint32_t g = 0; g < grains_.count(); ++g) {
-      middle[owner_[g]] += grains_.area[g] * grains_.centroid[g];
-      normal[owner_[g]] += grains_.area[g] * grains_.normal[g];
-      area[owner_[g]] += grains_.area[g];
+  void recentre(std::uint32_t first, std::uint32_t last, std::size_t first_seed) {
+    struct Sum {
+      glm::vec3 middle{0}, normal{0};
+      float area = 0, best = kFar;
+    };
+    std::vector<Sum> sums(seeds.size() - first_seed);
+    for (std::uint32_t g = first; g < last; ++g) {
+      Sum& sum = sums[owner_[g] - first_seed];
+      sum.middle += grains_.area[g] * grains_.centroid[g];
+      sum.normal += grains_.area[g] * grains_.normal[g];
+      sum.area += grains_.area[g];
     }
-    for (std::uint32_t g = 0; g < grains_.count(); ++g) {
-      const std::uint32_t s = owner_[g];
-      const float d = glm::distance(grains_.centroid[g], middle[s] / area[s]);
-      if (d < best[s]) {
-        best[s] = d;
-        seeds[s] = g;
+    for (std::uint32_t g = first; g < last; ++g) {
+      Sum& sum = sums[owner_[g] - first_seed];
+      const float d = glm::distance(grains_.centroid[g], sum.middle / sum.area);
+      if (d < sum.best) {
+        sum.best = d;
+        seeds[owner_[g]] = g;
       }
+      distance_[g] = kFar;
     }
-    std::fill(distance_.begin(), distance_.end(), kFar);
-    for (std::uint32_t s = 0; s < n; ++s) {
-      const float length = glm::length(normal[s]);
-      if (length > 0) normals[s] = normal[s] / length;
-      heap_.push({0, seeds[s], s});
+    for (std::size_t s = first_seed; s < seeds.size(); ++s) {
+      const glm::vec3& normal = sums[s - first_seed].normal;
+      const float length = glm::length(normal);
+      if (length > 0) normals[s] = normal / length;
+      heap_.push({0, seeds[s], static_cast<std::uint32_t>(s)});
     }
     spread();
   }
@@ -302,10 +322,16 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
   result.count = static_cast<std::uint32_t>(cells);
   result.of_triangle.assign(n, kNoIndex);
   Heap heap;
-  for (std::uint32_t s = 0; s < cells; ++s) {
-    if (seed[s] != kNoIndex) heap.push({0, seed[s], s});  // coincident grains may leave one empty
-  }
-  while (!heap.empty()) {
+  const auto piece = [&](std::uint32_t s) { return grains.component[seeder.seeds[s]]; };
+  for (std::uint32_t next = 0; next < cells || !heap.empty();) {
+    if (heap.empty()) {  // pieces in turn: their seeds are contiguous, and the heap stays small
+      const std::uint32_t first = next;
+      for (; next < cells && piece(next) == piece(first); ++next) {
+        // Coincident grains may have left a cell empty.
+        if (seed[next] != kNoIndex) heap.push({0, seed[next], next});
+      }
+      continue;
+    }
     const Visit visit = heap.top();
     heap.pop();
     if (result.of_triangle[visit.node] != kNoIndex) continue;

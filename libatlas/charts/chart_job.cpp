@@ -23,6 +23,8 @@ constexpr double kMinAltitude = 1e-7;
 // costs them little.
 constexpr std::size_t kLargeChart = 20000;
 constexpr double kAimedStretch = 1.18;
+constexpr double kBestStretch = 1.12;
+constexpr int kBestIterations = 8;
 // Seams that one chart may get into its inside before it is divided instead.
 constexpr int kMaxCuts = 3;
 
@@ -139,9 +141,11 @@ class ChartJob {
     const ChartOptions& options = input_.options;
     ParamOptions param;
     param.max_stretch = options.max_stretch;
-    if (mesh.triangles.size() < kLargeChart) {
-      param.max_stretch = std::min(options.max_stretch, kAimedStretch);
+    const bool best = options.preset == ChartPreset::best;
+    if (best || (options.preset == ChartPreset::standard && mesh.triangles.size() < kLargeChart)) {
+      param.max_stretch = std::min(options.max_stretch, best ? kBestStretch : kAimedStretch);
     }
+    if (best) param.iterations = kBestIterations;
     param.max_planar_stretch =
         std::min(options.max_stretch,
                  options.preset == ChartPreset::fast ? kFastPlanarStretch : kPlanarStretch);

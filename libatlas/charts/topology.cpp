@@ -325,9 +325,13 @@ class Pieces {
       if (topology_.component[t] == kNoIndex && !topology_.degenerate(t)) flood(t);
     }
     if (topology_.defects.misoriented_edges == 0) return;
+    std::sort(topology_.fan_links.begin(), topology_.fan_links.end());
     cut_conflicts();
     for (std::uint32_t t = 0; t < n; ++t) {
       if (topology_.flags[t] & Topology::kFlipped) turn(t);
+    }
+    for (std::uint32_t& h : topology_.fan_links) {
+      if ((topology_.flags[h / 3] & Topology::kFlipped) && h % 3 != 1) h += h % 3 == 0 ? 2 : -2;
     }
   }
 
@@ -367,8 +371,10 @@ class Pieces {
       const bool differ = turned_[h / 3] != turned_[o / 3];
       if (differ == misoriented(h, o)) continue;
       topology_.opposite[h] = topology_.opposite[o] = kNoIndex;
-      topology_.cut_length +=
-          glm::distance(point(topology_, h), point(topology_, next_half_edge(h))) / topology_.scale;
+      const bool fan =
+          std::binary_search(topology_.fan_links.begin(), topology_.fan_links.end(), h) ||
+          std::binary_search(topology_.fan_links.begin(), topology_.fan_links.end(), o);
+      if (!fan) topology_.cut_length += edge_length(topology_, h) / topology_.scale;
     }
   }
 
