@@ -1,0 +1,36 @@
+// atlas-bench-compare BASE.json HEAD.json: 0 if nothing got worse, 1 if something did, 2 on errors.
+#include "benchmarks/support/compare.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+int main(int argc, char** argv) {
+  using namespace atlas::bench;
+  CLI::App app("Compares two result files of atlas-bench; fails on a regression.");
+  std::string base_path, head_path;
+  CompareOptions o;
+  app.add_option("base", base_path, "the older file")->required();
+  app.add_option("head", head_path, "the newer one")->required();
+  app.add_option("--quality", o.quality_relative, "relative growth of an error that counts")
+      ->capture_default_str();
+  app.add_option("--quality-least", o.quality_absolute, "and the absolute one")
+      ->capture_default_str();
+  app.add_option("--time", o.time_relative, "of CPU time")->capture_default_str();
+  app.add_option("--time-least", o.time_absolute, "seconds")->capture_default_str();
+  app.add_option("--memory", o.memory_relative, "of memory")->capture_default_str();
+  app.add_option("--memory-least", o.memory_absolute, "MiB")->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  const auto base = load(base_path), head = load(head_path);
+  for (const auto* file : {&base, &head}) {
+    if (file->ok()) continue;
+    fmt::print(stderr, "atlas-bench-compare: {}\n", file->status().message());
+    return 2;
+  }
+  const auto found = compare(*base, *head, o);
+  constexpr const char* kNames[] = {"quality", "missing", "failed", "time", "memory"};
+  for (const Regression& r : found) fmt::print("{:<8} {}\n", kNames[r.kind], r.what);
+  fmt::print("{} rows and {} checks compared, {} regressions\n", base->rows.size(),
+             base->checks.size(), found.size());
+  return found.empty() ? 0 : 1;
+}

@@ -1,0 +1,175 @@
+#include "benchmarks/page/plots.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <map>
+
+namespace atlas::bench {
+namespace {
+
+std::string kind_of(const Row& row) {
+  return row.mesh.substr(0, row.mesh.find(':'));
+}
+
+// Gnuplot draws underscores as subscripts, and both quotes end a string.
+std::string plain(std::string text) {
+  for (char& c : text)
+    if (c == '"' || c == '\'' || c == '\\') c = ' ';
+  return text;
+}
+
+bool usable(const Row& row) {
+  return row.failure.empty() && !row.values.empty() && row.cpu_seconds > 0;
+}
+
+// One plot a stage that was run with several settings.
+void error_plots(const Results& results, std::vector<Plot>& plots) {
+  std::map<std::string, std::map<std::string, std::vector<const Row*>>> stages;
+  for (const Row& row : results.rows)
+    if (usable(row) && row.stage != "light_leak") stages[row.stage][row.mesh].push_back(&row);
+  for (const auto& [stage, meshes] : stages) {
+    Plot plot;
+    plot.file = "error_" + stage + ".svg";
+    std::replace(plot.file.begin(), plot.file.end(), '/', '_');
+    plot.title = stage + ": error against time";
+    plot.x_axis = "CPU seconds";
+    for (const auto& [mesh, rows] : meshes) {
+      if (rows.size() < 3 && stage != "unwrap") continue;
+      plot.y_axis = rows.front()->values.front().first;
+      Series series{mesh, {}, false};
+      for (const Row* row : rows)
+        series.points.push_back({row->cpu_seconds, std::max(row->values.front().second, 1e-6),
+                                 row->preset ? row->setting : ""});
+      plot.series.push_back(series);
+      if (stage != "unwrap") plot.series.push_back({"", pareto_front(series.points), true});
+    }
+    for (Series& s : plot.series)
+      if (s.lines)
+        for (PlotPoint& p : s.points) p.label.clear();
+    if (!plot.series.empty()) plots.push_back(plot);
+  }
+}
+
+void size_plot(const Results& results, bool time, std::vector<Plot>& plots) {
+  std::map<std::string, std::vector<PlotPoint>> series;
+  for (const Row& row : results.rows) {
+    if (!row.failure.empty() || row.setting.rfind("texel", 0) == 0) continue;
+    if (row.setting != "standard" && row.stage != "baseline") continue;
+    if (row.mesh.find(':') == std::string::npos || row.cpu_seconds <= 0) continue;
+    if (row.stage.find('/') != std::string::npos) continue;
+    series[row.stage + ", " + kind_of(row)].push_back(
+        {double(row.triangles), time ? row.cpu_seconds : row.memory_mib, ""});
+  }
+  Plot plot;
+  plot.file = time ? "time_against_size.svg" : "memory_against_size.svg";
+  plot.title = time ? "CPU time against size" : "Memory against size";
+  plot.x_axis = "triangles";
+  plot.y_axis = time ? "CPU seconds" : "MiB";
+  for (auto& [name, points] : series) {
+    if (points.size() < 2) continue;
+    std::sort(points.begin(), points.end(),
+              [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
+    plot.series.push_back({name, points, true});
+  }
+  if (!plot.series.empty()) plots.push_back(plot);
+}
+
+void leak_plot(const Results& results, std::vector<Plot>& plots) {
+  std::map<std::string, Series> series;
+  for (const Row& row : results.rows) {
+    if (row.stage != "light_leak" || !row.failure.empty()) continue;
+    const std::pair<const char*, const char*> figures[] = {
+        {"p95", "within 2 texels of the edge, 95 %"},
+        {"fixed_p95", "within 10 mm of the edge, 95 %"},
+        {"fixed_rms", "within 10 mm of the edge, rms"}};
+    for (const auto& [value, text] : figures) {
+      Series& s = series[row.mesh + ": " + text];
+      s.points.push_back({row.value("texel_mm"), row.value(value), ""});
+      s.lines = true;
+    }
+  }
+  Plot plot{"light_leak.svg",
+            "Light leak at the door's shadow edge",
+            "texel on the surface, mm",
+            "error, display values",
+            true,
+            false,
+            {}};
+  for (auto& [name, s] : series) {
+    s.name = name;
+    plot.series.push_back(s);
+  }
+  if (!plot.series.empty()) plots.push_back(plot);
+}
+
+}  // namespace
+
+std::vector<PlotPoint> pareto_front(std::vector<PlotPoint> points) {
+  std::sort(points.begin(), points.end(), [](const PlotPoint& a, const PlotPoint& b) {
+    return a.x != b.x ? a.x < b.x : a.y < b.y;
+  });
+  std::vector<PlotPoint> front;
+  double best = std::numeric_limits<double>::infinity();
+  for (const PlotPoint& p : points) {
+    if (p.y >= best) continue;
+    best = p.y;
+    front.push_back(p);
+  }
+  return front;
+}
+
+std::vector<Plot> make_plots(const Results& results) {
+  std::vector<Plot> plots;
+  error_plots(results, plots);
+  size_plot(results, true, plots);
+  size_plot(results, false, plots);
+  leak_plot(results, plots);
+  return plots;
+}
+
+std::string gnuplot_script(const Plot& plot, const std::filesystem::path& target) {
+  std::string text = fmt::format(
+      "set terminal svg size 860,560 noenhanced font 'sans,13' background rgb 'white'\n"
+      "set output '{}'\nset title '{}'\nset xlabel '{}'\nset ylabel '{}'\n"
+      "set key outside right top\nset grid\nset offsets graph 0.08, graph 0.12, 0, 0\n",
+      target.string(), plain(plot.title), plain(plot.x_axis), plain(plot.y_axis));
+  if (plot.log_x) text += "set logscale x\n";
+  if (plot.log_y) text += "set logscale y\n";
+  std::string commands, data;
+  int colour = 0;
+  for (std::size_t i = 0; i < plot.series.size(); ++i) {
+    const Series& s = plot.series[i];
+    if (!s.name.empty()) ++colour;  // a nameless series belongs to the one before it
+    data += fmt::format("$s{} << EOD\n", i);
+    bool labels = false;
+    for (const PlotPoint& p : s.points) {
+      data += fmt::format("{:.9g} {:.9g} \"{}\"\n", p.x, p.y, plain(p.label));
+      labels |= !p.label.empty();
+    }
+    data += "EOD\n";
+    const std::string title = s.name.empty() ? "notitle" : "title '" + plain(s.name) + "'";
+    const char* style = !s.lines         ? "points pt 7 ps 0.7"
+                        : s.name.empty() ? "lines"
+                                         : "linespoints pt 7 ps 0.5";
+    commands += fmt::format("{}$s{} using 1:2 with {} lc {} {}", commands.empty() ? "plot " : ", ",
+                            i, style, colour, title);
+    if (labels)
+      commands +=
+          fmt::format(", $s{} using 1:2:3 with labels left offset 0.6,0.3 font ',9' notitle", i);
+  }
+  return data + text + commands + "\n";
+}
+
+Status draw(const Plot& plot, const std::filesystem::path& folder) {
+  FILE* pipe = popen("gnuplot", "w");
+  if (!pipe) return {ErrorCode::io, "gnuplot cannot be started (package gnuplot-nox)"};
+  const std::string script = gnuplot_script(plot, folder / plot.file);
+  std::fwrite(script.data(), 1, script.size(), pipe);
+  if (pclose(pipe) == 0) return {};
+  return {ErrorCode::io, plot.file + ": gnuplot failed (is the package gnuplot-nox installed?)"};
+}
+
+}  // namespace atlas::bench

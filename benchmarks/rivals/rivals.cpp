@@ -1,0 +1,127 @@
+#include "benchmarks/rivals/rivals.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "libatlas/core/clock.h"
+#include "libatlas/pipeline/export_world.h"
+#include "tests/support/atlas_measure.h"
+
+namespace atlas::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Folder {
+  fs::path path = fs::temp_directory_path() / fmt::format("atlas_rival_{}", ::getpid());
+  Folder() { fs::create_directories(path); }
+  ~Folder() { fs::remove_all(path); }
+};
+
+double children_cpu() {
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  return double(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+         1e-6 * double(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+}
+
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
+std::string filled_in(std::string command, const std::string& key, const fs::path& path) {
+  for (std::size_t at; (at = command.find(key)) != std::string::npos;)
+    command.replace(at, key.size(), quoted(path.string()));
+  return command;
+}
+
+Row unwrap_row(const StageRun& run, const std::string& name) {
+  Row row = run.staged.row("unwrap", name, true);
+  row.unit = "triangles -> charts";
+  return row;
+}
+
+// The row's error is L2 - 1; seams, which trade against it, stand beside it.
+void judge(const fs::path& path, int page, Row& row) {
+  const Result<test::UvMesh> mesh = test::read_uv_obj(path);
+  if (!mesh.ok()) {
+    row.failure = mesh.status().message();
+    return;
+  }
+  const test::AtlasMeasures m = test::measure_atlas(*mesh, page, page);
+  row.size_out = m.charts;
+  row.values = {{"l2_minus_1", m.stretch_l2 - 1},
+                {"p999", m.stretch_999},
+                {"seam", m.seam},
+                {"util", m.utilization},
+                {"overlap", double(m.overlap)},
+                {"bleed", double(m.bleed)},
+                {"flipped", double(m.flipped)},
+                {"without_uv", double(m.faces_without_uv)}};
+}
+
+}  // namespace
+
+Result<Rival> parse_rival(const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || text.find("{in}") == std::string::npos ||
+      text.find("{out}") == std::string::npos)
+    return Status{ErrorCode::bad_option,
+                  text + ": a rival is \"name=command {in} {out}\", with both files in it"};
+  return Rival{text.substr(0, equals), text.substr(equals + 1)};
+}
+
+void bench_rival(const StageRun& run, const Rival& rival) {
+  const Folder folder;
+  const fs::path in = folder.path / "in.obj", out = folder.path / "out.obj";
+  Row row = unwrap_row(run, rival.name);
+  if (const Status s = write_plain_obj(run.staged.scene(), in, false); !s.ok()) {
+    row.failure = s.message();
+    return run.done(row);
+  }
+  const std::string command = filled_in(filled_in(rival.command, "{in}", in), "{out}", out);
+  const double cpu = children_cpu(), wall = wall_seconds();
+  const int code = std::system(fmt::format("timeout -k 2 {} sh -c {} >/dev/null 2>&1 </dev/null",
+                                           rival.timeout, quoted(command))
+                                   .c_str());
+  row.cpu_seconds = children_cpu() - cpu;
+  row.wall_seconds = wall_seconds() - wall;
+  const int exit_code = WIFEXITED(code) ? WEXITSTATUS(code) : -1;
+  if (exit_code == 124 || exit_code == 137)
+    row.failure = fmt::format("timed out after {} s", rival.timeout);
+  else if (exit_code != 0)
+    row.failure = fmt::format("ended with code {}", exit_code);
+  else
+    judge(out, rival.page, row);
+  run.done(row);
+}
+
+void bench_ours(const StageRun& run, int page) {
+  const Folder folder;
+  const fs::path in = folder.path / "in.obj";
+  Row row = unwrap_row(run, "libatlas");
+  if (const Status s = write_plain_obj(run.staged.scene(), in, false); !s.ok()) {
+    row.failure = s.message();
+    return run.done(row);
+  }
+  ExportOptions options;
+  options.target = folder.path / "out.obj";
+  options.charts_only = true;
+  options.atlas_size = page;
+  measure(run.repeats, row, [&]() -> Status {
+    const Result<LoadedScene> scene = read_scene(in, {}, run.staged.context);
+    if (!scene.ok()) return scene.status();
+    return export_world(*scene, options, {}, run.staged.context).status();
+  });
+  if (row.failure.empty()) judge(options.target, page, row);
+  run.done(row);
+}
+
+}  // namespace atlas::bench

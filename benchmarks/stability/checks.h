@@ -1,0 +1,47 @@
+// Every stage under stress, each figure with the bound that the tests enforce. References are
+// closed forms, exact integers or the same computation without the stress.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "benchmarks/support/results.h"
+#include "libatlas/core/context.h"
+#include "tests/support/shapes.h"
+
+namespace atlas::bench {
+
+struct StabilityOptions {
+  bool full = false;  // the large cases too (10^5 fans, 10^6 items); the tests take the small ones
+  std::vector<std::filesystem::path> models;  // meshes for scale, offset and rotation, if any
+};
+
+// One or several of the groups below, in this order.
+std::vector<Check> all_checks(const StabilityOptions& options, const Context& context);
+
+// Adds rows to a list; every function below takes one.
+class CheckList {
+ public:
+  CheckList(const StabilityOptions& o, const Context& c) : options(o), context(c) {}
+  void add(std::string group, std::string stress, std::string quantity, double value, double bound,
+           std::string note = "") {
+    checks.push_back(
+        {std::move(group), std::move(stress), std::move(quantity), value, bound, std::move(note)});
+  }
+  const StabilityOptions& options;
+  const Context& context;
+  std::vector<Check> checks;
+};
+
+void check_scale_and_place(CheckList& list);  // units, offsets, rotations
+void check_bad_triangles(CheckList& list);    // needles, fans, coincident vertices
+void check_cones(CheckList& list);            // cone limits, 1/cos, cosines at the limit
+void check_closed_forms(CheckList& list);     // cylinder, cone, Milnor's cap
+void check_light(CheckList& list);            // luminance extremes, tone curves, outputs
+void check_downsizing(CheckList& list);       // thresholds 0, tiny, huge
+void check_blend(CheckList& list);            // SLERP weights from 1e-18 to pi
+void check_grouping(CheckList& list);         // ties, 2^62, anomalies, bounded bisection
+void check_packing(CheckList& list);          // page = item, ones by the million, 10^9
+
+}  // namespace atlas::bench

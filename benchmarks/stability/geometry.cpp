@@ -1,0 +1,230 @@
+// Charts under changes of unit, place and direction, and on triangles that hardly are any.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <numbers>
+
+#include "benchmarks/stability/checks.h"
+#include "libatlas/charts/charts.h"
+#include "libatlas/scene/reader.h"
+
+namespace atlas::bench {
+namespace {
+
+using test::Shape;
+
+constexpr double kNever = std::numeric_limits<double>::quiet_NaN();  // fails every bound
+
+Result<ChartSet> charts_of(const Shape& shape, const ChartOptions& options,
+                           const Context& context) {
+  MeshView view;
+  view.positions = shape.positions;
+  view.indices = shape.indices;
+  return make_charts(view, options, context);
+}
+
+// Triangles that are in no chart, uvs that are not finite, flips.
+double broken(const ChartSet& set) {
+  std::uint64_t bad = set.distortion.flips;
+  for (const std::uint32_t c : set.triangle_chart) bad += c >= set.charts.size();
+  for (const Vec2d& uv : set.uvs) bad += !(std::isfinite(uv.x) && std::isfinite(uv.y));
+  return double(bad);
+}
+
+// Largest |uv / scale - uv of the reference| relative to the reference's extent; infinite if the
+// charts differ.
+double uv_drift(const ChartSet& set, const ChartSet& reference, double scale) {
+  if (set.uvs.size() != reference.uvs.size() || set.triangle_chart != reference.triangle_chart)
+    return std::numeric_limits<double>::infinity();
+  double drift = 0, extent = 0;
+  for (std::size_t i = 0; i < set.uvs.size(); ++i) {
+    const Vec2d a = set.uvs[i], b = reference.uvs[i];
+    drift = std::max({drift, std::abs(a.x / scale - b.x), std::abs(a.y / scale - b.y)});
+    extent = std::max({extent, b.x, b.y});
+  }
+  return drift / extent;
+}
+
+std::vector<Shape> subjects(const CheckList& list) {
+  Shape ball = test::noisy(test::icosphere(list.options.full ? 5 : 3), 0.02, 3);
+  ball.name = "noisy sphere";
+  Shape plate = test::plate_with_holes(3, list.options.full ? 8 : 2);
+  plate.name = "plate with holes";
+  std::vector<Shape> shapes{ball, plate};
+  for (const auto& path : list.options.models) {
+    const Result<LoadedScene> read = read_scene(path, {}, list.context);
+    if (!read.ok()) {
+      list.context.say(read.status().message());
+      continue;
+    }
+    shapes.push_back({path.stem().string(), read->scene.positions, read->scene.indices});
+  }
+  return shapes;
+}
+
+void check_scales(CheckList& list, const Shape& shape, const ChartSet& reference) {
+  // A power of two only shifts exponents: everything has to be the same, bit for bit.
+  for (const int exponent : {-40, -20, 20, 40}) {
+    const double scale = std::ldexp(1, exponent);
+    const Result<ChartSet> set = charts_of(test::moved(shape, scale), {}, list.context);
+    list.add("scale", fmt::format("{}, unit x 2^{}", shape.name, exponent), "uv drift / extent",
+             set.ok() ? uv_drift(*set, reference, scale) : kNever, 1e-12,
+             "reference: the same mesh unscaled");
+  }
+  for (const double scale : {1e-12, 1e-6, 1e-3, 1e3, 1e6, 1e12}) {
+    const Result<ChartSet> set = charts_of(test::moved(shape, scale), {}, list.context);
+    const std::string stress = fmt::format("{}, unit x {:g}", shape.name, scale);
+    const double counts = double(reference.charts.size());
+    list.add("scale", stress, "relative change of chart count",
+             set.ok() ? std::abs(double(set->charts.size()) - counts) / counts : kNever, 0.1,
+             "coordinates round anew");
+    list.add(
+        "scale", stress, "change of L2 stretch",
+        set.ok() ? std::abs(set->distortion.stretch_l2 - reference.distortion.stretch_l2) : kNever,
+        0.01);
+    list.add("scale", stress, "triangles lost or flipped", set.ok() ? broken(*set) : kNever, 0);
+  }
+}
+
+// Through an OBJ written in double, as a scene in world coordinates comes.
+Result<LoadedScene> read_moved(const Shape& shape, double offset, const Context& context) {
+  const auto path =
+      std::filesystem::temp_directory_path() / fmt::format("atlas_offset_{}.obj", ::getpid());
+  {
+    std::ofstream file(path);
+    for (const Vec3f& p : shape.positions)
+      file << fmt::format("v {:.17g} {:.17g} {:.17g}\n", p.x + offset, p.y - offset,
+                          p.z + 0.5 * offset);
+    for (std::size_t t = 0; t < shape.triangle_count(); ++t)
+      file << fmt::format("f {} {} {}\n", shape.indices[3 * t] + 1, shape.indices[3 * t + 1] + 1,
+                          shape.indices[3 * t + 2] + 1);
+  }
+  Result<LoadedScene> scene = read_scene(path, {}, context);
+  std::filesystem::remove(path);
+  return scene;
+}
+
+void check_offsets(CheckList& list, const Shape& shape, const ChartSet& reference) {
+  for (const double offset : {1e0, 1e3, 1e6, 1e7}) {
+    const Result<LoadedScene> scene = read_moved(shape, offset, list.context);
+    double change = kNever, bad = kNever;
+    if (scene.ok()) {
+      const Result<ChartSet> set =
+          charts_of({"", scene->scene.positions, scene->scene.indices}, {}, list.context);
+      if (set.ok()) {
+        change = std::abs(set->distortion.stretch_l2 - reference.distortion.stretch_l2);
+        bad = broken(*set);
+      }
+    }
+    const std::string stress = fmt::format("{}, moved by {:g}", shape.name, offset);
+    list.add("offset", stress, "change of L2 stretch", change, 0.01,
+             "from about 1e8 of the size the file's own doubles lose what a float holds");
+    list.add("offset", stress, "triangles lost or flipped", bad, 0);
+  }
+}
+
+Shape rotated(Shape shape, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  for (Vec3f& p : shape.positions) {
+    const double x = c * p.x - s * p.y, y = s * p.x + c * p.y;
+    p = {float(x), float(c * y - s * p.z), float(s * y + c * p.z)};
+  }
+  return shape;
+}
+
+void check_rotations(CheckList& list, const Shape& shape, const ChartSet& reference) {
+  for (const double angle : {1e-6, 0.3, 1.0, 2.5}) {
+    const Result<ChartSet> set = charts_of(rotated(shape, angle), {}, list.context);
+    const std::string stress = fmt::format("{}, turned by {:g}", shape.name, angle);
+    list.add(
+        "rotation", stress, "change of L2 stretch",
+        set.ok() ? std::abs(set->distortion.stretch_l2 - reference.distortion.stretch_l2) : kNever,
+        0.02);
+    const double seam = reference.seam_length;
+    list.add("rotation", stress, "relative growth of seams",
+             set.ok() ? set->seam_length / seam - 1 : kNever, 0.25,
+             "seeds are found anew: charts may differ, their cost must not");
+  }
+}
+
+}  // namespace
+
+void check_scale_and_place(CheckList& list) {
+  for (const Shape& shape : subjects(list)) {
+    const Result<ChartSet> reference = charts_of(shape, {}, list.context);
+    list.add("place", shape.name, "triangles lost or flipped",
+             reference.ok() ? broken(*reference) : kNever, 0);
+    if (!reference.ok()) continue;
+    check_scales(list, shape, *reference);
+    check_offsets(list, shape, *reference);
+    check_rotations(list, shape, *reference);
+  }
+}
+
+void check_bad_triangles(CheckList& list) {
+  const auto try_shape = [&](const std::string& stress, const Shape& shape) {
+    const Result<ChartSet> set = charts_of(shape, {}, list.context);
+    list.add("bad triangles", stress, "triangles lost or flipped", set.ok() ? broken(*set) : kNever,
+             0);
+    list.add("bad triangles", stress, "99.9 % stretch",
+             set.ok() ? set->distortion.stretch_999 : kNever, 1.26, "option: 1.25");
+  };
+  for (const double aspect : {1e2, 1e4, 1e6, 1e8, 1e10, 1e12})
+    try_shape(fmt::format("needles of aspect {:g}", aspect), test::needles(64, aspect));
+  for (const int valence :
+       list.options.full ? std::vector{100, 10000, 100000} : std::vector{100, 3000})
+    try_shape(fmt::format("fan of valence {}", valence), test::fan(valence));
+  Shape torn = test::icosphere(3);
+  for (std::size_t i = 0; i + 7 < torn.positions.size(); i += 7)  // pairs one ulp apart
+    torn.positions[i + 1] = {std::nextafter(torn.positions[i].x, 9.0f), torn.positions[i].y,
+                             torn.positions[i].z};
+  try_shape("vertices one ulp apart", torn);
+  Shape crushed = test::icosphere(3);
+  for (std::size_t t = 0; t + 5 < crushed.triangle_count(); t += 5)
+    crushed.indices[3 * t + 1] = crushed.indices[3 * t];
+  const Result<ChartSet> set = charts_of(crushed, {}, list.context);
+  list.add("bad triangles", "every fifth triangle names a vertex twice",
+           "triangles lost or flipped", set.ok() ? broken(*set) : kNever, 0);
+}
+
+void check_cones(CheckList& list) {
+  const Shape ball = test::icosphere(list.options.full ? 5 : 3);
+  for (const double cone : {1e-3, 15.0, 45.0, 60.0, 89.0, 90.0, 120.0, 180.0}) {
+    ChartOptions options;
+    options.cone_degrees = cone;
+    const Result<ChartSet> set = charts_of(ball, options, list.context);
+    double widest = set.ok() ? 0 : kNever, excess = widest;
+    if (set.ok()) {
+      for (const Chart& chart : set->charts) {
+        widest = std::max(widest, chart.cone_degrees);
+        if (!chart.planar_projection || chart.cone_degrees >= 90) continue;
+        const double bound = 1 / std::cos(chart.cone_degrees * std::numbers::pi / 180);
+        excess = std::max(excess, chart.distortion.stretch_linf / bound - 1);
+      }
+    }
+    const std::string stress = fmt::format("cone of {:g} degrees", cone);
+    list.add("cones", stress, "widest cone, degrees", widest, cone + 1e-4,
+             "float normals: 1e-4 degrees");
+    list.add("cones", stress, "planar stretch over 1/cos", excess, 1e-6,
+             "projection onto the cone's axis: s1 <= 1/cos, s2 = 1");
+    list.add("cones", stress, "triangles lost or flipped", set.ok() ? broken(*set) : kNever, 0);
+  }
+  // Two planes whose normals lie exactly at the limit, and one ulp of the cosine to either side.
+  for (const int ulps : {-1, 0, 1}) {
+    ChartOptions options;
+    options.cone_degrees = 45;
+    const double limit = std::cos(std::numbers::pi / 4);
+    const double cosine = ulps == 0 ? limit : std::nextafter(limit, ulps < 0 ? 0.0 : 1.0);
+    Shape roof = test::grid(2, 1, 2, 1);
+    for (Vec3f& p : roof.positions)
+      if (p.x > 1) p = {1.0f + float(cosine), p.y, float(std::sqrt(1 - cosine * cosine))};
+    const Result<ChartSet> set = charts_of(roof, options, list.context);
+    list.add("cones", fmt::format("fold of 45 degrees {:+d} ulp", ulps),
+             "triangles lost or flipped", set.ok() ? broken(*set) : kNever, 0);
+  }
+}
+
+}  // namespace atlas::bench

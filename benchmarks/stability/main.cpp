@@ -1,0 +1,41 @@
+// atlas-bench-stability: the stress cases of stability/checks.h; fails if a bound does not hold.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "benchmarks/stability/checks.h"
+
+int main(int argc, char** argv) {
+  using namespace atlas;
+  using namespace atlas::bench;
+  CLI::App app("Checks every stage on stiff and extreme cases.");
+  StabilityOptions options;
+  std::string out;
+  bool failures_only = false;
+  app.add_flag("--full", options.full, "the large cases too");
+  app.add_option("--models", options.models, "meshes for scale, offset and rotation")
+      ->check(CLI::ExistingFile);
+  app.add_option("--out,-o", out, "JSON file to write");
+  app.add_flag("--failures", failures_only, "print only what does not hold");
+  CLI11_PARSE(app, argc, argv);
+  Results results;
+  results.machine = describe_machine(argc, argv);
+  Context context;
+  context.warn = [](std::string_view text) { fmt::print(stderr, "{}\n", text); };
+  results.checks = all_checks(options, context);
+  int failures = 0;
+  for (const Check& c : results.checks) {
+    failures += !c.holds();
+    if (failures_only && c.holds()) continue;
+    fmt::print("{} {:<13} {:<46} {:<46} {:>11.4g} <= {:<9.4g} {}\n", c.holds() ? "   " : "BAD",
+               c.group, c.stress, c.quantity, c.value, c.bound, c.note);
+  }
+  fmt::print("{} checks, {} bounds exceeded\n", results.checks.size(), failures);
+  if (!out.empty()) {
+    if (const Status s = save(results, out); !s.ok()) {
+      fmt::print(stderr, "atlas-bench-stability: {}\n", s.message());
+      return 2;
+    }
+  }
+  return failures ? 1 : 0;
+}

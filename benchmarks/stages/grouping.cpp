@@ -1,0 +1,47 @@
+#include <fmt/format.h>
+
+#include "benchmarks/support/staged.h"
+#include "libatlas/pack/grouping.h"
+
+namespace atlas::bench {
+
+void bench_grouping(const StageRun& run) {
+  Staged& staged = run.staged;
+  if (const Status s = staged.need_textures(); !s.ok()) return report_failure(run, "grouping", s);
+  std::vector<std::uint64_t> sizes;
+  for (const ChartTexture& t : staged.textures->charts)
+    sizes.push_back(std::uint64_t(t.width) * std::uint64_t(t.height));
+  struct Setting {
+    std::string name;
+    std::uint32_t groups;
+    std::uint64_t work;
+  };
+  const GroupingOptions defaults;
+  std::vector<Setting> settings{{"standard", staged.settings.pages, defaults.refine_work}};
+  if (run.sweep) {
+    for (const std::uint32_t n : {2u, 50u})
+      settings.push_back({fmt::format("N = {}", n), n, defaults.refine_work});
+    for (const std::uint64_t work : {std::uint64_t(0), std::uint64_t(1) << 26})
+      settings.push_back({fmt::format("refine {}", work), staged.settings.pages, work});
+  }
+  for (const Setting& setting : settings) {
+    Row row = staged.row("grouping", setting.name, setting.name == "standard");
+    row.size_in = sizes.size();
+    row.unit = "charts -> groups";
+    GroupingOptions options;
+    options.groups = setting.groups;
+    options.refine_work = setting.work;
+    measure(run.repeats, row, [&]() -> Status {
+      const Result<GroupingResult> made = group_sizes(sizes, options, staged.context);
+      if (!made.ok()) return made.status();
+      row.size_out = made->group_count;
+      row.values = {{"imbalance", made->imbalance},
+                    {"evaluations", double(made->trace.size())},
+                    {"proved", double(made->proved_smallest)}};
+      return {};
+    });
+    run.done(row);
+  }
+}
+
+}  // namespace atlas::bench

@@ -1,0 +1,50 @@
+#include <sys/utsname.h>
+
+#include <ctime>
+#include <fstream>
+#include <thread>
+
+#include "benchmarks/support/results.h"
+
+namespace atlas::bench {
+namespace {
+
+std::string processor_name() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string text; std::getline(file, text);) {
+    if (text.rfind("model name", 0) != 0) continue;
+    const auto colon = text.find(": ");
+    if (colon != std::string::npos) return text.substr(colon + 2);
+  }
+  return "unknown processor";
+}
+
+}  // namespace
+
+Machine describe_machine(int argc, const char* const* argv) {
+  Machine m;
+  m.processor = processor_name();
+  m.cores = int(std::thread::hardware_concurrency());
+  utsname names{};
+  if (uname(&names) == 0)
+    m.system = std::string(names.sysname) + " " + names.release + " " + names.machine;
+#if defined(__clang__)
+  m.compiler = "clang " __clang_version__;
+#elif defined(__GNUC__)
+  m.compiler = "gcc " __VERSION__;
+#endif
+  m.build = ATLAS_BENCH_BUILD;
+  char date[32];
+  const std::time_t now = std::time(nullptr);
+  std::strftime(date, sizeof date, "%Y-%m-%d %H:%M UTC", std::gmtime(&now));
+  m.date = date;
+  for (int i = 0; i < argc; ++i) {
+    std::string word = argv[i];
+    if (i == 0) word = word.substr(word.rfind('/') + 1);
+    if (word.find(' ') != std::string::npos) word = "\"" + word + "\"";
+    m.command += (i ? " " : "") + word;
+  }
+  return m;
+}
+
+}  // namespace atlas::bench

@@ -1,0 +1,58 @@
+#include "benchmarks/support/measure.h"
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+
+#include "libatlas/core/clock.h"
+
+namespace atlas::bench {
+namespace {
+
+void reset_peak() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+  std::ofstream("/proc/self/clear_refs") << "5";
+}
+
+double peak_mib() {
+  std::ifstream file("/proc/self/status");
+  for (std::string word; file >> word;) {
+    if (word != "VmHWM:") continue;
+    double kib = 0;
+    file >> kib;
+    return kib / 1024;
+  }
+  return double(peak_memory()) / (1 << 20);
+}
+
+}  // namespace
+
+void measure(int repeats, Row& row, const std::function<Status()>& work) {
+  double least = 0, most = 0;
+  for (int i = 0; i < repeats; ++i) {
+    reset_peak();
+    const double cpu = cpu_seconds(), wall = wall_seconds();
+    const Status status = work();
+    const double spent = cpu_seconds() - cpu, elapsed = wall_seconds() - wall;
+    if (!status.ok()) {
+      row.failure = status.message();
+      return;
+    }
+    row.memory_mib = std::max(row.memory_mib, peak_mib());
+    if (i == 0 || spent < least) {
+      least = spent;
+      row.wall_seconds = elapsed;
+    }
+    most = std::max(most, spent);
+  }
+  row.cpu_seconds = least;
+  row.cpu_spread = least > 0 ? most / least - 1 : 0;
+}
+
+}  // namespace atlas::bench

@@ -1,0 +1,77 @@
+// What a benchmark run found, as plain rows, and the JSON file that holds them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "libatlas/core/status.h"
+
+namespace atlas::bench {
+
+// Where the numbers come from: a page can be traced to this.
+struct Machine {
+  std::string processor, system, compiler, build, date, command;
+  int cores = 0;
+};
+
+// One stage on one mesh with one setting.
+struct Row {
+  std::string stage, mesh, setting;
+  bool preset = false;          // the setting is a named preset of the library
+  std::uint64_t triangles = 0;  // of the mesh
+  std::uint64_t size_in = 0, size_out = 0;
+  std::string unit;  // "triangles -> charts"
+  // Measured qualities by name. The first is the stage's error: smaller is better, 0 is perfect.
+  std::vector<std::pair<std::string, double>> values;
+  double cpu_seconds = 0;   // user + system, all threads; the least of the repeats
+  double cpu_spread = 0;    // largest / least of the repeats - 1; 0 for one
+  double wall_seconds = 0;  // of the repeat with the least CPU time
+  double memory_mib = 0;    // largest resident set while it ran, the input included
+  std::string failure;      // empty: it worked; else why there are no figures
+
+  std::string key() const { return stage + " | " + mesh + " | " + setting; }
+  // The value of that name, or `missing`.
+  double value(const std::string& name, double missing = 0) const;
+};
+
+// cost = factor * triangles^exponent, fitted to the logarithms by least squares.
+struct Fit {
+  std::string stage, work, quantity;  // quantity: "cpu_seconds" or "memory_mib"
+  double exponent = 0, factor = 0;
+  std::uint64_t smallest = 0, largest = 0;  // triangles
+  std::uint32_t points = 0;
+};
+
+// One line of the stability page: `value` must not exceed `bound`.
+struct Check {
+  std::string group, stress, quantity;
+  double value = 0, bound = 0;
+  std::string note;                              // reference, or where the method degrades
+  bool holds() const { return value <= bound; }  // NaN fails
+};
+
+struct Results {
+  Machine machine;
+  std::vector<Row> rows;
+  std::vector<Fit> fits;
+  std::vector<Check> checks;
+};
+
+// argv joined; the rest from the system and the build.
+Machine describe_machine(int argc, const char* const* argv);
+
+// Errors: io; not_found; bad_input, naming what is wrong with the file.
+Status save(const Results& results, const std::filesystem::path& path);
+Result<Results> load(const std::filesystem::path& path);
+
+// "charts  sphere:20480  standard  20480 triangles -> 12 charts  seam 5.1  820 ms  41 MiB"
+std::string line(const Row& row);
+
+// One fit for every stage, kind of work and preset setting with at least two sizes of at least
+// `smallest` triangles.
+std::vector<Fit> fit_exponents(const std::vector<Row>& rows, std::uint64_t smallest);
+
+}  // namespace atlas::bench

@@ -1,0 +1,201 @@
+#include "benchmarks/support/work.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <random>
+
+namespace atlas::bench {
+namespace {
+
+using test::Shape;
+
+int side(double value) {
+  return std::max(3, int(std::lround(value)));
+}
+
+Shape ball(std::uint64_t triangles) {  // 2 around (rings - 1), around = 2 rings
+  const double n = std::sqrt(double(triangles) / 4);
+  return test::sphere(side(2 * n), side(n) + 1, 0.5);
+}
+
+// Noise of the size that triangulating scanners leave: a fifth of the mean edge.
+Shape scan(std::uint64_t triangles) {
+  Shape shape = ball(triangles);
+  for (Vec3f& p : shape.positions) {
+    const double bump = 1 + 0.12 * std::sin(9 * p.x) * std::cos(7 * p.y) * std::sin(8 * p.z + 1);
+    p = {float(p.x * bump), float(p.y * bump), float(p.z * bump)};
+  }
+  return test::noisy(std::move(shape), 0.2 * std::sqrt(std::numbers::pi / double(triangles)), 7);
+}
+
+double height(double x, double y) {
+  double h = 0, amplitude = 60, wave = 1.0 / 350;
+  for (int octave = 0; octave < 8; ++octave, amplitude *= 0.48, wave *= 2.03) {
+    const double turn = 1.3 * octave, c = std::cos(turn), s = std::sin(turn);
+    h += amplitude * std::sin(wave * (c * x - s * y) + octave) * std::cos(wave * (s * x + c * y));
+  }
+  return h;
+}
+
+Shape terrain(std::uint64_t triangles) {
+  const int n = side(std::sqrt(double(triangles) / 2));
+  Shape shape = test::grid(n, n, 2000, 2000);
+  for (Vec3f& p : shape.positions) p.z = float(height(p.x, p.y));
+  return shape;
+}
+
+void append(Shape& all, const Shape& part, double turn, Vec3d offset) {
+  const double c = std::cos(turn), s = std::sin(turn);
+  const auto first = std::uint32_t(all.positions.size());
+  for (const Vec3f& p : part.positions)
+    all.positions.push_back({float(c * p.x - s * p.y + offset.x),
+                             float(s * p.x + c * p.y + offset.y), float(p.z + offset.z)});
+  for (const std::uint32_t i : part.indices) all.indices.push_back(first + i);
+}
+
+// Parts of millimetres to decimetres on a 10 m floor, as CAD systems export them.
+Shape assembly(std::uint64_t triangles) {
+  std::mt19937_64 random(11);
+  const auto uniform = [&](double a, double b) {
+    return a + (b - a) * double(random() >> 11) * 0x1p-53;
+  };
+  Shape all;
+  while (all.triangle_count() < triangles) {
+    const double size = std::exp(uniform(std::log(0.002), std::log(0.2)));
+    Shape part;
+    switch (random() % 3) {
+      case 0:
+        part = test::box(2, {size, size * uniform(0.1, 1), size * uniform(0.02, 1)});
+        break;
+      case 1:
+        part = test::cylinder(24, 1, 0.2 * size, size);
+        break;
+      default:
+        part = test::plate_with_holes(1, 1);
+        part = test::moved(part, size / 3);
+        break;
+    }
+    append(all, part, uniform(0, 6.28), {uniform(0, 10), uniform(0, 10), uniform(0, 2)});
+  }
+  return all;
+}
+
+// Cells a hole, found by making the smallest one.
+Shape genus(std::uint64_t triangles) {
+  const auto least = double(test::plate_with_holes(50, 1).triangle_count());
+  return test::plate_with_holes(
+      50, std::max(1, int(std::lround(std::sqrt(double(triangles) / least)))));
+}
+
+Vec3f light_at(Vec3f p, double size) {
+  const double x = p.x / size, y = p.y / size, z = p.z / size;
+  const double wave = 120 + 90 * std::sin(7 * x + 1) * std::cos(5 * y) + 40 * z;
+  const bool shadow = x + 0.4 * y + 0.3 * z > 0.37 && std::sin(11 * y) > 0;
+  const double sun = shadow ? 0 : 400;
+  return {float(wave + sun), float(wave + 0.9 * sun), float(1.1 * wave + 0.75 * sun)};
+}
+
+}  // namespace
+
+Result<Shape> make_shape(const std::string& kind, std::uint64_t triangles) {
+  Shape shape;
+  if (kind == "sphere")
+    shape = ball(triangles);
+  else if (kind == "scan")
+    shape = scan(triangles);
+  else if (kind == "torus") {
+    const double n = std::sqrt(double(triangles) / 5);
+    shape = test::torus(side(2.5 * n), side(n));
+  } else if (kind == "terrain")
+    shape = terrain(triangles);
+  else if (kind == "assembly")
+    shape = assembly(triangles);
+  else if (kind == "genus")
+    shape = genus(triangles);
+  else if (kind == "soup")
+    shape = test::soup(int(triangles), 5);
+  else if (kind == "needles")
+    shape = test::needles(int(triangles), 1000);
+  else
+    return Status{ErrorCode::bad_option,
+                  fmt::format("{}: no such work (there are {})", kind, kWorkKinds)};
+  shape.name = fmt::format("{}:{}", kind, triangles);
+  return shape;
+}
+
+LoadedScene lit(Shape shape) {
+  LoadedScene loaded;
+  Scene& scene = loaded.scene;
+  float low = INFINITY, high = -INFINITY;
+  for (const Vec3f& p : shape.positions) {
+    low = std::min({low, p.x, p.y, p.z});
+    high = std::max({high, p.x, p.y, p.z});
+  }
+  for (const Vec3f& p : shape.positions)
+    scene.illumination.push_back(light_at(p, double(high) - low));
+  scene.triangle_material.assign(shape.triangle_count(), 0);
+  scene.triangle_object.assign(shape.triangle_count(), 0);
+  scene.materials.push_back({"white", {0.8f, 0.8f, 0.8f}, -1});
+  scene.object_names.push_back(shape.name);
+  scene.positions = std::move(shape.positions);
+  scene.indices = std::move(shape.indices);
+  return loaded;
+}
+
+Result<LoadedScene> make_work(const std::string& name, const Context& context) {
+  const auto colon = name.find(':');
+  const std::string kind = name.substr(0, colon);
+  const std::string rest = colon == std::string::npos ? "" : name.substr(colon + 1);
+  if (kind == "file") return read_scene(rest, {}, context);
+  std::uint64_t triangles = 0;
+  const auto end = std::from_chars(rest.data(), rest.data() + rest.size(), triangles);
+  if (end.ec != std::errc() || end.ptr != rest.data() + rest.size() || triangles < 8 ||
+      triangles > 100000000)
+    return Status{ErrorCode::bad_option,
+                  fmt::format("{}: work is KIND:TRIANGLES, with 8 to 10^8 triangles", name)};
+  if (kind == "cabin") {
+#ifdef ATLAS_BENCH_CABIN
+    return make_cabin(triangles, context);
+#else
+    return Status{ErrorCode::bad_option, "this build has no cabin (LIBATLAS_BUILD_EXAMPLES)"};
+#endif
+  }
+  Result<Shape> shape = make_shape(kind, triangles);
+  if (!shape.ok()) return shape.status();
+  return lit(std::move(*shape));
+}
+
+Status write_plain_obj(const Scene& scene, const std::filesystem::path& path, bool with_light) {
+  std::ofstream file(path);
+  std::string text;
+  const auto flush = [&](std::size_t limit) {
+    if (text.size() < limit) return;
+    file.write(text.data(), std::streamsize(text.size()));
+    text.clear();
+  };
+  for (std::size_t i = 0; i < scene.positions.size(); ++i) {
+    const Vec3f p = scene.positions[i];
+    fmt::format_to(std::back_inserter(text), "v {} {} {}", p.x, p.y, p.z);
+    if (with_light && scene.lit()) {
+      const Vec3f e = scene.illumination[i];
+      fmt::format_to(std::back_inserter(text), " {} {} {}", e.x, e.y, e.z);
+    }
+    text += '\n';
+    flush(1 << 20);
+  }
+  for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
+    const std::uint32_t* v = &scene.indices[3 * t];
+    fmt::format_to(std::back_inserter(text), "f {} {} {}\n", v[0] + 1, v[1] + 1, v[2] + 1);
+    flush(1 << 20);
+  }
+  flush(0);
+  file.flush();
+  if (file) return {};
+  return {ErrorCode::io, path.string() + ": cannot be written"};
+}
+
+}  // namespace atlas::bench

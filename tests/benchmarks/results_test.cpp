@@ -1,0 +1,164 @@
+// Result files, fits, fronts and comparisons, on numbers made up here.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "benchmarks/page/page.h"
+#include "benchmarks/page/plots.h"
+#include "benchmarks/support/compare.h"
+
+namespace atlas::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TempFolder {
+  fs::path path = fs::temp_directory_path() / ("bench_test_" + std::to_string(::getpid()));
+  TempFolder() { fs::create_directories(path); }
+  ~TempFolder() { fs::remove_all(path); }
+};
+
+Row row(std::uint64_t triangles, double cpu, double error) {
+  Row r;
+  r.stage = "charts";
+  r.mesh = "sphere:" + std::to_string(triangles);
+  r.setting = "standard";
+  r.preset = true;
+  r.triangles = r.size_in = triangles;
+  r.unit = "triangles -> charts";
+  r.values = {{"seam", error}, {"l2", 1.01}};
+  r.cpu_seconds = cpu;
+  r.memory_mib = 100;
+  return r;
+}
+
+Results some_results() {
+  const char* argv[] = {"/usr/bin/atlas-bench", "--work", "sphere:10 000"};
+  Results results;
+  results.machine = describe_machine(3, argv);
+  for (const double n : {1e4, 1e5, 1e6})
+    results.rows.push_back(row(std::uint64_t(n), 2e-5 * std::pow(n, 1.07), 5));
+  results.fits = fit_exponents(results.rows, 10000);
+  results.checks.push_back({"scale", "x 2", "drift", 0.1, 1, "note"});
+  return results;
+}
+
+TEST(Results, SurviveTheirFile) {
+  const TempFolder folder;
+  Results results = some_results();
+  results.rows[1].values[1].second = NAN;
+  results.rows[2].failure = "timed out";
+  ASSERT_TRUE(save(results, folder.path / "r.json").ok());
+  const Result<Results> back = load(folder.path / "r.json");
+  ASSERT_TRUE(back.ok()) << back.status().message();
+  EXPECT_EQ(back->machine.command, "atlas-bench --work \"sphere:10 000\"");
+  EXPECT_EQ(back->machine.compiler, results.machine.compiler);
+  ASSERT_EQ(back->rows.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(back->rows[i].key(), results.rows[i].key());
+    EXPECT_EQ(back->rows[i].cpu_seconds, results.rows[i].cpu_seconds);
+    EXPECT_EQ(back->rows[i].failure, results.rows[i].failure);
+    EXPECT_EQ(back->rows[i].value("seam"), 5);
+  }
+  EXPECT_TRUE(std::isnan(back->rows[1].value("l2")));
+  ASSERT_EQ(back->checks.size(), 1u);
+  EXPECT_TRUE(back->checks[0].holds());
+  ASSERT_EQ(back->fits.size(), results.fits.size());
+}
+
+TEST(Results, BadFilesAreNamed) {
+  const TempFolder folder;
+  EXPECT_EQ(load(folder.path / "none.json").status().code(), ErrorCode::not_found);
+  for (const char* text :
+       {"", "{", "[]", "{\"format\":\"other\"}", "{\"format\":\"libatlas-bench-1\"}"}) {
+    std::ofstream(folder.path / "bad.json") << text;
+    const Result<Results> r = load(folder.path / "bad.json");
+    ASSERT_FALSE(r.ok()) << text;
+    EXPECT_EQ(r.status().code(), ErrorCode::bad_input);
+    EXPECT_NE(r.status().message().find("bad.json"), std::string::npos);
+  }
+}
+
+TEST(Fits, FindTheExponentOfAPowerLaw) {
+  const std::vector<Fit> fits = some_results().fits;
+  ASSERT_EQ(fits.size(), 2u);
+  EXPECT_EQ(fits[0].quantity, "cpu_seconds");
+  EXPECT_NEAR(fits[0].exponent, 1.07, 1e-9);
+  EXPECT_NEAR(fits[0].factor, 2e-5, 1e-12);
+  EXPECT_NEAR(fits[1].exponent, 0, 1e-9);
+  EXPECT_EQ(fits[0].points, 3u);
+}
+
+TEST(Fits, LeaveSmallAndFailedRowsOut) {
+  std::vector<Row> rows{row(100, 1, 1), row(20000, 1, 1), row(40000, 2, 1), row(80000, 64, 1)};
+  rows[3].failure = "no";
+  const std::vector<Fit> fits = fit_exponents(rows, 10000);
+  ASSERT_EQ(fits.size(), 2u);
+  EXPECT_NEAR(fits[0].exponent, 1, 1e-12);
+  EXPECT_EQ(fits[0].smallest, 20000u);
+}
+
+TEST(Compare, EqualFilesHaveNoRegression) {
+  EXPECT_TRUE(compare(some_results(), some_results(), {}).empty());
+}
+
+TEST(Compare, NeedsBothThresholdsAndPutsQualityFirst) {
+  const Results base = some_results();
+  Results head = base;
+  head.rows[0].cpu_seconds *= 1.1;    // relative threshold not met
+  head.rows[1].cpu_seconds *= 2;      // both met
+  head.rows[2].values[0].second = 6;  // error
+  std::vector<Regression> found = compare(base, head, {});
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].kind, Regression::quality);
+  EXPECT_EQ(found[1].kind, Regression::time);
+  CompareOptions lenient;
+  lenient.time_absolute = 1e6;
+  lenient.quality_absolute = 2;
+  EXPECT_TRUE(compare(base, head, lenient).empty());
+  EXPECT_TRUE(compare(head, base, {}).empty()) << "an improvement is no regression";
+}
+
+TEST(Compare, SeesMissingFailedAndBrokenRows) {
+  const Results base = some_results();
+  Results head = base;
+  head.rows.erase(head.rows.begin());
+  head.rows[0].failure = "crashed";
+  head.rows[1].values[0].second = NAN;
+  head.checks[0].value = 2;
+  const std::vector<Regression> found = compare(base, head, {});
+  ASSERT_EQ(found.size(), 4u);
+  EXPECT_EQ(found[0].kind, Regression::quality);
+  EXPECT_EQ(found[1].kind, Regression::quality);
+  EXPECT_EQ(found[2].kind, Regression::missing);
+  EXPECT_EQ(found[3].kind, Regression::failed);
+}
+
+TEST(Pareto, KeepsWhatNothingBeats) {
+  const std::vector<PlotPoint> front =
+      pareto_front({{3, 1, ""}, {1, 5, ""}, {2, 6, ""}, {2, 2, ""}, {4, 1, ""}, {1, 7, ""}});
+  ASSERT_EQ(front.size(), 3u);
+  EXPECT_EQ(front[0].y, 5);
+  EXPECT_EQ(front[1].y, 2);
+  EXPECT_EQ(front[2].x, 3);
+}
+
+TEST(Page, HoldsEveryRowAndCheck) {
+  const TempFolder folder;
+  Results results = some_results();
+  results.checks.push_back({"scale", "x 3", "drift", 2, 1, ""});
+  ASSERT_TRUE(write_page({{results}}, folder.path).ok());
+  std::ifstream index(folder.path / "index.html"), stability(folder.path / "stability.md");
+  const std::string page{std::istreambuf_iterator<char>(index), {}};
+  const std::string stable{std::istreambuf_iterator<char>(stability), {}};
+  for (const char* text : {"sphere:10000", "sphere:1000000", "1.07", "atlas-bench --work"})
+    EXPECT_NE(page.find(text), std::string::npos) << text;
+  EXPECT_NE(stable.find("2 figures, 1 beyond their bound"), std::string::npos);
+  EXPECT_NE(stable.find("EXCEEDED"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace atlas::bench

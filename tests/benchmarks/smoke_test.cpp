@@ -1,0 +1,133 @@
+// Every stage's benchmark once on small work: rows with figures come out, whatever they cost.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "benchmarks/light_leak/light_leak.h"
+#include "benchmarks/rivals/rivals.h"
+#include "benchmarks/support/staged.h"
+
+namespace atlas::bench {
+namespace {
+
+TEST(Work, MeetsItsSizeAndIsValid) {
+  for (const char* kind :
+       {"sphere", "scan", "torus", "terrain", "assembly", "genus", "soup", "needles"}) {
+    const Result<LoadedScene> made = make_work(std::string(kind) + ":20000", {});
+    ASSERT_TRUE(made.ok()) << made.status().message();
+    const Scene& scene = made->scene;
+    EXPECT_NEAR(double(scene.triangle_count()), 20000, 6000) << kind;
+    EXPECT_EQ(scene.illumination.size(), scene.positions.size());
+    for (const std::uint32_t i : scene.indices) ASSERT_LT(i, scene.positions.size());
+    for (const Vec3f& e : scene.illumination) ASSERT_TRUE(std::isfinite(e.x) && e.x >= 0) << kind;
+  }
+  for (const char* bad : {"sphere", "sphere:", "sphere:x", "sphere:3", "ball:1000", "sphere:1000 "})
+    EXPECT_FALSE(make_work(bad, {}).ok()) << bad;
+}
+
+TEST(Stages, GiveFiguresOnSmallWork) {
+  const Context context;
+  Result<LoadedScene> scene = make_work("scan:1500", context);
+  ASSERT_TRUE(scene.ok());
+  Staged staged("scan:1500", std::move(*scene), context);
+  staged.settings.pages = 1;
+  staged.settings.page_size = 256;
+  std::vector<Row> rows;
+  const StageRun run{staged, 1, false, [&](Row row) { rows.push_back(std::move(row)); }};
+  for (const auto& stage : {bench_baseline, bench_charts, bench_downsizing, bench_grouping,
+                            bench_packing, bench_baking, bench_simplify, bench_export})
+    stage(run);
+  std::size_t exports = 0;
+  for (const Row& row : rows) {
+    EXPECT_TRUE(row.failure.empty()) << row.key() << ": " << row.failure;
+    EXPECT_FALSE(line(row).empty());
+    exports += row.stage.rfind("export", 0) == 0;
+    if (row.stage.rfind("export/", 0) == 0) continue;
+    ASSERT_FALSE(row.values.empty()) << row.key();
+    for (const auto& [name, v] : row.values) EXPECT_TRUE(std::isfinite(v)) << row.key() << name;
+    EXPECT_GT(row.memory_mib, 0) << row.key();
+  }
+  EXPECT_GE(exports, 5u);
+  EXPECT_GE(rows.size(), 8u + 4u);
+}
+
+TEST(Rivals, AreJudgedTimedOutAndReported) {
+  const Context context;
+  Staged staged("sphere:500", lit(test::icosphere(2)), context);
+  std::vector<Row> rows;
+  const StageRun run{staged, 1, false, [&](Row row) { rows.push_back(std::move(row)); }};
+  bench_ours(run, 256);
+  for (const char* text :
+       {"copies=cp {in} {out}", "slow=sleep 20; cp {in} {out}", "broken=false {in} {out}"}) {
+    Result<Rival> rival = parse_rival(text);
+    ASSERT_TRUE(rival.ok());
+    rival->timeout = 0.3;
+    rival->page = 256;
+    bench_rival(run, *rival);
+  }
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_TRUE(rows[0].failure.empty()) << rows[0].failure;
+  EXPECT_EQ(rows[0].value("overlap"), 0);
+  EXPECT_EQ(rows[0].value("without_uv"), 0);
+  EXPECT_LT(rows[0].value("l2_minus_1"), 0.25);
+  EXPECT_EQ(rows[1].value("without_uv"), 320);
+  EXPECT_NE(rows[2].failure.find("timed out"), std::string::npos) << rows[2].failure;
+  EXPECT_NE(rows[3].failure.find("code 1"), std::string::npos) << rows[3].failure;
+  EXPECT_FALSE(parse_rival("no command").ok());
+  EXPECT_FALSE(parse_rival("x=unwrap {in}").ok());
+}
+
+// A plane with a straight shadow edge at x = 1/2, one mesh cell wide.
+Staged half_lit(const Context& context) {
+  LoadedScene loaded = lit(test::grid(80, 80));
+  for (std::size_t i = 0; i < loaded.scene.positions.size(); ++i) {
+    const float e = loaded.scene.positions[i].x > 0.5f ? 100.0f : 10.0f;
+    loaded.scene.illumination[i] = {e, e, e};
+  }
+  loaded.scene.object_names[0] = "door";
+  return Staged("plane", std::move(loaded), context);
+}
+
+TEST(LightLeak, FindsTheEdgeOfAShadow) {
+  const Context context;
+  const Staged staged = half_lit(context);
+  const ShadowEdge edge = find_shadow_edge(staged.scene(), {});
+  EXPECT_EQ(edge.triangles.size(), 12800u);
+  ASSERT_FALSE(edge.points.empty());
+  for (const Vec3f& p : edge.points) EXPECT_NEAR(p.x, 0.50625, 1e-5);
+  EXPECT_NEAR(edge.length, 1, 1e-3);
+  ShadowEdgeOptions strict;
+  strict.length = 0.005;  // shorter than the mesh's edges
+  EXPECT_TRUE(find_shadow_edge(staged.scene(), strict).points.empty());
+  strict = {};
+  strict.drop = 0.95;
+  EXPECT_TRUE(find_shadow_edge(staged.scene(), strict).points.empty());
+  const NearPoints near(edge.points, 0.1);
+  EXPECT_NEAR(near.distance({0.55, 0.5, 0}), 0.04375, 1e-3);
+  EXPECT_TRUE(std::isinf(near.distance({0.7, 0.5, 0})));
+}
+
+TEST(LightLeak, FallsWithTheTexel) {
+  const Context context;
+  Staged staged = half_lit(context);
+  staged.settings.pages = 1;
+  staged.settings.page_size = 1024;
+  LeakOptions options;
+  std::vector<Leak> leaks;
+  for (const double texel : {0.04, 0.01, 0.0025}) {
+    options.texel = texel;
+    const Result<Leak> leak = measure_leak(staged, options);
+    ASSERT_TRUE(leak.ok()) << leak.status().message();
+    EXPECT_GT(leak->band.points, 100u);
+    EXPECT_LE(leak->band.p95, leak->band.maximum);
+    leaks.push_back(*leak);
+  }
+  EXPECT_GT(leaks[0].fixed.rms, 2 * leaks[2].fixed.rms);
+  EXPECT_LT(leaks[2].texel, 0.5 * leaks[0].texel);
+  EXPECT_LT(leaks[2].whole.p50, 0.01);
+  options.edge.object = "window";
+  EXPECT_EQ(measure_leak(staged, options).status().code(), ErrorCode::bad_input);
+}
+
+}  // namespace
+}  // namespace atlas::bench
