@@ -12,9 +12,10 @@ namespace {
 // Up to so many vertices each solver is the fastest (measured); multigrid takes the rest.
 constexpr std::size_t envelope_limit = 1500;
 constexpr std::size_t direct_limit = 12000;
-// The energy that an inexact solve may leave, as part of the area, before the next local step and
-// in the end: 1e-10 is a mean stretch of a hundred-thousandth.
-constexpr double rough = 1e-6, fine = 1e-10;
+// The energy that an inexact solve may leave, as part of the area. In the end 1e-11 is a mean
+// stretch of some millionths, and at worst a hundred times that. The first solve must not be much
+// rougher: what it leaves is smooth, and later steps take long to remove it.
+constexpr double first_inexactness = 1e-10, rough = 1e-8, fine = 1e-11;
 constexpr int most_iterations = 60;
 
 // Seen edge-on, or from behind, a triangle has no rotation near its map.
@@ -206,7 +207,7 @@ void ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
   for (int i = 0; i < steps; ++i) {
     if (i > 0) local_rotations(w_.elements, uvs, w_.rotations);
     rotation_load(w_.elements, w_.rotations, w_.load);
-    solve(i + 1 < steps ? rough : fine);
+    solve(i + 1 == steps ? fine : i == 0 ? first_inexactness : rough);
     for (std::size_t v = 0; v < uvs.size(); ++v) uvs[v] = from_glm(w_.solution[v]);
   }
 }

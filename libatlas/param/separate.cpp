@@ -11,6 +11,8 @@ namespace {
 
 constexpr std::size_t longest_arc = 64;
 constexpr std::size_t most_crossings = 256;
+constexpr std::size_t most_candidates =
+    2000;                             // half-edges; beyond it is no little overlap any more
 constexpr int extra_vertices = 2;     // looked after beyond the ends of an overlap
 constexpr double gap_of_edge = 0.01;  // the gap left, as part of an edge's length
 
@@ -39,6 +41,7 @@ void Separator::map_border(const LocalMesh& mesh) {
   half_edges_.border(border_);
   next_.assign(mesh.positions.size(), HalfEdges::none);
   previous_.assign(mesh.positions.size(), HalfEdges::none);
+  role_.assign(3 * mesh.triangles.size(), free_edge);
   for (const std::uint32_t h : border_.half_edges) {
     next_[half_edges_.from(h)] = h;
     previous_[half_edges_.to(h)] = h;
@@ -121,14 +124,17 @@ bool Separator::reach(std::uint32_t half_edge, std::uint32_t other, std::span<co
   return true;
 }
 
-Separator::Depth Separator::depth(std::uint32_t vertex, bool may_be_within, const Arc& other,
+// Measured against all the stretches but the vertex's own: where several crossings make one
+// overlap, its other side is put together from them.
+Separator::Depth Separator::depth(std::uint32_t vertex, bool may_be_within, int most_role,
                                   std::span<const Vec2d> uvs) const {
   const std::uint32_t before = half_edges_.from(previous_[vertex]);
   const std::uint32_t after = half_edges_.to(next_[vertex]);
   const glm::dvec2 p = to_glm(uvs[vertex]);
   Depth result{std::numeric_limits<double>::infinity(), 0, glm::dvec2(0)};
   double least = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t h : other.half_edges) {
+  for (const std::uint32_t h : candidates_) {
+    if (role_[h] > most_role) continue;
     const std::uint32_t a = half_edges_.from(h), b = half_edges_.to(h);
     if (a == vertex || b == vertex) continue;
     const glm::dvec2 pa = to_glm(uvs[a]), pb = to_glm(uvs[b]), d = pb - pa;
@@ -170,19 +176,30 @@ void Separator::draw(std::uint32_t vertex, const Depth& depth, double share,
   springs_[place_[vertex] - 1].target = from_glm(to_glm(uvs[vertex]) + depth.out * pull);
 }
 
-void Separator::draw_apart(const Arc& first, const Arc& second, std::span<const Vec2d> uvs) {
-  const auto any_within = [&](const Arc& arc, const Arc& other) {
-    return std::any_of(arc.within.begin(), arc.within.end(),
-                       [&](std::uint32_t v) { return depth(v, true, other, uvs).outside < 0; });
+// Draws the stretch's vertices out of the candidates' triangles.
+void Separator::draw_out(const Arc& arc, double share, std::span<const Vec2d> uvs) {
+  const auto draw_vertex = [&](std::uint32_t v, bool may_be_within) {
+    Depth d = depth(v, may_be_within, across_ ? free_edge : crossing_edge, uvs);
+    if (!std::isfinite(d.outside)) d = depth(v, may_be_within, crossing_edge, uvs);
+    draw(v, d, share, uvs);
   };
-  // Both sides move half-way; a side that has no vertices within the other cannot.
-  const double share = any_within(first, second) && any_within(second, first) ? 0.6 : 1.1;
-  const auto draw_side = [&](const Arc& arc, const Arc& other) {
-    for (const std::uint32_t v : arc.within) draw(v, depth(v, true, other, uvs), share, uvs);
-    for (const std::uint32_t v : arc.beside) draw(v, depth(v, false, other, uvs), share, uvs);
-  };
-  draw_side(first, second);
-  draw_side(second, first);
+  for (const std::uint32_t v : arc.within) draw_vertex(v, true);
+  for (const std::uint32_t v : arc.beside) draw_vertex(v, false);
+}
+
+// Marks, for one stretch, its own half-edges and those that cross them.
+void Separator::mark(const Arc& arc, std::span<const BorderCrossing> crossings, bool set) {
+  for (const std::uint32_t h : arc.half_edges) role_[h] = set ? own_edge : free_edge;
+  for (const BorderCrossing& c : crossings) {
+    const std::uint32_t e = next_[c.a[0]], f = next_[c.b[0]];
+    if (!set) {
+      role_[e] = role_[f] = free_edge;
+    } else if (role_[e] == own_edge && role_[f] != own_edge) {
+      role_[f] = crossing_edge;
+    } else if (role_[f] == own_edge && role_[e] != own_edge) {
+      role_[e] = crossing_edge;
+    }
+  }
 }
 
 // Loops that nothing crosses but that turn the wrong way: a hole pulled inside out.
@@ -205,11 +222,10 @@ bool Separator::collect_turned_loops(std::span<const Vec2d> uvs) {
     const std::uint32_t begin = border_.loop_start[l], end = border_.loop_start[l + 1];
     if (l == outer || area[l] < 0) continue;
     if (end - begin > 2 * longest_arc) return false;
-    first_.half_edges.assign(border_.half_edges.begin() + begin, border_.half_edges.begin() + end);
-    first_.within.clear();
-    first_.beside.clear();
-    for (const std::uint32_t h : first_.half_edges) first_.within.push_back(half_edges_.from(h));
-    draw_apart(first_, first_, uvs);
+    candidates_.assign(border_.half_edges.begin() + begin, border_.half_edges.begin() + end);
+    Arc loop;
+    for (const std::uint32_t h : candidates_) loop.within.push_back(half_edges_.from(h));
+    draw_out(loop, 0.6, uvs);
   }
   return !springs_.empty();
 }
@@ -227,10 +243,23 @@ bool Separator::collect(std::span<const BorderCrossing> crossings, std::span<con
     meetings_.push_back({next_[c.b[0]], meeting_place(p, q, a, b)});
   }
   std::sort(meetings_.begin(), meetings_.end());
-  for (const BorderCrossing& c : crossings) {
-    const std::uint32_t e = next_[c.a[0]], f = next_[c.b[0]];
-    if (!reach(e, f, uvs, first_) || !reach(f, e, uvs, second_)) return false;
-    draw_apart(first_, second_, uvs);
+  arcs_.resize(2 * crossings.size());
+  candidates_.clear();
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    const std::uint32_t e = next_[crossings[i].a[0]], f = next_[crossings[i].b[0]];
+    if (!reach(e, f, uvs, arcs_[2 * i]) || !reach(f, e, uvs, arcs_[2 * i + 1])) return false;
+    for (const std::size_t k : {2 * i, 2 * i + 1}) {
+      candidates_.insert(candidates_.end(), arcs_[k].half_edges.begin(), arcs_[k].half_edges.end());
+    }
+  }
+  std::sort(candidates_.begin(), candidates_.end());
+  candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
+  if (candidates_.size() > most_candidates) return false;
+  for (std::size_t i = 0; i < arcs_.size(); ++i) {
+    mark(arcs_[i], crossings, true);
+    // Both sides move half-way; a side that has no vertices within the other cannot.
+    draw_out(arcs_[i], arcs_[i ^ 1].within.empty() ? 1.1 : 0.6, uvs);
+    mark(arcs_[i], crossings, false);
   }
   return !springs_.empty();
 }
@@ -254,13 +283,9 @@ void Separator::settle(Relaxer& relaxer, std::span<Vec2d> uvs) {
   if (!simple(check(uvs))) std::copy(saved_.begin(), saved_.end(), uvs.begin());
 }
 
-bool Separator::separate(const LocalMesh& mesh, std::span<const Element> elements,
-                         const CornerLists& corners, Relaxer& relaxer, std::span<Vec2d> uvs) {
+bool Separator::draw_until_simple(Relaxer& relaxer, std::span<Vec2d> uvs) {
   // More sweeps a round would let the rest of the border drift into new crossings (measured).
   constexpr int rounds = 16, rings = 5, sweeps = 12;
-  elements_ = elements;
-  corners_ = &corners;
-  map_border(mesh);
   saved_.assign(uvs.begin(), uvs.end());
   moved_.clear();
   for (int round = 0; round <= rounds; ++round) {
@@ -272,9 +297,24 @@ bool Separator::separate(const LocalMesh& mesh, std::span<const Element> element
     if (now.crossings.size() >= most_crossings) break;
     if (round == rounds || !collect(now.crossings, uvs)) break;
     for (const Relaxer::Spring& s : springs_) moved_.push_back(s.vertex);
-    relaxer.pull(elements, corners, {springs_, rings, sweeps}, uvs);
+    relaxer.pull(elements_, *corners_, {springs_, rings, sweeps}, uvs);
   }
   std::copy(saved_.begin(), saved_.end(), uvs.begin());
+  return false;
+}
+
+bool Separator::separate(const LocalMesh& mesh, std::span<const Element> elements,
+                         const CornerLists& corners, Relaxer& relaxer, std::span<Vec2d> uvs) {
+  elements_ = elements;
+  corners_ = &corners;
+  map_border(mesh);
+  // The nearest way out first. Near the corner of a band that lies on another that way leads across
+  // the edge that crosses the band, along the overlap and not out of it; so it is closed the second
+  // time.
+  for (const bool across : {false, true}) {
+    across_ = across;
+    if (draw_until_simple(relaxer, uvs)) return true;
+  }
   return false;
 }
 

@@ -32,6 +32,7 @@ class Separator {
     double margin;   // what it should be
     glm::dvec2 out;  // unit vector that leads there
   };
+  enum Role : std::uint8_t { free_edge, crossing_edge, own_edge };
   struct Meeting {  // of one border half-edge with another
     std::uint32_t half_edge;
     double along;  // where on it, 0 to 1
@@ -47,13 +48,15 @@ class Separator {
   double corner_angle(std::uint32_t vertex, std::span<const Vec2d> uvs) const;
   void keep_one_bank(Arc& arc, std::span<const Vec2d> uvs) const;
   void widen(Arc& arc, std::uint32_t first, std::uint32_t last) const;
-  Depth depth(std::uint32_t vertex, bool may_be_within, const Arc& other,
+  Depth depth(std::uint32_t vertex, bool may_be_within, int most_role,
               std::span<const Vec2d> uvs) const;
   void draw(std::uint32_t vertex, const Depth& depth, double share, std::span<const Vec2d> uvs);
-  void draw_apart(const Arc& first, const Arc& second, std::span<const Vec2d> uvs);
+  void mark(const Arc& arc, std::span<const BorderCrossing> crossings, bool set);
+  void draw_out(const Arc& arc, double share, std::span<const Vec2d> uvs);
   bool collides(std::uint32_t half_edge) const;
 
   Injectivity check(std::span<const Vec2d> uvs) const;
+  bool draw_until_simple(Relaxer& relaxer, std::span<Vec2d> uvs);
   void settle(Relaxer& relaxer, std::span<Vec2d> uvs);
 
   std::uint32_t next(std::uint32_t h) const { return next_[half_edges_.to(h)]; }
@@ -65,7 +68,10 @@ class Separator {
   HalfEdges::Border border_;
   std::vector<std::uint32_t> next_, previous_;  // 1 a border vertex: the half-edge from and to it
   std::vector<Meeting> meetings_;               // sorted
-  Arc first_, second_;
+  std::vector<Arc> arcs_;                       // two a crossing, one after the other
+  std::vector<std::uint32_t> candidates_;       // half-edges of all of them, sorted
+  std::vector<std::uint8_t> role_;              // 1 a half-edge, for the stretch that is looked at
+  bool across_ = false;                         // not by way of the edges that cross the stretch
   std::vector<Relaxer::Spring> springs_;
   std::vector<double> pulled_;        // 1 a vertex: how far its spring reaches
   std::vector<std::uint32_t> place_;  // 1 a vertex: 1 + its spring's place, or 0

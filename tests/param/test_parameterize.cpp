@@ -131,6 +131,33 @@ TEST(Parameterize, ReportsWhatCannotBeFlattenedWithoutOverlap) {
   EXPECT_FALSE(testing::injective_by_pairs(d.view(), r.uvs));
 }
 
+TEST(Parameterize, DrawsApartBordersThatOverlapALittle) {
+  // A ramp of just over a turn: unrolled it overlaps by a sliver, which a little stretch resolves.
+  for (const double excess : {1e-9, 0.001, 0.01, 0.03}) {
+    const Disc d = testing::make_grid(120, 8, [=](double u, double v) {
+      const double a = (2 * std::numbers::pi + excess) * u, r = 1 + 0.5 * v;
+      return Vec3d{r * std::cos(a), r * std::sin(a), 0.002 * a};
+    });
+    const ParamResult r = run(d);
+    expect_consistent(d, r, 1.25);
+    EXPECT_TRUE(r.injective && r.within_bound) << excess;
+    EXPECT_TRUE(testing::injective_by_pairs(d.view(), r.uvs));
+  }
+}
+
+TEST(Parameterize, RecoversFromFramesThatLie) {
+  // One frame for a whole cylinder: half of its triangles are seen from behind.
+  const Disc d = testing::make_cylinder(5, 2, 60, 20);
+  const std::vector<std::array<Vec3d, 2>> frames(d.triangles.size(),
+                                                 {Vec3d{0, 1, 0}, Vec3d{0, 0, 1}});
+  ParamOptions options;
+  options.start.frames = frames;
+  const ParamResult r = run(d, options);
+  expect_consistent(d, r, 1.25);
+  EXPECT_TRUE(r.injective);
+  EXPECT_LT(r.distortion.stretch_linf, 1.01);
+}
+
 TEST(Parameterize, ReportsTheTipThatBreaksTheBound) {
   // A needle on a plate: nothing flattens it within 1.25, and the worst triangles are the needle's.
   const Disc d = testing::make_rings(12, [](double r, double angle) {
