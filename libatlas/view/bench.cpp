@@ -124,7 +124,7 @@ Status errors_of_interval(const Renderer& first, const LightPath& path, const Be
   if (!truth.ok()) return truth.status();
   std::vector<std::pair<ShadowMethod, ErrorProbe>> probes;
   for (ShadowMethod method : options.methods) {
-    if (method == ShadowMethod::classic) continue;
+    if (method == ShadowMethod::classic || method == ShadowMethod::none) continue;
     render.shadows = method;
     Result<ErrorProbe> probe = ErrorProbe::make(first, render);
     if (!probe.ok()) return probe.status();

@@ -71,7 +71,7 @@ void fill_march(FrameBlock& b, const glm::dvec3& l, const LightFit& key, const B
   const double rise = -ray.z;
   if (rise < 1e-3 / key.depth_range) return;  // more than 89.9 degrees off: sampled where it is
   const glm::dvec2 shift(ray.x / rise, ray.y / rise);
-  put(b.march, shift.x, shift.y, 1, 2 * key.texel / key.depth_range);
+  put(b.march, shift.x, shift.y, b.march[2], 2 * key.texel / key.depth_range);
   double corner[3], per_step[3];
   const double low[3] = {box.low.x, box.low.y, box.low.z};
   const double high[3] = {box.high.x, box.high.y, box.high.z};
@@ -107,6 +107,9 @@ void Renderer::Impl::fill_block(const Camera& camera, const FrameLight& light,
     const BlendWeights w = blend_weights(blend_of(options.shadows), plan.t,
                                          angle_between(plan.from_direction, plan.to_direction));
     put(b.weights, w.from, w.to, options.normal_offset * from.texel, 1.0 / options.map_resolution);
+    // A filter of n bilinear taps reaches (n + 1) / 2 texels: so far a plane shadows itself.
+    b.march[2] = float(options.slope_bias * std::max(1.0, (options.pcf + 1) / 2.0) * from.texel /
+                       from.depth_range);
     fill_march(b, l, from, scene->bounds);
   }
   put(b.specular, options.specular, options.shininess, options.roughness, options.map_resolution);

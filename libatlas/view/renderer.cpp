@@ -78,7 +78,7 @@ bool same_schedule(const RenderOptions& a, const RenderOptions& b) {
   return x.interval_frames == y.interval_frames && x.interval_degrees == y.interval_degrees &&
          x.blend == y.blend && x.sliced == y.sliced && x.max_frames == y.max_frames &&
          x.jump_degrees == y.jump_degrees && a.fit_view == b.fit_view && a.snap == b.snap &&
-         a.view_distance == b.view_distance && a.slope_bias == b.slope_bias && a.up == b.up;
+         a.view_distance == b.view_distance && a.up == b.up;
 }
 
 }  // namespace
@@ -165,9 +165,6 @@ bool Renderer::Impl::view_left_the_keys(const Camera& camera) const {
 
 Status Renderer::Impl::draw_shadow_maps(const Camera& camera, const FramePlan& plan,
                                         FrameStats& stats) {
-  ShadowBias bias;
-  // A kernel of n taps reaches n/2 texels from its centre: so far the plane's own slope shadows it.
-  bias.slope = options.slope_bias * std::max(1.0, options.pcf / 2.0);
   shadow_timer->begin();
   for (const MapWork& work : plan.work) {
     Result<LightFit> made = fit(camera, work.direction);
@@ -179,7 +176,7 @@ Status Renderer::Impl::draw_shadow_maps(const Camera& camera, const FramePlan& p
       view_fit = *made;
       view_fit_valid = true;
     }
-    stats.triangles_shadow += shadow->draw(*scene, work.slot, *made, work.begin, work.end, bias);
+    stats.triangles_shadow += shadow->draw(*scene, work.slot, *made, work.begin, work.end);
   }
   shadow_timer->end();
   return {};

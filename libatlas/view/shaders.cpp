@@ -14,7 +14,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 light;       // direction towards it, intensity
   vec4 ambient;     // rgb, exposure
   vec4 weights;     // of the two keys, normal offset (world), texel (uv)
-  vec4 march;       // uv shift per depth towards the light, greatest height, tolerance (depth)
+  vec4 march;       // uv shift per depth towards the light, slope bias and least height (depth)
   vec4 corner;      // of the scene's box where rays to the light leave it
   vec4 per_step;    // depth gained per world unit along each axis of the ray
   vec4 behind;      // march: uv of a step back along the ray's trace; factor on baked light
@@ -67,20 +67,20 @@ float visibility_at(sampler2DShadow map, vec2 uv, float depth) {
 
 constexpr const char* kOneMap = R"(
 layout(binding = 1) uniform sampler2DShadow map0;
-float visibility(vec3 p) {
+float visibility(vec3 p, float bias) {
   vec3 m = (frame.to_map0 * vec4(p, 1.0)).xyz;
-  return visibility_at(map0, m.xy, m.z);
+  return visibility_at(map0, m.xy, m.z - bias);
 }
 )";
 
 constexpr const char* kTwoMaps = R"(
 layout(binding = 1) uniform sampler2DShadow map0;
 layout(binding = 2) uniform sampler2DShadow map1;
-float visibility(vec3 p) {
+float visibility(vec3 p, float bias) {
   vec3 m0 = (frame.to_map0 * vec4(p, 1.0)).xyz;
   vec3 m1 = (frame.to_map1 * vec4(p, 1.0)).xyz;
-  float v = frame.weights.x * visibility_at(map0, m0.xy, m0.z) +
-            frame.weights.y * visibility_at(map1, m1.xy, m1.z);
+  float v = frame.weights.x * visibility_at(map0, m0.xy, m0.z - bias) +
+            frame.weights.y * visibility_at(map1, m1.xy, m1.z - bias);
   return min(v, 1.0);
 }
 )";
@@ -91,9 +91,11 @@ constexpr const char* kMarch = R"(
 layout(binding = 1) uniform sampler2DShadow map0;
 layout(binding = 3) uniform sampler2D depth0;
 layout(binding = 4) uniform sampler2D depth1;
-float visibility(vec3 p) {
+float visibility(vec3 p, float bias) {
   vec3 m = (frame.to_map0 * vec4(p, 1.0)).xyz;
   vec3 m1 = (frame.to_map1 * vec4(p, 1.0)).xyz;
+  m.z -= bias;
+  m1.z -= bias;
   vec2 shift = frame.march.xy;
   float least = frame.march.w;
   // Height at which the ray leaves the scene's box.
@@ -199,9 +201,13 @@ std::string fragment_main(const ShaderFeatures& f) {
     if (f.shadow == ShadowSampling::none)
       s += "  float seen = nl > 0.0 ? 1.0 : 0.0;\n";
     else
-      // The offset grows with the sine of the angle to the light, as the error of a texel does.
-      s += R"(  vec3 p = v_world + n * (frame.weights.z * sqrt(max(1.0 - nl * nl, 0.0)));
-  float seen = nl > 0.0 ? visibility(p) : 0.0;
+      // The offset grows with the sine of the angle to the light, as the error of a texel does; the
+      // depth bias with its tangent, which a plane's depth changes by across a texel. Both act here
+      // and not on the casters: maps then hold true depths, which the march needs.
+      s += R"(  float sine = sqrt(max(1.0 - nl * nl, 0.0));
+  vec3 p = v_world + n * (frame.weights.z * sine);
+  float bias = frame.march.z * min(sine, 8.0 * nl) / max(nl, 1e-3);
+  float seen = nl > 0.0 ? visibility(p, bias) : 0.0;
 )";
   }
   if (f.visibility)

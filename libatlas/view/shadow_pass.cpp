@@ -64,7 +64,7 @@ Result<ShadowPass> ShadowPass::make(int resolution, int maps) {
 }
 
 std::uint32_t ShadowPass::draw(const GpuScene& scene, int slot, const LightFit& fit, double begin,
-                               double end, const ShadowBias& bias) {
+                               double end) {
   Map& map = maps_[std::size_t(slot)];
   glBindFramebuffer(GL_FRAMEBUFFER, map.frame.get());
   glViewport(0, 0, resolution_, resolution_);
@@ -85,14 +85,11 @@ std::uint32_t ShadowPass::draw(const GpuScene& scene, int slot, const LightFit& 
   glUniformMatrix4fv(0, 1, GL_FALSE, matrix);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
-  glEnable(GL_POLYGON_OFFSET_FILL);
-  glPolygonOffset(float(bias.slope), float(bias.constant));
   glEnable(GL_DEPTH_CLAMP);  // casters in front of the range still cast
   glBindVertexArray(scene.casters.get());
   glDrawElements(GL_TRIANGLES, GLsizei(count * 3), GL_UNSIGNED_INT,
                  reinterpret_cast<const void*>(std::uintptr_t(first) * 12));
   glDisable(GL_DEPTH_CLAMP);
-  glDisable(GL_POLYGON_OFFSET_FILL);
   return count;
 }
 

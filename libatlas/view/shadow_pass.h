@@ -8,11 +8,6 @@
 
 namespace atlas {
 
-struct ShadowBias {
-  double slope = 2.0;     // polygon offset in units of the depth's slope across a texel
-  double constant = 2.0;  // polygon offset in units of the smallest depth step
-};
-
 class ShadowPass {
  public:
   // `maps` square depth textures of `resolution` texels a side.
@@ -20,8 +15,8 @@ class ShadowPass {
 
   // Draws triangles [begin, end) (fractions of all) into map `slot`; begin == 0 clears it first and
   // remembers `fit`. Returns the number of triangles submitted.
-  std::uint32_t draw(const GpuScene& scene, int slot, const LightFit& fit, double begin, double end,
-                     const ShadowBias& bias);
+  std::uint32_t draw(const GpuScene& scene, int slot, const LightFit& fit, double begin,
+                     double end);
 
   const LightFit& fit(int slot) const { return maps_[std::size_t(slot)].fit; }
   // Binds map `slot` for depth comparison (bilinear, lit outside) or for its depths (nearest).

@@ -115,7 +115,7 @@ TEST_F(Bench, MeasuresEveryCombinationAndWritesItsFiles) {
   ASSERT_TRUE(bench_times(first, path, o, r).ok());
   ASSERT_TRUE(bench_errors(first, path, o, r).ok());
   EXPECT_EQ(r.runs.size(), 3u * 7u);
-  EXPECT_EQ(r.errors.size(), 2u * 6u);
+  EXPECT_EQ(r.errors.size(), 2u * 5u);
   for (const BenchRun& run : r.runs) {
     EXPECT_EQ(run.frames.size(), 4u);
     EXPECT_LE(run.cpu.p50, run.cpu.worst);
@@ -132,7 +132,7 @@ TEST_F(Bench, MeasuresEveryCombinationAndWritesItsFiles) {
   std::ifstream json_file(path_ / "out" / "summary.json");
   const nlohmann::json j = nlohmann::json::parse(json_file);
   EXPECT_EQ(j["runs"].size(), 21u);
-  EXPECT_EQ(j["errors"].size(), 12u);
+  EXPECT_EQ(j["errors"].size(), 10u);
   std::ifstream csv(path_ / "out" / "frames.csv");
   int lines = 0;
   for (std::string line; std::getline(csv, line);) ++lines;
