@@ -12,6 +12,9 @@ namespace {
 constexpr double kSmallHole = 0.35;
 // Arcs longer than this share of the rim get corners in between, so that the fan follows them.
 constexpr double kLongArc = 0.26;
+// Scan noise: most edges fold by more than nine degrees, though a cell has many triangles. Smooth
+// meshes of that size fold by three to five at most edges.
+constexpr double kNoisyCosine = 0.988, kNoisyShare = 0.6, kNoisyCell = 20;
 constexpr int kDivideRounds = 8;
 
 struct Loop {
@@ -200,6 +203,7 @@ class CoarseBuilder {
     rims_.run();
     mesh_.cells.resize(cells_.count);
     measure_cells();
+    find_noise();
     find_corners();
     for (std::uint32_t k = 0; k < cells_.count; ++k) add_corners(k);
     arc_at_.assign(topology_.opposite.size(), kNoIndex);
@@ -298,10 +302,52 @@ class CoarseBuilder {
     cell.slot_count = static_cast<std::uint32_t>(mesh_.slot_position.size()) - cell.first_slot;
   }
 
+  // Pieces with scan noise, see kNoisyShare.
+  void find_noise() {
+    struct Fold {
+      double sharp = 0, edges = 0, triangles = 0;
+      std::uint32_t cells = 0;
+    };
+    std::vector<Fold> folds(topology_.component_count);
+    std::vector<std::uint8_t> counted(cells_.count, 0);
+    for (std::uint32_t h = 0; h < topology_.opposite.size(); ++h) {
+      const std::uint32_t k = cells_.of_triangle[h / 3], o = topology_.opposite[h];
+      if (k == kNoIndex) continue;
+      Fold& fold = folds[topology_.component[h / 3]];
+      fold.triangles += h % 3 == 0;
+      fold.cells += !counted[k];
+      counted[k] = 1;
+      if (o == kNoIndex || o < h) continue;
+      fold.edges += 1;
+      fold.sharp += glm::dot(to_dvec(topology_.normals[h / 3]), to_dvec(topology_.normals[o / 3])) <
+                    kNoisyCosine;
+    }
+    noisy_.resize(folds.size());
+    for (std::size_t i = 0; i < folds.size(); ++i) {
+      noisy_[i] = folds[i].sharp > kNoisyShare * folds[i].edges &&
+                  folds[i].triangles > kNoisyCell * folds[i].cells;
+    }
+  }
+
+  // Where a half-edge starts; on noisy pieces the mean of the vertices around.
+  glm::dvec3 corner_position(std::uint32_t head) const {
+    const auto place = [&](std::uint32_t h) { return to_dvec(topology_.points[from(h)]); };
+    if (!noisy_[topology_.component[head / 3]]) return place(head);
+    glm::dvec3 sum = place(head);
+    int count = 1;
+    std::uint32_t h = head;
+    do {
+      sum += place(next_half_edge(h));
+      ++count;
+      h = topology_.opposite[previous_half_edge(h)];
+    } while (h != kNoIndex && h != head);
+    return h == kNoIndex ? place(head) : sum / double(count);
+  }
+
   void add_arc(std::uint32_t k, std::uint32_t head, std::uint32_t tail, const std::uint32_t* path,
                std::uint32_t n, std::uint32_t begin, std::uint32_t count) {
     const auto slot = static_cast<std::uint32_t>(mesh_.slot_position.size());
-    mesh_.slot_position.push_back(from_glm(to_dvec(topology_.points[from(head)])));
+    mesh_.slot_position.push_back(from_glm(corner_position(head)));
     const std::uint32_t known =
         topology_.opposite[tail] == kNoIndex ? kNoIndex : arc_at_[topology_.opposite[tail]];
     if (known != kNoIndex) {
@@ -338,7 +384,7 @@ class CoarseBuilder {
   Rims rims_;
   double crease_cosine_;
   CoarseMesh mesh_;
-  std::vector<std::uint8_t> corner_;
+  std::vector<std::uint8_t> corner_, noisy_;
   std::vector<std::uint32_t> arc_at_;  // by the half-edge that begins side 0
 };
 
