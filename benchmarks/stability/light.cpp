@@ -27,24 +27,33 @@ LoadedScene lit_plane(const std::function<float(std::size_t)>& value) {
   return loaded;
 }
 
-// How far display values leave [0, 1], and how often they fall although the luminance rises.
+// Display values must stay within [0, 1] whatever comes, and rise with the luminance up to far
+// beyond what the curve was made for. Where they first fall is told.
 void check_curve(CheckList& list, const ToneMapping& tone, const std::string& stress) {
-  double outside = 0, falls = 0, previous = -1;
+  const double white = double(tone.white) / tone.scale;
+  double outside = 0, falls = 0, previous = -1, first_fall = kInfinity;
+  const auto leave = [&](float c) {
+    outside = std::max({outside, double(-c), double(c) - 1, std::isfinite(c) ? 0 : kInfinity});
+  };
   for (double e = -45; e <= 38; e += 0.25) {
     const float v = float(std::pow(10, e));
     const Vec3f d = tone.display({v, v, v});
-    outside =
-        std::max({outside, double(-d.x), double(d.x) - 1, std::isfinite(d.x) ? 0 : kInfinity});
-    falls = std::max(falls, previous - d.x);
+    leave(d.x);
+    if (v <= white && v >= 1e-30 * white)
+      falls = std::max(falls, previous - d.x);
+    else if (v > white && previous - d.x > 1e-5)
+      first_fall = std::min(first_fall, v / white);
     previous = d.x;
   }
   for (const float v : {-1.0f, -kHuge, kHuge, std::nanf(""), 0.0f}) {
     const Vec3f d = tone.display({v, 1, v});
-    for (const float c : {d.x, d.y, d.z})
-      outside = std::max({outside, double(-c), double(c) - 1, std::isfinite(c) ? 0 : kInfinity});
+    for (const float c : {d.x, d.y, d.z}) leave(c);
   }
   list.add("tone", stress, "display values outside [0, 1]", outside, 0);
-  list.add("tone", stress, "fall of a curve that must rise", falls, 1e-5, "float: 1e-5");
+  list.add("tone", stress, "fall of a curve that must rise", falls, 1e-5,
+           std::isinf(first_fall)
+               ? "rises beyond white, too"
+               : fmt::format("degrades: falls from {:.1e} x white on", first_fall));
 }
 
 struct Field {

@@ -111,10 +111,11 @@ TEST(LightLeak, FallsWithTheTexel) {
   const Context context;
   Staged staged = half_lit(context);
   staged.settings.pages = 1;
-  staged.settings.page_size = 1024;
+  staged.settings.page_size = 512;
   LeakOptions options;
+  options.sampling = 0.3;
   std::vector<Leak> leaks;
-  for (const double texel : {0.04, 0.01, 0.0025}) {
+  for (const double texel : {0.04, 0.01, 0.004}) {
     options.texel = texel;
     const Result<Leak> leak = measure_leak(staged, options);
     ASSERT_TRUE(leak.ok()) << leak.status().message();
