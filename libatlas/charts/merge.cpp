@@ -67,11 +67,14 @@ struct Border {
 // Merges the cells of one piece of the mesh.
 class Merger {
  public:
-  Merger(const CoarseMesh& mesh, const MergeOptions& options, std::vector<CoarseChart>& charts,
+  // `place` (1 a cell) is scratch: a cell's place in its piece's list.
+  Merger(const CoarseMesh& mesh, const MergeOptions& options, std::vector<std::uint32_t>& place,
          MergeResult& result, Trial& trial)
-      : mesh_(mesh), options_(options), charts_(charts), result_(result), trial_(trial) {}
+      : mesh_(mesh), options_(options), place_(place), result_(result), trial_(trial) {}
 
   void run(const std::vector<std::uint32_t>& cells, const Context& context) {
+    charts_.resize(cells.size());
+    for (std::uint32_t i = 0; i < cells.size(); ++i) place_[cells[i]] = i;
     for (const std::uint32_t k : cells) {
       start(k);
       piece_area_ += mesh_.cells[k].area;
@@ -89,8 +92,8 @@ class Merger {
     while (!heap_.empty() && !context.cancelled()) {
       const Candidate candidate = heap_.top();
       heap_.pop();
-      if (charts_[candidate.a].version != candidate.version_a ||
-          charts_[candidate.b].version != candidate.version_b) {
+      if (chart(candidate.a).version != candidate.version_a ||
+          chart(candidate.b).version != candidate.version_b) {
         continue;
       }
       try_merge(candidate.a, candidate.b);
@@ -100,6 +103,9 @@ class Merger {
   std::uint64_t trials = 0, rejections = 0;
 
  private:
+  CoarseChart& chart(std::uint32_t name) { return charts_[place_[name]]; }
+  const CoarseChart& chart(std::uint32_t name) const { return charts_[place_[name]]; }
+
   std::uint32_t chart_at(std::uint32_t arc, int side) const {
     const std::uint32_t cell = mesh_.arcs[arc].cell[side];
     return cell == kNoIndex ? kNoIndex : result_.chart_of_cell[cell];
@@ -107,13 +113,13 @@ class Merger {
 
   void start(std::uint32_t k) {
     const CoarseCell& cell = mesh_.cells[k];
-    CoarseChart& chart = charts_[k];
-    chart.cells = {k};
-    chart.moments = cell.moments;
-    chart.normal_sum = to_glm(cell.normal_sum);
-    chart.area = cell.area;
-    chart.version = 1;
-    chart.flat = 1 - glm::length(chart.normal_sum) / chart.area < kFlatSpread;
+    CoarseChart& own = chart(k);
+    own.cells = {k};
+    own.moments = cell.moments;
+    own.normal_sum = to_glm(cell.normal_sum);
+    own.area = cell.area;
+    own.version = 1;
+    own.flat = 1 - glm::length(own.normal_sum) / own.area < kFlatSpread;
     if (options_.cone > 0) result_.chart_axis[k] = from_glm(glm::vec3(to_glm(cell.normal)));
     result_.chart_of_cell[k] = k;
     const glm::dvec3 n = to_glm(cell.normal);
@@ -122,8 +128,8 @@ class Merger {
     const glm::dvec3 v = glm::cross(n, u);
     result_.uv.centre[k] = {0, 0};
     for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
-      chart.arcs.push_back(mesh_.slot_arc[s]);
-      chart.perimeter += mesh_.arcs[mesh_.slot_arc[s]].length;
+      own.arcs.push_back(mesh_.slot_arc[s]);
+      own.perimeter += mesh_.arcs[mesh_.slot_arc[s]].length;
       const glm::dvec3 d = to_glm(mesh_.slot_position[s]) - to_glm(cell.centre);
       const glm::dvec2 flat(glm::dot(d, u), glm::dot(d, v));
       const double length = glm::length(flat);
@@ -134,7 +140,7 @@ class Merger {
   // The charts that share arcs with `a`, ordered by id.
   void find_borders(std::uint32_t a) {
     borders_.clear();
-    for (const std::uint32_t arc : charts_[a].arcs) {
+    for (const std::uint32_t arc : chart(a).arcs) {
       const std::uint32_t c0 = chart_at(arc, 0), c1 = chart_at(arc, 1);
       const std::uint32_t other = c0 == a ? c1 : c0;
       if (other == kNoIndex || other == a) continue;
@@ -159,17 +165,17 @@ class Merger {
     find_borders(a);
     for (const Border& border : borders_) {
       if (once && border.other < a) continue;
-      if (relaxed_ && std::min(charts_[a].area, charts_[border.other].area) >
-                          options_.small_share * piece_area_) {
+      if (relaxed_ &&
+          std::min(chart(a).area, chart(border.other).area) > options_.small_share * piece_area_) {
         continue;
       }
       const std::uint32_t low = std::min(a, border.other), high = std::max(a, border.other);
-      heap_.push({cost(a, border), low, high, charts_[low].version, charts_[high].version});
+      heap_.push({cost(a, border), low, high, chart(low).version, chart(high).version});
     }
   }
 
   double cost(std::uint32_t a, const Border& border) const {
-    const CoarseChart &p = charts_[a], &q = charts_[border.other];
+    const CoarseChart &p = chart(a), &q = chart(border.other);
     const double area = p.area + q.area;
     const glm::dvec3 mean = (p.normal_sum + q.normal_sum) / area;
     Moments m;
@@ -193,12 +199,12 @@ class Merger {
   bool within_cone(std::uint32_t a, std::uint32_t b) {
     if (options_.cone <= 0) return true;
     const double least = std::cos(options_.cone);
-    axis_ = unit(charts_[a].normal_sum + charts_[b].normal_sum);
+    axis_ = unit(chart(a).normal_sum + chart(b).normal_sum);
     for (int step = 0; step < kConeSteps; ++step) {
       double worst = 2;
       glm::dvec3 towards(0);
-      for (const std::uint32_t chart : {a, b}) {
-        for (const std::uint32_t k : charts_[chart].cells) {
+      for (const std::uint32_t name : {a, b}) {
+        for (const std::uint32_t k : chart(name).cells) {
           for (const Vec3f& n : options_.cell_normals->of(k)) {
             const double cosine = glm::dot(axis_, to_dvec(n));
             if (cosine >= worst) continue;
@@ -223,16 +229,16 @@ class Merger {
       ++rejections;
       return;
     }
-    if (charts_[a].cells.size() < charts_[b].cells.size()) std::swap(a, b);
+    if (chart(a).cells.size() < chart(b).cells.size()) std::swap(a, b);
     glue_.clear();
-    for (const std::uint32_t arc : charts_[b].arcs) {
+    for (const std::uint32_t arc : chart(b).arcs) {
       const std::uint32_t c0 = chart_at(arc, 0), c1 = chart_at(arc, 1);
       if ((c0 == a && c1 == b) || (c0 == b && c1 == a)) glue_.push_back(arc);
     }
     std::sort(glue_.begin(), glue_.end());
     if (coplanar(a, b)) {
       energy_ = high_area_ = 0;
-      trial_.join_flat(charts_[a].cells, charts_[b].cells, glue_, result_.joined);
+      trial_.join_flat(chart(a).cells, chart(b).cells, glue_, result_.joined);
       trial_.commit();
       absorb(a, b);
       push_neighbours(a, false);
@@ -252,7 +258,7 @@ class Merger {
   // Pieces of one plane join without a trial, whatever their outline: nothing is stretched, and an
   // oriented surface in a plane does not overlap itself.
   bool coplanar(std::uint32_t a, std::uint32_t b) const {
-    const CoarseChart &p = charts_[a], &q = charts_[b];
+    const CoarseChart &p = chart(a), &q = chart(b);
     if (!p.flat || !q.flat) return false;
     return 1 - glm::dot(unit(p.normal_sum), unit(q.normal_sum)) < kFlatSpread;
   }
@@ -263,7 +269,7 @@ class Merger {
     for (const std::uint32_t arc : glue_) {
       length += mesh_.arcs[arc].length - kHiddenSeam * mesh_.arcs[arc].crease;
     }
-    const CoarseChart &p = charts_[a], &q = charts_[b];
+    const CoarseChart &p = chart(a), &q = chart(b);
     const double area = p.area + q.area;
     if (relaxed_) length += options_.chart_worth * std::sqrt(piece_area_);
     // What the merge may cost in stretch is worth the seam that it saves.
@@ -318,7 +324,7 @@ class Merger {
   }
 
   void absorb(std::uint32_t a, std::uint32_t b) {
-    CoarseChart &p = charts_[a], &q = charts_[b];
+    CoarseChart &p = chart(a), &q = chart(b);
     for (const std::uint32_t k : q.cells) result_.chart_of_cell[k] = a;
     p.cells.insert(p.cells.end(), q.cells.begin(), q.cells.end());
     p.arcs.insert(p.arcs.end(), q.arcs.begin(), q.arcs.end());
@@ -339,7 +345,8 @@ class Merger {
 
   const CoarseMesh& mesh_;
   const MergeOptions& options_;
-  std::vector<CoarseChart>& charts_;
+  std::vector<std::uint32_t>& place_;
+  std::vector<CoarseChart> charts_;  // 1 a cell of the piece
   MergeResult& result_;
   Trial& trial_;
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> heap_;
@@ -362,7 +369,7 @@ MergeResult merge_cells(const CoarseMesh& mesh, const std::vector<std::uint32_t>
   if (options.cone > 0) result.chart_axis.resize(n);
   result.uv.centre.resize(n);
   result.uv.slot.resize(mesh.slot_position.size());
-  std::vector<CoarseChart> charts(n);
+  std::vector<std::uint32_t> place(n, kNoIndex);
   std::vector<std::vector<std::uint32_t>> pieces;
   for (std::uint32_t k = 0; k < n; ++k) {
     if (piece[k] == kNoIndex) continue;
@@ -374,7 +381,7 @@ MergeResult merge_cells(const CoarseMesh& mesh, const std::vector<std::uint32_t>
   parallel_for(context, pieces.size(), grain, [&](std::size_t begin, std::size_t end) {
     Trial trial(mesh, result.uv);
     for (std::size_t i = begin; i < end; ++i) {
-      Merger merger(mesh, options, charts, result, trial);
+      Merger merger(mesh, options, place, result, trial);
       merger.run(pieces[i], context);
       trials += merger.trials;
       rejections += merger.rejections;
