@@ -4,6 +4,7 @@
 #include <numbers>
 #include <random>
 
+#include "libatlas/param/cgal_backend.h"
 #include "libatlas/param/distortion.h"
 #include "libatlas/param/isometric.h"
 #include "libatlas/param/planar.h"
@@ -136,6 +137,22 @@ TEST(Isometric, EnergyIsNotAboveCgals) {
     ASSERT_EQ(theirs.size(), d.positions.size());
     const double energy = testing::arap_energy(d.view(), flatten(d, 50));
     EXPECT_LE(energy, testing::arap_energy(d.view(), theirs) * (1 + 1e-6)) << seed;
+  }
+}
+
+TEST(CgalBackend, FlattensOrSaysThatItIsNotBuilt) {
+  const Disc d = testing::make_cap(0.8, 8);
+  for (const CgalMethod method : {CgalMethod::arap, CgalMethod::lscm}) {
+    std::vector<Vec2d> uv(d.positions.size());
+    const Status status = cgal_parameterize(d.view(), method, uv);
+    if (!cgal_backend_built()) {
+      EXPECT_EQ(status.code(), ErrorCode::unsupported);
+      continue;
+    }
+    ASSERT_TRUE(status.ok()) << status.message();
+    const Distortion m = measure_distortion(d.view(), uv);
+    EXPECT_NEAR(m.uv_area, m.surface_area, 1e-9);
+    EXPECT_LT(m.stretch_999, 1.3);
   }
 }
 
