@@ -23,14 +23,15 @@ run() { echo "== $*"; "$@" || failed=1; }
 
 case "$size" in
   small)
-    sweep="cabin:20000 scan:20000"
-    sizes="cabin:40000 scan:40000"
+    sweep="cabin:20000 scan:20000"; budget="--atlases 2 --atlas-size 1024"; repeats=1
+    sizes="cabin:40000 scan:40000 cabin:20000"; sizes_budget="$budget"
     rivals="sphere:20000 assembly:20000"
-    leak="cabin:100000"; texels="20 10 5"; full="" ;;
+    leak="cabin:50000"; texels="20 10 5"; full="" ;;
   full)
-    sweep="cabin:100000 scan:100000"
+    sweep="cabin:100000 scan:100000"; budget="--atlases 8 --atlas-size 2048"; repeats=2
     sizes="cabin:10000 cabin:30000 cabin:300000 cabin:1000000 cabin:3000000 \
            scan:10000 scan:30000 scan:300000 scan:1000000"
+    sizes_budget="--atlases 50"
     rivals="sphere:100000 assembly:100000 genus:100000 scan:1000000 terrain:1000000 assembly:1000000"
     leak="cabin:1000000"; texels="20 10 5 2.5"; full="--full" ;;
   *) echo "usage: scripts/bench.sh [full|small]" >&2; exit 2 ;;
@@ -40,8 +41,8 @@ models=""
 if [ -n "${LIBATLAS_MODELS:-}" ]; then models="--models $LIBATLAS_MODELS/*.obj"; fi
 # shellcheck disable=SC2086  # the lists are meant to be split
 {
-  run "$bin/atlas-bench" --work $sweep --repeats 2 -o "$out/settings.json"
-  run "$bin/atlas-bench" --work $sizes --standard --atlases 50 \
+  run "$bin/atlas-bench" --work $sweep $budget --repeats "$repeats" -o "$out/settings.json"
+  run "$bin/atlas-bench" --work $sizes --standard $sizes_budget \
       --stages baseline charts downsizing simplify export -o "$out/sizes.json"
   run "$bin/atlas-bench-leak" --work "$leak" --texel $texels -o "$out/leak.json"
   run "$bin/atlas-bench-stability" --failures $full $models -o "$out/stability.json"
