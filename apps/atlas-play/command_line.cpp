@@ -62,9 +62,10 @@ void add_shadow_options(CLI::App& app, CommandLine& l) {
       ->capture_default_str();
   app.add_option("--march-steps", l.render.march_steps, "samples along the ray")
       ->capture_default_str();
-  app.add_option("--slope-bias", l.render.slope_bias, "depth slopes per texel")
+  app.add_option("--slope-bias", l.render.slope_bias, "in depth slopes over the filter's reach")
       ->capture_default_str();
-  app.add_option("--normal-offset", l.render.normal_offset, "texels")->capture_default_str();
+  app.add_option("--normal-offset", l.render.normal_offset, "in reaches of the filter")
+      ->capture_default_str();
   app.add_flag("--fit-view", l.render.fit_view, "fit maps to the view, not the whole scene");
   app.add_option("--view-distance", l.render.view_distance,
                  "how far shadows reach with --fit-view");

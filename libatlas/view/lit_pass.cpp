@@ -106,10 +106,11 @@ void Renderer::Impl::fill_block(const Camera& camera, const FrameLight& light,
     put(b.to_map[1], shadow->fit(other).to_texture);
     const BlendWeights w = blend_weights(blend_of(options.shadows), plan.t,
                                          angle_between(plan.from_direction, plan.to_direction));
-    put(b.weights, w.from, w.to, options.normal_offset * from.texel, 1.0 / options.map_resolution);
-    // A filter of n bilinear taps reaches (n + 1) / 2 texels: so far a plane shadows itself.
-    b.march[2] = float(options.slope_bias * std::max(1.0, (options.pcf + 1) / 2.0) * from.texel /
-                       from.depth_range);
+    // A filter of n bilinear taps reaches (n + 1) / 2 texels to each side: so far a plane would
+    // shadow itself.
+    const double reach = std::max(1.0, (options.pcf + 1) / 2.0) * from.texel;
+    put(b.weights, w.from, w.to, options.normal_offset * reach, 1.0 / options.map_resolution);
+    b.march[2] = float(options.slope_bias * reach / from.depth_range);
     fill_march(b, l, from, scene->bounds);
   }
   put(b.specular, options.specular, options.shininess, options.roughness, options.map_resolution);

@@ -39,12 +39,14 @@ struct RenderOptions {
   bool show_visibility = false;  // grey values of the light's visibility instead of colours
 
   int map_resolution = 2048;
-  int pcf = 3;                 // see ShaderFeatures::pcf
-  int march_steps = 4;         // see ShaderFeatures::march_steps
-  double slope_bias = 2.0;     // polygon offset, in depth slope per texel
-  double normal_offset = 1.0;  // texels, times the sine of the angle between normal and light
-  bool fit_view = false;       // fit maps to the view instead of the whole scene
-  double view_distance = 0;    // fit_view: how far shadows reach; 0: a quarter of the scene
+  int pcf = 3;          // see ShaderFeatures::pcf
+  int march_steps = 4;  // see ShaderFeatures::march_steps
+  // In units of the filter's reach. The normal offset (times the sine of the angle to the light) is
+  // just what a plane needs; the slope bias (times its tangent, up to 8) is for rounding, and more
+  // of it lets light through thin walls.
+  double slope_bias = 0.25, normal_offset = 1.0;
+  bool fit_view = false;     // fit maps to the view instead of the whole scene
+  double view_distance = 0;  // fit_view: how far shadows reach; 0: a quarter of the scene
   bool snap = true;
   ScheduleOptions schedule;  // interval and slicing; `blend` is set by the method
 
