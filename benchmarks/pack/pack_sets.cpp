@@ -1,6 +1,7 @@
 // Runs pack_rects over a folder of instances ("W H n", then n lines "w h"; H = 0: a strip), checks
 // every layout independently, and prints totals:
-//   pack_sets FOLDER_OR_FILE... [--rotate] [--preset fast|default|best] [--budget S] [--each]
+//   pack_sets FOLDER_OR_FILE... [--rotate] [--preset fast|default|best] [--budget S] [--effort
+//   LAYOUTS] [--each]
 //   [--strip]
 //   [--engine skyline-bl|skyline-mw|max-rects]
 // --strip ignores H and opens the page upwards; the optimum is taken to be the area bound.
@@ -96,6 +97,8 @@ int main(int argc, char** argv) {
       options.engine = e == "skyline-bl"   ? atlas::PackEngine::skyline_bottom_left
                        : e == "skyline-mw" ? atlas::PackEngine::skyline_min_waste
                                            : atlas::PackEngine::max_rects;
+    } else if (a == "--effort") {
+      options.effort = std::strtoull(argv[++i], nullptr, 10);
     } else if (a == "--budget") {
       options.time_budget = std::atof(argv[++i]);
     } else if (std::filesystem::is_directory(a)) {

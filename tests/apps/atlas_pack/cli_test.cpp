@@ -1,0 +1,160 @@
+// atlas-pack as its users meet it: files in, files out, exit codes and messages.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "libatlas/image/image_io.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RunResult {
+  int exit_code = -1;
+  std::string output;
+};
+
+class AtlasPack : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    dir_ = fs::temp_directory_path() / fmt::format("atlas_pack_{}_{}", info->name(), ::getpid());
+    fs::create_directories(dir_);
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+
+  fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(dir_ / name, std::ios::binary) << text;
+    return dir_ / name;
+  }
+  std::string read(const std::string& name) const {
+    std::stringstream text;
+    text << std::ifstream(dir_ / name).rdbuf();
+    return text.str();
+  }
+  RunResult run(const std::string& arguments) const {
+    RunResult result;
+    const std::string command =
+        fmt::format("cd '{}' && '{}' {} 2>&1", dir_.string(), ATLAS_PACK, arguments);
+    FILE* pipe = ::popen(command.c_str(), "r");
+    char buffer[4096];
+    while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe))
+      result.output.append(buffer, n);
+    const int status = ::pclose(pipe);
+    result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+    return result;
+  }
+  fs::path dir_;
+};
+
+TEST_F(AtlasPack, RectsFromCsvToCsv) {
+  write("sizes.csv", "name,width,height\na,60,10\n\"b,c\",4,10\n");
+  const RunResult r = run("rects sizes.csv --page 64x32 -o placed.csv --preview p.svg");
+  EXPECT_EQ(r.exit_code, 0) << r.output;
+  EXPECT_EQ(read("placed.csv"),
+            "name,page,x,y,width,height,rotated\na,0,0,22,60,10,0\n\"b,c\",0,60,22,4,10,0\n");
+  EXPECT_NE(read("p.svg").find("<svg"), std::string::npos);
+}
+
+TEST_F(AtlasPack, RectsFromJsonToBothJsonLayouts) {
+  write("sizes.json", R"([[8, 8], {"name": "x", "w": 4, "h": 2}])");
+  ASSERT_EQ(run("rects sizes.json --page 16 -o hash.json").exit_code, 0);
+  const auto hash = nlohmann::json::parse(read("hash.json"));
+  EXPECT_EQ(hash["frames"]["x"]["frame"]["w"], 4);
+  ASSERT_EQ(run("rects sizes.json --page 16 --data array -o array.json").exit_code, 0);
+  const auto array = nlohmann::json::parse(read("array.json"));
+  ASSERT_EQ(array["frames"].size(), 2u);
+  EXPECT_EQ(array["frames"][1]["filename"], "x");
+  const RunResult summary = run("rects sizes.json --page 16 --json -o s.csv");
+  EXPECT_EQ(nlohmann::json::parse(summary.output)["items"], 2);
+}
+
+TEST_F(AtlasPack, WhatIsWrongIsSaid) {
+  write("bad.csv", "1,2\n3,x\n");
+  const RunResult bad = run("rects bad.csv -o q.csv");
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_NE(bad.output.find("bad.csv:2:"), std::string::npos) << bad.output;
+  EXPECT_FALSE(fs::exists(dir_ / "q.csv"));
+  EXPECT_EQ(run("rects missing.csv -o q.csv").exit_code, 1);
+  EXPECT_EQ(run("rects bad.csv").exit_code, 2);
+  EXPECT_EQ(run("rects bad.csv -o q.csv --page nonsense").exit_code, 2);
+  write("large.csv", "100,1\n5,5\n");
+  const RunResult large = run("rects large.csv --page 64 -o q.csv");
+  EXPECT_EQ(large.exit_code, 1);
+  EXPECT_NE(large.output.find("larger than the page"), std::string::npos);
+  EXPECT_NE(read("q.csv").find("1,0,"), std::string::npos);  // the other one is placed
+}
+
+TEST_F(AtlasPack, SpritesKeepTheirTexels) {
+  fs::create_directories(dir_ / "in/sub");
+  const auto sprite = [](int w, int h, int border, int tint) {
+    atlas::Image8 image(w, h, 4);
+    for (int y = border; y < h - border; ++y)
+      for (int x = border; x < w - border; ++x) {
+        std::uint8_t* t = image.at(x, y);
+        t[0] = static_cast<std::uint8_t>(x * 7);
+        t[1] = static_cast<std::uint8_t>(y * 5);
+        t[2] = static_cast<std::uint8_t>(tint);
+        t[3] = 255;
+      }
+    return image;
+  };
+  const atlas::Image8 a = sprite(20, 12, 3, 10), c = sprite(6, 30, 0, 90);
+  ASSERT_TRUE(atlas::write_png(dir_ / "in/a.png", a, {}).ok());
+  ASSERT_TRUE(atlas::write_png(dir_ / "in/b.png", a, {}).ok());
+  ASSERT_TRUE(atlas::write_png(dir_ / "in/sub/c.png", c, {}).ok());
+  const RunResult r = run("images in -o sheet --page 48x24 --rotate --extrude 1 --padding 1");
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  const auto page = atlas::read_image8(dir_ / "sheet.png");
+  ASSERT_TRUE(page.ok());
+  const auto frames = nlohmann::json::parse(read("sheet.json"))["frames"];
+  EXPECT_EQ(frames["a.png"]["frame"], frames["b.png"]["frame"]);  // identical images share
+  for (const auto& [name, image] : {std::pair("a.png", &a), {"sub/c.png", &c}}) {
+    const auto& f = frames[name];
+    const int w = f["frame"]["w"], h = f["frame"]["h"];
+    const int ox = f["spriteSourceSize"]["x"], oy = f["spriteSourceSize"]["y"];
+    EXPECT_EQ(f["sourceSize"]["w"], image->width);
+    for (int y = 0; y < h; ++y)
+      for (int x = 0; x < w; ++x) {
+        // Read back as a game does: y down, clockwise if rotated.
+        const bool turned = f["rotated"];
+        const int px = int(f["frame"]["x"]) + (turned ? h - 1 - y : x);
+        const int py = int(f["frame"]["y"]) + (turned ? x : y);
+        const std::uint8_t* got = page->at(px, page->height - 1 - py);
+        const std::uint8_t* expected = image->at(ox + x, image->height - 1 - (oy + y));
+        ASSERT_TRUE(std::equal(got, got + 4, expected)) << name << " " << x << " " << y;
+      }
+  }
+}
+
+TEST_F(AtlasPack, MeshChartsAtUniformDensity) {
+  // Two unit squares whose uvs differ in size tenfold.
+  write("m.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 0 0\nvt 0.1 0\nvt 0.1 0.1\nvt 0 0.1\n"
+        "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\nf 5/5 6/6 7/7\nf 5/5 7/7 8/8\n");
+  const RunResult r = run("mesh m.obj --page 128 --padding 2 -o out.obj --preview p.png");
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  EXPECT_TRUE(fs::exists(dir_ / "p.png"));
+  std::istringstream lines(read("out.obj"));
+  std::vector<std::pair<double, double>> uv;
+  for (std::string line; std::getline(lines, line);)
+    if (double u = 0, v = 0; std::sscanf(line.c_str(), "vt %lf %lf", &u, &v) == 2)
+      uv.emplace_back(u, v);
+  ASSERT_EQ(uv.size(), 12u);
+  const auto area = [&](std::size_t k) {
+    return std::abs((uv[k + 1].first - uv[k].first) * (uv[k + 2].second - uv[k].second) -
+                    (uv[k + 1].second - uv[k].second) * (uv[k + 2].first - uv[k].first));
+  };
+  for (std::size_t k = 3; k < 12; k += 3) EXPECT_NEAR(area(k), area(0), 1e-6);
+  EXPECT_GT(area(0), 0.1);
+}
+
+}  // namespace
