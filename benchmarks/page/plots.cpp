@@ -92,7 +92,7 @@ void leak_plot(const Results& results, std::vector<Plot>& plots) {
     }
   }
   Plot plot{"light_leak.svg",
-            "Light leak at the door's shadow edge",
+            "Light leak along a shadow on the door",
             "texel on the surface, mm",
             "error, display values",
             true,
@@ -134,7 +134,7 @@ std::string gnuplot_script(const Plot& plot, const std::filesystem::path& target
   std::string text = fmt::format(
       "set terminal svg size 860,560 noenhanced font 'sans,13' background rgb 'white'\n"
       "set output '{}'\nset title '{}'\nset xlabel '{}'\nset ylabel '{}'\n"
-      "set key outside right top\nset grid\nset offsets graph 0.08, graph 0.12, 0, 0\n",
+      "set key below left\nset grid\nset offsets graph 0.08, graph 0.12, 0, 0\n",
       target.string(), plain(plot.title), plain(plot.x_axis), plain(plot.y_axis));
   if (plot.log_x) text += "set logscale x\n";
   if (plot.log_y) text += "set logscale y\n";
