@@ -38,9 +38,10 @@ struct ExportOptions {
   bool outlines = true;  // pack charts by their outlines where that is better than by
                          // their boxes
 
-  bool simplify = true;        // write the coarser mesh
-  double simplify_slip = 0.2;  // texels that surface and texture may slip, > 0: at 0.5 the test
-                               // room loses 2 dB, at 0.2 0.7 dB with twice the triangles
+  bool simplify = true;  // write the coarser mesh
+  // Texels that surface and texture may slip, > 0. At 0.5 the test room loses 2.3 dB to silhouettes
+  // that moved; at 0.15 it loses 1.1 dB with twice the triangles.
+  double simplify_slip = 0.15;
   Up up = Up::y;
   bool exr = false;                  // also scene-linear OpenEXR pages
   std::int32_t png_compression = 3;  // zlib level 0..9

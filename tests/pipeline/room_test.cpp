@@ -1,0 +1,62 @@
+// The test room of LIBATLAS_DATA, exported as a user would and judged by the independent evaluator.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "libatlas/pipeline/export_world.h"
+#include "tests/scene/temp_folder.h"
+#include "tests/support/fidelity.h"
+
+namespace atlas::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Room : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const char* data = std::getenv("LIBATLAS_DATA");
+    if (!data) GTEST_SKIP() << "LIBATLAS_DATA is not set: the test room is not here";
+    path_ = fs::path(data) / "room/scene.obj";
+    auto scene = read_scene(path_, {}, {});
+    ASSERT_TRUE(scene.ok()) << scene.status().message();
+    scene_ = std::move(*scene);
+  }
+
+  // Eight pages of 2048², linear tone mapping: the defaults.
+  Fidelity judge(const TempFolder& folder, bool simplify) const {
+    ExportOptions options;
+    options.target = folder / (simplify ? "coarse.wrl" : "fine.wrl");
+    options.simplify = simplify;
+    options.up = Up::z;
+    const auto report = export_world(scene_, options, {}, {});
+    EXPECT_TRUE(report.ok()) << report.status().message();
+    EXPECT_LE(report->pages.size(), 8u);
+    EXPECT_EQ(report->distortion.flips, 0u);
+    const auto lit = read_world(path_), world = read_world(options.target);
+    EXPECT_TRUE(lit.ok() && world.ok());
+    return compare_views(*lit, *world, {});
+  }
+
+  fs::path path_;
+  LoadedScene scene_;
+};
+
+TEST_F(Room, LooksLikeTheSceneAndTheCoarserMeshToo) {
+  const TempFolder folder;
+  const Fidelity fine = judge(folder, false), coarse = judge(folder, true);
+  EXPECT_GE(fine.psnr, 45);
+  EXPECT_GE(coarse.psnr, 45);
+  EXPECT_GE(coarse.psnr, fine.psnr - 2);
+  EXPECT_LE(coarse.triangles_out, 120000u);
+  for (const Fidelity& f : {fine, coarse}) {
+    // The 99th percentile of what is seen depends on where the cameras stand.
+    EXPECT_GE(f.white, 0.8);
+    EXPECT_LE(f.white, 1.5);
+    EXPECT_LE(f.miss, 5e-6);  // rays that slip between two triangles of either mesh: no crack
+  }
+}
+
+}  // namespace
+}  // namespace atlas::test
