@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <thread>
 
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
@@ -148,7 +149,11 @@ Nest search(std::span<const Piece> pieces, const Grid& grid, const OutlineOption
   if (o.preset == PackPreset::standard) s.work = static_cast<std::uint64_t>(kStandardWork);
   const std::size_t chains = o.preset == PackPreset::best ? 4 : 1;
   if (o.preset == PackPreset::best) {
-    s.seconds = o.time_budget;
+    // With fewer threads than chains they run one after another and share the time.
+    const double threads = context.threads > 0
+                               ? context.threads
+                               : std::max(1.0, double(std::thread::hardware_concurrency()));
+    s.seconds = o.time_budget * std::min(1.0, threads / double(chains));
     if (o.effort) s.layouts = std::max<std::uint64_t>(1, o.effort / chains);
   }
   std::vector<Nest> nests(chains);
