@@ -31,6 +31,15 @@ MeshView view_of(const Scene& scene) {
   return view;
 }
 
+// The corner list with the given triangles' orientation reversed.
+std::vector<std::uint32_t> turned_round(std::vector<std::uint32_t> corners,
+                                        const std::vector<std::uint32_t>& triangles) {
+  for (const std::uint32_t t : triangles) {
+    std::swap(corners[3 * std::size_t(t) + 1], corners[3 * std::size_t(t) + 2]);
+  }
+  return corners;
+}
+
 // The state that one stage hands to the next. Each method is one stage: it fills its part of the
 // report and returns early with a Status.
 class Export {
@@ -308,8 +317,16 @@ class Export {
 
   Status write() {
     begin_stage("writing");
+    std::vector<std::uint32_t> corners,
+        uv_corners;  // only where the mesh disagrees with its charts
     WorldMesh mesh{scene_.indices, charts_.triangle_uv, charts_.triangle_chart};
-    if (coarse_) mesh = {coarse_->indices, coarse_->uv_indices, coarse_->triangle_chart};
+    if (coarse_) {
+      mesh = {coarse_->indices, coarse_->uv_indices, coarse_->triangle_chart};
+    } else if (!charts_.flipped_triangles.empty()) {
+      corners = turned_round(scene_.indices, charts_.flipped_triangles);
+      uv_corners = turned_round(charts_.triangle_uv, charts_.flipped_triangles);
+      mesh = {corners, uv_corners, charts_.triangle_chart};
+    }
     World world = assemble_world(scene_, {charts_, layout_.placements, layout_.pages}, mesh);
     world.up = options_.up;
     world.title = options_.target.stem().string();

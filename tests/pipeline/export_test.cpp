@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <utility>
 
 #include "libatlas/pipeline/export_world.h"
 #include "tests/pipeline/lit_scene.h"
@@ -108,6 +109,22 @@ TEST(Export, KeepsEveryTriangleOnce) {
   const auto mesh = read_uv_obj(options.target);
   ASSERT_TRUE(mesh.ok());
   EXPECT_EQ(triangles_of(scene.scene), triangles_of(*mesh));
+}
+
+TEST(Export, WritesTrianglesThatFaceTheOtherWayAsTheirChartDoes) {
+  const TempFolder folder;
+  LoadedScene scene = lit_scene(torus(24, 12));
+  for (std::size_t t = 0; t < scene.scene.triangle_count(); t += 5) {
+    std::swap(scene.scene.indices[3 * t], scene.scene.indices[3 * t + 1]);
+  }
+  const ExportOptions options = small_pages(folder);
+  const auto report = export_world(scene, options, {}, {});
+  ASSERT_TRUE(report.ok());
+  const auto mesh = read_uv_obj(options.target);
+  ASSERT_TRUE(mesh.ok());
+  const AtlasMeasures m = measure_atlas(*mesh, 256, 256);
+  EXPECT_EQ(m.flipped, 0u);
+  EXPECT_EQ(m.mirrored, 0u);
 }
 
 TEST(Export, FewerPagesWhereTheyAreEnough) {
