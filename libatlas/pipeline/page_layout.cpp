@@ -35,7 +35,7 @@ struct Outlines {
   }
 };
 
-// What is left of a side after the common scale: sides stop at the smallest one allowed.
+// What is left of a box's side after the common scale: sides stop at the smallest one allowed.
 double scaled_density(double density, double side, double scale, double minimum_side) {
   const double floor_side = std::min(minimum_side, side);
   return side > 0 ? density * std::max(scale, floor_side / side) : density * scale;
@@ -86,7 +86,7 @@ Result<PageLayout> lay_out(const ChartSet& charts, std::span<const Vec2d> texels
   fit.page_size = options.page_size;
   fit.padding = options.padding;
   fit.alignment = options.alignment;
-  fit.minimum_side = options.outlines ? 0 : options.minimum_side;
+  fit.minimum_side = options.minimum_side;
   fit.preset = options.preset;
   std::optional<Outlines> outlines;
   if (options.outlines) {
@@ -108,9 +108,12 @@ Result<PageLayout> lay_out(const ChartSet& charts, std::span<const Vec2d> texels
     to = options.outlines ? outlined(from, options) : boxed(from, options);
     to.chart = std::uint32_t(c);
     to.page = std::int32_t(from.page);
-    to.texels_per_unit = {
-        scaled_density(texels_per_unit[c].x, items[c].width, layout.scale, fit.minimum_side),
-        scaled_density(texels_per_unit[c].y, items[c].height, layout.scale, fit.minimum_side)};
+    const Vec2d wanted = texels_per_unit[c];
+    to.texels_per_unit =
+        options.outlines
+            ? Vec2d{wanted.x * from.scale, wanted.y * from.scale}
+            : Vec2d{scaled_density(wanted.x, items[c].width, layout.scale, fit.minimum_side),
+                    scaled_density(wanted.y, items[c].height, layout.scale, fit.minimum_side)};
   }
   layout.outlines = options.outlines;
   layout.uv_utilization = uv_utilization(charts, layout);
