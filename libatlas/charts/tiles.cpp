@@ -24,6 +24,55 @@ struct Span1 {
   double length() const { return high - low; }
 };
 
+// An edge between two uvs of the set, a < b, and what it belongs to.
+struct UvEdge {
+  std::uint32_t a, b, owner;
+  bool same_place(const UvEdge& e) const { return a == e.a && b == e.b; }
+  bool operator<(const UvEdge& e) const {
+    return std::tie(a, b, owner) < std::tie(e.a, e.b, e.owner);
+  }
+};
+
+void add_edges(const ChartSet& set, std::uint32_t t, std::uint32_t owner,
+               std::vector<UvEdge>& edges) {
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t a = set.triangle_uv[3 * std::size_t(t) + k];
+    const std::uint32_t b = set.triangle_uv[3 * std::size_t(t) + (k + 1) % 3];
+    edges.push_back({std::min(a, b), std::max(a, b), owner});
+  }
+}
+
+// Splits triangles into the sets that hang together by edges: in the order of their first triangle,
+// each in the order given. A cut may leave islands on either side, which are charts of their own.
+std::vector<Triangles> connected(const ChartSet& set, const Triangles& triangles) {
+  std::vector<std::uint32_t> parent(triangles.size());
+  std::vector<UvEdge> edges;
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    parent[i] = i;
+    add_edges(set, triangles[i], i, edges);
+  }
+  const auto root = [&](std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 1; i < edges.size(); ++i) {
+    if (!edges[i - 1].same_place(edges[i])) continue;
+    const std::uint32_t l = root(edges[i - 1].owner), r = root(edges[i].owner);
+    parent[std::max(l, r)] = std::min(l, r);
+  }
+  std::vector<Triangles> sets;
+  std::vector<std::uint32_t> set_of(triangles.size());
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    if (root(i) == i) {
+      set_of[i] = std::uint32_t(sets.size());
+      sets.emplace_back();
+    }
+    sets[set_of[root(i)]].push_back(triangles[i]);
+  }
+  return sets;
+}
+
 // The chart set being cut, seen along either axis of the uv plane.
 class Cutter {
  public:
@@ -46,8 +95,10 @@ class Cutter {
       pieces.push_back(std::move(triangles));  // no cut separates these triangles
       return;
     }
-    cut(Triangles(triangles.begin(), middle), limit, pieces);
-    cut(Triangles(middle, triangles.end()), limit, pieces);
+    for (const bool right : {false, true}) {
+      const Triangles side(right ? middle : triangles.begin(), right ? triangles.end() : middle);
+      for (Triangles& island : connected(set_, side)) cut(std::move(island), limit, pieces);
+    }
   }
 
  private:
@@ -199,24 +250,14 @@ class Rebuilder {
 // Length on the surface of the edges along which a chart was cut: uv edges of the old set whose two
 // triangles went to different pieces.
 double cut_length(const MeshView& mesh, const ChartSet& old, const std::vector<Triangles>& pieces) {
-  struct Edge {
-    std::uint32_t a, b, piece;
-  };
-  std::vector<Edge> edges;
+  std::vector<UvEdge> edges;
   for (std::uint32_t piece = 0; piece < pieces.size(); ++piece)
-    for (const std::uint32_t t : pieces[piece])
-      for (int k = 0; k < 3; ++k) {
-        const std::uint32_t a = old.triangle_uv[3 * std::size_t(t) + k];
-        const std::uint32_t b = old.triangle_uv[3 * std::size_t(t) + (k + 1) % 3];
-        edges.push_back({std::min(a, b), std::max(a, b), piece});
-      }
-  std::sort(edges.begin(), edges.end(), [](const Edge& l, const Edge& r) {
-    return std::tie(l.a, l.b, l.piece) < std::tie(r.a, r.b, r.piece);
-  });
+    for (const std::uint32_t t : pieces[piece]) add_edges(old, t, piece, edges);
+  std::sort(edges.begin(), edges.end());
   double length = 0;
   for (std::size_t i = 1; i < edges.size(); ++i) {
-    const Edge &l = edges[i - 1], &r = edges[i];
-    if (l.a != r.a || l.b != r.b || l.piece == r.piece) continue;
+    const UvEdge &l = edges[i - 1], &r = edges[i];
+    if (!l.same_place(r) || l.owner == r.owner) continue;
     length += glm::distance(to_dvec(mesh.positions[old.uv_vertex[l.a]]),
                             to_dvec(mesh.positions[old.uv_vertex[l.b]]));
   }
