@@ -162,6 +162,33 @@ void copy_box(const TexelGrid& in, const Box& box, Image<T>& page, Convert&& con
   }
 }
 
+// Gives the texels that no chart owns the colours around them. No lookup at the guarded mip levels
+// reads them, but viewers build the whole chain: black there would draw dark lines along distant
+// seams.
+void fill_between(const std::vector<std::uint8_t>& owned, Image8& page) {
+  TexelGrid grid(page.width, page.height);
+  grid.known = owned;
+  for (std::size_t i = 0; i < owned.size(); ++i)
+    if (owned[i])
+      for (int k = 0; k < 3; ++k) grid.rgb[i][k] = static_cast<float>(page.texels[3 * i + k]) / 255;
+  fill_unknown(grid);
+  for (std::size_t i = 0; i < owned.size(); ++i)
+    if (!owned[i])
+      for (int k = 0; k < 3; ++k) page.texels[3 * i + k] = quantize8(grid.rgb[i][k]);
+}
+
+// Marks what copy_box writes for this box.
+void mark_owned(const Box& box, const std::vector<std::uint8_t>& owned, int page_width,
+                std::vector<std::uint8_t>& page) {
+  for (int y = 0; y < box.height; ++y) {
+    const std::size_t from = std::size_t(y) * box.width;
+    const std::size_t to = std::size_t(box.placement.y - box.pad + y) * page_width +
+                           std::size_t(box.placement.x - box.pad);
+    for (int x = 0; x < box.width; ++x)
+      if (owned.empty() || owned[from + x]) page[to + x] = 1;
+  }
+}
+
 Status check(const ChartLight& light, std::span<const ChartPlacement> placements,
              const BakeOptions& o) {
   constexpr int kLargest = 1 << 16;
@@ -200,6 +227,7 @@ Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacem
   page.display = Image8(options.page_width, options.page_height, 3);
   if (options.linear) page.linear = ImageF(options.page_width, options.page_height, 3);
   const SampleGrid grid(options.shifts);
+  std::vector<std::uint8_t> taken(std::size_t(options.page_width) * options.page_height, 0);
   std::mutex counting;
   std::size_t done = 0;
   parallel_for(context, placements.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -209,6 +237,7 @@ Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacem
       const std::size_t filled = fill_unknown(texels);
       const std::vector<std::uint8_t> owned = owned_texels(light.charts, box, options.mip_levels);
       copy_box(texels, box, page.display, quantize8, owned);
+      mark_owned(box, owned, options.page_width, taken);
       const std::size_t covered = texels.rgb.size() - filled;
       if (options.linear) {
         texels = bake_box({light, options, grid, nullptr}, box);
@@ -224,6 +253,7 @@ Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacem
     }
   });
   if (context.cancelled()) return Status::cancelled();
+  fill_between(taken, page.display);
   return page;
 }
 

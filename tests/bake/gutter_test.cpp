@@ -122,21 +122,39 @@ TEST(Gutter, OutlinedChartsKeepToTheirCells) {
 TEST(Gutter, BoxesKeepWithinThemselves) {
   std::vector<ChartPlacement> placements;
   const LitShape shape = tiled(2, 256, placements);
-  const auto all = bake(shape, placements, small_page(256));
+  BakeOptions options = small_page(256);
+  options.linear = true;
+  const auto all = bake(shape, placements, options);
   ASSERT_TRUE(all.ok());
-  // Without one chart the rest is the same, and its box is black.
+  // Without one chart the others' boxes are the same, and nothing is baked into its own.
   const ChartPlacement gone = placements[5];
   placements.erase(placements.begin() + 5);
-  const auto rest = bake(shape, placements, small_page(256));
+  const auto rest = bake(shape, placements, options);
   ASSERT_TRUE(rest.ok());
   const auto up = [](int n) { return (n + 3) / 4 * 4; };
-  const int pad = gutter_pad(2), x0 = gone.x - pad, y0 = gone.y - pad;
-  const int x1 = up(gone.x + gone.width + pad), y1 = up(gone.y + gone.height + pad);
+  const int pad = gutter_pad(2);
+  const auto for_box = [&](const ChartPlacement& p, const auto& visit) {
+    for (int y = p.y - pad; y < up(p.y + p.height + pad); ++y)
+      for (int x = p.x - pad; x < up(p.x + p.width + pad); ++x) visit(x, y);
+  };
+  for (const ChartPlacement& p : placements)
+    for_box(p, [&](int x, int y) {
+      ASSERT_EQ(rest->display.at(x, y)[2], all->display.at(x, y)[2]);
+      ASSERT_EQ(rest->linear.at(x, y)[2], all->linear.at(x, y)[2]);
+    });
+  for_box(gone, [&](int x, int y) { ASSERT_EQ(rest->linear.at(x, y)[2], 0); });
+}
+
+TEST(Gutter, TexelsOfNoChartTakeTheColoursAroundThem) {
+  std::vector<ChartPlacement> placements;
+  const LitShape shape = tiled(2, 256, placements);
+  const auto page = bake(shape, placements, small_page(256));
+  ASSERT_TRUE(page.ok());
+  // Every chart is lit in blue by more than nothing, so no texel of the page may stay black in it.
+  std::size_t black = 0;
   for (int y = 0; y < 256; ++y)
-    for (int x = 0; x < 256; ++x) {
-      const bool in_box = x >= x0 && x < x1 && y >= y0 && y < y1;
-      ASSERT_EQ(rest->display.at(x, y)[2], in_box ? 0 : all->display.at(x, y)[2]);
-    }
+    for (int x = 0; x < 256; ++x) black += page->display.at(x, y)[2] == 0;
+  EXPECT_EQ(black, 0u);
 }
 
 }  // namespace
