@@ -12,7 +12,7 @@ out="out/bench"
 build="${LIBATLAS_BENCH_BUILD:-}"
 if [ -z "$build" ]; then
   [ -n "${LIBATLAS_SKIP_DEPS:-}" ] || scripts/install-deps.sh all
-  cmake --preset release >/dev/null
+  cmake --preset release -DLIBATLAS_BUILD_BENCHMARKS=ON >/dev/null
   cmake --build --preset release --target benchmarks
   build=build
 fi
