@@ -12,9 +12,9 @@ namespace atlas {
 // the even share, where it crosses the fewest triangles: on regular meshes it is straight.
 // Triangles go to the side of their centroid. Pieces keep their parent's uvs, shifted (and turned
 // by 90 degrees where that lays their long side along u), and so its injectivity; each hangs
-// together by edges. Cone and axis stay the parent's; distortion is measured anew. Charts within their
-// limit keep their order; pieces follow in place of their parent.
-// Returns how many charts were cut.
+// together by edges. Cone and axis stay the parent's; distortion is measured anew. Charts within
+// their limit keep their order; pieces follow in place of their parent. Returns how many charts
+// were cut.
 std::size_t cut_to_limits(const MeshView& mesh, std::span<const double> limits, ChartSet& charts);
 
 }  // namespace atlas
