@@ -23,6 +23,12 @@ fs::path AtomicFiles::path_for(const fs::path& target) {
   return temporary;
 }
 
+void AtomicFiles::discard(const fs::path& temporary) {
+  std::error_code ignored;  // one that was never created is not there to remove
+  fs::remove(temporary, ignored);
+  std::erase_if(entries_, [&](const Entry& entry) { return entry.temporary == temporary; });
+}
+
 std::vector<fs::path> AtomicFiles::targets() const {
   std::vector<fs::path> paths;
   for (const Entry& entry : entries_) paths.push_back(entry.target);

@@ -23,6 +23,9 @@ class AtomicFiles {
   // the format by it.
   std::filesystem::path path_for(const std::filesystem::path& target);
 
+  // Removes what was written under this temporary path; commit() will not put it in place.
+  void discard(const std::filesystem::path& temporary);
+
   // What commit() will put in place, in the order asked for.
   std::vector<std::filesystem::path> targets() const;
 

@@ -342,6 +342,9 @@ class Export {
     report_.triangles_out = mesh.triangle_chart.size();
     Result<WorldFile> world_file = write_world(world);
     if (!world_file.ok()) return world_file.status();
+    if (options_.target.extension() == ".glb") {  // holds its images itself
+      for (const auto& image : image_sources_) files_.discard(image);
+    }
     if (context_.cancelled()) return Status::cancelled();
     const std::vector<std::filesystem::path> written = files_.targets();
     if (Status s = files_.commit(); !s.ok()) return s;

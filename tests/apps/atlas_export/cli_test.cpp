@@ -125,6 +125,13 @@ TEST_F(AtlasExport, WritesWorldImagesAndReport) {
   EXPECT_LE(report["simplify"]["triangles_out"].get<int>(), 6 * 4);
 }
 
+TEST_F(AtlasExport, GlbHoldsItsImages) {
+  write("box.obj", lit_box(6));
+  const RunResult r = run(fmt::format("{0}/box.obj -o {0}/w.glb --texel 2cm", dir_.string()));
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  EXPECT_EQ(files(), (std::set<std::string>{"box.obj", "w.glb"}));
+}
+
 TEST_F(AtlasExport, SameBytesForEveryThreadCount) {
   write("box.obj", lit_box(20));
   std::string reference;
