@@ -19,5 +19,5 @@ echo "The world:  $PWD/out/cabin.wrl   (any VRML97 viewer opens it: view3dscene,
 echo "The report: $PWD/out/report.json"
 echo "A picture:  $PWD/out/cabin.png"
 if [ -x build/apps/atlas-play/atlas-play ]; then
-  echo "Walk in:    build/apps/atlas-play/atlas-play out/cabin.wrl"
+  echo "Walk in:    build/apps/atlas-play/atlas-play out/cabin.wrl --up z"
 fi

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <map>
 
+#include "libatlas/exporters/viewpoint.h"
+
 namespace atlas::app {
 namespace {
 
@@ -150,10 +152,22 @@ Status finish(CommandLine& l, const std::string& light, const std::string& end,
 
 }  // namespace
 
-Result<Camera> camera_of(const CommandLine& line, const Box3& bounds) {
-  Camera camera = camera_for(bounds, line.render.up);
+Result<Camera> camera_of(const CommandLine& line, const ViewScene& scene) {
+  Camera camera = camera_for(scene.bounds, line.render.up);
   camera.fov_degrees = line.fov;
-  if (line.camera.empty()) return camera;
+  if (line.camera.empty()) {
+    // Inside, where the scene surrounds a visitor, as the exported worlds begin; else the whole.
+    ViewpointOptions eye;
+    eye.up = line.render.up.z != 0 ? Up::z : Up::y;
+    const Viewpoint start =
+        choose_viewpoint(scene.caster_positions, scene.caster_indices, eye, Context{});
+    if (!start.inside) return camera;
+    camera.eye = start.position;
+    camera.target = {start.position.x + start.direction.x, start.position.y + start.direction.y,
+                     start.position.z + start.direction.z};
+    fit_planes(camera, scene.bounds);
+    return camera;
+  }
   Vec3d a, b;
   char rest = 0;
   if (std::sscanf(line.camera.c_str(), "%lf,%lf,%lf;%lf,%lf,%lf%c", &a.x, &a.y, &a.z, &b.x, &b.y,
@@ -164,7 +178,7 @@ Result<Camera> camera_of(const CommandLine& line, const Box3& bounds) {
         fmt::format("--camera {}: two different points x,y,z;x,y,z are needed", line.camera)};
   camera.eye = a;
   camera.target = b;
-  fit_planes(camera, bounds);
+  fit_planes(camera, scene.bounds);
   return camera;
 }
 

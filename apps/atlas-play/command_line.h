@@ -33,7 +33,8 @@ struct Parsed {
 };
 Parsed parse_command_line(int argc, char** argv);
 
-// The camera of "eye;target" over a scene; bad_option if the text is something else.
-Result<Camera> camera_of(const CommandLine& line, const Box3& bounds);
+// The camera of "eye;target", or, without one, where a visitor would enter the scene; bad_option if
+// the text is something else.
+Result<Camera> camera_of(const CommandLine& line, const ViewScene& scene);
 
 }  // namespace atlas::app

@@ -39,7 +39,7 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   const bool baked = line.baked_textures.value_or(textures_hold_light(line.scene));
   Result<ViewScene> scene = load_view(line.scene, baked, context);
   if (!scene.ok()) return scene.status();
-  Result<Camera> camera = camera_of(line, scene->bounds);
+  Result<Camera> camera = camera_of(line, *scene);
   if (!camera.ok()) return camera.status();
   line.play.camera = *camera;
 
