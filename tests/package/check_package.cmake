@@ -1,4 +1,4 @@
-# Run by ctest with SOURCE, BUILD, CXX and FLAGS set.
+# Run by ctest with SOURCE, BUILD, GENERATOR, CXX and FLAGS set.
 set(prefix ${BUILD}/tests/package/prefix)
 file(REMOVE_RECURSE ${prefix} ${BUILD}/tests/package/minimal)
 
@@ -26,7 +26,7 @@ foreach(file IN LISTS installed)
 endforeach()
 
 # By find_package.
-run(${CMAKE_COMMAND} -S ${SOURCE}/examples/minimal -B ${BUILD}/tests/package/minimal
+run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE}/examples/minimal -B ${BUILD}/tests/package/minimal
     -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS})
 run(${CMAKE_COMMAND} --build ${BUILD}/tests/package/minimal)
 run(${BUILD}/tests/package/minimal/unwrap)
