@@ -96,7 +96,8 @@ void add_output_options(CLI::App& app, ExportCommand& command) {
       ->transform(choices<PackPreset>({{"fast", PackPreset::fast},
                                        {"default", PackPreset::standard},
                                        {"best", PackPreset::best}}));
-  app.add_flag("!--boxes", options.outlines, "Pack the charts' boxes instead of their outlines");
+  app.add_flag("!--boxes", options.outlines,
+               "Pack the charts' boxes only; else outlines too, and the better of both is kept");
   app.add_flag("--simplify,!--no-simplify", options.simplify,
                "Write the coarser mesh (default: yes)");
   app.add_option("--slip", options.simplify_slip,

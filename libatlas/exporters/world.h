@@ -69,6 +69,12 @@ Result<WorldFile> write_obj(const World& world, const std::filesystem::path& pat
 Result<WorldFile> write_gltf(const World& world, const std::filesystem::path& path,
                              AtomicFiles& files, const Context& context);
 
+// One of these, by the extension of `path`; check_world_extension() refuses all other extensions
+// (bad_option).
+Result<WorldFile> write_world(const World& world, const std::filesystem::path& path,
+                              AtomicFiles& files, const Context& context);
+Status check_world_extension(const std::filesystem::path& path);
+
 // The check that writers begin with.
 Status check_world(const World& world);
 

@@ -1,6 +1,29 @@
 #include "libatlas/pipeline/assemble_world.h"
 
+#include <utility>
+
 namespace atlas {
+namespace {
+
+// The corner list with the given triangles' orientation reversed.
+std::vector<std::uint32_t> turned_round(std::vector<std::uint32_t> corners,
+                                        std::span<const std::uint32_t> triangles) {
+  for (const std::uint32_t t : triangles) {
+    std::swap(corners[3 * std::size_t(t) + 1], corners[3 * std::size_t(t) + 2]);
+  }
+  return corners;
+}
+
+}  // namespace
+
+ChartedMesh::ChartedMesh(const Scene& scene, const ChartSet& charts)
+    : mesh_{scene.indices, charts.triangle_uv, charts.triangle_chart} {
+  if (charts.flipped_triangles.empty()) return;
+  indices_ = turned_round(scene.indices, charts.flipped_triangles);
+  uv_indices_ = turned_round(charts.triangle_uv, charts.flipped_triangles);
+  mesh_.indices = indices_;
+  mesh_.uv_indices = uv_indices_;
+}
 
 World assemble_world(const Scene& scene, const PlacedCharts& placed, const WorldMesh& mesh) {
   World world;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "libatlas/bake/placement.h"
 #include "libatlas/charts/charts.h"
@@ -17,6 +18,18 @@ struct WorldMesh {
   std::span<const std::uint32_t> indices;         // 3 a triangle, into Scene::positions
   std::span<const std::uint32_t> uv_indices;      // 3 a triangle, into ChartSet::uvs
   std::span<const std::uint32_t> triangle_chart;  // 1 a triangle
+};
+
+// The scene's own triangles as its charts have them: those that cutting had to turn round are
+// turned.
+class ChartedMesh {
+ public:
+  ChartedMesh(const Scene& scene, const ChartSet& charts);
+  WorldMesh view() const { return mesh_; }
+
+ private:
+  std::vector<std::uint32_t> indices_, uv_indices_;  // only where the charts turned triangles round
+  WorldMesh mesh_;
 };
 
 // The parts that together say where a chart's uv lies on its page.

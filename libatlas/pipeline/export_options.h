@@ -6,6 +6,7 @@
 
 #include "libatlas/bake/bake.h"
 #include "libatlas/charts/charts.h"
+#include "libatlas/core/status.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/pack/pack.h"
 #include "libatlas/texture/luminance.h"
@@ -49,5 +50,8 @@ struct ExportOptions {
   bool charts_only = false;   // charts and uvs only: no light is baked, no image written
   bool measure_error = true;  // compare the finished pages with the input's light
 };
+
+// Checks every range documented above. The message names the option and its range.
+Status check_options(const ExportOptions& options);
 
 }  // namespace atlas

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 
@@ -15,6 +14,7 @@
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/bake_pages.h"
 #include "libatlas/pipeline/page_layout.h"
+#include "libatlas/pipeline/stage_recorder.h"
 #include "libatlas/simplify/simplify.h"
 #include "libatlas/texture/chart_textures.h"
 
@@ -31,15 +31,6 @@ MeshView view_of(const Scene& scene) {
   return view;
 }
 
-// The corner list with the given triangles' orientation reversed.
-std::vector<std::uint32_t> turned_round(std::vector<std::uint32_t> corners,
-                                        const std::vector<std::uint32_t>& triangles) {
-  for (const std::uint32_t t : triangles) {
-    std::swap(corners[3 * std::size_t(t) + 1], corners[3 * std::size_t(t) + 2]);
-  }
-  return corners;
-}
-
 // The state that one stage hands to the next. Each method is one stage: it fills its part of the
 // report and returns early with a Status.
 class Export {
@@ -48,9 +39,9 @@ class Export {
          const std::function<void(const StageReport&)>& stage_done, const Context& context)
       : scene_(loaded.scene),
         options_(options),
-        stage_done_(stage_done),
         context_(context),
-        plan_(make_plan(scene_, options)) {
+        plan_(make_plan(scene_, options)),
+        record_(report_, stage_done, context) {
     describe_scene(loaded);
   }
 
@@ -95,34 +86,8 @@ class Export {
     }
   }
 
-  // Starts the clock of a stage; finish_stage() stops it.
-  void begin_stage(std::string name) {
-    stage_ = StageReport{};
-    stage_.stage = std::move(name);
-    stage_.cpu_seconds = -cpu_seconds();
-    stage_.wall_seconds = -wall_seconds();
-    context_.report(stage_.stage, 0);
-  }
-
-  void finish_stage(std::uint64_t in, std::uint64_t out, std::string unit, std::string quality) {
-    stage_.cpu_seconds += cpu_seconds();
-    stage_.wall_seconds += wall_seconds();
-    add_stage(in, out, std::move(unit), std::move(quality));
-  }
-
-  void add_stage(std::uint64_t in, std::uint64_t out, std::string unit, std::string quality) {
-    stage_.peak_memory = peak_memory();
-    stage_.size_in = in;
-    stage_.size_out = out;
-    stage_.unit = std::move(unit);
-    stage_.quality = std::move(quality);
-    context_.report(stage_.stage, 1);
-    report_.stages.push_back(stage_);
-    if (stage_done_) stage_done_(stage_);
-  }
-
   Status cut_charts() {
-    begin_stage("charts");
+    record_.begin("charts");
     Result<ChartSet> charts = make_charts(view_of(scene_), options_.charts, context_);
     if (!charts.ok()) return charts.status();
     charts_ = std::move(*charts);
@@ -132,14 +97,14 @@ class Export {
     report_.surface_area = charts_.surface_area;
     report_.repairs = charts_.repairs;
     report_.chart_timing = charts_.timing;
-    finish_stage(scene_.triangle_count(), charts_.charts.size(), "charts",
-                 fmt::format("L2 {:.4f}, 99.9 % {:.3f}", charts_.distortion.stretch_l2,
-                             charts_.distortion.stretch_999));
+    record_.finish({scene_.triangle_count(), charts_.charts.size(), "charts",
+                    fmt::format("L2 {:.4f}, 99.9 % {:.3f}", charts_.distortion.stretch_l2,
+                                charts_.distortion.stretch_999)});
     return {};
   }
 
   Status expose() {
-    begin_stage("exposure");
+    record_.begin("exposure");
     sampler_.emplace(scene_, options_.quantity);
     Result<LuminanceStatistics> statistics = measure_luminance(*sampler_, context_);
     if (!statistics.ok()) return statistics.status();
@@ -150,8 +115,8 @@ class Export {
     report_.luminance = *statistics;
     report_.tone = tone_;
     report_.exposure_white = double(tone_.white) / tone_.scale;
-    finish_stage(scene_.triangle_count(), 1, "tone curve",
-                 fmt::format("white {:.4g}", report_.exposure_white));
+    record_.finish({scene_.triangle_count(), 1, "tone curve",
+                    fmt::format("white {:.4g}", report_.exposure_white)});
     return {};
   }
 
@@ -171,7 +136,7 @@ class Export {
   // A chart longer than a page would lose density that its neighbours keep, and one nearly as long
   // leaves a page half empty: in the test room halves let the common scale rise from 0.76 to 0.87.
   Status cut_long_charts() {
-    begin_stage("tiling");
+    record_.begin("tiling");
     const TextureOptions texture = texture_options();
     std::vector<double> limits = wanted_densities(*light_, texture, context_);
     if (context_.cancelled()) return Status::cancelled();
@@ -180,13 +145,13 @@ class Export {
     const std::size_t cut = cut_to_limits(view_of(scene_), limits, charts_);
     report_.charts = charts_.charts;
     report_.seam_length = charts_.seam_length;
-    finish_stage(before, charts_.charts.size(), "charts",
-                 fmt::format("{} longer than half a page", cut));
+    record_.finish(
+        {before, charts_.charts.size(), "charts", fmt::format("{} longer than half a page", cut)});
     return {};
   }
 
   Status size_textures() {
-    begin_stage("downsizing");
+    record_.begin("downsizing");
     const TextureOptions texture = texture_options();
     Result<TextureResult> sized = size_chart_textures(*light_, texture, context_);
     if (!sized.ok()) return sized.status();
@@ -204,9 +169,9 @@ class Export {
     report_.raised_charts = sized->raised;
     report_.downsizing_rms = sized->rms_error;
     report_.downsizing_max = sized->max_error;
-    finish_stage(std::uint64_t(sized->full_texels), std::uint64_t(sized->final_texels), "texels",
-                 fmt::format("{} charts halved, {} unlit, rms {:.5f}", sized->halved, sized->unlit,
-                             sized->rms_error));
+    record_.finish({std::uint64_t(sized->full_texels), std::uint64_t(sized->final_texels), "texels",
+                    fmt::format("{} charts halved, {} unlit, rms {:.5f}", sized->halved,
+                                sized->unlit, sized->rms_error)});
     return {};
   }
 
@@ -220,7 +185,7 @@ class Export {
   }
 
   Status pack() {
-    begin_stage("packing");
+    record_.begin("packing");
     LayoutOptions layout;
     layout.page_size = options_.atlas_size;
     layout.preset = options_.packing;
@@ -244,9 +209,9 @@ class Export {
     report_.utilization = layout_.utilization;
     report_.uv_utilization = layout_.uv_utilization;
     report_.outlines = layout_.outlines;
-    finish_stage(charts_.charts.size(), layout_.pages.size(), "pages",
-                 fmt::format("scale {:.3f}, {:.0f} % used by charts", layout_.scale,
-                             100 * layout_.uv_utilization));
+    record_.finish({charts_.charts.size(), layout_.pages.size(), "pages",
+                    fmt::format("scale {:.3f}, {:.0f} % used by charts", layout_.scale,
+                                100 * layout_.uv_utilization)});
     if (!plan_.bake) {
       for (const Extent& page : layout_.pages) {
         report_.pages.push_back({"", page.width, page.height, 0, 0});
@@ -259,7 +224,7 @@ class Export {
   }
 
   Status bake() {
-    begin_stage("baking");
+    record_.begin("baking");
     Result<BakedPages> baked = bake_pages(*light_, layout_, options_, files_, context_);
     if (!baked.ok()) return baked.status();
     report_.pages = baked->pages;
@@ -270,29 +235,22 @@ class Export {
       report_.gpu_bytes += std::uint64_t(page.width) * page.height * 4 * 4 / 3;
     }
     const std::uint64_t charts = charts_.charts.size(), pages = baked->pages.size();
-    stage_.cpu_seconds = baked->bake_cpu;
-    stage_.wall_seconds = baked->bake_wall;
-    add_stage(scene_.triangle_count(), baked->covered_texels, "texels",
-              fmt::format("{} charts, {} shifts", charts, options_.shifts));
-    stage_.stage = "images";
-    stage_.cpu_seconds = baked->write_cpu;
-    stage_.wall_seconds = baked->write_wall;
-    add_stage(pages, bytes, "bytes", "");
+    record_.add("baking", baked->bake_cpu, baked->bake_wall,
+                {scene_.triangle_count(), baked->covered_texels, "texels",
+                 fmt::format("{} charts, {} shifts", charts, options_.shifts)});
+    record_.add("images", baked->write_cpu, baked->write_wall, {pages, bytes, "bytes", ""});
     if (options_.measure_error) {
       report_.error_measured = true;
-      report_.fidelity = baked->fidelity;
-      stage_.stage = "error";
-      stage_.cpu_seconds = baked->measure_cpu;
-      stage_.wall_seconds = baked->measure_wall;
-      add_stage(
-          baked->fidelity.lit + baked->fidelity.unlit, pages, "pages",
-          fmt::format("PSNR {:.2f} dB, 95 % {:.4f}", baked->fidelity.psnr, baked->fidelity.p95));
+      const Fidelity& fidelity = report_.fidelity = baked->fidelity;
+      record_.add("error", baked->measure_cpu, baked->measure_wall,
+                  {fidelity.lit + fidelity.unlit, pages, "pages",
+                   fmt::format("PSNR {:.2f} dB, 95 % {:.4f}", fidelity.psnr, fidelity.p95)});
     }
     return {};
   }
 
   Status simplify() {
-    begin_stage("simplify");
+    record_.begin("simplify");
     std::vector<double> density(charts_.charts.size());
     for (std::size_t c = 0; c < density.size(); ++c) {
       // A texture that shrank because its light is even must not let the surface itself slip
@@ -310,23 +268,17 @@ class Export {
     report_.simplified = true;
     report_.slip_texels = coarse_->max_slip_texels;
     report_.turn_degrees = coarse_->max_turn_degrees;
-    finish_stage(coarse_->triangles_in, coarse_->triangles_out, "triangles",
-                 fmt::format("slip {:.3f} texels", coarse_->max_slip_texels));
+    record_.finish({coarse_->triangles_in, coarse_->triangles_out, "triangles",
+                    fmt::format("slip {:.3f} texels", coarse_->max_slip_texels)});
     return {};
   }
 
   Status write() {
-    begin_stage("writing");
-    std::vector<std::uint32_t> corners,
-        uv_corners;  // only where the mesh disagrees with its charts
-    WorldMesh mesh{scene_.indices, charts_.triangle_uv, charts_.triangle_chart};
-    if (coarse_) {
-      mesh = {coarse_->indices, coarse_->uv_indices, coarse_->triangle_chart};
-    } else if (!charts_.flipped_triangles.empty()) {
-      corners = turned_round(scene_.indices, charts_.flipped_triangles);
-      uv_corners = turned_round(charts_.triangle_uv, charts_.flipped_triangles);
-      mesh = {corners, uv_corners, charts_.triangle_chart};
-    }
+    record_.begin("writing");
+    const ChartedMesh fine(scene_, charts_);
+    const WorldMesh mesh =
+        coarse_ ? WorldMesh{coarse_->indices, coarse_->uv_indices, coarse_->triangle_chart}
+                : fine.view();
     World world = assemble_world(scene_, {charts_, layout_.placements, layout_.pages}, mesh);
     world.up = options_.up;
     world.title = options_.target.stem().string();
@@ -340,7 +292,7 @@ class Export {
       world.pages[p].image_source = image_sources_[p];
     }
     report_.triangles_out = mesh.triangle_chart.size();
-    Result<WorldFile> world_file = write_world(world);
+    Result<WorldFile> world_file = write_world(world, options_.target, files_, context_);
     if (!world_file.ok()) return world_file.status();
     if (options_.target.extension() == ".glb") {  // holds its images itself
       for (const auto& image : image_sources_) files_.discard(image);
@@ -353,17 +305,8 @@ class Export {
       report_.files.emplace_back(path.filename().string(), std::filesystem::file_size(path));
       bytes += report_.files.back().second;
     }
-    finish_stage(report_.triangles_out, bytes, "bytes", "");
+    record_.finish({report_.triangles_out, bytes, "bytes", ""});
     return {};
-  }
-
-  Result<WorldFile> write_world(const World& world) {
-    const std::string extension = options_.target.extension().string();
-    if (extension == ".obj") return write_obj(world, options_.target, files_, context_);
-    if (extension == ".wrl" || extension == ".wrz") {
-      return write_vrml(world, options_.target, files_, context_);
-    }
-    return write_gltf(world, options_.target, files_, context_);
   }
 
   static constexpr double kLongestShare = 0.5;     // of a page, that a chart may take along a side
@@ -371,7 +314,6 @@ class Export {
 
   const Scene& scene_;
   const ExportOptions& options_;
-  const std::function<void(const StageReport&)>& stage_done_;
   const Context& context_;
   const ExportPlan plan_;
 
@@ -384,43 +326,11 @@ class Export {
   std::optional<SimplifiedMesh> coarse_;
   std::vector<std::filesystem::path> image_sources_;  // where the pages' images lie until commit
   AtomicFiles files_;
-  StageReport stage_;
   ExportReport report_;
+  StageRecorder record_;
 };
 
-Status out_of_range(const char* option, const std::string& range) {
-  return {ErrorCode::bad_option, fmt::format("{} must be {}", option, range)};
-}
-
 }  // namespace
-
-Status check_options(const ExportOptions& o) {
-  constexpr std::array kFormats{".wrl", ".wrz", ".obj", ".gltf", ".glb"};
-  if (std::find(kFormats.begin(), kFormats.end(), o.target.extension()) == kFormats.end()) {
-    return {ErrorCode::bad_option,
-            fmt::format("{}: the target must end in .wrl, .wrz, .obj, .gltf or .glb",
-                        o.target.string())};
-  }
-  const bool power_of_two = (o.atlas_size & (o.atlas_size - 1)) == 0;
-  if (o.atlases < 1) return out_of_range("--atlases", "at least 1");
-  if (o.atlas_size < 64 || o.atlas_size > 16384 || !power_of_two) {
-    return out_of_range("--atlas-size", "a power of two from 64 to 16384");
-  }
-  if (!(o.texel_metres >= 0)) return out_of_range("--texel", "a positive length");
-  if (!(o.threshold >= 0 && o.threshold <= 1)) return out_of_range("--threshold", "within 0..1");
-  if (o.mip_levels < 0 || o.mip_levels > 5) return out_of_range("--mips", "within 0..5");
-  if (o.shifts < 1 || o.shifts > 64) return out_of_range("--shifts", "within 1..64");
-  if (o.min_side < 1 || o.min_side > 256) return out_of_range("--min-side", "within 1..256");
-  if (!(o.simplify_slip > 0)) return out_of_range("--slip", "positive");
-  if (o.png_compression < 0 || o.png_compression > 9) {
-    return out_of_range("--png-level", "within 0..9");
-  }
-  if (!(o.charts.cone_degrees >= 0 && o.charts.cone_degrees <= 180)) {
-    return out_of_range("--cone", "within 0..180 degrees");
-  }
-  if (!(o.charts.max_stretch > 1)) return out_of_range("--max-stretch", "above 1");
-  return {};
-}
 
 Result<ExportReport> export_world(const LoadedScene& loaded, const ExportOptions& options,
                                   const std::function<void(const StageReport&)>& stage_done,

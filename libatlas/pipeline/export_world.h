@@ -20,7 +20,4 @@ Result<ExportReport> export_world(const LoadedScene& loaded, const ExportOptions
                                   const std::function<void(const StageReport&)>& stage_done,
                                   const Context& context);
 
-// Checks every range that ExportOptions documents. The message names the option and its range.
-Status check_options(const ExportOptions& options);
-
 }  // namespace atlas

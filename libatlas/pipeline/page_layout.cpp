@@ -43,11 +43,11 @@ double scaled_density(double density, double side, double scale, double minimum_
 
 ChartPlacement boxed(const FitPlacement& from, const LayoutOptions& options) {
   ChartPlacement to;
-  to.rotated = from.rotated;
   to.width = from.rotated ? from.content_height : from.content_width;
   to.height = from.rotated ? from.content_width : from.content_height;
   to.x = from.box.x + options.padding;
   to.y = from.box.y + options.padding;
+  turn_in_box(to, from.rotated);
   return to;
 }
 

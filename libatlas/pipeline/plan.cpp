@@ -102,6 +102,10 @@ ExportPlan make_plan(const Scene& scene, const ExportOptions& options) {
        : facts.textured_triangles == 0
            ? "no textures: one colour a material"
            : fmt::format("{} textured triangles", facts.textured_triangles));
+  step("tiling", plan.bake,
+       plan.bake
+           ? "charts longer than half a page are cut, so that none holds the others' scale down"
+           : "no light to bake");
   const bool downsize = plan.bake && options.threshold > 0;
   step("downsizing", downsize,
        !plan.bake ? "no light to bake"

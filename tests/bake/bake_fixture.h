@@ -30,11 +30,11 @@ inline ChartPlacement place(const ChartSet& charts, std::uint32_t id, Vec2d dens
   p.page = 0;
   p.x = corner.x;
   p.y = corner.y;
-  p.rotated = rotated;
   p.texels_per_unit = density;
   const TexelSize size = texel_size(charts.charts[id].size, density);
   p.width = rotated ? size.height : size.width;
   p.height = rotated ? size.width : size.height;
+  turn_in_box(p, rotated);
   return p;
 }
 

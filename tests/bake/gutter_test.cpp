@@ -40,8 +40,7 @@ LitShape tiled(int levels, int page, std::vector<ChartPlacement>& placements) {
     const int bw = up(p.width + 2 * pad), bh = up(p.height + 2 * pad);
     if (x + bw > page) x = 0, y += shelf, shelf = 0;
     if (y + bh > page) return shape;
-    p.x = x + pad;
-    p.y = y + pad;
+    p = place(trial.charts, i, {97, 97}, {x + pad, y + pad, 0, 0}, i % 2);
     placements.push_back(p);
     shape = trial;
     x += bw;

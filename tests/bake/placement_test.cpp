@@ -12,12 +12,13 @@ TEST(Placement, MapsTheChartsBoxOntoItsInnerBox) {
   p.width = 40;
   p.height = 8;
   p.texels_per_unit = {4, 2};
+  turn_in_box(p, false);
   EXPECT_EQ(page_texel(p, {0, 0}), (Vec2d{10, 20}));
   EXPECT_EQ(page_texel(p, {10, 4}), (Vec2d{50, 28}));
   // A quarter turn counter-clockwise: u runs up, v runs to the left.
-  p.rotated = true;
   p.width = 8;
   p.height = 40;
+  turn_in_box(p, true);
   EXPECT_EQ(page_texel(p, {0, 0}), (Vec2d{18, 20}));
   EXPECT_EQ(page_texel(p, {10, 0}), (Vec2d{18, 60}));
   EXPECT_EQ(page_texel(p, {0, 4}), (Vec2d{10, 20}));
@@ -27,7 +28,7 @@ TEST(Placement, NeverMirrors) {
   for (const bool rotated : {false, true}) {
     ChartPlacement p;
     p.width = p.height = 100;
-    p.rotated = rotated;
+    turn_in_box(p, rotated);
     p.texels_per_unit = {3, 5};
     const Vec2d o = page_texel(p, {1, 1}), u = page_texel(p, {2, 1}), v = page_texel(p, {1, 2});
     EXPECT_EQ((u.x - o.x) * (v.y - o.y) - (u.y - o.y) * (v.x - o.x), 15);

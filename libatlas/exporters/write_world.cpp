@@ -1,0 +1,53 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "libatlas/exporters/world.h"
+
+namespace atlas {
+namespace {
+
+using Writer = Result<WorldFile> (*)(const World&, const std::filesystem::path&, AtomicFiles&,
+                                     const Context&);
+
+struct Format {
+  std::string_view extension;
+  Writer write;
+};
+
+// A new format is one more line here.
+constexpr std::array<Format, 5> kFormats{{{".wrl", write_vrml},
+                                          {".wrz", write_vrml},
+                                          {".obj", write_obj},
+                                          {".gltf", write_gltf},
+                                          {".glb", write_gltf}}};
+
+const Format* format_of(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  const auto found = std::find_if(kFormats.begin(), kFormats.end(),
+                                  [&](const Format& f) { return f.extension == extension; });
+  return found == kFormats.end() ? nullptr : found;
+}
+
+}  // namespace
+
+Status check_world_extension(const std::filesystem::path& path) {
+  if (format_of(path)) return {};
+  std::string names;
+  for (std::size_t i = 0; i < kFormats.size(); ++i) {
+    names += i == 0 ? "" : i + 1 == kFormats.size() ? " or " : ", ";
+    names += kFormats[i].extension;
+  }
+  return {ErrorCode::bad_option,
+          fmt::format("{}: the target must end in {}", path.string(), names)};
+}
+
+Result<WorldFile> write_world(const World& world, const std::filesystem::path& path,
+                              AtomicFiles& files, const Context& context) {
+  if (Status s = check_world_extension(path); !s.ok()) return s;
+  return format_of(path)->write(world, path, files, context);
+}
+
+}  // namespace atlas

@@ -1,0 +1,37 @@
+#include "libatlas/pipeline/export_options.h"
+
+#include <fmt/format.h>
+
+namespace atlas {
+namespace {
+
+Status out_of_range(const char* option, const std::string& range) {
+  return {ErrorCode::bad_option, fmt::format("{} must be {}", option, range)};
+}
+
+}  // namespace
+
+Status check_options(const ExportOptions& o) {
+  if (Status s = check_world_extension(o.target); !s.ok()) return s;
+  const bool power_of_two = (o.atlas_size & (o.atlas_size - 1)) == 0;
+  if (o.atlases < 1) return out_of_range("--atlases", "at least 1");
+  if (o.atlas_size < 64 || o.atlas_size > 16384 || !power_of_two) {
+    return out_of_range("--atlas-size", "a power of two from 64 to 16384");
+  }
+  if (!(o.texel_metres >= 0)) return out_of_range("--texel", "a positive length");
+  if (!(o.threshold >= 0 && o.threshold <= 1)) return out_of_range("--threshold", "within 0..1");
+  if (o.mip_levels < 0 || o.mip_levels > 5) return out_of_range("--mips", "within 0..5");
+  if (o.shifts < 1 || o.shifts > 64) return out_of_range("--shifts", "within 1..64");
+  if (o.min_side < 1 || o.min_side > 256) return out_of_range("--min-side", "within 1..256");
+  if (!(o.simplify_slip > 0)) return out_of_range("--slip", "positive");
+  if (o.png_compression < 0 || o.png_compression > 9) {
+    return out_of_range("--png-level", "within 0..9");
+  }
+  if (!(o.charts.cone_degrees >= 0 && o.charts.cone_degrees <= 180)) {
+    return out_of_range("--cone", "within 0..180 degrees");
+  }
+  if (!(o.charts.max_stretch > 1)) return out_of_range("--max-stretch", "above 1");
+  return {};
+}
+
+}  // namespace atlas

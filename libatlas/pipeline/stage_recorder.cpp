@@ -1,0 +1,41 @@
+#include "libatlas/pipeline/stage_recorder.h"
+
+#include <utility>
+
+#include "libatlas/core/clock.h"
+
+namespace atlas {
+
+StageRecorder::StageRecorder(ExportReport& report,
+                             const std::function<void(const StageReport&)>& stage_done,
+                             const Context& context)
+    : report_(report), stage_done_(stage_done), context_(context) {}
+
+void StageRecorder::begin(std::string name) {
+  name_ = std::move(name);
+  cpu_ = cpu_seconds();
+  wall_ = wall_seconds();
+  context_.report(name_, 0);
+}
+
+void StageRecorder::finish(StageOutcome outcome) {
+  add(name_, cpu_seconds() - cpu_, wall_seconds() - wall_, std::move(outcome));
+}
+
+void StageRecorder::add(std::string name, double cpu_seconds, double wall_seconds,
+                        StageOutcome outcome) {
+  StageReport stage;
+  stage.stage = std::move(name);
+  stage.cpu_seconds = cpu_seconds;
+  stage.wall_seconds = wall_seconds;
+  stage.peak_memory = peak_memory();
+  stage.size_in = outcome.in;
+  stage.size_out = outcome.out;
+  stage.unit = std::move(outcome.unit);
+  stage.quality = std::move(outcome.quality);
+  context_.report(stage.stage, 1);
+  report_.stages.push_back(stage);
+  if (stage_done_) stage_done_(stage);
+}
+
+}  // namespace atlas

@@ -1,0 +1,40 @@
+// Measures the stages of an export and writes them into its report.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "libatlas/core/context.h"
+#include "libatlas/report/export_report.h"
+
+namespace atlas {
+
+// What a stage turned into what, and the one phrase of quality that its line shows.
+struct StageOutcome {
+  std::uint64_t in = 0, out = 0;
+  std::string unit;  // of `out`
+  std::string quality;
+};
+
+// All references outlive the recorder; `stage_done` may be empty.
+class StageRecorder {
+ public:
+  StageRecorder(ExportReport& report, const std::function<void(const StageReport&)>& stage_done,
+                const Context& context);
+
+  // Starts a stage's clocks; finish() stops them and appends the stage to the report.
+  void begin(std::string name);
+  void finish(StageOutcome outcome);
+
+  // Appends a stage that was measured elsewhere.
+  void add(std::string name, double cpu_seconds, double wall_seconds, StageOutcome outcome);
+
+ private:
+  ExportReport& report_;
+  const std::function<void(const StageReport&)>& stage_done_;
+  const Context& context_;
+  std::string name_;
+  double cpu_ = 0, wall_ = 0;  // at begin()
+};
+
+}  // namespace atlas
