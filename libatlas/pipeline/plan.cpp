@@ -50,10 +50,96 @@ double affordable_texel(double area_m2, const ExportOptions& options) {
   return std::clamp(std::sqrt(area_m2 / room), kFinest, kCoarsest);
 }
 
-std::string budget_text(const ExportOptions& options) {
-  return fmt::format("{} page{} of {}²", options.atlases, options.atlases == 1 ? "" : "s",
-                     options.atlas_size);
+std::string budget_text(std::uint32_t pages, std::int32_t side) {
+  return fmt::format("{} page{} of {}²", pages, pages == 1 ? "" : "s", side);
 }
+
+std::string charts_reason(const ChartOptions& charts) {
+  if (charts.cone_degrees > 0) {
+    return fmt::format("normals within {:g}° of a chart's axis: planar stretch at most {:.3f}",
+                       charts.cone_degrees, 1 / std::cos(charts.cone_degrees * M_PI / 180));
+  }
+  return fmt::format(
+      "stretch at most {:g} over 99.9 % of a chart; the solver runs only for charts that a planar "
+      "projection would stretch more",
+      charts.max_stretch);
+}
+
+// The plan's steps in the order of the pipeline, each with the reason that this scene gives.
+class StepList {
+ public:
+  StepList(const Scene& scene, const ExportOptions& options, ExportPlan& plan)
+      : scene_(scene), options_(options), plan_(plan) {}
+
+  void make(std::uint64_t textured_triangles) {
+    add("charts", true, charts_reason(options_.charts));
+    light(textured_triangles);
+    pages();
+    result();
+  }
+
+ private:
+  void add(std::string stage, bool run, std::string reason) {
+    plan_.steps.push_back({std::move(stage), run, std::move(reason)});
+  }
+
+  // A step that only baked light needs.
+  void add_baked(std::string stage, bool run, std::string reason) {
+    add(std::move(stage), plan_.bake && run, plan_.bake ? std::move(reason) : "no light to bake");
+  }
+
+  void light(std::uint64_t textured_triangles) {
+    add("exposure", plan_.bake,
+        plan_.bake     ? fmt::format("{} tone curve, {}", tone_operator_name(options_.tone.op),
+                                 options_.tone.white > 0 ? "white given" : "white measured")
+        : scene_.lit() ? "charts only were asked for"
+                       : "the scene carries no illumination: plain uvs, no images");
+    add_baked("reflectance", plan_.sample_reflectance,
+              options_.quantity == Quantity::luminance ? "the values are luminance already"
+              : textured_triangles == 0                ? "no textures: one colour a material"
+                                        : fmt::format("{} textured triangles", textured_triangles));
+    add_baked("tiling", true,
+              "charts longer than half a page are cut, so that none holds the others' scale down");
+    add_baked(
+        "downsizing", options_.threshold > 0,
+        options_.threshold > 0
+            ? fmt::format("threshold {:.4f}; {:.0f} % of the surface is unlit and {:.0f} % "
+                          "of one colour: smallest textures without sampling",
+                          options_.threshold, 100 * plan_.unlit_share, 100 * plan_.uniform_share)
+            : "the threshold is 0");
+  }
+
+  void pages() {
+    const std::uint32_t pages = plan_.bake ? options_.atlases : 1;  // plain uvs lie on one
+    const double capacity = double(pages) * options_.atlas_size * options_.atlas_size;
+    const bool group = pages > 1;
+    const std::string budget = budget_text(pages, options_.atlas_size);
+    add("grouping", group,
+        group ? fmt::format("about {:.1f} M texels of {:.2g} mm before downsizing into {}; no "
+                            "bisection if the pages' own area already gives as few groups",
+                            plan_.estimated_texels / 1e6, 1e3 * plan_.texel_metres, budget)
+              : "one page");
+    add("packing", true, fmt::format("{}, {:.1f} M texels of room", budget, capacity / 1e6));
+    add_baked("baking", true,
+              fmt::format("{} shifted grids, gutters for mip levels 0 to {}", options_.shifts,
+                          options_.mip_levels));
+  }
+
+  void result() {
+    add("simplify", plan_.simplify,
+        plan_.simplify
+            ? fmt::format("surface and texture slip at most {:g} texels", options_.simplify_slip)
+        : !options_.simplify ? "switched off"
+                             : "without baked light the fine mesh is the result");
+    add_baked(
+        "error", options_.measure_error,
+        options_.measure_error ? "100000 points of the surface against the pages" : "switched off");
+  }
+
+  const Scene& scene_;
+  const ExportOptions& options_;
+  ExportPlan& plan_;
+};
 
 }  // namespace
 
@@ -78,64 +164,7 @@ ExportPlan make_plan(const Scene& scene, const ExportOptions& options) {
       plan.bake && facts.textured_triangles > 0 && options.quantity == Quantity::illuminance;
   plan.simplify = plan.bake && options.simplify;
 
-  const auto step = [&](std::string stage, bool run, std::string reason) {
-    plan.steps.push_back({std::move(stage), run, std::move(reason)});
-  };
-  const std::string limit =
-      options.charts.cone_degrees > 0
-          ? fmt::format("normals within {:g}° of a chart's axis: planar stretch at most {:.3f}",
-                        options.charts.cone_degrees,
-                        1 / std::cos(options.charts.cone_degrees * M_PI / 180))
-          : fmt::format(
-                "stretch at most {:g} over 99.9 % of a chart; the solver runs only for "
-                "charts that a planar projection would stretch more",
-                options.charts.max_stretch);
-  step("charts", true, limit);
-  step("exposure", plan.bake,
-       plan.bake     ? fmt::format("{} tone curve, {}", tone_operator_name(options.tone.op),
-                               options.tone.white > 0 ? "white given" : "white measured")
-       : scene.lit() ? "charts only were asked for"
-                     : "the scene carries no illumination: plain uvs, no images");
-  step("reflectance", plan.sample_reflectance,
-       !plan.bake                                ? "no light to bake"
-       : options.quantity == Quantity::luminance ? "the values are luminance already"
-       : facts.textured_triangles == 0
-           ? "no textures: one colour a material"
-           : fmt::format("{} textured triangles", facts.textured_triangles));
-  step("tiling", plan.bake,
-       plan.bake
-           ? "charts longer than half a page are cut, so that none holds the others' scale down"
-           : "no light to bake");
-  const bool downsize = plan.bake && options.threshold > 0;
-  step("downsizing", downsize,
-       !plan.bake ? "no light to bake"
-       : !downsize
-           ? "the threshold is 0"
-           : fmt::format("threshold {:.4f}; {:.0f} % of the surface is unlit and {:.0f} % "
-                         "of one colour: smallest textures without sampling",
-                         options.threshold, 100 * plan.unlit_share, 100 * plan.uniform_share));
-  const double capacity = double(options.atlases) * options.atlas_size * options.atlas_size;
-  const bool group = !options.charts_only && options.atlases > 1;
-  step("grouping", group,
-       group
-           ? fmt::format("about {:.1f} M texels of {:.2g} mm before downsizing into {}; no "
-                         "bisection if the pages' own area already gives as few groups",
-                         plan.estimated_texels / 1e6, 1e3 * plan.texel_metres, budget_text(options))
-           : "one page");
-  step("packing", true,
-       fmt::format("{}, {:.1f} M texels of room", budget_text(options), capacity / 1e6));
-  step("baking", plan.bake,
-       plan.bake ? fmt::format("{} shifted grids, gutters for mip levels 0 to {}", options.shifts,
-                               options.mip_levels)
-                 : "no light to bake");
-  step("simplify", plan.simplify,
-       plan.simplify
-           ? fmt::format("surface and texture slip at most {:g} texels", options.simplify_slip)
-       : !options.simplify ? "switched off"
-                           : "without baked light the fine mesh is the result");
-  step("error", plan.bake && options.measure_error,
-       plan.bake && options.measure_error ? "100000 points of the surface against the pages"
-                                          : "no baked light to measure");
+  StepList(scene, options, plan).make(facts.textured_triangles);
   return plan;
 }
 
