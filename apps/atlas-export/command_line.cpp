@@ -49,6 +49,9 @@ void add_chart_options(CLI::App& app, ExportOptions& options) {
   app.add_option("--crease", options.charts.crease_degrees,
                  "Edges sharper than this are preferred as seams, degrees")
       ->capture_default_str();
+  app.add_flag("!--across-materials", options.charts.split_at_materials,
+               "Let a chart hold several materials: fewer charts, but light and texture blur "
+               "into each other where they meet");
   app.add_flag("--keep-uv-charts", options.charts.keep_uv_charts,
                "Keep the charts of the scene's own texture coordinates");
   app.add_option("--preset", options.charts.preset, "Chart quality: fast, default or best")
