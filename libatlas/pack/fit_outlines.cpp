@@ -152,6 +152,7 @@ class OutlineFit {
     std::erase_if(plan.order, [&](std::uint32_t i) { return layout.page[i] != p; });
     place_pieces(layout.pieces, plan, page, nest);
     if (nest.left_over.empty() || options_.preset == PackPreset::fast) return;
+    if (plan.order.size() < 2) return;  // one chart has been tried in every direction
     // A search over orders is worth it where it can try more than a few.
     NestSearchOptions search;
     search.width = search.enough = side_;
