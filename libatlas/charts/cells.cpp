@@ -15,7 +15,12 @@ constexpr std::size_t kCellsOfSmallMesh = 146;
 constexpr double kFlatSpread = 1e-6;
 constexpr std::uint32_t kCalmGrain = 3;
 constexpr std::uint32_t kLeastPerCell = 3;
-constexpr float kFar = std::numeric_limits<float>::max();
+constexpr std::uint32_t kFar = std::numeric_limits<std::uint32_t>::max();
+// Distances are compared in this share of a mean step, cosines in this many parts: symmetric meshes
+// are full of ties, which rounding would break otherwise for every rotation and unit.
+constexpr double kDistanceParts = 61.8;
+constexpr double kBetweenParts = 0.29;  // so that round values are not at a part's limit
+constexpr float kCosineParts = 4096;
 
 // Small patches of triangles: the graph on which seeds are chosen.
 struct Grains {
@@ -135,11 +140,26 @@ class GrainBuilder {
   std::vector<std::uint32_t> queue_;
 };
 
+// Lengths in parts of a step, the same for every unit and rotation but for a rare one at the limit.
+class Ruler {
+ public:
+  Ruler() = default;
+  Ruler(double area, std::size_t steps)
+      : parts_(area > 0 ? kDistanceParts / std::sqrt(area / double(steps)) : 0) {}
+  std::uint32_t operator()(float length) const {
+    return static_cast<std::uint32_t>(std::min(parts_ * length + kBetweenParts, 4e9));
+  }
+
+ private:
+  double parts_ = 0;
+};
+
 struct Visit {
+  std::uint32_t key;  // distance, in a ruler's parts
   float distance;
   std::uint32_t node, seed;
   bool operator>(const Visit& other) const {
-    if (distance != other.distance) return distance > other.distance;
+    if (key != other.key) return key > other.key;
     return node != other.node ? node > other.node : seed > other.seed;
   }
 };
@@ -160,6 +180,9 @@ class Seeder {
     for (std::uint32_t first = 0, last = 0; first < grains_.count(); first = last) {
       while (last < grains_.count() && grains_.component[last] == grains_.component[first]) ++last;
       const std::size_t first_seed = seeds.size();
+      double area = 0;
+      for (std::uint32_t g = first; g < last; ++g) area += grains_.area[g];
+      ruler_ = Ruler(area, last - first);
       const std::uint32_t budget =
           flat(first, last) ? 1 : cell_budget(size[grains_.component[first]], options_);
       sample_piece(first, last, budget);
@@ -192,7 +215,7 @@ class Seeder {
   void add_seed(std::uint32_t grain) {
     seeds.push_back(grain);
     normals.push_back(grains_.normal[grain]);
-    heap_.push({0, grain, static_cast<std::uint32_t>(seeds.size() - 1)});
+    heap_.push({0, 0, grain, static_cast<std::uint32_t>(seeds.size() - 1)});
     spread();
   }
 
@@ -200,27 +223,28 @@ class Seeder {
     while (!heap_.empty()) {
       const Visit visit = heap_.top();
       heap_.pop();
-      if (visit.distance >= distance_[visit.node]) continue;
-      distance_[visit.node] = visit.distance;
+      if (visit.key >= distance_[visit.node]) continue;
+      distance_[visit.node] = visit.key;
       owner_[visit.node] = visit.seed;
       for (std::uint32_t i = grains_.first[visit.node]; i < grains_.first[visit.node + 1]; ++i) {
         const std::uint32_t next = grains_.neighbour[i];
         const float distance = visit.distance + step(visit.node, next, normals[visit.seed]);
-        if (distance < distance_[next]) heap_.push({distance, next, visit.seed});
+        const std::uint32_t key = ruler_(distance);
+        if (key < distance_[next]) heap_.push({key, distance, next, visit.seed});
       }
     }
   }
 
   void sample_piece(std::uint32_t first, std::uint32_t last, std::uint32_t budget) {
     add_seed(first);
-    using Entry = std::pair<float, std::uint32_t>;
+    using Entry = std::pair<std::uint32_t, std::uint32_t>;
     if (budget > 1) {
       std::priority_queue<Entry> farthest;
       for (std::uint32_t g = first; g < last; ++g) farthest.push({distance_[g], g});
       for (std::uint32_t count = 1; count < budget && !farthest.empty();) {
         const auto [distance, grain] = farthest.top();
         farthest.pop();
-        if (distance_[grain] <= 0) continue;
+        if (distance_[grain] == 0) continue;
         if (distance != distance_[grain]) {
           farthest.push({distance_[grain], grain});
           continue;
@@ -239,9 +263,11 @@ class Seeder {
       return glm::dot(calm_normal(g), normals[owner_[g]]);
     };
     for (int round = 0; round < 6; ++round) {
-      std::vector<std::pair<float, std::uint32_t>> leaning;
+      std::vector<std::pair<int, std::uint32_t>> leaning;
       for (std::uint32_t g = first; g < last; ++g) {
-        if (cosine(g) < limit) leaning.push_back({cosine(g), g});
+        const float c = cosine(g);
+        if (c < limit)
+          leaning.push_back({static_cast<int>(std::floor(kCosineParts * c + kBetweenParts)), g});
       }
       if (leaning.empty()) return;
       std::sort(leaning.begin(), leaning.end());
@@ -268,7 +294,8 @@ class Seeder {
   void recentre(std::uint32_t first, std::uint32_t last, std::size_t first_seed) {
     struct Sum {
       glm::vec3 middle{0}, normal{0};
-      float area = 0, best = kFar;
+      float area = 0;
+      std::uint32_t best = kFar;
     };
     std::vector<Sum> sums(seeds.size() - first_seed);
     for (std::uint32_t g = first; g < last; ++g) {
@@ -279,7 +306,7 @@ class Seeder {
     }
     for (std::uint32_t g = first; g < last; ++g) {
       Sum& sum = sums[owner_[g] - first_seed];
-      const float d = glm::distance(grains_.centroid[g], sum.middle / sum.area);
+      const std::uint32_t d = ruler_(glm::distance(grains_.centroid[g], sum.middle / sum.area));
       if (d < sum.best) {
         sum.best = d;
         seeds[owner_[g]] = g;
@@ -290,7 +317,7 @@ class Seeder {
       const glm::vec3& normal = sums[s - first_seed].normal;
       const float length = glm::length(normal);
       if (length > 0) normals[s] = normal / length;
-      heap_.push({0, seeds[s], static_cast<std::uint32_t>(s)});
+      heap_.push({0, 0, seeds[s], static_cast<std::uint32_t>(s)});
     }
     spread();
   }
@@ -298,20 +325,38 @@ class Seeder {
   const Topology& topology_;
   const Grains& grains_;
   const CellOptions& options_;
-  std::vector<float> distance_;
+  std::vector<std::uint32_t> distance_;  // in the ruler's parts
   std::vector<std::uint32_t> owner_;
+  Ruler ruler_;  // of the piece at hand
   Heap heap_;
 };
+
+// One a piece.
+std::vector<Ruler> triangle_rulers(const Topology& topology) {
+  std::vector<double> area(topology.component_count, 0);
+  std::vector<std::size_t> count(topology.component_count, 0);
+  for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
+    const std::uint32_t k = topology.component[t];
+    if (k == kNoIndex) continue;
+    area[k] += topology.areas[t];
+    ++count[k];
+  }
+  std::vector<Ruler> rulers;
+  for (std::size_t k = 0; k < area.size(); ++k) rulers.emplace_back(area[k], count[k]);
+  return rulers;
+}
 
 // The last pass: triangles to seeds.
 Cells grow_triangles(const Topology& topology, const Grains& grains, const Seeder& seeder) {
   const std::size_t n = topology.triangle_count(), cells = seeder.seeds.size();
   std::vector<std::uint32_t> seed(cells, kNoIndex);
-  std::vector<float> best(cells, kFar);
+  const std::vector<Ruler> rulers = triangle_rulers(topology);
+  std::vector<std::uint32_t> best(cells, kFar);
   for (std::uint32_t t = 0; t < n; ++t) {
     const std::uint32_t g = grains.of_triangle[t];
     if (g == kNoIndex || seeder.seeds[seeder.owner()[g]] != g) continue;
-    const float d = glm::distance(centroid(topology, t), grains.centroid[g]);
+    const Ruler& ruler = rulers[topology.component[t]];
+    const std::uint32_t d = ruler(glm::distance(centroid(topology, t), grains.centroid[g]));
     const std::uint32_t s = seeder.owner()[g];
     if (d < best[s]) {
       best[s] = d;
@@ -328,7 +373,7 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
       const std::uint32_t first = next;
       for (; next < cells && piece(next) == piece(first); ++next) {
         // Coincident grains may have left a cell empty.
-        if (seed[next] != kNoIndex) heap.push({0, seed[next], next});
+        if (seed[next] != kNoIndex) heap.push({0, 0, seed[next], next});
       }
       continue;
     }
@@ -337,12 +382,14 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
     if (result.of_triangle[visit.node] != kNoIndex) continue;
     result.of_triangle[visit.node] = visit.seed;
     const glm::vec3 from = centroid(topology, visit.node);
+    const Ruler& ruler = rulers[topology.component[visit.node]];
     for (std::uint32_t h = 3 * visit.node; h < 3 * visit.node + 3; ++h) {
       const std::uint32_t o = topology.opposite[h];
       if (o == kNoIndex || result.of_triangle[o / 3] != kNoIndex) continue;
       const float lean = 1 - glm::dot(to_glm(topology.normals[o / 3]), seeder.normals[visit.seed]);
       const float step = glm::distance(from, centroid(topology, o / 3));
-      heap.push({visit.distance + step * (1 + kNormalWeight * lean), o / 3, visit.seed});
+      const float distance = visit.distance + step * (1 + kNormalWeight * lean);
+      heap.push({ruler(distance), distance, o / 3, visit.seed});
     }
   }
   return result;

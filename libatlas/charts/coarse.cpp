@@ -97,7 +97,7 @@ class Rims {
 std::size_t longest_loop(const std::vector<Loop>& loops) {
   std::size_t longest = 0;
   for (std::size_t i = 1; i < loops.size(); ++i) {
-    if (loops[i].length > loops[longest].length) longest = i;
+    if (loops[i].length > loops[longest].length * (1 + 1e-4)) longest = i;
   }
   return longest;
 }
@@ -274,7 +274,8 @@ class CoarseBuilder {
       for (std::uint32_t j = i; j + 1 < end && mark < pieces; ++j) {
         const double step = rims_.edge_length(path[(first + j) % n]);
         walked += step;
-        if (walked + 0.5 * step < mark * length / pieces) continue;
+        // The middle of an edge may be the very place: rounding must not choose the corner.
+        if (walked + (0.5 + 1e-4) * step < mark * length / pieces) continue;
         corner_[from(path[(first + j + 1) % n])] = 1;
         ++mark;
       }

@@ -18,6 +18,10 @@ constexpr double kFlatSpread = 1e-6;
 // A seam along a crease is hidden: to remove it is worth this much less.
 constexpr double kHiddenSeam = 0.75;
 constexpr double kConeWeight = 0.25;
+// Costs are compared in parts of this many, lengths with this tolerance: symmetric meshes are full
+// of ties, which rounding would break otherwise for every rotation and unit.
+constexpr double kCostParts = 4096;
+constexpr double kSameLength = 1e-4;
 constexpr int kConeSteps = 24;  // towards the axis of the smallest cone (Badoiu and Clarkson 2003)
 
 using Moments = std::array<double, 6>;
@@ -51,7 +55,7 @@ struct CoarseChart {
 };
 
 struct Candidate {
-  double cost;
+  std::int64_t cost;
   std::uint32_t a, b, version_a, version_b;
   bool operator>(const Candidate& other) const {
     if (cost != other.cost) return cost > other.cost;
@@ -170,7 +174,8 @@ class Merger {
         continue;
       }
       const std::uint32_t low = std::min(a, border.other), high = std::max(a, border.other);
-      heap_.push({cost(a, border), low, high, chart(low).version, chart(high).version});
+      const auto parts = static_cast<std::int64_t>(std::floor(kCostParts * cost(a, border) + 0.29));
+      heap_.push({parts, low, high, chart(low).version, chart(high).version});
     }
   }
 
@@ -312,8 +317,10 @@ class Merger {
     }
     std::vector<double> length(n, 0);
     for (std::size_t i = 0; i < n; ++i) length[find(i)] += mesh_.arcs[glue_[i]].length;
-    const std::size_t best =
-        static_cast<std::size_t>(std::max_element(length.begin(), length.end()) - length.begin());
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < n; ++i) {
+      if (length[i] > length[best] * (1 + kSameLength)) best = i;
+    }
     std::vector<std::uint32_t> kept;
     for (std::size_t i = 0; i < n; ++i) {
       if (find(i) == best) kept.push_back(glue_[i]);
