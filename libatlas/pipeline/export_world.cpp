@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "libatlas/charts/tiles.h"
 #include "libatlas/core/atomic_file.h"
@@ -133,6 +134,18 @@ class Export {
     return texture;
   }
 
+  // Of the common scale, from above: what the charts want before downsizing against what the pages
+  // hold. A scene of kilometres would else be cut into thousands of pieces of a few texels.
+  double likely_scale(std::span<const double> densities) const {
+    constexpr double kLeastLeft = 0.25;  // of the texels, after downsizing
+    double wanted = 0;
+    for (std::size_t c = 0; c < densities.size(); ++c) {
+      wanted += charts_.charts[c].distortion.uv_area * densities[c] * densities[c];
+    }
+    const double room = double(options_.atlases) * options_.atlas_size * options_.atlas_size;
+    return wanted > 0 ? std::min(1.0, std::sqrt(room / (kLeastLeft * wanted))) : 1;
+  }
+
   // A chart longer than a page would lose density that its neighbours keep, and one nearly as long
   // leaves a page half empty: in the test room halves let the common scale rise from 0.76 to 0.87.
   Status cut_long_charts() {
@@ -140,7 +153,8 @@ class Export {
     const TextureOptions texture = texture_options();
     std::vector<double> limits = wanted_densities(*light_, texture, context_);
     if (context_.cancelled()) return Status::cancelled();
-    for (double& limit : limits) limit = kLongestShare * texture.max_side / limit;
+    const double shrinking = likely_scale(limits);
+    for (double& limit : limits) limit = kLongestShare * texture.max_side / (limit * shrinking);
     const std::size_t before = charts_.charts.size();
     const std::size_t cut = cut_to_limits(view_of(scene_), limits, charts_);
     report_.charts = charts_.charts;

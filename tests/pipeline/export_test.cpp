@@ -151,6 +151,20 @@ TEST(Export, ScalesAllTexturesAlikeIntoASmallBudget) {
   EXPECT_GT(report->fidelity.psnr, 40);
 }
 
+// A room of four kilometres wants a million times the texels that the pages hold.
+TEST(Export, HugeScenesAreNotCutIntoCrumbs) {
+  const TempFolder folder;
+  ExportOptions options = small_pages(folder);
+  LoadedScene room = lit_room(8);
+  const auto small = export_world(room, options, {}, {});
+  room.scene.metres_per_unit = 1000;
+  const auto large = export_world(room, options, {}, {});
+  ASSERT_TRUE(small.ok());
+  ASSERT_TRUE(large.ok()) << large.status().message();
+  EXPECT_LT(large->charts.size(), 4 * small->charts.size());
+  EXPECT_GT(large->fidelity.psnr, 40);
+}
+
 TEST(Export, ErrorFallsWithTheTexel) {
   const TempFolder folder;
   ExportOptions options = small_pages(folder);
