@@ -141,6 +141,24 @@ bool never_write(std::string*, const std::string&, const std::vector<unsigned ch
   return false;
 }
 
+// Newer versions of tinygltf also ask for a file's size, to refuse large ones; read_buffer decides.
+[[maybe_unused]] bool any_size(std::size_t* size, std::string*, const std::string&, void*) {
+  *size = 0;
+  return true;
+}
+
+template <class Callbacks>
+Callbacks file_access(Folder& folder) {
+  Callbacks access{};
+  access.FileExists = always_exists;
+  access.ExpandFilePath = same_path;
+  access.ReadWholeFile = read_buffer;
+  access.WriteWholeFile = never_write;
+  if constexpr (requires { access.GetFileSizeInBytes; }) access.GetFileSizeInBytes = any_size;
+  access.user_data = &folder;
+  return access;
+}
+
 std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
@@ -296,7 +314,7 @@ Result<tinygltf::Model> load_gltf(const fs::path& path) {
   tinygltf::TinyGLTF loader;
   Folder folder{path.parent_path(), {}};
   loader.SetImageLoader(keep_image, nullptr);
-  loader.SetFsCallbacks({always_exists, same_path, read_buffer, never_write, &folder});
+  loader.SetFsCallbacks(file_access<tinygltf::FsCallbacks>(folder));
   tinygltf::Model model;
   std::string error, warning;
   const auto size = static_cast<unsigned>(bytes->size);
