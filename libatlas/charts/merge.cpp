@@ -174,7 +174,8 @@ class Merger {
         continue;
       }
       const std::uint32_t low = std::min(a, border.other), high = std::max(a, border.other);
-      const auto parts = static_cast<std::int64_t>(std::floor(kCostParts * cost(a, border) + 0.29));
+      const auto parts =
+          static_cast<std::int64_t>(std::floor(kCostParts * std::min(cost(a, border), 1e9) + 0.29));
       heap_.push({parts, low, high, chart(low).version, chart(high).version});
     }
   }
@@ -197,7 +198,7 @@ class Merger {
     const double perimeter = p.perimeter + q.perimeter - 2 * border.length;
     const double compact = perimeter / std::sqrt(4 * M_PI * area);
     return spread + options_.compactness_weight * compact +
-           options_.crease_weight * border.crease / border.length;
+           (border.length > 0 ? options_.crease_weight * border.crease / border.length : 0);
   }
 
   // Looks for an axis that all normals lie around within the limit; keeps it in axis_.
