@@ -1,6 +1,8 @@
 // atlas-play: shows a scene under a moving light. Parses, calls libatlas/view, prints.
 #include <fmt/format.h>
 
+#include <memory>
+
 #include "apps/atlas-play/command_line.h"
 #include "apps/common/terminal.h"
 

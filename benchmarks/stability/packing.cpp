@@ -1,6 +1,7 @@
 // Grouping and packing at the ends of their ranges; all references are exact integers.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 

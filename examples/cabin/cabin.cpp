@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 
 #include "examples/cabin/layout.h"
 #include "examples/cabin/lighting.h"

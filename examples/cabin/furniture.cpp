@@ -1,4 +1,5 @@
 // Overhead bins and seats, with the closed hollows inside them that no light reaches.
+#include <algorithm>
 #include <cmath>
 
 #include "examples/cabin/layout.h"

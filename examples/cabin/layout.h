@@ -2,6 +2,7 @@
 // Passengers look towards -x, where the door and the galley are.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <glm/common.hpp>
+#include <numbers>
 
 #include "examples/cabin/layout.h"
 

@@ -1,6 +1,7 @@
 #include "examples/cabin/refine.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numeric>

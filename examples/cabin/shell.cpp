@@ -1,7 +1,9 @@
 // The lining with its windows, the floor, the bulkheads, the ceiling and the strips of light.
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <numbers>
 
 #include "examples/cabin/layout.h"
 #include "examples/cabin/primitives.h"

@@ -1,4 +1,5 @@
 // The door with its frame, and the galley that faces it.
+#include <algorithm>
 #include <cmath>
 
 #include "examples/cabin/layout.h"

@@ -1,6 +1,7 @@
 #include "libatlas/charts/split.h"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 #include <queue>

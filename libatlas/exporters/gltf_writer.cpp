@@ -1,6 +1,8 @@
 // glTF 2.0 and GLB with unlit materials (KHR_materials_unlit).
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <limits>

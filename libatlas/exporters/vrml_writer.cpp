@@ -1,6 +1,7 @@
 // VRML97 (ISO/IEC 14772-1:1997), the subset that every reader agrees on.
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 #include "libatlas/core/glm_bridge.h"

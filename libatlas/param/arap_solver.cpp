@@ -1,6 +1,7 @@
 #include "libatlas/param/arap_solver.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 

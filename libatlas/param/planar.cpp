@@ -1,6 +1,7 @@
 #include "libatlas/param/planar.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>

@@ -1,6 +1,8 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
+#include <memory>
+
 #include "libatlas/param/linear_solver.h"
 
 namespace atlas::param {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat4x4.hpp>

@@ -1,6 +1,8 @@
 // OBJ: cut into pieces at line ends, parsed in parallel, merged in file order.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "libatlas/core/parallel.h"

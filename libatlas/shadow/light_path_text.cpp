@@ -1,6 +1,7 @@
 // The text form of light paths, for command lines.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <string_view>
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <memory>
 
 #include "libatlas/view/context.h"
 

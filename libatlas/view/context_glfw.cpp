@@ -2,6 +2,8 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
+#include <memory>
+
 #include "libatlas/view/context.h"
 
 namespace atlas {

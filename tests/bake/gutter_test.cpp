@@ -2,6 +2,8 @@
 // a mip chain made as graphics drivers make it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "tests/bake/bake_fixture.h"

@@ -14,6 +14,8 @@
 #include <Inventor/actions/SoSearchAction.h>
 #include <Inventor/errors/SoError.h>
 
+#include <cmath>
+
 #include "libatlas/image/image_io.h"
 #include "tests/exporters/worlds.h"
 #include "tests/scene/temp_folder.h"

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "libatlas/exporters/viewpoint.h"
 #include "libatlas/image/image_io.h"

@@ -2,6 +2,7 @@
 #include <zlib.h>
 
 #include <glm/gtc/quaternion.hpp>
+#include <memory>
 #include <set>
 
 #include "libatlas/core/glm_bridge.h"

@@ -1,6 +1,7 @@
 #include "tests/simplify/checks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <random>

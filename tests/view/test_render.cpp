@@ -1,6 +1,7 @@
 // The renderer's promises: passes counted, work even, errors said in a line, no OpenGL errors.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 

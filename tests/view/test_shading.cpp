@@ -1,6 +1,8 @@
 // Colours of single pixels against the formulas evaluated here, in double.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
