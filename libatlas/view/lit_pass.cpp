@@ -38,10 +38,11 @@ struct FrameBlock {
   float light[4];
   float ambient[4];
   float weights[4];
+  float ray[2][4];
+  float behind[4];
   float march[4];
   float corner[4];
-  float per_step[4];
-  float behind[4];
+  float inverse[4];
   float specular[4];
 };
 
@@ -56,34 +57,44 @@ void put(float (&to)[4], double a, double b, double c, double d) {
   to[3] = float(d);
 }
 
-// How far behind a point the march looks for the blocker of an edge that the filter touches: the
-// reach of a 3x3 filter.
-constexpr double kBehindTexels = 1.5;
-
 KeyBlend blend_of(ShadowMethod method) {
   if (method == ShadowMethod::slerp) return KeyBlend::slerp_raw;
   return method == ShadowMethod::slerp_normalised ? KeyBlend::slerp_normalised : KeyBlend::linear;
 }
 
-// The ray to the current light in the map of the nearer key: uv per unit of depth gained.
-void fill_march(FrameBlock& b, const glm::dvec3& l, const LightFit& key, const Box3& box) {
-  const Vec3d ray = transform_vector(key.to_texture, from_glm(l));
-  const double rise = -ray.z;
-  if (rise < 1e-3 / key.depth_range) return;  // more than 89.9 degrees off: sampled where it is
-  const glm::dvec2 shift(ray.x / rise, ray.y / rise);
-  put(b.march, shift.x, shift.y, b.march[2], 2 * key.texel / key.depth_range);
-  double corner[3], per_step[3];
+// How far behind a point the march looks for the blocker of an edge that the filter touches: the
+// reach of a 3x3 filter.
+constexpr double kBehindTexels = 1.5;
+
+// The ray to the current light in the map of key 0 or 1, which lies in layer `slot`.
+void put_ray(FrameBlock& b, int key, const glm::dvec3& l, const LightFit& fit, int slot) {
+  const Vec3d ray = transform_vector(fit.to_texture, from_glm(l));
+  glm::dvec2 shift(0);
+  double rise = -ray.z;
+  // More than 89.9 degrees off the key's own ray: the map is sampled where the ray starts.
+  if (rise * fit.depth_range > 1e-3)
+    shift = {ray.x / rise, ray.y / rise};
+  else
+    rise = 1 / fit.depth_range;
+  put(b.ray[key], shift.x, shift.y, rise, slot);
+  const double texels = glm::length(shift) / b.weights[3];
+  const glm::dvec2 back = texels > 0 ? shift * (kBehindTexels / texels) : shift;
+  b.behind[2 * key] = float(back.x);
+  b.behind[2 * key + 1] = float(back.y);
+  b.march[key] = float(texels);
+}
+
+// Where rays to the light leave the scene's box.
+void put_box(FrameBlock& b, const glm::dvec3& l, const Box3& box) {
   const double low[3] = {box.low.x, box.low.y, box.low.z};
   const double high[3] = {box.high.x, box.high.y, box.high.z};
   for (int i = 0; i < 3; ++i) {
-    corner[i] = l[i] > 0 ? high[i] : low[i];
-    per_step[i] = std::abs(l[i]) > 1e-6 ? rise / l[i] : (l[i] > 0 ? 1e6 : -1e6) * rise;
+    b.corner[i] = float(l[i] > 0 ? high[i] : low[i]);
+    b.inverse[i] = float(1 / l[i]);
+    if (std::abs(l[i]) > 1e-6) continue;
+    b.corner[i] = 1e30f;  // along this axis they never do
+    b.inverse[i] = 1;
   }
-  put(b.corner, corner[0], corner[1], corner[2], 0);
-  put(b.per_step, per_step[0], per_step[1], per_step[2], 0);
-  const double length = glm::length(shift);
-  const double texels = length > 0 ? kBehindTexels * b.weights[3] / length : 0;
-  put(b.behind, texels * shift.x, texels * shift.y, b.behind[2], 0);
 }
 
 }  // namespace
@@ -98,7 +109,7 @@ void Renderer::Impl::fill_block(const Camera& camera, const FrameLight& light,
   put(b.light, l.x, l.y, l.z, options.intensity);
   const double ambient = scene->baked_vertices || scene->baked_textures ? 0 : options.ambient;
   put(b.ambient, ambient, ambient, ambient, options.exposure);
-  b.behind[2] = float(options.baked_strength * scene->light_scale);
+  b.inverse[3] = float(options.baked_strength * scene->light_scale);
   if (shadow) {
     const LightFit& from = shadow->fit(nearest);
     const int other = nearest == plan.to ? plan.from : plan.to;
@@ -110,8 +121,12 @@ void Renderer::Impl::fill_block(const Camera& camera, const FrameLight& light,
     // shadow itself.
     const double reach = std::max(1.0, (options.pcf + 1) / 2.0) * from.texel;
     put(b.weights, w.from, w.to, options.normal_offset * reach, 1.0 / options.map_resolution);
-    b.march[2] = float(options.slope_bias * reach / from.depth_range);
-    fill_march(b, l, from, scene->bounds);
+    b.corner[3] = float(options.slope_bias * reach / from.depth_range);
+    put_ray(b, 0, l, from, nearest);
+    put_ray(b, 1, l, shadow->fit(other), other);
+    b.march[2] = float(2 * from.texel / from.depth_range);
+    b.march[3] = nearest == other ? 1 : 2;
+    put_box(b, l, scene->bounds);
   }
   put(b.specular, options.specular, options.shininess, options.roughness, options.map_resolution);
   glNamedBufferSubData(frame_block.get(), 0, sizeof b, &b);
@@ -144,11 +159,12 @@ void Renderer::Impl::draw_lit(const Camera& camera, const FrameLight& light, con
   glUseProgram(program.get());
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_block.get());
   if (shadow) {
-    shadow->bind_compare(nearest, 1);
-    if (features.shadow == ShadowSampling::two) shadow->bind_compare(plan.to, 2);
     if (features.shadow == ShadowSampling::march) {
-      shadow->bind_depth(nearest, 3);
-      shadow->bind_depth(nearest == plan.to ? plan.from : plan.to, 4);
+      shadow->bind_all_compare(1);
+      shadow->bind_all_depths(2);
+    } else {
+      shadow->bind_compare(nearest, 1);
+      if (features.shadow == ShadowSampling::two) shadow->bind_compare(plan.to, 2);
     }
   }
   glBindVertexArray(scene->lit.get());

@@ -23,7 +23,7 @@ enum class ShadowMethod {
   linear,            // visibilities of two keys blended with 1-t and t
   slerp,             // with the spherical weights as published
   slerp_normalised,  // with the spherical weights divided by their sum
-  march,             // the nearer key's depths, entered along the ray to the current light
+  march,             // two keys' depths, searched along the ray to the current light
 };
 
 inline constexpr ShadowMethod kAllMethods[] = {

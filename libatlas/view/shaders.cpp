@@ -14,37 +14,52 @@ layout(std140, binding = 0) uniform Frame {
   vec4 light;       // direction towards it, intensity
   vec4 ambient;     // rgb, exposure
   vec4 weights;     // of the two keys, normal offset (world), texel (uv)
-  vec4 march;       // uv shift per depth towards the light, slope bias and least height (depth)
-  vec4 corner;      // of the scene's box where rays to the light leave it
-  vec4 per_step;    // depth gained per world unit along each axis of the ray
-  vec4 behind;      // march: uv of a step back along the ray's trace; factor on baked light
+  vec4 ray0, ray1;  // march, in each map: uv for each unit of depth gained towards the light, depth
+                    // gained in a world unit, the map's layer
+  vec4 behind;      // march: uv of a step back along the ray's trace, in each map
+  vec4 march;       // texels for each unit of depth gained in each map; least height of a blocker
+                    // (depth); number of different maps
+  vec4 corner;      // of the scene's box where rays to the light leave it; slope bias (depth)
+  vec4 inverse;     // 1 / the light's direction; factor on baked light
   vec4 specular;    // strength, Blinn-Phong exponent, Ward alpha, 1 / texel
 } frame;
 )";
 
+// A map by itself, or a layer of all of them: what the filters below are written in.
+constexpr const char* kPlainMap = R"(
+#define MAP sampler2DShadow map
+#define LOOK(uv, depth) texture(map, vec3(uv, depth))
+#define GATHER(uv, depth) textureGather(map, uv, depth)
+)";
+constexpr const char* kLayeredMap = R"(
+#define MAP sampler2DArrayShadow map, float layer
+#define LOOK(uv, depth) texture(map, vec4(uv, layer, depth))
+#define GATHER(uv, depth) textureGather(map, vec3(uv, layer), depth)
+)";
+
 constexpr const char* kNearest = R"(
-float visibility_at(sampler2DShadow map, vec2 uv, float depth) {
-  return texture(map, vec3((floor(uv * frame.specular.w) + 0.5) * frame.weights.w, depth));
+float visibility_at(MAP, vec2 uv, float depth) {
+  return LOOK((floor(uv * frame.specular.w) + 0.5) * frame.weights.w, depth);
 }
 )";
 
 constexpr const char* kBilinear = R"(
-float visibility_at(sampler2DShadow map, vec2 uv, float depth) {
-  return texture(map, vec3(uv, depth));
+float visibility_at(MAP, vec2 uv, float depth) {
+  return LOOK(uv, depth);
 }
 )";
 
 // The mean of 3x3 bilinear taps is a weighted sum over 4x4 texels, and four gathers read those.
 constexpr const char* kPcf3 = R"(
-float visibility_at(sampler2DShadow map, vec2 uv, float depth) {
+float visibility_at(MAP, vec2 uv, float depth) {
   vec2 texel = uv * frame.specular.w - 0.5;
   vec2 f = fract(texel);
-  vec2 corner = (floor(texel) + 0.0) * frame.weights.w;
   float s = frame.weights.w;
-  vec4 a = textureGather(map, corner, depth);
-  vec4 b = textureGather(map, corner + vec2(2.0 * s, 0.0), depth);
-  vec4 c = textureGather(map, corner + vec2(0.0, 2.0 * s), depth);
-  vec4 d = textureGather(map, corner + vec2(2.0 * s), depth);
+  vec2 corner = floor(texel) * s;
+  vec4 a = GATHER(corner, depth);
+  vec4 b = GATHER(corner + vec2(2.0 * s, 0.0), depth);
+  vec4 c = GATHER(corner + vec2(0.0, 2.0 * s), depth);
+  vec4 d = GATHER(corner + vec2(2.0 * s), depth);
   vec2 g = 1.0 - f;
   // Gathers come as (0,1) (1,1) (1,0) (0,0).
   float row0 = g.x * a.w + a.z + b.w + f.x * b.z;
@@ -56,11 +71,10 @@ float visibility_at(sampler2DShadow map, vec2 uv, float depth) {
 )";
 
 constexpr const char* kPcf5 = R"(
-float visibility_at(sampler2DShadow map, vec2 uv, float depth) {
+float visibility_at(MAP, vec2 uv, float depth) {
   float sum = 0.0;
   for (int y = -2; y <= 2; ++y)
-    for (int x = -2; x <= 2; ++x)
-      sum += texture(map, vec3(uv + vec2(x, y) * frame.weights.w, depth));
+    for (int x = -2; x <= 2; ++x) sum += LOOK(uv + vec2(x, y) * frame.weights.w, depth);
   return sum * 0.04;
 }
 )";
@@ -85,40 +99,77 @@ float visibility(vec3 p, float bias) {
 }
 )";
 
-// See docs/player.md, "Marching". A height is a depth difference towards the key's light; at height
-// h the ray to the current light is over uv + h * shift.
+// See docs/player.md, "March". A height is a depth difference towards a key's light; the ray to the
+// current light is over m.xy + h * ray.xy at height h. A sample of height d, found there, stands
+// beside the ray by |d - h| times the trace's texels per height: its miss. What hides from one key
+// (a seat's shaded part next to a window's patch) is seen by the other, so both are searched, and
+// the filter is evaluated once, at the sample that misses least. The two constants, in texels: a
+// blocker this near to the ray is sure, the search ends (1); no blocker as near as this, the point
+// is lit (4: steeper surfaces miss more between two texels; 3 lets more light through, 6 less).
+// A point over which the first key sees nothing at all along the ray is lit as that key says: its
+// search ends too. That the loop's bound is no constant keeps compilers from unrolling it: the
+// software renderer leaves a loop early but never skips a branch.
 constexpr const char* kMarch = R"(
-layout(binding = 1) uniform sampler2DShadow map0;
-layout(binding = 3) uniform sampler2D depth0;
-layout(binding = 4) uniform sampler2D depth1;
+layout(binding = 1) uniform sampler2DArrayShadow maps;
+layout(binding = 2) uniform sampler2DArray depths;
+float height(vec3 m, vec2 uv, float layer) {
+  return m.z - texture(depths, vec3(uv, layer)).x;
+}
+// Which share of its blocker's height the filter compares with: low, so that a lower blocker beside
+// it counts too, but above what the receiver itself rises to on the way there.
+float share_of_height(float texels) {
+  return clamp(1.5 * texels * frame.march.z, 0.1, 0.5);
+}
 float visibility(vec3 p, float bias) {
   vec3 m = (frame.to_map0 * vec4(p, 1.0)).xyz;
-  vec3 m1 = (frame.to_map1 * vec4(p, 1.0)).xyz;
+  vec3 other = (frame.to_map1 * vec4(p, 1.0)).xyz;
   m.z -= bias;
-  m1.z -= bias;
-  vec2 shift = frame.march.xy;
-  float least = frame.march.w;
-  // Height at which the ray leaves the scene's box.
-  vec3 leave = (frame.corner.xyz - p) * frame.per_step.xyz;
+  other.z -= bias;
+  vec3 leave = (frame.corner.xyz - p) * frame.inverse.xyz;
   float top = min(min(leave.x, leave.y), leave.z);
-  float best = m.z - texture(depth0, m.xy - frame.behind.xy).x;
-  float gap = 1e3;
-  if (best <= least) best = 0.0;
-  float h = max(m1.z - texture(depth1, m1.xy).x, 0.0);
-  float d = m.z - texture(depth0, m.xy + h * shift).x;
-  if (d > least) { best = d; gap = abs(d - h); }
-  for (int i = 0; i < MARCH_STEPS; ++i) {
-    h = top * (float(i) / float(MARCH_STEPS));
-    d = m.z - texture(depth0, m.xy + h * shift).x;
-    float g = abs(d - h);
-    if (d > least && g < gap) {
-      gap = g;
-      best = d;
+  float least = frame.march.z;
+  float over_other = height(other, other.xy, frame.ray1.w);
+  vec4 ray = frame.ray0;
+  vec2 back = frame.behind.xy;
+  float texels = frame.march.x;
+  vec3 at = m;
+  float layer = ray.w, nearest = 1e30;
+  bool open = false;
+  for (int key = 0; key < int(frame.march.w); ++key) {
+    float here = height(m, m.xy, ray.w);
+    float best = max(here, height(m, m.xy - back, ray.w));
+    if (best <= least) best = 0.0;
+    float gap = here > least ? here : 1e20;
+    float d = height(m, m.xy + over_other * ray.xy, ray.w);
+    float g = abs(d - over_other);
+    float under = max(max(over_other, here), d - over_other);
+    if (d > least && g < gap) { best = d; gap = g; }
+    float rung = top * ray.z * (1.0 / float(MARCH_STEPS));
+    for (int i = 1; i < MARCH_STEPS; ++i) {
+      float h = rung * float(i);
+      d = height(m, m.xy + h * ray.xy, ray.w);
+      g = abs(d - h);
+      under = max(under, d - h);
+      if (d > least && g < gap) { best = d; gap = g; }
     }
+    d = height(m, m.xy + best * ray.xy, ray.w);
+    g = abs(d - best);
+    if (d > least && g < gap) { best = d; gap = g; }
+    float miss = gap * texels;
+    if (miss < nearest) {
+      nearest = miss;
+      layer = ray.w;
+      at = vec3(m.xy + best * ray.xy, m.z - share_of_height(texels) * best);
+    }
+    open = under <= least;
+    if (miss <= 1.0 || open) break;
+    m = other;
+    ray = frame.ray1;
+    back = frame.behind.zw;
+    texels = frame.march.y;
+    over_other = here;
   }
-  d = m.z - texture(depth0, m.xy + best * shift).x;
-  if (d > least && abs(d - best) < gap) best = d;
-  return visibility_at(map0, m.xy + best * shift, m.z - 0.5 * best);
+  return nearest <= 4.0 || open ? visibility_at(maps, layer, at.xy, at.z) : 1.0;
 }
 )";
 
@@ -206,7 +257,7 @@ std::string fragment_main(const ShaderFeatures& f) {
       // and not on the casters: maps then hold true depths, which the march needs.
       s += R"(  float sine = sqrt(max(1.0 - nl * nl, 0.0));
   vec3 p = v_world + n * (frame.weights.z * sine);
-  float bias = frame.march.z * min(sine, 8.0 * nl) / max(nl, 1e-3);
+  float bias = frame.corner.w * min(sine, 8.0 * nl) / max(nl, 1e-3);
   float seen = nl > 0.0 ? visibility(p, bias) : 0.0;
 )";
   }
@@ -215,7 +266,7 @@ std::string fragment_main(const ShaderFeatures& f) {
   s += "  vec3 reflectance = v_colour;\n";
   if (f.textured && !f.baked_textures) s += "  reflectance *= texture(diffuse, v_texcoord).rgb;\n";
   s += "  vec3 light = vec3(0.0);\n";
-  if (f.baked_vertices) s += "  light += v_illumination * frame.behind.z;\n";
+  if (f.baked_vertices) s += "  light += v_illumination * frame.inverse.w;\n";
   if (lit(f)) {
     s += R"(  light += frame.ambient.rgb;
   float reach = seen * max(nl, 0.0) * frame.light.w;
@@ -226,7 +277,7 @@ std::string fragment_main(const ShaderFeatures& f) {
   }
   s += "  vec3 colour = reflectance * light;\n";
   if (f.textured && f.baked_textures)
-    s += "  colour += texture(diffuse, v_texcoord).rgb * frame.behind.z;\n";
+    s += "  colour += texture(diffuse, v_texcoord).rgb * frame.inverse.w;\n";
   if (shiny(f))
     s += "  if (reach > 0.0) colour += vec3(seen * frame.light.w * specular(n, l, v, nl));\n";
   return s +
@@ -246,6 +297,7 @@ std::string fragment_text(const ShaderFeatures& f) {
   if (coloured(f) && f.baked_vertices) s += "layout(location = 4) in vec3 v_illumination;\n";
   s += "layout(location = 0) out vec4 result;\n";
   if (lit(f) && f.shadow != ShadowSampling::none) {
+    s += f.shadow == ShadowSampling::march ? kLayeredMap : kPlainMap;
     s += filter_text(f.pcf);
     if (f.shadow == ShadowSampling::march)
       s += fmt::format("#define MARCH_STEPS {}\n", f.march_steps);

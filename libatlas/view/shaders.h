@@ -20,7 +20,7 @@ enum class ShadowSampling {
   none,
   one,    // one map, in its own matrix: classic and hold
   two,    // two keys, each in its own matrix, blended: linear and SLERP
-  march,  // the nearer key, entered along the ray to the current light
+  march,  // the depths of two keys, searched along the ray to the current light
 };
 
 struct ShaderFeatures {
@@ -30,7 +30,7 @@ struct ShaderFeatures {
   bool baked_vertices = false;  // illumination at the vertices
   bool baked_textures = false;  // the textures hold light (an exported atlas), not reflectance
   int pcf = 3;              // 0: nearest texel; 1: bilinear; 3, 5: that many bilinear taps a side
-  int march_steps = 4;      // march: map samples along the ray
+  int march_steps = 4;      // march: even map samples along the ray, in each key
   bool visibility = false;  // write the light's visibility instead of a colour
   bool operator==(const ShaderFeatures&) const = default;
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace atlas {
@@ -47,12 +48,19 @@ Result<ShadowPass> ShadowPass::make(int resolution, int maps) {
   pass.compare_ = make_sampler(true);
   pass.plain_ = make_sampler(false);
   pass.resolution_ = resolution;
+  GLuint layers = 0;
+  glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &layers);
+  pass.layers_ = GlTexture(layers);
+  glTextureStorage3D(layers, 1, GL_DEPTH_COMPONENT32F, resolution, resolution, maps);
   for (int i = 0; i < maps; ++i) {
     Map map;
-    map.depth = make_texture(GL_DEPTH_COMPONENT32F, resolution, resolution);
+    GLuint view = 0;
+    glGenTextures(1, &view);  // a view takes a name that has never been bound
+    map.view = GlTexture(view);
+    glTextureView(view, GL_TEXTURE_2D, layers, GL_DEPTH_COMPONENT32F, 0, 1, GLuint(i), 1);
     map.frame = make_framebuffer();
     const GLuint f = map.frame.get();
-    glNamedFramebufferTexture(f, GL_DEPTH_ATTACHMENT, map.depth.get(), 0);
+    glNamedFramebufferTextureLayer(f, GL_DEPTH_ATTACHMENT, layers, 0, i);
     glNamedFramebufferDrawBuffer(f, GL_NONE);
     glNamedFramebufferReadBuffer(f, GL_NONE);
     if (glCheckNamedFramebufferStatus(f, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
@@ -94,12 +102,17 @@ std::uint32_t ShadowPass::draw(const GpuScene& scene, int slot, const LightFit& 
 }
 
 void ShadowPass::bind_compare(int slot, int unit) const {
-  glBindTextureUnit(GLuint(unit), maps_[std::size_t(slot)].depth.get());
+  glBindTextureUnit(GLuint(unit), maps_[std::size_t(slot)].view.get());
   glBindSampler(GLuint(unit), compare_.get());
 }
 
-void ShadowPass::bind_depth(int slot, int unit) const {
-  glBindTextureUnit(GLuint(unit), maps_[std::size_t(slot)].depth.get());
+void ShadowPass::bind_all_compare(int unit) const {
+  glBindTextureUnit(GLuint(unit), layers_.get());
+  glBindSampler(GLuint(unit), compare_.get());
+}
+
+void ShadowPass::bind_all_depths(int unit) const {
+  glBindTextureUnit(GLuint(unit), layers_.get());
   glBindSampler(GLuint(unit), plain_.get());
 }
 

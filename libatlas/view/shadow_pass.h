@@ -19,17 +19,20 @@ class ShadowPass {
                      double end);
 
   const LightFit& fit(int slot) const { return maps_[std::size_t(slot)].fit; }
-  // Binds map `slot` for depth comparison (bilinear, lit outside) or for its depths (nearest).
+  // Binds map `slot` for depth comparison (bilinear, lit outside).
   void bind_compare(int slot, int unit) const;
-  void bind_depth(int slot, int unit) const;
+  // Binds all maps, a layer a slot, for depth comparison or for their depths (nearest, 1 outside).
+  void bind_all_compare(int unit) const;
+  void bind_all_depths(int unit) const;
   int resolution() const { return resolution_; }
 
  private:
   struct Map {
-    GlTexture depth;
+    GlTexture view;  // this layer alone
     GlFramebuffer frame;
     LightFit fit;
   };
+  GlTexture layers_;  // declared before the views of it
   std::vector<Map> maps_;
   GlSampler compare_, plain_;
   GlProgram program_;

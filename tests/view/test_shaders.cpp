@@ -29,11 +29,13 @@ TEST(Shaders, NothingIsCompiledThatIsNotUsed) {
           EXPECT_EQ(has(t.fragment, "v_illumination"), baked);
           EXPECT_EQ(has(t.vertex, "v_normal"), lit);
           EXPECT_EQ(has(t.fragment, "v_normal"), lit);
-          EXPECT_EQ(has(t.fragment, "sampler2DShadow"), shadows);
-          EXPECT_EQ(has(t.fragment, "sampler2DShadow map1"),
+          const bool march = shadows && shadow == ShadowSampling::march;
+          EXPECT_EQ(has(t.fragment, "visibility_at("), shadows);
+          EXPECT_EQ(has(t.fragment, "uniform sampler2DShadow map0"), shadows && !march);
+          EXPECT_EQ(has(t.fragment, "uniform sampler2DShadow map1"),
                     shadows && shadow == ShadowSampling::two);
-          EXPECT_EQ(has(t.fragment, "sampler2D depth0"),
-                    shadows && shadow == ShadowSampling::march);
+          EXPECT_EQ(has(t.fragment, "uniform sampler2DArrayShadow maps"), march);
+          EXPECT_EQ(has(t.fragment, "uniform sampler2DArray depths"), march);
           EXPECT_EQ(has(t.fragment, "float specular("),
                     shading == Shading::blinn_phong || shading == Shading::ward);
           EXPECT_EQ(has(t.fragment, "exp("), shading == Shading::ward);
