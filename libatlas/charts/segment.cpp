@@ -14,6 +14,8 @@ namespace {
 
 using Frame = std::array<glm::dvec3, 2>;
 
+constexpr double kWidestRatio = 8;  // wider bounds than 3 merge no more
+
 // The map from space to the plane that a cell's coarse flattening stands for: the rotation that
 // best takes its fan to its flat coordinates.
 Frame cell_frame(const CoarseMesh& mesh, const CoarseUv& uv, std::uint32_t k) {
@@ -75,6 +77,21 @@ void spread_to_triangles(const Topology& topology, const Cells& cells, const Coa
   }
 }
 
+// What merging may cost follows the bound asked for, or a wide bound would save no chart, and a
+// narrow one would be met by cutting afterwards: stretch in proportion to the bound's excess over
+// 1, losses of area to its square. Below the default, half as fast, for the fine flattening
+// is better than the coarse one that merging tries.
+void follow_bound(double max_stretch, MergeOptions& merge) {
+  const double usual = ChartOptions{}.max_stretch;
+  if (max_stretch == usual) return;
+  double ratio = std::min((max_stretch - 1) / (usual - 1), kWidestRatio);
+  if (ratio < 1) ratio = std::sqrt(ratio);
+  merge.limits.stretch_high = 1 + (merge.limits.stretch_high - 1) * ratio;
+  merge.limits.stretch_l2 = 1 + (merge.limits.stretch_l2 - 1) * ratio * ratio;
+  merge.seam_worth *= ratio * ratio;
+  merge.tail_worth *= std::max(1.0, ratio);
+}
+
 }  // namespace
 
 Segmentation segment(const Topology& topology, const ChartOptions& options,
@@ -94,6 +111,7 @@ Segmentation segment(const Topology& topology, const ChartOptions& options,
     if (cells.of_triangle[t] != kNoIndex) piece[cells.of_triangle[t]] = topology.component[t];
   }
   MergeOptions merge;
+  follow_bound(options.max_stretch, merge);
   ExtremeNormals normals;
   if (cone > 0) {
     // Ends are kept clear of the limit: what is measured in the end is rounded otherwise.
