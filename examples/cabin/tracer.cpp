@@ -1,17 +1,11 @@
 #include "examples/cabin/tracer.h"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#define CABIN_EMBREE 4
-#else
-#include <embree3/rtcore.h>
-#define CABIN_EMBREE 3
-#endif
-
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <stdexcept>
+
+#include "examples/cabin/embree.h"
 
 namespace cabin {
 namespace {
@@ -78,13 +72,7 @@ Hit Tracer::nearest(glm::vec3 origin, glm::vec3 direction) const {
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.primID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-#if CABIN_EMBREE == 4
-  rtcIntersect1(impl_->scene, &query);
-#else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(impl_->scene, &context, &query);
-#endif
+  intersect(impl_->scene, query);
   Hit hit;
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
   hit.triangle = query.hit.primID;
@@ -98,14 +86,7 @@ Hit Tracer::nearest(glm::vec3 origin, glm::vec3 direction) const {
 bool Tracer::blocked(glm::vec3 origin, glm::vec3 direction, float distance) const {
   RTCRay ray;
   set_ray(ray, origin, direction, distance);
-#if CABIN_EMBREE == 4
-  rtcOccluded1(impl_->scene, &ray);
-#else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(impl_->scene, &context, &ray);
-#endif
-  return ray.tfar < 0;
+  return occluded(impl_->scene, ray);
 }
 
 }  // namespace cabin

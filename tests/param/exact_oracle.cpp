@@ -2,6 +2,10 @@
 #include <CGAL/Polygon_2.h>
 #include <CGAL/intersections.h>
 
+#include <boost/variant/get.hpp>
+#include <variant>
+#include <vector>
+
 #include "tests/param/oracles.h"
 
 namespace atlas::testing {
@@ -10,12 +14,21 @@ namespace {
 using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
 using Triangle = Kernel::Triangle_2;
 
+// The T that a variant holds, or null: CGAL 5 returns boost's, CGAL 6 the standard's.
+template <class T, class Variant>
+const T* held(const Variant& variant) {
+  if constexpr (requires { std::get_if<T>(&variant); }) {
+    return std::get_if<T>(&variant);
+  } else {
+    return boost::get<T>(&variant);
+  }
+}
+
 bool share_area(const Triangle& a, const Triangle& b) {
   if (!CGAL::do_overlap(a.bbox(), b.bbox())) return false;
   const auto common = CGAL::intersection(a, b);
   if (!common) return false;
-  if (boost::get<Triangle>(&*common)) return true;
-  return boost::get<std::vector<Kernel::Point_2>>(&*common) != nullptr;
+  return held<Triangle>(*common) || held<std::vector<Kernel::Point_2>>(*common);
 }
 
 }  // namespace

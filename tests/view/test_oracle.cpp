@@ -1,5 +1,4 @@
 // Classic shadow maps against rays: Embree traces what each pixel sees and from there to the light.
-#include <embree3/rtcore.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +7,7 @@
 #include <glm/trigonometric.hpp>
 #include <limits>
 
+#include "examples/cabin/embree.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/shadow/fit.h"
 #include "tests/view/shapes.h"
@@ -47,9 +47,7 @@ class Rays {
     RTCRayHit r{};
     set(r.ray, from, along, 0);
     r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(scene_, &context, &r);
+    cabin::intersect(scene_, r);
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     glm::dvec3 n = glm::normalize(glm::dvec3(r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z));
     if (glm::dot(n, along) > 0) n = -n;
@@ -58,10 +56,7 @@ class Rays {
   bool blocked(const glm::dvec3& from, const glm::dvec3& along) const {
     RTCRay r{};
     set(r, from, along, 1e-4f);
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(scene_, &context, &r);
-    return r.tfar < 0;
+    return cabin::occluded(scene_, r);
   }
 
  private:
