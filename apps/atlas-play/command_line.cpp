@@ -103,8 +103,11 @@ void add_run_options(CLI::App& app, CommandLine& l, std::string& light, std::str
   app.add_option("--frames", l.play.frames, "headless: how many")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
+  app.add_option("--close-after", l.play.close_after, "in a window: end after so many frames")
+      ->check(CLI::Range(1, 1000000000));
   app.add_option("--record", l.play.record, "write every frame to this folder");
-  app.add_option("--screenshot", l.play.screenshot, "write the last frame to this PNG file");
+  app.add_option("--screenshot", l.play.screenshot,
+                 "write the last frame to this PNG file (in a window: F12 does)");
   app.add_flag("--plan", l.plan, "print what is compiled and allocated, and why, and end");
   app.add_flag("!--no-vsync", l.vsync, "do not wait for the display");
   app.add_flag("--debug", l.debug, "a debug context: every OpenGL error is reported");

@@ -57,6 +57,9 @@ struct WindowOptions {
 class GlWindow : public GlContext {
  public:
   virtual GLFWwindow* handle() = 0;
+  // The display server has gone: nothing can be shown any more, and the window is not closed but
+  // left behind.
+  virtual bool lost() const = 0;
 };
 
 // `unsupported` with the reason if there is no display or it has no OpenGL 4.5.

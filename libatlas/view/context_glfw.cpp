@@ -1,6 +1,9 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <dlfcn.h>
 #include <fmt/format.h>
+
+#include <atomic>
 
 #include <memory>
 
@@ -19,13 +22,44 @@ void on_error(int, const char* text) {
   last_error() = text;
 }
 
+std::atomic<bool>& display_lost() {
+  static std::atomic<bool> lost = false;
+  return lost;
+}
+
+int on_display_lost(void*) {
+  display_lost() = true;
+  return 0;
+}
+void keep_running(void*, void*) {}
+
+// Xlib ends the process with a message of its own when the X server goes, unless both handlers are
+// set (the second exists since libX11 1.7). The functions are looked up in what GLFW has loaded:
+// there may be no X11 at all. `void*` stands for Xlib's Display*.
+void watch_display() {
+  using Handler = int (*)(void*);
+  using ExitHandler = void (*)(void*, void*);
+  const auto find = [](const char* name) { return dlsym(RTLD_DEFAULT, name); };
+  void* const display = find("glfwGetX11Display");
+  void* const set = find("XSetIOErrorHandler");
+  void* const set_exit = find("XSetIOErrorExitHandler");
+  if (!display || !set || !set_exit) return;
+  void* const connection = reinterpret_cast<void* (*)()>(display)();
+  if (!connection) return;
+  reinterpret_cast<Handler (*)(Handler)>(set)(on_display_lost);
+  reinterpret_cast<void (*)(void*, ExitHandler, void*)>(set_exit)(connection, keep_running,
+                                                                  nullptr);
+}
+
 class GlfwWindow : public GlWindow {
  public:
   ~GlfwWindow() override {
+    if (lost()) return;  // a dead connection takes no requests, not even to destroy its window
     if (window_) glfwDestroyWindow(window_);
     glfwTerminate();
   }
   GLFWwindow* handle() override { return window_; }
+  bool lost() const override { return display_lost(); }
 
   Status open(const ContextOptions& options, const WindowOptions& wanted) {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
@@ -54,6 +88,7 @@ Result<std::unique_ptr<GlWindow>> make_window(const ContextOptions& options,
   if (!glfwInit())
     return Status{ErrorCode::unsupported,
                   fmt::format("no window: {} (try --headless)", last_error())};
+  watch_display();
   auto made = std::make_unique<GlfwWindow>();
   if (Status s = made->open(options, window); !s.ok()) return s;
   return std::unique_ptr<GlWindow>(std::move(made));

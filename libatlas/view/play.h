@@ -26,8 +26,10 @@ struct PlayOptions {
   double degrees_per_frame = 0.5;    // headless
   double degrees_per_second = 15;    // in a window
   int frames = 1;                    // headless: how many are drawn
+  int close_after = 0;               // in a window: frames until it closes by itself; 0: never
   std::filesystem::path record;      // a folder for frame00000.png and on; empty: none
-  std::filesystem::path screenshot;  // the last frame as PNG; empty: none
+  std::filesystem::path screenshot;  // PNG: headless the last frame, else what F12 takes and what
+                                     // was last shown before close_after; empty: none
 };
 
 struct PlaySummary {
@@ -42,7 +44,9 @@ Result<PlaySummary> play_headless(GlContext& gl, Renderer& renderer, const PlayO
                                   const Context& context);
 
 // Shows the scene until the window is closed: free camera (drag, WASD, QE), panels for every
-// setting, a graph of frame times, screenshots (F12) and recording.
+// setting, a graph of frame times, screenshots (F12) and recording; a panel lists the keys.
+// `unsupported` if the display server goes while the window is open: then end the program without
+// destroying what belongs to the context, since the driver talks to that server.
 Result<PlaySummary> play_in_window(GlWindow& window, Renderer& renderer, const PlayOptions& options,
                                    const Context& context);
 

@@ -51,6 +51,14 @@ class Gui {
   }
 };
 
+constexpr const char* kHelp =
+    "drag: look around      W A S D: walk\n"
+    "E Q: up, down          shift: faster\n"
+    "1..7: shadow method    V: visibility\n"
+    "space: light rests     R: first place\n"
+    "H: this panel          F12: screenshot\n"
+    "esc: end";
+
 class Player {
  public:
   Player(GlWindow& window, Renderer& renderer, const PlayOptions& options)
@@ -61,7 +69,9 @@ class Player {
         camera_(options.camera),
         gui_(window.handle()) {
     const Box3& b = renderer.bounds();
-    stride_ = glm::length(to_glm(b.high) - to_glm(b.low)) / 8;
+    // The whole in eight seconds: a hall at a walk, a city in flight.
+    stride_range_ = glm::length(to_glm(b.high) - to_glm(b.low));
+    stride_ = stride_range_ / 8;
     speed_ = float(options.degrees_per_second);
   }
 
@@ -71,7 +81,13 @@ class Player {
       glfwPollEvents();
       const double now = wall_seconds(), elapsed = now - last;
       last = now;
-      if (Status s = frame(elapsed); !s.ok()) return s;
+      Status s = frame(elapsed);
+      if (window_.lost())
+        return Status{ErrorCode::unsupported,
+                      "the display server has gone, the window is lost (start it again, or use "
+                      "--headless)"};
+      if (!s.ok()) return s;
+      if (options_.close_after > 0 && summary_.frames >= options_.close_after) break;
     }
     summary_.shadow_passes = renderer_.shadow_passes();
     summary_.gl_errors = window_.debug_errors();
@@ -84,7 +100,7 @@ class Player {
     gui_.begin();
     steer(elapsed);
     note_time(elapsed);
-    panel();
+    if (panel_shown_) panel();
     int width = 0, height = 0;
     glfwGetFramebufferSize(window_.handle(), &width, &height);
     if (width < 1 || height < 1) {  // iconified
@@ -103,6 +119,10 @@ class Player {
     renderer_.show(width, height);
     if (Status s = save(); !s.ok()) message_ = s.message();
     gui_.end();
+    if (options_.close_after > 0 && summary_.frames + 1 == options_.close_after &&
+        !options_.screenshot.empty())
+      if (Status s = write_png(options_.screenshot, window_image(width, height), {}); !s.ok())
+        return s;
     glfwSwapBuffers(window_.handle());
     ++summary_.frames;
     return {};
@@ -149,12 +169,37 @@ class Player {
       step = {pace * (held(GLFW_KEY_W) - held(GLFW_KEY_S)),
               pace * (held(GLFW_KEY_D) - held(GLFW_KEY_A)),
               pace * (held(GLFW_KEY_E) - held(GLFW_KEY_Q))};
-      const bool f12 = held(GLFW_KEY_F12) > 0;
-      if (f12 && !f12_was_down_) shoot_ = true;
-      f12_was_down_ = f12;
+      keys();
     }
     fly(camera_, step, yaw, pitch);
     fit_planes(camera_, renderer_.bounds());
+  }
+
+  // Keys that act once a press.
+  void keys() {
+    if (pressed(GLFW_KEY_F12)) shoot_ = true;
+    if (pressed(GLFW_KEY_H)) panel_shown_ = !panel_shown_;
+    if (pressed(GLFW_KEY_SPACE)) paused_ = !paused_;
+    if (pressed(GLFW_KEY_V)) wanted_.show_visibility = !wanted_.show_visibility;
+    if (pressed(GLFW_KEY_R)) camera_ = options_.camera;
+    if (pressed(GLFW_KEY_ESCAPE)) glfwSetWindowShouldClose(window_.handle(), GLFW_TRUE);
+    for (int i = 0; i < int(std::size(kAllMethods)); ++i)
+      if (pressed(GLFW_KEY_1 + i)) wanted_.shadows = kAllMethods[i];
+  }
+
+  bool pressed(int key) {
+    const bool down = glfwGetKey(window_.handle(), key) == GLFW_PRESS;
+    return std::exchange(was_down_[std::size_t(key)], down) != down && down;
+  }
+
+  // What the window shows, with its panel.
+  static Image8 window_image(int width, int height) {
+    Image8 image(width, height, 3);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    glReadBuffer(GL_BACK);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, image.texels.data());
+    return image;
   }
 
   void note_time(double elapsed) {
@@ -175,8 +220,11 @@ class Player {
                      label.c_str(), 0, worst * 1.1f, {280, 70});
     ImGui::Text("shadow %.2f ms, lit %.2f ms, %u + %u triangles", renderer_.shadow_seconds() * 1e3,
                 renderer_.lit_seconds() * 1e3, stats_.triangles_shadow, stats_.triangles_lit);
+    if (ImGui::CollapsingHeader("keys", ImGuiTreeNodeFlags_DefaultOpen))
+      ImGui::TextUnformatted(kHelp);
     shadow_panel();
     light_panel();
+    slider("walking speed, units a second", stride_, stride_range_ / 100, stride_range_);
     if (ImGui::Button("screenshot (F12)")) shoot_ = true;
     ImGui::SameLine();
     ImGui::Checkbox("record", &recording_);
@@ -252,12 +300,13 @@ class Player {
   Gui gui_;
   FrameStats stats_;
   PlaySummary summary_;
+  std::array<bool, GLFW_KEY_LAST + 1> was_down_{};
   std::array<float, 240> times_{};
   std::vector<double> all_times_;
   std::size_t at_ = 0;
-  double stride_ = 1, travelled_ = 0, smooth_step_ = 0;
+  double stride_ = 1, stride_range_ = 1, travelled_ = 0, smooth_step_ = 0;
   float speed_ = 15, azimuth_ = 45, elevation_ = 45;
-  bool paused_ = false, by_hand_ = false, recording_ = false, shoot_ = false, f12_was_down_ = false;
+  bool paused_ = false, by_hand_ = false, recording_ = false, shoot_ = false, panel_shown_ = true;
   int recorded_ = 0;
   std::string message_;
 };
