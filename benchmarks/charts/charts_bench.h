@@ -1,0 +1,58 @@
+// The charts' stage in three views: a table of figures, error against time, and what units,
+// directions and places change.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "libatlas/core/context.h"
+#include "libatlas/core/status.h"
+#include "libatlas/scene/reader.h"
+
+namespace atlas::bench {
+
+// A mesh of charts_figures.h or support/work.h by name, or a file if it has an extension.
+// Errors: bad_option; those of read_scene.
+Result<LoadedScene> charts_work(const std::string& name, const Context& context);
+
+// One line of Markdown for a mesh: the whole way to a written OBJ with default options, measured
+// from the file as any program's would be; CPU seconds are those of charts and parameterisation.
+// Errors: those of export_world; io.
+Result<std::string> charts_table_row(const std::string& name, const LoadedScene& loaded,
+                                     const Context& context);
+std::string charts_table_head();
+
+// The meshes' charts side by side, from OBJs written with default options (charts_picture.h).
+// Errors: those of export_world; io.
+Status draw_charts(const std::vector<LoadedScene>& meshes, const std::filesystem::path& png,
+                   const Context& context);
+
+// One setting on one mesh.
+struct ChartsPoint {
+  std::string mesh, setting;
+  bool preset = false;
+  double cpu_seconds = 0;           // least of the repeats
+  double stretch_l2 = 1, seam = 0;  // seam / sqrt(area)
+  double stretch_999 = 1;
+  std::size_t charts = 0;
+};
+
+// The presets at their default bound and the bounds 1.05 to 2. Errors: those of make_charts.
+Result<std::vector<ChartsPoint>> charts_sweep(const std::string& name, const LoadedScene& loaded,
+                                              int repeats, const Context& context);
+std::string line(const ChartsPoint& point);
+
+// `target` without extension: writes .svg and .png. L2 - 1 and seams against CPU time, a column a
+// mesh, with the Pareto front of each. Errors: io (gnuplot is missing or fails).
+Status draw_sweep(const std::vector<ChartsPoint>& points, const std::filesystem::path& target);
+
+// One line of Markdown: charts and L2 stretch of the mesh as it is, their ranges over seven units
+// from 10^-6 to 10^6, `turns` random rotations and three offsets up to 10^6 of its size (through a
+// written OBJ), and whether powers of two and thread counts left every bit.
+// Errors: those of make_charts and read_scene.
+Result<std::string> charts_robust_row(const std::string& name, const LoadedScene& loaded, int turns,
+                                      const Context& context);
+std::string charts_robust_head();
+
+}  // namespace atlas::bench

@@ -1,0 +1,89 @@
+// atlas-bench-charts: the tables and the plot of docs/charts.md.
+//   atlas-bench-charts --table --mesh figure:30000 hound:20000
+//   atlas-bench-charts --sweep docs/images/charts-error --mesh figure:30000
+//   atlas-bench-charts --picture docs/images/charts.png --mesh figure:30000
+//   atlas-bench-charts --robust --mesh models/*.obj
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+
+#include "benchmarks/charts/charts_bench.h"
+#include "benchmarks/charts/charts_figures.h"
+#include "benchmarks/support/work.h"
+
+namespace {
+
+using namespace atlas;
+using namespace atlas::bench;
+
+struct Arguments {
+  std::vector<std::string> meshes{"figure:30000", "hound:20000",  "figure-scan:40000",
+                                  "shaft:20000",  "bracket:8000", "terraces:30000"};
+  bool table = false, robust = false;
+  std::string sweep, picture;
+  int repeats = 3, turns = 6;
+};
+
+std::string label(const std::string& mesh) {
+  return mesh.find(':') == std::string::npos ? std::filesystem::path(mesh).stem().string() : mesh;
+}
+
+Status run(const Arguments& a) {
+  Context context;
+  context.threads = 1;
+  std::vector<ChartsPoint> points;
+  std::vector<LoadedScene> drawn;
+  if (a.table) fmt::print("{}\n", charts_table_head());
+  if (a.robust) fmt::print("{}\n", charts_robust_head());
+  for (const std::string& mesh : a.meshes) {
+    Result<LoadedScene> scene = charts_work(mesh, context);
+    if (!scene.ok()) return scene.status();
+    if (!a.picture.empty()) {
+      drawn.push_back(std::move(*scene));
+      continue;
+    }
+    if (a.table || a.robust) {
+      const Result<std::string> row =
+          a.table ? charts_table_row(label(mesh), *scene, context)
+                  : charts_robust_row(label(mesh), *scene, a.turns, context);
+      if (!row.ok()) return row.status();
+      fmt::print("{}\n", *row);
+      std::fflush(stdout);
+      continue;
+    }
+    const auto swept = charts_sweep(label(mesh), *scene, a.repeats, context);
+    if (!swept.ok()) return swept.status();
+    for (const ChartsPoint& p : *swept) fmt::print("{}\n", line(p));
+    points.insert(points.end(), swept->begin(), swept->end());
+  }
+  if (!drawn.empty()) return draw_charts(drawn, a.picture, context);
+  return points.empty() ? Status() : draw_sweep(points, a.sweep);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Charts and parameterisation: figures, error against time, robustness.");
+  Arguments a;
+  app.add_option("--mesh,-m", a.meshes,
+                 fmt::format("NAME:TRIANGLES ({}, {}) or a file", kFigures, kWorkKinds));
+  auto* kind = app.add_option_group("what");
+  kind->add_flag("--table", a.table, "a line of figures a mesh");
+  kind->add_option("--sweep", a.sweep, "presets and bounds; draws FILE.svg and FILE.png");
+  kind->add_option("--picture", a.picture, "PNG of the meshes' charts side by side");
+  kind->add_flag("--robust", a.robust, "what units, directions, places and threads change");
+  kind->require_option(1);
+  app.add_option("--repeats", a.repeats, "of --sweep: the least CPU time counts")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  app.add_option("--turns", a.turns, "of --robust: random rotations")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  const Status status = run(a);
+  if (status.ok()) return 0;
+  fmt::print(stderr, "atlas-bench-charts: {}\n", status.message());
+  return 1;
+}
