@@ -36,6 +36,22 @@ struct FitOptions {
   std::span<const ChartShape> shapes;
   std::uint32_t rotations = 4;  // directions tried for outlines at most: multiples of
                                 // 360/rotations degrees; 1, 2, 4 or a multiple of 4
+  bool any_angle = true;        // outlines may be turned by angles between those, too
+  // A single page of outlines only: its sides are at most page_size, and it is made as full as it
+  // can be instead of the charts as large as they can be. Overrides power_of_two and square.
+  bool free_aspect = false;
+  // Limits of `best` on a single page of outlines. The result depends on effort and seed only,
+  // unless effort is 0 and time the limit.
+  double time_budget = 1.0;  // wall seconds
+  std::uint64_t effort = 0;  // layouts tried at most, checked every few hundred; 0: no limit
+  std::uint64_t seed = 1;
+};
+
+// A point of the curve of density against effort.
+struct FitProgress {
+  double seconds = 0;         // wall time since the start
+  std::uint64_t layouts = 0;  // tried so far
+  double utilization = 0;
 };
 
 // The box of chart i in its page, padding included, after rotation; content = box without
@@ -66,6 +82,7 @@ struct FitResult {
   std::uint32_t moved_items = 0;  // items that did not fit their group's page
   std::uint32_t packings = 0;     // full packings tried
   std::vector<std::pair<double, bool>> trace;  // (scale, did it fit) in the order tried
+  std::vector<FitProgress> curve;              // improvements in the order found; may be empty
 };
 
 // Finds the largest common scale <= max_scale at which every item fits. At each scale: groups by

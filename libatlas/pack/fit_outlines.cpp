@@ -8,6 +8,7 @@
 #include "libatlas/core/parallel.h"
 #include "libatlas/pack/fit_pages.h"
 #include "libatlas/pack/nest.h"
+#include "libatlas/pack/press.h"
 #include "libatlas/pack/shape_check.h"
 
 namespace atlas::pack {
@@ -290,11 +291,51 @@ void write_result(const OutlineFit& fit, const FitOptions& options, OutlineLayou
   result.grouping = std::move(best.grouping);
 }
 
+// One page of few charts. False where all fit at the largest scale and the page could be smaller,
+// or where charts are at their minimum sides: the general search knows about those.
+bool fit_pressed(std::span<const FitItem> items, const FitOptions& options, const Context& context,
+                 FitResult& result) {
+  PressedPage pressed = press_outlines(options, context);
+  if (pressed.scale == 0 || pressed.scale > options.max_scale) return false;
+  for (const FitItem& item : items) {
+    const double side = std::max(item.width, item.height);
+    if (side * pressed.scale < std::min<double>(options.minimum_side, std::ceil(side)))
+      return false;
+  }
+  result.scale = pressed.scale;
+  result.packings = 1;
+  result.trace.emplace_back(pressed.scale, true);
+  result.curve = std::move(pressed.curve);
+  Extent page{options.page_size, options.page_size};
+  if (options.free_aspect || !options.power_of_two) page = pressed.page;
+  if (options.square && !options.free_aspect)
+    page.width = page.height = std::max(page.width, page.height);
+  result.pages = {page};
+  result.placements.resize(items.size());
+  double shapes = 0;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    FitPlacement& out = result.placements[i];
+    const PressedPlace& at = pressed.places[i];
+    out.scale = pressed.scale;
+    if (!at.placed) continue;
+    out.box = at.box;
+    out.content_width = at.box.width - 2 * options.padding;
+    out.content_height = at.box.height - 2 * options.padding;
+    out.angle = at.angle;
+    out.offset = at.offset;
+    shapes += shape_area(options.shapes[i]) * out.scale * out.scale;
+  }
+  result.utilization = shapes / static_cast<double>(page.area());
+  return true;
+}
+
 }  // namespace
 
 Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions& options,
                                const Context& context) {
   FitResult result;
+  if (worth_pressing(options) && fit_pressed(items, options, context, result)) return result;
+  if (context.cancelled()) return Status::cancelled();
   OutlineFit fit(items, options, context);
   OutlineLayout best;
   const bool found = search_scale(fit, options, context, result, best);

@@ -215,6 +215,7 @@ class Export {
       layout.padding = 1;
       layout.alignment = 1;
       layout.minimum_side = 0;
+      layout.free_aspect = true;
     }
     Result<PageLayout> laid = lay_out_pages(charts_, densities_, layout, context_);
     if (!laid.ok()) return laid.status();

@@ -88,6 +88,7 @@ Result<PageLayout> lay_out(const ChartSet& charts, std::span<const Vec2d> texels
   fit.alignment = options.alignment;
   fit.minimum_side = options.minimum_side;
   fit.preset = options.preset;
+  fit.free_aspect = options.free_aspect;
   std::optional<Outlines> outlines;
   if (options.outlines) {
     outlines.emplace(charts, texels_per_unit);
@@ -127,7 +128,8 @@ std::int64_t page_texels(const PageLayout& layout) {
 }
 
 // More texels for the charts first, then less room for the same.
-bool better(const PageLayout& a, const PageLayout& b) {
+bool better(const PageLayout& a, const PageLayout& b, const LayoutOptions& options) {
+  if (options.free_aspect) return a.uv_utilization > b.uv_utilization;
   if (a.scale != b.scale) return a.scale > b.scale;
   return page_texels(a) < page_texels(b);
 }
@@ -144,7 +146,7 @@ Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> 
   if (!options.outlines || (boxed.ok() && boxed->uv_utilization > kFullBoxes)) return boxed;
   Result<PageLayout> outlined = lay_out(charts, texels_per_unit, options, context);
   if (!outlined.ok()) return boxed;
-  if (!boxed.ok() || better(*outlined, *boxed)) return outlined;
+  if (!boxed.ok() || better(*outlined, *boxed, options)) return outlined;
   return boxed;
 }
 

@@ -21,6 +21,9 @@ struct LayoutOptions {
   std::int32_t alignment = 4;     // of the charts' boxes
   std::int32_t minimum_side = 16;
   bool outlines = false;  // try outlines too, and take them where they pack better
+  // One page whose sides are at most page_size, as full as it can be made: for uvs without images,
+  // where no texel has a size.
+  bool free_aspect = false;
   PackPreset preset = PackPreset::standard;
 };
 

@@ -1,0 +1,48 @@
+// Internal: the signed distance to a chart's outline, sampled on a grid.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "libatlas/pack/outline_mask.h"
+
+namespace atlas::pack {
+
+// Coordinates are those of the mask it was made from: texels from the lower left corner of the
+// mask's box. Negative inside the chart. The mask covers its chart by up to a cell too much on
+// each side; half a cell, the mean of that, is taken off again.
+class DistanceField {
+ public:
+  DistanceField() = default;
+  DistanceField(const Mask& mask, double cell, double reach);
+
+  struct Sample {
+    double distance = 0;
+    Vec2d gradient;  // not normalised
+  };
+  // False farther than `reach` outside the mask's box.
+  bool sample(Vec2d p, Sample& out) const {
+    const double gx = p.x * inverse_ + shift_, gy = p.y * inverse_ + shift_;
+    if (!(gx >= 0) || !(gy >= 0) || gx >= width_ - 1 || gy >= height_ - 1) return false;
+    const int x = static_cast<int>(gx), y = static_cast<int>(gy);
+    const double u = gx - x, v = gy - y;
+    const float* a = values_.data() + std::size_t(y) * std::size_t(width_) + std::size_t(x);
+    const float* b = a + width_;
+    const double low = a[0] + u * (a[1] - a[0]), high = b[0] + u * (b[1] - b[0]);
+    out.distance = low + v * (high - low);
+    out.gradient = {(1 - v) * (a[1] - a[0]) + v * (b[1] - b[0]), high - low};
+    return true;
+  }
+
+  // Points on the outline, about one for every `spacing` texels.
+  std::vector<Vec2d> outline(double spacing) const;
+
+ private:
+  Vec2d onto_outline(Vec2d p) const;
+
+  int width_ = 0, height_ = 0;
+  double inverse_ = 1, shift_ = 0;
+  std::vector<float> values_;  // at the cells' centres, row by row
+};
+
+}  // namespace atlas::pack

@@ -1,0 +1,282 @@
+#include "libatlas/pack/press.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libatlas/core/clock.h"
+#include "libatlas/core/parallel.h"
+#include "libatlas/pack/engines.h"
+#include "libatlas/pack/nest.h"
+#include "libatlas/pack/settle.h"
+#include "libatlas/pack/squeeze.h"
+
+namespace atlas::pack {
+namespace {
+
+// Page fill at which the search begins; only the ratio of charts to gutters depends on it.
+constexpr double kExpectedFill = 0.8;
+
+constexpr std::size_t kMostCharts = 128;
+constexpr std::size_t kStartedCharts = 320;  // over all starts: fewer charts get more of them
+constexpr std::size_t kMostStarts = 16;
+constexpr std::uint64_t kSearchWork = 160'000'000;  // words looked at by all starts, 2 ns each
+constexpr std::size_t kCoarse = 0, kFine = 1;
+
+// A chart in the frame of its mask at scale scale_: shape point p is at origin + scale_ p.
+struct Drawn {
+  std::vector<Vec2d> corners;  // the mask's runs as triangles
+  Vec2d origin;
+  Body bodies[2];  // kCoarse, kFine
+};
+
+// One layout pushed together.
+struct Start {
+  std::vector<std::pair<Vec2d, double>> poses;  // 1 a chart: centre and angle
+  SqueezePage page;
+  std::uint64_t layouts = 0;
+};
+
+class Press {
+ public:
+  Press(const FitOptions& options, const Context& context) : options_(options), context_(context) {
+    for (const ChartShape& s : options.shapes) area_ += shape_area(s);
+    const double page = double(options.page_size) * options.page_size;
+    scale_ = std::sqrt(kExpectedFill * page / area_);
+    draw();
+  }
+
+  PressedPage run() {
+    PressedPage best;
+    const double begun = wall_seconds();
+    const std::size_t n = std::max<std::size_t>(1, options_.shapes.size());
+    const std::size_t count =
+        n == 1 ? 1 : std::clamp<std::size_t>(kStartedCharts / n, 1, kMostStarts);
+    for (std::uint32_t round = 0; !context_.cancelled(); ++round) {
+      std::vector<Start> starts(count);
+      parallel_for(context_, count, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) starts[k] = start(k, count, round);
+      });
+      settle_best(starts, best);
+      const double seconds = wall_seconds() - begun;
+      if (best.scale > 0 && (best.curve.empty() || best.curve.back().utilization < fill(best)))
+        best.curve.push_back({seconds, best.layouts, fill(best)});
+      if (options_.preset != PackPreset::best || n == 1) break;
+      const double done = options_.effort > 0 ? double(best.layouts) / double(options_.effort)
+                                              : seconds / options_.time_budget;
+      if (!(done < 1)) break;
+      context_.report("pack", done);
+    }
+    return best;
+  }
+
+ private:
+  // Outlines of millions of triangles are drawn once; the search goes on with the runs of that.
+  void draw() {
+    const int fine = std::max(1, options_.page_size / 1024);
+    const std::size_t n = options_.shapes.size();
+    cell_ = std::max(1, options_.page_size / 128);
+    directions_ = 32;
+    drawn_.resize(n);
+    parallel_for(context_, n, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) draw_one(i, fine);
+    });
+    std::vector<ChartShape> proxies;
+    for (const Drawn& d : drawn_) proxies.push_back({d.corners, {}});
+    PieceOptions pieces;
+    pieces.padding = options_.padding;
+    pieces.cell = cell_;
+    pieces.directions = directions_;
+    pieces_ = make_pieces(proxies, pieces, context_);
+  }
+
+  void draw_one(std::size_t i, int fine) {
+    Drawn& d = drawn_[i];
+    RasterOptions raster;
+    raster.factor = scale_;
+    raster.padding = 0;
+    raster.cell = fine;
+    const Mask mask = rasterize(options_.shapes[i], raster, d.origin);
+    if (mask.cells == 0) return;
+    for (std::int32_t r = 0; r < mask.height; ++r)
+      for (const Run& run : mask.row(r)) {
+        const double x0 = run.begin * fine, x1 = run.end * fine, y0 = r * fine, y1 = y0 + fine;
+        d.corners.insert(d.corners.end(),
+                         {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y0}, {x1, y1}, {x0, y1}});
+      }
+    const double cell = fine;
+    d.bodies[kCoarse] = make_body(coarsen(mask, 4), 4 * cell, 12 * cell, 10 * cell);
+    d.bodies[kFine] = make_body(coarsen(mask, 2), 2 * cell, 8 * cell, 2 * cell);
+    // One centre for both.
+    const Vec2d shift{d.bodies[kFine].center.x - d.bodies[kCoarse].center.x,
+                      d.bodies[kFine].center.y - d.bodies[kCoarse].center.y};
+    for (Vec2d& q : d.bodies[kFine].outline) q = {q.x + shift.x, q.y + shift.y};
+    d.bodies[kFine].center = d.bodies[kCoarse].center;
+    d.bodies[kFine].radius += std::hypot(shift.x, shift.y);
+  }
+
+  Start start(std::size_t k, std::size_t count, std::uint32_t round) const {
+    Random random(options_.seed * 0x10001 + round * kMostStarts + k);
+    const double side = options_.page_size * std::sqrt(kExpectedFill / 0.69) / cell_;
+    const double spread = count > 1 ? 0.2 * double(k) / double(count - 1) - 0.1 : 0;
+    const double shift = round > 0 ? 0.04 * (random.unit() - 0.5) : 0;
+    NestSearchOptions search;
+    search.width = static_cast<std::int32_t>(side * (1 + spread + shift));
+    search.seed = random.next();
+    search.work = kSearchWork / count;
+    search.layouts = 50;
+    for (const Piece& p : pieces_)
+      for (const Mask& m : p.masks)
+        search.width = std::max(search.width, std::min(m.width, m.height));
+    Start start;
+    if (pieces_.size() == 1) return alone();
+    Nest nest;
+    improve_plan(pieces_, plan_by_size(pieces_), search, context_, nest, start.layouts);
+    if (!nest.left_over.empty()) return start;
+    put_down(nest, start);
+    start.page = {search.width * double(cell_), nest.used_height * double(cell_)};
+    SqueezeOptions coarse = squeeze_options();
+    coarse.last_step = 0.003;
+    coarse.first_step = 0.015;
+    push_together(kCoarse, coarse, start);
+    return start;
+  }
+
+  // A single chart, turned such that its page is small.
+  Start alone() const {
+    Start best;
+    best.layouts = kTurns;
+    const Drawn& d = drawn_[0];
+    const Vec2d m = d.bodies[kCoarse].center;
+    for (int k = 0; k < kTurns; ++k) {
+      const double angle = 0.5 * std::numbers::pi * k / kTurns;
+      const double c = std::cos(angle), s = std::sin(angle), pad = options_.padding + 1;
+      Vec2d low{1e300, 1e300}, high{-1e300, -1e300};
+      for (const Vec2d& q : d.corners) {
+        const Vec2d t{c * (q.x - m.x) - s * (q.y - m.y), s * (q.x - m.x) + c * (q.y - m.y)};
+        low = {std::min(low.x, t.x), std::min(low.y, t.y)};
+        high = {std::max(high.x, t.x), std::max(high.y, t.y)};
+      }
+      const SqueezePage page{high.x - low.x + 2 * pad, high.y - low.y + 2 * pad};
+      if (goodness(page) <= goodness(best.page)) continue;
+      best.page = page;
+      best.poses = {{{pad - low.x, pad - low.y}, angle}};
+    }
+    return best;
+  }
+  static constexpr int kTurns = 180;
+
+  // From cells to rigid bodies.
+  void put_down(const Nest& nest, Start& start) const {
+    start.poses.resize(pieces_.size());
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      const NestPlace& at = nest.places[i];
+      if (!at.placed) continue;
+      const double angle = 2 * std::numbers::pi * at.direction / directions_;
+      const double c = std::cos(angle), s = std::sin(angle);
+      const Vec2d o = pieces_[i].origins[at.direction], m = drawn_[i].bodies[kCoarse].center;
+      start.poses[i] = {{at.at.x * double(cell_) + o.x + c * m.x - s * m.y,
+                         at.at.y * double(cell_) + o.y + s * m.x + c * m.y},
+                        angle};
+    }
+  }
+
+  SqueezeOptions squeeze_options() const {
+    SqueezeOptions options;
+    options.clearance = 2 * options_.padding + 0.8 * options_.alignment;
+    options.margin = options_.padding + 0.2 * options_.alignment;
+    options.tolerance = 0.5 * options_.alignment;
+    options.square = !options_.free_aspect;
+    return options;
+  }
+
+  void push_together(std::size_t level, const SqueezeOptions& options, Start& start) const {
+    std::vector<Body> bodies;
+    std::vector<std::size_t> owner;
+    for (std::size_t i = 0; i < drawn_.size(); ++i) {
+      if (drawn_[i].corners.empty()) continue;
+      bodies.push_back(drawn_[i].bodies[level]);
+      bodies.back().at = start.poses[i].first;
+      bodies.back().angle = start.poses[i].second;
+      owner.push_back(i);
+    }
+    start.page = squeeze(bodies, start.page, options);
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      start.poses[owner[b]] = {bodies[b].at, bodies[b].angle};
+  }
+
+  double goodness(const SqueezePage& page) const {
+    if (!(page.width > 0)) return 0;
+    return 1 / (options_.free_aspect ? page.width * page.height
+                                     : std::pow(std::max(page.width, page.height), 2));
+  }
+
+  double fill(const PressedPage& page) const {
+    const double side = options_.page_size;
+    const double area = options_.free_aspect ? double(page.page.area()) : side * side;
+    return area > 0 ? page.scale * page.scale * area_ / area : 0;
+  }
+
+  // The fullest start is pressed once more with finer outlines and placed exactly, and the next
+  // where that fails. (Placing more of them wins on none of the models.)
+  void settle_best(std::vector<Start>& starts, PressedPage& best) const {
+    for (const Start& s : starts) best.layouts += s.layouts;
+    std::stable_sort(starts.begin(), starts.end(), [&](const Start& a, const Start& b) {
+      return goodness(a.page) > goodness(b.page);
+    });
+    for (std::size_t k = 0; k < std::min<std::size_t>(starts.size(), 3); ++k)
+      if (context_.cancelled() || settle_start(starts[k], best)) return;
+  }
+
+  bool settle_start(Start& s, PressedPage& best) const {
+    if (s.poses.empty() || goodness(s.page) == 0) return false;
+    SqueezeOptions polish = squeeze_options();
+    polish.first_step = 0.002;
+    polish.sweeps = 600;
+    push_together(kFine, polish, s);
+    if (goodness(s.page) == 0) return false;
+    const double grow = options_.page_size / std::max(s.page.width, s.page.height);
+    std::vector<SettleTarget> targets(s.poses.size());
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      const Drawn& d = drawn_[i];
+      const Vec2d center = d.bodies[kCoarse].center;
+      targets[i].origin = {s.poses[i].first.x * grow, s.poses[i].first.y * grow};
+      targets[i].angle = s.poses[i].second;
+      targets[i].from = {(d.origin.x - center.x) / scale_, (d.origin.y - center.y) / scale_};
+    }
+    PressedPage page = settle(targets, scale_ * grow, options_, context_);
+    if (page.scale == 0) return false;
+    if (fill(page) <= fill(best)) return true;
+    best.scale = page.scale;
+    best.page = page.page;
+    best.places = std::move(page.places);
+    return true;
+  }
+
+  const FitOptions& options_;
+  const Context& context_;
+  double area_ = 0, scale_ = 1;
+  std::int32_t cell_ = 1;
+  std::uint32_t directions_ = 16;
+  std::vector<Drawn> drawn_;
+  std::vector<Piece> pieces_;
+};
+
+}  // namespace
+
+bool worth_pressing(const FitOptions& options) {
+  constexpr double kSurelyFits = 0.5;  // at the largest scale: the page may even be smaller
+  const double page = double(options.page_size) * options.page_size;
+  double area = 0;
+  for (const ChartShape& s : options.shapes) area += shape_area(s);
+  return options.pages == 1 && options.preset != PackPreset::fast && options.any_angle &&
+         options.allow_rotation && options.page_size >= 256 &&
+         options.shapes.size() <= kMostCharts && area > 0 &&
+         options.max_scale * options.max_scale * area > kSurelyFits * page;
+}
+
+PressedPage press_outlines(const FitOptions& options, const Context& context) {
+  return Press(options, context).run();
+}
+
+}  // namespace atlas::pack

@@ -1,0 +1,33 @@
+// Internal: few charts on one page, packed as full as a search, a press and exact masks allow.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "libatlas/pack/fit.h"
+
+namespace atlas::pack {
+
+struct PressedPlace {
+  bool placed = false;
+  double angle = 0;
+  Vec2d offset;  // page texel of the shape's origin
+  Rect box;      // of the mask, texels
+};
+
+struct PressedPage {
+  double scale = 0;                  // 0: found none
+  Extent page;                       // texels; both sides at most options.page_size
+  std::vector<PressedPlace> places;  // 1 a shape
+  std::vector<FitProgress> curve;
+  std::uint64_t layouts = 0;
+};
+
+// Whether press_outlines is meant for this: one page, no hurry, not too many charts, free turns.
+bool worth_pressing(const FitOptions& options);
+
+// Layouts on coarse cells for several widths of the page, each then pushed together as rigid
+// bodies, the best of them placed exactly. The options have been checked.
+PressedPage press_outlines(const FitOptions& options, const Context& context);
+
+}  // namespace atlas::pack

@@ -1,0 +1,166 @@
+#include "libatlas/pack/settle.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "libatlas/core/parallel.h"
+#include "libatlas/pack/nest.h"
+
+namespace atlas::pack {
+namespace {
+
+class Settler {
+ public:
+  Settler(std::span<const SettleTarget> targets, double scale, const FitOptions& options,
+          const Context& context)
+      : targets_(targets), scale_(scale), options_(options), context_(context) {
+    order_.resize(targets.size());
+    std::iota(order_.begin(), order_.end(), 0u);
+  }
+
+  // Charts shrink to this share; most of the room that this makes goes to the page's upper and
+  // right edges, where charts give way to those before them.
+  bool place_at(double share, PressedPage& result) {
+    const double scale = share * scale_;
+    draw(scale, std::pow(share, kCloser));
+    const std::int32_t side = options_.page_size / options_.alignment;
+    BitPage page(side, side, longest_);
+    result.places.assign(targets_.size(), {});
+    result.page = {};
+    std::vector<std::uint32_t> small;
+    sort_by_distance();
+    for (std::uint32_t i : order_) {
+      const Mask& mask = masks_[i];
+      if (mask.cells == 0) continue;
+      if (mask.width > side || mask.height > side) return false;
+      BitPage::Place at;
+      if (nearest_free(i, page, at))
+        put(i, at, page, result);
+      else if (mask.cells * kSmallShare < std::int64_t{side} * side)
+        small.push_back(i);
+      else
+        return false;
+    }
+    // Small charts may go to any hole within the page that the others need.
+    for (std::uint32_t i : small) {
+      BitPage::Place at;
+      const Mask& mask = masks_[i];
+      const std::int32_t last = result.page.width / options_.alignment - mask.width;
+      if (!page.find(mask, test_order(mask), {0, std::max(0, last), 0, side}, at)) return false;
+      put(i, at, page, result);
+    }
+    result.scale = scale;
+    return true;
+  }
+
+ private:
+  static constexpr double kCloser = 0.8;
+  static constexpr std::int64_t kSmallShare = 500;
+
+  void put(std::uint32_t i, BitPage::Place at, BitPage& page, PressedPage& result) const {
+    const Mask& mask = masks_[i];
+    page.put(mask, at);
+    const std::int32_t a = options_.alignment;
+    PressedPlace& out = result.places[i];
+    out.placed = true;
+    out.angle = targets_[i].angle;
+    out.box = {at.x * a, at.y * a, mask.width * a, mask.height * a};
+    out.offset = {out.box.x + origins_[i].x, out.box.y + origins_[i].y};
+    result.page.width = std::max(result.page.width, out.box.right());
+    result.page.height = std::max(result.page.height, out.box.top());
+  }
+
+  void draw(double scale, double closer) {
+    masks_.resize(targets_.size());
+    origins_.resize(targets_.size());
+    wanted_.resize(targets_.size());
+    parallel_for(context_, targets_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const SettleTarget& t = targets_[i];
+        RasterOptions raster;
+        raster.factor = scale;
+        raster.angle = t.angle;
+        raster.padding = options_.padding;
+        raster.cell = options_.alignment;
+        masks_[i] = rasterize(options_.shapes[i], raster, origins_[i]);
+        const double c = scale * std::cos(t.angle), s = scale * std::sin(t.angle);
+        wanted_[i] = {(t.origin.x * closer + c * t.from.x - s * t.from.y - origins_[i].x) /
+                          options_.alignment,
+                      (t.origin.y * closer + s * t.from.x + c * t.from.y - origins_[i].y) /
+                          options_.alignment};
+      }
+    });
+    longest_ = 1;
+    for (const Mask& m : masks_)
+      for (const Run& run : m.runs) longest_ = std::max(longest_, run.end - run.begin);
+  }
+
+  // From the page's lower left corner outwards.
+  void sort_by_distance() {
+    const auto distance = [&](std::uint32_t i) {
+      return wanted_[i].x + wanted_[i].y + 0.5 * (masks_[i].width + masks_[i].height);
+    };
+    std::stable_sort(order_.begin(), order_.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return distance(a) < distance(b); });
+  }
+
+  // The free place nearest to the wanted one, within a few cells.
+  bool nearest_free(std::uint32_t i, BitPage& page, BitPage::Place& place) const {
+    constexpr std::int32_t kReach = 5;
+    const Mask& mask = masks_[i];
+    const auto tests = test_order(mask);
+    const auto x = static_cast<std::int32_t>(std::lround(wanted_[i].x));
+    const auto y = static_cast<std::int32_t>(std::lround(wanted_[i].y));
+    double best = 1e300;
+    for (std::int32_t dy = -kReach; dy <= kReach; ++dy)
+      for (std::int32_t dx = -kReach; dx <= kReach; ++dx) {
+        const std::int32_t px = std::clamp(x + dx, 0, page.width() - mask.width);
+        const std::int32_t py = std::clamp(y + dy, 0, page.height() - mask.height);
+        const double d = std::hypot(px - wanted_[i].x, py - wanted_[i].y);
+        BitPage::Place at;
+        if (d >= best || !page.find(mask, tests, {px, px, py, py}, at)) continue;
+        best = d;
+        place = at;
+      }
+    return best < 1e300;
+  }
+
+  std::span<const SettleTarget> targets_;
+  double scale_;
+  const FitOptions& options_;
+  const Context& context_;
+  std::vector<std::uint32_t> order_;
+  std::vector<Mask> masks_;
+  std::vector<Vec2d> origins_, wanted_;
+  std::int32_t longest_ = 1;
+};
+
+}  // namespace
+
+PressedPage settle(std::span<const SettleTarget> targets, double scale, const FitOptions& options,
+                   const Context& context) {
+  Settler settler(targets, scale, options, context);
+  PressedPage best, tried;
+  constexpr std::array kShares{1.0, 0.996, 0.99, 0.98, 0.96, 0.93, 0.89};
+  double low = 0, high = 1;
+  for (double share : kShares) {
+    if (settler.place_at(share, tried)) {
+      best = std::move(tried);
+      low = share;
+      break;
+    }
+    high = share;
+    if (context.cancelled()) return {};
+  }
+  for (int k = 0; k < 3 && low > 0 && high > low; ++k) {
+    const double middle = (low + high) / 2;
+    const bool ok = settler.place_at(middle, tried);
+    (ok ? low : high) = middle;
+    if (ok) best = std::move(tried);
+  }
+  return best;
+}
+
+}  // namespace atlas::pack

@@ -1,0 +1,22 @@
+// Internal: from rigid bodies that nearly touch to exact masks on the page's cells.
+#pragma once
+
+#include <span>
+
+#include "libatlas/pack/press.h"
+
+namespace atlas::pack {
+
+// Where a chart should be: its point p at origin + scale · R(angle) (p + from), origin in texels of
+// a page whose longer side is the largest allowed.
+struct SettleTarget {
+  Vec2d origin, from;
+  double angle = 0;
+};
+
+// Places every chart on free cells as near to its target as possible, at the largest scale
+// below `scale` that allows it. scale 0 in the result: none did.
+PressedPage settle(std::span<const SettleTarget> targets, double scale, const FitOptions& options,
+                   const Context& context);
+
+}  // namespace atlas::pack
