@@ -89,7 +89,7 @@ class GrainBuilder {
  private:
   void grow(std::uint32_t seed, std::uint32_t component, std::size_t size) {
     const auto grain = static_cast<std::uint32_t>(grains_.count());
-    const glm::vec3 axis = to_glm(topology_.normals[seed]);
+    const glm::vec3 axis = to_glm(topology_.calm_normal(seed));
     queue_.assign(1, seed);
     grains_.of_triangle[seed] = grain;
     glm::vec3 normal(0), middle(0);
@@ -103,7 +103,7 @@ class GrainBuilder {
       for (std::uint32_t h = 3 * t; h < 3 * t + 3 && queue_.size() < size; ++h) {
         const std::uint32_t o = topology_.opposite[h];
         if (o == kNoIndex || grains_.of_triangle[o / 3] != kNoIndex) continue;
-        if (glm::dot(axis, to_glm(topology_.normals[o / 3])) < 0.7f) continue;
+        if (glm::dot(axis, to_glm(topology_.calm_normal(o / 3))) < 0.7f) continue;
         grains_.of_triangle[o / 3] = grain;
         queue_.push_back(o / 3);
       }
@@ -386,7 +386,8 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
     for (std::uint32_t h = 3 * visit.node; h < 3 * visit.node + 3; ++h) {
       const std::uint32_t o = topology.opposite[h];
       if (o == kNoIndex || result.of_triangle[o / 3] != kNoIndex) continue;
-      const float lean = 1 - glm::dot(to_glm(topology.normals[o / 3]), seeder.normals[visit.seed]);
+      const float lean =
+          1 - glm::dot(to_glm(topology.calm_normal(o / 3)), seeder.normals[visit.seed]);
       const float step = glm::distance(from, centroid(topology, o / 3));
       const float distance = visit.distance + step * (1 + kNormalWeight * lean);
       heap.push({ruler(distance), distance, o / 3, visit.seed});

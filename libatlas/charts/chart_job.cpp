@@ -25,17 +25,16 @@ constexpr std::size_t kLargeChart = 20000;
 constexpr double kAimedStretch = 1.18;
 constexpr double kBestStretch = 1.12;
 constexpr int kBestIterations = 8;
-// Seams that one chart may get into its inside before it is divided instead.
-constexpr int kMaxCuts = 3;
 
 class ChartJob {
  public:
-  ChartJob(const FlattenInput& input, Partition& partition, ChartScratch& scratch, int rings)
+  ChartJob(const FlattenInput& input, Partition& partition, ChartScratch& scratch,
+           const ChartEffort& effort)
       : input_(input),
         partition_(partition),
         scratch_(scratch),
         chart_(scratch.chart),
-        rings_(rings) {}
+        effort_(effort) {}
 
   ChartOutcome run(std::span<const std::uint32_t> triangles) {
     build(triangles);
@@ -70,15 +69,35 @@ class ChartJob {
     result_ = ParamResult{};
     const auto loops = static_cast<int>(chart_.loops.size());
     const bool flattens = loops > 0 && chart_.euler() == 2 - loops;  // genus 0
-    return flattens && (loops == 1 || cone_.angle < kOpenCone) && flatten(outcome);
+    return flattens && (only_darts() || cone_.angle < kOpenCone) && flatten(outcome);
+  }
+
+  // Whether all loops but one are small.
+  bool only_darts() const {
+    int large = 0;
+    for (const std::uint32_t start : chart_.loops) {
+      int edges = 0;
+      std::uint32_t h = start;
+      do {
+        h = chart_.next_border(h);
+        ++edges;
+      } while (h != start && edges <= 16);
+      large += edges > 16;
+    }
+    return large <= 1 && chart_.euler() == 2 - static_cast<int>(chart_.loops.size());
   }
 
   // A seam that may help: from loop to loop, or to where curvature stretches it too much.
   bool cut_open(int cuts) {
-    if (chart_.loops.size() > 1) return join_loops(input_.topology, chart_, partition_);
-    if (chart_.euler() != 1 || cuts >= kMaxCuts || result_.within_bound) return false;
+    const bool noisy = !input_.topology.calm_normals.empty();
+    if (noisy && result_.within_bound && !result_.injective && closings_++ < effort_.cuts &&
+        close_cuts(input_.topology, chart_, result_.crossings, partition_, closed_cuts_)) {
+      return true;
+    }
+    if (!only_darts()) return join_loops(input_.topology, chart_, partition_);
+    if (cuts >= effort_.cuts || result_.within_bound) return false;
     return !result_.offenders.empty() &&
-           cut_to_border(input_.topology, chart_, result_.offenders, partition_);
+           cut_to_border(input_.topology, chart_, result_.offenders, closed_cuts_, partition_);
   }
 
   // Where the border crosses itself in a few places: triangles around one side of each crossing,
@@ -94,7 +113,7 @@ class ChartJob {
       std::size_t begin = outcome.remove.size();
       listed[t] = 1;
       outcome.remove.push_back(t);
-      for (int ring = 0; ring < rings_; ++ring) {
+      for (int ring = 0; ring < effort_.rings; ++ring) {
         const std::size_t end = outcome.remove.size();
         for (; begin < end; ++begin) {
           for (std::uint32_t h = 3 * outcome.remove[begin]; h < 3 * outcome.remove[begin] + 3;
@@ -143,7 +162,7 @@ class ChartJob {
     param.max_stretch = options.max_stretch;
     const bool best = options.preset == ChartPreset::best;
     if (best || (options.preset == ChartPreset::standard && mesh.triangles.size() < kLargeChart)) {
-      param.max_stretch = std::min(options.max_stretch, best ? kBestStretch : kAimedStretch);
+      param.aimed_stretch = std::min(options.max_stretch, best ? kBestStretch : kAimedStretch);
     }
     if (best) param.iterations = kBestIterations;
     param.max_planar_stretch =
@@ -167,7 +186,6 @@ class ChartJob {
   bool flatten(ChartOutcome& outcome) {
     const LocalMesh mesh = chart_.mesh();
     result_ = parameterize(mesh, param_options(mesh), scratch_.workspace);
-    result_.within_bound = result_.distortion.stretch_999 <= input_.options.max_stretch;
     const bool single = chart_.triangles().size() == 1;
     if (!single && !(result_.injective && result_.within_bound)) return false;
     FlatChart& flat = outcome.flat;
@@ -193,7 +211,9 @@ class ChartJob {
   Partition& partition_;
   ChartScratch& scratch_;
   LocalChart& chart_;
-  int rings_;
+  ChartEffort effort_;
+  ClosedCuts closed_cuts_;
+  int closings_ = 0;
   NormalCone cone_;
   ParamResult result_;  // of the last attempt
 };
@@ -201,9 +221,9 @@ class ChartJob {
 }  // namespace
 
 ChartOutcome flatten_chart(const FlattenInput& input, Partition& partition,
-                           std::span<const std::uint32_t> triangles, int rings,
+                           std::span<const std::uint32_t> triangles, const ChartEffort& effort,
                            ChartScratch& scratch) {
-  return ChartJob(input, partition, scratch, rings).run(triangles);
+  return ChartJob(input, partition, scratch, effort).run(triangles);
 }
 
 }  // namespace atlas

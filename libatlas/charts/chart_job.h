@@ -28,10 +28,14 @@ struct ChartOutcome {
   bool failed = false;                // could not be flattened as it was
 };
 
-// Flattens one chart, cutting it open where that helps (seams of its own triangles only). `rings`:
-// how many rings of triangles around a crossing of the border are listed for removal.
+struct ChartEffort {
+  int rings = 1;  // of triangles around a crossing of the border, that are listed for removal
+  int cuts = 3;   // rounds of cutting it open, and as many of closing cuts, before it is divided
+};
+
+// Flattens one chart, cutting it open where that helps (seams of its own triangles only).
 ChartOutcome flatten_chart(const FlattenInput& input, Partition& partition,
-                           std::span<const std::uint32_t> triangles, int rings,
+                           std::span<const std::uint32_t> triangles, const ChartEffort& effort,
                            ChartScratch& scratch);
 
 }  // namespace atlas

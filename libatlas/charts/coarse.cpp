@@ -370,8 +370,8 @@ class CoarseBuilder {
       arc.length += length;
       mesh_.rim_half_edges.push_back(h);
       mesh_.rim_arcs.push_back(static_cast<std::uint32_t>(mesh_.arcs.size()));
-      if (o != kNoIndex && glm::dot(to_dvec(topology_.normals[h / 3]),
-                                    to_dvec(topology_.normals[o / 3])) < crease_cosine_) {
+      if (o != kNoIndex && glm::dot(to_dvec(topology_.calm_normal(h / 3)),
+                                    to_dvec(topology_.calm_normal(o / 3))) < crease_cosine_) {
         arc.crease += length;
       }
     }

@@ -1,6 +1,9 @@
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <queue>
+#include <unordered_map>
 
 #include "libatlas/charts/split.h"
 #include "libatlas/core/glm_bridge.h"
@@ -11,13 +14,21 @@ namespace {
 constexpr double kCreaseDiscount = 4;  // how much shorter a fully folded edge is to cut along
 // Angle defects below this, in radians, are not what stretches a chart beyond its bound.
 constexpr double kLeastDefect = 0.02;
+// Spikes of scan noise: a cone that leans by 20 degrees lacks this.
+constexpr std::size_t kLongestDart = 12;  // edges; what the tip needs is room beside it
+constexpr double kDetour = 4;             // how far around an edge that was cut in vain
+constexpr double kSharpDefect = 0.4;
+constexpr double kFreeShare = 0.001;  // of the area, that no bound is put on
 constexpr double kFar = std::numeric_limits<double>::max();
 
 // Shortest paths along a chart's inner edges, between vertices.
 class EdgePaths {
  public:
-  EdgePaths(const Topology& topology, const LocalChart& chart)
-      : topology_(topology), chart_(chart), out_(chart.positions.size(), kNoIndex) {
+  EdgePaths(const Topology& topology, const LocalChart& chart, const ClosedCuts* avoid = nullptr)
+      : topology_(topology),
+        chart_(chart),
+        avoid_(avoid && !avoid->empty() ? avoid : nullptr),
+        out_(chart.positions.size(), kNoIndex) {
     for (std::uint32_t h = 0; h < chart.opposite.size(); ++h) {
       if (out_[from(h)] == kNoIndex || chart.opposite[h] == kNoIndex) out_[from(h)] = h;
     }
@@ -77,16 +88,79 @@ class EdgePaths {
     return sum;
   }
 
+  template <class Body>
+  void each_neighbour(std::uint32_t v, Body&& body) const {
+    std::uint32_t h = out_[v];
+    do {
+      body(from(next_half_edge(h)));
+      body(from(previous_half_edge(h)));
+      h = chart_.opposite[previous_half_edge(h)];
+    } while (h != kNoIndex && h != out_[v]);
+  }
+
+  // Distances to the border, for way_out().
+  void spread_from_border() {
+    distance_.assign(chart_.positions.size(), kFar);
+    through_.assign(chart_.positions.size(), kNoIndex);
+    for (std::uint32_t v = 0; v < distance_.size(); ++v) {
+      if (on_border(v)) start_at(v);
+    }
+    spread();
+  }
+  double distance(std::uint32_t v) const { return distance_[v]; }
+
+  // The half-edges from v to the nearest border or earlier way out, which others may end on.
+  std::vector<std::uint32_t> way_out(std::uint32_t v) {
+    std::vector<std::uint32_t> path;
+    if (distance_[v] == kFar) return path;
+    for (std::uint32_t w = v; through_[w] != kNoIndex; w = from(through_[w])) {
+      path.push_back(through_[w]);
+    }
+    start_at(v);
+    for (const std::uint32_t h : path) start_at(from(h));
+    spread();
+    return path;
+  }
+
  private:
+  void start_at(std::uint32_t v) {
+    distance_[v] = 0;
+    through_[v] = kNoIndex;
+    heap_.push({0, v});
+  }
+
+  void spread() {
+    while (!heap_.empty()) {
+      const auto [so_far, v] = heap_.top();
+      heap_.pop();
+      if (so_far > distance_[v]) continue;
+      each_inner_edge(v, [&](std::uint32_t h) {
+        const std::uint32_t to = from(next_half_edge(h));
+        const double next = so_far + length(h);
+        if (next >= distance_[to]) return;
+        distance_[to] = next;
+        through_[to] = h;
+        heap_.push({next, to});
+      });
+    }
+  }
+
   glm::dvec3 point(std::uint32_t v) const { return to_glm(chart_.positions[v]); }
+
+  bool avoided(std::uint32_t h) const {
+    if (!avoid_) return false;
+    const auto whole = [&](std::uint32_t i) { return 3 * chart_.triangles()[i / 3] + i % 3; };
+    return avoid_->contains(std::min(whole(h), whole(chart_.opposite[h])));
+  }
 
   double length(std::uint32_t h) const {
     const std::uint32_t s = chart_.triangles()[h / 3],
                         t = chart_.triangles()[chart_.opposite[h] / 3];
     const double fold =
         0.5 * (1 - glm::dot(to_dvec(topology_.normals[s]), to_dvec(topology_.normals[t])));
-    return glm::distance(point(from(h)), point(from(next_half_edge(h)))) /
-           (1 + kCreaseDiscount * fold);
+    const double plain = glm::distance(point(from(h)), point(from(next_half_edge(h)))) /
+                         (1 + kCreaseDiscount * fold);
+    return avoided(h) ? kDetour * plain : plain;
   }
 
   // From a border half-edge the walk meets every inner edge of the fan once.
@@ -101,7 +175,12 @@ class EdgePaths {
 
   const Topology& topology_;
   const LocalChart& chart_;
+  const ClosedCuts* avoid_;
+  using Visit = std::pair<double, std::uint32_t>;
   std::vector<std::uint32_t> out_;  // a half-edge from each vertex, the one on the border if any
+  std::vector<double> distance_;
+  std::vector<std::uint32_t> through_;  // the half-edge that leads to a vertex
+  std::priority_queue<Visit, std::vector<Visit>, std::greater<>> heap_;
 };
 
 void mark_seams(const LocalChart& chart, const std::vector<std::uint32_t>& path,
@@ -131,27 +210,172 @@ bool join_loops(const Topology& topology, const LocalChart& chart, Partition& pa
   return !path.empty();
 }
 
-bool cut_to_border(const Topology& topology, const LocalChart& chart,
-                   std::span<const std::uint32_t> offenders, Partition& partition) {
-  EdgePaths paths(topology, chart);
-  std::uint32_t apex = kNoIndex;
-  double largest = kLeastDefect;
+namespace {
+
+// The vertices that cuts should lead to: the most curved one among the offenders, and further sharp
+// ones until what they sit in makes up for the excess.
+std::vector<std::uint32_t> choose_tips(const Topology& topology, const LocalChart& chart,
+                                       std::span<const std::uint32_t> offenders,
+                                       const EdgePaths& paths) {
+  double excess = 0;
+  for (const std::uint32_t t : chart.triangles()) excess -= kFreeShare * topology.areas[t];
+  const auto area = [&](std::uint32_t t) { return topology.areas[chart.triangles()[t]]; };
+  for (const std::uint32_t t : offenders) excess += area(t);
+  struct Tip {
+    double defect;
+    std::uint32_t vertex;
+  };
+  std::vector<Tip> tips;
+  std::vector<double> around(chart.positions.size(), 0);  // area of the offenders at a vertex
   for (const std::uint32_t t : offenders) {
     for (const std::uint32_t v : chart.corners[t]) {
       if (paths.on_border(v)) continue;
-      const double defect = std::abs(paths.defect(v));
-      if (defect <= largest) continue;
-      largest = defect;
-      apex = v;
+      if (around[v] == 0) tips.push_back({paths.defect(v), v});
+      around[v] += area(t);
     }
   }
-  if (apex == kNoIndex) return false;
-  std::vector<std::uint8_t> role(chart.positions.size(), 0);
-  for (std::uint32_t v = 0; v < role.size(); ++v) role[v] = paths.on_border(v) ? 2 : 0;
-  role[apex] = 1;
-  const std::vector<std::uint32_t> path = paths.shortest(role);
-  mark_seams(chart, path, partition);
-  return !path.empty();
+  std::sort(tips.begin(), tips.end(), [](const Tip& a, const Tip& b) {
+    return a.defect != b.defect ? a.defect > b.defect : a.vertex < b.vertex;
+  });
+  std::vector<std::uint32_t> chosen;
+  std::vector<std::uint8_t> taken(chart.positions.size(), 0);
+  for (const Tip& tip : tips) {
+    if (tip.defect < (chosen.empty() ? kLeastDefect : kSharpDefect) || excess <= 0) break;
+    if (taken[tip.vertex]) continue;
+    chosen.push_back(tip.vertex);
+    excess -= around[tip.vertex];
+    paths.each_neighbour(tip.vertex, [&](std::uint32_t v) { taken[v] = 1; });
+  }
+  return chosen;
+}
+
+}  // namespace
+
+bool cut_to_border(const Topology& topology, const LocalChart& chart,
+                   std::span<const std::uint32_t> offenders, const ClosedCuts& closed,
+                   Partition& partition) {
+  EdgePaths paths(topology, chart, &closed);
+  std::vector<std::uint32_t> tips = choose_tips(topology, chart, offenders, paths);
+  if (tips.empty()) return false;
+  paths.spread_from_border();
+  bool any = false;
+  while (!tips.empty()) {  // the nearest first; those that follow may end on its cut
+    const auto nearest =
+        std::min_element(tips.begin(), tips.end(), [&](std::uint32_t a, std::uint32_t b) {
+          return paths.distance(a) != paths.distance(b) ? paths.distance(a) < paths.distance(b)
+                                                        : a < b;
+        });
+    std::vector<std::uint32_t> path = paths.way_out(*nearest);
+    tips.erase(nearest);
+    if (path.size() > kLongestDart) path.resize(kLongestDart);
+    mark_seams(chart, path, partition);
+    any = any || !path.empty();
+  }
+  return any;
+}
+
+namespace {
+
+// The cuts inside one chart, as a graph over the vertices of the mesh.
+class CutGraph {
+ public:
+  CutGraph(const Topology& topology, const LocalChart& chart, Partition& partition,
+           ClosedCuts& closed)
+      : topology_(topology), partition_(partition), closed_(closed) {
+    for (std::uint32_t i = 0; i < chart.opposite.size(); ++i) {
+      if (chart.opposite[i] != kNoIndex) continue;
+      const std::uint32_t h = 3 * chart.triangles()[i / 3] + i % 3;
+      if (!partition.seam(h)) {
+        node(from(h)).outer = node(to(h)).outer = true;
+      } else if (h < topology.opposite[h]) {
+        edges_.push_back(h);
+      }
+    }
+  }
+
+  // Closes the cuts that touch these triangles, and what of them then leads nowhere.
+  bool zip(std::span<const std::uint32_t> triangles) {
+    bool any = false;
+    for (const std::uint32_t t : triangles) {
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        if (!partition_.seam(h)) continue;
+        node(from(h)).zipped = node(to(h)).zipped = true;
+        close(h);
+        any = true;
+      }
+    }
+    if (any) drop_idle();
+    return any;
+  }
+
+ private:
+  struct Node {
+    std::uint32_t parent = kNoIndex, edges = 0;
+    bool outer = false, zipped = false;
+    std::uint32_t tree_edges = 0, tips = 0;  // of a root: in its tree
+    bool anchored = false;
+  };
+
+  std::uint32_t from(std::uint32_t h) const { return topology_.corner_vertex[h]; }
+  std::uint32_t to(std::uint32_t h) const { return topology_.corner_vertex[next_half_edge(h)]; }
+
+  Node& node(std::uint32_t v) {
+    const auto [at, fresh] = nodes_.try_emplace(v);
+    if (fresh) at->second.parent = v;
+    return at->second;
+  }
+  std::uint32_t root(std::uint32_t v) {
+    while (node(v).parent != v) v = node(v).parent = node(node(v).parent).parent;
+    return v;
+  }
+
+  void close(std::uint32_t h) {
+    closed_.insert(std::min(h, topology_.opposite[h]));
+    for (const std::uint32_t side : {h, topology_.opposite[h]}) {
+      partition_.seams[side / 3] &= static_cast<std::uint8_t>(~(1u << (side % 3)));
+    }
+  }
+
+  // A tree of cuts without a tip of its own, or of one edge away from the border, opens nothing.
+  void drop_idle() {
+    std::erase_if(edges_, [&](std::uint32_t h) { return !partition_.seam(h); });
+    for (const std::uint32_t h : edges_) {
+      ++node(from(h)).edges;
+      ++node(to(h)).edges;
+      node(root(from(h))).parent = root(to(h));
+    }
+    for (const std::uint32_t h : edges_) {
+      Node& tree = node(root(from(h)));
+      ++tree.tree_edges;
+      for (const std::uint32_t v : {from(h), to(h)}) {
+        tree.anchored = tree.anchored || node(v).outer;
+        tree.tips += node(v).edges == 1 && !node(v).outer && !node(v).zipped;
+      }
+    }
+    for (const std::uint32_t h : edges_) {
+      const Node& tree = node(root(from(h)));
+      if (tree.tips == 0 || (tree.tree_edges == 1 && !tree.anchored)) close(h);
+    }
+  }
+
+  const Topology& topology_;
+  Partition& partition_;
+  ClosedCuts& closed_;
+  std::vector<std::uint32_t> edges_;
+  std::unordered_map<std::uint32_t, Node> nodes_;
+};
+
+}  // namespace
+
+bool close_cuts(const Topology& topology, const LocalChart& chart,
+                std::span<const BorderCrossing> crossings, Partition& partition,
+                ClosedCuts& closed) {
+  std::vector<std::uint32_t> triangles;
+  for (const BorderCrossing& crossing : crossings) {
+    triangles.push_back(chart.triangles()[crossing.triangle_a]);
+    triangles.push_back(chart.triangles()[crossing.triangle_b]);
+  }
+  return CutGraph(topology, chart, partition, closed).zip(triangles);
 }
 
 }  // namespace atlas

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <utility>
 
+#include "libatlas/charts/absorb.h"
 #include "libatlas/charts/chart_job.h"
 #include "libatlas/core/parallel.h"
 
@@ -58,8 +59,8 @@ class Flattener {
         auto scratch = pool_.take();
         for (std::size_t i = begin; i < end; ++i) {
           const State& state = charts_[todo_[i]];
-          outcomes[i] =
-              flatten_chart(input_, partition_, state.triangles, removal_rings(state), *scratch);
+          outcomes[i] = flatten_chart(input_, partition_, state.triangles,
+                                      {.rings = removal_rings(state)}, *scratch);
         }
         pool_.give(std::move(scratch));
       });
@@ -67,11 +68,17 @@ class Flattener {
     }
   }
 
-  FlattenResult take_result() {
+  FlattenResult take_result(const Context& context) {
     FlattenResult result;
     result.split_charts = split_;
     for (State& state : charts_) {
-      if (!state.triangles.empty()) result.charts.push_back(std::move(state.flat));
+      if (state.triangles.empty()) continue;
+      state.flat.fragment = state.fragment;
+      result.charts.push_back(std::move(state.flat));
+    }
+    if (split_ > 0 || input_.options.cone_degrees > 0) {
+      const auto scratch = pool_.take();
+      absorb_fragments({input_, partition_, *scratch}, result.charts, context);
     }
     std::sort(result.charts.begin(), result.charts.end(),
               [](const FlatChart& a, const FlatChart& b) {
@@ -86,6 +93,7 @@ class Flattener {
     FlatChart flat;
     int removals = 0;
     bool queued = false;
+    bool fragment = false;
   };
 
   // Rings of triangles to remove around a crossing: a little of the chart's width at first, twice
@@ -183,6 +191,7 @@ class Flattener {
       partition_.chart[t] = id;
       partition_.seams[t] = 0;
       charts_[id].triangles.push_back(t);
+      charts_[id].fragment = true;
     }
     queue(chart);
   }
@@ -218,7 +227,7 @@ FlattenResult flatten_charts(const FlattenInput& input, Partition& partition,
                              const Context& context) {
   Flattener flattener(input, partition);
   flattener.run(context);
-  return flattener.take_result();
+  return flattener.take_result(context);
 }
 
 }  // namespace atlas

@@ -58,7 +58,7 @@ class Smoother {
         glm::distance(to_dvec(topology_.points[topology_.corner_vertex[h]]),
                       to_dvec(topology_.points[topology_.corner_vertex[next_half_edge(h)]]));
     const double cosine =
-        glm::dot(to_dvec(topology_.normals[h / 3]), to_dvec(topology_.normals[o / 3]));
+        glm::dot(to_dvec(topology_.calm_normal(h / 3)), to_dvec(topology_.calm_normal(o / 3)));
     return cosine < crease_cosine_ ? kCreaseWeight * length : length;
   }
 

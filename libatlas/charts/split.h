@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <span>
+#include <unordered_set>
 #include <vector>
 
 #include "libatlas/charts/local_chart.h"
 #include "libatlas/charts/topology.h"
+#include "libatlas/param/injectivity.h"
 
 namespace atlas {
 
@@ -23,9 +25,19 @@ std::vector<std::uint8_t> divide(const Topology& topology, const LocalChart& cha
 // marking its half-edges as seams. False if the chart has fewer than two loops.
 bool join_loops(const Topology& topology, const LocalChart& chart, Partition& partition);
 
+// Edges (by their lower half-edge) that were cut and closed again.
+using ClosedCuts = std::unordered_set<std::uint32_t>;
+
 // Cuts a disc open from its border to the vertex among the offending triangles' (local ids) where
 // curvature is most concentrated; it stays a disc. False if there is none inside.
 bool cut_to_border(const Topology& topology, const LocalChart& chart,
-                   std::span<const std::uint32_t> offenders, Partition& partition);
+                   std::span<const std::uint32_t> offenders, const ClosedCuts& closed,
+                   Partition& partition);
+
+// Closes cuts inside a chart where their banks cross, and those that then lead to no tip: what is
+// left of a cut is a slit that does not reach the border. False if no cut is there.
+bool close_cuts(const Topology& topology, const LocalChart& chart,
+                std::span<const BorderCrossing> crossings, Partition& partition,
+                ClosedCuts& closed);
 
 }  // namespace atlas

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 
+#include "libatlas/charts/noise.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -440,6 +441,7 @@ Result<Topology> build_topology(const MeshView& mesh, const TopologyOptions& opt
   if (context.cancelled()) return Status::cancelled();
   Pieces(topology).run();
   count_nonmanifold_vertices(topology);
+  calm_noise(topology, context);
   return topology;
 }
 

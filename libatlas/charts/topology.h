@@ -32,6 +32,7 @@ struct Topology {
   std::vector<std::uint32_t> corner_vertex;  // 3 a triangle, in working order
   std::vector<std::uint32_t> opposite;       // 1 a half-edge, kNoIndex at borders
   std::vector<Vec3f> normals;                // 1 a triangle, unit; 0 if degenerate
+  std::vector<Vec3f> calm_normals;           // the same without scan noise; empty: there is none
   std::vector<float> areas;                  // 1 a triangle, scaled units squared
   std::vector<std::uint8_t> flags;           // 1 a triangle, of Flag
   std::vector<std::uint32_t> component;      // 1 a triangle; kNoIndex if degenerate
@@ -44,6 +45,9 @@ struct Topology {
 
   std::size_t triangle_count() const { return flags.size(); }
   bool degenerate(std::uint32_t t) const { return flags[t] & kDegenerate; }
+  const Vec3f& calm_normal(std::uint32_t t) const {
+    return calm_normals.empty() ? normals[t] : calm_normals[t];
+  }
   // The corner of the input triangle that working corner h stands for.
   std::uint32_t input_corner(std::uint32_t h) const {
     const std::uint32_t t = h / 3, c = h % 3;

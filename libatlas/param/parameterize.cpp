@@ -74,13 +74,14 @@ bool projection_fits(const LocalMesh& mesh, std::span<const Vec2d> uvs, double b
 void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolver& solver,
              ParamResult& r) {
   solver.iterate(std::max(options.iterations, 1), r.uvs);
+  const double aim = options.aimed_stretch > 0 ? options.aimed_stretch : options.max_stretch;
   for (int round = 0; round < 2; ++round) {
     if (solver.measure(r.uvs).flips > 0) {
       r.unflipped += static_cast<int>(solver.remove_flips({}, r.uvs).turned);
     }
     if (options.squeeze_iterations <= 0 || round > 0) break;
-    if (measure_distortion(mesh, r.uvs).stretch_999 <= options.max_stretch) break;
-    solver.squeeze({options.max_stretch, options.squeeze_iterations, options.squeeze_ratio}, r.uvs);
+    if (measure_distortion(mesh, r.uvs).stretch_999 <= aim) break;
+    solver.squeeze({aim, options.squeeze_iterations, options.squeeze_ratio}, r.uvs);
   }
   finish(mesh, options, r);
   if (!r.injective && r.distortion.flips == 0 && solver.separate_borders(r.uvs)) {

@@ -29,7 +29,8 @@ struct ParamOptions {
   Vec3d axis = {};              // of the projection; (0, 0, 0): the mean normal
   IsometricStart start = {};    // what the isometric solver starts from
   int iterations = 4;           // local/global steps before the bound is looked at
-  int squeeze_iterations = 12;  // reweighted steps at most, when the bound is missed
+  int squeeze_iterations = 12;  // reweighted steps at most, when the aim is missed:
+  double aimed_stretch = 0;     // <= max_stretch; 0: max_stretch
   // The scale at which squeezing measures: the area-preserving one, as in the bound, or whichever
   // suits best, so that the ratio of the largest to the smallest singular value falls.
   bool squeeze_ratio = false;

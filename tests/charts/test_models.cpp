@@ -76,5 +76,21 @@ TEST(Models, NoWorseThanTheFiguresAskedFor) {
   }
 }
 
+TEST(Models, ScanNoiseAddsHalfAsManyChartsAtMost) {
+  if (models().empty()) GTEST_SKIP() << "LIBATLAS_DATA is not set";
+  for (const char* name : {"rocker-arm", "igl-fertility"}) {
+    const Mesh smooth = read(models() / (std::string(name) + ".obj"));
+    const Result<ChartSet> calm = make_charts(smooth.view(), {}, {});
+    ASSERT_TRUE(calm.ok()) << name;
+    const Mesh mesh(noisy_along_normals({name, smooth.positions, smooth.indices}, 0.15));
+    const Result<ChartSet> set = make_charts(mesh.view(), {}, {});
+    ASSERT_TRUE(set.ok()) << name;
+    const ChartFindings found = check_charts(mesh.view(), *set);
+    EXPECT_EQ(found.fault, "") << name;
+    EXPECT_LE(found.stretch_999, 1.25 * (1 + 1e-6)) << name;
+    EXPECT_LE(double(set->charts.size()), 1.5 * double(calm->charts.size())) << name;
+  }
+}
+
 }  // namespace
 }  // namespace atlas::test

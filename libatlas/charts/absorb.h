@@ -1,0 +1,24 @@
+// Internal: gives small charts another chance to be part of a neighbour.
+#pragma once
+
+#include <vector>
+
+#include "libatlas/charts/chart_job.h"
+#include "libatlas/core/context.h"
+
+namespace atlas {
+
+struct AbsorbInput {
+  const FlattenInput& flatten;
+  Partition& partition;
+  ChartScratch& scratch;
+};
+
+// Fragments (FlatChart::fragment), smallest first, are flattened together with the neighbour that
+// they share most border with, the next ones if that fails, and stay joined if the union meets all
+// limits and does not sprawl. Charts that were joined to others are removed from `charts`. In
+// order, so the same for every thread count.
+void absorb_fragments(const AbsorbInput& input, std::vector<FlatChart>& charts,
+                      const Context& context);
+
+}  // namespace atlas
