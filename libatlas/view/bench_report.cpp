@@ -87,11 +87,15 @@ std::string error_data(const BenchResult& r, std::string& plot) {
   std::string data;
   int block = 0;
   for (ShadowMethod method : kAllMethods) {
-    std::string rows;
+    std::vector<const BenchError*> of_method;
     for (const BenchError& e : r.errors)
-      if (e.method == method)
-        rows +=
-            fmt::format("{:.4f} {:.8f} {}\n", e.cpu_median * 1e3, e.visibility.mean, e.interval);
+      if (e.method == method) of_method.push_back(&e);
+    std::stable_sort(of_method.begin(), of_method.end(),
+                     [](const auto* a, const auto* b) { return a->interval < b->interval; });
+    std::string rows;
+    for (const BenchError* e : of_method)
+      rows +=
+          fmt::format("{:.4f} {:.8f} {}\n", e->cpu_median * 1e3, e->visibility.mean, e->interval);
     if (rows.empty()) continue;
     plot += fmt::format(
         "{0}'error.dat' index {1} using 1:2 with linespoints lc {3} title '{2}', '' index {1} "

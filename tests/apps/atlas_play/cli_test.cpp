@@ -1,0 +1,160 @@
+// atlas-play as its users meet it: what goes wrong ends in one clear line and exit code 1.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RunResult {
+  int exit_code = -1;
+  std::string output, errors;
+};
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class AtlasPlay : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    dir_ = fs::temp_directory_path() / fmt::format("atlas_play_{}_{}", info->name(), ::getpid());
+    fs::create_directories(dir_);
+    std::ofstream(dir_ / "roof.obj") << "v -1 1 -1\nv 1 1 -1\nv 0 1 1\nv -2 0 -2\nv 2 0 -2\n"
+                                        "v 0 0 3\nf 3 2 1\nf 6 5 4\n";
+    std::ofstream(dir_ / "points.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+
+  // `environment` as for env(1). Leak checks are for the tests of the library: drivers leak.
+  RunResult run(const std::string& arguments, const std::string& environment = "") const {
+    const std::string command =
+        fmt::format("cd '{}' && env {} LSAN_OPTIONS=detect_leaks=0 '{}' {} >out 2>err",
+                    dir_.string(), environment, ATLAS_PLAY, arguments);
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128, text_of(dir_ / "out"),
+            text_of(dir_ / "err")};
+  }
+
+  // The program's own complaint, the only one of its lines on stderr.
+  static void expect_one_line(const RunResult& r, const std::string& words) {
+    EXPECT_EQ(r.exit_code, 1) << r.errors;
+    EXPECT_EQ(r.errors.rfind("atlas-play: error: ", 0), 0u) << r.errors;
+    EXPECT_EQ(std::count(r.errors.begin(), r.errors.end(), '\n'), 1) << r.errors;
+    EXPECT_NE(r.errors.find(words), std::string::npos) << r.errors;
+  }
+  fs::path dir_;
+};
+
+TEST_F(AtlasPlay, WithoutAnEglDriver) {
+  expect_one_line(run("roof.obj --headless -q", "__EGL_VENDOR_LIBRARY_DIRS=/nonexistent"), "EGL");
+}
+
+TEST_F(AtlasPlay, WithAnOldOpenGl) {
+  expect_one_line(run("roof.obj --headless --software -q", "MESA_GL_VERSION_OVERRIDE=3.3"),
+                  "OpenGL 4.5");
+}
+
+TEST_F(AtlasPlay, WithoutADisplay) {
+  expect_one_line(run("roof.obj -q", "-u DISPLAY -u WAYLAND_DISPLAY"), "try --headless");
+  expect_one_line(run("roof.obj -q", "-u WAYLAND_DISPLAY DISPLAY=:987"), "try --headless");
+}
+
+TEST_F(AtlasPlay, WithoutTriangles) {
+  expect_one_line(run("points.obj --headless -q"), "points.obj: no triangle");
+  expect_one_line(run("absent.obj --headless -q"), "absent.obj");
+}
+
+TEST_F(AtlasPlay, AStaticLightIsOnePass) {
+  const RunResult r =
+      run("roof.obj --headless --software --frames 20 --light fixed:0,1,1 --map 64");
+  EXPECT_EQ(r.exit_code, 0) << r.errors;
+  EXPECT_NE(r.output.find("20 frames"), std::string::npos) << r.output;
+  EXPECT_NE(r.output.find(", 1 shadow maps begun"), std::string::npos) << r.output;
+}
+
+TEST_F(AtlasPlay, ThePlanNamesWhatIsNotCompiled) {
+  const RunResult r = run("roof.obj --plan --software --shading unlit");
+  EXPECT_EQ(r.exit_code, 0) << r.errors;
+  for (const char* words :
+       {"compiled: unlit\n", "no shadow maps", "no texture code", "no baked light"})
+    EXPECT_NE(r.output.find(words), std::string::npos) << words << "\n" << r.output;
+}
+
+// An X server of our own, on a number that it chooses.
+class Xvfb {
+ public:
+  Xvfb() {
+    int ends[2];
+    if (::pipe(ends) != 0) return;
+    pid_ = ::fork();
+    if (pid_ == 0) {
+      const int quiet = ::open("/dev/null", O_WRONLY);
+      ::dup2(ends[1], 3);
+      ::dup2(quiet, 2);
+      ::execlp("Xvfb", "Xvfb", "-displayfd", "3", "-screen", "0", "320x240x24", nullptr);
+      ::_exit(127);
+    }
+    ::close(ends[1]);
+    char c = 0;
+    while (::read(ends[0], &c, 1) == 1 && c != '\n') display_ += c;
+    ::close(ends[0]);
+  }
+  ~Xvfb() { kill(); }
+  Xvfb(const Xvfb&) = delete;
+  Xvfb& operator=(const Xvfb&) = delete;
+  bool runs() const { return !display_.empty(); }
+  std::string environment() const { return "-u WAYLAND_DISPLAY DISPLAY=:" + display_; }
+  void kill() {
+    if (pid_ <= 0) return;
+    ::kill(pid_, SIGKILL);
+    ::waitpid(pid_, nullptr, 0);
+    pid_ = -1;
+  }
+
+ private:
+  pid_t pid_ = -1;
+  std::string display_;
+};
+
+TEST_F(AtlasPlay, AWindowShowsItsPanelAndCloses) {
+  const Xvfb server;
+  if (!server.runs()) GTEST_SKIP() << "Xvfb is not installed";
+  const RunResult r =
+      run("roof.obj --width 160 --height 120 --map 64 --close-after 5 --screenshot w.png --debug",
+          server.environment());
+  EXPECT_EQ(r.exit_code, 0) << r.errors;
+  EXPECT_NE(r.output.find("5 frames"), std::string::npos) << r.output;
+  EXPECT_TRUE(fs::exists(dir_ / "w.png"));
+}
+
+TEST_F(AtlasPlay, ADisplayThatGoes) {
+  Xvfb server;
+  if (!server.runs()) GTEST_SKIP() << "Xvfb is not installed";
+  RunResult r;
+  std::thread player(
+      [&] { r = run("roof.obj --width 160 --height 120 --map 64", server.environment()); });
+  // The plan is printed once the window is open.
+  for (int i = 0; i < 600 && text_of(dir_ / "out").find("compiled") == std::string::npos; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  server.kill();
+  player.join();
+  expect_one_line(r, "the display server has gone");
+}
+
+}  // namespace
