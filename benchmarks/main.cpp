@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 
 #include "benchmarks/rivals/rivals.h"
+#include "benchmarks/support/callgrind.h"
 #include "benchmarks/support/staged.h"
 
 namespace {
@@ -16,10 +18,11 @@ using namespace atlas::bench;
 struct Arguments {
   std::vector<std::string> work{"cabin:20000", "sphere:20000"}, stages, rivals;
   std::string out;
-  int repeats = 1, threads = 0, page = 2048;
+  std::vector<int> threads;  // none: as many as there are cores
+  int repeats = 1, page = 2048;
   std::uint32_t pages = 8;
   double timeout = 60, texel = 0;
-  bool standard_only = false;
+  bool standard_only = false, instructions = false;
   std::uint64_t fit_from = 10000;
 };
 
@@ -47,7 +50,9 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--repeats,-r", a.repeats, "the least CPU time counts")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  app.add_option("--threads", a.threads, "0: as many as there are cores")->capture_default_str();
+  app.add_option("--threads", a.threads, "one run for each number (default: all cores)")
+      ->check(CLI::Range(1, 1024));
+  app.add_flag("--instructions", a.instructions, "count them with callgrind, on one thread");
   app.add_option("--atlases", a.pages, "pages of the budget")->capture_default_str();
   app.add_option("--atlas-size", a.page, "their largest side, texels")->capture_default_str();
   app.add_option("--texel", a.texel, "scene units; 0: as fine as the budget")
@@ -75,6 +80,63 @@ int fail(const Status& status) {
   return 1;
 }
 
+Result<std::vector<Rival>> parse_rivals(const Arguments& a) {
+  std::vector<Rival> rivals;
+  for (const std::string& text : a.rivals) {
+    Result<Rival> rival = parse_rival(text);
+    if (!rival.ok()) return rival.status();
+    rival->timeout = a.timeout;
+    rival->page = a.page;
+    rivals.push_back(*rival);
+  }
+  return rivals;
+}
+
+// One mesh through all stages that are wanted, once for each number of threads.
+Status run_work(const Arguments& a, const std::string& work, const std::vector<Rival>& rivals,
+                Results& results) {
+  Result<LoadedScene> scene = make_work(work, {});
+  if (!scene.ok()) return scene.status();
+  const std::vector<int> counts = a.threads.empty() ? std::vector{0} : a.threads;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    Context context;
+    context.threads = counts[i];
+    LoadedScene loaded = i + 1 < counts.size() ? *scene : std::move(*scene);
+    Staged staged(work, std::move(loaded), context);
+    staged.threads = counts[i];
+    staged.settings.pages = a.pages;
+    staged.settings.page_size = a.page;
+    staged.settings.texel = a.texel;
+    const auto done = [&](Row row) {
+      fmt::print("{}\n", line(row));
+      std::fflush(stdout);
+      results.rows.push_back(std::move(row));
+    };
+    run_stages(a, {staged, a.repeats, !a.standard_only, done}, rivals);
+  }
+  return {};
+}
+
+int run_instructions(const Arguments& a, int argc, char** argv) {
+  std::vector<std::string> arguments;
+  for (int i = 0; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--out" || word == "-o")
+      ++i;
+    else if (word != "--instructions")
+      arguments.push_back(word);
+  }
+  arguments.insert(arguments.end(), {"--threads", "1"});
+  Result<Results> counted = count_instructions(arguments);
+  if (!counted.ok()) return fail(counted.status());
+  counted->machine = describe_machine(argc, argv);
+  for (const Row& row : counted->rows)
+    fmt::print("{} {:.4g} instructions\n", row.key(), row.instructions);
+  if (a.out.empty()) return 0;
+  const Status s = save(*counted, a.out);
+  return s.ok() ? 0 : fail(s);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -82,38 +144,20 @@ int main(int argc, char** argv) {
   Arguments a;
   describe(app, a);
   CLI11_PARSE(app, argc, argv);
-  std::vector<Rival> rivals;
-  for (const std::string& text : a.rivals) {
-    Result<Rival> rival = parse_rival(text);
-    if (!rival.ok()) return fail(rival.status());
-    rival->timeout = a.timeout;
-    rival->page = a.page;
-    rivals.push_back(*rival);
-  }
-  Context context;
-  context.threads = a.threads;
+  if (a.instructions) return run_instructions(a, argc, argv);
+  const Result<std::vector<Rival>> rivals = parse_rivals(a);
+  if (!rivals.ok()) return fail(rivals.status());
   Results results;
   results.machine = describe_machine(argc, argv);
-  int failures = 0;
   for (const std::string& work : a.work) {
-    Result<LoadedScene> scene = make_work(work, context);
-    if (!scene.ok()) return fail(scene.status());
-    Staged staged(work, std::move(*scene), context);
-    staged.settings.pages = a.pages;
-    staged.settings.page_size = a.page;
-    staged.settings.texel = a.texel;
-    const auto done = [&](Row row) {
-      fmt::print("{}\n", line(row));
-      std::fflush(stdout);
-      failures += !row.failure.empty() && row.stage != "unwrap";
-      results.rows.push_back(std::move(row));
-    };
-    run_stages(a, {staged, a.repeats, !a.standard_only, done}, rivals);
+    if (const Status s = run_work(a, work, *rivals, results); !s.ok()) return fail(s);
     if (a.out.empty()) continue;  // after every mesh, so that an interrupted run leaves something
     results.fits = fit_exponents(results.rows, a.fit_from);
     if (const Status s = save(results, a.out); !s.ok()) return fail(s);
   }
   for (const Fit& f : fit_exponents(results.rows, a.fit_from))
     fmt::print("{:<11} {:<28} {} ~ triangles^{:.2f}\n", f.stage, f.work, f.quantity, f.exponent);
-  return failures ? 1 : 0;
+  for (const Row& row : results.rows)
+    if (!row.failure.empty() && row.stage != "unwrap") return 1;
+  return 0;
 }

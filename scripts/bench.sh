@@ -1,15 +1,22 @@
 #!/bin/sh
-# Builds the benchmark programs, runs them and draws the page.
+# Builds the benchmark programs, runs them and draws the pages out/bench/index.html and
+# stability.html. Needs no hand; goes on where a part fails, and says so in the end.
 # Usage: scripts/bench.sh [full|small]     small: a few minutes, to see that all works
-#   full  (default) to 3 million triangles; about half an hour on two cores
-# LIBATLAS_RIVALS: rivals, one a line, each "name=command {in} {out}" (benchmarks/rivals/README.md).
-# LIBATLAS_MODELS: a folder of OBJ files for the stability page. LIBATLAS_BENCH_BUILD: a build to use
-# as it is. LIBATLAS_BENCH_DOCS=1 copies tables and plots into docs/.
+#   full  (default) to 3 million triangles; less than half an hour on two cores
+# LIBATLAS_BENCH_DOCS=1   copies tables, plots and JSON into docs/generated/, nowhere else
+# LIBATLAS_MODELS         a folder of OBJ files: charts of each, and the stability page
+# LIBATLAS_RIVALS         rivals, one a line, each "name=command {in} {out}"; without it those are
+#                         entered that are found: LIBATLAS_XATLAS (a clone of xatlas), LIBATLAS_NPM
+#                         (a folder with node_modules/xatlas-web), blender on the path
+# LIBATLAS_RIVAL_TIMEOUT  seconds a mesh (60)
+# LIBATLAS_BENCH_BUILD    a build to use as it is
 set -eu
 cd "$(dirname "$0")/.."
 size="${1:-full}"
 out="out/bench"
+results="$out/results"
 build="${LIBATLAS_BENCH_BUILD:-}"
+case "$size" in full | small) ;; *) echo "usage: scripts/bench.sh [full|small]" >&2; exit 2 ;; esac
 if [ -z "$build" ]; then
   [ -n "${LIBATLAS_SKIP_DEPS:-}" ] || scripts/install-deps.sh all
   cmake --preset release -DLIBATLAS_BUILD_BENCHMARKS=ON >/dev/null
@@ -17,47 +24,89 @@ if [ -z "$build" ]; then
   build=build
 fi
 bin="$build/benchmarks"
-mkdir -p "$out"
-failed=0
-run() { echo "== $*"; "$@" || failed=1; }
+rm -rf "$out"
+mkdir -p "$results" "$out/plots"
+started=$(date +%s)
+failed=""
+run() {
+  echo "== $*"
+  from=$(date +%s)
+  "$@" || failed="$failed
+  $*"
+  echo "== $(($(date +%s) - from)) s"
+}
 
-case "$size" in
-  small)
-    sweep="cabin:20000 scan:20000"; budget="--atlases 2 --atlas-size 1024"; repeats=1
-    sizes="cabin:40000 scan:40000 cabin:20000"; sizes_budget="$budget"
-    rivals="sphere:20000 assembly:20000"
-    leak="cabin:50000"; texels="20 10 5"; full="" ;;
-  full)
-    sweep="cabin:100000 scan:100000"; budget="--atlases 8 --atlas-size 2048"; repeats=2
-    sizes="cabin:10000 cabin:30000 cabin:300000 cabin:1000000 cabin:3000000 \
-           scan:10000 scan:30000 scan:300000 scan:1000000"
-    sizes_budget="--atlases 50"
-    rivals="sphere:100000 assembly:100000 genus:100000 scan:1000000 terrain:1000000 assembly:1000000"
-    leak="cabin:1000000"; texels="20 10 5 2.5"; full="--full" ;;
-  *) echo "usage: scripts/bench.sh [full|small]" >&2; exit 2 ;;
-esac
+if [ "$size" = small ]; then
+  sweep="cabin:20000 scan:20000"; budget="--atlases 2 --atlas-size 1024"; repeats=1
+  sizes="cabin:40000 scan:40000 cabin:20000"; sizes_budget="$budget"
+  threads="scan:40000"; counted="scan:5000"
+  rivals="sphere:20000 assembly:20000"
+  leak="cabin:50000"; texels="20 10 5"; full=""; shadows="--small"
+else
+  sweep="cabin:100000 scan:100000"; budget="--atlases 8 --atlas-size 2048"; repeats=2
+  sizes="cabin:10000 cabin:300000 cabin:1000000 cabin:3000000 scan:30000 scan:300000 scan:1000000"
+  sizes_budget="--atlases 50"
+  threads="cabin:300000"; counted="scan:20000"
+  rivals="sphere:100000 assembly:100000 genus:100000 scan:1000000 terrain:1000000 assembly:1000000"
+  leak="cabin:1000000"; texels="20 10 5 2.5"; full="--full"; shadows=""
+fi
 
-models=""
-if [ -n "${LIBATLAS_MODELS:-}" ]; then models="--models $LIBATLAS_MODELS/*.obj"; fi
+# Rivals as arguments: one a line, each "name=command {in} {out}".
+rival_list() {
+  if [ -n "${LIBATLAS_RIVALS:-}" ]; then
+    echo "$LIBATLAS_RIVALS"
+    return
+  fi
+  if [ -n "${LIBATLAS_XATLAS:-}" ] &&
+     c++ -O2 -std=c++17 -I "$LIBATLAS_XATLAS/source/xatlas" benchmarks/rivals/xatlas_unwrap.cpp \
+         "$LIBATLAS_XATLAS/source/xatlas/xatlas.cpp" -lpthread -o "$out/xatlas_unwrap" >&2; then
+    echo "xatlas=$PWD/$out/xatlas_unwrap {in} {out}"
+  else
+    echo "xatlas=echo 'not found: set LIBATLAS_XATLAS to a clone of it' >&2; exit 1; {in} {out}"
+  fi
+  if [ -n "${LIBATLAS_NPM:-}" ]; then
+    echo "xatlas (WebAssembly)=NODE_PATH='$LIBATLAS_NPM/node_modules' node $PWD/benchmarks/rivals/xatlas_unwrap.cjs {in} {out}"
+  fi
+  blender="blender -b --factory-startup -P $PWD/benchmarks/rivals/blender_unwrap.py --python-exit-code 1"
+  command -v blender >/dev/null || blender="echo 'not installed' >&2; exit 1; :"
+  echo "Blender Smart UV=$blender -- smart {in} {out}"
+  echo "Blender Lightmap Pack=$blender -- lightmap {in} {out}"
+}
+
 # shellcheck disable=SC2086  # the lists are meant to be split
 {
-  run "$bin/atlas-bench" --work $sweep $budget --repeats "$repeats" -o "$out/settings.json"
   run "$bin/atlas-bench" --work $sizes --standard $sizes_budget \
-      --stages baseline charts downsizing simplify export -o "$out/sizes.json"
-  run "$bin/atlas-bench-leak" --work "$leak" --texel $texels -o "$out/leak.json"
-  run "$bin/atlas-bench-stability" --failures $full $models -o "$out/stability.json"
+      --stages baseline charts export -o "$results/sizes.json"
+  run "$bin/atlas-bench" --work $threads --standard $sizes_budget --threads 1 2 \
+      --stages baseline charts downsizing packing baking simplify export \
+      -o "$results/threads.json"
+  run "$bin/atlas-bench" --work $sweep $budget --repeats "$repeats" -o "$results/settings.json"
+  run "$bin/atlas-bench" --work $counted --atlases 1 --atlas-size 512 --instructions \
+      -o "$results/instructions.json"
+  run "$bin/atlas-bench-leak" --work "$leak" --texel $texels \
+      --picture "$out/plots/light_leak.png" -o "$results/leak.json"
+  [ ! -x "$bin/atlas-bench-shadows" ] ||
+    run "$bin/atlas-bench-shadows" $shadows -o "$results/shadows.json"
   set --
-  if [ -n "${LIBATLAS_RIVALS:-}" ]; then
-    while IFS= read -r rival; do [ -z "$rival" ] || set -- "$@" --rival "$rival"; done <<END
-$LIBATLAS_RIVALS
-END
+  if [ -n "${LIBATLAS_MODELS:-}" ]; then
+    for model in "$LIBATLAS_MODELS"/*.obj; do set -- "$@" "file:$model"; done
+    run "$bin/atlas-bench" --work "$@" --standard --stages baseline charts \
+        -o "$results/models.json"
+    set -- --models "$LIBATLAS_MODELS"/*.obj
   fi
-  run "$bin/atlas-bench" --work $rivals --stages unwrap "$@" -o "$out/rivals.json"
+  run "$bin/atlas-bench-stability" --failures $full "$@" -o "$results/stability.json"
+  set --
+  rival_list >"$out/rivals.txt"
+  while IFS= read -r rival; do [ -z "$rival" ] || set -- "$@" --rival "$rival"; done <"$out/rivals.txt"
+  run "$bin/atlas-bench" --work $rivals --stages unwrap "$@" \
+      --timeout "${LIBATLAS_RIVAL_TIMEOUT:-60}" -o "$results/rivals.json"
 }
-"$bin/atlas-bench-page" "$out/settings.json" "$out/sizes.json" "$out/leak.json" \
-  "$out/stability.json" "$out/rivals.json" -o "$out"
+run "$bin/atlas-bench-page" "$results"/*.json -o "$out"
 if [ -n "${LIBATLAS_BENCH_DOCS:-}" ]; then
-  cp "$out/performance.md" "$out/stability.md" docs/
-  mkdir -p docs/plots && cp "$out"/plots/*.svg docs/plots/
+  mkdir -p docs/generated
+  rm -rf docs/generated/plots docs/generated/results
+  cp "$out/performance.md" "$out/stability.md" docs/generated/
+  cp -r "$out/plots" "$results" docs/generated/
 fi
-exit $failed
+echo "== all: $(($(date +%s) - started)) s after the build; $out/index.html, $out/stability.html"
+[ -z "$failed" ] || { echo "failed:$failed" >&2; exit 1; }

@@ -18,6 +18,10 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--time", o.time_relative, "of CPU time")->capture_default_str();
   app.add_option("--time-least", o.time_absolute, "seconds")->capture_default_str();
+  app.add_option("--instructions", o.instructions_relative, "of counted instructions")
+      ->capture_default_str();
+  app.add_option("--instructions-least", o.instructions_absolute, "and the absolute one")
+      ->capture_default_str();
   app.add_option("--memory", o.memory_relative, "of memory")->capture_default_str();
   app.add_option("--memory-least", o.memory_absolute, "MiB")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
@@ -28,8 +32,9 @@ int main(int argc, char** argv) {
     return 2;
   }
   const auto found = compare(*base, *head, o);
-  constexpr const char* kNames[] = {"quality", "missing", "failed", "time", "memory"};
-  for (const Regression& r : found) fmt::print("{:<8} {}\n", kNames[r.kind], r.what);
+  constexpr const char* kNames[] = {"quality",      "missing", "failed",
+                                    "instructions", "time",    "memory"};
+  for (const Regression& r : found) fmt::print("{:<12} {}\n", kNames[r.kind], r.what);
   fmt::print("{} rows and {} checks compared, {} regressions\n", base->rows.size(),
              base->checks.size(), found.size());
   return found.empty() ? 0 : 1;

@@ -7,7 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "libatlas/core/glm_bridge.h"
+#include "benchmarks/light_leak/baked_surface.h"
+#include "benchmarks/light_leak/picture.h"
 
 namespace atlas::bench {
 namespace {
@@ -38,20 +39,6 @@ class Errors {
   std::vector<float> errors_;
 };
 
-glm::dvec3 lookup(const Image8& page, Vec2d at) {
-  const double x = at.x - 0.5, y = at.y - 0.5;
-  const int i = int(std::floor(x)), j = int(std::floor(y));
-  const double s = x - i, t = y - j;
-  glm::dvec3 sum(0);
-  for (int k = 0; k < 4; ++k) {
-    const int px = std::clamp(i + k % 2, 0, page.width - 1);
-    const int py = std::clamp(j + k / 2, 0, page.height - 1);
-    const std::uint8_t* texel = page.at(px, py);
-    sum += (k % 2 ? s : 1 - s) * (k / 2 ? t : 1 - t) * glm::dvec3(texel[0], texel[1], texel[2]);
-  }
-  return sum / 255.0;
-}
-
 // Bakes the pages that hold charts of the object.
 Status bake_pages_of(Staged& staged, const std::vector<bool>& wanted, BakeMethod method,
                      std::vector<Image8>& pages) {
@@ -76,47 +63,6 @@ Status bake_pages_of(Staged& staged, const std::vector<bool>& wanted, BakeMethod
   return {};
 }
 
-// Light and atlas at any point of a triangle.
-class Surface {
- public:
-  Surface(const Staged& staged, const std::vector<Image8>& pages, std::uint32_t triangle)
-      : staged_(staged),
-        placement_(staged.layout->placements[staged.charts->triangle_chart[triangle]]),
-        page_(pages[std::size_t(placement_.page)]),
-        light_(staged.sampler->prepare(triangle, 0)) {
-    const Scene& scene = staged.scene();
-    for (int k = 0; k < 3; ++k) {
-      corner[k] = to_dvec(scene.positions[scene.indices[3 * triangle + k]]);
-      uv_[k] = to_glm(staged.charts->uvs[staged.charts->triangle_uv[3 * triangle + k]]);
-    }
-  }
-
-  glm::dvec3 at(glm::dvec3 b) const { return b.x * corner[0] + b.y * corner[1] + b.z * corner[2]; }
-  glm::dvec3 input(glm::dvec3 b) const {
-    const Vec3f v = LuminanceSampler::sample(light_, float(b.x), float(b.y), float(b.z));
-    return to_dvec(staged_.tone->display(v));
-  }
-  glm::dvec3 baked(glm::dvec3 b) const {
-    const glm::dvec2 uv = b.x * uv_[0] + b.y * uv_[1] + b.z * uv_[2];
-    return lookup(page_, page_texel(placement_, from_glm(uv)));
-  }
-  double texel() const {
-    return 1 / std::sqrt(placement_.texels_per_unit.x * placement_.texels_per_unit.y);
-  }
-  double area() const {
-    return 0.5 * glm::length(glm::cross(corner[1] - corner[0], corner[2] - corner[0]));
-  }
-
-  std::array<glm::dvec3, 3> corner;
-
- private:
-  const Staged& staged_;
-  const ChartPlacement& placement_;
-  const Image8& page_;
-  LuminanceSampler::Triangle light_;
-  std::array<glm::dvec2, 3> uv_;
-};
-
 // Centres of the n² equal parts of a triangle, as barycentric coordinates.
 template <class Visit>
 void each_part(int n, const Visit& visit) {
@@ -137,7 +83,7 @@ struct Probe {
   Errors in_band, in_fixed, everywhere;
 
   // Every point stands for (nearly) the same area: parts are as many as the area asks for.
-  void visit(const Surface& s, double spacing) {
+  void visit(const BakedSurface& s, double spacing) {
     const double squares = std::ceil(s.area() / (spacing * spacing));
     const int parts = int(std::clamp(std::round(std::sqrt(squares)), 1.0, 400.0));
     each_part(parts, [&](glm::dvec3 b) {
@@ -181,7 +127,7 @@ Result<Leak> measure_leak(Staged& staged, const LeakOptions& options) {
   Leak leak;
   double area = 0;
   for (const std::uint32_t t : edge.triangles) {
-    const Surface s(staged, pages, t);
+    const BakedSurface s(staged, pages, t);
     area += s.area();
     leak.texel += s.area() * s.texel();
   }
@@ -194,10 +140,12 @@ Result<Leak> measure_leak(Staged& staged, const LeakOptions& options) {
   const NearPoints near(edge.points, std::max(band, fixed));
   Probe probe{near, band, fixed, {}, {}, {}};
   const double spacing = options.sampling * texel;
-  for (const std::uint32_t t : edge.triangles) probe.visit(Surface(staged, pages, t), spacing);
+  for (const std::uint32_t t : edge.triangles) probe.visit(BakedSurface(staged, pages, t), spacing);
   leak.band = probe.in_band.summary();
   leak.fixed = probe.in_fixed.summary();
   leak.whole = probe.everywhere.summary();
+  if (options.picture > 0)
+    leak.picture = draw_patch(staged, pages, edge, {options.picture / unit, options.pixels});
   return leak;
 }
 

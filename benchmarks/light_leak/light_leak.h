@@ -1,6 +1,7 @@
 // The paper's figures 1 to 3: light that leaks across a shadow's edge, against the texel's size.
 #pragma once
 
+#include "benchmarks/light_leak/picture.h"
 #include "benchmarks/light_leak/shadow_edge.h"
 #include "benchmarks/support/staged.h"
 #include "libatlas/bake/bake.h"
@@ -15,6 +16,8 @@ struct LeakOptions {
   double sampling = 0.125;   // distance of the sample points, texels
   double threshold = 2.0 / 255;  // of downsizing
   BakeMethod method = BakeMethod::least_squares;
+  double picture = 0;  // side of the patch that is drawn, metres; 0: none
+  int pixels = 240;    // of that side
 };
 
 // Errors at points of the object against the input's light there, both tone-mapped, sRGB-encoded,
@@ -31,6 +34,7 @@ struct Leak {
   std::size_t pages = 0;
   double edge_length = 0;         // of the shadow's edge, metres
   LeakErrors band, fixed, whole;  // within band_texels; within fixed_band; the whole object
+  LeakPicture picture;
 };
 
 // `staged` holds the scene; charts and light are computed once and kept, sizes and layout anew.

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "benchmarks/light_leak/light_leak.h"
+#include "libatlas/image/image_io.h"
 
 namespace {
 
@@ -11,12 +12,13 @@ using namespace atlas;
 using namespace atlas::bench;
 
 struct Arguments {
-  std::string work = "cabin:300000", out;
+  std::string work = "cabin:300000", out, picture;
   std::vector<double> texels{20, 10, 5, 2.5};
   LeakOptions leak;
   std::uint32_t pages = 50;
   std::int32_t page = 2048;
   bool average = false;
+  double patch = 0.16;
 };
 
 void describe(CLI::App& app, Arguments& a) {
@@ -34,6 +36,8 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--atlases", a.pages, "")->capture_default_str();
   app.add_option("--atlas-size", a.page, "")->capture_default_str();
   app.add_flag("--average", a.average, "bake as published, without least squares");
+  app.add_option("--picture", a.picture, "PNG of a patch: the input, then each texel");
+  app.add_option("--patch", a.patch, "side of that patch, metres")->capture_default_str();
   app.add_option("--out,-o", a.out, "JSON file to write");
 }
 
@@ -63,6 +67,8 @@ int main(int argc, char** argv) {
     return 1;
   };
   if (a.average) a.leak.method = BakeMethod::average;
+  if (!a.picture.empty()) a.leak.picture = a.patch;
+  std::vector<Image8> tiles;
   const Context context;
   Result<LoadedScene> scene = make_work(a.work, context);
   if (!scene.ok()) return fail(scene.status());
@@ -88,7 +94,12 @@ int main(int argc, char** argv) {
     full.memory_mib = row.memory_mib;
     fmt::print("{}\n", line(full));
     results.rows.push_back(std::move(full));
+    if (a.picture.empty()) continue;
+    if (tiles.empty()) tiles.push_back(std::move(leak.picture.input));
+    tiles.push_back(std::move(leak.picture.baked));
   }
+  if (!a.picture.empty())
+    if (const Status s = write_png(a.picture, side_by_side(tiles), {}); !s.ok()) return fail(s);
   if (a.out.empty()) return 0;
   if (const Status s = save(results, a.out); !s.ok()) return fail(s);
   return 0;

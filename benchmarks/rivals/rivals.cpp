@@ -7,6 +7,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include "libatlas/core/clock.h"
 #include "libatlas/pipeline/export_world.h"
@@ -40,6 +41,15 @@ std::string filled_in(std::string command, const std::string& key, const fs::pat
   for (std::size_t at; (at = command.find(key)) != std::string::npos;)
     command.replace(at, key.size(), quoted(path.string()));
   return command;
+}
+
+// ": " and the last line of a program's complaints, if it made any.
+std::string last_line(const fs::path& path) {
+  std::ifstream file(path);
+  std::string last;
+  for (std::string text; std::getline(file, text);)
+    if (!text.empty()) last = ": " + text.substr(0, 120);
+  return last;
 }
 
 Row unwrap_row(const StageRun& run, const std::string& name) {
@@ -88,8 +98,9 @@ void bench_rival(const StageRun& run, const Rival& rival) {
   }
   const std::string command = filled_in(filled_in(rival.command, "{in}", in), "{out}", out);
   const double cpu = children_cpu(), wall = wall_seconds();
-  const int code = std::system(fmt::format("timeout -k 2 {} sh -c {} >/dev/null 2>&1 </dev/null",
-                                           rival.timeout, quoted(command))
+  const fs::path complaints = folder.path / "stderr.txt";
+  const int code = std::system(fmt::format("timeout -k 2 {} sh -c {} >/dev/null 2>{} </dev/null",
+                                           rival.timeout, quoted(command), quoted(complaints))
                                    .c_str());
   row.cpu_seconds = children_cpu() - cpu;
   row.wall_seconds = wall_seconds() - wall;
@@ -97,7 +108,7 @@ void bench_rival(const StageRun& run, const Rival& rival) {
   if (exit_code == 124 || exit_code == 137)
     row.failure = fmt::format("timed out after {} s", rival.timeout);
   else if (exit_code != 0)
-    row.failure = fmt::format("ended with code {}", exit_code);
+    row.failure = fmt::format("ended with code {}{}", exit_code, last_line(complaints));
   else
     judge(out, rival.page, row);
   run.done(row);

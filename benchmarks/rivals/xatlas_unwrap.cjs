@@ -1,6 +1,7 @@
 // Unwraps an OBJ with xatlas compiled to WebAssembly (npm package xatlas-web) under Node:
 //   NODE_PATH=FOLDER/node_modules node xatlas_unwrap.cjs IN.obj OUT.obj
-// WebAssembly runs slower than native code: say so beside the figures.
+// WebAssembly runs slower than native code: say so beside the figures. The package takes 16-bit
+// indices, so meshes of more than 65536 vertices are refused here; xatlas_unwrap.cpp has no such limit.
 const fs = require('fs');
 const path = require('path');
 
@@ -10,6 +11,11 @@ for (const line of fs.readFileSync(source, 'utf8').split('\n')) {
   const words = line.trim().split(/\s+/);
   if (words[0] === 'v') positions.push(+words[1], +words[2], +words[3]);
   if (words[0] === 'f') for (const w of words.slice(1, 4)) indices.push(parseInt(w) - 1);
+}
+
+if (positions.length / 3 > 65536) {
+  console.error('xatlas-web takes 16-bit indices: at most 65536 vertices');
+  process.exit(3);
 }
 
 // The package is built for browsers only; it asks for a window and no Node process when it starts.
@@ -26,7 +32,7 @@ globalThis.process = node;
 function unwrap() {
   xatlas.createAtlas();
   const mesh = xatlas.createMesh(positions.length / 3, indices.length, false, false);
-  xatlas.HEAPU32.set(indices, mesh.indexOffset / 4);
+  xatlas.HEAPU16.set(indices, mesh.indexOffset / 2);
   xatlas.HEAPF32.set(positions, mesh.positionOffset / 4);
   if (xatlas.addMesh() !== 0) throw new Error('xatlas refuses the mesh');
   xatlas.generateAtlas();

@@ -17,9 +17,6 @@ struct StabilityOptions {
   std::vector<std::filesystem::path> models;  // meshes for scale, offset and rotation, if any
 };
 
-// One or several of the groups below, in this order.
-std::vector<Check> all_checks(const StabilityOptions& options, const Context& context);
-
 // Adds rows to a list; every function below takes one.
 class CheckList {
  public:
@@ -32,12 +29,18 @@ class CheckList {
   const StabilityOptions& options;
   const Context& context;
   std::vector<Check> checks;
+  std::vector<Row> rows;  // figures without a bound, of the stage with the group's name
 };
 
+// All groups below.
+void all_checks(CheckList& list);
+
+void check_degradation(CheckList& list);      // from which stress on methods degrade
 void check_scale_and_place(CheckList& list);  // units, offsets, rotations
 void check_bad_triangles(CheckList& list);    // needles, fans, coincident vertices
 void check_cones(CheckList& list);            // cone limits, 1/cos, cosines at the limit
 void check_closed_forms(CheckList& list);     // cylinder, cone, Milnor's cap
+void check_conditioning(CheckList& list);     // linear systems, flips, fallbacks and their cost
 void check_light(CheckList& list);            // luminance extremes, tone curves, outputs
 void check_downsizing(CheckList& list);       // thresholds 0, tiny, huge
 void check_blend(CheckList& list);            // SLERP weights from 1e-18 to pi

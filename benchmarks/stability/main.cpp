@@ -22,7 +22,10 @@ int main(int argc, char** argv) {
   results.machine = describe_machine(argc, argv);
   Context context;
   context.warn = [](std::string_view text) { fmt::print(stderr, "{}\n", text); };
-  results.checks = all_checks(options, context);
+  CheckList list(options, context);
+  all_checks(list);
+  results.checks = std::move(list.checks);
+  results.rows = std::move(list.rows);
   int failures = 0;
   for (const Check& c : results.checks) {
     failures += !c.holds();
@@ -30,6 +33,8 @@ int main(int argc, char** argv) {
     fmt::print("{} {:<13} {:<46} {:<46} {:>11.4g} <= {:<9.4g} {}\n", c.holds() ? "   " : "BAD",
                c.group, c.stress, c.quantity, c.value, c.bound, c.note);
   }
+  for (const Row& row : results.rows)
+    if (!failures_only) fmt::print("{}\n", line(row));
   fmt::print("{} checks, {} bounds exceeded\n", results.checks.size(), failures);
   if (!out.empty()) {
     if (const Status s = save(results, out); !s.ok()) {

@@ -44,7 +44,7 @@ std::vector<Setting> settings(const StageRun& run) {
 
 void stage_rows(const StageRun& run, const Setting& setting, const ExportReport& report) {
   for (const StageReport& stage : report.stages) {
-    Row row = run.staged.row("export/" + stage.stage, setting.name, false);
+    Row row = run.staged.row("export/" + stage.stage, setting.name, setting.preset);
     row.size_in = stage.size_in;
     row.size_out = stage.size_out;
     row.unit = stage.unit;

@@ -20,6 +20,7 @@ class Comparison {
  public:
   explicit Comparison(const CompareOptions& o)
       : quality_{o.quality_relative, o.quality_absolute},
+        instructions_{o.instructions_relative, o.instructions_absolute},
         time_{o.time_relative, o.time_absolute},
         memory_{o.memory_relative, o.memory_absolute} {}
 
@@ -29,6 +30,11 @@ class Comparison {
     if (!base.values.empty()) {
       const auto& [name, error] = base.values.front();
       figure(Regression::quality, base.key() + ": " + name, error, head.value(name, NAN));
+    }
+    if (base.instructions > 0 && head.instructions > 0) {
+      figure(Regression::instructions, base.key() + ": instructions", base.instructions,
+             head.instructions);
+      return;  // under callgrind times and memory mean nothing
     }
     figure(Regression::time, base.key() + ": CPU s", base.cpu_seconds, head.cpu_seconds);
     figure(Regression::memory, base.key() + ": MiB", base.memory_mib, head.memory_mib);
@@ -40,13 +46,14 @@ class Comparison {
 
  private:
   void figure(Regression::Kind kind, const std::string& name, double base, double head) {
-    const Threshold& limit = kind == Regression::quality ? quality_
-                             : kind == Regression::time  ? time_
-                                                         : memory_;
+    const Threshold& limit = kind == Regression::quality        ? quality_
+                             : kind == Regression::instructions ? instructions_
+                             : kind == Regression::time         ? time_
+                                                                : memory_;
     if (limit.worse(base, head)) add(kind, fmt::format("{} {:.5g} -> {:.5g}", name, base, head));
   }
 
-  Threshold quality_, time_, memory_;
+  Threshold quality_, instructions_, time_, memory_;
 };
 
 template <class List, class Same>

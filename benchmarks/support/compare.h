@@ -12,15 +12,17 @@ namespace atlas::bench {
 struct CompareOptions {
   double quality_relative = 0.02, quality_absolute = 1e-4;  // of every row's error
   double time_relative = 0.15, time_absolute = 0.05;        // CPU seconds
-  double memory_relative = 0.1, memory_absolute = 16;       // MiB
+  double instructions_relative = 0.02, instructions_absolute = 1e6;
+  double memory_relative = 0.1, memory_absolute = 16;  // MiB
 };
 
 struct Regression {
-  enum Kind { quality, missing, failed, time, memory } kind{};
+  enum Kind { quality, missing, failed, instructions, time, memory } kind{};
   std::string what;  // one line: row, figure, base, head
 };
 
-// Quality first, then rows that vanished or fail now, then time and memory. Checks of the stability
+// Quality first, then rows that vanished or fail now, then instructions (where both
+// files count them), time and memory. Checks of the stability
 // page that held in the base and do not in the head count as quality. New rows are no regression.
 std::vector<Regression> compare(const Results& base, const Results& head,
                                 const CompareOptions& options);

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <string>
 
+#include "benchmarks/support/callgrind.h"
 #include "libatlas/core/clock.h"
 
 namespace atlas::bench {
@@ -38,7 +39,10 @@ void measure(int repeats, Row& row, const std::function<Status()>& work) {
   for (int i = 0; i < repeats; ++i) {
     reset_peak();
     const double cpu = cpu_seconds(), wall = wall_seconds();
-    const Status status = work();
+    const Status status = [&] {
+      const CountedWork counted(row.key());
+      return work();
+    }();
     const double spent = cpu_seconds() - cpu, elapsed = wall_seconds() - wall;
     if (!status.ok()) {
       row.failure = status.message();

@@ -2,10 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
 namespace atlas::bench {
+
+std::string Row::key() const {
+  std::string text = fmt::format("{} | {} | {}", stage, mesh, setting);
+  if (threads > 0) text += fmt::format(" | threads {}", threads);
+  return text;
+}
 
 double Row::value(const std::string& name, double missing) const {
   for (const auto& [key, v] : values)
@@ -51,8 +58,11 @@ std::vector<Fit> fit_exponents(const std::vector<Row>& rows, std::uint64_t small
   for (const Row& row : rows) {
     const auto colon = row.mesh.find(':');
     if (!row.preset || !row.failure.empty() || colon == std::string::npos) continue;
+    if (row.mesh.rfind("file:", 0) == 0) continue;  // different shapes, not sizes of one
     if (row.triangles < smallest || row.cpu_seconds <= 0 || row.memory_mib <= 0) continue;
-    series[row.stage + "|" + row.mesh.substr(0, colon) + "|" + row.setting].push_back(&row);
+    series[row.stage + "|" + row.mesh.substr(0, colon) + "|" + row.setting + "|" +
+           std::to_string(row.threads)]
+        .push_back(&row);
   }
   std::vector<Fit> fits;
   for (const auto& [key, members] : series) {

@@ -30,9 +30,12 @@ struct Row {
   double cpu_spread = 0;    // largest / least of the repeats - 1; 0 for one
   double wall_seconds = 0;  // of the repeat with the least CPU time
   double memory_mib = 0;    // largest resident set while it ran, the input included
+  double instructions = 0;  // executed, counted by callgrind on one thread; 0: not counted
+  int threads = 0;          // that it ran on; 0: as many as there are cores
   std::string failure;      // empty: it worked; else why there are no figures
+  std::string source;       // "file.json:line" after load(), not stored
 
-  std::string key() const { return stage + " | " + mesh + " | " + setting; }
+  std::string key() const;  // names the row within a file
   // The value of that name, or `missing`.
   double value(const std::string& name, double missing = 0) const;
 };
@@ -51,6 +54,7 @@ struct Check {
   double value = 0, bound = 0;
   std::string note;                              // reference, or where the method degrades
   bool holds() const { return value <= bound; }  // NaN fails
+  std::string source = {};                       // as in Row
 };
 
 struct Results {
@@ -63,6 +67,7 @@ struct Results {
 // argv joined; the rest from the system and the build.
 Machine describe_machine(int argc, const char* const* argv);
 
+// One row, fit or check a line, so that a figure can be cited as file:line.
 // Errors: io; not_found; bad_input, naming what is wrong with the file.
 Status save(const Results& results, const std::filesystem::path& path);
 Result<Results> load(const std::filesystem::path& path);

@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/support/results.h"
@@ -22,7 +25,8 @@ Json to_json(const Row& r) {
           {"size_out", r.size_out},     {"unit", r.unit},
           {"values", values},           {"cpu_seconds", r.cpu_seconds},
           {"cpu_spread", r.cpu_spread}, {"wall_seconds", r.wall_seconds},
-          {"memory_mib", r.memory_mib}, {"failure", r.failure}};
+          {"memory_mib", r.memory_mib}, {"instructions", r.instructions},
+          {"threads", r.threads},       {"failure", r.failure}};
 }
 
 Row row_from(const Json& j) {
@@ -40,6 +44,8 @@ Row row_from(const Json& j) {
   r.cpu_spread = number(j.at("cpu_spread"));
   r.wall_seconds = number(j.at("wall_seconds"));
   r.memory_mib = number(j.at("memory_mib"));
+  r.instructions = number(j.at("instructions"));
+  r.threads = j.at("threads");
   r.failure = j.at("failure");
   return r;
 }
@@ -66,31 +72,51 @@ Results results_from(const Json& j) {
   return results;
 }
 
+Json to_json(const Fit& f) {
+  return {{"stage", f.stage},       {"work", f.work},     {"quantity", f.quantity},
+          {"exponent", f.exponent}, {"factor", f.factor}, {"smallest", f.smallest},
+          {"largest", f.largest},   {"points", f.points}};
+}
+
+Json to_json(const Check& c) {
+  return {{"group", c.group}, {"stress", c.stress}, {"quantity", c.quantity}, {"value", c.value},
+          {"bound", c.bound}, {"holds", c.holds()}, {"note", c.note}};
+}
+
+template <class Item>
+void write_list(std::ostream& file, const char* name, const std::vector<Item>& items) {
+  file << ",\n\"" << name << "\": [";
+  for (std::size_t i = 0; i < items.size(); ++i)
+    file << (i ? ",\n" : "\n") << to_json(items[i]).dump();
+  file << "]";
+}
+
+// Where each item of a list stands, in the layout that save() writes; 0 where the list is absent.
+std::size_t first_line(const std::filesystem::path& path, const std::string& list) {
+  std::ifstream file(path);
+  std::size_t number = 1;
+  for (std::string text; std::getline(file, text); ++number)
+    if (text == fmt::format("\"{}\": [", list)) return number + 1;
+  return 0;
+}
+
+template <class Item>
+void cite(const std::filesystem::path& path, const std::string& list, std::vector<Item>& items) {
+  const std::size_t first = first_line(path, list);
+  for (std::size_t i = 0; i < items.size(); ++i)
+    items[i].source =
+        path.filename().string() + (first ? ":" + std::to_string(first + i) : std::string());
+}
+
 }  // namespace
 
 Status save(const Results& results, const std::filesystem::path& path) {
-  Json j{{"format", "libatlas-bench-1"}, {"machine", to_json(results.machine)}};
-  for (const char* list : {"rows", "fits", "checks"}) j[list] = Json::array();
-  for (const Row& row : results.rows) j["rows"].push_back(to_json(row));
-  for (const Fit& f : results.fits)
-    j["fits"].push_back({{"stage", f.stage},
-                         {"work", f.work},
-                         {"quantity", f.quantity},
-                         {"exponent", f.exponent},
-                         {"factor", f.factor},
-                         {"smallest", f.smallest},
-                         {"largest", f.largest},
-                         {"points", f.points}});
-  for (const Check& c : results.checks)
-    j["checks"].push_back({{"group", c.group},
-                           {"stress", c.stress},
-                           {"quantity", c.quantity},
-                           {"value", c.value},
-                           {"bound", c.bound},
-                           {"holds", c.holds()},
-                           {"note", c.note}});
   std::ofstream file(path);
-  file << j.dump(1) << '\n';
+  file << "{\"format\": \"libatlas-bench-1\",\n\"machine\": " << to_json(results.machine).dump();
+  write_list(file, "rows", results.rows);
+  write_list(file, "fits", results.fits);
+  write_list(file, "checks", results.checks);
+  file << "\n}\n";
   file.flush();
   if (file) return {};
   return {ErrorCode::io, path.string() + ": cannot be written (does the folder exist?)"};
@@ -103,7 +129,10 @@ Result<Results> load(const std::filesystem::path& path) {
     const Json j = Json::parse(file);
     if (j.at("format") != "libatlas-bench-1")
       return Status{ErrorCode::bad_input, path.string() + ": not a result file of atlas-bench"};
-    return results_from(j);
+    Results results = results_from(j);
+    cite(path, "rows", results.rows);
+    cite(path, "checks", results.checks);
+    return results;
   } catch (const Json::exception& error) {
     return Status{ErrorCode::bad_input, path.string() + ": " + error.what()};
   }

@@ -82,6 +82,7 @@ Row Staged::row(const std::string& stage, const std::string& setting, bool prese
   row.mesh = name;
   row.setting = setting;
   row.preset = preset;
+  row.threads = threads;
   row.triangles = row.size_in = scene().triangle_count();
   return row;
 }

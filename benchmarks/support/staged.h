@@ -43,6 +43,7 @@ class Staged {
   LoadedScene loaded;
   const Context& context;
   StageSettings settings;
+  int threads = 0;  // as Row::threads
   std::optional<ChartSet> charts;
   std::optional<LuminanceSampler> sampler;
   std::optional<ToneMapping> tone;

@@ -69,6 +69,28 @@ TEST(Results, SurviveTheirFile) {
   ASSERT_EQ(back->fits.size(), results.fits.size());
 }
 
+// What a citation says must stand in that line of the file.
+TEST(Results, EveryRowAndCheckCitesItsLine) {
+  const TempFolder folder;
+  Results results = some_results();
+  results.checks.push_back({"scale", "x 3", "other", 0.5, 1, ""});
+  ASSERT_TRUE(save(results, folder.path / "r.json").ok());
+  std::ifstream file(folder.path / "r.json");
+  std::vector<std::string> lines{""};
+  for (std::string text; std::getline(file, text);) lines.push_back(text);
+  const Result<Results> back = load(folder.path / "r.json");
+  ASSERT_TRUE(back.ok());
+  const auto cited = [&](const std::string& source) {
+    EXPECT_EQ(source.rfind("r.json:", 0), 0u) << source;
+    const std::size_t number = std::stoul(source.substr(7));
+    return number < lines.size() ? lines[number] : std::string();
+  };
+  for (const Row& r : back->rows)
+    EXPECT_NE(cited(r.source).find("\"mesh\":\"" + r.mesh + "\""), std::string::npos) << r.source;
+  for (const Check& c : back->checks)
+    EXPECT_NE(cited(c.source).find("\"quantity\":\"" + c.quantity + "\""), std::string::npos);
+}
+
 TEST(Results, BadFilesAreNamed) {
   const TempFolder folder;
   EXPECT_EQ(load(folder.path / "none.json").status().code(), ErrorCode::not_found);
@@ -99,6 +121,30 @@ TEST(Fits, LeaveSmallAndFailedRowsOut) {
   ASSERT_EQ(fits.size(), 2u);
   EXPECT_NEAR(fits[0].exponent, 1, 1e-12);
   EXPECT_EQ(fits[0].smallest, 20000u);
+}
+
+TEST(Fits, KeepThreadsAndFilesApart) {
+  std::vector<Row> rows{row(20000, 1, 1), row(40000, 2, 1), row(20000, 3, 1), row(40000, 12, 1)};
+  rows[2].threads = rows[3].threads = 2;
+  EXPECT_NE(rows[0].key(), rows[2].key());
+  const std::vector<Fit> fits = fit_exponents(rows, 10000);
+  ASSERT_EQ(fits.size(), 4u);
+  EXPECT_NEAR(fits[0].exponent, 1, 1e-12);
+  EXPECT_NEAR(fits[2].exponent, 2, 1e-12);
+  for (Row& r : rows) r.mesh = "file:" + r.mesh;
+  EXPECT_TRUE(fit_exponents(rows, 10000).empty());
+}
+
+TEST(Compare, InstructionsStandInForTimeWhereBothCountThem) {
+  Results base = some_results();
+  for (Row& r : base.rows) r.instructions = 1e9;
+  Results head = base;
+  head.rows[0].cpu_seconds *= 10;
+  EXPECT_TRUE(compare(base, head, {}).empty());
+  head.rows[1].instructions *= 1.03;
+  const std::vector<Regression> found = compare(base, head, {});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].kind, Regression::instructions);
 }
 
 TEST(Compare, EqualFilesHaveNoRegression) {
@@ -144,6 +190,36 @@ TEST(Pareto, KeepsWhatNothingBeats) {
   EXPECT_EQ(front[0].y, 5);
   EXPECT_EQ(front[1].y, 2);
   EXPECT_EQ(front[2].x, 3);
+}
+
+TEST(Page, TablesForThreadsInstructionsAndRivals) {
+  const TempFolder folder;
+  Results results = some_results();
+  for (const int threads : {1, 2}) {
+    results.rows.push_back(row(5000, 7, 1));
+    results.rows.back().threads = threads;
+    results.rows.back().wall_seconds = 7.0 / threads;
+  }
+  results.rows.push_back(row(6000, 0, 1));
+  results.rows.back().instructions = 123e6;
+  results.rows.push_back(row(7000, 60, 1));
+  results.rows.back().stage = "unwrap";
+  results.rows.back().setting = "slow program";
+  results.rows.back().failure = "timed out after 60 s";
+  ASSERT_TRUE(save(results, folder.path / "all.json").ok());
+  const Result<Results> loaded = load(folder.path / "all.json");
+  ASSERT_TRUE(loaded.ok());
+  ASSERT_TRUE(write_page({{*loaded}}, folder.path).ok());
+  std::ifstream file(folder.path / "performance.md");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  for (const char* text : {"## Threads", "| 2.00 | all.json:", "## Instructions", "| 123.00 |",
+                           "slow program | 7000 | timed out after 60 s", "## Stage: charts"})
+    EXPECT_NE(page.find(text), std::string::npos) << text;
+  EXPECT_EQ(page.find("Stage: unwrap"), std::string::npos);
+  // Rows of the thread series and counted ones stay out of the stage's own table.
+  const std::string stage = page.substr(page.find("## Stage: charts"));
+  EXPECT_EQ(stage.find("sphere:5000 "), std::string::npos);
+  EXPECT_EQ(stage.find("sphere:6000 "), std::string::npos);
 }
 
 TEST(Page, HoldsEveryRowAndCheck) {

@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 
 #include "benchmarks/light_leak/light_leak.h"
 #include "benchmarks/rivals/rivals.h"
+#include "benchmarks/support/callgrind.h"
 #include "benchmarks/support/staged.h"
 
 namespace atlas::bench {
@@ -77,6 +79,39 @@ TEST(Rivals, AreJudgedTimedOutAndReported) {
   EXPECT_FALSE(parse_rival("x=unwrap {in}").ok());
 }
 
+TEST(Threads, EveryNumberGivesTheSameFigures) {
+  std::vector<Row> rows;
+  for (const int threads : {1, 2}) {
+    Context context;
+    context.threads = threads;
+    Result<LoadedScene> scene = make_work("scan:1500", context);
+    ASSERT_TRUE(scene.ok());
+    Staged staged("scan:1500", std::move(*scene), context);
+    staged.threads = threads;
+    bench_charts({staged, 1, false, [&](Row row) { rows.push_back(std::move(row)); }});
+  }
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[1].threads, 2);
+  for (const char* figure : {"seam", "l2", "p999"})
+    EXPECT_EQ(rows[0].value(figure), rows[1].value(figure)) << figure;
+}
+
+TEST(Instructions, AreCountedUnderCallgrind) {
+  if (std::system("valgrind --version >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "valgrind is not installed";
+  const Result<Results> counted =
+      count_instructions({ATLAS_BENCH_PROGRAM, "--work", "sphere:400", "--standard", "--threads",
+                          "1", "--stages", "baseline", "charts"});
+  ASSERT_TRUE(counted.ok()) << counted.status().message();
+  ASSERT_EQ(counted->rows.size(), 2u);
+  for (const Row& row : counted->rows) {
+    EXPECT_GT(row.instructions, 400 * 100) << row.key();
+    EXPECT_LT(row.instructions, 1e10) << row.key();
+    EXPECT_EQ(row.cpu_seconds, 0);
+  }
+  EXPECT_FALSE(count_instructions({"/nonexistent/program"}).ok());
+}
+
 // A plane with a straight shadow edge at x = 1/2, one mesh cell wide.
 Staged half_lit(const Context& context) {
   LoadedScene loaded = lit(test::grid(80, 80));
@@ -126,6 +161,21 @@ TEST(LightLeak, FallsWithTheTexel) {
   EXPECT_GT(leaks[0].fixed.rms, 2 * leaks[2].fixed.rms);
   EXPECT_LT(leaks[2].texel, 0.5 * leaks[0].texel);
   EXPECT_LT(leaks[2].whole.p50, 0.01);
+  options.picture = 0.4;
+  options.pixels = 64;
+  const Result<Leak> drawn = measure_leak(staged, options);
+  ASSERT_TRUE(drawn.ok());
+  const Image8 &input = drawn->picture.input, &baked = drawn->picture.baked;
+  ASSERT_EQ(input.width, 64);
+  const auto level = [](const Image8& image, int column) {
+    double sum = 0;
+    for (int y = 0; y < image.height; ++y) sum += image.at(column, y)[1];
+    return sum / image.height;
+  };
+  EXPECT_GT(std::abs(level(input, 4) - level(input, 60)), 50)
+      << "the edge runs through the picture";
+  for (const int x : {4, 60}) EXPECT_NEAR(level(input, x), level(baked, x), 6);
+  EXPECT_EQ(side_by_side({input, baked}).width, 2 * 64 + 8);
   options.edge.object = "window";
   EXPECT_EQ(measure_leak(staged, options).status().code(), ErrorCode::bad_input);
 }

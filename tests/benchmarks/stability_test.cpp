@@ -18,6 +18,12 @@ void expect_all_hold(void (*check)(CheckList&), StabilityOptions options = {}) {
                            << ", beyond " << c.bound << " (" << c.note << ")";
 }
 
+TEST(Stability, Degradation) {
+  expect_all_hold(check_degradation);
+}
+TEST(Stability, Conditioning) {
+  expect_all_hold(check_conditioning);
+}
 TEST(Stability, ScaleAndPlace) {
   expect_all_hold(check_scale_and_place);
 }

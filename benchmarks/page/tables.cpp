@@ -1,0 +1,268 @@
+#include "benchmarks/page/tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace atlas::bench {
+namespace {
+
+// Rows that were measured as everybody would: no thread series, no counted instructions.
+bool ordinary(const Row& row) {
+  return row.threads == 0 && row.instructions == 0;
+}
+
+const Row* find_row(const Results& all, const std::string& stage, const std::string& mesh,
+                    const std::string& setting) {
+  for (const Row& row : all.rows)
+    if (ordinary(row) && row.failure.empty() && row.stage == stage && row.mesh == mesh &&
+        row.setting == setting)
+      return &row;
+  return nullptr;
+}
+
+std::vector<std::string> value_names(const Results& all, const std::string& stage) {
+  for (const Row& row : all.rows) {
+    if (row.stage != stage || row.values.empty()) continue;
+    std::vector<std::string> names;
+    for (const auto& [name, v] : row.values) names.push_back(name);
+    return names;
+  }
+  return {};
+}
+
+std::string verdict(bool met) {
+  return met ? "met" : "missed";
+}
+
+const Fit* find_fit(const Results& all, const std::string& stage, const std::string& work,
+                    const std::string& quantity) {
+  for (const Fit& f : all.fits)
+    if (f.stage == stage && f.work == work && f.quantity == quantity) return &f;
+  return nullptr;
+}
+
+}  // namespace
+
+std::string figure(double value) {
+  if (std::isfinite(value) && std::abs(value) >= 1000 && std::abs(value) < 1e12)
+    return fmt::format("{:.0f}", value);
+  return fmt::format("{:.4g}", value);
+}
+
+void goals_table(const Results& all, Document& page) {
+  std::vector<Cells> rows;
+  for (const auto& [quantity, name, bound] :
+       {std::tuple{"cpu_seconds", "exponent of CPU time against triangles", 1.1},
+        std::tuple{"memory_mib", "exponent of memory against triangles", 1.05}}) {
+    const Fit* fit = find_fit(all, "export", "cabin, standard", quantity);
+    if (!fit) continue;
+    rows.push_back({fmt::format("whole export, cabin, {} to {}", fit->smallest, fit->largest), name,
+                    fmt::format("{:.3f}", fit->exponent), fmt::format("{}", bound),
+                    verdict(fit->exponent <= bound)});
+  }
+  for (const Row& row : all.rows) {
+    if (!ordinary(row) || row.stage != "charts" || row.setting != "standard") continue;
+    if (row.triangles < 900000 || row.triangles > 1200000) continue;
+    const Row* limit = find_row(all, "baseline", row.mesh, "parse + normals");
+    if (!limit || !row.failure.empty()) continue;
+    const double times = row.cpu_seconds / limit->cpu_seconds;
+    rows.push_back({"charts + parameterisation, " + row.mesh, "times \"parse + normals\"",
+                    fmt::format("{:.1f}", times), "12", verdict(times <= 12)});
+  }
+  if (rows.empty()) return;
+  page.heading("Goals");
+  page.table({"what", "figure", "value", "goal", ""}, rows);
+}
+
+void fits_table(const Results& all, Document& page) {
+  std::vector<Cells> rows;
+  for (const Fit& f : all.fits)
+    rows.push_back({f.stage, f.work, f.quantity == "cpu_seconds" ? "CPU time" : "memory",
+                    fmt::format("{:.2f}", f.exponent),
+                    fmt::format("{} .. {}", f.smallest, f.largest), fmt::format("{}", f.points)});
+  if (!rows.empty())
+    page.table({"stage", "work", "quantity", "exponent", "triangles", "meshes"}, rows);
+}
+
+void limit_table(const Results& all, Document& page) {
+  std::vector<Cells> rows;
+  for (const Row& row : all.rows) {
+    if (!ordinary(row) || row.stage != "baseline" || row.cpu_seconds <= 0) continue;
+    const Row* charts = find_row(all, "charts", row.mesh, "standard");
+    const Row* whole = find_row(all, "export", row.mesh, "standard");
+    const auto times = [&](double seconds) {
+      return fmt::format("{:.1f}", seconds / row.cpu_seconds);
+    };
+    Cells cells{row.mesh, fmt::format("{:.3f}", row.cpu_seconds)};
+    if (charts) {
+      const double param = charts->value("param_cpu");
+      cells.insert(cells.end(),
+                   {times(charts->cpu_seconds - param), times(param), times(charts->cpu_seconds)});
+    }
+    cells.resize(5, "");
+    cells.push_back(whole ? times(whole->cpu_seconds) : "");
+    cells.push_back(row.source);
+    rows.push_back(cells);
+  }
+  if (rows.empty()) return;
+  page.paragraph(
+      "The distance from the physical limit: CPU time in multiples of \"parse the OBJ and compute "
+      "its normals\". Charts = segmentation (topology, cells, merging, seams) + parameterisation.");
+  page.table({"mesh", "parse + normals, s", "segmentation", "parameterisation", "charts",
+              "whole export", "JSON"},
+             rows);
+}
+
+void export_table(const Results& all, Document& page) {
+  std::vector<std::string> stages, meshes;
+  std::map<std::string, std::map<std::string, const Row*>> table;
+  for (const Row& row : all.rows) {
+    if (!ordinary(row) || row.stage.rfind("export/", 0) != 0) continue;
+    const std::string stage = row.stage.substr(7);
+    if (std::find(stages.begin(), stages.end(), stage) == stages.end()) stages.push_back(stage);
+    if (!table.count(row.mesh)) meshes.push_back(row.mesh);
+    table[row.mesh].emplace(stage, &row);
+  }
+  if (meshes.empty()) return;
+  Cells header{"mesh"};
+  header.insert(header.end(), stages.begin(), stages.end());
+  header.push_back("JSON");
+  std::vector<Cells> rows;
+  for (const std::string& mesh : meshes) {
+    Cells cells{mesh};
+    for (const std::string& stage : stages) {
+      const auto found = table[mesh].find(stage);
+      cells.push_back(
+          found == table[mesh].end() ? "-" : fmt::format("{:.2f}", found->second->cpu_seconds));
+    }
+    cells.push_back(table[mesh].begin()->second->source);
+    rows.push_back(cells);
+  }
+  page.heading("Where the whole export spends its CPU seconds");
+  page.paragraph("Standard settings; the JSON column names the first line of each mesh's stages.");
+  page.table(header, rows);
+}
+
+void threads_table(const Results& all, Document& page) {
+  std::vector<int> counts;
+  std::map<std::pair<std::string, std::string>, std::map<int, const Row*>> table;
+  std::vector<std::pair<std::string, std::string>> order;
+  for (const Row& row : all.rows) {
+    if (row.threads == 0 || row.instructions > 0 || !row.failure.empty()) continue;
+    if (row.setting != "standard" && row.stage != "baseline") continue;
+    const auto key = std::pair(row.stage, row.mesh);
+    if (!table.count(key)) order.push_back(key);
+    table[key].emplace(row.threads, &row);
+    if (std::find(counts.begin(), counts.end(), row.threads) == counts.end())
+      counts.push_back(row.threads);
+  }
+  if (counts.size() < 2) return;
+  std::sort(counts.begin(), counts.end());
+  Cells header{"stage", "mesh"};
+  for (const int n : counts) header.push_back(fmt::format("wall s, {}", n));
+  for (const int n : counts) header.push_back(fmt::format("CPU s, {}", n));
+  header.insert(header.end(), {"speed-up", "JSON"});
+  std::vector<Cells> rows;
+  for (const auto& key : order) {
+    const auto& by_count = table[key];
+    if (by_count.size() != counts.size()) continue;
+    Cells cells{key.first, key.second};
+    for (const int n : counts) cells.push_back(fmt::format("{:.2f}", by_count.at(n)->wall_seconds));
+    for (const int n : counts) cells.push_back(fmt::format("{:.2f}", by_count.at(n)->cpu_seconds));
+    const double last = by_count.at(counts.back())->wall_seconds;
+    cells.push_back(
+        last > 0 ? fmt::format("{:.2f}", by_count.at(counts.front())->wall_seconds / last) : "-");
+    cells.push_back(by_count.at(counts.front())->source);
+    rows.push_back(cells);
+  }
+  page.heading("Threads");
+  page.paragraph(
+      "The same work on one thread and on several; the results are the same bytes. Wall clocks "
+      "mean "
+      "what they say on a machine that does nothing else only.");
+  page.table(header, rows);
+}
+
+void instructions_table(const Results& all, Document& page) {
+  std::vector<Cells> rows;
+  for (const Row& row : all.rows)
+    if (row.instructions > 0)
+      rows.push_back({row.stage, row.setting, row.mesh,
+                      fmt::format("{:.2f}", row.instructions * 1e-6),
+                      fmt::format("{:.0f}", row.instructions / double(row.triangles)), row.source});
+  if (rows.empty()) return;
+  page.heading("Instructions");
+  page.paragraph(
+      "Counted by callgrind on one thread: free of the machine's noise, which is what "
+      "atlas-bench-compare wants.");
+  page.table({"stage", "setting", "mesh", "million", "a triangle", "JSON"}, rows);
+}
+
+void rivals_table(const Results& all, Document& page) {
+  const std::vector<std::string> names = value_names(all, "unwrap");
+  Cells header{"mesh", "program", "triangles", "charts", "CPU s", "wall s"};
+  header.insert(header.end(), names.begin(), names.end());
+  header.push_back("JSON");
+  std::vector<Cells> rows;
+  for (const Row& row : all.rows) {
+    if (!ordinary(row) || row.stage != "unwrap") continue;
+    Cells cells{row.mesh, row.setting, fmt::format("{}", row.triangles)};
+    if (row.failure.empty()) {
+      cells.push_back(fmt::format("{}", row.size_out));
+      cells.push_back(fmt::format("{:.2f}", row.cpu_seconds));
+      cells.push_back(fmt::format("{:.2f}", row.wall_seconds));
+      for (const std::string& name : names) cells.push_back(figure(row.value(name)));
+    } else {
+      cells.insert(cells.end(), {row.failure, fmt::format("{:.2f}", row.cpu_seconds),
+                                 fmt::format("{:.2f}", row.wall_seconds)});
+    }
+    cells.resize(header.size() - 1);
+    cells.push_back(row.source);
+    rows.push_back(cells);
+  }
+  if (rows.empty()) return;
+  page.heading("Beside other programs");
+  page.paragraph(
+      "The same OBJ file for every program, everything judged by the same evaluator "
+      "(tests/support/atlas_measure) on pages of the size given by --atlas-size. Reading and "
+      "writing files is part of the time. See benchmarks/rivals/README.md for how each is called.");
+  page.table(header, rows);
+}
+
+void stage_table(const Results& all, const std::string& stage, Document& page) {
+  const std::vector<std::string> names = value_names(all, stage);
+  Cells header{"mesh", "setting", "in", "out", "CPU s", "MiB"};
+  header.insert(header.end(), names.begin(), names.end());
+  header.push_back("JSON");
+  std::vector<Cells> rows;
+  for (const Row& row : all.rows) {
+    if (row.stage != stage || !ordinary(row)) continue;
+    Cells cells{row.mesh, row.setting + (row.preset ? " *" : "")};
+    if (row.failure.empty()) {
+      cells.insert(cells.end(),
+                   {fmt::format("{}", row.size_in), fmt::format("{}", row.size_out),
+                    fmt::format("{:.3g}", row.cpu_seconds), fmt::format("{:.0f}", row.memory_mib)});
+      for (const std::string& name : names) cells.push_back(figure(row.value(name)));
+    } else {
+      cells.push_back(row.failure);
+    }
+    cells.resize(header.size() - 1);
+    cells.push_back(row.source);
+    rows.push_back(cells);
+  }
+  page.table(header, rows);
+}
+
+std::vector<std::string> stages_of(const Results& all) {
+  std::vector<std::string> stages;
+  for (const Row& row : all.rows)
+    if (ordinary(row) && row.stage != "unwrap" && row.stage.rfind("export/", 0) != 0 &&
+        std::find(stages.begin(), stages.end(), row.stage) == stages.end())
+      stages.push_back(row.stage);
+  return stages;
+}
+
+}  // namespace atlas::bench

@@ -1,0 +1,88 @@
+#include "benchmarks/shadows/shadow_rows.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "libatlas/core/clock.h"
+#include "libatlas/exporters/viewpoint.h"
+#include "libatlas/view/bench.h"
+#include "libatlas/view/context.h"
+
+namespace atlas::bench {
+namespace {
+
+constexpr Vec3d kUp{0, 0, 1};
+
+// Where a visitor would enter, as atlas-play begins.
+Camera camera_of(const ViewScene& scene) {
+  ViewpointOptions eye;
+  eye.up = Up::z;
+  const Viewpoint start = choose_viewpoint(scene.caster_positions, scene.caster_indices, eye, {});
+  Camera camera = camera_for(scene.bounds, kUp);
+  if (!start.inside) return camera;
+  camera.eye = start.position;
+  camera.target = {start.position.x + start.direction.x, start.position.y + start.direction.y,
+                   start.position.z + start.direction.z};
+  fit_planes(camera, scene.bounds);
+  return camera;
+}
+
+Row row_of(const BenchError& error, const std::string& name, std::size_t triangles) {
+  Row row;
+  row.stage = "shadows";
+  row.mesh = name;
+  row.setting = error.method == ShadowMethod::classic
+                    ? "classic"
+                    : fmt::format("{}, k = {}", name_of(error.method), error.interval);
+  row.triangles = row.size_in = triangles;
+  row.size_out = std::uint64_t(error.interval);
+  row.unit = "triangles, frames a key";
+  row.preset = error.interval == 8;
+  row.cpu_seconds = error.cpu_median;
+  row.values = {{"mean", error.visibility.mean},
+                {"wrong", error.visibility.wrong},
+                {"mean_off_edges", error.visibility.mean_off_edges},
+                {"ssim", error.ssim}};
+  return row;
+}
+
+}  // namespace
+
+Result<std::vector<Row>> measure_shadows(const Scene& scene, const std::string& name,
+                                         const ShadowRunOptions& options) {
+  const Result<ViewScene> view = make_view_scene(scene, {});
+  if (!view.ok()) return view.status();
+  ContextOptions wanted;
+  wanted.software = options.software;
+  const auto gl = make_headless_context(wanted);
+  if (!gl.ok()) return gl.status();
+  BenchOptions bench;
+  bench.render.width = options.width;
+  bench.render.height = options.height;
+  bench.render.map_resolution = options.map_resolution;
+  bench.render.up = kUp;
+  bench.camera = camera_of(*view);
+  bench.shadings = {Shading::lambert};
+  bench.error_intervals = options.intervals;
+  bench.error_frames = options.frames;
+  LightPathOptions sun;
+  sun.sun.up = kUp;
+  sun.sun.north = {0, 1, 0};
+  const Result<LightPath> path = LightPath::make(sun);
+  if (!path.ok()) return path.status();
+  Result<Renderer> renderer = Renderer::make(*view, bench.render);
+  if (!renderer.ok()) return renderer.status();
+  BenchResult result;
+  if (const Status s = bench_errors(*renderer, *path, bench, result); !s.ok()) return s;
+  std::vector<Row> rows;
+  bool classic = false;  // the same for every interval
+  for (const BenchError& error : result.errors) {
+    if (error.method == ShadowMethod::classic && std::exchange(classic, true)) continue;
+    rows.push_back(row_of(error, name, view->triangle_count()));
+    rows.back().memory_mib = double(peak_memory()) / (1 << 20);
+  }
+  return rows;
+}
+
+}  // namespace atlas::bench

@@ -1,0 +1,25 @@
+// Error against time of the shadow methods, drawn without a window.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "benchmarks/support/results.h"
+#include "libatlas/scene/scene.h"
+
+namespace atlas::bench {
+
+struct ShadowRunOptions {
+  int width = 320, height = 200, map_resolution = 1024;
+  std::vector<int> intervals{2, 4, 8, 16, 32};  // k: frames between key maps
+  int frames = 12;                              // light positions, the sun moving 0.5 degrees each
+  bool software = true;  // not a GPU even if there is one: results can be repeated anywhere
+};
+
+// One row of stage "shadows" for each method and interval: error = mean |visibility - that of a
+// classic map of the same light|; CPU time is the median of a frame. The device is in each row's
+// unit. Errors: unsupported (no OpenGL 4.5); those of the renderer.
+Result<std::vector<Row>> measure_shadows(const Scene& scene, const std::string& name,
+                                         const ShadowRunOptions& options);
+
+}  // namespace atlas::bench

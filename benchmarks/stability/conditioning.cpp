@@ -1,0 +1,338 @@
+// The parameterisation's linear systems on stiff discs: condition numbers, what the solvers leave,
+// flips before and after the fallbacks, and what these cost.
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "benchmarks/stability/checks.h"
+#include "benchmarks/stability/stress.h"
+#include "benchmarks/support/measure.h"
+#include "libatlas/param/linear_solver.h"
+#include "libatlas/param/multigrid.h"
+#include "libatlas/param/parameterize.h"
+
+namespace atlas::bench {
+namespace {
+
+constexpr double kSteepest = 1.5;  // of spikes that are drawn flat without a flip
+using param::SymmetricMatrix;
+using Vector = std::vector<glm::dvec2>;
+
+// A disc in polar coordinates: a vertex in the middle, then rings from the inside out.
+struct PolarDisc {
+  std::string name;
+  double spike = 0;  // its height, of discs with one
+  std::vector<Vec3d> positions;
+  std::vector<Vec2d> polar;  // (r cos a, r sin a) with r along the surface: a first layout
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  LocalMesh mesh() const { return {positions, triangles}; }
+};
+
+template <class Profile>  // r in (0, 1] -> (distance from the axis, height)
+PolarDisc polar_disc(std::string name, const std::vector<double>& radii, int around,
+                     const Profile& profile) {
+  PolarDisc disc;
+  disc.name = std::move(name);
+  const Vec2d top = profile(0.0);
+  disc.positions.push_back({0, 0, top.y});
+  disc.polar.push_back({0, 0});
+  for (const double r : radii)
+    for (int i = 0; i < around; ++i) {
+      const double a = 2 * std::numbers::pi * i / around;
+      const Vec2d p = profile(r);
+      disc.positions.push_back({p.x * std::cos(a), p.x * std::sin(a), p.y});
+      disc.polar.push_back({r * std::cos(a), r * std::sin(a)});
+    }
+  const auto at = [&](std::size_t ring, int i) {
+    return std::uint32_t(1 + ring * std::size_t(around) + std::size_t(i % around));
+  };
+  for (int i = 0; i < around; ++i) disc.triangles.push_back({0, at(0, i), at(0, i + 1)});
+  for (std::size_t ring = 0; ring + 1 < radii.size(); ++ring)
+    for (int i = 0; i < around; ++i) {
+      disc.triangles.push_back({at(ring, i), at(ring + 1, i), at(ring + 1, i + 1)});
+      disc.triangles.push_back({at(ring, i), at(ring + 1, i + 1), at(ring, i + 1)});
+    }
+  return disc;
+}
+
+// A geodesic cap whose rings come in pairs: the triangles between the two of a pair have the
+// aspect.
+PolarDisc sliver_cap(double aspect, int rings, int around) {
+  std::vector<double> radii;
+  for (int i = 1; i <= rings; ++i) {
+    radii.push_back((i - 0.5) / rings);
+    radii.push_back((i - 0.5 + 0.5 / aspect) / rings);
+  }
+  const double angle = std::numbers::pi / 3;
+  return polar_disc(fmt::format("slivers of aspect {:g}", aspect), radii, around, [&](double r) {
+    return Vec2d{std::sin(r * angle), std::cos(r * angle)};
+  });
+}
+
+// A plane with a Gaussian spike of the height, a tenth as wide as the disc.
+PolarDisc spike(double height, int rings, int around) {
+  std::vector<double> radii;
+  for (int i = 1; i <= 2 * rings; ++i) radii.push_back(i / (2.0 * rings));
+  PolarDisc disc =
+      polar_disc(fmt::format("spike of height {:g}", height), radii, around, [&](double r) {
+        return Vec2d{r, height * std::exp(-100 * r * r)};
+      });
+  disc.spike = height;
+  return disc;
+}
+
+// A sphere but for a hole of the angle around the pole.
+PolarDisc opened_ball(double hole_degrees, int rings, int around) {
+  std::vector<double> radii;
+  for (int i = 1; i <= 2 * rings; ++i) radii.push_back(i / (2.0 * rings));
+  const double angle = (180 - hole_degrees) * std::numbers::pi / 180;
+  return polar_disc(fmt::format("sphere with a hole of {:g} degrees", hole_degrees), radii, around,
+                    [&](double r) {
+                      return Vec2d{std::sin(r * angle), std::cos(r * angle)};
+                    });
+}
+
+void multiply(const SymmetricMatrix& k, const Vector& x, Vector& out) {
+  for (std::size_t i = 0; i < k.rows(); ++i) {
+    glm::dvec2 sum = k.diagonal[i] * x[i];
+    for (std::uint32_t e = k.first[i]; e < k.first[i + 1]; ++e) sum += k.value[e] * x[k.column[e]];
+    out[i] = sum;
+  }
+}
+
+// Takes the mean out, scales to length one and returns the length before.
+double normalise(Vector& x) {
+  glm::dvec2 mean(0);
+  for (const glm::dvec2& v : x) mean += v / double(x.size());
+  double squares = 0;
+  for (glm::dvec2& v : x) {
+    v -= mean;
+    squares += v.x * v.x;
+  }
+  const double length = std::sqrt(squares);
+  for (glm::dvec2& v : x) v /= length;
+  return length;
+}
+
+// Largest over smallest eigenvalue on what is not the kernel (the constants): power iteration with
+// the matrix, and with its inverse by Cholesky factors.
+double condition(const SymmetricMatrix& k) {
+  param::EnvelopeSolver solver;
+  solver.factorize(k);
+  Vector x(k.rows()), y(k.rows());
+  double largest = 0, inverse = 0;
+  for (const bool invert : {false, true}) {
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = glm::dvec2(std::sin(1.0 + 7.3 * double(i)));
+    normalise(x);
+    for (int step = 0; step < 60; ++step) {
+      if (invert)
+        solver.solve(x, y);
+      else
+        multiply(k, x, y);
+      (invert ? inverse : largest) = normalise(y);
+      x.swap(y);
+    }
+  }
+  return largest * inverse;
+}
+
+// Backward error: |K x - b| over |K| |x| + |b|, maximum norms.
+double backward_error(const SymmetricMatrix& k, const Vector& x, const Vector& b) {
+  double norm = 0, most_x = 0, most_b = 0, worst = 0;
+  for (std::size_t i = 0; i < k.rows(); ++i) {
+    long double sum_x = (long double)k.diagonal[i] * x[i].x - b[i].x;
+    long double sum_y = (long double)k.diagonal[i] * x[i].y - b[i].y;
+    double row = std::abs(k.diagonal[i]);
+    for (std::uint32_t e = k.first[i]; e < k.first[i + 1]; ++e) {
+      sum_x += (long double)k.value[e] * x[k.column[e]].x;
+      sum_y += (long double)k.value[e] * x[k.column[e]].y;
+      row += std::abs(k.value[e]);
+    }
+    norm = std::max(norm, row);
+    worst = std::max<double>({worst, double(std::abs(sum_x)), double(std::abs(sum_y))});
+    most_x = std::max({most_x, std::abs(x[i].x), std::abs(x[i].y)});
+    most_b = std::max({most_b, std::abs(b[i].x), std::abs(b[i].y)});
+  }
+  return worst / (norm * most_x + most_b);
+}
+
+// Largest difference from the solution in long double (dense factors, the first vertex held), in
+// parts of its extent.
+double forward_error(const SymmetricMatrix& k, const Vector& x, const Vector& b) {
+  using Real = long double;
+  const auto n = Eigen::Index(k.rows()) - 1;
+  Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> dense =
+      Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>::Zero(n, n);
+  Eigen::Matrix<Real, Eigen::Dynamic, 2> load(n, 2);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto row = std::size_t(i) + 1;
+    dense(i, i) = k.diagonal[row];
+    load(i, 0) = b[row].x;
+    load(i, 1) = b[row].y;
+    for (std::uint32_t e = k.first[row]; e < k.first[row + 1]; ++e)
+      if (k.column[e] > 0) dense(i, Eigen::Index(k.column[e]) - 1) += k.value[e];
+  }
+  const Eigen::Matrix<Real, Eigen::Dynamic, 2> exact = dense.llt().solve(load);
+  Real worst = 0, extent = 0;
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (int c = 0; c < 2; ++c) {
+      const glm::dvec2 d = x[std::size_t(i) + 1] - x[0];
+      worst = std::max(worst, std::abs(Real(d[c]) - exact(i, c)));
+      extent = std::max(extent, std::abs(exact(i, c)));
+    }
+  return double(worst / extent);
+}
+
+struct System {
+  std::vector<param::Element> elements;
+  SymmetricMatrix matrix;
+  Vector load;
+
+  explicit System(const PolarDisc& disc) {
+    param::build_elements(disc.mesh(), 0, elements);
+    param::CornerLists corners;
+    corners.build(elements, disc.positions.size());
+    param::build_stiffness(elements, corners, matrix);
+    param::Rotations rotations;
+    param::local_rotations(elements, disc.polar, rotations);
+    load.resize(disc.positions.size());
+    param::rotation_load(elements, rotations, load);
+  }
+  double area() const {
+    double sum = 0;
+    for (const param::Element& e : elements) sum += e.area();
+    return sum;
+  }
+};
+
+void check_solvers(CheckList& list, const PolarDisc& disc, Row& row) {
+  System s(disc);
+  const double cond = condition(s.matrix);
+  Vector x(disc.positions.size(), glm::dvec2(0));
+  param::EnvelopeSolver envelope;
+  envelope.factorize(s.matrix);
+  envelope.solve(s.load, x);
+  const double left = backward_error(s.matrix, x, s.load);
+  const double error = forward_error(s.matrix, x, s.load);
+  param::SparseDirectSolver direct;
+  const bool definite = direct.factorize(s.matrix, false);
+  double left_direct = 0;
+  if (definite) {
+    direct.solve(s.load, x);
+    left_direct = backward_error(s.matrix, x, s.load);
+  }
+  param::MultigridSolver multigrid;
+  std::fill(x.begin(), x.end(), glm::dvec2(0));
+  const bool iterated =
+      multigrid.build(s.matrix) && multigrid.solve(s.matrix, s.load, {1e-11 * s.area(), 60}, x);
+  row.values = {{"condition", cond},
+                {"residual", left},
+                {"error", error},
+                {"direct_residual", definite ? left_direct : NAN},
+                {"multigrid_suffices", double(iterated)}};
+  list.add("conditioning", disc.name, "residual of the band solver, backward error", left, 1e-14,
+           fmt::format("condition number {:.2g}", cond));
+  list.add("conditioning", disc.name, "residual of the sparse solver, backward error", left_direct,
+           1e-13, definite ? "" : "refused as not definite: the band solver stands in");
+  list.add("conditioning", disc.name, "error over 1e-15 x condition number",
+           error / (1e-15 * std::max(cond, 1.0)), 1, "against a dense solve in long double");
+}
+
+// Four plain local/global steps against parameterize(), which adds the fallbacks: unfolding anew,
+// the barrier step, reweighting towards the bound, drawing borders apart, the exact check.
+void check_fallbacks(CheckList& list, const PolarDisc& disc, Row& row) {
+  ParamWorkspace workspace;
+  const LocalMesh mesh = disc.mesh();
+  std::vector<Vec2d> uvs(disc.positions.size());
+  IsometricResult plain;
+  Row bare = row;
+  measure(3, bare, [&]() -> Status {
+    plain = flatten_isometric(mesh, {}, {4, 0}, uvs, workspace);
+    return {};
+  });
+  ParamOptions options;
+  options.method = ParamMethod::isometric;
+  ParamResult full;
+  measure(3, row, [&]() -> Status {
+    full = parameterize(mesh, options, workspace);
+    return {};
+  });
+  const double plain_stretch = measure_distortion(mesh, uvs).stretch_999;
+  const double cost = bare.cpu_seconds > 0 ? row.cpu_seconds / bare.cpu_seconds : 0;
+  row.size_out = full.distortion.flips;
+  row.values.insert(row.values.end(), {{"flips_without", double(plain.flips)},
+                                       {"flips_with", double(full.distortion.flips)},
+                                       {"stretch_without", plain_stretch},
+                                       {"stretch_with", full.distortion.stretch_999},
+                                       {"injective", double(full.injective)},
+                                       {"cost_times", cost}});
+  // A spike beyond kSteepest cannot be drawn flat in one piece: make_charts cuts it.
+  if (disc.spike <= kSteepest)
+    list.add("conditioning", disc.name, "flips with the fallbacks", double(full.distortion.flips),
+             0, fmt::format("{} without them", plain.flips));
+  list.add("conditioning", disc.name, "overlaps although nothing flips",
+           full.distortion.flips == 0 && !full.injective ? 1 : 0, 0, "exact predicates");
+}
+
+// What parameterize() reports as impossible in one piece, make_charts has to cut.
+void check_cutting(CheckList& list, const PolarDisc& disc) {
+  test::Shape shape;
+  for (const Vec3d& p : disc.positions)
+    shape.positions.push_back({float(p.x), float(p.y), float(p.z)});
+  for (const auto& t : disc.triangles)
+    shape.indices.insert(shape.indices.end(), t.begin(), t.end());
+  const Result<ChartSet> set = charts_of(shape, {}, list.context);
+  list.add("conditioning", disc.name, "triangles lost or flipped in charts",
+           set.ok() ? broken(*set) : NAN, 0,
+           set.ok() ? fmt::format("{} charts, 99.9 % stretch {:.3f}", set->charts.size(),
+                                  set->distortion.stretch_999)
+                    : set.status().message());
+}
+
+// From which height on a spike flips triangles, by rows measured before.
+void find_onsets(CheckList& list, const std::vector<PolarDisc>& discs) {
+  double without = INFINITY, with = INFINITY;
+  for (std::size_t i = 0; i < discs.size(); ++i) {
+    if (discs[i].spike <= 0) continue;
+    if (list.rows[i].value("flips_without") > 0) without = std::min(without, discs[i].spike);
+    if (list.rows[i].value("flips_with") > 0) with = std::min(with, discs[i].spike);
+  }
+  const auto onset = [&](const std::string& what, double documented, double measured) {
+    list.add("conditioning", "height of a spike, disc of radius 1", what, documented / measured, 1,
+             fmt::format("documented from {:g}; measured from {:g}", documented, measured));
+  };
+  onset("local/global steps alone flip: documented / measured", 0.6, without);
+  onset("parameterize() leaves flips to be cut: documented / measured", kSteepest, with);
+}
+
+}  // namespace
+
+void check_conditioning(CheckList& list) {
+  const int rings = list.options.full ? 12 : 6, around = list.options.full ? 48 : 24;
+  std::vector<PolarDisc> discs;
+  for (const double aspect : {1e0, 1e2, 1e4, 1e6, 1e8, 1e10, 1e12})
+    discs.push_back(sliver_cap(aspect, rings, around));
+  for (const double height : {0.1, 0.3, 0.6, 1.0, 1.5, 2.0, 3.0, 10.0})
+    discs.push_back(spike(height, rings, around));
+  for (const double hole : {90.0, 60.0, 30.0}) discs.push_back(opened_ball(hole, rings, around));
+  for (const PolarDisc& disc : discs) {
+    Row row;
+    row.stage = "conditioning";
+    row.mesh = disc.name;
+    row.setting = "standard";
+    row.unit = "triangles -> flips";
+    row.triangles = row.size_in = disc.triangles.size();
+    check_solvers(list, disc, row);
+    check_fallbacks(list, disc, row);
+    check_cutting(list, disc);
+    list.rows.push_back(row);
+  }
+  find_onsets(list, discs);
+}
+
+}  // namespace atlas::bench
