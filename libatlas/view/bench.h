@@ -74,7 +74,8 @@ Status bench_errors(const Renderer& first, const LightPath& path, const BenchOpt
                     BenchResult& result);
 
 // frames.csv, summary.json, summary.md, and plots.gp with its data: `gnuplot plots.gp` draws frames
-// a second for each method (the paper's figures 2 to 5) and error against frame time.
+// a second for each method (the paper's figures 2 to 5), CPU time of every frame for each shading,
+// and error against frame time.
 Status write_bench(const BenchResult& result, const std::filesystem::path& folder);
 
 // The table of the summary, for the terminal and for documents (Markdown).

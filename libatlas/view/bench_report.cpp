@@ -82,6 +82,22 @@ std::string fps_data(const BenchResult& r, ShadowMethod method, std::string& plo
   return data;
 }
 
+// CPU time of every frame, one block a method: who stalls, whatever else the machine does.
+std::string cpu_data(const BenchResult& r, Shading shading, std::string& plot) {
+  std::string data;
+  int block = 0;
+  for (const BenchRun& run : r.runs) {
+    if (run.shading != shading) continue;
+    plot += fmt::format("{}'cpu-{}.dat' index {} with lines title '{}'", block ? ", " : "plot ",
+                        name_of(shading), block, name_of(run.method));
+    ++block;
+    for (std::size_t i = 0; i < run.frames.size(); ++i)
+      data += fmt::format("{} {:.3f}\n", i, run.frames[i].cpu * 1e3);
+    data += "\n\n";
+  }
+  return data;
+}
+
 // Median CPU time of a frame against the mean visibility error, one block a method, one row a k.
 std::string error_data(const BenchResult& r, std::string& plot) {
   std::string data;
@@ -128,6 +144,16 @@ Status write_bench(const BenchResult& result, const fs::path& folder) {
     if (status.ok()) status = write_file(folder / fmt::format("fps-{}.dat", name_of(method)), data);
     script += fmt::format("set title 'shadows: {0}'\nset output 'fps-{0}.png'\n{1}\n",
                           name_of(method), plot);
+  }
+  script += "set ylabel 'CPU time of a frame, ms'\n";
+  for (Shading shading : {Shading::unlit, Shading::lambert, Shading::blinn_phong, Shading::ward}) {
+    std::string plot;
+    const std::string data = cpu_data(result, shading, plot);
+    if (data.empty()) continue;
+    if (status.ok())
+      status = write_file(folder / fmt::format("cpu-{}.dat", name_of(shading)), data);
+    script += fmt::format("set title 'shading: {0}'\nset output 'cpu-{0}.png'\n{1}\n",
+                          name_of(shading), plot);
   }
   std::string plot;
   if (const std::string data = error_data(result, plot); !data.empty()) {
