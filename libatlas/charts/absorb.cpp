@@ -117,6 +117,7 @@ class Absorber {
                       {.cuts = topology_.calm_normals.empty() ? 0 : kCuts}, input_.scratch);
     const bool flat = outcome.parts.empty() && outcome.flat.distortion.stretch_l2 <= kMostL2;
     if (flat && fill(outcome.flat) >= std::min({kLeastFill, fill(a), fill(b)})) {
+      outcome.flat.triangles = std::move(both);
       outcome.flat.fragment = a.fragment && b.fragment;
       b = std::move(outcome.flat);
       a = FlatChart{};

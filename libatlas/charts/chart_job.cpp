@@ -198,7 +198,6 @@ class ChartJob {
       }
     }
     flat.size = orient_for_packing(flat.uvs, scratch_.border).size;
-    flat.triangles.assign(chart_.triangles().begin(), chart_.triangles().end());
     flat.corners = chart_.corners;
     flat.vertex = chart_.vertex;
     flat.cone = cone_;

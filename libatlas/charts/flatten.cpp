@@ -53,29 +53,37 @@ class Flattener {
       std::stable_sort(todo_.begin(), todo_.end(), [&](std::uint32_t a, std::uint32_t b) {
         return charts_[a].triangles.size() > charts_[b].triangles.size();
       });
-      std::vector<ChartOutcome> outcomes(todo_.size());
+      // Many scenes have 10^5 charts and few failures, so those alone are kept.
+      std::vector<std::unique_ptr<ChartOutcome>> failures(todo_.size());
       const std::size_t grain = todo_.size() > 512 ? 16 : 1;
       parallel_for(context, todo_.size(), grain, [&](std::size_t begin, std::size_t end) {
         auto scratch = pool_.take();
         for (std::size_t i = begin; i < end; ++i) {
           const State& state = charts_[todo_[i]];
-          outcomes[i] = flatten_chart(input_, partition_, state.triangles,
-                                      {.rings = removal_rings(state)}, *scratch);
+          ChartOutcome outcome = flatten_chart(input_, partition_, state.triangles,
+                                               {.rings = removal_rings(state)}, *scratch);
+          if (outcome.parts.empty()) {
+            flats_[todo_[i]] = std::move(outcome.flat);
+          } else {
+            failures[i] = std::make_unique<ChartOutcome>(std::move(outcome));
+          }
         }
         pool_.give(std::move(scratch));
       });
-      if (!context.cancelled()) settle(outcomes);
+      if (!context.cancelled()) settle(failures);
     }
   }
 
   FlattenResult take_result(const Context& context) {
     FlattenResult result;
     result.split_charts = split_;
-    for (State& state : charts_) {
-      if (state.triangles.empty()) continue;
-      state.flat.fragment = state.fragment;
-      result.charts.push_back(std::move(state.flat));
+    for (std::size_t k = 0; k < charts_.size(); ++k) {
+      flats_[k].triangles = std::move(charts_[k].triangles);
+      flats_[k].fragment = charts_[k].fragment;
     }
+    charts_ = {};
+    result.charts = std::move(flats_);
+    std::erase_if(result.charts, [](const FlatChart& chart) { return chart.triangles.empty(); });
     if (split_ > 0 || input_.options.cone_degrees > 0) {
       const auto scratch = pool_.take();
       absorb_fragments({input_, partition_, *scratch}, result.charts, context);
@@ -90,7 +98,6 @@ class Flattener {
  private:
   struct State {
     std::vector<std::uint32_t> triangles;  // ascending
-    FlatChart flat;
     int removals = 0;
     bool queued = false;
     bool fragment = false;
@@ -105,20 +112,30 @@ class Flattener {
 
   // Numbers charts anew, by first triangle.
   void list_charts() {
-    std::vector<std::uint32_t> place;
-    for (std::uint32_t t = 0; t < partition_.chart.size(); ++t) {
-      std::uint32_t& chart = partition_.chart[t];
+    std::vector<std::uint32_t> place, size;
+    for (std::uint32_t& chart : partition_.chart) {
       if (chart == kNoIndex) continue;
       if (chart >= place.size()) place.resize(chart + 1, kNoIndex);
-      if (place[chart] == kNoIndex) place[chart] = add_chart();
+      if (place[chart] == kNoIndex) {
+        place[chart] = static_cast<std::uint32_t>(size.size());
+        size.push_back(0);
+      }
       chart = place[chart];
-      charts_[chart].triangles.push_back(t);
+      ++size[chart];
+    }
+    charts_.reserve(size.size());
+    flats_.reserve(size.size());
+    todo_.reserve(size.size());
+    for (const std::uint32_t triangles : size) charts_[add_chart()].triangles.reserve(triangles);
+    for (std::uint32_t t = 0; t < partition_.chart.size(); ++t) {
+      if (partition_.chart[t] != kNoIndex) charts_[partition_.chart[t]].triangles.push_back(t);
     }
   }
 
   std::uint32_t add_chart() {
     const auto id = static_cast<std::uint32_t>(charts_.size());
     charts_.emplace_back();
+    flats_.emplace_back();
     queue(id);
     return id;
   }
@@ -129,19 +146,16 @@ class Flattener {
     todo_.push_back(chart);
   }
 
-  void settle(std::vector<ChartOutcome>& outcomes) {
+  void settle(std::vector<std::unique_ptr<ChartOutcome>>& failures) {
     const std::vector<std::uint32_t> done = std::move(todo_);
     todo_.clear();
     for (const std::uint32_t chart : done) charts_[chart].queued = false;
-    for (std::size_t i = 0; i < done.size(); ++i) {
-      if (outcomes[i].parts.empty()) charts_[done[i]].flat = std::move(outcomes[i].flat);
-    }
     moved_.clear();
     for (std::size_t i = 0; i < done.size(); ++i) {
-      if (outcomes[i].parts.empty()) continue;
-      if (remove(done[i], outcomes[i].remove)) continue;
-      split_ += outcomes[i].failed;
-      divide(done[i], outcomes[i].parts);
+      if (!failures[i]) continue;
+      if (remove(done[i], failures[i]->remove)) continue;
+      split_ += failures[i]->failed;
+      divide(done[i], failures[i]->parts);
     }
     for (const std::uint32_t t : moved_) queue(partition_.chart[t]);
     relist();
@@ -217,6 +231,7 @@ class Flattener {
   Partition& partition_;
   ScratchPool pool_;
   std::vector<State> charts_;
+  std::vector<FlatChart> flats_;  // their results; triangles are filled in the end
   std::vector<std::uint32_t> todo_, moved_;
   std::uint64_t split_ = 0;
 };

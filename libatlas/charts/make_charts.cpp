@@ -38,6 +38,11 @@ class Assembler {
     set_.triangle_chart.assign(n, kNoIndex);
     set_.triangle_uv.assign(3 * n, kNoIndex);
     set_.chart_triangles.reserve(n);
+    std::size_t uvs = 0;
+    for (const FlatChart& chart : charts) uvs += chart.uvs.size();
+    set_.charts.reserve(charts.size());
+    set_.uvs.reserve(uvs);
+    set_.uv_vertex.reserve(uvs);
     for (FlatChart& chart : charts) append(chart);
     place_degenerate();
     number_triangles();

@@ -50,20 +50,19 @@ Frame transport(const Frame& frame, const glm::dvec3& a, const glm::dvec3& b) {
   return {turn(frame[0]), turn(frame[1])};
 }
 
-// Triangle labels, frames and the seams of charts with themselves, from the merged cells.
+// Triangle labels (from `first_label`), frames and the seams of charts with themselves, from the
+// merged cells.
 void spread_to_triangles(const Topology& topology, const Cells& cells, const CoarseMesh& coarse,
-                         const MergeResult& merged, Segmentation& result) {
+                         const MergeResult& merged, std::uint32_t first_label,
+                         Segmentation& result) {
   const std::size_t n = topology.triangle_count();
   Partition& partition = result.partition;
-  partition.chart.assign(n, kNoIndex);
-  partition.seams.assign(n, 0);
-  result.frames.resize(n);
   std::vector<Frame> frames(coarse.cells.size());
   for (std::uint32_t k = 0; k < frames.size(); ++k) frames[k] = cell_frame(coarse, merged.uv, k);
   for (std::uint32_t t = 0; t < n; ++t) {
     const std::uint32_t k = cells.of_triangle[t];
     if (k == kNoIndex) continue;
-    partition.chart[t] = merged.chart_of_cell[k];
+    partition.chart[t] = first_label + merged.chart_of_cell[k];
     const Frame frame =
         transport(frames[k], to_glm(coarse.cells[k].normal), to_dvec(topology.normals[t]));
     result.frames[t] = {from_glm(glm::vec3(frame[0])), from_glm(glm::vec3(frame[1]))};
@@ -92,39 +91,110 @@ void follow_bound(double max_stretch, MergeOptions& merge) {
   merge.tail_worth *= std::max(1.0, ratio);
 }
 
+// Pieces of the mesh in turn, so many cells at a time: 10^5 pieces would need much memory at once.
+constexpr std::uint32_t kCellsAtATime = 100000;
+
+class Segmenter {
+ public:
+  Segmenter(const Topology& topology, const ChartOptions& options, const Context& context)
+      : topology_(topology),
+        options_(options),
+        context_(context),
+        cone_(options.cone_degrees * M_PI / 180) {}
+
+  Segmentation run() {
+    Cells cells = grow_cells(topology_, CellOptions{}, context_);
+    if (context_.cancelled()) return {};
+    if (cone_ > 0) split_by_cone(topology_, cone_, cells);
+    const std::size_t n = topology_.triangle_count();
+    result_.partition.chart.assign(n, kNoIndex);
+    result_.partition.seams.assign(n, 0);
+    result_.frames.resize(n);
+    if (cells.count <= kCellsAtATime) {
+      merge(cells);
+    } else {
+      merge_in_turn(cells);
+    }
+    if (context_.cancelled()) return {};
+    smooth_borders(topology_, options_.crease_degrees, {axes_, std::cos(cone_ - 1e-5)},
+                   result_.partition, result_.frames);
+    return std::move(result_);
+  }
+
+ private:
+  void merge_in_turn(const Cells& cells) {
+    const std::vector<std::uint32_t> piece = piece_of(cells);
+    std::vector<std::uint32_t> count(topology_.component_count, 0), local(cells.count);
+    for (const std::uint32_t k : piece) {
+      if (k != kNoIndex) ++count[k];
+    }
+    Cells some;
+    for (std::uint32_t first = 0, last = 0; first < count.size() && !context_.cancelled();
+         first = last) {
+      std::uint32_t total = 0;
+      for (; last < count.size() && (last == first || total + count[last] <= kCellsAtATime);
+           ++last) {
+        total += count[last];
+      }
+      some.count = 0;
+      for (std::uint32_t k = 0; k < cells.count; ++k) {
+        if (piece[k] >= first && piece[k] < last) local[k] = some.count++;
+      }
+      some.of_triangle.assign(cells.of_triangle.size(), kNoIndex);
+      for (std::uint32_t t = 0; t < some.of_triangle.size(); ++t) {
+        const std::uint32_t k = cells.of_triangle[t];
+        if (k != kNoIndex && piece[k] >= first && piece[k] < last) some.of_triangle[t] = local[k];
+      }
+      merge(some);
+    }
+  }
+
+  std::vector<std::uint32_t> piece_of(const Cells& cells) const {
+    std::vector<std::uint32_t> piece(cells.count, kNoIndex);
+    for (std::uint32_t t = 0; t < cells.of_triangle.size(); ++t) {
+      if (cells.of_triangle[t] != kNoIndex) piece[cells.of_triangle[t]] = topology_.component[t];
+    }
+    return piece;
+  }
+
+  void merge(Cells& cells) {
+    const CoarseMesh coarse = build_coarse(topology_, options_.crease_degrees, cells);
+    const std::vector<std::uint32_t> piece = piece_of(cells);
+    MergeOptions merge;
+    follow_bound(options_.max_stretch, merge);
+    ExtremeNormals normals;
+    if (cone_ > 0) {
+      // Ends are kept clear of the limit: what is measured in the end is rounded otherwise.
+      normals = extreme_normals(topology_, cells);
+      merge.cone = std::max(1e-9, cone_ - 2e-5);
+      merge.cell_normals = &normals;
+    }
+    const MergeResult merged = merge_cells(coarse, piece, merge, context_);
+    if (context_.cancelled()) return;
+    spread_to_triangles(topology_, cells, coarse, merged, labels_, result_);
+    labels_ += static_cast<std::uint32_t>(coarse.cells.size());
+    axes_.insert(axes_.end(), merged.chart_axis.begin(), merged.chart_axis.end());
+  }
+
+  const Topology& topology_;
+  const ChartOptions& options_;
+  const Context& context_;
+  double cone_;  // radians
+  Segmentation result_;
+  std::uint32_t labels_ = 0;  // given so far
+  std::vector<Vec3f> axes_;   // by label; only with a cone limit
+};
+
 }  // namespace
 
 Segmentation segment(const Topology& topology, const ChartOptions& options,
                      const Context& context) {
-  Segmentation result;
   if (options.keep_uv_charts) {
+    Segmentation result;
     result.partition.chart = topology.component;
     return result;
   }
-  const double cone = options.cone_degrees * M_PI / 180;
-  Cells cells = grow_cells(topology, CellOptions{}, context);
-  if (context.cancelled()) return result;
-  if (cone > 0) split_by_cone(topology, cone, cells);
-  const CoarseMesh coarse = build_coarse(topology, options.crease_degrees, cells);
-  std::vector<std::uint32_t> piece(coarse.cells.size(), kNoIndex);
-  for (std::uint32_t t = 0; t < cells.of_triangle.size(); ++t) {
-    if (cells.of_triangle[t] != kNoIndex) piece[cells.of_triangle[t]] = topology.component[t];
-  }
-  MergeOptions merge;
-  follow_bound(options.max_stretch, merge);
-  ExtremeNormals normals;
-  if (cone > 0) {
-    // Ends are kept clear of the limit: what is measured in the end is rounded otherwise.
-    normals = extreme_normals(topology, cells);
-    merge.cone = std::max(1e-9, cone - 2e-5);
-    merge.cell_normals = &normals;
-  }
-  const MergeResult merged = merge_cells(coarse, piece, merge, context);
-  if (context.cancelled()) return result;
-  spread_to_triangles(topology, cells, coarse, merged, result);
-  smooth_borders(topology, options.crease_degrees, {merged.chart_axis, std::cos(cone - 1e-5)},
-                 result.partition, result.frames);
-  return result;
+  return Segmenter(topology, options, context).run();
 }
 
 }  // namespace atlas
