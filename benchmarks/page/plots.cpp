@@ -68,11 +68,16 @@ void size_plot(const Results& results, bool time, std::vector<Plot>& plots) {
   plot.title = time ? "CPU time against size" : "Memory against size";
   plot.x_axis = "triangles";
   plot.y_axis = time ? "CPU seconds" : "MiB";
+  std::map<std::string, int> colours;  // one a stage; kinds of work are told apart by dashes
+  std::map<std::string, bool> dashes;
   for (auto& [name, points] : series) {
     if (points.size() < 2) continue;
     std::sort(points.begin(), points.end(),
               [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
-    plot.series.push_back({name, points, true});
+    const auto comma = name.find(", ");
+    const auto colour = colours.try_emplace(name.substr(0, comma), int(colours.size()) + 1).first;
+    const auto dash = dashes.try_emplace(name.substr(comma), !dashes.empty()).first;
+    plot.series.push_back({name, points, true, colour->second, dash->second});
   }
   if (!plot.series.empty()) plots.push_back(plot);
 }
@@ -130,19 +135,27 @@ std::vector<Plot> make_plots(const Results& results) {
   return plots;
 }
 
+// Colours that stay apart on white, in print and for most colour-blind readers (after Wong 2011).
+constexpr const char* kLineTypes =
+    "set linetype 1 lc rgb '#0072b2' lw 1.5\nset linetype 2 lc rgb '#d55e00' lw 1.5\n"
+    "set linetype 3 lc rgb '#009e73' lw 1.5\nset linetype 4 lc rgb '#cc79a7' lw 1.5\n"
+    "set linetype 5 lc rgb '#7f7f7f' lw 1.5\nset linetype 6 lc rgb '#000000' lw 1.5\n"
+    "set linetype 7 lc rgb '#e69f00' lw 1.5\nset linetype 8 lc rgb '#56b4e9' lw 1.5\n";
+
 std::string gnuplot_script(const Plot& plot, const std::filesystem::path& target) {
   std::string text = fmt::format(
       "set terminal svg size 860,560 noenhanced font 'sans,13' background rgb 'white'\n"
       "set output '{}'\nset title '{}'\nset xlabel '{}'\nset ylabel '{}'\n"
-      "set key below left\nset grid\nset offsets graph 0.08, graph 0.12, 0, 0\n",
-      target.string(), plain(plot.title), plain(plot.x_axis), plain(plot.y_axis));
+      "set key below left\nset grid\nset offsets graph 0.04, graph 0.1, 0, 0\n"
+      "{}",
+      target.string(), plain(plot.title), plain(plot.x_axis), plain(plot.y_axis), kLineTypes);
   if (plot.log_x) text += "set logscale x\n";
   if (plot.log_y) text += "set logscale y\n";
   std::string commands, data;
   int colour = 0;
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const Series& s = plot.series[i];
-    if (!s.name.empty()) ++colour;  // a nameless series belongs to the one before it
+    if (!s.name.empty()) colour = s.colour ? s.colour : colour + 1;  // nameless: as the one before
     data += fmt::format("$s{} << EOD\n", i);
     bool labels = false;
     for (const PlotPoint& p : s.points) {
@@ -154,8 +167,9 @@ std::string gnuplot_script(const Plot& plot, const std::filesystem::path& target
     const char* style = !s.lines         ? "points pt 7 ps 0.7"
                         : s.name.empty() ? "lines"
                                          : "linespoints pt 7 ps 0.5";
-    commands += fmt::format("{}$s{} using 1:2 with {} lc {} {}", commands.empty() ? "plot " : ", ",
-                            i, style, colour, title);
+    commands +=
+        fmt::format("{}$s{} using 1:2 with {} lt {} dt {} {}", commands.empty() ? "plot " : ", ", i,
+                    style, colour, s.dashed ? 2 : 1, title);
     if (labels)
       commands +=
           fmt::format(", $s{} using 1:2:3 with labels left offset 0.6,0.3 font ',9' notitle", i);

@@ -18,6 +18,8 @@ struct Series {
   std::string name;
   std::vector<PlotPoint> points;
   bool lines = false;  // joined in the order given
+  int colour = 0;      // 1 and on, 0: the next one that is free
+  bool dashed = false;
 };
 
 struct Plot {
