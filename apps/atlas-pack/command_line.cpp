@@ -33,7 +33,8 @@ std::string parse_seconds(const std::string& text, double& seconds) {
   return {};
 }
 
-void add_page_options(CLI::App& app, PackCommand& c) {
+// What rectangles and images know and charts do not: any page, as many as it takes, quarter turns.
+void add_rect_options(CLI::App& app, PackCommand& c) {
   app.add_option_function<std::string>("--page",
                                        [&c](const std::string& t) {
                                          if (std::string e = parse_page(t, c.options.page);
@@ -44,6 +45,19 @@ void add_page_options(CLI::App& app, PackCommand& c) {
   app.add_option("--max-width", c.options.page.width, "Largest page width, texels");
   app.add_option("--max-height", c.options.page.height, "Largest page height; 0: open");
   app.add_option("--max-pages", c.options.max_pages, "Pages at most; 0: as many as needed");
+  app.add_flag("--allow-rotation,--rotate", c.options.allow_rotation, "Allow quarter turns");
+}
+
+void add_mesh_options(CLI::App& app, PackCommand& c) {
+  app.add_option("--page", c.page_side, "Side of the largest page, texels")
+      ->check(CLI::Range(16, 1 << 17));
+  app.add_option("--pages,--max-pages", c.pages, "Pages at most")->check(CLI::Range(1, 100000));
+  app.add_option("--rotations", c.rotations,
+                 "Directions tried: 1, 2, 4, 8, 12, ... 64; above 4 a single page's charts may be "
+                 "turned by any angle");
+}
+
+void add_page_options(CLI::App& app, PackCommand& c) {
   app.add_option("--padding", c.options.padding, "Free texels between items");
   app.add_option("--border", c.options.border, "Free texels along the page's edges");
   app.add_option("--align", c.options.alignment,
@@ -51,7 +65,6 @@ void add_page_options(CLI::App& app, PackCommand& c) {
   app.add_flag("--pot", c.options.power_of_two, "Page sides are powers of two");
   app.add_flag("--square", c.options.square, "Square pages");
   app.add_flag("--crop", c.options.crop, "Cut pages to what is used");
-  app.add_flag("--allow-rotation,--rotate", c.options.allow_rotation, "Allow quarter turns");
 }
 
 void add_effort_options(CLI::App& app, PackCommand& c) {
@@ -66,9 +79,11 @@ void add_effort_options(CLI::App& app, PackCommand& c) {
              throw CLI::ValidationError("--budget", e);
          })
       ->type_name("TIME")
-      ->description("Time for --preset best, e.g. 1s or 500ms");
-  app.add_option("--effort", c.options.effort,
-                 "Layouts tried at most by --preset best; with it results repeat exactly");
+      ->description("Time for --preset best, e.g. 1s or 500ms (mesh: on one page)");
+  app.add_option(
+      "--effort", c.options.effort,
+      "Layouts tried at most by --preset best; with it results repeat exactly (mesh: on one "
+      "page)");
   app.add_option("--seed", c.options.seed, "Seed of --preset best");
   app.add_option("--threads", c.threads, "Threads; 0: all");
   app.add_option("--preview", c.preview, "Also draw the pages: FILE.svg or FILE.png");
@@ -103,17 +118,17 @@ int parse_command_line(int argc, char** argv, PackCommand& c) {
       app.add_subcommand("mesh", "The uv charts of a mesh, repacked at uniform density");
   mesh->add_option("mesh", c.input, "OBJ, PLY or glTF with uvs")->required();
   mesh->add_option("-o,--output", c.output, "OBJ with new uvs, one material a page")->required();
-  mesh->add_option("--pages", c.pages, "Number of pages")->check(CLI::Range(1, 100000));
-  mesh->add_option("--rotations", c.rotations, "Directions tried: 1, 2, 4, 8, 12, 16, ...");
+  add_mesh_options(*mesh, c);
 
   const std::map<std::string, DataFormat> formats{{"hash", DataFormat::hash},
                                                   {"array", DataFormat::array}};
   for (CLI::App* sub : {rects, images, mesh}) {
     add_page_options(*sub, c);
     add_effort_options(*sub, c);
-    if (sub != mesh)
-      sub->add_option("--data", c.format, "Layout of the JSON: hash or array")
-          ->transform(CLI::CheckedTransformer(formats));
+    if (sub == mesh) continue;
+    add_rect_options(*sub, c);
+    sub->add_option("--data", c.format, "Layout of the JSON: hash or array")
+        ->transform(CLI::CheckedTransformer(formats));
   }
   try {
     app.parse(argc, argv);

@@ -23,6 +23,7 @@ struct PackCommand {
   int extrude = 0, trim_threshold = 0;
   // mesh
   unsigned pages = 1, rotations = 16;
+  int page_side = 2048;
 };
 
 // Fills in the command; returns -1 to go on, or the exit code with which the program should end

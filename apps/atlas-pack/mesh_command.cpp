@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <numeric>
@@ -157,8 +158,45 @@ std::string to_obj(const Scene& s, const UvCharts& charts, const FitResult& fit,
   return text + faces;
 }
 
+std::int32_t round_up(std::int32_t side) {
+  return static_cast<std::int32_t>(std::bit_ceil(static_cast<std::uint32_t>(side)));
+}
+
+// Every chart a path of its triangles, y down.
+std::string to_svg(const UvCharts& charts, const FitResult& fit, const std::vector<Vec2d>& uvs) {
+  std::int64_t width = 0, height = 1;
+  std::vector<std::int64_t> left;
+  std::string pages, paths;
+  for (Extent p : fit.pages) {
+    left.push_back(width);
+    pages += fmt::format("<rect x=\"{}\" width=\"{}\" height=\"{}\" fill=\"#333\"/>\n", width,
+                         p.width, p.height);
+    width += p.width + 16;
+    height = std::max<std::int64_t>(height, p.height);
+  }
+  for (std::size_t c = 0; c < charts.members.size(); ++c) {
+    const std::uint32_t page = fit.placements[c].page;
+    std::uint8_t rgb[3];
+    item_color(c, rgb);
+    const auto color = fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
+    // The hairline covers the gaps that antialiasing leaves between triangles.
+    paths += fmt::format("<path fill=\"{0}\" stroke=\"{0}\" stroke-width=\".3\" d=\"", color);
+    for (std::uint32_t t : charts.members[c])
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec2d q = uvs[3 * std::size_t(t) + k];
+        paths += fmt::format("{}{:.2f} {:.2f}{}", k ? "L" : "M", q.x + double(left[page]),
+                             fit.pages[page].height - q.y, k == 2 ? "Z" : "");
+      }
+    paths += fmt::format("\"><title>chart{}</title></path>\n", c);
+  }
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\">\n{}{}</svg>\n",
+      std::max<std::int64_t>(1, width - 16), height, pages, paths);
+}
+
 Status draw(const std::filesystem::path& path, const UvCharts& charts, const FitResult& fit,
             const std::vector<Vec2d>& uvs) {
+  if (path.extension() == ".svg") return write_file(path, to_svg(charts, fit, uvs));
   std::vector<Image8> pages;
   for (Extent p : fit.pages) pages.emplace_back(p.width, p.height, 3, std::uint8_t{51});
   for (std::size_t c = 0; c < charts.members.size(); ++c) {
@@ -203,11 +241,57 @@ PackedAtlas describe(const FitResult& fit) {
   return atlas;
 }
 
+// Charts on pages whose border is kept free: packed without it, then moved.
+Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> items,
+                             std::span<const ChartShape> shapes, const Context& context) {
+  const PackOptions& o = c.options;
+  if (o.alignment < 1 || o.border < 0 || o.border > c.page_side / 2)
+    return Status(ErrorCode::bad_option,
+                  "mesh: --align must be 1 or more, --border 0 to half the page's side");
+  const std::int32_t border = (o.border + o.alignment - 1) / o.alignment * o.alignment;
+  FitOptions fit;
+  fit.pages = c.pages;
+  fit.page_size = c.page_side - 2 * border;
+  fit.power_of_two = o.power_of_two && border == 0;
+  fit.square = o.square;
+  fit.free_aspect = o.crop && c.pages == 1 && !o.power_of_two && !o.square;
+  fit.padding = (std::max(o.padding, 0) + 1) / 2;
+  fit.alignment = o.alignment;
+  fit.minimum_side = 0;
+  fit.preset = o.preset;
+  fit.time_budget = o.time_budget;
+  fit.effort = o.effort;
+  fit.seed = o.seed;
+  fit.shapes = shapes;
+  fit.rotations = c.rotations;
+  fit.any_angle = c.rotations > 4;
+  Result<FitResult> fitted = fit_pages(items, fit, context);
+  if (!fitted.ok()) return fitted.status();
+  for (FitPlacement& p : fitted->placements) {
+    p.offset = {p.offset.x + border, p.offset.y + border};
+    p.box.x += border;
+    p.box.y += border;
+  }
+  double used = 0, whole = 0;
+  for (Extent& page : fitted->pages) {
+    used += static_cast<double>(page.area());
+    page = {page.width + 2 * border, page.height + 2 * border};
+    if (!o.crop && !fit.power_of_two) page = {c.page_side, c.page_side};
+    if (o.power_of_two && !fit.power_of_two) page = {round_up(page.width), round_up(page.height)};
+    if (o.square) page.width = page.height = std::max(page.width, page.height);
+    whole += static_cast<double>(page.area());
+  }
+  if (whole > 0) fitted->utilization *= used / whole;
+  return fitted;
+}
+
 }  // namespace
 
 Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
-  if (c.options.page.width != c.options.page.height)
-    return Status(ErrorCode::bad_option, "mesh: pages must be square (use --page 2048x2048)");
+  const std::filesystem::path preview = c.preview.extension();
+  if (!c.preview.empty() && preview != ".svg" && preview != ".png")
+    return Status(ErrorCode::bad_option,
+                  fmt::format("{}: unknown preview format (use .svg or .png)", c.preview.string()));
   ReadOptions read;
   read.load_textures = false;
   Result<LoadedScene> loaded = read_scene(c.input, read, context);
@@ -218,7 +302,7 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
     return Status(ErrorCode::bad_input,
                   fmt::format("{}: has no uvs (unwrap it first)", c.input.string()));
   UvCharts charts = find_charts(scene);
-  make_uniform(scene, double(c.options.page.area()) * c.pages, charts);
+  make_uniform(scene, double(c.page_side) * c.page_side * c.pages, charts);
   if (charts.without_uv > 0)
     context.say(fmt::format("{} triangles have no uvs and keep none", charts.without_uv));
   if (charts.without_area > 0)
@@ -235,28 +319,8 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
     items.push_back({high.x - low.x, high.y - low.y});
     shapes.push_back({corners, {}});
   }
-  FitOptions fit;
-  fit.pages = c.pages;
-  fit.page_size = c.options.page.width;
-  fit.power_of_two = c.options.power_of_two;
-  fit.square = c.options.square;
-  fit.padding = (std::max(c.options.padding, 0) + 1) / 2;
-  fit.alignment = c.options.alignment;
-  fit.minimum_side = 0;
-  fit.preset = c.options.preset;
-  fit.shapes = shapes;
-  fit.rotations = c.rotations;
-  Result<FitResult> fitted = fit_pages(items, fit, context);
+  Result<FitResult> fitted = fit_charts(c, items, shapes, context);
   if (!fitted.ok()) return fitted.status();
-  if (!c.options.crop && !c.options.power_of_two) {
-    double used = 0, whole = 0;
-    for (Extent& page : fitted->pages) {
-      used += static_cast<double>(page.area());
-      page = c.options.page;
-      whole += static_cast<double>(page.area());
-    }
-    fitted->utilization *= used / whole;
-  }
   std::vector<Vec2d> uvs;
   if (Status s = write_file(c.output, to_obj(scene, charts, *fitted, uvs)); !s.ok()) return s;
   if (!c.preview.empty())

@@ -220,6 +220,7 @@ void BitPage::rebuild(std::int32_t y, std::int32_t begin, std::int32_t end) {
     }
   }
   longest_[y] = longest_free(y);
+  work_ += static_cast<std::uint64_t>(levels_) * (last - static_cast<std::size_t>(begin) / 64);
 }
 
 void BitPage::put(const Mask& mask, Place place) {

@@ -51,7 +51,8 @@ class BitPage {
   void take_away(const Mask& mask, Place place);
   void clear();
 
-  // Words looked at so far: the measure of effort for limits that must not depend on a clock.
+  // Words looked at or written so far: the measure of effort for limits that must not depend on a
+  // clock.
   std::uint64_t work() const { return work_; }
 
   bool is_free(std::int32_t x, std::int32_t y) const;

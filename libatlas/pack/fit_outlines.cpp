@@ -158,6 +158,7 @@ class OutlineFit {
     NestSearchOptions search;
     search.width = search.enough = side_;
     search.seed = p + 1;
+    if (options_.preset != PackPreset::best) search.layouts = 300;
     search.work = (options_.preset == PackPreset::best ? 400'000'000u : 40'000'000u) / pages;
     if (layout_cost(plan.order.size(), side_, grid_.directions) * 4 > double(search.work)) return;
     Nest found;

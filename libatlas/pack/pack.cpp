@@ -133,6 +133,43 @@ void describe(std::span<const Extent> items, const PackOptions& options, PackRes
   result.fill_without_last = total_without > 0 ? filled_without / total_without : 1;
 }
 
+// A page free in both directions: the widths around the square's, and the one whose page is
+// smallest.
+Layout solve_free(const Problem& problem, const PackOptions& options, const Context& context,
+                  PackResult& result) {
+  constexpr int kWidths = 5;
+  if (options.page.width > 0 || options.preset == PackPreset::fast || !problem.pinned.empty())
+    return pack::solve(problem, options, context, result);
+  PackOptions share = options;
+  share.time_budget /= kWidths;
+  if (options.effort > 0) share.effort = std::max<std::uint64_t>(1, options.effort / kWidths);
+  std::int32_t widest = 1;
+  for (const Extent& e : problem.items) widest = std::max(widest, e.width);
+  Layout best;
+  std::int64_t smallest = 0;
+  std::uint64_t layouts = 0;
+  for (int k = 0; k < kWidths; ++k) {
+    Problem tried = problem;
+    tried.page.width =
+        std::max(widest, static_cast<std::int32_t>(problem.page.width * (0.94 + 0.03 * k)));
+    Layout layout = pack::solve(tried, share, context, result);
+    layouts += result.layouts_tried;
+    Extent used;
+    for (std::size_t i = 0; i < tried.items.size(); ++i) {
+      const Placement& at = layout.placements[i];
+      const Extent e = tried.items[i];
+      used.width = std::max(used.width, at.x + (at.rotated ? e.height : e.width));
+      used.height = std::max(used.height, at.y + (at.rotated ? e.width : e.height));
+    }
+    const Extent page = shaped(used, options);
+    if (k > 0 && page.area() >= smallest) continue;
+    smallest = page.area();
+    best = std::move(layout);
+  }
+  result.layouts_tried = layouts;
+  return best;
+}
+
 }  // namespace
 
 Result<PackResult> pack_rects(std::span<const Extent> items, const PackOptions& options,
@@ -161,7 +198,8 @@ Result<PackResult> pack_rects(std::span<const Extent> items, const PackOptions& 
     if (taken.area() > 0) problem.pinned[pin.page].push_back(taken);
   }
 
-  const Layout layout = pack::solve(problem, options, context, result);
+  const Layout layout =
+      active.sizes.empty() ? Layout{} : solve_free(problem, options, context, result);
   if (context.cancelled()) return Status::cancelled();
   for (std::size_t k = 0; k < active.ids.size(); ++k) {
     const Placement& p = layout.placements[k];

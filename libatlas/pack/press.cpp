@@ -224,7 +224,7 @@ class Press {
     std::stable_sort(starts.begin(), starts.end(), [&](const Start& a, const Start& b) {
       return goodness(a.page) > goodness(b.page);
     });
-    for (std::size_t k = 0; k < std::min<std::size_t>(starts.size(), 3); ++k)
+    for (std::size_t k = 0; k < std::min<std::size_t>(starts.size(), 6); ++k)
       if (context_.cancelled() || settle_start(starts[k], best)) return;
   }
 

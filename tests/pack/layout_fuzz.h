@@ -1,9 +1,10 @@
-// A random sequence of operations on an AtlasLayout, checked by brute force after each.
+// Random sequences of operations, inputs and options, checked by brute force.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "libatlas/pack/fit.h"
 #include "libatlas/pack/layout.h"
 #include "tests/pack/checks.h"
 
@@ -53,6 +54,87 @@ inline std::string fuzz_layout(std::uint64_t seed) {
     if (std::string wrong = check_layout(items, placements, pages, o); !wrong.empty()) return wrong;
   }
   return {};
+}
+
+// pack_rects with any options and rectangles, some of them degenerate.
+inline std::string fuzz_rects(std::uint64_t seed) {
+  Noise noise{seed * 91 + 3};
+  PackOptions o;
+  o.page = {noise.in(6, 40), noise.in(6, 40)};
+  if (noise.in(0, 5) == 0) o.page.height = 0;
+  if (noise.in(0, 11) == 0) o.page = {0, 0};
+  o.max_pages = static_cast<std::uint32_t>(noise.in(0, 3));
+  o.allow_rotation = noise.in(0, 1);
+  o.padding = noise.in(0, 3) / 2;
+  o.border = noise.in(0, 3) / 3;
+  o.alignment = noise.in(0, 4) ? 1 : noise.in(2, 4);
+  o.preset = static_cast<PackPreset>(noise.in(0, 2));
+  o.effort = 20;
+  o.engine = noise.in(0, 2) ? PackEngine::automatic : static_cast<PackEngine>(noise.in(1, 3));
+  o.crop = noise.in(0, 1);
+  o.square = noise.in(0, 3) == 0;
+  if (o.square && o.page.height > 0) o.page.height = o.page.width;
+  std::vector<Extent> items;
+  for (int n = noise.in(0, 14); n > 0; --n)
+    items.push_back({noise.in(0, 19) ? noise.in(0, 14) : 1000000000, noise.in(0, 14)});
+  const Result<PackResult> r = pack_rects(items, o, {});
+  if (!r.ok()) return r.status().message();
+  std::size_t missing = 0;
+  for (const Placement& p : r->placements) missing += !p.placed();
+  if (missing != r->unplaced.size()) return "the unplaced are not those without a place";
+  for (const UnplacedItem& u : r->unplaced) {
+    const bool huge = items[u.item].width == 1000000000 && items[u.item].height > 0;
+    if (huge && o.page.area() > 0 && u.reason != UnplacedReason::too_large)
+      return "an enormous item is not called too large";
+    if (o.max_pages == 0 && o.page.area() > 0 && u.reason == UnplacedReason::no_room)
+      return "no room on pages without number";
+  }
+  return check_layout(items, r->placements, r->pages, o);
+}
+
+// Outlines: fit_pages on one or two pages, and pack_outlines, gutters checked.
+inline std::string fuzz_outlines(std::uint64_t seed) {
+  Noise noise{seed * 131 + 17};
+  std::vector<std::vector<Vec2d>> blobs;
+  for (int n = noise.in(1, 9); n > 0; --n) {
+    blobs.push_back(blob(noise, noise.in(0, 9) ? 4 + 30 * noise.unit() : 0, noise.in(3, 9)));
+    if (noise.in(0, 9) == 0)  // no width
+      for (Vec2d& p : blobs.back()) p.y = 0;
+  }
+  std::vector<ChartShape> shapes;
+  std::vector<FitItem> items;
+  for (const auto& b : blobs) {
+    Vec2d low = b[0], high = b[0];
+    for (const Vec2d& p : b) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+    items.push_back({high.x - low.x, high.y - low.y});
+    shapes.push_back({b, {}});
+  }
+  FitOptions o;
+  o.pages = static_cast<std::uint32_t>(noise.in(1, 4)) / 4 + 1;
+  o.page_size = 256;
+  o.padding = noise.in(1, 2);
+  o.alignment = noise.in(0, 2) ? 1 : 4;
+  o.minimum_side = 0;
+  o.max_scale = noise.in(0, 3) ? 8 : 1;
+  o.free_aspect = noise.in(0, 1);
+  o.power_of_two = noise.in(0, 1);
+  o.preset = noise.in(0, 4) ? PackPreset::standard : PackPreset::fast;
+  o.shapes = shapes;
+  const Result<FitResult> r = fit_pages(items, o, {});
+  if (!r.ok()) return r.status().message();
+  if (!(r->scale > 0) || r->scale > o.max_scale) return "scale out of range";
+  if (r->pages.size() > o.pages) return "too many pages";
+  for (const Extent& page : r->pages)
+    if (page.width > o.page_size || page.height > o.page_size) return "page too large";
+  std::vector<PlacedShape> placed;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const FitPlacement& p = r->placements[i];
+    placed.push_back({shapes[i], p.page, p.scale, p.angle, p.offset});
+  }
+  return check_outlines(placed, r->pages, o.padding);
 }
 
 }  // namespace atlas::test

@@ -48,5 +48,15 @@ TEST(AtlasLayout, RandomOperationsKeepTheRules) {
     ASSERT_EQ(test::fuzz_layout(seed), "") << "seed " << seed;
 }
 
+TEST(PackFuzz, RectangleSets) {
+  for (std::uint64_t seed = 0; seed < 3000; ++seed)
+    ASSERT_EQ(test::fuzz_rects(seed), "") << "seed " << seed;
+}
+
+TEST(PackFuzz, OutlineSets) {
+  for (std::uint64_t seed = 0; seed < 8; ++seed)
+    ASSERT_EQ(test::fuzz_outlines(seed), "") << "seed " << seed;
+}
+
 }  // namespace
 }  // namespace atlas

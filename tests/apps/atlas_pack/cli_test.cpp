@@ -159,4 +159,56 @@ TEST_F(AtlasPack, MeshChartsAtUniformDensity) {
   EXPECT_GT(area(0), 0.1);
 }
 
+// Eight right triangles, far apart in their own uvs.
+std::string triangles_obj() {
+  std::string text;
+  for (int k = 0; k < 8; ++k) {
+    const double s = 1 + 0.2 * k;
+    text += fmt::format("v {0} 0 0\nv {1} 0 0\nv {0} {2} 0\n", 10 * k, 10 * k + s, 2 * s);
+    text += fmt::format("vt {0} 0\nvt {1} 0\nvt {0} {2}\n", 10 * k, 10 * k + s, 2 * s);
+  }
+  for (int k = 0; k < 8; ++k)
+    text += fmt::format("f {0}/{0} {1}/{1} {2}/{2}\n", 3 * k + 1, 3 * k + 2, 3 * k + 3);
+  return text;
+}
+
+TEST_F(AtlasPack, MeshOptionsDoWhatTheySay) {
+  write("t.obj", triangles_obj());
+  const auto pages = [&](const std::string& more) {
+    const RunResult r = run("mesh t.obj -o out.obj --json --page 256 " + more);
+    EXPECT_EQ(r.exit_code, 0) << r.output;
+    return nlohmann::json::parse(r.output);
+  };
+  const auto whole = pages("");
+  EXPECT_EQ(whole["pages"][0]["width"], 256);
+  EXPECT_EQ(whole["pages"][0]["height"], 256);
+  const auto cropped = pages("--crop");
+  EXPECT_LE(cropped["pages"][0]["width"], 256);
+  EXPECT_LE(cropped["pages"][0]["height"], 256);
+  EXPECT_GE(double(cropped["utilization"]), double(whole["utilization"]));
+  const auto square = pages("--crop --square");
+  EXPECT_EQ(square["pages"][0]["width"], square["pages"][0]["height"]);
+  EXPECT_LE(pages("--max-pages 2")["pages"].size(), 2u);
+  // Seed and effort alone decide about `best`.
+  pages("--preset best --effort 100 --seed 3 --threads 1");
+  const std::string first = read("out.obj");
+  pages("--preset best --effort 100 --seed 3 --threads 2");
+  EXPECT_EQ(read("out.obj"), first);
+  // The border stays free.
+  pages("--border 20");
+  std::istringstream lines(read("out.obj"));
+  for (std::string line; std::getline(lines, line);) {
+    double u = 0, v = 0;
+    if (std::sscanf(line.c_str(), "vt %lf %lf", &u, &v) != 2) continue;
+    for (double x : {u * 256, v * 256}) {
+      EXPECT_GE(x, 20 - 1e-6);
+      EXPECT_LE(x, 236 + 1e-6);
+    }
+  }
+  pages("--preview p.svg");
+  EXPECT_NE(read("p.svg").find("<path"), std::string::npos);
+  EXPECT_EQ(run("mesh t.obj -o out.obj --preview p.gif").exit_code, 2);
+  EXPECT_EQ(run("mesh t.obj -o out.obj --max-width 99").exit_code, 2);  // charts: square pages
+}
+
 }  // namespace
