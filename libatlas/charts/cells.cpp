@@ -168,8 +168,9 @@ using Heap = std::priority_queue<Visit, std::vector<Visit>, std::greater<>>;
 // Chooses seeds among the grains.
 class Seeder {
  public:
-  Seeder(const Topology& topology, const Grains& grains, const CellOptions& options)
-      : topology_(topology), grains_(grains), options_(options) {}
+  Seeder(const Topology& topology, const Grains& grains, const CellOptions& options,
+         const Context& context)
+      : topology_(topology), grains_(grains), options_(options), context_(context) {}
 
   // One grain a cell, with the mean normal of what it is to stand for.
   void run() {
@@ -177,7 +178,8 @@ class Seeder {
     owner_.assign(grains_.count(), kNoIndex);
     std::vector<std::uint32_t> size(topology_.component_count, 0);
     for (const std::uint32_t k : topology_.component) size[k == kNoIndex ? 0 : k] += k != kNoIndex;
-    for (std::uint32_t first = 0, last = 0; first < grains_.count(); first = last) {
+    for (std::uint32_t first = 0, last = 0; first < grains_.count() && !context_.cancelled();
+         first = last) {
       while (last < grains_.count() && grains_.component[last] == grains_.component[first]) ++last;
       const std::size_t first_seed = seeds.size();
       double area = 0;
@@ -241,7 +243,7 @@ class Seeder {
     if (budget > 1) {
       std::priority_queue<Entry> farthest;
       for (std::uint32_t g = first; g < last; ++g) farthest.push({distance_[g], g});
-      for (std::uint32_t count = 1; count < budget && !farthest.empty();) {
+      for (std::uint32_t count = 1; count < budget && !farthest.empty() && !context_.cancelled();) {
         const auto [distance, grain] = farthest.top();
         farthest.pop();
         if (distance_[grain] == 0) continue;
@@ -325,6 +327,7 @@ class Seeder {
   const Topology& topology_;
   const Grains& grains_;
   const CellOptions& options_;
+  const Context& context_;
   std::vector<std::uint32_t> distance_;  // in the ruler's parts
   std::vector<std::uint32_t> owner_;
   Ruler ruler_;  // of the piece at hand
@@ -347,7 +350,9 @@ std::vector<Ruler> triangle_rulers(const Topology& topology) {
 }
 
 // The last pass: triangles to seeds.
-Cells grow_triangles(const Topology& topology, const Grains& grains, const Seeder& seeder) {
+Cells grow_triangles(const Topology& topology, const Grains& grains, const Seeder& seeder,
+                     const Context& context) {
+  constexpr std::uint32_t visits_between_looks = 4096;
   const std::size_t n = topology.triangle_count(), cells = seeder.seeds.size();
   std::vector<std::uint32_t> seed(cells, kNoIndex);
   const std::vector<Ruler> rulers = triangle_rulers(topology);
@@ -367,6 +372,7 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
   result.count = static_cast<std::uint32_t>(cells);
   result.of_triangle.assign(n, kNoIndex);
   Heap heap;
+  std::uint32_t visits = 0;
   const auto piece = [&](std::uint32_t s) { return grains.component[seeder.seeds[s]]; };
   for (std::uint32_t next = 0; next < cells || !heap.empty();) {
     if (heap.empty()) {  // pieces in turn: their seeds are contiguous, and the heap stays small
@@ -377,6 +383,7 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
       }
       continue;
     }
+    if (++visits % visits_between_looks == 0 && context.cancelled()) return {};
     const Visit visit = heap.top();
     heap.pop();
     if (result.of_triangle[visit.node] != kNoIndex) continue;
@@ -407,10 +414,10 @@ Cells grow_cells(const Topology& topology, const CellOptions& wanted, const Cont
     return {std::vector<std::uint32_t>(topology.triangle_count(), kNoIndex), 0};
   }
   const Grains grains = GrainBuilder(topology, options).run();
-  Seeder seeder(topology, grains, options);
+  Seeder seeder(topology, grains, options, context);
   seeder.run();
   if (context.cancelled()) return {};
-  return grow_triangles(topology, grains, seeder);
+  return grow_triangles(topology, grains, seeder, context);
 }
 
 }  // namespace atlas
