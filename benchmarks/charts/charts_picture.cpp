@@ -146,14 +146,19 @@ void draw_in_space(const test::UvMesh& mesh, const std::vector<std::uint32_t>& c
   }
 }
 
-void draw_page(const test::UvMesh& mesh, const std::vector<std::uint32_t>& chart, Canvas& canvas) {
+void draw_page(const UnwrappedMesh& unwrapped, const std::vector<std::uint32_t>& chart,
+               Canvas& canvas) {
+  const test::UvMesh& mesh = unwrapped.mesh;
   const double margin = 0.03 * canvas.side(), scale = canvas.side() - 2 * margin;
+  const double wide = scale * std::min(1.0, unwrapped.aspect),
+               high = scale * std::min(1.0, 1 / unwrapped.aspect);
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     if (mesh.faces[f].page != 0) continue;
     std::array<glm::dvec3, 3> p;
     for (int c = 0; c < 3; ++c) {
       const Vec2d uv = mesh.uvs[mesh.faces[f].uv[c]];
-      p[c] = {margin + scale * uv.x, margin + scale * uv.y, 0};
+      p[c] = {margin + 0.5 * (scale - wide) + wide * uv.x,
+              margin + 0.5 * (scale - high) + high * uv.y, 0};
     }
     canvas.draw(p, chart[f], 1);
   }
@@ -161,12 +166,12 @@ void draw_page(const test::UvMesh& mesh, const std::vector<std::uint32_t>& chart
 
 }  // namespace
 
-Image8 charts_picture(const std::vector<test::UvMesh>& meshes, int side) {
+Image8 charts_picture(const std::vector<UnwrappedMesh>& meshes, int side) {
   Image8 image(side * int(meshes.size()), 2 * side, 3, 255);
   for (std::size_t k = 0; k < meshes.size(); ++k) {
-    const std::vector<std::uint32_t> chart = charts_of(meshes[k]);
+    const std::vector<std::uint32_t> chart = charts_of(meshes[k].mesh);
     Canvas space(side), page(side);
-    draw_in_space(meshes[k], chart, space);
+    draw_in_space(meshes[k].mesh, chart, space);
     draw_page(meshes[k], chart, page);
     space.finish(image, side * int(k), side);
     page.finish(image, side * int(k), 0);

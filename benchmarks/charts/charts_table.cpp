@@ -75,7 +75,7 @@ Result<std::string> charts_table_row(const std::string& name, const LoadedScene&
 Status draw_charts(const std::vector<LoadedScene>& meshes, const std::filesystem::path& png,
                    const Context& context) {
   const Folder folder;
-  std::vector<test::UvMesh> unwrapped;
+  std::vector<UnwrappedMesh> unwrapped;
   for (const LoadedScene& loaded : meshes) {
     ExportOptions options;
     options.target = folder.path / "out.obj";
@@ -84,7 +84,8 @@ Status draw_charts(const std::vector<LoadedScene>& meshes, const std::filesystem
     if (!report.ok()) return report.status();
     Result<test::UvMesh> mesh = test::read_uv_obj(options.target);
     if (!mesh.ok()) return mesh.status();
-    unwrapped.push_back(std::move(*mesh));
+    const auto& page = report->pages.front();
+    unwrapped.push_back({std::move(*mesh), double(page.width) / page.height});
   }
   return write_png(png, charts_picture(unwrapped, 420), {9});
 }
