@@ -14,8 +14,9 @@ constexpr int kCuts = 2;
 // Triangles of all unions tried, as a multiple of the mesh's: keeps the time linear.
 // There is more to gain where scan noise was what divided charts.
 constexpr double kMostWork = 1.5, kMostWorkSmooth = 0.25;
-constexpr double kMostL2 = 1.01;     // of a union's stretch, as when cells are merged
-constexpr double kLeastFill = 0.45;  // of its rectangle by a union, or as much as the sparser part
+constexpr double kSmallShare = 0.01;  // of the triangles, what is tried on smooth meshes
+constexpr double kMostL2 = 1.01;      // of a union's stretch, as when cells are merged
+constexpr double kLeastFill = 0.45;   // of its rectangle by a union, or as much as the sparser part
 
 class Absorber {
  public:
@@ -35,7 +36,8 @@ class Absorber {
     using Entry = std::pair<std::size_t, std::uint32_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
     for (std::uint32_t k = 0; k < charts_.size(); ++k) {
-      if (charts_[k].fragment) queue.push({charts_[k].triangles.size(), k});
+      if (charts_[k].fragment && worth_a_try(charts_[k]))
+        queue.push({charts_[k].triangles.size(), k});
     }
     while (!queue.empty() && !context.cancelled() && work_ > 0) {
       const auto [size, k] = queue.top();
@@ -54,6 +56,11 @@ class Absorber {
     std::uint32_t chart;
     double border;
   };
+
+  bool worth_a_try(const FlatChart& chart) const {
+    return !topology_.calm_normals.empty() ||
+           double(chart.triangles.size()) <= kSmallShare * double(topology_.triangle_count());
+  }
 
   std::uint32_t absorb(std::uint32_t k) {
     std::vector<Neighbour> neighbours = find_neighbours(k);

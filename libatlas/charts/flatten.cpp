@@ -79,7 +79,7 @@ class Flattener {
     result.split_charts = split_;
     for (std::size_t k = 0; k < charts_.size(); ++k) {
       flats_[k].triangles = std::move(charts_[k].triangles);
-      flats_[k].fragment = charts_[k].fragment;
+      flats_[k].fragment = charts_[k].fragment || input_.options.cone_degrees > 0;
     }
     charts_ = {};
     result.charts = std::move(flats_);
