@@ -137,7 +137,8 @@ TEST_F(Bench, MeasuresEveryCombinationAndWritesItsFiles) {
   int lines = 0;
   for (std::string line; std::getline(csv, line);) ++lines;
   EXPECT_EQ(lines, 1 + 21 * 4);
-  EXPECT_TRUE(fs::exists(path_ / "out" / "plots.gp"));
+  for (const char* name : {"plots.gp", "fps-march.dat", "cpu-lambert.dat", "cpu-ward.dat"})
+    EXPECT_TRUE(fs::exists(path_ / "out" / name)) << name;
 }
 
 }  // namespace
