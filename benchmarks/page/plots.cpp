@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <map>
@@ -23,6 +24,35 @@ std::string plain(std::string text) {
 
 bool usable(const Row& row) {
   return row.failure.empty() && !row.values.empty() && row.cpu_seconds > 0;
+}
+
+// Points that lie close together on the plot share one label, at the first of them.
+void join_labels(std::vector<Series>& all) {
+  double low_x = 1e300, high_x = 0, low_y = 1e300, high_y = 0;
+  for (const Series& s : all)
+    for (const PlotPoint& p : s.points) {
+      low_x = std::min(low_x, p.x);
+      high_x = std::max(high_x, p.x);
+      low_y = std::min(low_y, p.y);
+      high_y = std::max(high_y, p.y);
+    }
+  const double width = std::log(high_x / low_x) + 1e-9, height = std::log(high_y / low_y) + 1e-9;
+  std::vector<PlotPoint*> labelled;
+  for (Series& s : all)
+    for (PlotPoint& p : s.points) {
+      if (p.label.empty()) continue;
+      const auto near = std::find_if(labelled.begin(), labelled.end(), [&](const PlotPoint* q) {
+        return std::abs(std::log(p.x / q->x)) < 0.15 * width &&
+               std::abs(std::log(p.y / q->y)) < 0.03 * height;
+      });
+      if (near == labelled.end()) {
+        labelled.push_back(&p);
+        continue;
+      }
+      if (("; " + (*near)->label + "; ").find("; " + p.label + "; ") == std::string::npos)
+        (*near)->label += "; " + p.label;
+      p.label.clear();
+    }
 }
 
 // One plot a stage that was run with several settings.
@@ -49,6 +79,7 @@ void error_plots(const Results& results, std::vector<Plot>& plots) {
     for (Series& s : plot.series)
       if (s.lines)
         for (PlotPoint& p : s.points) p.label.clear();
+    join_labels(plot.series);
     if (!plot.series.empty()) plots.push_back(plot);
   }
 }
@@ -146,7 +177,8 @@ std::string gnuplot_script(const Plot& plot, const std::filesystem::path& target
   std::string text = fmt::format(
       "set terminal svg size 860,560 noenhanced font 'sans,13' background rgb 'white'\n"
       "set output '{}'\nset title '{}'\nset xlabel '{}'\nset ylabel '{}'\n"
-      "set key below left\nset grid\nset offsets graph 0.04, graph 0.1, 0, 0\n"
+      "set key below left\nset grid\nset format '%g'\nset autoscale noextend\n"
+      "set offsets graph 0.04, graph 0.12, graph 0.06, graph 0.06\n"
       "{}",
       target.string(), plain(plot.title), plain(plot.x_axis), plain(plot.y_axis), kLineTypes);
   if (plot.log_x) text += "set logscale x\n";

@@ -67,8 +67,9 @@ Result<std::vector<Row>> measure_shadows(const Scene& scene, const std::string& 
   bench.error_intervals = options.intervals;
   bench.error_frames = options.frames;
   LightPathOptions sun;
-  sun.sun.up = kUp;
-  sun.sun.north = {0, 1, 0};
+  sun.kind = PathKind::arc;  // a low sun across the windows of one side
+  sun.end = PathEnd::back;
+  sun.directions = {{0.5, 1, 0.4}, {-0.5, 1, 0.3}};
   const Result<LightPath> path = LightPath::make(sun);
   if (!path.ok()) return path.status();
   Result<Renderer> renderer = Renderer::make(*view, bench.render);
