@@ -46,7 +46,7 @@ else
   sweep="cabin:100000 scan:100000"; budget="--atlases 8 --atlas-size 2048"; repeats=2
   sizes="cabin:10000 cabin:300000 cabin:1000000 cabin:3000000 scan:30000 scan:300000 scan:1000000"
   sizes_budget="--atlases 50"
-  threads="cabin:300000"; counted="scan:20000"
+  threads="cabin:300000"; counted="scan:5000"
   rivals="sphere:100000 assembly:100000 genus:100000 scan:1000000 terrain:1000000 assembly:1000000"
   leak="cabin:1000000"; texels="20 10 5 2.5"; full="--full"; shadows=""
 fi
@@ -70,7 +70,6 @@ rival_list() {
   blender="blender -b --factory-startup -P $PWD/benchmarks/rivals/blender_unwrap.py --python-exit-code 1"
   command -v blender >/dev/null || blender="echo 'not installed' >&2; exit 1; :"
   echo "Blender Smart UV=$blender -- smart {in} {out}"
-  echo "Blender Lightmap Pack=$blender -- lightmap {in} {out}"
 }
 
 # shellcheck disable=SC2086  # the lists are meant to be split
@@ -82,7 +81,7 @@ rival_list() {
       -o "$results/threads.json"
   run "$bin/atlas-bench" --work $sweep $budget --repeats "$repeats" -o "$results/settings.json"
   run "$bin/atlas-bench" --work $counted --atlases 1 --atlas-size 512 --instructions \
-      -o "$results/instructions.json"
+      --stages baseline charts downsizing grouping simplify -o "$results/instructions.json"
   run "$bin/atlas-bench-leak" --work "$leak" --texel $texels \
       --picture "$out/plots/light_leak.png" -o "$results/leak.json"
   [ ! -x "$bin/atlas-bench-shadows" ] ||

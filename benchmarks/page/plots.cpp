@@ -23,7 +23,7 @@ std::string plain(std::string text) {
 }
 
 bool usable(const Row& row) {
-  return row.failure.empty() && !row.values.empty() && row.cpu_seconds > 0;
+  return row.failure.empty() && !row.values.empty() && row.cpu_seconds > 0 && row.threads == 0;
 }
 
 // Points that lie close together on the plot share one label, at the first of them.
@@ -55,11 +55,22 @@ void join_labels(std::vector<Series>& all) {
     }
 }
 
+double spread_of_errors(const std::vector<Series>& all) {
+  double low = 1e300, high = 0;
+  for (const Series& s : all)
+    for (const PlotPoint& p : s.points) {
+      low = std::min(low, p.y);
+      high = std::max(high, p.y);
+    }
+  return high / low;
+}
+
 // One plot a stage that was run with several settings.
 void error_plots(const Results& results, std::vector<Plot>& plots) {
   std::map<std::string, std::map<std::string, std::vector<const Row*>>> stages;
   for (const Row& row : results.rows)
-    if (usable(row) && row.stage != "light_leak") stages[row.stage][row.mesh].push_back(&row);
+    if (usable(row) && row.stage != "light_leak" && row.stage != "baseline")
+      stages[row.stage][row.mesh].push_back(&row);
   for (const auto& [stage, meshes] : stages) {
     Plot plot;
     plot.file = "error_" + stage + ".svg";
@@ -80,6 +91,7 @@ void error_plots(const Results& results, std::vector<Plot>& plots) {
       if (s.lines)
         for (PlotPoint& p : s.points) p.label.clear();
     join_labels(plot.series);
+    plot.log_y = spread_of_errors(plot.series) > 8;  // within a decade a log axis has no labels
     if (!plot.series.empty()) plots.push_back(plot);
   }
 }
@@ -87,7 +99,7 @@ void error_plots(const Results& results, std::vector<Plot>& plots) {
 void size_plot(const Results& results, bool time, std::vector<Plot>& plots) {
   std::map<std::string, std::vector<PlotPoint>> series;
   for (const Row& row : results.rows) {
-    if (!row.failure.empty() || row.setting.rfind("texel", 0) == 0) continue;
+    if (!row.failure.empty() || row.threads > 0) continue;
     if (row.setting != "standard" && row.stage != "baseline") continue;
     if (row.mesh.find(':') == std::string::npos || row.cpu_seconds <= 0) continue;
     if (row.stage.find('/') != std::string::npos) continue;
