@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <set>
 
 namespace atlas::bench {
 namespace {
@@ -55,12 +56,13 @@ void join_labels(std::vector<Series>& all) {
     }
 }
 
-double spread_of_errors(const std::vector<Series>& all) {
+// Largest over smallest value of a coordinate.
+double spread(const std::vector<Series>& all, double PlotPoint::*coordinate) {
   double low = 1e300, high = 0;
   for (const Series& s : all)
     for (const PlotPoint& p : s.points) {
-      low = std::min(low, p.y);
-      high = std::max(high, p.y);
+      low = std::min(low, p.*coordinate);
+      high = std::max(high, p.*coordinate);
     }
   return high / low;
 }
@@ -91,14 +93,35 @@ void error_plots(const Results& results, std::vector<Plot>& plots) {
       if (s.lines)
         for (PlotPoint& p : s.points) p.label.clear();
     join_labels(plot.series);
-    plot.log_y = spread_of_errors(plot.series) > 8;  // within a decade a log axis has no labels
+    plot.log_x = spread(plot.series, &PlotPoint::x) > 8;  // less, and a log axis has no labels
+    plot.log_y = spread(plot.series, &PlotPoint::y) > 8;
     if (!plot.series.empty()) plots.push_back(plot);
   }
 }
 
+// The file with most sizes of one kind of work: rows of others were measured with other budgets.
+std::string file_of_sizes(const Results& results) {
+  std::map<std::string, std::set<std::uint64_t>> sizes;
+  for (const Row& row : results.rows)
+    if (row.stage == "charts" && row.threads == 0 && row.instructions == 0 &&
+        row.mesh.rfind("file:", 0) != 0)
+      sizes[row.source.substr(0, row.source.find(':'))].insert(row.triangles);
+  std::string file;
+  std::size_t most = 0;
+  for (const auto& [name, triangles] : sizes)
+    if (triangles.size() > most) {
+      most = triangles.size();
+      file = name;
+    }
+  return file;
+}
+
 void size_plot(const Results& results, bool time, std::vector<Plot>& plots) {
   std::map<std::string, std::vector<PlotPoint>> series;
+  const std::string file = file_of_sizes(results);
   for (const Row& row : results.rows) {
+    if (row.source.substr(0, row.source.find(':')) != file || row.mesh.rfind("file:", 0) == 0)
+      continue;
     if (!row.failure.empty() || row.threads > 0) continue;
     if (row.setting != "standard" && row.stage != "baseline") continue;
     if (row.mesh.find(':') == std::string::npos || row.cpu_seconds <= 0) continue;
