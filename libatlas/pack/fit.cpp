@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libatlas/pack/fit_pages.h"
+#include "libatlas/pack/fit_result.h"
 #include "libatlas/pack/shape_check.h"
 
 namespace atlas {
@@ -259,7 +260,7 @@ void finish(const BoxFit& fit, const FitOptions& options, BoxLayout& layout, Fit
     }
   }
   result.placements.resize(layout.placements.size());
-  double content = 0, boxes = 0, area = 0;
+  double content = 0, boxes = 0;
   for (std::size_t i = 0; i < result.placements.size(); ++i) {
     const Placement& at = layout.placements[i];
     Extent box = fit.boxes()[i];
@@ -274,16 +275,10 @@ void finish(const BoxFit& fit, const FitOptions& options, BoxLayout& layout, Fit
     out.scale = result.scale;
     content += static_cast<double>(fit.contents()[i].area());
     boxes += static_cast<double>(out.box.area());
-    if (!options.power_of_two) {
-      Extent& page = result.pages[at.page];
-      page.width = std::max(page.width, out.box.right());
-      page.height = std::max(page.height, out.box.top());
-      if (options.square) page.width = page.height = std::max(page.width, page.height);
-    }
+    if (!options.power_of_two) pack::enclose(out.box, options, result.pages[at.page]);
   }
-  for (const Extent& page : result.pages) area += static_cast<double>(page.area());
-  result.utilization = area > 0 ? content / area : 0;
-  result.box_utilization = area > 0 ? boxes / area : 0;
+  result.utilization = pack::share_of_pages(content, result);
+  result.box_utilization = pack::share_of_pages(boxes, result);
   result.moved_items = layout.moved;
   result.grouping = std::move(layout.grouping);
 }
@@ -301,11 +296,7 @@ Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& op
   BoxLayout best;
   const bool found = search_scale(fit, options, context, result, best);
   if (context.cancelled()) return Status::cancelled();
-  if (!found)
-    return Status(ErrorCode::no_solution,
-                  fmt::format("fit: {} charts do not fit {} pages of {} x {} even at their minimum "
-                              "sides (allow more or larger pages, or a smaller minimum_side)",
-                              items.size(), options.pages, options.page_size, options.page_size));
+  if (!found) return pack::no_room(items.size(), options);
   // With everything at its largest scale, fewer pages may do.
   if (result.scale == options.max_scale) {
     const double pages = fit.box_area(result.scale) / static_cast<double>(fit.page().area());

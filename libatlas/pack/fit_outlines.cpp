@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,9 +5,8 @@
 
 #include "libatlas/core/parallel.h"
 #include "libatlas/pack/fit_pages.h"
+#include "libatlas/pack/fit_result.h"
 #include "libatlas/pack/nest.h"
-#include "libatlas/pack/press.h"
-#include "libatlas/pack/shape_check.h"
 
 namespace atlas::pack {
 namespace {
@@ -264,7 +261,7 @@ void write_result(const OutlineFit& fit, const FitOptions& options, OutlineLayou
       result.pages[p] = {size.width * cell, size.height * cell};
     }
   result.placements.resize(best.pieces.size());
-  double shapes = 0, area = 0;
+  double shapes = 0;
   for (std::size_t i = 0; i < best.pieces.size(); ++i) {
     const Piece& piece = best.pieces[i];
     FitPlacement& out = result.placements[i];
@@ -273,61 +270,18 @@ void write_result(const OutlineFit& fit, const FitOptions& options, OutlineLayou
     if (piece.cells() == 0) continue;
     const NestPlace& at = best.places[i];
     const Mask& mask = piece.masks[at.direction];
-    out.box = {at.at.x * cell, at.at.y * cell, mask.width * cell, mask.height * cell};
-    out.content_width = out.box.width - 2 * options.padding;
-    out.content_height = out.box.height - 2 * options.padding;
-    out.angle = 2 * std::numbers::pi * at.direction / fit.grid().directions;
-    out.offset = {out.box.x + piece.origins[at.direction].x,
-                  out.box.y + piece.origins[at.direction].y};
+    const Rect box{at.at.x * cell, at.at.y * cell, mask.width * cell, mask.height * cell};
+    const Vec2d origin = piece.origins[at.direction];
+    write_outline({box,
+                   2 * std::numbers::pi * at.direction / fit.grid().directions,
+                   {box.x + origin.x, box.y + origin.y}},
+                  options, out);
     shapes += shape_area(options.shapes[i]) * out.scale * out.scale;
-    if (options.power_of_two) continue;
-    Extent& page = result.pages[out.page];
-    page.width = std::max(page.width, out.box.right());
-    page.height = std::max(page.height, out.box.top());
-    if (options.square) page.width = page.height = std::max(page.width, page.height);
+    if (!options.power_of_two) enclose(box, options, result.pages[out.page]);
   }
-  for (const Extent& page : result.pages) area += static_cast<double>(page.area());
-  result.utilization = area > 0 ? shapes / area : 0;
+  result.utilization = share_of_pages(shapes, result);
   result.moved_items = best.moved;
   result.grouping = std::move(best.grouping);
-}
-
-// One page of few charts. False where all fit at the largest scale and the page could be smaller,
-// or where charts are at their minimum sides: the general search knows about those.
-bool fit_pressed(std::span<const FitItem> items, const FitOptions& options, const Context& context,
-                 FitResult& result) {
-  PressedPage pressed = press_outlines(options, context);
-  if (pressed.scale == 0 || pressed.scale > options.max_scale) return false;
-  for (const FitItem& item : items) {
-    const double side = std::max(item.width, item.height);
-    if (side * pressed.scale < std::min<double>(options.minimum_side, std::ceil(side)))
-      return false;
-  }
-  result.scale = pressed.scale;
-  result.packings = 1;
-  result.trace.emplace_back(pressed.scale, true);
-  result.curve = std::move(pressed.curve);
-  Extent page{options.page_size, options.page_size};
-  if (options.free_aspect || !options.power_of_two) page = pressed.page;
-  if (options.square && !options.free_aspect)
-    page.width = page.height = std::max(page.width, page.height);
-  result.pages = {page};
-  result.placements.resize(items.size());
-  double shapes = 0;
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    FitPlacement& out = result.placements[i];
-    const PressedPlace& at = pressed.places[i];
-    out.scale = pressed.scale;
-    if (!at.placed) continue;
-    out.box = at.box;
-    out.content_width = at.box.width - 2 * options.padding;
-    out.content_height = at.box.height - 2 * options.padding;
-    out.angle = at.angle;
-    out.offset = at.offset;
-    shapes += shape_area(options.shapes[i]) * out.scale * out.scale;
-  }
-  result.utilization = shapes / static_cast<double>(page.area());
-  return true;
 }
 
 }  // namespace
@@ -335,17 +289,13 @@ bool fit_pressed(std::span<const FitItem> items, const FitOptions& options, cons
 Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions& options,
                                const Context& context) {
   FitResult result;
-  if (worth_pressing(options) && fit_pressed(items, options, context, result)) return result;
+  if (fit_pressed(items, options, context, result)) return result;
   if (context.cancelled()) return Status::cancelled();
   OutlineFit fit(items, options, context);
   OutlineLayout best;
   const bool found = search_scale(fit, options, context, result, best);
   if (context.cancelled()) return Status::cancelled();
-  if (!found)
-    return Status(ErrorCode::no_solution,
-                  fmt::format("fit: {} charts do not fit {} pages of {} x {} even at their minimum "
-                              "sides (allow more or larger pages, or a smaller minimum_side)",
-                              items.size(), options.pages, options.page_size, options.page_size));
+  if (!found) return no_room(items.size(), options);
   if (best.scale == options.max_scale) use_fewer_pages(fit, options, result, best);
   write_result(fit, options, best, result);
   return result;

@@ -1,0 +1,46 @@
+#include <algorithm>
+#include <cmath>
+
+#include "libatlas/pack/fit_pages.h"
+#include "libatlas/pack/fit_result.h"
+#include "libatlas/pack/press.h"
+#include "libatlas/pack/outline_mask.h"
+
+namespace atlas::pack {
+
+bool fit_pressed(std::span<const FitItem> items, const FitOptions& options, const Context& context,
+                 FitResult& result) {
+  if (!worth_pressing(options)) return false;
+  PressedPage pressed = press_outlines(options, context);
+  if (pressed.scale == 0 || pressed.scale > options.max_scale) return false;
+  for (const FitItem& item : items) {
+    const double side = std::max(item.width, item.height);
+    if (side * pressed.scale < std::min<double>(options.minimum_side, std::ceil(side)))
+      return false;
+  }
+  result.scale = pressed.scale;
+  result.packings = 1;
+  result.trace.emplace_back(pressed.scale, true);
+  result.curve = std::move(pressed.curve);
+  Extent page{options.page_size, options.page_size};
+  if (options.free_aspect) {
+    page = pressed.page;
+  } else if (!options.power_of_two) {
+    page = squared(pressed.page, options);
+  }
+  result.pages = {page};
+  result.placements.resize(items.size());
+  double shapes = 0;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    FitPlacement& out = result.placements[i];
+    out.scale = pressed.scale;
+    const PressedPlace& at = pressed.places[i];
+    if (!at.placed) continue;
+    write_outline({at.box, at.angle, at.offset}, options, out);
+    shapes += shape_area(options.shapes[i]) * out.scale * out.scale;
+  }
+  result.utilization = share_of_pages(shapes, result);
+  return true;
+}
+
+}  // namespace atlas::pack
