@@ -7,6 +7,7 @@
 #include "libatlas/pack/fit_pages.h"
 #include "libatlas/pack/fit_result.h"
 #include "libatlas/pack/nest.h"
+#include "libatlas/pack/shape_check.h"
 
 namespace atlas::pack {
 namespace {
