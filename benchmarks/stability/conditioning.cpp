@@ -19,7 +19,7 @@
 namespace atlas::bench {
 namespace {
 
-constexpr double kSteepest = 1.5;  // of spikes that are drawn flat without a flip
+constexpr double kSteepest = 1.0;  // of spikes that are drawn flat without a flip
 using param::SymmetricMatrix;
 using Vector = std::vector<glm::dvec2>;
 
@@ -313,7 +313,7 @@ void find_onsets(CheckList& list, const std::vector<PolarDisc>& discs) {
 }  // namespace
 
 void check_conditioning(CheckList& list) {
-  const int rings = list.options.full ? 12 : 6, around = list.options.full ? 48 : 24;
+  const int rings = list.options.full ? 9 : 6, around = list.options.full ? 36 : 24;
   std::vector<PolarDisc> discs;
   for (const double aspect : {1e0, 1e2, 1e4, 1e6, 1e8, 1e10, 1e12})
     discs.push_back(sliver_cap(aspect, rings, around));
