@@ -54,7 +54,8 @@ void add_chart_options(CLI::App& app, ExportOptions& options) {
                "Let a chart hold several materials: fewer charts, but light and texture blur "
                "into each other where they meet");
   app.add_flag("--keep-uv-charts", options.charts.keep_uv_charts,
-               "Keep the charts of the scene's own texture coordinates");
+               "Keep the charts of the scene's own texture coordinates and their shapes, whatever "
+               "they stretch; flatten anew only those that are flipped, overlapping or missing");
   app.add_option("--preset", options.charts.preset, "Chart quality: fast, default or best")
       ->transform(choices<ChartPreset>({{"fast", ChartPreset::fast},
                                         {"default", ChartPreset::standard},

@@ -34,7 +34,10 @@ struct ChartOptions {
   // Edges sharper than this are preferred as seams, degrees.
   double crease_degrees = 40;
   bool split_at_materials = true;  // a chart holds triangles of one material only
-  bool keep_uv_charts = false;     // start from the charts of the given texcoords: measure, repair
+  // Keep the charts of the given texcoords and their shapes (scaled, turned, unmirrored), whatever
+  // they stretch; only what is flipped, overlapping, degenerate, missing or beyond cone_degrees is
+  // flattened anew.
+  bool keep_uv_charts = false;
   ChartPreset preset = ChartPreset::standard;
 };
 
@@ -47,6 +50,7 @@ struct Chart {
   Vec3f axis;                      // the direction of its normal cone
   double cone_degrees = 0;         // largest angle between axis and a triangle's normal
   bool planar_projection = false;  // the cheap parameterisation was enough
+  bool kept = false;               // the given uvs' shape; max_stretch was not asked of it
   Distortion distortion;
 };
 
@@ -69,6 +73,9 @@ struct ChartSet {
   struct Repairs {
     std::uint64_t degenerate_triangles = 0, duplicate_triangles = 0, nonmanifold_edges = 0,
                   nonmanifold_vertices = 0, misoriented_edges = 0, split_charts = 0;
+    // Only with keep_uv_charts; both count given charts, not those they became. A piece of the mesh
+    // without usable texcoords is reflattened.
+    std::uint64_t kept_charts = 0, reflattened_charts = 0;
   } repairs;
   struct Timing {
     double segmentation_cpu = 0, parameterization_cpu = 0;  // seconds, all threads

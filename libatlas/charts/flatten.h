@@ -25,6 +25,7 @@ struct FlatChart {
   Distortion distortion;
   Vec2d size;
   bool planar = false;
+  bool kept = false;      // given, not flattened
   bool fragment = false;  // of a chart that was divided, or left over by a limit on cones
 };
 

@@ -6,6 +6,7 @@
 #include "libatlas/charts/cells.h"
 #include "libatlas/charts/charts.h"
 #include "libatlas/charts/flatten.h"
+#include "libatlas/charts/given_uvs.h"
 #include "libatlas/charts/segment.h"
 #include "libatlas/charts/topology.h"
 #include "libatlas/core/clock.h"
@@ -25,6 +26,53 @@ Status check_options(const ChartOptions& options) {
     return {ErrorCode::bad_option, "crease: must lie in 0..180 degrees"};
   }
   return {};
+}
+
+Status check_texcoords(const MeshView& mesh) {
+  if (mesh.texcoord_indices.empty() || mesh.texcoord_indices.size() == mesh.indices.size()) {
+    return {};
+  }
+  return {ErrorCode::bad_input, "mesh: texcoord indices must be empty or 3 a triangle"};
+}
+
+void count_defects(const TopologyDefects& defects, ChartSet::Repairs& repairs) {
+  repairs.degenerate_triangles = defects.degenerate_triangles;
+  repairs.duplicate_triangles = defects.duplicate_triangles;
+  repairs.nonmanifold_edges = defects.nonmanifold_edges;
+  repairs.nonmanifold_vertices = defects.nonmanifold_vertices;
+  repairs.misoriented_edges = defects.misoriented_edges;
+}
+
+struct Work {
+  const Topology& topology;
+  const MeshView& mesh;
+  const ChartOptions& options;
+};
+
+// Segments and flattens; counts and times go into `set`.
+std::vector<FlatChart> cut_charts(const Work& work, const Context& context, ChartSet& set) {
+  const double start = cpu_seconds();
+  Segmentation segmentation = segment(work.topology, work.options, context);
+  if (context.cancelled()) return {};
+  set.timing.segmentation_cpu += cpu_seconds() - start;
+  context.report("charts", 0.5);
+  FlattenResult flat =
+      flatten_charts({work.topology, work.mesh.density, work.options, segmentation.frames},
+                     segmentation.partition, context);
+  set.repairs.split_charts = flat.split_charts;
+  return std::move(flat.charts);
+}
+
+// The same with the charts of the given texcoords.
+std::vector<FlatChart> keep_charts(const Work& work, const Context& context, ChartSet& set) {
+  Frames none;
+  GivenUvsResult given =
+      flatten_given_uvs({work.topology, work.mesh.density, work.options, none}, work.mesh, context);
+  set.timing.segmentation_cpu += given.segmentation_cpu;
+  set.repairs.split_charts = given.split_charts;
+  set.repairs.kept_charts = given.kept_charts;
+  set.repairs.reflattened_charts = given.reflattened;
+  return std::move(given.charts);
 }
 
 // Gathers the flat charts into one ChartSet.
@@ -67,6 +115,7 @@ class Assembler {
     chart.axis = flat.cone.axis;
     chart.cone_degrees = flat.cone.angle * 180 / M_PI;
     chart.planar_projection = flat.planar;
+    chart.kept = flat.kept;
     chart.distortion = flat.distortion;
     chart.distortion.surface_area *= unscale_ * unscale_;
     chart.distortion.uv_area *= unscale_ * unscale_;
@@ -226,28 +275,29 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
   if (Status status = check_options(options); !status.ok()) return status;
   const double start = cpu_seconds();
   context.report("charts", 0);
-  Result<Topology> built = build_topology(
-      mesh, {options.split_at_materials, options.keep_uv_charts && !mesh.texcoords.empty()},
-      context);
+  MeshView given = mesh;
+  std::vector<std::uint32_t> texcoord_indices;
+  if (options.keep_uv_charts) {
+    if (Status status = check_texcoords(mesh); !status.ok()) return status;
+    texcoord_indices = usable_texcoords(mesh);
+    given.texcoord_indices = texcoord_indices;
+  }
+  Result<Topology> built =
+      build_topology(given, {options.split_at_materials, options.keep_uv_charts}, context);
   if (!built.ok()) return built.status();
   const Topology& topology = *built;
   ChartSet set;
-  set.repairs = {topology.defects.degenerate_triangles, topology.defects.duplicate_triangles,
-                 topology.defects.nonmanifold_edges,    topology.defects.nonmanifold_vertices,
-                 topology.defects.misoriented_edges,    0};
+  count_defects(topology.defects, set.repairs);
   for (const float area : topology.areas) set.surface_area += area;
   set.surface_area /= topology.scale * topology.scale;
+  set.timing.segmentation_cpu = cpu_seconds() - start;
 
   context.report("charts", 0.1);
-  Segmentation segmentation = segment(topology, options, context);
+  std::vector<FlatChart> charts = options.keep_uv_charts
+                                      ? keep_charts({topology, given, options}, context, set)
+                                      : cut_charts({topology, given, options}, context, set);
   if (context.cancelled()) return Status::cancelled();
-  set.timing.segmentation_cpu = cpu_seconds() - start;
-  context.report("charts", 0.5);
-  FlattenResult flat = flatten_charts({topology, mesh.density, options, segmentation.frames},
-                                      segmentation.partition, context);
-  if (context.cancelled()) return Status::cancelled();
-  set.repairs.split_charts = flat.split_charts;
-  Assembler(mesh, topology, set).run(flat.charts);
+  Assembler(mesh, topology, set).run(charts);
   set.seam_length = seam_length(topology, set);
   set.distortion = sum_up(set);
   set.timing.parameterization_cpu = cpu_seconds() - start - set.timing.segmentation_cpu;

@@ -99,9 +99,13 @@ class Export {
     report_.surface_area = charts_.surface_area;
     report_.repairs = charts_.repairs;
     report_.chart_timing = charts_.timing;
-    record_.finish({scene_.triangle_count(), charts_.charts.size(), "charts",
-                    fmt::format("L2 {:.4f}, 99.9 % {:.3f}", charts_.distortion.stretch_l2,
-                                charts_.distortion.stretch_999)});
+    std::string quality = fmt::format("L2 {:.4f}, 99.9 % {:.3f}", charts_.distortion.stretch_l2,
+                                      charts_.distortion.stretch_999);
+    if (options_.charts.keep_uv_charts) {
+      quality += fmt::format(", {} kept, {} reflattened", charts_.repairs.kept_charts,
+                             charts_.repairs.reflattened_charts);
+    }
+    record_.finish({scene_.triangle_count(), charts_.charts.size(), "charts", quality});
     return {};
   }
 

@@ -79,6 +79,7 @@ Json charts_json(const ExportReport& r) {
                     {"area", c.distortion.surface_area},
                     {"cone_degrees", c.cone_degrees},
                     {"planar", c.planar_projection},
+                    {"kept", c.kept},
                     {"distortion", json_of(c.distortion)}});
   }
   return {
@@ -97,7 +98,9 @@ Json charts_json(const ExportReport& r) {
         {"nonmanifold_edges", r.repairs.nonmanifold_edges},
         {"nonmanifold_vertices", r.repairs.nonmanifold_vertices},
         {"misoriented_edges", r.repairs.misoriented_edges},
-        {"split_charts", r.repairs.split_charts}}},
+        {"split_charts", r.repairs.split_charts},
+        {"kept_charts", r.repairs.kept_charts},
+        {"reflattened_charts", r.repairs.reflattened_charts}}},
       {"charts", list}};
 }
 

@@ -1,0 +1,300 @@
+#include "libatlas/charts/given_uvs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "libatlas/charts/cone.h"
+#include "libatlas/charts/local_chart.h"
+#include "libatlas/charts/segment.h"
+#include "libatlas/core/clock.h"
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/parallel.h"
+#include "libatlas/param/injectivity.h"
+#include "libatlas/param/orient.h"
+
+namespace atlas {
+namespace {
+
+// Triangles of a smaller altitude, relative to the square root of the chart's area, are at the
+// mercy of the rounding of what is written.
+constexpr double kMinAltitude = 1e-7;
+
+using Border = std::vector<std::array<std::uint32_t, 2>>;
+
+// One given chart on trial.
+class GivenChart {
+ public:
+  GivenChart(const FlattenInput& input, const MeshView& mesh, Partition& partition)
+      : input_(input), mesh_(mesh), partition_(partition) {}
+
+  enum class Verdict { kept, bad, useless };  // useless: says nothing about how to lay it out
+
+  Verdict run(std::span<const std::uint32_t> triangles, FlatChart& flat) {
+    chart_.build(input_.topology, partition_, triangles);
+    if (!input_.density.empty()) {
+      for (const std::uint32_t t : triangles) chart_.density.push_back(input_.density[t]);
+    }
+    const std::size_t missing = take_uvs();
+    if (missing > 0) return missing < 3 * triangles.size() ? Verdict::bad : Verdict::useless;
+    const double surface = surface_area(), uv_area = unmirror();
+    if (!(uv_area > 0) || !(surface > 0)) return Verdict::useless;
+    const LocalMesh mesh = chart_.mesh();
+    if (!check_injectivity(mesh, uvs_).injective) return Verdict::bad;
+    const NormalCone cone = normal_cone(input_.topology.normals, triangles);
+    const double limit = input_.options.cone_degrees * M_PI / 180;
+    if (limit > 0 && triangles.size() > 1 && cone.angle > limit * (1 + 1e-9)) return Verdict::bad;
+    place(std::sqrt(surface / uv_area), flat);
+    const InjectivityOptions safe{.clearance = kMinAltitude * std::sqrt(surface)};
+    const Injectivity check = check_injectivity(mesh, uvs_, safe);
+    if (!check.injective || !check.thin.empty()) return Verdict::bad;
+    flat.distortion = measure_distortion(mesh, uvs_);
+    flat.triangles.assign(triangles.begin(), triangles.end());
+    flat.corners = chart_.corners;
+    flat.vertex = chart_.vertex;
+    flat.uvs = uvs_;
+    flat.cone = cone;
+    flat.kept = true;
+    return Verdict::kept;
+  }
+
+ private:
+  // Relative to the first corner's, which costs floats no digit. Returns how many corners have
+  // none.
+  std::size_t take_uvs() {
+    uvs_.assign(chart_.positions.size(), Vec2d{});
+    const std::span<const std::uint32_t> triangles = chart_.triangles();
+    Vec2f first;
+    std::size_t missing = 0;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      for (std::uint32_t c = 0; c < 3; ++c) {
+        const std::uint32_t corner = input_.topology.input_corner(3 * triangles[i] + c);
+        const std::uint32_t index =
+            mesh_.texcoord_indices.empty() ? kNoIndex : mesh_.texcoord_indices[corner];
+        if (index == kNoIndex) {
+          ++missing;
+          continue;
+        }
+        const Vec2f uv = mesh_.texcoords[index];
+        if (i == 0 && c == 0) first = uv;
+        uvs_[chart_.corners[i][c]] = {double(uv.x) - first.x, double(uv.y) - first.y};
+      }
+    }
+    return missing;
+  }
+
+  // Of the surface times density squared.
+  double surface_area() const {
+    double area = 0;
+    for (std::size_t i = 0; i < chart_.corners.size(); ++i) {
+      const auto& [a, b, c] = chart_.corners[i];
+      const glm::dvec3 p = to_glm(chart_.positions[a]);
+      const double density = chart_.density.empty() ? 1 : chart_.density[i];
+      area +=
+          0.5 * density * density *
+          glm::length(glm::cross(to_glm(chart_.positions[b]) - p, to_glm(chart_.positions[c]) - p));
+    }
+    return area;
+  }
+
+  // Mirrors uvs of negative area; returns the area.
+  double unmirror() {
+    double twice = 0;
+    for (const auto& [a, b, c] : chart_.corners) {
+      const glm::dvec2 p = to_glm(uvs_[a]), e = to_glm(uvs_[b]) - p, f = to_glm(uvs_[c]) - p;
+      twice += e.x * f.y - e.y * f.x;
+    }
+    if (twice < 0) {
+      for (Vec2d& uv : uvs_) uv.x = -uv.x;
+    }
+    return 0.5 * std::abs(twice);
+  }
+
+  void place(double scale, FlatChart& flat) {
+    for (Vec2d& uv : uvs_) uv = {uv.x * scale, uv.y * scale};
+    border_.clear();
+    for (std::uint32_t h = 0; h < chart_.opposite.size(); ++h) {
+      if (chart_.opposite[h] != kNoIndex) continue;
+      const std::uint32_t next = next_half_edge(h);
+      border_.push_back({chart_.corners[h / 3][h % 3], chart_.corners[next / 3][next % 3]});
+    }
+    flat.size = orient_for_packing(uvs_, border_).size;
+  }
+
+  const FlattenInput& input_;
+  const MeshView& mesh_;
+  Partition& partition_;
+  LocalChart chart_;
+  std::vector<Vec2d> uvs_;
+  Border border_;
+};
+
+using Verdict = GivenChart::Verdict;
+
+// The triangles of each component, ascending.
+struct Lists {
+  std::vector<std::uint32_t> first, triangles;
+
+  explicit Lists(const Topology& topology) : first(topology.component_count + 2, 0) {
+    for (const std::uint32_t k : topology.component) {
+      if (k != kNoIndex) ++first[k + 2];
+    }
+    for (std::size_t k = 2; k < first.size(); ++k) first[k] += first[k - 1];
+    triangles.resize(first.back());
+    for (std::uint32_t t = 0; t < topology.component.size(); ++t) {
+      const std::uint32_t k = topology.component[t];
+      if (k != kNoIndex) triangles[first[k + 1]++] = t;
+    }
+    first.pop_back();
+  }
+  std::span<const std::uint32_t> of(std::size_t k) const {
+    return std::span(triangles).subspan(first[k], first[k + 1] - first[k]);
+  }
+};
+
+class GivenSet {
+ public:
+  GivenSet(const FlattenInput& input, const MeshView& mesh, const Context& context)
+      : input_(input), mesh_(mesh), context_(context), topology_(input.topology) {}
+
+  GivenUvsResult run() {
+    take_over();
+    if (!context_.cancelled() && result_.reflattened > 0) flatten_anew();
+    if (context_.cancelled()) return {};
+    std::sort(result_.charts.begin(), result_.charts.end(),
+              [](const FlatChart& a, const FlatChart& b) {
+                return a.triangles.front() < b.triangles.front();
+              });
+    return std::move(result_);
+  }
+
+ private:
+  void take_over() {
+    const Lists lists(topology_);
+    const std::size_t n = topology_.component_count;
+    verdicts_.assign(n, Verdict::kept);
+    std::vector<FlatChart> flats(n);
+    Partition partition;
+    partition.chart = topology_.component;
+    partition.seams.assign(topology_.triangle_count(), 0);
+    partition.local.resize(topology_.triangle_count());
+    parallel_for(context_, n, n > 512 ? 16 : 1, [&](std::size_t begin, std::size_t end) {
+      GivenChart trial(input_, mesh_, partition);
+      for (std::size_t k = begin; k < end; ++k) verdicts_[k] = trial.run(lists.of(k), flats[k]);
+    });
+    if (context_.cancelled()) return;
+    for (std::size_t k = 0; k < n; ++k) {
+      if (verdicts_[k] == Verdict::kept) result_.charts.push_back(std::move(flats[k]));
+    }
+    result_.kept_charts = result_.charts.size();
+    result_.reflattened = n - result_.charts.size();
+  }
+
+  void flatten_anew() {
+    std::vector<std::uint8_t> wanted(verdicts_.size(), 0);
+    for (std::size_t k = 0; k < wanted.size(); ++k) wanted[k] = verdicts_[k] == Verdict::bad;
+    std::vector<FlatChart> whole = flatten_outlines(wanted);
+    std::vector<std::uint32_t> count(verdicts_.size(), 0), other(verdicts_.size(), 0);
+    for (const FlatChart& chart : whole) ++count[component(chart)];
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      wanted[k] = verdicts_[k] == Verdict::useless || count[k] > 1;
+    }
+    if (context_.cancelled()) return;
+    std::vector<FlatChart> parts = flatten_segments(wanted);
+    for (const FlatChart& chart : parts) ++other[component(chart)];
+    const auto better = [&](std::uint32_t k) {  // the segments
+      return other[k] > 0 && (count[k] == 0 || other[k] < count[k]);
+    };
+    for (FlatChart& chart : whole) {
+      if (!better(component(chart))) result_.charts.push_back(std::move(chart));
+    }
+    for (FlatChart& chart : parts) {
+      if (better(component(chart))) result_.charts.push_back(std::move(chart));
+    }
+    for (std::uint32_t k = 0; k < count.size(); ++k) {
+      result_.split_charts += verdicts_[k] == Verdict::bad && (count[k] > 1 || better(k));
+    }
+  }
+
+  std::uint32_t component(const FlatChart& chart) const {
+    return topology_.component[chart.triangles.front()];
+  }
+
+  static bool any(const std::vector<std::uint8_t>& wanted) {
+    return std::find(wanted.begin(), wanted.end(), 1) != wanted.end();
+  }
+
+  // Each wanted component as one chart, divided where it must be.
+  std::vector<FlatChart> flatten_outlines(const std::vector<std::uint8_t>& wanted) {
+    if (!any(wanted)) return {};
+    Partition partition;
+    partition.chart = topology_.component;
+    for (std::uint32_t& k : partition.chart) {
+      if (k != kNoIndex && !wanted[k]) k = kNoIndex;
+    }
+    return flatten(partition, {});
+  }
+
+  // Each wanted component segmented as if there were no uvs.
+  std::vector<FlatChart> flatten_segments(const std::vector<std::uint8_t>& wanted) {
+    if (!any(wanted)) return {};
+    const double start = cpu_seconds();
+    ChartOptions options = input_.options;
+    options.keep_uv_charts = false;
+    Segmentation segmentation = segment(only(wanted), options, context_);
+    result_.segmentation_cpu += cpu_seconds() - start;
+    if (context_.cancelled()) return {};
+    return flatten(segmentation.partition, std::move(segmentation.frames));
+  }
+
+  std::vector<FlatChart> flatten(Partition& partition, Frames frames) {
+    return flatten_charts({topology_, input_.density, input_.options, frames}, partition, context_)
+        .charts;
+  }
+
+  // The topology with all other triangles marked as degenerate: linked triangles share a component,
+  // so no link leads there.
+  Topology only(const std::vector<std::uint8_t>& wanted) const {
+    Topology masked = topology_;
+    std::vector<std::uint32_t> name(wanted.size(), kNoIndex);
+    masked.component_count = 0;
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      if (wanted[k]) name[k] = masked.component_count++;
+    }
+    for (std::size_t t = 0; t < masked.component.size(); ++t) {
+      std::uint32_t& k = masked.component[t];
+      if (k != kNoIndex) k = name[k];
+      if (k != kNoIndex) continue;
+      masked.flags[t] |= Topology::kDegenerate;
+      masked.areas[t] = 0;
+    }
+    return masked;
+  }
+
+  const FlattenInput& input_;
+  const MeshView& mesh_;
+  const Context& context_;
+  const Topology& topology_;
+  std::vector<Verdict> verdicts_;  // 1 a component
+  GivenUvsResult result_;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> usable_texcoords(const MeshView& mesh) {
+  std::vector<std::uint32_t> indices(mesh.texcoord_indices.begin(), mesh.texcoord_indices.end());
+  for (std::uint32_t& i : indices) {
+    const bool usable = i < mesh.texcoords.size() && std::isfinite(mesh.texcoords[i].x) &&
+                        std::isfinite(mesh.texcoords[i].y);
+    if (!usable) i = kNoIndex;
+  }
+  return indices;
+}
+
+GivenUvsResult flatten_given_uvs(const FlattenInput& input, const MeshView& mesh,
+                                 const Context& context) {
+  return GivenSet(input, mesh, context).run();
+}
+
+}  // namespace atlas

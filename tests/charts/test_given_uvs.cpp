@@ -1,0 +1,367 @@
+// ChartOptions::keep_uv_charts: given charts come out as they were, and only bad ones anew.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "tests/charts/chart_checks.h"
+
+namespace atlas::test {
+namespace {
+
+constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+ChartSet keep(const Mesh& mesh, ChartOptions options = {}, int threads = 1) {
+  options.keep_uv_charts = true;
+  Context context;
+  context.threads = threads;
+  Result<ChartSet> set = make_charts(mesh.view(), options, context);
+  EXPECT_TRUE(set.ok()) << set.status().message();
+  if (!set.ok()) return {};
+  const ChartFindings found = check_charts(mesh.view(), *set);
+  EXPECT_EQ(found.fault, "");
+  EXPECT_NEAR(found.stretch_l2, set->distortion.stretch_l2, 1e-4 * found.stretch_l2);
+  EXPECT_NEAR(found.stretch_999, set->distortion.stretch_999, 1e-3 * found.stretch_999);
+  EXPECT_NEAR(found.seam, set->seam_length, 1e-5 * (1 + set->seam_length));
+  return std::move(*set);
+}
+
+double distance(double x0, double y0, double x1, double y1) {
+  return std::hypot(x1 - x0, y1 - y0);
+}
+
+// Every edge of every kept chart has `scale` times its given length, one scale a chart, and the
+// chart has its surface's area.
+void expect_similar(const Mesh& mesh, const ChartSet& set) {
+  for (std::size_t k = 0; k < set.charts.size(); ++k) {
+    const Chart& chart = set.charts[k];
+    if (!chart.kept) continue;
+    double least = 1e300, most = 0, area = 0;
+    for (std::uint32_t i = 0; i < chart.triangle_count; ++i) {
+      const std::uint32_t t = set.chart_triangles[chart.first_triangle + i];
+      for (std::uint32_t c = 0; c < 3; ++c) {
+        const std::uint32_t g = 3 * t + c, h = 3 * t + (c + 1) % 3;
+        const Vec2f a = mesh.texcoords[mesh.texcoord_indices[g]],
+                    b = mesh.texcoords[mesh.texcoord_indices[h]];
+        const Vec2d p = set.uvs[set.triangle_uv[g]], q = set.uvs[set.triangle_uv[h]];
+        if (a == b) continue;
+        const double ratio = distance(p.x, p.y, q.x, q.y) / distance(a.x, a.y, b.x, b.y);
+        least = std::min(least, ratio);
+        most = std::max(most, ratio);
+      }
+      const Vec2d p = set.uvs[set.triangle_uv[3 * t]], q = set.uvs[set.triangle_uv[3 * t + 1]],
+                  r = set.uvs[set.triangle_uv[3 * t + 2]];
+      area += 0.5 * std::abs((q.x - p.x) * (r.y - p.y) - (r.x - p.x) * (q.y - p.y));
+    }
+    EXPECT_NEAR(least / most, 1, 1e-9) << "chart " << k;
+    EXPECT_NEAR(area / chart.distortion.surface_area, 1, 1e-5) << "chart " << k;
+  }
+}
+
+// Gives `mesh` the uvs of `set`, each chart with a place, a turn and sometimes a mirror of its own.
+void wear(const ChartSet& set, double scale, Mesh& mesh) {
+  mesh.texcoords.clear();
+  for (std::size_t k = 0; k < set.charts.size(); ++k) {
+    const Chart& chart = set.charts[k];
+    const double c = scale * std::cos(1.7 * double(k)), s = scale * std::sin(1.7 * double(k));
+    const double mirror = k % 3 == 2 ? -1 : 1;
+    for (std::uint32_t i = chart.first_uv; i < chart.first_uv + chart.uv_count; ++i) {
+      const Vec2d p = set.uvs[i];
+      mesh.texcoords.push_back({float(mirror * (c * p.x - s * p.y) + 0.1 * double(k % 7)),
+                                float(s * p.x + c * p.y + 0.1 * double(k % 5))});
+    }
+  }
+  mesh.texcoord_indices = set.triangle_uv;
+}
+
+ChartSet cut(const Mesh& mesh) {
+  Result<ChartSet> set = make_charts(mesh.view(), {}, {});
+  EXPECT_TRUE(set.ok());
+  return set.ok() ? std::move(*set) : ChartSet{};
+}
+
+// A plate of n x n quads over the unit square with two charts side by side; `place` moves the
+// corners' uvs, given the half (0 or 1).
+Mesh halves(int n, const std::function<Vec2f(Vec3f, int)>& place) {
+  Mesh mesh(grid(n, n));
+  for (const int half : {0, 1}) {
+    for (const Vec3f& p : mesh.positions) mesh.texcoords.push_back(place(p, half));
+  }
+  const auto apart = static_cast<std::uint32_t>(mesh.positions.size());
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+    const bool right = int(i / 6) % n >= n / 2;
+    mesh.texcoord_indices.push_back(mesh.indices[i] + (right ? apart : 0));
+  }
+  return mesh;
+}
+
+Vec2f apart(Vec3f p, int half) {
+  return {p.x + 2 * float(half), p.y};
+}
+
+// The same index for texcoords as for positions.
+Mesh mapped(const Shape& shape, const std::function<Vec2f(Vec3f)>& place) {
+  Mesh mesh(shape);
+  for (const Vec3f& p : mesh.positions) mesh.texcoords.push_back(place(p));
+  mesh.texcoord_indices = mesh.indices;
+  return mesh;
+}
+
+TEST(GivenUvs, OwnChartsComeBackAsTheyWere) {
+  for (const Shape& shape : {torus(60, 30), icosphere(4), box(6), plate_with_holes(2, 6),
+                             noisy(sphere(40, 20), 0.02, 3), cone(30, 8, 0.4)}) {
+    Mesh mesh(shape);
+    const ChartSet own = cut(mesh);
+    wear(own, 0.05, mesh);
+    const ChartSet set = keep(mesh);
+    EXPECT_EQ(set.repairs.kept_charts, own.charts.size()) << shape.name;
+    EXPECT_EQ(set.repairs.reflattened_charts, 0u) << shape.name;
+    EXPECT_EQ(set.triangle_chart, own.triangle_chart) << shape.name;
+    EXPECT_NEAR(set.distortion.stretch_l2, own.distortion.stretch_l2, 1e-4) << shape.name;
+    EXPECT_NEAR(set.seam_length, own.seam_length, 1e-9 * (1 + own.seam_length)) << shape.name;
+    expect_similar(mesh, set);
+  }
+}
+
+TEST(GivenUvs, AFlippedTriangleCostsItsChartOnly) {
+  Mesh mesh(torus(60, 30));
+  const ChartSet own = cut(mesh);
+  wear(own, 1, mesh);
+  const ChartSet before = keep(mesh);
+  ASSERT_GE(own.charts.size(), 2u);
+  // One corner of one triangle of the last chart goes across the opposite edge.
+  const std::uint32_t t = own.chart_triangles.back(), last = own.triangle_chart[t];
+  const auto uv = [&](int c) -> Vec2f& { return mesh.texcoords[mesh.texcoord_indices[3 * t + c]]; };
+  uv(0) = {uv(1).x + uv(2).x - uv(0).x, uv(1).y + uv(2).y - uv(0).y};
+  const ChartSet set = keep(mesh);
+  EXPECT_EQ(set.repairs.kept_charts, own.charts.size() - 1);
+  EXPECT_EQ(set.repairs.reflattened_charts, 1u);
+  EXPECT_EQ(set.triangle_chart, before.triangle_chart) << "the bad chart flattens in its outline";
+  for (std::uint32_t k = 0; k < set.charts.size(); ++k) {
+    EXPECT_EQ(set.charts[k].kept, k != last);
+    if (k == last) {
+      EXPECT_LE(set.charts[k].distortion.stretch_999, 1.25);
+      continue;
+    }
+    for (std::uint32_t i = set.charts[k].first_uv;
+         i < set.charts[k].first_uv + set.charts[k].uv_count; ++i) {
+      ASSERT_EQ(set.uvs[i], before.uvs[i]) << "not one bit";
+    }
+  }
+}
+
+TEST(GivenUvs, StretchIsKeptAndMeasured) {
+  const Mesh mesh = mapped(grid(6, 6), [](Vec3f p) { return Vec2f{3 * p.x, p.y}; });
+  const ChartSet set = keep(mesh);
+  ASSERT_EQ(set.charts.size(), 1u);
+  EXPECT_TRUE(set.charts[0].kept);
+  EXPECT_NEAR(set.charts[0].distortion.stretch_999, std::sqrt(3), 1e-5);
+  EXPECT_NEAR(set.charts[0].size.x, std::sqrt(3), 1e-5);
+  EXPECT_NEAR(set.charts[0].size.y, 1 / std::sqrt(3), 1e-5);
+}
+
+TEST(GivenUvs, MirroredAndTiledChartsGetPlacesOfTheirOwn) {
+  const Mesh mesh = halves(6, [](Vec3f p, int half) {
+    return Vec2f{half ? 0.3f - 0.25f * p.x : 0.25f * p.x, p.y};
+  });
+  const ChartSet set = keep(mesh);
+  EXPECT_EQ(set.repairs.kept_charts, 2u);
+  expect_similar(mesh, set);
+}
+
+TEST(GivenUvs, IslandsThatShareAVertexAreTwoCharts) {
+  Mesh mesh = mapped(together(grid(3, 3), moved(grid(3, 3), 1, {1, 1, 0})), [](Vec3f p) {
+    return Vec2f{p.x, p.y};
+  });
+  // The corner (1, 1) of both is one texcoord.
+  std::uint32_t shared = kNone;
+  for (std::uint32_t& i : mesh.texcoord_indices) {
+    if (!(mesh.texcoords[i] == Vec2f{1, 1})) continue;
+    if (shared == kNone) shared = i;
+    i = shared;
+  }
+  const ChartSet set = keep(mesh);
+  EXPECT_EQ(set.charts.size(), 2u);
+  EXPECT_EQ(set.repairs.kept_charts, 2u);
+  expect_similar(mesh, set);
+}
+
+TEST(GivenUvs, AChartThatCoversItselfIsRepaired) {
+  // All triangles turn the right way, but the band goes twice round.
+  const Mesh mesh = mapped(grid(60, 2, 12, 0.4), [](Vec3f p) {
+    const float r = 1 + p.y;
+    return Vec2f{-r * std::cos(p.x), r * std::sin(p.x)};
+  });
+  const ChartSet set = keep(mesh);
+  EXPECT_EQ(set.repairs.kept_charts, 0u);
+  EXPECT_EQ(set.repairs.reflattened_charts, 1u);
+  ASSERT_EQ(set.charts.size(), 1u);
+  EXPECT_NEAR(set.charts[0].size.x, 12, 1e-3);
+}
+
+TEST(GivenUvs, ClosedSurfacesGetTheChartsTheyNeed) {
+  const Mesh mesh = mapped(icosphere(4), [](Vec3f p) { return Vec2f{p.x, p.y}; });
+  const ChartSet set = keep(mesh);
+  EXPECT_EQ(set.repairs.reflattened_charts, 1u);
+  EXPECT_LE(set.charts.size(), cut(mesh).charts.size());
+  EXPECT_LE(set.distortion.stretch_999, 1.25);
+}
+
+TEST(GivenUvs, FlatTrianglesOfRealOnesAreRepaired) {
+  const Mesh mesh = halves(6, [](Vec3f p, int half) {
+    return half ? Vec2f{2 + p.x, p.y} : Vec2f{p.x, p.y > 0.4f && p.y < 0.6f ? 1 / 3.0f : p.y};
+  });
+  const ChartSet set = keep(mesh);
+  EXPECT_EQ(set.charts.size(), 2u);
+  EXPECT_EQ(set.repairs.kept_charts, 1u);
+  EXPECT_EQ(set.repairs.reflattened_charts, 1u);
+  EXPECT_FALSE(set.charts[set.triangle_chart[0]].kept);
+}
+
+TEST(GivenUvs, TrianglesWithoutAreaCostNothing) {
+  Mesh mesh = halves(6, apart);
+  for (const std::uint32_t v : {0u, 0u, 1u, 0u, 1u, 2u}) {  // a point twice; three in a row
+    mesh.indices.push_back(v);
+    mesh.texcoord_indices.push_back(v);
+  }
+  const ChartSet set = keep(mesh);
+  EXPECT_EQ(set.repairs.degenerate_triangles, 2u);
+  EXPECT_EQ(set.repairs.kept_charts, 2u);
+  EXPECT_EQ(set.charts.size(), 2u);
+}
+
+TEST(GivenUvs, AChartWithABadCornerIsRepairedInItsOutline) {
+  for (const float bad : {kNan, std::numeric_limits<float>::infinity()}) {
+    Mesh mesh = halves(6, apart);
+    mesh.texcoords[2 * 7 + 1] = {bad, 0.25f};
+    const ChartSet set = keep(mesh);
+    EXPECT_EQ(set.charts.size(), 2u);
+    EXPECT_EQ(set.repairs.kept_charts, 1u);
+    EXPECT_EQ(set.repairs.reflattened_charts, 1u);
+  }
+}
+
+TEST(GivenUvs, WithoutUsableUvsTheMeshIsCutAsUsual) {
+  const Shape shape = together(icosphere(3), moved(torus(30, 16), 1, {4, 0, 0}));
+  const std::string usual = bytes(cut(Mesh(shape)));
+  Mesh none(shape);
+  Mesh zero = mapped(shape, [](Vec3f) { return Vec2f{0, 0}; });
+  Mesh nan = mapped(shape, [](Vec3f) { return Vec2f{kNan, kNan}; });
+  Mesh loose = nan, missing = nan, beyond = nan;
+  loose.texcoords.assign(shape.indices.size(), {kNan, 0});  // one for each corner
+  for (std::uint32_t i = 0; i < loose.texcoord_indices.size(); ++i) loose.texcoord_indices[i] = i;
+  missing.texcoord_indices.assign(shape.indices.size(), kNone);
+  beyond.texcoords.clear();
+  for (const Mesh* mesh : {&none, &zero, &nan, &loose, &missing, &beyond}) {
+    const ChartSet set = keep(*mesh);
+    EXPECT_EQ(set.repairs.kept_charts, 0u);
+    EXPECT_EQ(set.repairs.reflattened_charts, 2u);
+    EXPECT_EQ(bytes(set), usual);
+  }
+}
+
+TEST(GivenUvs, AnyUnitOfUvsWillDo) {
+  const std::string usual = bytes(keep(halves(6, apart)));
+  for (const int power : {-100, -20, 20, 100}) {
+    const ChartSet set = keep(halves(6, [&](Vec3f p, int half) {
+      const Vec2f uv = apart(p, half);
+      return Vec2f{std::ldexp(uv.x, power), std::ldexp(uv.y, power)};
+    }));
+    EXPECT_EQ(set.repairs.kept_charts, 2u);
+    EXPECT_EQ(bytes(set), usual) << "2^" << power;
+  }
+}
+
+TEST(GivenUvs, SheetsAroundOneEdgeAreKeptApart) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {0, 0, 1}};
+  for (int i = 0; i < 7; ++i) {
+    const auto v = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.push_back({float(std::cos(0.9 * i)), float(std::sin(0.9 * i)), 0.5f});
+    for (const std::uint32_t k : {0u, 1u, v}) mesh.indices.push_back(k);
+    // Every second one mirrored; all use the edge's texcoords.
+    mesh.texcoords.push_back({0, i % 2 ? 1.0f : -1.0f});
+  }
+  mesh.texcoords.insert(mesh.texcoords.begin(), {Vec2f{-0.5f, 0}, Vec2f{0.5f, 0}});
+  mesh.texcoord_indices = mesh.indices;
+  const ChartSet set = keep(mesh);
+  EXPECT_EQ(set.repairs.nonmanifold_edges, 1u);
+  EXPECT_EQ(set.repairs.kept_charts, 4u) << "the flattest pairs continue each other";
+  EXPECT_EQ(set.charts.size(), 4u);
+  expect_similar(mesh, set);
+}
+
+TEST(GivenUvs, MixedOrientationIsTurnedBeforeJudging) {
+  Mesh mesh = halves(6, apart);
+  for (std::size_t t = 0; t < mesh.indices.size() / 3; t += 3) {
+    std::swap(mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]);
+    std::swap(mesh.texcoord_indices[3 * t + 1], mesh.texcoord_indices[3 * t + 2]);
+  }
+  const ChartSet set = keep(mesh);
+  EXPECT_EQ(set.repairs.kept_charts, 2u);
+  EXPECT_GT(set.flipped_triangles.size(), 0u);
+}
+
+TEST(GivenUvs, RandomUvsAreSurvived) {
+  for (const Shape& shape : {soup(200, 4), icosphere(2), torus(20, 10)}) {
+    const Mesh mesh = mapped(noisy(shape, 0.01, 8), [](Vec3f p) {
+      return Vec2f{std::fmod(p.x * 9173.1f, 1.0f), std::fmod(p.y * 7919.7f, 1.0f)};
+    });
+    const ChartSet set = keep(mesh);
+    EXPECT_GT(set.charts.size(), 0u) << shape.name;
+    EXPECT_EQ(set.distortion.flips, 0u) << shape.name;
+    expect_similar(mesh, set);
+  }
+}
+
+TEST(GivenUvs, TheConeStaysAHardLimit) {
+  Mesh mesh(cylinder(48, 12));
+  const ChartSet own = cut(mesh);
+  wear(own, 1, mesh);
+  ChartOptions options;
+  options.cone_degrees = 30;
+  const ChartSet set = keep(mesh, options);
+  EXPECT_GT(set.repairs.reflattened_charts, 0u);
+  EXPECT_LE(check_charts(mesh.view(), set).cone_degrees, 30 + 1e-4);
+}
+
+TEST(GivenUvs, DensityScalesKeptCharts) {
+  const Mesh mesh = halves(6, apart);
+  std::vector<float> density(mesh.indices.size() / 3);
+  for (std::size_t t = 0; t < density.size(); ++t) density[t] = int(t / 2) % 6 >= 3 ? 4 : 1;
+  MeshView view = mesh.view();
+  view.density = density;
+  ChartOptions options;
+  options.keep_uv_charts = true;
+  const Result<ChartSet> set = make_charts(view, options, {});
+  ASSERT_TRUE(set.ok());
+  ASSERT_EQ(set->charts.size(), 2u);
+  EXPECT_NEAR(set->charts[0].size.x, 1, 1e-5);
+  EXPECT_NEAR(set->charts[1].size.x, 4, 1e-4);
+  EXPECT_NEAR(set->distortion.stretch_l2, 1, 1e-5);
+}
+
+TEST(GivenUvs, SameBytesForAnyThreadCount) {
+  Mesh mesh(together(torus(60, 30), moved(sphere(20, 10), 0.4, {3, 0, 0})));
+  const ChartSet own = cut(mesh);
+  wear(own, 1, mesh);
+  for (std::size_t i = 0; i < mesh.texcoords.size(); i += 97) mesh.texcoords[i] = {kNan, 0};
+  const std::string one = bytes(keep(mesh, {}, 1));
+  EXPECT_EQ(one, bytes(keep(mesh, {}, 2)));
+  EXPECT_EQ(one, bytes(keep(mesh, {}, 8)));
+}
+
+TEST(GivenUvs, TooFewIndicesAreAnError) {
+  Mesh mesh = halves(2, apart);
+  mesh.texcoord_indices.pop_back();
+  ChartOptions options;
+  options.keep_uv_charts = true;
+  EXPECT_EQ(make_charts(mesh.view(), options, {}).status().code(), ErrorCode::bad_input);
+}
+
+}  // namespace
+}  // namespace atlas::test
