@@ -8,6 +8,7 @@
 #include "libatlas/charts/cone.h"
 #include "libatlas/charts/local_chart.h"
 #include "libatlas/charts/segment.h"
+#include "libatlas/charts/uv_folds.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
@@ -98,17 +99,19 @@ class GivenChart {
     return area;
   }
 
-  // Mirrors uvs of negative area; returns the area.
+  // Mirrors uvs of negative area; returns the sum of the triangles' absolute areas.
   double unmirror() {
-    double twice = 0;
+    double twice = 0, absolute = 0;
     for (const auto& [a, b, c] : chart_.corners) {
       const glm::dvec2 p = to_glm(uvs_[a]), e = to_glm(uvs_[b]) - p, f = to_glm(uvs_[c]) - p;
-      twice += e.x * f.y - e.y * f.x;
+      const double cross = e.x * f.y - e.y * f.x;
+      twice += cross;
+      absolute += std::abs(cross);
     }
     if (twice < 0) {
       for (Vec2d& uv : uvs_) uv.x = -uv.x;
     }
-    return 0.5 * std::abs(twice);
+    return 0.5 * absolute;
   }
 
   void place(double scale, FlatChart& flat) {
@@ -132,25 +135,25 @@ class GivenChart {
 
 using Verdict = GivenChart::Verdict;
 
-// The triangles of each component, ascending.
+// The triangles of each label below `count`, ascending.
 struct Lists {
   std::vector<std::uint32_t> first, triangles;
 
-  explicit Lists(const Topology& topology) : first(topology.component_count + 2, 0) {
-    for (const std::uint32_t k : topology.component) {
+  Lists(std::span<const std::uint32_t> labels, std::size_t count) : first(count + 2, 0) {
+    for (const std::uint32_t k : labels) {
       if (k != kNoIndex) ++first[k + 2];
     }
     for (std::size_t k = 2; k < first.size(); ++k) first[k] += first[k - 1];
     triangles.resize(first.back());
-    for (std::uint32_t t = 0; t < topology.component.size(); ++t) {
-      const std::uint32_t k = topology.component[t];
-      if (k != kNoIndex) triangles[first[k + 1]++] = t;
+    for (std::uint32_t t = 0; t < labels.size(); ++t) {
+      if (labels[t] != kNoIndex) triangles[first[labels[t] + 1]++] = t;
     }
     first.pop_back();
   }
   std::span<const std::uint32_t> of(std::size_t k) const {
     return std::span(triangles).subspan(first[k], first[k + 1] - first[k]);
   }
+  std::size_t size() const { return first.size() - 1; }
 };
 
 class GivenSet {
@@ -171,24 +174,55 @@ class GivenSet {
 
  private:
   void take_over() {
-    const Lists lists(topology_);
-    const std::size_t n = topology_.component_count;
-    verdicts_.assign(n, Verdict::kept);
-    std::vector<FlatChart> flats(n);
-    Partition partition;
-    partition.chart = topology_.component;
-    partition.seams.assign(topology_.triangle_count(), 0);
-    partition.local.resize(topology_.triangle_count());
-    parallel_for(context_, n, n > 512 ? 16 : 1, [&](std::size_t begin, std::size_t end) {
-      GivenChart trial(input_, mesh_, partition);
-      for (std::size_t k = begin; k < end; ++k) verdicts_[k] = trial.run(lists.of(k), flats[k]);
-    });
+    const Lists lists(topology_.component, topology_.component_count);
+    partition_.chart = topology_.component;
+    partition_.seams.assign(topology_.triangle_count(), 0);
+    partition_.local.resize(topology_.triangle_count());
+    std::vector<FlatChart> flats;
+    verdicts_ = judge(lists, flats);
     if (context_.cancelled()) return;
-    for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t k = 0; k < flats.size(); ++k) {
       if (verdicts_[k] == Verdict::kept) result_.charts.push_back(std::move(flats[k]));
     }
+    take_over_folded(lists);
     result_.kept_charts = result_.charts.size();
-    result_.reflattened = n - result_.charts.size();
+    for (const Verdict verdict : verdicts_) result_.reflattened += verdict != Verdict::kept;
+  }
+
+  std::vector<Verdict> judge(const Lists& lists, std::vector<FlatChart>& flats) {
+    const std::size_t n = lists.size();
+    std::vector<Verdict> verdicts(n, Verdict::bad);
+    flats.resize(n);
+    parallel_for(context_, n, n > 512 ? 16 : 1, [&](std::size_t begin, std::size_t end) {
+      GivenChart trial(input_, mesh_, partition_);
+      for (std::size_t k = begin; k < end; ++k) verdicts[k] = trial.run(lists.of(k), flats[k]);
+    });
+    return verdicts;
+  }
+
+  // A folded chart is kept if all of its parts are good.
+  void take_over_folded(const Lists& lists) {
+    UvFolds folds;
+    for (std::uint32_t k = 0; k < verdicts_.size(); ++k) {
+      if (verdicts_[k] == Verdict::bad) divide_at_folds({topology_, mesh_}, k, lists.of(k), folds);
+    }
+    if (folds.owner.empty()) return;
+    for (std::size_t t = 0; t < folds.part.size(); ++t) {
+      if (folds.part[t] != kNoIndex) partition_.chart[t] = folds.part[t];
+    }
+    std::vector<FlatChart> flats;
+    const std::vector<Verdict> parts = judge({folds.part, folds.owner.size()}, flats);
+    for (std::size_t i = 0, end = 0; i < parts.size(); i = end) {
+      bool good = true;
+      for (; end < parts.size() && folds.owner[end] == folds.owner[i]; ++end) {
+        good = good && parts[end] == Verdict::kept;
+      }
+      if (!good) continue;
+      verdicts_[folds.owner[i]] = Verdict::kept;
+      for (std::size_t part = i; part < end; ++part) {
+        result_.charts.push_back(std::move(flats[part]));
+      }
+    }
   }
 
   void flatten_anew() {
@@ -276,6 +310,7 @@ class GivenSet {
   const MeshView& mesh_;
   const Context& context_;
   const Topology& topology_;
+  Partition partition_;            // of the trials
   std::vector<Verdict> verdicts_;  // 1 a component
   GivenUvsResult result_;
 };

@@ -173,6 +173,28 @@ TEST(GivenUvs, MirroredAndTiledChartsGetPlacesOfTheirOwn) {
   expect_similar(mesh, set);
 }
 
+TEST(GivenUvs, MirroredHalvesThatShareTheirMiddleComeApartThere) {
+  const Mesh mesh = mapped(grid(6, 6), [](Vec3f p) {
+    return Vec2f{p.x <= 0.5f ? p.x : 1 - p.x, p.y};
+  });
+  const ChartSet set = keep(mesh);
+  EXPECT_EQ(set.repairs.kept_charts, 2u);
+  EXPECT_EQ(set.repairs.reflattened_charts, 0u);
+  EXPECT_EQ(set.charts.size(), 2u);
+  EXPECT_NEAR(set.seam_length, 1, 1e-6);
+  expect_similar(mesh, set);
+}
+
+TEST(GivenUvs, AFoldWithABadHalfIsFlattenedWhole) {
+  Mesh mesh = mapped(grid(6, 6), [](Vec3f p) { return Vec2f{p.x <= 0.5f ? p.x : 1 - p.x, p.y}; });
+  mesh.texcoords[7 + 5] = {0.9f, 0.9f};  // an inner vertex of the right half goes far
+  const ChartSet set = keep(mesh);
+  EXPECT_EQ(set.repairs.kept_charts, 0u);
+  EXPECT_EQ(set.repairs.reflattened_charts, 1u);
+  ASSERT_EQ(set.charts.size(), 1u);
+  EXPECT_NEAR(set.charts[0].size.y, 1, 1e-5);
+}
+
 TEST(GivenUvs, IslandsThatShareAVertexAreTwoCharts) {
   Mesh mesh = mapped(together(grid(3, 3), moved(grid(3, 3), 1, {1, 1, 0})), [](Vec3f p) {
     return Vec2f{p.x, p.y};
