@@ -56,6 +56,9 @@ void add_chart_options(CLI::App& app, ExportOptions& options) {
   app.add_flag("--keep-uv-charts", options.charts.keep_uv_charts,
                "Keep the charts of the scene's own texture coordinates and their shapes, whatever "
                "they stretch; flatten anew only those that are flipped, overlapping or missing");
+  app.add_option("--uv-aspect", options.charts.uv_aspect,
+                 "With --keep-uv-charts: width / height of the page that they were made for")
+      ->capture_default_str();
   app.add_option("--preset", options.charts.preset, "Chart quality: fast, default or best")
       ->transform(choices<ChartPreset>({{"fast", ChartPreset::fast},
                                         {"default", ChartPreset::standard},

@@ -38,6 +38,8 @@ struct ChartOptions {
   // they stretch; only what is flipped, overlapping, degenerate, missing or beyond cone_degrees is
   // flattened anew.
   bool keep_uv_charts = false;
+  // Width / height of the page that the given texcoords run over from 0 to 1; > 0.
+  double uv_aspect = 1;
   ChartPreset preset = ChartPreset::standard;
 };
 

@@ -79,7 +79,8 @@ class GivenChart {
         }
         const Vec2f uv = mesh_.texcoords[index];
         if (i == 0 && c == 0) first = uv;
-        uvs_[chart_.corners[i][c]] = {double(uv.x) - first.x, double(uv.y) - first.y};
+        uvs_[chart_.corners[i][c]] = {input_.options.uv_aspect * (double(uv.x) - first.x),
+                                      double(uv.y) - first.y};
       }
     }
     return missing;

@@ -28,8 +28,8 @@ struct GivenUvsResult {
 // usable_texcoords: its components are the given charts. A given chart is kept if its uvs, exactly
 // mirrored back where they are mirrored as a whole, are injective before and after they are scaled
 // to the surface's area and turned for packing, no triangle is too thin to survive being written,
-// and the cone is within the limit; a chart that is folded over, if all of its parts are
-// (uv_folds.h). The others are flattened anew inside their outlines; where one does not flatten in
+// and the cone is within the limit; a chart that is folded over, if all of its parts are (see
+// uv_folds.h). The others are flattened anew inside their outlines; where one does not flatten in
 // one piece, it is segmented as well, and what gives fewer charts is taken. Charts run in parallel;
 // the result does not depend on how.
 GivenUvsResult flatten_given_uvs(const FlattenInput& input, const MeshView& mesh,

@@ -25,6 +25,9 @@ Status check_options(const ChartOptions& options) {
   if (!(options.crease_degrees > 0 && options.crease_degrees <= 180)) {
     return {ErrorCode::bad_option, "crease: must lie in 0..180 degrees"};
   }
+  if (!(options.uv_aspect >= 1e-6 && options.uv_aspect <= 1e6)) {
+    return {ErrorCode::bad_option, "uv-aspect: must be a page's width / height (1: square)"};
+  }
   return {};
 }
 

@@ -164,6 +164,21 @@ TEST(GivenUvs, StretchIsKeptAndMeasured) {
   EXPECT_NEAR(set.charts[0].size.y, 1 / std::sqrt(3), 1e-5);
 }
 
+TEST(GivenUvs, APageNeedNotBeSquare) {
+  Mesh mesh(torus(40, 20));
+  const ChartSet own = cut(mesh);
+  wear(own, 0.05, mesh);
+  for (Vec2f& uv : mesh.texcoords) uv.x /= 3;
+  EXPECT_GT(keep(mesh).distortion.stretch_l2, 1.2);
+  ChartOptions options;
+  options.uv_aspect = 3;
+  const ChartSet set = keep(mesh, options);
+  EXPECT_EQ(set.repairs.kept_charts, own.charts.size());
+  EXPECT_NEAR(set.distortion.stretch_l2, own.distortion.stretch_l2, 1e-4);
+  options.uv_aspect = 0;
+  EXPECT_EQ(make_charts(mesh.view(), options, {}).status().code(), ErrorCode::bad_option);
+}
+
 TEST(GivenUvs, MirroredAndTiledChartsGetPlacesOfTheirOwn) {
   const Mesh mesh = halves(6, [](Vec3f p, int half) {
     return Vec2f{half ? 0.3f - 0.25f * p.x : 0.25f * p.x, p.y};
