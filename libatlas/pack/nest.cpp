@@ -94,8 +94,39 @@ NestPlan plan_by_size(std::span<const Piece> pieces) {
 
 namespace {
 
+// Where pieces of about one size were last put. Many pieces come largest first, and what is below
+// the last place of their size has been searched in vain already, or nearly: the next one is looked
+// for from there on, so that a page of n pieces is not scanned n times from the bottom. Sizes are
+// classes of a quarter of an octave; each class begins at the bottom and fills holes of its own.
+class LastPlaces {
+ public:
+  explicit LastPlaces(std::size_t pieces) : on_(pieces >= kMany) {}
+
+  std::int32_t lowest(const Mask& mask) {
+    return on_ ? row_[static_cast<std::size_t>(class_of(mask))] : 0;
+  }
+  // Nothing below `y` is free for this size; beyond the page when there was no place at all.
+  void searched(const Mask& mask, std::int32_t y) {
+    if (on_) row_[static_cast<std::size_t>(class_of(mask))] = y;
+  }
+
+ private:
+  static constexpr std::size_t kMany = 500;
+  static constexpr int kSteps = 64;  // a quarter of an octave each, up to 2^16 cells
+
+  static int step(std::int32_t cells) {
+    return std::min(kSteps - 1, static_cast<int>(4 * std::log2(double(std::max(1, cells)))));
+  }
+  static int class_of(const Mask& mask) { return kSteps * step(mask.width) + step(mask.height); }
+
+  bool on_;
+  std::vector<std::int32_t> row_ = std::vector<std::int32_t>(on_ ? kSteps * kSteps : 0);
+};
+
 // The best direction and place of a piece on the page.
-bool find_place(const Piece& piece, std::int32_t only, BitPage& page, NestPlace& place) {
+bool find_place(const Piece& piece, std::int32_t only, BitPage& page, LastPlaces& last,
+                NestPlace& place) {
+  constexpr std::int32_t kNowhere = std::numeric_limits<std::int32_t>::max();
   BitPage::Window window;
   double best = std::numeric_limits<double>::infinity();
   for (std::uint32_t k = 0; k < piece.masks.size(); ++k) {
@@ -105,9 +136,13 @@ bool find_place(const Piece& piece, std::int32_t only, BitPage& page, NestPlace&
     const double lift = 0.5 * mask.height + 0.5 * piece.centers[k];
     const double most = std::min(1e9, std::ceil(best - lift) - 1);  // higher feet would lose
     if (most < 0) continue;
+    window.y0 = last.lowest(mask);
     window.y1 = static_cast<std::int32_t>(most);
+    if (window.y0 > window.y1) continue;
     BitPage::Place at;
-    if (!page.find(mask, piece.tests[k], window, at)) continue;
+    const bool found = page.find(mask, piece.tests[k], window, at);
+    last.searched(mask, found ? at.y : most < 1e9 ? window.y1 + 1 : kNowhere);
+    if (!found) continue;
     best = at.y + lift;
     place = {true, k, at};
   }
@@ -118,13 +153,14 @@ bool find_place(const Piece& piece, std::int32_t only, BitPage& page, NestPlace&
 
 void place_pieces(std::span<const Piece> pieces, const NestPlan& plan, BitPage& page, Nest& nest) {
   nest.places.resize(pieces.size());
+  LastPlaces last(plan.order.size());
   for (std::uint32_t id : plan.order) {
     const Piece& piece = pieces[id];
     if (piece.cells() == 0) continue;
     NestPlace& place = nest.places[id];
     const std::int32_t only = plan.direction[id];
-    if (!find_place(piece, only, page, place) &&
-        (only == kFree || !find_place(piece, kFree, page, place))) {
+    if (!find_place(piece, only, page, last, place) &&
+        (only == kFree || !find_place(piece, kFree, page, last, place))) {
       nest.left_over.push_back(id);
       continue;
     }
