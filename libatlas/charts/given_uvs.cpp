@@ -275,9 +275,7 @@ class GivenSet {
   std::vector<FlatChart> flatten_segments(const std::vector<std::uint8_t>& wanted) {
     if (!any(wanted)) return {};
     const double start = cpu_seconds();
-    ChartOptions options = input_.options;
-    options.keep_uv_charts = false;
-    Segmentation segmentation = segment(only(wanted), options, context_);
+    Segmentation segmentation = segment(only(wanted), input_.options, context_);
     result_.segmentation_cpu += cpu_seconds() - start;
     if (context_.cancelled()) return {};
     return flatten(segmentation.partition, std::move(segmentation.frames));

@@ -189,11 +189,6 @@ class Segmenter {
 
 Segmentation segment(const Topology& topology, const ChartOptions& options,
                      const Context& context) {
-  if (options.keep_uv_charts) {
-    Segmentation result;
-    result.partition.chart = topology.component;
-    return result;
-  }
   return Segmenter(topology, options, context).run();
 }
 

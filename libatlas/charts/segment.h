@@ -17,6 +17,7 @@ struct Segmentation {
   Frames frames;  // or empty
 };
 
+// Each component on its own; texcoords play no part.
 Segmentation segment(const Topology& topology, const ChartOptions& options, const Context& context);
 
 }  // namespace atlas
