@@ -24,6 +24,10 @@ constexpr double kMinAltitude = 1e-7;
 constexpr std::size_t kLargeChart = 20000;
 constexpr double kAimedStretch = 1.18;
 constexpr double kBestStretch = 1.12;
+constexpr double kNoisyAim = 0.9;  // of what the bound leaves, under scan noise
+// Under scan noise most attempts fail, and those that succeed do so early (measured).
+constexpr int kMostCuts = 3;                   // rounds in all, of cutting and closing
+constexpr std::size_t kMostCrossingsLeft = 8;  // of the banks of cuts; with more it is divided
 constexpr int kBestIterations = 8;
 
 class ChartJob {
@@ -46,10 +50,11 @@ class ChartJob {
     if (!beyond_cone()) {
       for (int cuts = 0;; ++cuts) {
         if (try_flatten(outcome)) return outcome;
+        if (hopeless() || (noisy() && only_darts() && cuts >= kMostCuts)) break;
         if (!cut_open(cuts)) break;
         build(triangles);
       }
-      list_removable(outcome);
+      if (!hopeless()) list_removable(outcome);
     }
     outcome.parts = halves();
     outcome.failed = true;
@@ -72,26 +77,27 @@ class ChartJob {
     return flattens && (only_darts() || cone_.angle < kOpenCone) && flatten(outcome);
   }
 
-  // Whether all loops but one are small.
+  // Whether all loops but one are small, or banks of cuts: those need not be joined to anything.
   bool only_darts() const {
     int large = 0;
     for (const std::uint32_t start : chart_.loops) {
       int edges = 0;
+      bool cut = true;
       std::uint32_t h = start;
       do {
+        cut = cut && partition_.seam(3 * chart_.triangles()[h / 3] + h % 3);
         h = chart_.next_border(h);
         ++edges;
-      } while (h != start && edges <= 16);
-      large += edges > 16;
+      } while (h != start && (cut || edges <= 16));
+      large += !cut && edges > 16;
     }
     return large <= 1 && chart_.euler() == 2 - static_cast<int>(chart_.loops.size());
   }
 
   // A seam that may help: from loop to loop, or to where curvature stretches it too much.
   bool cut_open(int cuts) {
-    const bool noisy = !input_.topology.calm_normals.empty();
-    if (noisy && result_.within_bound && !result_.injective && closings_++ < effort_.cuts &&
-        close_cuts(input_.topology, chart_, result_.crossings, partition_, closed_cuts_)) {
+    if (noisy() && result_.within_bound && !result_.injective && closings_++ < effort_.closings &&
+        close_cuts(input_.topology, chart_, crossings_left(), partition_, closed_cuts_)) {
       return true;
     }
     if (!only_darts()) return join_loops(input_.topology, chart_, partition_);
@@ -132,6 +138,19 @@ class ChartJob {
     for (std::uint32_t& t : outcome.remove) t = chart_.triangles()[t];
   }
 
+  bool noisy() const { return !input_.topology.calm_normals.empty(); }
+
+  const std::vector<BorderCrossing>& crossings_left() const {
+    return result_.stubborn_crossings.empty() ? result_.crossings : result_.stubborn_crossings;
+  }
+
+  // Cuts whose banks cross in many places: closing some, or handing triangles to neighbours, hardly
+  // ever saved such a chart.
+  bool hopeless() const {
+    return noisy() && result_.within_bound && !result_.injective &&
+           std::max(result_.crossings.size(), crossings_left().size()) > kMostCrossingsLeft;
+  }
+
   int links(std::uint32_t t) const {
     int count = 0;
     for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) count += chart_.opposite[h] != kNoIndex;
@@ -163,6 +182,10 @@ class ChartJob {
     const bool best = options.preset == ChartPreset::best;
     if (best || (options.preset == ChartPreset::standard && mesh.triangles.size() < kLargeChart)) {
       param.aimed_stretch = std::min(options.max_stretch, best ? kBestStretch : kAimedStretch);
+    }
+    if (noisy() && !best) {
+      param.aimed_stretch = 1 + kNoisyAim * (options.max_stretch - 1);
+      param.hasty = true;
     }
     if (best) param.iterations = kBestIterations;
     param.max_planar_stretch =

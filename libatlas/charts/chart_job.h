@@ -29,8 +29,9 @@ struct ChartOutcome {
 };
 
 struct ChartEffort {
-  int rings = 1;  // of triangles around a crossing of the border, that are listed for removal
-  int cuts = 3;   // rounds of cutting it open, and as many of closing cuts, before it is divided
+  int rings = 1;     // of triangles around a crossing of the border, that are listed for removal
+  int cuts = 3;      // rounds of cutting it open, before it is divided
+  int closings = 1;  // rounds, among these, of closing cuts whose banks cross
 };
 
 // Flattens one chart, cutting it open where that helps (seams of its own triangles only).

@@ -23,6 +23,8 @@ constexpr double kFar = std::numeric_limits<double>::max();
 
 // Shortest paths along a chart's inner edges, between vertices.
 class EdgePaths {
+  using Visit = std::pair<double, std::uint32_t>;
+
  public:
   EdgePaths(const Topology& topology, const LocalChart& chart, const ClosedCuts* avoid = nullptr)
       : topology_(topology),
@@ -44,7 +46,6 @@ class EdgePaths {
     std::vector<double> distance(n, kFar);
     std::vector<std::uint32_t> through(n, kNoIndex);
     std::vector<std::uint8_t> done(n, 0);
-    using Visit = std::pair<double, std::uint32_t>;
     std::priority_queue<Visit, std::vector<Visit>, std::greater<>> heap;
     for (std::uint32_t v = 0; v < n; ++v) {
       if (role[v] != 1) continue;
@@ -176,7 +177,6 @@ class EdgePaths {
   const Topology& topology_;
   const LocalChart& chart_;
   const ClosedCuts* avoid_;
-  using Visit = std::pair<double, std::uint32_t>;
   std::vector<std::uint32_t> out_;  // a half-edge from each vertex, the one on the border if any
   std::vector<double> distance_;
   std::vector<std::uint32_t> through_;  // the half-edge that leads to a vertex

@@ -33,6 +33,7 @@ class ArapSolver {
     double goal;
     int iterations;
     bool ratio;
+    double hasty_bound;  // > 0: ends as ParamOptions::hasty says, for this bound
   };
   double squeeze(const Squeeze& options, std::span<Vec2d> uvs);
 
@@ -41,6 +42,8 @@ class ArapSolver {
   // Draws apart what overlaps a little; all triangles positive. Returns whether uvs are injective
   // now.
   bool separate_borders(std::span<Vec2d> uvs);
+  // Of the last call, if it failed: the crossings when they were fewest.
+  std::span<const BorderCrossing> crossings_left() const { return w_.separator.left(); }
 
   IsometricResult measure(std::span<const Vec2d> uvs) const;
 

@@ -81,11 +81,17 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
     }
     if (options.squeeze_iterations <= 0 || round > 0) break;
     if (measure_distortion(mesh, r.uvs).stretch_999 <= aim) break;
-    solver.squeeze({aim, options.squeeze_iterations, options.squeeze_ratio}, r.uvs);
+    solver.squeeze({aim, options.squeeze_iterations, options.squeeze_ratio,
+                    options.hasty ? options.max_stretch : 0},
+                   r.uvs);
   }
   finish(mesh, options, r);
-  if (!r.injective && r.distortion.flips == 0 && solver.separate_borders(r.uvs)) {
+  if (r.injective || !r.within_bound || r.distortion.flips > 0) return;
+  if (solver.separate_borders(r.uvs)) {
     finish(mesh, options, r);
+  } else {
+    const auto left = solver.crossings_left();
+    r.stubborn_crossings.assign(left.begin(), left.end());
   }
 }
 

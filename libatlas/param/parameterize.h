@@ -34,6 +34,9 @@ struct ParamOptions {
   // The scale at which squeezing measures: the area-preserving one, as in the bound, or whichever
   // suits best, so that the ratio of the largest to the smallest singular value falls.
   bool squeeze_ratio = false;
+  // Squeezing ends as soon as its steps, each shorter than the one before, seem to lead to nowhere
+  // within max_stretch, or once within it, not to the aim. For surfaces where most attempts fail.
+  bool hasty = false;
   // Triangles are kept at least this thick (uv units) where possible, so that rounding of what is
   // written leaves them positive.
   double min_altitude = 0;
@@ -50,6 +53,9 @@ struct ParamResult {
   std::vector<std::uint32_t> offenders;
   // Pairs of border edges that overlap; cutting between the two of a pair helps.
   std::vector<BorderCrossing> crossings;
+  // What was left of them when drawing the borders apart had come furthest (edges of the same
+  // border, perhaps other pairs); empty if that was not tried, which it is only within the bound.
+  std::vector<BorderCrossing> stubborn_crossings;
   int unflipped = 0;  // triangles that the barrier step turned right
 };
 

@@ -21,6 +21,9 @@ class Separator {
   bool separate(const LocalMesh& mesh, std::span<const Element> elements,
                 const CornerLists& corners, Relaxer& relaxer, std::span<Vec2d> uvs);
 
+  // Of the last call, if it failed: the crossings when they were fewest.
+  std::span<const BorderCrossing> left() const { return left_; }
+
  private:
   struct Arc {                              // a stretch of border
     std::vector<std::uint32_t> half_edges;  // in order, from crossing to crossing
@@ -77,6 +80,7 @@ class Separator {
   std::vector<std::uint32_t> place_;  // 1 a vertex: 1 + its spring's place, or 0
   std::vector<std::uint32_t> moved_;  // vertices that had a spring
   std::vector<Vec2d> saved_;
+  std::vector<BorderCrossing> left_;
 };
 
 }  // namespace atlas::param
