@@ -10,18 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "tests/layering/source_tree.h"
+
 namespace {
 
 namespace fs = std::filesystem;
-
-const fs::path kRoot = ATLAS_SOURCE_DIR;
-
-std::string read(const fs::path& path) {
-  std::ifstream file(path);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 // The folders in the order in which libatlas/CMakeLists.txt adds them.
 std::vector<std::string> folder_order() {
