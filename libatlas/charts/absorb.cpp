@@ -13,7 +13,7 @@ constexpr std::size_t kNeighboursTried = 2;
 constexpr int kCuts = 1;
 // Triangles of all unions tried, as a multiple of the mesh's: keeps the time linear.
 // There is more to gain where scan noise was what divided charts.
-constexpr double kMostWork = 2, kMostWorkSmooth = 0.25;
+constexpr double kMostWork = 2.5, kMostWorkSmooth = 0.25;
 constexpr double kSmallShare = 0.01;  // of the triangles, what is tried on smooth meshes
 constexpr double kMostL2 = 1.01;      // of a union's stretch, as when cells are merged
 constexpr double kLeastFill = 0.45;   // of its rectangle by a union, or as much as the sparser part
