@@ -12,7 +12,7 @@ build_packages="
   nlohmann-json3-dev libtinygltf-dev libfast-float-dev zlib1g-dev libcli11-dev libembree-dev
   libglfw3-dev libepoxy-dev libegl-dev libgl-dev libimgui-dev"
 test_packages="
-  libgtest-dev libbenchmark-dev libcoin-dev view3dscene xvfb xauth pngcheck gnuplot-nox
+  libgtest-dev libbenchmark-dev libcoin-dev view3dscene xvfb xauth pngcheck gnuplot-nox valgrind
   libgl1-mesa-dri libegl1"
 
 case "${1:-all}" in
