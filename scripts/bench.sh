@@ -106,6 +106,12 @@ if [ -n "${LIBATLAS_BENCH_DOCS:-}" ]; then
   rm -rf docs/generated/plots docs/generated/results
   cp "$out/performance.md" "$out/stability.md" docs/generated/
   cp -r "$out/plots" "$results" docs/generated/
+  # Where things lie on this machine is nobody's business.
+  for place in "LIBATLAS_MODELS=${LIBATLAS_MODELS:-}" "LIBATLAS_XATLAS=${LIBATLAS_XATLAS:-}" \
+               "LIBATLAS_NPM=${LIBATLAS_NPM:-}" ".=$PWD"; do
+    [ -z "${place#*=}" ] ||
+      find docs/generated -type f ! -name '*.png' -exec sed -i "s#${place#*=}#${place%%=*}#g" {} +
+  done
 fi
 echo "== all: $(($(date +%s) - started)) s after the build; $out/index.html, $out/stability.html"
 [ -z "$failed" ] || { echo "failed:$failed" >&2; exit 1; }
