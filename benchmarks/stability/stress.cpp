@@ -45,7 +45,7 @@ double uv_drift(const ChartSet& set, const ChartSet& reference, double scale) {
     drift = std::max({drift, std::abs(a.x / scale - b.x), std::abs(a.y / scale - b.y)});
     extent = std::max({extent, b.x, b.y});
   }
-  return drift / extent;
+  return drift == 0 ? 0 : drift / extent;  // a point stays a point
 }
 
 std::vector<Shape> subjects(const CheckList& list) {
