@@ -3,8 +3,8 @@
 
 #include "libatlas/pack/fit_pages.h"
 #include "libatlas/pack/fit_result.h"
-#include "libatlas/pack/press.h"
 #include "libatlas/pack/outline_mask.h"
+#include "libatlas/pack/press.h"
 
 namespace atlas::pack {
 
