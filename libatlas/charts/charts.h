@@ -41,6 +41,9 @@ struct ChartOptions {
   // Width / height of the page that the given texcoords run over from 0 to 1; > 0.
   double uv_aspect = 1;
   ChartPreset preset = ChartPreset::standard;
+  // A chart so large that its smallest rectangle decides the page's size is cut across its limbs
+  // until the pieces fill this share of their rectangles; 0..1, 0: never. Not with keep_uv_charts.
+  double min_fill = 0.72;
 };
 
 // One chart and how good it is.

@@ -7,6 +7,7 @@
 #include "libatlas/charts/charts.h"
 #include "libatlas/charts/flatten.h"
 #include "libatlas/charts/given_uvs.h"
+#include "libatlas/charts/limbs.h"
 #include "libatlas/charts/segment.h"
 #include "libatlas/charts/topology.h"
 #include "libatlas/core/clock.h"
@@ -24,6 +25,9 @@ Status check_options(const ChartOptions& options) {
   }
   if (!(options.crease_degrees > 0 && options.crease_degrees <= 180)) {
     return {ErrorCode::bad_option, "crease: must lie in 0..180 degrees"};
+  }
+  if (!(options.min_fill >= 0 && options.min_fill < 1)) {
+    return {ErrorCode::bad_option, "min-fill: must lie in 0..1 (0: never cut for it)"};
   }
   if (!(options.uv_aspect >= 1e-6 && options.uv_aspect <= 1e6)) {
     return {ErrorCode::bad_option, "uv-aspect: must be a page's width / height (1: square)"};
@@ -59,10 +63,10 @@ std::vector<FlatChart> cut_charts(const Work& work, const Context& context, Char
   if (context.cancelled()) return {};
   set.timing.segmentation_cpu += cpu_seconds() - start;
   context.report("charts", 0.5);
-  FlattenResult flat =
-      flatten_charts({work.topology, work.mesh.density, work.options, segmentation.frames},
-                     segmentation.partition, context);
+  const FlattenInput input{work.topology, work.mesh.density, work.options, segmentation.frames};
+  FlattenResult flat = flatten_charts(input, segmentation.partition, context);
   set.repairs.split_charts = flat.split_charts;
+  cut_limbs(input, flat.charts, context);
   return std::move(flat.charts);
 }
 

@@ -1,0 +1,177 @@
+#include "libatlas/charts/chords.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libatlas/charts/hull.h"
+
+namespace atlas {
+namespace {
+
+constexpr std::size_t kMostCorners = 100;  // of the simplified outline
+constexpr int kSpacing = 96;               // parts of the perimeter that further ends lie apart
+constexpr double kFineness = 0.006;        // of the outline's width, what simplifying may move
+constexpr double kShortSeam = 0.05;        // of the width: shorter cuts count as long as this
+
+double distance(const Vec2d& a, const Vec2d& b) {
+  return std::hypot(b.x - a.x, b.y - a.y);
+}
+
+double distance_to_segment(const Vec2d& p, const Vec2d& a, const Vec2d& b) {
+  const double dx = b.x - a.x, dy = b.y - a.y, length2 = dx * dx + dy * dy;
+  const double along =
+      length2 > 0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / length2, 0.0, 1.0) : 0;
+  return std::hypot(p.x - a.x - along * dx, p.y - a.y - along * dy);
+}
+
+// Chooses corners of the outline, then chords between them.
+class ChordFinder {
+ public:
+  explicit ChordFinder(std::span<const Vec2d> outline) : outline_(outline) {
+    double twice = 0;
+    for (std::size_t i = 2; i < outline.size(); ++i) {
+      twice += cross(outline[0], outline[i - 1], outline[i]);
+    }
+    width_ = std::sqrt(std::max(0.0, 0.5 * twice));
+  }
+
+  std::vector<Chord> run(double least) {
+    std::vector<Chord> chords;
+    if (outline_.size() < 4 || !(width_ > 0)) return chords;
+    choose_corners();
+    std::vector<Vec2d> points = range(0, std::uint32_t(corners_.size()));
+    whole_ = sprawl(points);
+    for (std::uint32_t i = 0; i < corners_.size(); ++i) {
+      if (concave_[i]) add_chords(i, least, chords);
+    }
+    std::stable_sort(chords.begin(), chords.end(),
+                     [](const Chord& a, const Chord& b) { return a.score > b.score; });
+    return chords;
+  }
+
+ private:
+  const Vec2d& corner(std::uint32_t i) const { return outline_[corners_[i % corners_.size()]]; }
+
+  std::vector<Vec2d> range(std::uint32_t first, std::uint32_t last) const {
+    std::vector<Vec2d> points;
+    for (std::uint32_t i = first; i <= last; ++i) points.push_back(corner(i));
+    return points;
+  }
+
+  // The corners that matter, and others between them so that a chord can end on a straight side.
+  void choose_corners() {
+    std::vector<std::uint32_t> simple;
+    for (double width = kFineness * width_;; width *= 1.5) {
+      simple = simplified(width);
+      if (simple.size() <= kMostCorners) break;
+    }
+    double perimeter = 0;
+    for (std::size_t i = 0; i < outline_.size(); ++i) {
+      perimeter += distance(outline_[i], outline_[(i + 1) % outline_.size()]);
+    }
+    const double spacing = perimeter / kSpacing;
+    for (std::size_t i = 0; i < simple.size(); ++i) {
+      const std::size_t n = simple.size();
+      const Vec2d &a = outline_[simple[(i + n - 1) % n]], &b = outline_[simple[i]],
+                  &c = outline_[simple[(i + 1) % n]];
+      corners_.push_back(simple[i]);
+      concave_.push_back(cross(a, b, c) < 0);
+      const std::uint32_t end = i + 1 < n ? simple[i + 1] : std::uint32_t(outline_.size());
+      double since = 0;
+      for (std::uint32_t k = simple[i] + 1; k < end; ++k) {
+        since += distance(outline_[k - 1], outline_[k]);
+        if (since < spacing) continue;
+        since = 0;
+        corners_.push_back(k);
+        concave_.push_back(0);
+      }
+    }
+  }
+
+  // Douglas and Peucker's choice of places, ascending, from two far ones.
+  std::vector<std::uint32_t> simplified(double width) const {
+    const auto n = std::uint32_t(outline_.size());
+    std::uint32_t far = 0;
+    for (std::uint32_t i = 1; i < n; ++i) {
+      if (distance(outline_[0], outline_[i]) > distance(outline_[0], outline_[far])) far = i;
+    }
+    std::vector<std::uint8_t> kept(n, 0);
+    kept[0] = kept[far] = 1;
+    std::vector<std::array<std::uint32_t, 2>> open{{0, far}, {far, n}};
+    while (!open.empty()) {
+      const auto [first, last] = open.back();
+      open.pop_back();
+      std::uint32_t worst = first;
+      double most = width;
+      for (std::uint32_t i = first + 1; i < last; ++i) {
+        const double d = distance_to_segment(outline_[i], outline_[first], outline_[last % n]);
+        if (d <= most) continue;
+        most = d;
+        worst = i;
+      }
+      if (worst == first) continue;
+      kept[worst] = 1;
+      open.push_back({first, worst});
+      open.push_back({worst, last});
+    }
+    std::vector<std::uint32_t> places;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      if (kept[i]) places.push_back(i);
+    }
+    return places;
+  }
+
+  void add_chords(std::uint32_t i, double least, std::vector<Chord>& chords) const {
+    const auto n = std::uint32_t(corners_.size());
+    for (std::uint32_t step = 2; step + 1 < n; ++step) {
+      const std::uint32_t j = (i + step) % n;
+      const double length = distance(corner(i), corner(j));
+      const bool nearest = length <= distance(corner(i), corner(j + 1)) &&
+                           length <= distance(corner(i), corner(j + n - 1));
+      if ((!nearest && !concave_[j]) || (concave_[j] && j < i) || !visible(i, j)) continue;
+      std::vector<Vec2d> one = range(i, i + step), other = range(i + step, i + n);
+      const double fall = whole_ - sprawl(one) - sprawl(other);
+      if (fall < least) continue;
+      chords.push_back({corners_[i], corners_[j], fall / (length + kShortSeam * width_)});
+    }
+  }
+
+  // Whether the chord runs inside.
+  bool visible(std::uint32_t i, std::uint32_t j) const {
+    const auto n = std::uint32_t(corners_.size());
+    const Vec2d &a = corner(i), &b = corner(j);
+    const Vec2d &before = corner(i + n - 1), &after = corner(i + 1);
+    // i is concave: b lies left of one of its sides at least.
+    if (cross(before, a, b) <= 0 && cross(a, after, b) <= 0) return false;
+    const Vec2d middle{(a.x + b.x) / 2, (a.y + b.y) / 2};
+    bool inside = false;
+    for (std::uint32_t k = 0; k < n; ++k) {
+      const Vec2d &p = corner(k), &q = corner(k + 1);
+      if ((p.y <= middle.y) != (q.y <= middle.y) && (cross(p, q, middle) > 0) == (q.y > p.y)) {
+        inside = !inside;
+      }
+      if (k == i || k == j || (k + 1) % n == i || (k + 1) % n == j) continue;
+      if (cross_each_other(a, b, p, q)) return false;
+    }
+    return inside;
+  }
+
+  std::span<const Vec2d> outline_;
+  double width_ = 0, whole_ = 0;
+  std::vector<std::uint32_t> corners_;  // places in the outline, ascending
+  std::vector<std::uint8_t> concave_;   // 1 a corner
+};
+
+}  // namespace
+
+double sprawl(std::vector<Vec2d>& points) {
+  std::vector<Vec2d> hull;
+  const double area = hull_area(points, hull);
+  return 0.5 * (area + box_area(hull));
+}
+
+std::vector<Chord> find_chords(std::span<const Vec2d> outline, double least) {
+  return ChordFinder(outline).run(least);
+}
+
+}  // namespace atlas

@@ -1,0 +1,28 @@
+// Internal: where a sprawling outline can be cut across.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libatlas/core/vec.h"
+
+namespace atlas {
+
+// Half the areas of the smallest rectangle and of the convex hull: the first is what packing pays
+// for, the second falls already with the first of two limbs on one side.
+double sprawl(std::vector<Vec2d>& points);  // sorts them
+
+struct Chord {
+  std::uint32_t a = 0, b = 0;  // places in the outline
+  double score = 0;            // fall of the sprawl for its length; larger is better
+};
+
+// Straight cuts within a simple polygon (counter-clockwise, any number of corners), from its
+// concave corners to corners nearby or concave, best first: those whose two sides sprawl less than
+// the whole by at least `least` (an area). About O(k² (n + k log k)) with k, the corners
+// after simplification (Douglas and Peucker 1973), at most some 150. Cutting at concave corners:
+// Lien and Amato 2006.
+std::vector<Chord> find_chords(std::span<const Vec2d> outline, double least);
+
+}  // namespace atlas

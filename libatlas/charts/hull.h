@@ -1,0 +1,26 @@
+// Internal: convex hulls and smallest rectangles of flat points.
+#pragma once
+
+#include <vector>
+
+#include "libatlas/core/vec.h"
+
+namespace atlas {
+
+// Twice the signed area of the triangle o, a, b.
+inline double cross(const Vec2d& o, const Vec2d& a, const Vec2d& b) {
+  return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+}
+
+// Whether the inner points of two segments cross; touching ends are decided either way.
+bool cross_each_other(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& d);
+
+// Area of the convex hull, whose corners go to `hull`, counter-clockwise; sorts `points`
+// (Andrew 1979).
+double hull_area(std::vector<Vec2d>& points, std::vector<Vec2d>& hull);
+
+// Area of the smallest rectangle around a convex polygon: one side lies along an edge of it
+// (Freeman and Shapira 1975). Quadratic, for some dozen corners.
+double box_area(const std::vector<Vec2d>& hull);
+
+}  // namespace atlas

@@ -1,0 +1,426 @@
+#include "libatlas/charts/limbs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <queue>
+#include <utility>
+
+#include "libatlas/charts/chords.h"
+#include "libatlas/charts/hull.h"
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/param/orient.h"
+
+namespace atlas {
+namespace {
+
+constexpr double kDominant = 0.75;  // of all charts' area, a rectangle that fills a page
+constexpr std::size_t kMostPieces = 12;
+constexpr double kLeastFall = 0.01;   // of the chart's sprawl by one cut
+constexpr double kLeastPiece = 0.01;  // of the chart's area
+constexpr double kPoor = 0.9;         // of min_fill: what fills more is left as it is
+// Share of the rectangles' area that must be gained for a seam as long as the square root of the
+// chart's area.
+constexpr double kSeamPrice = 0.12;
+// A cut may be this much longer than its chord, and what strays from the chord by a tenth of its
+// length is as long as this many times that.
+constexpr double kLongestPath = 1.6, kStrayWeight = 3;
+constexpr std::size_t kChordsTried = 12;
+
+using Triangles = std::vector<std::uint32_t>;  // of the chart
+
+double box_of(const FlatChart& chart) {
+  return chart.size.x * chart.size.y;
+}
+
+// A flat chart on its way to pieces.
+class LimbCutter {
+ public:
+  explicit LimbCutter(const FlatChart& chart) : chart_(chart) {
+    const std::size_t n = chart.triangles.size();
+    link();
+    piece_of_.assign(n, 0);
+    Piece whole;
+    for (std::uint32_t t = 0; t < n; ++t) whole.triangles.push_back(t);
+    measure(whole, 0);
+    least_fall_ = kLeastFall * whole.sprawl;
+    pieces_.push_back(std::move(whole));
+  }
+
+  // The triangles of each piece, ascending; empty if cutting does not pay.
+  std::vector<Triangles> run(double wanted, const Context& context) {
+    const double box = pieces_[0].box, area = pieces_[0].area;
+    while (area < wanted * boxes() && pieces_.size() < kMostPieces && !context.cancelled()) {
+      if (!cut_best()) break;
+    }
+    heal(std::max(boxes(), area / wanted));
+    std::vector<Triangles> result;
+    if (pieces_.size() == 1 || context.cancelled()) return result;
+    double seam = 0;
+    for (const auto& [pair, length] : seams()) seam += length;
+    if (box - boxes() < kSeamPrice * seam / std::sqrt(area) * box) return result;
+    for (Piece& piece : pieces_) result.push_back(std::move(piece.triangles));
+    std::sort(result.begin(), result.end(),
+              [](const Triangles& a, const Triangles& b) { return a.front() < b.front(); });
+    return result;
+  }
+
+ private:
+  struct Piece {
+    Triangles triangles;
+    std::vector<std::uint32_t> outline;  // uvs along its longest border
+    double area = 0, box = 0, sprawl = 0;
+    bool searched = false;
+    double score = 0;                 // of its best cut, 0: none
+    std::array<Triangles, 2> halves;  // by it
+  };
+
+  double boxes() const {
+    double sum = 0;
+    for (const Piece& piece : pieces_) sum += piece.box;
+    return sum;
+  }
+
+  std::uint32_t uv_at(std::uint32_t h) const { return chart_.corners[h / 3][h % 3]; }
+
+  void link() {
+    struct Edge {
+      std::uint32_t low, high, half_edge;
+    };
+    std::vector<Edge> edges;
+    const auto count = std::uint32_t(3 * chart_.triangles.size());
+    edges.reserve(count);
+    for (std::uint32_t h = 0; h < count; ++h) {
+      const std::uint32_t a = uv_at(h), b = uv_at(next_half_edge(h));
+      edges.push_back({std::min(a, b), std::max(a, b), h});
+    }
+    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+      return std::tie(a.low, a.high, a.half_edge) < std::tie(b.low, b.high, b.half_edge);
+    });
+    opposite_.assign(count, kNoIndex);
+    for (std::size_t i = 1; i < edges.size(); ++i) {
+      if (edges[i - 1].low != edges[i].low || edges[i - 1].high != edges[i].high) continue;
+      opposite_[edges[i - 1].half_edge] = edges[i].half_edge;
+      opposite_[edges[i].half_edge] = edges[i - 1].half_edge;
+    }
+  }
+
+  // The half-edge across h in the same piece.
+  std::uint32_t across(std::uint32_t h) const {
+    const std::uint32_t o = opposite_[h];
+    return o != kNoIndex && piece_of_[o / 3] == piece_of_[h / 3] ? o : kNoIndex;
+  }
+
+  // Fills in what follows from the triangles, which belong to the piece of that number.
+  void measure(Piece& piece, std::uint32_t number) {
+    piece.area = 0;
+    for (const std::uint32_t t : piece.triangles) {
+      const auto& c = chart_.corners[t];
+      piece.area += 0.5 * cross(chart_.uvs[c[0]], chart_.uvs[c[1]], chart_.uvs[c[2]]);
+      piece_of_[t] = number;
+    }
+    std::vector<std::uint8_t> seen(3 * piece.triangles.size(), 0);
+    double most = 0;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const std::uint32_t h = 3 * piece.triangles[i / 3] + i % 3;
+      if (seen[i] || across(h) != kNoIndex) continue;
+      std::vector<std::uint32_t> loop = trace(piece, h, seen);
+      const double area = signed_area(loop);
+      if (area <= most) continue;
+      most = area;
+      piece.outline = std::move(loop);
+    }
+    std::vector<Vec2d> points = positions(piece.outline), hull;
+    const double hull_size = hull_area(points, hull);
+    piece.box = box_area(hull);
+    piece.sprawl = 0.5 * (hull_size + piece.box);
+    piece.searched = false;
+    piece.score = 0;
+  }
+
+  std::vector<std::uint32_t> trace(const Piece& piece, std::uint32_t start,
+                                   std::vector<std::uint8_t>& seen) const {
+    std::vector<std::uint32_t> loop;
+    std::uint32_t h = start;
+    do {
+      const auto at = std::lower_bound(piece.triangles.begin(), piece.triangles.end(), h / 3);
+      seen[3 * std::size_t(at - piece.triangles.begin()) + h % 3] = 1;
+      loop.push_back(uv_at(h));
+      h = next_half_edge(h);
+      while (across(h) != kNoIndex) h = next_half_edge(across(h));
+    } while (h != start);
+    return loop;
+  }
+
+  std::vector<Vec2d> positions(const std::vector<std::uint32_t>& uvs) const {
+    std::vector<Vec2d> points;
+    points.reserve(uvs.size());
+    for (const std::uint32_t i : uvs) points.push_back(chart_.uvs[i]);
+    return points;
+  }
+
+  double signed_area(const std::vector<std::uint32_t>& loop) const {
+    double twice = 0;
+    for (std::size_t i = 2; i < loop.size(); ++i) {
+      twice += cross(chart_.uvs[loop[0]], chart_.uvs[loop[i - 1]], chart_.uvs[loop[i]]);
+    }
+    return 0.5 * twice;
+  }
+
+  bool cut_best() {
+    std::size_t best = pieces_.size();
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      if (!pieces_[i].searched) search(pieces_[i]);
+      if (pieces_[i].score > 0 &&
+          (best == pieces_.size() || pieces_[i].score > pieces_[best].score))
+        best = i;
+    }
+    if (best == pieces_.size()) return false;
+    std::array<Triangles, 2> halves = std::move(pieces_[best].halves);
+    for (const bool second : {true, false}) {
+      Piece piece;
+      piece.triangles = std::move(halves[second]);
+      const std::size_t number = second ? pieces_.size() : best;
+      for (const std::uint32_t t : piece.triangles) piece_of_[t] = std::uint32_t(number);
+      if (second) pieces_.emplace_back();
+      pieces_[number] = std::move(piece);
+    }
+    measure(pieces_[best], std::uint32_t(best));
+    measure(pieces_.back(), std::uint32_t(pieces_.size() - 1));
+    return true;
+  }
+
+  void search(Piece& piece) {
+    piece.searched = true;
+    const std::vector<Vec2d> outline = positions(piece.outline);
+    const std::vector<Chord> chords = find_chords(outline, least_fall_);
+    for (std::size_t i = 0; i < std::min(chords.size(), kChordsTried); ++i) {
+      const std::uint32_t a = piece.outline[chords[i].a], b = piece.outline[chords[i].b];
+      const std::vector<std::uint32_t> path = find_path(piece, a, b);
+      if (path.empty() || !divide(piece, path)) continue;
+      piece.score = chords[i].score;
+      return;
+    }
+  }
+
+  // Edges of the piece from uv a to uv b, none of them along its outline, close to the straight
+  // line: its half-edges on one side; empty if there is no such path. Dijkstra.
+  std::vector<std::uint32_t> find_path(const Piece& piece, std::uint32_t a, std::uint32_t b) {
+    const Vec2d from = chart_.uvs[a], to = chart_.uvs[b];
+    const double dx = to.x - from.x, dy = to.y - from.y, chord2 = dx * dx + dy * dy;
+    std::map<std::uint32_t, std::vector<std::uint32_t>> leaving;  // near the chord, by uv
+    const auto stray = [&](const Vec2d& p) {
+      const double along = std::clamp(((p.x - from.x) * dx + (p.y - from.y) * dy) / chord2, 0., 1.);
+      return std::sqrt(
+          (std::pow(p.x - from.x - along * dx, 2) + std::pow(p.y - from.y - along * dy, 2)) /
+          chord2);
+    };
+    std::vector<std::uint32_t> rim = piece.outline;
+    std::sort(rim.begin(), rim.end());
+    const auto on_rim = [&](std::uint32_t i) {
+      return std::binary_search(rim.begin(), rim.end(), i);
+    };
+    for (const std::uint32_t t : piece.triangles) {
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        if (across(h) == kNoIndex || stray(chart_.uvs[uv_at(h)]) > 0.5) continue;
+        leaving[uv_at(h)].push_back(h);
+      }
+    }
+    struct Visit {
+      double distance;
+      std::uint32_t uv, by;
+      bool operator>(const Visit& o) const {
+        return distance != o.distance ? distance > o.distance : uv > o.uv;
+      }
+    };
+    std::priority_queue<Visit, std::vector<Visit>, std::greater<>> queue;
+    std::map<std::uint32_t, std::uint32_t> reached;
+    queue.push({0, a, kNoIndex});
+    while (!queue.empty()) {
+      const Visit visit = queue.top();
+      queue.pop();
+      if (!reached.emplace(visit.uv, visit.by).second) continue;
+      if (visit.uv == b) break;
+      for (const std::uint32_t h : leaving[visit.uv]) {
+        const std::uint32_t next = uv_at(next_half_edge(h));
+        if (reached.count(next) || (next != b && on_rim(next))) continue;
+        const Vec2d &p = chart_.uvs[visit.uv], &q = chart_.uvs[next];
+        const double off = stray({(p.x + q.x) / 2, (p.y + q.y) / 2});
+        queue.push(
+            {visit.distance + std::hypot(q.x - p.x, q.y - p.y) * (1 + 10 * kStrayWeight * off),
+             next, h});
+      }
+    }
+    std::vector<std::uint32_t> path;
+    if (!reached.count(b)) return path;
+    double length = 0;
+    for (std::uint32_t uv = b; uv != a;) {
+      const std::uint32_t h = reached[uv];
+      path.push_back(h);
+      const Vec2d &p = chart_.uvs[uv_at(h)], &q = chart_.uvs[uv];
+      length += std::hypot(q.x - p.x, q.y - p.y);
+      uv = uv_at(h);
+    }
+    if (length > kLongestPath * std::sqrt(chord2)) path.clear();
+    return path;
+  }
+
+  // Fills piece.halves; false unless the path leaves two pieces of some size that sprawl less.
+  bool divide(Piece& piece, const std::vector<std::uint32_t>& path) {
+    std::vector<std::uint32_t> blocked = path;
+    for (const std::uint32_t h : path) blocked.push_back(opposite_[h]);
+    std::sort(blocked.begin(), blocked.end());
+    std::vector<std::uint8_t> seen(piece.triangles.size(), 0);
+    const auto place = [&](std::uint32_t t) {
+      return std::size_t(std::lower_bound(piece.triangles.begin(), piece.triangles.end(), t) -
+                         piece.triangles.begin());
+    };
+    Triangles queue{path.front() / 3};
+    seen[place(queue[0])] = 1;
+    for (std::size_t i = 0; i < queue.size(); ++i) {
+      for (std::uint32_t h = 3 * queue[i]; h < 3 * queue[i] + 3; ++h) {
+        const std::uint32_t o = across(h);
+        if (o == kNoIndex || std::binary_search(blocked.begin(), blocked.end(), h)) continue;
+        if (seen[place(o / 3)]++ == 0) queue.push_back(o / 3);
+        seen[place(o / 3)] = 1;
+      }
+    }
+    piece.halves = {};
+    double area[2] = {0, 0};
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const std::uint32_t t = piece.triangles[i];
+      const auto& c = chart_.corners[t];
+      piece.halves[seen[i]].push_back(t);
+      area[seen[i]] += 0.5 * cross(chart_.uvs[c[0]], chart_.uvs[c[1]], chart_.uvs[c[2]]);
+    }
+    return std::min(area[0], area[1]) > kLeastPiece * (chart_area());
+  }
+
+  double chart_area() const { return chart_.distortion.uv_area; }
+
+  // Lengths of the cuts between two pieces each.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> seams() const {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, double> lengths;
+    for (std::uint32_t h = 0; h < opposite_.size(); ++h) {
+      if (opposite_[h] == kNoIndex) continue;
+      const std::uint32_t p = piece_of_[h / 3], q = piece_of_[opposite_[h] / 3];
+      const Vec2d &a = chart_.uvs[uv_at(h)], &b = chart_.uvs[uv_at(next_half_edge(h))];
+      if (p < q) lengths[{p, q}] += std::hypot(b.x - a.x, b.y - a.y);
+    }
+    return lengths;
+  }
+
+  // Joins pieces again, least harm for the seam first, while the rectangles stay within `most`.
+  void heal(double most) {
+    while (pieces_.size() > 1) {
+      double best = 0;
+      std::pair<std::uint32_t, std::uint32_t> join{0, 0};
+      const double now = boxes();
+      for (const auto& [pair, seam] : seams()) {
+        const Piece &p = pieces_[pair.first], &q = pieces_[pair.second];
+        std::vector<Vec2d> points = positions(p.outline), hull;
+        for (const std::uint32_t i : q.outline) points.push_back(chart_.uvs[i]);
+        hull_area(points, hull);
+        const double harm = std::max(1e-3 * now, box_area(hull) - p.box - q.box);
+        if (now + harm > most || seam / harm <= best) continue;
+        best = seam / harm;
+        join = pair;
+      }
+      if (best == 0) return;
+      unite(join.first, join.second);
+    }
+  }
+
+  void unite(std::uint32_t p, std::uint32_t q) {
+    Triangles both;
+    std::merge(pieces_[p].triangles.begin(), pieces_[p].triangles.end(),
+               pieces_[q].triangles.begin(), pieces_[q].triangles.end(), std::back_inserter(both));
+    pieces_[p].triangles = std::move(both);
+    for (const std::uint32_t t : pieces_[p].triangles) piece_of_[t] = p;
+    measure(pieces_[p], p);
+    if (q + 1 < pieces_.size()) {
+      pieces_[q] = std::move(pieces_.back());
+      for (const std::uint32_t t : pieces_[q].triangles) piece_of_[t] = q;
+    }
+    pieces_.pop_back();
+  }
+
+  const FlatChart& chart_;
+  std::vector<std::uint32_t> opposite_;  // 1 a half-edge of the chart
+  std::vector<std::uint32_t> piece_of_;  // 1 a triangle of the chart
+  std::vector<Piece> pieces_;
+  double least_fall_ = 0;
+};
+
+// One piece as a chart of its own.
+FlatChart take_piece(const FlattenInput& input, const FlatChart& whole,
+                     const Triangles& triangles) {
+  FlatChart piece;
+  piece.planar = whole.planar;
+  piece.fragment = whole.fragment;
+  std::vector<std::uint32_t> local(whole.uvs.size(), kNoIndex);
+  std::vector<Vec3d> positions;
+  std::vector<double> density;
+  std::map<std::array<std::uint32_t, 2>, int> sides;
+  for (const std::uint32_t i : triangles) {
+    piece.triangles.push_back(whole.triangles[i]);
+    piece.corners.push_back(whole.corners[i]);
+    for (std::uint32_t& c : piece.corners.back()) {
+      if (local[c] == kNoIndex) {
+        local[c] = std::uint32_t(piece.uvs.size());
+        piece.uvs.push_back(whole.uvs[c]);
+        piece.vertex.push_back(whole.vertex[c]);
+        const Vec3d p = from_glm(to_dvec(input.topology.points[whole.vertex[c]]));
+        positions.push_back(p);
+      }
+      c = local[c];
+    }
+    const auto& c = piece.corners.back();
+    for (int k = 0; k < 3; ++k)
+      ++sides[{std::min(c[k], c[(k + 1) % 3]), std::max(c[k], c[(k + 1) % 3])}];
+    if (!input.density.empty()) density.push_back(input.density[whole.triangles[i]]);
+  }
+  const Vec3d origin = positions[0];
+  for (Vec3d& p : positions) p = {p.x - origin.x, p.y - origin.y, p.z - origin.z};
+  std::vector<std::array<std::uint32_t, 2>> border;
+  for (const auto& [edge, count] : sides) {
+    if (count == 1) border.push_back(edge);
+  }
+  piece.size = orient_for_packing(piece.uvs, border).size;
+  piece.distortion = measure_distortion({positions, piece.corners, density}, piece.uvs);
+  piece.cone = normal_cone(input.topology.normals, piece.triangles);
+  return piece;
+}
+
+}  // namespace
+
+std::size_t cut_limbs(const FlattenInput& input, std::vector<FlatChart>& charts,
+                      const Context& context) {
+  const double wanted = input.options.min_fill;
+  double total = 0;
+  for (const FlatChart& chart : charts) total += chart.distortion.uv_area;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < charts.size(); ++k) {
+    if (box_of(charts[k]) < kDominant * total ||
+        charts[k].distortion.uv_area >= kPoor * wanted * box_of(charts[k])) {
+      continue;
+    }
+    const std::vector<Triangles> pieces = LimbCutter(charts[k]).run(wanted, context);
+    std::vector<FlatChart> cut;
+    bool fits = true;
+    for (const Triangles& piece : pieces) {
+      cut.push_back(take_piece(input, charts[k], piece));
+      const Distortion& d = cut.back().distortion;
+      fits = fits && d.stretch_999 <= input.options.max_stretch && d.flips == 0;
+    }
+    if (cut.empty() || !fits) continue;
+    ++count;
+    charts[k] = std::move(cut[0]);
+    charts.insert(charts.begin() + std::ptrdiff_t(k) + 1, std::make_move_iterator(cut.begin() + 1),
+                  std::make_move_iterator(cut.end()));
+    k += cut.size() - 1;
+  }
+  return count;
+}
+
+}  // namespace atlas

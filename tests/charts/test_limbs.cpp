@@ -1,0 +1,144 @@
+// Charts that would leave a page half empty are cut across their limbs.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/charts/chart_checks.h"
+
+namespace atlas::test {
+namespace {
+
+// A flat mesh of the letters in `rows` that are not spaces, each n x n quads, bent slightly so that
+// no two edges are equal.
+Shape letters(const std::vector<std::string>& rows, int n) {
+  const int wide = int(rows[0].size()), high = int(rows.size());
+  const Shape full = grid(wide * n, high * n, wide, high);
+  Shape shape;
+  shape.name = rows[0];
+  shape.positions = full.positions;
+  for (Vec3f& p : shape.positions) {
+    const float x = p.x, y = p.y;
+    p.x += 0.2f / float(n) * std::sin(7.1f * y + 3 * x);
+    p.y += 0.2f / float(n) * std::sin(5.3f * x - 2 * y);
+  }
+  for (std::size_t t = 0; t < full.triangle_count(); ++t) {
+    const std::size_t quad = t / 2, x = quad % std::size_t(wide * n), y = quad / (wide * n);
+    if (rows[high - 1 - y / n][x / n] == ' ') continue;
+    for (int c = 0; c < 3; ++c) shape.indices.push_back(full.indices[3 * t + c]);
+  }
+  return shape;
+}
+
+Shape star(int points, int rings) {
+  Shape shape;
+  shape.name = "star";
+  shape.positions.push_back({0, 0, 0});
+  const int around = 8 * points;
+  for (int r = 1; r <= rings; ++r) {
+    for (int i = 0; i < around; ++i) {
+      const double sawtooth = std::fabs(double(i % 8) / 4 - 1);  // 1 at the tips
+      const double radius = (0.35 + 0.65 * sawtooth) * r / rings, angle = 2 * M_PI * i / around;
+      shape.positions.push_back(
+          {float(radius * std::cos(angle)), float(radius * std::sin(angle)), 0});
+    }
+  }
+  const auto at = [&](int r, int i) { return std::uint32_t(1 + (r - 1) * around + i % around); };
+  for (int i = 0; i < around; ++i) {
+    shape.indices.insert(shape.indices.end(), {0, at(1, i), at(1, i + 1)});
+    for (int r = 1; r < rings; ++r) {
+      shape.indices.insert(shape.indices.end(), {at(r, i), at(r + 1, i), at(r + 1, i + 1)});
+      shape.indices.insert(shape.indices.end(), {at(r, i), at(r + 1, i + 1), at(r, i + 1)});
+    }
+  }
+  return shape;
+}
+
+std::vector<Shape> sprawling() {
+  return {letters({"L  ", "L  ", "L  ", "LLL"}, 8),
+          letters({"EEE", "E  ", "EE ", "E  ", "EEE"}, 7),
+          letters({"X   X", "XX XX", " XXX ", "XX XX", "X   X"}, 6),
+          letters({"M M M M M", "M M M M M", "M M M M M", "MMMMMMMMM"}, 5),
+          letters({"UUUUU", "U   U", "U   U", "U   U"}, 9),
+          letters({"OOOO   ", "O  O   ", "OOOOOOO", "   O  O", "   OOOO"}, 6),
+          star(5, 10)};
+}
+
+double box_fill(const ChartSet& set) {
+  double area = 0, boxes = 0;
+  for (const Chart& chart : set.charts) {
+    area += chart.distortion.uv_area;
+    boxes += chart.size.x * chart.size.y;
+  }
+  return area / boxes;
+}
+
+ChartSet charts_of(const Mesh& mesh, double min_fill, int threads = 1) {
+  Context context;
+  context.threads = threads;
+  ChartOptions options;
+  options.min_fill = min_fill;
+  Result<ChartSet> result = make_charts(mesh.view(), options, context);
+  EXPECT_TRUE(result.ok()) << result.status().message();
+  return result.ok() ? std::move(*result) : ChartSet{};
+}
+
+TEST(Limbs, AChartThatSprawlsIsCutUntilItsPiecesFillTheirRectangles) {
+  for (const Shape& shape : sprawling()) {
+    const Mesh mesh(shape);
+    const ChartSet whole = charts_of(mesh, 0), cut = charts_of(mesh, ChartOptions{}.min_fill);
+    EXPECT_EQ(whole.charts.size(), 1u) << shape.name;
+    const ChartFindings found = check_charts(mesh.view(), cut);
+    EXPECT_EQ(found.fault, "") << shape.name;
+    EXPECT_NEAR(found.seam, cut.seam_length, 1e-6 * (1 + cut.seam_length)) << shape.name;
+    // Five triangles and a pentagon are not rectangles whatever is cut.
+    EXPECT_GT(box_fill(cut), shape.name == "star" ? 0.62 : 0.7) << shape.name;
+    EXPECT_LE(cut.charts.size(), 6u) << shape.name;
+    EXPECT_LT(cut.distortion.stretch_linf, 1 + 1e-6) << shape.name;
+  }
+}
+
+TEST(Limbs, WhatIsNotTheWholePageOrFillsItsRectangleStays) {
+  for (const Shape& shape : {grid(20, 10), fan(40), cylinder(48, 12), cone(48, 12, 0.4)}) {
+    const Mesh mesh(shape);
+    EXPECT_EQ(charts_of(mesh, 0).charts.size(), charts_of(mesh, 0.72).charts.size()) << shape.name;
+  }
+  const Shape small = letters({"L  ", "L  ", "L  ", "LLL"}, 8);
+  const Mesh mesh(together(small, moved(grid(20, 10), 10, {20, 0, 0})));
+  EXPECT_EQ(charts_of(mesh, 0.72).charts.size(), 2u) << "there is room for an L beside a big plate";
+}
+
+TEST(Limbs, PiecesOfACurvedChartKeepToTheBound) {
+  Shape shape = letters({"M M M M M", "M M M M M", "M M M M M", "MMMMMMMMM"}, 8);
+  for (Vec3f& p : shape.positions) p.z = 0.02f * p.x * p.x + 0.01f * p.y * p.y;
+  const Mesh mesh(shape);
+  const ChartSet cut = charts_of(mesh, 0.72);
+  const ChartFindings found = check_charts(mesh.view(), cut);
+  EXPECT_EQ(found.fault, "");
+  EXPECT_GT(cut.charts.size(), 1u);
+  EXPECT_LE(found.stretch_999, 1.25 * (1 + 1e-6));
+  EXPECT_GT(box_fill(cut), 0.65);
+}
+
+TEST(Limbs, TheSameForAnyThreadCountAndScale) {
+  for (const Shape& shape : sprawling()) {
+    const Mesh mesh(shape);
+    const ChartSet one = charts_of(mesh, 0.72, 1);
+    EXPECT_EQ(bytes(one), bytes(charts_of(mesh, 0.72, 8))) << shape.name;
+    const ChartSet large = charts_of(Mesh(moved(shape, 1024)), 0.72);
+    EXPECT_EQ(one.triangle_chart, large.triangle_chart) << shape.name;
+  }
+}
+
+TEST(Limbs, OptionIsChecked) {
+  const Mesh mesh(grid(2, 2));
+  for (const double fill : {-0.1, 1.0, std::nan("")}) {
+    ChartOptions options;
+    options.min_fill = fill;
+    EXPECT_EQ(make_charts(mesh.view(), options, {}).status().code(), ErrorCode::bad_option);
+  }
+}
+
+}  // namespace
+}  // namespace atlas::test
