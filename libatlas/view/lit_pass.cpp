@@ -44,6 +44,7 @@ struct FrameBlock {
   float corner[4];
   float inverse[4];
   float specular[4];
+  float first_ray[4], ray_x[4], ray_y[4];
 };
 
 void put(float (&to)[16], const Matrix4& from) {
@@ -97,13 +98,34 @@ void put_box(FrameBlock& b, const glm::dvec3& l, const Box3& box) {
   }
 }
 
+// The view's projection with depth from 1 at the near plane to 0 at the far one: floats are dense
+// where perspective is not.
+Matrix4 reversed_depth(Matrix4 m) {
+  for (int c = 0; c < 4; ++c) m[4 * c + 2] = 0.5 * (m[4 * c + 3] - m[4 * c + 2]);
+  return m;
+}
+
+// What finds a pixel's point again from its depth.
+void put_rays(FrameBlock& b, const Camera& camera, int width, int height) {
+  const double aspect = double(width) / height, n = camera.near_plane, f = camera.far_plane;
+  const std::array<Vec3d, 8> corners = view_corners(camera, aspect, n);
+  const glm::dvec3 first = (to_glm(corners[0]) - to_glm(camera.eye)) / n;
+  const glm::dvec3 x = (to_glm(corners[1]) - to_glm(corners[0])) / (n * width);
+  const glm::dvec3 y = (to_glm(corners[2]) - to_glm(corners[0])) / (n * height);
+  put(b.first_ray, first.x, first.y, first.z, 1 / f);
+  put(b.ray_x, x.x, x.y, x.z, 1 / n - 1 / f);
+  put(b.ray_y, y.x, y.y, y.z, 0);
+}
+
 }  // namespace
 
 void Renderer::Impl::fill_block(const Camera& camera, const FrameLight& light,
                                 const FramePlan& plan, int nearest) {
   FrameBlock b;
   std::memset(&b, 0, sizeof b);
-  put(b.view_projection, view_projection(camera, double(target_width) / target_height));
+  put(b.view_projection,
+      reversed_depth(view_projection(camera, double(target_width) / target_height)));
+  put_rays(b, camera, target_width, target_height);
   put(b.eye, camera.eye.x, camera.eye.y, camera.eye.z, 1);
   const glm::dvec3 l = glm::normalize(to_glm(light.direction));
   put(b.light, l.x, l.y, l.z, options.intensity);
@@ -142,34 +164,55 @@ void Renderer::Impl::draw_lit(const Camera& camera, const FrameLight& light, con
     nearest = plan.to;
   fill_block(camera, light, plan, nearest);
 
-  glBindFramebuffer(GL_FRAMEBUFFER, target.get());
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_block.get());
   glViewport(0, 0, target_width, target_height);
-  glDepthMask(GL_TRUE);
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LESS);
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   const Vec3f& c = options.background;
   const float clear[4] = {features.visibility ? 1 : c.x, features.visibility ? 1 : c.y,
                           features.visibility ? 1 : c.z, 1};
-  const float far = 1;
   glClearNamedFramebufferfv(target.get(), GL_COLOR, 0, clear);
-  glClearNamedFramebufferfv(target.get(), GL_DEPTH, 0, &far);
+  draw_surfaces(camera, stats);
+  if (lighting) draw_lighting(plan, nearest);
+  glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+}
 
+// Into the picture itself if nothing is lit.
+void Renderer::Impl::draw_surfaces(const Camera& camera, FrameStats& stats) {
+  const GLuint into = lighting ? surface_target.get() : target.get();
+  glBindFramebuffer(GL_FRAMEBUFFER, into);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_GREATER);
+  const float far = 0;
+  glClearNamedFramebufferfv(into, GL_DEPTH, 0, &far);
   glUseProgram(program.get());
-  glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_block.get());
-  if (shadow) {
-    if (features.shadow == ShadowSampling::march) {
-      shadow->bind_all_compare(1);
-      shadow->bind_all_depths(2);
-    } else {
-      shadow->bind_compare(nearest, 1);
-      if (features.shadow == ShadowSampling::two) shadow->bind_compare(plan.to, 2);
-    }
-  }
   glBindVertexArray(scene->lit.get());
   glBindSampler(0, 0);
   draw_clusters(camera, stats);
+}
+
+// Where the first pass left a surface: the depth is read and tested, never written.
+void Renderer::Impl::draw_lighting(const FramePlan& plan, int nearest) {
+  glBindFramebuffer(GL_FRAMEBUFFER, target.get());
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_LESS);
+  glUseProgram(lighting.get());
+  glBindTextureUnit(0, surfaces.get());
+  glBindTextureUnit(3, depth.get());
+  glBindSampler(0, 0);
+  glBindSampler(3, 0);
+  if (shadow && features.shadow == ShadowSampling::march) {
+    shadow->bind_all_compare(1);
+    shadow->bind_all_depths(2);
+  } else if (shadow) {
+    shadow->bind_compare(nearest, 1);
+    if (features.shadow == ShadowSampling::two) shadow->bind_compare(plan.to, 2);
+  }
+  glBindVertexArray(no_vertices.get());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDepthMask(GL_TRUE);
 }
 
 // Front to back, without what is out of view: hidden surfaces are then not shaded at all. Textured

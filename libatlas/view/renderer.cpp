@@ -59,6 +59,14 @@ ScheduleOptions schedule_for(const RenderOptions& options) {
 
 namespace {
 
+// To draw into and then to fetch from: integers are never filtered.
+GlTexture target_texture(GLenum format, int width, int height) {
+  GlTexture t = make_texture(format, width, height);
+  glTextureParameteri(t.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTextureParameteri(t.get(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  return t;
+}
+
 Status check_options(const RenderOptions& o) {
   if (o.width < 1 || o.height < 1 || o.width > 16384 || o.height > 16384)
     return {ErrorCode::bad_option,
@@ -83,36 +91,58 @@ bool same_schedule(const RenderOptions& a, const RenderOptions& b) {
 
 }  // namespace
 
-Status Renderer::Impl::allocate_target(int width, int height) {
-  if (width == target_width && height == target_height) return {};
-  GLuint names[2];
-  glCreateRenderbuffers(2, names);
-  colour = GlRenderbuffer(names[0]);
-  depth = GlRenderbuffer(names[1]);
-  glNamedRenderbufferStorage(names[0], GL_RGBA8, width, height);
-  glNamedRenderbufferStorage(names[1], GL_DEPTH_COMPONENT24, width, height);
+Status Renderer::Impl::allocate_target(int width, int height, bool lit) {
+  if (width == target_width && height == target_height && lit == bool(surfaces)) return {};
+  GLuint name = 0;
+  glCreateRenderbuffers(1, &name);
+  colour = GlRenderbuffer(name);
+  glNamedRenderbufferStorage(name, GL_RGBA8, width, height);
+  depth = target_texture(GL_DEPTH_COMPONENT32F, width, height);
   target = make_framebuffer();
-  glNamedFramebufferRenderbuffer(target.get(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, names[0]);
-  glNamedFramebufferRenderbuffer(target.get(), GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, names[1]);
+  glNamedFramebufferRenderbuffer(target.get(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, name);
+  glNamedFramebufferTexture(target.get(), GL_DEPTH_ATTACHMENT, depth.get(), 0);
+  surfaces = GlTexture();
+  surface_target = GlFramebuffer();
+  if (lit) {
+    surfaces = target_texture(GL_RGBA32UI, width, height);
+    surface_target = make_framebuffer();
+    const GLuint f = surface_target.get();
+    glNamedFramebufferTexture(f, GL_COLOR_ATTACHMENT0, surfaces.get(), 0);
+    glNamedFramebufferTexture(f, GL_DEPTH_ATTACHMENT, depth.get(), 0);
+    no_vertices = make_vertex_array();
+  }
   target_width = width;
   target_height = height;
-  if (glCheckNamedFramebufferStatus(target.get(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    return {ErrorCode::unsupported,
-            fmt::format("the driver does not draw into an image of {} x {}", width, height)};
+  for (const GlFramebuffer* f : {&target, &surface_target})
+    if (*f && glCheckNamedFramebufferStatus(f->get(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+      return {ErrorCode::unsupported,
+              fmt::format("the driver does not draw into an image of {} x {}", width, height)};
   return check_gl("making the image");
+}
+
+Status Renderer::Impl::compile(const ShaderFeatures& wanted) {
+  if (program && wanted == features) return {};
+  const ShaderText text = shader_text(wanted);
+  Result<GlProgram> made = link_program("of the scene", text.vertex, text.fragment);
+  if (!made.ok()) return made.status();
+  GlProgram second;
+  if (!text.lighting_fragment.empty()) {
+    Result<GlProgram> light =
+        link_program("of the light", text.lighting_vertex, text.lighting_fragment);
+    if (!light.ok()) return light.status();
+    second = std::move(light.value());
+  }
+  program = std::move(made.value());
+  lighting = std::move(second);
+  features = wanted;
+  return {};
 }
 
 Status Renderer::Impl::apply(const RenderOptions& wanted) {
   if (Status s = check_options(wanted); !s.ok()) return s;
   const ShaderFeatures f = needed_features(*scene, wanted);
-  if (!program || !(f == features)) {
-    const ShaderText text = shader_text(f);
-    Result<GlProgram> made = link_program("of the scene", text.vertex, text.fragment);
-    if (!made.ok()) return made.status();
-    program = std::move(made.value());
-    features = f;
-  }
-  if (Status s = allocate_target(wanted.width, wanted.height); !s.ok()) return s;
+  if (Status s = compile(f); !s.ok()) return s;
+  if (Status s = allocate_target(wanted.width, wanted.height, bool(lighting)); !s.ok()) return s;
   const int maps = f.shadow == ShadowSampling::none ? 0 : maps_of(wanted.shadows);
   const bool fresh_maps =
       maps != shadow_maps || (maps && shadow->resolution() != wanted.map_resolution);
@@ -273,6 +303,8 @@ std::vector<std::string> Renderer::plan() const {
   const Impl& i = *impl_;
   std::vector<std::string> lines;
   lines.push_back(fmt::format("compiled: {}", fmt::join(feature_names(i.features), ", ")));
+  lines.push_back(i.lighting ? "two passes: surfaces, then the moving light once a pixel"
+                             : "one pass: nothing is lit by the moving light");
   if (!i.shadow)
     lines.push_back(i.options.shading == Shading::unlit
                         ? "no shadow maps: nothing is lit by the moving light"

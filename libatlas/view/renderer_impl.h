@@ -16,10 +16,15 @@ struct Renderer::Impl {
   std::shared_ptr<const GpuScene> scene;
   RenderOptions options;
   ShaderFeatures features;
-  GlProgram program;
+  GlProgram program, lighting;  // lighting: none if the scene is unlit
   GlBuffer frame_block;
   GlFramebuffer target;
-  GlRenderbuffer colour, depth;
+  GlRenderbuffer colour;
+  GlTexture depth;
+  // Of lit scenes, the first pass's.
+  GlFramebuffer surface_target;
+  GlTexture surfaces;
+  GlVertexArray no_vertices;
   int target_width = 0, target_height = 0;
   std::optional<ShadowPass> shadow;
   int shadow_maps = 0;
@@ -41,13 +46,16 @@ struct Renderer::Impl {
   std::vector<const void*> offsets;
 
   Status apply(const RenderOptions& wanted);
-  Status allocate_target(int width, int height);
+  Status allocate_target(int width, int height, bool lit);
+  Status compile(const ShaderFeatures& wanted);
   Result<FrameStats> draw(const Camera& camera, const FrameLight& light);
   Status draw_shadow_maps(const Camera& camera, const FramePlan& plan, FrameStats& stats);
   Result<LightFit> fit(const Camera& camera, const Vec3d& direction) const;
   bool view_left_the_keys(const Camera& camera) const;
   void draw_lit(const Camera& camera, const FrameLight& light, const FramePlan& plan,
                 FrameStats& stats);
+  void draw_surfaces(const Camera& camera, FrameStats& stats);
+  void draw_lighting(const FramePlan& plan, int nearest);
   void draw_clusters(const Camera& camera, FrameStats& stats);
   void fill_block(const Camera& camera, const FrameLight& light, const FramePlan& plan,
                   int nearest);

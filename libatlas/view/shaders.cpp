@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "libatlas/view/shadow_text.h"
+
 namespace atlas {
 namespace {
 
@@ -22,154 +24,42 @@ layout(std140, binding = 0) uniform Frame {
   vec4 corner;      // of the scene's box where rays to the light leave it; slope bias (depth)
   vec4 inverse;     // 1 / the light's direction; factor on baked light
   vec4 specular;    // strength, Blinn-Phong exponent, Ward alpha, 1 / texel
+  vec4 first_ray, ray_x, ray_y;  // from the eye, one unit of view depth long: through the image's
+                                 // corner, and its change for each pixel; w of the first two: view
+                                 // depth is 1 / (w + w * depth)
 } frame;
 )";
 
-// A map by itself, or a layer of all of them: what the filters below are written in.
-constexpr const char* kPlainMap = R"(
-#define MAP sampler2DShadow map
-#define LOOK(uv, depth) texture(map, vec3(uv, depth))
-#define GATHER(uv, depth) textureGather(map, uv, depth)
+// What a lit scene's first pass leaves in each pixel, 16 bits a value: reflectance, the light that
+// no shadow touches (exposed; from 2 on it is white whatever is added), and the normal on the
+// octahedron (Meyer et al. 2010).
+constexpr const char* kWriteSurface = R"(
+vec2 fold(vec3 n) {
+  n /= max(abs(n.x) + abs(n.y) + abs(n.z), 1e-30);
+  vec2 turned = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
+  return n.z < 0.0 ? turned : n.xy;
+}
+uvec4 surface_of(vec3 n, vec3 reflectance, vec3 own) {
+  own = min(own, 2.0);
+  return uvec4(packHalf2x16(reflectance.rg), packHalf2x16(vec2(reflectance.b, own.r)),
+               packHalf2x16(own.gb), packSnorm2x16(fold(n)));
+}
 )";
-constexpr const char* kLayeredMap = R"(
-#define MAP sampler2DArrayShadow map, float layer
-#define LOOK(uv, depth) texture(map, vec4(uv, layer, depth))
-#define GATHER(uv, depth) textureGather(map, vec3(uv, layer), depth)
-)";
-
-constexpr const char* kNearest = R"(
-float visibility_at(MAP, vec2 uv, float depth) {
-  return LOOK((floor(uv * frame.specular.w) + 0.5) * frame.weights.w, depth);
+constexpr const char* kReadSurface = R"(
+layout(binding = 0) uniform usampler2D surfaces;
+layout(binding = 3) uniform sampler2D depth;
+vec3 unfold(vec2 f) {
+  vec3 n = vec3(f, 1.0 - abs(f.x) - abs(f.y));
+  float below = max(-n.z, 0.0);
+  n.xy -= vec2(n.x < 0.0 ? -below : below, n.y < 0.0 ? -below : below);
+  return normalize(n);
 }
 )";
 
-constexpr const char* kBilinear = R"(
-float visibility_at(MAP, vec2 uv, float depth) {
-  return LOOK(uv, depth);
-}
-)";
-
-// The mean of 3x3 bilinear taps is a weighted sum over 4x4 texels, and four gathers read those.
-constexpr const char* kPcf3 = R"(
-float visibility_at(MAP, vec2 uv, float depth) {
-  vec2 texel = uv * frame.specular.w - 0.5;
-  vec2 f = fract(texel);
-  float s = frame.weights.w;
-  vec2 corner = floor(texel) * s;
-  vec4 a = GATHER(corner, depth);
-  vec4 b = GATHER(corner + vec2(2.0 * s, 0.0), depth);
-  vec4 c = GATHER(corner + vec2(0.0, 2.0 * s), depth);
-  vec4 d = GATHER(corner + vec2(2.0 * s), depth);
-  vec2 g = 1.0 - f;
-  // Gathers come as (0,1) (1,1) (1,0) (0,0).
-  float row0 = g.x * a.w + a.z + b.w + f.x * b.z;
-  float row1 = g.x * a.x + a.y + b.x + f.x * b.y;
-  float row2 = g.x * c.w + c.z + d.w + f.x * d.z;
-  float row3 = g.x * c.x + c.y + d.x + f.x * d.y;
-  return (g.y * row0 + row1 + row2 + f.y * row3) * (1.0 / 9.0);
-}
-)";
-
-constexpr const char* kPcf5 = R"(
-float visibility_at(MAP, vec2 uv, float depth) {
-  float sum = 0.0;
-  for (int y = -2; y <= 2; ++y)
-    for (int x = -2; x <= 2; ++x) sum += LOOK(uv + vec2(x, y) * frame.weights.w, depth);
-  return sum * 0.04;
-}
-)";
-
-constexpr const char* kOneMap = R"(
-layout(binding = 1) uniform sampler2DShadow map0;
-float visibility(vec3 p, float bias) {
-  vec3 m = (frame.to_map0 * vec4(p, 1.0)).xyz;
-  return visibility_at(map0, m.xy, m.z - bias);
-}
-)";
-
-constexpr const char* kTwoMaps = R"(
-layout(binding = 1) uniform sampler2DShadow map0;
-layout(binding = 2) uniform sampler2DShadow map1;
-float visibility(vec3 p, float bias) {
-  vec3 m0 = (frame.to_map0 * vec4(p, 1.0)).xyz;
-  vec3 m1 = (frame.to_map1 * vec4(p, 1.0)).xyz;
-  float v = frame.weights.x * visibility_at(map0, m0.xy, m0.z - bias) +
-            frame.weights.y * visibility_at(map1, m1.xy, m1.z - bias);
-  return min(v, 1.0);
-}
-)";
-
-// See docs/player.md, "March". A height is a depth difference towards a key's light; the ray to the
-// current light is over m.xy + h * ray.xy at height h. A sample of height d, found there, stands
-// beside the ray by |d - h| times the trace's texels per height: its miss. What hides from one key
-// (a seat's shaded part next to a window's patch) is seen by the other, so both are searched, and
-// the filter is evaluated once, at the sample that misses least. The two constants, in texels: a
-// blocker this near to the ray is sure, the search ends (1); no blocker as near as this, the point
-// is lit (4: steeper surfaces miss more between two texels; 3 lets more light through, 6 less).
-// A point over which the first key sees nothing at all along the ray is lit as that key says: its
-// search ends too. That the loop's bound is no constant keeps compilers from unrolling it: the
-// software renderer leaves a loop early but never skips a branch.
-constexpr const char* kMarch = R"(
-layout(binding = 1) uniform sampler2DArrayShadow maps;
-layout(binding = 2) uniform sampler2DArray depths;
-float height(vec3 m, vec2 uv, float layer) {
-  return m.z - texture(depths, vec3(uv, layer)).x;
-}
-// Which share of its blocker's height the filter compares with: low, so that a lower blocker beside
-// it counts too, but above what the receiver itself rises to on the way there.
-float share_of_height(float texels) {
-  return clamp(1.5 * texels * frame.march.z, 0.1, 0.5);
-}
-float visibility(vec3 p, float bias) {
-  vec3 m = (frame.to_map0 * vec4(p, 1.0)).xyz;
-  vec3 other = (frame.to_map1 * vec4(p, 1.0)).xyz;
-  m.z -= bias;
-  other.z -= bias;
-  vec3 leave = (frame.corner.xyz - p) * frame.inverse.xyz;
-  float top = min(min(leave.x, leave.y), leave.z);
-  float least = frame.march.z;
-  float over_other = height(other, other.xy, frame.ray1.w);
-  vec4 ray = frame.ray0;
-  vec2 back = frame.behind.xy;
-  float texels = frame.march.x;
-  vec3 at = m;
-  float layer = ray.w, nearest = 1e30;
-  bool open = false;
-  for (int key = 0; key < int(frame.march.w); ++key) {
-    float here = height(m, m.xy, ray.w);
-    float best = max(here, height(m, m.xy - back, ray.w));
-    if (best <= least) best = 0.0;
-    float gap = here > least ? here : 1e20;
-    float d = height(m, m.xy + over_other * ray.xy, ray.w);
-    float g = abs(d - over_other);
-    float under = max(max(over_other, here), d - over_other);
-    if (d > least && g < gap) { best = d; gap = g; }
-    float rung = top * ray.z * (1.0 / float(MARCH_STEPS));
-    for (int i = 1; i < MARCH_STEPS; ++i) {
-      float h = rung * float(i);
-      d = height(m, m.xy + h * ray.xy, ray.w);
-      g = abs(d - h);
-      under = max(under, d - h);
-      if (d > least && g < gap) { best = d; gap = g; }
-    }
-    d = height(m, m.xy + best * ray.xy, ray.w);
-    g = abs(d - best);
-    if (d > least && g < gap) { best = d; gap = g; }
-    float miss = gap * texels;
-    if (miss < nearest) {
-      nearest = miss;
-      layer = ray.w;
-      at = vec3(m.xy + best * ray.xy, m.z - share_of_height(texels) * best);
-    }
-    open = under <= least;
-    if (miss <= 1.0 || open) break;
-    m = other;
-    ray = frame.ray1;
-    back = frame.behind.zw;
-    texels = frame.march.y;
-    over_other = here;
-  }
-  return nearest <= 4.0 || open ? visibility_at(maps, layer, at.xy, at.z) : 1.0;
+// One triangle over the whole image, at the depth of the background.
+constexpr const char* kWholeImage = R"(#version 450 core
+void main() {
+  gl_Position = vec4(4.0 * (gl_VertexID & 1) - 1.0, 4.0 * (gl_VertexID >> 1) - 1.0, 0.0, 1.0);
 }
 )";
 
@@ -191,24 +81,6 @@ float specular(vec3 n, vec3 l, vec3 v, float nl) {
 }
 )";
 
-const char* filter_text(int pcf) {
-  return pcf <= 0 ? kNearest : pcf < 3 ? kBilinear : pcf < 5 ? kPcf3 : kPcf5;
-}
-
-const char* sampling_text(ShadowSampling shadow) {
-  switch (shadow) {
-    case ShadowSampling::none:
-      return "";
-    case ShadowSampling::one:
-      return kOneMap;
-    case ShadowSampling::two:
-      return kTwoMaps;
-    case ShadowSampling::march:
-      return kMarch;
-  }
-  return "";
-}
-
 bool lit(const ShaderFeatures& f) {
   return f.shading != Shading::unlit;
 }
@@ -229,82 +101,98 @@ std::string vertex_text(const ShaderFeatures& f) {
                      location, type, name);
     body += fmt::format("  v_{0} = {0};\n", name);
   };
-  if (lit(f)) {
-    s += "layout(location = 0) out vec3 v_world;\n";
-    body += "  v_world = position;\n";
-    pass(1, "vec3", "normal");
-  }
+  if (lit(f)) pass(1, "vec3", "normal");
   if (coloured(f)) pass(2, "vec3", "colour");
   if (coloured(f) && f.textured) pass(3, "vec2", "texcoord");
   if (coloured(f) && f.baked_vertices) pass(4, "vec3", "illumination");
   return s + "void main() {\n" + body + "}\n";
 }
 
-std::string fragment_main(const ShaderFeatures& f) {
-  std::string s = "void main() {\n";
-  if (lit(f)) {
-    s += R"(  vec3 n = normalize(v_normal);
-  vec3 v = normalize(frame.eye.xyz - v_world);
-  if (dot(n, v) < 0.0) n = -n;
-  vec3 l = frame.light.xyz;
-  float nl = dot(n, l);
-)";
-    if (f.shadow == ShadowSampling::none)
-      s += "  float seen = nl > 0.0 ? 1.0 : 0.0;\n";
-    else
-      // The offset grows with the sine of the angle to the light, as the error of a texel does; the
-      // depth bias with its tangent, which a plane's depth changes by across a texel. Both act here
-      // and not on the casters: maps then hold true depths, which the march needs.
-      s += R"(  float sine = sqrt(max(1.0 - nl * nl, 0.0));
-  vec3 p = v_world + n * (frame.weights.z * sine);
-  float bias = frame.corner.w * min(sine, 8.0 * nl) / max(nl, 1e-3);
-  float seen = nl > 0.0 ? visibility(p, bias) : 0.0;
-)";
-  }
-  if (f.visibility)
-    return s + (lit(f) ? "  result = vec4(seen);\n}\n" : "  result = vec4(1.0);\n}\n");
-  s += "  vec3 reflectance = v_colour;\n";
+// `reflectance` and `own`, what the surface shows without the moving light, exposed.
+std::string colours_text(const ShaderFeatures& f) {
+  std::string s = "  vec3 reflectance = v_colour;\n";
   if (f.textured && !f.baked_textures) s += "  reflectance *= texture(diffuse, v_texcoord).rgb;\n";
-  s += "  vec3 light = vec3(0.0);\n";
-  if (f.baked_vertices) s += "  light += v_illumination * frame.inverse.w;\n";
-  if (lit(f)) {
-    s += R"(  light += frame.ambient.rgb;
-  float reach = seen * max(nl, 0.0) * frame.light.w;
-  light += vec3(reach);
-)";
-  } else if (!f.baked_vertices && !f.baked_textures) {
-    s += "  light = vec3(1.0);\n";
-  }
-  s += "  vec3 colour = reflectance * light;\n";
+  if (f.baked_vertices)
+    s += "  vec3 light = v_illumination * frame.inverse.w;\n";
+  else
+    s += lit(f) || f.baked_textures ? "  vec3 light = vec3(0.0);\n" : "  vec3 light = vec3(1.0);\n";
+  if (lit(f)) s += "  light += frame.ambient.rgb;\n";
+  s += "  vec3 own = reflectance * light;\n";
   if (f.textured && f.baked_textures)
-    s += "  colour += texture(diffuse, v_texcoord).rgb * frame.inverse.w;\n";
-  if (shiny(f))
-    s += "  if (reach > 0.0) colour += vec3(seen * frame.light.w * specular(n, l, v, nl));\n";
-  return s +
-         "  result = vec4(pow(clamp(colour * frame.ambient.w, 0.0, 1.0), vec3(1.0 / 2.2)), "
-         "1.0);\n}\n";
+    s += "  own += texture(diffuse, v_texcoord).rgb * frame.inverse.w;\n";
+  return s + "  own *= frame.ambient.w;\n";
 }
+
+constexpr const char* kEncode = "pow(clamp(colour, 0.0, 1.0), vec3(1.0 / 2.2))";
 
 std::string fragment_text(const ShaderFeatures& f) {
   std::string s = "#version 450 core\n";
   s += kFrameBlock;
-  if (lit(f))
-    s += "layout(location = 0) in vec3 v_world;\nlayout(location = 1) in vec3 v_normal;\n";
+  if (lit(f)) s += "layout(location = 1) in vec3 v_normal;\n";
   if (coloured(f)) s += "layout(location = 2) in vec3 v_colour;\n";
   if (coloured(f) && f.textured)
     s += "layout(location = 3) in vec2 v_texcoord;\nlayout(binding = 0) uniform sampler2D "
          "diffuse;\n";
   if (coloured(f) && f.baked_vertices) s += "layout(location = 4) in vec3 v_illumination;\n";
+  s += lit(f) ? "layout(location = 0) out uvec4 result;\n"
+              : "layout(location = 0) out vec4 result;\n";
+  if (lit(f)) s += kWriteSurface;
+  s += "void main() {\n";
+  if (coloured(f)) s += colours_text(f);
+  if (lit(f))
+    s += coloured(f) ? "  result = surface_of(v_normal, reflectance, own);\n"
+                     : "  result = uvec4(0, 0, 0, packSnorm2x16(fold(v_normal)));\n";
+  else if (coloured(f))
+    s += fmt::format("  vec3 colour = own;\n  result = vec4({}, 1.0);\n", kEncode);
+  else
+    s += "  result = vec4(1.0);\n";
+  return s + "}\n";
+}
+
+// The second pass of a lit scene: each pixel's surface meets the moving light once, however many
+// triangles were drawn there.
+std::string lighting_text(const ShaderFeatures& f) {
+  const bool shadows = f.shadow != ShadowSampling::none;
+  std::string s = "#version 450 core\n";
+  s += kFrameBlock;
+  s += kReadSurface;
   s += "layout(location = 0) out vec4 result;\n";
-  if (lit(f) && f.shadow != ShadowSampling::none) {
-    s += f.shadow == ShadowSampling::march ? kLayeredMap : kPlainMap;
-    s += filter_text(f.pcf);
-    if (f.shadow == ShadowSampling::march)
-      s += fmt::format("#define MARCH_STEPS {}\n", f.march_steps);
-    s += sampling_text(f.shadow);
-  }
+  if (shadows) s += shadow_text(f);
   if (coloured(f) && shiny(f)) s += f.shading == Shading::ward ? kWard : kBlinnPhong;
-  return s + fragment_main(f);
+  s += R"(void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  uvec4 surface = texelFetch(surfaces, pixel, 0);
+  vec3 ray = frame.first_ray.xyz + gl_FragCoord.x * frame.ray_x.xyz + gl_FragCoord.y * frame.ray_y.xyz;
+  vec3 away = ray / (frame.first_ray.w + frame.ray_x.w * texelFetch(depth, pixel, 0).x);
+  vec3 n = unfold(unpackSnorm2x16(surface.w));
+  if (dot(n, away) > 0.0) n = -n;
+  vec3 l = frame.light.xyz;
+  float nl = dot(n, l);
+)";
+  if (!shadows)
+    s += "  float seen = nl > 0.0 ? 1.0 : 0.0;\n";
+  else
+    // The offset grows with the sine of the angle to the light, as the error of a texel does; the
+    // depth bias with its tangent, which a plane's depth changes by across a texel. Both act here
+    // and not on the casters: maps then hold true depths, which the march needs.
+    s += R"(  float sine = sqrt(max(1.0 - nl * nl, 0.0));
+  vec3 p = frame.eye.xyz + away + n * (frame.weights.z * sine);
+  float bias = frame.corner.w * min(sine, 8.0 * nl) / max(nl, 1e-3);
+  float seen = nl > 0.0 ? visibility(p, bias) : 0.0;
+)";
+  if (!coloured(f)) return s + "  result = vec4(seen);\n}\n";
+  s += R"(  vec2 blue_red = unpackHalf2x16(surface.y);
+  vec3 reflectance = vec3(unpackHalf2x16(surface.x), blue_red.x);
+  vec3 own = vec3(blue_red.y, unpackHalf2x16(surface.z));
+  float reach = seen * max(nl, 0.0) * frame.light.w;
+  vec3 added = reflectance * reach;
+)";
+  if (shiny(f))
+    s += "  if (reach > 0.0) added += vec3(seen * frame.light.w * specular(n, l, -normalize(away), "
+         "nl));\n";
+  return s + fmt::format(
+                 "  vec3 colour = own + added * frame.ambient.w;\n  result = vec4({}, 1.0);\n}}\n",
+                 kEncode);
 }
 
 }  // namespace
@@ -324,7 +212,11 @@ const char* name_of(Shading shading) {
 }
 
 ShaderText shader_text(const ShaderFeatures& features) {
-  return {vertex_text(features), fragment_text(features)};
+  ShaderText text{vertex_text(features), fragment_text(features), "", ""};
+  if (!lit(features)) return text;
+  text.lighting_vertex = kWholeImage;
+  text.lighting_fragment = lighting_text(features);
+  return text;
 }
 
 std::vector<std::string> feature_names(const ShaderFeatures& f) {

@@ -35,8 +35,12 @@ struct ShaderFeatures {
   bool operator==(const ShaderFeatures&) const = default;
 };
 
+// Unlit scenes are drawn in one pass. Lit ones are drawn as surfaces (reflectance, own light and
+// normal in four 32-bit integers, and a depth) and lit in a second pass over the image: what is
+// hidden later, or covers a part of a pixel's neighbourhood only, is then never asked for shadows.
 struct ShaderText {
   std::string vertex, fragment;
+  std::string lighting_vertex, lighting_fragment;  // of the second pass; empty if there is none
 };
 
 ShaderText shader_text(const ShaderFeatures& features);

@@ -142,11 +142,12 @@ TEST(Render, ThePlanSaysWhatIsMissingAndWhy) {
   RenderOptions o = small();
   o.shading = Shading::unlit;
   const std::vector<std::string> plan = must_render(courtyard(), o).plan();
-  ASSERT_EQ(plan.size(), 4u);
+  ASSERT_EQ(plan.size(), 5u);
   EXPECT_EQ(plan[0], "compiled: unlit");
-  EXPECT_NE(plan[1].find("no shadow maps"), std::string::npos);
-  EXPECT_NE(plan[2].find("no texture"), std::string::npos);
-  EXPECT_NE(plan[3].find("no baked light"), std::string::npos);
+  EXPECT_NE(plan[1].find("one pass"), std::string::npos);
+  EXPECT_NE(plan[2].find("no shadow maps"), std::string::npos);
+  EXPECT_NE(plan[3].find("no texture"), std::string::npos);
+  EXPECT_NE(plan[4].find("no baked light"), std::string::npos);
 }
 
 TEST(Render, WrongOptionsAreSaidAndChangeNothing) {

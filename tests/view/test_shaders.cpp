@@ -9,6 +9,11 @@ bool has(const std::string& text, const char* word) {
   return text.find(word) != std::string::npos;
 }
 
+// Behind the uniform block, which all shaders share.
+std::string body_of(const std::string& text) {
+  return text.substr(text.find("} frame;"));
+}
+
 TEST(Shaders, NothingIsCompiledThatIsNotUsed) {
   for (Shading shading : {Shading::unlit, Shading::lambert, Shading::blinn_phong, Shading::ward})
     for (ShadowSampling shadow :
@@ -29,16 +34,24 @@ TEST(Shaders, NothingIsCompiledThatIsNotUsed) {
           EXPECT_EQ(has(t.fragment, "v_illumination"), baked);
           EXPECT_EQ(has(t.vertex, "v_normal"), lit);
           EXPECT_EQ(has(t.fragment, "v_normal"), lit);
+          EXPECT_EQ(!t.lighting_vertex.empty(), lit);
+          EXPECT_EQ(!t.lighting_fragment.empty(), lit);
+          // The first pass asks nothing about the moving light, the second nothing about materials.
+          for (const char* word : {"visibility_at(", "frame.light", "specular("})
+            EXPECT_FALSE(has(body_of(t.fragment), word)) << word;
+          for (const char* word : {"diffuse", "v_illumination", "v_colour", "v_texcoord"})
+            EXPECT_FALSE(has(t.lighting_fragment, word)) << word;
+          const std::string& second = t.lighting_fragment;
           const bool march = shadows && shadow == ShadowSampling::march;
-          EXPECT_EQ(has(t.fragment, "visibility_at("), shadows);
-          EXPECT_EQ(has(t.fragment, "uniform sampler2DShadow map0"), shadows && !march);
-          EXPECT_EQ(has(t.fragment, "uniform sampler2DShadow map1"),
+          EXPECT_EQ(has(second, "visibility_at("), shadows);
+          EXPECT_EQ(has(second, "uniform sampler2DShadow map0"), shadows && !march);
+          EXPECT_EQ(has(second, "uniform sampler2DShadow map1"),
                     shadows && shadow == ShadowSampling::two);
-          EXPECT_EQ(has(t.fragment, "uniform sampler2DArrayShadow maps"), march);
-          EXPECT_EQ(has(t.fragment, "uniform sampler2DArray depths"), march);
-          EXPECT_EQ(has(t.fragment, "float specular("),
+          EXPECT_EQ(has(second, "uniform sampler2DArrayShadow maps"), march);
+          EXPECT_EQ(has(second, "uniform sampler2DArray depths"), march);
+          EXPECT_EQ(has(second, "float specular("),
                     shading == Shading::blinn_phong || shading == Shading::ward);
-          EXPECT_EQ(has(t.fragment, "exp("), shading == Shading::ward);
+          EXPECT_EQ(has(second, "exp("), shading == Shading::ward);
         }
 }
 

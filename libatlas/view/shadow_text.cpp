@@ -1,0 +1,185 @@
+// The texts that look a point up in shadow maps.
+#include "libatlas/view/shadow_text.h"
+
+#include <fmt/format.h>
+
+namespace atlas {
+namespace {
+
+// A map by itself, or a layer of all of them: what the filters below are written in.
+constexpr const char* kPlainMap = R"(
+#define MAP sampler2DShadow map
+#define LOOK(uv, depth) texture(map, vec3(uv, depth))
+#define GATHER(uv, depth) textureGather(map, uv, depth)
+)";
+constexpr const char* kLayeredMap = R"(
+#define MAP sampler2DArrayShadow map, float layer
+#define LOOK(uv, depth) texture(map, vec4(uv, layer, depth))
+#define GATHER(uv, depth) textureGather(map, vec3(uv, layer), depth)
+)";
+
+constexpr const char* kNearest = R"(
+float visibility_at(MAP, vec2 uv, float depth) {
+  return LOOK((floor(uv * frame.specular.w) + 0.5) * frame.weights.w, depth);
+}
+)";
+
+constexpr const char* kBilinear = R"(
+float visibility_at(MAP, vec2 uv, float depth) {
+  return LOOK(uv, depth);
+}
+)";
+
+// The mean of 3x3 bilinear taps is a weighted sum over 4x4 texels, and four gathers read those.
+constexpr const char* kPcf3 = R"(
+float visibility_at(MAP, vec2 uv, float depth) {
+  vec2 texel = uv * frame.specular.w - 0.5;
+  vec2 f = fract(texel);
+  float s = frame.weights.w;
+  vec2 corner = floor(texel) * s;
+  vec4 a = GATHER(corner, depth);
+  vec4 b = GATHER(corner + vec2(2.0 * s, 0.0), depth);
+  vec4 c = GATHER(corner + vec2(0.0, 2.0 * s), depth);
+  vec4 d = GATHER(corner + vec2(2.0 * s), depth);
+  vec2 g = 1.0 - f;
+  // Gathers come as (0,1) (1,1) (1,0) (0,0).
+  float row0 = g.x * a.w + a.z + b.w + f.x * b.z;
+  float row1 = g.x * a.x + a.y + b.x + f.x * b.y;
+  float row2 = g.x * c.w + c.z + d.w + f.x * d.z;
+  float row3 = g.x * c.x + c.y + d.x + f.x * d.y;
+  return (g.y * row0 + row1 + row2 + f.y * row3) * (1.0 / 9.0);
+}
+)";
+
+constexpr const char* kPcf5 = R"(
+float visibility_at(MAP, vec2 uv, float depth) {
+  float sum = 0.0;
+  for (int y = -2; y <= 2; ++y)
+    for (int x = -2; x <= 2; ++x) sum += LOOK(uv + vec2(x, y) * frame.weights.w, depth);
+  return sum * 0.04;
+}
+)";
+
+constexpr const char* kOneMap = R"(
+layout(binding = 1) uniform sampler2DShadow map0;
+float visibility(vec3 p, float bias) {
+  vec3 m = (frame.to_map0 * vec4(p, 1.0)).xyz;
+  return visibility_at(map0, m.xy, m.z - bias);
+}
+)";
+
+constexpr const char* kTwoMaps = R"(
+layout(binding = 1) uniform sampler2DShadow map0;
+layout(binding = 2) uniform sampler2DShadow map1;
+float visibility(vec3 p, float bias) {
+  vec3 m0 = (frame.to_map0 * vec4(p, 1.0)).xyz;
+  vec3 m1 = (frame.to_map1 * vec4(p, 1.0)).xyz;
+  float v = frame.weights.x * visibility_at(map0, m0.xy, m0.z - bias) +
+            frame.weights.y * visibility_at(map1, m1.xy, m1.z - bias);
+  return min(v, 1.0);
+}
+)";
+
+// See docs/player.md, "March". A height is a depth difference towards a key's light; the ray to the
+// current light is over m.xy + h * ray.xy at height h. A sample of height d, found there, stands
+// beside the ray by |d - h| times the trace's texels per height: its miss. What hides from one key
+// (a seat's shaded part next to a window's patch) is seen by the other, so both are searched, and
+// the filter is evaluated once, at the sample that misses least. The two constants, in texels: a
+// blocker this near to the ray is sure, the search ends (1); no blocker as near as this, the point
+// is lit (4: steeper surfaces miss more between two texels; 3 lets more light through, 6 less).
+// A point over which the first key sees nothing at all along the ray is lit as that key says: its
+// search ends too. That the loop's bound is no constant keeps compilers from unrolling it: the
+// software renderer leaves a loop early but never skips a branch.
+constexpr const char* kMarch = R"(
+layout(binding = 1) uniform sampler2DArrayShadow maps;
+layout(binding = 2) uniform sampler2DArray depths;
+float height(vec3 m, vec2 uv, float layer) {
+  return m.z - texture(depths, vec3(uv, layer)).x;
+}
+// Which share of its blocker's height the filter compares with: low, so that a lower blocker beside
+// it counts too, but above what the receiver itself rises to on the way there.
+float share_of_height(float texels) {
+  return clamp(1.5 * texels * frame.march.z, 0.1, 0.5);
+}
+float visibility(vec3 p, float bias) {
+  vec3 m = (frame.to_map0 * vec4(p, 1.0)).xyz;
+  vec3 other = (frame.to_map1 * vec4(p, 1.0)).xyz;
+  m.z -= bias;
+  other.z -= bias;
+  vec3 leave = (frame.corner.xyz - p) * frame.inverse.xyz;
+  float top = min(min(leave.x, leave.y), leave.z);
+  float least = frame.march.z;
+  float over_other = height(other, other.xy, frame.ray1.w);
+  vec4 ray = frame.ray0;
+  vec2 back = frame.behind.xy;
+  float texels = frame.march.x;
+  vec3 at = m;
+  float layer = ray.w, nearest = 1e30;
+  bool open = false;
+  for (int key = 0; key < int(frame.march.w); ++key) {
+    float here = height(m, m.xy, ray.w);
+    float best = max(here, height(m, m.xy - back, ray.w));
+    if (best <= least) best = 0.0;
+    float gap = here > least ? here : 1e20;
+    float d = height(m, m.xy + over_other * ray.xy, ray.w);
+    float g = abs(d - over_other);
+    float under = max(max(over_other, here), d - over_other);
+    if (d > least && g < gap) { best = d; gap = g; }
+    float rung = top * ray.z * (1.0 / float(MARCH_STEPS));
+    for (int i = 1; i < MARCH_STEPS; ++i) {
+      float h = rung * float(i);
+      d = height(m, m.xy + h * ray.xy, ray.w);
+      g = abs(d - h);
+      under = max(under, d - h);
+      if (d > least && g < gap) { best = d; gap = g; }
+    }
+    d = height(m, m.xy + best * ray.xy, ray.w);
+    g = abs(d - best);
+    if (d > least && g < gap) { best = d; gap = g; }
+    float miss = gap * texels;
+    if (miss < nearest) {
+      nearest = miss;
+      layer = ray.w;
+      at = vec3(m.xy + best * ray.xy, m.z - share_of_height(texels) * best);
+    }
+    open = under <= least;
+    if (miss <= 1.0 || open) break;
+    m = other;
+    ray = frame.ray1;
+    back = frame.behind.zw;
+    texels = frame.march.y;
+    over_other = here;
+  }
+  return nearest <= 4.0 || open ? visibility_at(maps, layer, at.xy, at.z) : 1.0;
+}
+)";
+
+const char* filter_text(int pcf) {
+  return pcf <= 0 ? kNearest : pcf < 3 ? kBilinear : pcf < 5 ? kPcf3 : kPcf5;
+}
+
+const char* sampling_text(ShadowSampling shadow) {
+  switch (shadow) {
+    case ShadowSampling::none:
+      return "";
+    case ShadowSampling::one:
+      return kOneMap;
+    case ShadowSampling::two:
+      return kTwoMaps;
+    case ShadowSampling::march:
+      return kMarch;
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string shadow_text(const ShaderFeatures& f) {
+  std::string s = f.shadow == ShadowSampling::march ? kLayeredMap : kPlainMap;
+  s += filter_text(f.pcf);
+  if (f.shadow == ShadowSampling::march)
+    s += fmt::format("#define MARCH_STEPS {}\n", f.march_steps);
+  return s + sampling_text(f.shadow);
+}
+
+}  // namespace atlas

@@ -1,0 +1,14 @@
+// Internal: the part of the fragment shader that looks a point up in shadow maps.
+#pragma once
+
+#include <string>
+
+#include "libatlas/view/shaders.h"
+
+namespace atlas {
+
+// Declares the maps and `float visibility(vec3 point, float depth_bias)`; reads the uniform block
+// `frame` of shaders.cpp. Only for features.shadow != none.
+std::string shadow_text(const ShaderFeatures& features);
+
+}  // namespace atlas
