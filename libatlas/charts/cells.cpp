@@ -6,6 +6,7 @@
 #include <queue>
 
 #include "libatlas/charts/grains.h"
+#include "libatlas/charts/radix_heap.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -128,7 +129,7 @@ struct Visit {
     return node != other.node ? node > other.node : seed > other.seed;
   }
 };
-using Heap = std::priority_queue<Visit, std::vector<Visit>, std::greater<>>;
+using Heap = RadixHeap<Visit>;
 
 // Chooses seeds among the grains.
 class Seeder {
@@ -182,14 +183,14 @@ class Seeder {
   void add_seed(std::uint32_t grain) {
     seeds.push_back(grain);
     normals.push_back(grains_.normal[grain]);
+    heap_.restart();
     heap_.push({0, 0, grain, static_cast<std::uint32_t>(seeds.size() - 1)});
     spread();
   }
 
   void spread() {
     while (!heap_.empty()) {
-      const Visit visit = heap_.top();
-      heap_.pop();
+      const Visit visit = heap_.pop();
       if (visit.key >= distance_[visit.node]) continue;
       distance_[visit.node] = visit.key;
       owner_[visit.node] = visit.seed;
@@ -280,6 +281,7 @@ class Seeder {
       }
       distance_[g] = kFar;
     }
+    heap_.restart();
     for (std::size_t s = first_seed; s < seeds.size(); ++s) {
       const glm::vec3& normal = sums[s - first_seed].normal;
       const float length = glm::length(normal);
@@ -336,12 +338,14 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
   Cells result;
   result.count = static_cast<std::uint32_t>(cells);
   result.of_triangle.assign(n, kNoIndex);
+  std::vector<std::uint32_t> nearest(n, kFar);  // key with which a triangle waits in the heap
   Heap heap;
   std::uint32_t visits = 0;
   const auto piece = [&](std::uint32_t s) { return grains.component[seeder.seeds[s]]; };
   for (std::uint32_t next = 0; next < cells || !heap.empty();) {
     if (heap.empty()) {  // pieces in turn: their seeds are contiguous, and the heap stays small
       const std::uint32_t first = next;
+      heap.restart();
       for (; next < cells && piece(next) == piece(first); ++next) {
         // Coincident grains may have left a cell empty.
         if (seed[next] != kNoIndex) heap.push({0, 0, seed[next], next});
@@ -349,8 +353,7 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
       continue;
     }
     if (++visits % visits_between_looks == 0 && context.cancelled()) return {};
-    const Visit visit = heap.top();
-    heap.pop();
+    const Visit visit = heap.pop();
     if (result.of_triangle[visit.node] != kNoIndex) continue;
     result.of_triangle[visit.node] = visit.seed;
     const glm::vec3 from = centroid(topology, visit.node);
@@ -362,7 +365,10 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
           1 - glm::dot(to_glm(topology.calm_normal(o / 3)), seeder.normals[visit.seed]);
       const float step = glm::distance(from, centroid(topology, o / 3));
       const float distance = visit.distance + step * (1 + kNormalWeight * lean);
-      heap.push({ruler(distance), distance, o / 3, visit.seed});
+      const std::uint32_t key = ruler(distance);
+      if (key > nearest[o / 3]) continue;
+      nearest[o / 3] = key;
+      heap.push({key, distance, o / 3, visit.seed});
     }
   }
   return result;

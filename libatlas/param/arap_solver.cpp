@@ -12,11 +12,11 @@ namespace {
 
 // Up to so many vertices each solver is the fastest (measured); multigrid takes the rest.
 constexpr std::size_t envelope_limit = 1500;
-constexpr std::size_t direct_limit = 12000;
-// The energy that an inexact solve may leave, as part of the area. In the end 1e-11 is a mean
+constexpr std::size_t direct_limit = 6000;
+// The energy that an inexact solve may leave, as part of the area. In the end 3e-11 is a mean
 // stretch of some millionths, and at worst a hundred times that. The first solve must not be much
 // rougher: what it leaves is smooth, and later steps take long to remove it.
-constexpr double first_inexactness = 1e-10, rough = 1e-8, fine = 1e-11;
+constexpr double first_inexactness = 1e-9, rough = 1e-7, fine = 3e-11;
 constexpr int most_iterations = 60;
 
 // Seen edge-on, or from behind, a triangle has no rotation near its map.
