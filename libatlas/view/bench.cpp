@@ -35,6 +35,40 @@ Result<FrameTime> timed_frame(Renderer& renderer, const Camera& camera, const Fr
   return t;
 }
 
+// A chain of dependent multiplications: takes no memory and cannot be shortened.
+std::uint64_t spin(std::uint64_t rounds) {
+  std::uint64_t x = rounds | 1;
+  for (std::uint64_t i = 0; i < rounds; ++i) x = x * 6364136223846793005u + i;
+  return x;
+}
+
+class Control {
+ public:
+  // So many rounds as last `seconds`.
+  void fit(double seconds) {
+    constexpr std::uint64_t kTrial = 1 << 20;
+    double fastest = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 5; ++i) {
+      const double start = wall_seconds();
+      sink_ = sink_ + spin(kTrial);
+      fastest = std::min(fastest, wall_seconds() - start);
+    }
+    rounds_ = std::uint64_t(double(kTrial) * seconds / std::max(fastest, 1e-9)) + 1;
+  }
+  void run() {
+    const double wall = wall_seconds(), cpu = cpu_seconds();
+    sink_ = sink_ + spin(rounds_);
+    wall_.push_back(wall_seconds() - wall);
+    cpu_.push_back(cpu_seconds() - cpu);
+  }
+  BenchControl result() const { return {rounds_, spread_of(wall_), spread_of(cpu_)}; }
+
+ private:
+  std::uint64_t rounds_ = 0;
+  volatile std::uint64_t sink_ = 0;  // keeps the compiler from leaving the work out
+  std::vector<double> wall_, cpu_;
+};
+
 void summarise(BenchRun& run) {
   std::vector<double> wall, cpu;
   double shadow = 0, lit = 0;
@@ -185,22 +219,30 @@ Status bench_times(const Renderer& first, const LightPath& path, const BenchOpti
     }
   const int warm_up = std::max(options.warm_up, 2 * options.render.schedule.interval_frames);
   bool more = true;
+  Control control;
+  std::vector<double> warm;
   for (int f = 0; more; ++f) {
     const FrameLight light = light_at(path, options.degrees_per_frame, f);
     more = f < warm_up;
     for (Contender& c : contenders) {
       Result<FrameTime> t = timed_frame(c.renderer, options.camera, light);
       if (!t.ok()) return t.status();
-      if (f < warm_up) continue;
+      if (f < warm_up) {
+        warm.push_back(t->wall);
+        continue;
+      }
       c.run.frames.push_back(*t);
       c.total += t->wall;
       more |= int(c.run.frames.size()) < options.frames || c.total < options.seconds;
     }
+    if (f + 1 == warm_up) control.fit(spread_of(warm).p50);
+    if (f >= warm_up) control.run();
   }
   for (Contender& c : contenders) {
     summarise(c.run);
     result.runs.push_back(std::move(c.run));
   }
+  result.control = control.result();
   return {};
 }
 

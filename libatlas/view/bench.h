@@ -47,6 +47,13 @@ struct BenchRun {
   double work_mean = 0, work_worst = 0;  // triangles submitted a frame, both passes
 };
 
+// The same arithmetic again and again, beside the frames: what it spreads by is the machine's doing
+// (other programs, clock rates), and no frame can be steadier.
+struct BenchControl {
+  std::uint64_t rounds = 0;  // as many as last about as long as a frame in the warm-up
+  Spread wall, cpu;          // seconds
+};
+
 struct BenchError {
   ShadowMethod method{};
   int interval = 0;  // k
@@ -61,11 +68,12 @@ struct BenchResult {
   int width = 0, height = 0, map_resolution = 0, interval = 0, pcf = 0;
   std::uint32_t triangles = 0;
   std::vector<BenchRun> runs;
+  BenchControl control;
   std::vector<BenchError> errors;
 };
 
 // Runs every shading with every method. The combinations take turns frame by frame, so that a busy
-// machine slows all of them alike and their ratios stand.
+// machine slows all of them alike and their ratios stand; the control takes its turn with them.
 Status bench_times(const Renderer& first, const LightPath& path, const BenchOptions& options,
                    BenchResult& result);
 

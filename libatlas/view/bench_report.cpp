@@ -15,9 +15,18 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+double spread_ratio(const Spread& s) {
+  return s.p50 > 0 ? s.p95 / s.p50 : 0;
+}
+
 json milliseconds(const Spread& s) {
-  return {{"mean", s.mean * 1e3}, {"p50", s.p50 * 1e3},   {"p95", s.p95 * 1e3},
-          {"p99", s.p99 * 1e3},   {"p999", s.p999 * 1e3}, {"worst", s.worst * 1e3}};
+  return {{"mean", s.mean * 1e3},
+          {"p50", s.p50 * 1e3},
+          {"p95", s.p95 * 1e3},
+          {"p99", s.p99 * 1e3},
+          {"p999", s.p999 * 1e3},
+          {"worst", s.worst * 1e3},
+          {"p95_over_p50", spread_ratio(s)}};
 }
 
 json summary(const BenchResult& r) {
@@ -46,10 +55,21 @@ json summary(const BenchResult& r) {
                       {"ssim", e.ssim},
                       {"cpu_ms_median", e.cpu_median * 1e3}});
   }
-  return {{"device", r.device}, {"opengl", r.version}, {"software_renderer", r.software},
-          {"width", r.width},   {"height", r.height},  {"map_resolution", r.map_resolution},
-          {"k", r.interval},    {"pcf", r.pcf},        {"triangles", r.triangles},
-          {"runs", runs},       {"errors", errors}};
+  return {{"device", r.device},
+          {"opengl", r.version},
+          {"software_renderer", r.software},
+          {"width", r.width},
+          {"height", r.height},
+          {"map_resolution", r.map_resolution},
+          {"k", r.interval},
+          {"pcf", r.pcf},
+          {"triangles", r.triangles},
+          {"runs", runs},
+          {"errors", errors},
+          {"control",
+           {{"rounds", r.control.rounds},
+            {"wall_ms", milliseconds(r.control.wall)},
+            {"cpu_ms", milliseconds(r.control.cpu)}}}};
 }
 
 std::string frames_csv(const BenchResult& r) {
@@ -173,17 +193,26 @@ std::string bench_table(const BenchResult& r) {
                               r.device, r.software ? "software renderer" : "GPU", r.width, r.height,
                               r.map_resolution, r.interval, r.pcf, r.triangles);
   if (!r.runs.empty())
-    s +=
-        "| shading | shadows | mean fps | wall ms: p50 | p95 | p99 | p99.9 | worst | CPU ms: p50 | "
-        "p95 | shadow share | triangles: mean | worst |\n|---|---|---|---|---|---|---|---|---|---|"
-        "---|---|---|\n";
+    s += "| shading | shadows | mean fps | wall ms: p50 | p95 | p99 | p99.9 | worst | p95 / p50 | "
+         "CPU "
+         "ms: p50 | p95 | p95 / p50 | shadow share | triangles: mean | worst |\n|---|---|---|---|"
+         "---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const BenchRun& b : r.runs)
     s += fmt::format(
-        "| {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | "
-        "{:.0f} % | {:.0f} | {:.0f} |\n",
+        "| {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.2f} | {:.1f} | "
+        "{:.1f} | {:.2f} | {:.0f} % | {:.0f} | {:.0f} |\n",
         name_of(b.shading), name_of(b.method), b.wall.mean > 0 ? 1 / b.wall.mean : 0,
         b.wall.p50 * 1e3, b.wall.p95 * 1e3, b.wall.p99 * 1e3, b.wall.p999 * 1e3, b.wall.worst * 1e3,
-        b.cpu.p50 * 1e3, b.cpu.p95 * 1e3, b.shadow_share * 100, b.work_mean, b.work_worst);
+        spread_ratio(b.wall), b.cpu.p50 * 1e3, b.cpu.p95 * 1e3, spread_ratio(b.cpu),
+        b.shadow_share * 100, b.work_mean, b.work_worst);
+  if (r.control.rounds > 0) {
+    const Spread &w = r.control.wall, &c = r.control.cpu;
+    s += fmt::format(
+        "| control | fixed arithmetic | | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.2f} | "
+        "{:.1f} | {:.1f} | {:.2f} | | | |\n",
+        w.p50 * 1e3, w.p95 * 1e3, w.p99 * 1e3, w.p999 * 1e3, w.worst * 1e3, spread_ratio(w),
+        c.p50 * 1e3, c.p95 * 1e3, spread_ratio(c));
+  }
   if (!r.errors.empty())
     s +=
         "\n| shadows | k | mean \\|Δ visibility\\| | wrong pixels | off edges: mean | wrong | PSNR "

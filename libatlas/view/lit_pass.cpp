@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <glm/trigonometric.hpp>
 #include <glm/vec4.hpp>
 
 #include "libatlas/core/glm_bridge.h"
@@ -67,6 +68,10 @@ KeyBlend blend_of(ShadowMethod method) {
 // reach of a 3x3 filter.
 constexpr double kBehindTexels = 1.5;
 
+// A light whose rays leave the key's by less than this over the whole depth of the map stands where
+// the key does.
+constexpr double kExactTexels = 0.05;
+
 // The ray to the current light in the map of key 0 or 1, which lies in layer `slot`.
 void put_ray(FrameBlock& b, int key, const glm::dvec3& l, const LightFit& fit, int slot) {
   const Vec3d ray = transform_vector(fit.to_texture, from_glm(l));
@@ -78,8 +83,13 @@ void put_ray(FrameBlock& b, int key, const glm::dvec3& l, const LightFit& fit, i
   else
     rise = 1 / fit.depth_range;
   put(b.ray[key], shift.x, shift.y, rise, slot);
-  const double texels = glm::length(shift) / b.weights[3];
-  const glm::dvec2 back = texels > 0 ? shift * (kBehindTexels / texels) : shift;
+  double texels = glm::length(shift) / b.weights[3];
+  // The light stands at this key: what rounding leaves is no direction to search along.
+  if (texels < kExactTexels) {
+    texels = 0;
+    put(b.ray[key], 0, 0, rise, slot);
+  }
+  const glm::dvec2 back = texels > 0 ? shift * (kBehindTexels / texels) : glm::dvec2(0);
   b.behind[2 * key] = float(back.x);
   b.behind[2 * key + 1] = float(back.y);
   b.march[key] = float(texels);
@@ -137,8 +147,8 @@ void Renderer::Impl::fill_block(const Camera& camera, const FrameLight& light,
     const int other = nearest == plan.to ? plan.from : plan.to;
     put(b.to_map[0], from.to_texture);
     put(b.to_map[1], shadow->fit(other).to_texture);
-    const BlendWeights w = blend_weights(blend_of(options.shadows), plan.t,
-                                         angle_between(plan.from_direction, plan.to_direction));
+    const double between = angle_between(plan.from_direction, plan.to_direction);
+    const BlendWeights w = blend_weights(blend_of(options.shadows), plan.t, between);
     // A filter of n bilinear taps reaches (n + 1) / 2 texels to each side: so far a plane would
     // shadow itself.
     const double reach = std::max(1.0, (options.pcf + 1) / 2.0) * from.texel;
@@ -147,7 +157,8 @@ void Renderer::Impl::fill_block(const Camera& camera, const FrameLight& light,
     put_ray(b, 0, l, from, nearest);
     put_ray(b, 1, l, shadow->fit(other), other);
     b.march[2] = float(2 * from.texel / from.depth_range);
-    b.march[3] = nearest == other ? 1 : 2;
+    b.march[3] = nearest == other || b.march[0] == 0 ? 1 : 2;
+    b.ray_y[3] = float(1.0 / march_samples(options.march_steps, glm::degrees(between)));
     put_box(b, l, scene->bounds);
   }
   put(b.specular, options.specular, options.shininess, options.roughness, options.map_resolution);

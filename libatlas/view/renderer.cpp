@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -27,7 +28,6 @@ ShaderFeatures needed_features(const GpuScene& scene, const RenderOptions& optio
   f.shading = options.shading;
   f.visibility = options.show_visibility;
   f.pcf = options.pcf;
-  f.march_steps = options.march_steps;
   f.textured = scene.textured && !f.visibility;
   f.baked_textures = scene.baked_textures && f.textured;
   f.baked_vertices = scene.baked_vertices && !f.visibility;
@@ -55,6 +55,10 @@ ScheduleOptions schedule_for(const RenderOptions& options) {
     s.interval_degrees = 0;
   }
   return s;
+}
+
+int march_samples(int least, double key_degrees) {
+  return std::clamp(int(std::lround(key_degrees)), least, std::max(least, kMostMarchSamples));
 }
 
 namespace {

@@ -40,7 +40,7 @@ struct RenderOptions {
 
   int map_resolution = 2048;
   int pcf = 3;          // see ShaderFeatures::pcf
-  int march_steps = 4;  // see ShaderFeatures::march_steps
+  int march_steps = 4;  // march: even map samples along the ray at least, see march_samples()
   // In units of the filter's reach. The normal offset (times the sine of the angle to the light) is
   // just what a plane needs; the slope bias (times its tangent, up to 8) is for rounding, and more
   // of it lets light through thin walls.
@@ -57,6 +57,12 @@ struct RenderOptions {
   Vec3f background{0.55f, 0.65f, 0.8f};                    // as displayed
   Vec3d up{0, 1, 0};
 };
+
+// Samples that the march takes along the ray in each key: one for each degree between the keys, so
+// that blockers of one size are met however far the keys are apart; at least `least` and, unless
+// that is more, at most kMostMarchSamples.
+inline constexpr int kMostMarchSamples = 24;
+int march_samples(int least, double key_degrees);
 
 // The light in one frame: where it is now (towards it), and where it will be (see KeySchedule).
 struct FrameLight {

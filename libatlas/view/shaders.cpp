@@ -25,8 +25,8 @@ layout(std140, binding = 0) uniform Frame {
   vec4 inverse;     // 1 / the light's direction; factor on baked light
   vec4 specular;    // strength, Blinn-Phong exponent, Ward alpha, 1 / texel
   vec4 first_ray, ray_x, ray_y;  // from the eye, one unit of view depth long: through the image's
-                                 // corner, and its change for each pixel; w of the first two: view
-                                 // depth is 1 / (w + w * depth)
+                                 // corner, and its change for each pixel; w: view depth is 1 / (w + w
+                                 // * depth) with the first two, 1 / march's samples the third
 } frame;
 )";
 

@@ -30,7 +30,6 @@ struct ShaderFeatures {
   bool baked_vertices = false;  // illumination at the vertices
   bool baked_textures = false;  // the textures hold light (an exported atlas), not reflectance
   int pcf = 3;              // 0: nearest texel; 1: bilinear; 3, 5: that many bilinear taps a side
-  int march_steps = 4;      // march: even map samples along the ray, in each key
   bool visibility = false;  // write the light's visibility instead of a colour
   bool operator==(const ShaderFeatures&) const = default;
 };

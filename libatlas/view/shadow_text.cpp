@@ -1,8 +1,6 @@
 // The texts that look a point up in shadow maps.
 #include "libatlas/view/shadow_text.h"
 
-#include <fmt/format.h>
-
 namespace atlas {
 namespace {
 
@@ -97,9 +95,10 @@ float height(vec3 m, vec2 uv, float layer) {
   return m.z - texture(depths, vec3(uv, layer)).x;
 }
 // Which share of its blocker's height the filter compares with: low, so that a lower blocker beside
-// it counts too, but above what the receiver itself rises to on the way there.
+// it counts too, but above what the receiver itself rises to on the way there. A light that stands
+// at the key asks for no height: then the key's own answer is exact.
 float share_of_height(float texels) {
-  return clamp(1.5 * texels * frame.march.z, 0.1, 0.5);
+  return texels > 0.0 ? clamp(1.5 * texels * frame.march.z, 0.1, 0.5) : 0.0;
 }
 float visibility(vec3 p, float bias) {
   vec3 m = (frame.to_map0 * vec4(p, 1.0)).xyz;
@@ -109,6 +108,7 @@ float visibility(vec3 p, float bias) {
   vec3 leave = (frame.corner.xyz - p) * frame.inverse.xyz;
   float top = min(min(leave.x, leave.y), leave.z);
   float least = frame.march.z;
+  int steps = int(1.0 / frame.ray_y.w + 0.5);
   float over_other = height(other, other.xy, frame.ray1.w);
   vec4 ray = frame.ray0;
   vec2 back = frame.behind.xy;
@@ -125,8 +125,8 @@ float visibility(vec3 p, float bias) {
     float g = abs(d - over_other);
     float under = max(max(over_other, here), d - over_other);
     if (d > least && g < gap) { best = d; gap = g; }
-    float rung = top * ray.z * (1.0 / float(MARCH_STEPS));
-    for (int i = 1; i < MARCH_STEPS; ++i) {
+    float rung = top * ray.z * frame.ray_y.w;
+    for (int i = 1; i < steps; ++i) {
       float h = rung * float(i);
       d = height(m, m.xy + h * ray.xy, ray.w);
       g = abs(d - h);
@@ -177,8 +177,6 @@ const char* sampling_text(ShadowSampling shadow) {
 std::string shadow_text(const ShaderFeatures& f) {
   std::string s = f.shadow == ShadowSampling::march ? kLayeredMap : kPlainMap;
   s += filter_text(f.pcf);
-  if (f.shadow == ShadowSampling::march)
-    s += fmt::format("#define MARCH_STEPS {}\n", f.march_steps);
   return s + sampling_text(f.shadow);
 }
 

@@ -107,11 +107,31 @@ TEST(Interpolation, AtAKeyEveryMethodShowsTheClassicPicture) {
       ASSERT_TRUE(other->draw(view.camera, light).ok());
       if (f % 8 != 0) continue;
       ASSERT_TRUE(classic.draw(view.camera, light).ok());
-      const VisibilityError e = visibility_error(other->read_image(), classic.read_image());
-      EXPECT_LT(e.mean, 2e-4) << name_of(method) << " " << f;
-      EXPECT_LT(e.wrong, 1e-4) << name_of(method) << " " << f;
+      EXPECT_EQ(other->read_image().texels, classic.read_image().texels)
+          << name_of(method) << " " << f;
     }
   }
+}
+
+TEST(Interpolation, TheMarchLooksOftenerWhereKeysAreFarApart) {
+  EXPECT_EQ(march_samples(4, 0), 4);
+  EXPECT_EQ(march_samples(4, 4), 4);
+  EXPECT_EQ(march_samples(4, 16), 16);
+  EXPECT_EQ(march_samples(4, 90), kMostMarchSamples);
+  EXPECT_EQ(march_samples(40, 90), 40);
+  // What adapts is nearly as good as what always takes the most.
+  const View view = room_view();
+  BenchOptions o = options_for(view);
+  o.methods = {ShadowMethod::march};
+  o.error_intervals = {32};
+  const Renderer first = must_render(view.scene, o.render);
+  BenchResult adapted, plain;
+  ASSERT_TRUE(bench_errors(first, through_the_window(), o, adapted).ok());
+  o.render.march_steps = kMostMarchSamples;
+  ASSERT_TRUE(bench_errors(first, through_the_window(), o, plain).ok());
+  print(adapted);
+  print(plain);
+  EXPECT_LT(adapted.errors[0].visibility.mean, 1.2 * plain.errors[0].visibility.mean);
 }
 
 // A pole's shadow falls on one place at a time: the cross-fade shows two half shadows, the march

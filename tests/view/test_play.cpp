@@ -128,11 +128,18 @@ TEST_F(Bench, MeasuresEveryCombinationAndWritesItsFiles) {
       EXPECT_EQ(casters, 0u);
     }
   }
+  // The control does as much in every round as a frame of the warm-up took.
+  EXPECT_GT(r.control.rounds, 0u);
+  EXPECT_GT(r.control.cpu.p50, 0.0);
+  EXPECT_LE(r.control.cpu.p50, 1.1 * r.control.wall.worst);
+  EXPECT_NE(bench_table(r).find("| control | fixed arithmetic |"), std::string::npos);
   ASSERT_TRUE(write_bench(r, path_ / "out").ok());
   std::ifstream json_file(path_ / "out" / "summary.json");
   const nlohmann::json j = nlohmann::json::parse(json_file);
   EXPECT_EQ(j["runs"].size(), 21u);
   EXPECT_EQ(j["errors"].size(), 10u);
+  EXPECT_EQ(j["control"]["rounds"], r.control.rounds);
+  EXPECT_GE(j["runs"][0]["wall_ms"]["p95_over_p50"], 1.0);
   std::ifstream csv(path_ / "out" / "frames.csv");
   int lines = 0;
   for (std::string line; std::getline(csv, line);) ++lines;
