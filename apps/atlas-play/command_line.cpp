@@ -76,6 +76,9 @@ void add_shadow_options(CLI::App& app, CommandLine& l) {
       ->capture_default_str();
   app.add_option("--interval-degrees", l.render.schedule.interval_degrees,
                  "keys every so many degrees instead");
+  app.add_option("--key-degrees", l.key_degrees,
+                 "keys at most so far apart (default: 16 in a window, 90 headless)")
+      ->check(CLI::Range(0.01, 90.0));
   app.add_flag("!--no-slices", l.render.schedule.sliced, "draw a key in one frame");
 }
 
@@ -95,6 +98,9 @@ void add_run_options(CLI::App& app, CommandLine& l, std::string& light, std::str
       ->delimiter(',')
       ->expected(3);
   app.add_option("--speed", l.play.degrees_per_second, "degrees a second, in a window")
+      ->capture_default_str();
+  app.add_option("--max-step", l.play.max_step, "degrees a frame at most, in a window")
+      ->check(CLI::Range(0.001, 90.0))
       ->capture_default_str();
   app.add_option("--step", l.play.degrees_per_frame, "degrees a frame, headless and in the bench")
       ->capture_default_str();

@@ -20,7 +20,8 @@ struct CommandLine {
   bool no_errors = false;              // bench: times only
   std::string camera;                  // "x,y,z;x,y,z"; empty: looks at the whole
   double fov = 60;
-  std::vector<double> north;  // of the sun; empty: chosen by the up axis
+  std::optional<double> key_degrees;  // nothing: 16 in a window, 90 without
+  std::vector<double> north;          // of the sun; empty: chosen by the up axis
   RenderOptions render;
   BenchOptions measure;
   PlayOptions play;

@@ -25,9 +25,11 @@ Status bench(const CommandLine& line, const GlContext& gl, const Renderer& rende
   result.interval = line.render.schedule.interval_frames;
   result.pcf = line.render.pcf;
   result.triangles = std::uint32_t(scene.triangle_count());
-  if (Status s = bench_times(renderer, line.play.light, options, result); !s.ok()) return s;
-  if (!line.no_errors)
-    if (Status s = bench_errors(renderer, line.play.light, options, result); !s.ok()) return s;
+  Status measured = bench_times(renderer, line.play.light, options, result);
+  if (measured.ok() && !line.no_errors)
+    measured = bench_errors(renderer, line.play.light, options, result);
+  if (Status s = gl.check_alive(); !s.ok()) return s;
+  if (!measured.ok()) return measured;
   if (Status s = write_bench(result, line.bench); !s.ok()) return s;
   terminal.line(bench_table(result));
   terminal.line(
@@ -37,6 +39,10 @@ Status bench(const CommandLine& line, const GlContext& gl, const Renderer& rende
 
 Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   const bool headless = line.headless || !line.bench.empty() || line.plan;
+  // The march is good up to keys this far apart; a slow machine would stretch them further.
+  constexpr double kWindowKeyDegrees = 16;
+  line.render.schedule.max_key_degrees =
+      line.key_degrees.value_or(headless ? kMaxKeyDegrees : kWindowKeyDegrees);
   // The scene first: a wrong file name should not open a window.
   const bool baked = line.baked_textures.value_or(textures_hold_light(line.scene));
   Result<ViewScene> scene = load_view(line.scene, baked, context);

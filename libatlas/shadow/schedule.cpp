@@ -25,6 +25,8 @@ double degrees_between(const Vec3d& a, const Vec3d& b) {
 KeySchedule::KeySchedule(const ScheduleOptions& options) : options_(options) {
   options_.interval_frames = std::max(1, options_.interval_frames);
   options_.max_frames = std::max(1, options_.max_frames);
+  if (!(options_.max_key_degrees > 0 && options_.max_key_degrees <= kMaxKeyDegrees))
+    options_.max_key_degrees = kMaxKeyDegrees;
 }
 
 // Frames from the key `start` frames ahead to the one after it.
@@ -32,14 +34,15 @@ int KeySchedule::interval_from(int start, const Ahead& ahead) const {
   const bool by_degrees = options_.interval_degrees > 0;
   const int longest = by_degrees ? options_.max_frames : options_.interval_frames;
   if (!ahead) return options_.interval_frames;
-  const double limit =
-      by_degrees ? std::min(options_.interval_degrees, kMaxKeyDegrees) : kMaxKeyDegrees;
+  const double most = options_.max_key_degrees;
+  const double limit = by_degrees ? std::min(options_.interval_degrees, most) : most;
   const Vec3d first = ahead(start);
   Vec3d previous = first;
   for (int n = 1; n <= longest; ++n) {
     const Vec3d d = ahead(start + n);
     const double moved = degrees_between(first, d);
-    if (n > 1 && (moved > kMaxKeyDegrees || degrees_between(previous, d) > options_.jump_degrees))
+    if (n > 1 &&
+        (moved > most * (1 + 1e-9) || degrees_between(previous, d) > options_.jump_degrees))
       return n - 1;
     if (moved >= limit * (1 - 1e-9)) return n;
     previous = d;
@@ -106,7 +109,9 @@ FramePlan KeySchedule::next_unblended(const Vec3d& now) {
 FramePlan KeySchedule::next(const Vec3d& now, const Ahead& ahead) {
   if (!options_.blend) return next_unblended(now);
   FramePlan plan;
-  const bool jumped = valid_ && degrees_between(last_, now) > options_.jump_degrees;
+  const bool jumped =
+      valid_ && (degrees_between(last_, now) > options_.jump_degrees ||
+                 (!ahead && degrees_between(from_.direction, now) > options_.max_key_degrees));
   if (!valid_ || jumped) {
     refresh(now, ahead, plan);
     begin_interval(now, ahead);

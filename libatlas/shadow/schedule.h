@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "libatlas/core/vec.h"
+#include "libatlas/shadow/blend.h"
 
 namespace atlas {
 
@@ -19,9 +20,13 @@ struct ScheduleOptions {
   int interval_frames = 8;      // k >= 1; 1 draws a map every frame
   double interval_degrees = 0;  // > 0: keys every so many degrees instead, at most max_frames apart
   int max_frames = 64;          // longest interval when keys go by degrees, >= 1
-  bool blend = true;            // two keys a frame; false: the last one is held
-  bool sliced = true;           // spread each map over the interval; false: one frame draws it all
-  double jump_degrees = 20;     // a light that moves more than this in one frame has jumped
+  // Keys are at most this far apart, (0, kMaxKeyDegrees], however few frames that leaves between
+  // them: a fast light, or a slow machine, then costs more of a map a frame instead of shadows
+  // interpolated over half the sky.
+  double max_key_degrees = kMaxKeyDegrees;
+  bool blend = true;         // two keys a frame; false: the last one is held
+  bool sliced = true;        // spread each map over the interval; false: one frame draws it all
+  double jump_degrees = 20;  // a light that moves more than this in one frame has jumped
 };
 
 // One share of drawing a map: triangles [begin, end) as fractions of the whole, all for one
@@ -50,7 +55,8 @@ class KeySchedule {
   explicit KeySchedule(const ScheduleOptions& options);
 
   // Plans the next frame, in which the light is at `now` (towards the light, any length > 0).
-  // Keys are at most kMaxKeyDegrees apart: a longer interval is cut short.
+  // Keys of a scripted light are at most max_key_degrees apart: a longer interval is cut short. One
+  // moved by hand that runs so far ahead of its keys has jumped.
   FramePlan next(const Vec3d& now, const Ahead& ahead);
 
   // The maps no longer show the scene: the next frame draws what it samples at once.

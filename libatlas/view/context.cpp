@@ -23,6 +23,25 @@ void GlContext::note_debug_error(const char* message) {
   if (debug_errors_++ == 0) first_debug_error_ = message;
 }
 
+Status GlContext::check_alive() const {
+  const auto lost = [](const char* why) {
+    return Status{ErrorCode::unsupported,
+                  fmt::format("the graphics context is lost: {} (start the program again)", why)};
+  };
+  switch (reset_source_ ? reset_source_() : glGetGraphicsResetStatus()) {
+    case GL_NO_ERROR:
+      return {};
+    case GL_GUILTY_CONTEXT_RESET:
+      return lost(
+          "the driver was reset by what this program drew; a smaller scene, map or image "
+          "may help");
+    case GL_INNOCENT_CONTEXT_RESET:
+      return lost("the driver was reset by another program");
+    default:
+      return lost("the driver was reset for a reason that it does not tell");
+  }
+}
+
 Status GlContext::initialise(bool debug) {
   info_.vendor = text_of(GL_VENDOR);
   info_.renderer = text_of(GL_RENDERER);

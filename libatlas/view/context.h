@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "libatlas/core/status.h"
 
@@ -30,12 +32,21 @@ class GlContext {
 
   void note_debug_error(const char* message);
 
+  // `unsupported` with the reason once the driver has reset this context (a shader that ran too
+  // long, another program's fault, a GPU that was taken away): nothing drawn since then is shown,
+  // and only a new context helps. Ask once a frame. Always ok where the driver does not tell.
+  Status check_alive() const;
+  // Stands in for the driver: returns what glGetGraphicsResetStatus would. For tests, since a
+  // software renderer is never reset.
+  void set_reset_source(std::function<unsigned()> source) { reset_source_ = std::move(source); }
+
  protected:
   // Reads info_, checks the version and installs the debug callback. `this` must stay in place.
   Status initialise(bool debug);
   GlInfo info_;
   std::int64_t debug_errors_ = 0;
   std::string first_debug_error_;
+  std::function<unsigned()> reset_source_;
 };
 
 struct ContextOptions {

@@ -45,21 +45,33 @@ Result<std::unique_ptr<GlContext>> open_display(EGLDisplay display, const Contex
   // Desktop GL; no surface type is asked for, since none will be made.
   const EGLint config_attributes[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, 0,
                                       EGL_NONE};
-  const EGLint context_attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                       4,
-                                       EGL_CONTEXT_MINOR_VERSION,
-                                       5,
-                                       EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                       EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                       EGL_CONTEXT_OPENGL_DEBUG,
-                                       options.debug ? EGL_TRUE : EGL_FALSE,
-                                       EGL_NONE};
+  EGLint context_attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                 4,
+                                 EGL_CONTEXT_MINOR_VERSION,
+                                 5,
+                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                 EGL_CONTEXT_OPENGL_DEBUG,
+                                 options.debug ? EGL_TRUE : EGL_FALSE,
+                                 EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                                 EGL_LOSE_CONTEXT_ON_RESET,
+                                 EGL_NONE};
+  EGLint& strategy = context_attributes[8];
   EGLConfig config = nullptr;
   EGLint found = 0;
   EGLContext context = EGL_NO_CONTEXT;
-  if (eglBindAPI(EGL_OPENGL_API) && eglChooseConfig(display, config_attributes, &config, 1, &found))
-    context =
-        eglCreateContext(display, found ? config : nullptr, EGL_NO_CONTEXT, context_attributes);
+  if (eglBindAPI(EGL_OPENGL_API) &&
+      eglChooseConfig(display, config_attributes, &config, 1, &found)) {
+    const auto create = [&] {
+      return eglCreateContext(display, found ? config : nullptr, EGL_NO_CONTEXT,
+                              context_attributes);
+    };
+    context = create();
+    if (context == EGL_NO_CONTEXT) {  // a driver that cannot tell of resets refuses to be asked
+      strategy = EGL_NONE;
+      context = create();
+    }
+  }
   if (context == EGL_NO_CONTEXT) {
     const EGLint error = eglGetError();
     eglTerminate(display);

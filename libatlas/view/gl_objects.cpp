@@ -45,8 +45,6 @@ const char* error_name(GLenum error) {
       return "GL_INVALID_FRAMEBUFFER_OPERATION";
     case GL_OUT_OF_MEMORY:
       return "GL_OUT_OF_MEMORY";
-    case GL_CONTEXT_LOST:
-      return "GL_CONTEXT_LOST";
     default:
       return "an unknown error";
   }
@@ -111,6 +109,9 @@ Status check_gl(const char* where) {
   // A lost context reports its error for ever: the loop must end.
   for (int i = 0; i < 64 && glGetError() != GL_NO_ERROR; ++i) {
   }
+  if (first == GL_CONTEXT_LOST)
+    return {ErrorCode::unsupported,
+            fmt::format("the graphics context was lost in {} (start the program again)", where)};
   return {first == GL_OUT_OF_MEMORY ? ErrorCode::unsupported : ErrorCode::bad_input,
           fmt::format("OpenGL: {} in {}", error_name(first), where)};
 }

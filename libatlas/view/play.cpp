@@ -54,8 +54,9 @@ Result<PlaySummary> play_headless(GlContext& gl, Renderer& renderer, const PlayO
     const FrameLight light{options.light.direction(f * step),
                            [&](int n) { return options.light.direction((f + n) * step); }};
     Result<FrameStats> stats = renderer.draw(options.camera, light);
-    if (!stats.ok()) return stats.status();
     renderer.finish();
+    if (Status s = gl.check_alive(); !s.ok()) return s;  // the reason of whatever else failed
+    if (!stats.ok()) return stats.status();
     times.push_back(wall_seconds() - start);
     if (!options.record.empty()) {
       const fs::path file = options.record / fmt::format("frame{:05}.png", f);

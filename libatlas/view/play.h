@@ -25,6 +25,7 @@ struct PlayOptions {
   Camera camera;                     // where it starts
   double degrees_per_frame = 0.5;    // headless
   double degrees_per_second = 15;    // in a window
+  double max_step = 2;               // in a window: degrees a frame, see LightClock
   int frames = 1;                    // headless: how many are drawn
   int close_after = 0;               // in a window: frames until it closes by itself; 0: never
   std::filesystem::path record;      // a folder for frame00000.png and on; empty: none
@@ -39,14 +40,16 @@ struct PlaySummary {
   double median_seconds = 0;   // of a frame, wall clock
 };
 
-// Draws options.frames frames. Fails with the first GL error, or when cancelled.
+// Draws options.frames frames. Fails with the first GL error, when the context is lost
+// (GlContext::check_alive), or when cancelled.
 Result<PlaySummary> play_headless(GlContext& gl, Renderer& renderer, const PlayOptions& options,
                                   const Context& context);
 
 // Shows the scene until the window is closed: free camera (drag, WASD, QE), panels for every
 // setting, a graph of frame times, screenshots (F12) and recording; a panel lists the keys.
-// `unsupported` if the display server goes while the window is open: then end the program without
-// destroying what belongs to the context, since the driver talks to that server.
+// `unsupported` if the context is lost, or if the display server goes while the window is open:
+// then end the program without destroying what belongs to the context, since the driver talks to
+// that server.
 Result<PlaySummary> play_in_window(GlWindow& window, Renderer& renderer, const PlayOptions& options,
                                    const Context& context);
 

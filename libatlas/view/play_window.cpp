@@ -18,6 +18,7 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/image/image_io.h"
+#include "libatlas/shadow/light_clock.h"
 #include "libatlas/view/bench.h"
 #include "libatlas/view/play.h"
 
@@ -67,7 +68,8 @@ class Player {
         options_(options),
         wanted_(renderer.options()),
         camera_(options.camera),
-        gui_(window.handle()) {
+        gui_(window.handle()),
+        clock_({options.max_step}) {
     const Box3& b = renderer.bounds();
     // The whole in eight seconds: a hall at a walk, a city in flight.
     stride_range_ = glm::length(to_glm(b.high) - to_glm(b.low));
@@ -129,8 +131,7 @@ class Player {
   }
 
   Status draw(double elapsed) {
-    const double step = speed_ * elapsed;
-    if (!paused_) travelled_ += step;
+    clock_.advance(elapsed, paused_ || by_hand_ ? 0 : speed_);
     FrameLight light;
     if (by_hand_) {
       const double a = glm::radians(double(azimuth_)), e = glm::radians(double(elevation_));
@@ -141,14 +142,11 @@ class Player {
       light.direction =
           from_glm((side * std::cos(a) + other * std::sin(a)) * std::cos(e) + up * std::sin(e));
     } else {
-      light.direction = options_.light.direction(travelled_);
-      // The next frames' steps are taken to be as long as a smoothed one: frame times jitter, and
-      // a key a little early or late is still exact for its own direction.
-      smooth_step_ = smooth_step_ > 0 ? 0.95 * smooth_step_ + 0.05 * step : step;
-      const double at = travelled_, ahead = paused_ ? 0 : smooth_step_;
-      light.ahead = [this, at, ahead](int n) { return options_.light.direction(at + n * ahead); };
+      light.direction = options_.light.direction(clock_.travelled());
+      light.ahead = [this](int n) { return options_.light.direction(clock_.ahead(n)); };
     }
     Result<FrameStats> stats = renderer_.draw(camera_, light);
+    if (Status s = window_.check_alive(); !s.ok()) return s;
     if (!stats.ok()) return stats.status();
     stats_ = *stats;
     return {};
@@ -257,6 +255,8 @@ class Player {
     ImGui::SameLine();
     ImGui::Checkbox("by hand", &by_hand_);
     ImGui::SliderFloat("degrees a second", &speed_, 0, 90);
+    if (clock_.slowed())
+      ImGui::TextDisabled("slowed to %.1f degrees a frame (--max-step)", options_.max_step);
     if (by_hand_) {
       ImGui::SliderFloat("azimuth", &azimuth_, 0, 360);
       ImGui::SliderFloat("elevation", &elevation_, 1, 89);
@@ -304,7 +304,8 @@ class Player {
   std::array<float, 240> times_{};
   std::vector<double> all_times_;
   std::size_t at_ = 0;
-  double stride_ = 1, stride_range_ = 1, travelled_ = 0, smooth_step_ = 0;
+  LightClock clock_;
+  double stride_ = 1, stride_range_ = 1;
   float speed_ = 15, azimuth_ = 45, elevation_ = 45;
   bool paused_ = false, by_hand_ = false, recording_ = false, shoot_ = false, panel_shown_ = true;
   int recorded_ = 0;

@@ -89,8 +89,9 @@ bool same_schedule(const RenderOptions& a, const RenderOptions& b) {
   const ScheduleOptions x = schedule_for(a), y = schedule_for(b);
   return x.interval_frames == y.interval_frames && x.interval_degrees == y.interval_degrees &&
          x.blend == y.blend && x.sliced == y.sliced && x.max_frames == y.max_frames &&
-         x.jump_degrees == y.jump_degrees && a.fit_view == b.fit_view && a.snap == b.snap &&
-         a.view_distance == b.view_distance && a.up == b.up;
+         x.max_key_degrees == y.max_key_degrees && x.jump_degrees == y.jump_degrees &&
+         a.fit_view == b.fit_view && a.snap == b.snap && a.view_distance == b.view_distance &&
+         a.up == b.up;
 }
 
 }  // namespace

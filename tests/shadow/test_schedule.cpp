@@ -163,6 +163,45 @@ TEST(Schedule, KeysAreNeverMoreThanNinetyDegreesApart) {
   }
 }
 
+TEST(Schedule, AFastLightShortensTheIntervalInsteadOfStretchingIt) {
+  for (double step : {0.5, 2.0, 3.0, 5.0, 15.0, 19.0}) {
+    ScheduleOptions o;
+    o.max_key_degrees = 16;
+    KeySchedule schedule(o);
+    FakeRenderer r;
+    for (int f = 0; f < 200; ++f) {
+      const FramePlan plan =
+          schedule.next(turned(f * step), [&](int n) { return turned((f + n) * step); });
+      r.run(plan);
+      EXPECT_EQ(plan.refreshed, f == 0);
+      EXPECT_LE(angle_between(plan.from_direction, plan.to_direction) / kDegree,
+                std::max(16.0, step) + 1e-6);
+      if (f == 0) r.most = 0;
+    }
+    const double frames = std::max(1.0, std::min(8.0, std::floor(16 / step)));
+    EXPECT_NEAR(r.most, 1 / frames, 1e-9) << step;
+  }
+}
+
+// Pulled quickly by hand, never by a jump in one frame: keys are drawn anew before they are further
+// from the light than is allowed.
+TEST(Schedule, AHandThatRunsAwayFromTheKeysRefreshesThem) {
+  ScheduleOptions o;
+  o.max_key_degrees = 16;
+  KeySchedule schedule(o);
+  FakeRenderer r;
+  int refreshes = 0;
+  for (int f = 0; f < 90; ++f) {
+    const Vec3d now = turned(f * 3.0);
+    const FramePlan plan = schedule.next(now, nullptr);
+    r.run(plan);
+    refreshes += plan.refreshed;
+    EXPECT_LE(angle_between(plan.from_direction, now) / kDegree, 16 + 1e-6);
+  }
+  EXPECT_LE(refreshes, 1 + 90 / 6);
+  EXPECT_GT(refreshes, 1);
+}
+
 // Moved by hand: blended shadows arrive after at most two intervals, one map serves when it rests.
 TEST(Schedule, AHandMovedLightArrivesWithTheStatedDelay) {
   ScheduleOptions o;

@@ -1,3 +1,4 @@
+#include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -74,6 +75,40 @@ TEST_F(Play, ErrorsAreOneLine) {
   context.cancel = &cancel;
   o.record.clear();
   EXPECT_EQ(play_headless(software_context(), r, o, context).status().code(), ErrorCode::cancelled);
+}
+
+TEST_F(Play, ALostContextIsOneLineThatSaysWhy) {
+  const View view = courtyard_view();
+  Renderer r = must_render(view.scene, small());
+  PlayOptions o;
+  o.camera = view.camera;
+  o.frames = 5;
+  GlContext& gl = software_context();
+  EXPECT_TRUE(gl.check_alive().ok());
+  const std::pair<unsigned, const char*> cases[] = {{GL_GUILTY_CONTEXT_RESET, "this program"},
+                                                    {GL_INNOCENT_CONTEXT_RESET, "another program"},
+                                                    {GL_UNKNOWN_CONTEXT_RESET, "does not tell"}};
+  for (const auto& [reset, reason] : cases) {
+    int frames = 0;
+    gl.set_reset_source([&, reset] { return ++frames < 3 ? GL_NO_ERROR : reset; });
+    const Result<PlaySummary> done = play_headless(gl, r, o, {});
+    gl.set_reset_source({});
+    ASSERT_FALSE(done.ok());
+    EXPECT_EQ(frames, 3) << "nothing is drawn after the reset";
+    EXPECT_EQ(done.status().code(), ErrorCode::unsupported);
+    EXPECT_NE(done.status().message().find("context is lost"), std::string::npos);
+    EXPECT_NE(done.status().message().find(reason), std::string::npos);
+    EXPECT_EQ(done.status().message().find('\n'), std::string::npos);
+  }
+  EXPECT_TRUE(play_headless(gl, r, o, {}).ok());
+}
+
+// The driver is asked to tell of resets, not only our code.
+TEST_F(Play, ContextsAreMadeSoThatTheyTellOfResets) {
+  software_context();
+  GLint strategy = 0;
+  glGetIntegerv(GL_RESET_NOTIFICATION_STRATEGY, &strategy);
+  EXPECT_EQ(strategy, GL_LOSE_CONTEXT_ON_RESET);
 }
 
 TEST_F(Play, LoadsScenesAndSaysWhatIsWrongWithThem) {

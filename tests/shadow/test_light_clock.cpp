@@ -1,0 +1,89 @@
+// The light of a window on fast and slow machines, with the schedule it drives.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "libatlas/shadow/blend.h"
+#include "libatlas/shadow/light_clock.h"
+#include "libatlas/shadow/schedule.h"
+
+namespace atlas {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+Vec3d turned(double degrees) {
+  return {std::cos(degrees * kDegree), std::sin(degrees * kDegree), 0};
+}
+
+struct Walk {
+  int refreshes = 0, frames = 0;
+  double furthest = 0;   // between the keys sampled, degrees
+  double most_work = 0;  // maps in a frame, refreshes apart
+};
+
+// A window of so many frames a second, whose lengths vary by `jitter`.
+Walk walk(double fps, double speed, double jitter) {
+  ScheduleOptions options;
+  options.max_key_degrees = 16;
+  KeySchedule schedule(options);
+  LightClock clock;
+  std::mt19937 rng(7);
+  std::uniform_real_distribution<double> noise(1 - jitter, 1 + jitter);
+  Walk w;
+  for (; w.frames < 400; ++w.frames) {
+    clock.advance(noise(rng) / fps, speed);
+    const FramePlan plan =
+        schedule.next(turned(clock.travelled()), [&](int n) { return turned(clock.ahead(n)); });
+    w.refreshes += plan.refreshed;
+    w.furthest =
+        std::max(w.furthest, angle_between(plan.from_direction, plan.to_direction) / kDegree);
+    double work = 0;
+    for (const MapWork& m : plan.work) work += m.end - m.begin;
+    if (!plan.refreshed) w.most_work = std::max(w.most_work, work);
+  }
+  return w;
+}
+
+TEST(LightClock, NoMachineIsSoSlowThatEveryFrameRefreshes) {
+  for (double fps : {0.2, 1.0, 3.0, 10.0, 60.0, 500.0})
+    for (double speed : {0.1, 15.0, 90.0, 1000.0})
+      for (double jitter : {0.0, 0.6}) {
+        const Walk w = walk(fps, speed, jitter);
+        EXPECT_EQ(w.refreshes, 1) << fps << " fps, " << speed << " degrees a second";
+        // Jitter moves the mean step, and with it the key after the next.
+        EXPECT_LE(w.furthest, 16 * (jitter > 0 ? 1.5 : 1.0 + 1e-6)) << fps << " " << speed;
+        EXPECT_LE(w.most_work, 1.0 / 7) << fps << " " << speed;
+      }
+}
+
+TEST(LightClock, FastMachinesKeepTheSpeedSlowOnesTheStep) {
+  LightClock fast, slow;
+  for (int f = 0; f < 600; ++f) fast.advance(1.0 / 60, 15);
+  EXPECT_NEAR(fast.travelled(), 150, 1e-9);
+  EXPECT_FALSE(fast.slowed());
+  EXPECT_NEAR(fast.ahead(8) - fast.travelled(), 8 * 0.25, 1e-9);
+  for (int f = 0; f < 10; ++f) slow.advance(3, 15);
+  EXPECT_NEAR(slow.travelled(), 20, 1e-9);
+  EXPECT_TRUE(slow.slowed());
+  EXPECT_NEAR(slow.ahead(3) - slow.travelled(), 6, 1e-9);
+}
+
+TEST(LightClock, ARestingLightStaysAndNonsenseMovesNothing) {
+  LightClock clock({-1});
+  clock.advance(0.1, 15);
+  const double before = clock.travelled();
+  for (double bad : {0.0, -5.0, std::numeric_limits<double>::quiet_NaN()}) {
+    clock.advance(0.1, bad);
+    clock.advance(bad, 15);
+    EXPECT_EQ(clock.travelled(), before);
+  }
+  clock.advance(0.1, 0);
+  EXPECT_EQ(clock.ahead(50), before);
+}
+
+}  // namespace
+}  // namespace atlas
