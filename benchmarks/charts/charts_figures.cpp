@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include "benchmarks/support/work.h"
 #include "libatlas/core/glm_bridge.h"
@@ -264,31 +263,6 @@ Shape blend(const std::vector<Blob>& blobs, double smoothing, std::uint64_t tria
       .run();
 }
 
-Shape scanned(Shape shape, double sigma, std::uint64_t seed) {
-  std::vector<glm::dvec3> normal(shape.positions.size(), glm::dvec3(0));
-  double length = 0;
-  for (std::size_t i = 0; i < shape.indices.size(); i += 3) {
-    const std::uint32_t* v = &shape.indices[i];
-    const glm::dvec3 a = to_dvec(shape.positions[v[0]]), b = to_dvec(shape.positions[v[1]]),
-                     c = to_dvec(shape.positions[v[2]]);
-    for (int k = 0; k < 3; ++k) normal[v[k]] += glm::cross(b - a, c - a);
-    length += glm::distance(a, b) + glm::distance(b, c) + glm::distance(c, a);
-  }
-  const double deviation = sigma * length / double(shape.indices.size());
-  std::mt19937_64 random(seed);
-  const auto uniform = [&] { return (double(random() >> 11) + 0.5) * 0x1p-53; };
-  for (std::size_t v = 0; v < normal.size(); ++v) {
-    // Box and Muller, for the standard library's distribution differs between systems.
-    const double gauss =
-        std::sqrt(-2 * std::log(uniform())) * std::cos(2 * std::numbers::pi * uniform());
-    const double size = glm::length(normal[v]);
-    if (!(size > 0)) continue;
-    shape.positions[v] =
-        from_glm(glm::vec3(to_dvec(shape.positions[v]) + normal[v] * (deviation * gauss / size)));
-  }
-  return shape;
-}
-
 Result<Shape> make_figure(const std::string& name) {
   const auto colon = name.find(':');
   const std::string kind = name.substr(0, colon);
@@ -302,7 +276,7 @@ Result<Shape> make_figure(const std::string& name) {
   else if (kind == "bust")
     shape = blend(bust(), 0.008, *triangles);
   else if (kind == "figure-scan")
-    shape = scanned(blend(figure(), 0.02, *triangles), 0.15, 9);
+    shape = test::noisy_along_normals(blend(figure(), 0.02, *triangles), 0.15, 9);
   else if (kind == "terraces")
     shape = terraces(*triangles);
   else if (kind == "shaft")

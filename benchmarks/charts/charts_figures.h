@@ -33,7 +33,4 @@ struct Blob {
 };
 test::Shape blend(const std::vector<Blob>& blobs, double smoothing, std::uint64_t triangles);
 
-// Gaussian noise along vertex normals, sigma in mean edge lengths; the same for the same seed.
-test::Shape scanned(test::Shape shape, double sigma, std::uint64_t seed);
-
 }  // namespace atlas::bench

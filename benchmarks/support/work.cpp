@@ -18,9 +18,10 @@ int side(double value) {
   return std::max(3, int(std::lround(value)));
 }
 
-Shape ball(std::uint64_t triangles) {  // 2 around (rings - 1), around = 2 rings
-  const double n = std::sqrt(double(triangles) / 4);
-  return test::sphere(side(2 * n), side(n) + 1, 0.5);
+// Even triangles: at the poles of a latitude-longitude ball noise would be larger than edges.
+Shape ball(std::uint64_t triangles) {
+  const double n = std::sqrt(double(triangles) / 20);
+  return test::geodesic_sphere(std::max(1, int(std::lround(n))), 0.5);
 }
 
 // Noise of the size that triangulating scanners leave: a fifth of the mean edge.

@@ -12,7 +12,7 @@ namespace atlas {
 namespace {
 
 // A projection this close to isometric is taken without asking the solver.
-constexpr double kPlanarStretch = 1.01;
+constexpr double kPlanarStretch = 1.001;
 constexpr double kFastPlanarStretch = 1.1;
 // A chart with holes is tried uncut when it is not a tube; a tube's normals exceed this cone.
 constexpr double kOpenCone = 85 * M_PI / 180;

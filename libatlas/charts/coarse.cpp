@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/charts/fan_centre.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -208,6 +209,7 @@ class CoarseBuilder {
     for (std::uint32_t k = 0; k < cells_.count; ++k) add_corners(k);
     arc_at_.assign(topology_.opposite.size(), kNoIndex);
     for (std::uint32_t k = 0; k < cells_.count; ++k) add_rim(k);
+    for (CoarseCell& cell : mesh_.cells) centre_fan(mesh_, cell);
     return std::move(mesh_);
   }
 

@@ -251,7 +251,7 @@ class Merger {
       return;
     }
     TrialOutcome outcome = attempt(a, b);
-    if (!outcome.accepted && outcome.euler < 1 && keep_longest_run()) outcome = attempt(a, b);
+    if (!outcome.accepted && outcome.euler < 1 && keep_longest_run(a, b)) outcome = attempt(a, b);
     if (!outcome.accepted) {
       ++rejections;
       return;
@@ -295,9 +295,24 @@ class Merger {
     return outcome;
   }
 
+  // Where seams of either chart with itself end.
+  std::vector<Vec3d> seam_ends(std::uint32_t a, std::uint32_t b) const {
+    std::vector<Vec3d> ends;
+    for (const std::uint32_t name : {a, b}) {
+      for (const std::uint32_t arc : chart(name).arcs) {
+        if (chart_at(arc, 0) != chart_at(arc, 1)) continue;
+        for (const std::uint32_t slot : mesh_.arcs[arc].slot) {
+          ends.push_back(mesh_.slot_position[slot]);
+        }
+      }
+    }
+    return ends;
+  }
+
   // Of several separate stretches of common border, keeps the longest: the rest becomes a seam
-  // of the chart with itself. False if there is only one.
-  bool keep_longest_run() {
+  // of the chart with itself. False if there is only one. A seam that ends between two arcs parts
+  // them, or the chart would close around it.
+  bool keep_longest_run(std::uint32_t a, std::uint32_t b) {
     const std::size_t n = glue_.size();
     std::vector<std::size_t> run(n);
     std::iota(run.begin(), run.end(), 0u);
@@ -309,11 +324,16 @@ class Merger {
       const CoarseArc& x = mesh_.arcs[arc];
       return std::pair{mesh_.slot_position[x.slot[0]], mesh_.slot_position[x.slot[1]]};
     };
+    std::vector<Vec3d> forks = seam_ends(a, b);
+    const auto forked = [&](const Vec3d& p) {
+      return std::find(forks.begin(), forks.end(), p) != forks.end();
+    };
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t j = i + 1; j < n; ++j) {
         const auto [p, q] = ends(glue_[i]);
         const auto [r, s] = ends(glue_[j]);
-        if (p == r || p == s || q == r || q == s) run[find(j)] = find(i);
+        const bool at_p = p == r || p == s, at_q = q == r || q == s;
+        if ((at_p && !forked(p)) || (at_q && !forked(q))) run[find(j)] = find(i);
       }
     }
     std::vector<double> length(n, 0);

@@ -15,6 +15,10 @@ namespace {
 using Frame = std::array<glm::dvec3, 2>;
 
 constexpr double kWidestRatio = 8;  // wider bounds than 3 merge no more
+// Narrower bounds than 1.0125 merge no less: below it a fan's own error, of a mesh that unrolls
+// exactly, is larger than what merging would allow (a cylinder at 1.001 came out in 9 to 39 charts;
+// from 0.05 on in one, while spheres need no more than before).
+constexpr double kLeastRatio = 0.05;
 
 // The map from space to the plane that a cell's coarse flattening stands for: the rotation that
 // best takes its fan to its flat coordinates.
@@ -84,7 +88,7 @@ void follow_bound(double max_stretch, MergeOptions& merge) {
   const double usual = ChartOptions{}.max_stretch;
   if (max_stretch == usual) return;
   double ratio = std::min((max_stretch - 1) / (usual - 1), kWidestRatio);
-  if (ratio < 1) ratio = std::sqrt(ratio);
+  if (ratio < 1) ratio = std::sqrt(std::max(ratio, kLeastRatio));
   merge.limits.stretch_high = 1 + (merge.limits.stretch_high - 1) * ratio;
   merge.limits.stretch_l2 = 1 + (merge.limits.stretch_l2 - 1) * ratio * ratio;
   merge.seam_worth *= ratio * ratio;

@@ -69,18 +69,29 @@ bool projection_fits(const LocalMesh& mesh, std::span<const Vec2d> uvs, double b
   return d.stretch_999 <= bound && d.flips == 0;
 }
 
+// What stretches as little in the mean can be unrolled, and few more steps do it exactly.
+constexpr double kUnrolls = 1 + 1e-4, kUnrolled = 1 + 2e-4;
+constexpr double kUnrollsExactly = 1 + 2e-6, kUnrolledStretch = 1.001;
+constexpr int kUnrollingFactor = 4;
+
 // From the solver's rotations to a finished result: flips out, then the stretch down; squeezing may
 // flip anew, hence the second round.
 void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolver& solver,
              ParamResult& r) {
   solver.iterate(std::max(options.iterations, 1), r.uvs);
-  const double aim = options.aimed_stretch > 0 ? options.aimed_stretch : options.max_stretch;
+  double aim = options.aimed_stretch > 0 ? options.aimed_stretch : options.max_stretch;
   for (int round = 0; round < 2; ++round) {
     if (solver.measure(r.uvs).flips > 0) {
       r.unflipped += static_cast<int>(solver.remove_flips({}, r.uvs).turned);
     }
     if (options.squeeze_iterations <= 0 || round > 0) break;
-    if (measure_distortion(mesh, r.uvs).stretch_999 <= aim) break;
+    Distortion now = measure_distortion(mesh, r.uvs);
+    if (now.stretch_l2 < kUnrolls && now.stretch_999 > kUnrolled && now.stretch_999 <= aim) {
+      solver.iterate(kUnrollingFactor * std::max(options.iterations, 1), r.uvs);
+      now = measure_distortion(mesh, r.uvs);
+      if (now.stretch_l2 < kUnrollsExactly) aim = std::min(aim, kUnrolledStretch);
+    }
+    if (now.stretch_999 <= aim) break;
     solver.squeeze({aim, options.squeeze_iterations, options.squeeze_ratio,
                     options.hasty ? options.max_stretch : 0},
                    r.uvs);

@@ -30,5 +30,18 @@ TEST(Bound, AWideOneSavesChartsAndANarrowOneStretch) {
   }
 }
 
+TEST(Bound, WhatUnrollsNeedsFewChartsAtAnyBound) {
+  for (const Shape& shape :
+       {cylinder(48, 12), cylinder(60, 30), cylinder(200, 100, 1, 2), cylinder(60, 2, 1, 0.01),
+        cone(48, 12, 0.4), cone(60, 30, 0.5), cone(200, 100, 0.5), cone(60, 30, 1.4)}) {
+    const std::string name = shape.name + " of " + std::to_string(shape.triangle_count());
+    const ChartSet usual = bounded(shape, 1.25), tight = bounded(shape, 1.001);
+    EXPECT_LE(usual.charts.size(), 1u) << name;
+    EXPECT_LE(usual.distortion.stretch_999, 1.001) << name;
+    EXPECT_LE(tight.charts.size(), 4u) << name;
+    EXPECT_LE(tight.distortion.stretch_999, 1.001 * (1 + 1e-6)) << name;
+  }
+}
+
 }  // namespace
 }  // namespace atlas::test

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <random>
 #include <unordered_map>
 
 #include "libatlas/core/glm_bridge.h"
@@ -263,27 +262,6 @@ std::string bytes(const ChartSet& set) {
     }
   }
   return out;
-}
-
-Shape noisy_along_normals(Shape shape, double sigma) {
-  std::vector<glm::dvec3> normal(shape.positions.size(), glm::dvec3(0));
-  double length = 0;
-  for (std::size_t i = 0; i < shape.indices.size(); i += 3) {
-    const std::uint32_t* v = &shape.indices[i];
-    const glm::dvec3 a = to_dvec(shape.positions[v[0]]), b = to_dvec(shape.positions[v[1]]),
-                     c = to_dvec(shape.positions[v[2]]);
-    for (int k = 0; k < 3; ++k) normal[v[k]] += glm::cross(b - a, c - a);
-    length += glm::distance(a, b) + glm::distance(b, c) + glm::distance(c, a);
-  }
-  std::mt19937 generator(7);
-  std::normal_distribution<double> gauss(0, sigma * length / double(shape.indices.size()));
-  for (std::size_t v = 0; v < normal.size(); ++v) {
-    const double size = glm::length(normal[v]);
-    if (!(size > 0)) continue;
-    shape.positions[v] =
-        from_glm(glm::vec3(to_dvec(shape.positions[v]) + normal[v] * (gauss(generator) / size)));
-  }
-  return shape;
 }
 
 }  // namespace atlas::test

@@ -39,7 +39,4 @@ ChartFindings check_charts(const MeshView& mesh, const ChartSet& set);
 // All of a ChartSet's numbers in one string of bytes.
 std::string bytes(const ChartSet& set);
 
-// Gaussian noise along vertex normals, sigma in mean edge lengths.
-Shape noisy_along_normals(Shape shape, double sigma);
-
 }  // namespace atlas::test

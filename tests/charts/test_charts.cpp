@@ -116,6 +116,20 @@ TEST(Charts, ScanNoiseHardlyAddsCharts) {
   EXPECT_LE(double(set.charts.size()), 1.5 * double(calm.charts.size()) + 1);
 }
 
+TEST(Charts, ChartsOfAScanAreAsManyAsItsShapeNeedsHoweverFine) {
+  std::size_t most = 0, least = 1000;
+  for (const int n : {20, 45, 90}) {  // 8 to 162 thousand triangles
+    const Shape smooth = geodesic_sphere(n);
+    const Mesh mesh(noisy(smooth, 0.12 * std::sqrt(surface_area(smooth) / (20 * n * n)), 7));
+    const ChartSet set = charts_of(mesh);
+    EXPECT_EQ(check_charts(mesh.view(), set).fault, "") << n;
+    most = std::max(most, set.charts.size());
+    least = std::min(least, set.charts.size());
+  }
+  EXPECT_LE(most, least + 3);
+  EXPECT_LE(most, 12u);
+}
+
 TEST(Charts, SameBytesForAnyThreadCount) {
   Shape many = torus(60, 30);
   for (int i = 1; i < 6; ++i) many = together(many, moved(sphere(20, 10), 0.4, {3.0 * i, 0, 0}));

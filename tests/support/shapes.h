@@ -25,6 +25,8 @@ Shape box(int n, Vec3d size = {1, 1, 1});
 // Closed surfaces. sphere: around latitude circles with one vertex at each pole.
 Shape sphere(int around, int rings, double radius = 1);
 Shape icosphere(int subdivisions, double radius = 1);
+// Evenly triangulated sphere of 20 n² triangles: each face of an icosahedron cut into n².
+Shape geodesic_sphere(int n, double radius = 1);
 Shape torus(int around, int across, double major = 1, double minor = 0.4);
 // Developable: the open mantle of a cylinder, and that of a cone cut open along a generator (its
 // apex is a vertex). half_angle is between axis and mantle, radians; slant the length of the
@@ -44,6 +46,8 @@ Shape needles(int n, double aspect);
 
 // Every vertex moved by up to `amplitude` in each coordinate, the same for the same seed.
 Shape noisy(Shape shape, double amplitude, std::uint64_t seed);
+// Scan noise: Gaussian along the vertex normals, `sigma` in mean edge lengths.
+Shape noisy_along_normals(Shape shape, double sigma, std::uint64_t seed = 7);
 // p -> scale * p + offset, in double, rounded once.
 Shape moved(Shape shape, double scale, Vec3d offset = {});
 // Both in one mesh.

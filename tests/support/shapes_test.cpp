@@ -14,14 +14,16 @@ TEST(Shapes, TopologyIsWhatTheNameSays) {
   EXPECT_EQ(euler_characteristic(box(3)), 2);
   EXPECT_EQ(euler_characteristic(sphere(12, 7)), 2);
   EXPECT_EQ(euler_characteristic(icosphere(2)), 2);
+  EXPECT_EQ(euler_characteristic(geodesic_sphere(7)), 2);
+  EXPECT_EQ(geodesic_sphere(7).triangle_count(), 20u * 49);
   EXPECT_EQ(euler_characteristic(torus(12, 6)), 0);
   EXPECT_EQ(euler_characteristic(cylinder(12, 3)), 0);
   EXPECT_EQ(euler_characteristic(cone(12, 3, 0.4)), 1);
   EXPECT_EQ(euler_characteristic(cap(12, 3, 0.4)), 1);
   for (int holes : {1, 2, 7})
     EXPECT_EQ(euler_characteristic(plate_with_holes(holes, 2)), 2 - 2 * holes);
-  for (const Shape& closed :
-       {box(3), sphere(12, 7), icosphere(2), torus(12, 6), plate_with_holes(2, 2)})
+  for (const Shape& closed : {box(3), sphere(12, 7), icosphere(2), geodesic_sphere(5), torus(12, 6),
+                              plate_with_holes(2, 2)})
     EXPECT_EQ(border_edges(closed), 0u) << closed.name;
 }
 
@@ -30,6 +32,7 @@ TEST(Shapes, AreasApproachTheirClosedForms) {
   EXPECT_NEAR(surface_area(grid(7, 3, 2, 5)), 10, 1e-5);
   EXPECT_NEAR(surface_area(box(4, {1, 2, 3})), 22, 1e-5);
   EXPECT_NEAR(surface_area(icosphere(5)), 4 * pi, 4 * pi * 0.002);
+  EXPECT_NEAR(surface_area(geodesic_sphere(32)), 4 * pi, 4 * pi * 0.002);
   EXPECT_NEAR(surface_area(torus(200, 100)), 4 * pi * pi * 0.4, 0.02);
   EXPECT_NEAR(surface_area(cylinder(400, 2)), 4 * pi, 0.01);
   EXPECT_NEAR(surface_area(cone(400, 4, 0.5)), pi * std::sin(0.5), 0.01);
@@ -38,8 +41,8 @@ TEST(Shapes, AreasApproachTheirClosedForms) {
 
 // Twice the signed volume of a closed mesh is positive when its triangles face outwards.
 TEST(Shapes, ClosedOnesFaceOutwards) {
-  for (const Shape& s :
-       {box(3), sphere(12, 7), icosphere(2), torus(12, 6), plate_with_holes(2, 2)}) {
+  for (const Shape& s : {box(3), sphere(12, 7), icosphere(2), geodesic_sphere(5), torus(12, 6),
+                         plate_with_holes(2, 2)}) {
     double volume = 0;
     for (std::size_t t = 0; t < s.indices.size(); t += 3) {
       const Vec3f a = s.positions[s.indices[t]], b = s.positions[s.indices[t + 1]],
