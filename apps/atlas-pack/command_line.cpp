@@ -33,30 +33,6 @@ std::string parse_seconds(const std::string& text, double& seconds) {
   return {};
 }
 
-// What rectangles and images know and charts do not: any page, as many as it takes, quarter turns.
-void add_rect_options(CLI::App& app, PackCommand& c) {
-  app.add_option_function<std::string>("--page",
-                                       [&c](const std::string& t) {
-                                         if (std::string e = parse_page(t, c.options.page);
-                                             !e.empty())
-                                           throw CLI::ValidationError("--page", e);
-                                       })
-      ->type_name("WxH");
-  app.add_option("--max-width", c.options.page.width, "Largest page width, texels");
-  app.add_option("--max-height", c.options.page.height, "Largest page height; 0: open");
-  app.add_option("--max-pages", c.options.max_pages, "Pages at most; 0: as many as needed");
-  app.add_flag("--allow-rotation,--rotate", c.options.allow_rotation, "Allow quarter turns");
-}
-
-void add_mesh_options(CLI::App& app, PackCommand& c) {
-  app.add_option("--page", c.page_side, "Side of the largest page, texels")
-      ->check(CLI::Range(16, 1 << 17));
-  app.add_option("--pages,--max-pages", c.pages, "Pages at most")->check(CLI::Range(1, 100000));
-  app.add_option("--rotations", c.rotations,
-                 "Directions tried: 1, 2, 4, 8, 12, ... 64; above 4 a single page's charts may be "
-                 "turned by any angle");
-}
-
 void add_page_options(CLI::App& app, PackCommand& c) {
   app.add_option("--padding", c.options.padding, "Free texels between items");
   app.add_option("--border", c.options.border, "Free texels along the page's edges");
@@ -91,18 +67,37 @@ void add_effort_options(CLI::App& app, PackCommand& c) {
   app.add_flag("--quiet", c.quiet, "Print nothing but errors");
 }
 
-}  // namespace
+// What rectangles and images know and charts do not: any page, as many as it takes, quarter turns.
+void add_rect_options(CLI::App& app, PackCommand& c) {
+  app.add_option_function<std::string>("--page",
+                                       [&c](const std::string& t) {
+                                         if (std::string e = parse_page(t, c.options.page);
+                                             !e.empty())
+                                           throw CLI::ValidationError("--page", e);
+                                       })
+      ->type_name("WxH");
+  app.add_option("--max-width", c.options.page.width, "Largest page width, texels");
+  app.add_option("--max-height", c.options.page.height, "Largest page height; 0: open");
+  app.add_option("--max-pages", c.options.max_pages, "Pages at most; 0: as many as needed");
+  app.add_flag("--allow-rotation,--rotate", c.options.allow_rotation, "Allow quarter turns");
+  const std::map<std::string, DataFormat> formats{{"hash", DataFormat::hash},
+                                                  {"array", DataFormat::array}};
+  app.add_option("--data", c.format, "Layout of the JSON: hash or array")
+      ->transform(CLI::CheckedTransformer(formats));
+}
 
-int parse_command_line(int argc, char** argv, PackCommand& c) {
-  CLI::App app{"atlas-pack: packs rectangles, images or the charts of a mesh into pages"};
-  app.set_version_flag("--version", "atlas-pack 0.1.0");
-  app.require_subcommand(1);
-  c.options.time_budget = 1;
-
+CLI::App* add_rects(CLI::App& app, PackCommand& c) {
   CLI::App* rects = app.add_subcommand("rects", "A CSV or JSON list of rectangles");
   rects->add_option("sizes", c.input, "CSV: [name,]width,height a line; JSON: an array")
       ->required();
   rects->add_option("-o,--output", c.output, "placed.csv or placed.json")->required();
+  add_page_options(*rects, c);
+  add_effort_options(*rects, c);
+  add_rect_options(*rects, c);
+  return rects;
+}
+
+CLI::App* add_images(CLI::App& app, PackCommand& c) {
   CLI::App* images = app.add_subcommand("images", "A folder of images into sprite pages");
   images->add_option("folder", c.input, "Read with its subfolders, in the order of names")
       ->required();
@@ -114,22 +109,39 @@ int parse_command_line(int argc, char** argv, PackCommand& c) {
       ->check(CLI::Range(0, 254));
   images->add_flag("!--no-trim", c.trim, "Keep transparent borders");
   images->add_flag("!--no-alias", c.alias, "Store identical images each");
+  add_page_options(*images, c);
+  add_effort_options(*images, c);
+  add_rect_options(*images, c);
+  return images;
+}
+
+CLI::App* add_mesh(CLI::App& app, PackCommand& c) {
   CLI::App* mesh =
       app.add_subcommand("mesh", "The uv charts of a mesh, repacked at uniform density");
   mesh->add_option("mesh", c.input, "OBJ, PLY or glTF with uvs")->required();
   mesh->add_option("-o,--output", c.output, "OBJ with new uvs, one material a page")->required();
-  add_mesh_options(*mesh, c);
+  mesh->add_option("--page", c.page_side, "Side of the largest page, texels")
+      ->check(CLI::Range(16, 1 << 17));
+  mesh->add_option("--pages,--max-pages", c.pages, "Pages at most")->check(CLI::Range(1, 100000));
+  mesh->add_option("--rotations", c.rotations,
+                   "Directions tried: 1, 2, 4, 8, 12, ... 64; above 4 a single page's charts may "
+                   "be turned by any angle");
+  add_page_options(*mesh, c);
+  add_effort_options(*mesh, c);
+  return mesh;
+}
 
-  const std::map<std::string, DataFormat> formats{{"hash", DataFormat::hash},
-                                                  {"array", DataFormat::array}};
-  for (CLI::App* sub : {rects, images, mesh}) {
-    add_page_options(*sub, c);
-    add_effort_options(*sub, c);
-    if (sub == mesh) continue;
-    add_rect_options(*sub, c);
-    sub->add_option("--data", c.format, "Layout of the JSON: hash or array")
-        ->transform(CLI::CheckedTransformer(formats));
-  }
+}  // namespace
+
+int parse_command_line(int argc, char** argv, PackCommand& c) {
+  CLI::App app{"atlas-pack: packs rectangles, images or the charts of a mesh into pages"};
+  app.set_version_flag("--version", "atlas-pack 0.1.0");
+  app.require_subcommand(1);
+  c.options.time_budget = 1;
+
+  CLI::App* rects = add_rects(app, c);
+  CLI::App* images = add_images(app, c);
+  CLI::App* mesh = add_mesh(app, c);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

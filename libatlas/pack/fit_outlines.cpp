@@ -25,18 +25,20 @@ struct OutlineLayout {
 
 class OutlineFit {
  public:
-  OutlineFit(std::span<const FitItem> items, const FitOptions& options, const Context& context)
-      : items_(items), options_(options), context_(context) {
+  OutlineFit(std::span<const FitItem> items, std::span<const ChartOutline> outlines,
+             const FitOptions& options, const Context& context)
+      : items_(items), outlines_(outlines), options_(options), context_(context) {
     const std::uint32_t rotations =
         options.allow_rotation ? options.rotations : std::min(options.rotations, 1u);
     // A tenth of a second a packing and page, much less with many charts.
     grid_ = choose_grid(items.size() / options.pages + 1, options.page_size, options.alignment,
                         rotations, options.preset == PackPreset::fast ? 5e6 : 30e6);
     side_ = options.page_size / grid_.cell;
-    for (std::size_t i = 0; i < items.size(); ++i) area_ += shape_area(options.shapes[i]);
+    for (const ChartOutline& o : outlines) area_ += o.area;
   }
 
   double area() const { return area_; }
+  double area(std::size_t chart) const { return outlines_[chart].area; }
   const GridChoice& grid() const { return grid_; }
   std::int32_t side() const { return side_; }
 
@@ -92,7 +94,7 @@ class OutlineFit {
     piece_options.padding = options_.padding;
     piece_options.cell = grid_.cell;
     piece_options.directions = grid_.directions;
-    layout.pieces = make_pieces(options_.shapes, piece_options, context_);
+    layout.pieces = make_pieces(outlines_, piece_options, context_);
   }
 
   // Largest first, each to the page with the least in it.
@@ -196,6 +198,7 @@ class OutlineFit {
   }
 
   std::span<const FitItem> items_;
+  std::span<const ChartOutline> outlines_;
   const FitOptions& options_;
   const Context& context_;
   GridChoice grid_;
@@ -277,7 +280,7 @@ void write_result(const OutlineFit& fit, const FitOptions& options, OutlineLayou
                    2 * std::numbers::pi * at.direction / fit.grid().directions,
                    {box.x + origin.x, box.y + origin.y}},
                   options, out);
-    shapes += shape_area(options.shapes[i]) * out.scale * out.scale;
+    shapes += fit.area(i) * out.scale * out.scale;
     if (!options.power_of_two) enclose(box, options, result.pages[out.page]);
   }
   result.utilization = share_of_pages(shapes, result);
@@ -290,9 +293,10 @@ void write_result(const OutlineFit& fit, const FitOptions& options, OutlineLayou
 Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions& options,
                                const Context& context) {
   FitResult result;
-  if (fit_pressed(items, options, context, result)) return result;
+  const std::vector<ChartOutline> outlines = outlines_of(options.shapes, context);
+  if (fit_pressed(items, outlines, options, context, result)) return result;
   if (context.cancelled()) return Status::cancelled();
-  OutlineFit fit(items, options, context);
+  OutlineFit fit(items, outlines, options, context);
   OutlineLayout best;
   const bool found = search_scale(fit, options, context, result, best);
   if (context.cancelled()) return Status::cancelled();

@@ -1,6 +1,7 @@
 // Internal: the ways of fitting charts to pages: by boxes, by outlines, by pressing outlines.
 #pragma once
 
+#include "libatlas/pack/chart_outline.h"
 #include "libatlas/pack/fit.h"
 #include "libatlas/pack/problem.h"
 
@@ -48,8 +49,8 @@ Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions&
 // The same for one page of few charts, as full as pressing makes it. False where that is not worth
 // trying (worth_pressing), found nothing, or is not what was asked for: where all fit at the
 // largest scale and the page could be smaller, or where charts stop at their minimum sides.
-bool fit_pressed(std::span<const FitItem> items, const FitOptions& options, const Context& context,
-                 FitResult& result);
+bool fit_pressed(std::span<const FitItem> items, std::span<const ChartOutline> outlines,
+                 const FitOptions& options, const Context& context, FitResult& result);
 
 // Page sizes with power-of-two sides smaller than the largest, ascending by area, texels.
 std::vector<Extent> smaller_pages(const FitOptions& options);

@@ -8,10 +8,10 @@
 
 namespace atlas::pack {
 
-bool fit_pressed(std::span<const FitItem> items, const FitOptions& options, const Context& context,
-                 FitResult& result) {
-  if (!worth_pressing(options)) return false;
-  PressedPage pressed = press_outlines(options, context);
+bool fit_pressed(std::span<const FitItem> items, std::span<const ChartOutline> outlines,
+                 const FitOptions& options, const Context& context, FitResult& result) {
+  if (!worth_pressing(outlines, options)) return false;
+  PressedPage pressed = press_outlines(outlines, options, context);
   if (pressed.scale == 0 || pressed.scale > options.max_scale) return false;
   for (const FitItem& item : items) {
     const double side = std::max(item.width, item.height);
@@ -37,7 +37,7 @@ bool fit_pressed(std::span<const FitItem> items, const FitOptions& options, cons
     const PressedPlace& at = pressed.places[i];
     if (!at.placed) continue;
     write_outline({at.box, at.angle, at.offset}, options, out);
-    shapes += shape_area(options.shapes[i]) * out.scale * out.scale;
+    shapes += outlines[i].area * out.scale * out.scale;
   }
   result.utilization = share_of_pages(shapes, result);
   return true;

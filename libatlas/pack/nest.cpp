@@ -26,7 +26,7 @@ Vec2d turned_origin(Vec2d origin, double box_height) {
   return {box_height - origin.y, origin.x};
 }
 
-Piece make_piece(const ChartShape& shape, double factor, const PieceOptions& options) {
+Piece make_piece(const ChartOutline& shape, double factor, const PieceOptions& options) {
   Piece piece;
   const std::uint32_t n = options.directions;
   const std::uint32_t bases = std::max(1u, n / 4);
@@ -62,7 +62,7 @@ Piece make_piece(const ChartShape& shape, double factor, const PieceOptions& opt
 
 }  // namespace
 
-std::vector<Piece> make_pieces(std::span<const ChartShape> shapes, const PieceOptions& options,
+std::vector<Piece> make_pieces(std::span<const ChartOutline> shapes, const PieceOptions& options,
                                const Context& context) {
   std::vector<Piece> pieces(shapes.size());
   parallel_for(context, shapes.size(), 4, [&](std::size_t begin, std::size_t end) {

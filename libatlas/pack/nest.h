@@ -26,7 +26,7 @@ struct PieceOptions {
 };
 
 // Rasterises shapes in all directions; quarter turns are exact turns of the masks.
-std::vector<Piece> make_pieces(std::span<const ChartShape> shapes, const PieceOptions& options,
+std::vector<Piece> make_pieces(std::span<const ChartOutline> shapes, const PieceOptions& options,
                                const Context& context);
 
 inline constexpr std::int32_t kFree = -1;

@@ -227,7 +227,8 @@ Result<OutlineResult> pack_outlines(std::span<const ChartShape> shapes,
   piece_options.padding = options.padding;
   piece_options.cell = grid.cell;
   piece_options.directions = grid.directions;
-  const std::vector<Piece> pieces = pack::make_pieces(shapes, piece_options, context);
+  const std::vector<pack::ChartOutline> outlines = pack::outlines_of(shapes, context);
+  const std::vector<Piece> pieces = pack::make_pieces(outlines, piece_options, context);
   if (context.cancelled()) return Status::cancelled();
 
   std::vector<Nest> nests;
@@ -254,7 +255,7 @@ Result<OutlineResult> pack_outlines(std::span<const ChartShape> shapes,
   }
   for (std::uint32_t i = 0; i < shapes.size(); ++i) {
     if (result.placements[i].page != kNoPage)
-      result.shape_area += pack::shape_area(shapes[i]) * options.scale * options.scale;
+      result.shape_area += outlines[i].area * options.scale * options.scale;
     else if (pieces[i].cells() > 0)
       result.unplaced.push_back(i);
     else

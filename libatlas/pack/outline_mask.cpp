@@ -17,14 +17,6 @@ struct Bounds {
   }
 };
 
-std::size_t triangle_count(const ChartShape& s) {
-  return (s.triangles.empty() ? s.corners.size() : s.triangles.size()) / 3;
-}
-
-Vec2d corner(const ChartShape& s, std::size_t k) {
-  return s.corners[s.triangles.empty() ? k : s.triangles[k]];
-}
-
 // The x range of a triangle within the slab low <= y <= high, which it is known to enter.
 Bounds clip_to_slab(const std::array<Vec2d, 3>& t, double low, double high) {
   Bounds x;
@@ -103,60 +95,134 @@ class RunSet {
   std::int32_t left_ = 0, bottom_ = 0;
 };
 
+// Rows [first, last] whose widened open slab (r cell - pad, (r + 1) cell + pad) meets [low, high].
+struct Rows {
+  std::int32_t first, last;
+  Rows(const Bounds& y, double pad, double cell) {
+    const double below = std::floor((y.low - pad) / cell);
+    const auto row0 = static_cast<std::int32_t>(below) - (below == (y.low - pad) / cell);
+    first = row0 + ((row0 + 1) * cell + pad <= y.low);
+    last = static_cast<std::int32_t>(std::floor((y.high + pad) / cell));
+    last -= last * cell - pad >= y.high;
+  }
+};
+
+// The cells of row r whose widened open interval meets [x.low, x.high].
+void add_run(std::int32_t r, const Bounds& x, double pad, double cell, RunSet& set) {
+  std::int32_t begin = static_cast<std::int32_t>(std::floor((x.low - pad) / cell));
+  while ((begin + 1) * cell + pad <= x.low) ++begin;
+  std::int32_t end = static_cast<std::int32_t>(std::ceil((x.high + pad) / cell));
+  while ((end - 1) * cell - pad >= x.high) --end;
+  set.items.push_back({r, {begin, std::max(end, begin + 1)}});
+}
+
 void add_triangle(const std::array<Vec2d, 3>& t, const RasterOptions& options, RunSet& set) {
   const double pad = options.padding, cell = options.cell;
   Bounds y;
   for (const Vec2d& p : t) y.add(p.y);
-  // Rows whose widened open slab (r cell - pad, (r + 1) cell + pad) meets [y.low, y.high].
-  const auto row0 = static_cast<std::int32_t>(std::floor((y.low - pad) / cell)) -
-                    (std::floor((y.low - pad) / cell) == (y.low - pad) / cell);
-  const auto first = row0 + ((row0 + 1) * cell + pad <= y.low);
-  auto last = static_cast<std::int32_t>(std::floor((y.high + pad) / cell));
-  last -= last * cell - pad >= y.high;
-  const bool flat = y.low == y.high;
-  for (std::int32_t r = first; r <= last; ++r) {
-    const double low = r * cell - pad, high = (r + 1) * cell + pad;
+  const Rows rows(y, pad, cell);
+  for (std::int32_t r = rows.first; r <= rows.last; ++r) {
     Bounds x;
-    if (flat)
+    if (y.low == y.high)
       for (const Vec2d& p : t) x.add(p.x);
     else
-      x = clip_to_slab(t, low, high);
-    if (x.low > x.high) continue;
-    std::int32_t begin = static_cast<std::int32_t>(std::floor((x.low - pad) / cell));
-    while ((begin + 1) * cell + pad <= x.low) ++begin;
-    std::int32_t end = static_cast<std::int32_t>(std::ceil((x.high + pad) / cell));
-    while ((end - 1) * cell - pad >= x.high) --end;
-    set.items.push_back({r, {begin, std::max(end, begin + 1)}});
+      x = clip_to_slab(t, r * cell - pad, (r + 1) * cell + pad);
+    if (x.low <= x.high) add_run(r, x, pad, cell, set);
   }
 }
 
+void add_edge(Vec2d a, Vec2d b, const RasterOptions& options, RunSet& set) {
+  const double pad = options.padding, cell = options.cell;
+  if (a.y > b.y) std::swap(a, b);
+  Bounds y;
+  y.add(a.y);
+  y.add(b.y);
+  const Rows rows(y, pad, cell);
+  const double slope = a.y < b.y ? (b.x - a.x) / (b.y - a.y) : 0;
+  for (std::int32_t r = rows.first; r <= rows.last; ++r) {
+    const double low = r * cell - pad, high = (r + 1) * cell + pad;
+    Bounds x;
+    x.add(a.y >= low ? a.x : a.x + slope * (low - a.y));
+    x.add(b.y <= high ? b.x : a.x + slope * (high - a.y));
+    if (a.y == b.y) x.add(a.x);
+    add_run(r, x, pad, cell, set);
+  }
+}
+
+// Cells whose centres the edges wind around. What lies nearer to an edge than that is add_edge's.
+class Interior {
+ public:
+  explicit Interior(std::int32_t cell) : cell_(cell) {}
+
+  void add(Vec2d a, Vec2d b) {
+    const std::int32_t sense = a.y < b.y ? 1 : -1;
+    if (sense < 0) std::swap(a, b);
+    // Rows whose middle lies in [a.y, b.y).
+    const auto first = static_cast<std::int32_t>(std::ceil(a.y / cell_ - 0.5));
+    const auto end = static_cast<std::int32_t>(std::ceil(b.y / cell_ - 0.5));
+    if (first >= end) return;
+    const double slope = (b.x - a.x) / (b.y - a.y);
+    for (std::int32_t r = first; r < end; ++r)
+      crossings_.push_back({r, sense, a.x + slope * ((r + 0.5) * cell_ - a.y)});
+  }
+
+  void fill(RunSet& set) {
+    std::sort(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) {
+      return a.row != b.row ? a.row < b.row : a.x < b.x;
+    });
+    std::int32_t winding = 0;
+    for (std::size_t k = 0; k + 1 < crossings_.size(); ++k) {
+      const Crossing &c = crossings_[k], &next = crossings_[k + 1];
+      winding = (k > 0 && crossings_[k - 1].row == c.row ? winding : 0) + c.sense;
+      if (winding == 0 || next.row != c.row) continue;
+      const auto begin = static_cast<std::int32_t>(std::ceil(c.x / cell_ - 0.5));
+      const auto end = static_cast<std::int32_t>(std::floor(next.x / cell_ - 0.5)) + 1;
+      if (begin < end) set.items.push_back({c.row, {begin, end}});
+    }
+  }
+
+ private:
+  struct Crossing {
+    std::int32_t row, sense;
+    double x;
+  };
+  double cell_;
+  std::vector<Crossing> crossings_;
+};
+
 }  // namespace
 
-Mask rasterize(const ChartShape& shape, const RasterOptions& options, Vec2d& origin) {
+Mask rasterize(const ChartOutline& outline, const RasterOptions& options, Vec2d& origin) {
   const double c = options.factor * std::cos(options.angle);
   const double s = options.factor * std::sin(options.angle);
   const auto turn = [&](Vec2d p) { return Vec2d{c * p.x - s * p.y, s * p.x + c * p.y}; };
-  const std::size_t triangles = triangle_count(shape);
   origin = {};
-  if (triangles == 0) return {};
+  if (outline.empty()) return {};
   Bounds bx, by;
-  for (std::size_t k = 0; k < 3 * triangles; ++k) {
-    const Vec2d p = turn(corner(shape, k));
+  const auto reach = [&](Vec2d p) {
+    p = turn(p);
     bx.add(p.x);
     by.add(p.y);
-  }
+  };
+  for (const auto& e : outline.edges) reach(e.from);  // closed: every end is a beginning
+  for (const auto& t : outline.loose) std::for_each(t.begin(), t.end(), reach);
   // The chart's lower left corner lies one padding inside its box's, so no cell is wasted there.
   origin = {options.padding - bx.low, options.padding - by.low};
+  const auto place = [&](Vec2d p) {
+    p = turn(p);
+    return Vec2d{p.x + origin.x, p.y + origin.y};
+  };
   RunSet set;
-  set.items.reserve(4 * triangles);
-  for (std::size_t k = 0; k < triangles; ++k) {
-    std::array<Vec2d, 3> t;
-    for (std::size_t j = 0; j < 3; ++j) {
-      const Vec2d p = turn(corner(shape, 3 * k + j));
-      t[j] = {p.x + origin.x, p.y + origin.y};
-    }
-    add_triangle(t, options, set);
+  set.items.reserve(4 * (outline.edges.size() + outline.loose.size()));
+  Interior interior(options.cell);
+  for (const auto& e : outline.edges) {
+    const Vec2d a = place(e.from), b = place(e.to);
+    add_edge(a, b, options, set);
+    interior.add(a, b);
   }
+  interior.fill(set);
+  for (const auto& t : outline.loose)
+    add_triangle({place(t[0]), place(t[1]), place(t[2])}, options, set);
   Mask mask = set.build();
   origin.x -= double(set.left()) * options.cell;
   origin.y -= double(set.bottom()) * options.cell;
@@ -189,16 +255,6 @@ Mask coarsen(const Mask& mask, std::int32_t factor) {
     for (const Run& run : mask.row(r))
       set.items.push_back({r / factor, {run.begin / factor, (run.end + factor - 1) / factor}});
   return set.build();
-}
-
-double shape_area(const ChartShape& shape) {
-  double twice = 0;
-  for (std::size_t k = 0; k < triangle_count(shape); ++k) {
-    const Vec2d a = corner(shape, 3 * k), b = corner(shape, 3 * k + 1),
-                c = corner(shape, 3 * k + 2);
-    twice += std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
-  }
-  return twice / 2;
 }
 
 }  // namespace atlas::pack

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "libatlas/pack/outline.h"
+#include "libatlas/pack/chart_outline.h"
 
 namespace atlas::pack {
 
@@ -38,15 +38,12 @@ struct RasterOptions {
 
 // All cells whose open square, widened by the padding on each side, meets a triangle. A chart with
 // corners but without area still owns the cells around them. No corner: an empty mask.
-Mask rasterize(const ChartShape& shape, const RasterOptions& options, Vec2d& origin);
+Mask rasterize(const ChartOutline& outline, const RasterOptions& options, Vec2d& origin);
 
 // The mask turned by 90 degrees counterclockwise.
 Mask quarter_turn(const Mask& mask);
 
 // The mask on cells `factor` times as large: every cell that holds one of the mask.
 Mask coarsen(const Mask& mask, std::int32_t factor);
-
-// Sum of the triangles' unsigned areas.
-double shape_area(const ChartShape& shape);
 
 }  // namespace atlas::pack

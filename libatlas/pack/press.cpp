@@ -25,9 +25,14 @@ constexpr std::size_t kCoarse = 0, kFine = 1;
 
 // A chart in the frame of its mask at scale scale_: shape point p is at origin + scale_ p.
 struct Drawn {
-  std::vector<Vec2d> corners;  // the mask's runs as triangles
   Vec2d origin;
   Body bodies[2];  // kCoarse, kFine
+
+  // In texels from the shape's own origin.
+  Vec2d center_of_shape() const {
+    const Vec2d c = bodies[kCoarse].center;
+    return {c.x - origin.x, c.y - origin.y};
+  }
 };
 
 // One layout pushed together.
@@ -39,8 +44,9 @@ struct Start {
 
 class Press {
  public:
-  Press(const FitOptions& options, const Context& context) : options_(options), context_(context) {
-    for (const ChartShape& s : options.shapes) area_ += shape_area(s);
+  Press(std::span<const ChartOutline> outlines, const FitOptions& options, const Context& context)
+      : outlines_(outlines), options_(options), context_(context) {
+    for (const ChartOutline& o : outlines) area_ += o.area;
     const double page = double(options.page_size) * options.page_size;
     scale_ = std::sqrt(kExpectedFill * page / area_);
     draw();
@@ -81,13 +87,14 @@ class Press {
     parallel_for(context_, n, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) draw_one(i, fine);
     });
-    std::vector<ChartShape> proxies;
-    for (const Drawn& d : drawn_) proxies.push_back({d.corners, {}});
+    std::vector<ChartOutline> thin;
+    for (const ChartOutline& o : outlines_) thin.push_back(thinned(o, 0.125 * cell_ / scale_));
     PieceOptions pieces;
+    pieces.factor = scale_;
     pieces.padding = options_.padding;
     pieces.cell = cell_;
     pieces.directions = directions_;
-    pieces_ = make_pieces(proxies, pieces, context_);
+    pieces_ = make_pieces(thin, pieces, context_);
   }
 
   void draw_one(std::size_t i, int fine) {
@@ -96,14 +103,8 @@ class Press {
     raster.factor = scale_;
     raster.padding = 0;
     raster.cell = fine;
-    const Mask mask = rasterize(options_.shapes[i], raster, d.origin);
+    const Mask mask = rasterize(outlines_[i], raster, d.origin);
     if (mask.cells == 0) return;
-    for (std::int32_t r = 0; r < mask.height; ++r)
-      for (const Run& run : mask.row(r)) {
-        const double x0 = run.begin * fine, x1 = run.end * fine, y0 = r * fine, y1 = y0 + fine;
-        d.corners.insert(d.corners.end(),
-                         {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y0}, {x1, y1}, {x0, y1}});
-      }
     const double cell = fine;
     d.bodies[kCoarse] = make_body(coarsen(mask, 4), 4 * cell, 12 * cell, 10 * cell);
     d.bodies[kFine] = make_body(coarsen(mask, 2), 2 * cell, 8 * cell, 2 * cell);
@@ -147,13 +148,14 @@ class Press {
     Start best;
     best.layouts = kTurns;
     const Drawn& d = drawn_[0];
-    const Vec2d m = d.bodies[kCoarse].center;
+    const Vec2d m = d.center_of_shape();
     for (int k = 0; k < kTurns; ++k) {
       const double angle = 0.5 * std::numbers::pi * k / kTurns;
       const double c = std::cos(angle), s = std::sin(angle), pad = options_.padding + 1;
       Vec2d low{1e300, 1e300}, high{-1e300, -1e300};
-      for (const Vec2d& q : d.corners) {
-        const Vec2d t{c * (q.x - m.x) - s * (q.y - m.y), s * (q.x - m.x) + c * (q.y - m.y)};
+      for (const ChartOutline::Edge& e : outlines_[0].edges) {
+        const Vec2d q{scale_ * e.from.x - m.x, scale_ * e.from.y - m.y};
+        const Vec2d t{c * q.x - s * q.y, s * q.x + c * q.y};
         low = {std::min(low.x, t.x), std::min(low.y, t.y)};
         high = {std::max(high.x, t.x), std::max(high.y, t.y)};
       }
@@ -174,7 +176,7 @@ class Press {
       if (!at.placed) continue;
       const double angle = 2 * std::numbers::pi * at.direction / directions_;
       const double c = std::cos(angle), s = std::sin(angle);
-      const Vec2d o = pieces_[i].origins[at.direction], m = drawn_[i].bodies[kCoarse].center;
+      const Vec2d o = pieces_[i].origins[at.direction], m = drawn_[i].center_of_shape();
       start.poses[i] = {{at.at.x * double(cell_) + o.x + c * m.x - s * m.y,
                          at.at.y * double(cell_) + o.y + s * m.x + c * m.y},
                         angle};
@@ -194,7 +196,7 @@ class Press {
     std::vector<Body> bodies;
     std::vector<std::size_t> owner;
     for (std::size_t i = 0; i < drawn_.size(); ++i) {
-      if (drawn_[i].corners.empty()) continue;
+      if (outlines_[i].empty()) continue;
       bodies.push_back(drawn_[i].bodies[level]);
       bodies.back().at = start.poses[i].first;
       bodies.back().angle = start.poses[i].second;
@@ -238,13 +240,12 @@ class Press {
     const double grow = options_.page_size / std::max(s.page.width, s.page.height);
     std::vector<SettleTarget> targets(s.poses.size());
     for (std::size_t i = 0; i < targets.size(); ++i) {
-      const Drawn& d = drawn_[i];
-      const Vec2d center = d.bodies[kCoarse].center;
+      const Vec2d center = drawn_[i].center_of_shape();
       targets[i].origin = {s.poses[i].first.x * grow, s.poses[i].first.y * grow};
       targets[i].angle = s.poses[i].second;
-      targets[i].from = {(d.origin.x - center.x) / scale_, (d.origin.y - center.y) / scale_};
+      targets[i].from = {-center.x / scale_, -center.y / scale_};
     }
-    PressedPage page = settle(targets, scale_ * grow, options_, context_);
+    PressedPage page = settle(targets, outlines_, scale_ * grow, options_, context_);
     if (page.scale == 0) return false;
     if (fill(page) <= fill(best)) return true;
     best.scale = page.scale;
@@ -253,6 +254,7 @@ class Press {
     return true;
   }
 
+  std::span<const ChartOutline> outlines_;
   const FitOptions& options_;
   const Context& context_;
   double area_ = 0, scale_ = 1;
@@ -264,19 +266,19 @@ class Press {
 
 }  // namespace
 
-bool worth_pressing(const FitOptions& options) {
+bool worth_pressing(std::span<const ChartOutline> outlines, const FitOptions& options) {
   constexpr double kSurelyFits = 0.5;  // at the largest scale: the page may even be smaller
   const double page = double(options.page_size) * options.page_size;
   double area = 0;
-  for (const ChartShape& s : options.shapes) area += shape_area(s);
+  for (const ChartOutline& o : outlines) area += o.area;
   return options.pages == 1 && options.preset != PackPreset::fast && options.any_angle &&
-         options.allow_rotation && options.page_size >= 256 &&
-         options.shapes.size() <= kMostCharts && area > 0 &&
-         options.max_scale * options.max_scale * area > kSurelyFits * page;
+         options.allow_rotation && options.page_size >= 256 && outlines.size() <= kMostCharts &&
+         area > 0 && options.max_scale * options.max_scale * area > kSurelyFits * page;
 }
 
-PressedPage press_outlines(const FitOptions& options, const Context& context) {
-  return Press(options, context).run();
+PressedPage press_outlines(std::span<const ChartOutline> outlines, const FitOptions& options,
+                           const Context& context) {
+  return Press(outlines, options, context).run();
 }
 
 }  // namespace atlas::pack

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "libatlas/pack/chart_outline.h"
 #include "libatlas/pack/fit.h"
 
 namespace atlas::pack {
@@ -24,10 +25,11 @@ struct PressedPage {
 };
 
 // Whether press_outlines is meant for this: one page, no hurry, not too many charts, free turns.
-bool worth_pressing(const FitOptions& options);
+bool worth_pressing(std::span<const ChartOutline> outlines, const FitOptions& options);
 
 // Layouts on coarse cells for several widths of the page, each then pushed together as rigid
 // bodies, the best of them placed exactly. The options have been checked.
-PressedPage press_outlines(const FitOptions& options, const Context& context);
+PressedPage press_outlines(std::span<const ChartOutline> outlines, const FitOptions& options,
+                           const Context& context);
 
 }  // namespace atlas::pack

@@ -13,9 +13,13 @@ namespace {
 
 class Settler {
  public:
-  Settler(std::span<const SettleTarget> targets, double scale, const FitOptions& options,
-          const Context& context)
-      : targets_(targets), scale_(scale), options_(options), context_(context) {
+  Settler(std::span<const SettleTarget> targets, std::span<const ChartOutline> outlines,
+          double scale, const FitOptions& options, const Context& context)
+      : targets_(targets),
+        outlines_(outlines),
+        scale_(scale),
+        options_(options),
+        context_(context) {
     order_.resize(targets.size());
     std::iota(order_.begin(), order_.end(), 0u);
   }
@@ -84,7 +88,7 @@ class Settler {
         raster.angle = t.angle;
         raster.padding = options_.padding;
         raster.cell = options_.alignment;
-        masks_[i] = rasterize(options_.shapes[i], raster, origins_[i]);
+        masks_[i] = rasterize(outlines_[i], raster, origins_[i]);
         const double c = scale * std::cos(t.angle), s = scale * std::sin(t.angle);
         wanted_[i] = {(t.origin.x * closer + c * t.from.x - s * t.from.y - origins_[i].x) /
                           options_.alignment,
@@ -128,6 +132,7 @@ class Settler {
   }
 
   std::span<const SettleTarget> targets_;
+  std::span<const ChartOutline> outlines_;
   double scale_;
   const FitOptions& options_;
   const Context& context_;
@@ -139,9 +144,9 @@ class Settler {
 
 }  // namespace
 
-PressedPage settle(std::span<const SettleTarget> targets, double scale, const FitOptions& options,
-                   const Context& context) {
-  Settler settler(targets, scale, options, context);
+PressedPage settle(std::span<const SettleTarget> targets, std::span<const ChartOutline> outlines,
+                   double scale, const FitOptions& options, const Context& context) {
+  Settler settler(targets, outlines, scale, options, context);
   PressedPage best, tried;
   constexpr std::array kShares{1.0, 0.996, 0.99, 0.98, 0.96, 0.93, 0.89};
   double low = 0, high = 1;

@@ -81,6 +81,27 @@ std::string check_layout(std::span<const Extent> items, std::span<const Placemen
   return {};
 }
 
+ChartItems::ChartItems(std::vector<std::vector<Vec2d>> charts) : corners(std::move(charts)) {
+  for (const auto& c : corners) {
+    Vec2d low = c.front(), high = low;
+    for (const Vec2d& p : c) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+    items.push_back({high.x - low.x, high.y - low.y});
+    shapes.push_back({c, {}});
+  }
+}
+
+std::vector<PlacedShape> placed_shapes(const ChartItems& charts, const FitResult& fit) {
+  std::vector<PlacedShape> placed;
+  for (std::size_t i = 0; i < charts.shapes.size(); ++i) {
+    const FitPlacement& p = fit.placements[i];
+    placed.push_back({charts.shapes[i], p.page, p.scale, p.angle, p.offset});
+  }
+  return placed;
+}
+
 std::vector<Vec2d> blob(Noise& noise, double radius, int corners) {
   std::vector<Vec2d> ring;
   const double stretch = 0.4 + 0.6 * noise.unit();
@@ -97,38 +118,78 @@ std::vector<Vec2d> blob(Noise& noise, double radius, int corners) {
   return fan;
 }
 
+namespace {
+
+// Whether the open square around texel (x, y), grown by `reach`, meets the triangle: no axis of the
+// square and no normal of the triangle separates them.
+bool meets(const Vec2d* t, int x, int y, double reach) {
+  const double half = 0.5 + reach, cx = x + 0.5, cy = y + 0.5;
+  const auto separated = [&](double nx, double ny) {
+    const double extent = half * (std::abs(nx) + std::abs(ny));
+    double low = 1e300, high = -1e300;
+    for (int k = 0; k < 3; ++k) {
+      const double d = nx * (t[k].x - cx) + ny * (t[k].y - cy);
+      low = std::min(low, d);
+      high = std::max(high, d);
+    }
+    return low >= extent || high <= -extent;
+  };
+  if (separated(1, 0) || separated(0, 1)) return false;
+  for (int k = 0; k < 3; ++k) {
+    const Vec2d a = t[k], b = t[(k + 1) % 3];
+    if ((a.x != b.x || a.y != b.y) && separated(a.y - b.y, b.x - a.x)) return false;
+  }
+  return true;
+}
+
+// One owner a texel.
+class Claims {
+ public:
+  explicit Claims(Extent page)
+      : page_(page), owner_(static_cast<std::size_t>(page.area()), kNobody) {}
+
+  std::string claim(const Vec2d* t, std::uint32_t i, double reach) {
+    const auto [left, right] = std::minmax({t[0].x, t[1].x, t[2].x});
+    const auto [bottom, top] = std::minmax({t[0].y, t[1].y, t[2].y});
+    const int x0 = int(std::floor(left - reach)), x1 = int(std::floor(right + reach));
+    const int y0 = int(std::floor(bottom - reach)), y1 = int(std::floor(top + reach));
+    if (x0 < 0 || y0 < 0 || x1 >= page_.width || y1 >= page_.height)
+      return "shape " + std::to_string(i) + " leaves its page";
+    for (int y = y0; y <= y1; ++y)
+      for (int x = x0; x <= x1; ++x) {
+        std::uint32_t& owner = owner_[std::size_t(y) * std::size_t(page_.width) + std::size_t(x)];
+        if (owner == i || !meets(t, x, y, reach)) continue;
+        if (owner != kNobody)
+          return "shapes " + std::to_string(owner) + " and " + std::to_string(i) + " are too close";
+        owner = i;
+      }
+    return {};
+  }
+
+ private:
+  static constexpr std::uint32_t kNobody = 0xffffffffu;
+  Extent page_;
+  std::vector<std::uint32_t> owner_;
+};
+
+}  // namespace
+
 std::string check_outlines(std::span<const PlacedShape> placed, std::span<const Extent> pages,
                            int padding) {
-  // Every sample claims the texels within the padding around it; no texel has two owners.
+  // Every triangle claims the texels that come within the padding of it; no texel has two owners.
   const double reach = padding - 0.001;
-  std::vector<std::map<std::pair<int, int>, std::size_t>> owner(pages.size());
-  for (std::size_t i = 0; i < placed.size(); ++i) {
+  std::vector<Claims> claims(pages.begin(), pages.end());
+  for (std::uint32_t i = 0; i < placed.size(); ++i) {
     const PlacedShape& s = placed[i];
     if (s.page >= pages.size()) return "shape " + std::to_string(i) + " is on no page";
     const double c = s.scale * std::cos(s.angle), d = s.scale * std::sin(s.angle);
-    const std::vector<Vec2d> corners(s.shape.corners.begin(), s.shape.corners.end());
-    for (std::size_t k = 0; k + 2 < corners.size(); k += 3) {
-      constexpr int n = 8;
-      for (int u = 0; u <= n; ++u)
-        for (int v = 0; u + v <= n; ++v) {
-          const double w[3] = {double(u) / n, double(v) / n, double(n - u - v) / n};
-          double x = 0, y = 0;
-          for (std::size_t j = 0; j < 3; ++j) {
-            x += w[j] * (c * corners[k + j].x - d * corners[k + j].y);
-            y += w[j] * (d * corners[k + j].x + c * corners[k + j].y);
-          }
-          x += s.offset.x;
-          y += s.offset.y;
-          const int x0 = int(std::floor(x - reach)), x1 = int(std::floor(x + reach));
-          const int y0 = int(std::floor(y - reach)), y1 = int(std::floor(y + reach));
-          if (x0 < 0 || y0 < 0 || x1 >= pages[s.page].width || y1 >= pages[s.page].height)
-            return "shape " + std::to_string(i) + " leaves its page";
-          for (int ty = y0; ty <= y1; ++ty)
-            for (int tx = x0; tx <= x1; ++tx)
-              if (const auto at = owner[s.page].try_emplace({tx, ty}, i).first; at->second != i)
-                return "shapes " + std::to_string(at->second) + " and " + std::to_string(i) +
-                       " are too close";
-        }
+    for (std::size_t k = 0; k + 2 < s.shape.corners.size(); k += 3) {
+      Vec2d t[3];
+      for (std::size_t j = 0; j < 3; ++j) {
+        const Vec2d p = s.shape.corners[k + j];
+        t[j] = {c * p.x - d * p.y + s.offset.x, d * p.x + c * p.y + s.offset.y};
+      }
+      if (std::string wrong = claims[s.page].claim(t, i, reach); !wrong.empty()) return wrong;
     }
   }
   return {};

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "libatlas/pack/fit.h"
 #include "libatlas/pack/outline.h"
 #include "libatlas/pack/pack.h"
 
@@ -28,8 +29,9 @@ std::vector<Extent> log_normal_rects(std::size_t count, std::uint64_t seed);
 std::string check_layout(std::span<const Extent> items, std::span<const Placement> placements,
                          std::span<const Extent> pages, const PackOptions& options);
 
-// "" if no two charts come closer than 2 * padding in the maximum norm (less a thousandth), judged
-// from points sampled on the triangles, and none comes closer than the padding to the page's edge.
+// "" if no texel lies within the padding (maximum norm, less a thousandth) of two charts and none
+// within the padding of a chart is outside the page. Every triangle is tried on every texel near
+// it.
 struct PlacedShape {
   ChartShape shape;
   std::uint32_t page = 0;
@@ -38,6 +40,20 @@ struct PlacedShape {
 };
 std::string check_outlines(std::span<const PlacedShape> placed, std::span<const Extent> pages,
                            int padding);
+
+// Charts for fit_pages, 3 corners a triangle, and their boxes. Moved, not copied: shapes point at
+// corners.
+struct ChartItems {
+  std::vector<std::vector<Vec2d>> corners;
+  std::vector<ChartShape> shapes;
+  std::vector<FitItem> items;
+
+  explicit ChartItems(std::vector<std::vector<Vec2d>> charts);
+  ChartItems(ChartItems&&) = default;
+};
+
+// The same charts where the result has put them.
+std::vector<PlacedShape> placed_shapes(const ChartItems& charts, const FitResult& fit);
 
 // A blob with `corners` corners around the origin, as a fan of triangles (3 corners each).
 std::vector<Vec2d> blob(Noise& noise, double radius, int corners);

@@ -120,35 +120,21 @@ TEST(FitPages, Failures) {
 TEST(FitPages, OutlinesFitMoreThanBoxes) {
   test::Noise noise{31};
   std::vector<std::vector<Vec2d>> blobs;
-  std::vector<ChartShape> shapes;
-  std::vector<FitItem> items;
   for (int k = 0; k < 120; ++k) blobs.push_back(test::blob(noise, 20 + 60 * noise.unit(), 7));
-  for (const auto& b : blobs) {
-    Vec2d low = b[0], high = b[0];
-    for (const Vec2d& p : b) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-    }
-    items.push_back({high.x - low.x, high.y - low.y});
-    shapes.push_back({b, {}});
-  }
+  const test::ChartItems charts(std::move(blobs));
   FitOptions o;
   o.pages = 2;
   o.page_size = 256;
   o.padding = 2;
   o.alignment = 4;
   o.minimum_side = 0;
-  const FitResult boxes = fit(items, o);
-  o.shapes = shapes;
-  const FitResult outlines = fit(items, o);
+  const FitResult boxes = fit(charts.items, o);
+  o.shapes = charts.shapes;
+  const FitResult outlines = fit(charts.items, o);
   EXPECT_GT(outlines.scale, boxes.scale);
-  std::vector<test::PlacedShape> placed;
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    const FitPlacement& p = outlines.placements[i];
-    EXPECT_GE(p.scale, outlines.scale);
-    placed.push_back({shapes[i], p.page, p.scale, p.angle, p.offset});
-  }
-  EXPECT_EQ(test::check_outlines(placed, outlines.pages, o.padding), "");
+  for (const FitPlacement& p : outlines.placements) EXPECT_GE(p.scale, outlines.scale);
+  EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, outlines), outlines.pages, o.padding),
+            "");
 }
 
 }  // namespace

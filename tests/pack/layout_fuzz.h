@@ -101,17 +101,7 @@ inline std::string fuzz_outlines(std::uint64_t seed) {
     if (noise.in(0, 9) == 0)  // no width
       for (Vec2d& p : blobs.back()) p.y = 0;
   }
-  std::vector<ChartShape> shapes;
-  std::vector<FitItem> items;
-  for (const auto& b : blobs) {
-    Vec2d low = b[0], high = b[0];
-    for (const Vec2d& p : b) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-    }
-    items.push_back({high.x - low.x, high.y - low.y});
-    shapes.push_back({b, {}});
-  }
+  const ChartItems charts(std::move(blobs));
   FitOptions o;
   o.pages = static_cast<std::uint32_t>(noise.in(1, 4)) / 4 + 1;
   o.page_size = 256;
@@ -122,19 +112,14 @@ inline std::string fuzz_outlines(std::uint64_t seed) {
   o.free_aspect = noise.in(0, 1);
   o.power_of_two = noise.in(0, 1);
   o.preset = noise.in(0, 4) ? PackPreset::standard : PackPreset::fast;
-  o.shapes = shapes;
-  const Result<FitResult> r = fit_pages(items, o, {});
+  o.shapes = charts.shapes;
+  const Result<FitResult> r = fit_pages(charts.items, o, {});
   if (!r.ok()) return r.status().message();
   if (!(r->scale > 0) || r->scale > o.max_scale) return "scale out of range";
   if (r->pages.size() > o.pages) return "too many pages";
   for (const Extent& page : r->pages)
     if (page.width > o.page_size || page.height > o.page_size) return "page too large";
-  std::vector<PlacedShape> placed;
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    const FitPlacement& p = r->placements[i];
-    placed.push_back({shapes[i], p.page, p.scale, p.angle, p.offset});
-  }
-  return check_outlines(placed, r->pages, o.padding);
+  return check_outlines(placed_shapes(charts, *r), r->pages, o.padding);
 }
 
 }  // namespace atlas::test

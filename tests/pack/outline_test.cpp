@@ -142,44 +142,70 @@ bool covers(const Mask& m, int x, int y) {
   return false;
 }
 
+// Largest separation of triangle and rectangle over their axes; negative: they overlap.
+double separation(const Vec2d* t, Vec2d low, Vec2d high) {
+  double gap = -1e300;
+  const auto axis = [&](double ax, double ay) {
+    double lo = 1e300, hi = -1e300, slo = 1e300, shi = -1e300;
+    for (int k = 0; k < 3; ++k) {
+      lo = std::min(lo, ax * t[k].x + ay * t[k].y);
+      hi = std::max(hi, ax * t[k].x + ay * t[k].y);
+    }
+    for (double sx : {low.x, high.x})
+      for (double sy : {low.y, high.y}) {
+        slo = std::min(slo, ax * sx + ay * sy);
+        shi = std::max(shi, ax * sx + ay * sy);
+      }
+    gap = std::max(gap, std::max(slo - hi, lo - shi));
+  };
+  axis(1, 0);
+  axis(0, 1);
+  for (int k = 0; k < 3; ++k) {
+    const Vec2d a = t[k], b = t[(k + 1) % 3];
+    if (a == b) continue;
+    axis(b.y - a.y, a.x - b.x);
+  }
+  return gap;
+}
+
+// Triangles of three corners each, on a grid coarse enough that many coincide, lie in a line or
+// share edges: single ones, soups in both senses, and fans.
+std::vector<Vec2d> soup(test::Noise& noise, int round) {
+  const auto point = [&] {
+    return Vec2d{double(noise.in(0, 40)) / 4, double(noise.in(0, 40)) / 4};
+  };
+  std::vector<Vec2d> t;
+  if (round % 3 == 2) {
+    t = test::blob(noise, 8, noise.in(3, 9));
+    if (noise.in(0, 1)) std::swap(t[1], t[2]);
+    return t;
+  }
+  std::vector<Vec2d> corners;
+  for (int k = 0; k < 6; ++k) corners.push_back(point());
+  for (int n = round % 3 == 0 ? 1 : noise.in(2, 9); n > 0; --n)
+    for (int k = 0; k < 3; ++k) t.push_back(corners[std::size_t(noise.in(0, 5))]);
+  return t;
+}
+
 // The rasteriser against the separating axes of square and triangle, cell by cell.
 TEST(OutlineMask, MatchesSeparatingAxes) {
   test::Noise noise{3};
-  for (int round = 0; round < 300; ++round) {
-    std::vector<Vec2d> t;
-    for (int k = 0; k < 3; ++k)
-      t.push_back({double(noise.in(0, 40)) / 4, double(noise.in(0, 40)) / 4});
+  for (int round = 0; round < 900; ++round) {
+    std::vector<Vec2d> t = soup(noise, round);
     pack::RasterOptions o;
     o.padding = noise.in(0, 2);
     o.cell = noise.in(1, 3);
     Vec2d origin;
-    const Mask m = pack::rasterize({t, {}}, o, origin);
+    const Mask m = pack::rasterize(pack::outline_of({t, {}}), o, origin);
     for (Vec2d& p : t) p = {p.x + origin.x, p.y + origin.y};
     for (int y = -1; y <= m.height; ++y)
       for (int x = -1; x <= m.width; ++x) {
-        const double x0 = x * o.cell - o.padding, x1 = (x + 1) * o.cell + o.padding;
-        const double y0 = y * o.cell - o.padding, y1 = (y + 1) * o.cell + o.padding;
-        double gap = -1e300;  // largest separation over the axes; negative: they overlap
-        const auto axis = [&](double ax, double ay) {
-          double lo = 1e300, hi = -1e300, slo = 1e300, shi = -1e300;
-          for (const Vec2d& p : t) {
-            lo = std::min(lo, ax * p.x + ay * p.y);
-            hi = std::max(hi, ax * p.x + ay * p.y);
-          }
-          for (double sx : {x0, x1})
-            for (double sy : {y0, y1}) {
-              slo = std::min(slo, ax * sx + ay * sy);
-              shi = std::max(shi, ax * sx + ay * sy);
-            }
-          gap = std::max(gap, std::max(slo - hi, lo - shi));
-        };
-        axis(1, 0);
-        axis(0, 1);
-        for (int k = 0; k < 3; ++k) {
-          const Vec2d a = t[std::size_t(k)], b = t[std::size_t((k + 1) % 3)];
-          if (a == b) continue;
-          axis(b.y - a.y, a.x - b.x);
-        }
+        const Vec2d low{double(x * o.cell - o.padding), double(y * o.cell - o.padding)};
+        const Vec2d high{double((x + 1) * o.cell + o.padding),
+                         double((y + 1) * o.cell + o.padding)};
+        double gap = 1e300;
+        for (std::size_t k = 0; k < t.size(); k += 3)
+          gap = std::min(gap, separation(&t[k], low, high));
         if (std::abs(gap) > 1e-9) {
           EXPECT_EQ(covers(m, x, y), gap < 0) << round << " " << x << " " << y;
         }
@@ -192,7 +218,7 @@ TEST(OutlineMask, QuarterTurnsTurn) {
   for (int round = 0; round < 50; ++round) {
     const auto shape = test::blob(noise, 12, noise.in(3, 9));
     Vec2d origin;
-    const Mask m = pack::rasterize({shape, {}}, {}, origin);
+    const Mask m = pack::rasterize(pack::outline_of({shape, {}}), {}, origin);
     const Mask turned = pack::quarter_turn(m);
     ASSERT_EQ(turned.width, m.height);
     ASSERT_EQ(turned.height, m.width);
@@ -213,7 +239,7 @@ TEST(BitPage, FindsTheLowestLeftmostPlace) {
     for (int k = 0; k < 25; ++k) {
       const auto shape = test::blob(noise, noise.in(2, 14), noise.in(3, 8));
       Vec2d origin;
-      const Mask m = pack::rasterize({shape, {}}, {}, origin);
+      const Mask m = pack::rasterize(pack::outline_of({shape, {}}), {}, origin);
       const auto free_at = [&](int x, int y) {
         for (int r = 0; r < m.height; ++r)
           for (const pack::Run& run : m.row(r))

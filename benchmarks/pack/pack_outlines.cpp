@@ -1,0 +1,171 @@
+// Packs the uv charts of OBJ files by their outlines, checks every layout independently, and prints
+// a line a model:
+//   pack_outlines OBJ... [--page 2048] [--pages 1] [--padding 1] [--preset fast|default|best]
+//   [--budget S] [--effort LAYOUTS] [--repeat N] [--join] [--square]
+// Charts keep the proportions of their uvs. A single page gets the shape that packs best; with
+// --square or several pages the pages are square. CPU seconds are the least of N runs. --join packs
+// the charts of all files together, every file repeated as often as --copies says.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "libatlas/core/clock.h"
+#include "libatlas/pack/fit.h"
+#include "tests/pack/checks.h"
+
+namespace {
+
+using atlas::Vec2d;
+
+struct Model {
+  std::string name;
+  std::vector<std::vector<Vec2d>> charts;  // 3 corners a triangle
+};
+
+// Triangles joined by common texcoord indices.
+Model read_charts(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::vector<Vec2d> uvs;
+  std::vector<std::uint32_t> corners, parent;
+  const auto root = [&](std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    std::string word;
+    words >> word;
+    if (word == "vt") {
+      Vec2d uv;
+      words >> uv.x >> uv.y;
+      uvs.push_back(uv);
+    } else if (word == "f") {
+      while (words >> word) {
+        const auto slash = word.find('/');
+        if (slash == std::string::npos) break;
+        corners.push_back(static_cast<std::uint32_t>(std::stoul(word.substr(slash + 1)) - 1));
+      }
+    }
+  }
+  parent.resize(uvs.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  for (std::size_t k = 0; k + 2 < corners.size(); k += 3)
+    for (std::size_t j = 1; j < 3; ++j) parent[root(corners[k + j])] = root(corners[k]);
+  Model model{path.stem().string(), {}};
+  std::vector<std::size_t> number(uvs.size(), SIZE_MAX);
+  for (std::size_t k = 0; k + 2 < corners.size(); k += 3) {
+    std::size_t& id = number[root(corners[k])];
+    if (id == SIZE_MAX) {
+      id = model.charts.size();
+      model.charts.emplace_back();
+    }
+    for (std::size_t j = 0; j < 3; ++j) model.charts[id].push_back(uvs[corners[k + j]]);
+  }
+  return model;
+}
+
+double area_of(const std::vector<Vec2d>& c) {
+  double twice = 0;
+  for (std::size_t k = 0; k + 2 < c.size(); k += 3)
+    twice += std::abs((c[k + 1].x - c[k].x) * (c[k + 2].y - c[k].y) -
+                      (c[k + 1].y - c[k].y) * (c[k + 2].x - c[k].x));
+  return twice / 2;
+}
+
+// At scale 1 the charts fill the pages.
+void fill_pages(Model& model, const atlas::FitOptions& o) {
+  double area = 0;
+  for (const auto& c : model.charts) area += area_of(c);
+  const double factor = area > 0 ? o.page_size * std::sqrt(o.pages / area) : 1;
+  for (auto& c : model.charts)
+    for (Vec2d& p : c) p = {p.x * factor, p.y * factor};
+}
+
+int run(Model& model, atlas::FitOptions options, int repeats) {
+  fill_pages(model, options);
+  const atlas::test::ChartItems charts(model.charts);
+  options.shapes = charts.shapes;
+  atlas::Context context;
+  context.threads = 1;
+  double least = 1e300;
+  atlas::Result<atlas::FitResult> fit = atlas::Status();
+  for (int k = 0; k < repeats; ++k) {
+    const double start = atlas::cpu_seconds();
+    fit = atlas::fit_pages(charts.items, options, context);
+    least = std::min(least, atlas::cpu_seconds() - start);
+  }
+  if (!fit.ok()) {
+    std::printf("%s: FAILED %s\n", model.name.c_str(), fit.status().message().c_str());
+    return 1;
+  }
+  const std::string wrong = atlas::test::check_outlines(atlas::test::placed_shapes(charts, *fit),
+                                                        fit->pages, options.padding);
+  std::printf("%-16s charts %5zu pages %2zu of %4d x %4d utilization %.4f cpu %.3f%s%s\n",
+              model.name.c_str(), charts.shapes.size(), fit->pages.size(), fit->pages[0].width,
+              fit->pages[0].height, fit->utilization, least,
+              wrong.empty() ? "" : " INVALID: ", wrong.c_str());
+  std::fflush(stdout);
+  return !wrong.empty();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  atlas::FitOptions options;
+  options.padding = options.alignment = 1;
+  options.minimum_side = 0;
+  options.power_of_two = false;
+  options.free_aspect = true;
+  int repeats = 1, copies = 1;
+  bool join = false;
+  std::vector<Model> models;
+  for (int i = 1; i < argc; ++i) {
+    const std::string a = argv[i];
+    if (a == "--join") {
+      join = true;
+    } else if (a == "--square") {
+      options.square = true;
+    } else if (a.starts_with("--") && i + 1 < argc) {
+      const std::string value = argv[++i];
+      const double number = std::atof(value.c_str());
+      if (a == "--page") options.page_size = static_cast<std::int32_t>(number);
+      if (a == "--pages") options.pages = static_cast<std::uint32_t>(number);
+      if (a == "--padding") options.padding = static_cast<std::int32_t>(number);
+      if (a == "--budget") options.time_budget = number;
+      if (a == "--effort") options.effort = static_cast<std::uint64_t>(number);
+      if (a == "--repeat") repeats = std::max(1, static_cast<int>(number));
+      if (a == "--copies") copies = std::max(1, static_cast<int>(number));
+      if (a == "--preset")
+        options.preset = value == "fast"   ? atlas::PackPreset::fast
+                         : value == "best" ? atlas::PackPreset::best
+                                           : atlas::PackPreset::standard;
+    } else {
+      models.push_back(read_charts(a));
+      if (models.back().charts.empty()) {
+        std::fprintf(stderr, "%s: has no uv charts\n", a.c_str());
+        return 1;
+      }
+    }
+  }
+  if (options.square || options.pages > 1) {
+    options.free_aspect = false;
+    options.square = options.power_of_two = true;
+  }
+  if (join && !models.empty()) {
+    Model all{"joined", {}};
+    for (int k = 0; k < copies; ++k)
+      for (const Model& m : models)
+        all.charts.insert(all.charts.end(), m.charts.begin(), m.charts.end());
+    models = {all};
+  }
+  int invalid = 0;
+  for (Model& m : models) invalid += run(m, options, repeats);
+  return invalid > 0;
+}

@@ -1,0 +1,160 @@
+#include "libatlas/pack/chart_outline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "libatlas/core/parallel.h"
+
+namespace atlas::pack {
+namespace {
+
+double twice_area(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+// Numbers corners that are given three by three: equal places get equal numbers.
+std::vector<std::uint32_t> weld(std::span<const Vec2d> corners) {
+  std::vector<std::uint32_t> order(corners.size()), number(corners.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
+    const Vec2d a = corners[i], b = corners[j];
+    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : i < j;
+  });
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const bool same = k > 0 && corners[order[k]].x == corners[order[k - 1]].x &&
+                      corners[order[k]].y == corners[order[k - 1]].y;
+    number[order[k]] = same ? number[order[k - 1]] : order[k];
+  }
+  return number;
+}
+
+// Directed edges, of which opposite ones cancel. They are kept by their lower corner, which few of
+// them share.
+class EdgeSum {
+ public:
+  EdgeSum(std::size_t corners, std::size_t edges) : first_(corners + 1, 0) {
+    edges_.reserve(edges);
+  }
+
+  void add(std::uint32_t from, std::uint32_t to) {
+    if (from == to) return;
+    edges_.push_back({std::min(from, to), std::max(from, to), from < to ? 1 : -1});
+    ++first_[edges_.back().low + 1];
+  }
+
+  // Calls visit(from, to) for every edge that is left, ascending by its corners.
+  template <class Visit>
+  void remaining(Visit visit) {
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    std::vector<Half> halves(edges_.size());
+    for (const Edge& e : edges_) halves[next[e.low]++] = {e.high, e.sense};
+    for (std::uint32_t low = 0; low + 1 < first_.size(); ++low) {
+      const auto begin = halves.begin() + first_[low], end = halves.begin() + first_[low + 1];
+      std::sort(begin, end, [](const Half& a, const Half& b) { return a.high < b.high; });
+      for (auto h = begin; h != end;) {
+        int sum = 0;
+        const std::uint32_t high = h->high;
+        for (; h != end && h->high == high; ++h) sum += h->sense;
+        for (; sum > 0; --sum) visit(low, high);
+        for (; sum < 0; ++sum) visit(high, low);
+      }
+    }
+  }
+
+ private:
+  struct Edge {
+    std::uint32_t low, high;
+    int sense;
+  };
+  struct Half {
+    std::uint32_t high;
+    int sense;
+  };
+  std::vector<std::uint32_t> first_;
+  std::vector<Edge> edges_;
+};
+
+using Link = std::pair<std::uint32_t, std::uint32_t>;  // from, to
+
+// Orders edges such that each begins where the one before it ends, loop after loop.
+std::vector<Link> loops_of(std::vector<Link> links) {
+  std::sort(links.begin(), links.end());
+  std::vector<Link> loops;
+  std::vector<bool> used(links.size());
+  const auto next_of = [&](std::uint32_t corner) {
+    auto at = std::lower_bound(links.begin(), links.end(), Link{corner, 0});
+    while (at != links.end() && at->first == corner && used[std::size_t(at - links.begin())]) ++at;
+    return at != links.end() && at->first == corner ? std::size_t(at - links.begin())
+                                                    : links.size();
+  };
+  for (std::size_t start = 0; start < links.size(); ++start)
+    for (std::size_t k = used[start] ? links.size() : start; k < links.size();
+         k = next_of(loops.back().second)) {
+      used[k] = true;
+      loops.push_back(links[k]);
+    }
+  return loops;
+}
+
+}  // namespace
+
+ChartOutline outline_of(const ChartShape& shape) {
+  ChartOutline outline;
+  const std::vector<std::uint32_t> welded =
+      shape.triangles.empty() ? weld(shape.corners) : std::vector<std::uint32_t>();
+  const std::span<const std::uint32_t> triangles =
+      shape.triangles.empty() ? welded : shape.triangles;
+  double sum = 0;
+  for (std::size_t k = 0; k + 2 < triangles.size(); k += 3)
+    sum += twice_area(shape.corners[triangles[k]], shape.corners[triangles[k + 1]],
+                      shape.corners[triangles[k + 2]]);
+  const bool mirrored = sum < 0;
+  EdgeSum edges(shape.corners.size(), triangles.size());
+  for (std::size_t k = 0; k + 2 < triangles.size(); k += 3) {
+    std::uint32_t a = triangles[k], b = triangles[k + 1], c = triangles[k + 2];
+    if (mirrored) std::swap(b, c);
+    const double twice = twice_area(shape.corners[a], shape.corners[b], shape.corners[c]);
+    outline.area += std::abs(twice) / 2;
+    if (twice > 0) {
+      edges.add(a, b);
+      edges.add(b, c);
+      edges.add(c, a);
+    } else {
+      outline.loose.push_back({shape.corners[a], shape.corners[b], shape.corners[c]});
+    }
+  }
+  std::vector<Link> links;
+  edges.remaining([&](std::uint32_t from, std::uint32_t to) { links.emplace_back(from, to); });
+  for (const auto& [from, to] : loops_of(std::move(links)))
+    outline.edges.push_back({shape.corners[from], shape.corners[to]});
+  return outline;
+}
+
+ChartOutline thinned(const ChartOutline& outline, double spacing) {
+  ChartOutline thin;
+  thin.loose = outline.loose;
+  thin.area = outline.area;
+  Vec2d from;
+  for (std::size_t k = 0; k < outline.edges.size(); ++k) {
+    const auto& e = outline.edges[k];
+    const bool starts = k == 0 || !(outline.edges[k - 1].to == e.from);
+    const bool ends = k + 1 == outline.edges.size() || !(outline.edges[k + 1].from == e.to);
+    if (starts) from = e.from;
+    if (!ends && std::hypot(e.to.x - from.x, e.to.y - from.y) < spacing) continue;
+    thin.edges.push_back({from, e.to});
+    from = e.to;
+  }
+  return thin;
+}
+
+std::vector<ChartOutline> outlines_of(std::span<const ChartShape> shapes, const Context& context) {
+  std::vector<ChartOutline> outlines(shapes.size());
+  parallel_for(context, shapes.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) outlines[i] = outline_of(shapes[i]);
+  });
+  return outlines;
+}
+
+}  // namespace atlas::pack
