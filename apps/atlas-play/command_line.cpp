@@ -1,12 +1,12 @@
 #include "apps/atlas-play/command_line.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <map>
 
-#include "libatlas/exporters/viewpoint.h"
+#include "libatlas/view/start_camera.h"
 
 namespace atlas::app {
 namespace {
@@ -59,6 +59,8 @@ void add_shadow_options(CLI::App& app, CommandLine& l) {
       ->transform(CLI::CheckedTransformer(methods()))
       ->default_str("march");
   app.add_option("--map", l.render.map_resolution, "texels a side of a shadow map")
+      ->capture_default_str();
+  app.add_option("--map-bits", l.render.map_bits, "of a map's depths: 16, 24, or 32 (floats)")
       ->capture_default_str();
   app.add_option("--pcf", l.render.pcf, "filter: 0 nearest, 1 bilinear, 3 or 5 taps a side")
       ->capture_default_str();
@@ -162,21 +164,9 @@ Status finish(CommandLine& l, const std::string& light, const std::string& end,
 }  // namespace
 
 Result<Camera> camera_of(const CommandLine& line, const ViewScene& scene) {
-  Camera camera = camera_for(scene.bounds, line.render.up);
+  Camera camera = start_camera(scene, line.render.up);
   camera.fov_degrees = line.fov;
-  if (line.camera.empty()) {
-    // Inside, where the scene surrounds a visitor, as the exported worlds begin; else the whole.
-    ViewpointOptions eye;
-    eye.up = line.render.up.z != 0 ? Up::z : Up::y;
-    const Viewpoint start =
-        choose_viewpoint(scene.caster_positions, scene.caster_indices, eye, Context{});
-    if (!start.inside) return camera;
-    camera.eye = start.position;
-    camera.target = {start.position.x + start.direction.x, start.position.y + start.direction.y,
-                     start.position.z + start.direction.z};
-    fit_planes(camera, scene.bounds);
-    return camera;
-  }
+  if (line.camera.empty()) return camera;
   Vec3d a, b;
   char rest = 0;
   if (std::sscanf(line.camera.c_str(), "%lf,%lf,%lf;%lf,%lf,%lf%c", &a.x, &a.y, &a.z, &b.x, &b.y,

@@ -5,28 +5,14 @@
 #include <utility>
 
 #include "libatlas/core/clock.h"
-#include "libatlas/exporters/viewpoint.h"
 #include "libatlas/view/bench.h"
 #include "libatlas/view/context.h"
+#include "libatlas/view/start_camera.h"
 
 namespace atlas::bench {
 namespace {
 
 constexpr Vec3d kUp{0, 0, 1};
-
-// Where a visitor would enter, as atlas-play begins.
-Camera camera_of(const ViewScene& scene) {
-  ViewpointOptions eye;
-  eye.up = Up::z;
-  const Viewpoint start = choose_viewpoint(scene.caster_positions, scene.caster_indices, eye, {});
-  Camera camera = camera_for(scene.bounds, kUp);
-  if (!start.inside) return camera;
-  camera.eye = start.position;
-  camera.target = {start.position.x + start.direction.x, start.position.y + start.direction.y,
-                   start.position.z + start.direction.z};
-  fit_planes(camera, scene.bounds);
-  return camera;
-}
 
 Row row_of(const BenchError& error, const std::string& name, std::size_t triangles) {
   Row row;
@@ -62,7 +48,7 @@ Result<std::vector<Row>> measure_shadows(const Scene& scene, const std::string& 
   bench.render.height = options.height;
   bench.render.map_resolution = options.map_resolution;
   bench.render.up = kUp;
-  bench.camera = camera_of(*view);
+  bench.camera = start_camera(*view, kUp);
   bench.shadings = {Shading::lambert};
   bench.error_intervals = options.intervals;
   bench.error_frames = options.frames;

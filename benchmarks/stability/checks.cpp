@@ -7,6 +7,9 @@ void all_checks(CheckList& list) {
                             check_cones, check_closed_forms, check_conditioning, check_light,
                             check_downsizing, check_blend, check_grouping, check_packing})
     check(list);
+#ifdef ATLAS_BENCH_VIEW
+  check_shadow_maps(list);
+#endif
 }
 
 }  // namespace atlas::bench

@@ -44,7 +44,10 @@ void check_conditioning(CheckList& list);     // linear systems, flips, fallback
 void check_light(CheckList& list);            // luminance extremes, tone curves, outputs
 void check_downsizing(CheckList& list);       // thresholds 0, tiny, huge
 void check_blend(CheckList& list);            // SLERP weights from 1e-18 to pi
-void check_grouping(CheckList& list);         // ties, 2^62, anomalies, bounded bisection
-void check_packing(CheckList& list);          // page = item, ones by the million, 10^9
+#ifdef ATLAS_BENCH_VIEW
+void check_shadow_maps(CheckList& list);  // grazing light, bits of depth, tiny and huge scenes
+#endif
+void check_grouping(CheckList& list);  // ties, 2^62, anomalies, bounded bisection
+void check_packing(CheckList& list);   // page = item, ones by the million, 10^9
 
 }  // namespace atlas::bench

@@ -62,6 +62,13 @@ Vec3d transform_point(const Matrix4& m, const Vec3d& p) {
           m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14]};
 }
 
+Matrix4 relative_to(const Matrix4& m, const Vec3d& origin) {
+  Matrix4 moved = m;
+  for (int r = 0; r < 4; ++r)
+    moved[12 + r] += m[r] * origin.x + m[4 + r] * origin.y + m[8 + r] * origin.z;
+  return moved;
+}
+
 Vec3d transform_vector(const Matrix4& m, const Vec3d& v) {
   return {m[0] * v.x + m[4] * v.y + m[8] * v.z, m[1] * v.x + m[5] * v.y + m[9] * v.z,
           m[2] * v.x + m[6] * v.y + m[10] * v.z};

@@ -46,6 +46,9 @@ Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene, const FitO
 // p transformed by m (w is 1 for these matrices).
 Vec3d transform_point(const Matrix4& m, const Vec3d& p);
 
+// The same transform for points that are given relative to `origin`.
+Matrix4 relative_to(const Matrix4& m, const Vec3d& origin);
+
 // The direction's change of (u, v, depth) per world unit: transform without translation.
 Vec3d transform_vector(const Matrix4& m, const Vec3d& v);
 

@@ -53,30 +53,16 @@ const char* error_name(GLenum error) {
 }  // namespace
 
 GlBuffer make_buffer(const void* data, std::size_t bytes, GLbitfield flags) {
-  GLuint name = 0;
-  glCreateBuffers(1, &name);
-  glNamedBufferStorage(name, GLsizeiptr(std::max<std::size_t>(bytes, 1)), bytes ? data : nullptr,
-                       flags);
-  return GlBuffer(name);
+  GlBuffer buffer = create<GlBuffer>(glCreateBuffers);
+  glNamedBufferStorage(buffer.get(), GLsizeiptr(std::max<std::size_t>(bytes, 1)),
+                       bytes ? data : nullptr, flags);
+  return buffer;
 }
 
 GlTexture make_texture(GLenum format, int width, int height, int levels) {
-  GLuint name = 0;
-  glCreateTextures(GL_TEXTURE_2D, 1, &name);
-  glTextureStorage2D(name, levels, format, width, height);
-  return GlTexture(name);
-}
-
-GlVertexArray make_vertex_array() {
-  GLuint name = 0;
-  glCreateVertexArrays(1, &name);
-  return GlVertexArray(name);
-}
-
-GlFramebuffer make_framebuffer() {
-  GLuint name = 0;
-  glCreateFramebuffers(1, &name);
-  return GlFramebuffer(name);
+  GlTexture texture = create<GlTexture>(glCreateTextures, GL_TEXTURE_2D);
+  glTextureStorage2D(texture.get(), levels, format, width, height);
+  return texture;
 }
 
 Result<GlProgram> link_program(const std::string& name, const std::string& vertex,

@@ -6,14 +6,16 @@
 
 #include <cstddef>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "libatlas/core/status.h"
 
 namespace atlas {
 
-// A GL name and the function that deletes it. Move-only; 0 is "none".
-template <void (*Delete)(GLuint)>
+// A GL name and what deletes it: the address of one of epoxy's function pointers, such as
+// &glDeleteBuffers. Move-only; 0 is "none".
+template <auto* Delete>
 class GlName {
  public:
   GlName() = default;
@@ -32,51 +34,37 @@ class GlName {
 
  private:
   void reset() {
-    if (name_) Delete(name_);
+    if (name_ == 0) return;
+    if constexpr (std::is_invocable_v<decltype(*Delete), GLuint>)
+      (*Delete)(name_);
+    else
+      (*Delete)(1, &name_);
     name_ = 0;
   }
   GLuint name_ = 0;
 };
 
-inline void delete_buffer(GLuint n) {
-  glDeleteBuffers(1, &n);
-}
-inline void delete_texture(GLuint n) {
-  glDeleteTextures(1, &n);
-}
-inline void delete_sampler(GLuint n) {
-  glDeleteSamplers(1, &n);
-}
-inline void delete_vertex_array(GLuint n) {
-  glDeleteVertexArrays(1, &n);
-}
-inline void delete_framebuffer(GLuint n) {
-  glDeleteFramebuffers(1, &n);
-}
-inline void delete_renderbuffer(GLuint n) {
-  glDeleteRenderbuffers(1, &n);
-}
-inline void delete_query(GLuint n) {
-  glDeleteQueries(1, &n);
-}
-inline void delete_program(GLuint n) {
-  glDeleteProgram(n);
-}
+using GlBuffer = GlName<&glDeleteBuffers>;
+using GlTexture = GlName<&glDeleteTextures>;
+using GlSampler = GlName<&glDeleteSamplers>;
+using GlVertexArray = GlName<&glDeleteVertexArrays>;
+using GlFramebuffer = GlName<&glDeleteFramebuffers>;
+using GlRenderbuffer = GlName<&glDeleteRenderbuffers>;
+using GlQuery = GlName<&glDeleteQueries>;
+using GlProgram = GlName<&glDeleteProgram>;
 
-using GlBuffer = GlName<delete_buffer>;
-using GlTexture = GlName<delete_texture>;
-using GlSampler = GlName<delete_sampler>;
-using GlVertexArray = GlName<delete_vertex_array>;
-using GlFramebuffer = GlName<delete_framebuffer>;
-using GlRenderbuffer = GlName<delete_renderbuffer>;
-using GlQuery = GlName<delete_query>;
-using GlProgram = GlName<delete_program>;
+// Name made by one of the glCreate* functions; of those that take a target first, too:
+// create<GlTexture>(glCreateTextures, GL_TEXTURE_2D).
+template <class Name, class Create, class... Target>
+Name create(Create function, Target... target) {
+  GLuint name = 0;
+  function(GLenum(target)..., 1, &name);
+  return Name(name);
+}
 
 // An immutable buffer of `bytes` bytes (at least one, since GL refuses none).
 GlBuffer make_buffer(const void* data, std::size_t bytes, GLbitfield flags = 0);
 GlTexture make_texture(GLenum format, int width, int height, int levels = 1);
-GlVertexArray make_vertex_array();
-GlFramebuffer make_framebuffer();
 
 // Compiles and links; bad_input with `name` and the driver's log on failure.
 Result<GlProgram> link_program(const std::string& name, const std::string& vertex,

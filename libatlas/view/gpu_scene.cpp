@@ -6,12 +6,19 @@
 #include <bit>
 #include <cmath>
 
+#include "libatlas/core/glm_bridge.h"
+
 namespace atlas {
 namespace {
 
 template <class T>
 GlBuffer buffer_of(const std::vector<T>& data) {
   return make_buffer(data.data(), data.size() * sizeof(T));
+}
+
+std::vector<Vec3f> moved(std::vector<Vec3f> positions, const glm::dvec3& origin) {
+  for (Vec3f& p : positions) p = from_glm(glm::vec3(to_dvec(p) - origin));
+  return positions;
 }
 
 void attribute(const GlVertexArray& array, GLuint index, const GlBuffer& buffer, int components,
@@ -72,11 +79,14 @@ Status upload_textures(const ViewScene& scene, GpuScene& gpu) {
 
 Result<GpuScene> upload(const ViewScene& scene) {
   GpuScene gpu;
-  gpu.positions = buffer_of(scene.positions);
+  gpu.bounds = scene.bounds;
+  const glm::dvec3 origin = (to_glm(scene.bounds.low) + to_glm(scene.bounds.high)) * 0.5;
+  gpu.origin = from_glm(origin);
+  gpu.positions = buffer_of(moved(scene.positions, origin));
   gpu.normals = buffer_of(scene.normals);
   gpu.colours = colour_buffer(scene.colours);
   gpu.indices = buffer_of(scene.indices);
-  gpu.lit = make_vertex_array();
+  gpu.lit = create<GlVertexArray>(glCreateVertexArrays);
   attribute(gpu.lit, 0, gpu.positions, 3, GL_FLOAT, sizeof(Vec3f));
   attribute(gpu.lit, 1, gpu.normals, 3, GL_FLOAT, sizeof(Vec3f));
   attribute(gpu.lit, 2, gpu.colours, 3, GL_UNSIGNED_SHORT, 8);
@@ -91,15 +101,14 @@ Result<GpuScene> upload(const ViewScene& scene) {
   }
   glVertexArrayElementBuffer(gpu.lit.get(), gpu.indices.get());
 
-  gpu.caster_positions = buffer_of(scene.caster_positions);
+  gpu.caster_positions = buffer_of(moved(scene.caster_positions, origin));
   gpu.caster_indices = buffer_of(scene.caster_indices);
-  gpu.casters = make_vertex_array();
+  gpu.casters = create<GlVertexArray>(glCreateVertexArrays);
   attribute(gpu.casters, 0, gpu.caster_positions, 3, GL_FLOAT, sizeof(Vec3f));
   glVertexArrayElementBuffer(gpu.casters.get(), gpu.caster_indices.get());
 
   gpu.clusters = scene.clusters;
   gpu.triangles = std::uint32_t(scene.triangle_count());
-  gpu.bounds = scene.bounds;
   gpu.baked_textures = scene.textures_hold_light;
   gpu.light_scale = scene.light_scale;
   if (Status s = check_gl("uploading the scene"); !s.ok()) return s;

@@ -16,7 +16,9 @@ struct GpuScene {
   std::vector<GlTexture> textures;  // one a scene texture
   GlTexture blank;  // for triangles without one: white, or black where textures hold light
   std::uint32_t triangles = 0;
-  Box3 bounds;
+  Box3 bounds;   // in the scene's own coordinates, as the clusters' balls
+  Vec3d origin;  // the box's middle, which uploaded positions are relative to: floats are finest
+                 // near zero
   bool textured = false, baked_vertices = false, baked_textures = false;
   double light_scale = 1;
 };

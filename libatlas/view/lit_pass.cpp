@@ -72,6 +72,13 @@ constexpr double kBehindTexels = 1.5;
 // the key does.
 constexpr double kExactTexels = 0.05;
 
+// How far a point's depth may lie behind the depth of itself in a map of `bits`, in depths: a step
+// of the map, and some units in the last place of floats, which both passes compute in; the
+// point's are of its distance from the eye, `far` at most.
+double rounding_of_depths(int bits, double far) {
+  return (bits < 32 ? std::exp2(-bits) : 0) + (1 + far) * 0x1p-21;
+}
+
 // The ray to the current light in the map of key 0 or 1, which lies in layer `slot`.
 void put_ray(FrameBlock& b, int key, const glm::dvec3& l, const LightFit& fit, int slot) {
   const Vec3d ray = transform_vector(fit.to_texture, from_glm(l));
@@ -96,9 +103,9 @@ void put_ray(FrameBlock& b, int key, const glm::dvec3& l, const LightFit& fit, i
 }
 
 // Where rays to the light leave the scene's box.
-void put_box(FrameBlock& b, const glm::dvec3& l, const Box3& box) {
-  const double low[3] = {box.low.x, box.low.y, box.low.z};
-  const double high[3] = {box.high.x, box.high.y, box.high.z};
+void put_box(FrameBlock& b, const glm::dvec3& l, const Box3& box, const Vec3d& origin) {
+  const glm::dvec3 low = to_glm(box.low) - to_glm(origin);
+  const glm::dvec3 high = to_glm(box.high) - to_glm(origin);
   for (int i = 0; i < 3; ++i) {
     b.corner[i] = float(l[i] > 0 ? high[i] : low[i]);
     b.inverse[i] = float(1 / l[i]);
@@ -115,6 +122,12 @@ Matrix4 reversed_depth(Matrix4 m) {
   return m;
 }
 
+Camera relative_to(Camera camera, const Vec3d& origin) {
+  camera.eye = from_glm(to_glm(camera.eye) - to_glm(origin));
+  camera.target = from_glm(to_glm(camera.target) - to_glm(origin));
+  return camera;
+}
+
 // What finds a pixel's point again from its depth.
 void put_rays(FrameBlock& b, const Camera& camera, int width, int height) {
   const double aspect = double(width) / height, n = camera.near_plane, f = camera.far_plane;
@@ -129,14 +142,15 @@ void put_rays(FrameBlock& b, const Camera& camera, int width, int height) {
 
 }  // namespace
 
-void Renderer::Impl::fill_block(const Camera& camera, const FrameLight& light,
+void Renderer::Impl::fill_block(const Camera& world_camera, const FrameLight& light,
                                 const FramePlan& plan, int nearest) {
   FrameBlock b;
   std::memset(&b, 0, sizeof b);
+  const Camera camera = relative_to(world_camera, scene->origin);
   put(b.view_projection,
       reversed_depth(view_projection(camera, double(target_width) / target_height)));
   put_rays(b, camera, target_width, target_height);
-  put(b.eye, camera.eye.x, camera.eye.y, camera.eye.z, 1);
+  put(b.eye, camera.eye.x, camera.eye.y, camera.eye.z, 0);
   const glm::dvec3 l = glm::normalize(to_glm(light.direction));
   put(b.light, l.x, l.y, l.z, options.intensity);
   const double ambient = scene->baked_vertices || scene->baked_textures ? 0 : options.ambient;
@@ -145,21 +159,22 @@ void Renderer::Impl::fill_block(const Camera& camera, const FrameLight& light,
   if (shadow) {
     const LightFit& from = shadow->fit(nearest);
     const int other = nearest == plan.to ? plan.from : plan.to;
-    put(b.to_map[0], from.to_texture);
-    put(b.to_map[1], shadow->fit(other).to_texture);
+    put(b.to_map[0], relative_to(from.to_texture, scene->origin));
+    put(b.to_map[1], relative_to(shadow->fit(other).to_texture, scene->origin));
     const double between = angle_between(plan.from_direction, plan.to_direction);
     const BlendWeights w = blend_weights(blend_of(options.shadows), plan.t, between);
     // A filter of n bilinear taps reaches (n + 1) / 2 texels to each side: so far a plane would
     // shadow itself.
     const double reach = std::max(1.0, (options.pcf + 1) / 2.0) * from.texel;
     put(b.weights, w.from, w.to, options.normal_offset * reach, 1.0 / options.map_resolution);
+    b.eye[3] = float(rounding_of_depths(options.map_bits, camera.far_plane / from.depth_range));
     b.corner[3] = float(options.slope_bias * reach / from.depth_range);
     put_ray(b, 0, l, from, nearest);
     put_ray(b, 1, l, shadow->fit(other), other);
     b.march[2] = float(2 * from.texel / from.depth_range);
     b.march[3] = nearest == other || b.march[0] == 0 ? 1 : 2;
     b.ray_y[3] = float(1.0 / march_samples(options.march_steps, glm::degrees(between)));
-    put_box(b, l, scene->bounds);
+    put_box(b, l, scene->bounds, scene->origin);
   }
   put(b.specular, options.specular, options.shininess, options.roughness, options.map_resolution);
   glNamedBufferSubData(frame_block.get(), 0, sizeof b, &b);

@@ -80,6 +80,9 @@ Status check_options(const RenderOptions& o) {
   if (o.march_steps < 1 || o.march_steps > 64)
     return {ErrorCode::bad_option,
             fmt::format("{} march steps: 1 to 64 are possible", o.march_steps)};
+  if (o.map_bits != 16 && o.map_bits != 24 && o.map_bits != 32)
+    return {ErrorCode::bad_option,
+            fmt::format("depths of {} bits: 16, 24 or 32 are possible", o.map_bits)};
   if (o.schedule.interval_frames < 1)
     return {ErrorCode::bad_option, "keys are at least one frame apart"};
   return {};
@@ -98,23 +101,21 @@ bool same_schedule(const RenderOptions& a, const RenderOptions& b) {
 
 Status Renderer::Impl::allocate_target(int width, int height, bool lit) {
   if (width == target_width && height == target_height && lit == bool(surfaces)) return {};
-  GLuint name = 0;
-  glCreateRenderbuffers(1, &name);
-  colour = GlRenderbuffer(name);
-  glNamedRenderbufferStorage(name, GL_RGBA8, width, height);
+  colour = create<GlRenderbuffer>(glCreateRenderbuffers);
+  glNamedRenderbufferStorage(colour.get(), GL_RGBA8, width, height);
   depth = target_texture(GL_DEPTH_COMPONENT32F, width, height);
-  target = make_framebuffer();
-  glNamedFramebufferRenderbuffer(target.get(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, name);
+  target = create<GlFramebuffer>(glCreateFramebuffers);
+  glNamedFramebufferRenderbuffer(target.get(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour.get());
   glNamedFramebufferTexture(target.get(), GL_DEPTH_ATTACHMENT, depth.get(), 0);
   surfaces = GlTexture();
   surface_target = GlFramebuffer();
   if (lit) {
     surfaces = target_texture(GL_RGBA32UI, width, height);
-    surface_target = make_framebuffer();
+    surface_target = create<GlFramebuffer>(glCreateFramebuffers);
     const GLuint f = surface_target.get();
     glNamedFramebufferTexture(f, GL_COLOR_ATTACHMENT0, surfaces.get(), 0);
     glNamedFramebufferTexture(f, GL_DEPTH_ATTACHMENT, depth.get(), 0);
-    no_vertices = make_vertex_array();
+    no_vertices = create<GlVertexArray>(glCreateVertexArrays);
   }
   target_width = width;
   target_height = height;
@@ -150,12 +151,13 @@ Status Renderer::Impl::apply(const RenderOptions& wanted) {
   if (Status s = allocate_target(wanted.width, wanted.height, bool(lighting)); !s.ok()) return s;
   const int maps = f.shadow == ShadowSampling::none ? 0 : maps_of(wanted.shadows);
   const bool fresh_maps =
-      maps != shadow_maps || (maps && shadow->resolution() != wanted.map_resolution);
+      maps != shadow_maps || (maps && (shadow->resolution() != wanted.map_resolution ||
+                                       shadow->bits() != wanted.map_bits));
   if (fresh_maps) {
     shadow.reset();
     shadow_maps = 0;
     if (maps) {
-      Result<ShadowPass> made = ShadowPass::make(wanted.map_resolution, maps);
+      Result<ShadowPass> made = ShadowPass::make(wanted.map_resolution, maps, wanted.map_bits);
       if (!made.ok()) return made.status();
       shadow = std::move(made.value());
       shadow_maps = maps;
@@ -315,8 +317,8 @@ std::vector<std::string> Renderer::plan() const {
                         ? "no shadow maps: nothing is lit by the moving light"
                         : "no shadow maps: shadows are off");
   else
-    lines.push_back(fmt::format("shadow maps: {} of {}x{} ({})", i.shadow_maps,
-                                i.shadow->resolution(), i.shadow->resolution(),
+    lines.push_back(fmt::format("shadow maps: {} of {}x{}, {} bits ({})", i.shadow_maps,
+                                i.shadow->resolution(), i.shadow->resolution(), i.shadow->bits(),
                                 name_of(i.options.shadows)));
   if (!i.scene->textured) lines.push_back("no texture code: the scene has no textures");
   if (!i.scene->baked_vertices && !i.scene->baked_textures)

@@ -39,6 +39,7 @@ struct RenderOptions {
   bool show_visibility = false;  // grey values of the light's visibility instead of colours
 
   int map_resolution = 2048;
+  int map_bits = 32;    // of a map's depths: 16 or 24 (integers), 32 (floats)
   int pcf = 3;          // see ShaderFeatures::pcf
   int march_steps = 4;  // march: even map samples along the ray at least, see march_samples()
   // In units of the filter's reach. The normal offset (times the sine of the angle to the light) is

@@ -12,7 +12,7 @@ constexpr const char* kFrameBlock = R"(
 layout(std140, binding = 0) uniform Frame {
   mat4 view_projection;
   mat4 to_map0, to_map1;
-  vec4 eye;
+  vec4 eye;         // least bias (depth)
   vec4 light;       // direction towards it, intensity
   vec4 ambient;     // rgb, exposure
   vec4 weights;     // of the two keys, normal offset (world), texel (uv)
@@ -173,11 +173,12 @@ std::string lighting_text(const ShaderFeatures& f) {
     s += "  float seen = nl > 0.0 ? 1.0 : 0.0;\n";
   else
     // The offset grows with the sine of the angle to the light, as the error of a texel does; the
-    // depth bias with its tangent, which a plane's depth changes by across a texel. Both act here
-    // and not on the casters: maps then hold true depths, which the march needs.
+    // depth bias with its tangent, which a plane's depth changes by across a texel, but never to
+    // nothing: a plane that faces the light is as deep as the map says, give or take rounding. Both
+    // act here and not on the casters: maps then hold true depths, which the march needs.
     s += R"(  float sine = sqrt(max(1.0 - nl * nl, 0.0));
   vec3 p = frame.eye.xyz + away + n * (frame.weights.z * sine);
-  float bias = frame.corner.w * min(sine, 8.0 * nl) / max(nl, 1e-3);
+  float bias = frame.eye.w + frame.corner.w * min(sine, 8.0 * nl) / max(nl, 1e-3);
   float seen = nl > 0.0 ? visibility(p, bias) : 0.0;
 )";
   if (!coloured(f)) return s + "  result = vec4(seen);\n}\n";

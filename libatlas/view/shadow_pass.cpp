@@ -16,8 +16,8 @@ void main() { gl_Position = to_clip * vec4(position, 1.0); }
 constexpr const char* kFragment = "#version 450 core\nvoid main() {}\n";
 
 GlSampler make_sampler(bool compare) {
-  GLuint name = 0;
-  glCreateSamplers(1, &name);
+  GlSampler sampler = create<GlSampler>(glCreateSamplers);
+  const GLuint name = sampler.get();
   const GLint filter = compare ? GL_LINEAR : GL_NEAREST;
   glSamplerParameteri(name, GL_TEXTURE_MIN_FILTER, filter);
   glSamplerParameteri(name, GL_TEXTURE_MAG_FILTER, filter);
@@ -29,12 +29,12 @@ GlSampler make_sampler(bool compare) {
     glSamplerParameteri(name, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
     glSamplerParameteri(name, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
   }
-  return GlSampler(name);
+  return sampler;
 }
 
 }  // namespace
 
-Result<ShadowPass> ShadowPass::make(int resolution, int maps) {
+Result<ShadowPass> ShadowPass::make(int resolution, int maps, int bits) {
   GLint largest = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
   if (resolution < 16 || resolution > largest)
@@ -48,23 +48,25 @@ Result<ShadowPass> ShadowPass::make(int resolution, int maps) {
   pass.compare_ = make_sampler(true);
   pass.plain_ = make_sampler(false);
   pass.resolution_ = resolution;
-  GLuint layers = 0;
-  glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &layers);
-  pass.layers_ = GlTexture(layers);
-  glTextureStorage3D(layers, 1, GL_DEPTH_COMPONENT32F, resolution, resolution, maps);
+  pass.bits_ = bits;
+  const GLenum format = bits == 16   ? GL_DEPTH_COMPONENT16
+                        : bits == 24 ? GL_DEPTH_COMPONENT24
+                                     : GL_DEPTH_COMPONENT32F;
+  pass.layers_ = create<GlTexture>(glCreateTextures, GL_TEXTURE_2D_ARRAY);
+  const GLuint layers = pass.layers_.get();
+  glTextureStorage3D(layers, 1, format, resolution, resolution, maps);
   for (int i = 0; i < maps; ++i) {
     Map map;
-    GLuint view = 0;
-    glGenTextures(1, &view);  // a view takes a name that has never been bound
-    map.view = GlTexture(view);
-    glTextureView(view, GL_TEXTURE_2D, layers, GL_DEPTH_COMPONENT32F, 0, 1, GLuint(i), 1);
-    map.frame = make_framebuffer();
+    map.view = create<GlTexture>(glGenTextures);  // a view takes a name that was never bound
+    glTextureView(map.view.get(), GL_TEXTURE_2D, layers, format, 0, 1, GLuint(i), 1);
+    map.frame = create<GlFramebuffer>(glCreateFramebuffers);
     const GLuint f = map.frame.get();
     glNamedFramebufferTextureLayer(f, GL_DEPTH_ATTACHMENT, layers, 0, i);
     glNamedFramebufferDrawBuffer(f, GL_NONE);
     glNamedFramebufferReadBuffer(f, GL_NONE);
     if (glCheckNamedFramebufferStatus(f, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-      return Status{ErrorCode::unsupported, "the driver does not draw into 32-bit depth textures"};
+      return Status{ErrorCode::unsupported,
+                    fmt::format("the driver does not draw into {}-bit depth textures", bits)};
     pass.maps_.push_back(std::move(map));
   }
   if (Status s = check_gl("making shadow maps"); !s.ok()) return s;
@@ -87,8 +89,9 @@ std::uint32_t ShadowPass::draw(const GpuScene& scene, int slot, const LightFit& 
   };
   const std::uint32_t first = at(begin), count = at(end) - first;
   if (count == 0) return 0;
+  const Matrix4 to_clip = relative_to(map.fit.to_clip, scene.origin);
   float matrix[16];
-  for (int i = 0; i < 16; ++i) matrix[i] = float(map.fit.to_clip[i]);
+  for (int i = 0; i < 16; ++i) matrix[i] = float(to_clip[i]);
   glUseProgram(program_.get());
   glUniformMatrix4fv(0, 1, GL_FALSE, matrix);
   glEnable(GL_DEPTH_TEST);

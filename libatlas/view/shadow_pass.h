@@ -10,8 +10,8 @@ namespace atlas {
 
 class ShadowPass {
  public:
-  // `maps` square depth textures of `resolution` texels a side.
-  static Result<ShadowPass> make(int resolution, int maps);
+  // `maps` square depth textures of `resolution` texels a side, `bits` (16, 24, 32) each.
+  static Result<ShadowPass> make(int resolution, int maps, int bits);
 
   // Draws triangles [begin, end) (fractions of all) into map `slot`; begin == 0 clears it first and
   // remembers `fit`. Returns the number of triangles submitted.
@@ -25,6 +25,7 @@ class ShadowPass {
   void bind_all_compare(int unit) const;
   void bind_all_depths(int unit) const;
   int resolution() const { return resolution_; }
+  int bits() const { return bits_; }
 
  private:
   struct Map {
@@ -36,7 +37,7 @@ class ShadowPass {
   std::vector<Map> maps_;
   GlSampler compare_, plain_;
   GlProgram program_;
-  int resolution_ = 0;
+  int resolution_ = 0, bits_ = 32;
 };
 
 }  // namespace atlas

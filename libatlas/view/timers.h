@@ -11,11 +11,7 @@ namespace atlas {
 class PassTimer {
  public:
   PassTimer() {
-    for (GlQuery& q : queries_) {
-      GLuint name = 0;
-      glCreateQueries(GL_TIME_ELAPSED, 1, &name);
-      q = GlQuery(name);
-    }
+    for (GlQuery& q : queries_) q = create<GlQuery>(glCreateQueries, GL_TIME_ELAPSED);
   }
   void begin() { glBeginQuery(GL_TIME_ELAPSED, queries_[at_ % kRing].get()); }
   void end() {

@@ -197,10 +197,11 @@ class Builder {
     }
     const glm::vec3 centre = low + (high - low) * 0.5f;
     c.centre = from_glm(centre);
+    double radius = 0;  // the squares of small scenes' lengths underflow floats
     for (std::uint32_t i = c.first; i < c.first + c.count; ++i)
-      c.radius =
-          std::max(c.radius, glm::length(to_glm(view_.positions[view_.indices[i]]) - centre));
-    c.radius *= 1.0001f;  // rounding
+      radius = std::max(
+          radius, glm::length(to_dvec(view_.positions[view_.indices[i]]) - glm::dvec3(centre)));
+    c.radius = float(radius * 1.0001);  // rounding
   }
 
   void add_casters() {

@@ -45,6 +45,11 @@ TEST(Stability, Downsizing) {
 TEST(Stability, Blend) {
   expect_all_hold(check_blend);
 }
+#ifdef ATLAS_BENCH_VIEW
+TEST(Stability, ShadowMaps) {
+  expect_all_hold(check_shadow_maps);
+}
+#endif
 TEST(Stability, Grouping) {
   expect_all_hold(check_grouping);
 }

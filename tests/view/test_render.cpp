@@ -94,6 +94,7 @@ TEST(Render, SixHundredFramesOfEverythingWithoutAnError) {
     o.fit_view = round % 5 == 0;
     o.show_visibility = round % 3 == 0;
     o.map_resolution = round % 11 == 0 ? 512 : 256;
+    o.map_bits = std::array{32, 24, 16}[round / 3 % 3];
     o.width = 64 + round % 3;
     ASSERT_TRUE(r.set_options(o).ok());
     for (int i = 0; i < 12; ++i, ++frame) {
@@ -150,17 +151,49 @@ TEST(Render, ThePlanSaysWhatIsMissingAndWhy) {
   EXPECT_NE(plan[4].find("no baked light"), std::string::npos);
 }
 
+// Floats still hold every position of the moved scene; what is computed from them must not round.
+TEST(Render, AFarSceneLooksLikeANearOne) {
+  View near;
+  add_quad(near.scene, {{-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}}, 8);
+  add_box(near.scene, {-2, 0.25f, -1}, {-1.5f, 2, 1});
+  add_box(near.scene, {0.5f, 1, -2}, {2, 1.125f, 2});
+  near.camera.eye = {1, 6, 5.5};
+  near.camera.near_plane = 0.5;
+  View far = near;
+  const Vec3f by{0x1p17f, 0x1p18f, -0x1p18f};
+  for (Vec3f& p : far.scene.positions) p = {p.x + by.x, p.y + by.y, p.z + by.z};
+  for (Vec3d* p : {&far.camera.eye, &far.camera.target})
+    *p = {p->x + by.x, p->y + by.y, p->z + by.z};
+  RenderOptions o = small();
+  o.shading = Shading::ward;
+  for (ShadowMethod method : {ShadowMethod::classic, ShadowMethod::linear, ShadowMethod::march}) {
+    o.shadows = method;
+    Renderer a = must_render(near.scene, o), b = must_render(far.scene, o);
+    const LightPath path = *LightPath::make({});
+    for (int f = 0; f < 4; ++f) {
+      ASSERT_TRUE(a.draw(near.camera, sun_at(path, f)).ok());
+      ASSERT_TRUE(b.draw(far.camera, sun_at(path, f)).ok());
+    }
+    const Image8 x = a.read_image(), y = b.read_image();
+    int different = 0;
+    for (std::size_t i = 0; i < x.texels.size(); ++i)
+      different += std::abs(int(x.texels[i]) - int(y.texels[i])) > 2;
+    EXPECT_LE(different, int(x.texels.size()) / 2000) << name_of(method);
+  }
+}
+
 TEST(Render, WrongOptionsAreSaidAndChangeNothing) {
   const View view = courtyard_view();
   RenderOptions o = small();
   Renderer r = must_render(view.scene, o);
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 7; ++i) {
     RenderOptions bad = o;
     if (i == 0) bad.pcf = 2;
     if (i == 1) bad.width = 0;
     if (i == 2) bad.height = 1 << 20;
     if (i == 3) bad.map_resolution = 1 << 20;
     if (i == 4) bad.march_steps = 0;
+    if (i == 6) bad.map_bits = 8;
     if (i == 5) bad.schedule.interval_frames = 0;
     const Status s = r.set_options(bad);
     EXPECT_EQ(s.code(), ErrorCode::bad_option) << i;
