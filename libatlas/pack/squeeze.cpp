@@ -30,20 +30,16 @@ class Solver {
   }
 
   // Takes overlaps out until none is deeper than the tolerance. Only points that were near another
-  // chart when last looked at are followed from sweep to sweep.
+  // chart when last looked at are followed from sweep to sweep, until charts have moved so far that
+  // others may have come near (the neighbour lists of Verlet 1967).
   bool relax(const SqueezePage& page, std::uint32_t sweeps) {
-    constexpr std::uint32_t kRenew = 8;
     double before = 1e300;
-    bool fresh = false;
-    for (std::uint32_t s = 0, age = 0; s < sweeps; ++s, ++age) {
-      if (age % kRenew == 0) find_contacts(page);
-      fresh = age % kRenew == 0;
+    find_contacts(page);
+    for (std::uint32_t s = 0; s < sweeps; ++s) {
+      if (2 * farthest_move() > kSkin) find_contacts(page);
       const double deepest = sweep(page);
       ++sweeps_;
-      if (deepest <= options_.tolerance) {
-        if (fresh) return true;
-        age = kRenew - 1;
-      }
+      if (deepest <= options_.tolerance) return true;
       if (s % 16 == 15) {
         if (deepest > 0.98 * before) return false;
         before = deepest;
@@ -77,8 +73,23 @@ class Solver {
   };
   static constexpr std::uint32_t kWall = 0xffffffffu;
 
+  // How far a point of any chart has moved since contacts were looked for.
+  double farthest_move() const {
+    double square = 0;
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      const Pose &now = poses_[i], &then = seen_[i];
+      const double turned =
+          bodies_[i].radius * (std::abs(now.cosine - then.cosine) + std::abs(now.sine - then.sine));
+      const double dx = std::abs(now.at.x - then.at.x) + turned;
+      const double dy = std::abs(now.at.y - then.at.y) + turned;
+      square = std::max(square, dx * dx + dy * dy);
+    }
+    return std::sqrt(square);
+  }
+
   void find_contacts(const SqueezePage& page) {
     contacts_.clear();
+    seen_ = poses_;
     const double skin = kSkin + options_.clearance;
     for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
       const double m = options_.margin + kSkin, r = bodies_[i].radius;
@@ -130,7 +141,7 @@ class Solver {
     DistanceField::Sample s;
     if (!sample(c.j, p, s)) return 0;
     const double depth = options_.clearance - s.distance;
-    const double length = std::hypot(s.gradient.x, s.gradient.y);
+    const double length = std::sqrt(s.gradient.x * s.gradient.x + s.gradient.y * s.gradient.y);
     if (depth <= 0 || length < 1e-12) return 0;
     const Pose& pose = poses_[c.j];
     const double gx = s.gradient.x / length, gy = s.gradient.y / length;
@@ -191,7 +202,7 @@ class Solver {
 
   std::span<Body> bodies_;
   const SqueezeOptions& options_;
-  std::vector<Pose> poses_;
+  std::vector<Pose> poses_, seen_;
   std::vector<Contact> contacts_;
   std::uint64_t sweeps_ = 0;
   static constexpr double kSkin = 16;
