@@ -324,11 +324,13 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
   std::vector<std::uint32_t> seed(cells, kNoIndex);
   const std::vector<Ruler> rulers = triangle_rulers(topology);
   std::vector<std::uint32_t> best(cells, kFar);
+  std::vector<glm::vec3> middle(n);  // 1 a triangle: each is asked for several times
+  for (std::uint32_t t = 0; t < n; ++t) middle[t] = centroid(topology, t);
   for (std::uint32_t t = 0; t < n; ++t) {
     const std::uint32_t g = grains.of_triangle[t];
     if (g == kNoIndex || seeder.seeds[seeder.owner()[g]] != g) continue;
     const Ruler& ruler = rulers[topology.component[t]];
-    const std::uint32_t d = ruler(glm::distance(centroid(topology, t), grains.centroid[g]));
+    const std::uint32_t d = ruler(glm::distance(middle[t], grains.centroid[g]));
     const std::uint32_t s = seeder.owner()[g];
     if (d < best[s]) {
       best[s] = d;
@@ -356,14 +358,14 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
     const Visit visit = heap.pop();
     if (result.of_triangle[visit.node] != kNoIndex) continue;
     result.of_triangle[visit.node] = visit.seed;
-    const glm::vec3 from = centroid(topology, visit.node);
+    const glm::vec3 from = middle[visit.node];
     const Ruler& ruler = rulers[topology.component[visit.node]];
     for (std::uint32_t h = 3 * visit.node; h < 3 * visit.node + 3; ++h) {
       const std::uint32_t o = topology.opposite[h];
       if (o == kNoIndex || result.of_triangle[o / 3] != kNoIndex) continue;
       const float lean =
           1 - glm::dot(to_glm(topology.calm_normal(o / 3)), seeder.normals[visit.seed]);
-      const float step = glm::distance(from, centroid(topology, o / 3));
+      const float step = glm::distance(from, middle[o / 3]);
       const float distance = visit.distance + step * (1 + kNormalWeight * lean);
       const std::uint32_t key = ruler(distance);
       if (key > nearest[o / 3]) continue;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "libatlas/charts/split.h"
+#include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/param/orient.h"
 
@@ -51,7 +52,7 @@ class ChartJob {
       for (int cuts = 0;; ++cuts) {
         if (try_flatten(outcome)) return outcome;
         if (hopeless() || (noisy() && only_darts() && cuts >= kMostCuts)) break;
-        if (!cut_open(cuts)) break;
+        if (!cut_open_timed(cuts)) break;
         build(triangles);
       }
       if (!hopeless()) list_removable(outcome);
@@ -104,6 +105,14 @@ class ChartJob {
     if (cuts >= effort_.cuts || result_.within_bound) return false;
     return !result_.offenders.empty() &&
            cut_to_border(input_.topology, chart_, result_.offenders, closed_cuts_, partition_);
+  }
+
+  bool cut_open_timed(int cuts) {
+    if (chart_.triangles().size() < ParamWorkspace::timed_triangles) return cut_open(cuts);
+    Stopwatch watch(thread_cpu_seconds);
+    const bool any = cut_open(cuts);
+    scratch_.cuts_cpu += watch.lap();
+    return any;
   }
 
   // Where the border crosses itself in a few places: triangles around one side of each crossing,

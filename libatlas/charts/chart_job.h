@@ -17,6 +17,7 @@ struct ChartScratch {
   ParamWorkspace workspace;
   std::vector<std::array<Vec3d, 2>> frames;
   std::vector<std::array<std::uint32_t, 2>> border;
+  double cuts_cpu = 0;  // seconds spent on cutting charts open
 };
 
 // What became of a chart: flat; or to be divided; or to lose a few triangles to its neighbours.

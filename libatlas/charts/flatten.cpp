@@ -8,6 +8,7 @@
 
 #include "libatlas/charts/absorb.h"
 #include "libatlas/charts/chart_job.h"
+#include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
 
 namespace atlas {
@@ -31,6 +32,15 @@ class ScratchPool {
   void give(std::unique_ptr<ChartScratch> scratch) {
     const std::lock_guard lock(mutex_);
     free_.push_back(std::move(scratch));
+  }
+  // Of those that were given back.
+  void add_times(ChartSet::Timing& timing) const {
+    for (const auto& scratch : free_) {
+      timing.cuts_cpu += scratch->cuts_cpu;
+      timing.solve_cpu += scratch->workspace.timing.solve;
+      timing.flips_cpu += scratch->workspace.timing.flips;
+      timing.overlaps_cpu += scratch->workspace.timing.overlaps;
+    }
   }
 
  private:
@@ -76,6 +86,7 @@ class Flattener {
 
   FlattenResult take_result(const Context& context) {
     FlattenResult result;
+    pool_.add_times(result.timing);
     result.split_charts = split_;
     for (std::size_t k = 0; k < charts_.size(); ++k) {
       flats_[k].triangles = std::move(charts_[k].triangles);
@@ -85,8 +96,10 @@ class Flattener {
     result.charts = std::move(flats_);
     std::erase_if(result.charts, [](const FlatChart& chart) { return chart.triangles.empty(); });
     if (split_ > 0 || input_.options.cone_degrees > 0) {
+      Stopwatch watch(cpu_seconds);
       const auto scratch = pool_.take();
       absorb_fragments({input_, partition_, *scratch}, result.charts, context);
+      result.timing.absorb_cpu = watch.lap();
     }
     std::sort(result.charts.begin(), result.charts.end(),
               [](const FlatChart& a, const FlatChart& b) {

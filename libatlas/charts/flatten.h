@@ -40,7 +40,11 @@ struct FlattenInput {
 struct FlattenResult {
   std::vector<FlatChart> charts;   // ordered by first triangle
   std::uint64_t split_charts = 0;  // that failed and were cut into smaller ones
+  ChartSet::Timing timing;         // the parts of parameterisation so far
 };
+
+// Adds the parts, not the two sums, of one to the other.
+void add_parts(const ChartSet::Timing& parts, ChartSet::Timing& sum);
 
 // Every triangle with a chart in `partition` ends in exactly one FlatChart; each is injective,
 // within the stretch bound and, if asked for, within the cone. `partition` is left as it came out

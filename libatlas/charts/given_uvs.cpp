@@ -276,14 +276,17 @@ class GivenSet {
     if (!any(wanted)) return {};
     const double start = cpu_seconds();
     Segmentation segmentation = segment(only(wanted), input_.options, context_);
-    result_.segmentation_cpu += cpu_seconds() - start;
+    result_.timing.segmentation_cpu += cpu_seconds() - start;
+    add_parts(segmentation.timing, result_.timing);
     if (context_.cancelled()) return {};
     return flatten(segmentation.partition, std::move(segmentation.frames));
   }
 
   std::vector<FlatChart> flatten(Partition& partition, Frames frames) {
-    return flatten_charts({topology_, input_.density, input_.options, frames}, partition, context_)
-        .charts;
+    FlattenResult flat =
+        flatten_charts({topology_, input_.density, input_.options, frames}, partition, context_);
+    add_parts(flat.timing, result_.timing);
+    return std::move(flat.charts);
   }
 
   // The topology with all other triangles marked as degenerate: linked triangles share a component,

@@ -21,7 +21,7 @@ struct GivenUvsResult {
   std::uint64_t kept_charts = 0;   // given charts whose uvs were taken,
   std::uint64_t reflattened = 0;   // and the others
   std::uint64_t split_charts = 0;  // of those others: cut into smaller ones
-  double segmentation_cpu = 0;     // seconds of segmenting, all threads
+  ChartSet::Timing timing;         // of segmenting, and the parts of everything
 };
 
 // `input.topology` was cut at the uv seams of `mesh`, whose texcoord_indices are those of

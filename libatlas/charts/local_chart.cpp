@@ -3,6 +3,11 @@
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
+namespace {
+
+constexpr std::uint32_t kManyTriangles = 30000;  // whose solver no longer fits the caches
+
+}  // namespace
 
 void LocalChart::build(const Topology& topology, Partition& partition,
                        std::span<const std::uint32_t> triangles) {
@@ -18,13 +23,14 @@ void LocalChart::build(const Topology& topology, Partition& partition,
       opposite[3 * i + c] = 3 * partition.local[o / 3] + o % 3;
     }
   }
+  find_components();
   number_vertices(topology);
   find_loops();
-  find_components();
 }
 
 // A local vertex is a fan of corners joined by edges of the chart, so that a vertex where only
-// corners touch comes apart.
+// corners touch comes apart. In large charts neighbours get numbers near each other: solvers then
+// work within the processor's caches, whatever the order of the mesh.
 void LocalChart::number_vertices(const Topology& topology) {
   const auto n = static_cast<std::uint32_t>(triangles_.size());
   corners.assign(n, {kNoIndex, kNoIndex, kNoIndex});
@@ -33,7 +39,8 @@ void LocalChart::number_vertices(const Topology& topology) {
   density.clear();
   const auto corner = [&](std::uint32_t h) -> std::uint32_t& { return corners[h / 3][h % 3]; };
   const Vec3f first = topology.points[topology.corner_vertex[3 * std::size_t{triangles_[0]}]];
-  for (std::uint32_t start = 0; start < 3 * n; ++start) {
+  for (std::uint32_t i = 0; i < 3 * n; ++i) {
+    const std::uint32_t start = n < kManyTriangles ? i : 3 * queue_[i / 3] + i % 3;
     if (corner(start) != kNoIndex) continue;
     const auto id = static_cast<std::uint32_t>(positions.size());
     const std::uint32_t v =
@@ -75,13 +82,14 @@ void LocalChart::find_components() {
   const auto n = static_cast<std::uint32_t>(triangles_.size());
   component.assign(n, kNoIndex);
   component_count = 0;
+  queue_.clear();
   for (std::uint32_t seed = 0; seed < n; ++seed) {
     if (component[seed] != kNoIndex) continue;
     component[seed] = component_count;
-    queue_.assign(1, seed);
-    while (!queue_.empty()) {
-      const std::uint32_t t = queue_.back();
-      queue_.pop_back();
+    std::size_t next = queue_.size();
+    queue_.push_back(seed);
+    while (next < queue_.size()) {
+      const std::uint32_t t = queue_[next++];
       for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
         if (opposite[h] == kNoIndex || component[opposite[h] / 3] != kNoIndex) continue;
         component[opposite[h] / 3] = component_count;

@@ -60,7 +60,7 @@ class LocalChart {
 
   std::span<const std::uint32_t> triangles_;
   std::vector<std::uint8_t> seen_;
-  std::vector<std::uint32_t> queue_;
+  std::vector<std::uint32_t> queue_;  // its triangles, breadth-first
 };
 
 }  // namespace atlas

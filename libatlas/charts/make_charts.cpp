@@ -65,8 +65,12 @@ std::vector<FlatChart> cut_charts(const Work& work, const Context& context, Char
   context.report("charts", 0.5);
   const FlattenInput input{work.topology, work.mesh.density, work.options, segmentation.frames};
   FlattenResult flat = flatten_charts(input, segmentation.partition, context);
+  add_parts(segmentation.timing, set.timing);
+  add_parts(flat.timing, set.timing);
+  Stopwatch watch(cpu_seconds);
   set.repairs.split_charts = flat.split_charts;
   cut_limbs(input, flat.charts, context);
+  set.timing.limbs_cpu = watch.lap();
   return std::move(flat.charts);
 }
 
@@ -75,7 +79,8 @@ std::vector<FlatChart> keep_charts(const Work& work, const Context& context, Cha
   Frames none;
   GivenUvsResult given =
       flatten_given_uvs({work.topology, work.mesh.density, work.options, none}, work.mesh, context);
-  set.timing.segmentation_cpu += given.segmentation_cpu;
+  set.timing.segmentation_cpu += given.timing.segmentation_cpu;
+  add_parts(given.timing, set.timing);
   set.repairs.split_charts = given.split_charts;
   set.repairs.kept_charts = given.kept_charts;
   set.repairs.reflattened_charts = given.reflattened;
@@ -277,6 +282,15 @@ Distortion sum_up(const ChartSet& set) {
 
 }  // namespace
 
+void add_parts(const ChartSet::Timing& parts, ChartSet::Timing& sum) {
+  using T = ChartSet::Timing;
+  for (const auto part : {&T::topology_cpu, &T::noise_cpu, &T::cells_cpu, &T::coarse_cpu,
+                          &T::merging_cpu, &T::borders_cpu, &T::cuts_cpu, &T::solve_cpu,
+                          &T::flips_cpu, &T::overlaps_cpu, &T::absorb_cpu, &T::limbs_cpu}) {
+    sum.*part += parts.*part;
+  }
+}
+
 Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
                              const Context& context) {
   if (Status status = check_options(options); !status.ok()) return status;
@@ -298,6 +312,8 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
   for (const float area : topology.areas) set.surface_area += area;
   set.surface_area /= topology.scale * topology.scale;
   set.timing.segmentation_cpu = cpu_seconds() - start;
+  set.timing.noise_cpu = topology.noise_cpu;
+  set.timing.topology_cpu = set.timing.segmentation_cpu - topology.noise_cpu;
 
   context.report("charts", 0.1);
   std::vector<FlatChart> charts = options.keep_uv_charts

@@ -7,6 +7,7 @@
 #include "libatlas/charts/coarse.h"
 #include "libatlas/charts/merge.h"
 #include "libatlas/charts/refine.h"
+#include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -107,9 +108,11 @@ class Segmenter {
         cone_(options.cone_degrees * M_PI / 180) {}
 
   Segmentation run() {
+    Stopwatch watch(cpu_seconds);
     Cells cells = grow_cells(topology_, CellOptions{}, context_);
     if (context_.cancelled()) return {};
     if (cone_ > 0) split_by_cone(topology_, cone_, cells);
+    result_.timing.cells_cpu = watch.lap();
     const std::size_t n = topology_.triangle_count();
     result_.partition.chart.assign(n, kNoIndex);
     result_.partition.seams.assign(n, 0);
@@ -120,8 +123,10 @@ class Segmenter {
       merge_in_turn(cells);
     }
     if (context_.cancelled()) return {};
+    watch.lap();
     smooth_borders(topology_, options_.crease_degrees, {axes_, std::cos(cone_ - 1e-5)},
                    result_.partition, result_.frames);
+    result_.timing.borders_cpu = watch.lap();
     return std::move(result_);
   }
 
@@ -162,7 +167,9 @@ class Segmenter {
   }
 
   void merge(Cells& cells) {
+    Stopwatch watch(cpu_seconds);
     const CoarseMesh coarse = build_coarse(topology_, options_.crease_degrees, cells);
+    result_.timing.coarse_cpu += watch.lap();
     const std::vector<std::uint32_t> piece = piece_of(cells);
     MergeOptions merge;
     follow_bound(options_.max_stretch, merge);
@@ -178,6 +185,7 @@ class Segmenter {
     spread_to_triangles(topology_, cells, coarse, merged, labels_, result_);
     labels_ += static_cast<std::uint32_t>(coarse.cells.size());
     axes_.insert(axes_.end(), merged.chart_axis.begin(), merged.chart_axis.end());
+    result_.timing.merging_cpu += watch.lap();
   }
 
   const Topology& topology_;

@@ -14,7 +14,8 @@ namespace atlas {
 
 struct Segmentation {
   Partition partition;
-  Frames frames;  // or empty
+  Frames frames;            // or empty
+  ChartSet::Timing timing;  // the parts of segmentation after the topology
 };
 
 // Each component on its own; texcoords play no part.

@@ -10,6 +10,7 @@
 
 #include "libatlas/charts/links.h"
 #include "libatlas/charts/noise.h"
+#include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -257,7 +258,9 @@ Result<Topology> build_topology(const MeshView& mesh, const TopologyOptions& opt
   if (context.cancelled()) return Status::cancelled();
   Pieces(topology).run();
   count_nonmanifold_vertices(topology);
+  Stopwatch watch(cpu_seconds);
   calm_noise(topology, context);
+  topology.noise_cpu = watch.lap();
   return topology;
 }
 

@@ -39,6 +39,7 @@ struct Topology {
   std::uint32_t component_count = 0;
   double cut_length = 0;  // of edges that exactly two triangles share without a link, input units
   double scale = 1;       // points = positions * scale, a power of two
+  double noise_cpu = 0;   // seconds that calm_normals took
   TopologyDefects defects;
   // Linked half-edges (one of each pair) of edges that more than two triangles share.
   std::vector<std::uint32_t> fan_links;

@@ -7,6 +7,12 @@
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
+namespace {
+
+// Of lengths: float coordinates of a part that lies a hundred of its sizes from the origin.
+constexpr double kUnrolledError = 1e-3;
+
+}  // namespace
 
 std::uint32_t Trial::root(std::uint32_t slot) {
   while (slot_vertex_[slot] != slot) slot = slot_vertex_[slot] = slot_vertex_[slot_vertex_[slot]];
@@ -219,6 +225,21 @@ void Trial::join_flat(std::span<const std::uint32_t> first, std::span<const std:
   align(first.size(), glue);
 }
 
+// Whether the aligned halves keep all lengths as they are, as those of boxes and tubes do: a
+// descent would change nothing that the limits could see.
+bool Trial::unrolled() const {
+  for (const auto& triangle : triangles_) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = triangle[k], b = triangle[(k + 1) % 3];
+      const glm::dvec3 edge = to_glm(positions_[b]) - to_glm(positions_[a]);
+      const glm::dvec2 flat = to_glm(uvs_[b]) - to_glm(uvs_[a]);
+      const double squared = glm::dot(edge, edge);
+      if (std::abs(glm::dot(flat, flat) - squared) > 2 * kUnrolledError * squared) return false;
+    }
+  }
+  return true;
+}
+
 TrialOutcome Trial::run_joined(std::span<const std::uint32_t> first,
                                std::span<const std::uint32_t> second,
                                std::span<const std::uint32_t> glue,
@@ -239,9 +260,11 @@ TrialOutcome Trial::run_joined(std::span<const std::uint32_t> first,
   if (outcome.euler > 1 || triangles_.empty()) return outcome;
   align(first.size(), glue);
   const LocalMesh mesh{positions_, triangles_, {}};
-  IsometricOptions options;
-  options.iterations = limits.iterations;
-  flatten_isometric(mesh, {uvs_, {}}, options, uvs_, workspace_);
+  if (!unrolled()) {
+    IsometricOptions options;
+    options.iterations = limits.iterations;
+    flatten_isometric(mesh, {uvs_, {}}, options, uvs_, workspace_);
+  }
   outcome.accepted = stretch_fits(limits, outcome) && border_fits(joined, limits, outcome);
   return outcome;
 }

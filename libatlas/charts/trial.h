@@ -60,6 +60,7 @@ class Trial {
   void assemble(const std::vector<std::uint8_t>& joined);
   void join(std::uint32_t arc);
   void align(std::size_t first_cells, std::span<const std::uint32_t> glue);
+  bool unrolled() const;
   bool stretch_fits(const TrialLimits& limits, TrialOutcome& outcome);
   bool border_fits(const std::vector<std::uint8_t>& joined, const TrialLimits& limits,
                    TrialOutcome& outcome);

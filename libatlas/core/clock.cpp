@@ -1,6 +1,7 @@
 #include "libatlas/core/clock.h"
 
 #include <sys/resource.h>
+#include <time.h>
 
 #include <chrono>
 
@@ -16,6 +17,12 @@ double cpu_seconds() {
   getrusage(RUSAGE_SELF, &usage);
   const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+double thread_cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
 
 std::int64_t peak_memory() {

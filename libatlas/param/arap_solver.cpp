@@ -18,6 +18,9 @@ constexpr std::size_t direct_limit = 6000;
 // rougher: what it leaves is smooth, and later steps take long to remove it.
 constexpr double first_inexactness = 1e-9, rough = 1e-7, fine = 3e-11;
 constexpr int most_iterations = 60;
+// The fall of the energy by one local step, as part of the area, after which exact solves change no
+// more than inexact ones leave.
+constexpr double converged = 3e-11;
 
 // Seen edge-on, or from behind, a triangle has no rotation near its map.
 bool trustworthy(const Jacobian& j) {
@@ -206,7 +209,10 @@ void ArapSolver::start(std::span<const Vec2d> uvs) {
 
 void ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
   for (int i = 0; i < steps; ++i) {
-    if (i > 0) local_rotations(w_.elements, uvs, w_.rotations);
+    if (i > 0) {
+      const double fall = update_rotations(w_.elements, uvs, w_.rotations);
+      if (method_ != Method::multigrid && fall <= converged * area_) return;
+    }
     rotation_load(w_.elements, w_.rotations, w_.load);
     solve(i + 1 == steps ? fine : i == 0 ? first_inexactness : rough);
     for (std::size_t v = 0; v < uvs.size(); ++v) uvs[v] = from_glm(w_.solution[v]);

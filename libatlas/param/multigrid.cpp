@@ -10,11 +10,6 @@ constexpr std::uint32_t none = 0xffffffff;
 constexpr std::size_t direct_limit = 300;  // rows that the envelope solver takes at the bottom
 constexpr double strong_coupling = 0.06;   // against the geometric mean of the two diagonals
 
-void invert_diagonal(const SymmetricMatrix& a, std::vector<double>& out) {
-  out.resize(a.rows());
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = a.diagonal[i] > 0 ? 1 / a.diagonal[i] : 0;
-}
-
 void multiply(const SymmetricMatrix& a, std::span<const glm::dvec2> x, std::span<glm::dvec2> out) {
   for (std::size_t i = 0; i < a.rows(); ++i) {
     glm::dvec2 sum = a.diagonal[i] * x[i];
@@ -27,6 +22,12 @@ double inner(std::span<const glm::dvec2> a, std::span<const glm::dvec2> b) {
   glm::dvec2 sum(0);
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
   return sum.x + sum.y;
+}
+
+double inner(std::span<const glm::dvec2> a, std::span<const glm::vec2> b, double factor) {
+  glm::dvec2 sum(0);
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * glm::dvec2(b[i]);
+  return factor * (sum.x + sum.y);
 }
 
 }  // namespace
@@ -191,6 +192,22 @@ bool MultigridSolver::coarsen(const Product& product, const Level& level, std::s
   return true;
 }
 
+void MultigridSolver::store_single(const SymmetricMatrix& a, Level& level) {
+  const std::size_t n = a.rows();
+  level.inverse_diagonal.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    level.inverse_diagonal[i] = a.diagonal[i] > 0 ? static_cast<float>(1 / a.diagonal[i]) : 0;
+  }
+  level.entries.resize(a.column.size());
+  for (std::size_t k = 0; k < level.entries.size(); ++k) {
+    level.entries[k] = {a.column[k], static_cast<float>(a.value[k])};
+  }
+  level.prolongation.resize(level.column.size());
+  for (std::size_t k = 0; k < level.prolongation.size(); ++k) {
+    level.prolongation[k] = {level.column[k], static_cast<float>(level.value[k])};
+  }
+}
+
 bool MultigridSolver::build(const SymmetricMatrix& matrix) {
   const SymmetricMatrix* a = &matrix;
   depth_ = 0;
@@ -201,13 +218,12 @@ bool MultigridSolver::build(const SymmetricMatrix& matrix) {
     const std::size_t n = a->rows();
     level.x.resize(n);
     level.load.resize(n);
-    level.residual.resize(n);
     if (n <= direct_limit) break;
-    invert_diagonal(*a, level.inverse_diagonal);
     const std::uint32_t coarse = aggregate(*a, level);
     if (coarse > n / 2) return false;
     prolongate(*a, coarse, level);
     transpose(coarse, level);
+    store_single(*a, level);
     if (!multiply_prolongation(*a, coarse, level, galerkin_)) return false;
     if (!coarsen(galerkin_, level, a->column.size(), levels_[depth_ + 1].matrix)) return false;
   }
@@ -215,47 +231,55 @@ bool MultigridSolver::build(const SymmetricMatrix& matrix) {
   return true;
 }
 
+void MultigridSolver::solve_coarsest(Level& level) {
+  coarse_load_.assign(level.load.begin(), level.load.end());
+  coarse_x_.resize(level.x.size());
+  coarsest_.solve(coarse_load_, coarse_x_);
+  for (std::size_t i = 0; i < level.x.size(); ++i) level.x[i] = glm::vec2(coarse_x_[i]);
+}
+
 // x of the level becomes an approximate solution for its load.
 void MultigridSolver::cycle(const SymmetricMatrix& finest, std::size_t depth) {
   Level& level = levels_[depth];
-  if (depth == depth_) return coarsest_.solve(level.load, level.x);
+  if (depth == depth_) return solve_coarsest(level);
   const SymmetricMatrix& a = depth == 0 ? finest : level.matrix;
   const std::size_t n = a.rows();
+  const Entry *entries = level.entries.data(), *prolongation = level.prolongation.data();
+  const std::uint32_t *first = a.first.data(), *middle = a.middle.data();
+  const std::uint32_t* coarse_first = level.first.data();
+  glm::vec2* x = level.x.data();
   // A forward Gauss-Seidel sweep that starts from 0 meets nothing but zeros above the diagonal, and
   // leaves nothing but that part in the residual.
   for (std::size_t i = 0; i < n; ++i) {
-    glm::dvec2 sum = level.load[i];
-    for (std::uint32_t k = a.first[i]; k < a.middle[i]; ++k)
-      sum -= a.value[k] * level.x[a.column[k]];
-    level.x[i] = sum * level.inverse_diagonal[i];
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    glm::dvec2 sum(0);
-    for (std::uint32_t k = a.middle[i]; k < a.first[i + 1]; ++k) {
-      sum -= a.value[k] * level.x[a.column[k]];
+    glm::vec2 sum = level.load[i];
+    for (std::uint32_t k = first[i]; k < middle[i]; ++k) {
+      sum -= entries[k].value * x[entries[k].column];
     }
-    level.residual[i] = sum;
+    x[i] = sum * level.inverse_diagonal[i];
   }
   Level& next = levels_[depth + 1];
-  for (std::size_t c = 0; c < next.load.size(); ++c) {
-    glm::dvec2 sum(0);
-    for (std::uint32_t k = level.column_first[c]; k < level.column_first[c + 1]; ++k) {
-      sum += level.column_value[k] * level.residual[level.row[k]];
+  std::fill(next.load.begin(), next.load.end(), glm::vec2(0));
+  for (std::size_t i = 0; i < n; ++i) {
+    glm::vec2 residual(0);
+    for (std::uint32_t k = middle[i]; k < first[i + 1]; ++k) {
+      residual -= entries[k].value * x[entries[k].column];
     }
-    next.load[c] = sum;
+    for (std::uint32_t k = coarse_first[i]; k < coarse_first[i + 1]; ++k) {
+      next.load[prolongation[k].column] += prolongation[k].value * residual;
+    }
   }
   cycle(finest, depth + 1);
   for (std::size_t i = 0; i < n; ++i) {
-    for (std::uint32_t k = level.first[i]; k < level.first[i + 1]; ++k) {
-      level.x[i] += level.value[k] * next.x[level.column[k]];
+    for (std::uint32_t k = coarse_first[i]; k < coarse_first[i + 1]; ++k) {
+      x[i] += prolongation[k].value * next.x[prolongation[k].column];
     }
   }
   for (std::size_t i = n; i-- > 0;) {
-    glm::dvec2 sum = level.load[i];
-    for (std::uint32_t k = a.first[i]; k < a.first[i + 1]; ++k) {
-      sum -= a.value[k] * level.x[a.column[k]];
+    glm::vec2 sum = level.load[i];
+    for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
+      sum -= entries[k].value * x[entries[k].column];
     }
-    level.x[i] = sum * level.inverse_diagonal[i];
+    x[i] = sum * level.inverse_diagonal[i];
   }
 }
 
@@ -267,18 +291,28 @@ bool MultigridSolver::solve(const SymmetricMatrix& matrix, std::span<const glm::
   direction_.resize(n);
   multiply(matrix, x, residual_);
   for (std::size_t i = 0; i < n; ++i) residual_[i] = load[i] - residual_[i];
-  std::vector<glm::dvec2>& z = levels_[0].x;
+  std::vector<glm::vec2>& z = levels_[0].x;
   double rho = 0;
   for (int step = 0;; ++step) {
-    std::copy(residual_.begin(), residual_.end(), levels_[0].load.begin());
+    // Brought to the size of 1 by a power of two, so that no digit is lost in single precision.
+    double largest = 0;
+    for (const glm::dvec2& r : residual_)
+      largest = std::max({largest, std::abs(r.x), std::abs(r.y)});
+    if (!std::isfinite(largest)) return false;
+    const int exponent = largest > 0 ? std::ilogb(largest) : 0;
+    const double shrink = std::ldexp(1.0, -exponent), grow = std::ldexp(1.0, exponent);
+    for (std::size_t i = 0; i < n; ++i) levels_[0].load[i] = glm::vec2(residual_[i] * shrink);
     cycle(matrix, 0);
-    const double now = inner(residual_, z);
+    const double now = inner(residual_, z, grow);
     if (!(now > accuracy.energy)) return now <= accuracy.energy;  // false for a NaN
     if (step == accuracy.most_iterations) return false;
     const double beta = step > 0 ? now / rho : 0;
+    // The error falls at a steady rate; when this step will do, the next need not confirm it.
+    const bool last = step > 0 && now * beta <= accuracy.energy;
     rho = now;
     for (std::size_t i = 0; i < n; ++i) {
-      direction_[i] = step > 0 ? z[i] + beta * direction_[i] : z[i];
+      const glm::dvec2 own = grow * glm::dvec2(z[i]);
+      direction_[i] = step > 0 ? own + beta * direction_[i] : own;
     }
     multiply(matrix, direction_, product_);
     const double alpha = rho / inner(direction_, product_);
@@ -286,6 +320,7 @@ bool MultigridSolver::solve(const SymmetricMatrix& matrix, std::span<const glm::
       x[i] += alpha * direction_[i];
       residual_[i] -= alpha * product_[i];
     }
+    if (last) return true;
   }
 }
 

@@ -14,7 +14,9 @@ namespace atlas::param {
 // aggregation for second and fourth order elliptic problems"): neighbourhoods of strongly joined
 // vertices become the unknowns of the next level, some seven times fewer; a V-cycle of symmetric
 // Gauss-Seidel sweeps preconditions the iteration. Set-up and a step cost O(n). The constant vector
-// is in the matrix's kernel, so solutions are determined up to a shift.
+// is in the matrix's kernel, so solutions are determined up to a shift. The cycle works in single
+// precision, which halves what it moves through memory; the iteration around it, in double, decides
+// how exact the solution is.
 class MultigridSolver {
  public:
   // False: the levels do not shrink (many vertices without strong neighbours, or of huge valence).
@@ -29,39 +31,47 @@ class MultigridSolver {
              const Accuracy& accuracy, std::span<glm::dvec2> x);
 
  private:
+  struct Entry {
+    std::uint32_t column;
+    float value;
+  };
   struct Level {
     SymmetricMatrix matrix;  // empty on the finest: that one is the caller's
-    std::vector<double> inverse_diagonal;
     std::vector<std::uint32_t> aggregate;
     // Prolongation by rows of this level, and the same by columns.
     std::vector<std::uint32_t> first, column, column_first, row;
     std::vector<double> value, column_value;
-    std::vector<glm::dvec2> x, load, residual;
+    // What the cycle reads: rows of the matrix as in `matrix`, of the prolongation, and their ends.
+    std::vector<Entry> entries, prolongation;
+    std::vector<float> inverse_diagonal;
+    std::vector<glm::vec2> x, load;
   };
 
   struct Product {  // of the matrix and the prolongation, by rows
-    struct Entry {
+    struct Term {
       std::uint32_t column;
       double value;
     };
     std::vector<std::uint32_t> first;
-    std::vector<Entry> entries;
+    std::vector<Term> entries;
   };
 
   static std::uint32_t aggregate(const SymmetricMatrix& matrix, Level& level);
   static void prolongate(const SymmetricMatrix& matrix, std::uint32_t coarse, Level& level);
   static void transpose(std::uint32_t coarse, Level& level);
+  static void store_single(const SymmetricMatrix& matrix, Level& level);
   static bool multiply_prolongation(const SymmetricMatrix& matrix, std::uint32_t coarse,
                                     const Level& level, Product& out);
   static bool coarsen(const Product& product, const Level& level, std::size_t most_entries,
                       SymmetricMatrix& out);
   void cycle(const SymmetricMatrix& finest, std::size_t level);
+  void solve_coarsest(Level& level);
 
   std::vector<Level> levels_;
   std::size_t depth_ = 0;  // levels in use; the last one is solved directly
   Product galerkin_;
   EnvelopeSolver coarsest_;
-  std::vector<glm::dvec2> direction_, product_, residual_;
+  std::vector<glm::dvec2> direction_, product_, residual_, coarse_load_, coarse_x_;
 };
 
 }  // namespace atlas::param

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/param/arap_solver.h"
 #include "libatlas/param/planar.h"
@@ -74,16 +76,34 @@ constexpr double kUnrolls = 1 + 1e-4, kUnrolled = 1 + 2e-4;
 constexpr double kUnrollsExactly = 1 + 2e-6, kUnrolledStretch = 1.001;
 constexpr int kUnrollingFactor = 4;
 
+// Books what passed since the last call on a phase.
+class PhaseClock {
+ public:
+  PhaseClock(std::size_t triangles, ParamWorkspace& workspace) : timing_(workspace.timing) {
+    if (triangles >= ParamWorkspace::timed_triangles) watch_.emplace(thread_cpu_seconds);
+  }
+  void book(double ParamWorkspace::Timing::*phase) {
+    if (watch_) timing_.*phase += watch_->lap();
+  }
+
+ private:
+  ParamWorkspace::Timing& timing_;
+  std::optional<Stopwatch> watch_;
+};
+using Phase = ParamWorkspace::Timing;
+
 // From the solver's rotations to a finished result: flips out, then the stretch down; squeezing may
 // flip anew, hence the second round.
 void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolver& solver,
-             ParamResult& r) {
+             PhaseClock& clock, ParamResult& r) {
   solver.iterate(std::max(options.iterations, 1), r.uvs);
   double aim = options.aimed_stretch > 0 ? options.aimed_stretch : options.max_stretch;
   for (int round = 0; round < 2; ++round) {
+    clock.book(&Phase::solve);
     if (solver.measure(r.uvs).flips > 0) {
       r.unflipped += static_cast<int>(solver.remove_flips({}, r.uvs).turned);
     }
+    clock.book(&Phase::flips);
     if (options.squeeze_iterations <= 0 || round > 0) break;
     Distortion now = measure_distortion(mesh, r.uvs);
     if (now.stretch_l2 < kUnrolls && now.stretch_999 > kUnrolled && now.stretch_999 <= aim) {
@@ -96,7 +116,9 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
                     options.hasty ? options.max_stretch : 0},
                    r.uvs);
   }
+  clock.book(&Phase::solve);
   finish(mesh, options, r);
+  clock.book(&Phase::overlaps);
   if (r.injective || !r.within_bound || r.distortion.flips > 0) return;
   if (solver.separate_borders(r.uvs)) {
     finish(mesh, options, r);
@@ -104,12 +126,14 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
     const auto left = solver.crossings_left();
     r.stubborn_crossings.assign(left.begin(), left.end());
   }
+  clock.book(&Phase::overlaps);
 }
 
 }  // namespace
 
 ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
                          ParamWorkspace& workspace) {
+  PhaseClock clock(mesh.triangles.size(), workspace);
   ParamResult r;
   r.uvs.resize(mesh.positions.size());
   const bool given_axis = options.axis.x != 0 || options.axis.y != 0 || options.axis.z != 0;
@@ -135,14 +159,14 @@ ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
   const bool unfolded = start.uvs.empty() && start.frames.empty();
   param::ArapSolver solver(mesh, options.min_altitude, workspace.impl());
   solver.start(start);
-  descend(mesh, options, solver, r);
+  descend(mesh, options, solver, clock, r);
   const bool folded = r.unflipped > 0 || r.distortion.flips > 0;
   if (r.injective || unfolded || !folded) return r;
   // A bad start leaves folds that no descent undoes well; unfolding triangle by triangle has none.
   ParamResult other;
   other.uvs.resize(mesh.positions.size());
   solver.start(IsometricStart{});
-  descend(mesh, options, solver, other);
+  descend(mesh, options, solver, clock, other);
   return other.injective ? other : r;
 }
 

@@ -108,6 +108,19 @@ void local_rotations(std::span<const Element> elements, std::span<const Vec2d> u
   }
 }
 
+double update_rotations(std::span<const Element> elements, std::span<const Vec2d> uvs,
+                        Rotations& rotations) {
+  double fall = 0;
+  for (std::size_t t = 0; t < elements.size(); ++t) {
+    const Element& e = elements[t];
+    const Jacobian j = e.jacobian(to_glm(uvs[e.v[0]]), to_glm(uvs[e.v[1]]), to_glm(uvs[e.v[2]]));
+    const glm::dvec2 r = nearest_rotation(j), change = r - rotations[t];
+    fall += e.weight * e.area() * (change.x * (j.x.x + j.y.y) + change.y * (j.x.y - j.y.x));
+    rotations[t] = r;
+  }
+  return 2 * fall;
+}
+
 void rotation_load(std::span<const Element> elements, const Rotations& rotations,
                    std::span<glm::dvec2> out) {
   std::fill(out.begin(), out.end(), glm::dvec2(0));

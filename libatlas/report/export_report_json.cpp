@@ -67,6 +67,13 @@ Json stages_json(const ExportReport& r) {
   return stages;
 }
 
+Json json_of(const ChartSet::Timing& t) {
+  return {{"topology", t.topology_cpu}, {"noise", t.noise_cpu},     {"cells", t.cells_cpu},
+          {"coarse", t.coarse_cpu},     {"merging", t.merging_cpu}, {"borders", t.borders_cpu},
+          {"cuts", t.cuts_cpu},         {"solve", t.solve_cpu},     {"flips", t.flips_cpu},
+          {"overlaps", t.overlaps_cpu}, {"absorb", t.absorb_cpu},   {"limbs", t.limbs_cpu}};
+}
+
 Json charts_json(const ExportReport& r) {
   Json list = Json::array();
   std::uint64_t planar = 0;
@@ -92,6 +99,7 @@ Json charts_json(const ExportReport& r) {
       {"surface_area", r.surface_area},
       {"segmentation_cpu_s", r.chart_timing.segmentation_cpu},
       {"parameterization_cpu_s", r.chart_timing.parameterization_cpu},
+      {"cpu_parts_s", json_of(r.chart_timing)},
       {"repairs",
        {{"degenerate_triangles", r.repairs.degenerate_triangles},
         {"duplicate_triangles", r.repairs.duplicate_triangles},
