@@ -39,15 +39,18 @@ run() {
 if [ "$size" = small ]; then
   sweep="cabin:20000 scan:20000"; budget="--atlases 2 --atlas-size 1024"; repeats=1
   sizes="cabin:40000 scan:40000 cabin:20000"; sizes_budget="$budget"
+  components="assembly:10000 assembly:40000"
   threads="scan:40000"; counted="scan:5000"
-  rivals="sphere:20000 assembly:20000"
+  rivals="sphere:20000 assembly:20000"; small_rivals="sphere:2000"
   leak="cabin:50000"; texels="20 10 5"; full=""; shadows="--small"
 else
   sweep="cabin:100000 scan:100000"; budget="--atlases 8 --atlas-size 2048"; repeats=2
   sizes="cabin:10000 cabin:300000 cabin:1000000 cabin:3000000 scan:30000 scan:300000 scan:1000000"
   sizes_budget="--atlases 50"
+  components="assembly:30000 assembly:300000 assembly:1000000 soup:30000 soup:300000"
   threads="cabin:300000"; counted="scan:5000"
   rivals="sphere:100000 assembly:100000 genus:100000 scan:1000000 terrain:1000000 assembly:1000000"
+  small_rivals="sphere:5000 assembly:5000 genus:5000"
   leak="cabin:1000000"; texels="20 10 5 2.5"; full="--full"; shadows=""
 fi
 
@@ -67,15 +70,28 @@ rival_list() {
   if [ -n "${LIBATLAS_NPM:-}" ]; then
     echo "xatlas (WebAssembly)=NODE_PATH='$LIBATLAS_NPM/node_modules' node $PWD/benchmarks/rivals/xatlas_unwrap.cjs {in} {out}"
   fi
-  blender="blender -b --factory-startup -P $PWD/benchmarks/rivals/blender_unwrap.py --python-exit-code 1"
-  command -v blender >/dev/null || blender="echo 'not installed' >&2; exit 1; :"
-  echo "Blender Smart UV=$blender -- smart {in} {out}"
+  echo "Blender Smart UV=$(blender_rival smart)"
+}
+
+# Its time grows with the square of the triangles: entered for the small meshes only.
+lightmap_rival() {
+  echo "Blender Lightmap Pack=$(blender_rival lightmap)"
+}
+
+blender_rival() {
+  if command -v blender >/dev/null; then
+    echo "blender -b --factory-startup -P $PWD/benchmarks/rivals/blender_unwrap.py --python-exit-code 1 -- $1 {in} {out}"
+  else
+    echo "echo 'not installed' >&2; exit 1; {in} {out}"
+  fi
 }
 
 # shellcheck disable=SC2086  # the lists are meant to be split
 {
   run "$bin/atlas-bench" --work $sizes --standard $sizes_budget \
       --stages baseline charts export -o "$results/sizes.json"
+  run "$bin/atlas-bench" --work $components --standard --stages baseline charts \
+      -o "$results/components.json"
   run "$bin/atlas-bench" --work $threads --standard $sizes_budget --threads 1 2 \
       --stages baseline charts downsizing packing baking simplify export \
       -o "$results/threads.json"
@@ -99,6 +115,9 @@ rival_list() {
   while IFS= read -r rival; do [ -z "$rival" ] || set -- "$@" --rival "$rival"; done <"$out/rivals.txt"
   run "$bin/atlas-bench" --work $rivals --stages unwrap "$@" \
       --timeout "${LIBATLAS_RIVAL_TIMEOUT:-60}" -o "$results/rivals.json"
+  [ -n "${LIBATLAS_RIVALS:-}" ] || set -- "$@" --rival "$(lightmap_rival)"
+  run "$bin/atlas-bench" --work $small_rivals --stages unwrap "$@" \
+      --timeout "${LIBATLAS_RIVAL_TIMEOUT:-60}" -o "$results/small_rivals.json"
 }
 run "$bin/atlas-bench-page" "$results"/*.json -o "$out"
 if [ -n "${LIBATLAS_BENCH_DOCS:-}" ]; then

@@ -96,6 +96,7 @@ void performance(const PageInput& input, const Results& all, const Pictures& pic
   pictures.show("time_against_size.svg", page);
   pictures.show("memory_against_size.svg", page);
   limit_table(all, page);
+  parts_table(all, page);
   export_table(all, page);
   threads_table(all, page);
   instructions_table(all, page);

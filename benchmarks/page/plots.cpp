@@ -135,14 +135,14 @@ void size_plot(const Results& results, bool time, std::vector<Plot>& plots) {
   plot.x_axis = "triangles";
   plot.y_axis = time ? "CPU seconds" : "MiB";
   std::map<std::string, int> colours;  // one a stage; kinds of work are told apart by dashes
-  std::map<std::string, bool> dashes;
+  std::map<std::string, int> dashes;
   for (auto& [name, points] : series) {
     if (points.size() < 2) continue;
     std::sort(points.begin(), points.end(),
               [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
     const auto comma = name.find(", ");
     const auto colour = colours.try_emplace(name.substr(0, comma), int(colours.size()) + 1).first;
-    const auto dash = dashes.try_emplace(name.substr(comma), !dashes.empty()).first;
+    const auto dash = dashes.try_emplace(name.substr(comma), int(dashes.size()) + 1).first;
     plot.series.push_back({name, points, true, colour->second, dash->second});
   }
   if (!plot.series.empty()) plots.push_back(plot);
@@ -234,9 +234,8 @@ std::string gnuplot_script(const Plot& plot, const std::filesystem::path& target
     const char* style = !s.lines         ? "points pt 7 ps 0.7"
                         : s.name.empty() ? "lines"
                                          : "linespoints pt 7 ps 0.5";
-    commands +=
-        fmt::format("{}$s{} using 1:2 with {} lt {} dt {} {}", commands.empty() ? "plot " : ", ", i,
-                    style, colour, s.dashed ? 2 : 1, title);
+    commands += fmt::format("{}$s{} using 1:2 with {} lt {} dt {} {}",
+                            commands.empty() ? "plot " : ", ", i, style, colour, s.dash, title);
     if (labels)
       commands +=
           fmt::format(", $s{} using 1:2:3 with labels left offset 0.6,0.3 font ',9' notitle", i);

@@ -19,7 +19,7 @@ struct Series {
   std::vector<PlotPoint> points;
   bool lines = false;  // joined in the order given
   int colour = 0;      // 1 and on, 0: the next one that is free
-  bool dashed = false;
+  int dash = 1;        // gnuplot's dash type; 1 is solid
 };
 
 struct Plot {

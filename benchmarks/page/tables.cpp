@@ -23,11 +23,17 @@ const Row* find_row(const Results& all, const std::string& stage, const std::str
   return nullptr;
 }
 
+// Values that are CPU seconds of a row's parts, not qualities: they have a table of their own.
+bool is_part(const std::string& name) {
+  return name.size() > 4 && name.compare(name.size() - 4, 4, "_cpu") == 0;
+}
+
 std::vector<std::string> value_names(const Results& all, const std::string& stage) {
   for (const Row& row : all.rows) {
     if (row.stage != stage || row.values.empty()) continue;
     std::vector<std::string> names;
-    for (const auto& [name, v] : row.values) names.push_back(name);
+    for (const auto& [name, v] : row.values)
+      if (!is_part(name)) names.push_back(name);
     return names;
   }
   return {};
@@ -136,10 +142,84 @@ void limit_table(const Results& all, Document& page) {
   if (rows.empty()) return;
   page.paragraph(
       "The distance from the physical limit: CPU time in multiples of \"parse the OBJ and compute "
-      "its normals\". Charts = segmentation (topology, cells, merging, seams) + parameterisation.");
+      "its normals\". Charts = segmentation + parameterisation; their parts stand below.");
   page.table({"mesh", "parse + normals, s", "segmentation", "parameterisation", "charts",
               "whole export", "JSON"},
              rows);
+}
+
+namespace {
+
+struct Part {
+  const char *name, *what;
+};
+// Of make_charts, as Row::values names them: what each does, and why it cannot be for nothing.
+constexpr Part kParts[] = {
+    {"topology_cpu", "welding, edge links and pieces: every triangle once, by counting sorts"},
+    {"noise_cpu", "normals without scan noise"},
+    {"cells_cpu", "micro-cells: Dijkstra's algorithm over all triangles, three times"},
+    {"coarse_cpu", "the cells' coarse mesh, on which candidates are tried"},
+    {"merging_cpu",
+     "merging: every candidate pair is flattened on trial, and each chart that grows makes new "
+     "candidates"},
+    {"borders_cpu", "shortening the borders"},
+    {"cuts_cpu", "charts cut open, or divided where the bound does not hold"},
+    {"solve_cpu",
+     "isometric descent: sparse systems of every chart's vertices, several a chart, and more for "
+     "the charts beyond the bound"},
+    {"flips_cpu", "flips turned"},
+    {"overlaps_cpu", "overlaps found and drawn apart, exactly"},
+    {"absorb_cpu", "fragments joined again: each is tried with its neighbours"},
+    {"limbs_cpu", "limbs cut"}};
+
+// "merging 40 %, isometric descent 22 %": what takes most of a charts row.
+std::string dearest_parts(const Row& row) {
+  std::vector<std::pair<double, const Part*>> order;
+  for (const Part& part : kParts) order.emplace_back(row.value(part.name), &part);
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::string text;
+  for (int i = 0; i < 3; ++i)
+    text += fmt::format("{}{:.0f} % {}", i ? "; " : "", 100 * order[i].first / row.cpu_seconds,
+                        order[i].second->what);
+  return text;
+}
+
+}  // namespace
+
+void parts_table(const Results& all, Document& page) {
+  Cells header{"mesh", "charts, s"};
+  for (const Part& part : kParts)
+    header.push_back(std::string(part.name).substr(0, std::string(part.name).size() - 4));
+  header.insert(header.end(), {"the rest", "JSON"});
+  std::vector<Cells> rows;
+  std::vector<std::string> reasons;
+  for (const Row& row : all.rows) {
+    if (!ordinary(row) || row.stage != "charts" || row.setting != "standard") continue;
+    const Row* limit = find_row(all, "baseline", row.mesh, "parse + normals");
+    if (!limit || !row.failure.empty() || std::isnan(row.value("merging_cpu", NAN))) continue;
+    if (row.mesh.rfind("file:", 0) == 0) continue;
+    Cells cells{row.mesh, fmt::format("{:.2f}", row.cpu_seconds)};
+    double rest = row.cpu_seconds;
+    for (const Part& part : kParts) {
+      rest -= row.value(part.name);
+      cells.push_back(fmt::format("{:.1f}", row.value(part.name) / limit->cpu_seconds));
+    }
+    cells.insert(cells.end(), {fmt::format("{:.1f}", rest / limit->cpu_seconds), row.source});
+    rows.push_back(cells);
+    if (row.triangles > 900000 && row.cpu_seconds > 12 * limit->cpu_seconds)
+      reasons.push_back(fmt::format("{}, {:.1f} times: {}.", row.mesh,
+                                    row.cpu_seconds / limit->cpu_seconds, dearest_parts(row)));
+  }
+  if (rows.empty()) return;
+  page.heading("Where charts + parameterisation spend it");
+  page.paragraph(
+      "In multiples of \"parse the OBJ and compute its normals\", as above; CPU time of all "
+      "threads. Up to borders the parts are segmentation's, from cuts on parameterisation's.");
+  page.table(header, rows);
+  if (reasons.empty()) return;
+  page.paragraph("Beyond twelve times, and what takes most of it there:");
+  for (const std::string& reason : reasons) page.paragraph(reason);
 }
 
 void export_table(const Results& all, Document& page) {

@@ -12,6 +12,7 @@ std::string figure(double value);
 void goals_table(const Results& all, Document& page);    // what the project asks of itself
 void fits_table(const Results& all, Document& page);     // exponents
 void limit_table(const Results& all, Document& page);    // times "parse and compute normals"
+void parts_table(const Results& all, Document& page);    // of charts, and why beyond twelve times
 void export_table(const Results& all, Document& page);   // CPU seconds of the export's stages
 void threads_table(const Results& all, Document& page);  // rows measured on 1, 2, ... threads
 void instructions_table(const Results& all, Document& page);

@@ -222,6 +222,37 @@ TEST(Page, TablesForThreadsInstructionsAndRivals) {
   EXPECT_EQ(stage.find("sphere:6000 "), std::string::npos);
 }
 
+// A mesh beyond twelve times "parse + normals" is said with the parts that take most of it.
+TEST(Page, TellsWhichPartsOfChartsTakeTheTime) {
+  const TempFolder folder;
+  Results results;
+  for (const double seconds : {1.0, 4.0}) {
+    results.rows.push_back(row(1000000, 0.1, 1));
+    results.rows.back().mesh = seconds > 2 ? "scan:1000000" : "terrain:1000000";
+    Row charts = results.rows.back();
+    results.rows.back().stage = "baseline";
+    results.rows.back().setting = "parse + normals";
+    charts.cpu_seconds = seconds;
+    for (const char* part : {"topology_cpu", "cells_cpu", "solve_cpu"})
+      charts.values.emplace_back(part, 0.01 * seconds);
+    charts.values.emplace_back("merging_cpu", 0.6 * seconds);
+    results.rows.push_back(charts);
+  }
+  ASSERT_TRUE(save(results, folder.path / "all.json").ok());
+  const Result<Results> loaded = load(folder.path / "all.json");
+  ASSERT_TRUE(loaded.ok());
+  ASSERT_TRUE(write_page({{*loaded}}, folder.path).ok());
+  std::ifstream file(folder.path / "performance.md");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_NE(page.find("scan:1000000, 40.0 times: 60 % merging"), std::string::npos);
+  EXPECT_EQ(page.find("terrain:1000000, 10.0 times"), std::string::npos);
+  const std::string parts = page.substr(page.find("| mesh | charts, s |"));
+  EXPECT_NE(parts.find("| scan:1000000 | 4.00 | 0.4 |"), std::string::npos) << parts;
+  EXPECT_NE(parts.find("| 14.8 | all.json:"), std::string::npos) << "what no part counts";
+  const std::string stage = page.substr(page.find("## Stage: charts"));
+  EXPECT_EQ(stage.find("merging_cpu"), std::string::npos);
+}
+
 TEST(Page, HoldsEveryRowAndCheck) {
   const TempFolder folder;
   Results results = some_results();
