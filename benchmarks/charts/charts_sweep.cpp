@@ -6,28 +6,16 @@
 #include <limits>
 
 #include "benchmarks/charts/charts_bench.h"
+#include "benchmarks/support/chart_setting.h"
 #include "libatlas/charts/charts.h"
 
 namespace atlas::bench {
 namespace {
 
-struct Setting {
-  std::string name;
-  bool preset;
-  ChartOptions options;
-};
-
-std::vector<Setting> settings() {
-  std::vector<Setting> list(3);
-  list[0] = {"fast", true, {}};
-  list[0].options.preset = ChartPreset::fast;
-  list[1] = {"default", true, {}};
-  list[2] = {"best", true, {}};
-  list[2].options.preset = ChartPreset::best;
-  for (const double stretch : {1.05, 1.1, 1.15, 1.5, 2.0}) {
-    list.push_back({fmt::format("{}", stretch), false, {}});
-    list.back().options.max_stretch = stretch;
-  }
+std::vector<ChartSetting> settings() {
+  std::vector<ChartSetting> list = chart_presets();
+  list[1].name = "default";  // as on the command line
+  for (const double stretch : {1.05, 1.1, 1.15, 1.5, 2.0}) list.push_back(with_stretch(stretch));
   return list;
 }
 
@@ -124,7 +112,7 @@ Result<std::vector<ChartsPoint>> charts_sweep(const std::string& name, const Loa
   view.positions = loaded.scene.positions;
   view.indices = loaded.scene.indices;
   std::vector<ChartsPoint> points;
-  for (const Setting& setting : settings()) {
+  for (const ChartSetting& setting : settings()) {
     ChartsPoint point{name, setting.name, setting.preset};
     point.cpu_seconds = std::numeric_limits<double>::infinity();
     for (int i = 0; i < repeats; ++i) {

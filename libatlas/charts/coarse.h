@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libatlas/charts/cells.h"
+#include "libatlas/charts/moments.h"
 #include "libatlas/charts/topology.h"
 #include "libatlas/core/vec.h"
 
@@ -26,8 +27,8 @@ struct CoarseCell {
   std::uint32_t first_slot = 0, slot_count = 0;  // its rim, counter-clockwise
   Vec3d centre, normal;                          // area-weighted means; normal is a unit vector
   double area = 0;
-  std::array<double, 6> moments{};  // sum of area n n^T: xx, xy, xz, yy, yz, zz
-  Vec3d normal_sum;                 // sum of area n
+  Moments moments{};  // sum of area n n^T
+  Vec3d normal_sum;   // sum of area n
 };
 
 struct CoarseMesh {

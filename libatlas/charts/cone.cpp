@@ -57,53 +57,64 @@ Ball smallest_ball(const std::vector<glm::dvec3>& points) {
   return best;
 }
 
-// The normal farthest from the axis, and the cosine between them.
-std::pair<glm::dvec3, double> farthest(std::span<const Vec3f> normals,
-                                       std::span<const std::uint32_t> ids, const glm::vec3& axis) {
+// The normal farthest from the axis, and the cosine between them. `normal` gives the i-th of
+// `count`.
+template <class Normal>
+std::pair<glm::dvec3, double> farthest(std::size_t count, const Normal& normal,
+                                       const glm::vec3& axis) {
   float least = 2;
-  std::uint32_t worst = 0;
-  for (const std::uint32_t t : ids) {
-    const glm::vec3 n = to_glm(normals[t]);
+  glm::vec3 worst(axis);
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::vec3 n = to_glm(normal(i));
     const float cosine = glm::dot(n, axis);
     if (cosine < least && (n.x != 0 || n.y != 0 || n.z != 0)) {
       least = cosine;
-      worst = t;
+      worst = n;
     }
   }
   if (least > 1.5f) return {glm::dvec3(axis), 1.0};
-  return {to_dvec(normals[worst]), least};
+  return {glm::dvec3(worst), least};
 }
 
 double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
   return 2 * std::atan2(glm::length(a - b), glm::length(a + b));
 }
 
-}  // namespace
-
-NormalCone normal_cone(std::span<const Vec3f> normals, std::span<const std::uint32_t> ids) {
+template <class Normal>
+NormalCone smallest_cone(std::size_t count, const Normal& normal) {
   glm::dvec3 sum(0);
-  for (const std::uint32_t t : ids) sum += to_dvec(normals[t]);
+  for (std::size_t i = 0; i < count; ++i) sum += to_dvec(normal(i));
   const double length = glm::length(sum);
   glm::dvec3 axis = length > 0 ? sum / length : glm::dvec3(0, 0, 1);
   glm::dvec3 best_axis = axis;
   double best = 10;
   std::vector<glm::dvec3> support;
   for (int round = 0; round < 12; ++round) {
-    const auto [normal, cosine] = farthest(normals, ids, glm::vec3(axis));
-    const double angle = angle_between(axis, normal);
+    const auto [worst, cosine] = farthest(count, normal, glm::vec3(axis));
+    const double angle = angle_between(axis, worst);
     if (angle < best) {
       best = angle;
       best_axis = axis;
     }
     if (round == 0 && cosine <= 0) break;  // a half-space may not hold them all
-    if (std::find(support.begin(), support.end(), normal) != support.end()) break;
-    support.push_back(normal);
+    if (std::find(support.begin(), support.end(), worst) != support.end()) break;
+    support.push_back(worst);
     const Ball enclosing = smallest_ball(support);
     const double distance = glm::length(enclosing.centre);
     if (!(distance > 1e-3)) break;
     axis = enclosing.centre / distance;
   }
   return {from_glm(glm::vec3(best_axis)), best};
+}
+
+}  // namespace
+
+NormalCone normal_cone(std::span<const Vec3f> normals, std::span<const std::uint32_t> ids) {
+  return smallest_cone(ids.size(), [&](std::size_t i) { return normals[ids[i]]; });
+}
+
+NormalCone normal_cone(std::span<const Vec3f> normals) {
+  return smallest_cone(normals.size(), [&](std::size_t i) { return normals[i]; });
 }
 
 }  // namespace atlas

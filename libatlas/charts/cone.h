@@ -15,8 +15,10 @@ struct NormalCone {
 
 // Over normals[ids...], which are unit vectors (zero vectors are skipped). While all lie within an
 // open half-space, the cone is the smallest to about 1e-6 radians: its axis is the centre of the
-// smallest ball around the normals, found on a growing set of extreme ones. Otherwise the axis is
-// that of their sum. O(n) a round, a dozen rounds at most.
+// smallest ball around the normals, found on a growing set of extreme ones (Badoiu and Clarkson
+// 2003). Otherwise the axis is that of their sum. O(n) a round, a dozen rounds at most.
 NormalCone normal_cone(std::span<const Vec3f> normals, std::span<const std::uint32_t> ids);
+// Over all of them.
+NormalCone normal_cone(std::span<const Vec3f> normals);
 
 }  // namespace atlas

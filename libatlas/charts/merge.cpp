@@ -6,6 +6,7 @@
 #include <numeric>
 #include <queue>
 
+#include "libatlas/charts/moments.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
 
@@ -17,30 +18,13 @@ namespace {
 constexpr double kFlatSpread = 1e-6;
 // A seam along a crease is hidden: to remove it is worth this much less.
 constexpr double kHiddenSeam = 0.75;
-constexpr double kConeWeight = 0.25;
+// Within a cone limit charts are small, and their outlines free: what counts is how few they are.
+constexpr double kConeWeight = 1;
+constexpr double kConeFill = 0.4;  // of hull and rectangle
 // Costs are compared in parts of this many, lengths with this tolerance: symmetric meshes are full
 // of ties, which rounding would break otherwise for every rotation and unit.
 constexpr double kCostParts = 4096;
 constexpr double kSameLength = 1e-4;
-constexpr int kConeSteps = 24;  // towards the axis of the smallest cone (Badoiu and Clarkson 2003)
-
-using Moments = std::array<double, 6>;
-
-// Eigenvalues of a symmetric 3x3 matrix, smallest first (Smith 1961).
-std::array<double, 3> eigenvalues(const Moments& m) {
-  const double off = m[1] * m[1] + m[2] * m[2] + m[4] * m[4];
-  const double mean = (m[0] + m[3] + m[5]) / 3;
-  const double a = m[0] - mean, d = m[3] - mean, f = m[5] - mean;
-  const double p = std::sqrt((a * a + d * d + f * f + 2 * off) / 6);
-  if (!(p > 0)) return {mean, mean, mean};
-  const double det =
-      a * (d * f - m[4] * m[4]) - m[1] * (m[1] * f - m[4] * m[2]) + m[2] * (m[1] * m[4] - d * m[2]);
-  const double r = std::clamp(det / (2 * p * p * p), -1.0, 1.0);
-  const double phi = std::acos(r) / 3;
-  const double high = mean + 2 * p * std::cos(phi);
-  const double low = mean + 2 * p * std::cos(phi + 2 * M_PI / 3);
-  return {low, 3 * mean - high - low, high};
-}
 
 struct CoarseChart {
   std::vector<std::uint32_t> cells;
@@ -183,46 +167,31 @@ class Merger {
   double cost(std::uint32_t a, const Border& border) const {
     const CoarseChart &p = chart(a), &q = chart(border.other);
     const double area = p.area + q.area;
-    const glm::dvec3 mean = (p.normal_sum + q.normal_sum) / area;
     Moments m;
     for (int i = 0; i < 6; ++i) m[i] = (p.moments[i] + q.moments[i]) / area;
-    m[0] -= mean.x * mean.x;
-    m[1] -= mean.x * mean.y;
-    m[2] -= mean.x * mean.z;
-    m[3] -= mean.y * mean.y;
-    m[4] -= mean.y * mean.z;
-    m[5] -= mean.z * mean.z;
+    m = about(m, from_glm((p.normal_sum + q.normal_sum) / area));
     // Within a cone limit what counts is how much of the cone is used up.
-    const double spread =
-        options_.cone > 0 ? kConeWeight * (m[0] + m[3] + m[5]) : std::max(0.0, eigenvalues(m)[0]);
+    const double spread = options_.cone > 0 ? kConeWeight * (m[0] + m[3] + m[5])
+                                            : std::max(0.0, smallest_eigenvalue(m));
     const double perimeter = p.perimeter + q.perimeter - 2 * border.length;
     const double compact = perimeter / std::sqrt(4 * M_PI * area);
     return spread + options_.compactness_weight * compact +
            (border.length > 0 ? options_.crease_weight * border.crease / border.length : 0);
   }
 
-  // Looks for an axis that all normals lie around within the limit; keeps it in axis_.
+  // Whether all normals lie in one cone within the limit; keeps its axis in axis_.
   bool within_cone(std::uint32_t a, std::uint32_t b) {
     if (options_.cone <= 0) return true;
-    const double least = std::cos(options_.cone);
-    axis_ = unit(chart(a).normal_sum + chart(b).normal_sum);
-    for (int step = 0; step < kConeSteps; ++step) {
-      double worst = 2;
-      glm::dvec3 towards(0);
-      for (const std::uint32_t name : {a, b}) {
-        for (const std::uint32_t k : chart(name).cells) {
-          for (const Vec3f& n : options_.cell_normals->of(k)) {
-            const double cosine = glm::dot(axis_, to_dvec(n));
-            if (cosine >= worst) continue;
-            worst = cosine;
-            towards = to_dvec(n);
-          }
-        }
+    normals_.clear();
+    for (const std::uint32_t name : {a, b}) {
+      for (const std::uint32_t k : chart(name).cells) {
+        const std::span<const Vec3f> extreme = options_.cell_normals->of(k);
+        normals_.insert(normals_.end(), extreme.begin(), extreme.end());
       }
-      if (worst >= least) return true;
-      axis_ = unit(axis_ + (towards - axis_) / double(step + 2));
     }
-    return false;
+    const NormalCone cone = normal_cone(normals_);
+    axis_ = cone.axis;
+    return cone.angle <= options_.cone;
   }
 
   static glm::dvec3 unit(const glm::dvec3& v) {
@@ -289,6 +258,7 @@ class Merger {
       limits.solidity = options_.small_solidity;
       limits.fill = options_.small_fill;
     }
+    if (options_.cone > 0) limits.solidity = limits.fill = kConeFill;
     const TrialOutcome outcome = trial_.run(p.cells, q.cells, glue_, result_.joined, limits);
     high_area_ = outcome.high_area;
     if (outcome.accepted) energy_ = area * (outcome.stretch_l2 * outcome.stretch_l2 - 1);
@@ -362,7 +332,7 @@ class Merger {
     p.flat = coplanar(a, b);
     p.energy = energy_;
     p.high_area = high_area_;
-    if (options_.cone > 0) result_.chart_axis[a] = from_glm(glm::vec3(axis_));
+    if (options_.cone > 0) result_.chart_axis[a] = axis_;
     p.area += q.area;
     p.normal_sum += q.normal_sum;
     for (int i = 0; i < 6; ++i) p.moments[i] += q.moments[i];
@@ -380,7 +350,8 @@ class Merger {
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> heap_;
   std::vector<Border> borders_;
   std::vector<std::uint32_t> glue_;
-  glm::dvec3 axis_{0};
+  std::vector<Vec3f> normals_;  // of the candidate, with a limit on cones
+  Vec3f axis_;                  // of their cone
   double piece_area_ = 0;
   bool relaxed_ = false;
   double energy_ = 0, high_area_ = 0;  // of the last accepted trial

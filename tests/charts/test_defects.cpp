@@ -54,14 +54,7 @@ TEST(Defects, PiecesOfMixedOrientationAreTurned) {
 }
 
 TEST(Defects, FansOfSheetsAroundAnEdge) {
-  Mesh mesh;
-  mesh.positions = {{0, 0, 0}, {0, 0, 1}};
-  for (int i = 0; i < 7; ++i) {
-    const auto v = static_cast<std::uint32_t>(mesh.positions.size());
-    mesh.positions.push_back({float(std::cos(0.9 * i)), float(std::sin(0.9 * i)), 0.5f});
-    for (const std::uint32_t k : {0u, 1u, v}) mesh.indices.push_back(k);
-  }
-  const ChartSet set = whole(mesh);
+  const ChartSet set = whole(Mesh(sheets(7)));
   EXPECT_EQ(set.repairs.nonmanifold_edges, 1u);
   EXPECT_LE(set.charts.size(), 7u);
 }

@@ -314,16 +314,10 @@ TEST(GivenUvs, AnyUnitOfUvsWillDo) {
 }
 
 TEST(GivenUvs, SheetsAroundOneEdgeAreKeptApart) {
-  Mesh mesh;
-  mesh.positions = {{0, 0, 0}, {0, 0, 1}};
-  for (int i = 0; i < 7; ++i) {
-    const auto v = static_cast<std::uint32_t>(mesh.positions.size());
-    mesh.positions.push_back({float(std::cos(0.9 * i)), float(std::sin(0.9 * i)), 0.5f});
-    for (const std::uint32_t k : {0u, 1u, v}) mesh.indices.push_back(k);
-    // Every second one mirrored; all use the edge's texcoords.
-    mesh.texcoords.push_back({0, i % 2 ? 1.0f : -1.0f});
-  }
-  mesh.texcoords.insert(mesh.texcoords.begin(), {Vec2f{-0.5f, 0}, Vec2f{0.5f, 0}});
+  Mesh mesh(sheets(7));
+  mesh.texcoords = {{-0.5f, 0},
+                    {0.5f, 0}};  // of the edge, which all use; every second one mirrored
+  for (int i = 0; i < 7; ++i) mesh.texcoords.push_back({0, i % 2 ? 1.0f : -1.0f});
   mesh.texcoord_indices = mesh.indices;
   const ChartSet set = keep(mesh);
   EXPECT_EQ(set.repairs.nonmanifold_edges, 1u);

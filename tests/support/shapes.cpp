@@ -275,6 +275,17 @@ Shape needles(int n, double aspect) {
   return shape;
 }
 
+Shape sheets(int n) {
+  Shape shape;
+  shape.name = "sheets";
+  shape.positions = {{0, 0, 0}, {0, 0, 1}};
+  for (int i = 0; i < n; ++i) {
+    shape.positions.push_back({float(std::cos(0.9 * i)), float(std::sin(0.9 * i)), 0.5f});
+    for (const std::uint32_t v : {0u, 1u, std::uint32_t(2 + i)}) shape.indices.push_back(v);
+  }
+  return shape;
+}
+
 Shape noisy(Shape shape, double amplitude, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   for (Vec3f& p : shape.positions)

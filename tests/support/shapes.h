@@ -43,6 +43,8 @@ Shape soup(int n, std::uint64_t seed);
 Shape fan(int n);
 // n triangles of unit length and width 1/aspect side by side: slivers whose long sides are shared.
 Shape needles(int n, double aspect);
+// n triangles, 0.9 radians apart around the edge of vertices 0 and 1, which all of them share.
+Shape sheets(int n);
 
 // Every vertex moved by up to `amplitude` in each coordinate, the same for the same seed.
 Shape noisy(Shape shape, double amplitude, std::uint64_t seed);

@@ -1,0 +1,16 @@
+// Internal: some triangles of a flat chart as a chart of their own.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "libatlas/charts/flatten.h"
+
+namespace atlas {
+
+// `triangles`: places in whole.triangles, ascending, at least one. They keep their coordinates but
+// for the turn that packing wants; size, cone and distortion are measured anew.
+FlatChart part_of_chart(const FlattenInput& input, const FlatChart& whole,
+                        std::span<const std::uint32_t> triangles);
+
+}  // namespace atlas
