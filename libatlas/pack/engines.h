@@ -31,6 +31,9 @@ struct SearchLimits {
   double seconds = 0;         // wall time
   std::uint64_t seed = 1;
   std::uint32_t chains = 1;  // independent searches, each on one thread at a time
+  // Strips: part layouts that beam searches may keep, all together, and their wall time.
+  std::uint64_t beam_states = 0;
+  double beam_seconds = 0;
 };
 
 // Solves by the preset. Fills in page_lower_bound, layouts_tried and curve of the result.
@@ -51,7 +54,8 @@ Layout pack_widest_first(const Problem& problem);
 Layout search_pages(const Problem& problem, const SearchLimits& limits, const Context& context,
                     PackResult& result);
 
-// Local search for a low strip: swaps and moves in the order of the items, simulated annealing.
+// Local search for a low strip: swaps and moves in the order of the items, simulated annealing;
+// where items may be turned, then beam searches below the height found.
 Layout search_strip(const Problem& problem, const SearchLimits& limits, const Context& context,
                     PackResult& result);
 

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "libatlas/pack/chains.h"
 #include "libatlas/pack/gap_fill.h"
+#include "libatlas/pack/strip_beam.h"
 
 namespace atlas::pack {
 namespace {
@@ -82,6 +84,61 @@ class StripChain {
   double temperature_ = 1;
 };
 
+std::int32_t top_of(const Problem& problem, std::span<const GapPlacement> placed) {
+  std::int32_t top = 0;
+  for (const GapPlacement& g : placed) {
+    const Extent e = problem.items[g.item];
+    top = std::max(top, g.y + (g.rotated ? e.width : e.height));
+  }
+  return top;
+}
+
+// Beams of all widths, each below the lowest height known, four that prefer large items differently
+// at a time: the lowest layout of the four counts, so that threads change nothing. The beam widens
+// where none of them finds anything.
+void search_beams(const Problem& problem, const SearchLimits& limits, const Context& context,
+                  std::int64_t bound, std::int64_t& height, std::vector<GapPlacement>& placed,
+                  PackResult& result) {
+  constexpr std::array kLargeFirst{3.0, 2.0, 4.0, 1.5};
+  const double begun = wall_seconds();
+  const auto stop = [&] {
+    return context.cancelled() || wall_seconds() - begun > limits.beam_seconds;
+  };
+  std::vector<StripBeam> beams(
+      kLargeFirst.size(), StripBeam(problem.items, problem.page.width, problem.allow_rotation));
+  // Memory: a state has up to four children an item.
+  const std::size_t widest = std::max<std::size_t>(8, 1'000'000 / problem.items.size());
+  std::uint64_t left = limits.beam_states;
+  double last = begun;
+  for (std::size_t states = 4; states <= widest && height > bound && !stop();) {
+    if (left < states * beams.size()) return;
+    left -= states * beams.size();
+    result.layouts_tried += states * beams.size();
+    std::vector<std::vector<GapPlacement>> found(beams.size());
+    const auto run = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k)
+        found[k] =
+            beams[k].pack({static_cast<std::int32_t>(height - 1), states, kLargeFirst[k], stop});
+    };
+    parallel_for(context, beams.size(), 1, run);
+    const std::int64_t before = height;
+    for (auto& layout : found) {
+      if (layout.empty()) continue;
+      const std::int32_t top = top_of(problem, layout);
+      if (top >= height) continue;
+      height = top;
+      placed = std::move(layout);
+    }
+    if (height == before) {
+      states *= 2;
+      continue;
+    }
+    const double seconds = result.curve.empty() ? 0 : result.curve.back().seconds;
+    result.curve.push_back({seconds + wall_seconds() - last, result.layouts_tried, 1, height});
+    last = wall_seconds();
+  }
+}
+
 }  // namespace
 
 Layout search_strip(const Problem& problem, const SearchLimits& limits, const Context& context,
@@ -111,8 +168,10 @@ Layout search_strip(const Problem& problem, const SearchLimits& limits, const Co
   layout.placements.resize(problem.items.size());
   layout.pages = 1;
   layout.last_used = chains[best].cost().second;
-  for (const GapPlacement& g : chains[best].best())
-    layout.placements[g.item] = {0, g.x, g.y, g.rotated};
+  std::vector<GapPlacement> placed = chains[best].best();
+  if (limits.beam_states > 0)
+    search_beams(problem, limits, context, bound, layout.last_used, placed, result);
+  for (const GapPlacement& g : placed) layout.placements[g.item] = {0, g.x, g.y, g.rotated};
   return layout;
 }
 

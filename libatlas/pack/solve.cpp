@@ -8,7 +8,7 @@ namespace {
 
 // `standard` stops after this much work, counted in looks at an item: 500 instances of 20 to 100
 // items take about 0.1 s, a strip of 200 items 0.05 to 0.1 s.
-constexpr std::uint64_t kPageWork = 200'000, kStripWork = 25'000'000;
+constexpr std::uint64_t kPageWork = 200'000, kStripWork = 25'000'000, kBeamWork = 3'000'000;
 
 // Above this many items the gap engines, quadratic in the items of a page, are not the ones to ask.
 constexpr std::size_t kSmall = 1000;
@@ -16,15 +16,28 @@ constexpr std::size_t kSmall = 1000;
 SearchLimits limits_for(const Problem& problem, const PackOptions& options, bool strip) {
   SearchLimits limits;
   limits.seed = options.seed;
+  // Without turns beams seldom find what annealing does not.
+  const bool beams = strip && options.allow_rotation;
   if (options.preset == PackPreset::best) {
     limits.layouts = options.effort;
     limits.seconds = options.time_budget;
     limits.chains = 4;
+    if (beams) {
+      limits.seconds = 0.3 * options.time_budget;
+      limits.beam_seconds = options.time_budget - limits.seconds;
+      limits.layouts = (options.effort + 2) / 3;
+      limits.beam_states = options.effort > 0 ? options.effort - limits.layouts : UINT64_MAX;
+    }
     return limits;
   }
   const std::uint64_t n = problem.items.size();
   limits.seconds = std::numeric_limits<double>::infinity();
   limits.layouts = 1 + (strip ? kStripWork / (n * n / 2 + 1000) : kPageWork / (8 * n + 200));
+  if (beams) {
+    limits.layouts = 1 + limits.layouts / 3;
+    limits.beam_seconds = limits.seconds;
+    limits.beam_states = kBeamWork / (2 * n * n + 1000);
+  }
   return limits;
 }
 
