@@ -316,6 +316,22 @@ std::vector<Ruler> triangle_rulers(const Topology& topology) {
   return rulers;
 }
 
+// What the last pass asks of a triangle, side by side in memory.
+struct Ground {
+  glm::vec3 middle, normal;
+  std::uint32_t nearest = kFar;  // key with which it waits in the heap
+  std::uint32_t cell = kNoIndex;
+};
+
+std::vector<Ground> lay_ground(const Topology& topology) {
+  std::vector<Ground> ground(topology.triangle_count());
+  for (std::uint32_t t = 0; t < ground.size(); ++t) {
+    ground[t].middle = centroid(topology, t);
+    ground[t].normal = to_glm(topology.calm_normal(t));
+  }
+  return ground;
+}
+
 // The last pass: triangles to seeds.
 Cells grow_triangles(const Topology& topology, const Grains& grains, const Seeder& seeder,
                      const Context& context) {
@@ -324,23 +340,18 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
   std::vector<std::uint32_t> seed(cells, kNoIndex);
   const std::vector<Ruler> rulers = triangle_rulers(topology);
   std::vector<std::uint32_t> best(cells, kFar);
-  std::vector<glm::vec3> middle(n);  // 1 a triangle: each is asked for several times
-  for (std::uint32_t t = 0; t < n; ++t) middle[t] = centroid(topology, t);
+  std::vector<Ground> ground = lay_ground(topology);
   for (std::uint32_t t = 0; t < n; ++t) {
     const std::uint32_t g = grains.of_triangle[t];
     if (g == kNoIndex || seeder.seeds[seeder.owner()[g]] != g) continue;
     const Ruler& ruler = rulers[topology.component[t]];
-    const std::uint32_t d = ruler(glm::distance(middle[t], grains.centroid[g]));
+    const std::uint32_t d = ruler(glm::distance(ground[t].middle, grains.centroid[g]));
     const std::uint32_t s = seeder.owner()[g];
     if (d < best[s]) {
       best[s] = d;
       seed[s] = t;
     }
   }
-  Cells result;
-  result.count = static_cast<std::uint32_t>(cells);
-  result.of_triangle.assign(n, kNoIndex);
-  std::vector<std::uint32_t> nearest(n, kFar);  // key with which a triangle waits in the heap
   Heap heap;
   std::uint32_t visits = 0;
   const auto piece = [&](std::uint32_t s) { return grains.component[seeder.seeds[s]]; };
@@ -356,23 +367,28 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
     }
     if (++visits % visits_between_looks == 0 && context.cancelled()) return {};
     const Visit visit = heap.pop();
-    if (result.of_triangle[visit.node] != kNoIndex) continue;
-    result.of_triangle[visit.node] = visit.seed;
-    const glm::vec3 from = middle[visit.node];
+    if (ground[visit.node].cell != kNoIndex) continue;
+    ground[visit.node].cell = visit.seed;
+    const glm::vec3 from = ground[visit.node].middle, axis = seeder.normals[visit.seed];
     const Ruler& ruler = rulers[topology.component[visit.node]];
     for (std::uint32_t h = 3 * visit.node; h < 3 * visit.node + 3; ++h) {
       const std::uint32_t o = topology.opposite[h];
-      if (o == kNoIndex || result.of_triangle[o / 3] != kNoIndex) continue;
-      const float lean =
-          1 - glm::dot(to_glm(topology.calm_normal(o / 3)), seeder.normals[visit.seed]);
-      const float step = glm::distance(from, middle[o / 3]);
+      if (o == kNoIndex) continue;
+      Ground& next_to = ground[o / 3];
+      if (next_to.cell != kNoIndex) continue;
+      const float lean = 1 - glm::dot(next_to.normal, axis);
+      const float step = glm::distance(from, next_to.middle);
       const float distance = visit.distance + step * (1 + kNormalWeight * lean);
       const std::uint32_t key = ruler(distance);
-      if (key > nearest[o / 3]) continue;
-      nearest[o / 3] = key;
+      if (key > next_to.nearest) continue;
+      next_to.nearest = key;
       heap.push({key, distance, o / 3, visit.seed});
     }
   }
+  Cells result;
+  result.count = static_cast<std::uint32_t>(cells);
+  result.of_triangle.reserve(n);
+  for (const Ground& g : ground) result.of_triangle.push_back(g.cell);
   return result;
 }
 
