@@ -14,9 +14,9 @@ namespace {
 constexpr std::size_t envelope_limit = 1500;
 constexpr std::size_t direct_limit = 6000;
 // The energy that an inexact solve may leave, as part of the area. In the end 3e-11 is a mean
-// stretch of some millionths, and at worst a hundred times that. The solves before it leave what
-// the last one removes; rougher ones would shift its result.
-constexpr double first_inexactness = 1e-8, rough = 3e-7, fine = 3e-11;
+// stretch of some millionths, and at worst a hundred times that. The first solve must not be much
+// rougher: what it leaves is smooth, and later steps take long to remove it.
+constexpr double first_inexactness = 1e-9, rough = 3e-7, fine = 3e-11;
 constexpr int most_iterations = 60;
 // The fall of the energy by one local step, as part of the area, after which exact solves change no
 // more than inexact ones leave.
