@@ -2,6 +2,7 @@
 #include <array>
 #include <numeric>
 
+#include "libatlas/pack/height_index.h"
 #include "libatlas/pack/page_index.h"
 #include "libatlas/pack/problem.h"
 #include "libatlas/pack/skyline.h"
@@ -65,6 +66,16 @@ std::vector<std::uint32_t> sorted_items(std::span<const Extent> items, Order ord
 namespace {
 
 template <class Page>
+void count_pages(const std::vector<Page>& pages, Layout& layout) {
+  for (std::size_t p = 0; p < pages.size(); ++p)
+    if (!pages[p].empty()) layout.pages = static_cast<std::uint32_t>(p + 1);
+  if (layout.pages == 1)
+    layout.last_used = pages[0].used_height();
+  else if (layout.pages > 1)
+    layout.last_used = pages[layout.pages - 1].filled();
+}
+
+template <class Page>
 Layout first_fit(const Problem& problem, std::span<const std::uint32_t> order, PlaceRule rule) {
   Layout layout;
   layout.placements.resize(problem.items.size());
@@ -99,12 +110,39 @@ Layout first_fit(const Problem& problem, std::span<const std::uint32_t> order, P
     }
     layout.unplaced += !layout.placements[order[i]].placed();
   }
-  for (std::size_t p = 0; p < pages.size(); ++p)
-    if (!pages[p].empty()) layout.pages = static_cast<std::uint32_t>(p + 1);
-  if (layout.pages == 1)
-    layout.last_used = pages[0].used_height();
-  else if (layout.pages > 1)
-    layout.last_used = pages[layout.pages - 1].filled();
+  count_pages(pages, layout);
+  return layout;
+}
+
+// The same for items that come in order of falling height: a page's room is then known exactly.
+Layout first_fit_falling(const Problem& problem, std::span<const std::uint32_t> order) {
+  Layout layout;
+  layout.placements.resize(problem.items.size());
+  const RemainingMinimum remaining(problem, order);
+  std::vector<FreeRects> pages;
+  HeightIndex index;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Extent item = problem.items[order[i]], smallest = remaining.from(i);
+    index.sink(item.height, pages);
+    std::size_t at = index.first(item.width);
+    while (at == pages.size() && pages.size() < problem.max_pages) {
+      pages.emplace_back(problem.page);
+      pages.back().drop_smaller(smallest.width, smallest.height);
+      for (const Rect& pin : problem.pinned_on(at)) pages.back().block(pin);
+      index.push_back(pages.back());
+      at = index.first(item.width);
+    }
+    Spot spot;
+    if (at == pages.size() || !pages[at].find(item, false, PlaceRule::bottom_left, spot)) {
+      ++layout.unplaced;
+      continue;
+    }
+    pages[at].place(spot.rect);
+    pages[at].drop_smaller(smallest.width, smallest.height);
+    index.update(at, pages[at]);
+    layout.placements[order[i]] = {static_cast<std::uint32_t>(at), spot.rect.x, spot.rect.y, false};
+  }
+  count_pages(pages, layout);
   return layout;
 }
 
@@ -112,6 +150,11 @@ Layout first_fit(const Problem& problem, std::span<const std::uint32_t> order, P
 
 Layout pack_first_fit(const Problem& problem, std::span<const std::uint32_t> order,
                       PlaceRule rule) {
+  const bool falling = std::is_sorted(order.begin(), order.end(), [&](auto a, auto b) {
+    return problem.items[a].height > problem.items[b].height;
+  });
+  if (falling && !problem.allow_rotation && rule == PlaceRule::bottom_left)
+    return first_fit_falling(problem, order);
   return first_fit<FreeRects>(problem, order, rule);
 }
 

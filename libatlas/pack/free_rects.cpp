@@ -49,8 +49,7 @@ bool FreeRects::find(Extent item, bool allow_rotation, PlaceRule rule, Spot& spo
 }
 
 bool FreeRects::find_bottom_left(Extent item, Spot& spot) const {
-  if (item.width > room_.width || item.height > room_.height || item.area() > room_.area)
-    return false;
+  if (!room_.may_hold(item)) return false;
   for (const Rect& f : free_) {
     if (f.width < item.width || f.height < item.height) continue;
     spot.rect = {f.x, f.y, item.width, item.height};
@@ -155,12 +154,8 @@ void FreeRects::drop_smaller(std::int32_t width, std::int32_t height) {
 
 void FreeRects::measure_room() {
   room_ = {};
-  for (const Rect& f : free_) {
-    room_.width = std::max(room_.width, f.width);
-    room_.height = std::max(room_.height, f.height);
-    room_.small_side = std::max(room_.small_side, std::min(f.width, f.height));
-    room_.area = std::max(room_.area, f.area());
-  }
+  for (const Rect& f : free_) room_.add({f.width, f.height});
+  room_.finish();
 }
 
 }  // namespace atlas::pack

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libatlas/pack/pack.h"
+#include "libatlas/pack/room.h"
 
 namespace atlas::pack {
 
@@ -56,12 +57,6 @@ class FreeRects {
   // Forgets free rectangles that no item of at least these sides fits into.
   void drop_smaller(std::int32_t width, std::int32_t height);
 
-  // Largest width, height, smaller side and area among the free rectangles: an item that exceeds
-  // one of them cannot fit.
-  struct Room {
-    std::int32_t width = 0, height = 0, small_side = 0;
-    std::int64_t area = 0;
-  };
   const Room& room() const { return room_; }
 
  private:

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "libatlas/pack/cells.h"
+#include "libatlas/pack/free_rects.h"
 #include "libatlas/pack/page_index.h"
 
 namespace atlas {

@@ -5,23 +5,27 @@
 #include <cstdint>
 #include <vector>
 
-#include "libatlas/pack/free_rects.h"
+#include "libatlas/pack/room.h"
 
 namespace atlas::pack {
 
 // A tournament tree over what the pages offer at most. A page that passes may still turn out to
-// have no room (its longest and its widest hole are different ones): ask for the next.
+// have no room (see Room): ask for the next.
 class PageIndex {
  public:
-  void push_back(const FreeRects::Room& room) {
+  void push_back(const Room& room) {
     if (count_ == leaves_) grow();
     update(count_++, room);
   }
 
-  void update(std::size_t page, const FreeRects::Room& room) {
+  void update(std::size_t page, const Room& room) {
     std::size_t node = page + leaves_;
     tree_[node] = room;
-    for (node /= 2; node >= 1; node /= 2) tree_[node] = join(tree_[2 * node], tree_[2 * node + 1]);
+    for (node /= 2; node >= 1; node /= 2) {
+      const Room both = Room::of_either(tree_[2 * node], tree_[2 * node + 1]);
+      if (both == tree_[node]) return;
+      tree_[node] = both;
+    }
   }
 
   // The first page >= from that passes for the item; count() if none.
@@ -40,20 +44,8 @@ class PageIndex {
     bool allow_rotation;
   };
 
-  static FreeRects::Room join(const FreeRects::Room& a, const FreeRects::Room& b) {
-    return {std::max(a.width, b.width), std::max(a.height, b.height),
-            std::max(a.small_side, b.small_side), std::max(a.area, b.area)};
-  }
-
-  static bool passes(const FreeRects::Room& room, const Query& q) {
-    if (room.area < q.item.area() || room.small_side < std::min(q.item.width, q.item.height))
-      return false;
-    return (q.item.width <= room.width && q.item.height <= room.height) ||
-           (q.allow_rotation && q.item.height <= room.width && q.item.width <= room.height);
-  }
-
   std::size_t descend(std::size_t node, std::size_t begin, std::size_t end, const Query& q) const {
-    if (end <= q.from || !passes(tree_[node], q)) return count_;
+    if (end <= q.from || !tree_[node].may_hold(q.item, q.allow_rotation)) return count_;
     if (end - begin == 1) return begin;
     const std::size_t middle = begin + (end - begin) / 2;
     const std::size_t left = descend(2 * node, begin, middle, q);
@@ -63,15 +55,15 @@ class PageIndex {
   void grow() {
     const std::size_t old = leaves_;
     leaves_ = std::max<std::size_t>(1, 2 * leaves_);
-    std::vector<FreeRects::Room> next(2 * leaves_);
+    std::vector<Room> next(2 * leaves_);
     for (std::size_t i = 0; i < count_; ++i) next[leaves_ + i] = tree_[old + i];
     tree_ = std::move(next);
     for (std::size_t node = leaves_ - 1; node >= 1; --node)
-      tree_[node] = join(tree_[2 * node], tree_[2 * node + 1]);
+      tree_[node] = Room::of_either(tree_[2 * node], tree_[2 * node + 1]);
   }
 
   std::size_t leaves_ = 0, count_ = 0;
-  std::vector<FreeRects::Room> tree_;
+  std::vector<Room> tree_;
 };
 
 }  // namespace atlas::pack

@@ -154,17 +154,14 @@ void Skyline::raise(const Rect& rect, bool keep_waste) {
   segments_.swap(scratch_);
 }
 
-FreeRects::Room Skyline::room() const {
+Room Skyline::room() const {
   std::int32_t lowest = page_.height;
   for (const Segment& s : segments_) lowest = std::min(lowest, s.y);
-  FreeRects::Room room;
-  if (waste_.size() == 0 && lowest == page_.height) return room;
+  Room room;
   // Holes may be as wide and as tall as the page; their sizes are not tracked.
-  const std::int32_t height = waste_.size() ? page_.height : page_.height - lowest;
-  room.width = page_.width;
-  room.height = height;
-  room.small_side = std::min(page_.width, height);
-  room.area = std::int64_t{page_.width} * height;
+  if (waste_.size() > 0) lowest = 0;
+  if (lowest < page_.height) room.add({page_.width, page_.height - lowest});
+  room.finish();
   return room;
 }
 

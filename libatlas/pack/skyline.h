@@ -38,7 +38,7 @@ class Skyline {
   // A rectangle anywhere in the page; the skyline rises above it.
   void block(const Rect& rect);
   void drop_smaller(std::int32_t, std::int32_t) {}
-  FreeRects::Room room() const;
+  Room room() const;
 
   bool empty() const { return filled_ == 0; }
   std::int64_t filled() const { return filled_; }
