@@ -395,9 +395,10 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
 }  // namespace
 
 Cells grow_cells(const Topology& topology, const CellOptions& wanted, const Context& context) {
+  const std::size_t triangles = std::max(wanted.mesh_triangles, topology.triangle_count());
   CellOptions options = wanted;
   options.triangles_per_cell =
-      std::clamp(static_cast<std::uint32_t>(topology.triangle_count() / kCellsOfSmallMesh),
+      std::clamp(static_cast<std::uint32_t>(triangles / kCellsOfSmallMesh),
                  std::min(kLeastPerCell, wanted.triangles_per_cell), wanted.triangles_per_cell);
   if (topology.component_count == 0) {
     return {std::vector<std::uint32_t>(topology.triangle_count(), kNoIndex), 0};

@@ -18,6 +18,7 @@ struct CellOptions {
   std::uint32_t max_cells_per_piece = 600;  // but not more than this, however fine it is.
   // Cells are added, beyond those numbers, until no grain leans more than this to its cell's seed.
   double max_lean_degrees = 55;
+  std::size_t mesh_triangles = 0;  // of the mesh that the topology is a part of; 0: it is all
 };
 
 struct Cells {

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "libatlas/charts/cells.h"
 #include "libatlas/charts/coarse.h"
 #include "libatlas/charts/merge.h"
+#include "libatlas/charts/pieces.h"
 #include "libatlas/charts/refine.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
@@ -55,29 +57,41 @@ Frame transport(const Frame& frame, const glm::dvec3& a, const glm::dvec3& b) {
   return {turn(frame[0]), turn(frame[1])};
 }
 
-// Triangle labels (from `first_label`), frames and the seams of charts with themselves, from the
-// merged cells.
-void spread_to_triangles(const Topology& topology, const Cells& cells, const CoarseMesh& coarse,
-                         const MergeResult& merged, std::uint32_t first_label,
-                         Segmentation& result) {
-  const std::size_t n = topology.triangle_count();
+// What was merged: a mesh, or pieces of it.
+struct Merged {
+  const Topology& topology;
+  std::span<const std::uint32_t> triangles;  // 1 a triangle: its name in the mesh; empty: its own
+  const Cells& cells;
+  const CoarseMesh& coarse;
+  const MergeResult& result;
+
+  std::uint32_t name(std::uint32_t t) const { return triangles.empty() ? t : triangles[t]; }
+};
+
+// Triangle labels (from `first_label`), frames and the seams of charts with themselves.
+void spread_to_triangles(const Merged& merged, std::uint32_t first_label, Segmentation& result) {
+  const Topology& topology = merged.topology;
+  const CoarseMesh& coarse = merged.coarse;
   Partition& partition = result.partition;
   std::vector<Frame> frames(coarse.cells.size());
-  for (std::uint32_t k = 0; k < frames.size(); ++k) frames[k] = cell_frame(coarse, merged.uv, k);
-  for (std::uint32_t t = 0; t < n; ++t) {
-    const std::uint32_t k = cells.of_triangle[t];
+  for (std::uint32_t k = 0; k < frames.size(); ++k) {
+    frames[k] = cell_frame(coarse, merged.result.uv, k);
+  }
+  for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
+    const std::uint32_t k = merged.cells.of_triangle[t];
     if (k == kNoIndex) continue;
-    partition.chart[t] = first_label + merged.chart_of_cell[k];
+    partition.chart[merged.name(t)] = first_label + merged.result.chart_of_cell[k];
     const Frame frame =
         transport(frames[k], to_glm(coarse.cells[k].normal), to_dvec(topology.normals[t]));
-    result.frames[t] = {from_glm(glm::vec3(frame[0])), from_glm(glm::vec3(frame[1]))};
+    result.frames[merged.name(t)] = {from_glm(glm::vec3(frame[0])), from_glm(glm::vec3(frame[1]))};
   }
   for (std::size_t i = 0; i < coarse.rim_half_edges.size(); ++i) {
     const std::uint32_t h = coarse.rim_half_edges[i], o = topology.opposite[h];
-    if (o == kNoIndex || merged.joined[coarse.rim_arcs[i]]) continue;
-    if (partition.chart[o / 3] != partition.chart[h / 3]) continue;
-    partition.seams[h / 3] |= static_cast<std::uint8_t>(1u << (h % 3));
-    partition.seams[o / 3] |= static_cast<std::uint8_t>(1u << (o % 3));
+    if (o == kNoIndex || merged.result.joined[coarse.rim_arcs[i]]) continue;
+    const std::uint32_t a = merged.name(h / 3), b = merged.name(o / 3);
+    if (partition.chart[a] != partition.chart[b]) continue;
+    partition.seams[a] |= static_cast<std::uint8_t>(1u << (h % 3));
+    partition.seams[b] |= static_cast<std::uint8_t>(1u << (o % 3));
   }
 }
 
@@ -96,8 +110,9 @@ void follow_bound(double max_stretch, MergeOptions& merge) {
   merge.tail_worth *= std::max(1.0, ratio);
 }
 
-// Pieces of the mesh in turn, so many cells at a time: 10^5 pieces would need much memory at once.
-constexpr std::uint32_t kCellsAtATime = 100000;
+// Meshes of small pieces are segmented so many triangles at a time: 10^5 pieces would need much
+// memory at once, and parts that fit the processor's caches are faster.
+constexpr std::size_t kTrianglesAtATime = 50000, kSmallPiece = 5000;
 
 class Segmenter {
  public:
@@ -108,22 +123,17 @@ class Segmenter {
         cone_(options.cone_degrees * M_PI / 180) {}
 
   Segmentation run() {
-    Stopwatch watch(cpu_seconds);
-    Cells cells = grow_cells(topology_, CellOptions{}, context_);
-    if (context_.cancelled()) return {};
-    if (cone_ > 0) split_by_cone(topology_, cone_, cells);
-    result_.timing.cells_cpu = watch.lap();
     const std::size_t n = topology_.triangle_count();
     result_.partition.chart.assign(n, kNoIndex);
     result_.partition.seams.assign(n, 0);
     result_.frames.resize(n);
-    if (cells.count <= kCellsAtATime) {
-      merge(cells);
+    if (n > kTrianglesAtATime && n / kSmallPiece < topology_.component_count) {
+      segment_in_turn();
     } else {
-      merge_in_turn(cells);
+      segment(topology_, {});
     }
     if (context_.cancelled()) return {};
-    watch.lap();
+    Stopwatch watch(cpu_seconds);
     smooth_borders(topology_, options_.crease_degrees, {axes_, std::cos(cone_ - 1e-5)},
                    result_.partition, result_.frames);
     result_.timing.borders_cpu = watch.lap();
@@ -131,61 +141,53 @@ class Segmenter {
   }
 
  private:
-  void merge_in_turn(const Cells& cells) {
-    const std::vector<std::uint32_t> piece = piece_of(cells);
-    std::vector<std::uint32_t> count(topology_.component_count, 0), local(cells.count);
-    for (const std::uint32_t k : piece) {
-      if (k != kNoIndex) ++count[k];
-    }
-    Cells some;
-    for (std::uint32_t first = 0, last = 0; first < count.size() && !context_.cancelled();
+  void segment_in_turn() {
+    PieceCutter cutter(topology_);
+    for (std::uint32_t first = 0, last = 0; first < cutter.piece_count() && !context_.cancelled();
          first = last) {
-      std::uint32_t total = 0;
-      for (; last < count.size() && (last == first || total + count[last] <= kCellsAtATime);
-           ++last) {
-        total += count[last];
+      std::size_t count = 0;
+      while (last < cutter.piece_count() && count < kTrianglesAtATime) {
+        count += cutter.triangle_count(last++);
       }
-      some.count = 0;
-      for (std::uint32_t k = 0; k < cells.count; ++k) {
-        if (piece[k] >= first && piece[k] < last) local[k] = some.count++;
-      }
-      some.of_triangle.assign(cells.of_triangle.size(), kNoIndex);
-      for (std::uint32_t t = 0; t < some.of_triangle.size(); ++t) {
-        const std::uint32_t k = cells.of_triangle[t];
-        if (k != kNoIndex && piece[k] >= first && piece[k] < last) some.of_triangle[t] = local[k];
-      }
-      merge(some);
+      const PieceMesh pieces = cutter.cut(first, last);
+      segment(pieces.topology, pieces.triangles);
     }
   }
 
-  std::vector<std::uint32_t> piece_of(const Cells& cells) const {
-    std::vector<std::uint32_t> piece(cells.count, kNoIndex);
-    for (std::uint32_t t = 0; t < cells.of_triangle.size(); ++t) {
-      if (cells.of_triangle[t] != kNoIndex) piece[cells.of_triangle[t]] = topology_.component[t];
-    }
-    return piece;
-  }
-
-  void merge(Cells& cells) {
+  // `triangles` as in Merged.
+  void segment(const Topology& topology, std::span<const std::uint32_t> triangles) {
     Stopwatch watch(cpu_seconds);
-    const CoarseMesh coarse = build_coarse(topology_, options_.crease_degrees, cells);
+    CellOptions options;
+    options.mesh_triangles = topology_.triangle_count();
+    Cells cells = grow_cells(topology, options, context_);
+    if (context_.cancelled()) return;
+    if (cone_ > 0) split_by_cone(topology, cone_, cells);
+    result_.timing.cells_cpu += watch.lap();
+    const CoarseMesh coarse = build_coarse(topology, options_.crease_degrees, cells);
     result_.timing.coarse_cpu += watch.lap();
-    const std::vector<std::uint32_t> piece = piece_of(cells);
     MergeOptions merge;
     follow_bound(options_.max_stretch, merge);
     ExtremeNormals normals;
     if (cone_ > 0) {
       // Ends are kept clear of the limit: what is measured in the end is rounded otherwise.
-      normals = extreme_normals(topology_, cells);
+      normals = extreme_normals(topology, cells);
       merge.cone = std::max(1e-9, cone_ - 2e-5);
       merge.cell_normals = &normals;
     }
-    const MergeResult merged = merge_cells(coarse, piece, merge, context_);
+    const MergeResult merged = merge_cells(coarse, piece_of(topology, cells), merge, context_);
     if (context_.cancelled()) return;
-    spread_to_triangles(topology_, cells, coarse, merged, labels_, result_);
+    spread_to_triangles({topology, triangles, cells, coarse, merged}, labels_, result_);
     labels_ += static_cast<std::uint32_t>(coarse.cells.size());
     axes_.insert(axes_.end(), merged.chart_axis.begin(), merged.chart_axis.end());
     result_.timing.merging_cpu += watch.lap();
+  }
+
+  static std::vector<std::uint32_t> piece_of(const Topology& topology, const Cells& cells) {
+    std::vector<std::uint32_t> piece(cells.count, kNoIndex);
+    for (std::uint32_t t = 0; t < cells.of_triangle.size(); ++t) {
+      if (cells.of_triangle[t] != kNoIndex) piece[cells.of_triangle[t]] = topology.component[t];
+    }
+    return piece;
   }
 
   const Topology& topology_;

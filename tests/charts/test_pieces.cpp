@@ -1,0 +1,107 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "libatlas/charts/pieces.h"
+#include "tests/charts/chart_checks.h"
+
+namespace atlas::test {
+namespace {
+
+// Parts that touch at corners, their triangles in random order, one of them without area.
+Mesh shuffled_parts() {
+  Shape all = box(2);
+  all = together(all, moved(box(1), 1, {1, 1, 1}));
+  all = together(all, moved(cylinder(7, 1), 0.5, {9, 0, 0}));
+  all = together(all, moved(grid(2, 3), 1, {0, 7, 0}));
+  std::vector<std::uint32_t> order(all.triangle_count());
+  for (std::uint32_t t = 0; t < order.size(); ++t) order[t] = t;
+  std::shuffle(order.begin(), order.end(), std::mt19937(5));
+  Mesh mesh(all);
+  mesh.indices.clear();
+  for (const std::uint32_t t : order) {
+    for (int c = 0; c < 3; ++c) mesh.indices.push_back(all.indices[3 * t + c]);
+  }
+  mesh.indices.insert(mesh.indices.end(), {0, 0, 1});
+  return mesh;
+}
+
+TEST(Pieces, AreTheWholeMeshRenamed) {
+  const Mesh mesh = shuffled_parts();
+  const Result<Topology> built = build_topology(mesh.view(), {}, {});
+  ASSERT_TRUE(built.ok());
+  const Topology& whole = *built;
+  ASSERT_EQ(whole.component_count, 4u);
+  PieceCutter cutter(whole);
+  for (const auto& [first, last] : {std::pair{0u, 2u}, {2u, 3u}, {1u, 4u}, {0u, 4u}}) {
+    const PieceMesh part = cutter.cut(first, last);
+    const Topology& t = part.topology;
+    std::size_t expected = 0;
+    for (const std::uint32_t k : whole.component) expected += k >= first && k < last;
+    ASSERT_EQ(t.triangle_count(), expected);
+    EXPECT_EQ(t.component_count, last - first);
+    for (std::uint32_t i = 0; i < expected; ++i) {
+      const std::uint32_t w = part.triangles[i];
+      EXPECT_EQ(t.component[i] + first, whole.component[w]);
+      EXPECT_EQ(t.normals[i], whole.normals[w]);
+      EXPECT_EQ(t.areas[i], whole.areas[w]);
+      for (std::uint32_t c = 0; c < 3; ++c) {
+        const std::uint32_t h = 3 * i + c, v = t.corner_vertex[h];
+        ASSERT_LT(v, t.points.size());
+        EXPECT_EQ(t.points[v], whole.points[whole.corner_vertex[3 * w + c]]);
+        EXPECT_EQ(t.source_vertex[v], whole.corner_vertex[3 * w + c]);
+        const std::uint32_t o = t.opposite[h], across = whole.opposite[3 * w + c];
+        ASSERT_EQ(o == kNoIndex, across == kNoIndex);
+        if (o == kNoIndex) continue;
+        EXPECT_EQ(3 * part.triangles[o / 3] + o % 3, across);
+      }
+      if (i > 0 && t.component[i] == t.component[i - 1]) {
+        EXPECT_LT(part.triangles[i - 1], w);
+      }
+    }
+  }
+}
+
+TEST(Pieces, ShareNoVertices) {
+  const Mesh mesh = shuffled_parts();
+  const Result<Topology> built = build_topology(mesh.view(), {}, {});
+  ASSERT_TRUE(built.ok());
+  const PieceMesh part = PieceCutter(*built).cut(0, 4);
+  std::vector<std::uint32_t> owner(part.topology.points.size(), kNoIndex);
+  for (std::uint32_t h = 0; h < part.topology.corner_vertex.size(); ++h) {
+    std::uint32_t& k = owner[part.topology.corner_vertex[h]];
+    if (k == kNoIndex) k = part.topology.component[h / 3];
+    EXPECT_EQ(k, part.topology.component[h / 3]);
+  }
+  EXPECT_EQ(std::count(owner.begin(), owner.end(), kNoIndex), 0);
+}
+
+// More triangles than are segmented at a time: charts are those of the parts, in any order.
+TEST(Pieces, ManyBecomeChartsInTurn) {
+  Shape all;
+  for (int i = 0; i < 1200; ++i) {
+    const double x = i % 40, y = i / 40;
+    const Shape part = i % 3 == 0 ? box(2) : cylinder(i % 3 == 1 ? 12 : 8, 2);
+    for (const std::uint32_t v : part.indices)
+      all.indices.push_back(std::uint32_t(all.positions.size()) + v);
+    for (const Vec3f& p : part.positions)
+      all.positions.push_back({float(p.x + 4 * x), float(p.y + 4 * y), p.z});
+  }
+  ASSERT_GT(all.triangle_count(), 50000u);
+  const Mesh mesh(all);
+  Context one, two;
+  one.threads = 1;
+  two.threads = 2;
+  const Result<ChartSet> set = make_charts(mesh.view(), {}, one);
+  ASSERT_TRUE(set.ok());
+  EXPECT_EQ(check_charts(mesh.view(), *set).fault, "");
+  EXPECT_LE(set->charts.size(), 6 * 1200u);
+  EXPECT_GE(set->charts.size(), 1200u);
+  const Result<ChartSet> again = make_charts(mesh.view(), {}, two);
+  ASSERT_TRUE(again.ok());
+  EXPECT_EQ(bytes(*again), bytes(*set));
+}
+
+}  // namespace
+}  // namespace atlas::test
