@@ -1,7 +1,6 @@
 #include "libatlas/pack/bit_page.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace atlas::pack {
 namespace {
@@ -19,26 +18,19 @@ std::int32_t longest_in(const Mask& mask, std::int32_t r) {
 }  // namespace
 
 std::vector<RowTest> test_order(const Mask& mask) {
-  std::vector<std::int32_t> rows(static_cast<std::size_t>(mask.height));
-  std::iota(rows.begin(), rows.end(), 0);
-  if (rows.empty()) return {};
-  std::int32_t widest = 0;
-  for (std::int32_t r = 0; r < mask.height; ++r)
-    if (longest_in(mask, r) > longest_in(mask, widest)) widest = r;
+  if (mask.height == 0) return {};
+  std::vector<RowTest> tests{{0, longest_in(mask, 0)}};
+  for (std::int32_t r = 1; r < mask.height; ++r)
+    if (const std::int32_t longest = longest_in(mask, r); longest > tests[0].longest)
+      tests[0] = {r, longest};
   // Bit-reversed counting visits halves, quarters, eighths, ...
   const int bits = std::bit_width(static_cast<std::uint32_t>(mask.height));
-  const auto reversed = [&](std::int32_t v) {
-    std::uint32_t r = 0;
-    for (int b = 0; b < bits; ++b)
-      r |= ((static_cast<std::uint32_t>(v) >> b) & 1u) << (bits - 1 - b);
-    return r;
-  };
-  std::sort(rows.begin(), rows.end(),
-            [&](std::int32_t a, std::int32_t b) { return reversed(a) < reversed(b); });
-  rows.erase(std::find(rows.begin(), rows.end(), widest));
-  rows.insert(rows.begin(), widest);
-  std::vector<RowTest> tests;
-  for (std::int32_t r : rows) tests.push_back({r, longest_in(mask, r)});
+  std::int32_t row = 0;
+  for (std::uint32_t k = 0; k < 1u << bits; ++k) {
+    if (row < mask.height && row != tests[0].row) tests.push_back({row, longest_in(mask, row)});
+    for (int b = bits - 1; b >= 0 && ((row ^= 1 << b) >> b & 1) == 0; --b) {
+    }
+  }
   return tests;
 }
 

@@ -208,7 +208,7 @@ class OutlineFit {
 };
 
 // Up by steps while it fits, down while it does not, then halving: few packings, each seen to fit
-// or not. The guess is the scale at which shapes fill 72 % of the pages.
+// or not. The guess is the scale at which shapes fill 74 % of the pages.
 bool search_scale(OutlineFit& fit, const FitOptions& options, const Context& context,
                   FitResult& result, OutlineLayout& best) {
   const auto attempt = [&](double scale) {
@@ -221,14 +221,14 @@ bool search_scale(OutlineFit& fit, const FitOptions& options, const Context& con
     return ok;
   };
   const double pages = double(options.page_size) * options.page_size * options.pages;
-  double scale = fit.area() > 0 ? std::sqrt(0.72 * pages / fit.area()) : options.max_scale;
+  double scale = fit.area() > 0 ? std::sqrt(0.74 * pages / fit.area()) : options.max_scale;
   scale = std::min(scale, options.max_scale);
   double low = 0, high = options.max_scale * (1 + 1e-9), step = 0.97;
   while (result.packings + 1 < options.max_packings && !context.cancelled()) {
     const bool ok = attempt(scale);
     if (ok && scale >= options.max_scale) return true;
     (ok ? low : high) = scale;
-    if (low > 0 && high - low < 0.004 * high) return true;
+    if (low > 0 && high - low < 0.005 * high) return true;
     if (low == 0) {
       scale *= step;
       step *= step > 0.5 ? 0.97 : 1;  // faster and faster, should minimum sides be in the way

@@ -17,8 +17,11 @@ using pack::Cells;
 using pack::Layout;
 using pack::Problem;
 
-// Taller than anything a strip can need, small enough that sums of two stay in 32 bits.
-constexpr std::int32_t kOpenHeight = 1 << 30;
+// Cells along a side that is open: taller than anything a strip can need, and few enough that their
+// texels stay below 2^30 and sums of two in 32 bits.
+std::int32_t open_side(const PackOptions& options) {
+  return (1 << 30) / options.alignment;
+}
 
 Status check(std::span<const Extent> items, const PackOptions& o) {
   constexpr std::int32_t limit = 1 << 30;
@@ -63,9 +66,10 @@ struct Active {
 Active select_items(std::span<const Extent> items, const Cells& cells, const PackOptions& options,
                     PackResult& result) {
   Active active;
-  const std::int32_t width = options.page.width > 0 ? cells.page(options.page.width) : kOpenHeight;
+  const std::int32_t width =
+      options.page.width > 0 ? cells.page(options.page.width) : open_side(options);
   const std::int32_t height =
-      options.page.height > 0 ? cells.page(options.page.height) : kOpenHeight;
+      options.page.height > 0 ? cells.page(options.page.height) : open_side(options);
   for (std::uint32_t i = 0; i < items.size(); ++i) {
     if (items[i].width == 0 || items[i].height == 0) {
       result.placements[i] = {0, cells.corner(), cells.corner(), false};
@@ -184,7 +188,7 @@ Result<PackResult> pack_rects(std::span<const Extent> items, const PackOptions& 
   problem.items = active.sizes;
   problem.allow_rotation = options.allow_rotation;
   problem.page = {options.page.width > 0 ? cells.page(options.page.width) : free_width(active),
-                  options.page.height > 0 ? cells.page(options.page.height) : kOpenHeight};
+                  options.page.height > 0 ? cells.page(options.page.height) : open_side(options)};
   problem.max_pages = options.page.height == 0 ? 1
                       : options.max_pages      ? options.max_pages
                                                : kNoPage;

@@ -178,5 +178,24 @@ TEST(PackRects, PagesTakeTheShapeAskedFor) {
   EXPECT_EQ(square.pages[0].width, square.pages[0].height);
 }
 
+TEST(PackRects, EnormousItemsStayInTheOpenPage) {
+  // Three of these above each other would pass 2^31 texels: cells are counted, texels must fit.
+  std::vector<Extent> items(4, Extent{1000000000, 7});
+  items.push_back({2, 3});
+  PackOptions o;
+  o.page = {10, 0};
+  o.allow_rotation = true;
+  o.alignment = 4;
+  o.padding = 1;
+  for (PackPreset preset : {PackPreset::fast, PackPreset::standard, PackPreset::best}) {
+    o.preset = preset;
+    o.effort = 20;
+    const Result<PackResult> r = pack_rects(items, o, {});
+    ASSERT_TRUE(r.ok());
+    EXPECT_FALSE(r->unplaced.empty());
+    EXPECT_EQ(test::check_layout(items, r->placements, r->pages, o), "");
+  }
+}
+
 }  // namespace
 }  // namespace atlas

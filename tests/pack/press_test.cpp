@@ -1,0 +1,183 @@
+// The parts of the press: distances, bodies pushed together, exact places near the wanted ones.
+#include "libatlas/pack/press.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libatlas/pack/settle.h"
+#include "libatlas/pack/squeeze.h"
+#include "tests/pack/checks.h"
+
+namespace atlas {
+namespace {
+
+using namespace pack;
+
+Mask mask_of(const std::vector<Vec2d>& shape, int cell) {
+  RasterOptions o;
+  o.padding = 0;
+  o.cell = cell;
+  Vec2d origin;
+  return rasterize(outline_of({shape, {}}), o, origin);
+}
+
+std::vector<Vec2d> box(double width, double height) {
+  return {{0, 0}, {width, 0}, {width, height}, {0, 0}, {width, height}, {0, height}};
+}
+
+// The field against the nearest of all cells, by brute force.
+TEST(DistanceField, MatchesTheNearestCell) {
+  test::Noise noise{21};
+  for (int round = 0; round < 20; ++round) {
+    const Mask m = mask_of(test::blob(noise, 12, noise.in(3, 9)), 1);
+    const double reach = 6;
+    const DistanceField field(m, 1, reach);
+    std::vector<std::vector<bool>> in(std::size_t(m.height),
+                                      std::vector<bool>(std::size_t(m.width)));
+    for (int y = 0; y < m.height; ++y)
+      for (const pack::Run& r : m.row(y))
+        for (int x = r.begin; x < r.end; ++x) in[std::size_t(y)][std::size_t(x)] = true;
+    const auto inside = [&](int x, int y) {
+      return x >= 0 && y >= 0 && x < m.width && y < m.height && in[std::size_t(y)][std::size_t(x)];
+    };
+    for (int y = -5; y < m.height + 5; ++y)
+      for (int x = -5; x < m.width + 5; ++x) {
+        double nearest = 1e300;  // to a cell on the other side
+        for (int v = -20; v < m.height + 20; ++v)
+          for (int u = -20; u < m.width + 20; ++u)
+            if (inside(u, v) != inside(x, y)) nearest = std::min(nearest, std::hypot(u - x, v - y));
+        DistanceField::Sample s;
+        ASSERT_TRUE(field.sample({x + 0.5, y + 0.5}, s));
+        // Outside from centre to centre, inside one cell less: half a cell comes off the mask.
+        EXPECT_NEAR(s.distance, inside(x, y) ? 1 - nearest : nearest, 1e-4) << x << " " << y;
+      }
+    DistanceField::Sample s;
+    EXPECT_FALSE(field.sample({-reach - 3, 0}, s));
+  }
+}
+
+TEST(DistanceField, OutlinePointsLieOnTheOutline) {
+  const Mask m = mask_of(box(60, 30), 2);
+  const DistanceField field(m, 2, 12);
+  const auto points = field.outline(6);
+  EXPECT_GE(points.size(), 20u);
+  for (const Vec2d& p : points) {
+    DistanceField::Sample s;
+    ASSERT_TRUE(field.sample(p, s));
+    EXPECT_LT(std::abs(s.distance), 1.0);
+  }
+}
+
+TEST(Squeeze, BodiesEndCloseAndApart) {
+  // Four boxes, loosely in the corners of a page nearly twice as wide as they need.
+  const Mask m = mask_of(box(200, 100), 4);
+  std::vector<Body> bodies(4, make_body(m, 4, 40, 16));
+  const double side = 800;
+  for (std::size_t k = 0; k < 4; ++k)
+    bodies[k].at = {k % 2 ? side - 120 : 120.0, k / 2 ? side - 70 : 70.0};
+  SqueezeOptions o;
+  o.clearance = 4;
+  o.margin = 2;
+  const SqueezePage page = squeeze(bodies, {side, side}, o);
+  const double fill = 4 * 200 * 100 / (page.width * page.height);
+  EXPECT_GT(fill, 0.8);
+  EXPECT_LT(fill, 1.0);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_GT(bodies[i].at.x, 40);
+    EXPECT_LT(bodies[i].at.x, page.width - 40);
+    // No outline point of one lies deeper in another than the tolerance.
+    for (std::size_t j = 0; j < 4; ++j) {
+      if (i == j) continue;
+      for (const Vec2d& local : bodies[i].outline) {
+        const double c = std::cos(bodies[i].angle), s = std::sin(bodies[i].angle);
+        const double x = bodies[i].at.x + c * local.x - s * local.y - bodies[j].at.x;
+        const double y = bodies[i].at.y + s * local.x + c * local.y - bodies[j].at.y;
+        const double cj = std::cos(bodies[j].angle), sj = std::sin(bodies[j].angle);
+        DistanceField::Sample sample;
+        if (bodies[j].field.sample(
+                {cj * x + sj * y + bodies[j].center.x, cj * y - sj * x + bodies[j].center.y},
+                sample)) {
+          EXPECT_GT(sample.distance, o.clearance - 2 * o.tolerance);
+        }
+      }
+    }
+  }
+}
+
+TEST(Squeeze, NoPageWhereOverlapsRemain) {
+  // Two bodies that share their centre cannot be told apart by any push.
+  const Mask m = mask_of(box(200, 200), 4);
+  std::vector<Body> bodies(9, make_body(m, 4, 40, 16));
+  for (Body& b : bodies) b.at = {100, 100};
+  SqueezeOptions o;
+  const SqueezePage page = squeeze(bodies, {210, 210}, o);
+  EXPECT_EQ(page.width * page.height, 0);
+}
+
+// Overlapping targets are pulled apart or shrunk; what comes out keeps its gutters.
+TEST(Settle, PlacesAreExactAndNear) {
+  test::Noise noise{5};
+  std::vector<std::vector<Vec2d>> blobs;
+  for (int k = 0; k < 9; ++k) blobs.push_back(test::blob(noise, 36, 9));
+  const test::ChartItems charts(std::move(blobs));
+  const std::vector<ChartOutline> outlines = outlines_of(charts.shapes, {});
+  std::vector<SettleTarget> targets(9);
+  for (std::size_t k = 0; k < 9; ++k) {
+    targets[k].origin = {40.0 + 70 * double(k % 3), 40.0 + 70 * double(k / 3)};
+    targets[k].angle = 0.3 * double(k);
+  }
+  FitOptions o;
+  o.page_size = 256;
+  o.padding = 2;
+  o.alignment = 1;
+  const PressedPage page = settle(targets, outlines, 1, o, {});
+  ASSERT_GT(page.scale, 0.85);
+  EXPECT_LE(page.scale, 1);
+  std::vector<test::PlacedShape> placed;
+  for (std::size_t k = 0; k < 9; ++k) {
+    const PressedPlace& p = page.places[k];
+    ASSERT_TRUE(p.placed);
+    EXPECT_EQ(p.angle, targets[k].angle);
+    placed.push_back({charts.shapes[k], 0, page.scale, p.angle, p.offset});
+    EXPECT_NEAR(p.offset.x, targets[k].origin.x, 40);
+  }
+  const std::vector<Extent> pages{page.page};
+  EXPECT_EQ(test::check_outlines(placed, pages, o.padding), "");
+}
+
+// The press as a whole: denser than the cells it starts from, gutters kept, the same for any number
+// of threads.
+TEST(Press, FewChartsOnOnePage) {
+  test::Noise noise{8};
+  std::vector<std::vector<Vec2d>> blobs;
+  for (int k = 0; k < 12; ++k) blobs.push_back(test::blob(noise, 60 + 100 * noise.unit(), 9));
+  const test::ChartItems charts(std::move(blobs));
+  FitOptions o;
+  o.page_size = 512;
+  o.padding = o.alignment = 1;
+  o.minimum_side = 0;
+  o.max_scale = 100;
+  o.power_of_two = false;
+  o.free_aspect = true;
+  o.shapes = charts.shapes;
+  Context one, three;
+  one.threads = 1;
+  three.threads = 3;
+  const Result<FitResult> pressed = fit_pages(charts.items, o, one);
+  const Result<FitResult> again = fit_pages(charts.items, o, three);
+  o.any_angle = false;
+  const Result<FitResult> cells = fit_pages(charts.items, o, one);
+  ASSERT_TRUE(pressed.ok() && again.ok() && cells.ok());
+  EXPECT_GT(pressed->utilization, cells->utilization);
+  EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *pressed), pressed->pages, 1), "");
+  EXPECT_EQ(pressed->pages, again->pages);
+  for (std::size_t i = 0; i < charts.items.size(); ++i) {
+    EXPECT_EQ(pressed->placements[i].angle, again->placements[i].angle);
+    EXPECT_EQ(pressed->placements[i].box, again->placements[i].box);
+  }
+}
+
+}  // namespace
+}  // namespace atlas
