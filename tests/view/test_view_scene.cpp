@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "libatlas/view/start_camera.h"
 #include "libatlas/view/view_scene.h"
 #include "tests/view/shapes.h"
 
@@ -98,6 +99,27 @@ TEST(ViewScene, DegenerateTrianglesGiveFiniteNormals) {
   add_quad(s, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}});
   const ViewScene v = *make_view_scene(s, {});
   for (const Vec3f& n : v.normals) EXPECT_NEAR(std::hypot(n.x, n.y, n.z), 1, 1e-5);
+}
+
+TEST(StartCamera, StandsInARoomAndBeforeAThing) {
+  const auto inside = [](const ViewScene& v, const Vec3d& p) {
+    const Box3& b = v.bounds;
+    return p.x > b.low.x && p.y > b.low.y && p.z > b.low.z && p.x < b.high.x && p.y < b.high.y &&
+           p.z < b.high.z;
+  };
+  Scene ball;
+  add_sphere(ball, {3, 2, 1}, 1, 12);
+  const ViewScene hall = *make_view_scene(room(), {}), thing = *make_view_scene(ball, {});
+  const Camera visitor = start_camera(hall, {0, 1, 0}), beholder = start_camera(thing, {0, 1, 0});
+  EXPECT_TRUE(inside(hall, visitor.eye));
+  EXPECT_FALSE(inside(thing, beholder.eye));
+  EXPECT_FALSE(inside(hall, start_camera(hall, {1, 0, 0}).eye)) << "no floor is looked for";
+  for (const auto& [v, camera] : {std::pair{&hall, visitor}, std::pair{&thing, beholder}}) {
+    EXPECT_GT(camera.near_plane, 0);
+    for (const Vec3f& p : v->positions)
+      EXPECT_LE(std::hypot(p.x - camera.eye.x, p.y - camera.eye.y, p.z - camera.eye.z),
+                camera.far_plane);
+  }
 }
 
 TEST(ViewScene, ASceneWithoutTrianglesIsSaidToBeOne) {
