@@ -61,6 +61,7 @@ std::vector<FlatChart> cut_charts(const Work& work, const Context& context, Char
   const double start = cpu_seconds();
   Segmentation segmentation = segment(work.topology, work.options, context);
   if (context.cancelled()) return {};
+  return_freed_memory();
   set.timing.segmentation_cpu += cpu_seconds() - start;
   context.report("charts", 0.5);
   const FlattenInput input{work.topology, work.mesh.density, work.options, segmentation.frames};
@@ -320,6 +321,7 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
                                       ? keep_charts({topology, given, options}, context, set)
                                       : cut_charts({topology, given, options}, context, set);
   if (context.cancelled()) return Status::cancelled();
+  return_freed_memory();
   Assembler(mesh, topology, set).run(charts);
   set.seam_length = seam_length(topology, set);
   set.distortion = sum_up(set);
