@@ -115,7 +115,7 @@ CLI::App* add_images(CLI::App& app, PackCommand& c) {
   return images;
 }
 
-CLI::App* add_mesh(CLI::App& app, PackCommand& c) {
+void add_mesh(CLI::App& app, PackCommand& c) {
   CLI::App* mesh =
       app.add_subcommand("mesh", "The uv charts of a mesh, repacked at uniform density");
   mesh->add_option("mesh", c.input, "OBJ, PLY or glTF with uvs")->required();
@@ -128,7 +128,6 @@ CLI::App* add_mesh(CLI::App& app, PackCommand& c) {
                    "be turned by any angle");
   add_page_options(*mesh, c);
   add_effort_options(*mesh, c);
-  return mesh;
 }
 
 }  // namespace
@@ -141,7 +140,7 @@ int parse_command_line(int argc, char** argv, PackCommand& c) {
 
   CLI::App* rects = add_rects(app, c);
   CLI::App* images = add_images(app, c);
-  CLI::App* mesh = add_mesh(app, c);
+  add_mesh(app, c);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -34,6 +34,12 @@ class DistanceField {
     return true;
   }
 
+  // Whether sample() may be true within `radius` of p.
+  bool near_grid(Vec2d p, double radius) const {
+    const double gx = p.x * inverse_ + shift_, gy = p.y * inverse_ + shift_, r = radius * inverse_;
+    return gx > -r && gy > -r && gx < width_ - 1 + r && gy < height_ - 1 + r;
+  }
+
   // Points on the outline, about one for every `spacing` texels.
   std::vector<Vec2d> outline(double spacing) const;
 

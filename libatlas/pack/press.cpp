@@ -18,10 +18,10 @@ namespace {
 constexpr double kExpectedFill = 0.8;
 
 constexpr std::size_t kMostCharts = 128;
-constexpr std::size_t kStartedCharts = 320;  // over all starts: fewer charts get more of them
+constexpr std::size_t kStartedCharts = 480;  // over all starts: fewer charts get more of them
 constexpr std::size_t kMostStarts = 16;
 constexpr std::uint64_t kSearchWork = 160'000'000;  // words looked at by all starts, 2 ns each
-constexpr std::uint64_t kLayouts = 30;              // of one start
+constexpr std::uint64_t kLayouts = 20;              // of one start
 constexpr std::uint32_t kMostDoublings = 4;         // of both, a round of `best` each
 constexpr std::uint32_t kDirections = 24;
 // Few are worth pressing: what a start's cells say about its page is nearly what the press makes of
@@ -130,6 +130,7 @@ class Press {
     const Vec2d shift{d.bodies[kFine].center.x - d.bodies[kCoarse].center.x,
                       d.bodies[kFine].center.y - d.bodies[kCoarse].center.y};
     for (Vec2d& q : d.bodies[kFine].outline) q = {q.x + shift.x, q.y + shift.y};
+    make_arcs(d.bodies[kFine]);
     d.bodies[kFine].center = d.bodies[kCoarse].center;
     d.bodies[kFine].radius += std::hypot(shift.x, shift.y);
   }

@@ -114,12 +114,18 @@ class Solver {
 
   void near_points(std::uint32_t i, std::uint32_t j, double skin) {
     DistanceField::Sample s;
-    const double reach = bodies_[j].radius + skin;
-    for (const Vec2d& local : bodies_[i].outline) {
-      const Vec2d p = poses_[i].to_page(local);
-      const double fx = p.x - poses_[j].at.x, fy = p.y - poses_[j].at.y;
-      if (fx * fx + fy * fy > reach * reach) continue;
-      if (sample(j, p, s) && s.distance < skin) contacts_.push_back({i, j, local});
+    const Body &body = bodies_[i], &other = bodies_[j];
+    const double reach = other.radius + skin;
+    for (std::size_t a = 0; a < body.arcs.size(); ++a) {
+      const Body::Arc& arc = body.arcs[a];
+      const Vec2d m = poses_[j].to_body(poses_[i].to_page(arc.center));
+      if (m.x * m.x + m.y * m.y > (reach + arc.radius) * (reach + arc.radius)) continue;
+      if (!other.field.near_grid({m.x + other.center.x, m.y + other.center.y}, arc.radius))
+        continue;
+      const std::size_t end = std::min(body.outline.size(), (a + 1) * Body::kArc);
+      for (std::size_t k = a * Body::kArc; k < end; ++k)
+        if (sample(j, poses_[i].to_page(body.outline[k]), s) && s.distance < skin)
+          contacts_.push_back({i, j, body.outline[k]});
     }
   }
 
@@ -208,7 +214,31 @@ class Solver {
   static constexpr double kSkin = 16;
 };
 
+// Increases with the angle of p, from 0 to 4.
+double angle_like(Vec2d p) {
+  const double sum = std::abs(p.x) + std::abs(p.y);
+  const double share = sum > 0 ? p.y / sum : 0;
+  return p.x >= 0 ? 1 + share : 3 - share;
+}
+
 }  // namespace
+
+void make_arcs(Body& body) {
+  std::stable_sort(body.outline.begin(), body.outline.end(),
+                   [](Vec2d a, Vec2d b) { return angle_like(a) < angle_like(b); });
+  body.arcs.clear();
+  for (std::size_t k = 0; k < body.outline.size(); k += Body::kArc) {
+    const std::size_t end = std::min(body.outline.size(), k + Body::kArc);
+    Vec2d low = body.outline[k], high = low;
+    for (std::size_t i = k; i < end; ++i) {
+      const Vec2d p = body.outline[i];
+      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+    body.arcs.push_back({{(low.x + high.x) / 2, (low.y + high.y) / 2},
+                         std::hypot(high.x - low.x, high.y - low.y) / 2});
+  }
+}
 
 Body make_body(const Mask& mask, double cell, double reach, double spacing) {
   Body body;
@@ -232,6 +262,7 @@ Body make_body(const Mask& mask, double cell, double reach, double spacing) {
     p = {p.x - body.center.x, p.y - body.center.y};
     body.radius = std::max(body.radius, std::hypot(p.x, p.y));
   }
+  make_arcs(body);
   return body;
 }
 

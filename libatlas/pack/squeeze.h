@@ -12,7 +12,13 @@ namespace atlas::pack {
 // center).
 struct Body {
   DistanceField field;
-  std::vector<Vec2d> outline;
+  std::vector<Vec2d> outline;  // around the centre
+  struct Arc {                 // kArc points of it that follow each other, the last one fewer
+    Vec2d center;
+    double radius = 0;
+  };
+  static constexpr std::size_t kArc = 8;
+  std::vector<Arc> arcs;
   Vec2d center;
   double area = 0, radius = 0, gyration = 0;  // gyration: mean square distance from the centre
   Vec2d at;
@@ -20,6 +26,9 @@ struct Body {
 };
 
 Body make_body(const Mask& mask, double cell, double reach, double spacing);
+
+// Sorts the outline around the centre and covers it with arcs; to be called when it has changed.
+void make_arcs(Body& body);
 
 struct SqueezeOptions {
   double clearance = 2;  // kept between two charts
