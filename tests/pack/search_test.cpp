@@ -4,7 +4,9 @@
 #include <algorithm>
 
 #include "libatlas/pack/engines.h"
+#include "libatlas/pack/height_index.h"
 #include "libatlas/pack/skyline.h"
+#include "libatlas/pack/strip_beam.h"
 #include "tests/pack/checks.h"
 
 namespace atlas {
@@ -64,6 +66,101 @@ TEST(Skyline, WasteIsUsedAgain) {
   EXPECT_EQ(put({6, 2}), (Rect{4, 0, 6, 2}));
   EXPECT_EQ(put({8, 4}), (Rect{0, 6, 8, 4}));  // buries 4 x 4 above the second
   EXPECT_EQ(put({4, 4}), (Rect{4, 2, 4, 4}));
+}
+
+// Items cut from a strip by guillotine: a layout without waste exists.
+std::vector<Extent> cut_strip(test::Noise& noise, Extent strip, std::size_t count) {
+  std::vector<Extent> parts{strip};
+  while (parts.size() < count) {
+    const auto largest = std::max_element(parts.begin(), parts.end(), [](Extent a, Extent b) {
+      return std::max(a.width, a.height) < std::max(b.width, b.height);
+    });
+    Extent rest = *largest;
+    if (largest->width > largest->height) {
+      largest->width = noise.in(1, rest.width - 1);
+      rest.width -= largest->width;
+    } else {
+      largest->height = noise.in(1, rest.height - 1);
+      rest.height -= largest->height;
+    }
+    parts.push_back(rest);
+  }
+  return parts;
+}
+
+TEST(StripBeam, LayoutsAreValidAndAsLowAsAsked) {
+  test::Noise noise{12};
+  int full = 0, found = 0;
+  for (int round = 0; round < 60; ++round) {
+    const Extent strip{noise.in(10, 60), noise.in(10, 60)};
+    const auto items = cut_strip(noise, strip, std::size_t(noise.in(2, 14)));
+    const bool rotate = noise.in(0, 1);
+    StripBeam beam(items, strip.width, rotate);
+    for (int slack : {0, strip.height / 8 + 1}) {
+      const auto placed = beam.pack({strip.height + slack, 64, 3, {}});
+      if (placed.empty()) continue;
+      ++(slack ? found : full);
+      std::vector<Placement> at(items.size());
+      for (const GapPlacement& g : placed) at[g.item] = {0, g.x, g.y, g.rotated};
+      for (const Placement& p : at) ASSERT_TRUE(p.placed());
+      PackOptions o;
+      o.allow_rotation = rotate;
+      const std::vector<Extent> pages{{strip.width, strip.height + slack}};
+      ASSERT_EQ(test::check_layout(items, at, pages, o), "");
+    }
+    EXPECT_TRUE(beam.pack({strip.height - 1, 64, 3, {}}).empty());  // less than the area
+  }
+  EXPECT_GE(full, 30);
+  EXPECT_GE(found, 50);
+}
+
+TEST(StripSearch, TurnsHelpAndThreadsChangeNothing) {
+  test::Noise noise{3};
+  const auto items = cut_strip(noise, {100, 100}, 40);
+  PackOptions o;
+  o.page = {100, 0};
+  o.allow_rotation = true;
+  const Result<PackResult> standard = pack_rects(items, o, {});
+  o.preset = PackPreset::best;
+  o.effort = 6000;
+  o.time_budget = 1e9;
+  Context one, three;
+  one.threads = 1;
+  three.threads = 3;
+  const Result<PackResult> a = pack_rects(items, o, one), b = pack_rects(items, o, three);
+  ASSERT_TRUE(standard.ok() && a.ok() && b.ok());
+  EXPECT_EQ(a->placements, b->placements);
+  EXPECT_LE(a->pages[0].height, 103);
+  EXPECT_LE(standard->pages[0].height, 104);
+  EXPECT_EQ(test::check_layout(items, a->placements, a->pages, o), "");
+}
+
+// The index against a look at every page.
+TEST(HeightIndex, NamesTheFirstPageWithRoom) {
+  test::Noise noise{41};
+  for (int round = 0; round < 40; ++round) {
+    std::vector<FreeRects> pages;
+    HeightIndex index;
+    int height = 20;
+    for (int step = 0; step < 120; ++step) {
+      height = std::max(1, height - noise.in(0, 3) / 3);
+      const Extent item{noise.in(1, 20), height};
+      index.sink(height, pages);
+      Spot spot;
+      std::size_t expected = 0;
+      while (expected < pages.size() &&
+             !pages[expected].find(item, false, PlaceRule::bottom_left, spot))
+        ++expected;
+      ASSERT_EQ(index.first(item.width), expected);
+      if (expected == pages.size()) {
+        pages.emplace_back(Extent{20, 20});
+        index.push_back(pages.back());
+        ASSERT_TRUE(pages.back().find(item, false, PlaceRule::bottom_left, spot));
+      }
+      pages[expected].place(spot.rect);
+      index.update(expected, pages[expected]);
+    }
+  }
 }
 
 TEST(Bounds, NeverAboveALayoutKnownToExist) {
