@@ -85,7 +85,7 @@ float visibility(vec3 p, float bias) {
 // the filter is evaluated once, at the sample that misses least. The two constants, in texels: a
 // blocker this near to the ray is sure, the search ends (1); no blocker as near as this, the point
 // is lit (2.5: with 2 smooth shadows lose a little of their rims, with 4 a cabin's seats under a
-// low sun have three times as many wrong pixels, with 8 six times). A point over which the first
+// low sun have three times as many wrong pixels, with 8 more). A point over which the first
 // key sees nothing at all along the ray is lit as that key says: its search ends too. That the
 // loop's bound is no constant keeps compilers from unrolling it: the software renderer leaves a
 // loop early but never skips a branch.
