@@ -3,43 +3,53 @@
 #include <algorithm>
 #include <cmath>
 
+#include "benchmarks/support/chart_setting.h"
 #include "benchmarks/support/staged.h"
 
 namespace atlas::bench {
 namespace {
 
-struct Setting {
-  std::string name;
-  bool preset;
-  ChartOptions options;
-};
-
-std::vector<Setting> settings(bool sweep) {
-  std::vector<Setting> list{{"standard", true, {}}};
+// The standard one first.
+std::vector<ChartSetting> settings(bool sweep) {
+  const std::vector<ChartSetting> presets = chart_presets();
+  std::vector<ChartSetting> list{presets[1]};
   if (!sweep) return list;
   for (const double stretch : {1.05, 1.1, 1.5, 2.0}) {
-    ChartOptions options;
-    options.max_stretch = stretch;
-    list.push_back({fmt::format("stretch {}", stretch), false, options});
+    list.push_back(with_stretch(stretch, "stretch "));
   }
   for (const double cone : {30.0, 60.0}) {
-    ChartOptions options;
-    options.cone_degrees = cone;
-    list.push_back({fmt::format("cone {}", cone), false, options});
+    list.push_back({fmt::format("cone {}", cone), false, {}});
+    list.back().options.cone_degrees = cone;
   }
-  ChartOptions options;
-  options.preset = ChartPreset::fast;
-  list.push_back({"fast", true, options});
-  options.preset = ChartPreset::best;
-  list.push_back({"best", true, options});
+  list.push_back(presets[0]);
+  list.push_back(presets[2]);
   return list;
+}
+
+// CPU seconds of the parts of segmentation, then of parameterisation.
+void add_parts(const ChartSet::Timing& t, Row& row) {
+  for (const auto& [name, seconds] :
+       std::initializer_list<std::pair<const char*, double>>{{"topology_cpu", t.topology_cpu},
+                                                             {"noise_cpu", t.noise_cpu},
+                                                             {"cells_cpu", t.cells_cpu},
+                                                             {"coarse_cpu", t.coarse_cpu},
+                                                             {"merging_cpu", t.merging_cpu},
+                                                             {"borders_cpu", t.borders_cpu},
+                                                             {"cuts_cpu", t.cuts_cpu},
+                                                             {"solve_cpu", t.solve_cpu},
+                                                             {"flips_cpu", t.flips_cpu},
+                                                             {"overlaps_cpu", t.overlaps_cpu},
+                                                             {"absorb_cpu", t.absorb_cpu},
+                                                             {"limbs_cpu", t.limbs_cpu}}) {
+    row.values.emplace_back(name, seconds);
+  }
 }
 
 }  // namespace
 
 void bench_charts(const StageRun& run) {
   Staged& staged = run.staged;
-  for (const Setting& setting : settings(run.sweep)) {
+  for (const ChartSetting& setting : settings(run.sweep)) {
     Row row = staged.row("charts", setting.name, setting.preset);
     row.unit = "triangles -> charts";
     measure(run.repeats, row, [&]() -> Status {
@@ -52,6 +62,7 @@ void bench_charts(const StageRun& run) {
                     {"p999", made->distortion.stretch_999},
                     {"flips", double(made->distortion.flips)},
                     {"param_cpu", made->timing.parameterization_cpu}};
+      add_parts(made->timing, row);
       if (setting.name == "standard") staged.charts = std::move(*made);
       return {};
     });

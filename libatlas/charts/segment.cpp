@@ -18,10 +18,10 @@ namespace {
 using Frame = std::array<glm::dvec3, 2>;
 
 constexpr double kWidestRatio = 8;  // wider bounds than 3 merge no more
-// Narrower bounds than 1.0125 merge no less: below it a fan's own error, of a mesh that unrolls
-// exactly, is larger than what merging would allow (a cylinder at 1.001 came out in 9 to 39 charts;
-// from 0.05 on in one, while spheres need no more than before).
-constexpr double kLeastRatio = 0.05;
+// Narrower bounds than 1.025 merge no less: below it a fan's own error, of a mesh that unrolls
+// exactly, is larger than what merging would allow (cylinders at 1.001 came out in 9 to 39 charts;
+// from 0.1 on in one or two, while spheres need a thirtieth more).
+constexpr double kLeastRatio = 0.1;
 
 // The map from space to the plane that a cell's coarse flattening stands for: the rotation that
 // best takes its fan to its flat coordinates.

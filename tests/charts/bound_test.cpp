@@ -38,7 +38,7 @@ TEST(Bound, WhatUnrollsNeedsFewChartsAtAnyBound) {
     const ChartSet usual = bounded(shape, 1.25), tight = bounded(shape, 1.001);
     EXPECT_LE(usual.charts.size(), 1u) << name;
     EXPECT_LE(usual.distortion.stretch_999, 1.001) << name;
-    EXPECT_LE(tight.charts.size(), 4u) << name;
+    EXPECT_LE(tight.charts.size(), 2u) << name;
     EXPECT_LE(tight.distortion.stretch_999, 1.001 * (1 + 1e-6)) << name;
   }
 }

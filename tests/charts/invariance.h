@@ -35,9 +35,8 @@ Shape narrowed(const WideMesh& mesh);
 ChartSet charts_of(const Shape& shape, int threads = 1);
 
 // Holds what became of a mesh's charts against the original's, case by case. Every case has to
-// keep its L2 stretch within 1 %, to flip nothing, and to keep the number of charts within 3 % or
-// one: rounding may break a tie that lies at the limit between two classes of cost. That is rare:
-// nine cases of ten have to keep the number within 3 % and the seams, too.
+// keep its L2 stretch within 1 %, to flip nothing, and to keep the number of charts within 3 %;
+// nine cases of ten have to keep the seams, too: rounding may move a border.
 class Comparison {
  public:
   // `factor`: of the lengths.
