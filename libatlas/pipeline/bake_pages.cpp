@@ -12,10 +12,10 @@ namespace atlas {
 namespace {
 
 // Adds the time since its construction to two sums.
-class Stopwatch {
+class BookedTime {
  public:
-  Stopwatch(double& cpu, double& wall) : cpu_(cpu), wall_(wall) {}
-  ~Stopwatch() {
+  BookedTime(double& cpu, double& wall) : cpu_(cpu), wall_(wall) {}
+  ~BookedTime() {
     cpu_ += cpu_seconds() - cpu_start_;
     wall_ += wall_seconds() - wall_start_;
   }
@@ -54,7 +54,7 @@ Result<BakedPages> bake_pages(const ChartLight& light, const PageLayout& layout,
   const auto pages = placements_by_page(layout);
   std::optional<FidelityMeter> meter;
   if (options.measure_error) {
-    Stopwatch watch(result.measure_cpu, result.measure_wall);
+    const BookedTime watch(result.measure_cpu, result.measure_wall);
     meter.emplace(light, layout.placements, FidelityOptions{});
   }
   Context page_context = context;
@@ -70,16 +70,16 @@ Result<BakedPages> bake_pages(const ChartLight& light, const PageLayout& layout,
     bake.method = options.bake_method;
     bake.linear = options.exr;
     Result<BakedPage> baked = [&] {
-      Stopwatch watch(result.bake_cpu, result.bake_wall);
+      const BookedTime watch(result.bake_cpu, result.bake_wall);
       return bake_page(light, pages[p], bake, page_context);
     }();
     if (!baked.ok()) return baked.status();
     result.covered_texels += baked->covered_texels;
     if (meter) {
-      Stopwatch watch(result.measure_cpu, result.measure_wall);
+      const BookedTime watch(result.measure_cpu, result.measure_wall);
       meter->add_page(std::int32_t(p), baked->display);
     }
-    Stopwatch watch(result.write_cpu, result.write_wall);
+    const BookedTime watch(result.write_cpu, result.write_wall);
     const std::string name =
         fmt::format("{}_{}.png", safe_file_name(options.target.stem().string()), p);
     const auto image = write_page(options.target.parent_path() / name, *baked, options, files);
