@@ -228,7 +228,7 @@ bool search_scale(OutlineFit& fit, const FitOptions& options, const Context& con
     const bool ok = attempt(scale);
     if (ok && scale >= options.max_scale) return true;
     (ok ? low : high) = scale;
-    if (low > 0 && high - low < 0.004 * high) return true;
+    if (low > 0 && high - low < 0.005 * high) return true;
     if (low == 0) {
       scale *= step;
       step *= step > 0.5 ? 0.97 : 1;  // faster and faster, should minimum sides be in the way
