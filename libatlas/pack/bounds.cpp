@@ -1,4 +1,7 @@
 #include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "libatlas/pack/engines.h"
 
@@ -28,15 +31,28 @@ std::vector<std::int64_t> thresholds(std::vector<std::int64_t> lengths, std::int
   return chosen;
 }
 
-std::int64_t weight(Extent item, const Problem& p, std::int64_t ew, std::int64_t eh) {
-  const auto oriented = [&](Extent e) {
-    if (e.width > p.page.width || e.height > p.page.height)
-      return std::int64_t{p.page.width} * p.page.height;
-    return dual_feasible(e.width, p.page.width, ew) * dual_feasible(e.height, p.page.height, eh);
-  };
-  const std::int64_t upright = oriented(item);
-  return p.allow_rotation ? std::min(upright, oriented({item.height, item.width})) : upright;
-}
+// Shares of a page that the items count for: 1 a threshold and item, width and height apart, of the
+// items as they are or turned. An item that does not fit this way round counts as a whole page.
+struct Shares {
+  std::vector<double> across, up;
+
+  Shares(const Problem& p, bool turned, std::span<const std::int64_t> across_at,
+         std::span<const std::int64_t> up_at) {
+    const auto fill = [&](std::span<const std::int64_t> at, bool widths, std::vector<double>& out) {
+      const std::int64_t side = widths ? p.page.width : p.page.height;
+      out.reserve(at.size() * p.items.size());
+      for (const std::int64_t e : at)
+        for (Extent item : p.items) {
+          if (turned) std::swap(item.width, item.height);
+          const bool fits = item.width <= p.page.width && item.height <= p.page.height;
+          const std::int64_t length = widths ? item.width : item.height;
+          out.push_back(fits ? double(dual_feasible(length, side, e)) / double(side) : 1);
+        }
+    };
+    fill(across_at, true, across);
+    fill(up_at, false, up);
+  }
+};
 
 }  // namespace
 
@@ -56,13 +72,16 @@ std::uint32_t page_bound(const Problem& problem) {
     along = thresholds(std::move(widths), problem.page.width);
     up = thresholds(std::move(heights), problem.page.height);
   }
-  const double page = static_cast<double>(problem.page.area());
+  const std::size_t n = problem.items.size();
+  const Shares upright(problem, false, along, up);
+  const Shares turned(problem, problem.allow_rotation, along, up);
   double most = 0;
-  for (std::int64_t ew : along)
-    for (std::int64_t eh : up) {
-      double total = 0;  // exact: sums stay far below 2^53 pages' worth of rounding, see the slack
-      for (const Extent& e : problem.items)
-        total += static_cast<double>(weight(e, problem, ew, eh)) / page;
+  for (std::size_t a = 0; a < along.size(); ++a)
+    for (std::size_t u = 0; u < up.size(); ++u) {
+      const double *w = &upright.across[a * n], *h = &upright.up[u * n];
+      const double *turned_w = &turned.across[a * n], *turned_h = &turned.up[u * n];
+      double total = 0;
+      for (std::size_t i = 0; i < n; ++i) total += std::min(w[i] * h[i], turned_w[i] * turned_h[i]);
       most = std::max(most, total);
     }
   const double slack = 1e-9 * most;  // rounding must never raise the bound

@@ -20,24 +20,26 @@ GapFill::Choice GapFill::choose(std::span<const std::uint32_t> sequence, std::si
   const bool tall_right = right > left;
   const std::int32_t tall = tall_right ? right : left, low = tall_right ? left : right;
   Choice best;
+  const auto consider = [&](Extent e, std::size_t i, bool turned) {
+    if (e.width > s.width || e.height > room) return;
+    int score = 0;
+    bool other = false;
+    if (e.width == s.width) {
+      score = e.height == tall || e.height == low ? 8 : e.height > tall ? 5 : 4;
+    } else if (best.score >= 3) {
+      return;
+    } else if (e.height == tall) {
+      score = 3;
+    } else if (e.height == low) {
+      score = 2;
+      other = true;
+    }
+    if (score > best.score) best = {score, i, turned, other != tall_right};
+  };
   for (std::size_t i = 0; i < sequence.size() && best.score < 8; ++i) {
     const Extent item = items_[sequence[i]];
-    for (int turn = 0; turn < 1 + (allow_rotation_ && item.width != item.height); ++turn) {
-      const Extent e = turn ? Extent{item.height, item.width} : item;
-      if (e.width > s.width || e.height > room) continue;
-      int score = 0;
-      bool other = false;
-      if (e.width == s.width) {
-        score = e.height == tall || e.height == low ? 8 : e.height > tall ? 5 : 4;
-        if (left == right && score == 8) score = 8;
-      } else if (e.height == tall) {
-        score = 3;
-      } else if (e.height == low) {
-        score = 2;
-        other = true;
-      }
-      if (score > best.score) best = {score, i, turn == 1, other != tall_right};
-    }
+    consider(item, i, false);
+    if (allow_rotation_ && item.width != item.height) consider({item.height, item.width}, i, true);
   }
   return best;
 }

@@ -8,7 +8,7 @@ namespace {
 
 // `standard` stops after this much work, counted in looks at an item: 500 instances of 20 to 100
 // items take about 0.1 s, a strip of 200 items 0.05 to 0.1 s.
-constexpr std::uint64_t kPageWork = 200'000, kStripWork = 25'000'000, kBeamWork = 3'000'000;
+constexpr std::uint64_t kPageWork = 160'000, kStripWork = 25'000'000, kBeamWork = 3'000'000;
 
 // Above this many items the gap engines, quadratic in the items of a page, are not the ones to ask.
 constexpr std::size_t kSmall = 1000;
