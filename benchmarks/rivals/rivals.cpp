@@ -5,6 +5,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -58,14 +60,30 @@ Row unwrap_row(const StageRun& run, const std::string& name) {
   return row;
 }
 
+struct PageSize {
+  int width, height;
+};
+
+// What the file says in a comment "# page WIDTH HEIGHT" before its first face; else a square.
+PageSize page_of(const fs::path& path, int side) {
+  std::ifstream file(path);
+  for (std::string text; std::getline(file, text) && !text.starts_with("f ");) {
+    PageSize page{};
+    if (std::sscanf(text.c_str(), "# page %d %d", &page.width, &page.height) == 2 &&
+        std::min(page.width, page.height) > 0)
+      return page;
+  }
+  return {side, side};
+}
+
 // The row's error is L2 - 1; seams, which trade against it, stand beside it.
-void judge(const fs::path& path, int page, Row& row) {
+void judge(const fs::path& path, PageSize page, Row& row) {
   const Result<test::UvMesh> mesh = test::read_uv_obj(path);
   if (!mesh.ok()) {
     row.failure = mesh.status().message();
     return;
   }
-  const test::AtlasMeasures m = test::measure_atlas(*mesh, page, page);
+  const test::AtlasMeasures m = test::measure_atlas(*mesh, page.width, page.height);
   row.size_out = m.charts;
   row.values = {{"l2_minus_1", m.stretch_l2 - 1},
                 {"p999", m.stretch_999},
@@ -110,7 +128,7 @@ void bench_rival(const StageRun& run, const Rival& rival) {
   else if (exit_code != 0)
     row.failure = fmt::format("ended with code {}{}", exit_code, last_line(complaints));
   else
-    judge(out, rival.page, row);
+    judge(out, page_of(out, rival.page), row);
   run.done(row);
 }
 
@@ -126,12 +144,16 @@ void bench_ours(const StageRun& run, int page) {
   options.target = folder.path / "out.obj";
   options.charts_only = true;
   options.atlas_size = page;
+  PageSize written{page, page};
   measure(run.repeats, row, [&]() -> Status {
     const Result<LoadedScene> scene = read_scene(in, {}, run.staged.context);
     if (!scene.ok()) return scene.status();
-    return export_world(*scene, options, {}, run.staged.context).status();
+    const Result<ExportReport> report = export_world(*scene, options, {}, run.staged.context);
+    if (report.ok() && !report->pages.empty())
+      written = {report->pages[0].width, report->pages[0].height};
+    return report.status();
   });
-  if (row.failure.empty()) judge(options.target, page, row);
+  if (row.failure.empty()) judge(options.target, written, row);
   run.done(row);
 }
 

@@ -12,7 +12,7 @@ namespace atlas::bench {
 struct Rival {
   std::string name, command;
   double timeout = 60;  // wall seconds
-  int page = 2048;      // side of the pages that overlaps and bleeding are counted on, texels
+  int page = 2048;  // side of its pages, texels, where its OBJ does not say "# page WIDTH HEIGHT"
 };
 
 // "name=command {in} {out}". Errors: bad_option.

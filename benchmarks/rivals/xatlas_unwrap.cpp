@@ -39,6 +39,7 @@ bool read(const char* path, Mesh& mesh) {
 bool write(const char* path, const Mesh& in, const xatlas::Atlas& atlas) {
   FILE* file = std::fopen(path, "wb");
   if (!file) return false;
+  std::fprintf(file, "# page %u %u\n", atlas.width, atlas.height);
   for (std::size_t i = 0; i < in.positions.size(); i += 3)
     std::fprintf(file, "v %.9g %.9g %.9g\n", in.positions[i], in.positions[i + 1],
                  in.positions[i + 2]);
