@@ -61,7 +61,7 @@ rival_list() {
     return
   fi
   if [ -n "${LIBATLAS_XATLAS:-}" ] &&
-     c++ -O2 -std=c++17 -I "$LIBATLAS_XATLAS/source/xatlas" benchmarks/rivals/xatlas_unwrap.cpp \
+     c++ -O2 -DNDEBUG -std=c++17 -I "$LIBATLAS_XATLAS/source/xatlas" benchmarks/rivals/xatlas_unwrap.cpp \
          "$LIBATLAS_XATLAS/source/xatlas/xatlas.cpp" -lpthread -o "$out/xatlas_unwrap" >&2; then
     echo "xatlas=$PWD/$out/xatlas_unwrap {in} {out}"
   else
