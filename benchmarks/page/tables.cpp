@@ -333,7 +333,7 @@ void rivals_table(const Results& all, Document& page) {
   page.heading("Beside other programs");
   page.paragraph(
       "The same OBJ file for every program, everything judged by the same evaluator "
-      "(tests/support/atlas_measure) on pages of the size given by --atlas-size. Reading and "
+      "(tests/support/atlas_measure) on pages of the size that its program made. Reading and "
       "writing files is part of the time. See benchmarks/rivals/README.md for how each is called.");
   page.table(header, rows);
 }
