@@ -192,6 +192,15 @@ TEST(Pareto, KeepsWhatNothingBeats) {
   EXPECT_EQ(front[2].x, 3);
 }
 
+// The page in Markdown after a round through a JSON file; empty if that fails.
+std::string written_page(const Results& results, const fs::path& folder) {
+  if (!save(results, folder / "all.json").ok()) return {};
+  const Result<Results> loaded = load(folder / "all.json");
+  if (!loaded.ok() || !write_page({{*loaded}}, folder).ok()) return {};
+  std::ifstream file(folder / "performance.md");
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
 TEST(Page, TablesForThreadsInstructionsAndRivals) {
   const TempFolder folder;
   Results results = some_results();
@@ -206,12 +215,7 @@ TEST(Page, TablesForThreadsInstructionsAndRivals) {
   results.rows.back().stage = "unwrap";
   results.rows.back().setting = "slow program";
   results.rows.back().failure = "timed out after 60 s";
-  ASSERT_TRUE(save(results, folder.path / "all.json").ok());
-  const Result<Results> loaded = load(folder.path / "all.json");
-  ASSERT_TRUE(loaded.ok());
-  ASSERT_TRUE(write_page({{*loaded}}, folder.path).ok());
-  std::ifstream file(folder.path / "performance.md");
-  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  const std::string page = written_page(results, folder.path);
   for (const char* text : {"## Threads", "| 2.00 | all.json:", "## Instructions", "| 123.00 |",
                            "slow program | 7000 | timed out after 60 s", "## Stage: charts"})
     EXPECT_NE(page.find(text), std::string::npos) << text;
@@ -238,12 +242,7 @@ TEST(Page, TellsWhichPartsOfChartsTakeTheTime) {
     charts.values.emplace_back("merging_cpu", 0.6 * seconds);
     results.rows.push_back(charts);
   }
-  ASSERT_TRUE(save(results, folder.path / "all.json").ok());
-  const Result<Results> loaded = load(folder.path / "all.json");
-  ASSERT_TRUE(loaded.ok());
-  ASSERT_TRUE(write_page({{*loaded}}, folder.path).ok());
-  std::ifstream file(folder.path / "performance.md");
-  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  const std::string page = written_page(results, folder.path);
   EXPECT_NE(page.find("scan:1000000, 40.0 times: 60 % merging"), std::string::npos);
   EXPECT_EQ(page.find("terrain:1000000, 10.0 times"), std::string::npos);
   const std::string parts = page.substr(page.find("| mesh | charts, s |"));
