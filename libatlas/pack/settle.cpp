@@ -33,35 +33,78 @@ class Settler {
     BitPage page(side, side, longest_);
     result.places.assign(targets_.size(), {});
     result.page = {};
-    std::vector<std::uint32_t> small;
+    displaced_.clear();
     sort_by_distance();
     for (std::uint32_t i : order_) {
       const Mask& mask = masks_[i];
       if (mask.cells == 0) continue;
       if (mask.width > side || mask.height > side) return false;
       BitPage::Place at;
-      if (nearest_free(i, page, at))
+      if (nearest_free(i, page, at) || (make_way(i, page, result) && nearest_free(i, page, at)))
         put(i, at, page, result);
-      else if (mask.cells * kSmallShare < std::int64_t{side} * side)
-        small.push_back(i);
+      else if (is_small(i, side))
+        displaced_.push_back(i);
       else
         return false;
     }
     // Small charts may go to any hole within the page that the others need.
-    for (std::uint32_t i : small) {
+    std::stable_sort(displaced_.begin(), displaced_.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return masks_[a].cells > masks_[b].cells;
+    });
+    measure(result);
+    for (std::uint32_t i : displaced_) {
       BitPage::Place at;
       const Mask& mask = masks_[i];
       const std::int32_t last = result.page.width / options_.alignment - mask.width;
       if (!page.find(mask, test_order(mask), {0, std::max(0, last), 0, side}, at)) return false;
       put(i, at, page, result);
+      measure(result);
     }
     result.scale = scale;
     return true;
   }
 
+  // Whether the last layout has charts far from their targets.
+  bool displaced() const { return !displaced_.empty(); }
+
  private:
   static constexpr double kCloser = 0.8;
-  static constexpr std::int64_t kSmallShare = 500;
+  static constexpr std::int64_t kSmallShare = 60;
+
+  bool is_small(std::uint32_t i, std::int64_t side) const {
+    return masks_[i].cells * kSmallShare < side * side;
+  }
+
+  // A chart that sits tightly in the notch of a larger one may have kept it from its place: the
+  // notch shrinks with the chart, so that no smaller scale helps. Takes such charts off the page.
+  bool make_way(std::uint32_t i, BitPage& page, PressedPage& result) {
+    const std::int32_t side = page.width();
+    bool any = false;
+    for (std::uint32_t j : order_) {
+      if (j == i) break;
+      PressedPlace& there = result.places[j];
+      if (!there.placed || !is_small(j, side) || masks_[j].cells > masks_[i].cells) continue;
+      const BitPage::Place at{there.box.x / options_.alignment, there.box.y / options_.alignment};
+      BitPage alone(side, side, longest_);
+      alone.put(masks_[j], at);
+      BitPage::Place other;
+      if (nearest_free(i, alone, other)) continue;
+      page.take_away(masks_[j], at);
+      there.placed = false;
+      displaced_.push_back(j);
+      any = true;
+    }
+    return any;
+  }
+
+  void measure(PressedPage& result) const {
+    result.page = {};
+    for (const PressedPlace& p : result.places)
+      if (p.placed) {
+        result.page.width = std::max(result.page.width, p.box.right());
+        result.page.height = std::max(result.page.height, p.box.top());
+      }
+  }
 
   void put(std::uint32_t i, BitPage::Place at, BitPage& page, PressedPage& result) const {
     const Mask& mask = masks_[i];
@@ -72,8 +115,6 @@ class Settler {
     out.angle = targets_[i].angle;
     out.box = {at.x * a, at.y * a, mask.width * a, mask.height * a};
     out.offset = {out.box.x + origins_[i].x, out.box.y + origins_[i].y};
-    result.page.width = std::max(result.page.width, out.box.right());
-    result.page.height = std::max(result.page.height, out.box.top());
   }
 
   void draw(double scale, double closer) {
@@ -136,7 +177,7 @@ class Settler {
   double scale_;
   const FitOptions& options_;
   const Context& context_;
-  std::vector<std::uint32_t> order_;
+  std::vector<std::uint32_t> order_, displaced_;
   std::vector<Mask> masks_;
   std::vector<Vec2d> origins_, wanted_;
   std::int32_t longest_ = 1;
@@ -149,21 +190,26 @@ PressedPage settle(std::span<const SettleTarget> targets, std::span<const ChartO
   Settler settler(targets, outlines, scale, options, context);
   PressedPage best, tried;
   constexpr std::array kShares{1.0, 0.996, 0.99, 0.98, 0.96, 0.93, 0.89};
+  const auto fill = [&](const PressedPage& p) {
+    const double side = std::max(p.page.width, p.page.height);
+    return p.scale * p.scale / (options.free_aspect ? double(p.page.area()) : side * side);
+  };
   double low = 0, high = 1;
   for (double share : kShares) {
-    if (settler.place_at(share, tried)) {
-      best = std::move(tried);
+    if (context.cancelled()) return {};
+    const bool ok = settler.place_at(share, tried);
+    if (ok && (best.scale == 0 || fill(tried) > fill(best))) best = tried;
+    if (ok && !settler.displaced()) {
       low = share;
       break;
     }
     high = share;
-    if (context.cancelled()) return {};
   }
   for (int k = 0; k < 3 && low > 0 && high > low; ++k) {
     const double middle = (low + high) / 2;
     const bool ok = settler.place_at(middle, tried);
     (ok ? low : high) = middle;
-    if (ok) best = std::move(tried);
+    if (ok && fill(tried) > fill(best)) best = tried;
   }
   return best;
 }

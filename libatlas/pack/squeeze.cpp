@@ -36,7 +36,7 @@ class Solver {
     double before = 1e300;
     find_contacts(page);
     for (std::uint32_t s = 0; s < sweeps; ++s) {
-      if (2 * farthest_move() > kSkin) find_contacts(page);
+      if (2 * measure_moves() > kSkin) find_contacts(page);
       const double deepest = sweep(page);
       ++sweeps_;
       if (deepest <= options_.tolerance) return true;
@@ -66,30 +66,32 @@ class Solver {
     pose.cosine = cosine;
   }
 
-  // A point of body i's outline near body j or, where j is kWall, near an edge of the page.
+  // A point of body i's outline near body j or, where j is kWall, near an edge of the page. It may
+  // touch it once both together have moved by `room`.
   struct Contact {
     std::uint32_t i, j;
     Vec2d point;
+    double room;
   };
   static constexpr std::uint32_t kWall = 0xffffffffu;
 
-  // How far a point of any chart has moved since contacts were looked for.
-  double farthest_move() const {
-    double square = 0;
+  // How far any point of each chart has moved since contacts were looked for; the farthest of all.
+  double measure_moves() {
+    double farthest = 0;
     for (std::size_t i = 0; i < poses_.size(); ++i) {
       const Pose &now = poses_[i], &then = seen_[i];
-      const double turned =
-          bodies_[i].radius * (std::abs(now.cosine - then.cosine) + std::abs(now.sine - then.sine));
-      const double dx = std::abs(now.at.x - then.at.x) + turned;
-      const double dy = std::abs(now.at.y - then.at.y) + turned;
-      square = std::max(square, dx * dx + dy * dy);
+      const double dc = now.cosine - then.cosine, ds = now.sine - then.sine;
+      const double dx = now.at.x - then.at.x, dy = now.at.y - then.at.y;
+      moved_[i] = std::sqrt(dx * dx + dy * dy) + bodies_[i].radius * std::sqrt(dc * dc + ds * ds);
+      farthest = std::max(farthest, moved_[i]);
     }
-    return std::sqrt(square);
+    return farthest;
   }
 
   void find_contacts(const SqueezePage& page) {
     contacts_.clear();
     seen_ = poses_;
+    moved_.assign(poses_.size(), 0);
     const double skin = kSkin + options_.clearance;
     for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
       const double m = options_.margin + kSkin, r = bodies_[i].radius;
@@ -98,8 +100,8 @@ class Solver {
         continue;
       for (const Vec2d& local : bodies_[i].outline) {
         const Vec2d p = poses_[i].to_page(local);
-        if (p.x < m || p.y < m || p.x > page.width - m || p.y > page.height - m)
-          contacts_.push_back({i, kWall, local});
+        const double room = std::min({p.x, p.y, page.width - p.x, page.height - p.y});
+        if (room < m) contacts_.push_back({i, kWall, local, room - options_.margin});
       }
     }
     for (std::uint32_t i = 0; i < bodies_.size(); ++i)
@@ -115,17 +117,19 @@ class Solver {
   void near_points(std::uint32_t i, std::uint32_t j, double skin) {
     DistanceField::Sample s;
     const Body &body = bodies_[i], &other = bodies_[j];
-    const double reach = other.radius + skin;
+    // From i's coordinates to those of j's field.
+    Pose turned;
+    turned.cosine = poses_[i].cosine * poses_[j].cosine + poses_[i].sine * poses_[j].sine;
+    turned.sine = poses_[i].sine * poses_[j].cosine - poses_[i].cosine * poses_[j].sine;
+    turned.at = poses_[j].to_body(poses_[i].at);
+    turned.at = {turned.at.x + other.center.x, turned.at.y + other.center.y};
     for (std::size_t a = 0; a < body.arcs.size(); ++a) {
       const Body::Arc& arc = body.arcs[a];
-      const Vec2d m = poses_[j].to_body(poses_[i].to_page(arc.center));
-      if (m.x * m.x + m.y * m.y > (reach + arc.radius) * (reach + arc.radius)) continue;
-      if (!other.field.near_grid({m.x + other.center.x, m.y + other.center.y}, arc.radius))
-        continue;
+      if (!other.field.near_grid(turned.to_page(arc.center), arc.radius)) continue;
       const std::size_t end = std::min(body.outline.size(), (a + 1) * Body::kArc);
       for (std::size_t k = a * Body::kArc; k < end; ++k)
-        if (sample(j, poses_[i].to_page(body.outline[k]), s) && s.distance < skin)
-          contacts_.push_back({i, j, body.outline[k]});
+        if (other.field.sample(turned.to_page(body.outline[k]), s) && s.distance < skin)
+          contacts_.push_back({i, j, body.outline[k], s.distance - options_.clearance});
     }
   }
 
@@ -137,6 +141,7 @@ class Solver {
   double sweep(const SqueezePage& page) {
     double deepest = 0;
     for (const Contact& c : contacts_) {
+      if (moved_[c.i] + (c.j == kWall ? 0 : moved_[c.j]) < c.room) continue;
       const Vec2d p = poses_[c.i].to_page(c.point);
       deepest = std::max(deepest, c.j == kWall ? push_in(c.i, p, page) : push_out(c, p));
     }
@@ -163,7 +168,7 @@ class Solver {
     for (int k = 0; k < 4; ++k) {
       if (depth[k] <= 0) continue;
       deepest = std::max(deepest, depth[k]);
-      resolve({i, kWall, {}}, p, normal[k], depth[k]);
+      resolve({i, kWall, {}, 0}, p, normal[k], depth[k]);
     }
     return deepest;
   }
@@ -186,7 +191,9 @@ class Solver {
       sum += wj * (1 + aj * lj);
     }
     constexpr double kRelaxation = 0.6;  // neighbouring points push as well
-    const double step = kRelaxation * depth / sum;
+    // A body that lies deep in another is pushed both ways: the whole depth at once would throw it
+    // and its neighbours across the page.
+    const double step = kRelaxation * std::min(depth, kMostPush) / sum;
     move(i, n, step * wi, ai);
     if (j != kWall) move(j, n, -step * wj, aj);
   }
@@ -195,7 +202,8 @@ class Solver {
     Pose& pose = poses_[b];
     pose.at.x += n.x * step;
     pose.at.y += n.y * step;
-    const double by = std::clamp(lever * step, -0.05, 0.05);
+    const double most = kMostPush / bodies_[b].radius;
+    const double by = std::clamp(lever * step, -most, most);
     if (by == 0) return;
     // To second order, and normalised: a sine each contact would cost more than all the rest.
     const double c = 1 - by * by / 2, s = by;
@@ -209,23 +217,36 @@ class Solver {
   std::span<Body> bodies_;
   const SqueezeOptions& options_;
   std::vector<Pose> poses_, seen_;
+  std::vector<double> moved_;  // 1 a body
   std::vector<Contact> contacts_;
   std::uint64_t sweeps_ = 0;
-  static constexpr double kSkin = 16;
+  static constexpr double kSkin = 16, kMostPush = 4;
 };
 
-// Increases with the angle of p, from 0 to 4.
-double angle_like(Vec2d p) {
-  const double sum = std::abs(p.x) + std::abs(p.y);
-  const double share = sum > 0 ? p.y / sum : 0;
-  return p.x >= 0 ? 1 + share : 3 - share;
+// Orders points such that those of every kArc that follow each other lie close together: halves
+// across the longer side, again and again.
+void sort_into_arcs(std::span<Vec2d> points) {
+  if (points.size() <= Body::kArc) return;
+  Vec2d low = points[0], high = low;
+  for (const Vec2d p : points) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  const bool wide = high.x - low.x > high.y - low.y;
+  std::sort(points.begin(), points.end(), [wide](Vec2d a, Vec2d b) {
+    const Vec2d c = wide ? a : Vec2d{a.y, a.x}, d = wide ? b : Vec2d{b.y, b.x};
+    return c.x != d.x ? c.x < d.x : c.y < d.y;
+  });
+  const std::size_t arcs = (points.size() + Body::kArc - 1) / Body::kArc;
+  const std::size_t half = arcs / 2 * Body::kArc;
+  sort_into_arcs(points.first(half));
+  sort_into_arcs(points.subspan(half));
 }
 
 }  // namespace
 
 void make_arcs(Body& body) {
-  std::stable_sort(body.outline.begin(), body.outline.end(),
-                   [](Vec2d a, Vec2d b) { return angle_like(a) < angle_like(b); });
+  sort_into_arcs(body.outline);
   body.arcs.clear();
   for (std::size_t k = 0; k < body.outline.size(); k += Body::kArc) {
     const std::size_t end = std::min(body.outline.size(), k + Body::kArc);

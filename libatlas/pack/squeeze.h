@@ -13,7 +13,7 @@ namespace atlas::pack {
 struct Body {
   DistanceField field;
   std::vector<Vec2d> outline;  // around the centre
-  struct Arc {                 // kArc points of it that follow each other, the last one fewer
+  struct Arc {                 // kArc points of it that lie close together, the last one fewer
     Vec2d center;
     double radius = 0;
   };
@@ -27,7 +27,7 @@ struct Body {
 
 Body make_body(const Mask& mask, double cell, double reach, double spacing);
 
-// Sorts the outline around the centre and covers it with arcs; to be called when it has changed.
+// Sorts the outline into arcs; to be called when it has changed.
 void make_arcs(Body& body);
 
 struct SqueezeOptions {
