@@ -207,8 +207,7 @@ class ChartJob {
     if (!input_.frames.empty()) {
       scratch_.frames.resize(mesh.triangles.size());
       for (std::size_t i = 0; i < scratch_.frames.size(); ++i) {
-        const auto& frame = input_.frames[chart_.triangles()[i]];
-        scratch_.frames[i] = {from_glm(to_dvec(frame[0])), from_glm(to_dvec(frame[1]))};
+        scratch_.frames[i] = input_.frames[chart_.triangles()[i]];
       }
       param.start.frames = scratch_.frames;
     }

@@ -15,7 +15,7 @@ namespace atlas {
 struct ChartScratch {
   LocalChart chart;
   ParamWorkspace workspace;
-  std::vector<std::array<Vec3d, 2>> frames;
+  std::vector<std::array<Vec3f, 2>> frames;
   std::vector<std::array<std::uint32_t, 2>> border;
   double cuts_cpu = 0;  // seconds spent on cutting charts open
 };

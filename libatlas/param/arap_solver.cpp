@@ -29,7 +29,7 @@ bool trustworthy(const Jacobian& j) {
 }
 
 void rotations_from_frames(const LocalMesh& mesh, std::span<const Element> elements,
-                           std::span<const std::array<Vec3d, 2>> frames, Rotations& out) {
+                           std::span<const std::array<Vec3f, 2>> frames, Rotations& out) {
   out.resize(elements.size());
   for (std::size_t t = 0; t < elements.size(); ++t) {
     const auto& v = elements[t].v;
@@ -40,7 +40,7 @@ void rotations_from_frames(const LocalMesh& mesh, std::span<const Element> eleme
     const double base = std::sqrt(squared), height = glm::length(up);
     const glm::dvec3 x = base > 0 ? e / base : glm::dvec3(0);
     const glm::dvec3 y = height > 0 ? up / height : glm::dvec3(0);
-    const glm::dvec3 a = to_glm(frames[t][0]), b = to_glm(frames[t][1]);
+    const glm::dvec3 a = to_dvec(frames[t][0]), b = to_dvec(frames[t][1]);
     const Jacobian j{{glm::dot(a, x), glm::dot(b, x)}, {glm::dot(a, y), glm::dot(b, y)}};
     out[t] = trustworthy(j) ? nearest_rotation(j) : glm::dvec2(0);
   }
@@ -209,11 +209,12 @@ void ArapSolver::start(std::span<const Vec2d> uvs) {
 
 void ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
   for (int i = 0; i < steps; ++i) {
-    if (i > 0) {
-      const double fall = update_rotations(w_.elements, uvs, w_.rotations);
+    if (i == 0) {
+      rotation_load(w_.elements, w_.rotations, w_.load);
+    } else {
+      const double fall = update_rotations(w_.elements, uvs, w_.rotations, w_.load);
       if (method_ != Method::multigrid && fall <= converged * area_) return;
     }
-    rotation_load(w_.elements, w_.rotations, w_.load);
     solve(i + 1 == steps ? fine : i == 0 ? first_inexactness : rough);
     for (std::size_t v = 0; v < uvs.size(); ++v) uvs[v] = from_glm(w_.solution[v]);
   }

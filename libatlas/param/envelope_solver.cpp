@@ -102,16 +102,26 @@ void EnvelopeSolver::factorize(const SymmetricMatrix& matrix) {
 void EnvelopeSolver::solve(std::span<const glm::dvec2> load, std::span<glm::dvec2> x) {
   const std::uint32_t n = static_cast<std::uint32_t>(order_.size());
   work_.resize(n);
+  glm::dvec2* work = work_.data();
   for (std::uint32_t i = 0; i < n; ++i) {
-    glm::dvec2 sum = load[order_[i]];
+    glm::dvec2 even = load[order_[i]], odd(0);  // two sums: neither waits for the other
     const double* row = factor_.data() + row_[i];
-    for (std::uint32_t j = first_[i]; j < i; ++j) sum -= *row++ * work_[j];
-    work_[i] = sum * inverse_pivot_[i];
+    const std::uint32_t length = i - first_[i];
+    const glm::dvec2* known = work + first_[i];
+    std::uint32_t k = 0;
+    for (; k + 2 <= length; k += 2) {
+      even -= row[k] * known[k];
+      odd -= row[k + 1] * known[k + 1];
+    }
+    if (k < length) even -= row[k] * known[k];
+    work[i] = (even + odd) * inverse_pivot_[i];
   }
   for (std::uint32_t i = n; i-- > 0;) {
-    const glm::dvec2 value = work_[i] * inverse_pivot_[i];
+    const glm::dvec2 value = work[i] * inverse_pivot_[i];
     const double* row = factor_.data() + row_[i];
-    for (std::uint32_t j = first_[i]; j < i; ++j) work_[j] -= *row++ * value;
+    const std::uint32_t length = i - first_[i];
+    glm::dvec2* above = work + first_[i];
+    for (std::uint32_t k = 0; k < length; ++k) above[k] -= row[k] * value;
     x[order_[i]] = value;
   }
 }

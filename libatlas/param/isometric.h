@@ -49,7 +49,7 @@ struct IsometricStart {
   // 1 a triangle: rows of a 2x3 map from space to uv, near a rotation of the triangle's plane into
   // the uv plane (the nearest one is taken). Jumps between neighbours are fine: the first solve
   // levels them.
-  std::span<const std::array<Vec3d, 2>> frames = {};
+  std::span<const std::array<Vec3f, 2>> frames = {};
 };
 
 struct IsometricResult {

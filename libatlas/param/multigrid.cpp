@@ -7,20 +7,27 @@ namespace atlas::param {
 namespace {
 
 constexpr std::uint32_t none = 0xffffffff;
-constexpr std::size_t direct_limit = 300;  // rows that the envelope solver takes at the bottom
-constexpr double strong_coupling = 0.06;   // against the geometric mean of the two diagonals
+constexpr std::size_t direct_limit = 300;   // rows that the envelope solver takes at the bottom
+constexpr std::size_t large_setup = 20000;  // rows above which a set-up's memory is given back
+constexpr double strong_coupling = 0.06;    // against the geometric mean of the two diagonals
 
-void multiply(const SymmetricMatrix& a, std::span<const glm::dvec2> x, std::span<glm::dvec2> out) {
+// out = a x, both halves at once from the lower one; returns x . out.
+double multiply(const SymmetricMatrix& a, std::span<const glm::dvec2> x,
+                std::span<glm::dvec2> out) {
+  glm::dvec2 diagonal(0), lower(0);
   for (std::size_t i = 0; i < a.rows(); ++i) {
-    glm::dvec2 sum = a.diagonal[i] * x[i];
-    for (std::uint32_t k = a.first[i]; k < a.first[i + 1]; ++k) sum += a.value[k] * x[a.column[k]];
-    out[i] = sum;
+    const glm::dvec2 own = x[i], on = a.diagonal[i] * own;
+    glm::dvec2 below(0);
+    for (std::uint32_t k = a.first[i]; k < a.middle[i]; ++k) {
+      const std::uint32_t c = a.column[k];
+      below += a.value[k] * x[c];
+      out[c] += a.value[k] * own;
+    }
+    out[i] = on + below;
+    diagonal += own * on;
+    lower += own * below;
   }
-}
-
-double inner(std::span<const glm::dvec2> a, std::span<const glm::dvec2> b) {
-  glm::dvec2 sum(0);
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  const glm::dvec2 sum = diagonal + 2.0 * lower;
   return sum.x + sum.y;
 }
 
@@ -35,7 +42,7 @@ double inner(std::span<const glm::dvec2> a, std::span<const glm::vec2> b, double
 // Gives every row an aggregate; returns how many there are.
 std::uint32_t MultigridSolver::aggregate(const SymmetricMatrix& a, Level& level) {
   const std::uint32_t n = static_cast<std::uint32_t>(a.rows());
-  std::vector<std::uint32_t>& group = level.aggregate;
+  std::vector<std::uint32_t>& group = setup_.aggregate;
   group.assign(n, none);
   const auto strong = [&](std::uint32_t i, std::uint32_t k) {
     const double v = a.value[k];
@@ -80,11 +87,11 @@ std::uint32_t MultigridSolver::aggregate(const SymmetricMatrix& a, Level& level)
 void MultigridSolver::prolongate(const SymmetricMatrix& a, std::uint32_t coarse, Level& level) {
   const std::uint32_t n = static_cast<std::uint32_t>(a.rows());
   level.first.resize(n + 1);
-  level.column.clear();
-  level.value.clear();
+  setup_.column.clear();
+  setup_.value.clear();
   std::vector<std::uint32_t> place(coarse, none);
   for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t begin = static_cast<std::uint32_t>(level.column.size());
+    const std::uint32_t begin = static_cast<std::uint32_t>(setup_.column.size());
     level.first[i] = begin;
     // Half the row's absolute sum bounds the diagonal from above where couplings of both signs
     // meet.
@@ -96,70 +103,73 @@ void MultigridSolver::prolongate(const SymmetricMatrix& a, std::uint32_t coarse,
     const double damping = sum > 0 ? (4.0 / 3.0) / sum : 0;
     const auto add = [&](std::uint32_t group, double v) {
       if (place[group] == none || place[group] < begin) {
-        place[group] = static_cast<std::uint32_t>(level.column.size());
-        level.column.push_back(group);
-        level.value.push_back(0);
+        place[group] = static_cast<std::uint32_t>(setup_.column.size());
+        setup_.column.push_back(group);
+        setup_.value.push_back(0);
       }
-      level.value[place[group]] += v;
+      setup_.value[place[group]] += v;
     };
     // The row's own coefficient is what the others leave of its sum: constants stay constant.
-    add(level.aggregate[i], 1 - damping * (a.diagonal[i] - kept));
+    add(setup_.aggregate[i], 1 - damping * (a.diagonal[i] - kept));
     for (std::uint32_t k = a.first[i]; k < a.first[i + 1]; ++k) {
-      add(level.aggregate[a.column[k]], -damping * a.value[k]);
+      add(setup_.aggregate[a.column[k]], -damping * a.value[k]);
     }
   }
-  level.first[n] = static_cast<std::uint32_t>(level.column.size());
+  level.first[n] = static_cast<std::uint32_t>(setup_.column.size());
 }
 
-void MultigridSolver::transpose(std::uint32_t coarse, Level& level) {
-  level.column_first.assign(coarse + 1, 0);
-  for (const std::uint32_t c : level.column) ++level.column_first[c + 1];
-  for (std::uint32_t c = 0; c < coarse; ++c) level.column_first[c + 1] += level.column_first[c];
-  level.row.resize(level.column.size());
-  level.column_value.resize(level.column.size());
-  std::vector<std::uint32_t> fill(level.column_first.begin(), level.column_first.end() - 1);
+void MultigridSolver::transpose(std::uint32_t coarse, const Level& level) {
+  setup_.column_first.assign(coarse + 1, 0);
+  for (const std::uint32_t c : setup_.column) ++setup_.column_first[c + 1];
+  for (std::uint32_t c = 0; c < coarse; ++c) setup_.column_first[c + 1] += setup_.column_first[c];
+  setup_.row.resize(setup_.column.size());
+  setup_.column_value.resize(setup_.column.size());
+  std::vector<std::uint32_t> fill(setup_.column_first.begin(), setup_.column_first.end() - 1);
   for (std::uint32_t i = 0; i + 1 < level.first.size(); ++i) {
     for (std::uint32_t k = level.first[i]; k < level.first[i + 1]; ++k) {
-      const std::uint32_t at = fill[level.column[k]]++;
-      level.row[at] = i;
-      level.column_value[at] = level.value[k];
+      const std::uint32_t at = fill[setup_.column[k]]++;
+      setup_.row[at] = i;
+      setup_.column_value[at] = setup_.value[k];
     }
   }
 }
 
 // Rows of A P. False: there are more than so many entries, as about vertices of huge valence.
 bool MultigridSolver::multiply_prolongation(const SymmetricMatrix& a, std::uint32_t coarse,
-                                            const Level& level, Product& out) {
+                                            const Level& level) {
   const std::size_t most_entries = 4 * (a.column.size() + a.rows());
   const std::uint32_t n = static_cast<std::uint32_t>(a.rows());
-  out.first.resize(n + 1);
-  out.entries.clear();
+  Setup& s = setup_;
+  s.product_first.resize(n + 1);
+  s.product_column.clear();
+  s.product_value.clear();
   std::vector<std::uint32_t> place(coarse, none);
   for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t begin = static_cast<std::uint32_t>(out.entries.size());
-    out.first[i] = begin;
+    const std::uint32_t begin = static_cast<std::uint32_t>(s.product_column.size());
+    s.product_first[i] = begin;
     const auto add = [&](std::uint32_t j, double v) {
       for (std::uint32_t k = level.first[j]; k < level.first[j + 1]; ++k) {
-        std::uint32_t& at = place[level.column[k]];
+        std::uint32_t& at = place[s.column[k]];
         if (at == none || at < begin) {
-          at = static_cast<std::uint32_t>(out.entries.size());
-          out.entries.push_back({level.column[k], 0});
+          at = static_cast<std::uint32_t>(s.product_column.size());
+          s.product_column.push_back(s.column[k]);
+          s.product_value.push_back(0);
         }
-        out.entries[at].value += v * level.value[k];
+        s.product_value[at] += v * s.value[k];
       }
     };
     add(i, a.diagonal[i]);
     for (std::uint32_t k = a.first[i]; k < a.first[i + 1]; ++k) add(a.column[k], a.value[k]);
-    if (out.entries.size() > most_entries) return false;
+    if (s.product_column.size() > most_entries) return false;
   }
-  out.first[n] = static_cast<std::uint32_t>(out.entries.size());
+  s.product_first[n] = static_cast<std::uint32_t>(s.product_column.size());
   return true;
 }
 
 // The Galerkin product P' A P. False: likewise.
-bool MultigridSolver::coarsen(const Product& product, const Level& level, std::size_t most_entries,
-                              SymmetricMatrix& out) {
-  const std::uint32_t coarse = static_cast<std::uint32_t>(level.column_first.size() - 1);
+bool MultigridSolver::coarsen(std::size_t most_entries, SymmetricMatrix& out) const {
+  const Setup& s = setup_;
+  const std::uint32_t coarse = static_cast<std::uint32_t>(s.column_first.size() - 1);
   out.diagonal.assign(coarse, 0);
   out.first.resize(coarse + 1);
   out.column.clear();
@@ -168,11 +178,11 @@ bool MultigridSolver::coarsen(const Product& product, const Level& level, std::s
   for (std::uint32_t row = 0; row < coarse; ++row) {
     const std::uint32_t begin = static_cast<std::uint32_t>(out.column.size());
     out.first[row] = begin;
-    for (std::uint32_t m = level.column_first[row]; m < level.column_first[row + 1]; ++m) {
-      const std::uint32_t i = level.row[m];
-      for (std::uint32_t k = product.first[i]; k < product.first[i + 1]; ++k) {
-        const double v = level.column_value[m] * product.entries[k].value;
-        const std::uint32_t c = product.entries[k].column;
+    for (std::uint32_t m = s.column_first[row]; m < s.column_first[row + 1]; ++m) {
+      const std::uint32_t i = s.row[m];
+      for (std::uint32_t k = s.product_first[i]; k < s.product_first[i + 1]; ++k) {
+        const double v = s.column_value[m] * s.product_value[k];
+        const std::uint32_t c = s.product_column[k];
         if (c == row) {
           out.diagonal[row] += v;
           continue;
@@ -192,7 +202,7 @@ bool MultigridSolver::coarsen(const Product& product, const Level& level, std::s
   return true;
 }
 
-void MultigridSolver::store_single(const SymmetricMatrix& a, Level& level) {
+void MultigridSolver::store_single(const SymmetricMatrix& a, Level& level) const {
   const std::size_t n = a.rows();
   level.inverse_diagonal.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -202,13 +212,23 @@ void MultigridSolver::store_single(const SymmetricMatrix& a, Level& level) {
   for (std::size_t k = 0; k < level.entries.size(); ++k) {
     level.entries[k] = {a.column[k], static_cast<float>(a.value[k])};
   }
-  level.prolongation.resize(level.column.size());
+  level.prolongation.resize(setup_.column.size());
   for (std::size_t k = 0; k < level.prolongation.size(); ++k) {
-    level.prolongation[k] = {level.column[k], static_cast<float>(level.value[k])};
+    level.prolongation[k] = {setup_.column[k], static_cast<float>(setup_.value[k])};
   }
 }
 
 bool MultigridSolver::build(const SymmetricMatrix& matrix) {
+  const bool built = build_levels(matrix);
+  // What charts of some hundred thousand triangles need for a moment would double what they need.
+  if (matrix.rows() > large_setup) {
+    setup_ = {};
+    for (Level& level : levels_) level.matrix.column = {}, level.matrix.value = {};
+  }
+  return built;
+}
+
+bool MultigridSolver::build_levels(const SymmetricMatrix& matrix) {
   const SymmetricMatrix* a = &matrix;
   depth_ = 0;
   for (;; ++depth_) {
@@ -216,18 +236,21 @@ bool MultigridSolver::build(const SymmetricMatrix& matrix) {
     if (depth_ > 0) a = &levels_[depth_].matrix;  // resizing may have moved it
     Level& level = levels_[depth_];
     const std::size_t n = a->rows();
-    level.x.resize(n);
-    level.load.resize(n);
     if (n <= direct_limit) break;
     const std::uint32_t coarse = aggregate(*a, level);
     if (coarse > n / 2) return false;
     prolongate(*a, coarse, level);
     transpose(coarse, level);
+    if (!multiply_prolongation(*a, coarse, level)) return false;
+    if (!coarsen(a->column.size(), levels_[depth_ + 1].matrix)) return false;
     store_single(*a, level);
-    if (!multiply_prolongation(*a, coarse, level, galerkin_)) return false;
-    if (!coarsen(galerkin_, level, a->column.size(), levels_[depth_ + 1].matrix)) return false;
   }
   coarsest_.factorize(*a);
+  for (std::size_t depth = 0; depth <= depth_; ++depth) {
+    const std::size_t n = depth == 0 ? matrix.rows() : levels_[depth].matrix.rows();
+    levels_[depth].x.resize(n);
+    levels_[depth].load.resize(n);
+  }
   return true;
 }
 
@@ -238,18 +261,15 @@ void MultigridSolver::solve_coarsest(Level& level) {
   for (std::size_t i = 0; i < level.x.size(); ++i) level.x[i] = glm::vec2(coarse_x_[i]);
 }
 
-// x of the level becomes an approximate solution for its load.
-void MultigridSolver::cycle(const SymmetricMatrix& finest, std::size_t depth) {
+// A forward Gauss-Seidel sweep that starts from 0 meets nothing but zeros above the diagonal, and
+// leaves nothing but that part in the residual, which becomes the load of the next level.
+void MultigridSolver::smooth_down(const SymmetricMatrix& a, std::size_t depth) {
   Level& level = levels_[depth];
-  if (depth == depth_) return solve_coarsest(level);
-  const SymmetricMatrix& a = depth == 0 ? finest : level.matrix;
   const std::size_t n = a.rows();
   const Entry *entries = level.entries.data(), *prolongation = level.prolongation.data();
   const std::uint32_t *first = a.first.data(), *middle = a.middle.data();
   const std::uint32_t* coarse_first = level.first.data();
   glm::vec2* x = level.x.data();
-  // A forward Gauss-Seidel sweep that starts from 0 meets nothing but zeros above the diagonal, and
-  // leaves nothing but that part in the residual.
   for (std::size_t i = 0; i < n; ++i) {
     glm::vec2 sum = level.load[i];
     for (std::uint32_t k = first[i]; k < middle[i]; ++k) {
@@ -257,21 +277,31 @@ void MultigridSolver::cycle(const SymmetricMatrix& finest, std::size_t depth) {
     }
     x[i] = sum * level.inverse_diagonal[i];
   }
-  Level& next = levels_[depth + 1];
-  std::fill(next.load.begin(), next.load.end(), glm::vec2(0));
+  std::vector<glm::vec2>& load = levels_[depth + 1].load;
+  std::fill(load.begin(), load.end(), glm::vec2(0));
   for (std::size_t i = 0; i < n; ++i) {
     glm::vec2 residual(0);
     for (std::uint32_t k = middle[i]; k < first[i + 1]; ++k) {
       residual -= entries[k].value * x[entries[k].column];
     }
     for (std::uint32_t k = coarse_first[i]; k < coarse_first[i + 1]; ++k) {
-      next.load[prolongation[k].column] += prolongation[k].value * residual;
+      load[prolongation[k].column] += prolongation[k].value * residual;
     }
   }
-  cycle(finest, depth + 1);
+}
+
+// The next level's solution comes up, and a backward sweep makes the cycle symmetric.
+void MultigridSolver::smooth_up(const SymmetricMatrix& a, std::size_t depth) {
+  Level& level = levels_[depth];
+  const std::size_t n = a.rows();
+  const Entry *entries = level.entries.data(), *prolongation = level.prolongation.data();
+  const std::uint32_t* first = a.first.data();
+  const std::uint32_t* coarse_first = level.first.data();
+  const glm::vec2* coarse_x = levels_[depth + 1].x.data();
+  glm::vec2* x = level.x.data();
   for (std::size_t i = 0; i < n; ++i) {
     for (std::uint32_t k = coarse_first[i]; k < coarse_first[i + 1]; ++k) {
-      x[i] += prolongation[k].value * next.x[prolongation[k].column];
+      x[i] += prolongation[k].value * coarse_x[prolongation[k].column];
     }
   }
   for (std::size_t i = n; i-- > 0;) {
@@ -283,21 +313,31 @@ void MultigridSolver::cycle(const SymmetricMatrix& finest, std::size_t depth) {
   }
 }
 
+// x of the level becomes an approximate solution for its load.
+void MultigridSolver::cycle(const SymmetricMatrix& finest, std::size_t depth) {
+  if (depth == depth_) return solve_coarsest(levels_[depth]);
+  const SymmetricMatrix& a = depth == 0 ? finest : levels_[depth].matrix;
+  smooth_down(a, depth);
+  cycle(finest, depth + 1);
+  smooth_up(a, depth);
+}
+
 bool MultigridSolver::solve(const SymmetricMatrix& matrix, std::span<const glm::dvec2> load,
                             const Accuracy& accuracy, std::span<glm::dvec2> x) {
   const std::size_t n = matrix.rows();
   residual_.resize(n);
   product_.resize(n);
   direction_.resize(n);
-  multiply(matrix, x, residual_);
-  for (std::size_t i = 0; i < n; ++i) residual_[i] = load[i] - residual_[i];
+  multiply(matrix, x, product_);
+  double largest = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    residual_[i] = load[i] - product_[i];
+    largest = std::max({largest, std::abs(residual_[i].x), std::abs(residual_[i].y)});
+  }
   std::vector<glm::vec2>& z = levels_[0].x;
   double rho = 0;
   for (int step = 0;; ++step) {
     // Brought to the size of 1 by a power of two, so that no digit is lost in single precision.
-    double largest = 0;
-    for (const glm::dvec2& r : residual_)
-      largest = std::max({largest, std::abs(r.x), std::abs(r.y)});
     if (!std::isfinite(largest)) return false;
     const int exponent = largest > 0 ? std::ilogb(largest) : 0;
     const double shrink = std::ldexp(1.0, -exponent), grow = std::ldexp(1.0, exponent);
@@ -314,13 +354,17 @@ bool MultigridSolver::solve(const SymmetricMatrix& matrix, std::span<const glm::
       const glm::dvec2 own = grow * glm::dvec2(z[i]);
       direction_[i] = step > 0 ? own + beta * direction_[i] : own;
     }
-    multiply(matrix, direction_, product_);
-    const double alpha = rho / inner(direction_, product_);
+    const double alpha = rho / multiply(matrix, direction_, product_);
+    if (last) {
+      for (std::size_t i = 0; i < n; ++i) x[i] += alpha * direction_[i];
+      return true;
+    }
+    largest = 0;
     for (std::size_t i = 0; i < n; ++i) {
       x[i] += alpha * direction_[i];
       residual_[i] -= alpha * product_[i];
+      largest = std::max({largest, std::abs(residual_[i].x), std::abs(residual_[i].y)});
     }
-    if (last) return true;
   }
 }
 

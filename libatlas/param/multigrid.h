@@ -36,40 +36,44 @@ class MultigridSolver {
     float value;
   };
   struct Level {
-    SymmetricMatrix matrix;  // empty on the finest: that one is the caller's
-    std::vector<std::uint32_t> aggregate;
-    // Prolongation by rows of this level, and the same by columns.
-    std::vector<std::uint32_t> first, column, column_first, row;
-    std::vector<double> value, column_value;
-    // What the cycle reads: rows of the matrix as in `matrix`, of the prolongation, and their ends.
+    // Empty on the finest: that one is the caller's. Once the levels stand, only the rows' ends and
+    // the diagonal are left of the others.
+    SymmetricMatrix matrix;
+    // What the cycle reads: rows of the matrix as in `matrix`, of the prolongation, and the
+    // latter's ends.
+    std::vector<std::uint32_t> first;
     std::vector<Entry> entries, prolongation;
     std::vector<float> inverse_diagonal;
     std::vector<glm::vec2> x, load;
   };
 
-  struct Product {  // of the matrix and the prolongation, by rows
-    struct Term {
-      std::uint32_t column;
-      double value;
-    };
-    std::vector<std::uint32_t> first;
-    std::vector<Term> entries;
+  // Of one level while the next one is made; kept for the memory alone.
+  struct Setup {
+    std::vector<std::uint32_t> aggregate;
+    // The prolongation by rows (whose ends the level keeps), and the same by columns.
+    std::vector<std::uint32_t> column, column_first, row;
+    std::vector<double> value, column_value;
+    // The matrix times the prolongation, by rows.
+    std::vector<std::uint32_t> product_first, product_column;
+    std::vector<double> product_value;
   };
 
-  static std::uint32_t aggregate(const SymmetricMatrix& matrix, Level& level);
-  static void prolongate(const SymmetricMatrix& matrix, std::uint32_t coarse, Level& level);
-  static void transpose(std::uint32_t coarse, Level& level);
-  static void store_single(const SymmetricMatrix& matrix, Level& level);
-  static bool multiply_prolongation(const SymmetricMatrix& matrix, std::uint32_t coarse,
-                                    const Level& level, Product& out);
-  static bool coarsen(const Product& product, const Level& level, std::size_t most_entries,
-                      SymmetricMatrix& out);
+  std::uint32_t aggregate(const SymmetricMatrix& matrix, Level& level);
+  void prolongate(const SymmetricMatrix& matrix, std::uint32_t coarse, Level& level);
+  void transpose(std::uint32_t coarse, const Level& level);
+  void store_single(const SymmetricMatrix& matrix, Level& level) const;
+  bool multiply_prolongation(const SymmetricMatrix& matrix, std::uint32_t coarse,
+                             const Level& level);
+  bool coarsen(std::size_t most_entries, SymmetricMatrix& out) const;
+  bool build_levels(const SymmetricMatrix& matrix);
   void cycle(const SymmetricMatrix& finest, std::size_t level);
+  void smooth_down(const SymmetricMatrix& matrix, std::size_t level);
+  void smooth_up(const SymmetricMatrix& matrix, std::size_t level);
   void solve_coarsest(Level& level);
 
   std::vector<Level> levels_;
   std::size_t depth_ = 0;  // levels in use; the last one is solved directly
-  Product galerkin_;
+  Setup setup_;
   EnvelopeSolver coarsest_;
   std::vector<glm::dvec2> direction_, product_, residual_, coarse_load_, coarse_x_;
 };

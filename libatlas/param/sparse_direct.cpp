@@ -2,6 +2,7 @@
 #include <Eigen/SparseCore>
 
 #include <memory>
+#include <vector>
 
 #include "libatlas/param/linear_solver.h"
 
@@ -11,7 +12,8 @@ namespace atlas::param {
 struct SparseDirectSolver::Impl {
   Eigen::SparseMatrix<double> matrix;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor;
-  Eigen::Matrix<double, Eigen::Dynamic, 2> load, solution;
+  std::vector<double> inverse_pivot;
+  std::vector<glm::dvec2> work;
 };
 
 SparseDirectSolver::SparseDirectSolver() : impl_(std::make_unique<Impl>()) {}
@@ -38,20 +40,37 @@ bool SparseDirectSolver::factorize(const SymmetricMatrix& matrix, bool same_patt
       for (int i = 0; i < n; ++i) impl_->matrix.coeffRef(i, i) += lift * matrix.diagonal[i + 1];
     }
     impl_->factor.factorize(impl_->matrix);
-    if (impl_->factor.info() == Eigen::Success && (impl_->factor.vectorD().array() > 0).all()) {
-      return true;
-    }
+    if (impl_->factor.info() != Eigen::Success) continue;
+    const Eigen::VectorXd pivots = impl_->factor.vectorD();
+    if (!(pivots.array() > 0).all()) continue;
+    impl_->inverse_pivot.resize(static_cast<std::size_t>(n));
+    for (int i = 0; i < n; ++i) impl_->inverse_pivot[i] = 1 / pivots[i];
+    return true;
   }
   return false;
 }
 
+// Both right-hand sides in one sweep over the factor: Eigen's own solve reads it once for each.
 void SparseDirectSolver::solve(std::span<const glm::dvec2> load, std::span<glm::dvec2> x) {
-  const Eigen::Index n = impl_->matrix.rows();
-  impl_->load.resize(n, 2);
-  for (Eigen::Index i = 0; i < n; ++i) impl_->load.row(i) << load[i + 1].x, load[i + 1].y;
-  impl_->solution = impl_->factor.solve(impl_->load);
+  const auto& lower = impl_->factor.matrixL().nestedExpression();  // by columns, ones left out
+  const int n = static_cast<int>(lower.cols());
+  const int *first = lower.outerIndexPtr(), *row = lower.innerIndexPtr();
+  const double *value = lower.valuePtr(), *inverse_pivot = impl_->inverse_pivot.data();
+  const int* place = impl_->factor.permutationP().indices().data();
+  impl_->work.resize(static_cast<std::size_t>(n));
+  glm::dvec2* work = impl_->work.data();
+  for (int i = 0; i < n; ++i) work[place[i]] = load[i + 1];
+  for (int j = 0; j < n; ++j) {
+    const glm::dvec2 own = work[j];
+    for (int k = first[j]; k < first[j + 1]; ++k) work[row[k]] -= value[k] * own;
+  }
+  for (int j = n; j-- > 0;) {
+    glm::dvec2 sum = work[j] * inverse_pivot[j];
+    for (int k = first[j]; k < first[j + 1]; ++k) sum -= value[k] * work[row[k]];
+    work[j] = sum;
+  }
   x[0] = glm::dvec2(0);
-  for (Eigen::Index i = 0; i < n; ++i) x[i + 1] = {impl_->solution(i, 0), impl_->solution(i, 1)};
+  for (int i = 0; i < n; ++i) x[i + 1] = work[place[i]];
 }
 
 }  // namespace atlas::param

@@ -54,33 +54,41 @@ void build_stiffness(std::span<const Element> elements, const CornerLists& corne
                      SymmetricMatrix& out) {
   constexpr std::uint32_t unseen = std::numeric_limits<std::uint32_t>::max();
   const std::size_t n = corners.first.size() - 1;
-  out.diagonal.assign(n, 0);
+  out.diagonal.resize(n);
   out.first.resize(n + 1);
-  out.column.clear();
-  out.value.clear();
+  out.column.resize(6 * elements.size());  // at most: two for each corner
+  out.value.resize(6 * elements.size());
   std::vector<std::uint32_t>& place = out.scratch;  // of a column within the current row
   place.assign(n, unseen);
+  std::uint32_t end = 0;
   for (std::uint32_t row = 0; row < n; ++row) {
-    const std::size_t begin = out.column.size();
-    out.first[row] = static_cast<std::uint32_t>(begin);
+    const std::uint32_t begin = end;
+    double diagonal = 0;
+    out.first[row] = begin;
     for (std::uint32_t i = corners.first[row]; i < corners.first[row + 1]; ++i) {
       const Element& e = elements[corners.corner[i] / 3];
       const std::uint32_t k = corners.corner[i] % 3;
       const auto g = e.area_gradients();
       const glm::dvec2 own = g[k] * (e.weight / e.area());
-      out.diagonal[row] += glm::dot(own, g[k]);
+      diagonal += glm::dot(own, g[k]);
       for (const std::uint32_t other : {(k + 1) % 3, (k + 2) % 3}) {
         const std::uint32_t column = e.v[other];
-        if (place[column] == unseen || place[column] < begin) {
-          place[column] = static_cast<std::uint32_t>(out.column.size());
-          out.column.push_back(column);
-          out.value.push_back(0);
+        std::uint32_t& at = place[column];
+        const double v = glm::dot(own, g[other]);
+        if (at == unseen || at < begin) {
+          at = end++;
+          out.column[at] = column;
+          out.value[at] = v;
+        } else {
+          out.value[at] += v;
         }
-        out.value[place[column]] += glm::dot(own, g[other]);
       }
     }
+    out.diagonal[row] = diagonal;
   }
-  out.first[n] = static_cast<std::uint32_t>(out.column.size());
+  out.first[n] = end;
+  out.column.resize(end);
+  out.value.resize(end);
   partition_rows(out);
 }
 
@@ -108,15 +116,30 @@ void local_rotations(std::span<const Element> elements, std::span<const Vec2d> u
   }
 }
 
+namespace {
+
+// Adds what an element with this rotation asks of its vertices.
+void add_load(const Element& e, glm::dvec2 rotation, std::span<glm::dvec2> out) {
+  const glm::dvec2 r = rotation * e.weight;
+  const auto g = e.area_gradients();
+  for (int k = 0; k < 3; ++k) {
+    out[e.v[k]] += glm::dvec2(r.x * g[k].x - r.y * g[k].y, r.y * g[k].x + r.x * g[k].y);
+  }
+}
+
+}  // namespace
+
 double update_rotations(std::span<const Element> elements, std::span<const Vec2d> uvs,
-                        Rotations& rotations) {
+                        Rotations& rotations, std::span<glm::dvec2> load) {
   double fall = 0;
+  std::fill(load.begin(), load.end(), glm::dvec2(0));
   for (std::size_t t = 0; t < elements.size(); ++t) {
     const Element& e = elements[t];
     const Jacobian j = e.jacobian(to_glm(uvs[e.v[0]]), to_glm(uvs[e.v[1]]), to_glm(uvs[e.v[2]]));
     const glm::dvec2 r = nearest_rotation(j), change = r - rotations[t];
     fall += e.weight * e.area() * (change.x * (j.x.x + j.y.y) + change.y * (j.x.y - j.y.x));
     rotations[t] = r;
+    add_load(e, r, load);
   }
   return 2 * fall;
 }
@@ -124,14 +147,7 @@ double update_rotations(std::span<const Element> elements, std::span<const Vec2d
 void rotation_load(std::span<const Element> elements, const Rotations& rotations,
                    std::span<glm::dvec2> out) {
   std::fill(out.begin(), out.end(), glm::dvec2(0));
-  for (std::size_t t = 0; t < elements.size(); ++t) {
-    const Element& e = elements[t];
-    const glm::dvec2 r = rotations[t] * e.weight;
-    const auto g = e.area_gradients();
-    for (int k = 0; k < 3; ++k) {
-      out[e.v[k]] += glm::dvec2(r.x * g[k].x - r.y * g[k].y, r.y * g[k].x + r.x * g[k].y);
-    }
-  }
+  for (std::size_t t = 0; t < elements.size(); ++t) add_load(elements[t], rotations[t], out);
 }
 
 IsometricResult measure_energy(std::span<const Element> elements, std::span<const Vec2d> uvs) {

@@ -63,14 +63,15 @@ using Rotations = std::vector<glm::dvec2>;  // (cosine, sine), 1 a triangle
 // The local step: the rotation nearest to each triangle's map.
 void local_rotations(std::span<const Element> elements, std::span<const Vec2d> uvs, Rotations& out);
 
-// The same from given rotations; returns by how much it lowers sum weight * area * |J - R|².
-double update_rotations(std::span<const Element> elements, std::span<const Vec2d> uvs,
-                        Rotations& rotations);
-
 // The global step's right-hand side: uvs that minimise sum weight * area * |J - R|² solve K u =
 // this.
 void rotation_load(std::span<const Element> elements, const Rotations& rotations,
                    std::span<glm::dvec2> out);
+
+// Local step from given rotations, with the right-hand side of the next global step; returns by how
+// much it lowers sum weight * area * |J - R|².
+double update_rotations(std::span<const Element> elements, std::span<const Vec2d> uvs,
+                        Rotations& rotations, std::span<glm::dvec2> load);
 
 // Energy and non-positive triangles of uvs, with each triangle's nearest rotation (weights left
 // out).

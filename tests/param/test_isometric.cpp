@@ -84,8 +84,9 @@ TEST(Isometric, FramesAndUvsStartAlike) {
   project_planar(d.view(), {0, 0, 1}, uv);
   const Vec3d u{uv[1].x / std::sin(1. / 15), uv[1].y / std::sin(1. / 15),
                 0};  // vertex 1 lies along +x
-  const std::vector<std::array<Vec3d, 2>> frames(d.triangles.size(),
-                                                 {Vec3d{u.x, -u.y, 0}, Vec3d{u.y, u.x, 0}});
+  const auto c = static_cast<float>(u.x), s = static_cast<float>(u.y);
+  const std::vector<std::array<Vec3f, 2>> frames(d.triangles.size(),
+                                                 {Vec3f{c, -s, 0}, Vec3f{s, c, 0}});
   const double from_uvs = testing::arap_energy(d.view(), flatten(d, 4, {.uvs = uv}));
   const double from_frames = testing::arap_energy(d.view(), flatten(d, 4, {.frames = frames}));
   EXPECT_NEAR(from_frames, from_uvs, 1e-9);

@@ -149,8 +149,8 @@ TEST(Parameterize, DrawsApartBordersThatOverlapALittle) {
 TEST(Parameterize, RecoversFromFramesThatLie) {
   // One frame for a whole cylinder: half of its triangles are seen from behind.
   const Disc d = testing::make_cylinder(5, 2, 60, 20);
-  const std::vector<std::array<Vec3d, 2>> frames(d.triangles.size(),
-                                                 {Vec3d{0, 1, 0}, Vec3d{0, 0, 1}});
+  const std::vector<std::array<Vec3f, 2>> frames(d.triangles.size(),
+                                                 {Vec3f{0, 1, 0}, Vec3f{0, 0, 1}});
   ParamOptions options;
   options.start.frames = frames;
   const ParamResult r = run(d, options);
