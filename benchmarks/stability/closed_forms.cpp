@@ -105,6 +105,8 @@ void check_closed_forms(CheckList& list) {
   const int n = list.options.full ? 200 : 60;
   check_developable(list, "cylinder", test::cylinder(n, n / 2));
   check_developable(list, "flat cylinder", test::cylinder(n, 2, 1, 0.01));
+  check_developable(list, "flat cylinder of 100 quads", test::cylinder(100, 2, 1, 0.01));
+  check_developable(list, "ribbon of 80 quads", test::cylinder(80, 4, 1, 0.003));
   check_developable(list, "cone of 30 degrees", test::cone(n, n / 2, std::numbers::pi / 6));
   check_developable(list, "cone of 80 degrees", test::cone(n, n / 2, 1.4));
   check_developable(list, "grid", test::grid(n, n));

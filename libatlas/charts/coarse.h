@@ -27,14 +27,18 @@ struct CoarseCell {
   std::uint32_t first_slot = 0, slot_count = 0;  // its rim, counter-clockwise
   Vec3d centre, normal;                          // area-weighted means; normal is a unit vector
   double area = 0;
-  Moments moments{};  // sum of area n n^T
-  Vec3d normal_sum;   // sum of area n
+  Moments moments{};     // sum of area n n^T
+  Vec3d normal_sum;      // sum of area n
+  bool unrolls = false;  // bent, but without stretching: see unroll.h
+  Vec2d flat_centre;     // then, with CoarseMesh::flat_slot: its triangles laid flat
 };
 
 struct CoarseMesh {
   std::vector<CoarseCell> cells;
-  std::vector<Vec3d> slot_position;     // 1 a slot
-  std::vector<std::uint32_t> slot_arc;  // the arc that starts there
+  std::vector<Vec3d> slot_position;           // 1 a slot
+  std::vector<std::uint32_t> slot_arc;        // the arc that starts there
+  std::vector<std::uint32_t> slot_half_edge;  // of the topology: the first of that arc, cell's side
+  std::vector<Vec2d> flat_slot;               // 1 a slot, where its cell unrolls; empty: none does
   std::vector<CoarseArc> arcs;
   std::vector<std::uint32_t> rim_half_edges;  // of the topology, both sides
   std::vector<std::uint32_t> rim_arcs;        // 1 a rim half-edge: the arc it belongs to

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numeric>
 #include <queue>
 
 #include "libatlas/charts/moments.h"
+#include "libatlas/charts/runs.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
 
@@ -21,10 +21,9 @@ constexpr double kHiddenSeam = 0.75;
 // Within a cone limit charts are small, and their outlines free: what counts is how few they are.
 constexpr double kConeWeight = 1;
 constexpr double kConeFill = 0.4;  // of hull and rectangle
-// Costs are compared in parts of this many, lengths with this tolerance: symmetric meshes are full
-// of ties, which rounding would break otherwise for every rotation and unit.
+// Costs are compared in parts of this many: symmetric meshes are full of ties, which rounding would
+// break otherwise for every rotation and unit.
 constexpr double kCostParts = 4096;
-constexpr double kSameLength = 1e-4;
 
 struct CoarseChart {
   std::vector<std::uint32_t> cells;
@@ -35,6 +34,7 @@ struct CoarseChart {
   double energy = 0;     // area times (L2 stretch squared - 1) of its coarse flattening
   double high_area = 0;  // of it stretched beyond TrialLimits::stretch_high
   bool flat = false;     // all cells in one plane
+  bool unrolls = false;  // without stretch, exactly
   std::uint32_t version = 0;
 };
 
@@ -110,14 +110,28 @@ class Merger {
     own.flat = 1 - glm::length(own.normal_sum) / own.area < kFlatSpread;
     if (options_.cone > 0) result_.chart_axis[k] = from_glm(glm::vec3(to_glm(cell.normal)));
     result_.chart_of_cell[k] = k;
+    own.unrolls = cell.unrolls;
+    if (cell.unrolls) {
+      result_.uv.centre[k] = cell.flat_centre;
+    } else {
+      project(k);
+    }
+    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
+      own.arcs.push_back(mesh_.slot_arc[s]);
+      own.perimeter += mesh_.arcs[mesh_.slot_arc[s]].length;
+      if (cell.unrolls) result_.uv.slot[s] = mesh_.flat_slot[s];
+    }
+  }
+
+  // Turns a cell's corners into the plane of its mean normal, each at its distance.
+  void project(std::uint32_t k) {
+    const CoarseCell& cell = mesh_.cells[k];
     const glm::dvec3 n = to_glm(cell.normal);
     const glm::dvec3 u = glm::normalize(std::abs(n.x) < 0.6 ? glm::cross(n, glm::dvec3(1, 0, 0))
                                                             : glm::cross(n, glm::dvec3(0, 1, 0)));
     const glm::dvec3 v = glm::cross(n, u);
     result_.uv.centre[k] = {0, 0};
     for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
-      own.arcs.push_back(mesh_.slot_arc[s]);
-      own.perimeter += mesh_.arcs[mesh_.slot_arc[s]].length;
       const glm::dvec3 d = to_glm(mesh_.slot_position[s]) - to_glm(cell.centre);
       const glm::dvec2 flat(glm::dot(d, u), glm::dot(d, v));
       const double length = glm::length(flat);
@@ -213,6 +227,7 @@ class Merger {
     std::sort(glue_.begin(), glue_.end());
     if (coplanar(a, b)) {
       energy_ = high_area_ = 0;
+      unrolls_ = chart(a).unrolls && chart(b).unrolls;
       trial_.join_flat(chart(a).cells, chart(b).cells, glue_, result_.joined);
       trial_.commit();
       absorb(a, b);
@@ -220,7 +235,8 @@ class Merger {
       return;
     }
     TrialOutcome outcome = attempt(a, b);
-    if (!outcome.accepted && outcome.euler < 1 && keep_longest_run(a, b)) outcome = attempt(a, b);
+    if (!outcome.accepted && outcome.euler < 1 && keep_longest_run(mesh_, seam_ends(a, b), glue_))
+      outcome = attempt(a, b);
     if (!outcome.accepted) {
       ++rejections;
       return;
@@ -259,7 +275,9 @@ class Merger {
       limits.fill = options_.small_fill;
     }
     if (options_.cone > 0) limits.solidity = limits.fill = kConeFill;
+    limits.unrolls = p.unrolls && q.unrolls;
     const TrialOutcome outcome = trial_.run(p.cells, q.cells, glue_, result_.joined, limits);
+    unrolls_ = outcome.unrolled;
     high_area_ = outcome.high_area;
     if (outcome.accepted) energy_ = area * (outcome.stretch_l2 * outcome.stretch_l2 - 1);
     return outcome;
@@ -279,48 +297,6 @@ class Merger {
     return ends;
   }
 
-  // Of several separate stretches of common border, keeps the longest: the rest becomes a seam
-  // of the chart with itself. False if there is only one. A seam that ends between two arcs parts
-  // them, or the chart would close around it.
-  bool keep_longest_run(std::uint32_t a, std::uint32_t b) {
-    const std::size_t n = glue_.size();
-    std::vector<std::size_t> run(n);
-    std::iota(run.begin(), run.end(), 0u);
-    const auto find = [&](std::size_t i) {
-      while (run[i] != i) i = run[i] = run[run[i]];
-      return i;
-    };
-    const auto ends = [&](std::uint32_t arc) {
-      const CoarseArc& x = mesh_.arcs[arc];
-      return std::pair{mesh_.slot_position[x.slot[0]], mesh_.slot_position[x.slot[1]]};
-    };
-    std::vector<Vec3d> forks = seam_ends(a, b);
-    const auto forked = [&](const Vec3d& p) {
-      return std::find(forks.begin(), forks.end(), p) != forks.end();
-    };
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t j = i + 1; j < n; ++j) {
-        const auto [p, q] = ends(glue_[i]);
-        const auto [r, s] = ends(glue_[j]);
-        const bool at_p = p == r || p == s, at_q = q == r || q == s;
-        if ((at_p && !forked(p)) || (at_q && !forked(q))) run[find(j)] = find(i);
-      }
-    }
-    std::vector<double> length(n, 0);
-    for (std::size_t i = 0; i < n; ++i) length[find(i)] += mesh_.arcs[glue_[i]].length;
-    std::size_t best = 0;
-    for (std::size_t i = 1; i < n; ++i) {
-      if (length[i] > length[best] * (1 + kSameLength)) best = i;
-    }
-    std::vector<std::uint32_t> kept;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (find(i) == best) kept.push_back(glue_[i]);
-    }
-    if (kept.size() == n) return false;
-    glue_ = std::move(kept);
-    return true;
-  }
-
   void absorb(std::uint32_t a, std::uint32_t b) {
     CoarseChart &p = chart(a), &q = chart(b);
     for (const std::uint32_t k : q.cells) result_.chart_of_cell[k] = a;
@@ -332,6 +308,7 @@ class Merger {
     p.flat = coplanar(a, b);
     p.energy = energy_;
     p.high_area = high_area_;
+    p.unrolls = unrolls_;
     if (options_.cone > 0) result_.chart_axis[a] = axis_;
     p.area += q.area;
     p.normal_sum += q.normal_sum;
@@ -355,6 +332,7 @@ class Merger {
   double piece_area_ = 0;
   bool relaxed_ = false;
   double energy_ = 0, high_area_ = 0;  // of the last accepted trial
+  bool unrolls_ = false;
 };
 
 }  // namespace

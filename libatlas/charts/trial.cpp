@@ -11,6 +11,8 @@ namespace {
 
 // Of lengths: float coordinates of a part that lies a hundred of its sizes from the origin.
 constexpr double kUnrolledError = 1e-3;
+// Of hull and rectangle, by what unrolls: its parts may be needles, and it will go on growing.
+constexpr double kUnrolledFill = 0.3;
 
 }  // namespace
 
@@ -121,6 +123,11 @@ void Trial::align(std::size_t first_cells, std::span<const std::uint32_t> glue) 
   const double norm = std::sqrt(c * c + s * s);
   c = norm > 0 ? c / norm : 1;
   s = norm > 0 ? s / norm : 0;
+  misfit_ = 0;
+  for (const auto& [p, q] : pairs) {
+    const glm::dvec2 a = to_glm(uv_.slot[p]) - mean_p, b = to_glm(uv_.slot[q]) - mean_q;
+    misfit_ = std::max(misfit_, glm::distance(a, {c * b.x - s * b.y, s * b.x + c * b.y}));
+  }
   uvs_.assign(positions_.size(), Vec2d{});
   weight_.assign(positions_.size(), 0);
   const auto add = [&](std::uint32_t v, Vec2d p, bool second) {
@@ -240,6 +247,17 @@ bool Trial::unrolled() const {
   return true;
 }
 
+// Whether two charts that unroll still do when they are joined: then their sides match.
+bool Trial::fits_unrolled(TrialOutcome& outcome) {
+  const LocalMesh mesh{positions_, triangles_, {}};
+  stretch_.resize(triangles_.size());
+  measure_triangles(mesh, uvs_, stretch_);
+  double area = 0;
+  for (const TriangleStretch& t : stretch_) area += t.uv_area;
+  outcome.unrolled = area > 0 && misfit_ < kUnrolledError * std::sqrt(area);
+  return outcome.unrolled;
+}
+
 TrialOutcome Trial::run_joined(std::span<const std::uint32_t> first,
                                std::span<const std::uint32_t> second,
                                std::span<const std::uint32_t> glue,
@@ -259,6 +277,13 @@ TrialOutcome Trial::run_joined(std::span<const std::uint32_t> first,
   outcome.euler = static_cast<int>(positions_.size() + joined_sides / 2) - static_cast<int>(rims);
   if (outcome.euler > 1 || triangles_.empty()) return outcome;
   align(first.size(), glue);
+  if (limits.unrolls && outcome.euler == 1 && fits_unrolled(outcome)) {
+    TrialLimits shape = limits;
+    shape.solidity = std::min(limits.solidity, kUnrolledFill);
+    shape.fill = std::min(limits.fill, kUnrolledFill);
+    outcome.accepted = border_fits(joined, shape, outcome);
+    return outcome;
+  }
   const LocalMesh mesh{positions_, triangles_, {}};
   if (!unrolled()) {
     IsometricOptions options;

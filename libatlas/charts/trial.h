@@ -25,12 +25,14 @@ struct TrialLimits {
   double solidity = 0.7;  // share of its convex hull that it fills
   double fill = 0.58;     // share of its smallest rectangle
   int iterations = 5;
+  bool unrolls = false;  // both charts unroll: where they fit each other, no descent is needed
 };
 
 struct TrialOutcome {
   bool accepted = false;
   double stretch_l2 = 1, high_area = 0, solidity = 1, fill = 1;
   int euler = 1;
+  bool unrolled = false;  // TrialLimits::unrolls, and they fit
 };
 
 // Works on one candidate at a time; not shared between threads.
@@ -61,6 +63,7 @@ class Trial {
   void join(std::uint32_t arc);
   void align(std::size_t first_cells, std::span<const std::uint32_t> glue);
   bool unrolled() const;
+  bool fits_unrolled(TrialOutcome& outcome);
   bool stretch_fits(const TrialLimits& limits, TrialOutcome& outcome);
   bool border_fits(const std::vector<std::uint8_t>& joined, const TrialLimits& limits,
                    TrialOutcome& outcome);
@@ -80,6 +83,7 @@ class Trial {
   std::vector<std::array<std::uint32_t, 2>> border_;
   std::vector<Vec2d> hull_;
   std::vector<std::uint32_t> roots_;
+  double misfit_ = 0;  // largest distance of two glued slots, as aligned
   ParamWorkspace workspace_;
 };
 

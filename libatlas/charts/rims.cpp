@@ -1,0 +1,150 @@
+#include "libatlas/charts/rims.h"
+
+#include <algorithm>
+
+namespace atlas {
+namespace {
+
+// A hole of the mesh whose rim is shorter than this share of its cell's is passed over.
+constexpr double kSmallHole = 0.35;
+constexpr int kDivideRounds = 8;
+
+bool has_one_rim(const std::vector<RimLoop>& loops) {
+  if (loops.empty()) return false;
+  const std::size_t longest = longest_loop(loops);
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    if (i == longest) continue;
+    if (!loops[i].open || loops[i].length > kSmallHole * loops[longest].length) return false;
+  }
+  return true;
+}
+
+// Divides cells in two by breadth-first growth from two triangles far from each other.
+class Divider {
+ public:
+  Divider(const Topology& topology, Cells& cells) : topology_(topology), cells_(cells) {}
+
+  void divide(const std::vector<std::uint32_t>& bad) {
+    std::vector<std::vector<std::uint32_t>> lists(bad.size());
+    std::vector<std::uint32_t> place(cells_.count, kNoIndex);
+    for (std::uint32_t i = 0; i < bad.size(); ++i) place[bad[i]] = i;
+    for (std::uint32_t t = 0; t < cells_.of_triangle.size(); ++t) {
+      const std::uint32_t k = cells_.of_triangle[t];
+      if (k != kNoIndex && place[k] != kNoIndex) lists[place[k]].push_back(t);
+    }
+    mark_.resize(cells_.of_triangle.size(), 0);
+    for (const auto& list : lists) {
+      if (list.size() > 1) divide_one(list);
+    }
+  }
+
+ private:
+  void divide_one(const std::vector<std::uint32_t>& list) {
+    const std::uint32_t old = cells_.of_triangle[list[0]];
+    for (const std::uint32_t t : list) mark_[t] = 0;
+    flood({list[0]}, old, 1);
+    const std::uint32_t a = queue_.back();
+    flood({a}, old, 2);
+    const std::uint32_t b = queue_.back();
+    if (a == b) return;
+    // Both grow at once; who came first keeps a triangle.
+    queue_ = {a, b};
+    mark_[a] = 3;
+    mark_[b] = 4;
+    const std::uint32_t fresh = cells_.count++;
+    for (std::size_t i = 0; i < queue_.size(); ++i) {
+      const std::uint32_t t = queue_[i];
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        const std::uint32_t o = topology_.opposite[h];
+        if (o == kNoIndex || cells_.of_triangle[o / 3] != old || mark_[o / 3] >= 3) continue;
+        mark_[o / 3] = mark_[t];
+        queue_.push_back(o / 3);
+      }
+    }
+    for (const std::uint32_t t : queue_) {
+      if (mark_[t] == 4) cells_.of_triangle[t] = fresh;
+    }
+  }
+
+  void flood(std::vector<std::uint32_t> start, std::uint32_t cell, std::uint8_t mark) {
+    queue_ = std::move(start);
+    for (const std::uint32_t t : queue_) mark_[t] = mark;
+    for (std::size_t i = 0; i < queue_.size(); ++i) {
+      for (std::uint32_t h = 3 * queue_[i]; h < 3 * queue_[i] + 3; ++h) {
+        const std::uint32_t o = topology_.opposite[h];
+        if (o == kNoIndex || cells_.of_triangle[o / 3] != cell || mark_[o / 3] == mark) continue;
+        mark_[o / 3] = mark;
+        queue_.push_back(o / 3);
+      }
+    }
+  }
+
+  const Topology& topology_;
+  Cells& cells_;
+  std::vector<std::uint8_t> mark_;
+  std::vector<std::uint32_t> queue_;
+};
+
+}  // namespace
+
+Rims::Rims(const Topology& topology, const Cells& cells) : topology_(topology), cells_(cells) {
+  const auto n = static_cast<std::uint32_t>(topology_.opposite.size());
+  first_.assign(cells_.count + 2, 0);
+  for (std::uint32_t h = 0; h < n; ++h) {
+    if (on_rim(h)) ++first_[cell(h) + 2];
+  }
+  for (std::size_t i = 2; i < first_.size(); ++i) first_[i] += first_[i - 1];
+  rim_.resize(first_.back());
+  for (std::uint32_t h = 0; h < n; ++h) {
+    if (on_rim(h)) rim_[first_[cell(h) + 1]++] = h;
+  }
+  first_.pop_back();
+  seen_.assign(n, 0);
+}
+
+const std::vector<RimLoop>& Rims::loops(std::uint32_t k) {
+  loops_.clear();
+  path.clear();
+  for (std::uint32_t i = first_[k]; i < first_[k + 1]; ++i) {
+    if (!seen_[rim_[i]]) walk(rim_[i]);
+  }
+  for (std::uint32_t i = first_[k]; i < first_[k + 1]; ++i) seen_[rim_[i]] = 0;
+  return loops_;
+}
+
+void Rims::walk(std::uint32_t start) {
+  RimLoop loop{static_cast<std::uint32_t>(path.size()), 0, 0, true};
+  std::uint32_t h = start;
+  while (!seen_[h]) {
+    seen_[h] = 1;
+    path.push_back(h);
+    loop.open = loop.open && topology_.opposite[h] == kNoIndex;
+    loop.length += edge_length(topology_, h);
+    h = next_half_edge(h);
+    while (!on_rim(h)) h = next_half_edge(topology_.opposite[h]);
+  }
+  loop.end = static_cast<std::uint32_t>(path.size());
+  loops_.push_back(loop);
+}
+
+std::size_t longest_loop(const std::vector<RimLoop>& loops) {
+  std::size_t longest = 0;
+  for (std::size_t i = 1; i < loops.size(); ++i) {
+    if (loops[i].length > loops[longest].length * (1 + 1e-4)) longest = i;
+  }
+  return longest;
+}
+
+void divide_rings(const Topology& topology, Cells& cells) {
+  for (int round = 0; round < kDivideRounds; ++round) {
+    Rims rims(topology, cells);
+    std::vector<std::uint32_t> bad;
+    for (std::uint32_t k = 0; k < cells.count; ++k) {
+      if (!has_one_rim(rims.loops(k))) bad.push_back(k);
+    }
+    if (bad.empty()) return;
+    Divider(topology, cells).divide(bad);
+  }
+}
+
+}  // namespace atlas

@@ -1,0 +1,53 @@
+// Internal: the borders of cells as loops of half-edges.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "libatlas/charts/cells.h"
+#include "libatlas/charts/topology.h"
+
+namespace atlas {
+
+struct RimLoop {
+  std::uint32_t begin, end;  // range of Rims::path
+  double length;
+  bool open;  // all of it on the mesh's border
+};
+
+class Rims {
+ public:
+  // Linear in the number of triangles. Both must outlive this.
+  Rims(const Topology& topology, const Cells& cells);
+
+  bool on_rim(std::uint32_t h) const { return cell(h) != kNoIndex && across(h) != cell(h); }
+  // The loops of one cell, over `path`; each call walks anew.
+  const std::vector<RimLoop>& loops(std::uint32_t k);
+  // Of all cells, by cell and id.
+  const std::vector<std::uint32_t>& half_edges() const { return rim_; }
+
+  std::vector<std::uint32_t> path;
+
+ private:
+  std::uint32_t cell(std::uint32_t h) const { return cells_.of_triangle[h / 3]; }
+  std::uint32_t across(std::uint32_t h) const {
+    const std::uint32_t o = topology_.opposite[h];
+    return o == kNoIndex ? kNoIndex : cell(o);
+  }
+  void walk(std::uint32_t start);
+
+  const Topology& topology_;
+  const Cells& cells_;
+  std::vector<std::uint32_t> first_, rim_;
+  std::vector<std::uint8_t> seen_;
+  std::vector<RimLoop> loops_;
+};
+
+// The place of the longest loop; of nearly equal ones the first. Precondition: not empty.
+std::size_t longest_loop(const std::vector<RimLoop>& loops);
+
+// Divides cells in two, again and again, until the border of each is one loop but for small holes
+// of the mesh.
+void divide_rings(const Topology& topology, Cells& cells);
+
+}  // namespace atlas

@@ -1,0 +1,164 @@
+#include "libatlas/charts/unroll.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+// What the angles around a cell's vertices may lack or exceed in all, radians: a cell of 1 / 600 of
+// a sphere lacks 0.02. Rounding of coordinates cancels in the sum, but not in that of magnitudes.
+constexpr double kCurvature = 2e-4, kRoughness = 5e-3;
+// Where triangles meet again around a hole, of the cell's size.
+constexpr double kClosing = 1e-3;
+constexpr double kFlatSpread = 1e-6;  // of normals in one plane, as in merging
+
+class Unroller {
+ public:
+  Unroller(const Topology& topology, const Cells& cells, CoarseMesh& mesh)
+      : topology_(topology), cells_(cells), mesh_(mesh) {}
+
+  // Bent cells first; cells in one plane only where they touch what unrolls.
+  void run() {
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t k = 0; k < mesh_.cells.size(); ++k) {
+      if (mesh_.cells[k].slot_count > 0 && !flat(k) && unroll(k)) found.push_back(k);
+    }
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const CoarseCell& cell = mesh_.cells[found[i]];
+      for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
+        for (const std::uint32_t k : mesh_.arcs[mesh_.slot_arc[s]].cell) {
+          if (k != kNoIndex && !mesh_.cells[k].unrolls && flat(k) && unroll(k)) found.push_back(k);
+        }
+      }
+    }
+  }
+
+ private:
+  glm::dvec3 point(std::uint32_t h) const {
+    return to_dvec(topology_.points[topology_.corner_vertex[h]]);
+  }
+
+  bool flat(std::uint32_t k) const {
+    const CoarseCell& cell = mesh_.cells[k];
+    return 1 - glm::length(to_glm(cell.normal_sum)) / cell.area < kFlatSpread;
+  }
+
+  bool unroll(std::uint32_t k) { return mesh_.cells[k].unrolls = uncurved(k) && lay_flat(k); }
+
+  // What the angles around the vertex at the start of h lack to a full turn, or exceed it by;
+  // 0 at the mesh's border. They are added as products of complex numbers.
+  double defect(std::uint32_t start) const {
+    glm::dvec2 turn(1, 0);
+    std::uint32_t h = start;
+    do {
+      const glm::dvec3 at = point(h), a = point(next_half_edge(h)) - at,
+                       b = point(previous_half_edge(h)) - at;
+      const double c = glm::dot(a, b), s = glm::length(glm::cross(a, b));
+      const double length = std::sqrt(c * c + s * s);
+      turn = glm::dvec2(turn.x * c - turn.y * s, turn.x * s + turn.y * c) / length;
+      h = topology_.opposite[previous_half_edge(h)];
+    } while (h != kNoIndex && h != start);
+    return h == kNoIndex ? 0 : std::atan2(turn.y, turn.x);
+  }
+
+  // Lists the cell's triangles by breadth-first search, as far as their vertices are flat.
+  bool uncurved(std::uint32_t k) {
+    if (seen_.empty()) {
+      seen_.assign(topology_.points.size(), kNoIndex);
+      place_.assign(topology_.triangle_count(), kNoIndex);
+    }
+    queue_.assign(1, mesh_.slot_half_edge[mesh_.cells[k].first_slot]);
+    place_[queue_[0] / 3] = 0;
+    double curvature = 0, roughness = 0;
+    for (std::size_t i = 0; i < queue_.size() && roughness <= kRoughness; ++i) {
+      const std::uint32_t t = queue_[i] / 3;
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        std::uint32_t& seen = seen_[topology_.corner_vertex[h]];
+        if (seen != k) {
+          const double own = defect(h);
+          curvature += own;
+          roughness += std::abs(own);
+        }
+        seen = k;
+        const std::uint32_t o = topology_.opposite[h];
+        if (o == kNoIndex || cells_.of_triangle[o / 3] != k || placed(o / 3)) continue;
+        place_[o / 3] = static_cast<std::uint32_t>(queue_.size());
+        queue_.push_back(o);
+      }
+    }
+    return roughness <= kRoughness && std::abs(curvature) <= kCurvature;
+  }
+
+  bool placed(std::uint32_t t) const {
+    return place_[t] < queue_.size() && queue_[place_[t]] / 3 == t;
+  }
+
+  // In the queue's order: each triangle comes by one of its half-edges, over whose other side it
+  // was reached.
+  bool lay_flat(std::uint32_t k) {
+    CoarseCell& cell = mesh_.cells[k];
+    flat_.resize(queue_.size());
+    const std::uint32_t first = queue_[0];
+    glm::dvec2 middle(0);
+    for (std::size_t i = 0; i < queue_.size(); ++i) {
+      const std::uint32_t h = queue_[i];
+      glm::dvec2 a(0), b(glm::distance(point(first), point(next_half_edge(first))), 0);
+      if (i > 0) {
+        a = at(next_half_edge(topology_.opposite[h]));
+        b = at(topology_.opposite[h]);
+      }
+      put(i, h, a, b);
+      for (const glm::dvec2& p : flat_[i]) middle += double(topology_.areas[h / 3]) / 3 * p;
+    }
+    const double error = kClosing * std::sqrt(cell.area);
+    for (const std::uint32_t entry : queue_) {
+      for (std::uint32_t h = 3 * (entry / 3); h < 3 * (entry / 3) + 3; ++h) {
+        const std::uint32_t o = topology_.opposite[h];
+        if (o == kNoIndex || !placed(o / 3)) continue;
+        if (glm::distance(at(h), at(next_half_edge(o))) > error) return false;
+      }
+    }
+    if (mesh_.flat_slot.empty()) mesh_.flat_slot.resize(mesh_.slot_position.size());
+    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
+      mesh_.flat_slot[s] = from_glm(at(mesh_.slot_half_edge[s]));
+    }
+    cell.flat_centre = from_glm(middle / cell.area);
+    return true;
+  }
+
+  // Where the start of h lies in the plane. Precondition: its triangle is laid.
+  glm::dvec2 at(std::uint32_t h) const { return flat_[place_[h / 3]][h % 3]; }
+
+  // Lays the triangle of h with that edge from a to b, to its left.
+  void put(std::size_t i, std::uint32_t h, const glm::dvec2& a, const glm::dvec2& b) {
+    const glm::dvec3 edge = point(next_half_edge(h)) - point(h),
+                     side = point(previous_half_edge(h)) - point(h);
+    const double squared = glm::dot(edge, edge);
+    const double along = glm::dot(side, edge) / squared;
+    const double height = glm::length(glm::cross(edge, side)) / squared;
+    const glm::dvec2 d = b - a;
+    flat_[i][h % 3] = a;
+    flat_[i][next_half_edge(h) % 3] = b;
+    flat_[i][previous_half_edge(h) % 3] = a + along * d + height * glm::dvec2(-d.y, d.x);
+  }
+
+  const Topology& topology_;
+  const Cells& cells_;
+  CoarseMesh& mesh_;
+  std::vector<std::uint32_t> seen_;              // 1 a vertex: the last cell that asked
+  std::vector<std::uint32_t> place_;             // 1 a triangle, in queue_
+  std::vector<std::uint32_t> queue_;             // half-edges
+  std::vector<std::array<glm::dvec2, 3>> flat_;  // 1 a queue entry
+};
+
+}  // namespace
+
+void unroll_cells(const Topology& topology, const Cells& cells, CoarseMesh& mesh) {
+  Unroller(topology, cells, mesh).run();
+}
+
+}  // namespace atlas

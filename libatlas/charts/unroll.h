@@ -1,0 +1,20 @@
+// Internal: cells that can be laid flat as paper can.
+#pragma once
+
+#include "libatlas/charts/cells.h"
+#include "libatlas/charts/coarse.h"
+#include "libatlas/charts/topology.h"
+
+namespace atlas {
+
+// Finds the bent cells around whose vertices the angles sum to a full turn, those of the rim
+// included: parts of cylinders, cones and other developable surfaces. Their triangles are laid flat
+// one beside the other, edge on edge, which stretches nothing; sets CoarseCell::unrolls and
+// flat_centre, and CoarseMesh::flat_slot. Two such cells fit each other along whatever border they
+// share, so merging need not try them on the coarse mesh, whose fans are too coarse for ribbons
+// that are narrower than a cell is bent. Cells in one plane count
+// only where they touch bent ones: coplanar() and fans serve them as well.
+// Curved cells are told by their first vertex, so this costs as much as there is to unroll.
+void unroll_cells(const Topology& topology, const Cells& cells, CoarseMesh& mesh);
+
+}  // namespace atlas
