@@ -285,9 +285,11 @@ void finish(const BoxFit& fit, const FitOptions& options, BoxLayout& layout, Fit
 
 }  // namespace
 
-Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& options,
+Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& given,
                             const Context& context) {
-  if (Status status = check(items, options); !status.ok()) return status;
+  if (Status status = check(items, given); !status.ok()) return status;
+  FitOptions options = given;
+  if (options.free_aspect) options.power_of_two = options.square = false;
   FitResult result;
   result.scale = options.max_scale;
   if (items.empty()) return result;

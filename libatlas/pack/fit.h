@@ -37,8 +37,8 @@ struct FitOptions {
   std::uint32_t rotations = 4;  // directions tried for outlines at most: multiples of
                                 // 360/rotations degrees; 1, 2, 4 or a multiple of 4
   bool any_angle = true;        // outlines may be turned by angles between those, too
-  // A single page of outlines only: its sides are at most page_size, and it is made as full as it
-  // can be instead of the charts as large as they can be. Overrides power_of_two and square.
+  // A single page: its sides are at most page_size, and outlines are made to fill it as far as they
+  // can instead of being as large as they can be. Overrides power_of_two and square.
   bool free_aspect = false;
   // Limits of `best` on a single page of outlines. The result depends on effort and seed only,
   // unless effort is 0 and time the limit.

@@ -30,6 +30,13 @@ constexpr std::uint32_t kDirections = 24;
 constexpr std::size_t kRoughStarts = 8, kThoroughStarts = 3;
 constexpr std::size_t kCoarse = 0, kFine = 1;
 
+struct Effort {
+  double first_step, last_step;
+  std::uint32_t sweeps;
+};
+constexpr Effort kRough{0.015, 0.006, 500}, kThorough{0.008, 0.003, 2000},
+    kPolish{0.002, 0.0008, 600};
+
 // A chart in the frame of its mask at scale scale_: shape point p is at origin + scale_ p.
 struct Drawn {
   Vec2d origin;
@@ -72,15 +79,8 @@ class Press {
       });
       for (const Start& s : starts) best.layouts += s.layouts;
       if (n > 1) {
-        SqueezeOptions rough = squeeze_options();
-        rough.first_step = 0.015;
-        rough.last_step = 0.006;
-        rough.sweeps = 500;
-        press_best(starts, kRoughStarts, rough);
-        SqueezeOptions thorough = squeeze_options();
-        thorough.first_step = 0.008;
-        thorough.last_step = 0.003;
-        press_best(starts, kThoroughStarts, thorough);
+        press_best(starts, kRoughStarts, kRough);
+        press_best(starts, kThoroughStarts, kThorough);
       }
       settle_best(starts, best);
       const double seconds = wall_seconds() - begun;
@@ -136,6 +136,8 @@ class Press {
     d.bodies[kFine].radius += std::hypot(shift.x, shift.y);
   }
 
+  static constexpr double kLong = 1.2;
+
   // Strips of widths around the square page's side; where pages may have any shape and a chart is
   // longer than that, every second one lays it along the strip.
   std::int32_t strip_width(std::size_t k, std::size_t count, double shift) const {
@@ -143,14 +145,14 @@ class Press {
     const double spread = (count > 1 ? 0.2 * double(k) / double(count - 1) - 0.1 : 0) + shift;
     std::int32_t narrowest = 0, longest = 0;
     for (const Piece& p : pieces_) {
-      std::int32_t length = std::numeric_limits<std::int32_t>::max();
+      std::int32_t least = std::numeric_limits<std::int32_t>::max();
       for (const Mask& m : p.masks) {
-        narrowest = std::max(narrowest, std::min(m.width, m.height));
-        length = std::min(length, std::max(m.width, m.height));
+        least = std::min(least, m.width);
+        longest = std::max(longest, m.width);
       }
-      if (p.cells() > 0) longest = std::max(longest, length);
+      if (p.cells() > 0) narrowest = std::max(narrowest, least);
     }
-    const bool along = options_.free_aspect && longest > 0.9 * side && k % 2 == 1;
+    const bool along = options_.free_aspect && longest > kLong * side && k % 2 == 1;
     const double width = along ? longest * (1.1 + spread) + 1 : side * (1 + spread);
     return std::max(narrowest, static_cast<std::int32_t>(width));
   }
@@ -175,14 +177,13 @@ class Press {
   }
 
   // The starts whose pages are smallest, each pushed together.
-  void press_best(std::vector<Start>& starts, std::size_t most,
-                  const SqueezeOptions& options) const {
+  void press_best(std::vector<Start>& starts, std::size_t most, const Effort& effort) const {
     sort_starts(starts);
     parallel_for(context_, std::min(most, starts.size()), 1,
                  [&](std::size_t begin, std::size_t end) {
                    for (std::size_t k = begin; k < end; ++k)
                      if (!starts[k].poses.empty() && goodness(starts[k].page) > 0)
-                       push_together(kCoarse, options, starts[k]);
+                       push_together(kCoarse, squeeze_options(starts[k].page, effort), starts[k]);
                  });
   }
 
@@ -228,11 +229,16 @@ class Press {
     }
   }
 
-  SqueezeOptions squeeze_options() const {
+  // The page's longer side will be the largest allowed: a texel of it is `texel` of the bodies'.
+  SqueezeOptions squeeze_options(const SqueezePage& page, const Effort& effort) const {
     SqueezeOptions options;
-    options.clearance = 2 * options_.padding + 0.8 * options_.alignment;
-    options.margin = options_.padding + 0.2 * options_.alignment;
-    options.tolerance = 0.5 * options_.alignment;
+    options.first_step = effort.first_step;
+    options.last_step = effort.last_step;
+    options.sweeps = effort.sweeps;
+    const double texel = std::max(page.width, page.height) / options_.page_size;
+    options.clearance = texel * (2 * options_.padding + 0.8 * options_.alignment);
+    options.margin = texel * (options_.padding + 0.2 * options_.alignment);
+    options.tolerance = texel * 0.5 * options_.alignment;
     options.square = !options_.free_aspect;
     return options;
   }
@@ -289,18 +295,17 @@ class Press {
     bool settled = false;
     for (const double more : {0.0, 0.8}) {
       if (s.poses.empty() || goodness(s.page) == 0) return settled;
-      SqueezeOptions polish = squeeze_options();
-      polish.first_step = 0.002;
-      polish.sweeps = 600;
+      SqueezeOptions polish = squeeze_options(s.page, kPolish);
       polish.clearance += more * options_.alignment;
+      const SqueezePage before = s.page;
       push_together(kFine, polish, s);
-      if (goodness(s.page) == 0) return settled;
+      const bool polished = goodness(s.page) > 0;
+      if (!polished) s.page = before;  // finer outlines overlap too much: as they were
       const double pressed = fill(scale_, s.page.width, s.page.height);
       const PressedPage page = settle_exactly(s);
-      if (page.scale == 0) continue;
-      settled = true;
+      settled = settled || page.scale > 0;
       if (fill(page) > fill(best)) take(page, best);
-      if (fill(page) > (1 - kMostLost) * pressed) break;
+      if (!polished || fill(page) > (1 - kMostLost) * pressed) break;
     }
     return settled;
   }

@@ -295,11 +295,11 @@ SqueezePage squeeze(std::span<Body> bodies, SqueezePage page, const SqueezeOptio
     page = {side, side};
   }
   // The start may overlap a little: more room then, as little as will do.
-  for (int k = 0; !solver.relax(page, 100); ++k) {
-    if (k == 10) return {};
-    const double more = 1 + 0.5 * options.first_step;
-    page = {page.width * more, page.height * more};
-    solver.stretch(more, more);
+  constexpr double kMostRoom = 0.05;  // of a side, at once
+  for (double more = 0.5 * options.first_step; !solver.relax(page, 100); more *= 1.5) {
+    if (more > kMostRoom) return {};
+    page = {page.width * (1 + more), page.height * (1 + more)};
+    solver.stretch(1 + more, 1 + more);
   }
   std::vector<Pose> kept = solver.poses();
   // Both sides at once while that works, then one at a time, in ever smaller steps.
