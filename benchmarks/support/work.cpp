@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -86,6 +87,47 @@ Shape assembly(std::uint64_t triangles) {
   return all;
 }
 
+// A vertex turned by a unit quaternion, then shifted.
+Vec3f placed(const Vec3f& p, const std::array<double, 4>& q, Vec3d offset) {
+  const double x = q[1] * p.z - q[2] * p.y + q[3] * p.x, y = q[2] * p.x - q[0] * p.z + q[3] * p.y,
+               z = q[0] * p.y - q[1] * p.x + q[3] * p.z;
+  return {float(p.x + 2 * (q[1] * z - q[2] * y) + offset.x),
+          float(p.y + 2 * (q[2] * x - q[0] * z) + offset.y),
+          float(p.z + 2 * (q[0] * y - q[1] * x) + offset.z)};
+}
+
+// What holds assemblies together: a dozen standard parts (screws, washers, brackets) again and
+// again, turned anyhow, in a space of a metre.
+Shape fasteners(std::uint64_t triangles) {
+  std::mt19937_64 random(12);
+  const auto uniform = [&](double a, double b) {
+    return a + (b - a) * double(random() >> 11) * 0x1p-53;
+  };
+  std::vector<Shape> kinds;
+  for (int k = 0; k < 12; ++k) {
+    const double size = 0.01 * (1 + k);
+    kinds.push_back(k % 3 == 0   ? test::cylinder(24, 4, 0.15 * size, size)
+                    : k % 3 == 1 ? test::moved(test::plate_with_holes(1, 2), size / 3)
+                                 : test::box(4, {size, 0.7 * size, 0.2 * size}));
+  }
+  Shape all;
+  while (all.triangle_count() < triangles) {
+    const Shape& part = kinds[random() % kinds.size()];
+    std::array<double, 4> q;
+    double norm = 0;
+    for (double& c : q) {
+      c = uniform(-1, 1);
+      norm += c * c;
+    }
+    for (double& c : q) c /= std::sqrt(norm);
+    const Vec3d offset{uniform(0, 1), uniform(0, 1), uniform(0, 1)};
+    const auto first = std::uint32_t(all.positions.size());
+    for (const Vec3f& p : part.positions) all.positions.push_back(placed(p, q, offset));
+    for (const std::uint32_t i : part.indices) all.indices.push_back(first + i);
+  }
+  return all;
+}
+
 // Cells a hole, found by making the smallest one.
 Shape genus(std::uint64_t triangles) {
   const auto least = double(test::plate_with_holes(50, 1).triangle_count());
@@ -116,6 +158,8 @@ Result<Shape> make_shape(const std::string& kind, std::uint64_t triangles) {
     shape = terrain(triangles);
   else if (kind == "assembly")
     shape = assembly(triangles);
+  else if (kind == "fasteners")
+    shape = fasteners(triangles);
   else if (kind == "genus")
     shape = genus(triangles);
   else if (kind == "soup")

@@ -12,7 +12,7 @@ namespace atlas::bench {
 
 // The kinds that make_work knows, for help texts.
 inline constexpr const char* kWorkKinds =
-    "cabin, sphere, scan, torus, terrain, assembly, genus, soup, needles";
+    "cabin, sphere, scan, torus, terrain, assembly, fasteners, genus, soup, needles";
 
 // Makes the work that "KIND:TRIANGLES" names (the number is met within a few per cent), or reads
 // "file:PATH". Metres; lit by a smooth function of the place with one sharp shadow edge, but for
@@ -20,6 +20,7 @@ inline constexpr const char* kWorkKinds =
 //   sphere    smooth closed surface        scan      the same with scan-like noise
 //   torus     handle                       terrain   height field of eight octaves
 //   assembly  boxes, tubes and plates in metres, a part every 48 triangles
+//   fasteners a dozen standard parts, repeated at any turn
 //   genus     plate with fifty holes       soup      unconnected triangles, like foliage
 //   needles   strips of aspect 1000        cabin     examples/cabin
 // Errors: bad_option (unknown kind or number; no cabin in this build); those of read_scene.

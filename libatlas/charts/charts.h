@@ -73,8 +73,9 @@ struct ChartSet {
                                            // chart's is listed in flipped_triangles)
   std::vector<std::uint32_t> flipped_triangles;  // input orientation opposite to the chart's
   Distortion distortion;                         // of the whole
-  double seam_length = 0;   // of interior edges that are chart borders, scene units
-  double surface_area = 0;  // scene units squared
+  double seam_length = 0;           // of interior edges that are chart borders, scene units
+  double surface_area = 0;          // scene units squared
+  std::uint64_t copied_pieces = 0;  // pieces of the mesh that took the charts of a congruent one
   struct Repairs {
     std::uint64_t degenerate_triangles = 0, duplicate_triangles = 0, nonmanifold_edges = 0,
                   nonmanifold_vertices = 0, misoriented_edges = 0, split_charts = 0;

@@ -3,12 +3,11 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "libatlas/charts/cells.h"
 #include "libatlas/charts/charts.h"
 #include "libatlas/charts/flatten.h"
 #include "libatlas/charts/given_uvs.h"
 #include "libatlas/charts/limbs.h"
-#include "libatlas/charts/segment.h"
+#include "libatlas/charts/parts.h"
 #include "libatlas/charts/topology.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
@@ -58,21 +57,17 @@ struct Work {
 
 // Segments and flattens; counts and times go into `set`.
 std::vector<FlatChart> cut_charts(const Work& work, const Context& context, ChartSet& set) {
-  const double start = cpu_seconds();
-  Segmentation segmentation = segment(work.topology, work.options, context);
+  CutCharts cut = cut_into_charts(work.topology, work.mesh.density, work.options, context);
   if (context.cancelled()) return {};
-  return_freed_memory();
-  set.timing.segmentation_cpu += cpu_seconds() - start;
-  context.report("charts", 0.5);
-  const FlattenInput input{work.topology, work.mesh.density, work.options, segmentation.frames};
-  FlattenResult flat = flatten_charts(input, segmentation.partition, context);
-  add_parts(segmentation.timing, set.timing);
-  add_parts(flat.timing, set.timing);
+  set.timing.segmentation_cpu += cut.timing.segmentation_cpu;
+  add_parts(cut.timing, set.timing);
+  set.repairs.split_charts = cut.split_charts;
+  set.copied_pieces = cut.copied_pieces;
   Stopwatch watch(cpu_seconds);
-  set.repairs.split_charts = flat.split_charts;
-  cut_limbs(input, flat.charts, context);
+  Frames none;
+  cut_limbs({work.topology, work.mesh.density, work.options, none}, cut.charts, context);
   set.timing.limbs_cpu = watch.lap();
-  return std::move(flat.charts);
+  return std::move(cut.charts);
 }
 
 // The same with the charts of the given texcoords.

@@ -1,5 +1,8 @@
 #include "libatlas/charts/pieces.h"
 
+#include <algorithm>
+#include <numeric>
+
 namespace atlas {
 
 PieceCutter::PieceCutter(const Topology& whole)
@@ -9,11 +12,19 @@ PieceCutter::PieceCutter(const Topology& whole)
       vertex_(whole.points.size(), 0) {}
 
 PieceMesh PieceCutter::cut(std::uint32_t first, std::uint32_t last) {
+  std::vector<std::uint32_t> pieces(last - first);
+  std::iota(pieces.begin(), pieces.end(), first);
+  return cut(pieces);
+}
+
+PieceMesh PieceCutter::cut(std::span<const std::uint32_t> pieces) {
   PieceMesh out;
-  const std::size_t count = pieces_.first[last] - pieces_.first[first];
+  std::size_t count = 0;
+  for (const std::uint32_t piece : pieces) count += triangle_count(piece);
   Topology& t = out.topology;
   t.scale = whole_.scale;
-  t.component_count = last - first;
+  t.whole_triangles = std::max(whole_.whole_triangles, whole_.triangle_count());
+  t.component_count = static_cast<std::uint32_t>(pieces.size());
   out.triangles.reserve(count);
   t.corner_vertex.reserve(3 * count);
   t.opposite.reserve(3 * count);
@@ -22,9 +33,9 @@ PieceMesh PieceCutter::cut(std::uint32_t first, std::uint32_t last) {
   t.areas.reserve(count);
   t.flags.reserve(count);
   t.component.reserve(count);
-  for (std::uint32_t piece = first; piece < last; ++piece) {
-    add_piece(piece, out);
-    t.component.resize(out.triangles.size(), piece - first);
+  for (std::uint32_t k = 0; k < pieces.size(); ++k) {
+    add_piece(pieces[k], out);
+    t.component.resize(out.triangles.size(), k);
   }
   return out;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "libatlas/charts/grains.h"
@@ -27,7 +28,9 @@ class PieceCutter {
     return pieces_.first[piece + 1] - pieces_.first[piece];
   }
 
-  // Pieces first to last - 1. Linear in their triangles.
+  // These pieces, in this order. Linear in their triangles.
+  PieceMesh cut(std::span<const std::uint32_t> pieces);
+  // Pieces first to last - 1.
   PieceMesh cut(std::uint32_t first, std::uint32_t last);
 
  private:

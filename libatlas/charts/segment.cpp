@@ -158,7 +158,7 @@ class Segmenter {
   void segment(const Topology& topology, std::span<const std::uint32_t> triangles) {
     Stopwatch watch(cpu_seconds);
     CellOptions options;
-    options.mesh_triangles = topology_.triangle_count();
+    options.mesh_triangles = std::max(topology_.whole_triangles, topology_.triangle_count());
     Cells cells = grow_cells(topology, options, context_);
     if (context_.cancelled()) return;
     if (cone_ > 0) split_by_cone(topology, cone_, cells);

@@ -37,6 +37,7 @@ struct Topology {
   std::vector<std::uint8_t> flags;           // 1 a triangle, of Flag
   std::vector<std::uint32_t> component;      // 1 a triangle; kNoIndex if degenerate
   std::uint32_t component_count = 0;
+  std::size_t whole_triangles = 0;  // of the mesh that this is a part of; 0: it is all
   double cut_length = 0;  // of edges that exactly two triangles share without a link, input units
   double scale = 1;       // points = positions * scale, a power of two
   double noise_cpu = 0;   // seconds that calm_normals took

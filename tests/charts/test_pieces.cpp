@@ -77,7 +77,8 @@ TEST(Pieces, ShareNoVertices) {
   EXPECT_EQ(std::count(owner.begin(), owner.end(), kNoIndex), 0);
 }
 
-// More triangles than are segmented at a time: charts are those of the parts, in any order.
+// More triangles than are segmented at a time, no part like another: charts are those of the parts,
+// in any order.
 TEST(Pieces, ManyBecomeChartsInTurn) {
   Shape all;
   for (int i = 0; i < 1200; ++i) {
@@ -86,7 +87,8 @@ TEST(Pieces, ManyBecomeChartsInTurn) {
     for (const std::uint32_t v : part.indices)
       all.indices.push_back(std::uint32_t(all.positions.size()) + v);
     for (const Vec3f& p : part.positions)
-      all.positions.push_back({float(p.x + 4 * x), float(p.y + 4 * y), p.z});
+      all.positions.push_back(
+          {float(p.x + 4 * x), float(p.y + 4 * y), float(p.z * (1 + 0.001 * i))});
   }
   ASSERT_GT(all.triangle_count(), 50000u);
   const Mesh mesh(all);
@@ -96,6 +98,7 @@ TEST(Pieces, ManyBecomeChartsInTurn) {
   const Result<ChartSet> set = make_charts(mesh.view(), {}, one);
   ASSERT_TRUE(set.ok());
   EXPECT_EQ(check_charts(mesh.view(), *set).fault, "");
+  EXPECT_EQ(set->copied_pieces, 0u);
   EXPECT_LE(set->charts.size(), 6 * 1200u);
   EXPECT_GE(set->charts.size(), 1200u);
   const Result<ChartSet> again = make_charts(mesh.view(), {}, two);

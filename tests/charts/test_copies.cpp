@@ -1,0 +1,167 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "tests/charts/chart_checks.h"
+
+namespace atlas::test {
+namespace {
+
+// The part turned anyhow and put somewhere, in double, rounded once.
+Shape placed(Shape part, std::mt19937& random) {
+  std::normal_distribution<double> gauss;
+  double q[4], norm = 0;
+  for (double& c : q) {
+    c = gauss(random);
+    norm += c * c;
+  }
+  for (double& c : q) c /= std::sqrt(norm);
+  const auto [x, y, z, w] = q;
+  const double r[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
+                          {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
+                          {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
+  const double shift[3] = {20 * gauss(random), 20 * gauss(random), 20 * gauss(random)};
+  for (Vec3f& p : part.positions) {
+    double out[3];
+    for (int i = 0; i < 3; ++i) {
+      out[i] = r[i][0] * p.x + r[i][1] * p.y + r[i][2] * p.z + shift[i];
+    }
+    p = {float(out[0]), float(out[1]), float(out[2])};
+  }
+  return part;
+}
+
+const std::vector<Shape>& kinds() {
+  static const std::vector<Shape> all{box(4, {1, 2, 3}), torus(40, 16), plate_with_holes(2, 2),
+                                      noisy(icosphere(3), 0.03, 5)};
+  return all;
+}
+
+struct Assembly {
+  Mesh mesh;
+  std::vector<std::size_t> kind, first_triangle;  // 1 a part
+};
+
+Assembly assembly(int parts) {
+  std::mt19937 random(3);
+  Assembly out;
+  Shape all;
+  for (int i = 0; i < parts; ++i) {
+    out.kind.push_back(random() % kinds().size());
+    out.first_triangle.push_back(all.triangle_count());
+    all = together(all, placed(kinds()[out.kind.back()], random));
+  }
+  out.mesh = Mesh(all);
+  return out;
+}
+
+ChartSet charts_of(const MeshView& mesh, const ChartOptions& options = {}, int threads = 1) {
+  Context context;
+  context.threads = threads;
+  Result<ChartSet> set = make_charts(mesh, options, context);
+  EXPECT_TRUE(set.ok());
+  return set.ok() ? std::move(*set) : ChartSet{};
+}
+
+double uv_edge(const ChartSet& set, std::size_t triangle, int c) {
+  const Vec2d a = set.uvs[set.triangle_uv[3 * triangle + c]];
+  const Vec2d b = set.uvs[set.triangle_uv[3 * triangle + (c + 1) % 3]];
+  return std::hypot(a.x - b.x, a.y - b.y);
+}
+
+TEST(Copies, TakeTheChartsOfTheirOriginals) {
+  const Assembly parts = assembly(40);
+  const ChartSet set = charts_of(parts.mesh.view());
+  const ChartFindings found = check_charts(parts.mesh.view(), set);
+  EXPECT_EQ(found.fault, "");
+  EXPECT_LE(found.stretch_999, 1.25 + 1e-6);
+  EXPECT_EQ(set.copied_pieces, 40 - kinds().size());
+  std::map<std::size_t, std::size_t> original;  // of a kind: the part seen first
+  for (std::size_t i = 0; i < parts.kind.size(); ++i) {
+    const std::size_t a = parts.first_triangle[original.emplace(parts.kind[i], i).first->second];
+    const std::size_t b = parts.first_triangle[i];
+    for (std::size_t t = 0; t < kinds()[parts.kind[i]].triangle_count(); ++t) {
+      for (int c = 0; c < 3; ++c) {
+        ASSERT_EQ(uv_edge(set, a + t, c), uv_edge(set, b + t, c)) << "part " << i;
+      }
+    }
+  }
+}
+
+TEST(Copies, DoNotDependOnThreadsOrUnits) {
+  const Assembly parts = assembly(30);
+  const ChartSet one = charts_of(parts.mesh.view());
+  for (const int threads : {2, 8}) {
+    EXPECT_EQ(bytes(charts_of(parts.mesh.view(), {}, threads)), bytes(one));
+  }
+  for (const double unit : {0x1p-30, 1e-3, 39.37}) {
+    Mesh scaled = parts.mesh;
+    for (Vec3f& p : scaled.positions) {
+      p = {float(p.x * unit), float(p.y * unit), float(p.z * unit)};
+    }
+    const ChartSet set = charts_of(scaled.view());
+    EXPECT_EQ(set.copied_pieces, one.copied_pieces) << unit;
+    EXPECT_EQ(set.charts.size(), one.charts.size()) << unit;
+  }
+}
+
+TEST(Copies, KeepTheLimitOnCones) {
+  const Assembly parts = assembly(30);
+  ChartOptions options;
+  options.cone_degrees = 35;
+  const ChartSet set = charts_of(parts.mesh.view(), options);
+  const ChartFindings found = check_charts(parts.mesh.view(), set);
+  EXPECT_EQ(found.fault, "");
+  EXPECT_LE(found.cone_degrees, 35 + 1e-4);
+  EXPECT_GT(set.copied_pieces, 0u);
+}
+
+// A part beside another one that differs from it.
+std::size_t copied_beside(const Shape& part, Shape other, const std::vector<float>& density = {}) {
+  other = moved(std::move(other), 1, {10, 3, 2});
+  const Mesh mesh(together(part, other));
+  MeshView view = mesh.view();
+  view.density = density;
+  return charts_of(view).copied_pieces;
+}
+
+TEST(Copies, AreNothingButCongruent) {
+  const Shape part = noisy(icosphere(2), 0.05, 9);
+  EXPECT_EQ(copied_beside(part, part), 1u);
+  const auto stretched = [&](double x) {
+    Shape s = part;
+    for (Vec3f& p : s.positions) p.x = float(p.x * x);
+    return s;
+  };
+  EXPECT_EQ(copied_beside(part, stretched(1 + 2e-6)), 1u);
+  EXPECT_EQ(copied_beside(part, stretched(1.001)), 0u);
+  EXPECT_EQ(copied_beside(part, stretched(-1)), 0u);  // mirrored, inside out
+  Shape mirrored = stretched(-1);
+  for (std::size_t i = 0; i < mirrored.indices.size(); i += 3) {
+    std::swap(mirrored.indices[i + 1], mirrored.indices[i + 2]);
+  }
+  EXPECT_EQ(copied_beside(part, mirrored), 0u);
+  Shape reordered = part;
+  std::rotate(reordered.indices.begin(), reordered.indices.begin() + 3, reordered.indices.end());
+  EXPECT_EQ(copied_beside(part, reordered), 0u);
+  std::vector<float> density(2 * part.triangle_count(), 1.0f);
+  EXPECT_EQ(copied_beside(part, part, density), 1u);
+  density.back() = 2;
+  EXPECT_EQ(copied_beside(part, part, density), 0u);
+}
+
+// A flap bent up and one bent down have the same edges in a row.
+TEST(Copies, FoldToTheSameSide) {
+  Shape up;
+  up.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1.25f, 1, 0.5f}};
+  up.indices = {0, 1, 2, 1, 3, 2};
+  Shape down = up;
+  down.positions[3].z = -0.5f;
+  EXPECT_EQ(copied_beside(up, up), 1u);
+  EXPECT_EQ(copied_beside(up, down), 0u);
+}
+
+}  // namespace
+}  // namespace atlas::test
