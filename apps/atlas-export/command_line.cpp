@@ -172,6 +172,7 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
     fmt::print(stderr, "atlas-export: error: {}\n", *wrong);
     return std::nullopt;
   }
+  command.options.larger_plain_page = app.count("--atlas-size") == 0;
   return command;
 }
 

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "libatlas/pack/engines.h"
 #include "libatlas/pack/fit_pages.h"
 #include "libatlas/pack/fit_result.h"
 #include "libatlas/pack/shape_check.h"
@@ -67,11 +68,27 @@ bool BoxFit::pack_at(double scale, std::uint32_t pages, BoxLayout& layout) {
   make_boxes(scale);
   for (const Extent& b : boxes_)
     if (!box_fits_page(b)) return false;
+  if (!group(pages, layout)) return false;
+  if (pages == 1 && boxes_.size() >= kManyItems) return pack_many(layout);
   return pack_grouped(pages, layout) || pack_jointly(pages, layout);
 }
 
-// Each group into its own page, largest items first; what is left over goes wherever it fits.
-bool BoxFit::pack_grouped(std::uint32_t pages, BoxLayout& layout) {
+// Many items leave no gap of a single page empty, whatever the method: the fastest is taken.
+bool BoxFit::pack_many(BoxLayout& layout) const {
+  Problem problem;
+  problem.items = boxes_;
+  problem.page = page_;
+  problem.allow_rotation = options_.allow_rotation;
+  problem.max_pages = 1;
+  Layout packed = pack_widest_first(problem);
+  if (packed.unplaced > 0) return false;
+  layout.placements = std::move(packed.placements);
+  layout.pages = 1;
+  layout.moved = 0;
+  return true;
+}
+
+bool BoxFit::group(std::uint32_t pages, BoxLayout& layout) const {
   std::vector<std::uint64_t> areas(boxes_.size());
   for (std::size_t i = 0; i < areas.size(); ++i)
     areas[i] = static_cast<std::uint64_t>(boxes_[i].area());
@@ -81,6 +98,11 @@ bool BoxFit::pack_grouped(std::uint32_t pages, BoxLayout& layout) {
   Result<GroupingResult> grouping = group_sizes(areas, grouping_options, context_);
   if (!grouping.ok()) return false;
   layout.grouping = std::move(*grouping);
+  return true;
+}
+
+// Each group into its own page, largest items first; what is left over goes wherever it fits.
+bool BoxFit::pack_grouped(std::uint32_t pages, BoxLayout& layout) {
   layout.moved = 0;
   layout.placements.assign(boxes_.size(), {});
   std::vector<FreeRects> open(pages, FreeRects(page_));
@@ -159,6 +181,10 @@ Extent BoxFit::shrink_page(std::uint32_t page, BoxLayout& layout) const {
     return size;
   }
   return page_;
+}
+
+double scale_tolerance(const FitOptions& options, double exact, std::size_t items) {
+  return options.free_aspect && items >= kManyItems ? 0.02 : exact;
 }
 
 std::vector<Extent> smaller_pages(const FitOptions& options) {

@@ -223,12 +223,13 @@ bool search_scale(OutlineFit& fit, const FitOptions& options, const Context& con
   const double pages = double(options.page_size) * options.page_size * options.pages;
   double scale = fit.area() > 0 ? std::sqrt(0.74 * pages / fit.area()) : options.max_scale;
   scale = std::min(scale, options.max_scale);
+  const double tolerance = scale_tolerance(options, 0.005, options.shapes.size());
   double low = 0, high = options.max_scale * (1 + 1e-9), step = 0.97;
   while (result.packings + 1 < options.max_packings && !context.cancelled()) {
     const bool ok = attempt(scale);
     if (ok && scale >= options.max_scale) return true;
     (ok ? low : high) = scale;
-    if (low > 0 && high - low < 0.005 * high) return true;
+    if (low > 0 && high - low < tolerance * high) return true;
     if (low == 0) {
       scale *= step;
       step *= step > 0.5 ? 0.97 : 1;  // faster and faster, should minimum sides be in the way

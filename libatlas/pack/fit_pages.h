@@ -31,6 +31,8 @@ class BoxFit {
 
  private:
   bool box_fits_page(const Extent& box) const;
+  bool group(std::uint32_t pages, BoxLayout& layout) const;
+  bool pack_many(BoxLayout& layout) const;
   bool pack_grouped(std::uint32_t pages, BoxLayout& layout);
   bool pack_jointly(std::uint32_t pages, BoxLayout& layout);
   bool place(std::uint32_t item, std::uint32_t page, FreeRects& free, BoxLayout& layout) const;
@@ -51,6 +53,13 @@ Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions&
 // largest scale and the page could be smaller, or where charts stop at their minimum sides.
 bool fit_pressed(std::span<const FitItem> items, std::span<const ChartOutline> outlines,
                  const FitOptions& options, const Context& context, FitResult& result);
+
+// So many items fill the gaps of a page whatever their order.
+inline constexpr std::size_t kManyItems = 1000;
+
+// How close to the largest scale that fits a search should come, as a share: `exact`, or roughly
+// where the page is cropped to what many items need.
+double scale_tolerance(const FitOptions& options, double exact, std::size_t items);
 
 // Page sizes with power-of-two sides smaller than the largest, ascending by area, texels.
 std::vector<Extent> smaller_pages(const FitOptions& options);

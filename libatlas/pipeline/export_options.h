@@ -22,6 +22,9 @@ struct ExportOptions {
   // 64..16384).
   std::uint32_t atlases = 8;
   std::int32_t atlas_size = 2048;
+  // The page of plain uvs has no image and may be larger: doubled, up to 16384, until it has 512
+  // texels for each chart on average, so that gutters stay thin against the charts.
+  bool larger_plain_page = true;
 
   double texel_metres = 0;       // length of a texel on the real surface; 0: as fine as the
                                  // budget could hold, within 1 to 10 mm (paper, stage 2)

@@ -194,9 +194,20 @@ class Export {
     return {};
   }
 
+  // The largest side of a page.
+  std::int32_t page_size() const {
+    constexpr std::int64_t kTexelsAChart = 512;
+    constexpr std::int32_t kLargestSide = 16384;
+    std::int64_t side = options_.atlas_size;
+    if (plan_.bake || !options_.larger_plain_page) return options_.atlas_size;
+    const std::int64_t wanted = kTexelsAChart * std::int64_t(charts_.charts.size());
+    while (side < kLargestSide && side * side < wanted) side *= 2;
+    return std::int32_t(side);
+  }
+
   // No light asks for no resolution of its own: one page, filled as well as packing can.
   void size_plain_uvs() {
-    const double page = double(options_.atlas_size) * options_.atlas_size;
+    const double page = double(page_size()) * page_size();
     double area = 0;
     for (const Chart& chart : charts_.charts) area += chart.distortion.uv_area;
     const double density = area > 0 ? std::sqrt(page / area) : 1;
@@ -206,7 +217,7 @@ class Export {
   Status pack() {
     record_.begin("packing");
     LayoutOptions layout;
-    layout.page_size = options_.atlas_size;
+    layout.page_size = page_size();
     layout.preset = options_.packing;
     layout.outlines = options_.outlines;
     if (plan_.bake) {
