@@ -205,11 +205,7 @@ class ChartJob {
     for (const std::uint32_t t : chart_.triangles()) area += input_.topology.areas[t];
     param.min_altitude = kMinAltitude * std::sqrt(area);
     if (!input_.frames.empty()) {
-      scratch_.frames.resize(mesh.triangles.size());
-      for (std::size_t i = 0; i < scratch_.frames.size(); ++i) {
-        scratch_.frames[i] = input_.frames[chart_.triangles()[i]];
-      }
-      param.start.frames = scratch_.frames;
+      param.start.frames = {input_.frames, chart_.triangles()};
     }
     return param;
   }

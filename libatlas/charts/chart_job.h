@@ -15,9 +15,9 @@ namespace atlas {
 struct ChartScratch {
   LocalChart chart;
   ParamWorkspace workspace;
-  std::vector<std::array<Vec3f, 2>> frames;
   std::vector<std::array<std::uint32_t, 2>> border;
-  double cuts_cpu = 0;  // seconds spent on cutting charts open
+  double cuts_cpu = 0;      // seconds spent on cutting charts open
+  std::size_t largest = 0;  // triangles of the largest chart so far
 };
 
 // What became of a chart: flat; or to be divided; or to lose a few triangles to its neighbours.

@@ -19,6 +19,21 @@ constexpr int kMaxRemovals = 4;
 
 constexpr double kRemovalWidth = 1.0 / 60;
 
+// What charts of more triangles needed is given back once they are half as large: the flat charts
+// need room by then.
+constexpr std::size_t kLargeScratch = 40000;
+
+void fit_scratch(std::size_t triangles, ChartScratch& scratch) {
+  if (scratch.largest > kLargeScratch && triangles < scratch.largest / 2) {
+    ChartScratch smaller;
+    smaller.cuts_cpu = scratch.cuts_cpu;
+    smaller.workspace.timing = scratch.workspace.timing;
+    scratch = std::move(smaller);
+    return_freed_memory();
+  }
+  scratch.largest = std::max(scratch.largest, triangles);
+}
+
 // One scratch a running thread, handed out and taken back.
 class ScratchPool {
  public:
@@ -70,6 +85,7 @@ class Flattener {
         auto scratch = pool_.take();
         for (std::size_t i = begin; i < end; ++i) {
           const State& state = charts_[todo_[i]];
+          fit_scratch(state.triangles.size(), *scratch);
           ChartOutcome outcome = flatten_chart(input_, partition_, state.triangles,
                                                {.rings = removal_rings(state)}, *scratch);
           if (outcome.parts.empty()) {

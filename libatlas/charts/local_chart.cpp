@@ -26,6 +26,10 @@ void LocalChart::build(const Topology& topology, Partition& partition,
   find_components();
   number_vertices(topology);
   find_loops();
+  if (n >= kManyTriangles) {  // leave the room to the solver
+    queue_ = {};
+    seen_ = {};
+  }
 }
 
 // A local vertex is a fan of corners joined by edges of the chart, so that a vertex where only

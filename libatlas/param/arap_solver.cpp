@@ -29,7 +29,7 @@ bool trustworthy(const Jacobian& j) {
 }
 
 void rotations_from_frames(const LocalMesh& mesh, std::span<const Element> elements,
-                           std::span<const std::array<Vec3f, 2>> frames, Rotations& out) {
+                           const FrameView& frames, Rotations& out) {
   out.resize(elements.size());
   for (std::size_t t = 0; t < elements.size(); ++t) {
     const auto& v = elements[t].v;

@@ -56,8 +56,15 @@ void build_stiffness(std::span<const Element> elements, const CornerLists& corne
   const std::size_t n = corners.first.size() - 1;
   out.diagonal.resize(n);
   out.first.resize(n + 1);
-  out.column.resize(6 * elements.size());  // at most: two for each corner
-  out.value.resize(6 * elements.size());
+  // Two for each edge; a disc has as many edges as vertices and triangles together, less one.
+  const auto reserve = [&](std::size_t entries) {
+    if (entries <= out.column.size()) return;
+    out.column.resize(entries);
+    out.value.resize(entries);
+  };
+  out.column.clear();
+  out.value.clear();
+  reserve(2 * (n + elements.size()));
   std::vector<std::uint32_t>& place = out.scratch;  // of a column within the current row
   place.assign(n, unseen);
   std::uint32_t end = 0;
@@ -65,6 +72,8 @@ void build_stiffness(std::span<const Element> elements, const CornerLists& corne
     const std::uint32_t begin = end;
     double diagonal = 0;
     out.first[row] = begin;
+    const std::size_t most = end + 2 * std::size_t{corners.first[row + 1] - corners.first[row]};
+    if (most > out.column.size()) reserve(most + most / 8);
     for (std::uint32_t i = corners.first[row]; i < corners.first[row + 1]; ++i) {
       const Element& e = elements[corners.corner[i] / 3];
       const std::uint32_t k = corners.corner[i] % 3;

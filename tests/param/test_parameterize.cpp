@@ -152,7 +152,7 @@ TEST(Parameterize, RecoversFromFramesThatLie) {
   const std::vector<std::array<Vec3f, 2>> frames(d.triangles.size(),
                                                  {Vec3f{0, 1, 0}, Vec3f{0, 0, 1}});
   ParamOptions options;
-  options.start.frames = frames;
+  options.start.frames.rows = frames;
   const ParamResult r = run(d, options);
   expect_consistent(d, r, 1.25);
   EXPECT_TRUE(r.injective);
