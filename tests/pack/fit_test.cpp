@@ -102,6 +102,40 @@ TEST(FitPages, SmallContentTakesFewSmallPages) {
   EXPECT_EQ(r.pages[0], (Extent{64, 64}));
 }
 
+// Thousands of boxes on one page of any shape: full, valid, and no row of it empty.
+TEST(FitPages, ManyItemsFillOnePage) {
+  const auto items = items_of(4000, 1, 8);
+  FitOptions o;
+  o.page_size = 1024;
+  o.padding = 1;
+  o.alignment = 1;
+  o.minimum_side = 0;
+  o.free_aspect = true;
+  const FitResult r = fit(items, o);
+  o.power_of_two = false;  // what free_aspect means
+  expect_valid(items, o, r);
+  ASSERT_EQ(r.pages.size(), 1u);
+  EXPECT_GT(r.box_utilization, 0.97);
+  EXPECT_LT(r.scale, 1);
+}
+
+// What no pressing is tried for gets a page cut to its charts, too.
+TEST(FitPages, FreePagesAreCropped) {
+  const test::ChartItems charts({{{0, 0}, {400, 0}, {400, 20}}, {{0, 0}, {400, 20}, {0, 20}}});
+  FitOptions o;
+  o.page_size = 256;
+  o.padding = o.alignment = 1;
+  o.minimum_side = 0;
+  o.free_aspect = true;
+  o.preset = PackPreset::fast;
+  for (const bool outlines : {false, true}) {
+    if (outlines) o.shapes = charts.shapes;
+    const FitResult r = fit(charts.items, o);
+    ASSERT_EQ(r.pages.size(), 1u);
+    EXPECT_LT(std::min(r.pages[0].width, r.pages[0].height), 40) << outlines;
+  }
+}
+
 TEST(FitPages, Failures) {
   FitOptions o;
   o.page_size = 64;

@@ -179,5 +179,26 @@ TEST(Press, FewChartsOnOnePage) {
   }
 }
 
+// A chart longer than a square page of all charts lies along a long page.
+TEST(Press, LongChartsLieAlongThePage) {
+  std::vector<std::vector<Vec2d>> bars;
+  for (int k = 0; k < 24; ++k) {
+    const double w = k < 3 ? 2000 - 10 * k : 60 + 2 * k, h = k < 3 ? 30 : 40 + k;
+    bars.push_back({{0, 0}, {w, 0}, {w, h}, {0, 0}, {w, h}, {0, h}});
+  }
+  const test::ChartItems charts(std::move(bars));
+  FitOptions o;
+  o.page_size = 2048;
+  o.padding = o.alignment = 1;
+  o.minimum_side = 0;
+  o.max_scale = 10;
+  o.free_aspect = true;
+  o.shapes = charts.shapes;
+  const Result<FitResult> r = fit_pages(charts.items, o, {});
+  ASSERT_TRUE(r.ok());
+  EXPECT_GT(r->utilization, 0.6);
+  EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *r), r->pages, o.padding), "");
+}
+
 }  // namespace
 }  // namespace atlas

@@ -227,5 +227,25 @@ TEST(Plan, NamesWhatASceneDoesNotNeed) {
   EXPECT_FALSE(make_plan(dark.scene, options).runs("baking"));
 }
 
+// Gutters would take most of a small page from ten thousand charts.
+TEST(Export, PlainPagesGrowWithTheirCharts) {
+  TempFolder folder;
+  const LoadedScene scene = lit_scene(soup(600, 5));
+  ExportOptions options = small_pages(folder);
+  options.charts_only = true;
+  const auto widest = [&] {
+    const auto report = export_world(scene, options, {}, {});
+    EXPECT_TRUE(report.ok()) << report.status().message();
+    if (!report.ok() || report->pages.size() != 1) return 0;
+    EXPECT_GT(report->charts.size(), 500u);
+    return std::max(report->pages[0].width, report->pages[0].height);
+  };
+  const int grown = widest();
+  EXPECT_GT(grown, 512);  // 512 texels for each of 600 charts are 554 squared
+  EXPECT_LE(grown, 1024);
+  options.larger_plain_page = false;
+  EXPECT_LE(widest(), 256);
+}
+
 }  // namespace
 }  // namespace atlas::test
