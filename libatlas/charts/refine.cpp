@@ -8,8 +8,6 @@
 namespace atlas {
 namespace {
 
-constexpr double kCreaseWeight = 0.25;
-
 bool linked(const Topology& topology, const Partition& partition, std::uint32_t h) {
   const std::uint32_t o = topology.opposite[h];
   return o != kNoIndex && partition.chart[o / 3] == partition.chart[h / 3] && !partition.seam(h);
@@ -17,13 +15,12 @@ bool linked(const Topology& topology, const Partition& partition, std::uint32_t 
 
 class Smoother {
  public:
-  Smoother(const Topology& topology, double crease_degrees, const ConeLimit& cone,
-           Partition& partition, Frames& frames)
+  Smoother(const Topology& topology, const BorderRules& rules, Partition& partition, Frames& frames)
       : topology_(topology),
-        cone_(cone),
+        cone_(rules.cone),
         partition_(partition),
         frames_(frames),
-        crease_cosine_(std::cos(crease_degrees * M_PI / 180)) {}
+        crease_cosine_(std::cos(rules.crease_degrees * M_PI / 180)) {}
 
   void run() {
     const auto n = static_cast<std::uint32_t>(topology_.triangle_count());
@@ -165,9 +162,9 @@ bool removable(const Topology& topology, const Partition& partition, std::uint32
   return true;
 }
 
-void smooth_borders(const Topology& topology, double crease_degrees, const ConeLimit& cone,
-                    Partition& partition, Frames& frames) {
-  Smoother(topology, crease_degrees, cone, partition, frames).run();
+void smooth_borders(const Topology& topology, const BorderRules& rules, Partition& partition,
+                    Frames& frames) {
+  Smoother(topology, rules, partition, frames).run();
 }
 
 }  // namespace atlas

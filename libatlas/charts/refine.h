@@ -19,17 +19,23 @@ void move_triangle(const Topology& topology, std::uint32_t h, Partition& partiti
 // Whether the chart of t stays in one piece without it (decided around t's corners).
 bool removable(const Topology& topology, const Partition& partition, std::uint32_t t);
 
+inline constexpr double kCreaseWeight = 0.25;  // of a crease's length in a border
+
 // A limit on charts' normals; empty axes: none.
 struct ConeLimit {
   std::span<const Vec3f> axes;  // by Partition::chart
   double least_cosine = -1;
 };
 
-// Moves triangles while that shortens the borders between charts; an edge sharper than the crease
-// angle counts a quarter. No triangle goes where its normal leaves
-// the cone. Ends: every move shortens. Linear in the number of border triangles.
-void smooth_borders(const Topology& topology, double crease_degrees, const ConeLimit& cone,
-                    Partition& partition, Frames& frames);
+struct BorderRules {
+  double crease_degrees = 40;  // sharper edges count kCreaseWeight of their length
+  ConeLimit cone;
+};
+
+// Moves triangles while that shortens the borders between charts. No triangle goes where its normal
+// leaves the cone. Ends: every move shortens. Linear in the number of border triangles.
+void smooth_borders(const Topology& topology, const BorderRules& rules, Partition& partition,
+                    Frames& frames);
 
 // The frame of triangle `from` carried to `to`, across their common edge.
 std::array<Vec3f, 2> carry_frame(const Topology& topology, const std::array<Vec3f, 2>& frame,

@@ -9,6 +9,7 @@
 #include "libatlas/charts/merge.h"
 #include "libatlas/charts/pieces.h"
 #include "libatlas/charts/refine.h"
+#include "libatlas/charts/straighten.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
 
@@ -114,6 +115,8 @@ void follow_bound(double max_stretch, MergeOptions& merge) {
 // memory at once, and parts that fit the processor's caches are faster.
 constexpr std::size_t kTrianglesAtATime = 50000, kSmallPiece = 5000;
 
+constexpr double kMostRings = 12;  // wider bands are dear on fine meshes
+
 class Segmenter {
  public:
   Segmenter(const Topology& topology, const ChartOptions& options, const Context& context)
@@ -134,8 +137,10 @@ class Segmenter {
     }
     if (context_.cancelled()) return {};
     Stopwatch watch(cpu_seconds);
-    smooth_borders(topology_, options_.crease_degrees, {axes_, std::cos(cone_ - 1e-5)},
-                   result_.partition, result_.frames);
+    const BorderRules rules{options_.crease_degrees, {axes_, std::cos(cone_ - 1e-5)}};
+    smooth_borders(topology_, rules, result_.partition, result_.frames);
+    straighten_borders(topology_, rules, rings_, result_.partition, result_.frames);
+    smooth_borders(topology_, rules, result_.partition, result_.frames);
     result_.timing.borders_cpu = watch.lap();
     return std::move(result_);
   }
@@ -177,9 +182,23 @@ class Segmenter {
     const MergeResult merged = merge_cells(coarse, piece_of(topology, cells), merge, context_);
     if (context_.cancelled()) return;
     spread_to_triangles({topology, triangles, cells, coarse, merged}, labels_, result_);
+    add_rings(cells, merged);
     labels_ += static_cast<std::uint32_t>(coarse.cells.size());
     axes_.insert(axes_.end(), merged.chart_axis.begin(), merged.chart_axis.end());
     result_.timing.merging_cpu += watch.lap();
+  }
+
+  // Seams are straightened as far as cells are uneven: half a cell's width, to each side.
+  void add_rings(const Cells& cells, const MergeResult& merged) {
+    std::vector<std::uint32_t> triangles(cells.count, 0), cell_count(cells.count, 0);
+    for (const std::uint32_t chart : merged.chart_of_cell) ++cell_count[chart];
+    for (const std::uint32_t k : cells.of_triangle) {
+      if (k != kNoIndex) ++triangles[merged.chart_of_cell[k]];
+    }
+    for (std::uint32_t k = 0; k < cells.count; ++k) {
+      const double a_cell = static_cast<double>(triangles[k]) / std::max(cell_count[k], 1u);
+      rings_.push_back(static_cast<std::uint8_t>(std::min(std::sqrt(a_cell / 3), kMostRings)));
+    }
   }
 
   static std::vector<std::uint32_t> piece_of(const Topology& topology, const Cells& cells) {
@@ -195,8 +214,9 @@ class Segmenter {
   const Context& context_;
   double cone_;  // radians
   Segmentation result_;
-  std::uint32_t labels_ = 0;  // given so far
-  std::vector<Vec3f> axes_;   // by label; only with a cone limit
+  std::vector<std::uint8_t> rings_;  // by label
+  std::uint32_t labels_ = 0;         // given so far
+  std::vector<Vec3f> axes_;          // by label; only with a cone limit
 };
 
 }  // namespace

@@ -1,0 +1,216 @@
+// Seams drawn straight: the cut against all cuts, borders against straight lines, charts against
+// what they were.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "libatlas/charts/min_cut.h"
+#include "libatlas/charts/straighten.h"
+#include "libatlas/core/glm_bridge.h"
+#include "tests/charts/chart_checks.h"
+
+namespace atlas::test {
+namespace {
+
+TEST(MinCut, CostsWhatTheBestOfAllCutsCosts) {
+  std::mt19937 random(1);
+  for (int round = 0; round < 300; ++round) {
+    const std::uint32_t n = 2 + random() % 9;
+    struct Edge {
+      MinCut::Arc a, b;
+      int weight;
+    };
+    std::vector<Edge> edges;
+    std::vector<std::array<int, 2>> ties(n);
+    std::vector<std::uint32_t> free_slots(n, 0);
+    MinCut cut;
+    cut.reset(n);
+    for (std::uint32_t k = 0; k < 2 * n; ++k) {
+      const std::uint32_t a = random() % n, b = random() % n;
+      if (a == b || free_slots[a] == 3 || free_slots[b] == 3) continue;
+      edges.push_back({{a, free_slots[a]++}, {b, free_slots[b]++}, int(random() % 20)});
+      cut.set_edge(edges.back().a, edges.back().b, edges.back().weight);
+    }
+    for (std::uint32_t i = 0; i < n; ++i) {
+      for (std::uint32_t s = 0; s < 2; ++s) {
+        ties[i][s] = random() % 3 ? 0 : int(random() % 30);
+        cut.tie(i, s, ties[i][s]);
+      }
+    }
+    const auto cost = [&](const auto& side) {
+      int sum = 0;
+      for (const Edge& e : edges) sum += side(e.a.node) != side(e.b.node) ? e.weight : 0;
+      for (std::uint32_t i = 0; i < n; ++i) sum += ties[i][1 - side(i)];
+      return sum;
+    };
+    int best = 1 << 30;
+    for (std::uint32_t mask = 0; mask < 1u << n; ++mask) {
+      best = std::min(best, cost([&](std::uint32_t i) { return mask >> i & 1; }));
+    }
+    cut.run();
+    EXPECT_EQ(cost([&](std::uint32_t i) { return cut.side(i); }), best) << round;
+  }
+}
+
+struct Charts {
+  Topology topology;
+  Partition partition;
+  Frames frames;
+
+  explicit Charts(const Shape& shape) {
+    const Mesh mesh(shape);
+    Result<Topology> built = build_topology(mesh.view(), {}, {});
+    EXPECT_TRUE(built.ok());
+    topology = std::move(*built);
+    const std::size_t n = topology.triangle_count();
+    partition.chart.assign(n, kNoIndex);
+    partition.seams.assign(n, 0);
+    partition.local.assign(n, 0);
+    frames.resize(n);
+    for (std::uint32_t t = 0; t < n; ++t) frames[t] = frame_of(t);
+  }
+
+  // Two directions at right angles in the plane of triangle t.
+  std::array<Vec3f, 2> frame_of(std::uint32_t t) const {
+    const glm::dvec3 n = to_dvec(topology.normals[t]);
+    const glm::dvec3 u = glm::normalize(
+        glm::cross(n, std::abs(n.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+    return {from_glm(glm::vec3(u)), from_glm(glm::vec3(glm::cross(n, u)))};
+  }
+
+  // Grows `count` charts from random triangles at random speeds: ragged, but in one piece each.
+  void grow(std::uint32_t count, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::vector<std::uint32_t> front;
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const auto t = std::uint32_t(random() % topology.triangle_count());
+      if (partition.chart[t] != kNoIndex) continue;
+      partition.chart[t] = k;
+      front.push_back(t);
+    }
+    while (!front.empty()) {
+      const std::size_t i = random() % front.size();
+      const std::uint32_t t = front[i];
+      front[i] = front.back();
+      front.pop_back();
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        const std::uint32_t o = topology.opposite[h];
+        if (o == kNoIndex || partition.chart[o / 3] != kNoIndex) continue;
+        partition.chart[o / 3] = partition.chart[t];
+        front.push_back(o / 3);
+      }
+    }
+  }
+
+  double border_length() const {
+    double length = 0;
+    for (std::uint32_t h = 0; h < topology.opposite.size(); ++h) {
+      const std::uint32_t o = topology.opposite[h];
+      if (o == kNoIndex || o < h || partition.chart[h / 3] == partition.chart[o / 3]) continue;
+      length += edge_length(topology, h);
+    }
+    return length / topology.scale;
+  }
+
+  // Pieces and Euler characteristic of each chart.
+  std::map<std::uint32_t, std::pair<std::uint32_t, int>> topologies() {
+    std::map<std::uint32_t, std::vector<std::uint32_t>> lists;
+    for (std::uint32_t t = 0; t < partition.chart.size(); ++t) {
+      lists[partition.chart[t]].push_back(t);
+    }
+    std::map<std::uint32_t, std::pair<std::uint32_t, int>> result;
+    for (const auto& [k, list] : lists) {
+      LocalChart chart;
+      chart.build(topology, partition, list);
+      result[k] = {chart.component_count, chart.euler()};
+    }
+    return result;
+  }
+
+  void straighten(std::uint8_t rings, double crease_degrees = 40) {
+    const std::vector<std::uint8_t> of_chart(64, rings);
+    straighten_borders(topology, {crease_degrees, {}}, of_chart, partition, frames);
+  }
+};
+
+TEST(Straighten, SawtoothBecomesALine) {
+  const int n = 40;
+  Charts charts(grid(n, n));
+  for (std::uint32_t t = 0; t < charts.partition.chart.size(); ++t) {
+    const int x = int(t / 2) % n, y = int(t / 2) / n;
+    const int tooth = std::abs(y % 8 - 4);  // 0 to 4
+    charts.partition.chart[t] = x < n / 2 - 2 + tooth ? 0 : 1;
+  }
+  const double before = charts.border_length();
+  charts.straighten(12);
+  EXPECT_GT(before, 1.8);
+  EXPECT_NEAR(charts.border_length(), 1, 1e-6);
+}
+
+TEST(Straighten, GoesToTheCreaseNearby) {
+  // A border one quad beside a box's edge: the edge counts a quarter.
+  Charts charts(box(16));
+  const auto height = [&](std::uint32_t t) {
+    double z = 0;
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      z += charts.topology.points[charts.topology.corner_vertex[3 * t + c]].z / 3.0;
+    }
+    return z / charts.topology.scale;
+  };
+  for (std::uint32_t t = 0; t < charts.partition.chart.size(); ++t) {
+    charts.partition.chart[t] = height(t) > 15.0 / 16 ? 1 : 0;
+  }
+  charts.straighten(12);
+  for (std::uint32_t t = 0; t < charts.partition.chart.size(); ++t) {
+    EXPECT_EQ(charts.partition.chart[t], charts.topology.normals[t].z > 0.5 ? 1u : 0u);
+  }
+}
+
+// Neither comes a chart apart, nor does it close to a ring; borders get no longer; every frame lies
+// in its triangle's plane.
+TEST(Straighten, KeepsWhatChartsAre) {
+  std::vector<Shape> shapes = {grid(30, 30),           sphere(40, 20),
+                               torus(48, 16),          cylinder(60, 12),
+                               plate_with_holes(3, 4), noisy(icosphere(4), 0.01, 5)};
+  int shorter = 0;
+  for (const Shape& shape : shapes) {
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      Charts charts(shape);
+      charts.grow(3 + std::uint32_t(seed), seed);
+      const auto were = charts.topologies();
+      const double before = charts.border_length();
+      charts.straighten(std::uint8_t(2 * seed), 180);
+      EXPECT_EQ(charts.topologies(), were) << shape.name << ' ' << seed;
+      EXPECT_LE(charts.border_length(), before) << shape.name << ' ' << seed;
+      shorter += charts.border_length() < before;
+      for (std::uint32_t t = 0; t < charts.frames.size(); ++t) {
+        for (const Vec3f& axis : charts.frames[t]) {
+          ASSERT_NEAR(glm::dot(to_dvec(axis), to_dvec(charts.topology.normals[t])), 0, 1e-5);
+        }
+      }
+    }
+  }
+  EXPECT_GT(shorter, 24);  // of 48
+}
+
+TEST(Straighten, AConeHolds) {
+  Charts charts(sphere(48, 24));
+  charts.grow(6, 3);
+  std::vector<Vec3f> axes(6, Vec3f{0, 0, 1});
+  const auto outside = [&](std::uint32_t t) { return charts.topology.normals[t].z < 0.2f; };
+  const std::vector<std::uint32_t> were = charts.partition.chart;
+  const std::vector<std::uint8_t> rings(6, 8);
+  straighten_borders(charts.topology, {180, {axes, 0.2}}, rings, charts.partition, charts.frames);
+  std::size_t moved = 0;
+  for (std::uint32_t t = 0; t < were.size(); ++t) {
+    if (charts.partition.chart[t] == were[t]) continue;
+    ++moved;
+    EXPECT_FALSE(outside(t)) << t;
+  }
+  EXPECT_GT(moved, 10u);
+}
+
+}  // namespace
+}  // namespace atlas::test
