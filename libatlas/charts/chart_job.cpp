@@ -25,7 +25,6 @@ constexpr double kMinAltitude = 1e-7;
 constexpr std::size_t kLargeChart = 20000;
 constexpr double kAimedStretch = 1.18;
 constexpr double kBestStretch = 1.12;
-constexpr double kNoisyAim = 0.9;  // of what the bound leaves, under scan noise
 // Under scan noise most attempts fail, and those that succeed do so early (measured).
 constexpr int kMostCuts = 3;                   // rounds in all, of cutting and closing
 constexpr std::size_t kMostCrossingsLeft = 8;  // of the banks of cuts; with more it is divided
@@ -52,6 +51,7 @@ class ChartJob {
       for (int cuts = 0;; ++cuts) {
         if (try_flatten(outcome)) return outcome;
         if (hopeless() || (noisy() && only_darts() && cuts >= kMostCuts)) break;
+        keep_uvs();
         if (!cut_open_timed(cuts)) break;
         build(triangles);
       }
@@ -69,6 +69,17 @@ class ChartJob {
       for (const std::uint32_t t : triangles) chart_.density.push_back(input_.density[t]);
     }
     cone_ = normal_cone(input_.topology.normals, triangles);
+  }
+
+  // What the last attempt left, for the next one to go on from: a cut opens where it is made.
+  void keep_uvs() {
+    kept_uvs_.clear();
+    if (!noisy() || result_.uvs.empty() || result_.distortion.flips > 0 || result_.within_bound) {
+      return;
+    }
+    for (const auto& corners : chart_.corners) {
+      for (const std::uint32_t v : corners) kept_uvs_.push_back(result_.uvs[v]);
+    }
   }
 
   bool try_flatten(ChartOutcome& outcome) {
@@ -192,10 +203,7 @@ class ChartJob {
     if (best || (options.preset == ChartPreset::standard && mesh.triangles.size() < kLargeChart)) {
       param.aimed_stretch = std::min(options.max_stretch, best ? kBestStretch : kAimedStretch);
     }
-    if (noisy() && !best) {
-      param.aimed_stretch = 1 + kNoisyAim * (options.max_stretch - 1);
-      param.hasty = true;
-    }
+    param.local = noisy() && !best;
     if (best) param.iterations = kBestIterations;
     param.max_planar_stretch =
         std::min(options.max_stretch,
@@ -204,7 +212,14 @@ class ChartJob {
     double area = 0;
     for (const std::uint32_t t : chart_.triangles()) area += input_.topology.areas[t];
     param.min_altitude = kMinAltitude * std::sqrt(area);
-    if (!input_.frames.empty()) {
+    if (!kept_uvs_.empty()) {
+      start_uvs_.resize(mesh.positions.size());
+      for (std::size_t i = 0; i < kept_uvs_.size(); ++i) {
+        start_uvs_[mesh.triangles[i / 3][i % 3]] = kept_uvs_[i];
+      }
+      param.start.uvs = start_uvs_;
+      param.resume = true;
+    } else if (!input_.frames.empty()) {
       param.start.frames = {input_.frames, chart_.triangles()};
     }
     return param;
@@ -241,7 +256,9 @@ class ChartJob {
   ClosedCuts closed_cuts_;
   int closings_ = 0;
   NormalCone cone_;
-  ParamResult result_;  // of the last attempt
+  ParamResult result_;            // of the last attempt
+  std::vector<Vec2d> kept_uvs_;   // 1 a corner, or empty: to go on from
+  std::vector<Vec2d> start_uvs_;  // the same, 1 a vertex
 };
 
 }  // namespace

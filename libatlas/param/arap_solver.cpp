@@ -148,10 +148,10 @@ ArapSolver::ArapSolver(const LocalMesh& mesh, double min_altitude, ParamWorkspac
   w_.corners.build(w_.elements, mesh.positions.size());
   w_.load.resize(mesh.positions.size());
   w_.solution.resize(mesh.positions.size());
-  factorize();
 }
 
 void ArapSolver::factorize() {
+  factorized_ = true;
   build_stiffness(w_.elements, w_.corners, w_.stiffness);
   area_ = 0;
   for (const Element& e : w_.elements) area_ += e.weight * e.area();
@@ -208,6 +208,7 @@ void ArapSolver::start(std::span<const Vec2d> uvs) {
 }
 
 void ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
+  if (!factorized_) factorize();
   for (int i = 0; i < steps; ++i) {
     if (i == 0) {
       rotation_load(w_.elements, w_.rotations, w_.load);
@@ -252,8 +253,6 @@ double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
   // The mean of the 12th power of the stretch stands in for its maximum; 4, 6 and 8 reach less.
   // Damped by 1 / (power - 2) the weights settle; damped by a half they swing (measured).
   constexpr double power = 12, damping = 0.1;
-  // All later steps together, as a multiple of the last: each gains 0.3 to 0.6 of it (measured).
-  constexpr double still_to_gain = 1.5;
   const double log_goal = std::log(options.goal);
   double now = update_stretch(uvs, options.ratio), best = now, before = now;
   w_.best.assign(uvs.begin(), uvs.end());
@@ -279,10 +278,6 @@ double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
     // Steps get shorter: if as many more like the last one do not suffice, none will.
     const double gain = before - best;
     if (i >= 2 && best - gain * (options.iterations - 1 - i) > log_goal) break;
-    if (options.hasty_bound > 0 && i >= 1) {
-      const double log_bound = std::log(options.hasty_bound);
-      if (best - still_to_gain * gain > (best > log_bound ? log_bound : log_goal)) break;
-    }
   }
   std::copy(w_.best.begin(), w_.best.end(), uvs.begin());
   return std::exp(best);
@@ -291,6 +286,10 @@ double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
 Relaxer::Outcome ArapSolver::remove_flips(std::span<const std::uint32_t> also,
                                           std::span<Vec2d> uvs) {
   return w_.relaxer.remove_flips(w_.elements, w_.corners, also, uvs);
+}
+
+bool ArapSolver::lower_tail(double bound, std::span<Vec2d> uvs) {
+  return w_.relaxer.lower_tail(w_.elements, w_.corners, bound, uvs);
 }
 
 bool ArapSolver::separate_borders(std::span<Vec2d> uvs) {

@@ -12,7 +12,7 @@ namespace atlas::param {
 // Works in the workspace it is given; one at a time for each workspace.
 class ArapSolver {
  public:
-  // Builds the elements, and what else the steps need, once.
+  // Builds the elements; the matrix and its factor when a step first needs them.
   ArapSolver(const LocalMesh& mesh, double min_altitude, ParamWorkspace::Impl& workspace);
 
   // The rotations that the first global step uses. Weights of an earlier squeeze are dropped.
@@ -33,11 +33,13 @@ class ArapSolver {
     double goal;
     int iterations;
     bool ratio;
-    double hasty_bound;  // > 0: ends as ParamOptions::hasty says, for this bound
   };
   double squeeze(const Squeeze& options, std::span<Vec2d> uvs);
 
   Relaxer::Outcome remove_flips(std::span<const std::uint32_t> also, std::span<Vec2d> uvs);
+
+  // Relaxer::lower_tail.
+  bool lower_tail(double bound, std::span<Vec2d> uvs);
 
   // Draws apart what overlaps a little; all triangles positive. Returns whether uvs are injective
   // now.
@@ -61,6 +63,7 @@ class ArapSolver {
   bool analyzed_ = false;
   double area_ = 0;  // weighted
   bool weighted_ = false;
+  bool factorized_ = false;
 };
 
 }  // namespace atlas::param

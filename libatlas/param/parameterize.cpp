@@ -76,6 +76,9 @@ constexpr double kUnrolls = 1 + 1e-4, kUnrolled = 1 + 2e-4;
 constexpr double kUnrollsExactly = 1 + 2e-6, kUnrolledStretch = 1.001;
 constexpr int kUnrollingFactor = 4;
 
+// The goal of relaxing single places, as part of the bound: rounding may not cross it.
+constexpr double kWithin = 1 - 1e-4;
+
 // Books what passed since the last call on a phase.
 class PhaseClock {
  public:
@@ -96,8 +99,13 @@ using Phase = ParamWorkspace::Timing;
 // flip anew, hence the second round.
 void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolver& solver,
              PhaseClock& clock, ParamResult& r) {
-  solver.iterate(std::max(options.iterations, 1), r.uvs);
-  double aim = options.aimed_stretch > 0 ? options.aimed_stretch : options.max_stretch;
+  if (options.resume) {
+    std::copy(options.start.uvs.begin(), options.start.uvs.end(), r.uvs.begin());
+  } else {
+    solver.iterate(std::max(options.iterations, 1), r.uvs);
+  }
+  double aim =
+      options.aimed_stretch > 0 && !options.local ? options.aimed_stretch : options.max_stretch;
   for (int round = 0; round < 2; ++round) {
     clock.book(&Phase::solve);
     if (solver.measure(r.uvs).flips > 0) {
@@ -106,15 +114,18 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
     clock.book(&Phase::flips);
     if (options.squeeze_iterations <= 0 || round > 0) break;
     Distortion now = measure_distortion(mesh, r.uvs);
-    if (now.stretch_l2 < kUnrolls && now.stretch_999 > kUnrolled && now.stretch_999 <= aim) {
+    if (!options.resume && now.stretch_l2 < kUnrolls && now.stretch_999 > kUnrolled &&
+        now.stretch_999 <= aim) {
       solver.iterate(kUnrollingFactor * std::max(options.iterations, 1), r.uvs);
       now = measure_distortion(mesh, r.uvs);
       if (now.stretch_l2 < kUnrollsExactly) aim = std::min(aim, kUnrolledStretch);
     }
     if (now.stretch_999 <= aim) break;
-    solver.squeeze({aim, options.squeeze_iterations, options.squeeze_ratio,
-                    options.hasty ? options.max_stretch : 0},
-                   r.uvs);
+    if (options.local) {
+      if (now.flips == 0) solver.lower_tail(kWithin * options.max_stretch, r.uvs);
+      break;
+    }
+    solver.squeeze({aim, options.squeeze_iterations, options.squeeze_ratio}, r.uvs);
   }
   clock.book(&Phase::solve);
   finish(mesh, options, r);
@@ -136,6 +147,11 @@ ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
   PhaseClock clock(mesh.triangles.size(), workspace);
   ParamResult r;
   r.uvs.resize(mesh.positions.size());
+  if (options.resume) {
+    param::ArapSolver solver(mesh, options.min_altitude, workspace.impl());
+    descend(mesh, options, solver, clock, r);
+    return r;
+  }
   const bool given_axis = options.axis.x != 0 || options.axis.y != 0 || options.axis.z != 0;
   const Vec3d axis = given_axis ? options.axis : mean_normal(mesh);
   project_planar(mesh, axis, r.uvs);

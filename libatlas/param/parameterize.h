@@ -34,9 +34,12 @@ struct ParamOptions {
   // The scale at which squeezing measures: the area-preserving one, as in the bound, or whichever
   // suits best, so that the ratio of the largest to the smallest singular value falls.
   bool squeeze_ratio = false;
-  // Squeezing ends as soon as its steps, each shorter than the one before, seem to lead to nowhere
-  // within max_stretch, or once within it, not to the aim. For surfaces where most attempts fail.
-  bool hasty = false;
+  // Never squeezes: within max_stretch is good enough, and what is beyond lies in small places,
+  // which alone are relaxed. For rough surfaces.
+  bool local = false;
+  // start.uvs, all their triangles positive, are kept but where the stretch exceeds the bound: for
+  // a flattening that failed, after a cut.
+  bool resume = false;
   // Triangles are kept at least this thick (uv units) where possible, so that rounding of what is
   // written leaves them positive.
   double min_altitude = 0;

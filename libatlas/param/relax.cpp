@@ -5,41 +5,12 @@
 #include <limits>
 
 namespace atlas::param {
+
 namespace {
 
-// Partial derivatives of a triangle's energy by f and d.
-struct Derivatives {
-  double f, d, dd, fd;
-};
-
-double untangling(double f, double d, double epsilon) {
-  const double chi = 0.5 * (d + std::sqrt(d * d + epsilon * epsilon));
-  return (f + 1 + d * d) / chi;
-}
-
-Derivatives untangling_derivatives(double f, double d, double epsilon) {
-  const double root = std::sqrt(d * d + epsilon * epsilon);
-  // For negative d the sum cancels; this form of it does not.
-  const double chi = d > 0 ? 0.5 * (d + root) : 0.5 * epsilon * epsilon / (root - d);
-  const double chi1 = chi / root, chi2 = 0.5 * epsilon * epsilon / (root * root * root);
-  const double n = f + 1 + d * d, inverse = 1 / chi, squared = inverse * inverse;
-  Derivatives out;
-  out.f = inverse;
-  out.fd = -chi1 * squared;
-  out.d = 2 * d * inverse + n * out.fd;
-  out.dd = 2 * inverse - 4 * d * chi1 * squared +
-           n * (2 * chi1 * chi1 * squared * inverse - chi2 * squared);
-  return out;
-}
-
-double symmetric_dirichlet(double f, double d) {
-  return d > 0 ? f * (1 + 1 / (d * d)) : std::numeric_limits<double>::infinity();
-}
-
-Derivatives symmetric_dirichlet_derivatives(double f, double d) {
-  const double i = 1 / d, i2 = i * i;
-  return {1 + i2, -2 * f * i2 * i, 6 * f * i2 * i2, -2 * i2 * i};
-}
+// A spared triangle's symmetric Dirichlet energy, in this unit, gives way to what exceeds a bound
+// of 1.25 by far, but does not let the triangle vanish.
+constexpr double spared_weight = 1e5;
 
 // A spring's stiffness. A vertex among equilateral triangles answers the symmetric Dirichlet energy
 // with about 28 near an isometry, so targets win.
@@ -105,8 +76,37 @@ void Relaxer::load_vertex(std::uint32_t v) {
     l.n = {g.x * j.y.y - g.y * j.x.y, g.y * j.x.x - g.x * j.y.x};
     // A share of the mean area lets slivers have a say.
     l.weight = e.area() + 0.1 * mean_area_;
+    l.energy = energy_;
+    if (energy_ == Energy::high_power && spared_[t]) {
+      l.energy = Energy::symmetric_dirichlet;
+      l.weight *= spared_weight;
+    }
     local_.push_back(l);
   }
+}
+
+double Relaxer::triangle_energy(Energy energy, double f, double d) const {
+  switch (energy) {
+    case Energy::untangling:
+      return untangling(f, d, epsilon_);
+    case Energy::symmetric_dirichlet:
+      return symmetric_dirichlet(f, d);
+    case Energy::high_power:
+      return high_power(f, d);
+  }
+  return 0;
+}
+
+EnergyDerivatives Relaxer::triangle_derivatives(const Local& local) const {
+  switch (local.energy) {
+    case Energy::untangling:
+      return untangling_derivatives(local.f, local.d, epsilon_);
+    case Energy::symmetric_dirichlet:
+      return symmetric_dirichlet_derivatives(local.f, local.d);
+    case Energy::high_power:
+      return high_power_derivatives(local.f, local.d);
+  }
+  return {};
 }
 
 double Relaxer::energy(glm::dvec2 m) const {
@@ -114,7 +114,7 @@ double Relaxer::energy(glm::dvec2 m) const {
   const double squared = glm::dot(m, m);
   for (const Local& l : local_) {
     const double f = l.f + 2 * glm::dot(l.a, m) + l.q * squared, d = l.d + glm::dot(l.n, m);
-    sum += l.weight * (epsilon_ > 0 ? untangling(f, d, epsilon_) : symmetric_dirichlet(f, d));
+    sum += l.weight * triangle_energy(l.energy, f, d);
   }
   if (spring_) sum += spring_stiffness * glm::dot(offset_ + m, offset_ + m);
   return sum;
@@ -124,14 +124,14 @@ double Relaxer::energy(glm::dvec2 m) const {
 glm::dvec2 Relaxer::newton_step() const {
   Newton s;
   for (const Local& l : local_) {
-    const Derivatives p = epsilon_ > 0 ? untangling_derivatives(l.f, l.d, epsilon_)
-                                       : symmetric_dirichlet_derivatives(l.f, l.d);
+    const EnergyDerivatives p = triangle_derivatives(l);
     const glm::dvec2 df = 2.0 * l.a;
     s.gradient += l.weight * (p.f * df + p.d * l.n);
     const double iso = 2 * p.f * l.q;
-    s.xx += l.weight * (iso + p.dd * l.n.x * l.n.x + 2 * p.fd * df.x * l.n.x);
-    s.yy += l.weight * (iso + p.dd * l.n.y * l.n.y + 2 * p.fd * df.y * l.n.y);
-    s.xy += l.weight * (p.dd * l.n.x * l.n.y + p.fd * (df.x * l.n.y + df.y * l.n.x));
+    s.xx += l.weight * (iso + p.dd * l.n.x * l.n.x + 2 * p.fd * df.x * l.n.x + p.ff * df.x * df.x);
+    s.yy += l.weight * (iso + p.dd * l.n.y * l.n.y + 2 * p.fd * df.y * l.n.y + p.ff * df.y * df.y);
+    s.xy += l.weight *
+            (p.dd * l.n.x * l.n.y + p.fd * (df.x * l.n.y + df.y * l.n.x) + p.ff * df.x * df.y);
   }
   if (spring_) {
     s.gradient += 2 * spring_stiffness * offset_;
@@ -159,7 +159,7 @@ void Relaxer::sweep() {
     load_vertex(v);
     const glm::dvec2 step = newton_step();
     double length = 1;
-    if (epsilon_ == 0) {
+    if (energy_ != Energy::untangling) {
       for (const Local& l : local_) {
         const double rate = glm::dot(l.n, step);
         if (rate < 0) length = std::min(length, -0.8 * l.d / rate);
@@ -186,6 +186,7 @@ bool Relaxer::untangle(int sweeps) {
   // What came right at last had become this much better by half-time (measured).
   constexpr double half_time_gain = 0.05;
   double start = 0;
+  energy_ = Energy::untangling;
   for (int i = 0; i < sweeps; ++i) {
     const double least = least_determinant();
     if (least >= clearly) return true;
@@ -221,9 +222,76 @@ void Relaxer::pull(std::span<const Element> elements, const CornerLists& corners
     seeds.push_back(corners.corner[corners.first[v]] / 3);
   }
   gather(seeds, pull.rings);
-  epsilon_ = 0;
+  energy_ = Energy::symmetric_dirichlet;
   for (int i = 0; i < pull.sweeps; ++i) sweep();
   spring_of_.clear();
+}
+
+// Fills `out` with the triangles stretched beyond `from`; returns what 99.9 % of the area stays
+// within.
+double Relaxer::find_tail(double from, std::vector<std::uint32_t>& out) {
+  double area = 0, uv_area = 0;
+  stretch_.resize(elements_.size());
+  ranked_.resize(elements_.size());
+  for (std::uint32_t t = 0; t < elements_.size(); ++t) {
+    const SingularValues s = singular_values(jacobian(t));
+    const double own = elements_[t].area();
+    area += own;
+    uv_area += own * s.large * s.small;
+    stretch_[t] = s.large;
+    ranked_[t] = {s.small, own};
+  }
+  const double scale = uv_area > 0 ? std::sqrt(area / uv_area) : 1;
+  out.clear();
+  for (std::uint32_t t = 0; t < elements_.size(); ++t) {
+    double& value = ranked_[t].value;
+    value = stretch_[t] = std::max(stretch_[t] * scale, 1 / (value * scale));
+    if (value > from) out.push_back(t);
+  }
+  return upper_percentile(ranked_, 0.001);
+}
+
+void Relaxer::spare_worst(double bound, std::vector<std::uint32_t> tail) {
+  constexpr double share = 0.0009;  // of the area; the rest of 0.1 % is for what stays just beyond
+  spared_.assign(elements_.size(), 0);
+  double budget = 0;
+  for (const Element& e : elements_) budget += share * e.area();
+  std::sort(tail.begin(), tail.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return stretch_[a] != stretch_[b] ? stretch_[a] > stretch_[b] : a < b;
+  });
+  for (const std::uint32_t t : tail) {
+    if (stretch_[t] <= bound) break;
+    if (elements_[t].area() > budget) continue;
+    budget -= elements_[t].area();
+    spared_[t] = 1;
+  }
+}
+
+bool Relaxer::lower_tail(std::span<const Element> elements, const CornerLists& corners,
+                         double bound, std::span<Vec2d> uvs) {
+  constexpr int rounds = 12, rings = 3, sweeps = 4, patience = 2;
+  // What is nearly as bad moves as well. A longer tail is no matter of a few places.
+  constexpr double near = 0.97, longest_share = 0.2, least_gain = 1e-3;
+  begin(elements, corners, uvs);
+  std::vector<std::uint32_t> tail;
+  double now = find_tail(near * bound, tail), best = now;
+  best_.assign(uvs.begin(), uvs.end());
+  const auto longest = static_cast<std::size_t>(longest_share * double(elements.size()));
+  int idle = 0;
+  for (int round = 0; round < rounds && now > bound && idle < patience; ++round) {
+    if (tail.size() > longest) break;
+    spare_worst(bound, tail);
+    gather(tail, rings);
+    energy_ = Energy::high_power;
+    for (int i = 0; i < sweeps; ++i) sweep();
+    now = find_tail(near * bound, tail);
+    idle = now < best - least_gain ? 0 : idle + 1;
+    if (now >= best) continue;
+    best = now;
+    best_.assign(uvs.begin(), uvs.end());
+  }
+  std::copy(best_.begin(), best_.end(), uvs.begin());
+  return best <= bound;
 }
 
 Relaxer::Outcome Relaxer::remove_flips(std::span<const Element> elements,
@@ -250,7 +318,7 @@ Relaxer::Outcome Relaxer::remove_flips(std::span<const Element> elements,
     if (untangle(untangling_sweeps)) {
       // Spread what the few triangles took over more of them.
       gather(seeds, rings + 3);
-      epsilon_ = 0;
+      energy_ = Energy::symmetric_dirichlet;
       for (int i = 0; i < smoothing_sweeps; ++i) sweep();
     }
     seeds.clear();

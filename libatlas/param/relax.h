@@ -1,14 +1,17 @@
 // Internal: vertex-by-vertex descent that turns flipped triangles right and keeps the others so.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "libatlas/param/percentile.h"
 #include "libatlas/param/stiffness.h"
+#include "libatlas/param/vertex_energy.h"
 
 namespace atlas::param {
 
-// Newton steps on one vertex at a time over small neighbourhoods, two energies of each triangle's
+// Newton steps on one vertex at a time over small neighbourhoods, three energies of each triangle's
 // map J with d = det J and f = |J|²:
 // - untangling, (f + 1 + d²) / chi(d, e) with chi = (d + sqrt(d² + e²)) / 2, finite for flipped
 //   triangles; e follows the worst d down (Garanzha, Kaporin, Kudryavtseva, Protais, Ray and
@@ -16,7 +19,9 @@ namespace atlas::param {
 // - once all are positive, the symmetric Dirichlet energy f (1 + 1 / d²), a barrier against new
 // flips,
 //   each step limited by the roots of the triangles' determinants (Smith and Schaefer 2015,
-//   "Bijective parameterization with free boundaries").
+//   "Bijective parameterization with free boundaries");
+// - a high power mean of the singular values and their inverses, which the worst triangles rule;
+//   the same barrier.
 class Relaxer {
  public:
   struct Outcome {
@@ -45,9 +50,18 @@ class Relaxer {
   void pull(std::span<const Element> elements, const CornerLists& corners, const Pull& pull,
             std::span<Vec2d> uvs);
 
+  // Lowers max(s1, 1/s2) of the uv-to-surface map's singular values, at the area-preserving scale,
+  // where it exceeds `bound`, until 99.9 % of the area stays within it; of the rest, most of 0.1 %
+  // is spared. Only what lies near those triangles moves. All triangles must be positive and stay
+  // so. uvs become the best state seen; returns whether it is within the bound.
+  bool lower_tail(std::span<const Element> elements, const CornerLists& corners, double bound,
+                  std::span<Vec2d> uvs);
+
  private:
+  enum class Energy : std::uint8_t { untangling, symmetric_dirichlet, high_power };
   struct Local {  // what a triangle's energy depends on while one vertex moves by m
     double f, d, q, weight;
+    Energy energy;
     glm::dvec2 a, n;  // f' = f + 2 a.m + q m.m, d' = d + n.m
   };
   struct Newton {
@@ -59,11 +73,15 @@ class Relaxer {
   void gather(std::span<const std::uint32_t> seeds, int rings);
   void load_vertex(std::uint32_t v);
   double energy(glm::dvec2 m) const;
+  double triangle_energy(Energy energy, double f, double d) const;
+  EnergyDerivatives triangle_derivatives(const Local& local) const;
   glm::dvec2 newton_step() const;
   void sweep();
   double least_determinant() const;
   Jacobian jacobian(std::uint32_t t) const;
   bool untangle(int sweeps);
+  double find_tail(double from, std::vector<std::uint32_t>& out);
+  void spare_worst(double bound, std::vector<std::uint32_t> tail);
 
   std::span<const Element> elements_;
   const CornerLists* corners_ = nullptr;
@@ -77,7 +95,12 @@ class Relaxer {
   const Spring* spring_ = nullptr;  // of the vertex that is moving
   glm::dvec2 offset_{0};            // from the spring's target to where that vertex is
   double mean_area_ = 0;
-  double epsilon_ = 0;  // 0: symmetric Dirichlet
+  double epsilon_ = 0;  // of untangling
+  Energy energy_ = Energy::symmetric_dirichlet;
+  std::vector<double> stretch_;  // 1 a triangle, of find_tail()
+  std::vector<WeightedValue> ranked_;
+  std::vector<std::uint8_t> spared_;  // 1 a triangle, or empty
+  std::vector<Vec2d> best_;
 };
 
 }  // namespace atlas::param

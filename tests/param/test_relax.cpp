@@ -1,7 +1,11 @@
 // The barrier relaxation on its own.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "libatlas/core/predicates.h"
+#include "libatlas/param/distortion.h"
 #include "libatlas/param/relax.h"
 #include "tests/param/shapes.h"
 
@@ -78,6 +82,73 @@ TEST(Relax, AFoldedChartIsGivenUp) {
       EXPECT_EQ(uv[y * (n + 1) + x], start[y * (n + 1) + x]) << x << " " << y;
     }
   }
+}
+
+// From singular values directly, and by differences.
+TEST(Relax, TheHighPowerAndItsDerivativesAreRight) {
+  const double power = 2 * std::exp2(param::doublings);
+  for (const auto& [a, b] : {std::pair{1.25, 0.8}, {1.1, 1.05}, {0.9, 0.7}, {1.4, 1.0}}) {
+    const double f = a * a + b * b, d = a * b;
+    const double wanted =
+        std::pow(a, power) + std::pow(b, power) + std::pow(a, -power) + std::pow(b, -power);
+    EXPECT_NEAR(param::high_power(f, d) / wanted, 1, 1e-9);
+    const param::EnergyDerivatives p = param::high_power_derivatives(f, d);
+    const double e = 1e-6;
+    const auto by = [&](auto&& g, double df, double dd) {
+      return (g(f + df, d + dd) - g(f - df, d - dd)) / (2 * e);
+    };
+    const auto near = [&](double value, double difference) {
+      EXPECT_NEAR(value, difference, 1e-5 * std::abs(difference)) << a << " " << b;
+    };
+    near(p.f, by(param::high_power, e, 0));
+    near(p.d, by(param::high_power, 0, e));
+    const auto slope_f = [](double x, double y) { return param::high_power_derivatives(x, y).f; };
+    const auto slope_d = [](double x, double y) { return param::high_power_derivatives(x, y).d; };
+    near(p.ff, by(slope_f, e, 0));
+    near(p.fd, by(slope_f, 0, e));
+    near(p.dd, by(slope_d, 0, e));
+  }
+}
+
+// Spikes of scan noise far from each other: what is not near them stays where it is.
+TEST(Relax, TheTailIsLoweredWhereItIs) {
+  const std::uint32_t n = 60;
+  Disc d = plate(n);
+  const std::vector<Vec2d> start = flat(d);
+  const auto spike = [](std::uint32_t i) { return i % 20 == 10; };
+  for (std::uint32_t y = 0; y <= n; ++y) {
+    for (std::uint32_t x = 0; x <= n; ++x) {
+      if (spike(x) && spike(y)) d.positions[y * (n + 1) + x].z = 0.85 / n;
+    }
+  }
+  std::vector<Vec2d> uv = start;
+  ASSERT_GT(measure_distortion(d.view(), uv).stretch_999, 1.25);
+  const System s = system_of(d);
+  param::Relaxer relaxer;
+  EXPECT_TRUE(relaxer.lower_tail(s.elements, s.corners, 1.25, uv));
+  EXPECT_LE(measure_distortion(d.view(), uv).stretch_999, 1.25);
+  EXPECT_EQ(flips(d, uv), 0u);
+  std::size_t moved = 0;
+  for (std::uint32_t y = 0; y <= n; ++y) {
+    for (std::uint32_t x = 0; x <= n; ++x) {
+      const auto near = [&](std::uint32_t i) { return i % 20 >= 3 && i % 20 <= 17; };
+      const bool same = uv[y * (n + 1) + x] == start[y * (n + 1) + x];
+      moved += !same;
+      EXPECT_TRUE(same || (near(x) && near(y))) << x << " " << y;
+    }
+  }
+  EXPECT_GT(moved, 9u);
+}
+
+TEST(Relax, ATailThatIsTheWholeChartIsLeftAlone) {
+  const Disc d = testing::make_cap(1.3, 20);
+  std::vector<Vec2d> uv;
+  for (const Vec3d& p : d.positions) uv.push_back({p.x, p.y});
+  const std::vector<Vec2d> start = uv;
+  const System s = system_of(d);
+  param::Relaxer relaxer;
+  EXPECT_FALSE(relaxer.lower_tail(s.elements, s.corners, 1.05, uv));
+  EXPECT_TRUE(std::equal(uv.begin(), uv.end(), start.begin()));
 }
 
 }  // namespace
