@@ -14,7 +14,7 @@ namespace {
 
 TEST(Work, MeetsItsSizeAndIsValid) {
   for (const char* kind :
-       {"sphere", "scan", "torus", "terrain", "assembly", "genus", "soup", "needles"}) {
+       {"sphere", "scan", "torus", "terrain", "assembly", "fasteners", "genus", "soup", "needles"}) {
     const Result<LoadedScene> made = make_work(std::string(kind) + ":20000", {});
     ASSERT_TRUE(made.ok()) << made.status().message();
     const Scene& scene = made->scene;
