@@ -8,6 +8,7 @@
 #include "libatlas/charts/given_uvs.h"
 #include "libatlas/charts/limbs.h"
 #include "libatlas/charts/parts.h"
+#include "libatlas/charts/slits.h"
 #include "libatlas/charts/topology.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
@@ -66,6 +67,7 @@ std::vector<FlatChart> cut_charts(const Work& work, const Context& context, Char
   Stopwatch watch(cpu_seconds);
   Frames none;
   cut_limbs({work.topology, work.mesh.density, work.options, none}, cut.charts, context);
+  close_slits(work.topology, cut.charts, context);
   set.timing.limbs_cpu = watch.lap();
   return std::move(cut.charts);
 }
