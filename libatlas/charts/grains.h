@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "libatlas/charts/cells.h"
 #include "libatlas/charts/topology.h"
 #include "libatlas/core/glm_bridge.h"
 
@@ -44,5 +45,12 @@ struct PieceList {
     first.pop_back();
   }
 };
+
+// How many cells a piece gets.
+std::uint32_t cell_budget(std::size_t triangles, const CellOptions& options);
+
+// Breadth-first patches, about twelve a cell, of triangles that lean less than 45 degrees to their
+// first.
+Grains grow_grains(const Topology& topology, const CellOptions& options);
 
 }  // namespace atlas
