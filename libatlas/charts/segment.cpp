@@ -191,7 +191,9 @@ class Segmenter {
   // Seams are straightened as far as cells are uneven: half a cell's width, to each side.
   void add_rings(const Cells& cells, const MergeResult& merged) {
     std::vector<std::uint32_t> triangles(cells.count, 0), cell_count(cells.count, 0);
-    for (const std::uint32_t chart : merged.chart_of_cell) ++cell_count[chart];
+    for (const std::uint32_t chart : merged.chart_of_cell) {
+      if (chart != kNoIndex) ++cell_count[chart];  // a cell may have lost all its triangles
+    }
     for (const std::uint32_t k : cells.of_triangle) {
       if (k != kNoIndex) ++triangles[merged.chart_of_cell[k]];
     }
