@@ -35,9 +35,26 @@ class Unroller {
         }
       }
     }
+    keep_whole_pieces();
   }
 
  private:
+  // In a piece that is curved elsewhere, what unrolls would join untried into charts that the rest
+  // then hangs on; they were cut again, at three times the cost (a cabin of a million triangles).
+  void keep_whole_pieces() {
+    const auto piece = [&](const CoarseCell& cell) {
+      return topology_.component[mesh_.slot_half_edge[cell.first_slot] / 3];
+    };
+    std::vector<std::uint8_t> curved(topology_.component_count, 0);
+    for (std::uint32_t k = 0; k < mesh_.cells.size(); ++k) {
+      const CoarseCell& cell = mesh_.cells[k];
+      if (cell.slot_count > 0 && !cell.unrolls && !flat(k)) curved[piece(cell)] = 1;
+    }
+    for (CoarseCell& cell : mesh_.cells) {
+      if (cell.unrolls && curved[piece(cell)]) cell.unrolls = false;
+    }
+  }
+
   glm::dvec3 point(std::uint32_t h) const {
     return to_dvec(topology_.points[topology_.corner_vertex[h]]);
   }

@@ -13,8 +13,8 @@ namespace atlas::bench {
 namespace {
 
 TEST(Work, MeetsItsSizeAndIsValid) {
-  for (const char* kind :
-       {"sphere", "scan", "torus", "terrain", "assembly", "fasteners", "genus", "soup", "needles"}) {
+  for (const char* kind : {"sphere", "scan", "torus", "terrain", "assembly", "fasteners", "genus",
+                           "soup", "needles"}) {
     const Result<LoadedScene> made = make_work(std::string(kind) + ":20000", {});
     ASSERT_TRUE(made.ok()) << made.status().message();
     const Scene& scene = made->scene;
