@@ -8,6 +8,8 @@
 namespace atlas {
 namespace {
 
+constexpr double kCreaseWeight = 0.25;
+
 bool linked(const Topology& topology, const Partition& partition, std::uint32_t h) {
   const std::uint32_t o = topology.opposite[h];
   return o != kNoIndex && partition.chart[o / 3] == partition.chart[h / 3] && !partition.seam(h);
@@ -49,21 +51,6 @@ class Smoother {
     return false;
   }
 
-  double weight(std::uint32_t h) const {
-    const std::uint32_t o = topology_.opposite[h];
-    const double length =
-        glm::distance(to_dvec(topology_.points[topology_.corner_vertex[h]]),
-                      to_dvec(topology_.points[topology_.corner_vertex[next_half_edge(h)]]));
-    const double cosine =
-        glm::dot(to_dvec(topology_.calm_normal(h / 3)), to_dvec(topology_.calm_normal(o / 3)));
-    return cosine < crease_cosine_ ? kCreaseWeight * length : length;
-  }
-
-  bool leaves_cone(std::uint32_t t, std::uint32_t chart) const {
-    return !cone_.axes.empty() &&
-           glm::dot(to_dvec(topology_.normals[t]), to_dvec(cone_.axes[chart])) < cone_.least_cosine;
-  }
-
   void improve(std::uint32_t t) {
     const std::uint32_t own = partition_.chart[t];
     double kept = 0, weights[3] = {0, 0, 0};
@@ -72,13 +59,15 @@ class Smoother {
       const std::uint32_t h = 3 * t + c, o = topology_.opposite[h];
       labels[c] = o == kNoIndex || partition_.seam(h) ? kNoIndex : partition_.chart[o / 3];
       if (labels[c] == kNoIndex) continue;
-      weights[c] = weight(h);
+      weights[c] = border_weight(topology_, h, crease_cosine_);
       if (labels[c] == own) kept += weights[c];
     }
     int best = -1;
     double best_gain = 1e-9 * (weights[0] + weights[1] + weights[2]);
     for (int c = 0; c < 3; ++c) {
-      if (labels[c] == kNoIndex || labels[c] == own || leaves_cone(t, labels[c])) continue;
+      if (labels[c] == kNoIndex || labels[c] == own ||
+          cone_.excludes(topology_.normals[t], labels[c]))
+        continue;
       double gained = 0;
       for (int d = 0; d < 3; ++d) gained += labels[d] == labels[c] ? weights[d] : 0;
       if (gained - kept > best_gain) {
@@ -110,6 +99,18 @@ class Smoother {
 };
 
 }  // namespace
+
+double border_weight(const Topology& topology, std::uint32_t h, double crease_cosine) {
+  const std::uint32_t o = topology.opposite[h];
+  const double length = edge_length(topology, h);
+  const double cosine =
+      glm::dot(to_dvec(topology.calm_normal(h / 3)), to_dvec(topology.calm_normal(o / 3)));
+  return cosine < crease_cosine ? kCreaseWeight * length : length;
+}
+
+bool ConeLimit::excludes(const Vec3f& normal, std::uint32_t chart) const {
+  return !axes.empty() && glm::dot(to_dvec(normal), to_dvec(axes[chart])) < least_cosine;
+}
 
 std::array<Vec3f, 2> carry_frame(const Topology& topology, const std::array<Vec3f, 2>& frame,
                                  std::uint32_t from, std::uint32_t to) {

@@ -19,16 +19,19 @@ void move_triangle(const Topology& topology, std::uint32_t h, Partition& partiti
 // Whether the chart of t stays in one piece without it (decided around t's corners).
 bool removable(const Topology& topology, const Partition& partition, std::uint32_t t);
 
-inline constexpr double kCreaseWeight = 0.25;  // of a crease's length in a border
+// What a linked edge costs in a border: its length, or a quarter of it where the fold is sharper.
+double border_weight(const Topology& topology, std::uint32_t half_edge, double crease_cosine);
 
 // A limit on charts' normals; empty axes: none.
 struct ConeLimit {
   std::span<const Vec3f> axes;  // by Partition::chart
   double least_cosine = -1;
+
+  bool excludes(const Vec3f& normal, std::uint32_t chart) const;
 };
 
 struct BorderRules {
-  double crease_degrees = 40;  // sharper edges count kCreaseWeight of their length
+  double crease_degrees = 40;  // sharper edges count a quarter of their length
   ConeLimit cone;
 };
 

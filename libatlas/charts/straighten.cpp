@@ -139,21 +139,6 @@ class Straightener {
     return end;
   }
 
-  double length(std::uint32_t h) const { return edge_length(topology_, h); }
-
-  double weight(std::uint32_t h) const {
-    const std::uint32_t o = topology_.opposite[h];
-    const double cosine =
-        glm::dot(to_dvec(topology_.calm_normal(h / 3)), to_dvec(topology_.calm_normal(o / 3)));
-    return cosine < crease_cosine_ ? kCreaseWeight * length(h) : length(h);
-  }
-
-  bool leaves_cone(std::uint32_t t, std::uint32_t chart) const {
-    const ConeLimit& cone = rules_.cone;
-    return !cone.axes.empty() &&
-           glm::dot(to_dvec(topology_.normals[t]), to_dvec(cone.axes[chart])) < cone.least_cosine;
-  }
-
   static std::int32_t steps(double length) {
     return static_cast<std::int32_t>(std::lround(std::min(length, kLongest)));
   }
@@ -161,7 +146,7 @@ class Straightener {
   // False if one of the charts lies wholly in the band: the shortest border would be none.
   bool build_cut() {
     double mean = 0;
-    for (std::uint32_t i = first_; i < last_; ++i) mean += length(3 * band_[i]);
+    for (std::uint32_t i = first_; i < last_; ++i) mean += edge_length(topology_, 3 * band_[i]);
     const double unit = mean / (last_ - first_) / kSteps;
     if (!(unit > 0)) return false;
     cut_.reset(last_ - first_);
@@ -171,7 +156,8 @@ class Straightener {
       for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) add_edge(h, unit, anchored);
       const double size = std::sqrt(static_cast<double>(topology_.areas[t]));
       cut_.tie(i - first_, own, steps(kStiffness * size / unit));
-      if (leaves_cone(t, charts_[1 - own])) cut_.tie(i - first_, own, MinCut::kForever);
+      if (rules_.cone.excludes(topology_.normals[t], charts_[1 - own]))
+        cut_.tie(i - first_, own, MinCut::kForever);
     }
     return anchored[0] && anchored[1];
   }
@@ -179,7 +165,7 @@ class Straightener {
   void add_edge(std::uint32_t h, double unit, bool (&anchored)[2]) {
     const std::uint32_t o = topology_.opposite[h], i = local_[h / 3] - first_;
     if (o == kNoIndex || partition_.seam(h)) return;
-    const std::int32_t w = steps(weight(h) / unit);
+    const std::int32_t w = steps(border_weight(topology_, h, crease_cosine_) / unit);
     if (in_band(o / 3)) {
       cut_.set_edge({i, h % 3}, {local_[o / 3] - first_, o % 3}, w);
     } else if (const std::uint32_t there = side(o / 3); there < 2) {
