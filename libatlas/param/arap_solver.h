@@ -19,6 +19,10 @@ class ArapSolver {
   void start(const IsometricStart& start);
   void start(std::span<const Vec2d> uvs);
 
+  // Joins flat parts: uvs become those whose gradients come nearest to the given ones', 3 a
+  // triangle, which need not agree where triangles meet. The next step's rotations are theirs.
+  void join(std::span<const Vec2d> corner_uvs, std::span<Vec2d> uvs);
+
   // Global steps, with local steps between them, from the current rotations.
   void iterate(int steps, std::span<Vec2d> uvs);
 
@@ -54,14 +58,19 @@ class ArapSolver {
 
   void factorize();
   void factorize_directly();
-  void solve(double inexactness);
+  // The energy of the error that multigrid may leave: the larger of a part of the area and a part
+  // of what it finds.
+  struct Inexactness {
+    double area_share, found_share;
+  };
+  void solve(const Inexactness& inexactness);
   double update_stretch(std::span<const Vec2d> uvs, bool ratio);
 
   const LocalMesh& mesh_;
   ParamWorkspace::Impl& w_;
   Method method_ = Method::envelope;
-  bool analyzed_ = false;
-  double area_ = 0;  // weighted
+  bool analyzed_ = false, ordered_ = false;  // by the direct and the envelope solver
+  double area_ = 0;                          // weighted
   bool weighted_ = false;
   bool factorized_ = false;
 };

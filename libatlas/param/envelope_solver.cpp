@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "libatlas/param/linear_solver.h"
@@ -8,18 +9,39 @@ namespace {
 
 constexpr std::uint32_t unseen = 0xffffffff;
 
-// Four running sums, so that the processor need not wait for each addition; the order is fixed.
-double dot(const double* a, const double* b, std::size_t n) {
-  double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
-  std::size_t k = 0;
-  for (; k + 4 <= n; k += 4) {
-    s0 += a[k] * b[k];
-    s1 += a[k + 1] * b[k + 1];
-    s2 += a[k + 2] * b[k + 2];
-    s3 += a[k + 3] * b[k + 3];
+// Blocks of 4 x 4, column after column: what one processor's registers hold.
+constexpr std::size_t side = 4, block_size = side * side;
+
+// Two neighbouring rows of a column. Vectors of this size are elementary to every 64-bit processor,
+// and their arithmetic is that of their elements.
+using Pair = double __attribute__((vector_size(16), may_alias));
+struct Block {
+  Pair part[block_size / 2];
+};
+
+Block load(const double* from) {
+  Block out;
+  for (std::size_t i = 0; i < block_size / 2; ++i)
+    out.part[i] = reinterpret_cast<const Pair*>(from)[i];
+  return out;
+}
+
+void store(const Block& block, double* to) {
+  for (std::size_t i = 0; i < block_size / 2; ++i) reinterpret_cast<Pair*>(to)[i] = block.part[i];
+}
+
+// sum -= a b'
+inline void subtract_product(const double* a, const double* b, Block& sum) {
+#pragma GCC unroll 1  // else the sum does not stay in registers
+  for (std::size_t k = 0; k < side; ++k) {
+    const Pair low = reinterpret_cast<const Pair*>(a + side * k)[0];
+    const Pair high = reinterpret_cast<const Pair*>(a + side * k)[1];
+    for (std::size_t j = 0; j < side; ++j) {
+      const double factor = b[side * k + j];
+      sum.part[2 * j] -= low * factor;
+      sum.part[2 * j + 1] -= high * factor;
+    }
   }
-  for (; k < n; ++k) s0 += a[k] * b[k];
-  return (s0 + s1) + (s2 + s3);
 }
 
 }  // namespace
@@ -62,68 +84,121 @@ void EnvelopeSolver::order(const SymmetricMatrix& matrix) {
   for (std::uint32_t i = 0; i < n; ++i) position_[order_[i]] = i;
 }
 
-void EnvelopeSolver::factorize(const SymmetricMatrix& matrix) {
-  const std::uint32_t n = static_cast<std::uint32_t>(matrix.rows());
-  order(matrix);
-  first_.resize(n);
-  row_.resize(n + 1);
+void EnvelopeSolver::find_envelope(const SymmetricMatrix& matrix) {
+  const std::size_t n = matrix.rows(), blocks = (n + side - 1) / side;
+  first_.resize(blocks);
+  row_.resize(blocks + 1);
   row_[0] = 0;
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t v = order_[i];
-    first_[i] = i;
-    for (std::uint32_t k = matrix.first[v]; k < matrix.first[v + 1]; ++k) {
-      first_[i] = std::min(first_[i], position_[matrix.column[k]]);
+  for (std::size_t b = 0; b < blocks; ++b) {
+    std::uint32_t first = static_cast<std::uint32_t>(side * b);
+    for (std::size_t i = side * b; i < std::min(side * (b + 1), n); ++i) {
+      const std::uint32_t v = order_[i];
+      for (std::uint32_t k = matrix.first[v]; k < matrix.first[v + 1]; ++k) {
+        first = std::min(first, position_[matrix.column[k]]);
+      }
     }
-    row_[i + 1] = row_[i] + (i - first_[i]);
+    first_[b] = first / side;
+    row_[b + 1] = row_[b] + (b - first_[b] + 1);
   }
-  factor_.assign(row_[n], 0);
-  inverse_pivot_.resize(n);
-  for (std::uint32_t i = 0; i < n; ++i) {
+}
+
+// Copies the matrix into the envelope; rows beyond the last are 0.
+void EnvelopeSolver::fill(const SymmetricMatrix& matrix) {
+  factor_.assign(block_size * row_.back(), 0);
+  for (std::uint32_t i = 0; i < matrix.rows(); ++i) {
     const std::uint32_t v = order_[i];
-    double* row = factor_.data() + row_[i];
+    double* row = factor_.data() + block_size * row_[i / side] + i % side;
+    const std::uint32_t first = side * first_[i / side];
+    row[side * (i - first)] = matrix.diagonal[v];
     for (std::uint32_t k = matrix.first[v]; k < matrix.first[v + 1]; ++k) {
       const std::uint32_t j = position_[matrix.column[k]];
-      if (j < i) row[j - first_[i]] += matrix.value[k];
+      if (j < i) row[side * (j - first)] += matrix.value[k];
     }
-    double pivot = matrix.diagonal[v];
-    for (std::uint32_t j = first_[i]; j < i; ++j) {
-      const std::uint32_t begin = std::max(first_[i], first_[j]);
-      const double* other = factor_.data() + row_[j];
-      const double value = row[j - first_[i]] -
-                           dot(row + (begin - first_[i]), other + (begin - first_[j]), j - begin);
-      row[j - first_[i]] = value * inverse_pivot_[j];
-      pivot -= row[j - first_[i]] * row[j - first_[i]];
+  }
+}
+
+// Block (b, c) of the factor, all before it done.
+void EnvelopeSolver::eliminate(std::size_t b, std::size_t c) {
+  double* own = block(b, c);
+  Block sum = load(own);
+  const std::size_t begin = std::max(first_[b], first_[c]);
+  const double *a = block(b, begin), *other = block(c, begin);
+  for (; a != own; a += block_size, other += block_size) subtract_product(a, other, sum);
+  if (b != c) {
+    for (std::size_t j = 0; j < side; ++j) {
+      const double scale = inverse_pivot_[side * c + j];
+      sum.part[2 * j] *= scale;
+      sum.part[2 * j + 1] *= scale;
+      for (std::size_t k = j + 1; k < side; ++k) {
+        sum.part[2 * k] -= sum.part[2 * j] * other[side * j + k];
+        sum.part[2 * k + 1] -= sum.part[2 * j + 1] * other[side * j + k];
+      }
     }
-    const bool regular = held_[v] == 0 && pivot > 1e-15 * matrix.diagonal[v];
-    inverse_pivot_[i] = regular ? 1 / std::sqrt(pivot) : 0;
+  }
+  store(sum, own);
+}
+
+void EnvelopeSolver::factorize(const SymmetricMatrix& matrix, bool same_pattern) {
+  const std::size_t n = matrix.rows();
+  if (!same_pattern) {
+    order(matrix);
+    find_envelope(matrix);
+  }
+  fill(matrix);
+  const std::size_t blocks = first_.size();
+  inverse_pivot_.assign(side * blocks, 0);
+  for (std::size_t b = 0; b < blocks; ++b) {
+    for (std::size_t c = first_[b]; c <= b; ++c) eliminate(b, c);
+    double* own = block(b, b);
+    for (std::size_t j = 0; j < std::min(side, n - side * b); ++j) {
+      const std::uint32_t v = order_[side * b + j];
+      const double pivot = own[side * j + j];
+      if (held_[v] == 0 && pivot > 1e-15 * matrix.diagonal[v]) {
+        inverse_pivot_[side * b + j] = 1 / std::sqrt(pivot);
+      }
+      for (std::size_t r = j + 1; r < side; ++r) own[side * j + r] *= inverse_pivot_[side * b + j];
+      for (std::size_t k = j + 1; k < side; ++k) {
+        for (std::size_t r = k; r < side; ++r) {
+          own[side * k + r] -= own[side * j + r] * own[side * j + k];
+        }
+      }
+    }
   }
 }
 
 void EnvelopeSolver::solve(std::span<const glm::dvec2> load, std::span<glm::dvec2> x) {
-  const std::uint32_t n = static_cast<std::uint32_t>(order_.size());
-  work_.resize(n);
+  const std::size_t n = order_.size(), blocks = first_.size();
+  work_.assign(side * blocks, glm::dvec2(0));
   glm::dvec2* work = work_.data();
-  for (std::uint32_t i = 0; i < n; ++i) {
-    glm::dvec2 even = load[order_[i]], odd(0);  // two sums: neither waits for the other
-    const double* row = factor_.data() + row_[i];
-    const std::uint32_t length = i - first_[i];
-    const glm::dvec2* known = work + first_[i];
-    std::uint32_t k = 0;
-    for (; k + 2 <= length; k += 2) {
-      even -= row[k] * known[k];
-      odd -= row[k + 1] * known[k + 1];
+  for (std::size_t i = 0; i < n; ++i) work[i] = load[order_[i]];
+  for (std::size_t b = 0; b < blocks; ++b) {
+    std::array<glm::dvec2, side> sum;
+    for (std::size_t r = 0; r < side; ++r) sum[r] = work[side * b + r];
+    const double* column = block(b, first_[b]);
+    for (std::size_t i = side * first_[b]; i < side * b; ++i, column += side) {
+      for (std::size_t r = 0; r < side; ++r) sum[r] -= column[r] * work[i];
     }
-    if (k < length) even -= row[k] * known[k];
-    work[i] = (even + odd) * inverse_pivot_[i];
+    for (std::size_t j = 0; j < side; ++j, column += side) {
+      sum[j] *= inverse_pivot_[side * b + j];
+      for (std::size_t r = j + 1; r < side; ++r) sum[r] -= column[r] * sum[j];
+      work[side * b + j] = sum[j];
+    }
   }
-  for (std::uint32_t i = n; i-- > 0;) {
-    const glm::dvec2 value = work[i] * inverse_pivot_[i];
-    const double* row = factor_.data() + row_[i];
-    const std::uint32_t length = i - first_[i];
-    glm::dvec2* above = work + first_[i];
-    for (std::uint32_t k = 0; k < length; ++k) above[k] -= row[k] * value;
-    x[order_[i]] = value;
+  for (std::size_t b = blocks; b-- > 0;) {
+    std::array<glm::dvec2, side> known;
+    const double* own = block(b, b);
+    for (std::size_t j = side; j-- > 0;) {
+      known[j] = work[side * b + j];
+      for (std::size_t r = j + 1; r < side; ++r) known[j] -= own[side * j + r] * known[r];
+      work[side * b + j] = known[j] *= inverse_pivot_[side * b + j];
+    }
+    const double* column = block(b, first_[b]);
+    for (std::size_t i = side * first_[b]; i < side * b; ++i, column += side) {
+      const glm::dvec2 low = column[0] * known[0] + column[1] * known[1];
+      work[i] -= low + (column[2] * known[2] + column[3] * known[3]);
+    }
   }
+  for (std::size_t i = 0; i < n; ++i) x[order_[i]] = work[i];
 }
 
 }  // namespace atlas::param

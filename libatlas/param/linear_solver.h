@@ -10,21 +10,30 @@
 namespace atlas::param {
 
 // Cholesky factorisation within the envelope of the reordered matrix (reverse Cuthill-McKee), O(n²)
-// at worst for a disc of n vertices and faster than anything cleverer up to a thousand or so. The
+// at worst for a disc of n vertices and faster than anything cleverer up to some thousands. The
 // kernel holds the constants: one vertex of each connected piece gets the solution 0.
 class EnvelopeSolver {
  public:
-  void factorize(const SymmetricMatrix& matrix);
+  // same_pattern: the entries stand where they stood in the last call, so its order is kept.
+  void factorize(const SymmetricMatrix& matrix, bool same_pattern = false);
   // Overwrites x with the solution for the right-hand side `load`.
   void solve(std::span<const glm::dvec2> load, std::span<glm::dvec2> x);
 
  private:
   void order(const SymmetricMatrix& matrix);
   std::uint32_t sweep(const SymmetricMatrix& matrix, std::uint32_t start);
+  void find_envelope(const SymmetricMatrix& matrix);
+  void fill(const SymmetricMatrix& matrix);
+  void eliminate(std::size_t row, std::size_t column);
+  double* block(std::size_t row, std::size_t column) {
+    return factor_.data() + 16 * (row_[row] + (column - first_[row]));
+  }
 
-  std::vector<std::uint32_t> order_, position_, first_, queue_;
+  std::vector<std::uint32_t> order_, position_, queue_;
   std::vector<std::uint8_t> held_;  // 1 a vertex
-  std::vector<std::size_t> row_;    // where row i's entries first_[i] .. i - 1 start
+  // The factor in blocks of 4 x 4: row b's blocks first_[b] .. b start at block row_[b].
+  std::vector<std::uint32_t> first_;
+  std::vector<std::size_t> row_;
   std::vector<double> factor_, inverse_pivot_;
   std::vector<glm::dvec2> work_;
 };

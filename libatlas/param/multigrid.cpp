@@ -335,7 +335,7 @@ bool MultigridSolver::solve(const SymmetricMatrix& matrix, std::span<const glm::
     largest = std::max({largest, std::abs(residual_[i].x), std::abs(residual_[i].y)});
   }
   std::vector<glm::vec2>& z = levels_[0].x;
-  double rho = 0;
+  double rho = 0, goal = accuracy.energy;
   for (int step = 0;; ++step) {
     // Brought to the size of 1 by a power of two, so that no digit is lost in single precision.
     if (!std::isfinite(largest)) return false;
@@ -344,11 +344,12 @@ bool MultigridSolver::solve(const SymmetricMatrix& matrix, std::span<const glm::
     for (std::size_t i = 0; i < n; ++i) levels_[0].load[i] = glm::vec2(residual_[i] * shrink);
     cycle(matrix, 0);
     const double now = inner(residual_, z, grow);
-    if (!(now > accuracy.energy)) return now <= accuracy.energy;  // false for a NaN
+    if (!(now > goal)) return now <= goal;  // false for a NaN
+    if (step == 0) goal = std::max(goal, accuracy.share * now);
     if (step == accuracy.most_iterations) return false;
     const double beta = step > 0 ? now / rho : 0;
     // The error falls at a steady rate; when this step will do, the next need not confirm it.
-    const bool last = step > 0 && now * beta <= accuracy.energy;
+    const bool last = step > 0 && now * beta <= goal;
     rho = now;
     for (std::size_t i = 0; i < n; ++i) {
       const glm::dvec2 own = grow * glm::dvec2(z[i]);

@@ -23,7 +23,8 @@ class MultigridSolver {
   bool build(const SymmetricMatrix& matrix);
 
   struct Accuracy {
-    double energy;        // stop when the error's energy, estimated, is at most this
+    double energy;        // stop when the error's energy, estimated, is at most this,
+    double share;         // ... or at most this part of what it was,
     int most_iterations;  // ... or after so many
   };
   // Improves x for the right-hand side `load`. False: not accurate enough after the iterations.
