@@ -25,6 +25,17 @@ constexpr double kConeFill = 0.4;  // of hull and rectangle
 // break otherwise for every rotation and unit.
 constexpr double kCostParts = 4096;
 
+// A trial that failed by stretch: what its merger would have cost over the stretch of its charts
+// apart. Larger charts around the same glue cost as much: what is flat with less stretch as a
+// whole is so in its parts.
+struct Refusal {
+  std::uint32_t cell;  // one of the other chart
+  double energy, high_area;
+  std::vector<std::uint32_t> glue;
+};
+// A trial's flattening is not quite the best one, so the costs count by less than all.
+constexpr double kSureEnergy = 0.6, kSureArea = 0.4;
+
 struct CoarseChart {
   std::vector<std::uint32_t> cells;
   std::vector<std::uint32_t> arcs;  // not joined, in any order
@@ -36,6 +47,7 @@ struct CoarseChart {
   bool flat = false;     // all cells in one plane
   bool unrolls = false;  // without stretch, exactly
   std::uint32_t version = 0;
+  std::vector<Refusal> refusals;  // each kept by one of its two charts
 };
 
 struct Candidate {
@@ -276,11 +288,29 @@ class Merger {
     }
     if (options_.cone > 0) limits.solidity = limits.fill = kConeFill;
     limits.unrolls = p.unrolls && q.unrolls;
+    const double spare = area * (limits.stretch_l2 * limits.stretch_l2 - 1) - p.energy - q.energy;
+    const double spare_area = limits.high_area - p.high_area - q.high_area;
+    limits.hopeless = refused(a, b, spare, spare_area) || refused(b, a, spare, spare_area);
     const TrialOutcome outcome = trial_.run(p.cells, q.cells, glue_, result_.joined, limits);
     unrolls_ = outcome.unrolled;
     high_area_ = outcome.high_area;
-    if (outcome.accepted) energy_ = area * (outcome.stretch_l2 * outcome.stretch_l2 - 1);
+    if (outcome.accepted) {
+      energy_ = area * (outcome.stretch_l2 * outcome.stretch_l2 - 1);
+    } else if (outcome.energy > 0 || outcome.high_area > 0) {
+      chart(a).refusals.push_back({b, outcome.energy - p.energy - q.energy,
+                                   outcome.high_area - p.high_area - q.high_area, glue_});
+    }
     return outcome;
+  }
+
+  // Whether less was known to cost more than what may be spent on joining the two.
+  bool refused(std::uint32_t a, std::uint32_t b, double energy, double high_area) const {
+    for (const Refusal& r : chart(a).refusals) {
+      if (result_.chart_of_cell[r.cell] != b) continue;
+      if (kSureEnergy * r.energy <= energy && kSureArea * r.high_area <= high_area) continue;
+      if (std::includes(glue_.begin(), glue_.end(), r.glue.begin(), r.glue.end())) return true;
+    }
+    return false;
   }
 
   // Where seams of either chart with itself end.
@@ -310,6 +340,8 @@ class Merger {
     p.high_area = high_area_;
     p.unrolls = unrolls_;
     if (options_.cone > 0) result_.chart_axis[a] = axis_;
+    std::move(q.refusals.begin(), q.refusals.end(), std::back_inserter(p.refusals));
+    std::erase_if(p.refusals, [&](const Refusal& r) { return result_.chart_of_cell[r.cell] == a; });
     p.area += q.area;
     p.normal_sum += q.normal_sum;
     for (int i = 0; i < 6; ++i) p.moments[i] += q.moments[i];

@@ -25,12 +25,15 @@ struct TrialLimits {
   double solidity = 0.7;  // share of its convex hull that it fills
   double fill = 0.58;     // share of its smallest rectangle
   int iterations = 5;
-  bool unrolls = false;  // both charts unroll: where they fit each other, no descent is needed
+  bool unrolls = false;   // both charts unroll: where they fit each other, no descent is needed
+  bool hopeless = false;  // refuse it unseen, unless the glue does not make a disc
 };
 
 struct TrialOutcome {
   bool accepted = false;
   double stretch_l2 = 1, high_area = 0, solidity = 1, fill = 1;
+  double energy =
+      0;  // area times (stretch_l2 squared - 1); of a map with flips what it costs at least
   int euler = 1;
   bool unrolled = false;  // TrialLimits::unrolls, and they fit
 };
@@ -64,9 +67,13 @@ class Trial {
   void align(std::size_t first_cells, std::span<const std::uint32_t> glue);
   bool unrolled() const;
   bool fits_unrolled(TrialOutcome& outcome);
+  bool measure_stretch(double stretch_high, TrialOutcome& outcome);
+  bool descend(const TrialLimits& limits, TrialOutcome& outcome);
+  bool promising(const TrialLimits& limits, TrialOutcome& outcome);
   bool stretch_fits(const TrialLimits& limits, TrialOutcome& outcome);
-  bool border_fits(const std::vector<std::uint8_t>& joined, const TrialLimits& limits,
-                   TrialOutcome& outcome);
+  bool shape_fits(const TrialLimits& limits, double slack, TrialOutcome& outcome);
+  void find_border(const std::vector<std::uint8_t>& joined);
+  bool border_crosses();
   std::uint32_t root(std::uint32_t slot);
 
   const CoarseMesh& mesh_;
@@ -79,9 +86,8 @@ class Trial {
   std::vector<Vec2d> uvs_;
   std::vector<double> weight_;
   std::vector<TriangleStretch> stretch_;
-  std::vector<std::pair<double, double>> ranked_;
   std::vector<std::array<std::uint32_t, 2>> border_;
-  std::vector<Vec2d> hull_;
+  std::vector<Vec2d> points_, hull_;
   std::vector<std::uint32_t> roots_;
   double misfit_ = 0;  // largest distance of two glued slots, as aligned
   ParamWorkspace workspace_;

@@ -19,7 +19,14 @@ IsometricResult flatten_isometric(const LocalMesh& mesh, const IsometricStart& s
   assert(uvs.size() == mesh.positions.size() && !mesh.triangles.empty());
   param::ArapSolver solver(mesh, options.min_altitude, workspace.impl());
   solver.start(start);
-  solver.iterate(std::max(options.iterations, 1), uvs);
+  int steps = std::max(options.iterations, 1);
+  if (options.promising && options.look_after > 0 && options.look_after < steps) {
+    solver.iterate(options.look_after, uvs);
+    if (!options.promising()) return solver.measure(uvs);
+    steps -= options.look_after;
+    solver.start(uvs);
+  }
+  solver.iterate(steps, uvs);
   return solver.measure(uvs);
 }
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -40,6 +41,9 @@ struct IsometricOptions {
   // that slivers keep a positive area that survives rounding. Besides it there is always a floor of
   // 1e-9 of the longest edge. Zero-area triangles get a place this way.
   double min_altitude = 0;
+  // Asked after so many steps, if more are to follow, with the uvs at hand: false ends the descent.
+  int look_after = 2;
+  std::function<bool()> promising = nullptr;
 };
 
 // Rows of a 2x3 map a triangle, in an order of their own if need be: triangle t has rows[ids[t]],
