@@ -14,12 +14,15 @@ namespace {
 constexpr std::size_t envelope_limit = 3000;
 constexpr std::size_t direct_limit = 6000;
 // The energy that an inexact solve may leave: as part of the area in the first step, which starts
-// from nothing, and as part of what it finds in later ones. An exact solve is worth no more than
-// what the next local step changes anyway, some third of which was found before: twentieths of that
-// are lost in it, and a thousandth in the last step leaves each column of the results as it was
-// (measured on meshes of 70 thousand and a million triangles). `fine`, 3e-11 of the area, is a mean
-// stretch of some millionths, and at worst a hundred times that.
+// from nothing, later as part of what it finds. An exact solve is worth little more than what the
+// next local step changes anyway: a twentieth of that is lost in it, and a thousandth in the last
+// step leaves each column of the results as it was (measured on meshes of 70 thousand and a million
+// triangles). `fine`, 3e-11 of the area, is a mean stretch of some millionths, and at worst a
+// hundred times that.
 constexpr double first_inexactness = 1e-6, rough_share = 0.05, fine_share = 1e-3, fine = 3e-11;
+// Where no more energy than this is left, as part of the area, the shape may unroll, and each step
+// must be exact: errors of a solve are smooth, and later steps take long to remove them.
+constexpr double may_unroll = 3e-4, exact_first = 1e-9;
 constexpr int most_iterations = 60;
 // The fall of the energy by one local step, as part of the area, after which exact solves change no
 // more than inexact ones leave.
@@ -193,6 +196,10 @@ void ArapSolver::solve(const Inexactness& inexactness) {
   if (method_ == Method::envelope) w_.envelope.solve(w_.load, w_.solution);
 }
 
+void ArapSolver::take_solution(std::span<Vec2d> uvs) const {
+  for (std::size_t v = 0; v < uvs.size(); ++v) uvs[v] = from_glm(w_.solution[v]);
+}
+
 void ArapSolver::start(const IsometricStart& start) {
   if (weighted_) {
     for (Element& e : w_.elements) e.weight = 1;
@@ -231,28 +238,35 @@ void ArapSolver::join(std::span<const Vec2d> corner_uvs, std::span<Vec2d> uvs) {
     }
   }
   solve(Inexactness{fine, 0});
-  for (std::size_t v = 0; v < uvs.size(); ++v) uvs[v] = from_glm(w_.solution[v]);
+  take_solution(uvs);
   start(uvs);
 }
 
 void ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
   if (!factorized_) factorize();
-  bool last = false;
-  for (int i = 0; i < steps && !last; ++i) {
-    last = i + 1 == steps;
-    if (i == 0) {
-      rotation_load(w_.elements, w_.rotations, w_.load);
-    } else {
-      const double fall = update_rotations(w_.elements, uvs, w_.rotations, w_.load);
-      if (fall <= converged * area_) {
-        if (method_ != Method::multigrid) return;
-        last = true;
+  rotation_load(w_.elements, w_.rotations, w_.load);
+  solve({steps == 1 ? fine : first_inexactness, 0});
+  bool exact = true;
+  for (int i = 1;; ++i) {
+    take_solution(uvs);
+    if (i >= steps) return;
+    if (i == 1 && method_ == Method::multigrid) {
+      exact = measure(uvs).energy <= may_unroll * area_;
+      if (exact) {
+        solve({exact_first, 0});
+        take_solution(uvs);
       }
     }
-    solve(last     ? Inexactness{fine, i == 0 ? 0 : fine_share}
-          : i == 0 ? Inexactness{first_inexactness, 0}
-                   : Inexactness{fine, rough_share});
-    for (std::size_t v = 0; v < uvs.size(); ++v) uvs[v] = from_glm(w_.solution[v]);
+    const double fall = update_rotations(w_.elements, uvs, w_.rotations, w_.load);
+    const bool still = fall <= converged * area_;
+    if (still && method_ != Method::multigrid) return;
+    if (still) steps = i + 1;
+    const bool last = i + 1 == steps;
+    if (exact) {
+      solve({last ? fine : exact_first, 0});
+    } else {
+      solve({fine, last ? fine_share : rough_share});
+    }
   }
 }
 
@@ -305,7 +319,7 @@ double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
     for (int k = 0; k < 2; ++k) {
       update_rotations(w_.elements, uvs, w_.rotations, w_.load);
       solve({fine, fine_share});
-      for (std::size_t v = 0; v < uvs.size(); ++v) uvs[v] = from_glm(w_.solution[v]);
+      take_solution(uvs);
     }
     now = update_stretch(uvs, options.ratio);
     if (now < best) {

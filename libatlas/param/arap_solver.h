@@ -64,6 +64,7 @@ class ArapSolver {
     double area_share, found_share;
   };
   void solve(const Inexactness& inexactness);
+  void take_solution(std::span<Vec2d> uvs) const;
   double update_stretch(std::span<const Vec2d> uvs, bool ratio);
 
   const LocalMesh& mesh_;
