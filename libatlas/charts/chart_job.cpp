@@ -55,9 +55,9 @@ class ChartJob {
         if (!cut_open_timed(cuts)) break;
         build(triangles);
       }
-      if (!hopeless()) list_removable(outcome);
+      if (!effort_.whole && !hopeless()) list_removable(outcome);
     }
-    outcome.parts = halves();
+    outcome.parts = effort_.whole ? std::vector<std::uint8_t>(1, 0) : halves();
     outcome.failed = true;
     return outcome;
   }
@@ -219,6 +219,8 @@ class ChartJob {
       }
       param.start.uvs = start_uvs_;
       param.resume = true;
+    } else if (!effort_.joined.empty()) {
+      param.joined = effort_.joined;
     } else if (!input_.frames.empty()) {
       param.start.frames = {input_.frames, chart_.triangles()};
     }

@@ -33,6 +33,9 @@ struct ChartEffort {
   int rings = 1;     // of triangles around a crossing of the border, that are listed for removal
   int cuts = 3;      // rounds of cutting it open, before it is divided
   int closings = 1;  // rounds, among these, of closing cuts whose banks cross
+  // 3 a triangle, or empty: of flat parts that are to be joined (see ParamOptions::joined).
+  std::span<const Vec2d> joined = {};
+  bool whole = false;  // what fails needs no division: its parts are a single one
 };
 
 // Flattens one chart, cutting it open where that helps (seams of its own triangles only).

@@ -79,6 +79,9 @@ constexpr int kUnrollingFactor = 4;
 // The goal of relaxing single places, as part of the bound: rounding may not cross it.
 constexpr double kWithin = 1 - 1e-4;
 
+// On rough surfaces what crosses itself in more places was never drawn apart (measured).
+constexpr std::size_t kMostSeparable = 16;
+
 // Books what passed since the last call on a phase.
 class PhaseClock {
  public:
@@ -99,7 +102,9 @@ using Phase = ParamWorkspace::Timing;
 // flip anew, hence the second round.
 void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolver& solver,
              PhaseClock& clock, ParamResult& r) {
-  if (options.resume) {
+  if (!options.joined.empty()) {
+    solver.join(options.joined, r.uvs);
+  } else if (options.resume) {
     std::copy(options.start.uvs.begin(), options.start.uvs.end(), r.uvs.begin());
   } else {
     solver.iterate(std::max(options.iterations, 1), r.uvs);
@@ -131,8 +136,13 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
   finish(mesh, options, r);
   clock.book(&Phase::overlaps);
   if (r.injective || !r.within_bound || r.distortion.flips > 0) return;
+  if (options.local && r.crossings.size() > kMostSeparable) return;
   if (solver.separate_borders(r.uvs)) {
     finish(mesh, options, r);
+    const bool stretched = !r.within_bound && r.distortion.flips == 0;
+    if (options.local && stretched && solver.lower_tail(kWithin * options.max_stretch, r.uvs)) {
+      finish(mesh, options, r);
+    }
   } else {
     const auto left = solver.crossings_left();
     r.stubborn_crossings.assign(left.begin(), left.end());
@@ -166,6 +176,11 @@ ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
       r.uvs.resize(mesh.positions.size());
       project_planar(mesh, axis, r.uvs);
     }
+  }
+  if (!options.joined.empty()) {
+    param::ArapSolver solver(mesh, options.min_altitude, workspace.impl());
+    descend(mesh, options, solver, clock, r);
+    return r;
   }
   IsometricStart start = options.start;
   // Within a hemisphere the projection is as good a start as any, and free of holonomy.

@@ -40,6 +40,9 @@ struct ParamOptions {
   // start.uvs, all their triangles positive, are kept but where the stretch exceeds the bound: for
   // a flattening that failed, after a cut.
   bool resume = false;
+  // 3 a triangle, or empty: parts of the mesh that are flat already, placed next to each other, to
+  // go on from instead of `start`. What they stretch is kept, so far as they fit together.
+  std::span<const Vec2d> joined = {};
   // Triangles are kept at least this thick (uv units) where possible, so that rounding of what is
   // written leaves them positive.
   double min_altitude = 0;
