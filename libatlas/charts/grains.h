@@ -18,6 +18,7 @@ struct Grains {
   std::vector<std::uint32_t> size;              // triangles
   std::vector<std::uint32_t> component;         // ascending: grains of a piece are contiguous
   std::vector<std::uint32_t> first, neighbour;  // compressed rows
+  std::vector<float> distance;                  // 1 a neighbour: between the centroids
   std::size_t count() const { return area.size(); }
 };
 

@@ -1,0 +1,85 @@
+// Internal: a priority queue for small whole keys that never fall below the last one taken.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+namespace atlas {
+
+// Buckets in a ring, one a key (Dial 1969, "Algorithm 360: Shortest-path forest with topological
+// ordering"), those in use marked in a bit field; what lies more than a ring ahead waits aside
+// until the ring has been emptied. An entry is written once and read once, where heaps move it
+// again and again. Entry has a `key`; equal keys come in no particular order, but the same for the
+// same pushes.
+template <class Entry>
+class RingQueue {
+ public:
+  bool empty() const { return size_ == 0; }
+
+  // Allows for any key again. Precondition: empty.
+  void restart() { base_ = next_ = 0; }
+
+  // Precondition: the key is not below that of the last entry taken since the last restart.
+  void push(const Entry& entry) {
+    ++size_;
+    if (entry.key - base_ < kBuckets) {
+      put(entry);
+    } else {
+      far_.push_back(entry);
+    }
+  }
+
+  // The entry that pop() will return after `count` others, if that is known already and not far;
+  // else nullptr. For fetching ahead what it needs.
+  const Entry* ahead(std::size_t count) const {
+    const std::vector<Entry>& bucket = buckets_[next_];
+    return count < bucket.size() ? &bucket[bucket.size() - 1 - count] : nullptr;
+  }
+
+  // An entry of the smallest key, taken out. Precondition: not empty.
+  Entry pop() {
+    std::uint32_t word = next_ / 64;
+    if (!used_[word]) {
+      while (word < used_.size() && !used_[word]) ++word;
+      if (word == used_.size()) word = refill();
+    }
+    next_ = 64 * word + static_cast<std::uint32_t>(std::countr_zero(used_[word]));
+    std::vector<Entry>& bucket = buckets_[next_];
+    const Entry entry = bucket.back();
+    bucket.pop_back();
+    if (bucket.empty()) used_[word] &= ~(std::uint64_t{1} << (next_ % 64));
+    --size_;
+    return entry;
+  }
+
+ private:
+  static constexpr std::uint32_t kBuckets = 4096;
+
+  void put(const Entry& entry) {
+    const std::uint32_t place = entry.key - base_;
+    buckets_[place].push_back(entry);
+    used_[place / 64] |= std::uint64_t{1} << (place % 64);
+  }
+
+  // Returns the first word in use.
+  std::uint32_t refill() {
+    moving_.swap(far_);
+    base_ = moving_.front().key;
+    for (const Entry& entry : moving_) base_ = std::min(base_, entry.key);
+    size_ -= moving_.size();
+    for (const Entry& entry : moving_) push(entry);
+    moving_.clear();
+    return 0;
+  }
+
+  std::array<std::vector<Entry>, kBuckets> buckets_;
+  std::array<std::uint64_t, kBuckets / 64> used_{};
+  std::vector<Entry> far_, moving_;
+  std::uint32_t base_ = 0, next_ = 0;  // the first bucket's key; where to look first
+  std::size_t size_ = 0;
+};
+
+}  // namespace atlas
