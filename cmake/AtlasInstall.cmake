@@ -3,9 +3,9 @@
 # libatlasgeo; the package is libatlas.
 
 # How each third-party target that a folder names is linked by those who use the installed library.
+# OpenImageIO is not among them: the module that needs it is loaded when needed (libatlas/image).
 # Left out: what is headers only, and so ends at our own .cpp files.
-set(ATLAS_LINK_AS_TARGET TBB::tbb fmt::fmt ZLIB::ZLIB PkgConfig::OIIO
-                         glfw PkgConfig::EPOXY PkgConfig::EGL PkgConfig::IMGUI)
+set(ATLAS_LINK_AS_TARGET TBB::tbb fmt::fmt ZLIB::ZLIB glfw PkgConfig::EPOXY PkgConfig::EGL PkgConfig::IMGUI)
 set(ATLAS_HEADERS_ONLY glm::glm Eigen3::Eigen nlohmann_json::nlohmann_json atlas_options)
 
 # atlas_gather(TARGET OUTPUT_NAME module...): a library of all the modules' objects.
@@ -23,6 +23,8 @@ function(atlas_gather target output)
         list(APPEND libraries mpfr gmp)
       elseif(library STREQUAL atlas_openmesh)
         list(APPEND libraries OpenMeshCore)
+      elseif(library STREQUAL CMAKE_DL_LIBS)
+        list(APPEND libraries ${library})
       elseif(NOT library IN_LIST ATLAS_HEADERS_ONLY AND NOT library MATCHES "^atlas_")
         message(FATAL_ERROR "cmake/AtlasInstall.cmake does not know how an installed libatlas links "
                             "${library} (folder ${module}): add it there")
@@ -37,6 +39,11 @@ function(atlas_gather target output)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES OUTPUT_NAME ${output} LINKER_LANGUAGE CXX
                         VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  # The image module lies beside the library; a program that holds the library itself looks there.
+  if(NOT BUILD_SHARED_LIBS)
+    target_link_options(${target} INTERFACE
+      "$<INSTALL_INTERFACE:LINKER:-rpath,$<INSTALL_PREFIX>/${CMAKE_INSTALL_LIBDIR}>")
+  endif()
   install(TARGETS ${target} EXPORT libatlasTargets COMPONENT development
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endfunction()
@@ -88,14 +95,14 @@ function(atlas_install_package)
           DESTINATION ${package_dir} COMPONENT development)
 
   # Whoever links a static library links what it needs, too.
-  set(needed_packages "tbb fmt zlib OpenImageIO mpfr gmp")
-  set(needed_libraries "-lOpenMeshCore -lpthread")
+  set(needed_packages "tbb fmt zlib mpfr gmp")
+  set(needed_libraries "-lOpenMeshCore -lpthread -ldl")
   if(BUILD_SHARED_LIBS)
     set(PC_PRIVATE "Requires.private: ${needed_packages}\nLibs.private: ${needed_libraries}")
     set(PC_PUBLIC "")
   else()
     set(PC_PRIVATE "Requires: ${needed_packages}")
-    set(PC_PUBLIC " ${needed_libraries}")
+    set(PC_PUBLIC " ${needed_libraries} -Wl,-rpath,\${libdir}")
   endif()
   file(RELATIVE_PATH PC_UP /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
   configure_file(${PROJECT_SOURCE_DIR}/cmake/libatlas.pc.in ${PROJECT_BINARY_DIR}/libatlas.pc @ONLY)

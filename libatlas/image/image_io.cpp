@@ -1,130 +1,98 @@
 #include "libatlas/image/image_io.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
+#include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "libatlas/image/image_files.h"
 
 namespace atlas {
 namespace {
 
-template <class T>
-OIIO::TypeDesc type_of();
-template <>
-OIIO::TypeDesc type_of<std::uint8_t>() {
-  return OIIO::TypeDesc::UINT8;
-}
-template <>
-OIIO::TypeDesc type_of<float>() {
-  return OIIO::TypeDesc::FLOAT;
-}
+namespace fs = std::filesystem;
 
-// OpenImageIO walks rows by stride: starting at the last row with a negative stride turns the
-// image.
-template <class T>
-OIIO::stride_t row_bytes(const Image<T>& image) {
-  return OIIO::stride_t(sizeof(T)) * image.width * image.channels;
-}
-
-Status failure(const std::filesystem::path& path, const char* what, const std::string& why) {
-  return {ErrorCode::io, fmt::format("{}: {}: {}", path.string(), what, why)};
-}
-
-template <class T>
-Result<Image<T>> read_pixels(OIIO::ImageInput& input, const std::filesystem::path& path) {
-  const OIIO::ImageSpec& spec = input.spec();
-  Image<T> image(spec.width, spec.height, spec.nchannels);
-  const OIIO::stride_t stride = row_bytes(image);
-  T* top_row = image.texels.data() + std::size_t(spec.height - 1) * spec.width * spec.nchannels;
-  if (!input.read_image(0, 0, 0, spec.nchannels, type_of<T>(), top_row, OIIO::AutoStride,
-                        -stride)) {
-    return failure(path, "image is damaged", input.geterror());
-  }
-  return image;
-}
-
-OIIO::ImageSpec input_settings() {
-  OIIO::ImageSpec config;
-  config["oiio:UnassociatedAlpha"] = 1;  // colours as stored, not multiplied by alpha
-  return config;
-}
-
-template <class T>
-Result<Image<T>> read(const std::filesystem::path& path) {
-  if (!std::filesystem::exists(path)) {
-    return Status(ErrorCode::not_found, fmt::format("{}: no such image", path.string()));
-  }
-  const OIIO::ImageSpec config = input_settings();
-  auto input = OIIO::ImageInput::open(path.string(), &config);
-  if (!input) return failure(path, "cannot be read as an image", OIIO::geterror());
-  return read_pixels<T>(*input, path);
-}
-
-// OpenImageIO picks its reader by extension; the signature at the start tells the common formats.
-const char* extension_of(std::span<const std::uint8_t> bytes) {
-  const auto starts_with = [&](std::string_view signature) {
-    return bytes.size() >= signature.size() &&
-           std::equal(signature.begin(), signature.end(), bytes.begin(),
-                      [](char a, std::uint8_t b) { return std::uint8_t(a) == b; });
+// Where the module may be: beside what this code was linked into or the program, where the two lie
+// in bin/ and lib/ of one place, where they were built, where they were to be installed.
+std::vector<fs::path> module_folders() {
+  std::vector<fs::path> folders;
+  const auto add = [&](const fs::path& file) {
+    if (!file.has_parent_path()) return;
+    folders.push_back(file.parent_path());
+    folders.push_back(file.parent_path() / ".." / LIBATLAS_LIBRARY_FOLDER);
   };
-  if (starts_with("\x89PNG")) return ".png";
-  if (starts_with("\xff\xd8")) return ".jpg";
-  if (starts_with("RIFF")) return ".webp";
-  return nullptr;
+  Dl_info own{};
+  if (dladdr(reinterpret_cast<const void*>(&module_folders), &own) != 0 && own.dli_fname) {
+    add(own.dli_fname);
+  }
+  std::error_code none;
+  add(fs::read_symlink("/proc/self/exe", none));
+  folders.push_back(LIBATLAS_BUILD_FOLDER);
+  folders.push_back(LIBATLAS_INSTALL_FOLDER);
+  return folders;
 }
 
-template <class T>
-Status write(const std::filesystem::path& path, const Image<T>& image, OIIO::ImageSpec spec) {
-  auto output = OIIO::ImageOutput::create(path.string());
-  if (!output) return failure(path, "no writer for this kind of image", OIIO::geterror());
-  if (!output->open(path.string(), spec)) {
-    return failure(path, "cannot be written", output->geterror());
+struct Module {
+  const ImageFiles* functions = nullptr;
+  std::string why_not;
+};
+
+Module failure() {
+  const char* reason = dlerror();
+  return {nullptr,
+          fmt::format("image files need {}, which belongs beside the program or into its ../{}: {}",
+                      LIBATLAS_IMAGE_MODULE, LIBATLAS_LIBRARY_FOLDER, reason ? reason : "damaged")};
+}
+
+Module load() {
+  void* handle = nullptr;
+  std::error_code none;
+  for (const fs::path& folder : module_folders()) {
+    const fs::path file = fs::absolute(folder / LIBATLAS_IMAGE_MODULE, none);
+    if (handle || !fs::exists(file, none)) continue;
+    handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!handle) return failure();
   }
-  const T* top_row =
-      image.texels.data() + std::size_t(image.height - 1) * image.width * image.channels;
-  if (!output->write_image(type_of<T>(), top_row, OIIO::AutoStride, -row_bytes(image)) ||
-      !output->close()) {
-    return failure(path, "writing failed", output->geterror());
+  // Else where the system looks for libraries, the program's rpath included.
+  if (!handle) handle = dlopen(LIBATLAS_IMAGE_MODULE, RTLD_NOW | RTLD_LOCAL);
+  void* entry = handle ? dlsym(handle, "libatlas_image_files") : nullptr;
+  if (!entry) return failure();
+  return {reinterpret_cast<decltype(&libatlas_image_files)>(entry)(), {}};
+}
+
+// Calls the module's function, or says why there is none. Never unloaded: OpenImageIO has threads.
+template <class Function, class... Arguments>
+auto call(Function ImageFiles::*function, const std::string& name, Arguments&&... arguments)
+    -> decltype((std::declval<ImageFiles>().*function)(arguments...)) {
+  static const Module module = load();
+  if (!module.functions) {
+    return Status(ErrorCode::unsupported, fmt::format("{}: {}", name, module.why_not));
   }
-  return {};
+  return (module.functions->*function)(std::forward<Arguments>(arguments)...);
 }
 
 }  // namespace
 
-Result<Image8> read_image8(const std::filesystem::path& path) {
-  return read<std::uint8_t>(path);
+Result<Image8> read_image8(const fs::path& path) {
+  return call(&ImageFiles::read_image8, path.string(), path);
 }
 
 Result<Image8> decode_image8(std::span<const std::uint8_t> bytes, const std::string& name) {
-  const char* extension = extension_of(bytes);
-  if (!extension) return failure(name, "cannot be read as an image", "not PNG, JPEG or WebP");
-  OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
-  OIIO::Filesystem::IOProxy* proxy = &memory;
-  OIIO::ImageSpec config = input_settings();
-  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  auto input = OIIO::ImageInput::open(std::string("embedded") + extension, &config, proxy);
-  if (!input) return failure(name, "cannot be read as an image", OIIO::geterror());
-  return read_pixels<std::uint8_t>(*input, name);
+  return call(&ImageFiles::decode_image8, name, bytes, name);
 }
 
-Result<ImageF> read_image_float(const std::filesystem::path& path) {
-  return read<float>(path);
+Result<ImageF> read_image_float(const fs::path& path) {
+  return call(&ImageFiles::read_image_float, path.string(), path);
 }
 
-Status write_png(const std::filesystem::path& path, const Image8& image,
-                 const PngOptions& options) {
-  OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeDesc::UINT8);
-  spec["png:compressionLevel"] = options.compression;
-  spec["oiio:UnassociatedAlpha"] = 1;
-  return write(path, image, spec);
+Status write_png(const fs::path& path, const Image8& image, const PngOptions& options) {
+  return call(&ImageFiles::write_png, path.string(), path, image, options);
 }
 
-Status write_exr(const std::filesystem::path& path, const ImageF& image) {
-  OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeDesc::HALF);
-  spec["compression"] = "zip";
-  return write(path, image, spec);
+Status write_exr(const fs::path& path, const ImageF& image) {
+  return call(&ImageFiles::write_exr, path.string(), path, image);
 }
 
 }  // namespace atlas

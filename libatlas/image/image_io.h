@@ -1,5 +1,5 @@
-// Image files in and out. The one place that knows OpenImageIO; rows are bottom-up in memory
-// (core/image.h) and turned here.
+// Image files in and out. Rows are bottom-up in memory (core/image.h) and turned here. The first
+// call loads the module that does it; without the module every call returns ErrorCode::unsupported.
 #pragma once
 
 #include <cstdint>

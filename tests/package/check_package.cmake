@@ -47,3 +47,28 @@ run(${BUILD}/tests/package/unwrap_by_pkg_config)
 if(NOT output MATCHES "2304 triangles")
   message(FATAL_ERROR "unwrap by pkg-config printed: ${output}")
 endif()
+
+# Image files, whose module is found where the library was installed.
+file(GLOB_RECURSE module ${prefix}/*/libatlasgeo_images-*.so)
+if(NOT module)
+  message(FATAL_ERROR "the image module is not installed")
+endif()
+file(WRITE ${BUILD}/tests/package/image.cpp [[
+#include <cstdio>
+#include "libatlas/image/image_io.h"
+int main(int, char** argument) {
+  atlas::Image8 image(3, 2, 1);
+  image.texels = {1, 2, 3, 4, 5, 6};
+  const atlas::Status written = atlas::write_png(argument[1], image, {});
+  const auto read = atlas::read_image8(argument[1]);
+  if (!written.ok() || !read.ok()) return std::puts(written.message().c_str()), 1;
+  return read->texels == image.texels ? 0 : 1;
+}
+]])
+run(${CXX} -std=c++20 ${flags} ${BUILD}/tests/package/image.cpp -o ${BUILD}/tests/package/image ${link})
+run(${BUILD}/tests/package/image ${BUILD}/tests/package/image.png)
+# Who reads no image loads none of what reading takes.
+run(ldd ${BUILD}/tests/package/image)
+if(output MATCHES "OpenImageIO")
+  message(FATAL_ERROR "OpenImageIO is loaded at the start:\n${output}")
+endif()

@@ -1,0 +1,135 @@
+#include "libatlas/image/image_files.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace atlas {
+namespace {
+
+template <class T>
+OIIO::TypeDesc type_of();
+template <>
+OIIO::TypeDesc type_of<std::uint8_t>() {
+  return OIIO::TypeDesc::UINT8;
+}
+template <>
+OIIO::TypeDesc type_of<float>() {
+  return OIIO::TypeDesc::FLOAT;
+}
+
+// OpenImageIO walks rows by stride: starting at the last row with a negative stride turns the
+// image.
+template <class T>
+OIIO::stride_t row_bytes(const Image<T>& image) {
+  return OIIO::stride_t(sizeof(T)) * image.width * image.channels;
+}
+
+Status failure(const std::filesystem::path& path, const char* what, const std::string& why) {
+  return {ErrorCode::io, fmt::format("{}: {}: {}", path.string(), what, why)};
+}
+
+template <class T>
+Result<Image<T>> read_pixels(OIIO::ImageInput& input, const std::filesystem::path& path) {
+  const OIIO::ImageSpec& spec = input.spec();
+  Image<T> image(spec.width, spec.height, spec.nchannels);
+  const OIIO::stride_t stride = row_bytes(image);
+  T* top_row = image.texels.data() + std::size_t(spec.height - 1) * spec.width * spec.nchannels;
+  if (!input.read_image(0, 0, 0, spec.nchannels, type_of<T>(), top_row, OIIO::AutoStride,
+                        -stride)) {
+    return failure(path, "image is damaged", input.geterror());
+  }
+  return image;
+}
+
+OIIO::ImageSpec input_settings() {
+  OIIO::ImageSpec config;
+  config["oiio:UnassociatedAlpha"] = 1;  // colours as stored, not multiplied by alpha
+  return config;
+}
+
+template <class T>
+Result<Image<T>> read(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) {
+    return Status(ErrorCode::not_found, fmt::format("{}: no such image", path.string()));
+  }
+  const OIIO::ImageSpec config = input_settings();
+  auto input = OIIO::ImageInput::open(path.string(), &config);
+  if (!input) return failure(path, "cannot be read as an image", OIIO::geterror());
+  return read_pixels<T>(*input, path);
+}
+
+// OpenImageIO picks its reader by extension; the signature at the start tells the common formats.
+const char* extension_of(std::span<const std::uint8_t> bytes) {
+  const auto starts_with = [&](std::string_view signature) {
+    return bytes.size() >= signature.size() &&
+           std::equal(signature.begin(), signature.end(), bytes.begin(),
+                      [](char a, std::uint8_t b) { return std::uint8_t(a) == b; });
+  };
+  if (starts_with("\x89PNG")) return ".png";
+  if (starts_with("\xff\xd8")) return ".jpg";
+  if (starts_with("RIFF")) return ".webp";
+  return nullptr;
+}
+
+template <class T>
+Status write(const std::filesystem::path& path, const Image<T>& image, OIIO::ImageSpec spec) {
+  auto output = OIIO::ImageOutput::create(path.string());
+  if (!output) return failure(path, "no writer for this kind of image", OIIO::geterror());
+  if (!output->open(path.string(), spec)) {
+    return failure(path, "cannot be written", output->geterror());
+  }
+  const T* top_row =
+      image.texels.data() + std::size_t(image.height - 1) * image.width * image.channels;
+  if (!output->write_image(type_of<T>(), top_row, OIIO::AutoStride, -row_bytes(image)) ||
+      !output->close()) {
+    return failure(path, "writing failed", output->geterror());
+  }
+  return {};
+}
+
+Result<Image8> read_8_bits(const std::filesystem::path& path) {
+  return read<std::uint8_t>(path);
+}
+
+Result<Image8> decode(std::span<const std::uint8_t> bytes, const std::string& name) {
+  const char* extension = extension_of(bytes);
+  if (!extension) return failure(name, "cannot be read as an image", "not PNG, JPEG or WebP");
+  OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
+  OIIO::Filesystem::IOProxy* proxy = &memory;
+  OIIO::ImageSpec config = input_settings();
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  auto input = OIIO::ImageInput::open(std::string("embedded") + extension, &config, proxy);
+  if (!input) return failure(name, "cannot be read as an image", OIIO::geterror());
+  return read_pixels<std::uint8_t>(*input, name);
+}
+
+Result<ImageF> read_floats(const std::filesystem::path& path) {
+  return read<float>(path);
+}
+
+Status write_8_bits(const std::filesystem::path& path, const Image8& image,
+                    const PngOptions& options) {
+  OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeDesc::UINT8);
+  spec["png:compressionLevel"] = options.compression;
+  spec["oiio:UnassociatedAlpha"] = 1;
+  return write(path, image, spec);
+}
+
+Status write_halves(const std::filesystem::path& path, const ImageF& image) {
+  OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeDesc::HALF);
+  spec["compression"] = "zip";
+  return write(path, image, spec);
+}
+
+constexpr ImageFiles functions = {read_8_bits, decode, read_floats, write_8_bits, write_halves};
+
+}  // namespace
+}  // namespace atlas
+
+extern "C" const atlas::ImageFiles* libatlas_image_files() {
+  return &atlas::functions;
+}
