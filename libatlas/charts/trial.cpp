@@ -309,6 +309,7 @@ bool Trial::descend(const TrialLimits& limits, TrialOutcome& outcome) {
   bool hope = true;
   IsometricOptions options;
   options.iterations = limits.iterations;
+  options.measure = false;
   options.promising = [&] { return hope = promising(limits, outcome); };
   flatten_isometric({positions_, triangles_, {}}, {uvs_, {}}, options, uvs_, workspace_);
   return hope;

@@ -22,12 +22,12 @@ IsometricResult flatten_isometric(const LocalMesh& mesh, const IsometricStart& s
   int steps = std::max(options.iterations, 1);
   if (options.promising && options.look_after > 0 && options.look_after < steps) {
     solver.iterate(options.look_after, uvs);
-    if (!options.promising()) return solver.measure(uvs);
+    if (!options.promising()) return options.measure ? solver.measure(uvs) : IsometricResult{};
     steps -= options.look_after;
     solver.start(uvs);
   }
   solver.iterate(steps, uvs);
-  return solver.measure(uvs);
+  return options.measure ? solver.measure(uvs) : IsometricResult{};
 }
 
 }  // namespace atlas

@@ -44,6 +44,7 @@ struct IsometricOptions {
   // Asked after so many steps, if more are to follow, with the uvs at hand: false ends the descent.
   int look_after = 2;
   std::function<bool()> promising = nullptr;
+  bool measure = true;  // else the result stays as it is by default
 };
 
 // Rows of a 2x3 map a triangle, in an order of their own if need be: triangle t has rows[ids[t]],
