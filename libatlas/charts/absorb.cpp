@@ -19,7 +19,7 @@ struct Patience {
 };
 constexpr Patience kSmooth{2, 0.25, 0.45};
 // Scan noise divides charts that need not be divided: a work of 2 left armadillo with 56 to 59
-// charts for 41 smooth ones, 3 leaves 46 to 50, 6 leaves 38 to 52 in twice the time.
+// charts for 41 smooth ones, 3 leaves 40 to 52, 6 leaves 38 to 52 in twice the time.
 constexpr Patience kNoisy{4, 3, 0.45};
 constexpr Patience kInCone{6, 3, 0.3};  // a limit on cones leaves many small charts, cheap to try
 constexpr double kSmallShare = 0.01;    // of the triangles, what is tried on smooth meshes

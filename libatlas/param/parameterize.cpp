@@ -82,6 +82,10 @@ constexpr double kWithin = 1 - 1e-4;
 // On rough surfaces what crosses itself in more places was never drawn apart (measured).
 constexpr std::size_t kMostSeparable = 16;
 
+// Flat parts that stretch so many times the bound when they are joined never came within it
+// (measured).
+constexpr double kPoorJoint = 1.75;
+
 // Books what passed since the last call on a phase.
 class PhaseClock {
  public:
@@ -102,7 +106,8 @@ using Phase = ParamWorkspace::Timing;
 // flip anew, hence the second round.
 void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolver& solver,
              PhaseClock& clock, ParamResult& r) {
-  if (!options.joined.empty()) {
+  const bool joining = !options.joined.empty();
+  if (joining) {
     solver.join(options.joined, r.uvs);
   } else if (options.resume) {
     std::copy(options.start.uvs.begin(), options.start.uvs.end(), r.uvs.begin());
@@ -127,7 +132,8 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
     }
     if (now.stretch_999 <= aim) break;
     if (options.local) {
-      if (now.flips == 0) solver.lower_tail(kWithin * options.max_stretch, r.uvs);
+      if (now.flips > 0 || (joining && now.stretch_999 > kPoorJoint * options.max_stretch)) break;
+      solver.lower_tail(kWithin * options.max_stretch, r.uvs);
       break;
     }
     solver.squeeze({aim, options.squeeze_iterations, options.squeeze_ratio}, r.uvs);

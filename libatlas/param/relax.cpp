@@ -269,7 +269,7 @@ void Relaxer::spare_worst(double bound, std::vector<std::uint32_t> tail) {
 
 bool Relaxer::lower_tail(std::span<const Element> elements, const CornerLists& corners,
                          double bound, std::span<Vec2d> uvs) {
-  constexpr int rounds = 12, rings = 3, sweeps = 4, patience = 2;
+  constexpr int rounds = 12, rings = 2, sweeps = 4, patience = 2;
   // What is nearly as bad moves as well. A longer tail is no matter of a few places.
   constexpr double near = 0.97, longest_share = 0.2, least_gain = 1e-3;
   begin(elements, corners, uvs);
