@@ -146,6 +146,41 @@ TEST(Parameterize, DrawsApartBordersThatOverlapALittle) {
   }
 }
 
+// Half a pipe unrolled by its formula and stretched by a tenth, each triangle moved somewhere else:
+// only the gradients count, and they are kept, where any descent would have made them isometric.
+TEST(Parameterize, JoinsFlatPartsAsTheyAre) {
+  constexpr double stretch = 1.1;
+  const Disc d = testing::make_grid(24, 8, [](double u, double v) {
+    const double angle = std::numbers::pi * u;
+    return Vec3d{std::cos(angle), v, std::sin(angle)};
+  });
+  // The chord of one of 24 steps: the grid's own length, so that the map is exact.
+  const double step = 2 * std::sin(std::numbers::pi / 48);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> anywhere(-3, 3);
+  std::vector<Vec2d> corners;
+  for (const auto& triangle : d.triangles) {
+    const Vec2d shift{anywhere(random), anywhere(random)};
+    for (const std::uint32_t v : triangle) {
+      const Vec3d p = d.positions[v];
+      const double along = step * 24 * std::atan2(p.z, p.x) / std::numbers::pi;
+      corners.push_back({stretch * along + shift.x, p.y / stretch + shift.y});
+    }
+  }
+  ParamOptions options;
+  options.method = ParamMethod::isometric;
+  options.joined = corners;
+  const ParamResult r = run(d, options);
+  expect_consistent(d, r, options.max_stretch);
+  EXPECT_TRUE(r.injective && r.within_bound);
+  std::vector<TriangleStretch> s(d.triangles.size());
+  measure_triangles(d.view(), r.uvs, s);
+  for (const TriangleStretch& t : s) {
+    EXPECT_NEAR(t.s1, stretch, 1e-4);
+    EXPECT_NEAR(t.s2, 1 / stretch, 1e-4);
+  }
+}
+
 TEST(Parameterize, RecoversFromFramesThatLie) {
   // One frame for a whole cylinder: half of its triangles are seen from behind.
   const Disc d = testing::make_cylinder(5, 2, 60, 20);
