@@ -15,19 +15,29 @@ std::int32_t longest_in(const Mask& mask, std::int32_t r) {
   return longest;
 }
 
+// Classes of lengths: 1 to 15 cells, then eighths of an octave, rounded down.
+int class_of(std::int32_t length) {
+  const int octave = std::max(0, level_of(length) - 3);
+  return 8 * octave + (length >> octave) - 1;
+}
+
+RowTest row_test(const Mask& mask, std::int32_t r) {
+  const std::int32_t longest = longest_in(mask, r);
+  return {r, longest, class_of(longest)};
+}
+
 }  // namespace
 
 std::vector<RowTest> test_order(const Mask& mask) {
   if (mask.height == 0) return {};
-  std::vector<RowTest> tests{{0, longest_in(mask, 0)}};
+  std::vector<RowTest> tests{row_test(mask, 0)};
   for (std::int32_t r = 1; r < mask.height; ++r)
-    if (const std::int32_t longest = longest_in(mask, r); longest > tests[0].longest)
-      tests[0] = {r, longest};
+    if (longest_in(mask, r) > tests[0].longest) tests[0] = row_test(mask, r);
   // Bit-reversed counting visits halves, quarters, eighths, ...
   const int bits = std::bit_width(static_cast<std::uint32_t>(mask.height));
   std::int32_t row = 0;
   for (std::uint32_t k = 0; k < 1u << bits; ++k) {
-    if (row < mask.height && row != tests[0].row) tests.push_back({row, longest_in(mask, row)});
+    if (row < mask.height && row != tests[0].row) tests.push_back(row_test(mask, row));
     for (int b = bits - 1; b >= 0 && ((row ^= 1 << b) >> b & 1) == 0; --b) {
     }
   }
@@ -40,6 +50,7 @@ BitPage::BitPage(std::int32_t width, std::int32_t height, std::int32_t longest_r
       levels_(level_of(std::max(1, std::min(width, longest_run))) + 1),
       words_((static_cast<std::size_t>(width) + 63) / 64),
       stride_(words_ + 1),
+      classes_(static_cast<std::size_t>(class_of(std::max(1, width))) + 1),
       candidates_(words_) {
   empty_.assign(stride_ * static_cast<std::size_t>(levels_), 0);
   for (int k = 0; k < levels_; ++k)
@@ -53,12 +64,24 @@ void BitPage::clear() {
   used_height_ = 0;
   bits_.clear();
   longest_.clear();
+  long_rows_.clear();
 }
 
 void BitPage::grow(std::int32_t rows) {
   if (rows <= rows_) return;
   for (; rows_ < rows; ++rows_) bits_.insert(bits_.end(), empty_.begin(), empty_.end());
   longest_.resize(static_cast<std::size_t>(rows), width_);
+  long_rows_.resize((static_cast<std::size_t>(rows) + 63) / 64 * classes_, ~std::uint64_t{0});
+}
+
+void BitPage::set_longest(std::int32_t y, std::int32_t longest) {
+  const int before = longest_[y] > 0 ? class_of(longest_[y]) : -1;
+  const int now = longest > 0 ? class_of(longest) : -1;
+  longest_[y] = longest;
+  std::uint64_t* words = long_rows_.data() + static_cast<std::size_t>(y / 64) * classes_;
+  const std::uint64_t bit = std::uint64_t{1} << (y % 64);
+  for (int c = now + 1; c <= before; ++c) words[c] &= ~bit;
+  for (int c = before + 1; c <= now; ++c) words[c] |= bit;
 }
 
 // Narrows the candidates to those x where row r of the mask, put at page row y, is free. False if
@@ -89,12 +112,23 @@ bool BitPage::row_allows(const Mask& mask, std::int32_t r, std::int32_t y) {
   return true;
 }
 
-// A cheap necessary condition: the first rows tested have free runs long enough somewhere.
-bool BitPage::may_be_free(const std::vector<RowTest>& rows, std::int32_t y) const {
-  const std::size_t count = std::min<std::size_t>(rows.size(), 16);
-  for (std::size_t k = 0; k < count; ++k)
-    if (y + rows[k].row < rows_ && longest_[y + rows[k].row] < rows[k].longest) return false;
-  return true;
+std::uint64_t BitPage::likely_feet(const std::vector<RowTest>& rows, std::int32_t y) {
+  std::uint64_t feet = ~std::uint64_t{0};
+  const std::size_t count = long_rows_.size() / classes_;
+  std::size_t looked_at = 0;
+  for (const RowTest& test : rows) {
+    const auto word = static_cast<std::size_t>(y + test.row) / 64;
+    const unsigned shift = static_cast<unsigned>(y + test.row) % 64;
+    if (word >= count) continue;  // rows above those that exist are free
+    const std::uint64_t* bits = long_rows_.data() + word * classes_ + test.length_class;
+    std::uint64_t free = bits[0] >> shift;
+    if (shift > 0) free |= (word + 1 < count ? bits[classes_] : ~std::uint64_t{0}) << (64 - shift);
+    feet &= free;
+    ++looked_at;
+    if (feet == 0) break;
+  }
+  work_ += looked_at;
+  return feet;
 }
 
 // Sets the candidates to all x in [x0, x1].
@@ -107,27 +141,28 @@ void BitPage::all_candidates(std::int32_t x0, std::int32_t x1) {
   if (x1 % 64 != 63) candidates_[high_ - 1] &= (std::uint64_t{2} << (x1 % 64)) - 1;
 }
 
+bool BitPage::find_in_row(const Mask& mask, const std::vector<RowTest>& rows, Window window,
+                          std::int32_t y, Place& place) {
+  all_candidates(window.x0, window.x1);
+  for (const RowTest& test : rows)
+    if (y + test.row < rows_ && !row_allows(mask, test.row, y + test.row)) return false;
+  while (candidates_[low_] == 0) ++low_;
+  place = {static_cast<std::int32_t>(64 * low_) + std::countr_zero(candidates_[low_]), y};
+  return true;
+}
+
 bool BitPage::find(const Mask& mask, const std::vector<RowTest>& rows, Window window,
                    Place& place) {
-  const std::int32_t x0 = std::max(0, window.x0), x1 = std::min(window.x1, width_ - mask.width);
-  const std::int32_t y1 = std::min(window.y1, height_ - mask.height);
-  if (x0 > x1) return false;
-  for (std::int32_t y = std::max(0, window.y0); y <= y1; ++y) {
-    ++work_;
-    if (y >= used_height_) {
-      place = {x0, y};
-      return true;
+  window.x0 = std::max(0, window.x0);
+  window.x1 = std::min(window.x1, width_ - mask.width);
+  window.y1 = std::min(window.y1, height_ - mask.height);
+  if (window.x0 > window.x1) return false;
+  for (std::int32_t y = std::max(0, window.y0); y <= window.y1; y += 64)
+    for (std::uint64_t feet = likely_feet(rows, y); feet != 0; feet &= feet - 1) {
+      const std::int32_t foot = y + std::countr_zero(feet);
+      if (foot > window.y1) return false;
+      if (find_in_row(mask, rows, window, foot, place)) return true;
     }
-    if (!may_be_free(rows, y)) continue;
-    all_candidates(x0, x1);
-    bool free = true;
-    for (std::size_t k = 0; k < rows.size() && free; ++k)
-      free = y + rows[k].row >= rows_ || row_allows(mask, rows[k].row, y + rows[k].row);
-    if (!free) continue;
-    while (candidates_[low_] == 0) ++low_;
-    place = {static_cast<std::int32_t>(64 * low_) + std::countr_zero(candidates_[low_]), y};
-    return true;
-  }
   return false;
 }
 
@@ -211,7 +246,7 @@ void BitPage::rebuild(std::int32_t y, std::int32_t begin, std::int32_t end) {
       bits[w] = below[w] & ahead;
     }
   }
-  longest_[y] = longest_free(y);
+  set_longest(y, longest_free(y));
   work_ += static_cast<std::uint64_t>(levels_) * (last - static_cast<std::size_t>(begin) / 64);
 }
 

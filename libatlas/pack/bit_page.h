@@ -14,7 +14,8 @@ namespace atlas::pack {
 // out early: the row with the longest run first, then rows spread over the whole height.
 struct RowTest {
   std::int32_t row = 0;
-  std::int32_t longest = 0;  // cells of the row's longest run
+  std::int32_t longest = 0;       // cells of the row's longest run
+  std::int32_t length_class = 0;  // class of that length: see BitPage
 };
 std::vector<RowTest> test_order(const Mask& mask);
 
@@ -43,6 +44,15 @@ class BitPage {
   // The lowest place (then leftmost) in the window, or false.
   bool find(const Mask& mask, const std::vector<RowTest>& rows, Window window, Place& place);
 
+  // Bit k says whether the mask may lie with its foot in row y + k >= 0: for each of its rows the
+  // page has a free run about as long as it needs. What this denies is sure; it looks at 64 feet at
+  // once.
+  std::uint64_t likely_feet(const std::vector<RowTest>& rows, std::int32_t y);
+
+  // The leftmost place with the foot in row y and x0 <= x <= x1 <= width() - mask.width, or false.
+  bool find_in_row(const Mask& mask, const std::vector<RowTest>& rows, Window window,
+                   std::int32_t y, Place& place);
+
   // Share of the mask's outline, put there, that touches taken cells or the page's left, right or
   // lower edge; in [0, 1].
   double contact(const Mask& mask, Place place) const;
@@ -67,8 +77,8 @@ class BitPage {
   bool row_allows(const Mask& mask, std::int32_t r, std::int32_t y);
   std::int32_t taken(std::int32_t y, std::int32_t begin, std::int32_t end) const;
   void all_candidates(std::int32_t x0, std::int32_t x1);
-  bool may_be_free(const std::vector<RowTest>& rows, std::int32_t y) const;
   std::int32_t longest_free(std::int32_t y) const;
+  void set_longest(std::int32_t y, std::int32_t longest);
   void rebuild(std::int32_t y, std::int32_t begin, std::int32_t end);
   void grow(std::int32_t rows);
 
@@ -79,7 +89,11 @@ class BitPage {
   std::int32_t used_height_ = 0;
   std::vector<std::uint64_t> bits_;
   std::vector<std::int32_t> longest_;  // 1 a row: length of its longest free run
-  std::vector<std::uint64_t> empty_;   // the levels of a free row
+  // The same for 64 rows at once: bit y % 64 of word y / 64 * classes_ + c is set if row y has a
+  // free run of length_of(c) cells.
+  std::size_t classes_;
+  std::vector<std::uint64_t> long_rows_;
+  std::vector<std::uint64_t> empty_;  // the levels of a free row
   std::vector<std::uint64_t> candidates_;
   std::uint64_t work_ = 0;
   std::size_t low_ = 0, high_ = 0;  // words of candidates_ that may be nonzero

@@ -1,6 +1,7 @@
 #include "libatlas/pack/nest.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -56,7 +57,15 @@ Piece make_piece(const ChartOutline& shape, double factor, const PieceOptions& o
   for (const Mask& m : piece.masks) {
     piece.tests.push_back(test_order(m));
     piece.centers.push_back(center_height(m));
+    piece.lifts.push_back(0.5 * m.height + 0.5 * piece.centers.back());
   }
+  piece.by_fraction.resize(n);
+  std::iota(piece.by_fraction.begin(), piece.by_fraction.end(), 0u);
+  const auto fraction = [&](std::uint32_t k) {
+    return piece.lifts[k] - std::floor(piece.lifts[k]);
+  };
+  std::stable_sort(piece.by_fraction.begin(), piece.by_fraction.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return fraction(a) < fraction(b); });
   return piece;
 }
 
@@ -107,7 +116,9 @@ class LastPlaces {
   }
   // Nothing below `y` is free for this size; beyond the page when there was no place at all.
   void searched(const Mask& mask, std::int32_t y) {
-    if (on_) row_[static_cast<std::size_t>(class_of(mask))] = y;
+    if (!on_) return;
+    std::int32_t& row = row_[static_cast<std::size_t>(class_of(mask))];
+    row = std::max(row, y);
   }
 
  private:
@@ -123,31 +134,75 @@ class LastPlaces {
   std::vector<std::int32_t> row_ = std::vector<std::int32_t>(on_ ? kSteps * kSteps : 0);
 };
 
-// The best direction and place of a piece on the page.
-bool find_place(const Piece& piece, std::int32_t only, BitPage& page, LastPlaces& last,
-                NestPlace& place) {
-  constexpr std::int32_t kNowhere = std::numeric_limits<std::int32_t>::max();
-  BitPage::Window window;
-  double best = std::numeric_limits<double>::infinity();
-  for (std::uint32_t k = 0; k < piece.masks.size(); ++k) {
-    if (only != kFree && k != static_cast<std::uint32_t>(only)) continue;
-    const Mask& mask = piece.masks[k];
-    if (mask.cells == 0) continue;
-    const double lift = 0.5 * mask.height + 0.5 * piece.centers[k];
-    const double most = std::min(1e9, std::ceil(best - lift) - 1);  // higher feet would lose
-    if (most < 0) continue;
-    window.y0 = last.lowest(mask);
-    window.y1 = static_cast<std::int32_t>(most);
-    if (window.y0 > window.y1) continue;
-    BitPage::Place at;
-    const bool found = page.find(mask, piece.tests[k], window, at);
-    last.searched(mask, found ? at.y : most < 1e9 ? window.y1 + 1 : kNowhere);
-    if (!found) continue;
-    best = at.y + lift;
-    place = {true, k, at};
+// The best direction and place of a piece on the page: heights are visited from the lowest up, at
+// each of them the directions whose feet may stand there.
+class PlaceSearch {
+ public:
+  PlaceSearch(const Piece& piece, std::int32_t only, BitPage& page, LastPlaces& last)
+      : piece_(piece), page_(page), last_(last) {
+    for (std::uint32_t k : piece.by_fraction) {
+      const Mask& mask = piece.masks[k];
+      if (only != kFree && k != static_cast<std::uint32_t>(only)) continue;
+      if (mask.cells == 0 || mask.width > page.width()) continue;
+      const auto lift = static_cast<std::int32_t>(std::floor(piece.lifts[k]));
+      const std::int32_t foot = last.lowest(mask);
+      if (foot > page.height() - mask.height) continue;
+      feet_[count_++] = {k, lift, foot, page.height() - mask.height, 0, 0};
+    }
   }
-  return place.placed;
-}
+
+  bool run(NestPlace& place) {
+    std::int32_t height = std::numeric_limits<std::int32_t>::max(), top = 0;
+    for (Foot& f : std::span(feet_).first(count_)) {
+      height = std::min(height, f.row + f.lift);
+      top = std::max(top, f.last + f.lift);
+    }
+    for (bool found = false; height <= top && !found; ++height) found = visit(height, place);
+    for (const Foot& f : std::span(feet_).first(count_))
+      last_.searched(piece_.masks[f.direction], place.placed ? f.row : kNowhere);
+    return place.placed;
+  }
+
+ private:
+  static constexpr std::int32_t kNowhere = std::numeric_limits<std::int32_t>::max();
+  static constexpr std::size_t kMostDirections = 64;
+
+  struct Foot {
+    std::uint32_t direction;
+    std::int32_t lift;       // whole cells
+    std::int32_t row, last;  // the next row to stand on, and the last one
+    std::uint64_t likely;    // bit k: row + k; as many as are known
+    std::int32_t known;
+  };
+
+  bool visit(std::int32_t height, NestPlace& place) {
+    for (Foot& f : std::span(feet_).first(count_)) {
+      if (f.row != height - f.lift || f.row > f.last) continue;
+      const Mask& mask = piece_.masks[f.direction];
+      const auto& tests = piece_.tests[f.direction];
+      if (f.known == 0) {
+        f.likely = page_.likely_feet(tests, f.row);
+        f.known = 64;
+      }
+      BitPage::Place at;
+      if ((f.likely & 1) != 0 &&
+          page_.find_in_row(mask, tests, {0, page_.width() - mask.width}, f.row, at)) {
+        place = {true, f.direction, at};
+        return true;
+      }
+      f.likely >>= 1;
+      --f.known;
+      ++f.row;
+    }
+    return false;
+  }
+
+  const Piece& piece_;
+  BitPage& page_;
+  LastPlaces& last_;
+  std::array<Foot, kMostDirections> feet_;
+  std::size_t count_ = 0;
+};
 
 }  // namespace
 
@@ -159,12 +214,16 @@ void place_pieces(std::span<const Piece> pieces, const NestPlan& plan, BitPage& 
     if (piece.cells() == 0) continue;
     NestPlace& place = nest.places[id];
     const std::int32_t only = plan.direction[id];
-    if (!find_place(piece, only, page, last, place) &&
-        (only == kFree || !find_place(piece, kFree, page, last, place))) {
+    if (!PlaceSearch(piece, only, page, last).run(place) &&
+        (only == kFree || !PlaceSearch(piece, kFree, page, last).run(place))) {
       nest.left_over.push_back(id);
       continue;
     }
     page.put(piece.masks[place.direction], place.at);
+    if (page.used_height() > plan.most_height) {
+      nest.left_over.push_back(id);
+      break;
+    }
     nest.potential +=
         static_cast<double>(piece.cells()) * (place.at.y + piece.centers[place.direction]);
   }
@@ -263,12 +322,14 @@ NestPlan improve_plan(std::span<const Piece> pieces, const NestPlan& start,
     if (best.left_over.empty() && best.used_height <= options.enough) break;
     plan = current;
     moves.disturb(plan, current_nest);
-    const double e = evaluate(plan, nest);
     const double left =
         1 - std::max(static_cast<double>(spent) / static_cast<double>(options.work),
                      static_cast<double>(tried) / static_cast<double>(options.layouts));
     const double temperature = std::max(1e-9, 0.004 * best_energy * left * left);
-    if (e <= current_energy || moves.unit() < std::exp((current_energy - e) / temperature)) {
+    // Metropolis' rule, the chance drawn first: a layout is given up as soon as it is too high.
+    plan.most_height = current_energy - temperature * std::log(std::max(1e-300, moves.unit()));
+    const double e = evaluate(plan, nest);
+    if (e <= plan.most_height) {
       current = plan;
       current_energy = e;
       current_nest = nest;
@@ -279,6 +340,7 @@ NestPlan improve_plan(std::span<const Piece> pieces, const NestPlan& start,
       best = nest;
     }
   }
+  best_plan.most_height = std::numeric_limits<double>::infinity();
   return best_plan;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,10 @@ struct Piece {
   std::vector<std::vector<RowTest>> tests;
   std::vector<Vec2d> origins;   // see RasterOptions; empty for coarse pieces
   std::vector<double> centers;  // height of the mask's centre of mass
+  // A place's height is its foot's plus the direction's lift: half the mask's height and half the
+  // height of its centre.
+  std::vector<double> lifts;
+  std::vector<std::uint32_t> by_fraction;  // directions by the fraction of their lifts
   std::int64_t cells() const { return masks.empty() ? 0 : masks[0].cells; }
 };
 
@@ -35,6 +40,8 @@ inline constexpr std::int32_t kFree = -1;
 struct NestPlan {
   std::vector<std::uint32_t> order;
   std::vector<std::int32_t> direction;  // 1 a piece
+  // Placing ends with the piece that makes the page higher than this, which is left over.
+  double most_height = std::numeric_limits<double>::infinity();
 };
 
 NestPlan plan_by_size(std::span<const Piece> pieces);

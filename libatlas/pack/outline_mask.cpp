@@ -249,6 +249,18 @@ Mask quarter_turn(const Mask& mask) {
   return set.build();
 }
 
+bool overlap(const Mask& a, const Mask& b, std::int32_t dx, std::int32_t dy) {
+  if (dx >= a.width || dx + b.width <= 0) return false;
+  for (std::int32_t r = std::max(0, dy); r < std::min(a.height, dy + b.height); ++r) {
+    const std::span<const Run> in_a = a.row(r), in_b = b.row(r - dy);
+    for (std::size_t i = 0, j = 0; i < in_a.size() && j < in_b.size();) {
+      if (in_a[i].begin < in_b[j].end + dx && in_b[j].begin + dx < in_a[i].end) return true;
+      in_a[i].end < in_b[j].end + dx ? ++i : ++j;
+    }
+  }
+  return false;
+}
+
 Mask coarsen(const Mask& mask, std::int32_t factor) {
   RunSet set;
   for (std::int32_t r = 0; r < mask.height; ++r)

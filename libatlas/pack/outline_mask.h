@@ -43,6 +43,9 @@ Mask rasterize(const ChartOutline& outline, const RasterOptions& options, Vec2d&
 // The mask turned by 90 degrees counterclockwise.
 Mask quarter_turn(const Mask& mask);
 
+// Whether a cell of `a` lies on one of `b` when b is put dx, dy cells right of and above a.
+bool overlap(const Mask& a, const Mask& b, std::int32_t dx, std::int32_t dy);
+
 // The mask on cells `factor` times as large: every cell that holds one of the mask.
 Mask coarsen(const Mask& mask, std::int32_t factor);
 

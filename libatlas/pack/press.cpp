@@ -22,12 +22,12 @@ constexpr std::size_t kMostCharts = 128;
 constexpr std::size_t kStartedCharts = 480;  // over all starts: fewer charts get more of them
 constexpr std::size_t kMostStarts = 16;
 constexpr std::uint64_t kSearchWork = 160'000'000;  // words looked at by all starts, 2 ns each
-constexpr std::uint64_t kLayouts = 24;              // of one start
+constexpr std::uint64_t kLayouts = 40;              // of one start
 constexpr std::uint32_t kMostDoublings = 4;         // of both, a round of `best` each
 constexpr std::uint32_t kDirections = 24;
 // Few are worth pressing: what a start's cells say about its page is nearly what the press makes of
-// it. 8 and 3 of 16 reach what all 16 do, at half the time.
-constexpr std::size_t kRoughStarts = 8, kThoroughStarts = 3;
+// it. What the time of more of them buys is less than that of more layouts.
+constexpr std::size_t kRoughStarts = 4, kThoroughStarts = 2;
 constexpr std::size_t kCoarse = 0, kFine = 1;
 
 struct Effort {
@@ -98,6 +98,8 @@ class Press {
  private:
   // The search needs outlines only as fine as its cells; exact masks come last.
   void draw() {
+    straight_ = is_straight();
+    directions_ = straight_ ? 4 : kDirections;
     const int fine = std::max(1, options_.page_size / 1024);
     const std::size_t n = options_.shapes.size();
     cell_ = std::max(1, options_.page_size / 128);
@@ -112,7 +114,7 @@ class Press {
     pieces.factor = scale_;
     pieces.padding = options_.padding;
     pieces.cell = cell_;
-    pieces.directions = kDirections;
+    pieces.directions = directions_;
     pieces_ = make_pieces(thin, pieces, context_);
   }
 
@@ -134,6 +136,22 @@ class Press {
     make_arcs(d.bodies[kFine]);
     d.bodies[kFine].center = d.bodies[kCoarse].center;
     d.bodies[kFine].radius += std::hypot(shift.x, shift.y);
+  }
+
+  // Whether the charts' outlines run along their frames, as machine parts' do: such charts lie
+  // closest when they are turned by right angles only. Of those measured they take 60 % of the
+  // length and more where this is so, and less than 30 % elsewhere.
+  bool is_straight() const {
+    constexpr double kAlong = 0.02, kShare = 0.45;
+    double all = 0, along = 0;
+    for (const ChartOutline& o : outlines_)
+      for (const ChartOutline::Edge& e : o.edges) {
+        const double x = std::abs(e.to.x - e.from.x), y = std::abs(e.to.y - e.from.y);
+        const double length = std::hypot(x, y);
+        all += length;
+        if (std::min(x, y) <= kAlong * length) along += length;
+      }
+    return along > kShare * all;
   }
 
   static constexpr double kLong = 1.2;
@@ -220,7 +238,7 @@ class Press {
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       const NestPlace& at = nest.places[i];
       if (!at.placed) continue;
-      const double angle = 2 * std::numbers::pi * at.direction / kDirections;
+      const double angle = 2 * std::numbers::pi * at.direction / directions_;
       const double c = std::cos(angle), s = std::sin(angle);
       const Vec2d o = pieces_[i].origins[at.direction], m = drawn_[i].center_of_shape();
       start.poses[i] = {{at.at.x * double(cell_) + o.x + c * m.x - s * m.y,
@@ -240,6 +258,7 @@ class Press {
     options.margin = texel * (options_.padding + 0.2 * options_.alignment);
     options.tolerance = texel * 0.5 * options_.alignment;
     options.square = !options_.free_aspect;
+    options.turn = !straight_;
     return options;
   }
 
@@ -281,27 +300,42 @@ class Press {
   }
 
   // The fullest start is pressed once more with finer outlines and placed exactly, and the next
-  // where that fails. (Placing more of them wins on none of the models.)
+  // where that fails or charts are so few that chance decides which of them comes out fuller.
   void settle_best(std::vector<Start>& starts, PressedPage& best) const {
+    constexpr std::size_t kFew = 16, kMost = 6;
     sort_starts(starts);
-    for (std::size_t k = 0; k < std::min<std::size_t>(starts.size(), 6); ++k)
-      if (context_.cancelled() || settle_start(starts[k], best)) return;
+    std::size_t wanted = outlines_.size() <= kFew ? kThoroughStarts : 1;
+    for (std::size_t k = 0; k < std::min(starts.size(), kMost) && wanted > 0; ++k) {
+      if (context_.cancelled()) return;
+      if (settle_start(starts[k], best)) --wanted;
+    }
   }
 
   // Exact masks reach up to a cell beyond the bodies. Where charts lie in each other's notches and
   // little of the page's fill is left for that, bodies with more room around them do better.
   bool settle_start(Start& s, PressedPage& best) const {
     constexpr double kMostLost = 0.03;  // of the fill
+    struct Polish {
+      std::size_t level;
+      double more;  // room, alignments
+    };
+    // Between straight charts that lie side by side every mask takes all it can. Where they are
+    // locked into each other without turns, finer outlines can drive them apart.
+    const std::vector<Polish> polishes = straight_ ? std::vector<Polish>{{kFine, 1.2}, {kCoarse, 3}}
+                                                   : std::vector<Polish>{{kFine, 0}, {kFine, 0.8}};
+    const Start rough = s;
     bool settled = false;
-    for (const double more : {0.0, 0.8}) {
+    for (const auto& [level, more] : polishes) {
+      if (straight_) s = rough;
       if (s.poses.empty() || goodness(s.page) == 0) return settled;
       SqueezeOptions polish = squeeze_options(s.page, kPolish);
       polish.clearance += more * options_.alignment;
       const SqueezePage before = s.page;
-      push_together(kFine, polish, s);
+      push_together(level, polish, s);
       const bool polished = goodness(s.page) > 0;
       if (!polished) s.page = before;  // finer outlines overlap too much: as they were
-      const double pressed = fill(scale_, s.page.width, s.page.height);
+      const SqueezePage& fullest = straight_ ? rough.page : s.page;
+      const double pressed = fill(scale_, fullest.width, fullest.height);
       const PressedPage page = settle_exactly(s);
       settled = settled || page.scale > 0;
       if (fill(page) > fill(best)) take(page, best);
@@ -333,6 +367,8 @@ class Press {
   const Context& context_;
   double area_ = 0, scale_ = 1;
   std::int32_t cell_ = 1;
+  std::uint32_t directions_ = kDirections;
+  bool straight_ = false;
   std::vector<Drawn> drawn_;
   std::vector<Piece> pieces_;
 };

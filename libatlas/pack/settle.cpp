@@ -85,10 +85,7 @@ class Settler {
       PressedPlace& there = result.places[j];
       if (!there.placed || !is_small(j, side) || masks_[j].cells > masks_[i].cells) continue;
       const BitPage::Place at{there.box.x / options_.alignment, there.box.y / options_.alignment};
-      BitPage alone(side, side, longest_);
-      alone.put(masks_[j], at);
-      BitPage::Place other;
-      if (nearest_free(i, alone, other)) continue;
+      if (has_room_beside(i, j, at, page)) continue;
       page.take_away(masks_[j], at);
       there.placed = false;
       displaced_.push_back(j);
@@ -151,25 +148,46 @@ class Settler {
                      [&](std::uint32_t a, std::uint32_t b) { return distance(a) < distance(b); });
   }
 
-  // The free place nearest to the wanted one, within a few cells.
-  bool nearest_free(std::uint32_t i, BitPage& page, BitPage::Place& place) const {
-    constexpr std::int32_t kReach = 5;
-    const Mask& mask = masks_[i];
-    const auto tests = test_order(mask);
+  // Places within a few cells of the wanted one, nearest first.
+  struct Nearby {
+    double distance;
+    BitPage::Place at;
+  };
+  static constexpr std::int32_t kReach = 5;
+  using Neighbourhood = std::array<Nearby, (2 * kReach + 1) * (2 * kReach + 1)>;
+
+  Neighbourhood places_near(std::uint32_t i, const BitPage& page) const {
+    Neighbourhood places;
     const auto x = static_cast<std::int32_t>(std::lround(wanted_[i].x));
     const auto y = static_cast<std::int32_t>(std::lround(wanted_[i].y));
-    double best = 1e300;
+    std::size_t count = 0;
     for (std::int32_t dy = -kReach; dy <= kReach; ++dy)
       for (std::int32_t dx = -kReach; dx <= kReach; ++dx) {
-        const std::int32_t px = std::clamp(x + dx, 0, page.width() - mask.width);
-        const std::int32_t py = std::clamp(y + dy, 0, page.height() - mask.height);
-        const double d = std::hypot(px - wanted_[i].x, py - wanted_[i].y);
-        BitPage::Place at;
-        if (d >= best || !page.find(mask, tests, {px, px, py, py}, at)) continue;
-        best = d;
-        place = at;
+        const std::int32_t px = std::clamp(x + dx, 0, page.width() - masks_[i].width);
+        const std::int32_t py = std::clamp(y + dy, 0, page.height() - masks_[i].height);
+        places[count++] = {std::hypot(px - wanted_[i].x, py - wanted_[i].y), {px, py}};
       }
-    return best < 1e300;
+    std::stable_sort(places.begin(), places.end(),
+                     [](const Nearby& a, const Nearby& b) { return a.distance < b.distance; });
+    return places;
+  }
+
+  bool nearest_free(std::uint32_t i, BitPage& page, BitPage::Place& place) const {
+    const auto tests = test_order(masks_[i]);
+    for (const Nearby& n : places_near(i, page)) {
+      const BitPage::Window here{n.at.x, n.at.x, n.at.y, n.at.y};
+      if (page.find_in_row(masks_[i], tests, here, n.at.y, place)) return true;
+    }
+    return false;
+  }
+
+  // Whether chart i has a place near the wanted one where it does not meet chart j, put at `at`.
+  bool has_room_beside(std::uint32_t i, std::uint32_t j, BitPage::Place at,
+                       const BitPage& page) const {
+    const Neighbourhood places = places_near(i, page);
+    return std::any_of(places.begin(), places.end(), [&](const Nearby& n) {
+      return !overlap(masks_[i], masks_[j], at.x - n.at.x, at.y - n.at.y);
+    });
   }
 
   std::span<const SettleTarget> targets_;
