@@ -73,79 +73,96 @@ bool valid(const Instance& in, const atlas::PackResult& result, bool rotate) {
   return true;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+struct Arguments {
   atlas::PackOptions options;
   bool each = false, strip = false;
-  std::vector<std::filesystem::path> files;
+  std::vector<std::filesystem::path> files;  // sorted
+};
+
+Arguments read_arguments(int argc, char** argv) {
+  Arguments read;
+  atlas::PackOptions& options = read.options;
   for (int i = 1; i < argc; ++i) {
     const std::string a = argv[i];
+    const auto value = [&] { return std::string(i + 1 < argc ? argv[++i] : ""); };
     if (a == "--rotate") {
       options.allow_rotation = true;
     } else if (a == "--strip") {
-      strip = true;
+      read.strip = true;
     } else if (a == "--each") {
-      each = true;
+      read.each = true;
     } else if (a == "--preset") {
-      const std::string p = argv[++i];
+      const std::string p = value();
       options.preset = p == "fast"   ? atlas::PackPreset::fast
                        : p == "best" ? atlas::PackPreset::best
                                      : atlas::PackPreset::standard;
     } else if (a == "--engine") {
-      const std::string e = argv[++i];
+      const std::string e = value();
       options.engine = e == "skyline-bl"   ? atlas::PackEngine::skyline_bottom_left
                        : e == "skyline-mw" ? atlas::PackEngine::skyline_min_waste
                                            : atlas::PackEngine::max_rects;
     } else if (a == "--effort") {
-      options.effort = std::strtoull(argv[++i], nullptr, 10);
+      options.effort = std::strtoull(value().c_str(), nullptr, 10);
     } else if (a == "--budget") {
-      options.time_budget = std::atof(argv[++i]);
+      options.time_budget = std::atof(value().c_str());
     } else if (std::filesystem::is_directory(a)) {
       for (const auto& e : std::filesystem::directory_iterator(a))
-        if (e.path().extension() == ".txt") files.push_back(e.path());
+        if (e.path().extension() == ".txt") read.files.push_back(e.path());
     } else {
-      files.push_back(a);
+      read.files.push_back(a);
     }
   }
-  std::sort(files.begin(), files.end());
-  atlas::Context context;
-  context.threads = 1;
+  std::sort(read.files.begin(), read.files.end());
+  return read;
+}
+
+struct Totals {
   double cpu = 0, gap = 0;
   std::uint64_t bins = 0;
   int strips = 0, invalid = 0;
-  for (const auto& file : files) {
-    Instance in = read_instance(file);
-    if (strip) in.page.height = 0;
-    options.page = in.page;
-    const double start = atlas::cpu_seconds();
-    auto result = atlas::pack_rects(in.items, options, context);
-    const double spent = atlas::cpu_seconds() - start;
-    cpu += spent;
-    if (!result.ok() || !valid(in, *result, options.allow_rotation)) {
-      ++invalid;
-      std::printf("%s: INVALID %s\n", in.name.c_str(), result.status().message().c_str());
-      continue;
-    }
-    if (in.page.height == 0) {
-      std::int64_t area = 0;
-      for (const auto& e : in.items) area += e.area();
-      const double optimum = double((area + in.page.width - 1) / in.page.width);
-      const double g = 100 * (result->pages[0].height - optimum) / optimum;
-      gap += g;
-      ++strips;
-      if (each) std::printf("%s gap %.2f cpu %.3f\n", in.name.c_str(), g, spent);
-    } else {
-      bins += result->pages.size();
-      if (each)
-        std::printf("%s bins %zu bound %u fill %.4f cpu %.4f\n", in.name.c_str(),
-                    result->pages.size(), result->page_lower_bound, result->fill_without_last,
-                    spent);
-    }
+};
+
+// Packs an instance, adds its figures to the totals and prints them if each is wanted.
+void run(Instance in, Arguments& arguments, Totals& totals) {
+  if (arguments.strip) in.page.height = 0;
+  arguments.options.page = in.page;
+  atlas::Context context;
+  context.threads = 1;
+  const double start = atlas::cpu_seconds();
+  auto result = atlas::pack_rects(in.items, arguments.options, context);
+  const double spent = atlas::cpu_seconds() - start;
+  totals.cpu += spent;
+  if (!result.ok() || !valid(in, *result, arguments.options.allow_rotation)) {
+    ++totals.invalid;
+    std::printf("%s: INVALID %s\n", in.name.c_str(), result.status().message().c_str());
+    return;
   }
-  std::printf("%zu instances, %d invalid, cpu %.4f s", files.size(), invalid, cpu);
-  if (strips) std::printf(", mean gap %.3f %%", gap / strips);
-  if (bins) std::printf(", bins %llu", static_cast<unsigned long long>(bins));
+  if (in.page.height == 0) {
+    std::int64_t area = 0;
+    for (const auto& e : in.items) area += e.area();
+    const double optimum = double((area + in.page.width - 1) / in.page.width);
+    const double gap = 100 * (result->pages[0].height - optimum) / optimum;
+    totals.gap += gap;
+    ++totals.strips;
+    if (arguments.each) std::printf("%s gap %.2f cpu %.3f\n", in.name.c_str(), gap, spent);
+  } else {
+    totals.bins += result->pages.size();
+    if (arguments.each)
+      std::printf("%s bins %zu bound %u fill %.4f cpu %.4f\n", in.name.c_str(),
+                  result->pages.size(), result->page_lower_bound, result->fill_without_last, spent);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments = read_arguments(argc, argv);
+  Totals totals;
+  for (const auto& file : arguments.files) run(read_instance(file), arguments, totals);
+  std::printf("%zu instances, %d invalid, cpu %.4f s", arguments.files.size(), totals.invalid,
+              totals.cpu);
+  if (totals.strips) std::printf(", mean gap %.3f %%", totals.gap / totals.strips);
+  if (totals.bins) std::printf(", bins %llu", static_cast<unsigned long long>(totals.bins));
   std::printf("\n");
-  return invalid > 0;
+  return totals.invalid > 0;
 }

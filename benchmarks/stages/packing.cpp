@@ -23,11 +23,12 @@ void bench_packing(const StageRun& run) {
     settings.push_back({"boxes, standard", false, PackPreset::standard});
     settings.push_back({"boxes, best", false, PackPreset::best});
   }
+  // Settings are compared on one page: on several the largest chart alone may decide the scale.
+  const std::uint32_t pages = run.sweep ? 1 : std::uint32_t(staged.settings.pages);
   // So dense that every budget is full: then the scale that fits tells how good the packing is.
   double area = 0;
   for (const Chart& chart : staged.charts->charts) area += chart.distortion.uv_area;
-  const double room =
-      double(staged.settings.pages) * staged.settings.page_size * staged.settings.page_size;
+  const double room = double(pages) * staged.settings.page_size * staged.settings.page_size;
   const double density = std::sqrt(room / area);
   const std::vector<Vec2d> densities(staged.charts->charts.size(), Vec2d{density, density});
   for (const Setting& setting : settings) {
@@ -35,7 +36,7 @@ void bench_packing(const StageRun& run) {
     row.size_in = densities.size();
     row.unit = "charts -> pages";
     LayoutOptions options;
-    options.pages = staged.settings.pages;
+    options.pages = pages;
     options.page_size = staged.settings.page_size;
     options.padding = gutter_pad(2);
     options.outlines = setting.outlines;
