@@ -22,11 +22,12 @@ void scale_to_surface_area(ParamResult& r) {
 }
 
 // Flipped triangles first, then those at crossings, then those beyond the bound, worst first.
-void list_offenders(ParamResult& r, const Injectivity& check, std::span<const double> stretch,
-                    double bound) {
+// `stretch`, 1 a triangle, is asked for only where r is not within the bound.
+void list_offenders(const LocalMesh& mesh, ParamResult& r, const Injectivity& check,
+                    std::span<const double> stretch, double bound) {
   r.crossings = check.crossings;
   r.offenders = check.flipped;
-  std::vector<bool> listed(stretch.size(), false);
+  std::vector<bool> listed(mesh.triangles.size(), false);
   for (const std::uint32_t t : r.offenders) listed[t] = true;
   const auto add = [&](std::uint32_t t) {
     if (!listed[t]) r.offenders.push_back(t);
@@ -46,15 +47,21 @@ void list_offenders(ParamResult& r, const Injectivity& check, std::span<const do
   for (const std::uint32_t t : beyond) add(t);
 }
 
-// Measures, scales and judges r.uvs.
-void finish(const LocalMesh& mesh, const ParamOptions& options, ParamResult& r) {
-  std::vector<double> stretch(mesh.triangles.size());
-  r.distortion = measure_distortion(mesh, r.uvs, stretch);
+// Measures, scales and judges r.uvs; `known` is their distortion if that was measured before.
+void finish(const LocalMesh& mesh, const ParamOptions& options, ParamResult& r,
+            const Distortion* known = nullptr) {
+  std::vector<double> stretch;
+  if (known && known->stretch_999 <= options.max_stretch) {
+    r.distortion = *known;
+  } else {
+    stretch.resize(mesh.triangles.size());
+    r.distortion = measure_distortion(mesh, r.uvs, stretch);
+  }
   scale_to_surface_area(r);
   const Injectivity check = check_injectivity(mesh, r.uvs);
   r.injective = check.injective;
   r.within_bound = r.distortion.stretch_999 <= options.max_stretch;
-  list_offenders(r, check, stretch, options.max_stretch);
+  list_offenders(mesh, r, check, stretch, options.max_stretch);
 }
 
 bool projection_fits(const LocalMesh& mesh, std::span<const Vec2d> uvs, double bound) {
@@ -116,6 +123,7 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
   }
   double aim =
       options.aimed_stretch > 0 && !options.local ? options.aimed_stretch : options.max_stretch;
+  std::optional<Distortion> last;  // of r.uvs as they are
   for (int round = 0; round < 2; ++round) {
     clock.book(&Phase::solve);
     if (solver.measure(r.uvs).flips > 0) {
@@ -130,7 +138,10 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
       now = measure_distortion(mesh, r.uvs);
       if (now.stretch_l2 < kUnrollsExactly) aim = std::min(aim, kUnrolledStretch);
     }
-    if (now.stretch_999 <= aim) break;
+    if (now.stretch_999 <= aim) {
+      last = now;
+      break;
+    }
     if (options.local) {
       if (now.flips > 0 || (joining && now.stretch_999 > kPoorJoint * options.max_stretch)) break;
       solver.lower_tail(kWithin * options.max_stretch, r.uvs);
@@ -139,7 +150,7 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
     solver.squeeze({aim, options.squeeze_iterations, options.squeeze_ratio}, r.uvs);
   }
   clock.book(&Phase::solve);
-  finish(mesh, options, r);
+  finish(mesh, options, r, last ? &*last : nullptr);
   clock.book(&Phase::overlaps);
   if (r.injective || !r.within_bound || r.distortion.flips > 0) return;
   if (options.local && r.crossings.size() > kMostSeparable) return;
