@@ -6,24 +6,35 @@
 #include <map>
 #include <queue>
 
+#include "libatlas/charts/merge.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
 namespace {
 
-// What a union costs is bounded: by the neighbours tried for a fragment, and by the triangles of
-// all unions as a multiple of the mesh's, which keeps the time linear.
+// What a union costs is bounded: by the neighbours tried for a chart, and by the triangles of all
+// unions as a multiple of the mesh's, which keeps the time linear.
 struct Patience {
   std::size_t neighbours;
   double work, fill;  // fill: of its rectangle by a union, or as much as the sparser part
+  std::size_t few;    // charts of fewer triangles are tried, too, though they are no fragments
 };
-constexpr Patience kSmooth{2, 0.25, 0.45};
+// Of charts with fewer triangles than a cell the coarse mesh knows hardly more than the outline:
+// whether to merge them is seen here.
+constexpr Patience kSmooth{2, 1, 0.45, 40};
+constexpr Patience kFast{2, 0.25, 0.45, 0};
+constexpr Patience kBest{6, 4, 0.45, kNoIndex};
 // Scan noise divides charts that need not be divided: a work of 2 left armadillo with 56 to 59
 // charts for 41 smooth ones, 3 leaves 40 to 52, 6 leaves 38 to 52 in twice the time.
-constexpr Patience kNoisy{4, 3, 0.45};
-constexpr Patience kInCone{6, 3, 0.3};  // a limit on cones leaves many small charts, cheap to try
-constexpr double kSmallShare = 0.01;    // of the triangles, what is tried on smooth meshes
-constexpr double kMostL2 = 1.01;        // of a union's stretch, as when cells are merged
+constexpr Patience kNoisy{4, 3, 0.45, 0};
+// A limit on cones leaves many small charts, cheap to try.
+constexpr Patience kInCone{6, 3, 0.3, 0};
+constexpr double kSmallShare = 0.01;  // of the triangles, what is tried on smooth meshes
+constexpr double kMostL2 = 1.01;      // of a union's stretch, as when cells are merged
+constexpr double kWholeFill = 0.6;    // of a union of charts that are no fragments
+// Lengths of borders are compared in parts of a chart's whole border: where a mesh is symmetric
+// many are equal but for rounding.
+constexpr double kBorderParts = 1024;
 // Charts whose common border has shapes so different, by its length, do not go together; of short
 // borders that says nothing.
 constexpr double kMostMisfit = 0.1;
@@ -46,9 +57,9 @@ class Absorber {
       : input_(input),
         topology_(input.flatten.topology),
         charts_(charts),
-        patience_(input.flatten.options.cone_degrees > 0 ? kInCone
-                  : topology_.calm_normals.empty()       ? kSmooth
-                                                         : kNoisy),
+        patience_(choose_patience(input.flatten.options)),
+        seam_worth_(merge_options(input.flatten.options.max_stretch).seam_worth),
+        crease_cosine_(std::cos(input.flatten.options.crease_degrees * M_PI / 180)),
         work_(patience_.work * double(topology_.triangle_count())) {
     auto& label = input_.partition.chart;
     for (std::uint32_t k = 0; k < charts_.size(); ++k) {
@@ -60,15 +71,15 @@ class Absorber {
     using Entry = std::pair<std::size_t, std::uint32_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
     for (std::uint32_t k = 0; k < charts_.size(); ++k) {
-      if (charts_[k].fragment && worth_a_try(charts_[k]))
-        queue.push({charts_[k].triangles.size(), k});
+      candidate_.push_back(worth_a_try(charts_[k]));
+      if (candidate_[k]) queue.push({charts_[k].triangles.size(), k});
     }
     while (!queue.empty() && !context.cancelled() && work_ > 0) {
       const auto [size, k] = queue.top();
       queue.pop();
       if (charts_[k].triangles.size() != size) continue;  // it has changed since
       const std::uint32_t into = absorb(k);
-      if (into != kNoIndex && charts_[into].fragment) {
+      if (into != kNoIndex && candidate_[into]) {
         queue.push({charts_[into].triangles.size(), into});
       }
     }
@@ -81,9 +92,18 @@ class Absorber {
     double border;
   };
 
+  Patience choose_patience(const ChartOptions& options) const {
+    if (options.cone_degrees > 0) return kInCone;
+    if (!topology_.calm_normals.empty()) return kNoisy;
+    if (options.preset == ChartPreset::fast || options.keep_uv_charts) return kFast;
+    return options.preset == ChartPreset::best ? kBest : kSmooth;
+  }
+
   bool worth_a_try(const FlatChart& chart) const {
-    return !topology_.calm_normals.empty() ||
-           double(chart.triangles.size()) <= kSmallShare * double(topology_.triangle_count());
+    const std::size_t size = chart.triangles.size();
+    if (size < patience_.few) return true;
+    return chart.fragment && (!topology_.calm_normals.empty() ||
+                              double(size) <= kSmallShare * double(topology_.triangle_count()));
   }
 
   std::uint32_t absorb(std::uint32_t k) {
@@ -105,6 +125,9 @@ class Absorber {
       if (merged.empty() || merged.back().chart != n.chart) merged.push_back({n.chart, 0});
       merged.back().border += n.border;
     }
+    double whole = 0;
+    for (const Neighbour& n : merged) whole += n.border;
+    for (Neighbour& n : merged) n.border = std::round(kBorderParts * n.border / whole);
     std::stable_sort(merged.begin(), merged.end(),
                      [](const Neighbour& a, const Neighbour& b) { return a.border > b.border; });
     return merged;
@@ -140,6 +163,7 @@ class Absorber {
     const Motion motion = fit(k, into);
     if (motion.edges >= kLeastFitted && motion.misfit > kMostMisfit) return false;
     work_ -= double(size);
+    const double worth = worth_of_seam(k, into);
     std::vector<std::uint8_t> seams;
     for (const FlatChart* chart : {&a, &b}) {
       for (const std::uint32_t t : chart->triangles) seams.push_back(input_.partition.seams[t]);
@@ -152,9 +176,8 @@ class Absorber {
     ChartOutcome outcome =
         flatten_chart(input_.flatten, input_.partition, both,
                       {.cuts = 0, .joined = joined, .whole = true}, input_.scratch);
-    const bool flat = outcome.parts.empty() && outcome.flat.distortion.stretch_l2 <= kMostL2;
-    if (flat && fill(outcome.flat) >= std::min({patience_.fill, fill(a), fill(b)})) {
-      outcome.flat.triangles = std::move(both);
+    outcome.flat.triangles = std::move(both);
+    if (outcome.parts.empty() && is_better(outcome.flat, a, b, worth)) {
       outcome.flat.fragment = a.fragment && b.fragment;
       b = std::move(outcome.flat);
       a = FlatChart{};
@@ -166,6 +189,46 @@ class Absorber {
       for (const std::uint32_t t : chart->triangles) input_.partition.seams[t] = seams[i++];
     }
     return false;
+  }
+
+  // Whether a union is better than its parts. Fragments were meant to be one chart; what else is
+  // joined must not cost more stretch than the seam that it saves is worth.
+  bool is_better(const FlatChart& both, const FlatChart& a, const FlatChart& b,
+                 double worth) const {
+    if (both.distortion.stretch_l2 > kMostL2) return false;
+    if (a.fragment || b.fragment) {
+      return fill(both) >= std::min({patience_.fill, fill(a), fill(b)});
+    }
+    return fill(both) >= kWholeFill && energy(both) <= energy(a) + energy(b) + worth;
+  }
+
+  // What the seam between two charts is worth in stretch, as when cells are merged.
+  double worth_of_seam(std::uint32_t k, std::uint32_t into) {
+    if (piece_area_.empty()) measure_pieces();
+    const double piece = piece_area_[topology_.component[charts_[k].triangles.front()]];
+    double length = 0;
+    each_border(k, [&](std::uint32_t h, std::uint32_t other) {
+      if (other == into) length += border_weight(topology_, h, crease_cosine_);
+    });
+    return seam_worth_ * length * std::sqrt(piece);
+  }
+
+  void measure_pieces() {
+    piece_area_.assign(topology_.component_count, 0);
+    for (std::uint32_t t = 0; t < topology_.triangle_count(); ++t) {
+      if (topology_.component[t] != kNoIndex) {
+        piece_area_[topology_.component[t]] += topology_.areas[t];
+      }
+    }
+  }
+
+  double area(const FlatChart& chart) const {
+    double sum = 0;
+    for (const std::uint32_t t : chart.triangles) sum += topology_.areas[t];
+    return sum;
+  }
+  double energy(const FlatChart& chart) const {
+    return area(chart) * (chart.distortion.stretch_l2 * chart.distortion.stretch_l2 - 1);
   }
 
   // The uvs of both, 3 a triangle in ascending order, those of `a` moved.
@@ -238,15 +301,19 @@ class Absorber {
   const Topology& topology_;
   std::vector<FlatChart>& charts_;
   Patience patience_;
+  double seam_worth_;
+  double crease_cosine_;
   double work_;
+  std::vector<std::uint8_t> candidate_;  // 1 a chart: tried by itself, as what it joins with others
+  std::vector<double> piece_area_;       // empty until it is needed
   // Triangles of the union that was tried last of each two charts: the same again fails again.
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> failed_;
 };
 
 }  // namespace
 
-void absorb_fragments(const AbsorbInput& input, std::vector<FlatChart>& charts,
-                      const Context& context) {
+void absorb_charts(const AbsorbInput& input, std::vector<FlatChart>& charts,
+                   const Context& context) {
   Absorber(input, charts).run(context);
 }
 

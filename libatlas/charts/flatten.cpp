@@ -111,12 +111,10 @@ class Flattener {
     charts_ = {};
     result.charts = std::move(flats_);
     std::erase_if(result.charts, [](const FlatChart& chart) { return chart.triangles.empty(); });
-    if (split_ > 0 || input_.options.cone_degrees > 0) {
-      Stopwatch watch(cpu_seconds);
-      const auto scratch = pool_.take();
-      absorb_fragments({input_, partition_, *scratch}, result.charts, context);
-      result.timing.absorb_cpu = watch.lap();
-    }
+    Stopwatch watch(cpu_seconds);
+    const auto scratch = pool_.take();
+    absorb_charts({input_, partition_, *scratch}, result.charts, context);
+    result.timing.absorb_cpu = watch.lap();
     std::sort(result.charts.begin(), result.charts.end(),
               [](const FlatChart& a, const FlatChart& b) {
                 return a.triangles.front() < b.triangles.front();

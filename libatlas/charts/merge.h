@@ -24,6 +24,12 @@ struct MergeOptions {
   double crease_weight = 0.15;
 };
 
+// What merging may cost follows the bound asked for, or a wide bound would save no chart, and a
+// narrow one would be met by cutting afterwards: stretch in proportion to the bound's excess over
+// 1, losses of area to its square. Below the default, half as fast, for the fine flattening
+// is better than the coarse one that merging tries.
+MergeOptions merge_options(double max_stretch);
+
 struct MergeResult {
   std::vector<std::uint32_t> chart_of_cell;
   std::vector<std::uint8_t> joined;  // 1 an arc: its sides are one edge of one chart

@@ -18,11 +18,9 @@ namespace {
 
 using Frame = std::array<glm::dvec3, 2>;
 
-constexpr double kWidestRatio = 8;  // wider bounds than 3 merge no more
 // Narrower bounds than 1.025 merge no less: below it a fan's own error, of a mesh that unrolls
 // exactly, is larger than what merging would allow (cylinders at 1.001 came out in 9 to 39 charts;
 // from 0.1 on in one or two, while spheres need a thirtieth more).
-constexpr double kLeastRatio = 0.1;
 
 // The map from space to the plane that a cell's coarse flattening stands for: the rotation that
 // best takes its fan to its flat coordinates.
@@ -96,21 +94,6 @@ void spread_to_triangles(const Merged& merged, std::uint32_t first_label, Segmen
   }
 }
 
-// What merging may cost follows the bound asked for, or a wide bound would save no chart, and a
-// narrow one would be met by cutting afterwards: stretch in proportion to the bound's excess over
-// 1, losses of area to its square. Below the default, half as fast, for the fine flattening
-// is better than the coarse one that merging tries.
-void follow_bound(double max_stretch, MergeOptions& merge) {
-  const double usual = ChartOptions{}.max_stretch;
-  if (max_stretch == usual) return;
-  double ratio = std::min((max_stretch - 1) / (usual - 1), kWidestRatio);
-  if (ratio < 1) ratio = std::sqrt(std::max(ratio, kLeastRatio));
-  merge.limits.stretch_high = 1 + (merge.limits.stretch_high - 1) * ratio;
-  merge.limits.stretch_l2 = 1 + (merge.limits.stretch_l2 - 1) * ratio * ratio;
-  merge.seam_worth *= ratio * ratio;
-  merge.tail_worth *= std::max(1.0, ratio);
-}
-
 // Meshes of small pieces are segmented so many triangles at a time: 10^5 pieces would need much
 // memory at once, and parts that fit the processor's caches are faster.
 constexpr std::size_t kTrianglesAtATime = 50000, kSmallPiece = 5000;
@@ -170,8 +153,7 @@ class Segmenter {
     result_.timing.cells_cpu += watch.lap();
     const CoarseMesh coarse = build_coarse(topology, options_.crease_degrees, cells);
     result_.timing.coarse_cpu += watch.lap();
-    MergeOptions merge;
-    follow_bound(options_.max_stretch, merge);
+    MergeOptions merge = merge_options(options_.max_stretch);
     ExtremeNormals normals;
     if (cone_ > 0) {
       // Ends are kept clear of the limit: what is measured in the end is rounded otherwise.
