@@ -95,7 +95,7 @@ class Absorber {
   Patience choose_patience(const ChartOptions& options) const {
     if (options.cone_degrees > 0) return kInCone;
     if (!topology_.calm_normals.empty()) return kNoisy;
-    if (options.preset == ChartPreset::fast || options.keep_uv_charts) return kFast;
+    if (options.preset == ChartPreset::fast) return kFast;
     return options.preset == ChartPreset::best ? kBest : kSmooth;
   }
 
