@@ -30,7 +30,7 @@ class LocalChart {
              std::span<const std::uint32_t> triangles);
 
   std::span<const std::uint32_t> triangles() const { return triangles_; }
-  LocalMesh mesh() const { return {positions, corners, density}; }
+  LocalMesh mesh() const { return {positions, corners, density, opposite}; }
 
   std::vector<Vec3d> positions;  // relative to the first vertex, scaled as the topology
   std::vector<std::array<std::uint32_t, 3>> corners;

@@ -98,7 +98,7 @@ void spread_to_triangles(const Merged& merged, std::uint32_t first_label, Segmen
 // memory at once, and parts that fit the processor's caches are faster.
 constexpr std::size_t kTrianglesAtATime = 50000, kSmallPiece = 5000;
 
-constexpr double kMostRings = 12;  // wider bands are dear on fine meshes
+constexpr double kMostRings = 8;  // wider bands are dear on fine meshes
 
 class Segmenter {
  public:

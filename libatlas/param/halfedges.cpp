@@ -4,6 +4,8 @@ namespace atlas::param {
 
 void HalfEdges::build(const LocalMesh& mesh) {
   triangles_ = mesh.triangles;
+  opposite_ = mesh.opposite;
+  if (!opposite_.empty()) return;
   const std::uint32_t count = static_cast<std::uint32_t>(3 * triangles_.size());
   first_.assign(mesh.positions.size() + 1, 0);
   for (const auto& tri : triangles_) {
@@ -13,19 +15,20 @@ void HalfEdges::build(const LocalMesh& mesh) {
   // Outgoing half-edges of each vertex; filling moves first_[v] to the end of v's range.
   out_.resize(count);
   for (std::uint32_t h = 0; h < count; ++h) out_[first_[from(h)]++] = h;
-  opposite_.assign(count, none);
+  found_.assign(count, none);
   for (std::uint32_t h = 0; h < count; ++h) {
-    if (opposite_[h] != none) continue;
+    if (found_[h] != none) continue;
     const std::uint32_t a = from(h), b = to(h);
     for (std::uint32_t i = b == 0 ? 0 : first_[b - 1]; i < first_[b]; ++i) {
       const std::uint32_t g = out_[i];
-      if (opposite_[g] == none && to(g) == a && g != h) {
-        opposite_[h] = g;
-        opposite_[g] = h;
+      if (found_[g] == none && to(g) == a && g != h) {
+        found_[h] = g;
+        found_[g] = h;
         break;
       }
     }
   }
+  opposite_ = found_;
 }
 
 void HalfEdges::border(Border& out) const {

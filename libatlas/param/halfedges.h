@@ -14,8 +14,8 @@ class HalfEdges {
  public:
   static constexpr std::uint32_t none = 0xffffffff;
 
-  // Finds opposites in O(n). Where more than two triangles meet in an edge, pairs are made in order
-  // of id.
+  // Takes the mesh's opposites, or finds them in O(n). Where more than two triangles meet in an
+  // edge, pairs are made in order of id.
   void build(const LocalMesh& mesh);
 
   std::uint32_t opposite(std::uint32_t h) const { return opposite_[h]; }
@@ -40,7 +40,8 @@ class HalfEdges {
 
  private:
   std::span<const std::array<std::uint32_t, 3>> triangles_;
-  std::vector<std::uint32_t> opposite_, first_, out_;
+  std::span<const std::uint32_t> opposite_;
+  std::vector<std::uint32_t> found_, first_, out_;
 };
 
 }  // namespace atlas::param

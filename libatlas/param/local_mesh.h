@@ -22,6 +22,9 @@ struct LocalMesh {
   // Linear density wanted a triangle (uv length per surface length, > 0), 1 a triangle; empty: 1
   // everywhere. Distortion is measured against the surface scaled by it.
   std::span<const double> density = {};
+  // The other side of each half-edge (3 t + k runs from corner k of triangle t to corner k + 1),
+  // 0xffffffff at the border; empty: to be found by the vertices' numbers.
+  std::span<const std::uint32_t> opposite = {};
 };
 
 }  // namespace atlas
