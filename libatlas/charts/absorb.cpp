@@ -6,7 +6,7 @@
 #include <map>
 #include <queue>
 
-#include "libatlas/charts/merge.h"
+#include "libatlas/charts/merge_options.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {

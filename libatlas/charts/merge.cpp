@@ -5,7 +5,6 @@
 #include <cmath>
 #include <queue>
 
-#include "libatlas/charts/charts.h"
 #include "libatlas/charts/moments.h"
 #include "libatlas/charts/runs.h"
 #include "libatlas/core/glm_bridge.h"
@@ -36,9 +35,6 @@ struct Refusal {
 };
 // A trial's flattening is not quite the best one, so the costs count by less than all.
 constexpr double kSureEnergy = 0.6, kSureArea = 0.4;
-
-constexpr double kWidestRatio = 8;  // wider bounds than 3 merge no more
-constexpr double kLeastRatio = 0.1;
 
 struct CoarseChart {
   std::vector<std::uint32_t> cells;
@@ -372,19 +368,6 @@ class Merger {
 };
 
 }  // namespace
-
-MergeOptions merge_options(double max_stretch) {
-  MergeOptions merge;
-  const double usual = ChartOptions{}.max_stretch;
-  if (max_stretch == usual) return merge;
-  double ratio = std::min((max_stretch - 1) / (usual - 1), kWidestRatio);
-  if (ratio < 1) ratio = std::sqrt(std::max(ratio, kLeastRatio));
-  merge.limits.stretch_high = 1 + (merge.limits.stretch_high - 1) * ratio;
-  merge.limits.stretch_l2 = 1 + (merge.limits.stretch_l2 - 1) * ratio * ratio;
-  merge.seam_worth *= ratio * ratio;
-  merge.tail_worth *= std::max(1.0, ratio);
-  return merge;
-}
 
 MergeResult merge_cells(const CoarseMesh& mesh, const std::vector<std::uint32_t>& piece,
                         const MergeOptions& options, const Context& context) {
