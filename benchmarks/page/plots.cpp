@@ -27,35 +27,6 @@ bool usable(const Row& row) {
   return row.failure.empty() && !row.values.empty() && row.cpu_seconds > 0 && row.threads == 0;
 }
 
-// Points that lie close together on the plot share one label, at the first of them.
-void join_labels(std::vector<Series>& all) {
-  double low_x = 1e300, high_x = 0, low_y = 1e300, high_y = 0;
-  for (const Series& s : all)
-    for (const PlotPoint& p : s.points) {
-      low_x = std::min(low_x, p.x);
-      high_x = std::max(high_x, p.x);
-      low_y = std::min(low_y, p.y);
-      high_y = std::max(high_y, p.y);
-    }
-  const double width = std::log(high_x / low_x) + 1e-9, height = std::log(high_y / low_y) + 1e-9;
-  std::vector<PlotPoint*> labelled;
-  for (Series& s : all)
-    for (PlotPoint& p : s.points) {
-      if (p.label.empty()) continue;
-      const auto near = std::find_if(labelled.begin(), labelled.end(), [&](const PlotPoint* q) {
-        return std::abs(std::log(p.x / q->x)) < 0.15 * width &&
-               std::abs(std::log(p.y / q->y)) < 0.03 * height;
-      });
-      if (near == labelled.end()) {
-        labelled.push_back(&p);
-        continue;
-      }
-      if (("; " + (*near)->label + "; ").find("; " + p.label + "; ") == std::string::npos)
-        (*near)->label += "; " + p.label;
-      p.label.clear();
-    }
-}
-
 // Largest over smallest value of a coordinate.
 double spread(const std::vector<Series>& all, double PlotPoint::*coordinate) {
   double low = 1e300, high = 0;
@@ -65,6 +36,55 @@ double spread(const std::vector<Series>& all, double PlotPoint::*coordinate) {
       high = std::max(high, p.*coordinate);
     }
   return high / low;
+}
+
+// A coordinate as drawn, in shares of its axis.
+class Axis {
+ public:
+  Axis(const std::vector<Series>& all, double PlotPoint::*coordinate, bool log)
+      : coordinate_(coordinate), log_(log) {
+    double low = 1e300, high = -1e300;
+    for (const Series& s : all)
+      for (const PlotPoint& p : s.points) {
+        low = std::min(low, place(p));
+        high = std::max(high, place(p));
+      }
+    length_ = high - low + 1e-300;
+  }
+  double distance(const PlotPoint& a, const PlotPoint& b) const {
+    return std::abs(place(a) - place(b)) / length_;
+  }
+
+ private:
+  double place(const PlotPoint& p) const {
+    return log_ ? std::log(p.*coordinate_) : p.*coordinate_;
+  }
+
+  double PlotPoint::*coordinate_;
+  bool log_;
+  double length_;
+};
+
+// Points so close together on the plot that their labels would overlap share one, at the first.
+void join_labels(Plot& plot) {
+  constexpr double kLabelWidth = 0.15, kLabelHeight = 0.05;  // of the plot
+  const Axis across(plot.series, &PlotPoint::x, plot.log_x),
+      up(plot.series, &PlotPoint::y, plot.log_y);
+  std::vector<PlotPoint*> labelled;
+  for (Series& s : plot.series)
+    for (PlotPoint& p : s.points) {
+      if (p.label.empty()) continue;
+      const auto near = std::find_if(labelled.begin(), labelled.end(), [&](const PlotPoint* q) {
+        return across.distance(p, *q) < kLabelWidth && up.distance(p, *q) < kLabelHeight;
+      });
+      if (near == labelled.end()) {
+        labelled.push_back(&p);
+        continue;
+      }
+      if (("; " + (*near)->label + "; ").find("; " + p.label + "; ") == std::string::npos)
+        (*near)->label += "; " + p.label;
+      p.label.clear();
+    }
 }
 
 // One plot a stage that was run with several settings.
@@ -92,9 +112,9 @@ void error_plots(const Results& results, std::vector<Plot>& plots) {
     for (Series& s : plot.series)
       if (s.lines)
         for (PlotPoint& p : s.points) p.label.clear();
-    join_labels(plot.series);
     plot.log_x = spread(plot.series, &PlotPoint::x) > 8;  // less, and a log axis has no labels
     plot.log_y = spread(plot.series, &PlotPoint::y) > 8;
+    join_labels(plot);
     if (!plot.series.empty()) plots.push_back(plot);
   }
 }

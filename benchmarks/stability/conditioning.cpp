@@ -229,7 +229,7 @@ void check_solvers(CheckList& list, const PolarDisc& disc, Row& row) {
   param::MultigridSolver multigrid;
   std::fill(x.begin(), x.end(), glm::dvec2(0));
   const bool iterated =
-      multigrid.build(s.matrix) && multigrid.solve(s.matrix, s.load, {1e-11 * s.area(), 60}, x);
+      multigrid.build(s.matrix) && multigrid.solve(s.matrix, s.load, {1e-11 * s.area(), 0, 60}, x);
   row.values = {{"condition", cond},
                 {"residual", left},
                 {"error", error},
