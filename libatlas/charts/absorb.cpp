@@ -32,6 +32,9 @@ constexpr Patience kInCone{6, 3, 0.3, 0};
 constexpr double kSmallShare = 0.01;  // of the triangles, what is tried on smooth meshes
 constexpr double kMostL2 = 1.01;      // of a union's stretch, as when cells are merged
 constexpr double kWholeFill = 0.6;    // of a union of charts that are no fragments
+// Charts apart along creases, as the sides of a box, merging knew well enough: their seams weigh
+// less than this part of their length.
+constexpr double kHidden = 0.5;
 // Lengths of borders are compared in parts of a chart's whole border: where a mesh is symmetric
 // many are equal but for rounding.
 constexpr double kBorderParts = 1024;
@@ -162,8 +165,9 @@ class Absorber {
     failed_size = size;
     const Motion motion = fit(k, into);
     if (motion.edges >= kLeastFitted && motion.misfit > kMostMisfit) return false;
+    const Seam seam = seam_between(k, into);
+    if (!a.fragment && !b.fragment && seam.weight < kHidden * seam.length) return false;
     work_ -= double(size);
-    const double worth = worth_of_seam(k, into);
     std::vector<std::uint8_t> seams;
     for (const FlatChart* chart : {&a, &b}) {
       for (const std::uint32_t t : chart->triangles) seams.push_back(input_.partition.seams[t]);
@@ -177,7 +181,7 @@ class Absorber {
         flatten_chart(input_.flatten, input_.partition, both,
                       {.cuts = 0, .joined = joined, .whole = true}, input_.scratch);
     outcome.flat.triangles = std::move(both);
-    if (outcome.parts.empty() && is_better(outcome.flat, a, b, worth)) {
+    if (outcome.parts.empty() && is_better(outcome.flat, a, b, worth_of(seam, a))) {
       outcome.flat.fragment = a.fragment && b.fragment;
       b = std::move(outcome.flat);
       a = FlatChart{};
@@ -202,15 +206,24 @@ class Absorber {
     return fill(both) >= kWholeFill && energy(both) <= energy(a) + energy(b) + worth;
   }
 
-  // What the seam between two charts is worth in stretch, as when cells are merged.
-  double worth_of_seam(std::uint32_t k, std::uint32_t into) {
-    if (piece_area_.empty()) measure_pieces();
-    const double piece = piece_area_[topology_.component[charts_[k].triangles.front()]];
-    double length = 0;
+  struct Seam {
+    double length = 0, weight = 0;  // weight: creases count less, they hide it
+  };
+  Seam seam_between(std::uint32_t k, std::uint32_t into) const {
+    Seam seam;
     each_border(k, [&](std::uint32_t h, std::uint32_t other) {
-      if (other == into) length += border_weight(topology_, h, crease_cosine_);
+      if (other != into) return;
+      seam.length += edge_length(topology_, h);
+      seam.weight += border_weight(topology_, h, crease_cosine_);
     });
-    return seam_worth_ * length * std::sqrt(piece);
+    return seam;
+  }
+
+  // What a seam of the piece that `chart` lies in is worth in stretch, as when cells are merged.
+  double worth_of(const Seam& seam, const FlatChart& chart) {
+    if (piece_area_.empty()) measure_pieces();
+    const double piece = piece_area_[topology_.component[chart.triangles.front()]];
+    return seam_worth_ * seam.weight * std::sqrt(piece);
   }
 
   void measure_pieces() {
