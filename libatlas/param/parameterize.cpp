@@ -152,7 +152,7 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
       solver.lower_tail(kWithin * options.max_stretch, r.uvs);
       break;
     }
-    if (mesh.triangles.size() >= kLeastHopeless &&
+    if (now.flips == 0 && mesh.triangles.size() >= kLeastHopeless &&
         now.stretch_999 > kMostSqueezed * options.max_stretch) {
       last = now;
       break;
