@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <numbers>
 #include <random>
 
@@ -83,6 +84,23 @@ Result<LoadedScene> moved(const Scene& scene, double offset, const Context& cont
   return read;
 }
 
+// How many of the cases keep their charts within 3 %, and what the others came out with.
+struct Kept {
+  std::size_t reference;
+  int cases = 0, kept = 0;
+  std::map<std::size_t, int> others = {};
+  void add(const ChartSet& set) {
+    const double change = std::abs(double(set.charts.size()) / double(reference) - 1);
+    ++cases;
+    change <= 0.03 ? void(++kept) : void(++others[set.charts.size()]);
+  }
+  std::string text() const {
+    std::string text = fmt::format("{} of {}", kept, cases);
+    for (const auto& [charts, times] : others) text += fmt::format(", {} x {}", times, charts);
+    return text;
+  }
+};
+
 bool same(const ChartSet& set, const ChartSet& reference, double factor) {
   if (set.triangle_chart != reference.triangle_chart || set.triangle_uv != reference.triangle_uv ||
       set.uvs.size() != reference.uvs.size())
@@ -146,6 +164,40 @@ Result<std::string> charts_robust_row(const std::string& name, const LoadedScene
                      reference->charts.size(), reference->distortion.stretch_l2, units.text(),
                      rotations.text(), offsets.text(), bits ? "same bits" : "DIFFER",
                      threads ? "same bits" : "DIFFER");
+}
+
+std::string charts_cases_head() {
+  return "| mesh | charts | rotations kept within 3 % | units | offsets |\n|---|---|---|---|---|";
+}
+
+Result<std::string> charts_cases_row(const std::string& name, const LoadedScene& loaded, int cases,
+                                     const Context& context) {
+  const Scene& scene = loaded.scene;
+  const Result<ChartSet> reference = charts_of(scene.positions, scene, 0, context);
+  if (!reference.ok()) return reference.status();
+  Kept rotations{reference->charts.size()}, units = rotations, offsets = rotations;
+  std::mt19937_64 random(1);
+  const auto power = [&](double from, double to) {  // of ten
+    return std::pow(10, from + (to - from) * double(random() >> 11) * 0x1p-53);
+  };
+  for (int i = 1; i <= cases; ++i) {
+    const Result<ChartSet> rotated =
+        charts_of(turned(scene.positions, 1000 + std::uint64_t(i)), scene, 0, context);
+    if (!rotated.ok()) return rotated.status();
+    rotations.add(*rotated);
+    const Result<ChartSet> unit =
+        charts_of(scaled(scene.positions, power(-6, 6)), scene, 0, context);
+    if (!unit.ok()) return unit.status();
+    units.add(*unit);
+    const Result<LoadedScene> far =
+        moved(scene, power(0, 6) * std::sqrt(reference->surface_area), context);
+    if (!far.ok()) return far.status();
+    const Result<ChartSet> offset = charts_of(far->scene.positions, far->scene, 0, context);
+    if (!offset.ok()) return offset.status();
+    offsets.add(*offset);
+  }
+  return fmt::format("| {} | {} | {} | {} | {} |", name, reference->charts.size(), rotations.text(),
+                     units.text(), offsets.text());
 }
 
 }  // namespace atlas::bench

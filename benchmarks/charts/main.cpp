@@ -3,6 +3,7 @@
 //   atlas-bench-charts --sweep docs/images/charts-error --mesh figure:30000
 //   atlas-bench-charts --picture docs/images/charts.png --mesh figure:30000
 //   atlas-bench-charts --robust --mesh models/*.obj
+//   atlas-bench-charts --cases 16 --mesh models/*.obj
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -23,7 +24,7 @@ struct Arguments {
                                   "shaft:20000",  "bracket:8000", "terraces:30000"};
   bool table = false, robust = false;
   std::string sweep, picture;
-  int repeats = 3, turns = 6;
+  int repeats = 3, turns = 6, cases = 0;
 };
 
 std::string label(const std::string& mesh) {
@@ -37,6 +38,7 @@ Status run(const Arguments& a) {
   std::vector<LoadedScene> drawn;
   if (a.table) fmt::print("{}\n", charts_table_head());
   if (a.robust) fmt::print("{}\n", charts_robust_head());
+  if (a.cases > 0) fmt::print("{}\n", charts_cases_head());
   for (const std::string& mesh : a.meshes) {
     Result<LoadedScene> scene = charts_work(mesh, context);
     if (!scene.ok()) return scene.status();
@@ -44,10 +46,11 @@ Status run(const Arguments& a) {
       drawn.push_back(std::move(*scene));
       continue;
     }
-    if (a.table || a.robust) {
-      const Result<std::string> row =
-          a.table ? charts_table_row(label(mesh), *scene, context)
-                  : charts_robust_row(label(mesh), *scene, a.turns, context);
+    if (a.sweep.empty()) {
+      const Result<std::string> row = a.table ? charts_table_row(label(mesh), *scene, context)
+                                      : a.robust
+                                          ? charts_robust_row(label(mesh), *scene, a.turns, context)
+                                          : charts_cases_row(label(mesh), *scene, a.cases, context);
       if (!row.ok()) return row.status();
       fmt::print("{}\n", *row);
       std::fflush(stdout);
@@ -74,6 +77,9 @@ int main(int argc, char** argv) {
   kind->add_option("--sweep", a.sweep, "presets and bounds; draws FILE.svg and FILE.png");
   kind->add_option("--picture", a.picture, "PNG of the meshes' charts side by side");
   kind->add_flag("--robust", a.robust, "what units, directions, places and threads change");
+  kind->add_option("--cases", a.cases,
+                   "how often so many random rotations, units and offsets keep the charts")
+      ->check(CLI::Range(1, 10000));
   kind->require_option(1);
   app.add_option("--repeats", a.repeats, "of --sweep: the least CPU time counts")
       ->check(CLI::Range(1, 100))
