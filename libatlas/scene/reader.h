@@ -27,7 +27,7 @@ struct LoadedScene {
 // format.
 //
 // Positions are parsed in double. When the centre of the box of the used vertices is farther from 0
-// than 8 times the box's diagonal, Scene::origin is that centre rounded to a multiple of the
+// than the box's diagonal, Scene::origin is that centre rounded to a multiple of a quarter of the
 // next power of two above the diagonal, and positions are stored relative to it; otherwise the
 // origin is 0 and positions are the file's own, rounded to float. Materials and objects without a
 // triangle are not listed; those that are come in the order of first use.

@@ -154,8 +154,8 @@ Transform { children [
   const Scene& s = loaded->scene;
   EXPECT_EQ(s.indices, (std::vector<std::uint32_t>{3, 2, 1, 3, 1, 0}));  // mirrored: turned round
   EXPECT_EQ(s.texcoord_indices, s.indices);
-  EXPECT_NEAR(s.positions[1].x, 10, 1e-6);
-  EXPECT_NEAR(s.positions[1].y, 2, 1e-6);
+  EXPECT_NEAR(s.origin.x + s.positions[1].x, 10, 1e-6);
+  EXPECT_NEAR(s.origin.y + s.positions[1].y, 2, 1e-6);
   EXPECT_EQ(loaded->defects.count(DefectKind::index_out_of_range), 1u);
   EXPECT_EQ(loaded->defects.count(DefectKind::element_ignored), 1u);
 }

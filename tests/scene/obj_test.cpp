@@ -262,31 +262,33 @@ TEST(Obj, FarScenesGetAnOriginAndKeepTheirShape) {
   const TempFolder folder;
   std::mt19937 random(11);
   std::uniform_real_distribution<double> unit(0, 20);
-  std::string near, far;
   std::vector<std::array<double, 3>> points;
-  for (int i = 0; i < 300; ++i) {
-    points.push_back({unit(random), unit(random), unit(random)});
-    const auto& p = points.back();
-    near += fmt::format("v {} {} {}\n", p[0], p[1], p[2]);
-    far += fmt::format("v {:.9f} {:.9f} {:.9f}\n", p[0] + 4.5e6, p[1] - 7.25e6, p[2] + 100);
-  }
-  for (int i = 1; i + 2 <= 300; ++i) {
-    const std::string face = fmt::format("f {} {} {}\n", i, i + 1, i + 2);
-    near += face;
-    far += face;
-  }
-  // A stray vertex that no triangle uses changes nothing.
-  far += "v 0 0 0\n";
-  EXPECT_EQ(load(folder.write("near.obj", near)).scene.origin, Vec3d{});
-  const LoadedScene loaded = load(folder.write("far.obj", far));
-  const Vec3d& o = loaded.scene.origin;
-  EXPECT_NE(o, Vec3d{});
-  EXPECT_EQ(o.x, std::round(o.x / 32) * 32);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3f& p = loaded.scene.positions[i];
-    EXPECT_NEAR(o.x + p.x, points[i][0] + 4.5e6, 4e-6);
-    EXPECT_NEAR(o.y + p.y, points[i][1] - 7.25e6, 4e-6);
-    EXPECT_NEAR(o.z + p.z, points[i][2] + 100, 4e-6);
+  for (int i = 0; i < 300; ++i) points.push_back({unit(random), unit(random), unit(random)});
+  const auto written = [&](const std::array<double, 3>& offset) {
+    std::string text;
+    for (const auto& p : points) {
+      text += fmt::format("v {:.9f} {:.9f} {:.9f}\n", p[0] + offset[0], p[1] + offset[1],
+                          p[2] + offset[2]);
+    }
+    for (int i = 1; i + 2 <= 300; ++i) text += fmt::format("f {} {} {}\n", i, i + 1, i + 2);
+    return text + "v 0 0 0\n";  // a stray vertex that no triangle uses changes nothing
+  };
+  EXPECT_EQ(load(folder.write("near.obj", written({0, 0, 0}))).scene.origin, Vec3d{});
+  EXPECT_EQ(load(folder.write("near.obj", written({-10, 8, -10}))).scene.origin, Vec3d{});
+  for (const std::array<double, 3>& offset :
+       {std::array<double, 3>{4.5e6, -7.25e6, 100}, {60, -40, 0}, {0, 0, 30}}) {
+    const LoadedScene loaded = load(folder.write("far.obj", written(offset)));
+    const double o[3] = {loaded.scene.origin.x, loaded.scene.origin.y, loaded.scene.origin.z};
+    EXPECT_NE(loaded.scene.origin, Vec3d{});
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_EQ(o[k], std::round(o[k] / 16) * 16);
+      EXPECT_NEAR(o[k], offset[k] + 10, 9);
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3f& p = loaded.scene.positions[i];
+      const double q[3] = {p.x, p.y, p.z};
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(o[k] + q[k], points[i][k] + offset[k], 1.1e-6);
+    }
   }
 }
 
