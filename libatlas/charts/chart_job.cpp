@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "libatlas/charts/split.h"
+#include "libatlas/charts/unroll.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/param/orient.h"
@@ -15,6 +16,9 @@ namespace {
 // A projection this close to isometric is taken without asking the solver.
 constexpr double kPlanarStretch = 1.001;
 constexpr double kFastPlanarStretch = 1.1;
+// Within a narrower cone a projection does.
+constexpr double kFlatCone = 1 * M_PI / 180;
+constexpr double kSameBank = 1e-6;  // of an edge: how near banks of a cut are that closes again
 // A chart with holes is tried uncut when it is not a tube; a tube's normals exceed this cone.
 constexpr double kOpenCone = 85 * M_PI / 180;
 // Altitude kept for slivers, relative to the square root of the chart's area.
@@ -195,6 +199,12 @@ class ChartJob {
     return divide(input_.topology, chart_, pair);
   }
 
+  double min_altitude() const {
+    double area = 0;
+    for (const std::uint32_t t : chart_.triangles()) area += input_.topology.areas[t];
+    return kMinAltitude * std::sqrt(area);
+  }
+
   ParamOptions param_options(const LocalMesh& mesh) {
     const ChartOptions& options = input_.options;
     ParamOptions param;
@@ -209,9 +219,7 @@ class ChartJob {
         std::min(options.max_stretch,
                  options.preset == ChartPreset::fast ? kFastPlanarStretch : kPlanarStretch);
     param.axis = from_glm(glm::dvec3(to_glm(cone_.axis)));
-    double area = 0;
-    for (const std::uint32_t t : chart_.triangles()) area += input_.topology.areas[t];
-    param.min_altitude = kMinAltitude * std::sqrt(area);
+    param.min_altitude = min_altitude();
     if (!kept_uvs_.empty()) {
       start_uvs_.resize(mesh.positions.size());
       for (std::size_t i = 0; i < kept_uvs_.size(); ++i) {
@@ -227,9 +235,59 @@ class ChartJob {
     return param;
   }
 
-  bool flatten(ChartOutcome& outcome) {
+  // Lays a chart that unrolls flat without asking the solver. False if it does not, or would
+  // overlap itself.
+  bool unroll() {
+    const bool bent = cone_.angle > kFlatCone && chart_.density.empty() && kept_uvs_.empty();
+    if (!bent || !lay_unrolled()) return false;
+    if (!result_.injective && !slits_closed_ && close_flat_slits()) {
+      slits_closed_ = true;
+      build(chart_.triangles());
+      if (!lay_unrolled()) return false;
+    }
+    return result_.injective;
+  }
+
+  bool lay_unrolled() {
+    if (!unroll_chart(chart_, min_altitude(), result_.uvs)) return false;
     const LocalMesh mesh = chart_.mesh();
-    result_ = parameterize(mesh, param_options(mesh), scratch_.workspace);
+    result_.distortion = measure_distortion(mesh, result_.uvs);
+    result_.within_bound =
+        result_.distortion.stretch_999 <= std::min(kPlanarStretch, input_.options.max_stretch);
+    if (!result_.within_bound) return false;
+    result_.injective = check_injectivity(mesh, result_.uvs).injective;
+    return true;
+  }
+
+  // Cuts whose banks lie upon each other in result_.uvs are needed no more.
+  bool close_flat_slits() {
+    const auto at = [&](std::uint32_t h) {
+      return to_glm(result_.uvs[chart_.corners[h / 3][h % 3]]);
+    };
+    bool any = false;
+    for (std::uint32_t h = 0; h < chart_.opposite.size(); ++h) {
+      const std::uint32_t own = 3 * chart_.triangles()[h / 3] + h % 3;
+      if (chart_.opposite[h] != kNoIndex || !partition_.seam(own)) continue;
+      const std::uint32_t other = input_.topology.opposite[own];
+      const std::uint32_t o = 3 * partition_.local[other / 3] + other % 3;
+      const double most = kSameBank * glm::distance(at(h), at(next_half_edge(h)));
+      if (glm::distance(at(h), at(next_half_edge(o))) > most ||
+          glm::distance(at(next_half_edge(h)), at(o)) > most) {
+        continue;
+      }
+      for (const std::uint32_t side : {own, other}) {
+        partition_.seams[side / 3] &= static_cast<std::uint8_t>(~(1u << (side % 3)));
+      }
+      any = true;
+    }
+    return any;
+  }
+
+  bool flatten(ChartOutcome& outcome) {
+    if (!unroll()) {
+      const LocalMesh mesh = chart_.mesh();
+      result_ = parameterize(mesh, param_options(mesh), scratch_.workspace);
+    }
     const bool single = chart_.triangles().size() == 1;
     if (!single && !(result_.injective && result_.within_bound)) return false;
     FlatChart& flat = outcome.flat;
@@ -257,6 +315,7 @@ class ChartJob {
   ChartEffort effort_;
   ClosedCuts closed_cuts_;
   int closings_ = 0;
+  bool slits_closed_ = false;  // those that opened a chart that unrolls
   NormalCone cone_;
   ParamResult result_;            // of the last attempt
   std::vector<Vec2d> kept_uvs_;   // 1 a corner, or empty: to go on from

@@ -16,6 +16,18 @@ constexpr double kCurvature = 2e-4, kRoughness = 5e-3;
 constexpr double kClosing = 1e-3;
 constexpr double kFlatSpread = 1e-6;  // of normals in one plane, as in merging
 
+// A triangle in its plane: corners at (0, 0), (length, 0) and (along, height).
+struct Flat {
+  Flat(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) : length(glm::length(b - a)) {
+    along = glm::dot(c - a, b - a) / length;
+    height = glm::length(glm::cross(b - a, c - a)) / length;
+  }
+  // From the first corner to the third, if the unit vector e leads to the second.
+  glm::dvec2 rise(const glm::dvec2& e) const { return along * e + height * glm::dvec2(-e.y, e.x); }
+
+  double length, along, height;
+};
+
 class Unroller {
  public:
   Unroller(const Topology& topology, const Cells& cells, CoarseMesh& mesh)
@@ -152,15 +164,10 @@ class Unroller {
 
   // Lays the triangle of h with that edge from a to b, to its left.
   void put(std::size_t i, std::uint32_t h, const glm::dvec2& a, const glm::dvec2& b) {
-    const glm::dvec3 edge = point(next_half_edge(h)) - point(h),
-                     side = point(previous_half_edge(h)) - point(h);
-    const double squared = glm::dot(edge, edge);
-    const double along = glm::dot(side, edge) / squared;
-    const double height = glm::length(glm::cross(edge, side)) / squared;
-    const glm::dvec2 d = b - a;
     flat_[i][h % 3] = a;
     flat_[i][next_half_edge(h) % 3] = b;
-    flat_[i][previous_half_edge(h) % 3] = a + along * d + height * glm::dvec2(-d.y, d.x);
+    const Flat flat(point(h), point(next_half_edge(h)), point(previous_half_edge(h)));
+    flat_[i][previous_half_edge(h) % 3] = a + flat.rise((b - a) / flat.length);
   }
 
   const Topology& topology_;
@@ -172,7 +179,80 @@ class Unroller {
   std::vector<std::array<glm::dvec2, 3>> flat_;  // 1 a queue entry
 };
 
+// How far from its place a corner may come, of the edge across it, before a chart counts as curved:
+// what rounding of coordinates adds up to from triangle to triangle is less.
+constexpr double kMostGap = 0.02;
+
+class ChartUnroller {
+ public:
+  ChartUnroller(const LocalChart& chart, double min_altitude, std::vector<Vec2d>& uvs)
+      : chart_(chart), min_altitude_(min_altitude), uvs_(uvs) {}
+
+  bool run() {
+    uvs_.assign(chart_.positions.size(), {});
+    placed_.assign(chart_.positions.size(), 0);
+    reached_.assign(chart_.corners.size(), 0);
+    place(vertex(0), glm::dvec2(0));
+    place(vertex(1), {glm::distance(point(0), point(1)), 0});
+    if (!lay({0, {1, 0}})) return false;
+    queue_.push_back({0, {1, 0}});
+    for (std::size_t i = 0; i < queue_.size(); ++i) {
+      const Side side = queue_[i];
+      const std::uint32_t h = chart_.opposite[side.half_edge];
+      if (h != kNoIndex && !reached_[h / 3] && !lay({h, -side.direction})) return false;
+    }
+    return true;
+  }
+
+ private:
+  // A half-edge of a triangle that is laid, and the unit vector along it. Directions are handed on
+  // from triangle to triangle, not found from the ends: errors of those would grow exponentially
+  // over triangles that are higher than wide.
+  struct Side {
+    std::uint32_t half_edge;
+    glm::dvec2 direction;
+  };
+
+  std::uint32_t vertex(std::uint32_t h) const { return chart_.corners[h / 3][h % 3]; }
+  glm::dvec3 point(std::uint32_t h) const { return to_glm(chart_.positions[vertex(h)]); }
+  void place(std::uint32_t v, const glm::dvec2& p) {
+    uvs_[v] = from_glm(p);
+    placed_[v] = 1;
+  }
+
+  // Lays the triangle of that side, whose ends are placed: the corner across it gets its place, or
+  // must lie there.
+  bool lay(const Side& side) {
+    const std::uint32_t h = side.half_edge, g = next_half_edge(h), k = previous_half_edge(h);
+    reached_[h / 3] = 1;
+    const Flat flat(point(h), point(g), point(k));
+    const glm::dvec2 first = flat.rise(side.direction),
+                     second = first - flat.length * side.direction;
+    const double to_first = glm::length(first), to_second = glm::length(second);
+    // Not so for triangles without length, either.
+    const double longest = std::max({flat.length, to_first, to_second});
+    if (!(flat.length * flat.height >= min_altitude_ * longest)) return false;
+    queue_.push_back({g, second / to_second});
+    queue_.push_back({k, -first / to_first});
+    const glm::dvec2 p = to_glm(uvs_[vertex(h)]) + first;
+    const std::uint32_t v = vertex(k);
+    if (placed_[v]) return glm::distance(p, to_glm(uvs_[v])) <= kMostGap * flat.length;
+    place(v, p);
+    return true;
+  }
+
+  const LocalChart& chart_;
+  double min_altitude_;
+  std::vector<Vec2d>& uvs_;
+  std::vector<std::uint8_t> placed_, reached_;  // 1 a vertex, 1 a triangle
+  std::vector<Side> queue_;
+};
+
 }  // namespace
+
+bool unroll_chart(const LocalChart& chart, double min_altitude, std::vector<Vec2d>& uvs) {
+  return ChartUnroller(chart, min_altitude, uvs).run();
+}
 
 void unroll_cells(const Topology& topology, const Cells& cells, CoarseMesh& mesh) {
   Unroller(topology, cells, mesh).run();

@@ -1,8 +1,11 @@
 // Internal: cells that can be laid flat as paper can.
 #pragma once
 
+#include <vector>
+
 #include "libatlas/charts/cells.h"
 #include "libatlas/charts/coarse.h"
+#include "libatlas/charts/local_chart.h"
 #include "libatlas/charts/topology.h"
 
 namespace atlas {
@@ -16,5 +19,11 @@ namespace atlas {
 // only where they touch bent ones: coplanar() and fans serve them as well.
 // Curved cells are told by their first vertex, so this costs as much as there is to unroll.
 void unroll_cells(const Topology& topology, const Cells& cells, CoarseMesh& mesh);
+
+// Lays a connected chart without densities flat, triangle by triangle. False as soon as one does
+// not fit those beside it, or is thinner than min_altitude: nearly all charts that cannot be
+// unrolled show that within a few steps. What comes out may overlap itself, and stretches by what
+// rounding of coordinates adds up to.
+bool unroll_chart(const LocalChart& chart, double min_altitude, std::vector<Vec2d>& uvs);
 
 }  // namespace atlas

@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "libatlas/charts/coarse.h"
+#include "libatlas/charts/local_chart.h"
 #include "libatlas/charts/topology.h"
+#include "libatlas/charts/unroll.h"
 #include "tests/charts/chart_checks.h"
 #include "tests/support/shapes.h"
 
@@ -78,6 +80,57 @@ TEST(Unroll, CellsOfACylinderAndOfASphere) {
     EXPECT_GE(flat, 0.6 * rim);  // rims are zigzags of edges
   }
   for (const CoarseCell& cell : coarse_of(sphere(300, 150)).cells) EXPECT_FALSE(cell.unrolls);
+}
+
+// The largest stretch of the half x > 0 of a shape (all of it: `whole`) laid flat as one chart; 0
+// if it does not unroll.
+double unrolled_stretch(const Shape& shape, bool whole = false, double min_altitude = 0) {
+  const Mesh mesh(shape);
+  const Result<Topology> topology = build_topology(mesh.view(), {}, {});
+  EXPECT_TRUE(topology.ok());
+  Partition partition;
+  partition.seams.assign(shape.triangle_count(), 0);
+  partition.local.resize(shape.triangle_count());
+  std::vector<std::uint32_t> triangles;
+  for (std::uint32_t t = 0; t < shape.triangle_count(); ++t) {
+    const std::uint32_t* v = &shape.indices[3 * std::size_t{t}];
+    const double x = shape.positions[v[0]].x + shape.positions[v[1]].x + shape.positions[v[2]].x;
+    partition.chart.push_back(whole || x > 0 ? 0 : 1);
+    if (partition.chart[t] == 0) triangles.push_back(t);
+  }
+  LocalChart chart;
+  chart.build(*topology, partition, triangles);
+  std::vector<Vec2d> uvs;
+  if (!unroll_chart(chart, min_altitude, uvs)) return 0;
+  const Distortion distortion = measure_distortion(chart.mesh(), uvs);
+  EXPECT_EQ(distortion.flips, 0u);
+  return distortion.stretch_linf;
+}
+
+TEST(Unroll, AChartIsLaidFlatExactly) {
+  // Of triangles much higher than wide, too: errors must not grow from one to the next.
+  for (const double height : {0.1, 1.0, 30.0}) {
+    const double stretch = unrolled_stretch(cylinder(150, 40, 1, height));
+    EXPECT_GE(stretch, 1) << height;
+    EXPECT_LE(stretch, 1 + 1e-5) << height;
+  }
+}
+
+TEST(Unroll, ACurvedChartATubeAndOneOfSliversAreNot) {
+  EXPECT_EQ(unrolled_stretch(sphere(60, 30)), 0);
+  EXPECT_EQ(unrolled_stretch(cylinder(60, 10), true), 0);  // closed around
+  EXPECT_GE(unrolled_stretch(cylinder(60, 10), false, 0.01), 1);
+  EXPECT_EQ(unrolled_stretch(cylinder(60, 10), false, 0.3), 0);
+}
+
+TEST(Unroll, ChartsThatUnrollAreExact) {
+  for (const Shape& shape : {cylinder(100, 30), box(4, {1, 0.7, 0.2}), cone(100, 10, 0.9)}) {
+    const Mesh mesh(shape);
+    const Result<ChartSet> set = make_charts(mesh.view(), {}, {});
+    ASSERT_TRUE(set.ok());
+    EXPECT_EQ(check_charts(mesh.view(), *set).fault, "") << shape.name;
+    EXPECT_LE(set->distortion.stretch_linf, 1 + 1e-5) << shape.name;
+  }
 }
 
 }  // namespace
