@@ -11,7 +11,7 @@ namespace atlas {
 namespace {
 
 // Beyond so many box diagonals from 0 floats would lose digits to the offset that decide ties: 2 to
-// 8 diagonals away, a sixth of the cases gave other charts.
+// 8 diagonals away, a third of the cases of three meshes gave other charts.
 constexpr double kFarDiagonals = 1;
 constexpr double kOriginStep = 0.25;  // of the power of two above the diagonal
 
