@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
+#include <thread>
 
+#include "libatlas/core/background.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/image/image_io.h"
@@ -11,18 +14,16 @@
 namespace atlas {
 namespace {
 
-// Adds the time since its construction to two sums.
+// Adds the time since its construction to a sum.
 class BookedTime {
  public:
-  BookedTime(double& cpu, double& wall) : cpu_(cpu), wall_(wall) {}
-  ~BookedTime() {
-    cpu_ += cpu_seconds() - cpu_start_;
-    wall_ += wall_seconds() - wall_start_;
-  }
+  BookedTime(double (*clock)(), double& sum) : clock_(clock), sum_(sum), start_(clock()) {}
+  ~BookedTime() { sum_ += clock_() - start_; }
 
  private:
-  double &cpu_, &wall_;
-  double cpu_start_ = cpu_seconds(), wall_start_ = wall_seconds();
+  double (*clock_)();
+  double& sum_;
+  double start_;
 };
 
 std::vector<std::vector<ChartPlacement>> placements_by_page(const PageLayout& layout) {
@@ -31,65 +32,116 @@ std::vector<std::vector<ChartPlacement>> placements_by_page(const PageLayout& la
   return pages;
 }
 
-// Gives back the image's temporary path.
-Result<std::filesystem::path> write_page(const std::filesystem::path& target,
-                                         const BakedPage& baked, const ExportOptions& options,
-                                         AtomicFiles& files) {
-  const std::filesystem::path png = files.path_for(target);
-  if (Status s = write_png(png, baked.display, {options.png_compression}); !s.ok()) return s;
-  if (options.exr) {
-    std::filesystem::path exr = target;
-    exr.replace_extension(".exr");
-    if (Status s = write_exr(files.path_for(exr), baked.linear); !s.ok()) return s;
+// Pages that wait to be written take at most so many bytes together, but for the first.
+constexpr std::size_t kBytesBeingWritten = std::size_t{256} << 20;
+
+class PageBaker {
+ public:
+  PageBaker(const ChartLight& light, const PageLayout& layout, const ExportOptions& options,
+            AtomicFiles& files, const Context& context)
+      : light_(light),
+        layout_(layout),
+        options_(options),
+        files_(files),
+        context_(context),
+        pages_(placements_by_page(layout)),
+        write_cpu_(layout.pages.size(), 0) {}
+
+  Result<BakedPages> run() {
+    const double cpu = cpu_seconds();
+    if (options_.measure_error) {
+      const BookedTime cpu_watch(thread_cpu_seconds, result_.measure_cpu);
+      const BookedTime wall_watch(wall_seconds, result_.measure_wall);
+      meter_.emplace(light_, layout_.placements, FidelityOptions{});
+    }
+    Background writing(pages_written_at_once());
+    for (std::size_t p = 0; p < pages_.size(); ++p) {
+      if (Status s = add_page(p, writing); !s.ok()) return s;
+    }
+    {
+      const BookedTime watch(wall_seconds, result_.write_wall);
+      if (Status s = writing.finish(); !s.ok()) return s;
+    }
+    for (std::size_t p = 0; p < pages_.size(); ++p) {
+      result_.pages[p].image_bytes = std::filesystem::file_size(result_.image_sources[p]);
+      result_.write_cpu += write_cpu_[p];
+    }
+    result_.bake_cpu = cpu_seconds() - cpu - result_.write_cpu - result_.measure_cpu;
+    if (meter_) result_.fidelity = meter_->result();
+    return std::move(result_);
   }
-  return png;
-}
+
+ private:
+  std::size_t pages_written_at_once() const {
+    if (context_.threads == 1 || pages_.size() < 2) return 0;
+    const std::size_t texel = options_.exr ? 3 + 3 * sizeof(float) : 3;
+    const std::size_t bytes =
+        texel * std::size_t(layout_.pages[0].width) * std::size_t(layout_.pages[0].height);
+    const std::size_t threads =
+        context_.threads > 0 ? std::size_t(context_.threads) : std::thread::hardware_concurrency();
+    return std::clamp<std::size_t>(kBytesBeingWritten / bytes, 1,
+                                   std::max<std::size_t>(threads, 1));
+  }
+
+  Status add_page(std::size_t p, Background& writing) {
+    Result<BakedPage> baked = bake(p);
+    if (!baked.ok()) return baked.status();
+    result_.covered_texels += baked->covered_texels;
+    if (meter_) {
+      const BookedTime cpu_watch(thread_cpu_seconds, result_.measure_cpu);
+      const BookedTime wall_watch(wall_seconds, result_.measure_wall);
+      meter_->add_page(std::int32_t(p), baked->display);
+    }
+    const std::string name =
+        fmt::format("{}_{}.png", safe_file_name(options_.target.stem().string()), p);
+    std::filesystem::path target = options_.target.parent_path() / name;
+    const std::filesystem::path png = files_.path_for(target);
+    const std::filesystem::path exr =
+        options_.exr ? files_.path_for(target.replace_extension(".exr")) : "";
+    result_.image_sources.push_back(png);
+    result_.pages.push_back({name, layout_.pages[p].width, layout_.pages[p].height,
+                             std::uint32_t(pages_[p].size()), 0});
+    const BookedTime watch(wall_seconds, result_.write_wall);
+    return writing.add([this, p, png, exr, page = std::move(baked.value())]() -> Status {
+      const BookedTime own_watch(thread_cpu_seconds, write_cpu_[p]);
+      if (Status s = write_png(png, page.display, {options_.png_compression}); !s.ok()) return s;
+      return exr.empty() ? Status() : write_exr(exr, page.linear);
+    });
+  }
+
+  Result<BakedPage> bake(std::size_t p) {
+    const BookedTime watch(wall_seconds, result_.bake_wall);
+    Context context = context_;
+    context.progress = [&](std::string_view, double fraction) {
+      context_.report("baking", (double(p) + fraction) / double(pages_.size()));
+    };
+    BakeOptions bake;
+    bake.page_width = layout_.pages[p].width;
+    bake.page_height = layout_.pages[p].height;
+    bake.shifts = options_.shifts;
+    bake.mip_levels = options_.mip_levels;
+    bake.method = options_.bake_method;
+    bake.linear = options_.exr;
+    return bake_page(light_, pages_[p], bake, context);
+  }
+
+  const ChartLight& light_;
+  const PageLayout& layout_;
+  const ExportOptions& options_;
+  AtomicFiles& files_;
+  const Context& context_;
+  std::vector<std::vector<ChartPlacement>> pages_;
+  std::optional<FidelityMeter> meter_;
+  std::vector<double> write_cpu_;  // by page: each writer adds to its own
+  BakedPages result_;
+};
 
 }  // namespace
 
 Result<BakedPages> bake_pages(const ChartLight& light, const PageLayout& layout,
                               const ExportOptions& options, AtomicFiles& files,
                               const Context& context) {
-  BakedPages result;
-  const auto pages = placements_by_page(layout);
-  std::optional<FidelityMeter> meter;
-  if (options.measure_error) {
-    const BookedTime watch(result.measure_cpu, result.measure_wall);
-    meter.emplace(light, layout.placements, FidelityOptions{});
-  }
-  Context page_context = context;
-  for (std::size_t p = 0; p < pages.size(); ++p) {
-    page_context.progress = [&](std::string_view, double fraction) {
-      context.report("baking", (double(p) + fraction) / double(pages.size()));
-    };
-    BakeOptions bake;
-    bake.page_width = layout.pages[p].width;
-    bake.page_height = layout.pages[p].height;
-    bake.shifts = options.shifts;
-    bake.mip_levels = options.mip_levels;
-    bake.method = options.bake_method;
-    bake.linear = options.exr;
-    Result<BakedPage> baked = [&] {
-      const BookedTime watch(result.bake_cpu, result.bake_wall);
-      return bake_page(light, pages[p], bake, page_context);
-    }();
-    if (!baked.ok()) return baked.status();
-    result.covered_texels += baked->covered_texels;
-    if (meter) {
-      const BookedTime watch(result.measure_cpu, result.measure_wall);
-      meter->add_page(std::int32_t(p), baked->display);
-    }
-    const BookedTime watch(result.write_cpu, result.write_wall);
-    const std::string name =
-        fmt::format("{}_{}.png", safe_file_name(options.target.stem().string()), p);
-    const auto image = write_page(options.target.parent_path() / name, *baked, options, files);
-    if (!image.ok()) return image.status();
-    result.image_sources.push_back(*image);
-    result.pages.push_back({name, bake.page_width, bake.page_height, std::uint32_t(pages[p].size()),
-                            std::filesystem::file_size(*image)});
-  }
-  if (meter) result.fidelity = meter->result();
-  return result;
+  return PageBaker(light, layout, options, files, context).run();
 }
 
 }  // namespace atlas

@@ -1,4 +1,6 @@
-// Bakes the pages one by one, measures each against the input and writes it, holding one at a time.
+// Bakes the pages one by one and measures each against the input. With more than one thread pages
+// are written while the next ones are baked: one is held, and up to 256 MiB that wait to be
+// written.
 #pragma once
 
 #include <string>
@@ -17,8 +19,9 @@ struct BakedPages {
   std::vector<std::filesystem::path> image_sources;  // 1 a page: where its image lies until commit
   Fidelity fidelity;                                 // zero without ExportOptions::measure_error
   std::uint64_t covered_texels = 0;
-  double bake_cpu = 0, write_cpu = 0, measure_cpu = 0;     // seconds
-  double bake_wall = 0, write_wall = 0, measure_wall = 0;  // seconds
+  double bake_cpu = 0, write_cpu = 0, measure_cpu = 0;  // seconds
+  // Seconds; of writing what the others waited for it.
+  double bake_wall = 0, write_wall = 0, measure_wall = 0;
 };
 
 // Images are named after the target (safe_file_name): world.wrl gives world_0.png, world_1.png, ...

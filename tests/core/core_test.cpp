@@ -1,12 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <mutex>
 #include <random>
 #include <set>
+#include <thread>
 
 #include "libatlas/core/atomic_file.h"
+#include "libatlas/core/background.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/predicates.h"
@@ -17,6 +20,55 @@ namespace atlas {
 namespace {
 
 using test::TempFolder;
+
+TEST(Background, RunsAtMostSoManyTasksAtOnceAndAllOfThem) {
+  for (const std::size_t at_once : {0u, 1u, 3u}) {
+    std::atomic<std::size_t> running = 0, most = 0, done = 0;
+    Background background(at_once);
+    for (int i = 0; i < 20; ++i) {
+      ASSERT_TRUE(background
+                      .add([&] {
+                        const std::size_t now = ++running;
+                        for (std::size_t seen = most; now > seen;) {
+                          if (most.compare_exchange_weak(seen, now)) break;
+                        }
+                        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                        --running;
+                        ++done;
+                        return Status();
+                      })
+                      .ok());
+      if (at_once == 0) {
+        EXPECT_EQ(done, std::size_t(i) + 1);
+      }
+    }
+    EXPECT_TRUE(background.finish().ok());
+    EXPECT_EQ(done, 20u);
+    EXPECT_LE(most, std::max<std::size_t>(at_once, 1));
+  }
+}
+
+TEST(Background, BeginsNothingAfterAFailureAndTellsTheFirst) {
+  for (const std::size_t at_once : {0u, 1u, 2u}) {
+    std::atomic<int> begun = 0;
+    Background background(at_once);
+    const auto task = [&](int i) {
+      return [&begun, i] {
+        ++begun;
+        return i < 3 ? Status() : Status(ErrorCode::io, "task " + std::to_string(i));
+      };
+    };
+    for (int i = 0; i < 20; ++i) {
+      if (!background.add(task(i)).ok()) break;
+    }
+    EXPECT_EQ(background.finish().message(), "task 3") << at_once;
+    EXPECT_LE(begun, 4 + int(at_once));
+    EXPECT_FALSE(background.add(task(0)).ok());
+  }
+  Background throwing(2);
+  ASSERT_TRUE(throwing.add([]() -> Status { throw std::bad_alloc(); }).ok());
+  EXPECT_THROW(static_cast<void>(throwing.finish()), std::bad_alloc);
+}
 
 TEST(AtomicFiles, AppearTogetherOrNotAtAll) {
   const TempFolder folder;
