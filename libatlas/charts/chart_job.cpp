@@ -33,6 +33,11 @@ constexpr double kBestStretch = 1.12;
 constexpr int kMostCuts = 3;                   // rounds in all, of cutting and closing
 constexpr std::size_t kMostCrossingsLeft = 8;  // of the banks of cuts; with more it is divided
 constexpr int kBestIterations = 8;
+// Charts of so many triangles that are stretched beyond the bound over more than this share of
+// their area were saved by no cut to a vertex (measured); a hole in them may be what they close
+// around.
+constexpr std::size_t kManyTriangles = 1000;
+constexpr double kWideShare = 0.04;
 
 class ChartJob {
  public:
@@ -55,6 +60,7 @@ class ChartJob {
       for (int cuts = 0;; ++cuts) {
         if (try_flatten(outcome)) return outcome;
         if (hopeless() || (noisy() && only_darts() && cuts >= kMostCuts)) break;
+        if (stretched_widely() && (cuts > 0 || chart_.loops.size() == 1)) break;
         keep_uvs();
         if (!cut_open_timed(cuts)) break;
         build(triangles);
@@ -116,7 +122,9 @@ class ChartJob {
         close_cuts(input_.topology, chart_, crossings_left(), partition_, closed_cuts_)) {
       return true;
     }
-    if (!only_darts()) return join_loops(input_.topology, chart_, partition_);
+    if (!only_darts() || (cuts == 0 && chart_.loops.size() > 1 && stretched_widely())) {
+      return join_loops(input_.topology, chart_, partition_);
+    }
     if (cuts >= effort_.cuts || result_.within_bound) return false;
     return !result_.offenders.empty() &&
            cut_to_border(input_.topology, chart_, result_.offenders, closed_cuts_, partition_);
@@ -173,6 +181,18 @@ class ChartJob {
   bool hopeless() const {
     return noisy() && result_.within_bound && !result_.injective &&
            std::max(result_.crossings.size(), crossings_left().size()) > kMostCrossingsLeft;
+  }
+
+  // Whether what exceeds the bound is more than the surroundings of a few sharp vertices.
+  bool stretched_widely() const {
+    if (noisy() || result_.within_bound || result_.uvs.empty()) return false;
+    if (chart_.triangles().size() < kManyTriangles) return false;
+    double whole = 0, beyond = 0;
+    for (const std::uint32_t t : chart_.triangles()) whole += input_.topology.areas[t];
+    for (const std::uint32_t t : result_.offenders) {
+      beyond += input_.topology.areas[chart_.triangles()[t]];
+    }
+    return beyond > kWideShare * whole;
   }
 
   int links(std::uint32_t t) const {

@@ -127,6 +127,7 @@ class Flattener {
     std::vector<std::uint32_t> triangles;  // ascending
     int removals = 0;
     bool queued = false;
+    bool grown = false;  // got triangles of neighbours since it was flattened
     bool fragment = false;
   };
 
@@ -176,7 +177,7 @@ class Flattener {
   void settle(std::vector<std::unique_ptr<ChartOutcome>>& failures) {
     const std::vector<std::uint32_t> done = std::move(todo_);
     todo_.clear();
-    for (const std::uint32_t chart : done) charts_[chart].queued = false;
+    for (const std::uint32_t chart : done) charts_[chart].queued = charts_[chart].grown = false;
     moved_.clear();
     for (std::size_t i = 0; i < done.size(); ++i) {
       if (!failures[i]) continue;
@@ -184,8 +185,11 @@ class Flattener {
       split_ += failures[i]->failed;
       divide(done[i], failures[i]->parts);
     }
-    for (const std::uint32_t t : moved_) queue(partition_.chart[t]);
     relist();
+    if (!todo_.empty()) return;
+    for (const std::uint32_t chart : std::exchange(grown_, {})) {
+      if (charts_[chart].grown) queue(chart);
+    }
   }
 
   // False if not all could go.
@@ -250,6 +254,9 @@ class Flattener {
       auto& list = charts_[partition_.chart[t]].triangles;
       const auto at = std::lower_bound(list.begin(), list.end(), t);
       if (at == list.end() || *at != t) list.insert(at, t);
+      if (!std::exchange(charts_[partition_.chart[t]].grown, true)) {
+        grown_.push_back(partition_.chart[t]);
+      }
     }
     std::erase_if(todo_, [&](std::uint32_t chart) { return charts_[chart].triangles.empty(); });
   }
@@ -260,6 +267,7 @@ class Flattener {
   std::vector<State> charts_;
   std::vector<FlatChart> flats_;  // their results; triangles are filled in the end
   std::vector<std::uint32_t> todo_, moved_;
+  std::vector<std::uint32_t> grown_;  // they wait until no more triangles can come
   std::uint64_t split_ = 0;
 };
 
