@@ -21,6 +21,7 @@ constexpr double kFlatCone = 1 * M_PI / 180;
 constexpr double kSameBank = 1e-6;  // of an edge: how near banks of a cut are that closes again
 // A chart with holes is tried uncut when it is not a tube; a tube's normals exceed this cone.
 constexpr double kOpenCone = 85 * M_PI / 180;
+constexpr int kSmallHole = 16, kLongestSlit = 100;  // edges
 // Altitude kept for slivers, relative to the square root of the chart's area.
 constexpr double kMinAltitude = 1e-7;
 
@@ -99,7 +100,8 @@ class ChartJob {
     return flattens && (only_darts() || cone_.angle < kOpenCone) && flatten(outcome);
   }
 
-  // Whether all loops but one are small, or banks of cuts: those need not be joined to anything.
+  // Whether all loops but one are small, or banks of cuts to single vertices: those need not be
+  // joined to anything.
   bool only_darts() const {
     int large = 0;
     for (const std::uint32_t start : chart_.loops) {
@@ -110,8 +112,8 @@ class ChartJob {
         cut = cut && partition_.seam(3 * chart_.triangles()[h / 3] + h % 3);
         h = chart_.next_border(h);
         ++edges;
-      } while (h != start && (cut || edges <= 16));
-      large += !cut && edges > 16;
+      } while (h != start && (cut || edges <= kSmallHole));
+      large += edges > (cut ? kLongestSlit : kSmallHole);
     }
     return large <= 1 && chart_.euler() == 2 - static_cast<int>(chart_.loops.size());
   }
@@ -142,6 +144,7 @@ class ChartJob {
   // nearest first.
   void list_removable(ChartOutcome& outcome) const {
     if (!result_.within_bound || result_.crossings.empty()) return;
+    outcome.crossings = result_.crossings.size();
     std::vector<std::uint8_t> listed(chart_.triangles().size(), 0);
     for (const BorderCrossing& crossing : result_.crossings) {
       const std::uint32_t t = links(crossing.triangle_b) < links(crossing.triangle_a)

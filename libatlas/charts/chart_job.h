@@ -26,6 +26,7 @@ struct ChartOutcome {
   std::vector<std::uint8_t> parts;    // 1 a triangle: the part it goes to, if not empty
   std::vector<std::uint32_t> remove;  // triangles whose going would help; parts is set as well, for
                                       // when no neighbour takes them
+  std::size_t crossings = 0;          // of its border, that remove is to undo
   bool failed = false;                // could not be flattened as it was
 };
 

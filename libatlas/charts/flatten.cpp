@@ -126,6 +126,7 @@ class Flattener {
   struct State {
     std::vector<std::uint32_t> triangles;  // ascending
     int removals = 0;
+    std::size_t crossings = 0;  // that the last removal was to undo
     bool queued = false;
     bool grown = false;  // got triangles of neighbours since it was flattened
     bool fragment = false;
@@ -181,7 +182,7 @@ class Flattener {
     moved_.clear();
     for (std::size_t i = 0; i < done.size(); ++i) {
       if (!failures[i]) continue;
-      if (remove(done[i], failures[i]->remove)) continue;
+      if (remove(done[i], *failures[i])) continue;
       split_ += failures[i]->failed;
       divide(done[i], failures[i]->parts);
     }
@@ -192,12 +193,15 @@ class Flattener {
     }
   }
 
-  // False if not all could go.
-  bool remove(std::uint32_t chart, const std::vector<std::uint32_t>& triangles) {
-    if (triangles.empty() || charts_[chart].removals >= kMaxRemovals) return false;
-    ++charts_[chart].removals;
+  // False if none could go, or the last ones went in vain.
+  bool remove(std::uint32_t chart, const ChartOutcome& failure) {
+    State& state = charts_[chart];
+    const std::size_t before = std::exchange(state.crossings, failure.crossings);
+    if (failure.remove.empty() || state.removals >= kMaxRemovals) return false;
+    if (state.removals > 0 && failure.crossings >= before) return false;
+    ++state.removals;
     bool any = false;
-    for (const std::uint32_t t : triangles) {
+    for (const std::uint32_t t : failure.remove) {
       const std::uint32_t h = way_out(t);
       if (h == kNoIndex || !removable(input_.topology, partition_, t)) continue;
       move_triangle(input_.topology, h, partition_, input_.frames);
