@@ -211,6 +211,7 @@ struct System {
 };
 
 void check_solvers(CheckList& list, const PolarDisc& disc, Row& row) {
+  const LocalMesh mesh = disc.mesh();
   System s(disc);
   const double cond = condition(s.matrix);
   Vector x(disc.positions.size(), glm::dvec2(0));
@@ -226,10 +227,13 @@ void check_solvers(CheckList& list, const PolarDisc& disc, Row& row) {
     direct.solve(s.load, x);
     left_direct = backward_error(s.matrix, x, s.load);
   }
+  param::HalfEdges half_edges;
+  half_edges.build(mesh);
   param::MultigridSolver multigrid;
   std::fill(x.begin(), x.end(), glm::dvec2(0));
   const bool iterated =
-      multigrid.build(s.matrix) && multigrid.solve(s.matrix, s.load, {1e-11 * s.area(), 0, 60}, x);
+      multigrid.build(s.elements, half_edges, x.size()) &&
+      multigrid.solve({1e-11 * s.area(), 0, 60}, s.load, x);
   row.values = {{"condition", cond},
                 {"residual", left},
                 {"error", error},

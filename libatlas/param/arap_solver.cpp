@@ -151,23 +151,35 @@ void complete_rotations(const LocalMesh& mesh, ParamWorkspace::Impl& w) {
 ArapSolver::ArapSolver(const LocalMesh& mesh, double min_altitude, ParamWorkspace::Impl& workspace)
     : mesh_(mesh), w_(workspace) {
   build_elements(mesh, min_altitude, w_.elements);
-  w_.corners.build(w_.elements, mesh.positions.size());
   w_.load.resize(mesh.positions.size());
   w_.solution.resize(mesh.positions.size());
 }
 
+const CornerLists& ArapSolver::corners() {
+  if (!cornered_) w_.corners.build(w_.elements, mesh_.positions.size());
+  cornered_ = true;
+  return w_.corners;
+}
+
+void ArapSolver::build_stiffness() {
+  param::build_stiffness(w_.elements, corners(), w_.stiffness);
+}
+
 void ArapSolver::factorize() {
   factorized_ = true;
-  build_stiffness(w_.elements, w_.corners, w_.stiffness);
   area_ = 0;
   for (const Element& e : w_.elements) area_ += e.weight * e.area();
   const std::size_t n = mesh_.positions.size();
-  if (n > direct_limit && w_.multigrid.build(w_.stiffness)) {
+  if (n > direct_limit) {
+    w_.half_edges.build(mesh_);
     method_ = Method::multigrid;
-  } else if (n > envelope_limit) {
+    if (w_.multigrid.build(w_.elements, w_.half_edges, n)) return;
+  }
+  if (n > envelope_limit) {
     factorize_directly();
   } else {
     method_ = Method::envelope;
+    build_stiffness();
     w_.envelope.factorize(w_.stiffness, ordered_);
     ordered_ = true;
   }
@@ -175,6 +187,7 @@ void ArapSolver::factorize() {
 
 void ArapSolver::factorize_directly() {
   method_ = Method::direct;
+  build_stiffness();
   if (!w_.direct.factorize(w_.stiffness, analyzed_)) {
     method_ = Method::envelope;  // it can do without some pivots
     w_.envelope.factorize(w_.stiffness, ordered_);
@@ -183,17 +196,18 @@ void ArapSolver::factorize_directly() {
   analyzed_ = true;
 }
 
-// Solves for w_.load; w_.solution comes in as a guess.
+// Solves for w_.load, which is not kept; w_.solution comes in as a guess.
 void ArapSolver::solve(const Inexactness& inexactness) {
-  if (method_ == Method::multigrid &&
-      !w_.multigrid.solve(
-          w_.stiffness, w_.load,
-          {inexactness.area_share * area_, inexactness.found_share, most_iterations},
-          w_.solution)) {
-    factorize_directly();  // slivers can make the iteration slow
-  }
-  if (method_ == Method::direct) w_.direct.solve(w_.load, w_.solution);
-  if (method_ == Method::envelope) w_.envelope.solve(w_.load, w_.solution);
+  if (method_ == Method::direct) return w_.direct.solve(w_.load, w_.solution);
+  if (method_ == Method::envelope) return w_.envelope.solve(w_.load, w_.solution);
+  const MultigridAccuracy accuracy{inexactness.area_share * area_, inexactness.found_share,
+                                   most_iterations};
+  if (w_.multigrid.solve(accuracy, w_.load, w_.solution)) return;
+  factorize_directly();  // slivers can make the iteration slow
+  w_.change.resize(w_.solution.size());
+  if (method_ == Method::direct) w_.direct.solve(w_.load, w_.change);
+  if (method_ == Method::envelope) w_.envelope.solve(w_.load, w_.change);
+  for (std::size_t v = 0; v < w_.change.size(); ++v) w_.solution[v] += w_.change[v];
 }
 
 void ArapSolver::take_solution(std::span<Vec2d> uvs) const {
@@ -253,6 +267,7 @@ void ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
     if (i == 1 && method_ == Method::multigrid) {
       exact = measure(uvs).energy <= may_unroll * area_;
       if (exact) {
+        rotation_load(w_.elements, w_.rotations, w_.load);
         solve({exact_first, 0});
         take_solution(uvs);
       }
@@ -337,15 +352,15 @@ double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
 
 Relaxer::Outcome ArapSolver::remove_flips(std::span<const std::uint32_t> also,
                                           std::span<Vec2d> uvs) {
-  return w_.relaxer.remove_flips(w_.elements, w_.corners, also, uvs);
+  return w_.relaxer.remove_flips(w_.elements, corners(), also, uvs);
 }
 
 bool ArapSolver::lower_tail(double bound, std::span<Vec2d> uvs) {
-  return w_.relaxer.lower_tail(w_.elements, w_.corners, bound, uvs);
+  return w_.relaxer.lower_tail(w_.elements, corners(), bound, uvs);
 }
 
 bool ArapSolver::separate_borders(std::span<Vec2d> uvs) {
-  return w_.separator.separate(mesh_, w_.elements, w_.corners, w_.relaxer, uvs);
+  return w_.separator.separate(mesh_, w_.elements, corners(), w_.relaxer, uvs);
 }
 
 IsometricResult ArapSolver::measure(std::span<const Vec2d> uvs) const {

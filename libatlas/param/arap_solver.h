@@ -58,6 +58,8 @@ class ArapSolver {
 
   void factorize();
   void factorize_directly();
+  const CornerLists& corners();
+  void build_stiffness();
   // The energy of the error that multigrid may leave: the larger of a part of the area and a part
   // of what it finds.
   struct Inexactness {
@@ -71,6 +73,7 @@ class ArapSolver {
   ParamWorkspace::Impl& w_;
   Method method_ = Method::envelope;
   bool analyzed_ = false, ordered_ = false;  // by the direct and the envelope solver
+  bool cornered_ = false;                    // the workspace's corner lists are this mesh's
   double area_ = 0;                          // weighted
   bool weighted_ = false;
   bool factorized_ = false;

@@ -46,6 +46,10 @@ inline void subtract_product(const double* a, const double* b, Block& sum) {
 
 }  // namespace
 
+inline double* EnvelopeSolver::block(std::size_t row, std::size_t column) {
+  return factor_.data() + block_size * (row_[row] + (column - first_[row]));
+}
+
 // Breadth-first from start over vertices whose position_ is unseen; fills queue_ and returns the
 // last.
 std::uint32_t EnvelopeSolver::sweep(const SymmetricMatrix& matrix, std::uint32_t start) {

@@ -1,6 +1,7 @@
 // Internal: which halves of a triangle set's edges have no opposite, and walks along them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -23,6 +24,7 @@ class HalfEdges {
   static std::uint32_t triangle(std::uint32_t h) { return h / 3; }
   std::uint32_t from(std::uint32_t h) const { return triangles_[h / 3][h % 3]; }
   std::uint32_t to(std::uint32_t h) const { return from(next(h)); }
+  const std::array<std::uint32_t, 3>& corners(std::uint32_t t) const { return triangles_[t]; }
 
   // The border half-edge that follows h along its loop.
   std::uint32_t next_border(std::uint32_t h) const {

@@ -25,9 +25,7 @@ class EnvelopeSolver {
   void find_envelope(const SymmetricMatrix& matrix);
   void fill(const SymmetricMatrix& matrix);
   void eliminate(std::size_t row, std::size_t column);
-  double* block(std::size_t row, std::size_t column) {
-    return factor_.data() + 16 * (row_[row] + (column - first_[row]));
-  }
+  double* block(std::size_t row, std::size_t column);
 
   std::vector<std::uint32_t> order_, position_, queue_;
   std::vector<std::uint8_t> held_;  // 1 a vertex

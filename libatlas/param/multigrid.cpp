@@ -2,371 +2,318 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace atlas::param {
 namespace {
 
-constexpr std::uint32_t none = 0xffffffff;
 constexpr std::size_t direct_limit = 300;   // rows that the envelope solver takes at the bottom
 constexpr std::size_t large_setup = 20000;  // rows above which a set-up's memory is given back
-constexpr double strong_coupling = 0.06;    // against the geometric mean of the two diagonals
+// Half a cotangent up to which single precision will do: rounding then moves no corner of a sliver
+// by more than 3e-5 of its altitude.
+constexpr double most_single_coupling = 500;
 
-// out = a x, both halves at once from the lower one; returns x . out.
-double multiply(const SymmetricMatrix& a, std::span<const glm::dvec2> x,
-                std::span<glm::dvec2> out) {
-  glm::dvec2 diagonal(0), lower(0);
-  for (std::size_t i = 0; i < a.rows(); ++i) {
-    const glm::dvec2 own = x[i], on = a.diagonal[i] * own;
-    glm::dvec2 below(0);
-    for (std::uint32_t k = a.first[i]; k < a.middle[i]; ++k) {
-      const std::uint32_t c = a.column[k];
-      below += a.value[k] * x[c];
-      out[c] += a.value[k] * own;
-    }
-    out[i] = on + below;
-    diagonal += own * on;
-    lower += own * below;
-  }
-  const glm::dvec2 sum = diagonal + 2.0 * lower;
-  return sum.x + sum.y;
+// The two coordinates as one register. Such vectors are elementary to every 64-bit processor, and
+// their arithmetic is that of their elements.
+template <class Real>
+struct Pairs {
+  using type __attribute__((vector_size(2 * sizeof(Real)), may_alias)) = Real;
+};
+template <class Real>
+using Pair = typename Pairs<Real>::type;
+
+template <class Real>
+Pair<Real>* pairs(std::vector<glm::vec<2, Real>>& v) {
+  return reinterpret_cast<Pair<Real>*>(v.data());
 }
 
-double inner(std::span<const glm::dvec2> a, std::span<const glm::vec2> b, double factor) {
+// load -= factor K x, both halves at once from the lower one.
+template <class Real, class Vector>
+void subtract_product(const GraphLaplacian<Real>& matrix, const Vector& x, double factor,
+                      std::span<glm::dvec2> load) {
+  for (std::size_t i = 0; i < matrix.rows(); ++i) {
+    const glm::dvec2 own(x[i]);
+    glm::dvec2 sum(0);
+    for (const auto& entry : matrix.row(i)) {
+      const glm::dvec2 flow = factor * entry.value * (glm::dvec2(x[entry.column]) - own);
+      sum += flow;
+      load[entry.column] += flow;
+    }
+    load[i] -= sum;
+  }
+}
+
+template <class Real>
+double inner(const std::vector<glm::vec<2, Real>>& a, const std::vector<glm::vec<2, Real>>& b) {
   glm::dvec2 sum(0);
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * glm::dvec2(b[i]);
-  return factor * (sum.x + sum.y);
+  for (std::size_t i = 0; i < a.size(); ++i) sum += glm::dvec2(a[i]) * glm::dvec2(b[i]);
+  return sum.x + sum.y;
 }
 
 }  // namespace
 
-// Gives every row an aggregate; returns how many there are.
-std::uint32_t MultigridSolver::aggregate(const SymmetricMatrix& a, Level& level) {
-  const std::uint32_t n = static_cast<std::uint32_t>(a.rows());
-  std::vector<std::uint32_t>& group = setup_.aggregate;
-  group.assign(n, none);
-  const auto strong = [&](std::uint32_t i, std::uint32_t k) {
-    const double v = a.value[k];
-    return v < 0 &&
-           v * v > strong_coupling * strong_coupling * a.diagonal[i] * a.diagonal[a.column[k]];
-  };
-  std::uint32_t count = 0;
-  // Whole neighbourhoods first,
-  for (std::uint32_t i = 0; i < n; ++i) {
-    if (group[i] != none) continue;
-    bool free = true;
-    for (std::uint32_t k = a.first[i]; k < a.first[i + 1] && free; ++k) {
-      free = !strong(i, k) || group[a.column[k]] == none;
-    }
-    if (!free) continue;
-    group[i] = count;
-    for (std::uint32_t k = a.first[i]; k < a.first[i + 1]; ++k) {
-      if (strong(i, k)) group[a.column[k]] = count;
-    }
-    ++count;
-  }
-  // then what is left joins the neighbour it hangs on most,
-  std::vector<std::uint32_t>& join = level.first;  // free at this stage
-  join.assign(n, none);
-  for (std::uint32_t i = 0; i < n; ++i) {
-    if (group[i] != none) continue;
-    double least = 0;
-    for (std::uint32_t k = a.first[i]; k < a.first[i + 1]; ++k) {
-      if (group[a.column[k]] == none || a.value[k] >= least) continue;
-      least = a.value[k];
-      join[i] = group[a.column[k]];
-    }
-  }
-  // and what has no such neighbour stands alone.
-  for (std::uint32_t i = 0; i < n; ++i) {
-    if (group[i] == none) group[i] = join[i] != none ? join[i] : count++;
-  }
-  return count;
-}
-
-// Rows of P = (I - omega D^-1 A) P0, where P0 has a one at each row's aggregate.
-void MultigridSolver::prolongate(const SymmetricMatrix& a, std::uint32_t coarse, Level& level) {
-  const std::uint32_t n = static_cast<std::uint32_t>(a.rows());
-  level.first.resize(n + 1);
-  setup_.column.clear();
-  setup_.value.clear();
-  std::vector<std::uint32_t> place(coarse, none);
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t begin = static_cast<std::uint32_t>(setup_.column.size());
-    level.first[i] = begin;
-    // Half the row's absolute sum bounds the diagonal from above where couplings of both signs
-    // meet.
-    double sum = a.diagonal[i], kept = a.diagonal[i];
-    for (std::uint32_t k = a.first[i]; k < a.first[i + 1]; ++k) {
-      sum += std::abs(a.value[k]);
-      kept += a.value[k];
-    }
-    const double damping = sum > 0 ? (4.0 / 3.0) / sum : 0;
-    const auto add = [&](std::uint32_t group, double v) {
-      if (place[group] == none || place[group] < begin) {
-        place[group] = static_cast<std::uint32_t>(setup_.column.size());
-        setup_.column.push_back(group);
-        setup_.value.push_back(0);
-      }
-      setup_.value[place[group]] += v;
-    };
-    // The row's own coefficient is what the others leave of its sum: constants stay constant.
-    add(setup_.aggregate[i], 1 - damping * (a.diagonal[i] - kept));
-    for (std::uint32_t k = a.first[i]; k < a.first[i + 1]; ++k) {
-      add(setup_.aggregate[a.column[k]], -damping * a.value[k]);
-    }
-  }
-  level.first[n] = static_cast<std::uint32_t>(setup_.column.size());
-}
-
-void MultigridSolver::transpose(std::uint32_t coarse, const Level& level) {
-  setup_.column_first.assign(coarse + 1, 0);
-  for (const std::uint32_t c : setup_.column) ++setup_.column_first[c + 1];
-  for (std::uint32_t c = 0; c < coarse; ++c) setup_.column_first[c + 1] += setup_.column_first[c];
-  setup_.row.resize(setup_.column.size());
-  setup_.column_value.resize(setup_.column.size());
-  std::vector<std::uint32_t> fill(setup_.column_first.begin(), setup_.column_first.end() - 1);
-  for (std::uint32_t i = 0; i + 1 < level.first.size(); ++i) {
-    for (std::uint32_t k = level.first[i]; k < level.first[i + 1]; ++k) {
-      const std::uint32_t at = fill[setup_.column[k]]++;
-      setup_.row[at] = i;
-      setup_.column_value[at] = setup_.value[k];
-    }
-  }
-}
-
-// Rows of A P. False: there are more than so many entries, as about vertices of huge valence.
-bool MultigridSolver::multiply_prolongation(const SymmetricMatrix& a, std::uint32_t coarse,
-                                            const Level& level) {
-  const std::size_t most_entries = 4 * (a.column.size() + a.rows());
-  const std::uint32_t n = static_cast<std::uint32_t>(a.rows());
-  Setup& s = setup_;
-  s.product_first.resize(n + 1);
-  s.product_column.clear();
-  s.product_value.clear();
-  std::vector<std::uint32_t> place(coarse, none);
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t begin = static_cast<std::uint32_t>(s.product_column.size());
-    s.product_first[i] = begin;
-    const auto add = [&](std::uint32_t j, double v) {
-      for (std::uint32_t k = level.first[j]; k < level.first[j + 1]; ++k) {
-        std::uint32_t& at = place[s.column[k]];
-        if (at == none || at < begin) {
-          at = static_cast<std::uint32_t>(s.product_column.size());
-          s.product_column.push_back(s.column[k]);
-          s.product_value.push_back(0);
-        }
-        s.product_value[at] += v * s.value[k];
-      }
-    };
-    add(i, a.diagonal[i]);
-    for (std::uint32_t k = a.first[i]; k < a.first[i + 1]; ++k) add(a.column[k], a.value[k]);
-    if (s.product_column.size() > most_entries) return false;
-  }
-  s.product_first[n] = static_cast<std::uint32_t>(s.product_column.size());
-  return true;
-}
-
-// The Galerkin product P' A P. False: likewise.
-bool MultigridSolver::coarsen(std::size_t most_entries, SymmetricMatrix& out) const {
-  const Setup& s = setup_;
-  const std::uint32_t coarse = static_cast<std::uint32_t>(s.column_first.size() - 1);
-  out.diagonal.assign(coarse, 0);
-  out.first.resize(coarse + 1);
-  out.column.clear();
-  out.value.clear();
-  std::vector<std::uint32_t> place(coarse, none);
-  for (std::uint32_t row = 0; row < coarse; ++row) {
-    const std::uint32_t begin = static_cast<std::uint32_t>(out.column.size());
-    out.first[row] = begin;
-    for (std::uint32_t m = s.column_first[row]; m < s.column_first[row + 1]; ++m) {
-      const std::uint32_t i = s.row[m];
-      for (std::uint32_t k = s.product_first[i]; k < s.product_first[i + 1]; ++k) {
-        const double v = s.column_value[m] * s.product_value[k];
-        const std::uint32_t c = s.product_column[k];
-        if (c == row) {
-          out.diagonal[row] += v;
-          continue;
-        }
-        if (place[c] == none || place[c] < begin) {
-          place[c] = static_cast<std::uint32_t>(out.column.size());
-          out.column.push_back(c);
-          out.value.push_back(0);
-        }
-        out.value[place[c]] += v;
-      }
-    }
-    if (out.column.size() > most_entries) return false;
-  }
-  out.first[coarse] = static_cast<std::uint32_t>(out.column.size());
-  partition_rows(out);
-  return true;
-}
-
-void MultigridSolver::store_single(const SymmetricMatrix& a, Level& level) const {
-  const std::size_t n = a.rows();
-  level.inverse_diagonal.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    level.inverse_diagonal[i] = a.diagonal[i] > 0 ? static_cast<float>(1 / a.diagonal[i]) : 0;
-  }
-  level.entries.resize(a.column.size());
-  for (std::size_t k = 0; k < level.entries.size(); ++k) {
-    level.entries[k] = {a.column[k], static_cast<float>(a.value[k])};
-  }
-  level.prolongation.resize(setup_.column.size());
-  for (std::size_t k = 0; k < level.prolongation.size(); ++k) {
-    level.prolongation[k] = {setup_.column[k], static_cast<float>(setup_.value[k])};
-  }
-}
-
-bool MultigridSolver::build(const SymmetricMatrix& matrix) {
-  const bool built = build_levels(matrix);
+template <class Real>
+bool MultigridLevels<Real>::build(GraphLaplacian<Real>& matrix) {
+  if (levels_.empty()) levels_.resize(1);
+  std::swap(levels_[0].matrix, matrix);
+  const bool large = levels_[0].matrix.rows() > large_setup;
+  if (large) matrix = {};
+  const bool built = build_levels();
   // What charts of some hundred thousand triangles need for a moment would double what they need.
-  if (matrix.rows() > large_setup) {
-    setup_ = {};
-    for (Level& level : levels_) level.matrix.column = {}, level.matrix.value = {};
-  }
+  if (large) coarsening_ = {};
   return built;
 }
 
-bool MultigridSolver::build_levels(const SymmetricMatrix& matrix) {
-  const SymmetricMatrix* a = &matrix;
-  depth_ = 0;
-  for (;; ++depth_) {
+template <class Real>
+bool MultigridLevels<Real>::build_levels() {
+  for (depth_ = 0;; ++depth_) {
     if (levels_.size() < depth_ + 2) levels_.resize(depth_ + 2);
-    if (depth_ > 0) a = &levels_[depth_].matrix;  // resizing may have moved it
     Level& level = levels_[depth_];
-    const std::size_t n = a->rows();
+    const std::size_t n = level.matrix.rows();
+    level.x.resize(n);
+    level.load.resize(n);
     if (n <= direct_limit) break;
-    const std::uint32_t coarse = aggregate(*a, level);
-    if (coarse > n / 2) return false;
-    prolongate(*a, coarse, level);
-    transpose(coarse, level);
-    if (!multiply_prolongation(*a, coarse, level)) return false;
-    if (!coarsen(a->column.size(), levels_[depth_ + 1].matrix)) return false;
-    store_single(*a, level);
+    if (!coarsening_.run(level.matrix, level.inverse_diagonal, level.prolongation,
+                         levels_[depth_ + 1].matrix)) {
+      return false;
+    }
+    level.matrix.keep_lower();
+    if (n > large_setup) level.matrix.entries.shrink_to_fit();
+    level.rest.resize(n);
   }
-  coarsest_.factorize(*a);
-  for (std::size_t depth = 0; depth <= depth_; ++depth) {
-    const std::size_t n = depth == 0 ? matrix.rows() : levels_[depth].matrix.rows();
-    levels_[depth].x.resize(n);
-    levels_[depth].load.resize(n);
-  }
+  factorize_coarsest();
   return true;
 }
 
-void MultigridSolver::solve_coarsest(Level& level) {
+template <class Real>
+void MultigridLevels<Real>::factorize_coarsest() {
+  const GraphLaplacian<Real>& graph = levels_[depth_].matrix;
+  SymmetricMatrix matrix;
+  matrix.first = graph.first;
+  matrix.diagonal.resize(graph.rows());
+  for (std::size_t i = 0; i < graph.rows(); ++i) {
+    for (const auto& entry : graph.row(i)) {
+      matrix.column.push_back(entry.column);
+      matrix.value.push_back(entry.value);
+      matrix.diagonal[i] -= entry.value;
+    }
+  }
+  coarsest_.factorize(matrix);
+}
+
+template <class Real>
+void MultigridLevels<Real>::solve_coarsest(Level& level) {
   coarse_load_.assign(level.load.begin(), level.load.end());
   coarse_x_.resize(level.x.size());
   coarsest_.solve(coarse_load_, coarse_x_);
-  for (std::size_t i = 0; i < level.x.size(); ++i) level.x[i] = glm::vec2(coarse_x_[i]);
+  for (std::size_t i = 0; i < level.x.size(); ++i) {
+    level.x[i] = glm::vec<2, Real>(coarse_x_[i]);
+  }
 }
 
 // A forward Gauss-Seidel sweep that starts from 0 meets nothing but zeros above the diagonal, and
-// leaves nothing but that part in the residual, which becomes the load of the next level.
-void MultigridSolver::smooth_down(const SymmetricMatrix& a, std::size_t depth) {
+// leaves nothing but that part in the residual. Row i knows its own part of it as soon as it has
+// its x.
+template <class Real>
+void MultigridLevels<Real>::smooth_down(std::size_t depth) {
   Level& level = levels_[depth];
-  const std::size_t n = a.rows();
-  const Entry *entries = level.entries.data(), *prolongation = level.prolongation.data();
-  const std::uint32_t *first = a.first.data(), *middle = a.middle.data();
-  const std::uint32_t* coarse_first = level.first.data();
-  glm::vec2* x = level.x.data();
-  for (std::size_t i = 0; i < n; ++i) {
-    glm::vec2 sum = level.load[i];
-    for (std::uint32_t k = first[i]; k < middle[i]; ++k) {
+  const auto n = static_cast<std::uint32_t>(level.matrix.rows());
+  const auto* entries = level.matrix.entries.data();
+  const std::uint32_t* first = level.matrix.first.data();
+  const Real* inverse_diagonal = level.inverse_diagonal.data();
+  const Pair<Real>* load = pairs<Real>(level.load);
+  Pair<Real>*x = pairs<Real>(level.x), *rest = pairs<Real>(level.rest);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    Pair<Real> sum = load[i];
+    for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
       sum -= entries[k].value * x[entries[k].column];
     }
-    x[i] = sum * level.inverse_diagonal[i];
-  }
-  std::vector<glm::vec2>& load = levels_[depth + 1].load;
-  std::fill(load.begin(), load.end(), glm::vec2(0));
-  for (std::size_t i = 0; i < n; ++i) {
-    glm::vec2 residual(0);
-    for (std::uint32_t k = middle[i]; k < first[i + 1]; ++k) {
-      residual -= entries[k].value * x[entries[k].column];
+    x[i] = sum *= inverse_diagonal[i];
+    rest[i] = Pair<Real>{};
+    for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
+      rest[entries[k].column] -= entries[k].value * sum;
     }
-    for (std::uint32_t k = coarse_first[i]; k < coarse_first[i + 1]; ++k) {
-      load[prolongation[k].column] += prolongation[k].value * residual;
+  }
+}
+
+// The residual becomes the load of the next level.
+template <class Real>
+void MultigridLevels<Real>::restrict_rest(std::size_t depth) {
+  Level& level = levels_[depth];
+  const auto n = static_cast<std::uint32_t>(level.matrix.rows());
+  const auto* entries = level.prolongation.entries.data();
+  const std::uint32_t* first = level.prolongation.first.data();
+  const Pair<Real>* rest = pairs<Real>(level.rest);
+  std::fill(levels_[depth + 1].load.begin(), levels_[depth + 1].load.end(), glm::vec<2, Real>(0));
+  Pair<Real>* load = pairs<Real>(levels_[depth + 1].load);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const Pair<Real> own = rest[i];
+    for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
+      load[entries[k].column] += entries[k].value * own;
     }
   }
 }
 
 // The next level's solution comes up, and a backward sweep makes the cycle symmetric.
-void MultigridSolver::smooth_up(const SymmetricMatrix& a, std::size_t depth) {
+template <class Real>
+void MultigridLevels<Real>::smooth_up(std::size_t depth) {
   Level& level = levels_[depth];
-  const std::size_t n = a.rows();
-  const Entry *entries = level.entries.data(), *prolongation = level.prolongation.data();
-  const std::uint32_t* first = a.first.data();
-  const std::uint32_t* coarse_first = level.first.data();
-  const glm::vec2* coarse_x = levels_[depth + 1].x.data();
-  glm::vec2* x = level.x.data();
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::uint32_t k = coarse_first[i]; k < coarse_first[i + 1]; ++k) {
-      x[i] += prolongation[k].value * coarse_x[prolongation[k].column];
+  const auto n = static_cast<std::uint32_t>(level.matrix.rows());
+  const auto *entries = level.matrix.entries.data(), *rows = level.prolongation.entries.data();
+  const std::uint32_t *first = level.matrix.first.data(),
+                      *row_first = level.prolongation.first.data();
+  const Real* inverse_diagonal = level.inverse_diagonal.data();
+  const Pair<Real>*load = pairs<Real>(level.load), *coarse_x = pairs<Real>(levels_[depth + 1].x);
+  Pair<Real>*x = pairs<Real>(level.x), *rest = pairs<Real>(level.rest);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    Pair<Real> sum = x[i];
+    for (std::uint32_t k = row_first[i]; k < row_first[i + 1]; ++k) {
+      sum += rows[k].value * coarse_x[rows[k].column];
     }
+    x[i] = sum;
+    rest[i] = load[i];
   }
-  for (std::size_t i = n; i-- > 0;) {
-    glm::vec2 sum = level.load[i];
+  for (std::uint32_t i = n; i-- > 0;) {
+    Pair<Real> sum = rest[i];  // less what lies above the diagonal
     for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
       sum -= entries[k].value * x[entries[k].column];
     }
-    x[i] = sum * level.inverse_diagonal[i];
+    x[i] = sum *= inverse_diagonal[i];
+    for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
+      rest[entries[k].column] -= entries[k].value * sum;
+    }
   }
 }
 
 // x of the level becomes an approximate solution for its load.
-void MultigridSolver::cycle(const SymmetricMatrix& finest, std::size_t depth) {
+template <class Real>
+void MultigridLevels<Real>::cycle(std::size_t depth) {
   if (depth == depth_) return solve_coarsest(levels_[depth]);
-  const SymmetricMatrix& a = depth == 0 ? finest : levels_[depth].matrix;
-  smooth_down(a, depth);
-  cycle(finest, depth + 1);
-  smooth_up(a, depth);
+  smooth_down(depth);
+  restrict_rest(depth);
+  cycle(depth + 1);
+  smooth_up(depth);
 }
 
-bool MultigridSolver::solve(const SymmetricMatrix& matrix, std::span<const glm::dvec2> load,
-                            const Accuracy& accuracy, std::span<glm::dvec2> x) {
-  const std::size_t n = matrix.rows();
-  residual_.resize(n);
-  product_.resize(n);
-  direction_.resize(n);
-  multiply(matrix, x, product_);
-  double largest = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    residual_[i] = load[i] - product_[i];
-    largest = std::max({largest, std::abs(residual_[i].x), std::abs(residual_[i].y)});
+// The next direction, its product with the matrix in the finest level's rest; returns the inner
+// product of the two.
+template <class Real>
+double MultigridLevels<Real>::step_direction(Real beta) {
+  Level& level = levels_[0];
+  const auto n = static_cast<std::uint32_t>(level.matrix.rows());
+  const auto* entries = level.matrix.entries.data();
+  const std::uint32_t* first = level.matrix.first.data();
+  const Pair<Real>* z = pairs<Real>(level.x);
+  Pair<Real>*direction = pairs<Real>(direction_), *product = pairs<Real>(level.rest);
+  glm::dvec2 energy(0);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const Pair<Real> own = z[i] + beta * direction[i];
+    direction[i] = own;
+    Pair<Real> sum{}, squares{};
+    for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
+      const Pair<Real> difference = direction[entries[k].column] - own;
+      const Pair<Real> flow = entries[k].value * difference;
+      sum += flow;
+      squares -= flow * difference;
+      product[entries[k].column] -= flow;
+    }
+    product[i] = sum;
+    energy.x += squares[0];
+    energy.y += squares[1];
   }
-  std::vector<glm::vec2>& z = levels_[0].x;
-  double rho = 0, goal = accuracy.energy;
+  return energy.x + energy.y;
+}
+
+template <class Real>
+void MultigridLevels<Real>::advance(Real alpha) {
+  Level& level = levels_[0];
+  const std::size_t n = level.matrix.rows();
+  for (std::size_t i = 0; i < n; ++i) {
+    correction_[i] += alpha * direction_[i];
+    level.load[i] -= alpha * level.rest[i];
+  }
+}
+
+// Iterates correction_, from 0, for the finest level's load; both are given in 1 / unit. `again`:
+// rounding lets the energy fall no further, and the residual must be found anew.
+template <class Real>
+auto MultigridLevels<Real>::correct(const MultigridAccuracy& accuracy, double unit,
+                                    Progress& progress) -> Outcome {
+  constexpr double most = sizeof(Real) == sizeof(float) ? 1e-9 : 1e-24;
+  const Vector& residual = levels_[0].load;
+  std::fill(correction_.begin(), correction_.end(), glm::vec<2, Real>(0));
+  std::fill(direction_.begin(), direction_.end(), glm::vec<2, Real>(0));
+  double rho = 0, least = 0;
   for (int step = 0;; ++step) {
-    // Brought to the size of 1 by a power of two, so that no digit is lost in single precision.
-    if (!std::isfinite(largest)) return false;
-    const int exponent = largest > 0 ? std::ilogb(largest) : 0;
-    const double shrink = std::ldexp(1.0, -exponent), grow = std::ldexp(1.0, exponent);
-    for (std::size_t i = 0; i < n; ++i) levels_[0].load[i] = glm::vec2(residual_[i] * shrink);
-    cycle(matrix, 0);
-    const double now = inner(residual_, z, grow);
-    if (!(now > goal)) return now <= goal;  // false for a NaN
-    if (step == 0) goal = std::max(goal, accuracy.share * now);
-    if (step == accuracy.most_iterations) return false;
+    cycle(0);
+    const double now = unit * unit * inner<Real>(residual, levels_[0].x);
+    if (std::isnan(now)) return Outcome::failed;
+    if (now <= progress.goal) return Outcome::done;
+    if (progress.first) progress.goal = std::max(progress.goal, accuracy.share * now);
+    progress.first = false;
+    if (step == 0) least = most * now;
+    if (now <= least) return Outcome::again;
+    if (progress.steps_left-- == 0) return Outcome::failed;
     const double beta = step > 0 ? now / rho : 0;
     // The error falls at a steady rate; when this step will do, the next need not confirm it.
-    const bool last = step > 0 && now * beta <= goal;
+    const bool last = step > 0 && now * beta <= progress.goal;
     rho = now;
-    for (std::size_t i = 0; i < n; ++i) {
-      const glm::dvec2 own = grow * glm::dvec2(z[i]);
-      direction_[i] = step > 0 ? own + beta * direction_[i] : own;
-    }
-    const double alpha = rho / multiply(matrix, direction_, product_);
-    if (last) {
-      for (std::size_t i = 0; i < n; ++i) x[i] += alpha * direction_[i];
-      return true;
-    }
-    largest = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      x[i] += alpha * direction_[i];
-      residual_[i] -= alpha * product_[i];
-      largest = std::max({largest, std::abs(residual_[i].x), std::abs(residual_[i].y)});
-    }
+    const double energy = unit * unit * step_direction(static_cast<Real>(beta));
+    if (!(energy > 0)) return Outcome::failed;
+    advance(static_cast<Real>(rho / energy));
+    if (last) return Outcome::done;
   }
+}
+
+template <class Real>
+bool MultigridLevels<Real>::solve(const MultigridAccuracy& accuracy, std::span<glm::dvec2> load,
+                                  std::span<glm::dvec2> x) {
+  Level& level = levels_[0];
+  const std::size_t n = level.matrix.rows();
+  direction_.resize(n);
+  correction_.resize(n);
+  Progress progress{accuracy.energy, accuracy.most_iterations};
+  subtract_product(level.matrix, x, 1, load);
+  for (;;) {
+    double largest = 0;
+    for (const glm::dvec2 r : load) {
+      if (!std::isfinite(r.x + r.y)) return false;
+      largest = std::max({largest, std::abs(r.x), std::abs(r.y)});
+    }
+    // Brought to the size of 1 by a power of two, so that no digit is lost in single precision.
+    const int exponent = largest > 0 ? std::ilogb(largest) : 0;
+    const double unit = std::ldexp(1.0, exponent), shrink = std::ldexp(1.0, -exponent);
+    for (std::size_t i = 0; i < n; ++i) level.load[i] = glm::vec<2, Real>(load[i] * shrink);
+    const Outcome outcome = correct(accuracy, unit, progress);
+    if (outcome == Outcome::failed) return false;
+    for (std::size_t i = 0; i < n; ++i) x[i] += unit * glm::dvec2(correction_[i]);
+    if (outcome == Outcome::done) return true;
+    subtract_product(level.matrix, correction_, unit, load);
+  }
+}
+
+template class MultigridLevels<float>;
+template class MultigridLevels<double>;
+
+bool MultigridSolver::build(std::span<const Element> elements, const HalfEdges& half_edges,
+                            std::size_t vertices) {
+  const auto build = [&](auto& precision, auto& couplings) {
+    build_graph<typename std::decay_t<decltype(couplings)>::value_type>(couplings, half_edges,
+                                                                        vertices, precision.graph);
+    couplings = {};
+    return precision.levels.build(precision.graph);
+  };
+  std::vector<float> single;
+  exact_ = edge_couplings(elements, half_edges, single) > most_single_coupling;
+  if (!exact_) return build(single_, single);
+  std::vector<double> twice;
+  edge_couplings(elements, half_edges, twice);
+  return build(twice_, twice);
+}
+
+bool MultigridSolver::solve(const MultigridAccuracy& accuracy, std::span<glm::dvec2> load,
+                            std::span<glm::dvec2> x) {
+  return exact_ ? twice_.levels.solve(accuracy, load, x) : single_.levels.solve(accuracy, load, x);
 }
 
 }  // namespace atlas::param

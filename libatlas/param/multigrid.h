@@ -2,81 +2,90 @@
 // factorisation would take longer.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "libatlas/param/coarsening.h"
+#include "libatlas/param/graph_laplacian.h"
 #include "libatlas/param/linear_solver.h"
-#include "libatlas/param/stiffness.h"
 
 namespace atlas::param {
 
-// Smoothed aggregation (Vanek, Mandel and Brezina 1996, "Algebraic multigrid by smoothed
-// aggregation for second and fourth order elliptic problems"): neighbourhoods of strongly joined
-// vertices become the unknowns of the next level, some seven times fewer; a V-cycle of symmetric
-// Gauss-Seidel sweeps preconditions the iteration. Set-up and a step cost O(n). The constant vector
-// is in the matrix's kernel, so solutions are determined up to a shift. The cycle works in single
-// precision, which halves what it moves through memory; the iteration around it, in double, decides
-// how exact the solution is.
-class MultigridSolver {
- public:
-  // False: the levels do not shrink (many vertices without strong neighbours, or of huge valence).
-  bool build(const SymmetricMatrix& matrix);
+struct MultigridAccuracy {
+  double energy;        // stop when the error's energy, estimated, is at most this,
+  double share;         // ... or at most this part of what it was,
+  int most_iterations;  // ... or after so many
+};
 
-  struct Accuracy {
-    double energy;        // stop when the error's energy, estimated, is at most this,
-    double share;         // ... or at most this part of what it was,
-    int most_iterations;  // ... or after so many
-  };
-  // Improves x for the right-hand side `load`. False: not accurate enough after the iterations.
-  bool solve(const SymmetricMatrix& matrix, std::span<const glm::dvec2> load,
-             const Accuracy& accuracy, std::span<glm::dvec2> x);
+// A V-cycle of symmetric Gauss-Seidel sweeps over the levels that Coarsening makes preconditions
+// the iteration. Set-up and a step cost O(n). The constant vector is in the matrix's kernel, so
+// solutions are determined up to a shift. Of each matrix the lower half is kept. A correction is
+// iterated in Real; what is still to be corrected is found in double.
+template <class Real>
+class MultigridLevels {
+ public:
+  // Takes the matrix, both halves. False: the levels do not shrink.
+  bool build(GraphLaplacian<Real>& matrix);
+  // Improves x for the right-hand side `load`, and leaves in `load` what x lacks of it. False: not
+  // accurate enough after the iterations.
+  bool solve(const MultigridAccuracy& accuracy, std::span<glm::dvec2> load,
+             std::span<glm::dvec2> x);
 
  private:
-  struct Entry {
-    std::uint32_t column;
-    float value;
-  };
+  using Vector = std::vector<glm::vec<2, Real>>;
   struct Level {
-    // Empty on the finest: that one is the caller's. Once the levels stand, only the rows' ends and
-    // the diagonal are left of the others.
-    SymmetricMatrix matrix;
-    // What the cycle reads: rows of the matrix as in `matrix`, of the prolongation, and the
-    // latter's ends.
-    std::vector<std::uint32_t> first;
-    std::vector<Entry> entries, prolongation;
-    std::vector<float> inverse_diagonal;
-    std::vector<glm::vec2> x, load;
+    GraphLaplacian<Real> matrix;
+    Prolongation<Real> prolongation;
+    std::vector<Real> inverse_diagonal;
+    Vector x, load;
+    Vector rest;  // what a sweep leaves; scratch
   };
-
-  // Of one level while the next one is made; kept for the memory alone.
-  struct Setup {
-    std::vector<std::uint32_t> aggregate;
-    // The prolongation by rows (whose ends the level keeps), and the same by columns.
-    std::vector<std::uint32_t> column, column_first, row;
-    std::vector<double> value, column_value;
-    // The matrix times the prolongation, by rows.
-    std::vector<std::uint32_t> product_first, product_column;
-    std::vector<double> product_value;
+  struct Progress {
+    double goal;
+    int steps_left;
+    bool first = true;
   };
+  enum class Outcome : std::uint8_t { done, failed, again };
 
-  std::uint32_t aggregate(const SymmetricMatrix& matrix, Level& level);
-  void prolongate(const SymmetricMatrix& matrix, std::uint32_t coarse, Level& level);
-  void transpose(std::uint32_t coarse, const Level& level);
-  void store_single(const SymmetricMatrix& matrix, Level& level) const;
-  bool multiply_prolongation(const SymmetricMatrix& matrix, std::uint32_t coarse,
-                             const Level& level);
-  bool coarsen(std::size_t most_entries, SymmetricMatrix& out) const;
-  bool build_levels(const SymmetricMatrix& matrix);
-  void cycle(const SymmetricMatrix& finest, std::size_t level);
-  void smooth_down(const SymmetricMatrix& matrix, std::size_t level);
-  void smooth_up(const SymmetricMatrix& matrix, std::size_t level);
+  bool build_levels();
+  void factorize_coarsest();
+  Outcome correct(const MultigridAccuracy& accuracy, double unit, Progress& progress);
+  double step_direction(Real beta);
+  void advance(Real alpha);
+  void cycle(std::size_t level);
+  void smooth_down(std::size_t level);
+  void restrict_rest(std::size_t level);
+  void smooth_up(std::size_t level);
   void solve_coarsest(Level& level);
 
   std::vector<Level> levels_;
   std::size_t depth_ = 0;  // levels in use; the last one is solved directly
-  Setup setup_;
+  Coarsening<Real> coarsening_;
   EnvelopeSolver coarsest_;
-  std::vector<glm::dvec2> direction_, product_, residual_, coarse_load_, coarse_x_;
+  Vector direction_, correction_;
+  std::vector<glm::dvec2> coarse_load_, coarse_x_;
+};
+
+// Single precision halves what is moved through memory. Where slivers would suffer from rounded
+// couplings, double precision is taken.
+class MultigridSolver {
+ public:
+  // False: the levels do not shrink (many vertices without strong neighbours, or of huge valence).
+  bool build(std::span<const Element> elements, const HalfEdges& half_edges, std::size_t vertices);
+  bool solve(const MultigridAccuracy& accuracy, std::span<glm::dvec2> load,
+             std::span<glm::dvec2> x);
+
+ private:
+  template <class Real>
+  struct Precision {
+    GraphLaplacian<Real> graph;
+    MultigridLevels<Real> levels;
+  };
+
+  Precision<float> single_;
+  Precision<double> twice_;
+  bool exact_ = false;  // twice_ is in use
 };
 
 }  // namespace atlas::param
