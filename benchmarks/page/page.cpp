@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 
+#include "benchmarks/page/gnuplot.h"
 #include "benchmarks/page/plots.h"
 #include "benchmarks/page/tables.h"
 

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <limits>
 #include <map>
 #include <set>
@@ -12,15 +10,10 @@
 namespace atlas::bench {
 namespace {
 
+constexpr int kFrontColour = 5, kSingleColour = 6;  // grey, black
+
 std::string kind_of(const Row& row) {
   return row.mesh.substr(0, row.mesh.find(':'));
-}
-
-// Gnuplot draws underscores as subscripts, and both quotes end a string.
-std::string plain(std::string text) {
-  for (char& c : text)
-    if (c == '"' || c == '\'' || c == '\\') c = ' ';
-  return text;
 }
 
 bool usable(const Row& row) {
@@ -38,84 +31,134 @@ double spread(const std::vector<Series>& all, double PlotPoint::*coordinate) {
   return high / low;
 }
 
-// A coordinate as drawn, in shares of its axis.
-class Axis {
- public:
-  Axis(const std::vector<Series>& all, double PlotPoint::*coordinate, bool log)
-      : coordinate_(coordinate), log_(log) {
-    double low = 1e300, high = -1e300;
-    for (const Series& s : all)
-      for (const PlotPoint& p : s.points) {
-        low = std::min(low, place(p));
-        high = std::max(high, place(p));
-      }
-    length_ = high - low + 1e-300;
-  }
-  double distance(const PlotPoint& a, const PlotPoint& b) const {
-    return std::abs(place(a) - place(b)) / length_;
-  }
-
- private:
-  double place(const PlotPoint& p) const {
-    return log_ ? std::log(p.*coordinate_) : p.*coordinate_;
-  }
-
-  double PlotPoint::*coordinate_;
-  bool log_;
-  double length_;
-};
-
-// Points so close together on the plot that their labels would overlap share one, at the first.
-void join_labels(Plot& plot) {
-  constexpr double kLabelWidth = 0.15, kLabelHeight = 0.05;  // of the plot
-  const Axis across(plot.series, &PlotPoint::x, plot.log_x),
-      up(plot.series, &PlotPoint::y, plot.log_y);
-  std::vector<PlotPoint*> labelled;
-  for (Series& s : plot.series)
-    for (PlotPoint& p : s.points) {
-      if (p.label.empty()) continue;
-      const auto near = std::find_if(labelled.begin(), labelled.end(), [&](const PlotPoint* q) {
-        return across.distance(p, *q) < kLabelWidth && up.distance(p, *q) < kLabelHeight;
-      });
-      if (near == labelled.end()) {
-        labelled.push_back(&p);
-        continue;
-      }
-      if (("; " + (*near)->label + "; ").find("; " + p.label + "; ") == std::string::npos)
-        (*near)->label += "; " + p.label;
-      p.label.clear();
-    }
+// What a row's first value is called on an axis.
+std::string axis_name(const std::string& value) {
+  static const std::map<std::string, std::string> names = {
+      {"empty", "empty share of the pages"}, {"imbalance", "largest group over the mean, less 1"},
+      {"l2_minus_1", "L2 stretch less 1"},   {"mean", "mean error of the visibility"},
+      {"rms", "rms error, display values"},  {"seam", "seams / square root of the area"},
+      {"slip", "largest slip, texels"}};
+  const auto name = names.find(value);
+  return name == names.end() ? value : name->second;
 }
 
-// One plot a stage that was run with several settings.
+// "linear, k = 4" is one of the settings "linear".
+std::string group_of(const std::string& setting) {
+  const auto comma = setting.rfind(", ");
+  return comma == std::string::npos ? "" : setting.substr(0, comma);
+}
+
+PlotPoint point_of(const Row& row) {
+  constexpr double kPerfect = 1e-6;  // where errors of 0 are drawn
+  return {row.cpu_seconds, std::max(row.values.front().second, kPerfect), row.setting, row.preset};
+}
+
+// Settings of one group are joined, in their order, and tell what is common to them once.
+std::vector<Series> grouped(const std::vector<const Row*>& rows) {
+  std::map<std::string, int> sizes, colours;
+  for (const Row* row : rows) ++sizes[group_of(row->setting)];
+  std::vector<Series> series;
+  Series single;
+  single.colour = kSingleColour;
+  std::map<std::string, std::size_t> at;
+  for (const Row* row : rows) {
+    const std::string group = group_of(row->setting);
+    PlotPoint point = point_of(*row);
+    if (group.empty() || sizes[group] < 2) {
+      single.points.push_back(point);
+      continue;
+    }
+    const auto [place, fresh] = at.try_emplace(group, series.size());
+    if (fresh) {
+      series.emplace_back();
+      series.back().lines = true;
+      const int colour = int(at.size());
+      series.back().colour = colour < kFrontColour ? colour : colour + 2;
+    } else {
+      point.label = row->setting.substr(group.size() + 2);
+    }
+    point.important = true;
+    series[place->second].points.push_back(point);
+  }
+  if (!single.points.empty()) series.push_back(single);
+  return series;
+}
+
+Panel settings_panel(const std::string& mesh, const std::vector<const Row*>& rows) {
+  Panel panel;
+  panel.title = mesh;
+  std::vector<PlotPoint> all;
+  for (const Row* row : rows) all.push_back(point_of(*row));
+  Series front;
+  front.points = pareto_front(all);
+  for (PlotPoint& p : front.points) p.label.clear();
+  front.lines = true;
+  front.points_too = false;
+  front.colour = kFrontColour;
+  front.dash = 2;
+  panel.series = grouped(rows);
+  panel.series.insert(panel.series.begin(), front);
+  return panel;
+}
+
+// A program a colour, the same in every panel; those without a result are named in the title.
+Panel programs_panel(const std::string& mesh, const std::vector<const Row*>& rows,
+                     std::map<std::string, int>& colours) {
+  Panel panel;
+  panel.title = mesh;
+  std::string without;
+  for (const Row* row : rows) {
+    if (!usable(*row)) {
+      without += (without.empty() ? " (no result: " : ", ") + row->setting;
+      continue;
+    }
+    Series series;
+    series.points.push_back(point_of(*row));
+    series.points.back().important = true;
+    series.colour = colours.try_emplace(row->setting, int(colours.size()) + 1).first->second;
+    panel.series.push_back(series);
+  }
+  if (!without.empty()) panel.title += without + ")";
+  return panel;
+}
+
+// One plot a stage that was run with several settings or programs, a panel a mesh.
 void error_plots(const Results& results, std::vector<Plot>& plots) {
-  std::map<std::string, std::map<std::string, std::vector<const Row*>>> stages;
-  for (const Row& row : results.rows)
-    if (usable(row) && row.stage != "light_leak" && row.stage != "baseline")
-      stages[row.stage][row.mesh].push_back(&row);
+  using Meshes = std::vector<std::pair<std::string, std::vector<const Row*>>>;  // in their order
+  std::map<std::string, Meshes> stages;
+  for (const Row& row : results.rows) {
+    if (row.stage == "light_leak" || row.stage == "baseline") continue;
+    if (row.stage != "unwrap" && !usable(row)) continue;
+    Meshes& meshes = stages[row.stage];
+    const auto same = std::find_if(meshes.begin(), meshes.end(),
+                                   [&](const auto& mesh) { return mesh.first == row.mesh; });
+    if (same == meshes.end())
+      meshes.push_back({row.mesh, {&row}});
+    else
+      same->second.push_back(&row);
+  }
   for (const auto& [stage, meshes] : stages) {
+    const bool programs = stage == "unwrap";
     Plot plot;
     plot.file = "error_" + stage + ".svg";
     std::replace(plot.file.begin(), plot.file.end(), '/', '_');
-    plot.title = stage + ": error against time";
+    plot.title = programs ? "Programs: error against time, a panel a mesh"
+                          : stage +
+                                ": error against time (filled: presets or joined settings; "
+                                "dashed: Pareto front)";
     plot.x_axis = "CPU seconds";
+    std::map<std::string, int> colours;
     for (const auto& [mesh, rows] : meshes) {
-      if (rows.size() < 3 && stage != "unwrap") continue;
-      plot.y_axis = rows.front()->values.front().first;
-      Series series{mesh, {}, false};
+      if (rows.size() < 3 && !programs) continue;
+      Panel panel = programs ? programs_panel(mesh, rows, colours) : settings_panel(mesh, rows);
+      if (panel.series.empty()) continue;
       for (const Row* row : rows)
-        series.points.push_back({row->cpu_seconds, std::max(row->values.front().second, 1e-6),
-                                 row->preset ? row->setting : ""});
-      plot.series.push_back(series);
-      if (stage != "unwrap") plot.series.push_back({"", pareto_front(series.points), true});
+        if (usable(*row)) plot.y_axis = axis_name(row->values.front().first);
+      panel.log_x = spread(panel.series, &PlotPoint::x) > 3;
+      panel.log_y = spread(panel.series, &PlotPoint::y) > 3;
+      plot.panels.push_back(std::move(panel));
     }
-    for (Series& s : plot.series)
-      if (s.lines)
-        for (PlotPoint& p : s.points) p.label.clear();
-    plot.log_x = spread(plot.series, &PlotPoint::x) > 8;  // less, and a log axis has no labels
-    plot.log_y = spread(plot.series, &PlotPoint::y) > 8;
-    join_labels(plot);
-    if (!plot.series.empty()) plots.push_back(plot);
+    if (!plot.panels.empty()) plots.push_back(std::move(plot));
   }
 }
 
@@ -154,6 +197,8 @@ void size_plot(const Results& results, bool time, std::vector<Plot>& plots) {
   plot.title = time ? "CPU time against size" : "Memory against size";
   plot.x_axis = "triangles";
   plot.y_axis = time ? "CPU seconds" : "MiB";
+  plot.key = true;
+  Panel panel;
   std::map<std::string, int> colours;  // one a stage; kinds of work are told apart by dashes
   std::map<std::string, int> dashes;
   for (auto& [name, points] : series) {
@@ -163,9 +208,11 @@ void size_plot(const Results& results, bool time, std::vector<Plot>& plots) {
     const auto comma = name.find(", ");
     const auto colour = colours.try_emplace(name.substr(0, comma), int(colours.size()) + 1).first;
     const auto dash = dashes.try_emplace(name.substr(comma), int(dashes.size()) + 1).first;
-    plot.series.push_back({name, points, true, colour->second, dash->second});
+    panel.series.push_back({name, points, true, true, colour->second, dash->second});
   }
-  if (!plot.series.empty()) plots.push_back(plot);
+  if (panel.series.empty()) return;
+  plot.panels.push_back(std::move(panel));
+  plots.push_back(std::move(plot));
 }
 
 void leak_plot(const Results& results, std::vector<Plot>& plots) {
@@ -182,18 +229,20 @@ void leak_plot(const Results& results, std::vector<Plot>& plots) {
       s.lines = true;
     }
   }
-  Plot plot{"light_leak.svg",
-            "Light leak along a shadow on the door",
-            "texel on the surface, mm",
-            "error, display values",
-            true,
-            false,
-            {}};
+  if (series.empty()) return;
+  Panel panel;
+  panel.log_y = false;
   for (auto& [name, s] : series) {
     s.name = name;
-    plot.series.push_back(s);
+    s.colour = int(panel.series.size()) + 1;
+    panel.series.push_back(s);
   }
-  if (!plot.series.empty()) plots.push_back(plot);
+  plots.push_back({"light_leak.svg",
+                   "Light leak along a shadow on the door",
+                   "texel on the surface, mm",
+                   "error, display values",
+                   {std::move(panel)},
+                   true});
 }
 
 }  // namespace
@@ -219,57 +268,6 @@ std::vector<Plot> make_plots(const Results& results) {
   size_plot(results, false, plots);
   leak_plot(results, plots);
   return plots;
-}
-
-// Colours that stay apart on white, in print and for most colour-blind readers (after Wong 2011).
-constexpr const char* kLineTypes =
-    "set linetype 1 lc rgb '#0072b2' lw 1.5\nset linetype 2 lc rgb '#d55e00' lw 1.5\n"
-    "set linetype 3 lc rgb '#009e73' lw 1.5\nset linetype 4 lc rgb '#cc79a7' lw 1.5\n"
-    "set linetype 5 lc rgb '#7f7f7f' lw 1.5\nset linetype 6 lc rgb '#000000' lw 1.5\n"
-    "set linetype 7 lc rgb '#e69f00' lw 1.5\nset linetype 8 lc rgb '#56b4e9' lw 1.5\n";
-
-std::string gnuplot_script(const Plot& plot, const std::filesystem::path& target) {
-  std::string text = fmt::format(
-      "set terminal svg size 860,560 noenhanced font 'sans,13' background rgb 'white'\n"
-      "set output '{}'\nset title '{}'\nset xlabel '{}'\nset ylabel '{}'\n"
-      "set key below left\nset grid\nset format '%g'\nset autoscale noextend\n"
-      "set offsets graph 0.04, graph 0.12, graph 0.06, graph 0.06\n"
-      "{}",
-      target.string(), plain(plot.title), plain(plot.x_axis), plain(plot.y_axis), kLineTypes);
-  if (plot.log_x) text += "set logscale x\n";
-  if (plot.log_y) text += "set logscale y\n";
-  std::string commands, data;
-  int colour = 0;
-  for (std::size_t i = 0; i < plot.series.size(); ++i) {
-    const Series& s = plot.series[i];
-    if (!s.name.empty()) colour = s.colour ? s.colour : colour + 1;  // nameless: as the one before
-    data += fmt::format("$s{} << EOD\n", i);
-    bool labels = false;
-    for (const PlotPoint& p : s.points) {
-      data += fmt::format("{:.9g} {:.9g} \"{}\"\n", p.x, p.y, plain(p.label));
-      labels |= !p.label.empty();
-    }
-    data += "EOD\n";
-    const std::string title = s.name.empty() ? "notitle" : "title '" + plain(s.name) + "'";
-    const char* style = !s.lines         ? "points pt 7 ps 0.7"
-                        : s.name.empty() ? "lines"
-                                         : "linespoints pt 7 ps 0.5";
-    commands += fmt::format("{}$s{} using 1:2 with {} lt {} dt {} {}",
-                            commands.empty() ? "plot " : ", ", i, style, colour, s.dash, title);
-    if (labels)
-      commands +=
-          fmt::format(", $s{} using 1:2:3 with labels left offset 0.6,0.3 font ',9' notitle", i);
-  }
-  return data + text + commands + "\n";
-}
-
-Status draw(const Plot& plot, const std::filesystem::path& folder) {
-  FILE* pipe = popen("gnuplot", "w");
-  if (!pipe) return {ErrorCode::io, "gnuplot cannot be started (package gnuplot-nox)"};
-  const std::string script = gnuplot_script(plot, folder / plot.file);
-  std::fwrite(script.data(), 1, script.size(), pipe);
-  if (pclose(pipe) == 0) return {};
-  return {ErrorCode::io, plot.file + ": gnuplot failed (is the package gnuplot-nox installed?)"};
 }
 
 }  // namespace atlas::bench

@@ -1,7 +1,6 @@
-// Plots by gnuplot, as SVG.
+// What the page draws: a stage's error against CPU time, cost against size.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -11,35 +10,38 @@ namespace atlas::bench {
 
 struct PlotPoint {
   double x = 0, y = 0;
-  std::string label;  // drawn beside the point if not empty
+  std::string label;       // drawn beside the point if not empty
+  bool important = false;  // filled, and labelled before others
 };
 
 struct Series {
-  std::string name;
+  std::string name;  // in the key; empty: not there
   std::vector<PlotPoint> points;
   bool lines = false;  // joined in the order given
-  int colour = 0;      // 1 and on, 0: the next one that is free
-  int dash = 1;        // gnuplot's dash type; 1 is solid
+  bool points_too = true;
+  int colour = 1;  // 1 and on
+  int dash = 1;    // gnuplot's dash type; 1 is solid
+};
+
+// One pair of axes.
+struct Panel {
+  std::string title;
+  std::vector<Series> series;
+  bool log_x = true, log_y = true;
 };
 
 struct Plot {
   std::string file;  // name without folder, .svg
   std::string title, x_axis, y_axis;
-  bool log_x = true, log_y = true;
-  std::vector<Series> series;
+  std::vector<Panel> panels;  // side by side, three in a row at most
+  bool key = false;           // names the series, below
 };
 
 // Points that no other beats in both coordinates, by ascending x.
 std::vector<PlotPoint> pareto_front(std::vector<PlotPoint> points);
 
-// All plots that these results give: a stage's error against CPU time, time and memory against
-// size, the light leak, the rivals.
+// All plots that these results give: a stage's error against CPU time with a panel a mesh, the
+// same of the rivals, time and memory against size, the light leak.
 std::vector<Plot> make_plots(const Results& results);
-
-// The gnuplot script of one plot, which writes `target`.
-std::string gnuplot_script(const Plot& plot, const std::filesystem::path& target);
-
-// Errors: io when gnuplot is missing or fails.
-Status draw(const Plot& plot, const std::filesystem::path& folder);
 
 }  // namespace atlas::bench

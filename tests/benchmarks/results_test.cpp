@@ -6,9 +6,11 @@
 #include <filesystem>
 #include <fstream>
 
+#include "benchmarks/page/gnuplot.h"
 #include "benchmarks/page/page.h"
 #include "benchmarks/page/plots.h"
 #include "benchmarks/support/compare.h"
+#include "libatlas/core/vec.h"
 
 namespace atlas::bench {
 namespace {
@@ -190,6 +192,52 @@ TEST(Pareto, KeepsWhatNothingBeats) {
   EXPECT_EQ(front[0].y, 5);
   EXPECT_EQ(front[1].y, 2);
   EXPECT_EQ(front[2].x, 3);
+}
+
+// Where a script puts a label, in shares of the panel.
+Vec2d label_place(const std::string& script, const std::string& label) {
+  const std::size_t at = script.find("set label '" + label + "' at graph ");
+  Vec2d place{-1, -1};
+  if (at != std::string::npos)
+    std::sscanf(script.c_str() + script.find("graph ", at), "graph %lf,%lf", &place.x, &place.y);
+  return place;
+}
+
+TEST(Plots, LabelsOfOnePlaceLieApartAndInside) {
+  Plot plot{"x.svg", "title", "x", "y", {Panel{}, Panel{}}};
+  plot.panels[0].series.push_back({"", {{1, 5, "first", true}, {1, 5, "second"}, {9, 7, "third"}}});
+  plot.panels[1].series.push_back({"", {{0.25, 4, "it's"}}});  // a range of no length
+  const std::string script = gnuplot_script(plot, "x.svg");
+  const Vec2d first = label_place(script, "first"), second = label_place(script, "second");
+  EXPECT_GE(std::hypot(first.x - second.x, first.y - second.y), 0.02);
+  for (const char* name : {"first", "second", "third", "it s"}) {
+    const Vec2d place = label_place(script, name);
+    EXPECT_GT(std::min(place.x, place.y), 0) << name;
+    EXPECT_LT(std::max(place.x, place.y), 1) << name;
+  }
+  EXPECT_EQ(script.find("nan"), std::string::npos);
+  EXPECT_EQ(script.find("inf"), std::string::npos);
+}
+
+TEST(Plots, AProgramKeepsItsColourAndThoseThatFailAreNamed) {
+  Results results;
+  for (const char* mesh : {"sphere:10", "torus:10"})
+    for (const char* program : {"ours", "theirs", "third"}) {
+      Row made = row(10, 1, 0.5);
+      made.stage = "unwrap";
+      made.mesh = mesh;
+      made.setting = program;
+      if (mesh[0] == 's' && program[0] == 't') made.failure = "timed out";
+      results.rows.push_back(made);
+    }
+  const std::vector<Plot> plots = make_plots(results);
+  ASSERT_EQ(plots.size(), 1u);
+  ASSERT_EQ(plots[0].panels.size(), 2u);
+  EXPECT_EQ(plots[0].panels[0].title, "sphere:10 (no result: theirs, third)");
+  ASSERT_EQ(plots[0].panels[0].series.size(), 1u);
+  ASSERT_EQ(plots[0].panels[1].series.size(), 3u);
+  EXPECT_EQ(plots[0].panels[0].series[0].colour, plots[0].panels[1].series[0].colour);
+  EXPECT_NE(plots[0].panels[1].series[0].colour, plots[0].panels[1].series[1].colour);
 }
 
 // The page in Markdown after a round through a JSON file; empty if that fails.
