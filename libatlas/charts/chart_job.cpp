@@ -30,9 +30,13 @@ constexpr double kMinAltitude = 1e-7;
 constexpr std::size_t kLargeChart = 20000;
 constexpr double kAimedStretch = 1.18;
 constexpr double kBestStretch = 1.12;
-// Under scan noise most attempts fail, and those that succeed do so early (measured).
-constexpr int kMostCuts = 3;                   // rounds in all, of cutting and closing
-constexpr std::size_t kMostCrossingsLeft = 8;  // of the banks of cuts; with more it is divided
+// Under scan noise, rounds of cutting and of closing what crosses, each going on from the last, in
+// all and of closing. With half as many, or charts divided for 8 crossings whatever their size,
+// time and charts were a tenth and a twentieth more (11 noisy meshes).
+constexpr int kMostCuts = 12, kMostClosings = 8;
+// Crossings of the banks of cuts, with more of which a chart is divided: so many, or more in a
+// large one, a crossing for so many triangles.
+constexpr std::size_t kMostCrossingsLeft = 8, kTrianglesACrossing = 150;
 constexpr int kBestIterations = 8;
 // Charts of so many triangles that are stretched beyond the bound over more than this share of
 // their area were saved by no cut to a vertex (measured); a hole in them may be what they close
@@ -85,9 +89,7 @@ class ChartJob {
   // What the last attempt left, for the next one to go on from: a cut opens where it is made.
   void keep_uvs() {
     kept_uvs_.clear();
-    if (!noisy() || result_.uvs.empty() || result_.distortion.flips > 0 || result_.within_bound) {
-      return;
-    }
+    if (!noisy() || result_.uvs.empty() || result_.distortion.flips > 0) return;
     for (const auto& corners : chart_.corners) {
       for (const std::uint32_t v : corners) kept_uvs_.push_back(result_.uvs[v]);
     }
@@ -120,14 +122,18 @@ class ChartJob {
 
   // A seam that may help: from loop to loop, or to where curvature stretches it too much.
   bool cut_open(int cuts) {
-    if (noisy() && result_.within_bound && !result_.injective && closings_++ < effort_.closings &&
-        close_cuts(input_.topology, chart_, crossings_left(), partition_, closed_cuts_)) {
+    const int closings = effort_.whole || !noisy() ? effort_.closings : kMostClosings;
+    if (noisy() && result_.within_bound && !result_.injective && closings_ < closings &&
+        close_cuts(input_.topology, chart_, crossings_to_undo(), partition_, closed_cuts_)) {
+      ++closings_;
       return true;
     }
+    // What was just closed would be cut again.
+    if (closings_ > 0 && !only_darts()) return false;
     if (!only_darts() || (cuts == 0 && chart_.loops.size() > 1 && stretched_widely())) {
       return join_loops(input_.topology, chart_, partition_);
     }
-    if (cuts >= effort_.cuts || result_.within_bound) return false;
+    if (cuts >= most_cuts() || result_.within_bound) return false;
     return !result_.offenders.empty() &&
            cut_to_border(input_.topology, chart_, result_.offenders, closed_cuts_, partition_);
   }
@@ -179,11 +185,19 @@ class ChartJob {
     return result_.stubborn_crossings.empty() ? result_.crossings : result_.stubborn_crossings;
   }
 
+  std::vector<BorderCrossing> crossings_to_undo() const {
+    return crossings_left().empty() ? turned_loops(chart_, result_.uvs) : crossings_left();
+  }
+
+  int most_cuts() const { return noisy() && !effort_.whole ? kMostCuts : effort_.cuts; }
+
   // Cuts whose banks cross in many places: closing some, or handing triangles to neighbours, hardly
   // ever saved such a chart.
   bool hopeless() const {
+    const std::size_t crossings = std::max(result_.crossings.size(), crossings_left().size());
     return noisy() && result_.within_bound && !result_.injective &&
-           std::max(result_.crossings.size(), crossings_left().size()) > kMostCrossingsLeft;
+           crossings >
+               std::max(kMostCrossingsLeft, chart_.triangles().size() / kTrianglesACrossing);
   }
 
   // Whether what exceeds the bound is more than the surroundings of a few sharp vertices.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -126,7 +127,7 @@ class Flattener {
   struct State {
     std::vector<std::uint32_t> triangles;  // ascending
     int removals = 0;
-    std::size_t crossings = 0;  // that the last removal was to undo
+    std::size_t crossings = std::numeric_limits<std::size_t>::max();  // the last removal's
     bool queued = false;
     bool grown = false;  // got triangles of neighbours since it was flattened
     bool fragment = false;
@@ -193,12 +194,12 @@ class Flattener {
     }
   }
 
-  // False if none could go, or the last ones went in vain.
+  // False if none could go, or when the last ones went more edges crossed.
   bool remove(std::uint32_t chart, const ChartOutcome& failure) {
     State& state = charts_[chart];
-    const std::size_t before = std::exchange(state.crossings, failure.crossings);
     if (failure.remove.empty() || state.removals >= kMaxRemovals) return false;
-    if (state.removals > 0 && failure.crossings >= before) return false;
+    if (failure.crossings > state.crossings) return false;
+    state.crossings = failure.crossings;
     ++state.removals;
     bool any = false;
     for (const std::uint32_t t : failure.remove) {
@@ -231,6 +232,7 @@ class Flattener {
     // Triangles that came from neighbours in this round stay with part 0.
     const std::vector<std::uint32_t> triangles = std::move(charts_[chart].triangles);
     charts_[chart].triangles.clear();
+    charts_[chart].crossings = State{}.crossings;
     std::vector<std::uint32_t> name(1 + *std::max_element(parts.begin(), parts.end()), kNoIndex);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
       const std::uint32_t t = triangles[i];

@@ -40,4 +40,8 @@ bool close_cuts(const Topology& topology, const LocalChart& chart,
                 std::span<const BorderCrossing> crossings, Partition& partition,
                 ClosedCuts& closed);
 
+// The triangles along border loops inside the outline that run around it the wrong way, each as a
+// crossing with itself: of cuts whose banks have changed sides without crossing.
+std::vector<BorderCrossing> turned_loops(const LocalChart& chart, std::span<const Vec2d> uvs);
+
 }  // namespace atlas

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "libatlas/charts/slits.h"
+#include "libatlas/charts/split.h"
 #include "tests/charts/chart_checks.h"
 
 namespace atlas::test {
@@ -98,6 +99,46 @@ TEST(Slits, APlateWithHolesKeepsNone) {
       EXPECT_GT(gap(uv(h), uv(next_half_edge(o))) + gap(uv(next_half_edge(h)), uv(o)), 1e-7)
           << holes << " holes";
     }
+  }
+}
+
+// A grid of 8 x 8 quads with a slit along x = 1/2 from y = 1/4 to 3/4, whose right bank lies `gap`
+// beside the left one.
+TEST(Slits, BanksThatHaveChangedSidesAreFoundAndClosed) {
+  const Mesh mesh(grid(8, 8));
+  const Result<Topology> topology = build_topology(mesh.view(), {}, {});
+  ASSERT_TRUE(topology.ok());
+  for (const double gap : {0.05, -0.05}) {
+    Partition partition;
+    partition.chart.assign(topology->triangle_count(), 0);
+    partition.seams.assign(topology->triangle_count(), 0);
+    partition.local.resize(topology->triangle_count());
+    std::vector<std::uint32_t> triangles(topology->triangle_count());
+    const auto at = [&](std::uint32_t h) {
+      return mesh.positions[topology->source_vertex[topology->corner_vertex[h]]];
+    };
+    for (std::uint32_t h = 0; h < topology->opposite.size(); ++h) {
+      triangles[h / 3] = h / 3;
+      const Vec3f a = at(h), b = at(next_half_edge(h));
+      const bool cut = a.x == 0.5f && b.x == 0.5f && std::abs(a.y + b.y - 1) < 0.5f;
+      if (cut) partition.seams[h / 3] |= static_cast<std::uint8_t>(1u << (h % 3));
+    }
+    LocalChart chart;
+    chart.build(*topology, partition, triangles);
+    ASSERT_EQ(chart.loops.size(), 2u);
+    std::vector<Vec2d> uvs(chart.positions.size());
+    for (std::uint32_t h = 0; h < chart.opposite.size(); ++h) {
+      const Vec3f p = at(h);
+      const bool bank = p.x == 0.5f && std::abs(p.y - 0.5f) < 0.2f && h / 3 / 2 % 8 >= 4;
+      uvs[chart.corners[h / 3][h % 3]] = {p.x + (bank ? gap : 0), p.y};
+    }
+    const std::vector<BorderCrossing> turned = turned_loops(chart, uvs);
+    EXPECT_EQ(turned.size(), gap > 0 ? 0u : 8u);
+    ClosedCuts closed;
+    EXPECT_EQ(close_cuts(*topology, chart, turned, partition, closed), gap < 0);
+    EXPECT_EQ(closed.size(), gap > 0 ? 0u : 4u);
+    chart.build(*topology, partition, triangles);
+    EXPECT_EQ(chart.loops.size(), gap > 0 ? 2u : 1u);
   }
 }
 
