@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "benchmarks/support/staged.h"
 #include "libatlas/bake/placement.h"
 

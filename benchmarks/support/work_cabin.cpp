@@ -1,4 +1,7 @@
 #include "benchmarks/support/work.h"
+
+#include <algorithm>
+
 #include "examples/cabin/refine.h"
 
 namespace atlas::bench {

@@ -2,6 +2,7 @@
 // Header-only, so that the caller's work per texel is inlined.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "libatlas/raster/scan.h"

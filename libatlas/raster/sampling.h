@@ -3,6 +3,7 @@
 // Header-only, so that the caller's work per sample is inlined.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <span>

@@ -1,6 +1,7 @@
 // The coarse mesh that merging tries charts on.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "libatlas/charts/coarse.h"

@@ -1,6 +1,7 @@
 // Seams of a chart with itself: closed where their banks coincide, and only there.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 

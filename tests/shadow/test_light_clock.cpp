@@ -1,6 +1,7 @@
 // The light of a window on fast and slow machines, with the schedule it drives.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
