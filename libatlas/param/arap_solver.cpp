@@ -28,27 +28,28 @@ constexpr int most_iterations = 60;
 // more than inexact ones leave.
 constexpr double converged = 3e-11;
 
-// Seen edge-on, or from behind, a triangle has no rotation near its map.
+// Seen edge-on, or from behind, a triangle has no rotation near its map: its smaller singular value
+// must be more than a quarter of the larger one, within some 75 degrees of the view.
 bool trustworthy(const Jacobian& j) {
-  const SingularValues s = singular_values(j);
-  return s.small > 0.25 * s.large;  // within some 75 degrees of the view
+  return j.det() > 4.0 / 17 * (glm::dot(j.x, j.x) + glm::dot(j.y, j.y));
+}
+
+// The map that a frame makes of an element, times its length.
+Jacobian map_of_frame(const LocalMesh& mesh, const Element& e, const std::array<Vec3f, 2>& frame) {
+  const glm::dvec3 p = to_glm(mesh.positions[e.v[0]]), a = to_dvec(frame[0]), b = to_dvec(frame[1]);
+  const glm::dvec3 base = to_glm(mesh.positions[e.v[1]]) - p;
+  const glm::dvec3 side = to_glm(mesh.positions[e.v[2]]) - p;
+  const glm::dvec2 x(glm::dot(a, base), glm::dot(b, base));
+  const glm::dvec2 y(glm::dot(a, side), glm::dot(b, side));
+  return {x, (e.length * y - e.foot * x) / e.altitude};
 }
 
 void rotations_from_frames(const LocalMesh& mesh, std::span<const Element> elements,
                            const FrameView& frames, Rotations& out) {
   out.resize(elements.size());
   for (std::size_t t = 0; t < elements.size(); ++t) {
-    const auto& v = elements[t].v;
-    const glm::dvec3 p = to_glm(mesh.positions[v[0]]);
-    const glm::dvec3 e = to_glm(mesh.positions[v[1]]) - p, f = to_glm(mesh.positions[v[2]]) - p;
-    const double squared = glm::dot(e, e);
-    const glm::dvec3 up = squared > 0 ? f - e * (glm::dot(f, e) / squared) : glm::dvec3(0);
-    const double base = std::sqrt(squared), height = glm::length(up);
-    const glm::dvec3 x = base > 0 ? e / base : glm::dvec3(0);
-    const glm::dvec3 y = height > 0 ? up / height : glm::dvec3(0);
-    const glm::dvec3 a = to_dvec(frames[t][0]), b = to_dvec(frames[t][1]);
-    const Jacobian j{{glm::dot(a, x), glm::dot(b, x)}, {glm::dot(a, y), glm::dot(b, y)}};
-    out[t] = trustworthy(j) ? nearest_rotation(j) : glm::dvec2(0);
+    const Jacobian j = map_of_frame(mesh, elements[t], frames[t]);
+    out[t] = trustworthy(j) ? glm::vec2(nearest_rotation(j)) : glm::vec2(0);
   }
 }
 
@@ -93,7 +94,7 @@ glm::dvec2 carried(const ParamWorkspace::Impl& w, std::uint32_t h) {
   const glm::dvec2 here = edge_direction(w.elements[t], a, b);
   const glm::dvec2 there = edge_direction(w.elements[other], a, b);
   // rotation of other = rotation of t * here / there, as complex numbers of unit length
-  const glm::dvec2 r = w.rotations[t];
+  const glm::dvec2 r(w.rotations[t]);
   const glm::dvec2 turn(glm::dot(here, there), cross(there, here));
   return glm::normalize(glm::dvec2(r.x * turn.x - r.y * turn.y, r.x * turn.y + r.y * turn.x));
 }
@@ -105,7 +106,7 @@ void flood_rotations(ParamWorkspace::Impl& w) {
     const std::uint32_t t = w.queue[i];
     for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
       const std::uint32_t g = w.half_edges.opposite(h);
-      if (g == HalfEdges::none || w.rotations[HalfEdges::triangle(g)] != glm::dvec2(0)) continue;
+      if (g == HalfEdges::none || w.rotations[HalfEdges::triangle(g)] != glm::vec2(0)) continue;
       w.rotations[HalfEdges::triangle(g)] = carried(w, h);
       w.queue.push_back(HalfEdges::triangle(g));
     }
@@ -114,7 +115,7 @@ void flood_rotations(ParamWorkspace::Impl& w) {
 
 void carry_rotations(const LocalMesh& mesh, ParamWorkspace::Impl& w) {
   w.half_edges.build(mesh);
-  w.rotations.assign(mesh.triangles.size(), glm::dvec2(0));
+  w.rotations.assign(mesh.triangles.size(), glm::vec2(0));
   const auto flood = [&](std::uint32_t start) {
     w.rotations[start] = {1, 0};
     w.queue.assign(1, start);
@@ -122,7 +123,7 @@ void carry_rotations(const LocalMesh& mesh, ParamWorkspace::Impl& w) {
   };
   flood(middle_triangle(mesh));
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (w.rotations[t] == glm::dvec2(0)) flood(t);  // a second piece, against the precondition
+    if (w.rotations[t] == glm::vec2(0)) flood(t);  // a second piece, against the precondition
   }
 }
 
@@ -132,17 +133,17 @@ void complete_rotations(const LocalMesh& mesh, ParamWorkspace::Impl& w) {
   w.queue.clear();
   bool complete = true;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    complete &= w.rotations[t] != glm::dvec2(0);
+    complete &= w.rotations[t] != glm::vec2(0);
   }
   if (complete) return;
   w.half_edges.build(mesh);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (w.rotations[t] != glm::dvec2(0)) w.queue.push_back(t);
+    if (w.rotations[t] != glm::vec2(0)) w.queue.push_back(t);
   }
   if (w.queue.empty()) return carry_rotations(mesh, w);
   flood_rotations(w);
-  for (glm::dvec2& r : w.rotations) {
-    if (r == glm::dvec2(0)) r = {1, 0};
+  for (glm::vec2& r : w.rotations) {
+    if (r == glm::vec2(0)) r = {1, 0};
   }
 }
 
@@ -247,7 +248,7 @@ void ArapSolver::join(std::span<const Vec2d> corner_uvs, std::span<Vec2d> uvs) {
     const Jacobian j = e.jacobian(p[0], p[1], p[2]);
     const auto gradients = e.area_gradients();
     for (std::size_t i = 0; i < 3; ++i) {
-      w_.load[e.v[i]] += e.weight * (gradients[i].x * j.x + gradients[i].y * j.y);
+      w_.load[e.v[i]] += double(e.weight) * (gradients[i].x * j.x + gradients[i].y * j.y);
       w_.solution[e.v[i]] = p[i];
     }
   }
@@ -265,7 +266,7 @@ void ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
     take_solution(uvs);
     if (i >= steps) return;
     if (i == 1 && method_ == Method::multigrid) {
-      exact = measure(uvs).energy <= may_unroll * area_;
+      exact = !energy_exceeds(may_unroll * area_, w_.elements, uvs);
       if (exact) {
         rotation_load(w_.elements, w_.rotations, w_.load);
         solve({exact_first, 0});
@@ -325,8 +326,9 @@ double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
     for (std::size_t t = 0; t < w_.elements.size(); ++t) {
       // The outermost 0.1 % may stay as it is: more weight to it would only spoil the rest.
       const double r = std::clamp(w_.stretch[t] / now, 0.05, 1.0);
-      double& weight = w_.elements[t].weight;
-      weight = std::exp((1 - damping) * std::log(weight) + damping * (power - 2) * std::log(r));
+      float& weight = w_.elements[t].weight;
+      weight = static_cast<float>(
+          std::exp((1 - damping) * std::log(double(weight)) + damping * (power - 2) * std::log(r)));
     }
     weighted_ = true;
     factorize();

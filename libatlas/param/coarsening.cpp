@@ -19,7 +19,7 @@ constexpr std::size_t most_steps = 100;
 
 template <class Real>
 bool Coarsening<Real>::run(const GraphLaplacian<Real>& a, std::vector<Real>& inverse_diagonal,
-                           Prolongation<Real>& prolongation, GraphLaplacian<Real>& coarse) {
+                           GraphRows<Real>& prolongation, GraphLaplacian<Real>& coarse) {
   measure_diagonal(a, inverse_diagonal);
   groups_ = aggregate(a);
   if (groups_ > a.rows() / 2) return false;
@@ -37,7 +37,7 @@ void Coarsening<Real>::measure_diagonal(const GraphLaplacian<Real>& a,
   inverse_diagonal.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     Real sum = 0;
-    for (const auto& entry : a.row(i)) sum -= entry.value;
+    a.each_of_row(i, [&](const auto& entry) { sum -= entry.value; });
     inverse_diagonal[i] = sum > 0 ? 1 / sum : 0;
     strength_[i] = static_cast<float>(std::sqrt(strong_coupling * std::max<Real>(sum, 0)));
   }
@@ -55,16 +55,16 @@ std::uint32_t Coarsening<Real>::aggregate(const GraphLaplacian<Real>& a) {
   // Whole neighbourhoods first,
   for (std::uint32_t i = 0; i < n; ++i) {
     if (group_[i] != none) continue;
-    bool free = true;
-    for (const auto& entry : a.row(i)) {
-      free = group_[entry.column] == none || !strong(i, entry);
-      if (!free) break;
-    }
-    if (!free) continue;
+    const auto taken = [&](const auto& entry) {
+      return group_[entry.column] != none && strong(i, entry);
+    };
+    const auto lower = a.lower.row(i), upper = a.upper.row(i);
+    if (std::any_of(lower.begin(), lower.end(), taken)) continue;
+    if (std::any_of(upper.begin(), upper.end(), taken)) continue;
     group_[i] = count;
-    for (const auto& entry : a.row(i)) {
+    a.each_of_row(i, [&](const auto& entry) {
       if (strong(i, entry)) group_[entry.column] = count;
-    }
+    });
     ++count;
   }
   // then what is left joins the neighbour it hangs on most,
@@ -72,11 +72,11 @@ std::uint32_t Coarsening<Real>::aggregate(const GraphLaplacian<Real>& a) {
   for (std::uint32_t i = 0; i < n; ++i) {
     if (group_[i] != none) continue;
     Real least = 0;
-    for (const auto& entry : a.row(i)) {
-      if (group_[entry.column] == none || entry.value >= least) continue;
+    a.each_of_row(i, [&](const auto& entry) {
+      if (group_[entry.column] == none || entry.value >= least) return;
       least = entry.value;
       join_[i] = group_[entry.column];
-    }
+    });
   }
   // and what has no such neighbour stands alone.
   for (std::uint32_t i = 0; i < n; ++i) {
@@ -87,11 +87,12 @@ std::uint32_t Coarsening<Real>::aggregate(const GraphLaplacian<Real>& a) {
 
 // Rows of P = (I - omega D^-1 A) P0, where P0 has a one at each row's group.
 template <class Real>
-void Coarsening<Real>::prolongate(const GraphLaplacian<Real>& a, Prolongation<Real>& out) {
+void Coarsening<Real>::prolongate(const GraphLaplacian<Real>& a, GraphRows<Real>& out) {
   const auto n = static_cast<std::uint32_t>(a.rows());
   out.first.resize(n + 1);
   out.entries.clear();
-  out.entries.reserve(3 * std::size_t{n});
+  // Room that is not used costs nothing in large charts: no memory is behind it.
+  out.entries.reserve(n + a.lower.entries.size() + a.upper.entries.size());
   place_.assign(groups_, 0);
   for (std::uint32_t i = 0; i < n; ++i) {
     const auto begin = static_cast<std::uint32_t>(out.entries.size());
@@ -99,16 +100,16 @@ void Coarsening<Real>::prolongate(const GraphLaplacian<Real>& a, Prolongation<Re
     // Half the row's absolute sum bounds the diagonal from above where couplings of both signs
     // meet.
     Real sum = 0, absolute = 0;
-    for (const auto& entry : a.row(i)) {
+    a.each_of_row(i, [&](const auto& entry) {
       sum -= entry.value;
       absolute += std::abs(entry.value);
-    }
+    });
     const Real bound = sum + absolute;
     const Real damping = bound > 0 ? Real(4.0 / 3.0) / bound : 0;
     // The row's own coefficient is what the others leave of its sum: constants stay constant.
     out.entries.push_back({group_[i], 1 - damping * sum});
     place_[group_[i]] = begin;
-    for (const auto& entry : a.row(i)) {
+    a.each_of_row(i, [&](const auto& entry) {
       const std::uint32_t group = group_[entry.column];
       std::uint32_t& at = place_[group];
       const auto end = static_cast<std::uint32_t>(out.entries.size());
@@ -117,7 +118,7 @@ void Coarsening<Real>::prolongate(const GraphLaplacian<Real>& a, Prolongation<Re
         out.entries.push_back({group, 0});
       }
       out.entries[at].value -= damping * entry.value;
-    }
+    });
   }
   out.first[n] = static_cast<std::uint32_t>(out.entries.size());
 }
@@ -125,8 +126,8 @@ void Coarsening<Real>::prolongate(const GraphLaplacian<Real>& a, Prolongation<Re
 // Sums up the couplings between groups. False: they are too many.
 template <class Real>
 bool Coarsening<Real>::couple_groups(const GraphLaplacian<Real>& a) {
-  const std::size_t most_couplings = a.entries.size() / 2;
-  const std::size_t limit = most_steps * (a.entries.size() + a.rows());
+  const std::size_t most_couplings = a.lower.entries.size();
+  const std::size_t limit = most_steps * (most_couplings + a.rows());
   std::size_t steps = 0;
   head_.assign(groups_, none);
   size_.assign(groups_, 0);
@@ -134,9 +135,9 @@ bool Coarsening<Real>::couple_groups(const GraphLaplacian<Real>& a) {
   for (std::uint32_t i = 0; i < a.rows(); ++i) {
     const std::uint32_t own = group_[i];
     ++size_[own];
-    for (const auto& entry : a.row(i)) {
+    for (const auto& entry : a.lower.row(i)) {
       const std::uint32_t other = group_[entry.column];
-      if (entry.column > i || other == own) continue;
+      if (other == own) continue;
       steps += couple(std::max(own, other), std::min(own, other), entry.value);
     }
     if (couplings_.size() > most_couplings || steps > limit) return false;
@@ -160,27 +161,16 @@ std::size_t Coarsening<Real>::couple(std::uint32_t row, std::uint32_t column, do
 
 template <class Real>
 void Coarsening<Real>::gather(GraphLaplacian<Real>& coarse) const {
-  coarse.first.assign(std::size_t{groups_} + 2, 0);
-  std::uint32_t* first = coarse.first.data();
   const auto each = [&](auto&& body) {
     for (std::uint32_t row = 0; row < groups_; ++row) {
       for (std::uint32_t k = head_[row]; k != none; k = couplings_[k].next) {
-        body(row, couplings_[k]);
+        const std::uint32_t column = couplings_[k].column;
+        const double factor = group_coupling / std::sqrt(0.5 * (size_[row] + size_[column]));
+        body(row, column, static_cast<Real>(factor * couplings_[k].value));
       }
     }
   };
-  each([&](std::uint32_t row, const Coupling& coupling) {
-    ++first[row + 2], ++first[coupling.column + 2];
-  });
-  for (std::size_t v = 2; v < coarse.first.size(); ++v) first[v] += first[v - 1];
-  coarse.entries.resize(coarse.first.back());
-  each([&](std::uint32_t row, const Coupling& coupling) {
-    const double rows = 0.5 * (size_[row] + size_[coupling.column]);
-    const Real value = static_cast<Real>(group_coupling / std::sqrt(rows) * coupling.value);
-    coarse.entries[first[row + 1]++] = {coupling.column, value};
-    coarse.entries[first[coupling.column + 1]++] = {row, value};
-  });
-  coarse.first.pop_back();
+  gather_edges(groups_, each, coarse);
 }
 
 template class Coarsening<float>;

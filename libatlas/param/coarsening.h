@@ -10,18 +10,6 @@
 
 namespace atlas::param {
 
-// Rows of the prolongation from the next level, each of which sums to one.
-template <class Real>
-struct Prolongation {
-  using Entry = typename GraphLaplacian<Real>::Entry;
-  std::vector<std::uint32_t> first;
-  std::vector<Entry> entries;
-
-  std::span<const Entry> row(std::size_t i) const {
-    return {entries.data() + first[i], entries.data() + first[i + 1]};
-  }
-};
-
 // Neighbourhoods of strongly joined vertices become the unknowns of the next level; interpolation
 // between them is smoothed (Vanek, Mandel and Brezina 1996, "Algebraic multigrid by smoothed
 // aggregation for second and fourth order elliptic problems"). The next level's matrix is not the
@@ -32,11 +20,10 @@ struct Prolongation {
 template <class Real>
 class Coarsening {
  public:
-  // From both halves of a, both halves of the next level's matrix; inverse_diagonal gets a's, 0
-  // where it is not positive. False: it is not worth it (many vertices without strong neighbours,
-  // or of huge valence).
+  // The prolongation has rows of sum one; inverse_diagonal is a's, 0 where it is not positive.
+  // False: it is not worth it (many vertices without strong neighbours, or of huge valence).
   bool run(const GraphLaplacian<Real>& a, std::vector<Real>& inverse_diagonal,
-           Prolongation<Real>& prolongation, GraphLaplacian<Real>& coarse);
+           GraphRows<Real>& prolongation, GraphLaplacian<Real>& coarse);
 
  private:
   // Couplings of a group with those of smaller numbers, one after the other.
@@ -47,7 +34,7 @@ class Coarsening {
 
   void measure_diagonal(const GraphLaplacian<Real>& a, std::vector<Real>& inverse_diagonal);
   std::uint32_t aggregate(const GraphLaplacian<Real>& a);
-  void prolongate(const GraphLaplacian<Real>& a, Prolongation<Real>& out);
+  void prolongate(const GraphLaplacian<Real>& a, GraphRows<Real>& out);
   bool couple_groups(const GraphLaplacian<Real>& a);
   std::size_t couple(std::uint32_t row, std::uint32_t column, double value);
   void gather(GraphLaplacian<Real>& coarse) const;

@@ -6,21 +6,6 @@
 namespace atlas::param {
 
 template <class Real>
-void GraphLaplacian<Real>::keep_lower() {
-  std::uint32_t end = 0;
-  const auto n = static_cast<std::uint32_t>(rows());
-  for (std::uint32_t i = 0, k = 0; i < n; ++i) {
-    const std::uint32_t stop = first[i + 1];
-    first[i] = end;
-    for (; k < stop; ++k) {
-      if (entries[k].column < i) entries[end++] = entries[k];
-    }
-  }
-  first[n] = end;
-  entries.resize(end);
-}
-
-template <class Real>
 double edge_couplings(std::span<const Element> elements, const HalfEdges& half_edges,
                       std::vector<Real>& out) {
   double largest = 0;
@@ -30,9 +15,9 @@ double edge_couplings(std::span<const Element> elements, const HalfEdges& half_e
     const auto& corners = half_edges.corners(t);
     const std::uint32_t base = 3 * t + (corners[0] == e.v[0] ? 0 : corners[1] == e.v[0] ? 1 : 2);
     // Half the cotangents of the angles that face the edges, the base and the two others.
-    const double rest = e.length - e.foot, scale = 0.5 * e.inverse_altitude;
+    const double rest = e.length - e.foot, scale = 0.5 / e.altitude;
     const double behind = e.foot * scale, before = rest * scale;
-    const double top = 0.5 * (e.altitude - e.foot * rest * e.inverse_altitude) * e.inverse_length;
+    const double top = 0.5 * (e.altitude - e.foot * rest / e.altitude) / e.length;
     largest = std::max({largest, std::abs(behind), std::abs(before), std::abs(top)});
     const std::uint32_t right = HalfEdges::next(base), left = HalfEdges::next(right);
     out[base] = static_cast<Real>(-e.weight * top);
@@ -46,7 +31,6 @@ template <class Real>
 void build_graph(std::span<const Real> couplings, const HalfEdges& half_edges, std::size_t vertices,
                  GraphLaplacian<Real>& out) {
   const auto count = static_cast<std::uint32_t>(couplings.size() / 3);
-  // Runs over each edge once, with its ends and its coupling.
   const auto each = [&](auto&& body) {
     for (std::uint32_t t = 0; t < count; ++t) {
       const auto& corners = half_edges.corners(t);
@@ -58,21 +42,9 @@ void build_graph(std::span<const Real> couplings, const HalfEdges& half_edges, s
       }
     }
   };
-  // first[v + 1] counts, then moves from the beginning of v's row to its end.
-  out.first.assign(vertices + 2, 0);
-  std::uint32_t* first = out.first.data();
-  each([&](std::uint32_t a, std::uint32_t b, Real) { ++first[a + 2], ++first[b + 2]; });
-  for (std::size_t v = 2; v < out.first.size(); ++v) first[v] += first[v - 1];
-  out.entries.resize(out.first.back());
-  each([&](std::uint32_t a, std::uint32_t b, Real value) {
-    out.entries[first[a + 1]++] = {b, value};
-    out.entries[first[b + 1]++] = {a, value};
-  });
-  out.first.pop_back();
+  gather_edges(vertices, each, out);
 }
 
-template struct GraphLaplacian<float>;
-template struct GraphLaplacian<double>;
 template double edge_couplings<float>(std::span<const Element>, const HalfEdges&,
                                       std::vector<float>&);
 template double edge_couplings<double>(std::span<const Element>, const HalfEdges&,

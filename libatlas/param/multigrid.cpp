@@ -34,7 +34,7 @@ void subtract_product(const GraphLaplacian<Real>& matrix, const Vector& x, doubl
   for (std::size_t i = 0; i < matrix.rows(); ++i) {
     const glm::dvec2 own(x[i]);
     glm::dvec2 sum(0);
-    for (const auto& entry : matrix.row(i)) {
+    for (const auto& entry : matrix.lower.row(i)) {
       const glm::dvec2 flow = factor * entry.value * (glm::dvec2(x[entry.column]) - own);
       sum += flow;
       load[entry.column] += flow;
@@ -77,8 +77,7 @@ bool MultigridLevels<Real>::build_levels() {
                          levels_[depth_ + 1].matrix)) {
       return false;
     }
-    level.matrix.keep_lower();
-    if (n > large_setup) level.matrix.entries.shrink_to_fit();
+    if (n > large_setup) level.matrix.upper = {};
     level.rest.resize(n);
   }
   factorize_coarsest();
@@ -89,14 +88,15 @@ template <class Real>
 void MultigridLevels<Real>::factorize_coarsest() {
   const GraphLaplacian<Real>& graph = levels_[depth_].matrix;
   SymmetricMatrix matrix;
-  matrix.first = graph.first;
+  matrix.first.push_back(0);
   matrix.diagonal.resize(graph.rows());
   for (std::size_t i = 0; i < graph.rows(); ++i) {
-    for (const auto& entry : graph.row(i)) {
+    graph.each_of_row(i, [&](const auto& entry) {
       matrix.column.push_back(entry.column);
       matrix.value.push_back(entry.value);
       matrix.diagonal[i] -= entry.value;
-    }
+    });
+    matrix.first.push_back(static_cast<std::uint32_t>(matrix.column.size()));
   }
   coarsest_.factorize(matrix);
 }
@@ -118,8 +118,8 @@ template <class Real>
 void MultigridLevels<Real>::smooth_down(std::size_t depth) {
   Level& level = levels_[depth];
   const auto n = static_cast<std::uint32_t>(level.matrix.rows());
-  const auto* entries = level.matrix.entries.data();
-  const std::uint32_t* first = level.matrix.first.data();
+  const auto* entries = level.matrix.lower.entries.data();
+  const std::uint32_t* first = level.matrix.lower.first.data();
   const Real* inverse_diagonal = level.inverse_diagonal.data();
   const Pair<Real>* load = pairs<Real>(level.load);
   Pair<Real>*x = pairs<Real>(level.x), *rest = pairs<Real>(level.rest);
@@ -159,8 +159,9 @@ template <class Real>
 void MultigridLevels<Real>::smooth_up(std::size_t depth) {
   Level& level = levels_[depth];
   const auto n = static_cast<std::uint32_t>(level.matrix.rows());
-  const auto *entries = level.matrix.entries.data(), *rows = level.prolongation.entries.data();
-  const std::uint32_t *first = level.matrix.first.data(),
+  const auto *entries = level.matrix.lower.entries.data(),
+             *rows = level.prolongation.entries.data();
+  const std::uint32_t *first = level.matrix.lower.first.data(),
                       *row_first = level.prolongation.first.data();
   const Real* inverse_diagonal = level.inverse_diagonal.data();
   const Pair<Real>*load = pairs<Real>(level.load), *coarse_x = pairs<Real>(levels_[depth + 1].x);
@@ -201,8 +202,8 @@ template <class Real>
 double MultigridLevels<Real>::step_direction(Real beta) {
   Level& level = levels_[0];
   const auto n = static_cast<std::uint32_t>(level.matrix.rows());
-  const auto* entries = level.matrix.entries.data();
-  const std::uint32_t* first = level.matrix.first.data();
+  const auto* entries = level.matrix.lower.entries.data();
+  const std::uint32_t* first = level.matrix.lower.first.data();
   const Pair<Real>* z = pairs<Real>(level.x);
   Pair<Real>*direction = pairs<Real>(direction_), *product = pairs<Real>(level.rest);
   glm::dvec2 energy(0);

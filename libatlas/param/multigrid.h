@@ -25,7 +25,7 @@ struct MultigridAccuracy {
 template <class Real>
 class MultigridLevels {
  public:
-  // Takes the matrix, both halves. False: the levels do not shrink.
+  // Takes the matrix. False: the levels do not shrink.
   bool build(GraphLaplacian<Real>& matrix);
   // Improves x for the right-hand side `load`, and leaves in `load` what x lacks of it. False: not
   // accurate enough after the iterations.
@@ -36,7 +36,7 @@ class MultigridLevels {
   using Vector = std::vector<glm::vec<2, Real>>;
   struct Level {
     GraphLaplacian<Real> matrix;
-    Prolongation<Real> prolongation;
+    GraphRows<Real> prolongation;
     std::vector<Real> inverse_diagonal;
     Vector x, load;
     Vector rest;  // what a sweep leaves; scratch

@@ -114,6 +114,13 @@ class PhaseClock {
 };
 using Phase = ParamWorkspace::Timing;
 
+bool any_flip(const LocalMesh& mesh, std::span<const Vec2d> uvs) {
+  return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& v) {
+    const glm::dvec2 a = to_glm(uvs[v[0]]);
+    return !(param::cross(to_glm(uvs[v[1]]) - a, to_glm(uvs[v[2]]) - a) > 0);
+  });
+}
+
 // From the solver's rotations to a finished result: flips out, then the stretch down; squeezing may
 // flip anew, hence the second round.
 void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolver& solver,
@@ -131,7 +138,7 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
   std::optional<Distortion> last;  // of r.uvs as they are
   for (int round = 0; round < 2; ++round) {
     clock.book(&Phase::solve);
-    if (solver.measure(r.uvs).flips > 0) {
+    if (any_flip(mesh, r.uvs)) {
       r.unflipped += static_cast<int>(solver.remove_flips({}, r.uvs).turned);
     }
     clock.book(&Phase::flips);

@@ -30,8 +30,6 @@ void build_elements(const LocalMesh& mesh, double min_altitude, std::vector<Elem
       e.foot = std::min(e.foot, speck);
       e.altitude = std::max(e.altitude, min_altitude > 0 ? speck : relative_floor * speck);
     }
-    e.inverse_length = 1 / e.length;
-    e.inverse_altitude = 1 / e.altitude;
     e.weight = 1;
   }
 }
@@ -120,8 +118,8 @@ void local_rotations(std::span<const Element> elements, std::span<const Vec2d> u
   out.resize(elements.size());
   for (std::size_t t = 0; t < elements.size(); ++t) {
     const Element& e = elements[t];
-    out[t] =
-        nearest_rotation(e.jacobian(to_glm(uvs[e.v[0]]), to_glm(uvs[e.v[1]]), to_glm(uvs[e.v[2]])));
+    const Jacobian j = e.jacobian(to_glm(uvs[e.v[0]]), to_glm(uvs[e.v[1]]), to_glm(uvs[e.v[2]]));
+    out[t] = glm::vec2(nearest_rotation(j));
   }
 }
 
@@ -129,7 +127,7 @@ namespace {
 
 // Adds what an element with this rotation asks of its vertices.
 void add_load(const Element& e, glm::dvec2 rotation, std::span<glm::dvec2> out) {
-  const glm::dvec2 r = rotation * e.weight;
+  const glm::dvec2 r = rotation * double(e.weight);
   const auto g = e.area_gradients();
   for (int k = 0; k < 3; ++k) {
     out[e.v[k]] += glm::dvec2(r.x * g[k].x - r.y * g[k].y, r.y * g[k].x + r.x * g[k].y);
@@ -144,31 +142,53 @@ double update_rotations(std::span<const Element> elements, std::span<const Vec2d
   std::fill(load.begin(), load.end(), glm::dvec2(0));
   for (std::size_t t = 0; t < elements.size(); ++t) {
     const Element& e = elements[t];
-    const Jacobian j = e.jacobian(to_glm(uvs[e.v[0]]), to_glm(uvs[e.v[1]]), to_glm(uvs[e.v[2]]));
-    const glm::dvec2 r = nearest_rotation(j), change = r - rotations[t];
-    fall += e.weight * e.area() * (change.x * (j.x.x + j.y.y) + change.y * (j.x.y - j.y.x));
-    rotations[t] = r;
+    const glm::dvec2 u0 = to_glm(uvs[e.v[0]]);
+    // The Jacobian's columns, times twice the area: its nearest rotation needs no division.
+    const glm::dvec2 base = to_glm(uvs[e.v[1]]) - u0, x = e.altitude * base;
+    const glm::dvec2 y = e.length * (to_glm(uvs[e.v[2]]) - u0) - e.foot * base;
+    const double c = x.x + y.y, s = x.y - y.x, norm = std::sqrt(c * c + s * s);
+    const glm::dvec2 r = norm > 0 ? glm::dvec2(c, s) * (1 / norm) : glm::dvec2(1, 0);
+    const glm::dvec2 change = r - glm::dvec2(rotations[t]);
+    fall += e.weight * norm * glm::dot(change, change);
+    rotations[t] = glm::vec2(r);
     add_load(e, r, load);
   }
-  return 2 * fall;
+  return 0.5 * fall;
 }
 
 void rotation_load(std::span<const Element> elements, const Rotations& rotations,
                    std::span<glm::dvec2> out) {
   std::fill(out.begin(), out.end(), glm::dvec2(0));
-  for (std::size_t t = 0; t < elements.size(); ++t) add_load(elements[t], rotations[t], out);
+  for (std::size_t t = 0; t < elements.size(); ++t) {
+    add_load(elements[t], glm::dvec2(rotations[t]), out);
+  }
 }
+
+namespace {
+
+// Adds the energy of one element; returns the determinant of its map.
+double add_energy(const Element& e, std::span<const Vec2d> uvs, double& energy) {
+  const Jacobian j = e.jacobian(to_glm(uvs[e.v[0]]), to_glm(uvs[e.v[1]]), to_glm(uvs[e.v[2]]));
+  const glm::dvec2 r = nearest_rotation(j);
+  const glm::dvec2 dx = j.x - r, dy = j.y - glm::dvec2(-r.y, r.x);
+  energy += e.area() * (glm::dot(dx, dx) + glm::dot(dy, dy));
+  return j.det();
+}
+
+}  // namespace
 
 IsometricResult measure_energy(std::span<const Element> elements, std::span<const Vec2d> uvs) {
   IsometricResult out;
-  for (const Element& e : elements) {
-    const Jacobian j = e.jacobian(to_glm(uvs[e.v[0]]), to_glm(uvs[e.v[1]]), to_glm(uvs[e.v[2]]));
-    const glm::dvec2 r = nearest_rotation(j);
-    const glm::dvec2 dx = j.x - r, dy = j.y - glm::dvec2(-r.y, r.x);
-    out.energy += e.area() * (glm::dot(dx, dx) + glm::dot(dy, dy));
-    out.flips += !(j.det() > 0);
-  }
+  for (const Element& e : elements) out.flips += !(add_energy(e, uvs, out.energy) > 0);
   return out;
+}
+
+bool energy_exceeds(double limit, std::span<const Element> elements, std::span<const Vec2d> uvs) {
+  double energy = 0;
+  return std::any_of(elements.begin(), elements.end(), [&](const Element& e) {
+    add_energy(e, uvs, energy);
+    return energy > limit;
+  });
 }
 
 }  // namespace atlas::param

@@ -11,16 +11,17 @@
 
 namespace atlas::param {
 
-// A rest shape with what the inner loops need of it.
+// A rest shape with a positive altitude. Large charts hold more memory in these than in anything
+// else, so what can be had from the rest in a few cycles is not kept.
 struct Element {
   std::array<std::uint32_t, 3> v;
-  double length, foot, altitude, inverse_length, inverse_altitude;
-  double weight = 1;  // factor of the energy
+  float weight = 1;  // factor of the energy
+  double length, foot, altitude;
 
   double area() const { return 0.5 * length * altitude; }
   Jacobian jacobian(glm::dvec2 u0, glm::dvec2 u1, glm::dvec2 u2) const {
-    const glm::dvec2 x = (u1 - u0) * inverse_length;
-    return {x, (u2 - u0 - x * foot) * inverse_altitude};
+    const glm::dvec2 x = (u1 - u0) / length;
+    return {x, (u2 - u0 - x * foot) / altitude};
   }
   // Area times the gradient of the corner's hat function. No division: safe for any sliver.
   std::array<glm::dvec2, 3> area_gradients() const {
@@ -58,7 +59,8 @@ void partition_rows(SymmetricMatrix& matrix);
 void build_stiffness(std::span<const Element> elements, const CornerLists& corners,
                      SymmetricMatrix& out);
 
-using Rotations = std::vector<glm::dvec2>;  // (cosine, sine), 1 a triangle
+// (cosine, sine), 1 a triangle; what the steps compute from each other is in double.
+using Rotations = std::vector<glm::vec2>;
 
 // The local step: the rotation nearest to each triangle's map.
 void local_rotations(std::span<const Element> elements, std::span<const Vec2d> uvs, Rotations& out);
@@ -76,5 +78,8 @@ double update_rotations(std::span<const Element> elements, std::span<const Vec2d
 // Energy and non-positive triangles of uvs, with each triangle's nearest rotation (weights left
 // out).
 IsometricResult measure_energy(std::span<const Element> elements, std::span<const Vec2d> uvs);
+
+// Whether that energy is beyond the limit; no more triangles are looked at than it takes.
+bool energy_exceeds(double limit, std::span<const Element> elements, std::span<const Vec2d> uvs);
 
 }  // namespace atlas::param
