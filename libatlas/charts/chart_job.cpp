@@ -105,7 +105,11 @@ class ChartJob {
   // Whether all loops but one are small, or banks of cuts to single vertices: those need not be
   // joined to anything.
   bool only_darts() const {
-    int large = 0;
+    return large_loops().size() <= 1 && chart_.euler() == 2 - static_cast<int>(chart_.loops.size());
+  }
+
+  std::vector<std::uint32_t> large_loops() const {
+    std::vector<std::uint32_t> large;
     for (const std::uint32_t start : chart_.loops) {
       int edges = 0;
       bool cut = true;
@@ -115,9 +119,17 @@ class ChartJob {
         h = chart_.next_border(h);
         ++edges;
       } while (h != start && (cut || edges <= kSmallHole));
-      large += edges > (cut ? kLongestSlit : kSmallHole);
+      if (edges > (cut ? kLongestSlit : kSmallHole)) large.push_back(start);
     }
-    return large <= 1 && chart_.euler() == 2 - static_cast<int>(chart_.loops.size());
+    return large;
+  }
+
+  // Charts within an open cone are tried after each joint; others will not flatten before all are
+  // made.
+  bool join_loops() {
+    std::vector<std::uint32_t> wanted;
+    if (cone_.angle >= kOpenCone) wanted = large_loops();
+    return atlas::join_loops(input_.topology, chart_, wanted, partition_);
   }
 
   // A seam that may help: from loop to loop, or to where curvature stretches it too much.
@@ -131,7 +143,7 @@ class ChartJob {
     // What was just closed would be cut again.
     if (closings_ > 0 && !only_darts()) return false;
     if (!only_darts() || (cuts == 0 && chart_.loops.size() > 1 && stretched_widely())) {
-      return join_loops(input_.topology, chart_, partition_);
+      return join_loops();
     }
     if (cuts >= most_cuts() || result_.within_bound) return false;
     return !result_.offenders.empty() &&

@@ -38,43 +38,6 @@ class EdgePaths {
   std::uint32_t from(std::uint32_t h) const { return chart_.corners[h / 3][h % 3]; }
   bool on_border(std::uint32_t v) const { return chart_.opposite[out_[v]] == kNoIndex; }
 
-  // From the vertices with role 1 to the nearest with role 2, passing only those with role 0;
-  // returns the half-edges on the way, empty if there is none.
-  std::vector<std::uint32_t> shortest(const std::vector<std::uint8_t>& role) {
-    const std::size_t n = chart_.positions.size();
-    std::vector<double> distance(n, kFar);
-    std::vector<std::uint32_t> through(n, kNoIndex);
-    std::vector<std::uint8_t> done(n, 0);
-    std::priority_queue<Visit, std::vector<Visit>, std::greater<>> heap;
-    for (std::uint32_t v = 0; v < n; ++v) {
-      if (role[v] != 1) continue;
-      distance[v] = 0;
-      heap.push({0, v});
-    }
-    std::vector<std::uint32_t> path;
-    while (!heap.empty()) {
-      const std::uint32_t v = heap.top().second;
-      heap.pop();
-      if (done[v]) continue;
-      done[v] = 1;
-      if (role[v] == 2) {
-        for (std::uint32_t w = v; through[w] != kNoIndex; w = from(through[w])) {
-          path.push_back(through[w]);
-        }
-        break;
-      }
-      each_inner_edge(v, [&](std::uint32_t h) {
-        const std::uint32_t to = from(next_half_edge(h));
-        const double next = distance[v] + length(h);
-        if (role[to] == 1 || next >= distance[to]) return;
-        distance[to] = next;
-        through[to] = h;
-        heap.push({next, to});
-      });
-    }
-    return path;
-  }
-
   // 2 pi less the angles around an inner vertex.
   double defect(std::uint32_t v) const {
     double sum = 2 * M_PI;
@@ -98,42 +61,29 @@ class EdgePaths {
     } while (h != kNoIndex && h != out_[v]);
   }
 
-  // Distances to the border, for way_out().
-  void spread_from_border() {
+  // Forgets all paths.
+  void clear() {
     distance_.assign(chart_.positions.size(), kFar);
     through_.assign(chart_.positions.size(), kNoIndex);
-    for (std::uint32_t v = 0; v < distance_.size(); ++v) {
-      if (on_border(v)) start_at(v);
-    }
-    spread();
-  }
-  double distance(std::uint32_t v) const { return distance_[v]; }
-
-  // The half-edges from v to the nearest border or earlier way out, which others may end on.
-  std::vector<std::uint32_t> way_out(std::uint32_t v) {
-    std::vector<std::uint32_t> path;
-    if (distance_[v] == kFar) return path;
-    for (std::uint32_t w = v; through_[w] != kNoIndex; w = from(through_[w])) {
-      path.push_back(through_[w]);
-    }
-    start_at(v);
-    for (const std::uint32_t h : path) start_at(from(h));
-    spread();
-    return path;
+    heap_ = {};
   }
 
- private:
+  // A path may start at v.
   void start_at(std::uint32_t v) {
     distance_[v] = 0;
     through_[v] = kNoIndex;
     heap_.push({0, v});
   }
 
-  void spread() {
+  // Spreads until it comes to a vertex that is wanted; kNoIndex if there is none. Goes on from
+  // where it was; paths pass no vertex that was wanted, unless they start there.
+  template <class Wanted>
+  std::uint32_t spread_to(Wanted&& wanted) {
     while (!heap_.empty()) {
       const auto [so_far, v] = heap_.top();
       heap_.pop();
       if (so_far > distance_[v]) continue;
+      if (wanted(v)) return v;
       each_inner_edge(v, [&](std::uint32_t h) {
         const std::uint32_t to = from(next_half_edge(h));
         const double next = so_far + length(h);
@@ -143,6 +93,41 @@ class EdgePaths {
         heap_.push({next, to});
       });
     }
+    return kNoIndex;
+  }
+
+  // The half-edges from v back to where its path started; later paths may start anywhere on it.
+  std::vector<std::uint32_t> take_path(std::uint32_t v) {
+    std::vector<std::uint32_t> path;
+    for (std::uint32_t w = v; through_[w] != kNoIndex; w = from(through_[w])) {
+      path.push_back(through_[w]);
+    }
+    start_at(v);
+    for (const std::uint32_t h : path) start_at(from(h));
+    return path;
+  }
+
+  // Distances to the border, for way_out().
+  void spread_from_border() {
+    clear();
+    for (std::uint32_t v = 0; v < distance_.size(); ++v) {
+      if (on_border(v)) start_at(v);
+    }
+    spread();
+  }
+  double distance(std::uint32_t v) const { return distance_[v]; }
+
+  // The half-edges from v to the nearest border or earlier way out, which others may end on.
+  std::vector<std::uint32_t> way_out(std::uint32_t v) {
+    if (distance_[v] == kFar) return {};
+    std::vector<std::uint32_t> path = take_path(v);
+    spread();
+    return path;
+  }
+
+ private:
+  void spread() {
+    spread_to([](std::uint32_t) { return false; });
   }
 
   glm::dvec3 point(std::uint32_t v) const { return to_glm(chart_.positions[v]); }
@@ -193,20 +178,38 @@ void mark_seams(const LocalChart& chart, const std::vector<std::uint32_t>& path,
 
 }  // namespace
 
-bool join_loops(const Topology& topology, const LocalChart& chart, Partition& partition) {
-  if (chart.loops.size() < 2) return false;
+bool join_loops(const Topology& topology, const LocalChart& chart,
+                std::span<const std::uint32_t> wanted, Partition& partition) {
   EdgePaths paths(topology, chart);
-  std::vector<std::uint8_t> role(chart.positions.size(), 0);
-  for (std::size_t i = 0; i < chart.loops.size(); ++i) {
-    std::uint32_t h = chart.loops[i];
+  paths.clear();
+  std::vector<std::uint32_t> loop_at(chart.positions.size(), kNoIndex);  // not joined yet
+  const auto each_vertex = [&](std::uint32_t loop, auto&& body) {
+    std::uint32_t h = loop;
     do {
-      role[paths.from(h)] = i == 0 ? 1 : 2;
+      body(paths.from(h));
       h = chart.next_border(h);
-    } while (h != chart.loops[i]);
+    } while (h != loop);
+  };
+  for (const std::uint32_t loop : chart.loops) {
+    each_vertex(loop, [&](std::uint32_t v) { loop_at[v] = loop; });
   }
-  const std::vector<std::uint32_t> path = paths.shortest(role);
-  mark_seams(chart, path, partition);
-  return !path.empty();
+  std::size_t missing = wanted.size();
+  const auto join = [&](std::uint32_t loop) {
+    missing -= std::find(wanted.begin(), wanted.end(), loop) != wanted.end();
+    each_vertex(loop, [&](std::uint32_t v) {
+      loop_at[v] = kNoIndex;
+      paths.start_at(v);
+    });
+  };
+  if (!chart.loops.empty()) join(chart.loops[0]);
+  for (bool any = false;; any = true) {
+    if (any && missing == 0) return true;
+    const std::uint32_t end =
+        paths.spread_to([&](std::uint32_t v) { return loop_at[v] != kNoIndex; });
+    if (end == kNoIndex) return any;
+    mark_seams(chart, paths.take_path(end), partition);
+    join(loop_at[end]);
+  }
 }
 
 namespace {

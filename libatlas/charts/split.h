@@ -21,9 +21,11 @@ std::array<std::uint32_t, 2> far_pair(const Topology& topology, const LocalChart
 std::vector<std::uint8_t> divide(const Topology& topology, const LocalChart& chart,
                                  std::span<const std::uint32_t> seeds);
 
-// Joins two border loops of a connected chart by a shortest path of edges (creases are shorter),
-// marking its half-edges as seams. False if the chart has fewer than two loops.
-bool join_loops(const Topology& topology, const LocalChart& chart, Partition& partition);
+// Joins border loops of a connected chart to its first one and to what is joined to that, nearest
+// first, by shortest paths of edges (creases are shorter), marking their half-edges as seams: until
+// all wanted ones (of chart.loops) are joined, but at least one. False if there is only one loop.
+bool join_loops(const Topology& topology, const LocalChart& chart,
+                std::span<const std::uint32_t> wanted, Partition& partition);
 
 // Edges (by their lower half-edge) that were cut and closed again.
 using ClosedCuts = std::unordered_set<std::uint32_t>;

@@ -143,5 +143,35 @@ TEST(Slits, BanksThatHaveChangedSidesAreFoundAndClosed) {
   }
 }
 
+// A grid of 12 x 12 quads with three holes of one quad each.
+TEST(Slits, HolesAreJoinedOneOrAll) {
+  const Mesh mesh(grid(12, 12));
+  const Result<Topology> topology = build_topology(mesh.view(), {}, {});
+  ASSERT_TRUE(topology.ok());
+  for (const bool all : {false, true}) {
+    Partition partition;
+    partition.seams.assign(topology->triangle_count(), 0);
+    partition.local.resize(topology->triangle_count());
+    std::vector<std::uint32_t> triangles;
+    for (std::uint32_t t = 0; t < topology->triangle_count(); ++t) {
+      const std::uint32_t quad = t / 2;
+      const bool hole = quad == 26 || quad == 31 || quad == 101;
+      partition.chart.push_back(hole);
+      if (!hole) triangles.push_back(t);
+    }
+    LocalChart chart;
+    chart.build(*topology, partition, triangles);
+    ASSERT_EQ(chart.loops.size(), 4u);
+    const std::vector<std::uint32_t> loops = chart.loops;
+    EXPECT_TRUE(
+        join_loops(*topology, chart, all ? loops : std::vector<std::uint32_t>(), partition));
+    chart.build(*topology, partition, triangles);
+    EXPECT_EQ(chart.loops.size(), all ? 1u : 3u);
+    EXPECT_EQ(chart.component_count, 1u);
+    EXPECT_EQ(chart.euler(), all ? 1 : -1);
+    EXPECT_EQ(join_loops(*topology, chart, {}, partition), !all);
+  }
+}
+
 }  // namespace
 }  // namespace atlas::test
