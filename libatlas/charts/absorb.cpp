@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <queue>
+#include <span>
 
 #include "libatlas/charts/merge_options.h"
 #include "libatlas/core/glm_bridge.h"
@@ -90,9 +91,14 @@ class Absorber {
   }
 
  private:
+  struct BorderEdge {
+    std::uint32_t chart, half_edge;  // chart: on the other side
+    double length;
+  };
   struct Neighbour {
     std::uint32_t chart;
     double border;
+    std::span<const BorderEdge> edges;
   };
 
   Patience choose_patience(const ChartOptions& options) const {
@@ -110,42 +116,46 @@ class Absorber {
   }
 
   std::uint32_t absorb(std::uint32_t k) {
-    std::vector<Neighbour> neighbours = find_neighbours(k);
+    const std::vector<BorderEdge> border = border_of(k);
+    const std::vector<Neighbour> neighbours = find_neighbours(border);
     for (std::size_t i = 0; i < std::min(neighbours.size(), patience_.neighbours); ++i) {
-      if (join(k, neighbours[i].chart)) return neighbours[i].chart;
+      if (join(k, neighbours[i])) return neighbours[i].chart;
     }
     return kNoIndex;
   }
 
-  std::vector<Neighbour> find_neighbours(std::uint32_t k) const {
-    std::vector<Neighbour> all, merged;
-    each_border(k, [&](std::uint32_t h, std::uint32_t other) {
-      all.push_back({other, edge_length(topology_, h)});
-    });
-    std::stable_sort(all.begin(), all.end(),
-                     [](const Neighbour& a, const Neighbour& b) { return a.chart < b.chart; });
-    for (const Neighbour& n : all) {
-      if (merged.empty() || merged.back().chart != n.chart) merged.push_back({n.chart, 0});
-      merged.back().border += n.border;
-    }
-    double whole = 0;
-    for (const Neighbour& n : merged) whole += n.border;
-    for (Neighbour& n : merged) n.border = std::round(kBorderParts * n.border / whole);
-    std::stable_sort(merged.begin(), merged.end(),
-                     [](const Neighbour& a, const Neighbour& b) { return a.border > b.border; });
-    return merged;
-  }
-
-  template <class Body>
-  void each_border(std::uint32_t k, Body&& body) const {
+  // Sorted by the chart across.
+  std::vector<BorderEdge> border_of(std::uint32_t k) const {
+    std::vector<BorderEdge> border;
     for (const std::uint32_t t : charts_[k].triangles) {
       for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
         const std::uint32_t o = topology_.opposite[h];
-        if (o != kNoIndex && input_.partition.chart[o / 3] != k) {
-          body(h, input_.partition.chart[o / 3]);
-        }
+        if (o == kNoIndex || input_.partition.chart[o / 3] == k) continue;
+        border.push_back({input_.partition.chart[o / 3], h, edge_length(topology_, h)});
       }
     }
+    std::stable_sort(border.begin(), border.end(),
+                     [](const BorderEdge& a, const BorderEdge& b) { return a.chart < b.chart; });
+    return border;
+  }
+
+  // The longest border first.
+  static std::vector<Neighbour> find_neighbours(std::span<const BorderEdge> border) {
+    std::vector<Neighbour> all;
+    double whole = 0;
+    for (std::size_t first = 0, last = 0; first < border.size(); first = last) {
+      Neighbour n{border[first].chart, 0, {}};
+      for (; last < border.size() && border[last].chart == n.chart; ++last) {
+        n.border += border[last].length;
+      }
+      n.edges = border.subspan(first, last - first);
+      whole += n.border;
+      all.push_back(n);
+    }
+    for (Neighbour& n : all) n.border = std::round(kBorderParts * n.border / whole);
+    std::stable_sort(all.begin(), all.end(),
+                     [](const Neighbour& a, const Neighbour& b) { return a.border > b.border; });
+    return all;
   }
 
   bool may_fit_cone(const FlatChart& a, const FlatChart& b) const {
@@ -156,16 +166,17 @@ class Absorber {
     return between <= 2 * limit && std::max(a.cone.angle, b.cone.angle) <= limit;
   }
 
-  bool join(std::uint32_t k, std::uint32_t into) {
+  bool join(std::uint32_t k, const Neighbour& neighbour) {
+    const std::uint32_t into = neighbour.chart;
     FlatChart &a = charts_[k], &b = charts_[into];
     if (!may_fit_cone(a, b)) return false;
     const std::size_t size = a.triangles.size() + b.triangles.size();
     std::size_t& failed_size = failed_[std::minmax(k, into)];
     if (failed_size == size) return false;
     failed_size = size;
-    const Motion motion = fit(k, into);
+    const Motion motion = fit(k, neighbour);
     if (motion.edges >= kLeastFitted && motion.misfit > kMostMisfit) return false;
-    const Seam seam = seam_between(k, into);
+    const Seam seam = seam_of(neighbour.edges);
     if (!a.fragment && !b.fragment && seam.weight < kHidden * seam.length) return false;
     work_ -= double(size);
     std::vector<std::uint8_t> seams;
@@ -209,13 +220,12 @@ class Absorber {
   struct Seam {
     double length = 0, weight = 0;  // weight: creases count less, they hide it
   };
-  Seam seam_between(std::uint32_t k, std::uint32_t into) const {
+  Seam seam_of(std::span<const BorderEdge> edges) const {
     Seam seam;
-    each_border(k, [&](std::uint32_t h, std::uint32_t other) {
-      if (other != into) return;
-      seam.length += edge_length(topology_, h);
-      seam.weight += border_weight(topology_, h, crease_cosine_);
-    });
+    for (const BorderEdge& edge : edges) {
+      seam.length += edge.length;
+      seam.weight += border_weight(topology_, edge.half_edge, crease_cosine_);
+    }
     return seam;
   }
 
@@ -271,7 +281,7 @@ class Absorber {
   }
 
   // What takes one chart's uvs to where the other's continue best across their border (Procrustes).
-  Motion fit(std::uint32_t k, std::uint32_t into) const {
+  Motion fit(std::uint32_t k, const Neighbour& neighbour) const {
     struct Pair {
       glm::dvec2 from, to;
       double weight;
@@ -279,17 +289,17 @@ class Absorber {
     std::vector<Pair> pairs;
     double length = 0;
     glm::dvec2 mean_from(0), mean_to(0);
-    each_border(k, [&](std::uint32_t h, std::uint32_t other) {
-      if (other != into) return;
-      const double weight = 0.5 * edge_length(topology_, h);
-      const auto from = ends(charts_[k], h), to = ends(charts_[into], topology_.opposite[h]);
+    for (const BorderEdge& edge : neighbour.edges) {
+      const double weight = 0.5 * edge.length;
+      const auto from = ends(charts_[k], edge.half_edge),
+                 to = ends(charts_[neighbour.chart], topology_.opposite[edge.half_edge]);
       for (const int i : {0, 1}) {
         pairs.push_back({from[i], to[1 - i], weight});
         mean_from += weight * from[i];
         mean_to += weight * to[1 - i];
         length += weight;
       }
-    });
+    }
     Motion motion;
     motion.edges = pairs.size() / 2;
     if (!(length > 0)) return motion;
