@@ -40,8 +40,9 @@ constexpr double kHidden = 0.5;
 // many are equal but for rounding.
 constexpr double kBorderParts = 1024;
 // Charts whose common border has shapes so different, by its length, do not go together; of short
-// borders that says nothing.
-constexpr double kMostMisfit = 0.1;
+// borders that says nothing. On rough surfaces relaxing such unions is dear: of 88 beyond a
+// twentieth 8 succeeded, in half of all the time (11 noisy meshes).
+constexpr double kMostMisfit = 0.1, kMostRoughMisfit = 0.05;
 constexpr std::size_t kLeastFitted = 8;  // edges
 
 // A turn and a shift; applied to complex numbers.
@@ -62,6 +63,7 @@ class Absorber {
         topology_(input.flatten.topology),
         charts_(charts),
         patience_(choose_patience(input.flatten.options)),
+        most_misfit_(topology_.calm_normals.empty() ? kMostMisfit : kMostRoughMisfit),
         seam_worth_(merge_options(input.flatten.options.max_stretch).seam_worth),
         crease_cosine_(std::cos(input.flatten.options.crease_degrees * M_PI / 180)),
         work_(patience_.work * double(topology_.triangle_count())) {
@@ -175,7 +177,7 @@ class Absorber {
     if (failed_size == size) return false;
     failed_size = size;
     const Motion motion = fit(k, neighbour);
-    if (motion.edges >= kLeastFitted && motion.misfit > kMostMisfit) return false;
+    if (motion.edges >= kLeastFitted && motion.misfit > most_misfit_) return false;
     const Seam seam = seam_of(neighbour.edges);
     if (!a.fragment && !b.fragment && seam.weight < kHidden * seam.length) return false;
     work_ -= double(size);
@@ -324,6 +326,7 @@ class Absorber {
   const Topology& topology_;
   std::vector<FlatChart>& charts_;
   Patience patience_;
+  double most_misfit_;
   double seam_worth_;
   double crease_cosine_;
   double work_;
