@@ -27,7 +27,15 @@ class Linker {
     sort_by_lower_vertex();
     topology_.opposite.assign(topology_.corner_vertex.size(), kNoIndex);
     duplicate_.assign(topology_.triangle_count(), 0);
+    // What linking needs of half-edges lies anywhere in memory: asked for so long before, it is
+    // there.
+    constexpr std::size_t ahead = 64;
+    std::size_t asked = 0;
     for (std::size_t v = 0; v + 1 < first_.size(); ++v) {
+      for (; asked < std::min(edges_.size(), first_[v + 1] + ahead); ++asked) {
+        __builtin_prefetch(topology_.corner_vertex.data() + edges_[asked].half_edge);
+        __builtin_prefetch(topology_.opposite.data() + edges_[asked].half_edge, 1);
+      }
       link_bucket(edges_.data() + first_[v], edges_.data() + first_[v + 1]);
     }
   }

@@ -20,6 +20,10 @@ namespace {
 // products of float coordinates are good to 1e-16.
 constexpr double kDegenerateShare = 1e-12;
 
+// What a loop needs from anywhere in memory is asked for so many triangles before: meshes' orders
+// differ, and waiting would take most of the time.
+constexpr std::size_t kAhead = 20;
+
 Status check_input(const MeshView& mesh) {
   const std::size_t n = mesh.indices.size();
   if (n < 3) return {ErrorCode::bad_input, "mesh: no triangle (nothing to chart)"};
@@ -29,17 +33,13 @@ Status check_input(const MeshView& mesh) {
   if (n / 3 >= (std::size_t{1} << 30)) {
     return {ErrorCode::unsupported, "mesh: more than 2^30 triangles (split it)"};
   }
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::uint32_t v = mesh.indices[i];
-    if (v >= mesh.positions.size()) {
-      return {ErrorCode::bad_input, fmt::format("triangle {}: vertex index {} out of range ({})",
-                                                i / 3, v, mesh.positions.size())};
-    }
-    const Vec3f& p = mesh.positions[v];
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-      return {ErrorCode::bad_input,
-              fmt::format("triangle {}: vertex {} has a position that is not finite", i / 3, v)};
-    }
+  const std::uint32_t largest = *std::max_element(mesh.indices.begin(), mesh.indices.end());
+  if (largest >= mesh.positions.size()) {
+    const auto at = std::find_if(mesh.indices.begin(), mesh.indices.end(),
+                                 [&](std::uint32_t v) { return v >= mesh.positions.size(); });
+    return {ErrorCode::bad_input,
+            fmt::format("triangle {}: vertex index {} out of range ({})",
+                        (at - mesh.indices.begin()) / 3, *at, mesh.positions.size())};
   }
   if (!mesh.materials.empty() && mesh.materials.size() != n / 3) {
     return {ErrorCode::bad_input, "mesh: materials must be empty or 1 a triangle"};
@@ -50,10 +50,33 @@ Status check_input(const MeshView& mesh) {
   return {};
 }
 
+bool finite(const Vec3f& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+// Which vertices triangles have, 1 a vertex.
+std::vector<std::uint8_t> used_vertices(const MeshView& mesh) {
+  std::vector<std::uint8_t> used(mesh.positions.size(), 0);
+  for (const std::uint32_t v : mesh.indices) used[v] = 1;
+  return used;
+}
+
+Status check_positions(const MeshView& mesh, const std::vector<std::uint8_t>& used) {
+  bool all = true;
+  for (std::size_t v = 0; v < used.size(); ++v) all &= !used[v] || finite(mesh.positions[v]);
+  if (all) return {};
+  const auto at = std::find_if(mesh.indices.begin(), mesh.indices.end(),
+                               [&](std::uint32_t v) { return !finite(mesh.positions[v]); });
+  return {ErrorCode::bad_input,
+          fmt::format("triangle {}: vertex {} has a position that is not finite",
+                      (at - mesh.indices.begin()) / 3, *at)};
+}
+
 // The power of two that brings the largest extent of the used vertices into [1, 2).
-double unit_scale(const MeshView& mesh) {
+double unit_scale(const MeshView& mesh, const std::vector<std::uint8_t>& used) {
   glm::vec3 low(std::numeric_limits<float>::max()), high(-low);
-  for (const std::uint32_t v : mesh.indices) {
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (!used[v]) continue;
     const glm::vec3 p = to_glm(mesh.positions[v]);
     low = glm::min(low, p);
     high = glm::max(high, p);
@@ -71,10 +94,8 @@ std::uint64_t hash_position(const std::uint32_t (&key)[3]) {
 }
 
 // Fills points, source_vertex and corner_vertex. Vertices are numbered in input order.
-void weld(const MeshView& mesh, Topology& topology) {
+void weld(const MeshView& mesh, const std::vector<std::uint8_t>& used, Topology& topology) {
   const std::size_t n = mesh.positions.size();
-  std::vector<std::uint8_t> used(n, 0);
-  for (const std::uint32_t v : mesh.indices) used[v] = 1;
   const std::size_t capacity = std::bit_ceil(std::max<std::size_t>(16, 2 * n));
   std::vector<std::uint32_t> table(capacity, kNoIndex), id(n, kNoIndex);
   for (std::uint32_t v = 0; v < n; ++v) {
@@ -136,13 +157,13 @@ class Pieces {
   explicit Pieces(Topology& topology) : topology_(topology) {}
 
   void run() {
+    if (topology_.defects.misoriented_edges == 0) return join();
     const auto n = static_cast<std::uint32_t>(topology_.triangle_count());
     topology_.component.assign(n, kNoIndex);
     turned_.assign(n, 0);
     for (std::uint32_t t = 0; t < n; ++t) {
       if (topology_.component[t] == kNoIndex && !topology_.degenerate(t)) flood(t);
     }
-    if (topology_.defects.misoriented_edges == 0) return;
     std::sort(topology_.fan_links.begin(), topology_.fan_links.end());
     cut_conflicts();
     for (std::uint32_t t = 0; t < n; ++t) {
@@ -156,6 +177,35 @@ class Pieces {
  private:
   bool misoriented(std::uint32_t h, std::uint32_t o) const {
     return topology_.corner_vertex[h] == topology_.corner_vertex[o];
+  }
+
+  // Where all triangles agree as they are, there is nothing to find but the pieces. Each triangle
+  // points to a lower one of its piece, or to itself; unlike a flood, this reads the mesh in order.
+  void join() {
+    const auto n = static_cast<std::uint32_t>(topology_.triangle_count());
+    std::vector<std::uint32_t>& lower = topology_.component;
+    lower.resize(n);
+    const auto root = [&](std::uint32_t t) {
+      while (lower[t] != t) t = lower[t] = lower[lower[t]];
+      return t;
+    };
+    for (std::uint32_t t = 0; t < n; ++t) {
+      std::uint32_t own = lower[t] = t;
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        const std::uint32_t o = topology_.opposite[h];
+        if (o >= h) continue;  // kNoIndex is above all
+        const std::uint32_t other = root(o / 3);
+        lower[std::max(own, other)] = std::min(own, other);
+        own = std::min(own, other);
+      }
+    }
+    for (std::uint32_t t = 0; t < n; ++t) {
+      if (topology_.degenerate(t)) {
+        lower[t] = kNoIndex;
+      } else {
+        lower[t] = lower[t] == t ? topology_.component_count++ : lower[lower[t]];
+      }
+    }
   }
 
   void flood(std::uint32_t seed) {
@@ -214,30 +264,36 @@ class Pieces {
   std::vector<std::uint32_t> queue_;
 };
 
-// Counts vertices around which the triangles form more than one fan.
+// Counts vertices around which the triangles form more than one fan: one fan then holds less than
+// all of a vertex's corners.
 void count_nonmanifold_vertices(Topology& topology) {
-  const std::size_t corners = topology.corner_vertex.size();
-  std::vector<std::uint8_t> fans(topology.points.size(), 0), seen(corners, 0);
-  for (std::uint32_t start = 0; start < corners; ++start) {
-    if (seen[start] || topology.degenerate(start / 3)) continue;
-    std::uint8_t& count = fans[topology.corner_vertex[start]];
-    if (count < 3) ++count;
-    seen[start] = 1;
-    std::uint32_t h = start;
-    for (;;) {  // one way around, until the start or a border
-      const std::uint32_t o = topology.opposite[previous_half_edge(h)];
-      if (o == kNoIndex) break;
-      h = o;
-      if (h == start) break;
-      seen[h] = 1;
-    }
-    if (topology.opposite[previous_half_edge(h)] != kNoIndex) continue;
-    for (std::uint32_t o = topology.opposite[start]; o != kNoIndex; o = topology.opposite[h]) {
-      h = next_half_edge(o);
-      seen[h] = 1;
-    }
+  const auto corners = static_cast<std::uint32_t>(topology.corner_vertex.size());
+  std::vector<std::uint32_t> valence(topology.points.size(), 0);  // 0 once it is judged
+  for (std::uint32_t h = 0; h < corners; ++h) {
+    valence[topology.corner_vertex[h]] += !topology.degenerate(h / 3);
   }
-  for (const std::uint8_t count : fans) topology.defects.nonmanifold_vertices += count > 1;
+  for (std::uint32_t start = 0; start < corners; ++start) {
+    if (start + 3 * kAhead < corners) {
+      const std::uint32_t later = start + 3 * kAhead, across = topology.opposite[later];
+      __builtin_prefetch(valence.data() + topology.corner_vertex[later], 1);
+      if (across != kNoIndex) __builtin_prefetch(topology.opposite.data() + across);
+    }
+    std::uint32_t& all = valence[topology.corner_vertex[start]];
+    if (all == 0 || topology.degenerate(start / 3)) continue;
+    std::uint32_t h = start, fan = 1, o;
+    for (;; ++fan) {  // one way around, until the start or a border
+      o = topology.opposite[previous_half_edge(h)];
+      if (o == kNoIndex || o == start) break;
+      h = o;
+    }
+    if (o == kNoIndex) {
+      for (o = topology.opposite[start]; o != kNoIndex; o = topology.opposite[h], ++fan) {
+        h = next_half_edge(o);
+      }
+    }
+    topology.defects.nonmanifold_vertices += fan < all;
+    all = 0;
+  }
 }
 
 }  // namespace
@@ -250,8 +306,12 @@ Result<Topology> build_topology(const MeshView& mesh, const TopologyOptions& opt
                                 const Context& context) {
   if (Status status = check_input(mesh); !status.ok()) return status;
   Topology topology;
-  topology.scale = unit_scale(mesh);
-  weld(mesh, topology);
+  {
+    const std::vector<std::uint8_t> used = used_vertices(mesh);
+    if (Status status = check_positions(mesh, used); !status.ok()) return status;
+    topology.scale = unit_scale(mesh, used);
+    weld(mesh, used, topology);
+  }
   measure_triangles(topology);
   if (context.cancelled()) return Status::cancelled();
   link_half_edges(mesh, options, topology);

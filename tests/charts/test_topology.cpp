@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "libatlas/charts/cone.h"
 #include "libatlas/charts/topology.h"
@@ -43,6 +45,59 @@ TEST(Topology, LinksAgreeWithAMapOfEdges) {
       EXPECT_EQ(topology.component[h / 3], topology.component[o / 3]) << shape.name;
     }
   }
+}
+
+TEST(Topology, PiecesAreNumberedInTheOrderOfTheirFirstTriangles) {
+  for (const Shape& shape : zoo()) {
+    const Topology topology = topology_of(Mesh(shape));
+    std::vector<std::uint32_t> piece(topology.triangle_count(), kNoIndex);
+    std::uint32_t count = 0;
+    for (std::uint32_t seed = 0; seed < piece.size(); ++seed) {
+      if (piece[seed] != kNoIndex || topology.degenerate(seed)) continue;
+      std::vector<std::uint32_t> queue{seed};
+      piece[seed] = count;
+      for (std::size_t i = 0; i < queue.size(); ++i) {
+        for (std::uint32_t h = 3 * queue[i]; h < 3 * queue[i] + 3; ++h) {
+          const std::uint32_t o = topology.opposite[h];
+          if (o == kNoIndex || piece[o / 3] != kNoIndex) continue;
+          piece[o / 3] = count;
+          queue.push_back(o / 3);
+        }
+      }
+      ++count;
+    }
+    EXPECT_EQ(topology.component_count, count) << shape.name;
+    EXPECT_EQ(topology.component, piece) << shape.name;
+  }
+}
+
+TEST(Topology, VerticesOfSeveralFansAreCountedOnce) {
+  // Three closed fans about vertex 0, two with a border about vertex 1.
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {5, 0, 0}};
+  const auto fan = [&](std::uint32_t centre, std::uint32_t corners, bool closed) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    const float height = static_cast<float>(first);
+    for (std::uint32_t i = 0; i < corners; ++i) {
+      const float angle = 1.2f * static_cast<float>(i);
+      mesh.positions.push_back({std::cos(angle), std::sin(angle), height});
+      if (i + 1 < corners)
+        mesh.indices.insert(mesh.indices.end(), {centre, first + i, first + i + 1});
+    }
+    if (closed) mesh.indices.insert(mesh.indices.end(), {centre, first + corners - 1, first});
+  };
+  for (int i = 0; i < 3; ++i) fan(0, 5, true);
+  for (int i = 0; i < 2; ++i) fan(1, 4, false);
+  EXPECT_EQ(topology_of(mesh).defects.nonmanifold_vertices, 2u);
+}
+
+TEST(Topology, NamesTheTriangleWhosePositionIsNotFinite) {
+  Mesh mesh(icosphere(1));
+  mesh.positions.push_back({NAN, 0, 0});  // of no triangle: no error
+  EXPECT_TRUE(build_topology(mesh.view(), {}, {}).ok());
+  mesh.indices[7] = static_cast<std::uint32_t>(mesh.positions.size()) - 1;
+  const std::string message = build_topology(mesh.view(), {}, {}).status().message();
+  EXPECT_NE(message.find("triangle 2"), std::string::npos) << message;
 }
 
 TEST(Topology, CoincidentVerticesAreWelded) {
