@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
+#include <utility>
 
 namespace atlas::param {
 namespace {
@@ -175,11 +177,12 @@ void MultigridLevels<Real>::smooth_up(std::size_t depth) {
     rest[i] = load[i];
   }
   for (std::uint32_t i = n; i-- > 0;) {
-    Pair<Real> sum = rest[i];  // less what lies above the diagonal
+    // What lies below the diagonal waits for nothing; what lies above is in rest by now.
+    Pair<Real> sum{};
     for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
-      sum -= entries[k].value * x[entries[k].column];
+      sum += entries[k].value * x[entries[k].column];
     }
-    x[i] = sum *= inverse_diagonal[i];
+    x[i] = sum = (rest[i] - sum) * inverse_diagonal[i];
     for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
       rest[entries[k].column] -= entries[k].value * sum;
     }
