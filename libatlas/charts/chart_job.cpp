@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "libatlas/charts/split.h"
@@ -31,9 +32,10 @@ constexpr std::size_t kLargeChart = 20000;
 constexpr double kAimedStretch = 1.18;
 constexpr double kBestStretch = 1.12;
 // Under scan noise, rounds of cutting and of closing what crosses, each going on from the last, in
-// all and of closing. With half as many, or charts divided for 8 crossings whatever their size,
-// time and charts were a tenth and a twentieth more (11 noisy meshes).
-constexpr int kMostCuts = 12, kMostClosings = 8;
+// all and of closing, and those in the end that only close. With half as many, or charts divided
+// for 8 crossings whatever their size, time and charts were a tenth and a twentieth more (11 noisy
+// meshes).
+constexpr int kMostCuts = 12, kMostClosings = 10, kLastClosings = 4;
 // Crossings of the banks of cuts, with more of which a chart is divided: so many, or more in a
 // large one, a crossing for so many triangles.
 constexpr std::size_t kMostCrossingsLeft = 8, kTrianglesACrossing = 150;
@@ -64,7 +66,7 @@ class ChartJob {
     if (!beyond_cone()) {
       for (int cuts = 0;; ++cuts) {
         if (try_flatten(outcome)) return outcome;
-        if (hopeless() || (noisy() && only_darts() && cuts >= kMostCuts)) break;
+        if (hopeless() || (only_darts() && cuts >= most_rounds())) break;
         if (stretched_widely() && (cuts > 0 || chart_.loops.size() == 1)) break;
         keep_uvs();
         if (!cut_open_timed(cuts)) break;
@@ -201,6 +203,10 @@ class ChartJob {
     return crossings_left().empty() ? turned_loops(chart_, result_.uvs) : crossings_left();
   }
 
+  int most_rounds() const {
+    if (!noisy()) return std::numeric_limits<int>::max();
+    return kMostCuts + (result_.within_bound ? kLastClosings : 0);
+  }
   int most_cuts() const { return noisy() && !effort_.whole ? kMostCuts : effort_.cuts; }
 
   // Cuts whose banks cross in many places: closing some, or handing triangles to neighbours, hardly
