@@ -29,8 +29,9 @@ void LocalChart::build(const Topology& topology, Partition& partition,
   number_vertices(topology);
   find_loops();
   if (n >= kManyTriangles) {  // leave the room to the solver
-    queue_ = {};
-    seen_ = {};
+    std::vector<std::uint32_t>().swap(queue_);
+    std::vector<std::uint8_t>().swap(seen_);
+    if (component_count == 1) std::vector<std::uint32_t>().swap(component);
   }
 }
 

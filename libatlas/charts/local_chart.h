@@ -40,7 +40,7 @@ class LocalChart {
   std::vector<std::uint32_t> loops;     // one half-edge of each border loop
   std::uint32_t border_count = 0;       // half-edges on the border
   std::uint32_t component_count = 0;
-  std::vector<std::uint32_t> component;  // 1 a triangle
+  std::vector<std::uint32_t> component;  // 1 a triangle; may be empty where there is but one
 
   int euler() const {
     const auto v = static_cast<std::int64_t>(positions.size());

@@ -24,6 +24,8 @@ constexpr double first_inexactness = 1e-6, rough_share = 0.05, fine_share = 1e-3
 // must be exact: errors of a solve are smooth, and later steps take long to remove them.
 constexpr double may_unroll = 3e-4, exact_first = 1e-9;
 constexpr int most_iterations = 60;
+// Vertices from which on what is solved and what is measured do not lie in memory together.
+constexpr std::size_t large_mesh = 100000;
 // The fall of the energy by one local step, as part of the area, after which exact solves change no
 // more than inexact ones leave.
 constexpr double converged = 3e-11;
@@ -150,10 +152,32 @@ void complete_rotations(const LocalMesh& mesh, ParamWorkspace::Impl& w) {
 }  // namespace
 
 ArapSolver::ArapSolver(const LocalMesh& mesh, double min_altitude, ParamWorkspace::Impl& workspace)
-    : mesh_(mesh), w_(workspace) {
-  build_elements(mesh, min_altitude, w_.elements);
-  w_.load.resize(mesh.positions.size());
-  w_.solution.resize(mesh.positions.size());
+    : mesh_(mesh), min_altitude_(min_altitude), w_(workspace) {
+  build();
+}
+
+void ArapSolver::build() {
+  build_elements(mesh_, min_altitude_, w_.elements);
+  w_.load.resize(mesh_.positions.size());
+  w_.solution.resize(mesh_.positions.size());
+}
+
+void ArapSolver::rest() {
+  if (mesh_.positions.size() < large_mesh || method_ != Method::multigrid) return;
+  give_back(w_.elements);
+  give_back(w_.load);
+  give_back(w_.solution);
+  give_back(w_.rotations);
+  w_.multigrid = {};
+  factorized_ = weighted_ = false;
+  resting_ = true;
+}
+
+void ArapSolver::wake(std::span<const Vec2d> uvs) {
+  if (!resting_) return;
+  resting_ = false;
+  build();
+  start(uvs);
 }
 
 const CornerLists& ArapSolver::corners() {
@@ -216,6 +240,8 @@ void ArapSolver::take_solution(std::span<Vec2d> uvs) const {
 }
 
 void ArapSolver::start(const IsometricStart& start) {
+  if (resting_) build();
+  resting_ = false;
   if (weighted_) {
     for (Element& e : w_.elements) e.weight = 1;
     factorize();
@@ -258,6 +284,7 @@ void ArapSolver::join(std::span<const Vec2d> corner_uvs, std::span<Vec2d> uvs) {
 }
 
 void ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
+  wake(uvs);
   if (!factorized_) factorize();
   rotation_load(w_.elements, w_.rotations, w_.load);
   solve({steps == 1 ? fine : first_inexactness, 0});
@@ -315,6 +342,7 @@ double ArapSolver::update_stretch(std::span<const Vec2d> uvs, bool ratio) {
 }
 
 double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
+  wake(uvs);
   // The mean of the 12th power of the stretch stands in for its maximum; 4, 6 and 8 reach less.
   // Damped by 1 / (power - 2) the weights settle; damped by a half they swing (measured).
   constexpr double power = 12, damping = 0.1;
@@ -354,18 +382,22 @@ double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
 
 Relaxer::Outcome ArapSolver::remove_flips(std::span<const std::uint32_t> also,
                                           std::span<Vec2d> uvs) {
+  wake(uvs);
   return w_.relaxer.remove_flips(w_.elements, corners(), also, uvs);
 }
 
 bool ArapSolver::lower_tail(double bound, std::span<Vec2d> uvs) {
+  wake(uvs);
   return w_.relaxer.lower_tail(w_.elements, corners(), bound, uvs);
 }
 
 bool ArapSolver::separate_borders(std::span<Vec2d> uvs) {
+  wake(uvs);
   return w_.separator.separate(mesh_, w_.elements, corners(), w_.relaxer, uvs);
 }
 
-IsometricResult ArapSolver::measure(std::span<const Vec2d> uvs) const {
+IsometricResult ArapSolver::measure(std::span<const Vec2d> uvs) {
+  wake(uvs);
   return measure_energy(w_.elements, uvs);
 }
 

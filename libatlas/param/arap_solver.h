@@ -51,11 +51,17 @@ class ArapSolver {
   // Of the last call, if it failed: the crossings when they were fewest.
   std::span<const BorderCrossing> crossings_left() const { return w_.separator.left(); }
 
-  IsometricResult measure(std::span<const Vec2d> uvs) const;
+  IsometricResult measure(std::span<const Vec2d> uvs);
+
+  // Gives the memory back that a large mesh took; what is asked for next makes anew what it needs.
+  // Rotations are then those of the uvs at hand.
+  void rest();
 
  private:
   enum class Method { envelope, multigrid, direct };
 
+  void build();
+  void wake(std::span<const Vec2d> uvs);
   void factorize();
   void factorize_directly();
   const CornerLists& corners();
@@ -70,13 +76,14 @@ class ArapSolver {
   double update_stretch(std::span<const Vec2d> uvs, bool ratio);
 
   const LocalMesh& mesh_;
+  double min_altitude_;
   ParamWorkspace::Impl& w_;
   Method method_ = Method::envelope;
   bool analyzed_ = false, ordered_ = false;  // by the direct and the envelope solver
   bool cornered_ = false;                    // the workspace's corner lists are this mesh's
   double area_ = 0;                          // weighted
   bool weighted_ = false;
-  bool factorized_ = false;
+  bool factorized_ = false, resting_ = false;
 };
 
 }  // namespace atlas::param

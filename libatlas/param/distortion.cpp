@@ -17,6 +17,8 @@ using param::cross;
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
+constexpr double upper_share = 0.001;  // of the area, that stretch_999 leaves out
+
 // Triangles below this part of the mean area say nothing but rounding noise.
 constexpr double negligible_area = 1e-14;
 
@@ -56,8 +58,7 @@ Distortion summarize_distortion(std::span<const TriangleStretch> triangles, doub
   if (!(d.surface_area > 0)) return d;
   if (scale == 0) scale = std::sqrt(d.uv_area / d.surface_area);
   const double least = negligible_area * d.surface_area / static_cast<double>(triangles.size());
-  std::vector<param::WeightedValue> values;
-  values.reserve(triangles.size());
+  param::UpperTail tail(upper_share * d.surface_area);
   double sum_l2 = 0, sum_conformal = 0, sum_area = 0, largest = 1;
   d.area_min = std::numeric_limits<double>::infinity();
   d.area_max = 0;
@@ -73,12 +74,12 @@ Distortion summarize_distortion(std::span<const TriangleStretch> triangles, doub
     d.conformal_max = std::max(d.conformal_max, quotient);
     d.area_min = std::min(d.area_min, s1 * s2);
     d.area_max = std::max(d.area_max, s1 * s2);
-    values.push_back({worst, t.area});
+    tail.add(worst, t.area);
   }
   d.stretch_l2 = std::sqrt(sum_l2 / sum_area);
   d.conformal_mean = sum_conformal / sum_area;
   d.stretch_linf = largest;
-  d.stretch_999 = param::upper_percentile(values, 0.001);
+  d.stretch_999 = param::value_above_budget(tail.values(), upper_share * sum_area);
   return d;
 }
 

@@ -304,7 +304,7 @@ bool MultigridSolver::build(std::span<const Element> elements, const HalfEdges& 
   const auto build = [&](auto& precision, auto& couplings) {
     build_graph<typename std::decay_t<decltype(couplings)>::value_type>(couplings, half_edges,
                                                                         vertices, precision.graph);
-    couplings = {};
+    give_back(couplings);
     return precision.levels.build(precision.graph);
   };
   std::vector<float> single;

@@ -135,6 +135,7 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
   }
   double aim =
       options.aimed_stretch > 0 && !options.local ? options.aimed_stretch : options.max_stretch;
+  solver.rest();
   std::optional<Distortion> last;  // of r.uvs as they are
   for (int round = 0; round < 2; ++round) {
     clock.book(&Phase::solve);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 namespace atlas::param {
@@ -10,25 +11,23 @@ struct WeightedValue {
   double value, weight;
 };
 
-// The smallest value that all but `share` of the weight does not exceed; 0 for none. Reorders
+inline bool larger(const WeightedValue& a, const WeightedValue& b) {
+  return a.value != b.value ? a.value > b.value : a.weight > b.weight;
+}
+
+// The smallest value that all but `budget` of the weight does not exceed; 0 for none. Reorders
 // values.
-inline double upper_percentile(std::vector<WeightedValue>& values, double share) {
+inline double value_above_budget(std::vector<WeightedValue>& values, double budget) {
   if (values.empty()) return 0;
-  double total = 0;
-  for (const WeightedValue& v : values) total += v.weight;
-  const double budget = share * total;
-  const auto above = [](const WeightedValue& a, const WeightedValue& b) {
-    return a.value != b.value ? a.value > b.value : a.weight > b.weight;
-  };
   // Only the upper tail need be sorted; take a longer one until it holds the budget.
   for (std::size_t tail = values.size() / 256 + 16;; tail *= 4) {
     tail = std::min(tail, values.size());
     const auto end = values.begin() + static_cast<std::ptrdiff_t>(tail);
-    if (tail < values.size()) std::nth_element(values.begin(), end, values.end(), above);
+    if (tail < values.size()) std::nth_element(values.begin(), end, values.end(), larger);
     double weight = 0;
     for (auto v = values.begin(); v != end; ++v) weight += v->weight;
     if (weight <= budget && tail < values.size()) continue;
-    std::sort(values.begin(), end, above);
+    std::sort(values.begin(), end, larger);
     weight = 0;
     for (auto v = values.begin(); v != end; ++v) {
       weight += v->weight;
@@ -37,5 +36,41 @@ inline double upper_percentile(std::vector<WeightedValue>& values, double share)
     return (end - 1)->value;
   }
 }
+
+// The same for a budget of `share` of their weight.
+inline double upper_percentile(std::vector<WeightedValue>& values, double share) {
+  double total = 0;
+  for (const WeightedValue& v : values) total += v.weight;
+  return value_above_budget(values, share * total);
+}
+
+// Of values that come one by one, those that value_above_budget() may need for any budget up to
+// `budget`: a small part of the values of a large chart.
+class UpperTail {
+ public:
+  explicit UpperTail(double budget) : budget_(budget) {}
+
+  void add(double value, double weight) {
+    if (value <= floor_) return;
+    values_.push_back({value, weight});
+    if (values_.size() >= most_) prune();
+  }
+  std::vector<WeightedValue>& values() { return values_; }
+
+ private:
+  void prune() {
+    std::sort(values_.begin(), values_.end(), larger);
+    double weight = 0;
+    std::size_t kept = 0;
+    while (kept < values_.size() && weight <= budget_) weight += values_[kept++].weight;
+    if (weight > budget_) floor_ = values_[kept - 1].value;
+    values_.resize(kept);
+    most_ = std::max(most_, 4 * kept);
+  }
+
+  double budget_, floor_ = 0;
+  std::size_t most_ = 20000;
+  std::vector<WeightedValue> values_;
+};
 
 }  // namespace atlas::param

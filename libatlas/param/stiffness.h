@@ -11,6 +11,12 @@
 
 namespace atlas::param {
 
+// Assigning {} would keep the memory.
+template <class T>
+void give_back(std::vector<T>& v) {
+  std::vector<T>().swap(v);
+}
+
 // A rest shape with a positive altitude. Large charts hold more memory in these than in anything
 // else, so what can be had from the rest in a few cycles is not kept.
 struct Element {

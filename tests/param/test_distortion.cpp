@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "libatlas/param/distortion.h"
+#include "libatlas/param/percentile.h"
 #include "tests/param/shapes.h"
 
 namespace atlas {
@@ -177,6 +179,26 @@ TEST(Distortion, DoesNotDependOnTheUnit) {
     EXPECT_NEAR(m.stretch_l2, plain.stretch_l2, 1e-6);
     EXPECT_NEAR(m.stretch_999, plain.stretch_999, 1e-6);
     EXPECT_EQ(m.flips, plain.flips);
+  }
+}
+
+TEST(Distortion, APartOfTheValuesHasTheirPercentile) {
+  std::mt19937 random(7);
+  std::exponential_distribution<double> value(1), weight(3);
+  for (const double share : {0.001, 0.02, 0.6}) {
+    std::vector<param::WeightedValue> all(200000);
+    double total = 0;
+    for (param::WeightedValue& v : all) {
+      v = {std::round(100 * value(random)) / 50, weight(random)};  // with many ties
+      total += v.weight;
+    }
+    param::UpperTail tail(share * total);
+    for (const param::WeightedValue& v : all) tail.add(v.value, v.weight);
+    if (share < 0.1) {
+      EXPECT_LT(tail.values().size(), all.size() / 4);
+    }
+    EXPECT_EQ(param::value_above_budget(tail.values(), share * total),
+              param::upper_percentile(all, share));
   }
 }
 
