@@ -74,13 +74,13 @@ bool MultigridLevels<Real>::build_levels() {
     const std::size_t n = level.matrix.rows();
     level.x.resize(n);
     level.load.resize(n);
+    level.rest.resize(n);
     if (n <= direct_limit) break;
     if (!coarsening_.run(level.matrix, level.inverse_diagonal, level.prolongation,
                          levels_[depth_ + 1].matrix)) {
       return false;
     }
     if (n > large_setup) level.matrix.upper = {};
-    level.rest.resize(n);
   }
   factorize_coarsest();
   return true;

@@ -34,12 +34,17 @@ int on_display_lost(void*) {
 void keep_running(void*, void*) {}
 
 // Xlib ends the process with a message of its own when the X server goes, unless both handlers are
-// set (the second exists since libX11 1.7). The functions are looked up in what GLFW has loaded:
-// there may be no X11 at all. `void*` stands for Xlib's Display*.
+// set (the second exists since libX11 1.7). The functions are looked up in what GLFW has loaded
+// (3.4 keeps the library to itself): there may be no X11 at all. `void*` stands for Xlib's
+// Display*.
 void watch_display() {
   using Handler = int (*)(void*);
   using ExitHandler = void (*)(void*, void*);
-  const auto find = [](const char* name) { return dlsym(RTLD_DEFAULT, name); };
+  void* const x11 = dlopen("libX11.so.6", RTLD_NOW | RTLD_NOLOAD);
+  const auto find = [&](const char* name) {
+    void* const own = x11 ? dlsym(x11, name) : nullptr;
+    return own ? own : dlsym(RTLD_DEFAULT, name);
+  };
   void* const display = find("glfwGetX11Display");
   void* const set = find("XSetIOErrorHandler");
   void* const set_exit = find("XSetIOErrorExitHandler");

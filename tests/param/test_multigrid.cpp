@@ -82,6 +82,11 @@ TEST(Multigrid, ErrorsFallBelowWhatOneCorrectionReaches) {
   expect_solved(hills(60, 60, 1), 1e-14);
 }
 
+TEST(Multigrid, OneLevelWillDo) {
+  expect_solved(hills(3, 2, 1), 1e-12);
+  expect_solved(hills(12, 12, 1), 1e-12);
+}
+
 TEST(Multigrid, SliversAreSolvedForInDoublePrecision) {
   // Quads 20 000 times as wide as high: single precision would lose their heights.
   expect_solved(hills(4, 1200, 100000), 1e-18);

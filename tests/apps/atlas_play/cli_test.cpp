@@ -41,10 +41,12 @@ class AtlasPlay : public testing::Test {
   void TearDown() override { fs::remove_all(dir_); }
 
   // `environment` as for env(1). Leak checks are for the tests of the library: drivers leak.
+  // Without XDG_RUNTIME_DIR, which desktops set, Wayland's library has a line of its own to say.
   RunResult run(const std::string& arguments, const std::string& environment = "") const {
-    const std::string command =
-        fmt::format("cd '{}' && env {} LSAN_OPTIONS=detect_leaks=0 '{}' {} >out 2>err",
-                    dir_.string(), environment, ATLAS_PLAY, arguments);
+    const std::string command = fmt::format(
+        "cd '{0}' && env {1} XDG_RUNTIME_DIR='{0}' LSAN_OPTIONS=detect_leaks=0 '{2}' {3} >out "
+        "2>err",
+        dir_.string(), environment, ATLAS_PLAY, arguments);
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128, text_of(dir_ / "out"),
             text_of(dir_ / "err")};
