@@ -174,10 +174,7 @@ void ArapSolver::rest() {
 }
 
 void ArapSolver::wake(std::span<const Vec2d> uvs) {
-  if (!resting_) return;
-  resting_ = false;
-  build();
-  start(uvs);
+  if (resting_) start(uvs);
 }
 
 const CornerLists& ArapSolver::corners() {
@@ -258,6 +255,8 @@ void ArapSolver::start(const IsometricStart& start) {
 }
 
 void ArapSolver::start(std::span<const Vec2d> uvs) {
+  if (resting_) build();
+  resting_ = false;
   for (std::size_t v = 0; v < uvs.size(); ++v) w_.solution[v] = to_glm(uvs[v]);
   local_rotations(w_.elements, uvs, w_.rotations);
 }
