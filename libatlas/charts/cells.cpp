@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <queue>
 
 #include "libatlas/charts/grains.h"
 #include "libatlas/charts/radix_heap.h"
+#include "libatlas/charts/rims.h"
 #include "libatlas/charts/ring_queue.h"
 #include "libatlas/core/glm_bridge.h"
 
@@ -20,8 +22,9 @@ constexpr std::uint32_t kCalmGrain = 3;
 constexpr std::uint32_t kLeastPerCell = 3;
 constexpr std::uint32_t kFar = std::numeric_limits<std::uint32_t>::max();
 // Distances are compared in this share of a mean step, cosines in this many parts: symmetric meshes
-// are full of ties, which rounding would break otherwise for every rotation and unit.
-constexpr double kDistanceParts = 61.8;
+// are full of ties, which rounding would break otherwise for every rotation and unit. (Wider parts
+// are no better: what lies at the limit of one is as rare as two that nearly tie.)
+constexpr double kDistanceParts = 66;
 constexpr double kBetweenParts = 0.29;  // so that round values are not at a part's limit
 constexpr float kCosineParts = 4096;
 
@@ -45,7 +48,8 @@ struct Visit {
   std::uint32_t node, seed;
   bool operator>(const Visit& other) const {
     if (key != other.key) return key > other.key;
-    return node != other.node ? node > other.node : seed > other.seed;
+    if (node != other.node) return node > other.node;
+    return seed != other.seed ? seed > other.seed : distance > other.distance;
   }
 };
 using Heap = RadixHeap<Visit>;
@@ -74,6 +78,7 @@ class Seeder {
           flat(first, last) ? 1 : cell_budget(size[grains_.component[first]], options_);
       sample_piece(first, last, budget);
       if (seeds.size() == first_seed + 1) continue;
+      number_by_grain(first, last, first_seed);
       for (int round = 0; round < 2; ++round) recentre(first, last, first_seed);
     }
   }
@@ -138,6 +143,25 @@ class Seeder {
       }
     }
     add_leaning(first, last);
+  }
+
+  // Seeds that are about equally far from all others are found in an order that rounding decides.
+  // It is forgotten here, for ties fall by a seed's number: the last grain's seed comes first.
+  void number_by_grain(std::uint32_t first, std::uint32_t last, std::size_t first_seed) {
+    const auto begin = static_cast<std::uint32_t>(first_seed);
+    std::vector<std::uint32_t> order(seeds.size() - first_seed), number(order.size());
+    std::iota(order.begin(), order.end(), begin);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return std::pair(seeds[a], a) > std::pair(seeds[b], b);
+    });
+    const std::vector<std::uint32_t> old_seeds(seeds.begin() + begin, seeds.end());
+    const std::vector<glm::vec3> old_normals(normals.begin() + begin, normals.end());
+    for (std::uint32_t i = 0; i < order.size(); ++i) {
+      number[order[i] - begin] = begin + i;
+      seeds[begin + i] = old_seeds[order[i] - begin];
+      normals[begin + i] = old_normals[order[i] - begin];
+    }
+    for (std::uint32_t g = first; g < last; ++g) owner_[g] = number[owner_[g] - begin];
   }
 
   // Seeds for what leans too far from its cell, a few at a time.
@@ -336,6 +360,7 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
   result.count = static_cast<std::uint32_t>(cells);
   result.of_triangle.reserve(n);
   for (const Ground& g : ground) result.of_triangle.push_back(g.cell);
+  pull_teeth(topology, result);
   return result;
 }
 

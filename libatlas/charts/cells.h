@@ -30,7 +30,8 @@ struct Cells {
 // length times (1 + 8 (1 - n·n_s)), so cells stop at creases. Every cell is connected and lies in
 // one piece. Seeds come from farthest-point sampling and two recentring steps (Cohen-Steiner et al.
 // 2004 for the alternation) on a graph of grains of some ten triangles, then one pass over the
-// triangles. O(n log n) with a small heap.
+// triangles, whose teeth are pulled in the end (rims.h). Cells are numbered by their seeds' place
+// in the mesh. O(n log n) with a small heap.
 Cells grow_cells(const Topology& topology, const CellOptions& options, const Context& context);
 
 // Divides cells until the normals of each lie within half-angle `cone` (radians) of one direction.

@@ -85,6 +85,17 @@ class Divider {
   std::vector<std::uint32_t> queue_;
 };
 
+// The cell that has two or three of a triangle's edges on its own side; kNoIndex: none has.
+std::uint32_t most_around(const Topology& topology, const Cells& cells, std::uint32_t t) {
+  std::uint32_t around[3];
+  for (std::uint32_t c = 0; c < 3; ++c) {
+    const std::uint32_t o = topology.opposite[3 * t + c];
+    around[c] = o == kNoIndex ? kNoIndex : cells.of_triangle[o / 3];
+  }
+  if (around[0] == around[1] || around[0] == around[2]) return around[0];
+  return around[1] == around[2] ? around[1] : kNoIndex;
+}
+
 }  // namespace
 
 Rims::Rims(const Topology& topology, const Cells& cells) : topology_(topology), cells_(cells) {
@@ -138,6 +149,29 @@ std::size_t longest_loop(const std::vector<RimLoop>& loops) {
     if (loops[i].length > loops[longest].length * (1 + 1e-4)) longest = i;
   }
   return longest;
+}
+
+void pull_teeth(const Topology& topology, Cells& cells) {
+  std::vector<std::uint32_t> size(cells.count, 0), waiting;
+  for (const std::uint32_t k : cells.of_triangle) {
+    if (k != kNoIndex) ++size[k];
+  }
+  for (std::uint32_t start = 0; start < cells.of_triangle.size(); ++start) {
+    waiting.push_back(start);
+    while (!waiting.empty()) {
+      const std::uint32_t t = waiting.back(), own = cells.of_triangle[t];
+      waiting.pop_back();
+      const std::uint32_t to = most_around(topology, cells, t);
+      if (own == kNoIndex || to == own || to == kNoIndex || size[own] == 1) continue;
+      --size[own];
+      ++size[to];
+      cells.of_triangle[t] = to;
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        const std::uint32_t o = topology.opposite[h];
+        if (o != kNoIndex && cells.of_triangle[o / 3] != to) waiting.push_back(o / 3);
+      }
+    }
+  }
 }
 
 void divide_rings(const Topology& topology, Cells& cells) {

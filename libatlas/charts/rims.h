@@ -46,6 +46,12 @@ class Rims {
 // The place of the longest loop; of nearly equal ones the first. Precondition: not empty.
 std::size_t longest_loop(const std::vector<RimLoop>& loops);
 
+// Triangles with two edges on one other cell join it, one after the other, as long as there are
+// any: where two fronts came by at about the same time, rounding would decide, and whether one
+// triangle is in a cell or not can change what is merged later. Cells stay connected, and none
+// loses its last triangle. Ends: every move shortens the rims by an edge at least.
+void pull_teeth(const Topology& topology, Cells& cells);
+
 // Divides cells in two, again and again, until the border of each is one loop but for small holes
 // of the mesh.
 void divide_rings(const Topology& topology, Cells& cells);

@@ -48,8 +48,10 @@ TEST(Bound, WhatUnrollsNeedsFewChartsAtAnyBound) {
 // Of charts with few triangles merging knows little: they are tried again once they are flat.
 TEST(Bound, CoarseMeshesTakeFewerChartsTheMoreIsTried) {
   std::size_t charts[3] = {0, 0, 0};
-  for (const Shape& shape : {torus(24, 12), noisy(icosphere(3), 0.03, 5), box(3), sphere(20, 10),
-                             noisy(torus(16, 10), 0.04, 2)}) {
+  for (const Shape& shape :
+       {torus(24, 12), noisy(icosphere(3), 0.03, 5), box(3), sphere(20, 10),
+        noisy(torus(16, 10), 0.04, 2), noisy(torus(18, 9), 0.05, 7), noisy(icosphere(3), 0.05, 9),
+        noisy(sphere(22, 12), 0.04, 3), noisy(torus(24, 10), 0.03, 4)}) {
     double seams[3];  // of fast, standard, best
     for (const ChartPreset preset : {ChartPreset::fast, ChartPreset::standard, ChartPreset::best}) {
       const ChartSet made = bounded(shape, 1.25, preset);
