@@ -72,15 +72,16 @@ bool MultigridLevels<Real>::build_levels() {
     if (levels_.size() < depth_ + 2) levels_.resize(depth_ + 2);
     Level& level = levels_[depth_];
     const std::size_t n = level.matrix.rows();
-    level.x.resize(n);
-    level.load.resize(n);
-    level.rest.resize(n);
     if (n <= direct_limit) break;
     if (!coarsening_.run(level.matrix, level.inverse_diagonal, level.prolongation,
                          levels_[depth_ + 1].matrix)) {
       return false;
     }
     if (n > large_setup) level.matrix.upper = {};
+  }
+  for (std::size_t depth = 0; depth <= depth_; ++depth) {
+    const std::size_t n = levels_[depth].matrix.rows();
+    for (Vector* v : {&levels_[depth].x, &levels_[depth].load, &levels_[depth].rest}) v->resize(n);
   }
   factorize_coarsest();
   return true;
