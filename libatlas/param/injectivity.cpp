@@ -23,7 +23,25 @@ struct Box {
 struct Edge {
   Vec2d a, b;
   std::uint32_t from, to, triangle;
+  Vec2d before;  // the border's corner before a
 };
+
+// Whether the direction from e.a to p points into the chart at that corner: strictly between those
+// to e.b and, counter-clockwise, to e.before.
+bool points_inside(const Edge& e, Vec2d p) {
+  const int after_first = orientation(e.a, e.b, p), before_last = orientation(e.a, p, e.before);
+  const int turn = orientation(e.a, e.b, e.before);
+  if (turn > 0) return after_first > 0 && before_last > 0;
+  if (turn < 0) return after_first > 0 || before_last > 0;
+  return after_first > 0;
+}
+
+// Of two border vertices that have come to lie in one point: whether their triangles overlap there.
+// They fill the corners, so these must be apart.
+bool corners_overlap(const Edge& e, const Edge& f) {
+  return points_inside(e, f.b) || points_inside(e, f.before) || points_inside(f, e.b) ||
+         points_inside(f, e.before);
+}
 
 double distance(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
   const glm::dvec2 d = b - a;
@@ -141,7 +159,8 @@ class BorderTree {
   void test(const Edge& e, const Edge& f) {
     if (full()) return;
     const BorderCrossing pair{{e.from, e.to}, {f.from, f.to}, e.triangle, f.triangle};
-    if (segments_cross(e.a, e.b, f.a, f.b)) {
+    const bool at_corner = e.a == f.a && e.from != f.from && corners_overlap(e, f);
+    if (at_corner || segments_cross(e.a, e.b, f.a, f.b)) {
       result_.crossings.push_back(pair);
     } else if (options_.clearance > 0 && e.triangle != f.triangle &&
                result_.close.size() < options_.max_crossings && gap(e, f) < options_.clearance) {
@@ -200,9 +219,14 @@ void param::check_border(const HalfEdges& half_edges, const HalfEdges::Border& b
   out.loops = static_cast<std::uint32_t>(border.loop_start.size() - 1);
   std::vector<Edge> edges;
   edges.reserve(border.half_edges.size());
-  for (const std::uint32_t h : border.half_edges) {
-    const std::uint32_t a = half_edges.from(h), b = half_edges.to(h);
-    edges.push_back({uvs[a], uvs[b], a, b, HalfEdges::triangle(h)});
+  for (std::uint32_t l = 0; l < out.loops; ++l) {
+    std::uint32_t before = half_edges.from(border.half_edges[border.loop_start[l + 1] - 1]);
+    for (std::uint32_t i = border.loop_start[l]; i < border.loop_start[l + 1]; ++i) {
+      const std::uint32_t h = border.half_edges[i];
+      const std::uint32_t a = half_edges.from(h), b = half_edges.to(h);
+      edges.push_back({uvs[a], uvs[b], a, b, HalfEdges::triangle(h), uvs[before]});
+      before = a;
+    }
   }
   BorderTree(edges, options, out).find_pairs();
   if (!out.crossings.empty() || !out.flipped.empty()) return;

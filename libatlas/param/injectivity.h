@@ -2,10 +2,11 @@
 //
 // Theorem used. Let every triangle be positively oriented in uv. The number of triangles that cover
 // a point off all edges is then the degree of the map there, and the degree is the winding number
-// of the border's image about the point. If the border's loops are simple, do not meet, and exactly
-// one turns counter-clockwise, that number is 0 or 1 everywhere: no two triangles overlap. For a
-// disc (one loop) a simple border suffices. Interior vertices that the triangles go round twice are
-// thereby excluded as well: a neighbourhood of one would be covered twice.
+// of the border's image about the point. If the border's loops are simple, touch at most in points
+// where their corners are apart, and exactly one turns counter-clockwise, that number is 0 or 1
+// everywhere: no two triangles overlap. For a disc (one loop) a simple border suffices. Interior
+// vertices that the triangles go round twice are thereby excluded as well: a neighbourhood of one
+// would be covered twice.
 #pragma once
 
 #include <array>
@@ -36,7 +37,8 @@ struct Injectivity {
   bool injective = false;
   std::vector<std::uint32_t> flipped;  // triangles whose orientation in uv is not positive (exact)
   std::vector<BorderCrossing>
-      crossings;            // pairs of border edges that cross, or stretch along each other
+      crossings;            // pairs of border edges that cross, stretch along each other, or begin
+                            // at two vertices in one point, around which triangles overlap
   std::uint32_t loops = 0;  // border loops
   bool nested =
       false;  // no crossing, yet not exactly one loop counter-clockwise: folded over itself
@@ -47,7 +49,7 @@ struct Injectivity {
 
 // uvs.size() == positions.size(). The mesh's border must be a manifold: each border vertex has one
 // outgoing border edge (else `nested` is set when the exact walk meets it). O(n log n) for borders
-// that do not cross themselves everywhere. Two borders that meet in coincident end points only do
+// that do not cross themselves everywhere. Two borders that touch in coincident end points only do
 // not cross.
 Injectivity check_injectivity(const LocalMesh& mesh, std::span<const Vec2d> uvs,
                               const InjectivityOptions& options = {});
