@@ -125,7 +125,7 @@ class Seeder {
   }
 
   void sample_piece(std::uint32_t first, std::uint32_t last, std::uint32_t budget) {
-    add_seed(first);
+    add_seed(first + static_cast<std::uint32_t>(options_.first_seed * (last - first)));
     using Entry = std::pair<std::uint32_t, std::uint32_t>;
     if (budget > 1) {
       std::priority_queue<Entry> farthest;

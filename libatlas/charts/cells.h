@@ -19,6 +19,7 @@ struct CellOptions {
   // Cells are added, beyond those numbers, until no grain leans more than this to its cell's seed.
   double max_lean_degrees = 55;
   std::size_t mesh_triangles = 0;  // of the mesh that the topology is a part of; 0: it is all
+  double first_seed = 0;           // where the first one lies, in [0, 1): other cells, as good
 };
 
 struct Cells {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <span>
+#include <utility>
 
 #include "libatlas/charts/cells.h"
 #include "libatlas/charts/coarse.h"
@@ -17,10 +19,6 @@ namespace atlas {
 namespace {
 
 using Frame = std::array<glm::dvec3, 2>;
-
-// Narrower bounds than 1.025 merge no less: below it a fan's own error, of a mesh that unrolls
-// exactly, is larger than what merging would allow (cylinders at 1.001 came out in 9 to 39 charts;
-// from 0.1 on in one or two, while spheres need a thirtieth more).
 
 // The map from space to the plane that a cell's coarse flattening stands for: the rotation that
 // best takes its fan to its flat coordinates.
@@ -56,42 +54,85 @@ Frame transport(const Frame& frame, const glm::dvec3& a, const glm::dvec3& b) {
   return {turn(frame[0]), turn(frame[1])};
 }
 
-// What was merged: a mesh, or pieces of it.
-struct Merged {
+// One way to cut a mesh, or pieces of one, into charts.
+struct Attempt {
+  Cells cells;
+  CoarseMesh coarse;
+  MergeResult merged;
+};
+
+// What of an attempt is taken.
+struct Chosen {
   const Topology& topology;
   std::span<const std::uint32_t> triangles;  // 1 a triangle: its name in the mesh; empty: its own
-  const Cells& cells;
-  const CoarseMesh& coarse;
-  const MergeResult& result;
+  const Attempt& attempt;
+  std::span<const std::uint8_t> attempt_of_piece;  // 1 a component; empty: all pieces are taken
+  std::uint8_t number = 0;                         // of the attempt
 
   std::uint32_t name(std::uint32_t t) const { return triangles.empty() ? t : triangles[t]; }
+  bool takes(std::uint32_t t) const {
+    const std::uint32_t piece = topology.component[t];
+    return attempt.cells.of_triangle[t] != kNoIndex &&
+           (attempt_of_piece.empty() || attempt_of_piece[piece] == number);
+  }
 };
 
 // Triangle labels (from `first_label`), frames and the seams of charts with themselves.
-void spread_to_triangles(const Merged& merged, std::uint32_t first_label, Segmentation& result) {
-  const Topology& topology = merged.topology;
-  const CoarseMesh& coarse = merged.coarse;
+void spread_to_triangles(const Chosen& chosen, std::uint32_t first_label, Segmentation& result) {
+  const Topology& topology = chosen.topology;
+  const auto& [cells, coarse, merged] = chosen.attempt;
   Partition& partition = result.partition;
   std::vector<Frame> frames(coarse.cells.size());
-  for (std::uint32_t k = 0; k < frames.size(); ++k) {
-    frames[k] = cell_frame(coarse, merged.result.uv, k);
-  }
+  for (std::uint32_t k = 0; k < frames.size(); ++k) frames[k] = cell_frame(coarse, merged.uv, k);
   for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
-    const std::uint32_t k = merged.cells.of_triangle[t];
-    if (k == kNoIndex) continue;
-    partition.chart[merged.name(t)] = first_label + merged.result.chart_of_cell[k];
+    if (!chosen.takes(t)) continue;
+    const std::uint32_t k = cells.of_triangle[t];
+    partition.chart[chosen.name(t)] = first_label + merged.chart_of_cell[k];
     const Frame frame =
         transport(frames[k], to_glm(coarse.cells[k].normal), to_dvec(topology.normals[t]));
-    result.frames[merged.name(t)] = {from_glm(glm::vec3(frame[0])), from_glm(glm::vec3(frame[1]))};
+    result.frames[chosen.name(t)] = {from_glm(glm::vec3(frame[0])), from_glm(glm::vec3(frame[1]))};
   }
   for (std::size_t i = 0; i < coarse.rim_half_edges.size(); ++i) {
     const std::uint32_t h = coarse.rim_half_edges[i], o = topology.opposite[h];
-    if (o == kNoIndex || merged.result.joined[coarse.rim_arcs[i]]) continue;
-    const std::uint32_t a = merged.name(h / 3), b = merged.name(o / 3);
+    if (o == kNoIndex || merged.joined[coarse.rim_arcs[i]] || !chosen.takes(h / 3)) continue;
+    const std::uint32_t a = chosen.name(h / 3), b = chosen.name(o / 3);
     if (partition.chart[a] != partition.chart[b]) continue;
     partition.seams[a] |= static_cast<std::uint8_t>(1u << (h % 3));
     partition.seams[b] |= static_cast<std::uint8_t>(1u << (o % 3));
   }
+}
+
+// Which cell lies in which component.
+std::vector<std::uint32_t> pieces_of(const Topology& topology, const Cells& cells) {
+  std::vector<std::uint32_t> piece(cells.count, kNoIndex);
+  for (std::uint32_t t = 0; t < cells.of_triangle.size(); ++t) {
+    if (cells.of_triangle[t] != kNoIndex) piece[cells.of_triangle[t]] = topology.component[t];
+  }
+  return piece;
+}
+
+// What an attempt made of a piece; the less the better.
+struct Cost {
+  std::uint32_t charts = 0;
+  double seams = 0;  // length
+  auto operator<=>(const Cost&) const = default;
+};
+
+std::vector<Cost> costs(const Topology& topology, const Attempt& attempt) {
+  const auto& [cells, coarse, merged] = attempt;
+  const std::vector<std::uint32_t> piece = pieces_of(topology, cells);
+  std::vector<Cost> costs(topology.component_count);
+  std::vector<std::uint8_t> counted(cells.count, 0);
+  for (std::uint32_t k = 0; k < cells.count; ++k) {
+    if (piece[k] == kNoIndex || std::exchange(counted[merged.chart_of_cell[k]], 1)) continue;
+    ++costs[piece[k]].charts;
+  }
+  for (std::size_t i = 0; i < coarse.arcs.size(); ++i) {
+    const CoarseArc& arc = coarse.arcs[i];
+    if (merged.joined[i] || arc.cell[1] == kNoIndex) continue;
+    costs[piece[arc.cell[0]]].seams += arc.length;
+  }
+  return costs;
 }
 
 // Meshes of small pieces are segmented so many triangles at a time: 10^5 pieces would need much
@@ -99,6 +140,9 @@ void spread_to_triangles(const Merged& merged, std::uint32_t first_label, Segmen
 constexpr std::size_t kTrianglesAtATime = 50000, kSmallPiece = 5000;
 
 constexpr double kMostRings = 8;  // wider bands are dear on fine meshes
+
+// Attempts of ChartPreset::best, each from other cells.
+constexpr int kBestAttempts = 4;
 
 class Segmenter {
  public:
@@ -142,32 +186,66 @@ class Segmenter {
     }
   }
 
-  // `triangles` as in Merged.
+  // `triangles` as in Chosen.
   void segment(const Topology& topology, std::span<const std::uint32_t> triangles) {
+    const int count = options_.preset == ChartPreset::best ? kBestAttempts : 1;
+    std::vector<Attempt> attempts;
+    for (int i = 0; i < count; ++i) {
+      attempts.push_back(attempt(topology, double(i) / count));
+      if (context_.cancelled()) return;
+    }
+    const std::vector<std::uint8_t> attempt_of_piece = choose(topology, attempts);
+    for (std::uint8_t i = 0; i < count; ++i) {
+      const auto& [cells, coarse, merged] = attempts[i];
+      spread_to_triangles({topology, triangles, attempts[i], attempt_of_piece, i}, labels_,
+                          result_);
+      add_rings(cells, merged);
+      labels_ += static_cast<std::uint32_t>(coarse.cells.size());
+      axes_.insert(axes_.end(), merged.chart_axis.begin(), merged.chart_axis.end());
+    }
+  }
+
+  // Incomplete if the context is cancelled.
+  Attempt attempt(const Topology& topology, double first_seed) {
     Stopwatch watch(cpu_seconds);
+    Attempt made;
     CellOptions options;
     options.mesh_triangles = std::max(topology_.whole_triangles, topology_.triangle_count());
-    Cells cells = grow_cells(topology, options, context_);
-    if (context_.cancelled()) return;
-    if (cone_ > 0) split_by_cone(topology, cone_, cells);
+    options.first_seed = first_seed;
+    made.cells = grow_cells(topology, options, context_);
+    if (context_.cancelled()) return made;
+    if (cone_ > 0) split_by_cone(topology, cone_, made.cells);
     result_.timing.cells_cpu += watch.lap();
-    const CoarseMesh coarse = build_coarse(topology, options_.crease_degrees, cells);
+    made.coarse = build_coarse(topology, options_.crease_degrees, made.cells);
     result_.timing.coarse_cpu += watch.lap();
     MergeOptions merge = merge_options(options_.max_stretch);
     ExtremeNormals normals;
     if (cone_ > 0) {
       // Ends are kept clear of the limit: what is measured in the end is rounded otherwise.
-      normals = extreme_normals(topology, cells);
+      normals = extreme_normals(topology, made.cells);
       merge.cone = std::max(1e-9, cone_ - 2e-5);
       merge.cell_normals = &normals;
     }
-    const MergeResult merged = merge_cells(coarse, piece_of(topology, cells), merge, context_);
-    if (context_.cancelled()) return;
-    spread_to_triangles({topology, triangles, cells, coarse, merged}, labels_, result_);
-    add_rings(cells, merged);
-    labels_ += static_cast<std::uint32_t>(coarse.cells.size());
-    axes_.insert(axes_.end(), merged.chart_axis.begin(), merged.chart_axis.end());
+    made.merged = merge_cells(made.coarse, pieces_of(topology, made.cells), merge, context_);
     result_.timing.merging_cpu += watch.lap();
+    return made;
+  }
+
+  // The best attempt of each piece. Empty if there is only one.
+  static std::vector<std::uint8_t> choose(const Topology& topology,
+                                          const std::vector<Attempt>& attempts) {
+    if (attempts.size() < 2) return {};
+    std::vector<Cost> least = costs(topology, attempts[0]);
+    std::vector<std::uint8_t> best(least.size(), 0);
+    for (std::uint8_t i = 1; i < attempts.size(); ++i) {
+      const std::vector<Cost> own = costs(topology, attempts[i]);
+      for (std::size_t piece = 0; piece < own.size(); ++piece) {
+        if (!(own[piece] < least[piece])) continue;
+        least[piece] = own[piece];
+        best[piece] = i;
+      }
+    }
+    return best;
   }
 
   // Seams are straightened as far as cells are uneven: half a cell's width, to each side.
@@ -183,14 +261,6 @@ class Segmenter {
       const double a_cell = static_cast<double>(triangles[k]) / std::max(cell_count[k], 1u);
       rings_.push_back(static_cast<std::uint8_t>(std::min(std::sqrt(a_cell / 3), kMostRings)));
     }
-  }
-
-  static std::vector<std::uint32_t> piece_of(const Topology& topology, const Cells& cells) {
-    std::vector<std::uint32_t> piece(cells.count, kNoIndex);
-    for (std::uint32_t t = 0; t < cells.of_triangle.size(); ++t) {
-      if (cells.of_triangle[t] != kNoIndex) piece[cells.of_triangle[t]] = topology.component[t];
-    }
-    return piece;
   }
 
   const Topology& topology_;

@@ -68,5 +68,21 @@ TEST(Bound, CoarseMeshesTakeFewerChartsTheMoreIsTried) {
   EXPECT_LT(charts[2], charts[1]);
 }
 
+TEST(Bound, OfSeveralAttemptsTheBestIsTakenPieceByPiece) {
+  std::size_t alone[2] = {0, 0};  // of standard, best
+  Shape all;
+  double place = 0;
+  for (const Shape& shape :
+       {noisy(torus(96, 48), 0.02, 1), noisy(icosphere(5), 0.01, 2), noisy(sphere(96, 60), 0.01, 3),
+        noisy(torus(80, 60, 1, 0.5), 0.02, 4)}) {
+    alone[0] += bounded(shape, 1.25).charts.size();
+    alone[1] += bounded(shape, 1.25, ChartPreset::best).charts.size();
+    all = all.positions.empty() ? shape : together(all, moved(shape, 1, {place += 4, 0, 0}));
+  }
+  EXPECT_LT(alone[1], alone[0]);
+  // Together they can be fewer: one may have the work of absorbing that another leaves.
+  EXPECT_LE(bounded(all, 1.25, ChartPreset::best).charts.size(), alone[1]);
+}
+
 }  // namespace
 }  // namespace atlas::test
