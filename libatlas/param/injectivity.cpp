@@ -174,26 +174,18 @@ class BorderTree {
   std::vector<Box> boxes_;
 };
 
-// The turning sense of a simple closed polygon, exactly: the turn at its lexicographically lowest
-// corner.
+// The turning sense of a closed polygon that may touch itself in corners, exactly: the turn at its
+// lexicographically lowest corner. Where several of its corners lie there, they are apart, and the
+// outermost edges belong to a turn to the right if there is one: the polygon goes round a hole.
 int turning_sense(std::span<const Edge> loop) {
-  std::size_t low = 0;
   const auto before = [](Vec2d a, Vec2d b) { return a.x != b.x ? a.x < b.x : a.y < b.y; };
-  for (std::size_t i = 1; i < loop.size(); ++i) {
-    if (before(loop[i].a, loop[low].a)) low = i;
+  Vec2d lowest = loop[0].a;
+  for (const Edge& e : loop) lowest = before(e.a, lowest) ? e.a : lowest;
+  int sense = 1;
+  for (const Edge& e : loop) {
+    if (e.a == lowest) sense = std::min(sense, orientation(e.before, e.a, e.b));
   }
-  const Vec2d corner = loop[low].a;
-  const std::size_t n = loop.size();
-  for (std::size_t i = 1; i < n; ++i) {
-    const Vec2d next = loop[(low + i) % n].a;
-    if (next == corner) continue;
-    for (std::size_t j = 1; j < n; ++j) {
-      const Vec2d previous = loop[(low + n - j) % n].a;
-      if (previous == corner) continue;
-      return orientation(previous, corner, next);
-    }
-  }
-  return 0;
+  return sense;
 }
 
 void check_triangles(const LocalMesh& mesh, std::span<const Vec2d> uvs, double clearance,

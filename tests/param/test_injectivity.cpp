@@ -237,6 +237,33 @@ TEST(Injectivity, AcceptsARingWithAHole) {
   EXPECT_TRUE(result.injective);
 }
 
+TEST(Injectivity, AcceptsAHoleThatTouchesItself) {
+  // Inside a square frame a thorn reaches from the right side of the hole into its lowest corner:
+  // of the two corners of the hole's border there, one turns like a hole's and one like an
+  // outline's.
+  Disc frame;
+  const auto vertex = [](std::uint32_t x, std::uint32_t y) { return 6 * y + x; };
+  for (int i = 0; i < 36; ++i) frame.positions.push_back({double(i % 6), double(i / 6), 0});
+  frame.positions.push_back(frame.positions[vertex(1, 1)]);
+  for (std::uint32_t x = 0; x < 5; ++x) {
+    for (std::uint32_t y = 0; y < 5; ++y) {
+      if (x % 4 != 0 && y % 4 != 0) continue;
+      const std::uint32_t a = vertex(x, y), b = vertex(x + 1, y), c = vertex(x + 1, y + 1);
+      frame.triangles.push_back({a, b, c});
+      frame.triangles.push_back({a, c, vertex(x, y + 1)});
+    }
+  }
+  for (std::size_t at = 0; at <= frame.triangles.size(); at += 4) {
+    Disc d = frame;
+    d.triangles.insert(d.triangles.begin() + std::ptrdiff_t(at), {36, vertex(4, 2), vertex(4, 3)});
+    const Injectivity result = check_injectivity(d.view(), drop_z(d));
+    EXPECT_EQ(result.loops, 2u);
+    EXPECT_TRUE(result.crossings.empty());
+    EXPECT_TRUE(testing::injective_by_pairs(d.view(), drop_z(d)));
+    EXPECT_TRUE(result.injective) << "thorn before triangle " << at;
+  }
+}
+
 TEST(Injectivity, DecidesTheLastDigit) {
   Disc d;
   d.positions.assign(3, {});
