@@ -36,8 +36,10 @@ TriangleStretch measure_triangle(const LocalMesh& mesh, std::span<const Vec2d> u
   return out;
 }
 
+// Infinite where the scale is 0, too: 0 times infinity must not enter what is sorted.
 float stretch(const TriangleStretch& t, double scale) {
-  return static_cast<float>(std::max(t.s1 * scale, 1 / (t.s2 * scale)));
+  const double worst = std::max(t.s1 * scale, 1 / (t.s2 * scale));
+  return std::isnan(worst) ? infinity : static_cast<float>(worst);
 }
 
 }  // namespace

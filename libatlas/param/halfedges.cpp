@@ -18,17 +18,28 @@ void HalfEdges::build(const LocalMesh& mesh) {
   found_.assign(count, none);
   for (std::uint32_t h = 0; h < count; ++h) {
     if (found_[h] != none) continue;
-    const std::uint32_t a = from(h), b = to(h);
-    for (std::uint32_t i = b == 0 ? 0 : first_[b - 1]; i < first_[b]; ++i) {
-      const std::uint32_t g = out_[i];
-      if (found_[g] == none && to(g) == a && g != h) {
-        found_[h] = g;
-        found_[g] = h;
-        break;
-      }
-    }
+    const std::uint32_t g = find_opposite(h);
+    if (g == none) continue;
+    found_[h] = g;
+    found_[g] = h;
   }
   opposite_ = found_;
+}
+
+// Among the triangles of its end or of its start, whichever has fewer: hubs would take quadratic
+// time.
+std::uint32_t HalfEdges::find_opposite(std::uint32_t h) const {
+  const std::uint32_t a = from(h), b = to(h);
+  const auto outgoing = [&](std::uint32_t v) {
+    const std::uint32_t begin = v == 0 ? 0 : first_[v - 1];
+    return std::span(out_).subspan(begin, first_[v] - begin);
+  };
+  const bool at_start = outgoing(a).size() < outgoing(b).size();
+  for (const std::uint32_t o : outgoing(at_start ? a : b)) {
+    const std::uint32_t g = at_start ? next(next(o)) : o;
+    if (found_[g] == none && from(g) == b && to(g) == a && g != h) return g;
+  }
+  return none;
 }
 
 void HalfEdges::border(Border& out) const {

@@ -15,8 +15,8 @@ class HalfEdges {
  public:
   static constexpr std::uint32_t none = 0xffffffff;
 
-  // Takes the mesh's opposites, or finds them in O(n). Where more than two triangles meet in an
-  // edge, pairs are made in order of id.
+  // Takes the mesh's opposites, or finds them in O(n), hubs included. Where more than
+  // two triangles meet in an edge, pairs are made in order of id.
   void build(const LocalMesh& mesh);
 
   std::uint32_t opposite(std::uint32_t h) const { return opposite_[h]; }
@@ -41,6 +41,8 @@ class HalfEdges {
   void border(Border& out) const;
 
  private:
+  std::uint32_t find_opposite(std::uint32_t h) const;
+
   std::span<const std::array<std::uint32_t, 3>> triangles_;
   std::span<const std::uint32_t> opposite_;
   std::vector<std::uint32_t> found_, first_, out_;

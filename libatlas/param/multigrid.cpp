@@ -252,7 +252,7 @@ auto MultigridLevels<Real>::correct(const MultigridAccuracy& accuracy, double un
   for (int step = 0;; ++step) {
     cycle(0);
     const double now = unit * unit * inner<Real>(residual, levels_[0].x);
-    if (std::isnan(now)) return Outcome::failed;
+    if (!(now >= 0)) return Outcome::failed;  // NaN, or the cycle is not definite
     if (now <= progress.goal) return Outcome::done;
     if (progress.first) progress.goal = std::max(progress.goal, accuracy.share * now);
     progress.first = false;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -120,6 +121,19 @@ TEST(Distortion, CountsFlippedAndDegenerate) {
   EXPECT_EQ(m.degenerate, 1u);
   EXPECT_TRUE(std::isinf(stretch[1]));
   EXPECT_TRUE(std::isinf(stretch[2]));
+}
+
+TEST(Distortion, CollapsedToALineIsInfinite) {
+  // No scale fits. Some triangles keep a length, others are a point.
+  std::vector<TriangleStretch> triangles(1000);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    triangles[t].area = 1 + double(t % 7);
+    triangles[t].s1 = std::numeric_limits<float>::infinity();
+    triangles[t].s2 = t % 3 == 0 ? triangles[t].s1 : 1;
+  }
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(summarize_distortion(triangles).stretch_999, infinity);
+  EXPECT_EQ(summarize_distortion(triangles).stretch_linf, infinity);
 }
 
 TEST(Distortion, PartsAddUpToTheWhole) {

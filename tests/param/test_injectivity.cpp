@@ -322,5 +322,21 @@ TEST(Injectivity, ManyBorderEdgesAreFast) {
   EXPECT_TRUE(check_injectivity(d.view(), drop_z(d)).injective);
 }
 
+TEST(Injectivity, AHubIsFast) {
+  // A fan of 4 * 10^5 triangles: to look for opposites among all of its hub's triangles would take
+  // a minute.
+  Disc d;
+  const std::uint32_t n = 400000;
+  d.positions = {{0, 0, 0}};
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double a = 2 * std::numbers::pi * i / n;
+    d.positions.push_back({std::cos(a), std::sin(a), 0});
+    d.triangles.push_back({0, 1 + i, 1 + (i + 1) % n});
+  }
+  const Injectivity result = check_injectivity(d.view(), drop_z(d));
+  EXPECT_EQ(result.loops, 1u);
+  EXPECT_TRUE(result.injective);
+}
+
 }  // namespace
 }  // namespace atlas
