@@ -3,11 +3,13 @@
 
 #include "benchmarks/shadows/shadow_rows.h"
 #include "benchmarks/support/work.h"
+#include "tests/support/leaks.h"
 
 namespace atlas::bench {
 namespace {
 
 TEST(Shadows, GiveErrorsAndTimes) {
+  const test::IgnoreLeaks driver;
   const Result<LoadedScene> scene = make_work("assembly:3000", {});
   ASSERT_TRUE(scene.ok());
   ShadowRunOptions options;

@@ -117,6 +117,9 @@ TEST(Threads, EveryNumberGivesTheSameFigures) {
 }
 
 TEST(Instructions, AreCountedUnderCallgrind) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "valgrind does not run programs with sanitizers";
+#endif
   if (std::system("valgrind --version >/dev/null 2>&1") != 0)
     GTEST_SKIP() << "valgrind is not installed";
   const Result<Results> counted =

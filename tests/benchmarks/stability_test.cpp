@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "benchmarks/stability/checks.h"
+#include "tests/support/leaks.h"
 
 namespace atlas::bench {
 namespace {
@@ -47,6 +48,7 @@ TEST(Stability, Blend) {
 }
 #ifdef ATLAS_BENCH_VIEW
 TEST(Stability, ShadowMaps) {
+  const test::IgnoreLeaks driver;
   expect_all_hold(check_shadow_maps);
 }
 #endif

@@ -19,6 +19,7 @@
 #include "libatlas/image/image_io.h"
 #include "tests/exporters/worlds.h"
 #include "tests/scene/temp_folder.h"
+#include "tests/support/leaks.h"
 
 namespace atlas {
 namespace {
@@ -34,12 +35,14 @@ void keep_complaint(const SoError* error, void*) {
 class Coin : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
+    const test::IgnoreLeaks coin;
     SoDB::init();
     SoError::setHandlerCallback(keep_complaint, nullptr);
   }
   void SetUp() override { complaints.clear(); }
 
   SoVRMLGroup* read(const std::filesystem::path& path) {
+    const test::IgnoreLeaks coin;
     SoInput input;
     if (!input.openFile(path.c_str())) return nullptr;
     SoVRMLGroup* root = SoDB::readAllVRML(&input);
