@@ -231,9 +231,8 @@ void check_solvers(CheckList& list, const PolarDisc& disc, Row& row) {
   half_edges.build(mesh);
   param::MultigridSolver multigrid;
   std::fill(x.begin(), x.end(), glm::dvec2(0));
-  const bool iterated =
-      multigrid.build(s.elements, half_edges, x.size()) &&
-      multigrid.solve({1e-11 * s.area(), 0, 60}, s.load, x);
+  const bool iterated = multigrid.build(s.elements, half_edges, x.size()) &&
+                        multigrid.solve({1e-11 * s.area(), 0, 60}, s.load, x);
   row.values = {{"condition", cond},
                 {"residual", left},
                 {"error", error},
