@@ -58,8 +58,8 @@ void noise(const Results& all, Document& page) {
     std::sort(spreads.begin(), spreads.end());
     text += fmt::format(
         " Noise of the CPU times, as the spread between repeats of the {} rows above 50 ms: median "
-        "{:.0f} %, largest {:.0f} %; of rows measured once take it as the same. Quality figures "
-        "have no noise: reruns give the same digits.",
+        "{:.0f} %, largest {:.0f} %; between whole runs it is more, see docs/performance.md. "
+        "Quality figures have no noise: reruns give the same digits.",
         spreads.size(), 100 * spreads[spreads.size() / 2], 100 * spreads.back());
   }
   page.paragraph(text);
