@@ -222,12 +222,11 @@ class ChartJob {
   bool stretched_widely() const {
     if (noisy() || result_.within_bound || result_.uvs.empty()) return false;
     if (chart_.triangles().size() < kManyTriangles) return false;
-    double whole = 0, beyond = 0;
-    for (const std::uint32_t t : chart_.triangles()) whole += input_.topology.areas[t];
+    double beyond = 0;
     for (const std::uint32_t t : result_.offenders) {
       beyond += input_.topology.areas[chart_.triangles()[t]];
     }
-    return beyond > kWideShare * whole;
+    return beyond > kWideShare * surface_area();
   }
 
   int links(std::uint32_t t) const {
@@ -254,11 +253,13 @@ class ChartJob {
     return divide(input_.topology, chart_, pair);
   }
 
-  double min_altitude() const {
+  double surface_area() const {
     double area = 0;
     for (const std::uint32_t t : chart_.triangles()) area += input_.topology.areas[t];
-    return kMinAltitude * std::sqrt(area);
+    return area;
   }
+
+  double min_altitude() const { return kMinAltitude * std::sqrt(surface_area()); }
 
   ParamOptions param_options(const LocalMesh& mesh) {
     const ChartOptions& options = input_.options;
@@ -330,9 +331,8 @@ class ChartJob {
           glm::distance(at(next_half_edge(h)), at(o)) > most) {
         continue;
       }
-      for (const std::uint32_t side : {own, other}) {
-        partition_.seams[side / 3] &= static_cast<std::uint8_t>(~(1u << (side % 3)));
-      }
+      partition_.close(own);
+      partition_.close(other);
       any = true;
     }
     return any;

@@ -64,7 +64,7 @@ class CutGraph {
   void close(std::uint32_t h) {
     closed_.insert(std::min(h, topology_.opposite[h]));
     for (const std::uint32_t side : {h, topology_.opposite[h]}) {
-      partition_.seams[side / 3] &= static_cast<std::uint8_t>(~(1u << (side % 3)));
+      partition_.close(side);
     }
   }
 

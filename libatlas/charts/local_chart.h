@@ -20,6 +20,9 @@ struct Partition {
   std::vector<std::uint32_t> local;  // 1 a triangle: scratch, its place in its chart's list
 
   bool seam(std::uint32_t h) const { return seams[h / 3] >> (h % 3) & 1; }
+  // Of one side; the other half-edge wants the same.
+  void cut(std::uint32_t h) { seams[h / 3] |= static_cast<std::uint8_t>(1u << (h % 3)); }
+  void close(std::uint32_t h) { seams[h / 3] &= static_cast<std::uint8_t>(~(1u << (h % 3))); }
 };
 
 // Half-edge 3 i + c belongs to the chart's i-th triangle.

@@ -134,7 +134,7 @@ void move_triangle(const Topology& topology, std::uint32_t h, Partition& partiti
   for (std::uint32_t g = 3 * t; g < 3 * t + 3; ++g) {
     if (!partition.seam(g)) continue;
     const std::uint32_t o = topology.opposite[g];
-    partition.seams[o / 3] &= static_cast<std::uint8_t>(~(1u << (o % 3)));
+    partition.close(o);
   }
   partition.seams[t] = 0;
 }
