@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <csignal>
 
 #include <memory>
 
@@ -54,6 +55,11 @@ void watch_display() {
   reinterpret_cast<Handler (*)(Handler)>(set)(on_display_lost);
   reinterpret_cast<void (*)(void*, ExitHandler, void*)>(set_exit)(connection, keep_running,
                                                                   nullptr);
+  // A write to a connection that is gone is to fail, not to end the process before they are called.
+  struct sigaction present {};
+  if (sigaction(SIGPIPE, nullptr, &present) == 0 && present.sa_handler == SIG_DFL) {
+    std::signal(SIGPIPE, SIG_IGN);
+  }
 }
 
 class GlfwWindow : public GlWindow {
