@@ -69,6 +69,7 @@ class Trial {
   bool fits_unrolled(TrialOutcome& outcome);
   bool measure_stretch(double stretch_high, TrialOutcome& outcome);
   bool descend(const TrialLimits& limits, TrialOutcome& outcome);
+  bool worth_trying(std::size_t smaller_half, const TrialLimits& limits, TrialOutcome& outcome);
   bool promising(const TrialLimits& limits, TrialOutcome& outcome);
   bool stretch_fits(const TrialLimits& limits, TrialOutcome& outcome);
   bool shape_fits(const TrialLimits& limits, double slack, TrialOutcome& outcome);
@@ -89,7 +90,8 @@ class Trial {
   std::vector<std::array<std::uint32_t, 2>> border_;
   std::vector<Vec2d> points_, hull_;
   std::vector<std::uint32_t> roots_;
-  double misfit_ = 0;  // largest distance of two glued slots, as aligned
+  bool flipped_ = false;  // a triangle, when shape_fits() last looked
+  double misfit_ = 0;     // largest distance of two glued slots, as aligned
   ParamWorkspace workspace_;
 };
 
