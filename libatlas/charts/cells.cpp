@@ -4,10 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <queue>
 
 #include "libatlas/charts/grains.h"
-#include "libatlas/charts/radix_heap.h"
 #include "libatlas/charts/rims.h"
 #include "libatlas/charts/ring_queue.h"
 #include "libatlas/core/glm_bridge.h"
@@ -26,6 +24,7 @@ constexpr std::uint32_t kFar = std::numeric_limits<std::uint32_t>::max();
 // are no better: what lies at the limit of one is as rare as two that nearly tie.)
 constexpr double kDistanceParts = 66;
 constexpr double kBetweenParts = 0.29;  // so that round values are not at a part's limit
+constexpr double kLargest = 2e9;
 constexpr float kCosineParts = 4096;
 
 // Lengths in parts of a step, the same for every unit and rotation but for a rare one at the limit.
@@ -35,7 +34,7 @@ class Ruler {
   Ruler(double area, std::size_t steps)
       : parts_(area > 0 ? kDistanceParts / std::sqrt(area / double(steps)) : 0) {}
   std::uint32_t operator()(float length) const {
-    return static_cast<std::uint32_t>(std::min(parts_ * length + kBetweenParts, 4e9));
+    return static_cast<std::uint32_t>(std::min(parts_ * length + kBetweenParts, kLargest));
   }
 
  private:
@@ -46,13 +45,7 @@ struct Visit {
   std::uint32_t key;  // distance, in a ruler's parts
   float distance;
   std::uint32_t node, seed;
-  bool operator>(const Visit& other) const {
-    if (key != other.key) return key > other.key;
-    if (node != other.node) return node > other.node;
-    return seed != other.seed ? seed > other.seed : distance > other.distance;
-  }
 };
-using Heap = RadixHeap<Visit>;
 
 // Chooses seeds among the grains.
 class Seeder {
@@ -102,47 +95,54 @@ class Seeder {
   void add_seed(std::uint32_t grain) {
     seeds.push_back(grain);
     normals.push_back(grains_.normal[grain]);
-    heap_.restart();
-    heap_.push({0, 0, grain, static_cast<std::uint32_t>(seeds.size() - 1)});
+    queue_.restart();
+    offer({0, 0, grain, static_cast<std::uint32_t>(seeds.size() - 1)});
     spread();
   }
 
+  // Of equal distances the lower seed's counts.
+  void offer(const Visit& visit) {
+    std::uint32_t &nearest = distance_[visit.node], &owner = owner_[visit.node];
+    if (visit.key > nearest || (visit.key == nearest && visit.seed >= owner)) return;
+    nearest = visit.key;
+    owner = visit.seed;
+    queue_.push(visit);
+  }
+
   void spread() {
-    while (!heap_.empty()) {
-      const Visit visit = heap_.pop();
-      if (visit.key >= distance_[visit.node]) continue;
-      distance_[visit.node] = visit.key;
-      owner_[visit.node] = visit.seed;
+    while (!queue_.empty()) {
+      const Visit visit = queue_.pop();
+      if (visit.key != distance_[visit.node] || visit.seed != owner_[visit.node]) continue;
       const glm::vec3 axis = normals[visit.seed];
       for (std::uint32_t i = grains_.first[visit.node]; i < grains_.first[visit.node + 1]; ++i) {
         const std::uint32_t next = grains_.neighbour[i];
         const float lean = 1 - glm::dot(grains_.normal[next], axis);
         const float distance = visit.distance + grains_.distance[i] * (1 + kNormalWeight * lean);
-        const std::uint32_t key = ruler_(distance);
-        if (key < distance_[next]) heap_.push({key, distance, next, visit.seed});
+        offer({std::max(ruler_(distance), visit.key), distance, next, visit.seed});
       }
     }
   }
 
   void sample_piece(std::uint32_t first, std::uint32_t last, std::uint32_t budget) {
     add_seed(first + static_cast<std::uint32_t>(options_.first_seed * (last - first)));
-    using Entry = std::pair<std::uint32_t, std::uint32_t>;
-    if (budget > 1) {
-      std::priority_queue<Entry> farthest;
-      for (std::uint32_t g = first; g < last; ++g) farthest.push({distance_[g], g});
-      for (std::uint32_t count = 1; count < budget && !farthest.empty() && !context_.cancelled();) {
-        const auto [distance, grain] = farthest.top();
-        farthest.pop();
-        if (distance_[grain] == 0) continue;
-        if (distance != distance_[grain]) {
-          farthest.push({distance_[grain], grain});
-          continue;
-        }
-        add_seed(grain);
-        ++count;
-      }
+    for (std::uint32_t count = 1; count < budget && !context_.cancelled(); ++count) {
+      const std::uint32_t grain = farthest(first, last);
+      if (distance_[grain] == 0) break;
+      add_seed(grain);
     }
     add_leaning(first, last);
+  }
+
+  // The last of those that are farthest from all seeds. A plain look at all of them: they are few,
+  // and what a priority queue must move at each seed is more.
+  std::uint32_t farthest(std::uint32_t first, std::uint32_t last) const {
+    std::int32_t most = 0;  // signed, for older processors compare no other four at once
+    for (std::uint32_t g = first; g < last; ++g) {
+      most = std::max(most, static_cast<std::int32_t>(distance_[g]));
+    }
+    while (static_cast<std::int32_t>(distance_[--last]) != most) {
+    }
+    return last;
   }
 
   // Seeds that are about equally far from all others are found in an order that rounding decides.
@@ -221,12 +221,12 @@ class Seeder {
       }
       distance_[g] = kFar;
     }
-    heap_.restart();
+    queue_.restart();
     for (std::size_t s = first_seed; s < seeds.size(); ++s) {
       const glm::vec3& normal = sums[s - first_seed].normal;
       const float length = glm::length(normal);
       if (length > 0) normals[s] = normal / length;
-      heap_.push({0, 0, seeds[s], static_cast<std::uint32_t>(s)});
+      offer({0, 0, seeds[s], static_cast<std::uint32_t>(s)});
     }
     spread();
   }
@@ -238,7 +238,7 @@ class Seeder {
   std::vector<std::uint32_t> distance_;  // in the ruler's parts
   std::vector<std::uint32_t> owner_;
   Ruler ruler_;  // of the piece at hand
-  Heap heap_;
+  RingQueue<Visit> queue_;
 };
 
 // One a piece.
