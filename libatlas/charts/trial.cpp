@@ -22,6 +22,9 @@ constexpr double kFarStretch = 2.5, kFarWithFlips = 1.2, kFarArea = 6, kNearStre
 // time that refusals took, and two that would have come within the limits. Large halves may.
 constexpr double kFoldedStart = 12, kFoldedLargeStart = 60, kFarApart = 0.3;
 constexpr std::size_t kLargeHalf = 7;  // cells
+// Halves that fit each other so closely and with so little of the energy allowed are as good as
+// descended: this spares a twelfth of all trials' time.
+constexpr double kCloseFit = 0.005, kSettledStart = 0.05;
 constexpr double kLastFall = 0.5;  // what further steps leave of energy, at least
 // A descent never changed the share of hull or rectangle that is filled by more (the same trials).
 constexpr double kShapeChange = 0.04;
@@ -204,19 +207,24 @@ bool Trial::stretch_fits(const TrialLimits& limits, TrialOutcome& outcome) {
          outcome.high_area <= limits.high_area;
 }
 
-// Whether a descent from the aligned halves may end within the limits.
-bool Trial::worth_trying(std::size_t smaller_half, const TrialLimits& limits,
-                         TrialOutcome& outcome) {
+Trial::Start Trial::judge_start(std::size_t smaller_half, const TrialLimits& limits,
+                                TrialOutcome& outcome) {
   double area = 0;
   for (const std::uint32_t k : cells_) area += mesh_.cells[k].area;
   const double allowed = area * (limits.stretch_l2 * limits.stretch_l2 - 1);
+  const double misfit = misfit_ / std::sqrt(area);
+  if (!flipped_ && misfit > kCloseFit && misfit <= kFarApart) return Start::open;
+  const bool whole = measure_stretch(limits.stretch_high, outcome);
+  if (whole && misfit <= kCloseFit && outcome.energy <= kSettledStart * allowed &&
+      outcome.high_area <= limits.high_area) {
+    return Start::settled;
+  }
   const double most = smaller_half < kLargeHalf ? kFoldedStart : kFoldedLargeStart;
-  const bool folded = flipped_ && !measure_stretch(limits.stretch_high, outcome) &&
-                      outcome.energy > most * allowed;
-  if (!folded && misfit_ <= kFarApart * std::sqrt(area)) return true;
+  if (misfit <= kFarApart && (whole || outcome.energy <= most * allowed)) return Start::open;
   // The least that ends a descent: a start says little of where it leads.
   outcome.energy = kLastFall * kFarWithFlips * allowed;
-  return false;
+  outcome.high_area = 0;
+  return Start::hopeless;
 }
 
 // Whether a descent may still end within the limits.
@@ -370,11 +378,10 @@ TrialOutcome Trial::run_joined(std::span<const std::uint32_t> first,
   }
   find_border(joined);
   if (!unrolled()) {
-    if (!shape_fits(limits, kShapeChange, outcome) ||
-        !worth_trying(std::min(first.size(), second.size()), limits, outcome) ||
-        !descend(limits, outcome)) {
-      return outcome;
-    }
+    if (!shape_fits(limits, kShapeChange, outcome)) return outcome;
+    const Start start = judge_start(std::min(first.size(), second.size()), limits, outcome);
+    if (start == Start::hopeless) return outcome;
+    if (start == Start::open && !descend(limits, outcome)) return outcome;
   }
   outcome.accepted =
       stretch_fits(limits, outcome) && shape_fits(limits, 0, outcome) && !border_crosses();

@@ -69,7 +69,9 @@ class Trial {
   bool fits_unrolled(TrialOutcome& outcome);
   bool measure_stretch(double stretch_high, TrialOutcome& outcome);
   bool descend(const TrialLimits& limits, TrialOutcome& outcome);
-  bool worth_trying(std::size_t smaller_half, const TrialLimits& limits, TrialOutcome& outcome);
+  // What a descent from the aligned halves would come to: nothing new, who knows, or no acceptance.
+  enum class Start { settled, open, hopeless };
+  Start judge_start(std::size_t smaller_half, const TrialLimits& limits, TrialOutcome& outcome);
   bool promising(const TrialLimits& limits, TrialOutcome& outcome);
   bool stretch_fits(const TrialLimits& limits, TrialOutcome& outcome);
   bool shape_fits(const TrialLimits& limits, double slack, TrialOutcome& outcome);
