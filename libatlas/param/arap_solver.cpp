@@ -276,6 +276,11 @@ bool ArapSolver::separate_borders(std::span<Vec2d> uvs) {
   return w_.separator.separate(mesh_, w_.elements, corners(), w_.relaxer, uvs);
 }
 
+void ArapSolver::settle_borders(std::span<Vec2d> uvs) {
+  wake(uvs);
+  w_.separator.settle_further(w_.relaxer, uvs);
+}
+
 IsometricResult ArapSolver::measure(std::span<const Vec2d> uvs) {
   wake(uvs);
   return measure_energy(w_.elements, uvs);

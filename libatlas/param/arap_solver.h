@@ -48,6 +48,8 @@ class ArapSolver {
   // Draws apart what overlaps a little; all triangles positive. Returns whether uvs are injective
   // now.
   bool separate_borders(std::span<Vec2d> uvs);
+  // After that: spreads the distortion that it left, further than it does itself.
+  void settle_borders(std::span<Vec2d> uvs);
   // Of the last call, if it failed: the crossings when they were fewest.
   std::span<const BorderCrossing> crossings_left() const { return w_.separator.left(); }
 

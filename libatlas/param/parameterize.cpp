@@ -199,6 +199,10 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
   if (options.local && r.crossings.size() > kMostSeparable) return;
   if (solver.separate_borders(r.uvs)) {
     finish(mesh, options, r);
+    if (!r.within_bound && r.injective) {
+      solver.settle_borders(r.uvs);
+      finish(mesh, options, r);
+    }
     const bool stretched = !r.within_bound && r.distortion.flips == 0;
     if (options.local && stretched && solver.lower_tail(kWithin * options.max_stretch, r.uvs)) {
       finish(mesh, options, r);

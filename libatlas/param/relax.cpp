@@ -154,7 +154,8 @@ glm::dvec2 Relaxer::newton_step() const {
            other * (glm::dot(other, s.gradient) / low));
 }
 
-void Relaxer::sweep() {
+double Relaxer::sweep() {
+  double gain = 0;
   for (const std::uint32_t v : vertices_) {
     load_vertex(v);
     const glm::dvec2 step = newton_step();
@@ -167,11 +168,14 @@ void Relaxer::sweep() {
     }
     const double before = energy(glm::dvec2(0));
     for (int halving = 0; halving < 12; ++halving, length *= 0.5) {
-      if (!(energy(step * length) < before)) continue;
+      const double after = energy(step * length);
+      if (!(after < before)) continue;
+      gain += before - after;
       uvs_[v] = {uvs_[v].x + length * step.x, uvs_[v].y + length * step.y};
       break;
     }
   }
+  return gain;
 }
 
 double Relaxer::least_determinant() const {
@@ -223,7 +227,12 @@ void Relaxer::pull(std::span<const Element> elements, const CornerLists& corners
   }
   gather(seeds, pull.rings);
   energy_ = Energy::symmetric_dirichlet;
-  for (int i = 0; i < pull.sweeps; ++i) sweep();
+  double best = 0;
+  for (int i = 0; i < pull.sweeps; ++i) {
+    const double gain = sweep();
+    if (gain < pull.least_gain * best) break;
+    best = std::max(best, gain);
+  }
   spring_of_.clear();
 }
 

@@ -43,6 +43,7 @@ class Relaxer {
   struct Pull {
     std::span<const Spring> springs;
     int rings, sweeps;
+    double least_gain = 0;  // ends with a sweep that gains less than this share of the best one's
   };
 
   // Draws vertices towards targets while the neighbourhood, so many rings wide, follows by the
@@ -76,7 +77,7 @@ class Relaxer {
   double triangle_energy(Energy energy, double f, double d) const;
   EnergyDerivatives triangle_derivatives(const Local& local) const;
   glm::dvec2 newton_step() const;
-  void sweep();
+  double sweep();  // returns by how much it lowers the energy
   double least_determinant() const;
   Jacobian jacobian(std::uint32_t t) const;
   bool untangle(int sweeps);

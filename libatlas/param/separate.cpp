@@ -18,6 +18,7 @@ constexpr std::size_t most_candidates =
 constexpr std::size_t few_crossings = 4;
 constexpr int patience = 3, patience_with_many = 2;
 constexpr int extra_vertices = 2;     // looked after beyond the ends of an overlap
+constexpr double usual_gain = 0.05;   // of a sweep, with which settling ends
 constexpr double gap_of_edge = 0.01;  // the gap left, as part of an edge's length
 
 // Where, from 0 to 1 along ab, the line cd meets it.
@@ -276,14 +277,14 @@ Injectivity Separator::check(std::span<const Vec2d> uvs) const {
 }
 
 // Lets the distortion of what moved spread, with the border held where it is now.
-void Separator::settle(Relaxer& relaxer, std::span<Vec2d> uvs) {
+void Separator::settle(Relaxer& relaxer, double least_gain, std::span<Vec2d> uvs) {
   constexpr int rings = 10, sweeps = 30;
   saved_.assign(uvs.begin(), uvs.end());
   std::sort(moved_.begin(), moved_.end());
   moved_.erase(std::unique(moved_.begin(), moved_.end()), moved_.end());
   springs_.clear();
   for (const std::uint32_t v : moved_) springs_.push_back({v, uvs[v]});
-  relaxer.pull(elements_, *corners_, {springs_, rings, sweeps}, uvs);
+  relaxer.pull(elements_, *corners_, {springs_, rings, sweeps, least_gain}, uvs);
   if (!simple(check(uvs))) std::copy(saved_.begin(), saved_.end(), uvs.begin());
 }
 
@@ -297,7 +298,7 @@ bool Separator::draw_until_simple(Relaxer& relaxer, std::span<Vec2d> uvs) {
   for (int round = 0; round <= rounds; ++round) {
     const Injectivity now = check(uvs);
     if (simple(now)) {
-      if (round > 0) settle(relaxer, uvs);
+      if (round > 0) settle(relaxer, usual_gain, uvs);
       return true;
     }
     if (left_.empty() || now.crossings.size() < left_.size()) left_ = now.crossings;

@@ -21,6 +21,9 @@ class Separator {
   bool separate(const LocalMesh& mesh, std::span<const Element> elements,
                 const CornerLists& corners, Relaxer& relaxer, std::span<Vec2d> uvs);
 
+  // After that, if distortion around what moved is too high: lets it spread further.
+  void settle_further(Relaxer& relaxer, std::span<Vec2d> uvs) { settle(relaxer, 0, uvs); }
+
   // Of the last call, if it failed: the crossings when they were fewest.
   std::span<const BorderCrossing> left() const { return left_; }
 
@@ -60,7 +63,7 @@ class Separator {
 
   Injectivity check(std::span<const Vec2d> uvs) const;
   bool draw_until_simple(Relaxer& relaxer, std::span<Vec2d> uvs);
-  void settle(Relaxer& relaxer, std::span<Vec2d> uvs);
+  void settle(Relaxer& relaxer, double least_gain, std::span<Vec2d> uvs);
 
   std::uint32_t next(std::uint32_t h) const { return next_[half_edges_.to(h)]; }
   std::uint32_t previous(std::uint32_t h) const { return previous_[half_edges_.from(h)]; }
