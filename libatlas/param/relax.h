@@ -77,6 +77,7 @@ class Relaxer {
   double triangle_energy(Energy energy, double f, double d) const;
   EnergyDerivatives triangle_derivatives(const Local& local) const;
   glm::dvec2 newton_step() const;
+  void wake_around(std::uint32_t v);
   double sweep();  // returns by how much it lowers the energy
   double least_determinant() const;
   Jacobian jacobian(std::uint32_t t) const;
@@ -90,6 +91,7 @@ class Relaxer {
   std::vector<std::uint32_t> vertices_,
       triangles_;  // the neighbourhood: what moves, what is touched
   std::vector<std::uint8_t> vertex_in_, triangle_in_;
+  std::vector<std::uint8_t> awake_;  // 1 a vertex: a sweep is to look at it; empty: at all
   std::vector<Local> local_;
   std::vector<std::uint32_t> spring_of_;  // 1 a vertex: 1 + its place in springs_, or 0
   std::span<const Spring> springs_;
