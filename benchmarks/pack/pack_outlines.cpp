@@ -2,9 +2,10 @@
 // a line a model:
 //   pack_outlines OBJ... [--page 2048] [--pages 1] [--padding 1] [--preset fast|default|best]
 //   [--budget S] [--effort LAYOUTS] [--repeat N] [--join] [--square]
-// Charts keep the proportions of their uvs. A single page gets the shape that packs best; with
-// --square or several pages the pages are square. CPU seconds are the least of N runs. --join packs
-// the charts of all files together, every file repeated as often as --copies says.
+// Uvs that a page of another shape than a square has squeezed get the proportions of the surface
+// back. A single page gets the shape that packs best; with --square or several pages the pages are
+// square. CPU seconds are the least of N runs. --join packs the charts of all files together, every
+// file repeated as often as --copies says.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -23,38 +24,79 @@
 namespace {
 
 using atlas::Vec2d;
+using atlas::Vec3d;
 
 struct Model {
   std::string name;
   std::vector<std::vector<Vec2d>> charts;  // 3 corners a triangle
 };
 
-// Triangles joined by common texcoord indices.
-Model read_charts(const std::filesystem::path& path) {
-  std::ifstream file(path);
+struct ObjMesh {
+  std::vector<Vec3d> positions;
   std::vector<Vec2d> uvs;
-  std::vector<std::uint32_t> corners, parent;
-  const auto root = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  std::vector<std::uint32_t> vertices, corners;  // 3 a triangle, into positions and uvs
+};
+
+ObjMesh read_obj(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  ObjMesh mesh;
   for (std::string line; std::getline(file, line);) {
     std::istringstream words(line);
     std::string word;
     words >> word;
-    if (word == "vt") {
+    if (word == "v") {
+      Vec3d p;
+      words >> p.x >> p.y >> p.z;
+      mesh.positions.push_back(p);
+    } else if (word == "vt") {
       Vec2d uv;
       words >> uv.x >> uv.y;
-      uvs.push_back(uv);
+      mesh.uvs.push_back(uv);
     } else if (word == "f") {
       while (words >> word) {
         const auto slash = word.find('/');
         if (slash == std::string::npos) break;
-        corners.push_back(static_cast<std::uint32_t>(std::stoul(word.substr(slash + 1)) - 1));
+        mesh.vertices.push_back(static_cast<std::uint32_t>(std::stoul(word) - 1));
+        mesh.corners.push_back(static_cast<std::uint32_t>(std::stoul(word.substr(slash + 1)) - 1));
       }
     }
   }
-  parent.resize(uvs.size());
+  return mesh;
+}
+
+// Gives the charts the proportions they have on the surface: u and v are stretched by the factors
+// with which the edges' squared lengths, s du² + t dv², come closest to those on the surface.
+void unsqueeze(ObjMesh& mesh) {
+  double aa = 0, ab = 0, bb = 0, ad = 0, bd = 0;
+  for (std::size_t k = 0; k + 2 < mesh.corners.size(); k += 3)
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::size_t from = k + j, to = k + (j + 1) % 3;
+      const Vec2d p = mesh.uvs[mesh.corners[from]], q = mesh.uvs[mesh.corners[to]];
+      const Vec3d x = mesh.positions[mesh.vertices[from]], y = mesh.positions[mesh.vertices[to]];
+      const double a = std::pow(q.x - p.x, 2), b = std::pow(q.y - p.y, 2);
+      const double d = std::pow(y.x - x.x, 2) + std::pow(y.y - x.y, 2) + std::pow(y.z - x.z, 2);
+      aa += a * a;
+      ab += a * b;
+      bb += b * b;
+      ad += a * d;
+      bd += b * d;
+    }
+  const double s = ad * bb - bd * ab, t = bd * aa - ad * ab;
+  if (!(s > 0) || !(t > 0)) return;
+  for (Vec2d& uv : mesh.uvs) uv.x *= std::sqrt(s / t);
+}
+
+// Triangles joined by common texcoord indices.
+Model read_charts(const std::filesystem::path& path) {
+  ObjMesh mesh = read_obj(path);
+  unsqueeze(mesh);
+  const std::vector<Vec2d>& uvs = mesh.uvs;
+  const std::vector<std::uint32_t>& corners = mesh.corners;
+  std::vector<std::uint32_t> parent(uvs.size());
+  const auto root = [&](std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
   std::iota(parent.begin(), parent.end(), 0u);
   for (std::size_t k = 0; k + 2 < corners.size(); k += 3)
     for (std::size_t j = 1; j < 3; ++j) parent[root(corners[k + j])] = root(corners[k]);

@@ -1,6 +1,7 @@
 #include "libatlas/pack/press.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -98,8 +99,6 @@ class Press {
  private:
   // The search needs outlines only as fine as its cells; exact masks come last.
   void draw() {
-    straight_ = is_straight();
-    directions_ = straight_ ? 4 : kDirections;
     const int fine = std::max(1, options_.page_size / 1024);
     const std::size_t n = options_.shapes.size();
     cell_ = std::max(1, options_.page_size / 128);
@@ -114,7 +113,7 @@ class Press {
     pieces.factor = scale_;
     pieces.padding = options_.padding;
     pieces.cell = cell_;
-    pieces.directions = directions_;
+    pieces.directions = kDirections;
     pieces_ = make_pieces(thin, pieces, context_);
   }
 
@@ -136,22 +135,6 @@ class Press {
     make_arcs(d.bodies[kFine]);
     d.bodies[kFine].center = d.bodies[kCoarse].center;
     d.bodies[kFine].radius += std::hypot(shift.x, shift.y);
-  }
-
-  // Whether the charts' outlines run along their frames, as machine parts' do: such charts lie
-  // closest when they are turned by right angles only. Of those measured they take 60 % of the
-  // length and more where this is so, and less than 30 % elsewhere.
-  bool is_straight() const {
-    constexpr double kAlong = 0.02, kShare = 0.45;
-    double all = 0, along = 0;
-    for (const ChartOutline& o : outlines_)
-      for (const ChartOutline::Edge& e : o.edges) {
-        const double x = std::abs(e.to.x - e.from.x), y = std::abs(e.to.y - e.from.y);
-        const double length = std::hypot(x, y);
-        all += length;
-        if (std::min(x, y) <= kAlong * length) along += length;
-      }
-    return along > kShare * all;
   }
 
   static constexpr double kLong = 1.2;
@@ -238,7 +221,7 @@ class Press {
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       const NestPlace& at = nest.places[i];
       if (!at.placed) continue;
-      const double angle = 2 * std::numbers::pi * at.direction / directions_;
+      const double angle = 2 * std::numbers::pi * at.direction / kDirections;
       const double c = std::cos(angle), s = std::sin(angle);
       const Vec2d o = pieces_[i].origins[at.direction], m = drawn_[i].center_of_shape();
       start.poses[i] = {{at.at.x * double(cell_) + o.x + c * m.x - s * m.y,
@@ -258,7 +241,6 @@ class Press {
     options.margin = texel * (options_.padding + 0.2 * options_.alignment);
     options.tolerance = texel * 0.5 * options_.alignment;
     options.square = !options_.free_aspect;
-    options.turn = !straight_;
     return options;
   }
 
@@ -314,28 +296,18 @@ class Press {
   // Exact masks reach up to a cell beyond the bodies. Where charts lie in each other's notches and
   // little of the page's fill is left for that, bodies with more room around them do better.
   bool settle_start(Start& s, PressedPage& best) const {
-    constexpr double kMostLost = 0.03;  // of the fill
-    struct Polish {
-      std::size_t level;
-      double more;  // room, alignments
-    };
-    // Between straight charts that lie side by side every mask takes all it can. Where they are
-    // locked into each other without turns, finer outlines can drive them apart.
-    const std::vector<Polish> polishes = straight_ ? std::vector<Polish>{{kFine, 1.2}, {kCoarse, 3}}
-                                                   : std::vector<Polish>{{kFine, 0}, {kFine, 0.8}};
-    const Start rough = s;
+    constexpr double kMostLost = 0.03;         // of the fill
+    constexpr std::array kMoreRoom{0.0, 0.8};  // alignments
     bool settled = false;
-    for (const auto& [level, more] : polishes) {
-      if (straight_) s = rough;
+    for (const double more : kMoreRoom) {
       if (s.poses.empty() || goodness(s.page) == 0) return settled;
       SqueezeOptions polish = squeeze_options(s.page, kPolish);
       polish.clearance += more * options_.alignment;
       const SqueezePage before = s.page;
-      push_together(level, polish, s);
+      push_together(kFine, polish, s);
       const bool polished = goodness(s.page) > 0;
       if (!polished) s.page = before;  // finer outlines overlap too much: as they were
-      const SqueezePage& fullest = straight_ ? rough.page : s.page;
-      const double pressed = fill(scale_, fullest.width, fullest.height);
+      const double pressed = fill(scale_, s.page.width, s.page.height);
       const PressedPage page = settle_exactly(s);
       settled = settled || page.scale > 0;
       if (fill(page) > fill(best)) take(page, best);
@@ -367,8 +339,6 @@ class Press {
   const Context& context_;
   double area_ = 0, scale_ = 1;
   std::int32_t cell_ = 1;
-  std::uint32_t directions_ = kDirections;
-  bool straight_ = false;
   std::vector<Drawn> drawn_;
   std::vector<Piece> pieces_;
 };

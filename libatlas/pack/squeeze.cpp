@@ -180,14 +180,13 @@ class Solver {
       return r.x * n.y - r.y * n.x;
     };
     const std::uint32_t i = contact.i, j = contact.j;
-    const double turning = options_.turn ? 1 : 0;
     const double wi = 1 / bodies_[i].area, li = lever(i);
-    const double ai = turning * li / bodies_[i].gyration;
+    const double ai = li / bodies_[i].gyration;
     double sum = wi * (1 + ai * li), wj = 0, aj = 0;
     if (j != kWall) {
       const double lj = lever(j);
       wj = 1 / bodies_[j].area;
-      aj = turning * lj / bodies_[j].gyration;
+      aj = lj / bodies_[j].gyration;
       sum += wj * (1 + aj * lj);
     }
     constexpr double kRelaxation = 0.6;  // neighbouring points push as well

@@ -37,7 +37,6 @@ struct SqueezeOptions {
   std::uint32_t sweeps = 2000;
   double first_step = 0.01, last_step = 0.0008;  // shares of the page's sides
   bool square = false;                           // the page is and stays square
-  bool turn = true;
 };
 
 struct SqueezePage {
