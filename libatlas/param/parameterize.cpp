@@ -81,7 +81,8 @@ bool projection_fits(const LocalMesh& mesh, std::span<const Vec2d> uvs, double b
 // What stretches as little in the mean can be unrolled, and few more steps do it exactly.
 constexpr double kUnrolls = 1 + 1e-4, kUnrolled = 1 + 2e-4;
 constexpr double kUnrollsExactly = 1 + 2e-6, kUnrolledStretch = 1.001;
-constexpr int kUnrollingFactor = 4;
+constexpr int kUnrollingRounds = 4;
+constexpr double kUnrollingFall = 0.5;  // of L2 stretch less 1, in the steps of one round
 
 // The goal of relaxing single places, as part of the bound: rounding may not cross it.
 constexpr double kWithin = 1 - 1e-4;
@@ -149,6 +150,18 @@ void turn_flips(const LocalMesh& mesh, param::ArapSolver& solver, ParamResult& r
   r.unflipped += static_cast<int>(solver.remove_flips({}, r.uvs).turned);
 }
 
+// More steps for what may unroll, as long as they change much.
+Distortion unroll(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolver& solver,
+                  Distortion now, std::span<Vec2d> uvs) {
+  for (int round = 0; round < kUnrollingRounds; ++round) {
+    const double before = now.stretch_l2 - 1;
+    solver.iterate(std::max(options.iterations, 1), uvs);
+    now = measure_distortion(mesh, uvs);
+    if (now.stretch_l2 - 1 > kUnrollingFall * before) break;
+  }
+  return now;
+}
+
 // From the solver's rotations to a finished result: flips out, then the stretch down; squeezing may
 // flip anew, hence the second round.
 void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolver& solver,
@@ -172,8 +185,7 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
     }
     if (!options.resume && now.stretch_l2 < kUnrolls && now.stretch_999 > kUnrolled &&
         now.stretch_999 <= aim) {
-      solver.iterate(kUnrollingFactor * std::max(options.iterations, 1), r.uvs);
-      now = measure_distortion(mesh, r.uvs);
+      now = unroll(mesh, options, solver, now, r.uvs);
       if (now.stretch_l2 < kUnrollsExactly) aim = std::min(aim, kUnrolledStretch);
     }
     if (now.stretch_999 <= aim) {
