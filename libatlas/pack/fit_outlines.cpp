@@ -8,6 +8,7 @@
 #include "libatlas/pack/fit_result.h"
 #include "libatlas/pack/nest.h"
 #include "libatlas/pack/shape_check.h"
+#include "libatlas/pack/straight_page.h"
 
 namespace atlas::pack {
 namespace {
@@ -293,14 +294,20 @@ void write_result(const OutlineFit& fit, const FitOptions& options, OutlineLayou
 
 Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions& options,
                                const Context& context) {
-  FitResult result;
+  FitResult result, pressed;
   const std::vector<ChartOutline> outlines = outlines_of(options.shapes, context);
-  if (fit_pressed(items, outlines, options, context, result)) return result;
+  const bool is_pressed = fit_pressed(items, outlines, options, context, pressed);
+  // `best` presses straight charts, too, where the page's shape is given; without it they would be
+  // packed by cells alone, which may have been better.
+  if (is_pressed && (options.free_aspect || !is_straight(outlines))) return pressed;
   if (context.cancelled()) return Status::cancelled();
-  OutlineFit fit(items, outlines, options, context);
+  FitOptions by_cells = options;
+  if (is_pressed) by_cells.preset = PackPreset::standard;
+  OutlineFit fit(items, outlines, by_cells, context);
   OutlineLayout best;
-  const bool found = search_scale(fit, options, context, result, best);
+  const bool found = search_scale(fit, by_cells, context, result, best);
   if (context.cancelled()) return Status::cancelled();
+  if (is_pressed && best.scale <= pressed.scale) return pressed;
   if (!found) return no_room(items.size(), options);
   if (best.scale == options.max_scale) use_fewer_pages(fit, options, result, best);
   write_result(fit, options, best, result);

@@ -12,12 +12,12 @@ namespace atlas::pack {
 bool fit_pressed(std::span<const FitItem> items, std::span<const ChartOutline> outlines,
                  const FitOptions& options, const Context& context, FitResult& result) {
   if (!worth_pressing(outlines, options)) return false;
-  // Straight charts lie side by side without being pressed; on a page of given shape the search
-  // over cells fills more than the press does.
   const bool straight = outlines.size() > 1 && is_straight(outlines);
-  if (straight && !options.free_aspect) return false;
-  PressedPage pressed = straight ? pack_straight(outlines, options, context)
-                                 : press_outlines(outlines, options, context);
+  // On a page of given shape the search over cells fills more with them than the press does.
+  if (straight && !options.free_aspect && options.preset != PackPreset::best) return false;
+  PressedPage pressed = straight && options.free_aspect
+                            ? pack_straight(outlines, options, context)
+                            : press_outlines(outlines, options, context);
   if (pressed.scale == 0 || pressed.scale > options.max_scale) return false;
   for (const FitItem& item : items) {
     const double side = std::max(item.width, item.height);

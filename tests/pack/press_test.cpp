@@ -238,6 +238,26 @@ TEST(StraightPage, ChartsLieSideBySide) {
   }
 }
 
+// `best` obeys its effort on a square page, and is never worse than the search over cells.
+TEST(StraightPage, BestIsNoWorseOnASquarePage) {
+  std::vector<std::vector<Vec2d>> bars;
+  for (int k = 0; k < 12; ++k) bars.push_back(box(60 + 17 * k, 20 + 11 * (k % 5)));
+  const test::ChartItems charts(std::move(bars));
+  FitOptions o;
+  o.page_size = 512;
+  o.padding = o.alignment = 1;
+  o.minimum_side = 0;
+  o.max_scale = 100;
+  o.shapes = charts.shapes;
+  const Result<FitResult> standard = fit_pages(charts.items, o, {});
+  o.preset = PackPreset::best;
+  o.effort = 1;
+  const Result<FitResult> best = fit_pages(charts.items, o, {});
+  ASSERT_TRUE(standard.ok() && best.ok());
+  EXPECT_GE(best->scale, standard->scale);
+  EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *best), best->pages, 1), "");
+}
+
 // Masks of whole blocks, as pages with mip levels need them.
 TEST(StraightPage, KeepsTheAlignment) {
   std::vector<std::vector<Vec2d>> bars;
