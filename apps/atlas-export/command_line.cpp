@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <map>
 #include <string>
 
+#include "apps/common/options.h"
 #include "apps/common/quantity.h"
 
 namespace atlas::app {
@@ -17,13 +17,10 @@ struct RawText {
   std::string unit = "m", texel, memory, tone = "linear";
 };
 
-template <class T>
-CLI::CheckedTransformer choices(const std::map<std::string, T>& names) {
-  return CLI::CheckedTransformer(names, CLI::ignore_case);
-}
-
 void add_input_options(CLI::App& app, ExportCommand& command, RawText& raw) {
-  app.add_option("scene", command.scene, "Scene: .obj, .ply, .gltf or .glb")->required();
+  app.add_option("scene", command.scene,
+                 "Scene: .obj, .ply, .gltf, .glb, or a .wrl or .wrz of this program")
+      ->required();
   app.add_option("-o,--output", command.options.target,
                  "World to write: .wrl, .wrz, .obj, .gltf or .glb")
       ->required();
@@ -34,23 +31,30 @@ void add_input_options(CLI::App& app, ExportCommand& command, RawText& raw) {
   app.add_option("--quantity", command.options.quantity,
                  "What the vertices carry: illuminance (reflectance still to apply) or luminance")
       ->transform(choices<Quantity>(
-          {{"illuminance", Quantity::illuminance}, {"luminance", Quantity::luminance}}));
+          {{"illuminance", Quantity::illuminance}, {"luminance", Quantity::luminance}}))
+      ->type_name("NAME")
+      ->default_str("illuminance");
   app.add_option("--up", command.options.up, "The scene's up axis: y or z")
-      ->transform(choices<Up>({{"y", Up::y}, {"z", Up::z}}));
+      ->transform(choices<Up>({{"y", Up::y}, {"z", Up::z}}))
+      ->type_name("NAME")
+      ->default_str("y");
 }
 
 void add_chart_options(CLI::App& app, ExportOptions& options) {
   app.add_option("--cone", options.charts.cone_degrees,
                  "Largest angle between a chart's axis and its normals, degrees; 0: no limit but "
                  "--max-stretch")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(within(0, 180));
   app.add_option("--max-stretch", options.charts.max_stretch,
                  "Bound on the stretch over 99.9 % of every chart")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(within(1 + 1e-6, 1e30, "above 1"));
   app.add_option("--crease", options.charts.crease_degrees,
                  "Edges sharper than this are preferred as seams, degrees")
-      ->capture_default_str();
-  app.add_flag("!--across-materials", options.charts.split_at_materials,
+      ->capture_default_str()
+      ->check(within(1e-6, 180, "above 0, at most 180"));
+  add_off_flag(app, "--across-materials", options.charts.split_at_materials,
                "Let a chart hold several materials: fewer charts, but light and texture blur "
                "into each other where they meet");
   app.add_flag("--keep-uv-charts", options.charts.keep_uv_charts,
@@ -58,67 +62,90 @@ void add_chart_options(CLI::App& app, ExportOptions& options) {
                "they stretch; flatten anew only those that are flipped, overlapping or missing");
   app.add_option("--uv-aspect", options.charts.uv_aspect,
                  "With --keep-uv-charts: width / height of the page that they were made for")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(positive());
   app.add_option("--preset", options.charts.preset, "Chart quality: fast, default or best")
       ->transform(choices<ChartPreset>({{"fast", ChartPreset::fast},
                                         {"default", ChartPreset::standard},
-                                        {"best", ChartPreset::best}}));
+                                        {"best", ChartPreset::best}}))
+      ->type_name("NAME")
+      ->default_str("default");
   app.add_flag("--charts-only", options.charts_only, "Charts and uvs on one page, no light");
 }
 
 void add_texture_options(CLI::App& app, ExportOptions& options, RawText& raw) {
   app.add_option("--atlases", options.atlases, "Largest number of atlas pages")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(within(1, 1'000'000));
   app.add_option("--atlas-size", options.atlas_size, "Largest side of a page, a power of two")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(within(64, 16384));
   app.add_option("--memory", raw.memory,
                  "Graphics memory for all pages, e.g. 800MB: sets --atlases from --atlas-size");
   app.add_option("--texel", raw.texel,
                  "Length of a texel on the real surface, e.g. 5mm; default: what the pages can "
                  "hold, within 1 to 10 mm");
-  app.add_flag("!--ignore-texture-density", options.follow_textures,
+  add_off_flag(app, "--ignore-texture-density", options.follow_textures,
                "Do not refine where the diffuse texture is finer than --texel");
   app.add_option("--threshold", options.threshold,
-                 "Textures are halved while no display value changes by more (0..1; 0: never)")
-      ->capture_default_str();
+                 "Textures are halved while no display value changes by more; 0: never")
+      ->capture_default_str()
+      ->check(within(0, 1));
   app.add_option("--min-side", options.min_side, "Halving stops at this side, texels")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(within(1, 256));
   app.add_option("--tone", raw.tone, "Tone curve: linear, reinhard, drago or reinhard-devlin")
       ->capture_default_str();
   app.add_option("--white", options.tone.white,
-                 "Scene luminance that becomes display white; default: measured");
-  app.add_option("--exposure", options.tone.exposure_stops, "Brighter (+) or darker (-), stops");
+                 "Scene luminance that becomes display white; 0: measured")
+      ->capture_default_str()
+      ->check(not_negative());
+  app.add_option("--exposure", options.tone.exposure_stops, "Brighter (+) or darker (-), stops")
+      ->capture_default_str()
+      ->check(within(-64, 64));
 }
 
 void add_output_options(CLI::App& app, ExportCommand& command) {
   ExportOptions& options = command.options;
   app.add_option("--shifts", options.shifts, "Sub-texel sample grids of the bake")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(within(1, 64));
   app.add_option("--mips", options.mip_levels,
                  "Mip levels whose lookups must not see a neighbouring chart")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(within(0, 5));
   app.add_option("--bake", options.bake_method, "least-squares, or average (as published)")
       ->transform(choices<BakeMethod>(
-          {{"least-squares", BakeMethod::least_squares}, {"average", BakeMethod::average}}));
+          {{"least-squares", BakeMethod::least_squares}, {"average", BakeMethod::average}}))
+      ->type_name("NAME")
+      ->default_str("least-squares");
   app.add_option("--packing", options.packing, "Packing effort: fast, default or best")
       ->transform(choices<PackPreset>({{"fast", PackPreset::fast},
                                        {"default", PackPreset::standard},
-                                       {"best", PackPreset::best}}));
-  app.add_flag("!--boxes", options.outlines,
+                                       {"best", PackPreset::best}}))
+      ->type_name("NAME")
+      ->default_str("default");
+  add_off_flag(app, "--boxes", options.outlines,
                "Pack the charts' boxes only; else outlines too, and the better of both is kept");
-  app.add_flag("--simplify,!--no-simplify", options.simplify,
-               "Write the coarser mesh (default: yes)");
+  add_off_flag(app, "--no-simplify", options.simplify,
+               "Write the scene's own triangles, not the coarser mesh")
+      ->excludes(app.add_flag_callback(
+          "--simplify", [] {}, "Write the coarser mesh (the default)"));
   app.add_option("--slip", options.simplify_slip,
                  "How far the coarser mesh and its texture may slip, texels")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(positive());
   app.add_flag("--exr", options.exr, "Also write scene-linear OpenEXR pages");
   app.add_option("--png-level", options.png_compression, "PNG compression, 0..9")
-      ->capture_default_str();
-  app.add_flag("!--no-error", options.measure_error, "Do not measure the pages' error");
+      ->capture_default_str()
+      ->check(within(0, 9));
+  add_off_flag(app, "--no-error", options.measure_error, "Do not measure the pages' error");
   app.add_option("--report", command.report, "Write a JSON report of every stage");
   app.add_flag("--plan", command.plan_only, "Print what would run and why, and stop");
   app.add_flag("-q,--quiet", command.quiet, "Print errors only");
-  app.add_option("--threads", command.threads, "Threads; 0: all cores")->check(CLI::Range(0, 1024));
+  app.add_option("--threads", command.threads, "Threads; 0: all cores")
+      ->check(within(0, 1024))
+      ->capture_default_str();
 }
 
 constexpr double kBytesPerTexel = 4.0 * 4 / 3;  // RGBA8 and its mip chain
@@ -144,6 +171,10 @@ std::optional<std::string> interpret(const RawText& raw, ExportCommand& command)
       return kBytesPerTexel * double(options.atlas_size) * double(options.atlas_size);
     };
     while (options.atlas_size > 64 && page() > double(*bytes)) options.atlas_size /= 2;
+    if (page() > double(*bytes))
+      return fmt::format(
+          "--memory {}: less than a single page of 64 x 64 texels takes, {:.0f} bytes", raw.memory,
+          page());
     options.atlases = std::uint32_t(std::max(1.0, double(*bytes) / page()));
   }
   return std::nullopt;
@@ -161,13 +192,9 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
   add_chart_options(app, command.options);
   add_texture_options(app, command.options, raw);
   add_output_options(app, command);
+  exit_code = parse(app, argc, argv);
+  if (exit_code >= 0) return std::nullopt;
   exit_code = 2;
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (app.exit(error) == 0) exit_code = 0;
-    return std::nullopt;
-  }
   if (const auto wrong = interpret(raw, command)) {
     fmt::print(stderr, "atlas-export: error: {}\n", *wrong);
     return std::nullopt;

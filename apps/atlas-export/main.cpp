@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include "apps/atlas-export/command_line.h"
+#include "apps/common/files.h"
 #include "apps/common/terminal.h"
-#include "libatlas/core/atomic_file.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/pipeline/export_world.h"
 
@@ -39,16 +39,38 @@ StageReport reading_stage(const LoadedScene& loaded, double cpu, double wall) {
   return stage;
 }
 
+// A world that is exported again brings textures that have the names of the new pages.
+Status check_textures_stay(const Scene& scene, const std::filesystem::path& target) {
+  const std::string pages = safe_file_name(target.stem().string()) + "_";
+  const auto folder = target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
+  for (const Texture& texture : scene.textures) {
+    const std::string name = texture.path.stem().string();
+    const bool page = name.size() > pages.size() && name.starts_with(pages) &&
+                      name.find_first_not_of("0123456789", pages.size()) == std::string::npos;
+    std::error_code error;
+    if (page && std::filesystem::equivalent(folder / texture.path.filename(), texture.path, error))
+      return {ErrorCode::bad_option,
+              fmt::format("{}: its pages would overwrite {}, a texture of the scene (give the "
+                          "output another name)",
+                          target.string(), texture.path.string())};
+  }
+  return {};
+}
+
 Status run(const app::ExportCommand& command, app::Terminal& terminal) {
   if (Status s = check_options(command.options); !s.ok()) return s;
-  if (Status s = check_writable(command.options.target); !s.ok()) return s;
-  if (!command.report.empty()) {
-    if (Status s = check_writable(command.report); !s.ok()) return s;
-  }
+  if (Status s = app::check_output(command.options.target,
+                                   {command.scene, command.read.illumination_file, command.report});
+      !s.ok())
+    return s;
+  if (Status s = app::check_output(command.report, {command.scene, command.read.illumination_file});
+      !s.ok())
+    return s;
   const Context context = terminal.context(command.threads);
   const double cpu = cpu_seconds(), wall = wall_seconds();
   Result<LoadedScene> loaded = read_scene(command.scene, command.read, context);
   if (!loaded.ok()) return loaded.status();
+  if (Status s = check_textures_stay(loaded->scene, command.options.target); !s.ok()) return s;
   for (const std::string& line : loaded->defects.lines()) terminal.line("left out: " + line);
   const ExportPlan plan = make_plan(loaded->scene, command.options);
   if (command.plan_only) {

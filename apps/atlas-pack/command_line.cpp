@@ -1,22 +1,26 @@
 #include "apps/atlas-pack/command_line.h"
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <map>
+
+#include "apps/common/options.h"
 
 namespace atlas::app {
 namespace {
 
 // "2048x1024" or "2048"; "2048x0" is a strip.
 std::string parse_page(const std::string& text, Extent& page) {
-  int w = 0, h = 0;
+  constexpr double kMost = 1 << 30;
+  double w = 0, h = 0;  // whatever their digits, never out of range
   char x = 0, rest = 0;
-  if (std::sscanf(text.c_str(), "%d%c%d%c", &w, &x, &h, &rest) == 3 && x == 'x' && w >= 0 && h >= 0)
-    page = {w, h};
-  else if (std::sscanf(text.c_str(), "%d%c", &w, &rest) == 1 && w > 0)
-    page = {w, w};
-  else
-    return "expected WIDTHxHEIGHT, e.g. 2048x2048 (height 0: as low as possible)";
+  if (std::sscanf(text.c_str(), "%lf%c", &w, &rest) == 1)
+    h = w > 0 ? w : -1;
+  else if (std::sscanf(text.c_str(), "%lf%c%lf%c", &w, &x, &h, &rest) != 3 || x != 'x')
+    h = -1;
+  const auto side = [](double s) { return s >= 0 && s <= kMost && s == std::floor(s); };
+  if (!side(w) || !side(h))
+    return "'" + text + "' must be WIDTHxHEIGHT, e.g. 2048x2048 (height 0: as low as possible)";
+  page = {static_cast<std::int32_t>(w), static_cast<std::int32_t>(h)};
   return {};
 }
 
@@ -27,17 +31,23 @@ std::string parse_seconds(const std::string& text, double& seconds) {
   const std::string unit = end;
   const std::map<std::string, double> units{
       {"", 1}, {"s", 1}, {"ms", 1e-3}, {"m", 60}, {"min", 60}};
-  if (end == text.c_str() || !units.count(unit) || !(value >= 0))
-    return "expected a duration such as 1s, 500ms or 2m";
+  if (end == text.c_str() || !units.count(unit) || !(value >= 0 && value < 1e9))
+    return "'" + text + "' must be a duration such as 1s, 500ms or 2m";
   seconds = value * units.at(unit);
   return {};
 }
 
 void add_page_options(CLI::App& app, PackCommand& c) {
-  app.add_option("--padding", c.options.padding, "Free texels between items");
-  app.add_option("--border", c.options.border, "Free texels along the page's edges");
-  app.add_option("--align", c.options.alignment,
-                 "Items begin at multiples of this (4 for BC/ASTC)");
+  constexpr int kMost = 1 << 20;
+  app.add_option("--padding", c.options.padding, "Free texels between items")
+      ->capture_default_str()
+      ->check(within(0, kMost));
+  app.add_option("--border", c.options.border, "Free texels along the page's edges")
+      ->capture_default_str()
+      ->check(within(0, kMost));
+  app.add_option("--align", c.options.alignment, "Items begin at multiples of this (4 for BC/ASTC)")
+      ->capture_default_str()
+      ->check(within(1, kMost));
   app.add_flag("--pot", c.options.power_of_two, "Page sides are powers of two");
   app.add_flag("--square", c.options.square, "Square pages");
   app.add_flag("--crop", c.options.crop, "Cut pages to what is used");
@@ -47,7 +57,9 @@ void add_effort_options(CLI::App& app, PackCommand& c) {
   const std::map<std::string, PackPreset> presets{
       {"fast", PackPreset::fast}, {"default", PackPreset::standard}, {"best", PackPreset::best}};
   app.add_option("--preset", c.options.preset, "fast, default or best")
-      ->transform(CLI::CheckedTransformer(presets));
+      ->transform(choices(presets))
+      ->type_name("NAME")
+      ->default_str("default");
   app.add_option_function<std::string>(
          "--budget",
          [&c](const std::string& t) {
@@ -57,11 +69,17 @@ void add_effort_options(CLI::App& app, PackCommand& c) {
       ->type_name("TIME")
       ->description("Time for --preset best, e.g. 1s or 500ms (mesh: on one page)");
   app.add_option(
-      "--effort", c.options.effort,
-      "Layouts tried at most by --preset best; with it results repeat exactly (mesh: on one "
-      "page)");
-  app.add_option("--seed", c.options.seed, "Seed of --preset best");
-  app.add_option("--threads", c.threads, "Threads; 0: all");
+         "--effort", c.options.effort,
+         "Layouts tried at most by --preset best; with it results repeat exactly (mesh: on one "
+         "page); 0: no limit")
+      ->capture_default_str()
+      ->check(within(0, 1e18, "0 or more"));
+  app.add_option("--seed", c.options.seed, "Seed of --preset best")
+      ->capture_default_str()
+      ->check(within(0, 1e18, "0 or more"));
+  app.add_option("--threads", c.threads, "Threads; 0: all cores")
+      ->capture_default_str()
+      ->check(within(0, 1024));
   app.add_option("--preview", c.preview, "Also draw the pages: FILE.svg or FILE.png");
   app.add_flag("--json", c.json, "Print a summary as JSON on stdout");
   app.add_flag("--quiet", c.quiet, "Print nothing but errors");
@@ -75,15 +93,23 @@ void add_rect_options(CLI::App& app, PackCommand& c) {
                                              !e.empty())
                                            throw CLI::ValidationError("--page", e);
                                        })
-      ->type_name("WxH");
-  app.add_option("--max-width", c.options.page.width, "Largest page width, texels");
-  app.add_option("--max-height", c.options.page.height, "Largest page height; 0: open");
-  app.add_option("--max-pages", c.options.max_pages, "Pages at most; 0: as many as needed");
+      ->type_name("WxH")
+      ->description("Largest page, texels; height 0: one strip as low as can be")
+      ->default_str("2048x2048");
+  app.add_option("--max-width", c.options.page.width, "Largest page width, texels")
+      ->check(within(0, 1 << 30));
+  app.add_option("--max-height", c.options.page.height, "Largest page height; 0: open")
+      ->check(within(0, 1 << 30));
+  app.add_option("--max-pages", c.options.max_pages, "Pages at most; 0: as many as needed")
+      ->capture_default_str()
+      ->check(within(0, 1'000'000));
   app.add_flag("--allow-rotation,--rotate", c.options.allow_rotation, "Allow quarter turns");
   const std::map<std::string, DataFormat> formats{{"hash", DataFormat::hash},
                                                   {"array", DataFormat::array}};
   app.add_option("--data", c.format, "Layout of the JSON: hash or array")
-      ->transform(CLI::CheckedTransformer(formats));
+      ->transform(choices(formats))
+      ->type_name("NAME")
+      ->default_str("hash");
 }
 
 CLI::App* add_rects(CLI::App& app, PackCommand& c) {
@@ -104,11 +130,13 @@ CLI::App* add_images(CLI::App& app, PackCommand& c) {
   images->add_option("-o,--output", c.output, "Base name: pages NAME-0.png and NAME-0.json")
       ->required();
   images->add_option("--extrude", c.extrude, "Repeat edge texels outwards this many times")
-      ->check(CLI::Range(0, 256));
+      ->capture_default_str()
+      ->check(within(0, 256));
   images->add_option("--trim-threshold", c.trim_threshold, "Alpha up to this is transparent")
-      ->check(CLI::Range(0, 254));
-  images->add_flag("!--no-trim", c.trim, "Keep transparent borders");
-  images->add_flag("!--no-alias", c.alias, "Store identical images each");
+      ->capture_default_str()
+      ->check(within(0, 254));
+  add_off_flag(*images, "--no-trim", c.trim, "Keep transparent borders");
+  add_off_flag(*images, "--no-alias", c.alias, "Store identical images each");
   add_page_options(*images, c);
   add_effort_options(*images, c);
   add_rect_options(*images, c);
@@ -121,11 +149,22 @@ void add_mesh(CLI::App& app, PackCommand& c) {
   mesh->add_option("mesh", c.input, "OBJ, PLY or glTF with uvs")->required();
   mesh->add_option("-o,--output", c.output, "OBJ with new uvs, one material a page")->required();
   mesh->add_option("--page", c.page_side, "Side of the largest page, texels")
-      ->check(CLI::Range(16, 1 << 17));
-  mesh->add_option("--pages,--max-pages", c.pages, "Pages at most")->check(CLI::Range(1, 100000));
+      ->capture_default_str()
+      ->check(within(16, 1 << 17));
+  mesh->add_option("--pages,--max-pages", c.pages, "Pages at most")
+      ->capture_default_str()
+      ->check(within(1, 100000));
   mesh->add_option("--rotations", c.rotations,
                    "Directions tried: 1, 2, 4, 8, 12, ... 64; above 4 a single page's charts may "
-                   "be turned by any angle");
+                   "be turned by any angle")
+      ->capture_default_str()
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            const int n = std::atoi(text.c_str());
+            const bool good = n == 1 || n == 2 || (n > 0 && n <= 64 && n % 4 == 0);
+            return good ? std::string() : "'" + text + "' must be 1, 2, or a multiple of 4 to 64";
+          },
+          ""));
   add_page_options(*mesh, c);
   add_effort_options(*mesh, c);
 }
@@ -133,19 +172,14 @@ void add_mesh(CLI::App& app, PackCommand& c) {
 }  // namespace
 
 int parse_command_line(int argc, char** argv, PackCommand& c) {
-  CLI::App app{"atlas-pack: packs rectangles, images or the charts of a mesh into pages"};
-  app.set_version_flag("--version", "atlas-pack 0.1.0");
+  CLI::App app{"Packs rectangles, images or the charts of a mesh into pages.", "atlas-pack"};
   app.require_subcommand(1);
   c.options.time_budget = 1;
 
   CLI::App* rects = add_rects(app, c);
   CLI::App* images = add_images(app, c);
   add_mesh(app, c);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  }
+  if (const int code = parse(app, argc, argv); code >= 0) return code;
   c.kind = *rects    ? PackCommand::Kind::rects
            : *images ? PackCommand::Kind::images
                      : PackCommand::Kind::mesh;

@@ -8,6 +8,7 @@
 
 #include "apps/atlas-pack/commands.h"
 #include "apps/atlas-pack/preview.h"
+#include "apps/common/files.h"
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/pack/fit.h"
 #include "libatlas/scene/reader.h"
@@ -288,10 +289,11 @@ Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> item
 }  // namespace
 
 Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
-  const std::filesystem::path preview = c.preview.extension();
-  if (!c.preview.empty() && preview != ".svg" && preview != ".png")
+  if (c.output.extension() != ".obj")
     return Status(ErrorCode::bad_option,
-                  fmt::format("{}: unknown preview format (use .svg or .png)", c.preview.string()));
+                  fmt::format("{}: the target must end in .obj", c.output.string()));
+  if (Status s = check_output(c.output, {c.input, c.preview}); !s.ok()) return s;
+  if (Status s = check_preview(c); !s.ok()) return s;
   ReadOptions read;
   read.load_textures = false;
   Result<LoadedScene> loaded = read_scene(c.input, read, context);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/common/files.h"
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/image/image_io.h"
 
@@ -93,11 +94,17 @@ Status write_preview_png(const std::filesystem::path& path, std::span<const Imag
   return files.commit();
 }
 
+Status check_preview(const PackCommand& command) {
+  const std::filesystem::path& preview = command.preview;
+  const auto ending = preview.extension();
+  if (!preview.empty() && ending != ".svg" && ending != ".png")
+    return {ErrorCode::bad_option,
+            fmt::format("{}: unknown preview format (use .svg or .png)", preview.string())};
+  return check_output(preview, {command.input});
+}
+
 Status write_preview(const std::filesystem::path& path, const PackedAtlas& atlas) {
   if (path.extension() == ".svg") return write_file(path, to_svg(atlas));
-  if (path.extension() != ".png")
-    return {ErrorCode::bad_option,
-            fmt::format("{}: unknown preview format (use .svg or .png)", path.string())};
   std::vector<Image8> pages;
   for (Extent p : atlas.pages) pages.emplace_back(p.width, p.height, 3, std::uint8_t{51});
   for (std::size_t i = 0; i < atlas.items.size(); ++i) {

@@ -7,6 +7,7 @@
 
 #include "apps/atlas-pack/commands.h"
 #include "apps/atlas-pack/preview.h"
+#include "apps/common/files.h"
 #include "libatlas/core/atomic_file.h"
 
 namespace atlas::app {
@@ -22,6 +23,10 @@ bool to_side(std::string field, std::int32_t& side) {
   field = field.substr(first, last - first + 1);
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), side);
   return error == std::errc() && end == field.data() + field.size();
+}
+
+bool has_digit(const std::string& field) {
+  return field.find_first_of("0123456789") != std::string::npos;
 }
 
 // Splits at commas (or semicolons, tabs, spaces where there is no comma), minding quotes.
@@ -63,14 +68,14 @@ Status read_csv(const PackCommand& c, const std::string& text, std::vector<Packe
                                   "name,width,height)",
                                   n));
     const bool numbers = to_side(f[n - 2], item.size.width) && to_side(f[n - 1], item.size.height);
-    if (!numbers && items.empty() && number == 1) continue;  // a header
+    if (number == 1 && !has_digit(f[n - 2]) && !has_digit(f[n - 1])) continue;  // a header
     if (!numbers)
       return bad_line(c, number,
                       fmt::format("'{}' and '{}' are not two whole numbers (sides in "
                                   "texels, at most 2147483647)",
                                   f[n - 2], f[n - 1]));
     if (item.size.width < 0 || item.size.height < 0)
-      return bad_line(c, number, "a side is negative");
+      return bad_line(c, number, "a side is negative (sides are 0 or more)");
     item.name = n == 3 ? f[0] : std::to_string(items.size());
     items.push_back(std::move(item));
   }
@@ -82,7 +87,7 @@ Status read_json(const PackCommand& c, const std::string& text, std::vector<Pack
   const auto bad = [&](const std::string& what) {
     return Status(ErrorCode::bad_input, fmt::format("{}: {}", c.input.string(), what));
   };
-  if (root.is_discarded()) return bad("not valid JSON");
+  if (root.is_discarded()) return bad("not valid JSON (was it cut short?)");
   const nlohmann::json& list = root.is_object() && root.contains("rects") ? root["rects"] : root;
   if (!list.is_array()) return bad("expected an array of [w, h] or {\"name\", \"w\", \"h\"}");
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -112,10 +117,19 @@ Status read_json(const PackCommand& c, const std::string& text, std::vector<Pack
 }  // namespace
 
 Result<PackedAtlas> run_rects(const PackCommand& c, const Context& context) {
+  const auto ending = c.output.extension();
+  if (ending != ".csv" && ending != ".json")
+    return Status(ErrorCode::bad_option,
+                  fmt::format("{}: unknown format (use .csv or .json)", c.output.string()));
+  if (Status s = check_output(c.output, {c.input, c.preview}); !s.ok()) return s;
+  if (Status s = check_preview(c); !s.ok()) return s;
+  if (std::filesystem::is_directory(c.input))
+    return Status(ErrorCode::bad_input,
+                  fmt::format("{}: is a directory (name a file inside it)", c.input.string()));
   std::ifstream file(c.input, std::ios::binary);
   if (!file)
     return Status(ErrorCode::not_found,
-                  fmt::format("{}: cannot be read (is the name right?)", c.input.string()));
+                  fmt::format("{}: no such file (check the name)", c.input.string()));
   std::stringstream buffer;
   buffer << file.rdbuf();
   std::vector<PackedItem> items;
@@ -123,6 +137,11 @@ Result<PackedAtlas> run_rects(const PackCommand& c, const Context& context) {
   if (Status s = json ? read_json(c, buffer.str(), items) : read_csv(c, buffer.str(), items);
       !s.ok())
     return s;
+  if (items.empty())
+    return Status(ErrorCode::bad_input,
+                  fmt::format("{}: holds no rectangle (write width,height or name,width,height a "
+                              "line, or a JSON array)",
+                              c.input.string()));
   std::vector<Extent> sizes;
   for (PackedItem& item : items) {
     item.source = item.size;

@@ -5,6 +5,7 @@
 
 #include "apps/atlas-pack/commands.h"
 #include "apps/atlas-pack/preview.h"
+#include "apps/common/files.h"
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/image/image_io.h"
@@ -146,9 +147,26 @@ Status write_pages(const PackCommand& c, const std::vector<Sprite>& sprites, Pac
   return files.commit();
 }
 
+// Pages in the folder that is read could replace a sprite, and would be sprites themselves the next
+// time.
+Status check_pages(const PackCommand& c) {
+  std::error_code error;
+  const fs::path folder = c.output.has_parent_path() ? c.output.parent_path() : fs::path(".");
+  for (fs::path up = fs::weakly_canonical(folder, error);; up = up.parent_path()) {
+    if (fs::equivalent(up, c.input, error))
+      return {ErrorCode::bad_option,
+              fmt::format("{}: lies in the folder that is read (name another folder)",
+                          c.output.string())};
+    if (!up.has_relative_path()) break;
+  }
+  return check_output(fs::path(c.output) += ".png", {c.preview});
+}
+
 }  // namespace
 
 Result<PackedAtlas> run_images(const PackCommand& c, const Context& context) {
+  if (Status s = check_pages(c); !s.ok()) return s;
+  if (Status s = check_preview(c); !s.ok()) return s;
   Result<std::vector<Sprite>> read = read_sprites(c, context);
   if (!read.ok()) return read.status();
   std::vector<Sprite>& sprites = *read;

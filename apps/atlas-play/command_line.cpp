@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <map>
 
+#include "apps/common/options.h"
 #include "libatlas/view/start_camera.h"
 
 namespace atlas::app {
@@ -29,59 +30,82 @@ const std::map<std::string, Shading>& shadings() {
 }
 
 void add_picture_options(CLI::App& app, CommandLine& l) {
-  app.add_option("--width", l.render.width, "pixels")->capture_default_str();
-  app.add_option("--height", l.render.height, "pixels")->capture_default_str();
+  app.add_option("--width", l.render.width, "pixels")
+      ->capture_default_str()
+      ->check(within(1, 16384));
+  app.add_option("--height", l.render.height, "pixels")
+      ->capture_default_str()
+      ->check(within(1, 16384));
   app.add_option("--camera", l.camera, "where from and where to: x,y,z;x,y,z");
   app.add_option("--fov", l.fov, "vertical field of view, degrees")
-      ->check(CLI::Range(1.0, 170.0))
+      ->check(within(1, 170))
       ->capture_default_str();
   app.add_option("--shading", l.render.shading, "unlit, lambert, blinn-phong or ward")
-      ->transform(CLI::CheckedTransformer(shadings()))
+      ->transform(choices(shadings()))
+      ->type_name("NAME")
       ->default_str("lambert");
   app.add_option("--ambient", l.render.ambient, "light that no shadow darkens")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(not_negative());
   app.add_option("--sun", l.render.intensity, "strength of the moving light")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(not_negative());
   app.add_option("--baked-light", l.render.baked_strength, "factor on the light in the file")
-      ->capture_default_str();
-  app.add_option("--exposure", l.render.exposure)->capture_default_str();
+      ->capture_default_str()
+      ->check(not_negative());
+  app.add_option("--exposure", l.render.exposure, "factor on all light")
+      ->capture_default_str()
+      ->check(positive());
   app.add_option("--specular", l.render.specular, "strength of the highlight")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(not_negative());
   app.add_option("--shininess", l.render.shininess, "Blinn-Phong's exponent")
-      ->capture_default_str();
-  app.add_option("--roughness", l.render.roughness, "Ward's alpha")->capture_default_str();
+      ->capture_default_str()
+      ->check(positive());
+  app.add_option("--roughness", l.render.roughness, "Ward's alpha")
+      ->capture_default_str()
+      ->check(positive());
   app.add_flag("--visibility", l.render.show_visibility, "show the light's visibility as grey");
 }
 
 void add_shadow_options(CLI::App& app, CommandLine& l) {
   app.add_option("--shadows", l.render.shadows,
                  "none, classic, hold, linear, slerp, slerp-normalised or march")
-      ->transform(CLI::CheckedTransformer(methods()))
+      ->transform(choices(methods()))
+      ->type_name("NAME")
       ->default_str("march");
   app.add_option("--map", l.render.map_resolution, "texels a side of a shadow map")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(within(1, 32768));
   app.add_option("--map-bits", l.render.map_bits, "of a map's depths: 16, 24, or 32 (floats)")
+      ->check(one_of({{"16", 16}, {"24", 24}, {"32", 32}}))
       ->capture_default_str();
   app.add_option("--pcf", l.render.pcf, "filter: 0 nearest, 1 bilinear, 3 or 5 taps a side")
+      ->check(one_of({{"0", 0}, {"1", 1}, {"3", 3}, {"5", 5}}))
       ->capture_default_str();
   app.add_option("--march-steps", l.render.march_steps, "samples along the ray")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(within(1, 64));
   app.add_option("--slope-bias", l.render.slope_bias, "in depth slopes over the filter's reach")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(not_negative());
   app.add_option("--normal-offset", l.render.normal_offset, "in reaches of the filter")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(not_negative());
   app.add_flag("--fit-view", l.render.fit_view, "fit maps to the view, not the whole scene");
-  app.add_option("--view-distance", l.render.view_distance,
-                 "how far shadows reach with --fit-view");
-  app.add_flag("!--no-snap", l.render.snap, "do not snap maps to whole texels");
+  app.add_option("--view-distance", l.render.view_distance, "how far shadows reach with --fit-view")
+      ->check(not_negative());
+  add_off_flag(app, "--no-snap", l.render.snap, "do not snap maps to whole texels");
   app.add_option("-k,--interval", l.render.schedule.interval_frames, "frames between keys")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(within(1, 1'000'000));
   app.add_option("--interval-degrees", l.render.schedule.interval_degrees,
-                 "keys every so many degrees instead");
+                 "keys every so many degrees instead")
+      ->check(within(0, 90, "0..90"));
   app.add_option("--key-degrees", l.key_degrees,
                  "keys at most so far apart (default: 16 in a window, 90 headless)")
-      ->check(CLI::Range(0.01, 90.0));
-  app.add_flag("!--no-slices", l.render.schedule.sliced, "draw a key in one frame");
+      ->check(within(0.01, 90, "0.01..90"));
+  add_off_flag(app, "--no-slices", l.render.schedule.sliced, "draw a key in one frame");
 }
 
 void add_run_options(CLI::App& app, CommandLine& l, std::string& light, std::string& end,
@@ -90,56 +114,68 @@ void add_run_options(CLI::App& app, CommandLine& l, std::string& light, std::str
                  "sun:DAY,LATITUDE,HOUR  fixed:x,y,z  line:x,y,z;x,y,z  arc:...  keys:...;...;...")
       ->capture_default_str();
   app.add_option("--light-end", end, "at the path's end: loop, back or stop")
-      ->check(CLI::IsMember({"loop", "back", "stop"}))
+      ->check(one_of({{"loop", 0}, {"back", 0}, {"stop", 0}}))
       ->capture_default_str();
   app.add_option("--up", up, "the axis that points up")
-      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->check(one_of({{"x", 0}, {"y", 0}, {"z", 0}}))
       ->capture_default_str();
   app.add_option("--north", l.north,
                  "the sun's north (default: -z where y is up, +y where x or z is)")
       ->delimiter(',')
       ->expected(3);
   app.add_option("--speed", l.play.degrees_per_second, "degrees a second, in a window")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(within(-1e6, 1e6, "a number"));
   app.add_option("--max-step", l.play.max_step, "degrees a frame at most, in a window")
-      ->check(CLI::Range(0.001, 90.0))
+      ->check(within(0.001, 90, "0.001..90"))
       ->capture_default_str();
   app.add_option("--step", l.play.degrees_per_frame, "degrees a frame, headless and in the bench")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(within(-90, 90, "-90..90"));
   app.add_flag("--headless", l.headless, "no window");
   app.add_flag("--software", l.software, "headless: do not use a GPU");
   app.add_option("--frames", l.play.frames, "headless: how many")
-      ->check(CLI::Range(1, 1000000))
+      ->check(within(1, 1'000'000))
       ->capture_default_str();
   app.add_option("--close-after", l.play.close_after, "in a window: end after so many frames")
-      ->check(CLI::Range(1, 1000000000));
+      ->check(within(1, 1'000'000'000));
   app.add_option("--record", l.play.record, "write every frame to this folder");
   app.add_option("--screenshot", l.play.screenshot,
                  "write the last frame to this PNG file (in a window: F12 does)");
   app.add_flag("--plan", l.plan, "print what is compiled and allocated, and why, and end");
-  app.add_flag("!--no-vsync", l.vsync, "do not wait for the display");
+  add_off_flag(app, "--no-vsync", l.vsync, "do not wait for the display");
   app.add_flag("--debug", l.debug, "a debug context: every OpenGL error is reported");
   app.add_flag("-q,--quiet", l.quiet, "print errors only");
-  app.add_flag("--baked-textures,!--no-baked-textures", l.baked_textures,
-               "the textures hold light (default: for .wrl and for unlit glTF)");
+  app.add_flag_callback(
+         "--baked-textures", [&l] { l.baked_textures = true; },
+         "the textures hold light (default: for .wrl and for unlit glTF)")
+      ->excludes(app.add_flag_callback(
+          "--no-baked-textures", [&l] { l.baked_textures = false; }, "they hold colours"));
 }
 
 void add_bench_options(CLI::App& app, CommandLine& l) {
   app.add_option("--bench", l.bench, "measure every shading with every method; results go here");
-  app.add_option("--bench-seconds", l.measure.seconds, "of each combination (the paper: 180)");
+  app.add_option("--bench-seconds", l.measure.seconds,
+                 "of each combination at least (the paper: 180)")
+      ->check(not_negative());
   app.add_option("--bench-frames", l.measure.frames, "of each combination at least")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(within(1, 1'000'000));
   app.add_option("--bench-shadings", l.measure.shadings, "which shadings")
       ->delimiter(',')
-      ->transform(CLI::CheckedTransformer(shadings()));
+      ->transform(choices(shadings()))
+      ->type_name("NAME");
   app.add_option("--bench-methods", l.measure.methods, "which shadow methods")
       ->delimiter(',')
-      ->transform(CLI::CheckedTransformer(methods()));
+      ->transform(choices(methods()))
+      ->type_name("NAME");
   app.add_option("--bench-intervals", l.measure.error_intervals, "k of the error measurement")
       ->delimiter(',')
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(within(1, 1'000'000));
   app.add_option("--bench-error-frames", l.measure.error_frames, "light positions")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(within(1, 1'000'000));
   app.add_flag("--no-errors", l.no_errors, "measure times only");
 }
 
@@ -171,10 +207,9 @@ Result<Camera> camera_of(const CommandLine& line, const ViewScene& scene) {
   char rest = 0;
   if (std::sscanf(line.camera.c_str(), "%lf,%lf,%lf;%lf,%lf,%lf%c", &a.x, &a.y, &a.z, &b.x, &b.y,
                   &b.z, &rest) != 6 ||
-      a == b)
-    return Status{
-        ErrorCode::bad_option,
-        fmt::format("--camera {}: two different points x,y,z;x,y,z are needed", line.camera)};
+      a == b || !std::isfinite(a.x + a.y + a.z + b.x + b.y + b.z))
+    return Status{ErrorCode::bad_option,
+                  fmt::format("--camera {}: give two different points, x,y,z;x,y,z", line.camera)};
   camera.eye = a;
   camera.target = b;
   fit_planes(camera, scene.bounds);
@@ -184,7 +219,8 @@ Result<Camera> camera_of(const CommandLine& line, const ViewScene& scene) {
 Parsed parse_command_line(int argc, char** argv) {
   Parsed parsed;
   CommandLine& l = parsed.line;
-  CLI::App app{"Shows a scene, and atlases with baked light, under a moving light with shadows."};
+  CLI::App app{"Shows a scene, and atlases with baked light, under a moving light with shadows.",
+               "atlas-play"};
   std::string light = "sun:172,50.45,9", end = "loop", up = "y";
   app.add_option("scene", l.scene, "OBJ, PLY, glTF, GLB, VRML")->required();
   app.set_config("--config", "", "options from a file");
@@ -192,10 +228,8 @@ Parsed parse_command_line(int argc, char** argv) {
   add_shadow_options(app, l);
   add_run_options(app, l, light, end, up);
   add_bench_options(app, l);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    parsed.exit_code = app.exit(e) == 0 ? 0 : 2;
+  if (const int code = parse(app, argc, argv); code >= 0) {
+    parsed.exit_code = code;
     return parsed;
   }
   if (Status s = finish(l, light, end, up); !s.ok()) {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "apps/atlas-play/command_line.h"
+#include "apps/common/files.h"
 #include "apps/common/terminal.h"
 
 namespace atlas::app {
@@ -37,12 +38,28 @@ Status bench(const CommandLine& line, const GlContext& gl, const Renderer& rende
   return {};
 }
 
+// What would else be found out after all frames are drawn.
+Status check_outputs(const CommandLine& line) {
+  const std::filesystem::path& picture = line.play.screenshot;
+  if (!picture.empty() && picture.extension() != ".png")
+    return {ErrorCode::bad_option,
+            fmt::format("{}: the screenshot must end in .png", picture.string())};
+  if (Status s = check_output(picture, {line.scene}); !s.ok()) return s;
+  for (const std::filesystem::path& folder : {line.play.record, line.bench})
+    if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder))
+      return {ErrorCode::bad_option,
+              fmt::format("{}: is a file (name a folder, which is made where there is none)",
+                          folder.string())};
+  return {};
+}
+
 Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   const bool headless = line.headless || !line.bench.empty() || line.plan;
   // The march is good up to keys this far apart; a slow machine would stretch them further.
   constexpr double kWindowKeyDegrees = 16;
   line.render.schedule.max_key_degrees =
       line.key_degrees.value_or(headless ? kMaxKeyDegrees : kWindowKeyDegrees);
+  if (Status s = check_outputs(line); !s.ok()) return s;
   // The scene first: a wrong file name should not open a window.
   const bool baked = line.baked_textures.value_or(textures_hold_light(line.scene));
   Result<ViewScene> scene = load_view(line.scene, baked, context);

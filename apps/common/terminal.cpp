@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -55,7 +56,11 @@ void Terminal::line(std::string_view text) {
 
 void Terminal::error(std::string_view text) {
   clear_bar();
-  fmt::print(stderr, "{}: error: {}\n", program_, text);
+  // Messages of image libraries bring lines of their own.
+  std::string line(text);
+  while (!line.empty() && line.back() == '\n') line.pop_back();
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  fmt::print(stderr, "{}: error: {}\n", program_, line);
 }
 
 void Terminal::warning(std::string_view text) {

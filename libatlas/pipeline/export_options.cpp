@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace atlas {
 namespace {
 
@@ -18,19 +20,36 @@ Status check_options(const ExportOptions& o) {
   if (o.atlas_size < 64 || o.atlas_size > 16384 || !power_of_two) {
     return out_of_range("--atlas-size", "a power of two from 64 to 16384");
   }
-  if (!(o.texel_metres >= 0)) return out_of_range("--texel", "a positive length");
+  if (!(o.texel_metres >= 0) || !std::isfinite(o.texel_metres))
+    return out_of_range("--texel", "a positive length");
   if (!(o.threshold >= 0 && o.threshold <= 1)) return out_of_range("--threshold", "within 0..1");
   if (o.mip_levels < 0 || o.mip_levels > 5) return out_of_range("--mips", "within 0..5");
   if (o.shifts < 1 || o.shifts > 64) return out_of_range("--shifts", "within 1..64");
   if (o.min_side < 1 || o.min_side > 256) return out_of_range("--min-side", "within 1..256");
-  if (!(o.simplify_slip > 0)) return out_of_range("--slip", "positive");
+  if (!(o.simplify_slip > 0) || !std::isfinite(o.simplify_slip)) {
+    return out_of_range("--slip", "a positive number");
+  }
   if (o.png_compression < 0 || o.png_compression > 9) {
     return out_of_range("--png-level", "within 0..9");
   }
   if (!(o.charts.cone_degrees >= 0 && o.charts.cone_degrees <= 180)) {
     return out_of_range("--cone", "within 0..180 degrees");
   }
-  if (!(o.charts.max_stretch > 1)) return out_of_range("--max-stretch", "above 1");
+  if (!(o.charts.max_stretch > 1) || !std::isfinite(o.charts.max_stretch)) {
+    return out_of_range("--max-stretch", "a number above 1");
+  }
+  if (!(o.charts.crease_degrees > 0 && o.charts.crease_degrees <= 180)) {
+    return out_of_range("--crease", "above 0 and at most 180 degrees");
+  }
+  if (!(o.charts.uv_aspect >= 1e-6 && o.charts.uv_aspect <= 1e6)) {
+    return out_of_range("--uv-aspect", "a page's width / height (1: square)");
+  }
+  if (!(o.tone.white >= 0) || !std::isfinite(o.tone.white)) {
+    return out_of_range("--white", "a luminance above 0, or 0 to measure it");
+  }
+  if (!(std::abs(o.tone.exposure_stops) <= 64)) {
+    return out_of_range("--exposure", "within -64..64 stops");
+  }
   return {};
 }
 

@@ -49,6 +49,7 @@ class Export {
 
   Result<ExportReport> run() {
     const double cpu = cpu_seconds(), wall = wall_seconds();
+    if (Status s = check_texel(); !s.ok()) return s;
     if (Status s = cut_charts(); !s.ok()) return s;
     if (plan_.bake) {
       if (Status s = expose(); !s.ok()) return s;
@@ -72,6 +73,17 @@ class Export {
   }
 
  private:
+  // Charts smaller than a texel have no place on a page.
+  Status check_texel() const {
+    const double across = std::sqrt(plan_.surface_area_m2);
+    if (!plan_.bake || plan_.texel_metres <= across) return {};
+    return {
+        ErrorCode::bad_option,
+        fmt::format("--texel: {:g} m is more than the whole scene, {:g} m across (check --texel "
+                    "and --unit)",
+                    plan_.texel_metres, across)};
+  }
+
   void describe_scene(const LoadedScene& loaded) {
     report_.target = options_.target;
     report_.triangles = scene_.triangle_count();

@@ -43,11 +43,13 @@ SceneFacts gather_facts(const Scene& scene) {
 }
 
 // As fine as the budget could hold if nothing were downsized and packing lost nothing, within the
-// paper's 0.1 to 1 cm: finer would be sampled in vain, coarser would leave room unused.
+// paper's 0.1 to 1 cm: finer would be sampled in vain, coarser would leave room unused. A scene of
+// centimetres gets 64 texels across all the same.
 double affordable_texel(double area_m2, const ExportOptions& options) {
   constexpr double kFinest = 0.001, kCoarsest = 0.01;  // metres
   const double room = double(options.atlases) * options.atlas_size * options.atlas_size;
-  return std::clamp(std::sqrt(area_m2 / room), kFinest, kCoarsest);
+  const double finest = area_m2 > 0 ? std::min(kFinest, std::sqrt(area_m2) / 64) : kFinest;
+  return std::clamp(std::sqrt(area_m2 / room), finest, kCoarsest);
 }
 
 std::string budget_text(std::uint32_t pages, std::int32_t side) {

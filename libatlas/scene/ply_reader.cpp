@@ -99,7 +99,8 @@ class PlyParser {
       if (element.properties.empty()) continue;
       element_ = &element;
       if (element.count > numbers_.bytes_left() / element.least_bytes(header_.format) + 1) {
-        return short_file(fmt::format("{} {}s are announced", element.count, element.name));
+        return short_file(
+            fmt::format("{} of element {} are announced", element.count, element.name));
       }
       Status status;
       if (element.name == "vertex") {

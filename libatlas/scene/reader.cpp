@@ -35,6 +35,10 @@ bool known_extension(const fs::path& path) {
 
 Status read_by_extension(const fs::path& path, SceneBuilder& builder, const Context& context) {
   if (const Reader read = reader_for(path)) return read(path, builder, context);
+  std::error_code error;
+  if (fs::is_directory(path, error))
+    return {ErrorCode::bad_input,
+            fmt::format("{}: is a directory (name a file inside it)", path.string())};
   return {ErrorCode::unsupported,
           fmt::format("{}: no reader for '{}' (use .obj, .ply, .gltf, .glb, or a .wrl or .wrz "
                       "written by this program)",

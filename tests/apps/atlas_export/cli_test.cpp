@@ -181,6 +181,67 @@ TEST_F(AtlasExport, OptionsOutOfRange) {
   expect_refusal(scene, "--memory", "--memory lots");
 }
 
+// Every number has its range, and no number is in none.
+TEST_F(AtlasExport, AbsurdNumbers) {
+  const fs::path scene = write("box.obj", lit_box(2));
+  for (const std::string option :
+       {"--max-stretch 0.5", "--max-stretch inf", "--cone 400",
+        "--cone nan",        "--crease -5",       "--threads -1",
+        "--threads 2.5",     "--atlases -3",      "--atlas-size 2147483648",
+        "--white -1",        "--exposure 1e9",    "--slip inf",
+        "--shifts 0",        "--mips 9",          "--uv-aspect 0",
+        "--bake x",          "--preset good",     "--memory 1",
+        "--unit 0",          "--threshold nan",   "--bogus"}) {
+    expect_refusal(scene, option.substr(0, option.find(' ')), option);
+  }
+  expect_refusal(scene, "more than the whole scene", "-q --texel 1km");
+  expect_refusal(scene, "more than once", "-o again.wrl");
+}
+
+TEST_F(AtlasExport, OverwritesNothingThatItReads) {
+  const fs::path scene = write("box.obj", lit_box(2));
+  const std::string text = slurp(scene);
+  EXPECT_EQ(run(fmt::format("{0}/box.obj -o {0}/./box.obj", dir_.string())).exit_code, 2);
+  expect_refusal(scene, "would overwrite", fmt::format("--report {}/box.obj", dir_.string()));
+  expect_refusal(scene, "would overwrite", fmt::format("--report {}/world.wrl", dir_.string()));
+  EXPECT_EQ(slurp(scene), text);
+  // A world that is exported again: its texture has the name of the first new page.
+  ASSERT_EQ(run(fmt::format("{0}/box.obj -o {0}/w.obj -q", dir_.string())).exit_code, 0);
+  const std::string page = slurp(dir_ / "w_0.png");
+  const RunResult again = run(fmt::format("{0}/w.obj -o {0}/w.wrl", dir_.string()));
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_NE(again.output.find("w_0.png"), std::string::npos) << again.output;
+  EXPECT_EQ(slurp(dir_ / "w_0.png"), page);
+  EXPECT_EQ(run(fmt::format("{0}/w.obj -o {0}/v.wrl -q", dir_.string())).exit_code, 0);
+}
+
+TEST_F(AtlasExport, Directories) {
+  fs::create_directories(dir_ / "folder");
+  fs::create_directories(dir_ / "folder.obj");
+  expect_refusal(dir_ / "folder", "is a directory");
+  expect_refusal(dir_ / "folder.obj", "is a directory");
+}
+
+// A few millimetres across, and no texel is asked for.
+TEST_F(AtlasExport, SmallScenesGetTexels) {
+  write("box.obj", lit_box(4));
+  const RunResult r =
+      run(fmt::format("{0}/box.obj -o {0}/w.wrl --unit 0.0005 --report {0}/r.json", dir_.string()));
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  const auto report = nlohmann::json::parse(slurp(dir_ / "r.json"));
+  EXPECT_GT(report["error"]["psnr"].get<double>(), 35);
+}
+
+TEST_F(AtlasExport, HelpAndVersion) {
+  const RunResult help = run("--help");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_EQ(help.output.find("{false}"), std::string::npos);
+  EXPECT_EQ(help.output.find("ENUM"), std::string::npos);
+  const RunResult version = run("--version");
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_EQ(version.output.rfind("atlas-export ", 0), 0u) << version.output;
+}
+
 TEST_F(AtlasExport, UnwritableTarget) {
   const fs::path scene = write("box.obj", lit_box(2));
   const auto before = files();

@@ -94,6 +94,60 @@ TEST_F(AtlasPack, WhatIsWrongIsSaid) {
   EXPECT_NE(read("q.csv").find("1,0,"), std::string::npos);  // the other one is placed
 }
 
+// One line that contains the words, and no file.
+TEST_F(AtlasPack, WhatCannotBeDoneLeavesNothing) {
+  fs::create_directories(dir_ / "folder");
+  write("ok.csv", "a,4,5\nb,6,7\n");
+  write("empty.csv", "");
+  write("header.csv", "name,width,height\n");
+  write("short.csv", "a,4\nb,6,7\n");  // no header: it has a number
+  write("huge.csv", "a,99999999999,5\n");
+  write("cut.json", "[[4,5],[6");
+  write("uv.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+  write("plain.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::pair<const char*, const char*> cases[] = {
+      {"rects folder -o q.csv", "is a directory"},
+      {"rects empty.csv -o q.csv", "no rectangle"},
+      {"rects header.csv -o q.csv", "no rectangle"},
+      {"rects short.csv -o q.csv", "short.csv:1"},
+      {"rects huge.csv -o q.csv", "huge.csv:1"},
+      {"rects cut.json -o q.csv", "cut.json"},
+      {"rects ok.csv -o ./ok.csv", "would overwrite"},
+      {"rects ok.csv -o q.txt", ".csv or .json"},
+      {"rects ok.csv -o no/q.csv", "no is not a directory"},
+      {"rects ok.csv -o q.csv --preview p.gif", ".svg or .png"},
+      {"rects ok.csv -o q.csv --preview no/p.svg", "no is not a directory"},
+      {"rects ok.csv -o q.csv --page 99999999999", "--page"},
+      {"rects ok.csv -o q.csv --threads -1", "--threads"},
+      {"rects ok.csv -o q.csv --effort -1", "--effort"},
+      {"rects ok.csv -o q.csv --padding -1", "--padding"},
+      {"rects ok.csv -o q.csv --align 0", "--align"},
+      {"rects ok.csv -o q.csv --preset good", "one of best, default, fast"},
+      {"images folder -o q", "no image"},
+      {"images ok.csv -o q", "no folder"},
+      {"images folder -o folder/q", "in the folder that is read"},
+      {"mesh uv.obj -o uv.obj", "would overwrite"},
+      {"mesh uv.obj -o q.stl", "must end in .obj"},
+      {"mesh uv.obj -o q.obj --rotations 3", "--rotations"},
+      {"mesh plain.obj -o q.obj", "plain.obj: has no uvs"},
+      {"mesh folder -o q.obj", "is a directory"},
+      {"", "a command is needed"},
+  };
+  const auto files = [&] {
+    return std::distance(fs::directory_iterator(dir_), fs::directory_iterator());
+  };
+  const auto before = files();
+  for (const auto& [arguments, words] : cases) {
+    const RunResult r = run(arguments);
+    EXPECT_TRUE(r.exit_code == 1 || r.exit_code == 2) << arguments << "\n" << r.output;
+    EXPECT_EQ(std::count(r.output.begin(), r.output.end(), '\n'), 1) << r.output;
+    EXPECT_EQ(r.output.rfind("atlas-pack: error: ", 0), 0u) << r.output;
+    EXPECT_NE(r.output.find(words), std::string::npos) << arguments << "\n" << r.output;
+    EXPECT_EQ(files(), before) << arguments;
+  }
+  EXPECT_EQ(read("ok.csv"), "a,4,5\nb,6,7\n");
+}
+
 TEST_F(AtlasPack, SpritesKeepTheirTexels) {
   fs::create_directories(dir_ / "in/sub");
   const auto sprite = [](int w, int h, int border, int tint) {

@@ -81,6 +81,32 @@ TEST_F(AtlasPlay, WithoutTriangles) {
   expect_one_line(run("absent.obj --headless -q"), "absent.obj");
 }
 
+TEST_F(AtlasPlay, AbsurdOptions) {
+  for (const std::string option :
+       {"--width 0",     "--width 1.5", "--fov nan",         "--ambient nan",    "--exposure 0",
+        "--roughness 0", "--map 0",     "--map-bits 8",      "--pcf 2",          "--march-steps 0",
+        "--interval 0",  "--step nan",  "--key-degrees 100", "--shading pink",   "--shadows long",
+        "--light-end x", "--up w",      "--frames 0",        "--bench-frames 0", "--bogus",
+        "--camera 1,2,3"}) {
+    const RunResult r = run("roof.obj --headless --software -q " + option);
+    EXPECT_EQ(r.exit_code, 2) << option;
+    EXPECT_EQ(r.errors.rfind("atlas-play: error: ", 0), 0u) << r.errors;
+    EXPECT_EQ(std::count(r.errors.begin(), r.errors.end(), '\n'), 1) << r.errors;
+    EXPECT_NE(r.errors.find(option.substr(0, option.find(' '))), std::string::npos) << r.errors;
+  }
+}
+
+// Said before anything is drawn.
+TEST_F(AtlasPlay, PlacesThatTakeNoFiles) {
+  for (const char* option :
+       {"--record roof.obj", "--bench roof.obj", "--screenshot a.xyz", "--screenshot no/a.png"}) {
+    const RunResult r = run(std::string("roof.obj --headless --software -q ") + option);
+    EXPECT_TRUE(r.exit_code == 1 || r.exit_code == 2) << option;
+    EXPECT_EQ(std::count(r.errors.begin(), r.errors.end(), '\n'), 1) << r.errors;
+    EXPECT_FALSE(fs::exists(dir_ / "no"));
+  }
+}
+
 TEST_F(AtlasPlay, AStaticLightIsOnePass) {
   const RunResult r =
       run("roof.obj --headless --software --frames 20 --light fixed:0,1,1 --map 64");

@@ -1,0 +1,35 @@
+// What the command lines have in common: how numbers and names are checked, and how a line that is
+// wrong is answered.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <string>
+
+namespace atlas::app {
+
+// Finite numbers within [low, high]; `text` says so in the help and in complaints.
+CLI::Validator within(double low, double high, const std::string& text);
+CLI::Validator within(int low, int high);
+CLI::Validator not_negative();
+CLI::Validator positive();
+
+// One of `names`, in any case; what it stands for is put in its place.
+CLI::Validator one_of(const std::map<std::string, int>& names);
+
+template <class T>
+CLI::Validator choices(const std::map<std::string, T>& names) {
+  std::map<std::string, int> numbers;
+  for (const auto& [name, value] : names) numbers[name] = static_cast<int>(value);
+  return one_of(numbers);
+}
+
+// A flag whose presence makes `value` false.
+CLI::Option* add_off_flag(CLI::App& app, const std::string& name, bool& value,
+                          const std::string& help);
+
+// Parses, knowing --version. Returns -1 to go on, or the exit code with which the program should
+// end: 0 after the help, 2 after one line about what is wrong.
+int parse(CLI::App& app, int argc, char** argv);
+
+}  // namespace atlas::app
