@@ -77,6 +77,9 @@ class Export {
   Status check_texel() const {
     const double across = std::sqrt(plan_.surface_area_m2);
     if (!plan_.bake || plan_.texel_metres <= across) return {};
+    if (!(across > 0))
+      return {ErrorCode::bad_input,
+              "no triangle has an area, nothing can be lit (check the scene)"};
     return {
         ErrorCode::bad_option,
         fmt::format("--texel: {:g} m is more than the whole scene, {:g} m across (check --texel "

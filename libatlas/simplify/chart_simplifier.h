@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -10,17 +9,9 @@
 #include "libatlas/simplify/chart_mesh.h"
 #include "libatlas/simplify/fine_chart.h"
 #include "libatlas/simplify/slip_measure.h"
+#include "libatlas/simplify/star.h"
 
 namespace atlas::simplify {
-
-// What merging a vertex v into its neighbour w would do.
-struct Estimate {
-  std::uint32_t v = kNone, w = kNone;
-  double cost = 0;  // dimensionless: (slip / bound)² + (small factor x length in texels)², worse
-                    // for needles
-  double offset = 0;     // distance in space between v and the new surface at its uv, texels
-  bool outside = false;  // v's uv lies outside the new triangles (border vertices only)
-};
 
 struct Collapse : Estimate {
   std::vector<std::uint32_t> faces;  // that stay and change
@@ -37,7 +28,6 @@ class ChartSimplifier {
  public:
   // `texel` is the length of a texel of this chart on its surface. Limits: slip in texels.
   ChartSimplifier(const Geometry& geometry, FineChart fine, double texel, const SlipLimits& limits);
-  ~ChartSimplifier();
   ChartSimplifier(const ChartSimplifier&) = delete;
   ChartSimplifier& operator=(const ChartSimplifier&) = delete;
 
@@ -67,19 +57,16 @@ class ChartSimplifier {
   SlipLimits worst() const;  // over the remaining triangles, texels and radians
 
  private:
-  struct Star;
   struct Entry {
     float cost;
     std::uint32_t vertex;
   };
+  static bool costs_more(const Entry& a, const Entry& b) {
+    return a.cost != b.cost ? a.cost > b.cost : a.vertex > b.vertex;
+  }
   void load(std::uint32_t v);
-  bool judge_target(std::size_t target, Estimate& out) const;
-  bool locate(std::size_t target, Estimate& out) const;
-  double step_slip(std::size_t target) const;
-  double step_turn(std::size_t target) const;
   void push(std::uint32_t v, float cost);
   void queue_all();
-  void pick_targets(std::vector<std::size_t>& out) const;
   double top_cost() const;
   bool grows_hub(const Collapse& collapse) const;
   void wake(std::uint32_t v, float cost);
@@ -101,7 +88,7 @@ class ChartSimplifier {
   std::vector<Estimate> candidates_;  // of the vertex at hand, cheapest first
   std::vector<std::size_t> targets_;
   Collapse attempt_;
-  std::unique_ptr<Star> star_;
+  Star star_;
 };
 
 }  // namespace atlas::simplify

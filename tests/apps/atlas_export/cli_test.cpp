@@ -215,6 +215,11 @@ TEST_F(AtlasExport, OverwritesNothingThatItReads) {
   EXPECT_EQ(run(fmt::format("{0}/w.obj -o {0}/v.wrl -q", dir_.string())).exit_code, 0);
 }
 
+TEST_F(AtlasExport, LightOnNoArea) {
+  const fs::path flat = write("flat.obj", "v 1 1 1 1 1 1\nv 1 1 1 1 1 1\nv 1 1 1 1 1 1\nf 1 2 3\n");
+  expect_refusal(flat, "no triangle has an area", "-q");
+}
+
 TEST_F(AtlasExport, Directories) {
   fs::create_directories(dir_ / "folder");
   fs::create_directories(dir_ / "folder.obj");
