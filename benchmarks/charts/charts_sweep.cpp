@@ -7,6 +7,7 @@
 
 #include "benchmarks/charts/charts_bench.h"
 #include "benchmarks/support/chart_setting.h"
+#include "benchmarks/support/pareto.h"
 #include "libatlas/charts/charts.h"
 
 namespace atlas::bench {
@@ -27,20 +28,8 @@ double seams(const ChartsPoint& p) {
   return p.seam;
 }
 
-// Points that no other beats in both, by time.
-std::vector<const ChartsPoint*> front(const std::vector<const ChartsPoint*>& points, Value value) {
-  std::vector<const ChartsPoint*> sorted = points, kept;
-  std::sort(sorted.begin(), sorted.end(), [&](const ChartsPoint* a, const ChartsPoint* b) {
-    return a->cpu_seconds != b->cpu_seconds ? a->cpu_seconds < b->cpu_seconds
-                                            : value(*a) < value(*b);
-  });
-  double best = std::numeric_limits<double>::infinity();
-  for (const ChartsPoint* p : sorted) {
-    if (value(*p) >= best) continue;
-    best = value(*p);
-    kept.push_back(p);
-  }
-  return kept;
+double time(const ChartsPoint* p) {
+  return p->cpu_seconds;
 }
 
 std::string block(const std::string& name, const std::vector<const ChartsPoint*>& points,
@@ -67,8 +56,10 @@ std::string script(const std::vector<ChartsPoint>& points, const std::string& te
         }
       const Value value = row == 0 ? loss : seams;
       const std::string id = fmt::format("{}_{}", row, k);
-      data += block("front" + id, front(all, value), value) +
-              block("presets" + id, presets, value) + block("bounds" + id, bounds, value);
+      data +=
+          block("front" + id,
+                pareto_front(all, time, [&](const ChartsPoint* p) { return value(*p); }), value) +
+          block("presets" + id, presets, value) + block("bounds" + id, bounds, value);
       plots += fmt::format("set title \"{}\"\n", row == 0 ? meshes[k] : "");
       plots += row == 0 ? "set logscale y\nset format y '10^{%L}'\nset xlabel ''\n"
                         : "unset logscale y\nset format y '%g'\nset xlabel 'CPU ms'\n";

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <set>
+
+#include "benchmarks/support/pareto.h"
 
 namespace atlas::bench {
 namespace {
@@ -90,7 +91,8 @@ Panel settings_panel(const std::string& mesh, const std::vector<const Row*>& row
   std::vector<PlotPoint> all;
   for (const Row* row : rows) all.push_back(point_of(*row));
   Series front;
-  front.points = pareto_front(all);
+  front.points = pareto_front(
+      all, [](const PlotPoint& p) { return p.x; }, [](const PlotPoint& p) { return p.y; });
   for (PlotPoint& p : front.points) p.label.clear();
   front.lines = true;
   front.points_too = false;
@@ -246,20 +248,6 @@ void leak_plot(const Results& results, std::vector<Plot>& plots) {
 }
 
 }  // namespace
-
-std::vector<PlotPoint> pareto_front(std::vector<PlotPoint> points) {
-  std::sort(points.begin(), points.end(), [](const PlotPoint& a, const PlotPoint& b) {
-    return a.x != b.x ? a.x < b.x : a.y < b.y;
-  });
-  std::vector<PlotPoint> front;
-  double best = std::numeric_limits<double>::infinity();
-  for (const PlotPoint& p : points) {
-    if (p.y >= best) continue;
-    best = p.y;
-    front.push_back(p);
-  }
-  return front;
-}
 
 std::vector<Plot> make_plots(const Results& results) {
   std::vector<Plot> plots;

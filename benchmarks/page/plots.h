@@ -37,9 +37,6 @@ struct Plot {
   bool key = false;           // names the series, below
 };
 
-// Points that no other beats in both coordinates, by ascending x.
-std::vector<PlotPoint> pareto_front(std::vector<PlotPoint> points);
-
 // All plots that these results give: a stage's error against CPU time with a panel a mesh, the
 // same of the rivals, time and memory against size, the light leak.
 std::vector<Plot> make_plots(const Results& results);

@@ -11,6 +11,7 @@
 #include "benchmarks/page/page.h"
 #include "benchmarks/page/plots.h"
 #include "benchmarks/support/compare.h"
+#include "benchmarks/support/pareto.h"
 #include "libatlas/core/vec.h"
 
 namespace atlas::bench {
@@ -187,12 +188,12 @@ TEST(Compare, SeesMissingFailedAndBrokenRows) {
 }
 
 TEST(Pareto, KeepsWhatNothingBeats) {
-  const std::vector<PlotPoint> front =
-      pareto_front({{3, 1, ""}, {1, 5, ""}, {2, 6, ""}, {2, 2, ""}, {4, 1, ""}, {1, 7, ""}});
-  ASSERT_EQ(front.size(), 3u);
-  EXPECT_EQ(front[0].y, 5);
-  EXPECT_EQ(front[1].y, 2);
-  EXPECT_EQ(front[2].x, 3);
+  using Point = std::pair<double, double>;
+  const auto x = [](const Point& p) { return p.first; };
+  const auto y = [](const Point& p) { return p.second; };
+  const std::vector<Point> points{{3, 1}, {1, 5}, {2, 6}, {2, 2}, {4, 1}, {1, 7}};
+  EXPECT_EQ(pareto_front(points, x, y), (std::vector<Point>{{1, 5}, {2, 2}, {3, 1}}));
+  EXPECT_TRUE(pareto_front(std::vector<Point>{}, x, y).empty());
 }
 
 // Where a script puts a label, in shares of the panel.
