@@ -266,7 +266,7 @@ Relaxer::Outcome ArapSolver::remove_flips(std::span<const std::uint32_t> also,
   return w_.relaxer.remove_flips(w_.elements, corners(), also, uvs);
 }
 
-bool ArapSolver::lower_tail(double bound, std::span<Vec2d> uvs) {
+Tail ArapSolver::lower_tail(double bound, std::span<Vec2d> uvs) {
   wake(uvs);
   return w_.relaxer.lower_tail(w_.elements, corners(), bound, uvs);
 }

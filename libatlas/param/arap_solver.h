@@ -43,7 +43,7 @@ class ArapSolver {
   Relaxer::Outcome remove_flips(std::span<const std::uint32_t> also, std::span<Vec2d> uvs);
 
   // Relaxer::lower_tail.
-  bool lower_tail(double bound, std::span<Vec2d> uvs);
+  Tail lower_tail(double bound, std::span<Vec2d> uvs);
 
   // Draws apart what overlaps a little; all triangles positive. Returns whether uvs are injective
   // now.

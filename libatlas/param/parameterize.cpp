@@ -162,6 +162,17 @@ Distortion unroll(const LocalMesh& mesh, const ParamOptions& options, param::Ara
   return now;
 }
 
+// For rough surfaces. What is stretched too much in more than a few places is squeezed as a whole
+// before: cuts would change nothing there.
+void lower_tail(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolver& solver,
+                ParamResult& r) {
+  const double bound = kWithin * options.max_stretch;
+  if (solver.lower_tail(bound, r.uvs) != param::Tail::wide) return;
+  solver.squeeze({bound, options.squeeze_iterations, options.squeeze_ratio}, r.uvs);
+  turn_flips(mesh, solver, r);
+  if (!any_flip(mesh, r.uvs)) solver.lower_tail(bound, r.uvs);
+}
+
 // From the solver's rotations to a finished result: flips out, then the stretch down; squeezing may
 // flip anew, hence the second round.
 void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolver& solver,
@@ -194,7 +205,7 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
     }
     if (options.local) {
       if (now.flips > 0 || (joining && now.stretch_999 > kPoorJoint * options.max_stretch)) break;
-      solver.lower_tail(kWithin * options.max_stretch, r.uvs);
+      lower_tail(mesh, options, solver, r);
       break;
     }
     if (now.flips == 0 && mesh.triangles.size() >= kLeastHopeless &&
@@ -216,7 +227,8 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
       finish(mesh, options, r);
     }
     const bool stretched = !r.within_bound && r.distortion.flips == 0;
-    if (options.local && stretched && solver.lower_tail(kWithin * options.max_stretch, r.uvs)) {
+    if (options.local && stretched &&
+        solver.lower_tail(kWithin * options.max_stretch, r.uvs) == param::Tail::lowered) {
       finish(mesh, options, r);
     }
   } else {

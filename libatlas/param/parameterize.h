@@ -34,8 +34,8 @@ struct ParamOptions {
   // The scale at which squeezing measures: the area-preserving one, as in the bound, or whichever
   // suits best, so that the ratio of the largest to the smallest singular value falls.
   bool squeeze_ratio = false;
-  // Never squeezes: within max_stretch is good enough, and what is beyond lies in small places,
-  // which alone are relaxed. For rough surfaces.
+  // Within max_stretch is good enough, and what is beyond lies in small places, which alone are
+  // relaxed; squeezes only where those are many. For rough surfaces.
   bool local = false;
   // start.uvs, all their triangles positive, are kept but where the stretch exceeds the bound: for
   // a flattening that failed, after a cut.

@@ -11,6 +11,13 @@
 
 namespace atlas::param {
 
+// Of what a bound on the stretch exceeds.
+enum class Tail : std::uint8_t {
+  lowered,  // it is within now
+  left,
+  wide  // too many triangles to be lowered one place after the other
+};
+
 // Newton steps on one vertex at a time over small neighbourhoods, three energies of each triangle's
 // map J with d = det J and f = |J|²:
 // - untangling, (f + 1 + d²) / chi(d, e) with chi = (d + sqrt(d² + e²)) / 2, finite for flipped
@@ -54,8 +61,8 @@ class Relaxer {
   // Lowers max(s1, 1/s2) of the uv-to-surface map's singular values, at the area-preserving scale,
   // where it exceeds `bound`, until 99.9 % of the area stays within it; of the rest, most of 0.1 %
   // is spared. Only what lies near those triangles moves. All triangles must be positive and stay
-  // so. uvs become the best state seen; returns whether it is within the bound.
-  bool lower_tail(std::span<const Element> elements, const CornerLists& corners, double bound,
+  // so. uvs become the best state seen.
+  Tail lower_tail(std::span<const Element> elements, const CornerLists& corners, double bound,
                   std::span<Vec2d> uvs);
 
  private:
@@ -82,6 +89,7 @@ class Relaxer {
   double least_determinant() const;
   Jacobian jacobian(std::uint32_t t) const;
   bool untangle(int sweeps);
+  void measure_again(std::span<const std::uint32_t> triangles);
   double find_tail(double from, std::vector<std::uint32_t>& out);
   void spare_worst(double bound, std::vector<std::uint32_t> tail);
 
@@ -100,7 +108,11 @@ class Relaxer {
   double mean_area_ = 0;
   double epsilon_ = 0;  // of untangling
   Energy energy_ = Energy::symmetric_dirichlet;
-  std::vector<double> stretch_;  // 1 a triangle, of find_tail()
+  struct Sizes {  // of a triangle's map, before any scale is taken out
+    double area, uv_area, large, inverse_small;
+  };
+  std::vector<Sizes> sizes_;     // 1 a triangle, of find_tail()
+  std::vector<double> stretch_;  // likewise
   std::vector<WeightedValue> ranked_;
   std::vector<std::uint8_t> spared_;  // 1 a triangle, or empty
   std::vector<Vec2d> best_;
