@@ -138,7 +138,7 @@ class ChartJob {
   bool cut_open(int cuts) {
     const int closings = effort_.whole || !noisy() ? effort_.closings : kMostClosings;
     if (noisy() && result_.within_bound && !result_.injective && closings_ < closings &&
-        close_cuts(input_.topology, chart_, crossings_to_undo(), partition_, closed_cuts_)) {
+        close_cuts(input_.topology, chart_, crossings_to_undo(), partition_, darts_)) {
       ++closings_;
       return true;
     }
@@ -149,7 +149,7 @@ class ChartJob {
     }
     if (cuts >= most_cuts() || result_.within_bound) return false;
     return !result_.offenders.empty() &&
-           cut_to_border(input_.topology, chart_, result_.offenders, closed_cuts_, partition_);
+           cut_to_border(input_.topology, chart_, result_.offenders, darts_, partition_);
   }
 
   bool cut_open_timed(int cuts) {
@@ -368,7 +368,7 @@ class ChartJob {
   ChartScratch& scratch_;
   LocalChart& chart_;
   ChartEffort effort_;
-  ClosedCuts closed_cuts_;
+  Darts darts_;
   int closings_ = 0;
   bool slits_closed_ = false;  // those that opened a chart that unrolls
   NormalCone cone_;

@@ -8,16 +8,15 @@
 namespace atlas {
 namespace {
 
-// The cuts inside one chart, as a graph over the vertices of the mesh.
+// The darts of one chart, as a graph over the vertices of the mesh.
 class CutGraph {
  public:
-  CutGraph(const Topology& topology, const LocalChart& chart, Partition& partition,
-           ClosedCuts& closed)
-      : topology_(topology), partition_(partition), closed_(closed) {
+  CutGraph(const Topology& topology, const LocalChart& chart, Partition& partition, Darts& darts)
+      : topology_(topology), partition_(partition), darts_(darts) {
     for (std::uint32_t i = 0; i < chart.opposite.size(); ++i) {
       if (chart.opposite[i] != kNoIndex) continue;
       const std::uint32_t h = 3 * chart.triangles()[i / 3] + i % 3;
-      if (!partition.seam(h)) {
+      if (!is_dart(h)) {
         node(from(h)).outer = node(to(h)).outer = true;
       } else if (h < topology.opposite[h]) {
         edges_.push_back(h);
@@ -30,7 +29,7 @@ class CutGraph {
     bool any = false;
     for (const std::uint32_t t : triangles) {
       for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-        if (!partition_.seam(h)) continue;
+        if (!is_dart(h)) continue;
         node(from(h)).zipped = node(to(h)).zipped = true;
         close(h);
         any = true;
@@ -61,11 +60,14 @@ class CutGraph {
     return v;
   }
 
+  std::uint32_t edge(std::uint32_t h) const { return std::min(h, topology_.opposite[h]); }
+
+  bool is_dart(std::uint32_t h) const { return partition_.seam(h) && darts_.cut.contains(edge(h)); }
+
   void close(std::uint32_t h) {
-    closed_.insert(std::min(h, topology_.opposite[h]));
-    for (const std::uint32_t side : {h, topology_.opposite[h]}) {
-      partition_.close(side);
-    }
+    darts_.closed.insert(edge(h));
+    partition_.close(h);
+    partition_.close(topology_.opposite[h]);
   }
 
   // A tree of cuts without a tip of its own, or of one edge away from the border, opens nothing.
@@ -92,7 +94,7 @@ class CutGraph {
 
   const Topology& topology_;
   Partition& partition_;
-  ClosedCuts& closed_;
+  Darts& darts_;
   std::vector<std::uint32_t> edges_;
   std::unordered_map<std::uint32_t, Node> nodes_;
 };
@@ -122,14 +124,13 @@ Corner lowest_corner(const LocalChart& chart, std::span<const Vec2d> uvs, std::u
 }  // namespace
 
 bool close_cuts(const Topology& topology, const LocalChart& chart,
-                std::span<const BorderCrossing> crossings, Partition& partition,
-                ClosedCuts& closed) {
+                std::span<const BorderCrossing> crossings, Partition& partition, Darts& darts) {
   std::vector<std::uint32_t> triangles;
   for (const BorderCrossing& crossing : crossings) {
     triangles.push_back(chart.triangles()[crossing.triangle_a]);
     triangles.push_back(chart.triangles()[crossing.triangle_b]);
   }
-  return CutGraph(topology, chart, partition, closed).zip(triangles);
+  return CutGraph(topology, chart, partition, darts).zip(triangles);
 }
 
 std::vector<BorderCrossing> turned_loops(const LocalChart& chart, std::span<const Vec2d> uvs) {

@@ -3,6 +3,7 @@
 #include <functional>
 #include <limits>
 #include <queue>
+#include <unordered_set>
 
 #include "libatlas/charts/split.h"
 #include "libatlas/core/glm_bridge.h"
@@ -20,12 +21,22 @@ constexpr double kSharpDefect = 0.4;
 constexpr double kFreeShare = 0.001;  // of the area, that no bound is put on
 constexpr double kFar = std::numeric_limits<double>::max();
 
+std::uint32_t whole_half_edge(const LocalChart& chart, std::uint32_t h) {
+  return 3 * chart.triangles()[h / 3] + h % 3;
+}
+
+// As Darts name it.
+std::uint32_t dart_edge(const LocalChart& chart, std::uint32_t h) {
+  return std::min(whole_half_edge(chart, h), whole_half_edge(chart, chart.opposite[h]));
+}
+
 // Shortest paths along a chart's inner edges, between vertices.
 class EdgePaths {
   using Visit = std::pair<double, std::uint32_t>;
 
  public:
-  EdgePaths(const Topology& topology, const LocalChart& chart, const ClosedCuts* avoid = nullptr)
+  EdgePaths(const Topology& topology, const LocalChart& chart,
+            const std::unordered_set<std::uint32_t>* avoid = nullptr)
       : topology_(topology),
         chart_(chart),
         avoid_(avoid && !avoid->empty() ? avoid : nullptr),
@@ -134,8 +145,7 @@ class EdgePaths {
 
   bool avoided(std::uint32_t h) const {
     if (!avoid_) return false;
-    const auto whole = [&](std::uint32_t i) { return 3 * chart_.triangles()[i / 3] + i % 3; };
-    return avoid_->contains(std::min(whole(h), whole(chart_.opposite[h])));
+    return avoid_->contains(dart_edge(chart_, h));
   }
 
   double length(std::uint32_t h) const {
@@ -160,7 +170,7 @@ class EdgePaths {
 
   const Topology& topology_;
   const LocalChart& chart_;
-  const ClosedCuts* avoid_;
+  const std::unordered_set<std::uint32_t>* avoid_;
   std::vector<std::uint32_t> out_;  // a half-edge from each vertex, the one on the border if any
   std::vector<double> distance_;
   std::vector<std::uint32_t> through_;  // the half-edge that leads to a vertex
@@ -170,9 +180,8 @@ class EdgePaths {
 void mark_seams(const LocalChart& chart, const std::vector<std::uint32_t>& path,
                 Partition& partition) {
   for (const std::uint32_t h : path) {
-    for (const std::uint32_t side : {h, chart.opposite[h]}) {
-      partition.seams[chart.triangles()[side / 3]] |= static_cast<std::uint8_t>(1u << (side % 3));
-    }
+    partition.cut(whole_half_edge(chart, h));
+    partition.cut(whole_half_edge(chart, chart.opposite[h]));
   }
 }
 
@@ -193,9 +202,10 @@ bool join_loops(const Topology& topology, const LocalChart& chart,
   for (const std::uint32_t loop : chart.loops) {
     each_vertex(loop, [&](std::uint32_t v) { loop_at[v] = loop; });
   }
+  const std::unordered_set<std::uint32_t> wanted_loops(wanted.begin(), wanted.end());
   std::size_t missing = wanted.size();
   const auto join = [&](std::uint32_t loop) {
-    missing -= std::find(wanted.begin(), wanted.end(), loop) != wanted.end();
+    missing -= wanted_loops.count(loop);
     each_vertex(loop, [&](std::uint32_t v) {
       loop_at[v] = kNoIndex;
       paths.start_at(v);
@@ -254,9 +264,8 @@ std::vector<std::uint32_t> choose_tips(const Topology& topology, const LocalChar
 }  // namespace
 
 bool cut_to_border(const Topology& topology, const LocalChart& chart,
-                   std::span<const std::uint32_t> offenders, const ClosedCuts& closed,
-                   Partition& partition) {
-  EdgePaths paths(topology, chart, &closed);
+                   std::span<const std::uint32_t> offenders, Darts& darts, Partition& partition) {
+  EdgePaths paths(topology, chart, &darts.closed);
   std::vector<std::uint32_t> tips = choose_tips(topology, chart, offenders, paths);
   if (tips.empty()) return false;
   paths.spread_from_border();
@@ -270,6 +279,7 @@ bool cut_to_border(const Topology& topology, const LocalChart& chart,
     std::vector<std::uint32_t> path = paths.way_out(*nearest);
     tips.erase(nearest);
     if (path.size() > kLongestDart) path.resize(kLongestDart);
+    for (const std::uint32_t h : path) darts.cut.insert(dart_edge(chart, h));
     mark_seams(chart, path, partition);
     any = any || !path.empty();
   }

@@ -27,20 +27,22 @@ std::vector<std::uint8_t> divide(const Topology& topology, const LocalChart& cha
 bool join_loops(const Topology& topology, const LocalChart& chart,
                 std::span<const std::uint32_t> wanted, Partition& partition);
 
-// Edges (by their lower half-edge) that were cut and closed again.
-using ClosedCuts = std::unordered_set<std::uint32_t>;
+// Cuts to single vertices, as edges by their lower half-edge.
+struct Darts {
+  std::unordered_set<std::uint32_t> cut;     // whether closed since or not
+  std::unordered_set<std::uint32_t> closed;  // of them
+};
 
 // Cuts a disc open from its border to the vertex among the offending triangles' (local ids) where
-// curvature is most concentrated; it stays a disc. False if there is none inside.
+// curvature is most concentrated; it stays a disc. Notes the edges. False if there is none inside.
 bool cut_to_border(const Topology& topology, const LocalChart& chart,
-                   std::span<const std::uint32_t> offenders, const ClosedCuts& closed,
-                   Partition& partition);
+                   std::span<const std::uint32_t> offenders, Darts& darts, Partition& partition);
 
-// Closes cuts inside a chart where their banks cross, and those that then lead to no tip: what is
-// left of a cut is a slit that does not reach the border. False if no cut is there.
+// Closes darts inside a chart where their banks cross, and those that then lead to no tip: what is
+// left of a dart is a slit that does not reach the border. Other cuts stay, for they may be what
+// makes the chart a disc. False if no dart is there.
 bool close_cuts(const Topology& topology, const LocalChart& chart,
-                std::span<const BorderCrossing> crossings, Partition& partition,
-                ClosedCuts& closed);
+                std::span<const BorderCrossing> crossings, Partition& partition, Darts& darts);
 
 // The triangles along border loops inside the outline that run around it the wrong way, each as a
 // crossing with itself: of cuts whose banks have changed sides without crossing.
