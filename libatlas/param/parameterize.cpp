@@ -87,8 +87,10 @@ constexpr double kUnrollingFall = 0.5;  // of L2 stretch less 1, in the steps of
 // The goal of relaxing single places, as part of the bound: rounding may not cross it.
 constexpr double kWithin = 1 - 1e-4;
 
-// On rough surfaces what crosses itself in more places was never drawn apart (measured).
-constexpr std::size_t kMostSeparable = 16;
+// On rough surfaces what crosses itself in more places is hardly ever drawn apart, and closing the
+// cuts that cross is cheaper: with 16, eight noisy meshes took a quarter more time for as many
+// charts.
+constexpr std::size_t kMostSeparable = 2;
 
 // Flat parts that stretch so many times the bound when they are joined never came within it
 // (measured).
