@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "libatlas/param/first_rotations.h"
 #include "libatlas/param/percentile.h"
@@ -226,8 +227,9 @@ double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
   // The mean of the 12th power of the stretch stands in for its maximum; 4, 6 and 8 reach less.
   // Damped by 1 / (power - 2) the weights settle; damped by a half they swing (measured).
   constexpr double power = 12, damping = 0.1;
-  const double log_goal = std::log(options.goal);
-  double now = update_stretch(uvs, options.ratio), best = now, before = now;
+  constexpr int soon = 2;
+  const double log_goal = std::log(options.goal), log_bound = std::log(options.bound);
+  double now = update_stretch(uvs, options.ratio), best = now, one_ago = now;
   w_.best.assign(uvs.begin(), uvs.end());
   w_.rotations.resize(w_.elements.size());
   for (int i = 0; i < options.iterations && best > log_goal; ++i) {
@@ -247,14 +249,17 @@ double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
       take_solution(uvs);
     }
     now = update_stretch(uvs, options.ratio);
+    const double two_ago = std::exchange(one_ago, best);
     if (now < best) {
-      before = best;
       best = now;
       w_.best.assign(uvs.begin(), uvs.end());
     }
-    // Steps get shorter: if as many more like the last one do not suffice, none will.
-    const double gain = before - best;
-    if (i >= 2 && best - gain * (options.iterations - 1 - i) > log_goal) break;
+    // Steps get shorter, though not each: if the rest of them, like the last two, do not suffice,
+    // none will.
+    const bool within = best <= log_bound;
+    const int rest = std::min(options.iterations - 1 - i, within ? soon : options.iterations);
+    const double gain = 0.5 * (two_ago - best);
+    if (i >= 2 && best - gain * rest > (within ? log_goal : log_bound)) break;
   }
   std::copy(w_.best.begin(), w_.best.end(), uvs.begin());
   return std::exp(best);

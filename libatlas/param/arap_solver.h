@@ -30,11 +30,12 @@ class ArapSolver {
   // their stretch and the system is solved again (iteratively reweighted least squares towards the
   // maximum norm; Burrus, Barreto and Selesnick 1994, "Iterative reweighted least-squares design of
   // FIR filters"). Ends when that stretch is at most `goal`, after `iterations`, or when it will
-  // not get there at this rate. uvs becomes the best state seen; returns its stretch.
+  // not come within `bound` at this rate or, once it is there, not soon reach the goal. uvs becomes
+  // the best state seen; returns its stretch.
   // With `ratio` the stretch is taken at the scale in the middle of its range instead of the
   // area-preserving one.
   struct Squeeze {
-    double goal;
+    double goal, bound;
     int iterations;
     bool ratio;
   };

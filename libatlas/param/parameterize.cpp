@@ -215,7 +215,8 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
       last = now;
       break;
     }
-    solver.squeeze({aim, options.squeeze_iterations, options.squeeze_ratio}, r.uvs);
+    solver.squeeze({aim, options.max_stretch, options.squeeze_iterations, options.squeeze_ratio},
+                   r.uvs);
   }
   clock.book(&Phase::solve);
   finish(mesh, options, r, last ? &*last : nullptr);
