@@ -40,6 +40,9 @@ constexpr int kMostCuts = 12, kMostClosings = 10, kLastClosings = 4;
 // large one, a crossing for so many triangles.
 constexpr std::size_t kMostCrossingsLeft = 8, kTrianglesACrossing = 150;
 constexpr int kBestIterations = 8;
+// Of triangles, in what goes on from its last attempt when some of them are gone: more would take
+// memory that large meshes need elsewhere.
+constexpr std::size_t kMostResumed = 200000;
 // Charts of so many triangles that are stretched beyond the bound over more than this share of
 // their area were saved by no cut to a vertex (measured); a hole in them may be what they close
 // around.
@@ -58,6 +61,7 @@ class ChartJob {
 
   ChartOutcome run(std::span<const std::uint32_t> triangles) {
     build(triangles);
+    kept_uvs_.assign(effort_.resumed.begin(), effort_.resumed.end());
     ChartOutcome outcome;
     if (chart_.component_count > 1) {
       outcome.parts = component_parts();
@@ -91,10 +95,17 @@ class ChartJob {
   // What the last attempt left, for the next one to go on from: a cut opens where it is made.
   void keep_uvs() {
     kept_uvs_.clear();
-    if (!noisy() || result_.uvs.empty() || result_.distortion.flips > 0) return;
+    if (noisy()) kept_uvs_ = corner_uvs();
+  }
+
+  std::vector<Vec2d> corner_uvs() const {
+    std::vector<Vec2d> uvs;
+    if (result_.uvs.empty() || result_.distortion.flips > 0) return uvs;
+    uvs.reserve(3 * chart_.corners.size());
     for (const auto& corners : chart_.corners) {
-      for (const std::uint32_t v : corners) kept_uvs_.push_back(result_.uvs[v]);
+      for (const std::uint32_t v : corners) uvs.push_back(result_.uvs[v]);
     }
+    return uvs;
   }
 
   bool try_flatten(ChartOutcome& outcome) {
@@ -191,6 +202,9 @@ class ChartJob {
       outcome.remove.clear();
     }
     for (std::uint32_t& t : outcome.remove) t = chart_.triangles()[t];
+    if (!outcome.remove.empty() && chart_.triangles().size() <= kMostResumed) {
+      outcome.uvs = corner_uvs();
+    }
   }
 
   bool noisy() const { return !input_.topology.calm_normals.empty(); }
@@ -283,6 +297,7 @@ class ChartJob {
       }
       param.start.uvs = start_uvs_;
       param.resume = true;
+      param.aimed_stretch = 0;
     } else if (!effort_.joined.empty()) {
       param.joined = effort_.joined;
     } else if (!input_.frames.empty()) {

@@ -27,6 +27,7 @@ struct ChartOutcome {
   std::vector<std::uint32_t> remove;  // triangles whose going would help; parts is set as well, for
                                       // when no neighbour takes them
   std::size_t crossings = 0;          // of its border, that remove is to undo
+  std::vector<Vec2d> uvs;             // with remove, 3 a triangle: what to go on from
   bool failed = false;                // could not be flattened as it was
 };
 
@@ -36,6 +37,8 @@ struct ChartEffort {
   int closings = 1;  // rounds, among these, of closing cuts whose banks cross
   // 3 a triangle, or empty: of flat parts that are to be joined (see ParamOptions::joined).
   std::span<const Vec2d> joined = {};
+  // 3 a triangle, or empty: where an earlier attempt came to that was within the bound.
+  std::span<const Vec2d> resumed = {};
   bool whole = false;  // what fails needs no division: its parts are a single one
 };
 

@@ -87,8 +87,9 @@ class Flattener {
         for (std::size_t i = begin; i < end; ++i) {
           const State& state = charts_[todo_[i]];
           fit_scratch(state.triangles.size(), *scratch);
-          ChartOutcome outcome = flatten_chart(input_, partition_, state.triangles,
-                                               {.rings = removal_rings(state)}, *scratch);
+          ChartOutcome outcome =
+              flatten_chart(input_, partition_, state.triangles,
+                            {.rings = removal_rings(state), .resumed = state.uvs}, *scratch);
           if (outcome.parts.empty()) {
             flats_[todo_[i]] = std::move(outcome.flat);
           } else {
@@ -126,6 +127,7 @@ class Flattener {
  private:
   struct State {
     std::vector<std::uint32_t> triangles;  // ascending
+    std::vector<Vec2d> uvs;                // 3 a triangle, to go on from, or empty
     int removals = 0;
     std::size_t crossings = std::numeric_limits<std::size_t>::max();  // the last removal's
     bool queued = false;
@@ -195,7 +197,7 @@ class Flattener {
   }
 
   // False if none could go, or when the last ones went more edges crossed.
-  bool remove(std::uint32_t chart, const ChartOutcome& failure) {
+  bool remove(std::uint32_t chart, ChartOutcome& failure) {
     State& state = charts_[chart];
     if (failure.remove.empty() || state.removals >= kMaxRemovals) return false;
     if (failure.crossings > state.crossings) return false;
@@ -209,8 +211,10 @@ class Flattener {
       moved_.push_back(t);
       any = true;
     }
-    if (any) queue(chart);
-    return any;
+    if (!any) return false;
+    state.uvs = std::move(failure.uvs);
+    queue(chart);
+    return true;
   }
 
   // The longest edge of t to another chart.
@@ -232,6 +236,7 @@ class Flattener {
     // Triangles that came from neighbours in this round stay with part 0.
     const std::vector<std::uint32_t> triangles = std::move(charts_[chart].triangles);
     charts_[chart].triangles.clear();
+    charts_[chart].uvs.clear();
     charts_[chart].crossings = State{}.crossings;
     std::vector<std::uint32_t> name(1 + *std::max_element(parts.begin(), parts.end()), kNoIndex);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -247,19 +252,32 @@ class Flattener {
     queue(chart);
   }
 
+  // Takes triangles from the chart's list that have gone to others.
+  void drop_lost(std::uint32_t chart) {
+    State& state = charts_[chart];
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < state.triangles.size(); ++i) {
+      if (partition_.chart[state.triangles[i]] != chart) continue;
+      if (!state.uvs.empty()) std::copy_n(&state.uvs[3 * i], 3, &state.uvs[3 * kept]);
+      state.triangles[kept++] = state.triangles[i];
+    }
+    state.triangles.resize(kept);
+    if (!state.uvs.empty()) state.uvs.resize(3 * kept);
+  }
+
   // Brings the lists up to date with the partition after triangles moved.
   void relist() {
     if (moved_.empty()) return;
-    for (const std::uint32_t chart : todo_) {
-      std::erase_if(charts_[chart].triangles,
-                    [&](std::uint32_t t) { return partition_.chart[t] != chart; });
-    }
+    for (const std::uint32_t chart : todo_) drop_lost(chart);
     std::sort(moved_.begin(), moved_.end());
     moved_.erase(std::unique(moved_.begin(), moved_.end()), moved_.end());
     for (const std::uint32_t t : moved_) {
       auto& list = charts_[partition_.chart[t]].triangles;
       const auto at = std::lower_bound(list.begin(), list.end(), t);
-      if (at == list.end() || *at != t) list.insert(at, t);
+      if (at == list.end() || *at != t) {
+        list.insert(at, t);
+        charts_[partition_.chart[t]].uvs.clear();
+      }
       if (!std::exchange(charts_[partition_.chart[t]].grown, true)) {
         grown_.push_back(partition_.chart[t]);
       }
