@@ -366,7 +366,7 @@ TrialOutcome Trial::run_joined(std::span<const std::uint32_t> first,
   }
   outcome.euler = static_cast<int>(positions_.size() + joined_sides / 2) - static_cast<int>(rims);
   if (outcome.euler > 1 || triangles_.empty()) return outcome;
-  if (limits.hopeless && outcome.euler == 1) return outcome;
+  if (limits.hopeless) return outcome;
   align(first.size(), glue);
   if (limits.unrolls && outcome.euler == 1 && fits_unrolled(outcome)) {
     TrialLimits shape = limits;

@@ -26,7 +26,7 @@ struct TrialLimits {
   double fill = 0.58;     // share of its smallest rectangle
   int iterations = 5;
   bool unrolls = false;   // both charts unroll: where they fit each other, no descent is needed
-  bool hopeless = false;  // refuse it unseen, unless the glue does not make a disc
+  bool hopeless = false;  // refuse it unseen, but say whether the glue makes a disc
 };
 
 struct TrialOutcome {
