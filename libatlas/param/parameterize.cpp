@@ -175,7 +175,7 @@ void lower_tail(const LocalMesh& mesh, const ParamOptions& options, param::ArapS
                 ParamResult& r) {
   const double bound = kWithin * options.max_stretch;
   if (solver.lower_tail(bound, r.uvs) != param::Tail::wide) return;
-  solver.squeeze({bound, options.squeeze_iterations, options.squeeze_ratio}, r.uvs);
+  solver.squeeze({bound, bound, options.squeeze_iterations, options.squeeze_ratio}, r.uvs);
   turn_flips(mesh, solver, r);
   if (!any_flip(mesh, r.uvs)) solver.lower_tail(bound, r.uvs);
 }
