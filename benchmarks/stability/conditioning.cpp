@@ -189,12 +189,12 @@ double forward_error(const SymmetricMatrix& k, const Vector& x, const Vector& b)
 }
 
 struct System {
-  std::vector<param::Element> elements;
+  param::Elements elements;
   SymmetricMatrix matrix;
   Vector load;
 
   explicit System(const PolarDisc& disc) {
-    param::build_elements(disc.mesh(), 0, elements);
+    elements.build(disc.mesh(), 0);
     param::CornerLists corners;
     corners.build(elements, disc.positions.size());
     param::build_stiffness(elements, corners, matrix);
@@ -205,7 +205,7 @@ struct System {
   }
   double area() const {
     double sum = 0;
-    for (const param::Element& e : elements) sum += e.area();
+    for (std::size_t t = 0; t < elements.size(); ++t) sum += elements[t].area();
     return sum;
   }
 };
@@ -230,9 +230,9 @@ void check_solvers(CheckList& list, const PolarDisc& disc, Row& row) {
   param::HalfEdges half_edges;
   half_edges.build(mesh);
   param::MultigridSolver multigrid;
-  std::fill(x.begin(), x.end(), glm::dvec2(0));
-  const bool iterated = multigrid.build(s.elements, half_edges, x.size()) &&
-                        multigrid.solve({1e-11 * s.area(), 0, 60}, s.load, x);
+  std::vector<Vec2d> uvs(x.size());
+  const bool iterated = multigrid.build(s.elements, half_edges, uvs.size()) &&
+                        multigrid.solve({1e-11 * s.area(), 0, 60}, s.load, uvs);
   row.values = {{"condition", cond},
                 {"residual", left},
                 {"error", error},

@@ -301,7 +301,9 @@ class ChartJob {
     } else if (!effort_.joined.empty()) {
       param.joined = effort_.joined;
     } else if (!input_.frames.empty()) {
-      param.start.frames = {input_.frames, chart_.triangles()};
+      param.start.frames = [this](std::size_t i) {
+        return input_.frames.at(input_.topology, chart_.triangles()[i]);
+      };
     }
     return param;
   }
@@ -356,6 +358,7 @@ class ChartJob {
   bool flatten(ChartOutcome& outcome) {
     if (!unroll()) {
       const LocalMesh mesh = chart_.mesh();
+      result_ = {};  // large, and needed no more
       result_ = parameterize(mesh, param_options(mesh), scratch_.workspace);
     }
     const bool single = chart_.triangles().size() == 1;

@@ -1,5 +1,7 @@
 #include "libatlas/charts/local_chart.h"
 
+#include <algorithm>
+
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -16,15 +18,7 @@ void LocalChart::build(const Topology& topology, Partition& partition,
   triangles_ = triangles;
   const auto n = static_cast<std::uint32_t>(triangles.size());
   for (std::uint32_t i = 0; i < n; ++i) partition.local[triangles[i]] = i;
-  const std::uint32_t chart = partition.chart[triangles[0]];
-  opposite.assign(3 * std::size_t{n}, kNoIndex);
-  for (std::uint32_t i = 0; i < n; ++i) {
-    for (std::uint32_t c = 0; c < 3; ++c) {
-      const std::uint32_t h = 3 * triangles[i] + c, o = topology.opposite[h];
-      if (o == kNoIndex || partition.chart[o / 3] != chart || partition.seam(h)) continue;
-      opposite[3 * i + c] = 3 * partition.local[o / 3] + o % 3;
-    }
-  }
+  link(topology, partition);
   find_components();
   number_vertices(topology);
   find_loops();
@@ -33,6 +27,28 @@ void LocalChart::build(const Topology& topology, Partition& partition,
     std::vector<std::uint8_t>().swap(seen_);
     if (component_count == 1) std::vector<std::uint32_t>().swap(component);
   }
+}
+
+// A chart that is the whole mesh, and not cut, takes the mesh's links as they are: what such a mesh
+// takes is the most that any does.
+void LocalChart::link(const Topology& topology, const Partition& partition) {
+  const auto n = static_cast<std::uint32_t>(triangles_.size());
+  const auto cut = [](std::uint8_t seams) { return seams != 0; };
+  if (n == topology.triangle_count() &&
+      std::none_of(partition.seams.begin(), partition.seams.end(), cut)) {
+    opposite = topology.opposite;
+    return;
+  }
+  const std::uint32_t chart = partition.chart[triangles_[0]];
+  linked_.assign(3 * std::size_t{n}, kNoIndex);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      const std::uint32_t h = 3 * triangles_[i] + c, o = topology.opposite[h];
+      if (o == kNoIndex || partition.chart[o / 3] != chart || partition.seam(h)) continue;
+      linked_[3 * i + c] = 3 * partition.local[o / 3] + o % 3;
+    }
+  }
+  opposite = linked_;
 }
 
 // A local vertex is a fan of corners joined by edges of the chart, so that a vertex where only
@@ -45,7 +61,6 @@ void LocalChart::number_vertices(const Topology& topology) {
   vertex.clear();
   density.clear();
   const auto corner = [&](std::uint32_t h) -> std::uint32_t& { return corners[h / 3][h % 3]; };
-  const Vec3f first = topology.points[topology.corner_vertex[3 * std::size_t{triangles_[0]}]];
   for (std::uint32_t i = 0; i < 3 * n; ++i) {
     const std::uint32_t start = n < kManyTriangles ? i : 3 * queue_[i / 3] + i % 3;
     if (n >= kManyTriangles && i / 3 + kAhead < n) {
@@ -59,8 +74,7 @@ void LocalChart::number_vertices(const Topology& topology) {
     const std::uint32_t v =
         topology.corner_vertex[3 * std::size_t{triangles_[start / 3]} + start % 3];
     vertex.push_back(v);
-    const Vec3f p = topology.points[v];
-    positions.push_back({double(p.x) - first.x, double(p.y) - first.y, double(p.z) - first.z});
+    positions.push_back(topology.points[v]);
     corner(start) = id;
     std::uint32_t h = start;
     for (;;) {

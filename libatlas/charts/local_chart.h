@@ -28,20 +28,37 @@ struct Partition {
 // Half-edge 3 i + c belongs to the chart's i-th triangle.
 class LocalChart {
  public:
+  LocalChart() = default;
+  LocalChart(LocalChart&&) = default;  // no copies: `opposite` may point into the chart
+  LocalChart& operator=(LocalChart&&) = default;
+
+  // Relative to the first one, scaled as the topology; kept in single precision, as they are there.
+  class Positions {
+   public:
+    void clear() { points_.clear(); }
+    void push_back(const Vec3f& point) { points_.push_back(point); }
+    std::size_t size() const { return points_.size(); }
+    Vec3d operator[](std::size_t v) const { return view()[v]; }
+    PositionView view() const { return {points_, points_.empty() ? Vec3f{} : points_[0]}; }
+
+   private:
+    std::vector<Vec3f> points_;
+  };
+
   // `triangles` is the whole chart; its triangles carry the same Partition::chart.
   void build(const Topology& topology, Partition& partition,
              std::span<const std::uint32_t> triangles);
 
   std::span<const std::uint32_t> triangles() const { return triangles_; }
-  LocalMesh mesh() const { return {positions, corners, density, opposite}; }
+  LocalMesh mesh() const { return {positions.view(), corners, density, opposite}; }
 
-  std::vector<Vec3d> positions;  // relative to the first vertex, scaled as the topology
+  Positions positions;
   std::vector<std::array<std::uint32_t, 3>> corners;
-  std::vector<double> density;          // filled by the caller, or empty
-  std::vector<std::uint32_t> vertex;    // 1 a position: of the topology
-  std::vector<std::uint32_t> opposite;  // 1 a half-edge; kNoIndex at the border
-  std::vector<std::uint32_t> loops;     // one half-edge of each border loop
-  std::uint32_t border_count = 0;       // half-edges on the border
+  std::vector<double> density;              // filled by the caller, or empty
+  std::vector<std::uint32_t> vertex;        // 1 a position: of the topology
+  std::span<const std::uint32_t> opposite;  // 1 a half-edge; kNoIndex at the border
+  std::vector<std::uint32_t> loops;         // one half-edge of each border loop
+  std::uint32_t border_count = 0;           // half-edges on the border
   std::uint32_t component_count = 0;
   std::vector<std::uint32_t> component;  // 1 a triangle; may be empty where there is but one
 
@@ -57,11 +74,13 @@ class LocalChart {
   }
 
  private:
+  void link(const Topology& topology, const Partition& partition);
   void number_vertices(const Topology& topology);
   void find_loops();
   void find_components();
 
   std::span<const std::uint32_t> triangles_;
+  std::vector<std::uint32_t> linked_;  // `opposite`, unless that is the topology's
   std::vector<std::uint8_t> seen_;
   std::vector<std::uint32_t> queue_;  // its triangles, breadth-first
 };

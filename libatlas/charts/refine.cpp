@@ -112,8 +112,8 @@ bool ConeLimit::excludes(const Vec3f& normal, std::uint32_t chart) const {
   return !axes.empty() && glm::dot(to_dvec(normal), to_dvec(axes[chart])) < least_cosine;
 }
 
-std::array<Vec3f, 2> carry_frame(const Topology& topology, const std::array<Vec3f, 2>& frame,
-                                 std::uint32_t from, std::uint32_t to) {
+Frames::Frame carry_frame(const Topology& topology, const Frames::Frame& frame, std::uint32_t from,
+                          std::uint32_t to) {
   const glm::dvec3 a = to_dvec(topology.normals[from]), b = to_dvec(topology.normals[to]);
   const double cosine = glm::dot(a, b);
   if (cosine < -0.99) return frame;
@@ -130,7 +130,7 @@ void move_triangle(const Topology& topology, std::uint32_t h, Partition& partiti
                    Frames& frames) {
   const std::uint32_t t = h / 3, to = topology.opposite[h] / 3;
   partition.chart[t] = partition.chart[to];
-  if (!frames.empty()) frames[t] = carry_frame(topology, frames[to], to, t);
+  if (!frames.empty()) frames.put(t, carry_frame(topology, frames.at(topology, to), to, t));
   for (std::uint32_t g = 3 * t; g < 3 * t + 3; ++g) {
     if (!partition.seam(g)) continue;
     const std::uint32_t o = topology.opposite[g];

@@ -1,17 +1,15 @@
 // Internal: moves single triangles between charts, to make seams shorter or charts easier.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "libatlas/charts/frames.h"
 #include "libatlas/charts/local_chart.h"
 #include "libatlas/charts/topology.h"
 
 namespace atlas {
-
-using Frames = std::vector<std::array<Vec3f, 2>>;  // 1 a triangle, see IsometricStart::frames
 
 // Hands triangle t to the chart across half-edge h of it, with a frame that fits there.
 void move_triangle(const Topology& topology, std::uint32_t h, Partition& partition, Frames& frames);
@@ -41,7 +39,7 @@ void smooth_borders(const Topology& topology, const BorderRules& rules, Partitio
                     Frames& frames);
 
 // The frame of triangle `from` carried to `to`, across their common edge.
-std::array<Vec3f, 2> carry_frame(const Topology& topology, const std::array<Vec3f, 2>& frame,
-                                 std::uint32_t from, std::uint32_t to);
+Frames::Frame carry_frame(const Topology& topology, const Frames::Frame& frame, std::uint32_t from,
+                          std::uint32_t to);
 
 }  // namespace atlas

@@ -43,17 +43,6 @@ Frame cell_frame(const CoarseMesh& mesh, const CoarseUv& uv, std::uint32_t k) {
   return {c * u - s * v, s * u + c * v};
 }
 
-// Turns a frame with the shortest rotation that takes normal a to normal b.
-Frame transport(const Frame& frame, const glm::dvec3& a, const glm::dvec3& b) {
-  const double cosine = glm::dot(a, b);
-  if (cosine < -0.99) return frame;
-  const glm::dvec3 axis = glm::cross(a, b);
-  const auto turn = [&](const glm::dvec3& x) {
-    return cosine * x + glm::cross(axis, x) + axis * (glm::dot(axis, x) / (1 + cosine));
-  };
-  return {turn(frame[0]), turn(frame[1])};
-}
-
 // One way to cut a mesh, or pieces of one, into charts.
 struct Attempt {
   Cells cells;
@@ -82,15 +71,17 @@ void spread_to_triangles(const Chosen& chosen, std::uint32_t first_label, Segmen
   const Topology& topology = chosen.topology;
   const auto& [cells, coarse, merged] = chosen.attempt;
   Partition& partition = result.partition;
-  std::vector<Frame> frames(coarse.cells.size());
-  for (std::uint32_t k = 0; k < frames.size(); ++k) frames[k] = cell_frame(coarse, merged.uv, k);
+  std::vector<std::uint32_t> frames(coarse.cells.size());
+  for (std::uint32_t k = 0; k < frames.size(); ++k) {
+    const Frame frame = cell_frame(coarse, merged.uv, k);
+    frames[k] =
+        result.frames.add({coarse.cells[k].normal, {from_glm(frame[0]), from_glm(frame[1])}});
+  }
   for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
     if (!chosen.takes(t)) continue;
     const std::uint32_t k = cells.of_triangle[t];
     partition.chart[chosen.name(t)] = first_label + merged.chart_of_cell[k];
-    const Frame frame =
-        transport(frames[k], to_glm(coarse.cells[k].normal), to_dvec(topology.normals[t]));
-    result.frames[chosen.name(t)] = {from_glm(glm::vec3(frame[0])), from_glm(glm::vec3(frame[1]))};
+    result.frames.share(chosen.name(t), frames[k]);
   }
   for (std::size_t i = 0; i < coarse.rim_half_edges.size(); ++i) {
     const std::uint32_t h = coarse.rim_half_edges[i], o = topology.opposite[h];

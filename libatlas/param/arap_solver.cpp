@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "libatlas/core/clock.h"
 #include "libatlas/param/first_rotations.h"
 #include "libatlas/param/percentile.h"
 
@@ -40,14 +41,12 @@ ArapSolver::ArapSolver(const LocalMesh& mesh, double min_altitude, ParamWorkspac
 }
 
 void ArapSolver::build() {
-  build_elements(mesh_, min_altitude_, w_.elements);
-  w_.load.resize(mesh_.positions.size());
-  w_.solution.resize(mesh_.positions.size());
+  w_.elements.build(mesh_, min_altitude_);
 }
 
 void ArapSolver::rest() {
   if (mesh_.positions.size() < large_mesh || method_ != Method::multigrid) return;
-  give_back(w_.elements);
+  w_.elements.give_back();
   give_back(w_.load);
   give_back(w_.solution);
   give_back(w_.rotations);
@@ -73,13 +72,23 @@ void ArapSolver::build_stiffness() {
 void ArapSolver::factorize() {
   factorized_ = true;
   area_ = 0;
-  for (const Element& e : w_.elements) area_ += e.weight * e.area();
+  for (std::size_t t = 0; t < w_.elements.size(); ++t) {
+    const Element e = w_.elements[t];
+    area_ += e.weight * e.area();
+  }
   const std::size_t n = mesh_.positions.size();
   if (n > direct_limit) {
     w_.half_edges.build(mesh_);
     method_ = Method::multigrid;
-    if (w_.multigrid.build(w_.elements, w_.half_edges, n)) return;
+    if (w_.multigrid.build(w_.elements, w_.half_edges, n)) {
+      // A twenty-fifth of what the program holds by now are gaps that the set-up left.
+      if (n >= large_mesh && !weighted_) return_freed_memory();
+      w_.load.resize(n);  // no sooner: the set-up has arrays of its own
+      return;
+    }
   }
+  w_.load.resize(n);
+  w_.solution.resize(n);
   if (n > envelope_limit) {
     factorize_directly();
   } else {
@@ -101,35 +110,40 @@ void ArapSolver::factorize_directly() {
   analyzed_ = true;
 }
 
-// Solves for w_.load, which is not kept; w_.solution comes in as a guess.
-void ArapSolver::solve(const Inexactness& inexactness) {
-  if (method_ == Method::direct) return w_.direct.solve(w_.load, w_.solution);
-  if (method_ == Method::envelope) return w_.envelope.solve(w_.load, w_.solution);
-  const MultigridAccuracy accuracy{inexactness.area_share * area_, inexactness.found_share,
-                                   most_iterations};
-  if (w_.multigrid.solve(accuracy, w_.load, w_.solution)) return;
-  factorize_directly();  // slivers can make the iteration slow
-  w_.change.resize(w_.solution.size());
-  if (method_ == Method::direct) w_.direct.solve(w_.load, w_.change);
-  if (method_ == Method::envelope) w_.envelope.solve(w_.load, w_.change);
-  for (std::size_t v = 0; v < w_.change.size(); ++v) w_.solution[v] += w_.change[v];
+// Solves for w_.load, which is not kept; uvs come in as a guess.
+void ArapSolver::solve(const Inexactness& inexactness, std::span<Vec2d> uvs) {
+  if (method_ == Method::multigrid) {
+    const MultigridAccuracy accuracy{inexactness.area_share * area_, inexactness.found_share,
+                                     most_iterations};
+    if (w_.multigrid.solve(accuracy, w_.load, uvs)) return;
+    w_.solution.resize(uvs.size());
+    factorize_directly();  // slivers can make the iteration slow
+    solve_directly();
+    for (std::size_t v = 0; v < uvs.size(); ++v) {
+      uvs[v] = from_glm(to_glm(uvs[v]) + w_.solution[v]);
+    }
+    return;
+  }
+  solve_directly();
+  for (std::size_t v = 0; v < uvs.size(); ++v) uvs[v] = from_glm(w_.solution[v]);
 }
 
-void ArapSolver::take_solution(std::span<Vec2d> uvs) const {
-  for (std::size_t v = 0; v < uvs.size(); ++v) uvs[v] = from_glm(w_.solution[v]);
+void ArapSolver::solve_directly() {
+  if (method_ == Method::direct) w_.direct.solve(w_.load, w_.solution);
+  if (method_ == Method::envelope) w_.envelope.solve(w_.load, w_.solution);
 }
 
 void ArapSolver::start(const IsometricStart& start) {
   if (resting_) build();
   resting_ = false;
   if (weighted_) {
-    for (Element& e : w_.elements) e.weight = 1;
+    w_.elements.reset_weights();
     factorize();
     weighted_ = false;
   }
   if (!start.uvs.empty()) return this->start(start.uvs);
-  std::fill(w_.solution.begin(), w_.solution.end(), glm::dvec2(0));
-  if (!start.frames.empty()) {
+  guess_ = {};
+  if (start.frames) {
     rotations_from_frames(mesh_, start.frames, w_);
   } else {
     carry_rotations(mesh_, w_);
@@ -139,7 +153,7 @@ void ArapSolver::start(const IsometricStart& start) {
 void ArapSolver::start(std::span<const Vec2d> uvs) {
   if (resting_) build();
   resting_ = false;
-  for (std::size_t v = 0; v < uvs.size(); ++v) w_.solution[v] = to_glm(uvs[v]);
+  guess_ = uvs;
   local_rotations(w_.elements, uvs, w_.rotations);
 }
 
@@ -147,7 +161,7 @@ void ArapSolver::join(std::span<const Vec2d> corner_uvs, std::span<Vec2d> uvs) {
   if (!factorized_) factorize();
   std::fill(w_.load.begin(), w_.load.end(), glm::dvec2(0));
   for (std::size_t t = 0; t < w_.elements.size(); ++t) {
-    const Element& e = w_.elements[t];
+    const Element e = w_.elements[t];
     const auto& corners = mesh_.triangles[t];  // the element may begin at another one
     const std::size_t first = corners[0] == e.v[0] ? 0 : corners[1] == e.v[0] ? 1 : 2;
     std::array<glm::dvec2, 3> p;
@@ -156,29 +170,37 @@ void ArapSolver::join(std::span<const Vec2d> corner_uvs, std::span<Vec2d> uvs) {
     const auto gradients = e.area_gradients();
     for (std::size_t i = 0; i < 3; ++i) {
       w_.load[e.v[i]] += double(e.weight) * (gradients[i].x * j.x + gradients[i].y * j.y);
-      w_.solution[e.v[i]] = p[i];
+      uvs[e.v[i]] = from_glm(p[i]);
     }
   }
-  solve(Inexactness{fine, 0});
-  take_solution(uvs);
+  solve(Inexactness{fine, 0}, uvs);
   start(uvs);
+}
+
+// uvs become what the first solve starts from.
+void ArapSolver::take_guess(std::span<Vec2d> uvs) {
+  if (guess_.empty()) {
+    std::fill(uvs.begin(), uvs.end(), Vec2d{});
+  } else if (guess_.data() != uvs.data()) {
+    std::copy(guess_.begin(), guess_.end(), uvs.begin());
+  }
+  guess_ = uvs;  // of the next call
 }
 
 void ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
   wake(uvs);
   if (!factorized_) factorize();
   rotation_load(w_.elements, w_.rotations, w_.load);
-  solve({steps == 1 ? fine : first_inexactness, 0});
+  take_guess(uvs);
+  solve({steps == 1 ? fine : first_inexactness, 0}, uvs);
   bool exact = true;
   for (int i = 1;; ++i) {
-    take_solution(uvs);
     if (i >= steps) return;
     if (i == 1 && method_ == Method::multigrid) {
       exact = !energy_exceeds(may_unroll * area_, w_.elements, uvs);
       if (exact) {
         rotation_load(w_.elements, w_.rotations, w_.load);
-        solve({exact_first, 0});
-        take_solution(uvs);
+        solve({exact_first, 0}, uvs);
       }
     }
     const double fall = update_rotations(w_.elements, uvs, w_.rotations, w_.load);
@@ -187,9 +209,9 @@ void ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
     if (still) steps = i + 1;
     const bool last = i + 1 == steps;
     if (exact) {
-      solve({last ? fine : exact_first, 0});
+      solve({last ? fine : exact_first, 0}, uvs);
     } else {
-      solve({fine, last ? fine_share : rough_share});
+      solve({fine, last ? fine_share : rough_share}, uvs);
     }
   }
 }
@@ -202,7 +224,7 @@ double ArapSolver::update_stretch(std::span<const Vec2d> uvs, bool ratio) {
   w_.stretch.resize(w_.elements.size());
   w_.sigma.resize(w_.elements.size());
   for (std::size_t t = 0; t < w_.elements.size(); ++t) {
-    const Element& e = w_.elements[t];
+    const Element e = w_.elements[t];
     const Jacobian j = e.jacobian(to_glm(uvs[e.v[0]]), to_glm(uvs[e.v[1]]), to_glm(uvs[e.v[2]]));
     const SingularValues s = w_.sigma[t] = singular_values(j);
     area += e.area();
@@ -236,17 +258,15 @@ double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
     for (std::size_t t = 0; t < w_.elements.size(); ++t) {
       // The outermost 0.1 % may stay as it is: more weight to it would only spoil the rest.
       const double r = std::clamp(w_.stretch[t] / now, 0.05, 1.0);
-      float& weight = w_.elements[t].weight;
-      weight = static_cast<float>(
-          std::exp((1 - damping) * std::log(double(weight)) + damping * (power - 2) * std::log(r)));
+      const double weight = w_.elements[t].weight;
+      w_.elements.set_weight(t, static_cast<float>(std::exp((1 - damping) * std::log(weight) +
+                                                            damping * (power - 2) * std::log(r))));
     }
     weighted_ = true;
     factorize();
-    for (std::size_t v = 0; v < uvs.size(); ++v) w_.solution[v] = to_glm(uvs[v]);
     for (int k = 0; k < 2; ++k) {
       update_rotations(w_.elements, uvs, w_.rotations, w_.load);
-      solve({fine, fine_share});
-      take_solution(uvs);
+      solve({fine, fine_share}, uvs);
     }
     now = update_stretch(uvs, options.ratio);
     const double two_ago = std::exchange(one_ago, best);

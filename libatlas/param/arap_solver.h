@@ -74,13 +74,15 @@ class ArapSolver {
   struct Inexactness {
     double area_share, found_share;
   };
-  void solve(const Inexactness& inexactness);
-  void take_solution(std::span<Vec2d> uvs) const;
+  void solve(const Inexactness& inexactness, std::span<Vec2d> uvs);
+  void solve_directly();
+  void take_guess(std::span<Vec2d> uvs);
   double update_stretch(std::span<const Vec2d> uvs, bool ratio);
 
   const LocalMesh& mesh_;
   double min_altitude_;
   ParamWorkspace::Impl& w_;
+  std::span<const Vec2d> guess_;  // where the first solve starts; empty: from zero
   Method method_ = Method::envelope;
   bool analyzed_ = false, ordered_ = false;  // by the direct and the envelope solver
   bool cornered_ = false;                    // the workspace's corner lists are this mesh's

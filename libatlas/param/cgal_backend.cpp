@@ -40,7 +40,10 @@ bool cgal_backend_built() {
 
 Status cgal_parameterize(const LocalMesh& mesh, CgalMethod method, std::span<Vec2d> uvs) {
   Mesh m;
-  for (const Vec3d& p : mesh.positions) m.add_vertex({p.x, p.y, p.z});
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3d p = mesh.positions[v];
+    m.add_vertex({p.x, p.y, p.z});
+  }
   for (const auto& t : mesh.triangles) {
     m.add_face(Mesh::Vertex_index(t[0]), Mesh::Vertex_index(t[1]), Mesh::Vertex_index(t[2]));
   }

@@ -18,12 +18,13 @@ constexpr std::size_t most_steps = 100;
 }  // namespace
 
 template <class Real>
-bool Coarsening<Real>::run(const GraphLaplacian<Real>& a, std::vector<Real>& inverse_diagonal,
+bool Coarsening<Real>::run(GraphLaplacian<Real>& a, std::vector<Real>& inverse_diagonal,
                            GraphRows<Real>& prolongation, GraphLaplacian<Real>& coarse) {
   measure_diagonal(a, inverse_diagonal);
   groups_ = aggregate(a);
   if (groups_ > a.rows() / 2) return false;
   prolongate(a, prolongation);
+  if (a.rows() > large_system) a.upper = {};
   if (!couple_groups(a)) return false;
   gather(coarse);
   return true;
@@ -91,8 +92,8 @@ void Coarsening<Real>::prolongate(const GraphLaplacian<Real>& a, GraphRows<Real>
   const auto n = static_cast<std::uint32_t>(a.rows());
   out.first.resize(n + 1);
   out.entries.clear();
-  // Room that is not used costs nothing in large charts: no memory is behind it.
-  out.entries.reserve(n + a.lower.entries.size() + a.upper.entries.size());
+  // A row has some three entries, and as many edges.
+  out.entries.reserve(n + a.lower.entries.size());
   place_.assign(groups_, 0);
   for (std::uint32_t i = 0; i < n; ++i) {
     const auto begin = static_cast<std::uint32_t>(out.entries.size());

@@ -10,6 +10,10 @@
 
 namespace atlas::param {
 
+// Rows above which memory is given back as soon as it is needed no more: what charts of some
+// hundred thousand triangles need for a moment would double what they need.
+inline constexpr std::size_t large_system = 20000;
+
 // Neighbourhoods of strongly joined vertices become the unknowns of the next level; interpolation
 // between them is smoothed (Vanek, Mandel and Brezina 1996, "Algebraic multigrid by smoothed
 // aggregation for second and fourth order elliptic problems"). The next level's matrix is not the
@@ -21,8 +25,9 @@ template <class Real>
 class Coarsening {
  public:
   // The prolongation has rows of sum one; inverse_diagonal is a's, 0 where it is not positive.
-  // False: it is not worth it (many vertices without strong neighbours, or of huge valence).
-  bool run(const GraphLaplacian<Real>& a, std::vector<Real>& inverse_diagonal,
+  // Of a large matrix the lower half is left, which is all that cycles need. False: it is not worth
+  // it (many vertices without strong neighbours, or of huge valence).
+  bool run(GraphLaplacian<Real>& a, std::vector<Real>& inverse_diagonal,
            GraphRows<Real>& prolongation, GraphLaplacian<Real>& coarse);
 
  private:

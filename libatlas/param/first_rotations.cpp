@@ -125,7 +125,7 @@ void rotations_from_frames(const LocalMesh& mesh, const FrameView& frames,
                            ParamWorkspace::Impl& w) {
   w.rotations.resize(w.elements.size());
   for (std::size_t t = 0; t < w.elements.size(); ++t) {
-    const Jacobian j = map_of_frame(mesh, w.elements[t], frames[t]);
+    const Jacobian j = map_of_frame(mesh, w.elements[t], frames(t));
     w.rotations[t] = trustworthy(j) ? glm::vec2(nearest_rotation(j)) : glm::vec2(0);
   }
   complete_rotations(mesh, w);

@@ -6,12 +6,12 @@
 namespace atlas::param {
 
 template <class Real>
-double edge_couplings(std::span<const Element> elements, const HalfEdges& half_edges,
+double edge_couplings(const Elements& elements, const HalfEdges& half_edges,
                       std::vector<Real>& out) {
   double largest = 0;
   out.resize(3 * elements.size());
   for (std::uint32_t t = 0; t < elements.size(); ++t) {
-    const Element& e = elements[t];
+    const Element e = elements[t];
     const auto& corners = half_edges.corners(t);
     const std::uint32_t base = 3 * t + (corners[0] == e.v[0] ? 0 : corners[1] == e.v[0] ? 1 : 2);
     // Half the cotangents of the angles that face the edges, the base and the two others.
@@ -45,10 +45,8 @@ void build_graph(std::span<const Real> couplings, const HalfEdges& half_edges, s
   gather_edges(vertices, each, out);
 }
 
-template double edge_couplings<float>(std::span<const Element>, const HalfEdges&,
-                                      std::vector<float>&);
-template double edge_couplings<double>(std::span<const Element>, const HalfEdges&,
-                                       std::vector<double>&);
+template double edge_couplings<float>(const Elements&, const HalfEdges&, std::vector<float>&);
+template double edge_couplings<double>(const Elements&, const HalfEdges&, std::vector<double>&);
 template void build_graph<float>(std::span<const float>, const HalfEdges&, std::size_t,
                                  GraphLaplacian<float>&);
 template void build_graph<double>(std::span<const double>, const HalfEdges&, std::size_t,

@@ -71,7 +71,7 @@ void gather_edges(std::size_t vertices, const Each& each, GraphLaplacian<Real>& 
 // What the matrix of the elements has for the edge of each half-edge, 3 a triangle; a matrix entry
 // is the sum of an edge's two. Returns the largest magnitude, weights left out.
 template <class Real>
-double edge_couplings(std::span<const Element> elements, const HalfEdges& half_edges,
+double edge_couplings(const Elements& elements, const HalfEdges& half_edges,
                       std::vector<Real>& out);
 
 template <class Real>

@@ -47,17 +47,8 @@ struct IsometricOptions {
   bool measure = true;  // else the result stays as it is by default
 };
 
-// Rows of a 2x3 map a triangle, in an order of their own if need be: triangle t has rows[ids[t]],
-// or rows[t] without ids.
-struct FrameView {
-  std::span<const std::array<Vec3f, 2>> rows = {};
-  std::span<const std::uint32_t> ids = {};
-
-  bool empty() const { return rows.empty(); }
-  const std::array<Vec3f, 2>& operator[](std::size_t t) const {
-    return rows[ids.empty() ? t : ids[t]];
-  }
-};
+// The rows of each triangle's 2x3 map.
+using FrameView = std::function<std::array<Vec3f, 2>(std::size_t)>;
 
 // What the first local step starts from; exactly one member is set, or none: then the rotations are
 // carried over the triangles from the one nearest to the middle.
@@ -66,7 +57,7 @@ struct IsometricStart {
   // 1 a triangle: rows of a 2x3 map from space to uv, near a rotation of the triangle's plane into
   // the uv plane (the nearest one is taken). Jumps between neighbours are fine: the first solve
   // levels them.
-  FrameView frames = {};
+  FrameView frames = nullptr;
 };
 
 struct IsometricResult {

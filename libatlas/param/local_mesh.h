@@ -3,12 +3,37 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "libatlas/core/vec.h"
 
 namespace atlas {
+
+// Points in double; or in float, of which another is taken off in double as they are asked for:
+// half the memory, and no digit less.
+class PositionView {
+ public:
+  PositionView() = default;
+  PositionView(std::span<const Vec3d> points) : points_(points) {}
+  PositionView(const std::vector<Vec3d>& points) : points_(points) {}
+  PositionView(std::span<const Vec3f> points, Vec3f origin)
+      : floats_(points), origin_{origin.x, origin.y, origin.z} {}
+
+  std::size_t size() const { return floats_.empty() ? points_.size() : floats_.size(); }
+  Vec3d operator[](std::size_t i) const {
+    if (floats_.empty()) return points_[i];
+    const Vec3f p = floats_[i];
+    return {p.x - origin_.x, p.y - origin_.y, p.z - origin_.z};
+  }
+
+ private:
+  std::span<const Vec3d> points_;
+  std::span<const Vec3f> floats_;
+  Vec3d origin_;
+};
 
 // A view of `triangles` over `positions`; what it points at must outlive it. Every index is below
 // positions.size() and the positions are finite. Unless a function says otherwise the triangles
@@ -17,7 +42,7 @@ namespace atlas {
 // depend on the unit of length; subtract a common origin first, so that no digits are lost to a far
 // offset.
 struct LocalMesh {
-  std::span<const Vec3d> positions;
+  PositionView positions;
   std::span<const std::array<std::uint32_t, 3>> triangles;
   // Linear density wanted a triangle (uv length per surface length, > 0), 1 a triangle; empty: 1
   // everywhere. Distortion is measured against the surface scaled by it.

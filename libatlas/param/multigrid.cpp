@@ -9,8 +9,7 @@
 namespace atlas::param {
 namespace {
 
-constexpr std::size_t direct_limit = 300;   // rows that the envelope solver takes at the bottom
-constexpr std::size_t large_setup = 20000;  // rows above which a set-up's memory is given back
+constexpr std::size_t direct_limit = 300;  // rows that the envelope solver takes at the bottom
 // Half a cotangent up to which single precision will do: rounding then moves no corner of a sliver
 // by more than 3e-5 of its altitude.
 constexpr double most_single_coupling = 500;
@@ -30,14 +29,22 @@ Pair<Real>* pairs(std::vector<glm::vec<2, Real>>& v) {
 }
 
 // load -= factor K x, both halves at once from the lower one.
+glm::dvec2 in_double(Vec2d v) {
+  return to_glm(v);
+}
+template <class Real>
+glm::dvec2 in_double(const glm::vec<2, Real>& v) {
+  return glm::dvec2(v);
+}
+
 template <class Real, class Vector>
 void subtract_product(const GraphLaplacian<Real>& matrix, const Vector& x, double factor,
                       std::span<glm::dvec2> load) {
   for (std::size_t i = 0; i < matrix.rows(); ++i) {
-    const glm::dvec2 own(x[i]);
+    const glm::dvec2 own = in_double(x[i]);
     glm::dvec2 sum(0);
     for (const auto& entry : matrix.lower.row(i)) {
-      const glm::dvec2 flow = factor * entry.value * (glm::dvec2(x[entry.column]) - own);
+      const glm::dvec2 flow = factor * entry.value * (in_double(x[entry.column]) - own);
       sum += flow;
       load[entry.column] += flow;
     }
@@ -58,11 +65,11 @@ template <class Real>
 bool MultigridLevels<Real>::build(GraphLaplacian<Real>& matrix) {
   if (levels_.empty()) levels_.resize(1);
   std::swap(levels_[0].matrix, matrix);
-  const bool large = levels_[0].matrix.rows() > large_setup;
+  const bool large = levels_[0].matrix.rows() > large_system;
   if (large) matrix = {};
   const bool built = build_levels();
-  // What charts of some hundred thousand triangles need for a moment would double what they need.
   if (large) coarsening_ = {};
+  if (built) make_room();
   return built;
 }
 
@@ -77,14 +84,17 @@ bool MultigridLevels<Real>::build_levels() {
                          levels_[depth_ + 1].matrix)) {
       return false;
     }
-    if (n > large_setup) level.matrix.upper = {};
   }
+  return true;
+}
+
+template <class Real>
+void MultigridLevels<Real>::make_room() {
   for (std::size_t depth = 0; depth <= depth_; ++depth) {
     const std::size_t n = levels_[depth].matrix.rows();
     for (Vector* v : {&levels_[depth].x, &levels_[depth].load, &levels_[depth].rest}) v->resize(n);
   }
   factorize_coarsest();
-  return true;
 }
 
 template <class Real>
@@ -272,7 +282,7 @@ auto MultigridLevels<Real>::correct(const MultigridAccuracy& accuracy, double un
 
 template <class Real>
 bool MultigridLevels<Real>::solve(const MultigridAccuracy& accuracy, std::span<glm::dvec2> load,
-                                  std::span<glm::dvec2> x) {
+                                  std::span<Vec2d> x) {
   Level& level = levels_[0];
   const std::size_t n = level.matrix.rows();
   direction_.resize(n);
@@ -291,7 +301,8 @@ bool MultigridLevels<Real>::solve(const MultigridAccuracy& accuracy, std::span<g
     for (std::size_t i = 0; i < n; ++i) level.load[i] = glm::vec<2, Real>(load[i] * shrink);
     const Outcome outcome = correct(accuracy, unit, progress);
     if (outcome == Outcome::failed) return false;
-    for (std::size_t i = 0; i < n; ++i) x[i] += unit * glm::dvec2(correction_[i]);
+    for (std::size_t i = 0; i < n; ++i)
+      x[i] = from_glm(to_glm(x[i]) + unit * glm::dvec2(correction_[i]));
     if (outcome == Outcome::done) return true;
     subtract_product(level.matrix, correction_, unit, load);
   }
@@ -300,7 +311,7 @@ bool MultigridLevels<Real>::solve(const MultigridAccuracy& accuracy, std::span<g
 template class MultigridLevels<float>;
 template class MultigridLevels<double>;
 
-bool MultigridSolver::build(std::span<const Element> elements, const HalfEdges& half_edges,
+bool MultigridSolver::build(const Elements& elements, const HalfEdges& half_edges,
                             std::size_t vertices) {
   const auto build = [&](auto& precision, auto& couplings) {
     build_graph<typename std::decay_t<decltype(couplings)>::value_type>(couplings, half_edges,
@@ -317,7 +328,7 @@ bool MultigridSolver::build(std::span<const Element> elements, const HalfEdges& 
 }
 
 bool MultigridSolver::solve(const MultigridAccuracy& accuracy, std::span<glm::dvec2> load,
-                            std::span<glm::dvec2> x) {
+                            std::span<Vec2d> x) {
   return exact_ ? twice_.levels.solve(accuracy, load, x) : single_.levels.solve(accuracy, load, x);
 }
 

@@ -29,8 +29,7 @@ class MultigridLevels {
   bool build(GraphLaplacian<Real>& matrix);
   // Improves x for the right-hand side `load`, and leaves in `load` what x lacks of it. False: not
   // accurate enough after the iterations.
-  bool solve(const MultigridAccuracy& accuracy, std::span<glm::dvec2> load,
-             std::span<glm::dvec2> x);
+  bool solve(const MultigridAccuracy& accuracy, std::span<glm::dvec2> load, std::span<Vec2d> x);
 
  private:
   using Vector = std::vector<glm::vec<2, Real>>;
@@ -49,6 +48,7 @@ class MultigridLevels {
   enum class Outcome : std::uint8_t { done, failed, again };
 
   bool build_levels();
+  void make_room();
   void factorize_coarsest();
   Outcome correct(const MultigridAccuracy& accuracy, double unit, Progress& progress);
   double step_direction(Real beta);
@@ -72,9 +72,8 @@ class MultigridLevels {
 class MultigridSolver {
  public:
   // False: the levels do not shrink (many vertices without strong neighbours, or of huge valence).
-  bool build(std::span<const Element> elements, const HalfEdges& half_edges, std::size_t vertices);
-  bool solve(const MultigridAccuracy& accuracy, std::span<glm::dvec2> load,
-             std::span<glm::dvec2> x);
+  bool build(const Elements& elements, const HalfEdges& half_edges, std::size_t vertices);
+  bool solve(const MultigridAccuracy& accuracy, std::span<glm::dvec2> load, std::span<Vec2d> x);
 
  private:
   template <class Real>

@@ -280,10 +280,10 @@ ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
   }
   IsometricStart start = options.start;
   // Within a hemisphere the projection is as good a start as any, and free of holonomy.
-  if (start.uvs.empty() && start.frames.empty() && planar_stretch_bound(mesh, axis) < 4) {
+  if (start.uvs.empty() && !start.frames && planar_stretch_bound(mesh, axis) < 4) {
     start.uvs = r.uvs;
   }
-  const bool unfolded = start.uvs.empty() && start.frames.empty();
+  const bool unfolded = start.uvs.empty() && !start.frames;
   param::ArapSolver solver(mesh, options.min_altitude, workspace.impl());
   solver.start(start);
   descend(mesh, options, solver, clock, r);

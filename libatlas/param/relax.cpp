@@ -28,7 +28,8 @@ constexpr double still_tail_step = 0.01;
 }  // namespace
 
 Jacobian Relaxer::jacobian(std::uint32_t t) const {
-  const Element& e = elements_[t];
+  Element room;
+  const Element& e = elements_.at(t, room);
   return e.jacobian(to_glm(uvs_[e.v[0]]), to_glm(uvs_[e.v[1]]), to_glm(uvs_[e.v[2]]));
 }
 
@@ -74,8 +75,9 @@ void Relaxer::load_vertex(std::uint32_t v) {
   if (spring_) offset_ = to_glm(uvs_[v]) - to_glm(spring_->target);
   for (std::uint32_t i = corners_->first[v]; i < corners_->first[v + 1]; ++i) {
     const std::uint32_t t = corners_->corner[i] / 3, k = corners_->corner[i] % 3;
-    const Element& e = elements_[t];
-    const Jacobian j = jacobian(t);
+    Element room;
+    const Element& e = elements_.at(t, room);
+    const Jacobian j = e.jacobian(to_glm(uvs_[e.v[0]]), to_glm(uvs_[e.v[1]]), to_glm(uvs_[e.v[2]]));
     const glm::dvec2 g = e.area_gradients()[k] / e.area();
     Local l;
     l.f = glm::dot(j.x, j.x) + glm::dot(j.y, j.y);
@@ -222,8 +224,7 @@ bool Relaxer::untangle(int sweeps) {
   return least_determinant() > 0;
 }
 
-void Relaxer::begin(std::span<const Element> elements, const CornerLists& corners,
-                    std::span<Vec2d> uvs) {
+void Relaxer::begin(ElementView elements, const CornerLists& corners, std::span<Vec2d> uvs) {
   elements_ = elements;
   corners_ = &corners;
   uvs_ = uvs;
@@ -233,7 +234,7 @@ void Relaxer::begin(std::span<const Element> elements, const CornerLists& corner
   spring_ = nullptr;
 }
 
-void Relaxer::pull(std::span<const Element> elements, const CornerLists& corners, const Pull& pull,
+void Relaxer::pull(ElementView elements, const CornerLists& corners, const Pull& pull,
                    std::span<Vec2d> uvs) {
   const std::span<const Spring> springs = pull.springs;
   begin(elements, corners, uvs);
@@ -294,7 +295,7 @@ void Relaxer::spare_worst(double bound, std::vector<std::uint32_t> tail) {
   constexpr double share = 0.0009;  // of the area; the rest of 0.1 % is for what stays just beyond
   spared_.assign(elements_.size(), 0);
   double budget = 0;
-  for (const Element& e : elements_) budget += share * e.area();
+  for (std::size_t t = 0; t < elements_.size(); ++t) budget += share * elements_[t].area();
   std::sort(tail.begin(), tail.end(), [&](std::uint32_t a, std::uint32_t b) {
     return stretch_[a] != stretch_[b] ? stretch_[a] > stretch_[b] : a < b;
   });
@@ -307,8 +308,8 @@ void Relaxer::spare_worst(double bound, std::vector<std::uint32_t> tail) {
   }
 }
 
-Tail Relaxer::lower_tail(std::span<const Element> elements, const CornerLists& corners,
-                         double bound, std::span<Vec2d> uvs) {
+Tail Relaxer::lower_tail(ElementView elements, const CornerLists& corners, double bound,
+                         std::span<Vec2d> uvs) {
   constexpr int rounds = 12, rings = 2, sweeps = 4, patience = 2;
   // What is nearly as bad moves as well. A longer tail is no matter of a few places.
   constexpr double near = 0.97, longest_share = 0.05, least_gain = 1e-3;
@@ -343,8 +344,7 @@ Tail Relaxer::lower_tail(std::span<const Element> elements, const CornerLists& c
   return wide ? Tail::wide : Tail::left;
 }
 
-Relaxer::Outcome Relaxer::remove_flips(std::span<const Element> elements,
-                                       const CornerLists& corners,
+Relaxer::Outcome Relaxer::remove_flips(ElementView elements, const CornerLists& corners,
                                        std::span<const std::uint32_t> also, std::span<Vec2d> uvs) {
   constexpr int largest_ring = 16, untangling_sweeps = 40, smoothing_sweeps = 8;
   // With more flips left after the first rings, by number or as a share of the triangles, a chart

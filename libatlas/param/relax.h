@@ -44,7 +44,7 @@ class Relaxer {
   // Moves the vertices near non-positive triangles and no others. Triangles listed in `also` count
   // as flipped even if their determinant is positive in floating point. Starts with a ring about
   // them, and doubles the rings while that is not enough.
-  Outcome remove_flips(std::span<const Element> elements, const CornerLists& corners,
+  Outcome remove_flips(ElementView elements, const CornerLists& corners,
                        std::span<const std::uint32_t> also, std::span<Vec2d> uvs);
 
   struct Pull {
@@ -55,14 +55,14 @@ class Relaxer {
 
   // Draws vertices towards targets while the neighbourhood, so many rings wide, follows by the
   // symmetric Dirichlet energy; nothing flips. All triangles must be positive.
-  void pull(std::span<const Element> elements, const CornerLists& corners, const Pull& pull,
+  void pull(ElementView elements, const CornerLists& corners, const Pull& pull,
             std::span<Vec2d> uvs);
 
   // Lowers max(s1, 1/s2) of the uv-to-surface map's singular values, at the area-preserving scale,
   // where it exceeds `bound`, until 99.9 % of the area stays within it; of the rest, most of 0.1 %
   // is spared. Only what lies near those triangles moves. All triangles must be positive and stay
   // so. uvs become the best state seen.
-  Tail lower_tail(std::span<const Element> elements, const CornerLists& corners, double bound,
+  Tail lower_tail(ElementView elements, const CornerLists& corners, double bound,
                   std::span<Vec2d> uvs);
 
  private:
@@ -77,7 +77,7 @@ class Relaxer {
     double xx = 0, xy = 0, yy = 0;
   };
 
-  void begin(std::span<const Element> elements, const CornerLists& corners, std::span<Vec2d> uvs);
+  void begin(ElementView elements, const CornerLists& corners, std::span<Vec2d> uvs);
   void gather(std::span<const std::uint32_t> seeds, int rings);
   void load_vertex(std::uint32_t v);
   double energy(glm::dvec2 m) const;
@@ -93,7 +93,7 @@ class Relaxer {
   double find_tail(double from, std::vector<std::uint32_t>& out);
   void spare_worst(double bound, std::vector<std::uint32_t> tail);
 
-  std::span<const Element> elements_;
+  ElementView elements_;
   const CornerLists* corners_ = nullptr;
   std::span<Vec2d> uvs_;
   std::vector<std::uint32_t> vertices_,

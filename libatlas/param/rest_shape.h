@@ -15,6 +15,7 @@ namespace atlas::param {
 // lies on it, altitude <= length, and nothing below divides by the short side of a sliver.
 struct RestShape {
   std::array<std::uint32_t, 3> v;  // the triangle's vertices, turned so that the base comes first
+  std::uint8_t base = 0;           // which of its corners that is
   double length = 0, foot = 0, altitude = 0;
   double area() const { return 0.5 * length * altitude; }
 };
@@ -33,6 +34,7 @@ inline RestShape rest_shape(const LocalMesh& mesh, std::size_t t) {
   const int k1 = k == 2 ? 0 : k + 1, k2 = k == 0 ? 2 : k - 1;
   RestShape s;
   s.v = {tri[k], tri[k1], tri[k2]};
+  s.base = static_cast<std::uint8_t>(k);
   const double density = mesh.density.empty() ? 1.0 : mesh.density[t];
   const double length = std::sqrt(squared[k]);
   if (!(length > 0)) return s;

@@ -71,7 +71,7 @@ void Separator::widen(Arc& arc, std::uint32_t first, std::uint32_t last) const {
 double Separator::corner_angle(std::uint32_t vertex, std::span<const Vec2d> uvs) const {
   double sum = 0;
   for (std::uint32_t i = corners_->first[vertex]; i < corners_->first[vertex + 1]; ++i) {
-    const auto& v = elements_[corners_->corner[i] / 3].v;
+    const auto v = elements_[corners_->corner[i] / 3].v;
     const std::uint32_t k = corners_->corner[i] % 3;
     const glm::dvec2 p = to_glm(uvs[vertex]);
     const glm::dvec2 a = to_glm(uvs[v[(k + 1) % 3]]) - p, b = to_glm(uvs[v[(k + 2) % 3]]) - p;
@@ -317,8 +317,8 @@ bool Separator::draw_until_simple(Relaxer& relaxer, std::span<Vec2d> uvs) {
   return false;
 }
 
-bool Separator::separate(const LocalMesh& mesh, std::span<const Element> elements,
-                         const CornerLists& corners, Relaxer& relaxer, std::span<Vec2d> uvs) {
+bool Separator::separate(const LocalMesh& mesh, ElementView elements, const CornerLists& corners,
+                         Relaxer& relaxer, std::span<Vec2d> uvs) {
   elements_ = elements;
   corners_ = &corners;
   map_border(mesh);

@@ -18,8 +18,8 @@ class Separator {
  public:
   // All triangles positive. Returns whether the map is injective afterwards; uvs are as they were
   // if not.
-  bool separate(const LocalMesh& mesh, std::span<const Element> elements,
-                const CornerLists& corners, Relaxer& relaxer, std::span<Vec2d> uvs);
+  bool separate(const LocalMesh& mesh, ElementView elements, const CornerLists& corners,
+                Relaxer& relaxer, std::span<Vec2d> uvs);
 
   // After that, if distortion around what moved is too high: lets it spread further.
   void settle_further(Relaxer& relaxer, std::span<Vec2d> uvs) { settle(relaxer, 0, uvs); }
@@ -68,7 +68,7 @@ class Separator {
   std::uint32_t next(std::uint32_t h) const { return next_[half_edges_.to(h)]; }
   std::uint32_t previous(std::uint32_t h) const { return previous_[half_edges_.from(h)]; }
 
-  std::span<const Element> elements_;
+  ElementView elements_;
   const CornerLists* corners_ = nullptr;
   HalfEdges half_edges_;
   HalfEdges::Border border_;

@@ -5,51 +5,97 @@
 
 namespace atlas::param {
 
-void build_elements(const LocalMesh& mesh, double min_altitude, std::vector<Element>& out) {
-  constexpr double relative_floor = 1e-9;
+namespace {
+
+constexpr double relative_floor = 1e-9;
+
+Element element_of(const RestShape& s, double min_altitude) {
+  return {s.v, 1, s.length, s.foot,
+          std::max({s.altitude, relative_floor * s.length, min_altitude})};
+}
+
+}  // namespace
+
+void Elements::build(const LocalMesh& mesh, double min_altitude) {
+  triangles_ = mesh.triangles;
+  const std::size_t count = triangles_.size();
+  whole_.resize(count < large ? count : 0);
+  shapes_.resize(count < large ? 0 : count);
+  base_.resize(shapes_.size());
+  weights_.clear();
   // Several zero-length triangles must not make the matrix overflow, hence a floor by the whole's
   // size.
   double longest = 0;
-  out.resize(mesh.triangles.size());
-  for (std::size_t t = 0; t < out.size(); ++t) {
+  for (std::size_t t = 0; t < whole_.size(); ++t) {
+    whole_[t] = element_of(rest_shape(mesh, t), min_altitude);
+    longest = std::max(longest, whole_[t].length);
+  }
+  for (std::size_t t = 0; t < shapes_.size(); ++t) {
     const RestShape s = rest_shape(mesh, t);
-    Element& e = out[t];
-    e.v = s.v;
-    e.length = s.length;
-    e.foot = s.foot;
-    e.altitude = std::max({s.altitude, relative_floor * s.length, min_altitude});
+    const Element e = element_of(s, min_altitude);
+    shapes_[t] = {e.length, e.foot, e.altitude};
+    base_[t] = s.base;
     longest = std::max(longest, s.length);
   }
   if (!(longest > 0)) longest = 1;  // nothing but points: any size will do
   const double speck = std::max(min_altitude, relative_floor * longest);
-  for (std::size_t t = 0; t < out.size(); ++t) {
-    Element& e = out[t];
-    if (e.length < speck) {
-      if (!(e.length > 0)) e.v = mesh.triangles[t];
-      e.length = speck;
-      e.foot = std::min(e.foot, speck);
-      e.altitude = std::max(e.altitude, min_altitude > 0 ? speck : relative_floor * speck);
-    }
-    e.weight = 1;
-  }
+  const auto widen = [&](auto& e) {
+    if (e.length >= speck) return;
+    e.length = speck;
+    e.foot = std::min(e.foot, speck);
+    e.altitude = std::max(e.altitude, min_altitude > 0 ? speck : relative_floor * speck);
+  };
+  for (Element& e : whole_) widen(e);
+  for (Shape& s : shapes_) widen(s);
 }
 
-void CornerLists::build(std::span<const Element> elements, std::size_t vertices) {
-  first.assign(vertices + 1, 0);
-  for (const Element& e : elements) {
-    for (const std::uint32_t v : e.v) ++first[v + 1];
+void Elements::give_back() {
+  triangles_ = {};
+  param::give_back(whole_);
+  param::give_back(shapes_);
+  param::give_back(base_);
+  param::give_back(weights_);
+}
+
+void Elements::set_weight(std::size_t t, float weight) {
+  if (!whole_.empty()) {
+    whole_[t].weight = weight;
+    return;
   }
+  if (weights_.empty()) weights_.assign(size(), 1);
+  weights_[t] = weight;
+}
+
+void Elements::reset_weights() {
+  for (Element& e : whole_) e.weight = 1;
+  weights_.clear();
+}
+
+void CornerLists::build(const Elements& elements, std::size_t vertices) {
+  first.assign(vertices + 1, 0);
+  elements.visit([&](const auto& each) {
+    for (std::size_t t = 0; t < elements.size(); ++t) {
+      const Element& e = each[t];
+      for (const std::uint32_t v : e.v) ++first[v + 1];
+    }
+  });
   for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
   corner.resize(3 * elements.size());
-  for (std::uint32_t t = 0; t < elements.size(); ++t) {
-    for (std::uint32_t k = 0; k < 3; ++k) corner[first[elements[t].v[k]]++] = 3 * t + k;
-  }
+  elements.visit([&](const auto& each) {
+    for (std::uint32_t t = 0; t < elements.size(); ++t) {
+      const Element& e = each[t];
+      for (std::uint32_t k = 0; k < 3; ++k) corner[first[e.v[k]]++] = 3 * t + k;
+    }
+  });
   for (std::size_t v = first.size() - 1; v > 0; --v) first[v] = first[v - 1];
   first[0] = 0;
 }
 
-void build_stiffness(std::span<const Element> elements, const CornerLists& corners,
-                     SymmetricMatrix& out) {
+namespace {
+
+template <class Each>
+void fill_stiffness(const Each& each, std::size_t count, const CornerLists& corners,
+                    SymmetricMatrix& out) {
   constexpr std::uint32_t unseen = std::numeric_limits<std::uint32_t>::max();
   const std::size_t n = corners.first.size() - 1;
   out.diagonal.resize(n);
@@ -62,7 +108,7 @@ void build_stiffness(std::span<const Element> elements, const CornerLists& corne
   };
   out.column.clear();
   out.value.clear();
-  reserve(2 * (n + elements.size()));
+  reserve(2 * (n + count));
   std::vector<std::uint32_t>& place = out.scratch;  // of a column within the current row
   place.assign(n, unseen);
   std::uint32_t end = 0;
@@ -73,7 +119,7 @@ void build_stiffness(std::span<const Element> elements, const CornerLists& corne
     const std::size_t most = end + 2 * std::size_t{corners.first[row + 1] - corners.first[row]};
     if (most > out.column.size()) reserve(most + most / 8);
     for (std::uint32_t i = corners.first[row]; i < corners.first[row + 1]; ++i) {
-      const Element& e = elements[corners.corner[i] / 3];
+      const Element& e = each[corners.corner[i] / 3];
       const std::uint32_t k = corners.corner[i] % 3;
       const auto g = e.area_gradients();
       const glm::dvec2 own = g[k] * (e.weight / e.area());
@@ -96,6 +142,12 @@ void build_stiffness(std::span<const Element> elements, const CornerLists& corne
   out.first[n] = end;
   out.column.resize(end);
   out.value.resize(end);
+}
+
+}  // namespace
+
+void build_stiffness(const Elements& elements, const CornerLists& corners, SymmetricMatrix& out) {
+  elements.visit([&](const auto& each) { fill_stiffness(each, elements.size(), corners, out); });
   partition_rows(out);
 }
 
@@ -113,20 +165,22 @@ void partition_rows(SymmetricMatrix& matrix) {
   }
 }
 
-void local_rotations(std::span<const Element> elements, std::span<const Vec2d> uvs,
-                     Rotations& out) {
+void local_rotations(const Elements& elements, std::span<const Vec2d> uvs, Rotations& out) {
   out.resize(elements.size());
-  for (std::size_t t = 0; t < elements.size(); ++t) {
-    const Element& e = elements[t];
-    const Jacobian j = e.jacobian(to_glm(uvs[e.v[0]]), to_glm(uvs[e.v[1]]), to_glm(uvs[e.v[2]]));
-    out[t] = glm::vec2(nearest_rotation(j));
-  }
+  elements.visit([&](const auto& each) {
+    for (std::size_t t = 0; t < elements.size(); ++t) {
+      const Element& e = each[t];
+      const Jacobian j = e.jacobian(to_glm(uvs[e.v[0]]), to_glm(uvs[e.v[1]]), to_glm(uvs[e.v[2]]));
+      out[t] = glm::vec2(nearest_rotation(j));
+    }
+  });
 }
 
 namespace {
 
 // Adds what an element with this rotation asks of its vertices.
-void add_load(const Element& e, glm::dvec2 rotation, std::span<glm::dvec2> out) {
+[[gnu::always_inline]] inline void add_load(const Element& e, glm::dvec2 rotation,
+                                            std::span<glm::dvec2> out) {
   const glm::dvec2 r = rotation * double(e.weight);
   const auto g = e.area_gradients();
   for (int k = 0; k < 3; ++k) {
@@ -136,32 +190,36 @@ void add_load(const Element& e, glm::dvec2 rotation, std::span<glm::dvec2> out) 
 
 }  // namespace
 
-double update_rotations(std::span<const Element> elements, std::span<const Vec2d> uvs,
-                        Rotations& rotations, std::span<glm::dvec2> load) {
+double update_rotations(const Elements& elements, std::span<const Vec2d> uvs, Rotations& rotations,
+                        std::span<glm::dvec2> load) {
   double fall = 0;
   std::fill(load.begin(), load.end(), glm::dvec2(0));
-  for (std::size_t t = 0; t < elements.size(); ++t) {
-    const Element& e = elements[t];
-    const glm::dvec2 u0 = to_glm(uvs[e.v[0]]);
-    // The Jacobian's columns, times twice the area: its nearest rotation needs no division.
-    const glm::dvec2 base = to_glm(uvs[e.v[1]]) - u0, x = e.altitude * base;
-    const glm::dvec2 y = e.length * (to_glm(uvs[e.v[2]]) - u0) - e.foot * base;
-    const double c = x.x + y.y, s = x.y - y.x, norm = std::sqrt(c * c + s * s);
-    const glm::dvec2 r = norm > 0 ? glm::dvec2(c, s) * (1 / norm) : glm::dvec2(1, 0);
-    const glm::dvec2 change = r - glm::dvec2(rotations[t]);
-    fall += e.weight * norm * glm::dot(change, change);
-    rotations[t] = glm::vec2(r);
-    add_load(e, r, load);
-  }
+  elements.visit([&](const auto& each) {
+    for (std::size_t t = 0; t < elements.size(); ++t) {
+      const Element& e = each[t];
+      const glm::dvec2 u0 = to_glm(uvs[e.v[0]]);
+      // The Jacobian's columns, times twice the area: its nearest rotation needs no division.
+      const glm::dvec2 base = to_glm(uvs[e.v[1]]) - u0, x = e.altitude * base;
+      const glm::dvec2 y = e.length * (to_glm(uvs[e.v[2]]) - u0) - e.foot * base;
+      const double c = x.x + y.y, s = x.y - y.x, norm = std::sqrt(c * c + s * s);
+      const glm::dvec2 r = norm > 0 ? glm::dvec2(c, s) * (1 / norm) : glm::dvec2(1, 0);
+      const glm::dvec2 change = r - glm::dvec2(rotations[t]);
+      fall += e.weight * norm * glm::dot(change, change);
+      rotations[t] = glm::vec2(r);
+      add_load(e, r, load);
+    }
+  });
   return 0.5 * fall;
 }
 
-void rotation_load(std::span<const Element> elements, const Rotations& rotations,
+void rotation_load(const Elements& elements, const Rotations& rotations,
                    std::span<glm::dvec2> out) {
   std::fill(out.begin(), out.end(), glm::dvec2(0));
-  for (std::size_t t = 0; t < elements.size(); ++t) {
-    add_load(elements[t], glm::dvec2(rotations[t]), out);
-  }
+  elements.visit([&](const auto& each) {
+    for (std::size_t t = 0; t < elements.size(); ++t) {
+      add_load(each[t], glm::dvec2(rotations[t]), out);
+    }
+  });
 }
 
 namespace {
@@ -177,18 +235,21 @@ double add_energy(const Element& e, std::span<const Vec2d> uvs, double& energy) 
 
 }  // namespace
 
-IsometricResult measure_energy(std::span<const Element> elements, std::span<const Vec2d> uvs) {
+IsometricResult measure_energy(const Elements& elements, std::span<const Vec2d> uvs) {
   IsometricResult out;
-  for (const Element& e : elements) out.flips += !(add_energy(e, uvs, out.energy) > 0);
+  for (std::size_t t = 0; t < elements.size(); ++t) {
+    out.flips += !(add_energy(elements[t], uvs, out.energy) > 0);
+  }
   return out;
 }
 
-bool energy_exceeds(double limit, std::span<const Element> elements, std::span<const Vec2d> uvs) {
+bool energy_exceeds(double limit, const Elements& elements, std::span<const Vec2d> uvs) {
   double energy = 0;
-  return std::any_of(elements.begin(), elements.end(), [&](const Element& e) {
-    add_energy(e, uvs, energy);
-    return energy > limit;
-  });
+  for (std::size_t t = 0; t < elements.size(); ++t) {
+    add_energy(elements[t], uvs, energy);
+    if (energy > limit) return true;
+  }
+  return false;
 }
 
 }  // namespace atlas::param

@@ -13,7 +13,7 @@
 namespace atlas {
 
 struct ParamWorkspace::Impl {
-  std::vector<param::Element> elements;
+  param::Elements elements;
   param::CornerLists corners;
   param::SymmetricMatrix stiffness;
   param::Rotations rotations;
@@ -21,7 +21,7 @@ struct ParamWorkspace::Impl {
   param::SparseDirectSolver direct;
   param::MultigridSolver multigrid;
   param::HalfEdges half_edges;
-  std::vector<glm::dvec2> load, solution, change;
+  std::vector<glm::dvec2> load, solution;
   std::vector<std::uint32_t> queue;
   std::vector<double> stretch;
   std::vector<param::WeightedValue> tail;

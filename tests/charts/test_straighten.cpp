@@ -70,7 +70,7 @@ struct Charts {
     partition.seams.assign(n, 0);
     partition.local.assign(n, 0);
     frames.resize(n);
-    for (std::uint32_t t = 0; t < n; ++t) frames[t] = frame_of(t);
+    for (std::uint32_t t = 0; t < n; ++t) frames.put(t, frame_of(t));
   }
 
   // Two directions at right angles in the plane of triangle t.
@@ -186,8 +186,9 @@ TEST(Straighten, KeepsWhatChartsAre) {
       EXPECT_EQ(charts.topologies(), were) << shape.name << ' ' << seed;
       EXPECT_LE(charts.border_length(), before) << shape.name << ' ' << seed;
       shorter += charts.border_length() < before;
-      for (std::uint32_t t = 0; t < charts.frames.size(); ++t) {
-        for (const Vec3f& axis : charts.frames[t]) {
+      for (std::uint32_t t = 0; t < charts.topology.triangle_count(); ++t) {
+        const Frames::Frame frame = charts.frames.at(charts.topology, t);
+        for (const Vec3f& axis : frame) {
           ASSERT_NEAR(glm::dot(to_dvec(axis), to_dvec(charts.topology.normals[t])), 0, 1e-5);
         }
       }

@@ -18,7 +18,10 @@ std::vector<Vec2d> cgal_arap(const LocalMesh& mesh, unsigned iterations) {
   using Kernel = CGAL::Simple_cartesian<double>;
   using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
   Mesh m;
-  for (const Vec3d& p : mesh.positions) m.add_vertex({p.x, p.y, p.z});
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3d p = mesh.positions[v];
+    m.add_vertex({p.x, p.y, p.z});
+  }
   for (const auto& t : mesh.triangles) {
     m.add_face(Mesh::Vertex_index(t[0]), Mesh::Vertex_index(t[1]), Mesh::Vertex_index(t[2]));
   }

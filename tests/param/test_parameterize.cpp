@@ -223,7 +223,7 @@ TEST(Parameterize, RecoversFromFramesThatLie) {
   const std::vector<std::array<Vec3f, 2>> frames(d.triangles.size(),
                                                  {Vec3f{0, 1, 0}, Vec3f{0, 0, 1}});
   ParamOptions options;
-  options.start.frames.rows = frames;
+  options.start.frames = [&](std::size_t t) { return frames[t]; };
   const ParamResult r = run(d, options);
   expect_consistent(d, r, 1.25);
   EXPECT_TRUE(r.injective);

@@ -15,13 +15,13 @@ namespace {
 using testing::Disc;
 
 struct System {
-  std::vector<param::Element> elements;
+  param::Elements elements;
   param::CornerLists corners;
 };
 
 System system_of(const Disc& d) {
   System s;
-  param::build_elements(d.view(), 0, s.elements);
+  s.elements.build(d.view(), 0);
   s.corners.build(s.elements, d.positions.size());
   return s;
 }

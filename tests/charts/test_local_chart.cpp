@@ -1,0 +1,74 @@
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "libatlas/charts/local_chart.h"
+#include "tests/charts/chart_checks.h"
+
+namespace atlas {
+namespace {
+
+struct Whole {
+  explicit Whole(const test::Shape& shape) {
+    const test::Mesh mesh(shape);
+    Result<Topology> built = build_topology(mesh.view(), {}, {});
+    EXPECT_TRUE(built.ok());
+    topology = std::move(*built);
+    const std::size_t n = topology.triangle_count();
+    partition.chart.assign(n, 0);
+    partition.seams.assign(n, 0);
+    partition.local.resize(n);
+    triangles.resize(n);
+    std::iota(triangles.begin(), triangles.end(), 0u);
+  }
+
+  Topology topology;
+  Partition partition;
+  std::vector<std::uint32_t> triangles;
+};
+
+TEST(LocalChart, TheWholeMeshTakesItsLinksAsTheyAre) {
+  Whole mesh(test::grid(6, 5));
+  LocalChart chart;
+  chart.build(mesh.topology, mesh.partition, mesh.triangles);
+  EXPECT_EQ(chart.opposite.data(), mesh.topology.opposite.data());
+  EXPECT_EQ(chart.loops.size(), 1u);
+  EXPECT_EQ(chart.euler(), 1);
+}
+
+TEST(LocalChart, ACutChartHasLinksOfItsOwn) {
+  Whole mesh(test::grid(6, 5));
+  std::uint32_t h = 0;
+  while (mesh.topology.opposite[h] == kNoIndex) ++h;
+  const std::uint32_t o = mesh.topology.opposite[h];
+  mesh.partition.cut(h);
+  mesh.partition.cut(o);
+  LocalChart chart;
+  chart.build(mesh.topology, mesh.partition, mesh.triangles);
+  EXPECT_EQ(chart.opposite[h], kNoIndex);
+  EXPECT_EQ(chart.opposite[o], kNoIndex);
+  EXPECT_EQ(mesh.topology.opposite[h], o);
+  LocalChart moved = std::move(chart);
+  EXPECT_EQ(moved.opposite.size(), mesh.topology.opposite.size());
+  EXPECT_EQ(moved.opposite[o], kNoIndex);
+}
+
+TEST(LocalChart, PositionsAreRelativeToTheFirstOne) {
+  test::Shape shape = test::grid(6, 5);
+  for (Vec3f& p : shape.positions) p.x += 1000;
+  Whole mesh(shape);
+  LocalChart chart;
+  chart.build(mesh.topology, mesh.partition, mesh.triangles);
+  const LocalMesh view = chart.mesh();
+  ASSERT_EQ(view.positions.size(), chart.vertex.size());
+  const Vec3f origin = mesh.topology.points[chart.vertex[0]];
+  for (std::size_t v = 0; v < chart.vertex.size(); ++v) {
+    const Vec3f p = mesh.topology.points[chart.vertex[v]];
+    const Vec3d wanted{double(p.x) - origin.x, double(p.y) - origin.y, double(p.z) - origin.z};
+    EXPECT_EQ(view.positions[v], wanted);
+    EXPECT_EQ(chart.positions[v], wanted);
+  }
+}
+
+}  // namespace
+}  // namespace atlas
