@@ -16,7 +16,7 @@ esac
 [ -n "${LIBATLAS_SKIP_DEPS:-}" ] || scripts/install-deps.sh all
 cmake --preset "$preset" >/dev/null
 cmake --build --preset "$preset"
-export UBSAN_OPTIONS="print_stacktrace=1" TSAN_OPTIONS="suppressions=$PWD/scripts/tsan.supp"
+export UBSAN_OPTIONS="print_stacktrace=1" TSAN_OPTIONS="suppressions=$PWD/scripts/tsan.supp history_size=7"
 jobs=$(nproc 2>/dev/null || echo 2)
 # A heavy test takes gigabytes: one at a time.
 [ "$label" = quick ] || jobs=1

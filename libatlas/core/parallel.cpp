@@ -8,7 +8,54 @@
 #include <algorithm>
 #include <optional>
 
+#ifdef __SANITIZE_THREAD__
+#include <sanitizer/tsan_interface.h>
+#define ATLAS_UNSEEN __attribute__((no_sanitize("thread")))
+#else
+#define ATLAS_UNSEEN
+#endif
+
 namespace atlas {
+namespace {
+
+// What TBB's hand-over between threads means, for ThreadSanitizer, which does not see into its
+// library: what came before the loop is known to every chunk, and what chunks did after it. Chunks
+// know nothing of each other.
+class HandOver {
+ public:
+#ifdef __SANITIZE_THREAD__
+  static void loop_begins() {
+    __tsan_release(&begun_);
+  }
+  ~HandOver() {
+    __tsan_acquire(&done_);
+  }
+  static void chunk_begins() {
+    __tsan_acquire(&begun_);
+  }
+  void chunk_ends() {
+    __tsan_release(&done_);
+  }
+
+ private:
+  // One for all loops, since not even a loop's own address may be read by a chunk before.
+  inline static char begun_ = 0;
+  char done_ = 0;
+#else
+  static void loop_begins() {}
+  static void chunk_begins() {}
+  void chunk_ends() {}
+#endif
+};
+
+// What TBB copies from task to task on any thread: reading it is part of the hand-over.
+template <class Run>
+struct Task {
+  const Run* run;
+  ATLAS_UNSEEN void operator()(std::size_t chunk) const { (*run)(chunk); }
+};
+
+}  // namespace
 
 void parallel_for(const Context& context, std::size_t n, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body) {
@@ -27,9 +74,17 @@ void parallel_for(const Context& context, std::size_t n, std::size_t grain,
   if (context.threads > tbb::info::default_concurrency()) {
     limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(context.threads));
   }
+  HandOver hand_over;
+  const auto run_in_thread = [&](std::size_t chunk) {
+    HandOver::chunk_begins();
+    run_chunk(chunk);
+    hand_over.chunk_ends();
+  };
+  const Task<decltype(run_in_thread)> task{&run_in_thread};
+  HandOver::loop_begins();
   tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
   arena.execute(
-      [&] { tbb::parallel_for(std::size_t{0}, chunks, run_chunk, tbb::simple_partitioner()); });
+      [&] { tbb::parallel_for(std::size_t{0}, chunks, task, tbb::simple_partitioner()); });
 }
 
 }  // namespace atlas
