@@ -9,7 +9,6 @@
 
 #include "libatlas/charts/absorb.h"
 #include "libatlas/charts/chart_job.h"
-#include "libatlas/charts/flaps.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
 
@@ -117,7 +116,6 @@ class Flattener {
     Stopwatch watch(cpu_seconds);
     const auto scratch = pool_.take();
     absorb_charts({input_, partition_, *scratch}, result.charts, context);
-    hang_flaps(input_, partition_, result.charts, context);
     result.timing.absorb_cpu = watch.lap();
     std::sort(result.charts.begin(), result.charts.end(),
               [](const FlatChart& a, const FlatChart& b) {
