@@ -180,6 +180,29 @@ void lower_tail(const LocalMesh& mesh, const ParamOptions& options, param::ArapS
   if (!any_flip(mesh, r.uvs)) solver.lower_tail(bound, r.uvs);
 }
 
+// What is within the bound but for borders that cross. Where it fails, the result names the
+// crossings that stayed.
+void draw_apart(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolver& solver,
+                ParamResult& r) {
+  if (r.injective || !r.within_bound || r.distortion.flips > 0) return;
+  if (options.local && r.crossings.size() > kMostSeparable) return;
+  if (!solver.separate_borders(r.uvs)) {
+    const auto left = solver.crossings_left();
+    r.stubborn_crossings.assign(left.begin(), left.end());
+    return;
+  }
+  finish(mesh, options, r);
+  if (!r.within_bound && r.injective) {
+    solver.settle_borders(r.uvs);
+    finish(mesh, options, r);
+  }
+  const bool stretched = !r.within_bound && r.distortion.flips == 0;
+  if (options.local && stretched &&
+      solver.lower_tail(kWithin * options.max_stretch, r.uvs) == param::Tail::lowered) {
+    finish(mesh, options, r);
+  }
+}
+
 // From the solver's rotations to a finished result: flips out, then the stretch down; squeezing may
 // flip anew, hence the second round.
 void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolver& solver,
@@ -226,23 +249,7 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
   clock.book(&Phase::solve);
   finish(mesh, options, r, last ? &*last : nullptr);
   clock.book(&Phase::overlaps);
-  if (r.injective || !r.within_bound || r.distortion.flips > 0) return;
-  if (options.local && r.crossings.size() > kMostSeparable) return;
-  if (solver.separate_borders(r.uvs)) {
-    finish(mesh, options, r);
-    if (!r.within_bound && r.injective) {
-      solver.settle_borders(r.uvs);
-      finish(mesh, options, r);
-    }
-    const bool stretched = !r.within_bound && r.distortion.flips == 0;
-    if (options.local && stretched &&
-        solver.lower_tail(kWithin * options.max_stretch, r.uvs) == param::Tail::lowered) {
-      finish(mesh, options, r);
-    }
-  } else {
-    const auto left = solver.crossings_left();
-    r.stubborn_crossings.assign(left.begin(), left.end());
-  }
+  draw_apart(mesh, options, solver, r);
   clock.book(&Phase::overlaps);
 }
 
