@@ -25,9 +25,9 @@ bool SparseDirectSolver::factorize(const SymmetricMatrix& matrix, bool same_patt
   triplets.reserve(static_cast<std::size_t>(n) + matrix.column.size() / 2);
   for (int i = 0; i < n; ++i) {
     triplets.emplace_back(i, i, matrix.diagonal[i + 1]);
-    for (std::uint32_t k = matrix.first[i + 1]; k < matrix.middle[i + 1]; ++k) {
+    for (std::uint32_t k = matrix.first[i + 1]; k < matrix.first[i + 2]; ++k) {
       const int j = static_cast<int>(matrix.column[k]) - 1;
-      if (j >= 0) triplets.emplace_back(i, j, matrix.value[k]);
+      if (j >= 0 && j < i) triplets.emplace_back(i, j, matrix.value[k]);
     }
   }
   impl_->matrix.resize(n, n);

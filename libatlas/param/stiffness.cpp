@@ -148,21 +148,6 @@ void fill_stiffness(const Each& each, std::size_t count, const CornerLists& corn
 
 void build_stiffness(const Elements& elements, const CornerLists& corners, SymmetricMatrix& out) {
   elements.visit([&](const auto& each) { fill_stiffness(each, elements.size(), corners, out); });
-  partition_rows(out);
-}
-
-void partition_rows(SymmetricMatrix& matrix) {
-  matrix.middle.resize(matrix.rows());
-  for (std::uint32_t row = 0; row < matrix.rows(); ++row) {
-    std::uint32_t middle = matrix.first[row];
-    for (std::uint32_t k = middle; k < matrix.first[row + 1]; ++k) {
-      if (matrix.column[k] > row) continue;
-      std::swap(matrix.column[k], matrix.column[middle]);
-      std::swap(matrix.value[k], matrix.value[middle]);
-      ++middle;
-    }
-    matrix.middle[row] = middle;
-  }
 }
 
 void local_rotations(const Elements& elements, std::span<const Vec2d> uvs, Rotations& out) {

@@ -106,18 +106,14 @@ struct CornerLists {
   void build(const Elements& elements, std::size_t vertices);
 };
 
-// A symmetric matrix: its diagonal apart, the rest by rows, both halves stored. The columns of row
-// i below i stand first, from first[i] to middle[i]; otherwise their order is reproducible, no
-// more.
+// A symmetric matrix: its diagonal apart, the rest by rows, both halves stored, in an order that is
+// reproducible, no more.
 struct SymmetricMatrix {
   std::vector<double> diagonal, value;
-  std::vector<std::uint32_t> first, middle, column;
+  std::vector<std::uint32_t> first, column;
   std::vector<std::uint32_t> scratch;
   std::size_t rows() const { return diagonal.size(); }
 };
-
-// Brings the rows into that order.
-void partition_rows(SymmetricMatrix& matrix);
 
 // Sum over elements of weight * area * grad(i) . grad(j).
 void build_stiffness(const Elements& elements, const CornerLists& corners, SymmetricMatrix& out);
