@@ -104,20 +104,39 @@ glm::dvec2 smallest_box(const std::vector<Vec2d>& hull) {
   return best;
 }
 
+// Quadrupled angles make directions modulo 90 degrees add up.
+struct BorderEdge {
+  double length;
+  glm::dvec2 quadrupled;  // unit vector at four times its angle
+};
+
+std::vector<BorderEdge> border_directions(std::span<const Vec2d> uvs,
+                                          std::span<const std::array<std::uint32_t, 2>> edges) {
+  const auto doubled = [](glm::dvec2 d) {
+    return glm::dvec2(d.x * d.x - d.y * d.y, 2 * d.x * d.y);
+  };
+  std::vector<BorderEdge> out;
+  out.reserve(edges.size());
+  for (const auto& [a, b] : edges) {
+    const glm::dvec2 e = to_glm(uvs[b]) - to_glm(uvs[a]);
+    const double length = glm::length(e);
+    if (length > 0) out.push_back({length, doubled(doubled(e / length))});
+  }
+  return out;
+}
+
 // The mean direction, modulo 90 degrees, of the edges near `angle`, taken over narrower and
 // narrower windows, so that long straight borders outweigh those that are merely nearly so.
-glm::dvec2 refine_direction(std::span<const Vec2d> uvs,
-                            std::span<const std::array<std::uint32_t, 2>> edges, double angle) {
+glm::dvec2 refine_direction(std::span<const BorderEdge> edges, double angle) {
   for (const double window : {0.5, 0.1, 0.02}) {
-    // Quadrupled angles make directions modulo 90 degrees add up.
     const double limit = std::cos(4 * window * std::numbers::pi / 180);
+    const glm::dvec2 middle(std::cos(4 * angle), std::sin(4 * angle));
     double c = 0, s = 0;
-    for (const auto& [a, b] : edges) {
-      const glm::dvec2 e = to_glm(uvs[b]) - to_glm(uvs[a]);
-      const double turned = 4 * (std::atan2(e.y, e.x) - angle);
-      if (!(std::cos(turned) >= limit)) continue;
-      c += glm::length(e) * std::cos(turned);
-      s += glm::length(e) * std::sin(turned);
+    for (const BorderEdge& e : edges) {
+      const double cosine = glm::dot(middle, e.quadrupled);
+      if (!(cosine >= limit)) continue;
+      c += e.length * cosine;
+      s += e.length * cross(middle, e.quadrupled);
     }
     if (c > 0) angle += std::atan2(s, c) / 4;
   }
@@ -125,22 +144,15 @@ glm::dvec2 refine_direction(std::span<const Vec2d> uvs,
 }
 
 // The direction modulo 90 degrees that carries most border length, if it carries enough.
-bool straight_direction(std::span<const Vec2d> uvs,
-                        std::span<const std::array<std::uint32_t, 2>> edges, glm::dvec2* out) {
+bool straight_direction(std::span<const BorderEdge> edges, glm::dvec2* out) {
   constexpr int bins = 180;  // half a degree each
   std::array<double, bins> length{};
   double total = 0;
-  const auto bin_of = [&](glm::dvec2 e) {
-    double turn = std::atan2(e.y, e.x) / (0.5 * std::numbers::pi);
+  for (const BorderEdge& e : edges) {
+    double turn = std::atan2(e.quadrupled.y, e.quadrupled.x) / (2 * std::numbers::pi);
     turn -= std::floor(turn);
-    return std::min(static_cast<int>(turn * bins), bins - 1);
-  };
-  for (const auto& [a, b] : edges) {
-    const glm::dvec2 e = to_glm(uvs[b]) - to_glm(uvs[a]);
-    const double l = glm::length(e);
-    if (!(l > 0)) continue;
-    length[bin_of(e)] += l;
-    total += l;
+    length[std::min(static_cast<int>(turn * bins), bins - 1)] += e.length;
+    total += e.length;
   }
   int best = 0;  // the pair of neighbouring bins best, best + 1
   const auto pair = [&](int k) { return length[k] + length[(k + 1) % bins]; };
@@ -148,7 +160,7 @@ bool straight_direction(std::span<const Vec2d> uvs,
     if (pair(k) > pair(best)) best = k;
   }
   if (!(pair(best) >= 0.2 * total) || !(total > 0)) return false;
-  *out = refine_direction(uvs, edges, (best + 1) * 0.5 * std::numbers::pi / bins);
+  *out = refine_direction(edges, (best + 1) * 0.5 * std::numbers::pi / bins);
   return true;
 }
 
@@ -163,7 +175,7 @@ Orientation orient_for_packing(std::span<Vec2d> uvs,
   glm::dvec2 d = smallest_box(hull);
   Box box = box_along(hull, d);
   glm::dvec2 straight;
-  if (straight_direction(uvs, border_edges, &straight)) {
+  if (straight_direction(border_directions(uvs, border_edges), &straight)) {
     const Box other = box_along(hull, straight);
     if (other.area() <= box.area() * (1 + straight_slack)) {
       d = straight;
