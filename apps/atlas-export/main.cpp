@@ -57,6 +57,19 @@ Status check_textures_stay(const Scene& scene, const std::filesystem::path& targ
   return {};
 }
 
+// A scene's material files and buffers are known only when it has been read.
+Status check_files_stay(const LoadedScene& loaded, const app::ExportCommand& command) {
+  const std::filesystem::path& target = command.options.target;
+  std::filesystem::path beside;  // what is written with the target
+  if (target.extension() == ".obj") beside = std::filesystem::path(target).replace_extension("mtl");
+  if (target.extension() == ".gltf")
+    beside = std::filesystem::path(target).replace_extension("bin");
+  for (const std::filesystem::path& file : loaded.files)
+    for (const std::filesystem::path& output : {target, beside, command.report})
+      if (Status s = app::check_output(output, {file}); !s.ok()) return s;
+  return check_textures_stay(loaded.scene, target);
+}
+
 Status run(const app::ExportCommand& command, app::Terminal& terminal) {
   if (Status s = check_options(command.options); !s.ok()) return s;
   if (Status s = app::check_output(command.options.target,
@@ -70,7 +83,7 @@ Status run(const app::ExportCommand& command, app::Terminal& terminal) {
   const double cpu = cpu_seconds(), wall = wall_seconds();
   Result<LoadedScene> loaded = read_scene(command.scene, command.read, context);
   if (!loaded.ok()) return loaded.status();
-  if (Status s = check_textures_stay(loaded->scene, command.options.target); !s.ok()) return s;
+  if (Status s = check_files_stay(*loaded, command); !s.ok()) return s;
   for (const std::string& line : loaded->defects.lines()) terminal.line("left out: " + line);
   const ExportPlan plan = make_plan(loaded->scene, command.options);
   if (command.plan_only) {

@@ -20,7 +20,8 @@ constexpr std::string_view kUnderstood[] = {"KHR_materials_unlit", "KHR_mesh_qua
 // What the file callbacks of tinygltf are given.
 struct Folder {
   fs::path path;
-  Status status;  // of the first buffer that could not be read
+  std::vector<fs::path>& buffers;  // that were read
+  Status status;                   // of the first one that could not be
 };
 
 Status malformed(const fs::path& path, const std::string& what) {
@@ -126,6 +127,7 @@ bool read_buffer(std::vector<unsigned char>* out, std::string*, const std::strin
     return false;
   }
   out->assign(bytes->begin(), bytes->end());
+  folder.buffers.emplace_back(name);
   return true;
 }
 
@@ -296,7 +298,7 @@ Result<std::vector<T>> read_accessor(const tinygltf::Model& model, int index, in
 
 }  // namespace
 
-Result<tinygltf::Model> load_gltf(const fs::path& path) {
+Result<tinygltf::Model> load_gltf(const fs::path& path, std::vector<fs::path>& buffers) {
   auto bytes = read_file_bytes(path);
   if (!bytes.ok()) return bytes.status();
   if (bytes->size > 0xffffffffu) {
@@ -312,7 +314,7 @@ Result<tinygltf::Model> load_gltf(const fs::path& path) {
   if (Status s = check_json(path, json); !s.ok()) return s;
 
   tinygltf::TinyGLTF loader;
-  Folder folder{path.parent_path(), {}};
+  Folder folder{path.parent_path(), buffers, {}};
   loader.SetImageLoader(keep_image, nullptr);
   loader.SetFsCallbacks(file_access<tinygltf::FsCallbacks>(folder));
   tinygltf::Model model;

@@ -25,10 +25,11 @@
 
 namespace atlas {
 
-// Parses .gltf and .glb and loads the buffers. Images stay encoded: embedded ones keep their bytes
-// in image.image, others their uri. Errors: not_found (the file or a buffer), bad_input,
-// unsupported (a required extension that is not implemented here).
-Result<tinygltf::Model> load_gltf(const std::filesystem::path& path);
+// Parses .gltf and .glb and loads the buffers, the files of which `buffers` names. Images stay
+// encoded: embedded ones keep their bytes in image.image, others their uri. Errors: not_found (the
+// file or a buffer), bad_input, unsupported (a required extension that is not implemented here).
+Result<tinygltf::Model> load_gltf(const std::filesystem::path& path,
+                                  std::vector<std::filesystem::path>& buffers);
 
 // The bytes of a buffer view; bad_input where it leaves its buffer.
 Result<std::span<const std::uint8_t>> gltf_view(const tinygltf::Model& model, int view);

@@ -364,7 +364,7 @@ class GltfParser {
 }  // namespace
 
 Status read_gltf(const fs::path& path, SceneBuilder& builder, const Context& context) {
-  auto model = load_gltf(path);
+  auto model = load_gltf(path, builder.files);
   if (!model.ok()) return model.status();
   return GltfParser(*model, builder, context).run();
 }

@@ -34,7 +34,8 @@ Result<std::vector<Vec3f>> read_text(const fs::path& path) {
   return values;
 }
 
-Result<std::vector<Vec3f>> read_values(const fs::path& path, const Context& context) {
+Result<std::vector<Vec3f>> read_values(const fs::path& path, const Context& context,
+                                       std::vector<fs::path>& files) {
   SceneBuilder other(path);
   const Status status = read_by_extension(path, other, context);
   if (status.code() == ErrorCode::unsupported && !known_extension(path)) return read_text(path);
@@ -46,13 +47,14 @@ Result<std::vector<Vec3f>> read_values(const fs::path& path, const Context& cont
                     "simulation's result)",
                     path.string()));
   }
+  files.insert(files.end(), other.files.begin(), other.files.end());
   return std::move(other.illumination);
 }
 
 }  // namespace
 
 Status read_illumination(const fs::path& path, SceneBuilder& builder, const Context& context) {
-  auto values = read_values(path, context);
+  auto values = read_values(path, context, builder.files);
   if (!values.ok()) return values.status();
   if (values->size() != builder.positions.size()) {
     return {

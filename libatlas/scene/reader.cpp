@@ -60,6 +60,7 @@ Result<LoadedScene> read_scene(const fs::path& path, const ReadOptions& options,
       return s;
   }
   auto result = builder.finish(options, context);
+  if (result.ok()) result->files = std::move(builder.files);
   return_freed_memory();  // half of what reading took
   context.report("reading", 1);
   return result;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
@@ -20,7 +21,8 @@ struct ReadOptions {
 
 struct LoadedScene {
   Scene scene;
-  DefectReport defects;  // what was left out or replaced
+  DefectReport defects;                      // what was left out or replaced
+  std::vector<std::filesystem::path> files;  // read besides its own: material files, buffers
 };
 
 // Reads the scene at `path`; the extension (.obj .ply .gltf .glb .wrl .wrz, any case) chooses the

@@ -55,6 +55,7 @@ class SceneBuilder {
   std::vector<RawTexture> textures;
   std::vector<std::string> objects;
   DefectReport defects;
+  std::vector<std::filesystem::path> files;  // LoadedScene::files
 
   // What the next faces belong to.
   std::uint32_t material = 0, object = 0;

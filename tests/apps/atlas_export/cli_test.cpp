@@ -215,6 +215,24 @@ TEST_F(AtlasExport, OverwritesNothingThatItReads) {
   EXPECT_EQ(run(fmt::format("{0}/w.obj -o {0}/v.wrl -q", dir_.string())).exit_code, 0);
 }
 
+// An OBJ's materials, a glTF's buffer: known only when the scene has been read.
+TEST_F(AtlasExport, OverwritesNoMaterialsAndNoBuffer) {
+  const fs::path materials = write("m.mtl", "newmtl red\nKd 1 0 0\n");
+  write("box.obj", "mtllib m.mtl\nusemtl red\n" + lit_box(2));
+  const RunResult obj = run(fmt::format("{0}/box.obj -o {0}/m.obj --charts-only", dir_.string()));
+  EXPECT_EQ(obj.exit_code, 2);
+  EXPECT_NE(obj.output.find("would overwrite"), std::string::npos) << obj.output;
+  EXPECT_EQ(slurp(materials), "newmtl red\nKd 1 0 0\n");
+  EXPECT_FALSE(fs::exists(dir_ / "m.obj"));
+  ASSERT_EQ(run(fmt::format("{0}/box.obj -o {0}/w.gltf -q", dir_.string())).exit_code, 0);
+  fs::rename(dir_ / "w.gltf", dir_ / "lit.gltf");
+  const std::string buffer = slurp(dir_ / "w.bin");
+  const RunResult gltf = run(fmt::format("{0}/lit.gltf -o {0}/w.gltf", dir_.string()));
+  EXPECT_EQ(gltf.exit_code, 2);
+  EXPECT_NE(gltf.output.find("w.bin"), std::string::npos) << gltf.output;
+  EXPECT_EQ(slurp(dir_ / "w.bin"), buffer);
+}
+
 TEST_F(AtlasExport, LightOnNoArea) {
   const fs::path flat = write("flat.obj", "v 1 1 1 1 1 1\nv 1 1 1 1 1 1\nv 1 1 1 1 1 1\nf 1 2 3\n");
   expect_refusal(flat, "no triangle has an area", "-q");
