@@ -1,7 +1,8 @@
 #include "apps/atlas-pack/command_line.h"
 
-#include <cmath>
+#include <charconv>
 #include <map>
+#include <string_view>
 
 #include "apps/common/options.h"
 
@@ -10,17 +11,19 @@ namespace {
 
 // "2048x1024" or "2048"; "2048x0" is a strip.
 std::string parse_page(const std::string& text, Extent& page) {
-  constexpr double kMost = 1 << 30;
-  double w = 0, h = 0;  // whatever their digits, never out of range
-  char x = 0, rest = 0;
-  if (std::sscanf(text.c_str(), "%lf%c", &w, &rest) == 1)
-    h = w > 0 ? w : -1;
-  else if (std::sscanf(text.c_str(), "%lf%c%lf%c", &w, &x, &h, &rest) != 3 || x != 'x')
-    h = -1;
-  const auto side = [](double s) { return s >= 0 && s <= kMost && s == std::floor(s); };
-  if (!side(w) || !side(h))
+  constexpr std::int32_t kMost = 1 << 30;
+  const auto read = [](std::string_view digits, std::int32_t least, std::int32_t& side) {
+    const char* end = digits.data() + digits.size();
+    const auto [rest, error] = std::from_chars(digits.data(), end, side);
+    return error == std::errc() && rest == end && side >= least && side <= kMost;
+  };
+  const std::string_view all = text, width = all.substr(0, all.find('x'));
+  const bool square = width.size() == all.size();
+  Extent read_page{0, 0};
+  if (!read(width, 1, read_page.width) ||
+      !read(square ? width : all.substr(width.size() + 1), square ? 1 : 0, read_page.height))
     return "'" + text + "' must be WIDTHxHEIGHT, e.g. 2048x2048 (height 0: as low as possible)";
-  page = {static_cast<std::int32_t>(w), static_cast<std::int32_t>(h)};
+  page = read_page;
   return {};
 }
 

@@ -118,6 +118,8 @@ TEST_F(AtlasPack, WhatCannotBeDoneLeavesNothing) {
       {"rects ok.csv -o q.csv --preview p.gif", ".svg or .png"},
       {"rects ok.csv -o q.csv --preview no/p.svg", "no is not a directory"},
       {"rects ok.csv -o q.csv --page 99999999999", "--page"},
+      {"rects ok.csv -o q.csv --page 0x512", "--page"},  // no hexadecimal number
+      {"rects ok.csv -o q.csv --page 1e2", "--page"},
       {"rects ok.csv -o q.csv --threads -1", "--threads"},
       {"rects ok.csv -o q.csv --effort -1", "--effort"},
       {"rects ok.csv -o q.csv --padding -1", "--padding"},
