@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
@@ -188,6 +187,7 @@ class StraightPage {
     Random random(options_.seed * 0x10001 + round * kStarts + k);
     Start start;
     start.scale = scale_of(k, round > 0 ? 0.06 * (random.unit() - 0.5) : 0);
+    if (!(start.scale > 0)) return start;  // the gutters take the whole page
     const std::vector<Piece> pieces = pieces_at(start.scale, cell_);
     NestSearchOptions search;
     search.width = options_.page_size / cell_;

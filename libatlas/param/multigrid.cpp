@@ -28,7 +28,6 @@ Pair<Real>* pairs(std::vector<glm::vec<2, Real>>& v) {
   return reinterpret_cast<Pair<Real>*>(v.data());
 }
 
-// load -= factor K x, both halves at once from the lower one.
 glm::dvec2 in_double(Vec2d v) {
   return to_glm(v);
 }
@@ -37,6 +36,7 @@ glm::dvec2 in_double(const glm::vec<2, Real>& v) {
   return glm::dvec2(v);
 }
 
+// load -= factor K x, both halves at once from the lower one.
 template <class Real, class Vector>
 void subtract_product(const GraphLaplacian<Real>& matrix, const Vector& x, double factor,
                       std::span<glm::dvec2> load) {

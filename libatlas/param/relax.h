@@ -24,8 +24,7 @@ enum class Tail : std::uint8_t {
 //   triangles; e follows the worst d down (Garanzha, Kaporin, Kudryavtseva, Protais, Ray and
 //   Sokolov 2021, "Foldover-free maps in 50 lines of code");
 // - once all are positive, the symmetric Dirichlet energy f (1 + 1 / d²), a barrier against new
-// flips,
-//   each step limited by the roots of the triangles' determinants (Smith and Schaefer 2015,
+//   flips, each step limited by the roots of the triangles' determinants (Smith and Schaefer 2015,
 //   "Bijective parameterization with free boundaries");
 // - a high power mean of the singular values and their inverses, which the worst triangles rule;
 //   the same barrier.
