@@ -297,7 +297,7 @@ class ChartJob {
       }
       param.start.uvs = start_uvs_;
       param.resume = true;
-      param.aimed_stretch = 0;
+      param.aimed_stretch = 0;  // it has been squeezed before
     } else if (!effort_.joined.empty()) {
       param.joined = effort_.joined;
     } else if (!input_.frames.empty()) {

@@ -184,7 +184,10 @@ class Flattener {
     for (const std::uint32_t chart : done) charts_[chart].queued = charts_[chart].grown = false;
     moved_.clear();
     for (std::size_t i = 0; i < done.size(); ++i) {
-      if (!failures[i]) continue;
+      if (!failures[i]) {
+        charts_[done[i]].uvs = {};
+        continue;
+      }
       if (remove(done[i], *failures[i])) continue;
       split_ += failures[i]->failed;
       divide(done[i], failures[i]->parts);

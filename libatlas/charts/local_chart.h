@@ -45,7 +45,7 @@ class LocalChart {
     std::vector<Vec3f> points_;
   };
 
-  // `triangles` is the whole chart; its triangles carry the same Partition::chart.
+  // `triangles` is the whole chart, ascending; its triangles carry the same Partition::chart.
   void build(const Topology& topology, Partition& partition,
              std::span<const std::uint32_t> triangles);
 

@@ -212,7 +212,7 @@ Trial::Start Trial::judge_start(std::size_t smaller_half, const TrialLimits& lim
   double area = 0;
   for (const std::uint32_t k : cells_) area += mesh_.cells[k].area;
   const double allowed = area * (limits.stretch_l2 * limits.stretch_l2 - 1);
-  const double misfit = misfit_ / std::sqrt(area);
+  const double misfit = area > 0 ? misfit_ / std::sqrt(area) : 0;
   if (!flipped_ && misfit > kCloseFit && misfit <= kFarApart) return Start::open;
   const bool whole = measure_stretch(limits.stretch_high, outcome);
   if (whole && misfit <= kCloseFit && outcome.energy <= kSettledStart * allowed &&

@@ -240,7 +240,6 @@ void descend(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolv
     }
     if (now.flips == 0 &&
         now.stretch_999 > most_squeezed(mesh.triangles.size()) * options.max_stretch) {
-      last = now;
       break;
     }
     solver.squeeze({aim, options.max_stretch, options.squeeze_iterations, options.squeeze_ratio},
