@@ -88,17 +88,13 @@ class Press {
         press_best(starts, kThoroughStarts, kThorough);
       }
       settle_best(starts, best);
-      const double seconds = wall_seconds() - begun;
-      if (best.scale > 0 && (best.curve.empty() || best.curve.back().utilization < fill(best)))
-        best.curve.push_back({seconds, best.layouts, fill(best)});
+      const double done = book_round(options_, wall_seconds() - begun, fill(best), best);
       if (n == 1) break;
       if (options_.preset != PackPreset::best) {
         // Starts are drawn by chance: an empty page deserves a second draw.
         if (round > 0 || fill(best) >= kPoorFill) break;
         continue;
       }
-      const double done = options_.effort > 0 ? double(best.layouts) / double(options_.effort)
-                                              : seconds / options_.time_budget;
       if (!(done < 1)) break;
       context_.report("pack", done);
     }
@@ -355,6 +351,13 @@ class Press {
 };
 
 }  // namespace
+
+double book_round(const FitOptions& options, double seconds, double use, PressedPage& best) {
+  if (best.scale > 0 && (best.curve.empty() || best.curve.back().utilization < use))
+    best.curve.push_back({seconds, best.layouts, use});
+  return options.effort > 0 ? double(best.layouts) / double(options.effort)
+                            : seconds / options.time_budget;
+}
 
 bool worth_pressing(std::span<const ChartOutline> outlines, const FitOptions& options) {
   constexpr double kSurelyFits = 0.5;  // at the largest scale: the page may even be smaller

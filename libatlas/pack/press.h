@@ -24,6 +24,11 @@ struct PressedPage {
   std::uint64_t layouts = 0;
 };
 
+// Books a round of a search that has come to `best` after so many seconds: a step of its curve
+// where it fills more of the page than before (`use`, a share). Returns the share of the effort, or
+// of the time, that is spent.
+double book_round(const FitOptions& options, double seconds, double use, PressedPage& best);
+
 // Whether press_outlines is meant for this: one page, no hurry, not too many charts, free turns.
 bool worth_pressing(std::span<const ChartOutline> outlines, const FitOptions& options);
 

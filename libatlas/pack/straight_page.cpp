@@ -146,12 +146,8 @@ class StraightPage {
       });
       for (const Start& s : starts) best.layouts += s.layouts;
       slide_fullest(starts, best);
-      const double seconds = wall_seconds() - begun;
-      if (best.scale > 0 && (best.curve.empty() || best.curve.back().utilization < fill(best)))
-        best.curve.push_back({seconds, best.layouts, fill(best)});
+      const double done = book_round(options_, wall_seconds() - begun, fill(best), best);
       if (options_.preset != PackPreset::best) break;
-      const double done = options_.effort > 0 ? double(best.layouts) / double(options_.effort)
-                                              : seconds / options_.time_budget;
       if (!(done < 1)) break;
       context_.report("pack", done);
     }
