@@ -18,13 +18,8 @@ void Frames::put(std::uint32_t t, const Frame& frame) {
   own_.push_back(frame);
 }
 
-// The shortest rotation that takes the map's normal to the triangle's.
-Frames::Frame Frames::at(const Topology& topology, std::uint32_t t) const {
-  const std::uint32_t source = source_[t];
-  if (source == kNoIndex) return {};
-  if (source & kOwn) return own_[source & ~kOwn];
-  const Shared& map = shared_[source];
-  const glm::dvec3 a = to_glm(map.normal), b = to_dvec(topology.normals[t]);
+Frames::Frame Frames::turned(const std::array<Vec3d, 2>& rows, const Vec3d& from, const Vec3d& to) {
+  const glm::dvec3 a = to_glm(from), b = to_glm(to);
   const double cosine = glm::dot(a, b);
   const glm::dvec3 axis = glm::cross(a, b);
   const auto turn = [&](const Vec3d& row) {
@@ -33,7 +28,15 @@ Frames::Frame Frames::at(const Topology& topology, std::uint32_t t) const {
     return from_glm(
         glm::vec3(cosine * x + glm::cross(axis, x) + axis * (glm::dot(axis, x) / (1 + cosine))));
   };
-  return {turn(map.rows[0]), turn(map.rows[1])};
+  return {turn(rows[0]), turn(rows[1])};
+}
+
+Frames::Frame Frames::at(const Topology& topology, std::uint32_t t) const {
+  const std::uint32_t source = source_[t];
+  if (source == kNoIndex) return {};
+  if (source & kOwn) return own_[source & ~kOwn];
+  const Shared& map = shared_[source];
+  return turned(map.rows, map.normal, from_glm(to_dvec(topology.normals[t])));
 }
 
 }  // namespace atlas

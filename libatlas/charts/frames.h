@@ -20,6 +20,10 @@ class Frames {
     std::array<Vec3d, 2> rows;
   };
 
+  // Turned by the shortest rotation that takes normal `from` to `to`; as they are where these are
+  // opposite.
+  static Frame turned(const std::array<Vec3d, 2>& rows, const Vec3d& from, const Vec3d& to);
+
   bool empty() const { return source_.empty(); }
   void resize(std::size_t triangles) { source_.resize(triangles, kNoIndex); }
   std::uint32_t add(const Shared& map);  // returns its number

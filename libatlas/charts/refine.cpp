@@ -114,16 +114,9 @@ bool ConeLimit::excludes(const Vec3f& normal, std::uint32_t chart) const {
 
 Frames::Frame carry_frame(const Topology& topology, const Frames::Frame& frame, std::uint32_t from,
                           std::uint32_t to) {
-  const glm::dvec3 a = to_dvec(topology.normals[from]), b = to_dvec(topology.normals[to]);
-  const double cosine = glm::dot(a, b);
-  if (cosine < -0.99) return frame;
-  const glm::dvec3 axis = glm::cross(a, b);
-  const auto turn = [&](const Vec3f& v) {
-    const glm::dvec3 x = to_dvec(v);
-    return from_glm(
-        glm::vec3(cosine * x + glm::cross(axis, x) + axis * (glm::dot(axis, x) / (1 + cosine))));
-  };
-  return {turn(frame[0]), turn(frame[1])};
+  const auto wide = [](const Vec3f& v) { return from_glm(to_dvec(v)); };
+  return Frames::turned({wide(frame[0]), wide(frame[1])}, wide(topology.normals[from]),
+                        wide(topology.normals[to]));
 }
 
 void move_triangle(const Topology& topology, std::uint32_t h, Partition& partition,

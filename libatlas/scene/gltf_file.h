@@ -27,7 +27,8 @@ namespace atlas {
 
 // Parses .gltf and .glb and loads the buffers, the files of which `buffers` names. Images stay
 // encoded: embedded ones keep their bytes in image.image, others their uri. Errors: not_found (the
-// file or a buffer), bad_input, unsupported (a required extension that is not implemented here).
+// file or a buffer), bad_input, unsupported (the file requires an extension other than
+// those that are read; the message names it).
 Result<tinygltf::Model> load_gltf(const std::filesystem::path& path,
                                   std::vector<std::filesystem::path>& buffers);
 

@@ -29,6 +29,17 @@ std::vector<Vec2d> box(double width, double height) {
   return {{0, 0}, {width, 0}, {width, height}, {0, 0}, {width, height}, {0, height}};
 }
 
+FitOptions options_for(const test::ChartItems& charts, int page_size) {
+  FitOptions o;
+  o.page_size = page_size;
+  o.padding = o.alignment = 1;
+  o.minimum_side = 0;
+  o.max_scale = 100;
+  o.free_aspect = true;
+  o.shapes = charts.shapes;
+  return o;
+}
+
 // The field against the nearest of all cells, by brute force.
 TEST(DistanceField, MatchesTheNearestCell) {
   test::Noise noise{21};
@@ -156,14 +167,8 @@ TEST(Press, FewChartsOnOnePage) {
   std::vector<std::vector<Vec2d>> blobs;
   for (int k = 0; k < 12; ++k) blobs.push_back(test::blob(noise, 60 + 100 * noise.unit(), 9));
   const test::ChartItems charts(std::move(blobs));
-  FitOptions o;
-  o.page_size = 512;
-  o.padding = o.alignment = 1;
-  o.minimum_side = 0;
-  o.max_scale = 100;
+  FitOptions o = options_for(charts, 512);
   o.power_of_two = false;
-  o.free_aspect = true;
-  o.shapes = charts.shapes;
   Context one, three;
   one.threads = 1;
   three.threads = 3;
@@ -189,13 +194,8 @@ TEST(Press, LongChartsLieAlongThePage) {
     bars.push_back({{0, 0}, {w, 0}, {w, h}, {0, 0}, {w, h}, {0, h}});
   }
   const test::ChartItems charts(std::move(bars));
-  FitOptions o;
-  o.page_size = 2048;
-  o.padding = o.alignment = 1;
-  o.minimum_side = 0;
+  FitOptions o = options_for(charts, 2048);
   o.max_scale = 10;
-  o.free_aspect = true;
-  o.shapes = charts.shapes;
   const Result<FitResult> r = fit_pages(charts.items, o, {});
   ASSERT_TRUE(r.ok());
   EXPECT_GT(r->utilization, 0.6);
@@ -214,13 +214,7 @@ TEST(StraightPage, ChartsLieSideBySide) {
     bars.push_back(bar);
   }
   const test::ChartItems charts(std::move(bars));
-  FitOptions o;
-  o.page_size = 1024;
-  o.padding = o.alignment = 1;
-  o.minimum_side = 0;
-  o.max_scale = 100;
-  o.free_aspect = true;
-  o.shapes = charts.shapes;
+  FitOptions o = options_for(charts, 1024);
   ASSERT_TRUE(is_straight(outlines_of(charts.shapes, {})));
   Context one, three;
   one.threads = 1;
@@ -243,12 +237,8 @@ TEST(StraightPage, BestIsNoWorseOnASquarePage) {
   std::vector<std::vector<Vec2d>> bars;
   for (int k = 0; k < 12; ++k) bars.push_back(box(60 + 17 * k, 20 + 11 * (k % 5)));
   const test::ChartItems charts(std::move(bars));
-  FitOptions o;
-  o.page_size = 512;
-  o.padding = o.alignment = 1;
-  o.minimum_side = 0;
-  o.max_scale = 100;
-  o.shapes = charts.shapes;
+  FitOptions o = options_for(charts, 512);
+  o.free_aspect = false;
   const Result<FitResult> standard = fit_pages(charts.items, o, {});
   o.preset = PackPreset::best;
   o.effort = 1;
@@ -263,14 +253,9 @@ TEST(StraightPage, KeepsTheAlignment) {
   std::vector<std::vector<Vec2d>> bars;
   for (int k = 0; k < 20; ++k) bars.push_back(box(60 + 7 * k, 20 + 3 * k));
   const test::ChartItems charts(std::move(bars));
-  FitOptions o;
-  o.page_size = 1024;
+  FitOptions o = options_for(charts, 1024);
   o.padding = 4;
   o.alignment = 8;
-  o.minimum_side = 0;
-  o.max_scale = 100;
-  o.free_aspect = true;
-  o.shapes = charts.shapes;
   const Result<FitResult> page = fit_pages(charts.items, o, {});
   ASSERT_TRUE(page.ok());
   EXPECT_GT(page->utilization, 0.6);
