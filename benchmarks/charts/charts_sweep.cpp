@@ -40,6 +40,24 @@ std::string block(const std::string& name, const std::vector<const ChartsPoint*>
   return text + "EOD\n";
 }
 
+// Bounds that come to the same place share a point and its label.
+std::vector<ChartsPoint> joined(const std::vector<const ChartsPoint*>& points, Value value) {
+  constexpr double kNearTime = 0.05, kNearValue = 0.02;
+  std::vector<ChartsPoint> kept;
+  for (const ChartsPoint* p : points) {
+    const auto same = std::find_if(kept.begin(), kept.end(), [&](const ChartsPoint& q) {
+      return std::abs(p->cpu_seconds - q.cpu_seconds) < kNearTime * q.cpu_seconds &&
+             std::abs(value(*p) - value(q)) < kNearValue * value(q);
+    });
+    if (same == kept.end()) {
+      kept.push_back(*p);
+    } else {
+      same->setting += ", " + p->setting;
+    }
+  }
+  return kept;
+}
+
 std::string script(const std::vector<ChartsPoint>& points, const std::string& terminal,
                    const std::filesystem::path& target) {
   std::vector<std::string> meshes;
@@ -59,7 +77,11 @@ std::string script(const std::vector<ChartsPoint>& points, const std::string& te
       data +=
           block("front" + id,
                 pareto_front(all, time, [&](const ChartsPoint* p) { return value(*p); }), value) +
-          block("presets" + id, presets, value) + block("bounds" + id, bounds, value);
+          block("presets" + id, presets, value);
+      const std::vector<ChartsPoint> apart = joined(bounds, value);
+      bounds.clear();
+      for (const ChartsPoint& p : apart) bounds.push_back(&p);
+      data += block("bounds" + id, bounds, value);
       plots += fmt::format("set title \"{}\"\n", row == 0 ? meshes[k] : "");
       plots += row == 0 ? "set logscale y\nset format y '10^{%L}'\nset xlabel ''\n"
                         : "unset logscale y\nset format y '%g'\nset xlabel 'CPU ms'\n";
@@ -74,7 +96,7 @@ std::string script(const std::vector<ChartsPoint>& points, const std::string& te
           id);
       // The presets lie close together: each label on a side of its own.
       for (const char* side :
-           {"fast right offset -0.9,0", "default center offset 0,0.9", "best left offset 0.9,0"}) {
+           {"fast right offset -0.9,0", "default center offset 0,-0.9", "best left offset 0.9,0"}) {
         const std::string text = side, word = text.substr(0, text.find(' '));
         plots += fmt::format(
             ", $presets{0} using 1:(strcol(3) eq '{1}' ? $2 : NaN):3 with labels{2} tc rgb "
