@@ -19,7 +19,7 @@ struct RawText {
 
 void add_input_options(CLI::App& app, ExportCommand& command, RawText& raw) {
   app.add_option("scene", command.scene,
-                 "Scene: .obj, .ply, .gltf, .glb, or a .wrl or .wrz of this program")
+                 "Scene: .obj, .ply, .off, .stl, .gltf, .glb, or a .wrl or .wrz of this program")
       ->required();
   app.add_option("-o,--output", command.options.target,
                  "World to write: .wrl, .wrz, .obj, .gltf or .glb")

@@ -149,7 +149,7 @@ CLI::App* add_images(CLI::App& app, PackCommand& c) {
 void add_mesh(CLI::App& app, PackCommand& c) {
   CLI::App* mesh =
       app.add_subcommand("mesh", "The uv charts of a mesh, repacked at uniform density");
-  mesh->add_option("mesh", c.input, "OBJ, PLY or glTF with uvs")->required();
+  mesh->add_option("mesh", c.input, "OBJ, PLY, OFF or glTF with uvs")->required();
   mesh->add_option("-o,--output", c.output, "OBJ with new uvs, one material a page")->required();
   mesh->add_option("--page", c.page_side, "Side of the largest page, texels")
       ->capture_default_str()

@@ -222,7 +222,7 @@ Parsed parse_command_line(int argc, char** argv) {
   CLI::App app{"Shows a scene, and atlases with baked light, under a moving light with shadows.",
                "atlas-play"};
   std::string light = "sun:172,50.45,9", end = "loop", up = "y";
-  app.add_option("scene", l.scene, "OBJ, PLY, glTF, GLB, VRML")->required();
+  app.add_option("scene", l.scene, "OBJ, PLY, OFF, STL, glTF, GLB, VRML")->required();
   app.set_config("--config", "", "options from a file");
   add_picture_options(app, l);
   add_shadow_options(app, l);

@@ -7,6 +7,8 @@ namespace atlas {
 
 Status read_obj(const std::filesystem::path& path, SceneBuilder& builder, const Context& context);
 Status read_ply(const std::filesystem::path& path, SceneBuilder& builder, const Context& context);
+Status read_off(const std::filesystem::path& path, SceneBuilder& builder, const Context& context);
+Status read_stl(const std::filesystem::path& path, SceneBuilder& builder, const Context& context);
 Status read_gltf(const std::filesystem::path& path, SceneBuilder& builder, const Context& context);
 Status read_vrml(const std::filesystem::path& path, SceneBuilder& builder, const Context& context);
 

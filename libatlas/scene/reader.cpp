@@ -24,6 +24,8 @@ Reader reader_for(const fs::path& path) {
   if (extension == ".wrl" || extension == ".wrz") return read_vrml;
   if (extension == ".gltf" || extension == ".glb") return read_gltf;
   if (extension == ".ply") return read_ply;
+  if (extension == ".off") return read_off;
+  if (extension == ".stl") return read_stl;
   return nullptr;
 }
 
@@ -40,8 +42,8 @@ Status read_by_extension(const fs::path& path, SceneBuilder& builder, const Cont
     return {ErrorCode::bad_input,
             fmt::format("{}: is a directory (name a file inside it)", path.string())};
   return {ErrorCode::unsupported,
-          fmt::format("{}: no reader for '{}' (use .obj, .ply, .gltf, .glb, or a .wrl or .wrz "
-                      "written by this program)",
+          fmt::format("{}: no reader for '{}' (use .obj, .ply, .off, .stl, .gltf, .glb, or a .wrl "
+                      "or .wrz written by this program)",
                       path.string(), path.extension().string())};
 }
 

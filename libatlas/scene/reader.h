@@ -1,4 +1,5 @@
-// Reading illuminated scenes: OBJ + MTL, PLY, glTF 2.0 and GLB, and worlds written by exporters/.
+// Reading illuminated scenes: OBJ + MTL, PLY, OFF, STL, glTF 2.0 and GLB, and worlds written by
+// exporters/.
 #pragma once
 
 #include <filesystem>
@@ -13,8 +14,8 @@ namespace atlas {
 
 struct ReadOptions {
   double metres_per_unit = 1;  // length of one unit of the file, > 0
-  // Takes the illumination from this file instead: OBJ, PLY or glTF with the same vertices in the
-  // same order, or plain text with one `r g b` (or one grey value) a line.
+  // Takes the illumination from this file instead: OBJ, PLY, OFF or glTF with the same vertices in
+  // the same order, or plain text with one `r g b` (or one grey value) a line.
   std::filesystem::path illumination_file;
   bool load_textures = true;  // false: materials have their diffuse colour only
 };
@@ -25,8 +26,8 @@ struct LoadedScene {
   std::vector<std::filesystem::path> files;  // read besides its own: material files, buffers
 };
 
-// Reads the scene at `path`; the extension (.obj .ply .gltf .glb .wrl .wrz, any case) chooses the
-// format.
+// Reads the scene at `path`; the extension (.obj .ply .off .stl .gltf .glb .wrl .wrz, any case)
+// chooses the format.
 //
 // Positions are parsed in double. When the centre of the box of the used vertices is farther from 0
 // than the box's diagonal, Scene::origin is that centre rounded to a multiple of a quarter of the
@@ -34,7 +35,7 @@ struct LoadedScene {
 // origin is 0 and positions are the file's own, rounded to float. Materials and objects without a
 // triangle are not listed; those that are come in the order of first use.
 // Illumination: OBJ `v x y z r g b`; PLY red/green/blue, r/g/b or illuminance_r/g/b (integers are
-// normalised); glTF _ILLUMINANCE, else COLOR_0. Values are never clamped.
+// normalised); the colours of COFF; glTF _ILLUMINANCE, else COLOR_0. Values are never clamped.
 //
 // Errors: not_found (no such file, no such buffer); bad_input (see scene/defects.h for what counts
 // as malformed; also: no usable triangle, an illumination file with another vertex count);

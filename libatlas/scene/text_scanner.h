@@ -40,10 +40,13 @@ inline const char* parse_number(const char* at, const char* end, double& value) 
 }
 
 // Walks over text that ends with a newline at or after `end`. A backslash before a line break joins
-// the lines, as OBJ has it.
+// the lines, as OBJ has it; never_joined takes it as any other character.
 class TextScanner {
  public:
-  TextScanner(const char* begin, const char* end) : at_(begin), end_(end) {}
+  enum class Lines { joined, never_joined };
+
+  TextScanner(const char* begin, const char* end, Lines lines = Lines::joined)
+      : at_(begin), end_(end), joins_(lines == Lines::joined) {}
 
   bool at_end() const { return at_ >= end_; }
   const char* position() const { return at_; }
@@ -53,7 +56,7 @@ class TextScanner {
   void skip_blanks() {
     for (;;) {
       while (*at_ == ' ' || *at_ == '\t' || *at_ == '\r') ++at_;
-      if (*at_ != '\\') return;
+      if (!joins_ || *at_ != '\\') return;
       const char* next = at_ + 1;
       if (next < end_ && *next == '\r') ++next;
       if (next >= end_ || *next != '\n') return;
@@ -79,6 +82,7 @@ class TextScanner {
       const char c = *at_++;
       if (c != '\n') continue;
       ++line_;
+      if (!joins_) break;
       const char* before = at_ - 2;
       if (before >= begin_of_line_ && *before == '\r') --before;
       if (before < begin_of_line_ || *before != '\\') break;
@@ -141,7 +145,7 @@ class TextScanner {
  private:
   static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
   bool continues(const char* p) const {
-    return *p == '\\' && p + 1 < end_ && (p[1] == '\n' || (p[1] == '\r' && p[2] == '\n'));
+    return joins_ && *p == '\\' && p + 1 < end_ && (p[1] == '\n' || (p[1] == '\r' && p[2] == '\n'));
   }
 
   void next_line_after_comment() {
@@ -157,6 +161,7 @@ class TextScanner {
   const char* end_;
   const char* begin_of_line_ = at_;
   std::uint32_t line_ = 0;
+  bool joins_;
 };
 
 }  // namespace atlas

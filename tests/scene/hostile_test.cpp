@@ -22,6 +22,11 @@ struct Case {
 const std::string kPly = "ply\nformat ascii 1.0\n";
 const std::string kXyz = "property float x\nproperty float y\nproperty float z\n";
 
+const std::string kOff = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n";
+const std::string kStl =
+    "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+    "endloop endfacet\n";
+
 const Case kCases[] = {
     {"empty.obj", "", ErrorCode::bad_input, "no triangle"},
     {"no_faces.obj", "v 0 0 0\n", ErrorCode::bad_input, "holds no face"},
@@ -70,6 +75,47 @@ const Case kCases[] = {
      kPly + "element vertex 1\n" + kXyz +
          "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n-1 0 0\n",
      ErrorCode::bad_input, "length -1"},
+    {"empty.off", "", ErrorCode::bad_input, "empty.off:1:"},
+    {"not.off", "# a comment\nplan 3\n", ErrorCode::bad_input, "not.off:2:"},
+    {"only.off", "OFF\n# nothing\n", ErrorCode::bad_input, "a header is announced"},
+    {"counts.off", "OFF\n3\n0 0 0\n", ErrorCode::bad_input, "counts.off:2:"},
+    {"negative.off", "OFF\n3 -1 0\n0 0 0\n", ErrorCode::bad_input, "negative.off:2:"},
+    {"four.off", "4OFF\n1 0 0\n0 0 0 1\n", ErrorCode::unsupported, "four.off:1:"},
+    {"flat.off", "nOFF 2\n1 0 0\n0 0\n", ErrorCode::unsupported, "flat.off:1:"},
+    {"faceless.off", "OFF\n1 0 0\n0 0 0\n", ErrorCode::bad_input, "holds no face"},
+    {"huge.off", "OFF\n18446744073709551615 1 0\n0 0 0\n", ErrorCode::bad_input, "announced"},
+    {"huge_faces.off", "OFF\n1 4000000000 0\n0 0 0\n", ErrorCode::bad_input, "announced"},
+    {"huge_face.off", kOff + "4000000000 0 1 2\n", ErrorCode::bad_input, "face 1 of 1 has"},
+    {"cut_face.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", ErrorCode::bad_input,
+     "face 2 of 2"},
+    {"cut_vertex.off", "OFF\n3 1 0\n0 0 0\n1 0 0                   \n", ErrorCode::bad_input,
+     "vertex 3 of 3"},
+    {"word.off", "OFF\n3 1 0\n0 0 0\n1 zero 0\n0 1 0\n3 0 1 2\n", ErrorCode::bad_input,
+     "word.off:4: 'zero'"},
+    {"two.off", "OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n", ErrorCode::bad_input, "two.off:4:"},
+    {"grey.off", "COFF\n1 0 0\n0 0 0 255\n", ErrorCode::bad_input, "grey.off:3:"},
+    {"float_index.off", kOff + "3 0 1.5 2\n", ErrorCode::bad_input, "float_index.off:6:"},
+    {"short_face.off", kOff + "3 0 1\n3 0 1 2\n", ErrorCode::bad_input, "short_face.off:6:"},
+    {"all_bad.off", kOff + "3 0 1 7\n", ErrorCode::bad_input, "all 1 faces are unusable"},
+    {"binary.off", "OFF BINARY\n\1\2\3", ErrorCode::bad_input, "cut short"},
+    {"huge_binary.off", "OFF BINARY\n" + std::string(40, '\xff'), ErrorCode::bad_input,
+     "cut short"},
+    {"empty.stl", "", ErrorCode::bad_input, "empty.stl"},
+    {"not.stl", "OFF\n1 0 0\n", ErrorCode::bad_input, "is it an STL file"},
+    {"no_facet.stl", "solid nothing\nendsolid\n", ErrorCode::bad_input, "holds no face"},
+    {"no_triangle.stl", std::string(84, '\0'), ErrorCode::bad_input, "holds no face"},
+    {"cut.stl", std::string(80, ' ') + std::string("\2\0\0\0", 4) + std::string(99, '\0'),
+     ErrorCode::bad_input, "take 184 bytes, but the file has 183"},
+    {"huge.stl", std::string(80, ' ') + std::string(100, '\xff'), ErrorCode::bad_input,
+     "4294967295 triangles are announced"},
+    {"solid.stl", "solid " + std::string(74, '\0') + std::string("\3\0\0\0", 4),
+     ErrorCode::bad_input, "3 triangles are announced"},
+    {"open.stl", kStl, ErrorCode::bad_input, "'facet' or 'endsolid' should follow"},
+    {"word.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 zero 0\n", ErrorCode::bad_input,
+     "word.stl:4: 'zero'"},
+    {"keyword.stl", kStl + "edge\n", ErrorCode::bad_input, "keyword.stl:8: 'edge'"},
+    {"loopless.stl", "solid\nfacet normal 0 0 1 0 0\nouter loop\n", ErrorCode::bad_input,
+     "'outer loop' should follow"},
     {"empty.gltf", "", ErrorCode::bad_input, "empty.gltf"},
     {"broken.gltf", "{\n\"asset\": {\n", ErrorCode::bad_input, "broken.gltf:3:"},
     {"list.gltf", "[]", ErrorCode::bad_input, "not an object"},
@@ -119,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(Files, Hostile, ::testing::ValuesIn(kCases), [](const a
 
 TEST(Reader, MissingFilesFoldersAndOptions) {
   const TempFolder folder;
-  for (const char* extension : {".obj", ".ply", ".gltf", ".glb"}) {
+  for (const char* extension : {".obj", ".ply", ".off", ".stl", ".gltf", ".glb"}) {
     const auto missing = read_scene(folder / (std::string("gone") + extension), {}, {});
     EXPECT_EQ(missing.status().code(), ErrorCode::not_found);
     const auto directory = folder / (std::string("folder") + extension);

@@ -163,6 +163,31 @@ TEST_F(AtlasExport, TruncatedBinary) {
                  "cut.ply");
 }
 
+// The soup of an STL becomes one chart, since its corners are joined.
+TEST_F(AtlasExport, StlAndOffWithoutLight) {
+  std::string stl = "solid strip\n", off = "OFF 18 16 0\n";
+  const auto at = [](int i) { return fmt::format("{} {} 0", i / 2, i % 2); };
+  for (int i = 0; i < 18; ++i) off += at(i) + "\n";
+  for (int i = 0; i < 16; ++i) {
+    const int b = i + 1 + i % 2, c = i + 2 - i % 2;
+    off += fmt::format("3 {} {} {}\n", i, b, c);
+    stl += fmt::format("facet normal 0 0 1 outer loop\nvertex {}\nvertex {}\nvertex {}\n", at(i),
+                       at(b), at(c)) +
+           "endloop endfacet\n";
+  }
+  write("strip.stl", stl + "endsolid\n");
+  write("strip.off", off);
+  for (const char* name : {"strip.stl", "strip.off"}) {
+    const RunResult r =
+        run(fmt::format("{0}/{1} -o {0}/strip.obj --report {0}/strip.json", dir_.string(), name));
+    ASSERT_EQ(r.exit_code, 0) << r.output;
+    const auto report = nlohmann::json::parse(slurp(dir_ / "strip.json"));
+    EXPECT_EQ(report["charts"]["count"], 1) << name;
+    EXPECT_EQ(report["scene"]["triangles"], 16) << name;
+  }
+  expect_refusal(write("cut.off", off.substr(0, off.size() / 2)), "cut.off");
+}
+
 TEST_F(AtlasExport, EmptyScene) {
   expect_refusal(write("empty.obj", "# nothing\n"), "empty.obj");
 }

@@ -1,0 +1,194 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "libatlas/scene/reader.h"
+#include "tests/scene/temp_folder.h"
+
+namespace atlas {
+namespace {
+
+using test::TempFolder;
+
+Result<LoadedScene> load(const std::string& bytes) {
+  const TempFolder folder;
+  return read_scene(folder.write("a.off", bytes), {}, {});
+}
+
+Scene scene_of(const std::string& bytes) {
+  auto loaded = load(bytes);
+  EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+  return loaded.ok() ? std::move(loaded->scene) : Scene{};
+}
+
+const std::string kCorners = "0 0 0\n2 0 0\n2 3 0\n0 3 0\n";
+
+// The keyword may be missing, stand alone, or touch the counts; comments may stand anywhere.
+TEST(Off, HeadersAlike) {
+  const Scene plain = scene_of("OFF\n4 1 0\n" + kCorners + "4 0 1 2 3\n");
+  EXPECT_EQ(plain.indices, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}));
+  EXPECT_EQ(plain.positions[2], (Vec3f{2, 3, 0}));
+  EXPECT_FALSE(plain.lit());
+  for (const char* header :
+       {"4 1 0\n", "OFF 4 1 0\n", "OFF4 1 0 # as in ModelNet\n", "OFF\n4 1\n",
+        "# by hand\n\nOFF # here\n\n# and\n 4 1 0 # there\n\n", "\t OFF\r\n4 1 0\r\n"}) {
+    const Scene scene = scene_of(header + kCorners + "\n4 0 1 2 3 # end");
+    EXPECT_EQ(scene.indices, plain.indices) << header;
+    EXPECT_EQ(scene.positions, plain.positions) << header;
+  }
+  const Scene commented =
+      scene_of("OFF\n4 1 0\n0 0 0 # a\n# b\n2 0 0\n\n2 3 0\n0 3 0\n4 0 1 2 3 255 0 0\n");
+  EXPECT_EQ(commented.indices, plain.indices);
+  EXPECT_EQ(commented.positions, plain.positions);
+  EXPECT_EQ(scene_of("OFF\n4 1 0\n" + kCorners + "4 0\n1 2 # as some write it\n3\n").indices,
+            plain.indices);
+}
+
+TEST(Off, NormalsColoursAndTexcoordsInThisOrder) {
+  const Scene scene = scene_of(
+      "STCNOFF\n3 1 0\n0 0 0 0 0 1 255 51 0 255 .25 .5\n1 0 0 0 0 1 0 0 0 255 1 0\n"
+      "0 1 0 0 0 1 0 102 0 255 -2 3\n3 2 1 0\n");
+  EXPECT_EQ(scene.illumination,
+            (std::vector<Vec3f>{{1, 0.2f, 0}, {0, 0, 0}, {0, float(102 / 255.0), 0}}));
+  EXPECT_EQ(scene.texcoords, (std::vector<Vec2f>{{.25f, .5f}, {1, 0}, {-2, 3}}));
+  EXPECT_EQ(scene.texcoord_indices, scene.indices);
+  const Scene bare = scene_of("NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n");
+  EXPECT_FALSE(bare.lit());
+  EXPECT_TRUE(bare.texcoords.empty());
+}
+
+// Whole numbers up to 255 are shares of it; fractions and larger values are what they are.
+TEST(Off, ScalesOfColours) {
+  const auto first = [](const char* a, const char* b) {
+    return scene_of(std::string("COFF\n3 1 0\n0 0 0 ") + a + "\n1 0 0 " + b + "\n0 1 0 " + b +
+                    "\n3 0 1 2\n")
+        .illumination[0];
+  };
+  EXPECT_EQ(first("51 0 255", "1 1 1"), (Vec3f{0.2f, 0, 1}));
+  EXPECT_EQ(first("1 0 0", "0 0 1"), (Vec3f{1, 0, 0}));
+  EXPECT_EQ(first("0.5 0 1", "1 1 1"), (Vec3f{0.5f, 0, 1}));
+  EXPECT_EQ(first("200 0 1", "0.5 1 1"), (Vec3f{200, 0, 1}));
+  EXPECT_EQ(first("200 0 1", "1 4000 1"), (Vec3f{200, 0, 1}));
+  EXPECT_EQ(first("51 0 1 1.0", "1 1 1 .5"), (Vec3f{0.2f, 0, float(1 / 255.0)}));
+}
+
+TEST(Off, DefectsAreCounted) {
+  const auto loaded = load(
+      "OFF\n4 5 0\n0 0 0 9 9\n2 0 0\nnan 3 0\n0 3 0\n3 0 1 3\n3 0 1 2\n3 0 1 4\n3 0 1 -1\n2 0 1\n"
+      "3 0 1 3\n");
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->scene.triangle_count(), 1u);
+  EXPECT_EQ(loaded->defects.count(DefectKind::position_not_finite), 1u);
+  EXPECT_EQ(loaded->defects.count(DefectKind::bad_position_used), 1u);
+  EXPECT_EQ(loaded->defects.count(DefectKind::index_out_of_range), 2u);
+  EXPECT_EQ(loaded->defects.count(DefectKind::too_few_corners), 1u);
+  // Numbers that the header does not explain, and a face more than it announces.
+  EXPECT_EQ(loaded->defects.count(DefectKind::element_ignored), 2u);
+  const std::string lines = loaded->defects.lines().back();
+  EXPECT_NE(lines.find("a.off:3, the last 2 numbers"), std::string::npos) << lines;
+  EXPECT_NE(lines.find("a.off:12"), std::string::npos) << lines;
+}
+
+TEST(Off, FarCoordinatesKeepTheirDigits) {
+  const Scene scene = scene_of(
+      "OFF\n3 1 0\n1000000.001 5000000.002 0\n1000000.002 5000000.002 0\n"
+      "1000000.001 5000000.003 0\n3 0 1 2\n");
+  const auto x = [&](int i) { return scene.origin.x + double(scene.positions[i].x); };
+  EXPECT_NEAR(x(1) - x(0), 0.001, 1e-9);
+}
+
+// Binary, as Geomview has it (big-endian, faces with the number of their colour's components), and
+// as OpenMesh writes it (little-endian, without).
+class BinaryOff : public ::testing::TestWithParam<bool> {
+ protected:
+  std::string bytes_ = "OFF BINARY\n";
+
+  void word(std::uint32_t v) {
+    const bool big = GetParam();
+    for (int i = 0; i < 4; ++i) bytes_ += char(v >> 8 * (big ? 3 - i : i));
+  }
+  void number(float v) { word(std::bit_cast<std::uint32_t>(v)); }
+
+  void square(bool colours) {
+    if (colours) bytes_ = "C" + bytes_;
+    for (const std::uint32_t v : {4u, 2u, 0u}) word(v);
+    for (const float x : {0.f, 1.f, 2.f, 3.f}) {
+      for (const float v : {x, x * x, 1.f}) number(v);
+      if (colours) {
+        for (const float v : {100 * x, .5f, -1.f, 1.f}) number(v);
+      }
+    }
+    for (const std::uint32_t v : {3u, 0u, 1u, 2u}) word(v);
+    if (GetParam()) word(0);
+    for (const std::uint32_t v : {4u, 3u, 2u, 1u, 0u}) word(v);
+    if (GetParam()) {
+      word(3);
+      for (int i = 0; i < 3; ++i) number(0.5f);
+    }
+  }
+};
+
+TEST_P(BinaryOff, IsRead) {
+  for (const bool colours : {false, true}) {
+    bytes_ = "OFF BINARY\n";
+    square(colours);
+    const Scene scene = scene_of(bytes_);
+    EXPECT_EQ(scene.triangle_count(), 3u);
+    ASSERT_EQ(scene.positions.size(), 4u);
+    EXPECT_EQ(scene.positions[3], (Vec3f{3, 9, 1}));
+    ASSERT_EQ(scene.lit(), colours);
+    if (colours) {
+      EXPECT_EQ(scene.illumination[2], (Vec3f{200, .5f, -1}));
+    }
+  }
+}
+
+TEST_P(BinaryOff, EveryTruncationIsNoticed) {
+  square(true);
+  for (std::size_t length = 0; length < bytes_.size(); ++length) {
+    const auto loaded = load(bytes_.substr(0, length));
+    ASSERT_FALSE(loaded.ok()) << length;
+    EXPECT_EQ(loaded.status().code(), ErrorCode::bad_input);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, BinaryOff, ::testing::Bool(),
+                         [](const auto& test) { return test.param ? "geomview" : "openmesh"; });
+
+TEST(Off, EveryTruncationIsNoticed) {
+  const std::string bytes = "COFF\n3 1 0\n0 0 0 1 2 3\n1 0 0 1 2 3\n0 1 0 1 2 3\n3 0 1 2\n";
+  for (std::size_t length = 0; length + 1 < bytes.size(); ++length) {
+    const auto loaded = load(bytes.substr(0, length));
+    ASSERT_FALSE(loaded.ok()) << length;
+    EXPECT_NE(loaded.status().message().find("a.off"), std::string::npos);
+  }
+}
+
+TEST(Off, RandomDamageNeverCrashes) {
+  const std::string good =
+      "STCOFF\n4 2 0\n0 0 0 1 2 3 0 0\n1 0 0 1 2 3 0 1\n0 1 0 1 2 3 1 1\n1 1 1 1 2 3 0 0\n"
+      "3 0 1 2\n4 0 1 2 3 1 1 1\n";
+  std::mt19937 random(5);
+  int survived = 0;
+  for (int round = 0; round < 1500; ++round) {
+    std::string bytes = good;
+    for (int hits = 1 + int(random() % 3); hits > 0; --hits) {
+      bytes[random() % bytes.size()] = round % 2 ? char(random()) : char('0' + random() % 10);
+    }
+    const auto loaded = load(bytes);
+    if (!loaded.ok()) continue;
+    ++survived;
+    for (const std::uint32_t i : loaded->scene.indices) {
+      ASSERT_LT(i, loaded->scene.positions.size());
+    }
+    for (const Vec3f& p : loaded->scene.positions) ASSERT_TRUE(std::isfinite(p.x + p.y + p.z));
+  }
+  EXPECT_GT(survived, 100);
+}
+
+}  // namespace
+}  // namespace atlas
