@@ -17,9 +17,12 @@ double hull_area(std::vector<Vec2d>& points, std::vector<Vec2d>& hull) {
   std::sort(points.begin(), points.end(),
             [](const Vec2d& a, const Vec2d& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
   hull.clear();
+  if (points.empty()) return 0;
   for (int pass = 0; pass < 2; ++pass) {
     const std::size_t base = hull.size();
+    const Vec2d first = points.front(), last = points.back();
     for (const Vec2d& p : points) {
+      if (cross(first, last, p) > 0) continue;  // it lies on the other pass's side
       while (hull.size() >= base + 2 && cross(hull[hull.size() - 2], hull.back(), p) <= 0) {
         hull.pop_back();
       }

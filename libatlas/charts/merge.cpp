@@ -6,6 +6,7 @@
 #include <queue>
 
 #include "libatlas/charts/moments.h"
+#include "libatlas/charts/refusal.h"
 #include "libatlas/charts/runs.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
@@ -24,17 +25,6 @@ constexpr double kConeFill = 0.4;  // of hull and rectangle
 // Costs are compared in parts of this many: symmetric meshes are full of ties, which rounding would
 // break otherwise for every rotation and unit.
 constexpr double kCostParts = 4096;
-
-// A trial that failed by stretch: what its merger would have cost over the stretch of its charts
-// apart. Larger charts around the same glue cost as much: what is flat with less stretch as a
-// whole is so in its parts.
-struct Refusal {
-  std::uint32_t cell;  // one of the other chart
-  double energy, high_area;
-  std::vector<std::uint32_t> glue;
-};
-// A trial's flattening is not quite the best one, so the costs count by less than all.
-constexpr double kSureEnergy = 0.6, kSureArea = 0.4;
 
 struct CoarseChart {
   std::vector<std::uint32_t> cells;
@@ -298,17 +288,18 @@ class Merger {
       energy_ = area * (outcome.stretch_l2 * outcome.stretch_l2 - 1);
     } else if (outcome.energy > 0 || outcome.high_area > 0) {
       chart(a).refusals.push_back({b, outcome.energy - p.energy - q.energy,
-                                   outcome.high_area - p.high_area - q.high_area, glue_});
+                                   outcome.high_area - p.high_area - q.high_area, outcome.settled,
+                                   outcome.entangled, glue_});
     }
     return outcome;
   }
 
-  // Whether less was known to cost more than what may be spent on joining the two.
+  // Whether less was known to fail, or to cost more than what may be spent on joining the two.
   bool refused(std::uint32_t a, std::uint32_t b, double energy, double high_area) const {
     for (const Refusal& r : chart(a).refusals) {
-      if (result_.chart_of_cell[r.cell] != b) continue;
-      if (kSureEnergy * r.energy <= energy && kSureArea * r.high_area <= high_area) continue;
-      if (std::includes(glue_.begin(), glue_.end(), r.glue.begin(), r.glue.end())) return true;
+      if (result_.chart_of_cell[r.cell] == b && fails_again(r, glue_, energy, high_area)) {
+        return true;
+      }
     }
     return false;
   }
@@ -385,10 +376,12 @@ MergeResult merge_cells(const CoarseMesh& mesh, const std::vector<std::uint32_t>
     if (piece[k] >= pieces.size()) pieces.resize(piece[k] + 1);
     pieces[piece[k]].push_back(k);
   }
+  const Fans fans(mesh);
+  TrialScratch scratch(mesh);
   std::atomic<std::uint64_t> trials{0}, rejections{0};
   const std::size_t grain = std::max<std::size_t>(1, pieces.size() / 64);
   parallel_for(context, pieces.size(), grain, [&](std::size_t begin, std::size_t end) {
-    Trial trial(mesh, result.uv);
+    Trial trial(mesh, fans, scratch, result.uv);
     for (std::size_t i = begin; i < end; ++i) {
       Merger merger(mesh, options, place, result, trial);
       merger.run(pieces[i], context);

@@ -16,6 +16,7 @@ constexpr double kUnrolledFill = 0.3;
 // After two steps a descent is far from its end if its stretch is still so many times the limit,
 // less with flips, or if area and stretch are both beyond theirs by so much. Of some 6000 trials on
 // twelve meshes this ended 1500 early, and none that would have come within the limits.
+constexpr int kLookAfter = 2;
 constexpr double kFarStretch = 2.5, kFarWithFlips = 1.2, kFarArea = 6, kNearStretch = 0.9;
 // Halves that meet with flipped triangles and so many times the energy allowed, or so far apart for
 // their size, do not settle: of some 19000 trials on 33 meshes this ended 2800 unseen, half of the
@@ -28,109 +29,45 @@ constexpr double kCloseFit = 0.005, kSettledStart = 0.05;
 constexpr double kLastFall = 0.5;  // what further steps leave of energy, at least
 // A descent never changed the share of hull or rectangle that is filled by more (the same trials).
 constexpr double kShapeChange = 0.04;
+// Of the chart's size: what crosses itself by less may come apart when the chart grows. Of 1220
+// that had crossed and were tried again 9 did, 6 of them from less, as 150 of all (90 meshes).
+constexpr double kDeepCrossing = 0.002;
 
 }  // namespace
 
-std::uint32_t Trial::root(std::uint32_t slot) {
-  while (slot_vertex_[slot] != slot) slot = slot_vertex_[slot] = slot_vertex_[slot_vertex_[slot]];
-  return slot;
-}
-
-void Trial::join(std::uint32_t arc) {
-  const CoarseArc& a = mesh_.arcs[arc];
-  const std::uint32_t next0 = mesh_.next_slot(a.slot[0], mesh_.cells[a.cell[0]]);
-  const std::uint32_t next1 = mesh_.next_slot(a.slot[1], mesh_.cells[a.cell[1]]);
-  slot_vertex_[root(a.slot[0])] = root(next1);
-  slot_vertex_[root(next0)] = root(a.slot[1]);
-}
-
-// Local vertices: the cells' centres in order, then the classes of joined slots.
-void Trial::assemble(const std::vector<std::uint8_t>& joined) {
-  for (const std::uint32_t k : cells_) {
-    const CoarseCell& cell = mesh_.cells[k];
-    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
-      slot_vertex_[s] = s;
-    }
-  }
-  for (const std::uint32_t k : cells_) {
-    const CoarseCell& cell = mesh_.cells[k];
-    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
-      const std::uint32_t arc = mesh_.slot_arc[s];
-      if (joined[arc] && mesh_.arcs[arc].slot[0] == s) join(arc);
-    }
-  }
-  positions_.clear();
-  vertex_slot_.assign(cells_.size(), kNoIndex);
-  const Vec3d origin = mesh_.cells[cells_[0]].centre;
-  const auto add = [&](const Vec3d& p) {
-    positions_.push_back({p.x - origin.x, p.y - origin.y, p.z - origin.z});
-  };
-  for (const std::uint32_t k : cells_) add(mesh_.cells[k].centre);
-  for (const std::uint32_t k : cells_) {
-    const CoarseCell& cell = mesh_.cells[k];
-    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
-      if (slot_vertex_[s] != s) continue;
-      vertex_slot_.push_back(s);
-      add(mesh_.slot_position[s]);
-    }
-  }
-  // Parents become vertices in two steps, for a root may come after its children.
-  roots_.clear();
-  for (const std::uint32_t k : cells_) {
-    const CoarseCell& cell = mesh_.cells[k];
-    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
-      roots_.push_back(root(s));
-    }
-  }
-  for (std::size_t v = cells_.size(); v < vertex_slot_.size(); ++v) {
-    slot_vertex_[vertex_slot_[v]] = static_cast<std::uint32_t>(v);
-  }
-  std::size_t i = 0;
-  for (const std::uint32_t k : cells_) {
-    const CoarseCell& cell = mesh_.cells[k];
-    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s, ++i) {
-      if (roots_[i] != s) slot_vertex_[s] = slot_vertex_[roots_[i]];
-    }
-  }
-  triangles_.clear();
-  for (std::uint32_t c = 0; c < cells_.size(); ++c) {
-    const CoarseCell& cell = mesh_.cells[cells_[c]];
-    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
-      const std::uint32_t a = slot_vertex_[s], b = slot_vertex_[mesh_.next_slot(s, cell)];
-      if (a != b) triangles_.push_back({c, a, b});
-    }
-  }
+void Trial::assemble(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
+                     std::span<const std::uint32_t> glue, const std::vector<std::uint8_t>& joined) {
+  joined_.assemble(first, second, glue, joined);
+  area_ = 0;
+  for (const std::uint32_t k : joined_.cells()) area_ += mesh_.cells[k].area;
 }
 
 // Brings the second chart's coordinates next to the first's (rigid Procrustes on the glued slots)
 // and averages where they meet.
-void Trial::align(std::size_t first_cells, std::span<const std::uint32_t> glue) {
+void Trial::align(std::span<const std::uint32_t> glue) {
   glm::dvec2 mean_p(0), mean_q(0);
-  std::vector<std::array<std::uint32_t, 2>>& pairs = border_;  // slots of first and second chart
-  pairs.clear();
+  pairs_.clear();
   for (const std::uint32_t arc : glue) {
     const CoarseArc& a = mesh_.arcs[arc];
-    bool zero_is_first = false;
-    for (std::size_t c = 0; c < first_cells; ++c) zero_is_first |= cells_[c] == a.cell[0];
     const std::uint32_t next0 = mesh_.next_slot(a.slot[0], mesh_.cells[a.cell[0]]);
     const std::uint32_t next1 = mesh_.next_slot(a.slot[1], mesh_.cells[a.cell[1]]);
-    if (zero_is_first) {
-      pairs.push_back({a.slot[0], next1});
-      pairs.push_back({next0, a.slot[1]});
+    if (joined_.in_first(a.cell[0])) {
+      pairs_.push_back({a.slot[0], next1});
+      pairs_.push_back({next0, a.slot[1]});
     } else {
-      pairs.push_back({next1, a.slot[0]});
-      pairs.push_back({a.slot[1], next0});
+      pairs_.push_back({next1, a.slot[0]});
+      pairs_.push_back({a.slot[1], next0});
     }
   }
-  for (const auto& [p, q] : pairs) {
+  for (const auto& [p, q] : pairs_) {
     mean_p += to_glm(uv_.slot[p]);
     mean_q += to_glm(uv_.slot[q]);
   }
-  const double n = std::max<std::size_t>(1, pairs.size());
+  const double n = std::max<std::size_t>(1, pairs_.size());
   mean_p /= n;
   mean_q /= n;
   double c = 0, s = 0;
-  for (const auto& [p, q] : pairs) {
+  for (const auto& [p, q] : pairs_) {
     const glm::dvec2 a = to_glm(uv_.slot[p]) - mean_p, b = to_glm(uv_.slot[q]) - mean_q;
     c += glm::dot(a, b);
     s += b.x * a.y - b.y * a.x;
@@ -139,12 +76,12 @@ void Trial::align(std::size_t first_cells, std::span<const std::uint32_t> glue) 
   c = norm > 0 ? c / norm : 1;
   s = norm > 0 ? s / norm : 0;
   misfit_ = 0;
-  for (const auto& [p, q] : pairs) {
+  for (const auto& [p, q] : pairs_) {
     const glm::dvec2 a = to_glm(uv_.slot[p]) - mean_p, b = to_glm(uv_.slot[q]) - mean_q;
     misfit_ = std::max(misfit_, glm::distance(a, {c * b.x - s * b.y, s * b.x + c * b.y}));
   }
-  uvs_.assign(positions_.size(), Vec2d{});
-  weight_.assign(positions_.size(), 0);
+  uvs_.assign(joined_.vertex_count(), Vec2d{});
+  weight_.assign(uvs_.size(), 0);
   const auto add = [&](std::uint32_t v, Vec2d p, bool second) {
     if (second) {
       const double x = p.x - mean_q.x, y = p.y - mean_q.y;
@@ -154,13 +91,12 @@ void Trial::align(std::size_t first_cells, std::span<const std::uint32_t> glue) 
     uvs_[v].y += p.y;
     weight_[v] += 1;
   };
-  for (std::uint32_t i = 0; i < cells_.size(); ++i) {
-    const bool second = i >= first_cells;
-    const CoarseCell& cell = mesh_.cells[cells_[i]];
-    add(i, uv_.centre[cells_[i]], second);
-    for (std::uint32_t k = cell.first_slot; k < cell.first_slot + cell.slot_count; ++k) {
-      add(slot_vertex_[k], uv_.slot[k], second);
-    }
+  const std::span<const std::uint32_t> cells = joined_.cells();
+  for (std::uint32_t i = 0; i < cells.size(); ++i) {
+    add(i, uv_.centre[cells[i]], i >= joined_.first_count());
+  }
+  for (const JoinedFans::Triangle& t : joined_.triangles()) {
+    add(t.a, uv_.slot[t.slot], t.centre >= joined_.first_count());
   }
   for (std::size_t v = 0; v < uvs_.size(); ++v) {
     uvs_[v].x /= weight_[v];
@@ -168,33 +104,59 @@ void Trial::align(std::size_t first_cells, std::span<const std::uint32_t> glue) 
   }
 }
 
-// Fills stretch_ and what the outcome says of stretch; false: a triangle is flipped, and only the
+void Trial::measure_maps() {
+  maps_.clear();
+  for (const JoinedFans::Triangle& t : joined_.triangles()) {
+    const FanTriangle& fan = fans_.triangle[t.slot];
+    const glm::dvec2 g1 = to_glm(fan.slot_gradient), g2 = to_glm(fan.next_gradient);
+    const glm::dvec2 centre = to_glm(uvs_[t.centre]);
+    const glm::dvec2 d1 = to_glm(uvs_[t.a]) - centre, d2 = to_glm(uvs_[t.b]) - centre;
+    const glm::dvec2 x = g1.x * d1 + g2.x * d2, y = g1.y * d1 + g2.y * d2;  // times area
+    const double scale = fan.inverse_area * fan.inverse_area;
+    maps_.push_back({(glm::dot(x, x) + glm::dot(y, y)) * scale, (x.x * y.y - x.y * y.x) * scale});
+  }
+}
+
+// Fills maps_ and what the outcome says of stretch; false: a triangle is flipped, and only the
 // energy was found.
 bool Trial::measure_stretch(double stretch_high, TrialOutcome& outcome) {
-  stretch_.resize(triangles_.size());
-  measure_triangles({positions_, triangles_, {}}, uvs_, stretch_);
-  double area = 0, uv_area = 0, rigid = 0;
+  measure_maps();
+  const auto triangles = joined_.triangles();
+  double area = 0, uv_area = 0, l2 = 0;
   bool flipped = false;
-  for (const TriangleStretch& t : stretch_) {
-    flipped |= t.uv_area <= 0 && t.area > 0;
-    area += t.area;
-    uv_area += t.uv_area;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const double own = fans_.triangle[triangles[i].slot].area;
+    if (!(own > 0)) continue;
+    const auto [squares, product] = maps_[i];
+    flipped |= product <= 0;
+    area += own;
+    uv_area += own * product;
+    l2 += own * (squares / (product * product));
   }
   if (flipped) {
-    for (const TriangleStretch& t : stretch_) {
-      if (!(t.area > 0)) continue;
-      const double large = 1 / t.s2 - 1, small = std::copysign(1 / t.s1, t.uv_area) - 1;
-      rigid += t.area * (large * large + small * small);
+    // Of the singular values less 1, the smaller one with the sign of the product.
+    double rigid = 0;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      const auto [squares, product] = maps_[i];
+      const double sum = std::sqrt(std::max(squares + 2 * product, 0.0));
+      rigid += fans_.triangle[triangles[i].slot].area * (squares - 2 * sum + 2);
     }
     outcome.energy = rigid;
     return false;
   }
-  const double scale = area > 0 ? std::sqrt(uv_area / area) : 1;
-  double l2 = 0, above = 0;
-  for (const TriangleStretch& t : stretch_) {
-    const double s1 = t.s1 * scale, s2 = t.s2 * scale;
-    l2 += 0.5 * (s1 * s1 + s2 * s2) * t.area;
-    if (std::max(s1, 1 / s2) > stretch_high) above += t.area;
+  const double squared = area > 0 ? uv_area / area : 1;  // the scale's
+  l2 *= 0.5 * squared;
+  // Whether the larger singular value or the inverse of the smaller one is too large: the squares
+  // of both are the roots of x² - squares x + product².
+  const double most = stretch_high * stretch_high * squared;
+  const double least = squared / (stretch_high * stretch_high);
+  double above = 0;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const auto [squares, product] = maps_[i];
+    const double last = product * product;
+    const bool high = most * (most - squares) + last < 0 || 2 * most < squares ||
+                      least * (least - squares) + last < 0 || 2 * least > squares;
+    if (high) above += fans_.triangle[triangles[i].slot].area;
   }
   outcome.stretch_l2 = area > 0 ? std::sqrt(l2 / area) : 1;
   outcome.energy = l2 - area;
@@ -209,10 +171,8 @@ bool Trial::stretch_fits(const TrialLimits& limits, TrialOutcome& outcome) {
 
 Trial::Start Trial::judge_start(std::size_t smaller_half, const TrialLimits& limits,
                                 TrialOutcome& outcome) {
-  double area = 0;
-  for (const std::uint32_t k : cells_) area += mesh_.cells[k].area;
-  const double allowed = area * (limits.stretch_l2 * limits.stretch_l2 - 1);
-  const double misfit = area > 0 ? misfit_ / std::sqrt(area) : 0;
+  const double allowed = area_ * (limits.stretch_l2 * limits.stretch_l2 - 1);
+  const double misfit = area_ > 0 ? misfit_ / std::sqrt(area_) : 0;
   if (!flipped_ && misfit > kCloseFit && misfit <= kFarApart) return Start::open;
   const bool whole = measure_stretch(limits.stretch_high, outcome);
   if (whole && misfit <= kCloseFit && outcome.energy <= kSettledStart * allowed &&
@@ -230,9 +190,7 @@ Trial::Start Trial::judge_start(std::size_t smaller_half, const TrialLimits& lim
 // Whether a descent may still end within the limits.
 bool Trial::promising(const TrialLimits& limits, TrialOutcome& outcome) {
   const bool whole = measure_stretch(limits.stretch_high, outcome);
-  double area = 0;
-  for (const TriangleStretch& t : stretch_) area += t.area;
-  const double energy = outcome.energy / (area * (limits.stretch_l2 * limits.stretch_l2 - 1));
+  const double energy = outcome.energy / (area_ * (limits.stretch_l2 * limits.stretch_l2 - 1));
   if (energy <= (whole ? kFarStretch : kFarWithFlips) &&
       (energy <= kNearStretch || outcome.high_area <= kFarArea * limits.high_area)) {
     return true;
@@ -245,12 +203,12 @@ bool Trial::promising(const TrialLimits& limits, TrialOutcome& outcome) {
 // Whether hull and rectangle are filled as far as the limits say, or by `slack` less.
 bool Trial::shape_fits(const TrialLimits& limits, double slack, TrialOutcome& outcome) {
   points_.clear();
-  for (const auto& [a, b] : border_) points_.push_back(uvs_[a]);
+  for (const auto& [a, b] : joined_.border()) points_.push_back(uvs_[a]);
   double twice = 0;
   flipped_ = false;
-  for (const auto& [a, b, c] : triangles_) {
-    const double double_area = cross(uvs_[a], uvs_[b], uvs_[c]);
-    flipped_ |= double_area <= 0;
+  for (const JoinedFans::Triangle& t : joined_.triangles()) {
+    const double double_area = cross(uvs_[t.centre], uvs_[t.a], uvs_[t.b]);
+    flipped_ |= double_area <= 0 && fans_.triangle[t.slot].area > 0;
     twice += double_area;
   }
   const double hull = hull_area(points_, hull_);
@@ -261,19 +219,23 @@ bool Trial::shape_fits(const TrialLimits& limits, double slack, TrialOutcome& ou
   return outcome.fill >= limits.fill - slack;
 }
 
-// Fills border_.
-void Trial::find_border(const std::vector<std::uint8_t>& joined) {
-  border_.clear();
-  for (const std::uint32_t k : cells_) {
-    const CoarseCell& cell = mesh_.cells[k];
-    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
-      if (joined[mesh_.slot_arc[s]]) continue;
-      border_.push_back({slot_vertex_[s], slot_vertex_[mesh_.next_slot(s, cell)]});
-    }
-  }
+namespace {
+
+// How far one of two edges that cross would have to move for them not to.
+double crossing_depth(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& d) {
+  const auto nearest = [](const Vec2d& p, const Vec2d& q, const Vec2d& r, const Vec2d& s) {
+    const double length = std::hypot(q.x - p.x, q.y - p.y);
+    return std::min(std::abs(cross(p, q, r)), std::abs(cross(p, q, s))) / length;
+  };
+  return std::min(nearest(a, b, c, d), nearest(c, d, a, b));
 }
 
-bool Trial::border_crosses() {
+}  // namespace
+
+Trial::Crossing Trial::border_crossing() {
+  const double deep = kDeepCrossing * std::sqrt(area_);
+  Crossing crossing = Crossing::none;
+  border_.assign(joined_.border().begin(), joined_.border().end());
   const auto left = [&](const std::array<std::uint32_t, 2>& e) {
     return std::min(uvs_[e[0]].x, uvs_[e[1]].x);
   };
@@ -285,17 +247,21 @@ bool Trial::border_crosses() {
     for (std::size_t j = i + 1; j < border_.size() && left(border_[j]) <= right; ++j) {
       const auto& [c, d] = border_[j];
       if (a == c || a == d || b == c || b == d) continue;
-      if (cross_each_other(uvs_[a], uvs_[b], uvs_[c], uvs_[d])) return true;
+      if (cross_each_other(uvs_[a], uvs_[b], uvs_[c], uvs_[d])) {
+        crossing = Crossing::shallow;
+        if (crossing_depth(uvs_[a], uvs_[b], uvs_[c], uvs_[d]) > deep) return Crossing::deep;
+      }
     }
   }
-  return false;
+  return crossing;
 }
 
 TrialOutcome Trial::run(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
                         std::span<const std::uint32_t> glue, std::vector<std::uint8_t>& joined,
                         const TrialLimits& limits) {
   for (const std::uint32_t arc : glue) joined[arc] = 1;
-  const TrialOutcome outcome = run_joined(first, second, glue, joined, limits);
+  assemble(first, second, glue, joined);
+  const TrialOutcome outcome = judge(glue, limits);
   if (!outcome.accepted) {
     for (const std::uint32_t arc : glue) joined[arc] = 0;
   }
@@ -305,97 +271,83 @@ TrialOutcome Trial::run(std::span<const std::uint32_t> first, std::span<const st
 void Trial::join_flat(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
                       std::span<const std::uint32_t> glue, std::vector<std::uint8_t>& joined) {
   for (const std::uint32_t arc : glue) joined[arc] = 1;
-  cells_.assign(first.begin(), first.end());
-  cells_.insert(cells_.end(), second.begin(), second.end());
-  assemble(joined);
-  align(first.size(), glue);
+  assemble(first, second, glue, joined);
+  align(glue);
 }
 
 // Whether the aligned halves keep all lengths as they are, as those of boxes and tubes do: a
 // descent would change nothing that the limits could see.
 bool Trial::unrolled() const {
-  for (const auto& triangle : triangles_) {
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t a = triangle[k], b = triangle[(k + 1) % 3];
-      const glm::dvec3 edge = to_glm(positions_[b]) - to_glm(positions_[a]);
-      const glm::dvec2 flat = to_glm(uvs_[b]) - to_glm(uvs_[a]);
-      const double squared = glm::dot(edge, edge);
-      if (std::abs(glm::dot(flat, flat) - squared) > 2 * kUnrolledError * squared) return false;
-    }
+  const auto kept = [&](std::uint32_t a, std::uint32_t b, double squared) {
+    const glm::dvec2 flat = to_glm(uvs_[b]) - to_glm(uvs_[a]);
+    return std::abs(glm::dot(flat, flat) - squared) <= 2 * kUnrolledError * squared;
+  };
+  for (const JoinedFans::Triangle& t : joined_.triangles()) {
+    const FanTriangle& fan = fans_.triangle[t.slot];
+    if (!kept(t.centre, t.a, fan.spoke_squared) || !kept(t.a, t.b, fan.rim_squared)) return false;
   }
   return true;
 }
 
 // Whether two charts that unroll still do when they are joined: then their sides match.
 bool Trial::fits_unrolled(TrialOutcome& outcome) {
-  const LocalMesh mesh{positions_, triangles_, {}};
-  stretch_.resize(triangles_.size());
-  measure_triangles(mesh, uvs_, stretch_);
+  measure_maps();
   double area = 0;
-  for (const TriangleStretch& t : stretch_) area += t.uv_area;
+  for (std::size_t i = 0; i < maps_.size(); ++i) {
+    area += fans_.triangle[joined_.triangles()[i].slot].area * maps_[i].product;
+  }
   outcome.unrolled = area > 0 && misfit_ < kUnrolledError * std::sqrt(area);
   return outcome.unrolled;
 }
 
 // False: it was ended before its time, for it would not have met the limits.
 bool Trial::descend(const TrialLimits& limits, TrialOutcome& outcome) {
-  bool hope = true;
-  IsometricOptions options;
-  options.iterations = limits.iterations;
-  options.measure = false;
-  options.promising = [&] { return hope = promising(limits, outcome); };
-  flatten_isometric({positions_, triangles_, {}}, {uvs_, {}}, options, uvs_, workspace_);
-  return hope;
+  joined_.order(uvs_);
+  solver_.factorize(joined_.fans(), uvs_.size());
+  for (int i = 0; i < limits.iterations; ++i) {
+    if (i == kLookAfter && !promising(limits, outcome)) return false;
+    solver_.step(uvs_);
+  }
+  return true;
 }
 
-TrialOutcome Trial::run_joined(std::span<const std::uint32_t> first,
-                               std::span<const std::uint32_t> second,
-                               std::span<const std::uint32_t> glue,
-                               const std::vector<std::uint8_t>& joined, const TrialLimits& limits) {
-  cells_.assign(first.begin(), first.end());
-  cells_.insert(cells_.end(), second.begin(), second.end());
-  assemble(joined);
+TrialOutcome Trial::judge(std::span<const std::uint32_t> glue, const TrialLimits& limits) {
   TrialOutcome outcome;
-  std::size_t rims = 0, joined_sides = 0;
-  for (const std::uint32_t k : cells_) {
-    const CoarseCell& cell = mesh_.cells[k];
-    rims += cell.slot_count;
-    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
-      joined_sides += joined[mesh_.slot_arc[s]];
-    }
-  }
-  outcome.euler = static_cast<int>(positions_.size() + joined_sides / 2) - static_cast<int>(rims);
-  if (outcome.euler > 1 || triangles_.empty()) return outcome;
-  if (limits.hopeless) return outcome;
-  align(first.size(), glue);
+  outcome.euler = joined_.euler();
+  if (outcome.euler > 1 || joined_.border().empty() || limits.hopeless) return outcome;
+  align(glue);
   if (limits.unrolls && outcome.euler == 1 && fits_unrolled(outcome)) {
     TrialLimits shape = limits;
     shape.solidity = std::min(limits.solidity, kUnrolledFill);
     shape.fill = std::min(limits.fill, kUnrolledFill);
-    find_border(joined);
-    outcome.accepted = shape_fits(shape, 0, outcome) && !border_crosses();
+    outcome.accepted = shape_fits(shape, 0, outcome) && border_crossing() == Crossing::none;
     return outcome;
   }
-  find_border(joined);
-  if (!unrolled()) {
+  if (unrolled()) {
+    outcome.solidity = outcome.fill = 0;  // not known yet
+  } else {
     if (!shape_fits(limits, kShapeChange, outcome)) return outcome;
-    const Start start = judge_start(std::min(first.size(), second.size()), limits, outcome);
+    const std::size_t first = joined_.first_count(), second = joined_.cells().size() - first;
+    const Start start = judge_start(std::min(first, second), limits, outcome);
     if (start == Start::hopeless) return outcome;
     if (start == Start::open && !descend(limits, outcome)) return outcome;
   }
-  outcome.accepted =
-      stretch_fits(limits, outcome) && shape_fits(limits, 0, outcome) && !border_crosses();
+  outcome.settled = true;
+  if (!stretch_fits(limits, outcome)) return outcome;
+  const bool clear = outcome.solidity >= limits.solidity + kShapeChange &&
+                     outcome.fill >= limits.fill + kShapeChange;
+  if (!clear && !shape_fits(limits, 0, outcome)) return outcome;
+  const Crossing crossing = border_crossing();
+  outcome.entangled = crossing == Crossing::deep;
+  outcome.accepted = crossing == Crossing::none;
   return outcome;
 }
 
 void Trial::commit() {
-  for (std::uint32_t c = 0; c < cells_.size(); ++c) {
-    uv_.centre[cells_[c]] = uvs_[c];
-    const CoarseCell& cell = mesh_.cells[cells_[c]];
-    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
-      uv_.slot[s] = uvs_[slot_vertex_[s]];
-    }
-  }
+  joined_.commit();
+  const std::span<const std::uint32_t> cells = joined_.cells();
+  for (std::uint32_t c = 0; c < cells.size(); ++c) uv_.centre[cells[c]] = uvs_[c];
+  for (const JoinedFans::Triangle& t : joined_.triangles()) uv_.slot[t.slot] = uvs_[t.a];
 }
 
 }  // namespace atlas

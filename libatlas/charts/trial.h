@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "libatlas/charts/coarse.h"
-#include "libatlas/param/distortion.h"
-#include "libatlas/param/isometric.h"
+#include "libatlas/charts/fan_solver.h"
+#include "libatlas/charts/trial_mesh.h"
 
 namespace atlas {
 
@@ -35,15 +35,16 @@ struct TrialOutcome {
   double energy =
       0;  // area times (stretch_l2 squared - 1); of a map with flips what it costs at least
   int euler = 1;
-  bool unrolled = false;  // TrialLimits::unrolls, and they fit
+  bool unrolled = false;   // TrialLimits::unrolls, and they fit
+  bool settled = false;    // stretch and border were judged after all steps of the descent
+  bool entangled = false;  // then the border crosses itself, and not just by a little
 };
 
 // Works on one candidate at a time; not shared between threads.
 class Trial {
  public:
-  Trial(const CoarseMesh& mesh, CoarseUv& uv) : mesh_(mesh), uv_(uv) {
-    slot_vertex_.resize(mesh.slot_position.size());
-  }
+  Trial(const CoarseMesh& mesh, const Fans& fans, TrialScratch& scratch, CoarseUv& uv)
+      : mesh_(mesh), fans_(fans), uv_(uv), joined_(mesh, scratch), solver_(fans) {}
 
   // Flattens the cells of two charts (`second` may be empty) with the arcs `glue` joined besides
   // those where `joined` (1 an arc) is set. If accepted, `glue` is set in `joined`, too; the
@@ -58,13 +59,16 @@ class Trial {
   void commit();
 
  private:
-  TrialOutcome run_joined(std::span<const std::uint32_t> first,
-                          std::span<const std::uint32_t> second,
-                          std::span<const std::uint32_t> glue,
-                          const std::vector<std::uint8_t>& joined, const TrialLimits& limits);
-  void assemble(const std::vector<std::uint8_t>& joined);
-  void join(std::uint32_t arc);
-  void align(std::size_t first_cells, std::span<const std::uint32_t> glue);
+  // Of the map from a triangle to uv: the sum of its squared singular values, their product.
+  struct Map {
+    double squares, product;
+  };
+
+  void assemble(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
+                std::span<const std::uint32_t> glue, const std::vector<std::uint8_t>& joined);
+  TrialOutcome judge(std::span<const std::uint32_t> glue, const TrialLimits& limits);
+  void measure_maps();
+  void align(std::span<const std::uint32_t> glue);
   bool unrolled() const;
   bool fits_unrolled(TrialOutcome& outcome);
   bool measure_stretch(double stretch_high, TrialOutcome& outcome);
@@ -75,26 +79,23 @@ class Trial {
   bool promising(const TrialLimits& limits, TrialOutcome& outcome);
   bool stretch_fits(const TrialLimits& limits, TrialOutcome& outcome);
   bool shape_fits(const TrialLimits& limits, double slack, TrialOutcome& outcome);
-  void find_border(const std::vector<std::uint8_t>& joined);
-  bool border_crosses();
-  std::uint32_t root(std::uint32_t slot);
+  enum class Crossing { none, shallow, deep };
+  Crossing border_crossing();
 
   const CoarseMesh& mesh_;
+  const Fans& fans_;
   CoarseUv& uv_;
-  std::vector<std::uint32_t> cells_;
-  std::vector<std::uint32_t> slot_vertex_;  // union-find parents, then vertices
-  std::vector<std::uint32_t> vertex_slot_;  // one slot a vertex; centres come first
-  std::vector<Vec3d> positions_;
-  std::vector<std::array<std::uint32_t, 3>> triangles_;
+  TrialMesh joined_;
+  FanSolver solver_;
+  double area_ = 0;  // of all cells
   std::vector<Vec2d> uvs_;
   std::vector<double> weight_;
-  std::vector<TriangleStretch> stretch_;
-  std::vector<std::array<std::uint32_t, 2>> border_;
+  std::vector<Map> maps_;                             // 1 a triangle
+  std::vector<std::array<std::uint32_t, 2>> pairs_;   // slots of first and second chart
+  std::vector<std::array<std::uint32_t, 2>> border_;  // sorted
   std::vector<Vec2d> points_, hull_;
-  std::vector<std::uint32_t> roots_;
   bool flipped_ = false;  // a triangle, when shape_fits() last looked
   double misfit_ = 0;     // largest distance of two glued slots, as aligned
-  ParamWorkspace workspace_;
 };
 
 }  // namespace atlas

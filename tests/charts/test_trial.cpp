@@ -1,0 +1,217 @@
+// Trials of mergers on the coarse mesh.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "libatlas/charts/coarse.h"
+#include "libatlas/charts/fan_solver.h"
+#include "libatlas/charts/hull.h"
+#include "libatlas/charts/refusal.h"
+#include "libatlas/charts/topology.h"
+#include "libatlas/charts/trial.h"
+#include "libatlas/param/isometric.h"
+#include "tests/charts/chart_checks.h"
+#include "tests/support/shapes.h"
+
+namespace atlas::test {
+namespace {
+
+CoarseMesh coarse_of(const Shape& shape) {
+  const Mesh mesh(shape);
+  const Result<Topology> topology = build_topology(mesh.view(), {}, {});
+  EXPECT_TRUE(topology.ok());
+  CellOptions options;
+  options.mesh_triangles = 100000;
+  Cells cells = grow_cells(*topology, options, {});
+  return build_coarse(*topology, 40, cells);
+}
+
+// Two charts of a coarse mesh: cells below and above the plane that `offset` along `axis` names.
+struct Halves {
+  std::vector<std::uint32_t> first, second, inside_first, inside_second, glue;
+
+  template <class Side>
+  Halves(const CoarseMesh& mesh, const Side& in_second) {
+    std::vector<std::uint8_t> side;
+    for (std::uint32_t k = 0; k < mesh.cells.size(); ++k) {
+      side.push_back(in_second(mesh.cells[k].centre));
+      (side[k] ? second : first).push_back(k);
+    }
+    for (std::uint32_t arc = 0; arc < mesh.arcs.size(); ++arc) {
+      const auto& [a, b] = mesh.arcs[arc].cell;
+      if (b == kNoIndex) continue;
+      (side[a] != side[b] ? glue : side[a] ? inside_second : inside_first).push_back(arc);
+    }
+  }
+  std::vector<std::uint8_t> joined(const CoarseMesh& mesh, bool both) const {
+    std::vector<std::uint8_t> joined(mesh.arcs.size(), 0);
+    for (const std::uint32_t arc : inside_first) joined[arc] = 1;
+    for (const std::uint32_t arc : inside_second) joined[arc] = 1;
+    if (both) {
+      for (const std::uint32_t arc : glue) joined[arc] = 1;
+    }
+    return joined;
+  }
+};
+
+std::vector<std::uint32_t> all_arcs(const Halves& halves) {
+  std::vector<std::uint32_t> all = halves.inside_first;
+  all.insert(all.end(), halves.inside_second.begin(), halves.inside_second.end());
+  all.insert(all.end(), halves.glue.begin(), halves.glue.end());
+  return all;
+}
+
+std::vector<std::uint32_t> all_cells(const CoarseMesh& mesh) {
+  std::vector<std::uint32_t> cells(mesh.cells.size());
+  std::iota(cells.begin(), cells.end(), 0u);
+  return cells;
+}
+
+const auto kEast = [](const Vec3d& p) { return p.x > 0.05; };
+
+TEST(TrialMesh, ChartsKeepWhatIsJoinedInThem) {
+  const CoarseMesh mesh = coarse_of(cap(60, 20, 1.0));
+  const Halves halves(mesh, kEast);
+  ASSERT_FALSE(halves.first.empty() || halves.second.empty());
+  TrialScratch at_once(mesh), in_turn(mesh);
+  TrialMesh whole(mesh, at_once), grown(mesh, in_turn);
+  const auto joined = halves.joined(mesh, true);
+  whole.assemble(all_cells(mesh), {}, all_arcs(halves), joined);
+  EXPECT_EQ(whole.euler(), 1);
+  const auto apart = halves.joined(mesh, false);
+  grown.assemble(halves.first, {}, halves.inside_first, apart);
+  grown.commit();
+  grown.assemble(halves.second, {}, halves.inside_second, apart);
+  grown.commit();
+  // A trial that is not taken leaves nothing behind.
+  grown.assemble(halves.first, halves.second, halves.glue, joined);
+  grown.assemble(halves.first, halves.second, {}, apart);
+  EXPECT_EQ(grown.euler(), 2);
+  grown.assemble(halves.first, halves.second, halves.glue, joined);
+  EXPECT_EQ(grown.euler(), 1);
+  EXPECT_EQ(grown.vertex_count(), whole.vertex_count());
+  EXPECT_EQ(grown.border().size(), whole.border().size());
+}
+
+double distance(Vec2d a, Vec2d b) {
+  return std::hypot(a.x - b.x, a.y - b.y);
+}
+
+TEST(FanSolver, AgreesWithTheGeneralSolver) {
+  const CoarseMesh mesh = coarse_of(cap(60, 20, 1.2));
+  const Halves halves(mesh, kEast);
+  TrialScratch scratch(mesh);
+  TrialMesh trial(mesh, scratch);
+  trial.assemble(all_cells(mesh), {}, all_arcs(halves), halves.joined(mesh, true));
+  std::vector<Vec2d> uvs(trial.vertex_count());
+  std::vector<Vec3d> places(uvs.size());
+  const auto place = [&] {
+    for (const JoinedFans::Triangle& t : trial.triangles()) {
+      places[t.a] = mesh.slot_position[t.slot];
+      places[t.centre] = mesh.cells[trial.cells()[t.centre]].centre;
+    }
+  };
+  place();
+  for (std::size_t v = 0; v < uvs.size(); ++v) uvs[v] = {places[v].x, places[v].y};
+  trial.order(uvs);
+  place();
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (const JoinedFans::Triangle& t : trial.triangles()) {
+    EXPECT_NEAR(distance(uvs[t.a], {places[t.a].x, places[t.a].y}), 0, 1e-15);  // they followed
+    triangles.push_back({t.centre, t.a, t.b});
+  }
+  std::vector<Vec2d> expected = uvs;
+  ParamWorkspace workspace;
+  IsometricOptions options;
+  options.iterations = 4;
+  flatten_isometric({places, triangles, {}}, {expected, {}}, options, expected, workspace);
+  const Fans fans(mesh);
+  FanSolver solver(fans);
+  solver.factorize(trial.fans(), uvs.size());
+  for (int i = 0; i < options.iterations; ++i) solver.step(uvs);
+  for (std::size_t v = 1; v < uvs.size(); ++v) {
+    const double length = distance(expected[v], expected[0]);
+    EXPECT_NEAR(distance(uvs[v], uvs[0]), length, 1e-5 * length) << v;
+  }
+}
+
+// A ramp that winds so many times around its axis, farther and farther out, but by less than its
+// width each time.
+Shape ramp(double turns) {
+  constexpr int around = 120, across = 6;
+  Shape shape = grid(around, across);
+  for (int j = 0; j <= across; ++j) {
+    for (int i = 0; i <= around; ++i) {
+      const double angle = turns * 2 * M_PI * i / around, r = 1 + 0.4 * j / across + 0.03 * angle;
+      shape.positions[std::size_t(j * (around + 1) + i)] = {
+          float(r * std::cos(angle)), float(r * std::sin(angle)), float(0.03 * angle)};
+    }
+  }
+  return shape;
+}
+
+TrialOutcome try_ramp(double turns) {
+  const CoarseMesh mesh = coarse_of(ramp(turns));
+  const Halves halves(mesh, [](const Vec3d& p) { return p.z > 0.06; });
+  std::vector<std::uint8_t> joined = halves.joined(mesh, false);
+  CoarseUv uv;
+  uv.slot.resize(mesh.slot_position.size());
+  for (const CoarseCell& cell : mesh.cells) {
+    const auto flat = [&](const Vec3d& p) { return Vec2d{p.y, p.x}; };
+    uv.centre.push_back(flat(cell.centre));
+    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
+      uv.slot[s] = flat(mesh.slot_position[s]);
+    }
+  }
+  const Fans fans(mesh);
+  TrialScratch scratch(mesh);
+  Trial trial(mesh, fans, scratch, uv);
+  TrialLimits limits;
+  limits.solidity = limits.fill = 0;
+  limits.stretch_l2 = 1.1;
+  limits.high_area = 100;
+  for (const auto& [cells, arcs] : {std::pair{&halves.first, &halves.inside_first},
+                                    std::pair{&halves.second, &halves.inside_second}}) {
+    trial.join_flat(*cells, {}, *arcs, joined);
+    trial.commit();
+  }
+  return trial.run(halves.first, halves.second, halves.glue, joined, limits);
+}
+
+TEST(Trial, TellsWhatCrossesItselfFromWhatFits) {
+  const TrialOutcome fits = try_ramp(0.7);
+  EXPECT_TRUE(fits.accepted);
+  EXPECT_FALSE(fits.entangled);
+  const TrialOutcome crosses = try_ramp(1.3);
+  EXPECT_FALSE(crosses.accepted);
+  EXPECT_TRUE(crosses.settled);
+  EXPECT_TRUE(crosses.entangled);
+}
+
+TEST(Refusal, SaysMoreOfTheSameGlueThanOfALonger) {
+  const std::vector<std::uint32_t> glue{3, 5}, longer{2, 3, 5}, other{3, 6};
+  const Refusal dear{0, 1.2, 0, true, false, glue};
+  EXPECT_TRUE(fails_again(dear, glue, 1, 1));
+  EXPECT_FALSE(fails_again(dear, glue, 1.3, 1));  // more may be spent by now
+  EXPECT_FALSE(fails_again(dear, longer, 1, 1));
+  EXPECT_TRUE(fails_again(dear, longer, 0.7, 1));
+  EXPECT_FALSE(fails_again(dear, other, 0.1, 1));
+  const Refusal entangled{0, 0.1, 0, true, true, glue};
+  EXPECT_TRUE(fails_again(entangled, glue, 1, 1));
+  EXPECT_FALSE(fails_again(entangled, longer, 1, 1));
+  const Refusal unsure{0, 1.2, 0, false, false, glue};
+  EXPECT_FALSE(fails_again(unsure, glue, 1, 1));
+}
+
+TEST(Hull, OfFewPoints) {
+  std::vector<Vec2d> none, hull, three{{0, 0}, {2, 0}, {0, 2}}, line{{0, 0}, {1, 1}, {2, 2}};
+  EXPECT_EQ(hull_area(none, hull), 0);
+  EXPECT_TRUE(hull.empty());
+  EXPECT_EQ(hull_area(three, hull), 2);
+  EXPECT_EQ(hull.size(), 3u);
+  EXPECT_EQ(hull_area(line, hull), 0);
+}
+
+}  // namespace
+}  // namespace atlas::test
