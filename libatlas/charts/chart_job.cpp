@@ -51,6 +51,9 @@ constexpr double kWideShare = 0.04;
 // What stretches by so many times the bound around a small hole was saved by 25 of 34 joints of the
 // hole with the border, and by no cut to a vertex of 250 (measured on 90 meshes).
 constexpr double kHoleStretch = 1.1;
+// Charts beyond the bound whose border crosses itself more often were never saved, nor (10 of 700)
+// those whose border still crosses itself after cuts to single vertices.
+constexpr std::size_t kMostFirstCrossings = 3;
 
 class ChartJob {
  public:
@@ -73,7 +76,7 @@ class ChartJob {
     if (!beyond_cone()) {
       for (int cuts = 0;; ++cuts) {
         if (try_flatten(outcome)) return outcome;
-        if (hopeless() || (only_darts() && cuts >= most_rounds())) break;
+        if (hopeless() || cuts_in_vain() || (only_darts() && cuts >= most_rounds())) break;
         if (stretched_widely() && (cuts > 0 || chart_.loops.size() == 1)) break;
         keep_uvs();
         if (!cut_open_timed(cuts)) break;
@@ -159,9 +162,9 @@ class ChartJob {
     // What was just closed would be cut again.
     if (closings_ > 0 && !only_darts()) return false;
     if (!only_darts() || hole_in_the_way(cuts)) return join_loops();
-    if (cuts >= most_cuts() || result_.within_bound) return false;
-    return !result_.offenders.empty() &&
-           cut_to_border(input_.topology, chart_, result_.offenders, darts_, partition_);
+    if (cuts >= most_cuts() || result_.within_bound || result_.offenders.empty()) return false;
+    cut_to_tips_ = true;
+    return cut_to_border(input_.topology, chart_, result_.offenders, darts_, partition_);
   }
 
   bool cut_open_timed(int cuts) {
@@ -223,6 +226,12 @@ class ChartJob {
     return kMostCuts + (result_.within_bound ? kLastClosings : 0);
   }
   int most_cuts() const { return noisy() && !effort_.whole ? kMostCuts : effort_.cuts; }
+
+  // Whether what is beyond the bound is past saving by cuts to single vertices.
+  bool cuts_in_vain() const {
+    if (result_.within_bound || result_.uvs.empty() || chart_.loops.size() > 1) return false;
+    return result_.crossings.size() > (cut_to_tips_ ? 0 : kMostFirstCrossings);
+  }
 
   // Whether a small hole is what the chart closes around.
   bool hole_in_the_way(int cuts) const {
@@ -397,6 +406,7 @@ class ChartJob {
   ChartEffort effort_;
   Darts darts_;
   int closings_ = 0;
+  bool cut_to_tips_ = false;
   bool slits_closed_ = false;  // those that opened a chart that unrolls
   NormalCone cone_;
   ParamResult result_;            // of the last attempt
