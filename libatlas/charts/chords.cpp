@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "libatlas/charts/hull.h"
 
@@ -39,8 +40,9 @@ class ChordFinder {
     std::vector<Chord> chords;
     if (outline_.size() < 4 || !(width_ > 0)) return chords;
     choose_corners();
-    std::vector<Vec2d> points = range(0, std::uint32_t(corners_.size()));
-    whole_ = sprawl(points);
+    sort_corners();
+    const double hull = hull_of(0, std::uint32_t(corners_.size()), sides_[0]);
+    whole_ = sprawl(hull, box_area(sides_[0].hull));
     for (std::uint32_t i = 0; i < corners_.size(); ++i) {
       if (concave_[i]) add_chords(i, least, chords);
     }
@@ -52,10 +54,28 @@ class ChordFinder {
  private:
   const Vec2d& corner(std::uint32_t i) const { return outline_[corners_[i % corners_.size()]]; }
 
-  std::vector<Vec2d> range(std::uint32_t first, std::uint32_t last) const {
-    std::vector<Vec2d> points;
-    for (std::uint32_t i = first; i <= last; ++i) points.push_back(corner(i));
-    return points;
+  struct Side {
+    std::vector<Vec2d> points, hull;
+  };
+
+  // Of the corners from `first` to `last`, both included; returns its area.
+  double hull_of(std::uint32_t first, std::uint32_t last, Side& side) const {
+    const auto n = std::uint32_t(corners_.size());
+    side.points.clear();
+    for (const std::uint32_t k : by_x_) {
+      const std::uint32_t since = k >= first ? k - first : k + n - first;
+      if (since <= last - first) side.points.push_back(corner(k));
+    }
+    return sorted_hull_area(side.points, side.hull);
+  }
+
+  void sort_corners() {
+    by_x_.resize(corners_.size());
+    std::iota(by_x_.begin(), by_x_.end(), 0);
+    std::sort(by_x_.begin(), by_x_.end(), [&](std::uint32_t i, std::uint32_t j) {
+      const Vec2d &a = corner(i), &b = corner(j);
+      return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : i < j;
+    });
   }
 
   // The corners that matter, and others between them so that a chord can end on a straight side.
@@ -121,18 +141,21 @@ class ChordFinder {
     return places;
   }
 
-  void add_chords(std::uint32_t i, double least, std::vector<Chord>& chords) const {
+  void add_chords(std::uint32_t i, double least, std::vector<Chord>& chords) {
     const auto n = std::uint32_t(corners_.size());
+    std::vector<double> length(n);
+    for (std::uint32_t j = 0; j < n; ++j) length[j] = distance(corner(i), corner(j));
     for (std::uint32_t step = 2; step + 1 < n; ++step) {
       const std::uint32_t j = (i + step) % n;
-      const double length = distance(corner(i), corner(j));
-      const bool nearest = length <= distance(corner(i), corner(j + 1)) &&
-                           length <= distance(corner(i), corner(j + n - 1));
+      const bool nearest = length[j] <= length[(j + 1) % n] && length[j] <= length[(j + n - 1) % n];
       if ((!nearest && !concave_[j]) || (concave_[j] && j < i) || !visible(i, j)) continue;
-      std::vector<Vec2d> one = range(i, i + step), other = range(i + step, i + n);
-      const double fall = whole_ - sprawl(one) - sprawl(other);
+      const double one = hull_of(i, i + step, sides_[0]),
+                   other = hull_of(j, j + n - step, sides_[1]);
+      if (whole_ - one - other < least) continue;  // no rectangle is smaller than the hull
+      const double fall =
+          whole_ - sprawl(one, box_area(sides_[0].hull)) - sprawl(other, box_area(sides_[1].hull));
       if (fall < least) continue;
-      chords.push_back({corners_[i], corners_[j], fall / (length + kShortSeam * width_)});
+      chords.push_back({corners_[i], corners_[j], fall / (length[j] + kShortSeam * width_)});
     }
   }
 
@@ -160,15 +183,11 @@ class ChordFinder {
   double width_ = 0, whole_ = 0;
   std::vector<std::uint32_t> corners_;  // places in the outline, ascending
   std::vector<std::uint8_t> concave_;   // 1 a corner
+  std::vector<std::uint32_t> by_x_;     // corners
+  Side sides_[2];                       // of a chord
 };
 
 }  // namespace
-
-double sprawl(std::vector<Vec2d>& points) {
-  std::vector<Vec2d> hull;
-  const double area = hull_area(points, hull);
-  return 0.5 * (area + box_area(hull));
-}
 
 std::vector<Chord> find_chords(std::span<const Vec2d> outline, double least) {
   return ChordFinder(outline).run(least);

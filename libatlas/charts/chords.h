@@ -11,7 +11,9 @@ namespace atlas {
 
 // Half the areas of the smallest rectangle and of the convex hull: the first is what packing pays
 // for, the second falls already with the first of two limbs on one side.
-double sprawl(std::vector<Vec2d>& points);  // sorts them
+inline double sprawl(double hull_area, double box_area) {
+  return 0.5 * (hull_area + box_area);
+}
 
 struct Chord {
   std::uint32_t a = 0, b = 0;  // places in the outline
@@ -20,7 +22,7 @@ struct Chord {
 
 // Straight cuts within a simple polygon (counter-clockwise, any number of corners), from its
 // concave corners to corners nearby or concave, best first: those whose two sides sprawl less than
-// the whole by at least `least` (an area). About O(k² (n + k log k)) with k, the corners
+// the whole by at least `least` (an area). About O(n k + k³) with k, the corners
 // after simplification (Douglas and Peucker 1973), at most some 150. Cutting at concave corners:
 // Lien and Amato 2006.
 std::vector<Chord> find_chords(std::span<const Vec2d> outline, double least);

@@ -16,6 +16,10 @@ bool cross_each_other(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2
 double hull_area(std::vector<Vec2d>& points, std::vector<Vec2d>& hull) {
   std::sort(points.begin(), points.end(),
             [](const Vec2d& a, const Vec2d& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  return sorted_hull_area(points, hull);
+}
+
+double sorted_hull_area(std::vector<Vec2d>& points, std::vector<Vec2d>& hull) {
   hull.clear();
   if (points.empty()) return 0;
   for (int pass = 0; pass < 2; ++pass) {

@@ -19,6 +19,9 @@ bool cross_each_other(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2
 // (Andrew 1979).
 double hull_area(std::vector<Vec2d>& points, std::vector<Vec2d>& hull);
 
+// The same of points that ascend by x and, where that is equal, y.
+double sorted_hull_area(std::vector<Vec2d>& points, std::vector<Vec2d>& hull);
+
 // Area of the smallest rectangle around a convex polygon: one side lies along an edge of it
 // (Freeman and Shapira 1975). Quadratic, for some dozen corners.
 double box_area(const std::vector<Vec2d>& hull);

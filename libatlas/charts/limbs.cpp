@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <queue>
 #include <utility>
 
 #include "libatlas/charts/chords.h"
 #include "libatlas/charts/hull.h"
 #include "libatlas/charts/part_of_chart.h"
+#include "libatlas/param/halfedges.h"
 
 namespace atlas {
 namespace {
@@ -25,6 +27,7 @@ constexpr double kSeamPrice = 0.12;
 // length is as long as this many times that.
 constexpr double kLongestPath = 1.6, kStrayWeight = 3;
 constexpr std::size_t kChordsTried = 12;
+constexpr std::uint32_t kUnseen = kNoIndex - 1;
 
 using Triangles = std::vector<std::uint32_t>;  // of the chart
 
@@ -37,8 +40,14 @@ class LimbCutter {
  public:
   explicit LimbCutter(const FlatChart& chart) : chart_(chart) {
     const std::size_t n = chart.triangles.size();
-    link();
+    half_edges_.build(chart.corners, chart.uvs.size());
+    list_leaving();
     piece_of_.assign(n, 0);
+    side_.resize(n);
+    seen_.resize(3 * n);
+    blocked_.assign(3 * n, 0);
+    by_.assign(chart.uvs.size(), kUnseen);
+    on_rim_.assign(chart.uvs.size(), 0);
     Piece whole;
     for (std::uint32_t t = 0; t < n; ++t) whole.triangles.push_back(t);
     measure(whole, 0);
@@ -82,31 +91,20 @@ class LimbCutter {
 
   std::uint32_t uv_at(std::uint32_t h) const { return chart_.corners[h / 3][h % 3]; }
 
-  void link() {
-    struct Edge {
-      std::uint32_t low, high, half_edge;
-    };
-    std::vector<Edge> edges;
+  // Half-edges by the uv that they leave, ascending.
+  void list_leaving() {
+    first_.assign(chart_.uvs.size() + 1, 0);
     const auto count = std::uint32_t(3 * chart_.triangles.size());
-    edges.reserve(count);
-    for (std::uint32_t h = 0; h < count; ++h) {
-      const std::uint32_t a = uv_at(h), b = uv_at(next_half_edge(h));
-      edges.push_back({std::min(a, b), std::max(a, b), h});
-    }
-    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-      return std::tie(a.low, a.high, a.half_edge) < std::tie(b.low, b.high, b.half_edge);
-    });
-    opposite_.assign(count, kNoIndex);
-    for (std::size_t i = 1; i < edges.size(); ++i) {
-      if (edges[i - 1].low != edges[i].low || edges[i - 1].high != edges[i].high) continue;
-      opposite_[edges[i - 1].half_edge] = edges[i].half_edge;
-      opposite_[edges[i].half_edge] = edges[i - 1].half_edge;
-    }
+    for (std::uint32_t h = 0; h < count; ++h) ++first_[uv_at(h) + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    leaving_.resize(count);
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    for (std::uint32_t h = 0; h < count; ++h) leaving_[next[uv_at(h)]++] = h;
   }
 
   // The half-edge across h in the same piece.
   std::uint32_t across(std::uint32_t h) const {
-    const std::uint32_t o = opposite_[h];
+    const std::uint32_t o = half_edges_.opposite(h);
     return o != kNoIndex && piece_of_[o / 3] == piece_of_[h / 3] ? o : kNoIndex;
   }
 
@@ -118,32 +116,31 @@ class LimbCutter {
       piece.area += 0.5 * cross(chart_.uvs[c[0]], chart_.uvs[c[1]], chart_.uvs[c[2]]);
       piece_of_[t] = number;
     }
-    std::vector<std::uint8_t> seen(3 * piece.triangles.size(), 0);
+    for (const std::uint32_t t : piece.triangles) std::fill_n(&seen_[3 * t], 3, 0);
     double most = 0;
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      const std::uint32_t h = 3 * piece.triangles[i / 3] + i % 3;
-      if (seen[i] || across(h) != kNoIndex) continue;
-      std::vector<std::uint32_t> loop = trace(piece, h, seen);
-      const double area = signed_area(loop);
-      if (area <= most) continue;
-      most = area;
-      piece.outline = std::move(loop);
+    for (const std::uint32_t t : piece.triangles) {
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        if (seen_[h] || across(h) != kNoIndex) continue;
+        std::vector<std::uint32_t> loop = trace(h);
+        const double area = signed_area(loop);
+        if (area <= most) continue;
+        most = area;
+        piece.outline = std::move(loop);
+      }
     }
     std::vector<Vec2d> points = positions(piece.outline), hull;
     const double hull_size = hull_area(points, hull);
     piece.box = box_area(hull);
-    piece.sprawl = 0.5 * (hull_size + piece.box);
+    piece.sprawl = sprawl(hull_size, piece.box);
     piece.searched = false;
     piece.score = 0;
   }
 
-  std::vector<std::uint32_t> trace(const Piece& piece, std::uint32_t start,
-                                   std::vector<std::uint8_t>& seen) const {
+  std::vector<std::uint32_t> trace(std::uint32_t start) {
     std::vector<std::uint32_t> loop;
     std::uint32_t h = start;
     do {
-      const auto at = std::lower_bound(piece.triangles.begin(), piece.triangles.end(), h / 3);
-      seen[3 * std::size_t(at - piece.triangles.begin()) + h % 3] = 1;
+      seen_[h] = 1;
       loop.push_back(uv_at(h));
       h = next_half_edge(h);
       while (across(h) != kNoIndex) h = next_half_edge(across(h));
@@ -194,8 +191,8 @@ class LimbCutter {
     const std::vector<Vec2d> outline = positions(piece.outline);
     const std::vector<Chord> chords = find_chords(outline, least_fall_);
     for (std::size_t i = 0; i < std::min(chords.size(), kChordsTried); ++i) {
-      const std::uint32_t a = piece.outline[chords[i].a], b = piece.outline[chords[i].b];
-      const std::vector<std::uint32_t> path = find_path(piece, a, b);
+      const std::vector<std::uint32_t> path =
+          find_path(piece, piece.outline[chords[i].a], piece.outline[chords[i].b]);
       if (path.empty() || !divide(piece, path)) continue;
       piece.score = chords[i].score;
       return;
@@ -205,26 +202,15 @@ class LimbCutter {
   // Edges of the piece from uv a to uv b, none of them along its outline, close to the straight
   // line: its half-edges on one side; empty if there is no such path. Dijkstra.
   std::vector<std::uint32_t> find_path(const Piece& piece, std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t number = piece_of_[piece.triangles[0]];
     const Vec2d from = chart_.uvs[a], to = chart_.uvs[b];
     const double dx = to.x - from.x, dy = to.y - from.y, chord2 = dx * dx + dy * dy;
-    std::map<std::uint32_t, std::vector<std::uint32_t>> leaving;  // near the chord, by uv
     const auto stray = [&](const Vec2d& p) {
       const double along = std::clamp(((p.x - from.x) * dx + (p.y - from.y) * dy) / chord2, 0., 1.);
       return std::sqrt(
           (std::pow(p.x - from.x - along * dx, 2) + std::pow(p.y - from.y - along * dy, 2)) /
           chord2);
     };
-    std::vector<std::uint32_t> rim = piece.outline;
-    std::sort(rim.begin(), rim.end());
-    const auto on_rim = [&](std::uint32_t i) {
-      return std::binary_search(rim.begin(), rim.end(), i);
-    };
-    for (const std::uint32_t t : piece.triangles) {
-      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-        if (across(h) == kNoIndex || stray(chart_.uvs[uv_at(h)]) > 0.5) continue;
-        leaving[uv_at(h)].push_back(h);
-      }
-    }
     struct Visit {
       double distance;
       std::uint32_t uv, by;
@@ -233,16 +219,21 @@ class LimbCutter {
       }
     };
     std::priority_queue<Visit, std::vector<Visit>, std::greater<>> queue;
-    std::map<std::uint32_t, std::uint32_t> reached;
+    for (const std::uint32_t i : piece.outline) on_rim_[i] = 1;
+    std::vector<std::uint32_t> reached;
     queue.push({0, a, kNoIndex});
     while (!queue.empty()) {
       const Visit visit = queue.top();
       queue.pop();
-      if (!reached.emplace(visit.uv, visit.by).second) continue;
+      if (by_[visit.uv] != kUnseen) continue;
+      by_[visit.uv] = visit.by;
+      reached.push_back(visit.uv);
       if (visit.uv == b) break;
-      for (const std::uint32_t h : leaving[visit.uv]) {
-        const std::uint32_t next = uv_at(next_half_edge(h));
-        if (reached.count(next) || (next != b && on_rim(next))) continue;
+      if (stray(chart_.uvs[visit.uv]) > 0.5) continue;
+      for (std::uint32_t i = first_[visit.uv]; i < first_[visit.uv + 1]; ++i) {
+        const std::uint32_t h = leaving_[i], next = uv_at(next_half_edge(h));
+        if (piece_of_[h / 3] != number || across(h) == kNoIndex || by_[next] != kUnseen) continue;
+        if (next != b && on_rim_[next]) continue;
         const Vec2d &p = chart_.uvs[visit.uv], &q = chart_.uvs[next];
         const double off = stray({(p.x + q.x) / 2, (p.y + q.y) / 2});
         queue.push(
@@ -251,46 +242,44 @@ class LimbCutter {
       }
     }
     std::vector<std::uint32_t> path;
-    if (!reached.count(b)) return path;
     double length = 0;
-    for (std::uint32_t uv = b; uv != a;) {
-      const std::uint32_t h = reached[uv];
+    for (std::uint32_t uv = by_[b] == kUnseen ? a : b; uv != a;) {
+      const std::uint32_t h = by_[uv];
       path.push_back(h);
       const Vec2d &p = chart_.uvs[uv_at(h)], &q = chart_.uvs[uv];
       length += std::hypot(q.x - p.x, q.y - p.y);
       uv = uv_at(h);
     }
+    for (const std::uint32_t i : piece.outline) on_rim_[i] = 0;
+    for (const std::uint32_t i : reached) by_[i] = kUnseen;
     if (length > kLongestPath * std::sqrt(chord2)) path.clear();
     return path;
   }
 
   // Fills piece.halves; false unless the path leaves two pieces of some size that sprawl less.
   bool divide(Piece& piece, const std::vector<std::uint32_t>& path) {
-    std::vector<std::uint32_t> blocked = path;
-    for (const std::uint32_t h : path) blocked.push_back(opposite_[h]);
-    std::sort(blocked.begin(), blocked.end());
-    std::vector<std::uint8_t> seen(piece.triangles.size(), 0);
-    const auto place = [&](std::uint32_t t) {
-      return std::size_t(std::lower_bound(piece.triangles.begin(), piece.triangles.end(), t) -
-                         piece.triangles.begin());
+    const auto block = [&](std::uint8_t value) {
+      for (const std::uint32_t h : path) blocked_[h] = blocked_[half_edges_.opposite(h)] = value;
     };
+    block(1);
+    for (const std::uint32_t t : piece.triangles) side_[t] = 0;
     Triangles queue{path.front() / 3};
-    seen[place(queue[0])] = 1;
+    side_[queue[0]] = 1;
     for (std::size_t i = 0; i < queue.size(); ++i) {
       for (std::uint32_t h = 3 * queue[i]; h < 3 * queue[i] + 3; ++h) {
         const std::uint32_t o = across(h);
-        if (o == kNoIndex || std::binary_search(blocked.begin(), blocked.end(), h)) continue;
-        if (seen[place(o / 3)]++ == 0) queue.push_back(o / 3);
-        seen[place(o / 3)] = 1;
+        if (o == kNoIndex || blocked_[h] || side_[o / 3]) continue;
+        side_[o / 3] = 1;
+        queue.push_back(o / 3);
       }
     }
+    block(0);
     piece.halves = {};
     double area[2] = {0, 0};
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      const std::uint32_t t = piece.triangles[i];
+    for (const std::uint32_t t : piece.triangles) {
       const auto& c = chart_.corners[t];
-      piece.halves[seen[i]].push_back(t);
-      area[seen[i]] += 0.5 * cross(chart_.uvs[c[0]], chart_.uvs[c[1]], chart_.uvs[c[2]]);
+      piece.halves[side_[t]].push_back(t);
+      area[side_[t]] += 0.5 * cross(chart_.uvs[c[0]], chart_.uvs[c[1]], chart_.uvs[c[2]]);
     }
     return std::min(area[0], area[1]) > kLeastPiece * (chart_area());
   }
@@ -300,9 +289,10 @@ class LimbCutter {
   // Lengths of the cuts between two pieces each.
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> seams() const {
     std::map<std::pair<std::uint32_t, std::uint32_t>, double> lengths;
-    for (std::uint32_t h = 0; h < opposite_.size(); ++h) {
-      if (opposite_[h] == kNoIndex) continue;
-      const std::uint32_t p = piece_of_[h / 3], q = piece_of_[opposite_[h] / 3];
+    for (std::uint32_t h = 0; h < 3 * piece_of_.size(); ++h) {
+      const std::uint32_t o = half_edges_.opposite(h);
+      if (o == kNoIndex) continue;
+      const std::uint32_t p = piece_of_[h / 3], q = piece_of_[o / 3];
       const Vec2d &a = chart_.uvs[uv_at(h)], &b = chart_.uvs[uv_at(next_half_edge(h))];
       if (p < q) lengths[{p, q}] += std::hypot(b.x - a.x, b.y - a.y);
     }
@@ -345,8 +335,13 @@ class LimbCutter {
   }
 
   const FlatChart& chart_;
-  std::vector<std::uint32_t> opposite_;  // 1 a half-edge of the chart
-  std::vector<std::uint32_t> piece_of_;  // 1 a triangle of the chart
+  param::HalfEdges half_edges_;
+  std::vector<std::uint32_t> first_, leaving_;  // half-edges by the uv that they leave
+  std::vector<std::uint32_t> piece_of_;         // 1 a triangle of the chart
+  std::vector<std::uint8_t> side_;              // the same: of a path
+  std::vector<std::uint8_t> seen_, blocked_;    // 1 a half-edge
+  std::vector<std::uint32_t> by_;               // 1 a uv: the half-edge that a path comes by
+  std::vector<std::uint8_t> on_rim_;            // the same
   std::vector<Piece> pieces_;
   double least_fall_ = 0;
 };

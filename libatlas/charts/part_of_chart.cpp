@@ -1,11 +1,10 @@
 #include "libatlas/charts/part_of_chart.h"
 
-#include <algorithm>
 #include <array>
-#include <map>
 #include <vector>
 
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/param/halfedges.h"
 #include "libatlas/param/orient.h"
 
 namespace atlas {
@@ -18,7 +17,6 @@ FlatChart part_of_chart(const FlattenInput& input, const FlatChart& whole,
   std::vector<std::uint32_t> local(whole.uvs.size(), kNoIndex);
   std::vector<Vec3d> positions;
   std::vector<double> density;
-  std::map<std::array<std::uint32_t, 2>, int> sides;
   for (const std::uint32_t i : triangles) {
     piece.triangles.push_back(whole.triangles[i]);
     piece.corners.push_back(whole.corners[i]);
@@ -32,16 +30,17 @@ FlatChart part_of_chart(const FlattenInput& input, const FlatChart& whole,
       }
       c = local[c];
     }
-    const auto& c = piece.corners.back();
-    for (int k = 0; k < 3; ++k)
-      ++sides[{std::min(c[k], c[(k + 1) % 3]), std::max(c[k], c[(k + 1) % 3])}];
     if (!input.density.empty()) density.push_back(input.density[whole.triangles[i]]);
   }
   const Vec3d origin = positions[0];
   for (Vec3d& p : positions) p = {p.x - origin.x, p.y - origin.y, p.z - origin.z};
   std::vector<std::array<std::uint32_t, 2>> border;
-  for (const auto& [edge, count] : sides) {
-    if (count == 1) border.push_back(edge);
+  param::HalfEdges half_edges;
+  half_edges.build(piece.corners, piece.uvs.size());
+  for (std::uint32_t h = 0; h < 3 * piece.corners.size(); ++h) {
+    if (half_edges.opposite(h) == param::HalfEdges::none) {
+      border.push_back({half_edges.from(h), half_edges.to(h)});
+    }
   }
   piece.size = orient_for_packing(piece.uvs, border).size;
   piece.distortion = measure_distortion({positions, piece.corners, density}, piece.uvs);

@@ -3,11 +3,16 @@
 namespace atlas::param {
 
 void HalfEdges::build(const LocalMesh& mesh) {
+  if (mesh.opposite.empty()) return build(mesh.triangles, mesh.positions.size());
   triangles_ = mesh.triangles;
   opposite_ = mesh.opposite;
-  if (!opposite_.empty()) return;
+}
+
+void HalfEdges::build(std::span<const std::array<std::uint32_t, 3>> triangles,
+                      std::size_t vertices) {
+  triangles_ = triangles;
   const std::uint32_t count = static_cast<std::uint32_t>(3 * triangles_.size());
-  first_.assign(mesh.positions.size() + 1, 0);
+  first_.assign(vertices + 1, 0);
   for (const auto& tri : triangles_) {
     for (const std::uint32_t v : tri) ++first_[v + 1];
   }

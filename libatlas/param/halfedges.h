@@ -18,6 +18,7 @@ class HalfEdges {
   // Takes the mesh's opposites, or finds them in O(n), hubs included. Where more than
   // two triangles meet in an edge, pairs are made in order of id.
   void build(const LocalMesh& mesh);
+  void build(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertices);
 
   std::uint32_t opposite(std::uint32_t h) const { return opposite_[h]; }
   static std::uint32_t next(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
