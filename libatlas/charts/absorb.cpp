@@ -44,6 +44,9 @@ constexpr double kBorderParts = 1024;
 // twentieth 8 succeeded, in half of all the time (11 noisy meshes).
 constexpr double kMostMisfit = 0.1, kMostRoughMisfit = 0.05;
 constexpr std::size_t kLeastFitted = 8;  // edges
+// Unions of so many times their smaller part's triangles keep the larger one's uvs but around it: a
+// tenth less time for intricate statues, as many charts.
+constexpr std::size_t kLittle = 10;
 
 // A turn and a shift; applied to complex numbers.
 struct Motion {
@@ -190,9 +193,10 @@ class Absorber {
     std::vector<std::uint32_t> both(size);
     std::merge(a.triangles.begin(), a.triangles.end(), b.triangles.begin(), b.triangles.end(),
                both.begin());
-    ChartOutcome outcome =
-        flatten_chart(input_.flatten, input_.partition, both,
-                      {.cuts = 0, .joined = joined, .whole = true}, input_.scratch);
+    const bool little = size > kLittle * std::min(a.triangles.size(), b.triangles.size());
+    ChartOutcome outcome = flatten_chart(
+        input_.flatten, input_.partition, both,
+        {.cuts = 0, .joined = joined, .little = little, .whole = true}, input_.scratch);
     outcome.flat.triangles = std::move(both);
     if (outcome.parts.empty() && is_better(outcome.flat, a, b, worth_of(seam, a))) {
       outcome.flat.fragment = a.fragment && b.fragment;

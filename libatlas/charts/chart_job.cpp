@@ -301,7 +301,7 @@ class ChartJob {
     if (best || (options.preset == ChartPreset::standard && mesh.triangles.size() < kLargeChart)) {
       param.aimed_stretch = std::min(options.max_stretch, best ? kBestStretch : kAimedStretch);
     }
-    param.local = noisy() && !best;
+    param.local = (noisy() || effort_.little) && !best;
     if (best) param.iterations = kBestIterations;
     param.max_planar_stretch =
         std::min(options.max_stretch,

@@ -39,6 +39,8 @@ struct ChartEffort {
   std::span<const Vec2d> joined = {};
   // 3 a triangle, or empty: where an earlier attempt came to that was within the bound.
   std::span<const Vec2d> resumed = {};
+  // What is joined is one large part and little else: only the places beyond the bound are relaxed.
+  bool little = false;
   bool whole = false;  // what fails needs no division: its parts are a single one
 };
 
