@@ -132,6 +132,20 @@ ChartOutline outline_of(const ChartShape& shape) {
   return outline;
 }
 
+Vec2d box_of(const ChartOutline& outline, double angle) {
+  if (outline.empty()) return {};
+  const double c = std::cos(angle), s = std::sin(angle);
+  Vec2d low{1e300, 1e300}, high{-1e300, -1e300};
+  const auto reach = [&](Vec2d p) {
+    const Vec2d q{c * p.x - s * p.y, s * p.x + c * p.y};
+    low = {std::min(low.x, q.x), std::min(low.y, q.y)};
+    high = {std::max(high.x, q.x), std::max(high.y, q.y)};
+  };
+  for (const ChartOutline::Edge& e : outline.edges) reach(e.from);  // closed: every end begins one
+  for (const auto& t : outline.loose) std::for_each(t.begin(), t.end(), reach);
+  return {high.x - low.x, high.y - low.y};
+}
+
 ChartOutline thinned(const ChartOutline& outline, double spacing) {
   ChartOutline thin;
   thin.loose = outline.loose;

@@ -26,6 +26,9 @@ struct ChartOutline {
 ChartOutline outline_of(const ChartShape& shape);
 std::vector<ChartOutline> outlines_of(std::span<const ChartShape> shapes, const Context& context);
 
+// Width and height of the chart's box when it is turned by so many radians; 0 for an empty one.
+Vec2d box_of(const ChartOutline& outline, double angle);
+
 // With loops whose corners are about `spacing` apart at least: off by no more than that.
 ChartOutline thinned(const ChartOutline& outline, double spacing);
 

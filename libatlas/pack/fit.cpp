@@ -260,7 +260,8 @@ bool search_scale(BoxFit& fit, const FitOptions& options, const Context& context
   }
   // Packings reach 90 to 98 % of the area, so a step below the area bound is likely to fit.
   bool found = false;
-  double step = low * 0.97;
+  const double first = low * 0.97;
+  double step = first;
   low = 0;
   while (result.packings + 1 < options.max_packings && high > 0) {
     if (context.cancelled()) return false;
@@ -268,7 +269,7 @@ bool search_scale(BoxFit& fit, const FitOptions& options, const Context& context
     (ok ? low : high) = step;
     found = found || ok;
     if (found && high - low < 5e-4 * high) break;
-    if (!found && step < 1e-9 * options.max_scale) break;
+    if (!found && step < 1e-9 * first) break;
     step = found ? (low + high) / 2 : step * 0.85;
   }
   return found || attempt(0);  // at scale 0 every item has its minimum side

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "libatlas/core/parallel.h"
+#include "libatlas/pack/fit_bounds.h"
 #include "libatlas/pack/fit_pages.h"
 #include "libatlas/pack/fit_result.h"
 #include "libatlas/pack/nest.h"
@@ -43,6 +44,10 @@ class OutlineFit {
   const GridChoice& grid() const { return grid_; }
   std::int32_t side() const { return side_; }
 
+  FitBounds bounds() const {
+    return fit_bounds(outlines_, options_, side_ * grid_.cell, grid_.directions);
+  }
+
   // First with the groups of F(A) = N. They are balanced by area, but the first ones hold the few
   // largest charts and nothing to fill the gaps with; where they fail, charts are dealt out such
   // that every page gets large and small ones. A scale at which the groups failed is remembered:
@@ -51,6 +56,8 @@ class OutlineFit {
     layout = {};
     layout.scale = scale;
     prepare(scale, layout);
+    for (const Piece& p : layout.pieces)
+      if (p.too_large) return false;
     if (!group(pages, layout)) return false;
     layout.page = layout.grouping.group;
     if (pages == 1 || scale < groups_fail_at_) {
@@ -95,6 +102,7 @@ class OutlineFit {
     piece_options.padding = options_.padding;
     piece_options.cell = grid_.cell;
     piece_options.directions = grid_.directions;
+    piece_options.page = {side_, side_};
     layout.pieces = make_pieces(outlines_, piece_options, context_);
   }
 
@@ -222,20 +230,23 @@ bool search_scale(OutlineFit& fit, const FitOptions& options, const Context& con
     return ok;
   };
   const double pages = double(options.page_size) * options.page_size * options.pages;
+  const FitBounds bounds = fit.bounds();
+  if (bounds.gutters_exceed_pages) return false;
+  const double most = std::min(options.max_scale, bounds.alone);
   double scale = fit.area() > 0 ? std::sqrt(0.74 * pages / fit.area()) : options.max_scale;
-  scale = std::min(scale, options.max_scale);
+  scale = std::min({scale, most, bounds.with_gutters});
   const double tolerance = scale_tolerance(options, 0.005, options.shapes.size());
-  double low = 0, high = options.max_scale * (1 + 1e-9), step = 0.97;
+  double low = 0, high = most * (1 + 1e-9), step = 0.97;
   while (result.packings + 1 < options.max_packings && !context.cancelled()) {
     const bool ok = attempt(scale);
-    if (ok && scale >= options.max_scale) return true;
+    if (ok && scale >= most) return true;
     (ok ? low : high) = scale;
     if (low > 0 && high - low < tolerance * high) return true;
     if (low == 0) {
       scale *= step;
       step *= step > 0.5 ? 0.97 : 1;  // faster and faster, should minimum sides be in the way
     } else {
-      scale = high > options.max_scale ? std::min(options.max_scale, low * 1.02) : (low + high) / 2;
+      scale = high > most ? std::min(most, low * 1.02) : (low + high) / 2;
     }
   }
   return low > 0 || attempt(1e-9 * options.max_scale);

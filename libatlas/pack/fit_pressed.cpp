@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/pack/fit_bounds.h"
 #include "libatlas/pack/fit_pages.h"
 #include "libatlas/pack/fit_result.h"
 #include "libatlas/pack/outline_mask.h"
@@ -8,6 +9,17 @@
 #include "libatlas/pack/straight_page.h"
 
 namespace atlas::pack {
+namespace {
+
+// Between slivers gutters take the page, not what cells round away; and pressing many, each of
+// which may meet all others along its whole length, costs minutes.
+bool are_slivers(std::span<const ChartOutline> outlines, const FitOptions& options) {
+  constexpr double kLeastShare = 0.25;  // of the page, against gutters
+  return outlines.size() > 1 &&
+         !(fit_bounds(outlines, options, options.page_size, 4).area_share > kLeastShare);
+}
+
+}  // namespace
 
 bool fit_pressed(std::span<const FitItem> items, std::span<const ChartOutline> outlines,
                  const FitOptions& options, const Context& context, FitResult& result) {
@@ -15,6 +27,7 @@ bool fit_pressed(std::span<const FitItem> items, std::span<const ChartOutline> o
   const bool straight = outlines.size() > 1 && is_straight(outlines);
   // On a page of given shape the search over cells fills more with them than the press does.
   if (straight && !options.free_aspect && options.preset != PackPreset::best) return false;
+  if (!straight && are_slivers(outlines, options)) return false;
   PressedPage pressed = straight && options.free_aspect
                             ? pack_straight(outlines, options, context)
                             : press_outlines(outlines, options, context);

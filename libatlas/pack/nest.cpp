@@ -27,6 +27,18 @@ Vec2d turned_origin(Vec2d origin, double box_height) {
   return {box_height - origin.y, origin.x};
 }
 
+// Whether the mask of a box of this size, in texels, stays within the page in some quarter turn.
+bool may_fit(Vec2d box, const PieceOptions& options) {
+  if (options.page == Extent{}) return true;
+  const auto cells = [&](double side) {
+    return std::ceil((side + 2.0 * options.padding) / options.cell * (1 - 1e-12));
+  };
+  const double w = cells(box.x), h = cells(box.y);
+  const Extent page = options.page;
+  return (w <= page.width && h <= page.height) ||
+         (options.directions >= 4 && h <= page.width && w <= page.height);
+}
+
 Piece make_piece(const ChartOutline& shape, double factor, const PieceOptions& options) {
   Piece piece;
   const std::uint32_t n = options.directions;
@@ -39,6 +51,8 @@ Piece make_piece(const ChartOutline& shape, double factor, const PieceOptions& o
     raster.angle = 2 * std::numbers::pi * b / n;
     raster.padding = options.padding;
     raster.cell = options.cell;
+    const Vec2d box = options.page == Extent{} ? Vec2d{} : box_of(shape, raster.angle);
+    if (!may_fit({factor * box.x, factor * box.y}, options)) continue;
     masks[b] = rasterize(shape, raster, piece.origins[b]);
     for (std::uint32_t k = b + bases, quarter = 1; k < n; k += bases, ++quarter) {
       const std::uint32_t from = k - bases;
@@ -54,6 +68,7 @@ Piece make_piece(const ChartOutline& shape, double factor, const PieceOptions& o
     }
   }
   piece.masks = std::move(masks);
+  piece.too_large = piece.cells() == 0 && !shape.empty();
   for (const Mask& m : piece.masks) {
     piece.tests.push_back(test_order(m));
     piece.centers.push_back(center_height(m));
@@ -211,6 +226,7 @@ void place_pieces(std::span<const Piece> pieces, const NestPlan& plan, BitPage& 
   LastPlaces last(plan.order.size());
   for (std::uint32_t id : plan.order) {
     const Piece& piece = pieces[id];
+    if (piece.too_large) nest.left_over.push_back(id);
     if (piece.cells() == 0) continue;
     NestPlace& place = nest.places[id];
     const std::int32_t only = plan.direction[id];
@@ -292,6 +308,18 @@ double energy(const Nest& nest, double total_cells) {
   return nest.used_height + mean / std::max(1.0, double(nest.used_height));
 }
 
+// How high a strip may become: pieces that do not nest, as slanted needles, could pile up for ever.
+// Beyond 256 MiB of rows, and four times what the pieces fill, they are left over.
+std::int32_t most_rows(std::span<const Piece> pieces, double total_cells, std::int32_t width) {
+  constexpr double kBytes = 1 << 28, kLevels = 12;
+  std::int32_t tallest = 1;
+  for (const Piece& p : pieces)
+    for (const Mask& m : p.masks) tallest = std::max(tallest, m.height);
+  const double needed = tallest + 4 * total_cells / std::max(1, width);
+  const double affordable = kBytes / (kLevels * 8 * (width / 64 + 2.0));
+  return static_cast<std::int32_t>(std::min(std::max(needed, affordable), double(1 << 24)));
+}
+
 }  // namespace
 
 NestPlan improve_plan(std::span<const Piece> pieces, const NestPlan& start,
@@ -301,7 +329,7 @@ NestPlan improve_plan(std::span<const Piece> pieces, const NestPlan& start,
   double total = 0;
   for (const Piece& p : pieces) total += static_cast<double>(p.cells());
   std::uint64_t spent = 0, tried = 0;
-  BitPage page(options.width, 1 << 24, longest);
+  BitPage page(options.width, most_rows(pieces, total, options.width), longest);
   const auto evaluate = [&](const NestPlan& plan, Nest& nest) {
     const std::uint64_t before = page.work();
     page.clear();

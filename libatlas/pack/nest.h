@@ -20,7 +20,13 @@ struct Piece {
   // height of its centre.
   std::vector<double> lifts;
   std::vector<std::uint32_t> by_fraction;  // directions by the fraction of their lifts
-  std::int64_t cells() const { return masks.empty() ? 0 : masks[0].cells; }
+  bool too_large = false;  // in every direction: without masks, although the shape has corners
+
+  std::int64_t cells() const {
+    for (const Mask& m : masks)
+      if (m.cells > 0) return m.cells;
+    return 0;
+  }
 };
 
 struct PieceOptions {
@@ -28,9 +34,11 @@ struct PieceOptions {
   std::span<const double> factors;  // 1 a shape, instead of the common factor; or empty
   std::int32_t padding = 1, cell = 1;
   std::uint32_t directions = 4;
+  Extent page;  // cells; a direction in which a shape exceeds it gets no mask. 0 x 0: no limit
 };
 
-// Rasterises shapes in all directions; quarter turns are exact turns of the masks.
+// Rasterises shapes in all directions; quarter turns are exact turns of the masks. Without a page's
+// limit masks take memory by the length of the shapes.
 std::vector<Piece> make_pieces(std::span<const ChartOutline> shapes, const PieceOptions& options,
                                const Context& context);
 

@@ -85,9 +85,11 @@ using pack::Nest;
 using pack::NestPlan;
 using pack::Piece;
 
+constexpr std::int32_t kMostTexels = 1 << 17;  // of a page's side, and of a chart in an open page
+
 Status check(std::span<const ChartShape> shapes, const OutlineOptions& o) {
-  if (o.page.width < 1 || o.page.height < 0 || o.page.width > (1 << 17) ||
-      o.page.height > (1 << 17) || o.alignment < 1 || o.padding < 0 || o.border < 0 ||
+  if (o.page.width < 1 || o.page.height < 0 || o.page.width > kMostTexels ||
+      o.page.height > kMostTexels || o.alignment < 1 || o.padding < 0 || o.border < 0 ||
       o.alignment > o.page.width || o.padding > (1 << 12) || o.border > (1 << 16))
     return {ErrorCode::bad_option,
             fmt::format("outline: page {} x {}, padding {}, border {}, alignment {} (page in 1 .. "
@@ -227,12 +229,22 @@ Result<OutlineResult> pack_outlines(std::span<const ChartShape> shapes,
   piece_options.padding = options.padding;
   piece_options.cell = grid.cell;
   piece_options.directions = grid.directions;
+  piece_options.page = grid.page;
+  if (grid.open) piece_options.page.height = kMostTexels / grid.cell;
   const std::vector<pack::ChartOutline> outlines = pack::outlines_of(shapes, context);
   const std::vector<Piece> pieces = pack::make_pieces(outlines, piece_options, context);
   if (context.cancelled()) return Status::cancelled();
 
+  // A search for one page is of use where all may fit it.
+  double cells = 0;
+  bool one_page = options.max_pages == 1 || grid.open;
+  for (const Piece& p : pieces) {
+    cells += static_cast<double>(p.cells());
+    one_page = one_page && !p.too_large;
+  }
+  one_page = one_page && (grid.open || cells <= static_cast<double>(grid.page.area()));
   std::vector<Nest> nests;
-  if (options.max_pages == 1 || grid.open) {
+  if (one_page) {
     Nest one = search(pieces, grid, options, context, result);
     const bool fits = one.left_over.empty() && one.used_height <= grid.page.height;
     if (fits)
@@ -256,7 +268,7 @@ Result<OutlineResult> pack_outlines(std::span<const ChartShape> shapes,
   for (std::uint32_t i = 0; i < shapes.size(); ++i) {
     if (result.placements[i].page != kNoPage)
       result.shape_area += outlines[i].area * options.scale * options.scale;
-    else if (pieces[i].cells() > 0)
+    else if (pieces[i].cells() > 0 || pieces[i].too_large)
       result.unplaced.push_back(i);
     else
       result.placements[i].page = 0;

@@ -22,6 +22,8 @@ constexpr double kExpectedFill = 0.8;
 // gain one to two points by it, while more starts for all would win a tenth of that in the same
 // time.
 constexpr double kPoorFill = 0.715;
+constexpr double kMostSides = 2;        // of the page, drawn: the longest chart
+constexpr double kMostCells = 1 << 21;  // of the finest grid under one chart's box
 
 constexpr std::size_t kMostCharts = 128;
 constexpr std::size_t kStartedCharts = 480;  // over all starts: fewer charts get more of them
@@ -67,7 +69,15 @@ class Press {
       : outlines_(outlines), options_(options), context_(context) {
     for (const ChartOutline& o : outlines) area_ += o.area;
     const double page = double(options.page_size) * options.page_size;
-    scale_ = std::sqrt(kExpectedFill * page / area_);
+    double longest = 0;
+    for (const ChartOutline& o : outlines) {
+      const Vec2d box = box_of(o, 0);
+      longest = std::max({longest, box.x, box.y});
+    }
+    // What is longer will lie along the page, far smaller than its area tells.
+    const double by_area = std::sqrt(kExpectedFill * page / area_);
+    scale_ = std::min(by_area, kMostSides * options.page_size / longest);
+    side_ = options.page_size * (scale_ / by_area);
     draw();
   }
 
@@ -124,6 +134,8 @@ class Press {
 
   void draw_one(std::size_t i, int fine) {
     Drawn& d = drawn_[i];
+    const Vec2d box = box_of(outlines_[i], 0);
+    while (scale_ * box.x * scale_ * box.y > kMostCells * fine * fine) fine *= 2;
     RasterOptions raster;
     raster.factor = scale_;
     raster.padding = 0;
@@ -147,7 +159,7 @@ class Press {
   // Strips of widths around the square page's side; where pages may have any shape and a chart is
   // longer than that, every second one lays it along the strip.
   std::int32_t strip_width(std::size_t k, std::size_t count, double shift) const {
-    const double side = options_.page_size * std::sqrt(kExpectedFill / 0.69) / cell_;
+    const double side = side_ * std::sqrt(kExpectedFill / 0.69) / cell_;
     const double spread = (count > 1 ? 0.2 * double(k) / double(count - 1) - 0.1 : 0) + shift;
     std::int32_t narrowest = 0, longest = 0;
     for (const Piece& p : pieces_) {
@@ -345,6 +357,7 @@ class Press {
   const FitOptions& options_;
   const Context& context_;
   double area_ = 0, scale_ = 1;
+  double side_ = 0;  // of a square page that the charts as drawn fill to kExpectedFill, texels
   std::int32_t cell_ = 1;
   std::vector<Drawn> drawn_;
   std::vector<Piece> pieces_;

@@ -156,14 +156,8 @@ class StraightPage {
 
  private:
   static double long_side(const ChartOutline& outline) {
-    Vec2d low{1e300, 1e300}, high{-1e300, -1e300};
-    const auto reach = [&](Vec2d p) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-    };
-    for (const ChartOutline::Edge& e : outline.edges) reach(e.from);
-    for (const auto& t : outline.loose) std::for_each(t.begin(), t.end(), reach);
-    return std::max({0.0, high.x - low.x, high.y - low.y});
+    const Vec2d box = box_of(outline, 0);
+    return std::max(box.x, box.y);
   }
 
   // The page is as wide as allowed; the scale decides how high it is, between a square and a half.

@@ -1,0 +1,157 @@
+// Charts that no page suits: each must end soon, in bounded memory, with what fits or one error.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libatlas/core/clock.h"
+#include "libatlas/pack/chart_outline.h"
+#include "libatlas/pack/fit_bounds.h"
+#include "tests/pack/checks.h"
+
+namespace atlas {
+namespace {
+
+std::vector<Vec2d> turned_quad(double width, double height, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  const auto at = [&](double x, double y) { return Vec2d{c * x - s * y, s * x + c * y}; };
+  return {at(0, 0), at(width, 0), at(width, height), at(0, 0), at(width, height), at(0, height)};
+}
+
+test::ChartItems needles(int count, double length, double width, double least_angle,
+                         double most_angle) {
+  test::Noise noise{7};
+  std::vector<std::vector<Vec2d>> charts;
+  for (int i = 0; i < count; ++i) {
+    const double angle = least_angle + (most_angle - least_angle) * noise.unit();
+    charts.push_back(turned_quad(length, width, angle));
+  }
+  return test::ChartItems(std::move(charts));
+}
+
+FitOptions outlines(const test::ChartItems& charts) {
+  FitOptions o;
+  o.shapes = charts.shapes;
+  o.page_size = 1024;
+  o.padding = 2;
+  o.alignment = 1;
+  o.minimum_side = 1;
+  o.max_scale = 1e3;
+  return o;
+}
+
+// Every box on its page.
+void expect_on_pages(const FitResult& fit) {
+  for (const FitPlacement& p : fit.placements) {
+    ASSERT_LT(p.page, fit.pages.size());
+    EXPECT_GE(std::min(p.box.x, p.box.y), 0);
+    EXPECT_LE(p.box.right(), fit.pages[p.page].width);
+    EXPECT_LE(p.box.top(), fit.pages[p.page].height);
+  }
+}
+
+TEST(Extremes, NeedlesOfAnyLengthTakeThePagesLength) {
+  for (const double length : {1e4, 1e6, 5e8}) {
+    for (const int count : {1, 20, 60}) {
+      const auto charts = needles(count, length, 1, 0, 3);
+      for (const bool free_aspect : {false, true}) {
+        FitOptions o = outlines(charts);
+        o.free_aspect = free_aspect;
+        o.pages = free_aspect ? 1 : 4;
+        const double begun = cpu_seconds();
+        const Result<FitResult> fit = fit_pages(charts.items, o, {});
+        ASSERT_TRUE(fit.ok()) << fit.status().message();
+        expect_on_pages(*fit);
+        // Slanted ones that cells do not nest share 1024^2 texels, or four times as many.
+        EXPECT_GT(fit->scale * length, count == 1 ? 1000 : 150) << length << " " << count;
+        EXPECT_LT(cpu_seconds() - begun, 20) << length << " " << count;
+      }
+    }
+  }
+  EXPECT_LT(peak_memory(), std::int64_t{1} << 30);
+}
+
+TEST(Extremes, NeedlesKeepTheirGutters) {
+  const auto charts = needles(12, 1e5, 10, 0, 3);
+  FitOptions o = outlines(charts);
+  o.page_size = 256;
+  for (const std::uint32_t pages : {1u, 3u}) {
+    o.pages = pages;
+    o.free_aspect = pages == 1;
+    const Result<FitResult> fit = fit_pages(charts.items, o, {});
+    ASSERT_TRUE(fit.ok()) << fit.status().message();
+    EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *fit), fit->pages, o.padding), "");
+  }
+}
+
+TEST(Extremes, BoxesOfNeedles) {
+  const auto charts = needles(50, 1e8, 1, 0.01, 0.02);
+  FitOptions o = outlines(charts);
+  o.shapes = {};
+  o.max_scale = 1e6;  // far from what fits: the search must not end before it comes there
+  const Result<FitResult> fit = fit_pages(charts.items, o, {});
+  ASSERT_TRUE(fit.ok()) << fit.status().message();
+  expect_on_pages(*fit);
+  EXPECT_GT(fit->scale * 1e8, 500);
+}
+
+// More charts than their gutters leave room for are refused before any is drawn.
+TEST(Extremes, GuttersBeyondThePagesAreRefusedAtOnce) {
+  std::vector<std::vector<Vec2d>> tiny(20000, turned_quad(1, 1, 0.3));
+  const test::ChartItems charts(std::move(tiny));
+  FitOptions o = outlines(charts);
+  o.padding = 60;
+  o.pages = 4;
+  const double begun = cpu_seconds();
+  const Result<FitResult> fit = fit_pages(charts.items, o, {});
+  ASSERT_FALSE(fit.ok());
+  EXPECT_EQ(fit.status().code(), ErrorCode::no_solution);
+  EXPECT_LT(cpu_seconds() - begun, 2);
+}
+
+TEST(Extremes, PackOutlinesNamesWhatNoPageHolds) {
+  const std::vector<std::vector<Vec2d>> shapes{
+      turned_quad(100, 50, 0), turned_quad(9e8, 1, 0.7), turned_quad(255, 5, 0),
+      turned_quad(5, 130, 0),  turned_quad(300, 1, 0),   turned_quad(300, 1, std::atan(1)),
+      turned_quad(0, 0, 0),    turned_quad(5e8, 5e8, 1)};
+  std::vector<ChartShape> views;
+  for (const auto& s : shapes) views.push_back({s, {}});
+  OutlineOptions o;
+  o.page = {260, 120};
+  for (const std::uint32_t max_pages : {0u, 1u, 3u}) {
+    o.max_pages = max_pages;
+    const Result<OutlineResult> r = pack_outlines(views, o, {});
+    ASSERT_TRUE(r.ok()) << r.status().message();
+    // The fourth fits when it is turned, the sixth would at an angle that is not tried.
+    EXPECT_EQ(r->unplaced, (std::vector<std::uint32_t>{1, 4, 5, 7})) << max_pages;
+  }
+  o.page = {260, 0};  // what is longer than any page's side is no strip's either
+  const Result<OutlineResult> strip = pack_outlines(views, o, {});
+  ASSERT_TRUE(strip.ok()) << strip.status().message();
+  EXPECT_EQ(strip->unplaced, (std::vector<std::uint32_t>{1, 7}));
+  EXPECT_LT(peak_memory(), std::int64_t{1} << 30);
+}
+
+TEST(Extremes, BoundsHoldForCharts) {
+  test::Noise noise{11};
+  for (int round = 0; round < 20; ++round) {
+    std::vector<std::vector<Vec2d>> blobs;
+    for (int i = noise.in(1, 20); i > 0; --i)
+      blobs.push_back(test::blob(noise, 100 * noise.unit() + 1, noise.in(3, 9)));
+    const test::ChartItems charts(std::move(blobs));
+    FitOptions o = outlines(charts);
+    o.page_size = 256;
+    o.pages = std::uint32_t(noise.in(1, 3));
+    const auto drawn = pack::outlines_of(charts.shapes, {});
+    const pack::FitBounds bounds = pack::fit_bounds(drawn, o, o.page_size, 4);
+    EXPECT_FALSE(bounds.gutters_exceed_pages);
+    const Result<FitResult> fit = fit_pages(charts.items, o, {});
+    ASSERT_TRUE(fit.ok()) << fit.status().message();
+    // Pressed charts may be turned by any angle, cells only by quarter turns.
+    EXPECT_LE(fit->scale, bounds.alone * (o.pages == 1 ? std::sqrt(2.0) : 1));
+    EXPECT_LE(fit->scale, bounds.with_gutters);
+  }
+}
+
+}  // namespace
+}  // namespace atlas
