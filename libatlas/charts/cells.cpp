@@ -1,9 +1,11 @@
 #include "libatlas/charts/cells.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "libatlas/charts/grains.h"
 #include "libatlas/charts/rims.h"
@@ -18,31 +20,47 @@ constexpr std::size_t kCellsOfSmallMesh = 146;
 constexpr double kFlatSpread = 1e-6;
 constexpr std::uint32_t kCalmGrain = 3;
 constexpr std::uint32_t kLeastPerCell = 3;
-constexpr std::uint32_t kFar = std::numeric_limits<std::uint32_t>::max();
-// Distances are compared in this share of a mean step, cosines in this many parts: symmetric meshes
-// are full of ties, which rounding would break otherwise for every rotation and unit. (Wider parts
-// are no better: what lies at the limit of one is as rare as two that nearly tie.)
-constexpr double kDistanceParts = 66;
-constexpr double kBetweenParts = 0.29;  // so that round values are not at a part's limit
-constexpr double kLargest = 2e9;
+constexpr float kFar = std::numeric_limits<float>::infinity();
+// Distances that differ by less than this share of a mean step tie: symmetric meshes are full of
+// ties, which rounding would break otherwise for every rotation and unit. (Whole parts of a step,
+// compared instead, differ where what ties lies at the limit of one.)
+constexpr double kTie = 0.004;
+constexpr double kKeysPerStep = 66, kLargestKey = 2e9;
+constexpr float kBetweenParts = 0.29f;  // so that round values are not at a part's limit
 constexpr float kCosineParts = 4096;
 
-// Lengths in parts of a step, the same for every unit and rotation but for a rare one at the limit.
+// What distances in a piece are measured by: its mean step.
 class Ruler {
  public:
   Ruler() = default;
-  Ruler(double area, std::size_t steps)
-      : parts_(area > 0 ? kDistanceParts / std::sqrt(area / double(steps)) : 0) {}
-  std::uint32_t operator()(float length) const {
-    return static_cast<std::uint32_t>(std::min(parts_ * length + kBetweenParts, kLargest));
+  Ruler(double area, std::size_t steps) {
+    const double step = steps > 0 ? std::sqrt(area / double(steps)) : 0;
+    if (!(step > 0)) return;
+    keys_ = kKeysPerStep / step;
+    tie_ = static_cast<float>(kTie * step);
+  }
+  std::uint32_t key(float distance) const {
+    return static_cast<std::uint32_t>(std::min(keys_ * distance, kLargestKey));
+  }
+  bool shorter(float a, float b) const { return a < b - tie_; }
+
+  // What is nearest so far, and to which seed. Of seeds that tie the lowest counts. Returns whether
+  // the other one is nearer.
+  bool take(float distance, std::uint32_t seed, float& nearest, std::uint32_t& owner) const {
+    if (distance > nearest + tie_ || (seed == owner && !(distance < nearest))) return false;
+    if (distance >= nearest - tie_ && seed > owner) return false;
+    nearest = std::min(nearest, distance);
+    owner = seed;
+    return true;
   }
 
  private:
-  double parts_ = 0;
+  double keys_ = 0;
+  float tie_ = 0;
 };
 
 struct Visit {
-  std::uint32_t key;  // distance, in a ruler's parts
+  std::uint32_t key;  // of the distance
   float distance;
   std::uint32_t node, seed;
 };
@@ -100,25 +118,23 @@ class Seeder {
     spread();
   }
 
-  // Of equal distances the lower seed's counts.
-  void offer(const Visit& visit) {
-    std::uint32_t &nearest = distance_[visit.node], &owner = owner_[visit.node];
-    if (visit.key > nearest || (visit.key == nearest && visit.seed >= owner)) return;
-    nearest = visit.key;
-    owner = visit.seed;
+  void offer(Visit visit) {
+    float& nearest = distance_[visit.node];
+    if (!ruler_.take(visit.distance, visit.seed, nearest, owner_[visit.node])) return;
+    visit.distance = nearest;
     queue_.push(visit);
   }
 
   void spread() {
     while (!queue_.empty()) {
       const Visit visit = queue_.pop();
-      if (visit.key != distance_[visit.node] || visit.seed != owner_[visit.node]) continue;
+      if (visit.distance != distance_[visit.node] || visit.seed != owner_[visit.node]) continue;
       const glm::vec3 axis = normals[visit.seed];
       for (std::uint32_t i = grains_.first[visit.node]; i < grains_.first[visit.node + 1]; ++i) {
         const std::uint32_t next = grains_.neighbour[i];
         const float lean = 1 - glm::dot(grains_.normal[next], axis);
         const float distance = visit.distance + grains_.distance[i] * (1 + kNormalWeight * lean);
-        offer({std::max(ruler_(distance), visit.key), distance, next, visit.seed});
+        offer({std::max(ruler_.key(distance), visit.key), distance, next, visit.seed});
       }
     }
   }
@@ -136,11 +152,11 @@ class Seeder {
   // The last of those that are farthest from all seeds. A plain look at all of them: they are few,
   // and what a priority queue must move at each seed is more.
   std::uint32_t farthest(std::uint32_t first, std::uint32_t last) const {
-    std::int32_t most = 0;  // signed, for older processors compare no other four at once
+    std::int32_t most = 0;  // bits order as what they stand for; compilers compare four at once
     for (std::uint32_t g = first; g < last; ++g) {
-      most = std::max(most, static_cast<std::int32_t>(distance_[g]));
+      most = std::max(most, std::bit_cast<std::int32_t>(distance_[g]));
     }
-    while (static_cast<std::int32_t>(distance_[--last]) != most) {
+    while (ruler_.shorter(distance_[--last], std::bit_cast<float>(most))) {
     }
     return last;
   }
@@ -202,8 +218,7 @@ class Seeder {
   void recentre(std::uint32_t first, std::uint32_t last, std::size_t first_seed) {
     struct Sum {
       glm::vec3 middle{0}, normal{0};
-      float area = 0;
-      std::uint32_t best = kFar;
+      float area = 0, best = kFar;
     };
     std::vector<Sum> sums(seeds.size() - first_seed);
     for (std::uint32_t g = first; g < last; ++g) {
@@ -214,8 +229,8 @@ class Seeder {
     }
     for (std::uint32_t g = first; g < last; ++g) {
       Sum& sum = sums[owner_[g] - first_seed];
-      const std::uint32_t d = ruler_(glm::distance(grains_.centroid[g], sum.middle / sum.area));
-      if (d < sum.best) {
+      const float d = glm::distance(grains_.centroid[g], sum.middle / sum.area);
+      if (ruler_.shorter(d, sum.best)) {
         sum.best = d;
         seeds[owner_[g]] = g;
       }
@@ -235,7 +250,7 @@ class Seeder {
   const Grains& grains_;
   const CellOptions& options_;
   const Context& context_;
-  std::vector<std::uint32_t> distance_;  // in the ruler's parts
+  std::vector<float> distance_;
   std::vector<std::uint32_t> owner_;
   Ruler ruler_;  // of the piece at hand
   RingQueue<Visit> queue_;
@@ -259,13 +274,12 @@ std::vector<Ruler> triangle_rulers(const Topology& topology) {
 // What the last pass asks of a triangle, side by side in memory.
 struct Ground {
   glm::vec3 middle, normal;
-  std::uint32_t nearest = kFar;   // key with which it waits in the queue; 0: it has its cell
-  std::uint32_t cell = kNoIndex;  // of the lowest number that comes by that key
+  float distance = kFar;  // negative once it has its cell
+  std::uint32_t cell = kNoIndex;
 };
 
 struct Arrival {
-  std::uint32_t key;  // distance, in a ruler's parts; at least 1
-  float distance;
+  std::uint32_t key;  // of the distance
   std::uint32_t node;
 };
 
@@ -303,15 +317,15 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
   const std::size_t n = topology.triangle_count(), cells = seeder.seeds.size();
   std::vector<std::uint32_t> seed(cells, kNoIndex);
   const std::vector<Ruler> rulers = triangle_rulers(topology);
-  std::vector<std::uint32_t> best(cells, kFar);
+  std::vector<float> best(cells, kFar);
   std::vector<Ground> ground = lay_ground(topology);
   for (std::uint32_t t = 0; t < n; ++t) {
     const std::uint32_t g = grains.of_triangle[t];
     if (g == kNoIndex || seeder.seeds[seeder.owner()[g]] != g) continue;
     const Ruler& ruler = rulers[topology.component[t]];
-    const std::uint32_t d = ruler(glm::distance(ground[t].middle, grains.centroid[g]));
+    const float d = glm::distance(ground[t].middle, grains.centroid[g]);
     const std::uint32_t s = seeder.owner()[g];
-    if (d < best[s]) {
+    if (ruler.shorter(d, best[s])) {
       best[s] = d;
       seed[s] = t;
     }
@@ -326,9 +340,9 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
       for (; next < cells && piece(next) == piece(first); ++next) {
         // Coincident grains may have left a cell empty, or given one seed to two.
         if (seed[next] == kNoIndex || ground[seed[next]].cell != kNoIndex) continue;
-        ground[seed[next]].nearest = 1;
+        ground[seed[next]].distance = 0;
         ground[seed[next]].cell = next;
-        queue.push({1, 0, seed[next]});
+        queue.push({0, seed[next]});
       }
       continue;
     }
@@ -336,8 +350,8 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
     const Arrival visit = queue.pop();
     fetch_ahead(topology, ground, queue);
     Ground& here = ground[visit.node];
-    if (here.nearest == 0) continue;
-    here.nearest = 0;
+    if (here.distance < 0) continue;
+    const float so_far = std::exchange(here.distance, -1.0f);
     const std::uint32_t own = here.cell;
     const glm::vec3 from = here.middle, axis = seeder.normals[own];
     const Ruler& ruler = rulers[topology.component[visit.node]];
@@ -345,15 +359,12 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const Seede
       const std::uint32_t o = topology.opposite[h];
       if (o == kNoIndex) continue;
       Ground& next_to = ground[o / 3];
-      if (next_to.nearest == 0) continue;
+      if (next_to.distance < 0) continue;
       const float lean = 1 - glm::dot(next_to.normal, axis);
       const float step = glm::distance(from, next_to.middle);
-      const float distance = visit.distance + step * (1 + kNormalWeight * lean);
-      const std::uint32_t key = std::max(ruler(distance), visit.key);
-      if (key > next_to.nearest || (key == next_to.nearest && own >= next_to.cell)) continue;
-      next_to.nearest = key;
-      next_to.cell = own;
-      queue.push({key, distance, o / 3});
+      const float distance = so_far + step * (1 + kNormalWeight * lean);
+      if (!ruler.take(distance, own, next_to.distance, next_to.cell)) continue;
+      queue.push({std::max(ruler.key(distance), visit.key), o / 3});
     }
   }
   Cells result;

@@ -7,6 +7,9 @@ namespace atlas {
 namespace {
 
 constexpr double kNoPivot = 1e-15;  // of the diagonal: rounding
+// Of a triangle's area: what turns and scales by less is a mirror image, whose rotation rounding
+// alone would choose.
+constexpr double kNoTurn = 1e-3;
 
 // Two neighbouring entries of a row, or a point. Vectors of this size are elementary to every
 // 64-bit processor, and their arithmetic is that of their elements.
@@ -125,21 +128,41 @@ void FanSolver::eliminate(std::uint32_t pair) {
   inverse_pivot_[i + 1] = inverse(high[i + 1] - p.bd - high[i] * high[i], i + 1);
 }
 
-// What the rotations nearest to a fan's maps ask of its vertices. Points are complex numbers here.
-void FanSolver::load_fan(std::size_t place, std::span<const Vec2d> uvs) {
-  const auto begin = joined_.first[place], end = joined_.first[place + 1];
+// The parts of a fan's maps that turn and scale: conjugate gradients times differences, times area.
+// Points are complex numbers here. Returns their sum.
+Vec2d FanSolver::find_turns(std::size_t place, std::span<const Vec2d> uvs) {
   const Pair centre = pair_at(uvs[place]);
-  Pair centre_load{};
-  for (std::uint32_t i = begin; i < end; ++i) {
+  Pair whole{};
+  turns_.clear();
+  for (std::uint32_t i = joined_.first[place]; i < joined_.first[place + 1]; ++i) {
     const JoinedFans::Triangle& t = joined_.triangles[i];
     const Vec2d g1 = fans_.triangle[t.slot].slot_gradient;
     const Vec2d g2 = fans_.triangle[t.slot].next_gradient;
     const Pair d1 = pair_at(uvs[t.a]) - centre, d2 = pair_at(uvs[t.b]) - centre;
-    // The part of the map that turns and scales: conjugate gradients times differences.
     const Pair turn = g1.x * d1 + g2.x * d2 - quarter_turn(g1.y * d1 + g2.y * d2);
-    const double norm = std::sqrt(turn[0] * turn[0] + turn[1] * turn[1]);
-    const Pair r = norm > 0 ? turn * (1 / norm) : Pair{1, 0};
+    turns_.push_back({turn[0], turn[1]});
+    whole += turn;
+  }
+  return {whole[0], whole[1]};
+}
+
+// What the rotations nearest to a fan's maps ask of its vertices.
+void FanSolver::load_fan(std::size_t place, std::span<const Vec2d> uvs) {
+  const auto begin = joined_.first[place], end = joined_.first[place + 1];
+  const Vec2d whole = find_turns(place, uvs);
+  Pair centre_load{};
+  for (std::uint32_t i = begin; i < end; ++i) {
+    const JoinedFans::Triangle& t = joined_.triangles[i];
+    const FanTriangle& fan = fans_.triangle[t.slot];
+    Pair turn = pair_at(turns_[i - begin]);
+    double squared = turn[0] * turn[0] + turn[1] * turn[1];
+    if (squared <= kNoTurn * kNoTurn * fan.area * fan.area) {
+      turn = pair_at(whole);
+      squared = turn[0] * turn[0] + turn[1] * turn[1];
+    }
+    const Pair r = squared > 0 ? turn * (1 / std::sqrt(squared)) : Pair{1, 0};
     const Pair across = quarter_turn(r);
+    const Vec2d g1 = fan.slot_gradient, g2 = fan.next_gradient;
     const Pair a = g1.x * r + g1.y * across, b = g2.x * r + g2.y * across;
     pair_at(load_[row_of(t.a)]) += a;
     pair_at(load_[row_of(t.b)]) += b;

@@ -35,6 +35,7 @@ class FanSolver {
   void find_envelope();
   void fill(std::size_t place);
   void eliminate(std::uint32_t pair);
+  Vec2d find_turns(std::size_t place, std::span<const Vec2d> uvs);
   void load_fan(std::size_t place, std::span<const Vec2d> uvs);
   void solve();
   // As if it began with column 0.
@@ -55,6 +56,7 @@ class FanSolver {
   std::uint32_t count_ = 0;         // of rows that are not mere padding
   std::vector<Vec2d> load_;         // 1 a row, then its solution
   std::vector<Vec2d> centre_load_;  // 1 a cell
+  std::vector<Vec2d> turns_;        // 1 a triangle of the fan at hand
 };
 
 }  // namespace atlas

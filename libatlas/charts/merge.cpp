@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <queue>
+#include <set>
 
 #include "libatlas/charts/moments.h"
 #include "libatlas/charts/refusal.h"
@@ -22,9 +23,9 @@ constexpr double kHiddenSeam = 0.75;
 // Within a cone limit charts are small, and their outlines free: what counts is how few they are.
 constexpr double kConeWeight = 1;
 constexpr double kConeFill = 0.4;  // of hull and rectangle
-// Costs are compared in parts of this many: symmetric meshes are full of ties, which rounding would
-// break otherwise for every rotation and unit.
-constexpr double kCostParts = 4096;
+// Costs that differ by less tie: symmetric meshes are full of ties, which rounding would break
+// otherwise for every rotation and unit.
+constexpr double kTie = 1e-4;
 
 struct CoarseChart {
   std::vector<std::uint32_t> cells;
@@ -40,8 +41,20 @@ struct CoarseChart {
   std::vector<Refusal> refusals;  // each kept by one of its two charts
 };
 
+// Gives costs that tie one value, that of the first of them.
+class CostClasses {
+ public:
+  double operator()(double cost) {
+    const auto at = values_.lower_bound(cost - kTie);
+    return at != values_.end() && *at <= cost + kTie ? *at : *values_.insert(at, cost);
+  }
+
+ private:
+  std::set<double> values_;
+};
+
 struct Candidate {
-  std::int64_t cost;
+  double cost;
   std::uint32_t a, b, version_a, version_b;
   bool operator>(const Candidate& other) const {
     if (cost != other.cost) return cost > other.cost;
@@ -174,9 +187,8 @@ class Merger {
         continue;
       }
       const std::uint32_t low = std::min(a, border.other), high = std::max(a, border.other);
-      const auto parts =
-          static_cast<std::int64_t>(std::floor(kCostParts * std::min(cost(a, border), 1e9) + 0.29));
-      heap_.push({parts, low, high, chart(low).version, chart(high).version});
+      heap_.push(
+          {cost_classes_(cost(a, border)), low, high, chart(low).version, chart(high).version});
     }
   }
 
@@ -348,6 +360,7 @@ class Merger {
   MergeResult& result_;
   Trial& trial_;
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> heap_;
+  CostClasses cost_classes_;
   std::vector<Border> borders_;
   std::vector<std::uint32_t> glue_;
   std::vector<Vec3f> normals_;  // of the candidate, with a limit on cones
