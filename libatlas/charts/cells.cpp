@@ -24,7 +24,7 @@ constexpr float kFar = std::numeric_limits<float>::infinity();
 // Distances that differ by less than this share of a mean step tie: symmetric meshes are full of
 // ties, which rounding would break otherwise for every rotation and unit. (Whole parts of a step,
 // compared instead, differ where what ties lies at the limit of one.)
-constexpr double kTie = 0.004;
+constexpr double kTie = 0.0041;
 constexpr double kKeysPerStep = 66, kLargestKey = 2e9;
 constexpr float kBetweenParts = 0.29f;  // so that round values are not at a part's limit
 constexpr float kCosineParts = 4096;
@@ -217,19 +217,21 @@ class Seeder {
 
   void recentre(std::uint32_t first, std::uint32_t last, std::size_t first_seed) {
     struct Sum {
-      glm::vec3 middle{0}, normal{0};
-      float area = 0, best = kFar;
+      glm::dvec3 middle{0}, normal{0};  // double: single would decide what nearly ties
+      double area = 0;
+      float best = kFar;
     };
     std::vector<Sum> sums(seeds.size() - first_seed);
     for (std::uint32_t g = first; g < last; ++g) {
       Sum& sum = sums[owner_[g] - first_seed];
-      sum.middle += grains_.area[g] * grains_.centroid[g];
-      sum.normal += grains_.area[g] * grains_.normal[g];
+      sum.middle += double(grains_.area[g]) * glm::dvec3(grains_.centroid[g]);
+      sum.normal += double(grains_.area[g]) * glm::dvec3(grains_.normal[g]);
       sum.area += grains_.area[g];
     }
     for (std::uint32_t g = first; g < last; ++g) {
       Sum& sum = sums[owner_[g] - first_seed];
-      const float d = glm::distance(grains_.centroid[g], sum.middle / sum.area);
+      const auto d =
+          static_cast<float>(glm::distance(glm::dvec3(grains_.centroid[g]), sum.middle / sum.area));
       if (ruler_.shorter(d, sum.best)) {
         sum.best = d;
         seeds[owner_[g]] = g;
@@ -238,8 +240,8 @@ class Seeder {
     }
     queue_.restart();
     for (std::size_t s = first_seed; s < seeds.size(); ++s) {
-      const glm::vec3& normal = sums[s - first_seed].normal;
-      const float length = glm::length(normal);
+      const glm::dvec3& normal = sums[s - first_seed].normal;
+      const double length = glm::length(normal);
       if (length > 0) normals[s] = normal / length;
       offer({0, 0, seeds[s], static_cast<std::uint32_t>(s)});
     }
