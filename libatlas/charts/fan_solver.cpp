@@ -14,6 +14,9 @@ constexpr double kNoTurn = 1e-3;
 // Two neighbouring entries of a row, or a point. Vectors of this size are elementary to every
 // 64-bit processor, and their arithmetic is that of their elements.
 using Pair = double __attribute__((vector_size(16), may_alias));
+// Pairs are read in place: what std::vector allocates begins at a multiple of their size. (A Vec2d
+// of its own need not.)
+static_assert(sizeof(Vec2d) == sizeof(Pair) && __STDCPP_DEFAULT_NEW_ALIGNMENT__ >= alignof(Pair));
 
 const Pair& pair_at(const double* from) {
   return *reinterpret_cast<const Pair*>(from);
@@ -149,7 +152,8 @@ Vec2d FanSolver::find_turns(std::size_t place, std::span<const Vec2d> uvs) {
 // What the rotations nearest to a fan's maps ask of its vertices.
 void FanSolver::load_fan(std::size_t place, std::span<const Vec2d> uvs) {
   const auto begin = joined_.first[place], end = joined_.first[place + 1];
-  const Vec2d whole = find_turns(place, uvs);
+  const Vec2d turns = find_turns(place, uvs);
+  const Pair whole{turns.x, turns.y};
   Pair centre_load{};
   for (std::uint32_t i = begin; i < end; ++i) {
     const JoinedFans::Triangle& t = joined_.triangles[i];
@@ -157,7 +161,7 @@ void FanSolver::load_fan(std::size_t place, std::span<const Vec2d> uvs) {
     Pair turn = pair_at(turns_[i - begin]);
     double squared = turn[0] * turn[0] + turn[1] * turn[1];
     if (squared <= kNoTurn * kNoTurn * fan.area * fan.area) {
-      turn = pair_at(whole);
+      turn = whole;
       squared = turn[0] * turn[0] + turn[1] * turn[1];
     }
     const Pair r = squared > 0 ? turn * (1 / std::sqrt(squared)) : Pair{1, 0};

@@ -28,7 +28,7 @@ class FanSolver {
 
   // Factorises the stiffness of these fans, which must stay for the steps to come.
   void factorize(const JoinedFans& joined, std::size_t vertex_count);
-  // A local and a global step from uvs (1 a vertex), in place.
+  // A local and a global step from uvs (1 a vertex, of a std::vector), in place.
   void step(std::span<Vec2d> uvs);
 
  private:
