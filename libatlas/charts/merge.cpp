@@ -4,8 +4,8 @@
 #include <atomic>
 #include <cmath>
 #include <queue>
-#include <set>
 
+#include "libatlas/charts/cost_classes.h"
 #include "libatlas/charts/moments.h"
 #include "libatlas/charts/refusal.h"
 #include "libatlas/charts/runs.h"
@@ -23,9 +23,6 @@ constexpr double kHiddenSeam = 0.75;
 // Within a cone limit charts are small, and their outlines free: what counts is how few they are.
 constexpr double kConeWeight = 1;
 constexpr double kConeFill = 0.4;  // of hull and rectangle
-// Costs that differ by less tie: symmetric meshes are full of ties, which rounding would break
-// otherwise for every rotation and unit.
-constexpr double kTie = 1e-4;
 
 struct CoarseChart {
   std::vector<std::uint32_t> cells;
@@ -39,18 +36,6 @@ struct CoarseChart {
   bool unrolls = false;  // without stretch, exactly
   std::uint32_t version = 0;
   std::vector<Refusal> refusals;  // each kept by one of its two charts
-};
-
-// Gives costs that tie one value, that of the first of them.
-class CostClasses {
- public:
-  double operator()(double cost) {
-    const auto at = values_.lower_bound(cost - kTie);
-    return at != values_.end() && *at <= cost + kTie ? *at : *values_.insert(at, cost);
-  }
-
- private:
-  std::set<double> values_;
 };
 
 struct Candidate {

@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "libatlas/charts/coarse.h"
+#include "libatlas/charts/cost_classes.h"
 #include "libatlas/charts/fan_solver.h"
 #include "libatlas/charts/hull.h"
 #include "libatlas/charts/refusal.h"
@@ -202,6 +204,20 @@ TEST(Refusal, SaysMoreOfTheSameGlueThanOfALonger) {
   EXPECT_FALSE(fails_again(entangled, longer, 1, 1));
   const Refusal unsure{0, 1.2, 0, false, false, glue};
   EXPECT_FALSE(fails_again(unsure, glue, 1, 1));
+}
+
+TEST(CostClasses, NearlyEqualCostsAreEqual) {
+  constexpr double tie = CostClasses::tie;
+  CostClasses cost;
+  EXPECT_EQ(cost(1), 1);
+  EXPECT_EQ(cost(1 + 0.9 * tie), 1);
+  EXPECT_EQ(cost(1 - 0.9 * tie), 1);
+  EXPECT_EQ(cost(1 + 1.5 * tie), 1 + 1.5 * tie);
+  EXPECT_EQ(cost(1 + 0.9 * tie), 1);  // of two the lower one
+  // What has no area has no cost; others keep theirs.
+  EXPECT_EQ(cost(std::numeric_limits<double>::quiet_NaN()), CostClasses::most);
+  EXPECT_EQ(cost(std::numeric_limits<double>::infinity()), CostClasses::most);
+  EXPECT_EQ(cost(2), 2);
 }
 
 TEST(Hull, OfFewPoints) {
