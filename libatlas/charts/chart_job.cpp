@@ -175,40 +175,14 @@ class ChartJob {
     return any;
   }
 
-  // Where the border crosses itself in a few places: triangles around one side of each crossing,
-  // nearest first.
+  // Where the border crosses itself in a few places.
   void list_removable(ChartOutcome& outcome) const {
     if (!result_.within_bound || result_.crossings.empty()) return;
     outcome.crossings = result_.crossings.size();
-    std::vector<std::uint8_t> listed(chart_.triangles().size(), 0);
-    for (const BorderCrossing& crossing : result_.crossings) {
-      const std::uint32_t t = links(crossing.triangle_b) < links(crossing.triangle_a)
-                                  ? crossing.triangle_b
-                                  : crossing.triangle_a;
-      if (listed[t]) continue;
-      std::size_t begin = outcome.remove.size();
-      listed[t] = 1;
-      outcome.remove.push_back(t);
-      for (int ring = 0; ring < effort_.rings; ++ring) {
-        const std::size_t end = outcome.remove.size();
-        for (; begin < end; ++begin) {
-          for (std::uint32_t h = 3 * outcome.remove[begin]; h < 3 * outcome.remove[begin] + 3;
-               ++h) {
-            const std::uint32_t o = chart_.opposite[h];
-            if (o == kNoIndex || listed[o / 3]) continue;
-            listed[o / 3] = 1;
-            outcome.remove.push_back(o / 3);
-          }
-        }
-      }
-    }
-    if (outcome.remove.size() > std::max<std::size_t>(2, chart_.triangles().size() / 20)) {
-      outcome.remove.clear();
-    }
-    for (std::uint32_t& t : outcome.remove) t = chart_.triangles()[t];
-    if (!outcome.remove.empty() && chart_.triangles().size() <= kMostResumed) {
-      outcome.uvs = corner_uvs();
-    }
+    const auto around = around_crossings(chart_, result_.crossings, effort_.rings);
+    if (around.size() > std::max<std::size_t>(2, chart_.triangles().size() / 20)) return;
+    for (const std::uint32_t t : around) outcome.remove.push_back(chart_.triangles()[t]);
+    if (chart_.triangles().size() <= kMostResumed) outcome.uvs = corner_uvs();
   }
 
   bool noisy() const { return !input_.topology.calm_normals.empty(); }
@@ -259,12 +233,6 @@ class ChartJob {
       beyond += input_.topology.areas[chart_.triangles()[t]];
     }
     return beyond > kWideShare * surface_area();
-  }
-
-  int links(std::uint32_t t) const {
-    int count = 0;
-    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) count += chart_.opposite[h] != kNoIndex;
-    return count;
   }
 
   bool beyond_cone() const {

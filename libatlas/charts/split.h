@@ -1,6 +1,7 @@
 // Internal: how a chart that cannot be flattened is made easier.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <unordered_set>
@@ -20,6 +21,11 @@ std::array<std::uint32_t, 2> far_pair(const Topology& topology, const LocalChart
 // is connected.
 std::vector<std::uint8_t> divide(const Topology& topology, const LocalChart& chart,
                                  std::span<const std::uint32_t> seeds);
+
+// Local triangles around one side of each crossing, the one with fewer neighbours, with so many
+// rings of neighbours: what may go to other charts so that the border does not cross itself.
+std::vector<std::uint32_t> around_crossings(const LocalChart& chart,
+                                            std::span<const BorderCrossing> crossings, int rings);
 
 // Joins border loops of a connected chart to its first one and to what is joined to that, nearest
 // first, by shortest paths of edges (creases are shorter), marking their half-edges as seams: until
