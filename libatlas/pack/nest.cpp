@@ -41,6 +41,7 @@ bool may_fit(Vec2d box, const PieceOptions& options) {
 
 Piece make_piece(const ChartOutline& shape, double factor, const PieceOptions& options) {
   Piece piece;
+  piece.too_large = !shape.empty();
   const std::uint32_t n = options.directions;
   const std::uint32_t bases = std::max(1u, n / 4);
   std::vector<Mask> masks(n);
@@ -53,6 +54,7 @@ Piece make_piece(const ChartOutline& shape, double factor, const PieceOptions& o
     raster.cell = options.cell;
     const Vec2d box = options.page == Extent{} ? Vec2d{} : box_of(shape, raster.angle);
     if (!may_fit({factor * box.x, factor * box.y}, options)) continue;
+    piece.too_large = false;
     masks[b] = rasterize(shape, raster, piece.origins[b]);
     for (std::uint32_t k = b + bases, quarter = 1; k < n; k += bases, ++quarter) {
       const std::uint32_t from = k - bases;
@@ -68,7 +70,6 @@ Piece make_piece(const ChartOutline& shape, double factor, const PieceOptions& o
     }
   }
   piece.masks = std::move(masks);
-  piece.too_large = piece.cells() == 0 && !shape.empty();
   for (const Mask& m : piece.masks) {
     piece.tests.push_back(test_order(m));
     piece.centers.push_back(center_height(m));

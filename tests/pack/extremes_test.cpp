@@ -95,6 +95,26 @@ TEST(Extremes, BoxesOfNeedles) {
   EXPECT_GT(fit->scale * 1e8, 500);
 }
 
+// A chart without area or gutters may meet no cell at all; that does not make it too large.
+TEST(Extremes, ChartsThatMeetNoCellFitAnywhere) {
+  const test::ChartItems charts({turned_quad(30, 0, 0), turned_quad(20, 20, 0)});
+  FitOptions o = outlines(charts);
+  o.padding = 0;
+  for (const std::uint32_t pages : {1u, 2u}) {
+    o.pages = pages;
+    const Result<FitResult> fit = fit_pages(charts.items, o, {});
+    ASSERT_TRUE(fit.ok()) << fit.status().message();
+    expect_on_pages(*fit);
+  }
+  std::vector<ChartShape> views = charts.shapes;
+  OutlineOptions options;
+  options.page = {64, 64};
+  options.padding = 0;
+  const Result<OutlineResult> r = pack_outlines(views, options, {});
+  ASSERT_TRUE(r.ok()) << r.status().message();
+  EXPECT_TRUE(r->unplaced.empty());
+}
+
 // More charts than their gutters leave room for are refused before any is drawn.
 TEST(Extremes, GuttersBeyondThePagesAreRefusedAtOnce) {
   std::vector<std::vector<Vec2d>> tiny(20000, turned_quad(1, 1, 0.3));
