@@ -19,15 +19,8 @@ IsometricResult flatten_isometric(const LocalMesh& mesh, const IsometricStart& s
   assert(uvs.size() == mesh.positions.size() && !mesh.triangles.empty());
   param::ArapSolver solver(mesh, options.min_altitude, workspace.impl());
   solver.start(start);
-  int steps = std::max(options.iterations, 1);
-  if (options.promising && options.look_after > 0 && options.look_after < steps) {
-    solver.iterate(options.look_after, uvs);
-    if (!options.promising()) return options.measure ? solver.measure(uvs) : IsometricResult{};
-    steps -= options.look_after;
-    solver.start(uvs);
-  }
-  solver.iterate(steps, uvs);
-  return options.measure ? solver.measure(uvs) : IsometricResult{};
+  solver.iterate(std::max(options.iterations, 1), uvs);
+  return solver.measure(uvs);
 }
 
 }  // namespace atlas

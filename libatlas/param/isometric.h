@@ -41,10 +41,6 @@ struct IsometricOptions {
   // that slivers keep a positive area that survives rounding. Besides it there is always a floor of
   // 1e-9 of the longest edge. Zero-area triangles get a place this way.
   double min_altitude = 0;
-  // Asked after so many steps, if more are to follow, with the uvs at hand: false ends the descent.
-  int look_after = 2;
-  std::function<bool()> promising = nullptr;
-  bool measure = true;  // else the result stays as it is by default
 };
 
 // The rows of each triangle's 2x3 map.
