@@ -285,10 +285,13 @@ double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
   return std::exp(best);
 }
 
-Relaxer::Outcome ArapSolver::remove_flips(std::span<const std::uint32_t> also,
-                                          std::span<Vec2d> uvs) {
+Relaxer::Outcome ArapSolver::remove_flips(std::span<Vec2d> uvs) {
   wake(uvs);
-  return w_.relaxer.remove_flips(w_.elements, corners(), also, uvs);
+  // By Euler's formula, where it is known which edges are borders.
+  const auto borders = std::count(mesh_.opposite.begin(), mesh_.opposite.end(), HalfEdges::none);
+  const bool holed = !mesh_.opposite.empty() &&
+                     2 * mesh_.positions.size() < mesh_.triangles.size() + std::size_t(borders) + 2;
+  return w_.relaxer.remove_flips(w_.elements, corners(), holed, uvs);
 }
 
 Tail ArapSolver::lower_tail(double bound, std::span<Vec2d> uvs) {

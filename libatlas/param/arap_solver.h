@@ -41,7 +41,7 @@ class ArapSolver {
   };
   double squeeze(const Squeeze& options, std::span<Vec2d> uvs);
 
-  Relaxer::Outcome remove_flips(std::span<const std::uint32_t> also, std::span<Vec2d> uvs);
+  Relaxer::Outcome remove_flips(std::span<Vec2d> uvs);
 
   // Relaxer::lower_tail.
   Tail lower_tail(double bound, std::span<Vec2d> uvs);

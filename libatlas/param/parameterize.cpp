@@ -154,7 +154,7 @@ bool first_uvs(const LocalMesh& mesh, const ParamOptions& options, param::ArapSo
 
 void turn_flips(const LocalMesh& mesh, param::ArapSolver& solver, ParamResult& r) {
   if (!any_flip(mesh, r.uvs)) return;
-  r.unflipped += static_cast<int>(solver.remove_flips({}, r.uvs).turned);
+  r.unflipped += static_cast<int>(solver.remove_flips(r.uvs).turned);
 }
 
 // More steps for what may unroll, as long as they change much.

@@ -40,11 +40,10 @@ class Relaxer {
     Vec2d target;
   };
 
-  // Moves the vertices near non-positive triangles and no others. Triangles listed in `also` count
-  // as flipped even if their determinant is positive in floating point. Starts with a ring about
-  // them, and doubles the rings while that is not enough.
-  Outcome remove_flips(ElementView elements, const CornerLists& corners,
-                       std::span<const std::uint32_t> also, std::span<Vec2d> uvs);
+  // Moves the vertices near non-positive triangles and no others. Starts with a ring about them,
+  // and doubles the rings while that is not enough, less patiently where the mesh has holes.
+  Outcome remove_flips(ElementView elements, const CornerLists& corners, bool holed,
+                       std::span<Vec2d> uvs);
 
   struct Pull {
     std::span<const Spring> springs;

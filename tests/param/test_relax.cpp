@@ -53,7 +53,7 @@ TEST(Relax, ManyFlipsFarFromEachOtherAreAllTurned) {
   const System s = system_of(d);
   ASSERT_GT(flips(d, uv), 400u);
   param::Relaxer relaxer;
-  const param::Relaxer::Outcome out = relaxer.remove_flips(s.elements, s.corners, {}, uv);
+  const param::Relaxer::Outcome out = relaxer.remove_flips(s.elements, s.corners, false, uv);
   EXPECT_EQ(out.left, 0u);
   EXPECT_EQ(flips(d, uv), 0u);
   EXPECT_GT(out.turned, 400u);
@@ -73,7 +73,7 @@ TEST(Relax, AFoldedChartIsGivenUp) {
   ASSERT_GE(before, n * n);
   const System s = system_of(d);
   param::Relaxer relaxer;
-  const param::Relaxer::Outcome out = relaxer.remove_flips(s.elements, s.corners, {}, uv);
+  const param::Relaxer::Outcome out = relaxer.remove_flips(s.elements, s.corners, false, uv);
   EXPECT_EQ(out.left, flips(d, uv));
   EXPECT_GT(out.left, before / 2);
   EXPECT_EQ(out.turned + out.left, before);
