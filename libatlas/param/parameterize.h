@@ -53,7 +53,7 @@ struct ParamResult {
   Distortion distortion;
   bool planar = false;        // the projection was enough
   bool injective = false;     // certain: exact predicates (injectivity.h)
-  bool within_bound = false;  // stretch_999 <= max_stretch
+  bool within_bound = false;  // stretch_999 and stretch_l2 <= max_stretch
   // Empty if both hold. Else triangles in the way, worst first: flipped ones, those at border
   // crossings, those beyond the bound. Cutting the chart near or between them helps.
   std::vector<std::uint32_t> offenders;

@@ -50,6 +50,7 @@ void expect_whole(const FlattenResult& result, const Shape& shape, double bound)
     for (const std::uint32_t t : chart.triangles) ++seen[t];
     EXPECT_EQ(chart.distortion.flips, 0u) << shape.name;
     EXPECT_LE(chart.distortion.stretch_999, bound) << shape.name;
+    EXPECT_LE(chart.distortion.stretch_l2, bound) << shape.name;
   }
   EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), std::ptrdiff_t(seen.size())) << shape.name;
 }
@@ -69,8 +70,9 @@ TEST(Flatten, WallsAroundSmallHolesAreSlitNotDivided) {
 }
 
 TEST(Flatten, ClosedAndFoldedSurfacesEndWithinTheBound) {
-  for (const Shape& shape : {box(3), icosphere(2), torus(24, 12), noisy(icosphere(2), 0.05, 3)}) {
-    for (const double bound : {1.1, 1.25, 2.0}) {
+  for (const Shape& shape : {box(3), icosphere(2), torus(24, 12), noisy(icosphere(2), 0.05, 3),
+                             noisy_along_normals(torus(40, 24), 0.3)}) {
+    for (const double bound : {1.1, 1.25, 2.0, 3.0}) {
       ChartOptions options;
       options.max_stretch = bound;
       expect_whole(flatten_whole(shape, options), shape, bound);
