@@ -14,20 +14,11 @@
 #include "libatlas/charts/trial.h"
 #include "libatlas/param/isometric.h"
 #include "tests/charts/chart_checks.h"
+#include "tests/charts/coarse_shapes.h"
 #include "tests/support/shapes.h"
 
 namespace atlas::test {
 namespace {
-
-CoarseMesh coarse_of(const Shape& shape) {
-  const Mesh mesh(shape);
-  const Result<Topology> topology = build_topology(mesh.view(), {}, {});
-  EXPECT_TRUE(topology.ok());
-  CellOptions options;
-  options.mesh_triangles = 100000;
-  Cells cells = grow_cells(*topology, options, {});
-  return build_coarse(*topology, 40, cells);
-}
 
 // Two charts of a coarse mesh: cells below and above the plane that `offset` along `axis` names.
 struct Halves {

@@ -9,6 +9,7 @@
 #include "libatlas/charts/topology.h"
 #include "libatlas/charts/unroll.h"
 #include "tests/charts/chart_checks.h"
+#include "tests/charts/coarse_shapes.h"
 #include "tests/support/shapes.h"
 
 namespace atlas::test {
@@ -49,17 +50,6 @@ TEST(Unroll, ConesOfAnyAngle) {
       }
     }
   }
-}
-
-// With cells of forty triangles.
-CoarseMesh coarse_of(const Shape& shape) {
-  const Mesh mesh(shape);
-  const Result<Topology> topology = build_topology(mesh.view(), {}, {});
-  EXPECT_TRUE(topology.ok());
-  CellOptions options;
-  options.mesh_triangles = 100000;
-  Cells cells = grow_cells(*topology, options, {});
-  return build_coarse(*topology, 40, cells);
 }
 
 // Where a cell unrolls, its flat corners are no farther from each other than along its rim.

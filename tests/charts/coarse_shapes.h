@@ -1,0 +1,24 @@
+// Coarse meshes of generated shapes.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "libatlas/charts/cells.h"
+#include "libatlas/charts/coarse.h"
+#include "libatlas/charts/topology.h"
+#include "tests/charts/chart_checks.h"
+
+namespace atlas::test {
+
+// With cells of forty triangles.
+inline CoarseMesh coarse_of(const Shape& shape) {
+  const Mesh mesh(shape);
+  const Result<Topology> topology = build_topology(mesh.view(), {}, {});
+  EXPECT_TRUE(topology.ok());
+  CellOptions options;
+  options.mesh_triangles = 100000;
+  Cells cells = grow_cells(*topology, options, {});
+  return build_coarse(*topology, 40, cells);
+}
+
+}  // namespace atlas::test
