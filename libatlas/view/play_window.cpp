@@ -41,10 +41,13 @@ class Gui {
   }
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
-  void begin() {
+  // False if the display has gone: the sizes that GLFW asked it for are anything then.
+  bool begin(const GlWindow& window) {
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    if (window.lost()) return false;
     ImGui::NewFrame();
+    return true;
   }
   void end() {
     ImGui::Render();
@@ -99,7 +102,7 @@ class Player {
 
  private:
   Status frame(double elapsed) {
-    gui_.begin();
+    if (!gui_.begin(window_)) return {};
     steer(elapsed);
     note_time(elapsed);
     if (panel_shown_) panel();
