@@ -1,6 +1,7 @@
 // One chart given, and what becomes of it: flat as it is, slit open, or divided.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "libatlas/charts/flatten.h"
