@@ -80,8 +80,8 @@ class Grid {
       const glm::dvec3 at = (from + direction * ray.distance - low_) / cell_;
       int c[3];
       for (int a = 0; a < 3; ++a) {
-        c[a] = int(std::floor(at[a]));
-        if (c[a] < 0 || c[a] >= n_[a]) return ray;
+        if (!(at[a] >= 0 && at[a] < n_[a])) return ray;
+        c[a] = int(at[a]);
       }
       const std::size_t i = index(c[0], c[1], c[2]);
       if (!filled_[i]) continue;
@@ -187,10 +187,14 @@ struct Judged {
 Judged judge(const Grid& grid, const Eye& candidate, const std::vector<glm::dvec3>& around) {
   const glm::dvec3& eye = candidate.position;
   Judged result;
-  std::size_t front = 0;
-  for (const glm::dvec3& d : around) front += grid.cast(eye, d).hit == Grid::Hit::front;
-  const double enclosed = double(front) / double(around.size());
-  if (enclosed < (candidate.tall ? kEnclosed : kTightlyEnclosed)) return result;
+  // Most places of a scene seen from outside are not enclosed: a few rays tell.
+  double enclosed = 1;
+  std::size_t open = 0;
+  for (const glm::dvec3& d : around) {
+    if (grid.cast(eye, d).hit == Grid::Hit::front) continue;
+    enclosed = double(around.size() - ++open) / double(around.size());
+    if (enclosed < (candidate.tall ? kEnclosed : kTightlyEnclosed)) return result;
+  }
   std::array<double, kHeadings> free{};
   double nearest = INFINITY, mean = 0;
   for (int i = 0; i < kHeadings; ++i) {

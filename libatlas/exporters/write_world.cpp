@@ -15,14 +15,15 @@ using Writer = Result<WorldFile> (*)(const World&, const std::filesystem::path&,
 struct Format {
   std::string_view extension;
   Writer write;
+  bool viewpoint;  // holds World::viewpoint
 };
 
 // A new format is one more line here.
-constexpr std::array<Format, 5> kFormats{{{".wrl", write_vrml},
-                                          {".wrz", write_vrml},
-                                          {".obj", write_obj},
-                                          {".gltf", write_gltf},
-                                          {".glb", write_gltf}}};
+constexpr std::array<Format, 5> kFormats{{{".wrl", write_vrml, true},
+                                          {".wrz", write_vrml, true},
+                                          {".obj", write_obj, false},
+                                          {".gltf", write_gltf, true},
+                                          {".glb", write_gltf, true}}};
 
 const Format* format_of(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
@@ -42,6 +43,11 @@ Status check_world_extension(const std::filesystem::path& path) {
   }
   return {ErrorCode::bad_option,
           fmt::format("{}: the target must end in {}", path.string(), names)};
+}
+
+bool holds_viewpoint(const std::filesystem::path& path) {
+  const Format* format = format_of(path);
+  return format != nullptr && format->viewpoint;
 }
 
 Result<WorldFile> write_world(const World& world, const std::filesystem::path& path,

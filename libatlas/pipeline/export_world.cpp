@@ -329,10 +329,12 @@ class Export {
     world.up = options_.up;
     world.title = options_.target.stem().string();
     world.metres_per_unit = scene_.metres_per_unit;
-    ViewpointOptions eye;
-    eye.up = options_.up;
-    eye.metres_per_unit = scene_.metres_per_unit;
-    world.viewpoint = choose_viewpoint(scene_.positions, scene_.indices, eye, context_);
+    if (holds_viewpoint(options_.target)) {
+      ViewpointOptions eye;
+      eye.up = options_.up;
+      eye.metres_per_unit = scene_.metres_per_unit;
+      world.viewpoint = choose_viewpoint(scene_.positions, scene_.indices, eye, context_);
+    }
     for (std::size_t p = 0; p < image_sources_.size(); ++p) {
       world.pages[p].image = report_.pages[p].image;
       world.pages[p].image_source = image_sources_[p];

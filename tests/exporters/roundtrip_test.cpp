@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
+#include <iterator>
+#include <string>
 
 #include "libatlas/exporters/viewpoint.h"
 #include "libatlas/image/image_io.h"
@@ -279,6 +282,27 @@ TEST(ViewpointChoice, DegenerateScenes) {
   world.positions = point;
   world.viewpoint = view;
   EXPECT_TRUE(check_world(world).ok());
+}
+
+// What is said to ignore the viewpoint does, and nothing else does.
+TEST(ViewpointChoice, IsHeldByFormatsThatSaySo) {
+  World world = wavy_world(4, 1);
+  world.pages[0].image.clear();
+  for (const char* name : {"w.wrl", "w.wrz", "w.obj", "w.gltf", "w.glb"}) {
+    const TempFolder folder;
+    std::array<std::string, 2> bytes;
+    for (const int k : {0, 1}) {
+      world.viewpoint.position = {1.0 + k, 2, 3};
+      AtomicFiles files;
+      ASSERT_TRUE(write_world(world, folder / name, files, {}).ok());
+      ASSERT_TRUE(files.commit().ok());
+      std::ifstream file(folder / name, std::ios::binary);
+      bytes[k] = {std::istreambuf_iterator<char>(file), {}};
+      ASSERT_FALSE(bytes[k].empty());
+    }
+    EXPECT_EQ(bytes[0] != bytes[1], holds_viewpoint(name)) << name;
+  }
+  EXPECT_FALSE(holds_viewpoint("w.stl"));
 }
 
 }  // namespace
