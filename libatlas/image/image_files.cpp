@@ -5,7 +5,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
 #include <string_view>
+#include <utility>
 
 namespace atlas {
 namespace {
@@ -76,19 +81,37 @@ const char* extension_of(std::span<const std::uint8_t> bytes) {
 }
 
 template <class T>
-Status write(const std::filesystem::path& path, const Image<T>& image, OIIO::ImageSpec spec) {
-  auto output = OIIO::ImageOutput::create(path.string());
-  if (!output) return failure(path, "no writer for this kind of image", OIIO::geterror());
-  if (!output->open(path.string(), spec)) {
-    return failure(path, "cannot be written", output->geterror());
-  }
+Status encode(std::unique_ptr<OIIO::ImageOutput> given, const std::filesystem::path& path,
+              const Image<T>& image, const OIIO::ImageSpec& spec, std::FILE* file) {
+  OIIO::Filesystem::IOFile proxy(file, OIIO::Filesystem::IOProxy::Write);
+  const auto output = std::move(given);  // may still write when it ends, which is before the proxy
   const T* top_row =
       image.texels.data() + std::size_t(image.height - 1) * image.width * image.channels;
-  if (!output->write_image(type_of<T>(), top_row, OIIO::AutoStride, -row_bytes(image)) ||
+  if (!output->set_ioproxy(&proxy) || !output->open(path.string(), spec) ||
+      !output->write_image(type_of<T>(), top_row, OIIO::AutoStride, -row_bytes(image)) ||
       !output->close()) {
     return failure(path, "writing failed", output->geterror());
   }
   return {};
+}
+
+// OpenImageIO tells nobody when a disk is full: what it writes goes into a file of our own, which
+// remembers that.
+template <class T>
+Status write(const std::filesystem::path& path, const Image<T>& image,
+             const OIIO::ImageSpec& spec) {
+  auto output = OIIO::ImageOutput::create(path.string());
+  if (!output) return failure(path, "no writer for this kind of image", OIIO::geterror());
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  if (!file) return failure(path, "cannot be written", std::strerror(errno));
+  Status status = encode(std::move(output), path, image, spec, file);
+  errno = 0;
+  const bool stored = std::fflush(file) == 0 && !std::ferror(file);
+  const int reason = errno ? errno : EIO;
+  if (std::fclose(file) != 0 || !stored) {
+    return failure(path, "writing failed", std::strerror(reason));
+  }
+  return status;
 }
 
 Result<Image8> read_8_bits(const std::filesystem::path& path) {

@@ -16,6 +16,7 @@
 #include "libatlas/core/predicates.h"
 #include "libatlas/core/rect.h"
 #include "tests/scene/temp_folder.h"
+#include "tests/support/full_disk.h"
 
 namespace atlas {
 namespace {
@@ -119,6 +120,25 @@ TEST(AtomicFiles, WriteFileReportsWhereItCannot) {
   EXPECT_EQ(folder.count(), 2u);
 }
 
+// What does not fit leaves the old file as it was.
+TEST(AtomicFiles, AFullDiskChangesNothing) {
+  const TempFolder folder;
+  folder.write("x.json", "old");
+  // Both below and beyond what the C library holds back until a file is closed.
+  for (const std::size_t length : {100u, 100'000u}) {
+    Status status;
+    {
+      const test::FullDisk full(50);
+      status = write_file(folder / "x.json", std::string(length, 'x'));
+    }
+    EXPECT_EQ(status.code(), ErrorCode::io) << length;
+    EXPECT_NE(status.message().find("x.json: writing failed: File too large"), std::string::npos)
+        << status.message();
+    EXPECT_EQ(TempFolder::read(folder / "x.json"), "old");
+    EXPECT_EQ(folder.count(), 1u);
+  }
+}
+
 TEST(ParallelFor, CoversEachIndexOnceInTheSameChunks) {
   for (const std::size_t n : {0u, 1u, 7u, 64u, 1000u}) {
     for (const std::size_t grain : {0u, 1u, 3u, 64u, 5000u}) {
@@ -181,6 +201,42 @@ TEST(Predicates, SegmentsCross) {
   EXPECT_TRUE(segments_cross({0, 0}, {3, 0}, {1, 0}, {5, 0}));   // overlap along a stretch
   EXPECT_FALSE(segments_cross({0, 0}, {1, 0}, {1, 0}, {2, 0}));  // end to end on one line
   EXPECT_FALSE(segments_cross({0, 0}, {1, 0}, {2, 0}, {3, 0}));
+}
+
+// Whether the segments share a point that is no end of both, or are the same: by the signs of whole
+// numbers, with no regard to how the predicate goes about it.
+bool cross_by_integers(const int (&c)[8]) {
+  const auto side = [&](int a, int b, int p) {
+    const int det = (c[b] - c[a]) * (c[p + 1] - c[a + 1]) - (c[b + 1] - c[a + 1]) * (c[p] - c[a]);
+    return (det > 0) - (det < 0);
+  };
+  const auto inside = [&](int a, int b, int p) {  // strictly between a and b, on their line
+    const int along = (c[p] - c[a]) * (c[b] - c[a]) + (c[p + 1] - c[a + 1]) * (c[b + 1] - c[a + 1]);
+    const int square =
+        (c[b] - c[a]) * (c[b] - c[a]) + (c[b + 1] - c[a + 1]) * (c[b + 1] - c[a + 1]);
+    return side(a, b, p) == 0 && along > 0 && along < square;
+  };
+  const auto same = [&](int a, int b) { return c[a] == c[b] && c[a + 1] == c[b + 1]; };
+  if (side(0, 2, 4) * side(0, 2, 6) < 0 && side(4, 6, 0) * side(4, 6, 2) < 0) return true;
+  if (inside(0, 2, 4) || inside(0, 2, 6) || inside(4, 6, 0) || inside(4, 6, 2)) return true;
+  const bool twice = (same(0, 4) && same(2, 6)) || (same(0, 6) && same(2, 4));
+  return twice && !same(0, 2);
+}
+
+// All pairs of segments on a small grid: ends on ends, ends inside, collinear ones, points.
+TEST(Predicates, SegmentsCrossAsIntegersSay) {
+  constexpr int kSide = 4;
+  const double moved = std::exp2(50);
+  int crossing = 0;
+  for (int code = 0; code < 1 << 16; ++code) {
+    int c[8];
+    for (int k = 0; k < 8; ++k) c[k] = code >> (2 * k) & (kSide - 1);
+    const auto at = [&](int k) { return Vec2d{moved + double(c[k]), double(c[k + 1]) - moved}; };
+    const bool expected = cross_by_integers(c);
+    ASSERT_EQ(segments_cross(at(0), at(2), at(4), at(6)), expected) << code;
+    crossing += expected;
+  }
+  EXPECT_GT(crossing, 1000);
 }
 
 TEST(Clock, MovesForward) {

@@ -9,6 +9,7 @@
 #include "tests/exporters/vrml_parser.h"
 #include "tests/exporters/worlds.h"
 #include "tests/scene/temp_folder.h"
+#include "tests/support/full_disk.h"
 
 namespace atlas {
 namespace {
@@ -231,6 +232,23 @@ TEST(Vrml, FailuresLeaveNothingBehind) {
   bad = wavy_world(5, 1);
   bad.pages[0].indices.pop_back();
   EXPECT_EQ(status(bad, folder / "a.wrl", {}).code(), ErrorCode::bad_input);
+  bad = wavy_world(5, 1);
+  bad.pages[0].uv_indices.resize(3);
+  EXPECT_EQ(status(bad, folder / "a.wrl", {}).code(), ErrorCode::bad_input);
+  bad = wavy_world(5, 1);
+  bad.uvs[7].y = INFINITY;
+  EXPECT_NE(status(bad, folder / "a.wrl", {}).message().find("texture coordinate 7"),
+            std::string::npos);
+  for (const double fov : {0.0, -1.0, 3.2, double(NAN)}) {
+    bad = wavy_world(5, 1);
+    bad.viewpoint.fov = fov;
+    EXPECT_EQ(status(bad, folder / "a.wrl", {}).code(), ErrorCode::bad_input) << fov;
+  }
+  for (const Vec3d direction : {Vec3d{}, Vec3d{NAN, 0, 0}}) {
+    bad = wavy_world(5, 1);
+    bad.viewpoint.direction = direction;
+    EXPECT_EQ(status(bad, folder / "a.wrl", {}).code(), ErrorCode::bad_input);
+  }
   const World good = wavy_world(5, 1);
   const Status io = status(good, folder / "no/such/folder/a.wrl", {});
   EXPECT_EQ(io.code(), ErrorCode::io);
@@ -242,6 +260,25 @@ TEST(Vrml, FailuresLeaveNothingBehind) {
   context.cancel = &raised;
   EXPECT_EQ(status(good, folder / "a.wrl", context).code(), ErrorCode::cancelled);
   EXPECT_EQ(folder.count(), 0u);
+}
+
+// Small worlds fail when the file is closed, large ones before; so do all formats.
+TEST(Worlds, AFullDiskIsNoticed) {
+  const TempFolder folder;
+  for (const int side : {5, 200}) {
+    World world = wavy_world(side, 1);
+    world.pages[0].image.clear();
+    for (const char* name : {"a.wrl", "a.wrz", "a.obj", "a.gltf", "a.glb"}) {
+      Status status;
+      {
+        AtomicFiles files;
+        const test::FullDisk full(100);
+        status = write_world(world, folder / name, files, {}).status();
+      }
+      EXPECT_EQ(status.code(), ErrorCode::io) << name << ' ' << side;
+      EXPECT_EQ(folder.count(), 0u) << name;
+    }
+  }
 }
 
 }  // namespace

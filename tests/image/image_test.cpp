@@ -8,6 +8,7 @@
 #include <random>
 
 #include "tests/scene/temp_folder.h"
+#include "tests/support/full_disk.h"
 #include "tests/support/leaks.h"
 
 namespace atlas {
@@ -133,6 +134,15 @@ TEST(Image, FailuresNameTheFile) {
   EXPECT_FALSE(read_image8(folder.path()).ok());
   EXPECT_EQ(write_png(folder / "no/folder/a.png", noise(2, 2, 3), {}).code(), ErrorCode::io);
   EXPECT_EQ(write_exr(folder / "no/folder/a.exr", ImageF(2, 2, 3)).code(), ErrorCode::io);
+}
+
+TEST(Image, AFullDiskIsNoticed) {
+  const TempFolder folder;
+  const Image8 image = noise(200, 200, 3);
+  const test::IgnoreLeaks writer;  // as above
+  const test::FullDisk full(1000);
+  EXPECT_EQ(write_png(folder / "a.png", image, {}).code(), ErrorCode::io);
+  EXPECT_EQ(write_exr(folder / "a.exr", ImageF(200, 200, 3)).code(), ErrorCode::io);
 }
 
 }  // namespace
