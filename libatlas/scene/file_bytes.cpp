@@ -26,13 +26,13 @@ Result<FileBytes> read_file_bytes(const fs::path& path) {
     return Status(ErrorCode::io,
                   fmt::format("{}: is a directory (name a file inside it)", path.string()));
   }
-  std::FILE* file = std::fopen(path.c_str(), "rb");
-  if (!file || !fs::is_regular_file(status)) {
-    const int open_error = errno;
-    if (file) std::fclose(file);
+  // Asked before it is opened: a pipe that nobody writes to would never open.
+  const bool regular = fs::is_regular_file(status);
+  std::FILE* file = regular ? std::fopen(path.c_str(), "rb") : nullptr;
+  if (!file) {
     return Status(ErrorCode::io,
                   fmt::format("{}: cannot be read: {}", path.string(),
-                              file ? "not a regular file" : std::strerror(open_error)));
+                              regular ? std::strerror(errno) : "not a regular file"));
   }
   FileBytes bytes;
   bytes.size = fs::file_size(path, error);

@@ -78,7 +78,7 @@ class GltfParser {
  private:
   struct Primitive {
     std::vector<std::uint32_t> corners;  // 3 a triangle, numbered within the primitive
-    std::size_t base = 0, texcoord_base = 0;
+    std::size_t base = 0, texcoord_base = 0, texcoord_count = 0;
     bool has_texcoords = false, mirrored = false;
     std::uint32_t material = 0, object = 0;
     std::string name;
@@ -118,7 +118,7 @@ class GltfParser {
                             float(pbr.baseColorFactor[2])};
       }
       const int texture = pbr.baseColorTexture.index;
-      texcoord_set_.push_back(pbr.baseColorTexture.texCoord);
+      texcoord_set_.push_back(texcoord_set(pbr.baseColorTexture));
       if (texture >= 0 && std::size_t(texture) < model_.textures.size()) {
         const int source = model_.textures[texture].source;
         if (source >= 0 && std::size_t(source) < builder_.textures.size())
@@ -129,6 +129,14 @@ class GltfParser {
     }
     builder_.materials.push_back({});  // for primitives without one
     texcoord_set_.push_back(0);
+  }
+
+  // KHR_texture_transform may name another set than its texture does.
+  static int texcoord_set(const tinygltf::TextureInfo& info) {
+    const auto at = info.extensions.find("KHR_texture_transform");
+    const bool given =
+        at != info.extensions.end() && at->second.IsObject() && at->second.Get("texCoord").IsInt();
+    return given ? at->second.Get("texCoord").GetNumberAsInt() : info.texCoord;
   }
 
   // KHR_texture_transform acts on v pointing down; here v points up: v' = 1 - (s (1 - v) + o).
@@ -265,16 +273,18 @@ class GltfParser {
     const int set = texcoord_set_[primitive.material];
     const int accessor = attribute(raw, fmt::format("TEXCOORD_{}", set));
     if (accessor < 0) return {};
-    const auto next = builder_.texcoords.size();
-    const auto [at, is_new] = texcoord_base_.try_emplace(accessor, next);
-    primitive.texcoord_base = at->second;
-    primitive.has_texcoords = true;
-    if (!is_new) return {};
-    auto uvs = gltf_floats(model_, accessor, 2);
-    if (!uvs.ok()) return malformed(primitive.name, uvs.status().message());
-    for (std::size_t i = 0; i + 1 < uvs->size(); i += 2) {
-      builder_.texcoords.push_back({(*uvs)[i], 1 - (*uvs)[i + 1]});
+    const auto [at, is_new] = texcoords_.try_emplace(accessor);
+    if (is_new) {
+      auto uvs = gltf_floats(model_, accessor, 2);
+      if (!uvs.ok()) return malformed(primitive.name, uvs.status().message());
+      at->second = {builder_.texcoords.size(), uvs->size() / 2};
+      for (std::size_t i = 0; i + 1 < uvs->size(); i += 2) {
+        builder_.texcoords.push_back({(*uvs)[i], 1 - (*uvs)[i + 1]});
+      }
     }
+    primitive.texcoord_base = at->second.first;
+    primitive.texcoord_count = at->second.second;
+    primitive.has_texcoords = true;
     return {};
   }
 
@@ -341,7 +351,9 @@ class GltfParser {
     for (int c = 0; c < 3; ++c) {
       const std::uint32_t local = p.corners[3 * t + (p.mirrored ? 2 - c : c)];
       vertices[c] = local == kOutside ? -1 : static_cast<std::int64_t>(p.base + local);
-      uvs[c] = static_cast<std::int64_t>(p.texcoord_base + local);
+      // What follows in the list belongs to other primitives.
+      uvs[c] = local < p.texcoord_count ? static_cast<std::int64_t>(p.texcoord_base + local)
+                                        : static_cast<std::int64_t>(builder_.texcoords.size());
     }
     const std::span<const std::int64_t> all_uvs(uvs);
     builder_.add_face(vertices, p.has_texcoords ? all_uvs : all_uvs.first(0),
@@ -355,7 +367,7 @@ class GltfParser {
   const Context& context_;
   std::vector<int> texcoord_set_;  // 1 a material
   std::vector<bool> visited_;
-  std::map<int, std::size_t> texcoord_base_;  // by accessor
+  std::map<int, std::pair<std::size_t, std::size_t>> texcoords_;  // by accessor: first, count
   std::vector<Primitive> primitives_;
   std::vector<std::pair<std::size_t, std::size_t>> lit_ranges_;  // of vertices, ascending
   std::size_t coloured_ = 0;

@@ -1,6 +1,7 @@
 // Files that are wrong: each must end in one line that names the file and says what to do.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "libatlas/core/clock.h"
 #include "libatlas/scene/reader.h"
@@ -41,7 +42,12 @@ const Case kCases[] = {
     {"cut.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2", ErrorCode::bad_input, "cut.obj:5:"},
     {"empty_vt.obj", "vt\n", ErrorCode::bad_input, "empty_vt.obj:1:"},
     {"binary.obj", std::string("\0\1\2\n\0\xff\n", 7), ErrorCode::bad_input, "no triangle"},
+    {"continued.obj", "v 0 0 0 \\\n", ErrorCode::bad_input, "no triangle"},
     {"mtl.obj", "mtllib mtl.obj.mtl\nv 0 0 0\n", ErrorCode::bad_input, "mtl.obj.mtl:2:"},
+    {"option.obj", "mtllib option.obj.mtl\n", ErrorCode::bad_input, "-o of map_Kd needs a number"},
+    {"gain.obj", "mtllib gain.obj.mtl\n", ErrorCode::bad_input, "-mm of map_Kd needs two numbers"},
+    {"nameless.obj", "mtllib nameless.obj.mtl\n", ErrorCode::bad_input, "map_Kd names no file"},
+    {"colour.obj", "mtllib colour.obj.mtl\n", ErrorCode::bad_input, "three numbers, or one"},
     {"empty.ply", "", ErrorCode::bad_input, "empty.ply:1:"},
     {"not.ply", "plan\n", ErrorCode::bad_input, "not.ply:1:"},
     {"headless.ply", "ply\nelement vertex 3\nend_header\n", ErrorCode::bad_input, "no format"},
@@ -135,6 +141,8 @@ const Case kCases[] = {
      "cut short"},
     {"chunk.glb", std::string("glTF\2\0\0\0\x18\0\0\0\xff\xff\xff\xffJSON{}  ", 24),
      ErrorCode::bad_input, "JSON chunk"},
+    {"route.wrl", "#VRML V2.0 utf8\nROUTE a.b TO c.d\n", ErrorCode::bad_input,
+     "ROUTE is not supported"},
     {"scene.xyz", "1 2 3\n", ErrorCode::unsupported, "no reader"},
 };
 
@@ -144,6 +152,10 @@ TEST_P(Hostile, EndsInOneClearLine) {
   const Case& c = GetParam();
   const TempFolder folder;
   folder.write("mtl.obj.mtl", "newmtl a\nKd red\n");
+  folder.write("option.obj.mtl", "newmtl a\nmap_Kd -o a.png\n");
+  folder.write("gain.obj.mtl", "newmtl a\nmap_Kd -mm 1 a.png\n");
+  folder.write("nameless.obj.mtl", "newmtl a\nmap_Kd -clamp on\n");
+  folder.write("colour.obj.mtl", "newmtl a\nKd 1 0.5\n");
   const auto path = folder.write(c.file, c.bytes);
   const auto loaded = read_scene(path, {}, {});
   ASSERT_FALSE(loaded.ok());
@@ -177,6 +189,18 @@ TEST(Reader, MissingFilesFoldersAndOptions) {
   ReadOptions options;
   options.metres_per_unit = 0;
   EXPECT_EQ(read_scene(folder / "any.obj", options, {}).status().code(), ErrorCode::bad_option);
+}
+
+// Nobody writes to the pipe: who opened it would wait without end.
+TEST(Reader, ReadsNoPipes) {
+  const TempFolder folder;
+  const auto pipe = folder / "pipe.obj";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const Status status = read_scene(pipe, {}, {}).status();
+  EXPECT_EQ(status.code(), ErrorCode::io);
+  EXPECT_NE(status.message().find("pipe.obj: cannot be read: not a regular file"),
+            std::string::npos)
+      << status.message();
 }
 
 TEST(Statistics, OfAKnownScene) {

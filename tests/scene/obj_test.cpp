@@ -191,6 +191,33 @@ TEST(Obj, TexturesThatAreMissingOrBrokenFallBackToTheColour) {
   EXPECT_TRUE(load(path, options).defects.empty());
 }
 
+// Options before a texture's name: what changes nothing is passed over, what cannot be followed is
+// told.
+TEST(Obj, TextureOptions) {
+  const TempFolder folder;
+  std::filesystem::create_directory(folder / "maps");
+  ASSERT_TRUE(write_png(folder / "maps" / "a b.png", Image8(2, 2, 3, 77), {}).ok());
+  const auto ignored = [&](const std::string& options) {
+    folder.write("m.mtl", "newmtl a\nmap_Kd " + options + " maps\\a b.png\n");
+    const LoadedScene loaded = load(folder.write(
+        "s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nusemtl a\nf 1/1 2/1 3/1\n"));
+    EXPECT_EQ(loaded.scene.textures.size(), 1u) << options;
+    EXPECT_EQ(loaded.scene.materials[0].texture, 0) << options;
+    const std::uint64_t count = loaded.defects.count(DefectKind::texture_option_ignored);
+    EXPECT_EQ(loaded.defects.empty(), count == 0) << options;
+    return count;
+  };
+  for (const char* options : {"", "-mm 0 1", "-clamp off", "-blendu on", "-blendv off -cc off",
+                              "-o 0", "-s 1 1 1 -mm 0 1.0 -o 0 0"}) {
+    EXPECT_EQ(ignored(options), 0u) << options;
+  }
+  for (const char* options : {"-mm 0.5 1", "-mm 0 2", "-clamp on", "-t 0.1", "-t 0 0 1", "-bm 0.5",
+                              "-imfchan r", "-texres 512"}) {
+    EXPECT_EQ(ignored(options), 1u) << options;
+  }
+  EXPECT_EQ(ignored("-clamp on -mm 1 1 -blendu off"), 2u);
+}
+
 // A file of several pieces, with every trap at piece borders, against a reader of ten lines.
 std::string large_obj(std::vector<std::array<double, 3>>& vertices,
                       std::vector<std::array<long, 3>>& faces) {
@@ -202,11 +229,12 @@ std::string large_obj(std::vector<std::array<double, 3>>& vertices,
       const double x = double(random() % 100000) / 1000, y = double(random() % 1000), z = n;
       vertices.push_back({x, y, z});
       text += fmt::format("v {} {} \\\n{}{}", x, y, z, n % 3 == 0 ? "\r\n" : "\n");
+      text += fmt::format("vt {} {}\n", n % 1000, y);
     }
     const long a = n - long(random() % 4), b = -1 - long(random() % 4);
     const long c = 1 + long(random() % n);
     faces.push_back({a - 1, n + b, c - 1});
-    text += fmt::format("f {} \\\r\n{} {}\n", a, b, c);
+    text += fmt::format("f {0}/{0} \\\r\n{1}/{1} {2}/{2}\n", a, b, c);
   }
   return text;
 }
@@ -232,8 +260,12 @@ TEST(Obj, PiecesGiveWhatOneReaderGives) {
         << i;
   }
   for (std::size_t i = 0; i < faces.size() * 3; ++i) {
-    ASSERT_EQ(long(a->scene.indices[i]), faces[i / 3][i % 3]) << i;
+    const long v = faces[i / 3][i % 3];
+    ASSERT_EQ(long(a->scene.indices[i]), v) << i;
+    const Vec2f uv = a->scene.texcoords[a->scene.texcoord_indices[i]];
+    ASSERT_EQ(uv, (Vec2f{float(v % 1000), float(vertices[std::size_t(v)][1])})) << i;
   }
+  EXPECT_EQ(a->scene.texcoord_indices, b->scene.texcoord_indices);
   EXPECT_EQ(a->scene.positions, b->scene.positions);
   EXPECT_EQ(a->scene.indices, b->scene.indices);
 }

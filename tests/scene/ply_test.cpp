@@ -165,6 +165,38 @@ TEST_P(PlyFormats, RandomDamageNeverCrashes) {
   EXPECT_GT(survived, 0);
 }
 
+// As MeshLab writes textures: a comment for each, and a number in each face.
+TEST(Ply, TexturesAreNamedInComments) {
+  const TempFolder folder;
+  const auto path =
+      folder.write("t.ply",
+                   "ply\nformat ascii 1.0\ncomment TextureFile a b.png\ncomment TextureFile c.png\n"
+                   "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                   "property float illuminance\n"
+                   "element face 4\nproperty list uchar int vertex_indices\n"
+                   "property list uchar float texcoord\nproperty int texnumber\nend_header\n"
+                   "0 0 0 1\n1 0 0 2\n0 1 nan 3\n"
+                   "3 0 1 1 6 0 0 1 0 0.5 1 1\n3 0 1 0 6 0 0 1 0 0 1 0\n3 0 0 1 6 0 0 1 0 0 1 7\n"
+                   "3 0 1 2 6 0 0 1 0 0 1 0\n");
+  const auto loaded = read_scene(path, {}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  const Scene& s = loaded->scene;
+  ASSERT_EQ(s.triangle_count(), 3u);
+  ASSERT_EQ(s.materials.size(), 2u);
+  EXPECT_EQ(s.materials[s.triangle_material[0]].name, "c.png");
+  EXPECT_EQ(s.materials[s.triangle_material[1]].name, "a b.png");
+  EXPECT_EQ(s.triangle_material[2], s.triangle_material[1]);  // no texture has that number
+  EXPECT_EQ(s.texcoords[s.texcoord_indices[2]], (Vec2f{0.5f, 1}));
+  EXPECT_EQ(s.illumination[1], (Vec3f{2, 2, 2}));
+  EXPECT_EQ(loaded->defects.count(DefectKind::texture_missing), 2u);
+  EXPECT_EQ(loaded->defects.count(DefectKind::bad_position_used), 1u);
+  for (const Defect& d : loaded->defects.defects) {
+    if (d.kind == DefectKind::position_not_finite) {
+      EXPECT_EQ(d.first_places[0], path.string() + ":17");
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, PlyFormats,
                          ::testing::Values("ascii", "binary_little_endian", "binary_big_endian"));
 

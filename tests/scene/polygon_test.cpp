@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -78,6 +79,44 @@ TEST(Polygon, CombsSpiralsAndCollinearRuns) {
   }
   check(spiral, random);
   check({{0, 0}, {1, 0}, {2, 0}, {2, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}, random);
+}
+
+// A polygon with holes as one ring, cut open to each hole: the ends of a cut are there twice.
+TEST(Polygon, HolesThatCutsLeadTo) {
+  std::mt19937 random(3);
+  for (int holes = 1; holes <= 4; ++holes) {
+    std::vector<Vec2d> p;
+    for (int i = 0; i < holes; ++i) {
+      const double x = 3 * i;
+      p.insert(p.end(), {{x, 0},
+                         {x + 1, 0},
+                         {x + 1, 1},
+                         {x + 1, 2},
+                         {x + 2, 2},
+                         {x + 2, 1},
+                         {x + 1, 1},
+                         {x + 1, 0}});
+    }
+    p.insert(p.end(), {{3.0 * holes, 0}, {3.0 * holes, 4}, {0, 4}});
+    check(p, random);
+  }
+}
+
+// One dent in a round outline: the ears go round it, and no corner gets them all.
+TEST(Polygon, EarsAreNotAllAtOneCorner) {
+  constexpr int n = 96;
+  std::vector<Vec3d> corners;
+  for (int i = 0; i < n; ++i) {
+    const double r = i == 0 ? 0.9 : 1, a = 2 * M_PI * i / n;
+    corners.push_back({r * std::cos(a), r * std::sin(a), 0});
+  }
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  ASSERT_TRUE(triangulate(corners, triangles));
+  std::vector<int> at(n, 0);
+  for (const auto& t : triangles) {
+    for (const std::uint32_t v : t) ++at[v];
+  }
+  EXPECT_LE(*std::max_element(at.begin(), at.end()), 20);
 }
 
 TEST(Polygon, DegenerateOnesStillGiveTriangles) {

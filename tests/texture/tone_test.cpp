@@ -76,6 +76,57 @@ TEST(ToneMapping, FollowsThePublishedCurves) {
   }
 }
 
+// Drago et al. 2003, section 3.2: another bias changes what the eye has adapted to, too.
+TEST(ToneMapping, DragosBiasCorrectsTheAdaptation) {
+  for (const double bias : {0.6, 0.75, 0.95}) {
+    ToneOptions options;
+    options.bias = bias;
+    const ToneMapping drago = mapping(ToneOperator::drago, 1, options);
+    const double adaptation = 0.3 / std::pow(1 + bias - 0.85, 5), w = 10 / adaptation;
+    for (const double y : {0.01, 0.5, 4.0}) {
+      const double l = y / adaptation;
+      const double want = std::log(l + 1) / std::log10(w + 1) /
+                          std::log(2 + 8 * std::pow(l / w, std::log(bias) / std::log(0.5)));
+      const auto f = static_cast<float>(y);
+      EXPECT_NEAR(drago.map({f, f, f}).x, std::min(want, 1.0), 1e-5) << bias << ' ' << y;
+    }
+  }
+}
+
+// Reinhard and Devlin 2005, eq. 1 to 6 and section 3, with luminance in units of the log average
+// and scaled so that white is 1.
+TEST(ToneMapping, PhotoreceptorsFollowThePublishedModel) {
+  const double k = (std::log(5) - std::log(0.3)) / (std::log(5) - std::log(0.01));
+  const double automatic = 0.3 + 0.7 * std::pow(k, 1.4);
+  for (const double contrast : {0.0, 0.4, 1.0}) {
+    for (const double light : {0.0, 0.5, 1.0}) {
+      for (const double chromatic : {0.0, 0.3, 1.0}) {
+        ToneOptions options;
+        options.contrast = contrast;
+        options.light_adaptation = light;
+        options.chromatic_adaptation = chromatic;
+        const ToneMapping tone = mapping(ToneOperator::reinhard_devlin, 1, options);
+        const double m = contrast > 0 ? contrast : automatic;
+        const Vec3f colour{0.8f, 0.2f, 0.1f};
+        const double in[3] = {0.8 / 0.3, 0.2 / 0.3, 0.1 / 0.3};
+        const double y = 0.2126 * in[0] + 0.7152 * in[1] + 0.0722 * in[2];
+        const Vec3f mapped = tone.map(colour);
+        const float got[3] = {mapped.x, mapped.y, mapped.z};
+        // Of grey, which adapts to itself and to the mean of 0.5.
+        const double mean = chromatic * 0.5 / 0.3 + (1 - chromatic), white = 10 / 0.3;
+        const double at_white = white / (white + std::pow(light * white + (1 - light), m));
+        for (int c = 0; c < 3; ++c) {
+          const double local = chromatic * in[c] + (1 - chromatic) * y;
+          const double adaptation = light * local + (1 - light) * mean;
+          const double want = in[c] / (in[c] + std::pow(adaptation, m)) / at_white;
+          EXPECT_NEAR(got[c], std::min(want, 1.0), 1e-5)
+              << contrast << ' ' << light << ' ' << chromatic;
+        }
+      }
+    }
+  }
+}
+
 TEST(ToneMapping, DoesNotDependOnTheUnitOfLuminance) {
   for (const ToneOperator op : kAll) {
     const ToneMapping one = mapping(op, 1);

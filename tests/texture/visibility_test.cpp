@@ -1,0 +1,117 @@
+// What is seen from where people stand, against a room whose walls are known.
+#include "libatlas/texture/visibility.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+
+namespace atlas {
+namespace {
+
+using Size = std::array<double, 3>;
+
+double uniform(std::mt19937_64& random) {
+  return static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+// The walls of a room from 0 to `size`, sampled evenly; those across the x axis have the value 9,
+// the others 1.
+std::vector<SurfaceSample> room(const Size& size, std::size_t samples, double& area) {
+  std::mt19937_64 random(3);
+  std::array<double, 3> pair{};
+  for (int k = 0; k < 3; ++k) pair[k] = 2 * size[(k + 1) % 3] * size[(k + 2) % 3];
+  area = pair[0] + pair[1] + pair[2];
+  std::vector<SurfaceSample> out;
+  for (int k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < std::size_t(double(samples) * pair[k] / area); ++i) {
+      double p[3];
+      for (int c = 0; c < 3; ++c) p[c] = size[c] * uniform(random);
+      p[k] = i % 2 ? size[k] : 0;
+      out.push_back({{float(p[0]), float(p[1]), float(p[2])}, k == 0 ? 9.0f : 1.0f});
+    }
+  }
+  return out;
+}
+
+std::array<double, 3> direction(std::mt19937_64& random) {
+  const double z = 2 * uniform(random) - 1, phi = 2 * M_PI * uniform(random);
+  const double s = std::sqrt(1 - z * z);
+  return {s * std::cos(phi), s * std::sin(phi), z};
+}
+
+// Where a ray leaves the room: how far, and through which pair of walls.
+double leaves(const Size& size, const Size& from, const Size& d, int& wall) {
+  double nearest = 1e30;
+  for (int k = 0; k < 3; ++k) {
+    const double t = d[k] > 0 ? (size[k] - from[k]) / d[k] : from[k] / -d[k];
+    if (t < nearest) nearest = t, wall = k;
+  }
+  return nearest;
+}
+
+// The share of sightings that end on the walls across x, by rays that meet planes.
+double share_by_planes(const Size& size) {
+  std::mt19937_64 random(11);
+  std::size_t across = 0, all = 0;
+  for (int i = 0; i < 20000; ++i) {
+    Size from, gaze{};
+    for (int k = 0; k < 3; ++k) from[k] = size[k] * uniform(random);
+    double far = -1;
+    int wall = 0;
+    for (int r = 0; r < 16; ++r) {
+      const Size d = direction(random);
+      const double distance = leaves(size, from, d, wall);
+      if (distance > far) far = distance, gaze = d;
+    }
+    for (int r = 0; r < 4;) {
+      const Size d = direction(random);
+      if (d[0] * gaze[0] + d[1] * gaze[1] + d[2] * gaze[2] < 0.64) continue;
+      leaves(size, from, d, wall);
+      across += wall == 0;
+      ++all;
+      ++r;
+    }
+  }
+  return double(across) / double(all);
+}
+
+TEST(Visibility, PeopleLookAlongTheLongestLineOfSight) {
+  for (const Size& size : {Size{16, 3, 3}, Size{4, 4, 4}, Size{2, 9, 9}}) {
+    double area = 0;
+    const auto samples = room(size, 1 << 17, area);
+    const std::vector<float> seen = seen_values(samples, area);
+    const auto across = std::count(seen.begin(), seen.end(), 9.0f);
+    EXPECT_NEAR(double(across) / double(seen.size()), share_by_planes(size), 0.03) << size[0];
+    // Walls are closed: hardly a point is taken for one outside, hardly a ray gets through.
+    EXPECT_GT(seen.size(), 150'000u);
+  }
+}
+
+// Two walls far from each other enclose nothing, though each is met by rays.
+TEST(Visibility, WhoSeesLittleStandsOutside) {
+  std::mt19937_64 random(5);
+  std::vector<SurfaceSample> samples;
+  for (int i = 0; i < 20000; ++i) {
+    samples.push_back(
+        {{i % 2 ? 10.0f : 0.0f, float(3 * uniform(random)), float(3 * uniform(random))}, 1});
+  }
+  EXPECT_LT(seen_values(samples, 18).size(), 4096u);
+  EXPECT_TRUE(seen_values({}, 1).empty());
+  EXPECT_TRUE(seen_values(samples, 0).empty());
+}
+
+// Black is no light: it is met, and left out.
+TEST(Visibility, UnlitWallsAreSeenAsNothing) {
+  double area = 0;
+  auto samples = room({5, 5, 5}, 1 << 16, area);
+  for (SurfaceSample& s : samples) s.value = s.value == 9 ? 0.0f : 2.0f;
+  const std::vector<float> seen = seen_values(samples, area);
+  EXPECT_GT(seen.size(), 80'000u);
+  EXPECT_EQ(std::count(seen.begin(), seen.end(), 2.0f), std::ptrdiff_t(seen.size()));
+}
+
+}  // namespace
+}  // namespace atlas
