@@ -83,6 +83,42 @@ TEST(Fidelity, MeasuresAKnownErrorExactly) {
   EXPECT_NEAR(f.rmse_display, 20 / 255.0 / std::sqrt(3.0), 0.001);
 }
 
+// An error in a corner of two large triangles weighs as its area does: samples are even over a
+// triangle, not only over the mesh.
+TEST(Fidelity, WeighsAPartOfATriangleByItsArea) {
+  LitShape shape = make_sheet({1, 1, 1, 1}, [](double, double) { return shown(0.5); });
+  const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+  const ChartLight light{sampler, shape.charts, kPlain};
+  const std::vector<ChartPlacement> placements{place(shape.charts, 0, {96, 96}, {4, 4, 0, 0})};
+  const auto baked = bake_page(light, placements, small_page(128), Context{});
+  ASSERT_TRUE(baked.ok());
+  const auto square_error = [&](auto inside) {
+    Image8 page = baked->display;
+    for (int y = 0; y < 128; ++y)
+      for (int x = 0; x < 128; ++x)
+        if (inside(x - 4, y - 4))
+          for (int k = 0; k < 3; ++k)
+            page.at(x, y)[k] = static_cast<std::uint8_t>(page.at(x, y)[k] + 50);
+    FidelityMeter meter(light, placements, {});
+    meter.add_page(0, page);
+    const double rmse = meter.result().rmse_display;
+    return rmse * rmse;
+  };
+  const double whole = square_error([](int, int) { return true; });
+  for (const int side : {24, 48}) {
+    const double share = side * side / (96.0 * 96.0);
+    for (int corner = 0; corner < 4; ++corner) {
+      const double part = square_error([&](int x, int y) {
+        if (corner & 1) x = 95 - x;
+        if (corner & 2) y = 95 - y;
+        return x < side && y < side;
+      });
+      // The look-ups blur the border of the square: about a fiftieth.
+      EXPECT_NEAR(part / whole, share, 0.03 * share + 0.002) << side << ' ' << corner;
+    }
+  }
+}
+
 TEST(Fidelity, DoesNotDependOnTheOrderOfPagesAndRepeats) {
   const auto s = two_pages();
   const std::vector<Image8> pages = bake_pages(*s);

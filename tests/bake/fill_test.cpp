@@ -37,6 +37,34 @@ TEST(FillUnknown, KeepsWhatIsKnownAndStaysBetweenItsExtremes) {
   }
 }
 
+// No direction is preferred: what is filled in a mirrored grid is the mirror image, where sides are
+// powers of two, so that levels are halved alike from both ends.
+TEST(FillUnknown, MirrorsWhatIsMirrored) {
+  std::mt19937 random(4);
+  constexpr int w = 64, h = 32;
+  for (int trial = 0; trial < 8; ++trial) {
+    TexelGrid grid(w, h), across(w, h), turned(h, w);
+    for (int k = 0; k < 40; ++k) {
+      const int x = int(random() % w), y = int(random() % h);
+      const Lanes value = splat_lanes(static_cast<float>(random() % 100) / 100);
+      const auto put = [&](TexelGrid& to, int i, int j) {
+        to.known[std::size_t(j) * to.width + i] = 1;
+        to.rgb[std::size_t(j) * to.width + i] = value;
+      };
+      put(grid, x, y);
+      put(across, w - 1 - x, h - 1 - y);
+      put(turned, y, x);
+    }
+    for (TexelGrid* g : {&grid, &across, &turned}) fill_unknown(*g);
+    for (int y = 0; y < h; ++y)
+      for (int x = 0; x < w; ++x) {
+        const float v = grid.rgb[std::size_t(y) * w + x][0];
+        ASSERT_NEAR(v, across.rgb[std::size_t(h - 1 - y) * w + (w - 1 - x)][0], 1e-5);
+        ASSERT_NEAR(v, turned.rgb[std::size_t(x) * h + y][0], 1e-5);
+      }
+  }
+}
+
 TEST(FillUnknown, GoesSmoothlyFromOneSideToTheOther) {
   TexelGrid grid(64, 8);
   for (int y = 0; y < 8; ++y)

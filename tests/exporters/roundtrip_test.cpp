@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 
 #include "libatlas/exporters/viewpoint.h"
@@ -108,6 +111,44 @@ TEST(GltfWorld, ReadsBackInMetresAndYUp) {
       }
     }
     EXPECT_EQ(k, corners.size());
+  }
+}
+
+// What the standard asks for beyond what readers here notice: data begins at multiples of its
+// components' size, wherever an image of any length precedes it, and the far plane is in metres.
+TEST(GltfWorld, DataIsAlignedAndTheFarPlaneIsInMetres) {
+  for (const double metres : {0.01, 1.0, 1000.0}) {
+    const TempFolder folder;
+    World world = wavy_world(9, 4);
+    world.metres_per_unit = metres;
+    std::set<std::size_t> rests;  // of the images' lengths
+    for (int i = 0; i < 4; ++i) {
+      Page& page = world.pages[std::size_t(i)];
+      const auto path = page.image_source = folder / page.image;
+      ASSERT_TRUE(write_png(path, Image8(5 + 3 * i, 7, 3, std::uint8_t(40 * i)), {}).ok());
+      rests.insert(TempFolder::read(path).size() % 4);
+    }
+    EXPECT_GT(rests.size(), 1u);
+    AtomicFiles files;
+    ASSERT_TRUE(write_gltf(world, folder / "w.glb", files, {}).ok());
+    ASSERT_TRUE(files.commit().ok());
+    const std::string bytes = TempFolder::read(folder / "w.glb");
+    std::uint32_t length = 0;
+    std::memcpy(&length, bytes.data() + 12, 4);
+    const auto document = nlohmann::json::parse(bytes.substr(20, length));
+    EXPECT_EQ(document["images"].size(), 4u);
+    for (const auto& accessor : document["accessors"]) {
+      const auto& view = document["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+      EXPECT_EQ(view["byteOffset"].get<std::size_t>() % 4, 0u);
+    }
+    double farthest = 0;
+    for (const Vec3f& p : world.positions) {
+      const Vec3d& eye = world.viewpoint.position;
+      farthest = std::max(farthest, std::hypot(p.x - eye.x, p.y - eye.y, p.z - eye.z));
+    }
+    const auto& lens = document["cameras"][0]["perspective"];
+    EXPECT_NEAR(lens["zfar"].get<double>() / (farthest * metres), 4, 1e-6);
+    EXPECT_LT(lens["znear"].get<double>(), 1e-3 * lens["zfar"].get<double>());
   }
 }
 
@@ -303,6 +344,25 @@ TEST(ViewpointChoice, IsHeldByFormatsThatSaySo) {
     EXPECT_EQ(bytes[0] != bytes[1], holds_viewpoint(name)) << name;
   }
   EXPECT_FALSE(holds_viewpoint("w.stl"));
+}
+
+// Comments end with their line: what was asked for as one, with breaks of any system, stays one.
+TEST(ObjWorld, CommentsStayOnTheirLines) {
+  const TempFolder folder;
+  World world = wavy_world(4, 1);
+  world.pages[0].image.clear();
+  world.title = "a title\nf 1 1 1\r\nv 0 0 nan\rmore \\";
+  world.info = {"one\rtwo", "ends in \\", "three\nv 1 2"};
+  AtomicFiles files;
+  ASSERT_TRUE(write_obj(world, folder / "w.obj", files, {}).ok());
+  ASSERT_TRUE(files.commit().ok());
+  const std::string text = TempFolder::read(folder / "w.obj");
+  EXPECT_EQ(text.find('\r'), std::string::npos);
+  EXPECT_EQ(text.find('\\'), std::string::npos);
+  const auto loaded = read_scene(folder / "w.obj", {}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_TRUE(loaded->defects.empty());
+  EXPECT_EQ(loaded->scene.triangle_count(), world.pages[0].indices.size() / 3);
 }
 
 }  // namespace

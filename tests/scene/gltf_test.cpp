@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,78 +8,17 @@
 
 #include "libatlas/image/image_io.h"
 #include "libatlas/scene/reader.h"
+#include "tests/scene/gltf_maker.h"
 #include "tests/scene/temp_folder.h"
 
 namespace atlas {
 namespace {
 
-using nlohmann::json;
+using test::Gltf;
+using test::json;
+using test::kSquare;
+using test::load_glb;
 using test::TempFolder;
-
-// A glTF file in the making: binary data with a view and an accessor for each array.
-struct Gltf {
-  json j = {{"asset", {{"version", "2.0"}}}};
-  std::string bytes;
-
-  template <class T>
-  int view(const std::vector<T>& values, int stride = 0) {
-    while (bytes.size() % 4 != 0) bytes += '\0';
-    json v = {
-        {"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", values.size() * sizeof(T)}};
-    if (stride != 0) v["byteStride"] = stride;
-    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-    j["bufferViews"].push_back(v);
-    return int(j["bufferViews"].size()) - 1;
-  }
-  int accessor(json a) {
-    j["accessors"].push_back(std::move(a));
-    return int(j["accessors"].size()) - 1;
-  }
-  int floats(const std::vector<float>& values, const char* type, int components) {
-    return accessor({{"bufferView", view(values)},
-                     {"componentType", 5126},
-                     {"type", type},
-                     {"count", values.size() / components}});
-  }
-  template <class T>
-  int indices(const std::vector<T>& values) {
-    const int type = sizeof(T) == 1 ? 5121 : sizeof(T) == 2 ? 5123 : 5125;
-    return accessor({{"bufferView", view(values)},
-                     {"componentType", type},
-                     {"type", "SCALAR"},
-                     {"count", values.size()}});
-  }
-  // One mesh with one primitive, under one node.
-  void single(json primitive, json node = json::object()) {
-    j["meshes"] = json::array({{{"primitives", json::array({std::move(primitive)})}}});
-    node["mesh"] = 0;
-    j["nodes"] = json::array({std::move(node)});
-    j["scenes"] = json::array({{{"nodes", {0}}}});
-    j["scene"] = 0;
-  }
-  std::string glb() const {
-    json with_buffer = j;
-    std::string binary = bytes;
-    binary.resize((binary.size() + 3) / 4 * 4);
-    if (!bytes.empty()) with_buffer["buffers"] = json::array({{{"byteLength", bytes.size()}}});
-    std::string text = with_buffer.dump();
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    const auto word = [](std::size_t v) {
-      std::string s(4, '\0');
-      const auto bits = std::uint32_t(v);
-      std::memcpy(s.data(), &bits, 4);
-      return s;
-    };
-    return "glTF" + word(2) + word(28 + text.size() + binary.size()) + word(text.size()) + "JSON" +
-           text + word(binary.size()) + std::string("BIN\0", 4) + binary;
-  }
-};
-
-Result<LoadedScene> load(const TempFolder& folder, const Gltf& gltf) {
-  return read_scene(folder.write("scene.glb", gltf.glb()), {}, {});
-}
-
-const std::vector<float> kSquare{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
 
 TEST(Gltf, TransformsColoursAndFlippedV) {
   const TempFolder folder;
@@ -102,7 +40,7 @@ TEST(Gltf, TransformsColoursAndFlippedV) {
   g.j["nodes"][0]["scale"] = {2, 2, 2};
   g.j["nodes"].push_back({{"children", {0}}, {"scale", {-1, 1, 1}}, {"translation", {10, 20, 30}}});
   g.j["scenes"][0]["nodes"] = {1};
-  const auto loaded = load(folder, g);
+  const auto loaded = load_glb(folder, g);
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   const Scene& s = loaded->scene;
   ASSERT_EQ(s.positions.size(), 4u);
@@ -149,7 +87,7 @@ TEST(Gltf, NormalisedStridedAndSparseData) {
                                   {"count", 4}});
   g.single({{"attributes", {{"POSITION", positions}, {"COLOR_0", colours}}},
             {"indices", g.indices(std::vector<std::uint8_t>{0, 1, 2})}});
-  const auto loaded = load(folder, g);
+  const auto loaded = load_glb(folder, g);
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   EXPECT_EQ(loaded->scene.positions[2], (Vec3f{1, 1, 5}));
   EXPECT_EQ(loaded->scene.positions[1], (Vec3f{1, 0, 0}));
@@ -164,7 +102,7 @@ TEST(Gltf, StripsFansAndBareVertices) {
     json primitive = {{"attributes", {{"POSITION", positions}}}, {"mode", mode}};
     if (indexed) primitive["indices"] = g.indices(std::vector<std::uint32_t>{0, 2, 1, 3, 4});
     g.single(primitive);
-    const auto loaded = load(folder, g);
+    const auto loaded = load_glb(folder, g);
     return loaded.ok() ? loaded->scene.indices : std::vector<std::uint32_t>{};
   };
   EXPECT_EQ(indices_of(5, false), (std::vector<std::uint32_t>{0, 1, 2, 2, 1, 3, 2, 3, 4}));
@@ -202,7 +140,7 @@ TEST(Gltf, EmbeddedAndExternalTextures) {
   }
   g.single(primitives[0]);
   g.j["meshes"][0]["primitives"] = primitives;
-  const auto loaded = load(folder, g);
+  const auto loaded = load_glb(folder, g);
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   const Scene& s = loaded->scene;
   EXPECT_EQ(s.positions.size(), 4u);  // shared by the primitives
@@ -215,123 +153,6 @@ TEST(Gltf, EmbeddedAndExternalTextures) {
   // -3.25).
   EXPECT_EQ(s.texcoords[s.texcoord_indices[3]], (Vec2f{0.5f, 0.75f}));
   EXPECT_EQ(s.texcoords[s.texcoord_indices[5]], (Vec2f{2.5f, -3.25f}));
-}
-
-// The same transform as numbers, as a matrix, and of a node above; a file without scenes shows all
-// nodes that are nobody's children.
-TEST(Gltf, MatricesAndScenesThatAreNotNamed) {
-  const TempFolder folder;
-  const auto positions_of = [&](const std::function<void(json&)>& arrange) {
-    Gltf g;
-    const int positions = g.floats(kSquare, "VEC3", 3);
-    g.single({{"attributes", {{"POSITION", positions}}},
-              {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3})}});
-    arrange(g.j);
-    const auto loaded = load(folder, g);
-    EXPECT_TRUE(loaded.ok()) << loaded.status().message();
-    EXPECT_EQ(loaded->scene.triangle_count(), 2u);
-    return loaded->scene.positions;
-  };
-  const auto wanted = positions_of([](json& j) {
-    j["nodes"][0]["rotation"] = {0, 0, std::sqrt(0.5), std::sqrt(0.5)};
-    j["nodes"][0]["scale"] = {2, 3, 4};
-    j["nodes"][0]["translation"] = {0.25, 0.5, 0.75};
-  });
-  const json matrix = {0, 2, 0, 0, -3, 0, 0, 0, 0, 0, 4, 0, 0.25, 0.5, 0.75, 1};
-  const auto expect_same = [&](const std::vector<Vec3f>& got) {
-    ASSERT_EQ(got.size(), wanted.size());
-    for (std::size_t i = 0; i < got.size(); ++i) {
-      EXPECT_NEAR(got[i].x, wanted[i].x, 1e-6);
-      EXPECT_NEAR(got[i].y, wanted[i].y, 1e-6);
-      EXPECT_NEAR(got[i].z, wanted[i].z, 1e-6);
-    }
-  };
-  expect_same(positions_of([&](json& j) { j["nodes"][0]["matrix"] = matrix; }));
-  expect_same(positions_of([&](json& j) {
-    j["nodes"].push_back({{"children", {0}}, {"matrix", matrix}});
-    j.erase("scenes");
-    j.erase("scene");
-  }));
-}
-
-// KHR_mesh_quantization: the most negative whole number is -1 as well.
-TEST(Gltf, ShortPositionsAreFractions) {
-  const TempFolder folder;
-  for (const bool normalized : {false, true}) {
-    Gltf g;
-    const int view =
-        g.view(std::vector<std::int16_t>{0, 0, 0, 0, 32767, 0, 0, 0, -32768, -32767, 0, 0}, 8);
-    const int positions = g.accessor({{"bufferView", view},
-                                      {"componentType", 5122},
-                                      {"normalized", normalized},
-                                      {"type", "VEC3"},
-                                      {"count", 3}});
-    g.j["extensionsRequired"] = {"KHR_mesh_quantization"};
-    g.single({{"attributes", {{"POSITION", positions}}}});
-    const auto loaded = load(folder, g);
-    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
-    const auto& p = loaded->scene.positions;
-    EXPECT_EQ(p[1], normalized ? (Vec3f{1, 0, 0}) : (Vec3f{32767, 0, 0}));
-    EXPECT_EQ(p[2], normalized ? (Vec3f{-1, -1, 0}) : (Vec3f{-32768, -32767, 0}));
-  }
-}
-
-// Two primitives: the first is lit and its texture coordinates are one short, the second has
-// neither light nor trouble.
-TEST(Gltf, WhatOnlySomePrimitivesHave) {
-  const TempFolder folder;
-  Gltf g;
-  const int first = g.floats(kSquare, "VEC3", 3), second = g.floats(kSquare, "VEC3", 3);
-  const int light = g.floats(kSquare, "VEC3", 3);
-  const int three = g.floats({0, 0, 1, 0, 1, 1}, "VEC2", 2);
-  const int four = g.floats({.5f, .5f, 1, 0, 1, 1, 0, 1}, "VEC2", 2);
-  const int indices = g.indices(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3});
-  g.single({{"attributes", {{"POSITION", first}, {"COLOR_0", light}, {"TEXCOORD_0", three}}},
-            {"indices", indices}});
-  g.j["meshes"][0]["primitives"].push_back(
-      {{"attributes", {{"POSITION", second}, {"TEXCOORD_0", four}}}, {"indices", indices}});
-  const auto loaded = load(folder, g);
-  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
-  const Scene& s = loaded->scene;
-  ASSERT_EQ(s.illumination.size(), 8u);
-  EXPECT_EQ(s.illumination[2], (Vec3f{1, 1, 0}));
-  EXPECT_EQ(s.illumination[6], Vec3f{});
-  EXPECT_EQ(loaded->defects.count(DefectKind::illumination_missing), 4u);
-  EXPECT_EQ(loaded->defects.count(DefectKind::texcoord_out_of_range), 1u);
-  EXPECT_EQ(s.texcoord_indices[4], Scene::kNoTexcoord);
-  EXPECT_EQ(s.texcoords[s.texcoord_indices[0]], (Vec2f{0, 1}));
-  EXPECT_EQ(s.texcoords[s.texcoord_indices[9]], (Vec2f{.5f, .5f}));
-}
-
-TEST(Gltf, TexturesMayNameASetAndATurn) {
-  const TempFolder folder;
-  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());
-  Gltf g;
-  const int positions = g.floats(kSquare, "VEC3", 3);
-  const int zero = g.floats(std::vector<float>(8, 0), "VEC2", 2);
-  const int one = g.floats({1, 1, 2, 1, 2, 2, 1, 2}, "VEC2", 2);
-  const int two = g.floats({3, 1, 4, 1, 4, 2, 3, 2}, "VEC2", 2);
-  const json attributes = {
-      {"POSITION", positions}, {"TEXCOORD_0", zero}, {"TEXCOORD_1", one}, {"TEXCOORD_2", two}};
-  g.j["images"] = {{{"uri", "a.png"}}};
-  g.j["textures"] = {{{"source", 0}}};
-  json primitives;
-  for (int m = 0; m < 2; ++m) {
-    json info = {{"index", 0}, {"texCoord", 1}};
-    if (m == 1) info["extensions"]["KHR_texture_transform"] = {{"texCoord", 2}, {"rotation", 0.5}};
-    g.j["materials"].push_back({{"pbrMetallicRoughness", {{"baseColorTexture", info}}}});
-    primitives.push_back({{"attributes", attributes},
-                          {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})},
-                          {"material", m}});
-  }
-  g.single(primitives[0]);
-  g.j["meshes"][0]["primitives"] = primitives;
-  const auto loaded = load(folder, g);
-  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
-  const Scene& s = loaded->scene;
-  EXPECT_EQ(s.texcoords[s.texcoord_indices[1]], (Vec2f{2, 0}));
-  EXPECT_EQ(s.texcoords[s.texcoord_indices[4]], (Vec2f{4, 0}));
-  EXPECT_EQ(loaded->defects.count(DefectKind::texture_option_ignored), 1u);
 }
 
 json& sparse(json& j) {
@@ -396,9 +217,9 @@ TEST(Gltf, RangesAreChecked) {
     sparse(g.j) = {{"count", 1},
                    {"indices", {{"bufferView", at}, {"componentType", 5125}}},
                    {"values", {{"bufferView", 0}}}};
-    ASSERT_TRUE(load(folder, g).ok());
+    ASSERT_TRUE(load_glb(folder, g).ok());
     damage.apply(g.j);
-    const auto loaded = load(folder, g);
+    const auto loaded = load_glb(folder, g);
     ASSERT_FALSE(loaded.ok()) << damage.name;
     EXPECT_NE(loaded.status().message().find("scene.glb"), std::string::npos) << damage.name;
   }
@@ -407,7 +228,7 @@ TEST(Gltf, RangesAreChecked) {
   g.single(
       {{"attributes", {{"POSITION", positions}}},
        {"indices", g.indices(std::vector<std::uint32_t>{0, 1, 2, 0, 2, 4, 0, 4000000000u, 3})}});
-  const auto partly = load(folder, g);
+  const auto partly = load_glb(folder, g);
   ASSERT_TRUE(partly.ok());
   EXPECT_EQ(partly->scene.triangle_count(), 1u);
   EXPECT_EQ(partly->defects.count(DefectKind::index_out_of_range), 2u);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <random>
+#include <set>
 
 #include "libatlas/shadow/fit.h"
 
@@ -100,6 +101,43 @@ TEST(Fit, AMovingCameraMovesTheMapByWholeTexels) {
     for (double y1 : {0.0, 10.0}) {
       const Vec3d v = transform_point(fit.to_texture, {-50, y1, 50});
       EXPECT_TRUE(v.z >= 0 && v.z <= 1);
+    }
+  }
+}
+
+// Zooming changes the map's size in few steps, each by a tenth at most, and it is never too small.
+TEST(Fit, AZoomingCameraChangesTheTexelInSmallSteps) {
+  const Box3 box{{-500, 0, -500}, {500, 10, 500}};
+  std::set<double> sizes;
+  for (double reach = 1; reach < 64; reach *= 1.003) {
+    FitOptions o;
+    o.view = true;
+    for (int c = 0; c < 8; ++c)
+      o.view_corners[c] = {c & 1 ? reach : -reach, c & 2 ? reach : -reach, c & 4 ? reach : -reach};
+    const double snapped = fit_light({0.3, 1, 0.4}, box, o)->texel;
+    o.snap = false;
+    const double needed = fit_light({0.3, 1, 0.4}, box, o)->texel;
+    EXPECT_GE(snapped, needed * (1 - 1e-12));
+    EXPECT_LE(snapped, needed * 1.0906);
+    sizes.insert(snapped);
+  }
+  EXPECT_LE(sizes.size(), 6 * 8 + 1u);  // six octaves
+  EXPECT_GE(sizes.size(), 6 * 8 - 1u);
+}
+
+// A view of a part of the scene: what lies beside it, but before the light, still casts.
+TEST(Fit, ASmallViewKeepsTheDepthOfTheWholeScene) {
+  const Box3 box{{-50, 0, -50}, {50, 80, 50}};
+  FitOptions o;
+  o.view = true;
+  for (int c = 0; c < 8; ++c)
+    o.view_corners[c] = {c & 1 ? 1.0 : -1.0, c & 2 ? 1.0 : 0.0, c & 4 ? 1.0 : -1.0};
+  for (const Vec3d& light : {Vec3d{0, 1, 0}, Vec3d{1, 1, 0}, Vec3d{-0.2, 0.1, 1}}) {
+    const LightFit fit = *fit_light(light, box, o);
+    for (int c = 0; c < 8; ++c) {
+      const Vec3d corner{c & 1 ? 50.0 : -50.0, c & 2 ? 80.0 : 0.0, c & 4 ? 50.0 : -50.0};
+      const double depth = transform_point(fit.to_texture, corner).z;
+      EXPECT_TRUE(depth >= 0 && depth <= 1) << depth;
     }
   }
 }
