@@ -1,6 +1,7 @@
 #include "libatlas/pack/bit_page.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace atlas::pack {
 namespace {
@@ -22,25 +23,67 @@ int class_of(std::int32_t length) {
 }
 
 RowTest row_test(const Mask& mask, std::int32_t r) {
-  const std::int32_t longest = longest_in(mask, r);
-  return {r, longest, class_of(longest)};
+  return {r, class_of(longest_in(mask, r))};
+}
+
+// A run of length L at x is free if two bits are set: see BitPage.
+void add_probes(const Mask& mask, std::int32_t r, std::vector<Probe>& probes) {
+  for (const Run& run : mask.row(r)) {
+    const int level = level_of(run.end - run.begin);
+    const std::int32_t offsets[2] = {run.begin, run.end - (1 << level)};
+    for (int side = 0; side < 1 + (offsets[1] != offsets[0]); ++side)
+      probes.push_back(
+          {r, static_cast<std::uint32_t>(level), static_cast<std::uint32_t>(offsets[side])});
+  }
+}
+
+// Words a row: as many as a page of that width needs, or the next number that has code of its own.
+// Those beyond the width are never free.
+std::size_t words_of(std::int32_t width) {
+  const std::size_t words = (static_cast<std::size_t>(width) + 63) / 64;
+  return words <= 2 ? 2 : words > 4 && words < 8 ? 8 : words;
+}
+
+// Calls each(integral_constant) for 0 .. kCount - 1: a loop without a counter, whose arrays may
+// live in registers.
+template <std::size_t kCount, class Each>
+void unrolled(Each each) {
+  [&]<std::size_t... k>(std::index_sequence<k...>) {
+    (each(std::integral_constant<std::size_t, k>()), ...);
+  }
+  (std::make_index_sequence<kCount>());
+}
+
+// Word w of a row moved down by `shift` cells, below 64.
+inline std::uint64_t shifted(const std::uint64_t* bits, std::size_t w, unsigned shift) {
+  return bits[w] >> shift | bits[w + 1] << 1 << (63 - shift);
 }
 
 }  // namespace
 
-std::vector<RowTest> test_order(const Mask& mask) {
-  if (mask.height == 0) return {};
-  std::vector<RowTest> tests{row_test(mask, 0)};
+MaskTests test_order(const Mask& mask) {
+  MaskTests tests;
+  tests.width = mask.width;
+  tests.height = mask.height;
+  if (mask.height == 0) return tests;
+  std::vector<RowTest>& rows = tests.rows;
+  rows.reserve(static_cast<std::size_t>(mask.height));
+  rows.push_back(row_test(mask, 0));
+  std::int32_t longest = longest_in(mask, 0);
   for (std::int32_t r = 1; r < mask.height; ++r)
-    if (longest_in(mask, r) > tests[0].longest) tests[0] = row_test(mask, r);
+    if (const std::int32_t here = longest_in(mask, r); here > longest) {
+      longest = here;
+      rows[0] = row_test(mask, r);
+    }
   // Bit-reversed counting visits halves, quarters, eighths, ...
   const int bits = std::bit_width(static_cast<std::uint32_t>(mask.height));
   std::int32_t row = 0;
   for (std::uint32_t k = 0; k < 1u << bits; ++k) {
-    if (row < mask.height && row != tests[0].row) tests.push_back(row_test(mask, row));
+    if (row < mask.height && row != rows[0].row) rows.push_back(row_test(mask, row));
     for (int b = bits - 1; b >= 0 && ((row ^= 1 << b) >> b & 1) == 0; --b) {
     }
   }
+  for (const RowTest& test : rows) add_probes(mask, test.row, tests.probes);
   return tests;
 }
 
@@ -48,7 +91,7 @@ BitPage::BitPage(std::int32_t width, std::int32_t height, std::int32_t longest_r
     : width_(width),
       height_(height),
       levels_(level_of(std::max(1, std::min(width, longest_run))) + 1),
-      words_((static_cast<std::size_t>(width) + 63) / 64),
+      words_(words_of(width)),
       stride_(words_ + 1),
       classes_(static_cast<std::size_t>(class_of(std::max(1, width))) + 1),
       candidates_(words_) {
@@ -62,14 +105,16 @@ BitPage::BitPage(std::int32_t width, std::int32_t height, std::int32_t longest_r
 void BitPage::clear() {
   rows_ = 0;
   used_height_ = 0;
-  bits_.clear();
   longest_.clear();
   long_rows_.clear();
 }
 
 void BitPage::grow(std::int32_t rows) {
   if (rows <= rows_) return;
-  for (; rows_ < rows; ++rows_) bits_.insert(bits_.end(), empty_.begin(), empty_.end());
+  // Rows of cleared pages are used again. Shifted reads may go beyond the last one.
+  const std::size_t needed = static_cast<std::size_t>(rows) * empty_.size() + 2 * stride_;
+  if (bits_.size() < needed) bits_.resize(needed);
+  for (; rows_ < rows; ++rows_) std::copy(empty_.begin(), empty_.end(), row(0, rows_));
   longest_.resize(static_cast<std::size_t>(rows), width_);
   long_rows_.resize((static_cast<std::size_t>(rows) + 63) / 64 * classes_, ~std::uint64_t{0});
 }
@@ -84,39 +129,27 @@ void BitPage::set_longest(std::int32_t y, std::int32_t longest) {
   for (int c = before + 1; c <= now; ++c) words[c] |= bit;
 }
 
-// Narrows the candidates to those x where row r of the mask, put at page row y, is free. False if
-// none is left.
-bool BitPage::row_allows(const Mask& mask, std::int32_t r, std::int32_t y) {
-  for (const Run& run : mask.row(r)) {
-    const int level = level_of(run.end - run.begin);
-    const std::uint64_t* bits = row(level, y);
-    const std::int32_t offsets[2] = {run.begin, run.end - (1 << level)};
-    for (int side = 0; side < 1 + (offsets[1] != offsets[0]); ++side) {
-      const std::size_t skip = static_cast<std::size_t>(offsets[side]) / 64;
-      const unsigned shift = static_cast<unsigned>(offsets[side]) % 64;
-      const std::uint64_t* from = bits + skip;
-      std::uint64_t* to = candidates_.data();
-      std::uint64_t any = 0;
-      work_ += high_ - low_;
-      if (shift == 0) {
-        for (std::size_t w = low_; w < high_; ++w) any |= to[w] &= from[w];
-      } else {
-        for (std::size_t w = low_; w < high_; ++w)
-          any |= to[w] &= (from[w] >> shift) | (from[w + 1] << (64 - shift));
-      }
-      if (any == 0) return false;
-    }
+// Narrows the candidates to those x where a level has the bit x + offset. False if none is left.
+bool BitPage::narrows(const std::uint64_t* bits, std::uint32_t offset) {
+  const std::uint64_t* from = bits + offset / 64;
+  const unsigned shift = offset % 64;
+  std::uint64_t* to = candidates_.data();
+  std::uint64_t any = 0;
+  work_ += high_ - low_;
+  if (shift == 0) {
+    for (std::size_t w = low_; w < high_; ++w) any |= to[w] &= from[w];
+  } else {
+    for (std::size_t w = low_; w < high_; ++w)
+      any |= to[w] &= (from[w] >> shift) | (from[w + 1] << (64 - shift));
   }
-  while (candidates_[low_] == 0) ++low_;
-  while (candidates_[high_ - 1] == 0) --high_;
-  return true;
+  return any != 0;
 }
 
-std::uint64_t BitPage::likely_feet(const std::vector<RowTest>& rows, std::int32_t y) {
+std::uint64_t BitPage::likely_feet(const MaskTests& tests, std::int32_t y) {
   std::uint64_t feet = ~std::uint64_t{0};
   const std::size_t count = long_rows_.size() / classes_;
   std::size_t looked_at = 0;
-  for (const RowTest& test : rows) {
+  for (const RowTest& test : tests.rows) {
     const auto word = static_cast<std::size_t>(y + test.row) / 64;
     const unsigned shift = static_cast<unsigned>(y + test.row) % 64;
     if (word >= count) continue;  // rows above those that exist are free
@@ -141,27 +174,71 @@ void BitPage::all_candidates(std::int32_t x0, std::int32_t x1) {
   if (x1 % 64 != 63) candidates_[high_ - 1] &= (std::uint64_t{2} << (x1 % 64)) - 1;
 }
 
-bool BitPage::find_in_row(const Mask& mask, const std::vector<RowTest>& rows, Window window,
-                          std::int32_t y, Place& place) {
+bool BitPage::find_in_row(const MaskTests& tests, Window window, std::int32_t y, Place& place) {
+  switch (words_) {
+    case 2:
+      return find_narrow<2>(tests, window, y, place);
+    case 3:
+      return find_narrow<3>(tests, window, y, place);
+    case 4:
+      return find_narrow<4>(tests, window, y, place);
+    case 8:
+      return find_narrow<8>(tests, window, y, place);
+    default:
+      return find_wide(tests, window, y, place);
+  }
+}
+
+bool BitPage::find_wide(const MaskTests& tests, Window window, std::int32_t y, Place& place) {
   all_candidates(window.x0, window.x1);
-  for (const RowTest& test : rows)
-    if (y + test.row < rows_ && !row_allows(mask, test.row, y + test.row)) return false;
+  std::int32_t row_before = -1;
+  for (const Probe& p : tests.probes) {
+    if (y + p.row >= rows_) continue;
+    if (p.row != row_before) {
+      while (candidates_[low_] == 0) ++low_;
+      while (candidates_[high_ - 1] == 0) --high_;
+      row_before = p.row;
+    }
+    if (!narrows(row(static_cast<int>(p.level), y + p.row), p.offset)) return false;
+  }
   while (candidates_[low_] == 0) ++low_;
   place = {static_cast<std::int32_t>(64 * low_) + std::countr_zero(candidates_[low_]), y};
   return true;
 }
 
-bool BitPage::find(const Mask& mask, const std::vector<RowTest>& rows, Window window,
-                   Place& place) {
+template <std::size_t kWords>
+bool BitPage::find_narrow(const MaskTests& tests, Window window, std::int32_t y, Place& place) {
+  all_candidates(window.x0, window.x1);
+  std::uint64_t left[kWords];
+  unrolled<kWords>([&](auto w) { left[w] = w >= low_ && w < high_ ? candidates_[w] : 0; });
+  // What lies beyond the row's end is read, but no candidate reaches it.
+  for (const Probe& p : tests.probes) {
+    if (y + p.row >= rows_) continue;
+    const std::uint64_t* from = row(static_cast<int>(p.level), y + p.row) + p.offset / 64;
+    const unsigned shift = p.offset % 64;
+    std::uint64_t any = 0;
+    unrolled<kWords>([&](auto w) { any |= left[w] &= shifted(from, w, shift); });
+    work_ += high_ - low_;
+    if (any == 0) return false;
+  }
+  place.y = y;
+  unrolled<kWords>([&](auto k) {
+    constexpr std::size_t w = kWords - 1 - k;
+    if (left[w] != 0) place.x = static_cast<std::int32_t>(64 * w) + std::countr_zero(left[w]);
+  });
+  return true;
+}
+
+bool BitPage::find(const MaskTests& tests, Window window, Place& place) {
   window.x0 = std::max(0, window.x0);
-  window.x1 = std::min(window.x1, width_ - mask.width);
-  window.y1 = std::min(window.y1, height_ - mask.height);
+  window.x1 = std::min(window.x1, width_ - tests.width);
+  window.y1 = std::min(window.y1, height_ - tests.height);
   if (window.x0 > window.x1) return false;
   for (std::int32_t y = std::max(0, window.y0); y <= window.y1; y += 64)
-    for (std::uint64_t feet = likely_feet(rows, y); feet != 0; feet &= feet - 1) {
+    for (std::uint64_t feet = likely_feet(tests, y); feet != 0; feet &= feet - 1) {
       const std::int32_t foot = y + std::countr_zero(feet);
       if (foot > window.y1) return false;
-      if (find_in_row(mask, rows, window, foot, place)) return true;
+      if (find_in_row(tests, window, foot, place)) return true;
     }
   return false;
 }
@@ -197,38 +274,25 @@ std::int32_t BitPage::longest_free(std::int32_t y) const {
   return std::max(longest, current);
 }
 
-// Number of cells of row y within [begin, end) that are taken.
-std::int32_t BitPage::taken(std::int32_t y, std::int32_t begin, std::int32_t end) const {
-  if (y < 0) return end - begin;
-  if (y >= rows_) return 0;
-  const std::uint64_t* bits = row(0, y);
-  std::int32_t count = 0;
-  for (std::int32_t x = begin; x < end;) {
-    const std::int32_t n = std::min(64 - x % 64, end - x);
-    const std::uint64_t ones = n == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << n) - 1;
-    count += std::popcount(~(bits[x / 64] >> (x % 64)) & ones);
-    x += n;
-  }
-  return count;
-}
-
-double BitPage::contact(const Mask& mask, Place place) const {
-  std::int64_t touching = 0, outline = 0;
-  for (std::int32_t r = 0; r < mask.height; ++r) {
-    const std::int32_t y = place.y + r;
-    for (const Run& run : mask.row(r)) {
-      const std::int32_t begin = place.x + run.begin, end = place.x + run.end;
-      touching += begin == 0 || taken(y, begin - 1, begin);
-      touching += end == width_ || taken(y, end, end + 1);
-      touching += taken(y - 1, begin, end) + taken(y + 1, begin, end);
-      outline += 2;
-    }
-  }
-  return static_cast<double>(touching) / static_cast<double>(outline + 2 * mask.width);
-}
-
 // Derives the levels of a row from level 0, where cells [begin, end) have changed.
 void BitPage::rebuild(std::int32_t y, std::int32_t begin, std::int32_t end) {
+  const std::size_t last = static_cast<std::size_t>(end - 1) / 64 + 1;
+  work_ += static_cast<std::uint64_t>(levels_) * (last - static_cast<std::size_t>(begin) / 64);
+  switch (words_) {
+    case 2:
+      return rebuild_narrow<2>(y);
+    case 3:
+      return rebuild_narrow<3>(y);
+    case 4:
+      return rebuild_narrow<4>(y);
+    case 8:
+      return rebuild_narrow<8>(y);
+    default:
+      return rebuild_wide(y, begin, end);
+  }
+}
+
+void BitPage::rebuild_wide(std::int32_t y, std::int32_t begin, std::int32_t end) {
   const std::size_t last = std::min(words_, static_cast<std::size_t>(end - 1) / 64 + 1);
   for (int k = 1; k < levels_; ++k) {
     const std::uint64_t* below = row(k - 1, y);
@@ -247,7 +311,44 @@ void BitPage::rebuild(std::int32_t y, std::int32_t begin, std::int32_t end) {
     }
   }
   set_longest(y, longest_free(y));
-  work_ += static_cast<std::uint64_t>(levels_) * (last - static_cast<std::size_t>(begin) / 64);
+}
+
+// All words and all levels, also those beyond the longest run asked for: they tell the longest free
+// run, as exactly as its class needs it, in a few steps.
+template <std::size_t kWords>
+void BitPage::rebuild_narrow(std::int32_t y) {
+  constexpr std::size_t kMostLevels = std::bit_width(64 * kWords);
+  std::uint64_t free[kMostLevels][2 * kWords + 1];  // the upper halves are 0
+  std::uint64_t* bits = row(0, y);
+  int top = -1;
+  unrolled<kMostLevels>([&](auto k) {
+    std::uint64_t* words = free[k];
+    std::uint64_t any = 0;
+    if constexpr (k == 0) {
+      unrolled<kWords>([&](auto w) { any |= words[w] = bits[w]; });
+    } else {
+      constexpr std::size_t kStep = std::size_t{1} << (k - 1);
+      const std::uint64_t* below = free[k - 1];
+      unrolled<kWords>(
+          [&](auto w) { any |= words[w] = below[w] & shifted(below + kStep / 64, w, kStep % 64); });
+      if (static_cast<int>(k) < levels_)
+        unrolled<kWords>([&](auto w) { bits[k * stride_ + w] = words[w]; });
+    }
+    unrolled<kWords + 1>([&](auto w) { words[kWords + w] = 0; });
+    if (any != 0) top = k;
+  });
+  std::int32_t longest = top < 0 ? 0 : 1 << top;
+  for (int k = top - 1; k >= std::max(0, top - 3); --k) {
+    std::uint64_t longer[kWords];  // where longest + 2^k cells are free
+    std::uint64_t any = 0;
+    unrolled<kWords>([&](auto w) {
+      any |= longer[w] = free[top][w] & shifted(free[k] + longest / 64, w, unsigned(longest) % 64);
+    });
+    if (any == 0) continue;
+    unrolled<kWords>([&](auto w) { free[top][w] = longer[w]; });
+    longest += 1 << k;
+  }
+  set_longest(y, longest);
 }
 
 void BitPage::put(const Mask& mask, Place place) {

@@ -10,14 +10,27 @@
 
 namespace atlas::pack {
 
-// The order in which a mask's rows are tested, chosen so that a place that does not work is found
-// out early: the row with the longest run first, then rows spread over the whole height.
+// A row of a mask: what a page's row needs at least to take it.
 struct RowTest {
   std::int32_t row = 0;
-  std::int32_t longest = 0;       // cells of the row's longest run
-  std::int32_t length_class = 0;  // class of that length: see BitPage
+  std::int32_t length_class = 0;  // of the row's longest run: see BitPage
 };
-std::vector<RowTest> test_order(const Mask& mask);
+
+// Bit x + offset of this level says whether a part of a run of this row is free when the mask is
+// at x.
+struct Probe {
+  std::int32_t row = 0;
+  std::uint32_t level : 5, offset : 27;
+};
+
+// How a mask is looked for, in an order that finds out early about a place that does not work: the
+// row with the longest run first, then rows spread over the whole height.
+struct MaskTests {
+  std::int32_t width = 0, height = 0;
+  std::vector<RowTest> rows;
+  std::vector<Probe> probes;
+};
+MaskTests test_order(const Mask& mask);
 
 // Level k of a row has bit x set if the 2^k cells from x on are free. A run of length L at x is
 // free if and only if level floor(log2 L) has the bits x and x + L - 2^floor(log2 L): two word-wise
@@ -34,6 +47,7 @@ class BitPage {
 
   struct Place {
     std::int32_t x = 0, y = 0;
+    bool operator==(const Place&) const = default;
   };
 
   // Where to look: the box's lower left corner within these limits, inclusive.
@@ -42,20 +56,15 @@ class BitPage {
   };
 
   // The lowest place (then leftmost) in the window, or false.
-  bool find(const Mask& mask, const std::vector<RowTest>& rows, Window window, Place& place);
+  bool find(const MaskTests& tests, Window window, Place& place);
 
   // Bit k says whether the mask may lie with its foot in row y + k >= 0: for each of its rows the
   // page has a free run about as long as it needs. What this denies is sure; it looks at 64 feet at
   // once.
-  std::uint64_t likely_feet(const std::vector<RowTest>& rows, std::int32_t y);
+  std::uint64_t likely_feet(const MaskTests& tests, std::int32_t y);
 
   // The leftmost place with the foot in row y and x0 <= x <= x1 <= width() - mask.width, or false.
-  bool find_in_row(const Mask& mask, const std::vector<RowTest>& rows, Window window,
-                   std::int32_t y, Place& place);
-
-  // Share of the mask's outline, put there, that touches taken cells or the page's left, right or
-  // lower edge; in [0, 1].
-  double contact(const Mask& mask, Place place) const;
+  bool find_in_row(const MaskTests& tests, Window window, std::int32_t y, Place& place);
 
   void put(const Mask& mask, Place place);
   void take_away(const Mask& mask, Place place);
@@ -74,12 +83,20 @@ class BitPage {
   std::uint64_t* row(int level, std::int32_t y) {
     return bits_.data() + (std::size_t(y) * levels_ + level) * stride_;
   }
-  bool row_allows(const Mask& mask, std::int32_t r, std::int32_t y);
-  std::int32_t taken(std::int32_t y, std::int32_t begin, std::int32_t end) const;
+  // Pages of few words a row, as the search for a plan has them, keep rows in registers.
+  static constexpr std::size_t kNarrow = 4;
+  template <std::size_t kWords>
+  bool find_narrow(const MaskTests& tests, Window window, std::int32_t y, Place& place);
+  template <std::size_t kWords>
+  void rebuild_narrow(std::int32_t y);
+  bool find_wide(const MaskTests& tests, Window window, std::int32_t y, Place& place);
+  void rebuild_wide(std::int32_t y, std::int32_t begin, std::int32_t end);
+  void rebuild(std::int32_t y, std::int32_t begin, std::int32_t end);
+
+  bool narrows(const std::uint64_t* bits, std::uint32_t offset);
   void all_candidates(std::int32_t x0, std::int32_t x1);
   std::int32_t longest_free(std::int32_t y) const;
   void set_longest(std::int32_t y, std::int32_t longest);
-  void rebuild(std::int32_t y, std::int32_t begin, std::int32_t end);
   void grow(std::int32_t rows);
 
   std::int32_t width_, height_;

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <numeric>
 
-#include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
-#include "libatlas/pack/engines.h"
 
 namespace atlas::pack {
 namespace {
@@ -125,7 +124,9 @@ namespace {
 // classes of a quarter of an octave; each class begins at the bottom and fills holes of its own.
 class LastPlaces {
  public:
-  explicit LastPlaces(std::size_t pieces) : on_(pieces >= kMany) {}
+  explicit LastPlaces(std::size_t pieces) : on_(used(pieces)) {}
+
+  static bool used(std::size_t pieces) { return pieces >= kMany; }
 
   std::int32_t lowest(const Mask& mask) {
     return on_ ? row_[static_cast<std::size_t>(class_of(mask))] : 0;
@@ -151,7 +152,8 @@ class LastPlaces {
 };
 
 // The best direction and place of a piece on the page: heights are visited from the lowest up, at
-// each of them the directions whose feet may stand there.
+// each of them the directions whose feet may stand there. Each direction waits in the queue of the
+// next height that concerns it, so that nearly all heights are passed without a look at it.
 class PlaceSearch {
  public:
   PlaceSearch(const Piece& piece, std::int32_t only, BitPage& page, LastPlaces& last)
@@ -168,20 +170,29 @@ class PlaceSearch {
   }
 
   bool run(NestPlace& place) {
-    std::int32_t height = std::numeric_limits<std::int32_t>::max(), top = 0;
-    for (Foot& f : std::span(feet_).first(count_)) {
-      height = std::min(height, f.row + f.lift);
-      top = std::max(top, f.last + f.lift);
+    std::int32_t height = std::numeric_limits<std::int32_t>::max();
+    for (const Foot& f : std::span(feet_).first(count_)) height = std::min(height, f.height());
+    for (std::size_t k = 0; k < count_; ++k) wait(k, height);
+    std::size_t searching = count_;
+    for (; searching > 0 && !place.placed; ++height) {
+      std::uint64_t& here = queue_[static_cast<std::size_t>(height) % kQueue];
+      for (; here != 0 && !place.placed; here &= here - 1) {
+        const auto k = static_cast<std::size_t>(std::countr_zero(here));
+        if (feet_[k].height() == height && visit(feet_[k], place)) found_ = k;
+        if (feet_[k].row > feet_[k].last)
+          --searching;
+        else
+          wait(k, height);
+      }
     }
-    for (bool found = false; height <= top && !found; ++height) found = visit(height, place);
-    for (const Foot& f : std::span(feet_).first(count_))
-      last_.searched(piece_.masks[f.direction], place.placed ? f.row : kNowhere);
+    note_searched(height - 1, place.placed);
     return place.placed;
   }
 
  private:
   static constexpr std::int32_t kNowhere = std::numeric_limits<std::int32_t>::max();
   static constexpr std::size_t kMostDirections = 64;
+  static constexpr std::int32_t kQueue = 128;  // heights
 
   struct Foot {
     std::uint32_t direction;
@@ -189,188 +200,158 @@ class PlaceSearch {
     std::int32_t row, last;  // the next row to stand on, and the last one
     std::uint64_t likely;    // bit k: row + k; as many as are known
     std::int32_t known;
+
+    std::int32_t height() const { return row + lift; }
   };
 
-  bool visit(std::int32_t height, NestPlace& place) {
-    for (Foot& f : std::span(feet_).first(count_)) {
-      if (f.row != height - f.lift || f.row > f.last) continue;
-      const Mask& mask = piece_.masks[f.direction];
-      const auto& tests = piece_.tests[f.direction];
-      if (f.known == 0) {
-        f.likely = page_.likely_feet(tests, f.row);
-        f.known = 64;
-      }
-      BitPage::Place at;
-      if ((f.likely & 1) != 0 &&
-          page_.find_in_row(mask, tests, {0, page_.width() - mask.width}, f.row, at)) {
-        place = {true, f.direction, at};
+  // Heights far ahead are waited for in steps.
+  void wait(std::size_t k, std::int32_t height) {
+    const std::int32_t next = std::min(feet_[k].height(), height + kQueue - 1);
+    queue_[static_cast<std::size_t>(next) % kQueue] |= std::uint64_t{1} << k;
+  }
+
+  // Whether the foot may stand on its row; if not, it is moved to the next that has to be looked
+  // at.
+  bool visit(Foot& f, NestPlace& place) {
+    const MaskTests& tests = piece_.tests[f.direction];
+    if (f.known == 0) {
+      f.likely = page_.likely_feet(tests, f.row);
+      f.known = 64;
+    }
+    if ((f.likely & 1) != 0) {
+      if (page_.find_in_row(tests, {0, page_.width() - tests.width}, f.row, place.at)) {
+        place.placed = true;
+        place.direction = f.direction;
         return true;
       }
-      f.likely >>= 1;
-      --f.known;
-      ++f.row;
+      f.likely &= ~std::uint64_t{1};
     }
+    const std::int32_t skip = std::min(f.known, std::countr_zero(f.likely));
+    f.likely = skip < 64 ? f.likely >> skip : 0;
+    f.known -= skip;
+    f.row += skip;
     return false;
+  }
+
+  // Rows of every direction up to this height have been searched, at it only those before the one
+  // that was found.
+  void note_searched(std::int32_t height, bool placed) {
+    for (std::size_t k = 0; k < count_; ++k) {
+      const Foot& f = feet_[k];
+      const std::int32_t next = std::min(height - f.lift + (k < found_), f.last + 1);
+      last_.searched(piece_.masks[f.direction], placed ? next : kNowhere);
+    }
   }
 
   const Piece& piece_;
   BitPage& page_;
   LastPlaces& last_;
   std::array<Foot, kMostDirections> feet_;
-  std::size_t count_ = 0;
+  std::size_t count_ = 0, found_ = 0;
+  std::array<std::uint64_t, kQueue> queue_{};  // bit k: foot k waits for this height
+};
+
+}  // namespace
+
+namespace {
+
+// Places the pieces of a plan one after another.
+class Placer {
+ public:
+  Placer(std::span<const Piece> pieces, const NestPlan& plan, BitPage& page, Nest& nest)
+      : pieces_(pieces), plan_(plan), page_(page), nest_(nest), last_(plan.order.size()) {
+    nest.places.resize(pieces.size());
+  }
+
+  // Looks for the piece's place; false if there is none, or nothing to place.
+  bool find(std::uint32_t id) {
+    const Piece& piece = pieces_[id];
+    if (piece.too_large) nest_.left_over.push_back(id);
+    if (piece.cells() == 0) return false;
+    NestPlace& place = nest_.places[id];
+    const std::int32_t only = plan_.direction[id];
+    if (PlaceSearch(piece, only, page_, last_).run(place)) return true;
+    if (only != kFree && PlaceSearch(piece, kFree, page_, last_).run(place)) return true;
+    nest_.left_over.push_back(id);
+    return false;
+  }
+
+  // False if the page has become too high.
+  bool put(std::uint32_t id) {
+    const NestPlace& place = nest_.places[id];
+    page_.put(pieces_[id].masks[place.direction], place.at);
+    if (page_.used_height() > plan_.most_height) {
+      nest_.left_over.push_back(id);
+      return false;
+    }
+    count(id);
+    return true;
+  }
+
+  void count(std::uint32_t id) {
+    const NestPlace& place = nest_.places[id];
+    const Piece& piece = pieces_[id];
+    nest_.potential +=
+        static_cast<double>(piece.cells()) * (place.at.y + piece.centers[place.direction]);
+  }
+
+ private:
+  std::span<const Piece> pieces_;
+  const NestPlan& plan_;
+  BitPage& page_;
+  Nest& nest_;
+  LastPlaces last_;
 };
 
 }  // namespace
 
 void place_pieces(std::span<const Piece> pieces, const NestPlan& plan, BitPage& page, Nest& nest) {
-  nest.places.resize(pieces.size());
-  LastPlaces last(plan.order.size());
-  for (std::uint32_t id : plan.order) {
-    const Piece& piece = pieces[id];
-    if (piece.too_large) nest.left_over.push_back(id);
-    if (piece.cells() == 0) continue;
-    NestPlace& place = nest.places[id];
-    const std::int32_t only = plan.direction[id];
-    if (!PlaceSearch(piece, only, page, last).run(place) &&
-        (only == kFree || !PlaceSearch(piece, kFree, page, last).run(place))) {
-      nest.left_over.push_back(id);
-      continue;
-    }
-    page.put(piece.masks[place.direction], place.at);
-    if (page.used_height() > plan.most_height) {
-      nest.left_over.push_back(id);
-      break;
-    }
-    nest.potential +=
-        static_cast<double>(piece.cells()) * (place.at.y + piece.centers[place.direction]);
-  }
+  Placer placer(pieces, plan, page, nest);
+  for (const std::uint32_t id : plan.order)
+    if (placer.find(id) && !placer.put(id)) break;
   nest.used_height = page.used_height();
 }
 
-namespace {
-
-// Disturbs a plan: swaps two pieces, moves one, or changes one's direction. Large pieces, which are
-// early in the order, decide the layout and are chosen more often.
-class PlanMoves {
- public:
-  PlanMoves(std::span<const Piece> pieces, std::uint64_t seed) : pieces_(pieces), random_(seed) {}
-
-  void disturb(NestPlan& plan, const Nest& nest) {
-    const auto n = static_cast<std::uint32_t>(plan.order.size());
-    const std::uint32_t kind = random_.below(n > 1 ? 4 : 1);
-    const std::uint32_t i = kind == 3 ? highest(plan, nest) : pick(n);
-    if (kind == 0) {
-      std::int32_t& direction = plan.direction[plan.order[i]];
-      const auto count = static_cast<std::uint32_t>(pieces_[plan.order[i]].masks.size());
-      direction = random_.below(3) == 0 ? kFree : static_cast<std::int32_t>(random_.below(count));
-      return;
-    }
-    const std::uint32_t j = kind == 3 ? random_.below(i + 1) : pick(n);
-    const auto at = [&](std::uint32_t k) { return plan.order.begin() + k; };
-    if (kind == 1)
-      std::swap(plan.order[i], plan.order[j]);
-    else if (i < j)
-      std::rotate(at(i), at(i + 1), at(j + 1));
-    else
-      std::rotate(at(j), at(i), at(i + 1));
-  }
-  double unit() { return random_.unit(); }
-
- private:
-  // Position of the piece that ends highest: it comes earlier next time ("squeaky wheel", Joslin
-  // and Clements 1999).
-  std::uint32_t highest(const NestPlan& plan, const Nest& nest) const {
-    std::uint32_t best = 0;
-    std::int32_t top = -1;
-    for (std::uint32_t k = 0; k < plan.order.size(); ++k) {
-      const NestPlace& p = nest.places[plan.order[k]];
-      if (!p.placed) continue;
-      const std::int32_t t = p.at.y + pieces_[plan.order[k]].masks[p.direction].height;
-      if (t > top) {
-        top = t;
-        best = k;
-      }
-    }
-    return best;
-  }
-
-  std::uint32_t pick(std::uint32_t n) {
-    const double u = random_.unit();
-    return std::min(n - 1, static_cast<std::uint32_t>(u * std::sqrt(u) * n));
-  }
-  std::span<const Piece> pieces_;
-  Random random_;
-};
-
-// Height in cells, with the potential as a fraction below one.
-double energy(const Nest& nest, double total_cells) {
-  if (!nest.left_over.empty()) return 1e6 * static_cast<double>(nest.left_over.size());
-  const double mean = nest.potential / std::max(1.0, total_cells);
-  return nest.used_height + mean / std::max(1.0, double(nest.used_height));
-}
-
-// How high a strip may become: pieces that do not nest, as slanted needles, could pile up for ever.
-// Beyond 256 MiB of rows, and four times what the pieces fill, they are left over.
-std::int32_t most_rows(std::span<const Piece> pieces, double total_cells, std::int32_t width) {
-  constexpr double kBytes = 1 << 28, kLevels = 12;
-  std::int32_t tallest = 1;
-  for (const Piece& p : pieces)
-    for (const Mask& m : p.masks) tallest = std::max(tallest, m.height);
-  const double needed = tallest + 4 * total_cells / std::max(1, width);
-  const double affordable = kBytes / (kLevels * 8 * (width / 64 + 2.0));
-  return static_cast<std::int32_t>(std::min(std::max(needed, affordable), double(1 << 24)));
-}
-
-}  // namespace
-
-NestPlan improve_plan(std::span<const Piece> pieces, const NestPlan& start,
-                      const NestSearchOptions& options, const Context& context, Nest& best,
-                      std::uint64_t& layouts) {
-  const std::int32_t longest = longest_run(pieces);
-  double total = 0;
-  for (const Piece& p : pieces) total += static_cast<double>(p.cells());
-  std::uint64_t spent = 0, tried = 0;
-  BitPage page(options.width, most_rows(pieces, total, options.width), longest);
-  const auto evaluate = [&](const NestPlan& plan, Nest& nest) {
-    const std::uint64_t before = page.work();
-    page.clear();
-    nest = {};
-    place_pieces(pieces, plan, page, nest);
-    spent += page.work() - before + 20 * pieces.size();
-    ++layouts;
-    ++tried;
-    return energy(nest, total);
+void place_pieces_as(std::span<const Piece> pieces, const PlacedPlan& like, BitPage& page,
+                     PlacedPlan& placed) {
+  const NestPlan& plan = placed.plan;
+  Nest& nest = placed.nest;
+  const std::size_t n = plan.order.size();
+  const auto same = [&](std::size_t k) {
+    const std::uint32_t id = plan.order[k];
+    return id == like.plan.order[k] && plan.direction[id] == like.plan.direction[id];
   };
-  NestPlan plan = start, current = start, best_plan = start;
-  double current_energy = evaluate(start, best), best_energy = current_energy;
-  PlanMoves moves(pieces, options.seed);
-  Nest nest, current_nest = best;
-  const double begun = wall_seconds();
-  while (spent < options.work && tried < options.layouts && !pieces.empty()) {
-    if (context.cancelled() || wall_seconds() - begun > options.seconds) break;
-    if (best.left_over.empty() && best.used_height <= options.enough) break;
-    plan = current;
-    moves.disturb(plan, current_nest);
-    const double left =
-        1 - std::max(static_cast<double>(spent) / static_cast<double>(options.work),
-                     static_cast<double>(tried) / static_cast<double>(options.layouts));
-    const double temperature = std::max(1e-9, 0.004 * best_energy * left * left);
-    // Metropolis' rule, the chance drawn first: a layout is given up as soon as it is too high.
-    plan.most_height = current_energy - temperature * std::log(std::max(1e-300, moves.unit()));
-    const double e = evaluate(plan, nest);
-    if (e <= plan.most_height) {
-      current = plan;
-      current_energy = e;
-      current_nest = nest;
+  page.clear();
+  nest = {};
+  placed.work.assign(n, 0);
+  // Where searches begin at the last place of their size, what was searched for before matters.
+  const bool known = like.work.size() == n && like.nest.left_over.empty() &&
+                     like.nest.used_height <= plan.most_height && !LastPlaces::used(n);
+  std::size_t begin = 0, end = n;
+  while (known && begin < n && same(begin)) ++begin;
+  if (begin == n) begin = 0, end = 0;
+  while (known && end > begin && same(end - 1)) --end;
+  Placer placer(pieces, plan, page, nest);
+  bool moved = !known;  // whether a piece lies elsewhere than in `like`
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::uint32_t id = plan.order[k];
+    if (k < begin || (k >= end && !moved)) {
+      nest.places[id] = like.nest.places[id];
+      placed.work[k] = like.work[k];
+      if (!nest.places[id].placed) continue;
+      if (k >= end)
+        placer.count(id);  // nothing is looked for any more
+      else if (!placer.put(id))
+        break;
+      continue;
     }
-    if (e < best_energy) {
-      best_energy = e;
-      best_plan = plan;
-      best = nest;
-    }
+    const std::uint64_t before = page.work();
+    const bool low_enough = !placer.find(id) || placer.put(id);
+    placed.work[k] = page.work() - before;
+    if (!low_enough) break;
+    moved = moved || nest.places[id] != like.nest.places[id];
   }
-  best_plan.most_height = std::numeric_limits<double>::infinity();
-  return best_plan;
+  nest.used_height = moved ? page.used_height() : like.nest.used_height;
 }
 
 }  // namespace atlas::pack

@@ -13,7 +13,7 @@ namespace atlas::pack {
 // One chart in all directions tried: direction k is turned by k · 360 / directions degrees.
 struct Piece {
   std::vector<Mask> masks;
-  std::vector<std::vector<RowTest>> tests;
+  std::vector<MaskTests> tests;
   std::vector<Vec2d> origins;   // see RasterOptions; empty for coarse pieces
   std::vector<double> centers;  // height of the mask's centre of mass
   // A place's height is its foot's plus the direction's lift: half the mask's height and half the
@@ -58,6 +58,8 @@ struct NestPlace {
   bool placed = false;
   std::uint32_t direction = 0;
   BitPage::Place at;
+
+  bool operator==(const NestPlace&) const = default;
 };
 
 struct Nest {
@@ -71,6 +73,19 @@ struct Nest {
 // its foot, half its height and half the height of its centre is smallest. Pieces already in
 // nest.places stay.
 void place_pieces(std::span<const Piece> pieces, const NestPlan& plan, BitPage& page, Nest& nest);
+
+// A plan, where its pieces came to lie on an empty page, and what looking for each place took.
+struct PlacedPlan {
+  NestPlan plan;
+  Nest nest;
+  std::vector<std::uint64_t> work;  // 1 a piece of the order, words; as if all had been looked for
+};
+
+// Places the plan of `placed` on the page, which is emptied first: as place_pieces() does, but
+// places are taken from `like` where both plans begin alike, and where they end alike if the pieces
+// between came to lie as they did. A page where that is so may lack the last pieces afterwards.
+void place_pieces_as(std::span<const Piece> pieces, const PlacedPlan& like, BitPage& page,
+                     PlacedPlan& placed);
 
 std::int32_t longest_run(std::span<const Piece> pieces);
 

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "libatlas/core/parallel.h"
-#include "libatlas/pack/nest.h"
+#include "libatlas/pack/plain_page.h"
 
 namespace atlas::pack {
 namespace {
@@ -30,7 +30,7 @@ class Settler {
     const double scale = share * scale_;
     draw(scale, std::pow(share, kCloser));
     const std::int32_t side = options_.page_size / options_.alignment;
-    BitPage page(side, side, longest_);
+    PlainPage page(side, side);
     result.places.assign(targets_.size(), {});
     result.page = {};
     displaced_.clear();
@@ -40,26 +40,17 @@ class Settler {
       if (mask.cells == 0) continue;
       if (mask.width > side || mask.height > side) return false;
       BitPage::Place at;
-      if (nearest_free(i, page, at) || (make_way(i, page, result) && nearest_free(i, page, at)))
-        put(i, at, page, result);
-      else if (is_small(i, side))
+      if (nearest_free(i, page, at) || (make_way(i, page, result) && nearest_free(i, page, at))) {
+        page.put(mask, at);
+        note(i, at, result);
+      } else if (is_small(i, side)) {
         displaced_.push_back(i);
-      else
+      } else {
         return false;
+      }
     }
-    // Small charts may go to any hole within the page that the others need.
-    std::stable_sort(displaced_.begin(), displaced_.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return masks_[a].cells > masks_[b].cells;
-    });
+    if (!displaced_.empty() && !place_displaced(side, result)) return false;
     measure(result);
-    for (std::uint32_t i : displaced_) {
-      BitPage::Place at;
-      const Mask& mask = masks_[i];
-      const std::int32_t last = result.page.width / options_.alignment - mask.width;
-      if (!page.find(mask, test_order(mask), {0, std::max(0, last), 0, side}, at)) return false;
-      put(i, at, page, result);
-      measure(result);
-    }
     result.scale = scale;
     return true;
   }
@@ -75,9 +66,34 @@ class Settler {
     return masks_[i].cells * kSmallShare < side * side;
   }
 
+  // Small charts may go to any hole within the page that the others need.
+  bool place_displaced(std::int32_t side, PressedPage& result) {
+    const std::int32_t a = options_.alignment;
+    std::int32_t longest = 1;
+    for (const Mask& m : masks_)
+      for (const Run& run : m.runs) longest = std::max(longest, run.end - run.begin);
+    BitPage page(side, side, longest);
+    for (std::uint32_t i : order_)
+      if (const PressedPlace& p = result.places[i]; p.placed)
+        page.put(masks_[i], {p.box.x / a, p.box.y / a});
+    std::stable_sort(displaced_.begin(), displaced_.end(), [&](std::uint32_t i, std::uint32_t j) {
+      return masks_[i].cells > masks_[j].cells;
+    });
+    for (std::uint32_t i : displaced_) {
+      measure(result);
+      BitPage::Place at;
+      const Mask& mask = masks_[i];
+      const std::int32_t last = result.page.width / a - mask.width;
+      if (!page.find(test_order(mask), {0, std::max(0, last), 0, side}, at)) return false;
+      page.put(mask, at);
+      note(i, at, result);
+    }
+    return true;
+  }
+
   // A chart that sits tightly in the notch of a larger one may have kept it from its place: the
   // notch shrinks with the chart, so that no smaller scale helps. Takes such charts off the page.
-  bool make_way(std::uint32_t i, BitPage& page, PressedPage& result) {
+  bool make_way(std::uint32_t i, PlainPage& page, PressedPage& result) {
     const std::int32_t side = page.width();
     bool any = false;
     for (std::uint32_t j : order_) {
@@ -103,9 +119,8 @@ class Settler {
       }
   }
 
-  void put(std::uint32_t i, BitPage::Place at, BitPage& page, PressedPage& result) const {
+  void note(std::uint32_t i, BitPage::Place at, PressedPage& result) const {
     const Mask& mask = masks_[i];
-    page.put(mask, at);
     const std::int32_t a = options_.alignment;
     PressedPlace& out = result.places[i];
     out.placed = true;
@@ -134,9 +149,6 @@ class Settler {
                           options_.alignment};
       }
     });
-    longest_ = 1;
-    for (const Mask& m : masks_)
-      for (const Run& run : m.runs) longest_ = std::max(longest_, run.end - run.begin);
   }
 
   // From the page's lower left corner outwards.
@@ -156,7 +168,7 @@ class Settler {
   static constexpr std::int32_t kReach = 5;
   using Neighbourhood = std::array<Nearby, (2 * kReach + 1) * (2 * kReach + 1)>;
 
-  Neighbourhood places_near(std::uint32_t i, const BitPage& page) const {
+  Neighbourhood places_near(std::uint32_t i, const PlainPage& page) const {
     Neighbourhood places;
     const auto x = static_cast<std::int32_t>(std::lround(wanted_[i].x));
     const auto y = static_cast<std::int32_t>(std::lround(wanted_[i].y));
@@ -172,18 +184,18 @@ class Settler {
     return places;
   }
 
-  bool nearest_free(std::uint32_t i, BitPage& page, BitPage::Place& place) const {
-    const auto tests = test_order(masks_[i]);
+  bool nearest_free(std::uint32_t i, const PlainPage& page, BitPage::Place& place) const {
     for (const Nearby& n : places_near(i, page)) {
-      const BitPage::Window here{n.at.x, n.at.x, n.at.y, n.at.y};
-      if (page.find_in_row(masks_[i], tests, here, n.at.y, place)) return true;
+      if (!page.is_free(masks_[i], n.at)) continue;
+      place = n.at;
+      return true;
     }
     return false;
   }
 
   // Whether chart i has a place near the wanted one where it does not meet chart j, put at `at`.
   bool has_room_beside(std::uint32_t i, std::uint32_t j, BitPage::Place at,
-                       const BitPage& page) const {
+                       const PlainPage& page) const {
     const Neighbourhood places = places_near(i, page);
     return std::any_of(places.begin(), places.end(), [&](const Nearby& n) {
       return !overlap(masks_[i], masks_[j], at.x - n.at.x, at.y - n.at.y);
@@ -198,7 +210,6 @@ class Settler {
   std::vector<std::uint32_t> order_, displaced_;
   std::vector<Mask> masks_;
   std::vector<Vec2d> origins_, wanted_;
-  std::int32_t longest_ = 1;
 };
 
 }  // namespace

@@ -99,7 +99,7 @@ class Slider {
     if (at.x < 0 || at.y < 0 || at.x + mask(i).width > page_.width()) return false;
     BitPage::Place found;
     const auto& tests = pieces_[i].tests[start_.places[i].direction];
-    return page_.find_in_row(mask(i), tests, {at.x, at.x, at.y, at.y}, at.y, found);
+    return page_.find_in_row(tests, {at.x, at.x, at.y, at.y}, at.y, found);
   }
 
   bool nearest_free(std::uint32_t i) {

@@ -1,0 +1,137 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "libatlas/core/clock.h"
+#include "libatlas/pack/engines.h"
+#include "libatlas/pack/nest.h"
+
+namespace atlas::pack {
+namespace {
+
+// Disturbs a plan: swaps two pieces, moves one, or changes one's direction. Large pieces, which are
+// early in the order, decide the layout and are chosen more often.
+class PlanMoves {
+ public:
+  PlanMoves(std::span<const Piece> pieces, std::uint64_t seed) : pieces_(pieces), random_(seed) {}
+
+  void disturb(NestPlan& plan, const Nest& nest) {
+    const auto n = static_cast<std::uint32_t>(plan.order.size());
+    const std::uint32_t kind = random_.below(n > 1 ? 4 : 1);
+    const std::uint32_t i = kind == 3 ? highest(plan, nest) : pick(n);
+    if (kind == 0) {
+      std::int32_t& direction = plan.direction[plan.order[i]];
+      const auto count = static_cast<std::uint32_t>(pieces_[plan.order[i]].masks.size());
+      direction = random_.below(3) == 0 ? kFree : static_cast<std::int32_t>(random_.below(count));
+      return;
+    }
+    const std::uint32_t j = kind == 3 ? random_.below(i + 1) : pick(n);
+    const auto at = [&](std::uint32_t k) { return plan.order.begin() + k; };
+    if (kind == 1)
+      std::swap(plan.order[i], plan.order[j]);
+    else if (i < j)
+      std::rotate(at(i), at(i + 1), at(j + 1));
+    else
+      std::rotate(at(j), at(i), at(i + 1));
+  }
+  double unit() { return random_.unit(); }
+
+ private:
+  // Position of the piece that ends highest: it comes earlier next time ("squeaky wheel", Joslin
+  // and Clements 1999).
+  std::uint32_t highest(const NestPlan& plan, const Nest& nest) const {
+    std::uint32_t best = 0;
+    std::int32_t top = -1;
+    for (std::uint32_t k = 0; k < plan.order.size(); ++k) {
+      const NestPlace& p = nest.places[plan.order[k]];
+      if (!p.placed) continue;
+      const std::int32_t t = p.at.y + pieces_[plan.order[k]].masks[p.direction].height;
+      if (t > top) {
+        top = t;
+        best = k;
+      }
+    }
+    return best;
+  }
+
+  std::uint32_t pick(std::uint32_t n) {
+    const double u = random_.unit();
+    return std::min(n - 1, static_cast<std::uint32_t>(u * std::sqrt(u) * n));
+  }
+  std::span<const Piece> pieces_;
+  Random random_;
+};
+
+// Height in cells, with the potential as a fraction below one.
+double energy(const Nest& nest, double total_cells) {
+  if (!nest.left_over.empty()) return 1e6 * static_cast<double>(nest.left_over.size());
+  const double mean = nest.potential / std::max(1.0, total_cells);
+  return nest.used_height + mean / std::max(1.0, double(nest.used_height));
+}
+
+// How high a strip may become: pieces that do not nest, as slanted needles, could pile up for ever.
+// Beyond 256 MiB of rows, and four times what the pieces fill, they are left over.
+std::int32_t most_rows(std::span<const Piece> pieces, double total_cells, std::int32_t width) {
+  constexpr double kBytes = 1 << 28, kLevels = 12;
+  std::int32_t tallest = 1;
+  for (const Piece& p : pieces)
+    for (const Mask& m : p.masks) tallest = std::max(tallest, m.height);
+  const double needed = tallest + 4 * total_cells / std::max(1, width);
+  const double affordable = kBytes / (kLevels * 8 * (width / 64 + 2.0));
+  return static_cast<std::int32_t>(std::min(std::max(needed, affordable), double(1 << 24)));
+}
+
+}  // namespace
+
+NestPlan improve_plan(std::span<const Piece> pieces, const NestPlan& start,
+                      const NestSearchOptions& options, const Context& context, Nest& best,
+                      std::uint64_t& layouts) {
+  double total = 0;
+  for (const Piece& p : pieces) total += static_cast<double>(p.cells());
+  BitPage page(options.width, most_rows(pieces, total, options.width), longest_run(pieces));
+  std::uint64_t spent = 0, tried = 0;
+  PlacedPlan current, next;
+  const auto evaluate = [&](PlacedPlan& placed) {
+    place_pieces_as(pieces, current, page, placed);
+    spent += std::accumulate(placed.work.begin(), placed.work.end(), 20 * pieces.size());
+    ++layouts;
+    ++tried;
+    return energy(placed.nest, total);
+  };
+  next.plan = start;
+  double current_energy = evaluate(next), best_energy = current_energy;
+  std::swap(current, next);
+  NestPlan best_plan = start;
+  best = current.nest;
+  PlanMoves moves(pieces, options.seed);
+  const double begun = wall_seconds();
+  while (spent < options.work && tried < options.layouts && !pieces.empty()) {
+    if (context.cancelled() || wall_seconds() - begun > options.seconds) break;
+    if (best.left_over.empty() && best.used_height <= options.enough) break;
+    next.plan = current.plan;
+    moves.disturb(next.plan, current.nest);
+    const double left =
+        1 - std::max(static_cast<double>(spent) / static_cast<double>(options.work),
+                     static_cast<double>(tried) / static_cast<double>(options.layouts));
+    const double temperature = std::max(1e-9, 0.004 * best_energy * left * left);
+    // Metropolis' rule, the chance drawn first: a layout is given up as soon as it is too high.
+    const double most = current_energy - temperature * std::log(std::max(1e-300, moves.unit()));
+    next.plan.most_height = most;
+    const double e = evaluate(next);
+    if (e < best_energy) {
+      best_energy = e;
+      best_plan = next.plan;
+      best = next.nest;
+    }
+    if (e <= most) {
+      std::swap(current, next);
+      current_energy = e;
+    }
+  }
+  best_plan.most_height = std::numeric_limits<double>::infinity();
+  return best_plan;
+}
+
+}  // namespace atlas::pack

@@ -1,0 +1,99 @@
+// Placing pieces by plans, and the page that only checks places.
+#include "libatlas/pack/nest.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <utility>
+
+#include "libatlas/pack/plain_page.h"
+#include "tests/pack/checks.h"
+
+namespace atlas {
+namespace {
+
+using namespace pack;
+
+std::vector<Piece> blob_pieces(test::Noise& noise, int count, std::uint32_t directions) {
+  std::vector<ChartOutline> outlines;
+  for (int k = 0; k < count; ++k)
+    outlines.push_back(
+        outline_of({test::blob(noise, 4.0 + 20 * noise.unit(), noise.in(3, 9)), {}}));
+  PieceOptions options;
+  options.cell = 2;
+  options.directions = directions;
+  return make_pieces(outlines, options, {});
+}
+
+void disturb(test::Noise& noise, std::span<const Piece> pieces, NestPlan& plan) {
+  const int n = int(plan.order.size());
+  const auto i = std::size_t(noise.in(0, n - 1)), j = std::size_t(noise.in(0, n - 1));
+  if (noise.in(0, 2) > 0)
+    std::swap(plan.order[i], plan.order[j]);
+  else
+    plan.direction[i] = noise.in(-1, int(pieces[i].masks.size()) - 1);
+}
+
+// Taking over what two plans have in common changes nothing, not even the work that is counted.
+TEST(NestPlans, PlacesTakenOverAreThoseSearchedFor) {
+  test::Noise noise{41};
+  for (int round = 0; round < 12; ++round) {
+    const int width = noise.in(60, round % 3 == 0 ? 600 : 150);
+    const std::vector<Piece> pieces = blob_pieces(noise, noise.in(1, 14), round % 2 ? 8 : 4);
+    const std::int32_t height = round == 5 ? 40 : 1 << 20;  // 40: not all have room
+    BitPage page(width, height, longest_run(pieces));
+    PlacedPlan before, now;
+    now.plan = plan_by_size(pieces);
+    for (int k = 0; k < 40; ++k) {
+      place_pieces_as(pieces, before, page, now);
+      BitPage fresh(width, height, longest_run(pieces));
+      Nest expected;
+      place_pieces(pieces, now.plan, fresh, expected);
+      EXPECT_EQ(now.nest.places, expected.places);
+      EXPECT_EQ(now.nest.left_over, expected.left_over);
+      EXPECT_EQ(now.nest.potential, expected.potential);
+      EXPECT_EQ(std::accumulate(now.work.begin(), now.work.end(), std::uint64_t{0}), fresh.work());
+      if (expected.left_over.empty()) {
+        EXPECT_EQ(now.nest.used_height, expected.used_height);
+      }
+      if (k == 0 || (expected.left_over.empty() && noise.in(0, 2) == 0)) std::swap(before, now);
+      now.plan = before.plan;
+      disturb(noise, pieces, now.plan);
+      now.plan.most_height = k % 4 == 3 ? before.nest.used_height + noise.in(-9, 9)
+                                        : std::numeric_limits<double>::infinity();
+    }
+  }
+}
+
+TEST(PlainPage, KnowsWhatIsFree) {
+  test::Noise noise{43};
+  const int width = 200, height = 90;
+  PlainPage page(width, height);
+  BitPage known(width, height, width);
+  std::vector<std::pair<Mask, BitPage::Place>> lying;
+  for (int k = 0; k < 4000; ++k) {
+    const auto shape = test::blob(noise, noise.in(2, 60), noise.in(3, 8));
+    Vec2d origin;
+    const Mask mask = rasterize(outline_of({shape, {}}), {}, origin);
+    if (mask.width > width || mask.height > height) continue;
+    const BitPage::Place at{noise.in(0, width - mask.width), noise.in(0, height - mask.height)};
+    bool free = true;
+    for (int r = 0; r < mask.height; ++r)
+      for (const pack::Run& run : mask.row(r))
+        for (int x = run.begin; x < run.end; ++x) free = free && known.is_free(at.x + x, at.y + r);
+    ASSERT_EQ(page.is_free(mask, at), free) << k;
+    if (free) {
+      page.put(mask, at);
+      known.put(mask, at);
+      lying.emplace_back(mask, at);
+    } else if (noise.in(0, 9) == 0 && !lying.empty()) {
+      page.take_away(lying.back().first, lying.back().second);
+      known.take_away(lying.back().first, lying.back().second);
+      lying.pop_back();
+    }
+  }
+  EXPECT_FALSE(lying.empty());
+}
+
+}  // namespace
+}  // namespace atlas
