@@ -1,0 +1,327 @@
+// One chart that does not flatten as it is: what it hands to its neighbours, what it goes on from,
+// where it is cut, and when cutting is not even tried.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "libatlas/charts/chart_job.h"
+#include "tests/charts/chart_checks.h"
+
+namespace atlas::test {
+namespace {
+
+constexpr int kColumns = 150, kRows = 6, kTurn = 110;  // kTurn: columns in a whole turn
+
+// A ramp about the z axis, `inner` from it and of width 1, with z = height(turn, row) beside its
+// rise. Of more than a turn it comes to lie upon itself when it is laid flat.
+template <class Height>
+Shape ramp(int columns, double inner, const Height& height) {
+  Shape shape;
+  shape.name = "ramp";
+  for (int a = 0; a <= columns; ++a) {
+    for (int b = 0; b <= kRows; ++b) {
+      const double turn = 2 * M_PI * a / kTurn, r = inner + double(b) / kRows;
+      const double z = 0.2 * a / kTurn + height(a, b);
+      shape.positions.push_back({float(r * std::cos(turn)), float(r * std::sin(turn)), float(z)});
+    }
+  }
+  const auto at = [](int a, int b) { return std::uint32_t(a * (kRows + 1) + b); };
+  for (int a = 0; a < columns; ++a) {
+    for (int b = 0; b < kRows; ++b) {
+      shape.indices.insert(shape.indices.end(), {at(a, b), at(a, b + 1), at(a + 1, b + 1)});
+      shape.indices.insert(shape.indices.end(), {at(a, b), at(a + 1, b + 1), at(a + 1, b)});
+    }
+  }
+  return shape;
+}
+
+// Waves, so that no part of it unrolls exactly.
+Shape wavy_ramp(double wave, int columns = kColumns) {
+  return ramp(columns, 3, [=](int a, int b) {
+    return wave * std::sin(M_PI * b / kRows) * std::sin(18 * M_PI * a / kTurn);
+  });
+}
+
+// A spike of so many rows' height at the middle of some columns.
+Shape spiked_ramp(double spike, int columns) {
+  return ramp(columns, 2,
+              [=](int a, int b) { return b == kRows / 2 && a % 60 == 30 ? spike / kRows : 0; });
+}
+
+// `rounds` charts of almost a turn of the ramp each, from chart 0 on, with a tooth of `length`
+// columns and `width` rows at its end, which reaches beyond its beginning; a chart more before them
+// and one after them.
+std::vector<std::uint32_t> toothed(int length, int width, int rounds = 1, int columns = kColumns) {
+  constexpr int kFirst = 10, kLong = kTurn - 1;
+  std::vector<std::uint32_t> charts;
+  for (int a = 0; a < columns; ++a) {
+    for (int b = 0; b < kRows; ++b) {
+      const bool in_tooth = b >= 2 && b < 2 + width;
+      const int column = a - kFirst - (in_tooth ? length : 0);
+      int chart = column < 0 ? -1 : column / kLong;
+      if (in_tooth && a >= kFirst && column < 0) chart = 0;
+      if (chart < 0) chart = rounds + 1;
+      charts.insert(charts.end(), 2,
+                    std::uint32_t(std::min(chart, a < kFirst ? rounds + 1 : rounds)));
+    }
+  }
+  return charts;
+}
+
+// A mesh with charts, and what flattening one of them needs.
+struct Bench {
+  Topology topology;
+  Partition partition;
+  ChartOptions options;
+  Frames frames;
+  ChartScratch scratch;
+
+  Bench(const Shape& shape, std::vector<std::uint32_t> charts) {
+    const Mesh mesh(shape);
+    Result<Topology> built = build_topology(mesh.view(), {}, {});
+    EXPECT_TRUE(built.ok());
+    topology = std::move(*built);
+    partition.chart = std::move(charts);
+    partition.seams.assign(topology.triangle_count(), 0);
+    partition.local.resize(topology.triangle_count());
+  }
+  FlattenInput input() { return {topology, {}, options, frames}; }
+  std::vector<std::uint32_t> triangles(std::uint32_t chart) const {
+    std::vector<std::uint32_t> list;
+    for (std::uint32_t t = 0; t < partition.chart.size(); ++t) {
+      if (partition.chart[t] == chart) list.push_back(t);
+    }
+    return list;
+  }
+  ChartOutcome flatten(std::uint32_t chart, const ChartEffort& effort = {}) {
+    return flatten_chart(input(), partition, triangles(chart), effort, scratch);
+  }
+  bool any_seam() const {
+    return std::any_of(partition.seams.begin(), partition.seams.end(),
+                       [](std::uint8_t bits) { return bits != 0; });
+  }
+};
+
+using Triangle2 = std::array<Vec2d, 3>;
+
+double uv_length(const Vec2d& a, const Vec2d& b) {
+  return std::hypot(a.x - b.x, a.y - b.y);
+}
+
+double size_of(const Triangle2& t) {
+  return uv_length(t[0], t[1]) + uv_length(t[1], t[2]) + uv_length(t[2], t[0]);
+}
+
+Triangle2 scaled(const Triangle2& t, double factor) {
+  const auto at = [&](int k) { return Vec2d{factor * t[k].x, factor * t[k].y}; };
+  return {at(0), at(1), at(2)};
+}
+
+// Of a triangle's edges, how much their lengths differ: only turned and shifted, it is rounding.
+double change(const Triangle2& a, const Triangle2& b) {
+  double most = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double was = uv_length(a[k], a[(k + 1) % 3]), is = uv_length(b[k], b[(k + 1) % 3]);
+    most = std::max(most, std::abs(is - was) / was);
+  }
+  return most;
+}
+
+Triangle2 corners_of(const FlatChart& chart, std::size_t i) {
+  const auto& v = chart.corners[i];
+  return {chart.uvs[v[0]], chart.uvs[v[1]], chart.uvs[v[2]]};
+}
+
+TEST(ChartJob, NamesTheTrianglesThatShouldGo) {
+  Bench bench(wavy_ramp(0.05), toothed(5, 2));
+  const ChartOutcome outcome = bench.flatten(0);
+  const std::vector<std::uint32_t> own = bench.triangles(0);
+  EXPECT_TRUE(outcome.failed);
+  EXPECT_GT(outcome.crossings, 0u);
+  ASSERT_FALSE(outcome.remove.empty());
+  EXPECT_LT(outcome.remove.size(), own.size() / 20);
+  EXPECT_EQ(outcome.uvs.size(), 3 * own.size());
+  // All near the tooth or where it comes to lie, no one twice.
+  std::vector<std::uint32_t> remove = outcome.remove;
+  std::sort(remove.begin(), remove.end());
+  EXPECT_EQ(std::adjacent_find(remove.begin(), remove.end()), remove.end());
+  for (const std::uint32_t t : remove) {
+    const int column = int(t) / (2 * kRows);
+    EXPECT_TRUE(column < 20 || column > kTurn) << column;
+  }
+  // More rings around the crossings are more triangles, of which the first are these.
+  Bench again(wavy_ramp(0.05), toothed(5, 2));
+  std::vector<std::uint32_t> more = again.flatten(0, {.rings = 2}).remove;
+  std::sort(more.begin(), more.end());
+  EXPECT_GT(more.size(), remove.size());
+  EXPECT_TRUE(std::includes(more.begin(), more.end(), remove.begin(), remove.end()));
+}
+
+// The tooth goes to the chart that follows; nothing is divided, and nothing is lost.
+TEST(ChartJob, WhatCrossesGoesToTheNeighbours) {
+  for (const auto& [wave, length, width] : {std::tuple{0.05, 5, 1}, std::tuple{0.05, 5, 2},
+                                            std::tuple{0.0, 5, 2}, std::tuple{0.0, 2, 3}}) {
+    Bench bench(wavy_ramp(wave), toothed(length, width));
+    const std::size_t before = bench.triangles(0).size();
+    const FlattenResult result = flatten_charts(bench.input(), bench.partition, {});
+    EXPECT_EQ(result.split_charts, 0u) << length << ' ' << width;
+    ASSERT_EQ(result.charts.size(), 3u) << length << ' ' << width;
+    std::size_t all = 0, largest = 0;
+    for (const FlatChart& chart : result.charts) {
+      all += chart.triangles.size();
+      largest = std::max(largest, chart.triangles.size());
+      EXPECT_EQ(chart.distortion.flips, 0u);
+      EXPECT_LE(chart.distortion.stretch_999, 1.25);
+    }
+    EXPECT_EQ(all, bench.topology.triangle_count());
+    EXPECT_LT(largest, before);
+    EXPECT_GT(largest, before - before / 20);
+  }
+}
+
+// Without the triangles that went, a chart keeps the uvs that it had: it goes on from them.
+TEST(ChartJob, GoesOnFromItsUvsWhenTrianglesAreGone) {
+  Bench bench(wavy_ramp(0.05), toothed(5, 2));
+  const std::vector<std::uint32_t> before = bench.triangles(0);
+  const ChartOutcome first = bench.flatten(0);
+  ASSERT_EQ(first.uvs.size(), 3 * before.size());
+  std::vector<Vec2d> kept;
+  std::vector<Triangle2> was;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const std::uint32_t t = before[i];
+    if (int(t) / (2 * kRows) >= 10 + kTurn - 1) {  // the tooth
+      bench.partition.chart[t] = 2;
+      continue;
+    }
+    kept.insert(kept.end(), &first.uvs[3 * i], &first.uvs[3 * i] + 3);
+    was.push_back({first.uvs[3 * i], first.uvs[3 * i + 1], first.uvs[3 * i + 2]});
+  }
+  const ChartOutcome resumed = bench.flatten(0, {.resumed = kept});
+  ASSERT_TRUE(resumed.parts.empty());
+  ASSERT_EQ(resumed.flat.corners.size(), was.size());
+  // It keeps to the surface's area, which is less by the tooth's.
+  const double scale = size_of(corners_of(resumed.flat, 0)) / size_of(was[0]);
+  for (std::size_t i = 0; i < was.size(); ++i) {
+    EXPECT_LT(change(scaled(was[i], scale), corners_of(resumed.flat, i)), 1e-9) << i;
+  }
+}
+
+// The same where it was cut short between two rounds: what is left of the chart is in the list of
+// its triangles, and each has its own uvs.
+TEST(ChartJob, RoundsGoOnFromTheLast) {
+  Bench once(wavy_ramp(0.05), toothed(5, 1)), rounds(wavy_ramp(0.05), toothed(5, 1));
+  const std::vector<std::uint32_t> before = once.triangles(0);
+  const ChartOutcome first = once.flatten(0);
+  ASSERT_EQ(first.uvs.size(), 3 * before.size());
+  const FlattenResult result = flatten_charts(rounds.input(), rounds.partition, {});
+  const auto kept = std::max_element(result.charts.begin(), result.charts.end(),
+                                     [](const FlatChart& a, const FlatChart& b) {
+                                       return a.triangles.size() < b.triangles.size();
+                                     });
+  double scale = 0;
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < kept->triangles.size(); ++i) {
+    const auto at = std::lower_bound(before.begin(), before.end(), kept->triangles[i]);
+    if (at == before.end() || *at != kept->triangles[i]) continue;
+    const std::size_t k = 3 * std::size_t(at - before.begin());
+    const Triangle2 was{first.uvs[k], first.uvs[k + 1], first.uvs[k + 2]};
+    if (scale == 0) scale = size_of(corners_of(*kept, i)) / size_of(was);
+    same += change(scaled(was, scale), corners_of(*kept, i)) < 1e-9;
+  }
+  EXPECT_EQ(same, kept->triangles.size());
+}
+
+// Two charts that cross themselves hand triangles over in the same rounds, the first ones to the
+// second: what that goes on from no longer fits it.
+TEST(ChartJob, ChartsThatGetTrianglesBeginAnew) {
+  const int columns = 10 + 2 * (kTurn - 1) + 40;
+  for (const auto& [length, width, most] :
+       {std::tuple{5, 1, 0}, std::tuple{5, 2, 2}, std::tuple{8, 1, 1}}) {
+    Bench bench(wavy_ramp(0.05, columns), toothed(length, width, 2, columns));
+    const FlattenResult result = flatten_charts(bench.input(), bench.partition, {});
+    std::size_t all = 0;
+    for (const FlatChart& chart : result.charts) {
+      all += chart.triangles.size();
+      EXPECT_EQ(chart.distortion.flips, 0u);
+      EXPECT_LE(chart.distortion.stretch_999, 1.02);
+    }
+    EXPECT_EQ(all, bench.topology.triangle_count());
+    EXPECT_LE(result.split_charts, std::uint64_t(most)) << length << ' ' << width;
+  }
+}
+
+// Spikes stretch beyond the bound until they are cut open; where the border crosses itself as well,
+// no cut is made, for none would help.
+TEST(ChartJob, NothingIsCutThatCrossesItselfAnyway) {
+  for (const double spike : {1.0, 1.5}) {
+    Bench open(spiked_ramp(spike, 99), std::vector<std::uint32_t>(99 * 2 * kRows, 0));
+    EXPECT_TRUE(open.flatten(0).parts.empty());
+    EXPECT_TRUE(open.any_seam());
+    Bench crossing(spiked_ramp(spike, 154), std::vector<std::uint32_t>(154 * 2 * kRows, 0));
+    const ChartOutcome outcome = crossing.flatten(0);
+    EXPECT_TRUE(outcome.failed);
+    EXPECT_EQ(outcome.parts.size(), 154u * 2 * kRows);
+    EXPECT_FALSE(crossing.any_seam());
+  }
+}
+
+// A chart in several pieces comes apart into them, and that is no failure.
+TEST(ChartJob, PiecesComeApart) {
+  const Shape shape = together(together(grid(4, 4), moved(grid(3, 3), 1, {5, 0, 0})),
+                               moved(grid(2, 2), 1, {0, 5, 0}));
+  Bench bench(shape, std::vector<std::uint32_t>(shape.triangle_count(), 0));
+  const ChartOutcome outcome = bench.flatten(0);
+  EXPECT_FALSE(outcome.failed);
+  ASSERT_EQ(outcome.parts.size(), shape.triangle_count());
+  for (std::size_t t = 0; t < outcome.parts.size(); ++t) {
+    EXPECT_EQ(outcome.parts[t], t < 32 ? 0 : t < 50 ? 1 : 2) << t;
+  }
+  const FlattenResult result = flatten_charts(bench.input(), bench.partition, {});
+  EXPECT_EQ(result.split_charts, 0u);
+  ASSERT_EQ(result.charts.size(), 3u);
+  EXPECT_EQ(result.charts[1].triangles.size(), 18u);
+}
+
+// A large part that is flat already and two columns that do not fit: only what lies around them is
+// changed, where a union of equals is squeezed as a whole.
+TEST(ChartJob, ALittlePartLeavesALargeOneAsItIs) {
+  constexpr int columns = 80, fitting = columns - 2;
+  for (const double stretch : {1.4, 1.5, 1.6}) {
+    for (const bool little : {true, false}) {
+      Bench bench(wavy_ramp(0.1, columns), std::vector<std::uint32_t>(columns * 2 * kRows, 0));
+      const ChartOutcome whole = bench.flatten(0);
+      ASSERT_TRUE(whole.parts.empty());
+      std::vector<Vec2d> joined;
+      std::vector<Triangle2> was;
+      for (std::size_t i = 0; i < whole.flat.corners.size(); ++i) {
+        was.push_back(corners_of(whole.flat, i));
+        const double f = int(i) / (2 * kRows) < fitting ? 1 : stretch;
+        for (const Vec2d& p : was.back()) joined.push_back({f * p.x, p.y / f});
+      }
+      const ChartOutcome both =
+          bench.flatten(0, {.cuts = 0, .joined = joined, .little = little, .whole = true});
+      ASSERT_TRUE(both.parts.empty());
+      EXPECT_LE(both.flat.distortion.stretch_999, 1.25);
+      EXPECT_EQ(both.flat.distortion.flips, 0u);
+      // Both keep to the surface's area: compared at the first triangle's size.
+      const double scale = size_of(corners_of(both.flat, 0)) / size_of(was[0]);
+      const std::size_t far_off = 50 * 2 * kRows;
+      double most = 0;
+      for (std::size_t i = 0; i < far_off; ++i) {
+        most = std::max(most, change(scaled(was[i], scale), corners_of(both.flat, i)));
+      }
+      if (little) {
+        EXPECT_LT(most, 1e-6) << stretch;
+      } else {
+        EXPECT_GT(most, 1e-5) << stretch;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace atlas::test
