@@ -98,6 +98,32 @@ TEST(SimplifyHostile, OnlyDegenerateTriangles) {
   EXPECT_EQ(coarse.triangles_out, coarse.degenerate_kept);
 }
 
+// A middle with many spokes, all of whose neighbours can go before it does.
+TEST(SimplifyHostile, AHubInsideGoesOnceItsNeighboursHave) {
+  constexpr std::uint32_t n = 400;
+  Vertices vertices = {flat_vertex(0, 0)};
+  std::vector<std::uint32_t> triangles;
+  for (const double radius : {0.5, 1.0}) {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      // A square: its sides are straight, so that the rim goes, too.
+      const double angle = 2 * 3.14159265358979 * (i + 0.5) / n, x = std::cos(angle),
+                   y = std::sin(angle), side = radius / std::max(std::abs(x), std::abs(y));
+      vertices.push_back(flat_vertex(side * x, side * y));
+    }
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t a = 1 + i, b = 1 + (i + 1) % n, c = a + n, d = b + n;
+    triangles.insert(triangles.end(), {0, a, b, a, c, d, a, d, b});
+  }
+  ChartedMeshBuilder builder;
+  builder.add_chart(vertices, triangles);
+  const ChartedMesh mesh = builder.build();
+  const SimplifiedMesh coarse = simplify(mesh, 100);
+  expect_sound(mesh, coarse, 100);
+  EXPECT_EQ(std::count(coarse.indices.begin(), coarse.indices.end(), 0u), 0);
+  EXPECT_LT(coarse.triangles_out, 20U);
+}
+
 TEST(SimplifyHostile, FansThatTouchAtOneVertex) {
   // Two plates in one chart share a single uv; two more share the position only.
   ChartedMeshBuilder builder;
@@ -203,6 +229,18 @@ TEST(SimplifyHostile, BadOptionsAndInput) {
   EXPECT_EQ(with(broken, densities), ErrorCode::bad_input);
   broken = mesh;
   broken.charts.uv_vertex[3] = 100000;
+  EXPECT_EQ(with(broken, densities), ErrorCode::bad_input);
+  broken = mesh;
+  broken.charts.uvs.pop_back();
+  EXPECT_EQ(with(broken, densities), ErrorCode::bad_input);
+  broken = mesh;
+  broken.charts.charts[5].triangle_count = 1000;
+  EXPECT_EQ(with(broken, densities), ErrorCode::bad_input);
+  broken = mesh;
+  broken.charts.charts[5].uv_count = 1000;
+  EXPECT_EQ(with(broken, densities), ErrorCode::bad_input);
+  broken = mesh;
+  broken.charts.chart_triangles[7] = 100000;
   EXPECT_EQ(with(broken, densities), ErrorCode::bad_input);
   broken = mesh;
   broken.indices.pop_back();
