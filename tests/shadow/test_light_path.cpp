@@ -135,6 +135,12 @@ TEST(LightPath, SaysWhatIsWrong) {
 TEST(LightPath, Text) {
   EXPECT_EQ(parse_light_path("sun:10,-33.5,8", {})->sun.latitude, -33.5);
   EXPECT_EQ(parse_light_path("sun", {})->kind, PathKind::sun);
+  EXPECT_EQ(parse_light_path("line:1,2,3;4,5,6", {})->kind, PathKind::line);
+  EXPECT_EQ(parse_light_path("fixed:1,2,3", {})->directions, (std::vector<Vec3d>{{1, 2, 3}}));
+  const Result<LightPathOptions> keys = parse_light_path("keys:1,2,3;4,5,6;-7,8,1e-3", {});
+  ASSERT_TRUE(keys.ok());
+  EXPECT_EQ(keys->kind, PathKind::keys);
+  EXPECT_EQ(keys->directions, (std::vector<Vec3d>{{1, 2, 3}, {4, 5, 6}, {-7, 8, 1e-3}}));
   const Result<LightPathOptions> arc = parse_light_path("arc:1,2,3;-1,.5,1e1", {});
   ASSERT_TRUE(arc.ok());
   EXPECT_EQ(arc->directions[1], (Vec3d{-1, 0.5, 10}));

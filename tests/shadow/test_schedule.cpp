@@ -97,6 +97,21 @@ TEST(Schedule, AStaticLightDrawsExactlyOneMap) {
       }
 }
 
+TEST(Schedule, NonsenseLimitsAreTheWidest) {
+  const auto frames_of = [](double most) {
+    ScheduleOptions o;
+    o.max_key_degrees = most;
+    KeySchedule schedule(o);
+    std::vector<double> t;
+    for (int f = 0; f < 60; ++f)
+      t.push_back(schedule.next(turned(f * 7), [&](int n) { return turned((f + n) * 7); }).t);
+    return t;
+  };
+  const std::vector<double> widest = frames_of(kMaxKeyDegrees);
+  for (const double most : {0.0, -5.0, 1e9, std::nan("")}) EXPECT_EQ(frames_of(most), widest);
+  EXPECT_NE(frames_of(16), widest);
+}
+
 TEST(Schedule, AJumpRefreshesAtOnce) {
   ScheduleOptions o;
   KeySchedule schedule(o);

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <thread>
 
@@ -113,6 +114,57 @@ TEST_F(AtlasPlay, AStaticLightIsOnePass) {
   EXPECT_EQ(r.exit_code, 0) << r.errors;
   EXPECT_NE(r.output.find("20 frames"), std::string::npos) << r.output;
   EXPECT_NE(r.output.find(", 1 shadow maps begun"), std::string::npos) << r.output;
+}
+
+TEST_F(AtlasPlay, RecordsEveryFrameFromTheCameraAskedFor) {
+  const std::string common =
+      "roof.obj --headless --software -q --width 32 --height 16 --map 32 --frames 3 --up z "
+      "--light 'keys:0,1,0;1,1,0;1,1,1' --light-end back --step 20 ";
+  ASSERT_EQ(run(common + "--record a --camera '0,3,4;0,0,0'").exit_code, 0);
+  ASSERT_EQ(run(common + "--record b --camera '0,3,4;0,0,0'").exit_code, 0);
+  ASSERT_EQ(run(common + "--record c --camera '3,3,1;0,0,0'").exit_code, 0);
+  for (int f = 0; f < 3; ++f) {
+    const std::string name = fmt::format("frame{:05}.png", f);
+    EXPECT_FALSE(text_of(dir_ / "a" / name).empty());
+    EXPECT_EQ(text_of(dir_ / "a" / name), text_of(dir_ / "b" / name));
+    EXPECT_NE(text_of(dir_ / "a" / name), text_of(dir_ / "c" / name));
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(dir_ / "a"), fs::directory_iterator()), 3);
+  for (const char* camera : {"1,2,3;1,2,3", "1,2,3;4,5", "1,2,3;4,5,6x", "nan,2,3;4,5,6"}) {
+    const RunResult r = run(common + fmt::format("--camera '{}'", camera));
+    EXPECT_EQ(r.exit_code, 2) << camera;
+    EXPECT_NE(r.errors.find("two different points"), std::string::npos) << r.errors;
+  }
+}
+
+TEST_F(AtlasPlay, LightPathsThatCannotBe) {
+  for (const std::string light : {"fixed:0,0,0", "fixed:1,nan,0", "keys:0,1,0", "arc:1,0,0;-1,0,0",
+                                  "sun:1,89,12", "line:", "nowhere:1", "line:1,0,0;0,1,0;0,0,1"}) {
+    const RunResult r =
+        run(fmt::format("roof.obj --headless --software -q --frames 1 --light '{}'", light));
+    EXPECT_EQ(r.exit_code, 2) << light;
+    EXPECT_EQ(r.errors.rfind("atlas-play: error: light path", 0), 0u) << r.errors;
+    EXPECT_EQ(std::count(r.errors.begin(), r.errors.end(), '\n'), 1) << r.errors;
+  }
+}
+
+TEST_F(AtlasPlay, TheBenchMeasuresWhatItIsAsked) {
+  const std::string bench =
+      "roof.obj --software --width 48 --height 32 --map 32 --bench-seconds 0 --bench-frames 2 "
+      "--bench-shadings unlit,ward --bench-methods none,march --bench-error-frames 2 "
+      "--bench-intervals 2,4 --bench ";
+  const RunResult r = run(bench + "b");
+  ASSERT_EQ(r.exit_code, 0) << r.errors;
+  for (const char* words : {"| unlit | none |", "| ward | march |", "| march | 2 |",
+                            "| march | 4 |", "wrote b (gnuplot"}) {
+    EXPECT_NE(r.output.find(words), std::string::npos) << words << "\n" << r.output;
+  }
+  EXPECT_EQ(r.output.find("lambert |"), std::string::npos);
+  EXPECT_NE(text_of(dir_ / "b" / "summary.json").find("ward"), std::string::npos);
+  EXPECT_TRUE(fs::exists(dir_ / "b" / "error.dat"));
+  const RunResult times = run(bench + "c --no-errors");
+  ASSERT_EQ(times.exit_code, 0) << times.errors;
+  EXPECT_EQ(times.output.find("| march | 2 |"), std::string::npos) << times.output;
 }
 
 TEST_F(AtlasPlay, ThePlanNamesWhatIsNotCompiled) {
