@@ -28,6 +28,7 @@ constexpr double kTie = 0.0041;
 constexpr double kKeysPerStep = 66, kLargestKey = 2e9;
 constexpr float kBetweenParts = 0.29f;  // so that round values are not at a part's limit
 constexpr float kCosineParts = 4096;
+constexpr std::uint32_t kStretch = 64;  // grains
 
 // What distances in a piece are measured by: its mean step.
 class Ruler {
@@ -140,6 +141,7 @@ class Seeder {
   }
 
   void sample_piece(std::uint32_t first, std::uint32_t last, std::uint32_t budget) {
+    farthest_.assign((last - first + kStretch - 1) / kStretch, kFar);
     add_seed(first + static_cast<std::uint32_t>(options_.first_seed * (last - first)));
     for (std::uint32_t count = 1; count < budget && !context_.cancelled(); ++count) {
       const std::uint32_t grain = farthest(first, last);
@@ -149,16 +151,33 @@ class Seeder {
     add_leaning(first, last);
   }
 
-  // The last of those that are farthest from all seeds. A plain look at all of them: they are few,
-  // and what a priority queue must move at each seed is more.
-  std::uint32_t farthest(std::uint32_t first, std::uint32_t last) const {
-    std::int32_t most = 0;  // bits order as what they stand for; compilers compare four at once
-    for (std::uint32_t g = first; g < last; ++g) {
-      most = std::max(most, std::bit_cast<std::int32_t>(distance_[g]));
+  // The last of those that are farthest from all seeds. While seeds are added distances only fall,
+  // so what is remembered of a stretch of grains bounds them, and few stretches are looked at
+  // again.
+  std::uint32_t farthest(std::uint32_t first, std::uint32_t last) {
+    const auto end_of = [&](std::size_t s) {
+      return std::min<std::uint32_t>(last, first + kStretch * static_cast<std::uint32_t>(s + 1));
+    };
+    const auto look_again = [&](std::size_t s) {
+      std::int32_t most = 0;  // bits order as what they stand for; compilers compare four at once
+      for (std::uint32_t g = first + kStretch * std::uint32_t(s); g < end_of(s); ++g) {
+        most = std::max(most, std::bit_cast<std::int32_t>(distance_[g]));
+      }
+      return std::exchange(farthest_[s], std::bit_cast<float>(most)) == std::bit_cast<float>(most);
+    };
+    std::size_t s = 0;
+    do {
+      s = std::size_t(std::max_element(farthest_.begin(), farthest_.end()) - farthest_.begin());
+    } while (!look_again(s));
+    const float most = farthest_[s];
+    for (s = farthest_.size(); s-- > 0;) {
+      if (ruler_.shorter(farthest_[s], most)) continue;
+      for (std::uint32_t g = end_of(s); g-- > first + kStretch * std::uint32_t(s);) {
+        if (!ruler_.shorter(distance_[g], most)) return g;
+      }
+      look_again(s);
     }
-    while (ruler_.shorter(distance_[--last], std::bit_cast<float>(most))) {
-    }
-    return last;
+    return first;  // not reached: the farthest itself is no nearer
   }
 
   // Seeds that are about equally far from all others are found in an order that rounding decides.
@@ -254,7 +273,8 @@ class Seeder {
   const Context& context_;
   std::vector<float> distance_;
   std::vector<std::uint32_t> owner_;
-  Ruler ruler_;  // of the piece at hand
+  std::vector<float> farthest_;  // 1 a stretch of the piece's grains: none is farther
+  Ruler ruler_;                  // of the piece at hand
   RingQueue<Visit> queue_;
 };
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <memory_resource>
 #include <vector>
 
 namespace atlas {
@@ -35,7 +36,7 @@ class RingQueue {
   // The entry that pop() will return after `count` others, if that is known already and not far;
   // else nullptr. For fetching ahead what it needs.
   const Entry* ahead(std::size_t count) const {
-    const std::vector<Entry>& bucket = buckets_[next_];
+    const auto& bucket = buckets_[next_];
     return count < bucket.size() ? &bucket[bucket.size() - 1 - count] : nullptr;
   }
 
@@ -47,7 +48,7 @@ class RingQueue {
       if (word == used_.size()) word = refill();
     }
     next_ = 64 * word + static_cast<std::uint32_t>(std::countr_zero(used_[word]));
-    std::vector<Entry>& bucket = buckets_[next_];
+    auto& bucket = buckets_[next_];
     const Entry entry = bucket.back();
     bucket.pop_back();
     if (bucket.empty()) used_[word] &= ~(std::uint64_t{1} << (next_ % 64));
@@ -75,7 +76,8 @@ class RingQueue {
     return 0;
   }
 
-  std::array<std::vector<Entry>, kBuckets> buckets_;
+  std::pmr::monotonic_buffer_resource memory_;  // thousands of small buckets, gone together
+  std::pmr::vector<std::pmr::vector<Entry>> buckets_{kBuckets, &memory_};
   std::array<std::uint64_t, kBuckets / 64> used_{};
   std::vector<Entry> far_, moving_;
   std::uint32_t base_ = 0, next_ = 0;  // the first bucket's key; where to look first

@@ -65,10 +65,6 @@ const CornerLists& ArapSolver::corners() {
   return w_.corners;
 }
 
-void ArapSolver::build_stiffness() {
-  param::build_stiffness(w_.elements, corners(), w_.stiffness);
-}
-
 void ArapSolver::factorize() {
   factorized_ = true;
   area_ = 0;
@@ -92,22 +88,23 @@ void ArapSolver::factorize() {
   if (n > envelope_limit) {
     factorize_directly();
   } else {
-    method_ = Method::envelope;
-    build_stiffness();
-    w_.envelope.factorize(w_.stiffness, ordered_);
-    ordered_ = true;
+    factorize_envelope();
   }
 }
 
 void ArapSolver::factorize_directly() {
   method_ = Method::direct;
-  build_stiffness();
+  build_stiffness(w_.elements, corners(), w_.stiffness);
   if (!w_.direct.factorize(w_.stiffness, analyzed_)) {
-    method_ = Method::envelope;  // it can do without some pivots
-    w_.envelope.factorize(w_.stiffness, ordered_);
-    ordered_ = true;
+    factorize_envelope();  // it can do without some pivots
   }
   analyzed_ = true;
+}
+
+void ArapSolver::factorize_envelope() {
+  method_ = Method::envelope;
+  w_.envelope.factorize(w_.elements, mesh_.positions.size(), ordered_);
+  ordered_ = true;
 }
 
 // Solves for w_.load, which is not kept; uvs come in as a guess.

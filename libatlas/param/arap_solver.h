@@ -67,8 +67,8 @@ class ArapSolver {
   void wake(std::span<const Vec2d> uvs);
   void factorize();
   void factorize_directly();
+  void factorize_envelope();
   const CornerLists& corners();
-  void build_stiffness();
   // The energy of the error that multigrid may leave: the larger of a part of the area and a part
   // of what it finds.
   struct Inexactness {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "libatlas/param/linear_solver.h"
 
@@ -12,53 +13,94 @@ constexpr std::uint32_t unseen = 0xffffffff;
 // Blocks of 4 x 4, column after column: what one processor's registers hold.
 constexpr std::size_t side = 4, block_size = side * side;
 
-// Two neighbouring rows of a column. Vectors of this size are elementary to every 64-bit processor,
-// and their arithmetic is that of their elements.
-using Pair = double __attribute__((vector_size(16), may_alias));
-struct Block {
-  Pair part[block_size / 2];
-};
+// The four rows of a column. Compilers take as many instructions for its arithmetic as the
+// processor at hand needs; its results are those of its elements. What std::vector allocates begins
+// at a multiple of 16 bytes.
+using Column = double __attribute__((vector_size(32), aligned(16), may_alias));
+static_assert(sizeof(Column) == side * sizeof(double) && __STDCPP_DEFAULT_NEW_ALIGNMENT__ >= 16);
 
-Block load(const double* from) {
-  Block out;
-  for (std::size_t i = 0; i < block_size / 2; ++i)
-    out.part[i] = reinterpret_cast<const Pair*>(from)[i];
-  return out;
-}
-
-void store(const Block& block, double* to) {
-  for (std::size_t i = 0; i < block_size / 2; ++i) reinterpret_cast<Pair*>(to)[i] = block.part[i];
-}
+// The functions below are compiled for processors with vectors of 32 bytes as well, and the loader
+// chooses. ThreadSanitizer is not ready yet when it does.
+#if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_THREAD__)
+#define ATLAS_WIDE_VECTORS [[gnu::target_clones("avx2", "default")]]
+#else
+#define ATLAS_WIDE_VECTORS
+#endif
 
 // sum -= a b'
-inline void subtract_product(const double* a, const double* b, Block& sum) {
+[[gnu::always_inline]] inline void subtract_product(const Column* a, const double* b, Column* sum) {
 #pragma GCC unroll 1  // else the sum does not stay in registers
   for (std::size_t k = 0; k < side; ++k) {
-    const Pair low = reinterpret_cast<const Pair*>(a + side * k)[0];
-    const Pair high = reinterpret_cast<const Pair*>(a + side * k)[1];
-    for (std::size_t j = 0; j < side; ++j) {
-      const double factor = b[side * k + j];
-      sum.part[2 * j] -= low * factor;
-      sum.part[2 * j + 1] -= high * factor;
-    }
+    for (std::size_t j = 0; j < side; ++j) sum[j] -= a[k] * b[side * k + j];
   }
 }
 
+// A block of the factor from the sum of what was filled in; `begin` and `other` are the first
+// blocks of its row and of its column's row that both have, all before `own` done.
+ATLAS_WIDE_VECTORS void eliminate_block(double* own, const double* begin, const double* other,
+                                        const double* inverse_pivot) {
+  Column sum[side];
+  Column* const out = reinterpret_cast<Column*>(own);
+  for (std::size_t j = 0; j < side; ++j) sum[j] = out[j];
+  for (const double* a = begin; a != own; a += block_size, other += block_size) {
+    subtract_product(reinterpret_cast<const Column*>(a), other, sum);
+  }
+  if (inverse_pivot) {
+    for (std::size_t j = 0; j < side; ++j) {
+      sum[j] *= inverse_pivot[j];
+      for (std::size_t k = j + 1; k < side; ++k) sum[k] -= sum[j] * other[side * j + k];
+    }
+  }
+  for (std::size_t j = 0; j < side; ++j) out[j] = sum[j];
+}
+
 }  // namespace
+
+// Where entry (i, j) of the reordered matrix lies, j <= i.
+inline std::size_t EnvelopeSolver::place(std::size_t i, std::size_t j) const {
+  return block_size * (row_[i / side] + (j / side - first_[i / side])) + side * (j % side) +
+         i % side;
+}
 
 inline double* EnvelopeSolver::block(std::size_t row, std::size_t column) {
   return factor_.data() + block_size * (row_[row] + (column - first_[row]));
 }
 
+// In the order in which elements name them.
+EnvelopeSolver::Graph EnvelopeSolver::connect(const Elements& elements, std::size_t vertices) {
+  graph_first_.assign(vertices + 1, 0);
+  graph_column_.resize(6 * elements.size());
+  elements.visit([&](const auto& each) {
+    for (std::size_t t = 0; t < elements.size(); ++t) {
+      const Element& e = each[t];
+      for (const std::uint32_t v : e.v) graph_first_[v] += 2;
+    }
+    std::uint32_t end = 0;
+    for (std::uint32_t& first : graph_first_) first = std::exchange(end, end + first);
+    for (std::size_t t = 0; t < elements.size(); ++t) {
+      const Element& e = each[t];
+      for (std::size_t k = 0; k < 3; ++k) {
+        std::uint32_t& next = graph_first_[e.v[k]];
+        graph_column_[next++] = e.v[(k + 1) % 3];
+        graph_column_[next++] = e.v[(k + 2) % 3];
+      }
+    }
+  });
+  for (std::size_t v = vertices; v > 0; --v) graph_first_[v] = graph_first_[v - 1];
+  graph_first_[0] = 0;
+  return {graph_first_, graph_column_};
+}
+
 // Breadth-first from start over vertices whose position_ is unseen; fills queue_ and returns the
 // last.
-std::uint32_t EnvelopeSolver::sweep(const SymmetricMatrix& matrix, std::uint32_t start) {
+std::uint32_t EnvelopeSolver::sweep(const Graph& graph, std::uint32_t start) {
   queue_.assign(1, start);
   position_[start] = 0;
   for (std::size_t i = 0; i < queue_.size(); ++i) {
     const std::uint32_t v = queue_[i];
-    for (std::uint32_t k = matrix.first[v]; k < matrix.first[v + 1]; ++k) {
-      const std::uint32_t w = matrix.column[k];
+    for (std::uint32_t k = graph.first[v]; k < graph.first[v + 1]; ++k) {
+      const std::uint32_t w = graph.column[k];
       if (position_[w] != unseen) continue;
       position_[w] = static_cast<std::uint32_t>(queue_.size());
       queue_.push_back(w);
@@ -67,8 +109,8 @@ std::uint32_t EnvelopeSolver::sweep(const SymmetricMatrix& matrix, std::uint32_t
   return queue_.back();
 }
 
-void EnvelopeSolver::order(const SymmetricMatrix& matrix) {
-  const std::uint32_t n = static_cast<std::uint32_t>(matrix.rows());
+void EnvelopeSolver::order(const Graph& graph) {
+  const std::uint32_t n = static_cast<std::uint32_t>(graph.rows());
   order_.clear();
   position_.assign(n, unseen);
   held_.assign(n, 0);
@@ -76,11 +118,11 @@ void EnvelopeSolver::order(const SymmetricMatrix& matrix) {
     if (position_[v] != unseen) continue;
     std::uint32_t start = v;
     for (int pass = 0; pass < 2; ++pass) {  // the farthest vertex is a good end to start from
-      const std::uint32_t end = sweep(matrix, start);
+      const std::uint32_t end = sweep(graph, start);
       for (const std::uint32_t w : queue_) position_[w] = unseen;
       start = end;
     }
-    sweep(matrix, start);
+    sweep(graph, start);
     held_[start] = 1;  // the last of its piece to be eliminated: its pivot is nothing but rounding
     order_.insert(order_.end(), queue_.begin(), queue_.end());
   }
@@ -88,8 +130,8 @@ void EnvelopeSolver::order(const SymmetricMatrix& matrix) {
   for (std::uint32_t i = 0; i < n; ++i) position_[order_[i]] = i;
 }
 
-void EnvelopeSolver::find_envelope(const SymmetricMatrix& matrix) {
-  const std::size_t n = matrix.rows(), blocks = (n + side - 1) / side;
+void EnvelopeSolver::find_envelope(const Graph& graph) {
+  const std::size_t n = graph.rows(), blocks = (n + side - 1) / side;
   first_.resize(blocks);
   row_.resize(blocks + 1);
   row_[0] = 0;
@@ -97,8 +139,8 @@ void EnvelopeSolver::find_envelope(const SymmetricMatrix& matrix) {
     std::uint32_t first = static_cast<std::uint32_t>(side * b);
     for (std::size_t i = side * b; i < std::min(side * (b + 1), n); ++i) {
       const std::uint32_t v = order_[i];
-      for (std::uint32_t k = matrix.first[v]; k < matrix.first[v + 1]; ++k) {
-        first = std::min(first, position_[matrix.column[k]]);
+      for (std::uint32_t k = graph.first[v]; k < graph.first[v + 1]; ++k) {
+        first = std::min(first, position_[graph.column[k]]);
       }
     }
     first_[b] = first / side;
@@ -106,58 +148,86 @@ void EnvelopeSolver::find_envelope(const SymmetricMatrix& matrix) {
   }
 }
 
+void EnvelopeSolver::find_places(const Elements& elements) {
+  places_.resize(elements.size());
+  elements.visit([&](const auto& each) {
+    for (std::size_t t = 0; t < elements.size(); ++t) {
+      const Element& e = each[t];
+      const std::uint32_t p[3] = {position_[e.v[0]], position_[e.v[1]], position_[e.v[2]]};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = p[(k + 1) % 3], b = p[(k + 2) % 3];
+        places_[t][k] = place(std::max(a, b), std::min(a, b));
+      }
+    }
+  });
+}
+
 // Copies the matrix into the envelope; rows beyond the last are 0.
 void EnvelopeSolver::fill(const SymmetricMatrix& matrix) {
   factor_.assign(block_size * row_.back(), 0);
   for (std::uint32_t i = 0; i < matrix.rows(); ++i) {
     const std::uint32_t v = order_[i];
-    double* row = factor_.data() + block_size * row_[i / side] + i % side;
-    const std::uint32_t first = side * first_[i / side];
-    row[side * (i - first)] = matrix.diagonal[v];
+    factor_[place(i, i)] = matrix.diagonal[v];
     for (std::uint32_t k = matrix.first[v]; k < matrix.first[v + 1]; ++k) {
       const std::uint32_t j = position_[matrix.column[k]];
-      if (j < i) row[side * (j - first)] += matrix.value[k];
+      if (j < i) factor_[place(i, j)] += matrix.value[k];
     }
   }
+}
+
+void EnvelopeSolver::fill(const Elements& elements) {
+  factor_.assign(block_size * row_.back(), 0);
+  diagonal_.assign(order_.size(), 0);
+  elements.visit([&](const auto& each) {
+    for (std::size_t t = 0; t < elements.size(); ++t) {
+      const Element& e = each[t];
+      const ElementStiffness s = e.stiffness();
+      for (std::size_t k = 0; k < 3; ++k) {
+        diagonal_[e.v[k]] += s.own[k];
+        factor_[places_[t][k]] += s.across[k];
+      }
+    }
+  });
+  for (std::size_t i = 0; i < order_.size(); ++i) factor_[place(i, i)] = diagonal_[order_[i]];
 }
 
 // Block (b, c) of the factor, all before it done.
-void EnvelopeSolver::eliminate(std::size_t b, std::size_t c) {
-  double* own = block(b, c);
-  Block sum = load(own);
+void EnvelopeSolver::eliminate_at(std::size_t b, std::size_t c) {
   const std::size_t begin = std::max(first_[b], first_[c]);
-  const double *a = block(b, begin), *other = block(c, begin);
-  for (; a != own; a += block_size, other += block_size) subtract_product(a, other, sum);
-  if (b != c) {
-    for (std::size_t j = 0; j < side; ++j) {
-      const double scale = inverse_pivot_[side * c + j];
-      sum.part[2 * j] *= scale;
-      sum.part[2 * j + 1] *= scale;
-      for (std::size_t k = j + 1; k < side; ++k) {
-        sum.part[2 * k] -= sum.part[2 * j] * other[side * j + k];
-        sum.part[2 * k + 1] -= sum.part[2 * j + 1] * other[side * j + k];
-      }
-    }
-  }
-  store(sum, own);
+  eliminate_block(block(b, c), block(b, begin), block(c, begin),
+                  b == c ? nullptr : &inverse_pivot_[side * c]);
 }
 
-void EnvelopeSolver::factorize(const SymmetricMatrix& matrix, bool same_pattern) {
-  const std::size_t n = matrix.rows();
-  if (!same_pattern) {
-    order(matrix);
-    find_envelope(matrix);
-  }
+void EnvelopeSolver::factorize(const SymmetricMatrix& matrix) {
+  const Graph graph{matrix.first, matrix.column};
+  order(graph);
+  find_envelope(graph);
   fill(matrix);
+  eliminate(matrix.diagonal);
+}
+
+void EnvelopeSolver::factorize(const Elements& elements, std::size_t vertices, bool same_mesh) {
+  if (!same_mesh) {
+    const Graph graph = connect(elements, vertices);
+    order(graph);
+    find_envelope(graph);
+    find_places(elements);
+  }
+  fill(elements);
+  eliminate(diagonal_);
+}
+
+// The factor of what was filled in, whose diagonal is given, 1 a vertex.
+void EnvelopeSolver::eliminate(std::span<const double> diagonal) {
   const std::size_t blocks = first_.size();
   inverse_pivot_.assign(side * blocks, 0);
   for (std::size_t b = 0; b < blocks; ++b) {
-    for (std::size_t c = first_[b]; c <= b; ++c) eliminate(b, c);
+    for (std::size_t c = first_[b]; c <= b; ++c) eliminate_at(b, c);
     double* own = block(b, b);
-    for (std::size_t j = 0; j < std::min(side, n - side * b); ++j) {
+    for (std::size_t j = 0; j < std::min(side, order_.size() - side * b); ++j) {
       const std::uint32_t v = order_[side * b + j];
       const double pivot = own[side * j + j];
-      if (held_[v] == 0 && pivot > 1e-15 * matrix.diagonal[v]) {
+      if (held_[v] == 0 && pivot > 1e-15 * diagonal[v]) {
         inverse_pivot_[side * b + j] = 1 / std::sqrt(pivot);
       }
       for (std::size_t r = j + 1; r < side; ++r) own[side * j + r] *= inverse_pivot_[side * b + j];

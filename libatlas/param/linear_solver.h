@@ -1,6 +1,7 @@
 // Internal: solvers for the stiffness systems, two right-hand sides (u and v) at once.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -14,17 +15,30 @@ namespace atlas::param {
 // kernel holds the constants: one vertex of each connected piece gets the solution 0.
 class EnvelopeSolver {
  public:
-  // same_pattern: the entries stand where they stood in the last call, so its order is kept.
-  void factorize(const SymmetricMatrix& matrix, bool same_pattern = false);
+  void factorize(const SymmetricMatrix& matrix);
+  // The elements' stiffness (as build_stiffness), which goes straight to its places. same_mesh:
+  // they are those of the last call but for their weights, so its order is kept.
+  void factorize(const Elements& elements, std::size_t vertices, bool same_mesh);
   // Overwrites x with the solution for the right-hand side `load`.
   void solve(std::span<const glm::dvec2> load, std::span<glm::dvec2> x);
 
  private:
-  void order(const SymmetricMatrix& matrix);
-  std::uint32_t sweep(const SymmetricMatrix& matrix, std::uint32_t start);
-  void find_envelope(const SymmetricMatrix& matrix);
+  // The neighbours of each row; repeated ones do no harm.
+  struct Graph {
+    std::span<const std::uint32_t> first, column;
+    std::size_t rows() const { return first.size() - 1; }
+  };
+
+  Graph connect(const Elements& elements, std::size_t vertices);
+  void order(const Graph& graph);
+  std::uint32_t sweep(const Graph& graph, std::uint32_t start);
+  void find_envelope(const Graph& graph);
+  void find_places(const Elements& elements);
   void fill(const SymmetricMatrix& matrix);
-  void eliminate(std::size_t row, std::size_t column);
+  void fill(const Elements& elements);
+  void eliminate(std::span<const double> diagonal);
+  void eliminate_at(std::size_t row, std::size_t column);
+  std::size_t place(std::size_t i, std::size_t j) const;
   double* block(std::size_t row, std::size_t column);
 
   std::vector<std::uint32_t> order_, position_, queue_;
@@ -34,6 +48,11 @@ class EnvelopeSolver {
   std::vector<std::size_t> row_;
   std::vector<double> factor_, inverse_pivot_;
   std::vector<glm::dvec2> work_;
+  // Of elements: their graph; where the entries of an element's sides opposite to its corners lie
+  // in the factor; the sums on the diagonal, 1 a vertex.
+  std::vector<std::uint32_t> graph_first_, graph_column_;
+  std::vector<std::array<std::size_t, 3>> places_;
+  std::vector<double> diagonal_;
 };
 
 // Eigen's simplicial LDLT behind a pointer, so that its headers stay in one file.

@@ -121,13 +121,12 @@ void fill_stiffness(const Each& each, std::size_t count, const CornerLists& corn
     for (std::uint32_t i = corners.first[row]; i < corners.first[row + 1]; ++i) {
       const Element& e = each[corners.corner[i] / 3];
       const std::uint32_t k = corners.corner[i] % 3;
-      const auto g = e.area_gradients();
-      const glm::dvec2 own = g[k] * (e.weight / e.area());
-      diagonal += glm::dot(own, g[k]);
+      const ElementStiffness s = e.stiffness();
+      diagonal += s.own[k];
       for (const std::uint32_t other : {(k + 1) % 3, (k + 2) % 3}) {
         const std::uint32_t column = e.v[other];
         std::uint32_t& at = place[column];
-        const double v = glm::dot(own, g[other]);
+        const double v = s.across[3 - k - other];
         if (at == unseen || at < begin) {
           at = end++;
           out.column[at] = column;

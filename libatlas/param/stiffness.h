@@ -17,6 +17,12 @@ void give_back(std::vector<T>& v) {
   std::vector<T>().swap(v);
 }
 
+// Weight times area times the products of the gradients of an element's hat functions: of each
+// corner's with itself, and of the two others'.
+struct ElementStiffness {
+  std::array<double, 3> own, across;
+};
+
 // A rest shape with a positive altitude. What can be had from the rest in a few cycles is not kept.
 struct Element {
   std::array<std::uint32_t, 3> v;
@@ -32,6 +38,13 @@ struct Element {
   std::array<glm::dvec2, 3> area_gradients() const {
     const glm::dvec2 g1(0.5 * altitude, -0.5 * foot), g2(0, 0.5 * length);
     return {-(g1 + g2), g1, g2};
+  }
+  ElementStiffness stiffness() const {
+    const double scale = 0.5 * weight / (length * altitude), rest = length - foot;
+    const double squared = altitude * altitude;
+    return {
+        {(squared + rest * rest) * scale, (squared + foot * foot) * scale, length * length * scale},
+        {-foot * length * scale, -rest * length * scale, (foot * rest - squared) * scale}};
   }
 };
 
