@@ -14,7 +14,7 @@ namespace atlas::param {
 namespace {
 
 // Up to so many vertices each solver is the fastest (measured); multigrid takes the rest.
-constexpr std::size_t envelope_limit = 3000;
+constexpr std::size_t envelope_limit = 4500;
 constexpr std::size_t direct_limit = 6000;
 // The energy that an inexact solve may leave: as part of the area in the first step, which starts
 // from nothing, later as part of what it finds. An exact solve is worth little more than what the
