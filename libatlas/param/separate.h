@@ -62,6 +62,7 @@ class Separator {
   bool collides(std::uint32_t half_edge) const;
 
   Injectivity check(std::span<const Vec2d> uvs) const;
+  bool stalled();
   bool draw_until_simple(Relaxer& relaxer, std::span<Vec2d> uvs);
   void settle(Relaxer& relaxer, double least_gain, std::span<Vec2d> uvs);
 
@@ -80,6 +81,7 @@ class Separator {
   bool across_ = false;                         // not by way of the edges that cross the stretch
   std::vector<Relaxer::Spring> springs_;
   std::vector<double> pulled_;        // 1 a vertex: how far its spring reaches
+  std::vector<double> pulls_;         // 1 a round: how far all springs reach together
   std::vector<std::uint32_t> place_;  // 1 a vertex: 1 + its spring's place, or 0
   std::vector<std::uint32_t> moved_;  // vertices that had a spring
   std::vector<Vec2d> saved_;
