@@ -1,0 +1,244 @@
+#include "libatlas/charts/seeds.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "libatlas/charts/cell_distance.h"
+#include "libatlas/charts/ring_queue.h"
+
+namespace atlas {
+namespace {
+
+constexpr double kFlatSpread = 1e-6;
+constexpr std::uint32_t kCalmGrain = 3;
+constexpr float kBetweenParts = 0.29f;  // so that round values are not at a part's limit
+constexpr float kCosineParts = 4096;
+constexpr std::uint32_t kStretch = 64;  // grains
+
+struct Visit {
+  std::uint32_t key;  // of the distance
+  float distance;
+  std::uint32_t node, seed;
+};
+
+// Chooses seeds among the grains.
+class Seeder {
+ public:
+  Seeder(const Topology& topology, const Grains& grains, const CellOptions& options,
+         const Context& context)
+      : topology_(topology), grains_(grains), options_(options), context_(context) {}
+
+  CellSeeds run() {
+    distance_.assign(grains_.count(), kFar);
+    owner_.assign(grains_.count(), kNoIndex);
+    std::vector<std::uint32_t> size(topology_.component_count, 0);
+    for (const std::uint32_t k : topology_.component) size[k == kNoIndex ? 0 : k] += k != kNoIndex;
+    for (std::uint32_t first = 0, last = 0; first < grains_.count() && !context_.cancelled();
+         first = last) {
+      while (last < grains_.count() && grains_.component[last] == grains_.component[first]) ++last;
+      const std::size_t first_seed = seeds_.size();
+      double area = 0;
+      for (std::uint32_t g = first; g < last; ++g) area += grains_.area[g];
+      ruler_ = CellRuler(area, last - first);
+      const std::uint32_t budget =
+          flat(first, last) ? 1 : cell_budget(size[grains_.component[first]], options_);
+      sample_piece(first, last, budget);
+      if (seeds_.size() == first_seed + 1) continue;
+      number_by_grain(first, last, first_seed);
+      for (int round = 0; round < 2; ++round) recentre(first, last, first_seed);
+    }
+    return {std::move(seeds_), std::move(normals_), std::move(owner_)};
+  }
+
+ private:
+  // A piece that lies in one plane is one chart whatever its outline, so one cell will do.
+  bool flat(std::uint32_t first, std::uint32_t last) const {
+    glm::dvec3 sum(0);
+    double area = 0;
+    for (std::uint32_t g = first; g < last; ++g) {
+      sum += double(grains_.area[g]) * glm::dvec3(grains_.normal[g]);
+      area += grains_.area[g];
+    }
+    return area > 0 && glm::length(sum) > area * (1 - kFlatSpread);
+  }
+
+  void add_seed(std::uint32_t grain) {
+    seeds_.push_back(grain);
+    normals_.push_back(grains_.normal[grain]);
+    queue_.restart();
+    offer({0, 0, grain, static_cast<std::uint32_t>(seeds_.size() - 1)});
+    spread();
+  }
+
+  void offer(Visit visit) {
+    float& nearest = distance_[visit.node];
+    if (!ruler_.take(visit.distance, visit.seed, nearest, owner_[visit.node])) return;
+    visit.distance = nearest;
+    queue_.push(visit);
+  }
+
+  void spread() {
+    while (!queue_.empty()) {
+      const Visit visit = queue_.pop();
+      if (visit.distance != distance_[visit.node] || visit.seed != owner_[visit.node]) continue;
+      const glm::vec3 axis = normals_[visit.seed];
+      for (std::uint32_t i = grains_.first[visit.node]; i < grains_.first[visit.node + 1]; ++i) {
+        const std::uint32_t next = grains_.neighbour[i];
+        const float distance =
+            visit.distance + cell_distance(grains_.distance[i], grains_.normal[next], axis);
+        offer({std::max(ruler_.key(distance), visit.key), distance, next, visit.seed});
+      }
+    }
+  }
+
+  void sample_piece(std::uint32_t first, std::uint32_t last, std::uint32_t budget) {
+    farthest_.assign((last - first + kStretch - 1) / kStretch, kFar);
+    add_seed(first + static_cast<std::uint32_t>(options_.first_seed * (last - first)));
+    for (std::uint32_t count = 1; count < budget && !context_.cancelled(); ++count) {
+      const std::uint32_t grain = farthest(first, last);
+      if (distance_[grain] == 0) break;
+      add_seed(grain);
+    }
+    add_leaning(first, last);
+  }
+
+  // The last of those that are farthest from all seeds_. While seeds are added distances only fall,
+  // so what is remembered of a stretch of grains bounds them, and few stretches are looked at
+  // again.
+  std::uint32_t farthest(std::uint32_t first, std::uint32_t last) {
+    const auto end_of = [&](std::size_t s) {
+      return std::min<std::uint32_t>(last, first + kStretch * static_cast<std::uint32_t>(s + 1));
+    };
+    const auto look_again = [&](std::size_t s) {
+      std::int32_t most = 0;  // bits order as what they stand for; compilers compare four at once
+      for (std::uint32_t g = first + kStretch * std::uint32_t(s); g < end_of(s); ++g) {
+        most = std::max(most, std::bit_cast<std::int32_t>(distance_[g]));
+      }
+      return std::exchange(farthest_[s], std::bit_cast<float>(most)) == std::bit_cast<float>(most);
+    };
+    std::size_t s = 0;
+    do {
+      s = std::size_t(std::max_element(farthest_.begin(), farthest_.end()) - farthest_.begin());
+    } while (!look_again(s));
+    const float most = farthest_[s];
+    for (s = farthest_.size(); s-- > 0;) {
+      if (ruler_.shorter(farthest_[s], most)) continue;
+      for (std::uint32_t g = end_of(s); g-- > first + kStretch * std::uint32_t(s);) {
+        if (!ruler_.shorter(distance_[g], most)) return g;
+      }
+      look_again(s);
+    }
+    return first;  // not reached: the farthest itself is no nearer
+  }
+
+  // Seeds that are about equally far from all others are found in an order that rounding decides.
+  // It is forgotten here, for ties fall by a seed's number: the last grain's seed comes first.
+  void number_by_grain(std::uint32_t first, std::uint32_t last, std::size_t first_seed) {
+    const auto begin = static_cast<std::uint32_t>(first_seed);
+    std::vector<std::uint32_t> order(seeds_.size() - first_seed), number(order.size());
+    std::iota(order.begin(), order.end(), begin);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return std::pair(seeds_[a], a) > std::pair(seeds_[b], b);
+    });
+    const std::vector<std::uint32_t> old_seeds(seeds_.begin() + begin, seeds_.end());
+    const std::vector<glm::vec3> old_normals(normals_.begin() + begin, normals_.end());
+    for (std::uint32_t i = 0; i < order.size(); ++i) {
+      number[order[i] - begin] = begin + i;
+      seeds_[begin + i] = old_seeds[order[i] - begin];
+      normals_[begin + i] = old_normals[order[i] - begin];
+    }
+    for (std::uint32_t g = first; g < last; ++g) owner_[g] = number[owner_[g] - begin];
+  }
+
+  // Seeds for what leans too far from its cell, a few at a time.
+  void add_leaning(std::uint32_t first, std::uint32_t last) {
+    const auto limit = static_cast<float>(std::cos(options_.max_lean_degrees * M_PI / 180));
+    const auto cosine = [&](std::uint32_t g) {
+      return glm::dot(calm_normal(g), normals_[owner_[g]]);
+    };
+    for (int round = 0; round < 6; ++round) {
+      std::vector<std::pair<int, std::uint32_t>> leaning;
+      for (std::uint32_t g = first; g < last; ++g) {
+        const float c = cosine(g);
+        if (c < limit)
+          leaning.push_back({static_cast<int>(std::floor(kCosineParts * c + kBetweenParts)), g});
+      }
+      if (leaning.empty()) return;
+      std::sort(leaning.begin(), leaning.end());
+      for (const auto& [worst, g] : leaning) {
+        if (cosine(g) < limit) add_seed(g);
+      }
+    }
+  }
+
+  // A grain's normal; of several triangles, with its neighbours' in the cell, for a few triangles
+  // may lean by noise alone.
+  glm::vec3 calm_normal(std::uint32_t g) const {
+    if (grains_.size[g] < kCalmGrain) return grains_.normal[g];
+    glm::vec3 sum = grains_.area[g] * grains_.normal[g];
+    for (std::uint32_t i = grains_.first[g]; i < grains_.first[g + 1]; ++i) {
+      const std::uint32_t n = grains_.neighbour[i];
+      if (owner_[n] != owner_[g]) continue;  // it may lie beyond a crease
+      sum += grains_.area[n] * grains_.normal[n];
+    }
+    const float length = glm::length(sum);
+    return length > 0 ? sum / length : grains_.normal[g];
+  }
+
+  void recentre(std::uint32_t first, std::uint32_t last, std::size_t first_seed) {
+    struct Sum {
+      glm::dvec3 middle{0}, normal{0};  // double: single would decide what nearly ties
+      double area = 0;
+      float best = kFar;
+    };
+    std::vector<Sum> sums(seeds_.size() - first_seed);
+    for (std::uint32_t g = first; g < last; ++g) {
+      Sum& sum = sums[owner_[g] - first_seed];
+      sum.middle += double(grains_.area[g]) * glm::dvec3(grains_.centroid[g]);
+      sum.normal += double(grains_.area[g]) * glm::dvec3(grains_.normal[g]);
+      sum.area += grains_.area[g];
+    }
+    for (std::uint32_t g = first; g < last; ++g) {
+      Sum& sum = sums[owner_[g] - first_seed];
+      const auto d =
+          static_cast<float>(glm::distance(glm::dvec3(grains_.centroid[g]), sum.middle / sum.area));
+      if (ruler_.shorter(d, sum.best)) {
+        sum.best = d;
+        seeds_[owner_[g]] = g;
+      }
+      distance_[g] = kFar;
+    }
+    queue_.restart();
+    for (std::size_t s = first_seed; s < seeds_.size(); ++s) {
+      const glm::dvec3& normal = sums[s - first_seed].normal;
+      const double length = glm::length(normal);
+      if (length > 0) normals_[s] = normal / length;
+      offer({0, 0, seeds_[s], static_cast<std::uint32_t>(s)});
+    }
+    spread();
+  }
+
+  const Topology& topology_;
+  const Grains& grains_;
+  const CellOptions& options_;
+  const Context& context_;
+  std::vector<std::uint32_t> seeds_;  // grains
+  std::vector<glm::vec3> normals_;    // 1 a seed
+  std::vector<float> distance_;
+  std::vector<std::uint32_t> owner_;
+  std::vector<float> farthest_;  // 1 a stretch of the piece's grains: none is farther
+  CellRuler ruler_;              // of the piece at hand
+  RingQueue<Visit> queue_;
+};
+
+}  // namespace
+
+CellSeeds choose_seeds(const Topology& topology, const Grains& grains, const CellOptions& options,
+                       const Context& context) {
+  return Seeder(topology, grains, options, context).run();
+}
+
+}  // namespace atlas
