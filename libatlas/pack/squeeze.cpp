@@ -3,40 +3,27 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/pack/contacts.h"
+
 namespace atlas::pack {
 namespace {
-
-struct Pose {
-  Vec2d at;
-  double cosine = 1, sine = 0;
-
-  Vec2d to_page(Vec2d d) const {
-    return {at.x + cosine * d.x - sine * d.y, at.y + sine * d.x + cosine * d.y};
-  }
-  Vec2d to_body(Vec2d q) const {
-    const double x = q.x - at.x, y = q.y - at.y;
-    return {cosine * x + sine * y, cosine * y - sine * x};
-  }
-};
 
 class Solver {
  public:
   Solver(std::span<Body> bodies, const SqueezeOptions& options)
-      : bodies_(bodies), options_(options), poses_(bodies.size()) {
+      : bodies_(bodies), options_(options), poses_(bodies.size()), contacts_(bodies, options) {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       poses_[i].at = bodies[i].at;
       turn(poses_[i], bodies[i].angle);
     }
   }
 
-  // Takes overlaps out until none is deeper than the tolerance. Only points that were near another
-  // chart when last looked at are followed from sweep to sweep, until charts have moved so far that
-  // others may have come near (the neighbour lists of Verlet 1967).
+  // Takes overlaps out until none is deeper than the tolerance.
   bool relax(const SqueezePage& page, std::uint32_t sweeps) {
     double before = 1e300;
-    find_contacts(page);
+    contacts_.set_page(page, poses_);
     for (std::uint32_t s = 0; s < sweeps; ++s) {
-      if (2 * measure_moves() > kSkin) find_contacts(page);
+      contacts_.update(poses_);
       const double deepest = sweep(page);
       ++sweeps_;
       if (deepest <= options_.tolerance) return true;
@@ -66,72 +53,7 @@ class Solver {
     pose.cosine = cosine;
   }
 
-  // A point of body i's outline near body j or, where j is kWall, near an edge of the page. It may
-  // touch it once both together have moved by `room`.
-  struct Contact {
-    std::uint32_t i, j;
-    Vec2d point;
-    double room;
-  };
   static constexpr std::uint32_t kWall = 0xffffffffu;
-
-  // How far any point of each chart has moved since contacts were looked for; the farthest of all.
-  double measure_moves() {
-    double farthest = 0;
-    for (std::size_t i = 0; i < poses_.size(); ++i) {
-      const Pose &now = poses_[i], &then = seen_[i];
-      const double dc = now.cosine - then.cosine, ds = now.sine - then.sine;
-      const double dx = now.at.x - then.at.x, dy = now.at.y - then.at.y;
-      moved_[i] = std::sqrt(dx * dx + dy * dy) + bodies_[i].radius * std::sqrt(dc * dc + ds * ds);
-      farthest = std::max(farthest, moved_[i]);
-    }
-    return farthest;
-  }
-
-  void find_contacts(const SqueezePage& page) {
-    contacts_.clear();
-    seen_ = poses_;
-    moved_.assign(poses_.size(), 0);
-    const double skin = kSkin + options_.clearance;
-    for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
-      const double m = options_.margin + kSkin, r = bodies_[i].radius;
-      const Vec2d at = poses_[i].at;
-      if (at.x - r > m && at.y - r > m && at.x + r < page.width - m && at.y + r < page.height - m)
-        continue;
-      for (const Vec2d& local : bodies_[i].outline) {
-        const Vec2d p = poses_[i].to_page(local);
-        const double room = std::min({p.x, p.y, page.width - p.x, page.height - p.y});
-        if (room < m) contacts_.push_back({i, kWall, local, room - options_.margin});
-      }
-    }
-    for (std::uint32_t i = 0; i < bodies_.size(); ++i)
-      for (std::uint32_t j = i + 1; j < bodies_.size(); ++j) {
-        const double dx = poses_[i].at.x - poses_[j].at.x, dy = poses_[i].at.y - poses_[j].at.y;
-        const double reach = bodies_[i].radius + bodies_[j].radius + skin;
-        if (dx * dx + dy * dy >= reach * reach) continue;
-        near_points(i, j, skin);
-        near_points(j, i, skin);
-      }
-  }
-
-  void near_points(std::uint32_t i, std::uint32_t j, double skin) {
-    DistanceField::Sample s;
-    const Body &body = bodies_[i], &other = bodies_[j];
-    // From i's coordinates to those of j's field.
-    Pose turned;
-    turned.cosine = poses_[i].cosine * poses_[j].cosine + poses_[i].sine * poses_[j].sine;
-    turned.sine = poses_[i].sine * poses_[j].cosine - poses_[i].cosine * poses_[j].sine;
-    turned.at = poses_[j].to_body(poses_[i].at);
-    turned.at = {turned.at.x + other.center.x, turned.at.y + other.center.y};
-    for (std::size_t a = 0; a < body.arcs.size(); ++a) {
-      const Body::Arc& arc = body.arcs[a];
-      if (!other.field.near_grid(turned.to_page(arc.center), arc.radius)) continue;
-      const std::size_t end = std::min(body.outline.size(), (a + 1) * Body::kArc);
-      for (std::size_t k = a * Body::kArc; k < end; ++k)
-        if (other.field.sample(turned.to_page(body.outline[k]), s) && s.distance < skin)
-          contacts_.push_back({i, j, body.outline[k], s.distance - options_.clearance});
-    }
-  }
 
   bool sample(std::uint32_t j, Vec2d p, DistanceField::Sample& s) const {
     const Vec2d q = poses_[j].to_body(p);
@@ -140,46 +62,58 @@ class Solver {
 
   double sweep(const SqueezePage& page) {
     double deepest = 0;
-    for (const Contact& c : contacts_) {
-      if (moved_[c.i] + (c.j == kWall ? 0 : moved_[c.j]) < c.room) continue;
-      const Vec2d p = poses_[c.i].to_page(c.point);
-      deepest = std::max(deepest, c.j == kWall ? push_in(c.i, p, page) : push_out(c, p));
+    for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
+      const Contacts::Wall& wall = contacts_.walls()[i];
+      for (const Contacts::Contact& c : wall.points)
+        if (wall.moved >= c.room)
+          deepest = std::max(deepest, push_in(i, poses_[i].to_page(c.point), page));
+    }
+    for (std::size_t k = 0; k < contacts_.near_count(); ++k) {
+      const Contacts::Pair& pair = contacts_.near(k);
+      for (const Contacts::Contact& c : pair.of_i)
+        if (pair.moved >= c.room) deepest = std::max(deepest, push_out(pair.i, pair.j, c.point));
+      for (const Contacts::Contact& c : pair.of_j)
+        if (pair.moved >= c.room) deepest = std::max(deepest, push_out(pair.j, pair.i, c.point));
     }
     return deepest;
   }
 
-  double push_out(const Contact& c, Vec2d p) {
+  // Takes point `local` of i out of j. Returns how deep it was.
+  double push_out(std::uint32_t i, std::uint32_t j, Vec2d local) {
     DistanceField::Sample s;
-    if (!sample(c.j, p, s)) return 0;
+    const Vec2d p = poses_[i].to_page(local);
+    if (!sample(j, p, s)) return 0;
     const double depth = options_.clearance - s.distance;
+    if (depth <= 0) return 0;
     const double length = std::sqrt(s.gradient.x * s.gradient.x + s.gradient.y * s.gradient.y);
-    if (depth <= 0 || length < 1e-12) return 0;
-    const Pose& pose = poses_[c.j];
+    if (length < 1e-12) return 0;
+    const Pose& pose = poses_[j];
     const double gx = s.gradient.x / length, gy = s.gradient.y / length;
-    resolve(c, p, {pose.cosine * gx - pose.sine * gy, pose.sine * gx + pose.cosine * gy}, depth);
+    const Vec2d n{pose.cosine * gx - pose.sine * gy, pose.sine * gx + pose.cosine * gy};
+    resolve(i, j, p, n, depth);
     return depth;
   }
 
   double push_in(std::uint32_t i, Vec2d p, const SqueezePage& page) {
     const double m = options_.margin;
+    if (p.x >= m && p.x <= page.width - m && p.y >= m && p.y <= page.height - m) return 0;
     const double depth[4] = {m - p.x, p.x - (page.width - m), m - p.y, p.y - (page.height - m)};
     constexpr Vec2d normal[4] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     double deepest = 0;
     for (int k = 0; k < 4; ++k) {
       if (depth[k] <= 0) continue;
       deepest = std::max(deepest, depth[k]);
-      resolve({i, kWall, {}, 0}, p, normal[k], depth[k]);
+      resolve(i, kWall, p, normal[k], depth[k]);
     }
     return deepest;
   }
 
-  // Moves i along n at point p and j, if any, the other way, lighter ones more.
-  void resolve(const Contact& contact, Vec2d p, Vec2d n, double depth) {
+  // Moves i along n at point p and j, unless it is kWall, the other way, lighter ones more.
+  void resolve(std::uint32_t i, std::uint32_t j, Vec2d p, Vec2d n, double depth) {
     const auto lever = [&](std::uint32_t b) {
       const Vec2d r{p.x - poses_[b].at.x, p.y - poses_[b].at.y};
       return r.x * n.y - r.y * n.x;
     };
-    const std::uint32_t i = contact.i, j = contact.j;
     const double wi = 1 / bodies_[i].area, li = lever(i);
     const double ai = li / bodies_[i].gyration;
     double sum = wi * (1 + ai * li), wj = 0, aj = 0;
@@ -215,11 +149,10 @@ class Solver {
 
   std::span<Body> bodies_;
   const SqueezeOptions& options_;
-  std::vector<Pose> poses_, seen_;
-  std::vector<double> moved_;  // 1 a body
-  std::vector<Contact> contacts_;
+  std::vector<Pose> poses_;
+  Contacts contacts_;
   std::uint64_t sweeps_ = 0;
-  static constexpr double kSkin = 16, kMostPush = 4;
+  static constexpr double kMostPush = 4;
 };
 
 // Orders points such that those of every kArc that follow each other lie close together: halves

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "libatlas/pack/contacts.h"
 #include "libatlas/pack/settle.h"
-#include "libatlas/pack/squeeze.h"
 #include "libatlas/pack/straight_page.h"
 #include "tests/pack/checks.h"
 
@@ -117,6 +117,66 @@ TEST(Squeeze, BodiesEndCloseAndApart) {
       }
     }
   }
+}
+
+// Bodies wander about: every point that touches another body or an edge is among the contacts.
+TEST(Contacts, ThoseThatTouchAreAlwaysKnown) {
+  test::Noise noise{23};
+  std::vector<Body> bodies;
+  for (int k = 0; k < 7; ++k)
+    bodies.push_back(make_body(mask_of(test::blob(noise, 60, noise.in(3, 9)), 4), 4, 40, 10));
+  SqueezeOptions o;
+  o.clearance = 4;
+  const SqueezePage page{340, 300};
+  std::vector<Pose> poses(bodies.size());
+  for (Pose& p : poses) p.at = {40 + 260 * noise.unit(), 40 + 220 * noise.unit()};
+  Contacts contacts(bodies, o);
+  contacts.set_page(page, poses);
+  const auto has = [](const std::vector<Contacts::Contact>& points, Vec2d p, double moved) {
+    return std::any_of(points.begin(), points.end(),
+                       [&](const Contacts::Contact& c) { return c.point == p && moved >= c.room; });
+  };
+  int touching = 0, edge = 0;
+  const auto check = [&](std::size_t i, std::size_t j) {
+    for (const Vec2d& local : bodies[i].outline) {
+      const Vec2d p = poses[i].to_page(local), q = poses[j].to_body(p);
+      DistanceField::Sample s;
+      const Vec2d at{q.x + bodies[j].center.x, q.y + bodies[j].center.y};
+      if (!bodies[j].field.sample(at, s) || s.distance >= o.clearance) continue;
+      ++touching;
+      bool known = false;
+      for (std::size_t k = 0; k < contacts.near_count(); ++k) {
+        const Contacts::Pair& pair = contacts.near(k);
+        known = known || (pair.i == i && pair.j == j && has(pair.of_i, local, pair.moved)) ||
+                (pair.i == j && pair.j == i && has(pair.of_j, local, pair.moved));
+      }
+      EXPECT_TRUE(known);
+    }
+  };
+  for (int round = 0; round < 150; ++round) {
+    contacts.update(poses);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      for (std::size_t j = 0; j < bodies.size(); ++j)
+        if (i != j) check(i, j);
+      const Contacts::Wall& wall = contacts.walls()[i];
+      for (const Vec2d& local : bodies[i].outline) {
+        const Vec2d p = poses[i].to_page(local);
+        if (std::min({p.x, p.y, page.width - p.x, page.height - p.y}) >= o.margin) continue;
+        ++edge;
+        EXPECT_TRUE(has(wall.points, local, wall.moved));
+      }
+    }
+    for (Pose& p : poses) {  // mostly a little, sometimes far
+      const double far = noise.in(0, 19) == 0 ? 60 : 3, turn = 0.05 * (noise.unit() - 0.5);
+      p.at = {std::clamp(p.at.x + far * (noise.unit() - 0.5), 0.0, page.width),
+              std::clamp(p.at.y + far * (noise.unit() - 0.5), 0.0, page.height)};
+      const double c = p.cosine, s = p.sine;
+      p.cosine = c * std::cos(turn) - s * std::sin(turn);
+      p.sine = s * std::cos(turn) + c * std::sin(turn);
+    }
+  }
+  EXPECT_GT(touching, 1000);
+  EXPECT_GT(edge, 1000);
 }
 
 TEST(Squeeze, NoPageWhereOverlapsRemain) {
