@@ -238,12 +238,28 @@ TEST(Charts, BadInputAndOptionsAreNamed) {
   mesh = Mesh(grid(2, 2));
   mesh.positions[0].y = std::nanf("");
   EXPECT_EQ(code(mesh), ErrorCode::bad_input);
+  mesh = Mesh(grid(2, 2));
+  mesh.indices.pop_back();
+  EXPECT_EQ(code(mesh), ErrorCode::bad_input);
+  mesh = Mesh(grid(2, 2));
+  mesh.materials.assign(7, 0);
+  EXPECT_EQ(code(mesh), ErrorCode::bad_input);
+  mesh = Mesh(grid(2, 2));
+  const std::vector<float> densities(9, 1.0f);
+  MeshView dense = mesh.view();
+  dense.density = densities;
+  EXPECT_EQ(make_charts(dense, {}, {}).status().code(), ErrorCode::bad_input);
   ChartOptions options;
   options.max_stretch = 1;
   EXPECT_EQ(code(Mesh(grid(2, 2)), options), ErrorCode::bad_option);
   options = {};
   options.cone_degrees = 181;
   EXPECT_EQ(code(Mesh(grid(2, 2)), options), ErrorCode::bad_option);
+  for (const double crease : {-1.0, 181.0, std::nan("")}) {
+    options = {};
+    options.crease_degrees = crease;
+    EXPECT_EQ(code(Mesh(grid(2, 2)), options), ErrorCode::bad_option) << crease;
+  }
 }
 
 TEST(Charts, CancellingEndsTheWork) {

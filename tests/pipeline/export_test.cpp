@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
+#include <functional>
+#include <limits>
 #include <utility>
 
 #include "libatlas/pipeline/export_world.h"
@@ -209,6 +212,42 @@ TEST(Export, CancelledBeforeItBeganWritesNothing) {
   const auto report = export_world(lit_room(8), small_pages(folder), {}, context);
   ASSERT_FALSE(report.ok());
   EXPECT_EQ(report.status().code(), ErrorCode::cancelled);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(Export, RefusesOptionsOutOfRange) {
+  using Change = std::function<void(ExportOptions&)>;
+  const auto nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::pair<const char*, Change>> changes{
+      {"--atlases", [](ExportOptions& o) { o.atlases = 0; }},
+      {"--atlas-size", [](ExportOptions& o) { o.atlas_size = 96; }},
+      {"--atlas-size", [](ExportOptions& o) { o.atlas_size = 32; }},
+      {"--texel", [](ExportOptions& o) { o.texel_metres = -1; }},
+      {"--texel", [](ExportOptions& o) { o.texel_metres = INFINITY; }},
+      {"--threshold", [=](ExportOptions& o) { o.threshold = nan; }},
+      {"--mips", [](ExportOptions& o) { o.mip_levels = 6; }},
+      {"--shifts", [](ExportOptions& o) { o.shifts = 0; }},
+      {"--min-side", [](ExportOptions& o) { o.min_side = 257; }},
+      {"--slip", [](ExportOptions& o) { o.simplify_slip = 0; }},
+      {"--slip", [](ExportOptions& o) { o.simplify_slip = INFINITY; }},
+      {"--png-level", [](ExportOptions& o) { o.png_compression = 10; }},
+      {"--cone", [=](ExportOptions& o) { o.charts.cone_degrees = nan; }},
+      {"--max-stretch", [](ExportOptions& o) { o.charts.max_stretch = 1; }},
+      {"--crease", [](ExportOptions& o) { o.charts.crease_degrees = 0; }},
+      {"--uv-aspect", [=](ExportOptions& o) { o.charts.uv_aspect = nan; }},
+      {"--white", [](ExportOptions& o) { o.tone.white = -1; }},
+      {"--exposure", [=](ExportOptions& o) { o.tone.exposure_stops = nan; }},
+      {"world.xyz", [](ExportOptions& o) { o.target.replace_extension(".xyz"); }},
+  };
+  const TempFolder folder;
+  const LoadedScene scene = lit_room(4);
+  for (const auto& [name, change] : changes) {
+    ExportOptions options = small_pages(folder);
+    change(options);
+    const Status status = export_world(scene, options, {}, {}).status();
+    EXPECT_FALSE(status.ok()) << name;
+    EXPECT_NE(status.message().find(name), std::string::npos) << name << ": " << status.message();
+  }
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
