@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "libatlas/charts/chart_job.h"
+#include "libatlas/charts/split.h"
 #include "tests/charts/chart_checks.h"
 
 namespace atlas::test {
@@ -319,6 +320,30 @@ TEST(ChartJob, ALittlePartLeavesALargeOneAsItIs) {
       } else {
         EXPECT_GT(most, 1e-5) << stretch;
       }
+    }
+  }
+}
+
+// Of the two triangles of a crossing the one goes that holds on to fewer, with as many rings around
+// it as asked for.
+TEST(ChartJob, TheLooserSideOfACrossingGoes) {
+  Bench bench(grid(6, 6), std::vector<std::uint32_t>(72, 0));
+  LocalChart& chart = bench.scratch.chart;
+  const std::vector<std::uint32_t> all = bench.triangles(0);
+  chart.build(bench.topology, bench.partition, all);
+  const auto degree = [&](std::uint32_t t) {
+    int count = 0;
+    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) count += chart.opposite[h] != kNoIndex;
+    return count;
+  };
+  for (std::uint32_t a = 0; a < 72; a += 5) {
+    for (std::uint32_t b = 0; b < 72; b += 7) {
+      const std::vector<BorderCrossing> crossings{{{}, {}, a, b}};
+      const auto one = around_crossings(chart, crossings, 0);
+      ASSERT_EQ(one.size(), 1u);
+      EXPECT_EQ(one[0], degree(b) < degree(a) ? b : a);
+      const auto ring = around_crossings(chart, crossings, 1);
+      EXPECT_EQ(ring.size(), 1u + std::size_t(degree(one[0])));
     }
   }
 }

@@ -1,0 +1,110 @@
+// Small charts that are tried together with their neighbours once they are flat: which unions stay.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libatlas/charts/flatten.h"
+#include "tests/charts/chart_checks.h"
+
+namespace atlas::test {
+namespace {
+
+// The grid with its points at place(u, v), u and v from 0 to 1.
+template <class Place>
+Shape bent(int columns, int rows, const Place& place) {
+  Shape shape = grid(columns, rows);
+  for (Vec3f& p : shape.positions) p = place(double(p.x), double(p.y));
+  return shape;
+}
+
+// A square patch of the unit sphere, `angle` across.
+Shape patch(double angle) {
+  return bent(6, 6, [=](double u, double v) {
+    const double x = angle * (u - 0.5), y = angle * (v - 0.5), r = std::hypot(x, y);
+    const double k = r > 0 ? std::sin(r) / r : 1;
+    return Vec3f{float(k * x), float(k * y), float(std::cos(r))};
+  });
+}
+
+FlattenResult flatten(const Shape& shape, std::vector<std::uint32_t> charts,
+                      const ChartOptions& options) {
+  const Mesh mesh(shape);
+  const Result<Topology> topology = build_topology(mesh.view(), {}, {});
+  EXPECT_TRUE(topology.ok());
+  Partition partition;
+  partition.chart = std::move(charts);
+  Frames frames;
+  return flatten_charts({*topology, {}, options, frames}, partition, {});
+}
+
+// The charts of two halves of a patch, or of the patch as one.
+std::size_t charts_of_patch(double angle, double bound, bool halves, double& stretch_l2) {
+  const Shape shape = patch(angle);
+  std::vector<std::uint32_t> charts;
+  for (std::uint32_t t = 0; t < shape.triangle_count(); ++t) {
+    charts.push_back(halves && t / 2 % 6 >= 3);
+  }
+  ChartOptions options;
+  options.max_stretch = bound;
+  const FlattenResult result = flatten(shape, charts, options);
+  stretch_l2 = result.charts[0].distortion.stretch_l2;
+  EXPECT_EQ(result.split_charts, 0u);
+  return result.charts.size();
+}
+
+// A wider bound weighs a seam more; beyond a stretch of 1.01 none is worth it.
+TEST(Absorb, AUnionMustBeWorthItsStretch) {
+  struct Case {
+    double angle, bound;
+    std::size_t charts;
+  };
+  for (const Case& c :
+       {Case{0.1, 1.25, 1}, Case{0.5, 1.25, 1}, Case{0.8, 1.25, 1}, Case{1.3, 1.25, 2},
+        Case{1.8, 1.25, 2}, Case{1.3, 2, 1}, Case{1.8, 2, 1}, Case{2.3, 2, 2}, Case{2.3, 8, 2}}) {
+    double halves = 0, whole = 0;
+    EXPECT_EQ(charts_of_patch(c.angle, c.bound, true, halves), c.charts)
+        << c.angle << ' ' << c.bound;
+    EXPECT_EQ(charts_of_patch(c.angle, c.bound, false, whole), 1u);  // it could be
+    EXPECT_LE(halves, 1.01);
+  }
+}
+
+// Two flat strips of 5 squares as one chart each, on a mesh of which they are little: side by side
+// they fill their rectangle, as an L a third of it. Returns the charts that they become.
+std::size_t charts_of_strips(bool corner, double cone) {
+  Shape other = corner ? grid(1, 5, 1, 5) : grid(5, 1, 5, 1);
+  for (Vec3f& p : other.positions) p.y += 1;
+  Shape shape = together(grid(5, 1, 5, 1), other);
+  std::vector<std::uint32_t> charts;
+  for (std::uint32_t t = 0; t < shape.triangle_count(); ++t) charts.push_back(t >= 10);
+  shape = together(shape, moved(grid(40, 30), 1, {20, 0, 0}));
+  charts.resize(shape.triangle_count(), 2);
+  ChartOptions options;
+  options.cone_degrees = cone;
+  return flatten(shape, charts, options).charts.size() - 1;
+}
+
+TEST(Absorb, AUnionMustFillItsRectangle) {
+  EXPECT_EQ(charts_of_strips(false, 0), 1u);
+  EXPECT_EQ(charts_of_strips(true, 0), 2u);
+  // What a limit on cones leaves over is not so particular.
+  EXPECT_EQ(charts_of_strips(false, 30), 1u);
+  EXPECT_EQ(charts_of_strips(true, 30), 1u);
+}
+
+// Two sides of a box that meet at its edge.
+TEST(Absorb, CreasesStaySeams) {
+  for (const double degrees : {10.0, 90.0}) {
+    const Shape shape = bent(6, 3, [=](double u, double v) {
+      const double x = 2 * u - 1, a = degrees * M_PI / 180;
+      return x < 0 ? Vec3f{float(x), float(v), 0}
+                   : Vec3f{float(x * std::cos(a)), float(v), float(-x * std::sin(a))};
+    });
+    std::vector<std::uint32_t> charts;
+    for (std::uint32_t t = 0; t < shape.triangle_count(); ++t) charts.push_back(t / 2 % 6 >= 3);
+    EXPECT_EQ(flatten(shape, charts, {}).charts.size(), degrees < 40 ? 1u : 2u) << degrees;
+  }
+}
+
+}  // namespace
+}  // namespace atlas::test
