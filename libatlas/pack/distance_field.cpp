@@ -6,27 +6,52 @@
 namespace atlas::pack {
 namespace {
 
-// Squared distances in cells to the nearest cell of value 0, exactly: lower envelopes of parabolas
-// along the columns, then along the rows (Felzenszwalb and Huttenlocher 2012).
+// Squared distances in cells from each cell to the nearest of the other kind, exactly: first within
+// the columns, then as lower envelopes of parabolas along the rows (Felzenszwalb and Huttenlocher
+// 2012). A row's run of one kind is an envelope of its own: the cells that end it are nearer to its
+// own than what lies beyond them.
 class SquaredDistances {
  public:
-  SquaredDistances(int width, int height, std::vector<float>& grid) : grid_(grid) {
-    const auto longest = static_cast<std::size_t>(std::max(width, height));
-    line_.resize(longest);
-    apex_.resize(longest);
-    border_.resize(longest + 1);
-    for (int x = 0; x < width; ++x) transform(std::size_t(x), std::size_t(width), height);
-    for (int y = 0; y < height; ++y) transform(std::size_t(y) * std::size_t(width), 1, width);
+  SquaredDistances(int width, const std::vector<std::uint8_t>& kind, std::vector<float>& grid)
+      : width_(std::size_t(width)), kind_(kind), grid_(grid) {
+    line_.resize(width_ + 2);
+    apex_.resize(width_ + 2);
+    border_.resize(width_ + 3);
+    columns();
+    for (std::size_t row = 0; row < grid_.size(); row += width_)
+      for (std::size_t x = 0; x < width_;) {
+        const std::size_t begin = x;
+        while (x < width_ && kind_[row + x] == kind_[row + begin]) ++x;
+        transform(row, begin, x);
+      }
   }
-  static constexpr float kFar = 1e12f;
 
  private:
-  void transform(std::size_t first, std::size_t step, int count) {
-    for (int i = 0; i < count; ++i) line_[std::size_t(i)] = grid_[first + step * std::size_t(i)];
+  static constexpr float kFar = 1e6f;
+
+  // Rows to the nearest cell of the other kind, below first, then above.
+  void columns() {
+    std::fill(grid_.begin(), grid_.begin() + std::ptrdiff_t(width_), kFar);
+    for (std::size_t i = width_; i < grid_.size(); ++i)
+      grid_[i] = kind_[i] == kind_[i - width_] ? grid_[i - width_] + 1 : 1;
+    for (std::size_t i = grid_.size() - width_; i-- > 0;)
+      grid_[i] = kind_[i] == kind_[i + width_] ? std::min(grid_[i], grid_[i + width_] + 1) : 1;
+  }
+
+  // Columns [begin, end) of a row, which are of one kind.
+  void transform(std::size_t row, std::size_t begin, std::size_t end) {
+    // line_[0] is the cell before the run, where the row has one.
+    const int count = int(end - begin);
+    line_[0] = begin > 0 ? 0.f : kFar * kFar;
+    for (int q = 1; q <= count; ++q) {
+      const float rows = grid_[row + begin + std::size_t(q) - 1];
+      line_[std::size_t(q)] = rows * rows;
+    }
+    line_[std::size_t(count) + 1] = end < width_ ? 0.f : kFar * kFar;
     int k = -1;
-    for (int q = 0; q < count; ++q) {
+    for (int q = 0; q <= count + 1; ++q) {
       const float f = line_[std::size_t(q)];
-      if (f >= kFar) continue;
+      if (f >= kFar * kFar) continue;
       float cut = -kFar;
       for (; k >= 0; --k) {
         const int p = apex_[std::size_t(k)];
@@ -39,15 +64,17 @@ class SquaredDistances {
       border_[std::size_t(k)] = cut;
     }
     const int last = k;
-    if (last < 0) return;
     k = 0;
-    for (int q = 0; q < count; ++q) {
+    for (int q = 1; q <= count; ++q) {
       while (k < last && border_[std::size_t(k) + 1] < float(q)) ++k;
       const int p = apex_[std::size_t(k)];
-      grid_[first + step * std::size_t(q)] = float((q - p) * (q - p)) + line_[std::size_t(p)];
+      grid_[row + begin + std::size_t(q) - 1] =
+          last < 0 ? kFar * kFar : float((q - p) * (q - p)) + line_[std::size_t(p)];
     }
   }
 
+  std::size_t width_;
+  const std::vector<std::uint8_t>& kind_;  // 1 a cell
   std::vector<float>& grid_;
   std::vector<float> line_, border_;
   std::vector<int> apex_;
@@ -62,22 +89,18 @@ DistanceField::DistanceField(const Mask& mask, double cell, double reach) {
   inverse_ = 1 / cell;
   shift_ = margin - 0.5;
   const std::size_t count = std::size_t(width_) * std::size_t(height_);
-  values_.assign(count, SquaredDistances::kFar);
-  std::vector<float> inside(count, 0.f);
+  std::vector<std::uint8_t> inside(count);
   for (std::int32_t r = 0; r < mask.height; ++r)
     for (const Run& run : mask.row(r)) {
       const std::size_t row = std::size_t(r + margin) * std::size_t(width_) + std::size_t(margin);
-      std::fill(values_.begin() + std::ptrdiff_t(row + std::size_t(run.begin)),
-                values_.begin() + std::ptrdiff_t(row + std::size_t(run.end)), 0.f);
       std::fill(inside.begin() + std::ptrdiff_t(row + std::size_t(run.begin)),
-                inside.begin() + std::ptrdiff_t(row + std::size_t(run.end)),
-                SquaredDistances::kFar);
+                inside.begin() + std::ptrdiff_t(row + std::size_t(run.end)), std::uint8_t{1});
     }
-  SquaredDistances(width_, height_, values_);
-  SquaredDistances(width_, height_, inside);
+  values_.resize(count);
+  SquaredDistances(width_, inside, values_);
   for (std::size_t i = 0; i < count; ++i) {
     // From centre to centre; the mask's edge lies half a cell before, the chart's another half.
-    const double d = inside[i] > 0 ? 1.0 - std::sqrt(double(inside[i])) : std::sqrt(values_[i]);
+    const double d = inside[i] ? 1.0 - std::sqrt(double(values_[i])) : std::sqrt(values_[i]);
     values_[i] = static_cast<float>(d * cell);
   }
 }
