@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "libatlas/core/glm_bridge.h"
 #include "libatlas/param/parameterize.h"
 #include "libatlas/param/planar.h"
 #include "tests/param/oracles.h"
@@ -228,6 +229,35 @@ TEST(Parameterize, RecoversFromFramesThatLie) {
   expect_consistent(d, r, 1.25);
   EXPECT_TRUE(r.injective);
   EXPECT_LT(r.distortion.stretch_linf, 1.01);
+}
+
+// A frame of its own for each triangle, turned anyhow: nothing that descends from there comes out
+// of its folds, but what begins without them does.
+TEST(Parameterize, RecoversFromFramesThatDisagree) {
+  for (const Disc& d :
+       {testing::make_cylinder(5, 2, 60, 20), testing::make_cone(0.5, 5.5, 60, 10)}) {
+    for (unsigned seed = 0; seed < 3; ++seed) {
+      std::mt19937 random(seed);
+      std::uniform_real_distribution<double> angle(0, 2 * std::numbers::pi);
+      std::vector<std::array<Vec3f, 2>> frames;
+      for (const auto& t : d.triangles) {
+        const auto at = [&](int k) { return to_glm(d.positions[t[k]]); };
+        const glm::dvec3 along = glm::normalize(at(1) - at(0));
+        const glm::dvec3 normal = glm::normalize(glm::cross(along, at(2) - at(0)));
+        const double a = angle(random);
+        const glm::dvec3 u = std::cos(a) * along + std::sin(a) * glm::cross(normal, along);
+        const glm::dvec3 v = glm::cross(normal, u);
+        frames.push_back(
+            {Vec3f{float(u.x), float(u.y), float(u.z)}, Vec3f{float(v.x), float(v.y), float(v.z)}});
+      }
+      ParamOptions options;
+      options.start.frames = [&](std::size_t t) { return frames[t]; };
+      const ParamResult r = run(d, options);
+      expect_consistent(d, r, 1.25);
+      EXPECT_TRUE(r.injective) << seed;
+      EXPECT_LT(r.distortion.stretch_linf, 1.01) << seed;
+    }
+  }
 }
 
 TEST(Parameterize, ReportsTheTipThatBreaksTheBound) {
