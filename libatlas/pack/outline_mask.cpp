@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 namespace atlas::pack {
 namespace {
@@ -167,9 +169,7 @@ class Interior {
   }
 
   void fill(RunSet& set) {
-    std::sort(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) {
-      return a.row != b.row ? a.row < b.row : a.x < b.x;
-    });
+    sort();
     std::int32_t winding = 0;
     for (std::size_t k = 0; k + 1 < crossings_.size(); ++k) {
       const Crossing &c = crossings_[k], &next = crossings_[k + 1];
@@ -186,6 +186,27 @@ class Interior {
     std::int32_t row, sense;
     double x;
   };
+
+  // By row, in time linear in crossings and rows, then the few of each row by x.
+  void sort() {
+    if (crossings_.empty()) return;
+    std::int32_t low = crossings_[0].row, high = low;
+    for (const Crossing& c : crossings_) {
+      low = std::min(low, c.row);
+      high = std::max(high, c.row);
+    }
+    std::vector<std::uint32_t> first(static_cast<std::size_t>(high - low) + 2, 0);
+    for (const Crossing& c : crossings_) ++first[static_cast<std::size_t>(c.row - low) + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<Crossing> sorted(crossings_.size());
+    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+    for (const Crossing& c : crossings_) sorted[next[static_cast<std::size_t>(c.row - low)]++] = c;
+    for (std::size_t r = 0; r + 1 < first.size(); ++r)
+      std::sort(sorted.begin() + first[r], sorted.begin() + first[r + 1],
+                [](const Crossing& a, const Crossing& b) { return a.x < b.x; });
+    crossings_ = std::move(sorted);
+  }
+
   double cell_;
   std::vector<Crossing> crossings_;
 };

@@ -12,6 +12,7 @@ namespace atlas::pack {
 // A bit a cell: a tenth of a BitPage's memory and of the time to put a mask there.
 class PlainPage {
  public:
+  PlainPage() = default;
   PlainPage(std::int32_t width, std::int32_t height)
       : width_(width),
         height_(height),
@@ -68,8 +69,8 @@ class PlainPage {
     visit(last / 64, cells & ~std::uint64_t{0} >> (63 - last % 64));
   }
 
-  std::int32_t width_, height_;
-  std::size_t words_;
+  std::int32_t width_ = 0, height_ = 0;
+  std::size_t words_ = 0;
   std::vector<std::uint64_t> bits_;
 };
 

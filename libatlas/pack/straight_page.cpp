@@ -9,6 +9,7 @@
 #include "libatlas/core/parallel.h"
 #include "libatlas/pack/engines.h"
 #include "libatlas/pack/nest.h"
+#include "libatlas/pack/plain_page.h"
 
 namespace atlas::pack {
 namespace {
@@ -35,11 +36,8 @@ class Slider {
  public:
   Slider(std::vector<Piece> pieces, const Start& start, const FitOptions& options,
          std::int32_t cell)
-      : pieces_(std::move(pieces)),
-        start_(start),
-        unit_(options.alignment),
-        page_(options.page_size / unit_, 1 << 24, longest_run(pieces_)),
-        at_(pieces_.size()) {
+      : pieces_(std::move(pieces)), start_(start), unit_(options.alignment), at_(pieces_.size()) {
+    std::int32_t top = 0;
     for (std::uint32_t i = 0; i < at_.size(); ++i) {
       if (mask(i).cells == 0) continue;
       // Both masks hold the same padded chart: where their origins differ, their corners do.
@@ -48,7 +46,9 @@ class Slider {
       at_[i] = {cells(p.at.x * double(cell) + coarse.x - exact.x),
                 cells(p.at.y * double(cell) + coarse.y - exact.y)};
       order_.push_back(i);
+      top = std::max(top, at_[i].y + mask(i).height);
     }
+    page_ = PlainPage(options.page_size / unit_, top + 1);  // they go down, but for one cell
   }
 
   // False where a chart has no room although its cells had: outlines thinned for the cells may miss
@@ -95,11 +95,9 @@ class Slider {
   const Mask& mask(std::uint32_t i) const { return pieces_[i].masks[start_.places[i].direction]; }
   std::int32_t cells(double texels) const { return std::int32_t(std::lround(texels / unit_)); }
 
-  bool is_free(std::uint32_t i, BitPage::Place at) {
-    if (at.x < 0 || at.y < 0 || at.x + mask(i).width > page_.width()) return false;
-    BitPage::Place found;
-    const auto& tests = pieces_[i].tests[start_.places[i].direction];
-    return page_.find_in_row(tests, {at.x, at.x, at.y, at.y}, at.y, found);
+  bool is_free(std::uint32_t i, BitPage::Place at) const {
+    return at.x >= 0 && at.y >= 0 && at.x + mask(i).width <= page_.width() &&
+           page_.is_free(mask(i), at);
   }
 
   bool nearest_free(std::uint32_t i) {
@@ -116,7 +114,7 @@ class Slider {
   std::vector<Piece> pieces_;
   const Start& start_;
   std::int32_t unit_;
-  BitPage page_;
+  PlainPage page_;
   std::vector<BitPage::Place> at_;    // 1 a chart
   std::vector<std::uint32_t> order_;  // charts with a mask
 };
