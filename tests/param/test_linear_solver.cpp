@@ -1,0 +1,156 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "libatlas/param/linear_solver.h"
+#include "libatlas/param/stiffness.h"
+#include "tests/param/shapes.h"
+
+namespace atlas {
+namespace {
+
+using testing::Disc;
+
+// The stiffness by its textbook formula, half the cotangents of the angles opposite to each edge,
+// as a dense matrix.
+Eigen::MatrixXd cotangent_matrix(const Disc& disc, const std::vector<float>& weights) {
+  const auto at = [&](std::uint32_t v) {
+    const Vec3d& p = disc.positions[v];
+    return Eigen::Vector3d(p.x, p.y, p.z);
+  };
+  const auto n = static_cast<Eigen::Index>(disc.positions.size());
+  Eigen::MatrixXd k = Eigen::MatrixXd::Zero(n, n);
+  for (std::size_t t = 0; t < disc.triangles.size(); ++t) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t i = disc.triangles[t][(c + 1) % 3], j = disc.triangles[t][(c + 2) % 3];
+      const Eigen::Vector3d a = at(i) - at(disc.triangles[t][c]),
+                            b = at(j) - at(disc.triangles[t][c]);
+      const double half_cotangent = 0.5 * double(weights[t]) * a.dot(b) / a.cross(b).norm();
+      k(i, j) -= half_cotangent;
+      k(j, i) -= half_cotangent;
+      k(i, i) += half_cotangent;
+      k(j, j) += half_cotangent;
+    }
+  }
+  return k;
+}
+
+Disc rough_grid(std::uint32_t columns, std::uint32_t rows, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> shift(-0.3, 0.3);
+  return testing::make_grid(columns, rows, [&](double u, double v) {
+    return Vec3d{columns * u + shift(random), rows * v + shift(random), shift(random)};
+  });
+}
+
+std::vector<float> random_weights(std::size_t count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> weight(0.01f, 5);
+  std::vector<float> out(count);
+  for (float& w : out) w = weight(random);
+  return out;
+}
+
+// Solves for a known solution; it comes back up to a constant for each piece, whose first vertices
+// are given.
+void expect_solution(const Eigen::MatrixXd& k, param::EnvelopeSolver& solver,
+                     const std::vector<std::uint32_t>& first_of_piece) {
+  const Eigen::MatrixXd wanted = Eigen::MatrixXd::Random(k.rows(), 2);
+  const Eigen::MatrixXd load = k * wanted;
+  std::vector<glm::dvec2> b, x(static_cast<std::size_t>(k.rows()));
+  for (Eigen::Index i = 0; i < k.rows(); ++i) b.emplace_back(load(i, 0), load(i, 1));
+  solver.solve(b, x);
+  for (std::size_t piece = 0; piece < first_of_piece.size(); ++piece) {
+    const std::size_t begin = first_of_piece[piece];
+    const std::size_t end =
+        piece + 1 < first_of_piece.size() ? first_of_piece[piece + 1] : x.size();
+    const auto row = [&](std::size_t i) {
+      return glm::dvec2(wanted(Eigen::Index(i), 0), wanted(Eigen::Index(i), 1));
+    };
+    for (std::size_t i = begin; i < end; ++i) {
+      EXPECT_LT(glm::distance(x[i] - x[begin], row(i) - row(begin)), 1e-9) << i;
+    }
+  }
+}
+
+TEST(EnvelopeSolver, SolvesTheCotangentSystemOfElements) {
+  for (const auto& [columns, rows] :
+       {std::pair{1u, 1u}, {2u, 1u}, {17u, 5u}, {3u, 40u}, {15u, 15u}}) {
+    const Disc disc = rough_grid(columns, rows, columns + rows);
+    param::Elements elements;
+    elements.build(disc.view(), 0);
+    param::EnvelopeSolver solver;
+    solver.factorize(elements, disc.positions.size(), false);
+    const std::vector<float> even(disc.triangles.size(), 1);
+    expect_solution(cotangent_matrix(disc, even), solver, {0});
+  }
+}
+
+TEST(EnvelopeSolver, TakesNewWeightsOfTheSameElements) {
+  const Disc disc = rough_grid(12, 9, 3);
+  param::Elements elements;
+  elements.build(disc.view(), 0);
+  param::EnvelopeSolver solver;
+  solver.factorize(elements, disc.positions.size(), false);
+  for (const unsigned seed : {1u, 2u}) {
+    const std::vector<float> weights = random_weights(disc.triangles.size(), seed);
+    for (std::size_t t = 0; t < weights.size(); ++t) elements.set_weight(t, weights[t]);
+    solver.factorize(elements, disc.positions.size(), true);
+    expect_solution(cotangent_matrix(disc, weights), solver, {0});
+  }
+}
+
+TEST(EnvelopeSolver, HoldsAVertexOfEachPiece) {
+  Disc disc = rough_grid(7, 6, 5);
+  const Disc other = rough_grid(4, 11, 6);
+  const auto first = static_cast<std::uint32_t>(disc.positions.size());
+  disc.positions.insert(disc.positions.end(), other.positions.begin(), other.positions.end());
+  for (auto t : other.triangles) {
+    for (std::uint32_t& v : t) v += first;
+    disc.triangles.push_back(t);
+  }
+  param::Elements elements;
+  elements.build(disc.view(), 0);
+  const std::vector<float> even(disc.triangles.size(), 1);
+  param::EnvelopeSolver of_elements, of_matrix;
+  of_elements.factorize(elements, disc.positions.size(), false);
+  expect_solution(cotangent_matrix(disc, even), of_elements, {0, first});
+
+  param::CornerLists corners;
+  corners.build(elements, disc.positions.size());
+  param::SymmetricMatrix matrix;
+  param::build_stiffness(elements, corners, matrix);
+  of_matrix.factorize(matrix);
+  expect_solution(cotangent_matrix(disc, even), of_matrix, {0, first});
+}
+
+// Nothing of an earlier mesh is left in what comes after it.
+TEST(EnvelopeSolver, ForgetsEarlierMeshes) {
+  const Disc disc = rough_grid(20, 20, 9);
+  param::Elements elements;
+  elements.build(disc.view(), 0);
+  std::vector<std::vector<glm::dvec2>> solutions;
+  for (int run = 0; run < 2; ++run) {
+    param::EnvelopeSolver solver;
+    if (run > 0) {  // used before, for another mesh
+      const Disc other = rough_grid(31, 8, 1);
+      param::Elements others;
+      others.build(other.view(), 0);
+      solver.factorize(others, other.positions.size(), false);
+    }
+    solver.factorize(elements, disc.positions.size(), false);
+    std::vector<glm::dvec2> load(disc.positions.size()), x(load.size());
+    for (std::size_t i = 0; i < load.size(); ++i)
+      load[i] = {std::sin(double(i)), std::cos(double(i))};
+    solver.solve(load, x);
+    solutions.push_back(x);
+  }
+  EXPECT_EQ(solutions[0], solutions[1]);
+}
+
+}  // namespace
+}  // namespace atlas
