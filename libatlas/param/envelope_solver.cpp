@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "libatlas/param/envelope_kernels.h"
 #include "libatlas/param/linear_solver.h"
 
 namespace atlas::param {
@@ -10,50 +11,7 @@ namespace {
 
 constexpr std::uint32_t unseen = 0xffffffff;
 
-// Blocks of 4 x 4, column after column: what one processor's registers hold.
-constexpr std::size_t side = 4, block_size = side * side;
-
-// The four rows of a column. Compilers take as many instructions for its arithmetic as the
-// processor at hand needs; its results are those of its elements. What std::vector allocates begins
-// at a multiple of 16 bytes.
-using Column = double __attribute__((vector_size(32), aligned(16), may_alias));
-static_assert(sizeof(Column) == side * sizeof(double) && __STDCPP_DEFAULT_NEW_ALIGNMENT__ >= 16);
-
-// The functions below are compiled for processors with vectors of 32 bytes as well, and the loader
-// chooses. ThreadSanitizer is not ready yet when it does.
-#if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_THREAD__)
-#define ATLAS_WIDE_VECTORS [[gnu::target_clones("avx2", "default")]]
-#else
-#define ATLAS_WIDE_VECTORS
-#endif
-
-// sum -= a b'
-[[gnu::always_inline]] inline void subtract_product(const Column* a, const double* b, Column* sum) {
-#pragma GCC unroll 1  // else the sum does not stay in registers
-  for (std::size_t k = 0; k < side; ++k) {
-    for (std::size_t j = 0; j < side; ++j) sum[j] -= a[k] * b[side * k + j];
-  }
-}
-
-// A block of the factor from the sum of what was filled in; `begin` and `other` are the first
-// blocks of its row and of its column's row that both have, all before `own` done.
-ATLAS_WIDE_VECTORS void eliminate_block(double* own, const double* begin, const double* other,
-                                        const double* inverse_pivot) {
-  Column sum[side];
-  Column* const out = reinterpret_cast<Column*>(own);
-  for (std::size_t j = 0; j < side; ++j) sum[j] = out[j];
-  for (const double* a = begin; a != own; a += block_size, other += block_size) {
-    subtract_product(reinterpret_cast<const Column*>(a), other, sum);
-  }
-  if (inverse_pivot) {
-    for (std::size_t j = 0; j < side; ++j) {
-      sum[j] *= inverse_pivot[j];
-      for (std::size_t k = j + 1; k < side; ++k) sum[k] -= sum[j] * other[side * j + k];
-    }
-  }
-  for (std::size_t j = 0; j < side; ++j) out[j] = sum[j];
-}
+constexpr std::size_t side = EnvelopeBlocks::side, block_size = EnvelopeBlocks::size;
 
 }  // namespace
 
@@ -191,13 +149,6 @@ void EnvelopeSolver::fill(const Elements& elements) {
   for (std::size_t i = 0; i < order_.size(); ++i) factor_[place(i, i)] = diagonal_[order_[i]];
 }
 
-// Block (b, c) of the factor, all before it done.
-void EnvelopeSolver::eliminate_at(std::size_t b, std::size_t c) {
-  const std::size_t begin = std::max(first_[b], first_[c]);
-  eliminate_block(block(b, c), block(b, begin), block(c, begin),
-                  b == c ? nullptr : &inverse_pivot_[side * c]);
-}
-
 void EnvelopeSolver::factorize(const SymmetricMatrix& matrix) {
   const Graph graph{matrix.first, matrix.column};
   order(graph);
@@ -221,8 +172,9 @@ void EnvelopeSolver::factorize(const Elements& elements, std::size_t vertices, b
 void EnvelopeSolver::eliminate(std::span<const double> diagonal) {
   const std::size_t blocks = first_.size();
   inverse_pivot_.assign(side * blocks, 0);
+  const EnvelopeBlocks factor{first_.data(), row_.data(), factor_.data(), inverse_pivot_.data()};
   for (std::size_t b = 0; b < blocks; ++b) {
-    for (std::size_t c = first_[b]; c <= b; ++c) eliminate_at(b, c);
+    eliminate_row(factor, b);
     double* own = block(b, b);
     for (std::size_t j = 0; j < std::min(side, order_.size() - side * b); ++j) {
       const std::uint32_t v = order_[side * b + j];
@@ -246,12 +198,11 @@ void EnvelopeSolver::solve(std::span<const glm::dvec2> load, std::span<glm::dvec
   glm::dvec2* work = work_.data();
   for (std::size_t i = 0; i < n; ++i) work[i] = load[order_[i]];
   for (std::size_t b = 0; b < blocks; ++b) {
-    std::array<glm::dvec2, side> sum;
+    const std::size_t begin = side * first_[b];
+    alignas(16) std::array<glm::dvec2, side> sum;
     for (std::size_t r = 0; r < side; ++r) sum[r] = work[side * b + r];
-    const double* column = block(b, first_[b]);
-    for (std::size_t i = side * first_[b]; i < side * b; ++i, column += side) {
-      for (std::size_t r = 0; r < side; ++r) sum[r] -= column[r] * work[i];
-    }
+    subtract_columns(block(b, first_[b]), work + begin, side * b - begin, sum.data());
+    const double* column = block(b, b);
     for (std::size_t j = 0; j < side; ++j, column += side) {
       sum[j] *= inverse_pivot_[side * b + j];
       for (std::size_t r = j + 1; r < side; ++r) sum[r] -= column[r] * sum[j];
@@ -259,18 +210,15 @@ void EnvelopeSolver::solve(std::span<const glm::dvec2> load, std::span<glm::dvec
     }
   }
   for (std::size_t b = blocks; b-- > 0;) {
-    std::array<glm::dvec2, side> known;
+    const std::size_t begin = side * first_[b];
+    alignas(16) std::array<glm::dvec2, side> known;
     const double* own = block(b, b);
     for (std::size_t j = side; j-- > 0;) {
       known[j] = work[side * b + j];
       for (std::size_t r = j + 1; r < side; ++r) known[j] -= own[side * j + r] * known[r];
       work[side * b + j] = known[j] *= inverse_pivot_[side * b + j];
     }
-    const double* column = block(b, first_[b]);
-    for (std::size_t i = side * first_[b]; i < side * b; ++i, column += side) {
-      const glm::dvec2 low = column[0] * known[0] + column[1] * known[1];
-      work[i] -= low + (column[2] * known[2] + column[3] * known[3]);
-    }
+    subtract_rows(block(b, first_[b]), known.data(), side * b - begin, work + begin);
   }
   for (std::size_t i = 0; i < n; ++i) x[order_[i]] = work[i];
 }

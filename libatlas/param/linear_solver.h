@@ -37,7 +37,6 @@ class EnvelopeSolver {
   void fill(const SymmetricMatrix& matrix);
   void fill(const Elements& elements);
   void eliminate(std::span<const double> diagonal);
-  void eliminate_at(std::size_t row, std::size_t column);
   std::size_t place(std::size_t i, std::size_t j) const;
   double* block(std::size_t row, std::size_t column);
 
