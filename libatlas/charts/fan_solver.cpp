@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/core/wide_vectors.h"
+
 namespace atlas {
 namespace {
 
@@ -11,12 +13,9 @@ constexpr double kNoPivot = 1e-15;  // of the diagonal: rounding
 // alone would choose.
 constexpr double kNoTurn = 1e-3;
 
-// Two neighbouring entries of a row, or a point. Vectors of this size are elementary to every
-// 64-bit processor, and their arithmetic is that of their elements.
-using Pair = double __attribute__((vector_size(16), may_alias));
-// Pairs are read in place: what std::vector allocates begins at a multiple of their size. (A Vec2d
-// of its own need not.)
-static_assert(sizeof(Vec2d) == sizeof(Pair) && __STDCPP_DEFAULT_NEW_ALIGNMENT__ >= alignof(Pair));
+// A Pair is two neighbouring entries of a row, or a point. Pairs are read in place; a Vec2d of its
+// own need not lie where they must.
+static_assert(sizeof(Vec2d) == sizeof(Pair));
 
 const Pair& pair_at(const double* from) {
   return *reinterpret_cast<const Pair*>(from);
@@ -180,33 +179,84 @@ void FanSolver::load_fan(std::size_t place, std::span<const Vec2d> uvs) {
   pair_at(centre_load_[place]) = centre_load;
 }
 
+namespace {
+
+// Two rows of a factor, from column 0 on, of which the envelope holds those from `first` to `end`.
+struct RowPair {
+  const double *low, *high;
+  std::uint32_t first, end;
+};
+
+// x and y less what the rows say of the points before.
+void subtract_known_narrow(const RowPair& row, const Vec2d* points, Pair& x, Pair& y) {
+  Pair more_x{}, more_y{};
+  for (std::uint32_t k = row.first; k < row.end; k += 2) {
+    const Pair p = pair_at(points[k]), q = pair_at(points[k + 1]);
+    x -= row.low[k] * p;
+    y -= row.high[k] * p;
+    more_x += row.low[k + 1] * q;
+    more_y += row.high[k + 1] * q;
+  }
+  x -= more_x;
+  y -= more_y;
+}
+
+ATLAS_WIDE void subtract_known_wide(const RowPair& row, const Vec2d* points, Pair& x, Pair& y) {
+  Quad xs{x[0], x[1], 0, 0}, ys{y[0], y[1], 0, 0};
+  for (std::uint32_t k = row.first; k < row.end; k += 2) {
+    // Of four entries, two beyond those that count: the diagonal's lie there.
+    const Quad low = *reinterpret_cast<const Quad*>(row.low + k);
+    const Quad high = *reinterpret_cast<const Quad*>(row.high + k);
+    const Quad both = *reinterpret_cast<const Quad*>(points + k);
+    xs -= __builtin_shufflevector(low, low, 0, 0, 1, 1) * both;
+    ys -= __builtin_shufflevector(high, high, 0, 0, 1, 1) * both;
+  }
+  x = Pair{xs[0] + xs[2], xs[1] + xs[3]};
+  y = Pair{ys[0] + ys[2], ys[1] + ys[3]};
+}
+
+// The points before less what x and y add to them.
+void subtract_from_known_narrow(const RowPair& row, const Pair& x, const Pair& y, Vec2d* points) {
+  for (std::uint32_t k = row.first; k < row.end; ++k) {
+    pair_at(points[k]) -= row.low[k] * x + row.high[k] * y;
+  }
+}
+
+ATLAS_WIDE void subtract_from_known_wide(const RowPair& row, const Pair& x, const Pair& y,
+                                         Vec2d* points) {
+  const Quad xs{x[0], x[1], x[0], x[1]}, ys{y[0], y[1], y[0], y[1]};
+  for (std::uint32_t k = row.first; k < row.end; k += 2) {
+    const Quad low = *reinterpret_cast<const Quad*>(row.low + k);
+    const Quad high = *reinterpret_cast<const Quad*>(row.high + k);
+    *reinterpret_cast<Quad*>(points + k) -= __builtin_shufflevector(low, low, 0, 0, 1, 1) * xs +
+                                            __builtin_shufflevector(high, high, 0, 0, 1, 1) * ys;
+  }
+}
+
+}  // namespace
+
 void FanSolver::solve() {
   const auto n = static_cast<std::uint32_t>(2 * first_.size());
+  const auto subtract_known = has_wide_vectors ? subtract_known_wide : subtract_known_narrow;
+  const auto subtract_from_known =
+      has_wide_vectors ? subtract_from_known_wide : subtract_from_known_narrow;
   for (std::uint32_t i = 0; i < n; i += 2) {
-    const double *const low = row(i), *const high = row(i + 1);
-    Pair x = pair_at(load_[i]), y = pair_at(load_[i + 1]), more_x{}, more_y{};
-    for (std::uint32_t k = first_[i / 2]; k < i; k += 2) {
-      const Pair p = pair_at(load_[k]), q = pair_at(load_[k + 1]);
-      x -= low[k] * p;
-      y -= high[k] * p;
-      more_x += low[k + 1] * q;
-      more_y += high[k + 1] * q;
-    }
-    x = (x - more_x) * inverse_pivot_[i];
-    y = (y - more_y - high[i] * x) * inverse_pivot_[i + 1];
+    const RowPair both{row(i), row(i + 1), first_[i / 2], i};
+    Pair x = pair_at(load_[i]), y = pair_at(load_[i + 1]);
+    subtract_known(both, load_.data(), x, y);
+    x *= inverse_pivot_[i];
+    y = (y - both.high[i] * x) * inverse_pivot_[i + 1];
     pair_at(load_[i]) = x;
     pair_at(load_[i + 1]) = y;
   }
   for (std::uint32_t i = n; i > 0;) {
     i -= 2;
-    const double *const low = row(i), *const high = row(i + 1);
+    const RowPair both{row(i), row(i + 1), first_[i / 2], i};
     const Pair y = pair_at(load_[i + 1]) * inverse_pivot_[i + 1];
-    const Pair x = (pair_at(load_[i]) - high[i] * y) * inverse_pivot_[i];
+    const Pair x = (pair_at(load_[i]) - both.high[i] * y) * inverse_pivot_[i];
     pair_at(load_[i]) = x;
     pair_at(load_[i + 1]) = y;
-    for (std::uint32_t k = first_[i / 2]; k < i; ++k) {
-      pair_at(load_[k]) -= low[k] * x + high[k] * y;
-    }
+    subtract_from_known(both, x, y, load_.data());
   }
 }
 

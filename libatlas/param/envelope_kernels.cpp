@@ -2,18 +2,13 @@
 
 #include <algorithm>
 
+#include "libatlas/core/wide_vectors.h"
+
 namespace atlas::param {
 namespace {
 
 constexpr std::size_t side = EnvelopeBlocks::side;
 
-// Two entries, or two coordinates: vectors of this size are elementary to every 64-bit processor.
-using Pair = double __attribute__((vector_size(16), may_alias));
-// All four entries of a column. What std::vector allocates begins at a multiple of 16 bytes.
-using Column = double __attribute__((vector_size(32), aligned(16), may_alias));
-static_assert(__STDCPP_DEFAULT_NEW_ALIGNMENT__ >= sizeof(Pair));
-
-// Results are those of the vectors' elements, whatever their width.
 #define ATLAS_INLINE [[gnu::always_inline]] inline
 
 // A block of the factor from the sum of what was filled in; `a` and `b` are the first blocks that
@@ -85,22 +80,17 @@ void subtract_rows_narrow(const double* columns, const glm::dvec2* known, std::s
   }
 }
 
-#if defined(__x86_64__) && defined(__GNUC__)
-
-const bool wide = __builtin_cpu_supports("avx2");
-#define ATLAS_WIDE [[gnu::target("avx2")]]
-
 ATLAS_WIDE void eliminate_row_wide(const EnvelopeBlocks& blocks, std::size_t b) {
-  eliminate_row_by<Column>(blocks, b);
+  eliminate_row_by<Quad>(blocks, b);
 }
 
 ATLAS_WIDE void subtract_columns_wide(const double* columns, const glm::dvec2* x, std::size_t count,
                                       glm::dvec2* sum) {
-  Column* const out = reinterpret_cast<Column*>(sum);
-  Column low = out[0], high = out[1];
+  Quad* const out = reinterpret_cast<Quad*>(sum);
+  Quad low = out[0], high = out[1];
   for (std::size_t i = 0; i < count; ++i) {
-    const Column c = reinterpret_cast<const Column*>(columns)[i];
-    const Column both{x[i].x, x[i].y, x[i].x, x[i].y};
+    const Quad c = reinterpret_cast<const Quad*>(columns)[i];
+    const Quad both{x[i].x, x[i].y, x[i].x, x[i].y};
     low -= __builtin_shufflevector(c, c, 0, 0, 1, 1) * both;
     high -= __builtin_shufflevector(c, c, 2, 2, 3, 3) * both;
   }
@@ -110,41 +100,32 @@ ATLAS_WIDE void subtract_columns_wide(const double* columns, const glm::dvec2* x
 
 ATLAS_WIDE void subtract_rows_wide(const double* columns, const glm::dvec2* known,
                                    std::size_t count, glm::dvec2* x) {
-  const Column low = reinterpret_cast<const Column*>(known)[0];
-  const Column high = reinterpret_cast<const Column*>(known)[1];
+  const Quad low = reinterpret_cast<const Quad*>(known)[0];
+  const Quad high = reinterpret_cast<const Quad*>(known)[1];
   for (std::size_t i = 0; i < count; ++i) {
-    const Column c = reinterpret_cast<const Column*>(columns)[i];
-    const Column sum = __builtin_shufflevector(c, c, 0, 0, 1, 1) * low +
-                       __builtin_shufflevector(c, c, 2, 2, 3, 3) * high;
+    const Quad c = reinterpret_cast<const Quad*>(columns)[i];
+    const Quad sum = __builtin_shufflevector(c, c, 0, 0, 1, 1) * low +
+                     __builtin_shufflevector(c, c, 2, 2, 3, 3) * high;
     pair(x[i]) -= __builtin_shufflevector(sum, sum, 0, 1) + __builtin_shufflevector(sum, sum, 2, 3);
   }
 }
 
-#else
-
-constexpr bool wide = false;
-constexpr auto eliminate_row_wide = eliminate_row_narrow;
-constexpr auto subtract_columns_wide = subtract_columns_narrow;
-constexpr auto subtract_rows_wide = subtract_rows_narrow;
-
-#endif
-
 }  // namespace
 
 void eliminate_row(const EnvelopeBlocks& blocks, std::size_t b) {
-  wide ? eliminate_row_wide(blocks, b) : eliminate_row_narrow(blocks, b);
+  has_wide_vectors ? eliminate_row_wide(blocks, b) : eliminate_row_narrow(blocks, b);
 }
 
 void subtract_columns(const double* columns, const glm::dvec2* x, std::size_t count,
                       glm::dvec2* sum) {
-  wide ? subtract_columns_wide(columns, x, count, sum)
-       : subtract_columns_narrow(columns, x, count, sum);
+  has_wide_vectors ? subtract_columns_wide(columns, x, count, sum)
+                   : subtract_columns_narrow(columns, x, count, sum);
 }
 
 void subtract_rows(const double* columns, const glm::dvec2* known, std::size_t count,
                    glm::dvec2* x) {
-  wide ? subtract_rows_wide(columns, known, count, x)
-       : subtract_rows_narrow(columns, known, count, x);
+  has_wide_vectors ? subtract_rows_wide(columns, known, count, x)
+                   : subtract_rows_narrow(columns, known, count, x);
 }
 
 }  // namespace atlas::param
