@@ -22,10 +22,6 @@ int class_of(std::int32_t length) {
   return 8 * octave + (length >> octave) - 1;
 }
 
-RowTest row_test(const Mask& mask, std::int32_t r) {
-  return {r, class_of(longest_in(mask, r))};
-}
-
 // A run of length L at x is free if two bits are set: see BitPage.
 void add_probes(const Mask& mask, std::int32_t r, std::vector<Probe>& probes) {
   for (const Run& run : mask.row(r)) {
@@ -66,24 +62,26 @@ MaskTests test_order(const Mask& mask) {
   tests.width = mask.width;
   tests.height = mask.height;
   if (mask.height == 0) return tests;
-  std::vector<RowTest>& rows = tests.rows;
-  rows.reserve(static_cast<std::size_t>(mask.height));
-  rows.push_back(row_test(mask, 0));
-  std::int32_t longest = longest_in(mask, 0);
-  for (std::int32_t r = 1; r < mask.height; ++r)
-    if (const std::int32_t here = longest_in(mask, r); here > longest) {
-      longest = here;
-      rows[0] = row_test(mask, r);
-    }
+  std::vector<std::int32_t> longest(static_cast<std::size_t>(mask.height));
+  for (std::int32_t r = 0; r < mask.height; ++r)
+    longest[static_cast<std::size_t>(r)] = longest_in(mask, r);
+  const auto first =
+      static_cast<std::int32_t>(std::max_element(longest.begin(), longest.end()) - longest.begin());
+  tests.rows.reserve(longest.size());
+  tests.probes.reserve(2 * mask.runs.size());
+  const auto add = [&](std::int32_t r) {
+    tests.rows.push_back({r, class_of(longest[static_cast<std::size_t>(r)])});
+    add_probes(mask, r, tests.probes);
+  };
+  add(first);
   // Bit-reversed counting visits halves, quarters, eighths, ...
   const int bits = std::bit_width(static_cast<std::uint32_t>(mask.height));
   std::int32_t row = 0;
   for (std::uint32_t k = 0; k < 1u << bits; ++k) {
-    if (row < mask.height && row != rows[0].row) rows.push_back(row_test(mask, row));
+    if (row < mask.height && row != first) add(row);
     for (int b = bits - 1; b >= 0 && ((row ^= 1 << b) >> b & 1) == 0; --b) {
     }
   }
-  for (const RowTest& test : rows) add_probes(mask, test.row, tests.probes);
   return tests;
 }
 

@@ -168,7 +168,7 @@ class OutlineFit {
     search.width = search.enough = side_;
     search.seed = p + 1;
     if (options_.preset != PackPreset::best) search.layouts = 300;
-    search.work = (options_.preset == PackPreset::best ? 400'000'000u : 8'000'000u) / pages;
+    search.work = (options_.preset == PackPreset::best ? 400'000'000u : 16'000'000u) / pages;
     if (layout_cost(plan.order.size(), side_, grid_.directions) * 4 > double(search.work)) return;
     Nest found;
     std::uint64_t layouts = 0;

@@ -55,17 +55,19 @@ Piece make_piece(const ChartOutline& shape, double factor, const PieceOptions& o
     if (!may_fit({factor * box.x, factor * box.y}, options)) continue;
     piece.too_large = false;
     masks[b] = rasterize(shape, raster, piece.origins[b]);
-    for (std::uint32_t k = b + bases, quarter = 1; k < n; k += bases, ++quarter) {
-      const std::uint32_t from = k - bases;
-      // Two directions are half a turn apart, four a quarter.
-      masks[k] = quarter_turn(masks[from]);
-      piece.origins[k] =
-          turned_origin(piece.origins[from], double(masks[from].height) * options.cell);
-      if (n == 2) {
-        const double height = double(masks[k].height) * options.cell;
-        masks[k] = quarter_turn(masks[k]);
-        piece.origins[k] = turned_origin(piece.origins[k], height);
-      }
+    // Two directions are half a turn apart, four a quarter.
+    if (n >= 4) {
+      const double height = double(masks[b].height) * options.cell;
+      masks[b + bases] = quarter_turn(masks[b]);
+      piece.origins[b + bases] = turned_origin(piece.origins[b], height);
+    }
+    const std::uint32_t half = n >= 4 ? 2 * bases : bases;
+    for (std::uint32_t k = b + half; k < n; k += bases) {
+      const Mask& from = masks[k - half];
+      const Vec2d origin = piece.origins[k - half];
+      masks[k] = half_turn(from);
+      piece.origins[k] = {double(from.width) * options.cell - origin.x,
+                          double(from.height) * options.cell - origin.y};
     }
   }
   piece.masks = std::move(masks);

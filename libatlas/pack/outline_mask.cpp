@@ -270,6 +270,15 @@ Mask quarter_turn(const Mask& mask) {
   return set.build();
 }
 
+Mask half_turn(const Mask& mask) {
+  Mask turned = mask;
+  std::reverse(turned.runs.begin(), turned.runs.end());
+  for (Run& run : turned.runs) run = {mask.width - run.end, mask.width - run.begin};
+  std::reverse(turned.first.begin(), turned.first.end());
+  for (std::uint32_t& first : turned.first) first = mask.first.back() - first;
+  return turned;
+}
+
 bool overlap(const Mask& a, const Mask& b, std::int32_t dx, std::int32_t dy) {
   if (dx >= a.width || dx + b.width <= 0) return false;
   for (std::int32_t r = std::max(0, dy); r < std::min(a.height, dy + b.height); ++r) {

@@ -43,6 +43,9 @@ Mask rasterize(const ChartOutline& outline, const RasterOptions& options, Vec2d&
 // The mask turned by 90 degrees counterclockwise.
 Mask quarter_turn(const Mask& mask);
 
+// By 180 degrees: far less work.
+Mask half_turn(const Mask& mask);
+
 // Whether a cell of `a` lies on one of `b` when b is put dx, dy cells right of and above a.
 bool overlap(const Mask& a, const Mask& b, std::int32_t dx, std::int32_t dy);
 

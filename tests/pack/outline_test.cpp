@@ -226,6 +226,7 @@ TEST(OutlineMask, QuarterTurnsTurn) {
       for (int x = 0; x < m.width; ++x)
         ASSERT_EQ(covers(m, x, y), covers(turned, m.height - 1 - y, x));
     EXPECT_EQ(pack::quarter_turn(pack::quarter_turn(pack::quarter_turn(turned))), m);
+    EXPECT_EQ(pack::half_turn(m), pack::quarter_turn(turned));
   }
 }
 
