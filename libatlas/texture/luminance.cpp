@@ -106,9 +106,6 @@ LuminanceSampler& LuminanceSampler::operator=(LuminanceSampler&&) noexcept = def
 const Scene& LuminanceSampler::scene() const {
   return state_->scene;
 }
-Quantity LuminanceSampler::quantity() const {
-  return state_->quantity;
-}
 
 double LuminanceSampler::texture_density(std::uint32_t t) const {
   const TextureLevels* texture = state_->texture(t);

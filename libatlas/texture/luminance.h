@@ -58,7 +58,6 @@ class LuminanceSampler {
   double texture_density(std::uint32_t t) const;
 
   const Scene& scene() const;
-  Quantity quantity() const;
 
  private:
   struct State;

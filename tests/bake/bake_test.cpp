@@ -115,6 +115,51 @@ TEST(BakePage, AverageIsTheAreaMeanOverEachTexel) {
   }
 }
 
+// Curves other than the linear one are applied to each sample's colour, of the light as of its
+// product with a texture, on large triangles and on ones that no sample position meets.
+TEST(BakePage, ShowsLightAndTexturesThroughAnyToneCurve) {
+  LuminanceStatistics statistics;
+  statistics.log_average = 0.5;
+  statistics.maximum = statistics.percentile99 = 4;
+  statistics.mean_rgb = {0.6f, 0.6f, 0.6f};
+  statistics.minimum_log = std::log(0.05);
+  statistics.maximum_log = std::log(4);
+  const Light at = [](double u, double v) {
+    return Vec3f{float(0.2 + 2 * u), float(1 + v), float(0.5 + 0.3 * u + 0.4 * v)};
+  };
+  for (const ToneOperator op : {ToneOperator::linear, ToneOperator::reinhard, ToneOperator::drago,
+                                ToneOperator::reinhard_devlin}) {
+    ToneOptions how;
+    how.op = op;
+    const auto tone = make_tone_mapping(how, statistics);
+    ASSERT_TRUE(tone.ok());
+    for (const bool textured : {false, true}) {
+      for (const int cells : {4, 120}) {  // 120: six a texel
+        LitShape shape = make_sheet({1, 1, cells, cells}, at);
+        if (textured) add_texture(shape, Image8(8, 8, 3, 170), {3, 3});
+        const float reflectance = textured ? srgb_decode(170.0f / 255) : 1;
+        const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+        const ChartPlacement p = place(shape.charts, 0, {20, 20}, {4, 4, 0, 0});
+        for (const BakeMethod method : {BakeMethod::least_squares, BakeMethod::average}) {
+          const auto page = bake_page({sampler, shape.charts, *tone}, std::vector{p},
+                                      small_page(32, method), Context{});
+          ASSERT_TRUE(page.ok());
+          for (int y = 1; y < 19; ++y)
+            for (int x = 1; x < 19; ++x) {
+              const Vec3f light = at((x + 0.5) / 20, (y + 0.5) / 20);
+              const Vec3f want = tone->display(
+                  {reflectance * light.x, reflectance * light.y, reflectance * light.z});
+              const std::uint8_t* got = page->display.at(x + 4, y + 4);
+              ASSERT_NEAR(got[0], 255 * want.x, 2) << tone_operator_name(op) << ' ' << cells;
+              ASSERT_NEAR(got[1], 255 * want.y, 2) << tone_operator_name(op) << ' ' << cells;
+              ASSERT_NEAR(got[2], 255 * want.z, 2) << tone_operator_name(op) << ' ' << cells;
+            }
+        }
+      }
+    }
+  }
+}
+
 TEST(BakePage, CountsEveryTriangleHoweverSmall) {
   // A hundred cells a texel, one column in five bright: each texel is near the mean, whatever
   // the samples' positions.

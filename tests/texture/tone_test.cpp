@@ -207,6 +207,7 @@ TEST(ToneMapping, RefusesOptionsOutOfRange) {
   EXPECT_TRUE(refused([](ToneOptions& o) { o.contrast = 9; }));
   EXPECT_TRUE(refused([](ToneOptions& o) { o.exposure_stops = 1e6; }));
   EXPECT_TRUE(refused([](ToneOptions& o) { o.chromatic_adaptation = 2; }));
+  EXPECT_TRUE(refused([](ToneOptions& o) { o.light_adaptation = -0.1; }));
 }
 
 TEST(ToneOperators, AreFoundByName) {
