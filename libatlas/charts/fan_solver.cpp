@@ -205,9 +205,9 @@ ATLAS_WIDE void subtract_known_wide(const RowPair& row, const Vec2d* points, Pai
   Quad xs{x[0], x[1], 0, 0}, ys{y[0], y[1], 0, 0};
   for (std::uint32_t k = row.first; k < row.end; k += 2) {
     // Of four entries, two beyond those that count: the diagonal's lie there.
-    const Quad low = *reinterpret_cast<const Quad*>(row.low + k);
-    const Quad high = *reinterpret_cast<const Quad*>(row.high + k);
-    const Quad both = *reinterpret_cast<const Quad*>(points + k);
+    const Quad low = *reinterpret_cast<const QuadInPlace*>(row.low + k);
+    const Quad high = *reinterpret_cast<const QuadInPlace*>(row.high + k);
+    const Quad both = *reinterpret_cast<const QuadInPlace*>(points + k);
     xs -= __builtin_shufflevector(low, low, 0, 0, 1, 1) * both;
     ys -= __builtin_shufflevector(high, high, 0, 0, 1, 1) * both;
   }
@@ -226,10 +226,11 @@ ATLAS_WIDE void subtract_from_known_wide(const RowPair& row, const Pair& x, cons
                                          Vec2d* points) {
   const Quad xs{x[0], x[1], x[0], x[1]}, ys{y[0], y[1], y[0], y[1]};
   for (std::uint32_t k = row.first; k < row.end; k += 2) {
-    const Quad low = *reinterpret_cast<const Quad*>(row.low + k);
-    const Quad high = *reinterpret_cast<const Quad*>(row.high + k);
-    *reinterpret_cast<Quad*>(points + k) -= __builtin_shufflevector(low, low, 0, 0, 1, 1) * xs +
-                                            __builtin_shufflevector(high, high, 0, 0, 1, 1) * ys;
+    const Quad low = *reinterpret_cast<const QuadInPlace*>(row.low + k);
+    const Quad high = *reinterpret_cast<const QuadInPlace*>(row.high + k);
+    *reinterpret_cast<QuadInPlace*>(points + k) -=
+        __builtin_shufflevector(low, low, 0, 0, 1, 1) * xs +
+        __builtin_shufflevector(high, high, 0, 0, 1, 1) * ys;
   }
 }
 

@@ -10,8 +10,10 @@ using Pair = double __attribute__((vector_size(16), may_alias));
 static_assert(__STDCPP_DEFAULT_NEW_ALIGNMENT__ >= sizeof(Pair));
 
 // One instruction's worth where has_wide_vectors, in functions marked ATLAS_WIDE; elsewhere
-// compilers make two of each, and may run out of registers.
-using Quad = double __attribute__((vector_size(32), aligned(16), may_alias));
+// compilers make two of each, and may run out of registers. QuadInPlace is how they are read from
+// arrays.
+using Quad = double __attribute__((vector_size(32)));
+using QuadInPlace = double __attribute__((vector_size(32), aligned(16), may_alias));
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #define ATLAS_WIDE [[gnu::target("avx2")]]

@@ -81,15 +81,15 @@ void subtract_rows_narrow(const double* columns, const glm::dvec2* known, std::s
 }
 
 ATLAS_WIDE void eliminate_row_wide(const EnvelopeBlocks& blocks, std::size_t b) {
-  eliminate_row_by<Quad>(blocks, b);
+  eliminate_row_by<QuadInPlace>(blocks, b);
 }
 
 ATLAS_WIDE void subtract_columns_wide(const double* columns, const glm::dvec2* x, std::size_t count,
                                       glm::dvec2* sum) {
-  Quad* const out = reinterpret_cast<Quad*>(sum);
+  QuadInPlace* const out = reinterpret_cast<QuadInPlace*>(sum);
   Quad low = out[0], high = out[1];
   for (std::size_t i = 0; i < count; ++i) {
-    const Quad c = reinterpret_cast<const Quad*>(columns)[i];
+    const Quad c = reinterpret_cast<const QuadInPlace*>(columns)[i];
     const Quad both{x[i].x, x[i].y, x[i].x, x[i].y};
     low -= __builtin_shufflevector(c, c, 0, 0, 1, 1) * both;
     high -= __builtin_shufflevector(c, c, 2, 2, 3, 3) * both;
@@ -100,10 +100,10 @@ ATLAS_WIDE void subtract_columns_wide(const double* columns, const glm::dvec2* x
 
 ATLAS_WIDE void subtract_rows_wide(const double* columns, const glm::dvec2* known,
                                    std::size_t count, glm::dvec2* x) {
-  const Quad low = reinterpret_cast<const Quad*>(known)[0];
-  const Quad high = reinterpret_cast<const Quad*>(known)[1];
+  const Quad low = reinterpret_cast<const QuadInPlace*>(known)[0];
+  const Quad high = reinterpret_cast<const QuadInPlace*>(known)[1];
   for (std::size_t i = 0; i < count; ++i) {
-    const Quad c = reinterpret_cast<const Quad*>(columns)[i];
+    const Quad c = reinterpret_cast<const QuadInPlace*>(columns)[i];
     const Quad sum = __builtin_shufflevector(c, c, 0, 0, 1, 1) * low +
                      __builtin_shufflevector(c, c, 2, 2, 3, 3) * high;
     pair(x[i]) -= __builtin_shufflevector(sum, sum, 0, 1) + __builtin_shufflevector(sum, sum, 2, 3);

@@ -13,6 +13,7 @@ namespace {
 // A spared triangle's symmetric Dirichlet energy, in this unit, gives way to what exceeds a bound
 // of 1.25 by far, but does not let the triangle vanish.
 constexpr double spared_weight = 1e5;
+constexpr VertexStar::Kind spared_energy{VertexEnergy::symmetric_dirichlet};
 
 // A spring's stiffness. A vertex among equilateral triangles answers the symmetric Dirichlet energy
 // with about 28 near an isometry, so targets win.
@@ -70,79 +71,43 @@ void Relaxer::gather(std::span<const std::uint32_t> seeds, int rings) {
 }
 
 void Relaxer::load_vertex(std::uint32_t v) {
-  local_.clear();
+  star_.clear();
+  spared_star_.clear();
   spring_ = !spring_of_.empty() && spring_of_[v] > 0 ? &springs_[spring_of_[v] - 1] : nullptr;
   if (spring_) offset_ = to_glm(uvs_[v]) - to_glm(spring_->target);
+  const bool sparing = energy_ == VertexEnergy::high_power;
   for (std::uint32_t i = corners_->first[v]; i < corners_->first[v + 1]; ++i) {
     const std::uint32_t t = corners_->corner[i] / 3, k = corners_->corner[i] % 3;
     Element room;
     const Element& e = elements_.at(t, room);
-    const Jacobian j = e.jacobian(to_glm(uvs_[e.v[0]]), to_glm(uvs_[e.v[1]]), to_glm(uvs_[e.v[2]]));
-    const glm::dvec2 g = e.area_gradients()[k] / e.area();
-    Local l;
-    l.f = glm::dot(j.x, j.x) + glm::dot(j.y, j.y);
-    l.d = j.det();
-    l.q = glm::dot(g, g);
-    l.a = j.x * g.x + j.y * g.y;
-    l.n = {g.x * j.y.y - g.y * j.x.y, g.y * j.x.x - g.x * j.y.x};
-    // A share of the mean area lets slivers have a say.
-    l.weight = e.area() + 0.1 * mean_area_;
-    l.energy = energy_;
-    if (energy_ == Energy::high_power && spared_[t]) {
-      l.energy = Energy::symmetric_dirichlet;
-      l.weight *= spared_weight;
+    const std::array uvs{to_glm(uvs_[e.v[0]]), to_glm(uvs_[e.v[1]]), to_glm(uvs_[e.v[2]])};
+    const double weight = e.area() + 0.1 * mean_area_;  // slivers have a say
+    if (sparing && spared_[t]) {
+      spared_star_.add(e, k, uvs, weight * spared_weight);
+    } else {
+      star_.add(e, k, uvs, weight);
     }
-    local_.push_back(l);
   }
-}
-
-double Relaxer::triangle_energy(Energy energy, double f, double d) const {
-  switch (energy) {
-    case Energy::untangling:
-      return untangling(f, d, epsilon_);
-    case Energy::symmetric_dirichlet:
-      return symmetric_dirichlet(f, d);
-    case Energy::high_power:
-      return high_power(f, d);
-  }
-  return 0;
-}
-
-EnergyDerivatives Relaxer::triangle_derivatives(const Local& local) const {
-  switch (local.energy) {
-    case Energy::untangling:
-      return untangling_derivatives(local.f, local.d, epsilon_);
-    case Energy::symmetric_dirichlet:
-      return symmetric_dirichlet_derivatives(local.f, local.d);
-    case Energy::high_power:
-      return high_power_derivatives(local.f, local.d);
-  }
-  return {};
+  star_.finish();
+  spared_star_.finish();
 }
 
 double Relaxer::energy(glm::dvec2 m) const {
-  double sum = 0;
-  const double squared = glm::dot(m, m);
-  for (const Local& l : local_) {
-    const double f = l.f + 2 * glm::dot(l.a, m) + l.q * squared, d = l.d + glm::dot(l.n, m);
-    sum += l.weight * triangle_energy(l.energy, f, d);
-  }
+  double sum = star_.energy({energy_, epsilon_}, m);
+  if (!spared_star_.empty()) sum += spared_star_.energy(spared_energy, m);
   if (spring_) sum += spring_stiffness * glm::dot(offset_ + m, offset_ + m);
   return sum;
 }
 
 // Newton's step with the Hessian's eigenvalues made positive.
 glm::dvec2 Relaxer::newton_step() const {
-  Newton s;
-  for (const Local& l : local_) {
-    const EnergyDerivatives p = triangle_derivatives(l);
-    const glm::dvec2 df = 2.0 * l.a;
-    s.gradient += l.weight * (p.f * df + p.d * l.n);
-    const double iso = 2 * p.f * l.q;
-    s.xx += l.weight * (iso + p.dd * l.n.x * l.n.x + 2 * p.fd * df.x * l.n.x + p.ff * df.x * df.x);
-    s.yy += l.weight * (iso + p.dd * l.n.y * l.n.y + 2 * p.fd * df.y * l.n.y + p.ff * df.y * df.y);
-    s.xy += l.weight *
-            (p.dd * l.n.x * l.n.y + p.fd * (df.x * l.n.y + df.y * l.n.x) + p.ff * df.x * df.y);
+  VertexStar::Derivatives s = star_.derivatives({energy_, epsilon_});
+  if (!spared_star_.empty()) {
+    const VertexStar::Derivatives spared = spared_star_.derivatives(spared_energy);
+    s.gradient += spared.gradient;
+    s.xx += spared.xx;
+    s.xy += spared.xy;
+    s.yy += spared.yy;
   }
   if (spring_) {
     s.gradient += 2 * spring_stiffness * offset_;
@@ -172,7 +137,7 @@ void Relaxer::wake_around(std::uint32_t v) {
 }
 
 double Relaxer::sweep() {
-  const double still = energy_ == Energy::high_power ? still_tail_step : still_step;
+  const double still = energy_ == VertexEnergy::high_power ? still_tail_step : still_step;
   const double still_squared = still * still * mean_area_;
   double gain = 0;
   for (const std::uint32_t v : vertices_) {
@@ -180,11 +145,8 @@ double Relaxer::sweep() {
     load_vertex(v);
     const glm::dvec2 step = newton_step();
     double length = 1;
-    if (energy_ != Energy::untangling) {
-      for (const Local& l : local_) {
-        const double rate = glm::dot(l.n, step);
-        if (rate < 0) length = std::min(length, -0.8 * l.d / rate);
-      }
+    if (energy_ != VertexEnergy::untangling) {
+      length = std::min(star_.share_within(step), spared_star_.share_within(step));
     }
     const double before = energy(glm::dvec2(0));
     for (int halving = 0; halving < 12; ++halving, length *= 0.5) {
@@ -212,7 +174,7 @@ bool Relaxer::untangle(int sweeps) {
   // What came right at last had become this much better by half-time (measured).
   constexpr double half_time_gain = 0.05;
   double start = 0;
-  energy_ = Energy::untangling;
+  energy_ = VertexEnergy::untangling;
   for (int i = 0; i < sweeps; ++i) {
     const double least = least_determinant();
     if (least >= clearly) return true;
@@ -247,7 +209,7 @@ void Relaxer::pull(ElementView elements, const CornerLists& corners, const Pull&
     seeds.push_back(corners.corner[corners.first[v]] / 3);
   }
   gather(seeds, pull.rings);
-  energy_ = Energy::symmetric_dirichlet;
+  energy_ = VertexEnergy::symmetric_dirichlet;
   awake_.assign(uvs.size(), 0);
   for (const Spring& s : springs) wake_around(s.vertex);
   double best = 0;
@@ -329,7 +291,7 @@ Tail Relaxer::lower_tail(ElementView elements, const CornerLists& corners, doubl
     if (wide) break;
     spare_worst(bound, tail);
     gather(tail, rings);
-    energy_ = Energy::high_power;
+    energy_ = VertexEnergy::high_power;
     for (int i = 0; i < sweeps; ++i) sweep();
     measure_again(triangles_);
     now = find_tail(near * bound, tail);
@@ -369,7 +331,7 @@ Relaxer::Outcome Relaxer::remove_flips(ElementView elements, const CornerLists& 
     if (untangle(untangling_sweeps)) {
       // Spread what the few triangles took over more of them.
       gather(seeds, rings + 3);
-      energy_ = Energy::symmetric_dirichlet;
+      energy_ = VertexEnergy::symmetric_dirichlet;
       for (int i = 0; i < smoothing_sweeps; ++i) sweep();
     }
     const double most = least_undone * static_cast<double>(out.left);

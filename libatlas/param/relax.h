@@ -7,7 +7,7 @@
 
 #include "libatlas/param/percentile.h"
 #include "libatlas/param/stiffness.h"
-#include "libatlas/param/vertex_energy.h"
+#include "libatlas/param/vertex_star.h"
 
 namespace atlas::param {
 
@@ -64,23 +64,10 @@ class Relaxer {
                   std::span<Vec2d> uvs);
 
  private:
-  enum class Energy : std::uint8_t { untangling, symmetric_dirichlet, high_power };
-  struct Local {  // what a triangle's energy depends on while one vertex moves by m
-    double f, d, q, weight;
-    Energy energy;
-    glm::dvec2 a, n;  // f' = f + 2 a.m + q m.m, d' = d + n.m
-  };
-  struct Newton {
-    glm::dvec2 gradient{0};
-    double xx = 0, xy = 0, yy = 0;
-  };
-
   void begin(ElementView elements, const CornerLists& corners, std::span<Vec2d> uvs);
   void gather(std::span<const std::uint32_t> seeds, int rings);
   void load_vertex(std::uint32_t v);
   double energy(glm::dvec2 m) const;
-  double triangle_energy(Energy energy, double f, double d) const;
-  EnergyDerivatives triangle_derivatives(const Local& local) const;
   glm::dvec2 newton_step() const;
   void wake_around(std::uint32_t v);
   double sweep();  // returns by how much it lowers the energy
@@ -98,14 +85,15 @@ class Relaxer {
       triangles_;  // the neighbourhood: what moves, what is touched
   std::vector<std::uint8_t> vertex_in_, triangle_in_;
   std::vector<std::uint8_t> awake_;  // 1 a vertex: a sweep is to look at it; empty: at all
-  std::vector<Local> local_;
+  VertexStar star_,
+      spared_star_;  // of the vertex that is moving; triangles with an energy of their own
   std::vector<std::uint32_t> spring_of_;  // 1 a vertex: 1 + its place in springs_, or 0
   std::span<const Spring> springs_;
   const Spring* spring_ = nullptr;  // of the vertex that is moving
   glm::dvec2 offset_{0};            // from the spring's target to where that vertex is
   double mean_area_ = 0;
   double epsilon_ = 0;  // of untangling
-  Energy energy_ = Energy::symmetric_dirichlet;
+  VertexEnergy energy_ = VertexEnergy::symmetric_dirichlet;
   struct Sizes {  // of a triangle's map, before any scale is taken out
     double area, uv_area, large, inverse_small;
   };

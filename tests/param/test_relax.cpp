@@ -7,6 +7,7 @@
 #include "libatlas/core/predicates.h"
 #include "libatlas/param/distortion.h"
 #include "libatlas/param/relax.h"
+#include "libatlas/param/vertex_energy.h"
 #include "tests/param/shapes.h"
 
 namespace atlas {
@@ -91,8 +92,8 @@ TEST(Relax, TheHighPowerAndItsDerivativesAreRight) {
     const double f = a * a + b * b, d = a * b;
     const double wanted =
         std::pow(a, power) + std::pow(b, power) + std::pow(a, -power) + std::pow(b, -power);
-    EXPECT_NEAR(param::high_power(f, d) / wanted, 1, 1e-9);
-    const param::EnergyDerivatives p = param::high_power_derivatives(f, d);
+    EXPECT_NEAR(param::high_power<double>(f, d) / wanted, 1, 1e-9);
+    const param::EnergyDerivatives<double> p = param::high_power_derivatives<double>(f, d);
     const double e = 1e-6;
     const auto by = [&](auto&& g, double df, double dd) {
       return (g(f + df, d + dd) - g(f - df, d - dd)) / (2 * e);
@@ -100,10 +101,14 @@ TEST(Relax, TheHighPowerAndItsDerivativesAreRight) {
     const auto near = [&](double value, double difference) {
       EXPECT_NEAR(value, difference, 1e-5 * std::abs(difference)) << a << " " << b;
     };
-    near(p.f, by(param::high_power, e, 0));
-    near(p.d, by(param::high_power, 0, e));
-    const auto slope_f = [](double x, double y) { return param::high_power_derivatives(x, y).f; };
-    const auto slope_d = [](double x, double y) { return param::high_power_derivatives(x, y).d; };
+    near(p.f, by(param::high_power<double>, e, 0));
+    near(p.d, by(param::high_power<double>, 0, e));
+    const auto slope_f = [](double x, double y) {
+      return param::high_power_derivatives<double>(x, y).f;
+    };
+    const auto slope_d = [](double x, double y) {
+      return param::high_power_derivatives<double>(x, y).d;
+    };
     near(p.ff, by(slope_f, e, 0));
     near(p.fd, by(slope_f, 0, e));
     near(p.dd, by(slope_d, 0, e));
