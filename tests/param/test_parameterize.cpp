@@ -183,6 +183,21 @@ TEST(Parameterize, DrawsApartBordersThatOverlapALittle) {
   }
 }
 
+TEST(Parameterize, LeavesCrossingsThatTheBoundKeepsTogether) {
+  // The same ramps under a tight bound: what comes apart only beyond it is reported as it lay
+  // within it, with its crossings.
+  for (const double excess : {0.005, 0.01, 0.03}) {
+    const Disc d = testing::make_grid(120, 8, [=](double u, double v) {
+      const double a = (2 * std::numbers::pi + excess) * u, r = 1 + 0.5 * v;
+      return Vec3d{r * std::cos(a), r * std::sin(a), 0.002 * a};
+    });
+    const ParamResult r = run(d, {.max_stretch = 1.01});
+    expect_consistent(d, r, 1.01);
+    EXPECT_TRUE(r.within_bound) << excess;
+    EXPECT_FALSE(r.crossings.empty()) << excess;
+  }
+}
+
 // Half a pipe unrolled by its formula and stretched by a tenth, each triangle moved somewhere else:
 // only the gradients count, and they are kept, where any descent would have made them isometric.
 TEST(Parameterize, JoinsFlatPartsAsTheyAre) {
