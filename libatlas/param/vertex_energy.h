@@ -8,10 +8,8 @@
 #include "libatlas/core/wide_vectors.h"
 
 // All of this is inlined: how Quads would be handed over does not matter.
-#if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"
-#endif
 
 namespace atlas::param {
 
@@ -110,6 +108,4 @@ ATLAS_ENERGY EnergyDerivatives<Real> high_power_derivatives(const Real& f, const
 
 }  // namespace atlas::param
 
-#if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic pop
-#endif

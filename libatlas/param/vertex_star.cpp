@@ -6,9 +6,7 @@
 #include "libatlas/param/vertex_energy.h"
 
 // Quads never leave this file: how they would be handed over does not matter.
-#if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wpsabi"
-#endif
 
 #define ATLAS_INLINE [[gnu::always_inline]] inline
 
