@@ -98,11 +98,12 @@ TEST(Relax, TheHighPowerAndItsDerivativesAreRight) {
     const auto by = [&](auto&& g, double df, double dd) {
       return (g(f + df, d + dd) - g(f - df, d - dd)) / (2 * e);
     };
-    const auto near = [&](double value, double difference) {
-      EXPECT_NEAR(value, difference, 1e-5 * std::abs(difference)) << a << " " << b;
+    const auto near = [&](double got, double difference) {
+      EXPECT_NEAR(got, difference, 1e-5 * std::abs(difference)) << a << " " << b;
     };
-    near(p.f, by(param::high_power<double>, e, 0));
-    near(p.d, by(param::high_power<double>, 0, e));
+    const auto value = [](double x, double y) { return param::high_power<double>(x, y); };
+    near(p.f, by(value, e, 0));
+    near(p.d, by(value, 0, e));
     const auto slope_f = [](double x, double y) {
       return param::high_power_derivatives<double>(x, y).f;
     };
