@@ -272,6 +272,8 @@ class ChartJob {
       param.aimed_stretch = std::min(options.max_stretch, best ? kBestStretch : kAimedStretch);
     }
     param.local = (noisy() || effort_.little) && !best;
+    // Six charts in a thousand fewer than with cuts there, on 80 meshes.
+    param.leave_crossings = !noisy() && !effort_.little;
     if (best) param.iterations = kBestIterations;
     param.max_planar_stretch =
         std::min(options.max_stretch,

@@ -188,13 +188,13 @@ void lower_tail(const LocalMesh& mesh, const ParamOptions& options, param::ArapS
 }
 
 // What is within the bound but for borders that cross. Where it fails, the result names the
-// crossings that stayed. What comes apart beyond the bound is left as it was: handing triangles at
-// the crossings to neighbours is better than cutting there (six charts in a thousand, 80 meshes).
+// crossings that stayed.
 void draw_apart(const LocalMesh& mesh, const ParamOptions& options, param::ArapSolver& solver,
                 ParamResult& r) {
   if (r.injective || !r.within_bound || r.distortion.flips > 0) return;
   if (options.local && r.crossings.size() > kMostSeparable) return;
-  ParamResult crossed = r;
+  ParamResult crossed;
+  if (options.leave_crossings) crossed = r;
   if (!solver.separate_borders(r.uvs)) {
     const auto left = solver.crossings_left();
     r.stubborn_crossings.assign(left.begin(), left.end());
@@ -210,7 +210,7 @@ void draw_apart(const LocalMesh& mesh, const ParamOptions& options, param::ArapS
       solver.lower_tail(kWithin * options.max_stretch, r.uvs) == param::Tail::lowered) {
     finish(mesh, options, r);
   }
-  if (!r.within_bound && !options.local) r = std::move(crossed);
+  if (!r.within_bound && options.leave_crossings) r = std::move(crossed);
 }
 
 // From the solver's rotations to a finished result: flips out, then the stretch down; squeezing may

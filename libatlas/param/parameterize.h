@@ -37,6 +37,9 @@ struct ParamOptions {
   // Within max_stretch is good enough, and what is beyond lies in small places, which alone are
   // relaxed; squeezes only where those are many. For rough surfaces.
   bool local = false;
+  // Borders that come apart only beyond max_stretch are left as they cross within it, for whoever
+  // can take triangles away there.
+  bool leave_crossings = false;
   // start.uvs, all their triangles positive, are kept but where the stretch exceeds the bound: for
   // a flattening that failed, after a cut.
   bool resume = false;

@@ -191,7 +191,7 @@ TEST(Parameterize, LeavesCrossingsThatTheBoundKeepsTogether) {
       const double a = (2 * std::numbers::pi + excess) * u, r = 1 + 0.5 * v;
       return Vec3d{r * std::cos(a), r * std::sin(a), 0.002 * a};
     });
-    const ParamResult r = run(d, {.max_stretch = 1.01});
+    const ParamResult r = run(d, {.max_stretch = 1.01, .leave_crossings = true});
     expect_consistent(d, r, 1.01);
     EXPECT_TRUE(r.within_bound) << excess;
     EXPECT_FALSE(r.crossings.empty()) << excess;
