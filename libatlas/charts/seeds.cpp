@@ -105,7 +105,7 @@ class Seeder {
     add_leaning(first, last);
   }
 
-  // The last of those that are farthest from all seeds_. While seeds are added distances only fall,
+  // The last of those that are farthest from all seeds. While seeds are added distances only fall,
   // so what is remembered of a stretch of grains bounds them, and few stretches are looked at
   // again.
   std::uint32_t farthest(std::uint32_t first, std::uint32_t last) {
