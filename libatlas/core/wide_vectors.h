@@ -15,6 +15,9 @@ static_assert(__STDCPP_DEFAULT_NEW_ALIGNMENT__ >= sizeof(Pair));
 using Quad = double __attribute__((vector_size(32)));
 using QuadInPlace = double __attribute__((vector_size(32), aligned(16), may_alias));
 
+// For what functions with and without ATLAS_WIDE share: it is compiled for each.
+#define ATLAS_INLINE [[gnu::always_inline]] inline
+
 #if defined(__x86_64__) && defined(__GNUC__)
 #define ATLAS_WIDE [[gnu::target("avx2")]]
 inline const bool has_wide_vectors = __builtin_cpu_supports("avx2");

@@ -84,7 +84,6 @@ class BitPage {
     return bits_.data() + (std::size_t(y) * levels_ + level) * stride_;
   }
   // Pages of few words a row, as the search for a plan has them, keep rows in registers.
-  static constexpr std::size_t kNarrow = 4;
   template <std::size_t kWords>
   bool find_narrow(const MaskTests& tests, Window window, std::int32_t y, Place& place);
   template <std::size_t kWords>

@@ -9,8 +9,6 @@ namespace {
 
 constexpr std::size_t side = EnvelopeBlocks::side;
 
-#define ATLAS_INLINE [[gnu::always_inline]] inline
-
 // A block of the factor from the sum of what was filled in; `a` and `b` are the first blocks that
 // its row and its column's row have both.
 template <class Vector>

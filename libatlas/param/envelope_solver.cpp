@@ -21,10 +21,6 @@ inline std::size_t EnvelopeSolver::place(std::size_t i, std::size_t j) const {
          i % side;
 }
 
-inline double* EnvelopeSolver::block(std::size_t row, std::size_t column) {
-  return factor_.data() + block_size * (row_[row] + (column - first_[row]));
-}
-
 // In the order in which elements name them.
 EnvelopeSolver::Graph EnvelopeSolver::connect(const Elements& elements, std::size_t vertices) {
   graph_first_.assign(vertices + 1, 0);
@@ -175,7 +171,7 @@ void EnvelopeSolver::eliminate(std::span<const double> diagonal) {
   const EnvelopeBlocks factor{first_.data(), row_.data(), factor_.data(), inverse_pivot_.data()};
   for (std::size_t b = 0; b < blocks; ++b) {
     eliminate_row(factor, b);
-    double* own = block(b, b);
+    double* own = factor.at(b, b);
     for (std::size_t j = 0; j < std::min(side, order_.size() - side * b); ++j) {
       const std::uint32_t v = order_[side * b + j];
       const double pivot = own[side * j + j];
@@ -196,13 +192,14 @@ void EnvelopeSolver::solve(std::span<const glm::dvec2> load, std::span<glm::dvec
   const std::size_t n = order_.size(), blocks = first_.size();
   work_.assign(side * blocks, glm::dvec2(0));
   glm::dvec2* work = work_.data();
+  const EnvelopeBlocks factor{first_.data(), row_.data(), factor_.data(), inverse_pivot_.data()};
   for (std::size_t i = 0; i < n; ++i) work[i] = load[order_[i]];
   for (std::size_t b = 0; b < blocks; ++b) {
     const std::size_t begin = side * first_[b];
     alignas(16) std::array<glm::dvec2, side> sum;
     for (std::size_t r = 0; r < side; ++r) sum[r] = work[side * b + r];
-    subtract_columns(block(b, first_[b]), work + begin, side * b - begin, sum.data());
-    const double* column = block(b, b);
+    subtract_columns(factor.at(b, first_[b]), work + begin, side * b - begin, sum.data());
+    const double* column = factor.at(b, b);
     for (std::size_t j = 0; j < side; ++j, column += side) {
       sum[j] *= inverse_pivot_[side * b + j];
       for (std::size_t r = j + 1; r < side; ++r) sum[r] -= column[r] * sum[j];
@@ -212,13 +209,13 @@ void EnvelopeSolver::solve(std::span<const glm::dvec2> load, std::span<glm::dvec
   for (std::size_t b = blocks; b-- > 0;) {
     const std::size_t begin = side * first_[b];
     alignas(16) std::array<glm::dvec2, side> known;
-    const double* own = block(b, b);
+    const double* own = factor.at(b, b);
     for (std::size_t j = side; j-- > 0;) {
       known[j] = work[side * b + j];
       for (std::size_t r = j + 1; r < side; ++r) known[j] -= own[side * j + r] * known[r];
       work[side * b + j] = known[j] *= inverse_pivot_[side * b + j];
     }
-    subtract_rows(block(b, first_[b]), known.data(), side * b - begin, work + begin);
+    subtract_rows(factor.at(b, first_[b]), known.data(), side * b - begin, work + begin);
   }
   for (std::size_t i = 0; i < n; ++i) x[order_[i]] = work[i];
 }

@@ -38,7 +38,6 @@ class EnvelopeSolver {
   void fill(const Elements& elements);
   void eliminate(std::span<const double> diagonal);
   std::size_t place(std::size_t i, std::size_t j) const;
-  double* block(std::size_t row, std::size_t column);
 
   std::vector<std::uint32_t> order_, position_, queue_;
   std::vector<std::uint8_t> held_;  // 1 a vertex

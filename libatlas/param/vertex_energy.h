@@ -23,10 +23,10 @@ struct EnergyDerivatives {
   Real f, d, dd, fd, ff{};
 };
 
-[[gnu::always_inline]] inline double root_of(const double& x) {
+ATLAS_INLINE double root_of(const double& x) {
   return std::sqrt(x);
 }
-[[gnu::always_inline]] inline Quad root_of(const Quad& x) {
+ATLAS_INLINE Quad root_of(const Quad& x) {
   return Quad{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
 }
 

@@ -8,8 +8,6 @@
 // Quads never leave this file: how they would be handed over does not matter.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
-#define ATLAS_INLINE [[gnu::always_inline]] inline
-
 namespace atlas::param {
 
 // Each once for processors with wide vectors and once for others.
