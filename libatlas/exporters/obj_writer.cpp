@@ -45,7 +45,7 @@ void write_geometry(TextFile& file, const World& world, WorldFile& result, const
   const auto uvs = Compactor(world.uvs.size()).compact(gather(world, true));
   file.write_items(points.used.size(), context, [&](TextBuffer& out, std::size_t i) {
     out.text("v ");
-    out.position(world, points.used[i]);
+    out.position(world.origin, world.positions[points.used[i]]);
     out.character('\n');
   });
   file.write_items(uvs.used.size(), context, [&](TextBuffer& out, std::size_t i) {

@@ -37,13 +37,12 @@ class TextBuffer {
   void coordinate(double origin, float offset) {
     origin == 0 ? number(offset) : number(origin + static_cast<double>(offset));
   }
-  void position(const World& world, std::uint32_t i) {
-    const Vec3f& p = world.positions[i];
-    coordinate(world.origin.x, p.x);
+  void position(const Vec3d& origin, const Vec3f& p) {
+    coordinate(origin.x, p.x);
     character(' ');
-    coordinate(world.origin.y, p.y);
+    coordinate(origin.y, p.y);
     character(' ');
-    coordinate(world.origin.z, p.z);
+    coordinate(origin.z, p.z);
   }
   void uv(const Vec2f& uv) {
     number(uv.x);

@@ -24,6 +24,25 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
+// Viewers of VRML hold single floats. So many sizes from zero these keep 17 bits of a place within
+// the world; beyond that what is seen from near begins to shake and to tear.
+constexpr double kFarSizes = 128;
+
+bool too_far_for_floats(const World& world) {
+  glm::dvec3 low(INFINITY), high(-INFINITY);
+  for (const Vec3f& p : world.positions) {
+    low = glm::min(low, glm::dvec3(to_glm(p)));
+    high = glm::max(high, glm::dvec3(to_glm(p)));
+  }
+  return !world.positions.empty() &&
+         glm::length(to_glm(world.origin)) > kFarSizes * glm::distance(low, high);
+}
+
+std::string note_of(const Vec3d& origin) {
+  return fmt::format("origin {} {} {}: to be added to every coordinate", origin.x, origin.y,
+                     origin.z);
+}
+
 void vector(TextBuffer& out, const glm::dvec3& v) {
   for (int i = 0; i < 3; ++i) {
     if (i > 0) out.character(' ');
@@ -41,11 +60,12 @@ void orientation(TextBuffer& out, const glm::dvec3& direction) {
   out.number(static_cast<float>(2 * std::atan2(sine, q[3])));
 }
 
-std::string header(const World& world) {
+std::string header(const World& world, const Vec3d& origin_left_out) {
   TextBuffer out;
   out.text("#VRML V2.0 utf8\n");
   out.text("WorldInfo {\n  title " + quoted(world.title) + "\n  info [\n");
   for (const std::string& line : world.info) out.text("    " + quoted(line) + "\n");
+  if (origin_left_out != Vec3d{}) out.text("    " + quoted(note_of(origin_left_out)) + "\n");
   out.text("  ]\n}\nNavigationInfo {\n  headlight FALSE\n  type [ ");
   out.text(world.viewpoint.inside ? "\"WALK\", \"ANY\" ]\n" : "\"EXAMINE\", \"ANY\" ]\n");
   // A person: 0.25 m wide, eyes at 1.6 m, stepping over 0.75 m, walking 1.5 m/s.
@@ -61,8 +81,8 @@ std::string header(const World& world) {
 }
 
 // Viewers take +Y of a Viewpoint's own system for up, also when walking: a Transform turns it.
-std::string viewpoint(const World& world) {
-  glm::dvec3 position = to_glm(world.origin) + to_glm(world.viewpoint.position);
+std::string viewpoint(const World& world, const Vec3d& origin) {
+  glm::dvec3 position = to_glm(origin) + to_glm(world.viewpoint.position);
   glm::dvec3 direction = to_glm(world.viewpoint.direction);
   TextBuffer out;
   out.text("Transform {\n");
@@ -92,11 +112,16 @@ void write_triangles(TextFile& file, const std::vector<std::uint32_t>& indices,
   });
 }
 
-void write_shape(TextFile& file, const World& world, const Compactor::Compact& points,
-                 const Compactor::Compact& uvs, const Context& context) {
+struct Corners {
+  Compactor::Compact points, uvs;
+};
+
+void write_shape(TextFile& file, const World& world, const Vec3d& origin, const Corners& corners,
+                 const Context& context) {
+  const auto& [points, uvs] = corners;
   file.write("    solid FALSE\n    coord Coordinate { point [\n");
   file.write_items(points.used.size(), context, [&](TextBuffer& out, std::size_t i) {
-    out.position(world, points.used[i]);
+    out.position(origin, world.positions[points.used[i]]);
     out.character('\n');
   });
   file.write("    ] }\n    coordIndex [\n");
@@ -128,22 +153,23 @@ Result<WorldFile> write_vrml(const World& world, const fs::path& path, AtomicFil
   const bool gzip = path.extension() == ".wrz" || path.extension() == ".WRZ";
   const fs::path temporary = files.path_for(path);
   TextFile file(temporary, path, gzip);
-  file.write(header(world));
-  file.write(viewpoint(world));
+  if (too_far_for_floats(world)) result.origin_left_out = world.origin;
+  const Vec3d origin = result.origin_left_out == Vec3d{} ? world.origin : Vec3d{};
+  file.write(header(world, result.origin_left_out));
+  file.write(viewpoint(world, origin));
   Compactor positions(world.positions.size()), texcoords(world.uvs.size());
   for (std::size_t i = 0; i < world.pages.size(); ++i) {
     const Page& page = world.pages[i];
     if (page.indices.empty()) continue;  // an IndexedFaceSet without faces draws warnings
-    const Compactor::Compact points = positions.compact(page.indices);
-    const Compactor::Compact uvs = texcoords.compact(page.uv_indices);
+    const Corners corners{positions.compact(page.indices), texcoords.compact(page.uv_indices)};
     file.write(fmt::format("DEF Page_{} Shape {{\n", i));
     file.write(appearance(page));
     file.write("  geometry IndexedFaceSet {\n");
-    write_shape(file, world, points, uvs, context);
+    write_shape(file, world, origin, corners, context);
     file.write("  }\n}\n");
     result.triangles += page.indices.size() / 3;
-    result.vertices += points.used.size();
-    result.uvs += uvs.used.size();
+    result.vertices += corners.points.used.size();
+    result.uvs += corners.uvs.used.size();
     context.report("writing the world", double(i + 1) / double(world.pages.size()));
   }
   if (Status s = file.finish(); !s.ok()) return s;

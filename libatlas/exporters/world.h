@@ -46,6 +46,7 @@ struct World {
 struct WorldFile {
   std::int64_t bytes = 0;                            // written, all files of the world but images
   std::size_t triangles = 0, vertices = 0, uvs = 0;  // as written: each page has its own
+  Vec3d origin_left_out;  // to be added to the coordinates written; zero but in VRML, see there
 };
 
 // Writers check the world first (bad_input: an index out of range, a non-finite or beyond-float
@@ -55,7 +56,9 @@ struct WorldFile {
 // are equal text. Other errors: io; cancelled.
 
 // VRML97, gzipped where the name ends in .wrz. One Shape a page: an IndexedFaceSet of triangles
-// with explicit texCoordIndex, unlit (no Material), repeat off, two-sided.
+// with explicit texCoordIndex, unlit (no Material), repeat off, two-sided. Viewers hold single
+// floats: an origin more than 128 times the world's size from zero is not added but noted in
+// WorldInfo, where read_scene() finds it.
 Result<WorldFile> write_vrml(const World& world, const std::filesystem::path& path,
                              AtomicFiles& files, const Context& context);
 

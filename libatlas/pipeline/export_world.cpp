@@ -353,7 +353,11 @@ class Export {
       report_.files.emplace_back(path.filename().string(), std::filesystem::file_size(path));
       bytes += report_.files.back().second;
     }
-    record_.finish({report_.triangles_out, bytes, "bytes", ""});
+    const Vec3d& left_out = world_file->origin_left_out;
+    const std::string note = left_out == Vec3d{} ? ""
+                                                 : fmt::format("relative to {} {} {}", left_out.x,
+                                                               left_out.y, left_out.z);
+    record_.finish({report_.triangles_out, bytes, "bytes", note});
     return {};
   }
 

@@ -190,10 +190,29 @@ class VrmlParser {
     } else if (token == "Transform" || token == "Group" || token == "Collision" ||
                token == "Anchor") {
       group(matrix, depth);
+    } else if (token == "WorldInfo") {
+      world_info();
     } else {
       expect("{");
       skip_brackets();
     }
+  }
+
+  // The writer's note of an origin that single floats would not have borne.
+  void world_info() {
+    constexpr std::string_view kNote = "\"origin ";
+    fields([&](std::string_view name) {
+      if (name != "info" || peek() != "[") return false;
+      next();
+      for (std::string_view token = next(); token != "]" && !token.empty(); token = next()) {
+        if (!token.starts_with(kNote)) continue;
+        const char* p = token.data() + kNote.size();
+        glm::dvec3 origin(0);
+        for (int i = 0; i < 3 && p; ++i) p = parse_number(p + (i > 0), end_, origin[i]);
+        if (p && *p == ':') origin_ = origin;
+      }
+      return true;
+    });
   }
 
   // The children of a Transform may come before its numbers: they are read in a second pass.
@@ -293,6 +312,7 @@ class VrmlParser {
   }
 
   void finish() {
+    for (Vec3d& p : builder_.positions) p = from_glm(origin_ + to_glm(p));
     builder_.check_positions(
         [&](std::size_t i) { return fmt::format("{}: vertex {}", builder_.file, i); });
     for (std::size_t i = 0; i < shapes_.size(); ++i) add_faces(shapes_[i], i);
@@ -363,6 +383,7 @@ class VrmlParser {
   SceneBuilder& builder_;
   const Context& context_;
   std::string what_;
+  glm::dvec3 origin_{0};
   std::vector<Shape> shapes_;
   std::vector<Base> bases_;
 };

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/scene/reader.h"
 #include "tests/exporters/vrml_parser.h"
 #include "tests/exporters/worlds.h"
 #include "tests/scene/temp_folder.h"
@@ -102,13 +103,48 @@ TEST(Vrml, ReadsBackExactly) {
   const TempFolder folder;
   for (const bool far : {false, true}) {
     World world = wavy_world(40, 3);
-    if (far) world.origin = {4194304, -65536, 0};
+    if (far) world.origin = {1048576, -65536, 0};
     const Nodes nodes = parse_vrml(write(world, folder / "w.wrl"));
     const auto shapes = of_type(nodes, "Shape");
     ASSERT_EQ(shapes.size(), 3u);
     for (std::size_t i = 0; i < shapes.size(); ++i) expect_shape(*shapes[i], world, i);
   }
   EXPECT_EQ(folder.count(), 1u);  // no temporary file is left
+}
+
+// Viewers hold floats, which tear a room in national grid coordinates apart.
+TEST(Vrml, AnOriginTooFarForFloatsIsNotedAndNotAdded) {
+  const TempFolder folder;
+  World world = wavy_world(40, 2);
+  const Vec3d origin = world.origin = {4468000.5, 5332000, -520};
+  for (Vec3f& p : world.positions) p = {p.x / 100, p.y / 100, p.z / 1e4f};
+  world.viewpoint.position = {1, 2, 3};
+  AtomicFiles files;
+  const auto written = write_vrml(world, folder / "w.wrl", files, {});
+  ASSERT_TRUE(written.ok() && files.commit().ok());
+  EXPECT_EQ(written->origin_left_out, origin);
+  const Nodes nodes = parse_vrml(TempFolder::read(folder / "w.wrl"));
+  EXPECT_EQ(of_type(nodes, "WorldInfo")[0]->field("info").back(),
+            "\"origin 4468000.5 5332000 -520: to be added to every coordinate\"");
+  const VrmlNode& view = of_type(nodes, "Transform").at(0)->child("children");
+  EXPECT_EQ(numbers(view.field("position")), (std::vector<double>{1, 2, 3}));
+  const auto shapes = of_type(nodes, "Shape");
+  world.origin = {};
+  for (std::size_t i = 0; i < shapes.size(); ++i) expect_shape(*shapes[i], world, i);
+
+  const auto loaded = read_scene(folder / "w.wrl", {}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  const Scene& s = loaded->scene;
+  std::size_t k = 0;
+  for (const Page& page : world.pages) {
+    for (const std::uint32_t i : page.indices) {
+      const Vec3f &p = s.positions[s.indices[k++]], &q = world.positions[i];
+      ASSERT_NEAR(s.origin.x + p.x, origin.x + q.x, 1e-6);
+      ASSERT_NEAR(s.origin.y + p.y, origin.y + q.y, 1e-6);
+      ASSERT_NEAR(s.origin.z + p.z, origin.z + q.z, 1e-6);
+    }
+  }
+  EXPECT_EQ(k, s.indices.size());
 }
 
 TEST(Vrml, InfoAndNavigation) {
