@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -44,6 +45,20 @@ Result<FileBytes> read_file_bytes(const fs::path& path) {
                                              path.string(), got, bytes.size));
   }
   bytes.data[bytes.size] = '\n';
+  return bytes;
+}
+
+Result<FileBytes> read_text_bytes(const fs::path& path) {
+  auto bytes = read_file_bytes(path);
+  if (!bytes.ok()) return bytes;
+  char* begin = bytes->data.get();
+  const std::string_view text = bytes->text();
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
+    return Status(ErrorCode::unsupported,
+                  fmt::format("{}: text in UTF-16 (save it as UTF-8)", path.string()));
+  }
+  if (text.starts_with("\xef\xbb\xbf")) std::fill_n(begin, 3, ' ');
+  if (text.find('\n') == text.npos) std::replace(begin, begin + text.size(), '\r', '\n');
   return bytes;
 }
 

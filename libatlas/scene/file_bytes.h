@@ -25,6 +25,10 @@ struct FileBytes {
 // Errors: not_found; io (a directory, unreadable).
 Result<FileBytes> read_file_bytes(const std::filesystem::path& path);
 
+// The same for text: a byte order mark becomes blanks, and where lines end by a carriage return
+// alone, by a newline. Errors: the same, and unsupported for UTF-16.
+Result<FileBytes> read_text_bytes(const std::filesystem::path& path);
+
 // The text of a plain or gzipped file, followed by a newline. Errors: the same, and bad_input for
 // damaged gzip data or more than 8 GiB of text.
 Result<std::string> read_text_or_gzip(const std::filesystem::path& path);

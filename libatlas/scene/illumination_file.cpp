@@ -11,7 +11,7 @@ namespace {
 
 // One `r g b`, or one grey value, a line; blank lines and # comments are skipped.
 Result<std::vector<Vec3f>> read_text(const fs::path& path) {
-  auto bytes = read_file_bytes(path);
+  auto bytes = read_text_bytes(path);
   if (!bytes.ok()) return bytes.status();
   TextScanner scan(bytes->begin(), bytes->end());
   std::vector<Vec3f> values;

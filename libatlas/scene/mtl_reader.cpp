@@ -134,7 +134,7 @@ class MtlParser {
 }  // namespace
 
 Status read_mtl(const fs::path& path, SceneBuilder& builder) {
-  auto bytes = read_file_bytes(path);
+  auto bytes = read_text_bytes(path);
   if (!bytes.ok()) return bytes.status();
   builder.files.push_back(path);
   return MtlParser(path, *bytes, builder).run();

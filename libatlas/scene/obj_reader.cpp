@@ -172,7 +172,11 @@ class Merger {
     return {};
   }
 
-  fs::path library(std::string_view name) const { return path_.parent_path() / fs::path(name); }
+  fs::path library(std::string_view name) const {
+    std::string path(name);
+    std::replace(path.begin(), path.end(), '\\', '/');
+    return path_.parent_path() / path;
+  }
   bool is_file(std::string_view name) const {
     std::error_code ignored;  // a name that cannot be asked about is not a file
     return fs::is_regular_file(library(name), ignored);
@@ -247,7 +251,7 @@ Status check_tail(const fs::path& path, const FileBytes& bytes, const ObjChunk& 
 }  // namespace
 
 Status read_obj(const fs::path& path, SceneBuilder& builder, const Context& context) {
-  auto bytes = read_file_bytes(path);
+  auto bytes = read_text_bytes(path);
   if (!bytes.ok()) return bytes.status();
   const std::vector<const char*> borders = cut(*bytes);
   std::vector<ObjChunk> chunks(borders.size() - 1);

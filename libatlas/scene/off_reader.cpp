@@ -351,7 +351,7 @@ Status read_keyword(TextScanner& scan, const std::string& file, OffLayout& layou
 }  // namespace
 
 Status read_off(const fs::path& path, SceneBuilder& builder, const Context& context) {
-  auto bytes = read_file_bytes(path);
+  auto bytes = read_text_bytes(path);
   if (!bytes.ok()) return bytes.status();
   builder.objects.push_back({});
   builder.materials.push_back({});

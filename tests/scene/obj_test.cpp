@@ -111,6 +111,31 @@ TEST(Obj, EverythingAtOnce) {
   EXPECT_EQ(loaded.defects.defects.size(), 1u);  // nothing else, not even the unused texture
 }
 
+// As editors of other systems leave text: the first vertex must not go with the byte order mark.
+TEST(Obj, ByteOrderMarksAndOtherSystemsLineEnds) {
+  const TempFolder folder;
+  const std::string mark = "\xef\xbb\xbf";
+  std::filesystem::create_directory(folder / "sub");
+  folder.write("sub/m.mtl", mark + "newmtl a\rKd 0.1 0.2 0.3\r");
+  const std::string obj =
+      "v 0 0 0 1 2 3\rv 1 0 0 4 5 6\rv 0 1 0 7 8 9\rmtllib sub\\m.mtl\rusemtl a\rf 1 2 3\r";
+  const LoadedScene loaded = load(folder.write("s.obj", mark + obj));
+  EXPECT_TRUE(loaded.defects.empty());
+  ASSERT_EQ(loaded.scene.positions.size(), 3u);
+  EXPECT_EQ(loaded.scene.illumination[0], (Vec3f{1, 2, 3}));
+  EXPECT_EQ(loaded.scene.materials[0].diffuse, (Vec3f{0.1f, 0.2f, 0.3f}));
+  ReadOptions options;
+  options.illumination_file = folder.write("light.txt", mark + "5\n6\n7\n");
+  EXPECT_EQ(load(folder / "s.obj", options).scene.illumination[0], (Vec3f{5, 5, 5}));
+  const LoadedScene off =
+      load(folder.write("s.off", mark + "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
+  EXPECT_EQ(off.scene.positions.size(), 3u);
+
+  const auto wide = read_scene(folder.write("w.obj", "\xff\xfev"), {}, {});
+  ASSERT_EQ(wide.status().code(), ErrorCode::unsupported);
+  EXPECT_NE(wide.status().message().find("save it as UTF-8"), std::string::npos);
+}
+
 TEST(Obj, GroupsAreObjectsOnlyWithoutObjects) {
   const TempFolder folder;
   const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
