@@ -85,7 +85,7 @@ void add_effort_options(CLI::App& app, PackCommand& c) {
       ->check(within(0, 1024));
   app.add_option("--preview", c.preview, "Also draw the pages: FILE.svg or FILE.png");
   app.add_flag("--json", c.json, "Print a summary as JSON on stdout");
-  app.add_flag("--quiet", c.quiet, "Print nothing but errors");
+  app.add_flag("-q,--quiet", c.quiet, "Print errors only");
 }
 
 // What rectangles and images know and charts do not: any page, as many as it takes, quarter turns.
@@ -130,7 +130,9 @@ CLI::App* add_images(CLI::App& app, PackCommand& c) {
   CLI::App* images = app.add_subcommand("images", "A folder of images into sprite pages");
   images->add_option("folder", c.input, "Read with its subfolders, in the order of names")
       ->required();
-  images->add_option("-o,--output", c.output, "Base name: pages NAME-0.png and NAME-0.json")
+  images
+      ->add_option("-o,--output", c.output,
+                   "Base name: NAME.png and NAME.json, or NAME-0.png ... for several pages")
       ->required();
   images->add_option("--extrude", c.extrude, "Repeat edge texels outwards this many times")
       ->capture_default_str()

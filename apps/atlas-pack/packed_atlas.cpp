@@ -37,14 +37,7 @@ PackedAtlas make_atlas(std::vector<PackedItem> items, const PackResult& result) 
   atlas.pages = result.pages;
   atlas.utilization = result.utilization;
   atlas.unplaced = result.unplaced.size();
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    Placement at = result.placements[i];
-    if (at.placed() && at.page < atlas.pages.size()) {
-      const std::int32_t height = at.rotated ? items[i].size.width : items[i].size.height;
-      at.y = atlas.pages[at.page].height - at.y - height;
-    }
-    items[i].at = at;
-  }
+  for (std::size_t i = 0; i < items.size(); ++i) items[i].at = result.placements[i];
   atlas.items = std::move(items);
   return atlas;
 }

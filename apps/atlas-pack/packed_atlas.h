@@ -27,7 +27,8 @@ struct PackedAtlas {
   double cpu_seconds = 0;
 };
 
-// Turns the library's placements (y up) round.
+// Takes the library's placements with y down instead of up: turned round, items would no longer
+// begin at multiples of the alignment where blocks of texels are counted, from the upper edge.
 PackedAtlas make_atlas(std::vector<PackedItem> items, const PackResult& result);
 
 std::string to_csv(const PackedAtlas& atlas);

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "apps/atlas-pack/commands.h"
@@ -114,6 +115,18 @@ Status read_json(const PackCommand& c, const std::string& text, std::vector<Pack
   return {};
 }
 
+// A JSON object keeps one item a name.
+Status check_names(const PackCommand& c, const std::vector<PackedItem>& items) {
+  if (c.output.extension() != ".json" || c.format != DataFormat::hash) return {};
+  std::set<std::string_view> names;
+  for (const PackedItem& item : items)
+    if (!names.insert(item.name).second)
+      return {ErrorCode::bad_input,
+              fmt::format("{}: two items are called '{}' (name them apart, or use --data array)",
+                          c.input.string(), item.name)};
+  return {};
+}
+
 }  // namespace
 
 Result<PackedAtlas> run_rects(const PackCommand& c, const Context& context) {
@@ -132,16 +145,17 @@ Result<PackedAtlas> run_rects(const PackCommand& c, const Context& context) {
                   fmt::format("{}: no such file (check the name)", c.input.string()));
   std::stringstream buffer;
   buffer << file.rdbuf();
+  std::string text = buffer.str();
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // as spreadsheets write it
   std::vector<PackedItem> items;
   const bool json = c.input.extension() == ".json";
-  if (Status s = json ? read_json(c, buffer.str(), items) : read_csv(c, buffer.str(), items);
-      !s.ok())
-    return s;
+  if (Status s = json ? read_json(c, text, items) : read_csv(c, text, items); !s.ok()) return s;
   if (items.empty())
     return Status(ErrorCode::bad_input,
                   fmt::format("{}: holds no rectangle (write width,height or name,width,height a "
                               "line, or a JSON array)",
                               c.input.string()));
+  if (Status s = check_names(c, items); !s.ok()) return s;
   std::vector<Extent> sizes;
   for (PackedItem& item : items) {
     item.source = item.size;
@@ -154,9 +168,9 @@ Result<PackedAtlas> run_rects(const PackCommand& c, const Context& context) {
         "{} ({} x {}) {}", items[u.item].name, sizes[u.item].width, sizes[u.item].height,
         u.reason == UnplacedReason::too_large ? "is larger than the page" : "has no room left"));
   PackedAtlas atlas = make_atlas(std::move(items), *packed);
-  const std::string text =
+  const std::string placed =
       c.output.extension() == ".json" ? to_json(atlas, c.format, kAllPages) : to_csv(atlas);
-  if (Status s = write_file(c.output, text); !s.ok()) return s;
+  if (Status s = write_file(c.output, placed); !s.ok()) return s;
   if (!c.preview.empty())
     if (Status s = write_preview(c.preview, atlas); !s.ok()) return s;
   return atlas;

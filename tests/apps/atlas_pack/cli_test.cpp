@@ -61,8 +61,29 @@ TEST_F(AtlasPack, RectsFromCsvToCsv) {
   const RunResult r = run("rects sizes.csv --page 64x32 -o placed.csv --preview p.svg");
   EXPECT_EQ(r.exit_code, 0) << r.output;
   EXPECT_EQ(read("placed.csv"),
-            "name,page,x,y,width,height,rotated\na,0,0,22,60,10,0\n\"b,c\",0,60,22,4,10,0\n");
+            "name,page,x,y,width,height,rotated\na,0,0,0,60,10,0\n\"b,c\",0,60,0,4,10,0\n");
   EXPECT_NE(read("p.svg").find("<svg"), std::string::npos);
+}
+
+// Blocks of compressed texels are counted from the upper edge, whatever the page's height.
+TEST_F(AtlasPack, AlignedItemsBeginAtMultiplesFromTheUpperLeftCorner) {
+  write("sizes.csv",
+        "\xef\xbb\xbf"
+        "13,7\n9,5\n21,6\n7,7\n30,3\n5,18\n");
+  for (const char* page : {"33x0", "33x37", "64x64 --crop", "45x0 --border 1"}) {
+    const RunResult r = run(fmt::format("rects sizes.csv --align 4 --page {} -o q.csv", page));
+    ASSERT_EQ(r.exit_code, 0) << r.output;
+    std::istringstream lines(read("q.csv"));
+    std::string line;
+    int items = 0;
+    for (std::getline(lines, line); std::getline(lines, line); ++items) {
+      int number = 0, on = 0, x = 0, y = 0;
+      ASSERT_EQ(std::sscanf(line.c_str(), "%d,%d,%d,%d", &number, &on, &x, &y), 4) << line;
+      EXPECT_EQ(x % 4, 0) << page << ": " << line;
+      EXPECT_EQ(y % 4, 0) << page << ": " << line;
+    }
+    EXPECT_EQ(items, 6);
+  }
 }
 
 TEST_F(AtlasPack, RectsFromJsonToBothJsonLayouts) {
@@ -99,6 +120,7 @@ TEST_F(AtlasPack, WhatCannotBeDoneLeavesNothing) {
   fs::create_directories(dir_ / "folder");
   write("ok.csv", "a,4,5\nb,6,7\n");
   write("empty.csv", "");
+  write("twice.csv", "a,4,5\na,6,7\n");
   write("header.csv", "name,width,height\n");
   write("short.csv", "a,4\nb,6,7\n");  // no header: it has a number
   write("huge.csv", "a,99999999999,5\n");
@@ -108,6 +130,7 @@ TEST_F(AtlasPack, WhatCannotBeDoneLeavesNothing) {
   const std::pair<const char*, const char*> cases[] = {
       {"rects folder -o q.csv", "is a directory"},
       {"rects empty.csv -o q.csv", "no rectangle"},
+      {"rects twice.csv -o q.json", "two items are called 'a'"},
       {"rects header.csv -o q.csv", "no rectangle"},
       {"rects short.csv -o q.csv", "short.csv:1"},
       {"rects huge.csv -o q.csv", "huge.csv:1"},
