@@ -261,13 +261,16 @@ void FanSolver::solve() {
   }
 }
 
-void FanSolver::step(std::span<Vec2d> uvs) {
+void FanSolver::step(double relaxation, std::span<Vec2d> uvs) {
   const std::size_t cells = joined_.cells.size();
   load_.assign(2 * first_.size(), Vec2d{});
   centre_load_.resize(cells);
   for (std::size_t c = 0; c < cells; ++c) load_fan(c, uvs);
   solve();
-  std::copy(load_.begin(), load_.begin() + count_, uvs.begin() + std::ptrdiff_t(cells));
+  for (std::size_t i = 0; i < count_; ++i) {
+    Pair& uv = pair_at(uvs[cells + i]);
+    uv += relaxation * (pair_at(load_[i]) - uv);
+  }
   for (std::size_t c = 0; c < cells; ++c) {
     Pair sum{};
     for (std::uint32_t i = joined_.first[c]; i < joined_.first[c + 1]; ++i) {

@@ -1,6 +1,7 @@
 #include "libatlas/charts/trial.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "libatlas/charts/hull.h"
@@ -13,11 +14,15 @@ namespace {
 constexpr double kUnrolledError = 1e-3;
 // Of hull and rectangle, by what unrolls: its parts may be needles, and it will go on growing.
 constexpr double kUnrolledFill = 0.3;
-// After two steps a descent is far from its end if its stretch is still so many times the limit,
-// less with flips, or if area and stretch are both beyond theirs by so much. Of some 6000 trials on
-// twelve meshes this ended 1500 early, and none that would have come within the limits.
-constexpr int kLookAfter = 2;
-constexpr double kFarStretch = 2.5, kFarWithFlips = 1.2, kFarArea = 6, kNearStretch = 0.9;
+// The steps of a descent, relaxed in turn: a long one for what is slow to settle, and a plain one
+// for what that overshoots. Five plain steps end no lower (measured on 240 meshes).
+constexpr std::array kRelaxation{1.0, 2.5, 1.0, 1.5};
+// After two steps a descent is far from its end if its energy is still so many times the one
+// allowed, less with flips, or the area with high stretch, or both by less. Of 15600 descents on
+// 130 meshes that failed this ends 5900 early, and of 39300 others 70.
+constexpr std::size_t kLookAfter = 2;
+constexpr double kFarEnergy = 1.5, kFarWithFlips = 1, kFarArea = 8;
+constexpr double kNearEnergy = 0.9, kNearArea = 3;
 // Halves that meet with flipped triangles and so many times the energy allowed, or so far apart for
 // their size, do not settle: of some 19000 trials on 33 meshes this ended 2800 unseen, half of the
 // time that refusals took, and two that would have come within the limits. Large halves may.
@@ -191,10 +196,10 @@ Trial::Start Trial::judge_start(std::size_t smaller_half, const TrialLimits& lim
 bool Trial::promising(const TrialLimits& limits, TrialOutcome& outcome) {
   const bool whole = measure_stretch(limits.stretch_high, outcome);
   const double energy = outcome.energy / (area_ * (limits.stretch_l2 * limits.stretch_l2 - 1));
-  if (energy <= (whole ? kFarStretch : kFarWithFlips) &&
-      (energy <= kNearStretch || outcome.high_area <= kFarArea * limits.high_area)) {
-    return true;
-  }
+  const double most_area = (energy > kNearEnergy ? kNearArea : kFarArea) * limits.high_area;
+  const bool far =
+      whole ? energy > kFarEnergy || outcome.high_area > most_area : energy > kFarWithFlips;
+  if (!far) return true;
   outcome.energy *= kLastFall;
   outcome.high_area *= kLastFall;
   return false;
@@ -304,9 +309,9 @@ bool Trial::fits_unrolled(TrialOutcome& outcome) {
 bool Trial::descend(const TrialLimits& limits, TrialOutcome& outcome) {
   joined_.order(uvs_);
   solver_.factorize(joined_.fans(), uvs_.size());
-  for (int i = 0; i < limits.iterations; ++i) {
+  for (std::size_t i = 0; i < kRelaxation.size(); ++i) {
     if (i == kLookAfter && !promising(limits, outcome)) return false;
-    solver_.step(uvs_);
+    solver_.step(kRelaxation[i], uvs_);
   }
   return true;
 }

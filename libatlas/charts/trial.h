@@ -24,7 +24,6 @@ struct TrialLimits {
   double high_area = 0;
   double solidity = 0.7;  // share of its convex hull that it fills
   double fill = 0.58;     // share of its smallest rectangle
-  int iterations = 5;
   bool unrolls = false;   // both charts unroll: where they fit each other, no descent is needed
   bool hopeless = false;  // refuse it unseen, but say whether the glue makes a disc
 };

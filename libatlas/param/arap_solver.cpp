@@ -27,6 +27,11 @@ constexpr double first_inexactness = 1e-6, rough_share = 0.05, fine_share = 1e-3
 // must be exact: errors of a solve are smooth, and later steps take long to remove them.
 constexpr double may_unroll = 3e-4, exact_first = 1e-9;
 constexpr int most_iterations = 60;
+// How far every other step goes beyond the minimum for given rotations, and those of squeezing do.
+// What a long step overshoots the next one mends at once: three steps end where four plain ones do,
+// and squeezing goes further down (measured on 240 meshes).
+constexpr double long_step = 2.5;
+constexpr std::array squeezing_steps{1.7, 1.3};
 // Vertices from which on what is solved and what is measured do not lie in memory together.
 constexpr std::size_t large_mesh = 100000;
 // The fall of the energy by one local step, as part of the area, after which exact solves change no
@@ -125,6 +130,18 @@ void ArapSolver::solve(const Inexactness& inexactness, std::span<Vec2d> uvs) {
   for (std::size_t v = 0; v < uvs.size(); ++v) uvs[v] = from_glm(w_.solution[v]);
 }
 
+// The same, but as many times as far from the uvs that come in.
+void ArapSolver::solve_relaxed(double relaxation, const Inexactness& inexactness,
+                               std::span<Vec2d> uvs) {
+  if (relaxation == 1 || uvs.size() >= large_mesh) return solve(inexactness, uvs);  // no room there
+  w_.before.assign(uvs.begin(), uvs.end());
+  solve(inexactness, uvs);
+  for (std::size_t v = 0; v < uvs.size(); ++v) {
+    const glm::dvec2 from = to_glm(w_.before[v]);
+    uvs[v] = from_glm(from + relaxation * (to_glm(uvs[v]) - from));
+  }
+}
+
 void ArapSolver::solve_directly() {
   if (method_ == Method::direct) w_.direct.solve(w_.load, w_.solution);
   if (method_ == Method::envelope) w_.envelope.solve(w_.load, w_.solution);
@@ -205,11 +222,9 @@ void ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
     if (still && method_ != Method::multigrid) return;
     if (still) steps = i + 1;
     const bool last = i + 1 == steps;
-    if (exact) {
-      solve({last ? fine : exact_first, 0}, uvs);
-    } else {
-      solve({fine, last ? fine_share : rough_share}, uvs);
-    }
+    const Inexactness rough{fine, last ? fine_share : rough_share};
+    const double times = (steps - i) % 2 == 0 ? long_step : 1;
+    solve_relaxed(times, exact ? Inexactness{last ? fine : exact_first, 0} : rough, uvs);
   }
 }
 
@@ -261,9 +276,9 @@ double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
     }
     weighted_ = true;
     factorize();
-    for (int k = 0; k < 2; ++k) {
+    for (const double times : squeezing_steps) {
       update_rotations(w_.elements, uvs, w_.rotations, w_.load);
-      solve({fine, fine_share}, uvs);
+      solve_relaxed(times, {fine, fine_share}, uvs);
     }
     now = update_stretch(uvs, options.ratio);
     const double two_ago = std::exchange(one_ago, best);

@@ -23,7 +23,10 @@ class ArapSolver {
   // triangle, which need not agree where triangles meet. The next step's rotations are theirs.
   void join(std::span<const Vec2d> corner_uvs, std::span<Vec2d> uvs);
 
-  // Global steps, with local steps between them, from the current rotations.
+  // Global steps, with local steps between them, from the current rotations. All but the first are
+  // relaxed: for given rotations the energy is quadratic and nowhere below the one that falls, so
+  // that any step up to twice as long as to its minimum descends (Salakhutdinov and Roweis 2003,
+  // "Adaptive overrelaxed bound optimization methods"), and what is slow to settle does in fewer.
   void iterate(int steps, std::span<Vec2d> uvs);
 
   // Lowers the stretch that 99.9 % of the area stays within: triangles are weighted by a power of
@@ -75,6 +78,7 @@ class ArapSolver {
     double area_share, found_share;
   };
   void solve(const Inexactness& inexactness, std::span<Vec2d> uvs);
+  void solve_relaxed(double relaxation, const Inexactness& inexactness, std::span<Vec2d> uvs);
   void solve_directly();
   void take_guess(std::span<Vec2d> uvs);
   double update_stretch(std::span<const Vec2d> uvs, bool ratio);

@@ -28,7 +28,7 @@ struct ParamOptions {
   ParamMethod method = ParamMethod::automatic;
   Vec3d axis = {};              // of the projection; (0, 0, 0): the mean normal
   IsometricStart start = {};    // what the isometric solver starts from
-  int iterations = 4;           // local/global steps before the bound is looked at
+  int iterations = 3;           // local/global steps before the bound is looked at
   int squeeze_iterations = 12;  // reweighted steps at most, when the aim is missed:
   double aimed_stretch = 0;     // <= max_stretch; 0: max_stretch
   // The scale at which squeezing measures: the area-preserving one, as in the bound, or whichever

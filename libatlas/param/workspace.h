@@ -26,7 +26,7 @@ struct ParamWorkspace::Impl {
   std::vector<double> stretch;
   std::vector<param::WeightedValue> tail;
   std::vector<param::SingularValues> sigma;
-  std::vector<Vec2d> best;
+  std::vector<Vec2d> before, best;
   param::Relaxer relaxer;
   param::Separator separator;
 };

@@ -12,6 +12,8 @@
 #include "libatlas/charts/refusal.h"
 #include "libatlas/charts/topology.h"
 #include "libatlas/charts/trial.h"
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/param/distortion.h"
 #include "libatlas/param/isometric.h"
 #include "tests/charts/chart_checks.h"
 #include "tests/charts/coarse_shapes.h"
@@ -91,41 +93,83 @@ double distance(Vec2d a, Vec2d b) {
   return std::hypot(a.x - b.x, a.y - b.y);
 }
 
-TEST(FanSolver, AgreesWithTheGeneralSolver) {
-  const CoarseMesh mesh = coarse_of(cap(60, 20, 1.2));
-  const Halves halves(mesh, kEast);
-  TrialScratch scratch(mesh);
-  TrialMesh trial(mesh, scratch);
-  trial.assemble(all_cells(mesh), {}, all_arcs(halves), halves.joined(mesh, true));
-  std::vector<Vec2d> uvs(trial.vertex_count());
-  std::vector<Vec3d> places(uvs.size());
-  const auto place = [&] {
+// A cap's cells as one mesh, with a solver for them and the uvs that they start from.
+struct CapFans {
+  CoarseMesh mesh = coarse_of(cap(60, 20, 1.2));
+  Halves halves{mesh, kEast};
+  TrialScratch scratch{mesh};
+  TrialMesh trial{mesh, scratch};
+  Fans fans{mesh};
+  FanSolver solver{fans};
+  std::vector<Vec2d> uvs;
+  std::vector<Vec3d> places;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+
+  CapFans() {
+    trial.assemble(all_cells(mesh), {}, all_arcs(halves), halves.joined(mesh, true));
+    uvs.resize(trial.vertex_count());
+    place();
+    for (std::size_t v = 0; v < uvs.size(); ++v) uvs[v] = {places[v].x, places[v].y};
+    trial.order(uvs);
+    place();
+    for (const JoinedFans::Triangle& t : trial.triangles()) {
+      triangles.push_back({t.centre, t.a, t.b});
+    }
+    solver.factorize(trial.fans(), uvs.size());
+  }
+  void place() {
+    places.resize(uvs.size());
     for (const JoinedFans::Triangle& t : trial.triangles()) {
       places[t.a] = mesh.slot_position[t.slot];
       places[t.centre] = mesh.cells[trial.cells()[t.centre]].centre;
     }
-  };
-  place();
-  for (std::size_t v = 0; v < uvs.size(); ++v) uvs[v] = {places[v].x, places[v].y};
-  trial.order(uvs);
-  place();
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (const JoinedFans::Triangle& t : trial.triangles()) {
-    EXPECT_NEAR(distance(uvs[t.a], {places[t.a].x, places[t.a].y}), 0, 1e-15);  // they followed
-    triangles.push_back({t.centre, t.a, t.b});
   }
-  std::vector<Vec2d> expected = uvs;
+  LocalMesh view() const { return {places, triangles, {}}; }
+  double energy() const {  // as rigid as possible, of maps without flips
+    std::vector<TriangleStretch> stretch(triangles.size());
+    measure_triangles(view(), uvs, stretch);
+    double sum = 0;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      const auto [a, b, c] = triangles[t];
+      const glm::dvec3 p = to_glm(places[a]);
+      const double area =
+          0.5 * glm::length(glm::cross(to_glm(places[b]) - p, to_glm(places[c]) - p));
+      sum += area * (std::pow(1 / stretch[t].s1 - 1, 2) + std::pow(1 / stretch[t].s2 - 1, 2));
+    }
+    return sum;
+  }
+};
+
+TEST(FanSolver, AgreesWithTheGeneralSolver) {
+  CapFans cap;
+  for (std::size_t v = 0; v < cap.uvs.size(); ++v) {  // they followed the order
+    EXPECT_NEAR(distance(cap.uvs[v], {cap.places[v].x, cap.places[v].y}), 0, 1e-15);
+  }
+  std::vector<Vec2d> expected = cap.uvs;
   ParamWorkspace workspace;
-  IsometricOptions options;
-  options.iterations = 4;
-  flatten_isometric({places, triangles, {}}, {expected, {}}, options, expected, workspace);
-  const Fans fans(mesh);
-  FanSolver solver(fans);
-  solver.factorize(trial.fans(), uvs.size());
-  for (int i = 0; i < options.iterations; ++i) solver.step(uvs);
-  for (std::size_t v = 1; v < uvs.size(); ++v) {
+  for (int i = 0; i < 2; ++i) {  // two plain steps each
+    flatten_isometric(cap.view(), {expected, {}}, {2, 0}, expected, workspace);
+  }
+  for (int i = 0; i < 4; ++i) cap.solver.step(1, cap.uvs);
+  for (std::size_t v = 1; v < cap.uvs.size(); ++v) {
     const double length = distance(expected[v], expected[0]);
-    EXPECT_NEAR(distance(uvs[v], uvs[0]), length, 1e-5 * length) << v;
+    EXPECT_NEAR(distance(cap.uvs[v], cap.uvs[0]), length, 1e-5 * length) << v;
+  }
+}
+
+// Steps up to twice as long as plain ones lower the energy, too.
+TEST(FanSolver, LongerStepsDescend) {
+  CapFans cap;
+  const std::vector<Vec2d> start = cap.uvs;
+  for (const double relaxation : {1.0, 1.3, 1.6, 1.95}) {
+    cap.uvs = start;
+    double before = cap.energy();
+    for (int i = 0; i < 5; ++i) {
+      cap.solver.step(relaxation, cap.uvs);
+      const double now = cap.energy();
+      EXPECT_LT(now, before) << relaxation << ' ' << i;
+      before = now;
+    }
   }
 }
 

@@ -65,23 +65,6 @@ TEST(Parameterize, LargeMeshesGoOnAfterTheyWereMeasured) {
   EXPECT_LT(squeezed.distortion.stretch_999, plain);
 }
 
-TEST(Parameterize, LargeMeshesLoseNothingByASparedStep) {
-  const Disc d = testing::make_grid(150, 120, [](double u, double v) {
-    return Vec3d{2 * u, v, 0.1 * std::sin(6 * u) * std::cos(5 * v)};
-  });
-  ParamOptions options{.max_stretch = 3, .method = ParamMethod::isometric, .iterations = 4};
-  const double spared = run(d, options).distortion.stretch_l2;
-  std::vector<Vec2d> uv(d.positions.size());
-  ParamWorkspace workspace;
-  project_planar(d.view(), {0, 0, 1}, uv);
-  flatten_isometric(d.view(), {.uvs = uv}, {4, 0}, uv, workspace);
-  EXPECT_NEAR(spared, measure_distortion(d.view(), uv).stretch_l2, 1e-4);
-  // Beyond the bound it is made up for, before anything is squeezed.
-  options.squeeze_iterations = 1;
-  options.max_stretch = 1.0001;
-  EXPECT_LE(run(d, options).distortion.stretch_l2, spared + 1e-6);
-}
-
 // Milnor 1969, "A problem in cartography": no map of a cap of half-angle a has a smaller ratio of
 // its greatest to its least scale than a / sin a, which the azimuthal equidistant projection has.
 TEST(Parameterize, CapsMeetMilnorsOptimum) {
