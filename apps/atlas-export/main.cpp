@@ -39,16 +39,21 @@ StageReport reading_stage(const LoadedScene& loaded, double cpu, double wall) {
   return stage;
 }
 
+// Whether a file has the name of a page's image.
+bool named_as_page(const std::filesystem::path& file, const std::filesystem::path& target) {
+  const std::string pages = safe_file_name(target.stem().string()) + "_";
+  const std::string name = file.stem().string();
+  return name.size() > pages.size() && name.starts_with(pages) &&
+         name.find_first_not_of("0123456789", pages.size()) == std::string::npos;
+}
+
 // A world that is exported again brings textures that have the names of the new pages.
 Status check_textures_stay(const Scene& scene, const std::filesystem::path& target) {
-  const std::string pages = safe_file_name(target.stem().string()) + "_";
   const auto folder = target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
   for (const Texture& texture : scene.textures) {
-    const std::string name = texture.path.stem().string();
-    const bool page = name.size() > pages.size() && name.starts_with(pages) &&
-                      name.find_first_not_of("0123456789", pages.size()) == std::string::npos;
     std::error_code error;
-    if (page && std::filesystem::equivalent(folder / texture.path.filename(), texture.path, error))
+    if (named_as_page(texture.path, target) &&
+        std::filesystem::equivalent(folder / texture.path.filename(), texture.path, error))
       return {ErrorCode::bad_option,
               fmt::format("{}: its pages would overwrite {}, a texture of the scene (give the "
                           "output another name)",
@@ -57,34 +62,45 @@ Status check_textures_stay(const Scene& scene, const std::filesystem::path& targ
   return {};
 }
 
+// What is written with the target.
+std::filesystem::path beside(const std::filesystem::path& target) {
+  if (target.extension() == ".obj") return std::filesystem::path(target).replace_extension("mtl");
+  if (target.extension() == ".gltf") return std::filesystem::path(target).replace_extension("bin");
+  return {};
+}
+
+Status check_outputs(const app::ExportCommand& command) {
+  const std::filesystem::path &target = command.options.target, &report = command.report;
+  const auto& light = command.read.illumination_file;
+  if (Status s = app::check_output(target, {command.scene, light, report}); !s.ok()) return s;
+  if (Status s = app::check_output(report, {command.scene, light, beside(target)}); !s.ok())
+    return s;
+  const bool image = report.extension() == ".png" || report.extension() == ".exr";
+  if (image && named_as_page(report, target))
+    return {ErrorCode::bad_option,
+            fmt::format("--report {}: is the name of a page (give the report another)",
+                        report.string())};
+  return {};
+}
+
 // A scene's material files and buffers are known only when it has been read.
 Status check_files_stay(const LoadedScene& loaded, const app::ExportCommand& command) {
   const std::filesystem::path& target = command.options.target;
-  std::filesystem::path beside;  // what is written with the target
-  if (target.extension() == ".obj") beside = std::filesystem::path(target).replace_extension("mtl");
-  if (target.extension() == ".gltf")
-    beside = std::filesystem::path(target).replace_extension("bin");
   for (const std::filesystem::path& file : loaded.files)
-    for (const std::filesystem::path& output : {target, beside, command.report})
+    for (const std::filesystem::path& output : {target, beside(target), command.report})
       if (Status s = app::check_output(output, {file}); !s.ok()) return s;
   return check_textures_stay(loaded.scene, target);
 }
 
 Status run(const app::ExportCommand& command, app::Terminal& terminal) {
   if (Status s = check_options(command.options); !s.ok()) return s;
-  if (Status s = app::check_output(command.options.target,
-                                   {command.scene, command.read.illumination_file, command.report});
-      !s.ok())
-    return s;
-  if (Status s = app::check_output(command.report, {command.scene, command.read.illumination_file});
-      !s.ok())
-    return s;
+  if (Status s = check_outputs(command); !s.ok()) return s;
   const Context context = terminal.context(command.threads);
   const double cpu = cpu_seconds(), wall = wall_seconds();
   Result<LoadedScene> loaded = read_scene(command.scene, command.read, context);
   if (!loaded.ok()) return loaded.status();
   if (Status s = check_files_stay(*loaded, command); !s.ok()) return s;
-  for (const std::string& line : loaded->defects.lines()) terminal.line("left out: " + line);
+  for (const std::string& line : loaded->defects.lines()) terminal.line("defect: " + line);
   const ExportPlan plan = make_plan(loaded->scene, command.options);
   if (command.plan_only) {
     print_plan(plan, terminal);

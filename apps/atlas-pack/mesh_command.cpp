@@ -299,7 +299,7 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   Result<LoadedScene> loaded = read_scene(c.input, read, context);
   if (!loaded.ok()) return loaded.status();
   const Scene& scene = loaded->scene;
-  for (const std::string& line : loaded->defects.lines()) context.say("left out: " + line);
+  for (const std::string& line : loaded->defects.lines()) context.say("defect: " + line);
   if (scene.texcoord_indices.empty())
     return Status(ErrorCode::bad_input,
                   fmt::format("{}: has no uvs (unwrap it first)", c.input.string()));

@@ -1,5 +1,7 @@
 #include "libatlas/pipeline/page_layout.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -73,6 +75,17 @@ double uv_utilization(const ChartSet& charts, const PageLayout& layout) {
   return page_area > 0 ? area / page_area : 0;
 }
 
+// The packer's refusal in the words of an export.
+Status no_room(const ChartSet& charts, const LayoutOptions& options) {
+  return {ErrorCode::no_solution,
+          fmt::format(
+              "{} charts do not fit {} page{} of {} x {} even as small as allowed (allow {}a "
+              "larger --atlas-size{})",
+              charts.charts.size(), options.pages, options.pages == 1 ? "" : "s", options.page_size,
+              options.page_size, options.minimum_side > 0 ? "more --atlases or " : "",
+              options.minimum_side > 0 ? ", or lower --min-side or --mips" : "")};
+}
+
 // One kind of packing, as options.outlines says.
 Result<PageLayout> lay_out(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
                            const LayoutOptions& options, const Context& context) {
@@ -95,7 +108,10 @@ Result<PageLayout> lay_out(const ChartSet& charts, std::span<const Vec2d> texels
     fit.shapes = outlines->shapes;
   }
   Result<FitResult> fitted = fit_pages(items, fit, context);
-  if (!fitted.ok()) return fitted.status();
+  if (!fitted.ok()) {
+    const bool full = fitted.status().code() == ErrorCode::no_solution;
+    return full ? no_room(charts, options) : fitted.status();
+  }
 
   PageLayout layout;
   layout.scale = fitted->scale;

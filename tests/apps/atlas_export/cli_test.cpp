@@ -229,6 +229,12 @@ TEST_F(AtlasExport, OverwritesNothingThatItReads) {
   EXPECT_EQ(run(fmt::format("{0}/box.obj -o {0}/./box.obj", dir_.string())).exit_code, 2);
   expect_refusal(scene, "would overwrite", fmt::format("--report {}/box.obj", dir_.string()));
   expect_refusal(scene, "would overwrite", fmt::format("--report {}/world.wrl", dir_.string()));
+  for (const char* name : {"v.mtl", "v_0.png"}) {
+    const RunResult r =
+        run(fmt::format("{0}/box.obj -o {0}/v.obj --report {0}/{1}", dir_.string(), name));
+    EXPECT_EQ(r.exit_code, 2) << r.output;
+    EXPECT_NE(r.output.find(name), std::string::npos) << r.output;
+  }
   EXPECT_EQ(slurp(scene), text);
   // A world that is exported again: its texture has the name of the first new page.
   ASSERT_EQ(run(fmt::format("{0}/box.obj -o {0}/w.obj -q", dir_.string())).exit_code, 0);
@@ -256,6 +262,15 @@ TEST_F(AtlasExport, OverwritesNoMaterialsAndNoBuffer) {
   EXPECT_EQ(gltf.exit_code, 2);
   EXPECT_NE(gltf.output.find("w.bin"), std::string::npos) << gltf.output;
   EXPECT_EQ(slurp(dir_ / "w.bin"), buffer);
+}
+
+TEST_F(AtlasExport, TooManyChartsForThePagesNamesTheOptions) {
+  const fs::path scene = write("box.obj", lit_box(2));
+  const RunResult r = run(fmt::format("{0} -o {1}/w.obj --atlases 1 --atlas-size 64 --mips 5",
+                                      scene.string(), dir_.string()));
+  EXPECT_EQ(r.exit_code, 1);
+  EXPECT_NE(r.output.find("do not fit 1 page of 64 x 64"), std::string::npos) << r.output;
+  EXPECT_NE(r.output.find("more --atlases or a larger --atlas-size"), std::string::npos);
 }
 
 TEST_F(AtlasExport, LightOnNoArea) {
@@ -364,7 +379,7 @@ TEST_F(AtlasExport, InterruptLeavesNothing) {
     const pid_t child = ::fork();
     if (child == 0) {
       ::execl(ATLAS_EXPORT, ATLAS_EXPORT, (dir_ / "box.obj").c_str(), "-o",
-              (dir_ / "w.wrl").c_str(), "--texel", "1mm", "--atlases", "16", "-q", nullptr);
+              (dir_ / "w.wrl").c_str(), "--texel", "1mm", "--threshold", "0", "-q", nullptr);
       ::_exit(127);
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
