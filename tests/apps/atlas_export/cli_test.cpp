@@ -379,7 +379,7 @@ TEST_F(AtlasExport, InterruptLeavesNothing) {
     const pid_t child = ::fork();
     if (child == 0) {
       ::execl(ATLAS_EXPORT, ATLAS_EXPORT, (dir_ / "box.obj").c_str(), "-o",
-              (dir_ / "w.wrl").c_str(), "--texel", "1mm", "--threshold", "0", "-q", nullptr);
+              (dir_ / "w.wrl").c_str(), "--texel", "0.5mm", "--threshold", "0", "-q", nullptr);
       ::_exit(127);
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
