@@ -35,6 +35,22 @@ if(NOT output MATCHES "2304 triangles, [1-9][0-9]* charts, stretch 1\\.[0-9]+")
 endif()
 message(STATUS "find_package: ${output}")
 
+# By add_subdirectory, which asks for nothing that only programs and tests need.
+file(REMOVE_RECURSE ${BUILD}/tests/package/parent)
+file(WRITE ${BUILD}/tests/package/parent/CMakeLists.txt "
+cmake_minimum_required(VERSION 3.22)
+project(parent LANGUAGES CXX)
+add_subdirectory(${SOURCE} libatlas)
+add_executable(unwrap ${SOURCE}/examples/minimal/unwrap.cpp)
+target_link_libraries(unwrap PRIVATE libatlas::libatlas)
+")
+set(disabled "")
+foreach(package GTest benchmark CLI11 embree glfw3)
+  list(APPEND disabled -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+endforeach()
+run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${BUILD}/tests/package/parent -B ${BUILD}/tests/package/parent/build
+    -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS} ${disabled})
+
 # By pkg-config.
 file(GLOB_RECURSE pc ${prefix}/*/libatlas.pc)
 get_filename_component(pc_dir ${pc} DIRECTORY)
