@@ -81,10 +81,15 @@ std::string safe_file_name(const std::string& text) {
   std::string name = text;
   for (char& c : name) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       c == '-' || c == '_';
+                       c == '-' || c == '_' || (c == '.' && &c != name.data());
     if (!plain) c = '_';
   }
-  return name.empty() ? "world" : name;
+  if (name.empty()) return "world";
+  if (name == text) return name;
+  // Names of another script would all become the same row of '_'.
+  std::uint32_t hash = 2166136261u;  // FNV-1a
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
+  return fmt::format("{}-{:04x}", name, (hash ^ (hash >> 16)) & 0xffff);
 }
 
 }  // namespace atlas

@@ -85,7 +85,8 @@ bool holds_viewpoint(const std::filesystem::path& path);
 // The check that writers begin with.
 Status check_world(const World& world);
 
-// A file name of letters, digits, '_' and '-' only, made from any text: what all viewers can load.
+// A file name of letters, digits, '_', '-' and '.' only, made from any text: what all viewers can
+// load. Texts of other characters get different names nearly always.
 std::string safe_file_name(const std::string& text);
 
 }  // namespace atlas

@@ -213,7 +213,11 @@ TEST(Vrml, NamesAreEncodedAndPagesMayBeEmptyOrBare) {
   EXPECT_EQ(shapes[0]->child("appearance").child("texture").field("url")[0],
             "\"my%20caf%C3%A9%20%231.png\"");
   EXPECT_FALSE(shapes[1]->child("appearance").has("texture"));
-  EXPECT_EQ(safe_file_name("my caf\xc3\xa9 #1"), "my_caf____1");
+  const std::string safe = safe_file_name("my caf\xc3\xa9 #1");
+  EXPECT_EQ(safe.substr(0, 12), "my_caf____1-");
+  EXPECT_NE(safe, safe_file_name("my caf\xc3\xa8 #1"));
+  EXPECT_EQ(safe_file_name("world-2_b.v3"), "world-2_b.v3");
+  EXPECT_EQ(safe_file_name(".hidden")[0], '_');
 }
 
 TEST(Vrml, GzipHoldsTheSameText) {
