@@ -12,6 +12,8 @@
 namespace atlas::app {
 namespace {
 
+constexpr int kWindowWidth = 1280, kWindowHeight = 800;  // the panel takes 450 x 600 of it
+
 const std::map<std::string, ShadowMethod>& methods() {
   static const std::map<std::string, ShadowMethod> map = [] {
     std::map<std::string, ShadowMethod> m;
@@ -30,11 +32,9 @@ const std::map<std::string, Shading>& shadings() {
 }
 
 void add_picture_options(CLI::App& app, CommandLine& l) {
-  app.add_option("--width", l.render.width, "pixels")
-      ->capture_default_str()
+  app.add_option("--width", l.render.width, "pixels (default: 1280 in a window, else 640)")
       ->check(within(1, 16384));
-  app.add_option("--height", l.render.height, "pixels")
-      ->capture_default_str()
+  app.add_option("--height", l.render.height, "pixels (default: 800 in a window, else 400)")
       ->check(within(1, 16384));
   app.add_option("--camera", l.camera, "where from and where to: x,y,z;x,y,z");
   app.add_option("--fov", l.fov, "vertical field of view, degrees")
@@ -224,6 +224,7 @@ Parsed parse_command_line(int argc, char** argv) {
   std::string light = "sun:172,50.45,9", end = "loop", up = "y";
   app.add_option("scene", l.scene, "OBJ, PLY, OFF, STL, glTF, GLB, VRML")->required();
   app.set_config("--config", "", "options from a file");
+  app.allow_config_extras(CLI::config_extras_mode::error);
   add_picture_options(app, l);
   add_shadow_options(app, l);
   add_run_options(app, l, light, end, up);
@@ -231,6 +232,10 @@ Parsed parse_command_line(int argc, char** argv) {
   if (const int code = parse(app, argc, argv); code >= 0) {
     parsed.exit_code = code;
     return parsed;
+  }
+  if (l.in_window() && app.count("--width") + app.count("--height") == 0) {
+    l.render.width = kWindowWidth;
+    l.render.height = kWindowHeight;
   }
   if (Status s = finish(l, light, end, up); !s.ok()) {
     fmt::print(stderr, "atlas-play: error: {}\n", s.message());

@@ -25,6 +25,8 @@ struct CommandLine {
   RenderOptions render;
   BenchOptions measure;
   PlayOptions play;
+
+  bool in_window() const { return !headless && bench.empty() && !plan; }
 };
 
 // What was asked for, or an exit code after the help or a complaint has been printed.

@@ -54,7 +54,7 @@ Status check_outputs(const CommandLine& line) {
 }
 
 Status play(CommandLine& line, Terminal& terminal, const Context& context) {
-  const bool headless = line.headless || !line.bench.empty() || line.plan;
+  const bool headless = !line.in_window();
   // The march is good up to keys this far apart; a slow machine would stretch them further.
   constexpr double kWindowKeyDegrees = 16;
   line.render.schedule.max_key_degrees =

@@ -97,6 +97,16 @@ TEST_F(AtlasPlay, AbsurdOptions) {
   }
 }
 
+TEST_F(AtlasPlay, AConfigurationFileWithAnOptionThatDoesNotExist) {
+  std::ofstream(dir_ / "good.toml") << "width=20\nheight=10\nshadows=\"none\"\n";
+  std::ofstream(dir_ / "bad.toml") << "widht=20\n";
+  const std::string headless = "roof.obj --headless --software -q --screenshot c.png --config ";
+  EXPECT_EQ(run(headless + "good.toml").exit_code, 0);
+  const RunResult r = run(headless + "bad.toml");
+  EXPECT_EQ(r.exit_code, 2);
+  EXPECT_NE(r.errors.find("widht"), std::string::npos) << r.errors;
+}
+
 // Said before anything is drawn.
 TEST_F(AtlasPlay, PlacesThatTakeNoFiles) {
   for (const char* option :
