@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <filesystem>
 
 #include "examples/cabin/preview.h"
 #include "examples/cabin/refine.h"
 #include "examples/cabin/write.h"
+#include "libatlas/core/atomic_file.h"
 #include "libatlas/core/clock.h"
 
 namespace {
@@ -28,7 +30,7 @@ int default_samples(std::size_t triangles) {
 }
 
 void describe(CLI::App& app, Arguments& a) {
-  app.add_option("--triangles,-n", a.triangles, "how many triangles, met within 3 %")
+  app.add_option("-n,--triangles", a.triangles, "how many triangles, met within 3 %")
       ->check(CLI::Range(std::size_t{10000}, std::size_t{20000000}))
       ->capture_default_str();
   app.add_option("-o,--output", a.output, "the scene to write: .obj, .ply or .glb");
@@ -47,11 +49,40 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--up", a.up, "the axis that points up")
       ->check(CLI::IsMember({"y", "z"}))
       ->capture_default_str();
-  app.add_option("--threads", a.threads, "0: as many as there are cores; the files are the same");
-  app.add_flag("--quiet,-q", a.quiet, "print nothing");
+  app.add_option("--threads", a.threads, "0: as many as there are cores; the files are the same")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  app.add_flag("-q,--quiet", a.quiet, "print nothing");
+}
+
+// The exit code, or -1 to go on.
+int parse(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& done) {
+    return app.exit(done);
+  } catch (const CLI::ParseError& error) {
+    fmt::print(stderr, "atlas-make-cabin: error: {} (--help lists the options)\n", error.what());
+    return 2;
+  }
+  return -1;
+}
+
+// Before minutes of work.
+atlas::Status check(const Arguments& a) {
+  if (a.output.empty() && a.preview.empty())
+    return {atlas::ErrorCode::bad_option,
+            "nothing to write (give -o FILE, --preview FILE or both)"};
+  if (!a.preview.empty() && std::filesystem::path(a.preview).extension() != ".png")
+    return {atlas::ErrorCode::bad_option, a.preview + ": the preview must end in .png"};
+  if (atlas::Status s = a.output.empty() ? atlas::Status() : cabin::check_scene_path(a.output);
+      !s.ok())
+    return s;
+  return a.preview.empty() ? atlas::Status() : atlas::check_writable(a.preview);
 }
 
 atlas::Status run(const Arguments& a) {
+  if (atlas::Status s = check(a); !s.ok()) return s;
   const double start = atlas::cpu_seconds();
   atlas::Context context;
   context.threads = a.threads;
@@ -97,23 +128,20 @@ atlas::Status run(const Arguments& a) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Makes a lit aircraft cabin: a scene for atlas-export, of any size.");
+  CLI::App app("Makes a lit aircraft cabin: a scene for atlas-export, of any size.",
+               "atlas-make-cabin");
   Arguments arguments;
   describe(app, arguments);
-  CLI11_PARSE(app, argc, argv);
-  if (arguments.output.empty() && arguments.preview.empty()) {
-    fmt::print(stderr,
-               "atlas-make-cabin: nothing to write (give -o FILE, --preview FILE or both)\n");
-    return 2;
-  }
+  if (const int code = parse(app, argc, argv); code >= 0) return code;
   arguments.lighting.direct_samples =
       arguments.samples > 0 ? arguments.samples : default_samples(arguments.triangles);
   try {
     const atlas::Status status = run(arguments);
     if (status.ok()) return 0;
-    fmt::print(stderr, "atlas-make-cabin: {}\n", status.message());
+    fmt::print(stderr, "atlas-make-cabin: error: {}\n", status.message());
+    return status.code() == atlas::ErrorCode::bad_option ? 2 : 1;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "atlas-make-cabin: {}\n", error.what());
+    fmt::print(stderr, "atlas-make-cabin: error: {}\n", error.what());
   }
   return 1;
 }

@@ -146,13 +146,19 @@ atlas::Status write_ply(const fs::path& path, const Mesh& mesh, bool y_up) {
 // Defined in write_glb.cpp.
 atlas::Status write_glb(const fs::path& path, const fs::path& target, const Mesh& mesh, bool y_up);
 
+atlas::Status check_scene_path(const fs::path& path) {
+  const std::string ending = path.extension().string();
+  if (ending != ".obj" && ending != ".ply" && ending != ".glb")
+    return {atlas::ErrorCode::bad_option,
+            path.string() + ": unknown ending (use .obj, .ply or .glb)"};
+  return atlas::check_writable(path);
+}
+
 atlas::Status write_scene(const fs::path& path, const Mesh& mesh, bool y_up) {
+  if (atlas::Status status = check_scene_path(path); !status.ok()) return status;
   const std::string ending = path.extension().string();
   if (ending == ".obj") return write_obj(path, mesh, y_up);
   if (ending == ".ply") return write_ply(path, mesh, y_up);
-  if (ending != ".glb")
-    return {atlas::ErrorCode::bad_option,
-            path.string() + ": unknown ending (use .obj, .ply or .glb)"};
   atlas::AtomicFiles files;
   for (const atlas::Status& status : {write_glb(path, files.path_for(path), mesh, y_up),
                                       write_textures(path.parent_path(), mesh, files)})

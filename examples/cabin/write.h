@@ -8,6 +8,9 @@
 
 namespace cabin {
 
+// Whether write_scene() can write there: ask before long work. Errors: bad_option, io.
+atlas::Status check_scene_path(const std::filesystem::path& path);
+
 // Writes by the extension of `path`: .obj (v x y z r g b, plus MTL and PNG textures beside it),
 // .ply (binary, colours as floats, without texture coordinates), .glb (attribute _ILLUMINANCE,
 // textures beside it). Illuminance is linear RGB in lux, not yet multiplied by the reflectance.
