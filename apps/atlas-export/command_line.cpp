@@ -57,12 +57,14 @@ void add_chart_options(CLI::App& app, ExportOptions& options) {
   add_off_flag(app, "--across-materials", options.charts.split_at_materials,
                "Let a chart hold several materials: fewer charts, but light and texture blur "
                "into each other where they meet");
-  app.add_flag("--keep-uv-charts", options.charts.keep_uv_charts,
-               "Keep the charts of the scene's own texture coordinates and their shapes, whatever "
-               "they stretch; flatten anew only those that are flipped, overlapping or missing");
+  CLI::Option* keep = app.add_flag(
+      "--keep-uv-charts", options.charts.keep_uv_charts,
+      "Keep the charts of the scene's own texture coordinates and their shapes, whatever "
+      "they stretch; flatten anew only those that are flipped, overlapping or missing");
   app.add_option("--uv-aspect", options.charts.uv_aspect,
                  "With --keep-uv-charts: width / height of the page that they were made for")
       ->capture_default_str()
+      ->needs(keep)
       ->check(positive());
   app.add_option("--preset", options.charts.preset, "Chart quality: fast, default or best")
       ->transform(choices<ChartPreset>({{"fast", ChartPreset::fast},
@@ -135,7 +137,8 @@ void add_output_options(CLI::App& app, ExportCommand& command) {
                  "How far the coarser mesh and its texture may slip, texels")
       ->capture_default_str()
       ->check(positive());
-  app.add_flag("--exr", options.exr, "Also write scene-linear OpenEXR pages");
+  app.add_flag("--exr", options.exr, "Also write scene-linear OpenEXR pages")
+      ->excludes("--charts-only");
   app.add_option("--png-level", options.png_compression, "PNG compression, 0..9")
       ->capture_default_str()
       ->check(within(0, 9));
