@@ -121,6 +121,16 @@ TEST(Image, ExrKeepsLinearValuesBeyondOne) {
   }
 }
 
+TEST(Image, ExrDoesNotHoldTheTimeOfWriting) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_exr(folder / "a.exr", ImageF(2, 2, 3)).ok());
+  const std::string bytes = TempFolder::read(folder / "a.exr");
+  const std::size_t date = bytes.find("capDate");
+  if (date != bytes.npos) {
+    EXPECT_NE(bytes.find("1970:01:01 00:00:00", date), bytes.npos);
+  }
+}
+
 TEST(Image, FailuresNameTheFile) {
   const TempFolder folder;
   EXPECT_EQ(read_image8(folder / "gone.png").status().code(), ErrorCode::not_found);
