@@ -52,7 +52,7 @@ double luma(const float c[3]) {
 }
 
 double decibels(double mean_square) {
-  return mean_square > 0 ? -10 * std::log10(mean_square) : 999;
+  return mean_square > 0 ? -10 * std::log10(mean_square) : kPerfectDecibels;
 }
 
 // Sums over samples, in their order.

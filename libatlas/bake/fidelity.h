@@ -16,6 +16,9 @@ struct FidelityOptions {
   std::uint64_t seed = 1;
 };
 
+// The PSNR of samples without any error.
+inline constexpr double kPerfectDecibels = 999;
+
 // Of the lit samples, unless said otherwise.
 struct Fidelity {
   std::uint64_t lit = 0, unlit = 0;  // samples: luminance not exactly zero / exactly zero

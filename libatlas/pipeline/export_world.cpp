@@ -290,7 +290,9 @@ class Export {
       const Fidelity& fidelity = report_.fidelity = baked->fidelity;
       record_.add("error", baked->measure_cpu, baked->measure_wall,
                   {fidelity.lit + fidelity.unlit, pages, "pages",
-                   fmt::format("PSNR {:.2f} dB, 95 % {:.4f}", fidelity.psnr, fidelity.p95)});
+                   fidelity.lit == 0
+                       ? "nothing is lit"
+                       : fmt::format("PSNR {:.2f} dB, 95 % {:.4f}", fidelity.psnr, fidelity.p95)});
     }
     return {};
   }
@@ -344,6 +346,7 @@ class Export {
     if (!world_file.ok()) return world_file.status();
     if (options_.target.extension() == ".glb") {  // holds its images itself
       for (const auto& image : image_sources_) files_.discard(image);
+      for (PageReport& page : report_.pages) page.image.clear();
     }
     if (context_.cancelled()) return Status::cancelled();
     const std::vector<std::filesystem::path> written = files_.targets();

@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kMebibyte = 1024.0 * 1024.0;
 
-// JSON has no infinities: a perfect page's PSNR is written as null.
+// JSON has no infinities: they are written as null.
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
@@ -167,20 +167,27 @@ Json pages_json(const ExportReport& r) {
           {"pages", pages}};
 }
 
-Json error_json(const Fidelity& f) {
+// What no sample told is null: a 0 would read as a perfect or a hopeless result.
+Json error_json(const Fidelity& f, ToneOperator tone) {
+  const bool inverted = tone == ToneOperator::linear && f.lit > f.clipped;
+  const auto decibels = [](double value, std::uint64_t samples) {
+    return samples > 0 && value < kPerfectDecibels ? Json(value) : Json(nullptr);
+  };
+  const auto of_lit = [&](double value) { return f.lit > 0 ? Json(value) : Json(nullptr); };
   return {{"samples_lit", f.lit},
           {"samples_unlit", f.unlit},
           {"samples_clipped", f.clipped},
           {"samples_unplaced", f.unplaced},
-          {"rmse", f.rmse},
-          {"psnr", number(f.psnr)},
+          {"rmse", inverted ? Json(f.rmse) : Json(nullptr)},
+          {"psnr", decibels(f.psnr, f.lit)},
           {"psnr_rgb",
-           {number(f.psnr_channel[0]), number(f.psnr_channel[1]), number(f.psnr_channel[2])}},
-          {"psnr_with_unlit", number(f.psnr_all)},
-          {"rmse_display", f.rmse_display},
-          {"p95", f.p95},
-          {"p999", f.p999},
-          {"max", f.maximum}};
+           {decibels(f.psnr_channel[0], f.lit), decibels(f.psnr_channel[1], f.lit),
+            decibels(f.psnr_channel[2], f.lit)}},
+          {"psnr_with_unlit", decibels(f.psnr_all, f.lit + f.unlit)},
+          {"rmse_display", of_lit(f.rmse_display)},
+          {"p95", of_lit(f.p95)},
+          {"p999", of_lit(f.p999)},
+          {"max", of_lit(f.maximum)}};
 }
 
 }  // namespace
@@ -207,7 +214,7 @@ Status write_json(const ExportReport& r, const std::filesystem::path& path) {
                         {"slip_texels", r.slip_texels},
                         {"turn_degrees", r.turn_degrees}};
   }
-  if (r.error_measured) json["error"] = error_json(r.fidelity);
+  if (r.error_measured) json["error"] = error_json(r.fidelity, r.tone.op);
   json["files"] = files;
   // Names come from files: bytes that are no UTF-8 are replaced instead of ending the export.
   return write_file(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");

@@ -132,6 +132,26 @@ TEST_F(AtlasExport, GlbHoldsItsImages) {
   EXPECT_EQ(files(), (std::set<std::string>{"box.obj", "w.glb"}));
 }
 
+// A number where nothing was measured would read as perfect, or as hopeless.
+TEST_F(AtlasExport, TheReportTellsNoErrorThatNobodyMeasured) {
+  const auto report = [&](const std::string& scene, const std::string& more) {
+    write("s.obj", scene);
+    const RunResult r = run(fmt::format(
+        "{0}/s.obj -o {0}/w.glb --texel 5cm --report {0}/r.json {1}", dir_.string(), more));
+    EXPECT_EQ(r.exit_code, 0) << r.output;
+    EXPECT_EQ(r.output.find("PSNR 0"), std::string::npos) << r.output;
+    return nlohmann::json::parse(slurp(dir_ / "r.json"));
+  };
+  const auto curve = report(lit_box(6), "--tone reinhard");
+  EXPECT_TRUE(curve["error"]["rmse"].is_null());
+  EXPECT_GT(curve["error"]["psnr"].get<double>(), 40);
+  EXPECT_EQ(curve["packing"]["pages"][0]["image"], "") << "there is no such file";
+  const auto dark = report("v 0 0 0 0 0 0\nv 1 0 0 0 0 0\nv 0 1 0 0 0 0\nf 1 2 3\n", "");
+  EXPECT_EQ(dark["error"]["samples_lit"], 0);
+  for (const char* key : {"rmse", "psnr", "psnr_with_unlit", "rmse_display", "p95", "max"})
+    EXPECT_TRUE(dark["error"][key].is_null()) << key;
+}
+
 TEST_F(AtlasExport, SameBytesForEveryThreadCount) {
   write("box.obj", lit_box(20));
   std::string reference;
