@@ -29,7 +29,7 @@ constexpr std::size_t kMostCharts = 128;
 constexpr std::size_t kStartedCharts = 480;  // over all starts: fewer charts get more of them
 constexpr std::size_t kMostStarts = 20;
 constexpr std::uint64_t kSearchWork = 160'000'000;  // words looked at by all starts, 2 ns each
-constexpr std::uint64_t kLayouts = 24;              // of one start
+constexpr std::uint64_t kLayouts = 32;              // of one start
 constexpr std::uint32_t kMostDoublings = 4;         // of both, a round of `best` each
 constexpr std::uint32_t kDirections = 24;
 // Few are worth pressing: what a start's cells say about its page is nearly what the press makes of
@@ -301,14 +301,20 @@ class Press {
   }
 
   // The fullest start is pressed once more with finer outlines and placed exactly, and the next
-  // where that fails or charts are so few that chance decides which of them comes out fuller.
+  // where that fails, or where charts are so few that chance decides which of two comes out fuller.
   void settle_best(std::vector<Start>& starts, PressedPage& best) const {
     constexpr std::size_t kFew = 16, kMost = 6;
+    constexpr double kClose = 0.99;  // one emptier than this share of the fullest never does
     sort_starts(starts);
+    const double fullest = goodness(starts.front().page);
+    bool settled = false;
     std::size_t wanted = outlines_.size() <= kFew ? kThoroughStarts : 1;
     for (std::size_t k = 0; k < std::min(starts.size(), kMost) && wanted > 0; ++k) {
       if (context_.cancelled()) return;
-      if (settle_start(starts[k], best)) --wanted;
+      if (settled && goodness(starts[k].page) < kClose * fullest) return;
+      if (!settle_start(starts[k], best)) continue;
+      settled = true;
+      --wanted;
     }
   }
 

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "libatlas/core/parallel.h"
-#include "libatlas/pack/plain_page.h"
+#include "libatlas/pack/slide.h"
 
 namespace atlas::pack {
 namespace {
@@ -53,6 +53,26 @@ class Settler {
     measure(result);
     result.scale = scale;
     return true;
+  }
+
+  // Takes out the slack that targets leave between exact masks, of the layout placed last.
+  void close_up(PressedPage& result) {
+    constexpr int kSlides = 3;  // each way; a fourth finds nothing
+    const std::int32_t a = options_.alignment;
+    PlainPage page(options_.page_size / a, options_.page_size / a);
+    std::vector<SlidingMask> masks;
+    for (std::uint32_t i = 0; i < masks_.size(); ++i) {
+      const PressedPlace& p = result.places[i];
+      if (!p.placed) continue;
+      masks.push_back({&masks_[i], {p.box.x / a, p.box.y / a}, i});
+      page.put(masks_[i], masks.back().at);
+    }
+    for (int k = 0; k < kSlides; ++k) {
+      const bool down = slide({0, -1}, page, masks), left = slide({-1, 0}, page, masks);
+      if (!down && !left) break;
+    }
+    for (const SlidingMask& m : masks) note(m.chart, m.at, result);
+    measure(result);
   }
 
   // Whether the last layout has charts far from their targets.
@@ -229,6 +249,7 @@ PressedPage settle(std::span<const SettleTarget> targets, std::span<const ChartO
   for (double share : kShares) {
     if (context.cancelled()) return {};
     const bool ok = settler.place_at(share, tried);
+    if (ok) settler.close_up(tried);
     if (ok && (best.scale == 0 || fill(tried) > fill(best))) best = tried;
     if (ok && !settler.displaced()) {
       low = share;
@@ -239,6 +260,7 @@ PressedPage settle(std::span<const SettleTarget> targets, std::span<const ChartO
   if (low > 0 && high > low) {
     const double middle = (low + high) / 2;
     const bool ok = settler.place_at(middle, tried);
+    if (ok) settler.close_up(tried);
     if (ok && fill(tried) > fill(best)) best = tried;
   }
   return best;

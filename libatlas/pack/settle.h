@@ -15,7 +15,8 @@ struct SettleTarget {
 };
 
 // Places every chart on free cells as near to its target as possible, at the largest scale
-// below `scale` that allows it. scale 0 in the result: none did.
+// below `scale` that allows it, then closes up down and to the left. scale 0 in the result: none
+// did.
 PressedPage settle(std::span<const SettleTarget> targets, std::span<const ChartOutline> outlines,
                    double scale, const FitOptions& options, const Context& context);
 

@@ -9,7 +9,7 @@
 #include "libatlas/core/parallel.h"
 #include "libatlas/pack/engines.h"
 #include "libatlas/pack/nest.h"
-#include "libatlas/pack/plain_page.h"
+#include "libatlas/pack/slide.h"
 
 namespace atlas::pack {
 namespace {
@@ -36,17 +36,18 @@ class Slider {
  public:
   Slider(std::vector<Piece> pieces, const Start& start, const FitOptions& options,
          std::int32_t cell)
-      : pieces_(std::move(pieces)), start_(start), unit_(options.alignment), at_(pieces_.size()) {
+      : pieces_(std::move(pieces)), start_(start), unit_(options.alignment) {
     std::int32_t top = 0;
-    for (std::uint32_t i = 0; i < at_.size(); ++i) {
-      if (mask(i).cells == 0) continue;
-      // Both masks hold the same padded chart: where their origins differ, their corners do.
+    for (std::uint32_t i = 0; i < pieces_.size(); ++i) {
       const NestPlace& p = start.places[i];
+      const Mask& mask = pieces_[i].masks[p.direction];
+      if (mask.cells == 0) continue;
+      // Both masks hold the same padded chart: where their origins differ, their corners do.
       const Vec2d coarse = start.origins[i], exact = pieces_[i].origins[p.direction];
-      at_[i] = {cells(p.at.x * double(cell) + coarse.x - exact.x),
-                cells(p.at.y * double(cell) + coarse.y - exact.y)};
-      order_.push_back(i);
-      top = std::max(top, at_[i].y + mask(i).height);
+      const BitPage::Place at{cells(p.at.x * double(cell) + coarse.x - exact.x),
+                              cells(p.at.y * double(cell) + coarse.y - exact.y)};
+      masks_.push_back({&mask, at, i});
+      top = std::max(top, at.y + mask.height);
     }
     page_ = PlainPage(options.page_size / unit_, top + 1);  // they go down, but for one cell
   }
@@ -54,36 +55,26 @@ class Slider {
   // False where a chart has no room although its cells had: outlines thinned for the cells may miss
   // a corner.
   bool put_down() {
-    for (const std::uint32_t i : order_) {
-      if (!nearest_free(i)) return false;
-      page_.put(mask(i), at_[i]);
+    for (SlidingMask& m : masks_) {
+      if (!nearest_free(m)) return false;
+      page_.put(*m.mask, m.at);
     }
     return true;
   }
 
-  // Every chart as far as it can go, those first that have nothing but the edge before them.
-  void slide(BitPage::Place step) {
-    const auto along = [&](std::uint32_t i) { return step.x != 0 ? at_[i].x : at_[i].y; };
-    std::stable_sort(order_.begin(), order_.end(),
-                     [&](std::uint32_t i, std::uint32_t j) { return along(i) < along(j); });
-    for (const std::uint32_t i : order_) {
-      page_.take_away(mask(i), at_[i]);
-      BitPage::Place& at = at_[i];
-      while (is_free(i, {at.x + step.x, at.y + step.y})) at = {at.x + step.x, at.y + step.y};
-      page_.put(mask(i), at);
-    }
-  }
+  void slide_to(BitPage::Place step) { slide(step, page_, masks_); }
 
   PressedPage result() const {
     PressedPage page;
     page.scale = start_.scale;
-    page.places.assign(at_.size(), {});
-    for (const std::uint32_t i : order_) {
-      PressedPlace& p = page.places[i];
-      const Vec2d origin = pieces_[i].origins[start_.places[i].direction];
+    page.places.assign(pieces_.size(), {});
+    for (const SlidingMask& m : masks_) {
+      PressedPlace& p = page.places[m.chart];
+      const std::uint32_t direction = start_.places[m.chart].direction;
+      const Vec2d origin = pieces_[m.chart].origins[direction];
       p.placed = true;
-      p.angle = 2 * std::numbers::pi * start_.places[i].direction / kDirections;
-      p.box = {at_[i].x * unit_, at_[i].y * unit_, mask(i).width * unit_, mask(i).height * unit_};
+      p.angle = 2 * std::numbers::pi * direction / kDirections;
+      p.box = {m.at.x * unit_, m.at.y * unit_, m.mask->width * unit_, m.mask->height * unit_};
       p.offset = {p.box.x + origin.x, p.box.y + origin.y};
       page.page.width = std::max(page.page.width, p.box.right());
       page.page.height = std::max(page.page.height, p.box.top());
@@ -92,21 +83,15 @@ class Slider {
   }
 
  private:
-  const Mask& mask(std::uint32_t i) const { return pieces_[i].masks[start_.places[i].direction]; }
   std::int32_t cells(double texels) const { return std::int32_t(std::lround(texels / unit_)); }
 
-  bool is_free(std::uint32_t i, BitPage::Place at) const {
-    return at.x >= 0 && at.y >= 0 && at.x + mask(i).width <= page_.width() &&
-           page_.is_free(mask(i), at);
-  }
-
-  bool nearest_free(std::uint32_t i) {
+  bool nearest_free(SlidingMask& m) {
     constexpr std::array<std::int32_t, 3> kNear{0, -1, 1};
-    const BitPage::Place wanted = at_[i];
+    const BitPage::Place wanted = m.at;
     for (const std::int32_t dy : kNear)
       for (const std::int32_t dx : kNear) {
-        at_[i] = {wanted.x + dx, wanted.y + dy};
-        if (is_free(i, at_[i])) return true;
+        m.at = {wanted.x + dx, wanted.y + dy};
+        if (is_free_at(m, m.at, page_)) return true;
       }
     return false;
   }
@@ -115,8 +100,7 @@ class Slider {
   const Start& start_;
   std::int32_t unit_;
   PlainPage page_;
-  std::vector<BitPage::Place> at_;    // 1 a chart
-  std::vector<std::uint32_t> order_;  // charts with a mask
+  std::vector<SlidingMask> masks_;  // of the charts that have one
 };
 
 class StraightPage {
@@ -214,8 +198,8 @@ class StraightPage {
       Slider slider(pieces_at(s.scale, options_.alignment), s, options_, cell_);
       if (!slider.put_down()) continue;
       for (int slide = 0; slide < kSlides; ++slide) {
-        slider.slide({0, -1});
-        slider.slide({-1, 0});
+        slider.slide_to({0, -1});
+        slider.slide_to({-1, 0});
       }
       const PressedPage page = slider.result();
       if (page.page.height > options_.page_size || fill(page) <= fill(best)) continue;
