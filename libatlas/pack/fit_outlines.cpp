@@ -217,7 +217,8 @@ class OutlineFit {
 };
 
 // Up by steps while it fits, down while it does not, then halving: few packings, each seen to fit
-// or not. The guess is the scale at which shapes fill 74 % of the pages.
+// or not. The guess is the scale at which shapes fill 74 % of the pages, or a little more than what
+// `best` has come to already.
 bool search_scale(OutlineFit& fit, const FitOptions& options, const Context& context,
                   FitResult& result, OutlineLayout& best) {
   const auto attempt = [&](double scale) {
@@ -235,9 +236,13 @@ bool search_scale(OutlineFit& fit, const FitOptions& options, const Context& con
   const double most = std::min(options.max_scale, bounds.alone);
   double scale = fit.area() > 0 ? std::sqrt(0.74 * pages / fit.area()) : options.max_scale;
   scale = std::min({scale, most, bounds.with_gutters});
+  constexpr double kLittleMore = 1.02;
+  if (best.scale > 0) scale = std::min(most, kLittleMore * best.scale);
+  if (scale <= best.scale) return true;
   const double tolerance = scale_tolerance(options, 0.005, options.shapes.size());
-  double low = 0, high = most * (1 + 1e-9), step = 0.97;
-  while (result.packings + 1 < options.max_packings && !context.cancelled()) {
+  double low = best.scale, high = most * (1 + 1e-9), step = 0.97;
+  const std::uint32_t in_vain = low > 0 ? 0 : result.packings;  // those of a search before
+  while (result.packings + 1 < options.max_packings + in_vain && !context.cancelled()) {
     const bool ok = attempt(scale);
     if (ok && scale >= most) return true;
     (ok ? low : high) = scale;
@@ -246,7 +251,7 @@ bool search_scale(OutlineFit& fit, const FitOptions& options, const Context& con
       scale *= step;
       step *= step > 0.5 ? 0.97 : 1;  // faster and faster, should minimum sides be in the way
     } else {
-      scale = high > most ? std::min(most, low * 1.02) : (low + high) / 2;
+      scale = high > most ? std::min(most, low * kLittleMore) : (low + high) / 2;
     }
   }
   return low > 0 || attempt(1e-9 * options.max_scale);
@@ -314,14 +319,25 @@ Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions&
   if (context.cancelled()) return Status::cancelled();
   FitOptions by_cells = options;
   if (is_pressed) by_cells.preset = PackPreset::standard;
-  OutlineFit fit(items, outlines, by_cells, context);
+  // With more directions each chart finds a lower place, but not all charts a higher scale: those
+  // that lie askew keep others from lying straight. So four come first, and more have to beat them.
+  FitOptions by_quarters = by_cells;
+  by_quarters.rotations = std::min(by_cells.rotations, 4u);
+  OutlineFit quarters(items, outlines, by_quarters, context);
+  OutlineFit all(items, outlines, by_cells, context);
+  OutlineFit* fit = &quarters;
   OutlineLayout best;
-  const bool found = search_scale(fit, by_cells, context, result, best);
+  bool found = search_scale(quarters, by_quarters, context, result, best);
+  if (all.grid().directions > quarters.grid().directions) {
+    const double before = best.scale;
+    found = search_scale(all, by_cells, context, result, best) || found;
+    if (best.scale > before) fit = &all;
+  }
   if (context.cancelled()) return Status::cancelled();
   if (is_pressed && best.scale <= pressed.scale) return pressed;
   if (!found) return no_room(items.size(), options);
-  if (best.scale == options.max_scale) use_fewer_pages(fit, options, result, best);
-  write_result(fit, options, best, result);
+  if (best.scale == options.max_scale) use_fewer_pages(*fit, options, result, best);
+  write_result(*fit, options, best, result);
   return result;
 }
 

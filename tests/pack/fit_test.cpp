@@ -171,5 +171,33 @@ TEST(FitPages, OutlinesFitMoreThanBoxes) {
             "");
 }
 
+// Rectangles, some with a slanted side: askew they fit lower one by one, and worse all together.
+TEST(FitPages, MoreDirectionsAreNeverWorseThanFour) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    test::Noise noise{seed};
+    std::vector<std::vector<Vec2d>> shapes;
+    for (int k = 0; k < 60; ++k) {
+      const double w = 10 + 50 * noise.unit(), h = 10 + 25 * noise.unit();
+      const double cut = k % 3 == 0 ? 0.6 * w : 0;
+      shapes.push_back({{0, 0}, {w, 0}, {w - cut, h}, {0, 0}, {w - cut, h}, {0, h}});
+    }
+    const test::ChartItems charts(std::move(shapes));
+    FitOptions o;
+    o.pages = 2;
+    o.page_size = 128;
+    o.padding = o.alignment = 1;
+    o.minimum_side = 0;
+    o.shapes = charts.shapes;
+    const double four = fit(charts.items, o).scale;
+    for (const std::uint32_t rotations : {8u, 16u, 64u}) {
+      o.rotations = rotations;
+      const FitResult more = fit(charts.items, o);
+      EXPECT_GE(more.scale, four) << rotations;
+      EXPECT_LE(more.packings, o.max_packings);
+      EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, more), more.pages, o.padding), "");
+    }
+  }
+}
+
 }  // namespace
 }  // namespace atlas
