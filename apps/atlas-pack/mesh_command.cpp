@@ -323,6 +323,7 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   }
   Result<FitResult> fitted = fit_charts(c, items, shapes, context);
   if (!fitted.ok()) return fitted.status();
+  if (context.cancelled()) return Status::cancelled();  // a search gives what it has so far
   std::vector<Vec2d> uvs;
   if (Status s = write_file(c.output, to_obj(scene, charts, *fitted, uvs)); !s.ok()) return s;
   if (!c.preview.empty())

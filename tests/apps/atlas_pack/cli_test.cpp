@@ -251,6 +251,27 @@ std::string triangles_obj() {
   return text;
 }
 
+TEST_F(AtlasPack, InterruptLeavesNothing) {
+  std::string obj, sizes;
+  for (int i = 0; i < 12; ++i) {
+    const double w = 1 + 0.37 * (i % 5), h = 2 - 0.11 * i;
+    obj += fmt::format("v {0} 0 0\nv {1} 0 0\nv {0} {2} 0\nvt {0} 0\nvt {1} 0\nvt {0} {2}\n", 5 * i,
+                       5 * i + w, h);
+    obj += fmt::format("f {0}/{0} {1}/{1} {2}/{2}\n", 3 * i + 1, 3 * i + 2, 3 * i + 3);
+    sizes += fmt::format("{},{}\n", 13 + 7 * i, 90 - 5 * i);
+  }
+  write("m.obj", obj);
+  write("r.csv", sizes);
+  for (const char* what : {"mesh m.obj -o out.obj", "rects r.csv --page 128x0 -o out.csv"}) {
+    const RunResult r =
+        run(fmt::format("{} --preset best --budget 60s & sleep 0.5; kill -INT $!; wait $!", what));
+    EXPECT_EQ(r.exit_code, 130) << what << ": " << r.output;
+    for (const auto& entry : fs::directory_iterator(dir_))
+      EXPECT_TRUE(entry.path().filename() == "m.obj" || entry.path().filename() == "r.csv")
+          << entry.path();
+  }
+}
+
 TEST_F(AtlasPack, MeshOptionsDoWhatTheySay) {
   write("t.obj", triangles_obj());
   const auto pages = [&](const std::string& more) {
