@@ -41,6 +41,26 @@ class RunSet {
   };
   std::vector<Item> items;
 
+  // Rows 0 .. rows - 1 are those that add() may know.
+  explicit RunSet(std::int32_t rows = 0) : last_(static_cast<std::size_t>(rows), kNone) {}
+
+  // A run that touches the one before it in its row, as those of edges that follow each other
+  // mostly do, makes that one longer: teeth finer than cells would else take gigabytes.
+  void add(std::int32_t row, Run run) {
+    if (static_cast<std::size_t>(row) < last_.size()) {
+      std::uint32_t& last = last_[static_cast<std::size_t>(row)];
+      if (last != kNone) {
+        Run& before = items[last].run;
+        if (run.begin <= before.end && before.begin <= run.end) {
+          before = {std::min(before.begin, run.begin), std::max(before.end, run.end)};
+          return;
+        }
+      }
+      last = static_cast<std::uint32_t>(items.size());
+    }
+    items.push_back({row, run});
+  }
+
   Mask build() {
     Mask mask;
     if (items.empty()) return mask;
@@ -94,6 +114,8 @@ class RunSet {
     for (const Run& run : mask.runs) mask.cells += run.end - run.begin;
   }
 
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  std::vector<std::uint32_t> last_;  // 1 a row: the item added last
   std::int32_t left_ = 0, bottom_ = 0;
 };
 
@@ -115,7 +137,7 @@ void add_run(std::int32_t r, const Bounds& x, double pad, double cell, RunSet& s
   while ((begin + 1) * cell + pad <= x.low) ++begin;
   std::int32_t end = static_cast<std::int32_t>(std::ceil((x.high + pad) / cell));
   while ((end - 1) * cell - pad >= x.high) --end;
-  set.items.push_back({r, {begin, std::max(end, begin + 1)}});
+  set.add(r, {begin, std::max(end, begin + 1)});
 }
 
 void add_triangle(const std::array<Vec2d, 3>& t, const RasterOptions& options, RunSet& set) {
@@ -154,7 +176,11 @@ void add_edge(Vec2d a, Vec2d b, const RasterOptions& options, RunSet& set) {
 // Cells whose centres the edges wind around. What lies nearer to an edge than that is add_edge's.
 class Interior {
  public:
-  explicit Interior(std::int32_t cell) : cell_(cell) {}
+  // `cells`: the rows and columns that edges may cross.
+  Interior(std::int32_t cell, Extent cells)
+      : cell_(cell),
+        cells_(cells),
+        most_crossings_(std::max(kManyCrossings, std::size_t(cells.area()) / 4)) {}
 
   void add(Vec2d a, Vec2d b) {
     const std::int32_t sense = a.y < b.y ? 1 : -1;
@@ -166,18 +192,23 @@ class Interior {
     const double slope = (b.x - a.x) / (b.y - a.y);
     for (std::int32_t r = first; r < end; ++r)
       crossings_.push_back({r, sense, a.x + slope * ((r + 0.5) * cell_ - a.y)});
+    if (crossings_.size() > most_crossings_) count();
   }
 
   void fill(RunSet& set) {
+    if (!turns_.empty()) {
+      count();
+      return fill_counted(set);
+    }
     sort();
     std::int32_t winding = 0;
     for (std::size_t k = 0; k + 1 < crossings_.size(); ++k) {
       const Crossing &c = crossings_[k], &next = crossings_[k + 1];
       winding = (k > 0 && crossings_[k - 1].row == c.row ? winding : 0) + c.sense;
       if (winding == 0 || next.row != c.row) continue;
-      const auto begin = static_cast<std::int32_t>(std::ceil(c.x / cell_ - 0.5));
+      const std::int32_t begin = first_beyond(c.x);
       const auto end = static_cast<std::int32_t>(std::floor(next.x / cell_ - 0.5)) + 1;
-      if (begin < end) set.items.push_back({c.row, {begin, end}});
+      if (begin < end) set.add(c.row, {begin, end});
     }
   }
 
@@ -186,6 +217,36 @@ class Interior {
     std::int32_t row, sense;
     double x;
   };
+  static constexpr std::size_t kManyCrossings = 1 << 21;  // 32 MiB
+
+  // The first cell whose centre is not left of x.
+  std::int32_t first_beyond(double x) const {
+    return static_cast<std::int32_t>(std::ceil(x / cell_ - 0.5));
+  }
+
+  // Crossings that would take more memory than cells are counted by those at which they begin to
+  // matter.
+  void count() {
+    const auto w = static_cast<std::size_t>(cells_.width) + 1;
+    turns_.resize(w * static_cast<std::size_t>(cells_.height));
+    for (const Crossing& c : crossings_) {
+      const std::int32_t row = std::clamp(c.row, 0, cells_.height - 1);
+      const std::int32_t x = std::clamp(first_beyond(c.x), 0, cells_.width);
+      turns_[static_cast<std::size_t>(row) * w + static_cast<std::size_t>(x)] += c.sense;
+    }
+    crossings_.clear();
+  }
+
+  void fill_counted(RunSet& set) const {
+    const std::int32_t* turn = turns_.data();
+    for (std::int32_t r = 0; r < cells_.height; ++r) {
+      std::int32_t winding = 0;
+      for (std::int32_t x = 0; x <= cells_.width; ++x, ++turn) {
+        winding += *turn;
+        if (winding != 0) set.add(r, {x, x + 1});
+      }
+    }
+  }
 
   // By row, in time linear in crossings and rows, then the few of each row by x.
   void sort() {
@@ -208,7 +269,10 @@ class Interior {
   }
 
   double cell_;
+  Extent cells_;
+  std::size_t most_crossings_;
   std::vector<Crossing> crossings_;
+  std::vector<std::int32_t> turns_;  // (cells_.width + 1) a row, where crossings are counted
 };
 
 }  // namespace
@@ -233,9 +297,12 @@ Mask rasterize(const ChartOutline& outline, const RasterOptions& options, Vec2d&
     p = turn(p);
     return Vec2d{p.x + origin.x, p.y + origin.y};
   };
-  RunSet set;
+  const auto cells = [&](const Bounds& b) {
+    return static_cast<std::int32_t>((b.high - b.low + 2 * options.padding) / options.cell) + 2;
+  };
+  RunSet set(cells(by));
   set.items.reserve(4 * (outline.edges.size() + outline.loose.size()));
-  Interior interior(options.cell);
+  Interior interior(options.cell, {cells(bx), cells(by)});
   for (const auto& e : outline.edges) {
     const Vec2d a = place(e.from), b = place(e.to);
     add_edge(a, b, options, set);

@@ -7,6 +7,7 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/pack/chart_outline.h"
 #include "libatlas/pack/fit_bounds.h"
+#include "libatlas/pack/outline_mask.h"
 #include "tests/pack/checks.h"
 
 namespace atlas {
@@ -68,6 +69,26 @@ TEST(Extremes, NeedlesOfAnyLengthTakeThePagesLength) {
       }
     }
   }
+  EXPECT_LT(peak_memory(), std::int64_t{1} << 30);
+}
+
+// A comb whose teeth are all far finer than a cell: neither its runs nor its crossings of rows may
+// be kept one by one, which would take 4 GiB.
+TEST(Extremes, TeethFinerThanCellsTakeLittleMemory) {
+  constexpr int kTeeth = 20'000;
+  std::vector<Vec2d> comb;
+  for (int k = 0; k < kTeeth; ++k) {
+    const double left = 2000.0 * k / kTeeth, right = 2000.0 * (k + 1) / kTeeth;
+    for (const Vec2d& p :
+         {Vec2d{left, 0}, Vec2d{right, 0}, Vec2d{right, 200}, Vec2d{left, 0}, Vec2d{right, 200},
+          Vec2d{left, 200}, Vec2d{left, 200}, Vec2d{right, 200}, Vec2d{(left + right) / 2, 2000}})
+      comb.push_back(p);
+  }
+  Vec2d origin;
+  const pack::Mask mask = pack::rasterize(pack::outline_of({comb, {}}), {}, origin);
+  EXPECT_EQ(mask.width, 2002);
+  EXPECT_EQ(mask.height, 2002);
+  EXPECT_EQ(mask.cells, std::int64_t{2002} * 2002);  // within a texel of a tooth
   EXPECT_LT(peak_memory(), std::int64_t{1} << 30);
 }
 

@@ -213,6 +213,28 @@ TEST(OutlineMask, MatchesSeparatingAxes) {
   }
 }
 
+// More crossings of rows than are sorted: bars of 4 cells, one free cell between two.
+TEST(OutlineMask, BarsWithoutNumberStayApart) {
+  constexpr int kBars = 3000, kHeight = 700;
+  std::vector<Vec2d> t;
+  for (int k = 0; k < kBars; ++k) {
+    const double left = 5 * k + (k > 0 ? 0.25 : 0), right = 5 * k + 3.5, top = kHeight - 0.5;
+    for (const Vec2d& p : {Vec2d{left, 0}, Vec2d{right, 0}, Vec2d{right, top}, Vec2d{left, 0},
+                           Vec2d{right, top}, Vec2d{left, top}})
+      t.push_back(p);
+  }
+  pack::RasterOptions o;
+  o.padding = 0;
+  Vec2d origin;
+  const Mask m = pack::rasterize(pack::outline_of({t, {}}), o, origin);
+  ASSERT_EQ(m.width, 5 * kBars - 1);
+  ASSERT_EQ(m.height, kHeight);
+  for (int y = 0; y < kHeight; ++y) {
+    ASSERT_EQ(m.row(y).size(), std::size_t{kBars});
+    for (int k = 0; k < kBars; ++k) ASSERT_EQ(m.row(y)[k], (pack::Run{5 * k, 5 * k + 4})) << y;
+  }
+}
+
 TEST(OutlineMask, QuarterTurnsTurn) {
   test::Noise noise{9};
   for (int round = 0; round < 50; ++round) {
