@@ -66,7 +66,6 @@ class GltfBuilder {
  public:
   GltfBuilder(const World& world, bool binary) : world_(world), binary_(binary) {
     document_["asset"] = {{"version", "2.0"}, {"generator", "libatlas"}};
-    document_["extensionsUsed"] = {"KHR_materials_unlit"};
     if (!world.title.empty()) document_["asset"]["extras"]["title"] = world.title;
     if (!world.info.empty()) document_["asset"]["extras"]["info"] = world.info;
   }
@@ -191,9 +190,10 @@ class GltfBuilder {
 
   Status add_material(const Page& page, const std::string& name) {
     json material = {{"name", name}, {"doubleSided", true}};
-    material["extensions"]["KHR_materials_unlit"] = json::object();
     material["pbrMetallicRoughness"] = {{"metallicFactor", 0}, {"roughnessFactor", 1}};
-    if (!page.image.empty()) {
+    if (!page.image.empty()) {  // else viewers light it: unlit it would be a silhouette
+      material["extensions"]["KHR_materials_unlit"] = json::object();
+      document_["extensionsUsed"] = {"KHR_materials_unlit"};
       document_["samplers"] = json::array({{{"magFilter", kLinear},
                                             {"minFilter", kLinearMipmapLinear},
                                             {"wrapS", kClampToEdge},

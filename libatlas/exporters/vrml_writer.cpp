@@ -1,6 +1,7 @@
 // VRML97 (ISO/IEC 14772-1:1997), the subset that every reader agrees on.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -60,13 +61,21 @@ void orientation(TextBuffer& out, const glm::dvec3& direction) {
   out.number(static_cast<float>(2 * std::atan2(sine, q[3])));
 }
 
+// Else viewers light it: without a light it would be a silhouette.
+bool carries_light(const World& world) {
+  return std::any_of(world.pages.begin(), world.pages.end(),
+                     [](const Page& page) { return !page.image.empty(); });
+}
+
 std::string header(const World& world, const Vec3d& origin_left_out) {
   TextBuffer out;
   out.text("#VRML V2.0 utf8\n");
   out.text("WorldInfo {\n  title " + quoted(world.title) + "\n  info [\n");
   for (const std::string& line : world.info) out.text("    " + quoted(line) + "\n");
   if (origin_left_out != Vec3d{}) out.text("    " + quoted(note_of(origin_left_out)) + "\n");
-  out.text("  ]\n}\nNavigationInfo {\n  headlight FALSE\n  type [ ");
+  out.text("  ]\n}\nNavigationInfo {\n  headlight ");
+  out.text(carries_light(world) ? "FALSE" : "TRUE");
+  out.text("\n  type [ ");
   out.text(world.viewpoint.inside ? "\"WALK\", \"ANY\" ]\n" : "\"EXAMINE\", \"ANY\" ]\n");
   // A person: 0.25 m wide, eyes at 1.6 m, stepping over 0.75 m, walking 1.5 m/s.
   out.text("  avatarSize [ ");
@@ -119,6 +128,7 @@ struct Corners {
 void write_shape(TextFile& file, const World& world, const Vec3d& origin, const Corners& corners,
                  const Context& context) {
   const auto& [points, uvs] = corners;
+  if (!carries_light(world)) file.write("    creaseAngle 0.7\n");  // rounds what is round
   file.write("    solid FALSE\n    coord Coordinate { point [\n");
   file.write_items(points.used.size(), context, [&](TextBuffer& out, std::size_t i) {
     out.position(origin, world.positions[points.used[i]]);
@@ -136,7 +146,8 @@ void write_shape(TextFile& file, const World& world, const Vec3d& origin, const 
   file.write("    ]\n");
 }
 
-std::string appearance(const Page& page) {
+std::string appearance(const Page& page, bool lit) {
+  if (!lit) return "  appearance Appearance { material Material { } }\n";
   if (page.image.empty()) return "  appearance Appearance { }\n";
   return fmt::format(
       "  appearance Appearance {{\n    texture ImageTexture {{\n      url {}\n"
@@ -163,7 +174,7 @@ Result<WorldFile> write_vrml(const World& world, const fs::path& path, AtomicFil
     if (page.indices.empty()) continue;  // an IndexedFaceSet without faces draws warnings
     const Corners corners{positions.compact(page.indices), texcoords.compact(page.uv_indices)};
     file.write(fmt::format("DEF Page_{} Shape {{\n", i));
-    file.write(appearance(page));
+    file.write(appearance(page, carries_light(world)));
     file.write("  geometry IndexedFaceSet {\n");
     write_shape(file, world, origin, corners, context);
     file.write("  }\n}\n");

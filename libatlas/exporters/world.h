@@ -56,9 +56,9 @@ struct WorldFile {
 // are equal text. Other errors: io; cancelled.
 
 // VRML97, gzipped where the name ends in .wrz. One Shape a page: an IndexedFaceSet of triangles
-// with explicit texCoordIndex, unlit (no Material), repeat off, two-sided. Viewers hold single
-// floats: an origin more than 128 times the world's size from zero is not added but noted in
-// WorldInfo, where read_scene() finds it.
+// with explicit texCoordIndex, unlit (no Material) unless no page has an image, repeat off,
+// two-sided. Viewers hold single floats: an origin more than 128 times the world's size from zero
+// is not added but noted in WorldInfo, where read_scene() finds it.
 Result<WorldFile> write_vrml(const World& world, const std::filesystem::path& path,
                              AtomicFiles& files, const Context& context);
 
@@ -66,9 +66,9 @@ Result<WorldFile> write_vrml(const World& world, const std::filesystem::path& pa
 Result<WorldFile> write_obj(const World& world, const std::filesystem::path& path,
                             AtomicFiles& files, const Context& context);
 
-// glTF 2.0: .glb with everything embedded, or .gltf with a .bin beside it. Materials are
-// KHR_materials_unlit; the root node turns the scene's up to +Y, scales to metres and adds the
-// origin, since glTF fixes both.
+// glTF 2.0: .glb with everything embedded, or .gltf with a .bin beside it. Materials with an
+// image are KHR_materials_unlit; the root node turns the scene's up to +Y, scales to metres and
+// adds the origin, since glTF fixes both.
 Result<WorldFile> write_gltf(const World& world, const std::filesystem::path& path,
                              AtomicFiles& files, const Context& context);
 

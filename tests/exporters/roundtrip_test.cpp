@@ -114,6 +114,19 @@ TEST(GltfWorld, ReadsBackInMetresAndYUp) {
   }
 }
 
+TEST(GltfWorld, AWorldWithoutLightIsLitByTheViewer) {
+  for (const bool image : {false, true}) {
+    const TempFolder folder;
+    World world = wavy_world(6, 1);
+    if (!image) world.pages[0].image.clear();
+    AtomicFiles files;
+    ASSERT_TRUE(write_gltf(world, folder / "w.gltf", files, {}).ok() && files.commit().ok());
+    const auto json = nlohmann::json::parse(TempFolder::read(folder / "w.gltf"));
+    EXPECT_EQ(json.contains("extensionsUsed"), image);
+    EXPECT_EQ(json["materials"][0].contains("extensions"), image);
+  }
+}
+
 // What the standard asks for beyond what readers here notice: data begins at multiples of its
 // components' size, wherever an image of any length precedes it, and the far plane is in metres.
 TEST(GltfWorld, DataIsAlignedAndTheFarPlaneIsInMetres) {

@@ -220,6 +220,19 @@ TEST(Vrml, NamesAreEncodedAndPagesMayBeEmptyOrBare) {
   EXPECT_EQ(safe_file_name(".hidden")[0], '_');
 }
 
+TEST(Vrml, AWorldWithoutLightIsLitByTheViewer) {
+  const TempFolder folder;
+  World world = wavy_world(6, 2);
+  for (Page& page : world.pages) page.image.clear();
+  const Nodes nodes = parse_vrml(write(world, folder / "n.wrl"));
+  EXPECT_EQ(of_type(nodes, "NavigationInfo")[0]->field("headlight"),
+            std::vector<std::string>{"TRUE"});
+  for (const VrmlNode* shape : of_type(nodes, "Shape")) {
+    EXPECT_EQ(shape->child("appearance").child("material").type, "Material");
+    EXPECT_TRUE(shape->child("geometry").has("creaseAngle"));
+  }
+}
+
 TEST(Vrml, GzipHoldsTheSameText) {
   const TempFolder folder;
   const World world = wavy_world(50, 2);
