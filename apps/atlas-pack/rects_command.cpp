@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -127,6 +129,31 @@ Status check_names(const PackCommand& c, const std::vector<PackedItem>& items) {
   return {};
 }
 
+// A pipe serves as well as a file.
+Status read_items(const PackCommand& c, std::vector<PackedItem>& items) {
+  if (std::filesystem::is_directory(c.input))
+    return {ErrorCode::bad_input,
+            fmt::format("{}: is a directory (name a file inside it)", c.input.string())};
+  std::ifstream file(c.input, std::ios::binary);
+  if (!file)
+    return {ErrorCode::not_found,
+            fmt::format("{}: {}", c.input.string(),
+                        errno == ENOENT ? std::string("no such file (check the name)")
+                                        : fmt::format("cannot be read: {}", std::strerror(errno)))};
+  std::stringstream buffer;
+  buffer << file.rdbuf();
+  std::string text = buffer.str();
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // as spreadsheets write it
+  const bool json = c.input.extension() == ".json";
+  if (Status s = json ? read_json(c, text, items) : read_csv(c, text, items); !s.ok()) return s;
+  if (items.empty())
+    return {ErrorCode::bad_input,
+            fmt::format("{}: holds no rectangle (write width,height or name,width,height a line, "
+                        "or a JSON array)",
+                        c.input.string())};
+  return check_names(c, items);
+}
+
 }  // namespace
 
 Result<PackedAtlas> run_rects(const PackCommand& c, const Context& context) {
@@ -136,26 +163,8 @@ Result<PackedAtlas> run_rects(const PackCommand& c, const Context& context) {
                   fmt::format("{}: unknown format (use .csv or .json)", c.output.string()));
   if (Status s = check_output(c.output, {c.input, c.preview}); !s.ok()) return s;
   if (Status s = check_preview(c); !s.ok()) return s;
-  if (std::filesystem::is_directory(c.input))
-    return Status(ErrorCode::bad_input,
-                  fmt::format("{}: is a directory (name a file inside it)", c.input.string()));
-  std::ifstream file(c.input, std::ios::binary);
-  if (!file)
-    return Status(ErrorCode::not_found,
-                  fmt::format("{}: no such file (check the name)", c.input.string()));
-  std::stringstream buffer;
-  buffer << file.rdbuf();
-  std::string text = buffer.str();
-  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // as spreadsheets write it
   std::vector<PackedItem> items;
-  const bool json = c.input.extension() == ".json";
-  if (Status s = json ? read_json(c, text, items) : read_csv(c, text, items); !s.ok()) return s;
-  if (items.empty())
-    return Status(ErrorCode::bad_input,
-                  fmt::format("{}: holds no rectangle (write width,height or name,width,height a "
-                              "line, or a JSON array)",
-                              c.input.string()));
-  if (Status s = check_names(c, items); !s.ok()) return s;
+  if (Status s = read_items(c, items); !s.ok()) return s;
   std::vector<Extent> sizes;
   for (PackedItem& item : items) {
     item.source = item.size;

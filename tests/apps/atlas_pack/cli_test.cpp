@@ -130,6 +130,7 @@ TEST_F(AtlasPack, WhatCannotBeDoneLeavesNothing) {
   const std::pair<const char*, const char*> cases[] = {
       {"rects folder -o q.csv", "is a directory"},
       {"rects empty.csv -o q.csv", "no rectangle"},
+      {"rects ok.csv/in.csv -o q.csv", "cannot be read: Not a directory"},
       {"rects twice.csv -o q.json", "two items are called 'a'"},
       {"rects header.csv -o q.csv", "no rectangle"},
       {"rects short.csv -o q.csv", "short.csv:1"},
