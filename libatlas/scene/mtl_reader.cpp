@@ -61,6 +61,14 @@ class MtlParser {
     return {};
   }
 
+  // Many a file names the place that a texture had on the machine it was written on.
+  fs::path texture_file(const std::string& name) const {
+    const fs::path file = path_.parent_path() / name;
+    const fs::path beside = path_.parent_path() / fs::path(name).filename();
+    std::error_code ignored;  // what cannot be asked about is not there
+    return !fs::exists(file, ignored) && fs::exists(beside, ignored) ? beside : file;
+  }
+
   // Options come first; what follows them is the name, which may have blanks.
   Status parse_map() {
     std::string_view rest = scan_.rest();
@@ -71,7 +79,7 @@ class MtlParser {
     if (rest.empty()) return malformed("map_Kd names no file");
     std::string name(rest);
     std::replace(name.begin(), name.end(), '\\', '/');
-    const fs::path file = path_.parent_path() / name;
+    const fs::path file = texture_file(name);
     auto& textures = builder_.textures;
     const auto same = std::find_if(textures.begin(), textures.end(), [&](const RawTexture& t) {
       return t.bytes.empty() && t.path == file;

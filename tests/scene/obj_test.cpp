@@ -216,6 +216,17 @@ TEST(Obj, TexturesThatAreMissingOrBrokenFallBackToTheColour) {
   EXPECT_TRUE(load(path, options).defects.empty());
 }
 
+TEST(Obj, ATextureOfAnotherMachineIsFoundBesideTheMaterials) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "wood.png", Image8(2, 2, 3, 77), {}).ok());
+  folder.write("m.mtl", "newmtl a\nmap_Kd C:\\Users\\me\\My Maps\\wood.png\n");
+  const LoadedScene loaded = load(folder.write(
+      "s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nusemtl a\nf 1/1 2/1 3/1\n"));
+  EXPECT_TRUE(loaded.defects.empty());
+  ASSERT_EQ(loaded.scene.textures.size(), 1u);
+  EXPECT_EQ(loaded.scene.textures[0].path.filename(), "wood.png");
+}
+
 // Options before a texture's name: what changes nothing is passed over, what cannot be followed is
 // told.
 TEST(Obj, TextureOptions) {
