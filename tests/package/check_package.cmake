@@ -51,6 +51,13 @@ endforeach()
 run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${BUILD}/tests/package/parent -B ${BUILD}/tests/package/parent/build
     -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS} ${disabled})
 
+# Each part can be left out.
+foreach(part APPS EXAMPLES)
+  file(REMOVE_RECURSE ${BUILD}/tests/package/part)
+  run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE} -B ${BUILD}/tests/package/part
+      -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS} -DLIBATLAS_BUILD_${part}=OFF)
+endforeach()
+
 # By pkg-config.
 file(GLOB_RECURSE pc ${prefix}/*/libatlas.pc)
 get_filename_component(pc_dir ${pc} DIRECTORY)
