@@ -38,6 +38,20 @@ constexpr std::size_t large_mesh = 100000;
 // more than inexact ones leave.
 constexpr double converged = 3e-11;
 
+// Steps of squeezing fall by a share of the one before, so far as two of them tell. In a chart of
+// so many triangles, whose steps take long, this ended a third of those in vain, and 25 of 360
+// others (measured on 240 meshes); in smaller ones it would end more of the others for less.
+constexpr std::size_t many_triangles = 2000;
+constexpr double least_share = 0.6, most_share = 0.9;
+
+// Whether what fell from `two_ago` over `one_ago` to `now` will end above the goal.
+bool ends_above(double goal, double two_ago, double one_ago, double now) {
+  const double before = two_ago - one_ago, last = one_ago - now;
+  const double share = before > 0 ? std::clamp(last / before, least_share, most_share) : most_share;
+  const double next = share * (last > 0 ? last : 0.5 * before);
+  return now - next / (1 - share) > goal;
+}
+
 }  // namespace
 
 ArapSolver::ArapSolver(const LocalMesh& mesh, double min_altitude, ParamWorkspace::Impl& workspace)
@@ -263,6 +277,7 @@ double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
   constexpr double power = 12, damping = 0.1;
   constexpr int soon = 2;
   const double log_goal = std::log(options.goal), log_bound = std::log(options.bound);
+  const bool large = mesh_.triangles.size() >= many_triangles && !options.ratio;
   double now = update_stretch(uvs, options.ratio), best = now, one_ago = now;
   w_.best.assign(uvs.begin(), uvs.end());
   w_.rotations.resize(w_.elements.size());
@@ -292,6 +307,7 @@ double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
     const int rest = std::min(options.iterations - 1 - i, within ? soon : options.iterations);
     const double gain = 0.5 * (two_ago - best);
     if (i >= 2 && best - gain * rest > (within ? log_goal : log_bound)) break;
+    if (i >= 1 && !within && large && ends_above(log_bound, two_ago, one_ago, best)) break;
   }
   std::copy(w_.best.begin(), w_.best.end(), uvs.begin());
   return std::exp(best);
