@@ -15,7 +15,7 @@ struct MergeOptions {
   double compactness_weight = 0.15, crease_weight = 0.15;
   // What a length of seam is worth: area times (L2 stretch squared - 1), and area stretched beyond
   // TrialLimits::stretch_high.
-  double seam_worth = 1.0 / 800, tail_worth = 0.0015;
+  double seam_worth = 1.0 / 800, tail_worth = 0.002;
   // In a second pass, charts below this share of the area may fill hull and rectangle less, and to
   // be rid of one is worth this length of seam.
   double small_share = 0.01, small_solidity = 0.6, small_fill = 0.5, chart_worth = 0.3;
