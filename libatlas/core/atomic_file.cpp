@@ -9,6 +9,14 @@
 
 namespace atlas {
 namespace fs = std::filesystem;
+namespace {
+
+std::string name_beside(const fs::path& target, std::string_view kind) {
+  return fmt::format(".{}.{}.{}{}", target.stem().string(), ::getpid(), kind,
+                     target.extension().string());
+}
+
+}  // namespace
 
 AtomicFiles::~AtomicFiles() {
   std::error_code ignored;  // a file that was never created is not there to remove
@@ -17,8 +25,7 @@ AtomicFiles::~AtomicFiles() {
 
 fs::path AtomicFiles::path_for(const fs::path& target) {
   fs::path temporary = target;
-  temporary.replace_filename(fmt::format(".{}.{}.part{}", target.stem().string(), ::getpid(),
-                                         target.extension().string()));
+  temporary.replace_filename(name_beside(target, "part"));
   entries_.push_back({temporary, target});
   return temporary;
 }
@@ -35,16 +42,39 @@ std::vector<fs::path> AtomicFiles::targets() const {
   return paths;
 }
 
-Status AtomicFiles::commit() {
+Status AtomicFiles::put_in_place(Entry& entry) {
   std::error_code error;
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    fs::rename(entries_[i].temporary, entries_[i].target, error);
-    if (!error) continue;
-    std::error_code ignored;
-    for (std::size_t j = 0; j < i; ++j) fs::remove(entries_[j].target, ignored);
-    return {ErrorCode::io, fmt::format("{}: cannot be put in place: {}",
-                                       entries_[i].target.string(), error.message())};
+  fs::path before = entry.target;
+  before.replace_filename(name_beside(entry.target, "before"));
+  fs::create_hard_link(entry.target, before, error);
+  if (!error) entry.before = before;
+  fs::rename(entry.temporary, entry.target, error);
+  if (!error) return {};
+  return {ErrorCode::io,
+          fmt::format("{}: cannot be put in place: {}", entry.target.string(), error.message())};
+}
+
+void AtomicFiles::take_back(Entry& entry) {
+  std::error_code ignored;  // there is nothing more to be done
+  if (entry.before.empty()) {
+    fs::remove(entry.target, ignored);
+  } else {
+    fs::rename(entry.before, entry.target, ignored);
   }
+  entry.before.clear();
+}
+
+Status AtomicFiles::commit() {
+  std::error_code ignored;
+  Status status;
+  std::size_t placed = 0;
+  while (placed < entries_.size() && (status = put_in_place(entries_[placed])).ok()) ++placed;
+  if (!status.ok()) {
+    fs::remove(entries_[placed].before, ignored);
+    while (placed > 0) take_back(entries_[--placed]);
+    return status;
+  }
+  for (const Entry& entry : entries_) fs::remove(entry.before, ignored);
   entries_.clear();
   return {};
 }

@@ -29,14 +29,17 @@ class AtomicFiles {
   // What commit() will put in place, in the order asked for.
   std::vector<std::filesystem::path> targets() const;
 
-  // Renames every file to its target. On failure no temporary name is left, and targets that this
-  // call had already renamed are removed again.
+  // Renames every file to its target. On failure no temporary name is left, and what this call had
+  // already replaced stands there again (on file systems with hard links; on others it is gone).
   Status commit();
 
  private:
   struct Entry {
     std::filesystem::path temporary, target;
+    std::filesystem::path before = {};  // a second name of what stood at the target, or empty
   };
+  static Status put_in_place(Entry& entry);
+  static void take_back(Entry& entry);
   std::vector<Entry> entries_;
 };
 

@@ -107,6 +107,30 @@ TEST(AtomicFiles, AFailedCommitTakesBackWhatItDid) {
   EXPECT_EQ(folder.count(), 0u);
 }
 
+// Where one of several files cannot be put in place, the others stand as they did before.
+TEST(AtomicFiles, AFailedCommitBringsBackWhatItReplaced) {
+  const TempFolder folder;
+  folder.write("old.txt", "old");
+  std::filesystem::create_directories(folder / "taken.txt");
+  const auto write = [&](AtomicFiles& files, const char* name) {
+    std::ofstream(files.path_for(folder / name)) << "new";
+  };
+  {
+    AtomicFiles files;
+    for (const char* name : {"old.txt", "other.txt", "taken.txt", "last.txt"}) write(files, name);
+    const Status status = files.commit();
+    EXPECT_EQ(status.code(), ErrorCode::io);
+    EXPECT_NE(status.message().find("taken.txt"), std::string::npos) << status.message();
+  }
+  EXPECT_EQ(TempFolder::read(folder / "old.txt"), "old");
+  EXPECT_EQ(folder.count(), 2u);
+  AtomicFiles files;
+  for (const char* name : {"old.txt", "other.txt"}) write(files, name);
+  EXPECT_TRUE(files.commit().ok());
+  EXPECT_EQ(TempFolder::read(folder / "old.txt"), "new");
+  EXPECT_EQ(folder.count(), 3u);
+}
+
 TEST(AtomicFiles, WriteFileReportsWhereItCannot) {
   const TempFolder folder;
   EXPECT_TRUE(write_file(folder / "x.json", "{}").ok());
