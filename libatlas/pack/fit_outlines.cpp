@@ -122,8 +122,12 @@ class OutlineFit {
     std::vector<Nest> nests(pages);
     const std::int32_t longest = longest_run(layout.pieces);
     for (std::uint32_t p = 0; p < pages; ++p) open.emplace_back(side_, side_, longest);
+    std::vector<std::vector<std::uint32_t>> orders(pages);
+    for (const std::uint32_t i : plan_by_size(layout.pieces).order)
+      orders[layout.page[i]].push_back(i);
     parallel_for(context_, pages, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t p = begin; p < end; ++p) fill_group(layout, p, pages, open[p], nests[p]);
+      for (std::size_t p = begin; p < end; ++p)
+        fill_group(layout.pieces, orders, p, open[p], nests[p]);
     });
     layout.places.resize(layout.pieces.size());
     std::vector<std::uint32_t> left;
@@ -156,11 +160,13 @@ class OutlineFit {
     return true;
   }
 
-  void fill_group(const OutlineLayout& layout, std::size_t p, std::uint32_t pages, BitPage& page,
-                  Nest& nest) const {
-    NestPlan plan = plan_by_size(layout.pieces);
-    std::erase_if(plan.order, [&](std::uint32_t i) { return layout.page[i] != p; });
-    place_pieces(layout.pieces, plan, page, nest);
+  // Page p gets the charts orders[p], largest first.
+  void fill_group(std::span<const Piece> pieces, std::span<const std::vector<std::uint32_t>> orders,
+                  std::size_t p, BitPage& page, Nest& nest) const {
+    NestPlan plan;
+    plan.order = orders[p];
+    plan.direction.assign(pieces.size(), kFree);
+    place_pieces(pieces, plan, page, nest);
     if (nest.left_over.empty() || options_.preset == PackPreset::fast) return;
     if (plan.order.size() < 2) return;  // one chart has been tried in every direction
     // A search over orders is worth it where it can try more than a few.
@@ -168,16 +174,17 @@ class OutlineFit {
     search.width = search.enough = side_;
     search.seed = p + 1;
     if (options_.preset != PackPreset::best) search.layouts = 300;
-    search.work = (options_.preset == PackPreset::best ? 400'000'000u : 16'000'000u) / pages;
+    search.work =
+        (options_.preset == PackPreset::best ? 400'000'000u : 16'000'000u) / orders.size();
     if (layout_cost(plan.order.size(), side_, grid_.directions) * 4 > double(search.work)) return;
     Nest found;
     std::uint64_t layouts = 0;
-    improve_plan(layout.pieces, plan, search, context_, found, layouts);
+    improve_plan(pieces, plan, search, context_, found, layouts);
     if (!found.left_over.empty() || found.used_height > side_) return;
     page.clear();
     for (std::uint32_t i : plan.order)
       if (found.places[i].placed)
-        page.put(layout.pieces[i].masks[found.places[i].direction], found.places[i].at);
+        page.put(pieces[i].masks[found.places[i].direction], found.places[i].at);
     nest = std::move(found);
   }
 

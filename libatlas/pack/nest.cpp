@@ -111,9 +111,11 @@ NestPlan plan_by_size(std::span<const Piece> pieces) {
   NestPlan plan;
   plan.order.resize(pieces.size());
   std::iota(plan.order.begin(), plan.order.end(), 0u);
-  std::stable_sort(plan.order.begin(), plan.order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return pieces[a].cells() > pieces[b].cells();
-  });
+  std::vector<std::int64_t> cells;
+  cells.reserve(pieces.size());
+  for (const Piece& p : pieces) cells.push_back(p.cells());
+  std::stable_sort(plan.order.begin(), plan.order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return cells[a] > cells[b]; });
   plan.direction.assign(pieces.size(), kFree);
   return plan;
 }
