@@ -313,6 +313,8 @@ void write_result(const OutlineFit& fit, const FitOptions& options, OutlineLayou
   result.grouping = std::move(best.grouping);
 }
 
+constexpr std::size_t kFewInRows = 64;  // charts
+
 }  // namespace
 
 Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions& options,
@@ -320,9 +322,10 @@ Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions&
   FitResult result, pressed;
   const std::vector<ChartOutline> outlines = outlines_of(options.shapes, context);
   const bool is_pressed = fit_pressed(items, outlines, options, context, pressed);
-  // `best` presses straight charts, too, where the page's shape is given; without it they would be
-  // packed by cells alone, which may have been better.
-  if (is_pressed && (options.free_aspect || !is_straight(outlines))) return pressed;
+  // Straight charts, laid in rows on a page of any shape or pressed by `best` on a given one, may
+  // fill more by cells. Of many charts rows are as good, and far cheaper.
+  const bool many = options.free_aspect && items.size() > kFewInRows;
+  if (is_pressed && (many || !is_straight(outlines))) return pressed;
   if (context.cancelled()) return Status::cancelled();
   FitOptions by_cells = options;
   if (is_pressed) by_cells.preset = PackPreset::standard;
@@ -341,11 +344,14 @@ Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions&
     if (best.scale > before) fit = &all;
   }
   if (context.cancelled()) return Status::cancelled();
-  if (is_pressed && best.scale <= pressed.scale) return pressed;
+  if (is_pressed && (!found || (!options.free_aspect && best.scale <= pressed.scale))) {
+    return pressed;
+  }
   if (!found) return no_room(items.size(), options);
   if (best.scale == options.max_scale) use_fewer_pages(*fit, options, result, best);
   write_result(*fit, options, best, result);
-  return result;
+  return is_pressed && options.free_aspect && pressed.utilization >= result.utilization ? pressed
+                                                                                        : result;
 }
 
 }  // namespace atlas::pack
