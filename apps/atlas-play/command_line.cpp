@@ -233,10 +233,8 @@ Parsed parse_command_line(int argc, char** argv) {
     parsed.exit_code = code;
     return parsed;
   }
-  if (l.in_window() && app.count("--width") + app.count("--height") == 0) {
-    l.render.width = kWindowWidth;
-    l.render.height = kWindowHeight;
-  }
+  if (l.in_window() && app.count("--width") == 0) l.render.width = kWindowWidth;
+  if (l.in_window() && app.count("--height") == 0) l.render.height = kWindowHeight;
   if (Status s = finish(l, light, end, up); !s.ok()) {
     fmt::print(stderr, "atlas-play: error: {}\n", s.message());
     parsed.exit_code = 2;
