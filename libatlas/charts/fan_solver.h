@@ -28,8 +28,9 @@ class FanSolver {
 
   // Factorises the stiffness of these fans, which must stay for the steps to come.
   void factorize(const JoinedFans& joined, std::size_t vertex_count);
-  // A local and a global step from uvs (1 a vertex, of a std::vector), in place, so many times as
-  // long: up to twice the energy falls (arap_solver.h).
+  // A local and a global step from uvs (1 a vertex, of a std::vector), in place, `relaxation` times
+  // as long as to the minimum for given rotations: below 2 the energy falls (see
+  // ArapSolver::iterate).
   void step(double relaxation, std::span<Vec2d> uvs);
 
  private:

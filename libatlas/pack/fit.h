@@ -30,7 +30,9 @@ struct FitOptions {
   double max_scale = 1;            // > 0; the scale returned is at most this
   bool allow_rotation = true;      // quarter turns
   PackPreset preset = PackPreset::standard;
-  std::uint32_t max_packings = 25;  // full packings spent on the search for the scale, at least 2
+  // Full packings spent on the search for the scale, at least 2; as many again with more than four
+  // directions where four find no room.
+  std::uint32_t max_packings = 25;
   // Charts as outlines instead of boxes: one an item in the texels of the items' sizes, or empty.
   // Placements are then of the mask's box, boxes may overlap, masks never do. See outline.h.
   std::span<const ChartShape> shapes;

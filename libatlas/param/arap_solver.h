@@ -23,10 +23,12 @@ class ArapSolver {
   // triangle, which need not agree where triangles meet. The next step's rotations are theirs.
   void join(std::span<const Vec2d> corner_uvs, std::span<Vec2d> uvs);
 
-  // Global steps, with local steps between them, from the current rotations. All but the first are
-  // relaxed: for given rotations the energy is quadratic and nowhere below the one that falls, so
-  // that any step up to twice as long as to its minimum descends (Salakhutdinov and Roweis 2003,
-  // "Adaptive overrelaxed bound optimization methods"), and what is slow to settle does in fewer.
+  // Global steps, with local steps between them, from the current rotations. Every other one is
+  // relaxed, but in large meshes, and the last is plain: for given rotations the energy is
+  // quadratic and nowhere below the one that falls, so that any step up to twice as long as to its
+  // minimum descends (Salakhutdinov and Roweis 2003, "Adaptive overrelaxed bound optimization
+  // methods"). Those here are longer and may rise; the plain step after each more than mends that,
+  // and what is slow to settle does in fewer.
   void iterate(int steps, std::span<Vec2d> uvs);
 
   // Lowers the stretch that 99.9 % of the area stays within: triangles are weighted by a power of
