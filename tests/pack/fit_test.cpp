@@ -171,17 +171,22 @@ TEST(FitPages, OutlinesFitMoreThanBoxes) {
             "");
 }
 
-// Rectangles, some with a slanted side: askew they fit lower one by one, and worse all together.
+// Rectangles, a third of them with a slanted side.
+test::ChartItems straight_charts(std::uint64_t seed, int count) {
+  test::Noise noise{seed};
+  std::vector<std::vector<Vec2d>> shapes;
+  for (int k = 0; k < count; ++k) {
+    const double w = 10 + 50 * noise.unit(), h = 10 + 25 * noise.unit();
+    const double cut = k % 3 == 0 ? 0.6 * w : 0;
+    shapes.push_back({{0, 0}, {w, 0}, {w - cut, h}, {0, 0}, {w - cut, h}, {0, h}});
+  }
+  return test::ChartItems(std::move(shapes));
+}
+
+// Askew they fit lower one by one, and worse all together.
 TEST(FitPages, MoreDirectionsAreNeverWorseThanFour) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    test::Noise noise{seed};
-    std::vector<std::vector<Vec2d>> shapes;
-    for (int k = 0; k < 60; ++k) {
-      const double w = 10 + 50 * noise.unit(), h = 10 + 25 * noise.unit();
-      const double cut = k % 3 == 0 ? 0.6 * w : 0;
-      shapes.push_back({{0, 0}, {w, 0}, {w - cut, h}, {0, 0}, {w - cut, h}, {0, h}});
-    }
-    const test::ChartItems charts(std::move(shapes));
+    const test::ChartItems charts = straight_charts(seed, 60);
     FitOptions o;
     o.pages = 2;
     o.page_size = 128;
@@ -196,6 +201,26 @@ TEST(FitPages, MoreDirectionsAreNeverWorseThanFour) {
       EXPECT_LE(more.packings, o.max_packings);
       EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, more), more.pages, o.padding), "");
     }
+  }
+}
+
+// A page of any shape gets the fuller of rows and cells.
+TEST(FitPages, FewStraightChartsFillAPageAsWellAsByCells) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const test::ChartItems charts = straight_charts(seed, 12);
+    FitOptions o;
+    o.page_size = 512;
+    o.padding = o.alignment = 1;
+    o.minimum_side = 0;
+    o.max_scale = 100;
+    o.free_aspect = true;
+    o.power_of_two = false;
+    o.shapes = charts.shapes;
+    const FitResult either = fit(charts.items, o);
+    EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, either), either.pages, o.padding),
+              "");
+    o.any_angle = false;
+    EXPECT_GE(either.utilization, fit(charts.items, o).utilization) << seed;
   }
 }
 
