@@ -65,6 +65,28 @@ TEST(Parameterize, LargeMeshesGoOnAfterTheyWereMeasured) {
   EXPECT_LT(squeezed.distortion.stretch_999, plain);
 }
 
+// A band that winds more than twice around, so that its wavy sides cross in dozens of places:
+// squeezing would not change that, and takes long.
+TEST(Parameterize, LargeMeshesThatCrossThemselvesAreNotSqueezed) {
+  const auto band = [](int columns) {
+    return testing::make_grid(columns, 10, [](double u, double v) {
+      const double angle = 4.4 * std::numbers::pi * u;
+      const double r = 1 + 0.5 * v + 0.1 * v * std::sin(17.5 * angle);
+      return Vec3d{r * std::cos(angle), r * std::sin(angle),
+                   0.05 * angle + 0.25 * std::sin(12 * angle) * std::sin(std::numbers::pi * v)};
+    });
+  };
+  ParamOptions options{.method = ParamMethod::isometric};
+  ParamOptions unsqueezed = options;
+  unsqueezed.squeeze_iterations = 0;
+  const Disc large = band(400), small = band(140);  // fewer than 3000 triangles
+  const ParamResult crossing = run(large, options);
+  EXPECT_FALSE(crossing.within_bound);
+  EXPECT_GT(crossing.crossings.size(), 12u);
+  EXPECT_TRUE(crossing.uvs == run(large, unsqueezed).uvs);
+  EXPECT_FALSE(run(small, options).uvs == run(small, unsqueezed).uvs);
+}
+
 // Milnor 1969, "A problem in cartography": no map of a cap of half-angle a has a smaller ratio of
 // its greatest to its least scale than a / sin a, which the azimuthal equidistant projection has.
 TEST(Parameterize, CapsMeetMilnorsOptimum) {
