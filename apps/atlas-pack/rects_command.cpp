@@ -131,7 +131,8 @@ Status check_names(const PackCommand& c, const std::vector<PackedItem>& items) {
 
 // A pipe serves as well as a file.
 Status read_items(const PackCommand& c, std::vector<PackedItem>& items) {
-  if (std::filesystem::is_directory(c.input))
+  std::error_code ignored;  // what cannot be looked at cannot be opened either
+  if (std::filesystem::is_directory(c.input, ignored))
     return {ErrorCode::bad_input,
             fmt::format("{}: is a directory (name a file inside it)", c.input.string())};
   std::ifstream file(c.input, std::ios::binary);

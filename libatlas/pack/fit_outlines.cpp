@@ -323,7 +323,7 @@ Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions&
   const std::vector<ChartOutline> outlines = outlines_of(options.shapes, context);
   const bool is_pressed = fit_pressed(items, outlines, options, context, pressed);
   // Straight charts, laid in rows on a page of any shape or pressed by `best` on a given one, may
-  // fill more by cells. Of many charts rows are as good, and far cheaper.
+  // fill more by cells. Of many charts rows are about as good, and far cheaper.
   const bool many = options.free_aspect && items.size() > kFewInRows;
   if (is_pressed && (many || !is_straight(outlines))) return pressed;
   if (context.cancelled()) return Status::cancelled();

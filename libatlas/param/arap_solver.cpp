@@ -277,7 +277,7 @@ double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
   constexpr double power = 12, damping = 0.1;
   constexpr int soon = 2;
   const double log_goal = std::log(options.goal), log_bound = std::log(options.bound);
-  const bool large = mesh_.triangles.size() >= many_triangles && !options.ratio;
+  const bool foresees = mesh_.triangles.size() >= many_triangles && !options.ratio;
   double now = update_stretch(uvs, options.ratio), best = now, one_ago = now;
   w_.best.assign(uvs.begin(), uvs.end());
   w_.rotations.resize(w_.elements.size());
@@ -307,7 +307,7 @@ double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
     const int rest = std::min(options.iterations - 1 - i, within ? soon : options.iterations);
     const double gain = 0.5 * (two_ago - best);
     if (i >= 2 && best - gain * rest > (within ? log_goal : log_bound)) break;
-    if (i >= 1 && !within && large && ends_above(log_bound, two_ago, one_ago, best)) break;
+    if (i >= 1 && !within && foresees && ends_above(log_bound, two_ago, one_ago, best)) break;
   }
   std::copy(w_.best.begin(), w_.best.end(), uvs.begin());
   return std::exp(best);
