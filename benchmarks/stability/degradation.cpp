@@ -57,7 +57,7 @@ void check_offset(CheckList& list, const test::Shape& shape, const ChartSet& ref
     if (!set.ok() || std::abs(set->seam_length / reference.seam_length - 1) > 0.1)
       from = std::min(from, offset);
   }
-  onset(list, shape.name + ", offset in parts of its size", "seams change by 10 %", 1e11, from);
+  onset(list, shape.name + ", offset in parts of its size", "seams change by 10 %", 1e10, from);
   list.add(kGroup, shape.name + ", offsets to 10^16 of its size", "runs that lose triangles", lost,
            0, "degraded or not, every triangle gets a place");
 }
