@@ -73,8 +73,8 @@ TEST(Bound, OfSeveralAttemptsTheBestIsTakenPieceByPiece) {
   Shape all;
   double place = 0;
   for (const Shape& shape :
-       {noisy(torus(96, 48), 0.02, 1), noisy(icosphere(5), 0.01, 2), noisy(sphere(96, 60), 0.005, 3),
-        noisy(torus(80, 60, 1, 0.5), 0.02, 4)}) {
+       {noisy(torus(96, 48), 0.02, 1), noisy(icosphere(5), 0.01, 2),
+        noisy(sphere(96, 60), 0.005, 3), noisy(torus(80, 60, 1, 0.5), 0.02, 4)}) {
     alone[0] += bounded(shape, 1.25).charts.size();
     alone[1] += bounded(shape, 1.25, ChartPreset::best).charts.size();
     all = all.positions.empty() ? shape : together(all, moved(shape, 1, {place += 4, 0, 0}));
