@@ -7,6 +7,7 @@
 #include <string>
 
 #include "apps/common/options.h"
+#include "apps/common/program.h"
 #include "apps/common/quantity.h"
 
 namespace atlas::app {
@@ -151,6 +152,7 @@ void add_output_options(CLI::App& app, ExportCommand& command) {
       ->capture_default_str();
 }
 
+constexpr double kMostPages = 1e6;               // as --atlases takes
 constexpr double kBytesPerTexel = 4.0 * 4 / 3;  // RGBA8 and its mip chain
 
 // Turns text into numbers; gives the message of the first that cannot be.
@@ -178,7 +180,7 @@ std::optional<std::string> interpret(const RawText& raw, ExportCommand& command)
       return fmt::format(
           "--memory {}: less than a single page of 64 x 64 texels takes, {:.0f} bytes", raw.memory,
           page());
-    options.atlases = std::uint32_t(std::max(1.0, double(*bytes) / page()));
+    options.atlases = std::uint32_t(std::clamp(double(*bytes) / page(), 1.0, kMostPages));
   }
   return std::nullopt;
 }
@@ -199,7 +201,7 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
   if (exit_code >= 0) return std::nullopt;
   exit_code = 2;
   if (const auto wrong = interpret(raw, command)) {
-    fmt::print(stderr, "atlas-export: error: {}\n", *wrong);
+    print(stderr, fmt::format("atlas-export: error: {}\n", *wrong));
     return std::nullopt;
   }
   command.options.larger_plain_page = app.count("--atlas-size") == 0;

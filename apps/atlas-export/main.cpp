@@ -3,8 +3,11 @@
 
 #include "apps/atlas-export/command_line.h"
 #include "apps/common/files.h"
+#include "apps/common/program.h"
 #include "apps/common/terminal.h"
 #include "libatlas/core/clock.h"
+#include "libatlas/exporters/world.h"
+#include "libatlas/pipeline/bake_pages.h"
 #include "libatlas/pipeline/export_world.h"
 
 namespace {
@@ -21,10 +24,25 @@ void print_result(const ExportReport& report, app::Terminal& terminal) {
   if (!report.lit) {
     terminal.line("The scene carries no illumination: the result has plain uvs and no images.");
   }
-  terminal.line(fmt::format("{}: {} triangles on {} page{}, {:.1f} MiB of graphics memory",
-                            report.target.string(), report.triangles_out, report.pages.size(),
-                            report.pages.size() == 1 ? "" : "s",
-                            double(report.gpu_bytes) / (1024.0 * 1024.0)));
+  terminal.line(fmt::format(
+      "{}: {} triangle{} on {} page{}, {:.1f} MiB of graphics memory", report.target.string(),
+      report.triangles_out, report.triangles_out == 1 ? "" : "s", report.pages.size(),
+      report.pages.size() == 1 ? "" : "s", double(report.gpu_bytes) / (1024.0 * 1024.0)));
+}
+
+// Pages of an earlier export to the same name, which had more of them, are no part of this world.
+void name_old_pages(const ExportReport& report, app::Terminal& terminal) {
+  const std::filesystem::path folder = report.target.parent_path();
+  const auto page = [&](std::size_t p) { return folder / (page_name(report.target, p) + ".png"); };
+  const std::size_t first = report.pages.size();
+  if (first == 0 || report.pages[0].image.empty()) return;
+  std::size_t end = first;
+  std::error_code error;
+  while (std::filesystem::exists(page(end), error)) ++end;
+  if (end == first) return;
+  terminal.line(fmt::format(
+      "{}{}: of an earlier export with more pages, no part of this world (may be removed)",
+      page(first).string(), end == first + 1 ? "" : " to " + page(end - 1).filename().string()));
 }
 
 StageReport reading_stage(const LoadedScene& loaded, double cpu, double wall) {
@@ -64,8 +82,9 @@ Status check_textures_stay(const Scene& scene, const std::filesystem::path& targ
 
 // What is written with the target.
 std::filesystem::path beside(const std::filesystem::path& target) {
-  if (target.extension() == ".obj") return std::filesystem::path(target).replace_extension("mtl");
-  if (target.extension() == ".gltf") return std::filesystem::path(target).replace_extension("bin");
+  const std::string extension = world_extension(target);
+  if (extension == ".obj") return std::filesystem::path(target).replace_extension("mtl");
+  if (extension == ".gltf") return std::filesystem::path(target).replace_extension("bin");
   return {};
 }
 
@@ -117,15 +136,14 @@ Status run(const app::ExportCommand& command, app::Terminal& terminal) {
   report->cpu_seconds += reading.cpu_seconds;
   report->wall_seconds += reading.wall_seconds;
   print_result(*report, terminal);
+  name_old_pages(*report, terminal);
   if (command.report.empty()) return {};
   if (Status s = write_json(*report, command.report); !s.ok()) return s;
   terminal.line(fmt::format("{}: report", command.report.string()));
   return {};
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int main_of(int argc, char** argv) {
   int code = 0;
   const auto command = app::parse_export_command(argc, argv, code);
   if (!command) return code;
@@ -133,4 +151,10 @@ int main(int argc, char** argv) {
   const Status status = run(*command, terminal);
   if (!status.ok()) terminal.error(status.message());
   return app::exit_code(status);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return atlas::app::run_program("atlas-export", argc, argv, main_of);
 }

@@ -2,9 +2,12 @@
 #include <fmt/format.h>
 
 #include "apps/atlas-pack/commands.h"
+#include "apps/common/program.h"
 #include "libatlas/core/clock.h"
 
-int main(int argc, char** argv) {
+namespace {
+
+int main_of(int argc, char** argv) {
   using namespace atlas;
   app::PackCommand command;
   if (const int code = app::parse_command_line(argc, argv, command); code >= 0) return code;
@@ -20,7 +23,7 @@ int main(int argc, char** argv) {
     return app::exit_code(atlas.status());
   }
   atlas->cpu_seconds = cpu_seconds() - start;
-  if (command.json) fmt::print("{}\n", app::to_summary(*atlas));
+  if (command.json) app::print(stdout, fmt::format("{}\n", app::to_summary(*atlas)));
   terminal.line(fmt::format("{}: {} items on {} page{}, {:.2f} % used{}, {:.3f} CPU s",
                             command.output.string(), atlas->items.size(), atlas->pages.size(),
                             atlas->pages.size() == 1 ? "" : "s", 100 * atlas->utilization,
@@ -33,4 +36,10 @@ int main(int argc, char** argv) {
     return 1;
   }
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return atlas::app::run_program("atlas-pack", argc, argv, main_of);
 }

@@ -90,7 +90,8 @@ Status write_preview_png(const std::filesystem::path& path, std::span<const Imag
     left += p.width + kGap;
   }
   AtomicFiles files;
-  if (Status s = write_png(files.path_for(path), sheet, {}); !s.ok()) return s;
+  if (Status s = write_png(files.path_for(path), sheet, {}); !s.ok())
+    return files.told_by_target(s);
   return files.commit();
 }
 

@@ -139,10 +139,12 @@ Status write_pages(const PackCommand& c, const std::vector<Sprite>& sprites, Pac
       if (sprites[i].alias_of < 0 && atlas.items[i].at.page == p)
         blit(sprites[i], atlas.items[i].at, c.extrude, page);
     const fs::path image = c.output.parent_path() / atlas.images[p];
-    if (Status s = write_png(files.path_for(image), page, {}); !s.ok()) return s;
+    if (Status s = write_png(files.path_for(image), page, {}); !s.ok())
+      return files.told_by_target(s);
     fs::path data = image;
     data.replace_extension(".json");
-    if (Status s = write_file(files.path_for(data), to_json(atlas, c.format, p)); !s.ok()) return s;
+    if (Status s = write_file(files.path_for(data), to_json(atlas, c.format, p)); !s.ok())
+      return files.told_by_target(s);
   }
   return files.commit();
 }

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "apps/common/options.h"
+#include "apps/common/program.h"
 #include "libatlas/view/start_camera.h"
 
 namespace atlas::app {
@@ -236,7 +237,7 @@ Parsed parse_command_line(int argc, char** argv) {
   if (l.in_window() && app.count("--width") == 0) l.render.width = kWindowWidth;
   if (l.in_window() && app.count("--height") == 0) l.render.height = kWindowHeight;
   if (Status s = finish(l, light, end, up); !s.ok()) {
-    fmt::print(stderr, "atlas-play: error: {}\n", s.message());
+    print(stderr, fmt::format("atlas-play: error: {}\n", s.message()));
     parsed.exit_code = 2;
   }
   return parsed;

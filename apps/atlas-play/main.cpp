@@ -5,13 +5,14 @@
 
 #include "apps/atlas-play/command_line.h"
 #include "apps/common/files.h"
+#include "apps/common/program.h"
 #include "apps/common/terminal.h"
 
 namespace atlas::app {
 namespace {
 
 Status bench(const CommandLine& line, const GlContext& gl, const Renderer& renderer,
-             const ViewScene& scene, Terminal& terminal) {
+             const ViewScene& scene, Terminal& terminal, const Context& context) {
   BenchOptions options = line.measure;
   options.render = line.render;
   options.camera = line.play.camera;
@@ -26,9 +27,9 @@ Status bench(const CommandLine& line, const GlContext& gl, const Renderer& rende
   result.interval = line.render.schedule.interval_frames;
   result.pcf = line.render.pcf;
   result.triangles = std::uint32_t(scene.triangle_count());
-  Status measured = bench_times(renderer, line.play.light, options, result);
+  Status measured = bench_times(renderer, line.play.light, options, result, context);
   if (measured.ok() && !line.no_errors)
-    measured = bench_errors(renderer, line.play.light, options, result);
+    measured = bench_errors(renderer, line.play.light, options, result, context);
   if (Status s = gl.check_alive(); !s.ok()) return s;
   if (!measured.ok()) return measured;
   if (Status s = write_bench(result, line.bench); !s.ok()) return s;
@@ -45,11 +46,14 @@ Status check_outputs(const CommandLine& line) {
     return {ErrorCode::bad_option,
             fmt::format("{}: the screenshot must end in .png", picture.string())};
   if (Status s = check_output(picture, {line.scene}); !s.ok()) return s;
-  for (const std::filesystem::path& folder : {line.play.record, line.bench})
-    if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder))
+  for (const std::filesystem::path& folder : {line.play.record, line.bench}) {
+    std::error_code error;  // what cannot be looked at is told where the folder is made
+    const auto there = std::filesystem::status(folder, error);
+    if (std::filesystem::exists(there) && !std::filesystem::is_directory(there))
       return {ErrorCode::bad_option,
               fmt::format("{}: is a file (name a folder, which is made where there is none)",
                           folder.string())};
+  }
   return {};
 }
 
@@ -89,7 +93,7 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   if (line.plan || !line.quiet)
     for (const std::string& text : renderer->plan()) terminal.line(text);
   if (line.plan) return {};
-  if (!line.bench.empty()) return bench(line, *gl, *renderer, *scene, terminal);
+  if (!line.bench.empty()) return bench(line, *gl, *renderer, *scene, terminal, context);
 
   Result<PlaySummary> done = window ? play_in_window(*window, *renderer, line.play, context)
                                     : play_headless(*gl, *renderer, line.play, context);
@@ -102,7 +106,9 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
 }  // namespace
 }  // namespace atlas::app
 
-int main(int argc, char** argv) {
+namespace {
+
+int main_of(int argc, char** argv) {
   using namespace atlas::app;
   Parsed parsed = parse_command_line(argc, argv);
   if (parsed.exit_code) return *parsed.exit_code;
@@ -110,4 +116,10 @@ int main(int argc, char** argv) {
   const atlas::Status status = play(parsed.line, terminal, terminal.context(0));
   if (!status.ok()) terminal.error(status.message());
   return exit_code(status);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return atlas::app::run_program("atlas-play", argc, argv, main_of);
 }

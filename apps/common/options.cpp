@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "apps/common/program.h"
+
 namespace atlas::app {
 namespace {
 
@@ -80,8 +82,8 @@ int parse(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::Success& done) {
     return app.exit(done);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "{}: error: {} (--help lists the options)\n", app.get_name(),
-               complaint(error));
+    print(stderr, fmt::format("{}: error: {} (--help lists the options)\n", app.get_name(),
+                              complaint(error)));
     return 2;
   }
   return -1;

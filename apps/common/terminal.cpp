@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 
+#include "apps/common/program.h"
 #include "libatlas/core/clock.h"
 
 namespace atlas::app {
@@ -16,7 +17,8 @@ namespace {
 std::atomic<bool> g_cancelled{false};  // the one thing a signal handler may touch
 
 extern "C" void on_interrupt(int) {
-  // A second ctrl-C ends the program at once, in case a stage does not poll.
+  // After a second one a third ends the program at once, in case a stage does not poll. The second
+  // does not, since timeout(1) sends each signal twice.
   if (g_cancelled.exchange(true)) std::signal(SIGINT, SIG_DFL);
 }
 
@@ -28,6 +30,7 @@ Terminal::Terminal(std::string program, bool quiet)
     : program_(std::move(program)), quiet_(quiet), is_terminal_(::isatty(STDERR_FILENO) != 0) {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
+  if (std::signal(SIGHUP, on_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup(1)
 }
 
 Terminal::~Terminal() {
@@ -50,8 +53,7 @@ Context Terminal::context(int threads) {
 void Terminal::line(std::string_view text) {
   if (quiet_) return;
   clear_bar();
-  fmt::print("{}\n", text);
-  std::fflush(stdout);
+  print(stdout, fmt::format("{}\n", text));
 }
 
 void Terminal::error(std::string_view text) {
@@ -60,13 +62,13 @@ void Terminal::error(std::string_view text) {
   std::string line(text);
   while (!line.empty() && line.back() == '\n') line.pop_back();
   std::replace(line.begin(), line.end(), '\n', ' ');
-  fmt::print(stderr, "{}: error: {}\n", program_, line);
+  print(stderr, fmt::format("{}: error: {}\n", program_, line));
 }
 
 void Terminal::warning(std::string_view text) {
   if (quiet_) return;
   clear_bar();
-  fmt::print(stderr, "{}: {}\n", program_, text);
+  print(stderr, fmt::format("{}: {}\n", program_, text));
 }
 
 void Terminal::progress(std::string_view stage, double fraction) {
@@ -80,8 +82,8 @@ void Terminal::progress(std::string_view stage, double fraction) {
   shown_percent_ = percent;
   if (is_terminal_) {
     const int filled = kBarWidth * percent / 100;
-    fmt::print(stderr, "\r{:<14} [{:#<{}}{:.<{}}] {:3d} %", stage_, "", filled, "",
-               kBarWidth - filled, percent);
+    print(stderr, fmt::format("\r{:<14} [{:#<{}}{:.<{}}] {:3d} %", stage_, "", filled, "",
+                              kBarWidth - filled, percent));
     std::fflush(stderr);
     bar_shown_ = true;
   }
@@ -89,7 +91,7 @@ void Terminal::progress(std::string_view stage, double fraction) {
 }
 
 void Terminal::clear_bar() {
-  if (bar_shown_) fmt::print(stderr, "\r{:60}\r", "");
+  if (bar_shown_) print(stderr, fmt::format("\r{:60}\r", ""));
   bar_shown_ = false;
 }
 

@@ -11,51 +11,92 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
-std::string name_beside(const fs::path& target, std::string_view kind) {
-  return fmt::format(".{}.{}.{}{}", target.stem().string(), ::getpid(), kind,
-                     target.extension().string());
+// A hidden name in the same folder. Long ones are cut, so that it stays a name that file systems
+// take; the number tells the files of one export apart.
+fs::path name_beside(const fs::path& target, std::size_t number, std::string_view kind) {
+  constexpr std::size_t kLongestStem = 120, kLongestExtension = 60;  // bytes
+  std::string stem = target.stem().string(), extension = target.extension().string();
+  if (stem.size() > kLongestStem) {
+    std::size_t end = kLongestStem;
+    while (end > 0 && (static_cast<unsigned char>(stem[end]) & 0xc0) == 0x80) --end;  // in UTF-8
+    stem = fmt::format("{}~{}", stem.substr(0, end), number);
+  }
+  if (extension.size() > kLongestExtension) extension.clear();
+  fs::path beside = target;
+  beside.replace_filename(fmt::format(".{}.{}.{}{}", stem, ::getpid(), kind, extension));
+  return beside;
+}
+
+// Where a link leads to; the path itself where it is none or leads nowhere.
+fs::path behind_links(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_symlink(path, error)) return path;
+  const fs::path end = fs::canonical(path, error);
+  return error ? path : end;
+}
+
+// Something that a file cannot take the place of: a device, a pipe, a socket.
+bool is_special(const fs::path& path) {
+  std::error_code error;
+  return fs::is_other(path, error);
 }
 
 }  // namespace
 
 AtomicFiles::~AtomicFiles() {
   std::error_code ignored;  // a file that was never created is not there to remove
-  for (const Entry& entry : entries_) fs::remove(entry.temporary, ignored);
+  for (const Entry& entry : entries_)
+    if (entry.temporary != entry.target) fs::remove(entry.temporary, ignored);
 }
 
-fs::path AtomicFiles::path_for(const fs::path& target) {
-  fs::path temporary = target;
-  temporary.replace_filename(name_beside(target, "part"));
-  entries_.push_back({temporary, target});
+fs::path AtomicFiles::path_for(const fs::path& name) {
+  const fs::path target = behind_links(name);
+  const fs::path temporary =
+      is_special(target) ? target : name_beside(target, entries_.size(), "part");
+  entries_.push_back({temporary, target, name});
   return temporary;
+}
+
+Status AtomicFiles::told_by_target(const Status& status) const {
+  std::string message = status.message();
+  for (const Entry& entry : entries_) {
+    const std::string temporary = entry.temporary.string();
+    if (const auto at = message.find(temporary); at != std::string::npos)
+      message.replace(at, temporary.size(), entry.name.string());
+  }
+  return {status.code(), message};
 }
 
 void AtomicFiles::discard(const fs::path& temporary) {
   std::error_code ignored;  // one that was never created is not there to remove
-  fs::remove(temporary, ignored);
-  std::erase_if(entries_, [&](const Entry& entry) { return entry.temporary == temporary; });
+  std::erase_if(entries_, [&](const Entry& entry) {
+    if (entry.temporary != temporary) return false;
+    if (temporary != entry.target) fs::remove(temporary, ignored);
+    return true;
+  });
 }
 
 std::vector<fs::path> AtomicFiles::targets() const {
   std::vector<fs::path> paths;
-  for (const Entry& entry : entries_) paths.push_back(entry.target);
+  for (const Entry& entry : entries_) paths.push_back(entry.name);
   return paths;
 }
 
-Status AtomicFiles::put_in_place(Entry& entry) {
+Status AtomicFiles::put_in_place(Entry& entry, std::size_t number) {
   std::error_code error;
-  fs::path before = entry.target;
-  before.replace_filename(name_beside(entry.target, "before"));
+  if (entry.temporary == entry.target) return {};
+  const fs::path before = name_beside(entry.target, number, "before");
   fs::create_hard_link(entry.target, before, error);
   if (!error) entry.before = before;
   fs::rename(entry.temporary, entry.target, error);
   if (!error) return {};
   return {ErrorCode::io,
-          fmt::format("{}: cannot be put in place: {}", entry.target.string(), error.message())};
+          fmt::format("{}: cannot be put in place: {}", entry.name.string(), error.message())};
 }
 
 void AtomicFiles::take_back(Entry& entry) {
   std::error_code ignored;  // there is nothing more to be done
+  if (entry.temporary == entry.target) return;
   if (entry.before.empty()) {
     fs::remove(entry.target, ignored);
   } else {
@@ -68,7 +109,8 @@ Status AtomicFiles::commit() {
   std::error_code ignored;
   Status status;
   std::size_t placed = 0;
-  while (placed < entries_.size() && (status = put_in_place(entries_[placed])).ok()) ++placed;
+  while (placed < entries_.size() && (status = put_in_place(entries_[placed], placed)).ok())
+    ++placed;
   if (!status.ok()) {
     fs::remove(entries_[placed].before, ignored);
     while (placed > 0) take_back(entries_[--placed]);
@@ -79,15 +121,25 @@ Status AtomicFiles::commit() {
   return {};
 }
 
-Status check_writable(const fs::path& target) {
+Status check_writable(const fs::path& name) {
+  const fs::path target = behind_links(name);
   const fs::path directory = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  const auto refuse = [&](const char* why) {
-    return Status(ErrorCode::io, fmt::format("{}: cannot be written: {} {}", target.string(),
+  const auto refuse = [&](const std::string& why) {
+    return Status(ErrorCode::io, fmt::format("{}: cannot be written: {} {}", name.string(),
                                              directory.string(), why));
   };
-  if (!fs::is_directory(directory)) return refuse("is not a directory (create it first)");
+  std::error_code error;
+  const fs::file_status folder = fs::status(directory, error);
+  if (error && folder.type() != fs::file_type::not_found)
+    return refuse(fmt::format("cannot be looked at: {}", error.message()));
+  if (!fs::is_directory(folder)) return refuse("is not a directory (create it first)");
+  const fs::file_status there = fs::status(target, error);
+  const long longest = ::pathconf(directory.c_str(), _PC_NAME_MAX);
+  if (longest > 0 && target.filename().string().size() > std::size_t(longest))
+    return refuse(fmt::format("takes names of up to {} bytes (give a shorter one)", longest));
+  if (fs::is_other(there)) return {};
   if (::access(directory.c_str(), W_OK) != 0) return refuse("does not take files");
-  if (fs::is_directory(target)) return refuse("has a directory of that name");
+  if (fs::is_directory(there)) return refuse("has a directory of that name");
   return {};
 }
 

@@ -20,8 +20,12 @@ class AtomicFiles {
   AtomicFiles& operator=(const AtomicFiles&) = delete;
 
   // The temporary path to write `target` under. It keeps the extension, since image writers choose
-  // the format by it.
+  // the format by it. Links are followed: what they lead to is replaced, not they themselves. What
+  // cannot be replaced by a file (a device, a pipe) is written to at once.
   std::filesystem::path path_for(const std::filesystem::path& target);
+
+  // The same status with targets where its message says temporary names.
+  Status told_by_target(const Status& status) const;
 
   // Removes what was written under this temporary path; commit() will not put it in place.
   void discard(const std::filesystem::path& temporary);
@@ -35,16 +39,17 @@ class AtomicFiles {
 
  private:
   struct Entry {
-    std::filesystem::path temporary, target;
+    std::filesystem::path temporary, target, name;  // name: the target as it was asked for
     std::filesystem::path before = {};  // a second name of what stood at the target, or empty
   };
-  static Status put_in_place(Entry& entry);
+  static Status put_in_place(Entry& entry, std::size_t number);
   static void take_back(Entry& entry);
   std::vector<Entry> entries_;
 };
 
-// Whether a file could be written at `target`: its directory exists and takes files. Ask before
-// long work, so that it does not end in vain. Error: io, naming the directory.
+// Whether a file could be written at `target`: its directory exists and takes files, its name is
+// none too long. Ask before long work, so that it does not end in vain. Error: io, naming the
+// directory.
 Status check_writable(const std::filesystem::path& target);
 
 // Writes `bytes` to `target` under a temporary name, then renames it.

@@ -257,7 +257,7 @@ void write_glb(TextFile& file, std::string text, const std::string& binary) {
 Result<WorldFile> write_gltf(const World& world, const fs::path& path, AtomicFiles& files,
                              const Context& context) {
   if (Status s = check_world(world); !s.ok()) return s;
-  const bool binary = path.extension() == ".glb" || path.extension() == ".GLB";
+  const bool binary = world_extension(path) == ".glb";
   WorldFile result;
   GltfBuilder builder(world, binary);
   Unifier unifier(world.uvs.size());

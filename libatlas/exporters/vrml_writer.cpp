@@ -161,7 +161,7 @@ Result<WorldFile> write_vrml(const World& world, const fs::path& path, AtomicFil
                              const Context& context) {
   if (Status s = check_world(world); !s.ok()) return s;
   WorldFile result;
-  const bool gzip = path.extension() == ".wrz" || path.extension() == ".WRZ";
+  const bool gzip = world_extension(path) == ".wrz";
   const fs::path temporary = files.path_for(path);
   TextFile file(temporary, path, gzip);
   if (too_far_for_floats(world)) result.origin_left_out = world.origin;
@@ -184,7 +184,9 @@ Result<WorldFile> write_vrml(const World& world, const fs::path& path, AtomicFil
     context.report("writing the world", double(i + 1) / double(world.pages.size()));
   }
   if (Status s = file.finish(); !s.ok()) return s;
-  result.bytes = static_cast<std::int64_t>(fs::file_size(temporary));
+  std::error_code error;  // a pipe has none
+  const auto bytes = fs::file_size(temporary, error);
+  result.bytes = error ? file.bytes() : static_cast<std::int64_t>(bytes);
   return result;
 }
 

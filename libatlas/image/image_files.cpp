@@ -58,8 +58,10 @@ OIIO::ImageSpec input_settings() {
 
 template <class T>
 Result<Image<T>> read(const std::filesystem::path& path) {
-  if (!std::filesystem::exists(path)) {
-    return Status(ErrorCode::not_found, fmt::format("{}: no such image", path.string()));
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    return error ? Status(ErrorCode::io, fmt::format("{}: {}", path.string(), error.message()))
+                 : Status(ErrorCode::not_found, fmt::format("{}: no such image", path.string()));
   }
   const OIIO::ImageSpec config = input_settings();
   auto input = OIIO::ImageInput::open(path.string(), &config);

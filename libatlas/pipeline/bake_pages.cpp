@@ -63,7 +63,9 @@ class PageBaker {
       if (Status s = writing.finish(); !s.ok()) return s;
     }
     for (std::size_t p = 0; p < pages_.size(); ++p) {
-      result_.pages[p].image_bytes = std::filesystem::file_size(result_.image_sources[p]);
+      std::error_code error;
+      const auto bytes = std::filesystem::file_size(result_.image_sources[p], error);
+      result_.pages[p].image_bytes = error ? 0 : bytes;
       result_.write_cpu += write_cpu_[p];
     }
     result_.bake_cpu = cpu_seconds() - cpu - result_.write_cpu - result_.measure_cpu;
@@ -92,8 +94,7 @@ class PageBaker {
       const BookedTime wall_watch(wall_seconds, result_.measure_wall);
       meter_->add_page(std::int32_t(p), baked->display);
     }
-    const std::string name =
-        fmt::format("{}_{}.png", safe_file_name(options_.target.stem().string()), p);
+    const std::string name = page_name(options_.target, p) + ".png";
     std::filesystem::path target = options_.target.parent_path() / name;
     const std::filesystem::path png = files_.path_for(target);
     const std::filesystem::path exr =
@@ -137,6 +138,10 @@ class PageBaker {
 };
 
 }  // namespace
+
+std::string page_name(const std::filesystem::path& target, std::size_t page) {
+  return fmt::format("{}_{}", safe_file_name(target.stem().string()), page);
+}
 
 Result<BakedPages> bake_pages(const ChartLight& light, const PageLayout& layout,
                               const ExportOptions& options, AtomicFiles& files,

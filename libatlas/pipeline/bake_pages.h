@@ -24,6 +24,9 @@ struct BakedPages {
   double bake_wall = 0, write_wall = 0, measure_wall = 0;
 };
 
+// The file name of a page's image, the extension left out: world.wrl gives world_0, world_1, ...
+std::string page_name(const std::filesystem::path& target, std::size_t page);
+
 // Images are named after the target (safe_file_name): world.wrl gives world_0.png, world_1.png, ...
 // and, with ExportOptions::exr, world_0.exr, ...; their temporary names are collected in `files`.
 Result<BakedPages> bake_pages(const ChartLight& light, const PageLayout& layout,

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "libatlas/bake/placement.h"
 
 namespace atlas {
 namespace {
@@ -25,7 +28,11 @@ Status check_options(const ExportOptions& o) {
   if (!(o.threshold >= 0 && o.threshold <= 1)) return out_of_range("--threshold", "within 0..1");
   if (o.mip_levels < 0 || o.mip_levels > 5) return out_of_range("--mips", "within 0..5");
   if (o.shifts < 1 || o.shifts > 64) return out_of_range("--shifts", "within 1..64");
-  if (o.min_side < 1 || o.min_side > 256) return out_of_range("--min-side", "within 1..256");
+  const int room = o.atlas_size - 2 * gutter_pad(o.mip_levels);
+  if (o.min_side < 1 || o.min_side > std::min(256, room)) {
+    return out_of_range("--min-side", fmt::format("within 1..{} (--atlas-size {}, --mips {})",
+                                                  std::min(256, room), o.atlas_size, o.mip_levels));
+  }
   if (!(o.simplify_slip > 0) || !std::isfinite(o.simplify_slip)) {
     return out_of_range("--slip", "a positive number");
   }

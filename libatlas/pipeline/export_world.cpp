@@ -49,7 +49,7 @@ class Export {
 
   Result<ExportReport> run() {
     const double cpu = cpu_seconds(), wall = wall_seconds();
-    if (Status s = check_texel(); !s.ok()) return s;
+    if (Status s = check_plan(plan_, options_); !s.ok()) return s;
     if (Status s = cut_charts(); !s.ok()) return s;
     if (plan_.bake) {
       if (Status s = expose(); !s.ok()) return s;
@@ -73,20 +73,6 @@ class Export {
   }
 
  private:
-  // Charts smaller than a texel have no place on a page.
-  Status check_texel() const {
-    const double across = std::sqrt(plan_.surface_area_m2);
-    if (!plan_.bake || plan_.texel_metres <= across) return {};
-    if (!(across > 0))
-      return {ErrorCode::bad_input,
-              "no triangle has an area, nothing can be lit (check the scene)"};
-    return {
-        ErrorCode::bad_option,
-        fmt::format("--texel: {:g} m is more than the whole scene, {:g} m across (check --texel "
-                    "and --unit)",
-                    plan_.texel_metres, across)};
-  }
-
   void describe_scene(const LoadedScene& loaded) {
     report_.target = options_.target;
     report_.triangles = scene_.triangle_count();
@@ -272,7 +258,7 @@ class Export {
   Status bake() {
     record_.begin("baking");
     Result<BakedPages> baked = bake_pages(*light_, layout_, options_, files_, context_);
-    if (!baked.ok()) return baked.status();
+    if (!baked.ok()) return files_.told_by_target(baked.status());
     report_.pages = baked->pages;
     image_sources_ = std::move(baked->image_sources);
     std::uint64_t bytes = 0;
@@ -290,11 +276,14 @@ class Export {
       const Fidelity& fidelity = report_.fidelity = baked->fidelity;
       record_.add("error", baked->measure_cpu, baked->measure_wall,
                   {fidelity.lit + fidelity.unlit, pages, "pages",
-                   fidelity.lit == 0
-                       ? "nothing is lit"
-                       : fmt::format("PSNR {:.2f} dB, 95 % {:.4f}", fidelity.psnr, fidelity.p95)});
+                   fidelity.lit == 0 ? "nothing is lit" : error_text(fidelity)});
     }
     return {};
+  }
+
+  static std::string error_text(const Fidelity& fidelity) {
+    if (!(fidelity.psnr < kPerfectDecibels)) return "no difference";
+    return fmt::format("PSNR {:.2f} dB, 95 % {:.4f}", fidelity.psnr, fidelity.p95);
   }
 
   Status simplify() {
@@ -344,7 +333,7 @@ class Export {
     report_.triangles_out = mesh.triangle_chart.size();
     Result<WorldFile> world_file = write_world(world, options_.target, files_, context_);
     if (!world_file.ok()) return world_file.status();
-    if (options_.target.extension() == ".glb") {  // holds its images itself
+    if (world_extension(options_.target) == ".glb") {  // holds its images itself
       for (const auto& image : image_sources_) files_.discard(image);
       for (PageReport& page : report_.pages) page.image.clear();
     }
@@ -353,7 +342,9 @@ class Export {
     if (Status s = files_.commit(); !s.ok()) return s;
     std::uint64_t bytes = 0;
     for (const auto& path : written) {
-      report_.files.emplace_back(path.filename().string(), std::filesystem::file_size(path));
+      std::error_code error;
+      const auto size = std::filesystem::file_size(path, error);
+      report_.files.emplace_back(path.filename().string(), error ? 0 : size);
       bytes += report_.files.back().second;
     }
     const Vec3d& left_out = world_file->origin_left_out;

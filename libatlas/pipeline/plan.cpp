@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/core/atomic_file.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/pipeline/bake_pages.h"
 
 namespace atlas {
 namespace {
@@ -168,6 +170,22 @@ ExportPlan make_plan(const Scene& scene, const ExportOptions& options) {
 
   StepList(scene, options, plan).make(facts.textured_triangles);
   return plan;
+}
+
+Status check_plan(const ExportPlan& plan, const ExportOptions& options) {
+  const std::filesystem::path& target = options.target;
+  if (Status s = check_writable(target); !s.ok() || !plan.bake) return s;
+  const std::string last_page = page_name(target, options.atlases - 1) + ".png";
+  if (Status s = check_writable(target.parent_path() / last_page); !s.ok()) return s;
+  // Charts smaller than a texel have no place on a page.
+  const double across = std::sqrt(plan.surface_area_m2);
+  if (plan.texel_metres <= across) return {};
+  if (!(across > 0))
+    return {ErrorCode::bad_input, "no triangle has an area, nothing can be lit (check the scene)"};
+  return {ErrorCode::bad_option,
+          fmt::format("--texel: {:g} m is more than the whole scene, {:g} m across (check --texel "
+                      "and --unit)",
+                      plan.texel_metres, across)};
 }
 
 }  // namespace atlas

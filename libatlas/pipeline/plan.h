@@ -33,4 +33,8 @@ struct ExportPlan {
 // Linear in the number of triangles, a small share of reading the file.
 ExportPlan make_plan(const Scene& scene, const ExportOptions& options);
 
+// What would else be found out after minutes: texels larger than the scene, files that could not
+// be written. Errors: bad_input, bad_option, io.
+Status check_plan(const ExportPlan& plan, const ExportOptions& options);
+
 }  // namespace atlas

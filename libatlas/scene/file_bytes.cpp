@@ -27,6 +27,10 @@ Result<FileBytes> read_file_bytes(const fs::path& path) {
     return Status(ErrorCode::io,
                   fmt::format("{}: is a directory (name a file inside it)", path.string()));
   }
+  if (error) {
+    return Status(ErrorCode::io,
+                  fmt::format("{}: cannot be read: {}", path.string(), error.message()));
+  }
   // Asked before it is opened: a pipe that nobody writes to would never open.
   const bool regular = fs::is_regular_file(status);
   std::FILE* file = regular ? std::fopen(path.c_str(), "rb") : nullptr;

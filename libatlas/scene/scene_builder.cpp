@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <unordered_map>
 
 #include "libatlas/image/image_io.h"
@@ -27,11 +28,17 @@ struct Box {
   }
 };
 
+double diagonal_of(const Box& box) {
+  double diagonal = 0;
+  for (int i = 0; i < 3; ++i) diagonal = std::hypot(diagonal, box.high[i] - box.low[i]);
+  return diagonal;
+}
+
 Vec3d choose_origin(const Box& box) {
-  double centre[3], diagonal = 0, distance = 0;
+  const double diagonal = diagonal_of(box);
+  double centre[3], distance = 0;
   for (int i = 0; i < 3; ++i) {
     centre[i] = box.low[i] + (box.high[i] - box.low[i]) / 2;
-    diagonal = std::hypot(diagonal, box.high[i] - box.low[i]);
     distance = std::hypot(distance, centre[i]);
   }
   if (!(diagonal > 0) || distance <= kFarDiagonals * diagonal) return {};
@@ -84,12 +91,19 @@ void SceneBuilder::sanitise_values() {
   }
 }
 
-void SceneBuilder::place_positions(Scene& scene) const {
+Status SceneBuilder::place_positions(Scene& scene) const {
   std::vector<bool> used(positions.size(), false);
   for (const std::uint32_t v : indices_) used[v] = true;
   Box box;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (used[i]) box.add(positions[i]);
+  }
+  const double diagonal = diagonal_of(box);
+  if (diagonal > 0 && diagonal < double(std::numeric_limits<float>::min())) {
+    return {ErrorCode::unsupported,
+            fmt::format("{}: the scene is {:g} units across, too small for single-precision floats "
+                        "(export it in a smaller unit)",
+                        file, diagonal)};
   }
   const Vec3d origin = choose_origin(box);
   scene.origin = origin;
@@ -101,6 +115,7 @@ void SceneBuilder::place_positions(Scene& scene) const {
     const bool finite = std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z);
     scene.positions[i] = finite ? q : Vec3f{};
   }
+  return {};
 }
 
 void SceneBuilder::keep_used(Scene& scene) {
@@ -181,7 +196,7 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   LoadedScene loaded;
   Scene& scene = loaded.scene;
   scene.metres_per_unit = options.metres_per_unit;
-  place_positions(scene);
+  if (Status s = place_positions(scene); !s.ok()) return s;
   std::vector<Vec3d>().swap(positions);
   if (context.cancelled()) return Status::cancelled();
   keep_used(scene);

@@ -138,7 +138,7 @@ class SceneBuilder {
   }
 
   void sanitise_values();
-  void place_positions(Scene& scene) const;
+  Status place_positions(Scene& scene) const;
   void keep_used(Scene& scene);
   void move_texcoords();
   void load_textures(Scene& scene);

@@ -150,7 +150,7 @@ class ErrorProbe {
 };
 
 Status errors_of_interval(const Renderer& first, const LightPath& path, const BenchOptions& options,
-                          BenchResult& result) {
+                          BenchResult& result, const Context& context) {
   RenderOptions render = options.render;
   render.shading = Shading::lambert;
   render.shadows = ShadowMethod::classic;
@@ -167,6 +167,7 @@ Status errors_of_interval(const Renderer& first, const LightPath& path, const Be
   const int k = render.schedule.interval_frames;
   const int count = (options.error_frames + k - 1) / k * k;  // whole intervals: every t as often
   for (int f = 0; f < count; ++f) {
+    if (context.cancelled()) return Status::cancelled();
     const FrameLight light = light_at(path, options.degrees_per_frame, f);
     if (Status s = truth->step(options.camera, light); !s.ok()) return s;
     const Image8 v = truth->visibility(), c = truth->colours();
@@ -202,7 +203,7 @@ Spread spread_of(std::vector<double> values) {
 }
 
 Status bench_times(const Renderer& first, const LightPath& path, const BenchOptions& options,
-                   BenchResult& result) {
+                   BenchResult& result, const Context& context) {
   std::vector<Contender> contenders;
   for (Shading shading : options.shadings)
     for (ShadowMethod method : options.methods) {
@@ -222,6 +223,7 @@ Status bench_times(const Renderer& first, const LightPath& path, const BenchOpti
   Control control;
   std::vector<double> warm;
   for (int f = 0; more; ++f) {
+    if (context.cancelled()) return Status::cancelled();
     const FrameLight light = light_at(path, options.degrees_per_frame, f);
     more = f < warm_up;
     for (Contender& c : contenders) {
@@ -247,12 +249,12 @@ Status bench_times(const Renderer& first, const LightPath& path, const BenchOpti
 }
 
 Status bench_errors(const Renderer& first, const LightPath& path, const BenchOptions& options,
-                    BenchResult& result) {
+                    BenchResult& result, const Context& context) {
   for (int k : options.error_intervals) {
     BenchOptions with_k = options;
     with_k.render.schedule.interval_frames = k;
     with_k.render.schedule.interval_degrees = 0;
-    if (Status s = errors_of_interval(first, path, with_k, result); !s.ok()) return s;
+    if (Status s = errors_of_interval(first, path, with_k, result, context); !s.ok()) return s;
   }
   return {};
 }

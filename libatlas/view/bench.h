@@ -75,11 +75,11 @@ struct BenchResult {
 // Runs every shading with every method. The combinations take turns frame by frame, so that a busy
 // machine slows all of them alike and their ratios stand; the control takes its turn with them.
 Status bench_times(const Renderer& first, const LightPath& path, const BenchOptions& options,
-                   BenchResult& result);
+                   BenchResult& result, const Context& context = {});
 
 // Errors of every method but none, for every interval in options.error_intervals.
 Status bench_errors(const Renderer& first, const LightPath& path, const BenchOptions& options,
-                    BenchResult& result);
+                    BenchResult& result, const Context& context = {});
 
 // frames.csv, summary.json, summary.md, and plots.gp with its data: `gnuplot plots.gp` draws frames
 // a second for each method (the paper's figures 2 to 5), CPU time of every frame for each shading,

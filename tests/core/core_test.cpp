@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -142,6 +144,66 @@ TEST(AtomicFiles, WriteFileReportsWhereItCannot) {
   std::filesystem::create_directories(folder / "taken" / "inside");
   EXPECT_EQ(write_file(folder / "taken", "{}").code(), ErrorCode::io);
   EXPECT_EQ(folder.count(), 2u);
+}
+
+TEST(AtomicFiles, NamesOfAnyLengthThatTheFileSystemTakes) {
+  const TempFolder folder;
+  AtomicFiles files;
+  // Alike as far as temporary names go, but files of their own.
+  for (const char* end : {"1.txt", "2.txt"})
+    std::ofstream(files.path_for(folder / (std::string(250, 'n') + end))) << end;
+  EXPECT_TRUE(check_writable(folder / (std::string(250, 'n') + "3.txt")).ok());
+  ASSERT_TRUE(files.commit().ok());
+  EXPECT_EQ(TempFolder::read(folder / (std::string(250, 'n') + "1.txt")), "1.txt");
+  EXPECT_EQ(TempFolder::read(folder / (std::string(250, 'n') + "2.txt")), "2.txt");
+  EXPECT_EQ(folder.count(), 2u);
+  const Status status = check_writable(folder / std::string(300, 'n'));
+  EXPECT_EQ(status.code(), ErrorCode::io);
+  EXPECT_NE(status.message().find("up to 255 bytes"), std::string::npos) << status.message();
+}
+
+TEST(AtomicFiles, LinksAreFollowed) {
+  const TempFolder folder;
+  std::filesystem::create_directories(folder / "store");
+  std::ofstream(folder / "store" / "real.txt") << "old";
+  std::filesystem::create_symlink("store/real.txt", folder / "link.txt");
+  ASSERT_TRUE(check_writable(folder / "link.txt").ok());
+  ASSERT_TRUE(write_file(folder / "link.txt", "new").ok());
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
+  EXPECT_EQ(TempFolder::read(folder / "store" / "real.txt"), "new");
+  // One that leads nowhere is replaced.
+  std::filesystem::create_symlink("none.txt", folder / "loose.txt");
+  ASSERT_TRUE(write_file(folder / "loose.txt", "new").ok());
+  EXPECT_EQ(TempFolder::read(folder / "loose.txt"), "new");
+}
+
+TEST(AtomicFiles, DevicesAndPipesStayWhatTheyAre) {
+  const TempFolder folder;
+  const std::filesystem::path pipe = folder / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::string got;
+  std::thread reader([&] { got = TempFolder::read(pipe); });
+  const Status status = write_file(pipe, "through");
+  reader.join();
+  EXPECT_TRUE(status.ok()) << status.message();
+  EXPECT_EQ(got, "through");
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+  EXPECT_EQ(folder.count(), 1u);
+  {
+    AtomicFiles dropped;
+    EXPECT_EQ(dropped.path_for(pipe), pipe);
+  }
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+}
+
+TEST(AtomicFiles, MessagesNameTheTarget) {
+  const TempFolder folder;
+  AtomicFiles files;
+  const auto temporary = files.path_for(folder / "page.png");
+  const Status told =
+      files.told_by_target({ErrorCode::io, temporary.string() + ": writing failed"});
+  EXPECT_EQ(told.code(), ErrorCode::io);
+  EXPECT_EQ(told.message(), (folder / "page.png").string() + ": writing failed");
 }
 
 // What does not fit leaves the old file as it was.

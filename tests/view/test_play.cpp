@@ -147,6 +147,12 @@ TEST_F(Bench, MeasuresEveryCombinationAndWritesItsFiles) {
   BenchResult r;
   r.device = software_context().info().renderer;
   const LightPath path = *LightPath::make({});
+  std::atomic<bool> stop{true};
+  Context stopped;
+  stopped.cancel = &stop;
+  EXPECT_EQ(bench_times(first, path, o, r, stopped).code(), ErrorCode::cancelled);
+  EXPECT_EQ(bench_errors(first, path, o, r, stopped).code(), ErrorCode::cancelled);
+  EXPECT_TRUE(r.runs.empty() && r.errors.empty());
   ASSERT_TRUE(bench_times(first, path, o, r).ok());
   ASSERT_TRUE(bench_errors(first, path, o, r).ok());
   EXPECT_EQ(r.runs.size(), 3u * 7u);

@@ -1,0 +1,18 @@
+// What every application does around its own work: exceptions, and output that nobody takes.
+#pragma once
+
+#include <cstdio>
+#include <string_view>
+
+namespace atlas::app {
+
+// Runs `body` and gives the exit code of the program. What it throws (no memory is left, ...) is
+// one line on stderr and 1, and what was begun is cleaned up. Standard streams that are closed
+// are opened on /dev/null, so that no file written takes their place. A reader that leaves does
+// not end the program; other failures to write to stdout make an exit code of 0 a 1.
+int run_program(const char* name, int argc, char** argv, int (*body)(int argc, char** argv));
+
+// To stdout or stderr; never throws. A failure on stdout is told when the program ends.
+void print(std::FILE* stream, std::string_view text);
+
+}  // namespace atlas::app

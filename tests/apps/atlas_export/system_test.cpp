@@ -1,0 +1,170 @@
+// atlas-export where the system does not play along: streams that are closed or full, names that
+// are too long, no memory left, signals.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include "tests/scene/temp_folder.h"
+
+namespace atlas {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TempFolder;
+
+struct RunResult {
+  int exit_code = -1;
+  std::string output;
+};
+
+// `arguments` may redirect streams; what stderr still says comes back.
+RunResult run(const std::string& arguments) {
+  RunResult result;
+  FILE* pipe = ::popen(fmt::format("{} {}", ATLAS_EXPORT, arguments).c_str(), "r");
+  char buffer[4096];
+  while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe))
+    result.output.append(buffer, n);
+  const int status = ::pclose(pipe);
+  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return result;
+}
+
+constexpr const char* kTriangle = "v 0 0 0 1 1 1\nv 1 0 0 1 1 1\nv 0 1 0 2 1 1\nf 1 2 3\n";
+
+class System : public testing::Test {
+ protected:
+  void SetUp() override { scene_ = folder_.write("tri.obj", kTriangle).string(); }
+
+  std::string to(const std::string& name) const { return (folder_ / name).string(); }
+
+  TempFolder folder_;
+  std::string scene_;
+};
+
+TEST_F(System, OutputThatNobodyTakes) {
+  const std::string command = fmt::format("{} -o {} ", scene_, to("w.glb"));
+  const RunResult full = run(command + "2>&1 >/dev/full");
+  EXPECT_EQ(full.exit_code, 1);
+  EXPECT_EQ(full.output, "atlas-export: error: standard output: No space left on device\n");
+  EXPECT_EQ(run("nosuch.obj -o w.glb 2>/dev/full").exit_code, 1);
+  // A reader that leaves at once ends nothing: the world is there.
+  fs::remove(folder_ / "w.glb");
+  (void)run(command + "| true");
+  for (int i = 0; i < 200 && !fs::exists(folder_ / "w.glb"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_TRUE(fs::exists(folder_ / "w.glb"));
+}
+
+// The first file that is opened would else be standard output, and hold its lines.
+TEST_F(System, ClosedStreams) {
+  ASSERT_EQ(run(fmt::format("{} -o {} -q", scene_, to("a.wrl"))).exit_code, 0);
+  fs::create_directories(folder_ / "b");
+  ASSERT_EQ(run(fmt::format("{} -o {} <&- >&- 2>&-", scene_, to("b/a.wrl"))).exit_code, 0);
+  EXPECT_EQ(TempFolder::read(folder_ / "a.wrl"), TempFolder::read(folder_ / "b" / "a.wrl"));
+  EXPECT_EQ(TempFolder::read(folder_ / "a_0.png"), TempFolder::read(folder_ / "b" / "a_0.png"));
+}
+
+TEST_F(System, NamesThatAreTooLong) {
+  const std::string name(300, 'n');
+  for (const std::string& arguments :
+       {fmt::format("{} -o {}.glb", scene_, to(name)), fmt::format("{0}.obj -o {0}.glb", name),
+        fmt::format("{} -o {} --report {}.json", scene_, to("w.glb"), to(name)),
+        // Its own name would do, but not those of its pages.
+        fmt::format("{} -o {}.wrl", scene_, to(std::string(250, 'n')))}) {
+    const RunResult r = run(arguments + " -q 2>&1");
+    EXPECT_EQ(r.exit_code, 1) << r.output;
+    EXPECT_EQ(std::count(r.output.begin(), r.output.end(), '\n'), 1) << r.output;
+    EXPECT_EQ(folder_.count(), 1u);
+  }
+}
+
+TEST_F(System, TexturesThatCannotBeLookedAtAreDefects) {
+  folder_.write("m.mtl", "newmtl a\nmap_Kd " + std::string(300, 't') + ".png\n");
+  folder_.write("t.obj",
+                std::string("mtllib m.mtl\nusemtl a\nvt 0 0\nv 0 0 0 1 1 1\nv 1 0 0 1 1 1\n"
+                            "v 0 1 0 1 1 1\nf 1/1 2/1 3/1\n"));
+  const RunResult r = run(fmt::format("{} -o {} 2>&1", to("t.obj"), to("w.glb")));
+  EXPECT_EQ(r.exit_code, 0) << r.output;
+  EXPECT_NE(r.output.find("1 x textures that cannot be"), std::string::npos) << r.output;
+}
+
+TEST_F(System, ReportToAPipe) {
+  const RunResult r = run(fmt::format("{} -o {} -q --report /dev/stdout", scene_, to("w.glb")));
+  EXPECT_EQ(r.exit_code, 0);
+  EXPECT_EQ(r.output.substr(0, 1), "{");
+  EXPECT_EQ(folder_.count(), 2u);
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST_F(System, MemoryThatIsNotThere) {
+  std::string obj;
+  for (int i = 0; i < 60'000; ++i)
+    obj += fmt::format("v {0} 0 0 1 1 1\nv {0} 1 0 1 1 1\nv {0} 1 1 1 1 1\nf -1 -2 -3\n", i);
+  const fs::path scene = folder_.write("many.obj", obj);
+  RunResult r;
+  FILE* pipe = ::popen(fmt::format("ulimit -v 80000; {} {} -o {} -q --threads 1 2>&1", ATLAS_EXPORT,
+                                   scene.string(), to("w.glb"))
+                           .c_str(),
+                       "r");
+  char buffer[4096];
+  while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe))
+    r.output.append(buffer, n);
+  const int status = ::pclose(pipe);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1) << status << r.output;
+  EXPECT_NE(r.output.find("out of memory"), std::string::npos) << r.output;
+  EXPECT_EQ(folder_.count(), 2u);
+}
+#endif
+
+TEST_F(System, ExtensionsInCapitals) {
+  fs::rename(folder_ / "tri.obj", folder_ / "TRI.OBJ");
+  for (const char* name : {"W.WRL", "V.GLB", "U.OBJ", "T.GLTF", "S.WRZ"}) {
+    const RunResult r = run(fmt::format("{} -o {} -q 2>&1", to("TRI.OBJ"), to(name)));
+    EXPECT_EQ(r.exit_code, 0) << r.output;
+    EXPECT_TRUE(fs::exists(folder_ / name));
+  }
+  EXPECT_EQ(TempFolder::read(folder_ / "V.GLB").substr(0, 4), "glTF");
+  EXPECT_FALSE(fs::exists(folder_ / "V_0.png"));  // is inside
+  EXPECT_EQ(run(fmt::format("{0} -o {0} -q 2>&1", to("TRI.OBJ"))).exit_code, 2);
+}
+
+TEST_F(System, PagesOfAnEarlierExportAreNamed) {
+  const std::string command = fmt::format("{} -o {}", scene_, to("w.wrl"));
+  EXPECT_EQ(run(command).output.find("earlier"), std::string::npos);
+  folder_.write("w_1.png", "old");
+  folder_.write("w_2.png", "old");
+  const RunResult r = run(command);
+  EXPECT_EQ(r.exit_code, 0);
+  EXPECT_NE(r.output.find("w_1.png to w_2.png: of an earlier export"), std::string::npos)
+      << r.output;
+  EXPECT_TRUE(fs::exists(folder_ / "w_2.png"));
+}
+
+TEST_F(System, ScenesTooSmallForFloats) {
+  folder_.write("tiny.obj", "v 0 0 0\nv 1e-39 0 0\nv 0 1e-39 0\nf 1 2 3\n");
+  const RunResult r = run(fmt::format("{} -o {} 2>&1", to("tiny.obj"), to("w.glb")));
+  EXPECT_EQ(r.exit_code, 1);
+  EXPECT_NE(r.output.find("tiny.obj: the scene is 1.41421e-39 units across"), std::string::npos)
+      << r.output;
+}
+
+TEST_F(System, OptionsThatContradictEachOtherAreNamed) {
+  const RunResult r =
+      run(fmt::format("{} -o {} --min-side 256 --atlas-size 64 2>&1", scene_, to("w.glb")));
+  EXPECT_EQ(r.exit_code, 2);
+  EXPECT_NE(r.output.find("--min-side must be within 1..60 (--atlas-size 64, --mips 2)"),
+            std::string::npos)
+      << r.output;
+  EXPECT_EQ(run(fmt::format("{} -o {} -q --memory 9000000TB", scene_, to("w.glb"))).exit_code, 0);
+}
+
+}  // namespace
+}  // namespace atlas
