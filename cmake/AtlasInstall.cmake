@@ -109,4 +109,6 @@ function(atlas_install_package)
   configure_file(${PROJECT_SOURCE_DIR}/cmake/libatlas.pc.in ${PROJECT_BINARY_DIR}/libatlas.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/libatlas.pc
           DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/THIRD_PARTY.md
+          DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
 endfunction()

@@ -172,6 +172,16 @@ Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> 
                                  const LayoutOptions& options, const Context& context) {
   // Boxes that are this full leave outlines nothing to win.
   constexpr double kFullBoxes = 0.88;
+  if (texels_per_unit.size() != charts.charts.size())
+    return Status(ErrorCode::bad_input, fmt::format("{} texel densities for {} charts",
+                                                    texels_per_unit.size(), charts.charts.size()));
+  for (std::size_t c = 0; c < texels_per_unit.size(); ++c) {
+    const Vec2d density = texels_per_unit[c];
+    if (!(density.x > 0 && density.y > 0))
+      return Status(ErrorCode::bad_input,
+                    fmt::format("chart {}: texel density {} x {} (must be above 0)", c, density.x,
+                                density.y));
+  }
   LayoutOptions boxes = options;
   boxes.outlines = false;
   Result<PageLayout> boxed = lay_out(charts, texels_per_unit, boxes, context);

@@ -38,7 +38,7 @@ struct PageLayout {
 };
 
 // Places every chart, `texels_per_unit` (1 a chart, > 0) dense before scaling.
-// Errors: no_solution when even the smallest textures do not fit; bad_option; cancelled.
+// Errors: no_solution when even the smallest textures do not fit; bad_option; bad_input; cancelled.
 Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
                                  const LayoutOptions& options, const Context& context);
 

@@ -25,6 +25,13 @@ foreach(file IN LISTS installed)
   endif()
 endforeach()
 
+foreach(name LICENSE THIRD_PARTY.md)
+  file(GLOB found ${prefix}/share/doc/*/${name})
+  if(NOT found)
+    message(FATAL_ERROR "${name} is not installed")
+  endif()
+endforeach()
+
 # By find_package.
 run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE}/examples/minimal -B ${BUILD}/tests/package/minimal
     -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS})

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "libatlas/pipeline/export_world.h"
+#include "libatlas/pipeline/page_layout.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/scene/temp_folder.h"
 #include "tests/support/atlas_measure.h"
@@ -249,6 +250,20 @@ TEST(Export, RefusesOptionsOutOfRange) {
     EXPECT_NE(status.message().find(name), std::string::npos) << name << ": " << status.message();
   }
   EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(Layout, RefusesDensitiesThatAreMissingOrNotAboveZero) {
+  ChartSet charts;
+  charts.charts.resize(2);
+  charts.charts[0].size = charts.charts[1].size = {2, 1};
+  const auto code = [&](const std::vector<Vec2d>& densities) {
+    return lay_out_pages(charts, densities, {}, {}).status().code();
+  };
+  EXPECT_EQ(code({{10, 10}, {10, 10}}), ErrorCode::ok);
+  EXPECT_EQ(code({{10, 10}}), ErrorCode::bad_input);
+  EXPECT_EQ(code({}), ErrorCode::bad_input);
+  EXPECT_EQ(code({{10, 10}, {0, 10}}), ErrorCode::bad_input);
+  EXPECT_EQ(code({{10, 10}, {10, std::nan("")}}), ErrorCode::bad_input);
 }
 
 TEST(Plan, NamesWhatASceneDoesNotNeed) {
