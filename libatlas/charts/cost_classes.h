@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
-#include <set>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 namespace atlas {
 
@@ -14,13 +16,54 @@ class CostClasses {
   static constexpr double most = 1e9;  // what is no number, as that of cells without area, costs it
 
   double operator()(double cost) {
-    const double own = std::min(most, cost);
-    const auto at = values_.lower_bound(own - tie);
-    return at != values_.end() && *at <= own + tie ? *at : *values_.insert(at, own);
+    const double own = std::min(most, cost), low = own - tie, high = own + tie;
+    if (2 * count_ >= table_.size()) grow();
+    double least = kNone;
+    for (std::int64_t c = cell(low), last = cell(high); c <= last; ++c) {
+      for (std::size_t i = place(c); table_[i].value != kNone; i = (i + 1) & (table_.size() - 1)) {
+        const double value = table_[i].value;
+        if (table_[i].cell == c && value >= low && value <= high) least = std::min(least, value);
+      }
+    }
+    if (least != kNone) return least;
+    ++count_;
+    put({cell(own), own});
+    return own;
   }
 
  private:
-  std::set<double> values_;
+  // A hash table of values by cells of their range as wide as `tie`: each holds one or so.
+  struct Entry {
+    std::int64_t cell = 0;
+    double value = kNone;
+  };
+  static constexpr double kNone = 2 * most;
+
+  static std::int64_t cell(double value) {
+    return static_cast<std::int64_t>(value / tie);
+  }
+  std::size_t place(std::int64_t cell) const {
+    return static_cast<std::uint64_t>(cell) * 0x9e3779b97f4a7c15ull >> shift_;
+  }
+
+  void put(const Entry& entry) {
+    std::size_t i = place(entry.cell);
+    while (table_[i].value != kNone) i = (i + 1) & (table_.size() - 1);
+    table_[i] = entry;
+  }
+
+  void grow() {
+    const std::vector<Entry> old =
+        std::exchange(table_, std::vector<Entry>(std::max<std::size_t>(16, 2 * table_.size())));
+    shift_ = table_.size() == 16 ? 60 : shift_ - 1;
+    for (const Entry& entry : old) {
+      if (entry.value != kNone) put(entry);
+    }
+  }
+
+  std::vector<Entry> table_;
+  std::size_t count_ = 0;
+  int shift_ = 60;  // what is left of a hash names a place in the table
 };
 
 }  // namespace atlas

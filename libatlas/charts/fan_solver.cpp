@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libatlas/core/wide_vectors.h"
+#include "libatlas/charts/fan_kernels.h"
 
 namespace atlas {
 namespace {
@@ -13,62 +13,291 @@ constexpr double kNoPivot = 1e-15;  // of the diagonal: rounding
 // alone would choose.
 constexpr double kNoTurn = 1e-3;
 
-// A Pair is two neighbouring entries of a row, or a point. Pairs are read in place; a Vec2d of its
-// own need not lie where they must.
-static_assert(sizeof(Vec2d) == sizeof(Pair));
-
-const Pair& pair_at(const double* from) {
-  return *reinterpret_cast<const Pair*>(from);
+ATLAS_INLINE Pair lower_half(const Quad& q) {
+  return __builtin_shufflevector(q, q, 0, 1);
 }
-Pair& pair_at(Vec2d& p) {
-  return reinterpret_cast<Pair&>(p);
-}
-const Pair& pair_at(const Vec2d& p) {
-  return reinterpret_cast<const Pair&>(p);
-}
-
-Pair quarter_turn(const Pair& p) {
-  return Pair{-p[1], p[0]};
-}
-
-double sum(const Pair& p) {
-  return p[0] + p[1];
-}
-
-// Products of rows a, b with c, d, over so many columns: two rows at a time, for each entry that is
-// read then serves twice.
-struct Products {
-  double ac, ad, bc, bd;
-};
-Products multiply(const double* a, const double* b, const double* c, const double* d,
-                  std::size_t n) {
-  Pair ac{}, ad{}, bc{}, bd{};
-  for (std::size_t k = 0; k < n; k += 2) {
-    const Pair pa = pair_at(a + k), pb = pair_at(b + k), pc = pair_at(c + k), pd = pair_at(d + k);
-    ac += pa * pc;
-    ad += pa * pd;
-    bc += pb * pc;
-    bd += pb * pd;
-  }
-  return {sum(ac), sum(ad), sum(bc), sum(bd)};
+ATLAS_INLINE Pair upper_half(const Quad& q) {
+  return __builtin_shufflevector(q, q, 2, 3);
 }
 
 }  // namespace
+
+// The factor as if each row began with column 0.
+struct FanSolver::Factor {
+  const std::uint32_t* first;
+  const std::size_t* begin;
+  double *values, *inverse_pivot;
+  std::uint32_t pairs, count;
+
+  ATLAS_INLINE double* blocks(std::uint32_t pair) const {
+    return values + begin[pair] - 2 * std::size_t{first[pair]};
+  }
+};
+
+// The fan at hand: four numbers at a time lie side by side.
+struct FanSolver::Fan {
+  const JoinedFans::Triangle* triangles;
+  std::uint32_t count;
+  const double *g1x, *g1y, *g2x, *g2y, *area;
+  double *turn_x, *turn_y, *squared;  // the part of its maps that turns and scales, times area
+  Vec2d* loads;                       // of each triangle on its slot and the next
+};
+
+struct FanSolver::Kernels {
+  // Products of the two rows of `own` with those of `other`, over so many columns.
+  struct Products {
+    Quad upper, lower;  // with the upper and the lower row of `other`, two parts of each sum
+  };
+  ATLAS_INLINE static void multiply(const double* own, const double* other, std::uint32_t begin,
+                                    std::uint32_t end, Products& products) {
+    Quad upper{}, lower{};
+    for (std::uint32_t k = 2 * begin; k < 2 * end; k += 4) {
+      const Quad both = block_at(own + k);
+      const Pair c = pair_at(other + k), d = pair_at(other + k + 2);
+      upper += both * __builtin_shufflevector(c, c, 0, 1, 0, 1);
+      lower += both * __builtin_shufflevector(d, d, 0, 1, 0, 1);
+    }
+    products.upper = upper;
+    products.lower = lower;
+  }
+
+  // Two rows of the factor, all above done.
+  ATLAS_INLINE static void eliminate(const Factor& factor, std::uint32_t pair) {
+    const std::uint32_t i = 2 * pair, begin = factor.first[pair];
+    double *const own = factor.blocks(pair), *const inverse = factor.inverse_pivot;
+    Products p;
+    for (std::uint32_t j = begin; j < i; j += 2) {
+      const double* const other = factor.blocks(j / 2);
+      multiply(own, other, std::max(begin, factor.first[j / 2]), j, p);
+      const Quad rest =
+          block_at(own + 2 * j) - (__builtin_shufflevector(p.upper, p.lower, 0, 4, 2, 6) +
+                                   __builtin_shufflevector(p.upper, p.lower, 1, 5, 3, 7));
+      const Quad even = __builtin_shufflevector(rest, rest, 0, 0, 2, 2) * inverse[j];
+      const Quad odd = (rest - even * other[2 * j + 2]) * inverse[j + 1];
+      block_at(own + 2 * j) = __builtin_shufflevector(even, odd, 0, 5, 2, 7);
+    }
+    multiply(own, own, begin, i, p);
+    double* const corner = own + 2 * i;
+    // Of a connected chart the last pivot is nothing but rounding: that vertex is held.
+    const auto invert = [&](double pivot, double diagonal, std::uint32_t at) {
+      const bool held = at + 1 >= factor.count || !(pivot > kNoPivot * diagonal);
+      return held ? 0 : 1 / std::sqrt(pivot);
+    };
+    inverse[i] = invert(corner[0] - (p.upper[0] + p.upper[1]), corner[0], i);
+    corner[2] = (corner[2] - (p.upper[2] + p.upper[3])) * inverse[i];
+    const double last = corner[3] - (p.lower[2] + p.lower[3]) - corner[2] * corner[2];
+    inverse[i + 1] = invert(last, corner[3], i + 1);
+  }
+
+  ATLAS_INLINE static void eliminate_all(const Factor& factor) {
+    for (std::uint32_t p = 0; p < factor.pairs; ++p) eliminate(factor, p);
+  }
+  ATLAS_WIDE static void eliminate_wide(const Factor& factor) { eliminate_all(factor); }
+  static void eliminate_narrow(const Factor& factor) { eliminate_all(factor); }
+
+  ATLAS_INLINE static void solve(const Factor& factor, Vec2d* load) {
+    for (std::uint32_t p = 0; p < factor.pairs; ++p) {
+      const double* const own = factor.blocks(p);
+      const double* const inverse = factor.inverse_pivot + 2 * p;
+      Pair x = pair_at(load[2 * p]), y = pair_at(load[2 * p + 1]);
+      Quad xs{x[0], x[1], 0, 0}, ys{y[0], y[1], 0, 0};
+      for (std::uint32_t k = factor.first[p]; k < 2 * p; k += 2) {
+        const Quad block = block_at(own + 2 * k), points = block_at(&load[k].x);
+        xs -= __builtin_shufflevector(block, block, 0, 0, 1, 1) * points;
+        ys -= __builtin_shufflevector(block, block, 2, 2, 3, 3) * points;
+      }
+      x = (lower_half(xs) + upper_half(xs)) * inverse[0];
+      y = (lower_half(ys) + upper_half(ys) - own[4 * p + 2] * x) * inverse[1];
+      // At once, for they are read so: processors wait where one read needs two writes.
+      block_at(&load[2 * p].x) = __builtin_shufflevector(x, y, 0, 1, 2, 3);
+    }
+    for (std::uint32_t p = factor.pairs; p-- > 0;) {
+      const double* const own = factor.blocks(p);
+      const double* const inverse = factor.inverse_pivot + 2 * p;
+      const Pair y = pair_at(load[2 * p + 1]) * inverse[1];
+      const Pair x = (pair_at(load[2 * p]) - own[4 * p + 2] * y) * inverse[0];
+      pair_at(load[2 * p]) = x;
+      pair_at(load[2 * p + 1]) = y;
+      const Quad xs = __builtin_shufflevector(x, x, 0, 1, 0, 1),
+                 ys = __builtin_shufflevector(y, y, 0, 1, 0, 1);
+      for (std::uint32_t k = factor.first[p]; k < 2 * p; k += 2) {
+        const Quad block = block_at(own + 2 * k);
+        block_at(&load[k].x) -= __builtin_shufflevector(block, block, 0, 0, 1, 1) * xs +
+                                __builtin_shufflevector(block, block, 2, 2, 3, 3) * ys;
+      }
+    }
+  }
+
+  // Triangles without rotation take that of the whole fan.
+  static void mend_turns(const Fan& fan) {
+    double x = 0, y = 0;
+    for (std::uint32_t i = 0; i < fan.count; ++i) {
+      x += fan.turn_x[i];
+      y += fan.turn_y[i];
+    }
+    for (std::uint32_t i = 0; i < fan.count; ++i) {
+      if (fan.squared[i] <= kNoTurn * kNoTurn * fan.area[i] * fan.area[i]) {
+        fan.turn_x[i] = x;
+        fan.turn_y[i] = y;
+        fan.squared[i] = x * x + y * y;
+      }
+      if (fan.squared[i] > 0) continue;
+      fan.turn_x[i] = fan.squared[i] = 1;
+      fan.turn_y[i] = 0;
+    }
+  }
+
+  // The parts of a fan's maps that turn and scale: conjugate gradients times differences, times
+  // area. Points are complex numbers here.
+  ATLAS_INLINE static void find_turns(const Fan& fan, const Vec2d* uvs) {
+    const Vec2d centre = uvs[fan.triangles->centre];
+    auto clear = Quad{} == Quad{};
+    for (std::uint32_t i = 0; i < fan.count; i += 4) {
+      const Quad g1x = quad_at(fan.g1x + i), g1y = quad_at(fan.g1y + i);
+      const Quad g2x = quad_at(fan.g2x + i), g2y = quad_at(fan.g2y + i);
+      Sides d;
+      find_sides(fan.triangles + i, uvs, centre, d);
+      const Quad x = (g1x * d.ax + g2x * d.bx) + (g1y * d.ay + g2y * d.by);
+      const Quad y = (g1x * d.ay + g2x * d.by) - (g1y * d.ax + g2y * d.bx);
+      const Quad squared = x * x + y * y, area = quad_at(fan.area + i);
+      block_at(fan.turn_x + i) = x;
+      block_at(fan.turn_y + i) = y;
+      block_at(fan.squared + i) = squared;
+      clear &= squared > kNoTurn * kNoTurn * area * area;
+    }
+    if (!(clear[0] & clear[1] & clear[2] & clear[3])) mend_turns(fan);
+  }
+
+  // What the rotations nearest to a fan's maps ask of its vertices.
+  ATLAS_INLINE static void find_loads(const Fan& fan) {
+    for (std::uint32_t i = 0; i < fan.count; i += 4) {
+      Quad root = block_at(fan.squared + i);
+      take_root(root);
+      const Quad inverse = 1 / root;
+      const Quad c = block_at(fan.turn_x + i) * inverse, s = block_at(fan.turn_y + i) * inverse;
+      const Quad g1x = quad_at(fan.g1x + i), g1y = quad_at(fan.g1y + i);
+      const Quad g2x = quad_at(fan.g2x + i), g2y = quad_at(fan.g2y + i);
+      const Quad ax = g1x * c - g1y * s, ay = g1x * s + g1y * c;
+      const Quad bx = g2x * c - g2y * s, by = g2x * s + g2y * c;
+      double* const out = &fan.loads[2 * i].x;
+      // Of triangles 0 and 2, 1 and 3.
+      const Quad a02 = __builtin_shufflevector(ax, ay, 0, 4, 2, 6),
+                 a13 = __builtin_shufflevector(ax, ay, 1, 5, 3, 7);
+      const Quad b02 = __builtin_shufflevector(bx, by, 0, 4, 2, 6),
+                 b13 = __builtin_shufflevector(bx, by, 1, 5, 3, 7);
+      block_at(out) = __builtin_shufflevector(a02, b02, 0, 1, 4, 5);
+      block_at(out + 4) = __builtin_shufflevector(a13, b13, 0, 1, 4, 5);
+      block_at(out + 8) = __builtin_shufflevector(a02, b02, 2, 3, 6, 7);
+      block_at(out + 12) = __builtin_shufflevector(a13, b13, 2, 3, 6, 7);
+    }
+  }
+
+  ATLAS_INLINE static void load_fans(FanSolver& solver, const Vec2d* uvs) {
+    const JoinedFans& joined = solver.joined_;
+    const Fans& fans = solver.fans_;
+    Fan fan = solver.scratch_fan();
+    Vec2d* const load = solver.load_.data() - joined.cells.size();  // 1 a vertex
+    for (std::uint32_t c = 0; c < joined.cells.size(); ++c) {
+      fan.triangles = joined.triangles.data() + joined.first[c];
+      fan.count = joined.first[c + 1] - joined.first[c];
+      if (fan.count == 0) continue;
+      const std::size_t slot = fan.triangles->slot;
+      fan.g1x = fans.slot_gradient_x.data() + slot;
+      fan.g1y = fans.slot_gradient_y.data() + slot;
+      fan.g2x = fans.next_gradient_x.data() + slot;
+      fan.g2y = fans.next_gradient_y.data() + slot;
+      fan.area = fans.area.data() + slot;
+      find_turns(fan, uvs);
+      find_loads(fan);
+      Pair centre{}, before{};
+      for (std::uint32_t i = 0; i < fan.count; ++i) {
+        const Pair a = pair_at(fan.loads[2 * i]), b = pair_at(fan.loads[2 * i + 1]);
+        Pair& own = pair_at(load[fan.triangles[i].a]);
+        own = i == 0 ? own + a : own + before + a;
+        centre -= a + b;
+        before = b;
+      }
+      pair_at(load[fan.triangles->a]) += before;
+      centre *= fans.inverse_pivot[joined.cells[c]];
+      const FanCoupling* const coupling = fans.coupling.data() + slot;
+      for (std::uint32_t i = 0; i < fan.count; ++i) {
+        pair_at(load[fan.triangles[i].a]) -= coupling[i].centre * centre;
+      }
+      pair_at(solver.centre_load_[c]) = centre;
+    }
+  }
+
+  ATLAS_INLINE static void place_centres(const FanSolver& solver, Vec2d* uvs) {
+    const JoinedFans& joined = solver.joined_;
+    for (std::uint32_t c = 0; c < joined.cells.size(); ++c) {
+      Pair sum{};
+      for (std::uint32_t i = joined.first[c]; i < joined.first[c + 1]; ++i) {
+        const JoinedFans::Triangle& t = joined.triangles[i];
+        sum += solver.fans_.coupling[t.slot].centre * pair_at(uvs[t.a]);
+      }
+      const double inverse = solver.fans_.inverse_pivot[joined.cells[c]];
+      pair_at(uvs[c]) = pair_at(solver.centre_load_[c]) - inverse * sum;
+    }
+  }
+
+  ATLAS_INLINE static void step(FanSolver& solver, double relaxation, Vec2d* uvs) {
+    load_fans(solver, uvs);
+    Vec2d* const load = solver.load_.data();
+    solve(solver.factor(), load);
+    Vec2d* const rows = uvs + solver.joined_.cells.size();
+    for (std::uint32_t i = 0; i < solver.count_; ++i) {
+      Pair& uv = pair_at(rows[i]);
+      uv += relaxation * (pair_at(load[i]) - uv);
+    }
+    place_centres(solver, uvs);
+  }
+  ATLAS_WIDE static void step_wide(FanSolver& solver, double relaxation, Vec2d* uvs) {
+    step(solver, relaxation, uvs);
+  }
+  static void step_narrow(FanSolver& solver, double relaxation, Vec2d* uvs) {
+    step(solver, relaxation, uvs);
+  }
+};
+
+FanSolver::Factor FanSolver::factor() {
+  return {first_.data(),
+          row_.data(),
+          factor_.data(),
+          inverse_pivot_.data(),
+          static_cast<std::uint32_t>(first_.size()),
+          count_};
+}
+
+FanSolver::Fan FanSolver::scratch_fan() {
+  double* const scratch = scratch_.data();
+  const std::size_t n = longest_;
+  Fan fan;
+  fan.turn_x = scratch;
+  fan.turn_y = scratch + n;
+  fan.squared = scratch + 2 * n;
+  fan.loads = reinterpret_cast<Vec2d*>(scratch + 3 * n);
+  return fan;
+}
 
 void FanSolver::factorize(const JoinedFans& joined, std::size_t vertex_count) {
   joined_ = joined;
   count_ = row_of(static_cast<std::uint32_t>(vertex_count));
   find_envelope();
   factor_.assign(row_.back(), 0);
+  rows_.resize(longest_);
+  columns_.resize(longest_);
   for (std::size_t c = 0; c < joined.cells.size(); ++c) fill(c);
   inverse_pivot_.resize(2 * first_.size());
-  for (std::uint32_t p = 0; p < first_.size(); ++p) eliminate(p);
+  scratch_.resize(7 * longest_);
+  centre_load_.resize(joined.cells.size());
+  (has_wide_vectors ? Kernels::eliminate_wide : Kernels::eliminate_narrow)(factor());
 }
 
 void FanSolver::find_envelope() {
   const std::uint32_t pairs = (count_ + 1) / 2;
   first_.resize(pairs);
   for (std::uint32_t p = 0; p < pairs; ++p) first_[p] = 2 * p;
+  std::uint32_t longest = 0;
   for (std::size_t c = 0; c < joined_.cells.size(); ++c) {
     std::uint32_t low = kNoIndex;
     for (std::uint32_t i = joined_.first[c]; i < joined_.first[c + 1]; ++i) {
@@ -78,7 +307,9 @@ void FanSolver::find_envelope() {
       std::uint32_t& first = first_[row_of(joined_.triangles[i].a) / 2];
       first = std::min(first, low / 2 * 2);
     }
+    longest = std::max(longest, joined_.first[c + 1] - joined_.first[c]);
   }
+  longest_ = (longest + 3) / 4 * 4;
   row_.resize(pairs + 1);
   row_[0] = 0;
   for (std::uint32_t p = 0; p < pairs; ++p) row_[p + 1] = row_[p] + 2 * (2 * p + 2 - first_[p]);
@@ -86,200 +317,35 @@ void FanSolver::find_envelope() {
 
 // Adds the stiffness of one fan without its centre.
 void FanSolver::fill(std::size_t place) {
-  const auto* const begin = &joined_.triangles[joined_.first[place]];
+  const auto* const fan = &joined_.triangles[joined_.first[place]];
   const auto n = joined_.first[place + 1] - joined_.first[place];
+  if (n == 0) return;
   const double inverse = fans_.inverse_pivot[joined_.cells[place]];
-  const auto add = [&](std::uint32_t p, std::uint32_t q, double value) {
-    row(std::max(p, q))[std::min(p, q)] += p == q ? 2 * value : value;
+  const FanCoupling* const coupling = &fans_.coupling[fan->slot];
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t row = row_of(fan[i].a), pair = row / 2;
+    rows_[i] = factor_.data() + row_[pair] - 2 * std::size_t{first_[pair]} + row % 2 * 2;
+    columns_[i] = row / 2 * 4 + row % 2;
+  }
+  const auto add = [&](std::uint32_t i, std::uint32_t j, double value) {
+    const std::uint32_t p = columns_[i], q = columns_[j];
+    if (p == q) {
+      rows_[i][p] += 2 * value;
+    } else {
+      (p > q ? rows_[i] : rows_[j])[std::min(p, q)] += value;
+    }
   };
   for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t p = row_of(begin[i].a);
-    const FanCoupling& own = fans_.coupling[begin[i].slot];
-    const double scaled = own.centre * inverse;
-    row(p)[p] += own.own - own.centre * scaled;
-    for (std::uint32_t j = 0; j < i; ++j) {
-      add(p, row_of(begin[j].a), -scaled * fans_.coupling[begin[j].slot].centre);
-    }
-    add(p, row_of(begin[i].b), own.next);
-  }
-}
-
-// Two rows of the factor, all above done.
-void FanSolver::eliminate(std::uint32_t pair) {
-  const std::uint32_t i = 2 * pair;
-  double *const low = row(i), *const high = row(i + 1);
-  const double diagonal[2] = {low[i], high[i + 1]};
-  for (std::uint32_t j = first_[pair]; j < i; j += 2) {
-    const std::uint32_t begin = std::max(first_[pair], first_[j / 2]);
-    const double *const c = row(j), *const d = row(j + 1);
-    const Products p = multiply(low + begin, high + begin, c + begin, d + begin, j - begin);
-    low[j] = (low[j] - p.ac) * inverse_pivot_[j];
-    high[j] = (high[j] - p.bc) * inverse_pivot_[j];
-    low[j + 1] = (low[j + 1] - p.ad - low[j] * d[j]) * inverse_pivot_[j + 1];
-    high[j + 1] = (high[j + 1] - p.bd - high[j] * d[j]) * inverse_pivot_[j + 1];
-  }
-  const std::uint32_t begin = first_[pair];
-  const Products p = multiply(low + begin, high + begin, low + begin, high + begin, i - begin);
-  // Of a connected chart the last pivot is nothing but rounding: that vertex is held.
-  const auto inverse = [&](double pivot, std::uint32_t at) {
-    const bool held = at + 1 >= count_ || !(pivot > kNoPivot * diagonal[at - i]);
-    return held ? 0 : 1 / std::sqrt(pivot);
-  };
-  inverse_pivot_[i] = inverse(low[i] - p.ac, i);
-  high[i] = (high[i] - p.bc) * inverse_pivot_[i];
-  inverse_pivot_[i + 1] = inverse(high[i + 1] - p.bd - high[i] * high[i], i + 1);
-}
-
-// The parts of a fan's maps that turn and scale: conjugate gradients times differences, times area.
-// Points are complex numbers here. Returns their sum.
-Vec2d FanSolver::find_turns(std::size_t place, std::span<const Vec2d> uvs) {
-  const Pair centre = pair_at(uvs[place]);
-  Pair whole{};
-  turns_.clear();
-  for (std::uint32_t i = joined_.first[place]; i < joined_.first[place + 1]; ++i) {
-    const JoinedFans::Triangle& t = joined_.triangles[i];
-    const Vec2d g1 = fans_.triangle[t.slot].slot_gradient;
-    const Vec2d g2 = fans_.triangle[t.slot].next_gradient;
-    const Pair d1 = pair_at(uvs[t.a]) - centre, d2 = pair_at(uvs[t.b]) - centre;
-    const Pair turn = g1.x * d1 + g2.x * d2 - quarter_turn(g1.y * d1 + g2.y * d2);
-    turns_.push_back({turn[0], turn[1]});
-    whole += turn;
-  }
-  return {whole[0], whole[1]};
-}
-
-// What the rotations nearest to a fan's maps ask of its vertices.
-void FanSolver::load_fan(std::size_t place, std::span<const Vec2d> uvs) {
-  const auto begin = joined_.first[place], end = joined_.first[place + 1];
-  const Vec2d turns = find_turns(place, uvs);
-  const Pair whole{turns.x, turns.y};
-  Pair centre_load{};
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const JoinedFans::Triangle& t = joined_.triangles[i];
-    const FanTriangle& fan = fans_.triangle[t.slot];
-    Pair turn = pair_at(turns_[i - begin]);
-    double squared = turn[0] * turn[0] + turn[1] * turn[1];
-    if (squared <= kNoTurn * kNoTurn * fan.area * fan.area) {
-      turn = whole;
-      squared = turn[0] * turn[0] + turn[1] * turn[1];
-    }
-    const Pair r = squared > 0 ? turn * (1 / std::sqrt(squared)) : Pair{1, 0};
-    const Pair across = quarter_turn(r);
-    const Vec2d g1 = fan.slot_gradient, g2 = fan.next_gradient;
-    const Pair a = g1.x * r + g1.y * across, b = g2.x * r + g2.y * across;
-    pair_at(load_[row_of(t.a)]) += a;
-    pair_at(load_[row_of(t.b)]) += b;
-    centre_load -= a + b;
-  }
-  centre_load *= fans_.inverse_pivot[joined_.cells[place]];
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const JoinedFans::Triangle& t = joined_.triangles[i];
-    pair_at(load_[row_of(t.a)]) -= fans_.coupling[t.slot].centre * centre_load;
-  }
-  pair_at(centre_load_[place]) = centre_load;
-}
-
-namespace {
-
-// Two rows of a factor, from column 0 on, of which the envelope holds those from `first` to `end`.
-struct RowPair {
-  const double *low, *high;
-  std::uint32_t first, end;
-};
-
-// x and y less what the rows say of the points before.
-void subtract_known_narrow(const RowPair& row, const Vec2d* points, Pair& x, Pair& y) {
-  Pair more_x{}, more_y{};
-  for (std::uint32_t k = row.first; k < row.end; k += 2) {
-    const Pair p = pair_at(points[k]), q = pair_at(points[k + 1]);
-    x -= row.low[k] * p;
-    y -= row.high[k] * p;
-    more_x += row.low[k + 1] * q;
-    more_y += row.high[k + 1] * q;
-  }
-  x -= more_x;
-  y -= more_y;
-}
-
-ATLAS_WIDE void subtract_known_wide(const RowPair& row, const Vec2d* points, Pair& x, Pair& y) {
-  Quad xs{x[0], x[1], 0, 0}, ys{y[0], y[1], 0, 0};
-  for (std::uint32_t k = row.first; k < row.end; k += 2) {
-    // Of four entries, two beyond those that count: the diagonal's lie there.
-    const Quad low = *reinterpret_cast<const QuadInPlace*>(row.low + k);
-    const Quad high = *reinterpret_cast<const QuadInPlace*>(row.high + k);
-    const Quad both = *reinterpret_cast<const QuadInPlace*>(points + k);
-    xs -= __builtin_shufflevector(low, low, 0, 0, 1, 1) * both;
-    ys -= __builtin_shufflevector(high, high, 0, 0, 1, 1) * both;
-  }
-  x = Pair{xs[0] + xs[2], xs[1] + xs[3]};
-  y = Pair{ys[0] + ys[2], ys[1] + ys[3]};
-}
-
-// The points before less what x and y add to them.
-void subtract_from_known_narrow(const RowPair& row, const Pair& x, const Pair& y, Vec2d* points) {
-  for (std::uint32_t k = row.first; k < row.end; ++k) {
-    pair_at(points[k]) -= row.low[k] * x + row.high[k] * y;
-  }
-}
-
-ATLAS_WIDE void subtract_from_known_wide(const RowPair& row, const Pair& x, const Pair& y,
-                                         Vec2d* points) {
-  const Quad xs{x[0], x[1], x[0], x[1]}, ys{y[0], y[1], y[0], y[1]};
-  for (std::uint32_t k = row.first; k < row.end; k += 2) {
-    const Quad low = *reinterpret_cast<const QuadInPlace*>(row.low + k);
-    const Quad high = *reinterpret_cast<const QuadInPlace*>(row.high + k);
-    *reinterpret_cast<QuadInPlace*>(points + k) -=
-        __builtin_shufflevector(low, low, 0, 0, 1, 1) * xs +
-        __builtin_shufflevector(high, high, 0, 0, 1, 1) * ys;
-  }
-}
-
-}  // namespace
-
-void FanSolver::solve() {
-  const auto n = static_cast<std::uint32_t>(2 * first_.size());
-  const auto subtract_known = has_wide_vectors ? subtract_known_wide : subtract_known_narrow;
-  const auto subtract_from_known =
-      has_wide_vectors ? subtract_from_known_wide : subtract_from_known_narrow;
-  for (std::uint32_t i = 0; i < n; i += 2) {
-    const RowPair both{row(i), row(i + 1), first_[i / 2], i};
-    Pair x = pair_at(load_[i]), y = pair_at(load_[i + 1]);
-    subtract_known(both, load_.data(), x, y);
-    x *= inverse_pivot_[i];
-    y = (y - both.high[i] * x) * inverse_pivot_[i + 1];
-    pair_at(load_[i]) = x;
-    pair_at(load_[i + 1]) = y;
-  }
-  for (std::uint32_t i = n; i > 0;) {
-    i -= 2;
-    const RowPair both{row(i), row(i + 1), first_[i / 2], i};
-    const Pair y = pair_at(load_[i + 1]) * inverse_pivot_[i + 1];
-    const Pair x = (pair_at(load_[i]) - both.high[i] * y) * inverse_pivot_[i];
-    pair_at(load_[i]) = x;
-    pair_at(load_[i + 1]) = y;
-    subtract_from_known(both, x, y, load_.data());
+    const double scaled = coupling[i].centre * inverse;
+    rows_[i][columns_[i]] += coupling[i].own - coupling[i].centre * scaled;
+    for (std::uint32_t j = 0; j < i; ++j) add(i, j, -scaled * coupling[j].centre);
+    add(i, i + 1 == n ? 0 : i + 1, coupling[i].next);
   }
 }
 
 void FanSolver::step(double relaxation, std::span<Vec2d> uvs) {
-  const std::size_t cells = joined_.cells.size();
   load_.assign(2 * first_.size(), Vec2d{});
-  centre_load_.resize(cells);
-  for (std::size_t c = 0; c < cells; ++c) load_fan(c, uvs);
-  solve();
-  for (std::size_t i = 0; i < count_; ++i) {
-    Pair& uv = pair_at(uvs[cells + i]);
-    uv += relaxation * (pair_at(load_[i]) - uv);
-  }
-  for (std::size_t c = 0; c < cells; ++c) {
-    Pair sum{};
-    for (std::uint32_t i = joined_.first[c]; i < joined_.first[c + 1]; ++i) {
-      const JoinedFans::Triangle& t = joined_.triangles[i];
-      sum += fans_.coupling[t.slot].centre * pair_at(uvs[t.a]);
-    }
-    const double inverse = fans_.inverse_pivot[joined_.cells[c]];
-    pair_at(uvs[c]) = pair_at(centre_load_[c]) - inverse * sum;
-  }
+  (has_wide_vectors ? Kernels::step_wide : Kernels::step_narrow)(*this, relaxation, uvs.data());
 }
 
 }  // namespace atlas

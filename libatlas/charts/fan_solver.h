@@ -14,11 +14,13 @@ namespace atlas {
 // Fans with their local vertices: the cells' centres in order, then the classes of joined slots, in
 // an order that keeps the numbers within each fan close together.
 struct JoinedFans {
+  static constexpr std::size_t kBeyond = Fans::kBeyond;
   struct Triangle {
     std::uint32_t slot, centre, a, b;  // b: the vertex of the next slot
   };
   std::span<const std::uint32_t> cells;
   std::span<const std::uint32_t> first;  // where a cell's triangles begin, and one more
+  // A cell's in the order of its slots; kBeyond more may be read.
   std::span<const Triangle> triangles;
 };
 
@@ -34,31 +36,32 @@ class FanSolver {
   void step(double relaxation, std::span<Vec2d> uvs);
 
  private:
+  struct Factor;
+  struct Fan;
+  struct Kernels;
+
   void find_envelope();
   void fill(std::size_t place);
-  void eliminate(std::uint32_t pair);
-  Vec2d find_turns(std::size_t place, std::span<const Vec2d> uvs);
-  void load_fan(std::size_t place, std::span<const Vec2d> uvs);
-  void solve();
-  // As if it began with column 0.
-  double* row(std::uint32_t i) {
-    const std::uint32_t first = first_[i / 2];
-    return factor_.data() + row_[i / 2] + (i % 2) * (i / 2 * 2 + 2 - first) - first;
-  }
+  Factor factor();
+  Fan scratch_fan();
   std::uint32_t row_of(std::uint32_t vertex) const {
     return vertex - static_cast<std::uint32_t>(joined_.cells.size());
   }
 
   const Fans& fans_;
   JoinedFans joined_;
-  // The factor's rows in pairs, each from the same even column to the diagonal.
+  // The factor's rows in pairs, each from the same even column to the diagonal, two columns of both
+  // at a time: the upper row's, then the lower one's.
   std::vector<std::uint32_t> first_;  // that column, 1 a pair
   std::vector<std::size_t> row_;      // where the pair begins
   std::vector<double> factor_, inverse_pivot_;
   std::uint32_t count_ = 0;         // of rows that are not mere padding
   std::vector<Vec2d> load_;         // 1 a row, then its solution
   std::vector<Vec2d> centre_load_;  // 1 a cell
-  std::vector<Vec2d> turns_;        // 1 a triangle of the fan at hand
+  std::vector<double> scratch_;     // for the fan at hand, see Fan
+  std::size_t longest_ = 0;         // of the fans, and some beyond
+  std::vector<std::uint32_t> columns_;
+  std::vector<double*> rows_;
 };
 
 }  // namespace atlas

@@ -14,6 +14,11 @@ constexpr double kLeastAltitude = 1e-9;
 // Slots no farther apart by the triangle's longest edge are one vertex of the mesh.
 constexpr double kSamePlace = 1e-9;
 
+struct FanTriangle {
+  glm::dvec2 slot_gradient{0}, next_gradient{0};
+  double area = 0, inverse_area = 0, spoke_squared = 0, rim_squared = 0;
+};
+
 FanTriangle fan_triangle(const glm::dvec3& centre, const glm::dvec3& slot, const glm::dvec3& next) {
   const std::array<glm::dvec3, 3> edge = {slot - centre, next - slot, centre - next};
   std::array<double, 3> squared;
@@ -36,33 +41,42 @@ FanTriangle fan_triangle(const glm::dvec3& centre, const glm::dvec3& slot, const
   gradient[k1] = {0.5 * raised, -0.5 * foot};
   gradient[k2] = {0, 0.5 * length};
   gradient[k] = -(gradient[k1] + gradient[k2]);
-  fan.slot_gradient = from_glm(gradient[1]);
-  fan.next_gradient = from_glm(gradient[2]);
+  fan.slot_gradient = gradient[1];
+  fan.next_gradient = gradient[2];
   return fan;
 }
 
 }  // namespace
 
 Fans::Fans(const CoarseMesh& mesh)
-    : triangle(mesh.slot_position.size()),
-      coupling(mesh.slot_position.size()),
-      inverse_pivot(mesh.cells.size(), 0) {
+    : coupling(mesh.slot_position.size()), inverse_pivot(mesh.cells.size(), 0) {
+  for (std::vector<double>* const values :
+       {&slot_gradient_x, &slot_gradient_y, &next_gradient_x, &next_gradient_y, &area,
+        &inverse_area, &spoke_squared, &rim_squared}) {
+    values->resize(mesh.slot_position.size() + kBeyond, 0);
+  }
   for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
     const CoarseCell& cell = mesh.cells[c];
     double pivot = 0;
     for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
       const std::uint32_t next = mesh.next_slot(s, cell);
-      triangle[s] = fan_triangle(to_glm(cell.centre), to_glm(mesh.slot_position[s]),
-                                 to_glm(mesh.slot_position[next]));
-      const glm::dvec2 g1 = to_glm(triangle[s].slot_gradient),
-                       g2 = to_glm(triangle[s].next_gradient), g0 = -(g1 + g2);
-      const double inverse = triangle[s].inverse_area;
-      pivot += glm::dot(g0, g0) * inverse;
-      coupling[s].centre += glm::dot(g0, g1) * inverse;
-      coupling[next].centre += glm::dot(g0, g2) * inverse;
-      coupling[s].own += glm::dot(g1, g1) * inverse;
-      coupling[next].own += glm::dot(g2, g2) * inverse;
-      coupling[s].next += glm::dot(g1, g2) * inverse;
+      const FanTriangle fan = fan_triangle(to_glm(cell.centre), to_glm(mesh.slot_position[s]),
+                                           to_glm(mesh.slot_position[next]));
+      const glm::dvec2 g1 = fan.slot_gradient, g2 = fan.next_gradient, g0 = -(g1 + g2);
+      slot_gradient_x[s] = g1.x;
+      slot_gradient_y[s] = g1.y;
+      next_gradient_x[s] = g2.x;
+      next_gradient_y[s] = g2.y;
+      area[s] = fan.area;
+      inverse_area[s] = fan.inverse_area;
+      spoke_squared[s] = fan.spoke_squared;
+      rim_squared[s] = fan.rim_squared;
+      pivot += glm::dot(g0, g0) * fan.inverse_area;
+      coupling[s].centre += glm::dot(g0, g1) * fan.inverse_area;
+      coupling[next].centre += glm::dot(g0, g2) * fan.inverse_area;
+      coupling[s].own += glm::dot(g1, g1) * fan.inverse_area;
+      coupling[next].own += glm::dot(g2, g2) * fan.inverse_area;
+      coupling[s].next += glm::dot(g1, g2) * fan.inverse_area;
     }
     if (pivot > 0) inverse_pivot[c] = 1 / pivot;
   }

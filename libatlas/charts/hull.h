@@ -22,6 +22,13 @@ double hull_area(std::vector<Vec2d>& points, std::vector<Vec2d>& hull);
 // The same of points that ascend by x and, where that is equal, y.
 double sorted_hull_area(std::vector<Vec2d>& points, std::vector<Vec2d>& hull);
 
+// What hull and smallest rectangle cover at most, from how far the points reach in sixteen
+// directions: hardly more than they do for shapes that are not slim.
+struct ShapeBounds {
+  double hull = 0, box = 0;
+};
+ShapeBounds bound_shape(const std::vector<Vec2d>& points);
+
 // Area of the smallest rectangle around a convex polygon: one side lies along an edge of it
 // (Freeman and Shapira 1975). Quadratic, for some dozen corners.
 double box_area(const std::vector<Vec2d>& hull);

@@ -32,6 +32,7 @@ struct CoarseChart {
   double area = 0, perimeter = 0;
   double energy = 0;     // area times (L2 stretch squared - 1) of its coarse flattening
   double high_area = 0;  // of it stretched beyond TrialLimits::stretch_high
+  int euler = 1;         // characteristic
   bool flat = false;     // all cells in one plane
   bool unrolls = false;  // without stretch, exactly
   std::uint32_t version = 0;
@@ -213,11 +214,18 @@ class Merger {
   }
 
   void try_merge(std::uint32_t a, std::uint32_t b) {
-    if (!within_cone(a, b)) {
+    const bool within = within_cone(a, b);
+    if (chart(a).cells.size() < chart(b).cells.size()) std::swap(a, b);
+    if (!within || !join(a, b)) {
       ++rejections;
       return;
     }
-    if (chart(a).cells.size() < chart(b).cells.size()) std::swap(a, b);
+    trial_.commit();
+    absorb(a, b);
+    push_neighbours(a, false);
+  }
+
+  bool join(std::uint32_t a, std::uint32_t b) {
     glue_.clear();
     for (const std::uint32_t arc : chart(b).arcs) {
       const std::uint32_t c0 = chart_at(arc, 0), c1 = chart_at(arc, 1);
@@ -226,23 +234,15 @@ class Merger {
     std::sort(glue_.begin(), glue_.end());
     if (coplanar(a, b)) {
       energy_ = high_area_ = 0;
+      euler_ = trial_.euler(chart(a).euler, chart(b).euler, glue_);
       unrolls_ = chart(a).unrolls && chart(b).unrolls;
       trial_.join_flat(chart(a).cells, chart(b).cells, glue_, result_.joined);
-      trial_.commit();
-      absorb(a, b);
-      push_neighbours(a, false);
-      return;
+      return true;
     }
-    TrialOutcome outcome = attempt(a, b);
-    if (!outcome.accepted && outcome.euler < 1 && keep_longest_run(mesh_, seam_ends(a, b), glue_))
-      outcome = attempt(a, b);
-    if (!outcome.accepted) {
-      ++rejections;
-      return;
-    }
-    trial_.commit();
-    absorb(a, b);
-    push_neighbours(a, false);
+    const TrialOutcome outcome = attempt(a, b);
+    return outcome.accepted ||
+           (outcome.euler < 1 && keep_longest_run(mesh_, seam_ends(a, b), glue_) &&
+            attempt(a, b).accepted);
   }
 
   // Pieces of one plane join without a trial, whatever their outline: nothing is stretched, and an
@@ -256,9 +256,8 @@ class Merger {
   TrialOutcome attempt(std::uint32_t a, std::uint32_t b) {
     ++trials;
     double length = 0;
-    for (const std::uint32_t arc : glue_) {
+    for (const std::uint32_t arc : glue_)
       length += mesh_.arcs[arc].length - kHiddenSeam * mesh_.arcs[arc].crease;
-    }
     const CoarseChart &p = chart(a), &q = chart(b);
     const double area = p.area + q.area;
     if (relaxed_) length += options_.chart_worth * std::sqrt(piece_area_);
@@ -277,10 +276,13 @@ class Merger {
     limits.unrolls = p.unrolls && q.unrolls;
     const double spare = area * (limits.stretch_l2 * limits.stretch_l2 - 1) - p.energy - q.energy;
     const double spare_area = limits.high_area - p.high_area - q.high_area;
-    limits.hopeless = refused(a, b, spare, spare_area) || refused(b, a, spare, spare_area);
+    if (refused(a, b, spare, spare_area) || refused(b, a, spare, spare_area)) {
+      return {.euler = trial_.euler(p.euler, q.euler, glue_)};
+    }
     const TrialOutcome outcome = trial_.run(p.cells, q.cells, glue_, result_.joined, limits);
     unrolls_ = outcome.unrolled;
     high_area_ = outcome.high_area;
+    euler_ = outcome.euler;
     if (outcome.accepted) {
       energy_ = area * (outcome.stretch_l2 * outcome.stretch_l2 - 1);
     } else if (outcome.energy > 0 || outcome.high_area > 0) {
@@ -326,6 +328,7 @@ class Merger {
     p.flat = coplanar(a, b);
     p.energy = energy_;
     p.high_area = high_area_;
+    p.euler = euler_;
     p.unrolls = unrolls_;
     if (options_.cone > 0) result_.chart_axis[a] = axis_;
     std::move(q.refusals.begin(), q.refusals.end(), std::back_inserter(p.refusals));
@@ -353,6 +356,7 @@ class Merger {
   double piece_area_ = 0;
   bool relaxed_ = false;
   double energy_ = 0, high_area_ = 0;  // of the last accepted trial
+  int euler_ = 1;
   bool unrolls_ = false;
 };
 

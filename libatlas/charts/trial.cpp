@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "libatlas/charts/fan_kernels.h"
 #include "libatlas/charts/hull.h"
 #include "libatlas/core/glm_bridge.h"
 
@@ -87,85 +88,42 @@ void Trial::align(std::span<const std::uint32_t> glue) {
   }
   uvs_.assign(joined_.vertex_count(), Vec2d{});
   weight_.assign(uvs_.size(), 0);
-  const auto add = [&](std::uint32_t v, Vec2d p, bool second) {
-    if (second) {
-      const double x = p.x - mean_q.x, y = p.y - mean_q.y;
-      p = {c * x - s * y + mean_p.x, s * x + c * y + mean_p.y};
-    }
+  const auto add = [&](std::uint32_t v, const Vec2d& p) {
     uvs_[v].x += p.x;
     uvs_[v].y += p.y;
     weight_[v] += 1;
   };
+  const auto turned = [&](const Vec2d& p) {
+    const double x = p.x - mean_q.x, y = p.y - mean_q.y;
+    return Vec2d{c * x - s * y + mean_p.x, s * x + c * y + mean_p.y};
+  };
   const std::span<const std::uint32_t> cells = joined_.cells();
+  const std::size_t firsts = joined_.first_count();
   for (std::uint32_t i = 0; i < cells.size(); ++i) {
-    add(i, uv_.centre[cells[i]], i >= joined_.first_count());
+    const Vec2d& centre = uv_.centre[cells[i]];
+    uvs_[i] = i < firsts ? centre : turned(centre);
+    weight_[i] = 1;
   }
-  for (const JoinedFans::Triangle& t : joined_.triangles()) {
-    add(t.a, uv_.slot[t.slot], t.centre >= joined_.first_count());
+  const auto triangles = joined_.triangles();
+  std::size_t t = 0;
+  for (; t < triangles.size() && triangles[t].centre < firsts; ++t) {
+    add(triangles[t].a, uv_.slot[triangles[t].slot]);
   }
-  for (std::size_t v = 0; v < uvs_.size(); ++v) {
+  for (; t < triangles.size(); ++t) add(triangles[t].a, turned(uv_.slot[triangles[t].slot]));
+  for (std::size_t v = cells.size(); v < uvs_.size(); ++v) {
     uvs_[v].x /= weight_[v];
     uvs_[v].y /= weight_[v];
   }
 }
 
-void Trial::measure_maps() {
-  maps_.clear();
-  for (const JoinedFans::Triangle& t : joined_.triangles()) {
-    const FanTriangle& fan = fans_.triangle[t.slot];
-    const glm::dvec2 g1 = to_glm(fan.slot_gradient), g2 = to_glm(fan.next_gradient);
-    const glm::dvec2 centre = to_glm(uvs_[t.centre]);
-    const glm::dvec2 d1 = to_glm(uvs_[t.a]) - centre, d2 = to_glm(uvs_[t.b]) - centre;
-    const glm::dvec2 x = g1.x * d1 + g2.x * d2, y = g1.y * d1 + g2.y * d2;  // times area
-    const double scale = fan.inverse_area * fan.inverse_area;
-    maps_.push_back({(glm::dot(x, x) + glm::dot(y, y)) * scale, (x.x * y.y - x.y * y.x) * scale});
-  }
-}
-
-// Fills maps_ and what the outcome says of stretch; false: a triangle is flipped, and only the
-// energy was found.
+// Fills what the outcome says of stretch; false: a triangle is flipped, and only the energy was
+// found.
 bool Trial::measure_stretch(double stretch_high, TrialOutcome& outcome) {
-  measure_maps();
-  const auto triangles = joined_.triangles();
-  double area = 0, uv_area = 0, l2 = 0;
-  bool flipped = false;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const double own = fans_.triangle[triangles[i].slot].area;
-    if (!(own > 0)) continue;
-    const auto [squares, product] = maps_[i];
-    flipped |= product <= 0;
-    area += own;
-    uv_area += own * product;
-    l2 += own * (squares / (product * product));
-  }
-  if (flipped) {
-    // Of the singular values less 1, the smaller one with the sign of the product.
-    double rigid = 0;
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-      const auto [squares, product] = maps_[i];
-      const double sum = std::sqrt(std::max(squares + 2 * product, 0.0));
-      rigid += fans_.triangle[triangles[i].slot].area * (squares - 2 * sum + 2);
-    }
-    outcome.energy = rigid;
-    return false;
-  }
-  const double squared = area > 0 ? uv_area / area : 1;  // the scale's
-  l2 *= 0.5 * squared;
-  // Whether the larger singular value or the inverse of the smaller one is too large: the squares
-  // of both are the roots of x² - squares x + product².
-  const double most = stretch_high * stretch_high * squared;
-  const double least = squared / (stretch_high * stretch_high);
-  double above = 0;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const auto [squares, product] = maps_[i];
-    const double last = product * product;
-    const bool high = most * (most - squares) + last < 0 || 2 * most < squares ||
-                      least * (least - squares) + last < 0 || 2 * least > squares;
-    if (high) above += fans_.triangle[triangles[i].slot].area;
-  }
-  outcome.stretch_l2 = area > 0 ? std::sqrt(l2 / area) : 1;
-  outcome.energy = l2 - area;
-  outcome.high_area = above;
+  const FanStretch stretch = measure_.stretch(joined_.fans(), uvs_, stretch_high);
+  outcome.energy = stretch.energy;
+  if (stretch.flipped) return false;
+  outcome.stretch_l2 = stretch.l2;
+  outcome.high_area = stretch.high_area;
   return true;
 }
 
@@ -209,12 +167,14 @@ bool Trial::promising(const TrialLimits& limits, TrialOutcome& outcome) {
 bool Trial::shape_fits(const TrialLimits& limits, double slack, TrialOutcome& outcome) {
   points_.clear();
   for (const auto& [a, b] : joined_.border()) points_.push_back(uvs_[a]);
-  double twice = 0;
-  flipped_ = false;
-  for (const JoinedFans::Triangle& t : joined_.triangles()) {
-    const double double_area = cross(uvs_[t.centre], uvs_[t.a], uvs_[t.b]);
-    flipped_ |= double_area <= 0 && fans_.triangle[t.slot].area > 0;
-    twice += double_area;
+  const double twice = measure_.twice_area(joined_.fans(), uvs_, flipped_);
+  // A passing shape need not be known any better, nor one that stays so whatever a descent does.
+  const double enough = slack > 0 ? kShapeChange : 0;
+  const ShapeBounds most = bound_shape(points_);
+  outcome.solidity = 0.5 * twice / most.hull;
+  outcome.fill = 0.5 * twice / most.box;
+  if (outcome.solidity >= limits.solidity + enough && outcome.fill >= limits.fill + enough) {
+    return true;
   }
   const double hull = hull_area(points_, hull_);
   outcome.solidity = hull > 0 ? 0.5 * twice / hull : 1;
@@ -235,22 +195,58 @@ double crossing_depth(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2
   return std::min(nearest(a, b, c, d), nearest(c, d, a, b));
 }
 
+// Boxes of edges: sides to the left, right, bottom and top, one after the other for each of them,
+// in so many entries each.
+struct Boxes {
+  const double* sides;
+  std::size_t stride;
+};
+
+// The first edge from `next` on, four looked at together, whose box meets that of edge i, or up to
+// three more than there are.
+ATLAS_INLINE std::size_t find_near(const Boxes& boxes, std::size_t i, std::size_t next,
+                                   std::size_t count) {
+  const double *const left = boxes.sides, *const right = left + boxes.stride,
+                      *const low = right + boxes.stride, *const high = low + boxes.stride;
+  for (; next < count; next += 4) {
+    const auto met = (quad_at(left + next) <= right[i]) & (quad_at(right + next) >= left[i]) &
+                     (quad_at(low + next) <= high[i]) & (quad_at(high + next) >= low[i]);
+    if (!(met[0] | met[1] | met[2] | met[3])) continue;
+    return next + (met[0] ? 0 : met[1] ? 1 : met[2] ? 2 : 3);
+  }
+  return count;
+}
+ATLAS_WIDE std::size_t find_near_wide(const Boxes& boxes, std::size_t i, std::size_t next,
+                                      std::size_t count) {
+  return find_near(boxes, i, next, count);
+}
+std::size_t find_near_narrow(const Boxes& boxes, std::size_t i, std::size_t next,
+                             std::size_t count) {
+  return find_near(boxes, i, next, count);
+}
+
 }  // namespace
 
+// All pairs: of the few dozen edges that charts of cells have that takes less than to sort them.
 Trial::Crossing Trial::border_crossing() {
+  const auto border = joined_.border();
+  const std::size_t n = border.size(), stride = n + 4;
+  boxes_.assign(4 * stride, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec2d &a = uvs_[border[i][0]], &b = uvs_[border[i][1]];
+    boxes_[i] = std::min(a.x, b.x);
+    boxes_[i + stride] = std::max(a.x, b.x);
+    boxes_[i + 2 * stride] = std::min(a.y, b.y);
+    boxes_[i + 3 * stride] = std::max(a.y, b.y);
+  }
+  const Boxes boxes{boxes_.data(), stride};
+  const auto near = has_wide_vectors ? find_near_wide : find_near_narrow;
   const double deep = kDeepCrossing * std::sqrt(area_);
   Crossing crossing = Crossing::none;
-  border_.assign(joined_.border().begin(), joined_.border().end());
-  const auto left = [&](const std::array<std::uint32_t, 2>& e) {
-    return std::min(uvs_[e[0]].x, uvs_[e[1]].x);
-  };
-  std::sort(border_.begin(), border_.end(),
-            [&](const auto& e, const auto& f) { return left(e) < left(f); });
-  for (std::size_t i = 0; i < border_.size(); ++i) {
-    const auto& [a, b] = border_[i];
-    const double right = std::max(uvs_[a].x, uvs_[b].x);
-    for (std::size_t j = i + 1; j < border_.size() && left(border_[j]) <= right; ++j) {
-      const auto& [c, d] = border_[j];
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto [a, b] = border[i];
+    for (std::size_t j = near(boxes, i, i + 1, n); j < n; j = near(boxes, i, j + 1, n)) {
+      const auto [c, d] = border[j];
       if (a == c || a == d || b == c || b == d) continue;
       if (cross_each_other(uvs_[a], uvs_[b], uvs_[c], uvs_[d])) {
         crossing = Crossing::shallow;
@@ -288,26 +284,23 @@ bool Trial::unrolled() const {
     return std::abs(glm::dot(flat, flat) - squared) <= 2 * kUnrolledError * squared;
   };
   for (const JoinedFans::Triangle& t : joined_.triangles()) {
-    const FanTriangle& fan = fans_.triangle[t.slot];
-    if (!kept(t.centre, t.a, fan.spoke_squared) || !kept(t.a, t.b, fan.rim_squared)) return false;
+    if (!kept(t.centre, t.a, fans_.spoke_squared[t.slot]) ||
+        !kept(t.a, t.b, fans_.rim_squared[t.slot])) {
+      return false;
+    }
   }
   return true;
 }
 
 // Whether two charts that unroll still do when they are joined: then their sides match.
 bool Trial::fits_unrolled(TrialOutcome& outcome) {
-  measure_maps();
-  double area = 0;
-  for (std::size_t i = 0; i < maps_.size(); ++i) {
-    area += fans_.triangle[joined_.triangles()[i].slot].area * maps_[i].product;
-  }
+  const double area = measure_.mapped_area(joined_.fans(), uvs_);
   outcome.unrolled = area > 0 && misfit_ < kUnrolledError * std::sqrt(area);
   return outcome.unrolled;
 }
 
 // False: it was ended before its time, for it would not have met the limits.
 bool Trial::descend(const TrialLimits& limits, TrialOutcome& outcome) {
-  joined_.order(uvs_);
   solver_.factorize(joined_.fans(), uvs_.size());
   for (std::size_t i = 0; i < kRelaxation.size(); ++i) {
     if (i == kLookAfter && !promising(limits, outcome)) return false;
@@ -319,7 +312,7 @@ bool Trial::descend(const TrialLimits& limits, TrialOutcome& outcome) {
 TrialOutcome Trial::judge(std::span<const std::uint32_t> glue, const TrialLimits& limits) {
   TrialOutcome outcome;
   outcome.euler = joined_.euler();
-  if (outcome.euler > 1 || joined_.border().empty() || limits.hopeless) return outcome;
+  if (outcome.euler > 1 || joined_.border().empty()) return outcome;
   align(glue);
   if (limits.unrolls && outcome.euler == 1 && fits_unrolled(outcome)) {
     TrialLimits shape = limits;

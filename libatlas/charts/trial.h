@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libatlas/charts/coarse.h"
+#include "libatlas/charts/fan_measure.h"
 #include "libatlas/charts/fan_solver.h"
 #include "libatlas/charts/trial_mesh.h"
 
@@ -25,7 +26,6 @@ struct TrialLimits {
   double solidity = 0.7;  // share of its convex hull that it fills
   double fill = 0.58;     // share of its smallest rectangle
   bool unrolls = false;   // both charts unroll: where they fit each other, no descent is needed
-  bool hopeless = false;  // refuse it unseen, but say whether the glue makes a disc
 };
 
 struct TrialOutcome {
@@ -43,7 +43,7 @@ struct TrialOutcome {
 class Trial {
  public:
   Trial(const CoarseMesh& mesh, const Fans& fans, TrialScratch& scratch, CoarseUv& uv)
-      : mesh_(mesh), fans_(fans), uv_(uv), joined_(mesh, scratch), solver_(fans) {}
+      : mesh_(mesh), fans_(fans), uv_(uv), joined_(mesh, scratch), solver_(fans), measure_(fans) {}
 
   // Flattens the cells of two charts (`second` may be empty) with the arcs `glue` joined besides
   // those where `joined` (1 an arc) is set. If accepted, `glue` is set in `joined`, too; the
@@ -54,19 +54,17 @@ class Trial {
   // The same for two charts of one plane: aligned, not flattened, always accepted.
   void join_flat(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
                  std::span<const std::uint32_t> glue, std::vector<std::uint8_t>& joined);
+  // TrialOutcome::euler of two charts of which it is known.
+  int euler(int first, int second, std::span<const std::uint32_t> glue) {
+    return joined_.joined_euler(first, second, glue);
+  }
   // Stores the last trial's coordinates.
   void commit();
 
  private:
-  // Of the map from a triangle to uv: the sum of its squared singular values, their product.
-  struct Map {
-    double squares, product;
-  };
-
   void assemble(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
                 std::span<const std::uint32_t> glue, const std::vector<std::uint8_t>& joined);
   TrialOutcome judge(std::span<const std::uint32_t> glue, const TrialLimits& limits);
-  void measure_maps();
   void align(std::span<const std::uint32_t> glue);
   bool unrolled() const;
   bool fits_unrolled(TrialOutcome& outcome);
@@ -86,12 +84,12 @@ class Trial {
   CoarseUv& uv_;
   TrialMesh joined_;
   FanSolver solver_;
+  FanMeasure measure_;
   double area_ = 0;  // of all cells
   std::vector<Vec2d> uvs_;
   std::vector<double> weight_;
-  std::vector<Map> maps_;                             // 1 a triangle
-  std::vector<std::array<std::uint32_t, 2>> pairs_;   // slots of first and second chart
-  std::vector<std::array<std::uint32_t, 2>> border_;  // sorted
+  std::vector<std::array<std::uint32_t, 2>> pairs_;  // slots of first and second chart
+  std::vector<double> boxes_;                        // of the border's edges
   std::vector<Vec2d> points_, hull_;
   bool flipped_ = false;  // a triangle, when shape_fits() last looked
   double misfit_ = 0;     // largest distance of two glued slots, as aligned

@@ -28,108 +28,127 @@ void TrialMesh::unite(std::uint32_t slot, std::uint32_t other) {
   united_.push_back(a);
 }
 
-void TrialMesh::assemble(std::span<const std::uint32_t> first,
-                         std::span<const std::uint32_t> second, std::span<const std::uint32_t> glue,
-                         const std::vector<std::uint8_t>& joined) {
-  cells_.assign(first.begin(), first.end());
-  cells_.insert(cells_.end(), second.begin(), second.end());
-  first_count_ = first.size();
-  for (std::uint32_t c = 0; c < cells_.size(); ++c) scratch_.place[cells_[c]] = c;
+void TrialMesh::unite(std::span<const std::uint32_t> glue) {
   for (const std::uint32_t arc : glue) {
     const CoarseArc& a = mesh_.arcs[arc];
     unite(a.slot[0], mesh_.next_slot(a.slot[1], mesh_.cells[a.cell[1]]));
     unite(mesh_.next_slot(a.slot[0], mesh_.cells[a.cell[0]]), a.slot[1]);
   }
-  list_triangles(joined);
+}
+
+void TrialMesh::part() {
   for (const std::uint32_t c : united_) scratch_.alias[c] = c;
   united_.clear();
+}
+
+int TrialMesh::joined_euler(int first, int second, std::span<const std::uint32_t> glue) {
+  unite(glue);
+  const auto fewer_vertices = static_cast<int>(united_.size());
+  part();
+  return first + second + static_cast<int>(glue.size()) - fewer_vertices;
+}
+
+void TrialMesh::assemble(std::span<const std::uint32_t> first,
+                         std::span<const std::uint32_t> second, std::span<const std::uint32_t> glue,
+                         const std::vector<std::uint8_t>& joined) {
+  list_cells(first, second);
+  unite(glue);
+  list_triangles(joined);
+  number_vertices();
+  part();
   for (const std::uint32_t c : class_) scratch_.vertex[c] = kNoIndex;
 }
 
+void TrialMesh::list_cells(std::span<const std::uint32_t> first,
+                           std::span<const std::uint32_t> second) {
+  cells_.assign(first.begin(), first.end());
+  cells_.insert(cells_.end(), second.begin(), second.end());
+  first_count_ = first.size();
+  first_.resize(cells_.size() + 1);
+  first_[0] = 0;
+  for (std::uint32_t c = 0; c < cells_.size(); ++c) {
+    scratch_.place[cells_[c]] = c;
+    first_[c + 1] = first_[c] + mesh_.cells[cells_[c]].slot_count;
+  }
+  triangles_.resize(first_.back() + JoinedFans::kBeyond);
+}
+
+// Until vertices are numbered a triangle keeps its class and the place of the cell across.
 void TrialMesh::list_triangles(const std::vector<std::uint8_t>& joined) {
-  triangles_.clear();
-  across_.clear();
-  first_.clear();
-  class_.clear();
-  border_.clear();
-  auto vertices = static_cast<std::uint32_t>(cells_.size());
+  neighbour_.clear();
+  first_neighbour_.clear();
+  JoinedFans::Triangle* t = triangles_.data();
   for (std::uint32_t c = 0; c < cells_.size(); ++c) {
     const std::uint32_t k = cells_[c];
     const CoarseCell& cell = mesh_.cells[k];
-    first_.push_back(static_cast<std::uint32_t>(triangles_.size()));
+    first_neighbour_.push_back(static_cast<std::uint32_t>(neighbour_.size()));
     for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
-      const std::uint32_t own = root(s);
-      std::uint32_t& vertex = scratch_.vertex[own];
-      if (vertex == kNoIndex) {
-        vertex = vertices++;
-        class_.push_back(own);
-      }
-      triangles_.push_back({s, c, vertex, 0});
-    }
-    for (std::size_t i = first_.back(); i < triangles_.size(); ++i) {
-      JoinedFans::Triangle& t = triangles_[i];
-      t.b = triangles_[i + 1 == triangles_.size() ? first_.back() : i + 1].a;
-      const std::uint32_t arc = mesh_.slot_arc[t.slot];
+      const std::uint32_t arc = mesh_.slot_arc[s];
+      std::uint32_t across = kNoIndex;
       if (joined[arc]) {
         const auto& sides = mesh_.arcs[arc].cell;
-        across_.push_back(scratch_.place[sides[0] == k ? sides[1] : sides[0]]);
-      } else {
-        across_.push_back(kNoIndex);
-        border_.push_back({t.a, t.b});
+        across = scratch_.place[sides[0] == k ? sides[1] : sides[0]];
+        neighbour_.push_back(across);
       }
+      *t++ = {s, c, root(s), across};
     }
   }
-  first_.push_back(static_cast<std::uint32_t>(triangles_.size()));
-  const auto joined_sides = static_cast<int>(triangles_.size() - border_.size());
-  euler_ = static_cast<int>(vertices) + joined_sides / 2 - static_cast<int>(triangles_.size());
+  first_neighbour_.push_back(static_cast<std::uint32_t>(neighbour_.size()));
+  std::fill_n(t, JoinedFans::kBeyond, JoinedFans::Triangle{});
 }
 
 // By cells, breadth-first from one end of the charts, the cell farthest from any, and back (reverse
 // Cuthill-McKee).
-void TrialMesh::order(std::vector<Vec2d>& uvs) {
+void TrialMesh::number_vertices() {
+  met_.resize(std::max(met_.size(), cells_.size()), 0);
   sweep(0);
   sweep(queue_.back());
+  for (std::uint32_t c = 0; c < cells_.size() && queue_.size() < cells_.size(); ++c) {
+    if (met_[c] != sweeps_) queue_.push_back(c);  // joined to none of the others
+  }
+  class_.clear();
+  border_.clear();
   const auto cells = static_cast<std::uint32_t>(cells_.size());
-  renumber_.assign(vertex_count(), kNoIndex);
-  std::uint32_t vertices = cells;
   for (auto c = queue_.rbegin(); c != queue_.rend(); ++c) {
-    for (std::uint32_t i = first_[*c]; i < first_[*c + 1]; ++i) {
-      std::uint32_t& vertex = renumber_[triangles_[i].a];
-      if (vertex == kNoIndex) vertex = vertices++;
+    JoinedFans::Triangle *const begin = &triangles_[first_[*c]], *const end =
+                                                                     &triangles_[first_[*c + 1]];
+    for (JoinedFans::Triangle* t = begin; t != end; ++t) {
+      std::uint32_t& vertex = scratch_.vertex[t->a];
+      if (vertex == kNoIndex) {
+        vertex = cells + static_cast<std::uint32_t>(class_.size());
+        class_.push_back(t->a);
+      }
+      t->a = vertex;
+    }
+    for (JoinedFans::Triangle* t = begin; t != end; ++t) {
+      const bool open = t->b == kNoIndex;
+      t->b = (t + 1 == end ? begin : t + 1)->a;
+      if (open) border_.push_back({t->a, t->b});
     }
   }
-  for (JoinedFans::Triangle& t : triangles_) {
-    t.a = renumber_[t.a];
-    t.b = renumber_[t.b];
-  }
-  for (auto& [a, b] : border_) {
-    a = renumber_[a];
-    b = renumber_[b];
-  }
-  queue_ = class_;
-  old_uvs_ = uvs;
-  for (std::uint32_t v = cells; v < vertices; ++v) {
-    class_[renumber_[v] - cells] = queue_[v - cells];
-    uvs[renumber_[v]] = old_uvs_[v];
-  }
+  const auto count = static_cast<int>(first_.back());
+  const int joined_sides = count - static_cast<int>(border_.size());
+  euler_ = static_cast<int>(vertex_count()) + joined_sides / 2 - count;
 }
 
 // Fills queue_.
 void TrialMesh::sweep(std::uint32_t start) {
-  met_.assign(cells_.size(), 0);
+  ++sweeps_;
   queue_.assign(1, start);
-  met_[start] = 1;
+  met_[start] = sweeps_;
   for (std::size_t i = 0; i < queue_.size(); ++i) {
-    for (std::uint32_t t = first_[queue_[i]]; t < first_[queue_[i] + 1]; ++t) {
-      if (across_[t] == kNoIndex || met_[across_[t]]) continue;
-      met_[across_[t]] = 1;
-      queue_.push_back(across_[t]);
+    const std::uint32_t c = queue_[i];
+    for (std::uint32_t n = first_neighbour_[c]; n < first_neighbour_[c + 1]; ++n) {
+      const std::uint32_t next = neighbour_[n];
+      if (met_[next] == sweeps_) continue;
+      met_[next] = sweeps_;
+      queue_.push_back(next);
     }
   }
 }
 
 void TrialMesh::commit() {
-  for (const JoinedFans::Triangle& t : triangles_) {
+  for (const JoinedFans::Triangle& t : triangles()) {
     scratch_.slot_class[t.slot] = class_[t.a - cells_.size()];
   }
 }

@@ -7,6 +7,7 @@
 
 #include "libatlas/charts/coarse.h"
 #include "libatlas/charts/cost_classes.h"
+#include "libatlas/charts/fan_measure.h"
 #include "libatlas/charts/fan_solver.h"
 #include "libatlas/charts/hull.h"
 #include "libatlas/charts/refusal.h"
@@ -83,6 +84,8 @@ TEST(TrialMesh, ChartsKeepWhatIsJoinedInThem) {
   grown.assemble(halves.first, halves.second, halves.glue, joined);
   grown.assemble(halves.first, halves.second, {}, apart);
   EXPECT_EQ(grown.euler(), 2);
+  EXPECT_EQ(grown.joined_euler(1, 1, halves.glue), 1);
+  EXPECT_EQ(grown.joined_euler(1, 1, {}), 2);
   grown.assemble(halves.first, halves.second, halves.glue, joined);
   EXPECT_EQ(grown.euler(), 1);
   EXPECT_EQ(grown.vertex_count(), whole.vertex_count());
@@ -110,8 +113,6 @@ struct CapFans {
     uvs.resize(trial.vertex_count());
     place();
     for (std::size_t v = 0; v < uvs.size(); ++v) uvs[v] = {places[v].x, places[v].y};
-    trial.order(uvs);
-    place();
     for (const JoinedFans::Triangle& t : trial.triangles()) {
       triangles.push_back({t.centre, t.a, t.b});
     }
@@ -142,9 +143,6 @@ struct CapFans {
 
 TEST(FanSolver, AgreesWithTheGeneralSolver) {
   CapFans cap;
-  for (std::size_t v = 0; v < cap.uvs.size(); ++v) {  // they followed the order
-    EXPECT_NEAR(distance(cap.uvs[v], {cap.places[v].x, cap.places[v].y}), 0, 1e-15);
-  }
   std::vector<Vec2d> expected = cap.uvs;
   ParamWorkspace workspace;
   for (int i = 0; i < 2; ++i) {  // two plain steps each
@@ -171,6 +169,40 @@ TEST(FanSolver, LongerStepsDescend) {
       before = now;
     }
   }
+}
+
+TEST(FanMeasure, AgreesWithTheGeneralOne) {
+  CapFans cap;
+  FanMeasure measure(cap.fans);
+  const auto check = [&](double high) {
+    std::vector<TriangleStretch> each(cap.triangles.size());
+    measure_triangles(cap.view(), cap.uvs, each);
+    const Distortion all = measure_distortion(cap.view(), cap.uvs);
+    const double scale = std::sqrt(all.uv_area / all.surface_area);
+    double above = 0;
+    for (const TriangleStretch& t : each) {
+      if (std::max(scale * t.s1, 1 / (scale * t.s2)) > high) above += t.area;
+    }
+    const FanStretch own = measure.stretch(cap.trial.fans(), cap.uvs, high);
+    EXPECT_FALSE(own.flipped);
+    EXPECT_NEAR(own.l2, all.stretch_l2, 1e-6);
+    EXPECT_NEAR(own.energy, all.surface_area * (own.l2 * own.l2 - 1), 1e-9 * all.surface_area);
+    EXPECT_NEAR(own.high_area, above, 1e-9 * all.surface_area);
+    bool flipped = true;
+    EXPECT_NEAR(measure.twice_area(cap.trial.fans(), cap.uvs, flipped), 2 * all.uv_area, 1e-12);
+    EXPECT_FALSE(flipped);
+    return above;
+  };
+  EXPECT_GT(check(1.1), 0);
+  for (int i = 0; i < 4; ++i) cap.solver.step(1, cap.uvs);
+  EXPECT_EQ(check(2), 0);
+  for (Vec2d& uv : cap.uvs) uv.x = -uv.x;
+  const FanStretch mirrored = measure.stretch(cap.trial.fans(), cap.uvs, 1.1);
+  EXPECT_TRUE(mirrored.flipped);
+  EXPECT_GT(mirrored.energy, 0);
+  bool flipped = false;
+  EXPECT_LT(measure.twice_area(cap.trial.fans(), cap.uvs, flipped), 0);
+  EXPECT_TRUE(flipped);
 }
 
 // A ramp that winds so many times around its axis, farther and farther out, but by less than its
@@ -262,6 +294,31 @@ TEST(Hull, OfFewPoints) {
   EXPECT_EQ(hull_area(three, hull), 2);
   EXPECT_EQ(hull.size(), 3u);
   EXPECT_EQ(hull_area(line, hull), 0);
+}
+
+TEST(Hull, BoundsAreTightForRoundShapes) {
+  for (const int corners : {3, 4, 5, 7, 12, 100}) {
+    for (const double slim : {1.0, 0.6, 0.01}) {
+      for (double turn = 0; turn < 1; turn += 0.13) {
+        std::vector<Vec2d> points, hull;
+        for (int i = 0; i < corners; ++i) {
+          const double a = 2 * M_PI * i / corners, x = std::cos(a), y = slim * std::sin(a);
+          points.push_back({1000 + std::cos(turn) * x - std::sin(turn) * y,
+                            std::sin(turn) * x + std::cos(turn) * y});
+        }
+        const ShapeBounds bounds = bound_shape(points);
+        const double area = hull_area(points, hull), box = box_area(hull);
+        EXPECT_GE(bounds.hull, area);
+        EXPECT_GE(bounds.box, box);
+        if (slim > 0.5 && corners > 4) {
+          EXPECT_LT(bounds.hull, 1.2 * area) << corners;
+          EXPECT_LT(bounds.box, 1.3 * box) << corners;
+        }
+      }
+    }
+  }
+  EXPECT_EQ(bound_shape({}).hull, 0);
+  EXPECT_EQ(bound_shape({{1, 2}, {1, 2}}).box, 0);
 }
 
 }  // namespace
