@@ -91,7 +91,8 @@ class EdgePaths {
   template <class Wanted>
   std::uint32_t spread_to(Wanted&& wanted) {
     while (!heap_.empty()) {
-      const auto [so_far, v] = heap_.top();
+      const double so_far = heap_.top().first;
+      const std::uint32_t v = heap_.top().second;
       heap_.pop();
       if (so_far > distance_[v]) continue;
       if (wanted(v)) return v;

@@ -12,8 +12,7 @@
 namespace atlas {
 namespace {
 
-constexpr double kNormalWeight = 8;    // of the fold at an edge in the distance across it
-constexpr double kCreaseDiscount = 4;  // how much shorter a fully folded edge is to cut along
+constexpr double kNormalWeight = 8;  // of the fold at an edge in the distance across it
 constexpr double kFar = std::numeric_limits<double>::max();
 
 struct Visit {

@@ -18,7 +18,9 @@ using QuadInPlace = double __attribute__((vector_size(32), aligned(16), may_alia
 // For what functions with and without ATLAS_WIDE share: it is compiled for each.
 #define ATLAS_INLINE [[gnu::always_inline]] inline
 
-#if defined(__x86_64__) && defined(__GNUC__)
+// Clang forgets that QuadInPlace need not lie at multiples of 32 where it is a template's argument
+// or behind a reference, and reads it by instructions that insist on them.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define ATLAS_WIDE [[gnu::target("avx2")]]
 inline const bool has_wide_vectors = __builtin_cpu_supports("avx2");
 #else

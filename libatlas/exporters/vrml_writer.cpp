@@ -127,7 +127,7 @@ struct Corners {
 
 void write_shape(TextFile& file, const World& world, const Vec3d& origin, const Corners& corners,
                  const Context& context) {
-  const auto& [points, uvs] = corners;
+  const Compactor::Compact &points = corners.points, &uvs = corners.uvs;
   if (!carries_light(world)) file.write("    creaseAngle 0.7\n");  // rounds what is round
   file.write("    solid FALSE\n    coord Coordinate { point [\n");
   file.write_items(points.used.size(), context, [&](TextBuffer& out, std::size_t i) {

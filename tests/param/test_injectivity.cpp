@@ -120,13 +120,14 @@ TEST(Injectivity, ReportsALoopThatCrossesItselfInVerticesOnly) {
   // A strip along the x axis comes back across itself; the two borders cross where both have
   // vertices.
   std::vector<std::array<Vec2d, 2>> way;
-  for (int x = -3; x <= 3; ++x) way.push_back({Vec2d(x, 1), Vec2d(x, 0)});
+  for (int x = -3; x <= 3; ++x) way.push_back({Vec2d{double(x), 1}, Vec2d{double(x), 0}});
   way.insert(way.end(), {{{{4, 1}, {5, 0}}},
                          {{{5, 2}, {8, 1}}},
                          {{{5.5, 3.5}, {9, 4}}},
                          {{{5.5, 4.5}, {8, 8}}},
                          {{{5.25, 5}, {5.5, 8}}}});
-  for (int t = 5; t >= -4; --t) way.push_back({Vec2d(t, t), Vec2d(t, t + 1)});
+  for (int t = 5; t >= -4; --t)
+    way.push_back({Vec2d{double(t), double(t)}, Vec2d{double(t), t + 1.0}});
   const Disc crossing = make_strip(way);
   const Injectivity result = check_injectivity(crossing.view(), drop_z(crossing));
   EXPECT_TRUE(result.flipped.empty());

@@ -88,7 +88,8 @@ TEST(Relax, AFoldedChartIsGivenUp) {
 // From singular values directly, and by differences.
 TEST(Relax, TheHighPowerAndItsDerivativesAreRight) {
   const double power = 2 * std::exp2(param::doublings);
-  for (const auto& [a, b] : {std::pair{1.25, 0.8}, {1.1, 1.05}, {0.9, 0.7}, {1.4, 1.0}}) {
+  for (const auto& stretches : {std::pair{1.25, 0.8}, {1.1, 1.05}, {0.9, 0.7}, {1.4, 1.0}}) {
+    const double a = stretches.first, b = stretches.second;
     const double f = a * a + b * b, d = a * b;
     const double wanted =
         std::pow(a, power) + std::pow(b, power) + std::pow(a, -power) + std::pow(b, -power);

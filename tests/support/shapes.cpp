@@ -54,7 +54,7 @@ class Welder {
 
 // An n x n grid over the parallelogram at `corner`, facing du x dv.
 void add_face(Shape& shape, Welder& weld, const std::array<glm::dvec3, 3>& face, int n) {
-  const auto [corner, du, dv] = face;
+  const glm::dvec3 corner = face[0], du = face[1], dv = face[2];
   const auto at = [&](int i, int j) {
     return weld(corner + du * (double(i) / n) + dv * (double(j) / n));
   };
