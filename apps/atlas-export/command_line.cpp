@@ -84,7 +84,8 @@ void add_texture_options(CLI::App& app, ExportOptions& options, RawText& raw) {
       ->capture_default_str()
       ->check(within(64, 16384));
   app.add_option("--memory", raw.memory,
-                 "Graphics memory for all pages, e.g. 800MB: sets --atlases from --atlas-size");
+                 "Graphics memory for all pages, e.g. 800MB: sets --atlases from --atlas-size")
+      ->excludes("--atlases");
   app.add_option("--texel", raw.texel,
                  "Length of a texel on the real surface, e.g. 5mm; default: what the pages can "
                  "hold, within 1 to 10 mm");

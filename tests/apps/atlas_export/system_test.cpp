@@ -163,6 +163,9 @@ TEST_F(System, OptionsThatContradictEachOtherAreNamed) {
   EXPECT_NE(r.output.find("--min-side must be within 1..60 (--atlas-size 64, --mips 2)"),
             std::string::npos)
       << r.output;
+  EXPECT_EQ(run(fmt::format("{} -o {} --memory 9MB --atlases 3 2>/dev/null", scene_, to("w.glb")))
+                .exit_code,
+            2);
   EXPECT_EQ(run(fmt::format("{} -o {} -q --memory 9000000TB", scene_, to("w.glb"))).exit_code, 0);
 }
 
