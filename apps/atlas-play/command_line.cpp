@@ -117,7 +117,7 @@ void add_run_options(CLI::App& app, CommandLine& l, std::string& light, std::str
   app.add_option("--light-end", end, "at the path's end: loop, back or stop")
       ->check(one_of({{"loop", 0}, {"back", 0}, {"stop", 0}}))
       ->capture_default_str();
-  app.add_option("--up", up, "the axis that points up")
+  app.add_option("--up", up, "the axis that points up (default: z for worlds that say so)")
       ->check(one_of({{"x", 0}, {"y", 0}, {"z", 0}}))
       ->capture_default_str();
   app.add_option("--north", l.north,
@@ -234,6 +234,7 @@ Parsed parse_command_line(int argc, char** argv) {
     parsed.exit_code = code;
     return parsed;
   }
+  if (app.count("--up") == 0 && world_is_z_up(l.scene)) up = "z";
   if (l.in_window() && app.count("--width") == 0) l.render.width = kWindowWidth;
   if (l.in_window() && app.count("--height") == 0) l.render.height = kWindowHeight;
   if (Status s = finish(l, light, end, up); !s.ok()) {

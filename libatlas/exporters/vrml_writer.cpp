@@ -72,6 +72,7 @@ std::string header(const World& world, const Vec3d& origin_left_out) {
   out.text("#VRML V2.0 utf8\n");
   out.text("WorldInfo {\n  title " + quoted(world.title) + "\n  info [\n");
   for (const std::string& line : world.info) out.text("    " + quoted(line) + "\n");
+  if (world.up == Up::z) out.text("    " + quoted(kZUpNote) + "\n");
   if (origin_left_out != Vec3d{}) out.text("    " + quoted(note_of(origin_left_out)) + "\n");
   out.text("  ]\n}\nNavigationInfo {\n  headlight ");
   out.text(carries_light(world) ? "FALSE" : "TRUE");

@@ -62,6 +62,9 @@ struct WorldFile {
 Result<WorldFile> write_vrml(const World& world, const std::filesystem::path& path,
                              AtomicFiles& files, const Context& context);
 
+// A line of WorldInfo in worlds whose z axis points up, which VRML itself has no word for.
+inline constexpr const char* kZUpNote = "the z axis points up";
+
 // Wavefront OBJ and, beside it, an MTL of the same name with one material `page<i>` a page.
 Result<WorldFile> write_obj(const World& world, const std::filesystem::path& path,
                             AtomicFiles& files, const Context& context);

@@ -1,11 +1,13 @@
 #include "libatlas/view/play.h"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <fstream>
 
 #include "libatlas/core/clock.h"
+#include "libatlas/exporters/world.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/scene/reader.h"
 #include "libatlas/view/bench.h"
@@ -23,6 +25,19 @@ bool textures_hold_light(const fs::path& path) {
   file.read(text.data(), std::streamsize(text.size()));
   text.resize(std::size_t(std::max<std::streamsize>(file.gcount(), 0)));
   return text.find("KHR_materials_unlit") != std::string::npos;
+}
+
+bool world_is_z_up(const fs::path& path) {
+  std::error_code error;
+  if (world_extension(path) != ".wrl" && world_extension(path) != ".wrz") return false;
+  if (!fs::is_regular_file(path, error)) return false;
+  std::string head(4096, '\0');                    // WorldInfo comes first
+  const gzFile file = gzopen(path.c_str(), "rb");  // reads plain text, too
+  if (!file) return false;
+  const int got = gzread(file, head.data(), unsigned(head.size()));
+  gzclose(file);
+  head.resize(std::size_t(std::max(got, 0)));
+  return head.find(kZUpNote) != std::string::npos;
 }
 
 Result<ViewScene> load_view(const fs::path& path, bool baked_textures, const Context& context) {

@@ -16,6 +16,9 @@ namespace atlas {
 // writes), and glTF whose materials are unlit. False if the file cannot be read.
 bool textures_hold_light(const std::filesystem::path& path);
 
+// Whether a file is a VRML world that says so of its z axis. False if the file cannot be read.
+bool world_is_z_up(const std::filesystem::path& path);
+
 // The scene at `path` as arrays to draw; the readers' errors, or bad_input if nothing is drawn.
 Result<ViewScene> load_view(const std::filesystem::path& path, bool baked_textures,
                             const Context& context);

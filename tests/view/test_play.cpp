@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "libatlas/exporters/world.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/view/bench.h"
 #include "libatlas/view/play.h"
@@ -131,6 +132,23 @@ TEST_F(Play, KnowsWhichFilesHoldLight) {
   EXPECT_FALSE(textures_hold_light(path_ / "absent.gltf"));
   EXPECT_TRUE(textures_hold_light("world.wrl"));
   EXPECT_FALSE(textures_hold_light("scene.obj"));
+}
+
+TEST_F(Play, KnowsWhichWorldsAreZUp) {
+  World world;
+  world.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  world.uvs = {{0, 0}, {1, 0}, {0, 1}};
+  world.pages.push_back({"", "", {0, 1, 2}, {0, 1, 2}});
+  for (const char* name : {"a.wrl", "a.wrz", "a.obj"})
+    for (const Up up : {Up::y, Up::z}) {
+      world.up = up;
+      AtomicFiles files;
+      ASSERT_TRUE(write_world(world, path_ / name, files, {}).ok());
+      ASSERT_TRUE(files.commit().ok());
+      EXPECT_EQ(world_is_z_up(path_ / name), up == Up::z && std::string(name) != "a.obj") << name;
+    }
+  EXPECT_FALSE(world_is_z_up(path_ / "absent.wrl"));
+  EXPECT_FALSE(world_is_z_up(path_));
 }
 
 TEST_F(Bench, MeasuresEveryCombinationAndWritesItsFiles) {
