@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include "libatlas/charts/fan_solver.h"
 #include "libatlas/core/wide_vectors.h"
@@ -27,21 +28,14 @@ ATLAS_INLINE const Pair& pair_at(const Vec2d& p) {
   return reinterpret_cast<const Pair&>(p);
 }
 
-// Four numbers that may lie anywhere.
-using QuadAnywhere = double __attribute__((vector_size(32), aligned(8), may_alias));
-ATLAS_INLINE const QuadAnywhere& quad_at(const double* from) {
-  return *reinterpret_cast<const QuadAnywhere*>(from);
-}
-ATLAS_INLINE QuadAnywhere& quad_at(double* from) {
-  return *reinterpret_cast<QuadAnywhere*>(from);
-}
-
-// Four numbers of which the first begins a pair.
-ATLAS_INLINE const QuadInPlace& block_at(const double* from) {
-  return *reinterpret_cast<const QuadInPlace*>(from);
-}
-ATLAS_INLINE QuadInPlace& block_at(double* from) {
-  return *reinterpret_cast<QuadInPlace*>(from);
+// Four numbers that may lie anywhere. Not read through a reference to a type that says so: clang
+// would take them for aligned.
+struct QuadAt {
+  ATLAS_INLINE explicit QuadAt(const double* from) { std::memcpy(&quad, from, sizeof quad); }
+  Quad quad;
+};
+ATLAS_INLINE void put_quad(double* to, const Quad& quad) {
+  std::memcpy(to, &quad, sizeof quad);
 }
 
 ATLAS_INLINE void take_root(Quad& x) {

@@ -19,23 +19,23 @@ struct FanMeasure::Kernels {
       const std::size_t slot = fan[begin].slot - std::size_t{begin};
       const Vec2d centre = uvs[fan[begin].centre];
       for (std::uint32_t i = begin; i < end; i += 4) {
-        const Quad g1x = quad_at(m.fans_.slot_gradient_x.data() + slot + i),
-                   g1y = quad_at(m.fans_.slot_gradient_y.data() + slot + i),
-                   g2x = quad_at(m.fans_.next_gradient_x.data() + slot + i),
-                   g2y = quad_at(m.fans_.next_gradient_y.data() + slot + i);
-        const Quad inverse = quad_at(m.fans_.inverse_area.data() + slot + i);
+        const Quad g1x = QuadAt(m.fans_.slot_gradient_x.data() + slot + i).quad,
+                   g1y = QuadAt(m.fans_.slot_gradient_y.data() + slot + i).quad,
+                   g2x = QuadAt(m.fans_.next_gradient_x.data() + slot + i).quad,
+                   g2y = QuadAt(m.fans_.next_gradient_y.data() + slot + i).quad;
+        const Quad inverse = QuadAt(m.fans_.inverse_area.data() + slot + i).quad;
         Sides d;
         find_sides(fan + i, uvs, centre, d);
         // The map's columns, times area.
         const Quad xx = g1x * d.ax + g2x * d.bx, xy = g1x * d.ay + g2x * d.by;
         const Quad yx = g1y * d.ax + g2y * d.bx, yy = g1y * d.ay + g2y * d.by;
         const Quad scale = inverse * inverse;
-        quad_at(squares + i) = ((xx * xx + xy * xy) + (yx * yx + yy * yy)) * scale;
-        quad_at(product + i) = (xx * yy - xy * yx) * scale;
-        quad_at(area + i) = quad_at(m.fans_.area.data() + slot + i);
+        put_quad(squares + i, ((xx * xx + xy * xy) + (yx * yx + yy * yy)) * scale);
+        put_quad(product + i, (xx * yy - xy * yx) * scale);
+        put_quad(area + i, QuadAt(m.fans_.area.data() + slot + i).quad);
       }
     }
-    quad_at(area + m.count_) = Quad{};
+    put_quad(area + m.count_, Quad{});
   }
 
   struct Sums {
@@ -46,12 +46,13 @@ struct FanMeasure::Kernels {
     double area = 0, uv_area = 0, l2 = 0;
     auto flipped = Quad{} != Quad{};
     for (std::size_t i = 0; i < m.count_; i += 4) {
-      const Quad own = quad_at(m.area_.data() + i), product = quad_at(m.product_.data() + i);
+      const Quad own = QuadAt(m.area_.data() + i).quad,
+                 product = QuadAt(m.product_.data() + i).quad;
       const auto counts = own > 0;
       flipped |= counts & (product <= 0);
       const Quad uv = own * product;
       const Quad stretched =
-          counts ? own * (quad_at(m.squares_.data() + i) / (product * product)) : Quad{};
+          counts ? own * (QuadAt(m.squares_.data() + i).quad / (product * product)) : Quad{};
       for (int k = 0; k < 4; ++k) {
         area += own[k];
         uv_area += counts[k] ? uv[k] : 0;
@@ -69,11 +70,12 @@ struct FanMeasure::Kernels {
   ATLAS_INLINE static double area_beyond(const FanMeasure& m, double least, double most) {
     double above = 0;
     for (std::size_t i = 0; i < m.count_; i += 4) {
-      const Quad squares = quad_at(m.squares_.data() + i), product = quad_at(m.product_.data() + i);
+      const Quad squares = QuadAt(m.squares_.data() + i).quad,
+                 product = QuadAt(m.product_.data() + i).quad;
       const Quad last = product * product;
       const auto high = (most * (most - squares) + last < 0) | (2 * most < squares) |
                         (least * (least - squares) + last < 0) | (2 * least > squares);
-      const Quad own = high ? quad_at(m.area_.data() + i) : Quad{};
+      const Quad own = high ? QuadAt(m.area_.data() + i).quad : Quad{};
       for (int k = 0; k < 4; ++k) above += own[k];
     }
     return above;
@@ -91,16 +93,17 @@ struct FanMeasure::Kernels {
       for (std::uint32_t i = begin; i < end; i += 4) {
         Sides d;
         find_sides(fan + i, uvs, centre, d);
-        quad_at(twice + i) = d.ax * d.by - d.ay * d.bx;
-        quad_at(area + i) = quad_at(m.fans_.area.data() + slot + i);
+        put_quad(twice + i, d.ax * d.by - d.ay * d.bx);
+        put_quad(area + i, QuadAt(m.fans_.area.data() + slot + i).quad);
       }
     }
-    quad_at(area + m.count_) = quad_at(twice + m.count_) = Quad{};
+    put_quad(area + m.count_, Quad{});
+    put_quad(twice + m.count_, Quad{});
     double sum = 0;
     auto flipped = Quad{} != Quad{};
     for (std::size_t i = 0; i < m.count_; i += 4) {
-      const Quad own = quad_at(twice + i);
-      flipped |= (own <= 0) & (quad_at(area + i) > 0);
+      const Quad own = QuadAt(twice + i).quad;
+      flipped |= (own <= 0) & (QuadAt(area + i).quad > 0);
       for (int k = 0; k < 4; ++k) sum += own[k];
     }
     any_flipped = flipped[0] | flipped[1] | flipped[2] | flipped[3];

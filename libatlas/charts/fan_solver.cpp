@@ -52,7 +52,7 @@ struct FanSolver::Kernels {
                                     std::uint32_t end, Products& products) {
     Quad upper{}, lower{};
     for (std::uint32_t k = 2 * begin; k < 2 * end; k += 4) {
-      const Quad both = block_at(own + k);
+      const Quad both = QuadAt(own + k).quad;
       const Pair c = pair_at(other + k), d = pair_at(other + k + 2);
       upper += both * __builtin_shufflevector(c, c, 0, 1, 0, 1);
       lower += both * __builtin_shufflevector(d, d, 0, 1, 0, 1);
@@ -70,11 +70,11 @@ struct FanSolver::Kernels {
       const double* const other = factor.blocks(j / 2);
       multiply(own, other, std::max(begin, factor.first[j / 2]), j, p);
       const Quad rest =
-          block_at(own + 2 * j) - (__builtin_shufflevector(p.upper, p.lower, 0, 4, 2, 6) +
-                                   __builtin_shufflevector(p.upper, p.lower, 1, 5, 3, 7));
+          QuadAt(own + 2 * j).quad - (__builtin_shufflevector(p.upper, p.lower, 0, 4, 2, 6) +
+                                      __builtin_shufflevector(p.upper, p.lower, 1, 5, 3, 7));
       const Quad even = __builtin_shufflevector(rest, rest, 0, 0, 2, 2) * inverse[j];
       const Quad odd = (rest - even * other[2 * j + 2]) * inverse[j + 1];
-      block_at(own + 2 * j) = __builtin_shufflevector(even, odd, 0, 5, 2, 7);
+      put_quad(own + 2 * j, __builtin_shufflevector(even, odd, 0, 5, 2, 7));
     }
     multiply(own, own, begin, i, p);
     double* const corner = own + 2 * i;
@@ -102,14 +102,14 @@ struct FanSolver::Kernels {
       Pair x = pair_at(load[2 * p]), y = pair_at(load[2 * p + 1]);
       Quad xs{x[0], x[1], 0, 0}, ys{y[0], y[1], 0, 0};
       for (std::uint32_t k = factor.first[p]; k < 2 * p; k += 2) {
-        const Quad block = block_at(own + 2 * k), points = block_at(&load[k].x);
+        const Quad block = QuadAt(own + 2 * k).quad, points = QuadAt(&load[k].x).quad;
         xs -= __builtin_shufflevector(block, block, 0, 0, 1, 1) * points;
         ys -= __builtin_shufflevector(block, block, 2, 2, 3, 3) * points;
       }
       x = (lower_half(xs) + upper_half(xs)) * inverse[0];
       y = (lower_half(ys) + upper_half(ys) - own[4 * p + 2] * x) * inverse[1];
       // At once, for they are read so: processors wait where one read needs two writes.
-      block_at(&load[2 * p].x) = __builtin_shufflevector(x, y, 0, 1, 2, 3);
+      put_quad(&load[2 * p].x, __builtin_shufflevector(x, y, 0, 1, 2, 3));
     }
     for (std::uint32_t p = factor.pairs; p-- > 0;) {
       const double* const own = factor.blocks(p);
@@ -121,9 +121,10 @@ struct FanSolver::Kernels {
       const Quad xs = __builtin_shufflevector(x, x, 0, 1, 0, 1),
                  ys = __builtin_shufflevector(y, y, 0, 1, 0, 1);
       for (std::uint32_t k = factor.first[p]; k < 2 * p; k += 2) {
-        const Quad block = block_at(own + 2 * k);
-        block_at(&load[k].x) -= __builtin_shufflevector(block, block, 0, 0, 1, 1) * xs +
-                                __builtin_shufflevector(block, block, 2, 2, 3, 3) * ys;
+        const Quad block = QuadAt(own + 2 * k).quad;
+        put_quad(&load[k].x, QuadAt(&load[k].x).quad -
+                                 (__builtin_shufflevector(block, block, 0, 0, 1, 1) * xs +
+                                  __builtin_shufflevector(block, block, 2, 2, 3, 3) * ys));
       }
     }
   }
@@ -153,16 +154,16 @@ struct FanSolver::Kernels {
     const Vec2d centre = uvs[fan.triangles->centre];
     auto clear = Quad{} == Quad{};
     for (std::uint32_t i = 0; i < fan.count; i += 4) {
-      const Quad g1x = quad_at(fan.g1x + i), g1y = quad_at(fan.g1y + i);
-      const Quad g2x = quad_at(fan.g2x + i), g2y = quad_at(fan.g2y + i);
+      const Quad g1x = QuadAt(fan.g1x + i).quad, g1y = QuadAt(fan.g1y + i).quad;
+      const Quad g2x = QuadAt(fan.g2x + i).quad, g2y = QuadAt(fan.g2y + i).quad;
       Sides d;
       find_sides(fan.triangles + i, uvs, centre, d);
       const Quad x = (g1x * d.ax + g2x * d.bx) + (g1y * d.ay + g2y * d.by);
       const Quad y = (g1x * d.ay + g2x * d.by) - (g1y * d.ax + g2y * d.bx);
-      const Quad squared = x * x + y * y, area = quad_at(fan.area + i);
-      block_at(fan.turn_x + i) = x;
-      block_at(fan.turn_y + i) = y;
-      block_at(fan.squared + i) = squared;
+      const Quad squared = x * x + y * y, area = QuadAt(fan.area + i).quad;
+      put_quad(fan.turn_x + i, x);
+      put_quad(fan.turn_y + i, y);
+      put_quad(fan.squared + i, squared);
       clear &= squared > kNoTurn * kNoTurn * area * area;
     }
     if (!(clear[0] & clear[1] & clear[2] & clear[3])) mend_turns(fan);
@@ -171,12 +172,13 @@ struct FanSolver::Kernels {
   // What the rotations nearest to a fan's maps ask of its vertices.
   ATLAS_INLINE static void find_loads(const Fan& fan) {
     for (std::uint32_t i = 0; i < fan.count; i += 4) {
-      Quad root = block_at(fan.squared + i);
+      Quad root = QuadAt(fan.squared + i).quad;
       take_root(root);
       const Quad inverse = 1 / root;
-      const Quad c = block_at(fan.turn_x + i) * inverse, s = block_at(fan.turn_y + i) * inverse;
-      const Quad g1x = quad_at(fan.g1x + i), g1y = quad_at(fan.g1y + i);
-      const Quad g2x = quad_at(fan.g2x + i), g2y = quad_at(fan.g2y + i);
+      const Quad c = QuadAt(fan.turn_x + i).quad * inverse,
+                 s = QuadAt(fan.turn_y + i).quad * inverse;
+      const Quad g1x = QuadAt(fan.g1x + i).quad, g1y = QuadAt(fan.g1y + i).quad;
+      const Quad g2x = QuadAt(fan.g2x + i).quad, g2y = QuadAt(fan.g2y + i).quad;
       const Quad ax = g1x * c - g1y * s, ay = g1x * s + g1y * c;
       const Quad bx = g2x * c - g2y * s, by = g2x * s + g2y * c;
       double* const out = &fan.loads[2 * i].x;
@@ -185,10 +187,10 @@ struct FanSolver::Kernels {
                  a13 = __builtin_shufflevector(ax, ay, 1, 5, 3, 7);
       const Quad b02 = __builtin_shufflevector(bx, by, 0, 4, 2, 6),
                  b13 = __builtin_shufflevector(bx, by, 1, 5, 3, 7);
-      block_at(out) = __builtin_shufflevector(a02, b02, 0, 1, 4, 5);
-      block_at(out + 4) = __builtin_shufflevector(a13, b13, 0, 1, 4, 5);
-      block_at(out + 8) = __builtin_shufflevector(a02, b02, 2, 3, 6, 7);
-      block_at(out + 12) = __builtin_shufflevector(a13, b13, 2, 3, 6, 7);
+      put_quad(out, __builtin_shufflevector(a02, b02, 0, 1, 4, 5));
+      put_quad(out + 4, __builtin_shufflevector(a13, b13, 0, 1, 4, 5));
+      put_quad(out + 8, __builtin_shufflevector(a02, b02, 2, 3, 6, 7));
+      put_quad(out + 12, __builtin_shufflevector(a13, b13, 2, 3, 6, 7));
     }
   }
 

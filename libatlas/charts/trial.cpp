@@ -209,8 +209,9 @@ ATLAS_INLINE std::size_t find_near(const Boxes& boxes, std::size_t i, std::size_
   const double *const left = boxes.sides, *const right = left + boxes.stride,
                       *const low = right + boxes.stride, *const high = low + boxes.stride;
   for (; next < count; next += 4) {
-    const auto met = (quad_at(left + next) <= right[i]) & (quad_at(right + next) >= left[i]) &
-                     (quad_at(low + next) <= high[i]) & (quad_at(high + next) >= low[i]);
+    const auto met = (QuadAt(left + next).quad <= right[i]) &
+                     (QuadAt(right + next).quad >= left[i]) & (QuadAt(low + next).quad <= high[i]) &
+                     (QuadAt(high + next).quad >= low[i]);
     if (!(met[0] | met[1] | met[2] | met[3])) continue;
     return next + (met[0] ? 0 : met[1] ? 1 : met[2] ? 2 : 3);
   }
