@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "libatlas/charts/fan_centre.h"
 #include "libatlas/charts/rims.h"
@@ -19,10 +21,10 @@ constexpr double kNoisyCosine = 0.988, kNoisyShare = 0.6, kNoisyCell = 20;
 
 class CoarseBuilder {
  public:
-  CoarseBuilder(const Topology& topology, double crease_degrees, const Cells& cells)
+  CoarseBuilder(const Topology& topology, double crease_degrees, const Cells& cells, Rims rims)
       : topology_(topology),
         cells_(cells),
-        rims_(topology, cells),
+        rims_(std::move(rims)),
         crease_cosine_(std::cos(crease_degrees * M_PI / 180)) {}
 
   CoarseMesh run() {
@@ -77,7 +79,7 @@ class CoarseBuilder {
 
   // Corners along arcs that are long for their cell. Both sides see them: they belong to vertices.
   void add_corners(std::uint32_t k) {
-    const auto& loops = rims_.loops(k);
+    const std::span<const RimLoop> loops = rims_.loops(k);
     if (loops.empty()) return;
     const RimLoop loop = loops[longest_loop(loops)];
     const auto n = loop.end - loop.begin;
@@ -113,7 +115,7 @@ class CoarseBuilder {
   void add_rim(std::uint32_t k) {
     CoarseCell& cell = mesh_.cells[k];
     cell.first_slot = static_cast<std::uint32_t>(mesh_.slot_position.size());
-    const auto& loops = rims_.loops(k);
+    const std::span<const RimLoop> loops = rims_.loops(k);
     if (loops.empty()) return;
     const RimLoop loop = loops[longest_loop(loops)];
     const auto n = loop.end - loop.begin;
@@ -220,8 +222,8 @@ class CoarseBuilder {
 }  // namespace
 
 CoarseMesh build_coarse(const Topology& topology, double crease_degrees, Cells& cells) {
-  divide_rings(topology, cells);
-  return CoarseBuilder(topology, crease_degrees, cells).run();
+  Rims rims = divide_rings(topology, cells);
+  return CoarseBuilder(topology, crease_degrees, cells, std::move(rims)).run();
 }
 
 }  // namespace atlas

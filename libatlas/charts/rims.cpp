@@ -9,7 +9,7 @@ namespace {
 constexpr double kSmallHole = 0.35;
 constexpr int kDivideRounds = 8;
 
-bool has_one_rim(const std::vector<RimLoop>& loops) {
+bool has_one_rim(std::span<const RimLoop> loops) {
   if (loops.empty()) return false;
   const std::size_t longest = longest_loop(loops);
   for (std::size_t i = 0; i < loops.size(); ++i) {
@@ -99,6 +99,20 @@ std::uint32_t most_around(const Topology& topology, const Cells& cells, std::uin
 }  // namespace
 
 Rims::Rims(const Topology& topology, const Cells& cells) : topology_(topology), cells_(cells) {
+  sort_by_cell();
+  seen_.assign(topology_.opposite.size(), 0);
+  path.reserve(rim_.size());
+  first_loop_.reserve(cells_.count + 1);
+  for (std::uint32_t k = 0; k < cells_.count; ++k) {
+    first_loop_.push_back(static_cast<std::uint32_t>(loops_.size()));
+    for (std::uint32_t i = first_[k]; i < first_[k + 1]; ++i) {
+      if (!seen_[rim_[i]]) walk(rim_[i]);
+    }
+  }
+  first_loop_.push_back(static_cast<std::uint32_t>(loops_.size()));
+}
+
+void Rims::sort_by_cell() {
   const auto n = static_cast<std::uint32_t>(topology_.opposite.size());
   first_.assign(cells_.count + 2, 0);
   std::vector<std::uint32_t> found;
@@ -115,17 +129,6 @@ Rims::Rims(const Topology& topology, const Cells& cells) : topology_(topology), 
   rim_.resize(found.size());
   for (const std::uint32_t h : found) rim_[first_[cell(h) + 1]++] = h;
   first_.pop_back();
-  seen_.assign(n, 0);
-}
-
-const std::vector<RimLoop>& Rims::loops(std::uint32_t k) {
-  loops_.clear();
-  path.clear();
-  for (std::uint32_t i = first_[k]; i < first_[k + 1]; ++i) {
-    if (!seen_[rim_[i]]) walk(rim_[i]);
-  }
-  for (std::uint32_t i = first_[k]; i < first_[k + 1]; ++i) seen_[rim_[i]] = 0;
-  return loops_;
 }
 
 void Rims::walk(std::uint32_t start) {
@@ -143,7 +146,7 @@ void Rims::walk(std::uint32_t start) {
   loops_.push_back(loop);
 }
 
-std::size_t longest_loop(const std::vector<RimLoop>& loops) {
+std::size_t longest_loop(std::span<const RimLoop> loops) {
   std::size_t longest = 0;
   for (std::size_t i = 1; i < loops.size(); ++i) {
     if (loops[i].length > loops[longest].length * (1 + 1e-4)) longest = i;
@@ -174,16 +177,17 @@ void pull_teeth(const Topology& topology, Cells& cells) {
   }
 }
 
-void divide_rings(const Topology& topology, Cells& cells) {
+Rims divide_rings(const Topology& topology, Cells& cells) {
   for (int round = 0; round < kDivideRounds; ++round) {
     Rims rims(topology, cells);
     std::vector<std::uint32_t> bad;
     for (std::uint32_t k = 0; k < cells.count; ++k) {
       if (!has_one_rim(rims.loops(k))) bad.push_back(k);
     }
-    if (bad.empty()) return;
+    if (bad.empty()) return rims;
     Divider(topology, cells).divide(bad);
   }
+  return {topology, cells};
 }
 
 }  // namespace atlas

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "libatlas/charts/cells.h"
@@ -21,8 +22,10 @@ class Rims {
   Rims(const Topology& topology, const Cells& cells);
 
   bool on_rim(std::uint32_t h) const { return cell(h) != kNoIndex && across(h) != cell(h); }
-  // The loops of one cell, over `path`; each call walks anew.
-  const std::vector<RimLoop>& loops(std::uint32_t k);
+  // The loops of one cell, over `path`.
+  std::span<const RimLoop> loops(std::uint32_t k) const {
+    return {loops_.data() + first_loop_[k], first_loop_[k + 1] - first_loop_[k]};
+  }
   // Of all cells, by cell and id.
   const std::vector<std::uint32_t>& half_edges() const { return rim_; }
 
@@ -34,6 +37,7 @@ class Rims {
     const std::uint32_t o = topology_.opposite[h];
     return o == kNoIndex ? kNoIndex : cell(o);
   }
+  void sort_by_cell();
   void walk(std::uint32_t start);
 
   const Topology& topology_;
@@ -41,10 +45,11 @@ class Rims {
   std::vector<std::uint32_t> first_, rim_;
   std::vector<std::uint8_t> seen_;
   std::vector<RimLoop> loops_;
+  std::vector<std::uint32_t> first_loop_;  // 1 a cell and the end
 };
 
 // The place of the longest loop; of nearly equal ones the first. Precondition: not empty.
-std::size_t longest_loop(const std::vector<RimLoop>& loops);
+std::size_t longest_loop(std::span<const RimLoop> loops);
 
 // Triangles with two edges on one other cell join it, one after the other, as long as there are
 // any: where two fronts came by at about the same time, rounding would decide, and whether one
@@ -53,7 +58,7 @@ std::size_t longest_loop(const std::vector<RimLoop>& loops);
 void pull_teeth(const Topology& topology, Cells& cells);
 
 // Divides cells in two, again and again, until the border of each is one loop but for small holes
-// of the mesh.
-void divide_rings(const Topology& topology, Cells& cells);
+// of the mesh. Returns the rims.
+Rims divide_rings(const Topology& topology, Cells& cells);
 
 }  // namespace atlas

@@ -69,27 +69,34 @@ class Seeder {
     seeds_.push_back(grain);
     normals_.push_back(grains_.normal[grain]);
     queue_.restart();
-    offer({0, 0, grain, static_cast<std::uint32_t>(seeds_.size() - 1)});
+    start_from(grain, static_cast<std::uint32_t>(seeds_.size() - 1));
     spread();
   }
 
-  void offer(Visit visit) {
-    float& nearest = distance_[visit.node];
-    if (!ruler_.take(visit.distance, visit.seed, nearest, owner_[visit.node])) return;
-    visit.distance = nearest;
-    queue_.push(visit);
+  void start_from(std::uint32_t grain, std::uint32_t seed) {
+    if (ruler_.take(0, seed, distance_[grain], owner_[grain])) {
+      queue_.push({0, distance_[grain], grain, seed});
+    }
   }
 
   void spread() {
+    // What is read again and again, where no write can be thought to change it.
+    const CellRuler ruler = ruler_;
+    const std::uint32_t *const first = grains_.first.data(), *const neighbour =
+                                                                 grains_.neighbour.data();
+    const float* const step = grains_.distance.data();
+    const glm::vec3* const normal = grains_.normal.data();
+    float* const nearest = distance_.data();
+    std::uint32_t* const owner = owner_.data();
     while (!queue_.empty()) {
       const Visit visit = queue_.pop();
-      if (visit.distance != distance_[visit.node] || visit.seed != owner_[visit.node]) continue;
+      if (visit.distance != nearest[visit.node] || visit.seed != owner[visit.node]) continue;
       const glm::vec3 axis = normals_[visit.seed];
-      for (std::uint32_t i = grains_.first[visit.node]; i < grains_.first[visit.node + 1]; ++i) {
-        const std::uint32_t next = grains_.neighbour[i];
-        const float distance =
-            visit.distance + cell_distance(grains_.distance[i], grains_.normal[next], axis);
-        offer({std::max(ruler_.key(distance), visit.key), distance, next, visit.seed});
+      for (std::uint32_t i = first[visit.node], end = first[visit.node + 1]; i < end; ++i) {
+        const std::uint32_t next = neighbour[i];
+        const float distance = visit.distance + cell_distance(step[i], normal[next], axis);
+        if (!ruler.take(distance, visit.seed, nearest[next], owner[next])) continue;
+        queue_.push({std::max(ruler.key(distance), visit.key), nearest[next], next, visit.seed});
       }
     }
   }
@@ -159,17 +166,35 @@ class Seeder {
     const auto cosine = [&](std::uint32_t g) {
       return glm::dot(calm_normal(g), normals_[owner_[g]]);
     };
+    std::vector<std::uint8_t> look(last - first, 1);
     for (int round = 0; round < 6; ++round) {
       std::vector<std::pair<int, std::uint32_t>> leaning;
       for (std::uint32_t g = first; g < last; ++g) {
+        if (!look[g - first]) continue;
         const float c = cosine(g);
         if (c < limit)
           leaning.push_back({static_cast<int>(std::floor(kCosineParts * c + kBetweenParts)), g});
       }
       if (leaning.empty()) return;
       std::sort(leaning.begin(), leaning.end());
+      const std::vector<std::uint32_t> before(owner_.begin() + first, owner_.begin() + last);
       for (const auto& [worst, g] : leaning) {
         if (cosine(g) < limit) add_seed(g);
+      }
+      find_changed(first, before, look);
+      for (const auto& [worst, g] : leaning) look[g - first] = 1;  // it may be a seed already
+    }
+  }
+
+  // Others lean no more than they did.
+  void find_changed(std::uint32_t first, const std::vector<std::uint32_t>& before,
+                    std::vector<std::uint8_t>& changed) const {
+    std::fill(changed.begin(), changed.end(), 0);
+    for (std::uint32_t g = first; g < first + before.size(); ++g) {
+      if (owner_[g] == before[g - first]) continue;
+      changed[g - first] = 1;
+      for (std::uint32_t i = grains_.first[g]; i < grains_.first[g + 1]; ++i) {
+        changed[grains_.neighbour[i] - first] = 1;
       }
     }
   }
@@ -201,10 +226,10 @@ class Seeder {
       sum.normal += double(grains_.area[g]) * glm::dvec3(grains_.normal[g]);
       sum.area += grains_.area[g];
     }
+    for (Sum& sum : sums) sum.middle /= sum.area;
     for (std::uint32_t g = first; g < last; ++g) {
       Sum& sum = sums[owner_[g] - first_seed];
-      const auto d =
-          static_cast<float>(glm::distance(glm::dvec3(grains_.centroid[g]), sum.middle / sum.area));
+      const auto d = static_cast<float>(glm::distance(glm::dvec3(grains_.centroid[g]), sum.middle));
       if (ruler_.shorter(d, sum.best)) {
         sum.best = d;
         seeds_[owner_[g]] = g;
@@ -216,7 +241,7 @@ class Seeder {
       const glm::dvec3& normal = sums[s - first_seed].normal;
       const double length = glm::length(normal);
       if (length > 0) normals_[s] = normal / length;
-      offer({0, 0, seeds_[s], static_cast<std::uint32_t>(s)});
+      start_from(seeds_[s], static_cast<std::uint32_t>(s));
     }
     spread();
   }

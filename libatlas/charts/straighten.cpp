@@ -165,8 +165,10 @@ class Straightener {
   void add_edge(std::uint32_t h, double unit, bool (&anchored)[2]) {
     const std::uint32_t o = topology_.opposite[h], i = local_[h / 3] - first_;
     if (o == kNoIndex || partition_.seam(h)) return;
+    const bool within = in_band(o / 3);
+    if (within && o < h) return;  // one side adds it for both
     const std::int32_t w = steps(border_weight(topology_, h, crease_cosine_) / unit);
-    if (in_band(o / 3)) {
+    if (within) {
       cut_.set_edge({i, h % 3}, {local_[o / 3] - first_, o % 3}, w);
     } else if (const std::uint32_t there = side(o / 3); there < 2) {
       anchored[there] = true;
