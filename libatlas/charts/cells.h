@@ -12,9 +12,9 @@
 namespace atlas {
 
 struct CellOptions {
-  // A piece of n triangles gets about n / this cells, more in meshes of less than ten thousand
-  // triangles, whose charts would otherwise have few to choose from,
-  std::uint32_t triangles_per_cell = 40;
+  // A piece of n triangles gets about n / this cells, more in meshes of less than twelve thousand
+  // triangles, whose charts would otherwise have few to choose from, and where it has handles,
+  std::uint32_t triangles_per_cell = 80;
   std::uint32_t max_cells_per_piece = 600;  // but not more than this, however fine it is.
   // Cells are added, beyond those numbers, until no grain leans more than this to its cell's seed.
   double max_lean_degrees = 55;

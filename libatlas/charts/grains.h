@@ -19,6 +19,7 @@ struct Grains {
   std::vector<std::uint32_t> component;         // ascending: grains of a piece are contiguous
   std::vector<std::uint32_t> first, neighbour;  // compressed rows
   std::vector<float> distance;                  // 1 a neighbour: between the centroids
+  std::vector<std::uint32_t> cells;             // 1 a piece: how many it gets
   std::size_t count() const { return area.size(); }
 };
 
@@ -46,9 +47,6 @@ struct PieceList {
     first.pop_back();
   }
 };
-
-// How many cells a piece gets.
-std::uint32_t cell_budget(std::size_t triangles, const CellOptions& options);
 
 // Breadth-first patches, about twelve a cell, of triangles that lean less than 45 degrees to their
 // first.

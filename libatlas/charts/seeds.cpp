@@ -34,8 +34,6 @@ class Seeder {
   CellSeeds run() {
     distance_.assign(grains_.count(), kFar);
     owner_.assign(grains_.count(), kNoIndex);
-    std::vector<std::uint32_t> size(topology_.component_count, 0);
-    for (const std::uint32_t k : topology_.component) size[k == kNoIndex ? 0 : k] += k != kNoIndex;
     for (std::uint32_t first = 0, last = 0; first < grains_.count() && !context_.cancelled();
          first = last) {
       while (last < grains_.count() && grains_.component[last] == grains_.component[first]) ++last;
@@ -43,8 +41,7 @@ class Seeder {
       double area = 0;
       for (std::uint32_t g = first; g < last; ++g) area += grains_.area[g];
       ruler_ = CellRuler(area, last - first);
-      const std::uint32_t budget =
-          flat(first, last) ? 1 : cell_budget(size[grains_.component[first]], options_);
+      const std::uint32_t budget = flat(first, last) ? 1 : grains_.cells[grains_.component[first]];
       sample_piece(first, last, budget);
       if (seeds_.size() == first_seed + 1) continue;
       number_by_grain(first, last, first_seed);

@@ -86,6 +86,20 @@ TEST(Cells, AreConnectedAndHaveNoTeeth) {
   }
 }
 
+// Few cells know nothing of what goes on around a hole.
+TEST(Cells, AreMoreWhereTheSurfaceHasHandles) {
+  const auto triangles_a_cell = [](const Shape& shape) {
+    const Topology topology = topology_of(shape);
+    const Cells cells = grow_cells(topology, {}, {});
+    return double(topology.triangle_count()) / cells.count;
+  };
+  const double without = triangles_a_cell(geodesic_sphere(30)),
+               with = triangles_a_cell(plate_with_holes(12, 5));
+  EXPECT_GT(without, 70);
+  EXPECT_LT(with, 0.65 * without);
+  EXPECT_GT(with, 30);
+}
+
 TEST(Teeth, ARaggedBorderIsDrawnStraighter) {
   const Topology topology = topology_of(grid(20, 20));
   Cells cells{std::vector<std::uint32_t>(topology.triangle_count()), 2};
