@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,12 @@ struct ChartScratch {
   double cuts_cpu = 0;      // seconds spent on cutting charts open
   std::size_t largest = 0;  // triangles of the largest chart so far
 };
+
+// Stands for a corner's uv that is not known.
+inline Vec2d unplaced() {
+  constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+  return {nothing, nothing};
+}
 
 // What became of a chart: flat; or to be divided; or to lose a few triangles to its neighbours.
 struct ChartOutcome {
@@ -37,9 +44,11 @@ struct ChartEffort {
   int closings = 1;  // rounds, among these, of closing cuts whose banks cross
   // 3 a triangle, or empty: of flat parts that are to be joined (see ParamOptions::joined).
   std::span<const Vec2d> joined = {};
-  // 3 a triangle, or empty: where an earlier attempt came to that was within the bound.
+  // 3 a triangle, or empty: where an earlier attempt came to that was within the bound; unplaced()
+  // for triangles that the chart got since.
   std::span<const Vec2d> resumed = {};
-  // What is joined is one large part and little else: only the places beyond the bound are relaxed.
+  // What is joined or resumed is one large part and little else: only the places beyond the bound
+  // are relaxed.
   bool little = false;
   bool whole = false;  // what fails needs no division: its parts are a single one
 };

@@ -22,6 +22,7 @@ constexpr int kMaxRemovals = 4;
 // chart is divided: of 29 with seven crossings and more 4 came apart at last (170 meshes).
 constexpr std::size_t kManyCrossings = 6;
 constexpr double kRemovalWidth = 1.0 / 60;
+constexpr std::size_t kMostResumed = 200000;
 
 // What charts of more triangles needed is given back once they are half as large: the flat charts
 // need room by then.
@@ -92,7 +93,7 @@ class Flattener {
           fit_scratch(state.triangles.size(), *scratch);
           ChartOutcome outcome =
               flatten_chart(input_, partition_, state.triangles,
-                            {.rings = removal_rings(state), .resumed = state.uvs}, *scratch);
+                            effort_for(state), *scratch);
           if (outcome.parts.empty()) {
             flats_[todo_[i]] = std::move(outcome.flat);
           } else {
@@ -131,6 +132,7 @@ class Flattener {
   struct State {
     std::vector<std::uint32_t> triangles;  // ascending
     std::vector<Vec2d> uvs;                // 3 a triangle, to go on from, or empty
+    bool was_flat = false;                 // and are those of flats_, but for newcomers
     int removals = 0;
     std::size_t crossings = std::numeric_limits<std::size_t>::max();  // the last removal's
     bool queued = false;
@@ -143,6 +145,12 @@ class Flattener {
   static int removal_rings(const State& state) {
     const double width = std::sqrt(static_cast<double>(state.triangles.size()));
     return std::max(1, static_cast<int>(kRemovalWidth * width)) << state.removals;
+  }
+
+  ChartEffort effort_for(const State& state) const {
+    ChartEffort effort{.rings = removal_rings(state), .resumed = state.uvs};
+    effort.little = state.was_flat;
+    return effort;
   }
 
   // Numbers charts anew, by first triangle.
@@ -189,6 +197,7 @@ class Flattener {
     for (std::size_t i = 0; i < done.size(); ++i) {
       if (!failures[i]) {
         charts_[done[i]].uvs = {};
+        charts_[done[i]].was_flat = false;
         continue;
       }
       if (remove(done[i], *failures[i])) continue;
@@ -221,8 +230,14 @@ class Flattener {
     }
     if (!any) return false;
     state.uvs = std::move(failure.uvs);
+    forget_flat(chart);
     queue(chart);
     return true;
+  }
+
+  void forget_flat(std::uint32_t chart) {
+    charts_[chart].was_flat = false;
+    flats_[chart] = {};
   }
 
   // The longest edge of t to another chart.
@@ -245,6 +260,7 @@ class Flattener {
     const std::vector<std::uint32_t> triangles = std::move(charts_[chart].triangles);
     charts_[chart].triangles.clear();
     charts_[chart].uvs.clear();
+    forget_flat(chart);
     charts_[chart].crossings = State{}.crossings;
     std::vector<std::uint32_t> name(1 + *std::max_element(parts.begin(), parts.end()), kNoIndex);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -280,17 +296,30 @@ class Flattener {
     std::sort(moved_.begin(), moved_.end());
     moved_.erase(std::unique(moved_.begin(), moved_.end()), moved_.end());
     for (const std::uint32_t t : moved_) {
-      auto& list = charts_[partition_.chart[t]].triangles;
-      const auto at = std::lower_bound(list.begin(), list.end(), t);
-      if (at == list.end() || *at != t) {
-        list.insert(at, t);
-        charts_[partition_.chart[t]].uvs.clear();
-      }
+      add_triangle(partition_.chart[t], t);
       if (!std::exchange(charts_[partition_.chart[t]].grown, true)) {
         grown_.push_back(partition_.chart[t]);
       }
     }
     std::erase_if(todo_, [&](std::uint32_t chart) { return charts_[chart].triangles.empty(); });
+  }
+
+  // Unless it is there.
+  void add_triangle(std::uint32_t chart, std::uint32_t t) {
+    State& state = charts_[chart];
+    const auto at = std::lower_bound(state.triangles.begin(), state.triangles.end(), t);
+    if (at != state.triangles.end() && *at == t) return;
+    const FlatChart& flat = flats_[chart];
+    if (state.uvs.empty() && !flat.corners.empty() && flat.corners.size() <= kMostResumed) {
+      state.was_flat = true;
+      for (const auto& corners : flat.corners) {
+        for (const std::uint32_t v : corners) state.uvs.push_back(flat.uvs[v]);
+      }
+    }
+    if (!state.uvs.empty()) {
+      state.uvs.insert(state.uvs.begin() + 3 * (at - state.triangles.begin()), 3, unplaced());
+    }
+    state.triangles.insert(at, t);
   }
 
   const FlattenInput& input_;
