@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "libatlas/charts/newcomers.h"
 #include "libatlas/charts/split.h"
 #include "libatlas/charts/unroll.h"
 #include "libatlas/core/clock.h"
@@ -41,9 +42,6 @@ constexpr int kMostCuts = 12, kMostClosings = 10, kLastClosings = 4;
 constexpr std::size_t kMostCrossingsLeft = 8, kTrianglesACrossing = 150;
 constexpr int kTelling = 2;  // cuts
 constexpr int kBestIterations = 8;
-// Of triangles, in what goes on from its last attempt when some of them are gone: more would take
-// memory that large meshes need elsewhere.
-constexpr std::size_t kMostResumed = 200000;
 // Charts of so many triangles that are stretched beyond the bound over more than this share of
 // their area were saved by no cut to a vertex (measured); a hole in them may be what they close
 // around.
@@ -280,7 +278,7 @@ class ChartJob {
                  options.preset == ChartPreset::fast ? kFastPlanarStretch : kPlanarStretch);
     param.axis = from_glm(glm::dvec3(to_glm(cone_.axis)));
     param.min_altitude = min_altitude();
-    if (!kept_uvs_.empty() && place_kept(mesh)) {
+    if (!kept_uvs_.empty() && place_newcomers(mesh, kept_uvs_, start_uvs_)) {
       param.start.uvs = start_uvs_;
       param.resume = true;
       param.aimed_stretch = 0;  // it has been squeezed before
@@ -292,49 +290,6 @@ class ChartJob {
       };
     }
     return param;
-  }
-
-  // From kept_uvs_ to start_uvs_. Triangles that were not there keep their shape, beside one that
-  // was; false if there is none.
-  bool place_kept(const LocalMesh& mesh) {
-    start_uvs_.assign(mesh.positions.size(), unplaced());
-    std::vector<std::size_t> rest;
-    for (std::size_t i = 0; i < kept_uvs_.size(); ++i) {
-      if (!std::isnan(kept_uvs_[i].x)) {
-        start_uvs_[mesh.triangles[i / 3][i % 3]] = kept_uvs_[i];
-      } else if (i % 3 == 0) {
-        rest.push_back(i / 3);
-      }
-    }
-    for (std::size_t left = rest.size() + 1; rest.size() < left;) {
-      left = rest.size();
-      std::erase_if(rest, [&](std::size_t t) { return place_beside(mesh, t); });
-    }
-    return rest.empty();
-  }
-
-  // Lays triangle t on its edge whose ends have a place. False if it has none.
-  bool place_beside(const LocalMesh& mesh, std::size_t t) {
-    const auto& v = mesh.triangles[t];
-    int known = 0, apex = 0;
-    for (int i = 0; i < 3; ++i) {
-      const bool placed = !std::isnan(start_uvs_[v[i]].x);
-      known += placed;
-      if (!placed) apex = i;
-    }
-    if (known == 3) return true;
-    if (known < 2) return false;
-    const std::uint32_t a = v[(apex + 1) % 3], b = v[(apex + 2) % 3];
-    const glm::dvec3 from = to_glm(mesh.positions[a]);
-    const glm::dvec3 edge = to_glm(mesh.positions[b]) - from;
-    const glm::dvec3 side = to_glm(mesh.positions[v[apex]]) - from;
-    const double squared = glm::dot(edge, edge);
-    if (!(squared > 0)) return false;
-    const double along = glm::dot(side, edge) / squared;
-    const double across = glm::length(glm::cross(edge, side)) / squared;
-    const glm::dvec2 base = to_glm(start_uvs_[a]), flat = to_glm(start_uvs_[b]) - base;
-    start_uvs_[v[apex]] = from_glm(base + along * flat + across * glm::dvec2(-flat.y, flat.x));
-    return true;
   }
 
   // Lays a chart that unrolls flat without asking the solver. False if it does not, or would

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -21,11 +20,9 @@ struct ChartScratch {
   std::size_t largest = 0;  // triangles of the largest chart so far
 };
 
-// Stands for a corner's uv that is not known.
-inline Vec2d unplaced() {
-  constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-  return {nothing, nothing};
-}
+// Of triangles, in what goes on from an earlier attempt when some have gone or come: more would
+// take memory that large meshes need elsewhere.
+constexpr std::size_t kMostResumed = 200000;
 
 // What became of a chart: flat; or to be divided; or to lose a few triangles to its neighbours.
 struct ChartOutcome {
@@ -45,7 +42,7 @@ struct ChartEffort {
   // 3 a triangle, or empty: of flat parts that are to be joined (see ParamOptions::joined).
   std::span<const Vec2d> joined = {};
   // 3 a triangle, or empty: where an earlier attempt came to that was within the bound; unplaced()
-  // for triangles that the chart got since.
+  // (newcomers.h) for triangles that the chart got since.
   std::span<const Vec2d> resumed = {};
   // What is joined or resumed is one large part and little else: only the places beyond the bound
   // are relaxed.

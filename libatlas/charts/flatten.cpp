@@ -9,6 +9,7 @@
 
 #include "libatlas/charts/absorb.h"
 #include "libatlas/charts/chart_job.h"
+#include "libatlas/charts/newcomers.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
 
@@ -22,7 +23,6 @@ constexpr int kMaxRemovals = 4;
 // chart is divided: of 29 with seven crossings and more 4 came apart at last (170 meshes).
 constexpr std::size_t kManyCrossings = 6;
 constexpr double kRemovalWidth = 1.0 / 60;
-constexpr std::size_t kMostResumed = 200000;
 
 // What charts of more triangles needed is given back once they are half as large: the flat charts
 // need room by then.
@@ -92,8 +92,7 @@ class Flattener {
           const State& state = charts_[todo_[i]];
           fit_scratch(state.triangles.size(), *scratch);
           ChartOutcome outcome =
-              flatten_chart(input_, partition_, state.triangles,
-                            effort_for(state), *scratch);
+              flatten_chart(input_, partition_, state.triangles, effort_for(state), *scratch);
           if (outcome.parts.empty()) {
             flats_[todo_[i]] = std::move(outcome.flat);
           } else {
@@ -148,9 +147,7 @@ class Flattener {
   }
 
   ChartEffort effort_for(const State& state) const {
-    ChartEffort effort{.rings = removal_rings(state), .resumed = state.uvs};
-    effort.little = state.was_flat;
-    return effort;
+    return {.rings = removal_rings(state), .resumed = state.uvs, .little = state.was_flat};
   }
 
   // Numbers charts anew, by first triangle.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "libatlas/charts/chart_job.h"
+#include "libatlas/charts/newcomers.h"
 #include "libatlas/charts/split.h"
 #include "tests/charts/chart_checks.h"
 
@@ -209,6 +210,38 @@ TEST(ChartJob, GoesOnFromItsUvsWhenTrianglesAreGone) {
   for (std::size_t i = 0; i < was.size(); ++i) {
     EXPECT_LT(change(scaled(was[i], scale), corners_of(resumed.flat, i)), 1e-9) << i;
   }
+}
+
+// Triangles that come back are laid beside the rest, which stays as it is.
+TEST(ChartJob, LaysWhatItGotBesideWhatItHad) {
+  constexpr int kShort = 90;
+  Bench bench(wavy_ramp(0.05, kShort), std::vector<std::uint32_t>(2 * kRows * kShort, 0));
+  const std::vector<std::uint32_t> all = bench.triangles(0);
+  const ChartOutcome first = bench.flatten(0);
+  ASSERT_TRUE(first.parts.empty());
+  std::vector<Vec2d> kept;
+  std::vector<std::uint8_t> newcomer;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    newcomer.push_back(i / (2 * kRows) >= kShort - 4 && i % (2 * kRows) < kRows);
+    for (const std::uint32_t v : first.flat.corners[i]) {
+      kept.push_back(newcomer[i] ? unplaced() : first.flat.uvs[v]);
+    }
+  }
+  const ChartOutcome grown = bench.flatten(0, {.resumed = kept, .little = true});
+  ASSERT_TRUE(grown.parts.empty());
+  EXPECT_EQ(grown.flat.distortion.flips, 0u);
+  EXPECT_LE(grown.flat.distortion.stretch_999, 1.25);
+  const double scale = size_of(corners_of(grown.flat, 0)) / size_of(corners_of(first.flat, 0));
+  std::size_t moved = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Triangle2 was = scaled(corners_of(first.flat, i), scale);
+    if (newcomer[i]) {
+      moved += change(was, corners_of(grown.flat, i)) > 1e-9;
+    } else {
+      EXPECT_LT(change(was, corners_of(grown.flat, i)), 1e-9) << i;
+    }
+  }
+  EXPECT_GT(moved, 0u);
 }
 
 // The same where it was cut short between two rounds: what is left of the chart is in the list of
