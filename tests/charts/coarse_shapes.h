@@ -16,6 +16,7 @@ inline CoarseMesh coarse_of(const Shape& shape) {
   const Result<Topology> topology = build_topology(mesh.view(), {}, {});
   EXPECT_TRUE(topology.ok());
   CellOptions options;
+  options.triangles_per_cell = 40;
   options.mesh_triangles = 100000;
   Cells cells = grow_cells(*topology, options, {});
   return build_coarse(*topology, 40, cells);
