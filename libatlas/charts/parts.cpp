@@ -13,16 +13,13 @@ namespace {
 
 // Pieces that repeat others are set aside if they are at least this part of the triangles.
 constexpr std::size_t kCopiedShare = 4;
-// What segmenting fewer triangles needed is kept for flattening: to give it back and ask for it
-// again takes a twentieth of the time of both.
-constexpr std::size_t kManyTriangles = 200000;
 
 // Appends the charts of a mesh, without regard to copies.
 void cut_mesh(const FlattenInput& mesh, const Context& context, CutCharts& out) {
   const double start = cpu_seconds();
   Segmentation segmentation = segment(mesh.topology, mesh.options, context);
   if (context.cancelled()) return;
-  if (mesh.topology.triangle_count() >= kManyTriangles) return_freed_memory();
+  return_freed_memory();
   out.timing.segmentation_cpu += cpu_seconds() - start;
   context.report("charts", 0.5);
   FlattenResult flat =

@@ -9,8 +9,9 @@ double wall_seconds();        // since an arbitrary start, monotonic
 double cpu_seconds();         // user + system time of all threads of the process
 double thread_cpu_seconds();  // the same of the calling thread
 std::int64_t peak_memory();   // largest resident set so far, bytes
-// Gives memory that was freed back to the system, where the allocator keeps it until told (glibc).
-// A call between two stages takes a millisecond or so; peak_memory() grows that much less.
+// Gives memory that was freed back to the system, where the allocator keeps it until told (glibc)
+// and it is 4 MiB or more. A call between two stages takes a millisecond or so; peak_memory()
+// grows that much less.
 void return_freed_memory();
 
 // Times sections of work that follow each other.
