@@ -153,7 +153,7 @@ void add_output_options(CLI::App& app, ExportCommand& command) {
       ->capture_default_str();
 }
 
-constexpr double kMostPages = 1e6;               // as --atlases takes
+constexpr double kMostPages = 1e6;              // as --atlases takes
 constexpr double kBytesPerTexel = 4.0 * 4 / 3;  // RGBA8 and its mip chain
 
 // Turns text into numbers; gives the message of the first that cannot be.

@@ -13,10 +13,11 @@ namespace atlas {
 class CostClasses {
  public:
   static constexpr double tie = 1e-4;
-  static constexpr double most = 1e9;  // what is no number, as that of cells without area, costs it
+  // The most and, negative, the least. What is no number, as that of cells without area, costs it.
+  static constexpr double most = 1e9;
 
   double operator()(double cost) {
-    const double own = std::min(most, cost), low = own - tie, high = own + tie;
+    const double own = std::max(-most, std::min(most, cost)), low = own - tie, high = own + tie;
     if (2 * count_ >= table_.size()) grow();
     double least = kNone;
     for (std::int64_t c = cell(low), last = cell(high); c <= last; ++c) {
@@ -39,9 +40,7 @@ class CostClasses {
   };
   static constexpr double kNone = 2 * most;
 
-  static std::int64_t cell(double value) {
-    return static_cast<std::int64_t>(value / tie);
-  }
+  static std::int64_t cell(double value) { return static_cast<std::int64_t>(value / tie); }
   std::size_t place(std::int64_t cell) const {
     return static_cast<std::uint64_t>(cell) * 0x9e3779b97f4a7c15ull >> shift_;
   }

@@ -20,9 +20,9 @@ class FanMeasure {
 
   // At the scale that keeps the area: the mean stretch, the area stretched by more than `high`.
   FanStretch stretch(const JoinedFans& joined, std::span<const Vec2d> uvs, double high);
-  // Of the flat fans, as it is oriented.
+  // Of the flat fans, negative where they are mirrored.
   double twice_area(const JoinedFans& joined, std::span<const Vec2d> uvs, bool& flipped);
-  // The same from the maps of the triangles.
+  // The area (not twice) by the maps of the triangles: those without area on the surface have none.
   double mapped_area(const JoinedFans& joined, std::span<const Vec2d> uvs);
 
  private:

@@ -198,7 +198,7 @@ struct FanSolver::Kernels {
     const JoinedFans& joined = solver.joined_;
     const Fans& fans = solver.fans_;
     Fan fan = solver.scratch_fan();
-    Vec2d* const load = solver.load_.data() - joined.cells.size();  // 1 a vertex
+    Vec2d* const load = solver.load_.data();
     for (std::uint32_t c = 0; c < joined.cells.size(); ++c) {
       fan.triangles = joined.triangles.data() + joined.first[c];
       fan.count = joined.first[c + 1] - joined.first[c];
@@ -225,7 +225,7 @@ struct FanSolver::Kernels {
       for (std::uint32_t i = 0; i < fan.count; ++i) {
         pair_at(load[fan.triangles[i].a]) -= coupling[i].centre * centre;
       }
-      pair_at(solver.centre_load_[c]) = centre;
+      pair_at(load[c]) = centre;
     }
   }
 
@@ -238,13 +238,13 @@ struct FanSolver::Kernels {
         sum += solver.fans_.coupling[t.slot].centre * pair_at(uvs[t.a]);
       }
       const double inverse = solver.fans_.inverse_pivot[joined.cells[c]];
-      pair_at(uvs[c]) = pair_at(solver.centre_load_[c]) - inverse * sum;
+      pair_at(uvs[c]) = pair_at(solver.load_[c]) - inverse * sum;
     }
   }
 
   ATLAS_INLINE static void step(FanSolver& solver, double relaxation, Vec2d* uvs) {
     load_fans(solver, uvs);
-    Vec2d* const load = solver.load_.data();
+    Vec2d* const load = solver.load_.data() + solver.joined_.cells.size();
     solve(solver.factor(), load);
     Vec2d* const rows = uvs + solver.joined_.cells.size();
     for (std::uint32_t i = 0; i < solver.count_; ++i) {
@@ -291,7 +291,6 @@ void FanSolver::factorize(const JoinedFans& joined, std::size_t vertex_count) {
   for (std::size_t c = 0; c < joined.cells.size(); ++c) fill(c);
   inverse_pivot_.resize(2 * first_.size());
   scratch_.resize(7 * longest_);
-  centre_load_.resize(joined.cells.size());
   (has_wide_vectors ? Kernels::eliminate_wide : Kernels::eliminate_narrow)(factor());
 }
 
@@ -346,7 +345,7 @@ void FanSolver::fill(std::size_t place) {
 }
 
 void FanSolver::step(double relaxation, std::span<Vec2d> uvs) {
-  load_.assign(2 * first_.size(), Vec2d{});
+  load_.assign(joined_.cells.size() + 2 * first_.size(), Vec2d{});
   (has_wide_vectors ? Kernels::step_wide : Kernels::step_narrow)(*this, relaxation, uvs.data());
 }
 

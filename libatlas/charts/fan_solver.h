@@ -55,11 +55,10 @@ class FanSolver {
   std::vector<std::uint32_t> first_;  // that column, 1 a pair
   std::vector<std::size_t> row_;      // where the pair begins
   std::vector<double> factor_, inverse_pivot_;
-  std::uint32_t count_ = 0;         // of rows that are not mere padding
-  std::vector<Vec2d> load_;         // 1 a row, then its solution
-  std::vector<Vec2d> centre_load_;  // 1 a cell
-  std::vector<double> scratch_;     // for the fan at hand, see Fan
-  std::size_t longest_ = 0;         // of the fans, and some beyond
+  std::uint32_t count_ = 0;      // of rows that are not mere padding
+  std::vector<Vec2d> load_;      // 1 a cell, 1 a row; then the rows' solution
+  std::vector<double> scratch_;  // for the fan at hand, see Fan
+  std::size_t longest_ = 0;      // of the fans, and some beyond
   std::vector<std::uint32_t> columns_;
   std::vector<double*> rows_;
 };

@@ -16,12 +16,14 @@ namespace {
 fs::path name_beside(const fs::path& target, std::size_t number, std::string_view kind) {
   constexpr std::size_t kLongestStem = 120, kLongestExtension = 60;  // bytes
   std::string stem = target.stem().string(), extension = target.extension().string();
+  const bool cut = stem.size() > kLongestStem || extension.size() > kLongestExtension;
   if (stem.size() > kLongestStem) {
     std::size_t end = kLongestStem;
     while (end > 0 && (static_cast<unsigned char>(stem[end]) & 0xc0) == 0x80) --end;  // in UTF-8
-    stem = fmt::format("{}~{}", stem.substr(0, end), number);
+    stem.resize(end);
   }
   if (extension.size() > kLongestExtension) extension.clear();
+  if (cut) stem += fmt::format("~{}", number);
   fs::path beside = target;
   beside.replace_filename(fmt::format(".{}.{}.{}{}", stem, ::getpid(), kind, extension));
   return beside;

@@ -40,8 +40,8 @@ struct ParamOptions {
   // Borders that come apart only beyond max_stretch are left as they cross within it, for whoever
   // can take triangles away there.
   bool leave_crossings = false;
-  // start.uvs, all their triangles positive, are kept but where the stretch exceeds the bound: for
-  // a flattening that failed, after a cut.
+  // start.uvs, nearly all of their triangles positive, are kept but where others are turned over or
+  // the stretch exceeds the bound: for a flattening that failed, after a cut, or one that grew.
   bool resume = false;
   // 3 a triangle, or empty: parts of the mesh that are flat already, placed next to each other, to
   // go on from instead of `start`. What they stretch is kept, so far as they fit together.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
 
 #include "libatlas/charts/coarse.h"
 #include "libatlas/charts/cost_classes.h"
@@ -284,7 +285,22 @@ TEST(CostClasses, NearlyEqualCostsAreEqual) {
   // What has no area has no cost; others keep theirs.
   EXPECT_EQ(cost(std::numeric_limits<double>::quiet_NaN()), CostClasses::most);
   EXPECT_EQ(cost(std::numeric_limits<double>::infinity()), CostClasses::most);
+  EXPECT_EQ(cost(-std::numeric_limits<double>::infinity()), -CostClasses::most);
   EXPECT_EQ(cost(2), 2);
+}
+
+TEST(CostClasses, OfManyEachHasTheFirstOfItsNeighbours) {
+  CostClasses cost;
+  std::set<double> values;
+  std::uint32_t state = 1;
+  for (int i = 0; i < 20000; ++i) {
+    state = state * 1664525u + 1013904223u;
+    const double own = (double(state >> 8) / double(1 << 24) - 0.25) * 5000 * CostClasses::tie;
+    const auto at = values.lower_bound(own - CostClasses::tie);
+    const bool known = at != values.end() && *at <= own + CostClasses::tie;
+    EXPECT_EQ(cost(own), known ? *at : *values.insert(own).first);
+  }
+  EXPECT_GT(values.size(), 2000u);
 }
 
 TEST(Hull, OfFewPoints) {

@@ -157,6 +157,12 @@ TEST(AtomicFiles, NamesOfAnyLengthThatTheFileSystemTakes) {
   EXPECT_EQ(TempFolder::read(folder / (std::string(250, 'n') + "1.txt")), "1.txt");
   EXPECT_EQ(TempFolder::read(folder / (std::string(250, 'n') + "2.txt")), "2.txt");
   EXPECT_EQ(folder.count(), 2u);
+  // The same of their extensions.
+  for (const char* end : {"1", "2"})
+    std::ofstream(files.path_for(folder / ("n." + std::string(70, 'x') + end))) << end;
+  ASSERT_TRUE(files.commit().ok());
+  EXPECT_EQ(TempFolder::read(folder / ("n." + std::string(70, 'x') + "1")), "1");
+  EXPECT_EQ(TempFolder::read(folder / ("n." + std::string(70, 'x') + "2")), "2");
   const Status status = check_writable(folder / std::string(300, 'n'));
   EXPECT_EQ(status.code(), ErrorCode::io);
   EXPECT_NE(status.message().find("up to 255 bytes"), std::string::npos) << status.message();
