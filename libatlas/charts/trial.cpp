@@ -48,6 +48,17 @@ void Trial::assemble(std::span<const std::uint32_t> first, std::span<const std::
   for (const std::uint32_t k : joined_.cells()) area_ += mesh_.cells[k].area;
 }
 
+// A rotation about a point, then what takes that point to another.
+struct Trial::Move {
+  glm::dvec2 from, to;
+  double c, s;
+
+  Vec2d operator()(const Vec2d& p) const {
+    const double x = p.x - from.x, y = p.y - from.y;
+    return {c * x - s * y + to.x, s * x + c * y + to.y};
+  }
+};
+
 // Brings the second chart's coordinates next to the first's (rigid Procrustes on the glued slots)
 // and averages where they meet.
 void Trial::align(std::span<const std::uint32_t> glue) {
@@ -86,6 +97,11 @@ void Trial::align(std::span<const std::uint32_t> glue) {
     const glm::dvec2 a = to_glm(uv_.slot[p]) - mean_p, b = to_glm(uv_.slot[q]) - mean_q;
     misfit_ = std::max(misfit_, glm::distance(a, {c * b.x - s * b.y, s * b.x + c * b.y}));
   }
+  place({mean_q, mean_p, c, s});
+}
+
+// Vertices that several slots are joined to lie between these.
+void Trial::place(const Move& of_second) {
   uvs_.assign(joined_.vertex_count(), Vec2d{});
   weight_.assign(uvs_.size(), 0);
   const auto add = [&](std::uint32_t v, const Vec2d& p) {
@@ -93,15 +109,11 @@ void Trial::align(std::span<const std::uint32_t> glue) {
     uvs_[v].y += p.y;
     weight_[v] += 1;
   };
-  const auto turned = [&](const Vec2d& p) {
-    const double x = p.x - mean_q.x, y = p.y - mean_q.y;
-    return Vec2d{c * x - s * y + mean_p.x, s * x + c * y + mean_p.y};
-  };
   const std::span<const std::uint32_t> cells = joined_.cells();
   const std::size_t firsts = joined_.first_count();
   for (std::uint32_t i = 0; i < cells.size(); ++i) {
     const Vec2d& centre = uv_.centre[cells[i]];
-    uvs_[i] = i < firsts ? centre : turned(centre);
+    uvs_[i] = i < firsts ? centre : of_second(centre);
     weight_[i] = 1;
   }
   const auto triangles = joined_.triangles();
@@ -109,7 +121,7 @@ void Trial::align(std::span<const std::uint32_t> glue) {
   for (; t < triangles.size() && triangles[t].centre < firsts; ++t) {
     add(triangles[t].a, uv_.slot[triangles[t].slot]);
   }
-  for (; t < triangles.size(); ++t) add(triangles[t].a, turned(uv_.slot[triangles[t].slot]));
+  for (; t < triangles.size(); ++t) add(triangles[t].a, of_second(uv_.slot[triangles[t].slot]));
   for (std::size_t v = cells.size(); v < uvs_.size(); ++v) {
     uvs_[v].x /= weight_[v];
     uvs_[v].y /= weight_[v];

@@ -62,10 +62,13 @@ class Trial {
   void commit();
 
  private:
+  struct Move;
+
   void assemble(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
                 std::span<const std::uint32_t> glue, const std::vector<std::uint8_t>& joined);
   TrialOutcome judge(std::span<const std::uint32_t> glue, const TrialLimits& limits);
   void align(std::span<const std::uint32_t> glue);
+  void place(const Move& of_second);
   bool unrolled() const;
   bool fits_unrolled(TrialOutcome& outcome);
   bool measure_stretch(double stretch_high, TrialOutcome& outcome);
