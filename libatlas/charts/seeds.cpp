@@ -129,9 +129,9 @@ class Seeder {
     } while (!look_again(s));
     const float most = farthest_[s];
     for (s = farthest_.size(); s-- > 0;) {
-      if (ruler_.shorter(farthest_[s], most)) continue;
+      if (!ruler_.about_as_far(farthest_[s], most)) continue;
       for (std::uint32_t g = end_of(s); g-- > first + kStretch * std::uint32_t(s);) {
-        if (!ruler_.shorter(distance_[g], most)) return g;
+        if (ruler_.about_as_far(distance_[g], most)) return g;
       }
       look_again(s);
     }
