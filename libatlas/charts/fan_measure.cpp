@@ -8,31 +8,41 @@
 namespace atlas {
 
 struct FanMeasure::Kernels {
+  struct Fan {
+    std::uint32_t begin, end;  // its triangles
+    std::size_t slot = 0;      // of each, less its place among all triangles
+    Vec2d centre{};
+  };
+  ATLAS_INLINE static Fan fan_of(const JoinedFans& joined, const Vec2d* uvs, std::size_t c) {
+    Fan fan{joined.first[c], joined.first[c + 1]};
+    if (fan.begin == fan.end) return fan;
+    const JoinedFans::Triangle& first = joined.triangles[fan.begin];
+    fan.slot = first.slot - std::size_t{fan.begin};
+    fan.centre = uvs[first.centre];
+    return fan;
+  }
+
   // What is read beyond the end of a fan is written before the next one's.
   ATLAS_INLINE static void measure_maps(FanMeasure& m, const JoinedFans& joined, const Vec2d* uvs) {
     double *const squares = m.squares_.data(), *const product = m.product_.data(),
                   *const area = m.area_.data();
     for (std::size_t c = 0; c < joined.cells.size(); ++c) {
-      const std::uint32_t begin = joined.first[c], end = joined.first[c + 1];
-      if (begin == end) continue;
-      const JoinedFans::Triangle* const fan = joined.triangles.data();
-      const std::size_t slot = fan[begin].slot - std::size_t{begin};
-      const Vec2d centre = uvs[fan[begin].centre];
-      for (std::uint32_t i = begin; i < end; i += 4) {
-        const Quad g1x = QuadAt(m.fans_.slot_gradient_x.data() + slot + i).quad,
-                   g1y = QuadAt(m.fans_.slot_gradient_y.data() + slot + i).quad,
-                   g2x = QuadAt(m.fans_.next_gradient_x.data() + slot + i).quad,
-                   g2y = QuadAt(m.fans_.next_gradient_y.data() + slot + i).quad;
-        const Quad inverse = QuadAt(m.fans_.inverse_area.data() + slot + i).quad;
+      const Fan fan = fan_of(joined, uvs, c);
+      for (std::uint32_t i = fan.begin; i < fan.end; i += 4) {
+        const Quad g1x = QuadAt(m.fans_.slot_gradient_x.data() + fan.slot + i).quad,
+                   g1y = QuadAt(m.fans_.slot_gradient_y.data() + fan.slot + i).quad,
+                   g2x = QuadAt(m.fans_.next_gradient_x.data() + fan.slot + i).quad,
+                   g2y = QuadAt(m.fans_.next_gradient_y.data() + fan.slot + i).quad;
+        const Quad inverse = QuadAt(m.fans_.inverse_area.data() + fan.slot + i).quad;
         Sides d;
-        find_sides(fan + i, uvs, centre, d);
+        find_sides(joined.triangles.data() + i, uvs, fan.centre, d);
         // The map's columns, times area.
         const Quad xx = g1x * d.ax + g2x * d.bx, xy = g1x * d.ay + g2x * d.by;
         const Quad yx = g1y * d.ax + g2y * d.bx, yy = g1y * d.ay + g2y * d.by;
         const Quad scale = inverse * inverse;
         put_quad(squares + i, ((xx * xx + xy * xy) + (yx * yx + yy * yy)) * scale);
         put_quad(product + i, (xx * yy - xy * yx) * scale);
-        put_quad(area + i, QuadAt(m.fans_.area.data() + slot + i).quad);
+        put_quad(area + i, QuadAt(m.fans_.area.data() + fan.slot + i).quad);
       }
     }
     put_quad(area + m.count_, Quad{});
@@ -85,16 +95,12 @@ struct FanMeasure::Kernels {
                                         bool& any_flipped) {
     double *const twice = m.product_.data(), *const area = m.area_.data();
     for (std::size_t c = 0; c < joined.cells.size(); ++c) {
-      const std::uint32_t begin = joined.first[c], end = joined.first[c + 1];
-      if (begin == end) continue;
-      const JoinedFans::Triangle* const fan = joined.triangles.data();
-      const std::size_t slot = fan[begin].slot - std::size_t{begin};
-      const Vec2d centre = uvs[fan[begin].centre];
-      for (std::uint32_t i = begin; i < end; i += 4) {
+      const Fan fan = fan_of(joined, uvs, c);
+      for (std::uint32_t i = fan.begin; i < fan.end; i += 4) {
         Sides d;
-        find_sides(fan + i, uvs, centre, d);
+        find_sides(joined.triangles.data() + i, uvs, fan.centre, d);
         put_quad(twice + i, d.ax * d.by - d.ay * d.bx);
-        put_quad(area + i, QuadAt(m.fans_.area.data() + slot + i).quad);
+        put_quad(area + i, QuadAt(m.fans_.area.data() + fan.slot + i).quad);
       }
     }
     put_quad(area + m.count_, Quad{});

@@ -92,7 +92,7 @@ class Flattener {
           const State& state = charts_[todo_[i]];
           fit_scratch(state.triangles.size(), *scratch);
           ChartOutcome outcome =
-              flatten_chart(input_, partition_, state.triangles, effort_for(state), *scratch);
+              flatten_chart(input_, partition_, state.triangles, effort_for(todo_[i]), *scratch);
           if (outcome.parts.empty()) {
             flats_[todo_[i]] = std::move(outcome.flat);
           } else {
@@ -131,7 +131,6 @@ class Flattener {
   struct State {
     std::vector<std::uint32_t> triangles;  // ascending
     std::vector<Vec2d> uvs;                // 3 a triangle, to go on from, or empty
-    bool was_flat = false;                 // and are those of flats_, but for newcomers
     int removals = 0;
     std::size_t crossings = std::numeric_limits<std::size_t>::max();  // the last removal's
     bool queued = false;
@@ -146,8 +145,10 @@ class Flattener {
     return std::max(1, static_cast<int>(kRemovalWidth * width)) << state.removals;
   }
 
-  ChartEffort effort_for(const State& state) const {
-    return {.rings = removal_rings(state), .resumed = state.uvs, .little = state.was_flat};
+  ChartEffort effort_for(std::uint32_t chart) const {
+    const State& state = charts_[chart];
+    const bool was_flat = !state.uvs.empty() && !flats_[chart].corners.empty();
+    return {.rings = removal_rings(state), .resumed = state.uvs, .little = was_flat};
   }
 
   // Numbers charts anew, by first triangle.
@@ -194,7 +195,6 @@ class Flattener {
     for (std::size_t i = 0; i < done.size(); ++i) {
       if (!failures[i]) {
         charts_[done[i]].uvs = {};
-        charts_[done[i]].was_flat = false;
         continue;
       }
       if (remove(done[i], *failures[i])) continue;
@@ -227,14 +227,9 @@ class Flattener {
     }
     if (!any) return false;
     state.uvs = std::move(failure.uvs);
-    forget_flat(chart);
+    flats_[chart] = {};
     queue(chart);
     return true;
-  }
-
-  void forget_flat(std::uint32_t chart) {
-    charts_[chart].was_flat = false;
-    flats_[chart] = {};
   }
 
   // The longest edge of t to another chart.
@@ -257,7 +252,7 @@ class Flattener {
     const std::vector<std::uint32_t> triangles = std::move(charts_[chart].triangles);
     charts_[chart].triangles.clear();
     charts_[chart].uvs.clear();
-    forget_flat(chart);
+    flats_[chart] = {};
     charts_[chart].crossings = State{}.crossings;
     std::vector<std::uint32_t> name(1 + *std::max_element(parts.begin(), parts.end()), kNoIndex);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -308,7 +303,6 @@ class Flattener {
     if (at != state.triangles.end() && *at == t) return;
     const FlatChart& flat = flats_[chart];
     if (state.uvs.empty() && !flat.corners.empty() && flat.corners.size() <= kMostResumed) {
-      state.was_flat = true;
       for (const auto& corners : flat.corners) {
         for (const std::uint32_t v : corners) state.uvs.push_back(flat.uvs[v]);
       }

@@ -30,7 +30,7 @@ double thread_cpu_seconds() {
 
 void return_freed_memory() {
 #ifdef __GLIBC__
-  // To give little back and ask for it again takes a twentieth of the time of a small mesh's
+  // To give little back and ask for it again takes some hundredths of the time of a small mesh's
   // charts.
   constexpr std::size_t worth_it = std::size_t{4} << 20;
   if (mallinfo2().fordblks >= worth_it) malloc_trim(0);
