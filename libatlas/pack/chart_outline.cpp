@@ -132,18 +132,35 @@ ChartOutline outline_of(const ChartShape& shape) {
   return outline;
 }
 
-Vec2d box_of(const ChartOutline& outline, double angle) {
-  if (outline.empty()) return {};
-  const double c = std::cos(angle), s = std::sin(angle);
+namespace {
+
+struct Bounds2 {
   Vec2d low{1e300, 1e300}, high{-1e300, -1e300};
+};
+
+Bounds2 bounds_of(const ChartOutline& outline, double angle) {
+  if (outline.empty()) return {{}, {}};
+  const double c = std::cos(angle), s = std::sin(angle);
+  Bounds2 bounds;
   const auto reach = [&](Vec2d p) {
     const Vec2d q{c * p.x - s * p.y, s * p.x + c * p.y};
-    low = {std::min(low.x, q.x), std::min(low.y, q.y)};
-    high = {std::max(high.x, q.x), std::max(high.y, q.y)};
+    bounds.low = {std::min(bounds.low.x, q.x), std::min(bounds.low.y, q.y)};
+    bounds.high = {std::max(bounds.high.x, q.x), std::max(bounds.high.y, q.y)};
   };
   for (const ChartOutline::Edge& e : outline.edges) reach(e.from);  // closed: every end begins one
   for (const auto& t : outline.loose) std::for_each(t.begin(), t.end(), reach);
-  return {high.x - low.x, high.y - low.y};
+  return bounds;
+}
+
+}  // namespace
+
+Vec2d box_of(const ChartOutline& outline, double angle) {
+  const Bounds2 bounds = bounds_of(outline, angle);
+  return {bounds.high.x - bounds.low.x, bounds.high.y - bounds.low.y};
+}
+
+Vec2d low_corner_of(const ChartOutline& outline) {
+  return bounds_of(outline, 0).low;
 }
 
 ChartOutline thinned(const ChartOutline& outline, double spacing) {

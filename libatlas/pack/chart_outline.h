@@ -29,6 +29,9 @@ std::vector<ChartOutline> outlines_of(std::span<const ChartShape> shapes, const 
 // Width and height of the chart's box when it is turned by so many radians; 0 for an empty one.
 Vec2d box_of(const ChartOutline& outline, double angle);
 
+// The lower left corner of its box as it is; 0 for an empty one.
+Vec2d low_corner_of(const ChartOutline& outline);
+
 // With loops whose corners are about `spacing` apart at least: off by no more than that.
 ChartOutline thinned(const ChartOutline& outline, double spacing);
 

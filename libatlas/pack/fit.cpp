@@ -64,6 +64,15 @@ bool BoxFit::may_fit(double scale) {
   return area <= static_cast<double>(page_.area()) * options_.pages;
 }
 
+double BoxFit::least_scale() const {
+  double least = options_.max_scale;
+  for (const FitItem& item : items_)
+    for (const double extent : {item.width, item.height})
+      if (extent > 0)
+        least = std::min(least, content_side(extent, 0, options_.minimum_side) / extent);
+  return least;
+}
+
 bool BoxFit::pack_at(double scale, std::uint32_t pages, BoxLayout& layout) {
   make_boxes(scale);
   for (const Extent& b : boxes_)
@@ -253,6 +262,7 @@ bool search_scale(BoxFit& fit, const FitOptions& options, const Context& context
     return ok;
   };
   if (fit.may_fit(options.max_scale) && attempt(options.max_scale)) return true;
+  if (!fit.may_fit(fit.least_scale())) return false;
   double high = options.max_scale, low = 0;
   for (int i = 0; i < 60 && high - low > 1e-4 * high; ++i) {  // by area and single boxes: cheap
     const double middle = (low + high) / 2;
@@ -272,7 +282,7 @@ bool search_scale(BoxFit& fit, const FitOptions& options, const Context& context
     if (!found && step < 1e-9 * first) break;
     step = found ? (low + high) / 2 : step * 0.85;
   }
-  return found || attempt(0);  // at scale 0 every item has its minimum side
+  return found || attempt(fit.least_scale());
 }
 
 void finish(const BoxFit& fit, const FitOptions& options, BoxLayout& layout, FitResult& result) {
@@ -304,6 +314,7 @@ void finish(const BoxFit& fit, const FitOptions& options, BoxLayout& layout, Fit
     boxes += static_cast<double>(out.box.area());
     if (!options.power_of_two) pack::enclose(out.box, options, result.pages[at.page]);
   }
+  pack::drop_empty_pages(result);
   result.utilization = pack::share_of_pages(content, result);
   result.box_utilization = pack::share_of_pages(boxes, result);
   result.moved_items = layout.moved;
@@ -317,6 +328,8 @@ Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& gi
   if (Status status = check(items, given); !status.ok()) return status;
   FitOptions options = given;
   if (options.free_aspect) options.power_of_two = options.square = false;
+  options.pages =
+      std::min(given.pages, static_cast<std::uint32_t>(std::max<std::size_t>(1, items.size())));
   FitResult result;
   result.scale = options.max_scale;
   if (items.empty()) return result;

@@ -77,7 +77,7 @@ struct FitPlacement {
 struct FitResult {
   double scale = 1;
   std::vector<FitPlacement> placements;  // 1 an item
-  std::vector<Extent> pages;             // sizes used; at most N
+  std::vector<Extent> pages;             // of those that hold something; at most N
   double utilization = 0;  // area of contents (boxes) or of the shapes (outlines) / area of pages
   double box_utilization = 0;     // area of the boxes with gutters / area of pages (boxes only)
   GroupingResult grouping;        // of the box areas at the final scale
@@ -91,7 +91,8 @@ struct FitResult {
 // F(A) = N on box areas, packs each group into its page (largest first), moves what did not fit
 // into whatever page still has room, and failing that packs all pages jointly. Bisection between
 // an area bound and the best scale seen to fit; feasibility is not monotone, so the answer is
-// the largest scale that was *seen* to fit.
+// the largest scale that was *seen* to fit. Minimum sides that exceed all pages by themselves are
+// refused without a packing.
 // If everything fits at max_scale, pages are made as few, then as small, as packing finds.
 // Errors: bad_option, bad_input (negative or non-finite size), no_solution (the minimum sides
 // alone do not fit N pages), cancelled.

@@ -40,12 +40,19 @@ class OutlineFit {
   }
 
   double area() const { return area_; }
-  double area(std::size_t chart) const { return outlines_[chart].area; }
+  const ChartOutline& outline(std::size_t chart) const { return outlines_[chart]; }
   const GridChoice& grid() const { return grid_; }
   std::int32_t side() const { return side_; }
 
   FitBounds bounds() const {
     return fit_bounds(outlines_, options_, side_ * grid_.cell, grid_.directions);
+  }
+
+  // Of all pages, that masks take at this scale: found by drawing them, without packing.
+  double share(double scale) const {
+    OutlineLayout layout;
+    prepare(scale, layout);
+    return double(cells_of(layout.pieces)) / double(cells_of_pages(options_.pages));
   }
 
   // First with the groups of F(A) = N. They are balanced by area, but the first ones hold the few
@@ -143,14 +150,20 @@ class OutlineFit {
     return place_left_over(left, open, layout);
   }
 
+  std::int64_t cells_of_pages(std::uint32_t pages) const {
+    return std::int64_t{side_} * side_ * pages;
+  }
+
+  static std::int64_t cells_of(std::span<const Piece> pieces) {
+    std::int64_t total = 0;
+    for (const Piece& p : pieces) total += p.cells();
+    return total;
+  }
+
   bool group(std::uint32_t pages, OutlineLayout& layout) const {
+    if (cells_of(layout.pieces) > cells_of_pages(pages)) return false;
     std::vector<std::uint64_t> cells;
-    std::uint64_t total = 0;
-    for (const Piece& p : layout.pieces) {
-      cells.push_back(static_cast<std::uint64_t>(p.cells()));
-      total += cells.back();
-    }
-    if (total > static_cast<std::uint64_t>(side_) * side_ * pages) return false;
+    for (const Piece& p : layout.pieces) cells.push_back(static_cast<std::uint64_t>(p.cells()));
     GroupingOptions grouping;
     grouping.groups = pages;
     grouping.refine_work = 0;
@@ -248,6 +261,9 @@ bool search_scale(OutlineFit& fit, const FitOptions& options, const Context& con
   if (scale <= best.scale) return true;
   const double tolerance = scale_tolerance(options, 0.005, options.shapes.size());
   double low = best.scale, high = most * (1 + 1e-9), step = 0.97;
+  const double least = 1e-9 * options.max_scale;  // at which minimum sides hold for all charts
+  constexpr double kTight = 0.8;                  // of the pages: such masks seldom fit
+  std::uint32_t failures = 0;
   const std::uint32_t in_vain = low > 0 ? 0 : result.packings;  // those of a search before
   while (result.packings + 1 < options.max_packings + in_vain && !context.cancelled()) {
     const bool ok = attempt(scale);
@@ -255,13 +271,20 @@ bool search_scale(OutlineFit& fit, const FitOptions& options, const Context& con
     (ok ? low : high) = scale;
     if (low > 0 && high - low < tolerance * high) return true;
     if (low == 0) {
+      // Minimum sides that take all pages are no matter of the scale. Twice in vain is rare where
+      // they do not.
+      if (++failures == 2) {
+        const double share = fit.share(least);
+        if (share > 1 || (share > kTight && !attempt(least))) return false;
+        if (share > kTight) low = least;
+      }
       scale *= step;
       step *= step > 0.5 ? 0.97 : 1;  // faster and faster, should minimum sides be in the way
     } else {
       scale = high > most ? std::min(most, low * kLittleMore) : (low + high) / 2;
     }
   }
-  return low > 0 || attempt(1e-9 * options.max_scale);
+  return low > 0 || attempt(least);
 }
 
 void use_fewer_pages(OutlineFit& fit, const FitOptions& options, FitResult& result,
@@ -296,7 +319,10 @@ void write_result(const OutlineFit& fit, const FitOptions& options, OutlineLayou
     FitPlacement& out = result.placements[i];
     out.scale = best.factors[i];
     out.page = best.page[i];
-    if (piece.cells() == 0) continue;
+    if (piece.cells() == 0) {
+      write_at_corner(fit.outline(i), out);
+      continue;
+    }
     const NestPlace& at = best.places[i];
     const Mask& mask = piece.masks[at.direction];
     const Rect box{at.at.x * cell, at.at.y * cell, mask.width * cell, mask.height * cell};
@@ -305,9 +331,10 @@ void write_result(const OutlineFit& fit, const FitOptions& options, OutlineLayou
                    2 * std::numbers::pi * at.direction / fit.grid().directions,
                    {box.x + origin.x, box.y + origin.y}},
                   options, out);
-    shapes += fit.area(i) * out.scale * out.scale;
+    shapes += fit.outline(i).area * out.scale * out.scale;
     if (!options.power_of_two) enclose(box, options, result.pages[out.page]);
   }
+  drop_empty_pages(result);
   result.utilization = share_of_pages(shapes, result);
   result.moved_items = best.moved;
   result.grouping = std::move(best.grouping);

@@ -22,6 +22,7 @@ class BoxFit {
   void make_boxes(double scale);
   double box_area(double scale);  // cells; makes the boxes
   bool may_fit(double scale);     // necessary conditions only; makes the boxes
+  double least_scale() const;     // at smaller ones boxes are the same: of their minimum sides
   bool pack_at(double scale, std::uint32_t pages, BoxLayout& layout);
   Extent shrink_page(std::uint32_t page, BoxLayout& layout) const;
 

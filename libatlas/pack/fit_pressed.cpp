@@ -54,7 +54,10 @@ bool fit_pressed(std::span<const FitItem> items, std::span<const ChartOutline> o
     FitPlacement& out = result.placements[i];
     out.scale = pressed.scale;
     const PressedPlace& at = pressed.places[i];
-    if (!at.placed) continue;
+    if (!at.placed) {
+      write_at_corner(outlines[i], out);
+      continue;
+    }
     write_outline({at.box, at.angle, at.offset}, options, out);
     shapes += outlines[i].area * out.scale * out.scale;
   }

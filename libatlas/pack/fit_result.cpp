@@ -14,6 +14,25 @@ void write_outline(const OutlinePlace& at, const FitOptions& options, FitPlaceme
   out.offset = at.offset;
 }
 
+void write_at_corner(const ChartOutline& outline, FitPlacement& out) {
+  const Vec2d low = low_corner_of(outline);
+  out.offset = {-out.scale * low.x, -out.scale * low.y};
+}
+
+void drop_empty_pages(FitResult& result) {
+  constexpr std::uint32_t kEmpty = 0xffffffffu;
+  std::vector<std::uint32_t> now(result.pages.size(), kEmpty);
+  for (const FitPlacement& p : result.placements) now[p.page] = 0;
+  std::uint32_t used = 0;
+  for (std::size_t p = 0; p < now.size(); ++p) {
+    if (now[p] == kEmpty) continue;
+    result.pages[used] = result.pages[p];
+    now[p] = used++;
+  }
+  result.pages.resize(used);
+  for (FitPlacement& p : result.placements) p.page = now[p.page];
+}
+
 void enclose(const Rect& box, const FitOptions& options, Extent& page) {
   page.width = std::max(page.width, box.right());
   page.height = std::max(page.height, box.top());

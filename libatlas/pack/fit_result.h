@@ -1,6 +1,7 @@
 // Internal: what the ways of fitting charts to pages have in common when they write their result.
 #pragma once
 
+#include "libatlas/pack/chart_outline.h"
 #include "libatlas/pack/fit.h"
 
 namespace atlas::pack {
@@ -14,6 +15,13 @@ struct OutlinePlace {
 
 // Writes the place into `out`, whose scale and page are set already.
 void write_outline(const OutlinePlace& at, const FitOptions& options, FitPlacement& out);
+
+// The same for a chart that meets no cell, as one without area or gutters may: it lies at the
+// page's corner.
+void write_at_corner(const ChartOutline& outline, FitPlacement& out);
+
+// Takes pages that hold no chart out of the result: equal charts may need fewer than N.
+void drop_empty_pages(FitResult& result);
 
 // Makes a page without a size of its own hold the box as well.
 void enclose(const Rect& box, const FitOptions& options, Extent& page);

@@ -216,6 +216,15 @@ void write_page(std::span<const Piece> pieces, const Nest& nest, const Grid& gri
   }
 }
 
+// Where a chart that meets no cell goes.
+OutlinePlacement corner_place(const pack::ChartOutline& outline, double scale) {
+  const Vec2d low = pack::low_corner_of(outline);
+  OutlinePlacement place;
+  place.page = 0;
+  place.offset = {-scale * low.x, -scale * low.y};
+  return place;
+}
+
 }  // namespace
 
 Result<OutlineResult> pack_outlines(std::span<const ChartShape> shapes,
@@ -271,7 +280,7 @@ Result<OutlineResult> pack_outlines(std::span<const ChartShape> shapes,
     else if (pieces[i].cells() > 0 || pieces[i].too_large)
       result.unplaced.push_back(i);
     else
-      result.placements[i].page = 0;
+      result.placements[i] = corner_place(outlines[i], options.scale);
   }
   result.utilization = area > 0 ? result.shape_area / area : 0;
   return result;

@@ -136,6 +136,43 @@ TEST(Extremes, ChartsThatMeetNoCellFitAnywhere) {
   EXPECT_TRUE(r->unplaced.empty());
 }
 
+// Wherever it is, a chart that meets no cell lies within its page.
+TEST(Extremes, PointsLieOnTheirPage) {
+  const std::vector<Vec2d> point(3, Vec2d{310, -210});
+  const test::ChartItems charts({turned_quad(20, 20, 0), point, turned_quad(20, 20, 0.5)});
+  FitOptions o = outlines(charts);
+  o.padding = 0;
+  o.page_size = 128;
+  for (const std::uint32_t pages : {1u, 2u})
+    for (const double max_scale : {1.0, 1e3}) {
+      o.pages = pages;
+      o.max_scale = max_scale;
+      const Result<FitResult> fit = fit_pages(charts.items, o, {});
+      ASSERT_TRUE(fit.ok()) << fit.status().message();
+      EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *fit), fit->pages, 0), "");
+    }
+  OutlineOptions options;
+  options.page = {64, 64};
+  options.padding = 0;
+  const Result<OutlineResult> r = pack_outlines(charts.shapes, options, {});
+  ASSERT_TRUE(r.ok()) << r.status().message();
+  EXPECT_EQ(r->placements[1].offset.x, -310);
+  EXPECT_EQ(r->placements[1].offset.y, 210);
+}
+
+// So are those whose minimum sides exceed all pages, before a search over scales.
+TEST(Extremes, MinimumSidesBeyondThePagesAreRefusedSoon) {
+  const test::ChartItems charts(std::vector<std::vector<Vec2d>>(20000, turned_quad(30, 20, 0.3)));
+  FitOptions o = outlines(charts);
+  o.minimum_side = 16;
+  o.max_scale = 1;
+  const double begun = cpu_seconds();
+  const Result<FitResult> fit = fit_pages(charts.items, o, {});
+  ASSERT_FALSE(fit.ok());
+  EXPECT_EQ(fit.status().code(), ErrorCode::no_solution);
+  EXPECT_LT(cpu_seconds() - begun, 1);
+}
+
 // More charts than their gutters leave room for are refused before any is drawn.
 TEST(Extremes, GuttersBeyondThePagesAreRefusedAtOnce) {
   std::vector<std::vector<Vec2d>> tiny(20000, turned_quad(1, 1, 0.3));
@@ -188,8 +225,9 @@ TEST(Extremes, BoundsHoldForCharts) {
     EXPECT_FALSE(bounds.gutters_exceed_pages);
     const Result<FitResult> fit = fit_pages(charts.items, o, {});
     ASSERT_TRUE(fit.ok()) << fit.status().message();
-    // Pressed charts may be turned by any angle, cells only by quarter turns.
-    EXPECT_LE(fit->scale, bounds.alone * (o.pages == 1 ? std::sqrt(2.0) : 1));
+    // Pressed charts may be turned by any angle, cells only by quarter turns. One chart has a page.
+    const bool pressed = o.pages == 1 || charts.items.size() == 1;
+    EXPECT_LE(fit->scale, bounds.alone * (pressed ? std::sqrt(2.0) : 1));
     EXPECT_LE(fit->scale, bounds.with_gutters);
   }
 }

@@ -102,6 +102,50 @@ TEST(FitPages, SmallContentTakesFewSmallPages) {
   EXPECT_EQ(r.pages[0], (Extent{64, 64}));
 }
 
+// Ten equal sizes never make six groups.
+TEST(FitPages, PagesWithoutItemsAreLeftOut) {
+  const std::vector<std::vector<Vec2d>> squares(
+      10, {{0, 0}, {40, 0}, {40, 40}, {0, 0}, {40, 40}, {0, 40}});
+  const test::ChartItems charts(squares);
+  FitOptions o;
+  o.pages = 6;
+  o.page_size = 64;
+  o.minimum_side = 0;
+  for (const bool power_of_two : {true, false})
+    for (const bool outlines : {false, true}) {
+      o.power_of_two = power_of_two;
+      o.shapes =
+          outlines ? std::span<const ChartShape>(charts.shapes) : std::span<const ChartShape>();
+      const FitResult r = fit(charts.items, o);
+      std::vector<int> held(r.pages.size());
+      for (const FitPlacement& p : r.placements) ++held.at(p.page);
+      EXPECT_EQ(std::count(held.begin(), held.end(), 0), 0) << power_of_two << outlines;
+      for (const Extent& page : r.pages) EXPECT_GT(page.area(), 0) << power_of_two << outlines;
+    }
+}
+
+TEST(FitPages, MorePagesThanItemsTakeNoMemory) {
+  FitOptions o;
+  o.pages = UINT32_MAX;
+  o.max_scale = 100;
+  const FitResult r = fit({{50, 50}, {20, 30}}, o);
+  EXPECT_LE(r.pages.size(), 2u);
+}
+
+// Few packings may end at the minimum sides: the scale at which they begin, not none.
+TEST(FitPages, TheScaleIsNeverZero) {
+  const std::vector<FitItem> items(30, FitItem{200, 160});
+  FitOptions o;
+  o.page_size = 128;
+  o.max_packings = 2;
+  o.minimum_side = 4;
+  o.padding = 1;
+  o.alignment = 2;
+  const FitResult r = fit(items, o);
+  expect_valid(items, o, r);
+  EXPECT_GE(r.scale, 4.0 / 200);
+}
+
 // Thousands of boxes on one page of any shape: full, valid, and no row of it empty.
 TEST(FitPages, ManyItemsFillOnePage) {
   const auto items = items_of(4000, 1, 8);
