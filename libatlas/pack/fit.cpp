@@ -264,7 +264,7 @@ bool search_scale(BoxFit& fit, const FitOptions& options, const Context& context
   if (fit.may_fit(options.max_scale) && attempt(options.max_scale)) return true;
   if (!fit.may_fit(fit.least_scale())) return false;
   double high = options.max_scale, low = 0;
-  for (int i = 0; i < 60 && high - low > 1e-4 * high; ++i) {  // by area and single boxes: cheap
+  while (high - low > 1e-4 * high) {  // by area and single boxes: cheap
     const double middle = (low + high) / 2;
     (fit.may_fit(middle) ? low : high) = middle;
   }

@@ -167,9 +167,11 @@ void assign(std::span<const std::uint64_t> sizes, std::span<const std::uint32_t>
 
 std::uint32_t count_groups(std::span<const std::uint64_t> sizes, std::uint64_t capacity,
                            std::uint32_t limit) {
-  FirstFit fit(capacity, limit);
+  // No more groups than items are ever opened, however high the limit is.
+  const auto most = static_cast<std::uint32_t>(std::min<std::size_t>(limit, sizes.size()));
+  FirstFit fit(capacity, most);
   for (std::uint32_t item : descending_order(sizes))
-    if (sizes[item] > capacity || fit.place(sizes[item]) == limit) return limit + 1;
+    if (sizes[item] > capacity || fit.place(sizes[item]) == most) return limit + 1;
   return fit.used();
 }
 

@@ -44,7 +44,7 @@ struct GroupingResult {
 // F(A) of the paper: items sorted descending (ties by index), each put into the first group whose
 // total stays <= capacity; the same groups result from filling one group after another with the
 // largest item left that fits. Stops counting at limit + 1. Returns limit + 1 too if an item is
-// larger than the capacity.
+// larger than the capacity. The limit is below 2^32 - 1.
 std::uint32_t count_groups(std::span<const std::uint64_t> sizes, std::uint64_t capacity,
                            std::uint32_t limit);
 

@@ -17,17 +17,18 @@ using pack::Cells;
 using pack::Layout;
 using pack::Problem;
 
-// Cells along a side that is open: taller than anything a strip can need, and few enough that their
-// texels stay below 2^30 and sums of two in 32 bits.
-std::int32_t open_side(const PackOptions& options) {
-  return (1 << 30) / options.alignment;
+constexpr std::int32_t kLongestSide = 1 << 30;  // of a page, texels
+
+// Cells along a side that is open: as many as the longest page has, border included, and few enough
+// that sums of two stay in 32 bits.
+std::int32_t open_side(const PackOptions& options, const Cells& cells) {
+  return std::min(cells.page(kLongestSide), kLongestSide / options.alignment);
 }
 
 Status check(std::span<const Extent> items, const PackOptions& o) {
-  constexpr std::int32_t limit = 1 << 30;
   const auto bad = [](std::string text) { return Status(ErrorCode::bad_option, std::move(text)); };
-  if (o.page.width < 0 || o.page.height < 0 || o.page.width > limit || o.page.height > limit ||
-      (o.page.width == 0 && o.page.height != 0))
+  if (o.page.width < 0 || o.page.height < 0 || o.page.width > kLongestSide ||
+      o.page.height > kLongestSide || (o.page.width == 0 && o.page.height != 0))
     return bad(
         fmt::format("pack: page {} x {} (sides in 1 .. 2^30; height 0 for a strip, both 0 "
                     "for a free page)",
@@ -67,9 +68,9 @@ Active select_items(std::span<const Extent> items, const Cells& cells, const Pac
                     PackResult& result) {
   Active active;
   const std::int32_t width =
-      options.page.width > 0 ? cells.page(options.page.width) : open_side(options);
+      options.page.width > 0 ? cells.page(options.page.width) : open_side(options, cells);
   const std::int32_t height =
-      options.page.height > 0 ? cells.page(options.page.height) : open_side(options);
+      options.page.height > 0 ? cells.page(options.page.height) : open_side(options, cells);
   for (std::uint32_t i = 0; i < items.size(); ++i) {
     if (items[i].width == 0 || items[i].height == 0) {
       result.placements[i] = {0, cells.corner(), cells.corner(), false};
@@ -89,14 +90,15 @@ Active select_items(std::span<const Extent> items, const Cells& cells, const Pac
 }
 
 // Width for a free page: of a square that the items would fill to 95 %, but wide enough for each.
-std::int32_t free_width(const Active& active) {
+std::int32_t free_width(const Active& active, std::int32_t most) {
   double area = 0;
   std::int32_t widest = 1;
   for (const Extent& e : active.sizes) {
     area += static_cast<double>(e.area());
     widest = std::max(widest, e.width);
   }
-  return std::max(widest, static_cast<std::int32_t>(std::ceil(std::sqrt(area / 0.95))));
+  const double side = std::ceil(std::sqrt(area / 0.95));
+  return std::max(widest, static_cast<std::int32_t>(std::min<double>(side, most)));
 }
 
 Extent shaped(Extent used, const PackOptions& options) {
@@ -120,7 +122,8 @@ void describe(std::span<const Extent> items, const PackOptions& options, PackRes
   for (std::size_t i = 0; i < items.size(); ++i) {
     const Placement& p = result.placements[i];
     if (!p.placed()) continue;
-    const Extent e = p.rotated ? Extent{items[i].height, items[i].width} : items[i];
+    Extent e = p.rotated ? Extent{items[i].height, items[i].width} : items[i];
+    if (e.area() == 0) e = {};
     used[p.page].width = std::max(used[p.page].width, p.x + e.width + options.border);
     used[p.page].height = std::max(used[p.page].height, p.y + e.height + options.border);
     filled[p.page] += static_cast<double>(e.area());
@@ -147,6 +150,7 @@ Layout solve_free(const Problem& problem, const PackOptions& options, const Cont
   PackOptions share = options;
   share.time_budget /= kWidths;
   if (options.effort > 0) share.effort = std::max<std::uint64_t>(1, options.effort / kWidths);
+  const std::int32_t most = problem.page.height;  // open, as the width is
   std::int32_t widest = 1;
   for (const Extent& e : problem.items) widest = std::max(widest, e.width);
   Layout best;
@@ -154,8 +158,8 @@ Layout solve_free(const Problem& problem, const PackOptions& options, const Cont
   std::uint64_t layouts = 0;
   for (int k = 0; k < kWidths; ++k) {
     Problem tried = problem;
-    tried.page.width =
-        std::max(widest, static_cast<std::int32_t>(problem.page.width * (0.94 + 0.03 * k)));
+    const double width = std::min<double>(problem.page.width * (0.94 + 0.03 * k), most);
+    tried.page.width = std::max(widest, static_cast<std::int32_t>(width));
     Layout layout = pack::solve(tried, share, context, result);
     layouts += result.layouts_tried;
     Extent used;
@@ -187,8 +191,10 @@ Result<PackResult> pack_rects(std::span<const Extent> items, const PackOptions& 
   Problem problem;
   problem.items = active.sizes;
   problem.allow_rotation = options.allow_rotation;
-  problem.page = {options.page.width > 0 ? cells.page(options.page.width) : free_width(active),
-                  options.page.height > 0 ? cells.page(options.page.height) : open_side(options)};
+  const std::int32_t open = open_side(options, cells);
+  problem.page = {
+      options.page.width > 0 ? cells.page(options.page.width) : free_width(active, open),
+      options.page.height > 0 ? cells.page(options.page.height) : open};
   problem.max_pages = options.page.height == 0 ? 1
                       : options.max_pages      ? options.max_pages
                                                : kNoPage;

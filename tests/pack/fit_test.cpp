@@ -132,6 +132,14 @@ TEST(FitPages, MorePagesThanItemsTakeNoMemory) {
   EXPECT_LE(r.pages.size(), 2u);
 }
 
+TEST(FitPages, TheLargestScaleMayBeFarFromWhatFits) {
+  FitOptions o;
+  o.page_size = 256;
+  o.max_scale = 1e300;
+  const FitResult r = fit({{50, 50}, {20, 30}}, o);
+  EXPECT_GT(r.scale, 3);
+}
+
 // Few packings may end at the minimum sides: the scale at which they begin, not none.
 TEST(FitPages, TheScaleIsNeverZero) {
   const std::vector<FitItem> items(30, FitItem{200, 160});

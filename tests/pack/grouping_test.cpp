@@ -81,6 +81,12 @@ TEST(Grouping, SmallestCapacityOfAllOnSmallCases) {
   EXPECT_GT(harder, 100);  // the lower bound alone did not decide
 }
 
+TEST(Grouping, ALimitOfAnyHeightTakesNoMemory) {
+  EXPECT_EQ(count_groups(Sizes{5, 4, 3}, 5, UINT32_MAX - 1), 3u);
+  EXPECT_EQ(count_groups(Sizes{6, 4, 3}, 5, UINT32_MAX - 1), UINT32_MAX);
+  EXPECT_EQ(count_groups({}, 5, UINT32_MAX - 1), 0u);
+}
+
 // 11/9 and 13/11 of the optimum are proved for first-fit decreasing and MULTIFIT; the optimum here
 // is found by trying all assignments.
 TEST(Grouping, WithinMultifitsBoundOfTheOptimum) {

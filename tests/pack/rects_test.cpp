@@ -72,6 +72,8 @@ TEST(PackRects, DegenerateSizes) {
     EXPECT_EQ(r.unplaced[1].item, 3u);
     EXPECT_EQ(r.pages.size(), 1u);
   }
+  o.crop = true;
+  EXPECT_EQ(pack({{0, 50}, {4, 7}}, o).pages[0], (Extent{4, 7}));
 }
 
 TEST(PackRects, BadOptionsAreNamed) {
@@ -194,6 +196,23 @@ TEST(PackRects, EnormousItemsStayInTheOpenPage) {
     ASSERT_TRUE(r.ok());
     EXPECT_FALSE(r->unplaced.empty());
     EXPECT_EQ(test::check_layout(items, r->placements, r->pages, o), "");
+  }
+}
+
+// Beyond 2^30 texels a side has no power of two in 32 bits.
+TEST(PackRects, OpenSidesEndAtTheLongestPage) {
+  const std::vector<Extent> items{{5, (1 << 30) - 3}, {7, 9}};
+  PackOptions o;
+  o.power_of_two = true;
+  o.border = 2;
+  for (const Extent page : {Extent{16, 0}, Extent{0, 0}}) {
+    o.page = page;
+    const Result<PackResult> r = pack_rects(items, o, {});
+    ASSERT_TRUE(r.ok()) << r.status().message();
+    ASSERT_EQ(r->unplaced.size(), 1u);
+    EXPECT_EQ(r->unplaced[0].item, 0u);
+    EXPECT_EQ(r->unplaced[0].reason, UnplacedReason::too_large);
+    EXPECT_EQ(r->pages[0].height, 16);
   }
 }
 
