@@ -17,28 +17,29 @@ using pack::Cells;
 using pack::Layout;
 using pack::Problem;
 
-constexpr std::int32_t kLongestSide = 1 << 30;  // of a page, texels
+// Of a page and the padding that its cells reach beyond it, texels: sums of two stay in 32 bits.
+constexpr std::int32_t kLongestSide = 1 << 30;
 
-// Cells along a side that is open: as many as the longest page has, border included, and few enough
-// that sums of two stay in 32 bits.
+// Cells along a side that is open: as many as the longest page has.
 std::int32_t open_side(const PackOptions& options, const Cells& cells) {
-  return std::min(cells.page(kLongestSide), kLongestSide / options.alignment);
+  return cells.page(kLongestSide - options.padding);
 }
 
 Status check(std::span<const Extent> items, const PackOptions& o) {
   const auto bad = [](std::string text) { return Status(ErrorCode::bad_option, std::move(text)); };
-  if (o.page.width < 0 || o.page.height < 0 || o.page.width > kLongestSide ||
-      o.page.height > kLongestSide || (o.page.width == 0 && o.page.height != 0))
-    return bad(
-        fmt::format("pack: page {} x {} (sides in 1 .. 2^30; height 0 for a strip, both 0 "
-                    "for a free page)",
-                    o.page.width, o.page.height));
   if (o.padding < 0 || o.border < 0 || o.alignment < 1 || o.padding > (1 << 24) ||
       o.border > (1 << 24) || o.alignment > (1 << 24))
     return bad(
         fmt::format("pack: padding {}, border {}, alignment {} (padding and border in 0 .. "
                     "2^24, alignment in 1 .. 2^24)",
                     o.padding, o.border, o.alignment));
+  const std::int32_t longest = kLongestSide - o.padding;
+  if (o.page.width < 0 || o.page.height < 0 || o.page.width > longest || o.page.height > longest ||
+      (o.page.width == 0 && o.page.height != 0))
+    return bad(
+        fmt::format("pack: page {} x {} with padding {} (sides in 1 .. 2^30 - padding; height "
+                    "0 for a strip, both 0 for a free page)",
+                    o.page.width, o.page.height, o.padding));
   const auto power = [](std::int32_t v) {
     return v == 0 || std::has_single_bit(static_cast<std::uint32_t>(v));
   };

@@ -52,9 +52,9 @@ struct PinnedRect {
 };
 
 struct PackOptions {
-  // Largest page, texels (1 .. 2^30). height 0: one page of open height (a strip) whose used height
-  // is made small. Both 0: one page, free in both directions, made nearly square. An open side is
-  // at most 2^30 texels, too.
+  // Largest page, texels (1 .. 2^30 less the padding). height 0: one page of open height (a strip)
+  // whose used height is made small. Both 0: one page, free in both directions, made nearly square.
+  // An open side is at most that long, too.
   Extent page{2048, 2048};
   std::uint32_t max_pages = 0;  // 0: as many as it takes
   bool allow_rotation = false;  // quarter turns

@@ -85,6 +85,10 @@ TEST(PackRects, BadOptionsAreNamed) {
   };
   EXPECT_EQ(code([](PackOptions& o) { o.page = {-1, 5}; }), ErrorCode::bad_option);
   EXPECT_EQ(code([](PackOptions& o) { o.padding = -1; }), ErrorCode::bad_option);
+  EXPECT_EQ(code([](PackOptions& o) {
+              o.page = {1 << 30, 1}, o.padding = 1;
+            }),
+            ErrorCode::bad_option);
   EXPECT_EQ(code([](PackOptions& o) { o.alignment = 0; }), ErrorCode::bad_option);
   EXPECT_EQ(code([](PackOptions& o) {
               o.page = {100, 64}, o.power_of_two = true;
