@@ -94,7 +94,8 @@ Status check_outputs(const app::ExportCommand& command) {
   if (Status s = app::check_output(target, {command.scene, light, report}); !s.ok()) return s;
   if (Status s = app::check_output(report, {command.scene, light, beside(target)}); !s.ok())
     return s;
-  const bool image = report.extension() == ".png" || report.extension() == ".exr";
+  const std::string ending = app::lower_extension(report);
+  const bool image = ending == ".png" || ending == ".exr";
   if (image && named_as_page(report, target))
     return {ErrorCode::bad_option,
             fmt::format("--report {}: is the name of a page (give the report another)",

@@ -95,14 +95,18 @@ void add_rect_options(CLI::App& app, PackCommand& c) {
                                          if (std::string e = parse_page(t, c.options.page);
                                              !e.empty())
                                            throw CLI::ValidationError("--page", e);
+                                         c.page_given = true;
                                        })
       ->type_name("WxH")
       ->description("Largest page, texels; height 0: one strip as low as can be")
       ->default_str("2048x2048");
+  const auto given = [&c](const std::string&) { c.page_given = true; };
   app.add_option("--max-width", c.options.page.width, "Largest page width, texels")
-      ->check(within(0, 1 << 30));
+      ->check(within(0, 1 << 30))
+      ->each(given);
   app.add_option("--max-height", c.options.page.height, "Largest page height; 0: open")
-      ->check(within(0, 1 << 30));
+      ->check(within(0, 1 << 30))
+      ->each(given);
   app.add_option("--max-pages", c.options.max_pages, "Pages at most; 0: as many as needed")
       ->capture_default_str()
       ->check(within(0, 1'000'000));

@@ -15,6 +15,7 @@ struct PackCommand {
   enum class Kind { none, rects, images, mesh } kind = Kind::none;
   std::filesystem::path input, output, preview;
   PackOptions options;
+  bool page_given = false;  // rects: else that of the instance, where the list is one
   DataFormat format = DataFormat::hash;
   bool json = false, quiet = false;
   int threads = 0;

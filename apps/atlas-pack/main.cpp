@@ -24,11 +24,11 @@ int main_of(int argc, char** argv) {
   }
   atlas->cpu_seconds = cpu_seconds() - start;
   if (command.json) app::print(stdout, fmt::format("{}\n", app::to_summary(*atlas)));
-  terminal.line(fmt::format("{}: {} items on {} page{}, {:.2f} % used{}, {:.3f} CPU s",
-                            command.output.string(), atlas->items.size(), atlas->pages.size(),
-                            atlas->pages.size() == 1 ? "" : "s", 100 * atlas->utilization,
-                            atlas->aliases ? fmt::format(", {} aliases", atlas->aliases) : "",
-                            atlas->cpu_seconds));
+  terminal.line(fmt::format(
+      "{}: {} item{} on {} page{}, {:.2f} % used{}, {:.3f} CPU s", command.output.string(),
+      atlas->items.size(), atlas->items.size() == 1 ? "" : "s", atlas->pages.size(),
+      atlas->pages.size() == 1 ? "" : "s", 100 * atlas->utilization,
+      atlas->aliases ? fmt::format(", {} aliases", atlas->aliases) : "", atlas->cpu_seconds));
   // Whatever was left out has been named; scripts need to know as well.
   if (atlas->unplaced > 0) {
     terminal.error(fmt::format("{} of {} items were not placed (allow larger or more pages)",

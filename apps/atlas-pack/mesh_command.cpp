@@ -4,10 +4,11 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 #include "apps/atlas-pack/commands.h"
 #include "apps/atlas-pack/preview.h"
+#include "apps/atlas-pack/uv_charts.h"
 #include "apps/common/files.h"
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/pack/fit.h"
@@ -16,120 +17,30 @@
 namespace atlas::app {
 namespace {
 
-// The uv charts of a mesh: triangles joined by common texcoord indices.
-struct UvCharts {
-  std::vector<std::uint32_t> chart;                 // 1 a triangle, or kNone
-  std::vector<std::vector<std::uint32_t>> members;  // triangles a chart
-  std::vector<std::vector<Vec2d>> corners;          // 3 a triangle, texels at scale 1
-  std::size_t without_uv = 0, without_area = 0;
-  static constexpr std::uint32_t kNone = 0xffffffffu;
-};
-
-class Sets {
- public:
-  explicit Sets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
-double area_in_space(const Scene& s, std::size_t t) {
-  const Vec3f &a = s.positions[s.indices[3 * t]], &b = s.positions[s.indices[3 * t + 1]],
-              &c = s.positions[s.indices[3 * t + 2]];
-  const double ux = double(b.x) - a.x, uy = double(b.y) - a.y, uz = double(b.z) - a.z;
-  const double vx = double(c.x) - a.x, vy = double(c.y) - a.y, vz = double(c.z) - a.z;
-  const double x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
-  return std::sqrt(x * x + y * y + z * z) / 2;
-}
-
-double area_of(const Vec2d* p) {
-  return std::abs((p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x)) /
-         2;
-}
-
-UvCharts find_charts(const Scene& s) {
-  UvCharts charts;
-  charts.chart.assign(s.triangle_count(), UvCharts::kNone);
-  Sets sets(s.texcoords.size());
-  const auto has_uv = [&](std::size_t t) {
-    for (std::size_t k = 3 * t; k < 3 * t + 3; ++k)
-      if (s.texcoord_indices[k] == Scene::kNoTexcoord) return false;
-    return true;
-  };
-  for (std::size_t t = 0; t < s.triangle_count(); ++t) {
-    if (!has_uv(t)) continue;
-    sets.join(s.texcoord_indices[3 * t], s.texcoord_indices[3 * t + 1]);
-    sets.join(s.texcoord_indices[3 * t], s.texcoord_indices[3 * t + 2]);
-  }
-  std::vector<std::uint32_t> number(s.texcoords.size(), UvCharts::kNone);
-  for (std::size_t t = 0; t < s.triangle_count(); ++t) {
-    if (!has_uv(t)) {
-      ++charts.without_uv;
-      continue;
-    }
-    std::uint32_t& id = number[sets.find(s.texcoord_indices[3 * t])];
-    if (id == UvCharts::kNone) {
-      id = static_cast<std::uint32_t>(charts.members.size());
-      charts.members.emplace_back();
-    }
-    charts.chart[t] = id;
-    charts.members[id].push_back(static_cast<std::uint32_t>(t));
-  }
-  return charts;
-}
-
-// Scales every chart so that its area is that of its surface, and all together fill the pages.
-void make_uniform(const Scene& s, double page_area, UvCharts& charts) {
-  double total = 0;
-  for (const auto& members : charts.members)
-    for (std::uint32_t t : members) total += area_in_space(s, t);
-  const double texels = total > 0 ? std::sqrt(page_area / total) : 0;
-  for (const auto& members : charts.members) {
-    std::vector<Vec2d> corners;
-    double flat = 0, real = 0;
-    for (std::uint32_t t : members) {
-      real += area_in_space(s, t);
-      for (std::size_t k = 3 * std::size_t(t); k < 3 * std::size_t(t) + 3; ++k) {
-        const Vec2f uv = s.texcoords[s.texcoord_indices[k]];
-        corners.push_back({uv.x, uv.y});
-      }
-      flat += area_of(&corners[corners.size() - 3]);
-    }
-    const double factor = flat > 0 ? texels * std::sqrt(real / flat) : 0;
-    charts.without_area += factor == 0;
-    const Vec2d base = corners.front();
-    for (Vec2d& p : corners) p = {(p.x - base.x) * factor, (p.y - base.y) * factor};
-    charts.corners.push_back(std::move(corners));
-  }
-}
-
 std::string number(double v) {
   char text[32];
   const auto end = std::to_chars(text, text + sizeof text, v).ptr;
   return {text, end};
 }
 
-// The mesh with its new uvs: one vt a corner, one material a page.
+constexpr const char* kWithoutUv = "no_uv";
+
+// The mesh with its new uvs: one material a page.
 std::string to_obj(const Scene& s, const UvCharts& charts, const FitResult& fit,
-                   std::vector<Vec2d>& uvs) {
-  std::string text = "# repacked by atlas-pack\n";
+                   const std::string& material_file, std::vector<Vec2d>& uvs) {
+  std::string text = fmt::format("# repacked by atlas-pack\nmtllib {}\n", material_file);
   for (const Vec3f& p : s.positions)
     text += fmt::format("v {} {} {}\n", number(s.origin.x + p.x), number(s.origin.y + p.y),
                         number(s.origin.z + p.z));
   uvs.assign(s.indices.size(), {});
   std::string faces;
-  std::size_t vt = 0;
+  std::vector<std::size_t> vt_of(s.texcoords.size(), 0);
+  std::size_t vts = 0;
   for (std::uint32_t page = 0; page < fit.pages.size(); ++page) {
     bool named = false;
+    const auto fraction = [](double texels, std::int32_t side) {
+      return number(std::clamp(texels / side, 0.0, 1.0));  // -1e-17 is 0
+    };
     for (std::size_t c = 0; c < charts.members.size(); ++c) {
       const FitPlacement& at = fit.placements[c];
       if (at.page != page) continue;
@@ -143,20 +54,48 @@ std::string to_obj(const Scene& s, const UvCharts& charts, const FitResult& fit,
           const Vec2d p = charts.corners[c][3 * m + k];
           const Vec2d q{cs * p.x - sn * p.y + at.offset.x, sn * p.x + cs * p.y + at.offset.y};
           uvs[3 * t + k] = q;
-          text += fmt::format("vt {} {}\n", number(q.x / fit.pages[page].width),
-                              number(q.y / fit.pages[page].height));
-          faces += fmt::format(" {}/{}", s.indices[3 * t + k] + 1, ++vt);
+          std::size_t& vt = vt_of[charts.same[s.texcoord_indices[3 * t + k]]];
+          if (vt == 0) {
+            text += fmt::format("vt {} {}\n", fraction(q.x, fit.pages[page].width),
+                                fraction(q.y, fit.pages[page].height));
+            vt = ++vts;
+          }
+          faces += fmt::format(" {}/{}", s.indices[3 * t + k] + 1, vt);
         }
         faces += "\n";
       }
     }
   }
-  if (charts.without_uv > 0) faces += "usemtl no_uv\n";
+  if (charts.without_uv > 0) faces += fmt::format("usemtl {}\n", kWithoutUv);
   for (std::size_t t = 0; t < s.triangle_count(); ++t)
     if (charts.chart[t] == UvCharts::kNone)
       faces += fmt::format("f {} {} {}\n", s.indices[3 * t] + 1, s.indices[3 * t + 1] + 1,
                            s.indices[3 * t + 2] + 1);
   return text + faces;
+}
+
+std::string to_mtl(const UvCharts& charts, const FitResult& fit) {
+  std::string text;
+  for (std::size_t page = 0; page < fit.pages.size(); ++page)
+    text += fmt::format("newmtl page_{}\nKd 1 1 1\n", page);
+  if (charts.without_uv > 0) text += fmt::format("newmtl {}\nKd 1 1 1\n", kWithoutUv);
+  return text;
+}
+
+std::filesystem::path material_file(std::filesystem::path mesh) {
+  return mesh.replace_extension("mtl");
+}
+
+// Mesh and materials appear together. `uvs`: the new ones in texels, 3 a triangle.
+Status write_mesh(const PackCommand& c, const Scene& scene, const UvCharts& charts,
+                  const FitResult& fit, std::vector<Vec2d>& uvs) {
+  const std::filesystem::path materials = material_file(c.output);
+  AtomicFiles files;
+  const std::string obj = to_obj(scene, charts, fit, materials.filename().string(), uvs);
+  for (const auto& [path, text] : {std::pair(materials, to_mtl(charts, fit)), {c.output, obj}}) {
+    if (Status status = files.write(path, text); !status.ok()) return status;
+  }
+  return files.commit();
 }
 
 std::int32_t round_up(std::int32_t side) {
@@ -197,7 +136,7 @@ std::string to_svg(const UvCharts& charts, const FitResult& fit, const std::vect
 
 Status draw(const std::filesystem::path& path, const UvCharts& charts, const FitResult& fit,
             const std::vector<Vec2d>& uvs) {
-  if (path.extension() == ".svg") return write_file(path, to_svg(charts, fit, uvs));
+  if (lower_extension(path) == ".svg") return write_file(path, to_svg(charts, fit, uvs));
   std::vector<Image8> pages;
   for (Extent p : fit.pages) pages.emplace_back(p.width, p.height, 3, std::uint8_t{51});
   for (std::size_t c = 0; c < charts.members.size(); ++c) {
@@ -289,16 +228,19 @@ Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> item
 }  // namespace
 
 Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
-  if (c.output.extension() != ".obj")
+  if (lower_extension(c.output) != ".obj")
     return Status(ErrorCode::bad_option,
                   fmt::format("{}: the target must end in .obj", c.output.string()));
   if (Status s = check_output(c.output, {c.input, c.preview}); !s.ok()) return s;
+  if (Status s = check_output(material_file(c.output), {c.input, c.preview}); !s.ok()) return s;
   if (Status s = check_preview(c); !s.ok()) return s;
   ReadOptions read;
   read.load_textures = false;
   Result<LoadedScene> loaded = read_scene(c.input, read, context);
   if (!loaded.ok()) return loaded.status();
   const Scene& scene = loaded->scene;
+  for (const auto& file : loaded->files)
+    if (Status s = check_output(material_file(c.output), {file}); !s.ok()) return s;
   for (const std::string& line : loaded->defects.lines()) context.say("defect: " + line);
   if (scene.texcoord_indices.empty())
     return Status(ErrorCode::bad_input,
@@ -325,7 +267,7 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   if (!fitted.ok()) return fitted.status();
   if (context.cancelled()) return Status::cancelled();  // a search gives what it has so far
   std::vector<Vec2d> uvs;
-  if (Status s = write_file(c.output, to_obj(scene, charts, *fitted, uvs)); !s.ok()) return s;
+  if (Status s = write_mesh(c, scene, charts, *fitted, uvs); !s.ok()) return s;
   if (!c.preview.empty())
     if (Status s = draw(c.preview, charts, *fitted, uvs); !s.ok()) return s;
   return describe(*fitted);

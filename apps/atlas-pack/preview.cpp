@@ -97,7 +97,7 @@ Status write_preview_png(const std::filesystem::path& path, std::span<const Imag
 
 Status check_preview(const PackCommand& command) {
   const std::filesystem::path& preview = command.preview;
-  const auto ending = preview.extension();
+  const std::string ending = lower_extension(preview);
   if (!preview.empty() && ending != ".svg" && ending != ".png")
     return {ErrorCode::bad_option,
             fmt::format("{}: unknown preview format (use .svg or .png)", preview.string())};
@@ -105,7 +105,7 @@ Status check_preview(const PackCommand& command) {
 }
 
 Status write_preview(const std::filesystem::path& path, const PackedAtlas& atlas) {
-  if (path.extension() == ".svg") return write_file(path, to_svg(atlas));
+  if (lower_extension(path) == ".svg") return write_file(path, to_svg(atlas));
   std::vector<Image8> pages;
   for (Extent p : atlas.pages) pages.emplace_back(p.width, p.height, 3, std::uint8_t{51});
   for (std::size_t i = 0; i < atlas.items.size(); ++i) {

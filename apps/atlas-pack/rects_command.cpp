@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "apps/atlas-pack/commands.h"
 #include "apps/atlas-pack/preview.h"
@@ -56,31 +59,74 @@ std::vector<std::string> split(const std::string& line) {
   return fields;
 }
 
-Status read_csv(const PackCommand& c, const std::string& text, std::vector<PackedItem>& items) {
+// What a file of rectangles holds.
+struct RectList {
+  std::vector<PackedItem> items;
+  std::optional<Extent> page;  // of an instance
+};
+
+struct CsvLine {
+  std::size_t number = 0;
+  std::vector<std::string> fields;
+};
+
+Result<std::vector<CsvLine>> csv_lines(const PackCommand& c, const std::string& text) {
+  std::vector<CsvLine> result;
   std::istringstream lines(text);
   std::string line;
+  bool header_seen = false;
   for (std::size_t number = 1; std::getline(lines, line); ++number) {
-    const std::vector<std::string> f = split(line);
-    if (f.empty() || line.find_first_not_of(" \t\r") == std::string::npos || line[0] == '#')
-      continue;
-    PackedItem item;
+    if (line.find_first_not_of(" \t\r") == std::string::npos || line[0] == '#') continue;
+    std::vector<std::string> f = split(line);
     const std::size_t n = f.size();
     if (n != 2 && n != 3)
       return bad_line(c, number,
                       fmt::format("{} fields (expected width,height or "
                                   "name,width,height)",
                                   n));
-    const bool numbers = to_side(f[n - 2], item.size.width) && to_side(f[n - 1], item.size.height);
-    if (number == 1 && !has_digit(f[n - 2]) && !has_digit(f[n - 1])) continue;  // a header
-    if (!numbers)
+    const bool header = !has_digit(f[n - 2]) && !has_digit(f[n - 1]);
+    if (header && result.empty() && !std::exchange(header_seen, true)) continue;
+    result.push_back({number, std::move(f)});
+  }
+  return result;
+}
+
+// The form of published instances: a first line `width height count` of the page (height 0: a
+// strip), then one rectangle a line without a name.
+Status read_instance_head(const PackCommand& c, std::vector<CsvLine>& lines, RectList& list) {
+  const auto unnamed = [](const CsvLine& line) { return line.fields.size() == 2; };
+  std::int32_t width = 0, height = 0, count = 0;
+  if (lines.size() < 2 || unnamed(lines[0]) ||
+      !std::all_of(lines.begin() + 1, lines.end(), unnamed) ||
+      !to_side(lines[0].fields[0], width) || !to_side(lines[0].fields[1], height) ||
+      !to_side(lines[0].fields[2], count) || width < 1 || height < 0)
+    return {};
+  if (std::size_t(std::max(count, 0)) != lines.size() - 1)
+    return bad_line(c, lines[0].number,
+                    fmt::format("a page of {} x {} and {} rectangles, but {} lines follow (or name "
+                                "all rectangles, if this is one)",
+                                width, height, count, lines.size() - 1));
+  list.page = Extent{width, height};
+  lines.erase(lines.begin());
+  return {};
+}
+
+Status read_csv(const PackCommand& c, const std::string& text, RectList& list) {
+  Result<std::vector<CsvLine>> lines = csv_lines(c, text);
+  if (!lines.ok()) return lines.status();
+  if (Status s = read_instance_head(c, *lines, list); !s.ok()) return s;
+  for (const auto& [number, f] : *lines) {
+    PackedItem item;
+    const std::size_t n = f.size();
+    if (!to_side(f[n - 2], item.size.width) || !to_side(f[n - 1], item.size.height))
       return bad_line(c, number,
                       fmt::format("'{}' and '{}' are not two whole numbers (sides in "
                                   "texels, at most 2147483647)",
                                   f[n - 2], f[n - 1]));
     if (item.size.width < 0 || item.size.height < 0)
       return bad_line(c, number, "a side is negative (sides are 0 or more)");
-    item.name = n == 3 ? f[0] : std::to_string(items.size());
-    items.push_back(std::move(item));
+    item.name = n == 3 ? f[0] : std::to_string(list.items.size());
+    list.items.push_back(std::move(item));
   }
   return {};
 }
@@ -119,7 +165,7 @@ Status read_json(const PackCommand& c, const std::string& text, std::vector<Pack
 
 // A JSON object keeps one item a name.
 Status check_names(const PackCommand& c, const std::vector<PackedItem>& items) {
-  if (c.output.extension() != ".json" || c.format != DataFormat::hash) return {};
+  if (lower_extension(c.output) != ".json" || c.format != DataFormat::hash) return {};
   std::set<std::string_view> names;
   for (const PackedItem& item : items)
     if (!names.insert(item.name).second)
@@ -130,7 +176,7 @@ Status check_names(const PackCommand& c, const std::vector<PackedItem>& items) {
 }
 
 // A pipe serves as well as a file.
-Status read_items(const PackCommand& c, std::vector<PackedItem>& items) {
+Status read_list(const PackCommand& c, RectList& list) {
   std::error_code ignored;  // what cannot be looked at cannot be opened either
   if (std::filesystem::is_directory(c.input, ignored))
     return {ErrorCode::bad_input,
@@ -145,33 +191,36 @@ Status read_items(const PackCommand& c, std::vector<PackedItem>& items) {
   buffer << file.rdbuf();
   std::string text = buffer.str();
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // as spreadsheets write it
-  const bool json = c.input.extension() == ".json";
-  if (Status s = json ? read_json(c, text, items) : read_csv(c, text, items); !s.ok()) return s;
-  if (items.empty())
+  const bool json = lower_extension(c.input) == ".json";
+  if (Status s = json ? read_json(c, text, list.items) : read_csv(c, text, list); !s.ok()) return s;
+  if (list.items.empty())
     return {ErrorCode::bad_input,
             fmt::format("{}: holds no rectangle (write width,height or name,width,height a line, "
                         "or a JSON array)",
                         c.input.string())};
-  return check_names(c, items);
+  return check_names(c, list.items);
 }
 
 }  // namespace
 
 Result<PackedAtlas> run_rects(const PackCommand& c, const Context& context) {
-  const auto ending = c.output.extension();
+  const std::string ending = lower_extension(c.output);
   if (ending != ".csv" && ending != ".json")
     return Status(ErrorCode::bad_option,
                   fmt::format("{}: unknown format (use .csv or .json)", c.output.string()));
   if (Status s = check_output(c.output, {c.input, c.preview}); !s.ok()) return s;
   if (Status s = check_preview(c); !s.ok()) return s;
-  std::vector<PackedItem> items;
-  if (Status s = read_items(c, items); !s.ok()) return s;
+  RectList list;
+  if (Status s = read_list(c, list); !s.ok()) return s;
+  PackOptions options = c.options;
+  if (list.page && !c.page_given) options.page = *list.page;
+  std::vector<PackedItem>& items = list.items;
   std::vector<Extent> sizes;
   for (PackedItem& item : items) {
     item.source = item.size;
     sizes.push_back(item.size);
   }
-  Result<PackResult> packed = pack_rects(sizes, c.options, context);
+  Result<PackResult> packed = pack_rects(sizes, options, context);
   if (!packed.ok()) return packed.status();
   for (const UnplacedItem& u : packed->unplaced)
     context.say(fmt::format(
@@ -179,7 +228,7 @@ Result<PackedAtlas> run_rects(const PackCommand& c, const Context& context) {
         u.reason == UnplacedReason::too_large ? "is larger than the page" : "has no room left"));
   PackedAtlas atlas = make_atlas(std::move(items), *packed);
   const std::string placed =
-      c.output.extension() == ".json" ? to_json(atlas, c.format, kAllPages) : to_csv(atlas);
+      ending == ".json" ? to_json(atlas, c.format, kAllPages) : to_csv(atlas);
   if (Status s = write_file(c.output, placed); !s.ok()) return s;
   if (!c.preview.empty())
     if (Status s = write_preview(c.preview, atlas); !s.ok()) return s;

@@ -26,8 +26,7 @@ struct Sprite {
 bool is_image(const fs::path& path) {
   static const char* const known[] = {".png", ".jpg",  ".jpeg", ".tga", ".bmp",
                                       ".tif", ".tiff", ".gif",  ".webp"};
-  std::string ending = path.extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string ending = lower_extension(path);
   return std::find(std::begin(known), std::end(known), ending) != std::end(known);
 }
 

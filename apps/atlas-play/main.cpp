@@ -42,7 +42,7 @@ Status bench(const CommandLine& line, const GlContext& gl, const Renderer& rende
 // What would else be found out after all frames are drawn.
 Status check_outputs(const CommandLine& line) {
   const std::filesystem::path& picture = line.play.screenshot;
-  if (!picture.empty() && picture.extension() != ".png")
+  if (!picture.empty() && lower_extension(picture) != ".png")
     return {ErrorCode::bad_option,
             fmt::format("{}: the screenshot must end in .png", picture.string())};
   if (Status s = check_output(picture, {line.scene}); !s.ok()) return s;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
+
 #include "libatlas/core/atomic_file.h"
 
 namespace atlas::app {
@@ -30,6 +32,12 @@ Status check_output(const fs::path& output, std::initializer_list<fs::path> othe
           fmt::format("{}: would overwrite {} (give the output another name)", output.string(),
                       output == other ? "a file that is read or written as well" : other.string())};
   return check_writable(output);
+}
+
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
 }
 
 }  // namespace atlas::app

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <initializer_list>
+#include <string>
 
 #include "libatlas/core/status.h"
 
@@ -12,5 +13,8 @@ namespace atlas::app {
 // outputs. Empty paths are no files. Errors: io, bad_option.
 Status check_output(const std::filesystem::path& output,
                     std::initializer_list<std::filesystem::path> others);
+
+// The extension in small letters, however the name has it: .CSV is .csv.
+std::string lower_extension(const std::filesystem::path& path);
 
 }  // namespace atlas::app

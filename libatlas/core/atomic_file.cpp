@@ -145,10 +145,8 @@ Status check_writable(const fs::path& name) {
   return {};
 }
 
-Status write_file(const fs::path& target, std::string_view bytes) {
-  AtomicFiles files;
-  const fs::path path = files.path_for(target);
-  std::FILE* file = std::fopen(path.c_str(), "wb");
+Status AtomicFiles::write(const fs::path& target, std::string_view bytes) {
+  std::FILE* file = std::fopen(path_for(target).c_str(), "wb");
   if (!file) {
     return {ErrorCode::io,
             fmt::format("{}: cannot be written: {}", target.string(), std::strerror(errno))};
@@ -159,6 +157,12 @@ Status write_file(const fs::path& target, std::string_view bytes) {
     return {ErrorCode::io, fmt::format("{}: writing failed: {}", target.string(),
                                        std::strerror(written ? errno : write_error))};
   }
+  return {};
+}
+
+Status write_file(const fs::path& target, std::string_view bytes) {
+  AtomicFiles files;
+  if (Status s = files.write(target, bytes); !s.ok()) return s;
   return files.commit();
 }
 

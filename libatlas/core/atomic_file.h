@@ -24,6 +24,9 @@ class AtomicFiles {
   // cannot be replaced by a file (a device, a pipe) is written to at once.
   std::filesystem::path path_for(const std::filesystem::path& target);
 
+  // Writes `bytes` to what will be `target`. Errors: io, naming the target.
+  Status write(const std::filesystem::path& target, std::string_view bytes);
+
   // The same status with targets where its message says temporary names.
   Status told_by_target(const Status& status) const;
 

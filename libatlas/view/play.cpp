@@ -16,7 +16,7 @@ namespace atlas {
 namespace fs = std::filesystem;
 
 bool textures_hold_light(const fs::path& path) {
-  const std::string extension = path.extension().string();
+  const std::string extension = world_extension(path);
   if (extension == ".wrl" || extension == ".wrz") return true;
   if (extension != ".gltf" && extension != ".glb") return false;
   // The extension is named in the document's text, which GLB puts first.

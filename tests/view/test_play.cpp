@@ -131,6 +131,7 @@ TEST_F(Play, KnowsWhichFilesHoldLight) {
   EXPECT_FALSE(textures_hold_light(path_ / "b.gltf"));
   EXPECT_FALSE(textures_hold_light(path_ / "absent.gltf"));
   EXPECT_TRUE(textures_hold_light("world.wrl"));
+  EXPECT_TRUE(textures_hold_light("WORLD.WRL"));
   EXPECT_FALSE(textures_hold_light("scene.obj"));
 }
 

@@ -65,6 +65,38 @@ TEST_F(AtlasPack, RectsFromCsvToCsv) {
   EXPECT_NE(read("p.svg").find("<svg"), std::string::npos);
 }
 
+// Published instances begin with `width height count`; --page has the last word.
+TEST_F(AtlasPack, InstancesSayTheirPage) {
+  write("a.txt", "# three\n10 10 3\n10 4\n5 6\n5 6\n");
+  const RunResult r = run("rects a.txt -o a.csv --json");
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  const auto summary = nlohmann::json::parse(r.output);
+  EXPECT_EQ(summary["items"], 3);
+  EXPECT_EQ(summary["pages"], nlohmann::json::parse(R"([{"width":10,"height":10}])"));
+  const RunResult wider = run("rects a.txt -o a.csv --page 20x10 --json");
+  EXPECT_EQ(nlohmann::json::parse(wider.output)["pages"][0]["width"], 20);
+  write("strip.txt", "10 0 2\n10 4\n10 6\n");
+  const RunResult strip = run("rects strip.txt -o a.csv --json");
+  EXPECT_EQ(nlohmann::json::parse(strip.output)["pages"][0]["height"], 10) << strip.output;
+  write("cut.txt", "10 10 3\n10 4\n");
+  const RunResult cut = run("rects cut.txt -o cut.csv");
+  EXPECT_EQ(cut.exit_code, 1);
+  EXPECT_NE(cut.output.find("cut.txt:1: a page of 10 x 10 and 3 rectangles"), std::string::npos)
+      << cut.output;
+  write("named.txt", "1 10 3\n2 10 4\n");  // all are named: a list
+  EXPECT_EQ(nlohmann::json::parse(run("rects named.txt -o a.csv --json").output)["items"], 2);
+}
+
+TEST_F(AtlasPack, HeadersFollowCommentsAndExtensionsMayBeCapitals) {
+  write("S.CSV", "# sizes\n\nname,width,height\na,3,4\n");
+  ASSERT_EQ(run("rects S.CSV -o A.CSV --preview P.SVG").exit_code, 0);
+  EXPECT_EQ(read("A.CSV"), "name,page,x,y,width,height,rotated\na,0,0,0,3,4,0\n");
+  EXPECT_NE(read("P.SVG").find("<svg"), std::string::npos);
+  write("S.JSON", "[[3,4]]");
+  ASSERT_EQ(run("rects S.JSON -o B.JSON").exit_code, 0);
+  EXPECT_EQ(nlohmann::json::parse(read("B.JSON"))["frames"]["0"]["frame"]["h"], 4);
+}
+
 // Blocks of compressed texels are counted from the upper edge, whatever the page's height.
 TEST_F(AtlasPack, AlignedItemsBeginAtMultiplesFromTheUpperLeftCorner) {
   write("sizes.csv",
@@ -226,10 +258,14 @@ TEST_F(AtlasPack, MeshChartsAtUniformDensity) {
   ASSERT_EQ(r.exit_code, 0) << r.output;
   EXPECT_TRUE(fs::exists(dir_ / "p.png"));
   std::istringstream lines(read("out.obj"));
-  std::vector<std::pair<double, double>> uv;
-  for (std::string line; std::getline(lines, line);)
-    if (double u = 0, v = 0; std::sscanf(line.c_str(), "vt %lf %lf", &u, &v) == 2)
-      uv.emplace_back(u, v);
+  std::vector<std::pair<double, double>> vt, uv;  // uv: 3 a triangle
+  for (std::string line; std::getline(lines, line);) {
+    double u = 0, v = 0;
+    std::size_t t[3];
+    if (std::sscanf(line.c_str(), "vt %lf %lf", &u, &v) == 2) vt.emplace_back(u, v);
+    if (std::sscanf(line.c_str(), "f %*d/%zu %*d/%zu %*d/%zu", &t[0], &t[1], &t[2]) == 3)
+      for (const std::size_t k : t) uv.push_back(vt.at(k - 1));
+  }
   ASSERT_EQ(uv.size(), 12u);
   const auto area = [&](std::size_t k) {
     return std::abs((uv[k + 1].first - uv[k].first) * (uv[k + 2].second - uv[k].second) -
@@ -250,6 +286,38 @@ std::string triangles_obj() {
   for (int k = 0; k < 8; ++k)
     text += fmt::format("f {0}/{0} {1}/{1} {2}/{2}\n", 3 * k + 1, 3 * k + 2, 3 * k + 3);
   return text;
+}
+
+// Two squares of two triangles each whose corners all have their own vt: still two charts.
+TEST_F(AtlasPack, MeshChartsAreFoundByPlaceAndValueAndStayCharts) {
+  write("m.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 5\nv 1 0 5\nv 1 1 5\nv 0 1 5\n"
+        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 0\nvt 1 1\nvt 0 1\n"
+        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 0\nvt 1 1\nvt 0 1\n"
+        "f 1/1 2/2 3/3\nf 1/4 3/5 4/6\nf 5/7 6/8 7/9\nf 5/10 7/11 8/12\n");
+  for (const char* names : {"m.obj -o out.obj", "out.obj -o again.obj"}) {
+    const RunResult r = run(fmt::format("mesh {} --page 64 --pages 2", names));
+    ASSERT_EQ(r.exit_code, 0) << r.output;
+    EXPECT_NE(r.output.find(": 2 items"), std::string::npos) << r.output;
+    EXPECT_EQ(r.output.find("defect"), std::string::npos) << r.output;
+  }
+  const std::string obj = read("again.obj"), mtl = read("again.mtl");
+  std::istringstream lines(obj);
+  int vts = 0;
+  for (std::string line; std::getline(lines, line);) {
+    vts += line.starts_with("vt ");
+    EXPECT_EQ(line.find('-'), line[0] == '#' ? line.find('-') : std::string::npos) << line;
+    if (line.starts_with("usemtl ")) {
+      EXPECT_NE(mtl.find("newmtl " + line.substr(7) + "\n"), std::string::npos) << line;
+    }
+  }
+  EXPECT_EQ(vts, 8);
+  // A material file that is read stays.
+  write("mine.mtl", "newmtl red\n");
+  write("other.obj", "mtllib mine.mtl\n" + read("m.obj"));
+  const RunResult over = run("mesh other.obj -o mine.obj");
+  EXPECT_EQ(over.exit_code, 2) << over.output;
+  EXPECT_EQ(read("mine.mtl"), "newmtl red\n");
 }
 
 TEST_F(AtlasPack, InterruptLeavesNothing) {
