@@ -101,13 +101,7 @@ bool BoxFit::group(std::uint32_t pages, BoxLayout& layout) const {
   std::vector<std::uint64_t> areas(boxes_.size());
   for (std::size_t i = 0; i < areas.size(); ++i)
     areas[i] = static_cast<std::uint64_t>(boxes_[i].area());
-  GroupingOptions grouping_options;
-  grouping_options.groups = pages;
-  grouping_options.refine_work = 0;
-  Result<GroupingResult> grouping = group_sizes(areas, grouping_options, context_);
-  if (!grouping.ok()) return false;
-  layout.grouping = std::move(*grouping);
-  return true;
+  return group_areas(areas, pages, context_, layout.grouping);
 }
 
 // Each group into its own page, largest items first; what is left over goes wherever it fits.
@@ -190,6 +184,17 @@ Extent BoxFit::shrink_page(std::uint32_t page, BoxLayout& layout) const {
     return size;
   }
   return page_;
+}
+
+bool group_areas(std::span<const std::uint64_t> areas, std::uint32_t pages, const Context& context,
+                 GroupingResult& grouping) {
+  GroupingOptions options;
+  options.groups = pages;
+  options.refine_work = 0;
+  Result<GroupingResult> found = group_sizes(areas, options, context);
+  if (!found.ok()) return false;
+  grouping = std::move(*found);
+  return true;
 }
 
 double scale_tolerance(const FitOptions& options, double exact, std::size_t items) {

@@ -164,13 +164,7 @@ class OutlineFit {
     if (cells_of(layout.pieces) > cells_of_pages(pages)) return false;
     std::vector<std::uint64_t> cells;
     for (const Piece& p : layout.pieces) cells.push_back(static_cast<std::uint64_t>(p.cells()));
-    GroupingOptions grouping;
-    grouping.groups = pages;
-    grouping.refine_work = 0;
-    Result<GroupingResult> result = group_sizes(cells, grouping, context_);
-    if (!result.ok()) return false;
-    layout.grouping = std::move(*result);
-    return true;
+    return group_areas(cells, pages, context_, layout.grouping);
   }
 
   // Page p gets the charts orders[p], largest first.
@@ -190,9 +184,7 @@ class OutlineFit {
     search.work =
         (options_.preset == PackPreset::best ? 400'000'000u : 16'000'000u) / orders.size();
     if (layout_cost(plan.order.size(), side_, grid_.directions) * 4 > double(search.work)) return;
-    Nest found;
-    std::uint64_t layouts = 0;
-    improve_plan(pieces, plan, search, context_, found, layouts);
+    Nest found = search_nest(pieces, plan, search, context_).nest;
     if (!found.left_over.empty() || found.used_height > side_) return;
     page.clear();
     for (std::uint32_t i : plan.order)

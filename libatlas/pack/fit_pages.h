@@ -55,6 +55,11 @@ Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions&
 bool fit_pressed(std::span<const FitItem> items, std::span<const ChartOutline> outlines,
                  const FitOptions& options, const Context& context, FitResult& result);
 
+// F(A) = N over these areas, without a search below the bisection's answer: it is asked for at
+// every scale tried. False where there is none (the areas pass 2^62, or cancelled).
+bool group_areas(std::span<const std::uint64_t> areas, std::uint32_t pages, const Context& context,
+                 GroupingResult& grouping);
+
 // So many items fill the gaps of a page whatever their order.
 inline constexpr std::size_t kManyItems = 1000;
 

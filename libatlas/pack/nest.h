@@ -99,8 +99,11 @@ struct NestSearchOptions {
   std::uint64_t seed = 1;
   double seconds = 1e300;  // wall time, for `best`
 };
-NestPlan improve_plan(std::span<const Piece> pieces, const NestPlan& start,
-                      const NestSearchOptions& options, const Context& context, Nest& best,
-                      std::uint64_t& layouts);
+struct NestSearchResult {
+  Nest nest;                  // the lowest one found
+  std::uint64_t layouts = 0;  // tried
+};
+NestSearchResult search_nest(std::span<const Piece> pieces, const NestPlan& start,
+                             const NestSearchOptions& options, const Context& context);
 
 }  // namespace atlas::pack

@@ -85,36 +85,34 @@ std::int32_t most_rows(std::span<const Piece> pieces, double total_cells, std::i
 
 }  // namespace
 
-NestPlan improve_plan(std::span<const Piece> pieces, const NestPlan& start,
-                      const NestSearchOptions& options, const Context& context, Nest& best,
-                      std::uint64_t& layouts) {
+NestSearchResult search_nest(std::span<const Piece> pieces, const NestPlan& start,
+                             const NestSearchOptions& options, const Context& context) {
   double total = 0;
   for (const Piece& p : pieces) total += static_cast<double>(p.cells());
   BitPage page(options.width, most_rows(pieces, total, options.width), longest_run(pieces));
-  std::uint64_t spent = 0, tried = 0;
+  std::uint64_t spent = 0;
+  NestSearchResult found;
   PlacedPlan current, next;
   const auto evaluate = [&](PlacedPlan& placed) {
     place_pieces_as(pieces, current, page, placed);
     spent += std::accumulate(placed.work.begin(), placed.work.end(), 20 * pieces.size());
-    ++layouts;
-    ++tried;
+    ++found.layouts;
     return energy(placed.nest, total);
   };
   next.plan = start;
   double current_energy = evaluate(next), best_energy = current_energy;
   std::swap(current, next);
-  NestPlan best_plan = start;
-  best = current.nest;
+  found.nest = current.nest;
   PlanMoves moves(pieces, options.seed);
   const double begun = wall_seconds();
-  while (spent < options.work && tried < options.layouts && !pieces.empty()) {
+  while (spent < options.work && found.layouts < options.layouts && !pieces.empty()) {
     if (context.cancelled() || wall_seconds() - begun > options.seconds) break;
-    if (best.left_over.empty() && best.used_height <= options.enough) break;
+    if (found.nest.left_over.empty() && found.nest.used_height <= options.enough) break;
     next.plan = current.plan;
     moves.disturb(next.plan, current.nest);
     const double left =
         1 - std::max(static_cast<double>(spent) / static_cast<double>(options.work),
-                     static_cast<double>(tried) / static_cast<double>(options.layouts));
+                     static_cast<double>(found.layouts) / static_cast<double>(options.layouts));
     const double temperature = std::max(1e-9, 0.004 * best_energy * left * left);
     // Metropolis' rule, the chance drawn first: a layout is given up as soon as it is too high.
     const double most = current_energy - temperature * std::log(std::max(1e-300, moves.unit()));
@@ -122,16 +120,14 @@ NestPlan improve_plan(std::span<const Piece> pieces, const NestPlan& start,
     const double e = evaluate(next);
     if (e < best_energy) {
       best_energy = e;
-      best_plan = next.plan;
-      best = next.nest;
+      found.nest = next.nest;
     }
     if (e <= most) {
       std::swap(current, next);
       current_energy = e;
     }
   }
-  best_plan.most_height = std::numeric_limits<double>::infinity();
-  return best_plan;
+  return found;
 }
 
 }  // namespace atlas::pack

@@ -159,25 +159,24 @@ Nest search(std::span<const Piece> pieces, const Grid& grid, const OutlineOption
     s.seconds = o.time_budget * std::min(1.0, threads / double(chains));
     if (o.effort) s.layouts = std::max<std::uint64_t>(1, o.effort / chains);
   }
-  std::vector<Nest> nests(chains);
-  std::vector<std::uint64_t> layouts(chains);
+  std::vector<pack::NestSearchResult> found(chains);
   const double begun = wall_seconds();
   pack::parallel_chains(context, chains, [&](std::size_t c) {
     pack::NestSearchOptions own = s;
     own.seed = s.seed * 0x10001 + c;
-    pack::improve_plan(pieces, start, own, context, nests[c], layouts[c]);
+    found[c] = pack::search_nest(pieces, start, own, context);
   });
   std::size_t best = 0;
   for (std::size_t c = 0; c < chains; ++c) {
-    result.layouts_tried += layouts[c];
-    if (nests[c].left_over.size() < nests[best].left_over.size() ||
-        (nests[c].left_over.size() == nests[best].left_over.size() &&
-         nests[c].used_height < nests[best].used_height))
+    result.layouts_tried += found[c].layouts;
+    const Nest &nest = found[c].nest, &least = found[best].nest;
+    if (nest.left_over.size() < least.left_over.size() ||
+        (nest.left_over.size() == least.left_over.size() && nest.used_height < least.used_height))
       best = c;
   }
   result.curve.push_back({wall_seconds() - begun, result.layouts_tried, 1,
-                          std::int64_t{nests[best].used_height} * grid.cell});
-  return nests[best];
+                          std::int64_t{found[best].nest.used_height} * grid.cell});
+  return std::move(found[best].nest);
 }
 
 // Fills page after page with what is left, largest first.

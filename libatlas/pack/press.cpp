@@ -188,8 +188,8 @@ class Press {
     search.layouts = kLayouts << doublings;
     Start start;
     if (pieces_.size() == 1) return alone();
-    Nest nest;
-    improve_plan(pieces_, plan_by_size(pieces_), search, context_, nest, start.layouts);
+    const auto [nest, layouts] = search_nest(pieces_, plan_by_size(pieces_), search, context_);
+    start.layouts = layouts;
     if (!nest.left_over.empty()) return start;
     put_down(nest, start);
     start.page = {search.width * double(cell_), nest.used_height * double(cell_)};

@@ -93,12 +93,31 @@ std::int32_t top_of(const Problem& problem, std::span<const GapPlacement> placed
   return top;
 }
 
+// A strip's lowest layout so far.
+struct LowStrip {
+  std::int64_t bound = 0;  // no layout is lower
+  std::int64_t height = 0;
+  std::vector<GapPlacement> placed;
+};
+
+// Takes what is lower into `low`. Whether anything was.
+bool lower(const Problem& problem, std::span<std::vector<GapPlacement>> found, LowStrip& low) {
+  const std::int64_t before = low.height;
+  for (std::vector<GapPlacement>& layout : found) {
+    if (layout.empty()) continue;
+    const std::int32_t top = top_of(problem, layout);
+    if (top >= low.height) continue;
+    low.height = top;
+    low.placed = std::move(layout);
+  }
+  return low.height < before;
+}
+
 // Beams of all widths, each below the lowest height known, four that prefer large items differently
 // at a time: the lowest layout of the four counts, so that threads change nothing. The beam widens
 // where none of them finds anything.
-void search_beams(const Problem& problem, const SearchLimits& limits, const Context& context,
-                  std::int64_t bound, std::int64_t& height, std::vector<GapPlacement>& placed,
-                  PackResult& result) {
+LowStrip search_beams(const Problem& problem, const SearchLimits& limits, const Context& context,
+                      LowStrip low, PackResult& result) {
   constexpr std::array kLargeFirst{3.0, 2.0, 4.0, 1.5};
   const double begun = wall_seconds();
   const auto stop = [&] {
@@ -110,33 +129,26 @@ void search_beams(const Problem& problem, const SearchLimits& limits, const Cont
   const std::size_t widest = std::max<std::size_t>(8, 1'000'000 / problem.items.size());
   std::uint64_t left = limits.beam_states;
   double last = begun;
-  for (std::size_t states = 4; states <= widest && height > bound && !stop();) {
-    if (left < states * beams.size()) return;
+  for (std::size_t states = 4; states <= widest && low.height > low.bound && !stop();) {
+    if (left < states * beams.size()) return low;
     left -= states * beams.size();
     result.layouts_tried += states * beams.size();
     std::vector<std::vector<GapPlacement>> found(beams.size());
     const auto run = [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k)
-        found[k] =
-            beams[k].pack({static_cast<std::int32_t>(height - 1), states, kLargeFirst[k], stop});
+        found[k] = beams[k].pack(
+            {static_cast<std::int32_t>(low.height - 1), states, kLargeFirst[k], stop});
     };
     parallel_for(context, beams.size(), 1, run);
-    const std::int64_t before = height;
-    for (auto& layout : found) {
-      if (layout.empty()) continue;
-      const std::int32_t top = top_of(problem, layout);
-      if (top >= height) continue;
-      height = top;
-      placed = std::move(layout);
-    }
-    if (height == before) {
+    if (!lower(problem, found, low)) {
       states *= 2;
       continue;
     }
     const double seconds = result.curve.empty() ? 0 : result.curve.back().seconds;
-    result.curve.push_back({seconds + wall_seconds() - last, result.layouts_tried, 1, height});
+    result.curve.push_back({seconds + wall_seconds() - last, result.layouts_tried, 1, low.height});
     last = wall_seconds();
   }
+  return low;
 }
 
 }  // namespace
@@ -167,11 +179,10 @@ Layout search_strip(const Problem& problem, const SearchLimits& limits, const Co
   Layout layout;
   layout.placements.resize(problem.items.size());
   layout.pages = 1;
-  layout.last_used = chains[best].cost().second;
-  std::vector<GapPlacement> placed = chains[best].best();
-  if (limits.beam_states > 0)
-    search_beams(problem, limits, context, bound, layout.last_used, placed, result);
-  for (const GapPlacement& g : placed) layout.placements[g.item] = {0, g.x, g.y, g.rotated};
+  LowStrip low{bound, chains[best].cost().second, chains[best].best()};
+  if (limits.beam_states > 0) low = search_beams(problem, limits, context, std::move(low), result);
+  layout.last_used = low.height;
+  for (const GapPlacement& g : low.placed) layout.placements[g.item] = {0, g.x, g.y, g.rotated};
   return layout;
 }
 

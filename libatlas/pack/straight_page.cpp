@@ -165,8 +165,9 @@ class StraightPage {
     search.width = options_.page_size / cell_;
     search.seed = random.next();
     search.layouts = kLayouts << std::min(round, kMostDoublings);
-    Nest nest;
-    improve_plan(pieces, plan_by_size(pieces), search, context_, nest, start.layouts);
+    NestSearchResult found = search_nest(pieces, plan_by_size(pieces), search, context_);
+    Nest& nest = found.nest;
+    start.layouts = found.layouts;
     if (!nest.left_over.empty() || nest.used_height == 0) return start;
     start.fill =
         start.scale * start.scale * area_ / (double(options_.page_size) * nest.used_height * cell_);
