@@ -92,10 +92,11 @@ void KeySchedule::begin_interval(const Vec3d& now, const Ahead& ahead) {
 FramePlan KeySchedule::next_unblended(const Vec3d& now) {
   FramePlan plan;
   plan.refreshed = !valid_ || degrees_between(last_, now) > options_.jump_degrees;
-  const bool due = options_.interval_degrees > 0 ? degrees_between(from_.direction, now) >=
-                                                       options_.interval_degrees * (1 - 1e-9)
-                                                 : ++frame_ >= options_.interval_frames;
-  if (plan.refreshed || (due && !same(from_.direction, now))) {
+  const bool by_degrees = options_.interval_degrees > 0;
+  const bool late = ++frame_ >= (by_degrees ? options_.max_frames : options_.interval_frames);
+  const bool far =
+      by_degrees && degrees_between(from_.direction, now) >= options_.interval_degrees * (1 - 1e-9);
+  if (plan.refreshed || ((late || far) && !same(from_.direction, now))) {
     from_ = {0, now};
     draw_whole(0, now, plan);
     frame_ = 0;

@@ -165,6 +165,21 @@ TEST(Schedule, KeysByDegrees) {
   }
 }
 
+// A slow light does not keep an old map for ever: max_frames holds for held maps, too.
+TEST(Schedule, HeldKeysByDegreesAreAtMostSoManyFramesOld) {
+  ScheduleOptions o;
+  o.blend = false;
+  o.interval_degrees = 3.5;
+  o.max_frames = 10;
+  for (const double speed : {0.1, 1.0}) {
+    KeySchedule schedule(o);
+    for (int f = 0; f < 100; ++f) {
+      const bool drawn = !schedule.next(turned(f * speed), {}).work.empty();
+      EXPECT_EQ(drawn, f % (speed < 0.5 ? 10 : 4) == 0) << speed << " " << f;
+    }
+  }
+}
+
 TEST(Schedule, KeysAreNeverMoreThanNinetyDegreesApart) {
   ScheduleOptions o;
   o.interval_frames = 32;
