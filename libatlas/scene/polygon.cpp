@@ -1,15 +1,18 @@
 #include "libatlas/scene/polygon.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
 namespace {
 
-constexpr std::size_t kMaxConcave = 4096;  // ear clipping is quadratic
+constexpr std::size_t kMaxConcave = std::size_t{1} << 20;  // no surface of use has more
 
 double cross2(Vec2d a, Vec2d b, Vec2d c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -56,36 +59,190 @@ bool inside(Vec2d a, Vec2d b, Vec2d c, Vec2d p) {
   return cross2(a, b, p) >= 0 && cross2(b, c, p) >= 0 && cross2(c, a, p) >= 0;
 }
 
-bool is_ear(const std::vector<Vec2d>& p, const std::vector<std::uint32_t>& ring, std::size_t i) {
-  const std::size_t n = ring.size();
-  const std::uint32_t ia = ring[(i + n - 1) % n], ib = ring[i], ic = ring[(i + 1) % n];
-  if (cross2(p[ia], p[ib], p[ic]) <= 0) return false;
-  return std::none_of(ring.begin(), ring.end(), [&](std::uint32_t k) {
-    if (k == ia || k == ib || k == ic) return false;
-    if (p[k] == p[ia] || p[k] == p[ib] || p[k] == p[ic]) return false;
-    return inside(p[ia], p[ib], p[ic], p[k]);
-  });
-}
-
-void clip_ears(const std::vector<Vec2d>& p, std::vector<std::array<std::uint32_t, 3>>& triangles) {
-  std::vector<std::uint32_t> ring(p.size());
-  std::iota(ring.begin(), ring.end(), 0u);
-  std::size_t next = 1;  // going on after the last ear avoids long slivers at one corner
-  while (ring.size() > 3) {
-    const std::size_t n = ring.size();
-    std::size_t ear = next % n;
-    for (std::size_t tries = 0; tries < n; ++tries) {
-      const std::size_t i = (next + tries) % n;
-      if (!is_ear(p, ring, i)) continue;
-      ear = i;
-      break;
+// Points in square cells, about one in each, so that a triangle meets few of them.
+class PointGrid {
+ public:
+  // Of the points that `members` numbers.
+  PointGrid(const std::vector<Vec2d>& points, const std::vector<std::uint32_t>& members)
+      : points_(points) {
+    low_ = points[members[0]];
+    Vec2d high = low_;
+    for (const std::uint32_t i : members) {
+      low_ = {std::min(low_.x, points[i].x), std::min(low_.y, points[i].y)};
+      high = {std::max(high.x, points[i].x), std::max(high.y, points[i].y)};
     }
-    triangles.push_back({ring[(ear + n - 1) % n], ring[ear], ring[(ear + 1) % n]});
-    ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(ear));
-    next = ear + 1;
+    const double width = high.x - low_.x, height = high.y - low_.y;
+    side_ = std::max(std::sqrt(width * height / double(members.size())),
+                     std::max(width, height) / double(members.size()));
+    columns_ = cell(width) + 1;
+    first_.assign(columns_ * (cell(height) + 1) + 1, 0);
+    for (const std::uint32_t i : members) ++first_[at(points[i]) + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    members_.resize(members.size());
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    for (const std::uint32_t i : members) members_[next[at(points[i])]++] = i;
   }
-  triangles.push_back({ring[0], ring[1], ring[2]});
-}
+
+  // Whether `blocks(i)` holds for a point of the cells that the triangle's box meets, but for those
+  // left of and right of the triangle in each row.
+  template <class Blocks>
+  bool any(const std::array<Vec2d, 3>& t, Blocks&& blocks) const {
+    const auto [low, high] = std::minmax({t[0].y, t[1].y, t[2].y});
+    for (std::size_t row = cell(low - low_.y); row <= cell(high - low_.y); ++row) {
+      const auto [from, to] = columns_in(row, t);
+      const std::uint32_t end = first_[row * columns_ + to + 1];
+      for (std::uint32_t k = first_[row * columns_ + from]; k < end; ++k)
+        if (blocks(members_[k])) return true;
+    }
+    return false;
+  }
+
+ private:
+  std::size_t cell(double distance) const {
+    const double c = distance / side_;
+    return c > 0 ? std::size_t(std::min(c, double(kMaxConcave))) : 0;  // 0 / 0 as well
+  }
+  std::size_t at(Vec2d p) const { return cell(p.y - low_.y) * columns_ + cell(p.x - low_.x); }
+
+  // The columns that the triangle meets in a row of cells, with a little room for rounding.
+  std::pair<std::size_t, std::size_t> columns_in(std::size_t row,
+                                                 const std::array<Vec2d, 3>& t) const {
+    const double bottom = low_.y + (double(row) - 0.01) * side_, top = bottom + 1.02 * side_;
+    double from = HUGE_VAL, to = -HUGE_VAL;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec2d p = t[k], q = t[(k + 1) % 3];
+      if (std::max(p.y, q.y) < bottom || std::min(p.y, q.y) > top) continue;
+      for (const Vec2d end : {p, q}) {
+        const double y = std::clamp(end.y, bottom, top);
+        const double x = y == end.y ? end.x : p.x + (y - p.y) / (q.y - p.y) * (q.x - p.x);
+        from = std::min(from, x);
+        to = std::max(to, x);
+      }
+    }
+    if (!(from <= to)) return {0, columns_ - 1};
+    const std::size_t left = cell(from - low_.x), right = cell(to - low_.x) + 1;
+    return {left > 0 ? left - 1 : 0, std::min(right, columns_ - 1)};
+  }
+
+  const std::vector<Vec2d>& points_;
+  Vec2d low_;
+  double side_ = 0;
+  std::size_t columns_ = 1;
+  std::vector<std::uint32_t> first_, members_;  // of a cell: members_[first_[c]..first_[c + 1])
+};
+
+// Cuts corners off a ring while no other corner lies in the triangle. A corner that is none such
+// stays so while its neighbours stay, but in outlines that cross themselves: these are looked over
+// again when no corner is left to try.
+class EarClipper {
+ public:
+  EarClipper(const std::vector<Vec2d>& points, std::vector<std::array<std::uint32_t, 3>>& triangles)
+      : points_(points), triangles_(triangles), size_(std::uint32_t(points.size())) {
+    for (std::uint32_t i = 0; i < size_; ++i) {
+      before_.push_back((i + size_ - 1) % size_);
+      after_.push_back((i + 1) % size_);
+    }
+    alive_.assign(size_, true);
+    look_over();
+    index();
+  }
+
+  void run() {
+    std::uint32_t start = 1;  // going on after the last ear avoids long slivers at one corner
+    while (size_ > 3) {
+      std::uint32_t ear = find_ear(start);
+      if (ear == kNone && clipped_ && again_ > 0) {
+        --again_;
+        look_over();
+        ear = find_ear(start);
+      }
+      start = clip(ear == kNone ? start : ear);
+      if (2 * size_ < indexed_) index();
+    }
+    const std::uint32_t first =
+        std::uint32_t(std::find(alive_.begin(), alive_.end(), true) - alive_.begin());
+    triangles_.push_back({first, after_[first], after_[after_[first]]});
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  // The first ear from `start` on, around the ring.
+  std::uint32_t find_ear(std::uint32_t start) {
+    for (const auto& [from, to] : {std::pair(start, std::uint32_t(points_.size())), {0u, start}}) {
+      for (std::uint32_t i = next_candidate(from, to); i < to; i = next_candidate(i, to)) {
+        candidate_[i / 64] &= ~(std::uint64_t{1} << i % 64);
+        if (is_ear(i)) return i;
+      }
+    }
+    return kNone;
+  }
+
+  std::uint32_t next_candidate(std::uint32_t from, std::uint32_t to) const {
+    while (from < to) {
+      const std::uint64_t rest = candidate_[from / 64] >> from % 64;
+      if (rest != 0) return std::min(to, from + std::uint32_t(std::countr_zero(rest)));
+      from = (from / 64 + 1) * 64;
+    }
+    return to;
+  }
+
+  bool is_ear(std::uint32_t i) const {
+    const Vec2d a = points_[before_[i]], b = points_[i], c = points_[after_[i]];
+    if (cross2(a, b, c) <= 0) return false;
+    const auto blocks = [&](std::uint32_t k) {
+      const Vec2d p = points_[k];
+      return alive_[k] && p != a && p != b && p != c && inside(a, b, c, p);
+    };
+    if (grid_) return !grid_->any({a, b, c}, blocks);
+    for (std::uint32_t k = after_[after_[i]]; k != before_[i]; k = after_[k])
+      if (blocks(k)) return false;
+    return true;
+  }
+
+  // Returns where to look for the next ear.
+  std::uint32_t clip(std::uint32_t i) {
+    const std::uint32_t a = before_[i], c = after_[i];
+    triangles_.push_back({a, i, c});
+    after_[a] = c;
+    before_[c] = a;
+    alive_[i] = false;
+    candidate_[i / 64] &= ~(std::uint64_t{1} << i % 64);
+    for (const std::uint32_t k : {a, c}) candidate_[k / 64] |= std::uint64_t{1} << k % 64;
+    --size_;
+    clipped_ = true;
+    return after_[c];
+  }
+
+  void look_over() {
+    candidate_.assign(points_.size() / 64 + 1, 0);
+    for (std::uint32_t i = 0; i < points_.size(); ++i)
+      if (alive_[i]) candidate_[i / 64] |= std::uint64_t{1} << i % 64;
+    clipped_ = false;
+  }
+
+  // What is left, in a grid; few corners are looked at one by one sooner.
+  void index() {
+    constexpr std::uint32_t kFew = 32;
+    indexed_ = size_;
+    grid_.reset();
+    if (size_ <= kFew) return;
+    std::vector<std::uint32_t> ring;
+    for (std::uint32_t i = 0; i < points_.size(); ++i)
+      if (alive_[i]) ring.push_back(i);
+    grid_.emplace(points_, ring);
+  }
+
+  const std::vector<Vec2d>& points_;
+  std::vector<std::array<std::uint32_t, 3>>& triangles_;
+  std::uint32_t size_, indexed_ = 0;
+  std::vector<std::uint32_t> before_, after_;
+  std::vector<bool> alive_;
+  std::vector<std::uint64_t> candidate_;  // 1 bit a corner: may be an ear
+  std::optional<PointGrid> grid_;
+  bool clipped_ = false;  // since all were looked over
+  int again_ = 200;       // times that all may be: enough for outlines of hundreds of corners
+};
 
 }  // namespace
 
@@ -96,7 +253,7 @@ bool triangulate(std::span<const Vec3d> corners,
   const std::vector<Vec2d> flat = n > 3 ? project(corners) : std::vector<Vec2d>{};
   const bool fan = n == 3 || convex(flat);
   if (!fan && n <= kMaxConcave) {
-    clip_ears(flat, triangles);
+    EarClipper(flat, triangles).run();
     return true;
   }
   for (std::uint32_t i = 1; i + 1 < n; ++i) triangles.push_back({0, i, i + 1});

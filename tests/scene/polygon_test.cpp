@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <random>
 
@@ -126,10 +127,39 @@ TEST(Polygon, DegenerateOnesStillGiveTriangles) {
   const std::vector<Vec3d> bow_tie{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}};
   triangulate(bow_tie, triangles);
   EXPECT_EQ(triangles.size(), 2u);
-  std::vector<Vec3d> saw;  // concave and larger than ears are clipped for
-  for (int i = 0; i < 6000; ++i) saw.push_back({double(i), i % 2 ? 1.0 : 2.0, 0});
-  saw.push_back({6000, -1, 0});
-  saw.push_back({-1, -1, 0});
+}
+
+// Coast lines, contour maps and floors of whole towns come as one polygon.
+TEST(Polygon, ManyCornersTakeNoLongerEach) {
+  std::mt19937 random(4);
+  constexpr int n = 100'000;
+  std::vector<Vec2d> star, spiral, saw, rough;
+  std::uniform_real_distribution<double> radius(0.9, 1);
+  for (int i = 0; i < n; ++i) {
+    const double a = 2 * M_PI * i / n, r = 1 + 0.5 * (i % 2), q = radius(random);
+    star.push_back({r * std::cos(a), r * std::sin(a)});
+    rough.push_back({q * std::cos(a), q * std::sin(a)});
+    saw.push_back({double(n - i), i % 2 ? 1.0 : 2.0});
+  }
+  saw.push_back({-1, -1});
+  saw.push_back({n + 1.0, -1});
+  for (const double inner : {10.0, 13.0}) {
+    for (int i = 0; i < n / 2; ++i) {
+      const double a = 40 * M_PI * (inner == 10 ? i : n / 2 - 1 - i) / (n / 2), r = inner + a;
+      spiral.push_back({r * std::cos(a), r * std::sin(a)});
+    }
+  }
+  const auto start = std::chrono::steady_clock::now();
+  for (const auto& polygon : {star, spiral, saw, rough}) check(polygon, random);
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+  EXPECT_LT(spent.count(), 60);  // a second; looking at all corners for each would take hours
+}
+
+TEST(Polygon, BeyondAMillionCornersAFanIsCut) {
+  std::vector<Vec3d> saw;
+  for (int i = 0; i <= 1 << 20; ++i) saw.push_back({double(i), i % 2 ? 1.0 : 2.0, 0});
+  saw.push_back({double(1 << 20), -1, 0});
+  std::vector<std::array<std::uint32_t, 3>> triangles;
   EXPECT_FALSE(triangulate(saw, triangles));
   EXPECT_EQ(triangles.size(), saw.size() - 2);
 }
