@@ -1,6 +1,9 @@
 // Illumination from a second file.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/formats.h"
 #include "libatlas/scene/text_scanner.h"
@@ -34,9 +37,15 @@ Result<std::vector<Vec3f>> read_text(const fs::path& path) {
   return values;
 }
 
+bool of_illumination(const Defect& defect) {
+  return defect.kind == DefectKind::illumination_not_finite ||
+         defect.kind == DefectKind::illumination_negative ||
+         defect.kind == DefectKind::illumination_missing;
+}
+
+// Fills `other` where the file is a mesh as well.
 Result<std::vector<Vec3f>> read_values(const fs::path& path, const Context& context,
-                                       std::vector<fs::path>& files) {
-  SceneBuilder other(path);
+                                       SceneBuilder& other) {
   const Status status = read_by_extension(path, other, context);
   if (status.code() == ErrorCode::unsupported && !known_extension(path)) return read_text(path);
   if (!status.ok()) return status;
@@ -47,14 +56,14 @@ Result<std::vector<Vec3f>> read_values(const fs::path& path, const Context& cont
                     "simulation's result)",
                     path.string()));
   }
-  files.insert(files.end(), other.files.begin(), other.files.end());
   return std::move(other.illumination);
 }
 
 }  // namespace
 
 Status read_illumination(const fs::path& path, SceneBuilder& builder, const Context& context) {
-  auto values = read_values(path, context, builder.files);
+  SceneBuilder other(path);
+  auto values = read_values(path, context, other);
   if (!values.ok()) return values.status();
   if (values->size() != builder.positions.size()) {
     return {
@@ -63,7 +72,16 @@ Status read_illumination(const fs::path& path, SceneBuilder& builder, const Cont
                     "mesh)",
                     path.string(), values->size(), builder.positions.size(), builder.file)};
   }
+  builder.files.insert(builder.files.end(), other.files.begin(), other.files.end());
+  // What is wrong with the light is that of this file; the mesh's own is not used.
+  auto& defects = builder.defects.defects;
+  std::erase_if(defects, of_illumination);
+  std::copy_if(other.defects.defects.begin(), other.defects.defects.end(),
+               std::back_inserter(defects), of_illumination);
+  std::sort(defects.begin(), defects.end(),
+            [](const Defect& a, const Defect& b) { return a.kind < b.kind; });
   builder.illumination = std::move(*values);
+  builder.illumination_file = path.string();
   return {};
 }
 

@@ -72,7 +72,8 @@ void SceneBuilder::reserve_triangles(std::size_t count, bool with_texcoords) {
 }
 
 void SceneBuilder::sanitise_values() {
-  const auto vertex = [&](std::size_t i) { return fmt::format("{}: vertex {}", file, i + 1); };
+  const std::string& source = illumination_file.empty() ? file : illumination_file;
+  const auto vertex = [&](std::size_t i) { return fmt::format("{}: vertex {}", source, i + 1); };
   for (std::size_t i = 0; i < illumination.size(); ++i) {
     float* values[3] = {&illumination[i].x, &illumination[i].y, &illumination[i].z};
     bool finite = true, negative = false;

@@ -47,7 +47,8 @@ class SceneBuilder {
 
   static constexpr std::int64_t kNoIndex = std::numeric_limits<std::int64_t>::min();
 
-  std::string file;  // for messages
+  std::string file;               // for messages
+  std::string illumination_file;  // likewise, where the illumination is another file's
   std::vector<Vec3d> positions;
   std::vector<Vec3f> illumination;  // empty or 1 a vertex; checked by finish()
   std::vector<Vec2f> texcoords;

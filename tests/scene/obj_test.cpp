@@ -390,6 +390,31 @@ TEST(Illumination, FromASecondFile) {
   EXPECT_EQ(read_scene(mesh, missing, {}).status().code(), ErrorCode::not_found);
 }
 
+// What is wrong with the second file's light is told, and told of that file; the first one's light
+// is not used.
+TEST(Illumination, DefectsAreTheSecondFiles) {
+  const TempFolder folder;
+  const auto mesh = folder.write(
+      "mesh.obj", "v 0 0 0 nan 1 1\nv 1 0 0 1 1 1\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
+  folder.write("light.obj", "v 0 0 0 1 2 3\nv 0 0 0 1 2 inf\nv 0 0 0 1 2 3\nv 0 0 0\n");
+  folder.write("light.txt", "1\nnan\n-1\n4\n");
+  const auto defects = [&](const std::string& name) {
+    ReadOptions options;
+    options.illumination_file = folder / name;
+    return load(mesh, options).defects;
+  };
+  for (const char* name : {"light.obj", "light.txt"}) {
+    const DefectReport report = defects(name);
+    EXPECT_EQ(report.count(DefectKind::illumination_not_finite), 1u) << name;
+    EXPECT_EQ(report.defects.size(), 2u) << name;
+    for (const Defect& defect : report.defects)
+      EXPECT_NE(defect.first_places.front().find(name), std::string::npos)
+          << defect.first_places.front();
+  }
+  EXPECT_EQ(defects("light.obj").count(DefectKind::illumination_missing), 1u);
+  EXPECT_EQ(defects("light.txt").count(DefectKind::illumination_negative), 1u);
+}
+
 TEST(Obj, AllModelsOfTheDataFolderLoad) {
   const char* data = std::getenv("LIBATLAS_DATA");
   if (!data) GTEST_SKIP() << "LIBATLAS_DATA is not set";
