@@ -23,10 +23,6 @@ class Cells {
     const std::int64_t inner = side - options_.border - origin_ + options_.padding;
     return static_cast<std::int32_t>(std::max<std::int64_t>(0, inner / options_.alignment));
   }
-  // Page side, in texels, that holds this many cells.
-  std::int64_t page_side(std::int64_t cells) const {
-    return origin_ + cells * options_.alignment - options_.padding + options_.border;
-  }
   std::int32_t texel(std::int32_t cell) const { return origin_ + cell * options_.alignment; }
   std::int32_t cell(std::int32_t texel) const { return (texel - origin_) / options_.alignment; }
   std::int32_t corner() const { return origin_; }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "libatlas/core/parallel.h"
 #include "libatlas/pack/fit_bounds.h"
@@ -33,8 +34,8 @@ class OutlineFit {
     const std::uint32_t rotations =
         options.allow_rotation ? options.rotations : std::min(options.rotations, 1u);
     // A tenth of a second a packing and page, much less with many charts.
-    grid_ = choose_grid(items.size() / options.pages + 1, options.page_size, options.alignment,
-                        rotations, options.preset == PackPreset::fast ? 5e6 : 30e6);
+    grid_ = choose_grid({items.size() / options.pages + 1, options.page_size, options.alignment,
+                         rotations, options.preset == PackPreset::fast ? 5e6 : 30e6});
     side_ = options.page_size / grid_.cell;
     for (const ChartOutline& o : outlines) area_ += o.area;
   }
@@ -338,16 +339,16 @@ constexpr std::size_t kFewInRows = 64;  // charts
 
 Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions& options,
                                const Context& context) {
-  FitResult result, pressed;
+  FitResult result;
   const std::vector<ChartOutline> outlines = outlines_of(options.shapes, context);
-  const bool is_pressed = fit_pressed(items, outlines, options, context, pressed);
+  std::optional<FitResult> pressed = fit_pressed(items, outlines, options, context);
   // Straight charts, laid in rows on a page of any shape or pressed by `best` on a given one, may
   // fill more by cells. Of many charts rows are about as good, and far cheaper.
   const bool many = options.free_aspect && items.size() > kFewInRows;
-  if (is_pressed && (many || !is_straight(outlines))) return pressed;
+  if (pressed && (many || !is_straight(outlines))) return std::move(*pressed);
   if (context.cancelled()) return Status::cancelled();
   FitOptions by_cells = options;
-  if (is_pressed) by_cells.preset = PackPreset::standard;
+  if (pressed) by_cells.preset = PackPreset::standard;
   // With more directions each chart finds a lower place, but not all charts a higher scale: those
   // that lie askew keep others from lying straight. So four come first, and more have to beat them.
   FitOptions by_quarters = by_cells;
@@ -363,14 +364,14 @@ Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions&
     if (best.scale > before) fit = &all;
   }
   if (context.cancelled()) return Status::cancelled();
-  if (is_pressed && (!found || (!options.free_aspect && best.scale <= pressed.scale))) {
-    return pressed;
-  }
+  if (pressed && (!found || (!options.free_aspect && best.scale <= pressed->scale)))
+    return std::move(*pressed);
   if (!found) return no_room(items.size(), options);
   if (best.scale == options.max_scale) use_fewer_pages(*fit, options, result, best);
   write_result(*fit, options, best, result);
-  return is_pressed && options.free_aspect && pressed.utilization >= result.utilization ? pressed
-                                                                                        : result;
+  if (pressed && options.free_aspect && pressed->utilization >= result.utilization)
+    return std::move(*pressed);
+  return result;
 }
 
 }  // namespace atlas::pack

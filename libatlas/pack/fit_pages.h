@@ -1,6 +1,8 @@
 // Internal: the ways of fitting charts to pages: by boxes, by outlines, by pressing outlines.
 #pragma once
 
+#include <optional>
+
 #include "libatlas/pack/chart_outline.h"
 #include "libatlas/pack/fit.h"
 #include "libatlas/pack/problem.h"
@@ -49,11 +51,12 @@ class BoxFit {
 Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions& options,
                                const Context& context);
 
-// The same for one page of few charts, as full as pressing makes it. False where that is not worth
+// The same for one page of few charts, as full as pressing makes it. None where that is not worth
 // trying (worth_pressing), found nothing, or is not what was asked for: where all fit at the
 // largest scale and the page could be smaller, or where charts stop at their minimum sides.
-bool fit_pressed(std::span<const FitItem> items, std::span<const ChartOutline> outlines,
-                 const FitOptions& options, const Context& context, FitResult& result);
+std::optional<FitResult> fit_pressed(std::span<const FitItem> items,
+                                     std::span<const ChartOutline> outlines,
+                                     const FitOptions& options, const Context& context);
 
 // F(A) = N over these areas, without a search below the bisection's answer: it is asked for at
 // every scale tried. False where there is none (the areas pass 2^62, or cancelled).

@@ -21,22 +21,24 @@ bool are_slivers(std::span<const ChartOutline> outlines, const FitOptions& optio
 
 }  // namespace
 
-bool fit_pressed(std::span<const FitItem> items, std::span<const ChartOutline> outlines,
-                 const FitOptions& options, const Context& context, FitResult& result) {
-  if (!worth_pressing(outlines, options)) return false;
+std::optional<FitResult> fit_pressed(std::span<const FitItem> items,
+                                     std::span<const ChartOutline> outlines,
+                                     const FitOptions& options, const Context& context) {
+  if (!worth_pressing(outlines, options)) return std::nullopt;
   const bool straight = outlines.size() > 1 && is_straight(outlines);
   // On a page of given shape the search over cells fills more with them than the press does.
-  if (straight && !options.free_aspect && options.preset != PackPreset::best) return false;
-  if (!straight && are_slivers(outlines, options)) return false;
+  if (straight && !options.free_aspect && options.preset != PackPreset::best) return std::nullopt;
+  if (!straight && are_slivers(outlines, options)) return std::nullopt;
   PressedPage pressed = straight && options.free_aspect
                             ? pack_straight(outlines, options, context)
                             : press_outlines(outlines, options, context);
-  if (pressed.scale == 0 || pressed.scale > options.max_scale) return false;
+  if (pressed.scale == 0 || pressed.scale > options.max_scale) return std::nullopt;
   for (const FitItem& item : items) {
     const double side = std::max(item.width, item.height);
     if (side * pressed.scale < std::min<double>(options.minimum_side, std::ceil(side)))
-      return false;
+      return std::nullopt;
   }
+  FitResult result;
   result.scale = pressed.scale;
   result.packings = 1;
   result.trace.emplace_back(pressed.scale, true);
@@ -62,7 +64,7 @@ bool fit_pressed(std::span<const FitItem> items, std::span<const ChartOutline> o
     shapes += outlines[i].area * out.scale * out.scale;
   }
   result.utilization = share_of_pages(shapes, result);
-  return true;
+  return result;
 }
 
 }  // namespace atlas::pack

@@ -22,8 +22,6 @@ class GapFill {
   GapFill(std::span<const Extent> items, Extent page, bool allow_rotation)
       : items_(items), page_(page), allow_rotation_(allow_rotation) {}
 
-  void set_height(std::int32_t height) { page_.height = height; }
-
   // Fills an empty page from `sequence` (item ids; earlier ones win ties); what was placed is
   // appended to placed() and removed from the sequence, whose order is kept. Returns the used
   // height.

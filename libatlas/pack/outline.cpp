@@ -56,23 +56,24 @@ double layout_cost(std::size_t count, double side_cells, std::uint32_t direction
   return static_cast<double>(count) * directions * side_cells * side_cells * 0.0055;
 }
 
-GridChoice choose_grid(std::size_t count, std::int32_t page_side, std::int32_t alignment,
-                       std::uint32_t rotations, double affordable) {
-  GridChoice best{alignment, std::min(rotations, 4u)};
-  const double n = static_cast<double>(std::max<std::size_t>(count, 1));
+GridChoice choose_grid(const GridWish& wish) {
+  GridChoice best{wish.alignment, std::min(wish.rotations, 4u)};
+  const double n = static_cast<double>(std::max<std::size_t>(wish.charts, 1));
   // Coarse cells cost half a cell around each chart. A mean chart of 32 cells a side loses a few
   // percent, and finer grids buy less than more layouts do.
   const auto cells_a_chart = [&](std::int32_t cell) {
-    return page_side / double(cell) * std::sqrt(0.75 / n);
+    return wish.page_side / double(cell) * std::sqrt(0.75 / n);
   };
-  while (page_side / (2 * best.cell) >= 512 && cells_a_chart(2 * best.cell) >= 32) best.cell *= 2;
-  while (layout_cost(count, page_side / double(best.cell), best.directions) > affordable &&
-         cells_a_chart(2 * best.cell) >= 8)
+  while (wish.page_side / (2 * best.cell) >= 512 && cells_a_chart(2 * best.cell) >= 32)
     best.cell *= 2;
-  while (best.directions * 2 <= rotations &&
-         layout_cost(count, page_side / double(best.cell), best.directions * 2) <= affordable)
+  const auto is_affordable = [&](std::uint32_t directions) {
+    return layout_cost(wish.charts, wish.page_side / double(best.cell), directions) <=
+           wish.affordable;
+  };
+  while (!is_affordable(best.directions) && cells_a_chart(2 * best.cell) >= 8) best.cell *= 2;
+  while (best.directions * 2 <= wish.rotations && is_affordable(best.directions * 2))
     best.directions *= 2;
-  while (best.directions > 4 && rotations % best.directions != 0) best.directions -= 4;
+  while (best.directions > 4 && wish.rotations % best.directions != 0) best.directions -= 4;
   return best;
 }
 
@@ -124,11 +125,10 @@ Grid make_grid(std::size_t count, const OutlineOptions& o) {
       grid.open ? o.page.width
                 : static_cast<std::int32_t>(std::sqrt(double(o.page.width) * o.page.height));
   const std::size_t a_page = o.max_pages > 1 ? count / o.max_pages + 1 : count;
+  const bool fast = o.preset == PackPreset::fast;
   const pack::GridChoice choice =
-      o.preset == PackPreset::fast
-          ? pack::choose_grid(a_page, side, o.alignment, std::min(o.rotations, 4u),
-                              0.2 * kAffordable)
-          : pack::choose_grid(a_page, side, o.alignment, o.rotations, kAffordable);
+      pack::choose_grid({a_page, side, o.alignment, fast ? std::min(o.rotations, 4u) : o.rotations,
+                         fast ? 0.2 * kAffordable : kAffordable});
   grid.cell = choice.cell;
   grid.directions = choice.directions;
   // Cells are a power of two times the alignment: the border is rounded up to the alignment only.

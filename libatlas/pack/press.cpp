@@ -356,7 +356,7 @@ class Press {
       targets[i].angle = s.poses[i].second;
       targets[i].from = {-center.x / scale_, -center.y / scale_};
     }
-    return settle(targets, outlines_, scale_ * grow, options_, context_);
+    return settle({targets, scale_ * grow}, outlines_, options_, context_);
   }
 
   std::span<const ChartOutline> outlines_;

@@ -13,14 +13,14 @@ namespace {
 
 class Settler {
  public:
-  Settler(std::span<const SettleTarget> targets, std::span<const ChartOutline> outlines,
-          double scale, const FitOptions& options, const Context& context)
-      : targets_(targets),
+  Settler(const SettleTargets& targets, std::span<const ChartOutline> outlines,
+          const FitOptions& options, const Context& context)
+      : targets_(targets.places),
         outlines_(outlines),
-        scale_(scale),
+        scale_(targets.scale),
         options_(options),
         context_(context) {
-    order_.resize(targets.size());
+    order_.resize(targets_.size());
     std::iota(order_.begin(), order_.end(), 0u);
   }
 
@@ -234,9 +234,9 @@ class Settler {
 
 }  // namespace
 
-PressedPage settle(std::span<const SettleTarget> targets, std::span<const ChartOutline> outlines,
-                   double scale, const FitOptions& options, const Context& context) {
-  Settler settler(targets, outlines, scale, options, context);
+PressedPage settle(const SettleTargets& targets, std::span<const ChartOutline> outlines,
+                   const FitOptions& options, const Context& context) {
+  Settler settler(targets, outlines, options, context);
   PressedPage best, tried;
   // The bodies' outlines are as exact as half a cell: all of the scale hardly ever remains, and a
   // tenth of a percent of it is no share of the page worth another try.

@@ -14,10 +14,16 @@ struct SettleTarget {
   double angle = 0;
 };
 
+// Where all charts should be, at this scale.
+struct SettleTargets {
+  std::span<const SettleTarget> places;  // 1 a chart
+  double scale = 1;
+};
+
 // Places every chart on free cells as near to its target as possible, at the largest scale
-// below `scale` that allows it, then closes up down and to the left. scale 0 in the result: none
-// did.
-PressedPage settle(std::span<const SettleTarget> targets, std::span<const ChartOutline> outlines,
-                   double scale, const FitOptions& options, const Context& context);
+// below the targets' that allows it, then closes up down and to the left. scale 0 in the result:
+// none did.
+PressedPage settle(const SettleTargets& targets, std::span<const ChartOutline> outlines,
+                   const FitOptions& options, const Context& context);
 
 }  // namespace atlas::pack

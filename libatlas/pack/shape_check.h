@@ -11,15 +11,21 @@ namespace atlas::pack {
 Status check_shapes(std::span<const ChartShape> shapes);
 Status check_rotations(std::uint32_t rotations);
 
-// Cell size (a power of two times the alignment) and number of directions for `count` charts on a
-// page of this side such that one layout costs about `affordable` looks at words at most.
+// What a grid is chosen for.
+struct GridWish {
+  std::size_t charts = 0;
+  std::int32_t page_side = 0, alignment = 1;  // texels
+  std::uint32_t rotations = 4;                // directions at most
+  double affordable = 0;                      // looks at words that one layout may cost, about
+};
+
+// Cell size (a power of two times the alignment) and number of directions.
 struct GridChoice {
   std::int32_t cell = 1;
   std::uint32_t directions = 4;
 };
 double layout_cost(std::size_t count, double side_cells, std::uint32_t directions);
-GridChoice choose_grid(std::size_t count, std::int32_t page_side, std::int32_t alignment,
-                       std::uint32_t rotations, double affordable);
+GridChoice choose_grid(const GridWish& wish);
 
 // One task a chain, on up to context.threads threads.
 void parallel_chains(const Context& context, std::size_t chains,

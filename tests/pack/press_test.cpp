@@ -206,7 +206,7 @@ TEST(Settle, PlacesAreExactAndClosedUp) {
   o.page_size = 256;
   o.padding = 2;
   o.alignment = 1;
-  const PressedPage page = settle(targets, outlines, 1, o, {});
+  const PressedPage page = settle({targets, 1}, outlines, o, {});
   ASSERT_GT(page.scale, 0.85);
   EXPECT_LE(page.scale, 1);
   std::vector<test::PlacedShape> placed;
