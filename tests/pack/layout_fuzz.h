@@ -1,6 +1,8 @@
 // Random sequences of operations, inputs and options, checked by brute force.
 #pragma once
 
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -99,6 +101,43 @@ inline std::string fuzz_rects(std::uint64_t seed) {
   return check_layout(items, r->placements, r->pages, o);
 }
 
+// pack_outlines with any options: gutters, border, cells and what is left out.
+inline std::string fuzz_pack_outlines(const ChartItems& charts, Noise& noise) {
+  OutlineOptions o;
+  o.page = {noise.in(20, 300), noise.in(0, 4) ? noise.in(20, 300) : 0};
+  o.max_pages = static_cast<std::uint32_t>(noise.in(0, 3));
+  o.scale = 0.2 + 2 * noise.unit();
+  o.padding = noise.in(0, 3);
+  o.border = noise.in(0, 5);
+  o.alignment = 1 << noise.in(0, 2);
+  o.rotations = 1u << noise.in(0, 4);
+  o.preset = noise.in(0, 4) ? PackPreset::standard : PackPreset::best;
+  o.effort = 40;
+  const Result<OutlineResult> r = pack_outlines(charts.shapes, o, one_thread());
+  if (!r.ok()) return r.status().message();
+  if (o.max_pages > 0 && r->pages.size() > o.max_pages) return "outlines: too many pages";
+  std::vector<PlacedShape> placed;
+  std::vector<std::uint32_t> left_out;
+  for (std::uint32_t i = 0; i < charts.shapes.size(); ++i) {
+    const OutlinePlacement& p = r->placements[i];
+    if (p.page == kNoPage) {
+      left_out.push_back(i);
+      continue;
+    }
+    const double turns = p.angle / (2 * std::numbers::pi) * o.rotations;
+    if (std::abs(turns - std::round(turns)) > 1e-9) return "outlines: a direction not asked for";
+    if (p.box.x % o.alignment || p.box.y % o.alignment) return "outlines: a box off its cells";
+    if (p.box.area() == 0) continue;  // meets no cell: at the corner
+    const Extent page = r->pages.at(p.page);
+    if (std::min(p.box.x, p.box.y) < o.border || p.box.right() > page.width - o.border ||
+        p.box.top() > page.height - o.border)
+      return "outlines: a box on the border";
+    placed.push_back({charts.shapes[i], p.page, o.scale, p.angle, p.offset});
+  }
+  if (left_out != r->unplaced) return "outlines: the unplaced are not those without a page";
+  return check_outlines(placed, r->pages, o.padding);
+}
+
 // Outlines: fit_pages on one or two pages, and pack_outlines, gutters checked.
 inline std::string fuzz_outlines(std::uint64_t seed) {
   Noise noise{seed * 131 + 17};
@@ -126,7 +165,10 @@ inline std::string fuzz_outlines(std::uint64_t seed) {
   if (r->pages.size() > o.pages) return "too many pages";
   for (const Extent& page : r->pages)
     if (page.width > o.page_size || page.height > o.page_size) return "page too large";
-  return check_outlines(placed_shapes(charts, *r), r->pages, o.padding);
+  if (std::string wrong = check_outlines(placed_shapes(charts, *r), r->pages, o.padding);
+      !wrong.empty())
+    return wrong;
+  return fuzz_pack_outlines(charts, noise);
 }
 
 }  // namespace atlas::test
