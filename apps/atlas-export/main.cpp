@@ -24,10 +24,14 @@ void print_result(const ExportReport& report, app::Terminal& terminal) {
   if (!report.lit) {
     terminal.line("The scene carries no illumination: the result has plain uvs and no images.");
   }
-  terminal.line(fmt::format(
-      "{}: {} triangle{} on {} page{}, {:.1f} MiB of graphics memory", report.target.string(),
-      report.triangles_out, report.triangles_out == 1 ? "" : "s", report.pages.size(),
-      report.pages.size() == 1 ? "" : "s", double(report.gpu_bytes) / (1024.0 * 1024.0)));
+  const std::size_t pages = report.pages.size();
+  const bool plain = pages == 1 && report.gpu_bytes == 0;
+  terminal.line(fmt::format("{}: {} triangle{} on {} page{}, {}", report.target.string(),
+                            report.triangles_out, report.triangles_out == 1 ? "" : "s", pages,
+                            pages == 1 ? "" : "s",
+                            plain ? plain_page_text({report.pages[0].width, report.pages[0].height})
+                                  : fmt::format("{:.1f} MiB of graphics memory",
+                                                double(report.gpu_bytes) / (1024.0 * 1024.0))));
 }
 
 // Pages of an earlier export to the same name, which had more of them, are no part of this world.

@@ -25,6 +25,9 @@ struct ExportOptions {
   // The page of plain uvs has no image and may be larger: doubled, up to 16384, until it has 512
   // texels for each chart on average, so that gutters stay thin against the charts.
   bool larger_plain_page = true;
+  // That page is square, for programs that know square textures only; else its shape is what packs
+  // best, and textures for these uvs must have that shape.
+  bool square_plain_page = false;
 
   double texel_metres = 0;       // length of a texel on the real surface; 0: as fine as the
                                  // budget could hold, within 1 to 10 mm (paper, stage 2)

@@ -231,7 +231,8 @@ class Export {
       layout.padding = 1;
       layout.alignment = 1;
       layout.minimum_side = 0;
-      layout.free_aspect = true;
+      layout.free_aspect = !options_.square_plain_page;
+      layout.square = options_.square_plain_page;
     }
     Result<PageLayout> laid = lay_out_pages(charts_, densities_, layout, context_);
     if (!laid.ok()) return laid.status();
@@ -320,6 +321,7 @@ class Export {
     world.up = options_.up;
     world.title = options_.target.stem().string();
     world.metres_per_unit = scene_.metres_per_unit;
+    if (!plan_.bake) world.info.push_back(plain_page_text(layout_.pages[0]));
     if (holds_viewpoint(options_.target)) {
       ViewpointOptions eye;
       eye.up = options_.up;
@@ -377,6 +379,13 @@ class Export {
 };
 
 }  // namespace
+
+std::string plain_page_text(Extent page) {
+  return page.width == page.height
+             ? fmt::format("uvs of a square page, packed for {0} x {0} texels", page.width)
+             : fmt::format("uvs of a page of {} x {} texels: textures must have this shape",
+                           page.width, page.height);
+}
 
 Result<ExportReport> export_world(const LoadedScene& loaded, const ExportOptions& options,
                                   const std::function<void(const StageReport&)>& stage_done,

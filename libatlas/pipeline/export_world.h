@@ -1,7 +1,11 @@
 // The whole method, one call: a lit scene in, a walkable world with atlases out.
 #pragma once
 
+#include <functional>
+#include <string>
+
 #include "libatlas/core/context.h"
+#include "libatlas/core/rect.h"
 #include "libatlas/core/status.h"
 #include "libatlas/pipeline/export_options.h"
 #include "libatlas/pipeline/plan.h"
@@ -19,5 +23,8 @@ namespace atlas {
 Result<ExportReport> export_world(const LoadedScene& loaded, const ExportOptions& options,
                                   const std::function<void(const StageReport&)>& stage_done,
                                   const Context& context);
+
+// What whoever uses plain uvs has to know of their page: uvs run from 0 to 1 along both sides.
+std::string plain_page_text(Extent page);
 
 }  // namespace atlas

@@ -102,6 +102,7 @@ Result<PageLayout> lay_out(const ChartSet& charts, std::span<const Vec2d> texels
   fit.minimum_side = options.minimum_side;
   fit.preset = options.preset;
   fit.free_aspect = options.free_aspect;
+  fit.square = options.square;
   std::optional<Outlines> outlines;
   if (options.outlines) {
     outlines.emplace(charts, texels_per_unit);

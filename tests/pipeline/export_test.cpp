@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <limits>
+#include <sstream>
 #include <utility>
 
 #include "libatlas/pipeline/export_world.h"
@@ -203,6 +205,27 @@ TEST(Export, ChartsOnlyNeedsNoLight) {
   EXPECT_GT(m.utilization, 0.5);
   EXPECT_NEAR(m.stretch_l2, report->distortion.stretch_l2, 0.01);
   EXPECT_FALSE(fs::exists(folder / "world_0.png"));
+
+  // Its shape is seldom square, and told; or square, where that is asked for.
+  const Extent page{report->pages[0].width, report->pages[0].height};
+  const auto has_line = [&](const std::string& line) {
+    std::stringstream text;
+    text << std::ifstream(options.target).rdbuf();
+    return text.str().find("# " + line + "\n") != std::string::npos;
+  };
+  EXPECT_NE(page.width, page.height);
+  EXPECT_TRUE(has_line(plain_page_text(page)));
+  options.square_plain_page = true;
+  const auto square = export_world(scene, options, {}, {});
+  ASSERT_TRUE(square.ok()) << square.status().message();
+  EXPECT_EQ(square->pages[0].width, 1024);
+  EXPECT_EQ(square->pages[0].height, 1024);
+  EXPECT_TRUE(has_line("uvs of a square page, packed for 1024 x 1024 texels"));
+  const AtlasMeasures s = measure_atlas(*read_uv_obj(options.target), 1024, 1024);
+  EXPECT_EQ(s.bleed, 0u);
+  EXPECT_EQ(s.overlap, 0u);
+  EXPECT_GT(s.utilization, 0.5);
+  EXPECT_NEAR(s.stretch_l2, m.stretch_l2, 0.01);
 }
 
 TEST(Export, CancelledBeforeItBeganWritesNothing) {
