@@ -82,19 +82,25 @@ using Link = std::pair<std::uint32_t, std::uint32_t>;  // from, to
 std::vector<Link> loops_of(std::vector<Link> links) {
   std::sort(links.begin(), links.end());
   std::vector<Link> loops;
-  std::vector<bool> used(links.size());
-  const auto next_of = [&](std::uint32_t corner) {
-    auto at = std::lower_bound(links.begin(), links.end(), Link{corner, 0});
-    while (at != links.end() && at->first == corner && used[std::size_t(at - links.begin())]) ++at;
-    return at != links.end() && at->first == corner ? std::size_t(at - links.begin())
-                                                    : links.size();
+  // Of the links from one corner, in order, so many are taken: a corner may have very many. Kept at
+  // the first of them.
+  std::vector<std::uint32_t> taken(links.size());
+  const auto take_from = [&](std::uint32_t corner) {
+    const auto first =
+        std::size_t(std::lower_bound(links.begin(), links.end(), Link{corner, 0}) - links.begin());
+    const std::size_t next = first < links.size() ? first + taken[first] : first;
+    if (next >= links.size() || links[next].first != corner) return links.size();
+    ++taken[first];
+    return next;
   };
-  for (std::size_t start = 0; start < links.size(); ++start)
-    for (std::size_t k = used[start] ? links.size() : start; k < links.size();
-         k = next_of(loops.back().second)) {
-      used[k] = true;
+  std::size_t first = 0;
+  for (std::size_t start = 0; start < links.size(); ++start) {
+    if (links[start].first != links[first].first) first = start;
+    if (start < first + taken[first]) continue;
+    for (std::size_t k = take_from(links[start].first); k < links.size();
+         k = take_from(links[k].second))
       loops.push_back(links[k]);
-    }
+  }
   return loops;
 }
 

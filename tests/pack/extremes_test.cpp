@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "libatlas/core/clock.h"
 #include "libatlas/pack/chart_outline.h"
@@ -90,6 +91,27 @@ TEST(Extremes, TeethFinerThanCellsTakeLittleMemory) {
   EXPECT_EQ(mask.height, 2002);
   EXPECT_EQ(mask.cells, std::int64_t{2002} * 2002);  // within a texel of a tooth
   EXPECT_LT(peak_memory(), std::int64_t{1} << 30);
+}
+
+// 10^5 triangles that share one corner only: looking for each loop's next edge there must not begin
+// anew at the first one, which took 7 s.
+TEST(Extremes, PetalsAroundOneCornerTakeLittleTime) {
+  constexpr std::uint32_t kPetals = 100'000;
+  std::vector<Vec2d> corners{{0, 0}};
+  std::vector<std::uint32_t> triangles;
+  for (std::uint32_t k = 0; k < kPetals; ++k) {
+    for (const double at : {double(k), k + 0.5}) {
+      const double angle = 2 * std::numbers::pi * at / kPetals;
+      corners.push_back({std::cos(angle), std::sin(angle)});
+    }
+    triangles.insert(triangles.end(), {0, 2 * k + 1, 2 * k + 2});
+  }
+  const double begun = cpu_seconds();
+  const pack::ChartOutline outline = pack::outline_of({corners, triangles});
+  EXPECT_LT(cpu_seconds() - begun, 1);
+  ASSERT_EQ(outline.edges.size(), 3 * kPetals);
+  for (std::size_t k = 0; k < outline.edges.size(); ++k)  // loops of three
+    EXPECT_EQ(outline.edges[k].to, outline.edges[k % 3 == 2 ? k - 2 : k + 1].from);
 }
 
 TEST(Extremes, NeedlesKeepTheirGutters) {
