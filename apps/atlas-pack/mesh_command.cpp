@@ -28,7 +28,11 @@ constexpr const char* kWithoutUv = "no_uv";
 // The mesh with its new uvs: one material a page.
 std::string to_obj(const Scene& s, const UvCharts& charts, const FitResult& fit,
                    const std::string& material_file, std::vector<Vec2d>& uvs) {
-  std::string text = fmt::format("# repacked by atlas-pack\nmtllib {}\n", material_file);
+  std::string text = "# repacked by atlas-pack\n";
+  for (std::size_t page = 0; page < fit.pages.size(); ++page)  // the shape textures must have
+    text += fmt::format("# page_{}: {} x {} texels\n", page, fit.pages[page].width,
+                        fit.pages[page].height);
+  text += fmt::format("mtllib {}\n", material_file);
   for (const Vec3f& p : s.positions)
     text += fmt::format("v {} {} {}\n", number(s.origin.x + p.x), number(s.origin.y + p.y),
                         number(s.origin.z + p.z));

@@ -359,6 +359,10 @@ TEST_F(AtlasPack, MeshOptionsDoWhatTheySay) {
   EXPECT_LE(cropped["pages"][0]["width"], 256);
   EXPECT_LE(cropped["pages"][0]["height"], 256);
   EXPECT_GE(double(cropped["utilization"]), double(whole["utilization"]));
+  EXPECT_NE(read("out.obj").find(fmt::format("# page_0: {} x {} texels\n",
+                                             int(cropped["pages"][0]["width"]),
+                                             int(cropped["pages"][0]["height"]))),
+            std::string::npos);
   const auto square = pages("--crop --square");
   EXPECT_EQ(square["pages"][0]["width"], square["pages"][0]["height"]);
   EXPECT_LE(pages("--max-pages 2")["pages"].size(), 2u);
