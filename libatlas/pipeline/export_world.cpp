@@ -143,13 +143,33 @@ class Export {
   // Of the common scale, from above: what the charts want before downsizing against what the pages
   // hold. A scene of kilometres would else be cut into thousands of pieces of a few texels.
   double likely_scale(std::span<const double> densities) const {
-    constexpr double kLeastLeft = 0.25;  // of the texels, after downsizing
+    const double left = options_.threshold > 0 ? 0.25 : 1;  // of the texels, after downsizing
     double wanted = 0;
     for (std::size_t c = 0; c < densities.size(); ++c) {
       wanted += charts_.charts[c].distortion.uv_area * densities[c] * densities[c];
     }
     const double room = double(options_.atlases) * options_.atlas_size * options_.atlas_size;
-    return wanted > 0 ? std::min(1.0, std::sqrt(room / (kLeastLeft * wanted))) : 1;
+    return wanted > 0 ? std::min(1.0, std::sqrt(room / (left * wanted))) : 1;
+  }
+
+  // Pieces are no use where so many, each with its gutter, do not fit however small they become:
+  // limits are doubled until the smallest boxes take less than half of the pages.
+  void spare_small_pages(std::vector<double>& limits) const {
+    const auto pieces_of = [&](std::size_t c) {
+      const Vec2d size = charts_.charts[c].size;
+      return std::max(1.0, std::ceil(size.x / limits[c]) * std::ceil(size.y / limits[c]));
+    };
+    const int cell = 1 << options_.mip_levels;
+    const double side =
+        cell * std::ceil((options_.min_side + 2.0 * gutter_pad(options_.mip_levels)) / cell);
+    const double room = double(options_.atlases) * options_.atlas_size * options_.atlas_size;
+    constexpr int kMostDoublings = 60;  // also ends where a limit is none
+    for (int doublings = 0; doublings < kMostDoublings; ++doublings) {
+      double pieces = 0;
+      for (std::size_t c = 0; c < limits.size(); ++c) pieces += pieces_of(c);
+      if (pieces <= double(limits.size()) || pieces * side * side <= room / 2) return;
+      for (double& limit : limits) limit *= 2;
+    }
   }
 
   // A chart longer than a page would lose density that its neighbours keep, and one nearly as long
@@ -161,6 +181,7 @@ class Export {
     if (context_.cancelled()) return Status::cancelled();
     const double shrinking = likely_scale(limits);
     for (double& limit : limits) limit = kLongestShare * texture.max_side / (limit * shrinking);
+    spare_small_pages(limits);
     const std::size_t before = charts_.charts.size();
     const std::size_t cut = cut_to_limits(view_of(scene_), limits, charts_);
     report_.charts = charts_.charts;

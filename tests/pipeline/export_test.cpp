@@ -171,6 +171,23 @@ TEST(Export, HugeScenesAreNotCutIntoCrumbs) {
   EXPECT_GT(large->fidelity.psnr, 40);
 }
 
+// Pieces of which each takes its smallest box would not fit where the whole does.
+TEST(Export, SmallPagesDoNotDrownInPieces) {
+  const TempFolder folder;
+  const LoadedScene scene = lit_scene(grid(20, 20));
+  for (const double threshold : {0.0, 2.0 / 255}) {
+    ExportOptions options = small_pages(folder);
+    options.atlases = 1;
+    options.atlas_size = 64;
+    options.threshold = threshold;
+    options.texel_metres = 0.001;
+    const auto report = export_world(scene, options, {}, {});
+    ASSERT_TRUE(report.ok()) << report.status().message();
+    EXPECT_LE(report->charts.size(), 4u);
+    EXPECT_GT(report->uv_utilization, 0.5);
+  }
+}
+
 TEST(Export, ErrorFallsWithTheTexel) {
   const TempFolder folder;
   ExportOptions options = small_pages(folder);
