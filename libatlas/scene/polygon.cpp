@@ -63,8 +63,7 @@ bool inside(Vec2d a, Vec2d b, Vec2d c, Vec2d p) {
 class PointGrid {
  public:
   // Of the points that `members` numbers.
-  PointGrid(const std::vector<Vec2d>& points, const std::vector<std::uint32_t>& members)
-      : points_(points) {
+  PointGrid(const std::vector<Vec2d>& points, const std::vector<std::uint32_t>& members) {
     low_ = points[members[0]];
     Vec2d high = low_;
     for (const std::uint32_t i : members) {
@@ -124,7 +123,6 @@ class PointGrid {
     return {left > 0 ? left - 1 : 0, std::min(right, columns_ - 1)};
   }
 
-  const std::vector<Vec2d>& points_;
   Vec2d low_;
   double side_ = 0;
   std::size_t columns_ = 1;
