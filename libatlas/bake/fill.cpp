@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <utility>
 
 #include "libatlas/bake/texel_grid.h"
 

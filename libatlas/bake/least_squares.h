@@ -1,7 +1,6 @@
 // Internal: texels whose bilinear interpolation fits weighted samples best.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <vector>
 

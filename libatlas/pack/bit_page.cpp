@@ -1,6 +1,7 @@
 #include "libatlas/pack/bit_page.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 namespace atlas::pack {

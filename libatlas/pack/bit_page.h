@@ -2,7 +2,6 @@
 // of an arbitrary mask fast.
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <vector>
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <numeric>
 
 #include "libatlas/pack/height_index.h"
 #include "libatlas/pack/page_index.h"

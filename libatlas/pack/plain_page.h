@@ -1,7 +1,6 @@
 // Internal: the taken cells of a page, where places are only checked and not searched for.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <vector>
 

@@ -1,4 +1,3 @@
-#include <algorithm>
 
 #include "libatlas/pack/chains.h"
 

@@ -1,7 +1,6 @@
 #include "libatlas/shadow/schedule.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "libatlas/shadow/blend.h"

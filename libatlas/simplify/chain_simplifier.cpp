@@ -1,7 +1,6 @@
 #include "libatlas/simplify/chain_simplifier.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <tuple>

@@ -1,7 +1,6 @@
 #include "libatlas/simplify/chart_simplifier.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 

@@ -1,7 +1,6 @@
 // Internal: one chart of the fine mesh as a manifold with border: local vertices, neighbours.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
