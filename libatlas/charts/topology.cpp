@@ -298,10 +298,6 @@ void count_nonmanifold_vertices(Topology& topology) {
 
 }  // namespace
 
-double edge_length(const Topology& topology, std::uint32_t half_edge) {
-  return glm::distance(point(topology, half_edge), point(topology, next_half_edge(half_edge)));
-}
-
 Result<Topology> build_topology(const MeshView& mesh, const TopologyOptions& options,
                                 const Context& context) {
   if (Status status = check_input(mesh); !status.ok()) return status;

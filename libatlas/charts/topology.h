@@ -3,6 +3,7 @@
 // are turned to agree; edges know the half-edge across.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -65,7 +66,12 @@ inline std::uint32_t previous_half_edge(std::uint32_t h) {
 }
 
 // Scaled units.
-double edge_length(const Topology& topology, std::uint32_t half_edge);
+inline double edge_length(const Topology& topology, std::uint32_t half_edge) {
+  const Vec3f& a = topology.points[topology.corner_vertex[half_edge]];
+  const Vec3f& b = topology.points[topology.corner_vertex[next_half_edge(half_edge)]];
+  const double x = double{b.x} - a.x, y = double{b.y} - a.y, z = double{b.z} - a.z;
+  return std::sqrt(x * x + y * y + z * z);
+}
 
 // Where triangles that share an edge are nevertheless not linked.
 struct TopologyOptions {

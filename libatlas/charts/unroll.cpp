@@ -31,14 +31,23 @@ struct Flat {
 class Unroller {
  public:
   Unroller(const Topology& topology, const Cells& cells, CoarseMesh& mesh)
-      : topology_(topology), cells_(cells), mesh_(mesh) {}
+      : topology_(topology), cells_(cells), mesh_(mesh), curved_(topology.component_count, 0) {}
 
   // Bent cells first; cells in one plane only where they touch what unrolls.
   void run() {
     std::vector<std::uint32_t> found;
     for (std::uint32_t k = 0; k < mesh_.cells.size(); ++k) {
-      if (mesh_.cells[k].slot_count > 0 && !flat(k) && unroll(k)) found.push_back(k);
+      if (mesh_.cells[k].slot_count == 0 || flat(k) || curved_[piece(k)]) continue;
+      if (unroll(k)) {
+        found.push_back(k);
+      } else {
+        curved_[piece(k)] = 1;
+      }
     }
+    std::erase_if(found, [&](std::uint32_t k) {
+      if (curved_[piece(k)]) mesh_.cells[k].unrolls = false;
+      return curved_[piece(k)] != 0;
+    });
     for (std::size_t i = 0; i < found.size(); ++i) {
       const CoarseCell& cell = mesh_.cells[found[i]];
       for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
@@ -47,24 +56,11 @@ class Unroller {
         }
       }
     }
-    keep_whole_pieces();
   }
 
  private:
-  // In a piece that is curved elsewhere, what unrolls would join untried into charts that the rest
-  // then hangs on; they were cut again, at three times the cost (a cabin of a million triangles).
-  void keep_whole_pieces() {
-    const auto piece = [&](const CoarseCell& cell) {
-      return topology_.component[mesh_.slot_half_edge[cell.first_slot] / 3];
-    };
-    std::vector<std::uint8_t> curved(topology_.component_count, 0);
-    for (std::uint32_t k = 0; k < mesh_.cells.size(); ++k) {
-      const CoarseCell& cell = mesh_.cells[k];
-      if (cell.slot_count > 0 && !cell.unrolls && !flat(k)) curved[piece(cell)] = 1;
-    }
-    for (CoarseCell& cell : mesh_.cells) {
-      if (cell.unrolls && curved[piece(cell)]) cell.unrolls = false;
-    }
+  std::uint32_t piece(std::uint32_t k) const {
+    return topology_.component[mesh_.slot_half_edge[mesh_.cells[k].first_slot] / 3];
   }
 
   glm::dvec3 point(std::uint32_t h) const {
@@ -173,6 +169,10 @@ class Unroller {
   const Topology& topology_;
   const Cells& cells_;
   CoarseMesh& mesh_;
+  // 1 a piece: it is curved somewhere. What unrolls in it would join untried into charts that the
+  // rest then hangs on; they were cut again, at three times the cost (a cabin of a million
+  // triangles).
+  std::vector<std::uint8_t> curved_;
   std::vector<std::uint32_t> seen_;              // 1 a vertex: the last cell that asked
   std::vector<std::uint32_t> place_;             // 1 a triangle, in queue_
   std::vector<std::uint32_t> queue_;             // half-edges

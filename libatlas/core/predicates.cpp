@@ -26,15 +26,9 @@ bool strictly_between(Vec2d a, Vec2d b, Vec2d p) {
 
 }  // namespace
 
-int orientation(Vec2d a, Vec2d b, Vec2d c) {
+int close_orientation(Vec2d a, Vec2d b, Vec2d c) {
   // Neighbouring edges share a point, and for three points of which two are one no bound decides.
   if (a == b || b == c || a == c) return 0;
-  // Shewchuk 1997, "Adaptive precision floating-point arithmetic and fast robust geometric
-  // predicates", section 4.1: beyond this bound rounding cannot have changed the sign. It presumes
-  // that no product underflowed, hence the second condition.
-  const double left = (b.x - a.x) * (c.y - a.y), right = (b.y - a.y) * (c.x - a.x);
-  const double determinant = left - right, size = std::abs(left) + std::abs(right);
-  if (std::abs(determinant) > 3.4e-16 * size && size > 1e-280) return determinant > 0 ? 1 : -1;
   return static_cast<int>(CGAL::orientation(point(a), point(b), point(c)));
 }
 

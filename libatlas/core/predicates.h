@@ -2,12 +2,25 @@
 // true determinant of the doubles given, never a rounding error's.
 #pragma once
 
+#include <cmath>
+
 #include "libatlas/core/vec.h"
 
 namespace atlas {
 
+// Where rounding may decide. For orientation() only.
+int close_orientation(Vec2d a, Vec2d b, Vec2d c);
+
 // +1 if a, b, c turn left, -1 if right, 0 if collinear. Coordinates must be finite.
-int orientation(Vec2d a, Vec2d b, Vec2d c);
+inline int orientation(Vec2d a, Vec2d b, Vec2d c) {
+  // Shewchuk 1997, "Adaptive precision floating-point arithmetic and fast robust geometric
+  // predicates", section 4.1: beyond this bound rounding cannot have changed the sign. It presumes
+  // that no product underflowed, hence the second condition.
+  const double left = (b.x - a.x) * (c.y - a.y), right = (b.y - a.y) * (c.x - a.x);
+  const double determinant = left - right, size = std::abs(left) + std::abs(right);
+  if (std::abs(determinant) > 3.4e-16 * size && size > 1e-280) return determinant > 0 ? 1 : -1;
+  return close_orientation(a, b, c);
+}
 
 // Whether the open segments ab and cd cross, or overlap along a stretch. Touching at a shared end
 // point only does not count.

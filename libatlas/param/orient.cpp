@@ -58,6 +58,16 @@ std::vector<Vec2d> convex_hull(std::span<const Vec2d> points) {
   return hull;
 }
 
+// What the hull is made of: where edges on the border begin, each corner of a loop once.
+std::vector<Vec2d> outline(std::span<const Vec2d> uvs,
+                           std::span<const std::array<std::uint32_t, 2>> edges) {
+  if (edges.empty()) return {uvs.begin(), uvs.end()};
+  std::vector<Vec2d> points;
+  points.reserve(edges.size());
+  for (const auto& edge : edges) points.push_back(uvs[edge[0]]);
+  return points;
+}
+
 struct Box {
   glm::dvec2 low, high;
   double width() const { return high.x - low.x; }
@@ -171,7 +181,7 @@ Orientation orient_for_packing(std::span<Vec2d> uvs,
                                double straight_slack) {
   Orientation out;
   if (uvs.empty()) return out;
-  const std::vector<Vec2d> hull = convex_hull(uvs);
+  const std::vector<Vec2d> hull = convex_hull(outline(uvs, border_edges));
   glm::dvec2 d = smallest_box(hull);
   Box box = box_along(hull, d);
   glm::dvec2 straight;

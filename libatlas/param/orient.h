@@ -18,9 +18,10 @@ struct Orientation {
 // on the convex hull; Freeman and Shapira 1975) is axis-aligned with its long side along u and its
 // corner at (0, 0). No reflection, no scaling. Of equal rectangles the one of the hull's first edge
 // (hull in counter-clockwise order from its lowest point) is taken. O(n log n).
-// border_edges: pairs of indices into uvs, or empty. If one direction (modulo 90 degrees) carries
-// at least a fifth of their length within half a degree, and the box along it is at most
-// straight_slack larger than the smallest one, that direction wins: straight borders lie along
+// border_edges: those around a chart that covers nothing beyond them, as pairs of indices into uvs
+// that begin at each corner of the border; or empty, for any points. If one direction (modulo 90
+// degrees) carries at least a fifth of their length within half a degree, and the box along it is at
+// most straight_slack larger than the smallest one, that direction wins: straight borders lie along
 // texels.
 Orientation orient_for_packing(std::span<Vec2d> uvs,
                                std::span<const std::array<std::uint32_t, 2>> border_edges = {},
