@@ -28,12 +28,17 @@ class MinCut {
  private:
   static constexpr std::uint32_t kUnreached = 0xffffffffu;
 
+  // Four a node, though it has three: nothing need be divided by that.
+  static std::uint32_t arc(std::uint32_t node, std::uint32_t slot) { return 4 * node + slot; }
+  static std::uint32_t node(std::uint32_t arc) { return arc / 4; }
+
   bool find_levels();
   void augment();
   void augment_from(std::uint32_t root);
+  void push(std::uint32_t root, std::uint32_t end);
 
-  std::vector<std::uint32_t> reverse_;  // 3 a node: the arc back, kUnreached: none
-  std::vector<std::int32_t> capacity_;  // 3 a node, what is left
+  std::vector<std::uint32_t> reverse_;  // 1 an arc: the arc back, kUnreached: none
+  std::vector<std::int32_t> capacity_;  // 1 an arc, what is left
   std::vector<std::int32_t> source_, sink_;
   std::vector<std::uint32_t> level_, queue_, path_;
   std::vector<std::uint8_t> next_;  // 1 a node: the arc to try next; 3: its way to the sink
