@@ -30,9 +30,14 @@ TriangleStretch measure_triangle(const LocalMesh& mesh, std::span<const Vec2d> u
   out.area = rest.area();
   out.uv_area = 0.5 * cross(u1 - u0, u2 - u0);
   if (!(out.area > 0)) return out;
-  const param::SingularValues sigma = param::singular_values(param::jacobian(rest, u0, u1, u2));
-  out.s1 = sigma.small != 0 ? static_cast<float>(1 / std::abs(sigma.small)) : infinity;
-  out.s2 = sigma.large > 0 ? static_cast<float>(1 / sigma.large) : infinity;
+  // The Jacobian times twice the area: fewer divisions.
+  const glm::dvec2 base = u1 - u0;
+  const param::Jacobian j{rest.altitude * base, rest.length * (u2 - u0) - rest.foot * base};
+  const double large = param::largest_singular_value(j), twice_area = rest.length * rest.altitude;
+  const double determinant = std::abs(j.det());
+  // The smaller value is the determinant by the larger, which keeps digits that a difference loses.
+  out.s1 = determinant > 0 ? static_cast<float>(twice_area * large / determinant) : infinity;
+  out.s2 = large > 0 ? static_cast<float>(twice_area / large) : infinity;
   return out;
 }
 

@@ -67,16 +67,11 @@ void finish(const LocalMesh& mesh, const ParamOptions& options, ParamResult& r,
   list_offenders(mesh, r, check, stretch, options.max_stretch);
 }
 
-bool projection_fits(const LocalMesh& mesh, std::span<const Vec2d> uvs, double bound) {
-  double area = 0, uv_area = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const param::RestShape s = param::rest_shape(mesh, t);
-    const glm::dvec2 a = to_glm(uvs[s.v[0]]), b = to_glm(uvs[s.v[1]]), c = to_glm(uvs[s.v[2]]);
-    area += s.area();
-    uv_area += 0.5 * param::cross(b - a, c - a);
-  }
-  // At the area-preserving scale every triangle's 1 / s2 is the root of this quotient.
-  if (mesh.density.empty() && !(area <= bound * bound * uv_area)) return false;
+// Whether the projection along axis, which goes to uvs, is within the bound.
+bool project(const LocalMesh& mesh, Vec3d axis, double bound, std::span<Vec2d> uvs) {
+  // At the area-preserving scale every triangle's 1 / s2 is the root of this product.
+  if (mesh.density.empty() && !(bound * bound * projected_share(mesh, axis) >= 1)) return false;
+  project_planar(mesh, axis, uvs);
   const Distortion d = measure_distortion(mesh, uvs);
   return d.stretch_999 <= bound && d.flips == 0;
 }
@@ -277,18 +272,17 @@ ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
   }
   const bool given_axis = options.axis.x != 0 || options.axis.y != 0 || options.axis.z != 0;
   const Vec3d axis = given_axis ? options.axis : mean_normal(mesh);
-  project_planar(mesh, axis, r.uvs);
   const double planar_bound =
       options.max_planar_stretch > 0 ? options.max_planar_stretch : options.max_stretch;
-  if (options.method != ParamMethod::isometric) {
-    if (options.method == ParamMethod::planar || projection_fits(mesh, r.uvs, planar_bound)) {
-      r.planar = true;
-      finish(mesh, options, r);
-      if (r.injective || options.method == ParamMethod::planar) return r;
-      r = {};
-      r.uvs.resize(mesh.positions.size());
-      project_planar(mesh, axis, r.uvs);
-    }
+  const bool only_planar = options.method == ParamMethod::planar;
+  if (only_planar) project_planar(mesh, axis, r.uvs);
+  if (only_planar ||
+      (options.method != ParamMethod::isometric && project(mesh, axis, planar_bound, r.uvs))) {
+    r.planar = true;
+    finish(mesh, options, r);
+    if (r.injective || only_planar) return r;
+    r = {};
+    r.uvs.resize(mesh.positions.size());
   }
   if (!options.joined.empty()) {
     param::ArapSolver solver(mesh, options.min_altitude, workspace.impl());
@@ -298,6 +292,7 @@ ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
   IsometricStart start = options.start;
   // Within a hemisphere the projection is as good a start as any, and free of holonomy.
   if (start.uvs.empty() && !start.frames && planar_stretch_bound(mesh, axis) < 4) {
+    project_planar(mesh, axis, r.uvs);
     start.uvs = r.uvs;
   }
   const bool unfolded = start.uvs.empty() && !start.frames;

@@ -50,6 +50,17 @@ double planar_stretch_bound(const LocalMesh& mesh, Vec3d axis) {
   return least > 0 ? 1 / least : std::numeric_limits<double>::infinity();
 }
 
+double projected_share(const LocalMesh& mesh, Vec3d axis) {
+  glm::dvec3 sum(0);
+  double area = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const glm::dvec3 a = area_vector(mesh, t);
+    sum += a;
+    area += glm::length(a);
+  }
+  return area > 0 ? glm::dot(sum, glm::normalize(to_glm(axis))) / area : 1;
+}
+
 Vec3d mean_normal(const LocalMesh& mesh) {
   glm::dvec3 sum(0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) sum += area_vector(mesh, t);

@@ -21,6 +21,10 @@ void project_planar(const LocalMesh& mesh, Vec3d axis, std::span<Vec2d> uvs);
 // or more to the axis: the bound of the sentence above.
 double planar_stretch_bound(const LocalMesh& mesh, Vec3d axis);
 
+// The signed area of that projection, as part of the surface's: at the area-preserving scale the
+// stretch of some triangle is at least the root of its inverse. 1 where there is no area.
+double projected_share(const LocalMesh& mesh, Vec3d axis);
+
 // The unit direction of the area-weighted mean normal; (0, 0, 1) where that vanishes.
 Vec3d mean_normal(const LocalMesh& mesh);
 

@@ -51,22 +51,19 @@ struct Jacobian {
   double det() const { return x.x * y.y - x.y * y.x; }
 };
 
-inline Jacobian jacobian(const RestShape& s, glm::dvec2 u0, glm::dvec2 u1, glm::dvec2 u2) {
-  Jacobian j;
-  j.x = (u1 - u0) / s.length;
-  j.y = (u2 - u0 - j.x * s.foot) / s.altitude;
-  return j;
-}
-
 // Singular values, large >= |small|; small carries the determinant's sign.
 struct SingularValues {
   double large, small;
 };
 
-inline SingularValues singular_values(const Jacobian& j) {
+inline double largest_singular_value(const Jacobian& j) {
   const double e = 0.5 * (j.x.x + j.y.y), f = 0.5 * (j.x.x - j.y.y);
   const double g = 0.5 * (j.x.y + j.y.x), h = 0.5 * (j.x.y - j.y.x);
-  const double large = std::sqrt(e * e + h * h) + std::sqrt(f * f + g * g);
+  return std::sqrt(e * e + h * h) + std::sqrt(f * f + g * g);
+}
+
+inline SingularValues singular_values(const Jacobian& j) {
+  const double large = largest_singular_value(j);
   return {large,
           large > 0 ? j.det() / large : 0};  // the quotient keeps digits that a difference loses
 }

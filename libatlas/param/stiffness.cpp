@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "libatlas/core/wide_vectors.h"
+
 namespace atlas::param {
 
 namespace {
@@ -163,13 +165,19 @@ void local_rotations(const Elements& elements, std::span<const Vec2d> uvs, Rotat
 namespace {
 
 // Adds what an element with this rotation asks of its vertices.
-[[gnu::always_inline]] inline void add_load(const Element& e, glm::dvec2 rotation,
-                                            std::span<glm::dvec2> out) {
-  const glm::dvec2 r = rotation * double(e.weight);
+ATLAS_INLINE void add_load(const Element& e, const Pair& rotation, std::span<glm::dvec2> out) {
+  const Pair r = rotation * double(e.weight), across{-r[1], r[0]};
   const auto g = e.area_gradients();
   for (int k = 0; k < 3; ++k) {
-    out[e.v[k]] += glm::dvec2(r.x * g[k].x - r.y * g[k].y, r.y * g[k].x + r.x * g[k].y);
+    Pair& load = reinterpret_cast<Pair&>(out[e.v[k]]);
+    load += r * g[k].x + across * g[k].y;
   }
+}
+
+// Uvs lie where callers have them, which need not be at multiples of 16 bytes.
+Pair pair_at(std::span<const Vec2d> uvs, std::uint32_t v) {
+  using PairInPlace = double __attribute__((vector_size(16), aligned(8), may_alias));
+  return *reinterpret_cast<const PairInPlace*>(&uvs[v]);
 }
 
 }  // namespace
@@ -181,15 +189,15 @@ double update_rotations(const Elements& elements, std::span<const Vec2d> uvs, Ro
   elements.visit([&](const auto& each) {
     for (std::size_t t = 0; t < elements.size(); ++t) {
       const Element& e = each[t];
-      const glm::dvec2 u0 = to_glm(uvs[e.v[0]]);
+      const Pair u0 = pair_at(uvs, e.v[0]);
       // The Jacobian's columns, times twice the area: its nearest rotation needs no division.
-      const glm::dvec2 base = to_glm(uvs[e.v[1]]) - u0, x = e.altitude * base;
-      const glm::dvec2 y = e.length * (to_glm(uvs[e.v[2]]) - u0) - e.foot * base;
-      const double c = x.x + y.y, s = x.y - y.x, norm = std::sqrt(c * c + s * s);
-      const glm::dvec2 r = norm > 0 ? glm::dvec2(c, s) * (1 / norm) : glm::dvec2(1, 0);
-      const glm::dvec2 change = r - glm::dvec2(rotations[t]);
-      fall += e.weight * norm * glm::dot(change, change);
-      rotations[t] = glm::vec2(r);
+      const Pair base = pair_at(uvs, e.v[1]) - u0, x = e.altitude * base;
+      const Pair y = e.length * (pair_at(uvs, e.v[2]) - u0) - e.foot * base;
+      const double c = x[0] + y[1], s = x[1] - y[0], norm = std::sqrt(c * c + s * s);
+      const Pair r = norm > 0 ? Pair{c, s} * (1 / norm) : Pair{1, 0};
+      const Pair change = r - Pair{rotations[t].x, rotations[t].y}, squared = change * change;
+      fall += e.weight * norm * (squared[0] + squared[1]);
+      rotations[t] = {r[0], r[1]};
       add_load(e, r, load);
     }
   });
@@ -201,7 +209,7 @@ void rotation_load(const Elements& elements, const Rotations& rotations,
   std::fill(out.begin(), out.end(), glm::dvec2(0));
   elements.visit([&](const auto& each) {
     for (std::size_t t = 0; t < elements.size(); ++t) {
-      add_load(each[t], glm::dvec2(rotations[t]), out);
+      add_load(each[t], Pair{rotations[t].x, rotations[t].y}, out);
     }
   });
 }
