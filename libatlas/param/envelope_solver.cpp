@@ -70,12 +70,8 @@ void EnvelopeSolver::order(const Graph& graph) {
   held_.assign(n, 0);
   for (std::uint32_t v = 0; v < n; ++v) {
     if (position_[v] != unseen) continue;
-    std::uint32_t start = v;
-    for (int pass = 0; pass < 2; ++pass) {  // the farthest vertex is a good end to start from
-      const std::uint32_t end = sweep(graph, start);
-      for (const std::uint32_t w : queue_) position_[w] = unseen;
-      start = end;
-    }
+    const std::uint32_t start = sweep(graph, v);  // the farthest vertex is a good end
+    for (const std::uint32_t w : queue_) position_[w] = unseen;
     sweep(graph, start);
     held_[start] = 1;  // the last of its piece to be eliminated: its pivot is nothing but rounding
     order_.insert(order_.end(), queue_.begin(), queue_.end());
