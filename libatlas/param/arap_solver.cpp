@@ -215,15 +215,16 @@ void ArapSolver::take_guess(std::span<Vec2d> uvs) {
   guess_ = uvs;  // of the next call
 }
 
-void ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
+double ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
   wake(uvs);
   if (!factorized_) factorize();
   rotation_load(w_.elements, w_.rotations, w_.load);
   take_guess(uvs);
   solve({steps == 1 ? fine : first_inexactness, 0}, uvs);
   bool exact = true;
+  double fall = std::numeric_limits<double>::infinity();
   for (int i = 1;; ++i) {
-    if (i >= steps) return;
+    if (i >= steps) return fall;
     if (i == 1 && method_ == Method::multigrid) {
       exact = !energy_exceeds(may_unroll * area_, w_.elements, uvs);
       if (exact) {
@@ -231,9 +232,9 @@ void ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
         solve({exact_first, 0}, uvs);
       }
     }
-    const double fall = update_rotations(w_.elements, uvs, w_.rotations, w_.load);
-    const bool still = fall <= converged * area_;
-    if (still && method_ != Method::multigrid) return;
+    fall = update_rotations(w_.elements, uvs, w_.rotations, w_.load) / area_;
+    const bool still = fall <= converged;
+    if (still && method_ != Method::multigrid) return fall;
     if (still) steps = i + 1;
     const bool last = i + 1 == steps;
     const Inexactness rough{fine, last ? fine_share : rough_share};

@@ -29,7 +29,9 @@ class ArapSolver {
   // minimum descends (Salakhutdinov and Roweis 2003, "Adaptive overrelaxed bound optimization
   // methods"). Those here are longer and may rise; the plain step after each more than mends that,
   // and what is slow to settle does in fewer.
-  void iterate(int steps, std::span<Vec2d> uvs);
+  // Returns by how much the last local step lowered the energy, as part of the area; infinite if
+  // there was none.
+  double iterate(int steps, std::span<Vec2d> uvs);
 
   // Lowers the stretch that 99.9 % of the area stays within: triangles are weighted by a power of
   // their stretch and the system is solved again (iteratively reweighted least squares towards the
