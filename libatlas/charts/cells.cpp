@@ -13,7 +13,6 @@
 namespace atlas {
 namespace {
 
-constexpr std::size_t kCellsOfSmallMesh = 146;
 constexpr std::uint32_t kLeastPerCell = 3;
 
 // One a piece.
@@ -140,7 +139,7 @@ Cells grow_cells(const Topology& topology, const CellOptions& wanted, const Cont
   const std::size_t triangles = std::max(wanted.mesh_triangles, topology.triangle_count());
   CellOptions options = wanted;
   options.triangles_per_cell =
-      std::clamp(static_cast<std::uint32_t>(triangles / kCellsOfSmallMesh),
+      std::clamp(static_cast<std::uint32_t>(triangles / wanted.cells_of_small_mesh),
                  std::min(kLeastPerCell, wanted.triangles_per_cell), wanted.triangles_per_cell);
   if (topology.component_count == 0) {
     return {std::vector<std::uint32_t>(topology.triangle_count(), kNoIndex), 0};

@@ -12,9 +12,11 @@
 namespace atlas {
 
 struct CellOptions {
-  // A piece of n triangles gets about n / this cells, more in meshes of less than twelve thousand
-  // triangles, whose charts would otherwise have few to choose from, and where it has handles,
+  // A piece of n triangles gets about n / this cells, more in meshes that would have fewer than
+  // cells_of_small_mesh in all, whose charts would have few to choose from, and where it has
+  // handles,
   std::uint32_t triangles_per_cell = 80;
+  std::uint32_t cells_of_small_mesh = 146;
   std::uint32_t max_cells_per_piece = 600;  // but not more than this, however fine it is.
   // Cells are added, beyond those numbers, until no grain leans more than this to its cell's seed.
   double max_lean_degrees = 55;
@@ -29,10 +31,10 @@ struct Cells {
 
 // Grows cells from well-spaced seeds; the distance from seed s to a triangle with normal n is path
 // length times (1 + 8 (1 - n·n_s)), so cells stop at creases. Every cell is connected and lies in
-// one piece. Seeds come from farthest-point sampling and two recentring steps (Cohen-Steiner et al.
-// 2004 for the alternation) on a graph of grains of some ten triangles, then one pass over the
-// triangles, whose teeth are pulled in the end (rims.h). Cells are numbered by their seeds' place
-// in the mesh. O(n log n) with a small heap.
+// one piece. Seeds come from farthest-point sampling, in large pieces of what is a few grains apart
+// already, and two recentring steps (Cohen-Steiner et al. 2004 for the alternation) on a graph of
+// grains of some ten triangles, then one pass over the triangles, whose teeth are pulled in the end
+// (rims.h). Cells are numbered by their seeds' place in the mesh. O(n log n) with a small heap.
 Cells grow_cells(const Topology& topology, const CellOptions& options, const Context& context);
 
 // Divides cells until the normals of each lie within half-angle `cone` (radians) of one direction.

@@ -132,6 +132,10 @@ constexpr std::size_t kTrianglesAtATime = 50000, kSmallPiece = 5000;
 
 constexpr double kMostRings = 8;  // wider bands are dear on fine meshes
 
+// Cells of ChartPreset::fast, larger and so fewer: a twelfth less time for a thirtieth more charts
+// (77 meshes).
+constexpr std::uint32_t kFastTrianglesPerCell = 250, kFastCellsOfSmallMesh = 60;
+
 // Attempts of ChartPreset::best, each from other cells.
 constexpr int kBestAttempts = 4;
 
@@ -203,6 +207,10 @@ class Segmenter {
     CellOptions options;
     options.mesh_triangles = std::max(topology_.whole_triangles, topology_.triangle_count());
     options.first_seed = first_seed;
+    if (options_.preset == ChartPreset::fast) {
+      options.triangles_per_cell = kFastTrianglesPerCell;
+      options.cells_of_small_mesh = kFastCellsOfSmallMesh;
+    }
     made.cells = grow_cells(topology, options, context_);
     if (context_.cancelled()) return made;
     if (cone_ > 0) split_by_cone(topology, cone_, made.cells);
