@@ -22,7 +22,7 @@ constexpr std::uint32_t kStretch = 64;  // grains
 // few seeds far. Half of the time of sampling, and as many charts with seams as long (100 meshes,
 // ten segmentations each).
 constexpr std::uint8_t kHops = 3, kNotCovered = 0xff;
-constexpr double kScatteredShare = 0.7;
+constexpr double kScatteredShare = 0.8;
 constexpr std::uint32_t kManyCells = 16;
 
 struct Visit {
