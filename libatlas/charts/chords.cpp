@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <queue>
 
 #include "libatlas/charts/hull.h"
 
@@ -18,11 +19,13 @@ double distance(const Vec2d& a, const Vec2d& b) {
   return std::hypot(b.x - a.x, b.y - a.y);
 }
 
+// Squared: long outlines ask for it millions of times.
 double distance_to_segment(const Vec2d& p, const Vec2d& a, const Vec2d& b) {
   const double dx = b.x - a.x, dy = b.y - a.y, length2 = dx * dx + dy * dy;
   const double along =
       length2 > 0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / length2, 0.0, 1.0) : 0;
-  return std::hypot(p.x - a.x - along * dx, p.y - a.y - along * dy);
+  const double x = p.x - a.x - along * dx, y = p.y - a.y - along * dy;
+  return x * x + y * y;
 }
 
 // Chooses corners of the outline, then chords between them.
@@ -80,11 +83,7 @@ class ChordFinder {
 
   // The corners that matter, and others between them so that a chord can end on a straight side.
   void choose_corners() {
-    std::vector<std::uint32_t> simple;
-    for (double width = kFineness * width_;; width *= 1.5) {
-      simple = simplified(width);
-      if (simple.size() <= kMostCorners) break;
-    }
+    const std::vector<std::uint32_t> simple = simplified();
     double perimeter = 0;
     for (std::size_t i = 0; i < outline_.size(); ++i) {
       perimeter += distance(outline_[i], outline_[(i + 1) % outline_.size()]);
@@ -108,36 +107,47 @@ class ChordFinder {
     }
   }
 
-  // Douglas and Peucker's choice of places, ascending, from two far ones.
-  std::vector<std::uint32_t> simplified(double width) const {
+  // Part of the outline, and the place in it that is farthest from the line between its ends.
+  struct Part {
+    std::uint32_t first, last, worst = 0;
+    double distance = 0;  // squared
+    bool operator<(const Part& other) const {
+      return distance != other.distance ? distance < other.distance : first > other.first;
+    }
+  };
+  Part part(std::uint32_t first, std::uint32_t last) const {
+    Part part{first, last};
+    for (std::uint32_t i = first + 1; i < last; ++i) {
+      const double d =
+          distance_to_segment(outline_[i], outline_[first], outline_[last % outline_.size()]);
+      if (d <= part.distance) continue;
+      part.distance = d;
+      part.worst = i;
+    }
+    return part;
+  }
+
+  // Douglas and Peucker's choice of places, ascending, from two far ones; those that matter most
+  // first, for there may be too many.
+  std::vector<std::uint32_t> simplified() const {
     const auto n = std::uint32_t(outline_.size());
     std::uint32_t far = 0;
     for (std::uint32_t i = 1; i < n; ++i) {
       if (distance(outline_[0], outline_[i]) > distance(outline_[0], outline_[far])) far = i;
     }
-    std::vector<std::uint8_t> kept(n, 0);
-    kept[0] = kept[far] = 1;
-    std::vector<std::array<std::uint32_t, 2>> open{{0, far}, {far, n}};
-    while (!open.empty()) {
-      const auto [first, last] = open.back();
-      open.pop_back();
-      std::uint32_t worst = first;
-      double most = width;
-      for (std::uint32_t i = first + 1; i < last; ++i) {
-        const double d = distance_to_segment(outline_[i], outline_[first], outline_[last % n]);
-        if (d <= most) continue;
-        most = d;
-        worst = i;
-      }
-      if (worst == first) continue;
-      kept[worst] = 1;
-      open.push_back({first, worst});
-      open.push_back({worst, last});
+    std::vector<std::uint32_t> places{0, far};
+    std::priority_queue<Part> open;
+    open.push(part(0, far));
+    open.push(part(far, n));
+    const double least = kFineness * width_ * kFineness * width_;
+    while (places.size() < kMostCorners && open.top().distance > least) {
+      const Part cut = open.top();
+      open.pop();
+      places.push_back(cut.worst);
+      open.push(part(cut.first, cut.worst));
+      open.push(part(cut.worst, cut.last));
     }
-    std::vector<std::uint32_t> places;
-    for (std::uint32_t i = 0; i < n; ++i) {
-      if (kept[i]) places.push_back(i);
-    }
+    std::sort(places.begin(), places.end());
     return places;
   }
 

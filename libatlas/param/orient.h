@@ -20,9 +20,9 @@ struct Orientation {
 // (hull in counter-clockwise order from its lowest point) is taken. O(n log n).
 // border_edges: those around a chart that covers nothing beyond them, as pairs of indices into uvs
 // that begin at each corner of the border; or empty, for any points. If one direction (modulo 90
-// degrees) carries at least a fifth of their length within half a degree, and the box along it is at
-// most straight_slack larger than the smallest one, that direction wins: straight borders lie along
-// texels.
+// degrees) carries at least a fifth of their length within half a degree, and the box along it is
+// at most straight_slack larger than the smallest one, that direction wins: straight borders lie
+// along texels.
 Orientation orient_for_packing(std::span<Vec2d> uvs,
                                std::span<const std::array<std::uint32_t, 2>> border_edges = {},
                                double straight_slack = 0.02);
