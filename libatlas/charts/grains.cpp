@@ -17,16 +17,14 @@ class CellBudget {
   CellBudget(const Topology& topology, const CellOptions& options)
       : topology_(topology), options_(options), seen_in_(topology.points.size(), kNoIndex) {}
 
-  std::uint32_t of(std::uint32_t piece, std::span<const std::uint32_t> triangles) {
-    const std::size_t n = triangles.size();
+  std::uint32_t of(std::size_t handles, std::size_t n) const {
     const std::size_t least = n / options_.triangles_per_cell;
     const std::size_t most = std::max(least, n / kLeastTriangles);
-    const std::size_t wanted = least + kCellsAHandle * handles(piece, triangles);
+    const std::size_t wanted = least + kCellsAHandle * handles;
     return static_cast<std::uint32_t>(
         std::clamp<std::size_t>(std::min(wanted, most), 1, options_.max_cells_per_piece));
   }
 
- private:
   // By Euler's formula: a handle counts twice, each loop of the border once.
   std::size_t handles(std::uint32_t piece, std::span<const std::uint32_t> triangles) {
     std::size_t vertices = 0, sides = 0;
@@ -40,6 +38,7 @@ class CellBudget {
     return edges + 2 > others ? edges + 2 - others : 0;
   }
 
+ private:
   const Topology& topology_;
   const CellOptions& options_;
   std::vector<std::uint32_t> seen_in_;  // 1 a vertex: the last piece that it was found in
@@ -57,8 +56,10 @@ class GrainBuilder {
     grains_.of_triangle.assign(topology_.triangle_count(), kNoIndex);
     for (std::uint32_t k = 0; k + 1 < pieces.first.size(); ++k) {
       const std::size_t n = pieces.first[k + 1] - pieces.first[k];
-      grains_.cells.push_back(
-          budget.of(k, std::span(pieces.triangles).subspan(pieces.first[k], n)));
+      const std::size_t handles =
+          budget.handles(k, std::span(pieces.triangles).subspan(pieces.first[k], n));
+      grains_.cells.push_back(budget.of(handles, n));
+      grains_.pierced.push_back(handles > 1);
       const std::size_t size = std::max<std::size_t>(1, n / (12 * grains_.cells[k]));
       for (std::uint32_t i = pieces.first[k]; i < pieces.first[k + 1]; ++i) {
         if (grains_.of_triangle[pieces.triangles[i]] == kNoIndex) {

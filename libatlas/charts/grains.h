@@ -20,6 +20,7 @@ struct Grains {
   std::vector<std::uint32_t> first, neighbour;  // compressed rows
   std::vector<float> distance;                  // 1 a neighbour: between the centroids
   std::vector<std::uint32_t> cells;             // 1 a piece: how many it gets
+  std::vector<std::uint8_t> pierced;            // 1 a piece: it has handles, or holes
   std::size_t count() const { return area.size(); }
 };
 
