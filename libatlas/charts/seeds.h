@@ -16,9 +16,9 @@ struct CellSeeds {
   std::vector<std::uint32_t> owner;  // 1 a grain: its seed
 };
 
-// In large pieces seeds a few grains apart; then farthest-point sampling on the grains by
-// cell_distance(), seeds for what leans too far from its own, and two recentring steps. What
-// cancelling leaves must not be used.
+// In large pieces without handles or holes seeds a few grains apart; then farthest-point sampling
+// on the grains by cell_distance(), seeds for what leans too far from its own, and two recentring
+// steps. What cancelling leaves must not be used.
 CellSeeds choose_seeds(const Topology& topology, const Grains& grains, const CellOptions& options,
                        const Context& context);
 
