@@ -24,6 +24,12 @@ bool strictly_between(Vec2d a, Vec2d b, Vec2d p) {
   return std::min(a.y, b.y) < p.y && p.y < std::max(a.y, b.y);
 }
 
+// Whether the segments ab and bc, as neighbours on a border are, overlap along a stretch.
+bool fold_back(Vec2d a, Vec2d b, Vec2d c) {
+  if (orientation(a, b, c) != 0) return false;
+  return strictly_between(a, b, c) || strictly_between(b, c, a) || (a == c && !(a == b));
+}
+
 }  // namespace
 
 int close_orientation(Vec2d a, Vec2d b, Vec2d c) {
@@ -32,20 +38,18 @@ int close_orientation(Vec2d a, Vec2d b, Vec2d c) {
   return static_cast<int>(CGAL::orientation(point(a), point(b), point(c)));
 }
 
-bool segments_cross(Vec2d a, Vec2d b, Vec2d c, Vec2d d) {
-  if (std::max(a.x, b.x) < std::min(c.x, d.x) || std::max(c.x, d.x) < std::min(a.x, b.x) ||
-      std::max(a.y, b.y) < std::min(c.y, d.y) || std::max(c.y, d.y) < std::min(a.y, b.y)) {
-    return false;
-  }
+bool near_segments_cross(Vec2d a, Vec2d b, Vec2d c, Vec2d d) {
+  if (b == c) return fold_back(a, b, d);
+  if (a == d) return fold_back(c, a, b);
+  if (a == c) return fold_back(b, a, d);
+  if (b == d) return fold_back(a, b, c);
   const int c_side = orientation(a, b, c), d_side = orientation(a, b, d);
   const int a_side = orientation(c, d, a), b_side = orientation(c, d, b);
   if (c_side * d_side < 0 && a_side * b_side < 0) return true;
   if (c_side == 0 && strictly_between(a, b, c)) return true;
   if (d_side == 0 && strictly_between(a, b, d)) return true;
   if (a_side == 0 && strictly_between(c, d, a)) return true;
-  if (b_side == 0 && strictly_between(c, d, b)) return true;
-  const bool same = (a == c && b == d) || (a == d && b == c);
-  return same && !(a == b);
+  return b_side == 0 && strictly_between(c, d, b);
 }
 
 }  // namespace atlas

@@ -2,6 +2,7 @@
 // true determinant of the doubles given, never a rounding error's.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "libatlas/core/vec.h"
@@ -22,8 +23,16 @@ inline int orientation(Vec2d a, Vec2d b, Vec2d c) {
   return close_orientation(a, b, c);
 }
 
+// Where their boxes meet. For segments_cross() only.
+bool near_segments_cross(Vec2d a, Vec2d b, Vec2d c, Vec2d d);
+
 // Whether the open segments ab and cd cross, or overlap along a stretch. Touching at a shared end
 // point only does not count.
-bool segments_cross(Vec2d a, Vec2d b, Vec2d c, Vec2d d);
+inline bool segments_cross(Vec2d a, Vec2d b, Vec2d c, Vec2d d) {
+  const bool apart =
+      std::max(a.x, b.x) < std::min(c.x, d.x) || std::max(c.x, d.x) < std::min(a.x, b.x) ||
+      std::max(a.y, b.y) < std::min(c.y, d.y) || std::max(c.y, d.y) < std::min(a.y, b.y);
+  return !apart && near_segments_cross(a, b, c, d);
+}
 
 }  // namespace atlas
