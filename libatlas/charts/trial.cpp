@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "libatlas/charts/fan_kernels.h"
 #include "libatlas/charts/hull.h"
 #include "libatlas/core/glm_bridge.h"
 
@@ -196,78 +195,8 @@ bool Trial::shape_fits(const TrialLimits& limits, double slack, TrialOutcome& ou
   return outcome.fill >= limits.fill - slack;
 }
 
-namespace {
-
-// How far one of two edges that cross would have to move for them not to.
-double crossing_depth(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& d) {
-  const auto nearest = [](const Vec2d& p, const Vec2d& q, const Vec2d& r, const Vec2d& s) {
-    const double length = std::hypot(q.x - p.x, q.y - p.y);
-    return std::min(std::abs(cross(p, q, r)), std::abs(cross(p, q, s))) / length;
-  };
-  return std::min(nearest(a, b, c, d), nearest(c, d, a, b));
-}
-
-// Boxes of edges: sides to the left, right, bottom and top, one after the other for each of them,
-// in so many entries each.
-struct Boxes {
-  const double* sides;
-  std::size_t stride;
-};
-
-// The first edge from `next` on, four looked at together, whose box meets that of edge i, or up to
-// three more than there are.
-ATLAS_INLINE std::size_t find_near(const Boxes& boxes, std::size_t i, std::size_t next,
-                                   std::size_t count) {
-  const double *const left = boxes.sides, *const right = left + boxes.stride,
-                      *const low = right + boxes.stride, *const high = low + boxes.stride;
-  for (; next < count; next += 4) {
-    const auto met = (QuadAt(left + next).quad <= right[i]) &
-                     (QuadAt(right + next).quad >= left[i]) & (QuadAt(low + next).quad <= high[i]) &
-                     (QuadAt(high + next).quad >= low[i]);
-    if (!(met[0] | met[1] | met[2] | met[3])) continue;
-    return next + (met[0] ? 0 : met[1] ? 1 : met[2] ? 2 : 3);
-  }
-  return count;
-}
-ATLAS_WIDE std::size_t find_near_wide(const Boxes& boxes, std::size_t i, std::size_t next,
-                                      std::size_t count) {
-  return find_near(boxes, i, next, count);
-}
-std::size_t find_near_narrow(const Boxes& boxes, std::size_t i, std::size_t next,
-                             std::size_t count) {
-  return find_near(boxes, i, next, count);
-}
-
-}  // namespace
-
-// All pairs: of the few dozen edges that charts of cells have that takes less than to sort them.
-Trial::Crossing Trial::border_crossing() {
-  const auto border = joined_.border();
-  const std::size_t n = border.size(), stride = n + 4;
-  boxes_.assign(4 * stride, 0);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec2d &a = uvs_[border[i][0]], &b = uvs_[border[i][1]];
-    boxes_[i] = std::min(a.x, b.x);
-    boxes_[i + stride] = std::max(a.x, b.x);
-    boxes_[i + 2 * stride] = std::min(a.y, b.y);
-    boxes_[i + 3 * stride] = std::max(a.y, b.y);
-  }
-  const Boxes boxes{boxes_.data(), stride};
-  const auto near = has_wide_vectors ? find_near_wide : find_near_narrow;
-  const double deep = kDeepCrossing * std::sqrt(area_);
-  Crossing crossing = Crossing::none;
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto [a, b] = border[i];
-    for (std::size_t j = near(boxes, i, i + 1, n); j < n; j = near(boxes, i, j + 1, n)) {
-      const auto [c, d] = border[j];
-      if (a == c || a == d || b == c || b == d) continue;
-      if (cross_each_other(uvs_[a], uvs_[b], uvs_[c], uvs_[d])) {
-        crossing = Crossing::shallow;
-        if (crossing_depth(uvs_[a], uvs_[b], uvs_[c], uvs_[d]) > deep) return Crossing::deep;
-      }
-    }
-  }
-  return crossing;
+Crossing Trial::border_crossing() {
+  return border_.find(joined_.border(), uvs_, kDeepCrossing * std::sqrt(area_));
 }
 
 TrialOutcome Trial::run(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "libatlas/charts/border_crossing.h"
 #include "libatlas/charts/coarse.h"
 #include "libatlas/charts/fan_measure.h"
 #include "libatlas/charts/fan_solver.h"
@@ -79,7 +80,6 @@ class Trial {
   bool promising(const TrialLimits& limits, TrialOutcome& outcome);
   bool stretch_fits(const TrialLimits& limits, TrialOutcome& outcome);
   bool shape_fits(const TrialLimits& limits, double slack, TrialOutcome& outcome);
-  enum class Crossing { none, shallow, deep };
   Crossing border_crossing();
 
   const CoarseMesh& mesh_;
@@ -88,11 +88,11 @@ class Trial {
   TrialMesh joined_;
   FanSolver solver_;
   FanMeasure measure_;
+  BorderCheck border_;
   double area_ = 0;  // of all cells
   std::vector<Vec2d> uvs_;
   std::vector<double> weight_;
   std::vector<std::array<std::uint32_t, 2>> pairs_;  // slots of first and second chart
-  std::vector<double> boxes_;                        // of the border's edges
   std::vector<Vec2d> points_, hull_;
   bool flipped_ = false;  // a triangle, when shape_fits() last looked
   double misfit_ = 0;     // largest distance of two glued slots, as aligned
