@@ -10,6 +10,7 @@
 #include "libatlas/charts/absorb.h"
 #include "libatlas/charts/chart_job.h"
 #include "libatlas/charts/newcomers.h"
+#include "libatlas/charts/straighten.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
 
@@ -23,6 +24,10 @@ constexpr int kMaxRemovals = 4;
 // chart is divided: of 29 with seven crossings and more 4 came apart at last (170 meshes).
 constexpr std::size_t kManyCrossings = 6;
 constexpr double kRemovalWidth = 1.0 / 60;
+
+// The border between parts of a divided chart is straightened so far to each side, as a share of
+// the smaller part's width.
+constexpr double kPartBand = 0.5;
 
 // What charts of more triangles needed is given back once they are half as large: the flat charts
 // need room by then.
@@ -201,6 +206,7 @@ class Flattener {
       split_ += failures[i]->failed;
       divide(done[i], failures[i]->parts);
     }
+    straighten_parts();
     relist();
     if (!todo_.empty()) return;
     for (const std::uint32_t chart : std::exchange(grown_, {})) {
@@ -266,6 +272,29 @@ class Flattener {
       charts_[id].fragment = true;
     }
     queue(chart);
+    parts_.push_back(chart);
+    for (const std::uint32_t id : name) {
+      if (id != chart && id != kNoIndex) parts_.push_back(id);
+    }
+  }
+
+  // What divides a chart leaves ragged borders.
+  void straighten_parts() {
+    const std::vector<std::uint32_t> parts = std::exchange(parts_, {});
+    if (parts.empty() || input_.options.cone_degrees > 0) return;
+    std::vector<std::uint8_t> rings(charts_.size(), 0);
+    std::vector<std::uint32_t> triangles;
+    for (const std::uint32_t part : parts) {
+      std::vector<std::uint32_t>& own = charts_[part].triangles;
+      rings[part] = static_cast<std::uint8_t>(
+          std::min(255.0, kPartBand * std::sqrt(static_cast<double>(own.size()))));
+      triangles.insert(triangles.end(), own.begin(), own.end());
+      own.clear();
+    }
+    std::sort(triangles.begin(), triangles.end());
+    straighten_borders(input_.topology, {{input_.options.crease_degrees, {}}, rings, triangles},
+                       partition_, input_.frames);
+    for (const std::uint32_t t : triangles) charts_[partition_.chart[t]].triangles.push_back(t);
   }
 
   // Takes triangles from the chart's list that have gone to others.
@@ -319,6 +348,7 @@ class Flattener {
   std::vector<State> charts_;
   std::vector<FlatChart> flats_;  // their results; triangles are filled in the end
   std::vector<std::uint32_t> todo_, moved_;
+  std::vector<std::uint32_t> parts_;  // of charts that were divided in this round
   std::vector<std::uint32_t> grown_;  // they wait until no more triangles can come
   std::uint64_t split_ = 0;
 };

@@ -25,7 +25,7 @@ constexpr double kPoor = 0.9;         // of min_fill: what fills more is left as
 constexpr double kSeamPrice = 0.12;
 // A cut may be this much longer than its chord, and what strays from the chord by a tenth of its
 // length is as long as this many times that.
-constexpr double kLongestPath = 1.6, kStrayWeight = 3;
+constexpr double kLongestPath = 1.6, kStrayWeight = 100;
 constexpr std::size_t kChordsTried = 12;
 constexpr std::uint32_t kUnseen = kNoIndex - 1;
 
@@ -237,7 +237,7 @@ class LimbCutter {
         const Vec2d &p = chart_.uvs[visit.uv], &q = chart_.uvs[next];
         const double off = stray({(p.x + q.x) / 2, (p.y + q.y) / 2});
         queue.push(
-            {visit.distance + std::hypot(q.x - p.x, q.y - p.y) * (1 + 10 * kStrayWeight * off),
+            {visit.distance + std::hypot(q.x - p.x, q.y - p.y) * (1 + kStrayWeight * off * off),
              next, h});
       }
     }

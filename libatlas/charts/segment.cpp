@@ -161,7 +161,7 @@ class Segmenter {
     Stopwatch watch(cpu_seconds);
     const BorderRules rules{options_.crease_degrees, {axes_, std::cos(cone_ - 1e-5)}};
     smooth_borders(topology_, rules, result_.partition, result_.frames);
-    straighten_borders(topology_, rules, rings_, result_.partition, result_.frames);
+    straighten_borders(topology_, {rules, rings_}, result_.partition, result_.frames);
     smooth_borders(topology_, rules, result_.partition, result_.frames);
     result_.timing.borders_cpu = watch.lap();
     return std::move(result_);
@@ -258,7 +258,7 @@ class Segmenter {
     }
     for (std::uint32_t k = 0; k < cells.count; ++k) {
       const double a_cell = static_cast<double>(triangles[k]) / std::max(cell_count[k], 1u);
-      rings_.push_back(static_cast<std::uint8_t>(std::min(std::sqrt(a_cell / 3), kMostRings)));
+      rings_.push_back(static_cast<std::uint8_t>(std::min(std::sqrt(a_cell / 5), kMostRings)));
     }
   }
 

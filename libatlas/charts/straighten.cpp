@@ -13,18 +13,19 @@ constexpr double kSteps = 256;        // a mean edge's length in the cut's integ
 constexpr double kLongest = 1 << 16;  // so many steps at most, for 32 bits
 // A triangle that changes sides must save this part of its own size in border: seams do not wander
 // far for a hair's breadth. Without it charts stretch more (spot, armadillo: a third of L2 - 1).
-constexpr double kStiffness = 0.2;
+constexpr double kStiffness = 0.3;
 
 class Straightener {
  public:
-  Straightener(const Topology& topology, const BorderRules& rules,
-               std::span<const std::uint8_t> rings, Partition& partition, Frames& frames)
+  Straightener(const Topology& topology, const StraightenOptions& options, Partition& partition,
+               Frames& frames)
       : topology_(topology),
-        rules_(rules),
-        rings_(rings),
+        rules_(options.rules),
+        rings_(options.rings),
+        triangles_(options.triangles),
         partition_(partition),
         frames_(frames),
-        crease_cosine_(std::cos(rules.crease_degrees * M_PI / 180)) {}
+        crease_cosine_(std::cos(options.rules.crease_degrees * M_PI / 180)) {}
 
   void run() {
     const std::vector<Border> borders = gather();
@@ -33,9 +34,7 @@ class Straightener {
       for (j = i; j < borders.size() && borders[j].key == borders[i].key;) ++j;
       charts_ = {static_cast<std::uint32_t>(borders[i].key >> 32),
                  static_cast<std::uint32_t>(borders[i].key)};
-      find_band({borders.data() + i, j - i});
-      for (std::uint32_t first = 0; first < band_.size();) first = straighten_from(first);
-      for (const std::uint32_t t : band_) local_[t] = kNoIndex;
+      straighten({borders.data() + i, j - i});
     }
   }
 
@@ -47,11 +46,13 @@ class Straightener {
 
   std::vector<Border> gather() const {
     std::vector<Border> borders;
-    for (std::uint32_t h = 0; h < topology_.opposite.size(); ++h) {
+    const std::size_t count = triangles_.empty() ? topology_.triangle_count() : triangles_.size();
+    for (std::uint32_t i = 0; i < 3 * count; ++i) {
+      const std::uint32_t h = triangles_.empty() ? i : 3 * triangles_[i / 3] + i % 3;
       const std::uint32_t o = topology_.opposite[h];
       if (o == kNoIndex || o < h) continue;
       const std::uint32_t a = partition_.chart[h / 3], b = partition_.chart[o / 3];
-      if (a == b || a == kNoIndex || b == kNoIndex) continue;
+      if (a == b || a == kNoIndex || b == kNoIndex || rings(a, b) == 0) continue;
       borders.push_back({std::uint64_t{std::min(a, b)} << 32 | std::max(a, b), h});
     }
     std::sort(borders.begin(), borders.end(), [](const Border& a, const Border& b) {
@@ -59,6 +60,8 @@ class Straightener {
     });
     return borders;
   }
+
+  int rings(std::uint32_t a, std::uint32_t b) const { return std::min(rings_[a], rings_[b]); }
 
   // 0 or 1: which of the two charts; 2: neither.
   std::uint32_t side(std::uint32_t t) const {
@@ -72,8 +75,20 @@ class Straightener {
     band_.push_back(t);
   }
 
-  // The triangles within rings_ of the border, reordered so that what hangs together is adjacent.
-  void find_band(std::span<const Border> border) {
+  // Where a cut in the whole band would change too much, one in a narrower band may not.
+  void straighten(std::span<const Border> border) {
+    int rings = this->rings(charts_[0], charts_[1]);
+    do {
+      refused_ = false;
+      find_band(border, rings);
+      for (std::uint32_t first = 0; first < band_.size();) first = straighten_from(first);
+      for (const std::uint32_t t : band_) local_[t] = kNoIndex;
+      rings /= 2;
+    } while (refused_ && rings > 0);
+  }
+
+  // The triangles within `rings` of the border, reordered so that what hangs together is adjacent.
+  void find_band(std::span<const Border> border, int rings) {
     band_.clear();
     for (const Border& edge : border) {
       const std::uint32_t a = edge.half_edge / 3, b = topology_.opposite[edge.half_edge] / 3;
@@ -82,7 +97,6 @@ class Straightener {
       reach(b);
     }
     std::size_t begin = 0;
-    const int rings = std::min(rings_[charts_[0]], rings_[charts_[1]]);
     for (int ring = 1; ring < rings; ++ring) {
       const std::size_t end = band_.size();
       for (; begin < end; ++begin) {
@@ -131,12 +145,20 @@ class Straightener {
       }
     }
     last_ = end;
-    if (!build_cut()) return end;
+    if (!cut_and_apply()) refused_ = true;
+    return end;
+  }
+
+  // False if that would have changed more than a border.
+  bool cut_and_apply() {
+    if (!build_cut()) return false;
     cut_.run();
     bool moved = false;
     for (std::uint32_t i = first_; i < last_; ++i) moved |= changes(band_[i]);
-    if (moved && same_euler() && whole()) apply();
-    return end;
+    if (!moved) return true;
+    if (!same_euler() || !held()) return false;
+    apply();
+    return true;
   }
 
   static std::int32_t steps(double length) {
@@ -244,18 +266,8 @@ class Straightener {
     return closed && triangles > 0 && links == triangles ? 1 : triangles - links;
   }
 
-  // Parts of a chart within the band that hung together still do, and each has its hold outside.
-  bool whole() {
-    bool held = true;
-    const std::uint32_t parts = count_parts(false, held);
-    held = true;
-    return count_parts(true, held) == parts && held;
-  }
-
-  // Parts of both charts in the band, before or after the cut; `held` turns false if one of them
-  // lies in the band alone.
-  std::uint32_t count_parts(bool after, bool& held) {
-    std::uint32_t count = 0;
+  // Whether all parts of both charts in the band would have a hold outside it.
+  bool held() {
     visited_.assign(last_ - first_, 0);
     for (std::uint32_t i = 0; i < visited_.size(); ++i) {
       if (visited_[i]) continue;
@@ -267,7 +279,7 @@ class Straightener {
         for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
           const std::uint32_t o = topology_.opposite[h];
           if (o == kNoIndex || partition_.seam(h)) continue;
-          if (side_at(o / 3, after) != side_at(t, after)) continue;
+          if (side_at(o / 3, true) != side_at(t, true)) continue;
           if (!in_band(o / 3)) {
             hold = true;
           } else if (std::uint8_t& seen = visited_[local_[o / 3] - first_]; !seen) {
@@ -276,10 +288,9 @@ class Straightener {
           }
         }
       }
-      ++count;
-      held &= hold;
+      if (!hold) return false;
     }
-    return count;
+    return true;
   }
 
   // Triangles change sides, each with a frame from a neighbour that was there before or has
@@ -299,7 +310,7 @@ class Straightener {
           move_triangle(topology_, h, partition_, frames_);
         }
       }
-      if (kept == left) break;  // cannot be: whole() has seen a way to each
+      if (kept == left) break;  // cannot be: held() has seen a way to each
       left = kept;
     }
   }
@@ -319,6 +330,7 @@ class Straightener {
   const Topology& topology_;
   const BorderRules& rules_;
   std::span<const std::uint8_t> rings_;
+  std::span<const std::uint32_t> triangles_;
   Partition& partition_;
   Frames& frames_;
   double crease_cosine_;
@@ -326,14 +338,15 @@ class Straightener {
   std::vector<std::uint32_t> band_, local_, scratch_, fans_;
   std::vector<std::uint8_t> visited_;   // 1 a triangle of the part
   std::uint32_t first_ = 0, last_ = 0;  // the part of band_ that is at work
+  bool refused_ = false;                // a cut in the band at hand
   MinCut cut_;
 };
 
 }  // namespace
 
-void straighten_borders(const Topology& topology, const BorderRules& rules,
-                        std::span<const std::uint8_t> rings, Partition& partition, Frames& frames) {
-  Straightener(topology, rules, rings, partition, frames).run();
+void straighten_borders(const Topology& topology, const StraightenOptions& options,
+                        Partition& partition, Frames& frames) {
+  Straightener(topology, options, partition, frames).run();
 }
 
 }  // namespace atlas

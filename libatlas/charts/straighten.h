@@ -8,12 +8,18 @@
 
 namespace atlas {
 
+struct StraightenOptions {
+  BorderRules rules;
+  std::span<const std::uint8_t> rings;         // 1 a chart: see below; 0: its borders stay
+  std::span<const std::uint32_t> triangles{};  // of all charts with rings; empty: of all charts
+};
+
 // Replaces the border between each two charts by the shortest one (creases count a quarter) within
-// `rings` (1 a chart; the lesser of the two) triangles of it, found as a minimum cut of the dual
-// graph (the idea: Katz and Tal 2003). Where single triangles cannot shorten a border, as on the
-// steps of a staircase, this can. A border stays as it is where a chart would come apart, close to
-// a ring or leave its cone.
-void straighten_borders(const Topology& topology, const BorderRules& rules,
-                        std::span<const std::uint8_t> rings, Partition& partition, Frames& frames);
+// `rings` (the lesser of the two) triangles of it, found as a minimum cut of the dual graph (the
+// idea: Katz and Tal 2003). Where single triangles cannot shorten a border, as on the steps of a
+// staircase, this can. A border stays as it is where a chart would come apart, close to a ring or
+// leave its cone.
+void straighten_borders(const Topology& topology, const StraightenOptions& options,
+                        Partition& partition, Frames& frames);
 
 }  // namespace atlas

@@ -132,11 +132,12 @@ struct Charts {
 
   void straighten(std::uint8_t rings, double crease_degrees = 40) {
     const std::vector<std::uint8_t> of_chart(64, rings);
-    straighten_borders(topology, {crease_degrees, {}}, of_chart, partition, frames);
+    straighten_borders(topology, {{crease_degrees, {}}, of_chart}, partition, frames);
   }
 };
 
-TEST(Straighten, SawtoothBecomesALine) {
+// Two charts of a square, whose border has teeth four quads high.
+Charts sawtooth() {
   const int n = 40;
   Charts charts(grid(n, n));
   for (std::uint32_t t = 0; t < charts.partition.chart.size(); ++t) {
@@ -144,10 +145,52 @@ TEST(Straighten, SawtoothBecomesALine) {
     const int tooth = std::abs(y % 8 - 4);  // 0 to 4
     charts.partition.chart[t] = x < n / 2 - 2 + tooth ? 0 : 1;
   }
+  return charts;
+}
+
+TEST(Straighten, SawtoothBecomesALine) {
+  Charts charts = sawtooth();
   const double before = charts.border_length();
   charts.straighten(12);
   EXPECT_GT(before, 1.8);
   EXPECT_NEAR(charts.border_length(), 1, 1e-6);
+}
+
+// The band is narrower than teeth are high: the border comes to lie along its rim, where the band
+// of one side falls into parts that hang together outside of it.
+TEST(Straighten, NarrowBandsShortenWhatTheyCan) {
+  for (const std::uint8_t rings : {2, 3, 4, 6}) {
+    Charts charts = sawtooth();
+    const auto were = charts.topologies();
+    const double before = charts.border_length();
+    charts.straighten(rings);
+    EXPECT_LT(charts.border_length(), (rings < 4 ? 0.95 : 0.8) * before) << int(rings);
+    EXPECT_EQ(charts.topologies(), were) << int(rings);
+  }
+}
+
+TEST(Straighten, BordersOfChartsWithoutRingsStay) {
+  Charts charts(sphere(48, 24));
+  charts.grow(6, 3);
+  const std::vector<std::uint32_t> were = charts.partition.chart;
+  const std::vector<std::uint8_t> rings{8, 8, 8, 0, 0, 0};
+  std::vector<std::uint32_t> triangles;  // of charts with rings
+  for (std::uint32_t t = 0; t < were.size(); ++t) {
+    if (rings[were[t]] > 0) triangles.push_back(t);
+  }
+  Charts all = charts;
+  straighten_borders(charts.topology, {{180, {}}, rings, triangles}, charts.partition,
+                     charts.frames);
+  straighten_borders(all.topology, {{180, {}}, rings}, all.partition, all.frames);
+  EXPECT_EQ(charts.partition.chart, all.partition.chart);
+  std::size_t moved = 0;
+  for (std::uint32_t t = 0; t < were.size(); ++t) {
+    if (charts.partition.chart[t] == were[t]) continue;
+    ++moved;
+    EXPECT_GT(rings[were[t]], 0) << t;
+    EXPECT_GT(rings[charts.partition.chart[t]], 0) << t;
+  }
+  EXPECT_GT(moved, 0u);
 }
 
 TEST(Straighten, GoesToTheCreaseNearby) {
@@ -204,7 +247,7 @@ TEST(Straighten, AConeHolds) {
   const auto outside = [&](std::uint32_t t) { return charts.topology.normals[t].z < 0.2f; };
   const std::vector<std::uint32_t> were = charts.partition.chart;
   const std::vector<std::uint8_t> rings(6, 8);
-  straighten_borders(charts.topology, {180, {axes, 0.2}}, rings, charts.partition, charts.frames);
+  straighten_borders(charts.topology, {{180, {axes, 0.2}}, rings}, charts.partition, charts.frames);
   std::size_t moved = 0;
   for (std::uint32_t t = 0; t < were.size(); ++t) {
     if (charts.partition.chart[t] == were[t]) continue;
