@@ -79,9 +79,12 @@ class Finder {
       }
     }
   }
-  // The nearest triangle around u, and the weights of its point. Where several cover u (borders
-  // closer to each other than a texel), the one whose point is nearest to p in space.
-  std::pair<const Flat*, glm::dvec3> find(const glm::dvec2& u, const glm::dvec3& p) const {
+  // The triangle that covers u, else the one that is least off in uv and space together, and the
+  // weights of its point nearest to u. Where several cover u (borders closer to each other than a
+  // texel), the one whose point is nearest to p in space. `density`: texels per uv unit; `texel`:
+  // its size in space.
+  std::pair<const Flat*, glm::dvec3> find(const glm::dvec2& u, const glm::dvec3& p, double density,
+                                          double texel) const {
     const auto [cx, cy] = cell(u);
     const Flat* best = nullptr;
     glm::dvec3 weights(0);
@@ -92,8 +95,8 @@ class Finder {
           const glm::dvec3 w = nearest(triangles_[i], u);
           const Flat& t = triangles_[i];
           const double far = glm::length(at(t, w) - u);
-          const std::pair<double, double> distance(
-              far > kInside ? far : 0, glm::length(w.x * t.p[0] + w.y * t.p[1] + w.z * t.p[2] - p));
+          const double gap = glm::length(w.x * t.p[0] + w.y * t.p[1] + w.z * t.p[2] - p) / texel;
+          const std::pair<double, double> distance(far > kInside ? far * density + gap : 0, gap);
           if (distance < least) {
             least = distance;
             best = &triangles_[i];
@@ -127,8 +130,14 @@ struct Tally {
   double least_cosine = 0, turned = 0, area = 0;
 };
 
-void sample(const Flat& fine, const Finder& finder, double density, double texel,
-            std::mt19937& random, Tally& tally) {
+// A chart's texels per uv unit, their size in space, its largest stretch.
+struct Scale {
+  double density, texel, stretch;
+};
+
+void sample(const Flat& fine, const Finder& finder, const Scale& scale, std::mt19937& random,
+            Tally& tally) {
+  const auto [density, texel, stretch] = scale;
   SampledSlip& out = tally.slip;
   std::uniform_real_distribution<double> unit(0, 1);
   double x = unit(random), y = unit(random);
@@ -141,7 +150,7 @@ void sample(const Flat& fine, const Finder& finder, double density, double texel
   const glm::dvec3 w(1 - x - y, x, y);
   const glm::dvec2 u = Finder::at(fine, w);
   const glm::dvec3 p = w.x * fine.p[0] + w.y * fine.p[1] + w.z * fine.p[2];
-  const auto [coarse, v] = finder.find(u, p);
+  const auto [coarse, v] = finder.find(u, p, density, texel);
   if (!coarse) {
     out.outside = INFINITY;
     return;
@@ -150,7 +159,7 @@ void sample(const Flat& fine, const Finder& finder, double density, double texel
   const double gap =
       glm::length(v.x * coarse->p[0] + v.y * coarse->p[1] + v.z * coarse->p[2] - p) / texel;
   if (shift > 1e-7) {
-    out.outside = std::max(out.outside, shift + gap);
+    out.outside = std::max(out.outside, (shift + gap) / stretch);
     ++tally.outside;
   } else {
     out.inside = std::max(out.inside, gap);
@@ -233,10 +242,11 @@ SampledSlip sample_slip(const ChartedMesh& mesh, const SimplifiedMesh& coarse,
       area += std::abs(twice);
       if (twice != 0) fine.push_back(f);
     }
-    const double texel = std::sqrt(space / area) / texels_per_unit[c];
+    const Scale scale{texels_per_unit[c], std::sqrt(space / area) / texels_per_unit[c],
+                      std::max(1.0, chart.distortion.stretch_linf)};
     for (const Flat& f : fine) {
       for (int s = 0; s < samples; ++s, ++tally.all) {
-        sample(f, finder, texels_per_unit[c], texel, random, tally);
+        sample(f, finder, scale, random, tally);
       }
     }
   }

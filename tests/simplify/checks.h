@@ -20,8 +20,9 @@ OpenEdges open_edges(std::span<const Vec3f> positions, std::span<const std::uint
 std::size_t broken_triangles(const ChartedMesh& mesh, const SimplifiedMesh& coarse);
 
 // The slip at points strewn over the fine triangles, found by searching the coarse triangle with
-// the same uv; where there is none (a straightened border), the nearest one, and the distance to it
-// in uv counts too. In texels.
+// the same uv; where there is none (a straightened border), the one least off, and the distance to
+// it in uv counts too, all divided by the chart's largest stretch, which the bound is multiplied by
+// there. In texels.
 struct SampledSlip {
   double inside = 0, outside = 0;  // largest
   double outside_share = 0;        // of the samples

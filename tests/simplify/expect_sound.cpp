@@ -33,8 +33,7 @@ void expect_sound(const ChartedMesh& mesh, const SimplifiedMesh& coarse,
 
   const SampledSlip slip = sample_slip(mesh, coarse, densities, options.max_turn_degrees);
   EXPECT_LE(slip.inside, coarse.max_slip_texels + 1e-6);
-  // Beside a straightened border the bound holds times the chart's stretch.
-  EXPECT_LE(slip.outside, 1.25 * options.max_slip_texels);
+  EXPECT_LE(slip.outside, options.max_slip_texels);
   EXPECT_LE(slip.turned_share, 1e-3);
   EXPECT_LE(coarse.max_slip_texels, options.max_slip_texels);
   EXPECT_LE(coarse.max_turn_degrees, options.max_turn_degrees);
