@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -144,15 +145,25 @@ Status write_8_bits(const std::filesystem::path& path, const Image8& image,
   return write(path, image, spec);
 }
 
-Status write_halves(const std::filesystem::path& path, const ImageF& image) {
-  OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeDesc::HALF);
+// Whether halves hold an image with at least ten bits down to a hundredth of its brightest value.
+// Sunlight does not fit: 100 000 lux would become infinite.
+bool fits_halves(const ImageF& image) {
+  constexpr float kLargest = 65504, kSmallestNormal = 0x1p-14f;
+  float largest = 0;
+  for (const float v : image.texels) largest = std::max(largest, std::fabs(v));
+  return largest <= kLargest && (largest == 0 || largest >= 100 * kSmallestNormal);
+}
+
+Status write_floats(const std::filesystem::path& path, const ImageF& image) {
+  const OIIO::TypeDesc type = fits_halves(image) ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT;
+  OIIO::ImageSpec spec(image.width, image.height, image.channels, type);
   spec["compression"] = "zip";
   // Left out, it would be the time of writing: the same input gives the same bytes.
   spec["DateTime"] = "1970:01:01 00:00:00";
   return write(path, image, spec);
 }
 
-constexpr ImageFiles functions = {read_8_bits, decode, read_floats, write_8_bits, write_halves};
+constexpr ImageFiles functions = {read_8_bits, decode, read_floats, write_8_bits, write_floats};
 
 }  // namespace
 }  // namespace atlas

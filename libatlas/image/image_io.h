@@ -31,7 +31,8 @@ struct PngOptions {
 // whole-or-absent.
 Status write_png(const std::filesystem::path& path, const Image8& image, const PngOptions& options);
 
-// Writes a half-float, ZIP-compressed OpenEXR file of scene-linear values.
+// Writes a ZIP-compressed OpenEXR file of scene-linear values: half floats, or floats where the
+// image is brighter (above 65504) or darker (nothing above 0.006) than halves can tell.
 Status write_exr(const std::filesystem::path& path, const ImageF& image);
 
 }  // namespace atlas

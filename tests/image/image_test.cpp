@@ -121,6 +121,20 @@ TEST(Image, ExrKeepsLinearValuesBeyondOne) {
   }
 }
 
+// A half float ends at 65504, and below 6e-5 it loses digit after digit.
+TEST(Image, ExrKeepsSunlightAndDimScenes) {
+  const TempFolder folder;
+  for (const float largest : {65504.0f, 65536.0f, 110000.0f, 1e30f, 0.01f, 1e-3f, 1e-6f, 1e-30f}) {
+    ImageF image(4, 1, 1);
+    for (std::size_t i = 0; i < 4; ++i) image.texels[i] = largest * (1 - 0.2999f * float(i));
+    ASSERT_TRUE(write_exr(folder / "a.exr", image).ok());
+    const auto read = read_image_float(folder / "a.exr");
+    ASSERT_TRUE(read.ok()) << read.status().message();
+    for (std::size_t i = 0; i < 4; ++i)
+      EXPECT_NEAR(read->texels[i] / image.texels[i], 1, 1.0 / 1024) << largest << ' ' << i;
+  }
+}
+
 TEST(Image, ExrDoesNotHoldTheTimeOfWriting) {
   const TempFolder folder;
   ASSERT_TRUE(write_exr(folder / "a.exr", ImageF(2, 2, 3)).ok());
