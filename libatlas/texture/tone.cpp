@@ -22,8 +22,10 @@ float luma(const Vec3f& c) {
   return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
 }
 
-float positive(float v) {
-  return v > 0 ? v : 0.0f;
+// A scaled channel that no curve overflows on: infinity over infinity would show the brightest
+// light black.
+float bounded(float v) {
+  return v > 0 ? std::min(v, 1e36f) : 0.0f;
 }
 
 float clip(float v) {
@@ -41,7 +43,8 @@ float reinhard_ratio(float y, float white) {
 // `norm` is 1 / log10(1 + white).
 float drago_ratio(float y, float white, float exponent, float norm) {
   if (y < 1e-12f) return norm / std::log(2.0f);  // the limit at 0
-  return norm * std::log1p(y) / (y * std::log(2 + 8 * std::pow(y / white, exponent)));
+  const float share = std::min(y / white, 1e36f);
+  return norm * std::log1p(y) / (y * std::log(2 + 8 * std::pow(share, exponent)));
 }
 
 // Reinhard and Devlin 2005, eq. 1 to 6, for one channel, without the final normalisation.
@@ -124,8 +127,8 @@ std::string_view tone_operator_name(ToneOperator op) {
 }
 
 Vec3f ToneMapping::map_curve(Vec3f luminance) const {
-  const Vec3f c{scale * positive(luminance.x), scale * positive(luminance.y),
-                scale * positive(luminance.z)};
+  const Vec3f c{bounded(scale * luminance.x), bounded(scale * luminance.y),
+                bounded(scale * luminance.z)};
   const float y = luma(c);
   if (!(y > 0)) return {};
   if (op == ToneOperator::reinhard_devlin) {

@@ -170,6 +170,29 @@ TEST(ToneMapping, EndsWellOnExtremesAndWhatIsNoNumber) {
     }
 }
 
+TEST(ToneMapping, RisesOverAllThatAFloatHolds) {
+  for (const ToneOperator op : kAll)
+    for (const double scale : {1e-30, 1e-20, 1.0, 1e20, 1e30})
+      for (const double stops : {-64.0, 0.0, 64.0}) {
+        ToneOptions options;
+        options.exposure_stops = stops;
+        const ToneMapping tone = mapping(op, scale, options);
+        const float largest = std::numeric_limits<float>::max();
+        float last = 0;
+        for (float v = 1e-38f; v < largest / 1.1f; v *= 1.1f) {
+          const Vec3f d = tone.map({v, v, v});
+          // The ratio of two rounded logarithms need not rise by less than rounding.
+          ASSERT_GE(d.y + 1e-12f, 0.99999f * last)
+              << tone_operator_name(op) << ' ' << scale << ' ' << stops << ' ' << v;
+          last = d.y;
+        }
+        if (largest > 10 * scale * std::exp2(-stops)) {
+          EXPECT_GE(tone.map({largest, largest, largest}).x, 0.999f)
+              << tone_operator_name(op) << ' ' << scale << ' ' << stops;
+        }
+      }
+}
+
 TEST(ToneMapping, TakesAWhiteAndAnExposureOfTheUsers) {
   ToneOptions options;
   options.white = 4;
