@@ -189,9 +189,23 @@ void mark_owned(const Box& box, const std::vector<std::uint8_t>& owned, int page
   }
 }
 
+constexpr int kLargest = 1 << 16;
+
+// Farthest corner of a chart from its box, texels: more than the diagonal of the largest page, less
+// than what the rasteriser counts to.
+constexpr double kReach = 1.5 * kLargest;
+static_assert(kReach > 1.4143 * kLargest && kReach < kMaxTexelCoordinate - kLargest / 4);
+
+bool reachable(const ChartPlacement& p, Vec2d size) {
+  for (const Vec2d uv : {Vec2d{0, 0}, Vec2d{size.x, 0}, Vec2d{0, size.y}, size}) {
+    const Vec2d q = page_texel(p, uv);
+    if (!(std::fabs(q.x - p.x) <= kReach && std::fabs(q.y - p.y) <= kReach)) return false;
+  }
+  return true;
+}
+
 Status check(const ChartLight& light, std::span<const ChartPlacement> placements,
              const BakeOptions& o) {
-  constexpr int kLargest = 1 << 16;
   if (o.page_width < 1 || o.page_width > kLargest || o.page_height < 1 || o.page_height > kLargest)
     return {ErrorCode::bad_option, fmt::format("page of {} x {} texels; each side must be 1..{}",
                                                o.page_width, o.page_height, kLargest)};
@@ -214,6 +228,12 @@ Status check(const ChartLight& light, std::span<const ChartPlacement> placements
     if (!(p.texels_per_unit.x > 0) || !(p.texels_per_unit.y > 0))
       return {ErrorCode::bad_input,
               fmt::format("chart {}: its texel density is not above 0", p.chart)};
+    if (!reachable(p, light.charts.charts[p.chart].size))
+      return {ErrorCode::bad_input,
+              fmt::format("chart {}: its density of {} x {} texels a unit, turn and offset put it "
+                          "more than {} texels off its box",
+                          p.chart, p.texels_per_unit.x, p.texels_per_unit.y, kReach)};
+    if (Status s = check_light(light, p.chart); !s.ok()) return s;
   }
   return {};
 }

@@ -40,7 +40,8 @@ struct BakedPage {
 // Bakes the given placements, all of one page, in parallel over charts; deterministic for any
 // thread count. Texels of no chart take colours from around them in
 // `display`, for the coarser mip levels that a viewer may build, and are black in `linear`.
-// Errors: bad_option; bad_input when a box with its pad leaves the page; cancelled.
+// Errors: bad_option; bad_input when a box with its pad leaves the page, or where light is not
+// finite (check_light); cancelled.
 Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacement> placements,
                             const BakeOptions& options, const Context& context);
 

@@ -18,8 +18,10 @@ Status check(const TextureOptions& o) {
   const auto bad = [](std::string_view what, double value, std::string_view rule) {
     return Status{ErrorCode::bad_option, fmt::format("{} is {}; it must be {}", what, value, rule)};
   };
-  if (!(o.texel > 0) || !std::isfinite(o.texel)) return bad("texel", o.texel, "a length above 0");
-  if (!(o.texture_sampling > 0)) return bad("texture sampling", o.texture_sampling, "above 0");
+  if (!(o.texel > 0) || !std::isfinite(o.texel) || !std::isfinite(1 / o.texel))
+    return bad("texel", o.texel, "a length above 0");
+  if (!(o.texture_sampling > 0) || !std::isfinite(o.texture_sampling))
+    return bad("texture sampling", o.texture_sampling, "a factor above 0");
   if (!std::isfinite(o.threshold))
     return bad("downsizing threshold", o.threshold, "a display value (0 turns downsizing off)");
   if (o.min_side < 1) return bad("smallest texture side", o.min_side, "at least 1 texel");
@@ -145,6 +147,19 @@ void add_up(const std::vector<ChartOutcome>& outcomes, TextureResult& result) {
 
 }  // namespace
 
+Status check_light(const ChartLight& light, std::uint32_t chart) {
+  for (const std::uint32_t t : triangles_of(light.charts, light.charts.charts[chart])) {
+    const int corner = light.sampler.bad_corner(t);
+    if (corner == 3) continue;
+    const Scene& s = light.sampler.scene();
+    return {ErrorCode::bad_input,
+            fmt::format("triangle {}: at vertex {} illumination times reflectance is not finite "
+                        "(where it is unknown, 0 leaves the surface black)",
+                        t, s.indices[3 * std::size_t(t) + static_cast<std::size_t>(corner)])};
+  }
+  return {};
+}
+
 TexelSize texel_size(Vec2d size, Vec2d texels_per_unit) {
   // A millionth of a texel more than a whole number is rounding, and sticks out of the box unseen.
   const auto side = [](double texels) {
@@ -168,6 +183,8 @@ Result<TextureResult> size_chart_textures(const ChartLight& light, const Texture
                                           const Context& context) {
   if (Status s = check(options); !s.ok()) return s;
   const std::size_t n = light.charts.charts.size();
+  for (std::size_t i = 0; i < n; ++i)
+    if (Status s = check_light(light, static_cast<std::uint32_t>(i)); !s.ok()) return s;
   TextureResult result;
   result.charts.resize(n);
   std::vector<ChartOutcome> outcomes(n);

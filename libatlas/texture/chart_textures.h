@@ -21,6 +21,10 @@ struct ChartLight {
   const ToneMapping& tone;
 };
 
+// Errors: bad_input, naming triangle and vertex, where the chart's light is infinite or no number:
+// one such value would spread over the texels around it.
+Status check_light(const ChartLight& light, std::uint32_t chart);
+
 struct TextureOptions {
   double texel = 0.005;          // length of a texel on the surface, scene units; > 0
   bool follow_textures = true;   // raise the density to the diffuse texture's own
@@ -68,7 +72,7 @@ TexelSize texel_size(Vec2d size, Vec2d texels_per_unit);
 // The threshold is compared with tone-mapped, sRGB-encoded values in [0, 1]: equal steps there
 // are about equally visible, and it is what the atlas stores.
 // Source: Barladian et al., section 3, steps 2 and 3.
-// Errors: bad_option; cancelled.
+// Errors: bad_option; bad_input (see check_light); cancelled.
 Result<TextureResult> size_chart_textures(const ChartLight& light, const TextureOptions& options,
                                           const Context& context);
 

@@ -86,6 +86,15 @@ struct LuminanceSampler::State {
     return scene.materials[scene.triangle_material[t]];
   }
 
+  // Illumination times Kd at a corner of triangle t.
+  Vec3f untextured(std::uint32_t t, int corner) const {
+    const std::size_t at = 3 * std::size_t(t) + static_cast<std::size_t>(corner);
+    const Vec3f e = scene.lit() ? scene.illumination[scene.indices[at]] : Vec3f{1, 1, 1};
+    if (quantity != Quantity::illuminance) return e;
+    const Vec3f kd = material(t).diffuse;
+    return {e.x * kd.x, e.y * kd.y, e.z * kd.z};
+  }
+
   // The texture of triangle t if it has one that can be looked up.
   const TextureLevels* texture(std::uint32_t t) const {
     if (quantity != Quantity::illuminance || scene.texcoord_indices.empty()) return nullptr;
@@ -124,17 +133,24 @@ double LuminanceSampler::texture_density(std::uint32_t t) const {
   return surface > 0 && texels > 0 ? std::sqrt(texels / surface) : 0;
 }
 
+int LuminanceSampler::bad_corner(std::uint32_t t) const {
+  int corner = 0;
+  for (; corner < 3; ++corner) {
+    const Vec3f e = state_->untextured(t, corner);
+    if (!std::isfinite(e.x) || !std::isfinite(e.y) || !std::isfinite(e.z)) break;
+  }
+  return corner;
+}
+
 LuminanceSampler::Triangle LuminanceSampler::prepare(std::uint32_t t, double sample_spacing) const {
   const Scene& s = state_->scene;
   assert(t < s.triangle_count());
   Triangle out{};
-  const bool reflect = state_->quantity == Quantity::illuminance;
-  const Vec3f kd = reflect ? state_->material(t).diffuse : Vec3f{1, 1, 1};
   for (int k = 0; k < 3; ++k) {
-    const Vec3f e = s.lit() ? s.illumination[s.indices[3 * std::size_t(t) + k]] : Vec3f{1, 1, 1};
-    out.illumination[k][0] = e.x * kd.x;
-    out.illumination[k][1] = e.y * kd.y;
-    out.illumination[k][2] = e.z * kd.z;
+    const Vec3f e = state_->untextured(t, k);
+    out.illumination[k][0] = e.x;
+    out.illumination[k][1] = e.y;
+    out.illumination[k][2] = e.z;
   }
   const bool equal =
       std::memcmp(out.illumination[0], out.illumination[1], sizeof out.illumination[0]) == 0 &&

@@ -53,6 +53,10 @@ class LuminanceSampler {
   // illumination times bilinear, repeating texture.
   static Vec3f sample(const Triangle& triangle, float b0, float b1, float b2);
 
+  // The first of triangle t's corners, 0..2, whose illumination times reflectance is infinite or no
+  // number, as no reader leaves it; 3 if there is none.
+  int bad_corner(std::uint32_t t) const;
+
   // Texture texels per length unit of the surface of triangle t (geometric mean over directions);
   // 0 if it has no texture, no coordinates or no area.
   double texture_density(std::uint32_t t) const;

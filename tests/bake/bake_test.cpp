@@ -315,6 +315,36 @@ TEST(BakePage, RefusesWhatCannotBe) {
   EXPECT_EQ(code([](O& o, P&) { o.page_width = 0; }), ErrorCode::bad_option);
 }
 
+TEST(BakePage, RefusesPlacementsBeyondCounting) {
+  const LitShape shape = make_sheet({1, 1, 2, 2}, [](double, double) { return shown(1); });
+  const ChartPlacement good = place(shape.charts, 0, {20, 20}, {4, 4, 0, 0});
+  for (const double bad : {1e6, 1e300, double(INFINITY)}) {
+    ChartPlacement p = good;
+    p.texels_per_unit = {bad, bad};
+    EXPECT_EQ(bake(shape, {p}, small_page(32)).status().code(), ErrorCode::bad_input) << bad;
+    p = good;
+    p.offset.y = -bad;
+    EXPECT_EQ(bake(shape, {p}, small_page(32)).status().code(), ErrorCode::bad_input) << bad;
+  }
+  ChartPlacement p = good;
+  p.cosine = NAN;
+  EXPECT_EQ(bake(shape, {p}, small_page(32)).status().code(), ErrorCode::bad_input);
+}
+
+TEST(BakePage, RefusesLightThatIsNotFinite) {
+  for (const float bad : {NAN, INFINITY, -INFINITY}) {
+    LitShape shape = make_sheet({1, 1, 9, 9}, [](double u, double) { return shown(u); });
+    const ChartPlacement p = place(shape.charts, 0, {20, 20}, {4, 4, 0, 0});
+    shape.scene.illumination[35].y = bad;
+    const auto page = bake(shape, {p}, small_page(32));
+    ASSERT_EQ(page.status().code(), ErrorCode::bad_input) << bad;
+    EXPECT_NE(page.status().message().find("vertex 35 "), std::string::npos)
+        << page.status().message();
+    // Charts of other pages do not matter.
+    EXPECT_TRUE(bake(shape, {}, small_page(32)).ok());
+  }
+}
+
 TEST(BakePage, StopsWhenCancelled) {
   const LitShape shape = make_sheet({1, 1, 2, 2}, [](double, double) { return shown(1); });
   const LuminanceSampler sampler(shape.scene, Quantity::illuminance);

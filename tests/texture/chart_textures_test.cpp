@@ -162,6 +162,24 @@ TEST(ChartTextures, RefuseOptionsOutOfRange) {
   EXPECT_TRUE(refused([](TextureOptions& o) { o.min_side = 0; }));
   EXPECT_TRUE(refused([](TextureOptions& o) { o.max_side = 4; }));
   EXPECT_TRUE(refused([](TextureOptions& o) { o.texture_sampling = 0; }));
+  EXPECT_TRUE(refused([](TextureOptions& o) { o.texture_sampling = INFINITY; }));
+  EXPECT_TRUE(refused([](TextureOptions& o) { o.texel = 1e-310; }));  // 1 / texel is infinite
+}
+
+TEST(ChartTextures, RefuseLightThatIsNotFinite) {
+  LitShape shape = make_sheet({1, 1, 4, 4}, [](double u, double) { return shown(u); });
+  const auto status = [&] {
+    const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+    return size_chart_textures({sampler, shape.charts, kPlain}, {}, Context{}).status();
+  };
+  EXPECT_TRUE(status().ok());
+  shape.scene.illumination[7] = {1e38f, 1e38f, 1e38f};
+  EXPECT_TRUE(status().ok());
+  shape.scene.materials[0].diffuse.x = 1e3f;
+  EXPECT_EQ(status().code(), ErrorCode::bad_input);
+  EXPECT_NE(status().message().find("vertex 7 "), std::string::npos) << status().message();
+  shape.scene.illumination[7].x = NAN;
+  EXPECT_EQ(status().code(), ErrorCode::bad_input);
 }
 
 TEST(ChartTextures, StopWhenCancelled) {
