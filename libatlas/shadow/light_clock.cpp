@@ -1,6 +1,7 @@
 #include "libatlas/shadow/light_clock.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace atlas {
 namespace {
@@ -8,15 +9,19 @@ namespace {
 // Weight of the newest frame in the mean: about the last twenty count.
 constexpr double kNewest = 0.05;
 
+// An infinite time would stay in the mean for ever, and is NaN degrees of a light at rest.
+double positive_or_zero(double value) {
+  return value > 0 && std::isfinite(value) ? value : 0;
+}
+
 }  // namespace
 
 LightClock::LightClock(const LightClockOptions& options) : options_(options) {
-  if (!(options_.max_step > 0)) options_.max_step = LightClockOptions{}.max_step;
+  if (!(positive_or_zero(options_.max_step) > 0)) options_.max_step = LightClockOptions{}.max_step;
 }
 
 void LightClock::advance(double seconds, double degrees_per_second) {
-  const double duration = seconds > 0 ? seconds : 0;
-  const double speed = degrees_per_second > 0 ? degrees_per_second : 0;
+  const double duration = positive_or_zero(seconds), speed = positive_or_zero(degrees_per_second);
   mean_seconds_ = mean_seconds_ > 0 ? (1 - kNewest) * mean_seconds_ + kNewest * duration : duration;
   slowed_ = speed * duration > options_.max_step;
   travelled_ += std::min(speed * duration, options_.max_step);

@@ -4,8 +4,8 @@
 namespace atlas {
 
 struct LightClockOptions {
-  // A light moves at most so far from one frame to the next, degrees, > 0: where frames are slow it
-  // slows down too, instead of leaping past what shadows between keys can follow.
+  // A light moves at most so far from one frame to the next, degrees, > 0 and finite: where frames
+  // are slow it slows down too, instead of leaping past what shadows between keys can follow.
   double max_step = 2;
 };
 
@@ -13,8 +13,8 @@ class LightClock {
  public:
   explicit LightClock(const LightClockOptions& options = {});
 
-  // The next frame, `seconds` after the last one, of a light with this speed (negative and NaN
-  // count as 0; a light of speed 0 rests).
+  // The next frame, `seconds` after the last one, of a light with this speed (what is
+  // negative, infinite or NaN counts as 0; a light of speed 0 rests).
   void advance(double seconds, double degrees_per_second);
 
   // Degrees travelled so far; and what they will be so many frames later if these last as long as

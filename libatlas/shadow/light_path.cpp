@@ -17,8 +17,9 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kHour = 15 * kDegree;  // the earth turns 15 degrees an hour
 
+// By hypot, since the squares of long and short directions leave the range of doubles.
 glm::dvec3 unit(const Vec3d& v) {
-  return glm::normalize(to_glm(v));
+  return to_glm(v) / std::hypot(v.x, v.y, v.z);
 }
 
 bool usable(const Vec3d& v) {
@@ -150,8 +151,8 @@ Vec3d LightPath::direction(double degrees) const {
   while (i + 1 < lengths_.size() && left > lengths_[i]) left -= lengths_[i++];
   const double t = lengths_[i] > 0 ? std::min(left / lengths_[i], 1.0) : 0.0;
   if (options_.kind == PathKind::line)
-    return from_glm(glm::normalize(
-        glm::mix(to_glm(options_.directions[0]), to_glm(options_.directions[1]), t)));
+    return from_glm(unit(
+        from_glm(glm::mix(to_glm(options_.directions[0]), to_glm(options_.directions[1]), t))));
   return from_glm(slerp(unit(options_.directions[i]), unit(options_.directions[i + 1]), t));
 }
 

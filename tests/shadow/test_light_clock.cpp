@@ -74,16 +74,25 @@ TEST(LightClock, FastMachinesKeepTheSpeedSlowOnesTheStep) {
 }
 
 TEST(LightClock, ARestingLightStaysAndNonsenseMovesNothing) {
+  const double inf = std::numeric_limits<double>::infinity();
   LightClock clock({-1});
   clock.advance(0.1, 15);
   const double before = clock.travelled();
-  for (double bad : {0.0, -5.0, std::numeric_limits<double>::quiet_NaN()}) {
+  for (double bad : {0.0, -5.0, std::numeric_limits<double>::quiet_NaN(), inf}) {
     clock.advance(0.1, bad);
     clock.advance(bad, 15);
-    EXPECT_EQ(clock.travelled(), before);
+    clock.advance(bad, bad);
+    clock.advance(bad, 0);
+    EXPECT_EQ(clock.travelled(), before) << bad;
+    EXPECT_TRUE(std::isfinite(clock.ahead(1000))) << bad;
   }
+  clock.advance(0.1, 15);
+  EXPECT_NEAR(clock.travelled(), before + 1.5, 1e-9) << "a bad frame leaves no trace";
   clock.advance(0.1, 0);
-  EXPECT_EQ(clock.ahead(50), before);
+  EXPECT_EQ(clock.ahead(50), clock.travelled());
+  LightClock boundless({inf});
+  boundless.advance(1e300, 1e300);
+  EXPECT_TRUE(std::isfinite(boundless.travelled()));
 }
 
 }  // namespace

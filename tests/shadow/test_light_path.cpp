@@ -49,6 +49,20 @@ TEST(LightPath, LineStaysOnTheChord) {
   EXPECT_NEAR(dot(d, d), 1, 1e-12);
 }
 
+TEST(LightPath, LengthsOfDirectionsMayBeAnything) {
+  for (double scale : {1e-200, 1e200})
+    for (PathKind kind : {PathKind::fixed, PathKind::arc, PathKind::line, PathKind::keys}) {
+      LightPathOptions o;
+      o.kind = kind;
+      o.directions = {{scale, 0, 0}};
+      if (kind != PathKind::fixed) o.directions.push_back({0, scale, 0});
+      const LightPath path = must(o);
+      const Vec3d start = path.direction(0), middle = path.direction(45);
+      EXPECT_NEAR(start.x, 1, 1e-12) << scale;
+      EXPECT_NEAR(dot(middle, middle), 1, 1e-12) << scale;
+    }
+}
+
 TEST(LightPath, EndsLoopReturnOrStay) {
   LightPathOptions o;
   o.kind = PathKind::keys;
