@@ -126,13 +126,13 @@ void add_run_options(CLI::App& app, CommandLine& l, std::string& light, std::str
       ->expected(3);
   app.add_option("--speed", l.play.degrees_per_second, "degrees a second, in a window")
       ->capture_default_str()
-      ->check(within(-1e6, 1e6, "a number"));
+      ->check(within(0, 1e6));
   app.add_option("--max-step", l.play.max_step, "degrees a frame at most, in a window")
       ->check(within(0.001, 90, "0.001..90"))
       ->capture_default_str();
   app.add_option("--step", l.play.degrees_per_frame, "degrees a frame, headless and in the bench")
       ->capture_default_str()
-      ->check(within(-90, 90, "-90..90"));
+      ->check(within(0, 90));
   app.add_flag("--headless", l.headless, "no window");
   app.add_flag("--software", l.software, "headless: do not use a GPU");
   app.add_option("--frames", l.play.frames, "headless: how many")
@@ -211,8 +211,9 @@ Result<Camera> camera_of(const CommandLine& line, const ViewScene& scene) {
       a == b || !std::isfinite(a.x + a.y + a.z + b.x + b.y + b.z))
     return Status{ErrorCode::bad_option,
                   fmt::format("--camera {}: give two different points, x,y,z;x,y,z", line.camera)};
-  camera.eye = a;
-  camera.target = b;
+  const Vec3d& o = scene.origin;
+  camera.eye = {a.x - o.x, a.y - o.y, a.z - o.z};
+  camera.target = {b.x - o.x, b.y - o.y, b.z - o.z};
   fit_planes(camera, scene.bounds);
   return camera;
 }

@@ -74,6 +74,12 @@ Vec3d transform_vector(const Matrix4& m, const Vec3d& v) {
           m[2] * v.x + m[6] * v.y + m[10] * v.z};
 }
 
+MapAxes map_axes(const Vec3d& direction, const Vec3d& up) {
+  const glm::dvec3 d = to_glm(direction);
+  const Basis basis = light_basis(d / std::hypot(d.x, d.y, d.z), up);
+  return {from_glm(basis.right), from_glm(basis.up)};
+}
+
 Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene, const FitOptions& options) {
   const glm::dvec3 low = to_glm(scene.low), high = to_glm(scene.high);
   const double length = glm::length(to_glm(direction));

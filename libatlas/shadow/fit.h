@@ -43,6 +43,12 @@ struct LightFit {
 // texels keep their size. bad_option if the direction or the box is empty or not finite.
 Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene, const FitOptions& options);
 
+// The map's axes, unit vectors; `direction` must not be zero.
+struct MapAxes {
+  Vec3d x, y;
+};
+MapAxes map_axes(const Vec3d& direction, const Vec3d& up);
+
 // p transformed by m (w is 1 for these matrices).
 Vec3d transform_point(const Matrix4& m, const Vec3d& p);
 

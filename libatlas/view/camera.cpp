@@ -13,10 +13,21 @@ struct Axes {
   glm::dvec3 forward, right, up;
 };
 
+// The axis that is farthest from parallel to v.
+glm::dvec3 axis_beside(const glm::dvec3& v) {
+  const glm::dvec3 a = glm::abs(v);
+  if (a.x <= a.y && a.x <= a.z) return {1, 0, 0};
+  return a.y <= a.z ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+}
+
+// A camera that looks straight up or down has some axis at the image's upper edge.
 Axes axes_of(const Camera& camera) {
   Axes a;
   a.forward = glm::normalize(to_glm(camera.target) - to_glm(camera.eye));
-  a.right = glm::normalize(glm::cross(a.forward, to_glm(camera.up)));
+  const glm::dvec3 up = glm::normalize(to_glm(camera.up));
+  glm::dvec3 right = glm::cross(a.forward, up);
+  if (glm::length(right) < 1e-9) right = glm::cross(a.forward, axis_beside(up));
+  a.right = glm::normalize(right);
   a.up = glm::cross(a.right, a.forward);
   return a;
 }
@@ -26,7 +37,7 @@ Axes axes_of(const Camera& camera) {
 Matrix4 view_projection(const Camera& camera, double aspect) {
   const glm::dmat4 m = glm::perspective(glm::radians(camera.fov_degrees), aspect, camera.near_plane,
                                         camera.far_plane) *
-                       glm::lookAt(to_glm(camera.eye), to_glm(camera.target), to_glm(camera.up));
+                       glm::lookAt(to_glm(camera.eye), to_glm(camera.target), axes_of(camera).up);
   Matrix4 out;
   for (int c = 0; c < 4; ++c)
     for (int r = 0; r < 4; ++r) out[c * 4 + r] = m[c][r];
@@ -76,7 +87,8 @@ void fly(Camera& camera, const Vec3d& step, double yaw, double pitch) {
   const double height = std::asin(std::clamp(glm::dot(a.forward, up), -1.0, 1.0));
   const double limit = glm::radians(88.0);
   const double raised = std::clamp(height + glm::radians(pitch), -limit, limit);
-  const glm::dvec3 flat = glm::normalize(a.forward - up * glm::dot(a.forward, up));
+  // From the axis to the right, which there is even where the view is vertical.
+  const glm::dvec3 flat = glm::cross(up, a.right);
   const double turn = glm::radians(-yaw);
   const glm::dvec3 ahead = flat * std::cos(turn) + glm::cross(up, flat) * std::sin(turn);
   const glm::dvec3 forward = ahead * std::cos(raised) + up * std::sin(raised);

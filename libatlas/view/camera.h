@@ -13,7 +13,8 @@ struct Camera {
   double near_plane = 0.01, far_plane = 100;
 };
 
-// Clip from world, OpenGL's clip space; aspect is width / height.
+// Clip from world, OpenGL's clip space; aspect is width / height. A camera that looks along its
+// `up` has some axis at the image's upper edge.
 Matrix4 view_projection(const Camera& camera, double aspect);
 
 // The corners of the view volume between its near plane and `far` (or its far plane, if nearer).

@@ -46,6 +46,7 @@ struct FrameBlock {
   float inverse[4];
   float specular[4];
   float first_ray[4], ray_x[4], ray_y[4];
+  float map_x[4], map_y[4];
 };
 
 void put(float (&to)[16], const Matrix4& from) {
@@ -175,6 +176,9 @@ void Renderer::Impl::fill_block(const Camera& world_camera, const FrameLight& li
     b.march[3] = nearest == other || b.march[0] == 0 ? 1 : 2;
     b.ray_y[3] = float(1.0 / march_samples(options.march_steps, glm::degrees(between)));
     put_box(b, l, scene->bounds, scene->origin);
+    const MapAxes axes = map_axes(light.direction, options.up);
+    put(b.map_x, axes.x.x, axes.x.y, axes.x.z, 0);
+    put(b.map_y, axes.y.x, axes.y.y, axes.y.z, 0);
   }
   put(b.specular, options.specular, options.shininess, options.roughness, options.map_resolution);
   glNamedBufferSubData(frame_block.get(), 0, sizeof b, &b);

@@ -43,6 +43,7 @@ bool world_is_z_up(const fs::path& path) {
 Result<ViewScene> load_view(const fs::path& path, bool baked_textures, const Context& context) {
   Result<LoadedScene> loaded = read_scene(path, {}, context);
   if (!loaded.ok()) return loaded.status();
+  for (const std::string& line : loaded->defects.lines()) context.say("defect: " + line);
   ViewSceneOptions options;
   options.textures_hold_light = baked_textures;
   Result<ViewScene> view = make_view_scene(loaded->scene, options);

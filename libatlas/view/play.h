@@ -20,6 +20,7 @@ bool textures_hold_light(const std::filesystem::path& path);
 bool world_is_z_up(const std::filesystem::path& path);
 
 // The scene at `path` as arrays to draw; the readers' errors, or bad_input if nothing is drawn.
+// What the readers left out or replaced is said through the context.
 Result<ViewScene> load_view(const std::filesystem::path& path, bool baked_textures,
                             const Context& context);
 

@@ -42,10 +42,11 @@ struct RenderOptions {
   int map_bits = 32;    // of a map's depths: 16 or 24 (integers), 32 (floats)
   int pcf = 3;          // see ShaderFeatures::pcf
   int march_steps = 4;  // march: even map samples along the ray at least, see march_samples()
-  // In units of the filter's reach. The normal offset (times the sine of the angle to the light) is
-  // just what a plane needs; the slope bias (times its tangent, up to 8) is for rounding, and more
-  // of it lets light through thin walls.
-  double slope_bias = 0.25, normal_offset = 1.0;
+  // In units of the filter's reach. The normal offset (times how far the normal leans along each of
+  // the map's axes) is just what a plane needs; the slope bias (times the tangent of the angle to
+  // the light, up to 8) is for curved surfaces, whose normals are not their triangles', and more of
+  // it lets light through thin walls: a wall a texel thick leaks from 0.1 on.
+  double slope_bias = 0.07, normal_offset = 1.0;
   bool fit_view = false;     // fit maps to the view instead of the whole scene
   double view_distance = 0;  // fit_view: how far shadows reach; 0: a quarter of the scene
   bool snap = true;

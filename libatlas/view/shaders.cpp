@@ -27,6 +27,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 first_ray, ray_x, ray_y;  // from the eye, one unit of view depth long: through the image's
                                  // corner, and its change for each pixel; w: view depth is 1 / (w + w
                                  // * depth) with the first two, 1 / march's samples the third
+  vec4 map_x, map_y;  // axes of a map of the current light
 } frame;
 )";
 
@@ -172,12 +173,15 @@ std::string lighting_text(const ShaderFeatures& f) {
   if (!shadows)
     s += "  float seen = nl > 0.0 ? 1.0 : 0.0;\n";
   else
-    // The offset grows with the sine of the angle to the light, as the error of a texel does; the
-    // depth bias with its tangent, which a plane's depth changes by across a texel, but never to
-    // nothing: a plane that faces the light is as deep as the map says, give or take rounding. Both
-    // act here and not on the casters: maps then hold true depths, which the march needs.
+    // The offset is what takes a plane out of its own texels up to the filter's corners: as far as
+    // its normal leans along each of the map's axes, the filter's reach once. The depth bias grows
+    // with the tangent of the angle to the light with its tangent, which a plane's depth changes by
+    // across a texel, but never to nothing: a plane that faces the light is as deep as the map
+    // says, give or take rounding. Both act here and not on the casters: maps then hold true
+    // depths, which the march needs.
     s += R"(  float sine = sqrt(max(1.0 - nl * nl, 0.0));
-  vec3 p = frame.eye.xyz + away + n * (frame.weights.z * sine);
+  float lean = abs(dot(n, frame.map_x.xyz)) + abs(dot(n, frame.map_y.xyz));
+  vec3 p = frame.eye.xyz + away + n * (frame.weights.z * lean);
   float bias = frame.eye.w + frame.corner.w * min(sine, 8.0 * nl) / max(nl, 1e-3);
   float seen = nl > 0.0 ? visibility(p, bias) : 0.0;
 )";

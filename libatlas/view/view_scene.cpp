@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <tuple>
@@ -54,14 +55,19 @@ Fans make_fans(const std::vector<std::uint32_t>& welded,
   return fans;
 }
 
-// Area-weighted normals of all triangles; zero for degenerate ones.
+// Area-weighted normals of all triangles, in the square of the largest coordinate, since areas
+// leave the range of floats sooner than lengths; zero for degenerate ones.
 std::vector<glm::vec3> face_normals(const Scene& scene) {
   std::vector<glm::vec3> normals(scene.triangle_count());
+  double largest = 1e-300;
+  for (const Vec3f& p : scene.positions)
+    largest =
+        std::max({largest, double(std::abs(p.x)), double(std::abs(p.y)), double(std::abs(p.z))});
   for (std::size_t t = 0; t < normals.size(); ++t) {
     const glm::dvec3 a = to_dvec(scene.positions[scene.indices[3 * t]]),
                      b = to_dvec(scene.positions[scene.indices[3 * t + 1]]),
                      c = to_dvec(scene.positions[scene.indices[3 * t + 2]]);
-    normals[t] = glm::vec3(glm::cross(b - a, c - a));
+    normals[t] = glm::vec3(glm::cross((b - a) / largest, (c - a) / largest));
   }
   return normals;
 }
@@ -190,7 +196,8 @@ class Builder {
 
   // The ball around the middle of the cluster's box.
   void enclose(ViewScene::Cluster& c) const {
-    glm::vec3 low(1e30f), high(-1e30f);
+    constexpr float kMost = std::numeric_limits<float>::max();
+    glm::vec3 low(kMost), high(-kMost);
     for (std::uint32_t i = c.first; i < c.first + c.count; ++i) {
       low = glm::min(low, to_glm(view_.positions[view_.indices[i]]));
       high = glm::max(high, to_glm(view_.positions[view_.indices[i]]));
@@ -249,6 +256,7 @@ Result<ViewScene> make_view_scene(const Scene& scene, const ViewSceneOptions& op
   if (view.textured()) view.textures = scene.textures;
   view.textures_hold_light = options.textures_hold_light && view.textured();
   view.light_scale = light_scale(view.illumination);
+  view.origin = scene.origin;
   return view;
 }
 

@@ -73,6 +73,7 @@ class Rays {
 
 struct Agreement {
   int compared = 0, agreed = 0, edge = 0, lit = 0, shadowed = 0;
+  int all = 0, leaked = 0;  // edges included; lit where the ray is blocked
 };
 
 // The ray through a pixel's centre.
@@ -107,6 +108,8 @@ Agreement compare(const View& view, const Vec3d& light, const RenderOptions& opt
         return nl > 0 && !rays.blocked(p + hit.normal * 1e-4, l);
       };
       const bool lit = truth(hit.point);
+      ++a.all;
+      a.leaked += !lit && *image.at(x, y) > 127;
       // Within 2 texels of an edge if a ray from 2 texels beside, on the same plane, says
       // otherwise.
       bool edge = false;
@@ -134,6 +137,17 @@ struct Case {
   Vec3d light;
 };
 
+RenderOptions classic_visibility(int pcf) {
+  RenderOptions o;
+  o.width = 320;
+  o.height = 200;
+  o.map_resolution = 1024;
+  o.pcf = pcf;
+  o.shadows = ShadowMethod::classic;
+  o.show_visibility = true;
+  return o;
+}
+
 TEST(Oracle, ClassicShadowsAgreeWithRaysAwayFromEdges) {
   const Case cases[] = {{"courtyard", courtyard_view, {0.6, 1, 0.35}},
                         {"courtyard, low sun", courtyard_view, {1, 0.35, -0.2}},
@@ -141,14 +155,7 @@ TEST(Oracle, ClassicShadowsAgreeWithRaysAwayFromEdges) {
                         {"pavilion", pavilion_view, {0.3, 0.8, 0.7}}};
   for (int pcf : {0, 3})
     for (const Case& c : cases) {
-      RenderOptions o;
-      o.width = 320;
-      o.height = 200;
-      o.map_resolution = 1024;
-      o.pcf = pcf;
-      o.shadows = ShadowMethod::classic;
-      o.show_visibility = true;
-      const Agreement a = compare(c.view(), c.light, o);
+      const Agreement a = compare(c.view(), c.light, classic_visibility(pcf));
       const double share = double(a.agreed) / a.compared;
       RecordProperty("agreement", std::to_string(share));
       std::printf("%-20s pcf %d: %.3f %% of %d pixels (%d lit, %d shadowed), %d near edges\n",
@@ -157,6 +164,52 @@ TEST(Oracle, ClassicShadowsAgreeWithRaysAwayFromEdges) {
       EXPECT_GT(a.lit, 1000) << "the case shows light";
       EXPECT_GT(a.shadowed, 1000) << "the case shows shadow";
     }
+}
+
+// Walls and a roof about as thick as a texel, open to one side.
+View thin_room_view() {
+  constexpr float t = 0.02f;
+  View v;
+  add_quad(v.scene, {{-6, 0, 6}, {6, 0, 6}, {6, 0, -6}, {-6, 0, -6}}, 8);
+  add_box(v.scene, {2, 0, -2}, {2 + t, 2.4f, 2});
+  add_box(v.scene, {-2 - t, 0, -2}, {-2, 2.4f, 2});
+  add_box(v.scene, {-2 - t, 0, -2 - t}, {2 + t, 2.4f, -2});
+  add_box(v.scene, {-2 - t, 2.4f, -2 - t}, {2 + t, 2.4f + t, 2});
+  add_box(v.scene, {-0.4f, 0.7f, -1}, {0.6f, 0.7f + t, 0.2f});
+  v.camera.eye = {-1.2, 1.5, 1.9};
+  v.camera.target = {1.2, 0.6, -1.2};
+  v.camera.near_plane = 0.05;
+  v.camera.far_plane = 40;
+  return v;
+}
+
+TEST(Oracle, WallsAsThinAsATexelKeepTheSunOut) {
+  const View view = thin_room_view();
+  for (const Vec3d& light : {Vec3d{0.05, 1, 0.03}, Vec3d{1, 0.7, 0.15}, Vec3d{1, 0.3, -0.4}})
+    for (int pcf : {1, 3}) {
+      const Agreement a = compare(view, light, classic_visibility(pcf));
+      EXPECT_LT(double(a.leaked) / a.all, 1e-4) << light.x << " " << light.y << " pcf " << pcf;
+    }
+}
+
+TEST(Oracle, PlanesOfAnyLeanDoNotShadowThemselves) {
+  for (double turn : {0.0, 0.4, 0.785398, 1.3})
+    for (double height : {0.1, 0.3, 1.0, 4.0})
+      for (int pcf : {1, 3, 5}) {
+        View view;
+        add_quad(view.scene, {{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}});
+        view.camera.eye = {0, 1, 0.01};
+        view.camera.fov_degrees = 80;
+        RenderOptions o = classic_visibility(pcf);
+        o.map_resolution = 256;
+        o.up = {0.3, 0.1, 1};  // the map's axes lie aslant
+        Renderer renderer = must_render(view.scene, o);
+        ASSERT_TRUE(
+            renderer.draw(view.camera, still({std::cos(turn), height, std::sin(turn)})).ok());
+        const Image8 image = renderer.read_image();
+        const auto darkest = *std::min_element(image.texels.begin(), image.texels.end());
+        EXPECT_GE(darkest, 254) << "turned " << turn << ", height " << height << ", pcf " << pcf;
+      }
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ TEST(ViewScene, DrawsAndCastsTheTrianglesOfTheScene) {
 }
 
 TEST(ViewScene, NormalsAreFlatOnBoxesAndRadialOnSpheresAtEveryScale) {
-  for (float scale : {1e-4f, 1.0f, 1e4f}) {
+  for (float scale : {1e-25f, 1e-4f, 1.0f, 1e4f, 1e25f}) {
     Scene box, sphere;
     add_box(box, {-scale, -scale, -scale}, {scale, scale, scale});
     add_sphere(sphere, {0, 0, 0}, scale, 24);
@@ -99,6 +99,21 @@ TEST(ViewScene, DegenerateTrianglesGiveFiniteNormals) {
   add_quad(s, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}});
   const ViewScene v = *make_view_scene(s, {});
   for (const Vec3f& n : v.normals) EXPECT_NEAR(std::hypot(n.x, n.y, n.z), 1, 1e-5);
+}
+
+TEST(Camera, LooksAndTurnsWhereTheViewIsVertical) {
+  for (double down : {-5.0, 5.0}) {
+    Camera camera;
+    camera.eye = {0, down, 0};
+    for (double value : view_projection(camera, 1.5)) EXPECT_TRUE(std::isfinite(value));
+    for (const Vec3d& c : view_corners(camera, 1.5, 10))
+      EXPECT_TRUE(std::isfinite(c.x + c.y + c.z));
+    fly(camera, {0.1, 0.1, 0.1}, 3, 3);
+    EXPECT_TRUE(std::isfinite(camera.eye.x + camera.eye.y + camera.eye.z));
+    EXPECT_NEAR(std::hypot(camera.target.x - camera.eye.x, camera.target.y - camera.eye.y,
+                           camera.target.z - camera.eye.z),
+                5, 1e-9);
+  }
 }
 
 TEST(StartCamera, StandsInARoomAndBeforeAThing) {

@@ -88,7 +88,7 @@ TEST_F(AtlasPlay, AbsurdOptions) {
         "--roughness 0", "--map 0",     "--map-bits 8",      "--pcf 2",          "--march-steps 0",
         "--interval 0",  "--step nan",  "--key-degrees 100", "--shading pink",   "--shadows long",
         "--light-end x", "--up w",      "--frames 0",        "--bench-frames 0", "--bogus",
-        "--camera 1,2,3"}) {
+        "--step -1",     "--speed -1",  "--camera 1,2,3"}) {
     const RunResult r = run("roof.obj --headless --software -q " + option);
     EXPECT_EQ(r.exit_code, 2) << option;
     EXPECT_EQ(r.errors.rfind("atlas-play: error: ", 0), 0u) << r.errors;
@@ -105,6 +105,41 @@ TEST_F(AtlasPlay, AConfigurationFileWithAnOptionThatDoesNotExist) {
   const RunResult r = run(headless + "bad.toml");
   EXPECT_EQ(r.exit_code, 2);
   EXPECT_NE(r.errors.find("widht"), std::string::npos) << r.errors;
+}
+
+TEST_F(AtlasPlay, LooksStraightDownAndUp) {
+  const std::string common =
+      "roof.obj --headless --software -q --width 16 --height 12 --map 32 --screenshot ";
+  ASSERT_EQ(run(common + "down.png --camera '0,5,0;0,0,0'").exit_code, 0);
+  ASSERT_EQ(run(common + "up.png --camera '0,0.5,0;0,5,0'").exit_code, 0);
+  ASSERT_EQ(run(common + "sky.png --camera '0,5,0;0,9,0.1'").exit_code, 0);
+  EXPECT_NE(text_of(dir_ / "down.png"), text_of(dir_ / "sky.png"));
+  EXPECT_NE(text_of(dir_ / "up.png"), text_of(dir_ / "sky.png"));
+}
+
+// The readers store positions relative to an origin of their own.
+TEST_F(AtlasPlay, TheCameraIsInTheCoordinatesOfTheFile) {
+  std::ofstream(dir_ / "far.obj") << "v 499999 1 3999999\nv 500001 1 3999999\nv 500000 1 4000001\n"
+                                     "v 499998 0 3999998\nv 500002 0 3999998\nv 500000 0 4000003\n"
+                                     "f 3 2 1\nf 6 5 4\n";
+  const std::string options =
+      " --headless --software -q --width 16 --height 12 --map 32 --light fixed:0,1,1 --screenshot ";
+  ASSERT_EQ(run("roof.obj" + options + "near.png --camera '0,3,4;0,0,0'").exit_code, 0);
+  ASSERT_EQ(
+      run("far.obj" + options + "far.png --camera '500000,3,4000004;500000,0,4000000'").exit_code,
+      0);
+  EXPECT_EQ(text_of(dir_ / "near.png"), text_of(dir_ / "far.png"));
+}
+
+TEST_F(AtlasPlay, SaysWhatTheSceneLacks) {
+  std::ofstream(dir_ / "bare.mtl") << "newmtl a\nmap_Kd gone.png\n";
+  std::ofstream(dir_ / "bare.obj") << "mtllib bare.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
+                                      "vt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+  const std::string command = "bare.obj --headless --software --width 8 --height 8 --map 32";
+  const RunResult r = run(command);
+  EXPECT_EQ(r.exit_code, 0) << r.errors;
+  EXPECT_NE(r.errors.find("defect: 1 x textures not found"), std::string::npos) << r.errors;
+  EXPECT_EQ(run(command + " -q").errors, "");
 }
 
 // Said before anything is drawn.
