@@ -2,12 +2,36 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <utility>
+#include <vector>
+
+#include "libatlas/texture/lanes.h"
 
 namespace atlas {
 namespace {
 
 using Texel = SampledChart::Texel;
+static_assert(sizeof(Texel) == sizeof(Lanes));
+
+// R, G, B and the weight.
+Lanes load(const Texel& t) {
+  Lanes v;
+  std::memcpy(&v, &t, sizeof v);
+  return v;
+}
+
+Lanes larger(Lanes a, Lanes b) {
+  return a > b ? a : b;
+}
+
+Lanes distance(Lanes a, Lanes b) {
+  return larger(a - b, b - a);
+}
+
+float largest_channel(Lanes v) {
+  return std::max({v[0], v[1], v[2]});
+}
 
 // The mean of the covered texels of the quad at (2x, 2y), and the largest deviation from it.
 Texel quad_mean(const SampledChart& in, int x, int y, float& deviation) {
@@ -31,58 +55,97 @@ Texel quad_mean(const SampledChart& in, int x, int y, float& deviation) {
   return mean;
 }
 
-// False as soon as a quad moves too far.
+// Quads of covered texels only, which most are: the same sums for all channels at once. Returns how
+// many quads from the left of row y it has halved.
+int halve_covered(const SampledChart& in, int y, Texel* out, Lanes& deviation) {
+  if (2 * y + 1 >= in.height) return 0;
+  const Texel* lower = &in.texels[std::size_t(2 * y) * in.width];
+  const Texel* upper = lower + in.width;
+  int x = 0;
+  for (; 2 * x + 1 < in.width; ++x, lower += 2, upper += 2) {
+    if (!(lower[0].weight > 0 && lower[1].weight > 0 && upper[0].weight > 0 && upper[1].weight > 0))
+      break;
+    const Lanes a = load(lower[0]), b = load(lower[1]), c = load(upper[0]), d = load(upper[1]);
+    Lanes mean = (a + b + c + d) * 0.25f;
+    deviation = larger(deviation, larger(larger(distance(a, mean), distance(b, mean)),
+                                         larger(distance(c, mean), distance(d, mean))));
+    mean[3] = 1;
+    std::memcpy(static_cast<void*>(&out[x]), &mean, sizeof mean);
+  }
+  return x;
+}
+
+// False as soon as a row holds a quad that moves too far.
 bool halve(const SampledChart& in, float threshold, SampledChart& out) {
   out.width = (in.width + 1) / 2;
   out.height = (in.height + 1) / 2;
   out.texels.resize(std::size_t(out.width) * out.height);
-  for (int y = 0; y < out.height; ++y)
-    for (int x = 0; x < out.width; ++x) {
+  for (int y = 0; y < out.height; ++y) {
+    Texel* row = &out.texels[std::size_t(y) * out.width];
+    Lanes most{};
+    for (int x = halve_covered(in, y, row, most); x < out.width; ++x) {
       float deviation = 0;
-      out.texels[std::size_t(y) * out.width + x] = quad_mean(in, x, y, deviation);
+      row[x] = quad_mean(in, x, y, deviation);
       if (!(deviation < threshold)) return false;
     }
+    if (!(largest_channel(most) < threshold)) return false;
+  }
   return true;
 }
 
-// Bilinear value of `in` at (x, y) in its texels, of covered texels only.
-bool look_up(const SampledChart& in, float x, float y, float rgb[3]) {
-  const float fx = std::floor(x - 0.5f), fy = std::floor(y - 0.5f);
-  const float tx = x - 0.5f - fx, ty = y - 0.5f - fy;
-  float total = 0;
-  rgb[0] = rgb[1] = rgb[2] = 0;
-  for (int j = 0; j < 2; ++j)
-    for (int i = 0; i < 2; ++i) {
-      const int u = std::clamp(static_cast<int>(fx) + i, 0, in.width - 1);
-      const int v = std::clamp(static_cast<int>(fy) + j, 0, in.height - 1);
-      const Texel& t = in.texels[std::size_t(v) * in.width + u];
-      if (!(t.weight > 0)) continue;
-      const float w = (i ? tx : 1 - tx) * (j ? ty : 1 - ty);
-      for (int k = 0; k < 3; ++k) rgb[k] += w * t.rgb[k];
-      total += w;
-    }
-  if (!(total > 0)) return false;
-  for (int k = 0; k < 3; ++k) rgb[k] /= total;
-  return true;
+// Between which texels of a row or column, and where between them, a full texel's centre lies.
+struct Between {
+  int low = 0, high = 0;
+  float share = 0;  // of `high`
+};
+
+std::vector<Between> places(int full, int small, int halvings) {
+  const float scale = std::ldexp(1.0f, -halvings);
+  std::vector<Between> out(static_cast<std::size_t>(full));
+  for (int i = 0; i < full; ++i) {
+    const float at = (static_cast<float>(i) + 0.5f) * scale - 0.5f, floor = std::floor(at);
+    const int low = static_cast<int>(floor);
+    out[static_cast<std::size_t>(i)] = {std::clamp(low, 0, small - 1),
+                                        std::clamp(low + 1, 0, small - 1), at - floor};
+  }
+  return out;
 }
 
+// Halved texels have weight 1 if covered, else they are 0 all over: sums of them times weights hold
+// the colour times the sum of the covered ones' weights in R, G, B, and that sum in the 4th lane.
+// One row of them between two rows of texels.
+void blend_rows(const SampledChart& in, const Between& row, std::vector<Lanes>& out) {
+  const Texel* low = &in.texels[std::size_t(row.low) * in.width];
+  const Texel* high = &in.texels[std::size_t(row.high) * in.width];
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = (1 - row.share) * load(low[i]) + row.share * load(high[i]);
+}
+
+// `full` against the bilinear values of `small`'s covered texels.
 void measure(const SampledChart& full, const SampledChart& small, Downsizing& out) {
-  const float scale = std::ldexp(1.0f, -out.halvings);
-  for (int y = 0; y < full.height; ++y)
+  const std::vector<Between> columns = places(full.width, small.width, out.halvings);
+  const std::vector<Between> rows = places(full.height, small.height, out.halvings);
+  std::vector<Lanes> line(static_cast<std::size_t>(small.width));
+  Lanes most{};
+  for (int y = 0; y < full.height; ++y) {
+    if (out.halvings > 0) blend_rows(small, rows[std::size_t(y)], line);
+    const Texel* texels = &full.texels[std::size_t(y) * full.width];
+    Lanes square{};
     for (int x = 0; x < full.width; ++x) {
-      const Texel& t = full.texels[std::size_t(y) * full.width + x];
-      if (!(t.weight > 0)) continue;
+      if (!(texels[x].weight > 0)) continue;
       ++out.covered;
       if (out.halvings == 0) continue;
-      float rgb[3];
-      const bool found = look_up(small, (static_cast<float>(x) + 0.5f) * scale,
-                                 (static_cast<float>(y) + 0.5f) * scale, rgb);
-      for (int k = 0; found && k < 3; ++k) {
-        const float e = std::fabs(rgb[k] - t.rgb[k]);
-        out.square_sum += double{e} * e;
-        out.max_error = std::max(out.max_error, e);
-      }
+      const Between& at = columns[std::size_t(x)];
+      const Lanes sum =
+          (1 - at.share) * line[std::size_t(at.low)] + at.share * line[std::size_t(at.high)];
+      if (!(sum[3] > 0)) continue;
+      const Lanes error = distance(sum * (1 / sum[3]), load(texels[x]));
+      square += error * error;
+      most = larger(most, error);
     }
+    for (int k = 0; k < 3; ++k) out.square_sum += double{square[k]};
+  }
+  out.max_error = largest_channel(most);
 }
 
 }  // namespace
