@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <mutex>
+#include <utility>
 
 #include "libatlas/core/parallel.h"
 #include "libatlas/texture/downsizing.h"
@@ -91,8 +93,59 @@ struct ChartOutcome {
   bool raised = false;
 };
 
-ChartOutcome size_chart(const ChartLight& light, const TextureOptions& options, std::uint32_t id,
-                        ChartTexture& out) {
+// What one chart's textures are held in. Each thread at work borrows one.
+struct Room {
+  SampledChart full;
+  HalvedCharts halved;
+};
+
+class Rooms {
+ public:
+  std::unique_ptr<Room> borrow() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return std::make_unique<Room>();
+    std::unique_ptr<Room> room = std::move(free_.back());
+    free_.pop_back();
+    return room;
+  }
+  void give_back(std::unique_ptr<Room> room) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(room));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Room>> free_;
+};
+
+// What size_chart works with.
+struct Sizing {
+  const ChartLight& light;
+  const TextureOptions& options;
+  Rooms& rooms;
+};
+
+void downsize_chart(const Sizing& sizing, std::uint32_t id, ChartTexture& out,
+                    ChartOutcome& outcome) {
+  const double density = out.full_texels_per_unit.x;
+  std::unique_ptr<Room> room = sizing.rooms.borrow();
+  sample_chart(sizing.light, id, density, room->full);
+  const Downsizing d = downsize(room->full, sizing.options, room->halved);
+  sizing.rooms.give_back(std::move(room));
+  out.halvings = d.halvings;
+  out.width = d.width;
+  out.height = d.height;
+  out.texels_per_unit = {std::ldexp(density, -d.halvings), std::ldexp(density, -d.halvings)};
+  out.max_error = d.max_error;
+  out.rms_error = static_cast<float>(
+      d.covered > 0 ? std::sqrt(d.square_sum / (3.0 * static_cast<double>(d.covered))) : 0);
+  outcome.square_sum = d.square_sum;
+  outcome.covered = d.covered;
+}
+
+ChartOutcome size_chart(const Sizing& sizing, std::uint32_t id, ChartTexture& out) {
+  const ChartLight& light = sizing.light;
+  const TextureOptions& options = sizing.options;
   ChartOutcome outcome;
   const Chart& chart = light.charts.charts[id];
   double density = wanted_density(light, options, chart);
@@ -113,16 +166,7 @@ ChartOutcome size_chart(const ChartLight& light, const TextureOptions& options, 
     return outcome;
   }
   if ((std::min(full.width, full.height) + 1) / 2 < options.min_side) return outcome;
-  const Downsizing d = downsize(sample_chart(light, id, density), options);
-  out.halvings = d.halvings;
-  out.width = d.width;
-  out.height = d.height;
-  out.texels_per_unit = {std::ldexp(density, -d.halvings), std::ldexp(density, -d.halvings)};
-  out.max_error = d.max_error;
-  out.rms_error = static_cast<float>(
-      d.covered > 0 ? std::sqrt(d.square_sum / (3.0 * static_cast<double>(d.covered))) : 0);
-  outcome.square_sum = d.square_sum;
-  outcome.covered = d.covered;
+  downsize_chart(sizing, id, out, outcome);
   return outcome;
 }
 
@@ -188,12 +232,14 @@ Result<TextureResult> size_chart_textures(const ChartLight& light, const Texture
   TextureResult result;
   result.charts.resize(n);
   std::vector<ChartOutcome> outcomes(n);
+  Rooms rooms;
   std::mutex reporting;
   std::size_t triangles_done = 0;
   parallel_for(context, n, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (context.cancelled()) return;
-      outcomes[i] = size_chart(light, options, static_cast<std::uint32_t>(i), result.charts[i]);
+      outcomes[i] =
+          size_chart({light, options, rooms}, static_cast<std::uint32_t>(i), result.charts[i]);
       const std::lock_guard lock(reporting);
       triangles_done += light.charts.charts[i].triangle_count;
       context.report("textures", static_cast<double>(triangles_done) /

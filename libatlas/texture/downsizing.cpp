@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <utility>
 #include <vector>
 
 #include "libatlas/texture/lanes.h"
@@ -150,16 +149,14 @@ void measure(const SampledChart& full, const SampledChart& small, Downsizing& ou
 
 }  // namespace
 
-Downsizing downsize(SampledChart full, const TextureOptions& options) {
+Downsizing downsize(const SampledChart& full, const TextureOptions& options, HalvedCharts& room) {
   Downsizing out;
   const auto threshold = static_cast<float>(options.threshold);
-  SampledChart current, next;
   const SampledChart* last = &full;
   while (std::max(last->width, last->height) > 1 &&
          (std::min(last->width, last->height) + 1) / 2 >= options.min_side &&
-         halve(*last, threshold, next)) {
-    std::swap(current, next);
-    last = &current;
+         halve(*last, threshold, room[out.halvings % 2])) {
+    last = &room[out.halvings % 2];
     ++out.halvings;
   }
   out.width = last->width;

@@ -15,12 +15,14 @@ void add(SampledChart::Texel& texel, Lanes rgb, float weight) {
 
 }  // namespace
 
-SampledChart sample_chart(const ChartLight& light, std::uint32_t id, double texels_per_unit) {
+void sample_chart(const ChartLight& light, std::uint32_t id, double texels_per_unit,
+                  SampledChart& out) {
   const ChartSet& charts = light.charts;
   const Chart& chart = charts.charts[id];
   const TexelSize size = texel_size(chart.size, {texels_per_unit, texels_per_unit});
-  SampledChart out{size.width, size.height, {}};
-  out.texels.resize(std::size_t(size.width) * size.height);
+  out.width = size.width;
+  out.height = size.height;
+  out.texels.assign(std::size_t(size.width) * size.height, {});
   const Rect box{0, 0, size.width, size.height};
   const SampleGrid grid(1);
   for (std::uint32_t i = 0; i < chart.triangle_count; ++i) {
@@ -51,7 +53,6 @@ SampledChart sample_chart(const ChartLight& light, std::uint32_t id, double texe
   for (SampledChart::Texel& texel : out.texels)
     if (texel.weight > 0)
       for (float& v : texel.rgb) v /= texel.weight;
-  return out;
 }
 
 }  // namespace atlas

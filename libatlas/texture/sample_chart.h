@@ -19,6 +19,9 @@ struct SampledChart {
 
 // One sample at the centre of each covered texel; triangles small or thin beside a texel are
 // averaged by area instead, so that every one of them counts.
-SampledChart sample_chart(const ChartLight& light, std::uint32_t chart, double texels_per_unit);
+// `out` may be used again: allocating tens of megabytes anew for each chart costs as much as
+// halving.
+void sample_chart(const ChartLight& light, std::uint32_t chart, double texels_per_unit,
+                  SampledChart& out);
 
 }  // namespace atlas
