@@ -1,31 +1,14 @@
 #include "apps/atlas-pack/uv_charts.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numeric>
 #include <unordered_map>
+
+#include "libatlas/core/disjoint_sets.h"
 
 namespace atlas::app {
 namespace {
-
-class Sets {
- public:
-  explicit Sets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 double area_in_space(const Scene& s, std::size_t t) {
   const Vec3f &a = s.positions[s.indices[3 * t]], &b = s.positions[s.indices[3 * t + 1]],
@@ -73,7 +56,7 @@ UvCharts find_charts(const Scene& s) {
   UvCharts charts;
   charts.chart.assign(s.triangle_count(), UvCharts::kNone);
   charts.same.assign(s.texcoords.size(), UvCharts::kNone);
-  Sets sets(s.texcoords.size());
+  DisjointSets sets(s.texcoords.size());
   CornerPlaces places(s);
   const auto has_uv = [&](std::size_t t) {
     for (std::size_t k = 3 * t; k < 3 * t + 3; ++k)

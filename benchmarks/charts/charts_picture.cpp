@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "libatlas/core/glm_bridge.h"
 
@@ -14,29 +13,6 @@ namespace {
 constexpr int kSamples = 3;  // a pixel's side
 constexpr std::uint32_t kEmpty = 0xffffffffu;
 constexpr glm::dvec3 kPaper(1, 1, 1);
-
-// Which chart a face belongs to: faces that share a texture coordinate.
-std::vector<std::uint32_t> charts_of(const test::UvMesh& mesh) {
-  std::vector<std::uint32_t> parent(mesh.uvs.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  for (const auto& f : mesh.faces)
-    for (int c = 1; c < 3; ++c) {
-      const std::uint32_t a = root(f.uv[0]), b = root(f.uv[c]);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
-  std::vector<std::uint32_t> chart, number(mesh.uvs.size(), kEmpty);
-  std::uint32_t count = 0;
-  for (const auto& f : mesh.faces) {
-    std::uint32_t& n = number[root(f.uv[0])];
-    if (n == kEmpty) n = count++;
-    chart.push_back(n);
-  }
-  return chart;
-}
 
 glm::dvec3 colour(std::uint32_t chart) {
   const double hue = std::fmod(0.11 + chart * 0.61803398875, 1.0), soft = 0.35 + 0.12 * (chart % 3);
@@ -169,7 +145,7 @@ void draw_page(const UnwrappedMesh& unwrapped, const std::vector<std::uint32_t>&
 Image8 charts_picture(const std::vector<UnwrappedMesh>& meshes, int side) {
   Image8 image(side * int(meshes.size()), 2 * side, 3, 255);
   for (std::size_t k = 0; k < meshes.size(); ++k) {
-    const std::vector<std::uint32_t> chart = charts_of(meshes[k].mesh);
+    const std::vector<std::uint32_t> chart = test::charts_by_texcoord(meshes[k].mesh);
     Canvas space(side), page(side);
     draw_in_space(meshes[k].mesh, chart, space);
     draw_page(meshes[k], chart, page);

@@ -11,68 +11,34 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <numeric>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "libatlas/core/clock.h"
 #include "libatlas/pack/fit.h"
 #include "tests/pack/checks.h"
+#include "tests/support/atlas_measure.h"
 
 namespace {
 
 using atlas::Vec2d;
 using atlas::Vec3d;
+using atlas::test::UvMesh;
 
 struct Model {
   std::string name;
   std::vector<std::vector<Vec2d>> charts;  // 3 corners a triangle
 };
 
-struct ObjMesh {
-  std::vector<Vec3d> positions;
-  std::vector<Vec2d> uvs;
-  std::vector<std::uint32_t> vertices, corners;  // 3 a triangle, into positions and uvs
-};
-
-ObjMesh read_obj(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  ObjMesh mesh;
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream words(line);
-    std::string word;
-    words >> word;
-    if (word == "v") {
-      Vec3d p;
-      words >> p.x >> p.y >> p.z;
-      mesh.positions.push_back(p);
-    } else if (word == "vt") {
-      Vec2d uv;
-      words >> uv.x >> uv.y;
-      mesh.uvs.push_back(uv);
-    } else if (word == "f") {
-      while (words >> word) {
-        const auto slash = word.find('/');
-        if (slash == std::string::npos) break;
-        mesh.vertices.push_back(static_cast<std::uint32_t>(std::stoul(word) - 1));
-        mesh.corners.push_back(static_cast<std::uint32_t>(std::stoul(word.substr(slash + 1)) - 1));
-      }
-    }
-  }
-  return mesh;
-}
-
 // Gives the charts the proportions they have on the surface: u and v are stretched by the factors
 // with which the edges' squared lengths, s du² + t dv², come closest to those on the surface.
-void unsqueeze(ObjMesh& mesh) {
+void unsqueeze(UvMesh& mesh) {
   double aa = 0, ab = 0, bb = 0, ad = 0, bd = 0;
-  for (std::size_t k = 0; k + 2 < mesh.corners.size(); k += 3)
+  for (const UvMesh::Face& f : mesh.faces)
     for (std::size_t j = 0; j < 3; ++j) {
-      const std::size_t from = k + j, to = k + (j + 1) % 3;
-      const Vec2d p = mesh.uvs[mesh.corners[from]], q = mesh.uvs[mesh.corners[to]];
-      const Vec3d x = mesh.positions[mesh.vertices[from]], y = mesh.positions[mesh.vertices[to]];
+      const std::size_t to = (j + 1) % 3;
+      const Vec2d p = mesh.uvs[f.uv[j]], q = mesh.uvs[f.uv[to]];
+      const Vec3d x = mesh.positions[f.position[j]], y = mesh.positions[f.position[to]];
       const double a = std::pow(q.x - p.x, 2), b = std::pow(q.y - p.y, 2);
       const double d = std::pow(y.x - x.x, 2) + std::pow(y.y - x.y, 2) + std::pow(y.z - x.z, 2);
       aa += a * a;
@@ -86,29 +52,20 @@ void unsqueeze(ObjMesh& mesh) {
   for (Vec2d& uv : mesh.uvs) uv.x *= std::sqrt(s / t);
 }
 
-// Triangles joined by common texcoord indices.
+// Empty, with a message, if the file cannot be read.
 Model read_charts(const std::filesystem::path& path) {
-  ObjMesh mesh = read_obj(path);
-  unsqueeze(mesh);
-  const std::vector<Vec2d>& uvs = mesh.uvs;
-  const std::vector<std::uint32_t>& corners = mesh.corners;
-  std::vector<std::uint32_t> parent(uvs.size());
-  const auto root = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  std::iota(parent.begin(), parent.end(), 0u);
-  for (std::size_t k = 0; k + 2 < corners.size(); k += 3)
-    for (std::size_t j = 1; j < 3; ++j) parent[root(corners[k + j])] = root(corners[k]);
   Model model{path.stem().string(), {}};
-  std::vector<std::size_t> number(uvs.size(), SIZE_MAX);
-  for (std::size_t k = 0; k + 2 < corners.size(); k += 3) {
-    std::size_t& id = number[root(corners[k])];
-    if (id == SIZE_MAX) {
-      id = model.charts.size();
-      model.charts.emplace_back();
-    }
-    for (std::size_t j = 0; j < 3; ++j) model.charts[id].push_back(uvs[corners[k + j]]);
+  atlas::Result<UvMesh> mesh = atlas::test::read_uv_obj(path);
+  if (!mesh.ok()) {
+    std::fprintf(stderr, "%s\n", mesh.status().message().c_str());
+    return model;
+  }
+  unsqueeze(*mesh);
+  const std::vector<std::uint32_t> chart = atlas::test::charts_by_texcoord(*mesh);
+  for (std::size_t f = 0; f < chart.size(); ++f) {
+    if (chart[f] == model.charts.size()) model.charts.emplace_back();
+    for (const std::uint32_t uv : mesh->faces[f].uv)
+      model.charts[chart[f]].push_back(mesh->uvs[uv]);
   }
   return model;
 }

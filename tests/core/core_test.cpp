@@ -14,6 +14,7 @@
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/background.h"
 #include "libatlas/core/clock.h"
+#include "libatlas/core/disjoint_sets.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/predicates.h"
 #include "libatlas/core/rect.h"
@@ -24,6 +25,27 @@ namespace atlas {
 namespace {
 
 using test::TempFolder;
+
+TEST(DisjointSets, JoinInAnyOrderToTheLeastMember) {
+  std::mt19937 random(3);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  std::vector<std::uint32_t> least(500);  // by spreading until nothing changes
+  for (std::uint32_t i = 0; i < least.size(); ++i) least[i] = i;
+  for (int i = 0; i < 300; ++i) pairs.emplace_back(random() % 500, random() % 500);
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const auto& [a, b] : pairs) {
+      changed |= least[a] != least[b];
+      least[a] = least[b] = std::min(least[a], least[b]);
+    }
+  }
+  for (int round = 0; round < 3; ++round) {
+    std::shuffle(pairs.begin(), pairs.end(), random);
+    DisjointSets sets(least.size());
+    for (const auto& [a, b] : pairs) sets.join(a, b);
+    for (std::uint32_t i = 0; i < least.size(); ++i) EXPECT_EQ(sets.find(i), least[i]);
+  }
+}
 
 TEST(Background, RunsAtMostSoManyTasksAtOnceAndAllOfThem) {
   for (const std::size_t at_once : {0u, 1u, 3u}) {

@@ -8,28 +8,17 @@
 #include <glm/mat2x2.hpp>
 #include <glm/matrix.hpp>
 #include <map>
-#include <numeric>
 #include <sstream>
 #include <string>
 #include <unordered_map>
 
+#include "libatlas/core/disjoint_sets.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas::test {
 namespace {
 
 using Id = std::uint32_t;
-
-// Union-find with halving.
-struct Sets {
-  std::vector<Id> parent;
-  explicit Sets(std::size_t n) : parent(n) { std::iota(parent.begin(), parent.end(), 0); }
-  Id find(Id x) {
-    while (parent[x] != x) x = parent[x] = parent[parent[x]];
-    return x;
-  }
-  void join(Id a, Id b) { parent[find(a)] = find(b); }
-};
 
 // Faces with welded places and uvs in texels.
 struct Prepared {
@@ -74,7 +63,7 @@ Prepared::Prepared(const UvMesh& m, int width, int height) : mesh(m) {
       edges[std::uint64_t(a) << 32 | b].push_back({f, ta, tb});
       length[std::uint64_t(a) << 32 | b] = glm::distance(position(f, k), position(f, next));
     }
-  Sets sets(mesh.faces.size());
+  DisjointSets sets(mesh.faces.size());
   for (const auto& [key, sides] : edges)
     for (std::size_t i = 0; i < sides.size(); ++i)
       for (std::size_t j = i + 1; j < sides.size(); ++j) {
@@ -298,6 +287,21 @@ std::pair<long, long> corner_of(const std::string& word) {
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> charts_by_texcoord(const UvMesh& mesh) {
+  DisjointSets sets(mesh.uvs.size());
+  for (const UvMesh::Face& f : mesh.faces)
+    for (int k = 1; k < 3; ++k) sets.join(f.uv[0], f.uv[k]);
+  constexpr Id kNone = 0xffffffffu;
+  std::vector<Id> chart, number(mesh.uvs.size(), kNone);
+  Id count = 0;
+  for (const UvMesh::Face& f : mesh.faces) {
+    Id& n = number[sets.find(f.uv[0])];
+    if (n == kNone) n = count++;
+    chart.push_back(n);
+  }
+  return chart;
+}
 
 Result<UvMesh> read_uv_obj(const std::filesystem::path& path) {
   std::ifstream file(path);

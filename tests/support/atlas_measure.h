@@ -28,6 +28,9 @@ struct UvMesh {
 // Polygons are cut into fans. Errors: not_found, bad_input (an index out of range).
 Result<UvMesh> read_uv_obj(const std::filesystem::path& path);
 
+// The chart of every face: faces that share a texture coordinate, numbered as they come.
+std::vector<std::uint32_t> charts_by_texcoord(const UvMesh& mesh);
+
 struct AtlasMeasures {
   std::uint64_t triangles = 0, faces_without_uv = 0, charts = 0, pages = 0;
   double scale = 0;         // texels per unit: sqrt(uv area in texels² / surface area)
