@@ -162,21 +162,6 @@ void copy_box(const TexelGrid& in, const Box& box, Image<T>& page, Convert&& con
   }
 }
 
-// Gives the texels that no chart owns the colours around them. No lookup at the guarded mip levels
-// reads them, but viewers build the whole chain: black there would draw dark lines along distant
-// seams.
-void fill_between(const std::vector<std::uint8_t>& owned, Image8& page) {
-  TexelGrid grid(page.width, page.height);
-  grid.known = owned;
-  for (std::size_t i = 0; i < owned.size(); ++i)
-    if (owned[i])
-      for (int k = 0; k < 3; ++k) grid.rgb[i][k] = static_cast<float>(page.texels[3 * i + k]) / 255;
-  fill_unknown(grid);
-  for (std::size_t i = 0; i < owned.size(); ++i)
-    if (!owned[i])
-      for (int k = 0; k < 3; ++k) page.texels[3 * i + k] = quantize8(grid.rgb[i][k]);
-}
-
 // Marks what copy_box writes for this box.
 void mark_owned(const Box& box, const std::vector<std::uint8_t>& owned, int page_width,
                 std::vector<std::uint8_t>& page) {
@@ -273,7 +258,9 @@ Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacem
     }
   });
   if (context.cancelled()) return Status::cancelled();
-  fill_between(taken, page.display);
+  // No lookup at the guarded mip levels reads texels that no chart owns, but viewers build the
+  // whole chain: black there would draw dark lines along distant seams.
+  fill_unknown(taken, page.display);
   return page;
 }
 

@@ -5,7 +5,9 @@
 namespace atlas {
 namespace {
 
-TexelGrid pull(const TexelGrid& fine) {
+// The next coarser level of a grid or page: means of the known texels, which colour(at) gives.
+template <class Fine, class Known, class Colour>
+TexelGrid pull(const Fine& fine, const Known& known, Colour&& colour) {
   TexelGrid coarse((fine.width + 1) / 2, (fine.height + 1) / 2);
   for (int y = 0; y < coarse.height; ++y)
     for (int x = 0; x < coarse.width; ++x) {
@@ -14,8 +16,8 @@ TexelGrid pull(const TexelGrid& fine) {
       for (int j = 2 * y; j < std::min(2 * y + 2, fine.height); ++j)
         for (int i = 2 * x; i < std::min(2 * x + 2, fine.width); ++i) {
           const std::size_t at = std::size_t(j) * fine.width + i;
-          if (!fine.known[at]) continue;
-          sum += fine.rgb[at];
+          if (!known[at]) continue;
+          sum += colour(at);
           ++n;
         }
       if (n == 0) continue;
@@ -27,15 +29,16 @@ TexelGrid pull(const TexelGrid& fine) {
 }
 
 // Unknown texels take the bilinear value of the next coarser level, all of whose texels are filled.
-void push(const TexelGrid& coarse, TexelGrid& fine) {
+template <class Fine, class Known, class Set>
+void push(const TexelGrid& coarse, const Fine& fine, const Known& known, Set&& set) {
   for (int y = 0; y < fine.height; ++y) {
     const int y0 = y / 2, y1 = std::clamp(y0 + (y & 1 ? 1 : -1), 0, coarse.height - 1);
     for (int x = 0; x < fine.width; ++x) {
       const std::size_t at = std::size_t(y) * fine.width + x;
-      if (fine.known[at]) continue;
+      if (known[at]) continue;
       const int x0 = x / 2, x1 = std::clamp(x0 + (x & 1 ? 1 : -1), 0, coarse.width - 1);
       const auto c = [&](int i, int j) { return coarse.rgb[std::size_t(j) * coarse.width + i]; };
-      fine.rgb[at] = 0.5625f * c(x0, y0) + 0.1875f * (c(x1, y0) + c(x0, y1)) + 0.0625f * c(x1, y1);
+      set(at, 0.5625f * c(x0, y0) + 0.1875f * (c(x1, y0) + c(x0, y1)) + 0.0625f * c(x1, y1));
     }
   }
 }
@@ -47,13 +50,26 @@ std::size_t fill_unknown(TexelGrid& grid) {
       static_cast<std::size_t>(std::count(grid.known.begin(), grid.known.end(), 0));
   if (unknown == 0) return 0;
   if (grid.width > 1 || grid.height > 1) {
-    TexelGrid coarse = pull(grid);
+    TexelGrid coarse = pull(grid, grid.known, [&](std::size_t at) { return grid.rgb[at]; });
     fill_unknown(coarse);
-    push(coarse, grid);
+    push(coarse, grid, grid.known, [&](std::size_t at, Lanes rgb) { grid.rgb[at] = rgb; });
   } else {
     grid.rgb[0] = Lanes{};
   }
   return unknown;
+}
+
+void fill_unknown(const std::vector<std::uint8_t>& known, Image8& page) {
+  if (std::find(known.begin(), known.end(), 0) == known.end()) return;
+  TexelGrid coarse = pull(page, known, [&](std::size_t at) {
+    const std::uint8_t* t = &page.texels[3 * at];
+    return Lanes{static_cast<float>(t[0]), static_cast<float>(t[1]), static_cast<float>(t[2]), 0} /
+           255.0f;
+  });
+  fill_unknown(coarse);
+  push(coarse, page, known, [&](std::size_t at, Lanes rgb) {
+    for (std::size_t k = 0; k < 3; ++k) page.texels[3 * at + k] = quantize8(rgb[k]);
+  });
 }
 
 }  // namespace atlas

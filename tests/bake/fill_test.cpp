@@ -82,5 +82,29 @@ TEST(FillUnknown, GoesSmoothlyFromOneSideToTheOther) {
     }
 }
 
+TEST(FillUnknown, OfAPageIsThatOfItsGrid) {
+  std::mt19937 random(3);
+  for (int trial = 0; trial < 300; ++trial) {
+    const int width = 1 + static_cast<int>(random() % 20),
+              height = 1 + static_cast<int>(random() % 9);
+    Image8 page(width, height, 3);
+    TexelGrid grid(width, height);
+    std::vector<std::uint8_t> known(grid.known.size());
+    const unsigned share = trial % 11;  // none at first, all at last
+    for (std::size_t i = 0; i < known.size(); ++i) {
+      known[i] = grid.known[i] = random() % 10 < share;
+      if (!known[i]) continue;
+      for (int k = 0; k < 3; ++k) {
+        page.texels[3 * i + k] = static_cast<std::uint8_t>(random());
+        grid.rgb[i][k] = static_cast<float>(page.texels[3 * i + k]) / 255;
+      }
+    }
+    fill_unknown(known, page);
+    fill_unknown(grid);
+    for (std::size_t i = 0; i < known.size(); ++i)
+      for (int k = 0; k < 3; ++k) ASSERT_EQ(page.texels[3 * i + k], quantize8(grid.rgb[i][k]));
+  }
+}
+
 }  // namespace
 }  // namespace atlas
