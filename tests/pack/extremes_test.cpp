@@ -52,6 +52,15 @@ void expect_on_pages(const FitResult& fit) {
   }
 }
 
+// As what no page holds, within so many CPU seconds.
+void expect_refused(const test::ChartItems& charts, const FitOptions& options, double seconds) {
+  const double begun = cpu_seconds();
+  const Result<FitResult> fit = fit_pages(charts.items, options, {});
+  ASSERT_FALSE(fit.ok());
+  EXPECT_EQ(fit.status().code(), ErrorCode::no_solution);
+  EXPECT_LT(cpu_seconds() - begun, seconds);
+}
+
 TEST(Extremes, NeedlesOfAnyLengthTakeThePagesLength) {
   for (const double length : {1e4, 1e6, 5e8}) {
     for (const int count : {1, 20, 60}) {
@@ -188,11 +197,7 @@ TEST(Extremes, MinimumSidesBeyondThePagesAreRefusedSoon) {
   FitOptions o = outlines(charts);
   o.minimum_side = 16;
   o.max_scale = 1;
-  const double begun = cpu_seconds();
-  const Result<FitResult> fit = fit_pages(charts.items, o, {});
-  ASSERT_FALSE(fit.ok());
-  EXPECT_EQ(fit.status().code(), ErrorCode::no_solution);
-  EXPECT_LT(cpu_seconds() - begun, 1);
+  expect_refused(charts, o, 1);
 }
 
 // More charts than their gutters leave room for are refused before any is drawn.
@@ -202,11 +207,7 @@ TEST(Extremes, GuttersBeyondThePagesAreRefusedAtOnce) {
   FitOptions o = outlines(charts);
   o.padding = 60;
   o.pages = 4;
-  const double begun = cpu_seconds();
-  const Result<FitResult> fit = fit_pages(charts.items, o, {});
-  ASSERT_FALSE(fit.ok());
-  EXPECT_EQ(fit.status().code(), ErrorCode::no_solution);
-  EXPECT_LT(cpu_seconds() - begun, 2);
+  expect_refused(charts, o, 2);
 }
 
 TEST(Extremes, PackOutlinesNamesWhatNoPageHolds) {

@@ -44,6 +44,21 @@ void expect_valid(const std::vector<FitItem>& items, const FitOptions& o, const 
   }
 }
 
+FitResult valid_fit(const std::vector<FitItem>& items, const FitOptions& options) {
+  FitResult r = fit(items, options);
+  expect_valid(items, options, r);
+  return r;
+}
+
+// A texel of padding, and boxes of any size anywhere.
+FitOptions tight(std::int32_t page_size) {
+  FitOptions o;
+  o.page_size = page_size;
+  o.padding = o.alignment = 1;
+  o.minimum_side = 0;
+  return o;
+}
+
 std::vector<FitItem> items_of(std::size_t count, double scale, std::uint64_t seed) {
   std::vector<FitItem> items;
   for (const Extent& e : test::log_normal_rects(count, seed))
@@ -78,14 +93,9 @@ TEST(FitPages, RandomProblems) {
 
 TEST(FitPages, FullPagesAtTheLargestScale) {
   const auto items = items_of(1500, 1, 6);
-  FitOptions o;
+  FitOptions o = tight(512);
   o.pages = 2;
-  o.page_size = 512;
-  o.padding = 1;
-  o.alignment = 1;
-  o.minimum_side = 0;
-  const FitResult r = fit(items, o);
-  expect_valid(items, o, r);
+  const FitResult r = valid_fit(items, o);
   EXPECT_LT(r.scale, 1);
   EXPECT_GT(r.box_utilization, 0.97);
   EXPECT_EQ(r.pages.size(), 2u);
@@ -95,8 +105,7 @@ TEST(FitPages, SmallContentTakesFewSmallPages) {
   const std::vector<FitItem> items(4, FitItem{20, 20});
   FitOptions o;
   o.pages = 8;
-  const FitResult r = fit(items, o);
-  expect_valid(items, o, r);
+  const FitResult r = valid_fit(items, o);
   EXPECT_EQ(r.scale, 1);
   ASSERT_EQ(r.pages.size(), 1u);
   EXPECT_EQ(r.pages[0], (Extent{64, 64}));
@@ -149,19 +158,14 @@ TEST(FitPages, TheScaleIsNeverZero) {
   o.minimum_side = 4;
   o.padding = 1;
   o.alignment = 2;
-  const FitResult r = fit(items, o);
-  expect_valid(items, o, r);
+  const FitResult r = valid_fit(items, o);
   EXPECT_GE(r.scale, 4.0 / 200);
 }
 
 // Thousands of boxes on one page of any shape: full, valid, and no row of it empty.
 TEST(FitPages, ManyItemsFillOnePage) {
   const auto items = items_of(4000, 1, 8);
-  FitOptions o;
-  o.page_size = 1024;
-  o.padding = 1;
-  o.alignment = 1;
-  o.minimum_side = 0;
+  FitOptions o = tight(1024);
   o.free_aspect = true;
   const FitResult r = fit(items, o);
   o.power_of_two = false;  // what free_aspect means
@@ -174,10 +178,7 @@ TEST(FitPages, ManyItemsFillOnePage) {
 // What no pressing is tried for gets a page cut to its charts, too.
 TEST(FitPages, FreePagesAreCropped) {
   const test::ChartItems charts({{{0, 0}, {400, 0}, {400, 20}}, {{0, 0}, {400, 20}, {0, 20}}});
-  FitOptions o;
-  o.page_size = 256;
-  o.padding = o.alignment = 1;
-  o.minimum_side = 0;
+  FitOptions o = tight(256);
   o.free_aspect = true;
   o.preset = PackPreset::fast;
   for (const bool outlines : {false, true}) {
@@ -239,11 +240,8 @@ test::ChartItems straight_charts(std::uint64_t seed, int count) {
 TEST(FitPages, MoreDirectionsAreNeverWorseThanFour) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const test::ChartItems charts = straight_charts(seed, 60);
-    FitOptions o;
+    FitOptions o = tight(128);
     o.pages = 2;
-    o.page_size = 128;
-    o.padding = o.alignment = 1;
-    o.minimum_side = 0;
     o.shapes = charts.shapes;
     const double four = fit(charts.items, o).scale;
     for (const std::uint32_t rotations : {8u, 16u, 64u}) {
@@ -260,10 +258,7 @@ TEST(FitPages, MoreDirectionsAreNeverWorseThanFour) {
 TEST(FitPages, FewStraightChartsFillAPageAsWellAsByCells) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const test::ChartItems charts = straight_charts(seed, 12);
-    FitOptions o;
-    o.page_size = 512;
-    o.padding = o.alignment = 1;
-    o.minimum_side = 0;
+    FitOptions o = tight(512);
     o.max_scale = 100;
     o.free_aspect = true;
     o.power_of_two = false;

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <string>
 
+#include "tests/support/program_output.h"
 #include "tests/support/shapes.h"
 
 namespace atlas::test {
@@ -125,22 +126,6 @@ TEST(AtlasMeasure, DegenerateAndOutsideAreCounted) {
   EXPECT_EQ(m.outside, 2u);
 }
 
-// The field `name` of a flat JSON object.
-double field(const std::string& json, const std::string& name) {
-  const std::size_t at = json.find("\"" + name + "\":");
-  EXPECT_NE(at, std::string::npos) << name << " in " << json;
-  return at == std::string::npos ? 0 : std::atof(json.c_str() + at + name.size() + 3);
-}
-
-std::string run(const std::string& command) {
-  std::string output;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (!pipe) return output;
-  char buffer[4096];
-  while (std::fgets(buffer, sizeof buffer, pipe)) output += buffer;
-  return pclose(pipe) == 0 ? output : std::string();
-}
-
 // An OBJ whose charts are the faces of a box, some mirrored, some overlapping, one too close.
 void write_hard_atlas(const fs::path& path) {
   const Shape shape = torus(24, 12);
@@ -169,14 +154,14 @@ TEST(AtlasMeasure, AgreesWithTheSharedMeasuringProgram) {
   fs::create_directories(folder);
   const std::string program = (folder / "atlaseval").string(), obj = (folder / "hard.obj").string();
   write_hard_atlas(obj);
-  run("c++ -O1 -std=c++17 -w -o " + program + " " + source.string());
-  const std::string json = run(program + " " + obj + " --res 160 96 --bleed");
+  output_of("c++ -O1 -std=c++17 -w -o " + program + " " + source.string());
+  const std::string json = output_of(program + " " + obj + " --res 160 96 --bleed");
   ASSERT_FALSE(json.empty());
   const auto mesh = read_uv_obj(obj);
   ASSERT_TRUE(mesh.ok()) << mesh.status().message();
   const AtlasMeasures m = measure_atlas(*mesh, 160, 96);
   const auto same = [&](const char* name, double ours, double tolerance) {
-    EXPECT_NEAR(ours, field(json, name), tolerance * (1 + std::abs(ours))) << name;
+    EXPECT_NEAR(ours, json_field(json, name), tolerance * (1 + std::abs(ours))) << name;
   };
   same("tris", double(m.triangles), 0);
   same("charts", double(m.charts), 0);

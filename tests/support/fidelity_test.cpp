@@ -12,6 +12,7 @@
 #include <string>
 
 #include "libatlas/image/image_io.h"
+#include "tests/support/program_output.h"
 #include "tests/support/shapes.h"
 
 namespace atlas::test {
@@ -130,21 +131,6 @@ void write_files(const WorldMesh& mesh, const fs::path& obj) {
   }
 }
 
-std::string run(const std::string& command) {
-  std::string output;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (!pipe) return output;
-  char buffer[4096];
-  while (std::fgets(buffer, sizeof buffer, pipe)) output += buffer;
-  return pclose(pipe) == 0 ? output : std::string();
-}
-
-double field(const std::string& json, const std::string& name) {
-  const std::size_t at = json.find("\"" + name + "\":");
-  EXPECT_NE(at, std::string::npos) << name << " in " << json;
-  return at == std::string::npos ? 0 : std::atof(json.c_str() + at + name.size() + 3);
-}
-
 // Cameras differ, so shares of pixels agree only as far as 64 views of one room do.
 TEST(Fidelity, AgreesWithTheSharedMeasuringProgram) {
   const char* data = std::getenv("LIBATLAS_DATA");
@@ -155,8 +141,8 @@ TEST(Fidelity, AgreesWithTheSharedMeasuringProgram) {
       fs::temp_directory_path() / ("fidelity_" + std::to_string(std::random_device{}()));
   fs::create_directories(folder);
   const std::string program = (folder / "fidelity").string();
-  run("c++ -O1 -std=c++17 -w -o " + program + " " + source.string() +
-      " -lembree3 -lOpenImageIO -lOpenImageIO_Util 2>/dev/null");
+  output_of("c++ -O1 -std=c++17 -w -o " + program + " " + source.string() +
+            " -lembree3 -lOpenImageIO -lOpenImageIO_Util 2>/dev/null");
   if (!fs::exists(program)) {
     fs::remove_all(folder);
     GTEST_SKIP() << "the shared program does not compile here (it wants Embree 3)";
@@ -166,19 +152,19 @@ TEST(Fidelity, AgreesWithTheSharedMeasuringProgram) {
   for (std::uint8_t& v : world.images[2].texels) v = std::uint8_t(v + 40);
   write_files(room, folder / "room.obj");
   write_files(world, folder / "world.obj");
-  const std::string json = run(program + " " + (folder / "room.obj").string() + " " +
-                               (folder / "world.obj").string() + " --cams 64 --size 96 64");
+  const std::string json = output_of(program + " " + (folder / "room.obj").string() + " " +
+                                     (folder / "world.obj").string() + " --cams 64 --size 96 64");
   const auto read_room = read_world(folder / "room.obj"),
              read_back = read_world(folder / "world.obj");
   ASSERT_TRUE(read_room.ok() && read_back.ok());
   const Fidelity f = compare_views(*read_room, *read_back, {64, 96, 64});
-  EXPECT_NEAR(f.psnr, field(json, "psnr"), 1.5);
-  EXPECT_NEAR(f.bad8, field(json, "bad8"), 0.05);
-  EXPECT_NEAR(f.scale, field(json, "scale"), 0.02 * f.scale);
-  EXPECT_NEAR(f.white, field(json, "white"), 0.03);
+  EXPECT_NEAR(f.psnr, json_field(json, "psnr"), 1.5);
+  EXPECT_NEAR(f.bad8, json_field(json, "bad8"), 0.05);
+  EXPECT_NEAR(f.scale, json_field(json, "scale"), 0.02 * f.scale);
+  EXPECT_NEAR(f.white, json_field(json, "white"), 0.03);
   EXPECT_EQ(f.miss, 0);
-  EXPECT_EQ(field(json, "miss"), 0);
-  EXPECT_EQ(f.triangles_in, std::size_t(field(json, "tris_in")));
+  EXPECT_EQ(json_field(json, "miss"), 0);
+  EXPECT_EQ(f.triangles_in, std::size_t(json_field(json, "tris_in")));
   fs::remove_all(folder);
 }
 

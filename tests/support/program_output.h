@@ -1,0 +1,29 @@
+// What a program prints, for tests that run one.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+namespace atlas::test {
+
+// The standard output of a shell command; empty if it fails.
+inline std::string output_of(const std::string& command) {
+  std::string output;
+  FILE* pipe = popen(command.c_str(), "r");
+  if (!pipe) return output;
+  char buffer[4096];
+  while (std::fgets(buffer, sizeof buffer, pipe)) output += buffer;
+  return pclose(pipe) == 0 ? output : std::string();
+}
+
+// The field `name` of a flat JSON object.
+inline double json_field(const std::string& json, const std::string& name) {
+  const std::size_t at = json.find("\"" + name + "\":");
+  EXPECT_NE(at, std::string::npos) << name << " in " << json;
+  return at == std::string::npos ? 0 : std::atof(json.c_str() + at + name.size() + 3);
+}
+
+}  // namespace atlas::test
