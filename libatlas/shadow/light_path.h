@@ -1,5 +1,6 @@
 // Where a moving directional light is: paths measured in degrees travelled on the sphere, so that a
-// speed in degrees a second means the same on each of them. Directions point towards the light.
+// speed in degrees a second means the same on each of them (on a line in the mean only: it is even
+// along the line, whose far parts are small on the sphere). Directions point towards the light.
 #pragma once
 
 #include <string>

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <string_view>
 
@@ -44,7 +45,8 @@ Result<LightPathOptions> parse_light_path(const std::string& text, LightPathOpti
     if (rest.empty()) return options;
     if (!numbers(rest, v) || v.size() != 3)
       return malformed(text, "the sun takes day of the year, latitude, hour");
-    if (!(v[0] >= 1 && v[0] <= 366)) return malformed(text, "the day is not in 1..366");
+    if (!(v[0] >= 1 && v[0] <= 366) || v[0] != std::floor(v[0]))
+      return malformed(text, "the day is not a whole number in 1..366");
     options.sun.day_of_year = int(v[0]);
     options.sun.latitude = v[1];
     options.sun.start_hour = v[2];

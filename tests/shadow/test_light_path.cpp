@@ -158,8 +158,9 @@ TEST(LightPath, Text) {
   const Result<LightPathOptions> arc = parse_light_path("arc:1,2,3;-1,.5,1e1", {});
   ASSERT_TRUE(arc.ok());
   EXPECT_EQ(arc->directions[1], (Vec3d{-1, 0.5, 10}));
-  for (const char* bad : {"", "moon:1,2,3", "arc", "arc:", "arc:1,2", "arc:1,2,3;", "sun:1,2",
-                          "sun:1,2,x", "fixed:1,2,3,4", "sun:1e99,0,0", "fixed:1,,2"})
+  for (const char* bad :
+       {"", "moon:1,2,3", "arc", "arc:", "arc:1,2", "arc:1,2,3;", "sun:1,2", "sun:1,2,x",
+        "fixed:1,2,3,4", "sun:1e99,0,0", "sun:1.5,0,0", "fixed:1,,2"})
     EXPECT_FALSE(parse_light_path(bad, {}).ok()) << bad;
 }
 
