@@ -135,9 +135,27 @@ TexelGrid bake_average(const Job& job, const Box& box) {
   return out;
 }
 
+// A chart too small to weigh anything takes the mean of its triangles' middles: black would be seen
+// where coarse mip levels mix it with its neighbours.
+void fill_tiny(const Job& job, const Box& box, TexelGrid& texels) {
+  if (std::find(texels.known.begin(), texels.known.end(), 1) != texels.known.end()) return;
+  Lanes sum{};
+  for (const std::uint32_t t : triangles_of(job.light.charts, box.placement.chart)) {
+    const float middle[3] = {1.0f / 3, 1.0f / 3, 1.0f / 3};
+    const double spacing = sample_spacing(box.placement, 1);
+    sum += TriangleLight(job.light.sampler.prepare(t, spacing), job.tone).at(middle);
+  }
+  if (!(sum[3] > 0)) return;
+  const std::size_t at = std::size_t(box.height / 2) * box.width + std::size_t(box.width / 2);
+  texels.rgb[at] = sum / sum[3];
+  texels.known[at] = 1;
+}
+
 TexelGrid bake_box(const Job& job, const Box& box) {
-  return job.options.method == BakeMethod::average ? bake_average(job, box)
-                                                   : bake_least_squares(job, box);
+  TexelGrid texels = job.options.method == BakeMethod::average ? bake_average(job, box)
+                                                               : bake_least_squares(job, box);
+  fill_tiny(job, box, texels);
+  return texels;
 }
 
 // Empty: the chart owns its whole box.

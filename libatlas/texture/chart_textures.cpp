@@ -197,8 +197,8 @@ Status check_light(const ChartLight& light, std::uint32_t chart) {
     if (corner == 3) continue;
     const Scene& s = light.sampler.scene();
     return {ErrorCode::bad_input,
-            fmt::format("triangle {}: at vertex {} illumination times reflectance is not finite "
-                        "(where it is unknown, 0 leaves the surface black)",
+            fmt::format("triangle {}: at vertex {} illumination times reflectance is no number or "
+                        "beyond 1e36 (where it is unknown, 0 leaves the surface black)",
                         t, s.indices[3 * std::size_t(t) + static_cast<std::size_t>(corner)])};
   }
   return {};

@@ -21,8 +21,8 @@ struct ChartLight {
   const ToneMapping& tone;
 };
 
-// Errors: bad_input, naming triangle and vertex, where the chart's light is infinite or no number:
-// one such value would spread over the texels around it.
+// Errors: bad_input, naming triangle and vertex, where the chart's light is no number or beyond
+// 1e36: one such value would spread over the texels around it.
 Status check_light(const ChartLight& light, std::uint32_t chart);
 
 struct TextureOptions {

@@ -134,10 +134,11 @@ double LuminanceSampler::texture_density(std::uint32_t t) const {
 }
 
 int LuminanceSampler::bad_corner(std::uint32_t t) const {
+  const auto good = [](float v) { return std::fabs(v) <= 1e36f; };
   int corner = 0;
   for (; corner < 3; ++corner) {
     const Vec3f e = state_->untextured(t, corner);
-    if (!std::isfinite(e.x) || !std::isfinite(e.y) || !std::isfinite(e.z)) break;
+    if (!good(e.x) || !good(e.y) || !good(e.z)) break;
   }
   return corner;
 }

@@ -315,6 +315,21 @@ TEST(BakePage, RefusesWhatCannotBe) {
   EXPECT_EQ(code([](O& o, P&) { o.page_width = 0; }), ErrorCode::bad_option);
 }
 
+// However little of a texel they cover: they were black.
+TEST(BakePage, ShowsTheLightOfChartsFarBelowATexel) {
+  for (const BakeMethod method : {BakeMethod::least_squares, BakeMethod::average})
+    for (const double density : {1e-2, 1e-5, 1e-20, 1e-200}) {
+      const LitShape shape = make_sheet({1, 1, 3, 3}, [](double, double) { return shown(0.8); });
+      const ChartPlacement p = place(shape.charts, 0, {density, density}, {4, 4, 0, 0});
+      BakeOptions options = small_page(16, method);
+      options.linear = true;
+      const auto page = bake(shape, {p}, options);
+      ASSERT_TRUE(page.ok());
+      EXPECT_NEAR(page->display.at(4, 4)[1], 204, 1) << density;
+      EXPECT_NEAR(page->linear.at(4, 4)[1], shown(0.8).y, 1e-4) << density;
+    }
+}
+
 TEST(BakePage, RefusesPlacementsBeyondCounting) {
   const LitShape shape = make_sheet({1, 1, 2, 2}, [](double, double) { return shown(1); });
   const ChartPlacement good = place(shape.charts, 0, {20, 20}, {4, 4, 0, 0});
