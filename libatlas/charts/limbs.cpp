@@ -23,8 +23,8 @@ constexpr double kPoor = 0.9;         // of min_fill: what fills more is left as
 // Share of the rectangles' area that must be gained for a seam as long as the square root of the
 // chart's area.
 constexpr double kSeamPrice = 0.12;
-// A cut may be this much longer than its chord, and what strays from the chord by a tenth of its
-// length is as long as this many times that.
+// A cut may be this much longer than its chord; what strays from the chord counts as longer by this
+// times the square of how far it strays, in chords: a tenth doubles it.
 constexpr double kLongestPath = 1.6, kStrayWeight = 100;
 constexpr std::size_t kChordsTried = 12;
 constexpr std::uint32_t kUnseen = kNoIndex - 1;

@@ -67,13 +67,15 @@ void finish(const LocalMesh& mesh, const ParamOptions& options, ParamResult& r,
   list_offenders(mesh, r, check, stretch, options.max_stretch);
 }
 
-// Whether the projection along axis, which goes to uvs, is within the bound.
-bool project(const LocalMesh& mesh, Vec3d axis, double bound, std::span<Vec2d> uvs) {
+// The distortion of the projection along axis, which goes to uvs, if it is within the bound.
+std::optional<Distortion> project(const LocalMesh& mesh, Vec3d axis, double bound,
+                                  std::span<Vec2d> uvs) {
   // At the area-preserving scale every triangle's 1 / s2 is the root of this product.
-  if (mesh.density.empty() && !(bound * bound * projected_share(mesh, axis) >= 1)) return false;
+  if (mesh.density.empty() && !(bound * bound * projected_share(mesh, axis) >= 1)) return {};
   project_planar(mesh, axis, uvs);
   const Distortion d = measure_distortion(mesh, uvs);
-  return d.stretch_999 <= bound && d.flips == 0;
+  if (!(d.stretch_999 <= bound) || d.flips > 0) return {};
+  return d;
 }
 
 // What stretches as little in the mean can be unrolled, and few more steps do it exactly.
@@ -287,11 +289,15 @@ ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
   const double planar_bound =
       options.max_planar_stretch > 0 ? options.max_planar_stretch : options.max_stretch;
   const bool only_planar = options.method == ParamMethod::planar;
-  if (only_planar) project_planar(mesh, axis, r.uvs);
-  if (only_planar ||
-      (options.method != ParamMethod::isometric && project(mesh, axis, planar_bound, r.uvs))) {
+  std::optional<Distortion> projected;
+  if (only_planar) {
+    project_planar(mesh, axis, r.uvs);
+  } else if (options.method != ParamMethod::isometric) {
+    projected = project(mesh, axis, planar_bound, r.uvs);
+  }
+  if (only_planar || projected) {
     r.planar = true;
-    finish(mesh, options, r);
+    finish(mesh, options, r, projected ? &*projected : nullptr);
     if (r.injective || only_planar) return r;
     r = {};
     r.uvs.resize(mesh.positions.size());
