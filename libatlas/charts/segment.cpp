@@ -247,7 +247,7 @@ class Segmenter {
     return best;
   }
 
-  // Seams are straightened as far as cells are uneven: half a cell's width, to each side.
+  // Seams are straightened as far as cells are uneven: a third of a cell's width, to each side.
   void add_rings(const Cells& cells, const MergeResult& merged) {
     std::vector<std::uint32_t> triangles(cells.count, 0), cell_count(cells.count, 0);
     for (const std::uint32_t chart : merged.chart_of_cell) {
