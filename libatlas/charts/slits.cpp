@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/core/disjoint_sets.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/param/injectivity.h"
 
@@ -42,21 +43,9 @@ class SlitCloser {
     return found;
   }
 
-  std::uint32_t root(std::uint32_t i) {
-    while (same_as_[i] != i) i = same_as_[i] = same_as_[same_as_[i]];
-    return i;
-  }
-
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    same_as_[std::max(a, b)] = std::min(a, b);
-  }
-
   // same_as_: what the uvs become one with.
   void weld(const FlatChart& chart) {
-    same_as_.resize(chart.uvs.size());
-    for (std::uint32_t i = 0; i < same_as_.size(); ++i) same_as_[i] = i;
+    same_as_ = DisjointSets(chart.uvs.size());
     for (std::uint32_t i = 0; i < chart.triangles.size(); ++i) {
       for (std::uint32_t c = 0; c < 3; ++c) {
         const std::uint32_t h = 3 * chart.triangles[i] + c, o = topology_.opposite[h];
@@ -69,8 +58,8 @@ class SlitCloser {
           return glm::distance(to_glm(chart.uvs[p]), to_glm(chart.uvs[q]));
         };
         if (std::max(gap(a, a2), gap(b, b2)) > kTolerance * gap(a, b)) continue;
-        join(a, a2);
-        join(b, b2);
+        same_as_.join(a, a2);
+        same_as_.join(b, b2);
       }
     }
   }
@@ -80,7 +69,7 @@ class SlitCloser {
     std::vector<std::uint32_t> vertex;
     std::vector<Vec2d> uvs;
     for (std::uint32_t i = 0; i < renamed.size(); ++i) {
-      const std::uint32_t r = root(i);
+      const std::uint32_t r = same_as_.find(i);
       if (r == i) {
         renamed[i] = static_cast<std::uint32_t>(uvs.size());
         uvs.push_back(chart.uvs[i]);
@@ -107,7 +96,7 @@ class SlitCloser {
   const Topology& topology_;
   std::vector<std::uint32_t> first_uv_;  // 1 a vertex; kNoIndex between charts
   std::vector<std::uint32_t> local_;     // 1 a triangle, likewise
-  std::vector<std::uint32_t> same_as_;
+  DisjointSets same_as_{0};
 };
 
 }  // namespace

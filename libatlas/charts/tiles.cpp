@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "libatlas/core/disjoint_sets.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/param/distortion.h"
 
@@ -45,30 +46,21 @@ void add_edges(const ChartSet& set, std::uint32_t t, std::uint32_t owner,
 // Splits triangles into the sets that hang together by edges: in the order of their first triangle,
 // each in the order given. A cut may leave islands on either side, which are charts of their own.
 std::vector<Triangles> connected(const ChartSet& set, const Triangles& triangles) {
-  std::vector<std::uint32_t> parent(triangles.size());
+  DisjointSets joined(triangles.size());
   std::vector<UvEdge> edges;
-  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-    parent[i] = i;
-    add_edges(set, triangles[i], i, edges);
-  }
-  const auto root = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) add_edges(set, triangles[i], i, edges);
   std::sort(edges.begin(), edges.end());
   for (std::size_t i = 1; i < edges.size(); ++i) {
-    if (!edges[i - 1].same_place(edges[i])) continue;
-    const std::uint32_t l = root(edges[i - 1].owner), r = root(edges[i].owner);
-    parent[std::max(l, r)] = std::min(l, r);
+    if (edges[i - 1].same_place(edges[i])) joined.join(edges[i - 1].owner, edges[i].owner);
   }
   std::vector<Triangles> sets;
   std::vector<std::uint32_t> set_of(triangles.size());
   for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-    if (root(i) == i) {
+    if (joined.find(i) == i) {
       set_of[i] = std::uint32_t(sets.size());
       sets.emplace_back();
     }
-    sets[set_of[root(i)]].push_back(triangles[i]);
+    sets[set_of[joined.find(i)]].push_back(triangles[i]);
   }
   return sets;
 }

@@ -175,10 +175,10 @@ std::string lighting_text(const ShaderFeatures& f) {
   else
     // The offset is what takes a plane out of its own texels up to the filter's corners: as far as
     // its normal leans along each of the map's axes, the filter's reach once. The depth bias grows
-    // with the tangent of the angle to the light with its tangent, which a plane's depth changes by
-    // across a texel, but never to nothing: a plane that faces the light is as deep as the map
-    // says, give or take rounding. Both act here and not on the casters: maps then hold true
-    // depths, which the march needs.
+    // with the tangent of the angle to the light, which a plane's depth changes by across a texel,
+    // but never to nothing: a plane that faces the light is as deep as the map says, give or take
+    // rounding. Both act here and not on the casters: maps then hold true depths, which the march
+    // needs.
     s += R"(  float sine = sqrt(max(1.0 - nl * nl, 0.0));
   float lean = abs(dot(n, frame.map_x.xyz)) + abs(dot(n, frame.map_y.xyz));
   vec3 p = frame.eye.xyz + away + n * (frame.weights.z * lean);
