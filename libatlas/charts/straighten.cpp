@@ -266,7 +266,9 @@ class Straightener {
     return closed && triangles > 0 && links == triangles ? 1 : triangles - links;
   }
 
-  // Whether all parts of both charts in the band would have a hold outside it.
+  // Whether all parts of both charts in the band would have a hold outside it. Parts need not hang
+  // together within the band: where the characteristics stay, a chart could come apart only if it
+  // got a hole as well. (If one does, flattening takes its pieces for charts.)
   bool held() {
     visited_.assign(last_ - first_, 0);
     for (std::uint32_t i = 0; i < visited_.size(); ++i) {
