@@ -196,7 +196,7 @@ bool Trial::shape_fits(const TrialLimits& limits, double slack, TrialOutcome& ou
 }
 
 Crossing Trial::border_crossing() {
-  return border_.find(joined_.border(), uvs_, kDeepCrossing * std::sqrt(area_));
+  return crossings_.find(joined_.border(), uvs_, kDeepCrossing * std::sqrt(area_));
 }
 
 TrialOutcome Trial::run(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "libatlas/charts/border_crossing.h"
 #include "libatlas/charts/coarse.h"
+#include "libatlas/charts/crossing_finder.h"
 #include "libatlas/charts/fan_measure.h"
 #include "libatlas/charts/fan_solver.h"
 #include "libatlas/charts/trial_mesh.h"
@@ -88,7 +88,7 @@ class Trial {
   TrialMesh joined_;
   FanSolver solver_;
   FanMeasure measure_;
-  BorderCheck border_;
+  CrossingFinder crossings_;
   double area_ = 0;  // of all cells
   std::vector<Vec2d> uvs_;
   std::vector<double> weight_;

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "libatlas/charts/border_crossing.h"
+#include "libatlas/charts/crossing_finder.h"
 #include "libatlas/core/predicates.h"
 
 namespace atlas::test {
@@ -55,9 +55,9 @@ Crossing all_pairs(const Outline& outline, double deep) {
 
 // Short borders and long ones, which are searched in groups; none, shallow and deep ones among
 // them.
-TEST(BorderCheck, FindsWhatAllPairsDo) {
+TEST(CrossingFinder, FindsWhatAllPairsDo) {
   std::mt19937_64 random(3);
-  BorderCheck check;
+  CrossingFinder check;
   std::array<int, 3> found{};
   for (int round = 0; round < 150; ++round) {
     const auto n = static_cast<std::uint32_t>(4 + random() % (round % 3 == 0 ? 700 : 60));
@@ -74,9 +74,9 @@ TEST(BorderCheck, FindsWhatAllPairsDo) {
 }
 
 // One crossing of two edges far from each other in the list, wherever groups begin.
-TEST(BorderCheck, FindsASingleCrossingInALongBorder) {
+TEST(CrossingFinder, FindsASingleCrossingInALongBorder) {
   std::mt19937_64 random(5);
-  BorderCheck check;
+  CrossingFinder check;
   for (std::uint32_t n = 250; n < 420; n += 7) {
     Outline outline = ragged(n, 0, random);
     EXPECT_EQ(check.find(outline.edges, outline.uvs, 1e-9), Crossing::none);

@@ -13,7 +13,7 @@ namespace atlas {
 enum class Crossing { none, shallow, deep };
 
 // Keeps its memory from call to call.
-class BorderCheck {
+class CrossingFinder {
  public:
   // The deepest crossing. `border`: edges as pairs of places in `uvs`; those with a common end do
   // not cross. A crossing is deep if one of its edges must move by more than `deep`, uv units, for

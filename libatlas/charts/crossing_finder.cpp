@@ -1,4 +1,4 @@
-#include "libatlas/charts/border_crossing.h"
+#include "libatlas/charts/crossing_finder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace atlas {
 namespace {
 
-using Boxes = BorderCheck::Boxes;
+using Boxes = CrossingFinder::Boxes;
 using Edges = std::span<const std::array<std::uint32_t, 2>>;
 
 // All pairs of the few dozen edges that charts of cells have take less time than to sort them. In
@@ -108,7 +108,7 @@ bool visit_near(const Boxes& boxes, const Box& box, std::size_t next, std::size_
 
 }  // namespace
 
-Crossing BorderCheck::find(Edges border, std::span<const Vec2d> uvs, double deep) {
+Crossing CrossingFinder::find(Edges border, std::span<const Vec2d> uvs, double deep) {
   const std::size_t n = border.size();
   fill_edges(border, uvs, edges_);
   const bool grouped = n > kLongBorder;
