@@ -167,7 +167,9 @@ std::optional<std::string> interpret(const RawText& raw, ExportCommand& command)
   command.read.metres_per_unit = *unit;
   if (!raw.texel.empty()) {
     const auto texel = parse_length(raw.texel);
-    if (!texel) return fmt::format("--texel {}: give a length such as 5mm", raw.texel);
+    if (!texel)
+      return fmt::format(
+          "--texel {}: give a length above 0 such as 5mm, in m, cm, mm, in, ft or km", raw.texel);
     options.texel_metres = *texel;
   }
   const auto tone = parse_tone_operator(raw.tone);

@@ -224,6 +224,7 @@ TEST_F(AtlasExport, OptionsOutOfRange) {
   expect_refusal(scene, "--texel", "--texel 5parsec");
   expect_refusal(scene, "--tone", "--tone sepia");
   expect_refusal(scene, "--memory", "--memory lots");
+  expect_refusal(scene, "mm, in, ft or km", "--texel 1um");
   // What would do nothing.
   expect_refusal(scene, "--uv-aspect requires --keep-uv-charts", "--uv-aspect 2");
   expect_refusal(scene, "--charts-only excludes --exr", "--charts-only --exr");
