@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "libatlas/pipeline/round_uvs.h"
+
 namespace atlas {
 namespace {
 
@@ -30,15 +32,16 @@ World assemble_world(const Scene& scene, const PlacedCharts& placed, const World
   world.origin = scene.origin;
   world.positions = scene.positions;
   const ChartSet& set = placed.charts;
-  world.uvs.resize(set.uvs.size());
+  std::vector<Vec2d> uvs(set.uvs.size());
   for (const ChartPlacement& placement : placed.placements) {
     const Chart& chart = set.charts[placement.chart];
     const Extent page = placed.pages[std::size_t(placement.page)];
     for (std::uint32_t i = chart.first_uv; i < chart.first_uv + chart.uv_count; ++i) {
       const Vec2d texel = page_texel(placement, set.uvs[i]);
-      world.uvs[i] = {float(texel.x / page.width), float(texel.y / page.height)};
+      uvs[i] = {texel.x / page.width, texel.y / page.height};
     }
   }
+  round_uvs(uvs, mesh.uv_indices, world.uvs);
   world.pages.resize(placed.pages.size());
   for (std::size_t t = 0; t < mesh.triangle_chart.size(); ++t) {
     const ChartPlacement& placement = placed.placements[mesh.triangle_chart[t]];

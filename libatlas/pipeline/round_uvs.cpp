@@ -1,0 +1,138 @@
+#include "libatlas/pipeline/round_uvs.h"
+
+#include <algorithm>
+#include <deque>
+#include <glm/common.hpp>
+#include <limits>
+#include <numeric>
+
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+constexpr double kStep = 0x1p-24;  // between floats just below one
+// How far a uv may be off for readers: the shortest decimals of a float, read as a double, are off
+// by half of that; floats multiplied by a page's size by as much again.
+constexpr double kSlack = kStep;
+constexpr double kLeastArea = 1.1e-12;  // of the page: less counts as nothing
+constexpr int kMostSteps = 128;         // that a corner is taken beyond the edge across
+constexpr int kMostTries = 32;          // a triangle
+// Triangles more that a move may close: in a stack of slivers the outer ones give way in turn.
+constexpr int kMostHarm = 1;
+
+class SliverOpener {
+ public:
+  SliverOpener(std::span<const std::uint32_t> corners, std::vector<Vec2f>& uvs)
+      : corners_(corners), uvs_(uvs) {}
+
+  std::size_t run() {
+    const std::size_t n = corners_.size() / 3;
+    for (std::uint32_t t = 0; t < n; ++t) {
+      if (thin(t)) queue_.push_back(t);
+    }
+    if (queue_.empty()) return 0;
+    list_around();
+    std::vector<std::uint8_t> tries(n, 0);
+    std::vector<std::uint32_t> given_up;
+    while (!queue_.empty()) {
+      const std::uint32_t t = queue_.front();
+      queue_.pop_front();
+      if (!thin(t) || tries[t] == kMostTries) continue;
+      if (++tries[t] == kMostTries || !open(t)) {
+        tries[t] = kMostTries;
+        given_up.push_back(t);
+      }
+    }
+    return std::size_t(
+        std::count_if(given_up.begin(), given_up.end(), [&](std::uint32_t t) { return thin(t); }));
+  }
+
+ private:
+  struct Move {
+    std::uint32_t uv = 0;
+    Vec2f to;
+    int harm = std::numeric_limits<int>::max();  // triangles more that are thin
+  };
+
+  glm::dvec2 at(std::uint32_t uv) const { return to_dvec(uvs_[uv]); }
+
+  // Whether a triangle is turned over, or would be if its corners were off by kSlack.
+  bool thin(std::uint32_t t) const {
+    const std::uint32_t* c = &corners_[3 * std::size_t(t)];
+    if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) return false;
+    const glm::dvec2 p = at(c[0]), u = at(c[1]) - p, v = at(c[2]) - p, w = v - u;
+    const glm::dvec2 sides = glm::abs(u) + glm::abs(v) + glm::abs(w);
+    const double twice = u.x * v.y - u.y * v.x;
+    return twice <= std::max(kSlack * (sides.x + sides.y), 2 * kLeastArea);
+  }
+
+  // The triangles around each uv.
+  void list_around() {
+    first_.assign(uvs_.size() + 1, 0);
+    for (const std::uint32_t uv : corners_) ++first_[uv + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    around_.resize(corners_.size());
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    for (std::size_t i = 0; i < corners_.size(); ++i) {
+      around_[next[corners_[i]]++] = static_cast<std::uint32_t>(i / 3);
+    }
+  }
+
+  int thin_around(std::uint32_t uv) const {
+    int count = 0;
+    for (std::uint32_t i = first_[uv]; i < first_[uv + 1]; ++i) count += thin(around_[i]);
+    return count;
+  }
+
+  // Moves a corner of a thin triangle away from the edge opposite, closing as few others as may be.
+  // False if those would be too many.
+  bool open(std::uint32_t t) {
+    Move best;
+    for (int steps = 2; steps <= kMostSteps && best.harm >= 0; steps *= 2) {
+      for (int corner = 0; corner < 3; ++corner) consider(t, corner, steps, best);
+    }
+    if (best.harm > kMostHarm) return false;
+    uvs_[best.uv] = best.to;
+    for (std::uint32_t i = first_[best.uv]; i < first_[best.uv + 1]; ++i) {
+      if (around_[i] != t && thin(around_[i])) queue_.push_back(around_[i]);
+    }
+    return true;
+  }
+
+  void consider(std::uint32_t t, int corner, int steps, Move& best) {
+    const std::uint32_t* c = &corners_[3 * std::size_t(t)];
+    const std::uint32_t uv = c[corner];
+    const glm::dvec2 p = at(uv), a = at(c[(corner + 1) % 3]), along = at(c[(corner + 2) % 3]) - a;
+    const double length = glm::length(along);
+    const glm::dvec2 across =
+        length > 0 ? glm::dvec2(-along.y, along.x) / length : glm::dvec2(0, 1);
+    const double shift = steps * kStep - glm::dot(across, p - a);
+    if (shift > 2 * kMostSteps * kStep) return;  // a short edge, far from the corner
+    const glm::vec2 there = glm::clamp(glm::vec2(p + shift * across), 0.0f, 1.0f);
+    const Vec2f old = uvs_[uv], to{there.x, there.y};
+    const int before = thin_around(uv);
+    uvs_[uv] = to;
+    const int harm = thin_around(uv) - before + (thin(t) ? 1 : 0);
+    uvs_[uv] = old;
+    if (harm < best.harm) best = {uv, to, harm};
+  }
+
+  std::span<const std::uint32_t> corners_;
+  std::vector<Vec2f>& uvs_;
+  std::deque<std::uint32_t> queue_;
+  std::vector<std::uint32_t> first_, around_;
+};
+
+}  // namespace
+
+std::size_t round_uvs(std::span<const Vec2d> exact, std::span<const std::uint32_t> corners,
+                      std::vector<Vec2f>& rounded) {
+  rounded.resize(exact.size());
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    rounded[i] = {float(exact[i].x), float(exact[i].y)};
+  }
+  return SliverOpener(corners, rounded).run();
+}
+
+}  // namespace atlas

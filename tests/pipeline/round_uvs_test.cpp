@@ -1,0 +1,144 @@
+// Uvs rounded to floats leave every triangle positive, for readers in floats and in doubles.
+#include "libatlas/pipeline/round_uvs.h"
+
+#include <gtest/gtest.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace atlas::test {
+namespace {
+
+struct FlatMesh {
+  std::string name;
+  std::vector<Vec2d> uvs;
+  std::vector<std::uint32_t> corners;
+};
+
+// Rows of points along a line of that slope, each `height` above the last, all joined: rows 0 and
+// `rows` - 1 are the sides of proper triangles.
+FlatMesh stack_of_slivers(int rows, int columns, double slope, double height) {
+  FlatMesh mesh;
+  mesh.name = std::to_string(rows) + " rows " + std::to_string(height) + " apart, slope " +
+              std::to_string(slope);
+  const double c = std::cos(slope), s = std::sin(slope);
+  for (int r = 0; r <= rows; ++r) {
+    const double across = r == 0 ? -0.2 : r == rows ? 0.2 : r * height;
+    for (int i = 0; i <= columns; ++i) {
+      const double along = -0.2 + 0.4 * (i + 0.37 * (r % 2)) / columns;
+      mesh.uvs.push_back({0.5 + c * along - s * across, 0.5 + s * along + c * across});
+    }
+  }
+  for (int r = 0; r < rows; ++r) {
+    for (int i = 0; i < columns; ++i) {
+      const auto a = std::uint32_t(r * (columns + 1) + i), b = a + 1, d = a + columns + 1,
+                 e = d + 1;
+      if (r % 2 == 0) {
+        mesh.corners.insert(mesh.corners.end(), {a, b, d, b, e, d});
+      } else {
+        mesh.corners.insert(mesh.corners.end(), {a, b, e, a, e, d});
+      }
+    }
+  }
+  return mesh;
+}
+
+// As text has it: the shortest decimals of the float, read as a double.
+double read_back(float value) {
+  char text[64];
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  return std::strtod(std::string(text, end).c_str(), nullptr);
+}
+
+template <class Number, class Read>
+std::size_t not_positive(const FlatMesh& mesh, const std::vector<Vec2f>& uvs, Read read) {
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < mesh.corners.size(); t += 3) {
+    const std::uint32_t* c = &mesh.corners[t];
+    if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue;
+    const auto x = [&](int k) { return Number(read(uvs[c[k]].x)); };
+    const auto y = [&](int k) { return Number(read(uvs[c[k]].y)); };
+    count += !((x(1) - x(0)) * (y(2) - y(0)) - (y(1) - y(0)) * (x(2) - x(0)) > 0);
+  }
+  return count;
+}
+
+std::size_t in_integers(const FlatMesh& mesh, const std::vector<Vec2f>& uvs) {
+  // Floats from 1/4 to 1 are multiples of 2^-26; products of two stay below 2^52.
+  return not_positive<std::int64_t>(mesh, uvs,
+                                    [](float v) { return std::int64_t(std::ldexp(v, 26)); });
+}
+
+std::vector<FlatMesh> hard_meshes() {
+  std::vector<FlatMesh> meshes;
+  for (const double slope : {0.0, 0.3, 0.785398, 1.2, 1.570796}) {
+    for (const double height : {1e-7, 1e-9, 1e-12}) {
+      for (const int rows : {3, 5, 8}) {
+        meshes.push_back(stack_of_slivers(rows, 6, slope, height));
+      }
+    }
+  }
+  return meshes;
+}
+
+TEST(RoundUvs, SliversStayOpen) {
+  std::size_t turned = 0;
+  for (const FlatMesh& mesh : hard_meshes()) {
+    std::vector<Vec2f> plain;
+    for (const Vec2d& p : mesh.uvs) plain.push_back({float(p.x), float(p.y)});
+    turned += in_integers(mesh, plain);
+    std::vector<Vec2f> rounded;
+    EXPECT_EQ(round_uvs(mesh.uvs, mesh.corners, rounded), 0u) << mesh.name;
+    EXPECT_EQ(in_integers(mesh, rounded), 0u);
+    EXPECT_EQ(not_positive<double>(mesh, rounded, read_back), 0u);
+    EXPECT_EQ(not_positive<double>(mesh, rounded, [](float v) { return v * 1983.0f; }), 0u);
+    for (std::size_t i = 0; i < mesh.uvs.size(); ++i) {
+      const double off = std::hypot(rounded[i].x - mesh.uvs[i].x, rounded[i].y - mesh.uvs[i].y);
+      EXPECT_LT(off, 2e-5) << "a twenty-fifth of a texel of 2048";
+    }
+  }
+  EXPECT_GT(turned, 100u) << "the test is too easy";
+}
+
+TEST(RoundUvs, SpecksKeepAnArea) {
+  // A square of 1e-8 within one of 0.5.
+  FlatMesh mesh;
+  mesh.uvs = {{0.3, 0.3}, {0.8, 0.3}, {0.8, 0.8}, {0.3, 0.8}};
+  for (const Vec2d p : {Vec2d{0, 0}, {1e-8, 0}, {1e-8, 1e-8}, {0, 1e-8}}) {
+    mesh.uvs.push_back({0.51 + p.x, 0.53 + p.y});
+  }
+  mesh.corners = {0, 1, 4, 1, 5, 4, 1, 2, 5, 2, 6, 5, 2, 3, 6,
+                  3, 7, 6, 3, 0, 7, 0, 4, 7, 4, 5, 6, 4, 6, 7};
+  std::vector<Vec2f> rounded;
+  EXPECT_EQ(round_uvs(mesh.uvs, mesh.corners, rounded), 0u);
+  EXPECT_EQ(in_integers(mesh, rounded), 0u);
+  const double twice =
+      (double(rounded[5].x) - rounded[4].x) * (double(rounded[6].y) - rounded[4].y) -
+      (double(rounded[5].y) - rounded[4].y) * (double(rounded[6].x) - rounded[4].x);
+  EXPECT_GT(twice / 2, 1e-12);
+}
+
+TEST(RoundUvs, WhatIsOpenIsRoundedToTheNearest) {
+  const FlatMesh mesh = stack_of_slivers(2, 50, 0.4, 1e-3);
+  std::vector<Vec2f> rounded;
+  EXPECT_EQ(round_uvs(mesh.uvs, mesh.corners, rounded), 0u);
+  for (std::size_t i = 0; i < mesh.uvs.size(); ++i) {
+    EXPECT_EQ(rounded[i], (Vec2f{float(mesh.uvs[i].x), float(mesh.uvs[i].y)}));
+  }
+}
+
+TEST(RoundUvs, PointsLinesAndWhatCannotBeOpenedEnd) {
+  FlatMesh mesh = stack_of_slivers(3, 4, 0.2, 1e-9);
+  mesh.corners.insert(mesh.corners.end(), {0, 0, 1, 2, 2, 2});  // without area
+  mesh.corners.insert(mesh.corners.end(), {mesh.corners[0], mesh.corners[2], mesh.corners[1]});
+  std::vector<Vec2f> rounded;
+  EXPECT_EQ(round_uvs(mesh.uvs, mesh.corners, rounded), 1u);
+  EXPECT_EQ(in_integers(mesh, rounded), 1u);
+}
+
+}  // namespace
+}  // namespace atlas::test
