@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t kMostCorners = 100;  // of the simplified outline
 constexpr int kSpacing = 96;               // parts of the perimeter that further ends lie apart
 constexpr double kFineness = 0.006;        // of the outline's width, what simplifying may move
+constexpr std::ptrdiff_t kMostEdges = 3;   // from a corner, that may be chords
 constexpr double kShortSeam = 0.05;        // of the width: shorter cuts count as long as this
 
 double distance(const Vec2d& a, const Vec2d& b) {
@@ -31,12 +32,23 @@ double distance_to_segment(const Vec2d& p, const Vec2d& a, const Vec2d& b) {
 // Chooses corners of the outline, then chords between them.
 class ChordFinder {
  public:
-  explicit ChordFinder(std::span<const Vec2d> outline) : outline_(outline) {
+  using Edge = std::array<std::uint32_t, 2>;
+
+  ChordFinder(std::span<const Vec2d> outline, std::span<const Edge> edges) : outline_(outline) {
     double twice = 0;
     for (std::size_t i = 2; i < outline.size(); ++i) {
       twice += cross(outline[0], outline[i - 1], outline[i]);
     }
     width_ = std::sqrt(std::max(0.0, 0.5 * twice));
+    for (const auto& [a, b] : edges) {
+      edges_.push_back({a, b});
+      edges_.push_back({b, a});
+    }
+    std::sort(edges_.begin(), edges_.end(), [&](const Edge& e, const Edge& f) {
+      const double d =
+          distance(outline_[e[0]], outline_[e[1]]) - distance(outline_[f[0]], outline_[f[1]]);
+      return e[0] != f[0] ? e[0] < f[0] : d != 0 ? d < 0 : e[1] < f[1];
+    });
   }
 
   std::vector<Chord> run(double least) {
@@ -81,25 +93,42 @@ class ChordFinder {
     });
   }
 
-  // The corners that matter, and others between them so that a chord can end on a straight side.
+  // The ends of the shortest edges from a place.
+  std::span<const Edge> edges_from(std::uint32_t place) const {
+    const auto less = [](const Edge& e, std::uint32_t p) { return e[0] < p; };
+    const auto first = std::lower_bound(edges_.begin(), edges_.end(), place, less);
+    auto last = first;
+    while (last != edges_.end() && (*last)[0] == place && last - first < kMostEdges) ++last;
+    return {first, last};
+  }
+
+  // The corners that matter, and others between them so that a chord can end on a straight side or
+  // at the far end of an edge.
   void choose_corners() {
     const std::vector<std::uint32_t> simple = simplified();
+    std::vector<std::uint8_t> at_edge(outline_.size(), 0);
     double perimeter = 0;
     for (std::size_t i = 0; i < outline_.size(); ++i) {
       perimeter += distance(outline_[i], outline_[(i + 1) % outline_.size()]);
     }
     const double spacing = perimeter / kSpacing;
-    for (std::size_t i = 0; i < simple.size(); ++i) {
-      const std::size_t n = simple.size();
+    const std::size_t n = simple.size();
+    std::vector<std::uint8_t> concave(n);
+    for (std::size_t i = 0; i < n; ++i) {
       const Vec2d &a = outline_[simple[(i + n - 1) % n]], &b = outline_[simple[i]],
                   &c = outline_[simple[(i + 1) % n]];
+      concave[i] = cross(a, b, c) < 0;
+      if (!concave[i]) continue;
+      for (const Edge& edge : edges_from(simple[i])) at_edge[edge[1]] = 1;
+    }
+    for (std::size_t i = 0; i < n; ++i) {
       corners_.push_back(simple[i]);
-      concave_.push_back(cross(a, b, c) < 0);
+      concave_.push_back(concave[i]);
       const std::uint32_t end = i + 1 < n ? simple[i + 1] : std::uint32_t(outline_.size());
       double since = 0;
       for (std::uint32_t k = simple[i] + 1; k < end; ++k) {
         since += distance(outline_[k - 1], outline_[k]);
-        if (since < spacing) continue;
+        if (since < spacing && !at_edge[k]) continue;
         since = 0;
         corners_.push_back(k);
         concave_.push_back(0);
@@ -158,7 +187,8 @@ class ChordFinder {
     for (std::uint32_t step = 2; step + 1 < n; ++step) {
       const std::uint32_t j = (i + step) % n;
       const bool nearest = length[j] <= length[(j + 1) % n] && length[j] <= length[(j + n - 1) % n];
-      if ((!nearest && !concave_[j]) || (concave_[j] && j < i) || !visible(i, j)) continue;
+      const bool wanted = nearest || concave_[j] || at_edge_of(i, j);
+      if (!wanted || (concave_[j] && j < i) || !visible(i, j)) continue;
       const double one = hull_of(i, i + step, sides_[0]),
                    other = hull_of(j, j + n - step, sides_[1]);
       if (whole_ - one - other < least) continue;  // no rectangle is smaller than the hull
@@ -167,6 +197,12 @@ class ChordFinder {
       if (fall < least) continue;
       chords.push_back({corners_[i], corners_[j], fall / (length[j] + kShortSeam * width_)});
     }
+  }
+
+  bool at_edge_of(std::uint32_t i, std::uint32_t j) const {
+    const std::span<const Edge> edges = edges_from(corners_[i]);
+    return std::any_of(edges.begin(), edges.end(),
+                       [&](const Edge& edge) { return edge[1] == corners_[j]; });
   }
 
   // Whether the chord runs inside.
@@ -190,6 +226,7 @@ class ChordFinder {
   }
 
   std::span<const Vec2d> outline_;
+  std::vector<Edge> edges_;  // from every place, the shortest first
   double width_ = 0, whole_ = 0;
   std::vector<std::uint32_t> corners_;  // places in the outline, ascending
   std::vector<std::uint8_t> concave_;   // 1 a corner
@@ -199,8 +236,9 @@ class ChordFinder {
 
 }  // namespace
 
-std::vector<Chord> find_chords(std::span<const Vec2d> outline, double least) {
-  return ChordFinder(outline).run(least);
+std::vector<Chord> find_chords(std::span<const Vec2d> outline,
+                               std::span<const std::array<std::uint32_t, 2>> edges, double least) {
+  return ChordFinder(outline, edges).run(least);
 }
 
 }  // namespace atlas

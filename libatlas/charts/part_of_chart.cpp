@@ -1,13 +1,31 @@
 #include "libatlas/charts/part_of_chart.h"
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/param/halfedges.h"
 #include "libatlas/param/orient.h"
+#include "libatlas/param/parameterize.h"
 
 namespace atlas {
+namespace {
+
+// What stretched a small part of a chart too much may be a large part of a piece.
+void relax(const LocalMesh& mesh, double max_stretch, FlatChart& piece) {
+  ParamOptions options;
+  options.max_stretch = max_stretch;
+  options.start.uvs = piece.uvs;
+  options.resume = true;
+  ParamWorkspace workspace;
+  ParamResult relaxed = parameterize(mesh, options, workspace);
+  if (!relaxed.injective || !relaxed.within_bound) return;
+  piece.uvs = std::move(relaxed.uvs);
+  piece.distortion = relaxed.distortion;
+}
+
+}  // namespace
 
 FlatChart part_of_chart(const FlattenInput& input, const FlatChart& whole,
                         std::span<const std::uint32_t> triangles) {
@@ -34,6 +52,11 @@ FlatChart part_of_chart(const FlattenInput& input, const FlatChart& whole,
   }
   const Vec3d origin = positions[0];
   for (Vec3d& p : positions) p = {p.x - origin.x, p.y - origin.y, p.z - origin.z};
+  const LocalMesh mesh{positions, piece.corners, density};
+  piece.distortion = measure_distortion(mesh, piece.uvs);
+  if (piece.distortion.stretch_999 > input.options.max_stretch) {
+    relax(mesh, input.options.max_stretch, piece);
+  }
   std::vector<std::array<std::uint32_t, 2>> border;
   param::HalfEdges half_edges;
   half_edges.build(piece.corners, piece.uvs.size());
@@ -43,7 +66,6 @@ FlatChart part_of_chart(const FlattenInput& input, const FlatChart& whole,
     }
   }
   piece.size = orient_for_packing(piece.uvs, border).size;
-  piece.distortion = measure_distortion({positions, piece.corners, density}, piece.uvs);
   piece.cone = normal_cone(input.topology.normals, piece.triangles);
   return piece;
 }

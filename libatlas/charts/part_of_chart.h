@@ -9,7 +9,8 @@
 namespace atlas {
 
 // `triangles`: places in whole.triangles, ascending, at least one. They keep their coordinates but
-// for the turn that packing wants; size, cone and distortion are measured anew.
+// for the turn that packing wants, or are relaxed where they exceed max_stretch by themselves, if
+// that helps; size, cone and distortion are measured anew.
 FlatChart part_of_chart(const FlattenInput& input, const FlatChart& whole,
                         std::span<const std::uint32_t> triangles);
 

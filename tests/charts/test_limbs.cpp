@@ -1,10 +1,13 @@
 // Charts that would leave a page half empty are cut across their limbs.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "libatlas/charts/chords.h"
 #include "tests/charts/chart_checks.h"
 
 namespace atlas::test {
@@ -74,6 +77,40 @@ double box_fill(const ChartSet& set) {
   return area / boxes;
 }
 
+// Jarvis's march.
+double hull_area(const std::vector<Vec2d>& points) {
+  std::size_t first = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const Vec2d &p = points[i], &q = points[first];
+    if (p.y < q.y || (p.y == q.y && p.x < q.x)) first = i;
+  }
+  double twice = 0;
+  std::size_t at = first, steps = 0;
+  do {
+    std::size_t next = at == 0 ? 1 : 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec2d &a = points[at], &b = points[next], &c = points[i];
+      const double turn = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+      const double far = std::hypot(c.x - a.x, c.y - a.y) - std::hypot(b.x - a.x, b.y - a.y);
+      if (turn < -1e-12 || (turn < 1e-12 && far > 0)) next = i;
+    }
+    const Vec2d &o = points[first], &a = points[at], &b = points[next];
+    twice += (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+    at = next;
+  } while (at != first && ++steps < points.size());
+  return 0.5 * twice;
+}
+
+double hull_fill(const ChartSet& set) {
+  double area = 0, hulls = 0;
+  for (const Chart& chart : set.charts) {
+    area += chart.distortion.uv_area;
+    const auto first = set.uvs.begin() + chart.first_uv;
+    hulls += hull_area({first, first + chart.uv_count});
+  }
+  return area / hulls;
+}
+
 ChartSet charts_of(const Mesh& mesh, double min_fill, int threads = 1) {
   Context context;
   context.threads = threads;
@@ -107,6 +144,34 @@ TEST(Limbs, WhatIsNotTheWholePageOrFillsItsRectangleStays) {
   const Shape small = letters({"L  ", "L  ", "L  ", "LLL"}, 8);
   const Mesh mesh(together(small, moved(grid(20, 10), 10, {20, 0, 0})));
   EXPECT_EQ(charts_of(mesh, 0.72).charts.size(), 2u) << "there is room for an L beside a big plate";
+}
+
+TEST(Limbs, ManySprawlingChartsAreCutAsFarAsTheyLeaveAPageEmpty) {
+  for (const int n : {1, 4}) {
+    const Shape one = letters({"L     ", "L     ", "L     ", "LLLLLL"}, n);
+    Shape many = one;
+    for (int i = 1; i < 12; ++i) many = together(many, moved(one, 1, {7.0 * i, 0, 0}));
+    const Mesh mesh(many);
+    const ChartSet whole = charts_of(mesh, 0), cut = charts_of(mesh, 0.72);
+    EXPECT_EQ(whole.charts.size(), 12u);
+    EXPECT_LT(hull_fill(whole), 0.66);
+    const ChartFindings found = check_charts(mesh.view(), cut);
+    EXPECT_EQ(found.fault, "");
+    EXPECT_GT(hull_fill(cut), 0.72 * (1 - 1e-9));
+    EXPECT_LT(cut.charts.size(), 24u) << "no more than needed";
+  }
+}
+
+TEST(Limbs, EdgesOfACoarseMeshMayBeChords) {
+  // An L whose inner corner, place 4, is joined to no other place but its outer corner.
+  const std::vector<Vec2d> outline{{0, 0}, {0.7, 0}, {5, 0}, {5, 1}, {1, 1}, {1, 5}, {0, 5}};
+  const std::vector<std::array<std::uint32_t, 2>> edges{{0, 4}};
+  const auto across = [](const std::vector<Chord>& chords) {
+    return std::any_of(chords.begin(), chords.end(),
+                       [](const Chord& c) { return c.a == 4 && c.b == 0; });
+  };
+  EXPECT_FALSE(across(find_chords(outline, {}, 0.1)));
+  EXPECT_TRUE(across(find_chords(outline, edges, 0.1)));
 }
 
 TEST(Limbs, PiecesOfACurvedChartKeepToTheBound) {
