@@ -14,6 +14,18 @@ namespace {
 
 constexpr std::size_t kMaxText = std::size_t{1} << 33;  // a small gzip file can hold terabytes
 
+constexpr std::string_view kMark = "\xef\xbb\xbf";
+
+// Lines of old Macs, and of programs that keep to them, end by a carriage return. In files of both
+// worlds any mixture is found; only before a newline it is but a blank.
+void turn_returns(char* at, char* end) {
+  while ((at = static_cast<char*>(std::memchr(at, '\r', std::size_t(end - at))))) {
+    char* after = std::find_if(at, end, [](char c) { return c != '\r'; });
+    if (after == end || *after != '\n') std::fill(at, after, '\n');
+    at = after;
+  }
+}
+
 }  // namespace
 
 Result<FileBytes> read_file_bytes(const fs::path& path) {
@@ -52,17 +64,25 @@ Result<FileBytes> read_file_bytes(const fs::path& path) {
   return bytes;
 }
 
+bool begins_with_mark(const FileBytes& bytes) {
+  return bytes.text().starts_with(kMark);
+}
+
+Status turn_into_lines(FileBytes& bytes, const fs::path& path) {
+  const std::string_view text = bytes.text();
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
+    return {ErrorCode::unsupported,
+            fmt::format("{}: text in UTF-16 (save it as UTF-8)", path.string())};
+  }
+  if (begins_with_mark(bytes)) std::fill_n(bytes.data.get(), kMark.size(), ' ');
+  turn_returns(bytes.data.get(), bytes.data.get() + bytes.size);
+  return {};
+}
+
 Result<FileBytes> read_text_bytes(const fs::path& path) {
   auto bytes = read_file_bytes(path);
   if (!bytes.ok()) return bytes;
-  char* begin = bytes->data.get();
-  const std::string_view text = bytes->text();
-  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
-    return Status(ErrorCode::unsupported,
-                  fmt::format("{}: text in UTF-16 (save it as UTF-8)", path.string()));
-  }
-  if (text.starts_with("\xef\xbb\xbf")) std::fill_n(begin, 3, ' ');
-  if (text.find('\n') == text.npos) std::replace(begin, begin + text.size(), '\r', '\n');
+  if (Status s = turn_into_lines(*bytes, path); !s.ok()) return s;
   return bytes;
 }
 
@@ -72,6 +92,7 @@ Result<std::string> read_text_or_gzip(const fs::path& path) {
   std::string text;
   if (!bytes->text().starts_with("\x1f\x8b")) {
     text = bytes->text();
+    turn_returns(text.data(), text.data() + text.size());
     return text + '\n';
   }
   gzFile file = gzopen(path.c_str(), "rb");
@@ -91,6 +112,7 @@ Result<std::string> read_text_or_gzip(const fs::path& path) {
         ErrorCode::bad_input,
         fmt::format("{}: damaged or cut short gzip data (copy the file again)", path.string()));
   }
+  turn_returns(text.data(), text.data() + text.size());
   return text + '\n';
 }
 

@@ -25,12 +25,18 @@ struct FileBytes {
 // Errors: not_found; io (a directory, unreadable).
 Result<FileBytes> read_file_bytes(const std::filesystem::path& path);
 
-// The same for text: a byte order mark becomes blanks, and where lines end by a carriage return
-// alone, by a newline. Errors: the same, and unsupported for UTF-16.
+// Whether the bytes begin with the byte order mark of UTF-8, which some editors write.
+bool begins_with_mark(const FileBytes& bytes);
+
+// Prepares text for scanners of lines: a byte order mark becomes blanks, a carriage return that
+// ends a line alone a newline. Errors: unsupported for UTF-16.
+Status turn_into_lines(FileBytes& bytes, const std::filesystem::path& path);
+
+// Both at once.
 Result<FileBytes> read_text_bytes(const std::filesystem::path& path);
 
-// The text of a plain or gzipped file, followed by a newline. Errors: the same, and bad_input for
-// damaged gzip data or more than 8 GiB of text.
+// The text of a plain or gzipped file, in lines as above, followed by a newline. Errors: the same,
+// and bad_input for damaged gzip data or more than 8 GiB of text.
 Result<std::string> read_text_or_gzip(const std::filesystem::path& path);
 
 }  // namespace atlas

@@ -128,9 +128,9 @@ class Parser {
     std::int64_t v = 0, t = 0, normal = 0;
     bool has_t = false;
     if (!scan_.integer_here(v)) return false;
-    if (scan_.take('/')) {
+    if (scan_.take('/')) {  // what follows may be left out: v/, v// and v/vt/ are written, too
       has_t = scan_.integer_here(t);
-      if (scan_.take('/') && !scan_.integer_here(normal) && !has_t) return false;
+      if (scan_.take('/')) scan_.integer_here(normal);
     }
     if (!scan_.at_blank()) return false;
     chunk_.corner_position.push_back(

@@ -351,13 +351,19 @@ Status read_keyword(TextScanner& scan, const std::string& file, OffLayout& layou
 }  // namespace
 
 Status read_off(const fs::path& path, SceneBuilder& builder, const Context& context) {
-  auto bytes = read_text_bytes(path);
+  auto bytes = read_file_bytes(path);
   if (!bytes.ok()) return bytes.status();
   builder.objects.push_back({});
   builder.materials.push_back({});
   TextScanner scan(bytes->begin(), bytes->end());
   OffLayout layout;
-  if (Status s = read_keyword(scan, builder.file, layout); !s.ok()) return s;
+  const bool binary = read_keyword(scan, builder.file, layout).ok() && layout.binary;
+  if (!binary) {
+    if (Status s = turn_into_lines(*bytes, path); !s.ok()) return s;
+    scan = TextScanner(bytes->begin(), bytes->end());
+    layout = {};
+    if (Status s = read_keyword(scan, builder.file, layout); !s.ok()) return s;
+  }
   if (!layout.binary) return TextOff(*bytes, scan, layout, builder).run(context);
   const auto header = static_cast<std::size_t>(scan.position() - bytes->begin());
   return BinaryOff(bytes->text().substr(std::min(header, bytes->size)), layout, builder)

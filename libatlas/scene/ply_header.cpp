@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <optional>
 
@@ -24,6 +25,24 @@ std::optional<PlyType> type_named(std::string_view name) {
     if (entry.name == name) return entry.type;
   }
   return {};
+}
+
+// Rhinoceros 6 ends the lines of binary files by carriage returns alone. The first line tells: the
+// one behind `end_header` may be followed by data that begin with any byte, a newline's included.
+void turn_line_ends(FileBytes& bytes) {
+  char *line = bytes.data.get(), *end = line + bytes.size;
+  if (begins_with_mark(bytes)) std::fill_n(line, 3, ' ');
+  const auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
+  char* stop = std::find_if(line, end, ends_line);
+  if (*std::find_if(stop, end, [](char c) { return c != '\r'; }) == '\n') return;
+  bool ascii = false;
+  for (; stop != end; stop = std::find_if(line, end, ends_line)) {
+    const std::string_view text(line, std::size_t(stop - line));
+    ascii |= text.starts_with("format ascii");
+    *stop = '\n';
+    if (text.starts_with("end_header") && !ascii) return;
+    line = stop + 1;
+  }
 }
 
 class HeaderParser {
@@ -50,7 +69,7 @@ class HeaderParser {
         status = parse_property();
       } else if (keyword == "comment") {
         if (scan_.word() == "TextureFile") header_.texture_files.emplace_back(scan_.rest());
-      } else if (keyword != "obj_info" && !keyword.empty()) {
+      } else if (!carries_nothing(keyword)) {
         status =
             malformed(fmt::format("unknown keyword '{}' in the header", keyword.substr(0, 40)));
       }
@@ -64,6 +83,11 @@ class HeaderParser {
   }
 
  private:
+  // Blender 2.4 wrote the line `Created by Blender3D ...` without `comment` before it.
+  static bool carries_nothing(std::string_view keyword) {
+    return keyword.empty() || keyword == "obj_info" || keyword == "Created";
+  }
+
   Status malformed(std::string_view what) const {
     return {ErrorCode::bad_input,
             fmt::format("{}:{}: {} (is it a PLY file? export it again)", file_, line_ + 1, what)};
@@ -142,7 +166,8 @@ std::size_t PlyElement::least_bytes(PlyFormat format) const {
   return bytes;
 }
 
-Result<PlyHeader> read_ply_header(const FileBytes& bytes, const std::string& file) {
+Result<PlyHeader> read_ply_header(FileBytes& bytes, const std::string& file) {
+  turn_line_ends(bytes);
   return HeaderParser(bytes, file).run();
 }
 

@@ -43,7 +43,8 @@ struct PlyHeader {
   std::uint32_t lines = 0;
 };
 
-// Errors: bad_input, naming the line.
-Result<PlyHeader> read_ply_header(const FileBytes& bytes, const std::string& file);
+// Where the header's lines end by carriage returns alone, it turns them into newlines, and those of
+// an ascii file's data with them. Errors: bad_input, naming the line.
+Result<PlyHeader> read_ply_header(FileBytes& bytes, const std::string& file);
 
 }  // namespace atlas

@@ -239,7 +239,15 @@ class PlyParser {
     return {};
   }
 
+  // Files without any vertex have none after the faces either.
+  bool vertices_follow() const {
+    const PlyElement* end = header_.elements.data() + header_.elements.size();
+    return std::any_of(element_ + 1, end,
+                       [](const PlyElement& e) { return e.name == "vertex" && e.count > 0; });
+  }
+
   Status read_faces(const Context& context) {
+    if (element_->count == 0) return {};
     int list = element_->find("vertex_indices");
     if (list < 0) list = element_->find("vertex_index");
     if (list < 0 || !element_->properties[list].list) {
@@ -247,7 +255,7 @@ class PlyParser {
           ErrorCode::bad_input,
           fmt::format("{}: its faces have no list vertex_indices (export faces)", builder_.file)};
     }
-    if (builder_.positions.empty()) {
+    if (builder_.positions.empty() && vertices_follow()) {
       return {ErrorCode::unsupported,
               fmt::format("{}: faces come before vertices (export vertices first)", builder_.file)};
     }

@@ -262,6 +262,7 @@ bool is_text(const FileBytes& bytes) {
     if (bytes.size == kHeader + kRecord * std::uint64_t{count}) return false;
   }
   std::string_view text = bytes.text();
+  if (begins_with_mark(bytes)) text.remove_prefix(3);
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
   return same_word(text.substr(0, 5), "solid") &&
          text.substr(0, 2 * kHeader).find('\0') == text.npos;
@@ -273,8 +274,9 @@ Status read_stl(const fs::path& path, SceneBuilder& builder, const Context& cont
   auto bytes = read_file_bytes(path);
   if (!bytes.ok()) return bytes.status();
   builder.materials.push_back({});
-  if (is_text(*bytes)) return TextStl(*bytes, builder).run(context);
-  return read_binary(*bytes, builder, context);
+  if (!is_text(*bytes)) return read_binary(*bytes, builder, context);
+  if (Status s = turn_into_lines(*bytes, path); !s.ok()) return s;
+  return TextStl(*bytes, builder).run(context);
 }
 
 }  // namespace atlas

@@ -37,7 +37,7 @@ const Case kCases[] = {
     {"word.obj", "\n\nv 0 zero 0\n", ErrorCode::bad_input, "word.obj:3: 'zero'"},
     {"comma.obj", "v 0,5 0 0\n", ErrorCode::bad_input, "comma.obj:1: '0,5'"},
     {"corner.obj", "v 0 0 0\nf 1/ /2 3\n", ErrorCode::bad_input, "corner.obj:2:"},
-    {"slashes.obj", "v 0 0 0\nf 1// 1 1\n", ErrorCode::bad_input, "slashes.obj:2:"},
+    {"slashes.obj", "v 0 0 0\nf 1/// 1 1\n", ErrorCode::bad_input, "slashes.obj:2:"},
     {"float_index.obj", "v 0 0 0\nf 1.5 1 1\n", ErrorCode::bad_input, "float_index.obj:2:"},
     {"cut.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2", ErrorCode::bad_input, "cut.obj:5:"},
     {"empty_vt.obj", "vt\n", ErrorCode::bad_input, "empty_vt.obj:1:"},
@@ -77,6 +77,13 @@ const Case kCases[] = {
     {"faceless.ply",
      kPly + "element vertex 1\n" + kXyz + "element face 1\nproperty int a\nend_header\n0 0 0\n1\n",
      ErrorCode::bad_input, "no list vertex_indices"},
+    {"hollow.ply",
+     kPly + "element face 0\nproperty int a\nelement vertex 0\n" + kXyz + "end_header\n",
+     ErrorCode::bad_input, "holds no face"},
+    {"early.ply",
+     kPly + "element face 1\nproperty list uchar int vertex_indices\nelement vertex 1\n" + kXyz +
+         "end_header\n3 0 0 0\n0 0 0\n",
+     ErrorCode::unsupported, "faces come before vertices"},
     {"list.ply",
      kPly + "element vertex 1\n" + kXyz +
          "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n-1 0 0\n",
