@@ -5,111 +5,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-
 #include <cstring>
+#include <stdexcept>
 
 #include "libatlas/scene/file_bytes.h"
+#include "libatlas/scene/gltf_check.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::string_view kUnderstood[] = {"KHR_materials_unlit", "KHR_mesh_quantization",
-                                            "KHR_texture_transform"};
-
 // What the file callbacks of tinygltf are given.
 struct Folder {
   fs::path path;
-  std::vector<fs::path>& buffers;  // that were read
-  Status status;                   // of the first one that could not be
+  std::vector<fs::path>& buffers;    // that were read
+  const std::vector<double>& bytes;  // of each buffer in a file, in their order
+  Status status;                     // of the first one that could not be
+  std::size_t read = 0;
 };
-
-Status malformed(const fs::path& path, const std::string& what) {
-  return {ErrorCode::bad_input,
-          fmt::format("{}: {} (check it with a glTF validator)", path.string(), what)};
-}
-
-std::uint32_t word_at(std::string_view bytes, std::size_t at) {
-  std::uint32_t word;
-  std::memcpy(&word, bytes.data() + at, 4);
-  return word;
-}
-
-// The JSON of a GLB container whose chunks all lie inside the file (tinygltf's own check of the
-// binary chunk forgets the chunk's header).
-Result<std::string_view> glb_json(const fs::path& path, std::string_view bytes) {
-  if (bytes.size() < 20) return malformed(path, "too short for a GLB file");
-  if (word_at(bytes, 4) != 2) {
-    return malformed(path, fmt::format("GLB version {}, not 2", word_at(bytes, 4)));
-  }
-  const std::size_t length = word_at(bytes, 8), json = word_at(bytes, 12);
-  if (length > bytes.size()) {
-    return malformed(
-        path, fmt::format("cut short: it announces {} bytes and has {}", length, bytes.size()));
-  }
-  if (20 + json > length) return malformed(path, "its JSON chunk is longer than the file");
-  const std::size_t binary = 20 + json;
-  if (binary + 8 <= length && binary + 8 + word_at(bytes, binary) > length) {
-    return malformed(path, "its binary chunk is longer than the file");
-  }
-  return bytes.substr(20, json);
-}
-
-std::int64_t integer(const nlohmann::json& object, const char* key, std::int64_t absent) {
-  const auto at = object.find(key);
-  return at != object.end() && at->is_number_integer() ? at->get<std::int64_t>() : absent;
-}
-
-// tinygltf takes the address of an embedded image's first byte without a look at the ranges.
-bool image_views_fit(const nlohmann::json& json) {
-  const auto element = [&](const char* array, std::int64_t i) -> const nlohmann::json* {
-    const auto at = json.find(array);
-    if (at == json.end() || !at->is_array() || i < 0 || std::size_t(i) >= at->size())
-      return nullptr;
-    return (*at)[i].is_object() ? &(*at)[i] : nullptr;
-  };
-  const auto images = json.find("images");
-  if (images == json.end() || !images->is_array()) return true;
-  for (const auto& image : *images) {
-    if (!image.is_object() || !image.contains("bufferView")) continue;
-    const auto* view = element("bufferViews", integer(image, "bufferView", -1));
-    const auto* buffer = view ? element("buffers", integer(*view, "buffer", -1)) : nullptr;
-    if (!buffer) return false;
-    const std::int64_t offset = integer(*view, "byteOffset", 0);
-    const std::int64_t length = integer(*view, "byteLength", -1);
-    if (offset < 0 || length < 1 || length > integer(*buffer, "byteLength", -1) - offset)
-      return false;
-  }
-  return true;
-}
-
-Status check_json(const fs::path& path, std::string_view text) {
-  nlohmann::json json;
-  try {
-    json = nlohmann::json::parse(text);
-  } catch (const nlohmann::json::parse_error& error) {
-    const auto line =
-        1 + std::count(text.begin(), text.begin() + std::min(error.byte, text.size()), '\n');
-    return {ErrorCode::bad_input,
-            fmt::format("{}:{}: not valid JSON (export the file again)", path.string(), line)};
-  }
-  if (!json.is_object()) return malformed(path, "its JSON is not an object");
-  const auto required = json.find("extensionsRequired");
-  if (required != json.end() && required->is_array()) {
-    for (const auto& name : *required) {
-      const std::string extension = name.is_string() ? name.get<std::string>() : name.dump();
-      if (std::find(std::begin(kUnderstood), std::end(kUnderstood), extension) !=
-          std::end(kUnderstood)) {
-        continue;
-      }
-      return {ErrorCode::unsupported,
-              fmt::format("{}: needs the extension {}, which is not supported (export without it)",
-                          path.string(), extension)};
-    }
-  }
-  if (!image_views_fit(json)) return malformed(path, "an embedded image leaves its buffer");
-  return {};
-}
 
 // Embedded images stay encoded; tinygltf has already put data URIs into `bytes`.
 bool keep_image(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
@@ -127,6 +40,11 @@ bool read_buffer(std::vector<unsigned char>* out, std::string*, const std::strin
     return false;
   }
   out->assign(bytes->begin(), bytes->end());
+  // A file may be longer than its buffer; tinygltf wants the same.
+  const std::size_t index = folder.read++;
+  if (index < folder.bytes.size() && folder.bytes[index] < double(out->size())) {
+    out->resize(static_cast<std::size_t>(folder.bytes[index]));
+  }
   folder.buffers.emplace_back(name);
   return true;
 }
@@ -159,6 +77,24 @@ Callbacks file_access(Folder& folder) {
   if constexpr (requires { access.GetFileSizeInBytes; }) access.GetFileSizeInBytes = any_size;
   access.user_data = &folder;
   return access;
+}
+
+// The same file with its chunks padded as they should be, and an empty one left out.
+std::string plain_glb(const GltfParts& parts) {
+  const auto padded = [](std::string_view bytes, char with) {
+    std::string result(bytes);
+    result.resize((result.size() + 3) / 4 * 4, with);
+    return result;
+  };
+  const auto chunk = [](const std::string& bytes, const char* kind) {
+    const auto size = static_cast<std::uint32_t>(bytes.size());
+    std::string result(reinterpret_cast<const char*>(&size), 4);
+    return result.append(kind, 4) + bytes;
+  };
+  std::string result = chunk(padded(parts.json, ' '), "JSON");
+  if (!parts.binary.empty()) result += chunk(padded(parts.binary, '\0'), "BIN");
+  const std::uint32_t header[2] = {2, static_cast<std::uint32_t>(12 + result.size())};
+  return "glTF" + std::string(reinterpret_cast<const char*>(header), 8) + result;
 }
 
 std::string first_line(const std::string& text) {
@@ -304,30 +240,30 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, std::vector<fs::path>& b
   if (bytes->size > 0xffffffffu) {
     return Status(ErrorCode::unsupported, path.string() + ": larger than 4 GiB (split the scene)");
   }
-  const bool binary = bytes->text().starts_with("glTF");
-  std::string_view json = bytes->text();
-  if (binary) {
-    auto chunk = glb_json(path, bytes->text());
-    if (!chunk.ok()) return chunk.status();
-    json = *chunk;
-  }
-  if (Status s = check_json(path, json); !s.ok()) return s;
+  const auto parts = check_gltf(path, bytes->text());
+  if (!parts.ok()) return parts.status();
+  const std::string rebuilt = parts->plain ? std::string() : plain_glb(*parts);
+  const std::string_view data = parts->plain ? bytes->text() : std::string_view(rebuilt);
 
   tinygltf::TinyGLTF loader;
-  Folder folder{path.parent_path(), buffers, {}};
+  Folder folder{path.parent_path(), buffers, parts->external_bytes, {}};
   loader.SetImageLoader(keep_image, nullptr);
   loader.SetFsCallbacks(file_access<tinygltf::FsCallbacks>(folder));
   tinygltf::Model model;
   std::string error, warning;
-  const auto size = static_cast<unsigned>(bytes->size);
+  const auto size = static_cast<unsigned>(data.size());
   const std::string base = folder.path.empty() ? "." : folder.path.string();
-  const bool loaded =
-      binary ? loader.LoadBinaryFromMemory(&model, &error, &warning,
-                                           reinterpret_cast<const unsigned char*>(bytes->begin()),
-                                           size, base)
-             : loader.LoadASCIIFromString(&model, &error, &warning, bytes->begin(), size, base);
+  const auto* raw = reinterpret_cast<const unsigned char*>(data.data());
+  bool loaded = false;
+  try {
+    loaded = parts->container
+                 ? loader.LoadBinaryFromMemory(&model, &error, &warning, raw, size, base)
+                 : loader.LoadASCIIFromString(&model, &error, &warning, data.data(), size, base);
+  } catch (const std::out_of_range& exception) {  // where it trusts an index
+    error = exception.what();
+  }
   if (!folder.status.ok()) return folder.status;
-  if (!loaded) return malformed(path, error.empty() ? "not a glTF file" : first_line(error));
+  if (!loaded) return malformed_gltf(path, error.empty() ? "not a glTF file" : first_line(error));
   return model;
 }
 

@@ -2,72 +2,49 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <glm/gtc/quaternion.hpp>
 #include <glm/mat4x4.hpp>
 #include <map>
 
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/scene/formats.h"
 #include "libatlas/scene/gltf_file.h"
+#include "libatlas/scene/gltf_materials.h"
+#include "libatlas/scene/gltf_pose.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kMaxDepth = 512;  // of nested nodes: deeper ones are a cycle
+constexpr int kMaxDepth = 512;  // of nested nodes
+
+// Of nodes, those of several parents counted at each: a hundred of them can stand for 2^100.
+constexpr std::size_t kMaxVisits = std::size_t{1} << 20;
 
 Vec3f three(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
-glm::dmat4 local_matrix(const tinygltf::Node& node) {
-  glm::dmat4 m(1);
-  if (node.matrix.size() == 16) {
-    for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = node.matrix[i];
-    return m;
-  }
-  if (node.rotation.size() == 4) {
-    const auto& q = node.rotation;
-    m = glm::mat4_cast(glm::normalize(glm::dquat(q[3], q[0], q[1], q[2])));
-  }
-  if (node.scale.size() == 3) {
-    for (int c = 0; c < 3; ++c) m[c] *= node.scale[c];
-  }
-  if (node.translation.size() == 3) {
-    m[3] = {node.translation[0], node.translation[1], node.translation[2], 1};
-  }
-  return m;
-}
-
-// File names in URIs are percent-encoded.
-std::string decode_uri(const std::string& uri) {
-  std::string name;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    int code = 0;
-    if (uri[i] == '%' && i + 2 < uri.size() &&
-        std::from_chars(&uri[i + 1], &uri[i + 1] + 2, code, 16).ptr == &uri[i + 1] + 2) {
-      name += static_cast<char>(code);
-      i += 2;
-    } else {
-      name += uri[i];
-    }
-  }
-  return name;
-}
-
 class GltfParser {
  public:
   GltfParser(const tinygltf::Model& model, SceneBuilder& builder, const Context& context)
-      : model_(model), builder_(builder), context_(context) {}
+      : model_(model), builder_(builder), context_(context), pose_(model) {}
 
   Status run() {
-    if (Status s = add_textures(); !s.ok()) return s;
-    add_materials();
+    auto sets = add_gltf_materials(model_, builder_);
+    if (!sets.ok()) return sets.status();
+    texcoord_set_ = std::move(*sets);
+    on_path_.assign(model_.nodes.size(), false);
     for (const int node : roots()) {
       if (Status s = add_node(node, glm::dmat4(1), 0); !s.ok()) return s;
     }
+    if (model_.nodes.empty()) {  // a library of meshes
+      for (std::size_t i = 0; i < model_.meshes.size(); ++i) {
+        tinygltf::Node node;
+        node.mesh = static_cast<int>(i);
+        if (Status s = add_mesh(node, glm::dmat4(1)); !s.ok()) return s;
+      }
+    }
+    if (builder_.objects.empty()) return nothing_shown();
     if (coloured_ != 0) finish_values();
     builder_.check_positions(
         [&](std::size_t i) { return fmt::format("{}: vertex {}", builder_.file, i); });
@@ -89,76 +66,14 @@ class GltfParser {
             fmt::format("{}: {}: {} (check it with a glTF validator)", builder_.file, where, what)};
   }
 
-  Status add_textures() {
-    const fs::path folder = fs::path(builder_.file).parent_path();
-    for (std::size_t i = 0; i < model_.images.size(); ++i) {
-      const tinygltf::Image& image = model_.images[i];
-      RawTexture texture;
-      texture.place = fmt::format("{}: image {}", builder_.file, i);
-      texture.path = image.uri.empty() ? fs::path(texture.place) : folder / decode_uri(image.uri);
-      texture.bytes = image.image;
-      if (image.bufferView >= 0) {
-        auto bytes = gltf_view(model_, image.bufferView);
-        if (!bytes.ok()) return malformed(fmt::format("image {}", i), bytes.status().message());
-        texture.bytes.assign(bytes->begin(), bytes->end());
-      }
-      builder_.textures.push_back(std::move(texture));
-    }
-    return {};
-  }
-
-  void add_materials() {
-    for (std::size_t i = 0; i < model_.materials.size(); ++i) {
-      const tinygltf::Material& m = model_.materials[i];
-      const auto& pbr = m.pbrMetallicRoughness;
-      RawMaterial material;
-      material.name = m.name.empty() ? fmt::format("material{}", i) : m.name;
-      if (pbr.baseColorFactor.size() >= 3) {
-        material.diffuse = {float(pbr.baseColorFactor[0]), float(pbr.baseColorFactor[1]),
-                            float(pbr.baseColorFactor[2])};
-      }
-      const int texture = pbr.baseColorTexture.index;
-      texcoord_set_.push_back(texcoord_set(pbr.baseColorTexture));
-      if (texture >= 0 && std::size_t(texture) < model_.textures.size()) {
-        const int source = model_.textures[texture].source;
-        if (source >= 0 && std::size_t(source) < builder_.textures.size())
-          material.texture = source;
-      }
-      add_transform(pbr.baseColorTexture, material);
-      builder_.materials.push_back(std::move(material));
-    }
-    builder_.materials.push_back({});  // for primitives without one
-    texcoord_set_.push_back(0);
-  }
-
-  // KHR_texture_transform may name another set than its texture does.
-  static int texcoord_set(const tinygltf::TextureInfo& info) {
-    const auto at = info.extensions.find("KHR_texture_transform");
-    const bool given =
-        at != info.extensions.end() && at->second.IsObject() && at->second.Get("texCoord").IsInt();
-    return given ? at->second.Get("texCoord").GetNumberAsInt() : info.texCoord;
-  }
-
-  // KHR_texture_transform acts on v pointing down; here v points up: v' = 1 - (s (1 - v) + o).
-  void add_transform(const tinygltf::TextureInfo& info, RawMaterial& material) {
-    const auto at = info.extensions.find("KHR_texture_transform");
-    if (at == info.extensions.end() || !at->second.IsObject()) return;
-    const auto pair = [&](const char* key, double absent) {
-      std::array<double, 2> result{absent, absent};
-      const tinygltf::Value& value = at->second.Get(key);
-      for (int i = 0; i < 2 && value.IsArray() && value.ArrayLen() == 2; ++i) {
-        if (value.Get(i).IsNumber()) result[i] = value.Get(i).GetNumberAsDouble();
-      }
-      return result;
-    };
-    const auto scale = pair("scale", 1), offset = pair("offset", 0);
-    material.uv_scale = scale;
-    material.uv_offset = {offset[0], 1 - scale[1] - offset[1]};
-    if (at->second.Has("rotation")) {
-      builder_.defects.add(DefectKind::texture_option_ignored, [&] {
-        return fmt::format("{}: material '{}': texture rotation", builder_.file, material.name);
-      });
-    }
+  Status nothing_shown() const {
+    const std::string why =
+        model_.meshes.empty() ? "it holds no mesh"
+                              : fmt::format("scene {} shows none of its {} meshes",
+                                            std::max(0, model_.defaultScene), model_.meshes.size());
+    return {ErrorCode::bad_input,
+            fmt::format("{}: no triangle to work on: {} (export the scene as a triangle mesh)",
+                        builder_.file, why)};
   }
 
   // Of the default scene; of all nodes that are nobody's child where the file has no scene.
@@ -183,13 +98,14 @@ class GltfParser {
     if (index < 0 || std::size_t(index) >= model_.nodes.size()) {
       return malformed(where, "does not exist");
     }
-    // A node has one parent; meeting it again means a cycle or a shared child, and both are wrong.
-    visited_.resize(model_.nodes.size(), false);
-    if (visited_[index] || depth > kMaxDepth) return malformed(where, "the nodes form no tree");
-    visited_[index] = true;
+    // A node should have one parent; one of several is shown at each, as most programs do.
+    if (on_path_[index] || depth > kMaxDepth || ++visits_ > kMaxVisits) {
+      return malformed(where, "the nodes form no tree");
+    }
     if (context_.cancelled()) return Status::cancelled();
+    on_path_[index] = true;
     const tinygltf::Node& node = model_.nodes[index];
-    const glm::dmat4 matrix = parent * local_matrix(node);
+    const glm::dmat4 matrix = parent * gltf_local_matrix(node);
     if (node.mesh >= 0) {
       if (std::size_t(node.mesh) >= model_.meshes.size()) {
         return malformed(where, "names a mesh that does not exist");
@@ -199,6 +115,7 @@ class GltfParser {
     for (const int child : node.children) {
       if (Status s = add_node(child, matrix, depth + 1); !s.ok()) return s;
     }
+    on_path_[index] = false;
     return {};
   }
 
@@ -207,13 +124,15 @@ class GltfParser {
     const auto object = static_cast<std::uint32_t>(builder_.objects.size());
     builder_.objects.push_back(!node.name.empty() ? node.name : mesh.name);
     // Primitives often share one set of vertices and differ in their indices and materials.
-    std::map<std::map<std::string, int>, std::pair<std::size_t, std::size_t>> shared;
+    using Attributes = std::map<std::string, int>;
+    std::map<std::pair<Attributes, std::vector<Attributes>>, std::pair<std::size_t, std::size_t>>
+        shared;
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
       const tinygltf::Primitive& raw = mesh.primitives[p];
       Primitive primitive;
       primitive.name = fmt::format("mesh {} primitive {}", node.mesh, p);
       primitive.object = object;
-      primitive.mirrored = glm::determinant(glm::dmat3(matrix)) < 0;
+      primitive.mirrored = pose_.mirrors(node, raw, matrix);
       primitive.material = raw.material >= 0 && std::size_t(raw.material) < model_.materials.size()
                                ? static_cast<std::uint32_t>(raw.material)
                                : static_cast<std::uint32_t>(model_.materials.size());
@@ -225,10 +144,10 @@ class GltfParser {
         });
         continue;
       }
-      const auto [at, is_new] =
-          shared.try_emplace(raw.attributes, builder_.positions.size(), std::size_t{0});
+      const auto [at, is_new] = shared.try_emplace({raw.attributes, raw.targets},
+                                                   builder_.positions.size(), std::size_t{0});
       if (is_new) {
-        if (Status s = add_vertices(raw, matrix, primitive.name); !s.ok()) return s;
+        if (Status s = add_vertices(node, raw, matrix, primitive.name); !s.ok()) return s;
         at->second.second = builder_.positions.size() - at->second.first;
       }
       primitive.base = at->second.first;
@@ -239,28 +158,38 @@ class GltfParser {
     return {};
   }
 
+  // A file that has no other vertices should say that it requires the extension; not all do.
+  bool attributes_are_compressed(const tinygltf::Primitive& raw) const {
+    const auto position = static_cast<std::size_t>(attribute(raw, "POSITION"));
+    return raw.extensions.contains("KHR_draco_mesh_compression") &&
+           position < model_.accessors.size() && model_.accessors[position].bufferView < 0;
+  }
+
   static int attribute(const tinygltf::Primitive& raw, const std::string& name) {
     const auto at = raw.attributes.find(name);
     return at == raw.attributes.end() ? -1 : at->second;
   }
 
-  Status add_vertices(const tinygltf::Primitive& raw, const glm::dmat4& matrix,
-                      const std::string& where) {
+  Status add_vertices(const tinygltf::Node& node, const tinygltf::Primitive& raw,
+                      const glm::dmat4& matrix, const std::string& where) {
     if (attribute(raw, "POSITION") < 0) return malformed(where, "has no POSITION");
-    auto positions = gltf_floats(model_, attribute(raw, "POSITION"), 3);
-    if (!positions.ok()) return malformed(where, positions.status().message());
-    const std::size_t count = positions->size() / 3, base = builder_.positions.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      const glm::dvec4 p = matrix * glm::dvec4(to_dvec(three(*positions, i)), 1);
-      builder_.positions.push_back({p.x, p.y, p.z});
+    if (attributes_are_compressed(raw)) {
+      return {ErrorCode::unsupported,
+              fmt::format("{}: {} holds nothing but KHR_draco_mesh_compression, which is not "
+                          "supported (export without it)",
+                          builder_.file, where)};
     }
+    auto positions = pose_.positions(node, raw, matrix);
+    if (!positions.ok()) return malformed(where, positions.status().message());
+    const std::size_t count = positions->size(), base = builder_.positions.size();
+    for (const glm::dvec3& p : *positions) builder_.positions.push_back(from_glm(p));
     int values = attribute(raw, "_ILLUMINANCE");
     if (values < 0) values = attribute(raw, "COLOR_0");
     builder_.illumination.resize(base + count, {NAN, NAN, NAN});
     if (values < 0) return {};
     auto light = gltf_floats(model_, values, 3);
     if (!light.ok()) return malformed(where, light.status().message());
-    if (light->size() != positions->size()) {
+    if (light->size() != 3 * count) {
       return malformed(where, "has another number of colours than of positions");
     }
     for (std::size_t i = 0; i < count; ++i) builder_.illumination[base + i] = three(*light, i);
@@ -366,7 +295,9 @@ class GltfParser {
   SceneBuilder& builder_;
   const Context& context_;
   std::vector<int> texcoord_set_;  // 1 a material
-  std::vector<bool> visited_;
+  GltfPose pose_;
+  std::vector<bool> on_path_;  // 1 a node: from the root to the one at hand
+  std::size_t visits_ = 0;
   std::map<int, std::pair<std::size_t, std::size_t>> texcoords_;  // by accessor: first, count
   std::vector<Primitive> primitives_;
   std::vector<std::pair<std::size_t, std::size_t>> lit_ranges_;  // of vertices, ascending

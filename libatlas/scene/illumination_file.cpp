@@ -63,6 +63,7 @@ Result<std::vector<Vec3f>> read_values(const fs::path& path, const Context& cont
 
 Status read_illumination(const fs::path& path, SceneBuilder& builder, const Context& context) {
   SceneBuilder other(path);
+  other.wants_textures = false;
   auto values = read_values(path, context, other);
   if (!values.ok()) return values.status();
   if (values->size() != builder.positions.size()) {

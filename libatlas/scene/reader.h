@@ -17,7 +17,8 @@ struct ReadOptions {
   // Takes the illumination from this file instead: OBJ, PLY, OFF or glTF with the same vertices in
   // the same order, or plain text with one `r g b` (or one grey value) a line.
   std::filesystem::path illumination_file;
-  bool load_textures = true;  // false: materials have their diffuse colour only
+  bool load_textures = true;   // false: materials have their diffuse colour only
+  bool unlit_textures = true;  // false: the same where the scene carries no illumination
 };
 
 struct LoadedScene {

@@ -159,12 +159,21 @@ void SceneBuilder::move_texcoords() {
   }
 }
 
+// What is not there is found missing here: to ask for it would load a big library.
+Result<Image8> SceneBuilder::load_texture(const RawTexture& raw) const {
+  if (!raw.bytes.empty()) return decode_image8(raw.bytes, raw.path.string());
+  std::error_code error;
+  if (std::filesystem::status(raw.path, error).type() == std::filesystem::file_type::not_found) {
+    return Status(ErrorCode::not_found, raw.path.string());
+  }
+  return read_image8(raw.path);
+}
+
 void SceneBuilder::load_textures(Scene& scene) {
   std::vector<std::int32_t> loaded(textures.size(), -1);
   for (std::size_t i = 0; i < textures.size(); ++i) {
     const RawTexture& raw = textures[i];
-    auto image =
-        raw.bytes.empty() ? read_image8(raw.path) : decode_image8(raw.bytes, raw.path.string());
+    auto image = load_texture(raw);
     if (image.ok()) {
       loaded[i] = static_cast<std::int32_t>(scene.textures.size());
       scene.textures.push_back({raw.path, std::move(*image)});
@@ -203,7 +212,9 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   keep_used(scene);
   move_texcoords();
   for (const RawMaterial& m : materials) scene.materials.push_back({m.name, m.diffuse, -1});
-  if (options.load_textures) load_textures(scene);
+  if (options.load_textures && (options.unlit_textures || !illumination.empty())) {
+    load_textures(scene);
+  }
   scene.indices = std::move(indices_);
   if (any_texcoord_) scene.texcoord_indices = std::move(texcoord_indices_);
   scene.texcoords = std::move(texcoords);

@@ -56,6 +56,7 @@ class SceneBuilder {
   std::vector<RawTexture> textures;
   std::vector<std::string> objects;
   DefectReport defects;
+  bool wants_textures = true;                // false: `textures` need not hold any bytes
   std::vector<std::filesystem::path> files;  // LoadedScene::files
 
   // What the next faces belong to.
@@ -143,6 +144,7 @@ class SceneBuilder {
   void keep_used(Scene& scene);
   void move_texcoords();
   void load_textures(Scene& scene);
+  Result<Image8> load_texture(const RawTexture& raw) const;
 
   bool all_usable_ = true, any_texcoord_ = false;
   std::vector<std::uint32_t> indices_, texcoord_indices_, triangle_material_, triangle_object_;

@@ -135,5 +135,194 @@ TEST(Gltf, TexturesMayNameASetAndATurn) {
   EXPECT_EQ(loaded->defects.count(DefectKind::texture_option_ignored), 1u);
 }
 
+// A file without nodes is a library: each mesh once, as it is.
+TEST(Gltf, MeshesWithoutNodes) {
+  const TempFolder folder;
+  for (const bool empty_scene : {false, true}) {
+    Gltf g;
+    const int positions = g.floats(kSquare, "VEC3", 3);
+    g.single({{"attributes", {{"POSITION", positions}}},
+              {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3})}});
+    g.j["meshes"].push_back(g.j["meshes"][0]);
+    g.j["meshes"][1]["name"] = "second";
+    g.j.erase("nodes");
+    g.j.erase("scene");
+    g.j.erase("scenes");
+    if (empty_scene) g.j["scenes"] = {json::object()};
+    const auto loaded = load_glb(folder, g);
+    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+    EXPECT_EQ(loaded->scene.triangle_count(), 4u);
+    EXPECT_EQ(loaded->scene.object_names, (std::vector<std::string>{"", "second"}));
+  }
+}
+
+// Some exporters share a node between parents, which the format forbids and viewers show.
+TEST(Gltf, NodesOfSeveralParents) {
+  const TempFolder folder;
+  Gltf g;
+  const int positions = g.floats(kSquare, "VEC3", 3);
+  g.single({{"attributes", {{"POSITION", positions}}},
+            {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3})}});
+  g.j["nodes"].push_back({{"children", {0}}, {"translation", {0, 0, 1}}});
+  g.j["nodes"].push_back({{"children", {0}}, {"scale", {2, 2, 2}}});
+  g.j["scenes"][0]["nodes"] = {1, 2};
+  const auto loaded = load_glb(folder, g);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  ASSERT_EQ(loaded->scene.positions.size(), 8u);
+  EXPECT_EQ(loaded->scene.positions[2], (Vec3f{1, 1, 1}));
+  EXPECT_EQ(loaded->scene.positions[6], (Vec3f{2, 2, 0}));
+  // A ladder of 60 nodes with both feet on the next one stands for 2^60.
+  for (int i = 3; i < 63; ++i) g.j["nodes"].push_back({{"children", {i + 1, i + 1}}});
+  g.j["nodes"].push_back({{"mesh", 0}});
+  g.j["scenes"][0]["nodes"] = {3};
+  const auto ladder = load_glb(folder, g);
+  EXPECT_EQ(ladder.status().code(), ErrorCode::bad_input);
+}
+
+// The node of a skinned mesh is moved by its joints alone; weights need not add up to 1.
+TEST(Gltf, SkinsAndMorphTargetsAtRest) {
+  const TempFolder folder;
+  for (const bool mirrored : {false, true}) {
+    Gltf g;
+    const int positions = g.floats(kSquare, "VEC3", 3);
+    const int up = g.floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3);
+    const int joints = g.accessor(
+        {{"bufferView",
+          g.view(std::vector<std::uint8_t>{0, 9, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 7, 0, 0, 0})},
+         {"componentType", 5121},
+         {"type", "VEC4"},
+         {"count", 4}});
+    const int weights = g.floats({1, 1, 0, 0, 0.5, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0}, "VEC4", 4);
+    const int inverse = g.floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1,  //
+                                  1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1},
+                                 "MAT4", 16);
+    g.single(
+        {{"attributes", {{"POSITION", positions}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}},
+         {"targets", json::array({{{"POSITION", up}}, {{"POSITION", up}}})},
+         {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3})}});
+    g.j["meshes"][0]["weights"] = {0.5, 0};
+    g.j["skins"] = {{{"joints", {1, 3}}, {"inverseBindMatrices", inverse}}};
+    g.j["nodes"][0]["skin"] = 0;
+    g.j["nodes"][0]["translation"] = {100, 100, 100};
+    g.j["nodes"].push_back({{"translation", {0, 2, 0}}});
+    g.j["nodes"].push_back({{"children", {1, 3}}, {"scale", {mirrored ? -1 : 1, 1, 1}}});
+    g.j["nodes"].push_back({{"translation", {0, 0, 4}}});
+    g.j["scenes"][0]["nodes"] = {0, 2};
+    const auto loaded = load_glb(folder, g);
+    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+    const Scene& s = loaded->scene;
+    const float side = mirrored ? -1 : 1;
+    const std::vector<Vec3f> wanted{
+        {-side, 2, .5f}, {side, 0, 4.5f}, {side / 2, 2, 2.5f}, {-side, 3, .5f}};
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      const Vec3f p = s.positions[i];
+      EXPECT_EQ(Vec3f({float(s.origin.x + p.x), float(s.origin.y + p.y), float(s.origin.z + p.z)}),
+                wanted[i])
+          << i;
+    }
+    EXPECT_EQ(s.indices[0], mirrored ? 2u : 0u);
+  }
+}
+
+// An older model of shading, and an image in a format that glTF itself does not know.
+TEST(Gltf, DiffuseColoursOfExtensions) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());
+  Gltf g;
+  const int positions = g.floats(kSquare, "VEC3", 3);
+  const int uvs = g.floats({0, 0, 1, 0, 1, 1, 0, 1}, "VEC2", 2);
+  g.j["extensionsRequired"] = {"KHR_materials_pbrSpecularGlossiness", "EXT_texture_webp"};
+  g.j["images"] = {{{"uri", "a.png"}}};
+  g.j["textures"] = {{{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}};
+  const json info = {{"index", 0},
+                     {"extensions", {{"KHR_texture_transform", {{"scale", {2, 1}}}}}}};
+  g.j["materials"] = {{{"extensions",
+                        {{"KHR_materials_pbrSpecularGlossiness",
+                          {{"diffuseFactor", {0.5, 0.25, 1, 1}}, {"diffuseTexture", info}}}}}}};
+  g.single({{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}}},
+            {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})},
+            {"material", 0}});
+  const auto loaded = load_glb(folder, g);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  const Scene& s = loaded->scene;
+  EXPECT_EQ(s.materials[0].diffuse, (Vec3f{0.5f, 0.25f, 1}));
+  EXPECT_EQ(s.materials[0].texture, 0);
+  EXPECT_EQ(s.textures.size(), 1u);
+  EXPECT_EQ(s.texcoords[s.texcoord_indices[1]], (Vec2f{2, 1}));
+}
+
+// Chunks without padding or bytes, of other kinds, and buffer files longer than their buffer.
+TEST(Gltf, ContainersThatManyWrite) {
+  const TempFolder folder;
+  Gltf g;
+  g.single({{"attributes", {{"POSITION", g.floats(kSquare, "VEC3", 3)}}},
+            {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})}});
+  folder.write("a.bin", g.bytes + "more");
+  const auto word = [](std::size_t v) {
+    const auto bits = std::uint32_t(v);
+    return std::string(reinterpret_cast<const char*>(&bits), 4);
+  };
+  const auto load = [&](bool external, const std::string& before, const std::string& binary) {
+    json file = g.j;
+    file["buffers"] = {{{"byteLength", g.bytes.size()}}};
+    if (external) file["buffers"][0]["uri"] = "a.bin";
+    std::string text = file.dump();
+    while (text.size() % 4 != 1) text += ' ';
+    const std::string rest = word(text.size()) + "JSON" + text + before + word(binary.size()) +
+                             std::string("BIN\0", 4) + binary;
+    const auto loaded =
+        read_scene(folder.write("a.glb", "glTF" + word(2) + word(12 + rest.size()) + rest), {}, {});
+    EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+    return loaded.ok() ? loaded->scene.triangle_count() : 0;
+  };
+  EXPECT_EQ(load(false, "", g.bytes), 1u);
+  EXPECT_EQ(load(false, "", g.bytes + "x"), 1u);
+  EXPECT_EQ(load(true, "", ""), 1u);
+  EXPECT_EQ(load(false, word(4) + "KINDdata", g.bytes), 1u);
+}
+
+// What an extension compressed is missing, whether or not the file says that it needs it.
+TEST(Gltf, CompressedVerticesAreNoZeros) {
+  const TempFolder folder;
+  Gltf g;
+  const int positions = g.accessor({{"componentType", 5126}, {"type", "VEC3"}, {"count", 3}});
+  g.view(kSquare);
+  g.single({{"attributes", {{"POSITION", positions}}},
+            {"extensions", {{"KHR_draco_mesh_compression", {{"bufferView", 0}}}}}});
+  const auto loaded = load_glb(folder, g);
+  EXPECT_EQ(loaded.status().code(), ErrorCode::unsupported);
+  EXPECT_NE(loaded.status().message().find("KHR_draco_mesh_compression"), std::string::npos)
+      << loaded.status().message();
+}
+
+TEST(Gltf, TexturesMayBeLeftOutWhereThereIsNoLight) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());
+  for (const bool lit : {false, true}) {
+    Gltf g;
+    const int positions = g.floats(kSquare, "VEC3", 3);
+    json attributes = {{"POSITION", positions},
+                       {"TEXCOORD_0", g.floats({0, 0, 1, 0, 1, 1, 0, 1}, "VEC2", 2)}};
+    if (lit) attributes["COLOR_0"] = positions;
+    const std::string png = TempFolder::read(folder / "a.png");
+    const int view = g.view(std::vector<char>(png.begin(), png.end()));
+    g.j["images"] = {{{"bufferView", view}, {"mimeType", "image/png"}}};
+    g.j["textures"] = {{{"source", 0}}};
+    g.j["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+    g.single({{"attributes", attributes},
+              {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})},
+              {"material", 0}});
+    const auto path = folder.write("a.glb", g.glb());
+    ReadOptions options;
+    options.unlit_textures = false;
+    const auto loaded = read_scene(path, options, {});
+    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+    EXPECT_EQ(loaded->scene.textures.size(), lit ? 1u : 0u);
+    EXPECT_EQ(loaded->scene.materials[0].texture, lit ? 0 : -1);
+    options.load_textures = false;
+    EXPECT_TRUE(read_scene(path, options, {})->scene.textures.empty());
+  }
+}
+
 }  // namespace
 }  // namespace atlas

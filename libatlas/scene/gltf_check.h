@@ -1,0 +1,30 @@
+// Internal: what is looked at in a glTF file before tinygltf parses it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libatlas/core/status.h"
+
+namespace atlas {
+
+// The file breaks the rules of glTF: `what` says how.
+Status malformed_gltf(const std::filesystem::path& path, const std::string& what);
+
+// The parts of a file: of a .gltf its JSON is all.
+struct GltfParts {
+  std::string_view json, binary;
+  std::vector<double> external_bytes;  // what the buffers need that lie in files of their own
+  bool container = false;              // a .glb
+  bool plain = true;  // false: a .glb in a form that the format allows, or many write, but tinygltf
+                      // refuses
+};
+
+// Finds the parts, and checks in the JSON what tinygltf passes over in silence or trusts: the
+// version, required extensions, lists that are none, ranges of embedded images. Errors: bad_input,
+// unsupported.
+Result<GltfParts> check_gltf(const std::filesystem::path& path, std::string_view bytes);
+
+}  // namespace atlas

@@ -1,0 +1,152 @@
+#include "libatlas/scene/gltf_materials.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+
+namespace atlas {
+namespace fs = std::filesystem;
+namespace {
+
+// File names in URIs are percent-encoded.
+std::string decode_uri(const std::string& uri) {
+  std::string name;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    int code = 0;
+    if (uri[i] == '%' && i + 2 < uri.size() &&
+        std::from_chars(&uri[i + 1], &uri[i + 1] + 2, code, 16).ptr == &uri[i + 1] + 2) {
+      name += static_cast<char>(code);
+      i += 2;
+    } else {
+      name += uri[i];
+    }
+  }
+  return name;
+}
+
+Status add_images(const tinygltf::Model& model, SceneBuilder& builder) {
+  const fs::path folder = fs::path(builder.file).parent_path();
+  for (std::size_t i = 0; i < model.images.size(); ++i) {
+    const tinygltf::Image& image = model.images[i];
+    RawTexture texture;
+    texture.place = fmt::format("{}: image {}", builder.file, i);
+    texture.path = image.uri.empty() ? fs::path(texture.place) : folder / decode_uri(image.uri);
+    if (builder.wants_textures) texture.bytes = image.image;
+    if (builder.wants_textures && image.bufferView >= 0) {
+      auto bytes = gltf_view(model, image.bufferView);
+      if (!bytes.ok()) {
+        return {ErrorCode::bad_input,
+                fmt::format("{}: image {}: {} (check it with a glTF validator)", builder.file, i,
+                            bytes.status().message())};
+      }
+      texture.bytes.assign(bytes->begin(), bytes->end());
+    }
+    builder.textures.push_back(std::move(texture));
+  }
+  return {};
+}
+
+// The image of a texture, which an extension names where its format is none of glTF's own; or -1.
+int image_of(const tinygltf::Model& model, int texture) {
+  if (texture < 0 || std::size_t(texture) >= model.textures.size()) return -1;
+  const tinygltf::Texture& t = model.textures[texture];
+  int source = t.source;
+  const auto webp = t.extensions.find("EXT_texture_webp");
+  if (source < 0 && webp != t.extensions.end() && webp->second.IsObject() &&
+      webp->second.Get("source").IsInt()) {
+    source = webp->second.Get("source").GetNumberAsInt();
+  }
+  return source >= 0 && std::size_t(source) < model.images.size() ? source : -1;
+}
+
+// `count` numbers of a list, or `absent`.
+template <std::size_t count>
+std::array<double, count> numbers(const tinygltf::Value& object, const char* key, double absent) {
+  std::array<double, count> result;
+  result.fill(absent);
+  if (!object.IsObject()) return result;
+  const tinygltf::Value& value = object.Get(key);
+  for (int i = 0; i < int(count) && value.IsArray() && value.ArrayLen() >= count; ++i) {
+    if (value.Get(i).IsNumber()) result[std::size_t(i)] = value.Get(i).GetNumberAsDouble();
+  }
+  return result;
+}
+
+// The diffuse part of a material: glTF's own, or that of an older model of shading.
+struct Diffuse {
+  Vec3f colour{1, 1, 1};
+  tinygltf::TextureInfo texture;
+};
+
+Diffuse diffuse_of(const tinygltf::Material& material) {
+  Diffuse diffuse;
+  const auto glossy = material.extensions.find("KHR_materials_pbrSpecularGlossiness");
+  if (glossy == material.extensions.end() || !glossy->second.IsObject()) {
+    const auto& pbr = material.pbrMetallicRoughness;
+    if (pbr.baseColorFactor.size() >= 3) {
+      diffuse.colour = {float(pbr.baseColorFactor[0]), float(pbr.baseColorFactor[1]),
+                        float(pbr.baseColorFactor[2])};
+    }
+    diffuse.texture = pbr.baseColorTexture;
+    return diffuse;
+  }
+  const auto rgb = numbers<3>(glossy->second, "diffuseFactor", 1);
+  diffuse.colour = {float(rgb[0]), float(rgb[1]), float(rgb[2])};
+  const tinygltf::Value& info = glossy->second.Get("diffuseTexture");
+  if (!info.IsObject() || !info.Get("index").IsInt()) return diffuse;
+  diffuse.texture.index = info.Get("index").GetNumberAsInt();
+  if (info.Get("texCoord").IsInt())
+    diffuse.texture.texCoord = info.Get("texCoord").GetNumberAsInt();
+  const tinygltf::Value& extensions = info.Get("extensions");
+  for (const std::string& key : extensions.Keys())
+    diffuse.texture.extensions[key] = extensions.Get(key);
+  return diffuse;
+}
+
+// KHR_texture_transform may name another set than its texture does.
+int texcoord_set(const tinygltf::TextureInfo& info) {
+  const auto at = info.extensions.find("KHR_texture_transform");
+  const bool given =
+      at != info.extensions.end() && at->second.IsObject() && at->second.Get("texCoord").IsInt();
+  return given ? at->second.Get("texCoord").GetNumberAsInt() : info.texCoord;
+}
+
+// KHR_texture_transform acts on v pointing down; here v points up: v' = 1 - (s (1 - v) + o).
+void add_transform(const tinygltf::TextureInfo& info, SceneBuilder& builder,
+                   RawMaterial& material) {
+  const auto at = info.extensions.find("KHR_texture_transform");
+  if (at == info.extensions.end() || !at->second.IsObject()) return;
+  const auto scale = numbers<2>(at->second, "scale", 1),
+             offset = numbers<2>(at->second, "offset", 0);
+  material.uv_scale = scale;
+  material.uv_offset = {offset[0], 1 - scale[1] - offset[1]};
+  if (at->second.Has("rotation")) {
+    builder.defects.add(DefectKind::texture_option_ignored, [&] {
+      return fmt::format("{}: material '{}': texture rotation", builder.file, material.name);
+    });
+  }
+}
+
+}  // namespace
+
+Result<std::vector<int>> add_gltf_materials(const tinygltf::Model& model, SceneBuilder& builder) {
+  if (Status s = add_images(model, builder); !s.ok()) return s;
+  std::vector<int> sets;
+  for (std::size_t i = 0; i < model.materials.size(); ++i) {
+    const tinygltf::Material& m = model.materials[i];
+    const Diffuse diffuse = diffuse_of(m);
+    RawMaterial material;
+    material.name = m.name.empty() ? fmt::format("material{}", i) : m.name;
+    material.diffuse = diffuse.colour;
+    material.texture = image_of(model, diffuse.texture.index);
+    add_transform(diffuse.texture, builder, material);
+    builder.materials.push_back(std::move(material));
+    sets.push_back(texcoord_set(diffuse.texture));
+  }
+  builder.materials.push_back({});
+  sets.push_back(0);
+  return sets;
+}
+
+}  // namespace atlas

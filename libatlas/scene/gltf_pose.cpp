@@ -1,0 +1,160 @@
+#include "libatlas/scene/gltf_pose.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <glm/gtc/quaternion.hpp>
+
+namespace atlas {
+namespace {
+
+int attribute(const std::map<std::string, int>& attributes, const std::string& name) {
+  const auto at = attributes.find(name);
+  return at == attributes.end() ? -1 : at->second;
+}
+
+}  // namespace
+
+glm::dmat4 gltf_local_matrix(const tinygltf::Node& node) {
+  glm::dmat4 m(1);
+  if (node.matrix.size() == 16) {
+    for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = node.matrix[i];
+    return m;
+  }
+  if (node.rotation.size() == 4) {
+    const auto& q = node.rotation;
+    const glm::dquat turn(q[3], q[0], q[1], q[2]);
+    if (glm::length(turn) > 0) m = glm::mat4_cast(glm::normalize(turn));
+  }
+  if (node.scale.size() == 3) {
+    for (int c = 0; c < 3; ++c) m[c] *= node.scale[c];
+  }
+  if (node.translation.size() == 3) {
+    m[3] = {node.translation[0], node.translation[1], node.translation[2], 1};
+  }
+  return m;
+}
+
+GltfPose::GltfPose(const tinygltf::Model& model) : model_(model) {
+  parent_.assign(model.nodes.size(), -1);
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    for (const int c : model.nodes[i].children) {
+      if (c >= 0 && std::size_t(c) < parent_.size() && parent_[c] < 0) {
+        parent_[c] = static_cast<int>(i);
+      }
+    }
+  }
+}
+
+glm::dmat4 GltfPose::world_of(int node) const {
+  glm::dmat4 m(1);
+  // A cycle of nodes is refused where the scene is walked through; here it only must end.
+  for (std::size_t steps = 0; node >= 0 && steps <= parent_.size(); ++steps) {
+    m = gltf_local_matrix(model_.nodes[node]) * m;
+    node = parent_[node];
+  }
+  return m;
+}
+
+const std::vector<glm::dmat4>& GltfPose::joints(const tinygltf::Node& node,
+                                                const tinygltf::Primitive& primitive) {
+  const bool bent = node.skin >= 0 && std::size_t(node.skin) < model_.skins.size() &&
+                    attribute(primitive.attributes, "JOINTS_0") >= 0 &&
+                    attribute(primitive.attributes, "WEIGHTS_0") >= 0;
+  const auto [at, is_new] = joints_.try_emplace(bent ? node.skin : -1);
+  std::vector<glm::dmat4>& matrices = at->second;
+  if (!is_new || !bent) return matrices;
+  const tinygltf::Skin& skin = model_.skins[node.skin];
+  std::vector<float> inverse;
+  if (skin.inverseBindMatrices >= 0) {
+    auto values = gltf_floats(model_, skin.inverseBindMatrices, 16);
+    if (!values.ok()) return matrices;  // as without a skin
+    inverse = std::move(*values);
+  }
+  for (std::size_t j = 0; j < skin.joints.size(); ++j) {
+    const bool exists = skin.joints[j] >= 0 && std::size_t(skin.joints[j]) < model_.nodes.size();
+    glm::dmat4 bind(1);
+    for (std::size_t i = 0; i < 16 && 16 * j + i < inverse.size(); ++i) {
+      bind[int(i / 4)][int(i % 4)] = double(inverse[16 * j + i]);
+    }
+    matrices.push_back(exists ? world_of(skin.joints[j]) * bind : glm::dmat4(1));
+  }
+  return matrices;
+}
+
+bool GltfPose::mirrors(const tinygltf::Node& node, const tinygltf::Primitive& primitive,
+                       const glm::dmat4& world) {
+  const auto& bent = joints(node, primitive);
+  return glm::determinant(glm::dmat3(bent.empty() ? world : bent[0])) < 0;
+}
+
+Status GltfPose::morph(const tinygltf::Node& node, const tinygltf::Primitive& primitive,
+                       std::vector<glm::dvec3>& points) const {
+  const auto& weights =
+      node.weights.empty() ? model_.meshes[std::size_t(node.mesh)].weights : node.weights;
+  for (std::size_t t = 0; t < std::min(weights.size(), primitive.targets.size()); ++t) {
+    const int target = attribute(primitive.targets[t], "POSITION");
+    if (weights[t] == 0 || target < 0) continue;
+    auto moves = gltf_floats(model_, target, 3);
+    if (!moves.ok()) return moves.status();
+    if (moves->size() != 3 * points.size()) {
+      return {ErrorCode::bad_input,
+              fmt::format("has another number of positions than morph target {}", t)};
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const float* m = moves->data() + 3 * i;
+      points[i] += weights[t] * glm::dvec3(m[0], m[1], m[2]);
+    }
+  }
+  return {};
+}
+
+Status GltfPose::bend(const std::vector<glm::dmat4>& joints, const tinygltf::Primitive& primitive,
+                      std::vector<glm::dvec3>& points) const {
+  std::vector<glm::dmat4> blend(points.size(), glm::dmat4(0));
+  std::vector<double> total(points.size(), 0);
+  for (int set = 0;; ++set) {
+    const int which = attribute(primitive.attributes, fmt::format("JOINTS_{}", set));
+    const int weight = attribute(primitive.attributes, fmt::format("WEIGHTS_{}", set));
+    if (which < 0 || weight < 0) break;
+    auto ids = gltf_floats(model_, which, 4), weights = gltf_floats(model_, weight, 4);
+    if (!ids.ok()) return ids.status();
+    if (!weights.ok()) return weights.status();
+    if (ids->size() != 4 * points.size() || weights->size() != 4 * points.size()) {
+      return {ErrorCode::bad_input, "has another number of joints or weights than of positions"};
+    }
+    for (std::size_t k = 0; k < ids->size(); ++k) {
+      const double w = double((*weights)[k]), joint = double((*ids)[k]);
+      if (!(w > 0) || !(joint >= 0 && joint < double(joints.size()))) continue;
+      blend[k / 4] += w * joints[std::size_t(joint)];
+      total[k / 4] += w;
+    }
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {  // weights are rounded, and not always to 1
+    const glm::dmat4& m = total[i] > 0 ? blend[i] / total[i] : joints[0];
+    points[i] = glm::dvec3(m * glm::dvec4(points[i], 1));
+  }
+  return {};
+}
+
+Result<std::vector<glm::dvec3>> GltfPose::positions(const tinygltf::Node& node,
+                                                    const tinygltf::Primitive& primitive,
+                                                    const glm::dmat4& world) {
+  auto values = gltf_floats(model_, attribute(primitive.attributes, "POSITION"), 3);
+  if (!values.ok()) return values.status();
+  std::vector<glm::dvec3> points(values->size() / 3);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const float* p = values->data() + 3 * i;
+    points[i] = {p[0], p[1], p[2]};
+  }
+  if (Status s = morph(node, primitive, points); !s.ok()) return s;
+  const auto& bent = joints(node, primitive);
+  if (!bent.empty()) {
+    if (Status s = bend(bent, primitive, points); !s.ok()) return s;
+    return points;
+  }
+  for (glm::dvec3& p : points) p = glm::dvec3(world * glm::dvec4(p, 1));
+  return points;
+}
+
+}  // namespace atlas
