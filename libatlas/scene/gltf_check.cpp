@@ -190,6 +190,8 @@ Result<GltfParts> check_gltf(const fs::path& path, std::string_view bytes) {
         1 + std::count(text.begin(), text.begin() + std::min(error.byte, text.size()), '\n');
     return Status(ErrorCode::bad_input, fmt::format("{}:{}: not valid JSON (export the file again)",
                                                     path.string(), line));
+  } catch (const json::out_of_range&) {
+    return malformed_gltf(path, "its JSON holds a number beyond all bounds");
   }
   if (!file.is_object()) return malformed_gltf(path, "its JSON is not an object");
   if (Status s = check_version(path, file); !s.ok()) return s;

@@ -150,6 +150,8 @@ const Case kCases[] = {
      R"({"asset":{"version":"2.0"},"extras":)" + std::string(100000, '[') +
          std::string(100000, ']') + "}",
      ErrorCode::bad_input, "nested too deeply"},
+    {"overflow.gltf", R"({"asset":{"version":"2.0"},"extras":-4.2e515})", ErrorCode::bad_input,
+     "a number beyond all bounds"},
     {"primitives.gltf", R"({"asset":{"version":"2.0"},"meshes":[{"primitives":{}}]})",
      ErrorCode::bad_input, "'primitives' of mesh 0"},
     {"empty_scene.gltf",
