@@ -12,8 +12,8 @@ namespace atlas::param {
 
 // Where two stretches of the border cross, each reaches into the other. Their vertices there are
 // drawn out of the other side's triangles, which give way without flipping (Relaxer::pull), and so
-// on until no border crosses. Overlaps deeper than a few dozen border vertices are left alone:
-// those need a cut.
+// on until no border crosses. Overlaps deeper than a few dozen border vertices, or a fifth of
+// the chart's width, are left alone: those need a cut.
 class Separator {
  public:
   // All triangles positive. Returns whether the map is injective afterwards; uvs are as they were
@@ -49,6 +49,7 @@ class Separator {
 
   void map_border(const LocalMesh& mesh);
   bool collect(std::span<const BorderCrossing> crossings, std::span<const Vec2d> uvs);
+  std::vector<double> loop_areas(std::span<const Vec2d> uvs) const;
   bool collect_turned_loops(std::span<const Vec2d> uvs);
   bool reach(std::uint32_t half_edge, std::uint32_t other, std::span<const Vec2d> uvs, Arc& out);
   double corner_angle(std::uint32_t vertex, std::span<const Vec2d> uvs) const;
@@ -80,6 +81,8 @@ class Separator {
   std::vector<std::uint8_t> role_;              // 1 a half-edge, for the stretch that is looked at
   bool across_ = false;                         // not by way of the edges that cross the stretch
   std::vector<Relaxer::Spring> springs_;
+  double width_ = 0;                  // square root of what the triangles cover
+  bool deep_ = false;                 // the overlap, so that nothing was tried
   std::vector<double> pulled_;        // 1 a vertex: how far its spring reaches
   std::vector<double> pulls_;         // 1 a round: how far all springs reach together
   std::vector<std::uint32_t> place_;  // 1 a vertex: 1 + its spring's place, or 0
