@@ -121,7 +121,10 @@ Status run(const app::ExportCommand& command, app::Terminal& terminal) {
   if (Status s = check_outputs(command); !s.ok()) return s;
   const Context context = terminal.context(command.threads);
   const double cpu = cpu_seconds(), wall = wall_seconds();
-  Result<LoadedScene> loaded = read_scene(command.scene, command.read, context);
+  ReadOptions read = command.read;
+  read.load_textures = !command.options.charts_only;
+  read.unlit_textures = false;  // without light no page has an image
+  Result<LoadedScene> loaded = read_scene(command.scene, read, context);
   if (!loaded.ok()) return loaded.status();
   if (Status s = check_files_stay(*loaded, command); !s.ok()) return s;
   for (const std::string& line : loaded->defects.lines()) terminal.line("defect: " + line);

@@ -12,7 +12,7 @@ namespace atlas::param {
 
 // Where two stretches of the border cross, each reaches into the other. Their vertices there are
 // drawn out of the other side's triangles, which give way without flipping (Relaxer::pull), and so
-// on until no border crosses. Overlaps deeper than a few dozen border vertices, or a fifth of
+// on until no border crosses. Overlaps deeper than a few dozen border vertices, or a tenth of
 // the chart's width, are left alone: those need a cut.
 class Separator {
  public:

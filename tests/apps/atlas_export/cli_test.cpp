@@ -260,14 +260,19 @@ TEST_F(AtlasExport, OverwritesNothingThatItReads) {
     EXPECT_NE(r.output.find(name), std::string::npos) << r.output;
   }
   EXPECT_EQ(slurp(scene), text);
-  // A world that is exported again: its texture has the name of the first new page.
+  // A scene whose texture has the name of the first new page.
   ASSERT_EQ(run(fmt::format("{0}/box.obj -o {0}/w.obj -q", dir_.string())).exit_code, 0);
   const std::string page = slurp(dir_ / "w_0.png");
-  const RunResult again = run(fmt::format("{0}/w.obj -o {0}/w.wrl", dir_.string()));
+  write("t.mtl", "newmtl t\nmap_Kd w_0.png\n");
+  write("textured.obj", "mtllib t.mtl\nusemtl t\n" + lit_box(2));
+  const RunResult again = run(fmt::format("{0}/textured.obj -o {0}/w.wrl", dir_.string()));
   EXPECT_EQ(again.exit_code, 2);
   EXPECT_NE(again.output.find("w_0.png"), std::string::npos) << again.output;
   EXPECT_EQ(slurp(dir_ / "w_0.png"), page);
-  EXPECT_EQ(run(fmt::format("{0}/w.obj -o {0}/v.wrl -q", dir_.string())).exit_code, 0);
+  EXPECT_EQ(run(fmt::format("{0}/textured.obj -o {0}/v.wrl -q", dir_.string())).exit_code, 0);
+  // A world without light of its own gets no pages, and needs no textures.
+  EXPECT_EQ(run(fmt::format("{0}/w.obj -o {0}/w.gltf -q", dir_.string())).exit_code, 0);
+  EXPECT_EQ(slurp(dir_ / "w_0.png"), page);
 }
 
 // An OBJ's materials, a glTF's buffer: known only when the scene has been read.
