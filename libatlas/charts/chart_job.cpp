@@ -312,8 +312,9 @@ class ChartJob {
     if (!unroll_chart(chart_, min_altitude(), result_.uvs)) return false;
     const LocalMesh mesh = chart_.mesh();
     result_.distortion = measure_distortion(mesh, result_.uvs);
+    const double most = std::min(kPlanarStretch, input_.options.max_stretch);
     result_.within_bound =
-        result_.distortion.stretch_999 <= std::min(kPlanarStretch, input_.options.max_stretch);
+        result_.distortion.stretch_999 <= most && result_.distortion.stretch_l2 <= most;
     if (!result_.within_bound) return false;
     result_.injective = check_injectivity(mesh, result_.uvs).injective;
     return true;

@@ -116,6 +116,50 @@ TEST(Charts, CurvedShapesNeedFewCharts) {
   EXPECT_LE(count(plate_with_holes(2, 8)), 16u);
 }
 
+// A wavy prism as CAD programs triangulate it: caps and walls of needles that zigzag.
+Shape needle_prism(int around, double height) {
+  Shape shape;
+  shape.name = "needle prism";
+  for (const double z : {0.0, height}) {
+    for (int i = 0; i < around; ++i) {
+      const double a = 2 * M_PI * (i + 0.25) / around, r = 1 + 0.15 * std::cos(5 * a);
+      shape.positions.push_back({float(r * std::cos(a)), float(r * std::sin(a)), float(z)});
+    }
+  }
+  const auto n = std::uint32_t(around);
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    shape.indices.insert(shape.indices.end(), {a, b, c});
+  };
+  for (std::uint32_t i = 0, j = n - 1; i < j; ++i, --j) {
+    const bool more = i + 1 < j, most = i + 1 < j - 1;
+    if (more) {
+      add(i, j, i + 1);
+      add(n + i, n + i + 1, n + j);
+    }
+    if (most) {
+      add(i + 1, j, j - 1);
+      add(n + i + 1, n + j - 1, n + j);
+    }
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t j = (i + 1) % n;
+    add(i, j, n + i);
+    add(j, n + j, n + i);
+  }
+  return shape;
+}
+
+TEST(Charts, NeedlesOfCadPartsTakeFewCharts) {
+  for (const int around : {400, 1600}) {
+    const Mesh mesh(needle_prism(around, 3));
+    const ChartSet set = charts_of(mesh);
+    const ChartFindings found = check_charts(mesh.view(), set);
+    EXPECT_EQ(found.fault, "") << around;
+    EXPECT_LE(set.charts.size(), 8u) << around;
+    EXPECT_LT(set.distortion.stretch_l2, 1.002) << around;
+  }
+}
+
 TEST(Charts, ScanNoiseHardlyAddsCharts) {
   const Shape smooth = icosphere(5);
   const ChartSet calm = charts_of(Mesh(smooth));
