@@ -18,9 +18,9 @@ constexpr std::uint32_t kLeastPerCell = 3;
 // as far as the two triangles are high over the edge between them, but this share of the way
 // between centroids at least: with needles of CAD caps and walls zigzagging, those are far apart
 // even beside each other, and cells grew across creases instead (a part of 15 000 triangles came
-// out in 259 charts, and in 12 like this). With no least share strips a million times longer than
+// out in 259 charts, and in 16 like this). With no least share strips a million times longer than
 // wide are torn.
-constexpr float kNeedle = 4, kLeastNeedleStep = 1.f / 40;
+constexpr float kNeedle = 5, kLeastNeedleStep = 1.f / 40;
 
 // One a piece.
 std::vector<CellRuler> triangle_rulers(const Topology& topology) {
