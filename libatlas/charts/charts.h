@@ -42,7 +42,8 @@ struct ChartOptions {
   double uv_aspect = 1;
   ChartPreset preset = ChartPreset::standard;
   // A chart so large that its smallest rectangle decides the page's size is cut across its limbs
-  // until the pieces fill this share of their rectangles; 0..1, 0: never. Not with keep_uv_charts.
+  // until the pieces fill this share of their rectangles; so are the most wasteful charts where all
+  // together fill little of their convex hulls. 0..1, 0: never. Not with keep_uv_charts.
   double min_fill = 0.72;
 };
 

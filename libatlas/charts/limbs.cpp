@@ -50,12 +50,11 @@ class LimbCharts {
 
  private:
   void cut_most_wasteful(double area) {
-    std::vector<double> waste(charts_.size());
+    std::vector<double> hull(charts_.size()), waste(charts_.size());
     double hulls = 0;
     for (std::size_t k = 0; k < charts_.size(); ++k) {
-      const double hull = hulls_of(k);
-      hulls += hull;
-      waste[k] = hull - charts_[k].distortion.uv_area;
+      hulls += hull[k] = hulls_of(k);
+      waste[k] = hull[k] - charts_[k].distortion.uv_area;
     }
     if (area >= kLeastTogether * hulls) return;
     for (double& w : waste) w = std::round(kWasteParts * w / hulls);
@@ -65,9 +64,7 @@ class LimbCharts {
                      [&](std::size_t a, std::size_t b) { return waste[a] > waste[b]; });
     for (const std::size_t k : order) {
       if (area >= kLeastTogether * hulls || waste[k] == 0 || context_.cancelled()) return;
-      if (!pieces_[k].empty()) continue;
-      const double before = hulls_of(k);
-      if (cut(k)) hulls += hulls_of(k) - before;
+      if (pieces_[k].empty() && cut(k)) hulls += hulls_of(k) - hull[k];
     }
   }
 
