@@ -9,9 +9,13 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <memory>
+#include <new>
 #include <string_view>
 #include <utility>
+
+#include "libatlas/image/image_claim.h"
 
 namespace atlas {
 namespace {
@@ -38,15 +42,47 @@ Status failure(const std::filesystem::path& path, const char* what, const std::s
   return {ErrorCode::io, fmt::format("{}: {}: {}", path.string(), what, why)};
 }
 
-template <class T>
-Result<Image<T>> read_pixels(OIIO::ImageInput& input, const std::filesystem::path& path) {
+// An image as OpenImageIO reads it, and what is said of it.
+struct Source {
+  std::unique_ptr<OIIO::ImageInput> input;
+  std::uint64_t bytes = 0;  // of the file
+  std::string name;
+};
+
+ImageClaim spec_claim(const OIIO::ImageInput& input) {
   const OIIO::ImageSpec& spec = input.spec();
+  const std::string_view format = input.format_name();
+  const bool flat = format == "tiff" || format == "openexr" || format == "webp" ||
+                    format == "heif" || format == "jpeg2000";
+  return {spec.width, std::int64_t(spec.height) * spec.depth, spec.nchannels, 1,
+          flat ? kFlatByte : kPackedByte};
+}
+
+// What readers tell of images that they took for whole. A JPEG's other complaints are harmless.
+bool damaged(const OIIO::ImageInput& input, const std::string& complaint) {
+  if (std::string_view(input.format_name()) != "jpeg") return !complaint.empty();
+  return complaint.find("premature end") != std::string::npos;
+}
+
+template <class T>
+Result<Image<T>> read_pixels(const Source& source) {
+  OIIO::ImageInput& input = *source.input;
+  const OIIO::ImageSpec& spec = input.spec();
+  ImageClaim claim = spec_claim(input);
+  claim.channel_bytes = sizeof(T);
+  if (Status s = check_claim(claim, source.bytes, source.name); !s.ok()) return s;
+  if (spec.depth > 1) {
+    return Status(ErrorCode::unsupported,
+                  source.name + ": is a volume of several slices: save one of them as an image");
+  }
   Image<T> image(spec.width, spec.height, spec.nchannels);
   const OIIO::stride_t stride = row_bytes(image);
   T* top_row = image.texels.data() + std::size_t(spec.height - 1) * spec.width * spec.nchannels;
-  if (!input.read_image(0, 0, 0, spec.nchannels, type_of<T>(), top_row, OIIO::AutoStride,
-                        -stride)) {
-    return failure(path, "image is damaged", input.geterror());
+  const bool read =
+      input.read_image(0, 0, 0, spec.nchannels, type_of<T>(), top_row, OIIO::AutoStride, -stride);
+  const std::string complaint = input.geterror();
+  if (!read || damaged(input, complaint)) {
+    return failure(source.name, "image is damaged", complaint.substr(0, complaint.find('\n')));
   }
   return image;
 }
@@ -57,6 +93,31 @@ OIIO::ImageSpec input_settings() {
   return config;
 }
 
+// Calls what reads an image; some readers take memory before they can be asked how much.
+template <class Function>
+auto within_memory(const std::string& name, const Function& reader) -> decltype(reader()) {
+  try {
+    return reader();
+  } catch (const std::bad_alloc&) {
+    return Status(ErrorCode::io, name + ": not enough memory to read it: make the image smaller");
+  }
+}
+
+// As much of a file as tells its size, whatever comments precede that.
+std::vector<std::uint8_t> head_of(const std::filesystem::path& path, std::uint64_t bytes) {
+  constexpr std::uint64_t kEnough = 1 << 24;
+  std::vector<std::uint8_t> head(16);
+  std::ifstream file(path, std::ios::binary);
+  file.read(reinterpret_cast<char*>(head.data()), 16);
+  head.resize(std::size_t(file.gcount()));
+  if (!takes_memory_to_open(head)) return head;
+  head.resize(std::size_t(std::min(bytes, kEnough)));
+  file.seekg(0);
+  file.read(reinterpret_cast<char*>(head.data()), std::streamsize(head.size()));
+  head.resize(std::size_t(file.gcount()));
+  return head;
+}
+
 template <class T>
 Result<Image<T>> read(const std::filesystem::path& path) {
   std::error_code error;
@@ -64,10 +125,17 @@ Result<Image<T>> read(const std::filesystem::path& path) {
     return error ? Status(ErrorCode::io, fmt::format("{}: {}", path.string(), error.message()))
                  : Status(ErrorCode::not_found, fmt::format("{}: no such image", path.string()));
   }
-  const OIIO::ImageSpec config = input_settings();
-  auto input = OIIO::ImageInput::open(path.string(), &config);
-  if (!input) return failure(path, "cannot be read as an image", OIIO::geterror());
-  return read_pixels<T>(*input, path);
+  return within_memory(path.string(), [&]() -> Result<Image<T>> {
+    Source source{nullptr, std::filesystem::file_size(path, error), path.string()};
+    if (error) return failure(path, "cannot be read as an image", error.message());
+    if (const auto claim = claim_of(head_of(path, source.bytes))) {
+      if (Status s = check_claim(*claim, source.bytes, source.name); !s.ok()) return s;
+    }
+    const OIIO::ImageSpec config = input_settings();
+    source.input = OIIO::ImageInput::open(source.name, &config);
+    if (!source.input) return failure(path, "cannot be read as an image", OIIO::geterror());
+    return read_pixels<T>(source);
+  });
 }
 
 // OpenImageIO picks its reader by extension; the signature at the start tells the common formats.
@@ -128,9 +196,15 @@ Result<Image8> decode(std::span<const std::uint8_t> bytes, const std::string& na
   OIIO::Filesystem::IOProxy* proxy = &memory;
   OIIO::ImageSpec config = input_settings();
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  auto input = OIIO::ImageInput::open(std::string("embedded") + extension, &config, proxy);
-  if (!input) return failure(name, "cannot be read as an image", OIIO::geterror());
-  return read_pixels<std::uint8_t>(*input, name);
+  return within_memory(name, [&]() -> Result<Image8> {
+    if (const auto claim = claim_of(bytes)) {
+      if (Status s = check_claim(*claim, bytes.size(), name); !s.ok()) return s;
+    }
+    Source source{nullptr, bytes.size(), name};
+    source.input = OIIO::ImageInput::open(std::string("embedded") + extension, &config, proxy);
+    if (!source.input) return failure(name, "cannot be read as an image", OIIO::geterror());
+    return read_pixels<std::uint8_t>(source);
+  });
 }
 
 Result<ImageF> read_floats(const std::filesystem::path& path) {

@@ -181,8 +181,11 @@ void SceneBuilder::load_textures(Scene& scene) {
     }
     const bool missing = image.status().code() == ErrorCode::not_found;
     defects.add(missing ? DefectKind::texture_missing : DefectKind::texture_unreadable, [&] {
-      return raw.place.empty() ? raw.path.string()
-                               : fmt::format("{} ({})", raw.path.string(), raw.place);
+      const std::string path = raw.path.string();
+      const std::string place = raw.place.empty() ? path : fmt::format("{} ({})", path, raw.place);
+      if (missing) return place;
+      const std::string& why = image.status().message();
+      return place + ": " + (why.rfind(path + ": ", 0) == 0 ? why.substr(path.size() + 2) : why);
     });
   }
   for (std::size_t i = 0; i < materials.size(); ++i) {

@@ -209,6 +209,11 @@ TEST(Obj, TexturesThatAreMissingOrBrokenFallBackToTheColour) {
   const LoadedScene loaded = load(path);
   EXPECT_EQ(loaded.defects.count(DefectKind::texture_missing), 1u);
   EXPECT_EQ(loaded.defects.count(DefectKind::texture_unreadable), 1u);
+  for (const Defect& defect : loaded.defects.defects) {
+    const bool tells_why =
+        defect.first_places.front().find(": cannot be read") != std::string::npos;
+    EXPECT_EQ(tells_why, defect.kind == DefectKind::texture_unreadable);
+  }
   EXPECT_EQ(loaded.scene.materials[0].texture, -1);
   EXPECT_EQ(loaded.scene.materials[0].diffuse, (Vec3f{0.1f, 0.2f, 0.3f}));
   ReadOptions options;

@@ -1,0 +1,111 @@
+#include "libatlas/image/image_claim.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace atlas {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+constexpr std::string_view kJpeg = "\xff\xd8", kGif = "GIF8", kCodeStream = "\xff\x4f\xff\x51";
+constexpr double kHarmlessBytes = 64.0 * (1 << 20);
+
+bool begins_with(Bytes bytes, std::string_view signature) {
+  return bytes.size() >= signature.size() &&
+         std::equal(signature.begin(), signature.end(), bytes.begin(),
+                    [](char a, std::uint8_t b) { return std::uint8_t(a) == b; });
+}
+
+std::int64_t big_endian(Bytes bytes, std::size_t at, int count) {
+  std::int64_t value = 0;
+  for (int i = 0; i < count; ++i) value = value << 8 | bytes[at + std::size_t(i)];
+  return value;
+}
+
+// The size stands in the frame header, behind segments that each tell their length.
+std::optional<ImageClaim> jpeg_claim(Bytes b) {
+  for (std::size_t at = 2; at + 10 <= b.size();) {
+    if (b[at] != 0xff || b[at + 1] == 0xff) {  // fill bytes, and what decoders skip
+      ++at;
+      continue;
+    }
+    const int marker = b[at + 1];
+    const bool frame =
+        marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+    if (frame) {
+      ImageClaim claim{big_endian(b, at + 7, 2), big_endian(b, at + 5, 2), b[at + 9]};
+      claim.packing = kPackedByte;
+      return claim;
+    }
+    const bool bare = marker <= 1 || (marker >= 0xd0 && marker <= 0xd8);
+    at += bare ? 2 : 2 + std::size_t(std::max<std::int64_t>(big_endian(b, at + 2, 2), 2));
+  }
+  return {};
+}
+
+std::optional<ImageClaim> gif_claim(Bytes b) {
+  if (b.size() < 10) return {};
+  return ImageClaim{b[6] | b[7] << 8, b[8] | b[9] << 8, 4, 1, kPackedByte};
+}
+
+// A bare code stream, or one in the boxes of a JP2.
+bool is_jpeg2000(Bytes b) {
+  return begins_with(b, kCodeStream) || (b.size() > 8 && begins_with(b.subspan(4), "jP  "));
+}
+
+std::optional<ImageClaim> jpeg2000_claim(Bytes b) {
+  const auto found = std::search(b.begin(), b.end(), kCodeStream.begin(), kCodeStream.end(),
+                                 [](std::uint8_t x, char y) { return x == std::uint8_t(y); });
+  const auto at = std::size_t(found - b.begin());
+  if (b.size() - at < 42) return {};
+  return ImageClaim{big_endian(b, at + 8, 4) - big_endian(b, at + 16, 4),
+                    big_endian(b, at + 12, 4) - big_endian(b, at + 20, 4),
+                    big_endian(b, at + 40, 2), 1, kFlatByte};
+}
+
+std::string size_text(double bytes) {
+  constexpr const char* kUnits[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
+  int unit = 0;
+  for (; bytes >= 1000 && unit < 4; ++unit) bytes /= 1024;
+  return fmt::format("{:.{}f} {}", bytes, unit == 0 || bytes >= 100 ? 0 : 1, kUnits[unit]);
+}
+
+}  // namespace
+
+bool takes_memory_to_open(Bytes head) {
+  return begins_with(head, kJpeg) || begins_with(head, kGif) || is_jpeg2000(head);
+}
+
+std::optional<ImageClaim> claim_of(Bytes head) {
+  if (begins_with(head, kJpeg)) return jpeg_claim(head);
+  if (begins_with(head, kGif)) return gif_claim(head);
+  if (is_jpeg2000(head)) return jpeg2000_claim(head);
+  return {};
+}
+
+Status check_claim(const ImageClaim& claim, std::uint64_t file_bytes, const std::string& name) {
+  const std::string says = fmt::format("{}: claims {} x {} texels of {} channels", name,
+                                       claim.width, claim.height, claim.channels);
+  if (claim.width < 1 || claim.height < 1 || claim.channels < 1) {
+    return {ErrorCode::bad_input, says + ": the file is damaged, save it anew"};
+  }
+  const double values = double(claim.width) * double(claim.height) * double(claim.channels);
+  const double bytes = values * claim.channel_bytes;
+  if (bytes > kHarmlessBytes && values > double(file_bytes) * claim.packing) {
+    return {
+        ErrorCode::bad_input,
+        fmt::format("{} ({}), which {} cannot hold: the file is damaged or cut short, save it anew",
+                    says, size_text(bytes), size_text(double(file_bytes)))};
+  }
+  if (bytes > kLargestImageBytes) {
+    return {ErrorCode::unsupported,
+            fmt::format("{} ({}), and at most {} are read: make the image smaller", says,
+                        size_text(bytes), size_text(kLargestImageBytes))};
+  }
+  return {};
+}
+
+}  // namespace atlas
