@@ -1,14 +1,44 @@
 // atlas-pack: rectangles, images or uv charts in, densely packed pages out.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
 #include "apps/atlas-pack/commands.h"
 #include "apps/common/program.h"
 #include "libatlas/core/clock.h"
 
 namespace {
 
+using namespace atlas;
+
+// Each page is a file to load and a texture to bind: where larger ones would do, they are named.
+void advise_on_pages(const app::PackCommand& command, const app::PackedAtlas& atlas,
+                     const Context& context) {
+  constexpr std::size_t kMany = 64;
+  constexpr std::int32_t kCommonSide = 8192;  // textures that every graphics card takes
+  if (atlas.pages.size() <= kMany) return;
+  double texels = 0;
+  std::int32_t largest = 1;
+  for (const Extent& page : atlas.pages) {
+    texels += double(page.area());
+    largest = std::max({largest, page.width, page.height});
+  }
+  if (largest > kCommonSide / 2) return;
+  std::int32_t side = 2 * largest;
+  const auto count = [&] { return std::int64_t(std::ceil(texels / (double(side) * side))); };
+  while (side <= kCommonSide / 2 && count() > std::int64_t(kMany) / 2) side *= 2;
+  const std::string wanted = command.kind == app::PackCommand::Kind::mesh
+                                 ? fmt::format("--page {} --pages {}", side, count())
+                                 : fmt::format("--page {0}x{0}", side);
+  context.say(fmt::format(
+      "{} pages, each a texture of its own, are slow to load and to draw ({} takes about {})",
+      atlas.pages.size(), wanted, count()));
+}
+
 int main_of(int argc, char** argv) {
-  using namespace atlas;
   app::PackCommand command;
   if (const int code = app::parse_command_line(argc, argv, command); code >= 0) return code;
   app::Terminal terminal("atlas-pack", command.quiet || command.json);
@@ -29,6 +59,7 @@ int main_of(int argc, char** argv) {
       atlas->items.size(), atlas->items.size() == 1 ? "" : "s", atlas->pages.size(),
       atlas->pages.size() == 1 ? "" : "s", 100 * atlas->utilization,
       atlas->aliases ? fmt::format(", {} aliases", atlas->aliases) : "", atlas->cpu_seconds));
+  advise_on_pages(command, *atlas, context);
   // Whatever was left out has been named; scripts need to know as well.
   if (atlas->unplaced > 0) {
     terminal.error(fmt::format("{} of {} items were not placed (allow larger or more pages)",

@@ -13,6 +13,7 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/exporters/viewpoint.h"
 #include "libatlas/exporters/world.h"
+#include "libatlas/pipeline/advice.h"
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/bake_pages.h"
 #include "libatlas/pipeline/page_layout.h"
@@ -66,6 +67,8 @@ class Export {
       if (Status s = simplify(); !s.ok()) return s;
     }
     if (Status s = write(); !s.ok()) return s;
+    report_.advice = advice_on(report_, options_);
+    for (const std::string& line : report_.advice) context_.say(line);
     report_.cpu_seconds = cpu_seconds() - cpu;
     report_.wall_seconds = wall_seconds() - wall;
     report_.peak_memory = peak_memory();

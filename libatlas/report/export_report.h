@@ -86,6 +86,7 @@ struct ExportReport {
   bool error_measured = false;
   Fidelity fidelity;
   std::vector<std::pair<std::string, std::uint64_t>> files;  // written: name, bytes
+  std::vector<std::string> advice;  // what the figures mean for the user, and the remedy
 };
 
 // Writes the report as JSON (docs/report.md names every key), whole or not at all.

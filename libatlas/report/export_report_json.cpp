@@ -216,6 +216,7 @@ Status write_json(const ExportReport& r, const std::filesystem::path& path) {
   }
   if (r.error_measured) json["error"] = error_json(r.fidelity, r.tone.op);
   json["files"] = files;
+  json["advice"] = r.advice;
   // Names come from files: bytes that are no UTF-8 are replaced instead of ending the export.
   return write_file(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }

@@ -388,4 +388,18 @@ TEST_F(AtlasPack, MeshOptionsDoWhatTheySay) {
   EXPECT_EQ(run("mesh t.obj -o out.obj --max-width 99").exit_code, 2);  // charts: square pages
 }
 
+TEST_F(AtlasPack, VeryManyPagesAreNamedWithTheLargerOnesThatWouldDo) {
+  std::string list;
+  for (int i = 0; i < 300; ++i) list += fmt::format("{},{}\n", 30 + i % 3, 30 + i % 2);
+  write("sizes.csv", list);
+  const RunResult many = run("rects sizes.csv -o placed.csv --page 64x64");
+  EXPECT_EQ(many.exit_code, 0);
+  EXPECT_NE(many.output.find("75 pages, each a texture of its own, are slow to load and to draw "
+                             "(--page 128x128 takes about 19)"),
+            std::string::npos)
+      << many.output;
+  EXPECT_EQ(run("rects sizes.csv -o placed.csv --page 128x128").output.find("slow"),
+            std::string::npos);
+}
+
 }  // namespace

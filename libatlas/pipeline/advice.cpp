@@ -1,0 +1,70 @@
+#include "libatlas/pipeline/advice.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+
+namespace atlas {
+namespace {
+
+// The paper's scenes have about 50 pages, a cabin of three million triangles 39.
+constexpr std::size_t kManyPages = 64;
+constexpr std::int32_t kCommonSide = 8192;  // textures that every graphics card takes
+
+double page_texels(const ExportReport& report) {
+  double texels = 0;
+  for (const PageReport& page : report.pages) texels += double(page.width) * page.height;
+  return texels;
+}
+
+std::string on_many_pages(const ExportReport& report, const ExportOptions& options) {
+  const double texels = page_texels(report);
+  std::int32_t side = options.atlas_size;
+  const auto count = [&] { return std::int64_t(std::ceil(texels / (double(side) * side))); };
+  while (side < kCommonSide && count() > std::int64_t(kManyPages) / 2) side *= 2;
+  const std::string larger =
+      side > options.atlas_size
+          ? fmt::format("--atlas-size {} --atlases {} holds as much; ", side, count())
+          : "";
+  return fmt::format(
+      "{} charts on {} pages of {} x {}: viewers load and draw every page by itself, which so many "
+      "make slow ({}a longer --texel or a higher --threshold needs fewer)",
+      report.charts.size(), report.pages.size(), options.atlas_size, options.atlas_size, larger);
+}
+
+std::string on_small_charts(const ExportReport& report, double texels_a_chart) {
+  return fmt::format(
+      "{} charts have {:.0f} texels each on average, and {:.0f} % of the pages are gutters and "
+      "gaps between them (more --atlases, a larger --atlas-size or a lower --mips leave more for "
+      "the light; a larger --max-stretch or --across-materials makes fewer charts)",
+      report.charts.size(), texels_a_chart, 100 * (1 - report.uv_utilization));
+}
+
+std::string on_coarse_texels(const ExportReport& report, const ExportOptions& options) {
+  return fmt::format(
+      "texels are {:.3g} mm long, not the {:.3g} mm of --texel, since the pages hold no more (more "
+      "--atlases or a larger --atlas-size, or a longer --texel)",
+      1e3 * options.texel_metres / report.scale, 1e3 * options.texel_metres);
+}
+
+}  // namespace
+
+std::vector<std::string> advice_on(const ExportReport& report, const ExportOptions& options) {
+  // Below these, light that the scene has is seen to be missing from the pages.
+  constexpr double kFewTexels = 32 * 32, kLittleUsed = 0.4, kCoarse = 0.5;
+  constexpr std::size_t kManyCharts = 256;
+  std::vector<std::string> lines;
+  if (report.pages.empty() || report.gpu_bytes == 0) return lines;  // no light, no texels to lose
+  if (report.pages.size() > kManyPages) lines.push_back(on_many_pages(report, options));
+  const double texels_a_chart =
+      report.uv_utilization * page_texels(report) / double(report.charts.size());
+  if (report.charts.size() >= kManyCharts && texels_a_chart < kFewTexels &&
+      report.uv_utilization < kLittleUsed)
+    lines.push_back(on_small_charts(report, texels_a_chart));
+  if (options.texel_metres > 0 && report.scale < kCoarse)
+    lines.push_back(on_coarse_texels(report, options));
+  return lines;
+}
+
+}  // namespace atlas

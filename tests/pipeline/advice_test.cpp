@@ -1,0 +1,90 @@
+#include "libatlas/pipeline/advice.h"
+
+#include <gtest/gtest.h>
+
+#include "libatlas/pipeline/export_world.h"
+#include "tests/pipeline/lit_scene.h"
+#include "tests/scene/temp_folder.h"
+#include "tests/support/shapes.h"
+
+namespace atlas::test {
+namespace {
+
+// A baked export of so many charts on so many square pages.
+ExportReport report_of(std::size_t charts, std::size_t pages, std::int32_t side) {
+  ExportReport report;
+  report.charts.resize(charts);
+  report.pages.assign(pages, PageReport{"p.png", side, side, 1, 1});
+  report.gpu_bytes = 1;
+  report.uv_utilization = 0.7;
+  return report;
+}
+
+bool holds(const std::vector<std::string>& lines, const std::string& text) {
+  return lines.size() == 1 && lines[0].find(text) != std::string::npos;
+}
+
+TEST(Advice, UsualResultsNeedNone) {
+  ExportOptions options;
+  EXPECT_TRUE(advice_on({}, options).empty());
+  EXPECT_TRUE(advice_on(report_of(16000, 50, 2048), options).empty());
+  options.texel_metres = 0.005;
+  EXPECT_TRUE(advice_on(report_of(16000, 64, 2048), options).empty());
+}
+
+TEST(Advice, ManyPagesNameLargerOnesThatHoldAsMuch) {
+  ExportOptions options;
+  EXPECT_TRUE(holds(advice_on(report_of(16000, 200, 2048), options),
+                    "16000 charts on 200 pages of 2048 x 2048"));
+  EXPECT_TRUE(holds(advice_on(report_of(16000, 200, 2048), options),
+                    "(--atlas-size 8192 --atlases 13 holds as much; a longer --texel"));
+  options.atlas_size = 8192;  // not all cards take larger ones
+  EXPECT_TRUE(holds(advice_on(report_of(16000, 200, 8192), options), "(a longer --texel"));
+}
+
+TEST(Advice, PagesOfGuttersAreNamed) {
+  ExportReport report = report_of(16000, 8, 1024);
+  report.uv_utilization = 0.3;
+  EXPECT_TRUE(
+      holds(advice_on(report, {}), "16000 charts have 157 texels each on average, and 70 %"));
+  report = report_of(16, 8, 1024);  // few large charts in a long scene
+  report.uv_utilization = 0.3;
+  EXPECT_TRUE(advice_on(report, {}).empty());
+}
+
+TEST(Advice, TexelsThatPagesCannotHoldAreNamed) {
+  ExportReport report = report_of(100, 8, 1024);
+  report.scale = 0.2;
+  EXPECT_TRUE(advice_on(report, {}).empty());  // none were asked for
+  ExportOptions options;
+  options.texel_metres = 0.005;
+  EXPECT_TRUE(holds(advice_on(report, options), "texels are 25 mm long, not the 5 mm of --texel"));
+}
+
+TEST(Advice, AnExportSaysAndReportsIt) {
+  const TempFolder folder;
+  Shape triangles;
+  for (int i = 0; i < 400; ++i) {
+    const float x = 2 * float(i);
+    triangles.positions.insert(triangles.positions.end(), {{x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0}});
+    for (std::uint32_t k = 0; k < 3; ++k) triangles.indices.push_back(3 * std::uint32_t(i) + k);
+  }
+  ExportOptions options;
+  options.target = folder / "world.obj";
+  options.atlases = 100;
+  options.atlas_size = 64;
+  std::vector<std::string> said;
+  Context context;
+  context.warn = [&](std::string_view line) { said.emplace_back(line); };
+  const auto report = export_world(lit_scene(triangles), options, {}, context);
+  ASSERT_TRUE(report.ok()) << report.status().message();
+  ASSERT_GT(report->pages.size(), 64u);
+  ASSERT_FALSE(said.empty());
+  EXPECT_NE(said[0].find("400 charts on "), std::string::npos) << said[0];
+  EXPECT_EQ(report->advice, said);
+  ASSERT_TRUE(write_json(*report, folder / "report.json").ok());
+  EXPECT_NE(TempFolder::read(folder / "report.json").find(said[0]), std::string::npos);
+}
+
+}  // namespace
+}  // namespace atlas::test
