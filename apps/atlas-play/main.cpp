@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "apps/atlas-play/command_line.h"
 #include "apps/common/files.h"
@@ -11,8 +13,8 @@
 namespace atlas::app {
 namespace {
 
-Status bench(const CommandLine& line, const GlContext& gl, const Renderer& renderer,
-             const ViewScene& scene, Terminal& terminal, const Context& context) {
+Result<BenchResult> measure(const CommandLine& line, const GlContext& gl, const Renderer& renderer,
+                            const Context& context) {
   BenchOptions options = line.measure;
   options.render = line.render;
   options.camera = line.play.camera;
@@ -26,16 +28,23 @@ Status bench(const CommandLine& line, const GlContext& gl, const Renderer& rende
   result.map_resolution = line.render.map_resolution;
   result.interval = line.render.schedule.interval_frames;
   result.pcf = line.render.pcf;
-  result.triangles = std::uint32_t(scene.triangle_count());
-  Status measured = bench_times(renderer, line.play.light, options, result, context);
-  if (measured.ok() && !line.no_errors)
-    measured = bench_errors(renderer, line.play.light, options, result, context);
-  if (Status s = gl.check_alive(); !s.ok()) return s;
-  if (!measured.ok()) return measured;
-  if (Status s = write_bench(result, line.bench); !s.ok()) return s;
+  Result<BenchTimes> times = bench_times(renderer, line.play.light, options, context);
+  if (!times.ok()) return times.status();
+  result.times = std::move(*times);
+  if (line.no_errors) return result;
+  Result<std::vector<BenchError>> errors =
+      bench_errors(renderer, line.play.light, options, context);
+  if (!errors.ok()) return errors.status();
+  result.errors = std::move(*errors);
+  return result;
+}
+
+Status write_measured(const BenchResult& result, const std::filesystem::path& folder,
+                      Terminal& terminal) {
+  if (Status s = write_bench(result, folder); !s.ok()) return s;
   terminal.line(bench_table(result));
   terminal.line(
-      fmt::format("wrote {} (gnuplot plots.gp there draws the figures)", line.bench.string()));
+      fmt::format("wrote {} (gnuplot plots.gp there draws the figures)", folder.string()));
   return {};
 }
 
@@ -93,7 +102,13 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   if (line.plan || !line.quiet)
     for (const std::string& text : renderer->plan()) terminal.line(text);
   if (line.plan) return {};
-  if (!line.bench.empty()) return bench(line, *gl, *renderer, *scene, terminal, context);
+  if (!line.bench.empty()) {
+    Result<BenchResult> measured = measure(line, *gl, *renderer, context);
+    if (Status s = gl->check_alive(); !s.ok()) return s;
+    if (!measured.ok()) return measured.status();
+    measured->triangles = std::uint32_t(scene->triangle_count());
+    return write_measured(*measured, line.bench, terminal);
+  }
 
   Result<PlaySummary> done = window ? play_in_window(*window, *renderer, line.play, context)
                                     : play_headless(*gl, *renderer, line.play, context);

@@ -60,11 +60,11 @@ Result<std::vector<Row>> measure_shadows(const Scene& scene, const std::string& 
   if (!path.ok()) return path.status();
   Result<Renderer> renderer = Renderer::make(*view, bench.render);
   if (!renderer.ok()) return renderer.status();
-  BenchResult result;
-  if (const Status s = bench_errors(*renderer, *path, bench, result); !s.ok()) return s;
+  const Result<std::vector<BenchError>> errors = bench_errors(*renderer, *path, bench);
+  if (!errors.ok()) return errors.status();
   std::vector<Row> rows;
   bool classic = false;  // the same for every interval
-  for (const BenchError& error : result.errors) {
+  for (const BenchError& error : *errors) {
     if (error.method == ShadowMethod::classic && std::exchange(classic, true)) continue;
     rows.push_back(row_of(error, name, view->triangle_count()));
     rows.back().memory_mib = double(peak_memory()) / (1 << 20);

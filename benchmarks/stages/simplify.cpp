@@ -23,7 +23,7 @@ void bench_simplify(const StageRun& run) {
     options.max_slip_texels = slip;
     measure(run.repeats, row, [&]() -> Status {
       const Result<SimplifiedMesh> made =
-          simplify_charts(staged.view(), *staged.charts, density, options, staged.context);
+          simplify_charts({staged.view(), *staged.charts, density}, options, staged.context);
       if (!made.ok()) return made.status();
       row.size_out = made->triangles_out;
       row.values = {{"slip", made->max_slip_texels},

@@ -324,7 +324,7 @@ class Export {
     SimplifyOptions simplify;
     simplify.max_slip_texels = options_.simplify_slip;
     Result<SimplifiedMesh> coarse =
-        simplify_charts(view_of(scene_), charts_, density, simplify, context_);
+        simplify_charts({view_of(scene_), charts_, density}, simplify, context_);
     if (!coarse.ok()) return coarse.status();
     coarse_ = std::move(*coarse);
     report_.simplified = true;

@@ -49,8 +49,8 @@ Status check_options(const SimplifyOptions& options) {
   return {};
 }
 
-Status check_input(const MeshView& mesh, const ChartSet& charts,
-                   std::span<const double> texels_per_unit) {
+Status check_input(const SimplifyInput& input) {
+  const auto& [mesh, charts, texels_per_unit] = input;
   const std::size_t triangles = mesh.indices.size() / 3;
   if (charts.triangle_uv.size() != mesh.indices.size() ||
       charts.chart_triangles.size() != triangles) {
@@ -260,13 +260,12 @@ Result<SimplifiedMesh> Run::operator()() {
 
 }  // namespace
 
-Result<SimplifiedMesh> simplify_charts(const MeshView& mesh, const ChartSet& charts,
-                                       std::span<const double> texels_per_unit,
-                                       const SimplifyOptions& options, const Context& context) {
+Result<SimplifiedMesh> simplify_charts(const SimplifyInput& input, const SimplifyOptions& options,
+                                       const Context& context) {
   if (Status status = check_options(options); !status.ok()) return status;
-  if (Status status = check_input(mesh, charts, texels_per_unit); !status.ok()) return status;
-  const Geometry geometry{&mesh, &charts};
-  return Run(geometry, texels_per_unit, options, context)();
+  if (Status status = check_input(input); !status.ok()) return status;
+  const Geometry geometry{&input.mesh, &input.charts};
+  return Run(geometry, input.texels_per_unit, options, context)();
 }
 
 }  // namespace atlas

@@ -42,17 +42,22 @@ struct SimplifiedMesh {
   double cpu_seconds = 0;  // all threads
 };
 
+// What is simplified; it must outlive the call only.
+struct SimplifyInput {
+  MeshView mesh;
+  const ChartSet& charts;
+  std::span<const double> texels_per_unit;  // 1 a chart: texels a unit of ChartSet::uvs, > 0
+};
+
 // Removes vertices by half-edge collapses (OpenMesh) within the bounds above. Chart borders: a
 // vertex between two border edges that the same charts share is removed from all of these charts
 // at once, so no crack opens; border vertices where other charts, borders or non-manifold edges
 // meet stay. Every coarse triangle has positive area in uv (exact test) and in space. Output
 // triangles have their chart's orientation, also those in ChartSet::flipped_triangles.
-// `texels_per_unit` holds one number a chart: texels a unit of ChartSet::uvs, > 0.
 // The result is the same for every thread count. Method: docs/simplify.md.
 // Errors: bad_input when the spans do not fit together or texels_per_unit holds a number that is
 // not positive; bad_option; cancelled.
-Result<SimplifiedMesh> simplify_charts(const MeshView& mesh, const ChartSet& charts,
-                                       std::span<const double> texels_per_unit,
-                                       const SimplifyOptions& options, const Context& context);
+Result<SimplifiedMesh> simplify_charts(const SimplifyInput& input, const SimplifyOptions& options,
+                                       const Context& context);
 
 }  // namespace atlas

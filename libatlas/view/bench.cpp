@@ -149,8 +149,10 @@ class ErrorProbe {
   Renderer visibility_, colours_;
 };
 
-Status errors_of_interval(const Renderer& first, const LightPath& path, const BenchOptions& options,
-                          BenchResult& result, const Context& context) {
+// At the interval that options.render has.
+Result<std::vector<BenchError>> errors_of_interval(const Renderer& first, const LightPath& path,
+                                                   const BenchOptions& options,
+                                                   const Context& context) {
   RenderOptions render = options.render;
   render.shading = Shading::lambert;
   render.shadows = ShadowMethod::classic;
@@ -179,8 +181,28 @@ Status errors_of_interval(const Renderer& first, const LightPath& path, const Be
       probe.sums.ssim += ssim(shown, c);
     }
   }
-  for (const auto& [method, probe] : probes) result.errors.push_back(finish(probe.sums, method, k));
-  return {};
+  std::vector<BenchError> errors;
+  for (const auto& [method, probe] : probes) errors.push_back(finish(probe.sums, method, k));
+  return errors;
+}
+
+// Every shading with every method.
+Result<std::vector<Contender>> make_contenders(const Renderer& first, const BenchOptions& options) {
+  std::vector<Contender> contenders;
+  for (Shading shading : options.shadings)
+    for (ShadowMethod method : options.methods) {
+      RenderOptions render = options.render;
+      render.shading = shading;
+      render.shadows = method;
+      render.show_visibility = false;
+      Result<Renderer> made = first.share(render);
+      if (!made.ok()) return made.status();
+      Contender c{std::move(*made), {}, 0};
+      c.run.shading = shading;
+      c.run.method = method;
+      contenders.push_back(std::move(c));
+    }
+  return contenders;
 }
 
 }  // namespace
@@ -202,22 +224,11 @@ Spread spread_of(std::vector<double> values) {
   return s;
 }
 
-Status bench_times(const Renderer& first, const LightPath& path, const BenchOptions& options,
-                   BenchResult& result, const Context& context) {
-  std::vector<Contender> contenders;
-  for (Shading shading : options.shadings)
-    for (ShadowMethod method : options.methods) {
-      RenderOptions render = options.render;
-      render.shading = shading;
-      render.shadows = method;
-      render.show_visibility = false;
-      Result<Renderer> made = first.share(render);
-      if (!made.ok()) return made.status();
-      Contender c{std::move(*made), {}, 0};
-      c.run.shading = shading;
-      c.run.method = method;
-      contenders.push_back(std::move(c));
-    }
+Result<BenchTimes> bench_times(const Renderer& first, const LightPath& path,
+                               const BenchOptions& options, const Context& context) {
+  Result<std::vector<Contender>> made = make_contenders(first, options);
+  if (!made.ok()) return made.status();
+  std::vector<Contender>& contenders = *made;
   const int warm_up = std::max(options.warm_up, 2 * options.render.schedule.interval_frames);
   bool more = true;
   Control control;
@@ -240,23 +251,27 @@ Status bench_times(const Renderer& first, const LightPath& path, const BenchOpti
     if (f + 1 == warm_up) control.fit(spread_of(warm).p50);
     if (f >= warm_up) control.run();
   }
+  BenchTimes times;
   for (Contender& c : contenders) {
     summarise(c.run);
-    result.runs.push_back(std::move(c.run));
+    times.runs.push_back(std::move(c.run));
   }
-  result.control = control.result();
-  return {};
+  times.control = control.result();
+  return times;
 }
 
-Status bench_errors(const Renderer& first, const LightPath& path, const BenchOptions& options,
-                    BenchResult& result, const Context& context) {
+Result<std::vector<BenchError>> bench_errors(const Renderer& first, const LightPath& path,
+                                             const BenchOptions& options, const Context& context) {
+  std::vector<BenchError> errors;
   for (int k : options.error_intervals) {
     BenchOptions with_k = options;
     with_k.render.schedule.interval_frames = k;
     with_k.render.schedule.interval_degrees = 0;
-    if (Status s = errors_of_interval(first, path, with_k, result, context); !s.ok()) return s;
+    Result<std::vector<BenchError>> of_k = errors_of_interval(first, path, with_k, context);
+    if (!of_k.ok()) return of_k.status();
+    errors.insert(errors.end(), of_k->begin(), of_k->end());
   }
-  return {};
+  return errors;
 }
 
 }  // namespace atlas

@@ -54,6 +54,11 @@ struct BenchControl {
   Spread wall, cpu;          // seconds
 };
 
+struct BenchTimes {
+  std::vector<BenchRun> runs;
+  BenchControl control;
+};
+
 struct BenchError {
   ShadowMethod method{};
   int interval = 0;  // k
@@ -67,19 +72,19 @@ struct BenchResult {
   bool software = false;
   int width = 0, height = 0, map_resolution = 0, interval = 0, pcf = 0;
   std::uint32_t triangles = 0;
-  std::vector<BenchRun> runs;
-  BenchControl control;
+  BenchTimes times;
   std::vector<BenchError> errors;
 };
 
 // Runs every shading with every method. The combinations take turns frame by frame, so that a busy
 // machine slows all of them alike and their ratios stand; the control takes its turn with them.
-Status bench_times(const Renderer& first, const LightPath& path, const BenchOptions& options,
-                   BenchResult& result, const Context& context = {});
+Result<BenchTimes> bench_times(const Renderer& first, const LightPath& path,
+                               const BenchOptions& options, const Context& context = {});
 
 // Errors of every method but none, for every interval in options.error_intervals.
-Status bench_errors(const Renderer& first, const LightPath& path, const BenchOptions& options,
-                    BenchResult& result, const Context& context = {});
+Result<std::vector<BenchError>> bench_errors(const Renderer& first, const LightPath& path,
+                                             const BenchOptions& options,
+                                             const Context& context = {});
 
 // frames.csv, summary.json, summary.md, and plots.gp with its data: `gnuplot plots.gp` draws frames
 // a second for each method (the paper's figures 2 to 5), CPU time of every frame for each shading,

@@ -31,7 +31,7 @@ json milliseconds(const Spread& s) {
 
 json summary(const BenchResult& r) {
   json runs = json::array(), errors = json::array();
-  for (const BenchRun& run : r.runs)
+  for (const BenchRun& run : r.times.runs)
     runs.push_back({{"shading", name_of(run.shading)},
                     {"shadows", name_of(run.method)},
                     {"frames", run.frames.size()},
@@ -67,16 +67,16 @@ json summary(const BenchResult& r) {
           {"runs", runs},
           {"errors", errors},
           {"control",
-           {{"rounds", r.control.rounds},
-            {"wall_ms", milliseconds(r.control.wall)},
-            {"cpu_ms", milliseconds(r.control.cpu)}}}};
+           {{"rounds", r.times.control.rounds},
+            {"wall_ms", milliseconds(r.times.control.wall)},
+            {"cpu_ms", milliseconds(r.times.control.cpu)}}}};
 }
 
 std::string frames_csv(const BenchResult& r) {
   std::string csv =
       "shading,shadows,frame,wall_ms,cpu_ms,gpu_shadow_ms,gpu_lit_ms,triangles_shadow,"
       "triangles_lit\n";
-  for (const BenchRun& run : r.runs)
+  for (const BenchRun& run : r.times.runs)
     for (std::size_t i = 0; i < run.frames.size(); ++i) {
       const FrameTime& f = run.frames[i];
       csv += fmt::format("{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{},{}\n", name_of(run.shading),
@@ -90,7 +90,7 @@ std::string frames_csv(const BenchResult& r) {
 std::string fps_data(const BenchResult& r, ShadowMethod method, std::string& plot) {
   std::string data;
   int block = 0;
-  for (const BenchRun& run : r.runs) {
+  for (const BenchRun& run : r.times.runs) {
     if (run.method != method) continue;
     plot += fmt::format("{}'fps-{}.dat' index {} with lines title '{}'", block ? ", " : "plot ",
                         name_of(method), block, name_of(run.shading));
@@ -106,7 +106,7 @@ std::string fps_data(const BenchResult& r, ShadowMethod method, std::string& plo
 std::string cpu_data(const BenchResult& r, Shading shading, std::string& plot) {
   std::string data;
   int block = 0;
-  for (const BenchRun& run : r.runs) {
+  for (const BenchRun& run : r.times.runs) {
     if (run.shading != shading) continue;
     plot += fmt::format("{}'cpu-{}.dat' index {} with lines title '{}'", block ? ", " : "plot ",
                         name_of(shading), block, name_of(run.method));
@@ -194,12 +194,12 @@ std::string bench_table(const BenchResult& r) {
   std::string s = fmt::format("{} ({}), {} x {}, maps {}², k = {}, pcf {}, {} triangles\n\n",
                               r.device, r.software ? "software renderer" : "GPU", r.width, r.height,
                               r.map_resolution, r.interval, r.pcf, r.triangles);
-  if (!r.runs.empty())
+  if (!r.times.runs.empty())
     s += "| shading | shadows | mean fps | wall ms: p50 | p95 | p99 | p99.9 | worst | p95 / p50 | "
          "CPU "
          "ms: p50 | p95 | p95 / p50 | shadow share | triangles: mean | worst |\n|---|---|---|---|"
          "---|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const BenchRun& b : r.runs)
+  for (const BenchRun& b : r.times.runs)
     s += fmt::format(
         "| {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.2f} | {:.1f} | "
         "{:.1f} | {:.2f} | {:.0f} % | {:.0f} | {:.0f} |\n",
@@ -207,8 +207,8 @@ std::string bench_table(const BenchResult& r) {
         b.wall.p50 * 1e3, b.wall.p95 * 1e3, b.wall.p99 * 1e3, b.wall.p999 * 1e3, b.wall.worst * 1e3,
         spread_ratio(b.wall), b.cpu.p50 * 1e3, b.cpu.p95 * 1e3, spread_ratio(b.cpu),
         b.shadow_share * 100, b.work_mean, b.work_worst);
-  if (r.control.rounds > 0) {
-    const Spread &w = r.control.wall, &c = r.control.cpu;
+  if (r.times.control.rounds > 0) {
+    const Spread &w = r.times.control.wall, &c = r.times.control.cpu;
     s += fmt::format(
         "| control | fixed arithmetic | | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.2f} | "
         "{:.1f} | {:.1f} | {:.2f} | | | |\n",

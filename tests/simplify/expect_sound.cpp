@@ -7,7 +7,7 @@ namespace atlas::simplify_test {
 SimplifiedMesh simplify(const ChartedMesh& mesh, double density, const SimplifyOptions& options,
                         const Context& context) {
   const std::vector<double> densities(mesh.charts.charts.size(), density);
-  auto result = simplify_charts(mesh.view(), mesh.charts, densities, options, context);
+  auto result = simplify_charts({mesh.view(), mesh.charts, densities}, options, context);
   EXPECT_TRUE(result.ok()) << result.status().message();
   return result.ok() ? std::move(*result) : SimplifiedMesh{};
 }

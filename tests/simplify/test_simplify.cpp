@@ -94,7 +94,7 @@ TEST(Simplify, OpenBordersThatShareSomePoints) {
 TEST(Simplify, ChartsOfDifferentDensity) {
   const ChartedMesh mesh = sphere(24);
   const std::vector<double> densities = {10, 200, 30, 60, 15, 100};
-  auto result = simplify_charts(mesh.view(), mesh.charts, densities, {}, {});
+  auto result = simplify_charts({mesh.view(), mesh.charts, densities}, {}, {});
   ASSERT_TRUE(result.ok());
   expect_sound(mesh, *result, densities);
   std::vector<std::size_t> count(6, 0);

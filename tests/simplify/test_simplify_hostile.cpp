@@ -209,7 +209,7 @@ TEST(SimplifyHostile, BadOptionsAndInput) {
   const ChartedMesh mesh = box(2);
   const std::vector<double> densities(6, 10);
   const auto code = [&](const SimplifyOptions& options) {
-    return simplify_charts(mesh.view(), mesh.charts, densities, options, {}).status().code();
+    return simplify_charts({mesh.view(), mesh.charts, densities}, options, {}).status().code();
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {0.0, -1.0, nan}) {
@@ -220,7 +220,7 @@ TEST(SimplifyHostile, BadOptionsAndInput) {
     EXPECT_EQ(code(turn), ErrorCode::bad_option);
   }
   const auto with = [](const ChartedMesh& m, const std::vector<double>& d) {
-    return simplify_charts(m.view(), m.charts, d, {}, {}).status().code();
+    return simplify_charts({m.view(), m.charts, d}, {}, {}).status().code();
   };
   EXPECT_EQ(with(mesh, {1, 2}), ErrorCode::bad_input);
   EXPECT_EQ(with(mesh, {1, 1, 1, 0, 1, 1}), ErrorCode::bad_input);
@@ -257,7 +257,7 @@ TEST(SimplifyHostile, Cancelled) {
     context.progress = [&](std::string_view, double fraction) {
       if (fraction >= when && fraction < 1) cancel = true;
     };
-    const auto result = simplify_charts(mesh.view(), mesh.charts, densities, {}, context);
+    const auto result = simplify_charts({mesh.view(), mesh.charts, densities}, {}, context);
     if (cancel) {
       ASSERT_FALSE(result.ok());
       EXPECT_EQ(result.status().code(), ErrorCode::cancelled);

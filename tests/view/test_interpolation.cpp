@@ -8,6 +8,8 @@
 namespace atlas::testing {
 namespace {
 
+using Errors = std::vector<BenchError>;
+
 BenchOptions options_for(const View& view) {
   BenchOptions o;
   o.render.width = 320;
@@ -26,11 +28,11 @@ LightPath sun() {
   return *LightPath::make(o);
 }
 
-const BenchError& of(const BenchResult& r, ShadowMethod method) {
-  for (const BenchError& e : r.errors)
+const BenchError& of(const Errors& r, ShadowMethod method) {
+  for (const BenchError& e : r)
     if (e.method == method) return e;
   ADD_FAILURE() << "not measured";
-  return r.errors.front();
+  return r.front();
 }
 
 LightPath through_the_window() {
@@ -40,8 +42,8 @@ LightPath through_the_window() {
   return *LightPath::make(o);
 }
 
-void print(const BenchResult& r) {
-  for (const BenchError& e : r.errors)
+void print(const Errors& r) {
+  for (const BenchError& e : r)
     std::printf("k %2d %-8s mean %.5f wrong %.5f, off edges %.5f %.5f, psnr %.2f ssim %.4f\n",
                 e.interval, name_of(e.method), e.visibility.mean, e.visibility.wrong,
                 e.visibility.mean_off_edges, e.visibility.wrong_off_edges, e.psnr, e.ssim);
@@ -50,8 +52,7 @@ void print(const BenchResult& r) {
 void expect_a_quarter(const View& view, const LightPath& path) {
   const BenchOptions o = options_for(view);
   const Renderer first = must_render(view.scene, o.render);
-  BenchResult r;
-  ASSERT_TRUE(bench_errors(first, path, o, r).ok());
+  const Errors r = bench_errors(first, path, o).value();
   print(r);
   const BenchError &march = of(r, ShadowMethod::march), &linear = of(r, ShadowMethod::linear);
   EXPECT_LE(march.visibility.mean, linear.visibility.mean / 4);
@@ -76,11 +77,10 @@ TEST(Interpolation, TheMarchWinsAtEveryInterval) {
   o.methods = {ShadowMethod::linear, ShadowMethod::march};
   o.error_intervals = {2, 4, 16, 32};
   const Renderer first = must_render(view.scene, o.render);
-  BenchResult r;
-  ASSERT_TRUE(bench_errors(first, sun(), o, r).ok());
+  const Errors r = bench_errors(first, sun(), o).value();
   print(r);
-  for (std::size_t i = 0; i + 1 < r.errors.size(); i += 2) {
-    const VisibilityError &linear = r.errors[i].visibility, &march = r.errors[i + 1].visibility;
+  for (std::size_t i = 0; i + 1 < r.size(); i += 2) {
+    const VisibilityError &linear = r[i].visibility, &march = r[i + 1].visibility;
     EXPECT_LT(march.mean, linear.mean);
     EXPECT_LE(march.wrong, linear.wrong / 4);
     // Edges apart: there two classic maps with other texels differ as much. 2e-5 is such texels'
@@ -125,13 +125,12 @@ TEST(Interpolation, TheMarchLooksOftenerWhereKeysAreFarApart) {
   o.methods = {ShadowMethod::march};
   o.error_intervals = {32};
   const Renderer first = must_render(view.scene, o.render);
-  BenchResult adapted, plain;
-  ASSERT_TRUE(bench_errors(first, through_the_window(), o, adapted).ok());
+  const Errors adapted = bench_errors(first, through_the_window(), o).value();
   o.render.march_steps = kMostMarchSamples;
-  ASSERT_TRUE(bench_errors(first, through_the_window(), o, plain).ok());
+  const Errors plain = bench_errors(first, through_the_window(), o).value();
   print(adapted);
   print(plain);
-  EXPECT_LT(adapted.errors[0].visibility.mean, 1.2 * plain.errors[0].visibility.mean);
+  EXPECT_LT(adapted[0].visibility.mean, 1.2 * plain[0].visibility.mean);
 }
 
 // A pole's shadow falls on one place at a time: the cross-fade shows two half shadows, the march
