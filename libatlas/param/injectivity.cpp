@@ -109,21 +109,26 @@ class BorderTree {
     Box b{inf, inf, -inf, -inf};
     if (node.is_leaf()) {
       for (std::uint32_t i = begin; i < end; ++i) {
-        const Edge& e = edges_[i];
-        b = {std::min({b.x0, e.a.x, e.b.x}), std::min({b.y0, e.a.y, e.b.y}),
-             std::max({b.x1, e.a.x, e.b.x}), std::max({b.y1, e.a.y, e.b.y})};
+        b = around(b, box_of(edges_[i]));
       }
     } else {
       build(2 * id, begin, node.middle());
       build(2 * id + 1, node.middle(), end);
-      const Box &l = box(2 * id), &r = box(2 * id + 1);
-      b = {std::min(l.x0, r.x0), std::min(l.y0, r.y0), std::max(l.x1, r.x1), std::max(l.y1, r.y1)};
+      b = around(box(2 * id), box(2 * id + 1));
     }
     box(id) = b;
   }
 
-  bool apart(std::uint32_t i, std::uint32_t j) const {
-    const Box &a = boxes_[i], &b = boxes_[j];
+  static Box box_of(const Edge& e) {
+    return {std::min(e.a.x, e.b.x), std::min(e.a.y, e.b.y), std::max(e.a.x, e.b.x),
+            std::max(e.a.y, e.b.y)};
+  }
+
+  static Box around(const Box& a, const Box& b) {
+    return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
+  }
+
+  bool apart(const Box& a, const Box& b) const {
     const double c = options_.clearance;
     return a.x1 + c < b.x0 || b.x1 + c < a.x0 || a.y1 + c < b.y0 || b.y1 + c < a.y0;
   }
@@ -133,7 +138,7 @@ class BorderTree {
   }
 
   void visit(const Node& i, const Node& j) {
-    if (full() || apart(i.id, j.id)) return;
+    if (full() || apart(boxes_[i.id], boxes_[j.id])) return;
     if (i.id == j.id) {
       if (i.is_leaf()) return test(i, j);
       visit(i.left(), i.left());
@@ -151,6 +156,7 @@ class BorderTree {
 
   void test(const Node& i, const Node& j) {
     for (std::uint32_t k = i.begin; k < i.end; ++k) {
+      if (apart(box_of(edges_[k]), boxes_[j.id])) continue;
       for (std::uint32_t l = i.id == j.id ? k + 1 : j.begin; l < j.end; ++l)
         test(edges_[k], edges_[l]);
     }

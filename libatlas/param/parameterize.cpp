@@ -154,13 +154,16 @@ struct Descent {
   const LocalMesh& mesh;
   const ParamOptions& options;
   param::ArapSolver& solver;
+  bool laid = false;  // the uvs hold what to go on from
 };
 
 // Returns what ArapSolver::iterate() does.
 double first_uvs(const Descent& d, std::span<Vec2d> uvs) {
-  const auto& [mesh, options, solver] = d;
+  const auto& [mesh, options, solver, laid] = d;
   double fall = std::numeric_limits<double>::infinity();
-  if (!options.joined.empty()) {
+  if (laid) {
+    solver.start(IsometricStart{.uvs = uvs});
+  } else if (!options.joined.empty()) {
     solver.join(options.joined, uvs);
   } else if (options.resume) {
     std::copy(options.start.uvs.begin(), options.start.uvs.end(), uvs.begin());
@@ -172,7 +175,7 @@ double first_uvs(const Descent& d, std::span<Vec2d> uvs) {
 }
 
 void turn_flips(const Descent& d, ParamResult& r) {
-  const auto& [mesh, options, solver] = d;
+  const auto& [mesh, options, solver, laid] = d;
   const std::size_t flips = count_flips(mesh, r.uvs);
   const std::size_t most = std::max(kMostFlips, mesh.triangles.size() / kMostFlipsShare);
   if (flips == 0 || (flips > most && options.max_stretch <= kTightBound)) return;
@@ -192,7 +195,7 @@ Distortion unroll(const Descent& d, double fall, Distortion now, std::span<Vec2d
 // For rough surfaces. What is stretched too much in more than a few places is squeezed as a whole
 // before: cuts would change nothing there.
 void lower_tail(const Descent& d, ParamResult& r) {
-  const auto& [mesh, options, solver] = d;
+  const auto& [mesh, options, solver, laid] = d;
   const double bound = kWithin * options.max_stretch;
   if (solver.lower_tail(bound, r.uvs) != param::Tail::wide) return;
   solver.squeeze({bound, bound, options.squeeze_iterations, options.squeeze_ratio}, r.uvs);
@@ -203,7 +206,7 @@ void lower_tail(const Descent& d, ParamResult& r) {
 // What is within the bound but for borders that cross. Where it fails, the result names the
 // crossings that stayed.
 void draw_apart(const Descent& d, ParamResult& r) {
-  const auto& [mesh, options, solver] = d;
+  const auto& [mesh, options, solver, laid] = d;
   if (r.injective || !r.within_bound || r.distortion.flips > 0) return;
   if (options.local && r.crossings.size() > kMostSeparable) return;
   ParamResult crossed;
@@ -229,7 +232,7 @@ void draw_apart(const Descent& d, ParamResult& r) {
 // From the solver's rotations to a finished result: flips out, then the stretch down; squeezing may
 // flip anew, hence the second round.
 void descend(const Descent& d, PhaseClock& clock, ParamResult& r) {
-  const auto& [mesh, options, solver] = d;
+  const auto& [mesh, options, solver, laid] = d;
   const bool joining = !options.joined.empty();
   const double fall = first_uvs(d, r.uvs);
   double aim =
@@ -272,6 +275,37 @@ void descend(const Descent& d, PhaseClock& clock, ParamResult& r) {
   clock.book(&Phase::overlaps);
 }
 
+// What fits so well, by the shortest edge at a vertex, needs no solving.
+constexpr double kExactFit = 1e-3;
+
+// Each vertex in the mean of its corners in options.joined. Returns the farthest any of them is
+// from there, by the shorter edge of its triangle.
+double lay_side_by_side(const LocalMesh& mesh, std::span<const Vec2d> corner_uvs,
+                        std::span<Vec2d> uvs) {
+  std::vector<glm::dvec3> sum(uvs.size(), glm::dvec3(0));
+  for (std::size_t c = 0; c < corner_uvs.size(); ++c) {
+    sum[mesh.triangles[c / 3][c % 3]] += glm::dvec3(to_glm(corner_uvs[c]), 1);
+  }
+  for (std::size_t v = 0; v < uvs.size(); ++v) uvs[v] = from_glm(glm::dvec2(sum[v]) / sum[v].z);
+  double misfit = 0;
+  for (std::size_t c = 0; c < corner_uvs.size(); ++c) {
+    const auto& v = mesh.triangles[c / 3];
+    const glm::dvec2 at = to_glm(uvs[v[c % 3]]);
+    const double shorter = std::min(glm::distance(at, to_glm(uvs[v[(c + 1) % 3]])),
+                                    glm::distance(at, to_glm(uvs[v[(c + 2) % 3]])));
+    misfit = std::max(misfit, glm::distance(at, to_glm(corner_uvs[c])) / shorter);
+  }
+  return misfit;
+}
+
+void join(const LocalMesh& mesh, const ParamOptions& options, ParamWorkspace& workspace,
+          ParamResult& r) {
+  PhaseClock clock(mesh.triangles.size(), workspace);
+  const double misfit = lay_side_by_side(mesh, options.joined, r.uvs);
+  param::ArapSolver solver(mesh, options.min_altitude, workspace.impl());
+  descend({mesh, options, solver, options.patch || misfit < kExactFit}, clock, r);
+}
+
 }  // namespace
 
 ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
@@ -303,8 +337,7 @@ ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
     r.uvs.resize(mesh.positions.size());
   }
   if (!options.joined.empty()) {
-    param::ArapSolver solver(mesh, options.min_altitude, workspace.impl());
-    descend({mesh, options, solver}, clock, r);
+    join(mesh, options, workspace, r);
     return r;
   }
   IsometricStart start = options.start;

@@ -46,6 +46,8 @@ struct ParamOptions {
   // 3 a triangle, or empty: parts of the mesh that are flat already, placed next to each other, to
   // go on from instead of `start`. What they stretch is kept, so far as they fit together.
   std::span<const Vec2d> joined = {};
+  // One of these parts is small: places beyond the bound are relaxed around it, nothing is solved.
+  bool patch = false;
   // Triangles are kept at least this thick (uv units) where possible, so that rounding of what is
   // written leaves them positive.
   double min_altitude = 0;

@@ -332,10 +332,13 @@ TEST(ChartJob, ALittlePartLeavesALargeOneAsItIs) {
       ASSERT_TRUE(whole.parts.empty());
       std::vector<Vec2d> joined;
       std::vector<Triangle2> was;
+      const Vec2d joint = corners_of(whole.flat, fitting * 2 * kRows)[0];
       for (std::size_t i = 0; i < whole.flat.corners.size(); ++i) {
         was.push_back(corners_of(whole.flat, i));
         const double f = int(i) / (2 * kRows) < fitting ? 1 : stretch;
-        for (const Vec2d& p : was.back()) joined.push_back({f * p.x, p.y / f});
+        for (const Vec2d& p : was.back()) {
+          joined.push_back({joint.x + f * (p.x - joint.x), joint.y + (p.y - joint.y) / f});
+        }
       }
       const ChartOutcome both =
           bench.flatten(0, {.cuts = 0, .joined = joined, .little = little, .whole = true});
