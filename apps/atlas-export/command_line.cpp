@@ -163,7 +163,8 @@ constexpr double kBytesPerTexel = 4.0 * 4 / 3;  // RGBA8 and its mip chain
 std::optional<std::string> interpret(const RawText& raw, ExportCommand& command) {
   ExportOptions& options = command.options;
   const auto unit = parse_unit(raw.unit);
-  if (!unit) return fmt::format("--unit {}: give m, cm, mm, in, ft, km or metres", raw.unit);
+  if (!unit)
+    return fmt::format("--unit {}: give m, cm, mm, in, ft, km or metres (1e-12 to 1e24)", raw.unit);
   command.read.metres_per_unit = *unit;
   if (!raw.texel.empty()) {
     const auto texel = parse_length(raw.texel);

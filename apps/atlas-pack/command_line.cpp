@@ -1,10 +1,13 @@
 #include "apps/atlas-pack/command_line.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <map>
 #include <string_view>
 
 #include "apps/common/options.h"
+#include "apps/common/program.h"
 
 namespace atlas::app {
 namespace {
@@ -88,6 +91,14 @@ void add_effort_options(CLI::App& app, PackCommand& c) {
   app.add_flag("-q,--quiet", c.quiet, "Print errors only");
 }
 
+// Options that would change nothing, which nobody wants who gives them.
+std::string about_effort(const CLI::App& command, const PackCommand& c) {
+  for (const char* option : {"--budget", "--effort"})
+    if (command.count(option) > 0 && c.options.preset != PackPreset::best)
+      return fmt::format("{} is for --preset best (give both or none)", option);
+  return {};
+}
+
 // What rectangles and images know and charts do not: any page, as many as it takes, quarter turns.
 void add_rect_options(CLI::App& app, PackCommand& c) {
   app.add_option_function<std::string>("--page",
@@ -141,10 +152,11 @@ CLI::App* add_images(CLI::App& app, PackCommand& c) {
   images->add_option("--extrude", c.extrude, "Repeat edge texels outwards this many times")
       ->capture_default_str()
       ->check(within(0, 256));
-  images->add_option("--trim-threshold", c.trim_threshold, "Alpha up to this is transparent")
-      ->capture_default_str()
-      ->check(within(0, 254));
-  add_off_flag(*images, "--no-trim", c.trim, "Keep transparent borders");
+  CLI::Option* threshold =
+      images->add_option("--trim-threshold", c.trim_threshold, "Alpha up to this is transparent")
+          ->capture_default_str()
+          ->check(within(0, 254));
+  add_off_flag(*images, "--no-trim", c.trim, "Keep transparent borders")->excludes(threshold);
   add_off_flag(*images, "--no-alias", c.alias, "Store identical images each");
   add_page_options(*images, c);
   add_effort_options(*images, c);
@@ -189,6 +201,10 @@ int parse_command_line(int argc, char** argv, PackCommand& c) {
   CLI::App* images = add_images(app, c);
   add_mesh(app, c);
   if (const int code = parse(app, argc, argv); code >= 0) return code;
+  if (const std::string why = about_effort(*app.get_subcommands().front(), c); !why.empty()) {
+    print(stderr, fmt::format("atlas-pack: error: {}\n", why));
+    return 2;
+  }
   c.kind = *rects    ? PackCommand::Kind::rects
            : *images ? PackCommand::Kind::images
                      : PackCommand::Kind::mesh;

@@ -189,17 +189,23 @@ PackedAtlas describe(const FitResult& fit) {
 Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> items,
                              std::span<const ChartShape> shapes, const Context& context) {
   const PackOptions& o = c.options;
-  if (o.alignment < 1 || o.border < 0 || o.border > c.page_side / 2)
-    return Status(ErrorCode::bad_option,
-                  "mesh: --align must be 1 or more, --border 0 to half the page's side");
-  const std::int32_t border = (o.border + o.alignment - 1) / o.alignment * o.alignment;
+  const std::int64_t border64 =
+      (std::int64_t{o.border} + o.alignment - 1) / o.alignment * o.alignment;
+  const std::int64_t padding = (std::max(o.padding, 0) + 1) / 2;
+  if (c.page_side - 2 * border64 < o.alignment + 2 * padding)
+    return Status(
+        ErrorCode::bad_option,
+        fmt::format("--border {}, --padding {} and --align {} leave no room on a page of {} "
+                    "texels (give smaller ones or a larger --page)",
+                    o.border, o.padding, o.alignment, c.page_side));
+  const auto border = std::int32_t(border64);
   FitOptions fit;
   fit.pages = c.pages;
   fit.page_size = c.page_side - 2 * border;
   fit.power_of_two = o.power_of_two && border == 0;
   fit.square = o.square;
   fit.free_aspect = o.crop && c.pages == 1 && !o.power_of_two && !o.square;
-  fit.padding = (std::max(o.padding, 0) + 1) / 2;
+  fit.padding = std::int32_t(padding);
   fit.alignment = o.alignment;
   fit.minimum_side = 0;
   fit.preset = o.preset;

@@ -81,9 +81,9 @@ Result<std::vector<CsvLine>> csv_lines(const PackCommand& c, const std::string& 
     const std::size_t n = f.size();
     if (n != 2 && n != 3)
       return bad_line(c, number,
-                      fmt::format("{} fields (expected width,height or "
+                      fmt::format("{} field{} (expected width,height or "
                                   "name,width,height)",
-                                  n));
+                                  n, n == 1 ? "" : "s"));
     const bool header = !has_digit(f[n - 2]) && !has_digit(f[n - 1]);
     if (header && result.empty() && !std::exchange(header_seen, true)) continue;
     result.push_back({number, std::move(f)});

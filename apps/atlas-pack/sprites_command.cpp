@@ -151,6 +151,9 @@ Status write_pages(const PackCommand& c, const std::vector<Sprite>& sprites, Pac
 // Pages in the folder that is read could replace a sprite, and would be sprites themselves the next
 // time.
 Status check_pages(const PackCommand& c) {
+  if (!c.output.has_filename())
+    return {ErrorCode::bad_option,
+            fmt::format("{}: is a folder (add the pages' base name)", c.output.string())};
   std::error_code error;
   const fs::path folder = c.output.has_parent_path() ? c.output.parent_path() : fs::path(".");
   for (fs::path up = fs::weakly_canonical(folder, error);; up = up.parent_path()) {

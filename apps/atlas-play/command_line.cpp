@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -93,8 +94,10 @@ void add_shadow_options(CLI::App& app, CommandLine& l) {
   app.add_option("--normal-offset", l.render.normal_offset, "in reaches of the filter")
       ->capture_default_str()
       ->check(not_negative());
-  app.add_flag("--fit-view", l.render.fit_view, "fit maps to the view, not the whole scene");
+  CLI::Option* fit =
+      app.add_flag("--fit-view", l.render.fit_view, "fit maps to the view, not the whole scene");
   app.add_option("--view-distance", l.render.view_distance, "how far shadows reach with --fit-view")
+      ->needs(fit)
       ->check(not_negative());
   add_off_flag(app, "--no-snap", l.render.snap, "do not snap maps to whole texels");
   app.add_option("-k,--interval", l.render.schedule.interval_frames, "frames between keys")
@@ -102,6 +105,7 @@ void add_shadow_options(CLI::App& app, CommandLine& l) {
       ->check(within(1, 1'000'000));
   app.add_option("--interval-degrees", l.render.schedule.interval_degrees,
                  "keys every so many degrees instead")
+      ->excludes("--interval")
       ->check(within(0, 90, "0..90"));
   app.add_option("--key-degrees", l.key_degrees,
                  "keys at most so far apart (default: 16 in a window, 90 headless)")
@@ -121,7 +125,7 @@ void add_run_options(CLI::App& app, CommandLine& l, std::string& light, std::str
       ->check(one_of({{"x", 0}, {"y", 0}, {"z", 0}}))
       ->capture_default_str();
   app.add_option("--north", l.north,
-                 "the sun's north (default: -z where y is up, +y where x or z is)")
+                 "the sun's north, x,y,z (default: -z where y is up, +y where x or z is)")
       ->delimiter(',')
       ->expected(3);
   app.add_option("--speed", l.play.degrees_per_second, "degrees a second, in a window")
@@ -155,29 +159,47 @@ void add_run_options(CLI::App& app, CommandLine& l, std::string& light, std::str
 }
 
 void add_bench_options(CLI::App& app, CommandLine& l) {
-  app.add_option("--bench", l.bench, "measure every shading with every method; results go here");
+  CLI::Option* bench =
+      app.add_option("--bench", l.bench, "measure every shading with every method; results go here")
+          ->excludes("--record")
+          ->excludes("--screenshot");
   app.add_option("--bench-seconds", l.measure.seconds,
                  "of each combination at least (the paper: 180)")
+      ->needs(bench)
       ->check(not_negative());
   app.add_option("--bench-frames", l.measure.frames, "of each combination at least")
+      ->needs(bench)
       ->capture_default_str()
       ->check(within(1, 1'000'000));
   app.add_option("--bench-shadings", l.measure.shadings, "which shadings")
+      ->needs(bench)
       ->delimiter(',')
       ->transform(choices(shadings()))
       ->type_name("NAME");
   app.add_option("--bench-methods", l.measure.methods, "which shadow methods")
+      ->needs(bench)
       ->delimiter(',')
       ->transform(choices(methods()))
       ->type_name("NAME");
   app.add_option("--bench-intervals", l.measure.error_intervals, "k of the error measurement")
+      ->needs(bench)
       ->delimiter(',')
       ->capture_default_str()
       ->check(within(1, 1'000'000));
   app.add_option("--bench-error-frames", l.measure.error_frames, "light positions")
+      ->needs(bench)
       ->capture_default_str()
       ->check(within(1, 1'000'000));
-  app.add_flag("--no-errors", l.no_errors, "measure times only");
+  app.add_flag("--no-errors", l.no_errors, "measure times only")->needs(bench);
+}
+
+// Options for the other way of running would change nothing.
+std::string about_window(const CLI::App& app, const CommandLine& l) {
+  if (l.in_window() && app.count("--frames") > 0)
+    return "--frames is for --headless (give that too, or --close-after for a window)";
+  if (l.headless && app.count("--close-after") > 0)
+    return "--close-after is for a window (with --headless give --frames)";
+  return {};
 }
 
 // Texts that CLI11 cannot turn into their values itself.
@@ -191,9 +213,12 @@ Status finish(CommandLine& l, const std::string& light, const std::string& end,
   if (l.north.size() == 3) path.sun.north = {l.north[0], l.north[1], l.north[2]};
   path.end = end == "loop" ? PathEnd::loop : end == "back" ? PathEnd::back : PathEnd::stop;
   Result<LightPathOptions> parsed = parse_light_path(light, path);
-  if (!parsed.ok()) return parsed.status();
-  Result<LightPath> made = LightPath::make(*parsed);
-  if (!made.ok()) return made.status();
+  const Result<LightPath> made = parsed.ok() ? LightPath::make(*parsed) : parsed.status();
+  if (!made.ok()) {  // "light path 'moon': ..." or "light path: ..."
+    const std::string& why = made.status().message();
+    return {made.status().code(),
+            fmt::format("--light {}{}", light, why.substr(std::min(why.find(": "), why.size())))};
+  }
   l.play.light = *made;
   return {};
 }
@@ -233,6 +258,11 @@ Parsed parse_command_line(int argc, char** argv) {
   add_bench_options(app, l);
   if (const int code = parse(app, argc, argv); code >= 0) {
     parsed.exit_code = code;
+    return parsed;
+  }
+  if (const std::string why = about_window(app, l); !why.empty()) {
+    print(stderr, fmt::format("atlas-play: error: {}\n", why));
+    parsed.exit_code = 2;
     return parsed;
   }
   if (app.count("--up") == 0 && world_is_z_up(l.scene)) up = "z";

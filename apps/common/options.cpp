@@ -2,17 +2,95 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "apps/common/program.h"
 
 namespace atlas::app {
 namespace {
 
+// Letters to add, leave out or change between two words (Levenshtein's distance).
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t changed = diagonal + (a[i] != b[j]);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({changed, diagonal + 1, row[j] + 1});
+    }
+  }
+  return row.back();
+}
+
+// The command that was chosen, or the program where it has none.
+const CLI::App& command_of(const CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  return chosen.empty() ? app : *chosen.front();
+}
+
+// What users wrote may be anything: one line of it is shown, without what would confuse a terminal.
+std::string printable(std::string text) {
+  constexpr std::size_t kLongest = 120;
+  for (char& c : text)
+    if (std::uint8_t(c) < ' ' || c == 127) c = '?';
+  return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
+}
+
+// Words that no option takes. They are told first: --ouput is the reason why --output is missing.
+std::string about_unknown(const CLI::App& app) {
+  const std::vector<std::string> words = app.remaining(true);
+  if (words.empty()) return {};
+  const auto option = std::find_if(words.begin(), words.end(),
+                                   [](const std::string& w) { return w.starts_with("-"); });
+  const std::string& word = option == words.end() ? words.front() : *option;
+  std::string names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names += (names.empty() ? "" : ", ") + command->get_name();
+  if (option == words.end() && !names.empty() && app.get_subcommands().empty())
+    return fmt::format("'{}' is none of the commands {}", word, names);
+  const std::string name = word.substr(0, word.find('='));
+  const std::size_t near = std::max<std::size_t>(1, name.size() / 5);
+  for (const CLI::Option* known : command_of(app).get_options())
+    for (const std::string& other : known->get_lnames())
+      if (name.size() > 4 && name.starts_with("--") && distance(name.substr(2), other) <= near)
+        return fmt::format("unknown option {}: is --{} meant?", printable(word), other);
+  return "unknown option or one name too many: " + printable(word);
+}
+
+// An option that is there and empty, as "$OUT" is where no one set it.
+std::string about_empty(const CLI::App& app) {
+  for (const CLI::Option* option : command_of(app).get_options())
+    for (const std::string& value : option->results())
+      if (value.empty()) return fmt::format("{} is empty", option->get_name());
+  return {};
+}
+
+std::string about_config(const CLI::App& app, const std::string& entry) {
+  const CLI::Option* config = app.get_config_ptr();
+  return fmt::format("{}: '{}' is no option and value (write one name=value a line)",
+                     config ? config->as<std::string>() : "--config", printable(entry));
+}
+
 // CLI11's words for what is wrong, where a user would not know what they mean.
-std::string complaint(const CLI::ParseError& error) {
+std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
   const std::string text = error.what();
+  constexpr std::string_view kConfig = "INI was not able to parse ";
+  if (text.starts_with(kConfig)) return about_config(app, text.substr(kConfig.size()));
+  if (std::string unknown = about_unknown(app); !unknown.empty()) return unknown;
+  constexpr std::string_view kFewer = ": At least ", kReceived = " required but received ";
+  if (const auto at = text.find(kFewer), to = text.find(kReceived);
+      at != std::string::npos && to != std::string::npos)
+    return fmt::format("{} takes {} values with commas between them, not {}", text.substr(0, at),
+                       text.substr(at + kFewer.size(), to - at - kFewer.size()),
+                       text.substr(to + kReceived.size()));
   constexpr std::string_view kConversion = "Could not convert: ";
   const auto equals = text.find(" = ");
   if (text.starts_with(kConversion) && equals != std::string::npos)
@@ -22,9 +100,6 @@ std::string complaint(const CLI::ParseError& error) {
   constexpr std::string_view kTwice = ": At Most 1 required";
   if (const auto at = text.find(kTwice); at != std::string::npos)
     return text.substr(0, at) + " is given more than once";
-  constexpr std::string_view kUnknown = "The following argument";
-  if (const auto at = text.find(": "); text.starts_with(kUnknown) && at != std::string::npos)
-    return "unknown option or one name too many: " + text.substr(at + 2);
   if (text == "A subcommand is required") return "the name of a command is needed first";
   return text;
 }
@@ -76,17 +151,20 @@ CLI::Option* add_off_flag(CLI::App& app, const std::string& name, bool& value,
 }
 
 int parse(CLI::App& app, int argc, char** argv) {
+  const auto refuse = [&](const std::string& why) {
+    print(stderr, fmt::format("{}: error: {} (--help lists the options)\n", app.get_name(), why));
+    return 2;
+  };
   app.set_version_flag("--version", fmt::format("{} {}", app.get_name(), LIBATLAS_VERSION));
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& done) {
     return app.exit(done);
   } catch (const CLI::ParseError& error) {
-    print(stderr, fmt::format("{}: error: {} (--help lists the options)\n", app.get_name(),
-                              complaint(error)));
-    return 2;
+    return refuse(complaint(app, error));
   }
-  return -1;
+  const std::string empty = about_empty(app);
+  return empty.empty() ? -1 : refuse(empty);
 }
 
 }  // namespace atlas::app

@@ -81,6 +81,21 @@ atlas::Status check(const Arguments& a) {
   return a.preview.empty() ? atlas::Status() : atlas::check_writable(a.preview);
 }
 
+// The scene's textures lie beside it, and a picture there may have the name of one.
+atlas::Status check_textures_stay(const Arguments& a, const cabin::Mesh& mesh) {
+  if (a.output.empty() || a.preview.empty()) return {};
+  const std::filesystem::path output = std::filesystem::absolute(a.output);
+  if (output.extension() == ".ply") return {};  // has none
+  const std::filesystem::path preview = std::filesystem::absolute(a.preview);
+  std::error_code error;
+  for (const cabin::SurfaceMaterial& m : mesh.materials)
+    if (preview.filename() == m.texture_file &&
+        std::filesystem::equivalent(preview.parent_path(), output.parent_path(), error))
+      return {atlas::ErrorCode::bad_option,
+              a.preview + ": is the name of a texture of the scene (give the preview another)"};
+  return {};
+}
+
 atlas::Status run(const Arguments& a) {
   if (atlas::Status s = check(a); !s.ok()) return s;
   const double start = atlas::cpu_seconds();
@@ -94,6 +109,7 @@ atlas::Status run(const Arguments& a) {
   constexpr std::size_t kCoarse = 90000;
   cabin::Mesh mesh =
       cabin::build_cabin(std::min(kCoarse, a.triangles * 35 / 100), a.triangles * 8 / 10);
+  if (atlas::Status s = check_textures_stay(a, mesh); !s.ok()) return s;
   say(fmt::format("coarse mesh: {} triangles, {} vertices, {} objects", mesh.triangles.size(),
                   mesh.vertices.size(), mesh.objects.size()));
   const cabin::Shell shell = cabin::shell_of(mesh);

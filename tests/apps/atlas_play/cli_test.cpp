@@ -188,7 +188,8 @@ TEST_F(AtlasPlay, LightPathsThatCannotBe) {
     const RunResult r =
         run(fmt::format("roof.obj --headless --software -q --frames 1 --light '{}'", light));
     EXPECT_EQ(r.exit_code, 2) << light;
-    EXPECT_EQ(r.errors.rfind("atlas-play: error: light path", 0), 0u) << r.errors;
+    EXPECT_EQ(r.errors.rfind(fmt::format("atlas-play: error: --light {}: ", light), 0), 0u)
+        << r.errors;
     EXPECT_EQ(std::count(r.errors.begin(), r.errors.end(), '\n'), 1) << r.errors;
   }
 }

@@ -1,0 +1,127 @@
+// Command lines that are wrong, odd or contradict themselves: one line that names the option and
+// the remedy, exit code 2, nothing written.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class Mistakes : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    dir_ = fs::temp_directory_path() / fmt::format("mistakes_{}_{}", info->name(), ::getpid());
+    fs::create_directories(dir_ / "images");
+    write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+    write("r.csv", "10,10\n");
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(dir_ / name, std::ios::binary) << text;
+  }
+  long files() const {
+    return std::distance(fs::recursive_directory_iterator(dir_),
+                         fs::recursive_directory_iterator());
+  }
+  void expect_complaint(const std::string& program, const std::string& arguments,
+                        const std::string& words) const {
+    const long before = files();
+    FILE* pipe = ::popen(
+        fmt::format("cd '{}' && '{}' {} 2>&1", dir_.string(), program, arguments).c_str(), "r");
+    std::string text;
+    char buffer[4096];
+    while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) text.append(buffer, n);
+    const int status = ::pclose(pipe);
+    EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : 128, 2) << arguments << "\n" << text;
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+    EXPECT_NE(text.find("error: " + words), text.npos) << arguments << "\n" << text;
+    EXPECT_EQ(files(), before) << arguments;
+  }
+  fs::path dir_;
+};
+
+TEST_F(Mistakes, AMisspeltOptionIsTheReasonWhyAnotherIsMissing) {
+  expect_complaint(ATLAS_EXPORT, "t.obj --ouput a.wrl",
+                   "unknown option --ouput: is --output meant?");
+  expect_complaint(ATLAS_EXPORT, "t.obj -o a.obj --threshhold=1",
+                   "unknown option --threshhold=1: is --threshold meant?");
+  expect_complaint(ATLAS_EXPORT, "t.obj -o a.obj --nope",
+                   "unknown option or one name too many: --nope");
+  expect_complaint(ATLAS_EXPORT, "-t.obj -o a.obj", "unknown option or one name too many: -t.obj");
+  expect_complaint(ATLAS_PACK, "rects r.csv -o a.csv --extrude 2",
+                   "unknown option or one name too many: --extrude");
+  expect_complaint(ATLAS_PACK, "rect r.csv", "'rect' is none of the commands rects, images, mesh");
+}
+
+TEST_F(Mistakes, NamesAreNotEmpty) {
+  expect_complaint(ATLAS_EXPORT, "t.obj -o ''", "--output is empty");
+  expect_complaint(ATLAS_EXPORT, "'' -o a.obj", "scene is empty");
+  expect_complaint(ATLAS_EXPORT, "t.obj -o a.obj --texel ''", "--texel is empty");
+  expect_complaint(ATLAS_PACK, "images images -o ''", "--output is empty");
+  expect_complaint(ATLAS_PACK, "images images -o ../",
+                   "../: is a folder (add the pages' base name)");
+  expect_complaint(ATLAS_PLAY, "t.obj --headless --screenshot ''", "--screenshot is empty");
+}
+
+TEST_F(Mistakes, NumbersThatLeaveNoRoom) {
+  expect_complaint(ATLAS_EXPORT, "t.obj -o a.obj --unit 1e300", "--unit 1e300: give m, cm");
+  expect_complaint(ATLAS_EXPORT, "t.obj -o a.obj --unit 1e-300", "--unit 1e-300: give m, cm");
+  for (const char* options :
+       {"--border 1024 --padding 0 --align 1", "--border 0 --padding 2048 --align 1",
+        "--border 0 --padding 0 --align 4096", "--border 1048576 --padding 0 --align 1048576"}) {
+    std::string words = options;
+    words.replace(words.find(" --padding"), 1, ", ");
+    words.replace(words.find(" --align"), 1, " and ");
+    expect_complaint(ATLAS_PACK, fmt::format("mesh t.obj -o a.obj {}", options), words);
+  }
+}
+
+TEST_F(Mistakes, OptionsThatWouldChangeNothing) {
+  expect_complaint(ATLAS_PACK, "rects r.csv -o a.csv --budget 1s", "--budget is for --preset best");
+  expect_complaint(ATLAS_PACK, "rects r.csv -o a.csv --effort 9 --preset fast",
+                   "--effort is for --preset best");
+  expect_complaint(ATLAS_PACK, "images images -o a --no-trim --trim-threshold 5",
+                   "--trim-threshold excludes --no-trim");
+  const std::string play = "t.obj --headless --software ";
+  expect_complaint(ATLAS_PLAY, play + "--view-distance 5", "--view-distance requires --fit-view");
+  expect_complaint(ATLAS_PLAY, play + "-k 3 --interval-degrees 5", "--interval excludes");
+  expect_complaint(ATLAS_PLAY, play + "--bench-frames 5", "--bench-frames requires --bench");
+  expect_complaint(ATLAS_PLAY, play + "--bench b --record c", "--record excludes --bench");
+  expect_complaint(ATLAS_PLAY, play + "--close-after 5", "--close-after is for a window");
+  expect_complaint(ATLAS_PLAY, "t.obj --frames 5", "--frames is for --headless");
+}
+
+TEST_F(Mistakes, LightsAndDirectionsNameTheirOption) {
+  const std::string play = "t.obj --headless --software ";
+  expect_complaint(ATLAS_PLAY, play + "--north y",
+                   "--north takes 3 values with commas between them");
+  expect_complaint(ATLAS_PLAY, play + "--north 0,1,0", "--light sun:172,50.45,9: up and north");
+  expect_complaint(ATLAS_PLAY, play + "--light sun:172,91,9",
+                   "--light sun:172,91,9: the sun needs");
+  expect_complaint(ATLAS_PLAY, play + "--light moon", "--light moon: the kinds are fixed,");
+}
+
+TEST_F(Mistakes, ConfigurationFilesAreNamedAndKeepTheTerminalClean) {
+  write("c.ini", "nope=0\n");
+  expect_complaint(ATLAS_PLAY, "t.obj --headless --config c.ini", "c.ini: 'nope' is no option");
+  write("d.ini", "\x1b[2J\x07garbage\n");
+  expect_complaint(ATLAS_PLAY, "t.obj --headless --config d.ini",
+                   "d.ini: '?[2J?garbage' is no option");
+}
+
+TEST_F(Mistakes, ThePreviewOfACabinIsNoneOfItsTextures) {
+  expect_complaint(ATLAS_MAKE_CABIN, "-q -n 10000 -o cabin.obj --preview ./wood.png",
+                   "./wood.png: is the name of a texture of the scene");
+}
+
+}  // namespace
