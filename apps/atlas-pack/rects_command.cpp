@@ -1,10 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -51,7 +48,7 @@ std::vector<std::string> split(const std::string& line) {
       quoted = !quoted;
     } else if (ch == separator && !quoted) {
       if (separator != ' ' || !fields.back().empty()) fields.emplace_back();
-    } else if (ch != '\r') {
+    } else {
       fields.back() += ch;
     }
   }
@@ -70,9 +67,21 @@ struct CsvLine {
   std::vector<std::string> fields;
 };
 
+// Lines may end by carriage returns, with line feeds or alone.
+std::string with_line_feeds(std::string text) {
+  std::size_t to = 0;
+  for (std::size_t i = 0; i < text.size(); ++i)
+    if (text[i] != '\r')
+      text[to++] = text[i];
+    else if (i + 1 == text.size() || text[i + 1] != '\n')
+      text[to++] = '\n';
+  text.resize(to);
+  return text;
+}
+
 Result<std::vector<CsvLine>> csv_lines(const PackCommand& c, const std::string& text) {
   std::vector<CsvLine> result;
-  std::istringstream lines(text);
+  std::istringstream lines(with_line_feeds(text));
   std::string line;
   bool header_seen = false;
   for (std::size_t number = 1; std::getline(lines, line); ++number) {
@@ -132,11 +141,19 @@ Status read_csv(const PackCommand& c, const std::string& text, RectList& list) {
 }
 
 Status read_json(const PackCommand& c, const std::string& text, std::vector<PackedItem>& items) {
-  const auto root = nlohmann::json::parse(text, nullptr, false);
   const auto bad = [&](const std::string& what) {
     return Status(ErrorCode::bad_input, fmt::format("{}: {}", c.input.string(), what));
   };
-  if (root.is_discarded()) return bad("not valid JSON (was it cut short?)");
+  nlohmann::json root;
+  try {
+    root = nlohmann::json::parse(text);
+  } catch (const nlohmann::json::parse_error& error) {
+    const auto end = text.begin() + std::ptrdiff_t(std::min(error.byte, text.size()));
+    return bad_line(c, std::size_t(std::count(text.begin(), end, '\n')) + 1,
+                    "not valid JSON (was it cut short?)");
+  } catch (const nlohmann::json::exception&) {
+    return bad("holds a number beyond all bounds");
+  }
   const nlohmann::json& list = root.is_object() && root.contains("rects") ? root["rects"] : root;
   if (!list.is_array()) return bad("expected an array of [w, h] or {\"name\", \"w\", \"h\"}");
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -176,20 +193,10 @@ Status check_names(const PackCommand& c, const std::vector<PackedItem>& items) {
 }
 
 // A pipe serves as well as a file.
-Status read_list(const PackCommand& c, RectList& list) {
-  std::error_code ignored;  // what cannot be looked at cannot be opened either
-  if (std::filesystem::is_directory(c.input, ignored))
-    return {ErrorCode::bad_input,
-            fmt::format("{}: is a directory (name a file inside it)", c.input.string())};
-  std::ifstream file(c.input, std::ios::binary);
-  if (!file)
-    return {ErrorCode::not_found,
-            fmt::format("{}: {}", c.input.string(),
-                        errno == ENOENT ? std::string("no such file (check the name)")
-                                        : fmt::format("cannot be read: {}", std::strerror(errno)))};
-  std::stringstream buffer;
-  buffer << file.rdbuf();
-  std::string text = buffer.str();
+Status read_list(const PackCommand& c, const Context& context, RectList& list) {
+  Result<std::string> read = read_text(c.input, context);
+  if (!read.ok()) return read.status();
+  std::string& text = *read;
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // as spreadsheets write it
   const bool json = lower_extension(c.input) == ".json";
   if (Status s = json ? read_json(c, text, list.items) : read_csv(c, text, list); !s.ok()) return s;
@@ -211,7 +218,7 @@ Result<PackedAtlas> run_rects(const PackCommand& c, const Context& context) {
   if (Status s = check_output(c.output, {c.input, c.preview}); !s.ok()) return s;
   if (Status s = check_preview(c); !s.ok()) return s;
   RectList list;
-  if (Status s = read_list(c, list); !s.ok()) return s;
+  if (Status s = read_list(c, context, list); !s.ok()) return s;
   PackOptions options = c.options;
   if (list.page && !c.page_given) options.page = *list.page;
   std::vector<PackedItem>& items = list.items;

@@ -71,8 +71,15 @@ Result<std::vector<Sprite>> read_sprites(const PackCommand& c, const Context& co
                   fmt::format("{}: is no folder (give the folder of images)", c.input.string()));
   for (fs::recursive_directory_iterator it(c.input, error), end; it != end; it.increment(error)) {
     if (error) break;
-    if (!it->is_regular_file()) continue;
-    if (is_image(it->path()))
+    std::error_code unknown;
+    const bool folder = it->is_directory(unknown);
+    if (folder && !it->is_symlink(unknown)) continue;
+    if (folder)
+      context.say(fmt::format("{}: left out, a link to a folder", it->path().string()));
+    else if (!it->is_regular_file(unknown))
+      context.say(fmt::format("{}: left out, no file to read (a broken link, a pipe or a device)",
+                              it->path().string()));
+    else if (is_image(it->path()))
       paths.push_back(it->path());
     else
       context.say(fmt::format("{}: left out, no image by its ending", it->path().string()));

@@ -1,8 +1,14 @@
 #include "apps/common/files.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <cstring>
 
 #include "libatlas/core/atomic_file.h"
 
@@ -32,6 +38,42 @@ Status check_output(const fs::path& output, std::initializer_list<fs::path> othe
           fmt::format("{}: would overwrite {} (give the output another name)", output.string(),
                       output == other ? "a file that is read or written as well" : other.string())};
   return check_writable(output);
+}
+
+Result<std::string> read_text(const fs::path& path, const Context& context) {
+  constexpr std::size_t kMost = std::size_t{1} << 30, kPart = 1 << 16;
+  constexpr int kWait = 100;  // ms between two looks at the context
+  const auto failed = [&](ErrorCode code, const std::string& why) {
+    return Status(code, fmt::format("{}: {}", path.string(), why));
+  };
+  std::error_code ignored;  // what cannot be looked at cannot be opened either
+  if (fs::is_directory(path, ignored))
+    return failed(ErrorCode::bad_input, "is a directory (name a file inside it)");
+  // Would else wait for the writer of a pipe, and no signal would end that.
+  const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0 && errno == ENOENT)
+    return failed(ErrorCode::not_found, "no such file (check the name)");
+  if (file < 0)
+    return failed(ErrorCode::io, fmt::format("cannot be read: {}", std::strerror(errno)));
+  std::string text;
+  ssize_t got = 1;
+  while (got != 0 && text.size() <= kMost && !context.cancelled()) {
+    pollfd ready{file, POLLIN, 0};
+    if (::poll(&ready, 1, kWait) == 0) continue;
+    const std::size_t before = text.size();
+    text.resize(before + kPart);
+    got = ::read(file, text.data() + before, kPart);
+    const int reason = errno;
+    text.resize(before + std::size_t(std::max<ssize_t>(got, 0)));
+    if (got >= 0 || reason == EAGAIN || reason == EINTR) continue;
+    ::close(file);
+    return failed(ErrorCode::io, fmt::format("cannot be read: {}", std::strerror(reason)));
+  }
+  ::close(file);
+  if (context.cancelled()) return Status::cancelled();
+  if (text.size() > kMost)
+    return failed(ErrorCode::bad_input, "holds more than 1 GiB (no list is so long)");
+  return text;
 }
 
 std::string lower_extension(const fs::path& path) {

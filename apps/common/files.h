@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <string>
 
+#include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
 
 namespace atlas::app {
@@ -13,6 +14,10 @@ namespace atlas::app {
 // outputs. Empty paths are no files. Errors: io, bad_option.
 Status check_output(const std::filesystem::path& output,
                     std::initializer_list<std::filesystem::path> others);
+
+// The whole of a file or of a pipe, whose writer may take its time until the context is cancelled.
+// Up to 1 GiB. Errors: not_found, io, bad_input, cancelled.
+Result<std::string> read_text(const std::filesystem::path& path, const Context& context);
 
 // The extension in small letters, however the name has it: .CSV is .csv.
 std::string lower_extension(const std::filesystem::path& path);

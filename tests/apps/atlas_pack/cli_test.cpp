@@ -1,6 +1,7 @@
 // atlas-pack as its users meet it: files in, files out, exit codes and messages.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -400,6 +401,49 @@ TEST_F(AtlasPack, VeryManyPagesAreNamedWithTheLargerOnesThatWouldDo) {
       << many.output;
   EXPECT_EQ(run("rects sizes.csv -o placed.csv --page 128x128").output.find("slow"),
             std::string::npos);
+}
+
+// A lone carriage return was none: "1,2" and "3,4" became one rectangle "1" of 23 x 4.
+TEST_F(AtlasPack, LinesMayEndByCarriageReturnsAlone) {
+  write("mac.csv", "name,width,height\ra,10,20\rb,30,40\r");
+  ASSERT_EQ(run("rects mac.csv -o placed.csv").exit_code, 0);
+  EXPECT_NE(read("placed.csv").find("a,0,"), std::string::npos) << read("placed.csv");
+  EXPECT_NE(read("placed.csv").find(",30,40,0\n"), std::string::npos) << read("placed.csv");
+  write("bad.csv", "10,20\r\n30,40\rx,y\r");
+  EXPECT_NE(run("rects bad.csv -o placed.csv").output.find("bad.csv:3: "), std::string::npos);
+}
+
+TEST_F(AtlasPack, WrongJsonNamesItsLine) {
+  write("cut.json", "[[1, 2],\n[3, 4],\n[5,");
+  EXPECT_NE(run("rects cut.json -o a.csv").output.find("cut.json:3: not valid JSON"),
+            std::string::npos);
+  write("large.json", "[[1, 2],\n[3, 1e999]]");
+  EXPECT_NE(run("rects large.json -o a.csv").output.find("large.json: holds a number beyond"),
+            std::string::npos);
+}
+
+// It waited for the writer, and signals did not end that.
+TEST_F(AtlasPack, APipeWithoutAWriterCanBeInterrupted) {
+  ASSERT_EQ(::mkfifo((dir_ / "pipe").c_str(), 0600), 0);
+  const RunResult r = run("rects pipe -o a.csv & sleep 0.5; kill $!; wait $!");
+  EXPECT_EQ(r.exit_code, 130) << r.output;
+  EXPECT_FALSE(fs::exists(dir_ / "a.csv"));
+  const RunResult fed =
+      run(fmt::format("rects pipe -o a.csv & (sleep 0.3; echo 5,6; sleep 0.3; echo 7,8) >'{}'; "
+                      "wait $!",
+                      (dir_ / "pipe").string()));
+  EXPECT_NE(fed.output.find("2 items on 1 page"), std::string::npos) << fed.output;
+}
+
+TEST_F(AtlasPack, WhatIsNoFileInAFolderOfImagesIsNamed) {
+  fs::create_directories(dir_ / "in");
+  ASSERT_TRUE(atlas::write_png(dir_ / "in/a.png", atlas::Image8(4, 4, 3, 9), {}).ok());
+  fs::create_symlink("gone", dir_ / "in/b.png");
+  fs::create_directory_symlink(".", dir_ / "in/c");
+  const RunResult r = run("images in -o out");
+  EXPECT_EQ(r.exit_code, 0) << r.output;
+  EXPECT_NE(r.output.find("in/b.png: left out, no file to read"), std::string::npos) << r.output;
+  EXPECT_NE(r.output.find("in/c: left out, a link to a folder"), std::string::npos) << r.output;
 }
 
 }  // namespace
