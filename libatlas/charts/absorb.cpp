@@ -6,6 +6,7 @@
 #include <queue>
 #include <span>
 
+#include "libatlas/charts/fitting_run.h"
 #include "libatlas/charts/joint.h"
 #include "libatlas/charts/merge_options.h"
 #include "libatlas/core/glm_bridge.h"
@@ -33,7 +34,7 @@ constexpr Patience kNoisy{4, 3, 0.45, 0, 6};
 constexpr Patience kInCone{6, 3, 0.3, 0, 6};
 // Of a piece's area: charts below it are small. To be rid of one its rectangle and its neighbour's
 // may become larger together, by as much of the piece's area as the waste.
-constexpr double kSmallArea = 0.01, kMostWaste = 0.01;
+constexpr double kSmallArea = 0.015, kMostWaste = 0.01;
 constexpr double kSmallShare = 0.01;  // of the triangles, what is tried on smooth meshes
 constexpr double kMostL2 = 1.01;      // of a union's stretch, as when cells are merged
 constexpr double kWholeFill = 0.6;    // of a union of charts that are no fragments
@@ -49,6 +50,9 @@ constexpr double kHidden = 0.5;
 // all the time (11 noisy meshes). Small charts have many neighbours to try.
 constexpr double kMostMisfit = 0.1, kMostRoughMisfit = 0.05, kMostShortMisfit = 0.25;
 constexpr double kMostSmallMisfit = 0.07;
+// Of runs along which charts are joined where their whole border does not fit: shorter ones, by the
+// whole border of the smaller chart, leave about as much seam as before.
+constexpr double kMostRunMisfit = 0.03, kLeastRun = 0.1;
 constexpr std::size_t kLeastFitted = 8;  // edges
 // Unions of so many times their smaller part's triangles keep the larger one's uvs but around it,
 // which costs half as much a triangle: a quarter less time for all unions.
@@ -121,7 +125,7 @@ class Absorber {
     for (std::size_t i = 0; i < std::min(neighbours.size(), most); ++i) {
       if (join(k, neighbours[i])) return neighbours[i].chart;
     }
-    return kNoIndex;
+    return small(k) ? attach(k, neighbours) : kNoIndex;
   }
 
   bool may_fit_cone(const FlatChart& a, const FlatChart& b) const {
@@ -132,30 +136,63 @@ class Absorber {
     return between <= 2 * limit && std::max(a.cone.angle, b.cone.angle) <= limit;
   }
 
+  // Of a small chart that fits no neighbour as a whole: joined along the
+  // longest run of their border that fits, with a seam along the rest. So tips come off as petals.
+  std::uint32_t attach(std::uint32_t k, std::span<const ChartNeighbour> neighbours) {
+    struct Run {
+      double length;
+      const ChartNeighbour* neighbour;
+      std::vector<BorderEdge> edges;
+    };
+    std::vector<Run> runs;
+    double whole = 0;
+    for (const ChartNeighbour& n : neighbours) {
+      std::vector<BorderEdge> edges =
+          find_fitting_run(topology_, {charts_[k], charts_[n.chart]}, n.edges, kMostRunMisfit);
+      const double all = seam_of(n.edges).length, length = seam_of(edges).length;
+      whole += all;
+      if (edges.size() < n.edges.size()) runs.push_back({length, &n, std::move(edges)});
+    }
+    for (Run& run : runs) run.length = std::round(kBorderParts * run.length / whole);
+    std::stable_sort(runs.begin(), runs.end(),
+                     [](const Run& a, const Run& b) { return a.length > b.length; });
+    for (std::size_t i = 0; i < std::min(runs.size(), patience_.small_neighbours); ++i) {
+      if (runs[i].length < kLeastRun * kBorderParts) break;
+      if (join(k, *runs[i].neighbour, runs[i].edges)) return runs[i].neighbour->chart;
+    }
+    return kNoIndex;
+  }
+
   // Whether two charts may become one at all, as far as can be told without trying.
   bool promising(std::uint32_t k, const ChartNeighbour& neighbour, const Joint& joint) const {
     const FlatChart &a = charts_[k], &b = charts_[neighbour.chart];
     const bool fragment = a.fragment || b.fragment;
-    const Motion& motion = joint.motion();
-    const bool said = motion.edges >= kLeastFitted || !fragment;
+    const bool said = neighbour.edges.size() >= kLeastFitted || !fragment;
     const double most = small(k) ? kMostSmallMisfit : said ? most_misfit_ : kMostShortMisfit;
-    if (motion.misfit > most) return false;
+    if (joint.motion().misfit > most) return false;
     const Seam seam = seam_of(neighbour.edges);
     if (!small(k) && !fragment && seam.weight < kHidden * seam.length) return false;
     const double covered = a.distortion.uv_area + b.distortion.uv_area;
     return fills(k, neighbour.chart, {covered / kSureFill, joint.box()}, 2 * kMostWaste);
   }
 
+  // Along the whole border with the neighbour, once for each size of the two.
   bool join(std::uint32_t k, const ChartNeighbour& neighbour) {
+    const std::size_t size =
+        charts_[k].triangles.size() + charts_[neighbour.chart].triangles.size();
+    std::size_t& failed_size = failed_[std::minmax(k, neighbour.chart)];
+    if (failed_size == size) return false;
+    failed_size = size;
+    return join(k, neighbour, neighbour.edges);
+  }
+
+  bool join(std::uint32_t k, const ChartNeighbour& neighbour, std::span<const BorderEdge> glue) {
     const std::uint32_t into = neighbour.chart;
     FlatChart &a = charts_[k], &b = charts_[into];
     if (!may_fit_cone(a, b)) return false;
-    const Joint joint(topology_, a, b, neighbour.edges);
+    const Joint joint(topology_, {a, b}, glue);
+    if (!promising(k, {into, 0, glue}, joint)) return false;
     const std::size_t size = joint.triangle_count();
-    std::size_t& failed_size = failed_[std::minmax(k, into)];
-    if (failed_size == size) return false;
-    failed_size = size;
-    if (!promising(k, neighbour, joint)) return false;
     const bool little = size > kLittle * std::min(a.triangles.size(), b.triangles.size());
     work_ -= (little ? kLittleWork : 1) * double(size);
     std::vector<std::uint8_t> seams;
@@ -163,13 +200,14 @@ class Absorber {
       for (const std::uint32_t t : chart->triangles) seams.push_back(input_.partition.seams[t]);
     }
     for (const std::uint32_t t : a.triangles) input_.partition.chart[t] = into;
+    if (glue.size() < neighbour.edges.size()) sew(neighbour.edges, glue);
     std::vector<std::uint32_t> both = joint.triangles();
     const std::vector<Vec2d> joined = joint.uvs();
     ChartOutcome outcome = flatten_chart(
         input_.flatten, input_.partition, both,
         {.cuts = 0, .joined = joined, .little = little, .whole = true}, input_.scratch);
     outcome.flat.triangles = std::move(both);
-    if (outcome.parts.empty() && is_better(outcome.flat, k, neighbour)) {
+    if (outcome.parts.empty() && is_better(outcome.flat, k, {into, 0, glue})) {
       outcome.flat.fragment = a.fragment && b.fragment;
       b = std::move(outcome.flat);
       a = FlatChart{};
@@ -182,6 +220,18 @@ class Absorber {
       for (const std::uint32_t t : chart->triangles) input_.partition.seams[t] = seams[i++];
     }
     return false;
+  }
+
+  // Leaves a seam along what of a border is not glued.
+  void sew(std::span<const BorderEdge> border, std::span<const BorderEdge> glue) {
+    for (const BorderEdge& edge : border) {
+      input_.partition.cut(edge.half_edge);
+      input_.partition.cut(topology_.opposite[edge.half_edge]);
+    }
+    for (const BorderEdge& edge : glue) {
+      input_.partition.close(edge.half_edge);
+      input_.partition.close(topology_.opposite[edge.half_edge]);
+    }
   }
 
   // Whether a union is better than its parts. Fragments were meant to be one chart; what else is

@@ -1,58 +1,16 @@
 #include "libatlas/charts/joint.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "libatlas/charts/hull.h"
 
 namespace atlas {
-namespace {
-
-// Lengths of borders are compared in parts of a chart's whole border: where a mesh is symmetric
-// many are equal but for rounding.
-constexpr double kBorderParts = 1024;
-
-// The half-edge's two ends in the uvs of its chart.
-std::array<glm::dvec2, 2> ends(const FlatChart& chart, std::uint32_t h) {
-  const auto at = std::lower_bound(chart.triangles.begin(), chart.triangles.end(), h / 3);
+std::array<std::uint32_t, 2> ends_of(const FlatChart& chart, std::uint32_t half_edge) {
+  const auto at = std::lower_bound(chart.triangles.begin(), chart.triangles.end(), half_edge / 3);
   const auto& corners = chart.corners[std::size_t(at - chart.triangles.begin())];
-  return {to_glm(chart.uvs[corners[h % 3]]), to_glm(chart.uvs[corners[next_half_edge(h) % 3]])};
+  return {corners[half_edge % 3], corners[next_half_edge(half_edge) % 3]};
 }
-
-struct Pair {
-  glm::dvec2 from, to;
-  double weight;
-};
-
-Motion fit(std::span<const Pair> pairs) {
-  Motion motion;
-  motion.edges = pairs.size() / 2;
-  double length = 0;
-  glm::dvec2 mean_from(0), mean_to(0);
-  for (const Pair& pair : pairs) {
-    mean_from += pair.weight * pair.from;
-    mean_to += pair.weight * pair.to;
-    length += pair.weight;
-  }
-  if (!(length > 0)) return motion;
-  mean_from /= length;
-  mean_to /= length;
-  double c = 0, s = 0, spread = 0;
-  for (const Pair& pair : pairs) {
-    const glm::dvec2 p = pair.from - mean_from, q = pair.to - mean_to;
-    c += pair.weight * glm::dot(p, q);
-    s += pair.weight * (p.x * q.y - p.y * q.x);
-    spread += pair.weight * (glm::dot(p, p) + glm::dot(q, q));
-  }
-  const double norm = std::sqrt(c * c + s * s);
-  if (norm > 0) motion.turn = glm::dvec2(c, s) / norm;
-  motion.shift = mean_to - to_glm(motion(from_glm(mean_from)));
-  motion.misfit = std::sqrt(std::max(spread - 2 * norm, 0.0) / length) / length;
-  return motion;
-}
-
-}  // namespace
 
 std::vector<BorderEdge> find_border(const Topology& topology, const Partition& partition,
                                     std::span<const std::uint32_t> triangles, std::uint32_t chart) {
@@ -88,15 +46,19 @@ std::vector<ChartNeighbour> find_neighbours(std::span<const BorderEdge> border) 
   return all;
 }
 
-Joint::Joint(const Topology& topology, const FlatChart& a, const FlatChart& b,
-             std::span<const BorderEdge> edges)
-    : a_(a), b_(b) {
-  std::vector<Pair> pairs;
+Joint::Joint(const Topology& topology, const ChartPair& pair, std::span<const BorderEdge> edges)
+    : a_(pair.a), b_(pair.b) {
+  const auto own = [&](const BorderEdge& edge, int end) {
+    return to_glm(a_.uvs[ends_of(a_, edge.half_edge)[end]]);
+  };
+  const auto other = [&](const BorderEdge& edge, int end) {
+    return to_glm(b_.uvs[ends_of(b_, topology.opposite[edge.half_edge])[1 - end]]);
+  };
+  RigidFit fit(own(edges[0], 0), other(edges[0], 0));
   for (const BorderEdge& edge : edges) {
-    const auto from = ends(a, edge.half_edge), to = ends(b, topology.opposite[edge.half_edge]);
-    for (const int i : {0, 1}) pairs.push_back({from[i], to[1 - i], 0.5 * edge.length});
+    for (const int end : {0, 1}) fit.add(own(edge, end), other(edge, end), 0.5 * edge.length);
   }
-  motion_ = fit(pairs);
+  motion_ = fit.motion();
 }
 
 std::vector<std::uint32_t> Joint::triangles() const {

@@ -1,12 +1,13 @@
 // Internal: flat charts laid side by side along their common border.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "libatlas/charts/flatten.h"
-#include "libatlas/core/glm_bridge.h"
+#include "libatlas/charts/rigid_fit.h"
 
 namespace atlas {
 
@@ -16,9 +17,13 @@ struct BorderEdge {
   double length;
 };
 
+// Lengths of borders are compared in parts of the whole: where a mesh is symmetric many are equal
+// but for rounding.
+constexpr double kBorderParts = 1024;
+
 struct ChartNeighbour {
   std::uint32_t chart;
-  double border;  // length, in 1024ths of the border with all
+  double border;  // length, in such parts of the border with all
   std::span<const BorderEdge> edges;
 };
 
@@ -29,23 +34,18 @@ std::vector<BorderEdge> find_border(const Topology& topology, const Partition& p
 // Of the chart whose border it is; the longest common border first. The edges point into `border`.
 std::vector<ChartNeighbour> find_neighbours(std::span<const BorderEdge> border);
 
-// A turn and a shift; applied to complex numbers.
-struct Motion {
-  glm::dvec2 turn{1, 0}, shift{0};
-  double misfit = 0;  // root mean square distance of what should meet, by the border's length
-  std::size_t edges = 0;
-
-  Vec2d operator()(Vec2d p) const {
-    return {turn.x * p.x - turn.y * p.y + shift.x, turn.y * p.x + turn.x * p.y + shift.y};
-  }
+struct ChartPair {
+  const FlatChart &a, &b;
 };
 
+// The half-edge's two ends in the uvs of its chart: from, to.
+std::array<std::uint32_t, 2> ends_of(const FlatChart& chart, std::uint32_t half_edge);
+
 // Two charts that become one: `a` is moved to where `b` continues best across `edges`, the border
-// of `a` with it (Procrustes).
+// of `a` with it or a part of that.
 class Joint {
  public:
-  Joint(const Topology& topology, const FlatChart& a, const FlatChart& b,
-        std::span<const BorderEdge> edges);
+  Joint(const Topology& topology, const ChartPair& pair, std::span<const BorderEdge> edges);
 
   const Motion& motion() const { return motion_; }
   std::size_t triangle_count() const { return a_.triangles.size() + b_.triangles.size(); }
@@ -59,7 +59,7 @@ class Joint {
  private:
   const FlatChart& a_;
   const FlatChart& b_;
-  Motion motion_;
+  Motion motion_;  // misfit: by the length of the edges
 };
 
 }  // namespace atlas

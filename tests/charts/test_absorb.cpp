@@ -1,6 +1,7 @@
 // Small charts that are tried together with their neighbours once they are flat: which unions stay.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "libatlas/charts/flatten.h"
@@ -90,6 +91,38 @@ TEST(Absorb, AUnionMustFillItsRectangle) {
   // What a limit on cones leaves over is not so particular.
   EXPECT_EQ(charts_of_strips(false, 30), 1u);
   EXPECT_EQ(charts_of_strips(true, 30), 1u);
+}
+
+// A tube with one end closed by a fan. That ring of edges fits the tube's straight end nowhere as a
+// whole, but along each edge: as a petal the end belongs to the tube, if it is small.
+std::size_t charts_of_closed_tube(double length) {
+  constexpr int kAround = 8, kAlong = 60;
+  Shape shape = cylinder(kAround, kAlong, 1, length);
+  std::vector<std::uint32_t> charts(shape.triangle_count(), 0);
+  std::vector<std::uint32_t> rim;
+  float top = shape.positions[0].z;
+  for (const Vec3f& p : shape.positions) top = std::max(top, p.z);
+  for (std::uint32_t v = 0; v < shape.positions.size(); ++v) {
+    if (shape.positions[v].z == top) rim.push_back(v);
+  }
+  EXPECT_EQ(rim.size(), std::size_t(kAround));
+  const auto angle = [&](std::uint32_t v) {
+    return std::atan2(shape.positions[v].y, shape.positions[v].x);
+  };
+  std::sort(rim.begin(), rim.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return angle(a) < angle(b); });
+  const auto middle = std::uint32_t(shape.positions.size());
+  shape.positions.push_back({0, 0, top});
+  for (std::size_t i = 0; i < rim.size(); ++i) {
+    shape.indices.insert(shape.indices.end(), {middle, rim[i], rim[(i + 1) % rim.size()]});
+    charts.push_back(1);
+  }
+  return flatten(shape, charts, {}).charts.size();
+}
+
+TEST(Absorb, SmallEndsOfTubesBecomePetals) {
+  EXPECT_EQ(charts_of_closed_tube(300), 1u);
+  EXPECT_EQ(charts_of_closed_tube(3), 2u);
 }
 
 // Two sides of a box that meet at its edge.
