@@ -275,7 +275,7 @@ class GivenSet {
   std::vector<FlatChart> flatten_segments(const std::vector<std::uint8_t>& wanted) {
     if (!any(wanted)) return {};
     const double start = cpu_seconds();
-    Segmentation segmentation = segment(only(wanted), input_.options, context_);
+    Segmentation segmentation = segment(only(wanted), input_.options, 0, context_);
     result_.timing.segmentation_cpu += cpu_seconds() - start;
     add_parts(segmentation.timing, result_.timing);
     if (context_.cancelled()) return {};

@@ -1,6 +1,8 @@
 #include "libatlas/charts/parts.h"
 
 #include <algorithm>
+#include <compare>
+#include <iterator>
 
 #include "libatlas/charts/copies.h"
 #include "libatlas/charts/pieces.h"
@@ -14,21 +16,91 @@ namespace {
 // Pieces that repeat others are set aside if they are at least this part of the triangles.
 constexpr std::size_t kCopiedShare = 4;
 
+// Ways to cut a mesh that ChartPreset::best tries, each from other cells.
+constexpr int kBestAttempts = 4;
+
+// What was made of a piece; the less the better.
+struct Cost {
+  std::size_t charts = 0;
+  double seams = 0;  // length
+  auto operator<=>(const Cost&) const = default;
+};
+
+std::vector<Cost> costs(const Topology& topology, const Partition& partition,
+                        std::span<const FlatChart> charts) {
+  std::vector<Cost> costs(topology.component_count);
+  for (const FlatChart& chart : charts) ++costs[topology.component[chart.triangles.front()]].charts;
+  for (std::uint32_t h = 0; h < topology.opposite.size(); ++h) {
+    const std::uint32_t o = topology.opposite[h];
+    if (o == kNoIndex || partition.chart[h / 3] == kNoIndex) continue;
+    if (partition.chart[h / 3] == partition.chart[o / 3] && !partition.seam(h)) continue;
+    costs[topology.component[h / 3]].seams += 0.5 * edge_length(topology, h);
+  }
+  return costs;
+}
+
+// The charts of a mesh, as one attempt after the other made them: of each piece the best so far.
+class BestCharts {
+ public:
+  explicit BestCharts(const Topology& topology) : topology_(topology) {}
+
+  void take(const Partition& partition, std::vector<FlatChart> charts) {
+    const std::vector<Cost> made = costs(topology_, partition, charts);
+    std::vector<bool> better(made.size(), least_.empty());
+    for (std::size_t piece = 0; piece < least_.size(); ++piece) {
+      better[piece] = made[piece] < least_[piece];
+      if (better[piece]) least_[piece] = made[piece];
+    }
+    if (least_.empty()) least_ = made;
+    const auto changes = [&](const FlatChart& chart) {
+      return better[topology_.component[chart.triangles.front()]];
+    };
+    std::erase_if(charts_, changes);
+    std::copy_if(std::move_iterator(charts.begin()), std::move_iterator(charts.end()),
+                 std::back_inserter(charts_), changes);
+  }
+
+  std::vector<FlatChart> charts() && {
+    std::sort(charts_.begin(), charts_.end(), [](const FlatChart& a, const FlatChart& b) {
+      return a.triangles.front() < b.triangles.front();
+    });
+    return std::move(charts_);
+  }
+
+ private:
+  const Topology& topology_;
+  std::vector<FlatChart> charts_;
+  std::vector<Cost> least_;  // 1 a piece
+};
+
 // Appends the charts of a mesh, without regard to copies.
 void cut_mesh(const FlattenInput& mesh, const Context& context, CutCharts& out) {
-  const double start = cpu_seconds();
-  Segmentation segmentation = segment(mesh.topology, mesh.options, context);
-  if (context.cancelled()) return;
-  return_freed_memory();
-  out.timing.segmentation_cpu += cpu_seconds() - start;
-  context.report("charts", 0.5);
-  FlattenResult flat =
-      flatten_charts({mesh.topology, mesh.density, mesh.options, segmentation.frames},
-                     segmentation.partition, context);
-  add_parts(segmentation.timing, out.timing);
-  add_parts(flat.timing, out.timing);
-  out.split_charts += flat.split_charts;
-  std::move(flat.charts.begin(), flat.charts.end(), std::back_inserter(out.charts));
+  const int attempts = mesh.options.preset == ChartPreset::best ? kBestAttempts : 1;
+  BestCharts best(mesh.topology);
+  for (int i = 0; i < attempts; ++i) {
+    const double start = cpu_seconds();
+    Segmentation segmentation = segment(mesh.topology, mesh.options, double(i) / attempts, context);
+    if (context.cancelled()) return;
+    return_freed_memory();
+    out.timing.segmentation_cpu += cpu_seconds() - start;
+    context.report("charts", (i + 0.5) / attempts);
+    FlattenResult flat =
+        flatten_charts({mesh.topology, mesh.density, mesh.options, segmentation.frames},
+                       segmentation.partition, context);
+    add_parts(segmentation.timing, out.timing);
+    add_parts(flat.timing, out.timing);
+    out.split_charts += flat.split_charts;
+    if (context.cancelled()) return;
+    if (attempts == 1) {
+      std::move(flat.charts.begin(), flat.charts.end(), std::back_inserter(out.charts));
+    } else {
+      best.take(segmentation.partition, std::move(flat.charts));
+    }
+  }
+  if (attempts > 1) {
+    std::vector<FlatChart> charts = std::move(best).charts();
+    std::move(charts.begin(), charts.end(), std::back_inserter(out.charts));
+  }
 }
 
 class Repeater {

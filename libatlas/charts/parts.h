@@ -10,7 +10,7 @@ namespace atlas {
 
 struct CutCharts {
   std::vector<FlatChart> charts;    // ordered by first triangle
-  std::uint64_t split_charts = 0;   // that failed and were cut into smaller ones
+  std::uint64_t split_charts = 0;   // that failed and were cut into smaller ones, in all attempts
   std::uint64_t copied_pieces = 0;  // that took the charts of another piece
   ChartSet::Timing timing;          // segmentation_cpu, and the parts of both sums
 };

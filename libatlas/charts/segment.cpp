@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <compare>
 #include <span>
-#include <utility>
 
 #include "libatlas/charts/cells.h"
 #include "libatlas/charts/coarse.h"
@@ -43,33 +41,21 @@ Frame cell_frame(const CoarseMesh& mesh, const CoarseUv& uv, std::uint32_t k) {
   return {c * u - s * v, s * u + c * v};
 }
 
-// One way to cut a mesh, or pieces of one, into charts.
-struct Attempt {
+// A mesh, or pieces of one, cut into charts.
+struct Cut {
+  const Topology& topology;
+  std::span<const std::uint32_t> triangles;  // 1 a triangle: its name in the mesh; empty: its own
   Cells cells;
   CoarseMesh coarse;
   MergeResult merged;
-};
-
-// What of an attempt is taken.
-struct Chosen {
-  const Topology& topology;
-  std::span<const std::uint32_t> triangles;  // 1 a triangle: its name in the mesh; empty: its own
-  const Attempt& attempt;
-  std::span<const std::uint8_t> attempt_of_piece;  // 1 a component; empty: all pieces are taken
-  std::uint8_t number = 0;                         // of the attempt
 
   std::uint32_t name(std::uint32_t t) const { return triangles.empty() ? t : triangles[t]; }
-  bool takes(std::uint32_t t) const {
-    const std::uint32_t piece = topology.component[t];
-    return attempt.cells.of_triangle[t] != kNoIndex &&
-           (attempt_of_piece.empty() || attempt_of_piece[piece] == number);
-  }
+  bool takes(std::uint32_t t) const { return cells.of_triangle[t] != kNoIndex; }
 };
 
 // Triangle labels (from `first_label`), frames and the seams of charts with themselves.
-void spread_to_triangles(const Chosen& chosen, std::uint32_t first_label, Segmentation& result) {
-  const Topology& topology = chosen.topology;
-  const auto& [cells, coarse, merged] = chosen.attempt;
+void spread_to_triangles(const Cut& cut, std::uint32_t first_label, Segmentation& result) {
+  const auto& [topology, triangles, cells, coarse, merged] = cut;
   Partition& partition = result.partition;
   std::vector<std::uint32_t> frames(coarse.cells.size());
   for (std::uint32_t k = 0; k < frames.size(); ++k) {
@@ -78,15 +64,15 @@ void spread_to_triangles(const Chosen& chosen, std::uint32_t first_label, Segmen
         result.frames.add({coarse.cells[k].normal, {from_glm(frame[0]), from_glm(frame[1])}});
   }
   for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
-    if (!chosen.takes(t)) continue;
+    if (!cut.takes(t)) continue;
     const std::uint32_t k = cells.of_triangle[t];
-    partition.chart[chosen.name(t)] = first_label + merged.chart_of_cell[k];
-    result.frames.share(chosen.name(t), frames[k]);
+    partition.chart[cut.name(t)] = first_label + merged.chart_of_cell[k];
+    result.frames.share(cut.name(t), frames[k]);
   }
   for (std::size_t i = 0; i < coarse.rim_half_edges.size(); ++i) {
     const std::uint32_t h = coarse.rim_half_edges[i], o = topology.opposite[h];
-    if (o == kNoIndex || merged.joined[coarse.rim_arcs[i]] || !chosen.takes(h / 3)) continue;
-    const std::uint32_t a = chosen.name(h / 3), b = chosen.name(o / 3);
+    if (o == kNoIndex || merged.joined[coarse.rim_arcs[i]] || !cut.takes(h / 3)) continue;
+    const std::uint32_t a = cut.name(h / 3), b = cut.name(o / 3);
     if (partition.chart[a] != partition.chart[b]) continue;
     partition.seams[a] |= static_cast<std::uint8_t>(1u << (h % 3));
     partition.seams[b] |= static_cast<std::uint8_t>(1u << (o % 3));
@@ -102,30 +88,6 @@ std::vector<std::uint32_t> pieces_of(const Topology& topology, const Cells& cell
   return piece;
 }
 
-// What an attempt made of a piece; the less the better.
-struct Cost {
-  std::uint32_t charts = 0;
-  double seams = 0;  // length
-  auto operator<=>(const Cost&) const = default;
-};
-
-std::vector<Cost> costs(const Topology& topology, const Attempt& attempt) {
-  const auto& [cells, coarse, merged] = attempt;
-  const std::vector<std::uint32_t> piece = pieces_of(topology, cells);
-  std::vector<Cost> costs(topology.component_count);
-  std::vector<std::uint8_t> counted(cells.count, 0);
-  for (std::uint32_t k = 0; k < cells.count; ++k) {
-    if (piece[k] == kNoIndex || std::exchange(counted[merged.chart_of_cell[k]], 1)) continue;
-    ++costs[piece[k]].charts;
-  }
-  for (std::size_t i = 0; i < coarse.arcs.size(); ++i) {
-    const CoarseArc& arc = coarse.arcs[i];
-    if (merged.joined[i] || arc.cell[1] == kNoIndex) continue;
-    costs[piece[arc.cell[0]]].seams += arc.length;
-  }
-  return costs;
-}
-
 // Meshes of small pieces are segmented so many triangles at a time: 10^5 pieces would need much
 // memory at once, and parts that fit the processor's caches are faster.
 constexpr std::size_t kTrianglesAtATime = 50000, kSmallPiece = 5000;
@@ -136,14 +98,13 @@ constexpr double kMostRings = 8;  // wider bands are dear on fine meshes
 // (77 meshes).
 constexpr std::uint32_t kFastTrianglesPerCell = 250, kFastCellsOfSmallMesh = 60;
 
-// Attempts of ChartPreset::best, each from other cells.
-constexpr int kBestAttempts = 4;
-
 class Segmenter {
  public:
-  Segmenter(const Topology& topology, const ChartOptions& options, const Context& context)
+  Segmenter(const Topology& topology, const ChartOptions& options, double first_seed,
+            const Context& context)
       : topology_(topology),
         options_(options),
+        first_seed_(first_seed),
         context_(context),
         cone_(options.cone_degrees * M_PI / 180) {}
 
@@ -181,32 +142,24 @@ class Segmenter {
     }
   }
 
-  // `triangles` as in Chosen.
+  // `triangles` as in Cut.
   void segment(const Topology& topology, std::span<const std::uint32_t> triangles) {
-    const int count = options_.preset == ChartPreset::best ? kBestAttempts : 1;
-    std::vector<Attempt> attempts;
-    for (int i = 0; i < count; ++i) {
-      attempts.push_back(attempt(topology, double(i) / count));
-      if (context_.cancelled()) return;
-    }
-    const std::vector<std::uint8_t> attempt_of_piece = choose(topology, attempts);
-    for (std::uint8_t i = 0; i < count; ++i) {
-      const auto& [cells, coarse, merged] = attempts[i];
-      spread_to_triangles({topology, triangles, attempts[i], attempt_of_piece, i}, labels_,
-                          result_);
-      add_rings(cells, merged);
-      labels_ += static_cast<std::uint32_t>(coarse.cells.size());
-      axes_.insert(axes_.end(), merged.chart_axis.begin(), merged.chart_axis.end());
-    }
+    const Cut made = cut(topology, triangles);
+    if (context_.cancelled()) return;
+    spread_to_triangles(made, labels_, result_);
+    add_rings(made.cells, made.merged);
+    labels_ += static_cast<std::uint32_t>(made.coarse.cells.size());
+    const std::vector<Vec3f>& axes = made.merged.chart_axis;
+    axes_.insert(axes_.end(), axes.begin(), axes.end());
   }
 
   // Incomplete if the context is cancelled.
-  Attempt attempt(const Topology& topology, double first_seed) {
+  Cut cut(const Topology& topology, std::span<const std::uint32_t> triangles) {
     Stopwatch watch(cpu_seconds);
-    Attempt made;
+    Cut made{topology, triangles, {}, {}, {}};
     CellOptions options;
     options.mesh_triangles = std::max(topology_.whole_triangles, topology_.triangle_count());
-    options.first_seed = first_seed;
+    options.first_seed = first_seed_;
     if (options_.preset == ChartPreset::fast) {
       options.triangles_per_cell = kFastTrianglesPerCell;
       options.cells_of_small_mesh = kFastCellsOfSmallMesh;
@@ -230,23 +183,6 @@ class Segmenter {
     return made;
   }
 
-  // The best attempt of each piece. Empty if there is only one.
-  static std::vector<std::uint8_t> choose(const Topology& topology,
-                                          const std::vector<Attempt>& attempts) {
-    if (attempts.size() < 2) return {};
-    std::vector<Cost> least = costs(topology, attempts[0]);
-    std::vector<std::uint8_t> best(least.size(), 0);
-    for (std::uint8_t i = 1; i < attempts.size(); ++i) {
-      const std::vector<Cost> own = costs(topology, attempts[i]);
-      for (std::size_t piece = 0; piece < own.size(); ++piece) {
-        if (!(own[piece] < least[piece])) continue;
-        least[piece] = own[piece];
-        best[piece] = i;
-      }
-    }
-    return best;
-  }
-
   // Seams are straightened as far as cells are uneven: a third of a cell's width, to each side.
   void add_rings(const Cells& cells, const MergeResult& merged) {
     std::vector<std::uint32_t> triangles(cells.count, 0), cell_count(cells.count, 0);
@@ -264,6 +200,7 @@ class Segmenter {
 
   const Topology& topology_;
   const ChartOptions& options_;
+  double first_seed_;
   const Context& context_;
   double cone_;  // radians
   Segmentation result_;
@@ -274,9 +211,9 @@ class Segmenter {
 
 }  // namespace
 
-Segmentation segment(const Topology& topology, const ChartOptions& options,
+Segmentation segment(const Topology& topology, const ChartOptions& options, double first_seed,
                      const Context& context) {
-  return Segmenter(topology, options, context).run();
+  return Segmenter(topology, options, first_seed, context).run();
 }
 
 }  // namespace atlas

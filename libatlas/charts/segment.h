@@ -18,7 +18,8 @@ struct Segmentation {
   ChartSet::Timing timing;  // the parts of segmentation after the topology
 };
 
-// Each component on its own; texcoords play no part.
-Segmentation segment(const Topology& topology, const ChartOptions& options, const Context& context);
+// Each component on its own; texcoords play no part. `first_seed`: CellOptions::first_seed.
+Segmentation segment(const Topology& topology, const ChartOptions& options, double first_seed,
+                     const Context& context);
 
 }  // namespace atlas
