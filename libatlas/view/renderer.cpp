@@ -122,7 +122,8 @@ Status Renderer::Impl::allocate_target(int width, int height, bool lit) {
   for (const GlFramebuffer* f : {&target, &surface_target})
     if (*f && glCheckNamedFramebufferStatus(f->get(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
       return {ErrorCode::unsupported,
-              fmt::format("the driver does not draw into an image of {} x {} (make it smaller)", width, height)};
+              fmt::format("the driver does not draw into an image of {} x {} (make it smaller)",
+                          width, height)};
   return check_gl("making the image");
 }
 
