@@ -7,6 +7,7 @@
 #include <queue>
 #include <utility>
 
+#include "libatlas/charts/band.h"
 #include "libatlas/charts/chords.h"
 #include "libatlas/charts/hull.h"
 #include "libatlas/param/halfedges.h"
@@ -24,6 +25,10 @@ constexpr double kSeamPrice = 0.12;
 // times the square of how far it strays, in chords: a tenth doubles it.
 constexpr double kLongestPath = 1.6, kStrayWeight = 100;
 constexpr std::size_t kChordsTried = 12;
+// A piece whose largest hole takes so much of its hull is a ring: no single cut divides it. It is
+// cut at two opposite places, when no chord is left.
+constexpr double kRingHole = 0.25;
+constexpr double kRingScore = 1e-9;
 constexpr std::uint32_t kUnseen = kNoIndex - 1;
 
 using Triangles = std::vector<std::uint32_t>;  // of the chart
@@ -70,7 +75,8 @@ class LimbCutter {
   struct Piece {
     Triangles triangles;
     std::vector<std::uint32_t> outline;  // uvs along its longest border
-    double area = 0, box = 0, sprawl = 0;
+    std::vector<std::uint32_t> hole;     // the same of its largest hole
+    double area = 0, hole_area = 0, hull = 0, box = 0, sprawl = 0;
     bool searched = false;
     double score = 0;                 // of its best cut, 0: none
     std::array<Triangles, 2> halves;  // by it
@@ -103,7 +109,7 @@ class LimbCutter {
 
   // Fills in what follows from the triangles, which belong to the piece of that number.
   void measure(Piece& piece, std::uint32_t number) {
-    piece.area = 0;
+    piece.area = piece.hole_area = 0;
     for (const std::uint32_t t : piece.triangles) {
       const auto& c = chart_.corners[t];
       piece.area += 0.5 * cross(chart_.uvs[c[0]], chart_.uvs[c[1]], chart_.uvs[c[2]]);
@@ -116,15 +122,19 @@ class LimbCutter {
         if (seen_[h] || across(h) != kNoIndex) continue;
         std::vector<std::uint32_t> loop = trace(h);
         const double area = signed_area(loop);
+        if (-area > piece.hole_area) {
+          piece.hole_area = -area;
+          piece.hole = loop;
+        }
         if (area <= most) continue;
         most = area;
         piece.outline = std::move(loop);
       }
     }
     std::vector<Vec2d> points = positions(piece.outline), hull;
-    const double hull_size = hull_area(points, hull);
+    piece.hull = hull_area(points, hull);
     piece.box = box_area(hull);
-    piece.sprawl = sprawl(hull_size, piece.box);
+    piece.sprawl = sprawl(piece.hull, piece.box);
     piece.searched = false;
     piece.score = 0;
   }
@@ -190,6 +200,18 @@ class LimbCutter {
       piece.score = chords[i].score;
       return;
     }
+    if (piece.hole_area > kRingHole * piece.hull) open_ring(piece);
+  }
+
+  // Fills halves and score of a ring. That does not pay by itself: the halves have to be cut, too.
+  void open_ring(Piece& piece) {
+    std::vector<std::uint32_t> paths;
+    for (const BandCrossing& crossing : cross_band(chart_.uvs, piece.outline, piece.hole)) {
+      const std::vector<std::uint32_t> path = find_path(piece, crossing.outer, crossing.inner);
+      if (path.empty()) return;
+      paths.insert(paths.end(), path.begin(), path.end());
+    }
+    if (!paths.empty() && divide(piece, paths)) piece.score = kRingScore;
   }
 
   // Edges inside the piece from one place in its outline to another.

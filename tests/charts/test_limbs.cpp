@@ -64,6 +64,7 @@ std::vector<Shape> sprawling() {
           letters({"X   X", "XX XX", " XXX ", "XX XX", "X   X"}, 6),
           letters({"M M M M M", "M M M M M", "M M M M M", "MMMMMMMMM"}, 5),
           letters({"UUUUU", "U   U", "U   U", "U   U"}, 9),
+          letters({"DDDDDDDD", "D      D", "D      D", "D      D", "DDDDDDDD"}, 5),
           letters({"OOOO   ", "O  O   ", "OOOOOOO", "   O  O", "   OOOO"}, 6),
           star(5, 10)};
 }
