@@ -14,13 +14,14 @@ namespace atlas {
 namespace {
 
 constexpr std::uint32_t kLeastPerCell = 3;
-// Steps whose square exceeds the two triangles' area so many times lead through needles. They count
-// as far as the two triangles are high over the edge between them, but this share of the way
-// between centroids at least: with needles of CAD caps and walls zigzagging, those are far apart
-// even beside each other, and cells grew across creases instead (a part of 15 000 triangles came
-// out in 259 charts, and in 16 like this). With no least share strips a million times longer than
-// wide are torn.
-constexpr float kNeedle = 5, kLeastNeedleStep = 1.f / 40;
+// Steps between triangles of one plane, or with normals hardly apart, whose square exceeds the two
+// triangles' area so many times lead through needles. They count as far as the two triangles are
+// high over the edge between them, but this share of the way between centroids at least: with
+// needles of CAD caps and walls zigzagging, those are far apart even beside each other, and cells
+// grew across creases instead (a part of 15 000 triangles came out in 259 charts, and in 6 like
+// this). Needles around a tube are no such thing: their cells would become strips. With no least
+// share strips a million times longer than wide are torn.
+constexpr float kNeedle = 2, kFlatCosine = 0.999f, kLeastNeedleStep = 1.f / 40;
 
 // One a piece.
 std::vector<CellRuler> triangle_rulers(const Topology& topology) {
@@ -134,7 +135,10 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const CellS
       if (o == kNoIndex) continue;
       Ground& next_to = ground[o / 3];
       if (next_to.distance < 0) continue;
-      const float step = through_needles(topology, h, glm::distance(from, next_to.middle));
+      float step = glm::distance(from, next_to.middle);
+      if (glm::dot(here.normal, next_to.normal) > kFlatCosine) {
+        step = through_needles(topology, h, step);
+      }
       const float distance = so_far + cell_distance(step, next_to.normal, axis);
       if (!ruler.take(distance, own, next_to.distance, next_to.cell)) continue;
       queue.push({std::max(ruler.key(distance), visit.key), o / 3});
