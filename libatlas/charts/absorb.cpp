@@ -50,8 +50,8 @@ constexpr double kHidden = 0.5;
 // all the time (11 noisy meshes). Small charts have many neighbours to try.
 constexpr double kMostMisfit = 0.1, kMostRoughMisfit = 0.05, kMostShortMisfit = 0.25;
 constexpr double kMostSmallMisfit = 0.07;
-// Of runs along which charts are joined where their whole border does not fit: shorter ones, by the
-// whole border of the smaller chart, leave about as much seam as before.
+// Where a whole border does not fit, its longest run that fits so well, by the run's length, is
+// tried. Runs below this share of the smaller chart's border leave about as much seam as before.
 constexpr double kMostRunMisfit = 0.03, kLeastRun = 0.1;
 constexpr std::size_t kLeastFitted = 8;  // edges
 // Unions of so many times their smaller part's triangles keep the larger one's uvs but around it,
