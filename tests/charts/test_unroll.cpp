@@ -52,6 +52,46 @@ TEST(Unroll, ConesOfAnyAngle) {
   }
 }
 
+// A disc with `corners` corners around, its caps triangulated in zigzag from side to side, as CAD
+// programs do: needles, beside each other with centroids far apart.
+Shape zigzag_disc(int corners, double radius, double height) {
+  Shape shape;
+  for (const double z : {0.0, height}) {
+    for (int i = 0; i < corners; ++i) {
+      const double a = 2 * M_PI * i / corners;
+      shape.positions.push_back(
+          {float(radius * std::cos(a)), float(radius * std::sin(a)), float(z)});
+    }
+  }
+  const auto add = [&](int a, int b, int c) {
+    for (const int i : {a, b, c}) shape.indices.push_back(std::uint32_t(i));
+  };
+  int low = 0, high = corners - 1;
+  for (bool up = false; high - low > 1; up = !up) {
+    const int next = up ? high - 1 : low + 1;
+    add(corners + low, corners + next, corners + high);
+    add(low, high, next);
+    (up ? high : low) = next;
+  }
+  for (int i = 0; i < corners; ++i) {
+    const int k = (i + 1) % corners;
+    add(i, k, corners + k);
+    add(i, corners + k, corners + i);
+  }
+  return shape;
+}
+
+TEST(Unroll, CapsOfNeedlesEndAtTheirCreases) {
+  for (const int corners : {600, 2000}) {
+    for (const double height : {1.0, 3.0}) {
+      const Mesh mesh(zigzag_disc(corners, 10, height));
+      const Result<ChartSet> set = make_charts(mesh.view(), {}, {});
+      ASSERT_TRUE(set.ok());
+      EXPECT_LE(set->charts.size(), 4u) << corners << " corners, " << height << " high";
+    }
+  }
+}
+
 // Where a cell unrolls, its flat corners are no farther from each other than along its rim.
 TEST(Unroll, CellsOfACylinderAndOfASphere) {
   const CoarseMesh tube = coarse_of(cylinder(200, 100));
