@@ -136,8 +136,8 @@ class Absorber {
     return between <= 2 * limit && std::max(a.cone.angle, b.cone.angle) <= limit;
   }
 
-  // Of a small chart that fits no neighbour as a whole: joined along the
-  // longest run of their border that fits, with a seam along the rest. So tips come off as petals.
+  // Joins a small chart that fits no neighbour as a whole along the longest run of their border that
+  // fits, with a seam along the rest. So tips come off as petals.
   std::uint32_t attach(std::uint32_t k, std::span<const ChartNeighbour> neighbours) {
     struct Run {
       double length;
@@ -149,15 +149,15 @@ class Absorber {
     for (const ChartNeighbour& n : neighbours) {
       std::vector<BorderEdge> edges =
           find_fitting_run(topology_, {charts_[k], charts_[n.chart]}, n.edges, kMostRunMisfit);
-      const double all = seam_of(n.edges).length, length = seam_of(edges).length;
-      whole += all;
-      if (edges.size() < n.edges.size()) runs.push_back({length, &n, std::move(edges)});
+      whole += seam_of(n.edges).length;
+      if (edges.size() == n.edges.size()) continue;
+      runs.push_back({seam_of(edges).length, &n, std::move(edges)});
     }
     for (Run& run : runs) run.length = std::round(kBorderParts * run.length / whole);
     std::stable_sort(runs.begin(), runs.end(),
                      [](const Run& a, const Run& b) { return a.length > b.length; });
     for (std::size_t i = 0; i < std::min(runs.size(), patience_.small_neighbours); ++i) {
-      if (runs[i].length < kLeastRun * kBorderParts) break;
+      if (!(runs[i].length >= kLeastRun * kBorderParts)) break;
       if (join(k, *runs[i].neighbour, runs[i].edges)) return runs[i].neighbour->chart;
     }
     return kNoIndex;
