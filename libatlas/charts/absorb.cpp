@@ -136,8 +136,8 @@ class Absorber {
     return between <= 2 * limit && std::max(a.cone.angle, b.cone.angle) <= limit;
   }
 
-  // Joins a small chart that fits no neighbour as a whole along the longest run of their border that
-  // fits, with a seam along the rest. So tips come off as petals.
+  // Joins a small chart that fits no neighbour as a whole along the longest run of their border
+  // that fits, with a seam along the rest. So tips come off as petals.
   std::uint32_t attach(std::uint32_t k, std::span<const ChartNeighbour> neighbours) {
     struct Run {
       double length;
