@@ -149,9 +149,9 @@ class Absorber {
     for (const ChartNeighbour& n : neighbours) {
       std::vector<BorderEdge> edges =
           find_fitting_run(topology_, {charts_[k], charts_[n.chart]}, n.edges, kMostRunMisfit);
-      whole += seam_of(n.edges).length;
+      whole += length_of(n.edges);
       if (edges.size() == n.edges.size()) continue;
-      runs.push_back({seam_of(edges).length, &n, std::move(edges)});
+      runs.push_back({length_of(edges), &n, std::move(edges)});
     }
     for (Run& run : runs) run.length = std::round(kBorderParts * run.length / whole);
     std::stable_sort(runs.begin(), runs.end(),

@@ -61,8 +61,7 @@ std::vector<std::vector<std::size_t>> list_runs(std::span<const Link> links) {
 std::vector<BorderEdge> find_fitting_run(const Topology& topology, const ChartPair& pair,
                                          std::span<const BorderEdge> edges, double most_misfit) {
   const std::vector<Link> links = link_edges(topology, pair, edges);
-  double whole = 0;
-  for (const BorderEdge& edge : edges) whole += edge.length;
+  const double whole = length_of(edges);
   std::vector<BorderEdge> best;
   double best_share = 0;
   for (const std::vector<std::size_t>& run : list_runs(links)) {

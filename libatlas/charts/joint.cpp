@@ -12,6 +12,12 @@ std::array<std::uint32_t, 2> ends_of(const FlatChart& chart, std::uint32_t half_
   return {corners[half_edge % 3], corners[next_half_edge(half_edge) % 3]};
 }
 
+double length_of(std::span<const BorderEdge> edges) {
+  double sum = 0;
+  for (const BorderEdge& edge : edges) sum += edge.length;
+  return sum;
+}
+
 std::vector<BorderEdge> find_border(const Topology& topology, const Partition& partition,
                                     std::span<const std::uint32_t> triangles, std::uint32_t chart) {
   std::vector<BorderEdge> border;
@@ -32,10 +38,9 @@ std::vector<ChartNeighbour> find_neighbours(std::span<const BorderEdge> border) 
   double whole = 0;
   for (std::size_t first = 0, last = 0; first < border.size(); first = last) {
     ChartNeighbour n{border[first].other, 0, {}};
-    for (; last < border.size() && border[last].other == n.chart; ++last) {
-      n.border += border[last].length;
-    }
+    while (last < border.size() && border[last].other == n.chart) ++last;
     n.edges = border.subspan(first, last - first);
+    n.border = length_of(n.edges);
     whole += n.border;
     all.push_back(n);
   }

@@ -27,6 +27,8 @@ struct ChartNeighbour {
   std::span<const BorderEdge> edges;
 };
 
+double length_of(std::span<const BorderEdge> edges);
+
 // `chart`: its label in `partition`. Sorted by the chart across.
 std::vector<BorderEdge> find_border(const Topology& topology, const Partition& partition,
                                     std::span<const std::uint32_t> triangles, std::uint32_t chart);
