@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include "libatlas/core/leftovers.h"
+
 namespace atlas {
 namespace fs = std::filesystem;
 namespace {
@@ -25,7 +27,7 @@ fs::path name_beside(const fs::path& target, std::size_t number, std::string_vie
   if (extension.size() > kLongestExtension) extension.clear();
   if (cut) stem += fmt::format("~{}", number);
   fs::path beside = target;
-  beside.replace_filename(fmt::format(".{}.{}.{}{}", stem, ::getpid(), kind, extension));
+  beside.replace_filename(fmt::format(".{}.{}.{}{}", stem, process_mark(), kind, extension));
   return beside;
 }
 
@@ -52,7 +54,8 @@ AtomicFiles::~AtomicFiles() {
 }
 
 fs::path AtomicFiles::path_for(const fs::path& name) {
-  const fs::path target = behind_links(name);
+  const fs::path target = behind_links(name), folder = target.parent_path();
+  if (entries_.empty() || entries_.back().target.parent_path() != folder) remove_leftovers(folder);
   const fs::path temporary =
       is_special(target) ? target : name_beside(target, entries_.size(), "part");
   entries_.push_back({temporary, target, name});

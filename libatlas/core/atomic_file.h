@@ -21,7 +21,8 @@ class AtomicFiles {
 
   // The temporary path to write `target` under. It keeps the extension, since image writers choose
   // the format by it. Links are followed: what they lead to is replaced, not they themselves. What
-  // cannot be replaced by a file (a device, a pipe) is written to at once.
+  // cannot be replaced by a file (a device, a pipe) is written to at once. Temporary files that
+  // processes ended by force have left in the target's folder are removed.
   std::filesystem::path path_for(const std::filesystem::path& target);
 
   // Writes `bytes` to what will be `target`. Errors: io, naming the target.

@@ -1,0 +1,73 @@
+#include "libatlas/core/leftovers.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <cstdint>
+#include <fstream>
+#include <string_view>
+
+namespace atlas {
+namespace fs = std::filesystem;
+namespace {
+
+// Process numbers mean something only within one start of a machine and one name space of it;
+// folders may be shared between several. Empty where the system does not tell.
+std::string world_of_processes() {
+  std::ifstream start("/proc/sys/kernel/random/boot_id");
+  std::string text;
+  std::error_code error;
+  const fs::path space = fs::read_symlink("/proc/self/ns/pid", error);
+  if (!std::getline(start, text) || text.empty() || error) return {};
+  text += space.string();
+  std::uint32_t hash = 2166136261u;  // FNV-1a
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
+  return fmt::format("{:08x}", hash);
+}
+
+const std::string& world() {
+  static const std::string known = world_of_processes();
+  return known;
+}
+
+bool has_ended(pid_t process) {
+  return ::kill(process, 0) != 0 && errno == ESRCH;
+}
+
+// Whether a file of this name was a temporary one of a process that has ended.
+bool is_leftover(std::string_view name) {
+  const std::string before_number = fmt::format(".{}-", world());
+  const std::size_t at = name.rfind(before_number);
+  if (!name.starts_with('.') || at == std::string_view::npos) return false;
+  const char* end = name.data() + name.size();
+  pid_t process = 0;
+  const auto [after, error] =
+      std::from_chars(name.data() + at + before_number.size(), end, process);
+  if (error != std::errc() || process <= 0) return false;
+  const std::string_view rest(after, static_cast<std::size_t>(end - after));
+  for (const std::string_view kind : {".part", ".before"})
+    if (rest == kind || (rest.starts_with(kind) && rest[kind.size()] == '.'))
+      return has_ended(process);
+  return false;
+}
+
+}  // namespace
+
+std::string process_mark() {
+  return fmt::format("{}-{}", world(), ::getpid());
+}
+
+void remove_leftovers(const fs::path& folder) {
+  if (world().empty()) return;
+  std::error_code error;
+  fs::directory_iterator entry(folder.empty() ? fs::path(".") : folder, error);
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    std::error_code ignored;  // what another process removes at the same time is gone as well
+    if (is_leftover(entry->path().filename().string())) fs::remove(entry->path(), ignored);
+  }
+}
+
+}  // namespace atlas

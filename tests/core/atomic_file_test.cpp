@@ -1,0 +1,230 @@
+#include "libatlas/core/atomic_file.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "tests/scene/temp_folder.h"
+#include "tests/support/full_disk.h"
+
+namespace atlas {
+namespace {
+
+using test::TempFolder;
+
+TEST(AtomicFiles, AppearTogetherOrNotAtAll) {
+  const TempFolder folder;
+  folder.write("a.txt", "old");
+  {
+    AtomicFiles files;
+    std::ofstream(files.path_for(folder / "a.txt")) << "new";
+    std::ofstream(files.path_for(folder / "b.png")) << "picture";
+    EXPECT_EQ(TempFolder::read(folder / "a.txt"), "old");
+    EXPECT_EQ(folder.count(), 3u);
+  }
+  EXPECT_EQ(folder.count(), 1u);  // dropped without a commit
+  EXPECT_EQ(TempFolder::read(folder / "a.txt"), "old");
+  AtomicFiles files;
+  const auto temporary = files.path_for(folder / "b.png");
+  EXPECT_EQ(temporary.extension(), ".png");
+  std::ofstream(temporary) << "picture";
+  std::ofstream(files.path_for(folder / "a.txt")) << "new";
+  ASSERT_TRUE(files.commit().ok());
+  EXPECT_EQ(folder.count(), 2u);
+  EXPECT_EQ(TempFolder::read(folder / "a.txt"), "new");
+}
+
+TEST(AtomicFiles, AFailedCommitTakesBackWhatItDid) {
+  const TempFolder folder;
+  {
+    AtomicFiles files;
+    std::ofstream(files.path_for(folder / "first.txt")) << "1";
+    (void)files.path_for(folder / "never_written.txt");
+    const Status status = files.commit();
+    EXPECT_EQ(status.code(), ErrorCode::io);
+    EXPECT_NE(status.message().find("never_written.txt"), std::string::npos);
+  }
+  EXPECT_EQ(folder.count(), 0u);
+}
+
+// Where one of several files cannot be put in place, the others stand as they did before.
+TEST(AtomicFiles, AFailedCommitBringsBackWhatItReplaced) {
+  const TempFolder folder;
+  folder.write("old.txt", "old");
+  std::filesystem::create_directories(folder / "taken.txt");
+  const auto write = [&](AtomicFiles& files, const char* name) {
+    std::ofstream(files.path_for(folder / name)) << "new";
+  };
+  {
+    AtomicFiles files;
+    for (const char* name : {"old.txt", "other.txt", "taken.txt", "last.txt"}) write(files, name);
+    const Status status = files.commit();
+    EXPECT_EQ(status.code(), ErrorCode::io);
+    EXPECT_NE(status.message().find("taken.txt"), std::string::npos) << status.message();
+  }
+  EXPECT_EQ(TempFolder::read(folder / "old.txt"), "old");
+  EXPECT_EQ(folder.count(), 2u);
+  AtomicFiles files;
+  for (const char* name : {"old.txt", "other.txt"}) write(files, name);
+  EXPECT_TRUE(files.commit().ok());
+  EXPECT_EQ(TempFolder::read(folder / "old.txt"), "new");
+  EXPECT_EQ(folder.count(), 3u);
+}
+
+TEST(AtomicFiles, WriteFileReportsWhereItCannot) {
+  const TempFolder folder;
+  EXPECT_TRUE(write_file(folder / "x.json", "{}").ok());
+  EXPECT_EQ(TempFolder::read(folder / "x.json"), "{}");
+  const Status status = write_file(folder / "none" / "x.json", "{}");
+  EXPECT_EQ(status.code(), ErrorCode::io);
+  EXPECT_NE(status.message().find("x.json"), std::string::npos);
+  // A folder of that name is in the way.
+  std::filesystem::create_directories(folder / "taken" / "inside");
+  EXPECT_EQ(write_file(folder / "taken", "{}").code(), ErrorCode::io);
+  EXPECT_EQ(folder.count(), 2u);
+}
+
+TEST(AtomicFiles, NamesOfAnyLengthThatTheFileSystemTakes) {
+  const TempFolder folder;
+  AtomicFiles files;
+  // Alike as far as temporary names go, but files of their own.
+  for (const char* end : {"1.txt", "2.txt"})
+    std::ofstream(files.path_for(folder / (std::string(250, 'n') + end))) << end;
+  EXPECT_TRUE(check_writable(folder / (std::string(250, 'n') + "3.txt")).ok());
+  ASSERT_TRUE(files.commit().ok());
+  EXPECT_EQ(TempFolder::read(folder / (std::string(250, 'n') + "1.txt")), "1.txt");
+  EXPECT_EQ(TempFolder::read(folder / (std::string(250, 'n') + "2.txt")), "2.txt");
+  EXPECT_EQ(folder.count(), 2u);
+  // The same of their extensions.
+  for (const char* end : {"1", "2"})
+    std::ofstream(files.path_for(folder / ("n." + std::string(70, 'x') + end))) << end;
+  ASSERT_TRUE(files.commit().ok());
+  EXPECT_EQ(TempFolder::read(folder / ("n." + std::string(70, 'x') + "1")), "1");
+  EXPECT_EQ(TempFolder::read(folder / ("n." + std::string(70, 'x') + "2")), "2");
+  const Status status = check_writable(folder / std::string(300, 'n'));
+  EXPECT_EQ(status.code(), ErrorCode::io);
+  EXPECT_NE(status.message().find("up to 255 bytes"), std::string::npos) << status.message();
+}
+
+TEST(AtomicFiles, LinksAreFollowed) {
+  const TempFolder folder;
+  std::filesystem::create_directories(folder / "store");
+  std::ofstream(folder / "store" / "real.txt") << "old";
+  std::filesystem::create_symlink("store/real.txt", folder / "link.txt");
+  ASSERT_TRUE(check_writable(folder / "link.txt").ok());
+  ASSERT_TRUE(write_file(folder / "link.txt", "new").ok());
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
+  EXPECT_EQ(TempFolder::read(folder / "store" / "real.txt"), "new");
+  // One that leads nowhere is replaced.
+  std::filesystem::create_symlink("none.txt", folder / "loose.txt");
+  ASSERT_TRUE(write_file(folder / "loose.txt", "new").ok());
+  EXPECT_EQ(TempFolder::read(folder / "loose.txt"), "new");
+}
+
+TEST(AtomicFiles, DevicesAndPipesStayWhatTheyAre) {
+  const TempFolder folder;
+  const std::filesystem::path pipe = folder / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::string got;
+  std::thread reader([&] { got = TempFolder::read(pipe); });
+  const Status status = write_file(pipe, "through");
+  reader.join();
+  EXPECT_TRUE(status.ok()) << status.message();
+  EXPECT_EQ(got, "through");
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+  EXPECT_EQ(folder.count(), 1u);
+  {
+    AtomicFiles dropped;
+    EXPECT_EQ(dropped.path_for(pipe), pipe);
+  }
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+}
+
+TEST(AtomicFiles, MessagesNameTheTarget) {
+  const TempFolder folder;
+  AtomicFiles files;
+  const auto temporary = files.path_for(folder / "page.png");
+  const Status told =
+      files.told_by_target({ErrorCode::io, temporary.string() + ": writing failed"});
+  EXPECT_EQ(told.code(), ErrorCode::io);
+  EXPECT_EQ(told.message(), (folder / "page.png").string() + ": writing failed");
+}
+
+// What does not fit leaves the old file as it was.
+TEST(AtomicFiles, AFullDiskChangesNothing) {
+  const TempFolder folder;
+  folder.write("x.json", "old");
+  // Both below and beyond what the C library holds back until a file is closed.
+  for (const std::size_t length : {100u, 100'000u}) {
+    Status status;
+    {
+      const test::FullDisk full(50);
+      status = write_file(folder / "x.json", std::string(length, 'x'));
+    }
+    EXPECT_EQ(status.code(), ErrorCode::io) << length;
+    EXPECT_NE(status.message().find("x.json: writing failed: File too large"), std::string::npos)
+        << status.message();
+    EXPECT_EQ(TempFolder::read(folder / "x.json"), "old");
+    EXPECT_EQ(folder.count(), 1u);
+  }
+}
+
+// A process that is killed before it could commit, and the files that it had begun.
+class KilledWriter {
+ public:
+  explicit KilledWriter(const std::filesystem::path& target) : process_(::fork()) {
+    if (process_ != 0) return;
+    AtomicFiles files;
+    const auto temporary = files.path_for(target);
+    std::ofstream(temporary) << "half";
+    std::error_code ignored;
+    std::filesystem::create_hard_link(target, before(temporary), ignored);
+    for (;;) ::pause();
+  }
+  ~KilledWriter() { kill(); }
+  void kill() {
+    if (process_ <= 0) return;
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+    process_ = 0;
+  }
+
+ private:
+  static std::filesystem::path before(const std::filesystem::path& temporary) {
+    std::string name = temporary.string();
+    return name.replace(name.rfind(".part"), 5, ".before");
+  }
+  pid_t process_;
+};
+
+void wait_for_files(const TempFolder& folder, std::size_t count) {
+  for (int i = 0; i < 1000 && folder.count() < count; ++i) ::usleep(10'000);
+  ASSERT_EQ(folder.count(), count);
+}
+
+TEST(AtomicFiles, WhatAKilledProcessLeftGoesWithTheNextOutput) {
+  const TempFolder folder;
+  folder.write("world.obj", "old");
+  folder.write(".world.0badf00d-1234567.part.obj", "of another machine");
+  folder.write(".notes.part.obj", "the user's own");
+  KilledWriter writer(folder / "world.obj");
+  wait_for_files(folder, 5);
+  ASSERT_TRUE(write_file(folder / "other.txt", "x").ok());
+  EXPECT_EQ(folder.count(), 6u) << "files of a process at work are taken away";
+  writer.kill();
+  ASSERT_TRUE(write_file(folder / "world.obj", "new").ok());
+  EXPECT_EQ(TempFolder::read(folder / "world.obj"), "new");
+  EXPECT_EQ(folder.count(), 4u);
+  EXPECT_TRUE(std::filesystem::exists(folder / ".world.0badf00d-1234567.part.obj"));
+  EXPECT_TRUE(std::filesystem::exists(folder / ".notes.part.obj"));
+}
+
+}  // namespace
+}  // namespace atlas
