@@ -148,7 +148,8 @@ void add_output_options(CLI::App& app, ExportCommand& command) {
       ->capture_default_str()
       ->check(within(0, 9));
   add_off_flag(app, "--no-error", options.measure_error, "Do not measure the pages' error");
-  app.add_option("--report", command.report, "Write a JSON report of every stage");
+  app.add_option("--report", command.report,
+                 "Write a JSON report of every stage; with --plan: of the plan");
   app.add_flag("--plan", command.plan_only, "Print what would run and why, and stop");
   app.add_flag("-q,--quiet", command.quiet, "Print errors only");
   app.add_option("--threads", command.threads, "Threads; 0: all cores")
@@ -209,6 +210,12 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
   exit_code = 2;
   if (const auto wrong = interpret(raw, command)) {
     print(stderr, fmt::format("atlas-export: error: {}\n", *wrong));
+    return std::nullopt;
+  }
+  if (command.plan_only && command.quiet && command.report.empty()) {
+    print(stderr,
+          "atlas-export: error: --plan with --quiet tells nothing (leave one out, or add "
+          "--report)\n");
     return std::nullopt;
   }
   command.options.larger_plain_page = app.count("--atlas-size") == 0;

@@ -1,6 +1,8 @@
 // atlas-export: a lit scene in, a walkable world with texture atlases out.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "apps/atlas-export/command_line.h"
 #include "apps/common/files.h"
 #include "apps/common/program.h"
@@ -9,6 +11,7 @@
 #include "libatlas/exporters/world.h"
 #include "libatlas/pipeline/bake_pages.h"
 #include "libatlas/pipeline/export_world.h"
+#include "libatlas/pipeline/plan.h"
 
 namespace {
 
@@ -116,6 +119,30 @@ Status check_files_stay(const LoadedScene& loaded, const app::ExportCommand& com
   return check_textures_stay(loaded.scene, target);
 }
 
+// The export's own figures and those of reading, which came before it.
+Status write_report(ExportReport report, const StageReport& reading,
+                    const app::ExportCommand& command, app::Terminal& terminal) {
+  if (command.report.empty()) return {};
+  report.scene = command.scene;
+  report.stages.insert(report.stages.begin(), reading);
+  report.cpu_seconds += reading.cpu_seconds;
+  report.wall_seconds += reading.wall_seconds;
+  report.peak_memory = std::max(report.peak_memory, reading.peak_memory);
+  if (Status s = write_json(report, command.report); !s.ok()) return s;
+  terminal.line(fmt::format("{}: report", command.report.string()));
+  return {};
+}
+
+// Prints what would run, and reports it where that is asked for. What would end the export before
+// its first stage is an error here, too.
+Status plan(const app::ExportCommand& command, const LoadedScene& loaded,
+            const StageReport& reading, app::Terminal& terminal) {
+  const ExportPlan plan = make_plan(loaded.scene, command.options);
+  print_plan(plan, terminal);
+  if (Status s = check_plan(plan, command.options); !s.ok()) return s;
+  return write_report(planned_report(loaded, plan, command.options), reading, command, terminal);
+}
+
 Status run(const app::ExportCommand& command, app::Terminal& terminal) {
   if (Status s = check_options(command.options); !s.ok()) return s;
   if (Status s = check_outputs(command); !s.ok()) return s;
@@ -128,27 +155,16 @@ Status run(const app::ExportCommand& command, app::Terminal& terminal) {
   if (!loaded.ok()) return loaded.status();
   if (Status s = check_files_stay(*loaded, command); !s.ok()) return s;
   for (const std::string& line : loaded->defects.lines()) terminal.line("defect: " + line);
-  const ExportPlan plan = make_plan(loaded->scene, command.options);
-  if (command.plan_only) {
-    print_plan(plan, terminal);
-    return {};
-  }
   const StageReport reading = reading_stage(*loaded, cpu, wall);
+  if (command.plan_only) return plan(command, *loaded, reading, terminal);
   terminal.line(stage_line(reading));
   Result<ExportReport> report = export_world(
       *loaded, command.options, [&](const StageReport& stage) { terminal.line(stage_line(stage)); },
       context);
   if (!report.ok()) return report.status();
-  report->scene = command.scene;
-  report->stages.insert(report->stages.begin(), reading);
-  report->cpu_seconds += reading.cpu_seconds;
-  report->wall_seconds += reading.wall_seconds;
   print_result(*report, terminal);
   name_old_pages(*report, terminal);
-  if (command.report.empty()) return {};
-  if (Status s = write_json(*report, command.report); !s.ok()) return s;
-  terminal.line(fmt::format("{}: report", command.report.string()));
-  return {};
+  return write_report(std::move(*report), reading, command, terminal);
 }
 
 int main_of(int argc, char** argv) {

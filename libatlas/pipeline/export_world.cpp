@@ -44,9 +44,8 @@ class Export {
         options_(options),
         context_(context),
         plan_(make_plan(scene_, options)),
-        record_(report_, stage_done, context) {
-    describe_scene(loaded);
-  }
+        report_(planned_report(loaded, plan_, options)),
+        record_(report_, stage_done, context) {}
 
   Result<ExportReport> run() {
     const double cpu = cpu_seconds(), wall = wall_seconds();
@@ -67,6 +66,7 @@ class Export {
       if (Status s = simplify(); !s.ok()) return s;
     }
     if (Status s = write(); !s.ok()) return s;
+    report_.carried_out = true;
     report_.advice = advice_on(report_, options_);
     for (const std::string& line : report_.advice) context_.say(line);
     report_.cpu_seconds = cpu_seconds() - cpu;
@@ -76,22 +76,6 @@ class Export {
   }
 
  private:
-  void describe_scene(const LoadedScene& loaded) {
-    report_.target = options_.target;
-    report_.triangles = scene_.triangle_count();
-    report_.vertices = scene_.positions.size();
-    report_.materials = scene_.materials.size();
-    report_.textures = scene_.textures.size();
-    report_.objects = scene_.object_names.size();
-    report_.lit = scene_.lit();
-    report_.metres_per_unit = scene_.metres_per_unit;
-    report_.origin = scene_.origin;
-    report_.defects = loaded.defects;
-    for (const PlanStep& step : plan_.steps) {
-      if (!step.run) report_.skipped.push_back({step.stage, step.reason});
-    }
-  }
-
   Status cut_charts() {
     record_.begin("charts");
     Result<ChartSet> charts = make_charts(view_of(scene_), options_.charts, context_);
@@ -211,11 +195,13 @@ class Export {
     report_.unlit_charts = sized->unlit;
     report_.capped_charts = sized->capped;
     report_.raised_charts = sized->raised;
+    report_.sampled_charts = sized->sampled;
+    report_.sampled_texels = sized->sampled_texels;
     report_.downsizing_rms = sized->rms_error;
     report_.downsizing_max = sized->max_error;
     record_.finish({std::uint64_t(sized->full_texels), std::uint64_t(sized->final_texels), "texels",
-                    fmt::format("{} charts halved, {} unlit, rms {:.5f}", sized->halved,
-                                sized->unlit, sized->rms_error)});
+                    fmt::format("{} charts halved, {} unlit, rms {:.5f} ({} sampled)",
+                                sized->halved, sized->unlit, sized->rms_error, sized->sampled)});
     return {};
   }
 

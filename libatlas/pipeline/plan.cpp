@@ -147,12 +147,6 @@ class StepList {
 
 }  // namespace
 
-bool ExportPlan::runs(const std::string& stage) const {
-  const auto step =
-      std::find_if(steps.begin(), steps.end(), [&](const PlanStep& s) { return s.stage == stage; });
-  return step != steps.end() && step->run;
-}
-
 ExportPlan make_plan(const Scene& scene, const ExportOptions& options) {
   const SceneFacts facts = gather_facts(scene);
   ExportPlan plan;
@@ -170,6 +164,24 @@ ExportPlan make_plan(const Scene& scene, const ExportOptions& options) {
 
   StepList(scene, options, plan).make(facts.textured_triangles);
   return plan;
+}
+
+ExportReport planned_report(const LoadedScene& loaded, const ExportPlan& plan,
+                            const ExportOptions& options) {
+  const Scene& scene = loaded.scene;
+  ExportReport report;
+  report.target = options.target;
+  report.triangles = scene.triangle_count();
+  report.vertices = scene.positions.size();
+  report.materials = scene.materials.size();
+  report.textures = scene.textures.size();
+  report.objects = scene.object_names.size();
+  report.lit = scene.lit();
+  report.metres_per_unit = scene.metres_per_unit;
+  report.origin = scene.origin;
+  report.defects = loaded.defects;
+  report.plan = plan;
+  return report;
 }
 
 Status check_plan(const ExportPlan& plan, const ExportOptions& options) {

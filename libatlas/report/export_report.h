@@ -11,6 +11,7 @@
 #include "libatlas/core/rect.h"
 #include "libatlas/core/status.h"
 #include "libatlas/pack/grouping.h"
+#include "libatlas/report/export_plan.h"
 #include "libatlas/scene/defects.h"
 #include "libatlas/texture/tone.h"
 
@@ -24,10 +25,6 @@ struct StageReport {
   std::uint64_t size_in = 0, size_out = 0;
   std::string unit;     // "triangles -> charts"
   std::string quality;  // one phrase with the figure that matters
-};
-
-struct SkippedStage {
-  std::string stage, reason;
 };
 
 struct PageReport {
@@ -45,7 +42,8 @@ struct ExportReport {
   double metres_per_unit = 1;
   Vec3d origin;
   DefectReport defects;
-  std::vector<SkippedStage> skipped;
+  ExportPlan plan;
+  bool carried_out = false;  // else nothing below is known but the stages that have run
   std::vector<StageReport> stages;
   double wall_seconds = 0, cpu_seconds = 0;
   std::int64_t peak_memory = 0;
@@ -67,7 +65,9 @@ struct ExportReport {
   std::int64_t full_texels = 0, final_texels = 0;
   std::uint64_t halved_charts = 0, uniform_charts = 0, unlit_charts = 0, capped_charts = 0,
                 raised_charts = 0;
-  double downsizing_rms = 0, downsizing_max = 0;  // display values
+  std::uint64_t sampled_charts = 0;
+  std::int64_t sampled_texels = 0;
+  double downsizing_rms = 0, downsizing_max = 0;  // display values, over sampled_texels
 
   // Pages
   GroupingResult grouping;
@@ -89,7 +89,8 @@ struct ExportReport {
   std::vector<std::string> advice;  // what the figures mean for the user, and the remedy
 };
 
-// Writes the report as JSON (docs/report.md names every key), whole or not at all.
+// Writes the report as JSON (docs/report.md names every key), whole or not at all. Of an export
+// that was not carried out there is the plan, and nothing of what it would have given.
 Status write_json(const ExportReport& report, const std::filesystem::path& path);
 
 // One line for people: "charts      301709 triangles -> 68 charts  L2 1.001  0.82 s  120 MiB".

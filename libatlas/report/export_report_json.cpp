@@ -52,6 +52,22 @@ Json scene_json(const ExportReport& r) {
           {"defects", defects}};
 }
 
+Json json_of(const ExportPlan& plan) {
+  Json steps = Json::array();
+  for (const PlanStep& step : plan.steps)
+    steps.push_back({{"stage", step.stage}, {"run", step.run}, {"reason", step.reason}});
+  return {{"surface_area_m2", plan.surface_area_m2},   {"texel_m", plan.texel_metres},
+          {"estimated_texels", plan.estimated_texels}, {"unlit_share", plan.unlit_share},
+          {"uniform_share", plan.uniform_share},       {"steps", steps}};
+}
+
+Json skipped_json(const ExportPlan& plan) {
+  Json skipped = Json::array();
+  for (const PlanStep& step : plan.steps)
+    if (!step.run) skipped.push_back({{"stage", step.stage}, {"reason", step.reason}});
+  return skipped;
+}
+
 Json stages_json(const ExportReport& r) {
   Json stages = Json::array();
   for (const StageReport& s : r.stages) {
@@ -136,6 +152,8 @@ Json textures_json(const ExportReport& r) {
       {"unlit_charts", r.unlit_charts},
       {"capped_charts", r.capped_charts},
       {"raised_charts", r.raised_charts},
+      {"sampled_charts", r.sampled_charts},
+      {"sampled_texels", r.sampled_texels},
       {"rms_error", r.downsizing_rms},
       {"max_error", r.downsizing_max}};
 }
@@ -190,20 +208,10 @@ Json error_json(const Fidelity& f, ToneOperator tone) {
           {"max", of_lit(f.maximum)}};
 }
 
-}  // namespace
-
-Status write_json(const ExportReport& r, const std::filesystem::path& path) {
-  Json skipped = Json::array();
-  for (const SkippedStage& s : r.skipped) {
-    skipped.push_back({{"stage", s.stage}, {"reason", s.reason}});
-  }
-  Json files = Json::array();
-  for (const auto& [name, bytes] : r.files) files.push_back({{"file", name}, {"bytes", bytes}});
-  Json json{{"target", r.target.string()}, {"wall_s", r.wall_seconds},
-            {"cpu_s", r.cpu_seconds},      {"peak_mib", double(r.peak_memory) / kMebibyte},
-            {"scene", scene_json(r)},      {"stages", stages_json(r)},
-            {"skipped", skipped},          {"charts", charts_json(r)},
-            {"packing", pages_json(r)},    {"grouping", grouping_json(r.grouping)}};
+void add_results(const ExportReport& r, Json& json) {
+  json["charts"] = charts_json(r);
+  json["packing"] = pages_json(r);
+  json["grouping"] = grouping_json(r.grouping);
   if (r.full_texels > 0) {
     json["light"] = light_json(r);
     json["textures"] = textures_json(r);
@@ -215,8 +223,20 @@ Status write_json(const ExportReport& r, const std::filesystem::path& path) {
                         {"turn_degrees", r.turn_degrees}};
   }
   if (r.error_measured) json["error"] = error_json(r.fidelity, r.tone.op);
+  Json files = Json::array();
+  for (const auto& [name, bytes] : r.files) files.push_back({{"file", name}, {"bytes", bytes}});
   json["files"] = files;
   json["advice"] = r.advice;
+}
+
+}  // namespace
+
+Status write_json(const ExportReport& r, const std::filesystem::path& path) {
+  Json json{{"target", r.target.string()}, {"wall_s", r.wall_seconds},
+            {"cpu_s", r.cpu_seconds},      {"peak_mib", double(r.peak_memory) / kMebibyte},
+            {"scene", scene_json(r)},      {"plan", json_of(r.plan)},
+            {"stages", stages_json(r)},    {"skipped", skipped_json(r.plan)}};
+  if (r.carried_out) add_results(r, json);
   // Names come from files: bytes that are no UTF-8 are replaced instead of ending the export.
   return write_file(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }

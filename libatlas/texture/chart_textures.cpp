@@ -132,6 +132,7 @@ void downsize_chart(const Sizing& sizing, std::uint32_t id, ChartTexture& out,
   sample_chart(sizing.light, id, density, room->full);
   const Downsizing d = downsize(room->full, sizing.options, room->halved);
   sizing.rooms.give_back(std::move(room));
+  out.sampled = true;
   out.halvings = d.halvings;
   out.width = d.width;
   out.height = d.height;
@@ -172,7 +173,6 @@ ChartOutcome size_chart(const Sizing& sizing, std::uint32_t id, ChartTexture& ou
 
 void add_up(const std::vector<ChartOutcome>& outcomes, TextureResult& result) {
   double square_sum = 0;
-  std::int64_t covered = 0;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const ChartTexture& t = result.charts[i];
     result.full_texels += std::int64_t{t.full_width} * t.full_height;
@@ -184,9 +184,11 @@ void add_up(const std::vector<ChartOutcome>& outcomes, TextureResult& result) {
     result.raised += outcomes[i].raised;
     result.max_error = std::max<double>(result.max_error, t.max_error);
     square_sum += outcomes[i].square_sum;
-    covered += outcomes[i].covered;
+    result.sampled += t.sampled;
+    result.sampled_texels += outcomes[i].covered;
   }
-  if (covered > 0) result.rms_error = std::sqrt(square_sum / (3.0 * static_cast<double>(covered)));
+  if (result.sampled_texels > 0)
+    result.rms_error = std::sqrt(square_sum / (3.0 * static_cast<double>(result.sampled_texels)));
 }
 
 }  // namespace

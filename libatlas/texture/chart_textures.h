@@ -44,16 +44,19 @@ struct ChartTexture {
   std::int32_t full_width = 0, full_height = 0;
   std::int32_t halvings = 0;  // of varied charts; uniform ones shrink a side at a time
   ChartContent content = ChartContent::varied;
-  bool capped = false;  // max_side made it coarser than asked
-  float rms_error = 0;  // display values: final against full, after bilinear up-sampling,
-  float max_error = 0;  // over covered texels and RGB
+  bool capped = false;   // max_side made it coarser than asked
+  bool sampled = false;  // its texels were looked at: of several colours, large enough to halve
+  float rms_error = 0;   // display values: final against full, after bilinear up-sampling,
+  float max_error = 0;   // over covered texels and RGB; 0 where nothing was sampled or lost
 };
 
 struct TextureResult {
   std::vector<ChartTexture> charts;                // one a chart, same order
   std::int64_t full_texels = 0, final_texels = 0;  // sums of width * height
   std::uint64_t halved = 0, uniform = 0, unlit = 0, capped = 0, raised = 0;  // counts of charts
-  double rms_error = 0, max_error = 0;  // over all covered full texels
+  std::uint64_t sampled = 0;                                                 // charts
+  std::int64_t sampled_texels = 0;      // of those, full texels that a triangle covers
+  double rms_error = 0, max_error = 0;  // over sampled_texels; all others lose nothing
 };
 
 // Texels per unit that stage 2 asks for each chart, before any limit of a page: from the texel's

@@ -130,6 +130,21 @@ TEST(ChartTextures, HalveARampAsOftenAsItsSlopeAllows) {
   }
 }
 
+TEST(ChartTextures, SayWhatTheirErrorCovers) {
+  const auto ramp = [](double u, double) { return shown(u); };
+  LitShape shape = make_sheet({1, 1, 30, 30}, ramp);
+  append(shape, make_sheet({3, 3, 2, 2}, [](double, double) { return Vec3f{1, 1, 1}; }), {0, 0, 1});
+  append(shape, make_sheet({1, 0.1, 9, 9}, ramp), {0, 0, 2});  // 10 texels high
+  const TextureResult r = size_textures(shape, options(0.01, 0.1));
+  EXPECT_TRUE(r.charts[0].sampled);
+  EXPECT_FALSE(r.charts[1].sampled) << "of one colour";
+  EXPECT_FALSE(r.charts[2].sampled) << "too small to halve";
+  EXPECT_EQ(r.sampled, 1u);
+  EXPECT_EQ(r.sampled_texels, 100 * 100);
+  EXPECT_GT(r.rms_error, 0);
+  EXPECT_NEAR(r.rms_error, r.charts[0].rms_error, 1e-7);
+}
+
 TEST(ChartTextures, DoNotDependOnTheNumberOfThreads) {
   LitShape shape = make_sheet({1, 1, 40, 40, 0.3}, [](double u, double v) { return shown(u * v); });
   for (int i = 1; i < 12; ++i)

@@ -393,6 +393,31 @@ TEST_F(AtlasExport, PlanRunsNothing) {
   EXPECT_EQ(files(), before);
 }
 
+TEST_F(AtlasExport, ThePlanCanBeReported) {
+  write("box.obj", lit_box(4));
+  const RunResult r =
+      run(fmt::format("{0}/box.obj -o {0}/w.wrl --plan -q --report {0}/plan.json", dir_.string()));
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  EXPECT_EQ(files(), (std::set<std::string>{"box.obj", "plan.json"}));
+  const auto report = nlohmann::json::parse(slurp(dir_ / "plan.json"));
+  EXPECT_EQ(report["scene"]["triangles"], 192);
+  EXPECT_NEAR(report["plan"]["surface_area_m2"], 6, 1e-5);
+  EXPECT_NEAR(report["plan"]["texel_m"], 0.001, 1e-9);
+  EXPECT_NEAR(report["plan"]["estimated_texels"], 6e6, 10);
+  EXPECT_EQ(report["plan"]["steps"][0]["stage"], "charts");
+  EXPECT_EQ(report["plan"]["steps"][0]["run"], true);
+  EXPECT_EQ(report["skipped"][0]["stage"], "reflectance");
+  EXPECT_FALSE(report.contains("charts")) << "figures of what was not done";
+}
+
+TEST_F(AtlasExport, APlanThatCannotBeCarriedOutSaysSo) {
+  write("box.obj", lit_box(4));
+  const RunResult r =
+      run(fmt::format("{0}/box.obj -o {0}/w.wrl --plan --texel 50m", dir_.string()));
+  EXPECT_EQ(r.exit_code, 2);
+  EXPECT_NE(r.output.find("more than the whole scene"), std::string::npos) << r.output;
+}
+
 TEST_F(AtlasExport, UnlitSceneGivesPlainUvs) {
   write("tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const RunResult r = run(fmt::format("{0}/tri.obj -o {0}/w.obj", dir_.string()));

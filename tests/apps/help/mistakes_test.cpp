@@ -73,6 +73,10 @@ TEST_F(Mistakes, NamesAreNotEmpty) {
   expect_complaint(ATLAS_PLAY, "t.obj --headless --screenshot ''", "--screenshot is empty");
 }
 
+TEST_F(Mistakes, AQuietPlanTellsNothing) {
+  expect_complaint(ATLAS_EXPORT, "t.obj -o a.obj --plan -q", "--plan with --quiet tells nothing");
+}
+
 TEST_F(Mistakes, NumbersThatLeaveNoRoom) {
   expect_complaint(ATLAS_EXPORT, "t.obj -o a.obj --unit 1e300", "--unit 1e300: give m, cm");
   expect_complaint(ATLAS_EXPORT, "t.obj -o a.obj --unit 1e-300", "--unit 1e-300: give m, cm");
