@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "libatlas/core/counting_sort.h"
 #include "libatlas/core/parallel.h"
 
 namespace atlas::pack {
@@ -33,25 +34,24 @@ std::vector<std::uint32_t> weld(std::span<const Vec2d> corners) {
 // them share.
 class EdgeSum {
  public:
-  EdgeSum(std::size_t corners, std::size_t edges) : first_(corners + 1, 0) {
-    edges_.reserve(edges);
-  }
+  EdgeSum(std::size_t corners, std::size_t edges) : corners_(corners) { edges_.reserve(edges); }
 
   void add(std::uint32_t from, std::uint32_t to) {
     if (from == to) return;
     edges_.push_back({std::min(from, to), std::max(from, to), from < to ? 1 : -1});
-    ++first_[edges_.back().low + 1];
   }
 
   // Calls visit(from, to) for every edge that is left, ascending by its corners.
   template <class Visit>
   void remaining(Visit visit) {
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
     std::vector<Half> halves(edges_.size());
-    for (const Edge& e : edges_) halves[next[e.low]++] = {e.high, e.sense};
-    for (std::uint32_t low = 0; low + 1 < first_.size(); ++low) {
-      const auto begin = halves.begin() + first_[low], end = halves.begin() + first_[low + 1];
+    const std::vector<std::uint32_t> first = counting_sort(
+        edges_.size(), corners_, [&](std::size_t e) { return edges_[e].low; },
+        [&](std::size_t e, std::uint32_t at) {
+          halves[at] = {edges_[e].high, edges_[e].sense};
+        });
+    for (std::uint32_t low = 0; low < corners_; ++low) {
+      const auto begin = halves.begin() + first[low], end = halves.begin() + first[low + 1];
       std::sort(begin, end, [](const Half& a, const Half& b) { return a.high < b.high; });
       for (auto h = begin; h != end;) {
         int sum = 0;
@@ -72,7 +72,7 @@ class EdgeSum {
     std::uint32_t high;
     int sense;
   };
-  std::vector<std::uint32_t> first_;
+  std::size_t corners_;
   std::vector<Edge> edges_;
 };
 

@@ -4,8 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
+
+#include "libatlas/core/counting_sort.h"
 
 namespace atlas::pack {
 namespace {
@@ -83,15 +84,15 @@ class RunSet {
   std::int32_t bottom() const { return bottom_; }
 
  private:
-  // Counting sort; mask.first gets the first run of every row.
+  // mask.first gets the first run of every row.
   std::vector<Run> sort_by_row(Mask& mask) const {
-    mask.first.assign(static_cast<std::size_t>(mask.height) + 1, 0);
-    for (const Item& i : items) ++mask.first[i.row - bottom_ + 1];
-    for (std::int32_t r = 0; r < mask.height; ++r) mask.first[r + 1] += mask.first[r];
-    std::vector<std::uint32_t> next(mask.first.begin(), mask.first.end() - 1);
     std::vector<Run> runs(items.size());
-    for (const Item& i : items)
-      runs[next[i.row - bottom_]++] = {i.run.begin - left_, i.run.end - left_};
+    mask.first = counting_sort(
+        items.size(), static_cast<std::size_t>(mask.height),
+        [&](std::size_t i) { return static_cast<std::size_t>(items[i].row - bottom_); },
+        [&](std::size_t i, std::uint32_t at) {
+          runs[at] = {items[i].run.begin - left_, items[i].run.end - left_};
+        });
     return runs;
   }
 
@@ -256,12 +257,11 @@ class Interior {
       low = std::min(low, c.row);
       high = std::max(high, c.row);
     }
-    std::vector<std::uint32_t> first(static_cast<std::size_t>(high - low) + 2, 0);
-    for (const Crossing& c : crossings_) ++first[static_cast<std::size_t>(c.row - low) + 1];
-    std::partial_sum(first.begin(), first.end(), first.begin());
     std::vector<Crossing> sorted(crossings_.size());
-    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-    for (const Crossing& c : crossings_) sorted[next[static_cast<std::size_t>(c.row - low)]++] = c;
+    const std::vector<std::uint32_t> first = counting_sort(
+        crossings_.size(), static_cast<std::size_t>(high - low) + 1,
+        [&](std::size_t i) { return static_cast<std::size_t>(crossings_[i].row - low); },
+        [&](std::size_t i, std::uint32_t at) { sorted[at] = crossings_[i]; });
     for (std::size_t r = 0; r + 1 < first.size(); ++r)
       std::sort(sorted.begin() + first[r], sorted.begin() + first[r + 1],
                 [](const Crossing& a, const Crossing& b) { return a.x < b.x; });

@@ -4,8 +4,8 @@
 #include <deque>
 #include <glm/common.hpp>
 #include <limits>
-#include <numeric>
 
+#include "libatlas/core/counting_sort.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -32,7 +32,8 @@ class SliverOpener {
       if (thin(t)) queue_.push_back(t);
     }
     if (queue_.empty()) return 0;
-    list_around();
+    corners_at_ = sort_into_buckets(corners_.size(), uvs_.size(),
+                                    [&](std::size_t corner) { return corners_[corner]; });
     std::vector<std::uint8_t> tries(n, 0);
     std::vector<std::uint32_t> given_up;
     while (!queue_.empty()) {
@@ -67,21 +68,9 @@ class SliverOpener {
     return twice <= std::max(kSlack * (sides.x + sides.y), 2 * kLeastArea);
   }
 
-  // The triangles around each uv.
-  void list_around() {
-    first_.assign(uvs_.size() + 1, 0);
-    for (const std::uint32_t uv : corners_) ++first_[uv + 1];
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    around_.resize(corners_.size());
-    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-    for (std::size_t i = 0; i < corners_.size(); ++i) {
-      around_[next[corners_[i]]++] = static_cast<std::uint32_t>(i / 3);
-    }
-  }
-
   int thin_around(std::uint32_t uv) const {
     int count = 0;
-    for (std::uint32_t i = first_[uv]; i < first_[uv + 1]; ++i) count += thin(around_[i]);
+    for (const std::uint32_t corner : corners_at_[uv]) count += thin(corner / 3);
     return count;
   }
 
@@ -94,8 +83,8 @@ class SliverOpener {
     }
     if (best.harm > kMostHarm) return false;
     uvs_[best.uv] = best.to;
-    for (std::uint32_t i = first_[best.uv]; i < first_[best.uv + 1]; ++i) {
-      if (around_[i] != t && thin(around_[i])) queue_.push_back(around_[i]);
+    for (const std::uint32_t corner : corners_at_[best.uv]) {
+      if (corner / 3 != t && thin(corner / 3)) queue_.push_back(corner / 3);
     }
     return true;
   }
@@ -121,7 +110,7 @@ class SliverOpener {
   std::span<const std::uint32_t> corners_;
   std::vector<Vec2f>& uvs_;
   std::deque<std::uint32_t> queue_;
-  std::vector<std::uint32_t> first_, around_;
+  Buckets corners_at_;  // each uv
 };
 
 }  // namespace

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <utility>
 
+#include "libatlas/core/counting_sort.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -74,12 +74,11 @@ class PointGrid {
     side_ = std::max(std::sqrt(width * height / double(members.size())),
                      std::max(width, height) / double(members.size()));
     columns_ = cell(width) + 1;
-    first_.assign(columns_ * (cell(height) + 1) + 1, 0);
-    for (const std::uint32_t i : members) ++first_[at(points[i]) + 1];
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
     members_.resize(members.size());
-    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-    for (const std::uint32_t i : members) members_[next[at(points[i])]++] = i;
+    first_ = counting_sort(
+        members.size(), columns_ * (cell(height) + 1),
+        [&](std::size_t i) { return at(points[members[i]]); },
+        [&](std::size_t i, std::uint32_t at) { members_[at] = members[i]; });
   }
 
   // Whether `blocks(i)` holds for a point of the cells that the triangle's box meets, but for those

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "libatlas/core/counting_sort.h"
 #include "libatlas/core/parallel.h"
 
 namespace atlas::simplify {
@@ -34,15 +35,12 @@ void collect_triangles(const Geometry& geometry, std::uint32_t chart,
 void glue(FineChart& fine, std::uint32_t first_uv, std::uint32_t uv_count) {
   const std::uint32_t halves = static_cast<std::uint32_t>(fine.corners.size());
   fine.opposite.assign(halves, kNone);
-  const auto low = [&](std::uint32_t h) { return std::min(fine.from(h), fine.to(h)) - first_uv; };
-  std::vector<std::uint32_t> offset(std::size_t{uv_count} + 1, 0), bucket(halves);
-  for (std::uint32_t h = 0; h < halves; ++h) ++offset[low(h) + 1];
-  for (std::uint32_t v = 0; v < uv_count; ++v) offset[v + 1] += offset[v];
-  std::vector<std::uint32_t> cursor(offset.begin(), offset.end() - 1);
-  for (std::uint32_t h = 0; h < halves; ++h) bucket[cursor[low(h)]++] = h;
+  const auto low = [&](std::size_t h) { return std::min(fine.from(h), fine.to(h)) - first_uv; };
+  Buckets leaving = sort_into_buckets(halves, uv_count, [&](std::size_t h) { return low(h); });
   const auto high = [&](std::uint32_t h) { return std::max(fine.from(h), fine.to(h)); };
   for (std::uint32_t v = 0; v < uv_count; ++v) {
-    const auto begin = bucket.begin() + offset[v], end = bucket.begin() + offset[v + 1];
+    const auto begin = leaving.items.begin() + leaving.begin[v],
+               end = leaving.items.begin() + leaving.begin[v + 1];
     std::sort(begin, end, [&](std::uint32_t a, std::uint32_t b) {
       return high(a) != high(b) ? high(a) < high(b) : a < b;
     });

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <random>
 
+#include "libatlas/core/counting_sort.h"
+
 namespace atlas {
 namespace {
 
@@ -99,19 +101,18 @@ class VoxelGrid {
 
   void sort(std::span<const SurfaceSample> samples) {
     std::vector<std::size_t> where(samples.size());
-    first_.assign(std::size_t(size_[0]) * size_[1] * size_[2] + 1, 0);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const double p[3] = {samples[i].position.x, samples[i].position.y, samples[i].position.z};
       int cell[3];
       for (int k = 0; k < 3; ++k)
         cell[k] = std::clamp(static_cast<int>((p[k] - low_[k]) / voxel_), 0, size_[k] - 1);
       where[i] = index(cell);
-      ++first_[where[i] + 1];
     }
-    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
     values_.resize(samples.size());
-    std::vector<std::uint32_t> fill(first_.begin(), first_.end() - 1);
-    for (std::size_t i = 0; i < samples.size(); ++i) values_[fill[where[i]]++] = samples[i].value;
+    first_ = counting_sort(
+        samples.size(), std::size_t(size_[0]) * size_[1] * size_[2],
+        [&](std::size_t i) { return where[i]; },
+        [&](std::size_t i, std::uint32_t at) { values_[at] = samples[i].value; });
   }
 
   double low_[3], voxel_ = 1;

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "libatlas/core/counting_sort.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -37,22 +38,11 @@ std::vector<std::uint32_t> weld(const std::vector<Vec3f>& positions) {
   return out;
 }
 
-// Triangles around each welded vertex, as offsets into a list.
-struct Fans {
-  std::vector<std::uint32_t> begin, triangles;
-};
-
-Fans make_fans(const std::vector<std::uint32_t>& welded,
-               const std::vector<std::uint32_t>& indices) {
-  Fans fans;
-  fans.begin.assign(welded.size() + 1, 0);
-  for (std::uint32_t i : indices) ++fans.begin[welded[i] + 1];
-  std::partial_sum(fans.begin.begin(), fans.begin.end(), fans.begin.begin());
-  fans.triangles.resize(indices.size());
-  std::vector<std::uint32_t> at(fans.begin.begin(), fans.begin.end() - 1);
-  for (std::size_t c = 0; c < indices.size(); ++c)
-    fans.triangles[at[welded[indices[c]]]++] = std::uint32_t(c / 3);
-  return fans;
+// Corners at each welded vertex.
+Buckets corners_by_vertex(const std::vector<std::uint32_t>& welded,
+                          const std::vector<std::uint32_t>& indices) {
+  return sort_into_buckets(indices.size(), welded.size(),
+                           [&](std::size_t corner) { return welded[indices[corner]]; });
 }
 
 // Area-weighted normals of all triangles, in the square of the largest coordinate, since areas
@@ -79,14 +69,15 @@ glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) {
   return length > 0 ? glm::vec3(d / length) : otherwise;
 }
 
-// The normal of one corner: the mean of the faces around its vertex that lie within the crease
-// angle of its own face. Faces of opposite winding count as if they were turned.
-glm::vec3 corner_normal(const Fans& fans, const std::vector<glm::vec3>& faces, std::uint32_t vertex,
-                        std::uint32_t own, float least_cosine) {
+// The normal of a corner: the mean of the faces at its vertex that lie within the crease angle of
+// its own face. Faces of opposite winding count as if they were turned.
+glm::vec3 corner_normal(std::span<const std::uint32_t> corners_there,
+                        const std::vector<glm::vec3>& faces, std::uint32_t own,
+                        float least_cosine) {
   const glm::vec3 mine = unit_or(faces[own], glm::vec3(0, 0, 1));
   glm::vec3 sum(0);
-  for (std::uint32_t i = fans.begin[vertex]; i < fans.begin[vertex + 1]; ++i) {
-    const glm::vec3& other = faces[fans.triangles[i]];
+  for (const std::uint32_t corner : corners_there) {
+    const glm::vec3& other = faces[corner / 3];
     const float cosine = glm::dot(unit_or(other, mine), mine);
     if (std::abs(cosine) >= least_cosine) sum += cosine < 0 ? -other : other;
   }
@@ -125,7 +116,7 @@ class Builder {
   Builder(const Scene& scene, const ViewSceneOptions& options)
       : scene_(scene),
         welded_(weld(scene.positions)),
-        fans_(make_fans(welded_, scene.indices)),
+        corners_at_(corners_by_vertex(welded_, scene.indices)),
         faces_(face_normals(scene)),
         cosine_(float(std::cos(options.crease_degrees * std::numbers::pi / 180))) {
     textured_ = scene.textured() && !scene.texcoord_indices.empty();
@@ -177,7 +168,7 @@ class Builder {
  private:
   std::uint32_t vertex(std::uint32_t t, int k) {
     const std::uint32_t corner = 3 * t + std::uint32_t(k), p = scene_.indices[corner];
-    const glm::vec3 n = corner_normal(fans_, faces_, welded_[p], t, cosine_);
+    const glm::vec3 n = corner_normal(corners_at_[welded_[p]], faces_, t, cosine_);
     CornerKey key{scene_.lit() ? p : welded_[p], kNone, 0, {}};
     if (!scene_.triangle_material.empty()) key.material = scene_.triangle_material[t];
     if (textured_) key.texcoord = scene_.texcoord_indices[corner];
@@ -229,7 +220,7 @@ class Builder {
 
   const Scene& scene_;
   std::vector<std::uint32_t> welded_;
-  Fans fans_;
+  Buckets corners_at_;  // each welded vertex
   std::vector<glm::vec3> faces_;
   float cosine_;
   bool textured_ = false;

@@ -1,0 +1,47 @@
+// Sorting by small keys in linear time: triangles by vertex, edges by their lower end, runs by row.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace atlas {
+
+// Calls place(i, at) for each of the items 0, 1, ... in turn, where `at` is its place once all are
+// sorted by bucket_of(i) < buckets; those of one bucket keep their order. Returns where each bucket
+// begins, and after the last one the end. bucket_of is called twice for each item.
+template <class BucketOf, class Place>
+std::vector<std::uint32_t> counting_sort(std::size_t items, std::size_t buckets,
+                                         const BucketOf& bucket_of, const Place& place) {
+  // begin[b + 2] counts the items of b; then begin[b + 1] moves from the beginning of b to its end.
+  std::vector<std::uint32_t> begin(buckets + 2, 0);
+  for (std::size_t i = 0; i < items; ++i) ++begin[bucket_of(i) + 2];
+  for (std::size_t b = 2; b < begin.size(); ++b) begin[b] += begin[b - 1];
+  for (std::size_t i = 0; i < items; ++i) place(i, begin[bucket_of(i) + 1]++);
+  begin.pop_back();
+  return begin;
+}
+
+// The items 0, 1, ... of each bucket, ascending.
+struct Buckets {
+  std::vector<std::uint32_t> begin;  // of each bucket in `items`, and the end
+  std::vector<std::uint32_t> items;
+
+  std::size_t size() const { return begin.size() - 1; }
+  std::span<const std::uint32_t> operator[](std::size_t bucket) const {
+    return {items.data() + begin[bucket], items.data() + begin[bucket + 1]};
+  }
+};
+
+template <class BucketOf>
+Buckets sort_into_buckets(std::size_t items, std::size_t buckets, const BucketOf& bucket_of) {
+  Buckets sorted;
+  sorted.items.resize(items);
+  sorted.begin = counting_sort(items, buckets, bucket_of, [&](std::size_t i, std::uint32_t at) {
+    sorted.items[at] = static_cast<std::uint32_t>(i);
+  });
+  return sorted;
+}
+
+}  // namespace atlas
