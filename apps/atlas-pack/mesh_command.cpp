@@ -25,9 +25,54 @@ std::string number(double v) {
 
 constexpr const char* kWithoutUv = "no_uv";
 
+struct RepackedMesh {
+  const Scene& scene;
+  const UvCharts& charts;
+  const FitResult& fit;
+  std::vector<Vec2d> uvs;  // new ones in texels from the page's lower left corner, 3 a triangle
+};
+
+RepackedMesh repack(const Scene& scene, const UvCharts& charts, const FitResult& fit) {
+  RepackedMesh mesh{scene, charts, fit, std::vector<Vec2d>(scene.indices.size())};
+  for (std::size_t c = 0; c < charts.members.size(); ++c) {
+    const FitPlacement& at = fit.placements[c];
+    const double cs = std::cos(at.angle) * at.scale, sn = std::sin(at.angle) * at.scale;
+    for (std::size_t i = 0; i < charts.corners[c].size(); ++i) {
+      const Vec2d p = charts.corners[c][i];
+      mesh.uvs[3 * std::size_t(charts.members[c][i / 3]) + i % 3] = {
+          cs * p.x - sn * p.y + at.offset.x, sn * p.x + cs * p.y + at.offset.y};
+    }
+  }
+  return mesh;
+}
+
+// Writes each uv once, where a face first uses it.
+class UvLines {
+ public:
+  explicit UvLines(const RepackedMesh& mesh)
+      : mesh_(mesh), numbers_(mesh.scene.texcoords.size(), 0) {}
+
+  // The number of a corner's uv on a page of that size; adds its line to `text` if it is new.
+  std::size_t number_of(std::size_t corner, Extent page, std::string& text) {
+    std::size_t& vt = numbers_[mesh_.charts.same[mesh_.scene.texcoord_indices[corner]]];
+    if (vt != 0) return vt;
+    const auto fraction = [](double texels, std::int32_t side) {
+      return number(std::clamp(texels / side, 0.0, 1.0));  // -1e-17 is 0
+    };
+    const Vec2d uv = mesh_.uvs[corner];
+    text += fmt::format("vt {} {}\n", fraction(uv.x, page.width), fraction(uv.y, page.height));
+    return vt = ++count_;
+  }
+
+ private:
+  const RepackedMesh& mesh_;
+  std::vector<std::size_t> numbers_;  // 0: not written yet
+  std::size_t count_ = 0;
+};
+
 // The mesh with its new uvs: one material a page.
-std::string to_obj(const Scene& s, const UvCharts& charts, const FitResult& fit,
-                   const std::string& material_file, std::vector<Vec2d>& uvs) {
+std::string to_obj(const RepackedMesh& mesh, const std::string& material_file) {
+  const auto& [s, charts, fit, uvs] = mesh;
   std::string text = "# repacked by atlas-pack\n";
   for (std::size_t page = 0; page < fit.pages.size(); ++page)  // the shape textures must have
     text += fmt::format("# page_{}: {} x {} texels\n", page, fit.pages[page].width,
@@ -36,36 +81,19 @@ std::string to_obj(const Scene& s, const UvCharts& charts, const FitResult& fit,
   for (const Vec3f& p : s.positions)
     text += fmt::format("v {} {} {}\n", number(s.origin.x + p.x), number(s.origin.y + p.y),
                         number(s.origin.z + p.z));
-  uvs.assign(s.indices.size(), {});
   std::string faces;
-  std::vector<std::size_t> vt_of(s.texcoords.size(), 0);
-  std::size_t vts = 0;
+  UvLines uv_lines(mesh);
   for (std::uint32_t page = 0; page < fit.pages.size(); ++page) {
     bool named = false;
-    const auto fraction = [](double texels, std::int32_t side) {
-      return number(std::clamp(texels / side, 0.0, 1.0));  // -1e-17 is 0
-    };
     for (std::size_t c = 0; c < charts.members.size(); ++c) {
-      const FitPlacement& at = fit.placements[c];
-      if (at.page != page) continue;
-      const double cs = std::cos(at.angle) * at.scale, sn = std::sin(at.angle) * at.scale;
-      for (std::size_t m = 0; m < charts.members[c].size(); ++m) {
-        if (!named) faces += fmt::format("usemtl page_{}\n", page);
-        named = true;
-        const std::size_t t = charts.members[c][m];
+      if (fit.placements[c].page != page) continue;
+      if (!named) faces += fmt::format("usemtl page_{}\n", page);
+      named = true;
+      for (const std::size_t t : charts.members[c]) {
         faces += "f";
-        for (std::size_t k = 0; k < 3; ++k) {
-          const Vec2d p = charts.corners[c][3 * m + k];
-          const Vec2d q{cs * p.x - sn * p.y + at.offset.x, sn * p.x + cs * p.y + at.offset.y};
-          uvs[3 * t + k] = q;
-          std::size_t& vt = vt_of[charts.same[s.texcoord_indices[3 * t + k]]];
-          if (vt == 0) {
-            text += fmt::format("vt {} {}\n", fraction(q.x, fit.pages[page].width),
-                                fraction(q.y, fit.pages[page].height));
-            vt = ++vts;
-          }
-          faces += fmt::format(" {}/{}", s.indices[3 * t + k] + 1, vt);
-        }
+        for (std::size_t corner = 3 * t; corner < 3 * t + 3; ++corner)
+          faces += fmt::format(" {}/{}", s.indices[corner] + 1,
+                               uv_lines.number_of(corner, fit.pages[page], text));
         faces += "\n";
       }
     }
@@ -90,13 +118,13 @@ std::filesystem::path material_file(std::filesystem::path mesh) {
   return mesh.replace_extension("mtl");
 }
 
-// Mesh and materials appear together. `uvs`: the new ones in texels, 3 a triangle.
-Status write_mesh(const PackCommand& c, const Scene& scene, const UvCharts& charts,
-                  const FitResult& fit, std::vector<Vec2d>& uvs) {
-  const std::filesystem::path materials = material_file(c.output);
+// Mesh and materials appear together.
+Status write_mesh(const std::filesystem::path& target, const RepackedMesh& mesh) {
+  const std::filesystem::path materials = material_file(target);
   AtomicFiles files;
-  const std::string obj = to_obj(scene, charts, fit, materials.filename().string(), uvs);
-  for (const auto& [path, text] : {std::pair(materials, to_mtl(charts, fit)), {c.output, obj}}) {
+  const std::string obj = to_obj(mesh, materials.filename().string());
+  for (const auto& [path, text] :
+       {std::pair(materials, to_mtl(mesh.charts, mesh.fit)), {target, obj}}) {
     if (Status status = files.write(path, text); !status.ok()) return status;
   }
   return files.commit();
@@ -107,7 +135,8 @@ std::int32_t round_up(std::int32_t side) {
 }
 
 // Every chart a path of its triangles, y down.
-std::string to_svg(const UvCharts& charts, const FitResult& fit, const std::vector<Vec2d>& uvs) {
+std::string to_svg(const RepackedMesh& mesh) {
+  const auto& [scene, charts, fit, uvs] = mesh;
   std::int64_t width = 0, height = 1;
   std::vector<std::int64_t> left;
   std::string pages, paths;
@@ -138,9 +167,9 @@ std::string to_svg(const UvCharts& charts, const FitResult& fit, const std::vect
       std::max<std::int64_t>(1, width - 16), height, pages, paths);
 }
 
-Status draw(const std::filesystem::path& path, const UvCharts& charts, const FitResult& fit,
-            const std::vector<Vec2d>& uvs) {
-  if (lower_extension(path) == ".svg") return write_file(path, to_svg(charts, fit, uvs));
+Status draw(const std::filesystem::path& path, const RepackedMesh& mesh) {
+  if (lower_extension(path) == ".svg") return write_file(path, to_svg(mesh));
+  const auto& [scene, charts, fit, uvs] = mesh;
   std::vector<Image8> pages;
   for (Extent p : fit.pages) pages.emplace_back(p.width, p.height, 3, std::uint8_t{51});
   for (std::size_t c = 0; c < charts.members.size(); ++c) {
@@ -276,10 +305,10 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   Result<FitResult> fitted = fit_charts(c, items, shapes, context);
   if (!fitted.ok()) return fitted.status();
   if (context.cancelled()) return Status::cancelled();  // a search gives what it has so far
-  std::vector<Vec2d> uvs;
-  if (Status s = write_mesh(c, scene, charts, *fitted, uvs); !s.ok()) return s;
+  const RepackedMesh mesh = repack(scene, charts, *fitted);
+  if (Status s = write_mesh(c.output, mesh); !s.ok()) return s;
   if (!c.preview.empty())
-    if (Status s = draw(c.preview, charts, *fitted, uvs); !s.ok()) return s;
+    if (Status s = draw(c.preview, mesh); !s.ok()) return s;
   return describe(*fitted);
 }
 

@@ -113,15 +113,19 @@ void add_shadow_options(CLI::App& app, CommandLine& l) {
   add_off_flag(app, "--no-slices", l.render.schedule.sliced, "draw a key in one frame");
 }
 
-void add_run_options(CLI::App& app, CommandLine& l, std::string& light, std::string& end,
-                     std::string& up) {
-  app.add_option("--light", light,
+// What arrives as text and becomes the light's path once all options are known.
+struct LightText {
+  std::string path = "sun:172,50.45,9", end = "loop", up = "y";
+};
+
+void add_run_options(CLI::App& app, CommandLine& l, LightText& light) {
+  app.add_option("--light", light.path,
                  "sun:DAY,LATITUDE,HOUR  fixed:x,y,z  line:x,y,z;x,y,z  arc:...  keys:...;...;...")
       ->capture_default_str();
-  app.add_option("--light-end", end, "at the path's end: loop, back or stop")
+  app.add_option("--light-end", light.end, "at the path's end: loop, back or stop")
       ->check(one_of({{"loop", 0}, {"back", 0}, {"stop", 0}}))
       ->capture_default_str();
-  app.add_option("--up", up, "the axis that points up (default: z for worlds that say so)")
+  app.add_option("--up", light.up, "the axis that points up (default: z for worlds that say so)")
       ->check(one_of({{"x", 0}, {"y", 0}, {"z", 0}}))
       ->capture_default_str();
   app.add_option("--north", l.north,
@@ -203,8 +207,8 @@ std::string about_window(const CLI::App& app, const CommandLine& l) {
 }
 
 // Texts that CLI11 cannot turn into their values itself.
-Status finish(CommandLine& l, const std::string& light, const std::string& end,
-              const std::string& up) {
+Status finish(CommandLine& l, const LightText& light) {
+  const std::string &up = light.up, &end = light.end;
   const Vec3d axis = up == "x" ? Vec3d{1, 0, 0} : up == "y" ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
   l.render.up = axis;
   LightPathOptions path;
@@ -212,12 +216,12 @@ Status finish(CommandLine& l, const std::string& light, const std::string& end,
   path.sun.north = up == "z" ? Vec3d{0, 1, 0} : up == "y" ? Vec3d{0, 0, -1} : Vec3d{0, 1, 0};
   if (l.north.size() == 3) path.sun.north = {l.north[0], l.north[1], l.north[2]};
   path.end = end == "loop" ? PathEnd::loop : end == "back" ? PathEnd::back : PathEnd::stop;
-  Result<LightPathOptions> parsed = parse_light_path(light, path);
+  Result<LightPathOptions> parsed = parse_light_path(light.path, path);
   const Result<LightPath> made = parsed.ok() ? LightPath::make(*parsed) : parsed.status();
   if (!made.ok()) {  // "light path 'moon': ..." or "light path: ..."
     const std::string& why = made.status().message();
-    return {made.status().code(),
-            fmt::format("--light {}{}", light, why.substr(std::min(why.find(": "), why.size())))};
+    return {made.status().code(), fmt::format("--light {}{}", light.path,
+                                              why.substr(std::min(why.find(": "), why.size())))};
   }
   l.play.light = *made;
   return {};
@@ -248,13 +252,13 @@ Parsed parse_command_line(int argc, char** argv) {
   CommandLine& l = parsed.line;
   CLI::App app{"Shows a scene, and atlases with baked light, under a moving light with shadows.",
                "atlas-play"};
-  std::string light = "sun:172,50.45,9", end = "loop", up = "y";
+  LightText light;
   app.add_option("scene", l.scene, "OBJ, PLY, OFF, STL, glTF, GLB, VRML")->required();
   app.set_config("--config", "", "options from a file");
   app.allow_config_extras(CLI::config_extras_mode::error);
   add_picture_options(app, l);
   add_shadow_options(app, l);
-  add_run_options(app, l, light, end, up);
+  add_run_options(app, l, light);
   add_bench_options(app, l);
   if (const int code = parse(app, argc, argv); code >= 0) {
     parsed.exit_code = code;
@@ -265,10 +269,10 @@ Parsed parse_command_line(int argc, char** argv) {
     parsed.exit_code = 2;
     return parsed;
   }
-  if (app.count("--up") == 0 && world_is_z_up(l.scene)) up = "z";
+  if (app.count("--up") == 0 && world_is_z_up(l.scene)) light.up = "z";
   if (l.in_window() && app.count("--width") == 0) l.render.width = kWindowWidth;
   if (l.in_window() && app.count("--height") == 0) l.render.height = kWindowHeight;
-  if (Status s = finish(l, light, end, up); !s.ok()) {
+  if (Status s = finish(l, light); !s.ok()) {
     print(stderr, fmt::format("atlas-play: error: {}\n", s.message()));
     parsed.exit_code = 2;
   }

@@ -66,13 +66,13 @@ std::span<const std::uint32_t> triangles_of(const ChartSet& charts, std::uint32_
 }
 
 // Splats a triangle's samples; texel (0, 0)'s centre is at (0.5, 0.5).
-void splat_triangle(const TexelTriangle& p, const TriangleLight& lit, const Job& job,
-                    const Box& box, LeastSquares& fit) {
-  const float weight = 1.0f / static_cast<float>(job.grid.count);
+void splat_triangle(const TexelTriangle& p, const TriangleLight& lit, const SampleGrid& grid,
+                    LeastSquares& fit) {
+  const float weight = 1.0f / static_cast<float>(grid.count);
   sample_triangle(
-      p, {1, 1, box.width - 2, box.height - 2}, job.grid,
+      p, {1, 1, fit.width() - 2, fit.height() - 2}, grid,
       [&](int k, int y, int x0, int x1) {
-        const Vec2d o = job.grid.offset[k];
+        const Vec2d o = grid.offset[k];
         const int left = o.x < 0.5 ? -1 : 0, low = o.y < 0.5 ? -1 : 0;
         const LeastSquares::Splat splat(static_cast<float>(o.x - 0.5 - left),
                                         static_cast<float>(o.y - 0.5 - low), weight);
@@ -83,8 +83,8 @@ void splat_triangle(const TexelTriangle& p, const TriangleLight& lit, const Job&
       [&](const float* b, float area) {
         const double x = b[0] * p[0].x + b[1] * p[1].x + b[2] * p[2].x - 0.5;
         const double y = b[0] * p[0].y + b[1] * p[1].y + b[2] * p[2].y - 0.5;
-        const int i = std::clamp(static_cast<int>(x), 0, box.width - 2);
-        const int j = std::clamp(static_cast<int>(y), 0, box.height - 2);
+        const int i = std::clamp(static_cast<int>(x), 0, fit.width() - 2);
+        const int j = std::clamp(static_cast<int>(y), 0, fit.height() - 2);
         const LeastSquares::Splat splat(static_cast<float>(std::clamp(x - i, 0.0, 1.0)),
                                         static_cast<float>(std::clamp(y - j, 0.0, 1.0)), area);
         fit.add(i, j, splat, lit.at(b));
@@ -100,7 +100,7 @@ TexelGrid bake_least_squares(const Job& job, const Box& box) {
     if (kind == SampleKind::none) continue;
     TriangleLight lit(job.light.sampler.prepare(t, spacing), job.tone);
     if (kind == SampleKind::grid) lit.set_position(p);
-    splat_triangle(p, lit, job, box, fit);
+    splat_triangle(p, lit, job.grid, fit);
   }
   const float high = job.tone ? 1.0f : std::numeric_limits<float>::max();
   return std::move(fit).solve(0, high);
@@ -158,38 +158,39 @@ TexelGrid bake_box(const Job& job, const Box& box) {
   return texels;
 }
 
-// Empty: the chart owns its whole box.
-std::vector<std::uint8_t> owned_texels(const ChartSet& charts, const Box& box, int mip_levels) {
-  if (!box.placement.outlined) return {};
-  std::vector<TexelTriangle> triangles;
-  for (const std::uint32_t t : triangles_of(charts, box.placement.chart))
-    triangles.push_back(box.triangle(charts, t));
-  return owned_texels(triangles, {box.width, box.height, box.pad, 1 << mip_levels});
-}
+// The texels of a box that are its chart's own: neighbours packed by their outlines have the
+// others.
+class OwnTexels {
+ public:
+  OwnTexels(const ChartSet& charts, const Box& box, int mip_levels) : box_(box) {
+    if (!box.placement.outlined) return;
+    std::vector<TexelTriangle> triangles;
+    for (const std::uint32_t t : triangles_of(charts, box.placement.chart))
+      triangles.push_back(box.triangle(charts, t));
+    own_ = owned_texels(triangles, {box.width, box.height, box.pad, 1 << mip_levels});
+  }
+
+  // Calls visit(i, x, y) with each one's number in the box and its place on the page.
+  template <class Visit>
+  void each(const Visit& visit) const {
+    const int left = box_.placement.x - box_.pad, bottom = box_.placement.y - box_.pad;
+    std::size_t i = 0;
+    for (int y = bottom; y < bottom + box_.height; ++y)
+      for (int x = left; x < left + box_.width; ++x, ++i)
+        if (own_.empty() || own_[i]) visit(i, x, y);
+  }
+
+ private:
+  const Box& box_;
+  std::vector<std::uint8_t> own_;  // empty: the whole box
+};
 
 template <class T, class Convert>
-void copy_box(const TexelGrid& in, const Box& box, Image<T>& page, Convert&& convert,
-              const std::vector<std::uint8_t>& owned) {
-  for (int y = 0; y < box.height; ++y) {
-    const std::size_t begin = std::size_t(y) * box.width;
-    T* to = page.at(box.placement.x - box.pad, box.placement.y - box.pad + y);
-    for (int x = 0; x < box.width; ++x, to += 3) {
-      if (!owned.empty() && !owned[begin + x]) continue;
-      for (int k = 0; k < 3; ++k) to[k] = convert(in.rgb[begin + x][k]);
-    }
-  }
-}
-
-// Marks what copy_box writes for this box.
-void mark_owned(const Box& box, const std::vector<std::uint8_t>& owned, int page_width,
-                std::vector<std::uint8_t>& page) {
-  for (int y = 0; y < box.height; ++y) {
-    const std::size_t from = std::size_t(y) * box.width;
-    const std::size_t to = std::size_t(box.placement.y - box.pad + y) * page_width +
-                           std::size_t(box.placement.x - box.pad);
-    for (int x = 0; x < box.width; ++x)
-      if (owned.empty() || owned[from + x]) page[to + x] = 1;
-  }
+void copy_own(const TexelGrid& in, const OwnTexels& own, Image<T>& page, const Convert& convert) {
+  own.each([&](std::size_t i, int x, int y) {
+    T* to = page.at(x, y);
+    for (int k = 0; k < 3; ++k) to[k] = convert(in.rgb[i][k]);
+  });
 }
 
 constexpr int kLargest = 1 << 16;
@@ -258,15 +259,16 @@ Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacem
       const Box box(placements[i], options);
       TexelGrid texels = bake_box({light, options, grid, &light.tone}, box);
       const std::size_t filled = fill_unknown(texels);
-      const std::vector<std::uint8_t> owned = owned_texels(light.charts, box, options.mip_levels);
-      copy_box(texels, box, page.display, quantize8, owned);
-      mark_owned(box, owned, options.page_width, taken);
+      const OwnTexels own(light.charts, box, options.mip_levels);
+      copy_own(texels, own, page.display, quantize8);
+      own.each([&](std::size_t, int x, int y) {
+        taken[std::size_t(y) * options.page_width + std::size_t(x)] = 1;
+      });
       const std::size_t covered = texels.rgb.size() - filled;
       if (options.linear) {
         texels = bake_box({light, options, grid, nullptr}, box);
         fill_unknown(texels);
-        copy_box(
-            texels, box, page.linear, [](float v) { return v; }, owned);
+        copy_own(texels, own, page.linear, [](float v) { return v; });
       }
       const std::lock_guard lock(counting);
       page.triangles += light.charts.charts[placements[i].chart].triangle_count;

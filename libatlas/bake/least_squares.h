@@ -22,6 +22,9 @@ class LeastSquares {
   LeastSquares(int width, int height)
       : width_(width), height_(height), stride_(width + 2), cells_(stride_ * (height + 2)) {}
 
+  int width() const { return width_; }
+  int height() const { return height_; }
+
   // The four texels around a sample and its bilinear weights, already times its weight.
   class Splat {
    public:

@@ -1,4 +1,5 @@
-// Sorting by small keys in linear time: triangles by vertex, edges by their lower end, runs by row.
+// Internal: sorting by small keys in linear time: triangles by vertex, edges by their lower end,
+// runs by row.
 #pragma once
 
 #include <cstddef>

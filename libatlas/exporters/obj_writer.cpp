@@ -1,6 +1,8 @@
 // Wavefront OBJ with atlas coordinates: one material a page.
 #include <fmt/format.h>
 
+#include <span>
+
 #include "libatlas/exporters/compact_page.h"
 #include "libatlas/exporters/text_output.h"
 #include "libatlas/exporters/world.h"
@@ -26,9 +28,9 @@ std::string one_line(std::string text) {
   return text;
 }
 
-void write_faces(TextFile& file, const std::uint32_t* points, const std::uint32_t* uvs,
-                 std::size_t triangles, const Context& context) {
-  file.write_items(triangles, context, [&](TextBuffer& out, std::size_t t) {
+void write_faces(TextFile& file, std::span<const std::uint32_t> points,
+                 std::span<const std::uint32_t> uvs, const Context& context) {
+  file.write_items(points.size() / 3, context, [&](TextBuffer& out, std::size_t t) {
     out.character('f');
     for (std::size_t k = 3 * t; k < 3 * t + 3; ++k) {
       out.character(' ');
@@ -58,8 +60,10 @@ void write_geometry(TextFile& file, const World& world, WorldFile& result, const
     const std::size_t triangles = world.pages[i].indices.size() / 3;
     if (triangles == 0) continue;
     file.write(fmt::format("o page{0}\nusemtl page{0}\n", i));
-    write_faces(file, points.indices.data() + corner, uvs.indices.data() + corner, triangles,
-                context);
+    const auto of_page = [&](const std::vector<std::uint32_t>& indices) {
+      return std::span(indices).subspan(corner, 3 * triangles);
+    };
+    write_faces(file, of_page(points.indices), of_page(uvs.indices), context);
     corner += 3 * triangles;
     result.triangles += triangles;
     context.report("writing the world", double(i + 1) / double(world.pages.size()));

@@ -122,17 +122,18 @@ void write_triangles(TextFile& file, const std::vector<std::uint32_t>& indices,
   });
 }
 
-struct Corners {
+// The part of a page: its corners, and what is added to their positions.
+struct Part {
   Compactor::Compact points, uvs;
+  Vec3d origin;
 };
 
-void write_shape(TextFile& file, const World& world, const Vec3d& origin, const Corners& corners,
-                 const Context& context) {
-  const Compactor::Compact &points = corners.points, &uvs = corners.uvs;
+void write_part(TextFile& file, const World& world, const Part& part, const Context& context) {
+  const Compactor::Compact &points = part.points, &uvs = part.uvs;
   if (!carries_light(world)) file.write("    creaseAngle 0.7\n");  // rounds what is round
   file.write("    solid FALSE\n    coord Coordinate { point [\n");
   file.write_items(points.used.size(), context, [&](TextBuffer& out, std::size_t i) {
-    out.position(origin, world.positions[points.used[i]]);
+    out.position(part.origin, world.positions[points.used[i]]);
     out.character('\n');
   });
   file.write("    ] }\n    coordIndex [\n");
@@ -173,15 +174,15 @@ Result<WorldFile> write_vrml(const World& world, const fs::path& path, AtomicFil
   for (std::size_t i = 0; i < world.pages.size(); ++i) {
     const Page& page = world.pages[i];
     if (page.indices.empty()) continue;  // an IndexedFaceSet without faces draws warnings
-    const Corners corners{positions.compact(page.indices), texcoords.compact(page.uv_indices)};
+    const Part part{positions.compact(page.indices), texcoords.compact(page.uv_indices), origin};
     file.write(fmt::format("DEF Page_{} Shape {{\n", i));
     file.write(appearance(page, carries_light(world)));
     file.write("  geometry IndexedFaceSet {\n");
-    write_shape(file, world, origin, corners, context);
+    write_part(file, world, part, context);
     file.write("  }\n}\n");
     result.triangles += page.indices.size() / 3;
-    result.vertices += corners.points.used.size();
-    result.uvs += corners.uvs.used.size();
+    result.vertices += part.points.used.size();
+    result.uvs += part.uvs.used.size();
     context.report("writing the world", double(i + 1) / double(world.pages.size()));
   }
   if (Status s = file.finish(); !s.ok()) return s;

@@ -252,8 +252,9 @@ Status check(std::span<const FitItem> items, const FitOptions& o) {
 
 // The largest scale that was seen to fit, by bisection; the layout of that scale. Each packing
 // halves the interval on average; with 12 of them the scale is within 0.1 % of the threshold.
-bool search_scale(BoxFit& fit, const FitOptions& options, const Context& context, FitResult& result,
-                  BoxLayout& best) {
+bool search_scale(BoxFit& fit, FitResult& result, BoxLayout& best) {
+  const FitOptions& options = fit.options();
+  const Context& context = fit.context();
   const auto attempt = [&](double scale) {
     BoxLayout layout;
     ++result.packings;
@@ -341,7 +342,7 @@ Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& gi
   if (!options.shapes.empty()) return pack::fit_outlines(items, options, context);
   BoxFit fit(items, options, context);
   BoxLayout best;
-  const bool found = search_scale(fit, options, context, result, best);
+  const bool found = search_scale(fit, result, best);
   if (context.cancelled()) return Status::cancelled();
   if (!found) return pack::no_room(items.size(), options);
   // With everything at its largest scale, fewer pages may do.

@@ -44,6 +44,8 @@ class OutlineFit {
   const ChartOutline& outline(std::size_t chart) const { return outlines_[chart]; }
   const GridChoice& grid() const { return grid_; }
   std::int32_t side() const { return side_; }
+  const FitOptions& options() const { return options_; }
+  const Context& context() const { return context_; }
 
   FitBounds bounds() const {
     return fit_bounds(outlines_, options_, side_ * grid_.cell, grid_.directions);
@@ -135,7 +137,7 @@ class OutlineFit {
       orders[layout.page[i]].push_back(i);
     parallel_for(context_, pages, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p)
-        fill_group(layout.pieces, orders, p, open[p], nests[p]);
+        nests[p] = fill_group(layout.pieces, orders, p, open[p]);
     });
     layout.places.resize(layout.pieces.size());
     std::vector<std::uint32_t> left;
@@ -169,14 +171,15 @@ class OutlineFit {
   }
 
   // Page p gets the charts orders[p], largest first.
-  void fill_group(std::span<const Piece> pieces, std::span<const std::vector<std::uint32_t>> orders,
-                  std::size_t p, BitPage& page, Nest& nest) const {
+  Nest fill_group(std::span<const Piece> pieces, std::span<const std::vector<std::uint32_t>> orders,
+                  std::size_t p, BitPage& page) const {
+    Nest nest;
     NestPlan plan;
     plan.order = orders[p];
     plan.direction.assign(pieces.size(), kFree);
     place_pieces(pieces, plan, page, nest);
-    if (nest.left_over.empty() || options_.preset == PackPreset::fast) return;
-    if (plan.order.size() < 2) return;  // one chart has been tried in every direction
+    if (nest.left_over.empty() || options_.preset == PackPreset::fast) return nest;
+    if (plan.order.size() < 2) return nest;  // one chart has been tried in every direction
     // A search over orders is worth it where it can try more than a few.
     NestSearchOptions search;
     search.width = search.enough = side_;
@@ -184,14 +187,15 @@ class OutlineFit {
     if (options_.preset != PackPreset::best) search.layouts = 300;
     search.work =
         (options_.preset == PackPreset::best ? 400'000'000u : 16'000'000u) / orders.size();
-    if (layout_cost(plan.order.size(), side_, grid_.directions) * 4 > double(search.work)) return;
+    if (layout_cost(plan.order.size(), side_, grid_.directions) * 4 > double(search.work))
+      return nest;
     Nest found = search_nest(pieces, plan, search, context_).nest;
-    if (!found.left_over.empty() || found.used_height > side_) return;
+    if (!found.left_over.empty() || found.used_height > side_) return nest;
     page.clear();
     for (std::uint32_t i : plan.order)
       if (found.places[i].placed)
         page.put(pieces[i].masks[found.places[i].direction], found.places[i].at);
-    nest = std::move(found);
+    return found;
   }
 
   // Charts without room in their group's page go to the first page that has some, largest first.
@@ -232,8 +236,9 @@ class OutlineFit {
 // Up by steps while it fits, down while it does not, then halving: few packings, each seen to fit
 // or not. The guess is the scale at which shapes fill 74 % of the pages, or a little more than what
 // `best` has come to already.
-bool search_scale(OutlineFit& fit, const FitOptions& options, const Context& context,
-                  FitResult& result, OutlineLayout& best) {
+bool search_scale(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
+  const FitOptions& options = fit.options();
+  const Context& context = fit.context();
   const auto attempt = [&](double scale) {
     OutlineLayout layout;
     ++result.packings;
@@ -357,10 +362,10 @@ Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions&
   OutlineFit all(items, outlines, by_cells, context);
   OutlineFit* fit = &quarters;
   OutlineLayout best;
-  bool found = search_scale(quarters, by_quarters, context, result, best);
+  bool found = search_scale(quarters, result, best);
   if (all.grid().directions > quarters.grid().directions) {
     const double before = best.scale;
-    found = search_scale(all, by_cells, context, result, best) || found;
+    found = search_scale(all, result, best) || found;
     if (best.scale > before) fit = &all;
   }
   if (context.cancelled()) return Status::cancelled();

@@ -30,6 +30,8 @@ class BoxFit {
 
   const std::vector<Extent>& boxes() const { return boxes_; }
   const std::vector<Extent>& contents() const { return contents_; }
+  const FitOptions& options() const { return options_; }
+  const Context& context() const { return context_; }
   Extent page() const { return page_; }
 
  private:

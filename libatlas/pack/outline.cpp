@@ -140,9 +140,15 @@ Grid make_grid(std::size_t count, const OutlineOptions& o) {
   return grid;
 }
 
+struct OnePage {
+  Nest nest;
+  std::uint64_t layouts_tried = 0;
+  double seconds = 0;
+};
+
 // Searches over plans on a single page; returns the best of a few chains in the case of `best`.
-Nest search(std::span<const Piece> pieces, const Grid& grid, const OutlineOptions& o,
-            const Context& context, OutlineResult& result) {
+OnePage search_one_page(std::span<const Piece> pieces, const Grid& grid, const OutlineOptions& o,
+                        const Context& context) {
   pack::NestSearchOptions s;
   s.width = grid.page.width;
   s.seed = o.seed;
@@ -166,17 +172,18 @@ Nest search(std::span<const Piece> pieces, const Grid& grid, const OutlineOption
     own.seed = s.seed * 0x10001 + c;
     found[c] = pack::search_nest(pieces, start, own, context);
   });
+  OnePage page;
   std::size_t best = 0;
   for (std::size_t c = 0; c < chains; ++c) {
-    result.layouts_tried += found[c].layouts;
+    page.layouts_tried += found[c].layouts;
     const Nest &nest = found[c].nest, &least = found[best].nest;
     if (nest.left_over.size() < least.left_over.size() ||
         (nest.left_over.size() == least.left_over.size() && nest.used_height < least.used_height))
       best = c;
   }
-  result.curve.push_back({wall_seconds() - begun, result.layouts_tried, 1,
-                          std::int64_t{found[best].nest.used_height} * grid.cell});
-  return std::move(found[best].nest);
+  page.nest = std::move(found[best].nest);
+  page.seconds = wall_seconds() - begun;
+  return page;
 }
 
 // Fills page after page with what is left, largest first.
@@ -253,10 +260,13 @@ Result<OutlineResult> pack_outlines(std::span<const ChartShape> shapes,
   one_page = one_page && (grid.open || cells <= static_cast<double>(grid.page.area()));
   std::vector<Nest> nests;
   if (one_page) {
-    Nest one = search(pieces, grid, options, context, result);
-    const bool fits = one.left_over.empty() && one.used_height <= grid.page.height;
+    OnePage one = search_one_page(pieces, grid, options, context);
+    result.layouts_tried = one.layouts_tried;
+    result.curve.push_back(
+        {one.seconds, one.layouts_tried, 1, std::int64_t{one.nest.used_height} * grid.cell});
+    const bool fits = one.nest.left_over.empty() && one.nest.used_height <= grid.page.height;
     if (fits)
-      nests.push_back(std::move(one));
+      nests.push_back(std::move(one.nest));
     else
       nests = fill_pages(pieces, grid, options);
   } else {

@@ -132,13 +132,13 @@ struct Rows {
   }
 };
 
-// The cells of row r whose widened open interval meets [x.low, x.high].
-void add_run(std::int32_t r, const Bounds& x, double pad, double cell, RunSet& set) {
+// The cells of a row whose widened open interval meets [x.low, x.high].
+Run cells_within(const Bounds& x, double pad, double cell) {
   std::int32_t begin = static_cast<std::int32_t>(std::floor((x.low - pad) / cell));
   while ((begin + 1) * cell + pad <= x.low) ++begin;
   std::int32_t end = static_cast<std::int32_t>(std::ceil((x.high + pad) / cell));
   while ((end - 1) * cell - pad >= x.high) --end;
-  set.add(r, {begin, std::max(end, begin + 1)});
+  return {begin, std::max(end, begin + 1)};
 }
 
 void add_triangle(const std::array<Vec2d, 3>& t, const RasterOptions& options, RunSet& set) {
@@ -152,7 +152,7 @@ void add_triangle(const std::array<Vec2d, 3>& t, const RasterOptions& options, R
       for (const Vec2d& p : t) x.add(p.x);
     else
       x = clip_to_slab(t, r * cell - pad, (r + 1) * cell + pad);
-    if (x.low <= x.high) add_run(r, x, pad, cell, set);
+    if (x.low <= x.high) set.add(r, cells_within(x, pad, cell));
   }
 }
 
@@ -170,7 +170,7 @@ void add_edge(Vec2d a, Vec2d b, const RasterOptions& options, RunSet& set) {
     x.add(a.y >= low ? a.x : a.x + slope * (low - a.y));
     x.add(b.y <= high ? b.x : a.x + slope * (high - a.y));
     if (a.y == b.y) x.add(a.x);
-    add_run(r, x, pad, cell, set);
+    set.add(r, cells_within(x, pad, cell));
   }
 }
 

@@ -44,17 +44,6 @@ Layout better(Layout a, Layout b) {
   return b.better_than(a) ? std::move(b) : std::move(a);
 }
 
-Layout solve_many(const Problem& problem, const PackOptions& options, const SearchLimits& limits,
-                  const Context& context, PackResult& result) {
-  if (options.preset == PackPreset::best) {
-    Layout searched = search_first_fit(problem, limits, context, result);
-    return better(std::move(searched), pack_widest_first(problem));
-  }
-  result.layouts_tried = 1;
-  return pack_first_fit(problem, sorted_items(problem.items, Order::height),
-                        PlaceRule::bottom_left);
-}
-
 }  // namespace
 
 Layout solve(const Problem& problem, const PackOptions& options, const Context& context,
@@ -86,11 +75,14 @@ Layout solve(const Problem& problem, const PackOptions& options, const Context& 
     return strip ? search_strip(problem, limits, context, result)
                  : search_pages(problem, limits, context, result);
   result.page_lower_bound = strip ? 1 : page_bound(problem);
-  if (!strip) return solve_many(problem, options, limits, context, result);
-  result.layouts_tried = 2;
-  return better(
-      pack_widest_first(problem),
-      pack_first_fit(problem, sorted_items(problem.items, Order::height), PlaceRule::bottom_left));
+  if (!strip && options.preset == PackPreset::best) {
+    Layout searched = search_first_fit(problem, limits, context, result);
+    return better(std::move(searched), pack_widest_first(problem));
+  }
+  result.layouts_tried = strip ? 2 : 1;
+  Layout by_height =
+      pack_first_fit(problem, sorted_items(problem.items, Order::height), PlaceRule::bottom_left);
+  return strip ? better(pack_widest_first(problem), std::move(by_height)) : by_height;
 }
 
 }  // namespace atlas::pack

@@ -90,7 +90,7 @@ class Solver {
     const Pose& pose = poses_[j];
     const double gx = s.gradient.x / length, gy = s.gradient.y / length;
     const Vec2d n{pose.cosine * gx - pose.sine * gy, pose.sine * gx + pose.cosine * gy};
-    resolve(i, j, p, n, depth);
+    resolve(i, j, {p, n, depth});
     return depth;
   }
 
@@ -103,15 +103,22 @@ class Solver {
     for (int k = 0; k < 4; ++k) {
       if (depth[k] <= 0) continue;
       deepest = std::max(deepest, depth[k]);
-      resolve(i, kWall, p, normal[k], depth[k]);
+      resolve(i, kWall, {p, normal[k], depth[k]});
     }
     return deepest;
   }
 
-  // Moves i along n at point p and j, unless it is kWall, the other way, lighter ones more.
-  void resolve(std::uint32_t i, std::uint32_t j, Vec2d p, Vec2d n, double depth) {
+  // Where one body lies in another, which way is out, and how far.
+  struct Overlap {
+    Vec2d point, normal;
+    double depth;
+  };
+
+  // Moves i along the normal and j, unless it is kWall, the other way, lighter ones more.
+  void resolve(std::uint32_t i, std::uint32_t j, const Overlap& overlap) {
+    const Vec2d n = overlap.normal;
     const auto lever = [&](std::uint32_t b) {
-      const Vec2d r{p.x - poses_[b].at.x, p.y - poses_[b].at.y};
+      const Vec2d r{overlap.point.x - poses_[b].at.x, overlap.point.y - poses_[b].at.y};
       return r.x * n.y - r.y * n.x;
     };
     const double wi = 1 / bodies_[i].area, li = lever(i);
@@ -126,7 +133,7 @@ class Solver {
     constexpr double kRelaxation = 0.6;  // neighbouring points push as well
     // A body that lies deep in another is pushed both ways: the whole depth at once would throw it
     // and its neighbours across the page.
-    const double step = kRelaxation * std::min(depth, kMostPush) / sum;
+    const double step = kRelaxation * std::min(overlap.depth, kMostPush) / sum;
     move(i, n, step * wi, ai);
     if (j != kWall) move(j, n, -step * wj, aj);
   }

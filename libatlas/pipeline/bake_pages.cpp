@@ -37,15 +37,14 @@ constexpr std::size_t kBytesBeingWritten = std::size_t{256} << 20;
 
 class PageBaker {
  public:
-  PageBaker(const ChartLight& light, const PageLayout& layout, const ExportOptions& options,
-            AtomicFiles& files, const Context& context)
-      : light_(light),
-        layout_(layout),
-        options_(options),
+  PageBaker(const PagesToBake& pages, AtomicFiles& files, const Context& context)
+      : light_(pages.light),
+        layout_(pages.layout),
+        options_(pages.options),
         files_(files),
         context_(context),
-        pages_(placements_by_page(layout)),
-        write_cpu_(layout.pages.size(), 0) {}
+        pages_(placements_by_page(layout_)),
+        write_cpu_(layout_.pages.size(), 0) {}
 
   Result<BakedPages> run() {
     const double cpu = cpu_seconds();
@@ -143,10 +142,9 @@ std::string page_name(const std::filesystem::path& target, std::size_t page) {
   return fmt::format("{}_{}", safe_file_name(target.stem().string()), page);
 }
 
-Result<BakedPages> bake_pages(const ChartLight& light, const PageLayout& layout,
-                              const ExportOptions& options, AtomicFiles& files,
+Result<BakedPages> bake_pages(const PagesToBake& pages, AtomicFiles& files,
                               const Context& context) {
-  return PageBaker(light, layout, options, files, context).run();
+  return PageBaker(pages, files, context).run();
 }
 
 }  // namespace atlas

@@ -27,10 +27,15 @@ struct BakedPages {
 // The file name of a page's image, the extension left out: world.wrl gives world_0, world_1, ...
 std::string page_name(const std::filesystem::path& target, std::size_t page);
 
+// The light, where its charts lie, and how to bake and write it. All of it outlives the call.
+struct PagesToBake {
+  const ChartLight& light;
+  const PageLayout& layout;
+  const ExportOptions& options;
+};
+
 // Images are named after the target (safe_file_name): world.wrl gives world_0.png, world_1.png, ...
 // and, with ExportOptions::exr, world_0.exr, ...; their temporary names are collected in `files`.
-Result<BakedPages> bake_pages(const ChartLight& light, const PageLayout& layout,
-                              const ExportOptions& options, AtomicFiles& files,
-                              const Context& context);
+Result<BakedPages> bake_pages(const PagesToBake& pages, AtomicFiles& files, const Context& context);
 
 }  // namespace atlas

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <optional>
-#include <span>
 
 #include "libatlas/charts/tiles.h"
 #include "libatlas/core/atomic_file.h"
@@ -16,6 +15,7 @@
 #include "libatlas/pipeline/advice.h"
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/bake_pages.h"
+#include "libatlas/pipeline/longest_sides.h"
 #include "libatlas/pipeline/page_layout.h"
 #include "libatlas/pipeline/stage_recorder.h"
 #include "libatlas/simplify/simplify.h"
@@ -127,50 +127,14 @@ class Export {
     return texture;
   }
 
-  // Of the common scale, from above: what the charts want before downsizing against what the pages
-  // hold. A scene of kilometres would else be cut into thousands of pieces of a few texels.
-  double likely_scale(std::span<const double> densities) const {
-    const double left = options_.threshold > 0 ? 0.25 : 1;  // of the texels, after downsizing
-    double wanted = 0;
-    for (std::size_t c = 0; c < densities.size(); ++c) {
-      wanted += charts_.charts[c].distortion.uv_area * densities[c] * densities[c];
-    }
-    const double room = double(options_.atlases) * options_.atlas_size * options_.atlas_size;
-    return wanted > 0 ? std::min(1.0, std::sqrt(room / (left * wanted))) : 1;
-  }
-
-  // Pieces are no use where so many, each with its gutter, do not fit however small they become:
-  // limits are doubled until the smallest boxes take less than half of the pages.
-  void spare_small_pages(std::vector<double>& limits) const {
-    const auto pieces_of = [&](std::size_t c) {
-      const Vec2d size = charts_.charts[c].size;
-      return std::max(1.0, std::ceil(size.x / limits[c]) * std::ceil(size.y / limits[c]));
-    };
-    const int cell = 1 << options_.mip_levels;
-    const double side =
-        cell * std::ceil((options_.min_side + 2.0 * gutter_pad(options_.mip_levels)) / cell);
-    const double room = double(options_.atlases) * options_.atlas_size * options_.atlas_size;
-    constexpr int kMostDoublings = 60;  // also ends where a limit is none
-    for (int doublings = 0; doublings < kMostDoublings; ++doublings) {
-      double pieces = 0;
-      for (std::size_t c = 0; c < limits.size(); ++c) pieces += pieces_of(c);
-      if (pieces <= double(limits.size()) || pieces * side * side <= room / 2) return;
-      for (double& limit : limits) limit *= 2;
-    }
-  }
-
-  // A chart longer than a page would lose density that its neighbours keep, and one nearly as long
-  // leaves a page half empty: in the test room halves let the common scale rise from 0.76 to 0.87.
   Status cut_long_charts() {
     record_.begin("tiling");
     const TextureOptions texture = texture_options();
-    std::vector<double> limits = wanted_densities(*light_, texture, context_);
+    const std::vector<double> densities = wanted_densities(*light_, texture, context_);
     if (context_.cancelled()) return Status::cancelled();
-    const double shrinking = likely_scale(limits);
-    for (double& limit : limits) limit = kLongestShare * texture.max_side / (limit * shrinking);
-    spare_small_pages(limits);
     const std::size_t before = charts_.charts.size();
-    const std::size_t cut = cut_to_limits(view_of(scene_), limits, charts_);
+    const std::size_t cut = cut_to_limits(
+        view_of(scene_), longest_sides(charts_, densities, {texture, options_}), charts_);
     report_.charts = charts_.charts;
     report_.seam_length = charts_.seam_length;
     record_.finish(
@@ -268,7 +232,7 @@ class Export {
 
   Status bake() {
     record_.begin("baking");
-    Result<BakedPages> baked = bake_pages(*light_, layout_, options_, files_, context_);
+    Result<BakedPages> baked = bake_pages({*light_, layout_, options_}, files_, context_);
     if (!baked.ok()) return files_.told_by_target(baked.status());
     report_.pages = baked->pages;
     image_sources_ = std::move(baked->image_sources);
@@ -367,7 +331,6 @@ class Export {
     return {};
   }
 
-  static constexpr double kLongestShare = 0.5;     // of a page, that a chart may take along a side
   static constexpr double kTextureSampling = 1.5;  // of a diffuse texture's texels, along a side
 
   const Scene& scene_;

@@ -136,14 +136,20 @@ Status bad_accessor(int accessor, const std::string& what) {
   return {ErrorCode::bad_input, fmt::format("accessor {} {}", accessor, what)};
 }
 
-// Rows of `row_bytes` at `offset` of a view, `stride` apart; all inside.
+// Where an accessor's rows lie in a buffer view, by the file.
+struct RowsAsked {
+  int view = -1;
+  std::size_t offset = 0, count = 0, row_bytes = 0;
+};
+
+// Rows that are `stride` apart and all inside their view.
 struct Rows {
   const std::uint8_t* data = nullptr;
   std::size_t stride = 0;
 };
 
-Result<Rows> rows_of(const tinygltf::Model& model, int view, std::size_t offset, std::size_t count,
-                     std::size_t row_bytes) {
+Result<Rows> rows_of(const tinygltf::Model& model, const RowsAsked& asked) {
+  const auto [view, offset, count, row_bytes] = asked;
   auto bytes = gltf_view(model, view);
   if (!bytes.ok()) return bytes.status();
   const std::size_t given = model.bufferViews[view].byteStride;
@@ -167,7 +173,7 @@ Status read_dense(const tinygltf::Model& model, int index, int components, const
     return bad_accessor(index, fmt::format("has {} components, not {}", own, components));
   }
   if (a.bufferView < 0) return {};
-  auto rows = rows_of(model, a.bufferView, a.byteOffset, a.count, size * own);
+  auto rows = rows_of(model, {a.bufferView, a.byteOffset, a.count, size * own});
   if (!rows.ok()) return bad_accessor(index, rows.status().message());
   for (std::size_t i = 0; i < a.count; ++i) {
     const std::uint8_t* row = rows->data + i * rows->stride;
@@ -190,10 +196,12 @@ Status read_sparse(const tinygltf::Model& model, int index, int components, cons
     return bad_accessor(index, "has a malformed sparse part");
   }
   const auto count = static_cast<std::size_t>(a.sparse.count);
+  const auto& where = a.sparse.indices;
+  const auto& what = a.sparse.values;
   auto indices =
-      rows_of(model, a.sparse.indices.bufferView, a.sparse.indices.byteOffset, count, index_size);
+      rows_of(model, {where.bufferView, std::size_t(where.byteOffset), count, index_size});
   if (!indices.ok()) return bad_accessor(index, indices.status().message());
-  auto values = rows_of(model, a.sparse.values.bufferView, a.sparse.values.byteOffset, count, row);
+  auto values = rows_of(model, {what.bufferView, std::size_t(what.byteOffset), count, row});
   if (!values.ok()) return bad_accessor(index, values.status().message());
   for (std::size_t k = 0; k < count; ++k) {
     const double at =

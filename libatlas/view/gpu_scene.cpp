@@ -21,13 +21,21 @@ std::vector<Vec3f> moved(std::vector<Vec3f> positions, const glm::dvec3& origin)
   return positions;
 }
 
-void attribute(const GlVertexArray& array, GLuint index, const GlBuffer& buffer, int components,
-               GLenum type, int stride) {
+// One value a vertex, `stride` bytes apart.
+struct Attribute {
+  const GlBuffer& buffer;
+  int components;
+  GLenum type;
+  int stride;
+};
+
+void attach(const GlVertexArray& array, GLuint index, const Attribute& attribute) {
   const GLuint a = array.get();
+  const bool normalised = attribute.type == GL_UNSIGNED_SHORT;
   glEnableVertexArrayAttrib(a, index);
-  glVertexArrayAttribFormat(a, index, components, type, type == GL_UNSIGNED_SHORT, 0);
+  glVertexArrayAttribFormat(a, index, attribute.components, attribute.type, normalised, 0);
   glVertexArrayAttribBinding(a, index, index);
-  glVertexArrayVertexBuffer(a, index, buffer.get(), 0, stride);
+  glVertexArrayVertexBuffer(a, index, attribute.buffer.get(), 0, attribute.stride);
 }
 
 // Reflectances as 16-bit fractions: half the bytes of floats, finer than any display.
@@ -87,24 +95,24 @@ Result<GpuScene> upload(const ViewScene& scene) {
   gpu.colours = colour_buffer(scene.colours);
   gpu.indices = buffer_of(scene.indices);
   gpu.lit = create<GlVertexArray>(glCreateVertexArrays);
-  attribute(gpu.lit, 0, gpu.positions, 3, GL_FLOAT, sizeof(Vec3f));
-  attribute(gpu.lit, 1, gpu.normals, 3, GL_FLOAT, sizeof(Vec3f));
-  attribute(gpu.lit, 2, gpu.colours, 3, GL_UNSIGNED_SHORT, 8);
+  attach(gpu.lit, 0, {gpu.positions, 3, GL_FLOAT, sizeof(Vec3f)});
+  attach(gpu.lit, 1, {gpu.normals, 3, GL_FLOAT, sizeof(Vec3f)});
+  attach(gpu.lit, 2, {gpu.colours, 3, GL_UNSIGNED_SHORT, 8});
   if ((gpu.textured = scene.textured())) {
     gpu.texcoords = buffer_of(scene.texcoords);
-    attribute(gpu.lit, 3, gpu.texcoords, 2, GL_FLOAT, sizeof(Vec2f));
+    attach(gpu.lit, 3, {gpu.texcoords, 2, GL_FLOAT, sizeof(Vec2f)});
     if (Status s = upload_textures(scene, gpu); !s.ok()) return s;
   }
   if ((gpu.baked_vertices = !scene.illumination.empty())) {
     gpu.illumination = buffer_of(scene.illumination);
-    attribute(gpu.lit, 4, gpu.illumination, 3, GL_FLOAT, sizeof(Vec3f));
+    attach(gpu.lit, 4, {gpu.illumination, 3, GL_FLOAT, sizeof(Vec3f)});
   }
   glVertexArrayElementBuffer(gpu.lit.get(), gpu.indices.get());
 
   gpu.caster_positions = buffer_of(moved(scene.caster_positions, origin));
   gpu.caster_indices = buffer_of(scene.caster_indices);
   gpu.casters = create<GlVertexArray>(glCreateVertexArrays);
-  attribute(gpu.casters, 0, gpu.caster_positions, 3, GL_FLOAT, sizeof(Vec3f));
+  attach(gpu.casters, 0, {gpu.caster_positions, 3, GL_FLOAT, sizeof(Vec3f)});
   glVertexArrayElementBuffer(gpu.casters.get(), gpu.caster_indices.get());
 
   gpu.clusters = scene.clusters;

@@ -214,7 +214,7 @@ Status Renderer::Impl::draw_shadow_maps(const Camera& camera, const FramePlan& p
       view_fit = *made;
       view_fit_valid = true;
     }
-    stats.triangles_shadow += shadow->draw(*scene, work.slot, *made, work.begin, work.end);
+    stats.triangles_shadow += shadow->draw(*scene, work, *made);
   }
   shadow_timer->end();
   return {};

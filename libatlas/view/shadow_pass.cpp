@@ -73,12 +73,11 @@ Result<ShadowPass> ShadowPass::make(int resolution, int maps, int bits) {
   return pass;
 }
 
-std::uint32_t ShadowPass::draw(const GpuScene& scene, int slot, const LightFit& fit, double begin,
-                               double end) {
-  Map& map = maps_[std::size_t(slot)];
+std::uint32_t ShadowPass::draw(const GpuScene& scene, const MapWork& work, const LightFit& fit) {
+  Map& map = maps_[std::size_t(work.slot)];
   glBindFramebuffer(GL_FRAMEBUFFER, map.frame.get());
   glViewport(0, 0, resolution_, resolution_);
-  if (begin <= 0) {
+  if (work.begin <= 0) {
     const float far = 1;
     map.fit = fit;
     glDepthMask(GL_TRUE);
@@ -87,7 +86,7 @@ std::uint32_t ShadowPass::draw(const GpuScene& scene, int slot, const LightFit& 
   const auto at = [&](double fraction) {
     return std::uint32_t(std::lround(std::min(fraction, 1.0) * scene.triangles));
   };
-  const std::uint32_t first = at(begin), count = at(end) - first;
+  const std::uint32_t first = at(work.begin), count = at(work.end) - first;
   if (count == 0) return 0;
   const Matrix4 to_clip = relative_to(map.fit.to_clip, scene.origin);
   float matrix[16];

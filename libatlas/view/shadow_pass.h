@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "libatlas/shadow/fit.h"
+#include "libatlas/shadow/schedule.h"
 #include "libatlas/view/gpu_scene.h"
 
 namespace atlas {
@@ -13,10 +14,9 @@ class ShadowPass {
   // `maps` square depth textures of `resolution` texels a side, `bits` (16, 24, 32) each.
   static Result<ShadowPass> make(int resolution, int maps, int bits);
 
-  // Draws triangles [begin, end) (fractions of all) into map `slot`; begin == 0 clears it first and
-  // remembers `fit`. Returns the number of triangles submitted.
-  std::uint32_t draw(const GpuScene& scene, int slot, const LightFit& fit, double begin,
-                     double end);
+  // Draws the triangles of `work` into its map; work.begin == 0 clears that first and remembers
+  // `fit`. Returns the number of triangles submitted.
+  std::uint32_t draw(const GpuScene& scene, const MapWork& work, const LightFit& fit);
 
   const LightFit& fit(int slot) const { return maps_[std::size_t(slot)].fit; }
   // Binds map `slot` for depth comparison (bilinear, lit outside).
