@@ -4,12 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <random>
-#include <sstream>
+#include <string>
+#include <vector>
 
 #include "libatlas/image/image_io.h"
 #include "libatlas/scene/reader.h"
-#include "libatlas/scene/text_scanner.h"
 #include "tests/scene/temp_folder.h"
 
 namespace atlas {
@@ -21,43 +22,6 @@ LoadedScene load(const std::filesystem::path& path, const ReadOptions& options =
   auto loaded = read_scene(path, options, {});
   EXPECT_TRUE(loaded.ok()) << loaded.status().message();
   return loaded.ok() ? std::move(*loaded) : LoadedScene{};
-}
-
-TEST(TextScanner, NumbersAgreeWithTheLibrary) {
-  std::mt19937_64 random(7);
-  const char* formats[] = {"{}", "{:.3f}", "{:.17g}", "{:e}", "{:.0f}", "+{}", "{:.25f}"};
-  for (int i = 0; i < 20000; ++i) {
-    const double magnitude = std::exp(std::uniform_real_distribution<>(-40, 40)(random));
-    const std::string text = fmt::format(fmt::runtime(formats[i % 7]), magnitude);
-    for (const std::string& s : {text, text[0] == '+' ? text : "-" + text}) {
-      const std::string line = "  " + s + " x\n";
-      TextScanner scan(line.data(), line.data() + line.size() - 1);
-      double value = 0;
-      ASSERT_TRUE(scan.number(value)) << s;
-      EXPECT_EQ(value, std::strtod(s.c_str(), nullptr)) << s;
-      EXPECT_EQ(scan.word(), "x");
-    }
-  }
-}
-
-TEST(TextScanner, OddNumbers) {
-  const auto parse = [](std::string s, double& value) {
-    s += '\n';
-    TextScanner scan(s.data(), s.data() + s.size() - 1);
-    return scan.number(value);
-  };
-  double v = 0;
-  for (const char* good : {"5.", ".5", "-.5e3", "1e5", "1E-5", "nan", "inf", "-inf", "+3"}) {
-    EXPECT_TRUE(parse(good, v)) << good;
-  }
-  for (const char* bad : {"", ".", "-", "+-3", "1.2.3", "12a", "e5", "0x10", "1,5", "--1"}) {
-    EXPECT_FALSE(parse(bad, v)) << bad;
-  }
-  EXPECT_TRUE(parse("1e999", v) && std::isinf(v));
-  EXPECT_TRUE(parse("-1e999", v) && v < 0 && std::isinf(v));
-  EXPECT_TRUE(parse("1e-999", v) && v == 0);
-  EXPECT_TRUE(parse("1" + std::string(400, '0'), v) && std::isinf(v));
-  EXPECT_TRUE(parse("0." + std::string(400, '0') + "1", v) && v == 0);
 }
 
 TEST(Obj, EverythingAtOnce) {
@@ -200,65 +164,6 @@ TEST(Obj, BadElementsAreCountedAndNamed) {
   EXPECT_EQ(d.lines().size(), d.defects.size());
 }
 
-TEST(Obj, TexturesThatAreMissingOrBrokenFallBackToTheColour) {
-  const TempFolder folder;
-  folder.write("broken.png", "this is no image");
-  folder.write("m.mtl", "newmtl a\nKd 0.1 0.2 0.3\nmap_Kd gone.png\nnewmtl b\nmap_Kd broken.png\n");
-  const auto path = folder.write(
-      "s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");
-  const LoadedScene loaded = load(path);
-  EXPECT_EQ(loaded.defects.count(DefectKind::texture_missing), 1u);
-  EXPECT_EQ(loaded.defects.count(DefectKind::texture_unreadable), 1u);
-  for (const Defect& defect : loaded.defects.defects) {
-    const bool tells_why =
-        defect.first_places.front().find(": cannot be read") != std::string::npos;
-    EXPECT_EQ(tells_why, defect.kind == DefectKind::texture_unreadable);
-  }
-  EXPECT_EQ(loaded.scene.materials[0].texture, -1);
-  EXPECT_EQ(loaded.scene.materials[0].diffuse, (Vec3f{0.1f, 0.2f, 0.3f}));
-  ReadOptions options;
-  options.load_textures = false;
-  EXPECT_TRUE(load(path, options).defects.empty());
-}
-
-TEST(Obj, ATextureOfAnotherMachineIsFoundBesideTheMaterials) {
-  const TempFolder folder;
-  ASSERT_TRUE(write_png(folder / "wood.png", Image8(2, 2, 3, 77), {}).ok());
-  folder.write("m.mtl", "newmtl a\nmap_Kd C:\\Users\\me\\My Maps\\wood.png\n");
-  const LoadedScene loaded = load(folder.write(
-      "s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nusemtl a\nf 1/1 2/1 3/1\n"));
-  EXPECT_TRUE(loaded.defects.empty());
-  ASSERT_EQ(loaded.scene.textures.size(), 1u);
-  EXPECT_EQ(loaded.scene.textures[0].path.filename(), "wood.png");
-}
-
-// Options before a texture's name: what changes nothing is passed over, what cannot be followed is
-// told.
-TEST(Obj, TextureOptions) {
-  const TempFolder folder;
-  std::filesystem::create_directory(folder / "maps");
-  ASSERT_TRUE(write_png(folder / "maps" / "a b.png", Image8(2, 2, 3, 77), {}).ok());
-  const auto ignored = [&](const std::string& options) {
-    folder.write("m.mtl", "newmtl a\nmap_Kd " + options + " maps\\a b.png\n");
-    const LoadedScene loaded = load(folder.write(
-        "s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nusemtl a\nf 1/1 2/1 3/1\n"));
-    EXPECT_EQ(loaded.scene.textures.size(), 1u) << options;
-    EXPECT_EQ(loaded.scene.materials[0].texture, 0) << options;
-    const std::uint64_t count = loaded.defects.count(DefectKind::texture_option_ignored);
-    EXPECT_EQ(loaded.defects.empty(), count == 0) << options;
-    return count;
-  };
-  for (const char* options : {"", "-mm 0 1", "-clamp off", "-blendu on", "-blendv off -cc off",
-                              "-o 0", "-s 1 1 1 -mm 0 1.0 -o 0 0"}) {
-    EXPECT_EQ(ignored(options), 0u) << options;
-  }
-  for (const char* options : {"-mm 0.5 1", "-mm 0 2", "-clamp on", "-t 0.1", "-t 0 0 1", "-bm 0.5",
-                              "-imfchan r", "-texres 512"}) {
-    EXPECT_EQ(ignored(options), 1u) << options;
-  }
-  EXPECT_EQ(ignored("-clamp on -mm 1 1 -blendu off"), 2u);
-}
-
 // A file of several pieces, with every trap at piece borders, against a reader of ten lines.
 std::string large_obj(std::vector<std::array<double, 3>>& vertices,
                       std::vector<std::array<long, 3>>& faces) {
@@ -363,61 +268,6 @@ TEST(Obj, FarScenesGetAnOriginAndKeepTheirShape) {
       for (int k = 0; k < 3; ++k) EXPECT_NEAR(o[k] + q[k], points[i][k] + offset[k], 1.1e-6);
     }
   }
-}
-
-TEST(Illumination, FromASecondFile) {
-  const TempFolder folder;
-  const auto mesh = folder.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  folder.write("light.txt", "# lux\n1 2 3\n4.5 5 6\n\n7\n");
-  folder.write("light.obj", "v 9 9 9 1 2 3\nv 9 9 9 4.5 5 6\nv 9 9 9 7 7 7\n");
-  folder.write(
-      "light.ply",
-      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-      "property float z\nproperty float r\nproperty float g\nproperty float b\nend_header\n"
-      "0 0 0 1 2 3\n0 0 0 4.5 5 6\n0 0 0 7 7 7\n");
-  for (const char* name : {"light.txt", "light.obj", "light.ply"}) {
-    ReadOptions options;
-    options.illumination_file = folder / name;
-    const LoadedScene loaded = load(mesh, options);
-    EXPECT_EQ(loaded.scene.illumination, (std::vector<Vec3f>{{1, 2, 3}, {4.5f, 5, 6}, {7, 7, 7}}))
-        << name;
-  }
-  const auto status_with = [&](const std::string& name, const std::string& bytes) {
-    ReadOptions options;
-    options.illumination_file = folder.write(name, bytes);
-    return read_scene(mesh, options, {}).status();
-  };
-  EXPECT_EQ(status_with("short.txt", "1 2 3\n").code(), ErrorCode::bad_input);
-  EXPECT_NE(status_with("two.txt", "1 2\n").message().find("two.txt:1:"), std::string::npos);
-  EXPECT_EQ(status_with("none.obj", "v 0 0 0\nv 0 0 0\nv 0 0 0\n").code(), ErrorCode::bad_input);
-  ReadOptions missing;
-  missing.illumination_file = folder / "nowhere.txt";
-  EXPECT_EQ(read_scene(mesh, missing, {}).status().code(), ErrorCode::not_found);
-}
-
-// What is wrong with the second file's light is told, and told of that file; the first one's light
-// is not used.
-TEST(Illumination, DefectsAreTheSecondFiles) {
-  const TempFolder folder;
-  const auto mesh = folder.write(
-      "mesh.obj", "v 0 0 0 nan 1 1\nv 1 0 0 1 1 1\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
-  folder.write("light.obj", "v 0 0 0 1 2 3\nv 0 0 0 1 2 inf\nv 0 0 0 1 2 3\nv 0 0 0\n");
-  folder.write("light.txt", "1\nnan\n-1\n4\n");
-  const auto defects = [&](const std::string& name) {
-    ReadOptions options;
-    options.illumination_file = folder / name;
-    return load(mesh, options).defects;
-  };
-  for (const char* name : {"light.obj", "light.txt"}) {
-    const DefectReport report = defects(name);
-    EXPECT_EQ(report.count(DefectKind::illumination_not_finite), 1u) << name;
-    EXPECT_EQ(report.defects.size(), 2u) << name;
-    for (const Defect& defect : report.defects)
-      EXPECT_NE(defect.first_places.front().find(name), std::string::npos)
-          << defect.first_places.front();
-  }
-  EXPECT_EQ(defects("light.obj").count(DefectKind::illumination_missing), 1u);
-  EXPECT_EQ(defects("light.txt").count(DefectKind::illumination_negative), 1u);
 }
 
 TEST(Obj, AllModelsOfTheDataFolderLoad) {

@@ -1,0 +1,154 @@
+// What atlas-export refuses: one line that says why and what to do, and nothing is written.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/apps/atlas_export/run_export.h"
+
+namespace atlas::test {
+namespace {
+
+TEST_F(AtlasExport, MissingFile) {
+  expect_refusal(dir_ / "nowhere.obj", "nowhere.obj");
+}
+
+TEST_F(AtlasExport, MalformedLine) {
+  expect_refusal(write("bad.obj", "v 0 0 0 1 1 1\nv 1 zero 0 1 1 1\nv 0 1 0 1 1 1\nf 1 2 3\n"),
+                 "bad.obj:2");
+}
+
+TEST_F(AtlasExport, TruncatedBinary) {
+  expect_refusal(write("cut.ply",
+                       "ply\nformat binary_little_endian 1.0\nelement vertex 1000\n"
+                       "property float x\nproperty float y\nproperty float z\n"
+                       "element face 1\nproperty list uchar int vertex_indices\nend_header\nabc"),
+                 "cut.ply");
+}
+
+TEST_F(AtlasExport, EmptyScene) {
+  expect_refusal(write("empty.obj", "# nothing\n"), "empty.obj");
+}
+
+TEST_F(AtlasExport, OnlyBadTriangles) {
+  expect_refusal(write("range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n"), "range.obj");
+  expect_refusal(write("nan.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), "nan.obj");
+}
+
+TEST_F(AtlasExport, OptionsOutOfRange) {
+  const fs::path scene = write("box.obj", lit_box(2));
+  expect_refusal(scene, "--atlases", "--atlases 0");
+  expect_refusal(scene, "--atlas-size", "--atlas-size 1000");
+  expect_refusal(scene, "--texel", "--texel 5parsec");
+  expect_refusal(scene, "--tone", "--tone sepia");
+  expect_refusal(scene, "--memory", "--memory lots");
+  expect_refusal(scene, "mm, in, ft or km", "--texel 1um");
+  // What would do nothing.
+  expect_refusal(scene, "--uv-aspect requires --keep-uv-charts", "--uv-aspect 2");
+  expect_refusal(scene, "--charts-only excludes --exr", "--charts-only --exr");
+}
+
+// Every number has its range, and no number is in none.
+TEST_F(AtlasExport, AbsurdNumbers) {
+  const fs::path scene = write("box.obj", lit_box(2));
+  for (const std::string option :
+       {"--max-stretch 0.5", "--max-stretch inf", "--cone 400",
+        "--cone nan",        "--crease -5",       "--threads -1",
+        "--threads 2.5",     "--atlases -3",      "--atlas-size 2147483648",
+        "--white -1",        "--exposure 1e9",    "--slip inf",
+        "--shifts 0",        "--mips 9",          "--uv-aspect 0",
+        "--bake x",          "--preset good",     "--memory 1",
+        "--unit 0",          "--threshold nan",   "--bogus"}) {
+    expect_refusal(scene, option.substr(0, option.find(' ')), option);
+  }
+  expect_refusal(scene, "more than the whole scene", "-q --texel 1km");
+  expect_refusal(scene, "more than once", "-o again.wrl");
+}
+
+TEST_F(AtlasExport, OverwritesNothingThatItReads) {
+  const fs::path scene = write("box.obj", lit_box(2));
+  const std::string text = slurp(scene);
+  EXPECT_EQ(run(fmt::format("{0}/box.obj -o {0}/./box.obj", dir_.string())).exit_code, 2);
+  expect_refusal(scene, "would overwrite", fmt::format("--report {}/box.obj", dir_.string()));
+  expect_refusal(scene, "would overwrite", fmt::format("--report {}/world.wrl", dir_.string()));
+  for (const char* name : {"v.mtl", "v_0.png"}) {
+    const RunResult r =
+        run(fmt::format("{0}/box.obj -o {0}/v.obj --report {0}/{1}", dir_.string(), name));
+    EXPECT_EQ(r.exit_code, 2) << r.output;
+    EXPECT_NE(r.output.find(name), std::string::npos) << r.output;
+  }
+  EXPECT_EQ(slurp(scene), text);
+  // A scene whose texture has the name of the first new page.
+  ASSERT_EQ(run(fmt::format("{0}/box.obj -o {0}/w.obj -q", dir_.string())).exit_code, 0);
+  const std::string page = slurp(dir_ / "w_0.png");
+  write("t.mtl", "newmtl t\nmap_Kd w_0.png\n");
+  write("textured.obj", "mtllib t.mtl\nusemtl t\n" + lit_box(2));
+  const RunResult again = run(fmt::format("{0}/textured.obj -o {0}/w.wrl", dir_.string()));
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_NE(again.output.find("w_0.png"), std::string::npos) << again.output;
+  EXPECT_EQ(slurp(dir_ / "w_0.png"), page);
+  EXPECT_EQ(run(fmt::format("{0}/textured.obj -o {0}/v.wrl -q", dir_.string())).exit_code, 0);
+  // A world without light of its own gets no pages, and needs no textures.
+  EXPECT_EQ(run(fmt::format("{0}/w.obj -o {0}/w.gltf -q", dir_.string())).exit_code, 0);
+  EXPECT_EQ(slurp(dir_ / "w_0.png"), page);
+}
+
+// An OBJ's materials, a glTF's buffer: known only when the scene has been read.
+TEST_F(AtlasExport, OverwritesNoMaterialsAndNoBuffer) {
+  const fs::path materials = write("m.mtl", "newmtl red\nKd 1 0 0\n");
+  write("box.obj", "mtllib m.mtl\nusemtl red\n" + lit_box(2));
+  const RunResult obj = run(fmt::format("{0}/box.obj -o {0}/m.obj --charts-only", dir_.string()));
+  EXPECT_EQ(obj.exit_code, 2);
+  EXPECT_NE(obj.output.find("would overwrite"), std::string::npos) << obj.output;
+  EXPECT_EQ(slurp(materials), "newmtl red\nKd 1 0 0\n");
+  EXPECT_FALSE(fs::exists(dir_ / "m.obj"));
+  ASSERT_EQ(run(fmt::format("{0}/box.obj -o {0}/w.gltf -q", dir_.string())).exit_code, 0);
+  fs::rename(dir_ / "w.gltf", dir_ / "lit.gltf");
+  const std::string buffer = slurp(dir_ / "w.bin");
+  const RunResult gltf = run(fmt::format("{0}/lit.gltf -o {0}/w.gltf", dir_.string()));
+  EXPECT_EQ(gltf.exit_code, 2);
+  EXPECT_NE(gltf.output.find("w.bin"), std::string::npos) << gltf.output;
+  EXPECT_EQ(slurp(dir_ / "w.bin"), buffer);
+}
+
+TEST_F(AtlasExport, TooManyChartsForThePagesNamesTheOptions) {
+  const fs::path scene = write("box.obj", lit_box(2));
+  const RunResult r = run(fmt::format("{0} -o {1}/w.obj --atlases 1 --atlas-size 64 --mips 5",
+                                      scene.string(), dir_.string()));
+  EXPECT_EQ(r.exit_code, 1);
+  EXPECT_NE(r.output.find("do not fit 1 page of 64 x 64"), std::string::npos) << r.output;
+  EXPECT_NE(r.output.find("more --atlases or a larger --atlas-size"), std::string::npos);
+}
+
+TEST_F(AtlasExport, LightOnNoArea) {
+  const fs::path flat = write("flat.obj", "v 1 1 1 1 1 1\nv 1 1 1 1 1 1\nv 1 1 1 1 1 1\nf 1 2 3\n");
+  expect_refusal(flat, "no triangle has an area", "-q");
+}
+
+TEST_F(AtlasExport, Directories) {
+  fs::create_directories(dir_ / "folder");
+  fs::create_directories(dir_ / "folder.obj");
+  expect_refusal(dir_ / "folder", "is a directory");
+  expect_refusal(dir_ / "folder.obj", "is a directory");
+}
+
+TEST_F(AtlasExport, UnwritableTarget) {
+  const fs::path scene = write("box.obj", lit_box(2));
+  const auto before = files();
+  const RunResult r = run(fmt::format("{} -o {}/no/such/world.wrl", scene.string(), dir_.string()));
+  EXPECT_EQ(r.exit_code, 1);
+  EXPECT_NE(r.output.find("no/such"), std::string::npos) << r.output;
+  EXPECT_EQ(files(), before);
+  expect_refusal(scene, "report", fmt::format("--report {}/no/report.json", dir_.string()));
+}
+
+TEST_F(AtlasExport, UnknownTargetFormat) {
+  const fs::path scene = write("box.obj", lit_box(2));
+  const RunResult r = run(fmt::format("{} -o {}/world.max", scene.string(), dir_.string()));
+  EXPECT_EQ(r.exit_code, 2);
+  EXPECT_NE(r.output.find(".wrl"), std::string::npos) << r.output;
+}
+
+}  // namespace
+}  // namespace atlas::test

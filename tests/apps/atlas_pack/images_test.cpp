@@ -1,0 +1,69 @@
+// atlas-pack images: sprites.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+
+#include "libatlas/image/image_io.h"
+#include "tests/apps/atlas_pack/run_pack.h"
+
+namespace atlas::test {
+namespace {
+
+TEST_F(AtlasPack, SpritesKeepTheirTexels) {
+  fs::create_directories(dir_ / "in/sub");
+  const auto sprite = [](int w, int h, int border, int tint) {
+    atlas::Image8 image(w, h, 4);
+    for (int y = border; y < h - border; ++y)
+      for (int x = border; x < w - border; ++x) {
+        std::uint8_t* t = image.at(x, y);
+        t[0] = static_cast<std::uint8_t>(x * 7);
+        t[1] = static_cast<std::uint8_t>(y * 5);
+        t[2] = static_cast<std::uint8_t>(tint);
+        t[3] = 255;
+      }
+    return image;
+  };
+  const atlas::Image8 a = sprite(20, 12, 3, 10), c = sprite(6, 30, 0, 90);
+  ASSERT_TRUE(atlas::write_png(dir_ / "in/a.png", a, {}).ok());
+  ASSERT_TRUE(atlas::write_png(dir_ / "in/b.png", a, {}).ok());
+  ASSERT_TRUE(atlas::write_png(dir_ / "in/sub/c.png", c, {}).ok());
+  const RunResult r = run("images in -o sheet --page 48x24 --rotate --extrude 1 --padding 1");
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  const auto page = atlas::read_image8(dir_ / "sheet.png");
+  ASSERT_TRUE(page.ok());
+  const auto frames = nlohmann::json::parse(read("sheet.json"))["frames"];
+  EXPECT_EQ(frames["a.png"]["frame"], frames["b.png"]["frame"]);  // identical images share
+  for (const auto& [name, image] : {std::pair("a.png", &a), {"sub/c.png", &c}}) {
+    const auto& f = frames[name];
+    const int w = f["frame"]["w"], h = f["frame"]["h"];
+    const int ox = f["spriteSourceSize"]["x"], oy = f["spriteSourceSize"]["y"];
+    EXPECT_EQ(f["sourceSize"]["w"], image->width);
+    for (int y = 0; y < h; ++y)
+      for (int x = 0; x < w; ++x) {
+        // Read back as a game does: y down, clockwise if rotated.
+        const bool turned = f["rotated"];
+        const int px = int(f["frame"]["x"]) + (turned ? h - 1 - y : x);
+        const int py = int(f["frame"]["y"]) + (turned ? x : y);
+        const std::uint8_t* got = page->at(px, page->height - 1 - py);
+        const std::uint8_t* expected = image->at(ox + x, image->height - 1 - (oy + y));
+        ASSERT_TRUE(std::equal(got, got + 4, expected)) << name << " " << x << " " << y;
+      }
+  }
+}
+
+TEST_F(AtlasPack, WhatIsNoFileInAFolderOfImagesIsNamed) {
+  fs::create_directories(dir_ / "in");
+  ASSERT_TRUE(atlas::write_png(dir_ / "in/a.png", atlas::Image8(4, 4, 3, 9), {}).ok());
+  fs::create_symlink("gone", dir_ / "in/b.png");
+  fs::create_directory_symlink(".", dir_ / "in/c");
+  const RunResult r = run("images in -o out");
+  EXPECT_EQ(r.exit_code, 0) << r.output;
+  EXPECT_NE(r.output.find("in/b.png: left out, no file to read"), std::string::npos) << r.output;
+  EXPECT_NE(r.output.find("in/c: left out, a link to a folder"), std::string::npos) << r.output;
+}
+
+}  // namespace
+}  // namespace atlas::test

@@ -1,0 +1,135 @@
+// atlas-pack mesh: the charts of a mesh's own uvs.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/apps/atlas_pack/run_pack.h"
+
+namespace atlas::test {
+namespace {
+
+TEST_F(AtlasPack, MeshChartsAtUniformDensity) {
+  // Two unit squares whose uvs differ in size tenfold.
+  write("m.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 0 0\nvt 0.1 0\nvt 0.1 0.1\nvt 0 0.1\n"
+        "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\nf 5/5 6/6 7/7\nf 5/5 7/7 8/8\n");
+  const RunResult r = run("mesh m.obj --page 128 --padding 2 -o out.obj --preview p.png");
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  EXPECT_TRUE(fs::exists(dir_ / "p.png"));
+  std::istringstream lines(read("out.obj"));
+  std::vector<std::pair<double, double>> vt, uv;  // uv: 3 a triangle
+  for (std::string line; std::getline(lines, line);) {
+    double u = 0, v = 0;
+    std::size_t t[3];
+    if (std::sscanf(line.c_str(), "vt %lf %lf", &u, &v) == 2) vt.emplace_back(u, v);
+    if (std::sscanf(line.c_str(), "f %*d/%zu %*d/%zu %*d/%zu", &t[0], &t[1], &t[2]) == 3)
+      for (const std::size_t k : t) uv.push_back(vt.at(k - 1));
+  }
+  ASSERT_EQ(uv.size(), 12u);
+  const auto area = [&](std::size_t k) {
+    return std::abs((uv[k + 1].first - uv[k].first) * (uv[k + 2].second - uv[k].second) -
+                    (uv[k + 1].second - uv[k].second) * (uv[k + 2].first - uv[k].first));
+  };
+  for (std::size_t k = 3; k < 12; k += 3) EXPECT_NEAR(area(k), area(0), 1e-6);
+  EXPECT_GT(area(0), 0.1);
+}
+
+// Eight right triangles, far apart in their own uvs.
+std::string triangles_obj() {
+  std::string text;
+  for (int k = 0; k < 8; ++k) {
+    const double s = 1 + 0.2 * k;
+    text += fmt::format("v {0} 0 0\nv {1} 0 0\nv {0} {2} 0\n", 10 * k, 10 * k + s, 2 * s);
+    text += fmt::format("vt {0} 0\nvt {1} 0\nvt {0} {2}\n", 10 * k, 10 * k + s, 2 * s);
+  }
+  for (int k = 0; k < 8; ++k)
+    text += fmt::format("f {0}/{0} {1}/{1} {2}/{2}\n", 3 * k + 1, 3 * k + 2, 3 * k + 3);
+  return text;
+}
+
+// Two squares of two triangles each whose corners all have their own vt: still two charts.
+TEST_F(AtlasPack, MeshChartsAreFoundByPlaceAndValueAndStayCharts) {
+  write("m.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 5\nv 1 0 5\nv 1 1 5\nv 0 1 5\n"
+        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 0\nvt 1 1\nvt 0 1\n"
+        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 0\nvt 1 1\nvt 0 1\n"
+        "f 1/1 2/2 3/3\nf 1/4 3/5 4/6\nf 5/7 6/8 7/9\nf 5/10 7/11 8/12\n");
+  for (const char* names : {"m.obj -o out.obj", "out.obj -o again.obj"}) {
+    const RunResult r = run(fmt::format("mesh {} --page 64 --pages 2", names));
+    ASSERT_EQ(r.exit_code, 0) << r.output;
+    EXPECT_NE(r.output.find(": 2 items"), std::string::npos) << r.output;
+    EXPECT_EQ(r.output.find("defect"), std::string::npos) << r.output;
+  }
+  const std::string obj = read("again.obj"), mtl = read("again.mtl");
+  std::istringstream lines(obj);
+  int vts = 0;
+  for (std::string line; std::getline(lines, line);) {
+    vts += line.starts_with("vt ");
+    EXPECT_EQ(line.find('-'), line[0] == '#' ? line.find('-') : std::string::npos) << line;
+    if (line.starts_with("usemtl ")) {
+      EXPECT_NE(mtl.find("newmtl " + line.substr(7) + "\n"), std::string::npos) << line;
+    }
+  }
+  EXPECT_EQ(vts, 8);
+  // A material file that is read stays.
+  write("mine.mtl", "newmtl red\n");
+  write("other.obj", "mtllib mine.mtl\n" + read("m.obj"));
+  const RunResult over = run("mesh other.obj -o mine.obj");
+  EXPECT_EQ(over.exit_code, 2) << over.output;
+  EXPECT_EQ(read("mine.mtl"), "newmtl red\n");
+}
+
+TEST_F(AtlasPack, MeshOptionsDoWhatTheySay) {
+  write("t.obj", triangles_obj());
+  const auto pages = [&](const std::string& more) {
+    const RunResult r = run("mesh t.obj -o out.obj --json --page 256 " + more);
+    EXPECT_EQ(r.exit_code, 0) << r.output;
+    return nlohmann::json::parse(r.output);
+  };
+  const auto whole = pages("");
+  EXPECT_EQ(whole["pages"][0]["width"], 256);
+  EXPECT_EQ(whole["pages"][0]["height"], 256);
+  const auto cropped = pages("--crop");
+  EXPECT_LE(cropped["pages"][0]["width"], 256);
+  EXPECT_LE(cropped["pages"][0]["height"], 256);
+  EXPECT_GE(double(cropped["utilization"]), double(whole["utilization"]));
+  EXPECT_NE(read("out.obj").find(fmt::format("# page_0: {} x {} texels\n",
+                                             int(cropped["pages"][0]["width"]),
+                                             int(cropped["pages"][0]["height"]))),
+            std::string::npos);
+  const auto square = pages("--crop --square");
+  EXPECT_EQ(square["pages"][0]["width"], square["pages"][0]["height"]);
+  EXPECT_LE(pages("--max-pages 2")["pages"].size(), 2u);
+  // Seed and effort alone decide about `best`.
+  pages("--preset best --effort 100 --seed 3 --threads 1");
+  const std::string first = read("out.obj");
+  pages("--preset best --effort 100 --seed 3 --threads 2");
+  EXPECT_EQ(read("out.obj"), first);
+  // The border stays free.
+  pages("--border 20");
+  std::istringstream lines(read("out.obj"));
+  for (std::string line; std::getline(lines, line);) {
+    double u = 0, v = 0;
+    if (std::sscanf(line.c_str(), "vt %lf %lf", &u, &v) != 2) continue;
+    for (double x : {u * 256, v * 256}) {
+      EXPECT_GE(x, 20 - 1e-6);
+      EXPECT_LE(x, 236 + 1e-6);
+    }
+  }
+  pages("--preview p.svg");
+  EXPECT_NE(read("p.svg").find("<path"), std::string::npos);
+  EXPECT_EQ(run("mesh t.obj -o out.obj --preview p.gif").exit_code, 2);
+  EXPECT_EQ(run("mesh t.obj -o out.obj --max-width 99").exit_code, 2);  // charts: square pages
+}
+
+}  // namespace
+}  // namespace atlas::test

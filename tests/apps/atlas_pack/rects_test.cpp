@@ -1,0 +1,155 @@
+// atlas-pack rects: lists of rectangles.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "tests/apps/atlas_pack/run_pack.h"
+
+namespace atlas::test {
+namespace {
+
+TEST_F(AtlasPack, RectsFromCsvToCsv) {
+  write("sizes.csv", "name,width,height\na,60,10\n\"b,c\",4,10\n");
+  const RunResult r = run("rects sizes.csv --page 64x32 -o placed.csv --preview p.svg");
+  EXPECT_EQ(r.exit_code, 0) << r.output;
+  EXPECT_EQ(read("placed.csv"),
+            "name,page,x,y,width,height,rotated\na,0,0,0,60,10,0\n\"b,c\",0,60,0,4,10,0\n");
+  EXPECT_NE(read("p.svg").find("<svg"), std::string::npos);
+}
+
+// Published instances begin with `width height count`; --page has the last word.
+TEST_F(AtlasPack, InstancesSayTheirPage) {
+  write("a.txt", "# three\n10 10 3\n10 4\n5 6\n5 6\n");
+  const RunResult r = run("rects a.txt -o a.csv --json");
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  const auto summary = nlohmann::json::parse(r.output);
+  EXPECT_EQ(summary["items"], 3);
+  EXPECT_EQ(summary["pages"], nlohmann::json::parse(R"([{"width":10,"height":10}])"));
+  const RunResult wider = run("rects a.txt -o a.csv --page 20x10 --json");
+  EXPECT_EQ(nlohmann::json::parse(wider.output)["pages"][0]["width"], 20);
+  write("strip.txt", "10 0 2\n10 4\n10 6\n");
+  const RunResult strip = run("rects strip.txt -o a.csv --json");
+  EXPECT_EQ(nlohmann::json::parse(strip.output)["pages"][0]["height"], 10) << strip.output;
+  write("cut.txt", "10 10 3\n10 4\n");
+  const RunResult cut = run("rects cut.txt -o cut.csv");
+  EXPECT_EQ(cut.exit_code, 1);
+  EXPECT_NE(cut.output.find("cut.txt:1: a page of 10 x 10 and 3 rectangles"), std::string::npos)
+      << cut.output;
+  write("named.txt", "1 10 3\n2 10 4\n");  // all are named: a list
+  EXPECT_EQ(nlohmann::json::parse(run("rects named.txt -o a.csv --json").output)["items"], 2);
+}
+
+TEST_F(AtlasPack, HeadersFollowCommentsAndExtensionsMayBeCapitals) {
+  write("S.CSV", "# sizes\n\nname,width,height\na,3,4\n");
+  ASSERT_EQ(run("rects S.CSV -o A.CSV --preview P.SVG").exit_code, 0);
+  EXPECT_EQ(read("A.CSV"), "name,page,x,y,width,height,rotated\na,0,0,0,3,4,0\n");
+  EXPECT_NE(read("P.SVG").find("<svg"), std::string::npos);
+  write("S.JSON", "[[3,4]]");
+  ASSERT_EQ(run("rects S.JSON -o B.JSON").exit_code, 0);
+  EXPECT_EQ(nlohmann::json::parse(read("B.JSON"))["frames"]["0"]["frame"]["h"], 4);
+}
+
+// Blocks of compressed texels are counted from the upper edge, whatever the page's height.
+TEST_F(AtlasPack, AlignedItemsBeginAtMultiplesFromTheUpperLeftCorner) {
+  write("sizes.csv",
+        "\xef\xbb\xbf"
+        "13,7\n9,5\n21,6\n7,7\n30,3\n5,18\n");
+  for (const char* page : {"33x0", "33x37", "64x64 --crop", "45x0 --border 1"}) {
+    const RunResult r = run(fmt::format("rects sizes.csv --align 4 --page {} -o q.csv", page));
+    ASSERT_EQ(r.exit_code, 0) << r.output;
+    std::istringstream lines(read("q.csv"));
+    std::string line;
+    int items = 0;
+    for (std::getline(lines, line); std::getline(lines, line); ++items) {
+      int number = 0, on = 0, x = 0, y = 0;
+      ASSERT_EQ(std::sscanf(line.c_str(), "%d,%d,%d,%d", &number, &on, &x, &y), 4) << line;
+      EXPECT_EQ(x % 4, 0) << page << ": " << line;
+      EXPECT_EQ(y % 4, 0) << page << ": " << line;
+    }
+    EXPECT_EQ(items, 6);
+  }
+}
+
+TEST_F(AtlasPack, RectsFromJsonToBothJsonLayouts) {
+  write("sizes.json", R"([[8, 8], {"name": "x", "w": 4, "h": 2}])");
+  ASSERT_EQ(run("rects sizes.json --page 16 -o hash.json").exit_code, 0);
+  const auto hash = nlohmann::json::parse(read("hash.json"));
+  EXPECT_EQ(hash["frames"]["x"]["frame"]["w"], 4);
+  ASSERT_EQ(run("rects sizes.json --page 16 --data array -o array.json").exit_code, 0);
+  const auto array = nlohmann::json::parse(read("array.json"));
+  ASSERT_EQ(array["frames"].size(), 2u);
+  EXPECT_EQ(array["frames"][1]["filename"], "x");
+  const RunResult summary = run("rects sizes.json --page 16 --json -o s.csv");
+  EXPECT_EQ(nlohmann::json::parse(summary.output)["items"], 2);
+}
+
+TEST_F(AtlasPack, WhatIsWrongIsSaid) {
+  write("bad.csv", "1,2\n3,x\n");
+  const RunResult bad = run("rects bad.csv -o q.csv");
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_NE(bad.output.find("bad.csv:2:"), std::string::npos) << bad.output;
+  EXPECT_FALSE(fs::exists(dir_ / "q.csv"));
+  EXPECT_EQ(run("rects missing.csv -o q.csv").exit_code, 1);
+  EXPECT_EQ(run("rects bad.csv").exit_code, 2);
+  EXPECT_EQ(run("rects bad.csv -o q.csv --page nonsense").exit_code, 2);
+  write("large.csv", "100,1\n5,5\n");
+  const RunResult large = run("rects large.csv --page 64 -o q.csv");
+  EXPECT_EQ(large.exit_code, 1);
+  EXPECT_NE(large.output.find("larger than the page"), std::string::npos);
+  EXPECT_NE(read("q.csv").find("1,0,"), std::string::npos);  // the other one is placed
+}
+
+TEST_F(AtlasPack, VeryManyPagesAreNamedWithTheLargerOnesThatWouldDo) {
+  std::string list;
+  for (int i = 0; i < 300; ++i) list += fmt::format("{},{}\n", 30 + i % 3, 30 + i % 2);
+  write("sizes.csv", list);
+  const RunResult many = run("rects sizes.csv -o placed.csv --page 64x64");
+  EXPECT_EQ(many.exit_code, 0);
+  EXPECT_NE(many.output.find("75 pages, each a texture of its own, are slow to load and to draw "
+                             "(--page 128x128 takes about 19)"),
+            std::string::npos)
+      << many.output;
+  EXPECT_EQ(run("rects sizes.csv -o placed.csv --page 128x128").output.find("slow"),
+            std::string::npos);
+}
+
+// A lone carriage return was none: "1,2" and "3,4" became one rectangle "1" of 23 x 4.
+TEST_F(AtlasPack, LinesMayEndByCarriageReturnsAlone) {
+  write("mac.csv", "name,width,height\ra,10,20\rb,30,40\r");
+  ASSERT_EQ(run("rects mac.csv -o placed.csv").exit_code, 0);
+  EXPECT_NE(read("placed.csv").find("a,0,"), std::string::npos) << read("placed.csv");
+  EXPECT_NE(read("placed.csv").find(",30,40,0\n"), std::string::npos) << read("placed.csv");
+  write("bad.csv", "10,20\r\n30,40\rx,y\r");
+  EXPECT_NE(run("rects bad.csv -o placed.csv").output.find("bad.csv:3: "), std::string::npos);
+}
+
+TEST_F(AtlasPack, WrongJsonNamesItsLine) {
+  write("cut.json", "[[1, 2],\n[3, 4],\n[5,");
+  EXPECT_NE(run("rects cut.json -o a.csv").output.find("cut.json:3: not valid JSON"),
+            std::string::npos);
+  write("large.json", "[[1, 2],\n[3, 1e999]]");
+  EXPECT_NE(run("rects large.json -o a.csv").output.find("large.json: holds a number beyond"),
+            std::string::npos);
+}
+
+// It waited for the writer, and signals did not end that.
+TEST_F(AtlasPack, APipeWithoutAWriterCanBeInterrupted) {
+  ASSERT_EQ(::mkfifo((dir_ / "pipe").c_str(), 0600), 0);
+  const RunResult r = run("rects pipe -o a.csv & sleep 0.5; kill $!; wait $!");
+  EXPECT_EQ(r.exit_code, 130) << r.output;
+  EXPECT_FALSE(fs::exists(dir_ / "a.csv"));
+  const RunResult fed =
+      run(fmt::format("rects pipe -o a.csv & (sleep 0.3; echo 5,6; sleep 0.3; echo 7,8) >'{}'; "
+                      "wait $!",
+                      (dir_ / "pipe").string()));
+  EXPECT_NE(fed.output.find("2 items on 1 page"), std::string::npos) << fed.output;
+}
+
+}  // namespace
+}  // namespace atlas::test

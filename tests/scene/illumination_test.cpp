@@ -1,0 +1,77 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "libatlas/scene/reader.h"
+#include "tests/scene/temp_folder.h"
+
+namespace atlas {
+namespace {
+
+using test::TempFolder;
+
+LoadedScene load(const std::filesystem::path& path, const ReadOptions& options = {}) {
+  auto loaded = read_scene(path, options, {});
+  EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+  return loaded.ok() ? std::move(*loaded) : LoadedScene{};
+}
+
+TEST(Illumination, FromASecondFile) {
+  const TempFolder folder;
+  const auto mesh = folder.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.write("light.txt", "# lux\n1 2 3\n4.5 5 6\n\n7\n");
+  folder.write("light.obj", "v 9 9 9 1 2 3\nv 9 9 9 4.5 5 6\nv 9 9 9 7 7 7\n");
+  folder.write(
+      "light.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float r\nproperty float g\nproperty float b\nend_header\n"
+      "0 0 0 1 2 3\n0 0 0 4.5 5 6\n0 0 0 7 7 7\n");
+  for (const char* name : {"light.txt", "light.obj", "light.ply"}) {
+    ReadOptions options;
+    options.illumination_file = folder / name;
+    const LoadedScene loaded = load(mesh, options);
+    EXPECT_EQ(loaded.scene.illumination, (std::vector<Vec3f>{{1, 2, 3}, {4.5f, 5, 6}, {7, 7, 7}}))
+        << name;
+  }
+  const auto status_with = [&](const std::string& name, const std::string& bytes) {
+    ReadOptions options;
+    options.illumination_file = folder.write(name, bytes);
+    return read_scene(mesh, options, {}).status();
+  };
+  EXPECT_EQ(status_with("short.txt", "1 2 3\n").code(), ErrorCode::bad_input);
+  EXPECT_NE(status_with("two.txt", "1 2\n").message().find("two.txt:1:"), std::string::npos);
+  EXPECT_EQ(status_with("none.obj", "v 0 0 0\nv 0 0 0\nv 0 0 0\n").code(), ErrorCode::bad_input);
+  ReadOptions missing;
+  missing.illumination_file = folder / "nowhere.txt";
+  EXPECT_EQ(read_scene(mesh, missing, {}).status().code(), ErrorCode::not_found);
+}
+
+// What is wrong with the second file's light is told, and told of that file; the first one's light
+// is not used.
+TEST(Illumination, DefectsAreTheSecondFiles) {
+  const TempFolder folder;
+  const auto mesh = folder.write(
+      "mesh.obj", "v 0 0 0 nan 1 1\nv 1 0 0 1 1 1\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
+  folder.write("light.obj", "v 0 0 0 1 2 3\nv 0 0 0 1 2 inf\nv 0 0 0 1 2 3\nv 0 0 0\n");
+  folder.write("light.txt", "1\nnan\n-1\n4\n");
+  const auto defects = [&](const std::string& name) {
+    ReadOptions options;
+    options.illumination_file = folder / name;
+    return load(mesh, options).defects;
+  };
+  for (const char* name : {"light.obj", "light.txt"}) {
+    const DefectReport report = defects(name);
+    EXPECT_EQ(report.count(DefectKind::illumination_not_finite), 1u) << name;
+    EXPECT_EQ(report.defects.size(), 2u) << name;
+    for (const Defect& defect : report.defects)
+      EXPECT_NE(defect.first_places.front().find(name), std::string::npos)
+          << defect.first_places.front();
+  }
+  EXPECT_EQ(defects("light.obj").count(DefectKind::illumination_missing), 1u);
+  EXPECT_EQ(defects("light.txt").count(DefectKind::illumination_negative), 1u);
+}
+
+}  // namespace
+}  // namespace atlas

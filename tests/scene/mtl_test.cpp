@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "libatlas/image/image_io.h"
+#include "libatlas/scene/reader.h"
+#include "tests/scene/temp_folder.h"
+
+namespace atlas {
+namespace {
+
+using test::TempFolder;
+
+LoadedScene load(const std::filesystem::path& path, const ReadOptions& options = {}) {
+  auto loaded = read_scene(path, options, {});
+  EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+  return loaded.ok() ? std::move(*loaded) : LoadedScene{};
+}
+
+TEST(Mtl, TexturesThatAreMissingOrBrokenFallBackToTheColour) {
+  const TempFolder folder;
+  folder.write("broken.png", "this is no image");
+  folder.write("m.mtl", "newmtl a\nKd 0.1 0.2 0.3\nmap_Kd gone.png\nnewmtl b\nmap_Kd broken.png\n");
+  const auto path = folder.write(
+      "s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");
+  const LoadedScene loaded = load(path);
+  EXPECT_EQ(loaded.defects.count(DefectKind::texture_missing), 1u);
+  EXPECT_EQ(loaded.defects.count(DefectKind::texture_unreadable), 1u);
+  for (const Defect& defect : loaded.defects.defects) {
+    const bool tells_why =
+        defect.first_places.front().find(": cannot be read") != std::string::npos;
+    EXPECT_EQ(tells_why, defect.kind == DefectKind::texture_unreadable);
+  }
+  EXPECT_EQ(loaded.scene.materials[0].texture, -1);
+  EXPECT_EQ(loaded.scene.materials[0].diffuse, (Vec3f{0.1f, 0.2f, 0.3f}));
+  ReadOptions options;
+  options.load_textures = false;
+  EXPECT_TRUE(load(path, options).defects.empty());
+}
+
+TEST(Mtl, ATextureOfAnotherMachineIsFoundBesideTheMaterials) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "wood.png", Image8(2, 2, 3, 77), {}).ok());
+  folder.write("m.mtl", "newmtl a\nmap_Kd C:\\Users\\me\\My Maps\\wood.png\n");
+  const LoadedScene loaded = load(folder.write(
+      "s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nusemtl a\nf 1/1 2/1 3/1\n"));
+  EXPECT_TRUE(loaded.defects.empty());
+  ASSERT_EQ(loaded.scene.textures.size(), 1u);
+  EXPECT_EQ(loaded.scene.textures[0].path.filename(), "wood.png");
+}
+
+// Options before a texture's name: what changes nothing is passed over, what cannot be followed is
+// told.
+TEST(Mtl, TextureOptions) {
+  const TempFolder folder;
+  std::filesystem::create_directory(folder / "maps");
+  ASSERT_TRUE(write_png(folder / "maps" / "a b.png", Image8(2, 2, 3, 77), {}).ok());
+  const auto ignored = [&](const std::string& options) {
+    folder.write("m.mtl", "newmtl a\nmap_Kd " + options + " maps\\a b.png\n");
+    const LoadedScene loaded = load(folder.write(
+        "s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nusemtl a\nf 1/1 2/1 3/1\n"));
+    EXPECT_EQ(loaded.scene.textures.size(), 1u) << options;
+    EXPECT_EQ(loaded.scene.materials[0].texture, 0) << options;
+    const std::uint64_t count = loaded.defects.count(DefectKind::texture_option_ignored);
+    EXPECT_EQ(loaded.defects.empty(), count == 0) << options;
+    return count;
+  };
+  for (const char* options : {"", "-mm 0 1", "-clamp off", "-blendu on", "-blendv off -cc off",
+                              "-o 0", "-s 1 1 1 -mm 0 1.0 -o 0 0"}) {
+    EXPECT_EQ(ignored(options), 0u) << options;
+  }
+  for (const char* options : {"-mm 0.5 1", "-mm 0 2", "-clamp on", "-t 0.1", "-t 0 0 1", "-bm 0.5",
+                              "-imfchan r", "-texres 512"}) {
+    EXPECT_EQ(ignored(options), 1u) << options;
+  }
+  EXPECT_EQ(ignored("-clamp on -mm 1 1 -blendu off"), 2u);
+}
+
+}  // namespace
+}  // namespace atlas
