@@ -1,24 +1,32 @@
 // Prints F(A) around the bisection's answer and the steps taken, for a plot:
-//   grouping_curve [items] [groups] > curve.txt
+//   atlas-bench-grouping > curve.txt
 //   gnuplot -e "plot 'curve.txt' i 0 w steps t 'F(A)', '' i 1 w p t 'evaluated'"
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <random>
 
 #include "libatlas/pack/grouping.h"
 
 int main(int argc, char** argv) {
-  const int items = argc > 1 ? std::atoi(argv[1]) : 60, groups = argc > 2 ? std::atoi(argv[2]) : 8;
+  std::size_t items = 60;
+  atlas::GroupingOptions options;
+  options.groups = 8;
+  CLI::App app("Prints F(A), the groups that a capacity A needs, of random sizes.");
+  app.add_option("items", items, "how many")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  app.add_option("groups", options.groups, "wanted")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
   std::mt19937 random(20240601);
-  std::vector<std::uint64_t> sizes(static_cast<std::size_t>(items));
+  std::vector<std::uint64_t> sizes(items);
   for (auto& s : sizes) {
     double normal = -6;
     for (int k = 0; k < 12; ++k) normal += random() * 0x1p-32;
     s = static_cast<std::uint64_t>(600 * std::exp(normal));
   }
-  atlas::GroupingOptions options;
-  options.groups = static_cast<std::uint32_t>(groups);
   const auto result = atlas::group_sizes(sizes, options, {});
   if (!result.ok()) {
     std::fprintf(stderr, "%s\n", result.status().message().c_str());

@@ -1,19 +1,16 @@
 // Packs the uv charts of OBJ files by their outlines, checks every layout independently, and prints
-// a line a model:
-//   pack_outlines OBJ... [--page 2048] [--pages 1] [--padding 1] [--preset fast|default|best]
-//   [--budget S] [--effort LAYOUTS] [--repeat N] [--join] [--square]
-// Uvs that a page of another shape than a square has squeezed get the proportions of the surface
-// back. A single page gets the shape that packs best; with --square or several pages the pages are
-// square. CPU seconds are the least of N runs. --join packs the charts of all files together, every
-// file repeated as often as --copies says.
+// a line a model. Uvs that a page of another shape than a square has squeezed get the proportions
+// of the surface back. A single page gets the shape that packs best unless it shall be square.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "benchmarks/pack/command_line.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/pack/fit.h"
 #include "tests/pack/checks.h"
@@ -124,35 +121,36 @@ int main(int argc, char** argv) {
   options.free_aspect = true;
   int repeats = 1, copies = 1;
   bool join = false;
+  std::vector<std::string> files;
+  CLI::App app("Packs the uv charts of OBJ files by their outlines and checks every layout.");
+  app.add_option("obj", files, "meshes with uvs")->required()->check(CLI::ExistingFile);
+  app.add_option("--page", options.page_size, "side of the largest page, texels")
+      ->check(CLI::Range(16, 1 << 17))
+      ->capture_default_str();
+  app.add_option("--pages", options.pages, "at most; several are square")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  app.add_option("--padding", options.padding, "on each side of a chart, texels")
+      ->check(CLI::Range(0, 1 << 16))
+      ->capture_default_str();
+  app.add_flag("--square", options.square, "a square page");
+  app.add_option("--repeat", repeats, "runs: the least CPU time counts")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_flag("--join", join, "the charts of all files together");
+  app.add_option("--copies", copies, "of --join: of every file")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  atlas::bench::add_effort_options(app, options);
+  CLI11_PARSE(app, argc, argv);
   std::vector<Model> models;
-  for (int i = 1; i < argc; ++i) {
-    const std::string a = argv[i];
-    if (a == "--join") {
-      join = true;
-    } else if (a == "--square") {
-      options.square = true;
-    } else if (a.starts_with("--") && i + 1 < argc) {
-      const std::string value = argv[++i];
-      const double number = std::atof(value.c_str());
-      if (a == "--page") options.page_size = static_cast<std::int32_t>(number);
-      if (a == "--pages") options.pages = static_cast<std::uint32_t>(number);
-      if (a == "--padding") options.padding = static_cast<std::int32_t>(number);
-      if (a == "--budget") options.time_budget = number;
-      if (a == "--effort") options.effort = static_cast<std::uint64_t>(number);
-      if (a == "--repeat") repeats = std::max(1, static_cast<int>(number));
-      if (a == "--copies") copies = std::max(1, static_cast<int>(number));
-      if (a == "--preset")
-        options.preset = value == "fast"   ? atlas::PackPreset::fast
-                         : value == "best" ? atlas::PackPreset::best
-                                           : atlas::PackPreset::standard;
-    } else {
-      const atlas::Result<Model> model = read_charts(a);
-      if (!model.ok()) {
-        std::fprintf(stderr, "%s\n", model.status().message().c_str());
-        return 1;
-      }
-      models.push_back(*model);
+  for (const std::string& file : files) {
+    atlas::Result<Model> model = read_charts(file);
+    if (!model.ok()) {
+      fmt::print(stderr, "atlas-bench-pack-outlines: {}\n", model.status().message());
+      return 1;
     }
+    models.push_back(std::move(*model));
   }
   if (options.square || options.pages > 1) {
     options.free_aspect = false;

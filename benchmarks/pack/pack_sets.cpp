@@ -1,19 +1,16 @@
-// Runs pack_rects over a folder of instances ("W H n", then n lines "w h"; H = 0: a strip), checks
-// every layout independently, and prints totals:
-//   pack_sets FOLDER_OR_FILE... [--rotate] [--preset fast|default|best] [--budget S] [--effort
-//   LAYOUTS] [--each]
-//   [--strip]
-//   [--engine skyline-bl|skyline-mw|max-rects]
-// --strip ignores H and opens the page upwards; the optimum is taken to be the area bound.
+// Runs pack_rects over instances ("W H n", then n lines "w h"; H = 0: a strip), checks every layout
+// independently, and prints totals. With --strip the optimum is taken to be the area bound.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "benchmarks/pack/command_line.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/pack/pack.h"
 
@@ -25,19 +22,19 @@ struct Instance {
   std::vector<atlas::Extent> items;
 };
 
-Instance read_instance(const std::filesystem::path& path) {
+atlas::Result<Instance> read_instance(const std::filesystem::path& path) {
   Instance in;
   in.name = path.stem().string();
   std::ifstream file(path);
-  int n = 0;
+  std::size_t n = 0;
   file >> in.page.width >> in.page.height >> n;
-  in.items.resize(static_cast<std::size_t>(n));
-  for (auto& e : in.items) file >> e.width >> e.height;
-  if (!file) {
-    std::fprintf(stderr, "%s: malformed instance\n", path.c_str());
-    std::exit(1);
-  }
-  return in;
+  for (atlas::Extent e; in.items.size() < n && file >> e.width >> e.height;) in.items.push_back(e);
+  if (file && !in.items.empty()) return in;
+  return atlas::Status(
+      atlas::ErrorCode::bad_input,
+      fmt::format("{}: is no instance (a line \"width height count\", then so many "
+                  "of two numbers)",
+                  path.string()));
 }
 
 // Every item inside its page, none overlapping: a sweep over x with the active items by y.
@@ -76,44 +73,22 @@ bool valid(const Instance& in, const atlas::PackResult& result, bool rotate) {
 struct Arguments {
   atlas::PackOptions options;
   bool each = false, strip = false;
-  std::vector<std::filesystem::path> files;  // sorted
+  std::vector<std::string> places;
 };
 
-Arguments read_arguments(int argc, char** argv) {
-  Arguments read;
-  atlas::PackOptions& options = read.options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string a = argv[i];
-    const auto value = [&] { return std::string(i + 1 < argc ? argv[++i] : ""); };
-    if (a == "--rotate") {
-      options.allow_rotation = true;
-    } else if (a == "--strip") {
-      read.strip = true;
-    } else if (a == "--each") {
-      read.each = true;
-    } else if (a == "--preset") {
-      const std::string p = value();
-      options.preset = p == "fast"   ? atlas::PackPreset::fast
-                       : p == "best" ? atlas::PackPreset::best
-                                     : atlas::PackPreset::standard;
-    } else if (a == "--engine") {
-      const std::string e = value();
-      options.engine = e == "skyline-bl"   ? atlas::PackEngine::skyline_bottom_left
-                       : e == "skyline-mw" ? atlas::PackEngine::skyline_min_waste
-                                           : atlas::PackEngine::max_rects;
-    } else if (a == "--effort") {
-      options.effort = std::strtoull(value().c_str(), nullptr, 10);
-    } else if (a == "--budget") {
-      options.time_budget = std::atof(value().c_str());
-    } else if (std::filesystem::is_directory(a)) {
-      for (const auto& e : std::filesystem::directory_iterator(a))
-        if (e.path().extension() == ".txt") read.files.push_back(e.path());
-    } else {
-      read.files.push_back(a);
+// The files themselves and the .txt files of the folders, sorted.
+std::vector<std::filesystem::path> instances_in(const std::vector<std::string>& places) {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path place : places) {
+    if (!std::filesystem::is_directory(place)) {
+      files.push_back(place);
+      continue;
     }
+    for (const auto& entry : std::filesystem::directory_iterator(place))
+      if (entry.path().extension() == ".txt") files.push_back(entry.path());
   }
-  std::sort(read.files.begin(), read.files.end());
-  return read;
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 struct Totals {
@@ -156,13 +131,43 @@ void run(Instance in, Arguments& arguments, Totals& totals) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Arguments arguments = read_arguments(argc, argv);
+  CLI::App app("Packs sets of rectangles and checks every layout.");
+  Arguments arguments;
+  atlas::PackOptions& options = arguments.options;
+  app.add_option("instances", arguments.places, "folders of .txt files, or files")
+      ->required()
+      ->check(CLI::ExistingPath);
+  app.add_flag("--rotate", options.allow_rotation, "allow quarter turns");
+  app.add_flag("--strip", arguments.strip, "open the pages upwards");
+  app.add_flag("--each", arguments.each, "a line an instance");
+  const std::map<std::string, atlas::PackEngine> engines{
+      {"automatic", atlas::PackEngine::automatic},
+      {"skyline-bl", atlas::PackEngine::skyline_bottom_left},
+      {"skyline-mw", atlas::PackEngine::skyline_min_waste},
+      {"max-rects", atlas::PackEngine::max_rects}};
+  app.add_option("--engine", options.engine, "automatic, skyline-bl, skyline-mw or max-rects")
+      ->transform(CLI::CheckedTransformer(engines).description(""))
+      ->type_name("NAME")
+      ->default_str("automatic");
+  atlas::bench::add_effort_options(app, options);
+  CLI11_PARSE(app, argc, argv);
+  const auto files = instances_in(arguments.places);
+  if (files.empty()) {
+    fmt::print(stderr, "atlas-bench-pack-sets: no .txt file in {}\n", arguments.places.front());
+    return 1;
+  }
   Totals totals;
-  for (const auto& file : arguments.files) run(read_instance(file), arguments, totals);
-  std::printf("%zu instances, %d invalid, cpu %.4f s", arguments.files.size(), totals.invalid,
-              totals.cpu);
-  if (totals.strips) std::printf(", mean gap %.3f %%", totals.gap / totals.strips);
-  if (totals.bins) std::printf(", bins %llu", static_cast<unsigned long long>(totals.bins));
-  std::printf("\n");
+  for (const auto& file : files) {
+    atlas::Result<Instance> instance = read_instance(file);
+    if (!instance.ok()) {
+      fmt::print(stderr, "atlas-bench-pack-sets: {}\n", instance.status().message());
+      return 1;
+    }
+    run(std::move(*instance), arguments, totals);
+  }
+  fmt::print("{} instances, {} invalid, cpu {:.4f} s", files.size(), totals.invalid, totals.cpu);
+  if (totals.strips) fmt::print(", mean gap {:.3f} %", totals.gap / totals.strips);
+  if (totals.bins) fmt::print(", bins {}", totals.bins);
+  fmt::print("\n");
   return totals.invalid > 0;
 }
