@@ -38,6 +38,24 @@ void advise_on_pages(const app::PackCommand& command, const app::PackedAtlas& at
       atlas.pages.size(), wanted, count()));
 }
 
+// Sprites seldom want a page of 2048 x 2048 for themselves.
+void advise_on_room(const app::PackCommand& command, const app::PackedAtlas& atlas,
+                    const Context& context) {
+  constexpr double kMostlyEmpty = 0.25;
+  if (command.kind != app::PackCommand::Kind::images || command.options.crop) return;
+  if (atlas.pages.size() != 1 || atlas.utilization >= kMostlyEmpty) return;
+  context.say(fmt::format("{} x {} texels are mostly empty (--crop cuts them to what is used)",
+                          atlas.pages[0].width, atlas.pages[0].height));
+}
+
+// "3 items on 1 page", "2 of 3 items on 1 page".
+std::string counts_of(const app::PackedAtlas& atlas) {
+  const std::size_t items = atlas.items.size(), pages = atlas.pages.size();
+  return fmt::format("{}{} item{} on {} page{}",
+                     atlas.unplaced > 0 ? fmt::format("{} of ", items - atlas.unplaced) : "", items,
+                     items == 1 ? "" : "s", pages, pages == 1 ? "" : "s");
+}
+
 int main_of(int argc, char** argv) {
   app::PackCommand command;
   if (const int code = app::parse_command_line(argc, argv, command); code >= 0) return code;
@@ -54,12 +72,12 @@ int main_of(int argc, char** argv) {
   }
   atlas->cpu_seconds = cpu_seconds() - start;
   if (command.json) app::print(stdout, fmt::format("{}\n", app::to_summary(*atlas)));
-  terminal.line(fmt::format(
-      "{}: {} item{} on {} page{}, {:.2f} % used{}, {:.3f} CPU s", command.output.string(),
-      atlas->items.size(), atlas->items.size() == 1 ? "" : "s", atlas->pages.size(),
-      atlas->pages.size() == 1 ? "" : "s", 100 * atlas->utilization,
-      atlas->aliases ? fmt::format(", {} aliases", atlas->aliases) : "", atlas->cpu_seconds));
+  terminal.line(fmt::format("{}: {}, {:.2f} % used{}, {:.3f} CPU s", command.output.string(),
+                            counts_of(*atlas), 100 * atlas->utilization,
+                            atlas->aliases ? fmt::format(", {} aliases", atlas->aliases) : "",
+                            atlas->cpu_seconds));
   advise_on_pages(command, *atlas, context);
+  advise_on_room(command, *atlas, context);
   // Whatever was left out has been named; scripts need to know as well.
   if (atlas->unplaced > 0) {
     terminal.error(fmt::format("{} of {} items were not placed (allow larger or more pages)",

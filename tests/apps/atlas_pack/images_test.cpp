@@ -65,5 +65,14 @@ TEST_F(AtlasPack, WhatIsNoFileInAFolderOfImagesIsNamed) {
   EXPECT_NE(r.output.find("in/c: left out, a link to a folder"), std::string::npos) << r.output;
 }
 
+TEST_F(AtlasPack, APageThatStaysMostlyEmptyIsNamedWithTheOptionThatCutsIt) {
+  fs::create_directories(dir_ / "in");
+  ASSERT_TRUE(atlas::write_png(dir_ / "in/a.png", atlas::Image8(8, 8, 3, 9), {}).ok());
+  const std::string words = "2048 x 2048 texels are mostly empty (--crop";
+  EXPECT_NE(run("images in -o out").output.find(words), std::string::npos);
+  const RunResult cropped = run("images in -o out --crop");
+  EXPECT_EQ(cropped.output.find("empty"), std::string::npos) << cropped.output;
+}
+
 }  // namespace
 }  // namespace atlas::test

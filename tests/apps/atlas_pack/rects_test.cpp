@@ -102,6 +102,7 @@ TEST_F(AtlasPack, WhatIsWrongIsSaid) {
   const RunResult large = run("rects large.csv --page 64 -o q.csv");
   EXPECT_EQ(large.exit_code, 1);
   EXPECT_NE(large.output.find("larger than the page"), std::string::npos);
+  EXPECT_NE(large.output.find("q.csv: 1 of 2 items on 1 page, "), std::string::npos);
   EXPECT_NE(read("q.csv").find("1,0,"), std::string::npos);  // the other one is placed
 }
 
