@@ -97,8 +97,11 @@ std::string plain_glb(const GltfParts& parts) {
   return "glTF" + std::string(reinterpret_cast<const char*>(header), 8) + result;
 }
 
-std::string first_line(const std::string& text) {
-  return text.substr(0, text.find('\n'));
+// The first line, without the megabytes of a data URI that it may quote.
+std::string short_line(const std::string& text) {
+  constexpr std::size_t kLongest = 120;
+  const std::string line = text.substr(0, text.find('\n'));
+  return line.size() <= kLongest ? line : line.substr(0, kLongest) + "...";
 }
 
 std::size_t component_size(int type) {
@@ -271,7 +274,7 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, std::vector<fs::path>& b
     error = exception.what();
   }
   if (!folder.status.ok()) return folder.status;
-  if (!loaded) return malformed_gltf(path, error.empty() ? "not a glTF file" : first_line(error));
+  if (!loaded) return malformed_gltf(path, error.empty() ? "not a glTF file" : short_line(error));
   return model;
 }
 

@@ -234,6 +234,20 @@ TEST(Gltf, RangesAreChecked) {
   EXPECT_EQ(partly->defects.count(DefectKind::index_out_of_range), 2u);
 }
 
+TEST(Gltf, AMessageQuotesNoMegabytesOfData) {
+  const TempFolder folder;
+  const json file = {
+      {"asset", {{"version", "2.0"}}},
+      {"buffers",
+       {{{"byteLength", 5},
+         {"uri", "data:application/gltf-buffer;base64," + std::string(1 << 20, 'A')}}}}};
+  const auto loaded = read_scene(folder.write("long.gltf", file.dump()), {}, {});
+  ASSERT_FALSE(loaded.ok());
+  const std::string& message = loaded.status().message();
+  EXPECT_NE(message.find("long.gltf: "), std::string::npos) << message;
+  EXPECT_LT(message.size(), 400u);
+}
+
 TEST(Gltf, RandomDamageNeverCrashes) {
   const TempFolder folder;
   Gltf g;
