@@ -209,13 +209,12 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
   if (exit_code >= 0) return std::nullopt;
   exit_code = 2;
   if (const auto wrong = interpret(raw, command)) {
-    print(stderr, fmt::format("atlas-export: error: {}\n", *wrong));
+    print_error("atlas-export", *wrong);
     return std::nullopt;
   }
   if (command.plan_only && command.quiet && command.report.empty()) {
-    print(stderr,
-          "atlas-export: error: --plan with --quiet tells nothing (leave one out, or add "
-          "--report)\n");
+    print_error("atlas-export",
+                "--plan with --quiet tells nothing (leave one out, or add --report)");
     return std::nullopt;
   }
   command.options.larger_plain_page = app.count("--atlas-size") == 0;

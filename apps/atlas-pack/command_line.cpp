@@ -202,7 +202,7 @@ int parse_command_line(int argc, char** argv, PackCommand& c) {
   add_mesh(app, c);
   if (const int code = parse(app, argc, argv); code >= 0) return code;
   if (const std::string why = about_effort(*app.get_subcommands().front(), c); !why.empty()) {
-    print(stderr, fmt::format("atlas-pack: error: {}\n", why));
+    print_error("atlas-pack", why);
     return 2;
   }
   c.kind = *rects    ? PackCommand::Kind::rects

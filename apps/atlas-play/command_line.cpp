@@ -265,7 +265,7 @@ Parsed parse_command_line(int argc, char** argv) {
     return parsed;
   }
   if (const std::string why = about_window(app, l); !why.empty()) {
-    print(stderr, fmt::format("atlas-play: error: {}\n", why));
+    print_error("atlas-play", why);
     parsed.exit_code = 2;
     return parsed;
   }
@@ -273,7 +273,7 @@ Parsed parse_command_line(int argc, char** argv) {
   if (l.in_window() && app.count("--width") == 0) l.render.width = kWindowWidth;
   if (l.in_window() && app.count("--height") == 0) l.render.height = kWindowHeight;
   if (Status s = finish(l, light); !s.ok()) {
-    print(stderr, fmt::format("atlas-play: error: {}\n", s.message()));
+    print_error("atlas-play", s.message());
     parsed.exit_code = 2;
   }
   return parsed;

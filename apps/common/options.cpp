@@ -152,7 +152,7 @@ CLI::Option* add_off_flag(CLI::App& app, const std::string& name, bool& value,
 
 int parse(CLI::App& app, int argc, char** argv) {
   const auto refuse = [&](const std::string& why) {
-    print(stderr, fmt::format("{}: error: {} (--help lists the options)\n", app.get_name(), why));
+    print_error(app.get_name(), why + " (--help lists the options)");
     return 2;
   };
   app.set_version_flag("--version", fmt::format("{} {}", app.get_name(), LIBATLAS_VERSION));

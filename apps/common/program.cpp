@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -27,8 +28,34 @@ void open_closed_streams() {
 }
 
 int complain(const char* name, std::string_view what) {
-  print(stderr, fmt::format("{}: error: {}\n", name, what));
+  print_error(name, what);
   return 1;
+}
+
+bool continues_character(char c) {
+  return (static_cast<unsigned char>(c) & 0xc0) == 0x80;  // in UTF-8
+}
+
+std::string shortened(std::string_view word) {
+  constexpr std::size_t kLongest = 4096, kShown = 100;  // bytes
+  if (word.size() <= kLongest) return std::string(word);
+  std::size_t head = kShown, tail = word.size() - kShown;
+  while (head > 0 && continues_character(word[head])) --head;
+  while (tail < word.size() && continues_character(word[tail])) ++tail;
+  return fmt::format("{}...{}", word.substr(0, head), word.substr(tail));
+}
+
+// Unicode has two ranges of control characters; UTF-8 writes the second one in two bytes.
+std::string without_controls(std::string_view text) {
+  std::string plain;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    const bool second =
+        c == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
+    if (second) ++i;
+    plain += c == '\n' ? ' ' : c < 0x20 || c == 0x7f || second ? '?' : text[i];
+  }
+  return plain;
 }
 
 }  // namespace
@@ -37,6 +64,23 @@ void print(std::FILE* stream, std::string_view text) {
   errno = 0;
   const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size();
   if (stream == stdout) note_stdout(written && std::fflush(stream) == 0);
+}
+
+std::string one_line(std::string_view text) {
+  while (!text.empty() && text.back() == '\n') text.remove_suffix(1);
+  const std::string plain = without_controls(text);
+  std::string line;
+  for (std::size_t at = 0; at < plain.size();) {
+    const std::size_t end = std::min(plain.find(' ', at), plain.size());
+    line += shortened(std::string_view(plain).substr(at, end - at));
+    if (end < plain.size()) line += ' ';
+    at = end + 1;
+  }
+  return line;
+}
+
+void print_error(std::string_view program, std::string_view text) {
+  print(stderr, fmt::format("{}: error: {}\n", program, one_line(text)));
 }
 
 int run_program(const char* name, int argc, char** argv, int (*body)(int, char**)) {

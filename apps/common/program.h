@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdio>
+#include <string>
 #include <string_view>
 
 namespace atlas::app {
@@ -14,5 +15,13 @@ int run_program(const char* name, int argc, char** argv, int (*body)(int argc, c
 
 // To stdout or stderr; never throws. A failure on stdout is told when the program ends.
 void print(std::FILE* stream, std::string_view text);
+
+// Text for a terminal that may quote what files hold: control characters, which could change how
+// all that follows looks, become '?', line ends spaces, and words longer than a path can be lose
+// their middle.
+std::string one_line(std::string_view text);
+
+// "program: error: text" as one line on stderr.
+void print_error(std::string_view program, std::string_view text);
 
 }  // namespace atlas::app

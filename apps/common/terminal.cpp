@@ -53,22 +53,18 @@ Context Terminal::context(int threads) {
 void Terminal::line(std::string_view text) {
   if (quiet_) return;
   clear_bar();
-  print(stdout, fmt::format("{}\n", text));
+  print(stdout, fmt::format("{}\n", one_line(text)));
 }
 
 void Terminal::error(std::string_view text) {
   clear_bar();
-  // Messages of image libraries bring lines of their own.
-  std::string line(text);
-  while (!line.empty() && line.back() == '\n') line.pop_back();
-  std::replace(line.begin(), line.end(), '\n', ' ');
-  print(stderr, fmt::format("{}: error: {}\n", program_, line));
+  print_error(program_, text);
 }
 
 void Terminal::warning(std::string_view text) {
   if (quiet_) return;
   clear_bar();
-  print(stderr, fmt::format("{}: {}\n", program_, text));
+  print(stderr, fmt::format("{}: {}\n", program_, one_line(text)));
 }
 
 void Terminal::progress(std::string_view stage, double fraction) {

@@ -19,6 +19,17 @@ TEST_F(AtlasExport, MalformedLine) {
                  "bad.obj:2");
 }
 
+// Colours, titles and moves of a terminal would outlive the message; a megabyte would hide it.
+TEST_F(AtlasExport, MessagesObeyNothingThatFilesHold) {
+  expect_refusal(write("bad.obj", "v 0 0 \033[31m\302\233x\n"), "'?[31m?x' is not a number");
+  write("name.gltf", "{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[\"a" +
+                         std::string(1 << 20, '\033') + "b\"]}");
+  const RunResult r = run(fmt::format("{0}/name.gltf -o {0}/w.wrl", dir_.string()));
+  EXPECT_EQ(r.exit_code, 1);
+  EXPECT_EQ(r.output.find('\033'), std::string::npos);
+  EXPECT_LT(r.output.size(), 1000u);
+}
+
 TEST_F(AtlasExport, TruncatedBinary) {
   expect_refusal(write("cut.ply",
                        "ply\nformat binary_little_endian 1.0\nelement vertex 1000\n"
