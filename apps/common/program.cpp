@@ -53,7 +53,7 @@ std::string without_controls(std::string_view text) {
     const bool second =
         c == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
     if (second) ++i;
-    plain += c == '\n' ? ' ' : c < 0x20 || c == 0x7f || second ? '?' : text[i];
+    plain += (c < 0x20 && c != '\n') || c == 0x7f || second ? '?' : text[i];
   }
   return plain;
 }
@@ -66,16 +66,22 @@ void print(std::FILE* stream, std::string_view text) {
   if (stream == stdout) note_stdout(written && std::fflush(stream) == 0);
 }
 
-std::string one_line(std::string_view text) {
-  while (!text.empty() && text.back() == '\n') text.remove_suffix(1);
+std::string printable(std::string_view text) {
   const std::string plain = without_controls(text);
-  std::string line;
+  std::string out;
   for (std::size_t at = 0; at < plain.size();) {
-    const std::size_t end = std::min(plain.find(' ', at), plain.size());
-    line += shortened(std::string_view(plain).substr(at, end - at));
-    if (end < plain.size()) line += ' ';
+    const std::size_t end = std::min(plain.find_first_of(" \n", at), plain.size());
+    out += shortened(std::string_view(plain).substr(at, end - at));
+    if (end < plain.size()) out += plain[end];
     at = end + 1;
   }
+  return out;
+}
+
+std::string one_line(std::string_view text) {
+  while (!text.empty() && text.back() == '\n') text.remove_suffix(1);
+  std::string line = printable(text);
+  std::replace(line.begin(), line.end(), '\n', ' ');
   return line;
 }
 

@@ -16,9 +16,12 @@ int run_program(const char* name, int argc, char** argv, int (*body)(int argc, c
 // To stdout or stderr; never throws. A failure on stdout is told when the program ends.
 void print(std::FILE* stream, std::string_view text);
 
-// Text for a terminal that may quote what files hold: control characters, which could change how
-// all that follows looks, become '?', line ends spaces, and words longer than a path can be lose
-// their middle.
+// Text for a terminal that may quote what files hold: control characters but line ends, which could
+// change how all that follows looks, become '?', and words longer than a path can be lose their
+// middle.
+std::string printable(std::string_view text);
+
+// The same with spaces for line ends, as messages of image libraries bring them.
 std::string one_line(std::string_view text);
 
 // "program: error: text" as one line on stderr.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -53,7 +52,7 @@ Context Terminal::context(int threads) {
 void Terminal::line(std::string_view text) {
   if (quiet_) return;
   clear_bar();
-  print(stdout, fmt::format("{}\n", one_line(text)));
+  print(stdout, fmt::format("{}\n", printable(text)));
 }
 
 void Terminal::error(std::string_view text) {

@@ -200,6 +200,7 @@ TEST_F(AtlasPlay, TheBenchMeasuresWhatItIsAsked) {
       "--bench-shadings unlit,ward --bench-methods none,march --bench-error-frames 2 "
       "--bench-intervals 2,4 --bench ";
   const RunResult r = run(bench + "b");
+  EXPECT_NE(r.output.find("\n| unlit | none |"), std::string::npos) << r.output;
   ASSERT_EQ(r.exit_code, 0) << r.errors;
   for (const char* words : {"| unlit | none |", "| ward | march |", "| march | 2 |",
                             "| march | 4 |", "wrote b (gnuplot"}) {
