@@ -36,11 +36,9 @@ const CLI::App& command_of(const CLI::App& app) {
   return chosen.empty() ? app : *chosen.front();
 }
 
-// What users wrote may be anything: one line of it is shown, without what would confuse a terminal.
-std::string printable(std::string text) {
+// What users wrote may be anything: its beginning is shown.
+std::string start_of(const std::string& text) {
   constexpr std::size_t kLongest = 120;
-  for (char& c : text)
-    if (std::uint8_t(c) < ' ' || c == 127) c = '?';
   return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
 }
 
@@ -61,8 +59,8 @@ std::string about_unknown(const CLI::App& app) {
   for (const CLI::Option* known : command_of(app).get_options())
     for (const std::string& other : known->get_lnames())
       if (name.size() > 4 && name.starts_with("--") && distance(name.substr(2), other) <= near)
-        return fmt::format("unknown option {}: is --{} meant?", printable(word), other);
-  return "unknown option or one name too many: " + printable(word);
+        return fmt::format("unknown option {}: is --{} meant?", start_of(word), other);
+  return "unknown option or one name too many: " + start_of(word);
 }
 
 // An option that is there and empty, as "$OUT" is where no one set it.
@@ -76,7 +74,7 @@ std::string about_empty(const CLI::App& app) {
 std::string about_config(const CLI::App& app, const std::string& entry) {
   const CLI::Option* config = app.get_config_ptr();
   return fmt::format("{}: '{}' is no option and value (write one name=value a line)",
-                     config ? config->as<std::string>() : "--config", printable(entry));
+                     config ? config->as<std::string>() : "--config", start_of(entry));
 }
 
 // CLI11's words for what is wrong, where a user would not know what they mean.

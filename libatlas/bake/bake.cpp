@@ -13,6 +13,7 @@
 #include "libatlas/core/parallel.h"
 #include "libatlas/raster/coverage.h"
 #include "libatlas/raster/sampling.h"
+#include "libatlas/texture/chart_triangles.h"
 #include "libatlas/texture/triangle_light.h"
 
 namespace atlas {
@@ -37,6 +38,8 @@ struct Box {
     return std::min((begin + length + unit - 1) / unit * unit, page) - begin;
   }
 
+  const Chart& chart(const ChartSet& charts) const { return charts.charts[placement.chart]; }
+
   TexelTriangle triangle(const ChartSet& charts, std::uint32_t t) const {
     TexelTriangle out;
     for (int k = 0; k < 3; ++k) {
@@ -58,11 +61,6 @@ struct Job {
 // Distance of the samples on the surface, for the choice of the texture's mip level.
 double sample_spacing(const ChartPlacement& p, int side) {
   return 1 / (std::sqrt(p.texels_per_unit.x * p.texels_per_unit.y) * side);
-}
-
-std::span<const std::uint32_t> triangles_of(const ChartSet& charts, std::uint32_t id) {
-  const Chart& chart = charts.charts[id];
-  return std::span(charts.chart_triangles).subspan(chart.first_triangle, chart.triangle_count);
 }
 
 // Splats a triangle's samples; texel (0, 0)'s centre is at (0.5, 0.5).
@@ -94,7 +92,7 @@ void splat_triangle(const TexelTriangle& p, const TriangleLight& lit, const Samp
 TexelGrid bake_least_squares(const Job& job, const Box& box) {
   LeastSquares fit(box.width, box.height);
   const double spacing = sample_spacing(box.placement, job.grid.side);
-  for (const std::uint32_t t : triangles_of(job.light.charts, box.placement.chart)) {
+  for (const std::uint32_t t : triangles_of(job.light.charts, box.chart(job.light.charts))) {
     const TexelTriangle p = box.triangle(job.light.charts, t);
     const SampleKind kind = sample_kind(p, job.grid);
     if (kind == SampleKind::none) continue;
@@ -111,7 +109,7 @@ TexelGrid bake_average(const Job& job, const Box& box) {
   TexelGrid out(box.width, box.height);
   const double spacing = sample_spacing(box.placement, 1);
   const Rect clip{0, 0, box.width, box.height};
-  for (const std::uint32_t t : triangles_of(job.light.charts, box.placement.chart)) {
+  for (const std::uint32_t t : triangles_of(job.light.charts, box.chart(job.light.charts))) {
     const TexelTriangle p = box.triangle(job.light.charts, t);
     if (sample_kind(p, job.grid) == SampleKind::none) continue;
     TriangleLight lit(job.light.sampler.prepare(t, spacing), job.tone);
@@ -140,7 +138,7 @@ TexelGrid bake_average(const Job& job, const Box& box) {
 void fill_tiny(const Job& job, const Box& box, TexelGrid& texels) {
   if (std::find(texels.known.begin(), texels.known.end(), 1) != texels.known.end()) return;
   Lanes sum{};
-  for (const std::uint32_t t : triangles_of(job.light.charts, box.placement.chart)) {
+  for (const std::uint32_t t : triangles_of(job.light.charts, box.chart(job.light.charts))) {
     const float middle[3] = {1.0f / 3, 1.0f / 3, 1.0f / 3};
     const double spacing = sample_spacing(box.placement, 1);
     sum += TriangleLight(job.light.sampler.prepare(t, spacing), job.tone).at(middle);
@@ -165,7 +163,7 @@ class OwnTexels {
   OwnTexels(const ChartSet& charts, const Box& box, int mip_levels) : box_(box) {
     if (!box.placement.outlined) return;
     std::vector<TexelTriangle> triangles;
-    for (const std::uint32_t t : triangles_of(charts, box.placement.chart))
+    for (const std::uint32_t t : triangles_of(charts, box.chart(charts)))
       triangles.push_back(box.triangle(charts, t));
     own_ = owned_texels(triangles, {box.width, box.height, box.pad, 1 << mip_levels});
   }

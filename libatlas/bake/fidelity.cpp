@@ -5,7 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/random.h"
+#include "libatlas/scene/triangle_area.h"
 #include "libatlas/texture/srgb.h"
 
 namespace atlas {
@@ -18,18 +19,6 @@ struct Sample {
   Vec3f shown;      // display values found in the atlas
   bool found = false;
 };
-
-double triangle_area(const Scene& s, std::size_t t) {
-  const glm::dvec3 a = to_dvec(s.positions[s.indices[3 * t]]);
-  const glm::dvec3 b = to_dvec(s.positions[s.indices[3 * t + 1]]) - a;
-  const glm::dvec3 c = to_dvec(s.positions[s.indices[3 * t + 2]]) - a;
-  return 0.5 * glm::length(glm::cross(b, c));
-}
-
-// Uniform in [0, 1), the same on every machine (std distributions are not).
-double uniform(std::mt19937_64& random) {
-  return static_cast<double>(random() >> 11) * 0x1p-53;
-}
 
 Vec3f bilinear(const Image8& image, Vec2f at) {
   const float fx = std::floor(at.x - 0.5f), fy = std::floor(at.y - 0.5f);

@@ -151,11 +151,13 @@ bool better(const PageLayout& a, const PageLayout& b, const LayoutOptions& optio
   return page_texels(a) < page_texels(b);
 }
 
+// Of boxes or pages: what is fuller leaves outlines nothing to win.
+constexpr double kFull = 0.88;
+
 // Whether outlines may win: not where many charts nearly fill their boxes, which then leave less of
 // a page empty than outlines do.
 bool worth_outlining(const ChartSet& charts, std::span<const Vec2d> texels_per_unit) {
   constexpr std::size_t kMany = 1000;
-  constexpr double kFullBox = 0.88;
   if (charts.charts.size() < kMany) return true;
   double area = 0, box_area = 0;
   for (std::size_t c = 0; c < charts.charts.size(); ++c) {
@@ -164,15 +166,13 @@ bool worth_outlining(const ChartSet& charts, std::span<const Vec2d> texels_per_u
     area += chart.distortion.uv_area * texels;
     box_area += chart.size.x * chart.size.y * texels;
   }
-  return area < kFullBox * box_area;
+  return area < kFull * box_area;
 }
 
 }  // namespace
 
 Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
                                  const LayoutOptions& options, const Context& context) {
-  // Boxes that are this full leave outlines nothing to win.
-  constexpr double kFullBoxes = 0.88;
   if (texels_per_unit.size() != charts.charts.size())
     return Status(ErrorCode::bad_input, fmt::format("{} texel densities for {} charts",
                                                     texels_per_unit.size(), charts.charts.size()));
@@ -186,8 +186,8 @@ Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> 
   LayoutOptions boxes = options;
   boxes.outlines = false;
   Result<PageLayout> boxed = lay_out(charts, texels_per_unit, boxes, context);
-  if (!options.outlines || (boxed.ok() && (boxed->uv_utilization > kFullBoxes ||
-                                           !worth_outlining(charts, texels_per_unit))))
+  if (!options.outlines ||
+      (boxed.ok() && (boxed->uv_utilization > kFull || !worth_outlining(charts, texels_per_unit))))
     return boxed;
   Result<PageLayout> outlined = lay_out(charts, texels_per_unit, options, context);
   if (!outlined.ok()) return boxed;

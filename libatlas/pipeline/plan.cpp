@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "libatlas/core/atomic_file.h"
-#include "libatlas/core/glm_bridge.h"
 #include "libatlas/pipeline/bake_pages.h"
+#include "libatlas/scene/triangle_area.h"
 
 namespace atlas {
 namespace {
@@ -25,9 +25,7 @@ SceneFacts gather_facts(const Scene& scene) {
   SceneFacts facts;
   for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
     const std::uint32_t* v = &scene.indices[3 * t];
-    const glm::dvec3 a = to_dvec(scene.positions[v[0]]);
-    const double area = 0.5 * glm::length(glm::cross(to_dvec(scene.positions[v[1]]) - a,
-                                                     to_dvec(scene.positions[v[2]]) - a));
+    const double area = triangle_area(scene, t);
     facts.area += area;
     const Material& material = scene.materials[scene.triangle_material[t]];
     const bool textured = material.texture >= 0 && !scene.texcoord_indices.empty();

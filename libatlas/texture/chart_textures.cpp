@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "libatlas/core/parallel.h"
+#include "libatlas/texture/chart_triangles.h"
 #include "libatlas/texture/downsizing.h"
 #include "libatlas/texture/sample_chart.h"
 
@@ -37,10 +38,6 @@ double uv_area2(const ChartSet& charts, std::size_t t) {
   const Vec2d b = charts.uvs[charts.triangle_uv[3 * t + 1]];
   const Vec2d c = charts.uvs[charts.triangle_uv[3 * t + 2]];
   return std::fabs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
-}
-
-std::span<const std::uint32_t> triangles_of(const ChartSet& charts, const Chart& chart) {
-  return std::span(charts.chart_triangles).subspan(chart.first_triangle, chart.triangle_count);
 }
 
 // Density of the chart's diffuse textures: root mean square over the area, so that the chart gets

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "libatlas/core/glm_bridge.h"
+#include "libatlas/scene/triangle_area.h"
 #include "libatlas/texture/tone.h"
 #include "libatlas/texture/visibility.h"
 
@@ -16,13 +16,6 @@ constexpr std::size_t kSamples = 1 << 18;
 
 // Fewer sightings than this say nothing about a 99th percentile.
 constexpr std::size_t kSeenNeeded = 4096;
-
-double triangle_area(const Scene& s, std::size_t t) {
-  const glm::dvec3 a = to_dvec(s.positions[s.indices[3 * t]]);
-  const glm::dvec3 b = to_dvec(s.positions[s.indices[3 * t + 1]]) - a;
-  const glm::dvec3 c = to_dvec(s.positions[s.indices[3 * t + 2]]) - a;
-  return 0.5 * glm::length(glm::cross(b, c));
-}
 
 // Point i of the plastic-number sequence (Roberts 2018), folded into barycentric coordinates.
 void barycentric(std::uint64_t i, float b[3]) {

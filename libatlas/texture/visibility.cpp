@@ -7,6 +7,7 @@
 #include <random>
 
 #include "libatlas/core/counting_sort.h"
+#include "libatlas/core/random.h"
 
 namespace atlas {
 namespace {
@@ -18,10 +19,6 @@ constexpr double kVoxelSpacings = 2.5;
 // Half-angle of 50 degrees: about what a viewer's camera shows.
 constexpr double kViewCosine = 0.64;
 constexpr double kMaxVoxels = 1 << 24;
-
-double uniform(std::mt19937_64& random) {
-  return static_cast<double>(random() >> 11) * 0x1p-53;
-}
 
 // A direction within the cone about `axis` whose half-angle has the given cosine, uniform by
 // solid angle; -1: any direction.

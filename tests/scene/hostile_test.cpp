@@ -5,7 +5,6 @@
 
 #include "libatlas/core/clock.h"
 #include "libatlas/scene/reader.h"
-#include "libatlas/scene/statistics.h"
 #include "tests/scene/temp_folder.h"
 
 namespace atlas {
@@ -234,23 +233,6 @@ TEST(Reader, ReadsNoPipes) {
   EXPECT_NE(status.message().find("pipe.obj: cannot be read: not a regular file"),
             std::string::npos)
       << status.message();
-}
-
-TEST(Statistics, OfAKnownScene) {
-  EXPECT_EQ(scene_statistics({}).area, 0);
-  Scene scene;
-  scene.positions = {{0, 0, 0}, {3, 0, 0}, {0, 4, 0}, {900, 0, 0}};
-  scene.illumination = {{0, 0, 0}, {1, 2, 0}, {7, 1, 1}, {99, 99, 99}};
-  scene.indices = {0, 1, 2, 0, 0, 1};
-  const SceneStatistics s = scene_statistics(scene);
-  EXPECT_EQ(s.area, 6);
-  EXPECT_EQ(s.diagonal, 5);
-  EXPECT_EQ(s.high, (Vec3f{3, 4, 0}));
-  EXPECT_EQ(s.used_vertices, 3u);
-  EXPECT_EQ(s.degenerate_triangles, 1u);
-  EXPECT_EQ(s.illumination_max, 7);
-  EXPECT_EQ(s.illumination_mean, 3);
-  EXPECT_EQ(s.unlit_vertices, 1u);
 }
 
 TEST(Reader, CancelEndsIt) {
