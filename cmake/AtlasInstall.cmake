@@ -85,6 +85,10 @@ function(atlas_install_package)
   if(view)
     set(LIBATLAS_HAS_VIEW ON)
   endif()
+  set(LIBATLAS_IS_STATIC ON)
+  if(BUILD_SHARED_LIBS)
+    set(LIBATLAS_IS_STATIC OFF)
+  endif()
   install(EXPORT libatlasTargets NAMESPACE libatlas:: DESTINATION ${package_dir} COMPONENT development)
   configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/libatlasConfig.cmake.in
                                 ${PROJECT_BINARY_DIR}/libatlasConfig.cmake
