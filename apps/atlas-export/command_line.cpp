@@ -18,7 +18,8 @@ struct RawText {
   std::string unit = "m", texel, memory, tone = "linear";
 };
 
-void add_input_options(CLI::App& app, ExportCommand& command, RawText& raw) {
+void add_scene_options(CLI::App& app, ExportCommand& command, RawText& raw) {
+  const OptionGroup group(app, "Scene and world");
   app.add_option("scene", command.scene,
                  "Scene: .obj, .ply, .off, .stl, .gltf, .glb, or a .wrl or .wrz of this program")
       ->required();
@@ -42,6 +43,7 @@ void add_input_options(CLI::App& app, ExportCommand& command, RawText& raw) {
 }
 
 void add_chart_options(CLI::App& app, ExportOptions& options) {
+  const OptionGroup group(app, "Charts");
   app.add_option("--cone", options.charts.cone_degrees,
                  "Largest angle between a chart's axis and its normals, degrees; 0: no limit but "
                  "--max-stretch")
@@ -80,6 +82,7 @@ void add_chart_options(CLI::App& app, ExportOptions& options) {
 }
 
 void add_texture_options(CLI::App& app, ExportOptions& options, RawText& raw) {
+  const OptionGroup group(app, "Textures");
   app.add_option("--atlases", options.atlases, "Largest number of atlas pages")
       ->capture_default_str()
       ->check(within(1, 1'000'000));
@@ -112,8 +115,8 @@ void add_texture_options(CLI::App& app, ExportOptions& options, RawText& raw) {
       ->check(within(-64, 64));
 }
 
-void add_output_options(CLI::App& app, ExportCommand& command) {
-  ExportOptions& options = command.options;
+void add_page_options(CLI::App& app, ExportOptions& options) {
+  const OptionGroup group(app, "Pages and mesh");
   app.add_option("--shifts", options.shifts, "Sub-texel sample grids of the bake")
       ->capture_default_str()
       ->check(within(1, 64));
@@ -147,10 +150,14 @@ void add_output_options(CLI::App& app, ExportCommand& command) {
   app.add_option("--png-level", options.png_compression, "PNG compression, 0..9")
       ->capture_default_str()
       ->check(within(0, 9));
-  add_off_flag(app, "--no-error", options.measure_error, "Do not measure the pages' error");
+}
+
+void add_run_options(CLI::App& app, ExportCommand& command) {
+  const OptionGroup group(app, "Running");
   app.add_option("--report", command.report,
                  "Write a JSON report of every stage; with --plan: of the plan");
   app.add_flag("--plan", command.plan_only, "Print what would run and why, and stop");
+  add_off_flag(app, "--no-error", command.options.measure_error, "Do not measure the pages' error");
   app.add_flag("-q,--quiet", command.quiet, "Print errors only");
   app.add_option("--threads", command.threads, "Threads; 0: all cores")
       ->check(within(0, 1024))
@@ -201,10 +208,11 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
       "atlas-export");
   ExportCommand command;
   RawText raw;
-  add_input_options(app, command, raw);
+  add_scene_options(app, command, raw);
   add_chart_options(app, command.options);
   add_texture_options(app, command.options, raw);
-  add_output_options(app, command);
+  add_page_options(app, command.options);
+  add_run_options(app, command);
   exit_code = parse(app, argc, argv);
   if (exit_code >= 0) return std::nullopt;
   exit_code = 2;

@@ -44,6 +44,7 @@ std::string parse_seconds(const std::string& text, double& seconds) {
 }
 
 void add_page_options(CLI::App& app, PackCommand& c) {
+  const OptionGroup group(app, "Pages");
   constexpr int kMost = 1 << 20;
   app.add_option("--padding", c.options.padding, "Free texels between items")
       ->capture_default_str()
@@ -60,6 +61,7 @@ void add_page_options(CLI::App& app, PackCommand& c) {
 }
 
 void add_effort_options(CLI::App& app, PackCommand& c) {
+  const OptionGroup group(app, "Effort");
   const std::map<std::string, PackPreset> presets{
       {"fast", PackPreset::fast}, {"default", PackPreset::standard}, {"best", PackPreset::best}};
   app.add_option("--preset", c.options.preset, "fast, default or best")
@@ -83,6 +85,10 @@ void add_effort_options(CLI::App& app, PackCommand& c) {
   app.add_option("--seed", c.options.seed, "Seed of --preset best")
       ->capture_default_str()
       ->check(within(0, 1e18, "0 or more"));
+}
+
+void add_run_options(CLI::App& app, PackCommand& c) {
+  const OptionGroup group(app, "Running");
   app.add_option("--threads", c.threads, "Threads; 0: all cores")
       ->capture_default_str()
       ->check(within(0, 1024));
@@ -101,6 +107,7 @@ std::string about_effort(const CLI::App& command, const PackCommand& c) {
 
 // What rectangles and images know and charts do not: any page, as many as it takes, quarter turns.
 void add_rect_options(CLI::App& app, PackCommand& c) {
+  const OptionGroup group(app, "Pages");
   app.add_option_function<std::string>("--page",
                                        [&c](const std::string& t) {
                                          if (std::string e = parse_page(t, c.options.page);
@@ -135,9 +142,10 @@ CLI::App* add_rects(CLI::App& app, PackCommand& c) {
   rects->add_option("sizes", c.input, "CSV: [name,]width,height a line; JSON: an array")
       ->required();
   rects->add_option("-o,--output", c.output, "placed.csv or placed.json")->required();
+  add_rect_options(*rects, c);
   add_page_options(*rects, c);
   add_effort_options(*rects, c);
-  add_rect_options(*rects, c);
+  add_run_options(*rects, c);
   return rects;
 }
 
@@ -158,9 +166,10 @@ CLI::App* add_images(CLI::App& app, PackCommand& c) {
           ->check(within(0, 254));
   add_off_flag(*images, "--no-trim", c.trim, "Keep transparent borders")->excludes(threshold);
   add_off_flag(*images, "--no-alias", c.alias, "Store identical images each");
+  add_rect_options(*images, c);
   add_page_options(*images, c);
   add_effort_options(*images, c);
-  add_rect_options(*images, c);
+  add_run_options(*images, c);
   return images;
 }
 
@@ -188,6 +197,7 @@ void add_mesh(CLI::App& app, PackCommand& c) {
           ""));
   add_page_options(*mesh, c);
   add_effort_options(*mesh, c);
+  add_run_options(*mesh, c);
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ const std::map<std::string, Shading>& shadings() {
 }
 
 void add_picture_options(CLI::App& app, CommandLine& l) {
+  const OptionGroup group(app, "Picture");
   app.add_option("--width", l.render.width, "pixels (default: 1280 in a window, else 640)")
       ->check(within(1, 16384));
   app.add_option("--height", l.render.height, "pixels (default: 800 in a window, else 400)")
@@ -68,9 +69,15 @@ void add_picture_options(CLI::App& app, CommandLine& l) {
       ->capture_default_str()
       ->check(positive());
   app.add_flag("--visibility", l.render.show_visibility, "show the light's visibility as grey");
+  app.add_flag_callback(
+         "--baked-textures", [&l] { l.baked_textures = true; },
+         "the textures hold light (default: for .wrl and for unlit glTF)")
+      ->excludes(app.add_flag_callback(
+          "--no-baked-textures", [&l] { l.baked_textures = false; }, "they hold colours"));
 }
 
 void add_shadow_options(CLI::App& app, CommandLine& l) {
+  const OptionGroup group(app, "Shadows");
   app.add_option("--shadows", l.render.shadows,
                  "none, classic, hold, linear, slerp, slerp-normalised or march")
       ->transform(choices(methods()))
@@ -118,7 +125,8 @@ struct LightText {
   std::string path = "sun:172,50.45,9", end = "loop", up = "y";
 };
 
-void add_run_options(CLI::App& app, CommandLine& l, LightText& light) {
+void add_light_options(CLI::App& app, CommandLine& l, LightText& light) {
+  const OptionGroup group(app, "Moving light");
   app.add_option("--light", light.path,
                  "sun:DAY,LATITUDE,HOUR  fixed:x,y,z  line:x,y,z;x,y,z  arc:...  keys:...;...;...")
       ->capture_default_str();
@@ -141,6 +149,10 @@ void add_run_options(CLI::App& app, CommandLine& l, LightText& light) {
   app.add_option("--step", l.play.degrees_per_frame, "degrees a frame, headless and in the bench")
       ->capture_default_str()
       ->check(within(0, 90));
+}
+
+void add_run_options(CLI::App& app, CommandLine& l) {
+  const OptionGroup group(app, "Running");
   app.add_flag("--headless", l.headless, "no window");
   app.add_flag("--software", l.software, "headless: do not use a GPU");
   app.add_option("--frames", l.play.frames, "headless: how many")
@@ -155,14 +167,10 @@ void add_run_options(CLI::App& app, CommandLine& l, LightText& light) {
   add_off_flag(app, "--no-vsync", l.vsync, "do not wait for the display");
   app.add_flag("--debug", l.debug, "a debug context: every OpenGL error is reported");
   app.add_flag("-q,--quiet", l.quiet, "print errors only");
-  app.add_flag_callback(
-         "--baked-textures", [&l] { l.baked_textures = true; },
-         "the textures hold light (default: for .wrl and for unlit glTF)")
-      ->excludes(app.add_flag_callback(
-          "--no-baked-textures", [&l] { l.baked_textures = false; }, "they hold colours"));
 }
 
 void add_bench_options(CLI::App& app, CommandLine& l) {
+  const OptionGroup group(app, "Measuring");
   CLI::Option* bench =
       app.add_option("--bench", l.bench, "measure every shading with every method; results go here")
           ->excludes("--record")
@@ -258,7 +266,8 @@ Parsed parse_command_line(int argc, char** argv) {
   app.allow_config_extras(CLI::config_extras_mode::error);
   add_picture_options(app, l);
   add_shadow_options(app, l);
-  add_run_options(app, l, light);
+  add_light_options(app, l, light);
+  add_run_options(app, l);
   add_bench_options(app, l);
   if (const int code = parse(app, argc, argv); code >= 0) {
     parsed.exit_code = code;

@@ -32,4 +32,16 @@ CLI::Option* add_off_flag(CLI::App& app, const std::string& name, bool& value,
 // end: 0 after the help, 2 after one line about what is wrong.
 int parse(CLI::App& app, int argc, char** argv);
 
+// The heading of --help under which options stand that are added while this lives.
+class OptionGroup {
+ public:
+  OptionGroup(CLI::App& app, const char* name) : app_(app) { app_.option_defaults()->group(name); }
+  ~OptionGroup() { app_.option_defaults()->group("Options"); }
+  OptionGroup(const OptionGroup&) = delete;
+  OptionGroup& operator=(const OptionGroup&) = delete;
+
+ private:
+  CLI::App& app_;
+};
+
 }  // namespace atlas::app
