@@ -16,6 +16,12 @@ namespace {
 Result<std::vector<Vec3f>> read_text(const fs::path& path) {
   auto bytes = read_text_bytes(path);
   if (!bytes.ok()) return bytes.status();
+  if (std::find(bytes->begin(), bytes->end(), '\0') != bytes->end()) {
+    return Status(ErrorCode::bad_input,
+                  fmt::format("{}: is no text with one `r g b` a line (give that, or the same "
+                              "vertices as .obj, .ply, .off, .gltf or .glb)",
+                              path.string()));
+  }
   TextScanner scan(bytes->begin(), bytes->end());
   std::vector<Vec3f> values;
   for (; !scan.at_end(); scan.next_line()) {

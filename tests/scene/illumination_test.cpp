@@ -42,6 +42,11 @@ TEST(Illumination, FromASecondFile) {
   };
   EXPECT_EQ(status_with("short.txt", "1 2 3\n").code(), ErrorCode::bad_input);
   EXPECT_NE(status_with("two.txt", "1 2\n").message().find("two.txt:1:"), std::string::npos);
+  // A lightmap, say: its first line is nothing to correct.
+  EXPECT_NE(status_with("map.png", std::string("\x89PNG\r\n\0\0\0", 9))
+                .message()
+                .find("map.png: is no text"),
+            std::string::npos);
   EXPECT_EQ(status_with("none.obj", "v 0 0 0\nv 0 0 0\nv 0 0 0\n").code(), ErrorCode::bad_input);
   ReadOptions missing;
   missing.illumination_file = folder / "nowhere.txt";
