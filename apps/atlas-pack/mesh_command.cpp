@@ -170,33 +170,31 @@ std::string to_svg(const RepackedMesh& mesh) {
 Status draw(const std::filesystem::path& path, const RepackedMesh& mesh) {
   if (lower_extension(path) == ".svg") return write_file(path, to_svg(mesh));
   const auto& [scene, charts, fit, uvs] = mesh;
-  std::vector<Image8> pages;
-  for (Extent p : fit.pages) pages.emplace_back(p.width, p.height, 3, std::uint8_t{51});
+  PreviewSheet sheet(fit.pages);
   for (std::size_t c = 0; c < charts.members.size(); ++c) {
     std::uint8_t rgb[3];
     item_color(c, rgb);
-    Image8& page = pages[fit.placements[c].page];
-    for (std::uint32_t t : charts.members[c]) {
+    for (const std::uint32_t t : charts.members[c]) {
       const Vec2d* p = &uvs[3 * std::size_t(t)];
       const double det =
           (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
       if (det == 0) continue;
-      const auto range = [](double a, double b, double d, int limit) {
+      const auto range = [](double a, double b, double d) {
         return std::pair(std::max(0, int(std::floor(std::min({a, b, d})))),
-                         std::min(limit - 1, int(std::ceil(std::max({a, b, d})))));
+                         int(std::ceil(std::max({a, b, d}))));
       };
-      const auto [x0, x1] = range(p[0].x, p[1].x, p[2].x, page.width);
-      const auto [y0, y1] = range(p[0].y, p[1].y, p[2].y, page.height);
-      for (int y = y0; y <= y1; ++y)
-        for (int x = x0; x <= x1; ++x) {
-          const double qx = x + 0.5 - p[0].x, qy = y + 0.5 - p[0].y;
-          const double u = (qx * (p[2].y - p[0].y) - qy * (p[2].x - p[0].x)) / det;
-          const double v = ((p[1].x - p[0].x) * qy - (p[1].y - p[0].y) * qx) / det;
-          if (u >= 0 && v >= 0 && u + v <= 1) std::copy_n(rgb, 3, page.at(x, y));
-        }
+      const auto [x0, x1] = range(p[0].x, p[1].x, p[2].x);
+      const auto [y0, y1] = range(p[0].y, p[1].y, p[2].y);
+      const auto covered = [&](std::int32_t x, std::int32_t y) {
+        const double qx = x + 0.5 - p[0].x, qy = y + 0.5 - p[0].y;
+        const double u = (qx * (p[2].y - p[0].y) - qy * (p[2].x - p[0].x)) / det;
+        const double v = ((p[1].x - p[0].x) * qy - (p[1].y - p[0].y) * qx) / det;
+        return u >= 0 && v >= 0 && u + v <= 1;
+      };
+      sheet.fill(fit.placements[c].page, {x0, y0, x1 - x0 + 1, y1 - y0 + 1}, rgb, covered);
     }
   }
-  return write_preview_png(path, pages);
+  return sheet.write(path);
 }
 
 PackedAtlas describe(const FitResult& fit) {

@@ -84,7 +84,8 @@ std::string to_json(const PackedAtlas& atlas, DataFormat format, std::uint32_t p
     meta["pages"] = Json::array();
     for (Extent e : atlas.pages) meta["pages"].push_back(size(e));
   }
-  return root.dump(1) + "\n";
+  // Names come from files and lists: bytes that are no UTF-8 are replaced.
+  return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string to_summary(const PackedAtlas& atlas) {

@@ -17,11 +17,12 @@ constexpr std::int32_t kGap = 16;
 std::string xml_text(const std::string& text) {
   std::string safe;
   for (char c : text)
-    safe += c == '&'   ? "&amp;"
-            : c == '<' ? "&lt;"
-            : c == '>' ? "&gt;"
-            : c == '"' ? "&quot;"
-                       : std::string(1, c);
+    safe += static_cast<unsigned char>(c) < 0x20 ? "?"  // no XML takes these
+            : c == '&'                           ? "&amp;"
+            : c == '<'                           ? "&lt;"
+            : c == '>'                           ? "&gt;"
+            : c == '"'                           ? "&quot;"
+                                                 : std::string(1, c);
   return safe;
 }
 
@@ -71,26 +72,32 @@ void item_color(std::size_t i, std::uint8_t rgb[3]) {
   }
 }
 
-Status write_preview_png(const std::filesystem::path& path, std::span<const Image8> pages) {
-  std::int64_t width = 0;
-  int height = 1;
-  for (const Image8& p : pages) {
-    width += p.width + kGap;
-    height = std::max(height, p.height);
+PreviewSheet::PreviewSheet(std::span<const Extent> pages) {
+  constexpr std::int64_t kLargest = 4096;
+  std::int64_t width = 0, height = 1;
+  for (const Extent& page : pages) {
+    width += page.width + kGap;
+    height = std::max<std::int64_t>(height, page.height);
   }
-  const auto step = static_cast<int>(
-      std::max<std::int64_t>(1, (std::max<std::int64_t>(width, height) + 4095) / 4096));
-  Image8 sheet(static_cast<int>(std::max<std::int64_t>(1, width / step)),
-               (height + step - 1) / step, 3, 255);
+  const std::int64_t step =
+      std::clamp<std::int64_t>((std::max(width, height) + kLargest - 1) / kLargest, 1, 1 << 30);
+  step_ = static_cast<std::int32_t>(step);
+  image_ = Image8(static_cast<int>(std::max<std::int64_t>(1, width / step)),
+                  static_cast<int>((height + step - 1) / step), 3, 255);
+  constexpr std::uint8_t kFree[3] = {51, 51, 51};
   std::int64_t left = 0;
-  for (const Image8& p : pages) {
-    for (int y = 0; y < p.height / step; ++y)
-      for (int x = 0; x < p.width / step && left / step + x < sheet.width; ++x)
-        std::copy_n(p.at(x * step, y * step), 3, sheet.at(static_cast<int>(left / step) + x, y));
-    left += p.width + kGap;
+  for (const Extent& page : pages) {
+    const auto at = static_cast<std::int32_t>(left / step);
+    pages_.push_back({at, std::min(page.width / step_, image_.width - at), page.height / step_});
+    fill(std::uint32_t(pages_.size() - 1), {0, 0, page.width, page.height}, kFree,
+         [](std::int32_t, std::int32_t) { return true; });
+    left += page.width + kGap;
   }
+}
+
+Status PreviewSheet::write(const std::filesystem::path& path) const {
   AtomicFiles files;
-  if (Status s = write_png(files.path_for(path), sheet, {}); !s.ok())
+  if (Status s = write_png(files.path_for(path), image_, {}); !s.ok())
     return files.told_by_target(s);
   return files.commit();
 }
@@ -106,21 +113,19 @@ Status check_preview(const PackCommand& command) {
 
 Status write_preview(const std::filesystem::path& path, const PackedAtlas& atlas) {
   if (lower_extension(path) == ".svg") return write_file(path, to_svg(atlas));
-  std::vector<Image8> pages;
-  for (Extent p : atlas.pages) pages.emplace_back(p.width, p.height, 3, std::uint8_t{51});
+  PreviewSheet sheet(atlas.pages);
   for (std::size_t i = 0; i < atlas.items.size(); ++i) {
     const PackedItem& item = atlas.items[i];
-    if (!item.at.placed() || item.at.page >= pages.size()) continue;
+    if (!item.at.placed() || item.at.page >= atlas.pages.size()) continue;
     Extent e = item.size;
     if (item.at.rotated) std::swap(e.width, e.height);
-    Image8& page = pages[item.at.page];
     std::uint8_t rgb[3];
     item_color(i, rgb);
-    for (int y = 0; y < e.height; ++y)
-      for (int x = 0; x < e.width; ++x)
-        std::copy_n(rgb, 3, page.at(item.at.x + x, page.height - 1 - item.at.y - y));
+    const std::int32_t bottom = atlas.pages[item.at.page].height - item.at.y - e.height;
+    sheet.fill(item.at.page, {item.at.x, bottom, e.width, e.height}, rgb,
+               [](std::int32_t, std::int32_t) { return true; });
   }
-  return write_preview_png(path, pages);
+  return sheet.write(path);
 }
 
 }  // namespace atlas::app

@@ -1,10 +1,14 @@
 // Pictures of a layout: items in distinct colours, free space in dark grey.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
+#include <span>
+#include <vector>
 
 #include "apps/atlas-pack/packed_atlas.h"
 #include "libatlas/core/image.h"
+#include "libatlas/core/rect.h"
 #include "libatlas/core/status.h"
 
 namespace atlas::app {
@@ -12,8 +16,33 @@ namespace atlas::app {
 // A colour for item i, RGB; neighbours in the list differ in hue.
 void item_color(std::size_t i, std::uint8_t rgb[3]);
 
-// Pages of any drawing, side by side with a gap, scaled down to at most 4096 pixels.
-Status write_preview_png(const std::filesystem::path& path, std::span<const Image8> pages);
+// Pages side by side with a gap, drawn at every step-th texel so that the picture has at most about
+// 4096 pixels a side, however large the pages are.
+class PreviewSheet {
+ public:
+  explicit PreviewSheet(std::span<const Extent> pages);
+
+  // Calls inside(x, y) for the drawn texels of a page's part [x0, x1) x [y0, y1), from its lower
+  // left corner, and colours those for which it is true.
+  template <class Inside>
+  void fill(std::uint32_t page, const Rect& part, const std::uint8_t rgb[3], const Inside& inside) {
+    const Drawn& to = pages_[page];
+    const auto first = [this](std::int32_t texel) { return (texel + step_ - 1) / step_; };
+    for (std::int32_t y = first(part.y); y < std::min(to.height, first(part.top())); ++y)
+      for (std::int32_t x = first(part.x); x < std::min(to.width, first(part.right())); ++x)
+        if (inside(x * step_, y * step_)) std::copy_n(rgb, 3, image_.at(to.left + x, y));
+  }
+
+  Status write(const std::filesystem::path& path) const;
+
+ private:
+  struct Drawn {
+    std::int32_t left = 0, width = 0, height = 0;  // pixels
+  };
+  std::int32_t step_ = 1;  // texels a pixel
+  std::vector<Drawn> pages_;
+  Image8 image_;
+};
 
 // Whether the command's preview, if any, has a format that is known and can be written.
 Status check_preview(const PackCommand& command);

@@ -133,12 +133,10 @@ void blit(const Sprite& sprite, const Placement& at, int extrude, Image8& page) 
 
 Status write_pages(const PackCommand& c, const std::vector<Sprite>& sprites, PackedAtlas& atlas) {
   AtomicFiles files;
-  std::vector<Image8> pages;
   for (std::size_t p = 0; p < atlas.pages.size(); ++p)
     atlas.images.push_back(atlas.pages.size() == 1
                                ? c.output.filename().string() + ".png"
                                : fmt::format("{}-{}.png", c.output.filename().string(), p));
-  std::vector<Image8> previews;
   for (std::uint32_t p = 0; p < atlas.pages.size(); ++p) {
     Image8 page(atlas.pages[p].width, atlas.pages[p].height, 4);
     for (std::size_t i = 0; i < sprites.size(); ++i)
@@ -149,8 +147,7 @@ Status write_pages(const PackCommand& c, const std::vector<Sprite>& sprites, Pac
       return files.told_by_target(s);
     fs::path data = image;
     data.replace_extension(".json");
-    if (Status s = write_file(files.path_for(data), to_json(atlas, c.format, p)); !s.ok())
-      return files.told_by_target(s);
+    if (Status s = files.write(data, to_json(atlas, c.format, p)); !s.ok()) return s;
   }
   return files.commit();
 }

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string>
 
+#include "libatlas/image/image_io.h"
 #include "tests/apps/atlas_pack/run_pack.h"
 
 namespace atlas::test {
@@ -150,6 +151,29 @@ TEST_F(AtlasPack, APipeWithoutAWriterCanBeInterrupted) {
                       "wait $!",
                       (dir_ / "pipe").string()));
   EXPECT_NE(fed.output.find("2 items on 1 page"), std::string::npos) << fed.output;
+}
+
+// A list in Latin-1 ended the program.
+TEST_F(AtlasPack, NamesNeedNotBeUtf8) {
+  write("latin.csv", "caf\xe9,5,5\nb,6,6\n");
+  const RunResult r = run("rects latin.csv -o out.json --preview out.svg");
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  EXPECT_EQ(nlohmann::json::parse(read("out.json"))["frames"].size(), 2u);
+}
+
+// A page of 2^30 texels a side was drawn in full before it was scaled down.
+TEST_F(AtlasPack, PreviewsOfPagesOfAnySizeAreSmall) {
+  write("one.csv", "5,5\n800000000,600000000\n");
+  const RunResult r =
+      run("rects one.csv -o out.csv --page 1073741824x1073741824 --preview out.png");
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  const Result<Image8> picture = read_image8(dir_ / "out.png");
+  ASSERT_TRUE(picture.ok());
+  EXPECT_LE(std::max(picture->width, picture->height), 4096);
+  // Three quarters of the width and more than half of the height are the item's.
+  const std::uint8_t *item = picture->at(picture->width / 2, picture->height / 2),
+                     *free = picture->at(picture->width * 7 / 8, picture->height * 7 / 8);
+  EXPECT_FALSE(std::equal(item, item + 3, free));
 }
 
 }  // namespace
