@@ -250,6 +250,16 @@ Status check(std::span<const FitItem> items, const FitOptions& o) {
   return {};
 }
 
+// Outlines are laid on cells, whose number grows with the square of the page's side: one of 32768
+// texels took 2.8 GB and a minute. Cells of which so many make a side lose a ten-thousandth of it
+// around each chart; they are multiples of what was asked for.
+std::int32_t outline_alignment(const FitOptions& options) {
+  constexpr std::int32_t kMostCells = 8192;
+  std::int32_t alignment = options.alignment;
+  while (options.page_size / alignment > kMostCells) alignment *= 2;
+  return alignment;
+}
+
 // The largest scale that was seen to fit, by bisection; the layout of that scale. Each packing
 // halves the interval on average; with 12 of them the scale is within 0.1 % of the threshold.
 bool search_scale(BoxFit& fit, FitResult& result, BoxLayout& best) {
@@ -339,7 +349,10 @@ Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& gi
   FitResult result;
   result.scale = options.max_scale;
   if (items.empty()) return result;
-  if (!options.shapes.empty()) return pack::fit_outlines(items, options, context);
+  if (!options.shapes.empty()) {
+    options.alignment = outline_alignment(options);
+    return pack::fit_outlines(items, options, context);
+  }
   BoxFit fit(items, options, context);
   BoxLayout best;
   const bool found = search_scale(fit, result, best);

@@ -102,6 +102,31 @@ TEST(Extremes, TeethFinerThanCellsTakeLittleMemory) {
   EXPECT_LT(peak_memory(), std::int64_t{1} << 30);
 }
 
+// Cells of single texels would take 45 GB.
+TEST(Extremes, HugePagesTakeNoMoreThanLargeOnes) {
+  test::Noise noise{3};
+  std::vector<std::vector<Vec2d>> corners;
+  for (int i = 0; i < 20; ++i) corners.push_back(test::blob(noise, 10, 40));
+  const test::ChartItems charts(std::move(corners));
+  FitOptions o = outlines(charts);
+  o.page_size = 1 << 17;
+  o.alignment = 3;
+  o.power_of_two = false;
+  o.padding = 7;
+  o.max_scale = 1e6;
+  for (const bool free_aspect : {false, true}) {
+    o.free_aspect = free_aspect;
+    const Result<FitResult> fit = fit_pages(charts.items, o, {});
+    ASSERT_TRUE(fit.ok()) << fit.status().message();
+    EXPECT_EQ(fit->pages.size(), 1u);
+    EXPECT_GT(fit->utilization, 0.5);
+    expect_on_pages(*fit);
+    for (const FitPlacement& p : fit->placements)
+      EXPECT_EQ(p.box.x % 3 + p.box.y % 3 + p.box.width % 3 + p.box.height % 3, 0);
+  }
+  EXPECT_LT(peak_memory(), std::int64_t{1} << 30);
+}
+
 // 10^5 triangles that share one corner only: looking for each loop's next edge there must not begin
 // anew at the first one, which took 7 s.
 TEST(Extremes, PetalsAroundOneCornerTakeLittleTime) {
