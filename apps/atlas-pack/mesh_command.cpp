@@ -243,6 +243,12 @@ Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> item
   fit.rotations = c.rotations;
   fit.any_angle = c.rotations > 4;
   Result<FitResult> fitted = fit_pages(items, fit, context);
+  if (!fitted.ok() && fitted.status().code() == ErrorCode::no_solution)
+    return Status(
+        ErrorCode::no_solution,
+        fmt::format("{}: the gutters of its {} charts leave no room on {} page{} of {} "
+                    "texels (give a larger --page, more --pages or a smaller --padding)",
+                    c.input.string(), items.size(), c.pages, c.pages == 1 ? "" : "s", c.page_side));
   if (!fitted.ok()) return fitted.status();
   for (FitPlacement& p : fitted->placements) {
     p.offset = {p.offset.x + border, p.offset.y + border};

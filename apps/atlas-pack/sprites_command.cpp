@@ -131,6 +131,18 @@ void blit(const Sprite& sprite, const Placement& at, int extrude, Image8& page) 
     }
 }
 
+// As no program reads images that take more memory than that.
+Status check_sizes(const PackedAtlas& atlas) {
+  constexpr std::int64_t kMostTexels = std::int64_t{1} << 30;
+  for (const Extent& page : atlas.pages)
+    if (page.area() > kMostTexels)
+      return {ErrorCode::bad_option,
+              fmt::format("--page: an image of {} x {} texels takes {:.0f} GiB (give a smaller "
+                          "--page, or --crop)",
+                          page.width, page.height, double(page.area()) / (1 << 28))};
+  return {};
+}
+
 Status write_pages(const PackCommand& c, const std::vector<Sprite>& sprites, PackedAtlas& atlas) {
   AtomicFiles files;
   for (std::size_t p = 0; p < atlas.pages.size(); ++p)
@@ -215,6 +227,7 @@ Result<PackedAtlas> run_images(const PackCommand& c, const Context& context) {
   for (std::size_t i = 0; i < sprites.size(); ++i)
     if (sprites[i].alias_of >= 0) atlas.items[i].at = atlas.items[sprites[i].alias_of].at;
   atlas.aliases = aliases;
+  if (Status s = check_sizes(atlas); !s.ok()) return s;
   if (Status s = write_pages(c, sprites, atlas); !s.ok()) return s;
   if (!c.preview.empty())
     if (Status s = write_preview(c.preview, atlas); !s.ok()) return s;

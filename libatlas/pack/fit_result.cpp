@@ -52,9 +52,10 @@ double share_of_pages(double content, const FitResult& result) {
 
 Status no_room(std::size_t charts, const FitOptions& options) {
   return {ErrorCode::no_solution,
-          fmt::format("fit: {} charts do not fit {} pages of {} x {} even at their minimum sides "
-                      "(allow more or larger pages, or a smaller minimum_side)",
-                      charts, options.pages, options.page_size, options.page_size)};
+          fmt::format("fit: {} charts do not fit {} page{} of {} x {} even at their minimum sides "
+                      "(allow more or larger pages, or a smaller minimum_side or padding)",
+                      charts, options.pages, options.pages == 1 ? "" : "s", options.page_size,
+                      options.page_size)};
 }
 
 }  // namespace atlas::pack

@@ -74,5 +74,17 @@ TEST_F(AtlasPack, APageThatStaysMostlyEmptyIsNamedWithTheOptionThatCutsIt) {
   EXPECT_EQ(cropped.output.find("empty"), std::string::npos) << cropped.output;
 }
 
+// It took 14 GB before anything was drawn.
+TEST_F(AtlasPack, PagesThatNoMemoryHoldsAreRefused) {
+  fs::create_directories(dir_ / "in");
+  ASSERT_TRUE(atlas::write_png(dir_ / "in/a.png", atlas::Image8(8, 8, 3, 9), {}).ok());
+  const RunResult r = run("images in -o out --page 60000x60000");
+  EXPECT_EQ(r.exit_code, 2) << r.output;
+  EXPECT_NE(r.output.find("60000 x 60000 texels takes 13 GiB (give a smaller --page, or --crop)"),
+            std::string::npos)
+      << r.output;
+  EXPECT_EQ(run("images in -o out --page 60000x60000 --crop").exit_code, 0);
+}
+
 }  // namespace
 }  // namespace atlas::test

@@ -128,6 +128,11 @@ TEST_F(AtlasPack, MeshOptionsDoWhatTheySay) {
   pages("--preview p.svg");
   EXPECT_NE(read("p.svg").find("<path"), std::string::npos);
   EXPECT_EQ(run("mesh t.obj -o out.obj --preview p.gif").exit_code, 2);
+  const RunResult full = run("mesh t.obj -o out.obj --page 64 --padding 40");
+  EXPECT_EQ(full.exit_code, 1);
+  EXPECT_NE(full.output.find("a larger --page, more --pages or a smaller --padding"),
+            std::string::npos)
+      << full.output;
   EXPECT_EQ(run("mesh t.obj -o out.obj --max-width 99").exit_code, 2);  // charts: square pages
 }
 
