@@ -77,27 +77,34 @@ std::string about_config(const CLI::App& app, const std::string& entry) {
                      config ? config->as<std::string>() : "--config", start_of(entry));
 }
 
+std::string about_value(const CLI::App& app, const std::string& name, const std::string& value) {
+  const CLI::Option* option = command_of(app).get_option_no_throw(name);
+  const bool flag = option && option->get_expected_max() == 0;
+  return fmt::format("{} {}: {}", name, value,
+                     flag ? "is neither true nor false" : "not a number that it can be");
+}
+
 // CLI11's words for what is wrong, where a user would not know what they mean.
 std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
   const std::string text = error.what();
   constexpr std::string_view kConfig = "INI was not able to parse ";
   if (text.starts_with(kConfig)) return about_config(app, text.substr(kConfig.size()));
   if (std::string unknown = about_unknown(app); !unknown.empty()) return unknown;
-  constexpr std::string_view kFewer = ": At least ", kReceived = " required but received ";
-  if (const auto at = text.find(kFewer), to = text.find(kReceived);
-      at != std::string::npos && to != std::string::npos)
-    return fmt::format("{} takes {} values with commas between them, not {}", text.substr(0, at),
-                       text.substr(at + kFewer.size(), to - at - kFewer.size()),
-                       text.substr(to + kReceived.size()));
-  constexpr std::string_view kConversion = "Could not convert: ";
-  const auto equals = text.find(" = ");
-  if (text.starts_with(kConversion) && equals != std::string::npos)
-    return fmt::format("{} {}: not a number that it can be",
-                       text.substr(kConversion.size(), equals - kConversion.size()),
-                       text.substr(equals + 3));
   constexpr std::string_view kTwice = ": At Most 1 required";
   if (const auto at = text.find(kTwice); at != std::string::npos)
     return text.substr(0, at) + " is given more than once";
+  constexpr std::string_view kReceived = " required but received ";
+  for (const std::string_view bound : {": At least ", ": At Most "})
+    if (const auto at = text.find(bound), to = text.find(kReceived);
+        at != std::string::npos && to != std::string::npos)
+      return fmt::format("{} takes {} values with commas between them, not {}", text.substr(0, at),
+                         text.substr(at + bound.size(), to - at - bound.size()),
+                         text.substr(to + kReceived.size()));
+  constexpr std::string_view kConversion = "Could not convert: ";
+  const auto equals = text.find(" = ");
+  if (text.starts_with(kConversion) && equals != std::string::npos)
+    return about_value(app, text.substr(kConversion.size(), equals - kConversion.size()),
+                       text.substr(equals + 3));
   if (text == "A subcommand is required") return "the name of a command is needed first";
   return text;
 }

@@ -109,6 +109,8 @@ TEST_F(Mistakes, LightsAndDirectionsNameTheirOption) {
   const std::string play = "t.obj --headless --software ";
   expect_complaint(ATLAS_PLAY, play + "--north y",
                    "--north takes 3 values with commas between them");
+  expect_complaint(ATLAS_PLAY, play + "--north 0,1,0,0",
+                   "--north takes 3 values with commas between them, not 4");
   expect_complaint(ATLAS_PLAY, play + "--north 0,1,0", "--light sun:172,50.45,9: up and north");
   expect_complaint(ATLAS_PLAY, play + "--light sun:172,91,9",
                    "--light sun:172,91,9: the sun needs");
@@ -121,6 +123,9 @@ TEST_F(Mistakes, ConfigurationFilesAreNamedAndKeepTheTerminalClean) {
   write("d.ini", "\x1b[2J\x07garbage\n");
   expect_complaint(ATLAS_PLAY, "t.obj --headless --config d.ini",
                    "d.ini: '?[2J?garbage' is no option");
+  write("e.ini", "no-snap=maybe\n");
+  expect_complaint(ATLAS_PLAY, "t.obj --headless --config e.ini",
+                   "--no-snap maybe: is neither true nor false");
 }
 
 TEST_F(Mistakes, ThePreviewOfACabinIsNoneOfItsTextures) {
