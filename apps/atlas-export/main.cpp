@@ -8,6 +8,7 @@
 #include "apps/common/program.h"
 #include "apps/common/terminal.h"
 #include "libatlas/core/clock.h"
+#include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/pipeline/bake_pages.h"
 #include "libatlas/pipeline/export_world.h"
@@ -89,7 +90,7 @@ Status check_textures_stay(const Scene& scene, const std::filesystem::path& targ
 
 // What is written with the target.
 std::filesystem::path beside(const std::filesystem::path& target) {
-  const std::string extension = world_extension(target);
+  const std::string extension = lower_extension(target);
   if (extension == ".obj") return std::filesystem::path(target).replace_extension("mtl");
   if (extension == ".gltf") return std::filesystem::path(target).replace_extension("bin");
   return {};
@@ -101,7 +102,7 @@ Status check_outputs(const app::ExportCommand& command) {
   if (Status s = app::check_output(target, {command.scene, light, report}); !s.ok()) return s;
   if (Status s = app::check_output(report, {command.scene, light, beside(target)}); !s.ok())
     return s;
-  const std::string ending = app::lower_extension(report);
+  const std::string ending = lower_extension(report);
   const bool image = ending == ".png" || ending == ".exr";
   if (image && named_as_page(report, target))
     return {ErrorCode::bad_option,

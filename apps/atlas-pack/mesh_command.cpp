@@ -11,6 +11,7 @@
 #include "apps/atlas-pack/uv_charts.h"
 #include "apps/common/files.h"
 #include "libatlas/core/atomic_file.h"
+#include "libatlas/core/file_extension.h"
 #include "libatlas/pack/fit.h"
 #include "libatlas/scene/reader.h"
 

@@ -7,6 +7,7 @@
 
 #include "apps/common/files.h"
 #include "libatlas/core/atomic_file.h"
+#include "libatlas/core/file_extension.h"
 #include "libatlas/image/image_io.h"
 
 namespace atlas::app {

@@ -12,6 +12,7 @@
 #include "apps/atlas-pack/preview.h"
 #include "apps/common/files.h"
 #include "libatlas/core/atomic_file.h"
+#include "libatlas/core/file_extension.h"
 
 namespace atlas::app {
 namespace {

@@ -8,6 +8,7 @@
 #include "apps/common/files.h"
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/clock.h"
+#include "libatlas/core/file_extension.h"
 #include "libatlas/image/image_io.h"
 
 namespace atlas::app {

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 
@@ -74,12 +73,6 @@ Result<std::string> read_text(const fs::path& path, const Context& context) {
   if (text.size() > kMost)
     return failed(ErrorCode::bad_input, "holds more than 1 GiB (no list is so long)");
   return text;
-}
-
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
 }
 
 }  // namespace atlas::app

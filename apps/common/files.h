@@ -19,7 +19,4 @@ Status check_output(const std::filesystem::path& output,
 // Up to 1 GiB. Errors: not_found, io, bad_input, cancelled.
 Result<std::string> read_text(const std::filesystem::path& path, const Context& context);
 
-// The extension in small letters, however the name has it: .CSV is .csv.
-std::string lower_extension(const std::filesystem::path& path);
-
 }  // namespace atlas::app

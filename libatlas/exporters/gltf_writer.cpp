@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "libatlas/core/file_extension.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/exporters/camera.h"
 #include "libatlas/exporters/text_output.h"
@@ -257,7 +258,7 @@ void write_glb(TextFile& file, std::string text, const std::string& binary) {
 Result<WorldFile> write_gltf(const World& world, const fs::path& path, AtomicFiles& files,
                              const Context& context) {
   if (Status s = check_world(world); !s.ok()) return s;
-  const bool binary = world_extension(path) == ".glb";
+  const bool binary = lower_extension(path) == ".glb";
   WorldFile result;
   GltfBuilder builder(world, binary);
   Unifier unifier(world.uvs.size());

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "libatlas/core/file_extension.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/exporters/camera.h"
 #include "libatlas/exporters/compact_page.h"
@@ -163,7 +164,7 @@ Result<WorldFile> write_vrml(const World& world, const fs::path& path, AtomicFil
                              const Context& context) {
   if (Status s = check_world(world); !s.ok()) return s;
   WorldFile result;
-  const bool gzip = world_extension(path) == ".wrz";
+  const bool gzip = lower_extension(path) == ".wrz";
   const fs::path temporary = files.path_for(path);
   TextFile file(temporary, path, gzip);
   if (too_far_for_floats(world)) result.origin_left_out = world.origin;

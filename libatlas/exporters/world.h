@@ -81,9 +81,6 @@ Result<WorldFile> write_world(const World& world, const std::filesystem::path& p
                               AtomicFiles& files, const Context& context);
 Status check_world_extension(const std::filesystem::path& path);
 
-// The extension that chooses the format: in small letters, however the name has it.
-std::string world_extension(const std::filesystem::path& path);
-
 // Whether a world of this extension says where a viewer starts; the others ignore
 // World::viewpoint, which need not be chosen for them.
 bool holds_viewpoint(const std::filesystem::path& path);

@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/world.h"
 
 namespace atlas {
@@ -26,19 +27,13 @@ constexpr std::array<Format, 5> kFormats{{{".wrl", write_vrml, true},
                                           {".glb", write_gltf, true}}};
 
 const Format* format_of(const std::filesystem::path& path) {
-  const std::string extension = world_extension(path);
+  const std::string extension = lower_extension(path);
   const auto found = std::find_if(kFormats.begin(), kFormats.end(),
                                   [&](const Format& f) { return f.extension == extension; });
   return found == kFormats.end() ? nullptr : found;
 }
 
 }  // namespace
-
-std::string world_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
-  return extension;
-}
 
 Status check_world_extension(const std::filesystem::path& path) {
   if (format_of(path)) return {};

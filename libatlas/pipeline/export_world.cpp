@@ -10,6 +10,7 @@
 #include "libatlas/charts/tiles.h"
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/clock.h"
+#include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/viewpoint.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/pipeline/advice.h"
@@ -309,7 +310,7 @@ class Export {
     report_.triangles_out = mesh.triangle_chart.size();
     Result<WorldFile> world_file = write_world(world, options_.target, files_, context_);
     if (!world_file.ok()) return world_file.status();
-    if (world_extension(options_.target) == ".glb") {  // holds its images itself
+    if (lower_extension(options_.target) == ".glb") {  // holds its images itself
       for (const auto& image : image_sources_) files_.discard(image);
       for (PageReport& page : report_.pages) page.image.clear();
     }

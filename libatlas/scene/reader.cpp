@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "libatlas/core/clock.h"
+#include "libatlas/core/file_extension.h"
 #include "libatlas/scene/formats.h"
 
 namespace atlas {
@@ -17,9 +16,7 @@ namespace {
 using Reader = Status (*)(const fs::path&, SceneBuilder&, const Context&);
 
 Reader reader_for(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_extension(path);
   if (extension == ".obj") return read_obj;
   if (extension == ".wrl" || extension == ".wrz") return read_vrml;
   if (extension == ".gltf" || extension == ".glb") return read_gltf;

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "libatlas/core/clock.h"
+#include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/scene/reader.h"
@@ -16,7 +17,7 @@ namespace atlas {
 namespace fs = std::filesystem;
 
 bool textures_hold_light(const fs::path& path) {
-  const std::string extension = world_extension(path);
+  const std::string extension = lower_extension(path);
   if (extension == ".wrl" || extension == ".wrz") return true;
   if (extension != ".gltf" && extension != ".glb") return false;
   // The extension is named in the document's text, which GLB puts first.
@@ -29,7 +30,7 @@ bool textures_hold_light(const fs::path& path) {
 
 bool world_is_z_up(const fs::path& path) {
   std::error_code error;
-  if (world_extension(path) != ".wrl" && world_extension(path) != ".wrz") return false;
+  if (lower_extension(path) != ".wrl" && lower_extension(path) != ".wrz") return false;
   if (!fs::is_regular_file(path, error)) return false;
   std::string head(4096, '\0');                    // WorldInfo comes first
   const gzFile file = gzopen(path.c_str(), "rb");  // reads plain text, too
