@@ -144,12 +144,32 @@ Status check_sizes(const PackedAtlas& atlas) {
   return {};
 }
 
+std::string page_image(const PackCommand& c, std::size_t page, std::size_t pages) {
+  const std::string base = c.output.filename().string();
+  return pages == 1 ? base + ".png" : fmt::format("{}-{}.png", base, page);
+}
+
+// Pages of an earlier run to the same name, which had more or fewer of them, are no part of this
+// atlas.
+void name_old_pages(const PackCommand& c, std::size_t pages, const Context& context) {
+  const auto there = [&](const std::string& image) {
+    std::error_code error;
+    return fs::exists(c.output.parent_path() / image, error);
+  };
+  std::vector<std::string> old;
+  if (pages > 1 && there(page_image(c, 0, 1))) old.push_back(page_image(c, 0, 1));
+  for (std::size_t p = pages == 1 ? 0 : pages; there(page_image(c, p, 2)); ++p)
+    old.push_back(page_image(c, p, 2));
+  if (old.empty()) return;
+  context.say(fmt::format(
+      "{}{}: of an earlier run with other pages, no part of this atlas (may be removed)",
+      (c.output.parent_path() / old.front()).string(), old.size() == 1 ? "" : " to " + old.back()));
+}
+
 Status write_pages(const PackCommand& c, const std::vector<Sprite>& sprites, PackedAtlas& atlas) {
   AtomicFiles files;
   for (std::size_t p = 0; p < atlas.pages.size(); ++p)
-    atlas.images.push_back(atlas.pages.size() == 1
-                               ? c.output.filename().string() + ".png"
-                               : fmt::format("{}-{}.png", c.output.filename().string(), p));
+    atlas.images.push_back(page_image(c, p, atlas.pages.size()));
   for (std::uint32_t p = 0; p < atlas.pages.size(); ++p) {
     Image8 page(atlas.pages[p].width, atlas.pages[p].height, 4);
     for (std::size_t i = 0; i < sprites.size(); ++i)
@@ -230,6 +250,7 @@ Result<PackedAtlas> run_images(const PackCommand& c, const Context& context) {
   atlas.aliases = aliases;
   if (Status s = check_sizes(atlas); !s.ok()) return s;
   if (Status s = write_pages(c, sprites, atlas); !s.ok()) return s;
+  name_old_pages(c, atlas.pages.size(), context);
   if (!c.preview.empty())
     if (Status s = write_preview(c.preview, atlas); !s.ok()) return s;
   return atlas;

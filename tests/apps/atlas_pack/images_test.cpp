@@ -74,6 +74,24 @@ TEST_F(AtlasPack, APageThatStaysMostlyEmptyIsNamedWithTheOptionThatCutsIt) {
   EXPECT_EQ(cropped.output.find("empty"), std::string::npos) << cropped.output;
 }
 
+TEST_F(AtlasPack, PagesOfAnEarlierRunAreNamed) {
+  fs::create_directories(dir_ / "in");
+  for (int i = 0; i < 3; ++i) {
+    const auto level = static_cast<std::uint8_t>(50 * i);
+    const fs::path image = dir_ / fmt::format("in/{}.png", i);
+    ASSERT_TRUE(atlas::write_png(image, atlas::Image8(40, 40, 3, level), {}).ok());
+  }
+  const std::string three = "images in -o out --page 40x40",
+                    one = "images in -o out --page 128x128";
+  EXPECT_EQ(run(three).output.find("earlier"), std::string::npos);
+  EXPECT_TRUE(fs::exists(dir_ / "out-2.png"));
+  const RunResult fewer = run(one);
+  EXPECT_NE(fewer.output.find("out-0.png to out-2.png: of an earlier run"), std::string::npos)
+      << fewer.output;
+  const RunResult more = run(three);
+  EXPECT_NE(more.output.find("out.png: of an earlier run"), std::string::npos) << more.output;
+}
+
 // It took 14 GB before anything was drawn.
 TEST_F(AtlasPack, PagesThatNoMemoryHoldsAreRefused) {
   fs::create_directories(dir_ / "in");
