@@ -13,7 +13,6 @@
 namespace atlas {
 namespace {
 
-constexpr std::uint32_t kLeastPerCell = 3;
 // Steps between triangles of one plane, or with normals hardly apart, whose square exceeds the two
 // triangles' area so many times lead through needles. They count as far as the two triangles are
 // high over the edge between them, but this share of the way between centroids at least: with
@@ -86,8 +85,9 @@ float through_needles(const Topology& topology, std::uint32_t h, float step) {
 }
 
 // The last pass: triangles to seeds.
-Cells grow_triangles(const Topology& topology, const Grains& grains, const CellSeeds& seeds,
+Cells grow_triangles(const CellInput& input, const Grains& grains, const CellSeeds& seeds,
                      const Context& context) {
+  const Topology& topology = input.topology;
   constexpr std::uint32_t visits_between_looks = 4096;
   const std::size_t n = topology.triangle_count(), cells = seeds.grain.size();
   std::vector<std::uint32_t> seed(cells, kNoIndex);
@@ -132,7 +132,7 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const CellS
     const CellRuler& ruler = rulers[topology.component[visit.node]];
     for (std::uint32_t h = 3 * visit.node; h < 3 * visit.node + 3; ++h) {
       const std::uint32_t o = topology.opposite[h];
-      if (o == kNoIndex) continue;
+      if (o == kNoIndex || input.walled(visit.node, o / 3)) continue;
       Ground& next_to = ground[o / 3];
       if (next_to.distance < 0) continue;
       float step = glm::distance(from, next_to.middle);
@@ -148,25 +148,20 @@ Cells grow_triangles(const Topology& topology, const Grains& grains, const CellS
   result.count = static_cast<std::uint32_t>(cells);
   result.of_triangle.reserve(n);
   for (const Ground& g : ground) result.of_triangle.push_back(g.cell);
-  pull_teeth(topology, result);
+  pull_teeth(topology, input.faces, result);
   return result;
 }
 
 }  // namespace
 
-Cells grow_cells(const Topology& topology, const CellOptions& wanted, const Context& context) {
-  const std::size_t triangles = std::max(wanted.mesh_triangles, topology.triangle_count());
-  CellOptions options = wanted;
-  options.triangles_per_cell =
-      std::clamp(static_cast<std::uint32_t>(triangles / wanted.cells_of_small_mesh),
-                 std::min(kLeastPerCell, wanted.triangles_per_cell), wanted.triangles_per_cell);
-  if (topology.component_count == 0) {
-    return {std::vector<std::uint32_t>(topology.triangle_count(), kNoIndex), 0};
+Cells grow_cells(const CellInput& input, const CellOptions& options, const Context& context) {
+  if (input.topology.component_count == 0) {
+    return {std::vector<std::uint32_t>(input.topology.triangle_count(), kNoIndex), 0};
   }
-  const Grains grains = grow_grains(topology, options);
-  const CellSeeds seeds = choose_seeds(topology, grains, options, context);
+  const Grains grains = grow_grains(input);
+  const CellSeeds seeds = choose_seeds(input, grains, options, context);
   if (context.cancelled()) return {};
-  return grow_triangles(topology, grains, seeds, context);
+  return grow_triangles(input, grains, seeds, context);
 }
 
 }  // namespace atlas

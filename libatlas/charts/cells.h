@@ -5,28 +5,28 @@
 #include <span>
 #include <vector>
 
+#include "libatlas/charts/cell_plan.h"
 #include "libatlas/charts/cone.h"
+#include "libatlas/charts/faces.h"
 #include "libatlas/charts/topology.h"
 #include "libatlas/core/context.h"
 
 namespace atlas {
 
-struct CellOptions {
-  // A piece of n triangles gets about n / this cells, more in meshes that would have fewer than
-  // cells_of_small_mesh in all, whose charts would have few to choose from, and where it has
-  // handles,
-  std::uint32_t triangles_per_cell = 80;
-  std::uint32_t cells_of_small_mesh = 146;
-  std::uint32_t max_cells_per_piece = 600;  // but not more than this, however fine it is.
-  // Cells are added, beyond those numbers, until no grain leans more than this to its cell's seed.
-  double max_lean_degrees = 55;
-  std::size_t mesh_triangles = 0;  // of the mesh that the topology is a part of; 0: it is all
-  double first_seed = 0;           // where the first one lies, in [0, 1): other cells, as good
-};
-
 struct Cells {
   std::vector<std::uint32_t> of_triangle;  // 1 a triangle; kNoIndex if degenerate
   std::uint32_t count = 0;
+};
+
+struct CellInput {
+  const Topology& topology;
+  const CellPlan& plan;
+  // Each cell lies in one face, or in what is between them, of which each region has a cell at
+  // least, beyond the plan's numbers; null: cells go where they like.
+  const Faces* faces = nullptr;
+  std::span<const std::uint8_t> left_out = {};  // 1 a piece: it gets no cells; empty: all do
+
+  bool walled(std::uint32_t t, std::uint32_t u) const { return faces && faces->part(t, u); }
 };
 
 // Grows cells from well-spaced seeds; the distance from seed s to a triangle with normal n is path
@@ -35,7 +35,7 @@ struct Cells {
 // already, and two recentring steps (Cohen-Steiner et al. 2004 for the alternation) on a graph of
 // grains of some ten triangles, then one pass over the triangles, whose teeth are pulled in the end
 // (rims.h). Cells are numbered by their seeds' place in the mesh. O(n log n) with a small heap.
-Cells grow_cells(const Topology& topology, const CellOptions& options, const Context& context);
+Cells grow_cells(const CellInput& input, const CellOptions& options, const Context& context);
 
 // Divides cells until the normals of each lie within half-angle `cone` (radians) of one direction.
 // Connected cells stay connected.

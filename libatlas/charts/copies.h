@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libatlas/charts/flatten.h"
-#include "libatlas/charts/grains.h"
+#include "libatlas/charts/piece_list.h"
 #include "libatlas/charts/topology.h"
 
 namespace atlas {

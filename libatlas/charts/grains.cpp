@@ -7,64 +7,20 @@
 namespace atlas {
 namespace {
 
-// Cells for each handle and each loop of the border, as long as cells have so many triangles:
-// without these plates full of holes came out in half as many charts again (35 generated meshes).
-constexpr std::size_t kCellsAHandle = 10, kLeastTriangles = 40;
-
-// How many cells each piece gets.
-class CellBudget {
- public:
-  CellBudget(const Topology& topology, const CellOptions& options)
-      : topology_(topology), options_(options), seen_in_(topology.points.size(), kNoIndex) {}
-
-  std::uint32_t of(std::size_t handles, std::size_t n) const {
-    const std::size_t least = n / options_.triangles_per_cell;
-    const std::size_t most = std::max(least, n / kLeastTriangles);
-    const std::size_t wanted = least + kCellsAHandle * handles;
-    return static_cast<std::uint32_t>(
-        std::clamp<std::size_t>(std::min(wanted, most), 1, options_.max_cells_per_piece));
-  }
-
-  // By Euler's formula: a handle counts twice, each loop of the border once.
-  std::size_t handles(std::uint32_t piece, std::span<const std::uint32_t> triangles) {
-    std::size_t vertices = 0, sides = 0;
-    for (const std::uint32_t t : triangles) {
-      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-        sides += topology_.opposite[h] == kNoIndex ? 2 : 1;
-        vertices += std::exchange(seen_in_[topology_.corner_vertex[h]], piece) != piece;
-      }
-    }
-    const std::size_t edges = sides / 2, others = vertices + triangles.size();
-    return edges + 2 > others ? edges + 2 - others : 0;
-  }
-
- private:
-  const Topology& topology_;
-  const CellOptions& options_;
-  std::vector<std::uint32_t> seen_in_;  // 1 a vertex: the last piece that it was found in
-};
-
 // Breadth-first patches of about `size` triangles that lean less than 45 degrees to their first.
 class GrainBuilder {
  public:
-  GrainBuilder(const Topology& topology, const CellOptions& options)
-      : topology_(topology), options_(options) {}
+  explicit GrainBuilder(const CellInput& input) : input_(input), topology_(input.topology) {}
 
   Grains run() {
-    const PieceList pieces(topology_);
-    CellBudget budget(topology_, options_);
+    const auto& [pieces, cells, pierced] = input_.plan;
     grains_.of_triangle.assign(topology_.triangle_count(), kNoIndex);
-    for (std::uint32_t k = 0; k + 1 < pieces.first.size(); ++k) {
-      const std::size_t n = pieces.first[k + 1] - pieces.first[k];
-      const std::size_t handles =
-          budget.handles(k, std::span(pieces.triangles).subspan(pieces.first[k], n));
-      grains_.cells.push_back(budget.of(handles, n));
-      grains_.pierced.push_back(handles > 1);
-      const std::size_t size = std::max<std::size_t>(1, n / (12 * grains_.cells[k]));
-      for (std::uint32_t i = pieces.first[k]; i < pieces.first[k + 1]; ++i) {
-        if (grains_.of_triangle[pieces.triangles[i]] == kNoIndex) {
-          grow(pieces.triangles[i], k, size);
-        }
+    for (std::uint32_t k = 0; k < pieces.count(); ++k) {
+      if (!input_.left_out.empty() && input_.left_out[k]) continue;
+      const std::span<const std::uint32_t> triangles = pieces.of(k);
+      const std::size_t size = std::max<std::size_t>(1, triangles.size() / (12 * cells[k]));
+      for (const std::uint32_t t : triangles) {
+        if (grains_.of_triangle[t] == kNoIndex) grow(t, k, size);
       }
     }
     row_.push_back(static_cast<std::uint32_t>(order_.size()));
@@ -91,6 +47,7 @@ class GrainBuilder {
       for (std::uint32_t h = 3 * t; h < 3 * t + 3 && order_.size() - first < size; ++h) {
         const std::uint32_t o = topology_.opposite[h];
         if (o == kNoIndex || grains_.of_triangle[o / 3] != kNoIndex) continue;
+        if (input_.walled(t, o / 3)) continue;
         if (glm::dot(axis, to_glm(topology_.calm_normal(o / 3))) < 0.7f) continue;
         grains_.of_triangle[o / 3] = grain;
         order_.push_back(o / 3);
@@ -116,7 +73,7 @@ class GrainBuilder {
       for (std::uint32_t i = row_[g]; i < row_[g + 1]; ++i) {
         for (std::uint32_t h = 3 * order_[i]; h < 3 * order_[i] + 3; ++h) {
           const std::uint32_t o = topology_.opposite[h];
-          if (o == kNoIndex) continue;
+          if (o == kNoIndex || input_.walled(h / 3, o / 3)) continue;
           const std::uint32_t other = grains_.of_triangle[o / 3];
           if (other == g || met[other] == g) continue;
           met[other] = g;
@@ -133,16 +90,16 @@ class GrainBuilder {
     }
   }
 
+  const CellInput& input_;
   const Topology& topology_;
-  const CellOptions& options_;
   Grains grains_;
   std::vector<std::uint32_t> order_, row_;  // triangles by grain; where each begins, and the end
 };
 
 }  // namespace
 
-Grains grow_grains(const Topology& topology, const CellOptions& options) {
-  return GrainBuilder(topology, options).run();
+Grains grow_grains(const CellInput& input) {
+  return GrainBuilder(input).run();
 }
 
 }  // namespace atlas

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "libatlas/charts/grains.h"
+#include "libatlas/charts/piece_list.h"
 #include "libatlas/charts/topology.h"
 
 namespace atlas {

@@ -55,7 +55,8 @@ std::size_t longest_loop(std::span<const RimLoop> loops);
 // any: where two fronts came by at about the same time, rounding would decide, and whether one
 // triangle is in a cell or not can change what is merged later. Cells stay connected, and none
 // loses its last triangle. Ends: every move shortens the rims by an edge at least.
-void pull_teeth(const Topology& topology, Cells& cells);
+// None crosses what bounds a face, if `faces` is not null.
+void pull_teeth(const Topology& topology, const Faces* faces, Cells& cells);
 
 // Divides cells in two, again and again, until the border of each is one loop but for small holes
 // of the mesh. Returns the rims.

@@ -34,9 +34,9 @@ struct Visit {
 // Chooses seeds among the grains.
 class Seeder {
  public:
-  Seeder(const Topology& topology, const Grains& grains, const CellOptions& options,
+  Seeder(const CellInput& input, const Grains& grains, const CellOptions& options,
          const Context& context)
-      : topology_(topology), grains_(grains), options_(options), context_(context) {}
+      : plan_(input.plan), grains_(grains), options_(options), context_(context) {}
 
   CellSeeds run() {
     distance_.assign(grains_.count(), kFar);
@@ -48,7 +48,7 @@ class Seeder {
       double area = 0;
       for (std::uint32_t g = first; g < last; ++g) area += grains_.area[g];
       ruler_ = CellRuler(area, last - first);
-      const std::uint32_t budget = flat(first, last) ? 1 : grains_.cells[grains_.component[first]];
+      const std::uint32_t budget = flat(first, last) ? 1 : plan_.cells[grains_.component[first]];
       sample_piece(first, last, budget);
       if (seeds_.size() == first_seed + 1) continue;
       number_by_grain(first, last, first_seed);
@@ -109,14 +109,15 @@ class Seeder {
     farthest_.assign((last - first + kStretch - 1) / kStretch, kFar);
     const std::size_t first_seed = seeds_.size();
     const auto start = static_cast<std::uint32_t>(options_.first_seed * (last - first));
-    if (budget < kManyCells || grains_.pierced[grains_.component[first]]) {
+    if (budget < kManyCells || plan_.pierced[grains_.component[first]]) {
       add_seed(first + start);
     } else {
       scatter(first, last, start, static_cast<std::uint32_t>(kScatteredShare * budget));
     }
-    while (seeds_.size() - first_seed < budget && !context_.cancelled()) {
+    while (!context_.cancelled()) {
       const std::uint32_t grain = farthest(first, last);
-      if (distance_[grain] == 0) break;
+      if (distance_[grain] == kFar) ++budget;  // beyond what bounds a face
+      if (distance_[grain] == 0 || seeds_.size() - first_seed >= budget) break;
       add_seed(grain);
     }
     add_leaning(first, last);
@@ -290,7 +291,7 @@ class Seeder {
     spread();
   }
 
-  const Topology& topology_;
+  const CellPlan& plan_;
   const Grains& grains_;
   const CellOptions& options_;
   const Context& context_;
@@ -307,9 +308,9 @@ class Seeder {
 
 }  // namespace
 
-CellSeeds choose_seeds(const Topology& topology, const Grains& grains, const CellOptions& options,
+CellSeeds choose_seeds(const CellInput& input, const Grains& grains, const CellOptions& options,
                        const Context& context) {
-  return Seeder(topology, grains, options, context).run();
+  return Seeder(input, grains, options, context).run();
 }
 
 }  // namespace atlas

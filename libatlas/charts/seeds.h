@@ -19,7 +19,7 @@ struct CellSeeds {
 // In large pieces without handles or holes seeds a few grains apart; then farthest-point sampling
 // on the grains by cell_distance(), seeds for what leans too far from its own, and two recentring
 // steps. What cancelling leaves must not be used.
-CellSeeds choose_seeds(const Topology& topology, const Grains& grains, const CellOptions& options,
+CellSeeds choose_seeds(const CellInput& input, const Grains& grains, const CellOptions& options,
                        const Context& context);
 
 }  // namespace atlas

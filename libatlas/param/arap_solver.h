@@ -75,6 +75,7 @@ class ArapSolver {
   void factorize();
   void factorize_directly();
   void factorize_envelope();
+  bool wide();
   const CornerLists& corners();
   // The energy of the error that multigrid may leave: the larger of a part of the area and a part
   // of what it finds.
@@ -93,6 +94,7 @@ class ArapSolver {
   std::span<const Vec2d> guess_;  // where the first solve starts; empty: from zero
   Method method_ = Method::envelope;
   bool analyzed_ = false, ordered_ = false;  // by the direct and the envelope solver
+  bool wide_ = false;                        // once ordered_
   bool cornered_ = false;                    // the workspace's corner lists are this mesh's
   double area_ = 0;                          // weighted
   bool weighted_ = false;

@@ -149,13 +149,20 @@ void EnvelopeSolver::factorize(const SymmetricMatrix& matrix) {
   eliminate(matrix.diagonal);
 }
 
-void EnvelopeSolver::factorize(const Elements& elements, std::size_t vertices, bool same_mesh) {
-  if (!same_mesh) {
-    const Graph graph = connect(elements, vertices);
-    order(graph);
-    find_envelope(graph);
-    find_places(elements);
+double EnvelopeSolver::analyze(const Elements& elements, std::size_t vertices) {
+  const Graph graph = connect(elements, vertices);
+  order(graph);
+  find_envelope(graph);
+  find_places(elements);
+  double work = 0;
+  for (std::size_t b = 0; b < first_.size(); ++b) {
+    const double width = double(row_[b + 1] - row_[b]);
+    work += width * width;
   }
+  return work;
+}
+
+void EnvelopeSolver::factorize(const Elements& elements) {
   fill(elements);
   eliminate(diagonal_);
 }

@@ -16,9 +16,10 @@ namespace atlas::param {
 class EnvelopeSolver {
  public:
   void factorize(const SymmetricMatrix& matrix);
-  // The elements' stiffness (as build_stiffness), which goes straight to its places. same_mesh:
-  // they are those of the last call but for their weights, so its order is kept.
-  void factorize(const Elements& elements, std::size_t vertices, bool same_mesh);
+  // Orders the vertices of elements; returns the work of a factorisation (products of blocks).
+  double analyze(const Elements& elements, std::size_t vertices);
+  // The stiffness (as build_stiffness) of what was analyzed last, but for weights.
+  void factorize(const Elements& elements);
   // Overwrites x with the solution for the right-hand side `load`.
   void solve(std::span<const glm::dvec2> load, std::span<glm::dvec2> x);
 

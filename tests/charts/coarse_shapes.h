@@ -18,7 +18,7 @@ inline CoarseMesh coarse_of(const Shape& shape) {
   CellOptions options;
   options.triangles_per_cell = 40;
   options.mesh_triangles = 100000;
-  Cells cells = grow_cells(*topology, options, {});
+  Cells cells = grow_cells({*topology, plan_cells(*topology, options)}, options, {});
   return build_coarse(*topology, 40, cells);
 }
 

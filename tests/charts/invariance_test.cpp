@@ -78,7 +78,7 @@ TEST(Invariance, CellsStandWithEveryTriangle) {
   const auto cells_of = [](const Shape& shape) {
     const Mesh mesh(shape);
     const Result<Topology> topology = build_topology(mesh.view(), {}, {});
-    return grow_cells(*topology, {}, {}).of_triangle;
+    return grow_cells({*topology, plan_cells(*topology, {})}, {}, {}).of_triangle;
   };
   int cases = 0, alike = 0;
   for (const Shape& shape : {noisy(icosphere(5), 0.003, 5), noisy(torus(150, 60), 0.004, 3),

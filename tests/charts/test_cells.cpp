@@ -78,7 +78,7 @@ TEST(Cells, AreConnectedAndHaveNoTeeth) {
   for (const Shape& shape : {torus(72, 36), noisy(icosphere(4), 0.01, 5), box(12, {3, 2, 0.5}),
                              grid(40, 30, 4, 3), together(icosphere(3), cylinder(40, 20))}) {
     const Topology topology = topology_of(shape);
-    const Cells cells = grow_cells(topology, {}, {});
+    const Cells cells = grow_cells({topology, plan_cells(topology, {})}, {}, {});
     EXPECT_EQ(teeth(topology, cells), 0) << shape.name;
     EXPECT_EQ(parts(topology, cells), cells.count) << shape.name;
     const std::vector<std::uint32_t> size = sizes(cells);
@@ -90,7 +90,7 @@ TEST(Cells, AreConnectedAndHaveNoTeeth) {
 TEST(Cells, AreMoreWhereTheSurfaceHasHandles) {
   const auto triangles_a_cell = [](const Shape& shape) {
     const Topology topology = topology_of(shape);
-    const Cells cells = grow_cells(topology, {}, {});
+    const Cells cells = grow_cells({topology, plan_cells(topology, {})}, {}, {});
     return double(topology.triangle_count()) / cells.count;
   };
   const double without = triangles_a_cell(geodesic_sphere(30)),
@@ -118,7 +118,7 @@ TEST(Teeth, ARaggedBorderIsDrawnStraighter) {
   }
   ASSERT_GE(changed, 9);
   ASSERT_GE(teeth(topology, cells), changed);
-  pull_teeth(topology, cells);
+  pull_teeth(topology, nullptr, cells);
   EXPECT_EQ(cells.of_triangle, straight.of_triangle);
 }
 
@@ -128,7 +128,7 @@ TEST(Teeth, ACellKeepsItsLastTriangle) {
   std::uint32_t inner = 0;  // with neighbours all around
   while (edges_on(topology, cells, inner, 0) < 3) ++inner;
   cells.of_triangle[inner] = 1;
-  pull_teeth(topology, cells);
+  pull_teeth(topology, nullptr, cells);
   EXPECT_EQ(sizes(cells)[1], 1u);
 }
 

@@ -84,7 +84,8 @@ TEST(EnvelopeSolver, SolvesTheCotangentSystemOfElements) {
     param::Elements elements;
     elements.build(disc.view(), 0);
     param::EnvelopeSolver solver;
-    solver.factorize(elements, disc.positions.size(), false);
+    solver.analyze(elements, disc.positions.size());
+    solver.factorize(elements);
     const std::vector<float> even(disc.triangles.size(), 1);
     expect_solution(cotangent_matrix(disc, even), solver, {0});
   }
@@ -95,11 +96,12 @@ TEST(EnvelopeSolver, TakesNewWeightsOfTheSameElements) {
   param::Elements elements;
   elements.build(disc.view(), 0);
   param::EnvelopeSolver solver;
-  solver.factorize(elements, disc.positions.size(), false);
+  solver.analyze(elements, disc.positions.size());
+  solver.factorize(elements);
   for (const unsigned seed : {1u, 2u}) {
     const std::vector<float> weights = random_weights(disc.triangles.size(), seed);
     for (std::size_t t = 0; t < weights.size(); ++t) elements.set_weight(t, weights[t]);
-    solver.factorize(elements, disc.positions.size(), true);
+    solver.factorize(elements);
     expect_solution(cotangent_matrix(disc, weights), solver, {0});
   }
 }
@@ -117,7 +119,8 @@ TEST(EnvelopeSolver, HoldsAVertexOfEachPiece) {
   elements.build(disc.view(), 0);
   const std::vector<float> even(disc.triangles.size(), 1);
   param::EnvelopeSolver of_elements, of_matrix;
-  of_elements.factorize(elements, disc.positions.size(), false);
+  of_elements.analyze(elements, disc.positions.size());
+  of_elements.factorize(elements);
   expect_solution(cotangent_matrix(disc, even), of_elements, {0, first});
 
   param::CornerLists corners;
@@ -140,9 +143,11 @@ TEST(EnvelopeSolver, ForgetsEarlierMeshes) {
       const Disc other = rough_grid(31, 8, 1);
       param::Elements others;
       others.build(other.view(), 0);
-      solver.factorize(others, other.positions.size(), false);
+      solver.analyze(others, other.positions.size());
+      solver.factorize(others);
     }
-    solver.factorize(elements, disc.positions.size(), false);
+    solver.analyze(elements, disc.positions.size());
+    solver.factorize(elements);
     std::vector<glm::dvec2> load(disc.positions.size()), x(load.size());
     for (std::size_t i = 0; i < load.size(); ++i)
       load[i] = {std::sin(double(i)), std::cos(double(i))};

@@ -1,0 +1,94 @@
+// The flat faces of parts, and the cells that they bound.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "libatlas/charts/cells.h"
+#include "libatlas/charts/faces.h"
+#include "tests/charts/chart_checks.h"
+
+namespace atlas::test {
+namespace {
+
+struct Part {
+  Topology topology;
+  CellPlan plan;
+  Faces faces;
+};
+
+Part part_of(const Shape& shape) {
+  const Mesh mesh(shape);
+  Result<Topology> topology = build_topology(mesh.view(), {}, {});
+  EXPECT_TRUE(topology.ok());
+  const CellPlan plan = plan_cells(*topology, {});
+  Faces faces = find_faces(*topology, plan);
+  return {std::move(*topology), plan, std::move(faces)};
+}
+
+std::size_t count(const Faces& faces) {
+  std::set<std::uint32_t> names(faces.of_triangle.begin(), faces.of_triangle.end());
+  names.erase(kNoIndex);
+  return names.size();
+}
+
+TEST(Faces, OfABoxAreItsSides) {
+  const Part part = part_of(box(12, {3, 2, 0.5}));
+  EXPECT_EQ(count(part.faces), 6u);
+  EXPECT_NEAR(part.faces.share[0], 1, 1e-6);
+  std::map<std::uint32_t, Vec3f> normal_of;
+  for (std::uint32_t t = 0; t < part.topology.triangle_count(); ++t) {
+    const Vec3f n = part.topology.normals[t];
+    const Vec3f m = normal_of.try_emplace(part.faces.of_triangle[t], n).first->second;
+    EXPECT_GT(n.x * m.x + n.y * m.y + n.z * m.z, 0.9999f);
+  }
+}
+
+TEST(Faces, AreNotFoundOnRoundOrRoughSurfaces) {
+  for (const Shape& shape : {geodesic_sphere(30), torus(72, 36), noisy(box(30), 0.01, 3)}) {
+    const Part part = part_of(shape);
+    EXPECT_EQ(count(part.faces), 0u) << shape.name;
+    EXPECT_EQ(part.faces.share[0], 0) << shape.name;
+  }
+}
+
+TEST(Faces, AreNoFacetsOfSomethingRound) {
+  for (const Shape& shape : {cylinder(400, 20), cone(60, 30, 0.5), torus(24, 12)}) {
+    EXPECT_EQ(count(part_of(shape).faces), 0u) << shape.name;
+  }
+  EXPECT_EQ(count(part_of(cylinder(6, 20)).faces), 6u);  // a hexagonal prism's sides
+}
+
+TEST(Faces, AreNotFoundWhereTheyWouldBeMoreThanCells) {
+  const Part part = part_of(box(2));
+  CellPlan plan = part.plan;
+  plan.cells[0] = 1;  // of which six sides are more than three
+  EXPECT_EQ(count(find_faces(part.topology, plan)), 0u);
+}
+
+TEST(Faces, BoundCells) {
+  for (const Shape& shape : {box(12, {3, 2, 0.5}), plate_with_holes(5, 12), cylinder(60, 10),
+                             together(box(9), geodesic_sphere(12))}) {
+    const Part part = part_of(shape);
+    const Cells cells = grow_cells({part.topology, part.plan, &part.faces}, {}, {});
+    std::vector<std::set<std::uint32_t>> faces_of(cells.count);
+    for (std::uint32_t t = 0; t < part.topology.triangle_count(); ++t) {
+      ASSERT_LT(cells.of_triangle[t], cells.count) << shape.name;
+      faces_of[cells.of_triangle[t]].insert(part.faces.of_triangle[t]);
+    }
+    for (const auto& faces : faces_of) EXPECT_EQ(faces.size(), 1u) << shape.name;
+  }
+}
+
+TEST(Cells, OfPiecesLeftOutAreNone) {
+  const Part part = part_of(together(box(9), geodesic_sphere(12)));
+  const std::vector<std::uint8_t> left_out{1, 0};
+  const Cells cells = grow_cells({part.topology, part.plan, nullptr, left_out}, {}, {});
+  for (std::uint32_t t = 0; t < part.topology.triangle_count(); ++t) {
+    EXPECT_EQ(cells.of_triangle[t] == kNoIndex, left_out[part.topology.component[t]] == 1);
+  }
+}
+
+}  // namespace
+}  // namespace atlas::test
