@@ -19,6 +19,9 @@ constexpr double kPlanarStretch = 1.001;
 constexpr double kFastPlanarStretch = 1.1;
 // Within a narrower cone a projection does.
 constexpr double kFlatCone = 1 * M_PI / 180;
+// Of the square root of a chart's area: borders so near each other touch. Equal sides of parts come
+// to lie upon each other when they unroll, and rounding would decide whether they cross.
+constexpr double kTouching = 2e-6;
 constexpr double kSameBank = 1e-6;  // of an edge: how near banks of a cut are that closes again
 // A chart with holes is tried uncut when it is not a tube; a tube's normals exceed this cone.
 constexpr double kOpenCone = 85 * M_PI / 180;
@@ -319,7 +322,9 @@ class ChartJob {
     result_.within_bound =
         result_.distortion.stretch_999 <= most && result_.distortion.stretch_l2 <= most;
     if (!result_.within_bound) return false;
-    result_.injective = check_injectivity(mesh, result_.uvs).injective;
+    const Injectivity check =
+        check_injectivity(mesh, result_.uvs, {.clearance = kTouching * std::sqrt(surface_area())});
+    result_.injective = check.injective && check.close.empty();
     return true;
   }
 

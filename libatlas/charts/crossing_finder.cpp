@@ -14,6 +14,7 @@ using Edges = std::span<const std::array<std::uint32_t, 2>>;
 
 // All pairs of the few dozen edges that charts of cells have take less time than to sort them. In
 // longer borders groups of edges, neighbours mostly, are looked at first.
+constexpr double kTouching = 1e-3;  // of what is deep
 constexpr std::size_t kLongBorder = 256, kGroup = 32;
 
 // How far one of two edges that cross would have to move for them not to.
@@ -23,6 +24,18 @@ double crossing_depth(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2
     return std::min(std::abs(cross(p, q, r)), std::abs(cross(p, q, s))) / length;
   };
   return std::min(nearest(a, b, c, d), nearest(c, d, a, b));
+}
+
+// Whether an end of one segment is nearer than `distance` to the other.
+bool touch(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& d, double distance) {
+  const auto near = [&](const Vec2d& p, const Vec2d& q, const Vec2d& r) {
+    const double x = r.x - q.x, y = r.y - q.y, squared = x * x + y * y;
+    const double t =
+        squared > 0 ? std::clamp(((p.x - q.x) * x + (p.y - q.y) * y) / squared, 0.0, 1.0) : 0;
+    const double u = p.x - q.x - t * x, v = p.y - q.y - t * y;
+    return u * u + v * v < distance * distance;
+  };
+  return near(a, c, d) || near(b, c, d) || near(c, a, b) || near(d, a, b);
 }
 
 struct Box {
@@ -119,12 +132,15 @@ Crossing CrossingFinder::find(Edges border, std::span<const Vec2d> uvs, double d
     const auto test = [&, a = a, b = b](std::size_t j) {
       const auto [c, d] = border[j];
       if (a == c || a == d || b == c || b == d) return true;
-      if (!cross_each_other(uvs[a], uvs[b], uvs[c], uvs[d])) return true;
-      const bool far = crossing_depth(uvs[a], uvs[b], uvs[c], uvs[d]) > deep;
-      crossing = far ? Crossing::deep : Crossing::shallow;
-      return !far;
+      const bool crosses = cross_each_other(uvs[a], uvs[b], uvs[c], uvs[d]);
+      if (!crosses && !touch(uvs[a], uvs[b], uvs[c], uvs[d], kTouching * deep)) return true;
+      const double depth = crosses ? crossing_depth(uvs[a], uvs[b], uvs[c], uvs[d]) : 0;
+      crossing = depth > deep ? Crossing::deep : Crossing::shallow;
+      return depth <= deep;
     };
-    const Box box = get(edges_, i);
+    Box box = get(edges_, i);
+    const double t = kTouching * deep;
+    box = {box.left - t, box.right + t, box.low - t, box.high + t};
     if (!grouped) {
       visit_near(edges_, box, i + 1, n, test);
       continue;

@@ -17,7 +17,8 @@ class CrossingFinder {
  public:
   // The deepest crossing. `border`: edges as pairs of places in `uvs`; those with a common end do
   // not cross. A crossing is deep if one of its edges must move by more than `deep`, uv units, for
-  // it to go.
+  // it to go. Edges nearer to each other than a thousandth of that cross, too: in what unrolls
+  // exactly equal sides come to lie upon each other, and rounding would decide.
   Crossing find(std::span<const std::array<std::uint32_t, 2>> border, std::span<const Vec2d> uvs,
                 double deep);
 

@@ -1,6 +1,7 @@
 // Internal: the working copy of a mesh that chart segmentation runs on. Positions are welded where
-// they are bitwise equal, scaled by a power of two to about unit size, and triangles of one piece
-// are turned to agree; edges know the half-edge across.
+// they are bitwise equal, once coordinates that are nothing but rounding are 0; they are scaled by
+// a power of two to about unit size, and triangles of one piece are turned to agree; edges know the
+// half-edge across.
 #pragma once
 
 #include <cmath>

@@ -86,5 +86,29 @@ TEST(CrossingFinder, FindsASingleCrossingInALongBorder) {
   }
 }
 
+// Two teeth of a comb side by side, a little apart or a little into each other: rounding may make
+// either of what lies upon each other.
+TEST(CrossingFinder, WhatTouchesCrosses) {
+  CrossingFinder check;
+  for (const double turn : {0.0, 0.3, 1.1}) {
+    const auto crossing = [&](double gap) {
+      Outline outline;
+      const std::vector<Vec2d> comb{{0, 0},         {3, 0},     {3, 2},     {1.5 + gap, 2},
+                                    {1.5 + gap, 1}, {2.5, 1},   {2.5, 0.5}, {0.5, 0.5},
+                                    {0.5, 0.9},     {1.5, 0.9}, {1.5, 1.9}, {0, 1.9}};
+      for (const Vec2d& p : comb) {
+        outline.uvs.push_back({p.x * std::cos(turn) - p.y * std::sin(turn),
+                               p.x * std::sin(turn) + p.y * std::cos(turn)});
+      }
+      const auto n = static_cast<std::uint32_t>(outline.uvs.size());
+      for (std::uint32_t i = 0; i < n; ++i) outline.edges.push_back({i, (i + 1) % n});
+      return check.find(outline.edges, outline.uvs, 0.01);
+    };
+    EXPECT_EQ(crossing(1e-4), Crossing::none);
+    for (const double gap : {1e-9, 0.0, -1e-9}) EXPECT_EQ(crossing(gap), Crossing::shallow) << gap;
+    EXPECT_EQ(crossing(-0.1), Crossing::deep);
+  }
+}
+
 }  // namespace
 }  // namespace atlas::test

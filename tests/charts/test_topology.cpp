@@ -100,6 +100,22 @@ TEST(Topology, NamesTheTriangleWhosePositionIsNotFinite) {
   EXPECT_NE(message.find("triangle 2"), std::string::npos) << message;
 }
 
+// Two halves of a sheet that were turned in double by a right angle each, so that their common edge
+// lies in 0 here and in 1e-16 there.
+TEST(Topology, RoundingAroundZeroLeavesNoCrack) {
+  for (const float size : {1.0f, 1e-6f, 3e5f}) {
+    const float nearly = 2.4e-16f * size, next = -6e-33f * size;
+    Mesh mesh;
+    mesh.positions = {{size, 0, 0},      {size, size, 0},         {0, 0, 0},
+                      {0, size, nearly}, {nearly, next, -nearly}, {next, size, 0},
+                      {-size, 0, 0},     {-size, size, 0}};
+    mesh.indices = {0, 1, 2, 2, 1, 3, 4, 5, 6, 6, 5, 7};
+    const Topology topology = topology_of(mesh);
+    EXPECT_EQ(topology.points.size(), 6u);
+    EXPECT_EQ(topology.component_count, 1u);
+  }
+}
+
 TEST(Topology, CoincidentVerticesAreWelded) {
   const Shape shape = icosphere(2);
   Mesh mesh;
