@@ -68,7 +68,7 @@ struct ChartSet {
   std::vector<std::uint32_t> triangle_chart;   // 1 a triangle
   std::vector<std::uint32_t> chart_triangles;  // triangles sorted by chart, then by id
   std::vector<Vec2d> uvs;                      // sorted by chart
-  std::vector<std::uint32_t> uv_vertex;        // 1 a uv: a vertex of the mesh at its position
+  std::vector<std::uint32_t> uv_vertex;        // 1 a uv: a vertex at its position (or 10^-12 off)
   std::vector<std::uint32_t> triangle_uv;  // 3 a triangle, into uvs, in the corner order of indices
                                            // (a triangle whose orientation disagrees with its
                                            // chart's is listed in flipped_triangles)

@@ -7,6 +7,7 @@
 
 #include "libatlas/charts/fan_centre.h"
 #include "libatlas/charts/rims.h"
+#include "libatlas/charts/tips.h"
 #include "libatlas/charts/unroll.h"
 #include "libatlas/core/glm_bridge.h"
 
@@ -21,9 +22,11 @@ constexpr double kNoisyCosine = 0.988, kNoisyShare = 0.6, kNoisyCell = 20;
 
 class CoarseBuilder {
  public:
-  CoarseBuilder(const Topology& topology, double crease_degrees, const Cells& cells, Rims rims)
+  CoarseBuilder(const Topology& topology, double crease_degrees, const Cells& cells,
+                const std::vector<std::uint32_t>& tips, Rims rims)
       : topology_(topology),
         cells_(cells),
+        tips_(tips),
         rims_(std::move(rims)),
         crease_cosine_(std::cos(crease_degrees * M_PI / 180)) {}
 
@@ -36,6 +39,7 @@ class CoarseBuilder {
     arc_at_.assign(topology_.opposite.size(), kNoIndex);
     for (std::uint32_t k = 0; k < cells_.count; ++k) add_rim(k);
     for (CoarseCell& cell : mesh_.cells) centre_fan(mesh_, cell);
+    mark_tips();
     unroll_cells(topology_, cells_, mesh_);
     return std::move(mesh_);
   }
@@ -210,8 +214,16 @@ class CoarseBuilder {
     mesh_.arcs.push_back(arc);
   }
 
+  void mark_tips() {
+    if (tips_.empty()) return;
+    std::vector<std::uint8_t> tip(topology_.points.size(), 0);
+    for (const std::uint32_t h : tips_) tip[from(h)] = 1;
+    for (const std::uint32_t h : mesh_.slot_half_edge) mesh_.slot_tip.push_back(tip[from(h)]);
+  }
+
   const Topology& topology_;
   const Cells& cells_;
+  const std::vector<std::uint32_t>& tips_;
   Rims rims_;
   double crease_cosine_;
   CoarseMesh mesh_;
@@ -222,8 +234,10 @@ class CoarseBuilder {
 }  // namespace
 
 CoarseMesh build_coarse(const Topology& topology, double crease_degrees, Cells& cells) {
+  const std::vector<std::uint32_t> tips = find_tips(topology);
+  divide_at_tips(topology, tips, cells);
   Rims rims = divide_rings(topology, cells);
-  return CoarseBuilder(topology, crease_degrees, cells, std::move(rims)).run();
+  return CoarseBuilder(topology, crease_degrees, cells, tips, std::move(rims)).run();
 }
 
 }  // namespace atlas

@@ -38,6 +38,7 @@ struct CoarseMesh {
   std::vector<Vec3d> slot_position;           // 1 a slot
   std::vector<std::uint32_t> slot_arc;        // the arc that starts there
   std::vector<std::uint32_t> slot_half_edge;  // of the topology: the first of that arc, cell's side
+  std::vector<std::uint8_t> slot_tip;         // 1 a slot: it lies in a tip (tips.h); empty: none
   std::vector<Vec2d> flat_slot;               // 1 a slot, where its cell unrolls; empty: none does
   std::vector<CoarseArc> arcs;
   std::vector<std::uint32_t> rim_half_edges;  // of the topology, both sides

@@ -241,8 +241,15 @@ class Merger {
     }
     const TrialOutcome outcome = attempt(a, b);
     return outcome.accepted ||
-           (outcome.euler < 1 && keep_longest_run(mesh_, seam_ends(a, b), glue_) &&
-            attempt(a, b).accepted);
+           ((outcome.euler < 1 || glue_has_tip()) &&
+            keep_longest_run(mesh_, seam_ends(a, b), glue_) && attempt(a, b).accepted);
+  }
+
+  bool is_tip(std::uint32_t slot) const { return !mesh_.slot_tip.empty() && mesh_.slot_tip[slot]; }
+  bool glue_has_tip() const {
+    return std::any_of(glue_.begin(), glue_.end(), [&](std::uint32_t arc) {
+      return is_tip(mesh_.arcs[arc].slot[0]) || is_tip(mesh_.arcs[arc].slot[1]);
+    });
   }
 
   // Pieces of one plane join without a trial, whatever their outline: nothing is stretched, and an
@@ -303,14 +310,16 @@ class Merger {
     return false;
   }
 
-  // Where seams of either chart with itself end.
+  // Where seams of either chart with itself end, and tips.
   std::vector<Vec3d> seam_ends(std::uint32_t a, std::uint32_t b) const {
     std::vector<Vec3d> ends;
     for (const std::uint32_t name : {a, b}) {
       for (const std::uint32_t arc : chart(name).arcs) {
-        if (chart_at(arc, 0) != chart_at(arc, 1)) continue;
+        const bool seam = chart_at(arc, 0) == chart_at(arc, 1);
         for (const std::uint32_t slot : mesh_.arcs[arc].slot) {
-          ends.push_back(mesh_.slot_position[slot]);
+          if (slot != kNoIndex && (seam || is_tip(slot))) {
+            ends.push_back(mesh_.slot_position[slot]);
+          }
         }
       }
     }

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <unordered_set>
 
+#include "libatlas/charts/tips.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -31,7 +33,11 @@ struct Flat {
 class Unroller {
  public:
   Unroller(const Topology& topology, const Cells& cells, CoarseMesh& mesh)
-      : topology_(topology), cells_(cells), mesh_(mesh), curved_(topology.component_count, 0) {}
+      : topology_(topology), cells_(cells), mesh_(mesh), curved_(topology.component_count, 0) {
+    for (std::size_t s = 0; s < mesh.slot_tip.size(); ++s) {
+      if (mesh.slot_tip[s]) tips_.insert(topology.corner_vertex[mesh.slot_half_edge[s]]);
+    }
+  }
 
   // Bent cells first; cells in one plane only where they touch what unrolls.
   void run() {
@@ -72,23 +78,9 @@ class Unroller {
     return 1 - glm::length(to_glm(cell.normal_sum)) / cell.area < kFlatSpread;
   }
 
-  bool unroll(std::uint32_t k) { return mesh_.cells[k].unrolls = uncurved(k) && lay_flat(k); }
+  bool is_tip(std::uint32_t v) const { return !tips_.empty() && tips_.contains(v); }
 
-  // What the angles around the vertex at the start of h lack to a full turn, or exceed it by;
-  // 0 at the mesh's border. They are added as products of complex numbers.
-  double defect(std::uint32_t start) const {
-    glm::dvec2 turn(1, 0);
-    std::uint32_t h = start;
-    do {
-      const glm::dvec3 at = point(h), a = point(next_half_edge(h)) - at,
-                       b = point(previous_half_edge(h)) - at;
-      const double c = glm::dot(a, b), s = glm::length(glm::cross(a, b));
-      const double length = std::sqrt(c * c + s * s);
-      turn = glm::dvec2(turn.x * c - turn.y * s, turn.x * s + turn.y * c) / length;
-      h = topology_.opposite[previous_half_edge(h)];
-    } while (h != kNoIndex && h != start);
-    return h == kNoIndex ? 0 : std::atan2(turn.y, turn.x);
-  }
+  bool unroll(std::uint32_t k) { return mesh_.cells[k].unrolls = uncurved(k) && lay_flat(k); }
 
   // Lists the cell's triangles by breadth-first search, as far as their vertices are flat.
   bool uncurved(std::uint32_t k) {
@@ -103,8 +95,8 @@ class Unroller {
       const std::uint32_t t = queue_[i] / 3;
       for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
         std::uint32_t& seen = seen_[topology_.corner_vertex[h]];
-        if (seen != k) {
-          const double own = defect(h);
+        if (seen != k && !is_tip(topology_.corner_vertex[h])) {
+          const double own = angle_defect(topology_, h);
           curvature += own;
           roughness += std::abs(own);
         }
@@ -173,6 +165,7 @@ class Unroller {
   // rest then hangs on; they were cut again, at three times the cost (a cabin of a million
   // triangles).
   std::vector<std::uint8_t> curved_;
+  std::unordered_set<std::uint32_t> tips_;
   std::vector<std::uint32_t> seen_;              // 1 a vertex: the last cell that asked
   std::vector<std::uint32_t> place_;             // 1 a triangle, in queue_
   std::vector<std::uint32_t> queue_;             // half-edges

@@ -179,7 +179,9 @@ Shape cone(int around, int along, double half_angle, double slant) {
   const auto at = [&](int ring, int i) { return std::uint32_t(1 + (ring - 1) * (around + 1) + i); };
   for (int j = 1; j <= along; ++j)
     for (int i = 0; i <= around; ++i) {
-      const double a = 2 * kPi * i / around, s = slant * j / along, r = s * std::sin(half_angle);
+      // A billionth of a turn is left open, or rounding would decide whether the sides meet.
+      const double a = 2 * kPi * (1 - 1e-9) * i / around, s = slant * j / along,
+                   r = s * std::sin(half_angle);
       shape.positions.push_back(
           {float(r * std::cos(a)), float(r * std::sin(a)), float(-s * std::cos(half_angle))});
     }
