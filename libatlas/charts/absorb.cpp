@@ -24,7 +24,9 @@ struct Patience {
 };
 // Of charts with fewer triangles than a cell the coarse mesh knows hardly more than the outline:
 // whether to merge them is seen here.
-constexpr Patience kSmooth{3, 1, 0.45, 60, 6};
+// A work of 1 left a tenth more charts, most of them around a large one (208 meshes), in 3 % less
+// time; 16 spares hardly more.
+constexpr Patience kSmooth{3, 4, 0.45, 60, 6};
 constexpr Patience kFast{2, 0.25, 0.45, 0, 2};
 constexpr Patience kBest{6, 4, 0.45, kNoIndex, 6};
 // Scan noise divides charts that need not be divided: a work of 2 left armadillo with 56 to 59
