@@ -10,7 +10,7 @@
 namespace atlas {
 
 // By how much the angles around the vertex where h starts fall short of a full turn, or exceed it
-// (negative), radians; 0 at the mesh's border.
+// (negative), radians in [-pi, pi]: whole turns are left out. 0 at the mesh's border.
 double angle_defect(const Topology& topology, std::uint32_t h);
 
 // Apexes of cones, corners of boxes: half-edges, each starting at a vertex with an angle defect, in
