@@ -7,6 +7,7 @@
 #include "libatlas/charts/flatten.h"
 #include "libatlas/charts/given_uvs.h"
 #include "libatlas/charts/limbs.h"
+#include "libatlas/charts/long_charts.h"
 #include "libatlas/charts/parts.h"
 #include "libatlas/charts/slits.h"
 #include "libatlas/charts/topology.h"
@@ -66,7 +67,9 @@ std::vector<FlatChart> cut_charts(const Work& work, const Context& context, Char
   set.copied_pieces = cut.copied_pieces;
   Stopwatch watch(cpu_seconds);
   Frames none;
-  cut_limbs({work.topology, work.mesh.density, work.options, none}, cut.charts, context);
+  const FlattenInput input{work.topology, work.mesh.density, work.options, none};
+  cut_limbs(input, cut.charts, context);
+  cut_long_charts(input, cut.charts);
   close_slits(work.topology, cut.charts, context);
   set.timing.limbs_cpu = watch.lap();
   return std::move(cut.charts);

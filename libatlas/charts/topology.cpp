@@ -11,6 +11,7 @@
 #include "libatlas/charts/links.h"
 #include "libatlas/charts/noise.h"
 #include "libatlas/core/clock.h"
+#include "libatlas/core/drop_rounding.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -93,21 +94,16 @@ std::uint64_t hash_position(const std::uint32_t (&key)[3]) {
   return h ^ (h >> 32);
 }
 
-// Coordinates below this part of the mesh's size are 0: rotating by a right angle in double leaves
-// 1e-16 where 0 was meant, and four of 120 CAD files had cracks along such planes.
-constexpr double kNothing = 0x1p-40;
-
 // Fills points, source_vertex and corner_vertex. Vertices are numbered in input order.
 void weld(const MeshView& mesh, const std::vector<std::uint8_t>& used, Topology& topology) {
   const std::size_t n = mesh.positions.size();
-  const auto nothing = static_cast<float>(kNothing / topology.scale);
-  const auto settle = [&](float x) { return std::abs(x) <= nothing ? 0.0f : x; };  // nor is it -0
+  const double size = 1 / topology.scale;
   const std::size_t capacity = std::bit_ceil(std::max<std::size_t>(16, 2 * n));
   std::vector<std::uint32_t> table(capacity, kNoIndex), id(n, kNoIndex);
   for (std::uint32_t v = 0; v < n; ++v) {
     if (!used[v]) continue;
     const Vec3f& at = mesh.positions[v];
-    const Vec3f p{settle(at.x), settle(at.y), settle(at.z)};
+    const Vec3f p{drop_rounding(at.x, size), drop_rounding(at.y, size), drop_rounding(at.z, size)};
     std::uint32_t key[3];
     std::memcpy(key, &p, sizeof key);
     std::size_t slot = hash_position(key) & (capacity - 1);

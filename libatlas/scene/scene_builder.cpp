@@ -6,6 +6,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "libatlas/core/drop_rounding.h"
 #include "libatlas/image/image_io.h"
 
 namespace atlas {
@@ -111,7 +112,8 @@ Status SceneBuilder::place_positions(Scene& scene) const {
   scene.positions.resize(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const Vec3d& p = positions[i];
-    const Vec3f q{float(p.x - origin.x), float(p.y - origin.y), float(p.z - origin.z)};
+    const Vec3f q{drop_rounding(p.x - origin.x, diagonal), drop_rounding(p.y - origin.y, diagonal),
+                  drop_rounding(p.z - origin.z, diagonal)};
     // A vertex that no triangle uses may be anything; the array promises finite numbers.
     const bool finite = std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z);
     scene.positions[i] = finite ? q : Vec3f{};

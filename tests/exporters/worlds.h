@@ -24,7 +24,7 @@ inline World wavy_world(int n, int pages) {
                                  1e4f * std::sin(float(i * j)) + jitter(random)});
     }
   }
-  world.positions[0] = {-0.f, 0.f, 1e-30f};
+  world.positions[0] = {-0.f, 0.f, 1e-6f};  // near the least that readers do not take for 0
   const int rows = n - 1;
   for (int p = 0; p < pages; ++p) {
     Page page;

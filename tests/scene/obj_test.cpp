@@ -236,6 +236,18 @@ TEST(Obj, LineNumbersSurvivePieces) {
       << result.status().message();
 }
 
+// What a right angle's turn in double leaves of 0, beside 0 itself.
+TEST(Obj, CoordinatesThatAreNothingButRoundingAreZero) {
+  const TempFolder folder;
+  const auto path = folder.write("a.obj",
+                                 "v 2.4e-16 0 -1e-15\nv 4 0 0\nv 4 3 1e-9\nv 0 3 -0.0\n"
+                                 "f 1 2 3\nf 1 3 4\n");
+  const Scene scene = load(path).scene;
+  EXPECT_EQ(scene.positions[0], (Vec3f{0, 0, 0}));
+  EXPECT_EQ(scene.positions[2], (Vec3f{4, 3, 1e-9f}));
+  EXPECT_FALSE(std::signbit(scene.positions[3].z));
+}
+
 TEST(Obj, FarScenesGetAnOriginAndKeepTheirShape) {
   const TempFolder folder;
   std::mt19937 random(11);
