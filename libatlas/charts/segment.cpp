@@ -108,21 +108,7 @@ constexpr std::uint32_t kFastTrianglesPerCell = 250, kFastCellsOfSmallMesh = 60;
 constexpr double kSomeFaces = 0.1, kAllFaces = 0.93;
 // Not so in pieces of more triangles, whose cells are fine enough to find their creases: it spared
 // hardly a chart there, and a cabin of a million triangles took three times as long.
-constexpr std::size_t kManyTriangles = 20000;
-
-// Which pieces are left out where cells go as they like, and where faces bound them.
-struct Ways {
-  std::vector<std::uint8_t> plain, walled;
-
-  Ways(const Faces& faces, const PieceList& pieces, ChartPreset preset) {
-    const double least = preset == ChartPreset::fast ? kAllFaces : kSomeFaces;
-    for (std::uint32_t k = 0; k < pieces.count(); ++k) {
-      const double share = pieces.of(k).size() > kManyTriangles ? 0 : faces.share[k];
-      plain.push_back(share >= kAllFaces);
-      walled.push_back(share < least);
-    }
-  }
-};
+constexpr std::size_t kManyTriangles = 20000, kFewCharts = 3;
 
 // What the charts of a piece cost; the less the better.
 struct PieceCost {
@@ -148,6 +134,27 @@ std::vector<PieceCost> piece_costs(const Cut& cut) {
   }
   return costs;
 }
+
+// Which pieces are left out where cells go as they like, and where faces bound them.
+struct Ways {
+  std::vector<std::uint8_t> plain, walled;
+
+  Ways(const Faces& faces, const PieceList& pieces, ChartPreset preset) {
+    const double least = preset == ChartPreset::fast ? kAllFaces : kSomeFaces;
+    for (std::uint32_t k = 0; k < pieces.count(); ++k) {
+      const double share = pieces.of(k).size() > kManyTriangles ? 0 : faces.share[k];
+      plain.push_back(share >= kAllFaces);
+      walled.push_back(share < least);
+    }
+  }
+
+  // Pieces that came out in so few charts are not cut again.
+  void spare(const std::vector<PieceCost>& costs) {
+    for (std::size_t k = 0; k < costs.size(); ++k) {
+      if (!plain[k] && costs[k].charts <= kFewCharts) walled[k] = 1;
+    }
+  }
+};
 
 // Of pieces that were cut both ways the worse one is left out.
 void choose(Cut& a, Cut& b) {
@@ -212,6 +219,7 @@ class Segmenter {
     result_.timing.cells_cpu += watch.lap();
     std::vector<Cut> cuts;
     for (const bool walled : {false, true}) {
+      if (walled && !cuts.empty()) ways.spare(piece_costs(cuts[0]));
       const std::span<const std::uint8_t> left_out = walled ? ways.walled : ways.plain;
       if (std::find(left_out.begin(), left_out.end(), 0) == left_out.end()) continue;
       cuts.push_back(cut({topology, plan, walled ? &faces : nullptr, left_out}, triangles));
