@@ -1,4 +1,4 @@
-// Coarse meshes of generated shapes.
+// Topologies and coarse meshes of generated shapes.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,16 +10,21 @@
 
 namespace atlas::test {
 
+inline Topology topology_of(const Shape& shape) {
+  const Mesh mesh(shape);
+  Result<Topology> topology = build_topology(mesh.view(), {}, {});
+  EXPECT_TRUE(topology.ok());
+  return std::move(*topology);
+}
+
 // With cells of forty triangles.
 inline CoarseMesh coarse_of(const Shape& shape) {
-  const Mesh mesh(shape);
-  const Result<Topology> topology = build_topology(mesh.view(), {}, {});
-  EXPECT_TRUE(topology.ok());
+  const Topology topology = topology_of(shape);
   CellOptions options;
   options.triangles_per_cell = 40;
   options.mesh_triangles = 100000;
-  Cells cells = grow_cells({*topology, plan_cells(*topology, options)}, options, {});
-  return build_coarse(*topology, 40, cells);
+  Cells cells = grow_cells({topology, plan_cells(topology, options)}, options, {});
+  return build_coarse(topology, 40, cells);
 }
 
 }  // namespace atlas::test

@@ -7,16 +7,10 @@
 #include "libatlas/charts/cells.h"
 #include "libatlas/charts/rims.h"
 #include "tests/charts/chart_checks.h"
+#include "tests/charts/coarse_shapes.h"
 
 namespace atlas::test {
 namespace {
-
-Topology topology_of(const Shape& shape) {
-  const Mesh mesh(shape);
-  Result<Topology> topology = build_topology(mesh.view(), {}, {});
-  EXPECT_TRUE(topology.ok());
-  return std::move(*topology);
-}
 
 std::vector<std::uint32_t> sizes(const Cells& cells) {
   std::vector<std::uint32_t> size(cells.count, 0);

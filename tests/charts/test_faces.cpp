@@ -7,7 +7,7 @@
 
 #include "libatlas/charts/cells.h"
 #include "libatlas/charts/faces.h"
-#include "tests/charts/chart_checks.h"
+#include "tests/charts/coarse_shapes.h"
 
 namespace atlas::test {
 namespace {
@@ -19,12 +19,10 @@ struct Part {
 };
 
 Part part_of(const Shape& shape) {
-  const Mesh mesh(shape);
-  Result<Topology> topology = build_topology(mesh.view(), {}, {});
-  EXPECT_TRUE(topology.ok());
-  const CellPlan plan = plan_cells(*topology, {});
-  Faces faces = find_faces(*topology, plan);
-  return {std::move(*topology), plan, std::move(faces)};
+  Topology topology = topology_of(shape);
+  const CellPlan plan = plan_cells(topology, {});
+  Faces faces = find_faces(topology, plan);
+  return {std::move(topology), plan, std::move(faces)};
 }
 
 std::size_t count(const Faces& faces) {

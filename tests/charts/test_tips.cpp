@@ -6,16 +6,10 @@
 
 #include "libatlas/charts/tips.h"
 #include "tests/charts/chart_checks.h"
+#include "tests/charts/coarse_shapes.h"
 
 namespace atlas::test {
 namespace {
-
-Topology topology_of(const Shape& shape) {
-  const Mesh mesh(shape);
-  Result<Topology> topology = build_topology(mesh.view(), {}, {});
-  EXPECT_TRUE(topology.ok());
-  return std::move(*topology);
-}
 
 // The mantle, without its base.
 Shape closed_cone(int around, int along, double half_angle) {
