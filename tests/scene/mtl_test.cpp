@@ -5,18 +5,14 @@
 
 #include "libatlas/image/image_io.h"
 #include "libatlas/scene/reader.h"
+#include "tests/scene/load_scene.h"
 #include "tests/scene/temp_folder.h"
 
 namespace atlas {
 namespace {
 
+using test::load;
 using test::TempFolder;
-
-LoadedScene load(const std::filesystem::path& path, const ReadOptions& options = {}) {
-  auto loaded = read_scene(path, options, {});
-  EXPECT_TRUE(loaded.ok()) << loaded.status().message();
-  return loaded.ok() ? std::move(*loaded) : LoadedScene{};
-}
 
 TEST(Mtl, TexturesThatAreMissingOrBrokenFallBackToTheColour) {
   const TempFolder folder;
