@@ -67,7 +67,8 @@ void noise(const Results& all, Document& page) {
 
 class Pictures {
  public:
-  Pictures(const Results& all, const std::filesystem::path& folder) : plots_(make_plots(all)) {
+  Pictures(const Results& all, const std::filesystem::path& folder)
+      : folder_(folder), plots_(make_plots(all)) {
     for (const Plot& plot : plots_)
       if (const Status s = draw(plot, folder); !s.ok()) undrawn_[plot.file] = s.message();
   }
@@ -82,13 +83,19 @@ class Pictures {
     }
   }
 
+  // A picture that another program drew into the folder, if it did.
+  void show_drawn(const std::string& file, const std::string& title, Document& page) const {
+    if (std::filesystem::exists(folder_ / file)) page.image(file, title);
+  }
+
  private:
+  std::filesystem::path folder_;
   std::vector<Plot> plots_;
   std::map<std::string, std::string> undrawn_;
 };
 
 void performance(const PageInput& input, const Results& all, const Pictures& pictures,
-                 const std::filesystem::path& folder, Document& page) {
+                 Document& page) {
   machines(input, page);
   noise(all, page);
   goals_table(all, page);
@@ -107,11 +114,12 @@ void performance(const PageInput& input, const Results& all, const Pictures& pic
     page.heading("Stage: " + stage);
     pictures.show("error_" + stage + ".svg", page);
     pictures.show(stage + ".svg", page);
-    if (stage == "light_leak" && std::filesystem::exists(folder / "plots" / "light_leak.png"))
-      page.image(
+    if (stage == "light_leak")
+      pictures.show_drawn(
           "light_leak.png",
           "A patch of the door across the shadow's edge: the light as the mesh holds it, then "
-          "as the pages show it, in the order of the rows below");
+          "as the pages show it, in the order of the rows below",
+          page);
     stage_table(all, stage, page);
   }
 }
@@ -170,7 +178,7 @@ Status write_page(const PageInput& input, const std::filesystem::path& folder) {
       "Written by scripts/bench.sh; do not edit. What is measured and how to read it: "
       "docs/performance.md. One point of a plot is one setting: its error (the first figure after "
       "the memory; smaller is better) against its CPU time. Settings with a star are presets.");
-  performance(input, speed, pictures, folder, fast);
+  performance(input, speed, pictures, fast);
   Document stable("Stability: results");
   stable.paragraph(
       "Written by scripts/bench.sh; do not edit. Every figure has a bound; the small cases of this "

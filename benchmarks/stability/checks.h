@@ -17,14 +17,27 @@ struct StabilityOptions {
   std::vector<std::filesystem::path> models;  // meshes for scale, offset and rotation, if any
 };
 
-// Adds rows to a list; every function below takes one.
+class CheckList;
+
+// One stress of a group: what is measured under it.
+class StressChecks {
+ public:
+  StressChecks(CheckList& list, std::string group, std::string stress)
+      : list_(list), group_(std::move(group)), stress_(std::move(stress)) {}
+  void add(std::string quantity, double value, double bound, std::string note = "") const;
+  const Context& context() const;
+
+ private:
+  CheckList& list_;
+  std::string group_, stress_;
+};
+
+// Every function below adds to one.
 class CheckList {
  public:
   CheckList(const StabilityOptions& o, const Context& c) : options(o), context(c) {}
-  void add(std::string group, std::string stress, std::string quantity, double value, double bound,
-           std::string note = "") {
-    checks.push_back(
-        {std::move(group), std::move(stress), std::move(quantity), value, bound, std::move(note)});
+  StressChecks at(std::string group, std::string stress) {
+    return {*this, std::move(group), std::move(stress)};
   }
   const StabilityOptions& options;
   const Context& context;

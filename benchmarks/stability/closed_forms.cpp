@@ -32,15 +32,16 @@ void check_developable(CheckList& list, const std::string& name, const test::Sha
   const double none = std::numeric_limits<double>::quiet_NaN();
   const Result<ChartSet> set = charts_of(shape, {}, list.context);
   const Distortion d = set.ok() ? set->distortion : Distortion{none, none, none};
-  list.add("closed forms", name, "L2 stretch", d.stretch_l2, 1.001, "developable: 1 is possible");
-  list.add("closed forms", name, "99.9 % stretch", d.stretch_999, 1.001, "default options");
+  const StressChecks at = list.at("closed forms", name);
+  at.add("L2 stretch", d.stretch_l2, 1.001, "developable: 1 is possible");
+  at.add("99.9 % stretch", d.stretch_999, 1.001, "default options");
   ChartOptions tight;
   tight.max_stretch = 1.001;
   const Result<ChartSet> exact = charts_of(shape, tight, list.context);
-  list.add("closed forms", name + ", bound 1.001", "99.9 % stretch",
-           exact.ok() ? exact->distortion.stretch_999 : none, 1.001);
-  list.add("closed forms", name + ", bound 1.001", "charts",
-           exact.ok() ? double(exact->charts.size()) : none, 2, "one would do");
+  list.at("closed forms", name + ", bound 1.001")
+      .add("99.9 % stretch", exact.ok() ? exact->distortion.stretch_999 : none, 1.001);
+  list.at("closed forms", name + ", bound 1.001")
+      .add("charts", exact.ok() ? double(exact->charts.size()) : none, 2, "one would do");
 }
 
 // Milnor 1969, "A problem in cartography": no map of a geodesic cap of half-angle a has a smaller
@@ -65,9 +66,10 @@ void check_cap(CheckList& list, double degrees) {
     least = std::min<double>(least, t.s2);
   }
   const std::string stress = fmt::format("geodesic cap of half-angle {} degrees", degrees);
-  list.add("closed forms", stress, "ratio of singular values over a / sin a - 1",
-           greatest / least / optimum - 1, 0.02, fmt::format("optimum {:.4f}", optimum));
-  list.add("closed forms", stress, "not injective", result.injective ? 0 : 1, 0);
+  const StressChecks at = list.at("closed forms", stress);
+  at.add("ratio of singular values over a / sin a - 1", greatest / least / optimum - 1, 0.02,
+         fmt::format("optimum {:.4f}", optimum));
+  at.add("not injective", result.injective ? 0 : 1, 0);
 }
 
 // Projection along an axis: every triangle has s1 = 1 / cos of its normal's angle and s2 = 1, so
@@ -93,10 +95,11 @@ void check_projection(CheckList& list, double degrees) {
     over = std::max(over, measure_distortion(cap.mesh(), uvs).stretch_linf / bound - 1);
   }
   const std::string stress = fmt::format("noisy cap of {} degrees, projected", degrees);
-  list.add("closed forms", stress, "stretch over 1/cos - 1", over, 1e-6,
-           fmt::format("{} axes, {} triangles", projections, cap.triangles.size()));
-  list.add("closed forms", stress, "smaller singular value - 1", off, 1e-6, "1 exactly");
-  list.add("closed forms", stress, "no axis saw all triangles from the front", projections == 0, 0);
+  const StressChecks at = list.at("closed forms", stress);
+  at.add("stretch over 1/cos - 1", over, 1e-6,
+         fmt::format("{} axes, {} triangles", projections, cap.triangles.size()));
+  at.add("smaller singular value - 1", off, 1e-6, "1 exactly");
+  at.add("no axis saw all triangles from the front", projections == 0, 0);
 }
 
 }  // namespace

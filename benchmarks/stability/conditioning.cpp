@@ -238,12 +238,13 @@ void check_solvers(CheckList& list, const PolarDisc& disc, Row& row) {
                 {"error", error},
                 {"direct_residual", definite ? left_direct : NAN},
                 {"multigrid_suffices", double(iterated)}};
-  list.add("conditioning", disc.name, "residual of the band solver, backward error", left, 1e-14,
-           fmt::format("condition number {:.2g}", cond));
-  list.add("conditioning", disc.name, "residual of the sparse solver, backward error", left_direct,
-           1e-13, definite ? "" : "refused as not definite: the band solver stands in");
-  list.add("conditioning", disc.name, "error over 1e-15 x condition number",
-           error / (1e-15 * std::max(cond, 1.0)), 1, "against a dense solve in long double");
+  const StressChecks at = list.at("conditioning", disc.name);
+  at.add("residual of the band solver, backward error", left, 1e-14,
+         fmt::format("condition number {:.2g}", cond));
+  at.add("residual of the sparse solver, backward error", left_direct, 1e-13,
+         definite ? "" : "refused as not definite: the band solver stands in");
+  at.add("error over 1e-15 x condition number", error / (1e-15 * std::max(cond, 1.0)), 1,
+         "against a dense solve in long double");
 }
 
 // Four plain local/global steps against parameterize(), which adds the fallbacks: unfolding anew,
@@ -274,12 +275,13 @@ void check_fallbacks(CheckList& list, const PolarDisc& disc, Row& row) {
                                        {"stretch_with", full.distortion.stretch_999},
                                        {"injective", double(full.injective)},
                                        {"cost_times", cost}});
+  const StressChecks at = list.at("conditioning", disc.name);
   // A spike beyond kSteepest cannot be drawn flat in one piece: make_charts cuts it.
   if (disc.spike <= kSteepest)
-    list.add("conditioning", disc.name, "flips with the fallbacks", double(full.distortion.flips),
-             0, fmt::format("{} without them", plain.flips));
-  list.add("conditioning", disc.name, "overlaps although nothing flips",
-           full.distortion.flips == 0 && !full.injective ? 1 : 0, 0, "exact predicates");
+    at.add("flips with the fallbacks", double(full.distortion.flips), 0,
+           fmt::format("{} without them", plain.flips));
+  at.add("overlaps although nothing flips", full.distortion.flips == 0 && !full.injective ? 1 : 0,
+         0, "exact predicates");
 }
 
 // What parameterize() reports as impossible in one piece, make_charts has to cut.
@@ -290,8 +292,8 @@ void check_cutting(CheckList& list, const PolarDisc& disc) {
   for (const auto& t : disc.triangles)
     shape.indices.insert(shape.indices.end(), t.begin(), t.end());
   const Result<ChartSet> set = charts_of(shape, {}, list.context);
-  list.add("conditioning", disc.name, "triangles lost or flipped in charts",
-           set.ok() ? broken(*set) : NAN, 0,
+  list.at("conditioning", disc.name)
+      .add("triangles lost or flipped in charts", set.ok() ? broken(*set) : NAN, 0,
            set.ok() ? fmt::format("{} charts, 99.9 % stretch {:.3f}", set->charts.size(),
                                   set->distortion.stretch_999)
                     : set.status().message());
@@ -306,7 +308,8 @@ void find_onsets(CheckList& list, const std::vector<PolarDisc>& discs) {
     if (list.rows[i].value("flips_with") > 0) with = std::min(with, discs[i].spike);
   }
   const auto onset = [&](const std::string& what, double documented, double measured) {
-    list.add("conditioning", "height of a spike, disc of radius 1", what, documented / measured, 1,
+    list.at("conditioning", "height of a spike, disc of radius 1")
+        .add(what, documented / measured, 1,
              fmt::format("documented from {:g}; measured from {:g}", documented, measured));
   };
   onset("local/global steps alone flip: documented / measured", 0.6, without);

@@ -21,12 +21,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr const char* kGroup = "where methods degrade";
 
 // `documented` and `measured` are the stress from which on the quantity leaves its tolerance.
-void onset(CheckList& list, const std::string& stress, const std::string& what, double documented,
-           double measured) {
-  list.add(kGroup, stress, what, documented / measured, 1,
-           std::isinf(measured)
-               ? fmt::format("documented from {:g}; none seen", documented)
-               : fmt::format("documented from {:g}; measured from {:g}", documented, measured));
+void onset(const StressChecks& at, const std::string& what, double documented, double measured) {
+  at.add(what, documented / measured, 1,
+         std::isinf(measured)
+             ? fmt::format("documented from {:g}; none seen", documented)
+             : fmt::format("documented from {:g}; measured from {:g}", documented, measured));
 }
 
 void check_unit(CheckList& list, const test::Shape& shape, const ChartSet& reference) {
@@ -38,8 +37,8 @@ void check_unit(CheckList& list, const test::Shape& shape, const ChartSet& refer
                  : kInfinity;
     most = std::max(most, change);
   }
-  list.add(kGroup, shape.name + ", units that are no power of two", "change of chart count", most,
-           std::max(1.0, 0.05 * double(reference.charts.size())),
+  list.at(kGroup, shape.name + ", units that are no power of two")
+      .add("change of chart count", most, std::max(1.0, 0.05 * double(reference.charts.size())),
            "coordinates round anew, so near ties fall otherwise; powers of two change nothing");
 }
 
@@ -57,9 +56,10 @@ void check_offset(CheckList& list, const test::Shape& shape, const ChartSet& ref
     if (!set.ok() || std::abs(set->seam_length / reference.seam_length - 1) > 0.1)
       from = std::min(from, offset);
   }
-  onset(list, shape.name + ", offset in parts of its size", "seams change by 10 %", 1e10, from);
-  list.add(kGroup, shape.name + ", offsets to 10^16 of its size", "runs that lose triangles", lost,
-           0, "degraded or not, every triangle gets a place");
+  onset(list.at(kGroup, shape.name + ", offset in parts of its size"), "seams change by 10 %", 1e10,
+        from);
+  list.at(kGroup, shape.name + ", offsets to 10^16 of its size")
+      .add("runs that lose triangles", lost, 0, "degraded or not, every triangle gets a place");
 }
 
 void check_drago(CheckList& list) {
@@ -81,8 +81,8 @@ void check_drago(CheckList& list) {
       previous = d;
     }
   }
-  onset(list, "Drago's curve, white over the log-average", "highlights above white turn darker",
-        4e4, from);
+  onset(list.at(kGroup, "Drago's curve, white over the log-average"),
+        "highlights above white turn darker", 4e4, from);
 }
 
 void check_half(CheckList& list) {
@@ -103,9 +103,10 @@ void check_half(CheckList& list) {
         high = std::min(high, double(value(x)));
     }
   }
-  onset(list, "half-float outputs, large values", "relative error above 2^-11", 65504, high);
-  onset(list, "half-float outputs, 1 / small values", "relative error above 2^-11", 1 / 6.2e-5,
-        low > 0 ? 1 / low : kInfinity);
+  onset(list.at(kGroup, "half-float outputs, large values"), "relative error above 2^-11", 65504,
+        high);
+  onset(list.at(kGroup, "half-float outputs, 1 / small values"), "relative error above 2^-11",
+        1 / 6.2e-5, low > 0 ? 1 / low : kInfinity);
 }
 
 // Raw SLERP weights against their formula in long double.
@@ -119,9 +120,9 @@ void check_slerp(CheckList& list) {
     if (angle < 1 && linear) small = std::min(small, 1 / angle);
     if (angle > 1 && off) large = std::min(large, angle * 180 / std::numbers::pi);
   }
-  onset(list, "SLERP, 1 / angle in radians", "linear weights stand in (differ by less than 1e-8)",
-        1e4, small);
-  onset(list, "SLERP, degrees between the keys", "linear weights stand in", 90, large);
+  onset(list.at(kGroup, "SLERP, 1 / angle in radians"),
+        "linear weights stand in (differ by less than 1e-8)", 1e4, small);
+  onset(list.at(kGroup, "SLERP, degrees between the keys"), "linear weights stand in", 90, large);
 }
 
 }  // namespace

@@ -26,23 +26,24 @@ void check_scales(CheckList& list, const Shape& shape, const ChartSet& reference
   for (const int exponent : {-40, -20, 20, 40}) {
     const double scale = std::ldexp(1, exponent);
     const Result<ChartSet> set = charts_of(test::moved(shape, scale), {}, list.context);
-    list.add("scale", fmt::format("{}, unit x 2^{}", shape.name, exponent), "uv drift / extent",
-             set.ok() ? uv_drift(*set, reference, scale) : kNever, 1e-12,
+    list.at("scale", fmt::format("{}, unit x 2^{}", shape.name, exponent))
+        .add("uv drift / extent", set.ok() ? uv_drift(*set, reference, scale) : kNever, 1e-12,
              "reference: the same mesh unscaled");
   }
   for (const double scale : {1e-12, 1e-6, 1e-3, 1e3, 1e6, 1e12}) {
     const Result<ChartSet> set = charts_of(test::moved(shape, scale), {}, list.context);
     const std::string stress = fmt::format("{}, unit x {:g}", shape.name, scale);
     const auto counts = double(reference.charts.size());
-    list.add("scale", stress, "change of chart count beyond one, relative",
-             set.ok() ? std::max(0.0, std::abs(double(set->charts.size()) - counts) - 1) / counts
-                      : kNever,
-             0.1, "coordinates round anew, so near ties may fall otherwise");
-    list.add(
-        "scale", stress, "change of L2 stretch",
+    const StressChecks at = list.at("scale", stress);
+    at.add("change of chart count beyond one, relative",
+           set.ok() ? std::max(0.0, std::abs(double(set->charts.size()) - counts) - 1) / counts
+                    : kNever,
+           0.1, "coordinates round anew, so near ties may fall otherwise");
+    at.add(
+        "change of L2 stretch",
         set.ok() ? std::abs(set->distortion.stretch_l2 - reference.distortion.stretch_l2) : kNever,
         0.01);
-    list.add("scale", stress, "triangles lost or flipped", set.ok() ? broken(*set) : kNever, 0);
+    at.add("triangles lost or flipped", set.ok() ? broken(*set) : kNever, 0);
   }
 }
 
@@ -59,9 +60,9 @@ void check_offsets(CheckList& list, const Shape& shape, const ChartSet& referenc
       }
     }
     const std::string stress = fmt::format("{}, moved by {:g}", shape.name, offset);
-    list.add("offset", stress, "change of L2 stretch", change, 0.01,
-             "the readers subtract an origin in double");
-    list.add("offset", stress, "triangles lost or flipped", bad, 0);
+    const StressChecks at = list.at("offset", stress);
+    at.add("change of L2 stretch", change, 0.01, "the readers subtract an origin in double");
+    at.add("triangles lost or flipped", bad, 0);
   }
 }
 
@@ -78,14 +79,14 @@ void check_rotations(CheckList& list, const Shape& shape, const ChartSet& refere
   for (const double angle : {1e-6, 0.3, 1.0, 2.5}) {
     const Result<ChartSet> set = charts_of(rotated(shape, angle), {}, list.context);
     const std::string stress = fmt::format("{}, turned by {:g}", shape.name, angle);
-    list.add(
-        "rotation", stress, "change of L2 stretch",
+    const StressChecks at = list.at("rotation", stress);
+    at.add(
+        "change of L2 stretch",
         set.ok() ? std::abs(set->distortion.stretch_l2 - reference.distortion.stretch_l2) : kNever,
         0.02);
     const double seam = reference.seam_length;
-    list.add("rotation", stress, "relative growth of seams",
-             set.ok() ? growth(set->seam_length, seam) : kNever, 0.25,
-             "seeds are found anew: charts may differ, their cost must not");
+    at.add("relative growth of seams", set.ok() ? growth(set->seam_length, seam) : kNever, 0.25,
+           "seeds are found anew: charts may differ, their cost must not");
   }
 }
 
@@ -94,8 +95,8 @@ void check_rotations(CheckList& list, const Shape& shape, const ChartSet& refere
 void check_scale_and_place(CheckList& list) {
   for (const Shape& shape : subjects(list)) {
     const Result<ChartSet> reference = charts_of(shape, {}, list.context);
-    list.add("place", shape.name, "triangles lost or flipped",
-             reference.ok() ? broken(*reference) : kNever, 0);
+    list.at("place", shape.name)
+        .add("triangles lost or flipped", reference.ok() ? broken(*reference) : kNever, 0);
     if (!reference.ok()) continue;
     check_scales(list, shape, *reference);
     check_offsets(list, shape, *reference);
@@ -106,10 +107,9 @@ void check_scale_and_place(CheckList& list) {
 void check_bad_triangles(CheckList& list) {
   const auto try_shape = [&](const std::string& stress, const Shape& shape) {
     const Result<ChartSet> set = charts_of(shape, {}, list.context);
-    list.add("bad triangles", stress, "triangles lost or flipped", set.ok() ? broken(*set) : kNever,
-             0);
-    list.add("bad triangles", stress, "99.9 % stretch",
-             set.ok() ? set->distortion.stretch_999 : kNever, 1.26, "option: 1.25");
+    const StressChecks at = list.at("bad triangles", stress);
+    at.add("triangles lost or flipped", set.ok() ? broken(*set) : kNever, 0);
+    at.add("99.9 % stretch", set.ok() ? set->distortion.stretch_999 : kNever, 1.26, "option: 1.25");
   };
   for (const double aspect : {1e2, 1e4, 1e6, 1e8, 1e10, 1e12})
     try_shape(fmt::format("needles of aspect {:g}", aspect), test::needles(64, aspect));
@@ -125,8 +125,8 @@ void check_bad_triangles(CheckList& list) {
   for (std::size_t t = 0; t + 5 < crushed.triangle_count(); t += 5)
     crushed.indices[3 * t + 1] = crushed.indices[3 * t];
   const Result<ChartSet> set = charts_of(crushed, {}, list.context);
-  list.add("bad triangles", "every fifth triangle names a vertex twice",
-           "triangles lost or flipped", set.ok() ? broken(*set) : kNever, 0);
+  list.at("bad triangles", "every fifth triangle names a vertex twice")
+      .add("triangles lost or flipped", set.ok() ? broken(*set) : kNever, 0);
 }
 
 void check_cones(CheckList& list) {
@@ -147,11 +147,11 @@ void check_cones(CheckList& list) {
       }
     }
     const std::string stress = fmt::format("cone of {:g} degrees", cone);
-    list.add("cones", stress, "widest cone, degrees", widest, cone + 1e-4,
-             "float normals: 1e-4 degrees");
-    list.add("cones", stress, "planar stretch over 1/cos", excess, 1e-6,
-             fmt::format("{} charts were projected; see closed forms, too", projected));
-    list.add("cones", stress, "triangles lost or flipped", set.ok() ? broken(*set) : kNever, 0);
+    const StressChecks at = list.at("cones", stress);
+    at.add("widest cone, degrees", widest, cone + 1e-4, "float normals: 1e-4 degrees");
+    at.add("planar stretch over 1/cos", excess, 1e-6,
+           fmt::format("{} charts were projected; see closed forms, too", projected));
+    at.add("triangles lost or flipped", set.ok() ? broken(*set) : kNever, 0);
   }
   // Two planes whose normals lie exactly at the limit, and one ulp of the cosine to either side.
   for (const int ulps : {-1, 0, 1}) {
@@ -163,8 +163,8 @@ void check_cones(CheckList& list) {
     for (Vec3f& p : roof.positions)
       if (p.x > 1) p = {1.0f + float(cosine), p.y, float(std::sqrt(1 - cosine * cosine))};
     const Result<ChartSet> set = charts_of(roof, options, list.context);
-    list.add("cones", fmt::format("fold of 45 degrees {:+d} ulp", ulps),
-             "triangles lost or flipped", set.ok() ? broken(*set) : kNever, 0);
+    list.at("cones", fmt::format("fold of 45 degrees {:+d} ulp", ulps))
+        .add("triangles lost or flipped", set.ok() ? broken(*set) : kNever, 0);
   }
 }
 

@@ -55,10 +55,11 @@ void check_curve(CheckList& list, const ToneMapping& tone, const std::string& st
     const Vec3f d = tone.display({v, 1, v});
     for (const float c : {d.x, d.y, d.z}) leave(c);
   }
-  list.add("tone", stress, "display values outside [0, 1]", outside, 0);
-  list.add("tone", stress, "fall of a curve that must rise", falls, 1e-5,
-           first_fall > 1e6 ? "rises to a million times white at least"
-                            : fmt::format("degrades: falls from {:.1e} x white on", first_fall));
+  const StressChecks at = list.at("tone", stress);
+  at.add("display values outside [0, 1]", outside, 0);
+  at.add("fall of a curve that must rise", falls, 1e-5,
+         first_fall > 1e6 ? "rises to a million times white at least"
+                          : fmt::format("degrades: falls from {:.1e} x white on", first_fall));
 }
 
 struct Field {
@@ -94,17 +95,16 @@ void check_export(CheckList& list, const Field& field) {
   const Result<ExportReport> report = export_world(plane, options, {}, list.context);
   std::filesystem::remove_all(folder);
   const auto& light = plane.scene.illumination;
+  const StressChecks at = list.at("light", field.name);
   if (!std::all_of(light.begin(), light.end(), is_finite)) {  // readers mend it, callers must
-    list.add("light", field.name, "exports that are not refused", report.ok() ? 1 : 0, 0,
-             report.ok() ? "" : report.status().message());
+    at.add("exports that are not refused", report.ok() ? 1 : 0, 0,
+           report.ok() ? "" : report.status().message());
     return;
   }
-  list.add("light", field.name, "exports that fail", report.ok() ? 0 : 1, 0,
-           report.ok() ? "" : report.status().message());
-  list.add(
-      "light", field.name, "white is not finite and positive",
-      report.ok() && std::isfinite(report->exposure_white) && report->exposure_white > 0 ? 0 : 1,
-      0);
+  at.add("exports that fail", report.ok() ? 0 : 1, 0, report.ok() ? "" : report.status().message());
+  at.add("white is not finite and positive",
+         report.ok() && std::isfinite(report->exposure_white) && report->exposure_white > 0 ? 0 : 1,
+         0);
 }
 
 }  // namespace
@@ -124,7 +124,7 @@ void check_light(CheckList& list) {
       if (tone.ok())
         check_curve(list, *tone, stress);
       else
-        list.add("tone", stress, "curves that cannot be made", 1, 0, tone.status().message());
+        list.at("tone", stress).add("curves that cannot be made", 1, 0, tone.status().message());
     }
     check_export(list, field);
   }
@@ -143,7 +143,8 @@ void check_light(CheckList& list) {
     }
   }
   std::filesystem::remove(path);
-  list.add("outputs", "half floats, 1e-4 to 3e4", "relative error", worst, 0x1p-11 * 1.001,
+  list.at("outputs", "half floats, 1e-4 to 3e4")
+      .add("relative error", worst, 0x1p-11 * 1.001,
            "half precision; beyond 65504 it is infinite, below 6e-5 it loses digits");
 }
 
@@ -166,12 +167,12 @@ void check_downsizing(CheckList& list) {
       }
     }
     const std::string stress = fmt::format("threshold {:g}", threshold);
-    list.add("downsizing", stress,
-             threshold <= 0 ? "texels lost although there is no threshold"
-                            : "largest error over 4 x threshold",
-             over, 1e-6, "halvings add up: 2 of them here at most count");
+    const StressChecks at = list.at("downsizing", stress);
+    at.add(threshold <= 0 ? "texels lost although there is no threshold"
+                          : "largest error over 4 x threshold",
+           over, 1e-6, "halvings add up: 2 of them here at most count");
     if (threshold > 0) {  // the first has no smaller one before it
-      list.add("downsizing", stress, "texels more than at a smaller threshold", grown, 0);
+      at.add("texels more than at a smaller threshold", grown, 0);
     }
   }
 }
@@ -192,9 +193,10 @@ void check_blend(CheckList& list) {
                         std::isfinite(raw.from + raw.to) ? 0 : kInfinity});
     }
     const std::string stress = fmt::format("angle {:g}", angle);
-    list.add("SLERP", stress, "raw weights against long double", error, 1e-8,
-             "below a sine of 1e-4 linear weights stand in; above 90 degrees too, as documented");
-    list.add("SLERP", stress, "normalised weights: |sum - 1|", sum, 1e-15);
+    const StressChecks at = list.at("SLERP", stress);
+    at.add("raw weights against long double", error, 1e-8,
+           "below a sine of 1e-4 linear weights stand in; above 90 degrees too, as documented");
+    at.add("normalised weights: |sum - 1|", sum, 1e-15);
   }
 }
 

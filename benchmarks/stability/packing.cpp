@@ -35,18 +35,18 @@ void group(CheckList& list, const std::string& stress, const Sizes& sizes, std::
   options.groups = groups;
   options.refine_work = 0;  // the bisection alone, whose length has a bound
   const Result<GroupingResult> r = group_sizes(sizes, options, list.context);
-  list.add("grouping", stress, "wrong groups", r.ok() ? wrong(sizes, *r, groups) : kNever, 0);
-  list.add("grouping", stress, "evaluations of F", r.ok() ? double(r->trace.size()) : kNever, 66,
-           "bisection of a 64-bit range and its two ends");
+  const StressChecks at = list.at("grouping", stress);
+  at.add("wrong groups", r.ok() ? wrong(sizes, *r, groups) : kNever, 0);
+  at.add("evaluations of F", r.ok() ? double(r->trace.size()) : kNever, 66,
+         "bisection of a 64-bit range and its two ends");
 }
 
-void pack(CheckList& list, const std::string& stress, const std::vector<Extent>& items,
-          const PackOptions& options, std::uint32_t pages) {
-  const Result<PackResult> r = pack_rects(items, options, list.context);
-  list.add("packing", stress, "items without a place", r.ok() ? double(r->unplaced.size()) : kNever,
-           0);
-  list.add("packing", stress, "pages", r.ok() ? double(r->pages.size()) : kNever, pages,
-           fmt::format("{} needed", pages));
+void pack(const StressChecks& at, const std::vector<Extent>& items, const PackOptions& options,
+          std::uint32_t pages) {
+  const Result<PackResult> r = pack_rects(items, options, at.context());
+  at.add("items without a place", r.ok() ? double(r->unplaced.size()) : kNever, 0);
+  at.add("pages", r.ok() ? double(r->pages.size()) : kNever, pages,
+         fmt::format("{} needed", pages));
   double outside = r.ok() ? 0 : kNever;
   if (r.ok()) {
     for (std::size_t i = 0; i < items.size(); ++i) {
@@ -57,7 +57,7 @@ void pack(CheckList& list, const std::string& stress, const std::vector<Extent>&
                  std::int64_t(p.y) + e.height > options.page.height;
     }
   }
-  list.add("packing", stress, "items outside their page", outside, 0);
+  at.add("items outside their page", outside, 0);
 }
 
 }  // namespace
@@ -83,34 +83,39 @@ void check_grouping(CheckList& list) {
   // Coffman, Garey and Johnson 1978: a larger capacity can need more groups.
   const Sizes anomaly{44, 24, 24, 22, 21, 17, 8, 8, 6, 6};
   const int at_60 = int(count_groups(anomaly, 60, 10)), at_61 = int(count_groups(anomaly, 61, 10));
-  list.add("grouping", "the anomaly of MULTIFIT's paper", "F(60) and F(61) differ from 3 and 4",
-           std::abs(at_60 - 3) + std::abs(at_61 - 4), 0, "F is not monotone");
+  list.at("grouping", "the anomaly of MULTIFIT's paper")
+      .add("F(60) and F(61) differ from 3 and 4", std::abs(at_60 - 3) + std::abs(at_61 - 4), 0,
+           "F is not monotone");
   GroupingOptions options;
   options.groups = 3;
   const Result<GroupingResult> best = group_sizes(anomaly, options, list.context);
-  list.add("grouping", "the same, N = 3, refined", "capacity",
-           best.ok() ? double(best->capacity) : kNever, 60, "60 is the optimum: the total is 180");
+  list.at("grouping", "the same, N = 3, refined")
+      .add("capacity", best.ok() ? double(best->capacity) : kNever, 60,
+           "60 is the optimum: the total is 180");
 }
 
 void check_packing(CheckList& list) {
   PackOptions one;
   one.page = {2048, 2048};
-  pack(list, "page = item", {{2048, 2048}}, one, 1);
-  pack(list, "five items of the page's size", std::vector<Extent>(5, {2048, 2048}), one, 5);
+  pack(list.at("packing", "page = item"), {{2048, 2048}}, one, 1);
+  pack(list.at("packing", "five items of the page's size"), std::vector<Extent>(5, {2048, 2048}),
+       one, 5);
   const int side = list.options.full ? 1000 : 100;
   PackOptions small;
   small.page = {side, side};
-  pack(list, fmt::format("{} items of 1 x 1, none to spare", side * side),
+  pack(list.at("packing", fmt::format("{} items of 1 x 1, none to spare", side * side)),
        std::vector<Extent>(std::size_t(side) * std::size_t(side), {1, 1}), small, 1);
   PackOptions wide;
   wide.page = {1 << 30, 4};
-  pack(list, "four items 10^9 wide", std::vector<Extent>(4, {1000000000, 1}), wide, 1);
+  pack(list.at("packing", "four items 10^9 wide"), std::vector<Extent>(4, {1000000000, 1}), wide,
+       1);
   PackOptions high;
   high.page = {4, 1 << 30};
-  pack(list, "four items 10^9 high", std::vector<Extent>(4, {1, 1000000000}), high, 1);
+  pack(list.at("packing", "four items 10^9 high"), std::vector<Extent>(4, {1, 1000000000}), high,
+       1);
   PackOptions flat;
   flat.page = {64, 64};
-  pack(list, "sides of 0", std::vector<Extent>(10, {0, 5}), flat, 1);
+  pack(list.at("packing", "sides of 0"), std::vector<Extent>(10, {0, 5}), flat, 1);
 }
 
 }  // namespace atlas::bench

@@ -41,8 +41,14 @@ struct Stage {
   }
 };
 
-void add_face(Scene& scene, const Stage& stage, const glm::dvec3& corner, const glm::dvec3& a,
-              const glm::dvec3& b, int cuts) {
+// A parallelogram, cut `cuts` times along both sides.
+struct Face {
+  glm::dvec3 corner, a, b;
+  int cuts;
+};
+
+void add_face(Scene& scene, const Stage& stage, const Face& face) {
+  const auto& [corner, a, b, cuts] = face;
   const auto first = std::uint32_t(scene.positions.size());
   for (int j = 0; j <= cuts; ++j)
     for (int i = 0; i <= cuts; ++i) {
@@ -61,12 +67,12 @@ void add_face(Scene& scene, const Stage& stage, const glm::dvec3& corner, const 
 Scene scene_of(const Stage& stage) {
   Scene scene;
   scene.materials.push_back({});
-  add_face(scene, stage, {-4, 0, 4}, {8, 0, 0}, {0, 0, -8}, 32);
+  add_face(scene, stage, {{-4, 0, 4}, {8, 0, 0}, {0, 0, -8}, 32});
   for (const Stage::Box& box : stage.boxes) {
     const glm::dvec3 d = box.high - box.low, x(d.x, 0, 0), y(0, d.y, 0), z(0, 0, d.z);
     for (const auto& [a, b, c] : {std::array{x, y, z}, std::array{y, z, x}, std::array{z, x, y}}) {
-      add_face(scene, stage, box.low, b, a, 2);
-      add_face(scene, stage, box.low + c, a, b, 2);
+      add_face(scene, stage, {box.low, b, a, 2});
+      add_face(scene, stage, {box.low + c, a, b, 2});
     }
   }
   scene.triangle_material.assign(scene.triangle_count(), 0);
@@ -98,16 +104,22 @@ struct Shares {
   int lit = 0, shadowed = 0;
 };
 
+Camera camera_of(const Stage& stage) {
+  Camera camera;
+  camera.eye = from_glm(stage.placed({1, 6, 5.5}));
+  camera.target = from_glm(stage.placed({0, 0, 0}));
+  return camera;
+}
+
 // Ground pixels further than two texels of the map from any edge of the shadow.
-Shares compare(const Stage& stage, const Image8& image, const Camera& camera,
-               const glm::dvec3& light, double texel) {
+Shares compare(const Stage& stage, const Image8& image, const glm::dvec3& light, double texel) {
   const glm::dvec3 eye(1, 6, 5.5);  // of the unplaced stage, as camera_of() places it
   const glm::dvec3 forward = glm::normalize(-eye);
   const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(0, 1, 0)));
   const glm::dvec3 up = glm::cross(right, forward);
   const glm::dvec3 side = glm::normalize(glm::cross(light, glm::dvec3(0, 1, 0)));
   const glm::dvec3 other = glm::cross(light, side);
-  const double tangent = std::tan(glm::radians(camera.fov_degrees) / 2);
+  const double tangent = std::tan(glm::radians(camera_of(stage).fov_degrees) / 2);
   Shares s;
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
@@ -133,13 +145,6 @@ Shares compare(const Stage& stage, const Image8& image, const Camera& camera,
   s.acne /= std::max(s.lit, 1);
   s.leak /= std::max(s.shadowed, 1);
   return s;
-}
-
-Camera camera_of(const Stage& stage) {
-  Camera camera;
-  camera.eye = from_glm(stage.placed({1, 6, 5.5}));
-  camera.target = from_glm(stage.placed({0, 0, 0}));
-  return camera;
 }
 
 Result<Shares> shares_of(const Stage& stage, const glm::dvec3& light, RenderOptions options) {
@@ -172,8 +177,7 @@ Result<Shares> shares_of(const Stage& stage, const glm::dvec3& light, RenderOpti
   fit.border_texels = kMap / 128.0;
   const Result<LightFit> map = fit_light(now, renderer->bounds(), fit);
   if (!map.ok()) return map.status();
-  return compare(stage, renderer->read_image(), camera, glm::normalize(light),
-                 map->texel / stage.scale);
+  return compare(stage, renderer->read_image(), glm::normalize(light), map->texel / stage.scale);
 }
 
 glm::dvec3 light_at(double elevation) {
@@ -192,24 +196,30 @@ double sine_of(const glm::dvec3& light) {
   return light.y / glm::length(light);
 }
 
+struct Stress {
+  std::string name;
+  Stage stage = Stage();
+  glm::dvec3 light = light_at(35);
+  RenderOptions options = {};
+};
+
 // One stress with classic maps and with the march between two keys.
-void add_rows(CheckList& list, const std::string& stress, const Stage& stage,
-              const glm::dvec3& light, const RenderOptions& base) {
+void add_rows(CheckList& list, const Stress& stress) {
+  const glm::dvec3& light = stress.light;
   const bool shadows = sine_of(light) > std::sin(glm::radians(kLowestShadow)) * (1 - 1e-9);
   const bool overhead = sine_of(light) > std::sin(glm::radians(85.0));  // little shadow is seen
   for (const ShadowMethod method : {ShadowMethod::classic, ShadowMethod::march}) {
-    RenderOptions options = base;
+    RenderOptions options = stress.options;
     options.shadows = method;
-    const Result<Shares> s = shares_of(stage, light, options);
-    const std::string name = fmt::format("{}, {}", stress, name_of(method));
+    const Result<Shares> s = shares_of(stress.stage, light, options);
+    const std::string name = fmt::format("{}, {}", stress.name, name_of(method));
     const double never = std::numeric_limits<double>::quiet_NaN();
-    list.add("shadow maps", name, "lit pixels that are dark (acne)",
-             s.ok() && s->lit > 200 ? s->acne : never, kBound,
-             s.ok() ? fmt::format("{} lit pixels", s->lit) : s.status().message());
+    const StressChecks at = list.at("shadow maps", name);
+    at.add("lit pixels that are dark (acne)", s.ok() && s->lit > 200 ? s->acne : never, kBound,
+           s.ok() ? fmt::format("{} lit pixels", s->lit) : s.status().message());
     if (shadows && !overhead)
-      list.add("shadow maps", name, "shadowed pixels that are lit (leak)",
-               s.ok() && s->shadowed > 50 ? s->leak : never, kBound,
-               s.ok() ? fmt::format("{} shadowed pixels", s->shadowed) : "");
+      at.add("shadowed pixels that are lit (leak)", s.ok() && s->shadowed > 50 ? s->leak : never,
+             kBound, s.ok() ? fmt::format("{} shadowed pixels", s->shadowed) : "");
   }
 }
 
@@ -228,15 +238,15 @@ void check_shadow_maps(CheckList& list) {
          {0.1, 0.2, kLowestShadow, 1.0, 2.0, 5.0, 10.0, 45.0, 80.0, 89.0, 90.0}) {
       RenderOptions options;
       options.map_bits = bits;
-      add_rows(list, fmt::format("light {:g} degrees up, {} bits", elevation, bits), Stage(),
-               light_at(elevation), options);
+      add_rows(list, {fmt::format("light {:g} degrees up, {} bits", elevation, bits), Stage(),
+                      light_at(elevation), options});
     }
   for (const double scale : {1e-12, 1e-6, 1e-3, 1e3, 1e6, 1e12}) {
-    add_rows(list, fmt::format("scene times {:g}", scale), Stage(scale), light_at(35), {});
+    add_rows(list, {fmt::format("scene times {:g}", scale), Stage(scale)});
   }
   for (const double offset : {1e2, 1e3, 1e4, 1e5, 1e6}) {
-    add_rows(list, fmt::format("scene {:g} sizes from the origin", offset),
-             Stage(1, glm::dvec3(1, 0.5, -1) * (8 * offset)), light_at(35), {});
+    add_rows(list, {fmt::format("scene {:g} sizes from the origin", offset),
+                    Stage(1, glm::dvec3(1, 0.5, -1) * (8 * offset))});
   }
 }
 

@@ -160,25 +160,31 @@ void Lighting::light_directly(Mesh& mesh, std::size_t first, const atlas::Contex
 
 namespace {
 
-// The share of a vertex's hemisphere rays, cosine-weighted, and where each ends.
-void trace_links(const Tracer& tracer, const Mesh& mesh, std::span<Link> links, std::size_t vertex,
-                 std::uint32_t seed) {
-  const Vertex& v = mesh.vertices[vertex];
-  const glm::vec3 origin = ray_origin(v);
-  const glm::vec2 shift = rotation_at(v.ray_start, seed + 77);
-  const auto [t, b] = frame_of(v.normal);
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    const glm::vec2 r = low_discrepancy(int(i), shift);
+// A vertex's hemisphere rays, cosine-weighted.
+class Hemisphere {
+ public:
+  Hemisphere(const Vertex& v, std::uint32_t seed)
+      : shift_(rotation_at(v.ray_start, seed + 77)),
+        tangents_(frame_of(v.normal)),
+        normal_(v.normal) {}
+  glm::vec3 ray(int i) const {
+    const glm::vec2 r = low_discrepancy(i, shift_);
     const float radius = std::sqrt(r.x), angle = 2 * kPi * r.y;
-    const glm::vec3 d = radius * std::cos(angle) * t + radius * std::sin(angle) * b +
-                        std::sqrt(std::max(0.0f, 1 - r.x)) * v.normal;
-    const Hit hit = tracer.nearest(origin, d);
-    const bool sends =
-        hit.triangle != ~0u && hit.front &&
-        mesh.materials[mesh.triangles[hit.triangle].material].emission == glm::vec3(0);
-    links[i] = {sends ? hit.triangle : ~0u, std::uint16_t(hit.u * 65535),
-                std::uint16_t(hit.v * 65535)};
+    return radius * std::cos(angle) * std::get<0>(tangents_) +
+           radius * std::sin(angle) * std::get<1>(tangents_) +
+           std::sqrt(std::max(0.0f, 1 - r.x)) * normal_;
   }
+
+ private:
+  glm::vec2 shift_;
+  std::tuple<glm::vec3, glm::vec3> tangents_;
+  glm::vec3 normal_;
+};
+
+Link link_of(const Hit& hit, const Mesh& mesh) {
+  const bool sends = hit.triangle != ~0u && hit.front &&
+                     mesh.materials[mesh.triangles[hit.triangle].material].emission == glm::vec3(0);
+  return {sends ? hit.triangle : ~0u, std::uint16_t(hit.u * 65535), std::uint16_t(hit.v * 65535)};
 }
 
 glm::vec3 gather(const Mesh& mesh, std::span<const Link> links,
@@ -226,8 +232,12 @@ void Lighting::light_indirectly(Mesh& mesh, const atlas::Context& context) const
   const std::size_t count = mesh.vertices.size(), rays = std::size_t(options_.indirect_samples);
   std::vector<Link> links(count * rays);
   atlas::parallel_for(context, count, 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      trace_links(tracer_, mesh, {links.data() + i * rays, rays}, i, options_.seed);
+    for (std::size_t i = begin; i < end; ++i) {
+      const glm::vec3 origin = ray_origin(mesh.vertices[i]);
+      const Hemisphere over(mesh.vertices[i], options_.seed);
+      for (std::size_t k = 0; k < rays; ++k)
+        links[i * rays + k] = link_of(tracer_.nearest(origin, over.ray(int(k))), mesh);
+    }
   });
   mesh.indirect.assign(count, glm::vec3(0));
   std::vector<glm::vec3> total = mesh.direct;

@@ -18,18 +18,19 @@ std::uint32_t mix_bits(std::uint32_t x) {
   return x ^ (x >> 16);
 }
 
-double lattice(int x, int y, int period_x, int period_y, std::uint32_t seed) {
-  x = ((x % period_x) + period_x) % period_x;
-  y = ((y % period_y) + period_y) % period_y;
+double lattice(int x, int y, glm::ivec2 cells, std::uint32_t seed) {
+  x = ((x % cells.x) + cells.x) % cells.x;
+  y = ((y % cells.y) + cells.y) % cells.y;
   return mix_bits(seed * 0x9E3779B9u + std::uint32_t(y) * 7919u + std::uint32_t(x)) / 4294967296.0;
 }
 
-// Value noise in [0, 1] that repeats after (period_x, period_y) cells.
-double noise(double x, double y, int period_x, int period_y, std::uint32_t seed) {
+// Value noise in [0, 1] of so many cells in the unit square, beyond which it repeats.
+double noise(double u, double v, glm::ivec2 cells, std::uint32_t seed) {
+  const double x = cells.x * u, y = cells.y * v;
   const int ix = int(std::floor(x)), iy = int(std::floor(y));
   const auto smooth = [](double t) { return t * t * (3 - 2 * t); };
   const double fx = smooth(x - ix), fy = smooth(y - iy);
-  const auto at = [&](int i, int j) { return lattice(ix + i, iy + j, period_x, period_y, seed); };
+  const auto at = [&](int i, int j) { return lattice(ix + i, iy + j, cells, seed); };
   return (at(0, 0) * (1 - fx) + at(1, 0) * fx) * (1 - fy) +
          (at(0, 1) * (1 - fx) + at(1, 1) * fx) * fy;
 }
@@ -51,12 +52,10 @@ atlas::Image8 paint(int size, const Shader& shader) {
 // Grain along v: bands whose position wanders, fine fibres over them.
 atlas::Image8 wood_texture() {
   return paint(256, [](double u, double v, int, int) {
-    const double wander = 0.7 * noise(4 * u, 2 * v, 4, 2, 11) + 0.3 * noise(8 * u, 4 * v, 8, 4, 12);
+    const double wander = 0.7 * noise(u, v, {4, 2}, 11) + 0.3 * noise(u, v, {8, 4}, 12);
     const double ring = 0.5 + 0.5 * std::sin(2 * std::numbers::pi * (6 * u + 2.2 * wander));
-    const double fibre = noise(96 * u, 6 * v, 96, 6, 13),
-                 pore = noise(128 * u, 16 * v, 128, 16, 14);
-    const double tone =
-        0.55 * std::pow(ring, 1.6) + 0.3 * fibre + 0.15 * noise(3 * u, 3 * v, 3, 3, 15);
+    const double fibre = noise(u, v, {96, 6}, 13), pore = noise(u, v, {128, 16}, 14);
+    const double tone = 0.55 * std::pow(ring, 1.6) + 0.3 * fibre + 0.15 * noise(u, v, {3, 3}, 15);
     glm::dvec3 c = glm::mix(glm::dvec3(0.46, 0.29, 0.17), glm::dvec3(0.74, 0.54, 0.35), tone);
     return pore > 0.88 ? c * 0.92 : c;
   });
@@ -69,16 +68,15 @@ atlas::Image8 weave_texture(glm::dvec3 warp_colour, glm::dvec3 weft_colour, std:
     const bool over = ((tx + ty) & 3) < 2;
     const double across = over ? (x % 4 + 0.5) / 4 : (y % 4 + 0.5) / 4;
     const double round = 0.72 + 0.28 * std::sin(std::numbers::pi * across);
-    const double slub = 0.86 + 0.28 * (over ? noise(32 * u, 6 * v, 32, 6, seed)
-                                            : noise(6 * u, 32 * v, 6, 32, seed + 1));
+    const double slub =
+        0.86 + 0.28 * (over ? noise(u, v, {32, 6}, seed) : noise(u, v, {6, 32}, seed + 1));
     return (over ? warp_colour : weft_colour) * (round * slub);
   });
 }
 
 atlas::Image8 carpet_texture(glm::dvec3 dark, glm::dvec3 light, bool pattern) {
   return paint(128, [=](double u, double v, int, int) {
-    const double tuft = noise(64 * u, 64 * v, 64, 64, 31),
-                 patch = noise(10 * u, 10 * v, 10, 10, 32);
+    const double tuft = noise(u, v, {64, 64}, 31), patch = noise(u, v, {10, 10}, 32);
     double tone = 0.55 * tuft + 0.35 * patch;
     if (pattern) {
       const double du = std::abs(2 * u - 1), dv = std::abs(2 * v - 1);
@@ -90,7 +88,7 @@ atlas::Image8 carpet_texture(glm::dvec3 dark, glm::dvec3 light, bool pattern) {
 
 atlas::Image8 terrazzo_texture() {
   return paint(128, [](double u, double v, int, int) {
-    const double chip = noise(20 * u, 20 * v, 20, 20, 41), grit = noise(64 * u, 64 * v, 64, 64, 42);
+    const double chip = noise(u, v, {20, 20}, 41), grit = noise(u, v, {64, 64}, 42);
     glm::dvec3 c(0.52, 0.50, 0.48);
     if (chip > 0.74) c = glm::dvec3(0.72, 0.69, 0.64);
     if (chip < 0.24) c = glm::dvec3(0.36, 0.34, 0.33);

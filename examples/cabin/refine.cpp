@@ -107,7 +107,7 @@ std::size_t mark(Edges& all, Id edge, std::vector<Id>& stack) {
   return added;
 }
 
-// New vertices and texture coordinates in the middle of split edges, each made once.
+// Splits triangles; vertices and texture coordinates in the middle of split edges are made once.
 class Splitter {
  public:
   Splitter(Mesh& mesh, const Edges& edges)
@@ -118,6 +118,44 @@ class Splitter {
     texcoords_.reserve(split + split / 8);
   }
 
+  // Splits one triangle by its marked edges: the longest first, then what is left of the others.
+  void split(std::size_t t, std::vector<Triangle>& out) {
+    const Triangle& old = mesh_.triangles[t];
+    const auto& e = edges_.of_triangle[t];
+    const int k = edges_.longest[t], k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+    if (!edges_.edges[e[k]].split) {
+      out.push_back(old);
+      return;
+    }
+    const auto corner = [&](int i) { return std::pair(old.vertex[i], old.texcoord[i]); };
+    const auto middle = [&](int from) {
+      const int to = (from + 1) % 3;
+      return std::pair(vertex(e[from], old.vertex[from], old.vertex[to]),
+                       texcoord(old.texcoord[from], old.texcoord[to]));
+    };
+    using C = std::pair<Id, Id>;
+    const auto emit = [&](C a, C b, C c) {
+      out.push_back(
+          {{a.first, b.first, c.first}, {a.second, b.second, c.second}, old.object, old.material});
+    };
+    const C a = corner(k), b = corner(k1), c = corner(k2), m = middle(k);
+    if (edges_.edges[e[k1]].split) {
+      const C n = middle(k1);
+      emit(m, b, n);
+      emit(m, n, c);
+    } else {
+      emit(m, b, c);
+    }
+    if (edges_.edges[e[k2]].split) {
+      const C n = middle(k2);
+      emit(m, c, n);
+      emit(m, n, a);
+    } else {
+      emit(m, c, a);
+    }
+  }
+
+ private:
   Id vertex(Id edge, Id a, Id b) {
     const auto [it, fresh] = vertices_.emplace(pair_key(a, b), Id(mesh_.vertices.size()));
     if (fresh) add_vertex(edge, std::min(a, b), std::max(a, b));
@@ -129,7 +167,6 @@ class Splitter {
     return it->second;
   }
 
- private:
   void add_vertex(Id edge, Id a, Id b) {
     const Vertex p = mesh_.vertices[a], q = mesh_.vertices[b];
     Vertex middle;
@@ -153,43 +190,6 @@ class Splitter {
   std::unordered_map<std::uint64_t, Id> vertices_, texcoords_;
 };
 
-// Splits one triangle by its marked edges: the longest first, then what is left of the others.
-void split_triangle(const Edges& all, std::size_t t, Splitter& splitter, std::vector<Triangle>& out,
-                    const Triangle& old) {
-  const auto& e = all.of_triangle[t];
-  const int k = all.longest[t], k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-  if (!all.edges[e[k]].split) {
-    out.push_back(old);
-    return;
-  }
-  const auto corner = [&](int i) { return std::pair(old.vertex[i], old.texcoord[i]); };
-  const auto middle = [&](int from) {
-    const int to = (from + 1) % 3;
-    return std::pair(splitter.vertex(e[from], old.vertex[from], old.vertex[to]),
-                     splitter.texcoord(old.texcoord[from], old.texcoord[to]));
-  };
-  using C = std::pair<Id, Id>;
-  const auto emit = [&](C a, C b, C c) {
-    out.push_back(
-        {{a.first, b.first, c.first}, {a.second, b.second, c.second}, old.object, old.material});
-  };
-  const C a = corner(k), b = corner(k1), c = corner(k2), m = middle(k);
-  if (all.edges[e[k1]].split) {
-    const C n = middle(k1);
-    emit(m, b, n);
-    emit(m, n, c);
-  } else {
-    emit(m, b, c);
-  }
-  if (all.edges[e[k2]].split) {
-    const C n = middle(k2);
-    emit(m, c, n);
-    emit(m, n, a);
-  } else {
-    emit(m, c, a);
-  }
-}
-
 void refine_once(Mesh& mesh, std::size_t wished) {
   Edges all(mesh);
   std::vector<Id> order(all.edges.size());
@@ -206,8 +206,7 @@ void refine_once(Mesh& mesh, std::size_t wished) {
   std::vector<Triangle> triangles;
   triangles.reserve(count);
   Splitter splitter(mesh, all);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    split_triangle(all, t, splitter, triangles, mesh.triangles[t]);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) splitter.split(t, triangles);
   mesh.triangles.swap(triangles);
 }
 

@@ -13,27 +13,34 @@ namespace {
 
 constexpr double kBandHalf = 0.25;  // half the height of the band of wall that holds the windows
 
-// A plain piece of wall between two heights, seen from inside.
-void add_wall(Builder& builder, int side, glm::dvec2 x, glm::dvec2 height, glm::ivec2 cells) {
+// A piece of wall between two places along the cabin and two heights.
+struct WallPiece {
+  int side;
+  glm::dvec2 x, height;
+};
+
+void add_wall(Builder& builder, const WallPiece& piece, glm::ivec2 cells) {
+  const glm::dvec2 x = piece.x, height = piece.height;
   GridShape grid;
-  grid.surface = [=](double u, double v) {
+  grid.surface = [=, side = piece.side](double u, double v) {
     return wall_point(side, x.x + (x.y - x.x) * u, height.x + (height.y - height.x) * v, 0);
   };
   grid.nu = cells.x;
   grid.nv = cells.y;
   grid.tiles = {(x.y - x.x) / 0.5, (height.y - height.x) / 0.5};
-  grid.flip = side < 0;
+  grid.flip = piece.side < 0;
   add_grid(builder, grid);
-}
-
-Corner wall_corner(int side, double x, double height, double depth, glm::dvec3 normal) {
-  return {wall_point(side, x, height, depth), normal, {x / 0.5, height / 0.5}};
 }
 
 // The inward normal of the wall.
 glm::dvec3 wall_normal(int side, double height) {
   const double angle = height / kRadius;
   return {0, -side * std::cos(angle), -std::sin(angle)};
+}
+
+// At p.x along the cabin and the height p.y.
+Corner wall_corner(int side, glm::dvec2 p) {
+  return {wall_point(side, p.x, p.y, 0), wall_normal(side, p.y), {p.x / 0.5, p.y / 0.5}};
 }
 
 // The border of the square [-1, 1]² in 4 n steps, anticlockwise.
@@ -46,15 +53,20 @@ std::vector<glm::dvec2> square_border(int n) {
   return border;
 }
 
+struct Window {
+  int side, bay;
+  glm::dvec2 centre;
+};
+
 // The piece of wall around a window: rings from the band's rectangle to the window's rim.
-void add_window_wall(Builder& builder, int side, glm::dvec2 centre, int n) {
+void add_window_wall(Builder& builder, const Window& window, int n) {
   const auto border = square_border(n);
   const int rings = builder.segments(0.12, builder.coarse() ? 1 : 2);
   const auto corner = [&](int ring, std::size_t i) {
     const glm::dvec2 q = border[i % border.size()];
     const glm::dvec2 outer(q.x * kBay / 2, q.y * kBandHalf), inner = window_rim(q.x, q.y);
-    const glm::dvec2 p = centre + glm::mix(inner, outer, double(ring) / rings);
-    return wall_corner(side, p.x, p.y, 0, wall_normal(side, p.y));
+    const glm::dvec2 p = window.centre + glm::mix(inner, outer, double(ring) / rings);
+    return wall_corner(window.side, p);
   };
   for (int ring = 0; ring < rings; ++ring)
     for (std::size_t i = 0; i < border.size(); ++i)
@@ -63,7 +75,9 @@ void add_window_wall(Builder& builder, int side, glm::dvec2 centre, int n) {
 }
 
 // The funnel from the rim outwards, and the blind at its end.
-void add_reveal(Builder& builder, int side, int bay, glm::dvec2 centre, int n) {
+void add_reveal(Builder& builder, const Window& window, int n) {
+  const int side = window.side;
+  const glm::dvec2 centre = window.centre;
   const auto border = square_border(n);
   builder.begin("window_reveals", "trim");
   const int rings = builder.segments(kRevealDepth, builder.coarse() ? 1 : 2);
@@ -86,7 +100,7 @@ void add_reveal(Builder& builder, int side, int bay, glm::dvec2 centre, int n) {
     for (std::size_t i = 0; i < border.size(); ++i)
       builder.quad(corner(ring, i), corner(ring, i + 1), corner(ring + 1, i + 1),
                    corner(ring + 1, i));
-  const double share = blind_share(side, bay);
+  const double share = blind_share(side, window.bay);
   if (share <= 0) return;
   builder.begin("window_blinds", "blind");
   GridShape blind;
@@ -106,17 +120,17 @@ void add_bay(Builder& builder, int side, int bay) {
   const double middle = wall_height(kWindowHeight), floor = wall_height(0), top = kRadius * 0.66;
   const int n = builder.segments(kBay, builder.coarse() ? 2 : 4);
   builder.begin("lining", "lining");
-  add_wall(builder, side, x, {middle + kBandHalf, top},
+  add_wall(builder, {side, x, {middle + kBandHalf, top}},
            {n, builder.segments(top - middle - kBandHalf, builder.coarse() ? 2 : 3)});
   builder.begin("dado", "dado");
-  add_wall(builder, side, x, {floor, middle - kBandHalf},
+  add_wall(builder, {side, x, {floor, middle - kBandHalf}},
            {n, builder.segments(middle - kBandHalf - floor, builder.coarse() ? 3 : 6)});
   builder.begin("lining", "lining");
-  const glm::dvec2 centre((x.x + x.y) / 2, middle);
   if (!has_window(bay))
-    return add_wall(builder, side, x, {middle - kBandHalf, middle + kBandHalf}, {n, n});
-  add_window_wall(builder, side, centre, n);
-  add_reveal(builder, side, bay, centre, n);
+    return add_wall(builder, {side, x, {middle - kBandHalf, middle + kBandHalf}}, {n, n});
+  const Window window{side, bay, {(x.x + x.y) / 2, middle}};
+  add_window_wall(builder, window, n);
+  add_reveal(builder, window, n);
 }
 
 // The crown of the fuselage above the bins and the ceiling, where no light comes.

@@ -40,18 +40,19 @@ struct Glb {
 // The triangles of one object and material, with vertices of their own: glTF wants one index for
 // position and texture coordinate together.
 struct Part {
-  std::vector<glm::vec3> positions, light;
-  std::vector<glm::vec2> texcoords;
-  std::vector<Id> indices;
-  std::unordered_map<std::uint64_t, Id> index_of;
+  bool y_up;
+  std::vector<glm::vec3> positions = {}, light = {};
+  std::vector<glm::vec2> texcoords = {};
+  std::vector<Id> indices = {};
+  std::unordered_map<std::uint64_t, Id> index_of = {};
 };
 
-void add_corner(Part& part, const Mesh& mesh, Id vertex, Id texcoord, bool y_up) {
+void add_corner(Part& part, const Mesh& mesh, Id vertex, Id texcoord) {
   const auto [it, fresh] =
       part.index_of.emplace(std::uint64_t(vertex) << 32 | texcoord, Id(part.positions.size()));
   if (fresh) {
     const glm::vec3 p = mesh.vertices[vertex].position;
-    part.positions.push_back(y_up ? glm::vec3(p.x, p.z, -p.y) : p);
+    part.positions.push_back(part.y_up ? glm::vec3(p.x, p.z, -p.y) : p);
     part.light.push_back(mesh.direct[vertex] + mesh.indirect[vertex]);
     // glTF's textures start at the top.
     part.texcoords.push_back({mesh.texcoords[texcoord].x, 1 - mesh.texcoords[texcoord].y});
@@ -114,12 +115,12 @@ atlas::Status write_glb(const std::filesystem::path& path, const std::filesystem
     json primitives = json::array();
     while (t < mesh.triangles.size() && mesh.triangles[t].object == object) {
       const std::uint16_t material = mesh.triangles[t].material;
-      Part part;
+      Part part{y_up};
       for (; t < mesh.triangles.size() && mesh.triangles[t].object == object &&
              mesh.triangles[t].material == material;
            ++t)
         for (int k = 0; k < 3; ++k)
-          add_corner(part, mesh, mesh.triangles[t].vertex[k], mesh.triangles[t].texcoord[k], y_up);
+          add_corner(part, mesh, mesh.triangles[t].vertex[k], mesh.triangles[t].texcoord[k]);
       primitives.push_back(primitive_of(glb, part, material));
     }
     glb.root["meshes"].push_back({{"name", mesh.objects[object]}, {"primitives", primitives}});

@@ -67,26 +67,25 @@ double sample_spacing(const ChartPlacement& p, int side) {
 void splat_triangle(const TexelTriangle& p, const TriangleLight& lit, const SampleGrid& grid,
                     LeastSquares& fit) {
   const float weight = 1.0f / static_cast<float>(grid.count);
-  sample_triangle(
-      p, {1, 1, fit.width() - 2, fit.height() - 2}, grid,
-      [&](int k, int y, int x0, int x1) {
-        const Vec2d o = grid.offset[k];
-        const int left = o.x < 0.5 ? -1 : 0, low = o.y < 0.5 ? -1 : 0;
-        const LeastSquares::Splat splat(static_cast<float>(o.x - 0.5 - left),
-                                        static_cast<float>(o.y - 0.5 - low), weight);
-        LeastSquares::Run run(fit, x0 + left, y + low, splat);
-        lit.row({x0 + o.x, y + o.y}, x1 - x0, [&](int, Lanes rgb) { run.add(rgb); });
-        run.finish();
-      },
-      [&](const float* b, float area) {
-        const double x = b[0] * p[0].x + b[1] * p[1].x + b[2] * p[2].x - 0.5;
-        const double y = b[0] * p[0].y + b[1] * p[1].y + b[2] * p[2].y - 0.5;
-        const int i = std::clamp(static_cast<int>(x), 0, fit.width() - 2);
-        const int j = std::clamp(static_cast<int>(y), 0, fit.height() - 2);
-        const LeastSquares::Splat splat(static_cast<float>(std::clamp(x - i, 0.0, 1.0)),
-                                        static_cast<float>(std::clamp(y - j, 0.0, 1.0)), area);
-        fit.add(i, j, splat, lit.at(b));
-      });
+  const auto row = [&](int k, int y, int x0, int x1) {
+    const Vec2d o = grid.offset[k];
+    const int left = o.x < 0.5 ? -1 : 0, low = o.y < 0.5 ? -1 : 0;
+    const LeastSquares::Splat splat(static_cast<float>(o.x - 0.5 - left),
+                                    static_cast<float>(o.y - 0.5 - low), weight);
+    LeastSquares::Run run(fit, x0 + left, y + low, splat);
+    lit.row({x0 + o.x, y + o.y}, x1 - x0, [&](int, Lanes rgb) { run.add(rgb); });
+    run.finish();
+  };
+  const auto point = [&](const float* b, float area) {
+    const double x = b[0] * p[0].x + b[1] * p[1].x + b[2] * p[2].x - 0.5;
+    const double y = b[0] * p[0].y + b[1] * p[1].y + b[2] * p[2].y - 0.5;
+    const int i = std::clamp(static_cast<int>(x), 0, fit.width() - 2);
+    const int j = std::clamp(static_cast<int>(y), 0, fit.height() - 2);
+    const LeastSquares::Splat splat(static_cast<float>(std::clamp(x - i, 0.0, 1.0)),
+                                    static_cast<float>(std::clamp(y - j, 0.0, 1.0)), area);
+    fit.add(i, j, splat, lit.at(b));
+  };
+  sample_triangle(p, {1, 1, fit.width() - 2, fit.height() - 2}, grid, SampleVisitor{row, point});
 }
 
 TexelGrid bake_least_squares(const Job& job, const Box& box) {

@@ -151,31 +151,38 @@ const char* extension_of(std::span<const std::uint8_t> bytes) {
   return nullptr;
 }
 
+// OpenImageIO tells nobody when a disk is full: what it writes goes into a file of our own, which
+// remembers that.
+struct Target {
+  std::filesystem::path path;
+  OIIO::Filesystem::IOFile file;
+  std::unique_ptr<OIIO::ImageOutput> writer;  // may still write when it ends: before the file does
+};
+
 template <class T>
-Status encode(std::unique_ptr<OIIO::ImageOutput> given, const std::filesystem::path& path,
-              const Image<T>& image, const OIIO::ImageSpec& spec, std::FILE* file) {
-  OIIO::Filesystem::IOFile proxy(file, OIIO::Filesystem::IOProxy::Write);
-  const auto output = std::move(given);  // may still write when it ends, which is before the proxy
+Status encode(Target& to, const Image<T>& image, const OIIO::ImageSpec& spec) {
   const T* top_row =
       image.texels.data() + std::size_t(image.height - 1) * image.width * image.channels;
-  if (!output->set_ioproxy(&proxy) || !output->open(path.string(), spec) ||
-      !output->write_image(type_of<T>(), top_row, OIIO::AutoStride, -row_bytes(image)) ||
-      !output->close()) {
-    return failure(path, "writing failed", output->geterror());
+  if (!to.writer->set_ioproxy(&to.file) || !to.writer->open(to.path.string(), spec) ||
+      !to.writer->write_image(type_of<T>(), top_row, OIIO::AutoStride, -row_bytes(image)) ||
+      !to.writer->close()) {
+    return failure(to.path, "writing failed", to.writer->geterror());
   }
   return {};
 }
 
-// OpenImageIO tells nobody when a disk is full: what it writes goes into a file of our own, which
-// remembers that.
 template <class T>
 Status write(const std::filesystem::path& path, const Image<T>& image,
              const OIIO::ImageSpec& spec) {
-  auto output = OIIO::ImageOutput::create(path.string());
-  if (!output) return failure(path, "no writer for this kind of image", OIIO::geterror());
+  auto writer = OIIO::ImageOutput::create(path.string());
+  if (!writer) return failure(path, "no writer for this kind of image", OIIO::geterror());
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (!file) return failure(path, "cannot be written", std::strerror(errno));
-  Status status = encode(std::move(output), path, image, spec, file);
+  Status status;
+  {
+    Target to{path, {file, OIIO::Filesystem::IOProxy::Write}, std::move(writer)};
+    status = encode(to, image, spec);
+  }
   errno = 0;
   const bool stored = std::fflush(file) == 0 && !std::ferror(file);
   const int reason = errno ? errno : EIO;

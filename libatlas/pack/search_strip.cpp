@@ -93,19 +93,20 @@ std::int32_t top_of(const Problem& problem, std::span<const GapPlacement> placed
   return top;
 }
 
-// A strip's lowest layout so far.
+// A strip and its lowest layout so far.
 struct LowStrip {
+  const Problem& problem;
   std::int64_t bound = 0;  // no layout is lower
   std::int64_t height = 0;
   std::vector<GapPlacement> placed;
 };
 
 // Takes what is lower into `low`. Whether anything was.
-bool lower(const Problem& problem, std::span<std::vector<GapPlacement>> found, LowStrip& low) {
+bool lower(std::span<std::vector<GapPlacement>> found, LowStrip& low) {
   const std::int64_t before = low.height;
   for (std::vector<GapPlacement>& layout : found) {
     if (layout.empty()) continue;
-    const std::int32_t top = top_of(problem, layout);
+    const std::int32_t top = top_of(low.problem, layout);
     if (top >= low.height) continue;
     low.height = top;
     low.placed = std::move(layout);
@@ -116,8 +117,9 @@ bool lower(const Problem& problem, std::span<std::vector<GapPlacement>> found, L
 // Beams of all widths, each below the lowest height known, four that prefer large items differently
 // at a time: the lowest layout of the four counts, so that threads change nothing. The beam widens
 // where none of them finds anything.
-LowStrip search_beams(const Problem& problem, const SearchLimits& limits, const Context& context,
-                      LowStrip low, PackResult& result) {
+void search_beams(LowStrip& low, const SearchLimits& limits, const Context& context,
+                  PackResult& result) {
+  const Problem& problem = low.problem;
   constexpr std::array kLargeFirst{3.0, 2.0, 4.0, 1.5};
   const double begun = wall_seconds();
   const auto stop = [&] {
@@ -130,7 +132,7 @@ LowStrip search_beams(const Problem& problem, const SearchLimits& limits, const 
   std::uint64_t left = limits.beam_states;
   double last = begun;
   for (std::size_t states = 4; states <= widest && low.height > low.bound && !stop();) {
-    if (left < states * beams.size()) return low;
+    if (left < states * beams.size()) return;
     left -= states * beams.size();
     result.layouts_tried += states * beams.size();
     std::vector<std::vector<GapPlacement>> found(beams.size());
@@ -140,7 +142,7 @@ LowStrip search_beams(const Problem& problem, const SearchLimits& limits, const 
             {static_cast<std::int32_t>(low.height - 1), states, kLargeFirst[k], stop});
     };
     parallel_for(context, beams.size(), 1, run);
-    if (!lower(problem, found, low)) {
+    if (!lower(found, low)) {
       states *= 2;
       continue;
     }
@@ -148,7 +150,6 @@ LowStrip search_beams(const Problem& problem, const SearchLimits& limits, const 
     result.curve.push_back({seconds + wall_seconds() - last, result.layouts_tried, 1, low.height});
     last = wall_seconds();
   }
-  return low;
 }
 
 }  // namespace
@@ -179,8 +180,8 @@ Layout search_strip(const Problem& problem, const SearchLimits& limits, const Co
   Layout layout;
   layout.placements.resize(problem.items.size());
   layout.pages = 1;
-  LowStrip low{bound, chains[best].cost().second, chains[best].best()};
-  if (limits.beam_states > 0) low = search_beams(problem, limits, context, std::move(low), result);
+  LowStrip low{problem, bound, chains[best].cost().second, chains[best].best()};
+  if (limits.beam_states > 0) search_beams(low, limits, context, result);
   layout.last_used = low.height;
   for (const GapPlacement& g : low.placed) layout.placements[g.item] = {0, g.x, g.y, g.rotated};
   return layout;

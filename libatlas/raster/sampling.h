@@ -100,21 +100,29 @@ inline SampleKind sample_kind(const TexelTriangle& p, const SampleGrid& grid) {
   return SampleKind::grid;
 }
 
+// What takes a triangle's weighted samples.
+template <class Row, class Point>
+struct SampleVisitor {
+  // row(k, y, x0, x1): grid samples (x + grid.offset[k].x, y + grid.offset[k].y), x0 <= x < x1,
+  // each of weight 1 / grid.count, inside the clip rectangle.
+  Row row;
+  // point(bary, weight): one sample by its barycentric coordinates, float[3]; not clipped.
+  Point point;
+};
+template <class Row, class Point>
+SampleVisitor(Row, Point) -> SampleVisitor<Row, Point>;
+
 // Visits weighted samples whose weights sum to about the triangle's area in texels; exactly so
 // (up to rounding) where it is sampled by quadrature.
-//   row(k, y, x0, x1): grid samples (x + grid.offset[k].x, y + grid.offset[k].y), x0 <= x < x1,
-//   each
-//     of weight 1 / grid.count, clipped to `clip`;
-//   point(bary, weight): one sample by its barycentric coordinates, float[3]; not clipped.
 template <class Row, class Point>
-void sample_triangle(const TexelTriangle& p, const Rect& clip, const SampleGrid& grid, Row&& row,
-                     Point&& point) {
+void sample_triangle(const TexelTriangle& p, const Rect& clip, const SampleGrid& grid,
+                     SampleVisitor<Row, Point> visit) {
   using namespace raster_detail;
   const SampleKind kind = sample_kind(p, grid);
   if (kind == SampleKind::none) return;
   const auto area = static_cast<float>(0.5 * std::fabs(cross_area(p)));
   if (kind == SampleKind::thin) {
-    slices(p, area, grid.side == 1 ? 1.0 : 2.0 / grid.side, point);
+    slices(p, area, grid.side == 1 ? 1.0 : 2.0 / grid.side, visit.point);
     return;
   }
   if (kind == SampleKind::grid) {
@@ -122,13 +130,13 @@ void sample_triangle(const TexelTriangle& p, const Rect& clip, const SampleGrid&
     for (int k = 0; k < grid.count; ++k)
       scan_triangle(p, clip, grid.offset[k], [&](int y, int x0, int x1) {
         any = true;
-        row(k, y, x0, x1);
+        visit.row(k, y, x0, x1);
       });
     if (any) return;  // else it lies between the grid's points, or outside the clip
   }
   // Far below a texel one point says it all.
   const bool three = grid.side > 1 && area > 0.02f / static_cast<float>(grid.count);
-  quadrature(area, three, point);
+  quadrature(area, three, visit.point);
 }
 
 }  // namespace atlas

@@ -36,19 +36,18 @@ void sample_chart(const ChartLight& light, std::uint32_t id, double texels_per_u
     if (kind == SampleKind::none) continue;
     TriangleLight lit(light.sampler.prepare(t, 1 / texels_per_unit), &light.tone);
     if (kind == SampleKind::grid) lit.set_position(p);
-    sample_triangle(
-        p, box, grid,
-        [&](int, int y, int x0, int x1) {
-          SampledChart::Texel* row = &out.texels[std::size_t(y) * size.width + x0];
-          lit.row({x0 + 0.5, y + 0.5}, x1 - x0, [&](int j, Lanes rgb) { add(row[j], rgb, 1); });
-        },
-        [&](const float* b, float weight) {
-          const double x = b[0] * p[0].x + b[1] * p[1].x + b[2] * p[2].x;
-          const double y = b[0] * p[0].y + b[1] * p[1].y + b[2] * p[2].y;
-          const int i0 = std::clamp(static_cast<int>(x), 0, size.width - 1);
-          const int j0 = std::clamp(static_cast<int>(y), 0, size.height - 1);
-          add(out.texels[std::size_t(j0) * size.width + i0], lit.at(b), weight);
-        });
+    const auto row = [&](int, int y, int x0, int x1) {
+      SampledChart::Texel* texels = &out.texels[std::size_t(y) * size.width + x0];
+      lit.row({x0 + 0.5, y + 0.5}, x1 - x0, [&](int j, Lanes rgb) { add(texels[j], rgb, 1); });
+    };
+    const auto point = [&](const float* b, float weight) {
+      const double x = b[0] * p[0].x + b[1] * p[1].x + b[2] * p[2].x;
+      const double y = b[0] * p[0].y + b[1] * p[1].y + b[2] * p[2].y;
+      const int i0 = std::clamp(static_cast<int>(x), 0, size.width - 1);
+      const int j0 = std::clamp(static_cast<int>(y), 0, size.height - 1);
+      add(out.texels[std::size_t(j0) * size.width + i0], lit.at(b), weight);
+    };
+    sample_triangle(p, box, grid, SampleVisitor{row, point});
   }
   for (SampledChart::Texel& texel : out.texels)
     if (texel.weight > 0)

@@ -53,11 +53,8 @@ void put(float (&to)[16], const Matrix4& from) {
   for (int i = 0; i < 16; ++i) to[i] = float(from[i]);
 }
 
-void put(float (&to)[4], double a, double b, double c, double d) {
-  to[0] = float(a);
-  to[1] = float(b);
-  to[2] = float(c);
-  to[3] = float(d);
+void put(float (&to)[4], const glm::dvec4& from) {
+  for (int i = 0; i < 4; ++i) to[i] = float(from[i]);
 }
 
 KeyBlend blend_of(ShadowMethod method) {
@@ -80,8 +77,15 @@ double rounding_of_depths(int bits, double far) {
   return (bits < 32 ? std::exp2(-bits) : 0) + (1 + far) * 0x1p-21;
 }
 
-// The ray to the current light in the map of key 0 or 1, which lies in layer `slot`.
-void put_ray(FrameBlock& b, int key, const glm::dvec3& l, const LightFit& fit, int slot) {
+// A key's map and the layer that holds it.
+struct KeyMap {
+  const LightFit& fit;
+  int layer;
+};
+
+// The ray to the current light in the map of key 0 or 1.
+void put_ray(FrameBlock& b, int key, const KeyMap& map, const glm::dvec3& l) {
+  const LightFit& fit = map.fit;
   const Vec3d ray = transform_vector(fit.to_texture, from_glm(l));
   glm::dvec2 shift(0);
   double rise = -ray.z;
@@ -90,12 +94,12 @@ void put_ray(FrameBlock& b, int key, const glm::dvec3& l, const LightFit& fit, i
     shift = {ray.x / rise, ray.y / rise};
   else
     rise = 1 / fit.depth_range;
-  put(b.ray[key], shift.x, shift.y, rise, slot);
+  put(b.ray[key], {shift, rise, map.layer});
   double texels = glm::length(shift) / b.weights[3];
   // The light stands at this key: what rounding leaves is no direction to search along.
   if (texels < kExactTexels) {
     texels = 0;
-    put(b.ray[key], 0, 0, rise, slot);
+    put(b.ray[key], {0, 0, rise, map.layer});
   }
   const glm::dvec2 back = texels > 0 ? shift * (kBehindTexels / texels) : glm::dvec2(0);
   b.behind[2 * key] = float(back.x);
@@ -136,9 +140,9 @@ void put_rays(FrameBlock& b, const Camera& camera, int width, int height) {
   const glm::dvec3 first = (to_glm(corners[0]) - to_glm(camera.eye)) / n;
   const glm::dvec3 x = (to_glm(corners[1]) - to_glm(corners[0])) / (n * width);
   const glm::dvec3 y = (to_glm(corners[2]) - to_glm(corners[0])) / (n * height);
-  put(b.first_ray, first.x, first.y, first.z, 1 / f);
-  put(b.ray_x, x.x, x.y, x.z, 1 / n - 1 / f);
-  put(b.ray_y, y.x, y.y, y.z, 0);
+  put(b.first_ray, {first, 1 / f});
+  put(b.ray_x, {x, 1 / n - 1 / f});
+  put(b.ray_y, {y, 0});
 }
 
 }  // namespace
@@ -151,11 +155,11 @@ void Renderer::Impl::fill_block(const Camera& world_camera, const FrameLight& li
   put(b.view_projection,
       reversed_depth(view_projection(camera, double(target_width) / target_height)));
   put_rays(b, camera, target_width, target_height);
-  put(b.eye, camera.eye.x, camera.eye.y, camera.eye.z, 0);
+  put(b.eye, {to_glm(camera.eye), 0});
   const glm::dvec3 l = glm::normalize(to_glm(light.direction));
-  put(b.light, l.x, l.y, l.z, options.intensity);
+  put(b.light, {l, options.intensity});
   const double ambient = scene->baked_vertices || scene->baked_textures ? 0 : options.ambient;
-  put(b.ambient, ambient, ambient, ambient, options.exposure);
+  put(b.ambient, {glm::dvec3(ambient), options.exposure});
   b.inverse[3] = float(options.baked_strength * scene->light_scale);
   if (shadow) {
     const LightFit& from = shadow->fit(nearest);
@@ -167,20 +171,20 @@ void Renderer::Impl::fill_block(const Camera& world_camera, const FrameLight& li
     // A filter of n bilinear taps reaches (n + 1) / 2 texels to each side: so far a plane would
     // shadow itself.
     const double reach = std::max(1.0, (options.pcf + 1) / 2.0) * from.texel;
-    put(b.weights, w.from, w.to, options.normal_offset * reach, 1.0 / options.map_resolution);
+    put(b.weights, {w.from, w.to, options.normal_offset * reach, 1.0 / options.map_resolution});
     b.eye[3] = float(rounding_of_depths(options.map_bits, camera.far_plane / from.depth_range));
     b.corner[3] = float(options.slope_bias * reach / from.depth_range);
-    put_ray(b, 0, l, from, nearest);
-    put_ray(b, 1, l, shadow->fit(other), other);
+    put_ray(b, 0, {from, nearest}, l);
+    put_ray(b, 1, {shadow->fit(other), other}, l);
     b.march[2] = float(2 * from.texel / from.depth_range);
     b.march[3] = nearest == other || b.march[0] == 0 ? 1 : 2;
     b.ray_y[3] = float(1.0 / march_samples(options.march_steps, glm::degrees(between)));
     put_box(b, l, scene->bounds, scene->origin);
     const MapAxes axes = map_axes(light.direction, options.up);
-    put(b.map_x, axes.x.x, axes.x.y, axes.x.z, 0);
-    put(b.map_y, axes.y.x, axes.y.y, axes.y.z, 0);
+    put(b.map_x, {to_glm(axes.x), 0});
+    put(b.map_y, {to_glm(axes.y), 0});
   }
-  put(b.specular, options.specular, options.shininess, options.roughness, options.map_resolution);
+  put(b.specular, {options.specular, options.shininess, options.roughness, options.map_resolution});
   glNamedBufferSubData(frame_block.get(), 0, sizeof b, &b);
 }
 

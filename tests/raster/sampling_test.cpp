@@ -47,18 +47,16 @@ Sum samples(const TexelTriangle& t, const SampleGrid& grid) {
     s.y += w * y;
     ++s.samples;
   };
-  sample_triangle(
-      t, {-300, -300, 900, 900}, grid,
-      [&](int k, int y, int x0, int x1) {
-        for (int x = x0; x < x1; ++x)
-          add(x + grid.offset[k].x, y + grid.offset[k].y, 1.0 / grid.count);
-      },
-      [&](const float* b, float w) {
-        EXPECT_NEAR(b[0] + b[1] + b[2], 1, 1e-5);
-        for (int k = 0; k < 3; ++k) EXPECT_GE(b[k], -1e-6);
-        add(b[0] * t[0].x + b[1] * t[1].x + b[2] * t[2].x,
-            b[0] * t[0].y + b[1] * t[1].y + b[2] * t[2].y, w);
-      });
+  const auto row = [&](int k, int y, int x0, int x1) {
+    for (int x = x0; x < x1; ++x) add(x + grid.offset[k].x, y + grid.offset[k].y, 1.0 / grid.count);
+  };
+  const auto point = [&](const float* b, float w) {
+    EXPECT_NEAR(b[0] + b[1] + b[2], 1, 1e-5);
+    for (int k = 0; k < 3; ++k) EXPECT_GE(b[k], -1e-6);
+    add(b[0] * t[0].x + b[1] * t[1].x + b[2] * t[2].x,
+        b[0] * t[0].y + b[1] * t[1].y + b[2] * t[2].y, w);
+  };
+  sample_triangle(t, {-300, -300, 900, 900}, grid, SampleVisitor{row, point});
   return s;
 }
 
