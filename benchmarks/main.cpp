@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "apps/common/options.h"
 #include "benchmarks/rivals/rivals.h"
 #include "benchmarks/support/callgrind.h"
 #include "benchmarks/support/staged.h"
@@ -45,7 +46,9 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--stages,-s", a.stages, "which (default: all; unwrap with rivals only)")
       ->check(CLI::IsMember(names));
   app.add_option("--rival", a.rivals, "\"name=command {in} {out}\": a program that unwraps an OBJ");
-  app.add_option("--timeout", a.timeout, "of a rival, wall seconds a mesh")->capture_default_str();
+  app.add_option("--timeout", a.timeout, "of a rival, wall seconds a mesh")
+      ->check(app::positive())
+      ->capture_default_str();
   app.add_option("--out,-o", a.out, "JSON file to write");
   app.add_option("--repeats,-r", a.repeats, "the least CPU time counts")
       ->check(CLI::Range(1, 100))
@@ -53,12 +56,18 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--threads", a.threads, "one run for each number (default: all cores)")
       ->check(CLI::Range(1, 1024));
   app.add_flag("--instructions", a.instructions, "count them with callgrind, on one thread");
-  app.add_option("--atlases", a.pages, "pages of the budget")->capture_default_str();
-  app.add_option("--atlas-size", a.page, "their largest side, texels")->capture_default_str();
+  app.add_option("--atlases", a.pages, "pages of the budget")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  app.add_option("--atlas-size", a.page, "their largest side, texels, a power of two")
+      ->check(app::within(64, 16384))
+      ->capture_default_str();
   app.add_option("--texel", a.texel, "scene units; 0: as fine as the budget")
+      ->check(app::not_negative())
       ->capture_default_str();
   app.add_flag("--standard", a.standard_only, "presets' standard settings only: no sweeps");
   app.add_option("--fit-from", a.fit_from, "exponents are fitted to meshes of at least this many")
+      ->check(app::not_negative())
       ->capture_default_str();
 }
 
@@ -140,10 +149,11 @@ int run_instructions(const Arguments& a, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Measures quality and cost of every stage of libatlas.");
+  CLI::App app("Measures quality and cost of every stage of libatlas.", "atlas-bench");
   Arguments a;
   describe(app, a);
-  CLI11_PARSE(app, argc, argv);
+  if (const int code = app::parse(app, argc, argv); code >= 0) return code;
+  if (const Status s = check_target(a.out); !s.ok()) return fail(s);
   if (a.instructions) return run_instructions(a, argc, argv);
   const Result<std::vector<Rival>> rivals = parse_rivals(a);
   if (!rivals.ok()) return fail(rivals.status());

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "apps/common/options.h"
 #include "benchmarks/charts/charts_bench.h"
 #include "benchmarks/charts/charts_figures.h"
 #include "benchmarks/support/work.h"
@@ -68,7 +69,8 @@ Status run(const Arguments& a) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Charts and parameterisation: figures, error against time, robustness.");
+  CLI::App app("Charts and parameterisation: figures, error against time, robustness.",
+               "atlas-bench-charts");
   Arguments a;
   app.add_option("--mesh,-m", a.meshes,
                  fmt::format("NAME:TRIANGLES ({}, {}) or a file", kFigures, kWorkKinds));
@@ -87,7 +89,7 @@ int main(int argc, char** argv) {
   app.add_option("--turns", a.turns, "of --robust: random rotations")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  if (const int code = app::parse(app, argc, argv); code >= 0) return code;
   const Status status = run(a);
   if (status.ok()) return 0;
   fmt::print(stderr, "atlas-bench-charts: {}\n", status.message());

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/common/options.h"
 #include "benchmarks/light_leak/light_leak.h"
 #include "libatlas/image/image_io.h"
 
@@ -24,20 +25,32 @@ struct Arguments {
 void describe(CLI::App& app, Arguments& a) {
   app.add_option("--work,-w", a.work, "scene with the object: cabin:TRIANGLES or file:PATH")
       ->capture_default_str();
-  app.add_option("--texel,-t", a.texels, "millimetres on the surface, one or more");
+  app.add_option("--texel,-t", a.texels, "millimetres on the surface, one or more")
+      ->check(app::positive());
   app.add_option("--object", a.leak.edge.object, "whose shadow edge")->capture_default_str();
   app.add_option("--drop", a.leak.edge.drop, "of the larger value along a mesh edge")
+      ->check(app::within(0, 1, "0..1"))
       ->capture_default_str();
   app.add_option("--edge-length", a.leak.edge.length, "longest mesh edge that counts, metres")
+      ->check(app::positive())
       ->capture_default_str();
   app.add_option("--band", a.leak.band_texels, "points within this many texels of the edge")
+      ->check(app::positive())
       ->capture_default_str();
-  app.add_option("--threshold", a.leak.threshold, "of downsizing")->capture_default_str();
-  app.add_option("--atlases", a.pages, "")->capture_default_str();
-  app.add_option("--atlas-size", a.page, "")->capture_default_str();
+  app.add_option("--threshold", a.leak.threshold, "of downsizing")
+      ->check(app::within(0, 1, "0..1"))
+      ->capture_default_str();
+  app.add_option("--atlases", a.pages, "pages at most")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  app.add_option("--atlas-size", a.page, "their largest side, texels, a power of two")
+      ->check(app::within(64, 16384))
+      ->capture_default_str();
   app.add_flag("--average", a.average, "bake as published, without least squares");
   app.add_option("--picture", a.picture, "PNG of a patch: the input, then each texel");
-  app.add_option("--patch", a.patch, "side of that patch, metres")->capture_default_str();
+  app.add_option("--patch", a.patch, "side of that patch, metres")
+      ->check(app::positive())
+      ->capture_default_str();
   app.add_option("--out,-o", a.out, "JSON file to write");
 }
 
@@ -57,15 +70,17 @@ Row row_of(const Staged& staged, double millimetres, const Leak& leak) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
-      "Measures light leaking across the door's shadow edge (the paper's figures 1 to 3).");
+  CLI::App app("Measures light leaking across the door's shadow edge (the paper's figures 1 to 3).",
+               "atlas-bench-leak");
   Arguments a;
   describe(app, a);
-  CLI11_PARSE(app, argc, argv);
+  if (const int code = app::parse(app, argc, argv); code >= 0) return code;
   const auto fail = [](const Status& status) {
     fmt::print(stderr, "atlas-bench-leak: {}\n", status.message());
     return 1;
   };
+  for (const std::string& target : {a.out, a.picture})
+    if (const Status s = check_target(target); !s.ok()) return fail(s);
   if (a.average) a.leak.method = BakeMethod::average;
   if (!a.picture.empty()) a.leak.picture = a.patch;
   std::vector<Image8> tiles;

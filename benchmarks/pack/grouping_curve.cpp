@@ -6,20 +6,22 @@
 #include <cstdio>
 #include <random>
 
+#include "apps/common/options.h"
 #include "libatlas/pack/grouping.h"
 
 int main(int argc, char** argv) {
   std::size_t items = 60;
   atlas::GroupingOptions options;
   options.groups = 8;
-  CLI::App app("Prints F(A), the groups that a capacity A needs, of random sizes.");
+  CLI::App app("Prints F(A), the groups that a capacity A needs, of random sizes.",
+               "atlas-bench-grouping");
   app.add_option("items", items, "how many")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   app.add_option("groups", options.groups, "wanted")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  if (const int code = atlas::app::parse(app, argc, argv); code >= 0) return code;
   std::mt19937 random(20240601);
   std::vector<std::uint64_t> sizes(items);
   for (auto& s : sizes) {

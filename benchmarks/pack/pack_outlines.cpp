@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/options.h"
 #include "benchmarks/pack/command_line.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/pack/fit.h"
@@ -122,7 +123,8 @@ int main(int argc, char** argv) {
   int repeats = 1, copies = 1;
   bool join = false;
   std::vector<std::string> files;
-  CLI::App app("Packs the uv charts of OBJ files by their outlines and checks every layout.");
+  CLI::App app("Packs the uv charts of OBJ files by their outlines and checks every layout.",
+               "atlas-bench-pack-outlines");
   app.add_option("obj", files, "meshes with uvs")->required()->check(CLI::ExistingFile);
   app.add_option("--page", options.page_size, "side of the largest page, texels")
       ->check(CLI::Range(16, 1 << 17))
@@ -142,7 +144,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   atlas::bench::add_effort_options(app, options);
-  CLI11_PARSE(app, argc, argv);
+  if (const int code = atlas::app::parse(app, argc, argv); code >= 0) return code;
   std::vector<Model> models;
   for (const std::string& file : files) {
     atlas::Result<Model> model = read_charts(file);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/options.h"
 #include "benchmarks/pack/command_line.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/pack/pack.h"
@@ -131,7 +132,7 @@ void run(Instance in, Arguments& arguments, Totals& totals) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Packs sets of rectangles and checks every layout.");
+  CLI::App app("Packs sets of rectangles and checks every layout.", "atlas-bench-pack-sets");
   Arguments arguments;
   atlas::PackOptions& options = arguments.options;
   app.add_option("instances", arguments.places, "folders of .txt files, or files")
@@ -150,7 +151,7 @@ int main(int argc, char** argv) {
       ->type_name("NAME")
       ->default_str("automatic");
   atlas::bench::add_effort_options(app, options);
-  CLI11_PARSE(app, argc, argv);
+  if (const int code = atlas::app::parse(app, argc, argv); code >= 0) return code;
   const auto files = instances_in(arguments.places);
   if (files.empty()) {
     fmt::print(stderr, "atlas-bench-pack-sets: no .txt file in {}\n", arguments.places.front());

@@ -3,17 +3,18 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/common/options.h"
 #include "benchmarks/page/page.h"
 
 int main(int argc, char** argv) {
   using namespace atlas::bench;
-  CLI::App app("Draws the benchmark page from result files.");
+  CLI::App app("Draws the benchmark page from result files.", "atlas-bench-page");
   std::vector<std::string> files;
   std::string folder = "out/bench";
   app.add_option("files", files, "of atlas-bench, atlas-bench-leak, atlas-bench-stability")
       ->required();
   app.add_option("-o,--out", folder, "folder to write into")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  if (const int code = atlas::app::parse(app, argc, argv); code >= 0) return code;
   PageInput input;
   for (const std::string& file : files) {
     auto results = load(file);

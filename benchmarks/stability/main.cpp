@@ -3,12 +3,13 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/common/options.h"
 #include "benchmarks/stability/checks.h"
 
 int main(int argc, char** argv) {
   using namespace atlas;
   using namespace atlas::bench;
-  CLI::App app("Checks every stage on stiff and extreme cases.");
+  CLI::App app("Checks every stage on stiff and extreme cases.", "atlas-bench-stability");
   StabilityOptions options;
   std::string out;
   bool failures_only = false;
@@ -17,7 +18,12 @@ int main(int argc, char** argv) {
       ->check(CLI::ExistingFile);
   app.add_option("--out,-o", out, "JSON file to write");
   app.add_flag("--failures", failures_only, "print only what does not hold");
-  CLI11_PARSE(app, argc, argv);
+  if (const int code = app::parse(app, argc, argv); code >= 0) return code;
+  const auto fail = [](const Status& status) {
+    fmt::print(stderr, "atlas-bench-stability: {}\n", status.message());
+    return 2;
+  };
+  if (const Status s = check_target(out); !s.ok()) return fail(s);
   Results results;
   results.machine = describe_machine(argc, argv);
   Context context;
@@ -36,11 +42,7 @@ int main(int argc, char** argv) {
   for (const Row& row : results.rows)
     if (!failures_only) fmt::print("{}\n", line(row));
   fmt::print("{} checks, {} bounds exceeded\n", results.checks.size(), failures);
-  if (!out.empty()) {
-    if (const Status s = save(results, out); !s.ok()) {
-      fmt::print(stderr, "atlas-bench-stability: {}\n", s.message());
-      return 2;
-    }
-  }
+  if (!out.empty())
+    if (const Status s = save(results, out); !s.ok()) return fail(s);
   return failures ? 1 : 0;
 }

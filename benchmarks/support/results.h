@@ -67,6 +67,10 @@ struct Results {
 // argv joined; the rest from the system and the build.
 Machine describe_machine(int argc, const char* const* argv);
 
+// Whether save() could write there: asked before a run of an hour. An empty path is no file.
+// Errors: io.
+Status check_target(const std::filesystem::path& path);
+
 // One row, fit or check a line, so that a figure can be cited as file:line.
 // Errors: io; not_found; bad_input, naming what is wrong with the file.
 Status save(const Results& results, const std::filesystem::path& path);

@@ -108,7 +108,19 @@ void cite(const std::filesystem::path& path, const std::string& list, std::vecto
         path.filename().string() + (first ? ":" + std::to_string(first + i) : std::string());
 }
 
+Status unwritable(const std::filesystem::path& path) {
+  return {ErrorCode::io, path.string() + ": cannot be written (does the folder exist?)"};
+}
+
 }  // namespace
+
+Status check_target(const std::filesystem::path& path) {
+  if (path.empty()) return {};
+  const bool there = std::filesystem::exists(path);
+  const bool writable = std::ofstream(path, std::ios::app).good();
+  if (writable && !there) std::filesystem::remove(path);
+  return writable ? Status() : unwritable(path);
+}
 
 Status save(const Results& results, const std::filesystem::path& path) {
   std::ofstream file(path);
@@ -118,23 +130,22 @@ Status save(const Results& results, const std::filesystem::path& path) {
   write_list(file, "checks", results.checks);
   file << "\n}\n";
   file.flush();
-  if (file) return {};
-  return {ErrorCode::io, path.string() + ": cannot be written (does the folder exist?)"};
+  return file ? Status() : unwritable(path);
 }
 
 Result<Results> load(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) return Status{ErrorCode::not_found, path.string() + ": no such file"};
   try {
-    const Json j = Json::parse(file);
-    if (j.at("format") != "libatlas-bench-1")
+    const Json j = Json::parse(file, nullptr, false);
+    if (!j.contains("format") || j.at("format") != "libatlas-bench-1")
       return Status{ErrorCode::bad_input, path.string() + ": not a result file of atlas-bench"};
     Results results = results_from(j);
     cite(path, "rows", results.rows);
     cite(path, "checks", results.checks);
     return results;
   } catch (const Json::exception& error) {
-    return Status{ErrorCode::bad_input, path.string() + ": " + error.what()};
+    return Status{ErrorCode::bad_input, path.string() + ": damaged: " + error.what()};
   }
 }
 

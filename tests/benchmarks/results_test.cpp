@@ -73,6 +73,32 @@ TEST(Results, SurviveTheirFile) {
   ASSERT_EQ(back->fits.size(), results.fits.size());
 }
 
+TEST(Results, FilesOfOthersAreNamedAsSuch) {
+  const TempFolder folder;
+  const auto complaint = [&](const char* text) {
+    const fs::path path = folder.path / "other.json";
+    std::ofstream(path) << text;
+    return load(path).status().message();
+  };
+  for (const char* other : {"{}", "[", "", "[1, 2]", "{\"format\": 3}", "solid cube"})
+    EXPECT_NE(complaint(other).find("not a result file of atlas-bench"), std::string::npos)
+        << other;
+  EXPECT_NE(complaint("{\"format\": \"libatlas-bench-1\"}").find("damaged"), std::string::npos);
+}
+
+TEST(Results, TargetsAreTriedBeforeARun) {
+  const TempFolder folder;
+  const fs::path fresh = folder.path / "fresh.json";
+  EXPECT_TRUE(check_target("").ok());
+  EXPECT_TRUE(check_target(fresh).ok());
+  EXPECT_FALSE(fs::exists(fresh));
+  ASSERT_TRUE(save(some_results(), fresh).ok());
+  EXPECT_TRUE(check_target(fresh).ok());
+  EXPECT_TRUE(load(fresh).ok());  // still there
+  EXPECT_FALSE(check_target(folder.path / "missing" / "r.json").ok());
+  EXPECT_FALSE(check_target(folder.path).ok());
+}
+
 // What a citation says must stand in that line of the file.
 TEST(Results, EveryRowAndCheckCitesItsLine) {
   const TempFolder folder;

@@ -135,6 +135,17 @@ TEST(Instructions, AreCountedUnderCallgrind) {
   EXPECT_FALSE(count_instructions({"/nonexistent/program"}).ok());
 }
 
+TEST(CommandLine, NonsenseIsRefusedBeforeAnythingRuns) {
+  for (const char* words :
+       {"--timeout -1", "--atlases 0", "--atlas-size 3", "--texel nan", "--texel -1",
+        "--fit-from -1", "--fit-from x", "--stages chart", "--repeats 0", "--unknown"}) {
+    const std::string command = std::string(ATLAS_BENCH_PROGRAM) +
+                                " --work sphere:400 --stages baseline " + words +
+                                " >/dev/null 2>&1";
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 2) << words;
+  }
+}
+
 // A plane with a straight shadow edge at x = 1/2, one mesh cell wide.
 Staged half_lit(const Context& context) {
   LoadedScene loaded = lit(test::grid(80, 80));
