@@ -9,9 +9,9 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/world.h"
-#include "libatlas/image/image_io.h"
 #include "libatlas/scene/reader.h"
 #include "libatlas/view/bench.h"
+#include "libatlas/view/picture_file.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -77,12 +77,12 @@ Result<PlaySummary> play_headless(GlContext& gl, Renderer& renderer, const PlayO
     times.push_back(wall_seconds() - start);
     if (!options.record.empty()) {
       const fs::path file = options.record / fmt::format("frame{:05}.png", f);
-      if (Status s = write_png(file, renderer.read_image(), {}); !s.ok()) return s;
+      if (Status s = write_picture(file, renderer.read_image()); !s.ok()) return s;
     }
     context.report("frames", double(f + 1) / options.frames);
   }
   if (!options.screenshot.empty())
-    if (Status s = write_png(options.screenshot, renderer.read_image(), {}); !s.ok()) return s;
+    if (Status s = write_picture(options.screenshot, renderer.read_image()); !s.ok()) return s;
   summary.frames = options.frames;
   summary.shadow_passes = renderer.shadow_passes();
   summary.gl_errors = gl.debug_errors() - errors_before;

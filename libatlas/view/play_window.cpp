@@ -17,9 +17,9 @@
 
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
-#include "libatlas/image/image_io.h"
 #include "libatlas/shadow/light_clock.h"
 #include "libatlas/view/bench.h"
+#include "libatlas/view/picture_file.h"
 #include "libatlas/view/play.h"
 
 namespace atlas {
@@ -126,7 +126,7 @@ class Player {
     gui_.end();
     if (options_.close_after > 0 && summary_.frames + 1 == options_.close_after &&
         !options_.screenshot.empty())
-      if (Status s = write_png(options_.screenshot, window_image(width, height), {}); !s.ok())
+      if (Status s = write_picture(options_.screenshot, window_image(width, height)); !s.ok())
         return s;
     glfwSwapBuffers(window_.handle());
     ++summary_.frames;
@@ -285,14 +285,14 @@ class Player {
       std::error_code error;
       fs::create_directories(folder, error);
       if (error) return {ErrorCode::io, folder.string() + ": " + error.message()};
-      const Status s = write_png(folder / fmt::format("frame{:05}.png", recorded_++),
-                                 renderer_.read_image(), {});
+      const Status s = write_picture(folder / fmt::format("frame{:05}.png", recorded_++),
+                                     renderer_.read_image());
       if (!s.ok()) return s;
     }
     if (!std::exchange(shoot_, false)) return {};
     const fs::path file = options_.screenshot.empty() ? "screenshot.png" : options_.screenshot;
     message_ = "wrote " + file.string();
-    return write_png(file, renderer_.read_image(), {});
+    return write_picture(file, renderer_.read_image());
   }
 
   GlWindow& window_;

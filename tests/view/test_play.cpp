@@ -10,6 +10,7 @@
 #include "libatlas/image/image_io.h"
 #include "libatlas/view/bench.h"
 #include "libatlas/view/play.h"
+#include "tests/support/full_disk.h"
 #include "tests/view/shapes.h"
 
 namespace atlas::testing {
@@ -58,6 +59,30 @@ TEST_F(Play, RecordsNumberedPicturesAndTheLastOne) {
     EXPECT_EQ(image->width, 48);
   }
   EXPECT_EQ(read_image8(o.record / "frame00002.png")->texels, read_image8(o.screenshot)->texels);
+}
+
+TEST_F(Play, AFullDiskLeavesNoPicture) {
+  const View view = courtyard_view();
+  Renderer r = must_render(view.scene, small());
+  PlayOptions o;
+  o.camera = view.camera;
+  o.light = *LightPath::make({});
+  for (auto* file : {&o.screenshot, &o.record}) {
+    o.screenshot.clear();
+    o.record.clear();
+    *file = path_ / "p.png";
+    if (file == &o.screenshot) std::ofstream(*file) << "what was there before";
+    const test::FullDisk full(200);
+    const Result<PlaySummary> done = play_headless(software_context(), r, o, {});
+    ASSERT_EQ(done.status().code(), ErrorCode::io);
+    EXPECT_NE(done.status().message().find("p.png"), std::string::npos);
+    EXPECT_EQ(done.status().message().find(".part"), std::string::npos) << done.status().message();
+    if (file == &o.screenshot) {
+      EXPECT_EQ(fs::file_size(*file), 21u);  // as it was
+      fs::remove(*file);
+    }
+    EXPECT_TRUE(fs::is_empty(file == &o.record ? *file : path_));
+  }
 }
 
 TEST_F(Play, ErrorsAreOneLine) {
