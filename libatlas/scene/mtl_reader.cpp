@@ -69,17 +69,30 @@ class MtlParser {
     return !fs::exists(file, ignored) && fs::exists(beside, ignored) ? beside : file;
   }
 
+  // What follows a '#' after a blank is a comment, unless a file is named so.
+  std::string_view without_comment(std::string_view name) const {
+    const auto there = [&](std::string_view text) {
+      std::error_code ignored;
+      return fs::exists(texture_file(with_slashes(text)), ignored);
+    };
+    return there(name) ? name : TextScanner::without_comment(name);
+  }
+
+  static std::string with_slashes(std::string_view name) {
+    std::string path(name);
+    std::replace(path.begin(), path.end(), '\\', '/');
+    return path;
+  }
+
   // Options come first; what follows them is the name, which may have blanks.
   Status parse_map() {
-    std::string_view rest = scan_.rest();
+    std::string_view rest = scan_.rest_with_comment();
     while (rest.size() > 1 && rest[0] == '-') {
       const std::string_view option = next_word(rest);
       if (Status s = parse_option(option, rest); !s.ok()) return s;
     }
-    if (rest.empty()) return malformed("map_Kd names no file");
-    std::string name(rest);
-    std::replace(name.begin(), name.end(), '\\', '/');
-    const fs::path file = texture_file(name);
+    if (rest.empty() || rest[0] == '#') return malformed("map_Kd names no file");
+    const fs::path file = texture_file(with_slashes(without_comment(rest)));
     auto& textures = builder_.textures;
     const auto same = std::find_if(textures.begin(), textures.end(), [&](const RawTexture& t) {
       return t.bytes.empty() && t.path == file;

@@ -157,8 +157,10 @@ class Parser {
   }
 
   void add_event(ObjEvent::Kind kind) {
+    const std::string_view text =
+        kind == ObjEvent::library ? scan_.rest_with_comment() : scan_.rest();
     chunk_.events.push_back(
-        {kind, static_cast<std::uint32_t>(chunk_.face_end.size()), line_, scan_.rest()});
+        {kind, static_cast<std::uint32_t>(chunk_.face_end.size()), line_, text});
   }
 
   TextScanner scan_;

@@ -133,7 +133,7 @@ class Merger {
   }
 
   // `mtllib` names several files apart by blanks, or one whose name has blanks: the longest run of
-  // words that is a file wins.
+  // words that is a file wins. What begins with '#' where a name could is a comment.
   Status read_libraries(const std::vector<ObjChunk>& chunks) {
     line_ = 1;
     for (const ObjChunk& chunk : chunks) {
@@ -152,7 +152,7 @@ class Merger {
 
   Status read_library_list(const ObjEvent& event) {
     std::string_view rest = event.text;
-    while (!rest.empty()) {
+    while (!rest.empty() && (rest[0] != '#' || is_file(rest))) {
       std::size_t length = rest.size();
       while (length != rest.npos && !is_file(rest.substr(0, length))) {
         length = length == 0 ? rest.npos : rest.find_last_of(" \t", length - 1);

@@ -99,13 +99,22 @@ class TextScanner {
   }
 
   // The rest of the line without blanks at either end; a comment set off by a blank is cut.
-  std::string_view rest() {
+  std::string_view rest() { return without_comment(rest_with_comment()); }
+
+  // The same with what may be a comment, or the end of a file's name that holds " #".
+  std::string_view rest_with_comment() {
     skip_blanks();
     const char* start = at_;
-    while (at_ < end_ && *at_ != '\n' && !(*at_ == '#' && at_ > start && is_space(at_[-1]))) ++at_;
-    const char* stop = at_;
-    while (stop > start && is_space(stop[-1])) --stop;
-    return {start, std::size_t(stop - start)};
+    while (at_ < end_ && *at_ != '\n') ++at_;
+    return {start, std::size_t(trimmed(start, at_) - start)};
+  }
+
+  // What stands before the first '#' that is set off by a blank.
+  static std::string_view without_comment(std::string_view line) {
+    for (std::size_t i = 1; i < line.size(); ++i)
+      if (line[i] == '#' && is_space(line[i - 1]))
+        return {line.data(), std::size_t(trimmed(line.data(), line.data() + i) - line.data())};
+    return line;
   }
 
   // Reads a number that a blank, a comment or the line's end follows. False (and no move) where
@@ -144,6 +153,10 @@ class TextScanner {
 
  private:
   static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+  static const char* trimmed(const char* start, const char* stop) {
+    while (stop > start && is_space(stop[-1])) --stop;
+    return stop;
+  }
   bool continues(const char* p) const {
     return joins_ && *p == '\\' && p + 1 < end_ && (p[1] == '\n' || (p[1] == '\r' && p[2] == '\n'));
   }

@@ -46,6 +46,28 @@ TEST(Mtl, ATextureOfAnotherMachineIsFoundBesideTheMaterials) {
   EXPECT_EQ(loaded.scene.textures[0].path.filename(), "wood.png");
 }
 
+TEST(Mtl, NamesMayHoldWhatElseBeginsAComment) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "wood #2 b.png", Image8(2, 2, 3, 77), {}).ok());
+  ASSERT_TRUE(write_png(folder / "#1.png", Image8(2, 2, 3, 77), {}).ok());
+  ASSERT_TRUE(write_png(folder / "plain.png", Image8(2, 2, 3, 77), {}).ok());
+  const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nusemtl a\nf 1/1 2/1 3/1\n";
+  const auto texture = [&](const std::string& library, const std::string& map) {
+    folder.write("m #1 x.mtl", "newmtl a # of wood\nmap_Kd " + map + "\n");
+    folder.write("m.mtl", "newmtl a # of wood\nmap_Kd " + map + "\n");
+    const LoadedScene loaded = load(folder.write("s.obj", "mtllib " + library + "\n" + mesh));
+    EXPECT_TRUE(loaded.defects.empty()) << library << ", " << map;
+    return loaded.scene.textures.empty() ? "" : loaded.scene.textures[0].path.filename().string();
+  };
+  for (const char* library :
+       {"m #1 x.mtl", "m.mtl", "m.mtl # by a modeller", "m #1 x.mtl m.mtl #"}) {
+    EXPECT_EQ(texture(library, "wood #2 b.png"), "wood #2 b.png");
+    EXPECT_EQ(texture(library, "-o 0 0 wood #2 b.png"), "wood #2 b.png");
+    EXPECT_EQ(texture(library, "plain.png # of 2012"), "plain.png");
+    EXPECT_EQ(texture(library, "plain.png"), "plain.png");
+  }
+}
+
 // Options before a texture's name: what changes nothing is passed over, what cannot be followed is
 // told.
 TEST(Mtl, TextureOptions) {
