@@ -4,6 +4,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -112,20 +113,17 @@ int texcoord_set(const tinygltf::TextureInfo& info) {
   return given ? at->second.Get("texCoord").GetNumberAsInt() : info.texCoord;
 }
 
-// KHR_texture_transform acts on v pointing down; here v points up: v' = 1 - (s (1 - v) + o).
-void add_transform(const tinygltf::TextureInfo& info, SceneBuilder& builder,
-                   RawMaterial& material) {
+// KHR_texture_transform scales, turns and moves coordinates whose v points down; here it points up.
+void add_transform(const tinygltf::TextureInfo& info, RawMaterial& material) {
   const auto at = info.extensions.find("KHR_texture_transform");
   if (at == info.extensions.end() || !at->second.IsObject()) return;
   const auto scale = numbers<2>(at->second, "scale", 1),
              offset = numbers<2>(at->second, "offset", 0);
-  material.uv_scale = scale;
-  material.uv_offset = {offset[0], 1 - scale[1] - offset[1]};
-  if (at->second.Has("rotation")) {
-    builder.defects.add(DefectKind::texture_option_ignored, [&] {
-      return fmt::format("{}: material '{}': texture rotation", builder.file, material.name);
-    });
-  }
+  const tinygltf::Value& rotation = at->second.Get("rotation");
+  const double angle = rotation.IsNumber() ? rotation.GetNumberAsDouble() : 0;
+  const double c = std::cos(angle), s = std::sin(angle);
+  material.uv_u = {c * scale[0], -s * scale[1], offset[0] + s * scale[1]};
+  material.uv_v = {s * scale[0], c * scale[1], 1 - c * scale[1] - offset[1]};
 }
 
 }  // namespace
@@ -140,7 +138,13 @@ Result<std::vector<int>> add_gltf_materials(const tinygltf::Model& model, SceneB
     material.name = m.name.empty() ? fmt::format("material{}", i) : m.name;
     material.diffuse = diffuse.colour;
     material.texture = image_of(model, diffuse.texture.index);
-    add_transform(diffuse.texture, builder, material);
+    if (diffuse.texture.index >= 0 && material.texture < 0) {
+      builder.defects.add(DefectKind::texture_unreadable, [&] {
+        return fmt::format("{}: material '{}': its texture names no image of a kind that is read",
+                           builder.file, material.name);
+      });
+    }
+    add_transform(diffuse.texture, material);
     builder.materials.push_back(std::move(material));
     sets.push_back(texcoord_set(diffuse.texture));
   }

@@ -8,6 +8,7 @@
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/scene/formats.h"
 #include "libatlas/scene/gltf_file.h"
+#include "libatlas/scene/gltf_instances.h"
 #include "libatlas/scene/gltf_materials.h"
 #include "libatlas/scene/gltf_pose.h"
 
@@ -17,7 +18,8 @@ namespace {
 
 constexpr int kMaxDepth = 512;  // of nested nodes
 
-// Of nodes, those of several parents counted at each: a hundred of them can stand for 2^100.
+// Of nodes and of instances, those of several parents counted at each: a hundred of them can stand
+// for 2^100.
 constexpr std::size_t kMaxVisits = std::size_t{1} << 20;
 
 Vec3f three(const std::vector<float>& values, std::size_t i) {
@@ -110,7 +112,13 @@ class GltfParser {
       if (std::size_t(node.mesh) >= model_.meshes.size()) {
         return malformed(where, "names a mesh that does not exist");
       }
-      if (Status s = add_mesh(node, matrix); !s.ok()) return s;
+      const auto instances = gltf_instances(model_, node);
+      if (!instances.ok()) return malformed(where, instances.status().message());
+      for (const glm::dmat4& instance : *instances) {
+        if (++visits_ > kMaxVisits) return malformed(where, "has more instances than can be read");
+        if (context_.cancelled()) return Status::cancelled();
+        if (Status s = add_mesh(node, matrix * instance); !s.ok()) return s;
+      }
     }
     for (const int child : node.children) {
       if (Status s = add_node(child, matrix, depth + 1); !s.ok()) return s;

@@ -109,9 +109,13 @@ class MtlParser {
       if (!take_numbers(rest, values, 1, 3)) {
         return malformed(fmt::format("{} of map_Kd needs a number", option));
       }
-      if (option == "-o") material.uv_offset = {values[0], values[1]};
-      if (option == "-s") material.uv_scale = {values[0], values[1]};
-      if (option != "-t") return {};
+      double& u = option == "-o" ? material.uv_u[2] : material.uv_u[0];
+      double& v = option == "-o" ? material.uv_v[2] : material.uv_v[1];
+      if (option != "-t") {
+        u = values[0];
+        v = values[1];
+        return {};
+      }
     } else if (option == "-mm") {
       double values[3];
       if (!take_numbers(rest, values, 2, 2)) return malformed("-mm of map_Kd needs two numbers");

@@ -154,8 +154,10 @@ void SceneBuilder::move_texcoords() {
     if (is_new) {
       const Vec2f uv = texcoords[texcoord_indices_[k]];
       const RawMaterial& raw = materials[m];
-      texcoords.push_back({float(uv.x * raw.uv_scale[0] + raw.uv_offset[0]),
-                           float(uv.y * raw.uv_scale[1] + raw.uv_offset[1])});
+      const auto row = [&](const std::array<double, 3>& r) {
+        return float(uv.x * r[0] + uv.y * r[1] + r[2]);
+      };
+      texcoords.push_back({row(raw.uv_u), row(raw.uv_v)});
     }
     texcoord_indices_[k] = at->second;
   }

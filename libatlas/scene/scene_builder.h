@@ -26,11 +26,11 @@ struct RawMaterial {
   std::string name;
   Vec3f diffuse{1, 1, 1};
   std::int32_t texture = -1;
-  // Texture coordinates of its triangles become scale * uv + offset.
-  std::array<double, 2> uv_scale{1, 1}, uv_offset{0, 0};
+  // Texture coordinates of its triangles become row[0] u + row[1] v + row[2].
+  std::array<double, 3> uv_u{1, 0, 0}, uv_v{0, 1, 0};
 
   bool moves_uv() const {
-    return uv_scale != std::array<double, 2>{1, 1} || uv_offset != std::array<double, 2>{0, 0};
+    return uv_u != std::array<double, 3>{1, 0, 0} || uv_v != std::array<double, 3>{0, 1, 0};
   }
 };
 

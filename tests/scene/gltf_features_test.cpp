@@ -131,8 +131,97 @@ TEST(Gltf, TexturesMayNameASetAndATurn) {
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   const Scene& s = loaded->scene;
   EXPECT_EQ(s.texcoords[s.texcoord_indices[1]], (Vec2f{2, 0}));
-  EXPECT_EQ(s.texcoords[s.texcoord_indices[4]], (Vec2f{4, 0}));
-  EXPECT_EQ(loaded->defects.count(DefectKind::texture_option_ignored), 1u);
+  // Counterclockwise where v points down: (4, 1) becomes (4 c + s, -4 s + c).
+  const double c = std::cos(0.5), sine = std::sin(0.5);
+  const Vec2f turned = s.texcoords[s.texcoord_indices[4]];
+  EXPECT_NEAR(turned.x, 4 * c + sine, 1e-6);
+  EXPECT_NEAR(turned.y, 1 - (-4 * sine + c), 1e-6);
+  EXPECT_TRUE(loaded->defects.empty());
+}
+
+// Scaled first, then turned, then moved, as Blender's importer has it.
+TEST(Gltf, TexturesAreScaledTurnedAndMoved) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());
+  Gltf g;
+  const json attributes = {{"POSITION", g.floats(kSquare, "VEC3", 3)},
+                           {"TEXCOORD_0", g.floats({0, 0, 1, 0, 0, 1, 1, 1}, "VEC2", 2)}};
+  g.j["images"] = {{{"uri", "a.png"}}};
+  g.j["textures"] = {{{"source", 0}}};
+  json info = {{"index", 0}};
+  info["extensions"]["KHR_texture_transform"] = {
+      {"offset", {0.25, 0.5}}, {"rotation", std::acos(0.0)}, {"scale", {2, 3}}};
+  g.j["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", info}}}}};
+  g.single({{"attributes", attributes},
+            {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})},
+            {"material", 0}});
+  const auto loaded = load_glb(folder, g);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  const Scene& s = loaded->scene;
+  // A quarter turn takes (u, v) to (v, -u), v pointing down.
+  const Vec2f expected[] = {{0.25f, 0.5f}, {0.25f, 2.5f}, {3.25f, 0.5f}};
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(s.texcoords[s.texcoord_indices[k]].x, expected[k].x, 1e-6) << k;
+    EXPECT_NEAR(s.texcoords[s.texcoord_indices[k]].y, expected[k].y, 1e-6) << k;
+  }
+}
+
+TEST(Gltf, TexturesWithoutAnImageThatIsReadAreTold) {
+  const TempFolder folder;
+  Gltf g;
+  g.j["images"] = {{{"uri", "a.ktx2"}, {"mimeType", "image/ktx2"}}};
+  g.j["textures"] = json::array({json::object()});
+  g.j["textures"][0]["extensions"]["KHR_texture_basisu"]["source"] = 0;
+  g.j["extensionsUsed"] = {"KHR_texture_basisu"};
+  g.j["materials"] = {
+      {{"name", "bark"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+  g.single({{"attributes", {{"POSITION", g.floats(kSquare, "VEC3", 3)}}},
+            {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})},
+            {"material", 0}});
+  const auto loaded = load_glb(folder, g);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->defects.count(DefectKind::texture_unreadable), 1u);
+  EXPECT_NE(loaded->defects.lines().front().find("bark"), std::string::npos);
+}
+
+TEST(Gltf, InstancesAreShownWhereTheyStand) {
+  const TempFolder folder;
+  Gltf g;
+  json primitive = {{"attributes", {{"POSITION", g.floats(kSquare, "VEC3", 3)}}},
+                    {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3})}};
+  json attributes = {
+      {"TRANSLATION", g.floats({0, 0, 0, 5, 0, 0, 0, 7, 0}, "VEC3", 3)},
+      {"ROTATION",
+       g.accessor({{"bufferView", g.view<std::int8_t>({0, 0, 0, 127, 0, 0, 127, 0, 0, 0, 0, 127})},
+                   {"componentType", 5120},
+                   {"normalized", true},
+                   {"type", "VEC4"},
+                   {"count", 3}})},
+      {"SCALE", g.floats({1, 1, 1, 2, 2, 2, 1, 1, -1}, "VEC3", 3)},
+      {"_ID", 0}};
+  json node = {{"translation", {0, 0, 1}}};
+  node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = attributes;
+  g.single(primitive, node);
+  g.j["extensionsUsed"] = g.j["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+  const auto loaded = load_glb(folder, g);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  const Scene& s = loaded->scene;
+  ASSERT_EQ(s.positions.size(), 12u);
+  EXPECT_EQ(s.triangle_count(), 6u);
+  EXPECT_EQ(s.positions[2], (Vec3f{1, 1, 1}));
+  EXPECT_EQ(s.positions[6], (Vec3f{3, -2, 1}));  // half a turn about z, twice as large
+  EXPECT_EQ(s.positions[10], (Vec3f{1, 8, 1}));
+  EXPECT_EQ(s.indices[6], 4u);
+  EXPECT_EQ(s.indices[12], 10u);  // mirrored: its corners run the other way
+  EXPECT_EQ(s.object_names.size(), 3u);
+  const auto broken = [&](const char* name, const json& value) {
+    Gltf bad = g;
+    bad.j["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"][name] = value;
+    return load_glb(folder, bad).status();
+  };
+  EXPECT_NE(broken("SCALE", 0).message().find("another number of SCALE"), std::string::npos);
+  EXPECT_EQ(broken("TRANSLATION", 99).code(), ErrorCode::bad_input);
+  EXPECT_EQ(broken("TRANSLATION", "x").code(), ErrorCode::bad_input);
 }
 
 // A file without nodes is a library: each mesh once, as it is.
