@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <limits>
 #include <map>
 #include <string_view>
 
@@ -215,6 +216,8 @@ int parse_command_line(int argc, char** argv, PackCommand& c) {
     print_error("atlas-pack", why);
     return 2;
   }
+  if (c.options.effort > 0 && app.get_subcommands().front()->count("--budget") == 0)
+    c.options.time_budget = std::numeric_limits<double>::infinity();
   c.kind = *rects    ? PackCommand::Kind::rects
            : *images ? PackCommand::Kind::images
                      : PackCommand::Kind::mesh;

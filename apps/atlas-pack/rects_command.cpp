@@ -57,6 +57,21 @@ std::vector<std::string> split(const std::string& line) {
   return fields;
 }
 
+// A '#' begins a comment at the line's start and after two numbers; within a name it is a letter.
+std::string without_comment(const std::string& line) {
+  for (std::size_t i = 0; (i = line.find('#', i)) != std::string::npos; ++i) {
+    const std::string before = line.substr(0, i);
+    if (before.find_first_not_of(" \t") == std::string::npos) return {};
+    if (before.back() != ' ' && before.back() != '\t') continue;
+    const std::vector<std::string> f = split(before.substr(0, before.find_last_not_of(" \t") + 1));
+    std::int32_t side = 0;
+    if ((f.size() == 2 || f.size() == 3) && to_side(f.back(), side) &&
+        to_side(f[f.size() - 2], side))
+      return before;
+  }
+  return line;
+}
+
 // What a file of rectangles holds.
 struct RectList {
   std::vector<PackedItem> items;
@@ -86,7 +101,9 @@ Result<std::vector<CsvLine>> csv_lines(const PackCommand& c, const std::string& 
   std::string line;
   bool header_seen = false;
   for (std::size_t number = 1; std::getline(lines, line); ++number) {
-    if (line.find_first_not_of(" \t\r") == std::string::npos || line[0] == '#') continue;
+    line = without_comment(line);
+    line.resize(line.find_last_not_of(" \t") + 1);
+    if (line.empty()) continue;
     std::vector<std::string> f = split(line);
     const std::size_t n = f.size();
     if (n != 2 && n != 3)

@@ -33,7 +33,7 @@ std::size_t run_chains(std::vector<Chain>& chains, const SearchLimits& limits,
     note();
   };
   choose();
-  std::uint64_t per_round = 4, left = limits.layouts ? limits.layouts : UINT64_MAX;
+  std::uint64_t per_round = 1, left = limits.layouts ? limits.layouts : UINT64_MAX;
   while (!chains[best].done() && left > 0 && !context.cancelled()) {
     const double elapsed = wall_seconds() - start;
     if (elapsed >= limits.seconds) break;

@@ -40,8 +40,7 @@ struct Layout {
 
 enum class Order { area, height, max_side, width, perimeter };
 
-// Item ids sorted descending by the key, then by the README's tie keys, then by id. With rotation
-// allowed, height and width look at the longer and shorter side.
+// Item ids sorted descending by the key, then by the other sides, then by id.
 std::vector<std::uint32_t> sorted_items(std::span<const Extent> items, Order order);
 
 // Every item, in this order, into the first page with room, by maximal free rectangles.

@@ -45,23 +45,36 @@ class OrderChain {
 
 Layout search_first_fit(const Problem& problem, const SearchLimits& limits, const Context& context,
                         PackResult& result) {
+  const double begun = wall_seconds();
+  double longest = 0;   // of the layouts so far: the next may take as long
+  bool falling = true;  // these were of falling heights only, which go ten times as fast
+  const auto late = [&] {
+    const double next = falling ? 10 * longest : longest;
+    return context.cancelled() || wall_seconds() - begun + next > limits.seconds;
+  };
   std::vector<std::uint32_t> start;
   Layout best;
   for (Order order : {Order::height, Order::area, Order::max_side}) {
+    if (!start.empty() && late()) return best;
+    const double before = wall_seconds();
     std::vector<std::uint32_t> ids = sorted_items(problem.items, order);
     Layout layout = pack_first_fit(problem, ids, PlaceRule::bottom_left);
+    longest = std::max(longest, wall_seconds() - before);
+    falling = order == Order::height && !problem.allow_rotation;
     ++result.layouts_tried;
     if (!start.empty() && !layout.better_than(best)) continue;
     start = std::move(ids);
     best = std::move(layout);
   }
-  if (limits.layouts == 1) return best;
+  if (limits.layouts == 1 || late()) return best;
   std::vector<OrderChain> chains;
   for (std::uint32_t c = 0; c < limits.chains; ++c) {
     chains.emplace_back(problem, limits.seed * 0x10001 + c);
     chains.back().start(start, best);
   }
-  return chains[run_chains(chains, limits, context, result)].best();
+  SearchLimits left = limits;
+  left.seconds -= wall_seconds() - begun;
+  return chains[run_chains(chains, left, context, result)].best();
 }
 
 }  // namespace atlas::pack

@@ -135,6 +135,52 @@ TEST(StripSearch, TurnsHelpAndThreadsChangeNothing) {
   EXPECT_EQ(test::check_layout(items, a->placements, a->pages, o), "");
 }
 
+// Large sets: what may be turned is packed no worse than what may not, on strips in about the time.
+TEST(Turns, NeverCostRoomInLargeSets) {
+  test::Noise noise{5};
+  std::vector<Extent> items(2000);
+  for (Extent& e : items) e = {noise.in(1, 64), noise.in(1, 64)};
+  for (const Extent page :
+       {Extent{512, 512}, Extent{1024, 0}, Extent{8192, 0}, Extent{700, 2000}}) {
+    PackOptions o;
+    o.page = page;
+    const Result<PackResult> fixed = pack_rects(items, o, {});
+    o.allow_rotation = true;
+    const Result<PackResult> turned = pack_rects(items, o, {});
+    ASSERT_TRUE(fixed.ok() && turned.ok());
+    EXPECT_EQ(test::check_layout(items, turned->placements, turned->pages, o), "");
+    EXPECT_LE(turned->pages.size(), fixed->pages.size()) << page.width;
+    EXPECT_LE(turned->pages.back().height, fixed->pages.back().height) << page.width;
+  }
+  // What fits one way only is turned, whatever the others are.
+  items.push_back({60, 500});
+  items.push_back({500, 60});
+  PackOptions o;
+  o.page = {512, 100};
+  o.allow_rotation = true;
+  const Result<PackResult> low = pack_rects(items, o, {});
+  ASSERT_TRUE(low.ok());
+  EXPECT_TRUE(low->unplaced.empty());
+  EXPECT_TRUE(low->placements[2000].rotated);
+  EXPECT_FALSE(low->placements[2001].rotated);
+  EXPECT_EQ(test::check_layout(items, low->placements, low->pages, o), "");
+}
+
+// A layout of this many takes a good part of a second, and four chains would try sixteen.
+TEST(Budget, LargeSetsEndNearIt) {
+  test::Noise noise{7};
+  std::vector<Extent> items(60000);
+  for (Extent& e : items) e = {noise.in(1, 64), noise.in(1, 64)};
+  PackOptions o;
+  o.page = {2048, 2048};
+  o.preset = PackPreset::best;
+  o.time_budget = 1e-3;
+  const Result<PackResult> result = pack_rects(items, o, {});
+  ASSERT_TRUE(result.ok());
+  EXPECT_EQ(result->layouts_tried, 1u);
+  EXPECT_EQ(test::check_layout(items, result->placements, result->pages, o), "");
+}
+
 // The index against a look at every page.
 TEST(HeightIndex, NamesTheFirstPageWithRoom) {
   test::Noise noise{41};

@@ -3,14 +3,32 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <utility>
 
+#include "apps/atlas-pack/command_line.h"
 #include "tests/apps/atlas_pack/run_pack.h"
 
 namespace atlas::test {
 namespace {
+
+// With an effort the clock ends nothing, so that results repeat.
+TEST(PackCommandLine, AnEffortIsTheOnlyLimitUnlessABudgetIsGivenToo) {
+  const auto budget = [](std::vector<const char*> words) {
+    words.insert(words.begin(),
+                 {"atlas-pack", "rects", "a.csv", "-o", "b.csv", "--preset", "best"});
+    app::PackCommand command;
+    EXPECT_EQ(app::parse_command_line(int(words.size()), const_cast<char**>(words.data()), command),
+              -1);
+    return command.options.time_budget;
+  };
+  EXPECT_EQ(budget({}), 1);
+  EXPECT_EQ(budget({"--budget", "3s"}), 3);
+  EXPECT_EQ(budget({"--effort", "500", "--budget", "3s"}), 3);
+  EXPECT_TRUE(std::isinf(budget({"--effort", "500"})));
+}
 
 // One line that contains the words, and no file.
 TEST_F(AtlasPack, WhatCannotBeDoneLeavesNothing) {

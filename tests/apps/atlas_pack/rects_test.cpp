@@ -24,6 +24,20 @@ TEST_F(AtlasPack, RectsFromCsvToCsv) {
   EXPECT_NE(read("p.svg").find("<svg"), std::string::npos);
 }
 
+TEST_F(AtlasPack, CommentsFollowLinesAndNamesHoldNumberSigns) {
+  write("a.csv",
+        "name,width,height\n  # all, of them\na#1,3,4\ntile #2, 5, 6  # the second, at last\n");
+  EXPECT_EQ(run("rects a.csv -o a.out.csv --page 16x8").exit_code, 0);
+  const std::string placed = read("a.out.csv");
+  EXPECT_NE(placed.find("a#1,0,"), std::string::npos) << placed;
+  EXPECT_NE(placed.find("tile #2,0,"), std::string::npos) << placed;
+  EXPECT_EQ(std::count(placed.begin(), placed.end(), '\n'), 3);
+  write("b.txt", "10 10 2 # page, count\n\t# two\n10 4 # a, b\n5 6\n");
+  const RunResult r = run("rects b.txt -o b.csv --json");
+  EXPECT_EQ(r.exit_code, 0) << r.output;
+  EXPECT_NE(r.output.find("\"width\":10"), std::string::npos) << r.output;
+}
+
 // Published instances begin with `width height count`; --page has the last word.
 TEST_F(AtlasPack, InstancesSayTheirPage) {
   write("a.txt", "# three\n10 10 3\n10 4\n5 6\n5 6\n");
