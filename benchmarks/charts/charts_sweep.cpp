@@ -108,7 +108,7 @@ std::string script(const std::vector<ChartsPoint>& points, const std::string& te
   return data + "set terminal " + terminal +
          fmt::format(
              "\nset output '{}'\nset grid lc rgb '#e4e4e4'\nunset key\nset logscale x\n"
-             "set xtics (10,20,30,50,60,70,80,100,120,150,200,300,500,700,1000,2000,5000,10000)\n"
+             "set xtics (5,10,20,50,100,200,500,1000,2000,5000,10000)\n"
              "set autoscale xfix\nset autoscale yfix\n"
              "set offsets graph 0.25, graph 0.22, graph 0.12, graph 0.12\n"
              "set multiplot layout 2,{} title \"error against time: red --preset, blue "

@@ -1,6 +1,4 @@
-// Prints F(A) around the bisection's answer and the steps taken, for a plot:
-//   atlas-bench-grouping > curve.txt
-//   gnuplot -e "plot 'curve.txt' i 0 w steps t 'F(A)', '' i 1 w p t 'evaluated'"
+// Prints F(A) around the bisection's answer and the steps taken, for the plot of grouping_curve.gp.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
