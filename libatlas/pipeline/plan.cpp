@@ -116,10 +116,12 @@ class StepList {
     const double capacity = double(pages) * options_.atlas_size * options_.atlas_size;
     const bool group = pages > 1;
     const std::string budget = budget_text(pages, options_.atlas_size);
+    const bool raised = plan_.sample_reflectance && options_.follow_textures;
     add("grouping", group,
-        group ? fmt::format("about {:.1f} M texels of {:.2g} mm before downsizing into {}; no "
+        group ? fmt::format("about {:.1f} M texels of {:.2g} mm before downsizing{} into {}; no "
                             "bisection if the pages' own area already gives as few groups",
-                            plan_.estimated_texels / 1e6, 1e3 * plan_.texel_metres, budget)
+                            plan_.estimated_texels / 1e6, 1e3 * plan_.texel_metres,
+                            raised ? " (more where diffuse textures are finer)" : "", budget)
               : "one page");
     add("packing", true, fmt::format("{}, {:.1f} M texels of room", budget, capacity / 1e6));
     add_baked("baking", true,
