@@ -72,15 +72,16 @@ int main_of(int argc, char** argv) {
   }
   atlas->cpu_seconds = cpu_seconds() - start;
   if (command.json) app::print(stdout, fmt::format("{}\n", app::to_summary(*atlas)));
-  terminal.line(fmt::format("{}: {}, {:.2f} % used{}, {:.3f} CPU s", command.output.string(),
-                            counts_of(*atlas), 100 * atlas->utilization,
-                            atlas->aliases ? fmt::format(", {} aliases", atlas->aliases) : "",
-                            atlas->cpu_seconds));
+  terminal.line(
+      fmt::format("{}: {}, {:.2f} % used{}, {:.3f} CPU s", command.output.string(),
+                  counts_of(*atlas), 100 * atlas->utilization,
+                  atlas->aliases ? fmt::format(", {} sharing another's place", atlas->aliases) : "",
+                  atlas->cpu_seconds));
   advise_on_pages(command, *atlas, context);
   advise_on_room(command, *atlas, context);
   // Whatever was left out has been named; scripts need to know as well.
   if (atlas->unplaced > 0) {
-    terminal.error(fmt::format("{} of {} items were not placed (allow larger or more pages)",
+    terminal.error(fmt::format("no place for {} of {} items (allow larger or more pages)",
                                atlas->unplaced, atlas->items.size()));
     return 1;
   }

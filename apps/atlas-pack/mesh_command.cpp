@@ -292,9 +292,9 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   UvCharts charts = find_charts(scene);
   make_uniform(scene, double(c.page_side) * c.page_side * c.pages, charts);
   if (charts.without_uv > 0)
-    context.say(fmt::format("{} triangles have no uvs and keep none", charts.without_uv));
+    context.say(fmt::format("triangles without uvs, which get none: {}", charts.without_uv));
   if (charts.without_area > 0)
-    context.say(fmt::format("{} charts have no area in uv or in space and shrink to a point",
+    context.say(fmt::format("charts without an area in uv or in space, which shrink to a point: {}",
                             charts.without_area));
   std::vector<FitItem> items;
   std::vector<ChartShape> shapes;
