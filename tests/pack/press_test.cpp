@@ -275,7 +275,7 @@ TEST(StraightPage, ChartsLieSideBySide) {
   test::Noise noise{12};
   std::vector<std::vector<Vec2d>> bars;
   for (int k = 0; k < 40; ++k) {
-    const double w = noise.in(40, 200), h = noise.in(20, 50), x = noise.in(0.2, 0.8) * w;
+    const double w = noise.in(40, 200), h = noise.in(20, 50), x = noise.in(20, 80) * w / 100;
     std::vector<Vec2d> bar = box(w, h);
     for (const Vec2d p : box(x, h / 2)) bar.push_back({p.x, p.y + h});
     bars.push_back(bar);

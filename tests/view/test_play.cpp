@@ -116,7 +116,7 @@ TEST_F(Play, ALostContextIsOneLineThatSaysWhy) {
                                                     {GL_UNKNOWN_CONTEXT_RESET, "does not tell"}};
   for (const auto& [reset, reason] : cases) {
     int frames = 0;
-    gl.set_reset_source([&, reset] { return ++frames < 3 ? GL_NO_ERROR : reset; });
+    gl.set_reset_source([&, after = reset] { return ++frames < 3 ? GL_NO_ERROR : after; });
     const Result<PlaySummary> done = play_headless(gl, r, o, {});
     gl.set_reset_source({});
     ASSERT_FALSE(done.ok());
