@@ -52,7 +52,7 @@ std::vector<ChartNeighbour> find_neighbours(std::span<const BorderEdge> border) 
 }
 
 Joint::Joint(const Topology& topology, const ChartPair& pair, std::span<const BorderEdge> edges)
-    : a_(pair.a), b_(pair.b) {
+    : topology_(topology), a_(pair.a), b_(pair.b), edges_(edges) {
   const auto own = [&](const BorderEdge& edge, int end) {
     return to_glm(a_.uvs[ends_of(a_, edge.half_edge)[end]]);
   };
@@ -85,11 +85,40 @@ std::vector<Vec2d> Joint::uvs() const {
   return uvs;
 }
 
-double Joint::box() const {
-  std::vector<Vec2d> points = b_.uvs, hull;
-  for (const Vec2d& p : a_.uvs) points.push_back(motion_(p));
+double Joint::box(const Outline& a, const Outline& b) const {
+  std::vector<Vec2d> points = b.hull, hull;
+  for (const Vec2d& p : a.hull) points.push_back(motion_(p));
   hull_area(points, hull);
   return box_area(hull);
+}
+
+std::size_t Joint::overlap(const Outline& a, const Outline& b, std::size_t most) const {
+  std::vector<std::uint32_t> glued;
+  for (const BorderEdge& edge : edges_) {
+    glued.push_back(edge.half_edge);
+    glued.push_back(topology_.opposite[edge.half_edge]);
+  }
+  std::sort(glued.begin(), glued.end());
+  const auto free = [&](std::uint32_t h) {
+    return !std::binary_search(glued.begin(), glued.end(), h);
+  };
+  std::vector<Outline::Edge> still, moved;
+  for (const Outline::Edge& e : b.edges) {
+    if (free(e.half_edge)) still.push_back(e);
+  }
+  const auto add = [&](std::uint32_t h, const Vec2d& from, const Vec2d& to) {
+    if (free(h)) moved.push_back({h, motion_(from), motion_(to)});
+  };
+  for (const Outline::Edge& e : a.edges) add(e.half_edge, e.from, e.to);
+  if (count_crossings(moved, still, 1) == 0) return 0;
+  moved.clear();
+  for (std::size_t i = 0; i < a_.triangles.size(); ++i) {
+    const auto& v = a_.corners[i];
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      add(3 * a_.triangles[i] + c, a_.uvs[v[c]], a_.uvs[v[(c + 1) % 3]]);
+    }
+  }
+  return count_crossings(moved, still, most);
 }
 
 }  // namespace atlas

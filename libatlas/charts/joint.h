@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libatlas/charts/flatten.h"
+#include "libatlas/charts/outline.h"
 #include "libatlas/charts/rigid_fit.h"
 
 namespace atlas {
@@ -55,12 +56,18 @@ class Joint {
   std::vector<std::uint32_t> triangles() const;
   // 3 a triangle in that order, those of `a` moved.
   std::vector<Vec2d> uvs() const;
-  // The smallest rectangle around both as they are, side by side: its area.
-  double box() const;
+  // The smallest rectangle around both as they are, side by side: its area. The outlines are those
+  // of `a` and `b`, as they are.
+  double box(const Outline& a, const Outline& b) const;
+  // How much of `a` lies on `b` where they do not go together: how many sides of triangles of `a`
+  // cross the border of `b`, inner ones twice; counts no further than `most`.
+  std::size_t overlap(const Outline& a, const Outline& b, std::size_t most) const;
 
  private:
+  const Topology& topology_;
   const FlatChart& a_;
   const FlatChart& b_;
+  std::span<const BorderEdge> edges_;
   Motion motion_;  // misfit: by the length of the edges
 };
 

@@ -172,7 +172,7 @@ class Export {
 
   // The largest side of a page.
   std::int32_t page_size() const {
-    constexpr std::int64_t kTexelsAChart = 512;
+    constexpr std::int64_t kTexelsAChart = 1024;
     constexpr std::int32_t kLargestSide = 16384;
     std::int64_t side = options_.atlas_size;
     if (plan_.bake || !options_.larger_plain_page) return options_.atlas_size;

@@ -121,7 +121,56 @@ TEST(Joint, TakesOneChartToTheOther) {
     }
   }
   const double area = 2 * kColumns * rows.topology.scale * rows.topology.scale;
-  EXPECT_NEAR(joint.box(), area, 1e-5 * area);
+  const Outline upper = outline_of(rows.topology, rows.partition, rows.upper),
+                lower = outline_of(rows.topology, rows.partition, rows.lower);
+  EXPECT_NEAR(joint.box(upper, lower), area, 1e-5 * area);
+  EXPECT_EQ(joint.overlap(upper, lower, 100), 0u);
+}
+
+bool cross(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
+  const auto side = [](glm::dvec2 p, glm::dvec2 q, glm::dvec2 r) {
+    return (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x) > 0;
+  };
+  return side(a, b, c) != side(a, b, d) && side(c, d, a) != side(c, d, b);
+}
+
+// Joined along their first edges, a bent row lies on the other one, or away from it.
+TEST(Joint, OverlapCountsSidesOnTheOther) {
+  for (const double turn : {-0.1, -0.02, 0.03, 0.1}) {
+    const TwoRows rows(std::vector<double>(kColumns, turn));
+    const std::span<const BorderEdge> glue = std::span(rows.border).first(3);
+    const Joint joint(rows.topology, {rows.upper, rows.lower}, glue);
+    const auto glued = [&](std::uint32_t h) {
+      return std::any_of(glue.begin(), glue.end(), [&](const BorderEdge& e) {
+        return h == e.half_edge || h == rows.topology.opposite[e.half_edge];
+      });
+    };
+    std::size_t expected = 0;
+    for (const std::uint32_t t : rows.upper.triangles) {
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        for (std::uint32_t g = 0; g < 3 * rows.topology.triangle_count(); ++g) {
+          const std::uint32_t o = rows.topology.opposite[g];
+          const bool border = rows.partition.chart[g / 3] == 0 &&
+                              (o == kNoIndex || rows.partition.chart[o / 3] != 0);
+          if (!border || glued(h) || glued(g)) continue;
+          const auto [a, b] = ends_of(rows.upper, h);
+          const auto [c, d] = ends_of(rows.lower, g);
+          const Motion& m = joint.motion();
+          expected += cross(m(to_glm(rows.upper.uvs[a])), m(to_glm(rows.upper.uvs[b])),
+                            to_glm(rows.lower.uvs[c]), to_glm(rows.lower.uvs[d]));
+        }
+      }
+    }
+    const Outline upper = outline_of(rows.topology, rows.partition, rows.upper),
+                  lower = outline_of(rows.topology, rows.partition, rows.lower);
+    EXPECT_EQ(joint.overlap(upper, lower, 1000), expected) << turn;
+    EXPECT_EQ(joint.overlap(upper, lower, 5), std::min<std::size_t>(expected, 5)) << turn;
+    if (turn < 0) {
+      EXPECT_GT(expected, 10u) << turn;
+    } else {
+      EXPECT_LE(expected, 2u) << turn;  // beside what goes together
+    }
+  }
 }
 
 TEST(Joint, TheLongestRunThatFitsIsFound) {

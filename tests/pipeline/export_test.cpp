@@ -335,7 +335,7 @@ TEST(Export, PlainPagesGrowWithTheirCharts) {
     return std::max(report->pages[0].width, report->pages[0].height);
   };
   const int grown = widest();
-  EXPECT_GT(grown, 512);  // 512 texels for each of 600 charts are 554 squared
+  EXPECT_GT(grown, 512);  // 1024 texels for each of 600 charts are 784 squared
   EXPECT_LE(grown, 1024);
   options.larger_plain_page = false;
   EXPECT_LE(widest(), 256);
