@@ -2,22 +2,17 @@
 
 #include <algorithm>
 #include <deque>
-#include <glm/common.hpp>
 #include <limits>
 
 #include "libatlas/core/counting_sort.h"
-#include "libatlas/core/glm_bridge.h"
+#include "libatlas/pipeline/spread_specks.h"
+#include "libatlas/pipeline/thin_uvs.h"
 
 namespace atlas {
 namespace {
 
-constexpr double kStep = 0x1p-24;  // between floats just below one
-// How far a uv may be off for readers: the shortest decimals of a float, read as a double, are off
-// by half of that; floats multiplied by a page's size by as much again.
-constexpr double kSlack = kStep;
-constexpr double kLeastArea = 1.1e-12;  // of the page: less counts as nothing
-constexpr int kMostSteps = 128;         // that a corner is taken beyond the edge across
-constexpr int kMostTries = 32;          // a triangle
+constexpr int kMostSteps = 128;  // that a corner is taken beyond the edge across
+constexpr int kMostTries = 32;   // a triangle
 // Triangles more that a move may close: in a stack of slivers the outer ones give way in turn.
 constexpr int kMostHarm = 1;
 
@@ -27,13 +22,14 @@ class SliverOpener {
       : corners_(corners), uvs_(uvs) {}
 
   std::size_t run() {
+    if (!any_thin()) return 0;
+    corners_at_ = sort_into_buckets(corners_.size(), uvs_.size(),
+                                    [&](std::size_t corner) { return corners_[corner]; });
+    spread_specks(corners_, corners_at_, uvs_);
     const std::size_t n = corners_.size() / 3;
     for (std::uint32_t t = 0; t < n; ++t) {
       if (thin(t)) queue_.push_back(t);
     }
-    if (queue_.empty()) return 0;
-    corners_at_ = sort_into_buckets(corners_.size(), uvs_.size(),
-                                    [&](std::size_t corner) { return corners_[corner]; });
     std::vector<std::uint8_t> tries(n, 0);
     std::vector<std::uint32_t> given_up;
     while (!queue_.empty()) {
@@ -58,14 +54,15 @@ class SliverOpener {
 
   glm::dvec2 at(std::uint32_t uv) const { return to_dvec(uvs_[uv]); }
 
-  // Whether a triangle is turned over, or would be if its corners were off by kSlack.
   bool thin(std::uint32_t t) const {
-    const std::uint32_t* c = &corners_[3 * std::size_t(t)];
-    if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) return false;
-    const glm::dvec2 p = at(c[0]), u = at(c[1]) - p, v = at(c[2]) - p, w = v - u;
-    const glm::dvec2 sides = glm::abs(u) + glm::abs(v) + glm::abs(w);
-    const double twice = u.x * v.y - u.y * v.x;
-    return twice <= std::max(kSlack * (sides.x + sides.y), 2 * kLeastArea);
+    return is_thin(corners_.subspan(3 * std::size_t(t)).first<3>(), uvs_);
+  }
+
+  bool any_thin() const {
+    for (std::uint32_t t = 0; t < corners_.size() / 3; ++t) {
+      if (thin(t)) return true;
+    }
+    return false;
   }
 
   int thin_around(std::uint32_t uv) const {
@@ -96,8 +93,8 @@ class SliverOpener {
     const double length = glm::length(along);
     const glm::dvec2 across =
         length > 0 ? glm::dvec2(-along.y, along.x) / length : glm::dvec2(0, 1);
-    const double shift = steps * kStep - glm::dot(across, p - a);
-    if (shift > 2 * kMostSteps * kStep) return;  // a short edge, far from the corner
+    const double shift = steps * kUvStep - glm::dot(across, p - a);
+    if (shift > 2 * kMostSteps * kUvStep) return;  // a short edge, far from the corner
     const glm::vec2 there = glm::clamp(glm::vec2(p + shift * across), 0.0f, 1.0f);
     const Vec2f old = uvs_[uv], to{there.x, there.y};
     const int before = thin_around(uv);

@@ -122,6 +122,79 @@ TEST(RoundUvs, SpecksKeepAnArea) {
   EXPECT_GT(twice / 2, 1e-12);
 }
 
+// A grid whose points nearer to (u, v) than `reach` columns are drawn together there; `size` 0:
+// into one point.
+FlatMesh speck_in_grid(int n, Vec2d around, double reach, double size) {
+  FlatMesh mesh;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> jitter(-0.3, 0.3);
+  const double step = 0.5 / n;
+  for (int y = 0; y <= n; ++y) {
+    for (int x = 0; x <= n; ++x) {
+      const bool edge = x == 0 || y == 0 || x == n || y == n;
+      Vec2d p{0.3 + step * (x + (edge ? 0 : jitter(random))),
+              0.3 + step * (y + (edge ? 0 : jitter(random)))};
+      const double dx = p.x - around.x, dy = p.y - around.y;
+      if (std::hypot(dx, dy) < reach * step) {
+        p = {around.x + size * dx / step, around.y + size * dy / step};
+      }
+      mesh.uvs.push_back(p);
+    }
+  }
+  for (int y = 0; y < n; ++y) {
+    for (int x = 0; x < n; ++x) {
+      const auto a = std::uint32_t(y * (n + 1) + x), b = a + 1, d = a + std::uint32_t(n) + 1,
+                 e = d + 1;
+      mesh.corners.insert(mesh.corners.end(), {a, b, d, b, e, d});
+    }
+  }
+  return mesh;
+}
+
+void expect_spread(const FlatMesh& mesh, double most) {
+  std::vector<Vec2f> plain, rounded;
+  for (const Vec2d& p : mesh.uvs) plain.push_back({float(p.x), float(p.y)});
+  EXPECT_GT(in_integers(mesh, plain), 0u) << "the test is too easy";
+  EXPECT_EQ(round_uvs(mesh.uvs, mesh.corners, rounded), 0u);
+  EXPECT_EQ(in_integers(mesh, rounded), 0u);
+  EXPECT_EQ(not_positive<double>(mesh, rounded, read_back), 0u);
+  for (std::size_t i = 0; i < mesh.uvs.size(); ++i) {
+    EXPECT_LT(std::hypot(rounded[i].x - mesh.uvs[i].x, rounded[i].y - mesh.uvs[i].y), most);
+  }
+}
+
+TEST(RoundUvs, SpecksInOnePointAreSpread) {
+  for (const double size : {0.0, 1e-10, 1e-8, 2e-8}) {
+    for (const double reach : {1.4, 2.5}) {
+      for (const Vec2d around : {Vec2d{0.55, 0.55},  // inside
+                                 Vec2d{0.3, 0.52},   // at a side
+                                 Vec2d{0.8, 0.8}}) {
+        SCOPED_TRACE(::testing::Message()
+                     << size << " " << reach << " at " << around.x << ", " << around.y);
+        expect_spread(speck_in_grid(10, around, reach, size), 4e-5);
+      }
+    }
+  }
+}
+
+TEST(RoundUvs, APieceThatIsASpeckIsSpread) {
+  for (const double size : {0.0, 1e-9})
+    expect_spread(speck_in_grid(3, {0.55, 0.55}, 9, size), 4e-5);
+}
+
+// Where a mesh is cut open up to the speck its border passes there twice: left to the other means.
+TEST(RoundUvs, SpecksThatPinchTheBorderEnd) {
+  FlatMesh mesh = speck_in_grid(6, {0.55, 0.55}, 1.4, 1e-9);
+  const std::vector<std::uint32_t> all = std::move(mesh.corners);
+  for (std::size_t t = 0; t < all.size(); t += 3) {  // two opposite corners of the grid are gone
+    const bool low = all[t] % 7 < 3 && all[t] / 7 < 3, high = all[t] % 7 > 3 && all[t] / 7 > 3;
+    if (!low && !high) mesh.corners.insert(mesh.corners.end(), &all[t], &all[t] + 3);
+  }
+  std::vector<Vec2f> rounded;
+  const std::size_t left = round_uvs(mesh.uvs, mesh.corners, rounded);
+  EXPECT_LE(in_integers(mesh, rounded), left);
+}
+
 TEST(RoundUvs, WhatIsOpenIsRoundedToTheNearest) {
   const FlatMesh mesh = stack_of_slivers(2, 50, 0.4, 1e-3);
   std::vector<Vec2f> rounded;
