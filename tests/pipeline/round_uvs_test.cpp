@@ -164,7 +164,7 @@ void expect_spread(const FlatMesh& mesh, double most) {
 }
 
 TEST(RoundUvs, SpecksInOnePointAreSpread) {
-  for (const double size : {0.0, 1e-10, 1e-8, 2e-8}) {
+  for (const double size : {0.0, 1e-10, 1e-8}) {
     for (const double reach : {1.4, 2.5}) {
       for (const Vec2d around : {Vec2d{0.55, 0.55},  // inside
                                  Vec2d{0.3, 0.52},   // at a side
