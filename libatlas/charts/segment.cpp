@@ -9,6 +9,7 @@
 #include "libatlas/charts/merge.h"
 #include "libatlas/charts/pieces.h"
 #include "libatlas/charts/refine.h"
+#include "libatlas/charts/slit_paths.h"
 #include "libatlas/charts/straighten.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
@@ -188,9 +189,13 @@ class Segmenter {
     if (context_.cancelled()) return {};
     Stopwatch watch(cpu_seconds);
     const BorderRules rules{options_.crease_degrees, {axes_, std::cos(cone_ - 1e-5)}};
+    Slits slits(topology_, {rules, rings_}, result_.partition, result_.frames);
+    slits.close();
     smooth_borders(topology_, rules, result_.partition, result_.frames);
     straighten_borders(topology_, {rules, rings_}, result_.partition, result_.frames);
     smooth_borders(topology_, rules, result_.partition, result_.frames);
+    slits.reopen();
+    slits.straighten();
     result_.timing.borders_cpu = watch.lap();
     return std::move(result_);
   }

@@ -4,13 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <random>
 
 #include "libatlas/charts/min_cut.h"
-#include "libatlas/charts/straighten.h"
-#include "libatlas/core/glm_bridge.h"
-#include "tests/charts/chart_checks.h"
+#include "tests/charts/ragged_charts.h"
 
 namespace atlas::test {
 namespace {
@@ -55,91 +52,10 @@ TEST(MinCut, CostsWhatTheBestOfAllCutsCosts) {
   }
 }
 
-struct Charts {
-  Topology topology;
-  Partition partition;
-  Frames frames;
-
-  explicit Charts(const Shape& shape) {
-    const Mesh mesh(shape);
-    Result<Topology> built = build_topology(mesh.view(), {}, {});
-    EXPECT_TRUE(built.ok());
-    topology = std::move(*built);
-    const std::size_t n = topology.triangle_count();
-    partition.chart.assign(n, kNoIndex);
-    partition.seams.assign(n, 0);
-    partition.local.assign(n, 0);
-    frames.resize(n);
-    for (std::uint32_t t = 0; t < n; ++t) frames.put(t, frame_of(t));
-  }
-
-  // Two directions at right angles in the plane of triangle t.
-  std::array<Vec3f, 2> frame_of(std::uint32_t t) const {
-    const glm::dvec3 n = to_dvec(topology.normals[t]);
-    const glm::dvec3 u = glm::normalize(
-        glm::cross(n, std::abs(n.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
-    return {from_glm(glm::vec3(u)), from_glm(glm::vec3(glm::cross(n, u)))};
-  }
-
-  // Grows `count` charts from random triangles at random speeds: ragged, but in one piece each.
-  void grow(std::uint32_t count, std::uint64_t seed) {
-    std::mt19937_64 random(seed);
-    std::vector<std::uint32_t> front;
-    for (std::uint32_t k = 0; k < count; ++k) {
-      const auto t = std::uint32_t(random() % topology.triangle_count());
-      if (partition.chart[t] != kNoIndex) continue;
-      partition.chart[t] = k;
-      front.push_back(t);
-    }
-    while (!front.empty()) {
-      const std::size_t i = random() % front.size();
-      const std::uint32_t t = front[i];
-      front[i] = front.back();
-      front.pop_back();
-      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-        const std::uint32_t o = topology.opposite[h];
-        if (o == kNoIndex || partition.chart[o / 3] != kNoIndex) continue;
-        partition.chart[o / 3] = partition.chart[t];
-        front.push_back(o / 3);
-      }
-    }
-  }
-
-  double border_length() const {
-    double length = 0;
-    for (std::uint32_t h = 0; h < topology.opposite.size(); ++h) {
-      const std::uint32_t o = topology.opposite[h];
-      if (o == kNoIndex || o < h || partition.chart[h / 3] == partition.chart[o / 3]) continue;
-      length += edge_length(topology, h);
-    }
-    return length / topology.scale;
-  }
-
-  // Pieces and Euler characteristic of each chart.
-  std::map<std::uint32_t, std::pair<std::uint32_t, int>> topologies() {
-    std::map<std::uint32_t, std::vector<std::uint32_t>> lists;
-    for (std::uint32_t t = 0; t < partition.chart.size(); ++t) {
-      lists[partition.chart[t]].push_back(t);
-    }
-    std::map<std::uint32_t, std::pair<std::uint32_t, int>> result;
-    for (const auto& [k, list] : lists) {
-      LocalChart chart;
-      chart.build(topology, partition, list);
-      result[k] = {chart.component_count, chart.euler()};
-    }
-    return result;
-  }
-
-  void straighten(std::uint8_t rings, double crease_degrees = 40) {
-    const std::vector<std::uint8_t> of_chart(64, rings);
-    straighten_borders(topology, {{crease_degrees, {}}, of_chart}, partition, frames);
-  }
-};
-
 // Two charts of a square, whose border has teeth four quads high.
-Charts sawtooth() {
+RaggedCharts sawtooth() {
   const int n = 40;
-  Charts charts(grid(n, n));
+  RaggedCharts charts(grid(n, n));
   for (std::uint32_t t = 0; t < charts.partition.chart.size(); ++t) {
     const int x = int(t / 2) % n, y = int(t / 2) / n;
     const int tooth = std::abs(y % 8 - 4);  // 0 to 4
@@ -149,7 +65,7 @@ Charts sawtooth() {
 }
 
 TEST(Straighten, SawtoothBecomesALine) {
-  Charts charts = sawtooth();
+  RaggedCharts charts = sawtooth();
   const double before = charts.border_length();
   charts.straighten(12);
   EXPECT_GT(before, 1.8);
@@ -160,7 +76,7 @@ TEST(Straighten, SawtoothBecomesALine) {
 // of one side falls into parts that hang together outside of it.
 TEST(Straighten, NarrowBandsShortenWhatTheyCan) {
   for (const std::uint8_t rings : {2, 3, 4, 6}) {
-    Charts charts = sawtooth();
+    RaggedCharts charts = sawtooth();
     const auto were = charts.topologies();
     const double before = charts.border_length();
     charts.straighten(rings);
@@ -170,7 +86,7 @@ TEST(Straighten, NarrowBandsShortenWhatTheyCan) {
 }
 
 TEST(Straighten, BordersOfChartsWithoutRingsStay) {
-  Charts charts(sphere(48, 24));
+  RaggedCharts charts(sphere(48, 24));
   charts.grow(6, 3);
   const std::vector<std::uint32_t> were = charts.partition.chart;
   const std::vector<std::uint8_t> rings{8, 8, 8, 0, 0, 0};
@@ -178,7 +94,7 @@ TEST(Straighten, BordersOfChartsWithoutRingsStay) {
   for (std::uint32_t t = 0; t < were.size(); ++t) {
     if (rings[were[t]] > 0) triangles.push_back(t);
   }
-  Charts all = charts;
+  RaggedCharts all = charts;
   straighten_borders(charts.topology, {{180, {}}, rings, triangles}, charts.partition,
                      charts.frames);
   straighten_borders(all.topology, {{180, {}}, rings}, all.partition, all.frames);
@@ -195,7 +111,7 @@ TEST(Straighten, BordersOfChartsWithoutRingsStay) {
 
 TEST(Straighten, GoesToTheCreaseNearby) {
   // A border one quad beside a box's edge: the edge counts a quarter.
-  Charts charts(box(16));
+  RaggedCharts charts(box(16));
   const auto height = [&](std::uint32_t t) {
     double z = 0;
     for (std::uint32_t c = 0; c < 3; ++c) {
@@ -221,7 +137,7 @@ TEST(Straighten, KeepsWhatChartsAre) {
   int shorter = 0;
   for (const Shape& shape : shapes) {
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-      Charts charts(shape);
+      RaggedCharts charts(shape);
       charts.grow(3 + std::uint32_t(seed), seed);
       const auto were = charts.topologies();
       const double before = charts.border_length();
@@ -241,7 +157,7 @@ TEST(Straighten, KeepsWhatChartsAre) {
 }
 
 TEST(Straighten, AConeHolds) {
-  Charts charts(sphere(48, 24));
+  RaggedCharts charts(sphere(48, 24));
   charts.grow(6, 3);
   std::vector<Vec3f> axes(6, Vec3f{0, 0, 1});
   const auto outside = [&](std::uint32_t t) { return charts.topology.normals[t].z < 0.2f; };

@@ -1,0 +1,47 @@
+// Internal: shortest paths along edges, within a chart and near some place.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "libatlas/charts/chart_fans.h"
+
+namespace atlas {
+
+// Paths pass vertices inside the chart only (ChartFans::Place); vertices are named by half-edges
+// that leave them. Keeps memory for all vertices from call to call.
+class BandPaths {
+ public:
+  using Path = std::vector<std::uint32_t>;  // half-edges, one after the other
+  using Ends = std::vector<std::uint32_t>;
+
+  // `crease_cosine` as for border_weight(), which is what an edge costs.
+  BandPaths(const Topology& topology, const Partition& partition, double crease_cosine);
+
+  // The cheapest one within `rings` edges of `path` from one of the first ends to one of the
+  // second; to keep near `path` is worth something. Empty if there is none.
+  Path beside(const Path& path, const std::pair<Ends, Ends>& ends, int rings);
+
+  // From the start of h, inside the chart, to its nearest border, within `rings` edges; empty if
+  // that is farther.
+  Path to_border(std::uint32_t h, int rings);
+
+ private:
+  void add(std::uint32_t h, int level);
+  void spread(int rings);
+  Path find(const Ends& starts, const Ends& goals);
+  Path trace(std::uint32_t v) const;
+  void clear();
+
+  const Topology& topology_;
+  ChartFans fans_;
+  double crease_cosine_;
+  // 1 a vertex, of the band at hand.
+  std::vector<double> distance_;
+  std::vector<std::uint32_t> through_, out_;  // half-edges: how a path comes; one that leaves
+  std::vector<int> level_;                    // edges from the path; -1: not in the band
+  std::vector<std::uint32_t> band_;           // vertices
+};
+
+}  // namespace atlas
