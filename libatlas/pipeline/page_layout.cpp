@@ -169,6 +169,16 @@ bool worth_outlining(const ChartSet& charts, std::span<const Vec2d> texels_per_u
   return area < kFull * box_area;
 }
 
+// A page for uvs alone of which charts cover less is packed again with PackPreset::best: two or
+// three of a hundred models, for one to four seconds, of which chairs with ring-shaped seats then
+// filled 0.76 instead of 0.64 of theirs.
+constexpr double kPoor = 0.66;
+
+bool worth_more_work(const PageLayout& layout, const LayoutOptions& options) {
+  return options.free_aspect && options.preset == PackPreset::standard &&
+         layout.uv_utilization < kPoor;
+}
+
 }  // namespace
 
 Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
@@ -189,10 +199,13 @@ Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> 
   if (!options.outlines ||
       (boxed.ok() && (boxed->uv_utilization > kFull || !worth_outlining(charts, texels_per_unit))))
     return boxed;
-  Result<PageLayout> outlined = lay_out(charts, texels_per_unit, options, context);
-  if (!outlined.ok()) return boxed;
-  if (!boxed.ok() || better(*outlined, *boxed, options)) return outlined;
-  return boxed;
+  Result<PageLayout> best = lay_out(charts, texels_per_unit, options, context);
+  if (!best.ok() || (boxed.ok() && !better(*best, *boxed, options))) best = std::move(boxed);
+  if (!best.ok() || !worth_more_work(*best, options)) return best;
+  LayoutOptions harder = options;
+  harder.preset = PackPreset::best;
+  Result<PageLayout> more = lay_out(charts, texels_per_unit, harder, context);
+  return more.ok() && better(*more, *best, options) ? more : best;
 }
 
 }  // namespace atlas

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <sstream>
 #include <utility>
 
@@ -304,6 +305,44 @@ TEST(Layout, RefusesDensitiesThatAreMissingOrNotAboveZero) {
   EXPECT_EQ(code({}), ErrorCode::bad_input);
   EXPECT_EQ(code({{10, 10}, {0, 10}}), ErrorCode::bad_input);
   EXPECT_EQ(code({{10, 10}, {10, std::nan("")}}), ErrorCode::bad_input);
+}
+
+// Four sectors of rings, three quarters of a turn each, and strips as long as they are wide.
+Shape rings_and_strips() {
+  Shape all = grid(1, 1, 0.01, 0.01);
+  for (int k = 0; k < 4; ++k) {
+    Shape sector = grid(60, 4, 1.5 * std::numbers::pi, 0.7);
+    for (Vec3f& p : sector.positions) {
+      const double angle = p.x, radius = 0.3 + p.y;
+      p = {float(radius * std::cos(angle) + 3 * k), float(radius * std::sin(angle)), 0};
+    }
+    all = together(all, sector);
+  }
+  for (int k = 0; k < 12; ++k)
+    all = together(all, moved(grid(4, 2, 1.2, 0.03), 1, {0, 3 + 0.1 * k, 0}));
+  return all;
+}
+
+TEST(Layout, APoorPageOfPlainUvsIsPackedWithMoreWork) {
+  const Shape shape = rings_and_strips();
+  MeshView mesh;
+  mesh.positions = shape.positions;
+  mesh.indices = shape.indices;
+  const Result<ChartSet> charts = make_charts(mesh, {.min_fill = 0}, {});
+  ASSERT_TRUE(charts.ok());
+  LayoutOptions options{.pages = 1, .padding = 1, .alignment = 1, .minimum_side = 0};
+  options.outlines = options.free_aspect = true;
+  const auto use = [&](PackPreset preset) {
+    options.preset = preset;
+    const std::vector<Vec2d> densities(charts->charts.size(), Vec2d{600, 600});
+    const Result<PageLayout> layout = lay_out_pages(*charts, densities, options, {});
+    EXPECT_TRUE(layout.ok());
+    return layout.ok() ? layout->uv_utilization : 0;
+  };
+  const double fast = use(PackPreset::fast), best = use(PackPreset::best);
+  EXPECT_LT(fast, 0.66);
+  EXPECT_GT(best, fast + 0.03);
+  EXPECT_GE(use(PackPreset::standard), std::min(0.66, best));
 }
 
 TEST(Plan, NamesWhatASceneDoesNotNeed) {
