@@ -19,9 +19,13 @@ class BandPaths {
   // `crease_cosine` as for border_weight(), which is what an edge costs.
   BandPaths(const Topology& topology, const Partition& partition, double crease_cosine);
 
-  // The cheapest one within `rings` edges of `path` from one of the first ends to one of the
-  // second; to keep near `path` is worth something. Empty if there is none.
-  Path beside(const Path& path, const std::pair<Ends, Ends>& ends, int rings);
+  struct Band {
+    int rings;         // edges that the path may lie away from the one given
+    double stiffness;  // by which share of its length an edge costs more for each of them
+  };
+  // The cheapest one beside `path` from one of the first ends to one of the second. Empty if there
+  // is none.
+  Path beside(const Path& path, const std::pair<Ends, Ends>& ends, const Band& band);
 
   // From the start of h, inside the chart, to its nearest border, within `rings` edges; empty if
   // that is farther.
@@ -30,7 +34,7 @@ class BandPaths {
  private:
   void add(std::uint32_t h, int level);
   void spread(int rings);
-  Path find(const Ends& starts, const Ends& goals);
+  Path find(const Ends& starts, const Ends& goals, double stiffness);
   Path trace(std::uint32_t v) const;
   void clear();
 

@@ -13,8 +13,12 @@ namespace {
 
 using Path = BandPaths::Path;
 
-constexpr int kRounds = 4;
+constexpr int kRounds = 4, kTubeRounds = 16;
 constexpr double kLeastGain = 0.01;  // of a path's cost
+// An edge costs this part of its length more for each edge that it is away from the path as it was:
+// where merging cut a chart open it stretches least. Not along tubes, which stretch as much
+// wherever they are cut, and fill more of their rectangles where that is straight.
+constexpr double kStiffness = 0.15;
 // Of rings: in narrower bands borders hardly move.
 constexpr int kWideBand = 3;
 constexpr int kReach = 4;  // by rings: how far a slit is drawn on
@@ -37,9 +41,7 @@ class Slits::Straightener {
 
   void close() {
     list_paths();
-    std::erase_if(slits_, [&](const Slit& slit) {
-      return !slit.free_start || !slit.free_end || rings_[slit.chart] < kWideBand;
-    });
+    std::erase_if(slits_, [&](const Slit& slit) { return !is_tube(slit); });
     for (const Slit& slit : slits_) seal(slit.path);
   }
 
@@ -61,7 +63,10 @@ class Slits::Straightener {
   void straighten() {
     list_paths();
     for (Slit& slit : slits_) {
-      for (int round = 0; round < kRounds && shorten(slit.path); ++round) {
+      const bool tube = is_tube(slit);
+      const BandPaths::Band band{rings_[slit.chart], tube ? 0 : kStiffness};
+      const int rounds = band.rings == 0 ? 0 : tube ? kTubeRounds : kRounds;
+      for (int round = 0; round < rounds && shorten(slit.path, band); ++round) {
       }
     }
   }
@@ -72,6 +77,11 @@ class Slits::Straightener {
     std::uint32_t chart;
     bool free_start, free_end;  // on the border
   };
+
+  // Whether it leads from border to border.
+  bool is_tube(const Slit& slit) const {
+    return slit.free_start && slit.free_end && rings_[slit.chart] >= kWideBand;
+  }
 
   // Maximal paths of seams, none of which passes a vertex where others end.
   void list_paths() {
@@ -157,16 +167,14 @@ class Slits::Straightener {
   }
 
   // False if there is none that is much shorter.
-  bool shorten(Path& path) {
-    const int rings = rings_[partition_.chart[path.front() / 3]];
-    if (rings == 0) return false;
+  bool shorten(Path& path, const BandPaths::Band& band) {
     seal(path);
-    const std::vector<std::uint32_t> starts = ends(path.front(), rings),
-                                     goals = ends(next_half_edge(path.back()), rings);
+    const std::vector<std::uint32_t> starts = ends(path.front(), band.rings),
+                                     goals = ends(next_half_edge(path.back()), band.rings);
     Path found;
-    if (apart(starts, goals)) found = paths_.beside(path, {starts, goals}, rings);
+    if (apart(starts, goals)) found = paths_.beside(path, {starts, goals}, band);
     if (found.empty() || cost(found) > (1 - kLeastGain) * cost(path) ||
-        !move_banks(path, found, rings)) {
+        !move_banks(path, found, band.rings)) {
       cut(path);
       return false;
     }
