@@ -1,6 +1,7 @@
 #include "libatlas/charts/band_paths.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <queue>
@@ -11,6 +12,7 @@ namespace atlas {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::max();
+constexpr double kSteps = 256;
 }  // namespace
 
 BandPaths::BandPaths(const Topology& topology, const Partition& partition, double crease_cosine)
@@ -20,6 +22,7 @@ BandPaths::Path BandPaths::beside(const Path& path, const std::pair<Ends, Ends>&
                                   const Band& band) {
   for (const std::uint32_t h : path) add(h, 0);
   add(next_half_edge(path.back()), 0);
+  choose_unit(path);
   spread(band.rings);
   Path found = find(ends.first, ends.second, band.stiffness);
   clear();
@@ -28,6 +31,7 @@ BandPaths::Path BandPaths::beside(const Path& path, const std::pair<Ends, Ends>&
 
 BandPaths::Path BandPaths::to_border(std::uint32_t h, int rings) {
   add(h, 0);
+  choose_unit({h, next_half_edge(h), previous_half_edge(h)});
   spread(rings);
   Path found = find({h}, {}, 0);
   clear();
@@ -47,6 +51,14 @@ void BandPaths::add(std::uint32_t h, int level) {
   level_[v] = level;
   out_[v] = h;
   band_.push_back(v);
+}
+
+// Costs are whole numbers of a small part of these edges' mean length: of paths as long as each
+// other, as on a regular grid, rounding does not choose one.
+void BandPaths::choose_unit(const Path& edges) {
+  double length = 0;
+  for (const std::uint32_t h : edges) length += edge_length(topology_, h);
+  unit_ = length > 0 ? length / (kSteps * double(edges.size())) : 1;
 }
 
 // To the vertices within `rings` edges of those that the band holds.
@@ -89,7 +101,8 @@ BandPaths::Path BandPaths::find(const Ends& starts, const Ends& goals, double st
       const std::uint32_t w = fans_.to(g);
       if (!fans_.linked(g) || level_[w] < 0) return;
       const double away = 0.5 * stiffness * (level_[v] + level_[w]) * edge_length(topology_, g);
-      const double next = so_far + border_weight(topology_, g, crease_cosine_) + away;
+      const double cost = border_weight(topology_, g, crease_cosine_) + away;
+      const double next = so_far + std::round(cost / unit_);
       if (next >= distance_[w]) return;
       distance_[w] = next;
       through_[w] = g;

@@ -33,6 +33,7 @@ class BandPaths {
 
  private:
   void add(std::uint32_t h, int level);
+  void choose_unit(const Path& edges);
   void spread(int rings);
   Path find(const Ends& starts, const Ends& goals, double stiffness);
   Path trace(std::uint32_t v) const;
@@ -40,7 +41,7 @@ class BandPaths {
 
   const Topology& topology_;
   ChartFans fans_;
-  double crease_cosine_;
+  double crease_cosine_, unit_ = 1;
   // 1 a vertex, of the band at hand.
   std::vector<double> distance_;
   std::vector<std::uint32_t> through_, out_;  // half-edges: how a path comes; one that leaves
