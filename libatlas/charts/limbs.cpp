@@ -18,6 +18,9 @@ constexpr double kPoor = 0.9;       // of min_fill: what fills more is left as i
 // Of the charts' convex hulls, what charts must fill together: packing by outlines used 0.03 to 0.1
 // more or less of a page than that on 32 meshes, which began to fall short of 0.65 below it.
 constexpr double kLeastTogether = 0.72;
+// By how much each further piece must let hulls shrink, by the mean hull: crumbs cut into crumbs
+// fill no page.
+constexpr double kLeastFall = 0.1;
 constexpr double kWasteParts = 4096;  // wastes are compared in parts of all hulls: equal ones tie
 
 double box_of(const FlatChart& chart) {
@@ -58,13 +61,21 @@ class LimbCharts {
     }
     if (area >= kLeastTogether * hulls) return;
     for (double& w : waste) w = std::round(kWasteParts * w / hulls);
+    const double mean = hulls / double(charts_.size());
     std::vector<std::size_t> order(charts_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return waste[a] > waste[b]; });
     for (const std::size_t k : order) {
       if (area >= kLeastTogether * hulls || waste[k] == 0 || context_.cancelled()) return;
-      if (pieces_[k].empty() && cut(k)) hulls += hulls_of(k) - hull[k];
+      if (!pieces_[k].empty() || !cut(k)) continue;
+      const double fall = hull[k] - hulls_of(k);
+      if (fall < kLeastFall * mean * double(pieces_[k].size() - 1)) {
+        pieces_[k].clear();
+        --count_;
+      } else {
+        hulls -= fall;
+      }
     }
   }
 
@@ -81,10 +92,13 @@ class LimbCharts {
     const double wanted = input_.options.min_fill;
     if (chart.distortion.uv_area >= kPoor * wanted * box_of(chart)) return false;
     std::vector<FlatChart> pieces;
-    for (const std::vector<std::uint32_t>& triangles : limbs_of(chart, wanted, context_)) {
-      pieces.push_back(part_of_chart(input_, chart, triangles));
-      const Distortion& d = pieces.back().distortion;
-      if (d.stretch_999 > input_.options.max_stretch || d.flips > 0) return false;
+    for (const std::vector<std::uint32_t>& limb : limbs_of(chart, wanted, context_)) {
+      // A cut along a ragged border may leave a triangle beside its limb.
+      for (const std::vector<std::uint32_t>& triangles : connected_parts(chart, limb)) {
+        pieces.push_back(part_of_chart(input_, chart, triangles));
+        const Distortion& d = pieces.back().distortion;
+        if (d.stretch_999 > input_.options.max_stretch || d.flips > 0) return false;
+      }
     }
     if (pieces.empty()) return false;
     pieces_[k] = std::move(pieces);

@@ -1,11 +1,9 @@
 #include "libatlas/charts/long_charts.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
-#include <map>
 #include <utility>
 
 #include "libatlas/charts/part_of_chart.h"
@@ -34,29 +32,6 @@ std::size_t pieces_wanted(const std::vector<FlatChart>& charts, std::size_t long
   return static_cast<std::size_t>(std::ceil(kLeastFill * page / area));
 }
 
-// Whether triangles, as places in the chart's list, hang together.
-bool connected(const FlatChart& chart, const std::vector<std::uint32_t>& triangles) {
-  std::map<std::array<std::uint32_t, 2>, std::uint32_t> sides;  // by the half-edge's ends
-  for (const std::uint32_t t : triangles) {
-    for (int c = 0; c < 3; ++c) {
-      sides[{chart.corners[t][c], chart.corners[t][(c + 1) % 3]}] = t;
-    }
-  }
-  std::vector<std::uint32_t> queue{triangles.front()};
-  std::vector<bool> seen(chart.triangles.size(), false);
-  seen[queue[0]] = true;
-  for (std::size_t i = 0; i < queue.size(); ++i) {
-    const auto& v = chart.corners[queue[i]];
-    for (int c = 0; c < 3; ++c) {
-      const auto other = sides.find({v[(c + 1) % 3], v[c]});
-      if (other == sides.end() || seen[other->second]) continue;
-      seen[other->second] = true;
-      queue.push_back(other->second);
-    }
-  }
-  return queue.size() == triangles.size();
-}
-
 // The triangles of each of `count` equal lengths; none if one of them would come apart.
 std::vector<std::vector<std::uint32_t>> lengths_of(const FlatChart& chart, std::size_t count) {
   const bool along_u = chart.size.x >= chart.size.y;
@@ -70,7 +45,7 @@ std::vector<std::vector<std::uint32_t>> lengths_of(const FlatChart& chart, std::
     lengths[std::min(count - 1, static_cast<std::size_t>(std::max(0.0, place)))].push_back(i);
   }
   for (const std::vector<std::uint32_t>& triangles : lengths) {
-    if (triangles.empty() || !connected(chart, triangles)) return {};
+    if (connected_parts(chart, triangles).size() != 1) return {};
   }
   return lengths;
 }

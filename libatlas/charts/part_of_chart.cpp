@@ -1,5 +1,6 @@
 #include "libatlas/charts/part_of_chart.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
@@ -68,6 +69,30 @@ FlatChart part_of_chart(const FlattenInput& input, const FlatChart& whole,
   piece.size = orient_for_packing(piece.uvs, border).size;
   piece.cone = normal_cone(input.topology.normals, piece.triangles);
   return piece;
+}
+
+std::vector<std::vector<std::uint32_t>> connected_parts(const FlatChart& whole,
+                                                        std::span<const std::uint32_t> triangles) {
+  std::vector<std::array<std::uint32_t, 3>> corners;
+  for (const std::uint32_t i : triangles) corners.push_back(whole.corners[i]);
+  param::HalfEdges half_edges;
+  half_edges.build(corners, whole.uvs.size());
+  std::vector<std::vector<std::uint32_t>> parts;
+  std::vector<std::uint8_t> seen(corners.size(), 0);
+  for (std::uint32_t seed = 0; seed < corners.size(); ++seed) {
+    if (std::exchange(seen[seed], 1)) continue;
+    std::vector<std::uint32_t> part{seed};
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      for (std::uint32_t h = 3 * part[k]; h < 3 * part[k] + 3; ++h) {
+        const std::uint32_t o = half_edges.opposite(h);
+        if (o != param::HalfEdges::none && !std::exchange(seen[o / 3], 1)) part.push_back(o / 3);
+      }
+    }
+    std::sort(part.begin(), part.end());
+    for (std::uint32_t& t : part) t = triangles[t];
+    parts.push_back(std::move(part));
+  }
+  return parts;
 }
 
 }  // namespace atlas

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "libatlas/charts/flatten.h"
 
@@ -13,5 +14,10 @@ namespace atlas {
 // that helps; size, cone and distortion are measured anew.
 FlatChart part_of_chart(const FlattenInput& input, const FlatChart& whole,
                         std::span<const std::uint32_t> triangles);
+
+// What of `triangles`, places as above, hangs together by whole sides: each list ascending, in the
+// order of their first triangles.
+std::vector<std::vector<std::uint32_t>> connected_parts(const FlatChart& whole,
+                                                        std::span<const std::uint32_t> triangles);
 
 }  // namespace atlas

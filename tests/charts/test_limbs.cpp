@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libatlas/charts/chords.h"
+#include "libatlas/charts/part_of_chart.h"
 #include "tests/charts/chart_checks.h"
 
 namespace atlas::test {
@@ -204,6 +205,26 @@ TEST(Limbs, OptionIsChecked) {
     options.min_fill = fill;
     EXPECT_EQ(make_charts(mesh.view(), options, {}).status().code(), ErrorCode::bad_option);
   }
+}
+
+// Triangles that share a corner, or nothing, are parts of their own.
+TEST(PartOfChart, WhatHangsTogetherByWholeSides) {
+  FlatChart chart;  // squares of two triangles in a row of four, corners by column and row
+  for (std::uint32_t x = 0; x < 4; ++x) {
+    const std::uint32_t a = 2 * x, b = a + 2;
+    for (const auto& corners : {std::array{a, b, a + 1}, std::array{b, b + 1, a + 1}}) {
+      chart.triangles.push_back(std::uint32_t(chart.triangles.size()));
+      chart.corners.push_back(corners);
+    }
+  }
+  for (int v = 0; v < 10; ++v) chart.uvs.push_back({double(v / 2), double(v % 2)});
+  const auto parts = [&](const std::vector<std::uint32_t>& triangles) {
+    return connected_parts(chart, triangles);
+  };
+  using Parts = std::vector<std::vector<std::uint32_t>>;
+  EXPECT_EQ(parts({0, 1, 2, 3, 4, 5, 6, 7}), (Parts{{0, 1, 2, 3, 4, 5, 6, 7}}));
+  EXPECT_EQ(parts({0, 2, 3}), (Parts{{0}, {2, 3}}));  // 0 and 2 share a corner
+  EXPECT_EQ(parts({1, 2, 6, 7}), (Parts{{1, 2}, {6, 7}}));
 }
 
 }  // namespace
