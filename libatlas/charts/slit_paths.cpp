@@ -1,6 +1,7 @@
 #include "libatlas/charts/slit_paths.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -87,10 +88,10 @@ class Slits::Straightener {
   void list_paths() {
     slits_.clear();
     std::vector<std::uint32_t> seams;
-    for (std::uint32_t h = 0; h < topology_.opposite.size(); ++h) {
-      if (partition_.chart[h / 3] != kNoIndex && partition_.seam(h) && fans_.inner(h) &&
-          h < topology_.opposite[h]) {
-        seams.push_back(h);
+    for (std::uint32_t t = 0; t < topology_.triangle_count(); ++t) {
+      if (partition_.seams[t] == 0 || partition_.chart[t] == kNoIndex) continue;
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        if (partition_.seam(h) && fans_.inner(h) && h < topology_.opposite[h]) seams.push_back(h);
       }
     }
     if (seams.empty()) return;
@@ -231,15 +232,14 @@ class Slits::Straightener {
         return std::binary_search(done.begin(), done.end(), t);
       };
       if (taken(a) || taken(b)) continue;
-      std::vector<std::uint32_t> one = flood(a, most), other = flood(b, most);
-      if (one.empty() || (!other.empty() && other.size() < one.size())) one.swap(other);
-      if (one.empty()) {
+      std::vector<std::uint32_t> lune = smaller_side(a, b, most);
+      if (lune.empty()) {
         seal(less(found, path));
         return false;
       }
-      done.insert(done.end(), one.begin(), one.end());
+      done.insert(done.end(), lune.begin(), lune.end());
       std::sort(done.begin(), done.end());
-      lunes.push_back(std::move(one));
+      lunes.push_back(std::move(lune));
     }
     for (const std::vector<std::uint32_t>& lune : lunes) turn_frames(lune, left);
     seal(left);
@@ -261,22 +261,42 @@ class Slits::Straightener {
     return rest;
   }
 
-  // What hangs together with a triangle, sorted; empty if it is more than `most`.
-  std::vector<std::uint32_t> flood(std::uint32_t seed, std::size_t most) {
-    std::vector<std::uint32_t> found{seed};
+  // What hangs together with one of two triangles, whichever is less, sorted; empty if both are
+  // more than `most`, or the same. Both grow in turn.
+  std::vector<std::uint32_t> smaller_side(std::uint32_t a, std::uint32_t b, std::size_t most) {
     in_.resize(topology_.triangle_count(), 0);
-    in_[seed] = 1;
-    for (std::size_t i = 0; i < found.size() && found.size() <= most; ++i) {
-      for (std::uint32_t h = 3 * found[i]; h < 3 * found[i] + 3; ++h) {
-        if (!fans_.linked(h)) continue;
-        const std::uint32_t t = topology_.opposite[h] / 3;
-        if (!std::exchange(in_[t], 1)) found.push_back(t);
+    std::array<std::vector<std::uint32_t>, 2> sides{{{a}, {b}}};
+    in_[a] = 1;
+    in_[b] = 2;
+    int least = -1;
+    bool meet = false;
+    for (std::size_t i = 0; i < most && least < 0 && !meet; ++i) {
+      for (int side = 0; side < 2 && least < 0; ++side) {
+        if (i == sides[side].size()) {
+          least = side;
+        } else {
+          meet = meet || !grow(sides[side][i], std::uint8_t(side + 1), sides[side]);
+        }
       }
     }
-    for (const std::uint32_t t : found) in_[t] = 0;
-    if (found.size() > most) return {};
-    std::sort(found.begin(), found.end());
-    return found;
+    for (const std::vector<std::uint32_t>& side : sides) {
+      for (const std::uint32_t t : side) in_[t] = 0;
+    }
+    if (least < 0 || meet) return {};
+    std::sort(sides[least].begin(), sides[least].end());
+    return std::move(sides[least]);
+  }
+
+  // By the neighbours of t; false if one of them is on the other side.
+  bool grow(std::uint32_t t, std::uint8_t mark, std::vector<std::uint32_t>& side) {
+    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+      if (!fans_.linked(h)) continue;
+      const std::uint32_t o = topology_.opposite[h] / 3;
+      if (in_[o] != 0 && in_[o] != mark) return false;
+      if (in_[o] == 0) side.push_back(o);
+      in_[o] = mark;
+    }
+    return true;
   }
 
   // By the angle between the frames on both sides of the edges that close.
@@ -311,7 +331,7 @@ class Slits::Straightener {
   double crease_cosine_;
   ChartFans fans_;
   BandPaths paths_;
-  std::vector<std::uint8_t> in_;  // 1 a triangle, of flood()
+  std::vector<std::uint8_t> in_;  // 1 a triangle: which side it is on, 0: none
   std::vector<Slit> slits_;
 };
 

@@ -16,7 +16,7 @@ constexpr std::uint32_t kNone = ~0u;
 // those a few times farther.
 constexpr std::array kNear{16.0, 64.0, 256.0};
 constexpr double kFirstRadius = 8, kMostRadius = 2;  // steps by the root of the count; times near
-constexpr std::size_t kMostMembers = 256;
+constexpr std::size_t kMostMembers = 64;
 constexpr int kSweeps = 4;  // a member
 
 struct DirectedEdge {
@@ -40,11 +40,14 @@ class SpeckSpreader {
       : corners_(corners), corners_at_(corners_at), uvs_(uvs), place_(uvs.size(), kNone) {}
 
   void run() {
-    for (std::uint32_t t = 0; t < corners_.size() / 3; ++t) {
-      if (!thin(t)) continue;
+    std::vector<std::uint8_t> in_vain(corners_.size() / 3, 0);  // 1 a triangle: was in a cluster
+    for (std::uint32_t t = 0; t < in_vain.size(); ++t) {
+      if (in_vain[t] || !thin(t)) continue;
       for (const double near : kNear) {
         const std::optional<Cluster> cluster = find_cluster(t, near * kUvStep);
-        if (cluster && spread(*cluster, kMostRadius * near * kUvStep)) break;
+        if (!cluster) continue;
+        if (spread(*cluster, kMostRadius * near * kUvStep)) break;
+        for (const std::uint32_t other : cluster->triangles) in_vain[other] = 1;
       }
     }
   }
