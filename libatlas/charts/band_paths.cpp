@@ -12,7 +12,8 @@ namespace atlas {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::max();
-constexpr double kSteps = 256;
+constexpr double kSteps = 256;  // a mean edge's length in the costs' integers
+
 }  // namespace
 
 BandPaths::BandPaths(const Topology& topology, const Partition& partition, double crease_cosine)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "libatlas/charts/chart_fans.h"
 #include "libatlas/charts/hull.h"
 
 namespace atlas {
@@ -49,11 +50,11 @@ void add_near(std::span<const Outline::Edge> edges, const Box& near, int side,
 
 Outline outline_of(const Topology& topology, const Partition& partition, const FlatChart& chart) {
   Outline outline;
-  const std::uint32_t label = partition.chart[chart.triangles.front()];
+  const ChartFans fans(topology, partition);
   for (std::size_t i = 0; i < chart.triangles.size(); ++i) {
     for (std::uint32_t c = 0; c < 3; ++c) {
-      const std::uint32_t h = 3 * chart.triangles[i] + c, o = topology.opposite[h];
-      if (o != kNoIndex && partition.chart[o / 3] == label && !partition.seam(h)) continue;
+      const std::uint32_t h = 3 * chart.triangles[i] + c;
+      if (fans.linked(h)) continue;
       const auto& v = chart.corners[i];
       outline.edges.push_back({h, chart.uvs[v[c]], chart.uvs[v[(c + 1) % 3]]});
     }

@@ -3,17 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/charts/chart_fans.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
 namespace {
 
 constexpr double kCreaseWeight = 0.25;
-
-bool linked(const Topology& topology, const Partition& partition, std::uint32_t h) {
-  const std::uint32_t o = topology.opposite[h];
-  return o != kNoIndex && partition.chart[o / 3] == partition.chart[h / 3] && !partition.seam(h);
-}
 
 class Smoother {
  public:
@@ -133,10 +129,11 @@ void move_triangle(const Topology& topology, std::uint32_t h, Partition& partiti
 }
 
 bool removable(const Topology& topology, const Partition& partition, std::uint32_t t) {
+  const ChartFans fans(topology, partition);
   int links = 0;
   std::uint32_t open = 0;
   for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-    if (linked(topology, partition, h)) {
+    if (fans.linked(h)) {
       ++links;
     } else {
       open = h;
@@ -150,7 +147,7 @@ bool removable(const Topology& topology, const Partition& partition, std::uint32
   std::uint32_t h = topology.opposite[previous_half_edge(start)];
   while (h / 3 != t) {
     const std::uint32_t back = previous_half_edge(h);
-    if (!linked(topology, partition, back)) return false;
+    if (!fans.linked(back)) return false;
     h = topology.opposite[back];
   }
   return true;
