@@ -240,6 +240,7 @@ void Lighting::light_indirectly(Mesh& mesh, const atlas::Context& context) const
     }
   });
   mesh.indirect.assign(count, glm::vec3(0));
+  if (context.cancelled()) return;  // links that were not found lead nowhere
   std::vector<glm::vec3> total = mesh.direct;
   // The brightest surfaces reflect 0.8: eight bounces leave less than a fifth of the last one
   // unsent.

@@ -5,16 +5,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <filesystem>
+#include <string>
 
+#include "apps/common/files.h"
+#include "apps/common/options.h"
+#include "apps/common/program.h"
+#include "apps/common/terminal.h"
 #include "examples/cabin/preview.h"
 #include "examples/cabin/refine.h"
 #include "examples/cabin/write.h"
-#include "libatlas/core/atomic_file.h"
 #include "libatlas/core/clock.h"
 
 namespace {
+
+using atlas::app::within;
 
 struct Arguments {
   std::size_t triangles = 100000;
@@ -31,41 +36,29 @@ int default_samples(std::size_t triangles) {
 
 void describe(CLI::App& app, Arguments& a) {
   app.add_option("-n,--triangles", a.triangles, "how many triangles, met within 3 %")
-      ->check(CLI::Range(std::size_t{10000}, std::size_t{20000000}))
+      ->check(within(10000, 20000000))
       ->capture_default_str();
   app.add_option("-o,--output", a.output, "the scene to write: .obj, .ply or .glb");
   app.add_option("--preview", a.preview, "a picture of it from inside, .png");
   app.add_option("--preview-width", a.preview_width, "pixels; the height is 9/16 of it")
-      ->check(CLI::Range(16, 8192))
+      ->check(within(16, 8192))
       ->capture_default_str();
   app.add_option("--seed", a.lighting.seed, "of the sampling pattern")->capture_default_str();
   app.add_option("--samples", a.samples,
                  "shadow rays a vertex (default: 192 up to 200 k triangles, 96 to 1.2 M, then 64)")
-      ->check(CLI::Range(1, 4096));
+      ->check(within(1, 4096));
   app.add_option("--indirect-samples", a.lighting.indirect_samples,
                  "hemisphere rays a vertex of the coarse mesh, for the light between surfaces")
-      ->check(CLI::Range(1, 4096))
+      ->check(within(1, 4096))
       ->capture_default_str();
   app.add_option("--up", a.up, "the axis that points up")
-      ->check(CLI::IsMember({"y", "z"}))
+      ->check(atlas::app::one_of({{"y", 0}, {"z", 0}}))
+      ->type_name("AXIS")
       ->capture_default_str();
   app.add_option("--threads", a.threads, "0: as many as there are cores; the files are the same")
-      ->check(CLI::Range(0, 1024))
+      ->check(within(0, 1024))
       ->capture_default_str();
   app.add_flag("-q,--quiet", a.quiet, "print nothing");
-}
-
-// The exit code, or -1 to go on.
-int parse(CLI::App& app, int argc, char** argv) {
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& done) {
-    return app.exit(done);
-  } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "atlas-make-cabin: error: {} (--help lists the options)\n", error.what());
-    return 2;
-  }
-  return -1;
 }
 
 // Before minutes of work.
@@ -78,7 +71,7 @@ atlas::Status check(const Arguments& a) {
   if (atlas::Status s = a.output.empty() ? atlas::Status() : cabin::check_scene_path(a.output);
       !s.ok())
     return s;
-  return a.preview.empty() ? atlas::Status() : atlas::check_writable(a.preview);
+  return atlas::app::check_output(a.preview, {a.output});
 }
 
 // The scene's textures lie beside it, and a picture there may have the name of one.
@@ -96,13 +89,12 @@ atlas::Status check_textures_stay(const Arguments& a, const cabin::Mesh& mesh) {
   return {};
 }
 
-atlas::Status run(const Arguments& a) {
+atlas::Status run(const Arguments& a, atlas::app::Terminal& terminal) {
   if (atlas::Status s = check(a); !s.ok()) return s;
+  const atlas::Context context = terminal.context(a.threads);
   const double start = atlas::cpu_seconds();
-  atlas::Context context;
-  context.threads = a.threads;
   const auto say = [&](const std::string& line) {
-    if (!a.quiet) fmt::print("{:7.1f} s  {}\n", atlas::cpu_seconds() - start, line);
+    terminal.line(fmt::format("{:7.1f} s  {}", atlas::cpu_seconds() - start, line));
   };
   // Light between surfaces is gathered on at most this many triangles, whatever the final size: it
   // varies slowly, and its cost would otherwise be most of the whole.
@@ -116,10 +108,13 @@ atlas::Status run(const Arguments& a) {
   const cabin::Tracer tracer(shell.positions, shell.triangles);
   const cabin::Lighting lighting(tracer, a.lighting);
   lighting.light_directly(mesh, 0, context);
+  if (context.cancelled()) return atlas::Status::cancelled();
   say("direct light");
   lighting.light_indirectly(mesh, context);
+  if (context.cancelled()) return atlas::Status::cancelled();
   say("indirect light");
   cabin::refine(mesh, {a.triangles, 12}, lighting, context);
+  if (context.cancelled()) return atlas::Status::cancelled();
   cabin::show_emitters(mesh);
   say(fmt::format("refined: {} triangles, {} vertices", mesh.triangles.size(),
                   mesh.vertices.size()));
@@ -141,23 +136,22 @@ atlas::Status run(const Arguments& a) {
   return {};
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int main_of(int argc, char** argv) {
   CLI::App app("Makes a lit aircraft cabin: a scene for atlas-export, of any size.",
                "atlas-make-cabin");
   Arguments arguments;
   describe(app, arguments);
-  if (const int code = parse(app, argc, argv); code >= 0) return code;
+  if (const int code = atlas::app::parse(app, argc, argv); code >= 0) return code;
   arguments.lighting.direct_samples =
       arguments.samples > 0 ? arguments.samples : default_samples(arguments.triangles);
-  try {
-    const atlas::Status status = run(arguments);
-    if (status.ok()) return 0;
-    fmt::print(stderr, "atlas-make-cabin: error: {}\n", status.message());
-    return status.code() == atlas::ErrorCode::bad_option ? 2 : 1;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "atlas-make-cabin: error: {}\n", error.what());
-  }
-  return 1;
+  atlas::app::Terminal terminal("atlas-make-cabin", arguments.quiet);
+  const atlas::Status status = run(arguments, terminal);
+  if (!status.ok()) terminal.error(status.message());
+  return atlas::app::exit_code(status);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return atlas::app::run_program("atlas-make-cabin", argc, argv, main_of);
 }

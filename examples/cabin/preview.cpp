@@ -92,6 +92,7 @@ atlas::Status write_preview(const std::filesystem::path& path, const Mesh& mesh,
               for (int k = 0; k < 3; ++k) light.at(x, y)[k] += c[k] / float(n * n);
             }
       });
+  if (context.cancelled()) return atlas::Status::cancelled();
   // The picture's mean luminance is put a little under the middle of the curve.
   double mean = 0;
   for (float v : light.texels) mean += std::log(1.0 + v);

@@ -128,6 +128,15 @@ TEST_F(Mistakes, ConfigurationFilesAreNamedAndKeepTheTerminalClean) {
                    "--no-snap maybe: is neither true nor false");
 }
 
+TEST_F(Mistakes, TheCabinsGeneratorComplainsAsTheOthersDo) {
+  expect_complaint(ATLAS_MAKE_CABIN, "--ouput a.obj", "unknown option --ouput: is --output meant?");
+  expect_complaint(ATLAS_MAKE_CABIN, "-o ''", "--output is empty");
+  expect_complaint(ATLAS_MAKE_CABIN, "-o a.obj -o b.obj", "--output is given more than once");
+  expect_complaint(ATLAS_MAKE_CABIN, "-o a.obj -n 5", "--triangles: '5' must be 10000..20000000");
+  expect_complaint(ATLAS_MAKE_CABIN, "-o a.obj --up x", "--up: 'x' must be one of y, z");
+  expect_complaint(ATLAS_MAKE_CABIN, "-o 'a\x1b[2J.txt'", "a?[2J.txt: unknown ending");
+}
+
 TEST_F(Mistakes, ThePreviewOfACabinIsNoneOfItsTextures) {
   expect_complaint(ATLAS_MAKE_CABIN, "-q -n 10000 -o cabin.obj --preview ./wood.png",
                    "./wood.png: is the name of a texture of the scene");
