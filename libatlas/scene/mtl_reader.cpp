@@ -6,6 +6,7 @@
 
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/formats.h"
+#include "libatlas/scene/mtl_names.h"
 #include "libatlas/scene/text_scanner.h"
 
 namespace atlas {
@@ -61,27 +62,15 @@ class MtlParser {
     return {};
   }
 
-  // Many a file names the place that a texture had on the machine it was written on.
-  fs::path texture_file(const std::string& name) const {
-    const fs::path file = path_.parent_path() / name;
-    const fs::path beside = path_.parent_path() / fs::path(name).filename();
+  // What follows a '#' after a blank is a comment, and quotes enclose the name, unless a file is
+  // named so.
+  fs::path texture_file(std::string_view name) const {
+    const fs::path folder = path_.parent_path();
+    const fs::path whole = named_file(folder, name);
     std::error_code ignored;  // what cannot be asked about is not there
-    return !fs::exists(file, ignored) && fs::exists(beside, ignored) ? beside : file;
-  }
-
-  // What follows a '#' after a blank is a comment, unless a file is named so.
-  std::string_view without_comment(std::string_view name) const {
-    const auto there = [&](std::string_view text) {
-      std::error_code ignored;
-      return fs::exists(texture_file(with_slashes(text)), ignored);
-    };
-    return there(name) ? name : TextScanner::without_comment(name);
-  }
-
-  static std::string with_slashes(std::string_view name) {
-    std::string path(name);
-    std::replace(path.begin(), path.end(), '\\', '/');
-    return path;
+    if (fs::exists(whole, ignored)) return whole;
+    const std::string_view quoted = quoted_name(name);
+    return named_file(folder, quoted.empty() ? TextScanner::without_comment(name) : quoted);
   }
 
   // Options come first; what follows them is the name, which may have blanks.
@@ -92,7 +81,7 @@ class MtlParser {
       if (Status s = parse_option(option, rest); !s.ok()) return s;
     }
     if (rest.empty() || rest[0] == '#') return malformed("map_Kd names no file");
-    const fs::path file = texture_file(with_slashes(without_comment(rest)));
+    const fs::path file = texture_file(rest);
     auto& textures = builder_.textures;
     const auto same = std::find_if(textures.begin(), textures.end(), [&](const RawTexture& t) {
       return t.bytes.empty() && t.path == file;

@@ -8,6 +8,7 @@
 #include "libatlas/core/parallel.h"
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/formats.h"
+#include "libatlas/scene/mtl_names.h"
 #include "libatlas/scene/obj_chunk.h"
 
 namespace atlas {
@@ -132,8 +133,6 @@ class Merger {
     std::vector<Vec2f>().swap(chunk.texcoords);
   }
 
-  // `mtllib` names several files apart by blanks, or one whose name has blanks: the longest run of
-  // words that is a file wins. What begins with '#' where a name could is a comment.
   Status read_libraries(const std::vector<ObjChunk>& chunks) {
     line_ = 1;
     for (const ObjChunk& chunk : chunks) {
@@ -151,35 +150,16 @@ class Merger {
   }
 
   Status read_library_list(const ObjEvent& event) {
-    std::string_view rest = event.text;
-    while (!rest.empty() && (rest[0] != '#' || is_file(rest))) {
-      std::size_t length = rest.size();
-      while (length != rest.npos && !is_file(rest.substr(0, length))) {
-        length = length == 0 ? rest.npos : rest.find_last_of(" \t", length - 1);
-      }
-      if (length == rest.npos || length == 0) {
-        length = std::min(rest.find_first_of(" \t"), rest.size());
+    for (const LibraryFile& file : library_files(path_.parent_path(), event.text)) {
+      if (!file.exists) {
         builder_.defects.add(DefectKind::material_file_missing, [&] {
-          return fmt::format("{} ({})", library(rest.substr(0, length)).string(),
-                             place(event.line));
+          return fmt::format("{} ({})", file.path.string(), place(event.line));
         });
-      } else if (Status s = read_mtl(library(rest.substr(0, length)), builder_); !s.ok()) {
+      } else if (Status s = read_mtl(file.path, builder_); !s.ok()) {
         return s;
       }
-      rest.remove_prefix(length);
-      rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
     }
     return {};
-  }
-
-  fs::path library(std::string_view name) const {
-    std::string path(name);
-    std::replace(path.begin(), path.end(), '\\', '/');
-    return path_.parent_path() / path;
-  }
-  bool is_file(std::string_view name) const {
-    std::error_code ignored;  // a name that cannot be asked about is not a file
-    return fs::is_regular_file(library(name), ignored);
   }
 
   void merge_faces(const ObjChunk& chunk) {

@@ -68,6 +68,47 @@ TEST(Mtl, NamesMayHoldWhatElseBeginsAComment) {
   }
 }
 
+// As programs write names that hold blanks, and as they name files of the machine that they run on.
+TEST(Mtl, NamesOfLibrariesMayHoldBlanksAndStandInQuotes) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "my wood.png", Image8(2, 2, 3, 77), {}).ok());
+  for (const char* map : {"my wood.png", "\"my wood.png\"", "\"C:\\maps\\my wood.png\" # oak"}) {
+    folder.write("my file.mtl", std::string("newmtl a\nmap_Kd -o 0 0 ") + map + "\n");
+    for (const char* library :
+         {"my file.mtl", "\"my file.mtl\"", "\"my file.mtl\" # of wood", "C:\\me\\my file.mtl",
+          "\"/home/my self/my file.mtl\"", "/home/my self/my file.mtl"}) {
+      const LoadedScene loaded = load(folder.write(
+          "s.obj", std::string("mtllib ") + library +
+                       "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nusemtl a\nf 1/1 2/1 3/1\n"));
+      EXPECT_TRUE(loaded.defects.empty()) << library << ", " << map;
+      EXPECT_EQ(loaded.scene.textures.size(), 1u) << library << ", " << map;
+    }
+  }
+}
+
+TEST(Mtl, LibrariesThatAreMissingAreNamedWhole) {
+  const TempFolder folder;
+  folder.write("there.mtl", "newmtl a\n");
+  const auto missing = [&](const std::string& libraries) {
+    const LoadedScene loaded = load(folder.write(
+        "s.obj", "mtllib " + libraries + "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n"));
+    std::string names;
+    for (const Defect& defect : loaded.defects.defects)
+      for (const std::string& place : defect.first_places)
+        if (defect.kind == DefectKind::material_file_missing)
+          names +=
+              std::filesystem::path(place.substr(0, place.find(" ("))).filename().string() + ";";
+    return names;
+  };
+  EXPECT_EQ(missing("my file.mtl"), "my file.mtl;");
+  EXPECT_EQ(missing("\"my file.mtl\" there.mtl"), "my file.mtl;");
+  EXPECT_EQ(missing("one.mtl my other.MTL # of wood"), "one.mtl;my other.MTL;");
+  EXPECT_EQ(missing("my file there.mtl"), "my file;");
+  EXPECT_EQ(missing("there.mtl \"open.mtl"), "\"open.mtl;");
+  EXPECT_EQ(missing("there.mtl \"\""), "\"\";");
+  EXPECT_EQ(missing("there.mtl"), "");
+}
+
 // Options before a texture's name: what changes nothing is passed over, what cannot be followed is
 // told.
 TEST(Mtl, TextureOptions) {

@@ -1,0 +1,93 @@
+#include "libatlas/scene/mtl_names.h"
+
+#include <algorithm>
+#include <string>
+
+#include "libatlas/core/file_extension.h"
+
+namespace atlas {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::string_view kBlanks = " \t";
+constexpr int kMostWords =
+    32;  // of one name; every run of words is asked about, and lines may be long
+
+fs::path path_in(const fs::path& folder, std::string_view name) {
+  std::string path(name);
+  std::replace(path.begin(), path.end(), '\\', '/');
+  return folder / path;
+}
+
+bool is_file(const fs::path& path) {
+  std::error_code ignored;  // what cannot be asked about is not a file
+  return fs::is_regular_file(path, ignored);
+}
+
+// Where the word that begins at `begin` ends.
+std::size_t word_end(std::string_view text, std::size_t begin) {
+  return std::min(text.find_first_of(kBlanks, begin), text.size());
+}
+
+std::size_t next_word(std::string_view text, std::size_t end) {
+  return std::min(text.find_first_not_of(kBlanks, end), text.size());
+}
+
+// The longest run of words at the beginning that is a file, or 0.
+std::size_t longest_file(const fs::path& folder, std::string_view names) {
+  std::size_t longest = 0, end = word_end(names, 0);
+  for (int words = 1; words <= kMostWords; ++words) {
+    if (is_file(path_in(folder, names.substr(0, end)))) longest = end;
+    if (end == names.size()) break;
+    end = word_end(names, next_word(names, end));
+  }
+  return longest;
+}
+
+// How far a name goes that is no file as it stands.
+std::size_t unknown_name(const fs::path& folder, std::string_view names) {
+  std::size_t end = word_end(names, 0);
+  for (int words = 1; words < kMostWords; ++words) {
+    if (lower_extension(fs::path(names.substr(0, end))) == ".mtl") break;
+    const std::size_t next = next_word(names, end);
+    if (next == names.size() || names[next] == '#' || names[next] == '"' ||
+        longest_file(folder, names.substr(next)) > 0)
+      break;
+    end = word_end(names, next);
+  }
+  return end;
+}
+
+}  // namespace
+
+fs::path named_file(const fs::path& folder, std::string_view name) {
+  const fs::path file = path_in(folder, name), beside = folder / file.filename();
+  std::error_code ignored;
+  return !fs::exists(file, ignored) && is_file(beside) ? beside : file;
+}
+
+std::string_view quoted_name(std::string_view text) {
+  if (text.empty() || text[0] != '"') return {};
+  const std::size_t end = text.find('"', 1);
+  return end == text.npos ? std::string_view() : text.substr(1, end - 1);
+}
+
+std::vector<LibraryFile> library_files(const fs::path& folder, std::string_view names) {
+  std::vector<LibraryFile> files;
+  while (!names.empty()) {
+    std::size_t length = longest_file(folder, names);
+    if (length == 0 && names[0] == '#') break;
+    std::string_view name = names.substr(0, length);
+    if (length == 0) {
+      name = quoted_name(names);
+      length = name.empty() ? unknown_name(folder, names) : name.size() + 2;
+      if (name.empty()) name = names.substr(0, length);
+    }
+    const fs::path path = named_file(folder, name);
+    files.push_back({path, is_file(path)});
+    names.remove_prefix(next_word(names, length));
+  }
+  return files;
+}
+
+}  // namespace atlas
