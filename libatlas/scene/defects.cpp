@@ -30,6 +30,7 @@ constexpr Names kNames[] = {
     {"texture_missing", "textures not found, plain diffuse colour used"},
     {"texture_unreadable", "textures that cannot be decoded, plain diffuse colour used"},
     {"texture_option_ignored", "texture options ignored"},
+    {"node_hidden", "hidden nodes left out"},
     {"element_ignored", "elements ignored (not a surface, or an unknown keyword)"},
 };
 

@@ -30,6 +30,7 @@ enum class DefectKind : std::uint8_t {
   texture_missing,          // the material's plain diffuse colour is used
   texture_unreadable,       // likewise
   texture_option_ignored,   // a texture option that has no counterpart here
+  node_hidden,              // what its file hides is left out
   element_ignored,          // lines, points, curves, unknown keywords: nothing to bake
 };
 

@@ -16,7 +16,8 @@ using nlohmann::json;
 // Extensions that are read, or without which a scene has the same shapes.
 constexpr std::string_view kUnderstood[] = {"KHR_mesh_quantization",   "KHR_texture_transform",
                                             "KHR_lights_punctual",     "KHR_technique_webgl",
-                                            "EXT_mesh_gpu_instancing", "EXT_texture_webp"};
+                                            "EXT_mesh_gpu_instancing", "EXT_texture_webp",
+                                            "KHR_node_visibility"};
 constexpr std::string_view kMaterials = "KHR_materials_";  // their diffuse part is read
 
 std::uint32_t word_at(std::string_view bytes, std::size_t at) {

@@ -26,6 +26,13 @@ Vec3f three(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
+bool hides(const tinygltf::Node& node) {
+  const auto at = node.extensions.find("KHR_node_visibility");
+  if (at == node.extensions.end() || !at->second.IsObject()) return false;
+  const tinygltf::Value& visible = at->second.Get("visible");
+  return visible.IsBool() && !visible.Get<bool>();
+}
+
 class GltfParser {
  public:
   GltfParser(const tinygltf::Model& model, SceneBuilder& builder, const Context& context)
@@ -37,7 +44,7 @@ class GltfParser {
     texcoord_set_ = std::move(*sets);
     on_path_.assign(model_.nodes.size(), false);
     for (const int node : roots()) {
-      if (Status s = add_node(node, glm::dmat4(1), 0); !s.ok()) return s;
+      if (Status s = add_node(node, {}, 0); !s.ok()) return s;
     }
     if (model_.nodes.empty()) {  // a library of meshes
       for (std::size_t i = 0; i < model_.meshes.size(); ++i) {
@@ -95,7 +102,13 @@ class GltfParser {
     return result;
   }
 
-  Status add_node(int index, const glm::dmat4& parent, int depth) {
+  // What nodes above say of those below them.
+  struct Above {
+    glm::dmat4 matrix{1};
+    bool hidden = false;
+  };
+
+  Status add_node(int index, const Above& parent, int depth) {
     const std::string where = fmt::format("node {}", index);
     if (index < 0 || std::size_t(index) >= model_.nodes.size()) {
       return malformed(where, "does not exist");
@@ -107,23 +120,32 @@ class GltfParser {
     if (context_.cancelled()) return Status::cancelled();
     on_path_[index] = true;
     const tinygltf::Node& node = model_.nodes[index];
-    const glm::dmat4 matrix = parent * gltf_local_matrix(node);
-    if (node.mesh >= 0) {
-      if (std::size_t(node.mesh) >= model_.meshes.size()) {
-        return malformed(where, "names a mesh that does not exist");
-      }
-      const auto instances = gltf_instances(model_, node);
-      if (!instances.ok()) return malformed(where, instances.status().message());
-      for (const glm::dmat4& instance : *instances) {
-        if (++visits_ > kMaxVisits) return malformed(where, "has more instances than can be read");
-        if (context_.cancelled()) return Status::cancelled();
-        if (Status s = add_mesh(node, matrix * instance); !s.ok()) return s;
-      }
+    const Above here{parent.matrix * gltf_local_matrix(node), parent.hidden || hides(node)};
+    if (node.mesh >= 0 && here.hidden) {
+      builder_.defects.add(DefectKind::node_hidden,
+                           [&] { return fmt::format("{}: {}", builder_.file, where); });
+    } else if (node.mesh >= 0) {
+      if (Status s = add_instances(node, here.matrix, where); !s.ok()) return s;
     }
     for (const int child : node.children) {
-      if (Status s = add_node(child, matrix, depth + 1); !s.ok()) return s;
+      if (Status s = add_node(child, here, depth + 1); !s.ok()) return s;
     }
     on_path_[index] = false;
+    return {};
+  }
+
+  Status add_instances(const tinygltf::Node& node, const glm::dmat4& matrix,
+                       const std::string& where) {
+    if (std::size_t(node.mesh) >= model_.meshes.size()) {
+      return malformed(where, "names a mesh that does not exist");
+    }
+    const auto instances = gltf_instances(model_, node);
+    if (!instances.ok()) return malformed(where, instances.status().message());
+    for (const glm::dmat4& instance : *instances) {
+      if (++visits_ > kMaxVisits) return malformed(where, "has more instances than can be read");
+      if (context_.cancelled()) return Status::cancelled();
+      if (Status s = add_mesh(node, matrix * instance); !s.ok()) return s;
+    }
     return {};
   }
 

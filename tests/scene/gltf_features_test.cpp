@@ -224,6 +224,33 @@ TEST(Gltf, InstancesAreShownWhereTheyStand) {
   EXPECT_EQ(broken("TRANSLATION", "x").code(), ErrorCode::bad_input);
 }
 
+// KHR_node_visibility: a node that is hidden hides all nodes below it, whatever they say.
+TEST(Gltf, HiddenNodesAreLeftOut) {
+  const TempFolder folder;
+  Gltf g;
+  const int positions = g.floats(kSquare, "VEC3", 3);
+  g.single({{"attributes", {{"POSITION", positions}}},
+            {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3})}});
+  const auto node = [](const json& visible) {
+    json n = {{"mesh", 0}};
+    n["extensions"]["KHR_node_visibility"] = visible;
+    return n;
+  };
+  g.j["nodes"] = {node({{"visible", false}}), node({{"visible", true}}), node(json::object()),
+                  node({{"visible", "no"}})};
+  g.j["nodes"][0]["children"] = {1};
+  g.j["scenes"][0]["nodes"] = {0, 2, 3};
+  g.j["extensionsUsed"] = g.j["extensionsRequired"] = {"KHR_node_visibility"};
+  const auto loaded = load_glb(folder, g);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->scene.triangle_count(), 4u);
+  ASSERT_EQ(loaded->defects.count(DefectKind::node_hidden), 2u);
+  EXPECT_TRUE(loaded->defects.defects[0].first_places[1].ends_with(": node 1"));
+  g.j["scenes"][0]["nodes"] = {0};
+  EXPECT_NE(load_glb(folder, g).status().message().find("shows none of its 1 meshes"),
+            std::string::npos);
+}
+
 // A file without nodes is a library: each mesh once, as it is.
 TEST(Gltf, MeshesWithoutNodes) {
   const TempFolder folder;
