@@ -41,16 +41,28 @@ RenderOptions small() {
   return o;
 }
 
+// A courtyard that is ready to be played, small and in three frames.
+struct Show {
+  Show() {
+    options.camera = view.camera;
+    options.light = *LightPath::make({});
+    options.frames = 3;
+  }
+  Result<PlaySummary> play(const Context& context = {}) {
+    return play_headless(software_context(), renderer, options, context);
+  }
+
+  View view = courtyard_view();
+  Renderer renderer = must_render(view.scene, small());
+  PlayOptions options;
+};
+
 TEST_F(Play, RecordsNumberedPicturesAndTheLastOne) {
-  const View view = courtyard_view();
-  Renderer r = must_render(view.scene, small());
-  PlayOptions o;
-  o.camera = view.camera;
-  o.light = *LightPath::make({});
-  o.frames = 3;
+  Show show;
+  PlayOptions& o = show.options;
   o.record = path_ / "series";
   o.screenshot = path_ / "last.png";
-  const Result<PlaySummary> done = play_headless(software_context(), r, o, {});
+  const Result<PlaySummary> done = show.play();
   ASSERT_TRUE(done.ok()) << done.status().message();
   EXPECT_EQ(done->frames, 3);
   for (const char* name : {"frame00000.png", "frame00001.png", "frame00002.png"}) {
@@ -62,18 +74,15 @@ TEST_F(Play, RecordsNumberedPicturesAndTheLastOne) {
 }
 
 TEST_F(Play, AFullDiskLeavesNoPicture) {
-  const View view = courtyard_view();
-  Renderer r = must_render(view.scene, small());
-  PlayOptions o;
-  o.camera = view.camera;
-  o.light = *LightPath::make({});
+  Show show;
+  PlayOptions& o = show.options;
   for (auto* file : {&o.screenshot, &o.record}) {
     o.screenshot.clear();
     o.record.clear();
     *file = path_ / "p.png";
     if (file == &o.screenshot) std::ofstream(*file) << "what was there before";
     const test::FullDisk full(200);
-    const Result<PlaySummary> done = play_headless(software_context(), r, o, {});
+    const Result<PlaySummary> done = show.play();
     ASSERT_EQ(done.status().code(), ErrorCode::io);
     EXPECT_NE(done.status().message().find("p.png"), std::string::npos);
     EXPECT_EQ(done.status().message().find(".part"), std::string::npos) << done.status().message();
@@ -86,13 +95,11 @@ TEST_F(Play, AFullDiskLeavesNoPicture) {
 }
 
 TEST_F(Play, ErrorsAreOneLine) {
-  const View view = courtyard_view();
-  Renderer r = must_render(view.scene, small());
-  PlayOptions o;
-  o.camera = view.camera;
+  Show show;
+  PlayOptions& o = show.options;
   std::ofstream(path_ / "file") << "x";
   o.record = path_ / "file" / "series";
-  const Result<PlaySummary> done = play_headless(software_context(), r, o, {});
+  const Result<PlaySummary> done = show.play();
   ASSERT_FALSE(done.ok());
   EXPECT_EQ(done.status().code(), ErrorCode::io);
   EXPECT_EQ(done.status().message().find('\n'), std::string::npos);
@@ -100,15 +107,11 @@ TEST_F(Play, ErrorsAreOneLine) {
   Context context;
   context.cancel = &cancel;
   o.record.clear();
-  EXPECT_EQ(play_headless(software_context(), r, o, context).status().code(), ErrorCode::cancelled);
+  EXPECT_EQ(show.play(context).status().code(), ErrorCode::cancelled);
 }
 
 TEST_F(Play, ALostContextIsOneLineThatSaysWhy) {
-  const View view = courtyard_view();
-  Renderer r = must_render(view.scene, small());
-  PlayOptions o;
-  o.camera = view.camera;
-  o.frames = 5;
+  Show show;
   GlContext& gl = software_context();
   EXPECT_TRUE(gl.check_alive().ok());
   const std::pair<unsigned, const char*> cases[] = {{GL_GUILTY_CONTEXT_RESET, "this program"},
@@ -116,17 +119,17 @@ TEST_F(Play, ALostContextIsOneLineThatSaysWhy) {
                                                     {GL_UNKNOWN_CONTEXT_RESET, "does not tell"}};
   for (const auto& [reset, reason] : cases) {
     int frames = 0;
-    gl.set_reset_source([&, after = reset] { return ++frames < 3 ? GL_NO_ERROR : after; });
-    const Result<PlaySummary> done = play_headless(gl, r, o, {});
+    gl.set_reset_source([&, after = reset] { return ++frames < 2 ? GL_NO_ERROR : after; });
+    const Result<PlaySummary> done = show.play();
     gl.set_reset_source({});
     ASSERT_FALSE(done.ok());
-    EXPECT_EQ(frames, 3) << "nothing is drawn after the reset";
+    EXPECT_EQ(frames, 2) << "nothing is drawn after the reset";
     EXPECT_EQ(done.status().code(), ErrorCode::unsupported);
     EXPECT_NE(done.status().message().find("context is lost"), std::string::npos);
     EXPECT_NE(done.status().message().find(reason), std::string::npos);
     EXPECT_EQ(done.status().message().find('\n'), std::string::npos);
   }
-  EXPECT_TRUE(play_headless(gl, r, o, {}).ok());
+  EXPECT_TRUE(show.play().ok());
 }
 
 // The driver is asked to tell of resets, not only our code.
