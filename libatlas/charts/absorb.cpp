@@ -40,6 +40,9 @@ constexpr double kSmallArea = 0.015, kMostWaste = 0.01;
 constexpr double kSmallShare = 0.01;  // of the triangles, what is tried on smooth meshes
 constexpr double kMostL2 = 1.01;      // of a union's stretch, as when cells are merged
 constexpr double kWholeFill = 0.6;    // of a union of charts that are no fragments
+// A seam is worth so many times the stretch that it is when cells are merged, whose flattening is
+// coarser: that saves 2 % of the charts for 1 % more L2 - 1 (228 meshes).
+constexpr double kWorth = 2.5, kFragmentWorth = 4;
 // Solving never raised the share that a union fills by more: of 1600 it spared 260, in a seventh of
 // the time, and none that succeeded (90 meshes).
 constexpr double kSureFill = 0.995;
@@ -252,17 +255,17 @@ class Absorber {
     }
   }
 
-  // Whether a union is better than its parts. Fragments were meant to be one chart; what else is
-  // joined must not cost more stretch than the seam that it saves is worth.
+  // Whether a union is better than its parts. It must not cost more stretch than the seam that it
+  // saves is worth; fragments were meant to be one chart.
   bool is_better(const FlatChart& both, std::uint32_t k, const ChartNeighbour& neighbour) const {
     const std::uint32_t into = neighbour.chart;
     if (both.distortion.stretch_l2 > kMostL2) return false;
     const Extent extent{both.distortion.uv_area, both.size.x * both.size.y};
     if (!fills(k, into, extent, kMostWaste)) return false;
     const FlatChart &a = charts_[k], &b = charts_[into];
-    if (a.fragment || b.fragment) return true;
-    // What the seam is worth in stretch, as when cells are merged.
-    const double worth = seam_worth_ * seam_of(neighbour.edges).weight * std::sqrt(piece_area(k));
+    // What the seam is worth in stretch.
+    const double times = a.fragment || b.fragment ? kFragmentWorth : kWorth;
+    const double worth = times * seam_worth_ * seam_of(neighbour.edges).weight * std::sqrt(piece_area(k));
     return (area_[k] + area_[into]) * energy(both) <=
            area_[k] * energy(a) + area_[into] * energy(b) + worth;
   }

@@ -17,12 +17,8 @@ class CellBudget {
   CellBudget(const Topology& topology, const CellOptions& options)
       : topology_(topology),
         most_(options.max_cells_per_piece),
-        seen_in_(topology.points.size(), kNoIndex) {
-    const std::size_t triangles = std::max(options.mesh_triangles, topology.triangle_count());
-    triangles_per_cell_ =
-        std::clamp(static_cast<std::uint32_t>(triangles / options.cells_of_small_mesh),
-                   std::min(kLeastPerCell, options.triangles_per_cell), options.triangles_per_cell);
-  }
+        triangles_per_cell_(triangles_per_cell(topology, options)),
+        seen_in_(topology.points.size(), kNoIndex) {}
 
   std::uint32_t of(std::size_t handles, std::size_t n) const {
     const std::size_t least = n / triangles_per_cell_;
@@ -51,6 +47,13 @@ class CellBudget {
 };
 
 }  // namespace
+
+std::uint32_t triangles_per_cell(const Topology& topology, const CellOptions& options) {
+  const std::size_t triangles = std::max(options.mesh_triangles, topology.triangle_count());
+  return std::clamp(static_cast<std::uint32_t>(triangles / options.cells_of_small_mesh),
+                    std::min(kLeastPerCell, options.triangles_per_cell),
+                    options.triangles_per_cell);
+}
 
 CellPlan plan_cells(const Topology& topology, const CellOptions& options) {
   CellPlan plan{PieceList(topology), {}, {}};

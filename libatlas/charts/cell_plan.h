@@ -28,6 +28,9 @@ struct CellPlan {
   std::vector<std::uint8_t> pierced;  // 1 a piece: it has handles, or holes
 };
 
+// Of pieces without handles and holes, up to max_cells_per_piece.
+std::uint32_t triangles_per_cell(const Topology& topology, const CellOptions& options);
+
 CellPlan plan_cells(const Topology& topology, const CellOptions& options);
 
 }  // namespace atlas

@@ -30,9 +30,9 @@ constexpr int kSmallHole = 16, kLongestSlit = 100;  // edges
 constexpr double kMinAltitude = 1e-7;
 
 // Charts of fewer triangles are squeezed towards this stretch even where the bound is wider: it
-// costs them little. In charts of a few hundred triangles more would cost mean stretch.
-constexpr std::size_t kLargeChart = 20000, kSmallChart = 1000;
-constexpr double kAimedStretch = 1.2, kSmallAimedStretch = 1.23;
+// costs them little.
+constexpr std::size_t kLargeChart = 20000;
+constexpr double kAimedStretch = 1.2;
 constexpr double kBestStretch = 1.12;
 // Under scan noise, rounds of cutting and of closing what crosses, each going on from the last, in
 // all and of closing, and those in the end that only close. With half as many, or charts divided
@@ -271,9 +271,7 @@ class ChartJob {
     ParamOptions param;
     param.max_stretch = options.max_stretch;
     const bool best = options.preset == ChartPreset::best;
-    const double aim = best                                  ? kBestStretch
-                       : mesh.triangles.size() < kSmallChart ? kSmallAimedStretch
-                                                             : kAimedStretch;
+    const double aim = best ? kBestStretch : kAimedStretch;
     if (best || (options.preset == ChartPreset::standard && mesh.triangles.size() < kLargeChart)) {
       param.aimed_stretch = std::min(options.max_stretch, aim);
     }

@@ -28,6 +28,7 @@ constexpr double kRemovalWidth = 1.0 / 60;
 // The border between parts of a divided chart is straightened so far to each side, as a share of
 // the smaller part's width.
 constexpr double kPartBand = 0.5;
+constexpr float kPartStiffness = 0.03F;  // 0.3: a hundredth more charts (97 meshes)
 
 // What charts of more triangles needed is given back once they are half as large: the flat charts
 // need room by then.
@@ -282,17 +283,17 @@ class Flattener {
   void straighten_parts() {
     const std::vector<std::uint32_t> parts = std::exchange(parts_, {});
     if (parts.empty() || input_.options.cone_degrees > 0) return;
-    std::vector<std::uint8_t> rings(charts_.size(), 0);
+    std::vector<SeamBand> bands(charts_.size());
     std::vector<std::uint32_t> triangles;
     for (const std::uint32_t part : parts) {
       std::vector<std::uint32_t>& own = charts_[part].triangles;
-      rings[part] = static_cast<std::uint8_t>(
-          std::min(255.0, kPartBand * std::sqrt(static_cast<double>(own.size()))));
+      const double rings = kPartBand * std::sqrt(static_cast<double>(own.size()));
+      bands[part] = {static_cast<std::uint8_t>(std::min(255.0, rings)), kPartStiffness};
       triangles.insert(triangles.end(), own.begin(), own.end());
       own.clear();
     }
     std::sort(triangles.begin(), triangles.end());
-    straighten_borders(input_.topology, {{input_.options.crease_degrees, {}}, rings, triangles},
+    straighten_borders(input_.topology, {{input_.options.crease_degrees, {}}, bands, triangles},
                        partition_, input_.frames);
     for (const std::uint32_t t : triangles) charts_[partition_.chart[t]].triangles.push_back(t);
   }

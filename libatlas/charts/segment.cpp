@@ -96,7 +96,20 @@ std::vector<std::uint32_t> pieces_of(const Topology& topology, const Cells& cell
 // memory at once, and parts that fit the processor's caches are faster.
 constexpr std::size_t kTrianglesAtATime = 50000, kSmallPiece = 5000;
 
-constexpr double kMostRings = 8;  // wider bands are dear on fine meshes
+// Seams are straightened about as far as cells are uneven: a third of a cell's width to each side,
+// and farther the more triangles cells have, up to
+constexpr double kMostRings = 12;  // since wider bands are dear on fine meshes.
+// Where cells have no more than so many triangles, each is a large part of its chart, and must save
+// much seam to change sides; less so where they have more.
+constexpr double kCoarseCell = 40, kCoarseStiffness = 0.3;
+
+// By the mean number of triangles in a chart's cells, and the one that was planned for the mesh.
+SeamBand seam_band(double in_cell, double planned) {
+  const double fineness = std::max({1.0, in_cell / kCoarseCell, planned / kCoarseCell});
+  const double rings = std::sqrt(in_cell / 5) * std::pow(fineness, 0.3);
+  return {static_cast<std::uint8_t>(std::min(rings, kMostRings)),
+          static_cast<float>(kCoarseStiffness * std::pow(fineness, -1.5))};
+}
 
 // Cells of ChartPreset::fast, larger and so fewer: a twelfth less time for a thirtieth more charts
 // (77 meshes).
@@ -189,10 +202,10 @@ class Segmenter {
     if (context_.cancelled()) return {};
     Stopwatch watch(cpu_seconds);
     const BorderRules rules{options_.crease_degrees, {axes_, std::cos(cone_ - 1e-5)}};
-    Slits slits(topology_, {rules, rings_}, result_.partition, result_.frames);
+    Slits slits(topology_, {rules, bands_}, result_.partition, result_.frames);
     slits.close();
     smooth_borders(topology_, rules, result_.partition, result_.frames);
-    straighten_borders(topology_, {rules, rings_}, result_.partition, result_.frames);
+    straighten_borders(topology_, {rules, bands_}, result_.partition, result_.frames);
     smooth_borders(topology_, rules, result_.partition, result_.frames);
     slits.reopen();
     slits.straighten();
@@ -236,7 +249,7 @@ class Segmenter {
 
   void take(const Cut& made) {
     spread_to_triangles(made, labels_, result_);
-    add_rings(made.cells, made.merged);
+    add_bands(made.cells, made.merged);
     labels_ += static_cast<std::uint32_t>(made.coarse.cells.size());
     const std::vector<Vec3f>& axes = made.merged.chart_axis;
     axes_.insert(axes_.end(), axes.begin(), axes.end());
@@ -277,8 +290,7 @@ class Segmenter {
     return made;
   }
 
-  // Seams are straightened as far as cells are uneven: a third of a cell's width, to each side.
-  void add_rings(const Cells& cells, const MergeResult& merged) {
+  void add_bands(const Cells& cells, const MergeResult& merged) {
     std::vector<std::uint32_t> triangles(cells.count, 0), cell_count(cells.count, 0);
     for (const std::uint32_t chart : merged.chart_of_cell) {
       if (chart != kNoIndex) ++cell_count[chart];  // a cell may have lost all its triangles
@@ -286,9 +298,9 @@ class Segmenter {
     for (const std::uint32_t k : cells.of_triangle) {
       if (k != kNoIndex) ++triangles[merged.chart_of_cell[k]];
     }
+    const double planned = triangles_per_cell(topology_, cell_options());
     for (std::uint32_t k = 0; k < cells.count; ++k) {
-      const double a_cell = static_cast<double>(triangles[k]) / std::max(cell_count[k], 1u);
-      rings_.push_back(static_cast<std::uint8_t>(std::min(std::sqrt(a_cell / 5), kMostRings)));
+      bands_.push_back(seam_band(double(triangles[k]) / std::max(cell_count[k], 1u), planned));
     }
   }
 
@@ -298,9 +310,9 @@ class Segmenter {
   const Context& context_;
   double cone_;  // radians
   Segmentation result_;
-  std::vector<std::uint8_t> rings_;  // by label
-  std::uint32_t labels_ = 0;         // given so far
-  std::vector<Vec3f> axes_;          // by label; only with a cone limit
+  std::vector<SeamBand> bands_;  // by label
+  std::uint32_t labels_ = 0;     // given so far
+  std::vector<Vec3f> axes_;      // by label; only with a cone limit
 };
 
 }  // namespace

@@ -33,7 +33,7 @@ class Slits::Straightener {
   Straightener(const Topology& topology, const StraightenOptions& options, Partition& partition,
                Frames& frames)
       : topology_(topology),
-        rings_(options.rings),
+        bands_(options.bands),
         partition_(partition),
         frames_(frames),
         crease_cosine_(std::cos(options.rules.crease_degrees * M_PI / 180)),
@@ -55,7 +55,7 @@ class Slits::Straightener {
     }
     for (Slit& slit : slits_) {
       if (slit.path.empty()) continue;
-      const int rings = kReach * rings_[slit.chart];
+      const int rings = kReach * bands_[slit.chart].rings;
       if (slit.free_end) draw_on(next_half_edge(slit.path.back()), rings);
       if (slit.free_start) draw_on(slit.path.front(), rings);
     }
@@ -65,7 +65,7 @@ class Slits::Straightener {
     list_paths();
     for (Slit& slit : slits_) {
       const bool tube = is_tube(slit);
-      const BandPaths::Band band{rings_[slit.chart], tube ? 0 : kStiffness};
+      const BandPaths::Band band{bands_[slit.chart].rings, tube ? 0 : kStiffness};
       const int rounds = band.rings == 0 ? 0 : tube ? kTubeRounds : kRounds;
       for (int round = 0; round < rounds && shorten(slit.path, band); ++round) {
       }
@@ -81,7 +81,7 @@ class Slits::Straightener {
 
   // Whether it leads from border to border.
   bool is_tube(const Slit& slit) const {
-    return slit.free_start && slit.free_end && rings_[slit.chart] >= kWideBand;
+    return slit.free_start && slit.free_end && bands_[slit.chart].rings >= kWideBand;
   }
 
   // Maximal paths of seams, none of which passes a vertex where others end.
@@ -325,7 +325,7 @@ class Slits::Straightener {
   }
 
   const Topology& topology_;
-  std::span<const std::uint8_t> rings_;
+  std::span<const SeamBand> bands_;
   Partition& partition_;
   Frames& frames_;
   double crease_cosine_;

@@ -11,9 +11,6 @@ namespace {
 
 constexpr double kSteps = 256;        // a mean edge's length in the cut's integers
 constexpr double kLongest = 1 << 16;  // so many steps at most, for 32 bits
-// A triangle that changes sides must save this part of its own size in border: seams do not wander
-// far for a hair's breadth. Without it charts stretch more (spot, armadillo: a third of L2 - 1).
-constexpr double kStiffness = 0.3;
 
 class Straightener {
  public:
@@ -21,7 +18,7 @@ class Straightener {
                Frames& frames)
       : topology_(topology),
         rules_(options.rules),
-        rings_(options.rings),
+        bands_(options.bands),
         triangles_(options.triangles),
         partition_(partition),
         frames_(frames),
@@ -61,7 +58,9 @@ class Straightener {
     return borders;
   }
 
-  int rings(std::uint32_t a, std::uint32_t b) const { return std::min(rings_[a], rings_[b]); }
+  int rings(std::uint32_t a, std::uint32_t b) const {
+    return std::min(bands_[a].rings, bands_[b].rings);
+  }
 
   // 0 or 1: which of the two charts; 2: neither.
   std::uint32_t side(std::uint32_t t) const {
@@ -172,12 +171,13 @@ class Straightener {
     const double unit = mean / (last_ - first_) / kSteps;
     if (!(unit > 0)) return false;
     cut_.reset(last_ - first_);
+    const double stiffness = std::max(bands_[charts_[0]].stiffness, bands_[charts_[1]].stiffness);
     bool anchored[2] = {false, false};
     for (std::uint32_t i = first_; i < last_; ++i) {
       const std::uint32_t t = band_[i], own = side(t);
       for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) add_edge(h, unit, anchored);
       const double size = std::sqrt(static_cast<double>(topology_.areas[t]));
-      cut_.tie(i - first_, own, steps(kStiffness * size / unit));
+      cut_.tie(i - first_, own, steps(stiffness * size / unit));
       if (rules_.cone.excludes(topology_.normals[t], charts_[1 - own]))
         cut_.tie(i - first_, own, MinCut::kForever);
     }
@@ -331,7 +331,7 @@ class Straightener {
 
   const Topology& topology_;
   const BorderRules& rules_;
-  std::span<const std::uint8_t> rings_;
+  std::span<const SeamBand> bands_;
   std::span<const std::uint32_t> triangles_;
   Partition& partition_;
   Frames& frames_;

@@ -34,7 +34,7 @@ constexpr int most_iterations = 60;
 // How far every other step goes beyond the minimum for given rotations, and those of squeezing do.
 // What a long step overshoots the next one mends at once: three steps end where four plain ones do,
 // and squeezing goes further down (measured on 240 meshes).
-constexpr double long_step = 2.5;
+constexpr double long_step = 3, last_step = 1.3;
 constexpr std::array squeezing_steps{1.7, 1.3};
 // Vertices from which on what is solved and what is measured do not lie in memory together.
 constexpr std::size_t large_mesh = 100000;
@@ -58,13 +58,14 @@ bool ends_above(double goal, double two_ago, double one_ago, double now) {
 
 }  // namespace
 
-ArapSolver::ArapSolver(const LocalMesh& mesh, double min_altitude, ParamWorkspace::Impl& workspace)
-    : mesh_(mesh), min_altitude_(min_altitude), w_(workspace) {
+ArapSolver::ArapSolver(const LocalMesh& mesh, const IsometricOptions& options,
+                       ParamWorkspace::Impl& workspace)
+    : mesh_(mesh), options_(options), w_(workspace) {
   build();
 }
 
 void ArapSolver::build() {
-  w_.elements.build(mesh_, min_altitude_);
+  w_.elements.build(mesh_, options_.min_altitude);
 }
 
 void ArapSolver::rest() {
@@ -184,7 +185,11 @@ void ArapSolver::start(const IsometricStart& start) {
     factorize();
     weighted_ = false;
   }
-  if (!start.uvs.empty()) return this->start(start.uvs);
+  if (!start.uvs.empty()) {
+    this->start(start.uvs);
+    first_shear_weight_ = start.rough ? 1 : options_.shear_weight;
+    return;
+  }
   guess_ = {};
   if (start.frames) {
     rotations_from_frames(mesh_, start.frames, w_);
@@ -197,7 +202,8 @@ void ArapSolver::start(std::span<const Vec2d> uvs) {
   if (resting_) build();
   resting_ = false;
   guess_ = uvs;
-  local_rotations(w_.elements, uvs, w_.rotations);
+  first_shear_weight_ = options_.shear_weight;
+  w_.rotations.assign(w_.elements.size(), glm::vec2(0));
 }
 
 void ArapSolver::join(std::span<const Vec2d> corner_uvs, std::span<Vec2d> uvs) {
@@ -230,10 +236,20 @@ void ArapSolver::take_guess(std::span<Vec2d> uvs) {
   guess_ = uvs;  // of the next call
 }
 
+// The local step; returns by how much it lowers the energy.
+double ArapSolver::update(std::span<const Vec2d> uvs) {
+  return update_rotations(w_.elements, {uvs, options_.shear_weight}, w_.rotations, w_.load);
+}
+
 double ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
   wake(uvs);
   if (!factorized_) factorize();
-  rotation_load(w_.elements, w_.rotations, w_.load);
+  if (guess_.empty()) {
+    rotation_load(w_.elements, w_.rotations, w_.load);
+  } else {
+    update_rotations(w_.elements, {guess_, first_shear_weight_}, w_.rotations, w_.load);
+    first_shear_weight_ = options_.shear_weight;
+  }
   take_guess(uvs);
   solve({steps == 1 ? fine : first_inexactness, 0}, uvs);
   bool exact = true;
@@ -247,13 +263,13 @@ double ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
         solve({exact_first, 0}, uvs);
       }
     }
-    fall = update_rotations(w_.elements, uvs, w_.rotations, w_.load) / area_;
+    fall = update(uvs) / area_;
     const bool still = fall <= converged;
     if (still && method_ != Method::multigrid) return fall;
     if (still) steps = i + 1;
     const bool last = i + 1 == steps;
     const Inexactness rough{fine, last ? fine_share : rough_share};
-    const double times = (steps - i) % 2 == 0 ? long_step : 1;
+    const double times = (steps - i) % 2 == 0 ? long_step : last_step;
     solve_relaxed(times, exact ? Inexactness{last ? fine : exact_first, 0} : rough, uvs);
   }
 }
@@ -308,7 +324,7 @@ double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
     weighted_ = true;
     factorize();
     for (const double times : squeezing_steps) {
-      update_rotations(w_.elements, uvs, w_.rotations, w_.load);
+      update(uvs);
       solve_relaxed(times, {fine, fine_share}, uvs);
     }
     now = update_stretch(uvs, options.ratio);

@@ -13,14 +13,15 @@ namespace atlas::param {
 class ArapSolver {
  public:
   // Builds the elements; the matrix and its factor when a step first needs them.
-  ArapSolver(const LocalMesh& mesh, double min_altitude, ParamWorkspace::Impl& workspace);
+  ArapSolver(const LocalMesh& mesh, const IsometricOptions& options,
+             ParamWorkspace::Impl& workspace);
 
-  // The rotations that the first global step uses. Weights of an earlier squeeze are dropped.
+  // What the first global step goes on from. Weights of an earlier squeeze are dropped.
   void start(const IsometricStart& start);
   void start(std::span<const Vec2d> uvs);
 
   // Joins flat parts: uvs become those whose gradients come nearest to the given ones', 3 a
-  // triangle, which need not agree where triangles meet. The next step's rotations are theirs.
+  // triangle, which need not agree where triangles meet. The next step goes on from them.
   void join(std::span<const Vec2d> corner_uvs, std::span<Vec2d> uvs);
 
   // Global steps, with local steps between them, from the current rotations. Every other one is
@@ -64,7 +65,7 @@ class ArapSolver {
   IsometricResult measure(std::span<const Vec2d> uvs);
 
   // Gives the memory back that a large mesh took; what is asked for next makes anew what it needs.
-  // Rotations are then those of the uvs at hand.
+  // Steps then go on from the uvs at hand.
   void rest();
 
  private:
@@ -86,12 +87,14 @@ class ArapSolver {
   void solve_relaxed(double relaxation, const Inexactness& inexactness, std::span<Vec2d> uvs);
   void solve_directly();
   void take_guess(std::span<Vec2d> uvs);
+  double update(std::span<const Vec2d> uvs);
   double update_stretch(std::span<const Vec2d> uvs, bool ratio);
 
   const LocalMesh& mesh_;
-  double min_altitude_;
+  IsometricOptions options_;
   ParamWorkspace::Impl& w_;
   std::span<const Vec2d> guess_;  // where the first solve starts; empty: from zero
+  double first_shear_weight_ = 1;  // of the local step from there
   Method method_ = Method::envelope;
   bool analyzed_ = false, ordered_ = false;  // by the direct and the envelope solver
   bool wide_ = false;                        // once ordered_

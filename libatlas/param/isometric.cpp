@@ -17,7 +17,7 @@ IsometricResult flatten_isometric(const LocalMesh& mesh, const IsometricStart& s
                                   const IsometricOptions& options, std::span<Vec2d> uvs,
                                   ParamWorkspace& workspace) {
   assert(uvs.size() == mesh.positions.size() && !mesh.triangles.empty());
-  param::ArapSolver solver(mesh, options.min_altitude, workspace.impl());
+  param::ArapSolver solver(mesh, options, workspace.impl());
   solver.start(start);
   solver.iterate(std::max(options.iterations, 1), uvs);
   return solver.measure(uvs);

@@ -305,7 +305,7 @@ void join(const LocalMesh& mesh, const ParamOptions& options, ParamWorkspace& wo
           ParamResult& r) {
   PhaseClock clock(mesh.triangles.size(), workspace);
   const double misfit = lay_side_by_side(mesh, options.joined, r.uvs);
-  param::ArapSolver solver(mesh, options.min_altitude, workspace.impl());
+  param::ArapSolver solver(mesh, {.min_altitude = options.min_altitude}, workspace.impl());
   descend({mesh, options, solver, options.patch || misfit < kExactFit}, clock, r);
 }
 
@@ -317,7 +317,7 @@ ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
   ParamResult r;
   r.uvs.resize(mesh.positions.size());
   if (options.resume) {
-    param::ArapSolver solver(mesh, options.min_altitude, workspace.impl());
+    param::ArapSolver solver(mesh, {.min_altitude = options.min_altitude}, workspace.impl());
     descend({mesh, options, solver}, clock, r);
     return r;
   }
@@ -348,9 +348,10 @@ ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
   if (start.uvs.empty() && !start.frames && planar_stretch_bound(mesh, axis) < 4) {
     project_planar(mesh, axis, r.uvs);
     start.uvs = r.uvs;
+    start.rough = true;
   }
   const bool unfolded = start.uvs.empty() && !start.frames;
-  param::ArapSolver solver(mesh, options.min_altitude, workspace.impl());
+  param::ArapSolver solver(mesh, {.min_altitude = options.min_altitude}, workspace.impl());
   solver.start(start);
   descend({mesh, options, solver}, clock, r);
   const bool folded = r.unflipped > 0 || r.distortion.flips > 0;

@@ -141,9 +141,18 @@ void local_rotations(const Elements& elements, std::span<const Vec2d> uvs, Rotat
 // this.
 void rotation_load(const Elements& elements, const Rotations& rotations, std::span<glm::dvec2> out);
 
+struct LocalStep {
+  std::span<const Vec2d> uvs;
+  // IsometricOptions::shear_weight. What is left to 1 stays in the target of each triangle's map
+  // beside the rotation, whose energy then has the gradient of the one asked for, and is nowhere
+  // below it but for a constant: each step descends. Only of little shear: much of it is removed as
+  // if its weight were 1, and triangles that are turned over are turned back.
+  double shear_weight = 1;
+};
+
 // Local step from given rotations, with the right-hand side of the next global step; returns by how
-// much it lowers sum weight * area * |J - R|².
-double update_rotations(const Elements& elements, std::span<const Vec2d> uvs, Rotations& rotations,
+// much the new rotations lower sum weight * area * |J - R|².
+double update_rotations(const Elements& elements, const LocalStep& step, Rotations& rotations,
                         std::span<glm::dvec2> load);
 
 // Energy and non-positive triangles of uvs, with each triangle's nearest rotation (weights left

@@ -92,7 +92,7 @@ struct RaggedCharts {
   }
 
   void straighten(std::uint8_t rings, double crease_degrees = 40) {
-    const std::vector<std::uint8_t> of_chart(64, rings);
+    const std::vector<SeamBand> of_chart(64, SeamBand{rings});
     straighten_borders(topology, {{crease_degrees, {}}, of_chart}, partition, frames);
   }
 };

@@ -118,7 +118,7 @@ struct Slitted : RaggedCharts {
   }
 };
 
-const std::vector<std::uint8_t> kRings(8, 4);
+const std::vector<SeamBand> kBands(8, SeamBand{4});
 
 Slitted tube(int around, int along, double height) {
   Slitted charts(cylinder(around, along, 1, height));
@@ -138,7 +138,7 @@ TEST(SlitPaths, ATubesSlitBecomesStraighter) {
     const double before = charts.slit_length();
     ASSERT_EQ(charts.topologies()[0], Disc(1, 1));
     ASSERT_GT(charts.least_agreement(), 0.999);
-    Slits slits(charts.topology, {{40, {}}, kRings}, charts.partition, charts.frames);
+    Slits slits(charts.topology, {{40, {}}, kBands}, charts.partition, charts.frames);
     slits.straighten();
     EXPECT_GT(before, 8.5);
     EXPECT_LT(charts.slit_length(), 0.975 * before);
@@ -157,7 +157,7 @@ TEST(SlitPaths, TipsStayWhereTheyAre) {
         0, [&](std::uint32_t v) { return v == a; }, [&](std::uint32_t v) { return v == b; }, seed);
     const double before = charts.slit_length();
     ASSERT_EQ(charts.slit_ends(), (std::set{a, b}));
-    Slits slits(charts.topology, {{40, {}}, kRings}, charts.partition, charts.frames);
+    Slits slits(charts.topology, {{40, {}}, kBands}, charts.partition, charts.frames);
     slits.straighten();
     EXPECT_LE(charts.slit_length(), before);
     sum_before += before;
@@ -189,7 +189,7 @@ TEST(SlitPaths, DiscsStayDiscs) {
     }
     const auto were = charts.topologies();
     const double before = charts.slit_length();
-    Slits slits(charts.topology, {{40, {}}, kRings}, charts.partition, charts.frames);
+    Slits slits(charts.topology, {{40, {}}, kBands}, charts.partition, charts.frames);
     slits.straighten();
     EXPECT_EQ(charts.topologies(), were) << seed;
     EXPECT_LE(charts.slit_length(), before) << seed;
@@ -229,7 +229,7 @@ TEST(SlitPaths, BordersMoveAcrossClosedSlits) {
     ASSERT_EQ(were.at(0), Disc(1, 1));
     ASSERT_EQ(were.at(1), Disc(1, 1));
     const double before = charts.border_length();
-    Slits slits(charts.topology, {{40, {}}, kRings}, charts.partition, charts.frames);
+    Slits slits(charts.topology, {{40, {}}, kBands}, charts.partition, charts.frames);
     slits.close();
     EXPECT_EQ(charts.slit_length(), 0);
     charts.straighten(4);

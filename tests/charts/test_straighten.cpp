@@ -89,22 +89,22 @@ TEST(Straighten, BordersOfChartsWithoutRingsStay) {
   RaggedCharts charts(sphere(48, 24));
   charts.grow(6, 3);
   const std::vector<std::uint32_t> were = charts.partition.chart;
-  const std::vector<std::uint8_t> rings{8, 8, 8, 0, 0, 0};
+  const std::vector<SeamBand> bands{{8}, {8}, {8}, {0}, {0}, {0}};
   std::vector<std::uint32_t> triangles;  // of charts with rings
   for (std::uint32_t t = 0; t < were.size(); ++t) {
-    if (rings[were[t]] > 0) triangles.push_back(t);
+    if (bands[were[t]].rings > 0) triangles.push_back(t);
   }
   RaggedCharts all = charts;
-  straighten_borders(charts.topology, {{180, {}}, rings, triangles}, charts.partition,
+  straighten_borders(charts.topology, {{180, {}}, bands, triangles}, charts.partition,
                      charts.frames);
-  straighten_borders(all.topology, {{180, {}}, rings}, all.partition, all.frames);
+  straighten_borders(all.topology, {{180, {}}, bands}, all.partition, all.frames);
   EXPECT_EQ(charts.partition.chart, all.partition.chart);
   std::size_t moved = 0;
   for (std::uint32_t t = 0; t < were.size(); ++t) {
     if (charts.partition.chart[t] == were[t]) continue;
     ++moved;
-    EXPECT_GT(rings[were[t]], 0) << t;
-    EXPECT_GT(rings[charts.partition.chart[t]], 0) << t;
+    EXPECT_GT(bands[were[t]].rings, 0) << t;
+    EXPECT_GT(bands[charts.partition.chart[t]].rings, 0) << t;
   }
   EXPECT_GT(moved, 0u);
 }
@@ -162,8 +162,8 @@ TEST(Straighten, AConeHolds) {
   std::vector<Vec3f> axes(6, Vec3f{0, 0, 1});
   const auto outside = [&](std::uint32_t t) { return charts.topology.normals[t].z < 0.2f; };
   const std::vector<std::uint32_t> were = charts.partition.chart;
-  const std::vector<std::uint8_t> rings(6, 8);
-  straighten_borders(charts.topology, {{180, {axes, 0.2}}, rings}, charts.partition, charts.frames);
+  const std::vector<SeamBand> bands(6, SeamBand{8});
+  straighten_borders(charts.topology, {{180, {axes, 0.2}}, bands}, charts.partition, charts.frames);
   std::size_t moved = 0;
   for (std::uint32_t t = 0; t < were.size(); ++t) {
     if (charts.partition.chart[t] == were[t]) continue;

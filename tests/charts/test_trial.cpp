@@ -146,8 +146,9 @@ TEST(FanSolver, AgreesWithTheGeneralSolver) {
   CapFans cap;
   std::vector<Vec2d> expected = cap.uvs;
   ParamWorkspace workspace;
-  for (int i = 0; i < 2; ++i) {  // two plain steps each
-    flatten_isometric(cap.view(), {expected, {}}, {2, 0}, expected, workspace);
+  for (int i = 0; i < 4; ++i) {  // plain steps
+    flatten_isometric(cap.view(), {expected, {}}, {.iterations = 1, .shear_weight = 1}, expected,
+                      workspace);
   }
   for (int i = 0; i < 4; ++i) cap.solver.step(1, cap.uvs);
   for (std::size_t v = 1; v < cap.uvs.size(); ++v) {

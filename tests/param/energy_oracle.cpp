@@ -1,11 +1,12 @@
 #include <Eigen/Dense>
 #include <Eigen/SVD>
+#include <cmath>
 
 #include "tests/param/oracles.h"
 
 namespace atlas::testing {
 
-double arap_energy(const LocalMesh& mesh, std::span<const Vec2d> uvs) {
+double isometric_energy(const LocalMesh& mesh, std::span<const Vec2d> uvs, double shear_weight) {
   double sum = 0;
   for (const auto& t : mesh.triangles) {
     const auto position = [&](int k) {
@@ -21,9 +22,16 @@ double arap_energy(const LocalMesh& mesh, std::span<const Vec2d> uvs) {
     const Eigen::Matrix2d j = image * rest.inverse();
     const Eigen::Vector2d s = Eigen::JacobiSVD<Eigen::Matrix2d>(j).singularValues();
     const double small = j.determinant() < 0 ? -s[1] : s[1];
-    sum += 0.5 * e.cross(f).norm() * ((s[0] - 1) * (s[0] - 1) + (small - 1) * (small - 1));
+    const double p = s[0] + small - 2, q = s[0] - small;
+    // The integral over q of kept shear, (1 - weight) q / (1 + 10 (q / 2)²).
+    const double spared = (1 - shear_weight) / 5 * std::log(1 + 2.5 * q * q);
+    sum += 0.5 * e.cross(f).norm() * (0.5 * (p * p + q * q) - spared);
   }
   return sum;
+}
+
+double arap_energy(const LocalMesh& mesh, std::span<const Vec2d> uvs) {
+  return isometric_energy(mesh, uvs, 1);
 }
 
 }  // namespace atlas::testing

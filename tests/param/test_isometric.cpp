@@ -17,11 +17,19 @@ namespace {
 
 using testing::Disc;
 
-std::vector<Vec2d> flatten(const Disc& d, int iterations, const IsometricStart& start = {}) {
+std::vector<Vec2d> flatten(const Disc& d, const IsometricOptions& options,
+                           const IsometricStart& start = {}) {
   std::vector<Vec2d> uv(d.positions.size());
   ParamWorkspace workspace;
-  flatten_isometric(d.view(), start, {iterations, 0}, uv, workspace);
+  flatten_isometric(d.view(), start, options, uv, workspace);
   return uv;
+}
+std::vector<Vec2d> flatten(const Disc& d, int iterations, const IsometricStart& start = {}) {
+  return flatten(d, {.iterations = iterations}, start);
+}
+
+double l2_stretch(const Disc& d, std::span<const Vec2d> uvs) {
+  return measure_distortion(d.view(), uvs).stretch_l2;
 }
 
 TEST(Isometric, DevelopablesUnrollFromNoStartAtAll) {
@@ -59,22 +67,43 @@ TEST(Isometric, StepsNeverRaiseTheEnergyAndReachAStationaryPoint) {
   const Disc d = testing::make_grid(14, 9, [](double u, double v) {
     return Vec3d{2 * u, v, 0.3 * std::sin(6 * u) * std::cos(5 * v)};
   });
-  std::vector<Vec2d> uv = flatten(d, 1);
-  double before = testing::arap_energy(d.view(), uv);
-  for (int i = 0; i < 200; ++i) {
-    uv = flatten(d, 1, {.uvs = uv});
-    const double now = testing::arap_energy(d.view(), uv);
-    EXPECT_LE(now, before * (1 + 1e-12));
-    before = now;
-  }
-  // At a minimum no vertex gains by moving.
-  const double step = 1e-4;
-  for (const std::size_t v : {std::size_t{0}, uv.size() / 2, uv.size() - 1}) {
-    for (const Vec2d move : {Vec2d{step, 0}, Vec2d{-step, 0}, Vec2d{0, step}, Vec2d{0, -step}}) {
-      auto moved = uv;
-      moved[v] = {uv[v].x + move.x, uv[v].y + move.y};
-      EXPECT_GT(testing::arap_energy(d.view(), moved), before);
+  for (const double weight : {1.0, 0.6, 0.3}) {
+    const IsometricOptions step{.iterations = 1, .shear_weight = weight};
+    std::vector<Vec2d> uv = flatten(d, step);
+    double before = testing::isometric_energy(d.view(), uv, weight);
+    for (int i = 0; i < 200; ++i) {
+      uv = flatten(d, step, {.uvs = uv});
+      const double now = testing::isometric_energy(d.view(), uv, weight);
+      EXPECT_LE(now, before * (1 + 1e-12)) << weight;
+      before = now;
     }
+    // At a minimum no vertex gains by moving.
+    const double far = 1e-4;
+    for (const std::size_t v : {std::size_t{0}, uv.size() / 2, uv.size() - 1}) {
+      for (const Vec2d move : {Vec2d{far, 0}, Vec2d{-far, 0}, Vec2d{0, far}, Vec2d{0, -far}}) {
+        auto moved = uv;
+        moved[v] = {uv[v].x + move.x, uv[v].y + move.y};
+        EXPECT_GT(testing::isometric_energy(d.view(), moved, weight), before) << weight;
+      }
+    }
+  }
+}
+
+// Weighed half as much as a change of area, shear costs what it does in L2 stretch.
+TEST(Isometric, LessWeightOfShearIsLessL2Stretch) {
+  for (const double angle : {0.4, 0.8, 1.2}) {
+    const Disc d = testing::make_cap(angle, 20);
+    const double rigid = l2_stretch(d, flatten(d, {.iterations = 60, .shear_weight = 1})) - 1;
+    const double half = l2_stretch(d, flatten(d, {.iterations = 60, .shear_weight = 0.5})) - 1;
+    EXPECT_LT(half, 0.92 * rigid) << angle;
+    // Of all weights the best, while stretch is small.
+    for (const double weight : {0.25, 0.75}) {
+      if (angle > 1) continue;
+      const auto uv = flatten(d, {.iterations = 60, .shear_weight = weight});
+      EXPECT_LT(half, l2_stretch(d, uv) - 1) << angle << ' ' << weight;
+    }
+    // Few steps of the default come near.
+    EXPECT_LT(l2_stretch(d, flatten(d, 3)) - 1, 1.1 * half) << angle;
   }
 }
 
@@ -82,11 +111,13 @@ TEST(Isometric, StepsNeverRaiseTheEnergyAndReachAStationaryPoint) {
 TEST(Isometric, RelaxedStepsEndBelowAsManyPlainOnes) {
   for (const std::uint32_t rings : {8u, 40u, 60u}) {  // a solver each
     const Disc d = testing::make_cap(1.3, rings);
+    const auto energy = [&](std::span<const Vec2d> uvs) {
+      return testing::isometric_energy(d.view(), uvs, IsometricOptions{}.shear_weight);
+    };
     std::vector<Vec2d> plain = flatten(d, 1);
-    const double start = testing::arap_energy(d.view(), plain);
+    const double start = energy(plain);
     for (int i = 1; i < 5; ++i) plain = flatten(d, 1, {.uvs = plain});
-    const double end = testing::arap_energy(d.view(), plain);
-    const double relaxed = testing::arap_energy(d.view(), flatten(d, 5));
+    const double end = energy(plain), relaxed = energy(flatten(d, 5));
     EXPECT_LT(end, start);
     EXPECT_LT(relaxed, end) << rings;
   }
@@ -101,9 +132,10 @@ TEST(Isometric, FramesAndUvsStartAlike) {
   const auto c = static_cast<float>(u.x), s = static_cast<float>(u.y);
   const std::vector<std::array<Vec3f, 2>> frames(d.triangles.size(),
                                                  {Vec3f{c, -s, 0}, Vec3f{s, c, 0}});
-  const double from_uvs = testing::arap_energy(d.view(), flatten(d, 4, {.uvs = uv}));
+  const IsometricOptions options{.iterations = 4, .shear_weight = 1};  // frames hold no shear
+  const double from_uvs = testing::arap_energy(d.view(), flatten(d, options, {.uvs = uv}));
   const double from_frames = testing::arap_energy(
-      d.view(), flatten(d, 4, {.frames = [&](std::size_t t) { return frames[t]; }}));
+      d.view(), flatten(d, options, {.frames = [&](std::size_t t) { return frames[t]; }}));
   EXPECT_NEAR(from_frames, from_uvs, 1e-9);
 }
 
@@ -152,8 +184,11 @@ TEST(Isometric, EnergyIsNotAboveCgals) {
     testing::add_radial_noise(d, 0.1 * testing::mean_edge(d), seed);
     const std::vector<Vec2d> theirs = testing::cgal_arap(d.view(), 50);
     ASSERT_EQ(theirs.size(), d.positions.size());
-    const double energy = testing::arap_energy(d.view(), flatten(d, 50));
-    EXPECT_LE(energy, testing::arap_energy(d.view(), theirs) * (1 + 1e-6)) << seed;
+    const auto rigid = flatten(d, {.iterations = 50, .shear_weight = 1});
+    EXPECT_LE(testing::arap_energy(d.view(), rigid),
+              testing::arap_energy(d.view(), theirs) * (1 + 1e-6))
+        << seed;
+    EXPECT_LT(l2_stretch(d, flatten(d, 50)), l2_stretch(d, theirs)) << seed;
   }
 }
 
