@@ -263,7 +263,8 @@ class Absorber {
     const FlatChart &a = charts_[k], &b = charts_[into];
     // What the seam is worth in stretch.
     const double times = a.fragment || b.fragment ? kFragmentWorth : kWorth;
-    const double worth = times * seam_worth_ * seam_of(neighbour.edges).weight * std::sqrt(piece_area(k));
+    const double worth =
+        times * seam_worth_ * seam_of(neighbour.edges).weight * std::sqrt(piece_area(k));
     return (area_[k] + area_[into]) * energy(both) <=
            area_[k] * energy(a) + area_[into] * energy(b) + worth;
   }

@@ -96,19 +96,19 @@ std::vector<std::uint32_t> pieces_of(const Topology& topology, const Cells& cell
 // memory at once, and parts that fit the processor's caches are faster.
 constexpr std::size_t kTrianglesAtATime = 50000, kSmallPiece = 5000;
 
-// Seams are straightened about as far as cells are uneven: a third of a cell's width to each side,
-// and farther the more triangles cells have, up to
+// Seams are straightened as far as cells are uneven, a third of a cell's width to each side, in
+// rings up to
 constexpr double kMostRings = 12;  // since wider bands are dear on fine meshes.
-// Where cells have no more than so many triangles, each is a large part of its chart, and must save
-// much seam to change sides; less so where they have more.
+// Where cells have no more than kCoarseCell triangles, each of these is a large part of its chart.
+// The more they have, the freer they are. Half as stiff as that, in bands a quarter wider, seams
+// are 1.4 % shorter for 6 % more L2 - 1 and 9 % more time (97 meshes).
 constexpr double kCoarseCell = 40, kCoarseStiffness = 0.3;
 
 // By the mean number of triangles in a chart's cells, and the one that was planned for the mesh.
 SeamBand seam_band(double in_cell, double planned) {
   const double fineness = std::max({1.0, in_cell / kCoarseCell, planned / kCoarseCell});
-  const double rings = std::sqrt(in_cell / 5) * std::pow(fineness, 0.3);
-  return {static_cast<std::uint8_t>(std::min(rings, kMostRings)),
-          static_cast<float>(kCoarseStiffness * std::pow(fineness, -1.5))};
+  return {static_cast<std::uint8_t>(std::min(std::sqrt(in_cell / 5), kMostRings)),
+          static_cast<float>(kCoarseStiffness / fineness)};
 }
 
 // Cells of ChartPreset::fast, larger and so fewer: a twelfth less time for a thirtieth more charts

@@ -93,7 +93,7 @@ class ArapSolver {
   const LocalMesh& mesh_;
   IsometricOptions options_;
   ParamWorkspace::Impl& w_;
-  std::span<const Vec2d> guess_;  // where the first solve starts; empty: from zero
+  std::span<const Vec2d> guess_;   // where the first solve starts; empty: from zero
   double first_shear_weight_ = 1;  // of the local step from there
   Method method_ = Method::envelope;
   bool analyzed_ = false, ordered_ = false;  // by the direct and the envelope solver

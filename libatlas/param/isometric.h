@@ -41,18 +41,18 @@ struct IsometricOptions {
   // that slivers keep a positive area that survives rounding. Besides it there is always a floor of
   // 1e-9 of the longest edge. Zero-area triangles get a place this way.
   double min_altitude = 0;
-  // How much shear counts against change of area, in (0, 1]. With singular values 1 + a and 1 + b of
-  // a triangle's map the energy is (a + b)² + shear_weight (a - b)². 1: as rigid as possible, which
-  // is a² + b² but for a factor. L2 stretch (Sander et al. 2001) at the area-preserving scale grows
-  // as a half makes it, in second order; a little more is what few steps reach it best with.
+  // How much shear counts against change of area, in (0, 1]. With singular values 1 + a and 1 + b
+  // of a triangle's map the energy is (a + b)² + shear_weight (a - b)². 1: as rigid as possible,
+  // which is a² + b² but for a factor. L2 stretch (Sander et al. 2001) at the area-preserving scale
+  // grows as a half makes it, in second order; a little more is what few steps reach it best with.
   double shear_weight = 0.6;
 };
 
 // The rows of each triangle's 2x3 map.
 using FrameView = std::function<std::array<Vec3f, 2>(std::size_t)>;
 
-// What the first local step starts from; exactly one of uvs and frames is set, or none: then the rotations are
-// carried over the triangles from the one nearest to the middle.
+// What the first local step starts from; exactly one of uvs and frames is set, or none: then the
+// rotations are carried over the triangles from the one nearest to the middle.
 struct IsometricStart {
   std::span<const Vec2d> uvs = {};  // 1 a vertex
   bool rough = false;               // of uvs only the rotations count, as of a projection
