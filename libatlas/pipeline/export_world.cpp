@@ -119,9 +119,7 @@ class Export {
     TextureOptions texture;
     texture.texel = plan_.texel_metres / scene_.metres_per_unit;
     texture.follow_textures = options_.follow_textures;
-    // With a texel of the user's own the diffuse texture's density is kept (the paper's rule); else
-    // it is exceeded where the budget lets it, since a texture sampled at its own density blurs.
-    texture.texture_sampling = options_.texel_metres > 0 ? 1 : kTextureSampling;
+    texture.texture_sampling = texture_sampling(options_);
     texture.threshold = options_.threshold;
     texture.min_side = options_.min_side;
     texture.max_side = options_.atlas_size - 2 * gutter_pad(options_.mip_levels);
@@ -331,8 +329,6 @@ class Export {
     record_.finish({report_.triangles_out, bytes, "bytes", note});
     return {};
   }
-
-  static constexpr double kTextureSampling = 1.5;  // of a diffuse texture's texels, along a side
 
   const Scene& scene_;
   const ExportOptions& options_;

@@ -8,6 +8,7 @@
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/pipeline/bake_pages.h"
 #include "libatlas/scene/triangle_area.h"
+#include "libatlas/texture/luminance.h"
 
 namespace atlas {
 namespace {
@@ -50,6 +51,20 @@ double affordable_texel(double area_m2, const ExportOptions& options) {
   const double room = double(options.atlases) * options.atlas_size * options.atlas_size;
   const double finest = area_m2 > 0 ? std::min(kFinest, std::sqrt(area_m2) / 64) : kFinest;
   return std::clamp(std::sqrt(area_m2 / room), finest, kCoarsest);
+}
+
+// Of the whole surface before downsizing, finer where a diffuse texture is.
+double estimate_texels(const Scene& scene, const ExportPlan& plan, const ExportOptions& options) {
+  const double base = scene.metres_per_unit / plan.texel_metres;  // a unit of length
+  if (!plan.sample_reflectance || !options.follow_textures)
+    return plan.surface_area_m2 / (plan.texel_metres * plan.texel_metres);
+  const double sampling = texture_sampling(options);
+  double texels = 0;
+  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
+    const double density = std::max(base, sampling * texture_density(scene, t));
+    texels += triangle_area(scene, t) * density * density;
+  }
+  return texels;
 }
 
 std::string budget_text(std::uint32_t pages, std::int32_t side) {
@@ -116,12 +131,13 @@ class StepList {
     const double capacity = double(pages) * options_.atlas_size * options_.atlas_size;
     const bool group = pages > 1;
     const std::string budget = budget_text(pages, options_.atlas_size);
-    const bool raised = plan_.sample_reflectance && options_.follow_textures;
+    const double texel = plan_.texel_metres;
+    const bool raised = plan_.estimated_texels > 1.001 * plan_.surface_area_m2 / (texel * texel);
     add("grouping", group,
-        group ? fmt::format("about {:.1f} M texels of {:.2g} mm before downsizing{} into {}; no "
+        group ? fmt::format("about {:.1f} M texels of {:.2g} mm{} before downsizing into {}; no "
                             "bisection if the pages' own area already gives as few groups",
-                            plan_.estimated_texels / 1e6, 1e3 * plan_.texel_metres,
-                            raised ? " (more where diffuse textures are finer)" : "", budget)
+                            plan_.estimated_texels / 1e6, 1e3 * texel,
+                            raised ? ", finer where diffuse textures are," : "", budget)
               : "one page");
     add("packing", true, fmt::format("{}, {:.1f} M texels of room", budget, capacity / 1e6));
     add_baked("baking", true,
@@ -147,6 +163,13 @@ class StepList {
 
 }  // namespace
 
+double texture_sampling(const ExportOptions& options) {
+  // With a texel of the user's own the diffuse texture's density is kept (the paper's rule); else
+  // it is exceeded where the budget lets it, since a texture sampled at its own density blurs.
+  constexpr double kExceeding = 1.5;
+  return options.texel_metres > 0 ? 1 : kExceeding;
+}
+
 ExportPlan make_plan(const Scene& scene, const ExportOptions& options) {
   const SceneFacts facts = gather_facts(scene);
   ExportPlan plan;
@@ -154,13 +177,13 @@ ExportPlan make_plan(const Scene& scene, const ExportOptions& options) {
   plan.surface_area_m2 = facts.area * metres * metres;
   plan.texel_metres = options.texel_metres > 0 ? options.texel_metres
                                                : affordable_texel(plan.surface_area_m2, options);
-  plan.estimated_texels = plan.surface_area_m2 / (plan.texel_metres * plan.texel_metres);
   plan.unlit_share = facts.area > 0 ? facts.unlit_area / facts.area : 0;
   plan.uniform_share = facts.area > 0 ? facts.uniform_area / facts.area : 0;
   plan.bake = scene.lit() && !options.charts_only;
   plan.sample_reflectance =
       plan.bake && facts.textured_triangles > 0 && options.quantity == Quantity::illuminance;
   plan.simplify = plan.bake && options.simplify;
+  plan.estimated_texels = estimate_texels(scene, plan, options);
 
   StepList(scene, options, plan).make(facts.textured_triangles);
   return plan;

@@ -11,6 +11,9 @@ namespace atlas {
 // Linear in the number of triangles, a small share of reading the file.
 ExportPlan make_plan(const Scene& scene, const ExportOptions& options);
 
+// How many texels along a side a diffuse texture's texel is given.
+double texture_sampling(const ExportOptions& options);
+
 // The report of an export that has not begun: it tells of the scene and of the plan.
 ExportReport planned_report(const LoadedScene& loaded, const ExportPlan& plan,
                             const ExportOptions& options);

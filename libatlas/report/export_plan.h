@@ -18,7 +18,7 @@ struct ExportPlan {
   std::vector<PlanStep> steps;
   double surface_area_m2 = 0;
   double texel_metres = 0;         // ExportOptions::texel_metres, or what was chosen for it
-  double estimated_texels = 0;     // at texel_metres, before downsizing
+  double estimated_texels = 0;     // before downsizing: at texel_metres, or as textures ask for
   double unlit_share = 0;          // of the area, triangles whose corners are all exactly black
   double uniform_share = 0;        // of the area, triangles whose corners are all equal and lit
   bool bake = true;                // there is light to bake

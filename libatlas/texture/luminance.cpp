@@ -55,6 +55,17 @@ Image8 halve(const TextureLevels::Level& in) {
   return out;
 }
 
+// The texture of triangle t if it has one that can be looked up, or -1.
+std::int32_t texture_of(const Scene& scene, std::uint32_t t) {
+  const std::int32_t id = scene.materials[scene.triangle_material[t]].texture;
+  if (id < 0 || scene.texcoord_indices.empty()) return -1;
+  const Image8& image = scene.textures[id].image;
+  if (image.width <= 0 || image.height <= 0 || image.channels <= 0) return -1;
+  for (int k = 0; k < 3; ++k)
+    if (scene.texcoord_indices[3 * std::size_t(t) + k] == Scene::kNoTexcoord) return -1;
+  return id;
+}
+
 }  // namespace
 
 TextureLevels::TextureLevels(const Texture& texture) {
@@ -95,14 +106,9 @@ struct LuminanceSampler::State {
     return {e.x * kd.x, e.y * kd.y, e.z * kd.z};
   }
 
-  // The texture of triangle t if it has one that can be looked up.
   const TextureLevels* texture(std::uint32_t t) const {
-    if (quantity != Quantity::illuminance || scene.texcoord_indices.empty()) return nullptr;
-    const std::int32_t id = material(t).texture;
-    if (id < 0 || textures[id].levels.empty()) return nullptr;
-    for (int k = 0; k < 3; ++k)
-      if (scene.texcoord_indices[3 * std::size_t(t) + k] == Scene::kNoTexcoord) return nullptr;
-    return &textures[id];
+    const std::int32_t id = texture_of(scene, t);
+    return quantity == Quantity::illuminance && id >= 0 ? &textures[id] : nullptr;
   }
 };
 
@@ -117,20 +123,7 @@ const Scene& LuminanceSampler::scene() const {
 }
 
 double LuminanceSampler::texture_density(std::uint32_t t) const {
-  const TextureLevels* texture = state_->texture(t);
-  if (!texture) return 0;
-  const Scene& s = state_->scene;
-  glm::dvec3 p[3];
-  glm::dvec2 c[3];
-  for (int k = 0; k < 3; ++k) {
-    p[k] = to_dvec(s.positions[s.indices[3 * std::size_t(t) + k]]);
-    c[k] = to_dvec(s.texcoords[s.texcoord_indices[3 * std::size_t(t) + k]]);
-  }
-  const double surface = glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
-  const glm::dvec2 a = c[1] - c[0], b = c[2] - c[0];
-  const double texels =
-      std::fabs(a.x * b.y - a.y * b.x) * texture->levels[0].width * texture->levels[0].height;
-  return surface > 0 && texels > 0 ? std::sqrt(texels / surface) : 0;
+  return state_->quantity == Quantity::illuminance ? atlas::texture_density(scene(), t) : 0;
 }
 
 int LuminanceSampler::bad_corner(std::uint32_t t) const {
@@ -202,6 +195,22 @@ Vec3f LuminanceSampler::sample(const Triangle& tri, float b0, float b1, float b2
                      b2 * tri.illumination[2][k]);
   };
   return {lane(0), lane(1), lane(2)};
+}
+
+double texture_density(const Scene& s, std::uint32_t t) {
+  const std::int32_t id = texture_of(s, t);
+  if (id < 0) return 0;
+  glm::dvec3 p[3];
+  glm::dvec2 c[3];
+  for (int k = 0; k < 3; ++k) {
+    p[k] = to_dvec(s.positions[s.indices[3 * std::size_t(t) + k]]);
+    c[k] = to_dvec(s.texcoords[s.texcoord_indices[3 * std::size_t(t) + k]]);
+  }
+  const double surface = glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
+  const glm::dvec2 a = c[1] - c[0], b = c[2] - c[0];
+  const Image8& image = s.textures[id].image;
+  const double texels = std::fabs(a.x * b.y - a.y * b.x) * image.width * image.height;
+  return surface > 0 && texels > 0 ? std::sqrt(texels / surface) : 0;
 }
 
 }  // namespace atlas

@@ -57,8 +57,7 @@ class LuminanceSampler {
   // no reader leaves it, or beyond 1e36, where sums of floats end; 3 if there is none.
   int bad_corner(std::uint32_t t) const;
 
-  // Texture texels per length unit of the surface of triangle t (geometric mean over directions);
-  // 0 if it has no texture, no coordinates or no area.
+  // texture_density() of the scene; 0 where it holds luminance, which textures take no part in.
   double texture_density(std::uint32_t t) const;
 
   const Scene& scene() const;
@@ -67,5 +66,9 @@ class LuminanceSampler {
   struct State;
   std::unique_ptr<const State> state_;
 };
+
+// Texture texels per length unit of the surface of triangle t (geometric mean over directions);
+// 0 if it has no texture, no coordinates or no area.
+double texture_density(const Scene& scene, std::uint32_t t);
 
 }  // namespace atlas

@@ -361,6 +361,32 @@ TEST(Plan, NamesWhatASceneDoesNotNeed) {
 }
 
 // Gutters would take most of a small page from ten thousand charts.
+// A square metre under a texture that is finer than the texel, and one without.
+TEST(Plan, CountsTheTexelsThatTexturesAskFor) {
+  const TempFolder folder;
+  LoadedScene loaded = lit_scene(grid(2, 2));
+  Scene& scene = loaded.scene;
+  scene.metres_per_unit = 1;
+  ExportOptions options = small_pages(folder);
+  options.atlas_size = 1024;
+  options.texel_metres = 0.01;
+  EXPECT_NEAR(make_plan(scene, options).estimated_texels, 1e4, 1);
+  scene.textures.push_back({"", Image8(50, 400, 3, 77)});
+  scene.materials[0].texture = 0;
+  for (const Vec3f& p : scene.positions) scene.texcoords.push_back({p.x, p.y});
+  scene.texcoord_indices = scene.indices;
+  const ExportPlan plan = make_plan(scene, options);
+  EXPECT_NEAR(plan.estimated_texels, 2e4, 2);
+  const auto report = export_world(loaded, options, {}, {});
+  ASSERT_TRUE(report.ok()) << report.status().message();
+  EXPECT_NEAR(double(report->full_texels), plan.estimated_texels, 300);
+  options.texel_metres = 0;  // 1 mm, or 1.5 times a texture of 2000 texels a metre
+  scene.textures[0].image = Image8(2000, 2000, 3, 77);
+  EXPECT_NEAR(make_plan(scene, options).estimated_texels, 9e6, 900);
+  options.follow_textures = false;
+  EXPECT_NEAR(make_plan(scene, options).estimated_texels, 1e6, 100);
+}
+
 TEST(Export, PlainPagesGrowWithTheirCharts) {
   TempFolder folder;
   const LoadedScene scene = lit_scene(soup(600, 5));
