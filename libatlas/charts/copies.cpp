@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "libatlas/charts/grains.h"
+#include "libatlas/charts/cells/grains.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/param/distortion.h"
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "libatlas/charts/flatten.h"
-#include "libatlas/charts/piece_list.h"
-#include "libatlas/charts/topology.h"
+#include "libatlas/charts/flattening/flatten.h"
+#include "libatlas/charts/mesh/piece_list.h"
+#include "libatlas/charts/mesh/topology.h"
 
 namespace atlas {
 

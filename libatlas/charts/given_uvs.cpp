@@ -5,10 +5,10 @@
 #include <span>
 #include <utility>
 
-#include "libatlas/charts/cone.h"
-#include "libatlas/charts/local_chart.h"
+#include "libatlas/charts/flattening/uv_folds.h"
+#include "libatlas/charts/geometry/cone.h"
+#include "libatlas/charts/mesh/local_chart.h"
 #include "libatlas/charts/segment.h"
-#include "libatlas/charts/uv_folds.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"

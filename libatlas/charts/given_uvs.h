@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "libatlas/charts/charts.h"
-#include "libatlas/charts/flatten.h"
-#include "libatlas/charts/topology.h"
+#include "libatlas/charts/flattening/flatten.h"
+#include "libatlas/charts/mesh/topology.h"
 #include "libatlas/core/context.h"
 
 namespace atlas {

@@ -4,13 +4,13 @@
 #include <unordered_map>
 
 #include "libatlas/charts/charts.h"
-#include "libatlas/charts/flatten.h"
+#include "libatlas/charts/filling/limbs.h"
+#include "libatlas/charts/filling/long_charts.h"
+#include "libatlas/charts/flattening/flatten.h"
+#include "libatlas/charts/flattening/slits.h"
 #include "libatlas/charts/given_uvs.h"
-#include "libatlas/charts/limbs.h"
-#include "libatlas/charts/long_charts.h"
+#include "libatlas/charts/mesh/topology.h"
 #include "libatlas/charts/parts.h"
-#include "libatlas/charts/slits.h"
-#include "libatlas/charts/topology.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
 

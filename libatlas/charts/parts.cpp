@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "libatlas/charts/copies.h"
-#include "libatlas/charts/pieces.h"
+#include "libatlas/charts/mesh/pieces.h"
 #include "libatlas/charts/segment.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "libatlas/charts/flatten.h"
+#include "libatlas/charts/flattening/flatten.h"
 
 namespace atlas {
 

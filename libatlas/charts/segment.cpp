@@ -4,13 +4,13 @@
 #include <cmath>
 #include <span>
 
-#include "libatlas/charts/cells.h"
-#include "libatlas/charts/coarse.h"
-#include "libatlas/charts/merge.h"
-#include "libatlas/charts/pieces.h"
-#include "libatlas/charts/refine.h"
-#include "libatlas/charts/slit_paths.h"
-#include "libatlas/charts/straighten.h"
+#include "libatlas/charts/cells/cells.h"
+#include "libatlas/charts/merging/coarse.h"
+#include "libatlas/charts/merging/merge.h"
+#include "libatlas/charts/mesh/pieces.h"
+#include "libatlas/charts/seams/refine.h"
+#include "libatlas/charts/seams/slit_paths.h"
+#include "libatlas/charts/seams/straighten.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
 

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "libatlas/charts/charts.h"
-#include "libatlas/charts/local_chart.h"
-#include "libatlas/charts/refine.h"
-#include "libatlas/charts/topology.h"
+#include "libatlas/charts/mesh/local_chart.h"
+#include "libatlas/charts/mesh/topology.h"
+#include "libatlas/charts/seams/refine.h"
 #include "libatlas/core/context.h"
 
 namespace atlas {

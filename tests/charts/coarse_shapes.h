@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "libatlas/charts/cells.h"
-#include "libatlas/charts/coarse.h"
-#include "libatlas/charts/topology.h"
+#include "libatlas/charts/cells/cells.h"
+#include "libatlas/charts/merging/coarse.h"
+#include "libatlas/charts/mesh/topology.h"
 #include "tests/charts/chart_checks.h"
 
 namespace atlas::test {

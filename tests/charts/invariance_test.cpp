@@ -7,7 +7,7 @@
 #include <cstring>
 #include <numbers>
 
-#include "libatlas/charts/cells.h"
+#include "libatlas/charts/cells/cells.h"
 #include "libatlas/scene/reader.h"
 #include "tests/charts/chart_checks.h"
 #include "tests/charts/invariance.h"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "libatlas/charts/straighten.h"
+#include "libatlas/charts/seams/straighten.h"
 #include "libatlas/core/glm_bridge.h"
 #include "tests/charts/chart_checks.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libatlas/charts/flatten.h"
+#include "libatlas/charts/flattening/flatten.h"
 #include "tests/charts/chart_checks.h"
 
 namespace atlas::test {

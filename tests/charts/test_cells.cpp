@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "libatlas/charts/cells.h"
-#include "libatlas/charts/rims.h"
+#include "libatlas/charts/cells/cells.h"
+#include "libatlas/charts/cells/rims.h"
 #include "tests/charts/chart_checks.h"
 #include "tests/charts/coarse_shapes.h"
 

@@ -8,9 +8,9 @@
 #include <tuple>
 #include <utility>
 
-#include "libatlas/charts/chart_job.h"
-#include "libatlas/charts/newcomers.h"
-#include "libatlas/charts/split.h"
+#include "libatlas/charts/flattening/chart_job.h"
+#include "libatlas/charts/flattening/newcomers.h"
+#include "libatlas/charts/flattening/split.h"
 #include "tests/charts/chart_checks.h"
 
 namespace atlas::test {

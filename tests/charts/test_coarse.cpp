@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libatlas/charts/coarse.h"
-#include "libatlas/charts/fan_centre.h"
+#include "libatlas/charts/merging/coarse.h"
+#include "libatlas/charts/merging/fan_centre.h"
 
 namespace atlas::test {
 namespace {

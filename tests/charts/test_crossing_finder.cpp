@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "libatlas/charts/crossing_finder.h"
+#include "libatlas/charts/merging/crossing_finder.h"
 #include "libatlas/core/predicates.h"
 
 namespace atlas::test {

@@ -5,8 +5,8 @@
 #include <map>
 #include <set>
 
-#include "libatlas/charts/cells.h"
-#include "libatlas/charts/faces.h"
+#include "libatlas/charts/cells/cells.h"
+#include "libatlas/charts/cells/faces.h"
 #include "tests/charts/coarse_shapes.h"
 
 namespace atlas::test {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libatlas/charts/flatten.h"
-#include "libatlas/charts/noise.h"
+#include "libatlas/charts/flattening/flatten.h"
+#include "libatlas/charts/mesh/noise.h"
 #include "tests/charts/chart_checks.h"
 
 namespace atlas::test {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "libatlas/charts/frames.h"
+#include "libatlas/charts/mesh/frames.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "libatlas/charts/fitting_run.h"
+#include "libatlas/charts/flattening/fitting_run.h"
 #include "tests/charts/chart_checks.h"
 
 namespace atlas::test {

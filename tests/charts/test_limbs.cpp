@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "libatlas/charts/chords.h"
-#include "libatlas/charts/part_of_chart.h"
+#include "libatlas/charts/filling/chords.h"
+#include "libatlas/charts/flattening/part_of_chart.h"
 #include "tests/charts/chart_checks.h"
 
 namespace atlas::test {

@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "libatlas/charts/local_chart.h"
+#include "libatlas/charts/mesh/local_chart.h"
 #include "tests/charts/chart_checks.h"
 
 namespace atlas {

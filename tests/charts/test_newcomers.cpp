@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "libatlas/charts/newcomers.h"
+#include "libatlas/charts/flattening/newcomers.h"
 #include "libatlas/param/local_mesh.h"
 #include "tests/support/shapes.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <random>
 
-#include "libatlas/charts/pieces.h"
+#include "libatlas/charts/mesh/pieces.h"
 #include "tests/charts/chart_checks.h"
 
 namespace atlas::test {

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "libatlas/charts/ring_queue.h"
+#include "libatlas/charts/cells/ring_queue.h"
 
 namespace atlas {
 namespace {

@@ -6,7 +6,7 @@
 #include <queue>
 #include <set>
 
-#include "libatlas/charts/slit_paths.h"
+#include "libatlas/charts/seams/slit_paths.h"
 #include "tests/charts/ragged_charts.h"
 
 namespace atlas::test {

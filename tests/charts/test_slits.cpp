@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
-#include "libatlas/charts/slits.h"
-#include "libatlas/charts/split.h"
+#include "libatlas/charts/flattening/slits.h"
+#include "libatlas/charts/flattening/split.h"
 #include "tests/charts/chart_checks.h"
 
 namespace atlas::test {

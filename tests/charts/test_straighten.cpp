@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "libatlas/charts/min_cut.h"
+#include "libatlas/charts/seams/min_cut.h"
 #include "tests/charts/ragged_charts.h"
 
 namespace atlas::test {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "libatlas/charts/tips.h"
+#include "libatlas/charts/cells/tips.h"
 #include "tests/charts/chart_checks.h"
 #include "tests/charts/coarse_shapes.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "libatlas/charts/cone.h"
-#include "libatlas/charts/topology.h"
+#include "libatlas/charts/geometry/cone.h"
+#include "libatlas/charts/mesh/topology.h"
 #include "tests/charts/chart_checks.h"
 
 namespace atlas::test {

@@ -6,14 +6,14 @@
 #include <numeric>
 #include <set>
 
-#include "libatlas/charts/coarse.h"
-#include "libatlas/charts/cost_classes.h"
-#include "libatlas/charts/fan_measure.h"
-#include "libatlas/charts/fan_solver.h"
-#include "libatlas/charts/hull.h"
-#include "libatlas/charts/refusal.h"
-#include "libatlas/charts/topology.h"
-#include "libatlas/charts/trial.h"
+#include "libatlas/charts/geometry/hull.h"
+#include "libatlas/charts/merging/coarse.h"
+#include "libatlas/charts/merging/cost_classes.h"
+#include "libatlas/charts/merging/fan_measure.h"
+#include "libatlas/charts/merging/fan_solver.h"
+#include "libatlas/charts/merging/refusal.h"
+#include "libatlas/charts/merging/trial.h"
+#include "libatlas/charts/mesh/topology.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/param/distortion.h"
 #include "libatlas/param/isometric.h"

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "libatlas/charts/coarse.h"
-#include "libatlas/charts/local_chart.h"
-#include "libatlas/charts/topology.h"
-#include "libatlas/charts/unroll.h"
+#include "libatlas/charts/merging/coarse.h"
+#include "libatlas/charts/merging/unroll.h"
+#include "libatlas/charts/mesh/local_chart.h"
+#include "libatlas/charts/mesh/topology.h"
 #include "tests/charts/chart_checks.h"
 #include "tests/charts/coarse_shapes.h"
 #include "tests/support/shapes.h"

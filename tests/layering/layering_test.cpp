@@ -89,6 +89,32 @@ TEST(Layering, FoldersIncludeOnlyThoseAboveThem) {
   EXPECT_GT(seen, 100);
 }
 
+// The same within charts/, in the order in which its CMakeLists.txt first names the folders. What
+// lies in none of them, but its public headers, knows them all.
+TEST(Layering, FoldersOfChartsIncludeOnlyThoseAboveThem) {
+  const std::string listed = read(kRoot / "libatlas/charts/CMakeLists.txt");
+  int seen = 0;
+  for (const fs::path& path : sources("")) {
+    const fs::path folder = path.parent_path();
+    if (folder.parent_path() != kRoot / "libatlas/charts") continue;
+    const std::size_t own = listed.find(folder.filename().string() + "/");
+    ASSERT_NE(own, std::string::npos) << folder;
+    for (const Include& include : includes_of(path)) {
+      if (include.target.rfind("libatlas/charts/", 0) != 0) continue;
+      ++seen;
+      const fs::path target = fs::path(include.target).parent_path().filename();
+      if (target == "charts") {
+        EXPECT_FALSE(internal(kRoot / include.target)) << place(path, include.line);
+      } else {
+        EXPECT_LE(listed.find(target.string() + "/"), own)
+            << place(path, include.line) << ": " << folder.filename() << " may not include "
+            << target;
+      }
+    }
+  }
+  EXPECT_GT(seen, 100);
+}
+
 TEST(Layering, PublicHeadersShowNoThirdParty) {
   const std::regex heavy(
       R"((glm|Eigen|CGAL|OpenMesh|OpenImageIO|OIIO|tbb|oneapi|nlohmann|fmt|embree[34]|epoxy|GLFW|imgui|boost|CLI)[/.].*|imgui\.h|tiny_gltf\.h|zlib\.h)");

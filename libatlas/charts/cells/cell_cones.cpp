@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "libatlas/charts/cells/cells.h"
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+// A chart's cone is measured anew in the end, with other rounding: keep clear of the limit.
+constexpr double kMargin = 1e-5;
+
+constexpr double kHullCone = 80 * M_PI / 180;  // wider ones have no useful image in a plane
+
+struct ProjectedNormal {
+  double x, y;
+  Vec3f normal;
+};
+
+// Monotone chain; `points` come sorted by x, then y.
+void reduce_to_hull(std::vector<ProjectedNormal>& points) {
+  std::vector<ProjectedNormal> hull;
+  for (int pass = 0; pass < 2; ++pass) {
+    const std::size_t base = hull.size();
+    for (const ProjectedNormal& p : points) {
+      while (hull.size() >= base + 2) {
+        const ProjectedNormal &a = hull[hull.size() - 2], &b = hull.back();
+        if ((b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x) > 0) break;
+        hull.pop_back();
+      }
+      hull.push_back(p);
+    }
+    if (points.size() > 1) hull.pop_back();
+    std::reverse(points.begin(), points.end());
+  }
+  if (points.size() > 1 || hull.empty()) points = std::move(hull);
+}
+
+struct CellLists {
+  std::vector<std::uint32_t> first, triangles;
+
+  explicit CellLists(const Cells& cells) : first(cells.count + 2, 0) {
+    const auto& of = cells.of_triangle;
+    for (const std::uint32_t k : of) {
+      if (k != kNoIndex) ++first[k + 2];
+    }
+    for (std::size_t i = 2; i < first.size(); ++i) first[i] += first[i - 1];
+    triangles.resize(first.back());
+    for (std::uint32_t t = 0; t < of.size(); ++t) {
+      if (of[t] != kNoIndex) triangles[first[of[t] + 1]++] = t;
+    }
+    first.pop_back();
+  }
+  std::span<const std::uint32_t> of(std::uint32_t k) const {
+    return {triangles.data() + first[k], first[k + 1] - first[k]};
+  }
+};
+
+class ConeSplitter {
+ public:
+  ConeSplitter(const Topology& topology, double cone, Cells& cells)
+      : topology_(topology), least_(std::cos(std::max(0.0, cone - kMargin))), cells_(cells) {}
+
+  // First the connected parts around the mean normal, then patches around what is left, each
+  // around its first triangle. The first part keeps the cell's number.
+  void divide(std::uint32_t k, std::span<const std::uint32_t> triangles) {
+    glm::dvec3 mean(0);
+    for (const std::uint32_t t : triangles) {
+      mean += double(topology_.areas[t]) * to_dvec(topology_.normals[t]);
+      cells_.of_triangle[t] = kPending;
+    }
+    const double length = glm::length(mean);
+    if (length > 0) mean /= length;
+    bool named = false;
+    for (const bool around_mean : {true, false}) {
+      for (const std::uint32_t t : triangles) {
+        if (cells_.of_triangle[t] != kPending) continue;
+        const glm::dvec3 axis = around_mean ? mean : to_dvec(topology_.normals[t]);
+        if (around_mean && glm::dot(mean, to_dvec(topology_.normals[t])) < least_) continue;
+        grow(t, named ? cells_.count++ : k, axis);
+        named = true;
+      }
+    }
+  }
+
+ private:
+  void grow(std::uint32_t seed, std::uint32_t name, const glm::dvec3& axis) {
+    queue_.assign(1, seed);
+    cells_.of_triangle[seed] = name;
+    while (!queue_.empty()) {
+      const std::uint32_t t = queue_.back();
+      queue_.pop_back();
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        const std::uint32_t o = topology_.opposite[h];
+        if (o == kNoIndex || cells_.of_triangle[o / 3] != kPending) continue;
+        if (glm::dot(axis, to_dvec(topology_.normals[o / 3])) < least_) continue;
+        cells_.of_triangle[o / 3] = name;
+        queue_.push_back(o / 3);
+      }
+    }
+  }
+
+  static constexpr std::uint32_t kPending = kNoIndex - 1;
+
+  const Topology& topology_;
+  double least_;
+  Cells& cells_;
+  std::vector<std::uint32_t> queue_;
+};
+
+}  // namespace
+
+void split_by_cone(const Topology& topology, double cone, Cells& cells) {
+  const CellLists lists(cells);
+  ConeSplitter splitter(topology, cone, cells);
+  for (std::uint32_t k = 0; k + 1 < lists.first.size(); ++k) {
+    if (lists.of(k).empty()) continue;
+    if (normal_cone(topology.normals, lists.of(k)).angle > cone - kMargin) {
+      splitter.divide(k, lists.of(k));
+    }
+  }
+}
+
+ExtremeNormals extreme_normals(const Topology& topology, const Cells& cells) {
+  const CellLists lists(cells);
+  ExtremeNormals result;
+  std::vector<ProjectedNormal> points;
+  for (std::uint32_t k = 0; k < cells.count; ++k) {
+    result.first.push_back(static_cast<std::uint32_t>(result.normals.size()));
+    if (lists.of(k).empty()) continue;
+    const NormalCone cone = normal_cone(topology.normals, lists.of(k));
+    const glm::dvec3 axis = to_dvec(cone.axis);
+    const glm::dvec3 u =
+        glm::normalize(std::abs(axis.x) < 0.6 ? glm::cross(axis, glm::dvec3(1, 0, 0))
+                                              : glm::cross(axis, glm::dvec3(0, 1, 0)));
+    const glm::dvec3 v = glm::cross(axis, u);
+    points.clear();
+    for (const std::uint32_t t : lists.of(k)) {
+      const glm::dvec3 n = to_dvec(topology.normals[t]);
+      const double height = cone.angle < kHullCone ? glm::dot(n, axis) : 1;
+      points.push_back({glm::dot(n, u) / height, glm::dot(n, v) / height, topology.normals[t]});
+    }
+    std::sort(points.begin(), points.end(), [](const ProjectedNormal& a, const ProjectedNormal& b) {
+      return a.x != b.x ? a.x < b.x : a.y < b.y;
+    });
+    if (cone.angle < kHullCone) reduce_to_hull(points);
+    for (const ProjectedNormal& p : points) result.normals.push_back(p.normal);
+  }
+  result.first.push_back(static_cast<std::uint32_t>(result.normals.size()));
+  return result;
+}
+
+}  // namespace atlas

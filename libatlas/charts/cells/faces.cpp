@@ -1,0 +1,160 @@
+#include "libatlas/charts/cells/faces.h"
+
+#include <span>
+#include <utility>
+
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+// Normals in one plane lean less than a quarter of a degree to each other.
+constexpr float kFlatCosine = 1 - 1e-5f;
+// Of a piece's area by its cells. No round value: facets of one size must not be at the limit.
+constexpr double kLeastArea = 0.2563;
+// For each cell that a piece gets by its plan: more would all become cells.
+constexpr std::size_t kMostRegions = 3;
+// Facets: planes that bend by less than 35 degrees, along so much of their border, to others of
+// more than this part of their area.
+constexpr double kSoftCosine = 0.82, kMostSoft = 0.5, kFacet = 0.25;
+constexpr std::uint32_t kAlone = kNoIndex - 1, kRest = kNoIndex - 2;  // no names of planes
+
+class FaceFinder {
+ public:
+  FaceFinder(const Topology& topology, const CellPlan& plan)
+      : topology_(topology), plan_(plan), plane_(topology.triangle_count(), kNoIndex) {}
+
+  Faces run() {
+    faces_.of_triangle.assign(topology_.triangle_count(), kNoIndex);
+    for (std::uint32_t k = 0; k < plan_.pieces.count(); ++k) {
+      faces_.share.push_back(find_in(plan_.pieces.of(k), plan_.cells[k]));
+    }
+    return std::move(faces_);
+  }
+
+ private:
+  // Connected triangles of one plane: a range of triangles_.
+  struct Plane {
+    std::uint32_t first = 0, last = 0;
+    double area = 0;
+  };
+
+  // Returns the share of the piece's area that faces cover.
+  double find_in(std::span<const std::uint32_t> piece, std::uint32_t cells) {
+    planes_.clear();
+    triangles_.clear();
+    double area = 0, covered = 0;
+    for (const std::uint32_t t : piece) {
+      area += topology_.areas[t];
+      if (plane_[t] != kNoIndex) continue;
+      if (alone(t)) {
+        plane_[t] = kAlone;
+      } else {
+        flood_plane(t);
+      }
+    }
+    std::size_t regions = 0;
+    for (const Plane& plane : planes_) {
+      if (plane.area < kLeastArea * area / cells || !is_face(plane)) continue;
+      for (const std::uint32_t t : of(plane)) faces_.of_triangle[t] = plane_[t];
+      covered += plane.area;
+      ++regions;
+    }
+    if (regions == 0) return 0;
+    for (const std::uint32_t t : piece) regions += flood_rest(t);
+    if (regions <= kMostRegions * cells) return covered / area;
+    for (const std::uint32_t t : piece) faces_.of_triangle[t] = kNoIndex;
+    return 0;
+  }
+
+  std::span<const std::uint32_t> of(const Plane& plane) const {
+    return std::span(triangles_).subspan(plane.first, plane.last - plane.first);
+  }
+
+  glm::vec3 normal(std::uint32_t t) const { return to_glm(topology_.calm_normal(t)); }
+
+  bool same_plane(std::uint32_t t, std::uint32_t u) const {
+    return glm::dot(normal(t), normal(u)) >= kFlatCosine;
+  }
+
+  // Most triangles of what is not made of planes are.
+  bool alone(std::uint32_t t) const {
+    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+      const std::uint32_t o = topology_.opposite[h];
+      if (o != kNoIndex && same_plane(t, o / 3)) return false;
+    }
+    return true;
+  }
+
+  double area_of_plane(std::uint32_t t) const {
+    return plane_[t] == kAlone ? topology_.areas[t] : planes_[plane_[t]].area;
+  }
+
+  void flood_plane(std::uint32_t seed) {
+    const auto name = static_cast<std::uint32_t>(planes_.size());
+    Plane plane{static_cast<std::uint32_t>(triangles_.size()), 0, 0};
+    triangles_.push_back(seed);
+    plane_[seed] = name;
+    for (std::size_t i = plane.first; i < triangles_.size(); ++i) {
+      const std::uint32_t t = triangles_[i];
+      plane.area += topology_.areas[t];
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        const std::uint32_t o = topology_.opposite[h];
+        if (o == kNoIndex || plane_[o / 3] != kNoIndex) continue;
+        if (!same_plane(seed, o / 3)) continue;
+        plane_[o / 3] = name;
+        triangles_.push_back(o / 3);
+      }
+    }
+    plane.last = static_cast<std::uint32_t>(triangles_.size());
+    planes_.push_back(plane);
+  }
+
+  // Whether it is no facet of something round: those lean little to others of about their size.
+  bool is_face(const Plane& plane) const {
+    double border = 0, soft = 0;
+    for (const std::uint32_t t : of(plane)) {
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        const std::uint32_t o = topology_.opposite[h];
+        if (o == kNoIndex || plane_[o / 3] == plane_[t]) continue;
+        const double length = edge_length(topology_, h);
+        border += length;
+        if (area_of_plane(o / 3) < kFacet * plane.area) continue;
+        if (glm::dot(normal(t), normal(o / 3)) > kSoftCosine) soft += length;
+      }
+    }
+    return soft <= kMostSoft * border;
+  }
+
+  // Marks what lies between faces around a triangle; whether that is new.
+  bool flood_rest(std::uint32_t seed) {
+    const auto enter = [&](std::uint32_t t) {
+      if (faces_.of_triangle[t] != kNoIndex) return false;
+      return std::exchange(plane_[t], kRest) != kRest;
+    };
+    if (!enter(seed)) return false;
+    queue_.assign(1, seed);
+    for (std::size_t i = 0; i < queue_.size(); ++i) {
+      for (std::uint32_t h = 3 * queue_[i]; h < 3 * queue_[i] + 3; ++h) {
+        const std::uint32_t o = topology_.opposite[h];
+        if (o != kNoIndex && enter(o / 3)) queue_.push_back(o / 3);
+      }
+    }
+    return true;
+  }
+
+  const Topology& topology_;
+  const CellPlan& plan_;
+  Faces faces_;
+  std::vector<std::uint32_t> plane_;  // 1 a triangle
+  std::vector<Plane> planes_;         // of the piece
+  std::vector<std::uint32_t> triangles_, queue_;
+};
+
+}  // namespace
+
+Faces find_faces(const Topology& topology, const CellPlan& plan) {
+  return FaceFinder(topology, plan).run();
+}
+
+}  // namespace atlas

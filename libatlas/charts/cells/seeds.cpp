@@ -1,0 +1,316 @@
+#include "libatlas/charts/cells/seeds.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "libatlas/charts/cells/cell_distance.h"
+#include "libatlas/charts/cells/ring_queue.h"
+
+namespace atlas {
+namespace {
+
+constexpr double kFlatSpread = 1e-6;
+constexpr std::uint32_t kCalmGrain = 3;
+constexpr float kBetweenParts = 0.29f;  // so that round values are not at a part's limit
+constexpr float kCosineParts = 4096;
+constexpr std::uint32_t kStretch = 64;  // grains
+// The first seeds of a large piece are more than so many grains apart, one for some twenty grains,
+// and at most this share of its cells: the farthest point from what is well spaced is near, from
+// few seeds far. Half of the time of sampling, and as many charts with seams as long (100 meshes,
+// ten segmentations each). Not around handles and holes, where charts would be a third more.
+constexpr std::uint8_t kHops = 3, kNotCovered = 0xff;
+constexpr double kScatteredShare = 0.8;
+constexpr std::uint32_t kManyCells = 16;
+
+struct Visit {
+  std::uint32_t key;  // of the distance
+  float distance;
+  std::uint32_t node, seed;
+};
+
+// Chooses seeds among the grains.
+class Seeder {
+ public:
+  Seeder(const CellInput& input, const Grains& grains, const CellOptions& options,
+         const Context& context)
+      : plan_(input.plan), grains_(grains), options_(options), context_(context) {}
+
+  CellSeeds run() {
+    distance_.assign(grains_.count(), kFar);
+    owner_.assign(grains_.count(), kNoIndex);
+    for (std::uint32_t first = 0, last = 0; first < grains_.count() && !context_.cancelled();
+         first = last) {
+      while (last < grains_.count() && grains_.component[last] == grains_.component[first]) ++last;
+      const std::size_t first_seed = seeds_.size();
+      double area = 0;
+      for (std::uint32_t g = first; g < last; ++g) area += grains_.area[g];
+      ruler_ = CellRuler(area, last - first);
+      const std::uint32_t budget = flat(first, last) ? 1 : plan_.cells[grains_.component[first]];
+      sample_piece(first, last, budget);
+      if (seeds_.size() == first_seed + 1) continue;
+      number_by_grain(first, last, first_seed);
+      for (int round = 0; round < 2; ++round) recentre(first, last, first_seed);
+    }
+    return {std::move(seeds_), std::move(normals_), std::move(owner_)};
+  }
+
+ private:
+  // A piece that lies in one plane is one chart whatever its outline, so one cell will do.
+  bool flat(std::uint32_t first, std::uint32_t last) const {
+    glm::dvec3 sum(0);
+    double area = 0;
+    for (std::uint32_t g = first; g < last; ++g) {
+      sum += double(grains_.area[g]) * glm::dvec3(grains_.normal[g]);
+      area += grains_.area[g];
+    }
+    return area > 0 && glm::length(sum) > area * (1 - kFlatSpread);
+  }
+
+  void add_seed(std::uint32_t grain) {
+    seeds_.push_back(grain);
+    normals_.push_back(grains_.normal[grain]);
+    queue_.restart();
+    start_from(grain, static_cast<std::uint32_t>(seeds_.size() - 1));
+    spread();
+  }
+
+  void start_from(std::uint32_t grain, std::uint32_t seed) {
+    if (ruler_.take(0, seed, distance_[grain], owner_[grain])) {
+      queue_.push({0, distance_[grain], grain, seed});
+    }
+  }
+
+  void spread() {
+    // What is read again and again, where no write can be thought to change it.
+    const CellRuler ruler = ruler_;
+    const std::uint32_t *const first = grains_.first.data(), *const neighbour =
+                                                                 grains_.neighbour.data();
+    const float* const step = grains_.distance.data();
+    const glm::vec3* const normal = grains_.normal.data();
+    float* const nearest = distance_.data();
+    std::uint32_t* const owner = owner_.data();
+    while (!queue_.empty()) {
+      const Visit visit = queue_.pop();
+      if (visit.distance != nearest[visit.node] || visit.seed != owner[visit.node]) continue;
+      const glm::vec3 axis = normals_[visit.seed];
+      for (std::uint32_t i = first[visit.node], end = first[visit.node + 1]; i < end; ++i) {
+        const std::uint32_t next = neighbour[i];
+        const float distance = visit.distance + cell_distance(step[i], normal[next], axis);
+        if (!ruler.take(distance, visit.seed, nearest[next], owner[next])) continue;
+        queue_.push({std::max(ruler.key(distance), visit.key), nearest[next], next, visit.seed});
+      }
+    }
+  }
+
+  void sample_piece(std::uint32_t first, std::uint32_t last, std::uint32_t budget) {
+    farthest_.assign((last - first + kStretch - 1) / kStretch, kFar);
+    const std::size_t first_seed = seeds_.size();
+    const auto start = static_cast<std::uint32_t>(options_.first_seed * (last - first));
+    if (budget < kManyCells || plan_.pierced[grains_.component[first]]) {
+      add_seed(first + start);
+    } else {
+      scatter(first, last, start, static_cast<std::uint32_t>(kScatteredShare * budget));
+    }
+    while (!context_.cancelled()) {
+      const std::uint32_t grain = farthest(first, last);
+      if (distance_[grain] == kFar) ++budget;  // beyond what bounds a face
+      if (distance_[grain] == 0 || seeds_.size() - first_seed >= budget) break;
+      add_seed(grain);
+    }
+    add_leaning(first, last);
+  }
+
+  // Seeds in order of the grains, from the start-th one on, each where no other is within kHops.
+  void scatter(std::uint32_t first, std::uint32_t last, std::uint32_t start, std::uint32_t most) {
+    const std::uint32_t n = last - first;
+    hops_.assign(n, kNotCovered);
+    queue_.restart();
+    for (std::uint32_t i = 0, count = 0; i < n && count < most; ++i) {
+      const std::uint32_t g = first + (start + i) % n;
+      if (hops_[g - first] != kNotCovered) continue;
+      cover(first, g);
+      seeds_.push_back(g);
+      normals_.push_back(grains_.normal[g]);
+      start_from(g, static_cast<std::uint32_t>(seeds_.size() - 1));
+      ++count;
+    }
+    spread();
+  }
+
+  // Breadth-first, as far as no other seed is as near.
+  void cover(std::uint32_t first, std::uint32_t seed) {
+    hops_[seed - first] = 0;
+    reached_.assign(1, seed);
+    for (std::size_t i = 0; i < reached_.size(); ++i) {
+      const std::uint32_t g = reached_[i];
+      const auto hops = static_cast<std::uint8_t>(hops_[g - first] + 1);
+      if (hops > kHops) return;
+      for (std::uint32_t k = grains_.first[g]; k < grains_.first[g + 1]; ++k) {
+        std::uint8_t& known = hops_[grains_.neighbour[k] - first];
+        if (known <= hops) continue;
+        known = hops;
+        reached_.push_back(grains_.neighbour[k]);
+      }
+    }
+  }
+
+  // The last of those that are farthest from all seeds. While seeds are added distances only fall,
+  // so what is remembered of a stretch of grains bounds them, and few stretches are looked at
+  // again.
+  std::uint32_t farthest(std::uint32_t first, std::uint32_t last) {
+    const auto end_of = [&](std::size_t s) {
+      return std::min<std::uint32_t>(last, first + kStretch * static_cast<std::uint32_t>(s + 1));
+    };
+    const auto look_again = [&](std::size_t s) {
+      std::int32_t most = 0;  // bits order as what they stand for; compilers compare four at once
+      for (std::uint32_t g = first + kStretch * std::uint32_t(s); g < end_of(s); ++g) {
+        most = std::max(most, std::bit_cast<std::int32_t>(distance_[g]));
+      }
+      return std::exchange(farthest_[s], std::bit_cast<float>(most)) == std::bit_cast<float>(most);
+    };
+    std::size_t s = 0;
+    do {
+      s = std::size_t(std::max_element(farthest_.begin(), farthest_.end()) - farthest_.begin());
+    } while (!look_again(s));
+    const float most = farthest_[s];
+    for (s = farthest_.size(); s-- > 0;) {
+      if (!ruler_.about_as_far(farthest_[s], most)) continue;
+      for (std::uint32_t g = end_of(s); g-- > first + kStretch * std::uint32_t(s);) {
+        if (ruler_.about_as_far(distance_[g], most)) return g;
+      }
+      look_again(s);
+    }
+    return first;  // not reached: the farthest itself is no nearer
+  }
+
+  // Seeds that are about equally far from all others are found in an order that rounding decides.
+  // It is forgotten here, for ties fall by a seed's number: the last grain's seed comes first.
+  void number_by_grain(std::uint32_t first, std::uint32_t last, std::size_t first_seed) {
+    const auto begin = static_cast<std::uint32_t>(first_seed);
+    std::vector<std::uint32_t> order(seeds_.size() - first_seed), number(order.size());
+    std::iota(order.begin(), order.end(), begin);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return std::pair(seeds_[a], a) > std::pair(seeds_[b], b);
+    });
+    const std::vector<std::uint32_t> old_seeds(seeds_.begin() + begin, seeds_.end());
+    const std::vector<glm::vec3> old_normals(normals_.begin() + begin, normals_.end());
+    for (std::uint32_t i = 0; i < order.size(); ++i) {
+      number[order[i] - begin] = begin + i;
+      seeds_[begin + i] = old_seeds[order[i] - begin];
+      normals_[begin + i] = old_normals[order[i] - begin];
+    }
+    for (std::uint32_t g = first; g < last; ++g) owner_[g] = number[owner_[g] - begin];
+  }
+
+  // Seeds for what leans too far from its cell, a few at a time.
+  void add_leaning(std::uint32_t first, std::uint32_t last) {
+    const auto limit = static_cast<float>(std::cos(options_.max_lean_degrees * M_PI / 180));
+    const auto cosine = [&](std::uint32_t g) {
+      return glm::dot(calm_normal(g), normals_[owner_[g]]);
+    };
+    std::vector<std::uint8_t> look(last - first, 1);
+    for (int round = 0; round < 6; ++round) {
+      std::vector<std::pair<int, std::uint32_t>> leaning;
+      for (std::uint32_t g = first; g < last; ++g) {
+        if (!look[g - first]) continue;
+        const float c = cosine(g);
+        if (c < limit)
+          leaning.push_back({static_cast<int>(std::floor(kCosineParts * c + kBetweenParts)), g});
+      }
+      if (leaning.empty()) return;
+      std::sort(leaning.begin(), leaning.end());
+      const std::vector<std::uint32_t> before(owner_.begin() + first, owner_.begin() + last);
+      for (const auto& [worst, g] : leaning) {
+        if (cosine(g) < limit) add_seed(g);
+      }
+      find_changed(first, before, look);
+      for (const auto& [worst, g] : leaning) look[g - first] = 1;  // it may be a seed already
+    }
+  }
+
+  // Others lean no more than they did.
+  void find_changed(std::uint32_t first, const std::vector<std::uint32_t>& before,
+                    std::vector<std::uint8_t>& changed) const {
+    std::fill(changed.begin(), changed.end(), 0);
+    for (std::uint32_t g = first; g < first + before.size(); ++g) {
+      if (owner_[g] == before[g - first]) continue;
+      changed[g - first] = 1;
+      for (std::uint32_t i = grains_.first[g]; i < grains_.first[g + 1]; ++i) {
+        changed[grains_.neighbour[i] - first] = 1;
+      }
+    }
+  }
+
+  // A grain's normal; of several triangles, with its neighbours' in the cell, for a few triangles
+  // may lean by noise alone.
+  glm::vec3 calm_normal(std::uint32_t g) const {
+    if (grains_.size[g] < kCalmGrain) return grains_.normal[g];
+    glm::vec3 sum = grains_.area[g] * grains_.normal[g];
+    for (std::uint32_t i = grains_.first[g]; i < grains_.first[g + 1]; ++i) {
+      const std::uint32_t n = grains_.neighbour[i];
+      if (owner_[n] != owner_[g]) continue;  // it may lie beyond a crease
+      sum += grains_.area[n] * grains_.normal[n];
+    }
+    const float length = glm::length(sum);
+    return length > 0 ? sum / length : grains_.normal[g];
+  }
+
+  void recentre(std::uint32_t first, std::uint32_t last, std::size_t first_seed) {
+    struct Sum {
+      glm::dvec3 middle{0}, normal{0};  // double: single would decide what nearly ties
+      double area = 0;
+      float best = kFar;
+    };
+    std::vector<Sum> sums(seeds_.size() - first_seed);
+    for (std::uint32_t g = first; g < last; ++g) {
+      Sum& sum = sums[owner_[g] - first_seed];
+      sum.middle += double(grains_.area[g]) * glm::dvec3(grains_.centroid[g]);
+      sum.normal += double(grains_.area[g]) * glm::dvec3(grains_.normal[g]);
+      sum.area += grains_.area[g];
+    }
+    for (Sum& sum : sums) sum.middle /= sum.area;
+    for (std::uint32_t g = first; g < last; ++g) {
+      Sum& sum = sums[owner_[g] - first_seed];
+      const auto d = static_cast<float>(glm::distance(glm::dvec3(grains_.centroid[g]), sum.middle));
+      if (ruler_.shorter(d, sum.best)) {
+        sum.best = d;
+        seeds_[owner_[g]] = g;
+      }
+      distance_[g] = kFar;
+    }
+    queue_.restart();
+    for (std::size_t s = first_seed; s < seeds_.size(); ++s) {
+      const glm::dvec3& normal = sums[s - first_seed].normal;
+      const double length = glm::length(normal);
+      if (length > 0) normals_[s] = normal / length;
+      start_from(seeds_[s], static_cast<std::uint32_t>(s));
+    }
+    spread();
+  }
+
+  const CellPlan& plan_;
+  const Grains& grains_;
+  const CellOptions& options_;
+  const Context& context_;
+  std::vector<std::uint32_t> seeds_;  // grains
+  std::vector<glm::vec3> normals_;    // 1 a seed
+  std::vector<float> distance_;
+  std::vector<std::uint32_t> owner_;
+  std::vector<float> farthest_;         // 1 a stretch of the piece's grains: none is farther
+  std::vector<std::uint8_t> hops_;      // 1 a grain of the piece: to the nearest scattered seed
+  std::vector<std::uint32_t> reached_;  // by cover()
+  CellRuler ruler_;                     // of the piece at hand
+  RingQueue<Visit> queue_;
+};
+
+}  // namespace
+
+CellSeeds choose_seeds(const CellInput& input, const Grains& grains, const CellOptions& options,
+                       const Context& context) {
+  return Seeder(input, grains, options, context).run();
+}
+
+}  // namespace atlas

@@ -1,0 +1,386 @@
+#include "libatlas/charts/filling/limb_cutter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <queue>
+#include <utility>
+
+#include "libatlas/charts/filling/band.h"
+#include "libatlas/charts/filling/chords.h"
+#include "libatlas/charts/geometry/hull.h"
+#include "libatlas/param/halfedges.h"
+
+namespace atlas {
+namespace {
+
+constexpr std::size_t kMostPieces = 12;
+constexpr double kLeastFall = 0.01;   // of the chart's sprawl by one cut
+constexpr double kLeastPiece = 0.01;  // of the chart's area
+// Share of the rectangles' area that must be gained for a seam as long as the square root of the
+// chart's area.
+constexpr double kSeamPrice = 0.12;
+// A cut may be this much longer than its chord; what strays from the chord counts as longer by this
+// times the square of how far it strays, in chords: a tenth doubles it.
+constexpr double kLongestPath = 1.6, kStrayWeight = 100;
+constexpr std::size_t kChordsTried = 12;
+// A piece whose largest hole takes so much of its hull is a ring: no single cut divides it. It is
+// cut at two opposite places, when no chord is left.
+constexpr double kRingHole = 0.25;
+constexpr double kRingScore = 1e-9;
+constexpr std::uint32_t kUnseen = kNoIndex - 1;
+
+using Triangles = std::vector<std::uint32_t>;  // of the chart
+
+// A flat chart on its way to pieces.
+class LimbCutter {
+ public:
+  explicit LimbCutter(const FlatChart& chart) : chart_(chart) {
+    const std::size_t n = chart.triangles.size();
+    half_edges_.build(chart.corners, chart.uvs.size());
+    list_leaving();
+    piece_of_.assign(n, 0);
+    side_.resize(n);
+    seen_.resize(3 * n);
+    blocked_.assign(3 * n, 0);
+    by_.assign(chart.uvs.size(), kUnseen);
+    on_rim_.assign(chart.uvs.size(), 0);
+    Piece whole;
+    for (std::uint32_t t = 0; t < n; ++t) whole.triangles.push_back(t);
+    measure(whole, 0);
+    least_fall_ = kLeastFall * whole.sprawl;
+    pieces_.push_back(std::move(whole));
+  }
+
+  // The triangles of each piece, ascending; empty if cutting does not pay.
+  std::vector<Triangles> run(double wanted, const Context& context) {
+    const double box = pieces_[0].box, area = pieces_[0].area;
+    while (area < wanted * boxes() && pieces_.size() < kMostPieces && !context.cancelled()) {
+      if (!cut_best()) break;
+    }
+    heal(std::max(boxes(), area / wanted));
+    std::vector<Triangles> result;
+    if (pieces_.size() == 1 || context.cancelled()) return result;
+    double seam = 0;
+    for (const auto& [pair, length] : seams()) seam += length;
+    if (box - boxes() < kSeamPrice * seam / std::sqrt(area) * box) return result;
+    for (Piece& piece : pieces_) result.push_back(std::move(piece.triangles));
+    std::sort(result.begin(), result.end(),
+              [](const Triangles& a, const Triangles& b) { return a.front() < b.front(); });
+    return result;
+  }
+
+ private:
+  struct Piece {
+    Triangles triangles;
+    std::vector<std::uint32_t> outline;  // uvs along its longest border
+    std::vector<std::uint32_t> hole;     // the same of its largest hole
+    double area = 0, hole_area = 0, hull = 0, box = 0, sprawl = 0;
+    bool searched = false;
+    double score = 0;                 // of its best cut, 0: none
+    std::array<Triangles, 2> halves;  // by it
+  };
+
+  double boxes() const {
+    double sum = 0;
+    for (const Piece& piece : pieces_) sum += piece.box;
+    return sum;
+  }
+
+  std::uint32_t uv_at(std::uint32_t h) const { return chart_.corners[h / 3][h % 3]; }
+
+  // Half-edges by the uv that they leave, ascending.
+  void list_leaving() {
+    first_.assign(chart_.uvs.size() + 1, 0);
+    const auto count = std::uint32_t(3 * chart_.triangles.size());
+    for (std::uint32_t h = 0; h < count; ++h) ++first_[uv_at(h) + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    leaving_.resize(count);
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    for (std::uint32_t h = 0; h < count; ++h) leaving_[next[uv_at(h)]++] = h;
+  }
+
+  // The half-edge across h in the same piece.
+  std::uint32_t across(std::uint32_t h) const {
+    const std::uint32_t o = half_edges_.opposite(h);
+    return o != kNoIndex && piece_of_[o / 3] == piece_of_[h / 3] ? o : kNoIndex;
+  }
+
+  // Fills in what follows from the triangles, which belong to the piece of that number.
+  void measure(Piece& piece, std::uint32_t number) {
+    piece.area = piece.hole_area = 0;
+    for (const std::uint32_t t : piece.triangles) {
+      const auto& c = chart_.corners[t];
+      piece.area += 0.5 * cross(chart_.uvs[c[0]], chart_.uvs[c[1]], chart_.uvs[c[2]]);
+      piece_of_[t] = number;
+    }
+    for (const std::uint32_t t : piece.triangles) std::fill_n(&seen_[3 * t], 3, 0);
+    double most = 0;
+    for (const std::uint32_t t : piece.triangles) {
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        if (seen_[h] || across(h) != kNoIndex) continue;
+        std::vector<std::uint32_t> loop = trace(h);
+        const double area = signed_area(loop);
+        if (-area > piece.hole_area) {
+          piece.hole_area = -area;
+          piece.hole = loop;
+        }
+        if (area <= most) continue;
+        most = area;
+        piece.outline = std::move(loop);
+      }
+    }
+    std::vector<Vec2d> points = positions(piece.outline), hull;
+    piece.hull = hull_area(points, hull);
+    piece.box = box_area(hull);
+    piece.sprawl = sprawl(piece.hull, piece.box);
+    piece.searched = false;
+    piece.score = 0;
+  }
+
+  std::vector<std::uint32_t> trace(std::uint32_t start) {
+    std::vector<std::uint32_t> loop;
+    std::uint32_t h = start;
+    do {
+      seen_[h] = 1;
+      loop.push_back(uv_at(h));
+      h = next_half_edge(h);
+      while (across(h) != kNoIndex) h = next_half_edge(across(h));
+    } while (h != start);
+    return loop;
+  }
+
+  std::vector<Vec2d> positions(const std::vector<std::uint32_t>& uvs) const {
+    std::vector<Vec2d> points;
+    points.reserve(uvs.size());
+    for (const std::uint32_t i : uvs) points.push_back(chart_.uvs[i]);
+    return points;
+  }
+
+  double signed_area(const std::vector<std::uint32_t>& loop) const {
+    double twice = 0;
+    for (std::size_t i = 2; i < loop.size(); ++i) {
+      twice += cross(chart_.uvs[loop[0]], chart_.uvs[loop[i - 1]], chart_.uvs[loop[i]]);
+    }
+    return 0.5 * twice;
+  }
+
+  bool cut_best() {
+    std::size_t best = pieces_.size();
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      if (!pieces_[i].searched) search(pieces_[i]);
+      if (pieces_[i].score > 0 &&
+          (best == pieces_.size() || pieces_[i].score > pieces_[best].score))
+        best = i;
+    }
+    if (best == pieces_.size()) return false;
+    std::array<Triangles, 2> halves = std::move(pieces_[best].halves);
+    for (const bool second : {true, false}) {
+      Piece piece;
+      piece.triangles = std::move(halves[second]);
+      const std::size_t number = second ? pieces_.size() : best;
+      for (const std::uint32_t t : piece.triangles) piece_of_[t] = std::uint32_t(number);
+      if (second) pieces_.emplace_back();
+      pieces_[number] = std::move(piece);
+    }
+    measure(pieces_[best], std::uint32_t(best));
+    measure(pieces_.back(), std::uint32_t(pieces_.size() - 1));
+    return true;
+  }
+
+  void search(Piece& piece) {
+    piece.searched = true;
+    const std::vector<Vec2d> outline = positions(piece.outline);
+    const std::vector<Chord> chords = find_chords(outline, edges_across(piece), least_fall_);
+    for (std::size_t i = 0; i < std::min(chords.size(), kChordsTried); ++i) {
+      const std::vector<std::uint32_t> path =
+          find_path(piece, piece.outline[chords[i].a], piece.outline[chords[i].b]);
+      if (path.empty() || !divide(piece, path)) continue;
+      piece.score = chords[i].score;
+      return;
+    }
+    if (piece.hole_area > kRingHole * piece.hull) open_ring(piece);
+  }
+
+  // Fills halves and score of a ring. That does not pay by itself: the halves have to be cut, too.
+  void open_ring(Piece& piece) {
+    std::vector<std::uint32_t> paths;
+    for (const BandCrossing& crossing : cross_band(chart_.uvs, piece.outline, piece.hole)) {
+      const std::vector<std::uint32_t> path = find_path(piece, crossing.outer, crossing.inner);
+      if (path.empty()) return;
+      paths.insert(paths.end(), path.begin(), path.end());
+    }
+    if (!paths.empty() && divide(piece, paths)) piece.score = kRingScore;
+  }
+
+  // Edges inside the piece from one place in its outline to another.
+  std::vector<std::array<std::uint32_t, 2>> edges_across(const Piece& piece) {
+    std::vector<std::uint32_t>& place = by_;
+    for (std::uint32_t i = 0; i < piece.outline.size(); ++i) place[piece.outline[i]] = i;
+    std::vector<std::array<std::uint32_t, 2>> edges;
+    for (const std::uint32_t t : piece.triangles) {
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        const std::uint32_t a = place[uv_at(h)], b = place[uv_at(next_half_edge(h))];
+        if (a != kUnseen && b != kUnseen && a < b && across(h) != kNoIndex) edges.push_back({a, b});
+      }
+    }
+    for (const std::uint32_t i : piece.outline) place[i] = kUnseen;
+    return edges;
+  }
+
+  // Edges of the piece from uv a to uv b, none of them along its outline, close to the straight
+  // line: its half-edges on one side; empty if there is no such path. Dijkstra.
+  std::vector<std::uint32_t> find_path(const Piece& piece, std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t number = piece_of_[piece.triangles[0]];
+    const Vec2d from = chart_.uvs[a], to = chart_.uvs[b];
+    const double dx = to.x - from.x, dy = to.y - from.y, chord2 = dx * dx + dy * dy;
+    const auto stray = [&](const Vec2d& p) {
+      const double along = std::clamp(((p.x - from.x) * dx + (p.y - from.y) * dy) / chord2, 0., 1.);
+      return std::sqrt(
+          (std::pow(p.x - from.x - along * dx, 2) + std::pow(p.y - from.y - along * dy, 2)) /
+          chord2);
+    };
+    struct Visit {
+      double distance;
+      std::uint32_t uv, by;
+      bool operator>(const Visit& o) const {
+        return distance != o.distance ? distance > o.distance : uv > o.uv;
+      }
+    };
+    std::priority_queue<Visit, std::vector<Visit>, std::greater<>> queue;
+    for (const std::uint32_t i : piece.outline) on_rim_[i] = 1;
+    std::vector<std::uint32_t> reached;
+    queue.push({0, a, kNoIndex});
+    while (!queue.empty()) {
+      const Visit visit = queue.top();
+      queue.pop();
+      if (by_[visit.uv] != kUnseen) continue;
+      by_[visit.uv] = visit.by;
+      reached.push_back(visit.uv);
+      if (visit.uv == b) break;
+      if (stray(chart_.uvs[visit.uv]) > 0.5) continue;
+      for (std::uint32_t i = first_[visit.uv]; i < first_[visit.uv + 1]; ++i) {
+        const std::uint32_t h = leaving_[i], next = uv_at(next_half_edge(h));
+        if (piece_of_[h / 3] != number || across(h) == kNoIndex || by_[next] != kUnseen) continue;
+        if (next != b && on_rim_[next]) continue;
+        const Vec2d &p = chart_.uvs[visit.uv], &q = chart_.uvs[next];
+        const double off = stray({(p.x + q.x) / 2, (p.y + q.y) / 2});
+        queue.push(
+            {visit.distance + std::hypot(q.x - p.x, q.y - p.y) * (1 + kStrayWeight * off * off),
+             next, h});
+      }
+    }
+    std::vector<std::uint32_t> path;
+    double length = 0;
+    for (std::uint32_t uv = by_[b] == kUnseen ? a : b; uv != a;) {
+      const std::uint32_t h = by_[uv];
+      path.push_back(h);
+      const Vec2d &p = chart_.uvs[uv_at(h)], &q = chart_.uvs[uv];
+      length += std::hypot(q.x - p.x, q.y - p.y);
+      uv = uv_at(h);
+    }
+    for (const std::uint32_t i : piece.outline) on_rim_[i] = 0;
+    for (const std::uint32_t i : reached) by_[i] = kUnseen;
+    if (length > kLongestPath * std::sqrt(chord2)) path.clear();
+    return path;
+  }
+
+  // Fills piece.halves; false unless the path leaves two pieces of some size that sprawl less.
+  bool divide(Piece& piece, const std::vector<std::uint32_t>& path) {
+    const auto block = [&](std::uint8_t value) {
+      for (const std::uint32_t h : path) blocked_[h] = blocked_[half_edges_.opposite(h)] = value;
+    };
+    block(1);
+    for (const std::uint32_t t : piece.triangles) side_[t] = 0;
+    Triangles queue{path.front() / 3};
+    side_[queue[0]] = 1;
+    for (std::size_t i = 0; i < queue.size(); ++i) {
+      for (std::uint32_t h = 3 * queue[i]; h < 3 * queue[i] + 3; ++h) {
+        const std::uint32_t o = across(h);
+        if (o == kNoIndex || blocked_[h] || side_[o / 3]) continue;
+        side_[o / 3] = 1;
+        queue.push_back(o / 3);
+      }
+    }
+    block(0);
+    piece.halves = {};
+    double area[2] = {0, 0};
+    for (const std::uint32_t t : piece.triangles) {
+      const auto& c = chart_.corners[t];
+      piece.halves[side_[t]].push_back(t);
+      area[side_[t]] += 0.5 * cross(chart_.uvs[c[0]], chart_.uvs[c[1]], chart_.uvs[c[2]]);
+    }
+    return std::min(area[0], area[1]) > kLeastPiece * (chart_area());
+  }
+
+  double chart_area() const { return chart_.distortion.uv_area; }
+
+  // Lengths of the cuts between two pieces each.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> seams() const {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, double> lengths;
+    for (std::uint32_t h = 0; h < 3 * piece_of_.size(); ++h) {
+      const std::uint32_t o = half_edges_.opposite(h);
+      if (o == kNoIndex) continue;
+      const std::uint32_t p = piece_of_[h / 3], q = piece_of_[o / 3];
+      const Vec2d &a = chart_.uvs[uv_at(h)], &b = chart_.uvs[uv_at(next_half_edge(h))];
+      if (p < q) lengths[{p, q}] += std::hypot(b.x - a.x, b.y - a.y);
+    }
+    return lengths;
+  }
+
+  // Joins pieces again, least harm for the seam first, while the rectangles stay within `most`.
+  void heal(double most) {
+    while (pieces_.size() > 1) {
+      double best = 0;
+      std::pair<std::uint32_t, std::uint32_t> join{0, 0};
+      const double now = boxes();
+      for (const auto& [pair, seam] : seams()) {
+        const Piece &p = pieces_[pair.first], &q = pieces_[pair.second];
+        std::vector<Vec2d> points = positions(p.outline), hull;
+        for (const std::uint32_t i : q.outline) points.push_back(chart_.uvs[i]);
+        hull_area(points, hull);
+        const double harm = std::max(1e-3 * now, box_area(hull) - p.box - q.box);
+        if (now + harm > most || seam / harm <= best) continue;
+        best = seam / harm;
+        join = pair;
+      }
+      if (best == 0) return;
+      unite(join.first, join.second);
+    }
+  }
+
+  void unite(std::uint32_t p, std::uint32_t q) {
+    Triangles both;
+    std::merge(pieces_[p].triangles.begin(), pieces_[p].triangles.end(),
+               pieces_[q].triangles.begin(), pieces_[q].triangles.end(), std::back_inserter(both));
+    pieces_[p].triangles = std::move(both);
+    for (const std::uint32_t t : pieces_[p].triangles) piece_of_[t] = p;
+    measure(pieces_[p], p);
+    if (q + 1 < pieces_.size()) {
+      pieces_[q] = std::move(pieces_.back());
+      for (const std::uint32_t t : pieces_[q].triangles) piece_of_[t] = q;
+    }
+    pieces_.pop_back();
+  }
+
+  const FlatChart& chart_;
+  param::HalfEdges half_edges_;
+  std::vector<std::uint32_t> first_, leaving_;  // half-edges by the uv that they leave
+  std::vector<std::uint32_t> piece_of_;         // 1 a triangle of the chart
+  std::vector<std::uint8_t> side_;              // the same: of a path
+  std::vector<std::uint8_t> seen_, blocked_;    // 1 a half-edge
+  std::vector<std::uint32_t> by_;               // 1 a uv: the half-edge that a path comes by
+  std::vector<std::uint8_t> on_rim_;            // the same
+  std::vector<Piece> pieces_;
+  double least_fall_ = 0;
+};
+
+}  // namespace
+
+std::vector<std::vector<std::uint32_t>> limbs_of(const FlatChart& chart, double wanted,
+                                                 const Context& context) {
+  return LimbCutter(chart).run(wanted, context);
+}
+
+}  // namespace atlas

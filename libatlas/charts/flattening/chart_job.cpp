@@ -1,0 +1,401 @@
+#include "libatlas/charts/flattening/chart_job.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "libatlas/charts/flattening/newcomers.h"
+#include "libatlas/charts/flattening/split.h"
+#include "libatlas/charts/merging/unroll.h"
+#include "libatlas/core/clock.h"
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/param/orient.h"
+
+namespace atlas {
+namespace {
+
+// A projection this close to isometric is taken without asking the solver.
+constexpr double kPlanarStretch = 1.001;
+constexpr double kFastPlanarStretch = 1.1;
+// Within a narrower cone a projection does.
+constexpr double kFlatCone = 1 * M_PI / 180;
+// Of the square root of a chart's area: borders so near each other touch. Equal sides of parts come
+// to lie upon each other when they unroll, and rounding would decide whether they cross.
+constexpr double kTouching = 2e-6;
+constexpr double kSameBank = 1e-6;  // of an edge: how near banks of a cut are that closes again
+// A chart with holes is tried uncut when it is not a tube; a tube's normals exceed this cone.
+constexpr double kOpenCone = 85 * M_PI / 180;
+constexpr int kSmallHole = 16, kLongestSlit = 100;  // edges
+// Altitude kept for slivers, relative to the square root of the chart's area.
+constexpr double kMinAltitude = 1e-7;
+
+// Charts of fewer triangles are squeezed towards this stretch even where the bound is wider: it
+// costs them little.
+constexpr std::size_t kLargeChart = 20000;
+constexpr double kAimedStretch = 1.2;
+constexpr double kBestStretch = 1.12;
+// Under scan noise, rounds of cutting and of closing what crosses, each going on from the last, in
+// all and of closing, and those in the end that only close. With half as many, or charts divided
+// for 8 crossings whatever their size, time and charts were a tenth and a twentieth more (11 noisy
+// meshes).
+constexpr int kMostCuts = 12, kMostClosings = 10, kLastClosings = 4;
+// Crossings of the banks of cuts, with more of which a chart is divided: so many, or more in a
+// large one, a crossing for so many triangles.
+constexpr std::size_t kMostCrossingsLeft = 8, kTrianglesACrossing = 150;
+constexpr int kTelling = 2;  // cuts
+// Of a union's loops: of 5900 unions none came out after more.
+constexpr int kMostJoints = 2;
+constexpr int kBestIterations = 8;
+// Charts of so many triangles that are stretched beyond the bound over more than this share of
+// their area were saved by no cut to a vertex (measured); a hole in them may be what they close
+// around.
+constexpr std::size_t kManyTriangles = 1000;
+constexpr double kWideShare = 0.04;
+// What stretches by so many times the bound around a small hole was saved by 25 of 34 joints of the
+// hole with the border, and by no cut to a vertex of 250 (measured on 90 meshes).
+constexpr double kHoleStretch = 1.1;
+// Charts beyond the bound whose border crosses itself more often were never saved, nor (10 of 700)
+// those whose border still crosses itself after cuts to single vertices.
+constexpr std::size_t kMostFirstCrossings = 3;
+
+class ChartJob {
+ public:
+  ChartJob(const FlattenInput& input, Partition& partition, ChartScratch& scratch,
+           const ChartEffort& effort)
+      : input_(input),
+        partition_(partition),
+        scratch_(scratch),
+        chart_(scratch.chart),
+        effort_(effort) {}
+
+  ChartOutcome run(std::span<const std::uint32_t> triangles) {
+    build(triangles);
+    kept_uvs_.assign(effort_.resumed.begin(), effort_.resumed.end());
+    ChartOutcome outcome;
+    if (chart_.component_count > 1) {
+      outcome.parts = component_parts();
+      return outcome;
+    }
+    if (!beyond_cone()) {
+      for (int cuts = 0;; ++cuts) {
+        if (try_flatten(outcome)) return outcome;
+        if (hopeless(cuts) || cuts_in_vain() || tried_enough(cuts)) break;
+        if (stretched_widely() && (cuts > 0 || chart_.loops.size() == 1)) break;
+        keep_uvs();
+        if (!cut_open_timed(cuts)) break;
+        build(triangles);
+      }
+      if (!effort_.whole && result_.within_bound && !hopeless(0)) list_removable(outcome);
+    }
+    outcome.parts = effort_.whole ? std::vector<std::uint8_t>(1, 0) : halves();
+    outcome.failed = true;
+    return outcome;
+  }
+
+ private:
+  void build(std::span<const std::uint32_t> triangles) {
+    chart_.build(input_.topology, partition_, triangles);
+    if (!input_.density.empty()) {
+      for (const std::uint32_t t : triangles) chart_.density.push_back(input_.density[t]);
+    }
+    cone_ = normal_cone(input_.topology.normals, triangles);
+  }
+
+  // What the last attempt left, for the next one to go on from: a cut opens where it is made.
+  void keep_uvs() {
+    kept_uvs_.clear();
+    if (noisy()) kept_uvs_ = corner_uvs();
+  }
+
+  std::vector<Vec2d> corner_uvs() const {
+    std::vector<Vec2d> uvs;
+    if (result_.uvs.empty() || result_.distortion.flips > 0) return uvs;
+    uvs.reserve(3 * chart_.corners.size());
+    for (const auto& corners : chart_.corners) {
+      for (const std::uint32_t v : corners) uvs.push_back(result_.uvs[v]);
+    }
+    return uvs;
+  }
+
+  bool try_flatten(ChartOutcome& outcome) {
+    result_ = ParamResult{};
+    const auto loops = static_cast<int>(chart_.loops.size());
+    const bool flattens = loops > 0 && chart_.euler() == 2 - loops;  // genus 0
+    return flattens && (only_darts() || cone_.angle < kOpenCone) && flatten(outcome);
+  }
+
+  // Whether all loops but one are small, or banks of cuts to single vertices: those need not be
+  // joined to anything.
+  bool only_darts() const {
+    return large_loops().size() <= 1 && chart_.euler() == 2 - static_cast<int>(chart_.loops.size());
+  }
+
+  std::vector<std::uint32_t> large_loops() const {
+    std::vector<std::uint32_t> large;
+    for (const std::uint32_t start : chart_.loops) {
+      int edges = 0;
+      bool cut = true;
+      std::uint32_t h = start;
+      do {
+        cut = cut && partition_.seam(3 * chart_.triangles()[h / 3] + h % 3);
+        h = chart_.next_border(h);
+        ++edges;
+      } while (h != start && (cut || edges <= kSmallHole));
+      if (edges > (cut ? kLongestSlit : kSmallHole)) large.push_back(start);
+    }
+    return large;
+  }
+
+  // Charts within an open cone are tried after each joint; others will not flatten before all are
+  // made.
+  bool join_loops() {
+    std::vector<std::uint32_t> wanted;
+    if (cone_.angle >= kOpenCone) wanted = large_loops();
+    return atlas::join_loops(input_.topology, chart_, wanted, partition_);
+  }
+
+  // A seam that may help: from loop to loop, or to where curvature stretches it too much.
+  bool cut_open(int cuts) {
+    const int closings = effort_.whole || !noisy() ? effort_.closings : kMostClosings;
+    if (noisy() && result_.within_bound && !result_.injective && closings_ < closings &&
+        close_cuts(input_.topology, chart_, crossings_to_undo(), partition_, darts_)) {
+      ++closings_;
+      return true;
+    }
+    // What was just closed would be cut again.
+    if (closings_ > 0 && !only_darts()) return false;
+    if (!only_darts() || hole_in_the_way(cuts)) return join_loops();
+    if (cuts >= most_cuts() || result_.within_bound || result_.offenders.empty()) return false;
+    cut_to_tips_ = true;
+    return cut_to_border(input_.topology, chart_, result_.offenders, darts_, partition_);
+  }
+
+  bool cut_open_timed(int cuts) {
+    if (chart_.triangles().size() < ParamWorkspace::timed_triangles) return cut_open(cuts);
+    Stopwatch watch(thread_cpu_seconds);
+    const bool any = cut_open(cuts);
+    scratch_.cuts_cpu += watch.lap();
+    return any;
+  }
+
+  // Where the border crosses itself in a few places.
+  void list_removable(ChartOutcome& outcome) const {
+    if (result_.crossings.empty()) return;
+    outcome.crossings = result_.crossings.size();
+    const auto around = around_crossings(chart_, result_.crossings, effort_.rings);
+    if (around.size() > std::max<std::size_t>(2, chart_.triangles().size() / 20)) return;
+    for (const std::uint32_t t : around) outcome.remove.push_back(chart_.triangles()[t]);
+    if (chart_.triangles().size() <= kMostResumed) outcome.uvs = corner_uvs();
+  }
+
+  bool noisy() const { return !input_.topology.calm_normals.empty(); }
+
+  const std::vector<BorderCrossing>& crossings_left() const {
+    return result_.stubborn_crossings.empty() ? result_.crossings : result_.stubborn_crossings;
+  }
+
+  std::vector<BorderCrossing> crossings_to_undo() const {
+    return crossings_left().empty() ? turned_loops(chart_, result_.uvs) : crossings_left();
+  }
+
+  bool tried_enough(int cuts) const {
+    if (effort_.whole) return cuts >= kMostJoints;
+    if (!noisy() || !only_darts()) return false;
+    return cuts >= kMostCuts + (result_.within_bound ? kLastClosings : 0);
+  }
+  int most_cuts() const { return noisy() && !effort_.whole ? kMostCuts : effort_.cuts; }
+
+  // Whether what is beyond the bound is past saving by cuts to single vertices.
+  bool cuts_in_vain() const {
+    if (result_.within_bound || result_.uvs.empty() || chart_.loops.size() > 1) return false;
+    return result_.crossings.size() > (cut_to_tips_ ? 0 : kMostFirstCrossings);
+  }
+
+  // Whether a small hole is what the chart closes around.
+  bool hole_in_the_way(int cuts) const {
+    if (chart_.loops.size() < 2 || noisy()) return false;
+    const bool far_beyond =
+        result_.distortion.stretch_999 > kHoleStretch * input_.options.max_stretch;
+    return far_beyond || (cuts == 0 && stretched_widely());
+  }
+
+  // Cuts whose banks cross in many places: closing some, or handing triangles to neighbours, hardly
+  // ever saved such a chart. Nor did further cuts, one of 24 (160 meshes), where it is beyond the
+  // bound yet.
+  bool hopeless(int cuts) const {
+    const std::size_t crossings = std::max(result_.crossings.size(), crossings_left().size());
+    return noisy() && (result_.within_bound || cuts >= kTelling) && !result_.injective &&
+           crossings >
+               std::max(kMostCrossingsLeft, chart_.triangles().size() / kTrianglesACrossing);
+  }
+
+  // Whether what exceeds the bound is more than the surroundings of a few sharp vertices.
+  bool stretched_widely() const {
+    if (noisy() || result_.within_bound || result_.uvs.empty()) return false;
+    if (chart_.triangles().size() < kManyTriangles) return false;
+    double beyond = 0;
+    for (const std::uint32_t t : result_.offenders) {
+      beyond += input_.topology.areas[chart_.triangles()[t]];
+    }
+    return beyond > kWideShare * surface_area();
+  }
+
+  bool beyond_cone() const {
+    return input_.options.cone_degrees > 0 && chart_.triangles().size() > 1 &&
+           cone_.angle > input_.options.cone_degrees * M_PI / 180 * (1 + 1e-9);
+  }
+
+  std::vector<std::uint8_t> component_parts() const {
+    std::vector<std::uint8_t> parts(chart_.component.size());
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      parts[i] = static_cast<std::uint8_t>(std::min(chart_.component[i], 255u));
+    }
+    return parts;
+  }
+
+  std::vector<std::uint8_t> halves() const {
+    const auto pair = far_pair(input_.topology, chart_);
+    return divide(input_.topology, chart_, pair);
+  }
+
+  double surface_area() const {
+    double area = 0;
+    for (const std::uint32_t t : chart_.triangles()) area += input_.topology.areas[t];
+    return area;
+  }
+
+  double min_altitude() const { return kMinAltitude * std::sqrt(surface_area()); }
+
+  ParamOptions param_options(const LocalMesh& mesh) {
+    const ChartOptions& options = input_.options;
+    ParamOptions param;
+    param.max_stretch = options.max_stretch;
+    const bool best = options.preset == ChartPreset::best;
+    const double aim = best ? kBestStretch : kAimedStretch;
+    if (best || (options.preset == ChartPreset::standard && mesh.triangles.size() < kLargeChart)) {
+      param.aimed_stretch = std::min(options.max_stretch, aim);
+    }
+    param.local = noisy() || effort_.little;
+    // Six charts in a thousand fewer than with cuts there, on 80 meshes.
+    param.leave_crossings = !noisy() && !effort_.little;
+    if (best) param.iterations = kBestIterations;
+    param.max_planar_stretch =
+        std::min(options.max_stretch,
+                 options.preset == ChartPreset::fast ? kFastPlanarStretch : kPlanarStretch);
+    param.axis = from_glm(glm::dvec3(to_glm(cone_.axis)));
+    param.min_altitude = min_altitude();
+    if (!kept_uvs_.empty() && place_newcomers(mesh, kept_uvs_, start_uvs_)) {
+      param.start.uvs = start_uvs_;
+      param.resume = true;
+      param.aimed_stretch = 0;  // it has been squeezed before
+    } else if (!effort_.joined.empty()) {
+      param.joined = effort_.joined;
+      param.patch = effort_.little;
+    } else if (!input_.frames.empty()) {
+      param.start.frames = [this](std::size_t i) {
+        return input_.frames.at(input_.topology, chart_.triangles()[i]);
+      };
+    }
+    return param;
+  }
+
+  // Lays a chart that unrolls flat without asking the solver. False if it does not, or would
+  // overlap itself.
+  bool unroll() {
+    const bool bent = cone_.angle > kFlatCone && chart_.density.empty() && kept_uvs_.empty();
+    if (!bent || !lay_unrolled()) return false;
+    if (!result_.injective && !slits_closed_ && close_flat_slits()) {
+      slits_closed_ = true;
+      build(chart_.triangles());
+      if (!lay_unrolled()) return false;
+    }
+    return result_.injective;
+  }
+
+  bool lay_unrolled() {
+    if (!unroll_chart(chart_, min_altitude(), result_.uvs)) return false;
+    const LocalMesh mesh = chart_.mesh();
+    result_.distortion = measure_distortion(mesh, result_.uvs);
+    const double most = std::min(kPlanarStretch, input_.options.max_stretch);
+    result_.within_bound =
+        result_.distortion.stretch_999 <= most && result_.distortion.stretch_l2 <= most;
+    if (!result_.within_bound) return false;
+    const Injectivity check =
+        check_injectivity(mesh, result_.uvs, {.clearance = kTouching * std::sqrt(surface_area())});
+    result_.injective = check.injective && check.close.empty();
+    return true;
+  }
+
+  // Cuts whose banks lie upon each other in result_.uvs are needed no more.
+  bool close_flat_slits() {
+    const auto at = [&](std::uint32_t h) {
+      return to_glm(result_.uvs[chart_.corners[h / 3][h % 3]]);
+    };
+    bool any = false;
+    for (std::uint32_t h = 0; h < chart_.opposite.size(); ++h) {
+      const std::uint32_t own = 3 * chart_.triangles()[h / 3] + h % 3;
+      if (chart_.opposite[h] != kNoIndex || !partition_.seam(own)) continue;
+      const std::uint32_t other = input_.topology.opposite[own];
+      const std::uint32_t o = 3 * partition_.local[other / 3] + other % 3;
+      const double most = kSameBank * glm::distance(at(h), at(next_half_edge(h)));
+      if (glm::distance(at(h), at(next_half_edge(o))) > most ||
+          glm::distance(at(next_half_edge(h)), at(o)) > most) {
+        continue;
+      }
+      partition_.close(own);
+      partition_.close(other);
+      any = true;
+    }
+    return any;
+  }
+
+  bool flatten(ChartOutcome& outcome) {
+    if (!unroll()) {
+      const LocalMesh mesh = chart_.mesh();
+      result_ = {};  // large, and needed no more
+      result_ = parameterize(mesh, param_options(mesh), scratch_.workspace);
+    }
+    const bool single = chart_.triangles().size() == 1;
+    if (!single && !(result_.injective && result_.within_bound)) return false;
+    FlatChart& flat = outcome.flat;
+    flat.uvs = std::move(result_.uvs);
+    scratch_.border.clear();
+    for (std::uint32_t h = 0; h < chart_.opposite.size(); ++h) {
+      if (chart_.opposite[h] == kNoIndex) {
+        scratch_.border.push_back({chart_.corners[h / 3][h % 3],
+                                   chart_.corners[next_half_edge(h) / 3][next_half_edge(h) % 3]});
+      }
+    }
+    flat.size = orient_for_packing(flat.uvs, scratch_.border).size;
+    flat.corners = chart_.corners;
+    flat.vertex = chart_.vertex;
+    flat.cone = cone_;
+    flat.distortion = result_.distortion;
+    flat.planar = result_.planar;
+    return true;
+  }
+
+  const FlattenInput& input_;
+  Partition& partition_;
+  ChartScratch& scratch_;
+  LocalChart& chart_;
+  ChartEffort effort_;
+  Darts darts_;
+  int closings_ = 0;
+  bool cut_to_tips_ = false;
+  bool slits_closed_ = false;  // those that opened a chart that unrolls
+  NormalCone cone_;
+  ParamResult result_;            // of the last attempt
+  std::vector<Vec2d> kept_uvs_;   // 1 a corner, or empty: to go on from
+  std::vector<Vec2d> start_uvs_;  // the same, 1 a vertex
+};
+
+}  // namespace
+
+ChartOutcome flatten_chart(const FlattenInput& input, Partition& partition,
+                           std::span<const std::uint32_t> triangles, const ChartEffort& effort,
+                           ChartScratch& scratch) {
+  return ChartJob(input, partition, scratch, effort).run(triangles);
+}
+
+}  // namespace atlas

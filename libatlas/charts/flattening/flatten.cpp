@@ -1,0 +1,366 @@
+#include "libatlas/charts/flattening/flatten.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "libatlas/charts/flattening/absorb.h"
+#include "libatlas/charts/flattening/chart_job.h"
+#include "libatlas/charts/flattening/newcomers.h"
+#include "libatlas/charts/seams/straighten.h"
+#include "libatlas/core/clock.h"
+#include "libatlas/core/parallel.h"
+
+namespace atlas {
+namespace {
+
+// How often a chart may lose triangles to its neighbours before it is divided.
+constexpr int kMaxRemovals = 4;
+
+// A border that crosses itself more often must cross half as often once triangles have gone, or the
+// chart is divided: of 29 with seven crossings and more 4 came apart at last (170 meshes).
+constexpr std::size_t kManyCrossings = 6;
+constexpr double kRemovalWidth = 1.0 / 60;
+
+// The border between parts of a divided chart is straightened so far to each side, as a share of
+// the smaller part's width.
+constexpr double kPartBand = 0.5;
+constexpr float kPartStiffness = 0.03F;  // 0.3: a hundredth more charts (97 meshes)
+
+// What charts of more triangles needed is given back once they are half as large: the flat charts
+// need room by then.
+constexpr std::size_t kLargeScratch = 40000;
+
+void fit_scratch(std::size_t triangles, ChartScratch& scratch) {
+  if (scratch.largest > kLargeScratch && triangles < scratch.largest / 2) {
+    ChartScratch smaller;
+    smaller.cuts_cpu = scratch.cuts_cpu;
+    smaller.workspace.timing = scratch.workspace.timing;
+    scratch = std::move(smaller);
+    return_freed_memory();
+  }
+  scratch.largest = std::max(scratch.largest, triangles);
+}
+
+// One scratch a running thread, handed out and taken back.
+class ScratchPool {
+ public:
+  std::unique_ptr<ChartScratch> take() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return std::make_unique<ChartScratch>();
+    auto scratch = std::move(free_.back());
+    free_.pop_back();
+    return scratch;
+  }
+  void give(std::unique_ptr<ChartScratch> scratch) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(scratch));
+  }
+  // Of those that were given back.
+  void add_times(ChartSet::Timing& timing) const {
+    for (const auto& scratch : free_) {
+      timing.cuts_cpu += scratch->cuts_cpu;
+      timing.solve_cpu += scratch->workspace.timing.solve;
+      timing.flips_cpu += scratch->workspace.timing.flips;
+      timing.overlaps_cpu += scratch->workspace.timing.overlaps;
+    }
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<ChartScratch>> free_;
+};
+
+// Rounds over all charts that still have to be flattened. Charts run in parallel; what changes the
+// partition happens between rounds, in order.
+class Flattener {
+ public:
+  Flattener(const FlattenInput& input, Partition& partition)
+      : input_(input), partition_(partition) {}
+
+  void run(const Context& context) {
+    partition_.local.resize(partition_.chart.size());
+    partition_.seams.resize(partition_.chart.size(), 0);
+    list_charts();
+    while (!todo_.empty() && !context.cancelled()) {
+      std::stable_sort(todo_.begin(), todo_.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return charts_[a].triangles.size() > charts_[b].triangles.size();
+      });
+      // Many scenes have 10^5 charts and few failures, so those alone are kept.
+      std::vector<std::unique_ptr<ChartOutcome>> failures(todo_.size());
+      const std::size_t grain = todo_.size() > 512 ? 16 : 1;
+      parallel_for(context, todo_.size(), grain, [&](std::size_t begin, std::size_t end) {
+        auto scratch = pool_.take();
+        for (std::size_t i = begin; i < end; ++i) {
+          const State& state = charts_[todo_[i]];
+          fit_scratch(state.triangles.size(), *scratch);
+          ChartOutcome outcome =
+              flatten_chart(input_, partition_, state.triangles, effort_for(todo_[i]), *scratch);
+          if (outcome.parts.empty()) {
+            flats_[todo_[i]] = std::move(outcome.flat);
+          } else {
+            failures[i] = std::make_unique<ChartOutcome>(std::move(outcome));
+          }
+        }
+        pool_.give(std::move(scratch));
+      });
+      if (!context.cancelled()) settle(failures);
+    }
+  }
+
+  FlattenResult take_result(const Context& context) {
+    FlattenResult result;
+    pool_.add_times(result.timing);
+    result.split_charts = split_;
+    for (std::size_t k = 0; k < charts_.size(); ++k) {
+      flats_[k].triangles = std::move(charts_[k].triangles);
+      flats_[k].fragment = charts_[k].fragment || input_.options.cone_degrees > 0;
+    }
+    charts_ = {};
+    result.charts = std::move(flats_);
+    std::erase_if(result.charts, [](const FlatChart& chart) { return chart.triangles.empty(); });
+    Stopwatch watch(cpu_seconds);
+    const auto scratch = pool_.take();
+    absorb_charts({input_, partition_, *scratch}, result.charts, context);
+    result.timing.absorb_cpu = watch.lap();
+    std::sort(result.charts.begin(), result.charts.end(),
+              [](const FlatChart& a, const FlatChart& b) {
+                return a.triangles.front() < b.triangles.front();
+              });
+    return result;
+  }
+
+ private:
+  struct State {
+    std::vector<std::uint32_t> triangles;  // ascending
+    std::vector<Vec2d> uvs;                // 3 a triangle, to go on from, or empty
+    int removals = 0;
+    std::size_t crossings = std::numeric_limits<std::size_t>::max();  // the last removal's
+    bool queued = false;
+    bool grown = false;  // got triangles of neighbours since it was flattened
+    bool fragment = false;
+  };
+
+  // Rings of triangles to remove around a crossing: a little of the chart's width at first, twice
+  // as much each time.
+  static int removal_rings(const State& state) {
+    const double width = std::sqrt(static_cast<double>(state.triangles.size()));
+    return std::max(1, static_cast<int>(kRemovalWidth * width)) << state.removals;
+  }
+
+  ChartEffort effort_for(std::uint32_t chart) const {
+    const State& state = charts_[chart];
+    const bool was_flat = !state.uvs.empty() && !flats_[chart].corners.empty();
+    return {.rings = removal_rings(state), .resumed = state.uvs, .little = was_flat};
+  }
+
+  // Numbers charts anew, by first triangle.
+  void list_charts() {
+    std::vector<std::uint32_t> place, size;
+    for (std::uint32_t& chart : partition_.chart) {
+      if (chart == kNoIndex) continue;
+      if (chart >= place.size()) place.resize(chart + 1, kNoIndex);
+      if (place[chart] == kNoIndex) {
+        place[chart] = static_cast<std::uint32_t>(size.size());
+        size.push_back(0);
+      }
+      chart = place[chart];
+      ++size[chart];
+    }
+    charts_.reserve(size.size());
+    flats_.reserve(size.size());
+    todo_.reserve(size.size());
+    for (const std::uint32_t triangles : size) charts_[add_chart()].triangles.reserve(triangles);
+    for (std::uint32_t t = 0; t < partition_.chart.size(); ++t) {
+      if (partition_.chart[t] != kNoIndex) charts_[partition_.chart[t]].triangles.push_back(t);
+    }
+  }
+
+  std::uint32_t add_chart() {
+    const auto id = static_cast<std::uint32_t>(charts_.size());
+    charts_.emplace_back();
+    flats_.emplace_back();
+    queue(id);
+    return id;
+  }
+
+  void queue(std::uint32_t chart) {
+    if (charts_[chart].queued) return;
+    charts_[chart].queued = true;
+    todo_.push_back(chart);
+  }
+
+  void settle(std::vector<std::unique_ptr<ChartOutcome>>& failures) {
+    const std::vector<std::uint32_t> done = std::move(todo_);
+    todo_.clear();
+    for (const std::uint32_t chart : done) charts_[chart].queued = charts_[chart].grown = false;
+    moved_.clear();
+    for (std::size_t i = 0; i < done.size(); ++i) {
+      if (!failures[i]) {
+        charts_[done[i]].uvs = {};
+        continue;
+      }
+      if (remove(done[i], *failures[i])) continue;
+      split_ += failures[i]->failed;
+      divide(done[i], failures[i]->parts);
+    }
+    straighten_parts();
+    relist();
+    if (!todo_.empty()) return;
+    for (const std::uint32_t chart : std::exchange(grown_, {})) {
+      if (charts_[chart].grown) queue(chart);
+    }
+  }
+
+  // False if none could go, or the last ones were of no use.
+  bool remove(std::uint32_t chart, ChartOutcome& failure) {
+    State& state = charts_[chart];
+    if (failure.remove.empty() || state.removals >= kMaxRemovals) return false;
+    const std::size_t most =
+        failure.crossings > kManyCrossings ? state.crossings / 2 : state.crossings;
+    if (failure.crossings > most) return false;
+    state.crossings = failure.crossings;
+    ++state.removals;
+    bool any = false;
+    for (const std::uint32_t t : failure.remove) {
+      const std::uint32_t h = way_out(t);
+      if (h == kNoIndex || !removable(input_.topology, partition_, t)) continue;
+      move_triangle(input_.topology, h, partition_, input_.frames);
+      moved_.push_back(t);
+      any = true;
+    }
+    if (!any) return false;
+    state.uvs = std::move(failure.uvs);
+    flats_[chart] = {};
+    queue(chart);
+    return true;
+  }
+
+  // The longest edge of t to another chart.
+  std::uint32_t way_out(std::uint32_t t) const {
+    std::uint32_t best = kNoIndex;
+    double longest = 0;
+    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+      const std::uint32_t o = input_.topology.opposite[h];
+      if (o == kNoIndex || partition_.chart[o / 3] == partition_.chart[t]) continue;
+      const double length = edge_length(input_.topology, h);
+      if (length <= longest) continue;
+      longest = length;
+      best = h;
+    }
+    return best;
+  }
+
+  void divide(std::uint32_t chart, const std::vector<std::uint8_t>& parts) {
+    // Triangles that came from neighbours in this round stay with part 0.
+    const std::vector<std::uint32_t> triangles = std::move(charts_[chart].triangles);
+    charts_[chart].triangles.clear();
+    charts_[chart].uvs.clear();
+    flats_[chart] = {};
+    charts_[chart].crossings = State{}.crossings;
+    std::vector<std::uint32_t> name(1 + *std::max_element(parts.begin(), parts.end()), kNoIndex);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      const std::uint32_t t = triangles[i];
+      if (partition_.chart[t] != chart) continue;
+      std::uint32_t& id = name[parts[i]];
+      if (id == kNoIndex) id = parts[i] == 0 ? chart : add_chart();
+      partition_.chart[t] = id;
+      partition_.seams[t] = 0;
+      charts_[id].triangles.push_back(t);
+      charts_[id].fragment = true;
+    }
+    queue(chart);
+    parts_.push_back(chart);
+    for (const std::uint32_t id : name) {
+      if (id != chart && id != kNoIndex) parts_.push_back(id);
+    }
+  }
+
+  // What divides a chart leaves ragged borders.
+  void straighten_parts() {
+    const std::vector<std::uint32_t> parts = std::exchange(parts_, {});
+    if (parts.empty() || input_.options.cone_degrees > 0) return;
+    std::vector<SeamBand> bands(charts_.size());
+    std::vector<std::uint32_t> triangles;
+    for (const std::uint32_t part : parts) {
+      std::vector<std::uint32_t>& own = charts_[part].triangles;
+      const double rings = kPartBand * std::sqrt(static_cast<double>(own.size()));
+      bands[part] = {static_cast<std::uint8_t>(std::min(255.0, rings)), kPartStiffness};
+      triangles.insert(triangles.end(), own.begin(), own.end());
+      own.clear();
+    }
+    std::sort(triangles.begin(), triangles.end());
+    straighten_borders(input_.topology, {{input_.options.crease_degrees, {}}, bands, triangles},
+                       partition_, input_.frames);
+    for (const std::uint32_t t : triangles) charts_[partition_.chart[t]].triangles.push_back(t);
+  }
+
+  // Takes triangles from the chart's list that have gone to others.
+  void drop_lost(std::uint32_t chart) {
+    State& state = charts_[chart];
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < state.triangles.size(); ++i) {
+      if (partition_.chart[state.triangles[i]] != chart) continue;
+      if (!state.uvs.empty()) std::copy_n(&state.uvs[3 * i], 3, &state.uvs[3 * kept]);
+      state.triangles[kept++] = state.triangles[i];
+    }
+    state.triangles.resize(kept);
+    if (!state.uvs.empty()) state.uvs.resize(3 * kept);
+  }
+
+  // Brings the lists up to date with the partition after triangles moved.
+  void relist() {
+    if (moved_.empty()) return;
+    for (const std::uint32_t chart : todo_) drop_lost(chart);
+    std::sort(moved_.begin(), moved_.end());
+    moved_.erase(std::unique(moved_.begin(), moved_.end()), moved_.end());
+    for (const std::uint32_t t : moved_) {
+      add_triangle(partition_.chart[t], t);
+      if (!std::exchange(charts_[partition_.chart[t]].grown, true)) {
+        grown_.push_back(partition_.chart[t]);
+      }
+    }
+    std::erase_if(todo_, [&](std::uint32_t chart) { return charts_[chart].triangles.empty(); });
+  }
+
+  // Unless it is there.
+  void add_triangle(std::uint32_t chart, std::uint32_t t) {
+    State& state = charts_[chart];
+    const auto at = std::lower_bound(state.triangles.begin(), state.triangles.end(), t);
+    if (at != state.triangles.end() && *at == t) return;
+    const FlatChart& flat = flats_[chart];
+    if (state.uvs.empty() && !flat.corners.empty() && flat.corners.size() <= kMostResumed) {
+      for (const auto& corners : flat.corners) {
+        for (const std::uint32_t v : corners) state.uvs.push_back(flat.uvs[v]);
+      }
+    }
+    if (!state.uvs.empty()) {
+      state.uvs.insert(state.uvs.begin() + 3 * (at - state.triangles.begin()), 3, unplaced());
+    }
+    state.triangles.insert(at, t);
+  }
+
+  const FlattenInput& input_;
+  Partition& partition_;
+  ScratchPool pool_;
+  std::vector<State> charts_;
+  std::vector<FlatChart> flats_;  // their results; triangles are filled in the end
+  std::vector<std::uint32_t> todo_, moved_;
+  std::vector<std::uint32_t> parts_;  // of charts that were divided in this round
+  std::vector<std::uint32_t> grown_;  // they wait until no more triangles can come
+  std::uint64_t split_ = 0;
+};
+
+}  // namespace
+
+FlattenResult flatten_charts(const FlattenInput& input, Partition& partition,
+                             const Context& context) {
+  Flattener flattener(input, partition);
+  flattener.run(context);
+  return flattener.take_result(context);
+}
+
+}  // namespace atlas

@@ -1,0 +1,94 @@
+#include "libatlas/charts/flattening/outline.h"
+
+#include <algorithm>
+#include <array>
+
+#include "libatlas/charts/geometry/hull.h"
+#include "libatlas/charts/mesh/chart_fans.h"
+
+namespace atlas {
+namespace {
+
+struct Box {
+  double left = 1, right = -1, low = 1, high = -1;
+
+  static Box of(const Outline::Edge& e) {
+    return {std::min(e.from.x, e.to.x), std::max(e.from.x, e.to.x), std::min(e.from.y, e.to.y),
+            std::max(e.from.y, e.to.y)};
+  }
+  bool meets(const Box& other) const {
+    return left <= other.right && other.left <= right && low <= other.high && other.low <= high;
+  }
+};
+
+Box box_around(std::span<const Outline::Edge> edges) {
+  if (edges.empty()) return {};
+  Box all = Box::of(edges[0]);
+  for (const Outline::Edge& edge : edges) {
+    const Box box = Box::of(edge);
+    all = {std::min(all.left, box.left), std::max(all.right, box.right), std::min(all.low, box.low),
+           std::max(all.high, box.high)};
+  }
+  return all;
+}
+
+struct Swept {
+  Box box;
+  const Outline::Edge* edge;
+  int side;  // 0: of a, 1: of b
+};
+
+void add_near(std::span<const Outline::Edge> edges, const Box& near, int side,
+              std::vector<Swept>& out) {
+  for (const Outline::Edge& edge : edges) {
+    const Box box = Box::of(edge);
+    if (box.meets(near)) out.push_back({box, &edge, side});
+  }
+}
+
+}  // namespace
+
+Outline outline_of(const Topology& topology, const Partition& partition, const FlatChart& chart) {
+  Outline outline;
+  const ChartFans fans(topology, partition);
+  for (std::size_t i = 0; i < chart.triangles.size(); ++i) {
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      const std::uint32_t h = 3 * chart.triangles[i] + c;
+      if (fans.linked(h)) continue;
+      const auto& v = chart.corners[i];
+      outline.edges.push_back({h, chart.uvs[v[c]], chart.uvs[v[(c + 1) % 3]]});
+    }
+  }
+  std::vector<Vec2d> points;
+  points.reserve(outline.edges.size());
+  for (const Outline::Edge& edge : outline.edges) points.push_back(edge.from);
+  hull_area(points, outline.hull);
+  return outline;
+}
+
+// A sweep along u, over what lies where both are.
+std::size_t count_crossings(std::span<const Outline::Edge> a, std::span<const Outline::Edge> b,
+                            std::size_t most) {
+  std::vector<Swept> edges;
+  add_near(a, box_around(b), 0, edges);
+  add_near(b, box_around(a), 1, edges);
+  std::sort(edges.begin(), edges.end(),
+            [](const Swept& s, const Swept& t) { return s.box.left < t.box.left; });
+  std::array<std::vector<const Swept*>, 2> open;  // that may reach farther right
+  std::size_t count = 0;
+  for (const Swept& edge : edges) {
+    auto& others = open[1 - edge.side];
+    std::erase_if(others, [&](const Swept* other) { return other->box.right < edge.box.left; });
+    for (const Swept* other : others) {
+      const Outline::Edge &e = *edge.edge, &f = *other->edge;
+      if (edge.box.meets(other->box) && cross_each_other(e.from, e.to, f.from, f.to) &&
+          ++count >= most) {
+        return count;
+      }
+    }
+    open[edge.side].push_back(&edge);
+  }
+  return count;
+}
+
+}  // namespace atlas

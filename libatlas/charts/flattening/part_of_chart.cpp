@@ -1,0 +1,98 @@
+#include "libatlas/charts/flattening/part_of_chart.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/param/halfedges.h"
+#include "libatlas/param/orient.h"
+#include "libatlas/param/parameterize.h"
+
+namespace atlas {
+namespace {
+
+// What stretched a small part of a chart too much may be a large part of a piece.
+void relax(const LocalMesh& mesh, double max_stretch, FlatChart& piece) {
+  ParamOptions options;
+  options.max_stretch = max_stretch;
+  options.start.uvs = piece.uvs;
+  options.resume = true;
+  ParamWorkspace workspace;
+  ParamResult relaxed = parameterize(mesh, options, workspace);
+  if (!relaxed.injective || !relaxed.within_bound) return;
+  piece.uvs = std::move(relaxed.uvs);
+  piece.distortion = relaxed.distortion;
+}
+
+}  // namespace
+
+FlatChart part_of_chart(const FlattenInput& input, const FlatChart& whole,
+                        std::span<const std::uint32_t> triangles) {
+  FlatChart piece;
+  piece.planar = whole.planar;
+  piece.fragment = whole.fragment;
+  std::vector<std::uint32_t> local(whole.uvs.size(), kNoIndex);
+  std::vector<Vec3d> positions;
+  std::vector<double> density;
+  for (const std::uint32_t i : triangles) {
+    piece.triangles.push_back(whole.triangles[i]);
+    piece.corners.push_back(whole.corners[i]);
+    for (std::uint32_t& c : piece.corners.back()) {
+      if (local[c] == kNoIndex) {
+        local[c] = std::uint32_t(piece.uvs.size());
+        piece.uvs.push_back(whole.uvs[c]);
+        piece.vertex.push_back(whole.vertex[c]);
+        const Vec3d p = from_glm(to_dvec(input.topology.points[whole.vertex[c]]));
+        positions.push_back(p);
+      }
+      c = local[c];
+    }
+    if (!input.density.empty()) density.push_back(input.density[whole.triangles[i]]);
+  }
+  const Vec3d origin = positions[0];
+  for (Vec3d& p : positions) p = {p.x - origin.x, p.y - origin.y, p.z - origin.z};
+  const LocalMesh mesh{positions, piece.corners, density};
+  piece.distortion = measure_distortion(mesh, piece.uvs);
+  if (piece.distortion.stretch_999 > input.options.max_stretch) {
+    relax(mesh, input.options.max_stretch, piece);
+  }
+  std::vector<std::array<std::uint32_t, 2>> border;
+  param::HalfEdges half_edges;
+  half_edges.build(piece.corners, piece.uvs.size());
+  for (std::uint32_t h = 0; h < 3 * piece.corners.size(); ++h) {
+    if (half_edges.opposite(h) == param::HalfEdges::none) {
+      border.push_back({half_edges.from(h), half_edges.to(h)});
+    }
+  }
+  piece.size = orient_for_packing(piece.uvs, border).size;
+  piece.cone = normal_cone(input.topology.normals, piece.triangles);
+  return piece;
+}
+
+std::vector<std::vector<std::uint32_t>> connected_parts(const FlatChart& whole,
+                                                        std::span<const std::uint32_t> triangles) {
+  std::vector<std::array<std::uint32_t, 3>> corners;
+  for (const std::uint32_t i : triangles) corners.push_back(whole.corners[i]);
+  param::HalfEdges half_edges;
+  half_edges.build(corners, whole.uvs.size());
+  std::vector<std::vector<std::uint32_t>> parts;
+  std::vector<std::uint8_t> seen(corners.size(), 0);
+  for (std::uint32_t seed = 0; seed < corners.size(); ++seed) {
+    if (std::exchange(seen[seed], 1)) continue;
+    std::vector<std::uint32_t> part{seed};
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      for (std::uint32_t h = 3 * part[k]; h < 3 * part[k] + 3; ++h) {
+        const std::uint32_t o = half_edges.opposite(h);
+        if (o != param::HalfEdges::none && !std::exchange(seen[o / 3], 1)) part.push_back(o / 3);
+      }
+    }
+    std::sort(part.begin(), part.end());
+    for (std::uint32_t& t : part) t = triangles[t];
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+}  // namespace atlas

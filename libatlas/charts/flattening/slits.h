@@ -1,0 +1,16 @@
+// Internal: seams of a chart with itself that are seams no more.
+#pragma once
+
+#include <vector>
+
+#include "libatlas/charts/flattening/flatten.h"
+
+namespace atlas {
+
+// Closes slits whose banks have come to lie upon each other, to a millionth of their edges: a plate
+// with holes that was cut open and unrolled exactly becomes a ring again. Only where the chart
+// stays injective, by exact predicates. Returns how many charts changed.
+std::size_t close_slits(const Topology& topology, std::vector<FlatChart>& charts,
+                        const Context& context);
+
+}  // namespace atlas

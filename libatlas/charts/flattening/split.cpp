@@ -1,0 +1,141 @@
+#include "libatlas/charts/flattening/split.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <utility>
+
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+constexpr double kNormalWeight = 8;  // of the fold at an edge in the distance across it
+constexpr double kFar = std::numeric_limits<double>::max();
+
+struct Visit {
+  double distance;
+  std::uint32_t node, source;
+  bool operator>(const Visit& other) const {
+    if (distance != other.distance) return distance > other.distance;
+    return node != other.node ? node > other.node : source > other.source;
+  }
+};
+using Heap = std::priority_queue<Visit, std::vector<Visit>, std::greater<>>;
+
+glm::dvec3 centroid(const LocalChart& chart, std::uint32_t t) {
+  const auto& v = chart.corners[t];
+  return (to_glm(chart.positions[v[0]]) + to_glm(chart.positions[v[1]]) +
+          to_glm(chart.positions[v[2]])) /
+         3.0;
+}
+
+double fold(const Topology& topology, const LocalChart& chart, std::uint32_t s, std::uint32_t t) {
+  return 1 - glm::dot(to_dvec(topology.normals[chart.triangles()[s]]),
+                      to_dvec(topology.normals[chart.triangles()[t]]));
+}
+
+// Dijkstra over the triangles; owner may be null.
+void spread(const Topology& topology, const LocalChart& chart, Heap& heap,
+            std::vector<double>& distance, std::vector<std::uint8_t>* owner) {
+  while (!heap.empty()) {
+    const Visit visit = heap.top();
+    heap.pop();
+    if (visit.distance >= distance[visit.node]) continue;
+    distance[visit.node] = visit.distance;
+    if (owner) (*owner)[visit.node] = static_cast<std::uint8_t>(visit.source);
+    const glm::dvec3 from = centroid(chart, visit.node);
+    for (std::uint32_t h = 3 * visit.node; h < 3 * visit.node + 3; ++h) {
+      if (chart.opposite[h] == kNoIndex) continue;
+      const std::uint32_t next = chart.opposite[h] / 3;
+      if (distance[next] <= visit.distance) continue;
+      const double step = glm::distance(from, centroid(chart, next)) *
+                          (1 + kNormalWeight * fold(topology, chart, visit.node, next));
+      if (visit.distance + step < distance[next]) {
+        heap.push({visit.distance + step, next, visit.source});
+      }
+    }
+  }
+}
+
+std::uint32_t farthest_from(const Topology& topology, const LocalChart& chart,
+                            std::uint32_t start) {
+  std::vector<double> distance(chart.corners.size(), kFar);
+  Heap heap;
+  heap.push({0, start, 0});
+  spread(topology, chart, heap, distance, nullptr);
+  std::uint32_t farthest = start;
+  for (std::uint32_t t = 0; t < distance.size(); ++t) {
+    if (distance[t] < kFar && distance[t] > distance[farthest]) farthest = t;
+  }
+  if (farthest == start) {  // all in one point: any other triangle will do
+    for (std::uint32_t t = 0; t < distance.size(); ++t) {
+      if (t != start && distance[t] < kFar) return t;
+    }
+  }
+  return farthest;
+}
+
+int neighbours(const LocalChart& chart, std::uint32_t t) {
+  int count = 0;
+  for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) count += chart.opposite[h] != kNoIndex;
+  return count;
+}
+
+}  // namespace
+
+std::array<std::uint32_t, 2> far_pair(const Topology& topology, const LocalChart& chart) {
+  const std::uint32_t a = farthest_from(topology, chart, 0);
+  return {a, farthest_from(topology, chart, a)};
+}
+
+std::vector<std::uint8_t> divide(const Topology& topology, const LocalChart& chart,
+                                 std::span<const std::uint32_t> seeds) {
+  std::vector<double> distance(chart.corners.size(), kFar);
+  std::vector<std::uint8_t> owner(chart.corners.size(), 0);
+  Heap heap;
+  for (std::uint32_t s = 0; s < seeds.size(); ++s) {
+    distance[seeds[s]] = 0;  // no other source may take it
+    owner[seeds[s]] = static_cast<std::uint8_t>(s);
+  }
+  for (std::uint32_t s = 0; s < seeds.size(); ++s) {
+    const glm::dvec3 from = centroid(chart, seeds[s]);
+    for (std::uint32_t h = 3 * seeds[s]; h < 3 * seeds[s] + 3; ++h) {
+      if (chart.opposite[h] == kNoIndex) continue;
+      const std::uint32_t next = chart.opposite[h] / 3;
+      heap.push({glm::distance(from, centroid(chart, next)) *
+                     (1 + kNormalWeight * fold(topology, chart, seeds[s], next)),
+                 next, s});
+    }
+  }
+  spread(topology, chart, heap, distance, &owner);
+  return owner;
+}
+
+std::vector<std::uint32_t> around_crossings(const LocalChart& chart,
+                                            std::span<const BorderCrossing> crossings, int rings) {
+  std::vector<std::uint32_t> around;
+  std::vector<std::uint8_t> listed(chart.triangles().size(), 0);
+  const auto add = [&](std::uint32_t t) {
+    if (std::exchange(listed[t], 1)) return;
+    around.push_back(t);
+  };
+  for (const BorderCrossing& crossing : crossings) {
+    const bool b = neighbours(chart, crossing.triangle_b) < neighbours(chart, crossing.triangle_a);
+    std::size_t begin = around.size();
+    add(b ? crossing.triangle_b : crossing.triangle_a);
+    for (int ring = 0; ring < rings; ++ring) {
+      const std::size_t end = around.size();
+      for (; begin < end; ++begin) {
+        for (std::uint32_t h = 3 * around[begin]; h < 3 * around[begin] + 3; ++h) {
+          if (chart.opposite[h] != kNoIndex) add(chart.opposite[h] / 3);
+        }
+      }
+    }
+  }
+  return around;
+}
+
+}  // namespace atlas

@@ -1,0 +1,156 @@
+#include "libatlas/charts/merging/crossing_finder.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libatlas/charts/geometry/hull.h"
+#include "libatlas/charts/merging/fan_kernels.h"
+
+namespace atlas {
+namespace {
+
+using Boxes = CrossingFinder::Boxes;
+using Edges = std::span<const std::array<std::uint32_t, 2>>;
+
+// All pairs of the few dozen edges that charts of cells have take less time than to sort them. In
+// longer borders groups of edges, neighbours mostly, are looked at first.
+constexpr double kTouching = 1e-3;  // of what is deep
+constexpr std::size_t kLongBorder = 256, kGroup = 32;
+
+// How far one of two edges that cross would have to move for them not to.
+double crossing_depth(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& d) {
+  const auto nearest = [](const Vec2d& p, const Vec2d& q, const Vec2d& r, const Vec2d& s) {
+    const double length = std::hypot(q.x - p.x, q.y - p.y);
+    return std::min(std::abs(cross(p, q, r)), std::abs(cross(p, q, s))) / length;
+  };
+  return std::min(nearest(a, b, c, d), nearest(c, d, a, b));
+}
+
+// Whether an end of one segment is nearer than `distance` to the other.
+bool touch(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& d, double distance) {
+  const auto near = [&](const Vec2d& p, const Vec2d& q, const Vec2d& r) {
+    const double x = r.x - q.x, y = r.y - q.y, squared = x * x + y * y;
+    const double t =
+        squared > 0 ? std::clamp(((p.x - q.x) * x + (p.y - q.y) * y) / squared, 0.0, 1.0) : 0;
+    const double u = p.x - q.x - t * x, v = p.y - q.y - t * y;
+    return u * u + v * v < distance * distance;
+  };
+  return near(a, c, d) || near(b, c, d) || near(c, a, b) || near(d, a, b);
+}
+
+struct Box {
+  double left, right, low, high;
+};
+
+// Four more than are asked for: the last ones are read together with what lies behind them.
+void resize(std::size_t count, Boxes& boxes) {
+  boxes.stride = count + 4;
+  boxes.sides.assign(4 * boxes.stride, 0);
+}
+
+void put(const Box& box, std::size_t i, Boxes& boxes) {
+  double* const at = boxes.sides.data() + i;
+  at[0] = box.left;
+  at[boxes.stride] = box.right;
+  at[2 * boxes.stride] = box.low;
+  at[3 * boxes.stride] = box.high;
+}
+
+Box get(const Boxes& boxes, std::size_t i) {
+  const double* const at = boxes.sides.data() + i;
+  return {at[0], at[boxes.stride], at[2 * boxes.stride], at[3 * boxes.stride]};
+}
+
+void fill_edges(Edges border, std::span<const Vec2d> uvs, Boxes& boxes) {
+  resize(border.size(), boxes);
+  for (std::size_t i = 0; i < border.size(); ++i) {
+    const Vec2d &a = uvs[border[i][0]], &b = uvs[border[i][1]];
+    put({std::min(a.x, b.x), std::max(a.x, b.x), std::min(a.y, b.y), std::max(a.y, b.y)}, i, boxes);
+  }
+}
+
+void fill_groups(const Boxes& edges, std::size_t count, Boxes& groups) {
+  resize((count + kGroup - 1) / kGroup, groups);
+  for (std::size_t begin = 0; begin < count; begin += kGroup) {
+    Box all = get(edges, begin);
+    for (std::size_t i = begin + 1; i < std::min(begin + kGroup, count); ++i) {
+      const Box one = get(edges, i);
+      all = {std::min(all.left, one.left), std::max(all.right, one.right),
+             std::min(all.low, one.low), std::max(all.high, one.high)};
+    }
+    put(all, begin / kGroup, groups);
+  }
+}
+
+// The first of the boxes from `next` on, four looked at together, that meets `box`, or up to three
+// more than `count`.
+ATLAS_INLINE std::size_t find_near(const Boxes& boxes, const Box& box, std::size_t next,
+                                   std::size_t count) {
+  const double *const left = boxes.sides.data(), *const right = left + boxes.stride,
+                      *const low = right + boxes.stride, *const high = low + boxes.stride;
+  for (; next < count; next += 4) {
+    const auto met = (QuadAt(left + next).quad <= box.right) &
+                     (QuadAt(right + next).quad >= box.left) &
+                     (QuadAt(low + next).quad <= box.high) & (QuadAt(high + next).quad >= box.low);
+    if (!(met[0] | met[1] | met[2] | met[3])) continue;
+    return next + (met[0] ? 0 : met[1] ? 1 : met[2] ? 2 : 3);
+  }
+  return count;
+}
+ATLAS_WIDE std::size_t find_near_wide(const Boxes& boxes, const Box& box, std::size_t next,
+                                      std::size_t count) {
+  return find_near(boxes, box, next, count);
+}
+std::size_t find_near_narrow(const Boxes& boxes, const Box& box, std::size_t next,
+                             std::size_t count) {
+  return find_near(boxes, box, next, count);
+}
+
+// Calls visit(i) for the boxes from `next` to `count` that meet `box` until it returns false;
+// whether it never did.
+template <class Visit>
+bool visit_near(const Boxes& boxes, const Box& box, std::size_t next, std::size_t count,
+                const Visit& visit) {
+  const auto near = has_wide_vectors ? find_near_wide : find_near_narrow;
+  for (std::size_t i = near(boxes, box, next, count); i < count;
+       i = near(boxes, box, i + 1, count)) {
+    if (!visit(i)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Crossing CrossingFinder::find(Edges border, std::span<const Vec2d> uvs, double deep) {
+  const std::size_t n = border.size();
+  fill_edges(border, uvs, edges_);
+  const bool grouped = n > kLongBorder;
+  if (grouped) fill_groups(edges_, n, groups_);
+  Crossing crossing = Crossing::none;
+  for (std::size_t i = 0; i < n && crossing != Crossing::deep; ++i) {
+    const auto [a, b] = border[i];
+    const auto test = [&, a = a, b = b](std::size_t j) {
+      const auto [c, d] = border[j];
+      if (a == c || a == d || b == c || b == d) return true;
+      const bool crosses = cross_each_other(uvs[a], uvs[b], uvs[c], uvs[d]);
+      if (!crosses && !touch(uvs[a], uvs[b], uvs[c], uvs[d], kTouching * deep)) return true;
+      const double depth = crosses ? crossing_depth(uvs[a], uvs[b], uvs[c], uvs[d]) : 0;
+      crossing = depth > deep ? Crossing::deep : Crossing::shallow;
+      return depth <= deep;
+    };
+    Box box = get(edges_, i);
+    const double t = kTouching * deep;
+    box = {box.left - t, box.right + t, box.low - t, box.high + t};
+    if (!grouped) {
+      visit_near(edges_, box, i + 1, n, test);
+      continue;
+    }
+    visit_near(groups_, box, (i + 1) / kGroup, (n + kGroup - 1) / kGroup, [&](std::size_t group) {
+      return visit_near(edges_, box, std::max(i + 1, group * kGroup),
+                        std::min((group + 1) * kGroup, n), test);
+    });
+  }
+  return crossing;
+}
+
+}  // namespace atlas

@@ -1,0 +1,82 @@
+#include "libatlas/charts/merging/fan_centre.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+// A triangle of a fan may be this thin, relative to the cell's area.
+constexpr double kThinFan = 1e-3;
+
+class FanCentre {
+ public:
+  FanCentre(const CoarseMesh& mesh, const CoarseCell& cell) : cell_(cell) {
+    const glm::dvec3 n = to_glm(cell.normal);
+    u_ = glm::normalize(std::abs(n.x) < 0.6 ? glm::cross(n, glm::dvec3(1, 0, 0))
+                                            : glm::cross(n, glm::dvec3(0, 1, 0)));
+    v_ = glm::cross(n, u_);
+    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
+      const glm::dvec3 d = to_glm(mesh.slot_position[s]) - to_glm(cell.centre);
+      outline_.push_back({glm::dot(d, u_), glm::dot(d, v_)});
+    }
+  }
+
+  bool seen_in_full() const {
+    for (std::size_t i = 0; i < outline_.size(); ++i) {
+      if (side(outline_[i], outline_[(i + 1) % outline_.size()], {0, 0}) < kThinFan * cell_.area) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  // Leaves `centre` as it is if no point sees all of the outline.
+  void find(Vec3d& centre) const {
+    double reach = 0;
+    for (const glm::dvec2& p : outline_) reach = std::max({reach, std::abs(p.x), std::abs(p.y)});
+    std::vector<glm::dvec2> kernel{
+        {-reach, -reach}, {reach, -reach}, {reach, reach}, {-reach, reach}};
+    for (std::size_t i = 0; i < outline_.size() && !kernel.empty(); ++i) {
+      clip(kernel, outline_[i], outline_[(i + 1) % outline_.size()]);
+    }
+    if (kernel.empty()) return;
+    glm::dvec2 mean(0);
+    for (const glm::dvec2& p : kernel) mean += p / double(kernel.size());
+    centre = from_glm(to_glm(cell_.centre) + mean.x * u_ + mean.y * v_);
+  }
+
+ private:
+  // Twice the area of a, b, p.
+  static double side(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p) {
+    return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+  }
+
+  void clip(std::vector<glm::dvec2>& kernel, const glm::dvec2& a, const glm::dvec2& b) const {
+    std::vector<glm::dvec2> rest;
+    const double least = kThinFan * cell_.area;
+    for (std::size_t i = 0; i < kernel.size(); ++i) {
+      const glm::dvec2 &p = kernel[i], &q = kernel[(i + 1) % kernel.size()];
+      const double at_p = side(a, b, p) - least, at_q = side(a, b, q) - least;
+      if (at_p >= 0) rest.push_back(p);
+      if ((at_p >= 0) != (at_q >= 0)) rest.push_back(p + (q - p) * (at_p / (at_p - at_q)));
+    }
+    kernel = std::move(rest);
+  }
+
+  const CoarseCell& cell_;
+  glm::dvec3 u_, v_;
+  std::vector<glm::dvec2> outline_;  // around the centre, in the plane of the mean normal
+};
+
+}  // namespace
+
+void centre_fan(const CoarseMesh& mesh, CoarseCell& cell) {
+  const FanCentre fan(mesh, cell);
+  if (!fan.seen_in_full()) fan.find(cell.centre);
+}
+
+}  // namespace atlas

@@ -1,0 +1,408 @@
+#include "libatlas/charts/merging/merge.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <queue>
+
+#include "libatlas/charts/geometry/moments.h"
+#include "libatlas/charts/merging/cost_classes.h"
+#include "libatlas/charts/merging/refusal.h"
+#include "libatlas/charts/merging/runs.h"
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/parallel.h"
+
+namespace atlas {
+namespace {
+
+// 1 - |mean normal| of what counts as lying in one plane: normals within a thousandth of a radian,
+// the noise of float coordinates.
+constexpr double kFlatSpread = 1e-6;
+// A seam along a crease is hidden: to remove it is worth this much less.
+constexpr double kHiddenSeam = 0.75;
+// Within a cone limit charts are small, and their outlines free: what counts is how few they are.
+constexpr double kConeWeight = 1;
+constexpr double kConeFill = 0.4;  // of hull and rectangle
+
+struct CoarseChart {
+  std::vector<std::uint32_t> cells;
+  std::vector<std::uint32_t> arcs;  // not joined, in any order
+  Moments moments{};
+  glm::dvec3 normal_sum{0};
+  double area = 0, perimeter = 0;
+  double energy = 0;     // area times (L2 stretch squared - 1) of its coarse flattening
+  double high_area = 0;  // of it stretched beyond TrialLimits::stretch_high
+  int euler = 1;         // characteristic
+  bool flat = false;     // all cells in one plane
+  bool unrolls = false;  // without stretch, exactly
+  std::uint32_t version = 0;
+  std::vector<Refusal> refusals;  // each kept by one of its two charts
+};
+
+struct Candidate {
+  double cost;
+  std::uint32_t a, b, version_a, version_b;
+  bool operator>(const Candidate& other) const {
+    if (cost != other.cost) return cost > other.cost;
+    return a != other.a ? a > other.a : b > other.b;
+  }
+};
+
+struct Border {
+  std::uint32_t other;
+  double length, crease;
+};
+
+// Merges the cells of one piece of the mesh.
+class Merger {
+ public:
+  // `place` (1 a cell) is scratch: a cell's place in its piece's list.
+  Merger(const CoarseMesh& mesh, const MergeOptions& options, std::vector<std::uint32_t>& place,
+         MergeResult& result, Trial& trial)
+      : mesh_(mesh), options_(options), place_(place), result_(result), trial_(trial) {}
+
+  void run(const std::vector<std::uint32_t>& cells, const Context& context) {
+    charts_.resize(cells.size());
+    for (std::uint32_t i = 0; i < cells.size(); ++i) place_[cells[i]] = i;
+    for (const std::uint32_t k : cells) {
+      start(k);
+      piece_area_ += mesh_.cells[k].area;
+    }
+    for (const std::uint32_t k : cells) push_neighbours(k, true);
+    empty_heap(context);
+    relaxed_ = true;
+    for (const std::uint32_t k : cells) {
+      if (result_.chart_of_cell[k] == k) push_neighbours(k, true);
+    }
+    empty_heap(context);
+  }
+
+  void empty_heap(const Context& context) {
+    while (!heap_.empty() && !context.cancelled()) {
+      const Candidate candidate = heap_.top();
+      heap_.pop();
+      if (chart(candidate.a).version != candidate.version_a ||
+          chart(candidate.b).version != candidate.version_b) {
+        continue;
+      }
+      try_merge(candidate.a, candidate.b);
+    }
+  }
+
+  std::uint64_t trials = 0, rejections = 0;
+
+ private:
+  CoarseChart& chart(std::uint32_t name) { return charts_[place_[name]]; }
+  const CoarseChart& chart(std::uint32_t name) const { return charts_[place_[name]]; }
+
+  std::uint32_t chart_at(std::uint32_t arc, int side) const {
+    const std::uint32_t cell = mesh_.arcs[arc].cell[side];
+    return cell == kNoIndex ? kNoIndex : result_.chart_of_cell[cell];
+  }
+
+  void start(std::uint32_t k) {
+    const CoarseCell& cell = mesh_.cells[k];
+    CoarseChart& own = chart(k);
+    own.cells = {k};
+    own.moments = cell.moments;
+    own.normal_sum = to_glm(cell.normal_sum);
+    own.area = cell.area;
+    own.version = 1;
+    own.flat = 1 - glm::length(own.normal_sum) / own.area < kFlatSpread;
+    if (options_.cone > 0) result_.chart_axis[k] = from_glm(glm::vec3(to_glm(cell.normal)));
+    result_.chart_of_cell[k] = k;
+    own.unrolls = cell.unrolls;
+    if (cell.unrolls) {
+      result_.uv.centre[k] = cell.flat_centre;
+    } else {
+      project(k);
+    }
+    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
+      own.arcs.push_back(mesh_.slot_arc[s]);
+      own.perimeter += mesh_.arcs[mesh_.slot_arc[s]].length;
+      if (cell.unrolls) result_.uv.slot[s] = mesh_.flat_slot[s];
+    }
+  }
+
+  // Turns a cell's corners into the plane of its mean normal, each at its distance.
+  void project(std::uint32_t k) {
+    const CoarseCell& cell = mesh_.cells[k];
+    const glm::dvec3 n = to_glm(cell.normal);
+    const glm::dvec3 u = glm::normalize(std::abs(n.x) < 0.6 ? glm::cross(n, glm::dvec3(1, 0, 0))
+                                                            : glm::cross(n, glm::dvec3(0, 1, 0)));
+    const glm::dvec3 v = glm::cross(n, u);
+    result_.uv.centre[k] = {0, 0};
+    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
+      const glm::dvec3 d = to_glm(mesh_.slot_position[s]) - to_glm(cell.centre);
+      const glm::dvec2 flat(glm::dot(d, u), glm::dot(d, v));
+      const double length = glm::length(flat);
+      result_.uv.slot[s] = from_glm(length > 0 ? flat * (glm::length(d) / length) : flat);
+    }
+  }
+
+  // The charts that share arcs with `a`, ordered by id.
+  void find_borders(std::uint32_t a) {
+    borders_.clear();
+    for (const std::uint32_t arc : chart(a).arcs) {
+      const std::uint32_t c0 = chart_at(arc, 0), c1 = chart_at(arc, 1);
+      const std::uint32_t other = c0 == a ? c1 : c0;
+      if (other == kNoIndex || other == a) continue;
+      borders_.push_back({other, mesh_.arcs[arc].length, mesh_.arcs[arc].crease});
+    }
+    std::sort(borders_.begin(), borders_.end(), [](const Border& x, const Border& y) {
+      return x.other != y.other ? x.other < y.other : x.length < y.length;
+    });
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < borders_.size(); ++i) {
+      if (kept > 0 && borders_[kept - 1].other == borders_[i].other) {
+        borders_[kept - 1].length += borders_[i].length;
+        borders_[kept - 1].crease += borders_[i].crease;
+      } else {
+        borders_[kept++] = borders_[i];
+      }
+    }
+    borders_.resize(kept);
+  }
+
+  void push_neighbours(std::uint32_t a, bool once) {
+    find_borders(a);
+    for (const Border& border : borders_) {
+      if (once && border.other < a) continue;
+      if (relaxed_ &&
+          std::min(chart(a).area, chart(border.other).area) > options_.small_share * piece_area_) {
+        continue;
+      }
+      const std::uint32_t low = std::min(a, border.other), high = std::max(a, border.other);
+      heap_.push(
+          {cost_classes_(cost(a, border)), low, high, chart(low).version, chart(high).version});
+    }
+  }
+
+  double cost(std::uint32_t a, const Border& border) const {
+    const CoarseChart &p = chart(a), &q = chart(border.other);
+    const double area = p.area + q.area;
+    Moments m;
+    for (int i = 0; i < 6; ++i) m[i] = (p.moments[i] + q.moments[i]) / area;
+    m = about(m, from_glm((p.normal_sum + q.normal_sum) / area));
+    // Within a cone limit what counts is how much of the cone is used up.
+    const double spread = options_.cone > 0 ? kConeWeight * (m[0] + m[3] + m[5])
+                                            : std::max(0.0, smallest_eigenvalue(m));
+    const double perimeter = p.perimeter + q.perimeter - 2 * border.length;
+    const double compact = perimeter / std::sqrt(4 * M_PI * area);
+    return spread + options_.compactness_weight * compact +
+           (border.length > 0 ? options_.crease_weight * border.crease / border.length : 0);
+  }
+
+  // Whether all normals lie in one cone within the limit; keeps its axis in axis_.
+  bool within_cone(std::uint32_t a, std::uint32_t b) {
+    if (options_.cone <= 0) return true;
+    normals_.clear();
+    for (const std::uint32_t name : {a, b}) {
+      for (const std::uint32_t k : chart(name).cells) {
+        const std::span<const Vec3f> extreme = options_.cell_normals->of(k);
+        normals_.insert(normals_.end(), extreme.begin(), extreme.end());
+      }
+    }
+    const NormalCone cone = normal_cone(normals_);
+    axis_ = cone.axis;
+    return cone.angle <= options_.cone;
+  }
+
+  static glm::dvec3 unit(const glm::dvec3& v) {
+    const double length = glm::length(v);
+    return length > 0 ? v / length : glm::dvec3(0, 0, 1);
+  }
+
+  void try_merge(std::uint32_t a, std::uint32_t b) {
+    const bool within = within_cone(a, b);
+    if (chart(a).cells.size() < chart(b).cells.size()) std::swap(a, b);
+    if (!within || !join(a, b)) {
+      ++rejections;
+      return;
+    }
+    trial_.commit();
+    absorb(a, b);
+    push_neighbours(a, false);
+  }
+
+  bool join(std::uint32_t a, std::uint32_t b) {
+    glue_.clear();
+    for (const std::uint32_t arc : chart(b).arcs) {
+      const std::uint32_t c0 = chart_at(arc, 0), c1 = chart_at(arc, 1);
+      if ((c0 == a && c1 == b) || (c0 == b && c1 == a)) glue_.push_back(arc);
+    }
+    std::sort(glue_.begin(), glue_.end());
+    if (coplanar(a, b)) {
+      energy_ = high_area_ = 0;
+      euler_ = trial_.euler(chart(a).euler, chart(b).euler, glue_);
+      unrolls_ = chart(a).unrolls && chart(b).unrolls;
+      trial_.join_flat(chart(a).cells, chart(b).cells, glue_, result_.joined);
+      return true;
+    }
+    const TrialOutcome outcome = attempt(a, b);
+    return outcome.accepted ||
+           ((outcome.euler < 1 || glue_has_tip()) &&
+            keep_longest_run(mesh_, seam_ends(a, b), glue_) && attempt(a, b).accepted);
+  }
+
+  bool is_tip(std::uint32_t slot) const { return !mesh_.slot_tip.empty() && mesh_.slot_tip[slot]; }
+  bool glue_has_tip() const {
+    return std::any_of(glue_.begin(), glue_.end(), [&](std::uint32_t arc) {
+      return is_tip(mesh_.arcs[arc].slot[0]) || is_tip(mesh_.arcs[arc].slot[1]);
+    });
+  }
+
+  // Pieces of one plane join without a trial, whatever their outline: nothing is stretched, and an
+  // oriented surface in a plane does not overlap itself.
+  bool coplanar(std::uint32_t a, std::uint32_t b) const {
+    const CoarseChart &p = chart(a), &q = chart(b);
+    if (!p.flat || !q.flat) return false;
+    return 1 - glm::dot(unit(p.normal_sum), unit(q.normal_sum)) < kFlatSpread;
+  }
+
+  TrialOutcome attempt(std::uint32_t a, std::uint32_t b) {
+    ++trials;
+    double length = 0;
+    for (const std::uint32_t arc : glue_)
+      length += mesh_.arcs[arc].length - kHiddenSeam * mesh_.arcs[arc].crease;
+    const CoarseChart &p = chart(a), &q = chart(b);
+    const double area = p.area + q.area;
+    if (relaxed_) length += options_.chart_worth * std::sqrt(piece_area_);
+    // What the merge may cost in stretch is worth the seam that it saves.
+    const double worth = options_.seam_worth * length * std::sqrt(piece_area_);
+    TrialLimits limits = options_.limits;
+    limits.stretch_l2 =
+        std::min(limits.stretch_l2, std::sqrt(1 + (p.energy + q.energy + worth) / area));
+    limits.high_area =
+        p.high_area + q.high_area + options_.tail_worth * length * std::sqrt(piece_area_);
+    if (relaxed_) {
+      limits.solidity = options_.small_solidity;
+      limits.fill = options_.small_fill;
+    }
+    if (options_.cone > 0) limits.solidity = limits.fill = kConeFill;
+    limits.unrolls = p.unrolls && q.unrolls;
+    const double spare = area * (limits.stretch_l2 * limits.stretch_l2 - 1) - p.energy - q.energy;
+    const double spare_area = limits.high_area - p.high_area - q.high_area;
+    if (refused(a, b, spare, spare_area) || refused(b, a, spare, spare_area)) {
+      return {.euler = trial_.euler(p.euler, q.euler, glue_)};
+    }
+    const TrialOutcome outcome = trial_.run(p.cells, q.cells, glue_, result_.joined, limits);
+    unrolls_ = outcome.unrolled;
+    high_area_ = outcome.high_area;
+    euler_ = outcome.euler;
+    if (outcome.accepted) {
+      energy_ = area * (outcome.stretch_l2 * outcome.stretch_l2 - 1);
+    } else if (outcome.energy > 0 || outcome.high_area > 0) {
+      chart(a).refusals.push_back({b, outcome.energy - p.energy - q.energy,
+                                   outcome.high_area - p.high_area - q.high_area, outcome.settled,
+                                   outcome.entangled, glue_});
+    }
+    return outcome;
+  }
+
+  // Whether less was known to fail, or to cost more than what may be spent on joining the two.
+  bool refused(std::uint32_t a, std::uint32_t b, double energy, double high_area) const {
+    for (const Refusal& r : chart(a).refusals) {
+      if (result_.chart_of_cell[r.cell] == b && fails_again(r, glue_, energy, high_area)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // Where seams of either chart with itself end, and tips.
+  std::vector<Vec3d> seam_ends(std::uint32_t a, std::uint32_t b) const {
+    std::vector<Vec3d> ends;
+    for (const std::uint32_t name : {a, b}) {
+      for (const std::uint32_t arc : chart(name).arcs) {
+        const bool seam = chart_at(arc, 0) == chart_at(arc, 1);
+        for (const std::uint32_t slot : mesh_.arcs[arc].slot) {
+          if (slot != kNoIndex && (seam || is_tip(slot))) {
+            ends.push_back(mesh_.slot_position[slot]);
+          }
+        }
+      }
+    }
+    return ends;
+  }
+
+  void absorb(std::uint32_t a, std::uint32_t b) {
+    CoarseChart &p = chart(a), &q = chart(b);
+    for (const std::uint32_t k : q.cells) result_.chart_of_cell[k] = a;
+    p.cells.insert(p.cells.end(), q.cells.begin(), q.cells.end());
+    p.arcs.insert(p.arcs.end(), q.arcs.begin(), q.arcs.end());
+    std::erase_if(p.arcs, [&](std::uint32_t arc) { return result_.joined[arc] != 0; });
+    for (const std::uint32_t arc : glue_) p.perimeter -= 2 * mesh_.arcs[arc].length;
+    p.perimeter += q.perimeter;
+    p.flat = coplanar(a, b);
+    p.energy = energy_;
+    p.high_area = high_area_;
+    p.euler = euler_;
+    p.unrolls = unrolls_;
+    if (options_.cone > 0) result_.chart_axis[a] = axis_;
+    std::move(q.refusals.begin(), q.refusals.end(), std::back_inserter(p.refusals));
+    std::erase_if(p.refusals, [&](const Refusal& r) { return result_.chart_of_cell[r.cell] == a; });
+    p.area += q.area;
+    p.normal_sum += q.normal_sum;
+    for (int i = 0; i < 6; ++i) p.moments[i] += q.moments[i];
+    ++p.version;
+    q = CoarseChart{};
+    q.version = kNoIndex;
+  }
+
+  const CoarseMesh& mesh_;
+  const MergeOptions& options_;
+  std::vector<std::uint32_t>& place_;
+  std::vector<CoarseChart> charts_;  // 1 a cell of the piece
+  MergeResult& result_;
+  Trial& trial_;
+  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> heap_;
+  CostClasses cost_classes_;
+  std::vector<Border> borders_;
+  std::vector<std::uint32_t> glue_;
+  std::vector<Vec3f> normals_;  // of the candidate, with a limit on cones
+  Vec3f axis_;                  // of their cone
+  double piece_area_ = 0;
+  bool relaxed_ = false;
+  double energy_ = 0, high_area_ = 0;  // of the last accepted trial
+  int euler_ = 1;
+  bool unrolls_ = false;
+};
+
+}  // namespace
+
+MergeResult merge_cells(const CoarseMesh& mesh, const std::vector<std::uint32_t>& piece,
+                        const MergeOptions& options, const Context& context) {
+  const std::size_t n = mesh.cells.size();
+  MergeResult result;
+  result.chart_of_cell.assign(n, kNoIndex);
+  result.joined.assign(mesh.arcs.size(), 0);
+  if (options.cone > 0) result.chart_axis.resize(n);
+  result.uv.centre.resize(n);
+  result.uv.slot.resize(mesh.slot_position.size());
+  std::vector<std::uint32_t> place(n, kNoIndex);
+  std::vector<std::vector<std::uint32_t>> pieces;
+  for (std::uint32_t k = 0; k < n; ++k) {
+    if (piece[k] == kNoIndex) continue;
+    if (piece[k] >= pieces.size()) pieces.resize(piece[k] + 1);
+    pieces[piece[k]].push_back(k);
+  }
+  const Fans fans(mesh);
+  TrialScratch scratch(mesh);
+  std::atomic<std::uint64_t> trials{0}, rejections{0};
+  const std::size_t grain = std::max<std::size_t>(1, pieces.size() / 64);
+  parallel_for(context, pieces.size(), grain, [&](std::size_t begin, std::size_t end) {
+    Trial trial(mesh, fans, scratch, result.uv);
+    for (std::size_t i = begin; i < end; ++i) {
+      Merger merger(mesh, options, place, result, trial);
+      merger.run(pieces[i], context);
+      trials += merger.trials;
+      rejections += merger.rejections;
+    }
+  });
+  result.trials = trials;
+  result.rejections = rejections;
+  return result;
+}
+
+}  // namespace atlas

@@ -1,0 +1,32 @@
+#include "libatlas/charts/merging/merge_options.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libatlas/charts/charts.h"
+
+namespace atlas {
+namespace {
+
+constexpr double kWidestRatio = 8;  // wider bounds than 3 merge no more
+// Narrower bounds than 1.025 merge no less: below it a fan's own error, of a mesh that unrolls
+// exactly, is larger than what merging would allow (cylinders at 1.001 came out in 9 to 39 charts;
+// from 0.1 on in one or two, while spheres need a thirtieth more).
+constexpr double kLeastRatio = 0.1;
+
+}  // namespace
+
+MergeOptions merge_options(double max_stretch) {
+  MergeOptions merge;
+  const double usual = ChartOptions{}.max_stretch;
+  if (max_stretch == usual) return merge;
+  double ratio = std::min((max_stretch - 1) / (usual - 1), kWidestRatio);
+  if (ratio < 1) ratio = std::sqrt(std::max(ratio, kLeastRatio));
+  merge.limits.stretch_high = 1 + (merge.limits.stretch_high - 1) * ratio;
+  merge.limits.stretch_l2 = 1 + (merge.limits.stretch_l2 - 1) * ratio * ratio;
+  merge.seam_worth *= ratio * ratio;
+  merge.tail_worth *= std::max(1.0, ratio);
+  return merge;
+}
+
+}  // namespace atlas

@@ -1,0 +1,68 @@
+#include "libatlas/charts/mesh/noise.h"
+
+#include <algorithm>
+
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+// Noise: more than this share of the edges folds by more than nine degrees, though the piece has
+// some hundred triangles. Smooth meshes of that size fold by three to five at most edges; rougher
+// ones of few triangles, noise or not, come out in fewer charts when they count as noise, too.
+constexpr double kFoldCosine = 0.988, kFoldShare = 0.6;
+constexpr std::size_t kManyTriangles = 800;
+constexpr int kRounds = 4;
+
+std::vector<std::uint8_t> noisy_pieces(const Topology& topology) {
+  struct Count {
+    std::uint32_t edges = 0, folds = 0;
+  };
+  std::vector<Count> counts(topology.component_count);
+  for (std::uint32_t h = 0; h < topology.opposite.size(); ++h) {
+    const std::uint32_t o = topology.opposite[h];
+    if (o == kNoIndex || o < h) continue;
+    Count& count = counts[topology.component[h / 3]];
+    ++count.edges;
+    count.folds +=
+        glm::dot(to_dvec(topology.normals[h / 3]), to_dvec(topology.normals[o / 3])) < kFoldCosine;
+  }
+  std::vector<std::uint8_t> noisy(counts.size());
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    noisy[i] = counts[i].folds > kFoldShare * counts[i].edges &&
+               2 * std::size_t{counts[i].edges} > 3 * kManyTriangles / 2;
+  }
+  return noisy;
+}
+
+Vec3f averaged(const Topology& topology, const std::vector<Vec3f>& normals, std::uint32_t t) {
+  const glm::dvec3 own = to_dvec(normals[t]);
+  glm::dvec3 sum = double(topology.areas[t]) * own;
+  for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+    const std::uint32_t o = topology.opposite[h];
+    if (o == kNoIndex) continue;
+    const glm::dvec3 other = to_dvec(normals[o / 3]);
+    sum += double(topology.areas[o / 3]) * std::max(0.0, glm::dot(own, other)) * other;
+  }
+  const double length = glm::length(sum);
+  return length > 0 ? from_glm(glm::vec3(sum / length)) : normals[t];
+}
+
+}  // namespace
+
+void calm_noise(Topology& topology, const Context& context) {
+  if (topology.triangle_count() < kManyTriangles) return;
+  const std::vector<std::uint8_t> noisy = noisy_pieces(topology);
+  if (std::find(noisy.begin(), noisy.end(), 1) == noisy.end()) return;
+  std::vector<Vec3f> now = topology.normals, next = now;
+  for (int round = 0; round < kRounds && !context.cancelled(); ++round) {
+    for (std::uint32_t t = 0; t < now.size(); ++t) {
+      if (topology.component[t] == kNoIndex || !noisy[topology.component[t]]) continue;
+      next[t] = averaged(topology, now, t);
+    }
+    now.swap(next);
+  }
+  topology.calm_normals = std::move(now);
+}
+
+}  // namespace atlas

@@ -1,0 +1,325 @@
+#include "libatlas/charts/mesh/topology.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "libatlas/charts/mesh/links.h"
+#include "libatlas/charts/mesh/noise.h"
+#include "libatlas/core/clock.h"
+#include "libatlas/core/drop_rounding.h"
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+// Twice the area below this share of the longest edge squared is rounding, not shape: double
+// products of float coordinates are good to 1e-16.
+constexpr double kDegenerateShare = 1e-12;
+
+// What a loop needs from anywhere in memory is asked for so many triangles before: meshes' orders
+// differ, and waiting would take most of the time.
+constexpr std::size_t kAhead = 20;
+
+Status check_input(const MeshView& mesh) {
+  const std::size_t n = mesh.indices.size();
+  if (n < 3) return {ErrorCode::bad_input, "mesh: no triangle (nothing to chart)"};
+  if (n % 3 != 0) {
+    return {ErrorCode::bad_input, fmt::format("mesh: {} indices are not whole triangles", n)};
+  }
+  if (n / 3 >= (std::size_t{1} << 30)) {
+    return {ErrorCode::unsupported, "mesh: more than 2^30 triangles (split it)"};
+  }
+  const std::uint32_t largest = *std::max_element(mesh.indices.begin(), mesh.indices.end());
+  if (largest >= mesh.positions.size()) {
+    const auto at = std::find_if(mesh.indices.begin(), mesh.indices.end(),
+                                 [&](std::uint32_t v) { return v >= mesh.positions.size(); });
+    return {ErrorCode::bad_input,
+            fmt::format("triangle {}: vertex index {} out of range ({})",
+                        (at - mesh.indices.begin()) / 3, *at, mesh.positions.size())};
+  }
+  if (!mesh.materials.empty() && mesh.materials.size() != n / 3) {
+    return {ErrorCode::bad_input, "mesh: materials must be empty or 1 a triangle"};
+  }
+  if (!mesh.density.empty() && mesh.density.size() != n / 3) {
+    return {ErrorCode::bad_input, "mesh: densities must be empty or 1 a triangle"};
+  }
+  return {};
+}
+
+bool finite(const Vec3f& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+// Which vertices triangles have, 1 a vertex.
+std::vector<std::uint8_t> used_vertices(const MeshView& mesh) {
+  std::vector<std::uint8_t> used(mesh.positions.size(), 0);
+  for (const std::uint32_t v : mesh.indices) used[v] = 1;
+  return used;
+}
+
+Status check_positions(const MeshView& mesh, const std::vector<std::uint8_t>& used) {
+  bool all = true;
+  for (std::size_t v = 0; v < used.size(); ++v) all &= !used[v] || finite(mesh.positions[v]);
+  if (all) return {};
+  const auto at = std::find_if(mesh.indices.begin(), mesh.indices.end(),
+                               [&](std::uint32_t v) { return !finite(mesh.positions[v]); });
+  return {ErrorCode::bad_input,
+          fmt::format("triangle {}: vertex {} has a position that is not finite",
+                      (at - mesh.indices.begin()) / 3, *at)};
+}
+
+// The power of two that brings the largest extent of the used vertices into [1, 2).
+double unit_scale(const MeshView& mesh, const std::vector<std::uint8_t>& used) {
+  glm::vec3 low(std::numeric_limits<float>::max()), high(-low);
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (!used[v]) continue;
+    const glm::vec3 p = to_glm(mesh.positions[v]);
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  const glm::dvec3 extent = glm::dvec3(high) - glm::dvec3(low);
+  const double size = std::max({extent.x, extent.y, extent.z});
+  return size > 0 ? std::ldexp(1.0, -std::ilogb(size)) : 1.0;
+}
+
+std::uint64_t hash_position(const std::uint32_t (&key)[3]) {
+  std::uint64_t h = key[0] * 0x9e3779b97f4a7c15ull;
+  h = (h ^ (h >> 32) ^ key[1]) * 0xd6e8feb86659fd93ull;
+  h = (h ^ (h >> 32) ^ key[2]) * 0xd6e8feb86659fd93ull;
+  return h ^ (h >> 32);
+}
+
+// Fills points, source_vertex and corner_vertex. Vertices are numbered in input order.
+void weld(const MeshView& mesh, const std::vector<std::uint8_t>& used, Topology& topology) {
+  const std::size_t n = mesh.positions.size();
+  const double size = 1 / topology.scale;
+  const std::size_t capacity = std::bit_ceil(std::max<std::size_t>(16, 2 * n));
+  std::vector<std::uint32_t> table(capacity, kNoIndex), id(n, kNoIndex);
+  for (std::uint32_t v = 0; v < n; ++v) {
+    if (!used[v]) continue;
+    const Vec3f& at = mesh.positions[v];
+    const Vec3f p{drop_rounding(at.x, size), drop_rounding(at.y, size), drop_rounding(at.z, size)};
+    std::uint32_t key[3];
+    std::memcpy(key, &p, sizeof key);
+    std::size_t slot = hash_position(key) & (capacity - 1);
+    for (;; slot = (slot + 1) & (capacity - 1)) {
+      if (table[slot] == kNoIndex) {
+        table[slot] = static_cast<std::uint32_t>(topology.source_vertex.size());
+        topology.source_vertex.push_back(v);
+        topology.points.push_back(p);
+        break;
+      }
+      if (topology.points[table[slot]] == p) break;
+    }
+    id[v] = table[slot];
+  }
+  topology.corner_vertex.resize(mesh.indices.size());
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+    topology.corner_vertex[i] = id[mesh.indices[i]];
+  }
+  const auto scale = static_cast<float>(topology.scale);
+  for (Vec3f& p : topology.points) p = {p.x * scale, p.y * scale, p.z * scale};
+}
+
+glm::dvec3 point(const Topology& topology, std::uint32_t corner) {
+  return to_dvec(topology.points[topology.corner_vertex[corner]]);
+}
+
+void measure_triangles(Topology& topology) {
+  const std::size_t n = topology.corner_vertex.size() / 3;
+  topology.normals.assign(n, Vec3f{});
+  topology.areas.assign(n, 0.0f);
+  topology.flags.assign(n, 0);
+  for (std::uint32_t t = 0; t < n; ++t) {
+    const glm::dvec3 a = point(topology, 3 * t), b = point(topology, 3 * t + 1),
+                     c = point(topology, 3 * t + 2);
+    const glm::dvec3 cross = glm::cross(b - a, c - a);
+    const double twice = glm::length(cross);
+    const double longest =
+        std::max({glm::dot(b - a, b - a), glm::dot(c - a, c - a), glm::dot(c - b, c - b)});
+    if (!(twice > kDegenerateShare * longest)) {
+      topology.flags[t] = Topology::kDegenerate;
+      ++topology.defects.degenerate_triangles;
+      continue;
+    }
+    topology.normals[t] = from_glm(glm::vec3(cross / twice));
+    topology.areas[t] = static_cast<float>(0.5 * twice);
+  }
+}
+
+// Numbers the pieces and finds which triangles to turn so that neighbours agree. Where no choice
+// agrees, the link is cut. Each piece keeps the orientation that most of its area has.
+class Pieces {
+ public:
+  explicit Pieces(Topology& topology) : topology_(topology) {}
+
+  void run() {
+    if (topology_.defects.misoriented_edges == 0) return join();
+    const auto n = static_cast<std::uint32_t>(topology_.triangle_count());
+    topology_.component.assign(n, kNoIndex);
+    turned_.assign(n, 0);
+    for (std::uint32_t t = 0; t < n; ++t) {
+      if (topology_.component[t] == kNoIndex && !topology_.degenerate(t)) flood(t);
+    }
+    std::sort(topology_.fan_links.begin(), topology_.fan_links.end());
+    cut_conflicts();
+    for (std::uint32_t t = 0; t < n; ++t) {
+      if (topology_.flags[t] & Topology::kFlipped) turn(t);
+    }
+    for (std::uint32_t& h : topology_.fan_links) {
+      if ((topology_.flags[h / 3] & Topology::kFlipped) && h % 3 != 1) h += h % 3 == 0 ? 2 : -2;
+    }
+  }
+
+ private:
+  bool misoriented(std::uint32_t h, std::uint32_t o) const {
+    return topology_.corner_vertex[h] == topology_.corner_vertex[o];
+  }
+
+  // Where all triangles agree as they are, there is nothing to find but the pieces. Each triangle
+  // points to a lower one of its piece, or to itself; unlike a flood, this reads the mesh in order.
+  void join() {
+    const auto n = static_cast<std::uint32_t>(topology_.triangle_count());
+    std::vector<std::uint32_t>& lower = topology_.component;
+    lower.resize(n);
+    const auto root = [&](std::uint32_t t) {
+      while (lower[t] != t) t = lower[t] = lower[lower[t]];
+      return t;
+    };
+    for (std::uint32_t t = 0; t < n; ++t) {
+      std::uint32_t own = lower[t] = t;
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        const std::uint32_t o = topology_.opposite[h];
+        if (o >= h) continue;  // kNoIndex is above all
+        const std::uint32_t other = root(o / 3);
+        lower[std::max(own, other)] = std::min(own, other);
+        own = std::min(own, other);
+      }
+    }
+    for (std::uint32_t t = 0; t < n; ++t) {
+      if (topology_.degenerate(t)) {
+        lower[t] = kNoIndex;
+      } else {
+        lower[t] = lower[t] == t ? topology_.component_count++ : lower[lower[t]];
+      }
+    }
+  }
+
+  void flood(std::uint32_t seed) {
+    queue_.assign(1, seed);
+    topology_.component[seed] = topology_.component_count;
+    double kept = 0, turned = 0;
+    for (std::size_t i = 0; i < queue_.size(); ++i) {
+      const std::uint32_t t = queue_[i];
+      (turned_[t] ? turned : kept) += topology_.areas[t];
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        const std::uint32_t o = topology_.opposite[h];
+        if (o == kNoIndex || topology_.component[o / 3] != kNoIndex) continue;
+        topology_.component[o / 3] = topology_.component_count;
+        turned_[o / 3] = turned_[t] ^ (misoriented(h, o) ? 1 : 0);
+        queue_.push_back(o / 3);
+      }
+    }
+    const std::uint8_t reference = turned > kept ? 1 : 0;
+    if (turned > 0) {
+      for (const std::uint32_t t : queue_) {
+        if (turned_[t] != reference) topology_.flags[t] |= Topology::kFlipped;
+      }
+    }
+    ++topology_.component_count;
+  }
+
+  void cut_conflicts() {
+    for (std::uint32_t h = 0; h < topology_.opposite.size(); ++h) {
+      const std::uint32_t o = topology_.opposite[h];
+      if (o == kNoIndex || o < h) continue;
+      const bool differ = turned_[h / 3] != turned_[o / 3];
+      if (differ == misoriented(h, o)) continue;
+      topology_.opposite[h] = topology_.opposite[o] = kNoIndex;
+      const bool fan =
+          std::binary_search(topology_.fan_links.begin(), topology_.fan_links.end(), h) ||
+          std::binary_search(topology_.fan_links.begin(), topology_.fan_links.end(), o);
+      if (!fan) topology_.cut_length += edge_length(topology_, h) / topology_.scale;
+    }
+  }
+
+  // Exchanges corners 1 and 2, and with them half-edges 0 and 2.
+  void turn(std::uint32_t t) {
+    const std::uint32_t a = 3 * t, b = 3 * t + 2;
+    std::swap(topology_.corner_vertex[3 * t + 1], topology_.corner_vertex[3 * t + 2]);
+    Vec3f& normal = topology_.normals[t];
+    normal = {-normal.x, -normal.y, -normal.z};
+    const std::uint32_t across_a = topology_.opposite[a], across_b = topology_.opposite[b];
+    topology_.opposite[a] = across_b;
+    topology_.opposite[b] = across_a;
+    if (across_a != kNoIndex) topology_.opposite[across_a] = b;
+    if (across_b != kNoIndex) topology_.opposite[across_b] = a;
+  }
+
+  Topology& topology_;
+  std::vector<std::uint8_t> turned_;
+  std::vector<std::uint32_t> queue_;
+};
+
+// Counts vertices around which the triangles form more than one fan: one fan then holds less than
+// all of a vertex's corners.
+void count_nonmanifold_vertices(Topology& topology) {
+  const auto corners = static_cast<std::uint32_t>(topology.corner_vertex.size());
+  std::vector<std::uint32_t> valence(topology.points.size(), 0);  // 0 once it is judged
+  for (std::uint32_t h = 0; h < corners; ++h) {
+    valence[topology.corner_vertex[h]] += !topology.degenerate(h / 3);
+  }
+  for (std::uint32_t start = 0; start < corners; ++start) {
+    if (start + 3 * kAhead < corners) {
+      const std::uint32_t later = start + 3 * kAhead, across = topology.opposite[later];
+      __builtin_prefetch(valence.data() + topology.corner_vertex[later], 1);
+      if (across != kNoIndex) __builtin_prefetch(topology.opposite.data() + across);
+    }
+    std::uint32_t& all = valence[topology.corner_vertex[start]];
+    if (all == 0 || topology.degenerate(start / 3)) continue;
+    std::uint32_t h = start, fan = 1, o;
+    for (;; ++fan) {  // one way around, until the start or a border
+      o = topology.opposite[previous_half_edge(h)];
+      if (o == kNoIndex || o == start) break;
+      h = o;
+    }
+    if (o == kNoIndex) {
+      for (o = topology.opposite[start]; o != kNoIndex; o = topology.opposite[h], ++fan) {
+        h = next_half_edge(o);
+      }
+    }
+    topology.defects.nonmanifold_vertices += fan < all;
+    all = 0;
+  }
+}
+
+}  // namespace
+
+Result<Topology> build_topology(const MeshView& mesh, const TopologyOptions& options,
+                                const Context& context) {
+  if (Status status = check_input(mesh); !status.ok()) return status;
+  Topology topology;
+  {
+    const std::vector<std::uint8_t> used = used_vertices(mesh);
+    if (Status status = check_positions(mesh, used); !status.ok()) return status;
+    topology.scale = unit_scale(mesh, used);
+    weld(mesh, used, topology);
+  }
+  measure_triangles(topology);
+  if (context.cancelled()) return Status::cancelled();
+  link_half_edges(mesh, options, topology);
+  if (context.cancelled()) return Status::cancelled();
+  Pieces(topology).run();
+  count_nonmanifold_vertices(topology);
+  Stopwatch watch(cpu_seconds);
+  calm_noise(topology, context);
+  topology.noise_cpu = watch.lap();
+  return topology;
+}
+
+}  // namespace atlas
