@@ -213,6 +213,18 @@ PackedAtlas describe(const FitResult& fit) {
   return atlas;
 }
 
+// At scale 1 the triangles have the area of the pages; where they lie on each other, more fits.
+double largest_scale(std::span<const ChartShape> shapes, double page_area, const Context& context) {
+  constexpr double kRounding = 1e-6;
+  const double covered = covered_area(shapes, context);
+  if (!(covered > 0) || covered > (1 - kRounding) * page_area) return 1;
+  context.say(
+      fmt::format("charts lie on themselves, as those of tiled textures do: all together "
+                  "cover {:.3g} % of what their triangles would side by side",
+                  100 * covered / page_area));
+  return std::sqrt(page_area / covered);
+}
+
 // Charts on pages whose border is kept free: packed without it, then moved.
 Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> items,
                              std::span<const ChartShape> shapes, const Context& context) {
@@ -241,6 +253,7 @@ Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> item
   fit.effort = o.effort;
   fit.seed = o.seed;
   fit.shapes = shapes;
+  fit.max_scale = largest_scale(shapes, double(c.page_side) * c.page_side * c.pages, context);
   fit.rotations = c.rotations;
   fit.any_angle = c.rotations > 4;
   Result<FitResult> fitted = fit_pages(items, fit, context);

@@ -6,6 +6,7 @@
 
 #include "libatlas/core/counting_sort.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/pack/covered_area.h"
 
 namespace atlas::pack {
 namespace {
@@ -135,6 +136,7 @@ ChartOutline outline_of(const ChartShape& shape) {
   edges.remaining([&](std::uint32_t from, std::uint32_t to) { links.emplace_back(from, to); });
   for (const auto& [from, to] : loops_of(std::move(links)))
     outline.edges.push_back({shape.corners[from], shape.corners[to]});
+  outline.area *= covered_share(outline);
   return outline;
 }
 
@@ -195,3 +197,13 @@ std::vector<ChartOutline> outlines_of(std::span<const ChartShape> shapes, const 
 }
 
 }  // namespace atlas::pack
+
+namespace atlas {
+
+double covered_area(std::span<const ChartShape> shapes, const Context& context) {
+  double area = 0;
+  for (const pack::ChartOutline& outline : pack::outlines_of(shapes, context)) area += outline.area;
+  return area;
+}
+
+}  // namespace atlas

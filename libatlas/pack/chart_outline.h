@@ -17,7 +17,7 @@ struct ChartOutline {
   };
   std::vector<Edge> edges;                  // loop after loop, the chart to their left
   std::vector<std::array<Vec2d, 3>> loose;  // triangles without area or against the others' sense
-  double area = 0;                          // sum of the triangles' unsigned areas
+  double area = 0;                          // that it covers (covered_area.h)
 
   bool empty() const { return edges.empty() && loose.empty(); }
 };

@@ -20,6 +20,10 @@ struct ChartShape {
                                              // taken three by three
 };
 
+// The area that the charts cover, triangles of a chart that lie on each other counted once: within
+// a hundredth or so of a chart's where some do.
+double covered_area(std::span<const ChartShape> shapes, const Context& context);
+
 struct OutlineOptions {
   Extent page{2048, 2048};      // texels; height 0: one page of open height
   std::uint32_t max_pages = 1;  // 0: as many as it takes

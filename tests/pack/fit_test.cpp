@@ -254,6 +254,36 @@ TEST(FitPages, MoreDirectionsAreNeverWorseThanFour) {
   }
 }
 
+// Given uvs may lie on each other many times over, as those of tiles do.
+TEST(FitPages, ChartsThatLieOnThemselvesTakeTheirRoomOnce) {
+  std::vector<std::vector<Vec2d>> once, often;
+  test::Noise noise{7};
+  for (int k = 0; k < 40; ++k) {
+    const double w = 10 + 50 * noise.unit(), h = 10 + 25 * noise.unit();
+    once.push_back({{0, 0}, {w, 0}, {w, h}, {0, 0}, {w, h}, {0, h}});
+    often.push_back(once.back());
+    for (int copy = 0; copy < 9; ++copy) {  // every other one is turned over
+      const double x = w * copy / 9;
+      if (copy % 2 == 0)
+        often.back().insert(often.back().end(), {{0, 0}, {x, 0}, {w, h}});
+      else
+        often.back().insert(often.back().end(), {{0, 0}, {w, h}, {x, 0}});
+      often.back().insert(often.back().end(), once.back().begin(), once.back().end());
+    }
+  }
+  const test::ChartItems single(std::move(once)), stacked(std::move(often));
+  FitOptions o = tight(256);
+  o.shapes = single.shapes;
+  const FitResult wanted = fit(single.items, o);
+  o.shapes = stacked.shapes;
+  const FitResult result = fit(stacked.items, o);
+  EXPECT_GT(result.scale, 0.97 * wanted.scale);
+  EXPECT_NEAR(result.utilization / (result.scale * result.scale),
+              wanted.utilization / (wanted.scale * wanted.scale), 1e-3);
+  EXPECT_EQ(test::check_outlines(test::placed_shapes(stacked, result), result.pages, o.padding),
+            "");
+}
+
 // A page of any shape gets the fuller of rows and cells.
 TEST(FitPages, FewStraightChartsFillAPageAsWellAsByCells) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {

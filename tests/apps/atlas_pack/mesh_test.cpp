@@ -43,6 +43,25 @@ TEST_F(AtlasPack, MeshChartsAtUniformDensity) {
   EXPECT_GT(area(0), 0.1);
 }
 
+// Uvs of tiles lie on each other: what they cover fills the page, and nothing else is counted.
+TEST_F(AtlasPack, MeshChartsThatLieOnThemselvesFillThePage) {
+  std::string text = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+  for (int k = 0; k < 10; ++k) {  // a strip whose squares are turned over in turns
+    text += fmt::format("v {0} 0 0\nv {0} 1 0\n", k);
+    if (k == 0) continue;
+    const int v = 2 * k - 1, left = k % 2 ? 1 : 2, right = 3 - left;
+    text += fmt::format("f {0}/{4} {2}/{5} {3}/{6}\nf {0}/{4} {3}/{6} {1}/{7}\n", v, v + 1, v + 2,
+                        v + 3, left, right, 5 - right, 5 - left);
+  }
+  write("strip.obj", text);
+  const RunResult r = run("mesh strip.obj --page 256 --padding 0 -o out.obj --json");
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  const auto json = nlohmann::json::parse(r.output);
+  EXPECT_EQ(json["items"], 1);
+  EXPECT_GT(json["utilization"], 0.9);
+  EXPECT_LE(json["utilization"], 1.0);
+}
+
 // Eight right triangles, far apart in their own uvs.
 std::string triangles_obj() {
   std::string text;
