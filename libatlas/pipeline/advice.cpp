@@ -48,12 +48,33 @@ std::string on_coarse_texels(const ExportReport& report, const ExportOptions& op
       1e3 * options.texel_metres / report.scale, 1e3 * options.texel_metres);
 }
 
+std::string on_white(const ExportReport& report) {
+  return fmt::format(
+      "light of {:.3g}, the geometric mean, is shown white like all above {:.3g}: most shadows are "
+      "lost (a larger --white or a lower --exposure)",
+      double(report.luminance.log_average), report.exposure_white);
+}
+
+std::string on_black(const ExportReport& report) {
+  return fmt::format(
+      "light of {:.3g}, the brightest that is seen but for 1 %, is shown black; white begins at "
+      "{:.3g} (a smaller --white or a higher --exposure)",
+      double(report.luminance.percentile99), report.exposure_white);
+}
+
+// What the tone curve shows of grey light.
+float shown(const ExportReport& report, double luminance) {
+  const auto v = static_cast<float>(luminance);
+  return report.tone.display({v, v, v}).x;
+}
+
 }  // namespace
 
 std::vector<std::string> advice_on(const ExportReport& report, const ExportOptions& options) {
   // Below these, light that the scene has is seen to be missing from the pages.
   constexpr double kFewTexels = 32 * 32, kLittleUsed = 0.4, kCoarse = 0.5;
   constexpr std::size_t kManyCharts = 256;
+  constexpr float kBlack = 6 / 255.0f;
   std::vector<std::string> lines;
   if (report.pages.empty() || report.gpu_bytes == 0) return lines;  // no light, no texels to lose
   if (report.pages.size() > kManyPages) lines.push_back(on_many_pages(report, options));
@@ -64,6 +85,12 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
     lines.push_back(on_small_charts(report, texels_a_chart));
   if (options.texel_metres > 0 && report.scale < kCoarse)
     lines.push_back(on_coarse_texels(report, options));
+  // A white that was measured suits the light, even where all of it is equal.
+  if (options.tone.white <= 0 && options.tone.exposure_stops == 0) return lines;
+  const LuminanceStatistics& light = report.luminance;
+  if (shown(report, light.log_average) >= 1) lines.push_back(on_white(report));
+  if (light.percentile99 > 0 && shown(report, light.percentile99) < kBlack)
+    lines.push_back(on_black(report));
   return lines;
 }
 

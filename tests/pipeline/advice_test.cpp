@@ -52,6 +52,26 @@ TEST(Advice, PagesOfGuttersAreNamed) {
   EXPECT_TRUE(advice_on(report, {}).empty());
 }
 
+TEST(Advice, LightThatTheToneCurveLosesIsNamed) {
+  ExportReport report = report_of(100, 8, 1024);
+  report.luminance.log_average = 100;
+  report.luminance.percentile99 = 700;
+  const auto with_white = [&](float white) {
+    report.tone.scale = 1 / white;
+    report.exposure_white = white;
+    ExportOptions options;
+    EXPECT_TRUE(advice_on(report, options).empty()) << "as measured";
+    options.tone.white = white;
+    return advice_on(report, options);
+  };
+  EXPECT_TRUE(with_white(700).empty());
+  EXPECT_TRUE(with_white(120).empty());
+  EXPECT_TRUE(with_white(7e4f).empty());
+  EXPECT_TRUE(
+      holds(with_white(90), "light of 100, the geometric mean, is shown white like all above 90"));
+  EXPECT_TRUE(holds(with_white(7e6f), "is shown black; white begins at 7e+06"));
+}
+
 TEST(Advice, TexelsThatPagesCannotHoldAreNamed) {
   ExportReport report = report_of(100, 8, 1024);
   report.scale = 0.2;
