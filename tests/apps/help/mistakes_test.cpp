@@ -53,6 +53,9 @@ class Mistakes : public testing::Test {
 TEST_F(Mistakes, AMisspeltOptionIsTheReasonWhyAnotherIsMissing) {
   expect_complaint(ATLAS_EXPORT, "t.obj --ouput a.wrl",
                    "unknown option --ouput: is --output meant?");
+  expect_complaint(ATLAS_EXPORT, "t.obj --otuput a.wrl",
+                   "unknown option --otuput: is --output meant?");
+  expect_complaint(ATLAS_EXPORT, "--hlep", "unknown option --hlep: is --help meant?");
   expect_complaint(ATLAS_EXPORT, "t.obj -o a.obj --threshhold=1",
                    "unknown option --threshhold=1: is --threshold meant?");
   expect_complaint(ATLAS_EXPORT, "t.obj -o a.obj --nope",
