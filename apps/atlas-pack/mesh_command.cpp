@@ -300,8 +300,9 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
     if (Status s = check_output(material_file(c.output), {file}); !s.ok()) return s;
   for (const std::string& line : loaded->defects.lines()) context.say("defect: " + line);
   if (scene.texcoord_indices.empty())
-    return Status(ErrorCode::bad_input,
-                  fmt::format("{}: has no uvs (unwrap it first)", c.input.string()));
+    return Status(
+        ErrorCode::bad_input,
+        fmt::format("{}: has no uvs (atlas-export --charts-only makes some)", c.input.string()));
   UvCharts charts = find_charts(scene);
   make_uniform(scene, double(c.page_side) * c.page_side * c.pages, charts);
   if (charts.without_uv > 0)
