@@ -252,6 +252,7 @@ double seam_length(const Topology& topology, const ChartSet& set) {
     if (h < topology.opposite[h]) length += seam(h);
   }
   for (const std::uint32_t h : topology.fan_links) length -= seam(h);
+  length = std::max(length, 0.0);  // rounding leaves less than nothing of equal sums
   return length / topology.scale + topology.cut_length;
 }
 
