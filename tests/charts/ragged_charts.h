@@ -92,7 +92,10 @@ struct RaggedCharts {
   }
 
   void straighten(std::uint8_t rings, double crease_degrees = 40) {
-    const std::vector<SeamBand> of_chart(64, SeamBand{rings});
+    straighten(SeamBand{rings}, crease_degrees);
+  }
+  void straighten(const SeamBand& band, double crease_degrees = 40) {
+    const std::vector<SeamBand> of_chart(64, band);
     straighten_borders(topology, {{crease_degrees, {}}, of_chart}, partition, frames);
   }
 };

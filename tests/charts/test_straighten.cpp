@@ -72,6 +72,28 @@ TEST(Straighten, SawtoothBecomesALine) {
   EXPECT_NEAR(charts.border_length(), 1, 1e-6);
 }
 
+// Of the least sum of length and cost the length rises with the price of what changes sides, and
+// less does.
+TEST(Straighten, StifferSeamsMoveLess) {
+  const RaggedCharts start = sawtooth();
+  double length = 0;
+  std::size_t moved = start.partition.chart.size();
+  const std::size_t before = moved;
+  for (const float stiffness : {0.0F, 0.1F, 0.3F, 0.6F, 1.0F, 3.0F}) {
+    RaggedCharts charts = start;
+    charts.straighten(SeamBand{12, stiffness});
+    EXPECT_GE(charts.border_length(), length - 1e-6) << stiffness;
+    length = charts.border_length();
+    std::size_t changed = 0;
+    for (std::size_t t = 0; t < before; ++t)
+      changed += charts.partition.chart[t] != start.partition.chart[t];
+    EXPECT_LE(changed, moved) << stiffness;
+    moved = changed;
+  }
+  EXPECT_EQ(moved, 0u);
+  EXPECT_NEAR(length, start.border_length(), 1e-6);
+}
+
 // The band is narrower than teeth are high: the border comes to lie along its rim, where the band
 // of one side falls into parts that hang together outside of it.
 TEST(Straighten, NarrowBandsShortenWhatTheyCan) {
