@@ -101,15 +101,9 @@ constexpr std::size_t kTrianglesAtATime = 50000, kSmallPiece = 5000;
 constexpr double kMostRings = 12;  // since wider bands are dear on fine meshes.
 // Where cells have no more than kCoarseCell triangles, each of these is a large part of its chart.
 // The more they have, the freer they are. Half as stiff as that, in bands a quarter wider, seams
-// are 1.4 % shorter for 6 % more L2 - 1 and 9 % more time (97 meshes).
+// are 1.4 % shorter for 6 % more L2 - 1 and 9 % more time (97 meshes). Not in ChartPreset::fast:
+// where charts fail by it, it would take as long as the default.
 constexpr double kCoarseCell = 40, kCoarseStiffness = 0.3;
-
-// By the mean number of triangles in a chart's cells, and the one that was planned for the mesh.
-SeamBand seam_band(double in_cell, double planned) {
-  const double fineness = std::max({1.0, in_cell / kCoarseCell, planned / kCoarseCell});
-  return {static_cast<std::uint8_t>(std::min(std::sqrt(in_cell / 5), kMostRings)),
-          static_cast<float>(kCoarseStiffness / fineness)};
-}
 
 // Cells of ChartPreset::fast, larger and so fewer: a twelfth less time for a thirtieth more charts
 // (77 meshes).
@@ -302,6 +296,15 @@ class Segmenter {
     for (std::uint32_t k = 0; k < cells.count; ++k) {
       bands_.push_back(seam_band(double(triangles[k]) / std::max(cell_count[k], 1u), planned));
     }
+  }
+
+  // By the mean number of triangles in a chart's cells, and the one that was planned for the mesh.
+  SeamBand seam_band(double in_cell, double planned) const {
+    const double fineness = options_.preset == ChartPreset::fast
+                                ? 1
+                                : std::max({1.0, in_cell / kCoarseCell, planned / kCoarseCell});
+    return {static_cast<std::uint8_t>(std::min(std::sqrt(in_cell / 5), kMostRings)),
+            static_cast<float>(kCoarseStiffness / fineness)};
   }
 
   const Topology& topology_;
