@@ -31,9 +31,9 @@ constexpr double first_inexactness = 1e-6, rough_share = 0.05, fine_share = 1e-3
 // must be exact: errors of a solve are smooth, and later steps take long to remove them.
 constexpr double may_unroll = 3e-4, exact_first = 1e-9;
 constexpr int most_iterations = 60;
-// How far every other step goes beyond the minimum for given rotations, and those of squeezing do.
-// What a long step overshoots the next one mends at once: three steps end where four plain ones do,
-// and squeezing goes further down (measured on 240 meshes).
+// How far every other step goes beyond the minimum for given rotations, the rest of them, and those
+// of squeezing. What a long step overshoots the next one mends at once: three steps end where four
+// plain ones do, and squeezing goes further down (measured on 240 meshes).
 constexpr double long_step = 3, last_step = 1.3;
 constexpr std::array squeezing_steps{1.7, 1.3};
 // Vertices from which on what is solved and what is measured do not lie in memory together.

@@ -24,11 +24,11 @@ class ArapSolver {
   // triangle, which need not agree where triangles meet. The next step goes on from them.
   void join(std::span<const Vec2d> corner_uvs, std::span<Vec2d> uvs);
 
-  // Global steps, with local steps between them, from the current rotations. Every other one is
-  // relaxed, but in large meshes, and the last is plain: for given rotations the energy is
-  // quadratic and nowhere below the one that falls, so that any step up to twice as long as to its
-  // minimum descends (Salakhutdinov and Roweis 2003, "Adaptive overrelaxed bound optimization
-  // methods"). Those here are longer and may rise; the plain step after each more than mends that,
+  // Global steps, with local steps between them, from the current rotations. But in large
+  // meshes all are relaxed, every other one far, the last a little: for given rotations the energy
+  // is quadratic and nowhere below the one that falls, so that any step up to twice as long as to
+  // its minimum descends (Salakhutdinov and Roweis 2003, "Adaptive overrelaxed bound optimization
+  // methods"). Those that go far are longer and may rise; the step after each more than mends that,
   // and what is slow to settle does in fewer.
   // Returns by how much the last local step lowered the energy, as part of the area; infinite if
   // there was none.

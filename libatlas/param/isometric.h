@@ -70,10 +70,10 @@ struct IsometricResult {
       0;  // triangles of non-positive uv area (in floating point; see injectivity.h)
 };
 
-// Minimises that energy for a fixed number of steps and writes uvs (1 a vertex). `start.uvs`
-// may be the same memory as `uvs`. The scale is that of the surface (times density); not
-// area-preserving to the last digit. O(n) a step up to factors that grow slowly: a band solver for
-// small charts, a sparse factorisation up to some ten thousand triangles, a
+// Minimises the energy of `options.shear_weight` in so many steps and writes uvs (1 a vertex).
+// `start.uvs` may be the same memory as `uvs`. The scale is that of the surface (times density);
+// not area-preserving to the last digit. O(n) a step up to factors that grow slowly: a band solver
+// for small charts, a sparse factorisation up to some ten thousand triangles, a
 // multilevel-preconditioned solve above.
 IsometricResult flatten_isometric(const LocalMesh& mesh, const IsometricStart& start,
                                   const IsometricOptions& options, std::span<Vec2d> uvs,
