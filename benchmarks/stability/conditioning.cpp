@@ -198,10 +198,9 @@ struct System {
     param::CornerLists corners;
     corners.build(elements, disc.positions.size());
     param::build_stiffness(elements, corners, matrix);
-    param::Rotations rotations;
-    param::local_rotations(elements, disc.polar, rotations);
+    param::Rotations rotations(elements.size(), glm::vec2(0));
     load.resize(disc.positions.size());
-    param::rotation_load(elements, rotations, load);
+    param::update_rotations(elements, {disc.polar}, rotations, load);
   }
   double area() const {
     double sum = 0;

@@ -31,10 +31,10 @@ constexpr double first_inexactness = 1e-6, rough_share = 0.05, fine_share = 1e-3
 // must be exact: errors of a solve are smooth, and later steps take long to remove them.
 constexpr double may_unroll = 3e-4, exact_first = 1e-9;
 constexpr int most_iterations = 60;
-// How far every other step goes beyond the minimum for given rotations, the rest of them, and those
-// of squeezing. What a long step overshoots the next one mends at once: three steps end where four
-// plain ones do, and squeezing goes further down (measured on 240 meshes).
-constexpr double long_step = 3, last_step = 1.3;
+// How far steps go beyond the minimum for given rotations: every other one, those after them, and
+// those of squeezing. What a long step overshoots the next one mends at once: three steps end where
+// four plain ones do, and squeezing goes further down (measured on 240 meshes).
+constexpr double long_step = 3, short_step = 1.3;
 constexpr std::array squeezing_steps{1.7, 1.3};
 // Vertices from which on what is solved and what is measured do not lie in memory together.
 constexpr std::size_t large_mesh = 100000;
@@ -269,7 +269,7 @@ double ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
     if (still) steps = i + 1;
     const bool last = i + 1 == steps;
     const Inexactness rough{fine, last ? fine_share : rough_share};
-    const double times = (steps - i) % 2 == 0 ? long_step : last_step;
+    const double times = (steps - i) % 2 == 0 ? long_step : short_step;
     solve_relaxed(times, exact ? Inexactness{last ? fine : exact_first, 0} : rough, uvs);
   }
 }

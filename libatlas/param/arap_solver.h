@@ -25,13 +25,12 @@ class ArapSolver {
   void join(std::span<const Vec2d> corner_uvs, std::span<Vec2d> uvs);
 
   // Global steps, with local steps between them, from the current rotations. But in large
-  // meshes all are relaxed, every other one far, the last a little: for given rotations the energy
-  // is quadratic and nowhere below the one that falls, so that any step up to twice as long as to
-  // its minimum descends (Salakhutdinov and Roweis 2003, "Adaptive overrelaxed bound optimization
-  // methods"). Those that go far are longer and may rise; the step after each more than mends that,
-  // and what is slow to settle does in fewer.
-  // Returns by how much the last local step lowered the energy, as part of the area; infinite if
-  // there was none.
+  // meshes all after the first are relaxed, every other one far, the last a little: for given
+  // rotations the energy is quadratic and nowhere below the one that falls, so that any step up to
+  // twice as long as to its minimum descends (Salakhutdinov and Roweis 2003, "Adaptive overrelaxed
+  // bound optimization methods"). Those that go far are longer and may rise; the step after each
+  // more than mends that, and what is slow to settle does in fewer. Returns by how much the last
+  // local step lowered the energy, as part of the area; infinite if there was none.
   double iterate(int steps, std::span<Vec2d> uvs);
 
   // Lowers the stretch that 99.9 % of the area stays within: triangles are weighted by a power of

@@ -155,17 +155,6 @@ void build_stiffness(const Elements& elements, const CornerLists& corners, Symme
   elements.visit([&](const auto& each) { fill_stiffness(each, elements.size(), corners, out); });
 }
 
-void local_rotations(const Elements& elements, std::span<const Vec2d> uvs, Rotations& out) {
-  out.resize(elements.size());
-  elements.visit([&](const auto& each) {
-    for (std::size_t t = 0; t < elements.size(); ++t) {
-      const Element& e = each[t];
-      const Jacobian j = e.jacobian(to_glm(uvs[e.v[0]]), to_glm(uvs[e.v[1]]), to_glm(uvs[e.v[2]]));
-      out[t] = glm::vec2(nearest_rotation(j));
-    }
-  });
-}
-
 namespace {
 
 // Adds what an element with this map, by columns, asks of its vertices.

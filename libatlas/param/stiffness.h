@@ -134,9 +134,6 @@ void build_stiffness(const Elements& elements, const CornerLists& corners, Symme
 // (cosine, sine), 1 a triangle; what the steps compute from each other is in double.
 using Rotations = std::vector<glm::vec2>;
 
-// The local step: the rotation nearest to each triangle's map.
-void local_rotations(const Elements& elements, std::span<const Vec2d> uvs, Rotations& out);
-
 // The global step's right-hand side: uvs that minimise sum weight * area * |J - R|² solve K u =
 // this.
 void rotation_load(const Elements& elements, const Rotations& rotations, std::span<glm::dvec2> out);
