@@ -2,6 +2,7 @@
 // renamed on commit, removed otherwise.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string_view>
 #include <vector>

@@ -17,6 +17,13 @@ struct Image {
   Image(int w, int h, int c, T fill = T{})
       : width(w), height(h), channels(c), texels(std::size_t(w) * h * c, fill) {}
 
+  bool empty() const { return width == 0 || height == 0 || channels == 0; }
+  // Whether `texels` has the length that the sizes ask for.
+  bool whole() const {
+    return width >= 0 && height >= 0 && channels >= 0 &&
+           texels.size() == std::size_t(width) * std::size_t(height) * std::size_t(channels);
+  }
+
   T* at(int x, int y) { return texels.data() + (std::size_t(y) * width + x) * channels; }
   const T* at(int x, int y) const {
     return texels.data() + (std::size_t(y) * width + x) * channels;

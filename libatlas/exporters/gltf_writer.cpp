@@ -221,8 +221,10 @@ class GltfBuilder {
     std::ifstream stream(page.image_source, std::ios::binary);
     std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
     if (stream.bad() || bytes.empty()) {
-      return Status(ErrorCode::io, fmt::format("{}: the page's image cannot be read to embed it",
-                                               page.image_source.string()));
+      return Status(ErrorCode::io,
+                    fmt::format("the page's image {} cannot be read from '{}' to embed it "
+                                "(Page::image_source names where it lies)",
+                                page.image, page.image_source.string()));
     }
     return bytes;
   }

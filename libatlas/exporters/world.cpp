@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string_view>
@@ -36,6 +35,17 @@ Status check_numbers(const World& world) {
   return {};
 }
 
+// Of a page's list of corners, all below `count`.
+Status check_indices(std::size_t page, const char* list, const std::vector<std::uint32_t>& indices,
+                     std::size_t count) {
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    if (indices[i] < count) continue;
+    return wrong(
+        fmt::format("page {}: {}[{}] is {}, but there are {}", page, list, i, indices[i], count));
+  }
+  return {};
+}
+
 Status check_viewpoint(const Viewpoint& view) {
   for (const double value : {view.position.x, view.position.y, view.position.z, view.direction.x,
                              view.direction.y, view.direction.z}) {
@@ -51,18 +61,17 @@ Status check_viewpoint(const Viewpoint& view) {
 Status check_world(const World& world) {
   if (Status s = check_numbers(world); !s.ok()) return s;
   if (Status s = check_viewpoint(world.viewpoint); !s.ok()) return s;
-  const auto below = [](const std::vector<std::uint32_t>& indices, std::size_t count) {
-    return std::all_of(indices.begin(), indices.end(), [=](std::uint32_t i) { return i < count; });
-  };
+  if (!(world.metres_per_unit > 0) || !std::isfinite(world.metres_per_unit))
+    return wrong(fmt::format("metres_per_unit is {} (must be above 0)", world.metres_per_unit));
   for (std::size_t i = 0; i < world.pages.size(); ++i) {
     const Page& page = world.pages[i];
     if (page.indices.size() % 3 != 0 || page.indices.size() != page.uv_indices.size()) {
-      return wrong(fmt::format("page {} has {} corners and {} texture corners", i,
+      return wrong(fmt::format("page {} has {} indices and {} uv_indices (3 a triangle each)", i,
                                page.indices.size(), page.uv_indices.size()));
     }
-    if (!below(page.indices, world.positions.size()) || !below(page.uv_indices, world.uvs.size())) {
-      return wrong(fmt::format("page {} has an index out of range", i));
-    }
+    Status s = check_indices(i, "indices", page.indices, world.positions.size());
+    if (s.ok()) s = check_indices(i, "uv_indices", page.uv_indices, world.uvs.size());
+    if (!s.ok()) return s;
   }
   return {};
 }

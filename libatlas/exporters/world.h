@@ -1,6 +1,7 @@
 // What every exporter writes: a textured, unlit mesh whose textures are the atlas pages.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -32,8 +33,8 @@ struct Page {
 };
 
 struct World {
-  Vec3d origin;  // added to every position gives the coordinates of the file
-  double metres_per_unit = 1;
+  Vec3d origin;                  // added to every position gives the coordinates of the file
+  double metres_per_unit = 1;    // > 0
   Up up = Up::y;                 // the scene's up axis; coordinates are written unchanged
   std::vector<Vec3f> positions;  // finite; shared by all pages
   std::vector<Vec2f> uvs;        // finite, 0..1, origin bottom left

@@ -73,6 +73,20 @@ auto call(Function ImageFiles::*function, const std::string& name, Arguments&&..
   return (module.functions->*function)(std::forward<Arguments>(arguments)...);
 }
 
+// The module would read past the end of an image that is shorter than its sizes say.
+template <class T>
+Status check_image(const fs::path& path, const Image<T>& image, int most_channels) {
+  const std::string sizes = fmt::format("{}: the image is {} x {} with {} channels", path.string(),
+                                        image.width, image.height, image.channels);
+  if (image.width < 1 || image.height < 1 || image.channels < 1 || image.channels > most_channels)
+    return {ErrorCode::bad_input,
+            fmt::format("{} (sides of at least 1, 1 to {} channels)", sizes, most_channels)};
+  if (!image.whole())
+    return {ErrorCode::bad_input,
+            fmt::format("{}, but holds {} values", sizes, image.texels.size())};
+  return {};
+}
+
 }  // namespace
 
 Result<Image8> read_image8(const fs::path& path) {
@@ -88,10 +102,15 @@ Result<ImageF> read_image_float(const fs::path& path) {
 }
 
 Status write_png(const fs::path& path, const Image8& image, const PngOptions& options) {
+  if (options.compression < 0 || options.compression > 9)
+    return {ErrorCode::bad_option, fmt::format("{}: compression {} is not a zlib level, 0 to 9",
+                                               path.string(), options.compression)};
+  if (Status s = check_image(path, image, 4); !s.ok()) return s;
   return call(&ImageFiles::write_png, path.string(), path, image, options);
 }
 
 Status write_exr(const fs::path& path, const ImageF& image) {
+  if (Status s = check_image(path, image, 1024); !s.ok()) return s;
   return call(&ImageFiles::write_exr, path.string(), path, image);
 }
 

@@ -1,5 +1,8 @@
 // Image files in and out. Rows are bottom-up in memory (core/image.h) and turned here. The first
 // call loads the module that does it; without the module every call returns ErrorCode::unsupported.
+// Errors besides: not_found, io, bad_input (what is read is no image, or more than its file can
+// hold; what is to be written is not as large as its sizes say), bad_option. Every function may be
+// called from several threads at once.
 #pragma once
 
 #include <cstdint>

@@ -8,8 +8,9 @@ namespace atlas {
 namespace {
 
 // The corner list with the given triangles' orientation reversed.
-std::vector<std::uint32_t> turned_round(std::vector<std::uint32_t> corners,
+std::vector<std::uint32_t> turned_round(std::span<const std::uint32_t> from,
                                         std::span<const std::uint32_t> triangles) {
+  std::vector<std::uint32_t> corners(from.begin(), from.end());
   for (const std::uint32_t t : triangles) {
     std::swap(corners[3 * std::size_t(t) + 1], corners[3 * std::size_t(t) + 2]);
   }
@@ -18,19 +19,16 @@ std::vector<std::uint32_t> turned_round(std::vector<std::uint32_t> corners,
 
 }  // namespace
 
-ChartedMesh::ChartedMesh(const Scene& scene, const ChartSet& charts)
-    : mesh_{scene.indices, charts.triangle_uv, charts.triangle_chart} {
+ChartedMesh::ChartedMesh(std::span<const std::uint32_t> indices, const ChartSet& charts)
+    : mesh_{indices, charts.triangle_uv, charts.triangle_chart} {
   if (charts.flipped_triangles.empty()) return;
-  indices_ = turned_round(scene.indices, charts.flipped_triangles);
+  indices_ = turned_round(indices, charts.flipped_triangles);
   uv_indices_ = turned_round(charts.triangle_uv, charts.flipped_triangles);
   mesh_.indices = indices_;
   mesh_.uv_indices = uv_indices_;
 }
 
-World assemble_world(const Scene& scene, const PlacedCharts& placed, const WorldMesh& mesh) {
-  World world;
-  world.origin = scene.origin;
-  world.positions = scene.positions;
+std::vector<Vec2d> page_uvs(const PlacedCharts& placed) {
   const ChartSet& set = placed.charts;
   std::vector<Vec2d> uvs(set.uvs.size());
   for (const ChartPlacement& placement : placed.placements) {
@@ -41,7 +39,14 @@ World assemble_world(const Scene& scene, const PlacedCharts& placed, const World
       uvs[i] = {texel.x / page.width, texel.y / page.height};
     }
   }
-  round_uvs(uvs, mesh.uv_indices, world.uvs);
+  return uvs;
+}
+
+World assemble_world(const Scene& scene, const PlacedCharts& placed, const WorldMesh& mesh) {
+  World world;
+  world.origin = scene.origin;
+  world.positions = scene.positions;
+  round_uvs(page_uvs(placed), mesh.uv_indices, world.uvs);
   world.pages.resize(placed.pages.size());
   for (std::size_t t = 0; t < mesh.triangle_chart.size(); ++t) {
     const ChartPlacement& placement = placed.placements[mesh.triangle_chart[t]];

@@ -1,6 +1,7 @@
 // From charts on pages to the mesh that exporters write.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -13,7 +14,8 @@
 
 namespace atlas {
 
-// The triangles to write: the scene's own or the coarser mesh's. All spans outlive the call only.
+// The triangles to write: the scene's own or the coarser mesh's. What the spans point at must
+// outlive it.
 struct WorldMesh {
   std::span<const std::uint32_t> indices;         // 3 a triangle, into Scene::positions
   std::span<const std::uint32_t> uv_indices;      // 3 a triangle, into ChartSet::uvs
@@ -21,10 +23,10 @@ struct WorldMesh {
 };
 
 // The scene's own triangles as its charts have them: those that cutting had to turn round are
-// turned.
+// turned. `indices` (Scene::indices) and `charts` must outlive it.
 class ChartedMesh {
  public:
-  ChartedMesh(const Scene& scene, const ChartSet& charts);
+  ChartedMesh(std::span<const std::uint32_t> indices, const ChartSet& charts);
   WorldMesh view() const { return mesh_; }
 
  private:
@@ -32,12 +34,17 @@ class ChartedMesh {
   WorldMesh mesh_;
 };
 
-// The parts that together say where a chart's uv lies on its page.
+// The parts that together say where a chart's uv lies on its page: every placement names a chart of
+// the set and a page of these.
 struct PlacedCharts {
   const ChartSet& charts;
   std::span<const ChartPlacement> placements;  // 1 a chart
   std::span<const Extent> pages;
 };
+
+// 1 a uv of the charts: where it lies on its chart's page, as a fraction of the page's sides
+// (origin bottom left); exact, see round_uvs.h.
+std::vector<Vec2d> page_uvs(const PlacedCharts& placed);
 
 // One world page an atlas page, triangles in input order within each; uvs as page fractions.
 World assemble_world(const Scene& scene, const PlacedCharts& placed, const WorldMesh& mesh);

@@ -19,6 +19,7 @@
 #include "libatlas/pipeline/longest_sides.h"
 #include "libatlas/pipeline/page_layout.h"
 #include "libatlas/pipeline/stage_recorder.h"
+#include "libatlas/scene/check_scene.h"
 #include "libatlas/simplify/simplify.h"
 #include "libatlas/texture/chart_textures.h"
 
@@ -181,10 +182,7 @@ class Export {
 
   // No light asks for no resolution of its own: one page, filled as well as packing can.
   void size_plain_uvs() {
-    const double page = double(page_size()) * page_size();
-    double area = 0;
-    for (const Chart& chart : charts_.charts) area += chart.distortion.uv_area;
-    const double density = area > 0 ? std::sqrt(page / area) : 1;
+    const double density = filling_density(charts_, double(page_size()) * page_size());
     densities_.assign(charts_.charts.size(), Vec2d{density, density});
   }
 
@@ -208,7 +206,7 @@ class Export {
       layout.square = options_.square_plain_page;
     }
     Result<PageLayout> laid = lay_out_pages(charts_, densities_, layout, context_);
-    if (!laid.ok()) return laid.status();
+    if (!laid.ok()) return in_terms_of_options(laid.status());
     layout_ = std::move(*laid);
     report_.grouping = layout_.grouping;
     report_.scale = layout_.scale;
@@ -227,6 +225,15 @@ class Export {
       }
     }
     return {};
+  }
+
+  // The packer's refusal, with what may be changed here.
+  Status in_terms_of_options(const Status& status) const {
+    if (status.code() != ErrorCode::no_solution) return status;
+    return {status.code(),
+            status.message() + (plan_.bake ? ": more --atlases or a larger --atlas-size, "
+                                             "or lower --min-side or --mips"
+                                           : ": a larger --atlas-size")};
   }
 
   Status bake() {
@@ -286,7 +293,7 @@ class Export {
 
   Status write() {
     record_.begin("writing");
-    const ChartedMesh fine(scene_, charts_);
+    const ChartedMesh fine(scene_.indices, charts_);
     const WorldMesh mesh =
         coarse_ ? WorldMesh{coarse_->indices, coarse_->uv_indices, coarse_->triangle_chart}
                 : fine.view();
@@ -361,6 +368,7 @@ Result<ExportReport> export_world(const LoadedScene& loaded, const ExportOptions
                                   const std::function<void(const StageReport&)>& stage_done,
                                   const Context& context) {
   if (Status s = check_options(options); !s.ok()) return s;
+  if (Status s = check_scene(loaded.scene); !s.ok()) return s;
   return Export(loaded, options, stage_done, context).run();
 }
 

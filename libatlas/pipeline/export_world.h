@@ -17,7 +17,8 @@ namespace atlas {
 // Runs the stages that `plan` keeps and writes options.target with its images beside it: all files
 // appear together at the end, or none does. Scenes without illumination, and
 // ExportOptions::charts_only, give plain uvs. The report's scene path, wall_seconds and so on are
-// filled except for reading, which the caller adds.
+// filled except for reading, which the caller adds. A scene that a program has built by itself is
+// passed as `LoadedScene{.scene = std::move(scene)}` after complete_scene() (scene/check_scene.h).
 // `stage_done` (may be empty) is called after each stage.
 // Errors: bad_option (named), bad_input, no_solution, io, cancelled.
 Result<ExportReport> export_world(const LoadedScene& loaded, const ExportOptions& options,

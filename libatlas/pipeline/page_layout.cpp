@@ -75,15 +75,13 @@ double uv_utilization(const ChartSet& charts, const PageLayout& layout) {
   return page_area > 0 ? area / page_area : 0;
 }
 
-// The packer's refusal in the words of an export.
+// The packer's refusal in the words of this stage.
 Status no_room(const ChartSet& charts, const LayoutOptions& options) {
   return {ErrorCode::no_solution,
-          fmt::format(
-              "{} charts do not fit {} page{} of {} x {} even as small as allowed (allow {}a "
-              "larger --atlas-size{})",
-              charts.charts.size(), options.pages, options.pages == 1 ? "" : "s", options.page_size,
-              options.page_size, options.minimum_side > 0 ? "more --atlases or " : "",
-              options.minimum_side > 0 ? ", or lower --min-side or --mips" : "")};
+          fmt::format("{} charts do not fit {} page{} of {} x {} even as small as allowed (allow "
+                      "more or larger pages, smaller sides or less padding)",
+                      charts.charts.size(), options.pages, options.pages == 1 ? "" : "s",
+                      options.page_size, options.page_size)};
 }
 
 // One kind of packing, as options.outlines says.
@@ -180,6 +178,12 @@ bool worth_more_work(const PageLayout& layout, const LayoutOptions& options) {
 }
 
 }  // namespace
+
+double filling_density(const ChartSet& charts, double texels) {
+  double area = 0;
+  for (const Chart& chart : charts.charts) area += chart.distortion.uv_area;
+  return area > 0 ? std::sqrt(texels / area) : 1;
+}
 
 Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
                                  const LayoutOptions& options, const Context& context) {

@@ -1,6 +1,7 @@
 // From chart sizes to positions on pages: stage 4 and the first half of stage 5.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -15,12 +16,12 @@
 namespace atlas {
 
 struct LayoutOptions {
-  std::uint32_t pages = 8;
-  std::int32_t page_size = 2048;  // largest side, a power of two
-  std::int32_t padding = 2;       // texels kept around each chart
-  std::int32_t alignment = 4;     // of the charts' boxes
-  std::int32_t minimum_side = 16;
-  bool outlines = false;  // try outlines too, and take them where they pack better
+  std::uint32_t pages = 8;         // at most, >= 1
+  std::int32_t page_size = 2048;   // largest side, a power of two
+  std::int32_t padding = 2;        // texels kept around each chart: gutter_pad(mip_levels) to bake
+  std::int32_t alignment = 4;      // charts' boxes begin and end at multiples: 2^mip_levels to bake
+  std::int32_t minimum_side = 16;  // no scale makes a side of a chart shorter, if it was longer
+  bool outlines = false;           // try outlines too, and take them where they pack better
   // One page whose sides are at most page_size, as full as it can be made: for uvs without images,
   // where no texel has a size.
   bool free_aspect = false;
@@ -37,6 +38,10 @@ struct PageLayout {
   double uv_utilization = 0;               // area of the charts / area of the pages
   GroupingResult grouping;
 };
+
+// The texels along a unit at which the charts would cover so many, if they left no gaps between
+// them; 1 where they have no area.
+double filling_density(const ChartSet& charts, double texels);
 
 // Places every chart, `texels_per_unit` (1 a chart, > 0) dense before scaling.
 // Errors: no_solution when even the smallest textures do not fit; bad_option; bad_input; cancelled.

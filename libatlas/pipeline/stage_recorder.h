@@ -1,6 +1,7 @@
 // Measures the stages of an export and writes them into its report.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <utility>
 
 #include "libatlas/core/rect.h"
 #include "libatlas/core/vec.h"

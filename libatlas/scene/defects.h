@@ -1,6 +1,7 @@
 // What was wrong with a file that could still be used: counted by kind, the first few named.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>

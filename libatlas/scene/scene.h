@@ -1,6 +1,7 @@
 // The input of everything: one indexed triangle mesh with materials, textures and illumination.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -24,7 +25,9 @@ struct Texture {
   Image8 image;                // at least 1 channel; grey is channel 0, colour channels 0..2
 };
 
-// Flat arrays. A triangle t has corners 3t, 3t+1, 3t+2; input order is kept.
+// Flat arrays. A triangle t has corners 3t, 3t+1, 3t+2; input order is kept. A program that fills
+// them in by itself needs positions, indices and mostly illumination; complete_scene()
+// (check_scene.h) adds the rest.
 struct Scene {
   Vec3d origin;                        // added to every position gives the coordinates of the file
   double metres_per_unit = 1;          // length of one scene unit
@@ -35,7 +38,7 @@ struct Scene {
   std::vector<std::uint32_t> texcoord_indices;   // 3 a triangle, into texcoords, kNoTexcoord where
                                                  // the file gives none; empty: no triangle has any
   std::vector<std::uint32_t> triangle_material;  // 1 a triangle, into materials
-  std::vector<std::uint32_t> triangle_object;    // 1 a triangle, into object_names
+  std::vector<std::uint32_t> triangle_object;    // 1 a triangle, into object_names, or empty
   std::vector<Material> materials;               // at least one when there are triangles
   std::vector<Texture> textures;
   std::vector<std::string> object_names;

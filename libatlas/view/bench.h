@@ -2,6 +2,7 @@
 // classic map of the same light.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>

@@ -1,6 +1,7 @@
 // Runs the player: without a window for pictures and tests, or in one.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>

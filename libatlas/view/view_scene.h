@@ -1,6 +1,7 @@
 // A scene as arrays that can be drawn: normals made, corners welded, triangles grouped by texture.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>

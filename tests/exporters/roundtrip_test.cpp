@@ -338,6 +338,22 @@ TEST(ViewpointChoice, DegenerateScenes) {
   EXPECT_TRUE(check_world(world).ok());
 }
 
+TEST(CheckWorld, NamesPageListAndElement) {
+  const auto message = [](auto spoil) {
+    World world = wavy_world(4, 2);
+    spoil(world);
+    return check_world(world).message();
+  };
+  const auto expect = [&](const char* named, auto spoil) {
+    EXPECT_NE(message(spoil).find(named), std::string::npos) << message(spoil);
+  };
+  expect("page 1: indices[4] is 99, but there are 16",
+         [](World& w) { w.pages[1].indices[4] = 99; });
+  expect("page 0: uv_indices[0] is 77777", [](World& w) { w.pages[0].uv_indices[0] = 77777; });
+  expect("and 0 uv_indices", [](World& w) { w.pages[0].uv_indices.clear(); });
+  expect("metres_per_unit is 0", [](World& w) { w.metres_per_unit = 0; });
+}
+
 // What is said to ignore the viewpoint does, and nothing else does.
 TEST(ViewpointChoice, IsHeldByFormatsThatSaySo) {
   World world = wavy_world(4, 1);

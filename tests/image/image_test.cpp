@@ -29,6 +29,25 @@ std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
   return value;
 }
 
+// Shorter texels than the sizes say would be read past their end.
+TEST(Image, ImagesOutOfStepAreRefused) {
+  const TempFolder folder;
+  Image8 image = noise(37, 5, 3);
+  image.texels.resize(100);
+  Status status = write_png(folder / "a.png", image, {});
+  EXPECT_EQ(status.code(), ErrorCode::bad_input);
+  EXPECT_NE(status.message().find("37 x 5 with 3 channels, but holds 100 values"),
+            std::string::npos)
+      << status.message();
+  EXPECT_EQ(write_png(folder / "a.png", noise(4, 4, 5), {}).code(), ErrorCode::bad_input);
+  EXPECT_EQ(write_png(folder / "a.png", {}, {}).code(), ErrorCode::bad_input);
+  EXPECT_EQ(write_png(folder / "a.png", noise(4, 4, 3), {10}).code(), ErrorCode::bad_option);
+  ImageF linear(4, 4, 3);
+  linear.texels.pop_back();
+  EXPECT_EQ(write_exr(folder / "a.exr", linear).code(), ErrorCode::bad_input);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
+}
+
 TEST(Image, PngReadsBackExactly) {
   const TempFolder folder;
   for (int channels = 1; channels <= 4; ++channels) {

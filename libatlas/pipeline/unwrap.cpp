@@ -1,0 +1,105 @@
+#include "libatlas/pipeline/unwrap.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "libatlas/pipeline/assemble_world.h"
+#include "libatlas/pipeline/page_layout.h"
+#include "libatlas/pipeline/round_uvs.h"
+
+namespace atlas {
+namespace {
+
+Status check_options(const UnwrapOptions& options) {
+  const auto bad = [](std::string text) {
+    return Status(ErrorCode::bad_option, "unwrap: " + std::move(text));
+  };
+  if (options.pages < 1) return bad("pages is 0 (ask for at least one)");
+  if (options.page_size < 64 || options.page_size > 16384)
+    return bad(fmt::format("page_size is {} (64 to 16384 texels)", options.page_size));
+  const bool powers = options.square || options.pages > 1;
+  if (powers && !std::has_single_bit(std::uint32_t(options.page_size)))
+    return bad(fmt::format("page_size is {} (a power of two for square or several pages)",
+                           options.page_size));
+  if (options.padding < 0 || options.padding > options.page_size / 4)
+    return bad(fmt::format("padding is {} (0 to a quarter of page_size)", options.padding));
+  if (!(options.texels_per_unit >= 0) || !std::isfinite(options.texels_per_unit))
+    return bad(fmt::format("texels_per_unit is {} (a number above 0, or 0 for as many as fit)",
+                           options.texels_per_unit));
+  return {};
+}
+
+Result<PageLayout> lay_out(const ChartSet& charts, const UnwrapOptions& options,
+                           const Context& context) {
+  const double density =
+      options.texels_per_unit > 0
+          ? options.texels_per_unit
+          : filling_density(charts, double(options.pages) * options.page_size * options.page_size);
+  LayoutOptions layout;
+  layout.pages = options.pages;
+  layout.page_size = options.page_size;
+  layout.padding = options.padding;
+  layout.alignment = 1;
+  layout.minimum_side = 0;
+  layout.outlines = true;
+  layout.square = options.square;
+  layout.free_aspect = options.pages == 1 && !options.square;
+  const std::vector<Vec2d> densities(charts.charts.size(), Vec2d{density, density});
+  return lay_out_pages(charts, densities, layout, context);
+}
+
+// One vertex for each pair of an input vertex and a uv that some corner names, in the order of the
+// corners. A uv has seldom more than one: the input's vertices at one place are told apart here.
+void join_corners(std::span<const std::uint32_t> indices, std::span<const Vec2f> uvs,
+                  UnwrappedMesh& mesh) {
+  constexpr std::uint32_t kNone = 0xffffffffu;
+  std::vector<std::uint32_t> first(uvs.size(), kNone), next;
+  mesh.indices.resize(indices.size());
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const std::uint32_t uv = mesh.charts.triangle_uv[i];
+    std::uint32_t v = first[uv];
+    while (v != kNone && mesh.vertices[v] != indices[i]) v = next[v];
+    if (v == kNone) {
+      v = std::uint32_t(mesh.vertices.size());
+      mesh.vertices.push_back(indices[i]);
+      mesh.uvs.push_back(uvs[uv]);
+      next.push_back(std::exchange(first[uv], v));
+    }
+    mesh.indices[i] = v;
+  }
+}
+
+}  // namespace
+
+Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& options,
+                                  const Context& context) {
+  if (Status s = check_options(options); !s.ok()) return s;
+  MeshView view = mesh;
+  if (view.texcoord_indices.empty() && view.texcoords.size() == view.positions.size())
+    view.texcoord_indices = view.indices;
+  Result<ChartSet> charts = make_charts(view, options.charts, context);
+  if (!charts.ok()) return charts.status();
+  Result<PageLayout> layout = lay_out(*charts, options, context);
+  if (!layout.ok()) return layout.status();
+
+  UnwrappedMesh result;
+  result.charts = std::move(*charts);
+  result.placements = std::move(layout->placements);
+  result.pages = std::move(layout->pages);
+  result.utilization = layout->uv_utilization;
+  result.texels_per_unit = result.placements[0].texels_per_unit.x;
+  const std::vector<Vec2d> exact = page_uvs({result.charts, result.placements, result.pages});
+  std::vector<Vec2f> rounded;
+  round_uvs(exact, ChartedMesh(mesh.indices, result.charts).view().uv_indices, rounded);
+  join_corners(mesh.indices, rounded, result);
+  result.triangle_page.reserve(result.charts.triangle_chart.size());
+  for (const std::uint32_t chart : result.charts.triangle_chart)
+    result.triangle_page.push_back(std::uint32_t(result.placements[chart].page));
+  if (context.cancelled()) return Status::cancelled();
+  return result;
+}
+
+}  // namespace atlas

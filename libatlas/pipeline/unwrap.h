@@ -1,0 +1,51 @@
+// A mesh in memory, unwrapped in one call: charts, packed onto pages, as vertices to draw with.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "libatlas/bake/placement.h"
+#include "libatlas/charts/charts.h"
+#include "libatlas/core/context.h"
+#include "libatlas/core/status.h"
+#include "libatlas/pack/pack.h"
+
+namespace atlas {
+
+struct UnwrapOptions {
+  ChartOptions charts;
+  std::uint32_t pages = 1;        // at most, >= 1
+  std::int32_t page_size = 2048;  // largest side of a page, texels, 64 to 16384
+  std::int32_t padding = 2;       // texels kept free around each chart, >= 0
+  // Texels along a unit of length, the same for all charts; 0: as many as the pages hold. Where
+  // they hold less all charts get less; UnwrappedMesh::texels_per_unit tells.
+  double texels_per_unit = 0;
+  // Sides are powers of two (page_size must be one), and equal. Else a single page has the shape
+  // that packs best, which textures for it must share; several have sides of powers of two.
+  bool square = false;
+};
+
+// Each vertex is a copy of one of the input's; those along seams are there once for each side.
+struct UnwrappedMesh {
+  std::vector<std::uint32_t> vertices;       // 1 a vertex: the vertex of the input it is a copy of
+  std::vector<Vec2f> uvs;                    // 1 a vertex: 0..1 over its page, origin bottom left
+  std::vector<std::uint32_t> indices;        // 3 a triangle, input order, into vertices and uvs
+  std::vector<std::uint32_t> triangle_page;  // 1 a triangle, into pages
+  std::vector<Extent> pages;                 // texels
+  double texels_per_unit = 0;                // reached
+  double utilization = 0;                    // area of the charts / area of the pages
+  ChartSet charts;                           // with all that was measured: distortion, seams
+  std::vector<ChartPlacement> placements;    // 1 a chart
+};
+
+// Nothing is left out: triangle t of the input is triangle t of the result, its corners in the same
+// order. Triangles that the mesh holds the wrong way round against their neighbours
+// (ChartSet::flipped_triangles) are the only ones whose uvs turn clockwise. MeshView::texcoords,
+// for ChartOptions::keep_uv_charts, may go without texcoord_indices if there is one a vertex.
+// The result is the same for every thread count.
+// Errors: those of make_charts; bad_option; no_solution (more charts than the pages hold texels
+// for); cancelled.
+Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& options,
+                                  const Context& context);
+
+}  // namespace atlas

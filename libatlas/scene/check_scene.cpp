@@ -1,0 +1,125 @@
+#include "libatlas/scene/check_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace atlas {
+namespace {
+
+template <class... Arguments>
+Status wrong(fmt::format_string<Arguments...> text, Arguments&&... arguments) {
+  return {ErrorCode::bad_input,
+          "scene: " + fmt::format(text, std::forward<Arguments>(arguments)...)};
+}
+
+bool finite(const Vec2f& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y);
+}
+
+template <class Vector>
+bool finite(const Vector& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// The first element that is not finite, or size().
+template <class Vector>
+std::size_t first_not_finite(const std::vector<Vector>& values) {
+  return std::size_t(
+      std::find_if(values.begin(), values.end(), [](const Vector& v) { return !finite(v); }) -
+      values.begin());
+}
+
+Status check_vertices(const Scene& scene) {
+  if (!finite(scene.origin)) return wrong("origin is not finite");
+  if (!(scene.metres_per_unit > 0) || !std::isfinite(scene.metres_per_unit))
+    return wrong("metres_per_unit is {} (give the length of a unit, above 0)",
+                 scene.metres_per_unit);
+  const std::size_t vertices = scene.positions.size();
+  if (!scene.illumination.empty() && scene.illumination.size() != vertices)
+    return wrong("illumination has {} values for {} positions (one each, or none)",
+                 scene.illumination.size(), vertices);
+  if (const std::size_t v = first_not_finite(scene.positions); v < vertices)
+    return wrong("positions[{}] is not finite", v);
+  if (const std::size_t v = first_not_finite(scene.illumination); v < scene.illumination.size())
+    return wrong("illumination[{}] is not finite (where it is unknown, 0 leaves it black)", v);
+  if (const std::size_t v = first_not_finite(scene.texcoords); v < scene.texcoords.size())
+    return wrong("texcoords[{}] is not finite", v);
+  return {};
+}
+
+// Every value is below `limit`, or `none`.
+Status check_range(const char* name, std::span<const std::uint32_t> values, std::size_t limit,
+                   const char* of, bool may_be_none = false) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] < limit || (may_be_none && values[i] == Scene::kNoTexcoord)) continue;
+    return wrong("{}[{}] is {}, but there are {} {}", name, i, values[i], limit, of);
+  }
+  return {};
+}
+
+Status check_triangles(const Scene& scene) {
+  const std::size_t corners = scene.indices.size(), triangles = corners / 3;
+  if (corners % 3 != 0) return wrong("{} indices are not whole triangles", corners);
+  const auto one_each = [&](const char* name, std::size_t size, std::size_t wanted) {
+    return size == wanted ? Status{}
+                          : wrong(
+                                "{} has {} entries for {} triangles (must be {}; "
+                                "complete_scene() fills in what is empty)",
+                                name, size, triangles, wanted);
+  };
+  Status s = check_range("indices", scene.indices, scene.positions.size(), "positions");
+  if (s.ok()) s = one_each("triangle_material", scene.triangle_material.size(), triangles);
+  if (s.ok() && !scene.triangle_object.empty())
+    s = one_each("triangle_object", scene.triangle_object.size(), triangles);
+  if (s.ok() && !scene.texcoord_indices.empty())
+    s = one_each("texcoord_indices", scene.texcoord_indices.size(), corners);
+  if (s.ok())
+    s = check_range("triangle_material", scene.triangle_material, scene.materials.size(),
+                    "materials");
+  if (s.ok())
+    s = check_range("triangle_object", scene.triangle_object, scene.object_names.size(),
+                    "object_names");
+  if (s.ok())
+    s = check_range("texcoord_indices", scene.texcoord_indices, scene.texcoords.size(), "texcoords",
+                    true);
+  return s;
+}
+
+Status check_materials(const Scene& scene) {
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    const Material& material = scene.materials[m];
+    if (material.texture < -1 || material.texture >= std::int64_t(scene.textures.size()))
+      return wrong("materials[{}] names texture {}, but there are {} (-1: none)", m,
+                   material.texture, scene.textures.size());
+    if (!finite(material.diffuse)) return wrong("the diffuse of materials[{}] is not finite", m);
+  }
+  for (std::size_t i = 0; i < scene.textures.size(); ++i) {
+    const Image8& image = scene.textures[i].image;
+    if (image.empty() || !image.whole())
+      return wrong("the image of textures[{}] is {} x {} with {} channels, but holds {} values", i,
+                   image.width, image.height, image.channels, image.texels.size());
+  }
+  return {};
+}
+
+}  // namespace
+
+Status check_scene(const Scene& scene) {
+  Status s = check_vertices(scene);
+  if (s.ok()) s = check_triangles(scene);
+  if (s.ok()) s = check_materials(scene);
+  return s;
+}
+
+Status complete_scene(Scene& scene) {
+  if (scene.materials.empty()) scene.materials.resize(1);
+  if (scene.triangle_material.empty()) scene.triangle_material.resize(scene.triangle_count());
+  if (scene.object_names.empty()) scene.object_names.resize(1);
+  if (scene.triangle_object.empty()) scene.triangle_object.resize(scene.triangle_count());
+  return check_scene(scene);
+}
+
+}  // namespace atlas

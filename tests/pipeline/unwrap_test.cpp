@@ -1,0 +1,198 @@
+// unwrap_mesh: nothing is lost, vertices keep what they are copies of, uvs turn no triangle over.
+#include "libatlas/pipeline/unwrap.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "libatlas/pipeline/export_world.h"
+#include "libatlas/scene/check_scene.h"
+#include "tests/pipeline/lit_scene.h"
+#include "tests/scene/temp_folder.h"
+#include "tests/support/shapes.h"
+
+namespace atlas::test {
+namespace {
+
+MeshView view_of(const Scene& scene) {
+  MeshView view;
+  view.positions = scene.positions;
+  view.indices = scene.indices;
+  return view;
+}
+
+double turn(const UnwrappedMesh& mesh, std::size_t triangle) {
+  const Vec2f a = mesh.uvs[mesh.indices[3 * triangle]],
+              b = mesh.uvs[mesh.indices[3 * triangle + 1]],
+              c = mesh.uvs[mesh.indices[3 * triangle + 2]];
+  return (double(b.x) - a.x) * (double(c.y) - a.y) - (double(b.y) - a.y) * (double(c.x) - a.x);
+}
+
+void expect_sound(const MeshView& input, const UnwrappedMesh& mesh) {
+  ASSERT_EQ(mesh.indices.size(), input.indices.size());
+  ASSERT_EQ(mesh.uvs.size(), mesh.vertices.size());
+  ASSERT_EQ(mesh.triangle_page.size(), input.indices.size() / 3);
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i)
+    ASSERT_EQ(mesh.vertices[mesh.indices[i]], input.indices[i]) << "corner " << i;
+  for (const Vec2f uv : mesh.uvs)
+    EXPECT_TRUE(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1) << uv.x << ' ' << uv.y;
+  std::set<std::size_t> flipped(mesh.charts.flipped_triangles.begin(),
+                                mesh.charts.flipped_triangles.end());
+  std::vector<double> area(mesh.pages.size());
+  for (std::size_t t = 0; t < mesh.triangle_page.size(); ++t) {
+    EXPECT_EQ(turn(mesh, t) > 0, !flipped.contains(t)) << "triangle " << t;
+    area[mesh.triangle_page[t]] += std::abs(turn(mesh, t)) / 2;
+  }
+  double texels = 0, room = 0;
+  for (std::size_t p = 0; p < area.size(); ++p) {
+    texels += area[p] * double(mesh.pages[p].area());
+    room += double(mesh.pages[p].area());
+  }
+  EXPECT_NEAR(texels / room, mesh.utilization, 1e-4);
+  // One density for all: texels of a chart per area of its uvs.
+  EXPECT_NEAR(std::sqrt(texels / mesh.charts.distortion.uv_area), mesh.texels_per_unit,
+              1e-3 * mesh.texels_per_unit);
+}
+
+TEST(Unwrap, ATorusOnOnePage) {
+  const LoadedScene ring = lit_scene(torus(24, 12));
+  const auto mesh = unwrap_mesh(view_of(ring.scene), {}, {});
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+  expect_sound(view_of(ring.scene), *mesh);
+  EXPECT_EQ(mesh->pages.size(), 1u);
+  EXPECT_GT(mesh->utilization, 0.55);
+  EXPECT_GT(mesh->vertices.size(), ring.scene.positions.size());  // seams
+}
+
+// Vertices at one place with normals of their own, as renderers have them: a vertex of the result
+// is a copy of the very vertex that the triangle names, not of another at its place.
+TEST(Unwrap, VerticesOfOnePlaceStayApart) {
+  const Shape cube = box(1);
+  std::vector<Vec3f> positions;
+  std::vector<std::uint32_t> indices;
+  for (const std::uint32_t v : cube.indices) {
+    indices.push_back(std::uint32_t(positions.size()));
+    positions.push_back(cube.positions[v]);
+  }
+  MeshView view;
+  view.positions = positions;
+  view.indices = indices;
+  const auto mesh = unwrap_mesh(view, {}, {});
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+  expect_sound(view, *mesh);
+  EXPECT_EQ(mesh->vertices, indices);
+  EXPECT_LT(mesh->charts.charts.size(), 6u);  // the charts know that the places are one
+}
+
+TEST(Unwrap, PagesSquareAndSeveralWithADensity) {
+  const LoadedScene scene = lit_room(6);
+  UnwrapOptions options;
+  options.pages = 3;
+  options.page_size = 256;
+  const auto several = unwrap_mesh(view_of(scene.scene), options, {});
+  ASSERT_TRUE(several.ok()) << several.status().message();
+  expect_sound(view_of(scene.scene), *several);
+  EXPECT_GT(several->pages.size(), 1u);
+  EXPECT_LE(several->pages.size(), 3u);
+
+  options.pages = 1;
+  options.square = true;
+  options.texels_per_unit = 4;
+  const auto coarse = unwrap_mesh(view_of(scene.scene), options, {});
+  ASSERT_TRUE(coarse.ok()) << coarse.status().message();
+  expect_sound(view_of(scene.scene), *coarse);
+  EXPECT_DOUBLE_EQ(coarse->texels_per_unit, 4);
+  EXPECT_EQ(coarse->pages[0].width, coarse->pages[0].height);
+
+  options.texels_per_unit = 1e6;  // more than the page holds
+  const auto fine = unwrap_mesh(view_of(scene.scene), options, {});
+  ASSERT_TRUE(fine.ok()) << fine.status().message();
+  EXPECT_LT(fine->texels_per_unit, 1e3);
+  EXPECT_GT(fine->texels_per_unit, 4);
+}
+
+TEST(Unwrap, UvsOfVerticesAreKept) {
+  const LoadedScene ring = lit_scene(torus(24, 12));
+  const auto made = unwrap_mesh(view_of(ring.scene), {}, {});
+  ASSERT_TRUE(made.ok());
+  std::vector<Vec3f> positions;
+  for (const std::uint32_t v : made->vertices) positions.push_back(ring.scene.positions[v]);
+  MeshView view;
+  view.positions = positions;
+  view.indices = made->indices;
+  view.texcoords = made->uvs;  // one a vertex: no second list of indices
+  UnwrapOptions options;
+  options.charts.keep_uv_charts = true;
+  options.charts.uv_aspect = double(made->pages[0].width) / made->pages[0].height;
+  const auto kept = unwrap_mesh(view, options, {});
+  ASSERT_TRUE(kept.ok()) << kept.status().message();
+  EXPECT_EQ(kept->charts.repairs.kept_charts, made->charts.charts.size());
+  EXPECT_EQ(kept->charts.repairs.reflattened_charts, 0u);
+}
+
+TEST(Unwrap, WhatTurnsTheWrongWayKeepsItsCorners) {
+  LoadedScene ring = lit_scene(torus(24, 12));
+  std::swap(ring.scene.indices[3 * 17 + 1], ring.scene.indices[3 * 17 + 2]);
+  const auto mesh = unwrap_mesh(view_of(ring.scene), {}, {});
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+  EXPECT_EQ(mesh->charts.flipped_triangles, std::vector<std::uint32_t>{17});
+  expect_sound(view_of(ring.scene), *mesh);
+}
+
+TEST(Unwrap, WrongOptionsAreNamed) {
+  const LoadedScene ring = lit_scene(torus(12, 8));
+  const auto message = [&](auto change) {
+    UnwrapOptions options;
+    change(options);
+    const auto mesh = unwrap_mesh(view_of(ring.scene), options, {});
+    return mesh.ok() ? std::string("ok") : mesh.status().message();
+  };
+  const auto expect = [&](const char* named, auto change) {
+    EXPECT_NE(message(change).find(named), std::string::npos) << message(change);
+  };
+  expect("pages is 0", [](UnwrapOptions& o) { o.pages = 0; });
+  expect("page_size is 0", [](UnwrapOptions& o) { o.page_size = 0; });
+  expect("page_size is 1000", [](UnwrapOptions& o) {
+    o.page_size = 1000;
+    o.square = true;
+  });
+  expect("padding is -1", [](UnwrapOptions& o) { o.padding = -1; });
+  expect("texels_per_unit is nan",
+         [](UnwrapOptions& o) { o.texels_per_unit = std::numeric_limits<double>::quiet_NaN(); });
+  expect("do not fit 1 page of 64 x 64", [](UnwrapOptions& o) {
+    o.page_size = 64;
+    o.square = true;
+    o.padding = 16;
+  });
+}
+
+// A scene out of a program's own arrays, also one without materials, and one out of step.
+TEST(HandMadeScene, IsExportedOrRefusedByName) {
+  const TempFolder folder;
+  LoadedScene loaded = lit_scene(torus(24, 12));
+  loaded.scene.materials.clear();
+  loaded.scene.triangle_material.clear();
+  loaded.scene.triangle_object.clear();
+  ExportOptions options;
+  options.target = folder / "world.glb";
+  options.atlas_size = 256;
+  auto report = export_world(loaded, options, {}, {});
+  ASSERT_FALSE(report.ok());
+  EXPECT_NE(report.status().message().find("complete_scene()"), std::string::npos)
+      << report.status().message();
+  ASSERT_TRUE(complete_scene(loaded.scene).ok());
+  report = export_world(loaded, options, {}, {});
+  EXPECT_TRUE(report.ok()) << report.status().message();
+  loaded.scene.indices[7] = 1u << 30;
+  report = export_world(loaded, options, {}, {});
+  ASSERT_FALSE(report.ok());
+  EXPECT_NE(report.status().message().find("indices[7]"), std::string::npos)
+      << report.status().message();
+}
+
+}  // namespace
+}  // namespace atlas::test

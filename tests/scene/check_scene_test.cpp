@@ -1,0 +1,90 @@
+// Scenes that programs build by themselves: every array out of step is named, nothing is read past
+// an end.
+#include "libatlas/scene/check_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+
+namespace atlas {
+namespace {
+
+Scene square() {
+  Scene scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  scene.indices = {0, 1, 2, 0, 2, 3};
+  return scene;
+}
+
+void add_texture(Scene& scene) {
+  scene.textures.resize(1);
+  scene.textures[0].image = Image8(2, 2, 3, 9);
+  scene.materials[0].texture = 0;
+  scene.texcoords = {{0, 0}, {1, 1}};
+  scene.texcoord_indices = {0, 1, 1, 0, 1, Scene::kNoTexcoord};
+}
+
+TEST(CheckScene, CompletesPositionsAndIndices) {
+  Scene scene = square();
+  EXPECT_FALSE(check_scene(scene).ok());  // no material a triangle
+  ASSERT_TRUE(complete_scene(scene).ok());
+  EXPECT_EQ(scene.materials.size(), 1u);
+  EXPECT_EQ(scene.triangle_material, std::vector<std::uint32_t>(2, 0));
+  EXPECT_EQ(scene.triangle_object, std::vector<std::uint32_t>(2, 0));
+  add_texture(scene);
+  EXPECT_TRUE(check_scene(scene).ok()) << check_scene(scene).message();
+}
+
+TEST(CheckScene, KeepsWhatIsGiven) {
+  Scene scene = square();
+  scene.materials.resize(3);
+  scene.triangle_material = {2, 1};
+  ASSERT_TRUE(complete_scene(scene).ok());
+  EXPECT_EQ(scene.materials.size(), 3u);
+  EXPECT_EQ(scene.triangle_material[0], 2u);
+}
+
+TEST(CheckScene, NamesArrayAndElement) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const struct {
+    const char* named;
+    std::function<void(Scene&)> spoil;
+  } cases[] = {
+      {"4 indices", [](Scene& s) { s.indices.resize(4); }},
+      {"indices[5] is 9, but there are 4 positions", [](Scene& s) { s.indices[5] = 9; }},
+      {"positions[2]", [=](Scene& s) { s.positions[2].z = nan; }},
+      {"illumination has 3 values for 4", [](Scene& s) { s.illumination.resize(3); }},
+      {"illumination[1]",
+       [=](Scene& s) {
+         s.illumination.resize(4);
+         s.illumination[1].y = nan;
+       }},
+      {"origin", [=](Scene& s) { s.origin.x = nan; }},
+      {"metres_per_unit is 0", [](Scene& s) { s.metres_per_unit = 0; }},
+      {"triangle_material has 1 entries", [](Scene& s) { s.triangle_material.resize(1); }},
+      {"triangle_material[1] is 4", [](Scene& s) { s.triangle_material[1] = 4; }},
+      {"triangle_object has 5 entries", [](Scene& s) { s.triangle_object.resize(5); }},
+      {"triangle_object[0] is 1", [](Scene& s) { s.triangle_object[0] = 1; }},
+      {"materials[0] names texture 1", [](Scene& s) { s.materials[0].texture = 1; }},
+      {"texcoord_indices has 3 entries", [](Scene& s) { s.texcoord_indices.resize(3); }},
+      {"texcoord_indices[2] is 7", [](Scene& s) { s.texcoord_indices[2] = 7; }},
+      {"texcoords[1]", [=](Scene& s) { s.texcoords[1].x = nan; }},
+      {"the image of textures[0] is 2 x 2 with 3 channels, but holds 5 values",
+       [](Scene& s) { s.textures[0].image.texels.resize(5); }},
+      {"the image of textures[0] is 0 x 0", [](Scene& s) { s.textures[0].image = {}; }},
+  };
+  for (const auto& c : cases) {
+    Scene scene = square();
+    ASSERT_TRUE(complete_scene(scene).ok());
+    add_texture(scene);
+    c.spoil(scene);
+    const Status status = check_scene(scene);
+    EXPECT_EQ(status.code(), ErrorCode::bad_input) << c.named;
+    EXPECT_NE(status.message().find(c.named), std::string::npos) << status.message();
+  }
+}
+
+}  // namespace
+}  // namespace atlas
