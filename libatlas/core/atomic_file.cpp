@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 
@@ -14,20 +16,20 @@ namespace fs = std::filesystem;
 namespace {
 
 // A hidden name in the same folder. Long ones are cut, so that it stays a name that file systems
-// take; the number tells the files of one export apart.
-fs::path name_beside(const fs::path& target, std::size_t number, std::string_view kind) {
+// take; the number tells all files of this process apart, whose threads may write to one target.
+fs::path name_beside(const fs::path& target, std::string_view kind) {
+  static std::atomic<std::uint64_t> number = 0;
   constexpr std::size_t kLongestStem = 120, kLongestExtension = 60;  // bytes
   std::string stem = target.stem().string(), extension = target.extension().string();
-  const bool cut = stem.size() > kLongestStem || extension.size() > kLongestExtension;
   if (stem.size() > kLongestStem) {
     std::size_t end = kLongestStem;
     while (end > 0 && (static_cast<unsigned char>(stem[end]) & 0xc0) == 0x80) --end;  // in UTF-8
     stem.resize(end);
   }
   if (extension.size() > kLongestExtension) extension.clear();
-  if (cut) stem += fmt::format("~{}", number);
   fs::path beside = target;
-  beside.replace_filename(fmt::format(".{}.{}.{}{}", stem, process_mark(), kind, extension));
+  beside.replace_filename(
+      fmt::format(".{}.{}.{}.{}{}", stem, process_mark(), kind, ++number, extension));
   return beside;
 }
 
@@ -56,8 +58,7 @@ AtomicFiles::~AtomicFiles() {
 fs::path AtomicFiles::path_for(const fs::path& name) {
   const fs::path target = behind_links(name), folder = target.parent_path();
   if (entries_.empty() || entries_.back().target.parent_path() != folder) remove_leftovers(folder);
-  const fs::path temporary =
-      is_special(target) ? target : name_beside(target, entries_.size(), "part");
+  const fs::path temporary = is_special(target) ? target : name_beside(target, "part");
   entries_.push_back({temporary, target, name});
   return temporary;
 }
@@ -87,10 +88,10 @@ std::vector<fs::path> AtomicFiles::targets() const {
   return paths;
 }
 
-Status AtomicFiles::put_in_place(Entry& entry, std::size_t number) {
+Status AtomicFiles::put_in_place(Entry& entry) {
   std::error_code error;
   if (entry.temporary == entry.target) return {};
-  const fs::path before = name_beside(entry.target, number, "before");
+  const fs::path before = name_beside(entry.target, "before");
   fs::create_hard_link(entry.target, before, error);
   if (!error) entry.before = before;
   fs::rename(entry.temporary, entry.target, error);
@@ -114,8 +115,7 @@ Status AtomicFiles::commit() {
   std::error_code ignored;
   Status status;
   std::size_t placed = 0;
-  while (placed < entries_.size() && (status = put_in_place(entries_[placed], placed)).ok())
-    ++placed;
+  while (placed < entries_.size() && (status = put_in_place(entries_[placed])).ok()) ++placed;
   if (!status.ok()) {
     fs::remove(entries_[placed].before, ignored);
     while (placed > 0) take_back(entries_[--placed]);

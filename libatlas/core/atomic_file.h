@@ -12,7 +12,8 @@
 namespace atlas {
 
 // Collects the files of one export. Ask path_for() where to write each; commit() renames them all
-// into place in the order they were asked for; the destructor removes what was not committed.
+// into place in the order they were asked for; the destructor removes what was not committed. Used
+// by one thread; others may write to the same targets meanwhile: whoever commits last wins.
 class AtomicFiles {
  public:
   AtomicFiles() = default;
@@ -47,7 +48,7 @@ class AtomicFiles {
     std::filesystem::path temporary, target, name;  // name: the target as it was asked for
     std::filesystem::path before = {};  // a second name of what stood at the target, or empty
   };
-  static Status put_in_place(Entry& entry, std::size_t number);
+  static Status put_in_place(Entry& entry);
   static void take_back(Entry& entry);
   std::vector<Entry> entries_;
 };

@@ -9,12 +9,20 @@ namespace atlas {
 
 // Passed by const reference to every stage. Default-constructed: all cores, silent, not
 // cancellable.
+//
+// Threads: every function of the library may be called from several threads at once, also on the
+// same input; each call works on threads of its own. One object is used by one thread at a time,
+// unless its header says more; const members of results are plain data.
+// Exceptions: the library throws none of its own but std::bad_alloc. One that a callback throws
+// ends the stage and comes out of the call that was given the callback; files are whole or absent
+// then, too.
 struct Context {
-  // Threads to use; 0 means as many as the machine has. Results never depend on it.
+  // Threads to use; 0 or less means as many as the machine has. Results never depend on it.
   int threads = 0;
-  // Called as (stage, fraction in [0, 1]), from any thread but never from two at once.
+  // Called as (stage, fraction in [0, 1]), from any thread but by one call never from two at once.
+  // A stage's fractions rise; stages follow each other, and not every one reports often.
   std::function<void(std::string_view stage, double fraction)> progress;
-  // Called with one line of text about something skipped, repaired or worth knowing.
+  // Called with one line of text about something skipped, repaired or worth knowing, likewise.
   std::function<void(std::string_view line)> warn;
   // Raised by the caller (a signal handler may) to end the work; polled by every long loop. The
   // stage then returns Status::cancelled() and leaves nothing half-written.

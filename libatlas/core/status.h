@@ -1,5 +1,6 @@
 // How the library says that something went wrong: bad data and failed input or output give a
-// Status with a message that names file, place, reason and remedy; broken preconditions assert.
+// Status with a message that names file, place, reason and remedy; broken preconditions assert, and
+// are undefined where NDEBUG is defined.
 #pragma once
 
 #include <cassert>
@@ -37,7 +38,7 @@ class [[nodiscard]] Status {
   std::string message_;
 };
 
-// A value or the Status that says why there is none.
+// A value or the Status that says why there is none: ask ok() before value(), *, or ->.
 template <class T>
 class [[nodiscard]] Result {
  public:

@@ -16,7 +16,7 @@ namespace atlas {
 
 struct ExportOptions {
   // Its extension chooses the format: .wrl, .wrz, .obj, .gltf, .glb. Images lie beside it.
-  std::filesystem::path target;
+  std::filesystem::path target = {};
 
   // The budget: at most `atlases` (>= 1) pages of at most atlas_size² texels (a power of two,
   // 64..16384).
@@ -35,8 +35,8 @@ struct ExportOptions {
   double threshold = 2.0 / 255;  // of downsizing, in display values; 0: no downsizing
   std::int32_t min_side = 16;    // downsizing stops here
   Quantity quantity = Quantity::illuminance;
-  ChartOptions charts;
-  ToneOptions tone;
+  ChartOptions charts = {};
+  ToneOptions tone = {};
 
   std::int32_t mip_levels = 2;  // lookups at mip levels 0..mip_levels stay inside a chart
   std::int32_t shifts = 4;      // sub-texel sample grids of the bake

@@ -177,6 +177,24 @@ bool worth_more_work(const PageLayout& layout, const LayoutOptions& options) {
          layout.uv_utilization < kPoor;
 }
 
+// By boxes, by outlines where these may win, and with more work where that may win much.
+Result<PageLayout> lay_out_better(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
+                                  const LayoutOptions& options, const Context& context) {
+  LayoutOptions boxes = options;
+  boxes.outlines = false;
+  Result<PageLayout> boxed = lay_out(charts, texels_per_unit, boxes, context);
+  if (!options.outlines ||
+      (boxed.ok() && (boxed->uv_utilization > kFull || !worth_outlining(charts, texels_per_unit))))
+    return boxed;
+  Result<PageLayout> best = lay_out(charts, texels_per_unit, options, context);
+  if (!best.ok() || (boxed.ok() && !better(*best, *boxed, options))) best = std::move(boxed);
+  if (!best.ok() || !worth_more_work(*best, options)) return best;
+  LayoutOptions harder = options;
+  harder.preset = PackPreset::best;
+  Result<PageLayout> more = lay_out(charts, texels_per_unit, harder, context);
+  return more.ok() && better(*more, *best, options) ? more : best;
+}
+
 }  // namespace
 
 double filling_density(const ChartSet& charts, double texels) {
@@ -192,24 +210,15 @@ Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> 
                                                     texels_per_unit.size(), charts.charts.size()));
   for (std::size_t c = 0; c < texels_per_unit.size(); ++c) {
     const Vec2d density = texels_per_unit[c];
-    if (!(density.x > 0 && density.y > 0))
+    if (!(density.x > 0 && density.y > 0) || !std::isfinite(density.x + density.y))
       return Status(ErrorCode::bad_input,
-                    fmt::format("chart {}: texel density {} x {} (must be above 0)", c, density.x,
-                                density.y));
+                    fmt::format("chart {}: texel density {} x {} (must be above 0 and finite)", c,
+                                density.x, density.y));
   }
-  LayoutOptions boxes = options;
-  boxes.outlines = false;
-  Result<PageLayout> boxed = lay_out(charts, texels_per_unit, boxes, context);
-  if (!options.outlines ||
-      (boxed.ok() && (boxed->uv_utilization > kFull || !worth_outlining(charts, texels_per_unit))))
-    return boxed;
-  Result<PageLayout> best = lay_out(charts, texels_per_unit, options, context);
-  if (!best.ok() || (boxed.ok() && !better(*best, *boxed, options))) best = std::move(boxed);
-  if (!best.ok() || !worth_more_work(*best, options)) return best;
-  LayoutOptions harder = options;
-  harder.preset = PackPreset::best;
-  Result<PageLayout> more = lay_out(charts, texels_per_unit, harder, context);
-  return more.ok() && better(*more, *best, options) ? more : best;
+  Result<PageLayout> layout = lay_out_better(charts, texels_per_unit, options, context);
+  if (context.cancelled()) return Status::cancelled();
+  context.report("pack", 1);
+  return layout;
 }
 
 }  // namespace atlas

@@ -13,7 +13,7 @@
 namespace atlas {
 
 struct UnwrapOptions {
-  ChartOptions charts;
+  ChartOptions charts = {};
   std::uint32_t pages = 1;        // at most, >= 1
   std::int32_t page_size = 2048;  // largest side of a page, texels, 64 to 16384
   std::int32_t padding = 2;       // texels kept free around each chart, >= 0

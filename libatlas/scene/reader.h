@@ -16,15 +16,16 @@ struct ReadOptions {
   double metres_per_unit = 1;  // length of one unit of the file, > 0
   // Takes the illumination from this file instead: OBJ, PLY, OFF or glTF with the same vertices in
   // the same order, or plain text with one `r g b` (or one grey value) a line.
-  std::filesystem::path illumination_file;
+  std::filesystem::path illumination_file = {};
   bool load_textures = true;   // false: materials have their diffuse colour only
   bool unlit_textures = true;  // false: the same where the scene carries no illumination
 };
 
 struct LoadedScene {
-  Scene scene;
-  DefectReport defects;                      // what was left out or replaced
-  std::vector<std::filesystem::path> files;  // read besides its own: material files, buffers
+  Scene scene = {};
+  DefectReport defects = {};  // what was left out or replaced
+  // Read besides its own: material files, buffers.
+  std::vector<std::filesystem::path> files = {};
 };
 
 // Reads the scene at `path`; the extension (.obj .ply .off .stl .gltf .glb .wrl .wrz, any case)

@@ -176,6 +176,20 @@ TEST(AtomicFiles, AFullDiskChangesNothing) {
   }
 }
 
+// Two threads of one program that export to one name, or share a page's name (a.wrl and a.gltf):
+// each output is whole.
+TEST(AtomicFiles, TwoAtOnceDoNotShareATemporaryFile) {
+  const TempFolder folder;
+  AtomicFiles first, second;
+  ASSERT_TRUE(first.write(folder / "a.png", "the first").ok());
+  ASSERT_TRUE(second.write(folder / "a.png", "second").ok());
+  EXPECT_TRUE(first.commit().ok());
+  EXPECT_EQ(TempFolder::read(folder / "a.png"), "the first");
+  EXPECT_TRUE(second.commit().ok());
+  EXPECT_EQ(TempFolder::read(folder / "a.png"), "second");
+  EXPECT_EQ(folder.count(), 1u);
+}
+
 // A process that is killed before it could commit, and the files that it had begun.
 class KilledWriter {
  public:

@@ -6,7 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <stdexcept>
 #include <string>
+#include <string_view>
+#include <thread>
 #include <utility>
 
 #include "libatlas/pipeline/export_world.h"
@@ -168,6 +171,70 @@ TEST(Unwrap, WrongOptionsAreNamed) {
     o.square = true;
     o.padding = 16;
   });
+}
+
+// Calls from several threads at once, on the same input, give what one gives: context.h says so.
+TEST(ManyThreads, UnwrapAndExportAtOnce) {
+  const TempFolder folder;
+  const LoadedScene scene = lit_room(4);
+  const auto alone = unwrap_mesh(view_of(scene.scene), {}, {});
+  ASSERT_TRUE(alone.ok());
+  std::vector<std::vector<Vec2f>> uvs(4);
+  std::vector<Status> exported(4);
+  std::vector<std::thread> threads;
+  const char* targets[] = {"a.wrl", "a.gltf", "a.obj", "a.wrl"};  // one name for their pages
+  for (std::size_t i = 0; i < 4; ++i) {
+    threads.emplace_back([&, i] {
+      const auto mesh = unwrap_mesh(view_of(scene.scene), {}, {});
+      if (mesh.ok()) uvs[i] = mesh->uvs;
+      ExportOptions options;
+      options.target = folder / targets[i];
+      options.atlas_size = 128;
+      exported[i] = export_world(scene, options, {}, {}).status();
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(uvs[i], alone->uvs);
+    EXPECT_TRUE(exported[i].ok()) << exported[i].message();
+  }
+  for (const char* target : {"a.wrl", "a.gltf"}) {
+    const auto read = read_scene(folder / target, {}, {});
+    EXPECT_TRUE(read.ok() && read->defects.empty()) << target;
+  }
+}
+
+TEST(Unwrap, ProgressEndsAtOne) {
+  const LoadedScene ring = lit_scene(torus(24, 12));
+  Context context;
+  std::string last;
+  double fraction = -1;
+  context.progress = [&](std::string_view stage, double f) {
+    if (stage != last) {
+      EXPECT_TRUE(last.empty() || fraction == 1) << last << " ended at " << fraction;
+    } else {
+      EXPECT_GE(f, fraction) << stage;
+    }
+    last = stage;
+    fraction = f;
+  };
+  ASSERT_TRUE(unwrap_mesh(view_of(ring.scene), {}, context).ok());
+  EXPECT_EQ(fraction, 1);
+}
+
+TEST(Unwrap, ACallbacksExceptionComesOut) {
+  const LoadedScene ring = lit_scene(torus(24, 12));
+  Context context;
+  context.progress = [](std::string_view, double) { throw std::runtime_error("mine"); };
+  EXPECT_THROW((void)unwrap_mesh(view_of(ring.scene), {}, context), std::runtime_error);
+  const TempFolder folder;
+  ExportOptions options;
+  options.target = folder / "a.wrl";
+  context.progress = [](std::string_view stage, double) {
+    if (stage == "writing the world") throw std::runtime_error("mine");
+  };
+  EXPECT_THROW((void)export_world(ring, options, {}, context), std::runtime_error);
+  EXPECT_EQ(folder.count(), 0u);
 }
 
 // A scene out of a program's own arrays, also one without materials, and one out of step.
