@@ -67,8 +67,9 @@ std::uint32_t page_bound(const Problem& problem) {
       heights.push_back(e.width);
     }
   }
-  std::vector<std::int64_t> along{0}, up{0};
-  if (problem.items.size() <= 2000) {  // beyond that the area alone is nearly as good
+  // Beyond 2000 items the area is nearly as good, but for those that exceed half a side.
+  std::vector<std::int64_t> along{0, problem.page.width / 2}, up{0, problem.page.height / 2};
+  if (problem.items.size() <= 2000) {
     along = thresholds(std::move(widths), problem.page.width);
     up = thresholds(std::move(heights), problem.page.height);
   }

@@ -49,6 +49,10 @@ std::int64_t height_bound(const Problem& problem);
 // Ignores pinned rectangles.
 Layout pack_widest_first(const Problem& problem);
 
+// Page after page by the scores of gap_fill.h, the items in this order; the same layout as
+// GapFill's in O(n sqrt n) at worst, in about O(n log n) mostly. Ignores pinned rectangles.
+Layout pack_gaps(const Problem& problem, std::span<const std::uint32_t> sequence);
+
 // Local search for few pages: empties and refills two to four pages at a time. Starts from the best
 // of the sorted orders. Ignores pinned rectangles.
 Layout search_pages(const Problem& problem, const SearchLimits& limits, const Context& context,

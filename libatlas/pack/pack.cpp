@@ -7,8 +7,7 @@
 #include <cmath>
 
 #include "libatlas/pack/cells.h"
-#include "libatlas/pack/engines.h"
-#include "libatlas/pack/problem.h"
+#include "libatlas/pack/page_shape.h"
 
 namespace atlas {
 namespace {
@@ -90,30 +89,6 @@ Active select_items(std::span<const Extent> items, const Cells& cells, const Pac
   return active;
 }
 
-// Width for a free page: of a square that the items would fill to 95 %, but wide enough for each.
-std::int32_t free_width(const Active& active, std::int32_t most) {
-  double area = 0;
-  std::int32_t widest = 1;
-  for (const Extent& e : active.sizes) {
-    area += static_cast<double>(e.area());
-    widest = std::max(widest, e.width);
-  }
-  const double side = std::ceil(std::sqrt(area / 0.95));
-  return std::max(widest, static_cast<std::int32_t>(std::min<double>(side, most)));
-}
-
-Extent shaped(Extent used, const PackOptions& options) {
-  Extent page = options.page;
-  if (options.page.height == 0 || options.crop) page.height = used.height;
-  if (options.page.width == 0 || options.crop) page.width = used.width;
-  const auto round_up = [](std::int32_t v) {
-    return static_cast<std::int32_t>(std::bit_ceil(static_cast<std::uint32_t>(std::max(1, v))));
-  };
-  if (options.power_of_two) page = {round_up(page.width), round_up(page.height)};
-  if (options.square) page.width = page.height = std::max(page.width, page.height);
-  return page;
-}
-
 void describe(std::span<const Extent> items, const PackOptions& options, PackResult& result) {
   std::uint32_t pages = 0;
   for (const Placement& p : result.placements)
@@ -132,51 +107,13 @@ void describe(std::span<const Extent> items, const PackOptions& options, PackRes
   }
   double total = 0, total_without = 0, filled_without = 0;
   for (std::uint32_t p = 0; p < pages; ++p) {
-    result.pages.push_back(shaped(used[p], options));
+    result.pages.push_back(pack::shaped_page(used[p], options));
     area[p] = static_cast<double>(result.pages[p].area());
     total += area[p];
     if (p + 1 < pages) total_without += area[p], filled_without += filled[p];
   }
   result.utilization = total > 0 ? static_cast<double>(result.placed_area) / total : 0;
   result.fill_without_last = total_without > 0 ? filled_without / total_without : 1;
-}
-
-// A page free in both directions: the widths around the square's, and the one whose page is
-// smallest.
-Layout solve_free(const Problem& problem, const PackOptions& options, const Context& context,
-                  PackResult& result) {
-  constexpr int kWidths = 5;
-  if (options.page.width > 0 || options.preset == PackPreset::fast || !problem.pinned.empty())
-    return pack::solve(problem, options, context, result);
-  PackOptions share = options;
-  share.time_budget /= kWidths;
-  if (options.effort > 0) share.effort = std::max<std::uint64_t>(1, options.effort / kWidths);
-  const std::int32_t most = problem.page.height;  // open, as the width is
-  std::int32_t widest = 1;
-  for (const Extent& e : problem.items) widest = std::max(widest, e.width);
-  Layout best;
-  std::int64_t smallest = 0;
-  std::uint64_t layouts = 0;
-  for (int k = 0; k < kWidths; ++k) {
-    Problem tried = problem;
-    const double width = std::min<double>(problem.page.width * (0.94 + 0.03 * k), most);
-    tried.page.width = std::max(widest, static_cast<std::int32_t>(width));
-    Layout layout = pack::solve(tried, share, context, result);
-    layouts += result.layouts_tried;
-    Extent used;
-    for (std::size_t i = 0; i < tried.items.size(); ++i) {
-      const Placement& at = layout.placements[i];
-      const Extent e = tried.items[i];
-      used.width = std::max(used.width, at.x + (at.rotated ? e.height : e.width));
-      used.height = std::max(used.height, at.y + (at.rotated ? e.width : e.height));
-    }
-    const Extent page = shaped(used, options);
-    if (k > 0 && page.area() >= smallest) continue;
-    smallest = page.area();
-    best = std::move(layout);
-  }
-  result.layouts_tried = layouts;
-  return best;
 }
 
 }  // namespace
@@ -194,7 +131,7 @@ Result<PackResult> pack_rects(std::span<const Extent> items, const PackOptions& 
   problem.allow_rotation = options.allow_rotation;
   const std::int32_t open = open_side(options, cells);
   problem.page = {
-      options.page.width > 0 ? cells.page(options.page.width) : free_width(active, open),
+      options.page.width > 0 ? cells.page(options.page.width) : pack::square_width(problem, open),
       options.page.height > 0 ? cells.page(options.page.height) : open};
   problem.max_pages = options.page.height == 0 ? 1
                       : options.max_pages      ? options.max_pages
@@ -210,7 +147,7 @@ Result<PackResult> pack_rects(std::span<const Extent> items, const PackOptions& 
   }
 
   const Layout layout =
-      active.sizes.empty() ? Layout{} : solve_free(problem, options, context, result);
+      active.sizes.empty() ? Layout{} : pack::solve_shape(problem, options, context, result);
   if (context.cancelled()) return Status::cancelled();
   for (std::size_t k = 0; k < active.ids.size(); ++k) {
     const Placement& p = layout.placements[k];

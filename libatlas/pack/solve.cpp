@@ -44,15 +44,15 @@ Layout better(Layout a, Layout b) {
   return b.better_than(a) ? std::move(b) : std::move(a);
 }
 
-Layout pack_by_height(const Problem& problem) {
-  return pack_first_fit(problem, sorted_items(problem.items, Order::height),
-                        PlaceRule::bottom_left);
+Layout pack_by(const Problem& problem, Order order) {
+  return pack_gaps(problem, sorted_items(problem.items, order));
 }
 
 enum class Turn { none, standing, lying };
 
 // All items turned alike before they are packed, but for those that would not fit.
-Layout pack_turned(const Problem& problem, Turn turn) {
+template <class Pack>
+Layout pack_turned(const Problem& problem, Turn turn, const Pack& pack) {
   std::vector<Extent> items(problem.items.begin(), problem.items.end());
   const auto fits = [&](Extent e) {
     return e.width <= problem.page.width && e.height <= problem.page.height;
@@ -67,20 +67,51 @@ Layout pack_turned(const Problem& problem, Turn turn) {
   Problem fixed = problem;
   fixed.items = items;
   fixed.allow_rotation = false;
-  Layout layout = pack_by_height(fixed);
+  Layout layout = pack(fixed);
   for (std::size_t i = 0; i < items.size(); ++i)
     layout.placements[i].rotated = items[i] != problem.items[i];
   return layout;
 }
 
-// In large sets choosing each item's turn by the hole at hand loses more than it wins: the items no
-// longer come in order of their heights. On a strip it also takes thirty times as long.
-Layout pack_large(const Problem& problem, bool strip) {
-  if (!problem.allow_rotation) return pack_by_height(problem);
-  Layout best = strip ? pack_turned(problem, Turn::none)
-                      : better(pack_by_height(problem), pack_turned(problem, Turn::none));
+// On one page of so many items the lists of free rectangles grow long: 2 10^5 took up to nine
+// seconds, for a thousandth of the height.
+constexpr std::size_t kMostOnAPage = 50'000;
+
+// Free rectangles; gaps where the page has too many items for them. In large sets choosing each
+// item's turn by the hole at hand loses more than it wins: the items no longer come in order of
+// their heights.
+Layout pack_by_height(const Problem& problem, std::uint32_t pages) {
+  const auto pack = [&](const Problem& fixed) {
+    return fixed.items.size() / pages > kMostOnAPage
+               ? pack_by(fixed, Order::height)
+               : pack_first_fit(fixed, sorted_items(fixed.items, Order::height),
+                                PlaceRule::bottom_left);
+  };
+  if (!problem.allow_rotation) return pack(problem);
+  Layout best = pack_turned(problem, Turn::none, pack);
   for (const Turn turn : {Turn::standing, Turn::lying})
-    best = better(std::move(best), pack_turned(problem, turn));
+    best = better(std::move(best), pack_turned(problem, turn, pack));
+  return best;
+}
+
+Layout pack_large_strip(const Problem& problem) {
+  return better(pack_widest_first(problem), pack_by_height(problem, 1));
+}
+
+// Gaps filled in order of area need fewest pages, 2 to 6 % fewer than other engines where a page
+// holds ten items. Free rectangles leave one page lowest, and take half the time where pages hold
+// few thousand items: then they often do.
+Layout pack_large_pages(const Problem& problem, const PackOptions& options, std::uint32_t bound) {
+  constexpr std::size_t kFewOnAPage = 5000;
+  const bool quick = !problem.allow_rotation && problem.items.size() / bound <= kFewOnAPage;
+  Layout best = quick ? pack_by_height(problem, bound) : pack_by(problem, Order::area);
+  const auto done = [&] { return best.pages <= bound && best.unplaced == 0 && !options.crop; };
+  if (done()) return best;
+  if (quick) best = better(std::move(best), pack_by(problem, Order::area));
+  if (!done()) best = better(std::move(best), pack_widest_first(problem));
+  if (!done()) best = better(std::move(best), pack_by(problem, Order::height));
+  if (options.crop || (!done() && !problem.allow_rotation && !quick))
+    best = better(std::move(best), pack_by_height(problem, std::max(1u, best.pages)));
   return best;
 }
 
@@ -115,14 +146,12 @@ Layout solve(const Problem& problem, const PackOptions& options, const Context& 
     return strip ? search_strip(problem, limits, context, result)
                  : search_pages(problem, limits, context, result);
   result.page_lower_bound = strip ? 1 : page_bound(problem);
-  if (!strip && options.preset == PackPreset::best) {
-    Layout searched = search_first_fit(problem, limits, context, result);
-    if (problem.allow_rotation) searched = better(std::move(searched), pack_large(problem, strip));
-    return better(std::move(searched), pack_widest_first(problem));
-  }
-  result.layouts_tried = strip ? 2 : 1;
-  Layout large = pack_large(problem, strip);
-  return strip ? better(pack_widest_first(problem), std::move(large)) : large;
+  if (strip || options.preset != PackPreset::best) result.layouts_tried = strip ? 2 : 1;
+  if (strip) return pack_large_strip(problem);
+  if (options.preset != PackPreset::best)
+    return pack_large_pages(problem, options, result.page_lower_bound);
+  Layout searched = search_first_fit(problem, limits, context, result);
+  return better(std::move(searched), pack_large_pages(problem, options, result.page_lower_bound));
 }
 
 }  // namespace atlas::pack

@@ -184,6 +184,49 @@ TEST(PackRects, PagesTakeTheShapeAskedFor) {
   EXPECT_EQ(square.pages[0].width, square.pages[0].height);
 }
 
+// Not as wide as the page may be, and a square as high.
+TEST(PackRects, CroppedPagesAreNoLargerThanNeeded) {
+  test::Noise noise{9};
+  for (const int n : {12, 200, 1500}) {
+    std::vector<Extent> items(static_cast<std::size_t>(n));
+    for (Extent& e : items) e = {noise.in(4, 90), noise.in(4, 90)};
+    PackOptions o;
+    o.page = {4096, 4096};
+    o.crop = true;
+    for (const PackPreset preset : {PackPreset::fast, PackPreset::standard, PackPreset::best})
+      for (const bool square : {false, true}) {
+        o.preset = preset;
+        o.square = square;
+        o.effort = 50;
+        const PackResult r = pack(items, o);
+        ASSERT_EQ(r.pages.size(), 1u);
+        EXPECT_EQ(test::check_layout(items, r.placements, r.pages, o), "");
+        EXPECT_GE(r.utilization, preset == PackPreset::fast ? 0.6 : 0.75) << n << " " << square;
+      }
+  }
+  // What no narrower page holds keeps the whole one.
+  PackOptions o;
+  o.page = {64, 64};
+  o.crop = true;
+  const PackResult full = pack(std::vector<Extent>(16, {16, 16}), o);
+  ASSERT_EQ(full.pages.size(), 1u);
+  EXPECT_EQ(full.pages[0], (Extent{64, 64}));
+}
+
+TEST(PackRects, PowersOfTwoAreTheSmallest) {
+  PackOptions o;
+  o.page = {4096, 4096};
+  o.crop = o.power_of_two = true;
+  o.padding = 2;
+  const std::vector<Extent> items(100, {23, 23});  // ten of them a row of 248 texels
+  for (const Extent page : {Extent{4096, 4096}, Extent{0, 0}}) {
+    o.page = page;
+    const PackResult r = pack(items, o);
+    ASSERT_EQ(r.pages.size(), 1u);
+    EXPECT_EQ(r.pages[0].area(), 256 * 256);
+  }
+}
+
 TEST(PackRects, EnormousItemsStayInTheOpenPage) {
   // Three of these above each other would pass 2^31 texels: cells are counted, texels must fit.
   std::vector<Extent> items(4, Extent{1000000000, 7});

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "libatlas/pack/engines.h"
+#include "libatlas/pack/gap_fill.h"
 #include "libatlas/pack/height_index.h"
 #include "libatlas/pack/skyline.h"
 #include "libatlas/pack/strip_beam.h"
@@ -133,6 +134,70 @@ TEST(StripSearch, TurnsHelpAndThreadsChangeNothing) {
   EXPECT_LE(a->pages[0].height, 103);
   EXPECT_LE(standard->pages[0].height, 104);
   EXPECT_EQ(test::check_layout(items, a->placements, a->pages, o), "");
+}
+
+// What the index finds against a look at every item, for any order of them.
+TEST(GapPages, AreThoseOfGapFill) {
+  test::Noise noise{17};
+  for (int round = 0; round < 1500; ++round) {
+    std::vector<Extent> items(std::size_t(noise.in(1, 60)));
+    const int longest = noise.in(1, 40);
+    for (Extent& e : items) e = {noise.in(1, longest), noise.in(1, longest)};
+    Problem problem;
+    problem.items = items;
+    problem.page = {noise.in(longest, 100), noise.in(longest, 100)};
+    problem.allow_rotation = noise.in(0, 1);
+    std::vector<std::uint32_t> sequence = sorted_items(items, Order(noise.in(0, 4)));
+    if (noise.in(0, 1)) std::reverse(sequence.begin(), sequence.end());
+    const Layout layout = pack_gaps(problem, sequence);
+    std::vector<Placement> expected(items.size());
+    GapFill fill(items, problem.page, problem.allow_rotation);
+    std::uint32_t page = 0;
+    for (; !sequence.empty(); ++page) {
+      fill.clear();
+      fill.fill(sequence);
+      for (const GapPlacement& g : fill.placed()) expected[g.item] = {page, g.x, g.y, g.rotated};
+    }
+    ASSERT_EQ(layout.placements, expected) << round;
+    ASSERT_EQ(layout.pages, page);
+  }
+}
+
+TEST(GapPages, StopAtTheMostPages) {
+  const std::vector<Extent> items(10, {5, 5});
+  Problem problem;
+  problem.items = items;
+  problem.page = {10, 10};
+  problem.max_pages = 2;
+  const Layout layout = pack_gaps(problem, sorted_items(items, Order::area));
+  EXPECT_EQ(layout.pages, 2u);
+  EXPECT_EQ(layout.unplaced, 2u);
+}
+
+// Pages of ten items each: 190 and 121 by free rectangles, 186 and 113 by the fast preset.
+TEST(LargeSets, OfFewItemsAPageTakeFewPages) {
+  test::Noise noise{11};
+  std::vector<Extent> thick(2000), long_ones(2000);
+  for (Extent& e : thick) e = {noise.in(300, 899), noise.in(300, 899)};
+  for (Extent& e : long_ones) {
+    e = {noise.in(600, 999), noise.in(20, 119)};
+    if (noise.in(0, 1)) std::swap(e.width, e.height);
+  }
+  const auto pages = [](const std::vector<Extent>& items, int side, PackPreset preset, bool turn) {
+    PackOptions o;
+    o.page = {side, side};
+    o.preset = preset;
+    o.allow_rotation = turn;
+    const Result<PackResult> r = pack_rects(items, o, {});
+    EXPECT_EQ(test::check_layout(items, r->placements, r->pages, o), "");
+    return r->pages.size();
+  };
+  for (const bool turn : {false, true}) {
+    const std::size_t fast[] = {pages(thick, 2048, PackPreset::fast, turn),
+                                pages(long_ones, 1024, PackPreset::fast, turn)};
+    EXPECT_LE(pages(thick, 2048, PackPreset::standard, turn), fast[0] * 99 / 100);
+    EXPECT_LE(pages(long_ones, 1024, PackPreset::standard, turn), fast[1] * 97 / 100);
+  }
 }
 
 // Large sets: what may be turned is packed no worse than what may not, on strips in about the time.
