@@ -67,7 +67,7 @@ std::uint32_t page_bound(const Problem& problem) {
       heights.push_back(e.width);
     }
   }
-  // Beyond 2000 items the area is nearly as good, but for those that exceed half a side.
+  // Of more than 2000 items the area is nearly as good, but for those that exceed half a side.
   std::vector<std::int64_t> along{0, problem.page.width / 2}, up{0, problem.page.height / 2};
   if (problem.items.size() <= 2000) {
     along = thresholds(std::move(widths), problem.page.width);

@@ -27,11 +27,15 @@ bool usable(const Vec3d& v) {
   return length > 0 && std::isfinite(length);
 }
 
-// Great-circle interpolation; a and b are unit vectors less than pi apart.
+// Great-circle interpolation; a and b are unit vectors less than pi apart. By the part of b that is
+// square to a: the sum and the difference, of which one is small near 0 and near pi, keep its
+// direction where sines of the angle lose theirs.
 glm::dvec3 slerp(const glm::dvec3& a, const glm::dvec3& b, double t) {
   const double angle = angle_between(from_glm(a), from_glm(b));
-  if (std::sin(angle) < kSlerpMinSine) return glm::normalize(glm::mix(a, b, t));
-  return (std::sin((1 - t) * angle) * a + std::sin(t * angle) * b) / std::sin(angle);
+  if (angle < kSlerpMinSine) return glm::normalize(glm::mix(a, b, t));
+  const glm::dvec3 near = glm::dot(a, b) < 0 ? a + b : b - a;
+  const glm::dvec3 square = glm::normalize(near - a * glm::dot(a, near));
+  return std::cos(t * angle) * a + std::sin(t * angle) * square;
 }
 
 Status check_directions(const LightPathOptions& options) {

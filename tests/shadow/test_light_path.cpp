@@ -39,6 +39,25 @@ TEST(LightPath, ArcRunsAtItsSpeedOnTheGreatCircle) {
   EXPECT_NEAR(path.direction(std::nan("")).x, 1, 1e-12);
 }
 
+// Nearly opposite directions: the sun of the equator from horizon to horizon.
+TEST(LightPath, ArcOfNearlyHalfATurnKeepsItsSpeed) {
+  for (const double short_of : {1e-2, 1e-3, 9e-5, 1e-5, 2e-6}) {
+    const double end = std::numbers::pi - short_of;
+    LightPathOptions o;
+    o.kind = PathKind::arc;
+    o.end = PathEnd::stop;
+    o.directions = {{1, 0, 0}, {std::cos(end), std::sin(end), 0}};
+    const Result<LightPath> path = LightPath::make(o);
+    ASSERT_TRUE(path.ok());
+    for (int i = 0; i <= 16; ++i) {
+      const double at = end * i / 16;
+      const Vec3d d = path->direction(at * 180 / std::numbers::pi);
+      EXPECT_NEAR(d.x, std::cos(at), 1e-9) << short_of << " " << i;
+      EXPECT_NEAR(d.y, std::sin(at), 1e-9) << short_of << " " << i;
+    }
+  }
+}
+
 TEST(LightPath, LineStaysOnTheChord) {
   LightPathOptions o;
   o.kind = PathKind::line;
