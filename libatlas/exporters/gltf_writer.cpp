@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -22,41 +24,48 @@ namespace {
 constexpr int kFloat = 5126, kUint = 5125, kArrayBuffer = 34962, kElementBuffer = 34963;
 constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kClampToEdge = 33071;
 
-// glTF knows one index a corner: every pair of position and uv that occurs becomes a vertex. Pairs
-// are found by walking the few positions that share a uv.
+// glTF knows one index a corner: every pair of position and uv that occurs becomes a vertex.
 struct UnifiedPage {
   std::vector<std::uint32_t> positions, uvs;  // 1 a vertex
   std::vector<std::uint32_t> indices;
 };
 
+// Pairs are found in a hash table and not along the positions of a uv: a mesh whose triangles take
+// their colours from a few texels has a hundred thousand positions at one uv.
 class Unifier {
  public:
-  explicit Unifier(std::size_t uvs) : head_(uvs, kNone) {}
-
   UnifiedPage unify(const Page& page) {
     UnifiedPage result;
-    std::vector<std::uint32_t> next;  // vertex with the same uv
+    table_.assign(std::bit_ceil(2 * page.indices.size() + 1), kNone);
     result.indices.reserve(page.indices.size());
     for (std::size_t k = 0; k < page.indices.size(); ++k) {
-      const std::uint32_t p = page.indices[k], t = page.uv_indices[k];
-      std::uint32_t vertex = head_[t];
-      while (vertex != kNone && result.positions[vertex] != p) vertex = next[vertex];
+      std::uint32_t& vertex = find(page.indices[k], page.uv_indices[k], result);
       if (vertex == kNone) {
         vertex = static_cast<std::uint32_t>(result.positions.size());
-        result.positions.push_back(p);
-        result.uvs.push_back(t);
-        next.push_back(head_[t]);
-        head_[t] = vertex;
+        result.positions.push_back(page.indices[k]);
+        result.uvs.push_back(page.uv_indices[k]);
       }
       result.indices.push_back(vertex);
     }
-    for (const std::uint32_t t : result.uvs) head_[t] = kNone;
     return result;
   }
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;
-  std::vector<std::uint32_t> head_;
+
+  // Where the pair's vertex stands, or is to stand.
+  std::uint32_t& find(std::uint32_t position, std::uint32_t uv, const UnifiedPage& page) {
+    const std::uint64_t pair = (std::uint64_t{uv} << 32) | position;
+    const int shift = 64 - std::countr_zero(table_.size());
+    // Fibonacci hashing; half of the table stays empty, so walks are short.
+    std::size_t at = shift < 64 ? (pair * 0x9E3779B97F4A7C15u) >> shift : 0;
+    for (;; at = (at + 1) & (table_.size() - 1)) {
+      const std::uint32_t v = table_[at];
+      if (v == kNone || (page.positions[v] == position && page.uvs[v] == uv)) return table_[at];
+    }
+  }
+
+  std::vector<std::uint32_t> table_;
 };
 
 json array(const glm::dvec3& v) {
@@ -263,7 +272,7 @@ Result<WorldFile> write_gltf(const World& world, const fs::path& path, AtomicFil
   const bool binary = lower_extension(path) == ".glb";
   WorldFile result;
   GltfBuilder builder(world, binary);
-  Unifier unifier(world.uvs.size());
+  Unifier unifier;
   for (std::size_t i = 0; i < world.pages.size(); ++i) {
     if (context.cancelled()) return Status::cancelled();
     if (world.pages[i].indices.empty()) continue;  // glTF forbids empty meshes

@@ -11,6 +11,7 @@
 #include <set>
 #include <string>
 
+#include "libatlas/core/clock.h"
 #include "libatlas/exporters/viewpoint.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/scene/reader.h"
@@ -249,6 +250,20 @@ TEST(VrmlWorld, DamageIsNoticed) {
             ErrorCode::bad_input);
   EXPECT_EQ(read_scene(folder.write("old.wrl", "#VRML V1.0 ascii\n"), {}, {}).status().code(),
             ErrorCode::bad_input);
+}
+
+// Colours from one texel: 150 000 positions at one uv, which were compared with each other.
+TEST(GltfWorld, OneUvForAllTakesLittleTime) {
+  const TempFolder folder;
+  World world = wavy_world(387, 1);
+  world.uvs = {{0.5f, 0.5f}};
+  std::fill(world.pages[0].uv_indices.begin(), world.pages[0].uv_indices.end(), 0u);
+  AtomicFiles files;
+  const double begun = cpu_seconds();
+  const auto written = write_gltf(world, folder / "w.gltf", files, {});
+  EXPECT_LT(cpu_seconds() - begun, 2);
+  ASSERT_TRUE(written.ok()) << written.status().message();
+  EXPECT_EQ(written->vertices, world.positions.size());
 }
 
 TEST(GltfWorld, FailsWithoutItsImagesOrTriangles) {
