@@ -95,8 +95,9 @@ class LeastSquares {
   // The grid has a border of cells that nothing touches, so that loops need no tests at its sides.
   std::size_t index(int x, int y) const { return (y + 1) * stride_ + x + 1; }
 
-  void smooth();
-  std::vector<Lanes> start();
+  float drop_untouched();
+  std::vector<Lanes> start() const;
+  void smooth(float weight);
   void sweep(bool forward, float low, float high, std::vector<Lanes>& x) const;
 
   int width_, height_;
