@@ -1,10 +1,14 @@
-// Charts and packed texture coordinates for a mesh in memory: a torus here.
+// A mesh of flat arrays in, a vertex buffer with uvs for one texture out: a torus here.
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <vector>
 
-#include "libatlas/charts/charts.h"
-#include "libatlas/pack/fit.h"
+#include "libatlas/pipeline/unwrap.h"
+
+struct Vertex {
+  float position[3], uv[2];
+};
 
 int main() {
   constexpr unsigned kAround = 48, kAcross = 24;
@@ -22,20 +26,28 @@ int main() {
       for (unsigned v : {p, q, r1, p, r1, s}) indices.push_back(v);
     }
 
-  const atlas::MeshView mesh{.positions = positions, .indices = indices};
-  const auto charts = atlas::make_charts(mesh, {}, {});
-  if (!charts.ok()) return std::fprintf(stderr, "%s\n", charts.status().message().c_str()), 1;
-
-  // 200 texels per unit of length, on one page of at most 1024 x 1024.
-  std::vector<atlas::FitItem> items;
-  for (const atlas::Chart& chart : charts->charts)
-    items.push_back({200 * chart.size.x, 200 * chart.size.y});
-  atlas::FitOptions options;
+  atlas::MeshView mesh;
+  mesh.positions = positions;
+  mesh.indices = indices;
+  atlas::UnwrapOptions options;
   options.page_size = 1024;
-  const auto layout = atlas::fit_pages(items, options, {});
-  if (!layout.ok()) return std::fprintf(stderr, "%s\n", layout.status().message().c_str()), 1;
+  const auto unwrapped = atlas::unwrap_mesh(mesh, options, {});
+  if (!unwrapped.ok()) {
+    std::fprintf(stderr, "%s\n", unwrapped.status().message().c_str());
+    return 1;
+  }
 
-  std::printf("%zu triangles, %zu charts, stretch %.4f, page %d x %d, %.0f %% used\n",
-              indices.size() / 3, charts->charts.size(), charts->distortion.stretch_l2,
-              layout->pages[0].width, layout->pages[0].height, 100 * layout->utilization);
+  // What to draw: these vertices, and unwrapped->indices. Attributes besides the position, such as
+  // normals, are copied in the same way.
+  std::vector<Vertex> vertices;
+  for (std::size_t v = 0; v < unwrapped->vertices.size(); ++v) {
+    const atlas::Vec3f p = positions[unwrapped->vertices[v]];
+    const atlas::Vec2f uv = unwrapped->uvs[v];
+    vertices.push_back({{p.x, p.y, p.z}, {uv.x, uv.y}});
+  }
+  std::printf(
+      "%zu triangles, %zu charts, stretch %.4f, %zu vertices of %zu, page %d x %d, %.0f %% used\n",
+      unwrapped->indices.size() / 3, unwrapped->charts.charts.size(),
+      unwrapped->charts.distortion.stretch_l2, vertices.size(), positions.size(),
+      unwrapped->pages[0].width, unwrapped->pages[0].height, 100 * unwrapped->utilization);
 }
