@@ -30,11 +30,15 @@ struct SearchLimits {
   std::uint64_t layouts = 0;  // tried at most, all chains together; 0: no limit
   double seconds = 0;         // wall time
   std::uint64_t seed = 1;
-  std::uint32_t chains = 1;  // independent searches, each on one thread at a time
+  std::uint32_t chains = 1;        // independent searches, each on one thread at a time
+  std::uint32_t enough_pages = 1;  // fewer are not looked for
   // Strips: part layouts that beam searches may keep, all together, and their wall time.
   std::uint64_t beam_states = 0;
   double beam_seconds = 0;
 };
+
+// Those of `standard` for so many items on pages.
+SearchLimits standard_page_limits(std::size_t items);
 
 // Solves by the preset. Fills in page_lower_bound, layouts_tried and curve of the result.
 Layout solve(const Problem& problem, const PackOptions& options, const Context& context,

@@ -79,7 +79,7 @@ bool BoxFit::pack_at(double scale, std::uint32_t pages, BoxLayout& layout) {
     if (!box_fits_page(b)) return false;
   if (!group(pages, layout)) return false;
   if (pages == 1 && boxes_.size() >= kManyItems) return pack_many(layout);
-  return pack_grouped(pages, layout) || pack_jointly(pages, layout);
+  return pack_grouped(pages, layout) || pack_jointly(pages, layout) || pack_searched(pages, layout);
 }
 
 // Many items leave no gap of a single page empty, whatever the method: the fastest is taken.
@@ -141,18 +141,43 @@ bool BoxFit::pack_jointly(std::uint32_t pages, BoxLayout& layout) {
   problem.page = page_;
   problem.allow_rotation = options_.allow_rotation;
   problem.max_pages = pages;
+  const bool fast = options_.preset == PackPreset::fast;
+  for (Order order : {Order::area, Order::height}) {
+    if (keep(pack_gaps(problem, sorted_items(boxes_, order)), layout)) return true;
+    if (fast) break;
+  }
   for (Order order : {Order::height, Order::max_side, Order::area}) {
-    if (order != Order::height && options_.preset == PackPreset::fast) break;
-    Layout joint = pack_first_fit(problem, sorted_items(boxes_, order), PlaceRule::bottom_left);
-    if (joint.unplaced > 0) continue;
-    layout.moved = 0;
-    for (std::size_t i = 0; i < boxes_.size(); ++i)
-      layout.moved += joint.placements[i].page != layout.grouping.group[i];
-    layout.placements = std::move(joint.placements);
-    layout.pages = joint.pages;
-    return true;
+    if (keep(pack_first_fit(problem, sorted_items(boxes_, order), PlaceRule::bottom_left), layout))
+      return true;
+    if (fast) break;
   }
   return false;
+}
+
+// By local search, where the items are few enough for it: 1 to 4 % larger scales on pages of a
+// dozen boxes, for a hundredth of a second.
+bool BoxFit::pack_searched(std::uint32_t pages, BoxLayout& layout) {
+  if (options_.preset == PackPreset::fast || boxes_.size() >= kManyItems) return false;
+  Problem problem;
+  problem.items = boxes_;
+  problem.page = page_;
+  problem.allow_rotation = options_.allow_rotation;
+  SearchLimits limits = standard_page_limits(boxes_.size());
+  limits.enough_pages = pages;
+  PackResult log;
+  Layout found = search_pages(problem, limits, context_, log);
+  return found.pages <= pages && keep(std::move(found), layout);
+}
+
+// Makes a layout of all boxes that of the fit; false if it lacks any.
+bool BoxFit::keep(Layout found, BoxLayout& layout) const {
+  if (found.unplaced > 0) return false;
+  layout.moved = 0;
+  for (std::size_t i = 0; i < boxes_.size(); ++i)
+    layout.moved += found.placements[i].page != layout.grouping.group[i];
+  layout.placements = std::move(found.placements);
+  layout.pages = found.pages;
+  return true;
 }
 
 // Packs the items of one page again into the smallest page size that holds them.

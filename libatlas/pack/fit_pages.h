@@ -40,6 +40,8 @@ class BoxFit {
   bool pack_many(BoxLayout& layout) const;
   bool pack_grouped(std::uint32_t pages, BoxLayout& layout);
   bool pack_jointly(std::uint32_t pages, BoxLayout& layout);
+  bool pack_searched(std::uint32_t pages, BoxLayout& layout);
+  bool keep(Layout found, BoxLayout& layout) const;
   bool place(std::uint32_t item, std::uint32_t page, FreeRects& free, BoxLayout& layout) const;
 
   std::span<const FitItem> items_;

@@ -169,7 +169,7 @@ Layout search_pages(const Problem& problem, const SearchLimits& limits, const Co
     ++result.layouts_tried;
     if (start.empty() || PageChain::cost_of(pages) < PageChain::cost_of(start))
       start = std::move(pages);
-    if (start.size() <= 1) break;
+    if (start.size() <= limits.enough_pages) break;
   }
   // The bound costs more than a layout: asked for only where the area does not settle the matter.
   double area = 0;
@@ -179,7 +179,8 @@ Layout search_pages(const Problem& problem, const SearchLimits& limits, const Co
   result.page_lower_bound = start.size() > by_area ? page_bound(problem) : by_area;
   std::vector<PageChain> chains;
   for (std::uint32_t c = 0; c < limits.chains; ++c) {
-    chains.emplace_back(problem, result.page_lower_bound, limits.seed * 0x10001 + c);
+    chains.emplace_back(problem, std::max(result.page_lower_bound, limits.enough_pages),
+                        limits.seed * 0x10001 + c);
     chains.back().start(start);
   }
   const std::size_t best = run_chains(chains, limits, context, result);

@@ -31,7 +31,7 @@ SearchLimits limits_for(const Problem& problem, const PackOptions& options, bool
   }
   const std::uint64_t n = problem.items.size();
   limits.seconds = std::numeric_limits<double>::infinity();
-  limits.layouts = 1 + (strip ? kStripWork / (n * n / 2 + 1000) : kPageWork / (8 * n + 200));
+  limits.layouts = strip ? 1 + kStripWork / (n * n / 2 + 1000) : standard_page_limits(n).layouts;
   if (beams) {
     limits.layouts = 1 + limits.layouts / 3;
     limits.beam_seconds = limits.seconds;
@@ -116,6 +116,13 @@ Layout pack_large_pages(const Problem& problem, const PackOptions& options, std:
 }
 
 }  // namespace
+
+SearchLimits standard_page_limits(std::size_t items) {
+  SearchLimits limits;
+  limits.seconds = std::numeric_limits<double>::infinity();
+  limits.layouts = 1 + kPageWork / (8 * items + 200);
+  return limits;
+}
 
 Layout solve(const Problem& problem, const PackOptions& options, const Context& context,
              PackResult& result) {

@@ -183,8 +183,11 @@ Result<PageLayout> lay_out_better(const ChartSet& charts, std::span<const Vec2d>
   LayoutOptions boxes = options;
   boxes.outlines = false;
   Result<PageLayout> boxed = lay_out(charts, texels_per_unit, boxes, context);
-  if (!options.outlines ||
-      (boxed.ok() && (boxed->uv_utilization > kFull || !worth_outlining(charts, texels_per_unit))))
+  const auto full = [&] {  // not where a page more would have let all charts be larger
+    return boxed->uv_utilization > kFull &&
+           (boxed->pages.size() >= options.pages || boxed->scale >= 1);
+  };
+  if (!options.outlines || (boxed.ok() && (full() || !worth_outlining(charts, texels_per_unit))))
     return boxed;
   Result<PageLayout> best = lay_out(charts, texels_per_unit, options, context);
   if (!best.ok() || (boxed.ok() && !better(*best, *boxed, options))) best = std::move(boxed);

@@ -101,6 +101,27 @@ TEST(FitPages, FullPagesAtTheLargestScale) {
   EXPECT_EQ(r.pages.size(), 2u);
 }
 
+// Pages of six to a hundred boxes: 0.838, 0.884, 0.922 of them without a search.
+TEST(FitPages, FewBoxesFillTheirPages) {
+  for (const auto& [boxes, least] : {std::pair{6, 0.88}, {20, 0.90}, {100, 0.93}}) {
+    double filled = 0;
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+      test::Noise noise{seed};
+      std::vector<FitItem> items(4 * std::size_t(boxes));
+      for (FitItem& item : items) item = {double(noise.in(300, 900)), double(noise.in(300, 900))};
+      FitOptions o;
+      o.pages = 4;
+      o.page_size = 2048;
+      o.padding = 1;
+      o.max_scale = 10;
+      const Result<FitResult> fit = fit_pages(items, o, {});
+      ASSERT_TRUE(fit.ok());
+      filled += fit->utilization / 4;
+    }
+    EXPECT_GE(filled, least) << boxes;
+  }
+}
+
 TEST(FitPages, SmallContentTakesFewSmallPages) {
   const std::vector<FitItem> items(4, FitItem{20, 20});
   FitOptions o;
