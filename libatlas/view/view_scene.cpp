@@ -12,6 +12,7 @@
 
 #include "libatlas/core/counting_sort.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/scene/check_scene.h"
 
 namespace atlas {
 namespace {
@@ -124,7 +125,7 @@ class Builder {
   }
 
   std::int32_t texture_of(std::uint32_t triangle) const {
-    if (!textured_ || scene_.triangle_material.empty()) return -1;
+    if (!textured_) return -1;
     return scene_.materials[scene_.triangle_material[triangle]].texture;
   }
 
@@ -171,15 +172,14 @@ class Builder {
     const std::uint32_t corner = 3 * t + std::uint32_t(k), p = scene_.indices[corner];
     const glm::vec3 n = corner_normal(corners_at_[welded_[p]], faces_, t, cosine_);
     CornerKey key{scene_.lit() ? p : welded_[p], kNone, 0, {}};
-    if (!scene_.triangle_material.empty()) key.material = scene_.triangle_material[t];
+    key.material = scene_.triangle_material[t];
     if (textured_) key.texcoord = scene_.texcoord_indices[corner];
     for (int i = 0; i < 3; ++i) key.normal[i] = std::int16_t(std::lround(n[i] * 16000));
     const auto [it, fresh] = known_.try_emplace(key, std::uint32_t(view_.positions.size()));
     if (!fresh) return it->second;
     view_.positions.push_back(scene_.positions[p]);
     view_.normals.push_back(from_glm(n));
-    view_.colours.push_back(scene_.materials.empty() ? Vec3f{1, 1, 1}
-                                                     : scene_.materials[key.material].diffuse);
+    view_.colours.push_back(scene_.materials[key.material].diffuse);
     if (textured_)
       view_.texcoords.push_back(key.texcoord == kNone ? Vec2f{} : scene_.texcoords[key.texcoord]);
     if (scene_.lit()) view_.illumination.push_back(scene_.illumination[p]);
@@ -244,6 +244,7 @@ double light_scale(const std::vector<Vec3f>& illumination) {
 Result<ViewScene> make_view_scene(const Scene& scene, const ViewSceneOptions& options) {
   if (scene.triangle_count() == 0)
     return Status{ErrorCode::bad_input, "the scene has no triangles: there is nothing to show"};
+  if (Status s = check_scene(scene); !s.ok()) return s;
   ViewScene view = Builder(scene, options).build(std::max(options.cluster_triangles, 1u));
   if (view.textured()) view.textures = scene.textures;
   view.textures_hold_light = options.textures_hold_light && view.textured();

@@ -54,7 +54,7 @@ struct ViewSceneOptions {
   std::uint32_t cluster_triangles = 512;
 };
 
-// bad_input if no triangle is left to draw.
+// bad_input if no triangle is left to draw, or as check_scene() says.
 Result<ViewScene> make_view_scene(const Scene& scene, const ViewSceneOptions& options);
 
 }  // namespace atlas

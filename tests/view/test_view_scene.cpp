@@ -143,5 +143,19 @@ TEST(ViewScene, ASceneWithoutTrianglesIsSaidToBeOne) {
   EXPECT_NE(v.status().message().find("no triangles"), std::string::npos);
 }
 
+// A program's own scene whose arrays do not fit together would be read past their ends.
+TEST(ViewScene, ScenesOutOfStepAreRefusedByName) {
+  Scene scene = room();
+  scene.indices[7] = 1u << 30;
+  Result<ViewScene> v = make_view_scene(scene, {});
+  ASSERT_FALSE(v.ok());
+  EXPECT_NE(v.status().message().find("indices[7]"), std::string::npos) << v.status().message();
+  scene = room();
+  scene.illumination.resize(3);
+  v = make_view_scene(scene, {});
+  ASSERT_FALSE(v.ok());
+  EXPECT_NE(v.status().message().find("illumination"), std::string::npos) << v.status().message();
+}
+
 }  // namespace
 }  // namespace atlas::testing
