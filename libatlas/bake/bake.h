@@ -22,11 +22,13 @@ enum class BakeMethod {
 };
 
 struct BakeOptions {
-  int page_width = 2048, page_height = 2048;
+  int page_width = 2048, page_height = 2048;  // texels: those of PageLayout::pages
   int shifts = 4;      // K: sub-texel sample grids, 1..64; rounded up to a square
   int mip_levels = 2;  // lookups at levels 0..mip_levels stay inside the chart's own texels
   BakeMethod method = BakeMethod::least_squares;
-  bool linear = false;  // also give scene-linear floats (for EXR)
+  // Also give scene-linear floats: for EXR, and for signals at the vertices that are no light,
+  // which tone mapping and sRGB would bend.
+  bool linear = false;
 };
 
 struct BakedPage {

@@ -42,7 +42,8 @@ class FidelityMeter {
                 const FidelityOptions& options);
   ~FidelityMeter();
 
-  // Looks up this page's samples bilinearly in the 8-bit image, as a viewer does.
+  // Looks up this page's samples bilinearly in the 8-bit image, as a viewer does. `display` is what
+  // bake_page gave, or of the same size: at least 1 x 1, three channels, whole.
   void add_page(std::int32_t page, const Image8& display);
 
   Fidelity result() const;

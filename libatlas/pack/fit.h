@@ -40,7 +40,8 @@ struct FitOptions {
                                 // 360/rotations degrees; 1, 2, 4 or a multiple of 4
   bool any_angle = true;        // outlines may be turned by angles between those, too
   // A single page: its sides are at most page_size, and outlines are made to fill it as far as they
-  // can instead of being as large as they can be. Overrides power_of_two and square.
+  // can instead of being as large as they can be. Overrides power_of_two and square. Without
+  // shapes, or with several pages, it does that alone.
   bool free_aspect = false;
   // Limits of `best` on a single page of outlines. The result depends on effort and seed only,
   // unless effort is 0 and time the limit.

@@ -40,7 +40,8 @@ struct LightFit {
 // that every caster and receiver in them is covered; with options.view only receivers in the view's
 // bounding sphere are, their casters still being in the depth range. The side is the diameter of
 // the sphere around what is fitted: it does not change when the light turns or the camera does, so
-// texels keep their size. bad_option if the direction or the box is empty or not finite.
+// texels keep their size. bad_option if the direction is zero, the box has a low above its high,
+// either is not finite, or the border leaves no texel. A box of one point is fitted, too.
 Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene, const FitOptions& options);
 
 // The map's axes, unit vectors; `direction` must not be zero.

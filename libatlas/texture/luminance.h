@@ -25,8 +25,8 @@ enum class Quantity {
 // constant that exposure absorbs, so it is left out: values stay comparable with the input's.
 // With Quantity::luminance the values are the input's own (cd/m²).
 //
-// The sampler refers to the scene, which must outlive it; it builds mip chains of the textures
-// (8-bit, a third of their size). Thread-safe once built.
+// The sampler refers to the scene, which must outlive it and be as check_scene() asks; it builds
+// mip chains of the textures (8-bit, a third of their size). Thread-safe once built.
 class LuminanceSampler {
  public:
   LuminanceSampler(const Scene& scene, Quantity quantity);
