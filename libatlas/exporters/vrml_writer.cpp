@@ -79,14 +79,18 @@ std::string header(const World& world, const Vec3d& origin_left_out) {
   out.text(carries_light(world) ? "FALSE" : "TRUE");
   out.text("\n  type [ ");
   out.text(world.viewpoint.inside ? "\"WALK\", \"ANY\" ]\n" : "\"EXAMINE\", \"ANY\" ]\n");
-  // A person: 0.25 m wide, eyes at 1.6 m, stepping over 0.75 m, walking 1.5 m/s.
+  // A person: 0.25 m wide, eyes at 1.6 m, stepping over 0.75 m, walking 1.5 m/s. In units however
+  // small or large, these must stay floats above 0.
+  const auto length = [&](double metres) {
+    return static_cast<float>(std::clamp(metres / world.metres_per_unit, 1e-30, 1e30));
+  };
   out.text("  avatarSize [ ");
   for (const double metres : {0.25, 1.6, 0.75}) {
-    out.number(static_cast<float>(metres / world.metres_per_unit));
+    out.number(length(metres));
     out.character(' ');
   }
   out.text("]\n  speed ");
-  out.number(static_cast<float>(1.5 / world.metres_per_unit));
+  out.number(length(1.5));
   out.text("\n}\n");
   return out.bytes();
 }

@@ -167,6 +167,22 @@ TEST(Vrml, InfoAndNavigation) {
   EXPECT_EQ(of_type(outside, "NavigationInfo")[0]->field("type")[0], "\"EXAMINE\"");
 }
 
+// An atom's or a galaxy's units: the avatar's lengths were written as "inf" and 0, which no viewer
+// reads.
+TEST(Vrml, AvatarsStayFloatsInAnyUnit) {
+  const TempFolder folder;
+  World world = wavy_world(4, 1);
+  for (const double unit : {1e-300, 1e-40, 1e45, 1e300}) {
+    world.metres_per_unit = unit;
+    const Nodes nodes = parse_vrml(write(world, folder / "w.wrl"));
+    const auto navigation = of_type(nodes, "NavigationInfo");
+    ASSERT_EQ(navigation.size(), 1u);
+    for (const double v : numbers(navigation[0]->field("avatarSize"))) {
+      EXPECT_TRUE(std::isfinite(v) && v > 0) << unit << " " << v;
+    }
+  }
+}
+
 glm::dmat3 rotation_of(const std::vector<double>& r) {
   return glm::mat3_cast(glm::angleAxis(r[3], glm::normalize(glm::dvec3(r[0], r[1], r[2]))));
 }
