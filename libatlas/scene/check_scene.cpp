@@ -64,11 +64,10 @@ Status check_triangles(const Scene& scene) {
   const std::size_t corners = scene.indices.size(), triangles = corners / 3;
   if (corners % 3 != 0) return wrong("{} indices are not whole triangles", corners);
   const auto one_each = [&](const char* name, std::size_t size, std::size_t wanted) {
-    return size == wanted ? Status{}
-                          : wrong(
-                                "{} has {} entries for {} triangles (must be {}; "
-                                "complete_scene() fills in what is empty)",
-                                name, size, triangles, wanted);
+    return size == wanted
+               ? Status{}
+               : wrong("{} has {} entries for {} triangles (must be {}{})", name, size, triangles,
+                       wanted, size == 0 ? "; complete_scene() fills them in" : "");
   };
   Status s = check_range("indices", scene.indices, scene.positions.size(), "positions");
   if (s.ok()) s = one_each("triangle_material", scene.triangle_material.size(), triangles);
