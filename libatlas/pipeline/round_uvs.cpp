@@ -2,112 +2,124 @@
 
 #include <algorithm>
 #include <deque>
-#include <limits>
 
 #include "libatlas/core/counting_sort.h"
+#include "libatlas/pipeline/open_stacks.h"
 #include "libatlas/pipeline/spread_specks.h"
 #include "libatlas/pipeline/thin_uvs.h"
 
 namespace atlas {
 namespace {
 
-constexpr int kMostSteps = 128;  // that a corner is taken beyond the edge across
-constexpr int kMostTries = 32;   // a triangle
-// Triangles more that a move may close: in a stack of slivers the outer ones give way in turn.
-constexpr int kMostHarm = 1;
+constexpr double kMostPush = 16 * kUvStep;     // of a corner at a time
+constexpr double kMostShift = 2048 * kUvStep;  // of a corner in all
+constexpr std::uint8_t kMostPushes = 50;       // a triangle; what takes more is left to open_stacks
 
+// Pushes thin triangles open, and in turn what that closes, one at a time (position-based dynamics,
+// Müller et al. 2007): a corner moves in proportion to the edge across, so that of a sliver the
+// two near corners part.
 class SliverOpener {
  public:
-  SliverOpener(std::span<const std::uint32_t> corners, std::vector<Vec2f>& uvs)
-      : corners_(corners), uvs_(uvs) {}
+  SliverOpener(std::span<const std::uint32_t> corners, std::span<const Vec2d> exact,
+               std::vector<Vec2f>& uvs)
+      : corners_(corners), exact_(exact), uvs_(uvs) {}
 
+  // How many stay thin.
   std::size_t run() {
-    if (!any_thin()) return 0;
+    if (count_thin() == 0) return 0;
     corners_at_ = sort_into_buckets(corners_.size(), uvs_.size(),
                                     [&](std::size_t corner) { return corners_[corner]; });
+    for (const Vec2d& p : exact_) start_.push_back(to_glm(p));
+    push_open();
+    open_stacks(corners_, corners_at_, start_, uvs_);
+    if (count_thin() == 0) return 0;
     spread_specks(corners_, corners_at_, uvs_);
-    const std::size_t n = corners_.size() / 3;
-    for (std::uint32_t t = 0; t < n; ++t) {
-      if (thin(t)) queue_.push_back(t);
-    }
-    std::vector<std::uint8_t> tries(n, 0);
-    std::vector<std::uint32_t> given_up;
-    while (!queue_.empty()) {
-      const std::uint32_t t = queue_.front();
-      queue_.pop_front();
-      if (!thin(t) || tries[t] == kMostTries) continue;
-      if (++tries[t] == kMostTries || !open(t)) {
-        tries[t] = kMostTries;
-        given_up.push_back(t);
-      }
-    }
-    return std::size_t(
-        std::count_if(given_up.begin(), given_up.end(), [&](std::uint32_t t) { return thin(t); }));
+    for (std::size_t i = 0; i < uvs_.size(); ++i) start_[i] = to_dvec(uvs_[i]);
+    push_open();
+    return count_thin();
   }
 
  private:
-  struct Move {
-    std::uint32_t uv = 0;
-    Vec2f to;
-    int harm = std::numeric_limits<int>::max();  // triangles more that are thin
-  };
-
-  glm::dvec2 at(std::uint32_t uv) const { return to_dvec(uvs_[uv]); }
-
   bool thin(std::uint32_t t) const {
     return is_thin(corners_.subspan(3 * std::size_t(t)).first<3>(), uvs_);
   }
 
-  bool any_thin() const {
-    for (std::uint32_t t = 0; t < corners_.size() / 3; ++t) {
-      if (thin(t)) return true;
-    }
-    return false;
-  }
-
-  int thin_around(std::uint32_t uv) const {
-    int count = 0;
-    for (const std::uint32_t corner : corners_at_[uv]) count += thin(corner / 3);
+  std::size_t count_thin() const {
+    std::size_t count = 0;
+    for (std::uint32_t t = 0; t < corners_.size() / 3; ++t) count += thin(t);
     return count;
   }
 
-  // Moves a corner of a thin triangle away from the edge opposite, closing as few others as may be.
-  // False if those would be too many.
-  bool open(std::uint32_t t) {
-    Move best;
-    for (int steps = 2; steps <= kMostSteps && best.harm >= 0; steps *= 2) {
-      for (int corner = 0; corner < 3; ++corner) consider(t, corner, steps, best);
+  // From start_.
+  void push_open() {
+    at_ = start_;
+    moved_.assign(uvs_.size(), 0);
+    const std::size_t n = corners_.size() / 3;
+    std::vector<std::uint8_t> pushes(n, 0);
+    std::vector<std::uint8_t> queued(n, 0);
+    std::deque<std::uint32_t> queue;
+    for (std::uint32_t t = 0; t < n; ++t) {
+      if (!thin(t)) continue;
+      queue.push_back(t);
+      queued[t] = 1;
     }
-    if (best.harm > kMostHarm) return false;
-    uvs_[best.uv] = best.to;
-    for (const std::uint32_t corner : corners_at_[best.uv]) {
-      if (corner / 3 != t && thin(corner / 3)) queue_.push_back(corner / 3);
+    while (!queue.empty()) {
+      const std::uint32_t t = queue.front();
+      queue.pop_front();
+      queued[t] = 0;
+      if (pushes[t] == kMostPushes || !push(t)) continue;
+      ++pushes[t];
+      for (int k = 0; k < 3; ++k) {
+        for (const std::uint32_t corner : corners_at_[corners_[3 * std::size_t(t) + k]]) {
+          const std::uint32_t other = corner / 3;
+          if (queued[other] || lacks(other) <= 0) continue;
+          queue.push_back(other);
+          queued[other] = 1;
+        }
+      }
+    }
+    for (std::size_t i = 0; i < uvs_.size(); ++i) {
+      if (moved_[i]) uvs_[i] = rounded_uv(at_[i]);
+    }
+  }
+
+  // Twice the area that a triangle lacks.
+  double lacks(std::uint32_t t) const {
+    const std::uint32_t* c = &corners_[3 * std::size_t(t)];
+    if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) return 0;
+    const glm::dvec2 u = at_[c[1]] - at_[c[0]], v = at_[c[2]] - at_[c[0]];
+    return open_area(u, v) - (u.x * v.y - u.y * v.x);
+  }
+
+  // False if it is open.
+  bool push(std::uint32_t t) {
+    const double lack = lacks(t);
+    if (lack <= 0) return false;
+    const std::uint32_t* c = &corners_[3 * std::size_t(t)];
+    glm::dvec2 gradient[3];  // of twice the area
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) {
+      const glm::dvec2 across = at_[c[(k + 2) % 3]] - at_[c[(k + 1) % 3]];
+      gradient[k] = {-across.y, across.x};
+      sum += glm::dot(across, across);
+    }
+    for (int k = 0; k < 3; ++k) {
+      glm::dvec2 step = sum > 0 ? lack / sum * gradient[k] : glm::dvec2(0);
+      const double length = glm::length(step);
+      if (length > kMostPush) step *= kMostPush / length;
+      glm::dvec2& p = at_[c[k]];
+      p = glm::clamp(p + step, start_[c[k]] - kMostShift, start_[c[k]] + kMostShift);
+      moved_[c[k]] = 1;
     }
     return true;
   }
 
-  void consider(std::uint32_t t, int corner, int steps, Move& best) {
-    const std::uint32_t* c = &corners_[3 * std::size_t(t)];
-    const std::uint32_t uv = c[corner];
-    const glm::dvec2 p = at(uv), a = at(c[(corner + 1) % 3]), along = at(c[(corner + 2) % 3]) - a;
-    const double length = glm::length(along);
-    const glm::dvec2 across =
-        length > 0 ? glm::dvec2(-along.y, along.x) / length : glm::dvec2(0, 1);
-    const double shift = steps * kUvStep - glm::dot(across, p - a);
-    if (shift > 2 * kMostSteps * kUvStep) return;  // a short edge, far from the corner
-    const glm::vec2 there = glm::clamp(glm::vec2(p + shift * across), 0.0f, 1.0f);
-    const Vec2f old = uvs_[uv], to{there.x, there.y};
-    const int before = thin_around(uv);
-    uvs_[uv] = to;
-    const int harm = thin_around(uv) - before + (thin(t) ? 1 : 0);
-    uvs_[uv] = old;
-    if (harm < best.harm) best = {uv, to, harm};
-  }
-
   std::span<const std::uint32_t> corners_;
+  std::span<const Vec2d> exact_;
   std::vector<Vec2f>& uvs_;
-  std::deque<std::uint32_t> queue_;
   Buckets corners_at_;  // each uv
+  std::vector<glm::dvec2> start_, at_;  // 1 a uv: where pushing starts, and has come to
+  std::vector<std::uint8_t> moved_;
 };
 
 }  // namespace
@@ -118,7 +130,7 @@ std::size_t round_uvs(std::span<const Vec2d> exact, std::span<const std::uint32_
   for (std::size_t i = 0; i < exact.size(); ++i) {
     rounded[i] = {float(exact[i].x), float(exact[i].y)};
   }
-  return SliverOpener(corners, rounded).run();
+  return SliverOpener(corners, exact, rounded).run();
 }
 
 }  // namespace atlas

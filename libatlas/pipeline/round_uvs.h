@@ -11,11 +11,12 @@
 namespace atlas {
 
 // Rounds uvs (0..1) to floats. Slivers that this would turn over or close, those thinner than some
-// 10^-7 of the page, and specks of less than 10^-12 of it are opened: a corner moves by the few
-// last places of a float that it takes, at most 128, and so on with what that closes in its turn.
-// They stay open where the shortest decimals of these floats are read as doubles, or are multiplied
-// in floats by a page's size. `corners`: 3 a triangle, counter-clockwise in `exact`; those that
-// name a uv twice are points or lines and stay so. Returns how many triangles could not be opened.
+// 10^-7 of the page, and specks of less than 10^-12 of it are opened: corners move by the few last
+// places of a float that it takes, and so on with what that closes in its turn; those of stacks of
+// slivers that lean on each other by up to half a thousandth of the page, mostly along them. They
+// stay open where the shortest decimals of these floats are read as doubles, or are multiplied in
+// floats by a page's size. `corners`: 3 a triangle, counter-clockwise in `exact`; those that name a
+// uv twice are points or lines and stay so. Returns how many triangles could not be opened.
 std::size_t round_uvs(std::span<const Vec2d> exact, std::span<const std::uint32_t> corners,
                       std::vector<Vec2f>& rounded);
 

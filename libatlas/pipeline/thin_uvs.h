@@ -26,4 +26,16 @@ inline bool is_thin(std::span<const std::uint32_t, 3> c, std::span<const Vec2f> 
   return twice <= std::max(kUvSlack * (sides.x + sides.y), 2 * kLeastUvArea);
 }
 
+// Twice the area from which on rounding leaves the triangle of sides u, v open: rounding moves each
+// corner by half a step along each axis, and twice the area by that times the side across.
+inline double open_area(glm::dvec2 u, glm::dvec2 v) {
+  const glm::dvec2 sides = glm::abs(u) + glm::abs(v) + glm::abs(v - u);
+  return std::max((kUvSlack + 0.51 * kUvStep) * (sides.x + sides.y), 3 * kLeastUvArea);
+}
+
+inline Vec2f rounded_uv(glm::dvec2 uv) {
+  const glm::vec2 p = glm::clamp(glm::vec2(uv), 0.0f, 1.0f);
+  return {p.x, p.y};
+}
+
 }  // namespace atlas

@@ -104,6 +104,52 @@ TEST(RoundUvs, SliversStayOpen) {
   EXPECT_GT(turned, 100u) << "the test is too easy";
 }
 
+// Places along a line and beside it, in last places of a float; the three triangles at `mid` can
+// only be opened by moving it along the line, by more than a hundred times what they lack in
+// height.
+TEST(RoundUvs, SliversThatLeanOnEachOtherAreOpened) {
+  FlatMesh mesh;
+  enum : std::uint32_t { start, mid, next, last, hub, near, far };
+  for (const Vec2d p : {Vec2d{0, 0},
+                        {165, 0.227},
+                        {255, 0.351},
+                        {338, 0.464},
+                        {1.942e6, 0},
+                        {4.254e5, 1585.6},
+                        {6.331e5, 2206.9}}) {
+    mesh.uvs.push_back({0.4 + p.x * 0x1p-24, 0.5 + p.y * 0x1p-24});
+  }
+  mesh.corners = {next, mid, hub,  mid, next, far,  start, hub,  mid,  start, mid,
+                  near, far, near, mid, last, next, hub,   next, last, far};
+  std::vector<Vec2f> rounded;
+  EXPECT_EQ(round_uvs(mesh.uvs, mesh.corners, rounded), 0u);
+  EXPECT_EQ(in_integers(mesh, rounded), 0u);
+  EXPECT_EQ(not_positive<double>(mesh, rounded, read_back), 0u);
+  for (std::size_t i = 0; i < mesh.uvs.size(); ++i) {
+    EXPECT_LT(std::hypot(rounded[i].x - mesh.uvs[i].x, rounded[i].y - mesh.uvs[i].y), 5e-4);
+  }
+}
+
+// Fans of slivers on both sides of a line that is straight but for a last place of a float.
+TEST(RoundUvs, FansOfManySliversAreOpened) {
+  FlatMesh mesh;
+  constexpr int n = 100;
+  mesh.uvs = {{0.3, 0.5}, {0.3, 0.9}};
+  double x = 0.55;
+  for (int i = 0; i <= n; ++i) {
+    mesh.uvs.push_back({x, 0.5 + 1e-12 * i * i});
+    x += i % 3 == 0 ? 3e-5 : 2e-6;
+  }
+  for (std::uint32_t i = 2; i < n + 2; ++i) {
+    mesh.corners.insert(mesh.corners.end(), {0, i + 1, i, 1, i, i + 1});
+  }
+  for (std::size_t t = 0; t < mesh.corners.size(); t += 6)
+    std::swap(mesh.corners[t + 1], mesh.corners[t + 2]);
+  std::vector<Vec2f> rounded;
+  EXPECT_EQ(round_uvs(mesh.uvs, mesh.corners, rounded), 0u);
+  EXPECT_EQ(in_integers(mesh, rounded), 0u);
+}
+
 TEST(RoundUvs, SpecksKeepAnArea) {
   // A square of 1e-8 within one of 0.5.
   FlatMesh mesh;
