@@ -138,6 +138,29 @@ TEST(Limbs, AChartThatSprawlsIsCutUntilItsPiecesFillTheirRectangles) {
   }
 }
 
+// A hair of less than a hundredth of its area can make a chart's rectangle twice as large.
+TEST(Limbs, FlagsAreCutOffHoweverThin) {
+  constexpr int n = 12;
+  Shape plate = grid(2 * n, 2 * n, 2, 2);
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t t = 0; t < plate.triangle_count(); ++t) {
+    const int x = int(t / 2) % (2 * n), y = int(t / 2) / (2 * n);
+    if (x >= n || y < n) kept.insert(kept.end(), &plate.indices[3 * t], &plate.indices[3 * t] + 3);
+  }
+  plate.indices = kept;
+  for (Vec3f& p : plate.positions) {
+    p.x = p.x < 1 ? 10 * p.x : 10 + 0.08f * (p.x - 1);
+    p.y *= 9;
+  }
+  const Mesh mesh(plate);
+  const ChartSet whole = charts_of(mesh, 0), cut = charts_of(mesh, 0.72);
+  EXPECT_EQ(whole.charts.size(), 1u);
+  EXPECT_LT(box_fill(whole), 0.6);
+  EXPECT_EQ(check_charts(mesh.view(), cut).fault, "");
+  EXPECT_EQ(cut.charts.size(), 2u);
+  EXPECT_GT(box_fill(cut), 0.85);
+}
+
 TEST(Limbs, WhatIsNotTheWholePageOrFillsItsRectangleStays) {
   for (const Shape& shape : {grid(20, 10), fan(40), cylinder(48, 12), cone(48, 12, 0.4)}) {
     const Mesh mesh(shape);

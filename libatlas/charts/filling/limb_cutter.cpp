@@ -16,8 +16,8 @@ namespace atlas {
 namespace {
 
 constexpr std::size_t kMostPieces = 12;
-constexpr double kLeastFall = 0.01;   // of the chart's sprawl by one cut
-constexpr double kLeastPiece = 0.01;  // of the chart's area
+constexpr double kLeastFall = 0.01;     // of the chart's sprawl by one cut
+constexpr double kLeastPiece = 0.0005;  // of the chart's area
 // Share of the rectangles' area that must be gained for a seam as long as the square root of the
 // chart's area.
 constexpr double kSeamPrice = 0.12;
