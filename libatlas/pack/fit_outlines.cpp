@@ -285,6 +285,41 @@ bool search_scale(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
   return low > 0 || attempt(least);
 }
 
+// The least page of any shape that holds the layout's one page, cells.
+std::int64_t page_in_use(const OutlineLayout& layout) {
+  std::int64_t width = 0, height = 0;
+  for (std::size_t i = 0; i < layout.pieces.size(); ++i) {
+    if (layout.pieces[i].cells() == 0) continue;
+    const NestPlace& at = layout.places[i];
+    const Mask& mask = layout.pieces[i].masks[at.direction];
+    width = std::max<std::int64_t>(width, at.at.x + mask.width);
+    height = std::max<std::int64_t>(height, at.at.y + mask.height);
+  }
+  return width * height;
+}
+
+// On a page of any shape the largest scale is not always the best: where the longest chart takes
+// all of the page's side, others may fit beside each other at a slightly smaller one, on a far
+// smaller page.
+void fill_free_page(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
+  constexpr double kAtTheSide = 0.98, kStep = 0.97, kLeast = 0.7;
+  constexpr double kFuller = 1.05;  // what a smaller scale must gain
+  const auto fill = [&](const OutlineLayout& layout) {
+    return layout.scale * layout.scale * fit.area() / double(page_in_use(layout));
+  };
+  const double largest = best.scale;
+  if (largest < kAtTheSide * fit.bounds().alone) return;
+  double wanted = kFuller * fill(best);
+  for (double scale = kStep * largest; scale > kLeast * largest; scale *= kStep) {
+    OutlineLayout smaller;
+    ++result.packings;
+    if (fit.context().cancelled() || !fit.pack_at(scale, 1, smaller)) return;
+    if (fill(smaller) < wanted) continue;
+    wanted = fill(smaller);
+    best = std::move(smaller);
+  }
+}
+
 void use_fewer_pages(OutlineFit& fit, const FitOptions& options, FitResult& result,
                      OutlineLayout& best) {
   double cells = 0;
@@ -372,6 +407,7 @@ Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions&
   if (pressed && (!found || (!options.free_aspect && best.scale <= pressed->scale)))
     return std::move(*pressed);
   if (!found) return no_room(items.size(), options);
+  if (options.free_aspect && options.pages == 1) fill_free_page(*fit, result, best);
   if (best.scale == options.max_scale) use_fewer_pages(*fit, options, result, best);
   write_result(*fit, options, best, result);
   if (pressed && options.free_aspect && pressed->utilization >= result.utilization)

@@ -154,10 +154,11 @@ class Press {
     d.bodies[kFine].radius += std::hypot(shift.x, shift.y);
   }
 
-  static constexpr double kLong = 1.2;
+  static constexpr double kLong = 1.2, kNarrow = 0.4;
 
-  // Strips of widths around the square page's side; where pages may have any shape and a chart is
-  // longer than that, every second one lays it along the strip.
+  // Strips of widths around the square page's side. Where pages may have any shape, every fourth is
+  // narrower, for few large charts may fill it in one row, and if a chart is longer than the side,
+  // every second lays it along the strip.
   std::int32_t strip_width(std::size_t k, std::size_t count, double shift) const {
     const double side = side_ * std::sqrt(kExpectedFill / 0.69) / cell_;
     const double spread = (count > 1 ? 0.2 * double(k) / double(count - 1) - 0.1 : 0) + shift;
@@ -171,7 +172,10 @@ class Press {
       if (p.cells() > 0) narrowest = std::max(narrowest, least);
     }
     const bool along = options_.free_aspect && longest > kLong * side && k % 2 == 1;
-    const double width = along ? longest * (1.1 + spread) + 1 : side * (1 + spread);
+    const bool narrow = options_.free_aspect && !along && k % 4 == 0;
+    double width = side * (1 + spread);
+    if (along) width = longest * (1.1 + spread) + 1;
+    if (narrow) width = side * (kNarrow + (1 - kNarrow) * double(k) / double(count));
     return std::max(narrowest, static_cast<std::int32_t>(width));
   }
 

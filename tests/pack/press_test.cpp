@@ -269,6 +269,38 @@ TEST(Press, LongChartsLieAlongThePage) {
   EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *r), r->pages, o.padding), "");
 }
 
+// Two discs fill no square, but half of one.
+TEST(Press, FewLargeChartsLieInOneRow) {
+  std::vector<std::vector<Vec2d>> shapes(2);
+  for (int i = 0; i < 60; ++i) {
+    const auto at = [](double k) {
+      return Vec2d{100 * std::cos(k * std::numbers::pi / 30),
+                   100 * std::sin(k * std::numbers::pi / 30)};
+    };
+    for (auto& disc : shapes) disc.insert(disc.end(), {Vec2d{0, 0}, at(i), at(i + 1)});
+  }
+  shapes.push_back(box(70, 2));
+  const test::ChartItems charts(std::move(shapes));
+  const Result<FitResult> r = fit_pages(charts.items, options_for(charts, 1024), {});
+  ASSERT_TRUE(r.ok());
+  EXPECT_GT(r->utilization, 0.74);
+  EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *r), r->pages, 1), "");
+}
+
+// At the largest scale, at which the strip is as long as the page may be, three plates lie beside
+// each other; at a slightly smaller one four.
+TEST(Fit, AFreePageIsFilledBeforeItIsLarge) {
+  std::vector<std::vector<Vec2d>> shapes{box(1400, 16)};
+  for (int k = 0; k < 4; ++k) shapes.push_back(box(375, 335));
+  for (int k = 0; k < 200; ++k) shapes.push_back(box(8 + k % 7, 6 + k % 5));
+  const test::ChartItems charts(std::move(shapes));
+  FitOptions o = options_for(charts, 2048);
+  const Result<FitResult> r = fit_pages(charts.items, o, {});
+  ASSERT_TRUE(r.ok());
+  EXPECT_GT(r->utilization, 0.85);
+  EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *r), r->pages, 1), "");
+}
+
 // Charts with straight sides lie side by side, turned by right angles; notched bars, some of which
 // fill the notches of others.
 TEST(StraightPage, ChartsLieSideBySide) {
