@@ -172,7 +172,7 @@ Result<Shares> shares_of(const Stage& stage, const glm::dvec3& light, RenderOpti
         renderer->draw(camera, {now, [&](int n) { return at(frame + n); }});
     if (!drawn.ok()) return drawn.status();
   }
-  FitOptions fit;
+  LightFitOptions fit;
   fit.resolution = kMap;
   fit.border_texels = kMap / 128.0;
   const Result<LightFit> map = fit_light(now, renderer->bounds(), fit);

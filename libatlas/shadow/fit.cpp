@@ -80,7 +80,8 @@ MapAxes map_axes(const Vec3d& direction, const Vec3d& up) {
   return {from_glm(basis.right), from_glm(basis.up)};
 }
 
-Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene, const FitOptions& options) {
+Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene,
+                           const LightFitOptions& options) {
   const glm::dvec3 low = to_glm(scene.low), high = to_glm(scene.high);
   const double length = glm::length(to_glm(direction));
   if (!(length > 0) || !std::isfinite(length))

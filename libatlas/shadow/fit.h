@@ -16,7 +16,7 @@ struct Box3 {
 // Column-major 4x4, as OpenGL takes it.
 using Matrix4 = std::array<double, 16>;
 
-struct FitOptions {
+struct LightFitOptions {
   int resolution = 2048;  // texels a side, >= 1
   Vec3d up{0, 1, 0};      // the map's vertical, where it is not parallel to the light
   bool snap = true;       // move the map in whole texels only: edges do not crawl with the camera
@@ -42,7 +42,8 @@ struct LightFit {
 // the sphere around what is fitted: it does not change when the light turns or the camera does, so
 // texels keep their size. bad_option if the direction is zero, the box has a low above its high,
 // either is not finite, or the border leaves no texel. A box of one point is fitted, too.
-Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene, const FitOptions& options);
+Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene,
+                           const LightFitOptions& options);
 
 // The map's axes, unit vectors; `direction` must not be zero.
 struct MapAxes {

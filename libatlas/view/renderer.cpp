@@ -174,7 +174,7 @@ Status Renderer::Impl::apply(const RenderOptions& wanted) {
 }
 
 Result<LightFit> Renderer::Impl::fit(const Camera& camera, const Vec3d& direction) const {
-  FitOptions f;
+  LightFitOptions f;
   f.resolution = options.map_resolution;
   f.up = options.up;
   f.snap = options.snap;

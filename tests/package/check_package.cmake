@@ -82,6 +82,14 @@ if(snippets LESS 6)
   message(FATAL_ERROR "docs/library.md shows ${snippets} pieces of code")
 endif()
 
+# All public headers together: no name of one is another's.
+file(GLOB_RECURSE headers RELATIVE ${prefix}/include ${prefix}/include/*.h)
+list(TRANSFORM headers REPLACE "(.+)" "#include <\\1>\n")
+list(JOIN headers "" together)
+file(WRITE ${BUILD}/tests/package/together.cpp "${together}")
+run(${CXX} -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I${prefix}/include
+    ${BUILD}/tests/package/together.cpp)
+
 # By add_subdirectory, which asks for nothing that only programs and tests need.
 file(REMOVE_RECURSE ${BUILD}/tests/package/parent)
 file(WRITE ${BUILD}/tests/package/parent/CMakeLists.txt "

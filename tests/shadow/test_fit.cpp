@@ -24,7 +24,7 @@ TEST(Fit, EveryPointOfTheSceneIsInTheMapForEveryLight) {
   for (const Box3& box : boxes)
     for (int i = 0; i < 200; ++i) {
       const Vec3d light = i == 0 ? Vec3d{0, 1, 0} : random_direction(rng);
-      FitOptions o;
+      LightFitOptions o;
       o.resolution = 512;
       const Result<LightFit> fit = fit_light(light, box, o);
       ASSERT_TRUE(fit.ok());
@@ -47,7 +47,7 @@ TEST(Fit, ItIsASimilarityWithTheStatedTexelAndDepth) {
   std::mt19937 rng(8);
   const Box3 box{{0, 0, 0}, {3, 2, 7}};
   for (int i = 0; i < 100; ++i) {
-    FitOptions o;
+    LightFitOptions o;
     const LightFit fit = *fit_light(random_direction(rng), box, o);
     // Going towards the light by one unit changes the depth by 1/range and nothing else.
     const Vec3d along = transform_vector(fit.to_texture, fit.direction);
@@ -77,7 +77,7 @@ TEST(Fit, AMovingCameraMovesTheMapByWholeTexels) {
   double first_x = 0, first_y = 0, texel = 0;
   for (int i = 0; i < 100; ++i) {
     const Vec3d at{in(rng), 1, in(rng)};
-    FitOptions o;
+    LightFitOptions o;
     o.view = true;
     for (int c = 0; c < 8; ++c)
       o.view_corners[c] = {at.x + (c & 1 ? 4 : -4), at.y + (c & 2 ? 3 : -3),
@@ -110,7 +110,7 @@ TEST(Fit, AZoomingCameraChangesTheTexelInSmallSteps) {
   const Box3 box{{-500, 0, -500}, {500, 10, 500}};
   std::set<double> sizes;
   for (double reach = 1; reach < 64; reach *= 1.003) {
-    FitOptions o;
+    LightFitOptions o;
     o.view = true;
     for (int c = 0; c < 8; ++c)
       o.view_corners[c] = {c & 1 ? reach : -reach, c & 2 ? reach : -reach, c & 4 ? reach : -reach};
@@ -128,7 +128,7 @@ TEST(Fit, AZoomingCameraChangesTheTexelInSmallSteps) {
 // A view of a part of the scene: what lies beside it, but before the light, still casts.
 TEST(Fit, ASmallViewKeepsTheDepthOfTheWholeScene) {
   const Box3 box{{-50, 0, -50}, {50, 80, 50}};
-  FitOptions o;
+  LightFitOptions o;
   o.view = true;
   for (int c = 0; c < 8; ++c)
     o.view_corners[c] = {c & 1 ? 1.0 : -1.0, c & 2 ? 1.0 : 0.0, c & 4 ? 1.0 : -1.0};
@@ -147,7 +147,7 @@ TEST(Fit, SaysWhatIsWrong) {
   EXPECT_FALSE(fit_light({0, 0, 0}, box, {}).ok());
   EXPECT_FALSE(fit_light({0, std::nan(""), 0}, box, {}).ok());
   EXPECT_FALSE(fit_light({0, 1, 0}, {{1, 0, 0}, {0, 1, 1}}, {}).ok());
-  FitOptions tiny;
+  LightFitOptions tiny;
   tiny.resolution = 8;
   EXPECT_FALSE(fit_light({0, 1, 0}, box, tiny).ok());
   EXPECT_TRUE(fit_light({0, 1, 0}, {{5, 5, 5}, {5, 5, 5}}, {}).ok());  // a single point

@@ -89,7 +89,7 @@ Agreement compare(const View& view, const Vec3d& light, const RenderOptions& opt
   Renderer renderer = must_render(view.scene, options);
   EXPECT_TRUE(renderer.draw(view.camera, still(light)).ok());
   const Image8 image = renderer.read_image();
-  FitOptions f;
+  LightFitOptions f;
   f.resolution = options.map_resolution;
   f.border_texels = options.map_resolution / 128.0;
   const LightFit fit = *fit_light(light, renderer.bounds(), f);
