@@ -15,12 +15,13 @@ namespace atlas {
 
 // A view of a triangle mesh; what it points at must outlive it.
 struct MeshView {
-  std::span<const Vec3f> positions;          // finite
-  std::span<const std::uint32_t> indices;    // 3 a triangle
-  std::span<const std::uint32_t> materials;  // 1 a triangle, or empty: all alike
-  std::span<const float> density;    // relative linear texel density a triangle (> 0), or empty
-  std::span<const Vec2f> texcoords;  // only for ChartOptions::keep_uv_charts
-  std::span<const std::uint32_t> texcoord_indices;  // 3 a triangle, likewise
+  std::span<const Vec3f> positions = {};          // finite
+  std::span<const std::uint32_t> indices = {};    // 3 a triangle
+  std::span<const std::uint32_t> materials = {};  // 1 a triangle, or empty: all alike
+  std::span<const float> density = {};  // relative linear texel density a triangle (> 0), or empty
+  std::span<const Vec2f> texcoords = {};  // only for ChartOptions::keep_uv_charts
+  // 3 a triangle, likewise; empty with one texcoord a position: those of `indices`.
+  std::span<const std::uint32_t> texcoord_indices = {};
 };
 
 enum class ChartPreset { fast, standard, best };
@@ -68,7 +69,9 @@ struct ChartSet {
   std::vector<std::uint32_t> triangle_chart;   // 1 a triangle
   std::vector<std::uint32_t> chart_triangles;  // triangles sorted by chart, then by id
   std::vector<Vec2d> uvs;                      // sorted by chart
-  std::vector<std::uint32_t> uv_vertex;        // 1 a uv: a vertex at its position (or 10^-12 off)
+  // 1 a uv: a vertex at its position (or 10^-12 off). Of several vertices at one place, which may
+  // differ in normals and the like, this is any: take attributes by the corner's own index.
+  std::vector<std::uint32_t> uv_vertex;
   std::vector<std::uint32_t> triangle_uv;  // 3 a triangle, into uvs, in the corner order of indices
                                            // (a triangle whose orientation disagrees with its
                                            // chart's is listed in flipped_triangles)

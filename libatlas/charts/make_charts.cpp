@@ -301,8 +301,10 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
   MeshView given = mesh;
   std::vector<std::uint32_t> texcoord_indices;
   if (options.keep_uv_charts) {
-    if (Status status = check_texcoords(mesh); !status.ok()) return status;
-    texcoord_indices = usable_texcoords(mesh);
+    if (mesh.texcoord_indices.empty() && mesh.texcoords.size() == mesh.positions.size())
+      given.texcoord_indices = mesh.indices;  // one a vertex
+    if (Status status = check_texcoords(given); !status.ok()) return status;
+    texcoord_indices = usable_texcoords(given);
     given.texcoord_indices = texcoord_indices;
   }
   Result<Topology> built =

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <random>
+#include <string>
 
 #include "libatlas/core/glm_bridge.h"
 #include "tests/charts/chart_checks.h"
@@ -293,6 +295,14 @@ TEST(Charts, BadInputAndOptionsAreNamed) {
   MeshView dense = mesh.view();
   dense.density = densities;
   EXPECT_EQ(make_charts(dense, {}, {}).status().code(), ErrorCode::bad_input);
+  for (const float bad : {0.0f, -1.0f, std::nanf(""), std::numeric_limits<float>::infinity()}) {
+    std::vector<float> one_bad(8, 1.0f);
+    one_bad[5] = bad;
+    dense.density = one_bad;
+    const Status status = make_charts(dense, {}, {}).status();
+    EXPECT_EQ(status.code(), ErrorCode::bad_input) << bad;
+    EXPECT_NE(status.message().find("triangle 5"), std::string::npos) << status.message();
+  }
   ChartOptions options;
   options.max_stretch = 1;
   EXPECT_EQ(code(Mesh(grid(2, 2)), options), ErrorCode::bad_option);

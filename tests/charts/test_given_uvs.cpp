@@ -111,6 +111,18 @@ Mesh mapped(const Shape& shape, const std::function<Vec2f(Vec3f)>& place) {
   return mesh;
 }
 
+TEST(GivenUvs, OneAVertexNeedsNoIndices) {
+  Mesh mesh = mapped(grid(8, 8), [](Vec3f p) { return Vec2f{p.x, 2 * p.y}; });
+  const ChartSet named = keep(mesh);
+  mesh.texcoord_indices.clear();
+  ChartOptions options;
+  options.keep_uv_charts = true;
+  const Result<ChartSet> set = make_charts(mesh.view(), options, {});
+  ASSERT_TRUE(set.ok()) << set.status().message();
+  EXPECT_TRUE(set->charts.front().kept);
+  EXPECT_EQ(bytes(*set), bytes(named));
+}
+
 TEST(GivenUvs, OwnChartsComeBackAsTheyWere) {
   for (const Shape& shape : {torus(60, 30), icosphere(4), box(6), plate_with_holes(2, 6),
                              noisy(sphere(40, 20), 0.02, 3), cone(30, 8, 0.4)}) {

@@ -48,6 +48,12 @@ Status check_input(const MeshView& mesh) {
   if (!mesh.density.empty() && mesh.density.size() != n / 3) {
     return {ErrorCode::bad_input, "mesh: densities must be empty or 1 a triangle"};
   }
+  for (std::size_t t = 0; t < mesh.density.size(); ++t) {
+    if (mesh.density[t] > 0 && std::isfinite(mesh.density[t])) continue;
+    return {
+        ErrorCode::bad_input,
+        fmt::format("triangle {}: density {} (must be above 0 and finite)", t, mesh.density[t])};
+  }
   return {};
 }
 
