@@ -171,6 +171,7 @@ FidelityMeter::FidelityMeter(const ChartLight& light, std::span<const ChartPlace
 FidelityMeter::~FidelityMeter() = default;
 
 void FidelityMeter::add_page(std::int32_t page, const Image8& display) {
+  if (display.empty() || display.channels < 3 || !display.whole()) return;
   auto& samples = state_->samples;
   const auto& ids = state_->by_page;
   auto at = std::lower_bound(ids.begin(), ids.end(), page, [&](std::uint32_t id, std::int32_t p) {

@@ -43,7 +43,8 @@ class FidelityMeter {
   ~FidelityMeter();
 
   // Looks up this page's samples bilinearly in the 8-bit image, as a viewer does. `display` is what
-  // bake_page gave, or of the same size: at least 1 x 1, three channels, whole.
+  // bake_page gave, or of the same size. Samples of an image that is empty, not whole, or of fewer
+  // than three channels count as if the page had none.
   void add_page(std::int32_t page, const Image8& display);
 
   Fidelity result() const;

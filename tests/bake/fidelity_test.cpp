@@ -138,7 +138,11 @@ TEST(Fidelity, CountsWhatHasNoPage) {
   const std::vector<Image8> pages = bake_pages(*s);
   s->placements.pop_back();
   FidelityMeter meter(s->light(), s->placements, {});
-  meter.add_page(0, pages[0]);  // page 1 never comes
+  meter.add_page(0, pages[0]);
+  Image8 cut_short = pages[1];
+  cut_short.texels.pop_back();
+  meter.add_page(1, cut_short);
+  meter.add_page(1, {});  // page 1 never comes
   const Fidelity f = meter.result();
   EXPECT_NEAR(static_cast<double>(f.lit), 25000, 10);
   EXPECT_NEAR(static_cast<double>(f.unplaced), 75000, 20);
