@@ -117,7 +117,7 @@ class SliverOpener {
   std::span<const std::uint32_t> corners_;
   std::span<const Vec2d> exact_;
   std::vector<Vec2f>& uvs_;
-  Buckets corners_at_;  // each uv
+  Buckets corners_at_;                  // each uv
   std::vector<glm::dvec2> start_, at_;  // 1 a uv: where pushing starts, and has come to
   std::vector<std::uint8_t> moved_;
 };
