@@ -15,7 +15,8 @@ namespace atlas {
 namespace {
 
 constexpr std::uint32_t kNone = ~0u;
-constexpr std::size_t kMostMembers = 4000;
+// Uvs of a stack, and of all together: 1000 take a second at the most.
+constexpr std::size_t kMostMembers = 1000, kMostInAll = 20000;
 // Steps between floats: how far uvs may go from where they belong for an energy of a half.
 constexpr std::array kTethers{8.0, 32.0, 128.0, 512.0, 2048.0, 8192.0};
 constexpr int kMostSolves = 40;  // a tether
@@ -251,7 +252,8 @@ void open_stacks(std::span<const std::uint32_t> corners, const Buckets& corners_
     return is_thin(corners.subspan(3 * std::size_t(t)).first<3>(), uvs);
   };
   std::vector<std::uint8_t> in_vain(corners.size() / 3, 0);
-  for (std::uint32_t t = 0; t < in_vain.size(); ++t) {
+  std::size_t moved = 0;
+  for (std::uint32_t t = 0; t < in_vain.size() && moved < kMostInAll; ++t) {
     if (in_vain[t] || !thin(t)) continue;
     const Stack stack = finder.find(t, place);
     const auto count_thin = [&] {
@@ -261,6 +263,7 @@ void open_stacks(std::span<const std::uint32_t> corners, const Buckets& corners_
     const std::vector<glm::dvec2> moves = stack.members.size() > kMostMembers
                                               ? std::vector<glm::dvec2>{}
                                               : StackOpener(corners, exact, stack, place).run();
+    moved += moves.size();
     std::vector<Vec2f> old;
     for (std::size_t i = 0; i < moves.size(); ++i) {
       const std::uint32_t uv = stack.members[i];
