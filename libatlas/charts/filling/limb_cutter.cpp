@@ -7,15 +7,20 @@
 #include <queue>
 #include <utility>
 
-#include "libatlas/charts/filling/band.h"
 #include "libatlas/charts/filling/chords.h"
+#include "libatlas/charts/filling/middle_cut.h"
 #include "libatlas/charts/geometry/hull.h"
 #include "libatlas/param/halfedges.h"
 
 namespace atlas {
 namespace {
 
-constexpr std::size_t kMostPieces = 12;
+constexpr std::size_t kMostPieces = 32;
+// So many charts lie close whatever their rectangles, once they fill so much of their convex hulls:
+// cut like that 157 meshes have as many charts as with a dozen pieces at most, and the worst page
+// holds 0.68 instead of 0.63.
+constexpr std::size_t kMany = 12;
+constexpr double kHullFill = 0.75;
 constexpr double kLeastFall = 0.01;     // of the chart's sprawl by one cut
 constexpr double kLeastPiece = 0.0005;  // of the chart's area
 // Share of the rectangles' area that must be gained for a seam as long as the square root of the
@@ -25,10 +30,11 @@ constexpr double kSeamPrice = 0.12;
 // times the square of how far it strays, in chords: a tenth doubles it.
 constexpr double kLongestPath = 1.6, kStrayWeight = 100;
 constexpr std::size_t kChordsTried = 12;
-// A piece whose largest hole takes so much of its hull is a ring: no single cut divides it. It is
-// cut at two opposite places, when no chord is left.
-constexpr double kRingHole = 0.25;
-constexpr double kRingScore = 1e-9;
+// What leaves so much of its hull empty, once no chord is left, is a frame, or bent. Where its
+// rectangle covers that share of all charts' area it is divided near its middle all the same, after
+// everything that pays by itself; smaller ones nest: cut as well, they were a fifth more charts on
+// pages no fuller (28 meshes).
+constexpr double kFrame = 0.25, kFrameBox = 0.05, kFrameScore = 1e-9;
 constexpr std::uint32_t kUnseen = kNoIndex - 1;
 
 using Triangles = std::vector<std::uint32_t>;  // of the chart
@@ -36,7 +42,7 @@ using Triangles = std::vector<std::uint32_t>;  // of the chart
 // A flat chart on its way to pieces.
 class LimbCutter {
  public:
-  explicit LimbCutter(const FlatChart& chart) : chart_(chart) {
+  LimbCutter(const FlatChart& chart, double all_charts) : chart_(chart), all_charts_(all_charts) {
     const std::size_t n = chart.triangles.size();
     half_edges_.build(chart.corners, chart.uvs.size());
     list_leaving();
@@ -56,7 +62,7 @@ class LimbCutter {
   // The triangles of each piece, ascending; empty if cutting does not pay.
   std::vector<Triangles> run(double wanted, const Context& context) {
     const double box = pieces_[0].box, area = pieces_[0].area;
-    while (area < wanted * boxes() && pieces_.size() < kMostPieces && !context.cancelled()) {
+    while (!filled(wanted) && pieces_.size() < kMostPieces && !context.cancelled()) {
       if (!cut_best()) break;
     }
     heal(std::max(boxes(), area / wanted));
@@ -75,12 +81,20 @@ class LimbCutter {
   struct Piece {
     Triangles triangles;
     std::vector<std::uint32_t> outline;  // uvs along its longest border
-    std::vector<std::uint32_t> hole;     // the same of its largest hole
-    double area = 0, hole_area = 0, hull = 0, box = 0, sprawl = 0;
+    double area = 0, hull = 0, box = 0, sprawl = 0;
     bool searched = false;
-    double score = 0;                 // of its best cut, 0: none
-    std::array<Triangles, 2> halves;  // by it
+    double score = 0;              // of its best cut, 0: none
+    std::vector<Triangles> parts;  // by it
   };
+
+  bool filled(double wanted) const {
+    double area = 0, hulls = 0;
+    for (const Piece& piece : pieces_) {
+      area += piece.area;
+      hulls += piece.hull;
+    }
+    return area >= wanted * boxes() || (pieces_.size() >= kMany && area >= kHullFill * hulls);
+  }
 
   double boxes() const {
     double sum = 0;
@@ -109,7 +123,7 @@ class LimbCutter {
 
   // Fills in what follows from the triangles, which belong to the piece of that number.
   void measure(Piece& piece, std::uint32_t number) {
-    piece.area = piece.hole_area = 0;
+    piece.area = 0;
     for (const std::uint32_t t : piece.triangles) {
       const auto& c = chart_.corners[t];
       piece.area += 0.5 * cross(chart_.uvs[c[0]], chart_.uvs[c[1]], chart_.uvs[c[2]]);
@@ -122,10 +136,6 @@ class LimbCutter {
         if (seen_[h] || across(h) != kNoIndex) continue;
         std::vector<std::uint32_t> loop = trace(h);
         const double area = signed_area(loop);
-        if (-area > piece.hole_area) {
-          piece.hole_area = -area;
-          piece.hole = loop;
-        }
         if (area <= most) continue;
         most = area;
         piece.outline = std::move(loop);
@@ -175,17 +185,17 @@ class LimbCutter {
         best = i;
     }
     if (best == pieces_.size()) return false;
-    std::array<Triangles, 2> halves = std::move(pieces_[best].halves);
-    for (const bool second : {true, false}) {
-      Piece piece;
-      piece.triangles = std::move(halves[second]);
-      const std::size_t number = second ? pieces_.size() : best;
-      for (const std::uint32_t t : piece.triangles) piece_of_[t] = std::uint32_t(number);
-      if (second) pieces_.emplace_back();
-      pieces_[number] = std::move(piece);
+    std::vector<Triangles> parts = std::move(pieces_[best].parts);
+    std::vector<std::size_t> numbers;
+    for (Triangles& part : parts) {
+      const std::size_t number = numbers.empty() ? best : pieces_.size();
+      if (!numbers.empty()) pieces_.emplace_back();
+      for (const std::uint32_t t : part) piece_of_[t] = std::uint32_t(number);
+      pieces_[number] = {};
+      pieces_[number].triangles = std::move(part);
+      numbers.push_back(number);
     }
-    measure(pieces_[best], std::uint32_t(best));
-    measure(pieces_.back(), std::uint32_t(pieces_.size() - 1));
+    for (const std::size_t number : numbers) measure(pieces_[number], std::uint32_t(number));
     return true;
   }
 
@@ -200,18 +210,17 @@ class LimbCutter {
       piece.score = chords[i].score;
       return;
     }
-    if (piece.hole_area > kRingHole * piece.hull) open_ring(piece);
+    const double waste = piece.hull - piece.area;
+    if (waste > kFrame * piece.hull && piece.box > kFrameBox * all_charts_) divide_frame(piece);
   }
 
-  // Fills halves and score of a ring. That does not pay by itself: the halves have to be cut, too.
-  void open_ring(Piece& piece) {
-    std::vector<std::uint32_t> paths;
-    for (const BandCrossing& crossing : cross_band(chart_.uvs, piece.outline, piece.hole)) {
-      const std::vector<std::uint32_t> path = find_path(piece, crossing.outer, crossing.inner);
-      if (path.empty()) return;
-      paths.insert(paths.end(), path.begin(), path.end());
-    }
-    if (!paths.empty() && divide(piece, paths)) piece.score = kRingScore;
+  void divide_frame(Piece& piece) {
+    MiddleCut cut =
+        cut_middle(chart_, half_edges_, piece.triangles, kLeastPiece * chart_area(), least_fall_);
+    if (cut.parts.empty()) return;
+    piece.score = cut.fall >= least_fall_ ? cut.fall / cut.length
+                                          : kFrameScore * (piece.hull - piece.area) / chart_area();
+    piece.parts = std::move(cut.parts);
   }
 
   // Edges inside the piece from one place in its outline to another.
@@ -286,7 +295,7 @@ class LimbCutter {
     return path;
   }
 
-  // Fills piece.halves; false unless the path leaves two pieces of some size that sprawl less.
+  // Fills piece.parts; false unless the path leaves two pieces of some size that sprawl less.
   bool divide(Piece& piece, const std::vector<std::uint32_t>& path) {
     const auto block = [&](std::uint8_t value) {
       for (const std::uint32_t h : path) blocked_[h] = blocked_[half_edges_.opposite(h)] = value;
@@ -304,11 +313,11 @@ class LimbCutter {
       }
     }
     block(0);
-    piece.halves = {};
+    piece.parts.assign(2, {});
     double area[2] = {0, 0};
     for (const std::uint32_t t : piece.triangles) {
       const auto& c = chart_.corners[t];
-      piece.halves[side_[t]].push_back(t);
+      piece.parts[side_[t]].push_back(t);
       area[side_[t]] += 0.5 * cross(chart_.uvs[c[0]], chart_.uvs[c[1]], chart_.uvs[c[2]]);
     }
     return std::min(area[0], area[1]) > kLeastPiece * (chart_area());
@@ -365,6 +374,7 @@ class LimbCutter {
   }
 
   const FlatChart& chart_;
+  double all_charts_;  // their area
   param::HalfEdges half_edges_;
   std::vector<std::uint32_t> first_, leaving_;  // half-edges by the uv that they leave
   std::vector<std::uint32_t> piece_of_;         // 1 a triangle of the chart
@@ -379,8 +389,8 @@ class LimbCutter {
 }  // namespace
 
 std::vector<std::vector<std::uint32_t>> limbs_of(const FlatChart& chart, double wanted,
-                                                 const Context& context) {
-  return LimbCutter(chart).run(wanted, context);
+                                                 double all_charts, const Context& context) {
+  return LimbCutter(chart, all_charts).run(wanted, context);
 }
 
 }  // namespace atlas

@@ -38,28 +38,28 @@ class LimbCharts {
       : input_(input), context_(context), charts_(charts), pieces_(charts.size()) {}
 
   std::size_t run() {
-    double area = 0, hulls = 0;  // hulls: at most
+    double hulls = 0;  // at most
     for (const FlatChart& chart : charts_) {
-      area += chart.distortion.uv_area;
+      area_ += chart.distortion.uv_area;
       hulls += std::min(box_of(chart), bound_shape(chart.uvs).hull);
     }
     for (std::size_t k = 0; k < charts_.size(); ++k) {
-      if (box_of(charts_[k]) >= kDominant * area) cut(k);
+      if (box_of(charts_[k]) >= kDominant * area_) cut(k);
     }
-    if (area < kLeastTogether * hulls) cut_most_wasteful(area);
+    if (area_ < kLeastTogether * hulls) cut_most_wasteful();
     replace();
     return count_;
   }
 
  private:
-  void cut_most_wasteful(double area) {
+  void cut_most_wasteful() {
     std::vector<double> hull(charts_.size()), waste(charts_.size());
     double hulls = 0;
     for (std::size_t k = 0; k < charts_.size(); ++k) {
       hulls += hull[k] = hulls_of(k);
       waste[k] = hull[k] - charts_[k].distortion.uv_area;
     }
-    if (area >= kLeastTogether * hulls) return;
+    if (area_ >= kLeastTogether * hulls) return;
     for (double& w : waste) w = std::round(kWasteParts * w / hulls);
     const double mean = hulls / double(charts_.size());
     std::vector<std::size_t> order(charts_.size());
@@ -67,7 +67,7 @@ class LimbCharts {
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return waste[a] > waste[b]; });
     for (const std::size_t k : order) {
-      if (area >= kLeastTogether * hulls || waste[k] == 0 || context_.cancelled()) return;
+      if (area_ >= kLeastTogether * hulls || waste[k] == 0 || context_.cancelled()) return;
       if (!pieces_[k].empty() || !cut(k)) continue;
       const double fall = hull[k] - hulls_of(k);
       if (fall < kLeastFall * mean * double(pieces_[k].size() - 1)) {
@@ -92,7 +92,7 @@ class LimbCharts {
     const double wanted = input_.options.min_fill;
     if (chart.distortion.uv_area >= kPoor * wanted * box_of(chart)) return false;
     std::vector<FlatChart> pieces;
-    for (const std::vector<std::uint32_t>& limb : limbs_of(chart, wanted, context_)) {
+    for (const std::vector<std::uint32_t>& limb : limbs_of(chart, wanted, area_, context_)) {
       // A cut along a ragged border may leave a triangle beside its limb.
       for (const std::vector<std::uint32_t>& triangles : connected_parts(chart, limb)) {
         pieces.push_back(part_of_chart(input_, chart, triangles));
@@ -123,6 +123,7 @@ class LimbCharts {
   const FlattenInput& input_;
   const Context& context_;
   std::vector<FlatChart>& charts_;
+  double area_ = 0;                             // of all charts
   std::vector<std::vector<FlatChart>> pieces_;  // of each chart; empty: it is whole
   std::size_t count_ = 0;                       // of charts cut
 };
