@@ -84,6 +84,9 @@ Status no_room(const ChartSet& charts, const LayoutOptions& options) {
                       options.page_size, options.page_size)};
 }
 
+// Layouts that PackPreset::best tries, and charts in all of them together: some seconds' work.
+constexpr std::uint64_t kBestLayouts = 8000, kBestCharts = 75000;
+
 // One kind of packing, as options.outlines says.
 Result<PageLayout> lay_out(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
                            const LayoutOptions& options, const Context& context) {
@@ -99,6 +102,9 @@ Result<PageLayout> lay_out(const ChartSet& charts, std::span<const Vec2d> texels
   fit.alignment = options.alignment;
   fit.minimum_side = options.minimum_side;
   fit.preset = options.preset;
+  // In place of a limit on time, which would let the result depend on how busy the machine is.
+  fit.effort = std::clamp<std::uint64_t>(kBestCharts / std::max<std::size_t>(1, items.size()), 1,
+                                         kBestLayouts);
   fit.free_aspect = options.free_aspect;
   fit.square = options.square;
   std::optional<Outlines> outlines;

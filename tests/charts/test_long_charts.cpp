@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/charts/chart_checks.h"
 
@@ -68,6 +69,41 @@ TEST(LongCharts, AreCutWhereTheyLieBesideThemselves) {
   EXPECT_EQ(whole.charts.size(), 2u);
   EXPECT_GT(cut.charts.size(), 2u);
   EXPECT_LT(least_page(cut), 0.7 * least_page(whole));
+}
+
+// A page as long as the rod would be gutters around specks.
+TEST(LongCharts, AreCutWhereGuttersWouldTakeThePage) {
+  const Shape rod = grid(160, 2, 40, 0.5f);
+  const auto page = [&](int specks) {
+    Shape all = rod;
+    for (int i = 0; i < specks; ++i) {
+      all =
+          together(all, moved(grid(2, 1, 0.3f, 0.2f), 1, {0.4 * (i % 99), 1 + 0.3 * (i / 99), 0}));
+    }
+    return Mesh(all);
+  };
+  EXPECT_EQ(charts_of(page(60), ChartOptions{}.min_fill).charts.size(), 61u);
+  const auto gutter = [](const ChartSet& set) {
+    double around = 0, longest = 0;
+    for (const Chart& chart : set.charts) {
+      around += 2 * (chart.size.x + chart.size.y);
+      longest = std::max(longest, chart.size.x);
+    }
+    return 1.3 * around * longest / 2048 / set.surface_area;
+  };
+  const Mesh many = page(420);
+  const ChartSet whole = charts_of(many, 0), cut = charts_of(many, ChartOptions{}.min_fill);
+  EXPECT_GT(gutter(whole), 0.26);
+  EXPECT_LT(gutter(cut), 0.26);
+  EXPECT_EQ(cut.charts.size(), whole.charts.size() + 1);
+}
+
+// The columns of a rod of long triangles are elsewhere than at even lengths.
+TEST(LongCharts, AreCutAlongTheShortestEdges) {
+  const Mesh mesh(together(grid(7, 12, 24, 0.3), moved(grid(9, 9, 2, 2), 1, {0, 4, 0})));
+  const ChartSet cut = charts_of(mesh, ChartOptions{}.min_fill);
+  ASSERT_GT(cut.charts.size(), 3u);
+  EXPECT_NEAR(cut.seam_length, 0.3 * double(cut.charts.size() - 2), 1e-4);
 }
 
 TEST(LongCharts, StayWholeWhereOthersLeaveRoom) {

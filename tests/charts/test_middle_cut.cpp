@@ -127,7 +127,7 @@ TEST(MiddleCut, GoesTheShortestWay) {
     const FlatChart& chart = charts[i];
     param::HalfEdges half_edges;
     half_edges.build(chart.corners, chart.uvs.size());
-    const MiddleCut cut = cut_middle(chart, half_edges, chart.triangles, 1e-4, 1e9);
+    const MiddleCut cut = cut_middle(chart, half_edges, chart.triangles, {1e-4, 1e9});
     ASSERT_EQ(cut.parts.size(), 2u);
     EXPECT_NEAR(cut.length, known[i], 1e-5);
     std::vector<std::uint32_t> part_of(chart.triangles.size(), kNoIndex);
@@ -148,7 +148,7 @@ TEST(MiddleCut, KnowsWhatItSaves) {
   const FlatChart chart = as_it_lies(ring(0.05, 0.98, 200));
   param::HalfEdges half_edges;
   half_edges.build(chart.corners, chart.uvs.size());
-  const MiddleCut cut = cut_middle(chart, half_edges, chart.triangles, 1e-4, 0.1);
+  const MiddleCut cut = cut_middle(chart, half_edges, chart.triangles, {1e-4, 0.1});
   EXPECT_EQ(cut.parts.size(), 3u);
   EXPECT_GT(cut.fall, 0.5);
 }
@@ -157,7 +157,7 @@ TEST(MiddleCut, SingleTrianglesStay) {
   const FlatChart chart = as_it_lies(fan(1));
   param::HalfEdges half_edges;
   half_edges.build(chart.corners, chart.uvs.size());
-  EXPECT_TRUE(cut_middle(chart, half_edges, chart.triangles, 0, 0).parts.empty());
+  EXPECT_TRUE(cut_middle(chart, half_edges, chart.triangles, {}).parts.empty());
 }
 
 }  // namespace

@@ -216,7 +216,7 @@ class LimbCutter {
 
   void divide_frame(Piece& piece) {
     MiddleCut cut =
-        cut_middle(chart_, half_edges_, piece.triangles, kLeastPiece * chart_area(), least_fall_);
+        cut_middle(chart_, half_edges_, piece.triangles, {kLeastPiece * chart_area(), least_fall_});
     if (cut.parts.empty()) return;
     piece.score = cut.fall >= least_fall_ ? cut.fall / cut.length
                                           : kFrameScore * (piece.hull - piece.area) / chart_area();

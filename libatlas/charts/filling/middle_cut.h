@@ -17,12 +17,16 @@ struct MiddleCut {
   double length = 0;
 };
 
-// Divides `triangles` of the chart (places in chart.triangles, in one piece) along the edges that
-// cross them, near lines in several directions and places, with the least length: minimum cuts.
-// Parts of less than `crumb` area stay with a neighbour. Of those cuts that let the sprawl fall by
-// `least` at least, the one with the most of it for its length; else the shortest one through the
-// middle; none where triangles are too large for any.
+struct MiddleCutLimits {
+  double crumb = 0;       // area; smaller parts stay with a neighbour
+  double least_fall = 0;  // area
+};
+
+// Divides `triangles` of the chart (places in chart.triangles, in one piece) near lines in several
+// directions and places (LineCutter). Of those cuts that let the sprawl fall by least_fall at
+// least, the one with the most of it for its length; else the shortest one through the middle; none
+// where triangles are too large for any.
 MiddleCut cut_middle(const FlatChart& chart, const param::HalfEdges& half_edges,
-                     std::span<const std::uint32_t> triangles, double crumb, double least);
+                     std::span<const std::uint32_t> triangles, const MiddleCutLimits& limits);
 
 }  // namespace atlas
