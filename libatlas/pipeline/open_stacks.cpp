@@ -19,6 +19,8 @@ constexpr std::uint32_t kNone = ~0u;
 constexpr std::size_t kMostMembers = 1000, kMostInAll = 20000;
 // Steps between floats: how far uvs may go from where they belong for an energy of a half.
 constexpr std::array kTethers{8.0, 32.0, 128.0, 512.0, 2048.0, 8192.0};
+// A stack that does not open by itself is tried with those around it.
+constexpr int kMostRings = 3;
 constexpr int kMostSolves = 40;  // a tether
 constexpr int kMostHalvings = 30;
 // Triangles feel the barrier below this, where 1 is as high as they shall be.
@@ -199,8 +201,8 @@ class StackFinder {
               std::span<const glm::dvec2> exact)
       : corners_(corners), corners_at_(corners_at), exact_(exact) {}
 
-  // Triangle t with all that lack height and hang together by uvs.
-  Stack find(std::uint32_t t, std::vector<std::uint32_t>& place) const {
+  // Triangle t with all that lack height and hang together by uvs, and `rings` more around them.
+  Stack find(std::uint32_t t, int rings, std::vector<std::uint32_t>& place) const {
     Stack stack;
     const auto add = [&](std::uint32_t triangle) {
       for (const std::uint32_t uv : corners_of(triangle)) {
@@ -210,12 +212,17 @@ class StackFinder {
       }
     };
     add(t);
-    for (std::size_t i = 0; i < stack.members.size() && i < kMostMembers; ++i) {
-      for (const std::uint32_t corner : corners_at_[stack.members[i]]) {
-        const std::uint32_t other = corner / 3;
-        const auto [twice, least] = areas(other);
-        if (twice > 0) stack.triangles.push_back(other);
-        if (twice > 0 && twice < least) add(other);
+    std::size_t inner = 0;  // members whose triangles are known
+    for (int ring = 0; ring <= rings; ++ring) {
+      const std::vector<std::uint32_t> known = stack.triangles;
+      for (const std::uint32_t triangle : known) add(triangle);
+      for (; inner < stack.members.size() && inner < kMostMembers; ++inner) {
+        for (const std::uint32_t corner : corners_at_[stack.members[inner]]) {
+          const std::uint32_t other = corner / 3;
+          const auto [twice, least] = areas(other);
+          if (twice > 0) stack.triangles.push_back(other);
+          if (twice > 0 && twice < least) add(other);
+        }
       }
     }
     std::sort(stack.triangles.begin(), stack.triangles.end());
@@ -242,41 +249,70 @@ class StackFinder {
   std::span<const glm::dvec2> exact_;
 };
 
+class StackUvs {
+ public:
+  StackUvs(std::span<const std::uint32_t> corners, const Buckets& corners_at,
+           std::span<const glm::dvec2> exact, std::vector<Vec2f>& uvs)
+      : corners_(corners),
+        exact_(exact),
+        uvs_(uvs),
+        finder_(corners, corners_at, exact),
+        place_(uvs.size(), kNone),
+        in_vain_(corners.size() / 3, 0) {}
+
+  void run() {
+    for (std::uint32_t t = 0; t < in_vain_.size(); ++t) {
+      for (int rings = 0; rings <= kMostRings && !in_vain_[t] && thin(t); ++rings) {
+        if (moved_ >= kMostInAll) return;
+        const Stack stack = finder_.find(t, rings, place_);
+        open(stack);
+        for (const std::uint32_t uv : stack.members) place_[uv] = kNone;
+        if (rings < kMostRings) continue;
+        in_vain_[t] = 1;
+        for (const std::uint32_t other : stack.triangles) in_vain_[other] = 1;
+      }
+    }
+  }
+
+ private:
+  bool thin(std::uint32_t t) const {
+    return is_thin(corners_.subspan(3 * std::size_t(t)).first<3>(), uvs_);
+  }
+
+  // Moves its uvs, if fewer triangles are thin then.
+  void open(const Stack& stack) {
+    if (stack.members.size() > kMostMembers) return;
+    const auto count_thin = [&] {
+      return std::count_if(stack.triangles.begin(), stack.triangles.end(),
+                           [&](std::uint32_t t) { return thin(t); });
+    };
+    const auto before = count_thin();
+    const std::vector<glm::dvec2> moves = StackOpener(corners_, exact_, stack, place_).run();
+    moved_ += moves.size();
+    std::vector<Vec2f> old;
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+      const std::uint32_t uv = stack.members[i];
+      old.push_back(uvs_[uv]);
+      uvs_[uv] = rounded_uv(exact_[uv] + moves[i]);
+    }
+    if (count_thin() < before) return;
+    for (std::size_t i = 0; i < old.size(); ++i) uvs_[stack.members[i]] = old[i];
+  }
+
+  std::span<const std::uint32_t> corners_;
+  std::span<const glm::dvec2> exact_;
+  std::vector<Vec2f>& uvs_;
+  StackFinder finder_;
+  std::vector<std::uint32_t> place_;   // 1 a uv
+  std::vector<std::uint8_t> in_vain_;  // 1 a triangle
+  std::size_t moved_ = 0;
+};
+
 }  // namespace
 
 void open_stacks(std::span<const std::uint32_t> corners, const Buckets& corners_at,
                  std::span<const glm::dvec2> exact, std::vector<Vec2f>& uvs) {
-  const StackFinder finder(corners, corners_at, exact);
-  std::vector<std::uint32_t> place(uvs.size(), kNone);
-  const auto thin = [&](std::uint32_t t) {
-    return is_thin(corners.subspan(3 * std::size_t(t)).first<3>(), uvs);
-  };
-  std::vector<std::uint8_t> in_vain(corners.size() / 3, 0);
-  std::size_t moved = 0;
-  for (std::uint32_t t = 0; t < in_vain.size() && moved < kMostInAll; ++t) {
-    if (in_vain[t] || !thin(t)) continue;
-    const Stack stack = finder.find(t, place);
-    const auto count_thin = [&] {
-      return std::count_if(stack.triangles.begin(), stack.triangles.end(), thin);
-    };
-    const auto before = count_thin();
-    const std::vector<glm::dvec2> moves = stack.members.size() > kMostMembers
-                                              ? std::vector<glm::dvec2>{}
-                                              : StackOpener(corners, exact, stack, place).run();
-    moved += moves.size();
-    std::vector<Vec2f> old;
-    for (std::size_t i = 0; i < moves.size(); ++i) {
-      const std::uint32_t uv = stack.members[i];
-      old.push_back(uvs[uv]);
-      uvs[uv] = rounded_uv(exact[uv] + moves[i]);
-    }
-    if (!moves.empty() && count_thin() >= before) {
-      for (std::size_t i = 0; i < old.size(); ++i) uvs[stack.members[i]] = old[i];
-    }
-    for (const std::uint32_t other : stack.triangles) in_vain[other] = 1;
-    in_vain[t] = 1;
-    for (const std::uint32_t uv : stack.members) place[uv] = kNone;
-  }
+  StackUvs(corners, corners_at, exact, uvs).run();
 }
 
 }  // namespace atlas

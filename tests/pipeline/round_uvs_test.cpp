@@ -10,6 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "libatlas/pipeline/open_stacks.h"
+#include "libatlas/pipeline/thin_uvs.h"
+
 namespace atlas::test {
 namespace {
 
@@ -131,6 +134,32 @@ TEST(RoundUvs, SliversThatLeanOnEachOtherAreOpened) {
 }
 
 // Fans of slivers on both sides of a line that is straight but for a last place of a float.
+// A needle between slivers that are open, but give no way unless their own far corners move.
+TEST(OpenStacks, WhatIsHemmedInMovesItsNeighbours) {
+  const double step = 0x1p-24, length = 0.125, open = 3.2 * step;
+  const std::vector<glm::dvec2> exact{{0.5, 0.5},
+                                      {0.5 + length, 0.5},
+                                      {0.5 + length / 2, 0.5 + 0.1 * step},
+                                      {0.5 + length / 2, 0.5 - open},
+                                      {0.5 + length / 2, 0.5 + 0.1 * step + open},
+                                      {0.5 + length / 2, 0.3},
+                                      {0.5 + length / 2, 0.7}};
+  const std::vector<std::uint32_t> corners{0, 1, 2, 0, 3, 1, 2, 1, 4, 0, 2, 4,
+                                           0, 5, 3, 3, 5, 1, 4, 1, 6, 0, 4, 6};
+  const auto triangle = [&](std::uint32_t t) {
+    return std::span(corners).subspan(3 * std::size_t(t)).first<3>();
+  };
+  std::vector<Vec2f> uvs;
+  for (const glm::dvec2& p : exact) uvs.push_back(rounded_uv(p));
+  ASSERT_TRUE(is_thin(triangle(0), uvs));
+  const Buckets corners_at =
+      sort_into_buckets(corners.size(), uvs.size(), [&](std::size_t c) { return corners[c]; });
+  open_stacks(corners, corners_at, exact, uvs);
+  for (std::uint32_t t = 0; t < corners.size() / 3; ++t) {
+    EXPECT_FALSE(is_thin(triangle(t), uvs)) << t;
+  }
+}
+
 TEST(RoundUvs, FansOfManySliversAreOpened) {
   FlatMesh mesh;
   constexpr int n = 100;

@@ -35,6 +35,7 @@ constexpr std::size_t kChordsTried = 12;
 // everything that pays by itself; smaller ones nest: cut as well, they were a fifth more charts on
 // pages no fuller (28 meshes).
 constexpr double kFrame = 0.25, kFrameBox = 0.05, kFrameScore = 1e-9;
+constexpr std::size_t kMostHoles = 100;  // of a frame: 32 pieces of a sieve are sieves
 constexpr std::uint32_t kUnseen = kNoIndex - 1;
 
 using Triangles = std::vector<std::uint32_t>;  // of the chart
@@ -81,6 +82,7 @@ class LimbCutter {
   struct Piece {
     Triangles triangles;
     std::vector<std::uint32_t> outline;  // uvs along its longest border
+    std::size_t borders = 0;
     double area = 0, hull = 0, box = 0, sprawl = 0;
     bool searched = false;
     double score = 0;              // of its best cut, 0: none
@@ -135,6 +137,7 @@ class LimbCutter {
       for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
         if (seen_[h] || across(h) != kNoIndex) continue;
         std::vector<std::uint32_t> loop = trace(h);
+        ++piece.borders;
         const double area = signed_area(loop);
         if (area <= most) continue;
         most = area;
@@ -211,7 +214,10 @@ class LimbCutter {
       return;
     }
     const double waste = piece.hull - piece.area;
-    if (waste > kFrame * piece.hull && piece.box > kFrameBox * all_charts_) divide_frame(piece);
+    if (waste > kFrame * piece.hull && piece.box > kFrameBox * all_charts_ &&
+        piece.borders <= kMostHoles) {
+      divide_frame(piece);
+    }
   }
 
   void divide_frame(Piece& piece) {

@@ -38,17 +38,17 @@ class LineCutter {
   LineCut cut(double line, double band, double crumb);
 
  private:
-  double length_of(std::uint32_t h) const;
-  std::uint32_t across(std::uint32_t h) const;
+  void narrow(double& line, double& band) const;
   void find_sides(double line, double band);
   std::vector<LineCut::Part> parts() const;
   bool move_crumbs(const std::vector<LineCut::Part>& parts, double crumb);
 
   const FlatChart& chart_;
-  const param::HalfEdges& half_edges_;
   std::span<const std::uint32_t> triangles_;
   double longest_ = 0, low_ = 0, high_ = 0;
-  std::vector<std::uint32_t> place_;  // 1 a triangle of the chart: its place in triangles_
+  // 3 a triangle of the piece: the side of another one that it is joined to, or kNoIndex; lengths.
+  std::vector<std::uint32_t> joined_;
+  std::vector<float> length_;
   // 1 a triangle of the piece: where its middle lies, its side, its place among those of the band.
   std::vector<double> along_;
   std::vector<std::uint8_t> side_;

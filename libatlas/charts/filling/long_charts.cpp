@@ -20,7 +20,7 @@ constexpr std::size_t kMostStrips = 64;
 constexpr std::size_t kMostParts = 2;
 // Of a length: how far cuts stray to either side to be short, and the area of what stays with the
 // next one.
-constexpr double kBand = 0.3, kCrumb = 0.1;
+constexpr double kBand = 0.3, kCrumb = 0.01;
 // Times the charts' area, their borders by the longest side: a page of 2048 texels that this chart
 // spans needs a quarter as much for gutters of 1.3 texels on each side of a border as for charts.
 // Of 796 meshes seven need more, six of them twice as long as a square page and more.

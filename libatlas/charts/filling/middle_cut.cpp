@@ -15,11 +15,18 @@ constexpr int kDirections = 4;  // over half a turn, from the chart's long side 
 constexpr std::array<double, 3> kPlaces{0.5, 0.33, 0.67};  // along the piece, the middle first
 constexpr double kBand = 0.15;                             // of its length
 
-double sprawl_of(const FlatChart& chart, std::span<const std::uint32_t> triangles) {
+// Corners of the border are enough; those of its holes do no harm.
+double sprawl_of(const FlatChart& chart, const param::HalfEdges& half_edges,
+                 std::span<const std::uint32_t> triangles, std::vector<std::uint8_t>& belongs) {
+  for (const std::uint32_t t : triangles) belongs[t] = 1;
   std::vector<Vec2d> points, hull;
   for (const std::uint32_t t : triangles) {
-    for (const std::uint32_t v : chart.corners[t]) points.push_back(chart.uvs[v]);
+    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+      const std::uint32_t o = half_edges.opposite(h);
+      if (o == kNoIndex || !belongs[o / 3]) points.push_back(chart.uvs[half_edges.from(h)]);
+    }
   }
+  for (const std::uint32_t t : triangles) belongs[t] = 0;
   const double area = hull_area(points, hull);
   return sprawl(area, box_area(hull));
 }
@@ -29,7 +36,8 @@ double sprawl_of(const FlatChart& chart, std::span<const std::uint32_t> triangle
 MiddleCut cut_middle(const FlatChart& chart, const param::HalfEdges& half_edges,
                      std::span<const std::uint32_t> triangles, const MiddleCutLimits& limits) {
   LineCutter cutter(chart, half_edges, triangles);
-  const double whole = sprawl_of(chart, triangles);
+  std::vector<std::uint8_t> belongs(chart.triangles.size(), 0);
+  const double whole = sprawl_of(chart, half_edges, triangles, belongs);
   MiddleCut best, middle;
   for (int i = 0; i < kDirections; ++i) {
     cutter.face(M_PI * i / kDirections);
@@ -39,7 +47,7 @@ MiddleCut cut_middle(const FlatChart& chart, const param::HalfEdges& half_edges,
       if (made.parts.empty()) continue;
       MiddleCut cut{{}, whole, made.length};
       for (LineCut::Part& part : made.parts) {
-        cut.fall -= sprawl_of(chart, part.triangles);
+        cut.fall -= sprawl_of(chart, half_edges, part.triangles, belongs);
         cut.parts.push_back(std::move(part.triangles));
       }
       if (cut.fall >= limits.least_fall && cut.fall * best.length >= best.fall * cut.length) {
