@@ -4,9 +4,9 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <queue>
 #include <utility>
 
+#include "libatlas/charts/filling/chord_paths.h"
 #include "libatlas/charts/filling/chords.h"
 #include "libatlas/charts/filling/middle_cut.h"
 #include "libatlas/charts/geometry/hull.h"
@@ -26,9 +26,6 @@ constexpr double kLeastPiece = 0.0005;  // of the chart's area
 // Share of the rectangles' area that must be gained for a seam as long as the square root of the
 // chart's area.
 constexpr double kSeamPrice = 0.12;
-// A cut may be this much longer than its chord; what strays from the chord counts as longer by this
-// times the square of how far it strays, in chords: a tenth doubles it.
-constexpr double kLongestPath = 1.6, kStrayWeight = 100;
 constexpr std::size_t kChordsTried = 12;
 // What leaves so much of its hull empty, once no chord is left, is a frame, or bent. Where its
 // rectangle covers that share of all charts' area it is divided near its middle all the same, after
@@ -36,23 +33,22 @@ constexpr std::size_t kChordsTried = 12;
 // pages no fuller (28 meshes).
 constexpr double kFrame = 0.25, kFrameBox = 0.05, kFrameScore = 1e-9;
 constexpr std::size_t kMostHoles = 100;  // of a frame: 32 pieces of a sieve are sieves
-constexpr std::uint32_t kUnseen = kNoIndex - 1;
 
 using Triangles = std::vector<std::uint32_t>;  // of the chart
 
 // A flat chart on its way to pieces.
 class LimbCutter {
  public:
-  LimbCutter(const FlatChart& chart, double all_charts) : chart_(chart), all_charts_(all_charts) {
+  LimbCutter(const FlatChart& chart, double all_charts)
+      : chart_(chart),
+        all_charts_(all_charts),
+        half_edges_(built(chart)),
+        piece_of_(chart.triangles.size(), 0),
+        paths_(chart, half_edges_, piece_of_) {
     const std::size_t n = chart.triangles.size();
-    half_edges_.build(chart.corners, chart.uvs.size());
-    list_leaving();
-    piece_of_.assign(n, 0);
     side_.resize(n);
     seen_.resize(3 * n);
     blocked_.assign(3 * n, 0);
-    by_.assign(chart.uvs.size(), kUnseen);
-    on_rim_.assign(chart.uvs.size(), 0);
     Piece whole;
     for (std::uint32_t t = 0; t < n; ++t) whole.triangles.push_back(t);
     measure(whole, 0);
@@ -98,6 +94,12 @@ class LimbCutter {
     return area >= wanted * boxes() || (pieces_.size() >= kMany && area >= kHullFill * hulls);
   }
 
+  static param::HalfEdges built(const FlatChart& chart) {
+    param::HalfEdges half_edges;
+    half_edges.build(chart.corners, chart.uvs.size());
+    return half_edges;
+  }
+
   double boxes() const {
     double sum = 0;
     for (const Piece& piece : pieces_) sum += piece.box;
@@ -105,17 +107,6 @@ class LimbCutter {
   }
 
   std::uint32_t uv_at(std::uint32_t h) const { return chart_.corners[h / 3][h % 3]; }
-
-  // Half-edges by the uv that they leave, ascending.
-  void list_leaving() {
-    first_.assign(chart_.uvs.size() + 1, 0);
-    const auto count = std::uint32_t(3 * chart_.triangles.size());
-    for (std::uint32_t h = 0; h < count; ++h) ++first_[uv_at(h) + 1];
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    leaving_.resize(count);
-    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-    for (std::uint32_t h = 0; h < count; ++h) leaving_[next[uv_at(h)]++] = h;
-  }
 
   // The half-edge across h in the same piece.
   std::uint32_t across(std::uint32_t h) const {
@@ -205,10 +196,11 @@ class LimbCutter {
   void search(Piece& piece) {
     piece.searched = true;
     const std::vector<Vec2d> outline = positions(piece.outline);
-    const std::vector<Chord> chords = find_chords(outline, edges_across(piece), least_fall_);
+    const ChordPaths::Piece place{piece.triangles, piece.outline};
+    const std::vector<Chord> chords = find_chords(outline, paths_.edges_across(place), least_fall_);
     for (std::size_t i = 0; i < std::min(chords.size(), kChordsTried); ++i) {
       const std::vector<std::uint32_t> path =
-          find_path(piece, piece.outline[chords[i].a], piece.outline[chords[i].b]);
+          paths_.find(place, piece.outline[chords[i].a], piece.outline[chords[i].b]);
       if (path.empty() || !divide(piece, path)) continue;
       piece.score = chords[i].score;
       return;
@@ -227,78 +219,6 @@ class LimbCutter {
     piece.score = cut.fall >= least_fall_ ? cut.fall / cut.length
                                           : kFrameScore * (piece.hull - piece.area) / chart_area();
     piece.parts = std::move(cut.parts);
-  }
-
-  // Edges inside the piece from one place in its outline to another.
-  std::vector<std::array<std::uint32_t, 2>> edges_across(const Piece& piece) {
-    std::vector<std::uint32_t>& place = by_;
-    for (std::uint32_t i = 0; i < piece.outline.size(); ++i) place[piece.outline[i]] = i;
-    std::vector<std::array<std::uint32_t, 2>> edges;
-    for (const std::uint32_t t : piece.triangles) {
-      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-        const std::uint32_t a = place[uv_at(h)], b = place[uv_at(next_half_edge(h))];
-        if (a != kUnseen && b != kUnseen && a < b && across(h) != kNoIndex) edges.push_back({a, b});
-      }
-    }
-    for (const std::uint32_t i : piece.outline) place[i] = kUnseen;
-    return edges;
-  }
-
-  // Edges of the piece from uv a to uv b, none of them along its outline, close to the straight
-  // line: its half-edges on one side; empty if there is no such path. Dijkstra.
-  std::vector<std::uint32_t> find_path(const Piece& piece, std::uint32_t a, std::uint32_t b) {
-    const std::uint32_t number = piece_of_[piece.triangles[0]];
-    const Vec2d from = chart_.uvs[a], to = chart_.uvs[b];
-    const double dx = to.x - from.x, dy = to.y - from.y, chord2 = dx * dx + dy * dy;
-    const auto stray = [&](const Vec2d& p) {
-      const double along = std::clamp(((p.x - from.x) * dx + (p.y - from.y) * dy) / chord2, 0., 1.);
-      return std::sqrt(
-          (std::pow(p.x - from.x - along * dx, 2) + std::pow(p.y - from.y - along * dy, 2)) /
-          chord2);
-    };
-    struct Visit {
-      double distance;
-      std::uint32_t uv, by;
-      bool operator>(const Visit& o) const {
-        return distance != o.distance ? distance > o.distance : uv > o.uv;
-      }
-    };
-    std::priority_queue<Visit, std::vector<Visit>, std::greater<>> queue;
-    for (const std::uint32_t i : piece.outline) on_rim_[i] = 1;
-    std::vector<std::uint32_t> reached;
-    queue.push({0, a, kNoIndex});
-    while (!queue.empty()) {
-      const Visit visit = queue.top();
-      queue.pop();
-      if (by_[visit.uv] != kUnseen) continue;
-      by_[visit.uv] = visit.by;
-      reached.push_back(visit.uv);
-      if (visit.uv == b) break;
-      if (stray(chart_.uvs[visit.uv]) > 0.5) continue;
-      for (std::uint32_t i = first_[visit.uv]; i < first_[visit.uv + 1]; ++i) {
-        const std::uint32_t h = leaving_[i], next = uv_at(next_half_edge(h));
-        if (piece_of_[h / 3] != number || across(h) == kNoIndex || by_[next] != kUnseen) continue;
-        if (next != b && on_rim_[next]) continue;
-        const Vec2d &p = chart_.uvs[visit.uv], &q = chart_.uvs[next];
-        const double off = stray({(p.x + q.x) / 2, (p.y + q.y) / 2});
-        queue.push(
-            {visit.distance + std::hypot(q.x - p.x, q.y - p.y) * (1 + kStrayWeight * off * off),
-             next, h});
-      }
-    }
-    std::vector<std::uint32_t> path;
-    double length = 0;
-    for (std::uint32_t uv = by_[b] == kUnseen ? a : b; uv != a;) {
-      const std::uint32_t h = by_[uv];
-      path.push_back(h);
-      const Vec2d &p = chart_.uvs[uv_at(h)], &q = chart_.uvs[uv];
-      length += std::hypot(q.x - p.x, q.y - p.y);
-      uv = uv_at(h);
-    }
-    for (const std::uint32_t i : piece.outline) on_rim_[i] = 0;
-    for (const std::uint32_t i : reached) by_[i] = kUnseen;
-    if (length > kLongestPath * std::sqrt(chord2)) path.clear();
-    return path;
   }
 
   // Fills piece.parts; false unless the path leaves two pieces of some size that sprawl less.
@@ -382,12 +302,10 @@ class LimbCutter {
   const FlatChart& chart_;
   double all_charts_;  // their area
   param::HalfEdges half_edges_;
-  std::vector<std::uint32_t> first_, leaving_;  // half-edges by the uv that they leave
-  std::vector<std::uint32_t> piece_of_;         // 1 a triangle of the chart
-  std::vector<std::uint8_t> side_;              // the same: of a path
-  std::vector<std::uint8_t> seen_, blocked_;    // 1 a half-edge
-  std::vector<std::uint32_t> by_;               // 1 a uv: the half-edge that a path comes by
-  std::vector<std::uint8_t> on_rim_;            // the same
+  std::vector<std::uint32_t> piece_of_;  // 1 a triangle of the chart
+  ChordPaths paths_;
+  std::vector<std::uint8_t> side_;            // the same: of a path
+  std::vector<std::uint8_t> seen_, blocked_;  // 1 a half-edge
   std::vector<Piece> pieces_;
   double least_fall_ = 0;
 };
