@@ -22,7 +22,7 @@ struct ExportOptions {
   // 64..16384).
   std::uint32_t atlases = 8;
   std::int32_t atlas_size = 2048;
-  // The page of plain uvs has no image and may be larger: doubled, up to 16384, until it has 512
+  // The page of plain uvs has no image and may be larger: doubled, up to 16384, until it has 1024
   // texels for each chart on average, so that gutters stay thin against the charts.
   bool larger_plain_page = true;
   // That page is square, for programs that know square textures only; else its shape is what packs

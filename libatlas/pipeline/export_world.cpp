@@ -171,13 +171,20 @@ class Export {
 
   // The largest side of a page.
   std::int32_t page_size() const {
-    constexpr std::int64_t kTexelsAChart = 1024;
+    constexpr double kTexelsAChart = 1024, kExpectedFill = 0.75;
     constexpr std::int32_t kLargestSide = 16384;
-    std::int64_t side = options_.atlas_size;
     if (plan_.bake || !options_.larger_plain_page) return options_.atlas_size;
-    const std::int64_t wanted = kTexelsAChart * std::int64_t(charts_.charts.size());
-    while (side < kLargestSide && side * side < wanted) side *= 2;
-    return std::int32_t(side);
+    // A page as long as its longest chart is less wide than long where the others do not fill more.
+    double longest = 0, area = 0;
+    for (const Chart& chart : charts_.charts) {
+      longest = std::max(longest, chart.size.x);
+      area += chart.distortion.uv_area;
+    }
+    const double width = std::min(1.0, area / (kExpectedFill * longest * longest));
+    const double wanted = kTexelsAChart * double(charts_.charts.size());
+    std::int32_t side = options_.atlas_size;
+    while (side < kLargestSide && width * side * side < wanted) side *= 2;
+    return side;
   }
 
   // No light asks for no resolution of its own: one page, filled as well as packing can.

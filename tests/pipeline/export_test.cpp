@@ -8,12 +8,10 @@
 #include <fstream>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <sstream>
 #include <utility>
 
 #include "libatlas/pipeline/export_world.h"
-#include "libatlas/pipeline/page_layout.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/scene/temp_folder.h"
 #include "tests/support/atlas_measure.h"
@@ -293,58 +291,6 @@ TEST(Export, RefusesOptionsOutOfRange) {
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
-TEST(Layout, RefusesDensitiesThatAreMissingOrNotAboveZero) {
-  ChartSet charts;
-  charts.charts.resize(2);
-  charts.charts[0].size = charts.charts[1].size = {2, 1};
-  const auto code = [&](const std::vector<Vec2d>& densities) {
-    return lay_out_pages(charts, densities, {}, {}).status().code();
-  };
-  EXPECT_EQ(code({{10, 10}, {10, 10}}), ErrorCode::ok);
-  EXPECT_EQ(code({{10, 10}}), ErrorCode::bad_input);
-  EXPECT_EQ(code({}), ErrorCode::bad_input);
-  EXPECT_EQ(code({{10, 10}, {0, 10}}), ErrorCode::bad_input);
-  EXPECT_EQ(code({{10, 10}, {10, std::nan("")}}), ErrorCode::bad_input);
-}
-
-// Four sectors of rings, three quarters of a turn each, and strips as long as they are wide.
-Shape rings_and_strips() {
-  Shape all = grid(1, 1, 0.01, 0.01);
-  for (int k = 0; k < 4; ++k) {
-    Shape sector = grid(60, 4, 1.5 * std::numbers::pi, 0.7);
-    for (Vec3f& p : sector.positions) {
-      const double angle = p.x, radius = 0.3 + p.y;
-      p = {float(radius * std::cos(angle) + 3 * k), float(radius * std::sin(angle)), 0};
-    }
-    all = together(all, sector);
-  }
-  for (int k = 0; k < 12; ++k)
-    all = together(all, moved(grid(4, 2, 1.2, 0.03), 1, {0, 3 + 0.1 * k, 0}));
-  return all;
-}
-
-TEST(Layout, APoorPageOfPlainUvsIsPackedWithMoreWork) {
-  const Shape shape = rings_and_strips();
-  MeshView mesh;
-  mesh.positions = shape.positions;
-  mesh.indices = shape.indices;
-  const Result<ChartSet> charts = make_charts(mesh, {.min_fill = 0}, {});
-  ASSERT_TRUE(charts.ok());
-  LayoutOptions options{.pages = 1, .padding = 1, .alignment = 1, .minimum_side = 0};
-  options.outlines = options.free_aspect = true;
-  const auto use = [&](PackPreset preset) {
-    options.preset = preset;
-    const std::vector<Vec2d> densities(charts->charts.size(), Vec2d{600, 600});
-    const Result<PageLayout> layout = lay_out_pages(*charts, densities, options, {});
-    EXPECT_TRUE(layout.ok());
-    return layout.ok() ? layout->uv_utilization : 0;
-  };
-  const double fast = use(PackPreset::fast), best = use(PackPreset::best);
-  EXPECT_LT(fast, 0.66);
-  EXPECT_GT(best, fast + 0.03);
-  EXPECT_GE(use(PackPreset::standard), std::min(0.66, best));
-}
-
 TEST(Plan, NamesWhatASceneDoesNotNeed) {
   LoadedScene dark = lit_room(4);
   dark.scene.illumination.assign(dark.scene.positions.size(), Vec3f{});
@@ -385,25 +331,6 @@ TEST(Plan, CountsTheTexelsThatTexturesAskFor) {
   EXPECT_NEAR(make_plan(scene, options).estimated_texels, 9e6, 900);
   options.follow_textures = false;
   EXPECT_NEAR(make_plan(scene, options).estimated_texels, 1e6, 100);
-}
-
-TEST(Export, PlainPagesGrowWithTheirCharts) {
-  TempFolder folder;
-  const LoadedScene scene = lit_scene(soup(600, 5));
-  ExportOptions options = small_pages(folder);
-  options.charts_only = true;
-  const auto widest = [&] {
-    const auto report = export_world(scene, options, {}, {});
-    EXPECT_TRUE(report.ok()) << report.status().message();
-    if (!report.ok() || report->pages.size() != 1) return 0;
-    EXPECT_GT(report->charts.size(), 500u);
-    return std::max(report->pages[0].width, report->pages[0].height);
-  };
-  const int grown = widest();
-  EXPECT_GT(grown, 512);  // 1024 texels for each of 600 charts are 784 squared
-  EXPECT_LE(grown, 1024);
-  options.larger_plain_page = false;
-  EXPECT_LE(widest(), 256);
 }
 
 }  // namespace

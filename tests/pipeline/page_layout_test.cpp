@@ -1,0 +1,106 @@
+// Pages of plain uvs: how large they are, and how full.
+#include "libatlas/pipeline/page_layout.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "libatlas/pipeline/export_world.h"
+#include "tests/pipeline/lit_scene.h"
+#include "tests/scene/temp_folder.h"
+#include "tests/support/shapes.h"
+
+namespace atlas::test {
+namespace {
+
+TEST(Layout, RefusesDensitiesThatAreMissingOrNotAboveZero) {
+  ChartSet charts;
+  charts.charts.resize(2);
+  charts.charts[0].size = charts.charts[1].size = {2, 1};
+  const auto code = [&](const std::vector<Vec2d>& densities) {
+    return lay_out_pages(charts, densities, {}, {}).status().code();
+  };
+  EXPECT_EQ(code({{10, 10}, {10, 10}}), ErrorCode::ok);
+  EXPECT_EQ(code({{10, 10}}), ErrorCode::bad_input);
+  EXPECT_EQ(code({}), ErrorCode::bad_input);
+  EXPECT_EQ(code({{10, 10}, {0, 10}}), ErrorCode::bad_input);
+  EXPECT_EQ(code({{10, 10}, {10, std::nan("")}}), ErrorCode::bad_input);
+}
+
+// Four sectors of rings, three quarters of a turn each, and strips as long as they are wide.
+Shape rings_and_strips() {
+  Shape all = grid(1, 1, 0.01, 0.01);
+  for (int k = 0; k < 4; ++k) {
+    Shape sector = grid(60, 4, 1.5 * std::numbers::pi, 0.7);
+    for (Vec3f& p : sector.positions) {
+      const double angle = p.x, radius = 0.3 + p.y;
+      p = {float(radius * std::cos(angle) + 3 * k), float(radius * std::sin(angle)), 0};
+    }
+    all = together(all, sector);
+  }
+  for (int k = 0; k < 12; ++k)
+    all = together(all, moved(grid(4, 2, 1.2, 0.03), 1, {0, 3 + 0.1 * k, 0}));
+  return all;
+}
+
+TEST(Layout, APoorPageOfPlainUvsIsPackedWithMoreWork) {
+  const Shape shape = rings_and_strips();
+  MeshView mesh;
+  mesh.positions = shape.positions;
+  mesh.indices = shape.indices;
+  const Result<ChartSet> charts = make_charts(mesh, {.min_fill = 0}, {});
+  ASSERT_TRUE(charts.ok());
+  LayoutOptions options{.pages = 1, .padding = 1, .alignment = 1, .minimum_side = 0};
+  options.outlines = options.free_aspect = true;
+  const auto use = [&](PackPreset preset) {
+    options.preset = preset;
+    const std::vector<Vec2d> densities(charts->charts.size(), Vec2d{600, 600});
+    const Result<PageLayout> layout = lay_out_pages(*charts, densities, options, {});
+    EXPECT_TRUE(layout.ok());
+    return layout.ok() ? layout->uv_utilization : 0;
+  };
+  const double fast = use(PackPreset::fast), best = use(PackPreset::best);
+  EXPECT_LT(fast, 0.66);
+  EXPECT_GT(best, fast + 0.03);
+  EXPECT_GE(use(PackPreset::standard), std::min(0.66, best));
+}
+
+// The sides of the page that plain uvs of a shape get, where 256 are asked for.
+std::pair<int, int> plain_page(const Shape& shape, bool may_grow) {
+  TempFolder folder;
+  ExportOptions options;
+  options.target = folder / "world.obj";
+  options.atlas_size = 256;
+  options.charts_only = true;
+  options.larger_plain_page = may_grow;
+  options.charts.min_fill = 0;
+  const auto report = export_world(lit_scene(shape), options, {}, {});
+  EXPECT_TRUE(report.ok()) << report.status().message();
+  if (!report.ok() || report->pages.size() != 1) return {0, 0};
+  EXPECT_GT(report->charts.size(), 150u);
+  return std::minmax(report->pages[0].width, report->pages[0].height);
+}
+
+TEST(PlainPage, GrowsWithItsCharts) {
+  const Shape shape = soup(200, 5);
+  const int grown = plain_page(shape, true).second;
+  EXPECT_GT(grown, 256);  // 1024 texels for each of 200 charts are 453 squared
+  EXPECT_LE(grown, 512);
+  EXPECT_LE(plain_page(shape, false).second, 256);
+}
+
+TEST(PlainPage, IsLongerWhereAChartIsLong) {
+  Shape shape = soup(200, 5);
+  const double side = std::sqrt(surface_area(shape));
+  shape = together(shape, moved(grid(90, 1, 5 * side, 0.02 * side), 1, {50, 0, 0}));
+  const auto [width, length] = plain_page(shape, true);
+  EXPECT_GT(length, 1024);  // twenty times as long as wide
+  EXPECT_GT(double(width) * length, 200 * 1024);
+}
+
+}  // namespace
+}  // namespace atlas::test
