@@ -23,18 +23,19 @@ struct LineCut {
 // Divides the same triangles near any number of lines.
 class LineCutter {
  public:
-  // `triangles`: places in chart.triangles, in one piece; all three must outlive the cutter.
+  // `triangles`: places in chart.triangles, in one piece; chart and list must outlive the cutter.
   LineCutter(const FlatChart& chart, const param::HalfEdges& half_edges,
              std::span<const std::uint32_t> triangles);
 
-  // What follows lies across this direction (radians from u on). Triangles lie where their middles
-  // do.
+  // Lines are across this direction from now on (radians from u on). A triangle lies where its
+  // middle does.
   void face(double angle);
   double low() const { return low_; }
   double high() const { return high_; }
 
-  // The shortest way between what lies `band` before the line, and what lies as far beyond: of
-  // equal ones the straightest. Parts of less than `crumb` area stay with a neighbour.
+  // The shortest way between what lies `band` before the line and what lies as far beyond, of equal
+  // ones the straightest; where the band holds many triangles, near the line in it that crosses the
+  // least. Parts of less than `crumb` area stay with a neighbour.
   LineCut cut(double line, double band, double crumb);
 
  private:

@@ -17,7 +17,7 @@ namespace {
 constexpr double kLeastFill = 0.75;  // of the least page
 constexpr double kStrip = 4;         // times as long as wide, and each piece still longer than wide
 constexpr std::size_t kMostStrips = 64;
-constexpr std::size_t kMostParts = 2;
+constexpr std::size_t kMostParts = 2;  // for each length
 // Of a length: how far cuts stray to either side to be short, and the area of what stays with the
 // next one.
 constexpr double kBand = 0.3, kCrumb = 0.01;
@@ -121,6 +121,7 @@ std::vector<FlatChart> cut(const FlattenInput& input, const FlatChart& chart, Le
   return pieces;
 }
 
+// From either end; one length more may keep to the bound where these do not.
 std::vector<FlatChart> cut(const FlattenInput& input, const FlatChart& chart, std::size_t count) {
   for (const std::size_t tried : {count, count + 1}) {
     Lengths lengths = lengths_of(chart, tried);
