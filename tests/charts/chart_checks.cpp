@@ -1,5 +1,7 @@
 #include "tests/charts/chart_checks.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -245,6 +247,25 @@ void append(std::string& out, const std::vector<T>& values) {
 
 ChartFindings check_charts(const MeshView& mesh, const ChartSet& set) {
   return Checker(mesh, set).run();
+}
+
+ChartSet checked_charts(const Mesh& mesh, double min_fill) {
+  ChartOptions options;
+  options.min_fill = min_fill;
+  Result<ChartSet> set = make_charts(mesh.view(), options, {});
+  EXPECT_TRUE(set.ok()) << set.status().message();
+  if (!set.ok()) return {};
+  EXPECT_EQ(check_charts(mesh.view(), *set).fault, "");
+  return std::move(*set);
+}
+
+double box_fill(const ChartSet& set) {
+  double area = 0, boxes = 0;
+  for (const Chart& chart : set.charts) {
+    area += chart.distortion.uv_area;
+    boxes += chart.size.x * chart.size.y;
+  }
+  return area / boxes;
 }
 
 std::string bytes(const ChartSet& set) {

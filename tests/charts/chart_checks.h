@@ -36,6 +36,12 @@ struct ChartFindings {
 // tests on a grid of buckets); sizes and counts agree.
 ChartFindings check_charts(const MeshView& mesh, const ChartSet& set);
 
+// The charts of a mesh with that ChartOptions::min_fill; a fault fails the test.
+ChartSet checked_charts(const Mesh& mesh, double min_fill);
+
+// Area of the charts / area of their boxes.
+double box_fill(const ChartSet& set);
+
 // All of a ChartSet's numbers in one string of bytes.
 std::string bytes(const ChartSet& set);
 

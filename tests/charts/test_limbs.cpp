@@ -70,15 +70,6 @@ std::vector<Shape> sprawling() {
           star(5, 10)};
 }
 
-double box_fill(const ChartSet& set) {
-  double area = 0, boxes = 0;
-  for (const Chart& chart : set.charts) {
-    area += chart.distortion.uv_area;
-    boxes += chart.size.x * chart.size.y;
-  }
-  return area / boxes;
-}
-
 // Jarvis's march.
 double hull_area(const std::vector<Vec2d>& points) {
   std::size_t first = 0;

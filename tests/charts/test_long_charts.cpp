@@ -9,15 +9,6 @@
 namespace atlas::test {
 namespace {
 
-ChartSet charts_of(const Mesh& mesh, double min_fill) {
-  ChartOptions options;
-  options.min_fill = min_fill;
-  Result<ChartSet> set = make_charts(mesh.view(), options, {});
-  EXPECT_TRUE(set.ok());
-  EXPECT_EQ(check_charts(mesh.view(), *set).fault, "");
-  return std::move(*set);
-}
-
 // Of the longest chart by the widest other one: no page is smaller.
 double least_page(const ChartSet& set) {
   double longest = 0, page = 0;
@@ -36,7 +27,8 @@ double least_page(const ChartSet& set) {
 
 TEST(LongCharts, AreCutForAPageThatTheRestFills) {
   const Mesh mesh(together(grid(9, 9), moved(grid(60, 2, 6, 0.05), 1, {0, 2, 0})));
-  const ChartSet whole = charts_of(mesh, 0), cut = charts_of(mesh, ChartOptions{}.min_fill);
+  const ChartSet whole = checked_charts(mesh, 0),
+                 cut = checked_charts(mesh, ChartOptions{}.min_fill);
   EXPECT_EQ(whole.charts.size(), 2u);
   EXPECT_GT(least_page(whole), 4 * whole.surface_area);
   EXPECT_LT(least_page(cut), 1.35 * cut.surface_area);
@@ -49,8 +41,8 @@ TEST(LongCharts, TakeARowOfThePage) {
   const Shape plate = grid(9, 9, 3.6f, 1.8f);
   const Mesh mesh(together(together(plate, moved(plate, 1, {5, 0, 0})),
                            moved(grid(70, 4, 14, 0.65f), 1, {0, 3, 0})));
-  EXPECT_EQ(charts_of(mesh, 0).charts.size(), 3u);
-  EXPECT_EQ(charts_of(mesh, ChartOptions{}.min_fill).charts.size(), 4u);
+  EXPECT_EQ(checked_charts(mesh, 0).charts.size(), 3u);
+  EXPECT_EQ(checked_charts(mesh, ChartOptions{}.min_fill).charts.size(), 4u);
 }
 
 // Half of a hairpin's length is half of one arm and half of the other.
@@ -65,7 +57,8 @@ TEST(LongCharts, AreCutWhereTheyLieBesideThemselves) {
   }
   pin.indices = kept;
   const Mesh mesh(together(pin, moved(grid(9, 9, 3, 3), 1, {0, 2, 0})));
-  const ChartSet whole = charts_of(mesh, 0), cut = charts_of(mesh, ChartOptions{}.min_fill);
+  const ChartSet whole = checked_charts(mesh, 0),
+                 cut = checked_charts(mesh, ChartOptions{}.min_fill);
   EXPECT_EQ(whole.charts.size(), 2u);
   EXPECT_GT(cut.charts.size(), 2u);
   EXPECT_LT(least_page(cut), 0.7 * least_page(whole));
@@ -82,7 +75,7 @@ TEST(LongCharts, AreCutWhereGuttersWouldTakeThePage) {
     }
     return Mesh(all);
   };
-  EXPECT_EQ(charts_of(page(60), ChartOptions{}.min_fill).charts.size(), 61u);
+  EXPECT_EQ(checked_charts(page(60), ChartOptions{}.min_fill).charts.size(), 61u);
   const auto gutter = [](const ChartSet& set) {
     double around = 0, longest = 0;
     for (const Chart& chart : set.charts) {
@@ -92,7 +85,8 @@ TEST(LongCharts, AreCutWhereGuttersWouldTakeThePage) {
     return 1.3 * around * longest / 2048 / set.surface_area;
   };
   const Mesh many = page(420);
-  const ChartSet whole = charts_of(many, 0), cut = charts_of(many, ChartOptions{}.min_fill);
+  const ChartSet whole = checked_charts(many, 0),
+                 cut = checked_charts(many, ChartOptions{}.min_fill);
   EXPECT_GT(gutter(whole), 0.26);
   EXPECT_LT(gutter(cut), 0.26);
   EXPECT_EQ(cut.charts.size(), whole.charts.size() + 1);
@@ -101,7 +95,7 @@ TEST(LongCharts, AreCutWhereGuttersWouldTakeThePage) {
 // The columns of a rod of long triangles are elsewhere than at even lengths.
 TEST(LongCharts, AreCutAlongTheShortestEdges) {
   const Mesh mesh(together(grid(7, 12, 24, 0.3), moved(grid(9, 9, 2, 2), 1, {0, 4, 0})));
-  const ChartSet cut = charts_of(mesh, ChartOptions{}.min_fill);
+  const ChartSet cut = checked_charts(mesh, ChartOptions{}.min_fill);
   ASSERT_GT(cut.charts.size(), 3u);
   EXPECT_NEAR(cut.seam_length, 0.3 * double(cut.charts.size() - 2), 1e-4);
 }
@@ -111,7 +105,8 @@ TEST(LongCharts, StayWholeWhereOthersLeaveRoom) {
        {cylinder(200, 4, 1, 0.02),  // it is alone
         together(cylinder(80, 4, 1, 0.02), moved(grid(9, 9, 8, 8), 1, {4, 0, 0}))}) {
     const Mesh mesh(shape);
-    EXPECT_EQ(charts_of(mesh, 0.72).charts.size(), charts_of(mesh, 0).charts.size()) << shape.name;
+    EXPECT_EQ(checked_charts(mesh, 0.72).charts.size(), checked_charts(mesh, 0).charts.size())
+        << shape.name;
   }
 }
 
