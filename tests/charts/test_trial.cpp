@@ -6,7 +6,6 @@
 #include <numeric>
 #include <set>
 
-#include "libatlas/charts/geometry/hull.h"
 #include "libatlas/charts/merging/coarse.h"
 #include "libatlas/charts/merging/cost_classes.h"
 #include "libatlas/charts/merging/fan_measure.h"
@@ -91,10 +90,6 @@ TEST(TrialMesh, ChartsKeepWhatIsJoinedInThem) {
   EXPECT_EQ(grown.euler(), 1);
   EXPECT_EQ(grown.vertex_count(), whole.vertex_count());
   EXPECT_EQ(grown.border().size(), whole.border().size());
-}
-
-double distance(Vec2d a, Vec2d b) {
-  return std::hypot(a.x - b.x, a.y - b.y);
 }
 
 // A cap's cells as one mesh, with a solver for them and the uvs that they start from.

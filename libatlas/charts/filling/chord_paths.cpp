@@ -1,9 +1,10 @@
 #include "libatlas/charts/filling/chord_paths.h"
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <queue>
+
+#include "libatlas/charts/geometry/hull.h"
 
 namespace atlas {
 namespace {
@@ -14,16 +15,10 @@ constexpr double kLongestPath = 1.6, kStrayWeight = 100;
 constexpr double kMostStray = 0.5;
 constexpr std::uint32_t kUnseen = kNoIndex - 1;
 
-double distance(const Vec2d& a, const Vec2d& b) {
-  return std::hypot(b.x - a.x, b.y - a.y);
-}
-
 // How far p lies from the chord, in chords.
 double stray(const Vec2d& p, const Vec2d& from, const Vec2d& to) {
-  const double dx = to.x - from.x, dy = to.y - from.y, chord2 = dx * dx + dy * dy;
-  const double along = std::clamp(((p.x - from.x) * dx + (p.y - from.y) * dy) / chord2, 0., 1.);
-  return std::sqrt(
-      (std::pow(p.x - from.x - along * dx, 2) + std::pow(p.y - from.y - along * dy, 2)) / chord2);
+  const double dx = to.x - from.x, dy = to.y - from.y;
+  return std::sqrt(squared_distance_to_segment(p, from, to) / (dx * dx + dy * dy));
 }
 
 struct Visit {

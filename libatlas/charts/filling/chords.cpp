@@ -16,19 +16,6 @@ constexpr double kFineness = 0.006;        // of the outline's width, what simpl
 constexpr std::ptrdiff_t kMostEdges = 3;   // from a corner, that may be chords
 constexpr double kShortSeam = 0.05;        // of the width: shorter cuts count as long as this
 
-double distance(const Vec2d& a, const Vec2d& b) {
-  return std::hypot(b.x - a.x, b.y - a.y);
-}
-
-// Squared: long outlines ask for it millions of times.
-double distance_to_segment(const Vec2d& p, const Vec2d& a, const Vec2d& b) {
-  const double dx = b.x - a.x, dy = b.y - a.y, length2 = dx * dx + dy * dy;
-  const double along =
-      length2 > 0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / length2, 0.0, 1.0) : 0;
-  const double x = p.x - a.x - along * dx, y = p.y - a.y - along * dy;
-  return x * x + y * y;
-}
-
 // Chooses corners of the outline, then chords between them.
 class ChordFinder {
  public:
@@ -147,8 +134,8 @@ class ChordFinder {
   Part part(std::uint32_t first, std::uint32_t last) const {
     Part part{first, last};
     for (std::uint32_t i = first + 1; i < last; ++i) {
-      const double d =
-          distance_to_segment(outline_[i], outline_[first], outline_[last % outline_.size()]);
+      const double d = squared_distance_to_segment(outline_[i], outline_[first],
+                                                   outline_[last % outline_.size()]);
       if (d <= part.distance) continue;
       part.distance = d;
       part.worst = i;

@@ -23,7 +23,7 @@ constexpr std::size_t kMostParts = 2;  // for each length
 constexpr double kBand = 0.3, kCrumb = 0.01;
 // Times the charts' area, their borders by the longest side: a page of 2048 texels that this chart
 // spans needs a quarter as much for gutters of 1.3 texels on each side of a border as for charts.
-// Of 796 meshes seven need more, six of them twice as long as a square page and more.
+// Of 796 meshes seven need more, each of them more than twice as long as a square page.
 constexpr double kMostGutter = 400;
 
 double longer(const FlatChart& chart) {

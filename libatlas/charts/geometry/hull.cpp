@@ -1,10 +1,23 @@
 #include "libatlas/charts/geometry/hull.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "libatlas/core/wide_vectors.h"
 
 namespace atlas {
+
+double distance(const Vec2d& a, const Vec2d& b) {
+  return std::hypot(b.x - a.x, b.y - a.y);
+}
+
+double squared_distance_to_segment(const Vec2d& p, const Vec2d& a, const Vec2d& b) {
+  const double dx = b.x - a.x, dy = b.y - a.y, length2 = dx * dx + dy * dy;
+  const double along =
+      length2 > 0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / length2, 0.0, 1.0) : 0;
+  const double x = p.x - a.x - along * dx, y = p.y - a.y - along * dy;
+  return x * x + y * y;
+}
 
 bool cross_each_other(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& d) {
   if (std::max(a.x, b.x) < std::min(c.x, d.x) || std::max(c.x, d.x) < std::min(a.x, b.x) ||

@@ -1,4 +1,4 @@
-// Internal: convex hulls and smallest rectangles of flat points.
+// Internal: distances, convex hulls and smallest rectangles of flat points.
 #pragma once
 
 #include <vector>
@@ -11,6 +11,11 @@ namespace atlas {
 inline double cross(const Vec2d& o, const Vec2d& a, const Vec2d& b) {
   return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
 }
+
+double distance(const Vec2d& a, const Vec2d& b);
+
+// From p to the segment from a to b. Squared: long outlines ask for it millions of times.
+double squared_distance_to_segment(const Vec2d& p, const Vec2d& a, const Vec2d& b);
 
 // Whether the inner points of two segments cross; touching ends are decided either way.
 bool cross_each_other(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& d);
