@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 
+#include "libatlas/charts/geometry/hull.h"
 #include "libatlas/charts/merging/coarse.h"
 #include "libatlas/charts/merging/cost_classes.h"
 #include "libatlas/charts/merging/fan_measure.h"
