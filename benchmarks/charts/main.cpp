@@ -1,4 +1,4 @@
-// atlas-bench-charts: the tables and the plot of docs/charts.md.
+// atlas-bench-charts: the tables and the plot of docs/charts-measured.md.
 //   atlas-bench-charts --table --mesh figure:30000 hound:20000
 //   atlas-bench-charts --sweep docs/images/charts-error --mesh figure:30000
 //   atlas-bench-charts --picture docs/images/charts.png --mesh figure:30000
