@@ -103,8 +103,8 @@ struct ChartSet {
 
 // Cuts the mesh into charts and flattens them. Geometry is scale- and translation-free; the result
 // is the same for every thread count. Sources: Barladian et al., stage 1 (normal cones); Sander et
-// al. 2001 (stretch); docs/charts-method.md. Errors: bad_input when there is no triangle or an index
-// is out of range; cancelled.
+// al. 2001 (stretch); see docs/charts-method.md. Errors: bad_input when there is no triangle or an
+// index is out of range; cancelled.
 Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
                              const Context& context);
 
