@@ -11,6 +11,7 @@
 #include "libatlas/charts/given_uvs.h"
 #include "libatlas/charts/mesh/topology.h"
 #include "libatlas/charts/parts.h"
+#include "libatlas/charts/totals.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
 
@@ -256,32 +257,6 @@ double seam_length(const Topology& topology, const ChartSet& set) {
   return length / topology.scale + topology.cut_length;
 }
 
-// All charts together, each at the scale it is given out with.
-Distortion sum_up(const ChartSet& set) {
-  Distortion total;
-  double l2 = 0, conformal = 0, area = 0;
-  for (const Chart& chart : set.charts) {
-    const Distortion& d = chart.distortion;
-    l2 += d.stretch_l2 * d.stretch_l2 * d.surface_area;
-    conformal += d.conformal_mean * d.surface_area;
-    area += d.surface_area;
-    total.stretch_linf = std::max(total.stretch_linf, d.stretch_linf);
-    total.stretch_999 = std::max(total.stretch_999, d.stretch_999);
-    total.conformal_max = std::max(total.conformal_max, d.conformal_max);
-    total.area_min = std::min(total.area_min, d.area_min);
-    total.area_max = std::max(total.area_max, d.area_max);
-    total.uv_area += d.uv_area;
-    total.flips += d.flips;
-    total.degenerate += d.degenerate;
-  }
-  total.surface_area = area;
-  if (area > 0) {
-    total.stretch_l2 = std::sqrt(l2 / area);
-    total.conformal_mean = conformal / area;
-  }
-  return total;
-}
-
 }  // namespace
 
 void add_parts(const ChartSet::Timing& parts, ChartSet::Timing& sum) {
@@ -327,7 +302,7 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
   return_freed_memory();
   Assembler(mesh, topology, set).run(charts);
   set.seam_length = seam_length(topology, set);
-  set.distortion = sum_up(set);
+  set.distortion = total_distortion(set.charts);
   set.timing.parameterization_cpu = cpu_seconds() - start - set.timing.segmentation_cpu;
   context.report("charts", 1);
   return set;

@@ -4,19 +4,24 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <tuple>
+#include <numeric>
 #include <utility>
 
-#include "libatlas/core/disjoint_sets.h"
+#include "libatlas/charts/filling/line_cut.h"
+#include "libatlas/charts/flattening/part_of_chart.h"
+#include "libatlas/charts/totals.h"
 #include "libatlas/core/glm_bridge.h"
-#include "libatlas/param/distortion.h"
+#include "libatlas/param/halfedges.h"
 
 namespace atlas {
 namespace {
 
-using Triangles = std::vector<std::uint32_t>;
+// How far a cut may stray to be short, as parts of a piece's length: as far as the piece may grow
+// within its limit, but within these.
+constexpr double kLeastBand = 0.1, kMostBand = 0.25, kNoBand = 1e-9;
+constexpr double kCrumb = 0.01;  // of a piece's area: what stays with the other side of a cut
 
-struct Span1 {
+struct Extent1 {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   void add(double v) {
     low = std::min(low, v);
@@ -25,137 +30,89 @@ struct Span1 {
   double length() const { return high - low; }
 };
 
-// An edge between two uvs of the set, a < b, and what it belongs to.
-struct UvEdge {
-  std::uint32_t a, b, owner;
-  bool same_place(const UvEdge& e) const { return a == e.a && b == e.b; }
-  bool operator<(const UvEdge& e) const {
-    return std::tie(a, b, owner) < std::tie(e.a, e.b, e.owner);
+struct Box {
+  Extent1 u, v;
+  explicit Box(std::span<const Vec2d> uvs) {
+    for (const Vec2d& p : uvs) {
+      u.add(p.x);
+      v.add(p.y);
+    }
   }
+  const Extent1& longer() const { return u.length() >= v.length() ? u : v; }
 };
 
-void add_edges(const ChartSet& set, std::uint32_t t, std::uint32_t owner,
-               std::vector<UvEdge>& edges) {
-  for (int k = 0; k < 3; ++k) {
-    const std::uint32_t a = set.triangle_uv[3 * std::size_t(t) + k];
-    const std::uint32_t b = set.triangle_uv[3 * std::size_t(t) + (k + 1) % 3];
-    edges.push_back({std::min(a, b), std::max(a, b), owner});
-  }
+bool names_uv_twice(const std::array<std::uint32_t, 3>& c) {
+  return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
 }
 
-// Splits triangles into the sets that hang together by edges: in the order of their first triangle,
-// each in the order given. A cut may leave islands on either side, which are charts of their own.
-std::vector<Triangles> connected(const ChartSet& set, const Triangles& triangles) {
-  DisjointSets joined(triangles.size());
-  std::vector<UvEdge> edges;
-  for (std::uint32_t i = 0; i < triangles.size(); ++i) add_edges(set, triangles[i], i, edges);
-  std::sort(edges.begin(), edges.end());
-  for (std::size_t i = 1; i < edges.size(); ++i) {
-    if (edges[i - 1].same_place(edges[i])) joined.join(edges[i - 1].owner, edges[i].owner);
-  }
-  std::vector<Triangles> sets;
-  std::vector<std::uint32_t> set_of(triangles.size());
-  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-    if (joined.find(i) == i) {
-      set_of[i] = std::uint32_t(sets.size());
-      sets.emplace_back();
-    }
-    sets[set_of[joined.find(i)]].push_back(triangles[i]);
-  }
-  return sets;
-}
-
-// The chart set being cut, seen along either axis of the uv plane.
-class Cutter {
+// A chart in pieces.
+class Tiler {
  public:
-  explicit Cutter(const ChartSet& set) : set_(set) {}
+  Tiler(const MeshView& mesh, double limit, double max_stretch)
+      : mesh_(mesh), limit_(limit), max_stretch_(max_stretch) {}
 
-  // Appends the pieces of `triangles` to `pieces`.
-  void cut(Triangles triangles, double limit, std::vector<Triangles>& pieces) const {
-    const Span1 u = extent(triangles, 0), v = extent(triangles, 1);
-    const int axis = u.length() >= v.length() ? 0 : 1;
-    const Span1 along = axis == 0 ? u : v;
-    if (along.length() <= limit || triangles.size() < 2) {
-      pieces.push_back(std::move(triangles));
-      return;
-    }
-    const double at = best_cut(triangles, axis, along, limit);
-    const auto middle =
-        std::stable_partition(triangles.begin(), triangles.end(),
-                              [&](std::uint32_t t) { return centroid(t, axis) < at; });
-    if (middle == triangles.begin() || middle == triangles.end()) {
-      pieces.push_back(std::move(triangles));  // no cut separates these triangles
-      return;
-    }
-    for (const bool right : {false, true}) {
-      const Triangles side(right ? middle : triangles.begin(), right ? triangles.end() : middle);
-      for (Triangles& island : connected(set_, side)) cut(std::move(island), limit, pieces);
-    }
+  // In the order of the cuts, each measured.
+  std::vector<FlatChart> run(FlatChart chart) {
+    cut(std::move(chart));
+    return std::move(pieces_);
   }
 
  private:
-  double coordinate(std::uint32_t t, int corner, int axis) const {
-    const Vec2d p = set_.uvs[set_.triangle_uv[3 * std::size_t(t) + corner]];
-    return axis == 0 ? p.x : p.y;
-  }
-  Span1 extent(std::uint32_t t, int axis) const {
-    Span1 span;
-    for (int k = 0; k < 3; ++k) span.add(coordinate(t, k, axis));
-    return span;
-  }
-  Span1 extent(const Triangles& triangles, int axis) const {
-    Span1 span;
-    for (const std::uint32_t t : triangles)
-      for (int k = 0; k < 3; ++k) span.add(coordinate(t, k, axis));
-    return span;
-  }
-  double centroid(std::uint32_t t, int axis) const {
-    return (coordinate(t, 0, axis) + coordinate(t, 1, axis) + coordinate(t, 2, axis)) / 3;
+  void cut(FlatChart piece) {
+    const Box box(piece.uvs);
+    const double length = box.longer().length();
+    if (length <= limit_ && keeps_to_bound(piece)) {
+      pieces_.push_back(std::move(piece));
+      return;
+    }
+    const std::vector<std::vector<std::uint32_t>> parts = divide(piece, box);
+    if (parts.empty()) {  // one triangle, or nothing that a cut would separate
+      keeps_to_bound(piece);
+      pieces_.push_back(std::move(piece));
+      return;
+    }
+    for (const std::vector<std::uint32_t>& part : parts) cut(take_triangles(piece, part));
   }
 
-  // Of kBins positions around the even share, the one that crosses the least length of triangles;
-  // of equal ones the nearest to it. Each bin stands for the corner in it nearest to its middle.
-  double best_cut(const Triangles& triangles, int axis, Span1 along, double limit) const {
-    constexpr int kBins = 256;
-    constexpr double kFreedom = 0.25;  // of the piece's length, to either side
-    const double parts = std::ceil(along.length() / limit);
-    const double ideal = along.low + along.length() * std::ceil(parts / 2) / parts;
-    const double reach = kFreedom * along.length() / parts;
-    const double first = ideal - reach, width = 2 * reach / kBins;
-    std::array<double, kBins> corner;
-    corner.fill(std::numeric_limits<double>::quiet_NaN());
-    const auto bin_of = [&](double v) { return int(std::floor((v - first) / width)); };
-    for (const std::uint32_t t : triangles)
-      for (int k = 0; k < 3; ++k) {
-        const double v = coordinate(t, k, axis);
-        const int bin = bin_of(v);
-        if (bin >= 0 && bin < kBins && !(corner[bin] <= v)) corner[bin] = v;
-      }
-    std::array<std::uint64_t, kBins> crossed{};
-    const double slack = 1e-9 * along.length();  // a triangle that only touches is not crossed
-    for (const std::uint32_t t : triangles) {
-      const Span1 span = extent(t, axis);
-      const int last = std::min(kBins - 1, bin_of(span.high));
-      for (int bin = std::max(0, bin_of(span.low)); bin <= last; ++bin)
-        crossed[bin] += corner[bin] > span.low + slack && corner[bin] < span.high - slack;
+  std::vector<std::vector<std::uint32_t>> divide(const FlatChart& piece, const Box& box) const {
+    std::vector<std::uint32_t> all(piece.triangles.size());
+    std::iota(all.begin(), all.end(), 0u);
+    param::HalfEdges half_edges;
+    half_edges.build(piece.corners, piece.uvs.size());
+    LineCutter cutter(piece, half_edges, all);
+    cutter.face(box.u.length() >= box.v.length() ? 0 : M_PI / 2);
+    const Extent1& along = box.longer();
+    const double shares = std::max(2.0, std::ceil(along.length() / limit_));
+    const double share = along.length() / shares, line = along.low + share * std::ceil(shares / 2);
+    const double band = std::clamp(limit_ / share - 1, kLeastBand, kMostBand) * share;
+    const double crumb = kCrumb * box.u.length() * box.v.length() / shares;
+    LineCut cut = cutter.cut(line, band, crumb);
+    if (cut.parts.empty()) {  // where triangles are as large as the piece, by their middles
+      cut = cutter.cut((cutter.low() + cutter.high()) / 2, kNoBand * share, 0);
     }
-    double best = ideal;
-    std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
-    for (int bin = 0; bin < kBins; ++bin) {
-      if (std::isnan(corner[bin])) continue;
-      const bool nearer = std::fabs(corner[bin] - ideal) < std::fabs(best - ideal);
-      if (crossed[bin] < least || (crossed[bin] == least && nearer)) {
-        least = crossed[bin];
-        best = corner[bin];
-      }
-    }
-    return best;
+    std::vector<std::vector<std::uint32_t>> parts;
+    for (LineCut::Part& part : cut.parts) parts.push_back(std::move(part.triangles));
+    return parts;
   }
 
-  const ChartSet& set_;
+  bool keeps_to_bound(FlatChart& piece) const {
+    std::vector<Vec3f> positions;
+    for (const std::uint32_t v : piece.vertex) positions.push_back(mesh_.positions[v]);
+    std::vector<double> density;
+    if (!mesh_.density.empty()) {
+      for (const std::uint32_t t : piece.triangles) density.push_back(mesh_.density[t]);
+    }
+    keep_to_bound({PositionView(positions, positions[0]), piece.corners, density}, max_stretch_,
+                  piece);
+    return piece.distortion.stretch_999 <= max_stretch_ || piece.triangles.size() == 1;
+  }
+
+  const MeshView& mesh_;
+  double limit_, max_stretch_;
+  std::vector<FlatChart> pieces_;
 };
 
-// Builds the new set piece by piece.
+// The chart set with some charts in pieces, built chart by chart.
 class Rebuilder {
  public:
   Rebuilder(const MeshView& mesh, const ChartSet& old) : mesh_(mesh), old_(old), fresh_(old) {
@@ -163,119 +120,206 @@ class Rebuilder {
     fresh_.chart_triangles.clear();
     fresh_.uvs.clear();
     fresh_.uv_vertex.clear();
-    local_.assign(old.uvs.size(), kNone);
     opposite_.assign(old.triangle_chart.size(), 0);
     for (const std::uint32_t t : old.flipped_triangles) opposite_[t] = 1;
   }
 
-  void add(const Chart& parent, const Triangles& triangles, bool whole) {
-    Chart chart = parent;
+  void keep(const Chart& old) {
+    Chart chart = old;
     chart.first_triangle = std::uint32_t(fresh_.chart_triangles.size());
-    chart.triangle_count = std::uint32_t(triangles.size());
     chart.first_uv = std::uint32_t(fresh_.uvs.size());
-    for (const std::uint32_t t : triangles) {
-      fresh_.chart_triangles.push_back(t);
-      fresh_.triangle_chart[t] = std::uint32_t(fresh_.charts.size());
-      for (int k = 0; k < 3; ++k) {
-        std::uint32_t& local = local_[old_.triangle_uv[3 * std::size_t(t) + k]];
-        if (local == kNone || local < chart.first_uv) {
-          local = std::uint32_t(fresh_.uvs.size());
-          fresh_.uvs.push_back(old_.uvs[old_.triangle_uv[3 * std::size_t(t) + k]]);
-          fresh_.uv_vertex.push_back(old_.uv_vertex[old_.triangle_uv[3 * std::size_t(t) + k]]);
-        }
-        fresh_.triangle_uv[3 * std::size_t(t) + k] = local;
-      }
+    for (std::uint32_t i = 0; i < old.uv_count; ++i) {
+      fresh_.uvs.push_back(old_.uvs[old.first_uv + i]);
+      fresh_.uv_vertex.push_back(old_.uv_vertex[old.first_uv + i]);
     }
-    chart.uv_count = std::uint32_t(fresh_.uvs.size()) - chart.first_uv;
-    if (!whole) {
-      lay_along_u(chart);
-      measure(chart);
+    for (const std::uint32_t t : triangles_of(old)) {
+      take(t);
+      for (std::size_t k = 3 * std::size_t{t}; k < 3 * std::size_t{t} + 3; ++k) {
+        fresh_.triangle_uv[k] = old_.triangle_uv[k] - old.first_uv + chart.first_uv;
+      }
     }
     fresh_.charts.push_back(chart);
   }
 
-  ChartSet take() { return std::move(fresh_); }
-
- private:
-  static constexpr std::uint32_t kNone = 0xffffffffu;
-
-  void lay_along_u(Chart& chart) {
-    const std::span<Vec2d> uvs = std::span(fresh_.uvs).subspan(chart.first_uv, chart.uv_count);
-    Span1 u, v;
-    for (const Vec2d& p : uvs) {
-      u.add(p.x);
-      v.add(p.y);
+  // Whether there is more than one piece.
+  bool divide(const Chart& old, double limit, double max_stretch) {
+    // Of a chart that itself exceeds the bound, as given ones may, more is not asked.
+    if (old.distortion.stretch_999 > max_stretch) {
+      max_stretch = std::numeric_limits<double>::infinity();
     }
-    const bool turn = v.length() > u.length();
-    for (Vec2d& p : uvs) {
-      p = turn ? Vec2d{v.high - p.y, p.x - u.low} : Vec2d{p.x - u.low, p.y - v.low};
+    std::vector<FlatChart> pieces = Tiler(mesh_, limit, max_stretch).run(flat(old));
+    if (pieces.size() < 2) {
+      keep(old);
+      return false;
     }
-    chart.size = {std::max(u.length(), v.length()), std::min(u.length(), v.length())};
+    fresh_.seam_length += length_between(pieces);
+    std::vector<std::vector<std::uint32_t>> loose = loose_triangles(old, pieces);
+    for (std::size_t i = 0; i < pieces.size(); ++i) add(old, pieces[i], loose[i]);
+    return true;
   }
 
-  void measure(Chart& chart) const {
-    std::vector<Vec3d> positions(chart.uv_count);
-    for (std::uint32_t i = 0; i < chart.uv_count; ++i) {
-      const Vec3f p = mesh_.positions[fresh_.uv_vertex[chart.first_uv + i]];
-      positions[i] = {p.x, p.y, p.z};
+  ChartSet finish() {
+    fresh_.distortion = total_distortion(fresh_.charts);
+    return std::move(fresh_);
+  }
+
+ private:
+  std::span<const std::uint32_t> triangles_of(const Chart& chart) const {
+    return std::span(old_.chart_triangles).subspan(chart.first_triangle, chart.triangle_count);
+  }
+  std::array<std::uint32_t, 3> old_uvs(std::uint32_t t) const {
+    const std::uint32_t* const c = &old_.triangle_uv[3 * std::size_t{t}];
+    return {c[0], c[1], c[2]};
+  }
+  void take(std::uint32_t t) {
+    fresh_.chart_triangles.push_back(t);
+    fresh_.triangle_chart[t] = std::uint32_t(fresh_.charts.size());
+  }
+
+  // Of the triangles that cover something in uv; the vertices are the mesh's.
+  FlatChart flat(const Chart& chart) const {
+    FlatChart flat;
+    for (std::uint32_t i = chart.first_uv; i < chart.first_uv + chart.uv_count; ++i) {
+      flat.uvs.push_back(old_.uvs[i]);
+      flat.vertex.push_back(old_.uv_vertex[i]);
     }
-    std::vector<std::array<std::uint32_t, 3>> triangles(chart.triangle_count);
-    std::vector<double> density;
-    for (std::uint32_t i = 0; i < chart.triangle_count; ++i) {
-      const std::size_t t = fresh_.chart_triangles[chart.first_triangle + i];
-      for (int k = 0; k < 3; ++k) triangles[i][k] = fresh_.triangle_uv[3 * t + k] - chart.first_uv;
-      if (opposite_[t]) std::swap(triangles[i][1], triangles[i][2]);
-      if (!mesh_.density.empty()) density.push_back(mesh_.density[t]);
+    for (const std::uint32_t t : triangles_of(chart)) {
+      std::array<std::uint32_t, 3> corners = old_uvs(t);
+      if (names_uv_twice(corners)) continue;
+      if (opposite_[t]) std::swap(corners[1], corners[2]);
+      for (std::uint32_t& c : corners) c -= chart.first_uv;
+      flat.triangles.push_back(t);
+      flat.corners.push_back(corners);
     }
-    const std::span<const Vec2d> uvs =
-        std::span(fresh_.uvs).subspan(chart.first_uv, chart.uv_count);
-    chart.distortion = measure_distortion({positions, triangles, density}, uvs);
+    return flat;
+  }
+
+  // A piece's edge in uvs of the old set, where the triangle has it.
+  using UvEdge = std::array<std::uint32_t, 2>;
+  static UvEdge edge(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
+  struct OwnedEdge {
+    UvEdge uvs;
+    std::uint32_t piece;
+    bool operator<(const OwnedEdge& other) const {
+      return uvs != other.uvs ? uvs < other.uvs : piece < other.piece;
+    }
+  };
+
+  std::vector<OwnedEdge> edges_of(const std::vector<FlatChart>& pieces) const {
+    std::vector<OwnedEdge> edges;
+    for (std::uint32_t i = 0; i < pieces.size(); ++i) {
+      for (const std::uint32_t t : pieces[i].triangles) {
+        const auto c = old_uvs(t);
+        for (int k = 0; k < 3; ++k) edges.push_back({edge(c[k], c[(k + 1) % 3]), i});
+      }
+    }
+    std::sort(edges.begin(), edges.end());
+    return edges;
+  }
+
+  // Length on the surface of the edges along which a chart was cut.
+  double length_between(const std::vector<FlatChart>& pieces) const {
+    const std::vector<OwnedEdge> edges = edges_of(pieces);
+    double length = 0;
+    for (std::size_t i = 1; i < edges.size(); ++i) {
+      const OwnedEdge &a = edges[i - 1], &b = edges[i];
+      if (a.uvs != b.uvs || a.piece == b.piece) continue;
+      length += glm::distance(to_dvec(mesh_.positions[old_.uv_vertex[a.uvs[0]]]),
+                              to_dvec(mesh_.positions[old_.uv_vertex[a.uvs[1]]]));
+    }
+    return length;
+  }
+
+  // Triangles without area lie on an edge or at a corner of one of the pieces. 1 a piece.
+  std::vector<std::vector<std::uint32_t>> loose_triangles(
+      const Chart& chart, const std::vector<FlatChart>& pieces) const {
+    std::vector<std::vector<std::uint32_t>> loose(pieces.size());
+    std::vector<std::uint32_t> piece_of(chart.uv_count, 0);
+    for (std::uint32_t i = std::uint32_t(pieces.size()); i-- > 0;) {
+      for (const std::uint32_t t : pieces[i].triangles) {
+        for (const std::uint32_t uv : old_uvs(t)) piece_of[uv - chart.first_uv] = i;
+      }
+    }
+    std::vector<OwnedEdge> edges;
+    for (const std::uint32_t t : triangles_of(chart)) {
+      const auto c = old_uvs(t);
+      if (!names_uv_twice(c)) continue;
+      if (edges.empty()) edges = edges_of(pieces);
+      std::uint32_t piece = piece_of[c[0] - chart.first_uv];
+      const UvEdge on = c[0] != c[1] ? edge(c[0], c[1]) : edge(c[1], c[2]);
+      const auto found = std::lower_bound(edges.begin(), edges.end(), OwnedEdge{on, 0});
+      if (found != edges.end() && found->uvs == on) piece = found->piece;
+      loose[piece].push_back(t);
+    }
+    return loose;
+  }
+
+  void add(const Chart& parent, FlatChart& piece, std::span<const std::uint32_t> loose) {
+    Chart chart = parent;
+    lay_along_u(piece, chart);
+    chart.distortion = piece.distortion;
+    chart.first_triangle = std::uint32_t(fresh_.chart_triangles.size());
+    chart.triangle_count = std::uint32_t(piece.triangles.size() + loose.size());
+    chart.first_uv = std::uint32_t(fresh_.uvs.size());
+    chart.uv_count = std::uint32_t(piece.uvs.size());
+    fresh_.uvs.insert(fresh_.uvs.end(), piece.uvs.begin(), piece.uvs.end());
+    fresh_.uv_vertex.insert(fresh_.uv_vertex.end(), piece.vertex.begin(), piece.vertex.end());
+    const std::size_t first = fresh_.chart_triangles.size();
+    for (std::size_t i = 0; i < piece.triangles.size(); ++i) {
+      const std::uint32_t t = piece.triangles[i];
+      take(t);
+      std::array<std::uint32_t, 3> corners = piece.corners[i];
+      if (opposite_[t]) std::swap(corners[1], corners[2]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        fresh_.triangle_uv[3 * std::size_t{t} + k] = chart.first_uv + corners[k];
+        local_[old_.triangle_uv[3 * std::size_t{t} + k]] = chart.first_uv + corners[k];
+      }
+    }
+    for (const std::uint32_t t : loose) {
+      take(t);
+      for (std::size_t k = 3 * std::size_t{t}; k < 3 * std::size_t{t} + 3; ++k) {
+        fresh_.triangle_uv[k] = local_[old_.triangle_uv[k]];
+      }
+    }
+    std::sort(fresh_.chart_triangles.begin() + std::ptrdiff_t(first), fresh_.chart_triangles.end());
+    fresh_.charts.push_back(chart);
+  }
+
+  static void lay_along_u(FlatChart& piece, Chart& chart) {
+    const Box box(piece.uvs);
+    const bool turn = box.v.length() > box.u.length();
+    for (Vec2d& p : piece.uvs) {
+      p = turn ? Vec2d{box.v.high - p.y, p.x - box.u.low} : Vec2d{p.x - box.u.low, p.y - box.v.low};
+    }
+    chart.size = {std::max(box.u.length(), box.v.length()),
+                  std::min(box.u.length(), box.v.length())};
   }
 
   const MeshView& mesh_;
   const ChartSet& old_;
   ChartSet fresh_;
-  std::vector<std::uint32_t> local_;    // old uv -> new uv of the piece being built
   std::vector<std::uint8_t> opposite_;  // 1 a triangle: its orientation is not its chart's
+  std::vector<std::uint32_t> local_ = std::vector<std::uint32_t>(old_.uvs.size(), kNoIndex);
 };
-
-// Length on the surface of the edges along which a chart was cut: uv edges of the old set whose two
-// triangles went to different pieces.
-double cut_length(const MeshView& mesh, const ChartSet& old, const std::vector<Triangles>& pieces) {
-  std::vector<UvEdge> edges;
-  for (std::uint32_t piece = 0; piece < pieces.size(); ++piece)
-    for (const std::uint32_t t : pieces[piece]) add_edges(old, t, piece, edges);
-  std::sort(edges.begin(), edges.end());
-  double length = 0;
-  for (std::size_t i = 1; i < edges.size(); ++i) {
-    const UvEdge &l = edges[i - 1], &r = edges[i];
-    if (!l.same_place(r) || l.owner == r.owner) continue;
-    length += glm::distance(to_dvec(mesh.positions[old.uv_vertex[l.a]]),
-                            to_dvec(mesh.positions[old.uv_vertex[l.b]]));
-  }
-  return length;
-}
 
 }  // namespace
 
-std::size_t cut_to_limits(const MeshView& mesh, std::span<const double> limits, ChartSet& charts) {
-  std::size_t count = 0;
-  for (std::size_t c = 0; c < charts.charts.size(); ++c)
-    count += charts.charts[c].size.x > limits[c];
-  if (count == 0) return 0;
-  const Cutter cutter(charts);
+std::size_t cut_to_limits(const MeshView& mesh, std::span<const double> limits, double max_stretch,
+                          ChartSet& charts) {
+  const auto too_long = [&](std::size_t c) { return charts.charts[c].size.x > limits[c]; };
+  std::size_t first = 0;
+  while (first < charts.charts.size() && !too_long(first)) ++first;
+  if (first == charts.charts.size()) return 0;
   Rebuilder fresh(mesh, charts);
-  double seam = charts.seam_length;
+  std::size_t count = 0;
   for (std::size_t c = 0; c < charts.charts.size(); ++c) {
-    const Chart& chart = charts.charts[c];
-    const auto first = charts.chart_triangles.begin() + chart.first_triangle;
-    std::vector<Triangles> pieces;
-    cutter.cut(Triangles(first, first + chart.triangle_count), limits[c], pieces);
-    if (pieces.size() > 1) seam += cut_length(mesh, charts, pieces);
-    for (const Triangles& piece : pieces) fresh.add(chart, piece, pieces.size() == 1);
+    if (too_long(c)) {
+      count += fresh.divide(charts.charts[c], limits[c], max_stretch);
+    } else {
+      fresh.keep(charts.charts[c]);
+    }
   }
-  charts = fresh.take();
-  charts.seam_length = seam;
+  charts = fresh.finish();
   return count;
 }
 

@@ -16,6 +16,7 @@
 #include "libatlas/pipeline/advice.h"
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/bake_pages.h"
+#include "libatlas/pipeline/fill_pages.h"
 #include "libatlas/pipeline/longest_sides.h"
 #include "libatlas/pipeline/page_layout.h"
 #include "libatlas/pipeline/stage_recorder.h"
@@ -57,8 +58,6 @@ class Export {
       if (Status s = expose(); !s.ok()) return s;
       if (Status s = cut_long_charts(); !s.ok()) return s;
       if (Status s = size_textures(); !s.ok()) return s;
-    } else {
-      size_plain_uvs();
     }
     if (Status s = pack(); !s.ok()) return s;
     if (plan_.bake) {
@@ -133,8 +132,9 @@ class Export {
     const std::vector<double> densities = wanted_densities(*light_, texture, context_);
     if (context_.cancelled()) return Status::cancelled();
     const std::size_t before = charts_.charts.size();
-    const std::size_t cut = cut_to_limits(
-        view_of(scene_), longest_sides(charts_, densities, {texture, options_}), charts_);
+    const std::size_t cut =
+        cut_to_limits(view_of(scene_), longest_sides(charts_, densities, {texture, options_}),
+                      options_.charts.max_stretch, charts_);
     report_.charts = charts_.charts;
     report_.seam_length = charts_.seam_length;
     record_.finish(
@@ -188,9 +188,13 @@ class Export {
   }
 
   // No light asks for no resolution of its own: one page, filled as well as packing can.
-  void size_plain_uvs() {
-    const double density = filling_density(charts_, double(page_size()) * page_size());
-    densities_.assign(charts_.charts.size(), Vec2d{density, density});
+  Result<PageLayout> lay_out_plain(const LayoutOptions& options) {
+    const double texels = double(options.page_size) * options.page_size;
+    const PlainUvs uvs{view_of(scene_), options_.charts, filling_density(charts_, texels)};
+    Result<PageLayout> layout = fill_pages(uvs, options, charts_, context_);
+    report_.charts = charts_.charts;
+    report_.seam_length = charts_.seam_length;
+    return layout;
   }
 
   Status pack() {
@@ -212,7 +216,8 @@ class Export {
       layout.free_aspect = !options_.square_plain_page;
       layout.square = options_.square_plain_page;
     }
-    Result<PageLayout> laid = lay_out_pages(charts_, densities_, layout, context_);
+    Result<PageLayout> laid =
+        plan_.bake ? lay_out_pages(charts_, densities_, layout, context_) : lay_out_plain(layout);
     if (!laid.ok()) return in_terms_of_options(laid.status());
     layout_ = std::move(*laid);
     report_.grouping = layout_.grouping;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "libatlas/pipeline/assemble_world.h"
-#include "libatlas/pipeline/page_layout.h"
+#include "libatlas/pipeline/fill_pages.h"
 #include "libatlas/pipeline/round_uvs.h"
 
 namespace atlas {
@@ -32,7 +32,7 @@ Status check_options(const UnwrapOptions& options) {
   return {};
 }
 
-Result<PageLayout> lay_out(const ChartSet& charts, const UnwrapOptions& options,
+Result<PageLayout> lay_out(const MeshView& mesh, const UnwrapOptions& options, ChartSet& charts,
                            const Context& context) {
   const double density =
       options.texels_per_unit > 0
@@ -47,8 +47,7 @@ Result<PageLayout> lay_out(const ChartSet& charts, const UnwrapOptions& options,
   layout.outlines = true;
   layout.square = options.square;
   layout.free_aspect = options.pages == 1 && !options.square;
-  const std::vector<Vec2d> densities(charts.charts.size(), Vec2d{density, density});
-  return lay_out_pages(charts, densities, layout, context);
+  return fill_pages({mesh, options.charts, density}, layout, charts, context);
 }
 
 // One vertex for each pair of an input vertex and a uv that some corner names, in the order of the
@@ -82,7 +81,7 @@ Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& opt
     view.texcoord_indices = view.indices;
   Result<ChartSet> charts = make_charts(view, options.charts, context);
   if (!charts.ok()) return charts.status();
-  Result<PageLayout> layout = lay_out(*charts, options, context);
+  Result<PageLayout> layout = lay_out(view, options, *charts, context);
   if (!layout.ok()) return layout.status();
 
   UnwrappedMesh result;

@@ -28,14 +28,11 @@ void relax(const LocalMesh& mesh, double max_stretch, FlatChart& piece) {
 
 }  // namespace
 
-FlatChart part_of_chart(const FlattenInput& input, const FlatChart& whole,
-                        std::span<const std::uint32_t> triangles) {
+FlatChart take_triangles(const FlatChart& whole, std::span<const std::uint32_t> triangles) {
   FlatChart piece;
   piece.planar = whole.planar;
   piece.fragment = whole.fragment;
   std::vector<std::uint32_t> local(whole.uvs.size(), kNoIndex);
-  std::vector<Vec3d> positions;
-  std::vector<double> density;
   for (const std::uint32_t i : triangles) {
     piece.triangles.push_back(whole.triangles[i]);
     piece.corners.push_back(whole.corners[i]);
@@ -44,20 +41,29 @@ FlatChart part_of_chart(const FlattenInput& input, const FlatChart& whole,
         local[c] = std::uint32_t(piece.uvs.size());
         piece.uvs.push_back(whole.uvs[c]);
         piece.vertex.push_back(whole.vertex[c]);
-        const Vec3d p = from_glm(to_dvec(input.topology.points[whole.vertex[c]]));
-        positions.push_back(p);
       }
       c = local[c];
     }
-    if (!input.density.empty()) density.push_back(input.density[whole.triangles[i]]);
   }
-  const Vec3d origin = positions[0];
-  for (Vec3d& p : positions) p = {p.x - origin.x, p.y - origin.y, p.z - origin.z};
-  const LocalMesh mesh{positions, piece.corners, density};
+  return piece;
+}
+
+void keep_to_bound(const LocalMesh& mesh, double max_stretch, FlatChart& piece) {
   piece.distortion = measure_distortion(mesh, piece.uvs);
-  if (piece.distortion.stretch_999 > input.options.max_stretch) {
-    relax(mesh, input.options.max_stretch, piece);
+  if (piece.distortion.stretch_999 > max_stretch) relax(mesh, max_stretch, piece);
+}
+
+FlatChart part_of_chart(const FlattenInput& input, const FlatChart& whole,
+                        std::span<const std::uint32_t> triangles) {
+  FlatChart piece = take_triangles(whole, triangles);
+  std::vector<Vec3f> positions;
+  for (const std::uint32_t v : piece.vertex) positions.push_back(input.topology.points[v]);
+  std::vector<double> density;
+  if (!input.density.empty()) {
+    for (const std::uint32_t t : piece.triangles) density.push_back(input.density[t]);
   }
+  keep_to_bound({PositionView(positions, positions[0]), piece.corners, density},
+                input.options.max_stretch, piece);
   std::vector<std::array<std::uint32_t, 2>> border;
   param::HalfEdges half_edges;
   half_edges.build(piece.corners, piece.uvs.size());

@@ -9,6 +9,13 @@
 
 namespace atlas {
 
+// Those triangles with their coordinates and vertices, numbered anew; nothing is measured.
+FlatChart take_triangles(const FlatChart& whole, std::span<const std::uint32_t> triangles);
+
+// Measures piece.distortion (mesh: the piece's own, relative to some origin). Where it exceeds
+// max_stretch the coordinates are relaxed, if that brings them within it.
+void keep_to_bound(const LocalMesh& mesh, double max_stretch, FlatChart& piece);
+
 // `triangles`: places in whole.triangles, ascending, at least one. They keep their coordinates but
 // for the turn that packing wants, or are relaxed where they exceed max_stretch by themselves, if
 // that helps; size, cone and distortion are measured anew.

@@ -1,0 +1,119 @@
+// Charts cut to a length.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libatlas/charts/tiles.h"
+#include "tests/charts/chart_checks.h"
+
+namespace atlas::test {
+namespace {
+
+constexpr double kMaxStretch = ChartOptions{}.max_stretch;
+
+ChartSet charts_of(const Mesh& mesh) {
+  auto charts = make_charts(mesh.view(), {}, {});
+  EXPECT_TRUE(charts.ok()) << charts.status().message();
+  return std::move(*charts);
+}
+
+double longest(const ChartSet& set) {
+  double length = 0;
+  for (const Chart& chart : set.charts) length = std::max(length, chart.size.x);
+  return length;
+}
+
+std::size_t cut(const Mesh& mesh, double limit, ChartSet& set) {
+  return cut_to_limits(mesh.view(), std::vector<double>(set.charts.size(), limit), kMaxStretch,
+                       set);
+}
+
+double longest_edge(const Mesh& mesh, std::uint32_t t) {
+  double length = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3f a = mesh.positions[mesh.indices[3 * t + k]],
+                b = mesh.positions[mesh.indices[3 * t + (k + 1) % 3]];
+    length = std::max(length, std::hypot(double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z));
+  }
+  return length;
+}
+
+TEST(Tiles, KeepWhatChartsPromise) {
+  for (const Shape& shape : zoo()) {
+    const Mesh mesh(shape);
+    const ChartSet whole = charts_of(mesh);
+    for (const double share : {0.7, 0.3}) {
+      const double limit = share * longest(whole);
+      ChartSet pieces = whole;
+      const std::size_t count = cut(mesh, limit, pieces);
+      const ChartFindings found = check_charts(mesh.view(), pieces);
+      EXPECT_EQ(found.fault, "") << shape.name << ' ' << share;
+      EXPECT_LE(found.stretch_999, kMaxStretch * (1 + 1e-6)) << shape.name << ' ' << share;
+      EXPECT_NEAR(found.seam, pieces.seam_length, 1e-4 * (1 + found.seam)) << shape.name;
+      EXPECT_NEAR(found.stretch_l2, pieces.distortion.stretch_l2, 1e-3) << shape.name;
+      EXPECT_EQ(count > 0, pieces.charts.size() > whole.charts.size()) << shape.name;
+      for (const Chart& chart : pieces.charts) {
+        if (chart.size.x <= limit * (1 + 1e-9)) continue;
+        double edge = 0;
+        for (std::uint32_t i = 0; i < chart.triangle_count; ++i)
+          edge =
+              std::max(edge, longest_edge(mesh, pieces.chart_triangles[chart.first_triangle + i]));
+        EXPECT_GT(edge, limit / kMaxStretch) << shape.name << ": more than one triangle too long";
+      }
+    }
+  }
+}
+
+// Each cut of a regular strip runs straight across it.
+TEST(Tiles, AreCutAcross) {
+  const Mesh mesh(grid(200, 5, 40, 1));
+  ChartSet set = charts_of(mesh);
+  ASSERT_EQ(set.charts.size(), 1u);
+  EXPECT_EQ(cut(mesh, 10.5, set), 1u);
+  EXPECT_EQ(set.charts.size(), 4u);
+  EXPECT_NEAR(set.seam_length, 3, 1e-3);
+  EXPECT_EQ(check_charts(mesh.view(), set).fault, "");
+}
+
+TEST(Tiles, WhatIsWithinItsLimitStays) {
+  const Mesh mesh(together(grid(9, 9), moved(grid(100, 4, 20, 0.5), 1, {0, 2, 0})));
+  const ChartSet whole = charts_of(mesh);
+  ChartSet set = whole;
+  EXPECT_EQ(cut(mesh, 1000, set), 0u);
+  EXPECT_EQ(bytes(set), bytes(whole));
+}
+
+// A spike of less than a thousandth of a sheet may stretch as it likes, but not in a small piece.
+TEST(Tiles, APieceKeepsToTheBoundThatTheWholeKeeps) {
+  Shape sheet = grid(60, 60);
+  const std::uint32_t middle = 61 * 30 + 30;
+  sheet.positions[middle].z = 0.03f;
+  const Mesh mesh(sheet);
+  ChartSet set = charts_of(mesh);
+  ASSERT_EQ(set.charts.size(), 1u);
+  ASSERT_GT(set.charts[0].distortion.stretch_linf, 1.5);
+  EXPECT_EQ(cut(mesh, 0.15, set), 1u);
+  const ChartFindings found = check_charts(mesh.view(), set);
+  EXPECT_EQ(found.fault, "");
+  EXPECT_LE(found.stretch_999, kMaxStretch * (1 + 1e-6));
+}
+
+// Triangles without area go where their edge or corner is.
+TEST(Tiles, TakeTrianglesWithoutAreaAlong) {
+  Shape sheet = grid(40, 4, 10, 1);
+  const auto vertex = [](int x, int y) { return std::uint32_t(41 * y + x); };
+  for (int x = 1; x < 40; x += 3) {
+    const std::uint32_t a = vertex(x, 2), b = vertex(x + 1, 2);
+    sheet.indices.insert(sheet.indices.end(), {a, b, b, a, a, a});
+  }
+  const Mesh mesh(sheet);
+  ChartSet set = charts_of(mesh);
+  ASSERT_GT(set.repairs.degenerate_triangles, 20u);
+  EXPECT_EQ(cut(mesh, 2.6, set), 1u);
+  EXPECT_EQ(set.charts.size(), 4u);
+  EXPECT_EQ(check_charts(mesh.view(), set).fault, "");
+}
+
+}  // namespace
+}  // namespace atlas::test

@@ -1,0 +1,80 @@
+// Uvs without light on square pages and on several: long and large charts leave none of them empty.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "libatlas/pipeline/unwrap.h"
+#include "tests/support/shapes.h"
+
+namespace atlas::test {
+namespace {
+
+MeshView view_of(const Shape& shape) {
+  MeshView view;
+  view.positions = shape.positions;
+  view.indices = shape.indices;
+  return view;
+}
+
+UnwrappedMesh unwrap(const Shape& shape, UnwrapOptions options, double min_fill = 0.72) {
+  options.charts.min_fill = min_fill;
+  auto mesh = unwrap_mesh(view_of(shape), options, {});
+  EXPECT_TRUE(mesh.ok()) << mesh.status().message();
+  return std::move(*mesh);
+}
+
+// A plate, and a strip five times as long as a page of both.
+Shape plate_and_strip() {
+  return together(grid(9, 9, 1, 1), moved(grid(240, 2, 6, 0.05), 1, {0, 2, 0}));
+}
+
+TEST(FillPages, AStripIsCutForASquarePage) {
+  const UnwrapOptions square{.page_size = 512, .square = true};
+  const UnwrappedMesh whole = unwrap(plate_and_strip(), square, 0),
+                      cut = unwrap(plate_and_strip(), square);
+  EXPECT_EQ(whole.charts.charts.size(), 2u);
+  EXPECT_LT(whole.utilization, 0.1);
+  EXPECT_GT(cut.utilization, 0.6);
+  EXPECT_EQ(cut.pages[0].width, cut.pages[0].height);
+  EXPECT_LE(cut.charts.charts.size(), 9u);
+  EXPECT_NEAR(cut.charts.seam_length, 0.05 * double(cut.charts.charts.size() - 2), 0.02);
+}
+
+// One sheet as large as four pages.
+TEST(FillPages, ASheetIsCutForSeveralPages) {
+  const UnwrapOptions four{.pages = 4, .page_size = 256};
+  const UnwrappedMesh whole = unwrap(grid(64, 64), four, 0), cut = unwrap(grid(64, 64), four);
+  EXPECT_EQ(whole.pages.size(), 1u);
+  EXPECT_EQ(cut.pages.size(), 4u);
+  EXPECT_GT(cut.utilization, 0.65);
+  EXPECT_GT(cut.texels_per_unit, 1.6 * whole.texels_per_unit);
+}
+
+TEST(FillPages, WhatFitsAsDenseAsItIsWantedStaysWhole) {
+  const UnwrappedMesh mesh =
+      unwrap(plate_and_strip(), {.page_size = 1024, .texels_per_unit = 20, .square = true});
+  EXPECT_EQ(mesh.charts.charts.size(), 5u);  // as make_charts() cuts them for a page of any shape
+  EXPECT_DOUBLE_EQ(mesh.texels_per_unit, 20);
+}
+
+TEST(FillPages, GivenChartsStayWhole) {
+  const Shape shape = plate_and_strip();
+  std::vector<Vec2f> uvs;
+  for (const Vec3f& p : shape.positions) uvs.push_back({p.x / 8, p.y / 8});
+  MeshView view = view_of(shape);
+  view.texcoords = uvs;
+  UnwrapOptions options{.page_size = 512, .square = true};
+  options.charts.keep_uv_charts = true;
+  const auto kept = unwrap_mesh(view, options, {});
+  ASSERT_TRUE(kept.ok()) << kept.status().message();
+  EXPECT_EQ(kept->charts.charts.size(), 2u);
+}
+
+// A round chart on a square page is as good as it gets: seams would cost more than they bring.
+TEST(FillPages, SeamsMustBeWorthIt) {
+  const UnwrapOptions square{.page_size = 512, .square = true};
+  EXPECT_EQ(unwrap(cap(64, 24, 0.3), square).charts.charts.size(), 1u);
+}
+
+}  // namespace
+}  // namespace atlas::test
