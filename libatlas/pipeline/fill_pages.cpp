@@ -25,11 +25,10 @@ Result<PageLayout> lay_out(const ChartSet& charts, double density, const LayoutO
   return lay_out_pages(charts, densities, options, context);
 }
 
-// The side of each of so many square pages that all charts would fill without gaps.
-double full_side(const ChartSet& charts, std::uint32_t pages) {
+double uv_area(const ChartSet& charts) {
   double area = 0;
   for (const Chart& chart : charts.charts) area += chart.distortion.uv_area;
-  return std::sqrt(area / double(pages));
+  return area;
 }
 
 }  // namespace
@@ -38,10 +37,15 @@ Result<PageLayout> fill_pages(const PlainUvs& uvs, const LayoutOptions& options,
                               const Context& context) {
   Result<PageLayout> best = lay_out(charts, uvs.density, options, context);
   if (options.free_aspect || uvs.options.keep_uv_charts || uvs.options.min_fill <= 0) return best;
-  const auto filled = [&] { return best->scale >= 1 || best->uv_utilization >= kFilled; };
+  const double area = uv_area(charts), root_area = std::sqrt(charts.surface_area);
+  const auto filled = [&] {  // of all pages there may be
+    const double texels = double(options.pages) * options.page_size * options.page_size;
+    const double density = uvs.density * best->scale;
+    return best->scale >= 1 || area * density * density >= kFilled * texels;
+  };
   if (!best.ok() || filled()) return best;
   const ChartSet whole = charts;
-  const double side = full_side(whole, options.pages), root_area = std::sqrt(whole.surface_area);
+  const double side = std::sqrt(area / double(options.pages));
   for (const double longest : kLongestSides) {
     const std::vector<double> limits(whole.charts.size(), longest * side);
     ChartSet cut = whole;

@@ -87,12 +87,12 @@ TEST(Tiles, WhatIsWithinItsLimitStays) {
 // A spike of less than a thousandth of a sheet may stretch as it likes, but not in a small piece.
 TEST(Tiles, APieceKeepsToTheBoundThatTheWholeKeeps) {
   Shape sheet = grid(60, 60);
-  const std::uint32_t middle = 61 * 30 + 30;
-  sheet.positions[middle].z = 0.03f;
+  for (Vec3f& p : sheet.positions) p.z = 0.2f * (p.x * p.x - p.y * p.y);
+  sheet.positions[61 * 30 + 30].z += 0.014f;
   const Mesh mesh(sheet);
   ChartSet set = charts_of(mesh);
   ASSERT_EQ(set.charts.size(), 1u);
-  ASSERT_GT(set.charts[0].distortion.stretch_linf, 1.5);
+  ASSERT_GT(set.charts[0].distortion.stretch_linf, 1.3);
   EXPECT_EQ(cut(mesh, 0.15, set), 1u);
   const ChartFindings found = check_charts(mesh.view(), set);
   EXPECT_EQ(found.fault, "");
