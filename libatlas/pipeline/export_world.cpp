@@ -199,6 +199,7 @@ class Export {
 
   Status pack() {
     record_.begin("packing");
+    const std::size_t uncut = charts_.charts.size();
     LayoutOptions layout;
     layout.page_size = page_size();
     layout.preset = options_.packing;
@@ -225,9 +226,11 @@ class Export {
     report_.utilization = layout_.utilization;
     report_.uv_utilization = layout_.uv_utilization;
     report_.outlines = layout_.outlines;
-    record_.finish({charts_.charts.size(), layout_.pages.size(), "pages",
-                    fmt::format("scale {:.3f}, {:.0f} % used by charts", layout_.scale,
-                                100 * layout_.uv_utilization)});
+    std::string quality = fmt::format("scale {:.3f}, {:.0f} % used by charts", layout_.scale,
+                                      100 * layout_.uv_utilization);
+    if (charts_.charts.size() > uncut)
+      quality += fmt::format(", cut into {}", charts_.charts.size());
+    record_.finish({uncut, layout_.pages.size(), "pages", quality});
     if (!plan_.bake) {
       for (const Extent& page : layout_.pages) {
         report_.pages.push_back({"", page.width, page.height, 0, 0});

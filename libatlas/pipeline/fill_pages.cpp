@@ -11,9 +11,13 @@
 namespace atlas {
 namespace {
 
-// Of the pages, what is full enough.
-constexpr double kFilled = 0.7;
-// Of the side of a page that all charts would fill without gaps: how long charts may be, in turn.
+// Of the pages, what is full enough; of one that takes the shape that suits its charts best, too.
+constexpr double kFilled = 0.7, kFilledFree = 0.65;
+// Such a page is packed with more work where it is poor (page_layout.cpp), which takes seconds each
+// time with more charts than this.
+constexpr std::size_t kMostChartsFree = 300;
+// Of the side of a square page that all charts would fill without gaps: how long charts may be, in
+// turn.
 constexpr std::array kLongestSides{1.1, 0.9, 0.75, 0.6, 0.45};
 // By how much more charts must cover for pieces to be worth it, at least, and for each square root
 // of the surface's area that seams become longer by.
@@ -31,19 +35,32 @@ double uv_area(const ChartSet& charts) {
   return area;
 }
 
+// How well layouts fill the pages that there may be.
+struct Goal {
+  const LayoutOptions& options;
+  double texels;  // of the charts at scale 1
+
+  double covered(const PageLayout& layout) const {
+    if (options.free_aspect) return layout.uv_utilization;
+    const double room = double(options.pages) * options.page_size * options.page_size;
+    return texels * layout.scale * layout.scale / room;
+  }
+  bool reached(const PageLayout& layout) const {
+    const bool dense = !options.free_aspect && layout.scale >= 1;
+    return dense || covered(layout) >= (options.free_aspect ? kFilledFree : kFilled);
+  }
+};
+
 }  // namespace
 
 Result<PageLayout> fill_pages(const PlainUvs& uvs, const LayoutOptions& options, ChartSet& charts,
                               const Context& context) {
   Result<PageLayout> best = lay_out(charts, uvs.density, options, context);
-  if (options.free_aspect || uvs.options.keep_uv_charts || uvs.options.min_fill <= 0) return best;
   const double area = uv_area(charts), root_area = std::sqrt(charts.surface_area);
-  const auto filled = [&] {  // of all pages there may be
-    const double texels = double(options.pages) * options.page_size * options.page_size;
-    const double density = uvs.density * best->scale;
-    return best->scale >= 1 || area * density * density >= kFilled * texels;
-  };
-  if (!best.ok() || filled()) return best;
+  const Goal goal{options, area * uvs.density * uvs.density};
+  const bool may_cut = uvs.options.min_fill > 0 && !uvs.options.keep_uv_charts &&
+                       (!options.free_aspect || charts.charts.size() <= kMostChartsFree);
+  if (!may_cut || !best.ok() || goal.reached(*best)) return best;
   const ChartSet whole = charts;
   const double side = std::sqrt(area / double(options.pages));
   for (const double longest : kLongestSides) {
@@ -52,12 +69,12 @@ Result<PageLayout> fill_pages(const PlainUvs& uvs, const LayoutOptions& options,
     if (cut_to_limits(uvs.mesh, limits, uvs.options.max_stretch, cut) == 0) continue;
     Result<PageLayout> layout = lay_out(cut, uvs.density, options, context);
     if (!layout.ok()) return layout;
-    const double gain = std::pow(layout->scale / best->scale, 2) - 1;
+    const double gain = goal.covered(*layout) / goal.covered(*best) - 1;
     const double seams = (cut.seam_length - charts.seam_length) / root_area;
     if (!(gain >= std::max(kLeastGain, kSeamPrice * seams))) continue;
     best = std::move(layout);
     charts = std::move(cut);
-    if (filled()) break;
+    if (goal.reached(*best)) break;
   }
   return best;
 }

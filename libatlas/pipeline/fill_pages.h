@@ -14,13 +14,12 @@ struct PlainUvs {
   double density;               // texels along a unit of length, of all charts
 };
 
-// Lays out `charts` with one density. A strip that is longer than a square page, or a chart that is
-// larger than each of several pages, makes all charts small. Where pages stay poorly filled by such
-// charts, they are cut (cut_to_limits) to ever smaller parts of a page's side, as long as that lets
-// the common scale grow by more than what further seams are worth; `charts` are then those laid
-// out. Not with ChartOptions::min_fill = 0 or keep_uv_charts, nor where everything fits as dense as
-// it is wanted, nor on a page that may take any shape (LayoutOptions::free_aspect). Errors: those
-// of lay_out_pages.
+// Lays out `charts` with one density. A strip longer than a square page makes all charts small, and
+// so does a chart larger than each of several pages. Where pages stay poorly filled, charts are cut
+// (cut_to_limits) to ever smaller parts of a page's side, as long as what they cover grows by more
+// than further seams are worth; `charts` are then those laid out.
+// Not with ChartOptions::min_fill = 0 or keep_uv_charts, nor where everything fits as dense as it
+// is wanted. Errors: those of lay_out_pages.
 Result<PageLayout> fill_pages(const PlainUvs& uvs, const LayoutOptions& options, ChartSet& charts,
                               const Context& context);
 
