@@ -143,11 +143,15 @@ class Rebuilder {
 
   // Whether there is more than one piece.
   bool divide(const Chart& old, double limit, double max_stretch) {
-    // Of a chart that itself exceeds the bound, as given ones may, more is not asked.
-    if (old.distortion.stretch_999 > max_stretch) {
-      max_stretch = std::numeric_limits<double>::infinity();
+    FlatChart whole = flat(old);
+    if (whole.triangles.empty()) {
+      keep(old);
+      return false;
     }
-    std::vector<FlatChart> pieces = Tiler(mesh_, limit, max_stretch).run(flat(old));
+    // Given charts keep their shapes; what itself exceeds the bound is not asked for more.
+    const bool bounded = !old.kept && old.distortion.stretch_999 <= max_stretch;
+    if (!bounded) max_stretch = std::numeric_limits<double>::infinity();
+    std::vector<FlatChart> pieces = Tiler(mesh_, limit, max_stretch).run(std::move(whole));
     if (pieces.size() < 2) {
       keep(old);
       return false;

@@ -12,7 +12,8 @@ namespace atlas {
 // along edges near the even share: on regular meshes it is straight. Pieces keep their parent's
 // uvs, shifted (and turned by 90 degrees where that lays their long side along u), and so its
 // injectivity. What stretched a small part of a chart by more than max_stretch may be a large part
-// of a piece: such a piece is relaxed, or cut further; not so where the parent itself exceeds it.
+// of a piece: such a piece is relaxed, or cut further; not so where the parent itself exceeds it
+// or was given (Chart::kept).
 // Each piece hangs together by edges. Cone and axis stay the parent's; distortion is measured anew,
 // the total as well. Charts within their limit keep their order; pieces follow in place of their
 // parent. Returns how many charts were cut.

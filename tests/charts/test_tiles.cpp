@@ -99,6 +99,29 @@ TEST(Tiles, APieceKeepsToTheBoundThatTheWholeKeeps) {
   EXPECT_LE(found.stretch_999, kMaxStretch * (1 + 1e-6));
 }
 
+double uv_edge(const ChartSet& set, std::size_t corner) {
+  const Vec2d a = set.uvs[set.triangle_uv[corner]],
+              b = set.uvs[set.triangle_uv[corner % 3 == 2 ? corner - 2 : corner + 1]];
+  return std::hypot(a.x - b.x, a.y - b.y);
+}
+
+// However much they stretch.
+TEST(Tiles, PiecesOfGivenChartsKeepTheirShape) {
+  Mesh mesh(grid(24, 6, 4, 1));
+  for (const Vec3f& p : mesh.positions) mesh.texcoords.push_back({p.x / 4, p.y / 12});
+  mesh.texcoord_indices = mesh.indices;
+  auto given = make_charts(mesh.view(), {.keep_uv_charts = true}, {});
+  ASSERT_TRUE(given.ok()) << given.status().message();
+  ASSERT_EQ(given->charts.size(), 1u);
+  ASSERT_GT(given->charts[0].distortion.stretch_999, 1.5);
+  ChartSet pieces = *given;
+  EXPECT_EQ(cut(mesh, given->charts[0].size.x / 3.5, pieces), 1u);
+  EXPECT_EQ(pieces.charts.size(), 4u);
+  for (const Chart& chart : pieces.charts) EXPECT_TRUE(chart.kept);
+  for (std::size_t corner = 0; corner < mesh.indices.size(); ++corner)
+    ASSERT_NEAR(uv_edge(pieces, corner), uv_edge(*given, corner), 1e-9);
+}
+
 // Triangles without area go where their edge or corner is.
 TEST(Tiles, TakeTrianglesWithoutAreaAlong) {
   Shape sheet = grid(40, 4, 10, 1);

@@ -12,8 +12,7 @@ namespace atlas {
 
 inline constexpr float kFar = std::numeric_limits<float>::infinity();
 
-// From seed s over a step to a place with normal n: its length times (1 + 8 (1 - n·n_s)); the 8 is
-// a published figure (docs/charts-method.md, Cells).
+// From seed s over a step to a place with normal n: its length times (1 + 8 (1 - n·n_s)).
 inline float cell_distance(float step, const glm::vec3& normal, const glm::vec3& axis) {
   constexpr float normal_weight = 8;
   return step * (1 + normal_weight * (1 - glm::dot(normal, axis)));
