@@ -80,6 +80,7 @@ Status draw_charts(const std::vector<LoadedScene>& meshes, const std::filesystem
     ExportOptions options;
     options.target = folder.path / "out.obj";
     options.charts_only = true;
+    options.square_plain_page = true;  // narrow ones would be small in the picture
     const Result<ExportReport> report = export_world(loaded, options, {}, context);
     if (!report.ok()) return report.status();
     Result<test::UvMesh> mesh = test::read_uv_obj(options.target);
