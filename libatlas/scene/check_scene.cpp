@@ -6,6 +6,8 @@
 #include <cmath>
 #include <span>
 
+#include "libatlas/image/file_kind.h"
+
 namespace atlas {
 namespace {
 
@@ -47,6 +49,12 @@ Status check_vertices(const Scene& scene) {
     return wrong("illumination[{}] is not finite (where it is unknown, 0 leaves it black)", v);
   if (const std::size_t v = first_not_finite(scene.texcoords); v < scene.texcoords.size())
     return wrong("texcoords[{}] is not finite", v);
+  for (std::size_t i = 0; i < scene.normals.size(); ++i) {
+    const Vec3f& n = scene.normals[i];
+    const double length = std::hypot(double(n.x), double(n.y), double(n.z));
+    if (!(std::abs(length - 1) <= 0.01))
+      return wrong("normals[{}] has length {:g} (must be 1)", i, length);
+  }
   return {};
 }
 
@@ -75,6 +83,8 @@ Status check_triangles(const Scene& scene) {
     s = one_each("triangle_object", scene.triangle_object.size(), triangles);
   if (s.ok() && !scene.texcoord_indices.empty())
     s = one_each("texcoord_indices", scene.texcoord_indices.size(), corners);
+  if (s.ok() && !scene.normal_indices.empty())
+    s = one_each("normal_indices", scene.normal_indices.size(), corners);
   if (s.ok())
     s = check_range("triangle_material", scene.triangle_material, scene.materials.size(),
                     "materials");
@@ -84,6 +94,8 @@ Status check_triangles(const Scene& scene) {
   if (s.ok())
     s = check_range("texcoord_indices", scene.texcoord_indices, scene.texcoords.size(), "texcoords",
                     true);
+  if (s.ok())
+    s = check_range("normal_indices", scene.normal_indices, scene.normals.size(), "normals", true);
   return s;
 }
 
@@ -97,6 +109,12 @@ Status check_materials(const Scene& scene) {
   }
   for (std::size_t i = 0; i < scene.textures.size(); ++i) {
     const Image8& image = scene.textures[i].image;
+    const auto& encoded = scene.textures[i].encoded;
+    if (!encoded.empty() && !image.empty())
+      return wrong("textures[{}] has both image and encoded (one of them must be empty)", i);
+    if (!encoded.empty() && image_extension(encoded).empty())
+      return wrong("the encoded of textures[{}] is neither a PNG nor a JPEG file", i);
+    if (!encoded.empty()) continue;
     if (image.empty() || !image.whole())
       return wrong("the image of textures[{}] is {} x {} with {} channels, but holds {} values", i,
                    image.width, image.height, image.channels, image.texels.size());
@@ -111,6 +129,14 @@ Status check_scene(const Scene& scene) {
   if (s.ok()) s = check_triangles(scene);
   if (s.ok()) s = check_materials(scene);
   return s;
+}
+
+Status check_images(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.textures.size(); ++i) {
+    if (scene.textures[i].image.empty())
+      return wrong("textures[{}] has no image to bake (read it without encoded_textures)", i);
+  }
+  return {};
 }
 
 Status complete_scene(Scene& scene) {

@@ -11,6 +11,10 @@ namespace atlas {
 // takes a Scene presumes it. Linear. Error: bad_input, naming array and element.
 Status check_scene(const Scene& scene);
 
+// Whether every texture has its image, and none is encoded: what samples textures presumes it.
+// Error: bad_input, naming the first.
+Status check_images(const Scene& scene);
+
 // Fills in what positions and indices alone leave open, one white material and one object for all
 // triangles, each where its arrays are empty; then check_scene().
 Status complete_scene(Scene& scene);

@@ -23,6 +23,9 @@ enum class DefectKind : std::uint8_t {
   texcoord_out_of_range,    // triangle kept without texture coordinates: no such coordinate
   texcoord_partial,         // triangle kept without texture coordinates: some corners lack one
   texcoord_not_finite,      // texture coordinate replaced by (0, 0)
+  normal_out_of_range,      // triangle kept without normals: no such normal
+  normal_partial,           // triangle kept without normals: some corners lack one
+  normal_unusable,          // normal of no direction or not finite: that of its triangles instead
   illumination_not_finite,  // value replaced by 0
   illumination_negative,    // value kept as it is
   illumination_missing,     // vertex without a value where others have one: 0

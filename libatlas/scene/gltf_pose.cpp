@@ -13,6 +13,21 @@ int attribute(const std::map<std::string, int>& attributes, const std::string& n
   return at == attributes.end() ? -1 : at->second;
 }
 
+std::vector<glm::dvec3> vectors(const std::vector<float>& values) {
+  std::vector<glm::dvec3> result(values.size() / 3);
+  for (std::size_t i = 0; i < result.size(); ++i)
+    result[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+  return result;
+}
+
+// What turns normals where `m` moves points: its inverse transpose but for a positive factor, in a
+// form that also exists where m flattens what it moves.
+glm::dmat3 normal_matrix(const glm::dmat4& m) {
+  const glm::dvec3 x(m[0]), y(m[1]), z(m[2]);
+  const glm::dmat3 cofactors(glm::cross(y, z), glm::cross(z, x), glm::cross(x, y));
+  return glm::dot(x, cofactors[0]) < 0 ? -1.0 * cofactors : cofactors;
+}
+
 }  // namespace
 
 glm::dmat4 gltf_local_matrix(const tinygltf::Node& node) {
@@ -35,7 +50,8 @@ glm::dmat4 gltf_local_matrix(const tinygltf::Node& node) {
   return m;
 }
 
-GltfPose::GltfPose(const tinygltf::Model& model) : model_(model) {
+GltfPose::GltfPose(const tinygltf::Model& model, bool normals)
+    : model_(model), wants_normals_(normals) {
   parent_.assign(model.nodes.size(), -1);
   for (std::size_t i = 0; i < model.nodes.size(); ++i) {
     for (const int c : model.nodes[i].children) {
@@ -88,29 +104,38 @@ bool GltfPose::mirrors(const tinygltf::Node& node, const tinygltf::Primitive& pr
   return glm::determinant(glm::dmat3(bent.empty() ? world : bent[0])) < 0;
 }
 
+Status GltfPose::add_moves(int accessor, double weight, std::vector<glm::dvec3>& values) const {
+  auto moves = gltf_floats(model_, accessor, 3);
+  if (!moves.ok()) return moves.status();
+  if (moves->size() != 3 * values.size()) {
+    return {ErrorCode::bad_input, "has another number of values than one of its morph targets"};
+  }
+  const auto by = vectors(*moves);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] += weight * by[i];
+  return {};
+}
+
 Status GltfPose::morph(const tinygltf::Node& node, const tinygltf::Primitive& primitive,
-                       std::vector<glm::dvec3>& points) const {
+                       GltfVertices& vertices) const {
   const auto& weights =
       node.weights.empty() ? model_.meshes[std::size_t(node.mesh)].weights : node.weights;
   for (std::size_t t = 0; t < std::min(weights.size(), primitive.targets.size()); ++t) {
-    const int target = attribute(primitive.targets[t], "POSITION");
-    if (weights[t] == 0 || target < 0) continue;
-    auto moves = gltf_floats(model_, target, 3);
-    if (!moves.ok()) return moves.status();
-    if (moves->size() != 3 * points.size()) {
-      return {ErrorCode::bad_input,
-              fmt::format("has another number of positions than morph target {}", t)};
+    if (weights[t] == 0) continue;
+    const int position = attribute(primitive.targets[t], "POSITION");
+    if (position >= 0) {
+      if (Status s = add_moves(position, weights[t], vertices.positions); !s.ok()) return s;
     }
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const float* m = moves->data() + 3 * i;
-      points[i] += weights[t] * glm::dvec3(m[0], m[1], m[2]);
+    const int normal = attribute(primitive.targets[t], "NORMAL");
+    if (normal >= 0 && !vertices.normals.empty()) {
+      if (Status s = add_moves(normal, weights[t], vertices.normals); !s.ok()) return s;
     }
   }
   return {};
 }
 
 Status GltfPose::bend(const std::vector<glm::dmat4>& joints, const tinygltf::Primitive& primitive,
-                      std::vector<glm::dvec3>& points) const {
+                      GltfVertices& vertices) const {
+  std::vector<glm::dvec3>& points = vertices.positions;
   std::vector<glm::dmat4> blend(points.size(), glm::dmat4(0));
   std::vector<double> total(points.size(), 0);
   for (int set = 0;; ++set) {
@@ -133,28 +158,41 @@ Status GltfPose::bend(const std::vector<glm::dmat4>& joints, const tinygltf::Pri
   for (std::size_t i = 0; i < points.size(); ++i) {  // weights are rounded, and not always to 1
     const glm::dmat4& m = total[i] > 0 ? blend[i] / total[i] : joints[0];
     points[i] = glm::dvec3(m * glm::dvec4(points[i], 1));
+    if (!vertices.normals.empty()) vertices.normals[i] = normal_matrix(m) * vertices.normals[i];
   }
   return {};
 }
 
-Result<std::vector<glm::dvec3>> GltfPose::positions(const tinygltf::Node& node,
-                                                    const tinygltf::Primitive& primitive,
-                                                    const glm::dmat4& world) {
-  auto values = gltf_floats(model_, attribute(primitive.attributes, "POSITION"), 3);
-  if (!values.ok()) return values.status();
-  std::vector<glm::dvec3> points(values->size() / 3);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const float* p = values->data() + 3 * i;
-    points[i] = {p[0], p[1], p[2]};
+Status GltfPose::read(const tinygltf::Primitive& primitive, GltfVertices& vertices) const {
+  auto positions = gltf_floats(model_, attribute(primitive.attributes, "POSITION"), 3);
+  if (!positions.ok()) return positions.status();
+  vertices.positions = vectors(*positions);
+  const int normal = attribute(primitive.attributes, "NORMAL");
+  if (!wants_normals_ || normal < 0) return {};
+  auto normals = gltf_floats(model_, normal, 3);
+  if (!normals.ok()) return normals.status();
+  if (normals->size() != positions->size()) {
+    return {ErrorCode::bad_input, "has another number of normals than of positions"};
   }
-  if (Status s = morph(node, primitive, points); !s.ok()) return s;
+  vertices.normals = vectors(*normals);
+  return {};
+}
+
+Result<GltfVertices> GltfPose::vertices(const tinygltf::Node& node,
+                                        const tinygltf::Primitive& primitive,
+                                        const glm::dmat4& world) {
+  GltfVertices vertices;
+  if (Status s = read(primitive, vertices); !s.ok()) return s;
+  if (Status s = morph(node, primitive, vertices); !s.ok()) return s;
   const auto& bent = joints(node, primitive);
   if (!bent.empty()) {
-    if (Status s = bend(bent, primitive, points); !s.ok()) return s;
-    return points;
+    if (Status s = bend(bent, primitive, vertices); !s.ok()) return s;
+    return vertices;
   }
-  for (glm::dvec3& p : points) p = glm::dvec3(world * glm::dvec4(p, 1));
-  return points;
+  for (glm::dvec3& p : vertices.positions) p = glm::dvec3(world * glm::dvec4(p, 1));
+  const glm::dmat3 turn = normal_matrix(world);
+  for (glm::dvec3& n : vertices.normals) n = turn * n;
+  return vertices;
 }
 
 }  // namespace atlas

@@ -26,6 +26,13 @@ Vec3f three(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
+// As floats. A node's scale may lie beyond those; other lengths are left as the file has them.
+Vec3f direction(const glm::dvec3& v) {
+  const double length = glm::length(v);
+  const bool fits = length == 0 || (length > 1e-20 && length < 1e20);
+  return from_glm(glm::vec3(fits ? v : v / length));
+}
+
 bool hides(const tinygltf::Node& node) {
   const auto at = node.extensions.find("KHR_node_visibility");
   if (at == node.extensions.end() || !at->second.IsObject()) return false;
@@ -36,7 +43,7 @@ bool hides(const tinygltf::Node& node) {
 class GltfParser {
  public:
   GltfParser(const tinygltf::Model& model, SceneBuilder& builder, const Context& context)
-      : model_(model), builder_(builder), context_(context), pose_(model) {}
+      : model_(model), builder_(builder), context_(context), pose_(model, builder.wants_normals) {}
 
   Status run() {
     auto sets = add_gltf_materials(model_, builder_);
@@ -62,9 +69,16 @@ class GltfParser {
   }
 
  private:
+  // The builder's vertices of one set of attributes; normals, where it has any, are as many.
+  struct Vertices {
+    std::size_t first = 0, count = 0, first_normal = 0;
+    bool normals = false;
+  };
+
   struct Primitive {
     std::vector<std::uint32_t> corners;  // 3 a triangle, numbered within the primitive
-    std::size_t base = 0, texcoord_base = 0, texcoord_count = 0;
+    Vertices vertices;
+    std::size_t texcoord_base = 0, texcoord_count = 0;
     bool has_texcoords = false, mirrored = false;
     std::uint32_t material = 0, object = 0;
     std::string name;
@@ -155,8 +169,7 @@ class GltfParser {
     builder_.objects.push_back(!node.name.empty() ? node.name : mesh.name);
     // Primitives often share one set of vertices and differ in their indices and materials.
     using Attributes = std::map<std::string, int>;
-    std::map<std::pair<Attributes, std::vector<Attributes>>, std::pair<std::size_t, std::size_t>>
-        shared;
+    std::map<std::pair<Attributes, std::vector<Attributes>>, Vertices> shared;
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
       const tinygltf::Primitive& raw = mesh.primitives[p];
       Primitive primitive;
@@ -174,15 +187,15 @@ class GltfParser {
         });
         continue;
       }
-      const auto [at, is_new] = shared.try_emplace({raw.attributes, raw.targets},
-                                                   builder_.positions.size(), std::size_t{0});
+      const auto [at, is_new] = shared.try_emplace({raw.attributes, raw.targets});
       if (is_new) {
-        if (Status s = add_vertices(node, raw, matrix, primitive.name); !s.ok()) return s;
-        at->second.second = builder_.positions.size() - at->second.first;
+        auto added = add_vertices(node, raw, matrix, primitive.name);
+        if (!added.ok()) return added.status();
+        at->second = *added;
       }
-      primitive.base = at->second.first;
+      primitive.vertices = at->second;
       if (Status s = add_texcoords(raw, primitive); !s.ok()) return s;
-      if (Status s = add_corners(raw, mode, at->second.second, primitive); !s.ok()) return s;
+      if (Status s = add_corners(raw, mode, primitive); !s.ok()) return s;
       primitives_.push_back(std::move(primitive));
     }
     return {};
@@ -200,23 +213,25 @@ class GltfParser {
     return at == raw.attributes.end() ? -1 : at->second;
   }
 
-  Status add_vertices(const tinygltf::Node& node, const tinygltf::Primitive& raw,
-                      const glm::dmat4& matrix, const std::string& where) {
+  Result<Vertices> add_vertices(const tinygltf::Node& node, const tinygltf::Primitive& raw,
+                                const glm::dmat4& matrix, const std::string& where) {
     if (attribute(raw, "POSITION") < 0) return malformed(where, "has no POSITION");
     if (attributes_are_compressed(raw)) {
-      return {ErrorCode::unsupported,
-              fmt::format("{}: {} holds nothing but KHR_draco_mesh_compression, which is not "
-                          "supported (export without it)",
-                          builder_.file, where)};
+      return Status{ErrorCode::unsupported,
+                    fmt::format("{}: {} holds nothing but KHR_draco_mesh_compression, which is not "
+                                "supported (export without it)",
+                                builder_.file, where)};
     }
-    auto positions = pose_.positions(node, raw, matrix);
-    if (!positions.ok()) return malformed(where, positions.status().message());
-    const std::size_t count = positions->size(), base = builder_.positions.size();
-    for (const glm::dvec3& p : *positions) builder_.positions.push_back(from_glm(p));
+    auto posed = pose_.vertices(node, raw, matrix);
+    if (!posed.ok()) return malformed(where, posed.status().message());
+    const std::size_t count = posed->positions.size(), base = builder_.positions.size();
+    for (const glm::dvec3& p : posed->positions) builder_.positions.push_back(from_glm(p));
+    const Vertices added{base, count, builder_.normals.size(), !posed->normals.empty()};
+    for (const glm::dvec3& n : posed->normals) builder_.normals.push_back(direction(n));
     int values = attribute(raw, "_ILLUMINANCE");
     if (values < 0) values = attribute(raw, "COLOR_0");
     builder_.illumination.resize(base + count, {NAN, NAN, NAN});
-    if (values < 0) return {};
+    if (values < 0) return added;
     auto light = gltf_floats(model_, values, 3);
     if (!light.ok()) return malformed(where, light.status().message());
     if (light->size() != 3 * count) {
@@ -225,7 +240,7 @@ class GltfParser {
     for (std::size_t i = 0; i < count; ++i) builder_.illumination[base + i] = three(*light, i);
     lit_ranges_.emplace_back(base, base + count);
     coloured_ += count;
-    return {};
+    return added;
   }
 
   Status add_texcoords(const tinygltf::Primitive& raw, Primitive& primitive) {
@@ -247,8 +262,8 @@ class GltfParser {
     return {};
   }
 
-  Status add_corners(const tinygltf::Primitive& raw, int mode, std::size_t vertices,
-                     Primitive& primitive) {
+  Status add_corners(const tinygltf::Primitive& raw, int mode, Primitive& primitive) {
+    const std::size_t vertices = primitive.vertices.count;
     std::vector<std::uint32_t> list;
     if (raw.indices >= 0) {
       auto indices = gltf_integers(model_, raw.indices);
@@ -306,16 +321,18 @@ class GltfParser {
   }
 
   void add_face(const Primitive& p, std::size_t t) {
-    std::int64_t vertices[3], uvs[3];
+    std::int64_t vertices[3], uvs[3], normals[3];
     for (int c = 0; c < 3; ++c) {
       const std::uint32_t local = p.corners[3 * t + (p.mirrored ? 2 - c : c)];
-      vertices[c] = local == kOutside ? -1 : static_cast<std::int64_t>(p.base + local);
+      vertices[c] = local == kOutside ? -1 : static_cast<std::int64_t>(p.vertices.first + local);
+      normals[c] = static_cast<std::int64_t>(p.vertices.first_normal + local);
       // What follows in the list belongs to other primitives.
       uvs[c] = local < p.texcoord_count ? static_cast<std::int64_t>(p.texcoord_base + local)
                                         : static_cast<std::int64_t>(builder_.texcoords.size());
     }
-    const std::span<const std::int64_t> all_uvs(uvs);
-    builder_.add_face(vertices, p.has_texcoords ? all_uvs : all_uvs.first(0),
+    const std::span<const std::int64_t> all_uvs(uvs), all_normals(normals);
+    builder_.add_face({vertices, p.has_texcoords ? all_uvs : all_uvs.first(0),
+                       p.vertices.normals ? all_normals : all_normals.first(0)},
                       [&] { return fmt::format("{}: {} triangle {}", builder_.file, p.name, t); });
   }
 

@@ -12,7 +12,8 @@
 namespace atlas {
 namespace {
 
-// Keywords of the format that carry nothing for us: normals, smoothing, and settings of viewers.
+// Keywords of the format that carry nothing for us: smoothing, settings of viewers, and normals
+// that nobody asked for.
 constexpr std::string_view kSilent[] = {"vn",     "vp",       "s",          "mg",
                                         "bevel",  "c_interp", "lod",        "usemap",
                                         "maplib", "d_interp", "shadow_obj", "trace_obj"};
@@ -24,10 +25,10 @@ std::int32_t clamp_index(std::int64_t index) {
 
 class Parser {
  public:
-  Parser(const char* begin, const char* end) : scan_(begin, end) {
+  Parser(const char* begin, const char* end, bool normals) : scan_(begin, end), normals_(normals) {
     const auto bytes = static_cast<std::size_t>(end - begin);
     chunk_.positions.reserve(bytes / 100);  // typical: 100 bytes a vertex with its two faces
-    chunk_.corner_position.reserve(bytes / 16);
+    chunk_.position.index.reserve(bytes / 16);
     chunk_.face_end.reserve(bytes / 48);
     chunk_.face_line.reserve(bytes / 48);
   }
@@ -48,6 +49,7 @@ class Parser {
     if (keyword == "v") return parse_position();
     if (keyword == "f" || keyword == "fo") return parse_face();
     if (keyword == "vt") return parse_texcoord();
+    if (keyword == "vn" && normals_) return parse_normal();
     if (keyword == "o") return add_event(ObjEvent::object);
     if (keyword == "g") return add_event(ObjEvent::group);
     if (keyword == "usemtl") return add_event(ObjEvent::material);
@@ -113,6 +115,14 @@ class Parser {
     if (count > 0) chunk_.texcoords.push_back({float(n[0]), float(n[1])});
   }
 
+  void parse_normal() {
+    double n[3];
+    const int count = parse_numbers(n, 3, "normal (vn x y z)");
+    if (count < 0) return;
+    if (count < 3) return fail(fmt::format("a normal needs 3 numbers; it has {}", count));
+    chunk_.normals.push_back({float(n[0]), float(n[1]), float(n[2])});
+  }
+
   void parse_face() {
     while (!scan_.at_line_end()) {
       if (!parse_corner()) {
@@ -120,40 +130,43 @@ class Parser {
                                 scan_.word().substr(0, 40)));
       }
     }
-    chunk_.face_end.push_back(static_cast<std::uint32_t>(chunk_.corner_position.size()));
+    chunk_.face_end.push_back(static_cast<std::uint32_t>(chunk_.position.index.size()));
     chunk_.face_line.push_back(line_);
   }
 
   bool parse_corner() {
-    std::int64_t v = 0, t = 0, normal = 0;
-    bool has_t = false;
+    std::int64_t v = 0, t = 0, n = 0;
+    bool has_t = false, has_n = false;
     if (!scan_.integer_here(v)) return false;
     if (scan_.take('/')) {  // what follows may be left out: v/, v// and v/vt/ are written, too
       has_t = scan_.integer_here(t);
-      if (scan_.take('/')) scan_.integer_here(normal);
+      if (scan_.take('/')) has_n = scan_.integer_here(n);
     }
     if (!scan_.at_blank()) return false;
-    chunk_.corner_position.push_back(
-        resolve(v, chunk_.positions.size(), chunk_.relative_position, chunk_.corner_position));
-    if (has_t && chunk_.corner_texcoord.empty()) {
-      chunk_.corner_texcoord.reserve(chunk_.corner_position.capacity());
-      chunk_.corner_texcoord.resize(chunk_.corner_position.size() - 1, ObjChunk::kNoUv);
-    }
-    if (has_t) {
-      chunk_.corner_texcoord.push_back(
-          resolve(t, chunk_.texcoords.size(), chunk_.relative_texcoord, chunk_.corner_texcoord));
-    } else if (!chunk_.corner_texcoord.empty()) {
-      chunk_.corner_texcoord.push_back(ObjChunk::kNoUv);
-    }
+    add_index(v, chunk_.positions.size(), chunk_.position);
+    add_attribute(has_t, t, chunk_.texcoords.size(), chunk_.texcoord);
+    if (normals_) add_attribute(has_n, n, chunk_.normals.size(), chunk_.normal);
     return true;
   }
 
-  static std::int32_t resolve(std::int64_t index, std::size_t so_far,
-                              std::vector<std::uint32_t>& relative,
-                              const std::vector<std::int32_t>& corners) {
-    if (index >= 0) return clamp_index(index - 1);
-    relative.push_back(static_cast<std::uint32_t>(corners.size()));
-    return clamp_index(static_cast<std::int64_t>(so_far) + index);
+  static void add_index(std::int64_t index, std::size_t so_far, ObjChunk::Corners& corners) {
+    if (index < 0) corners.relative.push_back(static_cast<std::uint32_t>(corners.index.size()));
+    corners.index.push_back(
+        clamp_index(index < 0 ? static_cast<std::int64_t>(so_far) + index : index - 1));
+  }
+
+  // Of the corner whose position has been added last.
+  void add_attribute(bool given, std::int64_t index, std::size_t so_far,
+                     ObjChunk::Corners& corners) {
+    if (given && corners.index.empty()) {
+      corners.index.reserve(chunk_.position.index.capacity());
+      corners.index.resize(chunk_.position.index.size() - 1, ObjChunk::kNoIndex);
+    }
+    if (given) {
+      add_index(index, so_far, corners);
+    } else if (!corners.index.empty()) {
+      corners.index.push_back(ObjChunk::kNoIndex);
+    }
   }
 
   void add_event(ObjEvent::Kind kind) {
@@ -164,14 +177,15 @@ class Parser {
   }
 
   TextScanner scan_;
+  bool normals_;
   ObjChunk chunk_;
   std::uint32_t line_ = 0;
 };
 
 }  // namespace
 
-ObjChunk parse_obj_chunk(const char* begin, const char* end) {
-  return Parser(begin, end).run();
+ObjChunk parse_obj_chunk(const char* begin, const char* end, bool normals) {
+  return Parser(begin, end, normals).run();
 }
 
 }  // namespace atlas

@@ -21,16 +21,23 @@ struct ObjEvent {
 };
 
 // Lines count from 0 at the chunk's start. Corners hold index - 1 as the file gives it; those
-// listed in relative_* were negative and hold (elements of the chunk so far) + index, to which
-// the elements of the chunks before have to be added.
+// listed in Corners::relative were negative and hold (elements of the chunk so far) + index, to
+// which the elements of the chunks before have to be added.
 struct ObjChunk {
-  static constexpr std::int32_t kNoUv = -0x7fffffff - 1;
+  static constexpr std::int32_t kNoIndex = -0x7fffffff - 1;
+
+  // What corners name of one kind of attribute; empty while no corner has named any, else 1 a
+  // corner, kNoIndex where it names none.
+  struct Corners {
+    std::vector<std::int32_t> index;
+    std::vector<std::uint32_t> relative;
+  };
 
   std::vector<Vec3d> positions;
   std::vector<Vec3f> colours;  // empty, or 1 a position; x is NaN where the line has none
   std::vector<Vec2f> texcoords;
-  std::vector<std::int32_t> corner_position, corner_texcoord;  // the latter empty: no face has any
-  std::vector<std::uint32_t> relative_position, relative_texcoord;
+  std::vector<Vec3f> normals;
+  Corners position, texcoord, normal;
   std::vector<std::uint32_t> face_end, face_line;  // face i has the corners up to face_end[i]
   std::vector<ObjEvent> events;
   // Lines of positions that are no finite floats, of non-finite colours, of ignored elements.
@@ -40,7 +47,8 @@ struct ObjChunk {
   std::uint32_t error_line = 0;
 };
 
-// Parses [begin, end), which starts and ends at line borders. Never fails but by chunk.error.
-ObjChunk parse_obj_chunk(const char* begin, const char* end);
+// Parses [begin, end), which starts and ends at line borders; without `normals` these are passed
+// over. Never fails but by chunk.error.
+ObjChunk parse_obj_chunk(const char* begin, const char* end, bool normals);
 
 }  // namespace atlas

@@ -48,16 +48,14 @@ class Merger {
     if (Status s = merge_vertices(chunks); !s.ok()) return s;
     if (Status s = read_libraries(chunks); !s.ok()) return s;
     line_ = 1;
-    std::int64_t position_base = 0, texcoord_base = 0;
+    Counts before;
     for (ObjChunk& chunk : chunks) {
-      for (const std::uint32_t k : chunk.relative_position) {
-        chunk.corner_position[k] += static_cast<std::int32_t>(position_base);
-      }
-      for (const std::uint32_t k : chunk.relative_texcoord) {
-        chunk.corner_texcoord[k] += static_cast<std::int32_t>(texcoord_base);
-      }
-      position_base += position_counts_[&chunk - chunks.data()];
-      texcoord_base += texcoord_counts_[&chunk - chunks.data()];
+      make_absolute(chunk.position, before.positions);
+      make_absolute(chunk.texcoord, before.texcoords);
+      make_absolute(chunk.normal, before.normals);
+      const Counts& own = counts_[&chunk - chunks.data()];
+      before = {before.positions + own.positions, before.texcoords + own.texcoords,
+                before.normals + own.normals};
       merge_faces(chunk);
       line_ += chunk.lines;
       chunk = {};
@@ -66,12 +64,22 @@ class Merger {
   }
 
  private:
+  struct Counts {
+    std::size_t positions = 0, texcoords = 0, normals = 0;
+  };
+
+  static void make_absolute(ObjChunk::Corners& corners, std::size_t before) {
+    for (const std::uint32_t k : corners.relative)
+      corners.index[k] += static_cast<std::int32_t>(before);
+  }
+
   std::string place(std::uint32_t line) const {
     return fmt::format("{}:{}", builder_.file, line_ + line);
   }
 
   Status merge_vertices(std::vector<ObjChunk>& chunks) {
-    std::size_t positions = 0, texcoords = 0, faces = 0;
+    Counts all;
+    std::size_t faces = 0;
     bool coloured = false;
     for (const ObjChunk& chunk : chunks) {
       if (!chunk.error.empty()) {
@@ -79,20 +87,21 @@ class Merger {
                                                   place(chunk.error_line), chunk.error)};
       }
       line_ += chunk.lines;
-      positions += chunk.positions.size();
-      texcoords += chunk.texcoords.size();
+      counts_.push_back({chunk.positions.size(), chunk.texcoords.size(), chunk.normals.size()});
+      all.positions += counts_.back().positions;
+      all.texcoords += counts_.back().texcoords;
+      all.normals += counts_.back().normals;
       faces += chunk.face_end.size();
       coloured |= !chunk.colours.empty();
-      position_counts_.push_back(static_cast<std::int64_t>(chunk.positions.size()));
-      texcoord_counts_.push_back(static_cast<std::int64_t>(chunk.texcoords.size()));
     }
-    if (positions > 0x7fffffff || texcoords > 0x7fffffff) {
+    if (std::max({all.positions, all.texcoords, all.normals}) > 0x7fffffff) {
       return {ErrorCode::unsupported, builder_.file + ": more than 2^31 vertices (split the file)"};
     }
-    builder_.positions.reserve(positions);
-    builder_.texcoords.reserve(texcoords);
-    if (coloured) builder_.illumination.reserve(positions);
-    builder_.reserve_triangles(faces, texcoords != 0);
+    builder_.positions.reserve(all.positions);
+    builder_.texcoords.reserve(all.texcoords);
+    builder_.normals.reserve(all.normals);
+    if (coloured) builder_.illumination.reserve(all.positions);
+    builder_.reserve_triangles(faces, all.texcoords != 0);
     line_ = 1;
     for (ObjChunk& chunk : chunks) {
       append_vertices(chunk, coloured);
@@ -107,6 +116,7 @@ class Merger {
     SceneBuilder& b = builder_;
     b.positions.insert(b.positions.end(), chunk.positions.begin(), chunk.positions.end());
     b.texcoords.insert(b.texcoords.end(), chunk.texcoords.begin(), chunk.texcoords.end());
+    b.normals.insert(b.normals.end(), chunk.normals.begin(), chunk.normals.end());
     if (coloured) {
       chunk.colours.resize(chunk.positions.size(), {NAN, 0, 0});
       for (Vec3f& value : chunk.colours) {
@@ -131,6 +141,7 @@ class Merger {
     std::vector<Vec3d>().swap(chunk.positions);
     std::vector<Vec3f>().swap(chunk.colours);
     std::vector<Vec2f>().swap(chunk.texcoords);
+    std::vector<Vec3f>().swap(chunk.normals);
   }
 
   Status read_libraries(const std::vector<ObjChunk>& chunks) {
@@ -162,24 +173,30 @@ class Merger {
     return {};
   }
 
+  // The corners [begin, end) as the builder takes them; none where the chunk names none.
+  static void copy_corners(const ObjChunk::Corners& corners, std::uint32_t begin, std::uint32_t end,
+                           std::vector<std::int64_t>& to) {
+    to.clear();
+    if (corners.index.empty()) return;
+    for (std::uint32_t k = begin; k < end; ++k) {
+      const std::int32_t i = corners.index[k];
+      to.push_back(i == ObjChunk::kNoIndex ? SceneBuilder::kNoIndex : i);
+    }
+  }
+
   void merge_faces(const ObjChunk& chunk) {
     std::size_t next_event = 0;
     std::uint32_t begin = 0;
-    std::vector<std::int64_t> vertices, uvs;
+    std::vector<std::int64_t> vertices, uvs, normals;
     for (std::size_t face = 0; face < chunk.face_end.size(); ++face) {
       while (next_event < chunk.events.size() && chunk.events[next_event].face <= face) {
         apply(chunk.events[next_event++]);
       }
       const std::uint32_t end = chunk.face_end[face];
-      vertices.assign(chunk.corner_position.begin() + begin, chunk.corner_position.begin() + end);
-      uvs.clear();
-      if (!chunk.corner_texcoord.empty()) {
-        for (std::uint32_t k = begin; k < end; ++k) {
-          const std::int32_t t = chunk.corner_texcoord[k];
-          uvs.push_back(t == ObjChunk::kNoUv ? SceneBuilder::kNoIndex : t);
-        }
-      }
-      builder_.add_face(vertices, uvs, [&] { return place(chunk.face_line[face]); });
+      vertices.assign(chunk.position.index.begin() + begin, chunk.position.index.begin() + end);
+      copy_corners(chunk.texcoord, begin, end, uvs);
+      copy_corners(chunk.normal, begin, end, normals);
+      builder_.add_face({vertices, uvs, normals}, [&] { return place(chunk.face_line[face]); });
       begin = end;
     }
     while (next_event < chunk.events.size()) apply(chunk.events[next_event++]);
@@ -207,9 +224,9 @@ class Merger {
 
   fs::path path_;
   SceneBuilder& builder_;
-  std::uint32_t line_ = 1;    // of the file, where the chunk at hand begins
-  bool has_objects_ = false;  // then groups do not count as objects
-  std::vector<std::int64_t> position_counts_, texcoord_counts_;
+  std::uint32_t line_ = 1;               // of the file, where the chunk at hand begins
+  bool has_objects_ = false;             // then groups do not count as objects
+  std::vector<Counts> counts_;           // 1 a chunk
   std::vector<std::string> bad_places_;  // of the first unusable positions
   std::map<std::string, std::uint32_t> material_id_, object_id_;
 };
@@ -237,7 +254,7 @@ Status read_obj(const fs::path& path, SceneBuilder& builder, const Context& cont
   std::vector<ObjChunk> chunks(borders.size() - 1);
   parallel_for(context, chunks.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      chunks[i] = parse_obj_chunk(borders[i], borders[i + 1]);
+      chunks[i] = parse_obj_chunk(borders[i], borders[i + 1], builder.wants_normals);
     }
   });
   if (context.cancelled()) return Status::cancelled();

@@ -57,6 +57,14 @@ class Colours {
   double largest_ = 0;
 };
 
+// Texture coordinates and normals are one a vertex.
+FaceCorners corners_of(const std::vector<std::int64_t>& vertices, const OffLayout& layout,
+                       const SceneBuilder& builder) {
+  const std::span<const std::int64_t> all(vertices);
+  return {all, all.first(layout.texture ? all.size() : 0),
+          all.first(builder.normals.empty() ? 0 : all.size())};
+}
+
 class TextOff {
  public:
   TextOff(const FileBytes& bytes, TextScanner scan, OffLayout layout, SceneBuilder& builder)
@@ -159,6 +167,8 @@ class TextOff {
                                    layout_.colour ? " and 3 or 4 of a colour" : "", count));
     }
     builder_.positions.push_back({n[0], n[1], n[2]});
+    if (layout_.normal && builder_.wants_normals)
+      builder_.normals.push_back({float(n[3]), float(n[4]), float(n[5])});
     if (layout_.colour) colours_.add(n + layout_.before_colour(), whole);
     const double* uv = n + layout_.before_colour() + colour;
     if (layout_.texture) builder_.texcoords.push_back({float(uv[0]), float(uv[1])});
@@ -179,9 +189,7 @@ class TextOff {
         return cut_short(builder_.file, fmt::format("face {} of {} is missing", f + 1, faces_));
       }
       if (Status s = read_corners(corners, f); !s.ok()) return s;
-      const auto uvs =
-          std::span<const std::int64_t>(corners).first(layout_.texture ? corners.size() : 0);
-      builder_.add_face(corners, uvs, [&] { return place(); });
+      builder_.add_face(corners_of(corners, layout_, builder_), [&] { return place(); });
       scan_.next_line();  // with the face's colour
     }
     return {};
@@ -285,6 +293,8 @@ class BinaryOff {
     for (std::size_t i = 0; i < vertices_; ++i) {
       std::size_t at = 3 + i * vertex_words();
       builder_.positions.push_back({number(at), number(at + 1), number(at + 2)});
+      if (layout_.normal && builder_.wants_normals)
+        builder_.normals.push_back({number(at + 3), number(at + 4), number(at + 5)});
       at += std::size_t(layout_.before_colour());
       if (layout_.colour) {
         const double rgb[3] = {number(at), number(at + 1), number(at + 2)};
@@ -302,9 +312,8 @@ class BinaryOff {
       if (f % 65536 == 0 && context.cancelled()) return Status::cancelled();
       corners.clear();
       for (std::size_t k = 0; k < word(at); ++k) corners.push_back(word(at + 1 + k));
-      const auto uvs =
-          std::span<const std::int64_t>(corners).first(layout_.texture ? corners.size() : 0);
-      builder_.add_face(corners, uvs, [&] { return fmt::format("{}: face {}", builder_.file, f); });
+      builder_.add_face(corners_of(corners, layout_, builder_),
+                        [&] { return fmt::format("{}: face {}", builder_.file, f); });
     }
     return {};
   }

@@ -211,6 +211,8 @@ class PlyParser {
     if (rgb.size() == 1) rgb = {rgb[0], rgb[0], rgb[0]};
     const auto uv = find_group(
         {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}});
+    const auto normal =
+        builder_.wants_normals ? find_group({{"nx", "ny", "nz"}}) : std::vector<int>();
     double scale[3] = {1, 1, 1};
     for (std::size_t c = 0; c < rgb.size(); ++c) {
       scale[c] = colour_scale(element_->properties[rgb[c]].type);
@@ -220,6 +222,7 @@ class PlyParser {
     builder_.positions.reserve(element_->count);
     builder_.illumination.reserve(rgb.empty() ? 0 : element_->count);
     builder_.texcoords.reserve(uv.empty() ? 0 : element_->count);
+    builder_.normals.reserve(normal.empty() ? 0 : element_->count);
     for (; index_ < element_->count; ++index_) {
       if (Status s = read_element(context); !s.ok()) return s;
       const auto& s = scalars_;
@@ -229,6 +232,9 @@ class PlyParser {
                                          float(s[rgb[2]] * scale[2])});
       }
       if (!uv.empty()) builder_.texcoords.push_back({float(s[uv[0]]), float(s[uv[1]])});
+      if (!normal.empty()) {
+        builder_.normals.push_back({float(s[normal[0]]), float(s[normal[1]]), float(s[normal[2]])});
+      }
       if (!usable_position(builder_.positions.back()) && bad.size() < DefectReport::kMaxPlaces) {
         bad.push_back(place());
       }
@@ -277,7 +283,7 @@ class PlyParser {
       if (number >= 0 && scalars_[number] >= 0 && scalars_[number] < builder_.materials.size()) {
         builder_.material = static_cast<std::uint32_t>(scalars_[number]);
       }
-      builder_.add_face(corners, uvs, [&] { return place(); });
+      builder_.add_face({corners, uvs, normals_of(corners)}, [&] { return place(); });
     }
     return {};
   }
@@ -299,11 +305,17 @@ class PlyParser {
           const std::int64_t corners[3] = {to_index(strip[k - 2 + odd]),
                                            to_index(strip[k - 1 - odd]), to_index(strip[k])};
           const std::span<const std::int64_t> all(corners);
-          builder_.add_face(all, vertex_uvs_ ? all : all.first(0), [&] { return place(); });
+          builder_.add_face({all, vertex_uvs_ ? all : all.first(0), normals_of(all)},
+                            [&] { return place(); });
         }
       }
     }
     return {};
+  }
+
+  // Normals are one a vertex.
+  std::span<const std::int64_t> normals_of(std::span<const std::int64_t> corners) const {
+    return corners.first(builder_.normals.empty() ? 0 : corners.size());
   }
 
   static std::int64_t to_index(double v) {

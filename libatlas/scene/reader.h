@@ -19,6 +19,9 @@ struct ReadOptions {
   std::filesystem::path illumination_file = {};
   bool load_textures = true;   // false: materials have their diffuse colour only
   bool unlit_textures = true;  // false: the same where the scene carries no illumination
+  // PNG and JPEG textures stay as they are, in Texture::encoded: for what only hands them on.
+  bool encoded_textures = false;
+  bool normals = false;  // true: the file's normals too, in Scene::normals
 };
 
 struct LoadedScene {
@@ -38,6 +41,7 @@ struct LoadedScene {
 // triangle are not listed; those that are come in the order of first use.
 // Illumination: OBJ `v x y z r g b`; PLY red/green/blue, r/g/b or illuminance_r/g/b (integers are
 // normalised); the colours of COFF; glTF _ILLUMINANCE, else COLOR_0. Values are never clamped.
+// Normals: OBJ vn; PLY nx, ny, nz; NOFF; glTF NORMAL, turned with its node, skin and morph targets.
 //
 // Errors: not_found (no such file, no such buffer); bad_input (see scene/defects.h for what counts
 // as malformed; also: no usable triangle, an illumination file with another vertex count);

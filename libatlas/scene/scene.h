@@ -23,6 +23,9 @@ struct Material {
 struct Texture {
   std::filesystem::path path;  // where it was read from, for messages
   Image8 image;                // at least 1 channel; grey is channel 0, colour channels 0..2
+  // A whole PNG or JPEG file in place of `image`, which is empty then: for exports that keep the
+  // scene's textures and do not look into them (ReadOptions::encoded_textures).
+  std::vector<std::uint8_t> encoded = {};
 };
 
 // Flat arrays. A triangle t has corners 3t, 3t+1, 3t+2; input order is kept. A program that fills
@@ -35,8 +38,11 @@ struct Scene {
   std::vector<Vec3f> illumination;     // linear RGB a vertex, unbounded, finite; empty: none given
   std::vector<Vec2f> texcoords;        // finite; may lie outside [0, 1]
   std::vector<std::uint32_t> indices;  // 3 a triangle, into positions
-  std::vector<std::uint32_t> texcoord_indices;   // 3 a triangle, into texcoords, kNoTexcoord where
-                                                 // the file gives none; empty: no triangle has any
+  std::vector<std::uint32_t> texcoord_indices;  // 3 a triangle, into texcoords, kNoTexcoord where
+                                                // the file gives none; empty: no triangle has any
+  std::vector<Vec3f> normals;  // unit length within 1 %; empty: none given, or none asked for
+  std::vector<std::uint32_t> normal_indices;     // 3 a triangle, into normals, kNoNormal where
+                                                 // none is given; empty: no triangle has any
   std::vector<std::uint32_t> triangle_material;  // 1 a triangle, into materials
   std::vector<std::uint32_t> triangle_object;    // 1 a triangle, into object_names, or empty
   std::vector<Material> materials;               // at least one when there are triangles
@@ -44,6 +50,7 @@ struct Scene {
   std::vector<std::string> object_names;
 
   static constexpr std::uint32_t kNoTexcoord = 0xffffffffu;
+  static constexpr std::uint32_t kNoNormal = 0xffffffffu;
 
   std::size_t triangle_count() const { return indices.size() / 3; }
   bool lit() const { return !illumination.empty(); }

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <unordered_map>
 
 #include "libatlas/core/drop_rounding.h"
+#include "libatlas/image/file_kind.h"
 #include "libatlas/image/image_io.h"
 
 namespace atlas {
@@ -68,6 +71,7 @@ std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& ids, std::size_t 
 void SceneBuilder::reserve_triangles(std::size_t count, bool with_texcoords) {
   indices_.reserve(count * 3);
   texcoord_indices_.reserve(with_texcoords ? count * 3 : 0);
+  normal_indices_.reserve(wants_normals ? count * 3 : 0);
   triangle_material_.reserve(count);
   triangle_object_.reserve(count);
 }
@@ -173,10 +177,27 @@ Result<Image8> SceneBuilder::load_texture(const RawTexture& raw) const {
   return read_image8(raw.path);
 }
 
-void SceneBuilder::load_textures(Scene& scene) {
+// Whether the texture is a PNG or JPEG file, which then is the scene's last texture.
+bool SceneBuilder::keep_encoded(const RawTexture& raw, Scene& scene) const {
+  Texture texture{raw.path, {}, raw.bytes};
+  if (raw.bytes.empty()) {
+    std::ifstream stream(raw.path, std::ios::binary);
+    texture.encoded.assign(std::istreambuf_iterator<char>(stream), {});
+    if (stream.bad()) return false;
+  }
+  if (image_extension(texture.encoded).empty()) return false;
+  scene.textures.push_back(std::move(texture));
+  return true;
+}
+
+void SceneBuilder::load_textures(Scene& scene, bool encoded) {
   std::vector<std::int32_t> loaded(textures.size(), -1);
   for (std::size_t i = 0; i < textures.size(); ++i) {
     const RawTexture& raw = textures[i];
+    if (encoded && keep_encoded(raw, scene)) {
+      loaded[i] = static_cast<std::int32_t>(scene.textures.size()) - 1;
+      continue;
+    }
     auto image = load_texture(raw);
     if (image.ok()) {
       loaded[i] = static_cast<std::int32_t>(scene.textures.size());
@@ -220,9 +241,10 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   move_texcoords();
   for (const RawMaterial& m : materials) scene.materials.push_back({m.name, m.diffuse, -1});
   if (options.load_textures && (options.unlit_textures || !illumination.empty())) {
-    load_textures(scene);
+    load_textures(scene, options.encoded_textures);
   }
   scene.indices = std::move(indices_);
+  place_normals(scene);
   if (any_texcoord_) scene.texcoord_indices = std::move(texcoord_indices_);
   scene.texcoords = std::move(texcoords);
   scene.triangle_material = std::move(triangle_material_);

@@ -40,6 +40,14 @@ inline bool usable_position(const Vec3d& p) {
   return std::abs(p.x) <= kMax && std::abs(p.y) <= kMax && std::abs(p.z) <= kMax;
 }
 
+// The corners of a polygon: lists of one length each, the last two empty where there are none.
+// `vertices` index positions, `uvs` texcoords, `normals` normals, or are kNoIndex; all may be out
+// of range.
+struct FaceCorners {
+  std::span<const std::int64_t> vertices;
+  std::span<const std::int64_t> uvs = {}, normals = {};
+};
+
 // Readers fill the vertex arrays first, then add faces, then finish.
 class SceneBuilder {
  public:
@@ -52,11 +60,13 @@ class SceneBuilder {
   std::vector<Vec3d> positions;
   std::vector<Vec3f> illumination;  // empty or 1 a vertex; checked by finish()
   std::vector<Vec2f> texcoords;
+  std::vector<Vec3f> normals;  // of any length; only filled where wants_normals
   std::vector<RawMaterial> materials;
   std::vector<RawTexture> textures;
   std::vector<std::string> objects;
   DefectReport defects;
   bool wants_textures = true;                // false: `textures` need not hold any bytes
+  bool wants_normals = false;                // false: normals are passed over, whatever they hold
   std::vector<std::filesystem::path> files;  // LoadedScene::files
 
   // What the next faces belong to.
@@ -74,11 +84,10 @@ class SceneBuilder {
 
   void reserve_triangles(std::size_t count, bool with_texcoords);
 
-  // Adds a polygon as triangles. `vertices` index positions, `uvs` (empty or as many) index
-  // texcoords or are kNoIndex; both may be out of range.
+  // Adds a polygon as triangles.
   template <class Place>
-  void add_face(std::span<const std::int64_t> vertices, std::span<const std::int64_t> uvs,
-                const Place& place) {
+  void add_face(FaceCorners face, const Place& place) {
+    const auto vertices = face.vertices;
     if (vertices.size() < 3) return drop(DefectKind::too_few_corners, place);
     const auto count = static_cast<std::int64_t>(positions.size());
     for (const std::int64_t v : vertices) {
@@ -89,14 +98,15 @@ class SceneBuilder {
         if (!usable_position(positions[v])) return drop(DefectKind::bad_position_used, place);
       }
     }
-    if (!uvs.empty() && !check_uvs(uvs, place)) uvs = {};
-    if (vertices.size() == 3) return add_triangle(vertices, uvs, {0, 1, 2});
+    if (!all_given(face.uvs, texcoords.size(), kTexcoordDefects, place)) face.uvs = {};
+    if (!all_given(face.normals, normals.size(), kNormalDefects, place)) face.normals = {};
+    if (vertices.size() == 3) return add_triangle(face, {0, 1, 2});
     corners_.clear();
     for (const std::int64_t v : vertices) corners_.push_back(positions[v]);
     if (!triangulate(corners_, triangles_)) {
       defects.add(DefectKind::polygon_too_large, place);
     }
-    for (const auto& t : triangles_) add_triangle(vertices, uvs, t);
+    for (const auto& t : triangles_) add_triangle(face, t);
   }
 
   std::size_t triangle_count() const { return indices_.size() / 3; }
@@ -112,29 +122,43 @@ class SceneBuilder {
     ++defects.triangles_left_out;
   }
 
+  struct AttributeDefects {
+    DefectKind out_of_range, partial;
+  };
+  static constexpr AttributeDefects kTexcoordDefects{DefectKind::texcoord_out_of_range,
+                                                     DefectKind::texcoord_partial};
+  static constexpr AttributeDefects kNormalDefects{DefectKind::normal_out_of_range,
+                                                   DefectKind::normal_partial};
+
+  // Whether every corner names one of `count` attributes; where only some do, that is a defect.
   template <class Place>
-  bool check_uvs(std::span<const std::int64_t> uvs, const Place& place) {
+  bool all_given(std::span<const std::int64_t> indices, std::size_t count,
+                 const AttributeDefects& kinds, const Place& place) {
     std::size_t absent = 0;
-    for (const std::int64_t t : uvs) {
-      if (t == kNoIndex) {
+    for (const std::int64_t i : indices) {
+      if (i == kNoIndex) {
         ++absent;
-      } else if (t < 0 || t >= static_cast<std::int64_t>(texcoords.size())) {
-        defects.add(DefectKind::texcoord_out_of_range, place);
+      } else if (i < 0 || i >= static_cast<std::int64_t>(count)) {
+        defects.add(kinds.out_of_range, place);
         return false;
       }
     }
-    if (absent != 0 && absent != uvs.size()) defects.add(DefectKind::texcoord_partial, place);
+    if (absent != 0 && absent != indices.size()) defects.add(kinds.partial, place);
     return absent == 0;
   }
 
-  void add_triangle(std::span<const std::int64_t> vertices, std::span<const std::int64_t> uvs,
-                    std::array<std::uint32_t, 3> corners) {
+  void add_triangle(const FaceCorners& face, std::array<std::uint32_t, 3> corners) {
+    const auto [vertices, uvs, face_normals] = face;
     for (const std::uint32_t c : corners) {
       indices_.push_back(static_cast<std::uint32_t>(vertices[c]));
       texcoord_indices_.push_back(uvs.empty() ? Scene::kNoTexcoord
                                               : static_cast<std::uint32_t>(uvs[c]));
+      if (wants_normals)
+        normal_indices_.push_back(
+            face_normals.empty() ? Scene::kNoNormal : static_cast<std::uint32_t>(face_normals[c]));
     }
     any_texcoord_ |= !uvs.empty();
+    any_normal_ |= !face_normals.empty();
     triangle_material_.push_back(material);
     triangle_object_.push_back(object);
   }
@@ -143,11 +167,14 @@ class SceneBuilder {
   Status place_positions(Scene& scene) const;
   void keep_used(Scene& scene);
   void move_texcoords();
-  void load_textures(Scene& scene);
+  void place_normals(Scene& scene);
+  void load_textures(Scene& scene, bool encoded);
+  bool keep_encoded(const RawTexture& raw, Scene& scene) const;
   Result<Image8> load_texture(const RawTexture& raw) const;
 
-  bool all_usable_ = true, any_texcoord_ = false;
-  std::vector<std::uint32_t> indices_, texcoord_indices_, triangle_material_, triangle_object_;
+  bool all_usable_ = true, any_texcoord_ = false, any_normal_ = false;
+  std::vector<std::uint32_t> indices_, texcoord_indices_, normal_indices_;
+  std::vector<std::uint32_t> triangle_material_, triangle_object_;
   std::vector<Vec3d> corners_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
 };

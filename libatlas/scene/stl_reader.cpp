@@ -124,7 +124,7 @@ Status read_binary(const FileBytes& bytes, SceneBuilder& builder, const Context&
   for (std::size_t t = 0; t < count; ++t) {
     const auto c = soup.corners().subspan(3 * t, 3);
     const std::int64_t corners[3] = {c[0], c[1], c[2]};
-    builder.add_face(corners, {}, [&] { return place(t); });
+    builder.add_face({corners}, [&] { return place(t); });
   }
   return {};
 }
@@ -241,7 +241,7 @@ class TextStl {
       const auto all = soup_.corners();
       corners.assign(all.begin() + std::ptrdiff_t(begin), all.begin() + face.end);
       builder_.object = face.object;
-      builder_.add_face(corners, {}, [&] { return place(face.line); });
+      builder_.add_face({corners}, [&] { return place(face.line); });
       begin = face.end;
     }
   }

@@ -353,7 +353,7 @@ class VrmlParser {
         std::reverse(uvs.begin(), uvs.end());
       }
       builder_.add_face(
-          vertices, textured ? std::span<const std::int64_t>(uvs) : std::span<const std::int64_t>(),
+          {vertices, std::span<const std::int64_t>(uvs).first(textured ? uvs.size() : 0)},
           [&] { return fmt::format("{}: shape {} face {}", builder_.file, number, face); });
       ++face;
       vertices.clear();
