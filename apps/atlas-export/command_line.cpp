@@ -76,6 +76,9 @@ void add_chart_options(CLI::App& app, ExportOptions& options) {
       ->type_name("NAME")
       ->default_str("default");
   app.add_flag("--charts-only", options.charts_only, "Charts and uvs on one page, no light");
+  app.add_flag("--keep-scene", options.keep_scene,
+               "Write uvs without light into the scene as it is: its objects, materials, textures, "
+               "normals and own uvs stay (.gltf, .glb; .obj has no room for textures and own uvs)");
   app.add_flag("--square", options.square_plain_page,
                "Uvs without light on a square page; else its shape is what packs best, and is "
                "printed");

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "apps/atlas-export/command_line.h"
 #include "apps/common/files.h"
@@ -73,15 +74,22 @@ bool named_as_page(const std::filesystem::path& file, const std::filesystem::pat
          name.find_first_not_of("0123456789", pages.size()) == std::string::npos;
 }
 
-// A world that is exported again brings textures that have the names of the new pages.
-Status check_textures_stay(const Scene& scene, const std::filesystem::path& target) {
+// A world that is exported again brings textures that have the names of the new pages, or of the
+// textures that are written beside the new world.
+Status check_textures_stay(const Scene& scene, const ExportOptions& options) {
+  const std::filesystem::path& target = options.target;
   const auto folder = target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
+  const bool beside = options.keep_scene && lower_extension(target) == ".gltf";
+  std::set<std::string> written;
+  for (std::size_t i = 0; beside && i < scene.textures.size(); ++i)
+    written.insert(scene_texture_path(scene, i, target).filename().string());
   for (const Texture& texture : scene.textures) {
     std::error_code error;
-    if (named_as_page(texture.path, target) &&
-        std::filesystem::equivalent(folder / texture.path.filename(), texture.path, error))
+    const std::filesystem::path name = texture.path.filename();
+    if ((named_as_page(texture.path, target) || written.contains(name.string())) &&
+        std::filesystem::equivalent(folder / name, texture.path, error))
       return {ErrorCode::bad_option,
-              fmt::format("{}: its pages would overwrite {}, a texture of the scene (give the "
+              fmt::format("{}: its images would overwrite {}, a texture of the scene (give the "
                           "output another name)",
                           target.string(), texture.path.string())};
   }
@@ -117,7 +125,7 @@ Status check_files_stay(const LoadedScene& loaded, const app::ExportCommand& com
   for (const std::filesystem::path& file : loaded.files)
     for (const std::filesystem::path& output : {target, beside(target), command.report})
       if (Status s = app::check_output(output, {file}); !s.ok()) return s;
-  return check_textures_stay(loaded.scene, target);
+  return check_textures_stay(loaded.scene, command.options);
 }
 
 // The export's own figures and those of reading, which came before it.
@@ -144,14 +152,24 @@ Status plan(const app::ExportCommand& command, const LoadedScene& loaded,
   return write_report(planned_report(loaded, plan, command.options), reading, command, terminal);
 }
 
+// What of the scene this export has a use for.
+ReadOptions read_options(const app::ExportCommand& command) {
+  ReadOptions read = command.read;
+  read.load_textures = !command.options.charts_only;
+  read.unlit_textures = false;  // without light no page has an image
+  if (!command.options.keep_scene) return read;
+  read.normals = true;
+  read.encoded_textures = true;
+  read.load_textures = read.unlit_textures = lower_extension(command.options.target) != ".obj";
+  return read;
+}
+
 Status run(const app::ExportCommand& command, app::Terminal& terminal) {
   if (Status s = check_options(command.options); !s.ok()) return s;
   if (Status s = check_outputs(command); !s.ok()) return s;
   const Context context = terminal.context(command.threads);
   const double cpu = cpu_seconds(), wall = wall_seconds();
-  ReadOptions read = command.read;
-  read.load_textures = !command.options.charts_only;
-  read.unlit_textures = false;  // without light no page has an image
+  const ReadOptions read = read_options(command);
   Result<LoadedScene> loaded = read_scene(command.scene, read, context);
   if (!loaded.ok()) return loaded.status();
   if (Status s = check_files_stay(*loaded, command); !s.ok()) return s;

@@ -167,6 +167,12 @@ std::string appearance(const Page& page, bool lit) {
 Result<WorldFile> write_vrml(const World& world, const fs::path& path, AtomicFiles& files,
                              const Context& context) {
   if (Status s = check_world(world); !s.ok()) return s;
+  if (world.scene != nullptr) {
+    return Status(ErrorCode::bad_option,
+                  path.string() +
+                      ": VRML cannot keep a scene beside new uvs (write .gltf, .glb or "
+                      ".obj)");
+  }
   WorldFile result;
   const bool gzip = lower_extension(path) == ".wrz";
   const fs::path temporary = files.path_for(path);

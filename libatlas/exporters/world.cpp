@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "libatlas/exporters/text_output.h"
+#include "libatlas/scene/check_scene.h"
 
 namespace atlas {
 namespace {
@@ -56,6 +57,17 @@ Status check_viewpoint(const Viewpoint& view) {
   return {};
 }
 
+Status check_kept_scene(const World& world) {
+  const Scene& scene = *world.scene;
+  if (Status s = check_scene(scene); !s.ok()) return s;
+  if (scene.indices.empty()) return wrong("its scene has no triangle");
+  if (world.pages.size() != 1 || !world.pages[0].image.empty())
+    return wrong("a world that keeps its scene has one page, without an image");
+  if (world.positions.size() != scene.positions.size() || world.pages[0].indices != scene.indices)
+    return wrong("its page has other corners than its scene");
+  return {};
+}
+
 }  // namespace
 
 Status check_world(const World& world) {
@@ -73,7 +85,7 @@ Status check_world(const World& world) {
     if (s.ok()) s = check_indices(i, "uv_indices", page.uv_indices, world.uvs.size());
     if (!s.ok()) return s;
   }
-  return {};
+  return world.scene ? check_kept_scene(world) : Status();
 }
 
 std::string encode_uri(const std::string& name) {

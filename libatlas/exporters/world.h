@@ -14,6 +14,8 @@
 
 namespace atlas {
 
+struct Scene;  // libatlas/scene/scene.h
+
 enum class Up { y, z };
 
 // Where a viewer starts, in the coordinates of World::positions (that is, relative to the origin).
@@ -42,6 +44,10 @@ struct World {
   std::string title;
   std::vector<std::string> info;  // one line each, for WorldInfo and comments
   Viewpoint viewpoint;
+  // Not null: the scene that the uvs are for, written with its own objects, materials, normals and
+  // texture coordinates (see write_gltf and write_obj). There is one page then, without an image,
+  // and its `indices` are the scene's, corner by corner. Must outlive the writing.
+  const Scene* scene = nullptr;
 };
 
 struct WorldFile {
@@ -56,10 +62,11 @@ struct WorldFile {
 // decimals that read back to the same float (double, where the origin is not 0), so equal positions
 // are equal text. Other errors: io; cancelled.
 
-// VRML97, gzipped where the name ends in .wrz. One Shape a page: an IndexedFaceSet of triangles
-// with explicit texCoordIndex, unlit (no Material) unless no page has an image, repeat off,
-// two-sided. Viewers hold single floats: an origin more than 128 times the world's size from zero
-// is not added but noted in WorldInfo, where read_scene() finds it.
+// VRML97, gzipped where the name ends in .wrz. World::scene is refused (bad_option). One Shape a
+// page: an IndexedFaceSet of triangles with explicit texCoordIndex, unlit (no Material) unless no
+// page has an image, repeat off, two-sided. Viewers hold single floats: an origin more than 128
+// times the world's size from zero is not added but noted in WorldInfo, where read_scene() finds
+// it.
 Result<WorldFile> write_vrml(const World& world, const std::filesystem::path& path,
                              AtomicFiles& files, const Context& context);
 
@@ -67,12 +74,17 @@ Result<WorldFile> write_vrml(const World& world, const std::filesystem::path& pa
 inline constexpr const char* kZUpNote = "the z axis points up";
 
 // Wavefront OBJ and, beside it, an MTL of the same name with one material `page<i>` a page.
+// World::scene: its objects (`o`), materials (names, all made different, and Kd) and normals; the
+// format has one set of uvs, which are the new ones, so the scene's and its textures are left out.
 Result<WorldFile> write_obj(const World& world, const std::filesystem::path& path,
                             AtomicFiles& files, const Context& context);
 
 // glTF 2.0: .glb with everything embedded, or .gltf with a .bin beside it. Materials with an
 // image are KHR_materials_unlit; the root node turns the scene's up to +Y, scales to metres and
-// adds the origin, since glTF fixes both.
+// adds the origin, since glTF fixes both. World::scene: a node and a mesh an object, a primitive a
+// material, with NORMAL, the scene's own uvs as TEXCOORD_0 and the new ones as TEXCOORD_1 (as both
+// where it has none); materials are lit and have base colours and their textures; no camera. Root
+// nodes are the objects themselves where nothing is to be turned, scaled or moved.
 Result<WorldFile> write_gltf(const World& world, const std::filesystem::path& path,
                              AtomicFiles& files, const Context& context);
 
@@ -81,6 +93,14 @@ Result<WorldFile> write_gltf(const World& world, const std::filesystem::path& pa
 Result<WorldFile> write_world(const World& world, const std::filesystem::path& path,
                               AtomicFiles& files, const Context& context);
 Status check_world_extension(const std::filesystem::path& path);
+
+// Whether a world of this extension can keep World::scene; others are refused (bad_option).
+bool holds_scene(const std::filesystem::path& path);
+
+// The image file that write_gltf() makes of a texture of World::scene beside the .gltf `target`:
+// NAME_texture<i>.png or .jpg.
+std::filesystem::path scene_texture_path(const Scene& scene, std::size_t texture,
+                                         const std::filesystem::path& target);
 
 // Whether a world of this extension says where a viewer starts; the others ignore
 // World::viewpoint, which need not be chosen for them.

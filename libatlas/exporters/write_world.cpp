@@ -17,14 +17,15 @@ struct Format {
   std::string_view extension;
   Writer write;
   bool viewpoint;  // holds World::viewpoint
+  bool scene;      // can keep World::scene
 };
 
 // A new format is one more line here.
-constexpr std::array<Format, 5> kFormats{{{".wrl", write_vrml, true},
-                                          {".wrz", write_vrml, true},
-                                          {".obj", write_obj, false},
-                                          {".gltf", write_gltf, true},
-                                          {".glb", write_gltf, true}}};
+constexpr std::array<Format, 5> kFormats{{{".wrl", write_vrml, true, false},
+                                          {".wrz", write_vrml, true, false},
+                                          {".obj", write_obj, false, true},
+                                          {".gltf", write_gltf, true, true},
+                                          {".glb", write_gltf, true, true}}};
 
 const Format* format_of(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
@@ -49,6 +50,11 @@ Status check_world_extension(const std::filesystem::path& path) {
 bool holds_viewpoint(const std::filesystem::path& path) {
   const Format* format = format_of(path);
   return format != nullptr && format->viewpoint;
+}
+
+bool holds_scene(const std::filesystem::path& path) {
+  const Format* format = format_of(path);
+  return format != nullptr && format->scene;
 }
 
 Result<WorldFile> write_world(const World& world, const std::filesystem::path& path,

@@ -58,4 +58,10 @@ World assemble_world(const Scene& scene, const PlacedCharts& placed, const World
   return world;
 }
 
+void keep_scene(const Scene& scene, const ChartSet& charts, World& world) {
+  world.pages[0].indices = scene.indices;
+  world.pages[0].uv_indices = charts.triangle_uv;
+  world.scene = &scene;
+}
+
 }  // namespace atlas

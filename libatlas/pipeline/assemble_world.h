@@ -49,4 +49,9 @@ std::vector<Vec2d> page_uvs(const PlacedCharts& placed);
 // One world page an atlas page, triangles in input order within each; uvs as page fractions.
 World assemble_world(const Scene& scene, const PlacedCharts& placed, const WorldMesh& mesh);
 
+// Turns a world of one page into one that keeps its scene (World::scene), all corners as the scene
+// has them: triangles that cutting had to turn round face again as they did, since the scene's
+// normals and materials are for that side; their uvs turn clockwise.
+void keep_scene(const Scene& scene, const ChartSet& charts, World& world);
+
 }  // namespace atlas

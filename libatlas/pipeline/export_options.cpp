@@ -18,6 +18,11 @@ Status out_of_range(const char* option, const std::string& range) {
 
 Status check_options(const ExportOptions& o) {
   if (Status s = check_world_extension(o.target); !s.ok()) return s;
+  if (o.keep_scene && !holds_scene(o.target)) {
+    return {ErrorCode::bad_option,
+            "--keep-scene: VRML has no room for uvs beside the scene's own (write .gltf, .glb or "
+            ".obj)"};
+  }
   const bool power_of_two = (o.atlas_size & (o.atlas_size - 1)) == 0;
   if (o.atlases < 1) return out_of_range("--atlases", "at least 1");
   if (o.atlas_size < 64 || o.atlas_size > 16384 || !power_of_two) {

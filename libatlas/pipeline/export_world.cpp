@@ -53,6 +53,7 @@ class Export {
   Result<ExportReport> run() {
     const double cpu = cpu_seconds(), wall = wall_seconds();
     if (Status s = check_plan(plan_, options_); !s.ok()) return s;
+    if (Status s = plan_.bake ? check_images(scene_) : Status(); !s.ok()) return s;
     if (Status s = cut_charts(); !s.ok()) return s;
     if (plan_.bake) {
       if (Status s = expose(); !s.ok()) return s;
@@ -317,7 +318,9 @@ class Export {
     world.title = options_.target.stem().string();
     world.metres_per_unit = scene_.metres_per_unit;
     if (!plan_.bake) world.info.push_back(plain_page_text(layout_.pages[0]));
-    if (holds_viewpoint(options_.target)) {
+    if (options_.keep_scene) {
+      keep_scene(scene_, charts_, world);
+    } else if (holds_viewpoint(options_.target)) {
       ViewpointOptions eye;
       eye.up = options_.up;
       eye.metres_per_unit = scene_.metres_per_unit;
@@ -344,12 +347,17 @@ class Export {
       report_.files.emplace_back(path.filename().string(), error ? 0 : size);
       bytes += report_.files.back().second;
     }
-    const Vec3d& left_out = world_file->origin_left_out;
-    const std::string note = left_out == Vec3d{} ? ""
-                                                 : fmt::format("relative to {} {} {}", left_out.x,
-                                                               left_out.y, left_out.z);
-    record_.finish({report_.triangles_out, bytes, "bytes", note});
+    record_.finish(
+        {report_.triangles_out, bytes, "bytes", writing_note(world_file->origin_left_out)});
     return {};
+  }
+
+  std::string writing_note(const Vec3d& left_out) const {
+    if (options_.keep_scene)
+      return fmt::format("{} objects, {} materials of the scene", scene_.object_names.size(),
+                         scene_.materials.size());
+    if (left_out == Vec3d{}) return "";
+    return fmt::format("relative to {} {} {}", left_out.x, left_out.y, left_out.z);
   }
 
   const Scene& scene_;

@@ -209,6 +209,11 @@ ExportReport planned_report(const LoadedScene& loaded, const ExportPlan& plan,
 
 Status check_plan(const ExportPlan& plan, const ExportOptions& options) {
   const std::filesystem::path& target = options.target;
+  if (options.keep_scene && plan.bake) {
+    return {ErrorCode::bad_option,
+            "--keep-scene: this scene carries light, whose textures take the place of its own (add "
+            "--charts-only to get uvs without light)"};
+  }
   if (Status s = check_writable(target); !s.ok() || !plan.bake) return s;
   const std::string last_page = page_name(target, options.atlases - 1) + ".png";
   if (Status s = check_writable(target.parent_path() / last_page); !s.ok()) return s;

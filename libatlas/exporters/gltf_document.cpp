@@ -1,0 +1,162 @@
+#include "libatlas/exporters/gltf_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/exporters/camera.h"
+#include "libatlas/exporters/text_output.h"
+
+namespace atlas {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kFloat = 5126, kUint = 5125, kArrayBuffer = 34962, kElementBuffer = 34963;
+
+std::string word(std::size_t value) {
+  const auto bits = static_cast<std::uint32_t>(value);
+  std::string bytes(4, '\0');
+  std::memcpy(bytes.data(), &bits, 4);
+  return bytes;
+}
+
+// GLB: a header and two chunks, each padded to 4 bytes.
+void write_glb(TextFile& file, std::string text, const std::string& binary) {
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const std::size_t padded = (binary.size() + 3) / 4 * 4;
+  const bool has_binary = !binary.empty();
+  const std::size_t total = 12 + 8 + text.size() + (has_binary ? 8 + padded : 0);
+  file.write("glTF" + word(2) + word(total) + word(text.size()) + "JSON" + text);
+  if (!has_binary) return;
+  file.write(word(padded) + std::string("BIN\0", 4));
+  file.write(binary);
+  file.write(std::string(padded - binary.size(), '\0'));
+}
+
+}  // namespace
+
+GltfDocument::GltfDocument(const World& world, bool binary) : binary_(binary) {
+  json["asset"] = {{"version", "2.0"}, {"generator", "libatlas"}};
+  if (!world.title.empty()) json["asset"]["extras"]["title"] = world.title;
+  if (!world.info.empty()) json["asset"]["extras"]["info"] = world.info;
+}
+
+std::size_t GltfDocument::add_view(const void* data, std::size_t size, int target) {
+  while (bytes_.size() % 4 != 0) bytes_.push_back('\0');
+  nlohmann::json view = {{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", size}};
+  if (target != 0) view["target"] = target;
+  bytes_.append(static_cast<const char*>(data), size);
+  json["bufferViews"].push_back(std::move(view));
+  return json["bufferViews"].size() - 1;
+}
+
+std::size_t GltfDocument::add_accessor(nlohmann::json accessor) {
+  json["accessors"].push_back(std::move(accessor));
+  return json["accessors"].size() - 1;
+}
+
+std::size_t GltfDocument::add_vectors(std::span<const Vec3f> values, const nlohmann::json& bounds) {
+  const std::size_t view = add_view(values.data(), values.size_bytes(), kArrayBuffer);
+  nlohmann::json accessor = {
+      {"bufferView", view}, {"componentType", kFloat}, {"type", "VEC3"}, {"count", values.size()}};
+  accessor.update(bounds);
+  return add_accessor(std::move(accessor));
+}
+
+std::size_t GltfDocument::add_positions(std::span<const Vec3f> values) {
+  float low[3], high[3];
+  std::fill(low, low + 3, std::numeric_limits<float>::max());
+  std::fill(high, high + 3, std::numeric_limits<float>::lowest());
+  for (const Vec3f& p : values) {
+    const float c[3] = {p.x, p.y, p.z};
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], c[i]);
+      high[i] = std::max(high[i], c[i]);
+    }
+  }
+  return add_vectors(values,
+                     {{"min", {low[0], low[1], low[2]}}, {"max", {high[0], high[1], high[2]}}});
+}
+
+std::size_t GltfDocument::add_normals(std::span<const Vec3f> values) {
+  return add_vectors(values, nlohmann::json::object());
+}
+
+std::size_t GltfDocument::add_uvs(std::span<const Vec2f> values) {
+  std::vector<Vec2f> turned;
+  turned.reserve(values.size());
+  for (const Vec2f& uv : values) turned.push_back({uv.x, 1 - uv.y});
+  const std::size_t view = add_view(turned.data(), turned.size() * sizeof(Vec2f), kArrayBuffer);
+  return add_accessor({{"bufferView", view},
+                       {"componentType", kFloat},
+                       {"type", "VEC2"},
+                       {"count", turned.size()}});
+}
+
+std::size_t GltfDocument::add_indices(std::span<const std::uint32_t> values) {
+  const std::size_t view = add_view(values.data(), values.size_bytes(), kElementBuffer);
+  return add_accessor({{"bufferView", view},
+                       {"componentType", kUint},
+                       {"type", "SCALAR"},
+                       {"count", values.size()}});
+}
+
+nlohmann::json GltfDocument::embedded_image(std::span<const char> bytes, const char* mime_type) {
+  return {{"mimeType", mime_type}, {"bufferView", add_view(bytes.data(), bytes.size(), 0)}};
+}
+
+nlohmann::json GltfDocument::image_beside(const std::string& file_name) {
+  return {{"uri", encode_uri(file_name)}};
+}
+
+// `buffer_uri` is empty for GLB.
+std::string GltfDocument::text(const std::string& buffer_uri) {
+  nlohmann::json buffer = {{"byteLength", bytes_.size()}};
+  if (!buffer_uri.empty()) buffer["uri"] = buffer_uri;
+  json["buffers"] = nlohmann::json::array({buffer});
+  return json.dump(binary_ ? -1 : 1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+Status GltfDocument::write(const fs::path& path, AtomicFiles& files, WorldFile& result) {
+  if (bytes_.size() > 0xf0000000u) {
+    return {ErrorCode::unsupported,
+            path.string() + ": more than 4 GB of data (use fewer or smaller pages, or .wrl)"};
+  }
+  fs::path buffer_path = path;
+  buffer_path.replace_extension(".bin");
+  if (!binary_) {
+    TextFile buffer(files.path_for(buffer_path), buffer_path, false);
+    buffer.write(bytes_);
+    if (Status s = buffer.finish(); !s.ok()) return s;
+    result.bytes += buffer.bytes();
+  }
+  TextFile file(files.path_for(path), path, false);
+  if (binary_) {
+    write_glb(file, text(""), bytes_);
+  } else {
+    file.write(text(encode_uri(buffer_path.filename().string())));
+  }
+  if (Status s = file.finish(); !s.ok()) return s;
+  result.bytes += file.bytes();
+  return {};
+}
+
+// glTF is y-up and in metres.
+nlohmann::json gltf_root(const World& world) {
+  const bool z_up = world.up == Up::z;
+  const glm::dvec3 origin = to_glm(world.origin);
+  const glm::dvec3 move = (z_up ? z_up_to_y_up(origin) : origin) * world.metres_per_unit;
+  const double scale = world.metres_per_unit;
+  nlohmann::json root = {{"name", "world"}, {"children", nlohmann::json::array()}};
+  root["translation"] = {move.x, move.y, move.z};
+  if (z_up) root["rotation"] = {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)};
+  root["scale"] = {scale, scale, scale};
+  return root;
+}
+
+}  // namespace atlas

@@ -1,0 +1,236 @@
+// glTF 2.0 and GLB of a scene with atlas coordinates: a mesh an object, a primitive a material.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "libatlas/core/file_extension.h"
+#include "libatlas/exporters/gltf_document.h"
+#include "libatlas/exporters/scene_parts.h"
+#include "libatlas/exporters/scene_writers.h"
+#include "libatlas/exporters/vertex_unifier.h"
+#include "libatlas/image/file_kind.h"
+#include "libatlas/image/image_io.h"
+
+namespace atlas {
+namespace fs = std::filesystem;
+using nlohmann::json;
+namespace {
+
+constexpr int kLinear = 9729, kLinearMipmapLinear = 9987;
+
+// PNG holds up to four channels; of more the first three are the colour.
+Image8 colour_of(const Image8& image) {
+  if (image.channels <= 4) return image;
+  Image8 colour(image.width, image.height, 3);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) std::copy_n(image.at(x, y), 3, colour.at(x, y));
+  return colour;
+}
+
+// The scene's materials and textures as far as they are used, each written once.
+class MaterialWriter {
+ public:
+  MaterialWriter(const World& world, const fs::path& path, GltfDocument& document,
+                 AtomicFiles& files)
+      : scene_(*world.scene), path_(path), document_(document), files_(files) {}
+
+  // The number of a material in the document. Without texture coordinates a reader takes no
+  // texture, while a viewer would take one texel of it: then the texture is left out.
+  Result<std::size_t> material(const ScenePart& part) {
+    const Material& material = scene_.materials[part.material];
+    const bool textured = part.texcoords && material.texture >= 0;
+    const auto [at, is_new] = materials_.try_emplace({part.material, textured}, materials_.size());
+    if (!is_new) return at->second;
+    const Vec3f& d = material.diffuse;
+    json surface = {{"metallicFactor", 0}, {"roughnessFactor", 1}};
+    if (d != Vec3f{1, 1, 1})
+      surface["baseColorFactor"] = {std::clamp(d.x, 0.f, 1.f), std::clamp(d.y, 0.f, 1.f),
+                                    std::clamp(d.z, 0.f, 1.f), 1};
+    if (textured) {
+      auto number = texture(std::size_t(material.texture));
+      if (!number.ok()) return number.status();
+      surface["baseColorTexture"] = {{"index", *number}};
+    }
+    json entry = {{"doubleSided", true}, {"pbrMetallicRoughness", std::move(surface)}};
+    if (!material.name.empty()) entry["name"] = material.name;
+    document_.json["materials"].push_back(std::move(entry));
+    return at->second;
+  }
+
+ private:
+  Result<std::size_t> texture(std::size_t index) {
+    const auto [at, is_new] = textures_.try_emplace(index, textures_.size());
+    if (!is_new) return at->second;
+    json& file = document_.json;
+    auto image = document_.binary() ? embed(index) : write_beside(index);
+    if (!image.ok()) return image.status();
+    file["images"].push_back(std::move(*image));
+    // Textures repeat, as they do without a word on it.
+    file["samplers"] = json::array({{{"magFilter", kLinear}, {"minFilter", kLinearMipmapLinear}}});
+    file["textures"].push_back({{"sampler", 0}, {"source", at->second}});
+    return at->second;
+  }
+
+  Result<json> embed(std::size_t index) {
+    const Texture& texture = scene_.textures[index];
+    if (!texture.encoded.empty()) {
+      const bool png = image_extension(texture.encoded) == ".png";
+      const auto* bytes = reinterpret_cast<const char*>(texture.encoded.data());
+      return document_.embedded_image({bytes, texture.encoded.size()},
+                                      png ? "image/png" : "image/jpeg");
+    }
+    const fs::path temporary = files_.path_for(scene_texture_path(scene_, index, path_));
+    if (Status s = write_png(temporary, colour_of(texture.image), {}); !s.ok())
+      return files_.told_by_target(s);
+    std::ifstream stream(temporary, std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+    files_.discard(temporary);
+    if (stream.bad() || bytes.empty())
+      return Status(ErrorCode::io, fmt::format("{}: a texture cannot be read to embed it (is the "
+                                               "disk full?)",
+                                               path_.string()));
+    return document_.embedded_image(bytes, "image/png");
+  }
+
+  Result<json> write_beside(std::size_t index) {
+    const Texture& texture = scene_.textures[index];
+    const fs::path target = scene_texture_path(scene_, index, path_);
+    const auto* bytes = reinterpret_cast<const char*>(texture.encoded.data());
+    Status s = texture.encoded.empty()
+                   ? write_png(files_.path_for(target), colour_of(texture.image), {})
+                   : files_.write(target, {bytes, texture.encoded.size()});
+    if (!s.ok()) return files_.told_by_target(s);
+    return GltfDocument::image_beside(target.filename().string());
+  }
+
+  const Scene& scene_;
+  const fs::path& path_;
+  GltfDocument& document_;
+  AtomicFiles& files_;
+  std::map<std::pair<std::uint32_t, bool>, std::size_t> materials_;  // with or without texture
+  std::map<std::size_t, std::size_t> textures_;
+};
+
+class SceneWriter {
+ public:
+  SceneWriter(const World& world, GltfDocument& document)
+      : world_(world),
+        scene_(*world.scene),
+        document_(document),
+        texcoord_(first_equals(scene_.texcoords)),
+        normal_(first_equals(scene_.normals)) {}
+
+  // The part as a primitive of its object's mesh.
+  void add(const ScenePart& part, std::size_t material, WorldFile& result) {
+    const auto unified = unifier_.unify(3 * part.triangles.size(), [&](std::size_t k) {
+      const std::size_t corner = 3 * std::size_t(part.triangles[k / 3]) + k % 3;
+      return Key{scene_.indices[corner], world_.pages[0].uv_indices[corner],
+                 part.texcoords ? texcoord_[scene_.texcoord_indices[corner]] : 0,
+                 part.normals ? normal_[scene_.normal_indices[corner]] : 0};
+    });
+    json primitive = {{"material", material}};
+    primitive["attributes"] = attributes(part, unified.vertices);
+    primitive["indices"] = document_.add_indices(unified.indices);
+    mesh_of(part.object)["primitives"].push_back(std::move(primitive));
+    result.triangles += part.triangles.size();
+    result.vertices += unified.vertices.size();
+    result.uvs += unified.vertices.size();
+  }
+
+  // The nodes, once the meshes are known. Whatever is as glTF wants it needs no node above.
+  void add_nodes() {
+    json& file = document_.json;
+    const bool as_is =
+        world_.up == Up::y && world_.metres_per_unit == 1 && world_.origin == Vec3d{};
+    const std::size_t first = as_is ? 0 : 1;
+    json list = json::array();
+    for (std::size_t i = 0; i < file["meshes"].size(); ++i) list.push_back(first + i);
+    file["nodes"] = json::array();
+    if (!as_is) {
+      file["nodes"].push_back(gltf_root(world_));
+      file["nodes"][0]["children"] = std::exchange(list, json::array({0}));
+    }
+    for (std::size_t i = 0; i < file["meshes"].size(); ++i) {
+      json node = {{"mesh", i}};
+      if (file["meshes"][i].contains("name")) node["name"] = file["meshes"][i]["name"];
+      file["nodes"].push_back(std::move(node));
+    }
+    file["scenes"] = json::array({{{"nodes", std::move(list)}}});
+    file["scene"] = 0;
+  }
+
+ private:
+  using Key = std::array<std::uint32_t, 4>;  // position, uv, texture coordinate, normal
+
+  // Engines look for light in the second set. glTF has no second without a first, so what has no
+  // uvs of its own gets the new ones twice, from the same bytes.
+  json attributes(const ScenePart& part, const std::vector<Key>& vertices) {
+    std::vector<Vec3f> positions, normals;
+    std::vector<Vec2f> uvs, texcoords;
+    for (const auto& [position, uv, texcoord, normal] : vertices) {
+      positions.push_back(world_.positions[position]);
+      uvs.push_back(world_.uvs[uv]);
+      if (part.texcoords) texcoords.push_back(scene_.texcoords[texcoord]);
+      if (part.normals) normals.push_back(scene_.normals[normal]);
+    }
+    json result;
+    result["POSITION"] = document_.add_positions(positions);
+    if (part.normals) result["NORMAL"] = document_.add_normals(normals);
+    result["TEXCOORD_1"] = document_.add_uvs(uvs);
+    result["TEXCOORD_0"] =
+        part.texcoords ? json(document_.add_uvs(texcoords)) : result["TEXCOORD_1"];
+    return result;
+  }
+
+  // Parts come object by object.
+  json& mesh_of(std::uint32_t object) {
+    json& meshes = document_.json["meshes"];
+    if (meshes.empty() || object != object_) {
+      meshes.push_back({{"primitives", json::array()}});
+      if (object < scene_.object_names.size() && !scene_.object_names[object].empty())
+        meshes.back()["name"] = scene_.object_names[object];
+    }
+    object_ = object;
+    return meshes.back();
+  }
+
+  const World& world_;
+  const Scene& scene_;
+  GltfDocument& document_;
+  std::vector<std::uint32_t> texcoord_, normal_;  // the index that stands for each
+  VertexUnifier<4> unifier_;
+  std::uint32_t object_ = 0;  // that of the last mesh
+};
+
+}  // namespace
+
+fs::path scene_texture_path(const Scene& scene, std::size_t texture, const fs::path& target) {
+  const auto& encoded = scene.textures[texture].encoded;
+  return target.parent_path() / fmt::format("{}_texture{}{}",
+                                            safe_file_name(target.stem().string()), texture,
+                                            encoded.empty() ? ".png" : image_extension(encoded));
+}
+
+Result<WorldFile> write_gltf_scene(const World& world, const fs::path& path, AtomicFiles& files,
+                                   const Context& context) {
+  WorldFile result;
+  GltfDocument document(world, lower_extension(path) == ".glb");
+  MaterialWriter materials(world, path, document, files);
+  SceneWriter writer(world, document);
+  const std::vector<ScenePart> parts = scene_parts(*world.scene);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (context.cancelled()) return Status::cancelled();
+    auto material = materials.material(parts[i]);
+    if (!material.ok()) return material.status();
+    writer.add(parts[i], *material, result);
+    context.report("writing the world", double(i + 1) / double(parts.size()));
+  }
+  writer.add_nodes();
+  if (Status s = document.write(path, files, result); !s.ok()) return s;
+  return result;
+}
+
+}  // namespace atlas

@@ -1,0 +1,154 @@
+// Wavefront OBJ of a scene with atlas coordinates: its objects, materials and normals.
+#include <fmt/format.h>
+
+#include <set>
+
+#include "libatlas/exporters/compact_page.h"
+#include "libatlas/exporters/obj_text.h"
+#include "libatlas/exporters/scene_parts.h"
+#include "libatlas/exporters/scene_writers.h"
+
+namespace atlas {
+namespace fs = std::filesystem;
+namespace {
+
+// A name as OBJ can hold it: it ends with its line, and at a '#' behind a blank.
+std::string obj_name(const std::string& name) {
+  std::string result = one_line(name);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const bool behind_blank = i == 0 || result[i - 1] == ' ' || result[i - 1] == '\t';
+    if (result[i] == '#' && behind_blank) result[i] = '_';
+  }
+  const auto first = result.find_first_not_of(" \t");
+  if (first == std::string::npos) return {};
+  return result.substr(first, result.find_last_not_of(" \t") + 1 - first);
+}
+
+// The materials' names, all different: MTL knows a material by nothing else.
+std::vector<std::string> material_names(const Scene& scene) {
+  std::vector<std::string> names;
+  std::set<std::string> taken;
+  for (const Material& material : scene.materials) names.push_back(obj_name(material.name));
+  for (const std::string& name : names) taken.insert(name);
+  std::set<std::string> given;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    std::string name = names[i];
+    for (std::size_t k = i; name.empty() || given.contains(name); ++k) {
+      name = names[i].empty() ? fmt::format("material{}", k) : fmt::format("{}_{}", names[i], k);
+      if (taken.contains(name)) name.clear();
+    }
+    given.insert(name);
+    names[i] = name;
+  }
+  return names;
+}
+
+void write_materials(TextFile& mtl, const Scene& scene, const std::vector<std::string>& names) {
+  mtl.write(
+      "# The texture coordinates are new ones; the scene's textures (map_Kd) need its own, for\n"
+      "# which this format has no room beside them. glTF has.\n");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    TextBuffer kd;
+    const Vec3f& d = scene.materials[i].diffuse;
+    for (const float value : {d.x, d.y, d.z}) {
+      kd.character(' ');
+      kd.number(value);
+    }
+    mtl.write(fmt::format("newmtl {}\nKd{}\n", names[i], kd.bytes()));
+  }
+}
+
+// The corners of all parts, one after the other, numbered as the file has its lines.
+struct Lines {
+  Compactor::Compact points, uvs, normals;  // normals: of the parts that have them
+};
+
+Lines lines_of(const World& world, const std::vector<ScenePart>& parts) {
+  const Scene& scene = *world.scene;
+  const auto normal = first_equals(scene.normals);
+  std::vector<std::uint32_t> points, uvs, normals;
+  points.reserve(scene.indices.size());
+  uvs.reserve(scene.indices.size());
+  for (const ScenePart& part : parts) {
+    for (const std::uint32_t t : part.triangles) {
+      for (std::size_t k = 3 * std::size_t(t); k < 3 * std::size_t(t) + 3; ++k) {
+        points.push_back(scene.indices[k]);
+        uvs.push_back(world.pages[0].uv_indices[k]);
+        if (part.normals) normals.push_back(normal[scene.normal_indices[k]]);
+      }
+    }
+  }
+  return {Compactor(world.positions.size()).compact(points),
+          Compactor(world.uvs.size()).compact(uvs),
+          Compactor(scene.normals.size()).compact(normals)};
+}
+
+void write_normals(TextFile& file, const Scene& scene, const std::vector<std::uint32_t>& normals,
+                   const Context& context) {
+  file.write_items(normals.size(), context, [&](TextBuffer& out, std::size_t i) {
+    out.text("vn ");
+    out.position({}, scene.normals[normals[i]]);
+    out.character('\n');
+  });
+}
+
+// An object without a name begins the file as it did where the scene comes from, else it gets one.
+std::string object_line(const Scene& scene, std::uint32_t object) {
+  const std::string name =
+      object < scene.object_names.size() ? obj_name(scene.object_names[object]) : "";
+  if (!name.empty()) return "o " + name + "\n";
+  return object == 0 ? "" : fmt::format("o object{}\n", object);
+}
+
+WorldFile write_parts(TextFile& file, const World& world, const std::vector<std::string>& names,
+                      const Context& context) {
+  const Scene& scene = *world.scene;
+  const std::vector<ScenePart> parts = scene_parts(scene);
+  const Lines lines = lines_of(world, parts);
+  write_obj_points(file, world, lines.points.used, context);
+  write_obj_uvs(file, world, lines.uvs.used, context);
+  write_normals(file, scene, lines.normals.used, context);
+  std::size_t corner = 0, normal = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const ScenePart& part = parts[i];
+    const std::size_t corners = 3 * part.triangles.size();
+    const bool new_object = i == 0 || part.object != parts[i - 1].object;
+    if (new_object) file.write(object_line(scene, part.object));
+    if (new_object || part.material != parts[i - 1].material)
+      file.write("usemtl " + names[part.material] + "\n");
+    const std::span normals(lines.normals.indices);
+    write_obj_faces(file,
+                    {std::span(lines.points.indices).subspan(corner, corners),
+                     std::span(lines.uvs.indices).subspan(corner, corners),
+                     normals.subspan(normal, part.normals ? corners : 0)},
+                    context);
+    corner += corners;
+    normal += part.normals ? corners : 0;
+    context.report("writing the world", double(i + 1) / double(parts.size()));
+  }
+  WorldFile result;
+  result.triangles = corner / 3;
+  result.vertices = lines.points.used.size();
+  result.uvs = lines.uvs.used.size();
+  return result;
+}
+
+}  // namespace
+
+Result<WorldFile> write_obj_scene(const World& world, const fs::path& path, AtomicFiles& files,
+                                  const Context& context) {
+  fs::path mtl_path = path;
+  mtl_path.replace_extension(".mtl");
+  const std::vector<std::string> names = material_names(*world.scene);
+  TextFile mtl(files.path_for(mtl_path), mtl_path, false);
+  write_materials(mtl, *world.scene, names);
+  if (Status s = mtl.finish(); !s.ok()) return s;
+  TextFile file(files.path_for(path), path, false);
+  write_obj_head(file, world, mtl_path);
+  WorldFile result = write_parts(file, world, names, context);
+  if (Status s = file.finish(); !s.ok()) return s;
+  result.bytes = mtl.bytes() + file.bytes();
+  return result;
+}
+
+}  // namespace atlas

@@ -1,0 +1,52 @@
+#include "libatlas/exporters/obj_text.h"
+
+namespace atlas {
+
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (c == '\n' || c == '\r' || c == '\\') c = ' ';
+  }
+  return text;
+}
+
+void write_obj_head(TextFile& file, const World& world, const std::filesystem::path& mtl) {
+  if (!world.title.empty()) file.write("# " + one_line(world.title) + "\n");
+  for (const std::string& line : world.info) file.write("# " + one_line(line) + "\n");
+  file.write("mtllib " + mtl.filename().string() + "\n");
+}
+
+void write_obj_points(TextFile& file, const World& world, std::span<const std::uint32_t> points,
+                      const Context& context) {
+  file.write_items(points.size(), context, [&](TextBuffer& out, std::size_t i) {
+    out.text("v ");
+    out.position(world.origin, world.positions[points[i]]);
+    out.character('\n');
+  });
+}
+
+void write_obj_uvs(TextFile& file, const World& world, std::span<const std::uint32_t> uvs,
+                   const Context& context) {
+  file.write_items(uvs.size(), context, [&](TextBuffer& out, std::size_t i) {
+    out.text("vt ");
+    out.uv(world.uvs[uvs[i]]);
+    out.character('\n');
+  });
+}
+
+void write_obj_faces(TextFile& file, const ObjCorners& corners, const Context& context) {
+  file.write_items(corners.points.size() / 3, context, [&](TextBuffer& out, std::size_t t) {
+    out.character('f');
+    for (std::size_t k = 3 * t; k < 3 * t + 3; ++k) {
+      out.character(' ');
+      out.number(corners.points[k] + 1);
+      out.character('/');
+      out.number(corners.uvs[k] + 1);
+      if (corners.normals.empty()) continue;
+      out.character('/');
+      out.number(corners.normals[k] + 1);
+    }
+    out.character('\n');
+  });
+}
+
+}  // namespace atlas

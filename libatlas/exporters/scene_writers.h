@@ -1,0 +1,13 @@
+// Internal: World::scene as files, one function a format. check_world() has been called.
+#pragma once
+
+#include "libatlas/exporters/world.h"
+
+namespace atlas {
+
+Result<WorldFile> write_gltf_scene(const World& world, const std::filesystem::path& path,
+                                   AtomicFiles& files, const Context& context);
+Result<WorldFile> write_obj_scene(const World& world, const std::filesystem::path& path,
+                                  AtomicFiles& files, const Context& context);
+
+}  // namespace atlas
