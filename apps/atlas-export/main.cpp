@@ -25,9 +25,10 @@ void print_plan(const ExportPlan& plan, app::Terminal& terminal) {
   }
 }
 
-void print_result(const ExportReport& report, app::Terminal& terminal) {
+void print_result(const ExportReport& report, bool kept, app::Terminal& terminal) {
   if (!report.lit) {
-    terminal.line("The scene carries no illumination: the result has plain uvs and no images.");
+    terminal.line(fmt::format("The scene carries no illumination: the result has plain uvs and {}.",
+                              kept ? "no light" : "no images"));
   }
   const std::size_t pages = report.pages.size();
   const bool plain = pages == 1 && report.gpu_bytes == 0;
@@ -66,9 +67,10 @@ StageReport reading_stage(const LoadedScene& loaded, double cpu, double wall) {
   return stage;
 }
 
-// Whether a file has the name of a page's image.
-bool named_as_page(const std::filesystem::path& file, const std::filesystem::path& target) {
-  const std::string pages = safe_file_name(target.stem().string()) + "_";
+// Whether a file has the name of a page's image, or of a kept texture's.
+bool named_as_page(const std::filesystem::path& file, const std::filesystem::path& target,
+                   const char* kind = "") {
+  const std::string pages = safe_file_name(target.stem().string()) + "_" + kind;
   const std::string name = file.stem().string();
   return name.size() > pages.size() && name.starts_with(pages) &&
          name.find_first_not_of("0123456789", pages.size()) == std::string::npos;
@@ -86,8 +88,9 @@ Status check_textures_stay(const Scene& scene, const ExportOptions& options) {
   for (const Texture& texture : scene.textures) {
     std::error_code error;
     const std::filesystem::path name = texture.path.filename();
-    if ((named_as_page(texture.path, target) || written.contains(name.string())) &&
-        std::filesystem::equivalent(folder / name, texture.path, error))
+    const bool taken =
+        options.keep_scene ? written.contains(name.string()) : named_as_page(texture.path, target);
+    if (taken && std::filesystem::equivalent(folder / name, texture.path, error))
       return {ErrorCode::bad_option,
               fmt::format("{}: its images would overwrite {}, a texture of the scene (give the "
                           "output another name)",
@@ -111,11 +114,12 @@ Status check_outputs(const app::ExportCommand& command) {
   if (Status s = app::check_output(report, {command.scene, light, beside(target)}); !s.ok())
     return s;
   const std::string ending = lower_extension(report);
-  const bool image = ending == ".png" || ending == ".exr";
-  if (image && named_as_page(report, target))
-    return {ErrorCode::bad_option,
-            fmt::format("--report {}: is the name of a page (give the report another)",
-                        report.string())};
+  const bool image = ending == ".png" || ending == ".exr" || ending == ".jpg";
+  if (image && (named_as_page(report, target) || named_as_page(report, target, "texture")))
+    return {
+        ErrorCode::bad_option,
+        fmt::format("--report {}: is the name of an image of the world (give the report another)",
+                    report.string())};
   return {};
 }
 
@@ -181,7 +185,7 @@ Status run(const app::ExportCommand& command, app::Terminal& terminal) {
       *loaded, command.options, [&](const StageReport& stage) { terminal.line(stage_line(stage)); },
       context);
   if (!report.ok()) return report.status();
-  print_result(*report, terminal);
+  print_result(*report, command.options.keep_scene, terminal);
   name_old_pages(*report, terminal);
   return write_report(std::move(*report), reading, command, terminal);
 }

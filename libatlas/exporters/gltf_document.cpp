@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <vector>
 
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/exporters/camera.h"
@@ -87,15 +86,13 @@ std::size_t GltfDocument::add_normals(std::span<const Vec3f> values) {
   return add_vectors(values, nlohmann::json::object());
 }
 
-std::size_t GltfDocument::add_uvs(std::span<const Vec2f> values) {
-  std::vector<Vec2f> turned;
-  turned.reserve(values.size());
-  for (const Vec2f& uv : values) turned.push_back({uv.x, 1 - uv.y});
-  const std::size_t view = add_view(turned.data(), turned.size() * sizeof(Vec2f), kArrayBuffer);
+std::size_t GltfDocument::add_uvs(std::vector<Vec2f> values) {
+  for (Vec2f& uv : values) uv.y = 1 - uv.y;
+  const std::size_t view = add_view(values.data(), values.size() * sizeof(Vec2f), kArrayBuffer);
   return add_accessor({{"bufferView", view},
                        {"componentType", kFloat},
                        {"type", "VEC2"},
-                       {"count", turned.size()}});
+                       {"count", values.size()}});
 }
 
 std::size_t GltfDocument::add_indices(std::span<const std::uint32_t> values) {
@@ -124,8 +121,9 @@ std::string GltfDocument::text(const std::string& buffer_uri) {
 
 Status GltfDocument::write(const fs::path& path, AtomicFiles& files, WorldFile& result) {
   if (bytes_.size() > 0xf0000000u) {
-    return {ErrorCode::unsupported,
-            path.string() + ": more than 4 GB of data (use fewer or smaller pages, or .wrl)"};
+    return {
+        ErrorCode::unsupported,
+        path.string() + ": more than 4 GB of data (use fewer or smaller pages, or another format)"};
   }
   fs::path buffer_path = path;
   buffer_path.replace_extension(".bin");

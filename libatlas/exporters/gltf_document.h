@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/status.h"
@@ -27,7 +28,7 @@ class GltfDocument {
   // points up, are turned to glTF's.
   std::size_t add_positions(std::span<const Vec3f> values);
   std::size_t add_normals(std::span<const Vec3f> values);
-  std::size_t add_uvs(std::span<const Vec2f> values);
+  std::size_t add_uvs(std::vector<Vec2f> values);
   std::size_t add_indices(std::span<const std::uint32_t> values);
 
   // An image whose file is embedded in a .glb, and an image that lies beside a .gltf.

@@ -168,20 +168,13 @@ class SceneWriter {
   // Engines look for light in the second set. glTF has no second without a first, so what has no
   // uvs of its own gets the new ones twice, from the same bytes.
   json attributes(const ScenePart& part, const std::vector<Key>& vertices) {
-    std::vector<Vec3f> positions, normals;
-    std::vector<Vec2f> uvs, texcoords;
-    for (const auto& [position, uv, texcoord, normal] : vertices) {
-      positions.push_back(world_.positions[position]);
-      uvs.push_back(world_.uvs[uv]);
-      if (part.texcoords) texcoords.push_back(scene_.texcoords[texcoord]);
-      if (part.normals) normals.push_back(scene_.normals[normal]);
-    }
     json result;
-    result["POSITION"] = document_.add_positions(positions);
-    if (part.normals) result["NORMAL"] = document_.add_normals(normals);
-    result["TEXCOORD_1"] = document_.add_uvs(uvs);
-    result["TEXCOORD_0"] =
-        part.texcoords ? json(document_.add_uvs(texcoords)) : result["TEXCOORD_1"];
+    result["POSITION"] = document_.add_positions(gather(world_.positions, vertices, 0));
+    if (part.normals) result["NORMAL"] = document_.add_normals(gather(scene_.normals, vertices, 3));
+    result["TEXCOORD_1"] = document_.add_uvs(gather(world_.uvs, vertices, 1));
+    result["TEXCOORD_0"] = part.texcoords
+                               ? json(document_.add_uvs(gather(scene_.texcoords, vertices, 2)))
+                               : result["TEXCOORD_1"];
     return result;
   }
 

@@ -33,22 +33,18 @@ class PagesWriter {
     const auto unified = unifier_.unify(page.indices.size(), [&](std::size_t k) {
       return std::array{page.indices[k], page.uv_indices[k]};
     });
-    std::vector<Vec3f> positions;
-    std::vector<Vec2f> uvs;
-    for (const auto& [position, uv] : unified.vertices) {
-      positions.push_back(world_.positions[position]);
-      uvs.push_back(world_.uvs[uv]);
-    }
     json primitive;
-    primitive["attributes"]["POSITION"] = document_.add_positions(positions);
-    primitive["attributes"]["TEXCOORD_0"] = document_.add_uvs(uvs);
+    primitive["attributes"]["POSITION"] =
+        document_.add_positions(gather(world_.positions, unified.vertices, 0));
+    primitive["attributes"]["TEXCOORD_0"] =
+        document_.add_uvs(gather(world_.uvs, unified.vertices, 1));
     primitive["indices"] = document_.add_indices(unified.indices);
     primitive["material"] = document_.json["materials"].size();
     document_.json["meshes"].push_back(
         {{"name", fmt::format("page{}", number)}, {"primitives", json::array({primitive})}});
     result.triangles += unified.indices.size() / 3;
-    result.vertices += positions.size();
-    result.uvs += positions.size();
+    result.vertices += unified.vertices.size();
+    result.uvs += unified.vertices.size();
     return add_material(page, fmt::format("page{}", number));
   }
 

@@ -60,4 +60,15 @@ class VertexUnifier {
   std::vector<std::uint32_t> table_;
 };
 
+// The values that index `which` of the vertices names.
+template <class T, std::size_t N>
+std::vector<T> gather(const std::vector<T>& values,
+                      const std::vector<std::array<std::uint32_t, N>>& vertices,
+                      std::size_t which) {
+  std::vector<T> result;
+  result.reserve(vertices.size());
+  for (const auto& vertex : vertices) result.push_back(values[vertex[which]]);
+  return result;
+}
+
 }  // namespace atlas

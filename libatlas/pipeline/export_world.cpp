@@ -354,7 +354,7 @@ class Export {
 
   std::string writing_note(const Vec3d& left_out) const {
     if (options_.keep_scene)
-      return fmt::format("{} objects, {} materials of the scene", scene_.object_names.size(),
+      return fmt::format("its objects: {}, materials: {}", scene_.object_names.size(),
                          scene_.materials.size());
     if (left_out == Vec3d{}) return "";
     return fmt::format("relative to {} {} {}", left_out.x, left_out.y, left_out.z);

@@ -51,7 +51,8 @@ Status check_vertices(const Scene& scene) {
     return wrong("texcoords[{}] is not finite", v);
   for (std::size_t i = 0; i < scene.normals.size(); ++i) {
     const Vec3f& n = scene.normals[i];
-    const double length = std::hypot(double(n.x), double(n.y), double(n.z));
+    // Not std::hypot, which gives 0 for (0, 0, NaN) in GCC 12.
+    const double length = std::sqrt(double(n.x) * n.x + double(n.y) * n.y + double(n.z) * n.z);
     if (!(std::abs(length - 1) <= 0.01))
       return wrong("normals[{}] has length {:g} (must be 1)", i, length);
   }

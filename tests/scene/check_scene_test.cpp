@@ -24,6 +24,8 @@ void add_texture(Scene& scene) {
   scene.materials[0].texture = 0;
   scene.texcoords = {{0, 0}, {1, 1}};
   scene.texcoord_indices = {0, 1, 1, 0, 1, Scene::kNoTexcoord};
+  scene.normals = {{0, 0, 1}};
+  scene.normal_indices = {0, 0, 0, Scene::kNoNormal, Scene::kNoNormal, Scene::kNoNormal};
 }
 
 TEST(CheckScene, CompletesPositionsAndIndices) {
@@ -73,6 +75,16 @@ TEST(CheckScene, NamesArrayAndElement) {
       {"texcoords[1]", [=](Scene& s) { s.texcoords[1].x = nan; }},
       {"the image of textures[0] is 2 x 2 with 3 channels, but holds 5 values",
        [](Scene& s) { s.textures[0].image.texels.resize(5); }},
+      {"normal_indices has 5 entries", [](Scene& s) { s.normal_indices.resize(5); }},
+      {"normal_indices[1] is 1, but there are 1 normals",
+       [](Scene& s) { s.normal_indices[1] = 1; }},
+      {"normals[0] has length 2", [](Scene& s) { s.normals[0].z = 2; }},
+      {"normals[0] has length nan", [=](Scene& s) { s.normals[0].z = nan; }},
+      {"textures[0] has both", [](Scene& s) { s.textures[0].encoded = {1}; }},
+      {"the encoded of textures[0] is neither a PNG",
+       [](Scene& s) {
+         s.textures[0] = {{}, {}, {0xff, 0xd8}};
+       }},
       {"the image of textures[0] is 0 x 0", [](Scene& s) { s.textures[0].image = {}; }},
   };
   for (const auto& c : cases) {
@@ -82,7 +94,8 @@ TEST(CheckScene, NamesArrayAndElement) {
     c.spoil(scene);
     const Status status = check_scene(scene);
     EXPECT_EQ(status.code(), ErrorCode::bad_input) << c.named;
-    EXPECT_NE(status.message().find(c.named), std::string::npos) << status.message();
+    EXPECT_NE(status.message().find(c.named), std::string::npos)
+        << c.named << ": " << status.message();
   }
 }
 

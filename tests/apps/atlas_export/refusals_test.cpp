@@ -105,6 +105,43 @@ TEST_F(AtlasExport, OverwritesNothingThatItReads) {
   EXPECT_EQ(slurp(dir_ / "w_0.png"), page);
 }
 
+TEST_F(AtlasExport, ScenesThatCannotBeKept) {
+  const fs::path scene = write("box.obj", lit_box(2));
+  expect_refusal(scene, "--keep-scene: VRML has no room", "--keep-scene --charts-only");
+  const auto before = files();
+  for (const char* more : {"-q", "-q --no-simplify --atlases 1"}) {
+    const RunResult r =
+        run(fmt::format("{0}/box.obj -o {0}/w.glb --keep-scene {1}", dir_.string(), more));
+    EXPECT_EQ(r.exit_code, 2);
+    EXPECT_EQ(std::count(r.output.begin(), r.output.end(), '\n'), 1) << r.output;
+    EXPECT_NE(r.output.find("add --charts-only"), std::string::npos) << r.output;
+  }
+  EXPECT_EQ(files(), before);
+}
+
+// The textures of a scene that is kept are copied beside a .gltf, not over one of them.
+TEST_F(AtlasExport, AKeptSceneOverwritesNoneOfItsTextures) {
+  const fs::path scene = write("box.obj", lit_box(2));
+  ASSERT_EQ(run(fmt::format("{0}/box.obj -o {0}/lit.obj -q", dir_.string())).exit_code, 0);
+  fs::rename(dir_ / "lit_0.png", dir_ / "w_texture0.png");
+  const std::string image = slurp(dir_ / "w_texture0.png");
+  write("t.mtl", "newmtl t\nmap_Kd w_texture0.png\n");
+  write("t.obj",
+        "mtllib t.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl t\n"
+        "f 1/1 2/2 3/3\n");
+  const auto before = files();
+  const RunResult r = run(fmt::format("{0}/t.obj -o {0}/w.gltf --keep-scene -q", dir_.string()));
+  EXPECT_EQ(r.exit_code, 2);
+  EXPECT_NE(r.output.find("would overwrite"), std::string::npos) << r.output;
+  EXPECT_EQ(files(), before);
+  for (const char* target : {"v.gltf", "w.glb", "w.obj"})
+    EXPECT_EQ(
+        run(fmt::format("{0}/t.obj -o {0}/{1} --keep-scene -q", dir_.string(), target)).exit_code,
+        0);
+  EXPECT_EQ(slurp(dir_ / "v_texture0.png"), image);
+  EXPECT_EQ(slurp(dir_ / "w_texture0.png"), image);
+}
+
 // An OBJ's materials, a glTF's buffer: known only when the scene has been read.
 TEST_F(AtlasExport, OverwritesNoMaterialsAndNoBuffer) {
   const fs::path materials = write("m.mtl", "newmtl red\nKd 1 0 0\n");

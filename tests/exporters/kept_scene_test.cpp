@@ -1,0 +1,316 @@
+// World::scene: what a scene has of its own beside new uvs, read back by readers of the tests' own.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "libatlas/image/image_io.h"
+#include "libatlas/scene/check_scene.h"
+#include "libatlas/scene/reader.h"
+#include "tests/exporters/worlds.h"
+#include "tests/scene/temp_folder.h"
+#include "tests/support/kept_scene.h"
+
+namespace atlas {
+namespace {
+
+using test::KeptTriangle;
+using test::TempFolder;
+
+// Four triangles of a square and its back: two objects, two materials.
+Scene small_scene() {
+  Scene scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  scene.indices = {0, 1, 2, 0, 2, 3, 2, 1, 0, 3, 2, 0};
+  scene.texcoords = {{0, 0}, {2, 0}, {2, -2}, {0, -2}};
+  scene.texcoord_indices = {0, 1, 2, 0, 2, 3, 2, 1, 0, 3, 2, 0};
+  scene.normals = {{0, 0, 1}, {0, 0, -1}};
+  scene.normal_indices = {0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1};
+  scene.materials = {{"paint", {0.5f, 0.25f, 1}, -1}, {"wood # 2", {1, 1, 1}, -1}};
+  scene.triangle_material = {0, 1, 0, 0};
+  scene.object_names = {"front", "back"};
+  scene.triangle_object = {0, 0, 1, 1};
+  return scene;
+}
+
+// New uvs, one a corner, so that each can be told from the others.
+World world_of(const Scene& scene) {
+  World world;
+  world.positions = scene.positions;
+  world.origin = scene.origin;
+  world.scene = &scene;
+  Page page;
+  page.indices = scene.indices;
+  for (std::size_t k = 0; k < scene.indices.size(); ++k) {
+    page.uv_indices.push_back(std::uint32_t(k));
+    world.uvs.push_back({float(k) / 64, 1 - float(k) / 32});
+  }
+  world.pages = {page};
+  return world;
+}
+
+Status write(const World& world, const std::filesystem::path& path) {
+  AtomicFiles files;
+  const auto written = write_world(world, path, files, {});
+  return written.ok() ? files.commit() : written.status();
+}
+
+nlohmann::json gltf_of(const std::filesystem::path& path) {
+  return nlohmann::json::parse(test::gltf_json(path));
+}
+
+TEST(KeptScene, OfGltfHasBothUvsNormalsNamesAndMaterials) {
+  for (const char* name : {"w.gltf", "w.glb"}) {
+    const TempFolder folder;
+    const Scene scene = small_scene();
+    const World world = world_of(scene);
+    ASSERT_TRUE(write(world, folder / name).ok());
+    const auto triangles = test::read_kept_gltf(folder / name);
+    ASSERT_EQ(triangles.size(), 4u);
+    for (std::size_t t = 0; t < 4; ++t) {
+      EXPECT_EQ(triangles[t].object, scene.object_names[scene.triangle_object[t]]);
+      EXPECT_EQ(triangles[t].material, scene.materials[scene.triangle_material[t]].name);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto& corner = triangles[t].corners[c];
+        const std::size_t k = 3 * t + c;
+        EXPECT_EQ(corner.position, scene.positions[scene.indices[k]]);
+        EXPECT_EQ(corner.texcoord, scene.texcoords[scene.texcoord_indices[k]]);
+        EXPECT_EQ(corner.normal, scene.normals[scene.normal_indices[k]]);
+        EXPECT_EQ(corner.uv, world.uvs[k]);
+      }
+    }
+    const auto gltf = gltf_of(folder / name);
+    EXPECT_EQ(gltf["nodes"].size(), 2u);  // nothing to turn, scale or move; no camera
+    EXPECT_FALSE(gltf.contains("cameras") || gltf.contains("extensionsUsed"));
+    EXPECT_EQ(gltf["materials"].size(), 2u);
+    EXPECT_EQ(gltf["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"],
+              (nlohmann::json{0.5, 0.25, 1.0, 1}));
+  }
+}
+
+// Engines expect light in TEXCOORD_1, whatever else there is.
+TEST(KeptScene, OfGltfWithoutUvsOfItsOwnHasTheNewOnesTwice) {
+  const TempFolder folder;
+  Scene scene = small_scene();
+  scene.texcoord_indices[4] = Scene::kNoTexcoord;  // one corner: none for its triangle
+  scene.normal_indices[0] = Scene::kNoNormal;
+  scene.texcoord_indices[6] = scene.texcoord_indices[9] = Scene::kNoTexcoord;
+  const World world = world_of(scene);
+  ASSERT_TRUE(write(world, folder / "w.glb").ok());
+  const auto triangles = test::read_kept_gltf(folder / "w.glb");
+  const bool texcoords[4] = {true, false, false, false}, normals[4] = {false, true, true, true};
+  for (std::size_t t = 0; t < 4; ++t) {
+    EXPECT_EQ(triangles[t].has_texcoords, texcoords[t]) << t;
+    EXPECT_EQ(triangles[t].has_normals, normals[t]) << t;
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(triangles[t].corners[c].uv, world.uvs[3 * t + c]);
+  }
+  scene = small_scene();
+  scene.texcoords.clear();
+  scene.texcoord_indices.clear();
+  scene.normal_indices.clear();
+  ASSERT_TRUE(write(world_of(scene), folder / "v.glb").ok());
+  for (const KeptTriangle& t : test::read_kept_gltf(folder / "v.glb"))
+    EXPECT_FALSE(t.has_texcoords || t.has_normals);
+}
+
+// Vertices are split where they must be, and not where a file repeats a value.
+TEST(KeptScene, OfGltfSharesVerticesOfEqualAttributes) {
+  const TempFolder folder;
+  Scene scene = small_scene();
+  scene.triangle_material = {0, 0, 0, 0};
+  std::vector<Vec2f> texcoords;
+  std::vector<Vec3f> normals;
+  for (std::uint32_t k = 0; k < 12; ++k) {
+    texcoords.push_back(scene.texcoords[scene.texcoord_indices[k]]);
+    normals.push_back(scene.normals[scene.normal_indices[k]]);
+    scene.texcoord_indices[k] = scene.normal_indices[k] = k;
+  }
+  scene.texcoords = texcoords;
+  scene.normals = normals;
+  World world = world_of(scene);
+  world.pages[0].uv_indices = scene.indices;
+  AtomicFiles files;
+  const auto written = write_gltf(world, folder / "w.glb", files, {});
+  ASSERT_TRUE(written.ok());
+  EXPECT_EQ(written->vertices, 8u);
+  EXPECT_EQ(written->triangles, 4u);
+}
+
+std::string bytes_of(const Texture& texture) {
+  return {texture.encoded.begin(), texture.encoded.end()};
+}
+
+void add_textures(Scene& scene, const TempFolder& folder) {
+  Image8 image(3, 2, 3, 40);
+  image.at(0, 0)[0] = 200;  // bottom left
+  EXPECT_TRUE(write_png(folder / "made.png", image, {}).ok());
+  const std::string png = TempFolder::read(folder / "made.png");
+  std::filesystem::remove(folder / "made.png");
+  scene.textures.resize(2);
+  scene.textures[0].encoded.assign(png.begin(), png.end());
+  scene.textures[1].image = Image8(2, 2, 5, 9);  // of more channels than PNG has
+  scene.textures[1].image.at(1, 1)[2] = 250;
+  scene.materials[0].texture = 1;
+  scene.materials[1].texture = 0;
+}
+
+TEST(KeptScene, TexturesGoWithAGltf) {
+  for (const char* name : {"my world.gltf", "w.glb"}) {
+    const TempFolder folder;
+    Scene scene = small_scene();
+    add_textures(scene, folder);
+    ASSERT_TRUE(write(world_of(scene), folder / name).ok());
+    EXPECT_EQ(folder.count(), name[0] == 'm' ? 4u : 1u);
+    const auto loaded = read_scene(folder / name, {}, {});
+    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+    EXPECT_TRUE(loaded->defects.empty());
+    const Scene& back = loaded->scene;
+    ASSERT_EQ(back.textures.size(), 2u);
+    EXPECT_EQ(back.textures[back.materials[0].texture].image.at(1, 1)[2], 250);
+    EXPECT_EQ(back.textures[back.materials[1].texture].image.at(0, 0)[0], 200);
+    const auto raw = read_scene(folder / name, {.encoded_textures = true}, {});
+    EXPECT_EQ(bytes_of(raw->scene.textures[1]), bytes_of(scene.textures[0]));
+    if (name[0] != 'm') continue;
+    EXPECT_EQ(TempFolder::read(scene_texture_path(scene, 0, folder / name)),
+              bytes_of(scene.textures[0]));
+  }
+}
+
+// A reader takes the plain colour where uvs are missing; a viewer would take one texel's.
+TEST(KeptScene, TexturesNeedUvs) {
+  const TempFolder folder;
+  Scene scene = small_scene();
+  add_textures(scene, folder);
+  for (std::size_t k = 6; k < 12; ++k) scene.texcoord_indices[k] = Scene::kNoTexcoord;
+  ASSERT_TRUE(write(world_of(scene), folder / "w.glb").ok());
+  const auto triangles = test::read_kept_gltf(folder / "w.glb");
+  EXPECT_FALSE(triangles[0].image.empty());
+  EXPECT_TRUE(triangles[2].image.empty());
+  EXPECT_EQ(triangles[2].material, "paint");
+}
+
+TEST(KeptScene, IsTurnedScaledAndMovedByARoot) {
+  const TempFolder folder;
+  Scene scene = small_scene();
+  scene.origin = {1024, 512, 2048};
+  World world = world_of(scene);
+  world.up = Up::z;
+  world.metres_per_unit = 0.5;
+  ASSERT_TRUE(write(world, folder / "w.glb").ok());
+  const auto loaded = read_scene(folder / "w.glb", {.normals = true}, {});
+  ASSERT_TRUE(loaded.ok());
+  const Scene& back = loaded->scene;
+  EXPECT_EQ(back.object_names, scene.object_names);
+  const Vec3f p = back.positions[back.indices[2]];
+  EXPECT_NEAR(back.origin.x + p.x, 0.5 * 1025, 1e-4);
+  EXPECT_NEAR(back.origin.y + p.y, 0.5 * 2048, 1e-4);
+  EXPECT_NEAR(back.origin.z + p.z, -0.5 * 513, 1e-4);
+  EXPECT_NEAR(back.normals[back.normal_indices[0]].y, 1, 1e-6);
+}
+
+TEST(KeptScene, OfObjHasNewUvsNormalsNamesAndColours) {
+  const TempFolder folder;
+  const Scene scene = small_scene();
+  const World world = world_of(scene);
+  ASSERT_TRUE(write(world, folder / "w.obj").ok());
+  const auto triangles = test::read_kept_obj(folder / "w.obj");
+  ASSERT_EQ(triangles.size(), 4u);
+  for (std::size_t t = 0; t < 4; ++t) {
+    EXPECT_EQ(triangles[t].object, scene.object_names[scene.triangle_object[t]]);
+    // A '#' behind a blank would begin a comment.
+    EXPECT_EQ(triangles[t].material, t == 1 ? "wood _ 2" : "paint");
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto& corner = triangles[t].corners[c];
+      EXPECT_EQ(corner.position, scene.positions[scene.indices[3 * t + c]]);
+      EXPECT_EQ(corner.texcoord, world.uvs[3 * t + c]);
+      EXPECT_EQ(corner.normal, scene.normals[scene.normal_indices[3 * t + c]]);
+    }
+  }
+  const std::string mtl = TempFolder::read(folder / "w.mtl");
+  EXPECT_NE(mtl.find("newmtl paint\nKd 0.5 0.25 1\n"), std::string::npos) << mtl;
+  EXPECT_EQ(mtl.find("\nmap_Kd"), std::string::npos);
+}
+
+// MTL tells materials apart by their names alone.
+TEST(KeptScene, OfObjHasMaterialsOfDifferentNames) {
+  const TempFolder folder;
+  Scene scene = small_scene();
+  scene.materials.resize(5);
+  for (const std::size_t m : {0, 2}) scene.materials[m].name = "a";
+  scene.materials[1].name = "a_2";
+  scene.materials[3].name = "  \nline\\";
+  for (std::size_t m = 0; m < 5; ++m) scene.materials[m].diffuse = {float(m) / 8, 0, 0};
+  scene.triangle_material = {0, 1, 2, 4};
+  scene.object_names = {"", ""};
+  ASSERT_TRUE(write(world_of(scene), folder / "w.obj").ok());
+  const auto loaded = read_scene(folder / "w.obj", {}, {});
+  ASSERT_TRUE(loaded.ok());
+  EXPECT_TRUE(loaded->defects.empty());
+  const Scene& back = loaded->scene;
+  ASSERT_EQ(back.materials.size(), 4u);
+  for (std::size_t t = 0; t < 4; ++t)
+    EXPECT_EQ(back.materials[back.triangle_material[t]].diffuse,
+              scene.materials[scene.triangle_material[t]].diffuse);
+  EXPECT_EQ(back.object_names, (std::vector<std::string>{"", "object1"}));
+}
+
+TEST(KeptScene, OfObjMayLackNormalsInPlaces) {
+  const TempFolder folder;
+  Scene scene = small_scene();
+  scene.normal_indices[3] = Scene::kNoNormal;
+  ASSERT_TRUE(write(world_of(scene), folder / "w.obj").ok());
+  const auto triangles = test::read_kept_obj(folder / "w.obj");
+  ASSERT_EQ(triangles.size(), 4u);
+  for (std::size_t t = 0; t < 4; ++t) EXPECT_EQ(triangles[t].has_normals, t != 1);
+}
+
+TEST(KeptScene, WhatDoesNotAgreeIsRefusedAndNothingWritten) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const struct {
+    const char* named;
+    std::function<void(World&, Scene&)> spoil;
+  } cases[] = {
+      {"one page", [](World& w, Scene&) { w.pages.push_back({}); }},
+      {"without an image", [](World& w, Scene&) { w.pages[0].image = "a.png"; }},
+      {"other corners",
+       [](World& w, Scene&) { std::swap(w.pages[0].indices[1], w.pages[0].indices[2]); }},
+      {"other corners", [](World&, Scene& s) { s.positions.push_back({}); }},
+      {"normals[1]", [=](World&, Scene& s) { s.normals[1].x = nan; }},
+      {"normal_indices[3] is 7", [](World&, Scene& s) { s.normal_indices[3] = 7; }},
+      {"neither a PNG nor a JPEG",
+       [](World&, Scene& s) {
+         s.textures.resize(1), s.textures[0].encoded = {1, 2, 3};
+       }},
+      {"no triangle",
+       [](World& w, Scene& s) {
+         s = {}, w = {};
+         w.pages.resize(1), w.scene = &s;
+       }},
+  };
+  for (const auto& c : cases) {
+    for (const char* name : {"w.gltf", "w.glb", "w.obj"}) {
+      const TempFolder folder;
+      Scene scene = small_scene();
+      World world = world_of(scene);
+      c.spoil(world, scene);
+      const Status status = write(world, folder / name);
+      EXPECT_EQ(status.code(), ErrorCode::bad_input) << c.named;
+      EXPECT_NE(status.message().find(c.named), std::string::npos) << status.message();
+      EXPECT_EQ(folder.count(), 0u);
+    }
+  }
+  const TempFolder folder;
+  const Scene scene = small_scene();
+  const Status vrml = write(world_of(scene), folder / "w.wrl");
+  EXPECT_EQ(vrml.code(), ErrorCode::bad_option);
+  EXPECT_NE(vrml.message().find("write .gltf, .glb or .obj"), std::string::npos);
+  EXPECT_EQ(folder.count(), 0u);
+  EXPECT_FALSE(holds_scene("w.wrz"));
+  EXPECT_TRUE(holds_scene("W.GLB") && holds_scene("w.gltf") && holds_scene("w.obj"));
+}
+
+}  // namespace
+}  // namespace atlas

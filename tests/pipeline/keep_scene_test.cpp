@@ -1,0 +1,265 @@
+// Exports that keep the scene, from file to file: corner by corner what was there, and the uvs of
+// the same export without the option.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+#include <tuple>
+
+#include "libatlas/pipeline/export_world.h"
+#include "tests/pipeline/lit_scene.h"
+#include "tests/scene/gltf_maker.h"
+#include "tests/scene/temp_folder.h"
+#include "tests/support/kept_scene.h"
+#include "tests/support/shapes.h"
+
+namespace atlas::test {
+namespace {
+
+using Triangles = std::vector<KeptTriangle>;
+
+void export_to(const std::filesystem::path& scene, const std::filesystem::path& target, bool keep,
+               int threads = 1) {
+  const auto loaded =
+      read_scene(scene, {.unlit_textures = keep, .encoded_textures = keep, .normals = keep}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  ExportOptions options;
+  options.target = target;
+  options.charts_only = true;
+  options.keep_scene = keep;
+  Context context;
+  context.threads = threads;
+  const auto report = export_world(*loaded, options, {}, context);
+  ASSERT_TRUE(report.ok()) << report.status().message();
+}
+
+auto tuple_of(const Vec3f& v) {
+  return std::tuple(v.x, v.y, v.z);
+}
+auto tuple_of(const Vec2f& v) {
+  return std::tuple(v.x, v.y);
+}
+
+// All but the new uvs.
+auto own_of(const KeptTriangle& t) {
+  const auto corner = [&](int c) {
+    const KeptCorner& k = t.corners[std::size_t(c)];
+    return std::tuple(tuple_of(k.position), tuple_of(k.normal), tuple_of(k.texcoord));
+  };
+  return std::tuple(t.object, t.material, t.has_normals, t.has_texcoords,
+                    std::array{corner(0), corner(1), corner(2)});
+}
+
+Triangles sorted(Triangles triangles) {
+  std::stable_sort(
+      triangles.begin(), triangles.end(),
+      [](const KeptTriangle& a, const KeptTriangle& b) { return own_of(a) < own_of(b); });
+  return triangles;
+}
+
+// The uvs that the export without the option gives to the input's triangles, which keep their
+// order; those that it turns round begin with another corner.
+void add_plain_uvs(const std::filesystem::path& plain, Triangles& input) {
+  const Triangles written = read_kept_obj(plain);
+  ASSERT_EQ(written.size(), input.size());
+  int turned_round = 0;
+  for (std::size_t t = 0; t < input.size(); ++t) {
+    std::array<bool, 3> taken{};
+    for (KeptCorner& corner : input[t].corners) {
+      std::size_t c = 0;
+      while (c < 3 && (taken[c] || written[t].corners[c].position != corner.position)) ++c;
+      ASSERT_LT(c, 3u) << "triangle " << t;
+      taken[c] = true;
+      corner.uv = written[t].corners[c].texcoord;
+    }
+    turned_round += written[t].corners[1].position != input[t].corners[1].position;
+  }
+  EXPECT_GT(turned_round, 0);
+}
+
+void expect_kept(const Triangles& input, const Triangles& written, double tolerance) {
+  ASSERT_EQ(input.size(), written.size());
+  const Triangles a = sorted(input), b = sorted(written);
+  for (std::size_t t = 0; t < a.size(); ++t) {
+    ASSERT_EQ(own_of(a[t]), own_of(b[t])) << t << " of " << a[t].object;
+    for (std::size_t c = 0; c < 3; ++c) {
+      ASSERT_NEAR(a[t].corners[c].uv.x, b[t].corners[c].uv.x, tolerance);
+      ASSERT_NEAR(a[t].corners[c].uv.y, b[t].corners[c].uv.y, tolerance);
+    }
+  }
+}
+
+// Three shapes as objects, cut among three materials, with normals and uvs of their own, which some
+// faces lack, all of few digits, so that nothing rounds them. One triangle of each is turned round,
+// one has no area, one is there twice.
+std::string made_obj() {
+  std::string text = "mtllib m.mtl\n";
+  const std::pair<const char*, Shape> objects[] = {
+      {"a ring", torus(24, 12)}, {"crate", box(3)}, {"ball", icosphere(2)}};
+  std::size_t base = 1;
+  for (const auto& [name, shape] : objects) {
+    text += fmt::format("o {}\n", name);
+    for (std::size_t i = 0; i < shape.positions.size(); ++i) {
+      const Vec3f p = shape.positions[i];
+      text += fmt::format("v {:.4f} {:.4f} {:.4f}\nvt {} {}\nvn {}\n", p.x, p.y, p.z,
+                          double(i % 97) / 64, -double(i % 31) / 64,
+                          i % 3 == 0 ? "0 0 1" : "0.6 0 -0.8");
+    }
+    const auto face = [&](std::array<std::uint32_t, 3> v, int kind) {
+      text += "f";
+      for (const std::uint32_t i : v) {
+        const std::size_t k = base + i;
+        text += kind == 1   ? fmt::format(" {0}//{0}", k)
+                : kind == 2 ? fmt::format(" {0}/{0}", k)
+                            : fmt::format(" {0}/{0}/{0}", k);
+      }
+      text += "\n";
+    };
+    const std::size_t count = shape.indices.size() / 3;
+    for (std::size_t t = 0; t < count; ++t) {
+      const std::uint32_t* v = &shape.indices[3 * t];
+      if (t % 7 == 0)
+        text += fmt::format("usemtl {}\n", t % 3 == 0 ? "plain red" : t % 3 == 1 ? "b" : "c");
+      face(t == 5 ? std::array{v[1], v[0], v[2]} : std::array{v[0], v[1], v[2]}, t % 11 == 4   ? 1
+                                                                                 : t % 13 == 5 ? 2
+                                                                                               : 0);
+      if (t == 9) face({v[0], v[1], v[2]}, 0);
+      if (t == 10) face({v[0], v[1], v[1]}, 0);
+    }
+    base += shape.positions.size();
+  }
+  return text;
+}
+
+// What the writers leave out of what was read.
+Triangles without_texcoords(Triangles triangles) {
+  for (KeptTriangle& t : triangles) {
+    t.has_texcoords = true;
+    for (KeptCorner& c : t.corners) c.texcoord = c.uv;
+  }
+  return triangles;
+}
+
+TEST(KeepScene, AnObjToGltfAndObj) {
+  const TempFolder folder;
+  folder.write("m.mtl", "newmtl plain red\nKd 1 0 0\nnewmtl b\nKd 0 0.5 0\nnewmtl c\nKd 0 0 1\n");
+  const auto scene = folder.write("scene.obj", made_obj());
+  Triangles input = read_kept_obj(scene);
+  export_to(scene, folder / "plain.obj", false);
+  add_plain_uvs(folder / "plain.obj", input);
+  for (const char* name : {"kept.glb", "kept.gltf"}) {
+    export_to(scene, folder / name, true);
+    Triangles written = read_kept_gltf(folder / name);
+    // Without uvs of its own a corner has the new ones twice.
+    for (KeptTriangle& t : written)
+      for (KeptCorner& c : t.corners)
+        if (!t.has_texcoords) c.texcoord = {};
+    expect_kept(input, written, 1e-7);
+  }
+  export_to(scene, folder / "kept.obj", true);
+  Triangles written = read_kept_obj(folder / "kept.obj");
+  for (KeptTriangle& t : written)
+    for (KeptCorner& c : t.corners) c.uv = c.texcoord;
+  expect_kept(without_texcoords(input), written, 0);
+}
+
+TEST(KeepScene, IsTheSameForAnyNumberOfThreads) {
+  const TempFolder folder;
+  const auto scene = folder.write("scene.obj", made_obj());
+  for (const char* name : {"w.glb", "w.obj"}) {
+    export_to(scene, folder / name, true, 1);
+    const std::string one = TempFolder::read(folder / name);
+    export_to(scene, folder / name, true, 3);
+    EXPECT_EQ(TempFolder::read(folder / name), one);
+  }
+}
+
+// Under a mirroring node triangles are turned round so that they face as they did; all attributes
+// go with their corners.
+TEST(KeepScene, MirroredNodesOfAGltf) {
+  const TempFolder folder;
+  Gltf gltf;
+  const Shape shape = torus(12, 8);
+  std::vector<float> positions, normals, uvs;
+  for (std::size_t i = 0; i < shape.positions.size(); ++i) {
+    const Vec3f p = shape.positions[i];
+    positions.insert(positions.end(), {p.x, p.y, p.z});
+    normals.insert(normals.end(), {0, i % 2 ? 0.6f : 1.f, i % 2 ? 0.8f : 0.f});
+    uvs.insert(uvs.end(), {float(i % 16) / 16, float(i / 16) / 16});
+  }
+  const json attributes = {{"POSITION", gltf.floats(positions, "VEC3", 3)},
+                           {"NORMAL", gltf.floats(normals, "VEC3", 3)},
+                           {"TEXCOORD_0", gltf.floats(uvs, "VEC2", 2)}};
+  gltf.single({{"attributes", attributes}, {"indices", gltf.indices(shape.indices)}},
+              {{"name", "left"}});
+  gltf.j["nodes"].push_back(
+      {{"name", "right"}, {"mesh", 0}, {"scale", {-1, 1, 1}}, {"translation", {-8, 0, 0}}});
+  gltf.j["scenes"][0]["nodes"] = {0, 1};
+  const auto scene = folder.write("scene.glb", gltf.glb());
+  export_to(scene, folder / "w.glb", true);
+  const Triangles written = read_kept_gltf(folder / "w.glb");
+  ASSERT_EQ(written.size(), 2 * shape.indices.size() / 3);
+  for (std::size_t t = 0; t < written.size(); ++t) {
+    const bool mirrored = 3 * t >= shape.indices.size();
+    EXPECT_EQ(written[t].object, mirrored ? "right" : "left");
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t i = shape.indices[3 * t % shape.indices.size() + (mirrored ? 2 - c : c)];
+      const KeptCorner& corner = written[t].corners[c];
+      EXPECT_NEAR(corner.position.x, mirrored ? -8 - shape.positions[i].x : shape.positions[i].x,
+                  1e-6);
+      EXPECT_EQ(corner.normal, (Vec3f{0, normals[3 * i + 1], normals[3 * i + 2]}));
+      EXPECT_EQ(corner.texcoord, (Vec2f{uvs[2 * i], 1 - uvs[2 * i + 1]}));
+    }
+  }
+}
+
+// A scene far from zero loses its origin on reading and has it back in the file.
+TEST(KeepScene, TheOriginIsAddedAgain) {
+  const TempFolder folder;
+  const auto scene =
+      folder.write("far.obj",
+                   "o a\nv 500000 4000000 0\nv 500001 4000000 0\nv 500000 4000001.25 0\nvn 0 0 1\n"
+                   "f 1//1 2//1 3//1\n");
+  export_to(scene, folder / "w.obj", true);
+  EXPECT_NE(TempFolder::read(folder / "w.obj").find("v 5e+05 4000001.25 0\n"), std::string::npos);
+  export_to(scene, folder / "w.glb", true);
+  const auto back = read_scene(folder / "w.glb", {}, {});
+  ASSERT_TRUE(back.ok());
+  EXPECT_EQ(back->scene.origin.y + back->scene.positions[2].y, 4000001.25);
+}
+
+TEST(KeepScene, IsRefusedWhereLightIsBakedAndForVrml) {
+  const TempFolder folder;
+  const LoadedScene lit = lit_scene(box(2));
+  ExportOptions options;
+  options.target = folder / "w.glb";
+  options.keep_scene = true;
+  const auto baked = export_world(lit, options, {}, {});
+  EXPECT_EQ(baked.status().code(), ErrorCode::bad_option);
+  EXPECT_NE(baked.status().message().find("--charts-only"), std::string::npos);
+  options.charts_only = true;
+  EXPECT_TRUE(export_world(lit, options, {}, {}).ok());
+  options.target = folder / "w.wrl";
+  EXPECT_EQ(export_world(lit, options, {}, {}).status().code(), ErrorCode::bad_option);
+  EXPECT_EQ(folder.count(), 1u);
+}
+
+// Textures that were not decoded cannot be baked from.
+TEST(KeepScene, EncodedTexturesAreNotBaked) {
+  const TempFolder folder;
+  LoadedScene lit = lit_scene(box(2));
+  lit.scene.textures.resize(1);
+  lit.scene.textures[0].encoded = {0xff, 0xd8, 0xff, 0xe0};
+  ExportOptions options;
+  options.target = folder / "w.glb";
+  const auto baked = export_world(lit, options, {}, {});
+  EXPECT_EQ(baked.status().code(), ErrorCode::bad_input);
+  EXPECT_NE(baked.status().message().find("textures[0] has no image"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace atlas::test
