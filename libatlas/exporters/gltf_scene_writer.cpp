@@ -30,6 +30,24 @@ Image8 colour_of(const Image8& image) {
   return colour;
 }
 
+// A material without its texture.
+json look_of(const Material& material) {
+  const Vec3f& d = material.diffuse;
+  json surface = {{"metallicFactor", 0}, {"roughnessFactor", 1}};
+  if (d != Vec3f{1, 1, 1} || material.opacity != 1)
+    surface["baseColorFactor"] = {std::clamp(d.x, 0.f, 1.f), std::clamp(d.y, 0.f, 1.f),
+                                  std::clamp(d.z, 0.f, 1.f), material.opacity};
+  json entry = {{"pbrMetallicRoughness", std::move(surface)}};
+  if (!material.name.empty()) entry["name"] = material.name;
+  if (material.double_sided) entry["doubleSided"] = true;
+  if (material.alpha_mode == AlphaMode::blend) entry["alphaMode"] = "BLEND";
+  if (material.alpha_mode == AlphaMode::mask) {
+    entry["alphaMode"] = "MASK";
+    entry["alphaCutoff"] = material.alpha_cutoff;
+  }
+  return entry;
+}
+
 // The scene's materials and textures as far as they are used, each written once.
 class MaterialWriter {
  public:
@@ -44,18 +62,12 @@ class MaterialWriter {
     const bool textured = part.texcoords && material.texture >= 0;
     const auto [at, is_new] = materials_.try_emplace({part.material, textured}, materials_.size());
     if (!is_new) return at->second;
-    const Vec3f& d = material.diffuse;
-    json surface = {{"metallicFactor", 0}, {"roughnessFactor", 1}};
-    if (d != Vec3f{1, 1, 1})
-      surface["baseColorFactor"] = {std::clamp(d.x, 0.f, 1.f), std::clamp(d.y, 0.f, 1.f),
-                                    std::clamp(d.z, 0.f, 1.f), 1};
+    json entry = look_of(material);
     if (textured) {
       auto number = texture(std::size_t(material.texture));
       if (!number.ok()) return number.status();
-      surface["baseColorTexture"] = {{"index", *number}};
+      entry["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", *number}};
     }
-    json entry = {{"doubleSided", true}, {"pbrMetallicRoughness", std::move(surface)}};
-    if (!material.name.empty()) entry["name"] = material.name;
     document_.json["materials"].push_back(std::move(entry));
     return at->second;
   }

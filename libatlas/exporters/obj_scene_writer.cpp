@@ -55,6 +55,8 @@ void write_materials(TextFile& mtl, const Scene& scene, const std::vector<std::s
       kd.number(value);
     }
     mtl.write(fmt::format("newmtl {}\nKd{}\n", names[i], kd.bytes()));
+    if (scene.materials[i].alpha_mode == AlphaMode::blend && scene.materials[i].opacity < 1)
+      mtl.write(fmt::format("d {}\n", scene.materials[i].opacity));
   }
 }
 

@@ -53,7 +53,7 @@ struct ExportOptions {
   bool exr = false;                  // also scene-linear OpenEXR pages
   std::int32_t png_compression = 3;  // zlib level 0..9
 
-  bool charts_only = false;   // charts and uvs only: no light is baked, no image written
+  bool charts_only = false;  // charts and uvs only: no light is baked, no image written
   // With plain uvs (charts_only, or a scene without light): write the scene's own objects,
   // materials, textures, normals and texture coordinates as well, see World::scene. For .gltf and
   // .glb, and .obj, which has no room for textures. Scene::normals must have been asked for

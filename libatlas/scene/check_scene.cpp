@@ -107,6 +107,11 @@ Status check_materials(const Scene& scene) {
       return wrong("materials[{}] names texture {}, but there are {} (-1: none)", m,
                    material.texture, scene.textures.size());
     if (!finite(material.diffuse)) return wrong("the diffuse of materials[{}] is not finite", m);
+    if (!(material.opacity >= 0 && material.opacity <= 1))
+      return wrong("the opacity of materials[{}] is {} (must be within 0..1)", m, material.opacity);
+    if (!(material.alpha_cutoff >= 0) || !std::isfinite(material.alpha_cutoff))
+      return wrong("the alpha_cutoff of materials[{}] is {} (must be 0 or more)", m,
+                   material.alpha_cutoff);
   }
   for (std::size_t i = 0; i < scene.textures.size(); ++i) {
     const Image8& image = scene.textures[i].image;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -77,6 +78,7 @@ std::array<double, count> numbers(const tinygltf::Value& object, const char* key
 // The diffuse part of a material: glTF's own, or that of an older model of shading.
 struct Diffuse {
   Vec3f colour{1, 1, 1};
+  double opacity = 1;
   tinygltf::TextureInfo texture;
 };
 
@@ -89,11 +91,13 @@ Diffuse diffuse_of(const tinygltf::Material& material) {
       diffuse.colour = {float(pbr.baseColorFactor[0]), float(pbr.baseColorFactor[1]),
                         float(pbr.baseColorFactor[2])};
     }
+    if (pbr.baseColorFactor.size() >= 4) diffuse.opacity = pbr.baseColorFactor[3];
     diffuse.texture = pbr.baseColorTexture;
     return diffuse;
   }
   const auto rgb = numbers<3>(glossy->second, "diffuseFactor", 1);
   diffuse.colour = {float(rgb[0]), float(rgb[1]), float(rgb[2])};
+  diffuse.opacity = numbers<4>(glossy->second, "diffuseFactor", 1)[3];
   const tinygltf::Value& info = glossy->second.Get("diffuseTexture");
   if (!info.IsObject() || !info.Get("index").IsInt()) return diffuse;
   diffuse.texture.index = info.Get("index").GetNumberAsInt();
@@ -103,6 +107,15 @@ Diffuse diffuse_of(const tinygltf::Material& material) {
   for (const std::string& key : extensions.Keys())
     diffuse.texture.extensions[key] = extensions.Get(key);
   return diffuse;
+}
+
+void add_transparency(const tinygltf::Material& m, double opacity, RawMaterial& material) {
+  material.opacity = float(std::clamp(opacity, 0.0, 1.0));
+  material.alpha_mode = m.alphaMode == "MASK"    ? AlphaMode::mask
+                        : m.alphaMode == "BLEND" ? AlphaMode::blend
+                                                 : AlphaMode::opaque;
+  material.alpha_cutoff = float(std::clamp(m.alphaCutoff, 0.0, 1e6));
+  material.double_sided = m.doubleSided;
 }
 
 // KHR_texture_transform may name another set than its texture does.
@@ -137,6 +150,7 @@ Result<std::vector<int>> add_gltf_materials(const tinygltf::Model& model, SceneB
     RawMaterial material;
     material.name = m.name.empty() ? fmt::format("material{}", i) : m.name;
     material.diffuse = diffuse.colour;
+    add_transparency(m, diffuse.opacity, material);
     material.texture = image_of(model, diffuse.texture.index);
     if (diffuse.texture.index >= 0 && material.texture < 0) {
       builder.defects.add(DefectKind::texture_unreadable, [&] {

@@ -12,11 +12,19 @@
 
 namespace atlas {
 
+// What a fourth channel means: nothing, holes where it is below a threshold, or glass.
+enum class AlphaMode : std::uint8_t { opaque, mask, blend };
+
 // Lambertian reflectance: diffuse (linear RGB, 0..1) times the texture, if there is one.
 struct Material {
   std::string name;
   Vec3f diffuse{1, 1, 1};
   std::int32_t texture = -1;  // index into Scene::textures, or -1
+  // Of glTF; handed on by exports that keep the scene. To light every surface is opaque.
+  float opacity = 1;  // 0..1, times the texture's
+  AlphaMode alpha_mode = AlphaMode::opaque;
+  float alpha_cutoff = 0.5f;  // the threshold of holes, >= 0
+  bool double_sided = true;   // seen from behind, too
 };
 
 // A diffuse texture. Values are 8-bit sRGB-encoded, repeat outside [0, 1]², origin bottom left.

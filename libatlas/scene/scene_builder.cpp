@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <unordered_map>
 
 #include "libatlas/core/drop_rounding.h"
 #include "libatlas/image/file_kind.h"
 #include "libatlas/image/image_io.h"
+#include "libatlas/scene/file_bytes.h"
 
 namespace atlas {
 namespace {
@@ -178,22 +177,23 @@ Result<Image8> SceneBuilder::load_texture(const RawTexture& raw) const {
 }
 
 // Whether the texture is a PNG or JPEG file, which then is the scene's last texture.
-bool SceneBuilder::keep_encoded(const RawTexture& raw, Scene& scene) const {
-  Texture texture{raw.path, {}, raw.bytes};
+bool SceneBuilder::keep_encoded(RawTexture& raw, Scene& scene) const {
+  std::vector<std::uint8_t> read;
   if (raw.bytes.empty()) {
-    std::ifstream stream(raw.path, std::ios::binary);
-    texture.encoded.assign(std::istreambuf_iterator<char>(stream), {});
-    if (stream.bad()) return false;
+    const auto file_bytes = read_file_bytes(raw.path);
+    if (!file_bytes.ok()) return false;
+    read.assign(file_bytes->begin(), file_bytes->end());
   }
-  if (image_extension(texture.encoded).empty()) return false;
-  scene.textures.push_back(std::move(texture));
+  std::vector<std::uint8_t>& bytes = raw.bytes.empty() ? read : raw.bytes;
+  if (image_extension(bytes).empty()) return false;
+  scene.textures.push_back({raw.path, {}, std::move(bytes)});
   return true;
 }
 
 void SceneBuilder::load_textures(Scene& scene, bool encoded) {
   std::vector<std::int32_t> loaded(textures.size(), -1);
   for (std::size_t i = 0; i < textures.size(); ++i) {
-    const RawTexture& raw = textures[i];
+    RawTexture& raw = textures[i];
     if (encoded && keep_encoded(raw, scene)) {
       loaded[i] = static_cast<std::int32_t>(scene.textures.size()) - 1;
       continue;
@@ -239,7 +239,10 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   if (context.cancelled()) return Status::cancelled();
   keep_used(scene);
   move_texcoords();
-  for (const RawMaterial& m : materials) scene.materials.push_back({m.name, m.diffuse, -1});
+  for (const RawMaterial& m : materials) {
+    scene.materials.push_back(m);
+    scene.materials.back().texture = -1;
+  }
   if (options.load_textures && (options.unlit_textures || !illumination.empty())) {
     load_textures(scene, options.encoded_textures);
   }

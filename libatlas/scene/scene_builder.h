@@ -22,10 +22,8 @@ struct RawTexture {
   std::string place;  // where it is asked for
 };
 
-struct RawMaterial {
-  std::string name;
-  Vec3f diffuse{1, 1, 1};
-  std::int32_t texture = -1;
+// Its texture is one of SceneBuilder::textures.
+struct RawMaterial : Material {
   // Texture coordinates of its triangles become row[0] u + row[1] v + row[2].
   std::array<double, 3> uv_u{1, 0, 0}, uv_v{0, 1, 0};
 
@@ -169,7 +167,7 @@ class SceneBuilder {
   void move_texcoords();
   void place_normals(Scene& scene);
   void load_textures(Scene& scene, bool encoded);
-  bool keep_encoded(const RawTexture& raw, Scene& scene) const;
+  bool keep_encoded(RawTexture& raw, Scene& scene) const;
   Result<Image8> load_texture(const RawTexture& raw) const;
 
   bool all_usable_ = true, any_texcoord_ = false, any_normal_ = false;

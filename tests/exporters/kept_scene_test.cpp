@@ -192,6 +192,26 @@ TEST(KeptScene, TexturesNeedUvs) {
   EXPECT_EQ(triangles[2].material, "paint");
 }
 
+TEST(KeptScene, MaterialsStayAsTransparentAsTheyWere) {
+  const TempFolder folder;
+  Scene scene = small_scene();
+  scene.materials[0].alpha_mode = AlphaMode::blend;
+  scene.materials[0].opacity = 0.5f;
+  scene.materials[0].double_sided = false;
+  scene.materials[1].alpha_mode = AlphaMode::mask;
+  scene.materials[1].alpha_cutoff = 0.75f;
+  ASSERT_TRUE(write(world_of(scene), folder / "w.glb").ok());
+  const auto gltf = gltf_of(folder / "w.glb");
+  EXPECT_EQ(gltf["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"][3], 0.5);
+  EXPECT_EQ(gltf["materials"][0]["alphaMode"], "BLEND");
+  EXPECT_FALSE(gltf["materials"][0].contains("doubleSided"));
+  EXPECT_EQ(gltf["materials"][1]["alphaMode"], "MASK");
+  EXPECT_EQ(gltf["materials"][1]["alphaCutoff"], 0.75);
+  EXPECT_EQ(gltf["materials"][1]["doubleSided"], true);
+  ASSERT_TRUE(write(world_of(scene), folder / "w.obj").ok());
+  EXPECT_NE(TempFolder::read(folder / "w.mtl").find("\nd 0.5\n"), std::string::npos);
+}
+
 TEST(KeptScene, IsTurnedScaledAndMovedByARoot) {
   const TempFolder folder;
   Scene scene = small_scene();

@@ -80,6 +80,8 @@ TEST(CheckScene, NamesArrayAndElement) {
        [](Scene& s) { s.normal_indices[1] = 1; }},
       {"normals[0] has length 2", [](Scene& s) { s.normals[0].z = 2; }},
       {"normals[0] has length nan", [=](Scene& s) { s.normals[0].z = nan; }},
+      {"the opacity of materials[0] is 1.5", [](Scene& s) { s.materials[0].opacity = 1.5f; }},
+      {"the alpha_cutoff of materials[0]", [=](Scene& s) { s.materials[0].alpha_cutoff = nan; }},
       {"textures[0] has both", [](Scene& s) { s.textures[0].encoded = {1}; }},
       {"the encoded of textures[0] is neither a PNG",
        [](Scene& s) {

@@ -279,5 +279,32 @@ TEST(Gltf, RandomDamageNeverCrashes) {
   EXPECT_GT(survived, 100);
 }
 
+TEST(Gltf, MaterialsSayWhatIsSeenThroughThem) {
+  const TempFolder folder;
+  Gltf g;
+  const int positions = g.floats(kSquare, "VEC3", 3);
+  const int corners = g.indices(std::vector<std::uint16_t>{0, 1, 2});
+  g.j["materials"] = {
+      {{"alphaMode", "MASK"}, {"alphaCutoff", 0.25}, {"doubleSided", true}},
+      {{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 0, 0, 0.5}}}}},
+      {{"alphaMode", "?"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, -3}}}}}};
+  json primitives;
+  for (int m = 0; m < 3; ++m)
+    primitives.push_back(
+        {{"attributes", {{"POSITION", positions}}}, {"indices", corners}, {"material", m}});
+  g.single({});
+  g.j["meshes"][0]["primitives"] = primitives;
+  const auto loaded = load_glb(folder, g);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  const std::vector<Material>& m = loaded->scene.materials;
+  ASSERT_EQ(m.size(), 3u);
+  EXPECT_TRUE(m[0].alpha_mode == AlphaMode::mask && m[0].double_sided);
+  EXPECT_EQ(m[0].alpha_cutoff, 0.25f);
+  EXPECT_TRUE(m[1].alpha_mode == AlphaMode::blend && !m[1].double_sided);
+  EXPECT_EQ(m[1].opacity, 0.5f);
+  EXPECT_TRUE(m[2].alpha_mode == AlphaMode::opaque);
+  EXPECT_EQ(m[2].opacity, 0);
+}
+
 }  // namespace
 }  // namespace atlas
