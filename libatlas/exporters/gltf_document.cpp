@@ -59,7 +59,7 @@ std::size_t GltfDocument::add_accessor(nlohmann::json accessor) {
   return json["accessors"].size() - 1;
 }
 
-std::size_t GltfDocument::add_vectors(std::span<const Vec3f> values, const nlohmann::json& bounds) {
+std::size_t GltfDocument::add_bounded(std::span<const Vec3f> values, const nlohmann::json& bounds) {
   const std::size_t view = add_view(values.data(), values.size_bytes(), kArrayBuffer);
   nlohmann::json accessor = {
       {"bufferView", view}, {"componentType", kFloat}, {"type", "VEC3"}, {"count", values.size()}};
@@ -78,12 +78,12 @@ std::size_t GltfDocument::add_positions(std::span<const Vec3f> values) {
       high[i] = std::max(high[i], c[i]);
     }
   }
-  return add_vectors(values,
+  return add_bounded(values,
                      {{"min", {low[0], low[1], low[2]}}, {"max", {high[0], high[1], high[2]}}});
 }
 
-std::size_t GltfDocument::add_normals(std::span<const Vec3f> values) {
-  return add_vectors(values, nlohmann::json::object());
+std::size_t GltfDocument::add_vectors(std::span<const Vec3f> values) {
+  return add_bounded(values, nlohmann::json::object());
 }
 
 std::size_t GltfDocument::add_uvs(std::vector<Vec2f> values) {

@@ -27,7 +27,7 @@ class GltfDocument {
   // Each adds an accessor and gives its number. Positions carry their bounds; uvs, of which v
   // points up, are turned to glTF's.
   std::size_t add_positions(std::span<const Vec3f> values);
-  std::size_t add_normals(std::span<const Vec3f> values);
+  std::size_t add_vectors(std::span<const Vec3f> values);
   std::size_t add_uvs(std::vector<Vec2f> values);
   std::size_t add_indices(std::span<const std::uint32_t> values);
 
@@ -41,7 +41,7 @@ class GltfDocument {
  private:
   std::size_t add_view(const void* data, std::size_t size, int target);
   std::size_t add_accessor(nlohmann::json accessor);
-  std::size_t add_vectors(std::span<const Vec3f> values, const nlohmann::json& bounds);
+  std::size_t add_bounded(std::span<const Vec3f> values, const nlohmann::json& bounds);
   std::string text(const std::string& buffer_uri);
 
   bool binary_;

@@ -126,6 +126,15 @@ class MaterialWriter {
   std::map<std::size_t, std::size_t> textures_;
 };
 
+// What vertices carry is a colour to viewers as long as it can be one; the name of what cannot be
+// is this library's own.
+const char* light_attribute(const std::vector<Vec3f>& light) {
+  const auto is_colour = [](const Vec3f& v) {
+    return std::min({v.x, v.y, v.z}) >= 0 && std::max({v.x, v.y, v.z}) <= 1;
+  };
+  return std::all_of(light.begin(), light.end(), is_colour) ? "COLOR_0" : "_ILLUMINANCE";
+}
+
 class SceneWriter {
  public:
   SceneWriter(const World& world, GltfDocument& document)
@@ -133,7 +142,8 @@ class SceneWriter {
         scene_(*world.scene),
         document_(document),
         texcoord_(first_equals(scene_.texcoords)),
-        normal_(first_equals(scene_.normals)) {}
+        normal_(first_equals(scene_.normals)),
+        light_(light_attribute(scene_.illumination)) {}
 
   // The part as a primitive of its object's mesh.
   void add(const ScenePart& part, std::size_t material, WorldFile& result) {
@@ -182,12 +192,22 @@ class SceneWriter {
   json attributes(const ScenePart& part, const std::vector<Key>& vertices) {
     json result;
     result["POSITION"] = document_.add_positions(gather(world_.positions, vertices, 0));
-    if (part.normals) result["NORMAL"] = document_.add_normals(gather(scene_.normals, vertices, 3));
+    if (part.normals) result["NORMAL"] = document_.add_vectors(gather(scene_.normals, vertices, 3));
+    add_light(vertices, result);
     result["TEXCOORD_1"] = document_.add_uvs(gather(world_.uvs, vertices, 1));
     result["TEXCOORD_0"] = part.texcoords
                                ? json(document_.add_uvs(gather(scene_.texcoords, vertices, 2)))
                                : result["TEXCOORD_1"];
     return result;
+  }
+
+  // Readers take 0 for vertices without light in a scene where others have some. Viewers would draw
+  // them black, so a part without any gets none.
+  void add_light(const std::vector<Key>& vertices, json& to) {
+    if (!scene_.lit()) return;
+    const std::vector<Vec3f> light = gather(scene_.illumination, vertices, 0);
+    const bool any = std::any_of(light.begin(), light.end(), [](auto& v) { return v != Vec3f{}; });
+    if (any) to[light_] = document_.add_vectors(light);
   }
 
   // Parts come object by object.
@@ -206,6 +226,7 @@ class SceneWriter {
   const Scene& scene_;
   GltfDocument& document_;
   std::vector<std::uint32_t> texcoord_, normal_;  // the index that stands for each
+  const char* light_;                             // the attribute that holds it
   VertexUnifier<4> unifier_;
   std::uint32_t object_ = 0;  // that of the last mesh
 };

@@ -1,5 +1,7 @@
 #include "libatlas/exporters/obj_text.h"
 
+#include "libatlas/scene/scene.h"
+
 namespace atlas {
 
 std::string one_line(std::string text) {
@@ -17,9 +19,14 @@ void write_obj_head(TextFile& file, const World& world, const std::filesystem::p
 
 void write_obj_points(TextFile& file, const World& world, std::span<const std::uint32_t> points,
                       const Context& context) {
+  const bool lit = world.scene != nullptr && world.scene->lit();
   file.write_items(points.size(), context, [&](TextBuffer& out, std::size_t i) {
     out.text("v ");
     out.position(world.origin, world.positions[points[i]]);
+    if (lit) {
+      out.character(' ');
+      out.position({}, world.scene->illumination[points[i]]);
+    }
     out.character('\n');
   });
 }

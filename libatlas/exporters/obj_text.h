@@ -18,7 +18,8 @@ std::string one_line(std::string text);
 // The title, what else is to be said of the world, and the name of its MTL.
 void write_obj_head(TextFile& file, const World& world, const std::filesystem::path& mtl);
 
-// Lines `v` and `vt` of the positions and uvs of a world with these indices.
+// Lines `v` and `vt` of the positions and uvs of a world with these indices; positions carry the
+// light of a scene that is kept.
 void write_obj_points(TextFile& file, const World& world, std::span<const std::uint32_t> points,
                       const Context& context);
 void write_obj_uvs(TextFile& file, const World& world, std::span<const std::uint32_t> uvs,

@@ -74,8 +74,9 @@ Result<WorldFile> write_vrml(const World& world, const std::filesystem::path& pa
 inline constexpr const char* kZUpNote = "the z axis points up";
 
 // Wavefront OBJ and, beside it, an MTL of the same name with one material `page<i>` a page.
-// World::scene: its objects (`o`), materials (names, all made different, and Kd) and normals; the
-// format has one set of uvs, which are the new ones, so the scene's and its textures are left out.
+// World::scene: its objects (`o`), materials (names, all made different, and Kd), normals and
+// light; the format has one set of uvs, which are the new ones, so the scene's and its textures are
+// left out.
 Result<WorldFile> write_obj(const World& world, const std::filesystem::path& path,
                             AtomicFiles& files, const Context& context);
 
@@ -83,8 +84,9 @@ Result<WorldFile> write_obj(const World& world, const std::filesystem::path& pat
 // image are KHR_materials_unlit; the root node turns the scene's up to +Y, scales to metres and
 // adds the origin, since glTF fixes both. World::scene: a node and a mesh an object, a primitive a
 // material, with NORMAL, the scene's own uvs as TEXCOORD_0 and the new ones as TEXCOORD_1 (as both
-// where it has none); materials are lit and have base colours and their textures; no camera. Root
-// nodes are the objects themselves where nothing is to be turned, scaled or moved.
+// where it has none), its light as COLOR_0 (_ILLUMINANCE, where it leaves 0..1); materials have
+// base colours with their textures, and what is seen through them; no camera. Root nodes are the
+// objects themselves where nothing is to be turned, scaled or moved.
 Result<WorldFile> write_gltf(const World& world, const std::filesystem::path& path,
                              AtomicFiles& files, const Context& context);
 

@@ -212,6 +212,44 @@ TEST(KeptScene, MaterialsStayAsTransparentAsTheyWere) {
   EXPECT_NE(TempFolder::read(folder / "w.mtl").find("\nd 0.5\n"), std::string::npos);
 }
 
+// Colours stay colours; what no colour can be has a name that only readers of light know.
+TEST(KeptScene, WhatVerticesCarryStays) {
+  const TempFolder folder;
+  for (const float largest : {1.f, 70000.f}) {
+    Scene scene = small_scene();
+    scene.illumination = {{0, 0.25f, 1}, {0.5f, 0.5f, 0}, {largest, 0, 0}, {0.125f, 1, 1}};
+    for (const char* name : {"w.glb", "w.obj"}) {
+      ASSERT_TRUE(write(world_of(scene), folder / name).ok());
+      const auto loaded = read_scene(folder / name, {}, {});
+      ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+      const Scene& back = loaded->scene;
+      ASSERT_TRUE(back.lit());
+      for (const std::uint32_t i : back.indices) {
+        const auto same =
+            std::find(scene.positions.begin(), scene.positions.end(), back.positions[i]);
+        EXPECT_EQ(back.illumination[i],
+                  scene.illumination[std::size_t(same - scene.positions.begin())]);
+      }
+    }
+    const auto attributes = gltf_of(folder / "w.glb")["meshes"][0]["primitives"][0]["attributes"];
+    EXPECT_EQ(attributes.contains("COLOR_0"), largest == 1);
+    EXPECT_EQ(attributes.contains("_ILLUMINANCE"), largest != 1);
+  }
+}
+
+// As readers have it: 0 where one mesh of a file has colours and another none.
+TEST(KeptScene, PartsWithoutLightAreNotBlack) {
+  const TempFolder folder;
+  Scene scene = small_scene();
+  scene.positions.insert(scene.positions.end(), {{0, 0, 5}, {1, 0, 5}, {0, 1, 5}});
+  scene.indices = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 5};
+  scene.illumination = {{0.5f, 1, 1}, {}, {}, {1, 1, 1}, {}, {}, {}};
+  ASSERT_TRUE(write(world_of(scene), folder / "w.glb").ok());
+  const auto gltf = gltf_of(folder / "w.glb");
+  EXPECT_TRUE(gltf["meshes"][0]["primitives"][0]["attributes"].contains("COLOR_0"));
+  EXPECT_FALSE(gltf["meshes"][1]["primitives"][0]["attributes"].contains("COLOR_0"));
+}
+
 TEST(KeptScene, IsTurnedScaledAndMovedByARoot) {
   const TempFolder folder;
   Scene scene = small_scene();
