@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <cstring>
+#include <random>
 #include <string>
+#include <utility>
 
 #include "libatlas/scene/check_scene.h"
 #include "tests/scene/gltf_maker.h"
@@ -291,6 +293,33 @@ TEST(Normals, OfGltfPrimitivesWithAndWithout) {
   EXPECT_EQ(normal_at(scene, 7), (Vec3f{1, 0, 0}));
   EXPECT_EQ(normal_at(scene, 8), (Vec3f{0, 0, 1}));  // it had no length
   EXPECT_EQ(loaded.defects.count(DefectKind::normal_unusable), 1u);
+}
+
+// Whatever becomes of the bytes: a status, or a scene that keeps its promises.
+TEST(Normals, OfDamagedFilesAreSoundOrRefused) {
+  const TempFolder folder;
+  Gltf gltf;
+  const int positions = gltf.floats(kSquare, "VEC3", 3),
+            normals = gltf.floats({0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, 1}, "VEC3", 3);
+  gltf.single({{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}},
+               {"indices", gltf.indices<std::uint16_t>({0, 1, 2, 0, 2, 3})}});
+  const std::pair<const char*, std::string> files[] = {
+      {"d.glb", gltf.glb()},
+      {"d.obj", kObjSquare + "vn 0 0 1\nvn 0 1 0\nf 1//1 2//2 3//-1\nf 1/1/1 3/1/2 4/1/2\n"},
+      {"d.ply", ply("ascii", "0 0 0 1 0 0\n1 0 0 0 1 0\n1 1 0 0 0 1\n0 1 0 0 0 -5\n4 0 1 2 3\n")},
+      {"d.off", "NOFF\n3 1 0\n0 0 0 0 0 2\n1 0 0 0 1 0\n0 1 0 0 0 0\n3 0 1 2\n"}};
+  std::mt19937 random(7);
+  for (const auto& [name, good] : files) {
+    for (int round = 0; round < 300; ++round) {
+      std::string bytes = good;
+      if (round % 3 == 0) bytes.resize(random() % bytes.size());
+      for (int k = 0; k < 3 && !bytes.empty(); ++k) bytes[random() % bytes.size()] = char(random());
+      const auto loaded = read_scene(folder.write(name, bytes), {.normals = true}, {});
+      if (!loaded.ok()) continue;
+      const Status sound = check_scene(loaded->scene);
+      ASSERT_TRUE(sound.ok()) << name << ' ' << round << ": " << sound.message();
+    }
+  }
 }
 
 }  // namespace
