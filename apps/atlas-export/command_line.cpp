@@ -75,7 +75,8 @@ void add_chart_options(CLI::App& app, ExportOptions& options) {
                                         {"best", ChartPreset::best}}))
       ->type_name("NAME")
       ->default_str("default");
-  app.add_flag("--charts-only", options.charts_only, "Charts and uvs on one page, no light");
+  app.add_flag("--charts-only", options.charts_only,
+               "Charts and uvs, no light; on one page, or on as many as --atlases says");
   app.add_flag("--keep-scene", options.keep_scene,
                "Write uvs without light into the scene as it is: its objects, materials, textures, "
                "normals and own uvs stay (.gltf, .glb; .obj has no room for textures and own uvs)");
@@ -229,6 +230,7 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
     return std::nullopt;
   }
   command.options.larger_plain_page = app.count("--atlas-size") == 0;
+  if (app.count("--atlases") > 0) command.options.plain_pages = command.options.atlases;
   return command;
 }
 

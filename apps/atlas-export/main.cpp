@@ -31,13 +31,15 @@ void print_result(const ExportReport& report, bool kept, app::Terminal& terminal
                               kept ? "no light" : "no images"));
   }
   const std::size_t pages = report.pages.size();
-  const bool plain = pages == 1 && report.gpu_bytes == 0;
-  terminal.line(fmt::format("{}: {} triangle{} on {} page{}, {}", report.target.string(),
-                            report.triangles_out, report.triangles_out == 1 ? "" : "s", pages,
-                            pages == 1 ? "" : "s",
-                            plain ? plain_page_text({report.pages[0].width, report.pages[0].height})
-                                  : fmt::format("{:.1f} MiB of graphics memory",
-                                                double(report.gpu_bytes) / (1024.0 * 1024.0))));
+  std::vector<Extent> plain;
+  for (const PageReport& page : report.pages)
+    if (report.gpu_bytes == 0) plain.push_back({page.width, page.height});
+  terminal.line(fmt::format(
+      "{}: {} triangle{} on {} page{}, {}", report.target.string(), report.triangles_out,
+      report.triangles_out == 1 ? "" : "s", pages, pages == 1 ? "" : "s",
+      plain.empty() ? fmt::format("{:.1f} MiB of graphics memory",
+                                  double(report.gpu_bytes) / (1024.0 * 1024.0))
+                    : plain_pages_text(plain)));
 }
 
 // Pages of an earlier export to the same name, which had more of them, are no part of this world.

@@ -23,6 +23,11 @@ Status check_options(const ExportOptions& o) {
             "--keep-scene: VRML has no room for uvs beside the scene's own (write .gltf, .glb or "
             ".obj)"};
   }
+  if (o.plain_pages < 1) return out_of_range("--atlases", "at least 1");
+  if (o.keep_scene && o.plain_pages > 1) {
+    return {ErrorCode::bad_option,
+            "--keep-scene: a scene that is kept has its uvs on one page (leave out --atlases)"};
+  }
   const bool power_of_two = (o.atlas_size & (o.atlas_size - 1)) == 0;
   if (o.atlases < 1) return out_of_range("--atlases", "at least 1");
   if (o.atlas_size < 64 || o.atlas_size > 16384 || !power_of_two) {

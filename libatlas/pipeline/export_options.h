@@ -22,11 +22,13 @@ struct ExportOptions {
   // 64..16384).
   std::uint32_t atlases = 8;
   std::int32_t atlas_size = 2048;
-  // The page of plain uvs has no image and may be larger: doubled, up to 16384, until it has 1024
-  // texels for each chart on average, so that gutters stay thin against the charts.
+  // Pages of plain uvs, at most, >= 1. Several are squares of atlas_size.
+  std::uint32_t plain_pages = 1;
+  // A single page of plain uvs has no image and may be larger: doubled, up to 16384, until it has
+  // 1024 texels for each chart on average, so that gutters stay thin against the charts.
   bool larger_plain_page = true;
-  // That page is square, for programs that know square textures only; else its shape is what packs
-  // best, and textures for these uvs must have that shape.
+  // A single page is square, too, for programs that know square textures only; else its shape is
+  // what packs best, and textures for these uvs must have that shape.
   bool square_plain_page = false;
 
   double texel_metres = 0;       // length of a texel on the real surface; 0: as fine as the

@@ -174,7 +174,8 @@ class Export {
   std::int32_t page_size() const {
     constexpr double kTexelsAChart = 1024, kExpectedFill = 0.75;
     constexpr std::int32_t kLargestSide = 16384;
-    if (plan_.bake || !options_.larger_plain_page) return options_.atlas_size;
+    if (plan_.bake || !options_.larger_plain_page || options_.plain_pages > 1)
+      return options_.atlas_size;
     // A page as long as its longest chart is less wide than long where the others do not fill more.
     double longest = 0, area = 0;
     for (const Chart& chart : charts_.charts) {
@@ -188,9 +189,9 @@ class Export {
     return side;
   }
 
-  // No light asks for no resolution of its own: one page, filled as well as packing can.
+  // No light asks for no resolution of its own: pages filled as well as packing can.
   Result<PageLayout> lay_out_plain(const LayoutOptions& options) {
-    const double texels = double(options.page_size) * options.page_size;
+    const double texels = double(options.pages) * options.page_size * options.page_size;
     const PlainUvs uvs{view_of(scene_), options_.charts, filling_density(charts_, texels)};
     Result<PageLayout> layout = fill_pages(uvs, options, charts_, context_);
     report_.charts = charts_.charts;
@@ -211,12 +212,12 @@ class Export {
       layout.alignment = 1 << options_.mip_levels;
       layout.minimum_side = options_.min_side;
     } else {
-      layout.pages = 1;
+      layout.pages = options_.plain_pages;
       layout.padding = 1;
       layout.alignment = 1;
       layout.minimum_side = 0;
-      layout.free_aspect = !options_.square_plain_page;
-      layout.square = options_.square_plain_page;
+      layout.square = options_.square_plain_page || options_.plain_pages > 1;
+      layout.free_aspect = !layout.square;
     }
     Result<PageLayout> laid =
         plan_.bake ? lay_out_pages(charts_, densities_, layout, context_) : lay_out_plain(layout);
@@ -317,7 +318,7 @@ class Export {
     world.up = options_.up;
     world.title = options_.target.stem().string();
     world.metres_per_unit = scene_.metres_per_unit;
-    if (!plan_.bake) world.info.push_back(plain_page_text(layout_.pages[0]));
+    if (!plan_.bake) world.info.push_back(plain_pages_text(layout_.pages));
     if (options_.keep_scene) {
       keep_scene(scene_, charts_, world);
     } else if (holds_viewpoint(options_.target)) {
@@ -380,7 +381,11 @@ class Export {
 
 }  // namespace
 
-std::string plain_page_text(Extent page) {
+std::string plain_pages_text(std::span<const Extent> pages) {
+  const Extent page = pages[0];
+  if (pages.size() > 1)
+    return fmt::format("uvs of {0} square pages, packed for {1} x {1} texels", pages.size(),
+                       page.width);
   return page.width == page.height
              ? fmt::format("uvs of a square page, packed for {0} x {0} texels", page.width)
              : fmt::format("uvs of a page of {} x {} texels: textures must have this shape",

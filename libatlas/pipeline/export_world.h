@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 
 #include "libatlas/core/context.h"
@@ -25,7 +26,8 @@ Result<ExportReport> export_world(const LoadedScene& loaded, const ExportOptions
                                   const std::function<void(const StageReport&)>& stage_done,
                                   const Context& context);
 
-// What whoever uses plain uvs has to know of their page: uvs run from 0 to 1 along both sides.
-std::string plain_page_text(Extent page);
+// What whoever uses plain uvs has to know of their pages (one at least): uvs run from 0 to 1 along
+// both sides of each.
+std::string plain_pages_text(std::span<const Extent> pages);
 
 }  // namespace atlas

@@ -127,7 +127,7 @@ class StepList {
   }
 
   void pages() {
-    const std::uint32_t pages = plan_.bake ? options_.atlases : 1;  // plain uvs lie on one
+    const std::uint32_t pages = plan_.bake ? options_.atlases : options_.plain_pages;
     const double capacity = double(pages) * options_.atlas_size * options_.atlas_size;
     const bool group = pages > 1;
     const std::string budget = budget_text(pages, options_.atlas_size);

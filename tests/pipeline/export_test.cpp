@@ -230,7 +230,7 @@ TEST(Export, ChartsOnlyNeedsNoLight) {
     return text.str().find("# " + line + "\n") != std::string::npos;
   };
   EXPECT_NE(page.width, page.height);
-  EXPECT_TRUE(has_line(plain_page_text(page)));
+  EXPECT_TRUE(has_line(plain_pages_text({&page, 1})));
   options.square_plain_page = true;
   const auto square = export_world(scene, options, {}, {});
   ASSERT_TRUE(square.ok()) << square.status().message();
@@ -242,6 +242,32 @@ TEST(Export, ChartsOnlyNeedsNoLight) {
   EXPECT_EQ(s.overlap, 0u);
   EXPECT_GT(s.utilization, 0.5);
   EXPECT_NEAR(s.stretch_l2, m.stretch_l2, 0.01);
+}
+
+TEST(Export, PlainUvsOnSeveralPages) {
+  const TempFolder folder;
+  ExportOptions options = small_pages(folder);
+  options.charts_only = true;
+  options.atlas_size = 512;
+  options.plain_pages = 3;
+  const auto report = export_world(lit_scene(torus(48, 24)), options, {}, {});
+  ASSERT_TRUE(report.ok()) << report.status().message();
+  ASSERT_EQ(report->pages.size(), 3u);
+  for (const PageReport& page : report->pages) {
+    EXPECT_EQ(page.width, 512);
+    EXPECT_EQ(page.height, 512);
+  }
+  const auto mesh = read_uv_obj(options.target);
+  ASSERT_TRUE(mesh.ok());
+  const AtlasMeasures m = measure_atlas(*mesh, 512, 512);
+  EXPECT_EQ(m.pages, 3u);
+  EXPECT_EQ(m.triangles, 48u * 24 * 2);
+  EXPECT_EQ(m.charts, report->charts.size());
+  EXPECT_EQ(m.bleed + m.overlap + m.flipped + m.outside, 0u);
+  EXPECT_GT(m.utilization, 0.6);
+  options.keep_scene = true;
+  const auto kept = export_world(lit_scene(torus(48, 24)), options, {}, {});
+  EXPECT_EQ(kept.status().code(), ErrorCode::bad_option);
 }
 
 TEST(Export, CancelledBeforeItBeganWritesNothing) {
