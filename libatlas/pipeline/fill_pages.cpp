@@ -21,7 +21,7 @@ constexpr std::size_t kMostChartsFree = 300;
 constexpr std::array kLongestSides{1.1, 0.9, 0.75, 0.6, 0.45};
 // By how much more charts must cover for pieces to be worth it, at least, and for each square root
 // of the surface's area that seams become longer by.
-constexpr double kLeastGain = 0.1, kSeamPrice = 0.1;
+constexpr double kLeastGain = 0.1, kSeamPrice = 0.06;
 
 Result<PageLayout> lay_out(const ChartSet& charts, double density, const LayoutOptions& options,
                            const Context& context) {
