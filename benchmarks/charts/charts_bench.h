@@ -43,8 +43,8 @@ Result<std::vector<ChartsPoint>> charts_sweep(const std::string& name, const Loa
                                               int repeats, const Context& context);
 std::string line(const ChartsPoint& point);
 
-// `target` without extension: writes .svg and .png. L2 - 1 and seams against CPU time, a column a
-// mesh, with the Pareto front of each. Errors: io (gnuplot is missing or fails).
+// `target` without extension: writes -stretch.svg, L2 - 1 against CPU time, and -seams.svg, a panel
+// a mesh, with the Pareto front of each. Errors: io (gnuplot is missing or fails).
 Status draw_sweep(const std::vector<ChartsPoint>& points, const std::filesystem::path& target);
 
 // One line of Markdown: charts and L2 stretch of the mesh as it is, their ranges over seven units

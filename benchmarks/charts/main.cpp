@@ -76,7 +76,8 @@ int main(int argc, char** argv) {
                  fmt::format("NAME:TRIANGLES ({}, {}) or a file", kFigures, kWorkKinds));
   auto* kind = app.add_option_group("what");
   kind->add_flag("--table", a.table, "a line of figures a mesh");
-  kind->add_option("--sweep", a.sweep, "presets and bounds; draws FILE.svg and FILE.png");
+  kind->add_option("--sweep", a.sweep,
+                   "presets and bounds; draws FILE-stretch.svg and FILE-seams.svg");
   kind->add_option("--picture", a.picture, "PNG of the meshes' charts side by side");
   kind->add_flag("--robust", a.robust, "what units, directions, places and threads change");
   kind->add_option("--cases", a.cases,

@@ -188,11 +188,13 @@ std::string panel_script(const Panel& panel, int index, const Size& size) {
       add(s, s.points, true, !s.name.empty());
       continue;
     }
+    bool named = !s.name.empty();
     for (const bool important : {true, false}) {
       std::vector<PlotPoint> points;
       for (const PlotPoint& p : s.points)
         if (p.important == important) points.push_back(p);
-      add(s, points, important, important && !s.name.empty());
+      add(s, points, important, named);
+      named = named && points.empty();
     }
   }
   return data + text + commands + "\n";
@@ -212,8 +214,9 @@ std::string gnuplot_script(const Plot& plot, const std::filesystem::path& target
       "set xlabel '{}'\nset ylabel '{}'\n{}\n"
       "set multiplot layout {},{} title '{}'\n",
       columns * size.width, rows * size.height + title, target.string(), kLineTypes,
-      plain(plot.x_axis), plain(plot.y_axis), plot.key ? "set key below left" : "unset key", rows,
-      columns, plain(plot.title));
+      plain(plot.x_axis), plain(plot.y_axis),
+      plot.key ? "set key below center spacing 1.2" : "unset key", rows, columns,
+      plain(plot.title));
   for (int i = 0; i < panels; ++i) text += panel_script(plot.panels[std::size_t(i)], i, size);
   return text + "unset multiplot\n";
 }

@@ -103,34 +103,51 @@ Panel settings_panel(const std::string& mesh, const std::vector<const Row*>& row
   return panel;
 }
 
-// A program a colour, the same in every panel; those without a result are named in the title.
-Panel programs_panel(const std::string& mesh, const std::vector<const Row*>& rows,
-                     std::map<std::string, int>& colours) {
+using Meshes = std::vector<std::pair<std::string, std::vector<const Row*>>>;  // in their order
+
+// All meshes in one panel, a colour a program. Smaller errors than this are drawn at it.
+constexpr double kUnseen = 1e-5;
+Plot programs_plot(const Meshes& meshes) {
+  Plot plot;
+  plot.title = "Programs: error against time (not drawn: no result within the time limit)";
+  plot.key = true;
   Panel panel;
-  panel.title = mesh;
-  std::string without;
-  for (const Row* row : rows) {
-    if (!usable(*row)) {
-      without += (without.empty() ? " (no result: " : ", ") + row->setting;
-      continue;
+  std::map<std::string, std::size_t> at;
+  for (const auto& [mesh, rows] : meshes)
+    for (const Row* row : rows) {
+      const auto [place, fresh] = at.try_emplace(row->setting, panel.series.size());
+      if (fresh) panel.series.push_back({row->setting, {}, false, true, int(at.size())});
+      PlotPoint point = point_of(*row);
+      point.y = std::max(point.y, kUnseen);
+      point.label = mesh;
+      point.important = true;
+      panel.series[place->second].points.push_back(point);
+      plot.y_axis = axis_name(row->values.front().first);
     }
-    Series series;
-    series.points.push_back(point_of(*row));
-    series.points.back().important = true;
-    series.colour = colours.try_emplace(row->setting, int(colours.size()) + 1).first->second;
-    panel.series.push_back(series);
-  }
-  if (!without.empty()) panel.title += without + ")";
-  return panel;
+  if (!panel.series.empty()) plot.panels.push_back(std::move(panel));
+  return plot;
 }
 
-// One plot a stage that was run with several settings or programs, a panel a mesh.
+Plot settings_plot(const std::string& stage, const Meshes& meshes) {
+  Plot plot;
+  plot.title =
+      stage + ": error against time (filled: presets or joined settings; dashed: Pareto front)";
+  for (const auto& [mesh, rows] : meshes) {
+    if (rows.size() < 3) continue;
+    Panel panel = settings_panel(mesh, rows);
+    panel.log_x = spread(panel.series, &PlotPoint::x) > 3;
+    panel.log_y = spread(panel.series, &PlotPoint::y) > 3;
+    plot.y_axis = axis_name(rows.back()->values.front().first);
+    plot.panels.push_back(std::move(panel));
+  }
+  return plot;
+}
+
+// One plot a stage that was run with several settings, a panel a mesh; one of the programs.
 void error_plots(const Results& results, std::vector<Plot>& plots) {
-  using Meshes = std::vector<std::pair<std::string, std::vector<const Row*>>>;  // in their order
   std::map<std::string, Meshes> stages;
   for (const Row& row : results.rows) {
-    if (row.stage == "light_leak" || row.stage == "baseline") continue;
-    if (row.stage != "unwrap" && !usable(row)) continue;
+    if (row.stage == "light_leak" || row.stage == "baseline" || !usable(row)) continue;
     Meshes& meshes = stages[row.stage];
     const auto same = std::find_if(meshes.begin(), meshes.end(),
                                    [&](const auto& mesh) { return mesh.first == row.mesh; });
@@ -140,26 +157,10 @@ void error_plots(const Results& results, std::vector<Plot>& plots) {
       same->second.push_back(&row);
   }
   for (const auto& [stage, meshes] : stages) {
-    const bool programs = stage == "unwrap";
-    Plot plot;
+    Plot plot = stage == "unwrap" ? programs_plot(meshes) : settings_plot(stage, meshes);
     plot.file = "error_" + stage + ".svg";
     std::replace(plot.file.begin(), plot.file.end(), '/', '_');
-    plot.title = programs ? "Programs: error against time, a panel a mesh"
-                          : stage +
-                                ": error against time (filled: presets or joined settings; "
-                                "dashed: Pareto front)";
     plot.x_axis = "CPU seconds";
-    std::map<std::string, int> colours;
-    for (const auto& [mesh, rows] : meshes) {
-      if (rows.size() < 3 && !programs) continue;
-      Panel panel = programs ? programs_panel(mesh, rows, colours) : settings_panel(mesh, rows);
-      if (panel.series.empty()) continue;
-      for (const Row* row : rows)
-        if (usable(*row)) plot.y_axis = axis_name(row->values.front().first);
-      panel.log_x = spread(panel.series, &PlotPoint::x) > 3;
-      panel.log_y = spread(panel.series, &PlotPoint::y) > 3;
-      plot.panels.push_back(std::move(panel));
-    }
     if (!plot.panels.empty()) plots.push_back(std::move(plot));
   }
 }
