@@ -105,16 +105,29 @@ Panel settings_panel(const std::string& mesh, const std::vector<const Row*>& row
 
 using Meshes = std::vector<std::pair<std::string, std::vector<const Row*>>>;  // in their order
 
-// All meshes in one panel, a colour a program. Smaller errors than this are drawn at it.
+// All meshes in one panel, a colour a program; the title counts what has no result. Smaller errors
+// than this are drawn at it.
 constexpr double kUnseen = 1e-5;
 Plot programs_plot(const Meshes& meshes) {
   Plot plot;
-  plot.title = "Programs: error against time (not drawn: no result within the time limit)";
+  plot.title = "Programs: error against time";
   plot.key = true;
   Panel panel;
   std::map<std::string, std::size_t> at;
+  std::vector<std::pair<std::string, int>> without;  // how often a program gave no result
   for (const auto& [mesh, rows] : meshes)
     for (const Row* row : rows) {
+      if (!usable(*row)) {
+        const auto same = std::find_if(without.begin(), without.end(), [&](const auto& program) {
+          return program.first == row->setting;
+        });
+        if (same == without.end()) {
+          without.emplace_back(row->setting, 1);
+        } else {
+          ++same->second;
+        }
+        continue;
+      }
       const auto [place, fresh] = at.try_emplace(row->setting, panel.series.size());
       if (fresh) panel.series.push_back({row->setting, {}, false, true, int(at.size())});
       PlotPoint point = point_of(*row);
@@ -124,6 +137,9 @@ Plot programs_plot(const Meshes& meshes) {
       panel.series[place->second].points.push_back(point);
       plot.y_axis = axis_name(row->values.front().first);
     }
+  for (const auto& [program, count] : without)
+    panel.title += fmt::format("{}{} on {}", panel.title.empty() ? "no result: " : ", ", program,
+                               count == 1 ? "one mesh" : fmt::format("{} meshes", count));
   if (!panel.series.empty()) plot.panels.push_back(std::move(panel));
   return plot;
 }
@@ -147,7 +163,8 @@ Plot settings_plot(const std::string& stage, const Meshes& meshes) {
 void error_plots(const Results& results, std::vector<Plot>& plots) {
   std::map<std::string, Meshes> stages;
   for (const Row& row : results.rows) {
-    if (row.stage == "light_leak" || row.stage == "baseline" || !usable(row)) continue;
+    if (row.stage == "light_leak" || row.stage == "baseline") continue;
+    if (row.stage != "unwrap" && !usable(row)) continue;
     Meshes& meshes = stages[row.stage];
     const auto same = std::find_if(meshes.begin(), meshes.end(),
                                    [&](const auto& mesh) { return mesh.first == row.mesh; });

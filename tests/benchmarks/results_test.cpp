@@ -247,7 +247,7 @@ TEST(Plots, LabelsOfOnePlaceLieApartAndInside) {
   EXPECT_EQ(script.find("inf"), std::string::npos);
 }
 
-TEST(Plots, AProgramKeepsItsColourAndThoseThatFailAreNamed) {
+TEST(Plots, AProgramHasItsColourAndThoseThatFailAreCounted) {
   Results results;
   for (const char* mesh : {"sphere:10", "torus:10"})
     for (const char* program : {"ours", "theirs", "third"}) {
@@ -260,12 +260,16 @@ TEST(Plots, AProgramKeepsItsColourAndThoseThatFailAreNamed) {
     }
   const std::vector<Plot> plots = make_plots(results);
   ASSERT_EQ(plots.size(), 1u);
-  ASSERT_EQ(plots[0].panels.size(), 2u);
-  EXPECT_EQ(plots[0].panels[0].title, "sphere:10 (no result: theirs, third)");
-  ASSERT_EQ(plots[0].panels[0].series.size(), 1u);
-  ASSERT_EQ(plots[0].panels[1].series.size(), 3u);
-  EXPECT_EQ(plots[0].panels[0].series[0].colour, plots[0].panels[1].series[0].colour);
-  EXPECT_NE(plots[0].panels[1].series[0].colour, plots[0].panels[1].series[1].colour);
+  ASSERT_EQ(plots[0].panels.size(), 1u);
+  const Panel& panel = plots[0].panels[0];
+  EXPECT_EQ(panel.title, "no result: theirs on one mesh, third on one mesh");
+  ASSERT_EQ(panel.series.size(), 3u);
+  EXPECT_EQ(panel.series[0].name, "ours");
+  EXPECT_EQ(panel.series[0].points.size(), 2u);
+  EXPECT_EQ(panel.series[0].points[1].label, "torus:10");
+  EXPECT_EQ(panel.series[1].points.size(), 1u);
+  EXPECT_NE(panel.series[0].colour, panel.series[1].colour);
+  EXPECT_NE(panel.series[1].colour, panel.series[2].colour);
 }
 
 // The page in Markdown after a round through a JSON file; empty if that fails.
