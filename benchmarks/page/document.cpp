@@ -67,7 +67,7 @@ void Document::table(const Cells& header, const std::vector<Cells>& rows) {
   if (rows.empty()) return paragraph("(nothing was measured)");
   std::string rule = "|";
   for (std::size_t i = 0; i < header.size(); ++i) rule += i < 2 ? "---|" : "---:|";
-  markdown += "\n" + row_markdown(header) + rule + "\n";
+  markdown += '\n' + row_markdown(header) + rule + '\n';
   html += "<table>" + row_html(header, "th");
   for (const Cells& row : rows) {
     markdown += row_markdown(row);

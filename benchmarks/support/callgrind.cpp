@@ -76,7 +76,7 @@ Result<Results> count_instructions(const std::vector<std::string>& arguments) {
   std::string command =
       "valgrind --quiet --tool=callgrind --instr-atstart=no --callgrind-out-file=" +
       quoted((folder.path / "dump").string());
-  for (const std::string& argument : arguments) command += " " + quoted(argument);
+  for (const std::string& argument : arguments) command += ' ' + quoted(argument);
   command += " --out " + quoted(out.string());
   if (std::system(command.c_str()) != 0)
     return Status{ErrorCode::io, command + ": failed (see its messages above)"};

@@ -105,7 +105,7 @@ void cite(const std::filesystem::path& path, const std::string& list, std::vecto
   const std::size_t first = first_line(path, list);
   for (std::size_t i = 0; i < items.size(); ++i)
     items[i].source =
-        path.filename().string() + (first ? ":" + std::to_string(first + i) : std::string());
+        path.filename().string() + (first ? fmt::format(":{}", first + i) : std::string());
 }
 
 Status unwritable(const std::filesystem::path& path) {
