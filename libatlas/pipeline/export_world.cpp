@@ -83,9 +83,7 @@ class Export {
     Result<ChartSet> charts = make_charts(view_of(scene_), options_.charts, context_);
     if (!charts.ok()) return charts.status();
     charts_ = std::move(*charts);
-    report_.charts = charts_.charts;
-    report_.distortion = charts_.distortion;
-    report_.seam_length = charts_.seam_length;
+    report_charts();
     report_.surface_area = charts_.surface_area;
     report_.repairs = charts_.repairs;
     report_.chart_timing = charts_.timing;
@@ -97,6 +95,13 @@ class Export {
     }
     record_.finish({scene_.triangle_count(), charts_.charts.size(), "charts", quality});
     return {};
+  }
+
+  // Again whenever charts were cut.
+  void report_charts() {
+    report_.charts = charts_.charts;
+    report_.distortion = charts_.distortion;
+    report_.seam_length = charts_.seam_length;
   }
 
   Status expose() {
@@ -136,8 +141,7 @@ class Export {
     const std::size_t cut =
         cut_to_limits(view_of(scene_), longest_sides(charts_, densities, {texture, options_}),
                       options_.charts.max_stretch, charts_);
-    report_.charts = charts_.charts;
-    report_.seam_length = charts_.seam_length;
+    report_charts();
     record_.finish(
         {before, charts_.charts.size(), "charts", fmt::format("{} longer than half a page", cut)});
     return {};
@@ -176,13 +180,16 @@ class Export {
     constexpr std::int32_t kLargestSide = 16384;
     if (plan_.bake || !options_.larger_plain_page || options_.plain_pages > 1)
       return options_.atlas_size;
-    // A page as long as its longest chart is less wide than long where the others do not fill more.
+    // A page as long as its longest chart is less wide than long where the others do not fill more;
+    // for a square one charts are cut.
     double longest = 0, area = 0;
     for (const Chart& chart : charts_.charts) {
       longest = std::max(longest, chart.size.x);
       area += chart.distortion.uv_area;
     }
-    const double width = std::min(1.0, area / (kExpectedFill * longest * longest));
+    const double filled =
+        options_.square_plain_page ? 1 : area / (kExpectedFill * longest * longest);
+    const double width = std::min(1.0, filled);
     const double wanted = kTexelsAChart * double(charts_.charts.size());
     std::int32_t side = options_.atlas_size;
     while (side < kLargestSide && width * side * side < wanted) side *= 2;
@@ -194,8 +201,7 @@ class Export {
     const double texels = double(options.pages) * options.page_size * options.page_size;
     const PlainUvs uvs{view_of(scene_), options_.charts, filling_density(charts_, texels)};
     Result<PageLayout> layout = fill_pages(uvs, options, charts_, context_);
-    report_.charts = charts_.charts;
-    report_.seam_length = charts_.seam_length;
+    report_charts();
     return layout;
   }
 
