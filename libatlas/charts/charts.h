@@ -44,7 +44,9 @@ struct ChartOptions {
   ChartPreset preset = ChartPreset::standard;
   // A chart so large that its smallest rectangle decides the page's size is cut across its limbs
   // until the pieces fill this share of their rectangles; so are the most wasteful charts where all
-  // together fill little of their convex hulls. 0..1, 0: never. Not with keep_uv_charts.
+  // together fill little of their convex hulls. unwrap_mesh() and exports also cut, where this is
+  // not 0, what is too long or too large for the pages that they pack. 0..1, 0: never. Not with
+  // keep_uv_charts.
   double min_fill = 0.72;
 };
 

@@ -40,7 +40,8 @@ struct UnwrappedMesh {
 
 // Nothing is left out: triangle t of the input is triangle t of the result, its corners in the same
 // order. Triangles that the mesh holds the wrong way round against their neighbours
-// (ChartSet::flipped_triangles) are the only ones whose uvs turn clockwise. MeshView::texcoords,
+// (ChartSet::flipped_triangles) are the only ones whose uvs turn clockwise. Charts that leave the
+// pages poorly filled are cut (ChartOptions::min_fill). MeshView::texcoords,
 // for ChartOptions::keep_uv_charts, may go without texcoord_indices if there is one a vertex.
 // The result is the same for every thread count.
 // Errors: those of make_charts; bad_option; no_solution (more charts than the pages hold texels
