@@ -156,8 +156,9 @@ class Rebuilder {
       keep(old);
       return false;
     }
-    fresh_.seam_length += length_between(pieces);
-    std::vector<std::vector<std::uint32_t>> loose = loose_triangles(old, pieces);
+    const std::vector<OwnedEdge> edges = edges_of(pieces);
+    fresh_.seam_length += length_between(edges);
+    std::vector<std::vector<std::uint32_t>> loose = loose_triangles(old, pieces, edges);
     for (std::size_t i = 0; i < pieces.size(); ++i) add(old, pieces[i], loose[i]);
     return true;
   }
@@ -198,7 +199,7 @@ class Rebuilder {
     return flat;
   }
 
-  // A piece's edge in uvs of the old set, where the triangle has it.
+  // A piece's edge in uvs of the old set.
   using UvEdge = std::array<std::uint32_t, 2>;
   static UvEdge edge(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
   struct OwnedEdge {
@@ -222,8 +223,7 @@ class Rebuilder {
   }
 
   // Length on the surface of the edges along which a chart was cut.
-  double length_between(const std::vector<FlatChart>& pieces) const {
-    const std::vector<OwnedEdge> edges = edges_of(pieces);
+  double length_between(const std::vector<OwnedEdge>& edges) const {
     double length = 0;
     for (std::size_t i = 1; i < edges.size(); ++i) {
       const OwnedEdge &a = edges[i - 1], &b = edges[i];
@@ -236,7 +236,8 @@ class Rebuilder {
 
   // Triangles without area lie on an edge or at a corner of one of the pieces. 1 a piece.
   std::vector<std::vector<std::uint32_t>> loose_triangles(
-      const Chart& chart, const std::vector<FlatChart>& pieces) const {
+      const Chart& chart, const std::vector<FlatChart>& pieces,
+      const std::vector<OwnedEdge>& edges) const {
     std::vector<std::vector<std::uint32_t>> loose(pieces.size());
     std::vector<std::uint32_t> piece_of(chart.uv_count, 0);
     for (std::uint32_t i = std::uint32_t(pieces.size()); i-- > 0;) {
@@ -244,11 +245,9 @@ class Rebuilder {
         for (const std::uint32_t uv : old_uvs(t)) piece_of[uv - chart.first_uv] = i;
       }
     }
-    std::vector<OwnedEdge> edges;
     for (const std::uint32_t t : triangles_of(chart)) {
       const auto c = old_uvs(t);
       if (!names_uv_twice(c)) continue;
-      if (edges.empty()) edges = edges_of(pieces);
       std::uint32_t piece = piece_of[c[0] - chart.first_uv];
       const UvEdge on = c[0] != c[1] ? edge(c[0], c[1]) : edge(c[1], c[2]);
       const auto found = std::lower_bound(edges.begin(), edges.end(), OwnedEdge{on, 0});

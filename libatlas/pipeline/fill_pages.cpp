@@ -29,12 +29,6 @@ Result<PageLayout> lay_out(const ChartSet& charts, double density, const LayoutO
   return lay_out_pages(charts, densities, options, context);
 }
 
-double uv_area(const ChartSet& charts) {
-  double area = 0;
-  for (const Chart& chart : charts.charts) area += chart.distortion.uv_area;
-  return area;
-}
-
 // How well layouts fill the pages that there may be.
 struct Goal {
   const LayoutOptions& options;
@@ -56,7 +50,7 @@ struct Goal {
 Result<PageLayout> fill_pages(const PlainUvs& uvs, const LayoutOptions& options, ChartSet& charts,
                               const Context& context) {
   Result<PageLayout> best = lay_out(charts, uvs.density, options, context);
-  const double area = uv_area(charts), root_area = std::sqrt(charts.surface_area);
+  const double area = charts.distortion.uv_area, root_area = std::sqrt(charts.surface_area);
   const Goal goal{options, area * uvs.density * uvs.density};
   const bool may_cut = uvs.options.min_fill > 0 && !uvs.options.keep_uv_charts &&
                        (!options.free_aspect || charts.charts.size() <= kMostChartsFree);

@@ -70,8 +70,17 @@ TEST(FillPages, GivenChartsStayWhole) {
   EXPECT_EQ(kept->charts.charts.size(), 2u);
 }
 
-// A round chart on a square page is as good as it gets: seams would cost more than they bring.
+// The page is less than 0.7 full, but no cut would let it hold so much more.
 TEST(FillPages, SeamsMustBeWorthIt) {
+  const UnwrapOptions square{.page_size = 512, .square = true};
+  const UnwrappedMesh whole = unwrap(torus(48, 24), square, 0),
+                      offered = unwrap(torus(48, 24), square);
+  EXPECT_LT(whole.utilization, 0.7);
+  EXPECT_EQ(offered.charts.charts.size(), whole.charts.charts.size());
+  EXPECT_DOUBLE_EQ(offered.charts.seam_length, whole.charts.seam_length);
+}
+
+TEST(FillPages, WhatFillsItsPageStaysWhole) {
   const UnwrapOptions square{.page_size = 512, .square = true};
   EXPECT_EQ(unwrap(cap(64, 24, 0.3), square).charts.charts.size(), 1u);
 }

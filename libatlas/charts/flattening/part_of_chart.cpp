@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "libatlas/core/glm_bridge.h"
 #include "libatlas/param/halfedges.h"
 #include "libatlas/param/orient.h"
 #include "libatlas/param/parameterize.h"
