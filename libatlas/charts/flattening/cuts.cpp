@@ -14,6 +14,11 @@ namespace {
 constexpr double kCreaseDiscount = 4;  // how much shorter a fully folded edge is to cut along
 // Angle defects below this, in radians, are not what stretches a chart beyond its bound.
 constexpr double kLeastDefect = 0.02;
+// In radians. Symmetric charts have tips alike but for rounding, which must not choose among them.
+constexpr double kSameDefect = 1e-4;
+// Nor between ways that mirror each other: of a triangle's mean width, what lengths are multiples
+// of.
+constexpr double kLengthStep = 1e-3;
 // Spikes of scan noise: a cone that leans by 20 degrees lacks this.
 constexpr std::size_t kLongestDart = 12;  // edges; what the tip needs is room beside it
 constexpr double kDetour = 4;             // how far around an edge that was cut in vain
@@ -41,6 +46,9 @@ class EdgePaths {
         chart_(chart),
         avoid_(avoid && !avoid->empty() ? avoid : nullptr),
         out_(chart.positions.size(), kNoIndex) {
+    double area = 0;
+    for (const std::uint32_t t : chart.triangles()) area += topology.areas[t];
+    step_ = kLengthStep * std::sqrt(area / static_cast<double>(chart.triangles().size()));
     for (std::uint32_t h = 0; h < chart.opposite.size(); ++h) {
       if (out_[from(h)] == kNoIndex || chart.opposite[h] == kNoIndex) out_[from(h)] = h;
     }
@@ -149,6 +157,7 @@ class EdgePaths {
     return avoid_->contains(dart_edge(chart_, h));
   }
 
+  // In steps.
   double length(std::uint32_t h) const {
     const std::uint32_t s = chart_.triangles()[h / 3],
                         t = chart_.triangles()[chart_.opposite[h] / 3];
@@ -156,7 +165,7 @@ class EdgePaths {
         0.5 * (1 - glm::dot(to_dvec(topology_.normals[s]), to_dvec(topology_.normals[t])));
     const double plain = glm::distance(point(from(h)), point(from(next_half_edge(h)))) /
                          (1 + kCreaseDiscount * fold);
-    return avoided(h) ? kDetour * plain : plain;
+    return std::round((avoided(h) ? kDetour * plain : plain) / step_);
   }
 
   // From a border half-edge the walk meets every inner edge of the fan once.
@@ -172,6 +181,7 @@ class EdgePaths {
   const Topology& topology_;
   const LocalChart& chart_;
   const std::unordered_set<std::uint32_t>* avoid_;
+  double step_ = 0;                 // scaled units
   std::vector<std::uint32_t> out_;  // a half-edge from each vertex, the one on the border if any
   std::vector<double> distance_;
   std::vector<std::uint32_t> through_;  // the half-edge that leads to a vertex
@@ -235,7 +245,7 @@ std::vector<std::uint32_t> choose_tips(const Topology& topology, const LocalChar
   const auto area = [&](std::uint32_t t) { return topology.areas[chart.triangles()[t]]; };
   for (const std::uint32_t t : offenders) excess += area(t);
   struct Tip {
-    double defect;
+    double defect;  // a multiple of kSameDefect
     std::uint32_t vertex;
   };
   std::vector<Tip> tips;
@@ -243,7 +253,9 @@ std::vector<std::uint32_t> choose_tips(const Topology& topology, const LocalChar
   for (const std::uint32_t t : offenders) {
     for (const std::uint32_t v : chart.corners[t]) {
       if (paths.on_border(v)) continue;
-      if (around[v] == 0) tips.push_back({paths.defect(v), v});
+      if (around[v] == 0) {
+        tips.push_back({kSameDefect * std::round(paths.defect(v) / kSameDefect), v});
+      }
       around[v] += area(t);
     }
   }
