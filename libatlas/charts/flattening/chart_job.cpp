@@ -207,8 +207,9 @@ class ChartJob {
 
   // Whether what is beyond the bound is past saving by cuts to single vertices.
   bool cuts_in_vain() const {
-    if (result_.within_bound || result_.uvs.empty() || chart_.loops.size() > 1) return false;
-    return result_.crossings.size() > (cut_to_tips_ ? 0 : kMostFirstCrossings);
+    if (result_.within_bound || result_.uvs.empty()) return false;
+    if (cut_to_tips_) return !result_.crossings.empty();
+    return chart_.loops.size() == 1 && result_.crossings.size() > kMostFirstCrossings;
   }
 
   // Whether a small hole is what the chart closes around.
