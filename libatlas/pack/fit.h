@@ -39,6 +39,9 @@ struct FitOptions {
   std::uint32_t rotations = 4;  // directions tried for outlines at most: multiples of
                                 // 360/rotations degrees; 1, 2, 4 or a multiple of 4
   bool any_angle = true;        // outlines may be turned by angles between those, too
+  // Several pages of few outlines each are pressed one by one, and charts exchanged between them:
+  // a twentieth to a sixth more of the pages is filled, for some tenths of a second a page.
+  bool press_pages = true;
   // A single page: its sides are at most page_size, and outlines are made to fill it as far as they
   // can instead of being as large as they can be. Overrides power_of_two and square. Without
   // shapes, or with several pages, it does that alone.

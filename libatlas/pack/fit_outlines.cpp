@@ -195,6 +195,9 @@ Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions&
   write_result(*fit, options, best, result);
   if (pressed && options.free_aspect && pressed->utilization >= result.utilization)
     return std::move(*pressed);
+  std::optional<FitResult> denser = press_pages(result, items, outlines, options, context);
+  if (context.cancelled()) return Status::cancelled();
+  if (denser) return std::move(*denser);
   return result;
 }
 

@@ -62,6 +62,13 @@ std::optional<FitResult> fit_pressed(std::span<const FitItem> items,
                                      std::span<const ChartOutline> outlines,
                                      const FitOptions& options, const Context& context);
 
+// A fit to several pages of few charts each made denser: every page is pressed, and charts change
+// pages until no page is much tighter than the others. None where that is not worth trying or finds
+// no larger scale than the fit's.
+std::optional<FitResult> press_pages(const FitResult& fitted, std::span<const FitItem> items,
+                                     std::span<const ChartOutline> outlines,
+                                     const FitOptions& options, const Context& context);
+
 // F(A) = N over these areas, without a search below the bisection's answer: it is asked for at
 // every scale tried. False where there is none (the areas pass 2^62, or cancelled).
 bool group_areas(std::span<const std::uint64_t> areas, std::uint32_t pages, const Context& context,

@@ -84,7 +84,7 @@ class Press {
   PressedPage run() {
     PressedPage best;
     const double begun = wall_seconds();
-    const std::size_t n = std::max<std::size_t>(1, options_.shapes.size());
+    const std::size_t n = std::max<std::size_t>(1, outlines_.size());
     const std::size_t count =
         n == 1 ? 1 : std::clamp<std::size_t>(kStartedCharts / n, 1, kMostStarts);
     for (std::uint32_t round = 0; !context_.cancelled(); ++round) {
@@ -115,7 +115,7 @@ class Press {
   // The search needs outlines only as fine as its cells; exact masks come last.
   void draw() {
     const int fine = std::max(1, options_.page_size / 1024);
-    const std::size_t n = options_.shapes.size();
+    const std::size_t n = outlines_.size();
     cell_ = std::max(1, options_.page_size / 128);
 
     drawn_.resize(n);
@@ -349,6 +349,8 @@ class Press {
     best.scale = page.scale;
     best.page = page.page;
     best.places = page.places;
+    best.targets = page.targets;
+    best.target_scale = page.target_scale;
   }
 
   PressedPage settle_exactly(const Start& s) const {
@@ -360,7 +362,10 @@ class Press {
       targets[i].angle = s.poses[i].second;
       targets[i].from = {-center.x / scale_, -center.y / scale_};
     }
-    return settle({targets, scale_ * grow}, outlines_, options_, context_);
+    PressedPage page = settle({targets, scale_ * grow}, outlines_, options_, context_);
+    page.targets = std::move(targets);
+    page.target_scale = scale_ * grow;
+    return page;
   }
 
   std::span<const ChartOutline> outlines_;

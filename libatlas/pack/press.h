@@ -16,10 +16,21 @@ struct PressedPlace {
   Rect box;      // of the mask, texels
 };
 
+// Where a chart should be: its point p at origin + scale · R(angle) (p + from), origin in texels of
+// a page whose longer side is the largest allowed.
+struct SettleTarget {
+  Vec2d origin, from;
+  double angle = 0;
+};
+
 struct PressedPage {
   double scale = 0;                  // 0: found none
   Extent page;                       // texels; both sides at most options.page_size
   std::vector<PressedPlace> places;  // 1 a shape
+  // What the places came from: where bodies lay at this scale, a little larger than `scale`. Empty
+  // where charts were not pressed but laid in rows.
+  std::vector<SettleTarget> targets;
+  double target_scale = 0;
   std::vector<FitProgress> curve;
   std::uint64_t layouts = 0;
 };

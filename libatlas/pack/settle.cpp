@@ -266,4 +266,15 @@ PressedPage settle(const SettleTargets& targets, std::span<const ChartOutline> o
   return best;
 }
 
+PressedPage settle_at(double scale, const SettleTargets& targets,
+                      std::span<const ChartOutline> outlines, const FitOptions& options,
+                      const Context& context) {
+  Settler settler(targets, outlines, options, context);
+  PressedPage page;
+  if (!settler.place_at(scale / targets.scale, page)) return {};
+  settler.close_up(page);
+  page.scale = scale;
+  return page;
+}
+
 }  // namespace atlas::pack

@@ -7,13 +7,6 @@
 
 namespace atlas::pack {
 
-// Where a chart should be: its point p at origin + scale · R(angle) (p + from), origin in texels of
-// a page whose longer side is the largest allowed.
-struct SettleTarget {
-  Vec2d origin, from;
-  double angle = 0;
-};
-
 // Where all charts should be, at this scale.
 struct SettleTargets {
   std::span<const SettleTarget> places;  // 1 a chart
@@ -25,5 +18,10 @@ struct SettleTargets {
 // none did.
 PressedPage settle(const SettleTargets& targets, std::span<const ChartOutline> outlines,
                    const FitOptions& options, const Context& context);
+
+// The same at this scale, at most the targets'; scale 0 in the result: charts found no place.
+PressedPage settle_at(double scale, const SettleTargets& targets,
+                      std::span<const ChartOutline> outlines, const FitOptions& options,
+                      const Context& context);
 
 }  // namespace atlas::pack

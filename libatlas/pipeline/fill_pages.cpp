@@ -45,10 +45,9 @@ struct Goal {
   }
 };
 
-}  // namespace
-
-Result<PageLayout> fill_pages(const PlainUvs& uvs, const LayoutOptions& options, ChartSet& charts,
-                              const Context& context) {
+// `charts`, cut where that fills pages better, and their layout.
+Result<PageLayout> cut_to_fill(const PlainUvs& uvs, const LayoutOptions& options, ChartSet& charts,
+                               const Context& context) {
   Result<PageLayout> best = lay_out(charts, uvs.density, options, context);
   const double area = charts.distortion.uv_area, root_area = std::sqrt(charts.surface_area);
   const Goal goal{options, area * uvs.density * uvs.density};
@@ -71,6 +70,18 @@ Result<PageLayout> fill_pages(const PlainUvs& uvs, const LayoutOptions& options,
     if (goal.reached(*best)) break;
   }
   return best;
+}
+
+}  // namespace
+
+Result<PageLayout> fill_pages(const PlainUvs& uvs, const LayoutOptions& options, ChartSet& charts,
+                              const Context& context) {
+  // Several pages are pressed in the end only: it would take seconds for each way of cutting.
+  LayoutOptions unpressed = options;
+  unpressed.press_pages = false;
+  Result<PageLayout> layout = cut_to_fill(uvs, unpressed, charts, context);
+  if (!layout.ok() || !options.press_pages || layout->pages.size() < 2) return layout;
+  return lay_out(charts, uvs.density, options, context);
 }
 
 }  // namespace atlas

@@ -107,6 +107,7 @@ Result<PageLayout> lay_out(const ChartSet& charts, std::span<const Vec2d> texels
                                          kBestLayouts);
   fit.free_aspect = options.free_aspect;
   fit.square = options.square;
+  fit.press_pages = options.press_pages;
   std::optional<Outlines> outlines;
   if (options.outlines) {
     outlines.emplace(charts, texels_per_unit);

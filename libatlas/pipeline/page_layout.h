@@ -25,7 +25,8 @@ struct LayoutOptions {
   // One page whose sides are at most page_size, as full as it can be made: for uvs without images,
   // where no texel has a size.
   bool free_aspect = false;
-  bool square = false;  // pages as wide as high; free_aspect overrides it
+  bool press_pages = true;  // as in FitOptions
+  bool square = false;      // pages as wide as high; free_aspect overrides it
   PackPreset preset = PackPreset::standard;
 };
 

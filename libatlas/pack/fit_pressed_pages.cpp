@@ -1,0 +1,232 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include "libatlas/pack/fit_pages.h"
+#include "libatlas/pack/fit_result.h"
+#include "libatlas/pack/press.h"
+#include "libatlas/pack/settle.h"
+
+namespace atlas::pack {
+namespace {
+
+// Pairs of pages pressed anew with charts exchanged, a page; `best` tries more.
+constexpr std::size_t kExchanges = 3, kBestExchanges = 12;
+constexpr double kLeastGain = 1.002;  // of the scale, by an exchange or by all
+
+class PagePress {
+ public:
+  PagePress(std::span<const ChartOutline> outlines, const FitOptions& options,
+            const Context& context)
+      : outlines_(outlines), options_(options), context_(context) {
+    options_.pages = 1;
+    options_.max_scale = std::numeric_limits<double>::max();  // a page by itself has no limit
+    options_.preset = PackPreset::standard;
+  }
+
+  // False where a page is not worth pressing, or pressing it finds nothing.
+  bool start(const FitResult& fitted) {
+    groups_.resize(fitted.pages.size());
+    for (std::uint32_t i = 0; i < outlines_.size(); ++i) {
+      Group& group = groups_[fitted.placements[i].page];
+      group.charts.push_back(i);
+      group.area += outlines_[i].area;
+    }
+    return std::all_of(groups_.begin(), groups_.end(), [&](Group& g) { return press(g); });
+  }
+
+  // Between the tightest page and others, so many times at most.
+  void exchange(std::size_t attempts) {
+    for (; attempts > 0 && !context_.cancelled(); --attempts) {
+      const std::optional<Exchange> chosen = best_exchange();
+      if (!chosen) return;
+      const auto& [from, to, out, in, gain] = *chosen;
+      tried_.insert({from, to, out, in});
+      const std::array<Group, 2> changed = exchanged(*chosen);
+      const double scale = std::min(changed[0].page.scale, changed[1].page.scale);
+      if (!(scale > kLeastGain * groups_[from].page.scale)) continue;
+      groups_[from] = changed[0];
+      groups_[to] = changed[1];
+      std::erase_if(tried_, [&, a = from, b = to](const auto& t) {
+        return std::get<0>(t) == a || std::get<1>(t) == a || std::get<0>(t) == b ||
+               std::get<1>(t) == b;
+      });
+    }
+  }
+
+  // At which every page was seen to fit.
+  double common_scale() const { return groups_[tightest()].page.scale; }
+
+  // All pages at this scale; false if one does not fit.
+  bool settle(double scale) {
+    for (Group& g : groups_) {
+      if (context_.cancelled()) return false;
+      if (g.page.scale == scale) {
+        g.settled = g.page;
+        continue;
+      }
+      const std::vector<ChartOutline> own = outlines_of(g);
+      g.settled = settle_at(scale, {g.page.targets, g.page.target_scale}, own, options_, context_);
+      if (g.settled.scale == 0) return false;
+    }
+    return true;
+  }
+
+  void write(FitResult& result) const {
+    result.pages.clear();
+    for (std::uint32_t p = 0; p < groups_.size(); ++p) {
+      const Group& g = groups_[p];
+      result.pages.push_back(options_.power_of_two ? Extent{options_.page_size, options_.page_size}
+                                                   : squared(g.settled.page, options_));
+      for (std::size_t k = 0; k < g.charts.size(); ++k) {
+        FitPlacement& out = result.placements[g.charts[k]];
+        out = {};
+        out.page = p;
+        out.scale = g.settled.scale;
+        const PressedPlace& at = g.settled.places[k];
+        if (at.placed) {
+          write_outline({at.box, at.angle, at.offset}, options_, out);
+        } else {
+          write_at_corner(outlines_[g.charts[k]], out);
+        }
+      }
+    }
+  }
+
+ private:
+  struct Group {
+    std::vector<std::uint32_t> charts;  // ascending
+    double area = 0;                    // texels at scale 1
+    PressedPage page, settled;
+  };
+  // Charts that change pages; kNone: none does.
+  struct Exchange {
+    std::uint32_t from, to, out, in;
+    double gain;  // of the scale, expected
+  };
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  std::vector<ChartOutline> outlines_of(const Group& group) const {
+    std::vector<ChartOutline> own;
+    for (const std::uint32_t i : group.charts) own.push_back(outlines_[i]);
+    return own;
+  }
+
+  bool press(Group& group) const {
+    const std::vector<ChartOutline> own = outlines_of(group);
+    if (!worth_pressing(own, options_)) return false;
+    group.page = press_outlines(own, options_, context_);
+    return group.page.scale > 0;
+  }
+
+  std::uint32_t tightest() const {
+    const auto at = std::min_element(groups_.begin(), groups_.end(),
+                                     [](auto& a, auto& b) { return a.page.scale < b.page.scale; });
+    return static_cast<std::uint32_t>(at - groups_.begin());
+  }
+
+  double area_of(std::uint32_t chart) const { return chart == kNone ? 0 : outlines_[chart].area; }
+
+  // The one after which the tighter of two pages should be loosest, if both stay as full as they
+  // are: what is relieved is the tightest page of all.
+  std::optional<Exchange> best_exchange() const {
+    std::optional<Exchange> best;
+    const std::uint32_t from = tightest();
+    const Group& tight = groups_[from];
+    double most = kLeastGain;
+    for (std::uint32_t to = 0; to < groups_.size(); ++to) {
+      if (to == from) continue;
+      const Group& loose = groups_[to];
+      std::vector<std::uint32_t> back = loose.charts;
+      back.push_back(kNone);
+      for (const std::uint32_t out : tight.charts) {
+        for (const std::uint32_t in : back) {
+          const double moved = area_of(out) - area_of(in);
+          if (!(moved > 0) || !(moved < tight.area) || tried_.contains({from, to, out, in}))
+            continue;
+          const double gain = std::min(
+              std::sqrt(tight.area / (tight.area - moved)),
+              loose.page.scale / tight.page.scale * std::sqrt(loose.area / (loose.area + moved)));
+          if (gain <= most) continue;
+          most = gain;
+          best = {from, to, out, in, gain};
+        }
+      }
+    }
+    return best;
+  }
+
+  // Both pages with the charts exchanged; page.scale 0 where one could not be pressed.
+  std::array<Group, 2> exchanged(const Exchange& e) const {
+    std::array<Group, 2> changed;
+    const auto take = [&](Group& g, const Group& old, std::uint32_t lost, std::uint32_t got) {
+      for (const std::uint32_t i : old.charts) {
+        if (i != lost) g.charts.push_back(i);
+      }
+      if (got != kNone)
+        g.charts.insert(std::lower_bound(g.charts.begin(), g.charts.end(), got), got);
+      g.area = old.area - area_of(lost) + area_of(got);
+      if (!press(g)) g.page.scale = 0;
+    };
+    take(changed[0], groups_[e.from], e.out, e.in);
+    if (changed[0].page.scale > kLeastGain * groups_[e.from].page.scale)
+      take(changed[1], groups_[e.to], e.in, e.out);
+    return changed;
+  }
+
+  std::span<const ChartOutline> outlines_;
+  FitOptions options_;
+  const Context& context_;
+  std::vector<Group> groups_;
+  std::set<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>> tried_;
+};
+
+// Whether a minimum side would hold at this scale.
+bool below_minimum(std::span<const FitItem> items, const FitOptions& options, double scale) {
+  return std::any_of(items.begin(), items.end(), [&](const FitItem& item) {
+    const double side = std::max(item.width, item.height);
+    return side * scale < std::min<double>(options.minimum_side, std::ceil(side));
+  });
+}
+
+}  // namespace
+
+std::optional<FitResult> press_pages(const FitResult& fitted, std::span<const FitItem> items,
+                                     std::span<const ChartOutline> outlines,
+                                     const FitOptions& options, const Context& context) {
+  if (!options.press_pages || options.pages < 2 || fitted.pages.size() < options.pages || options.free_aspect ||
+      fitted.scale >= options.max_scale || options.preset == PackPreset::fast ||
+      below_minimum(items, options, fitted.scale)) {
+    return std::nullopt;
+  }
+  PagePress press(outlines, options, context);
+  if (!press.start(fitted)) return std::nullopt;
+  const bool best = options.preset == PackPreset::best;
+  press.exchange((best ? kBestExchanges : kExchanges) * options.pages);
+  double scale = std::min(press.common_scale(), options.max_scale);
+  constexpr double kSmaller = 0.997;
+  while (scale > kLeastGain * fitted.scale && !press.settle(scale)) {
+    if (context.cancelled()) return std::nullopt;
+    scale *= kSmaller;
+  }
+  if (!(scale > kLeastGain * fitted.scale)) return std::nullopt;
+  FitResult result = fitted;
+  result.scale = scale;
+  ++result.packings;
+  result.trace.emplace_back(scale, true);
+  press.write(result);
+  double shapes = 0;
+  result.moved_items = 0;
+  for (std::size_t i = 0; i < outlines.size(); ++i) {
+    shapes += outlines[i].area * scale * scale;
+    result.moved_items += result.placements[i].page != result.grouping.group[i];
+  }
+  result.utilization = share_of_pages(shapes, result);
+  return result;
+}
+
+}  // namespace atlas::pack

@@ -1,0 +1,154 @@
+// Several pages of few charts: each pressed, charts exchanged between them.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "libatlas/pack/fit.h"
+#include "libatlas/pack/fit_pages.h"
+#include "tests/pack/checks.h"
+
+namespace atlas {
+namespace {
+
+test::ChartItems blobs(std::size_t count, double smallest, double largest, std::uint64_t seed) {
+  test::Noise noise{seed};
+  std::vector<std::vector<Vec2d>> shapes;
+  for (std::size_t k = 0; k < count; ++k) {
+    shapes.push_back(
+        test::blob(noise, smallest + (largest - smallest) * noise.unit(), noise.in(5, 12)));
+  }
+  return test::ChartItems(std::move(shapes));
+}
+
+FitOptions several(const test::ChartItems& charts, std::uint32_t pages) {
+  FitOptions o;
+  o.pages = pages;
+  o.page_size = 256;
+  o.alignment = 1;
+  o.minimum_side = 0;
+  o.max_scale = 100;
+  o.shapes = charts.shapes;
+  return o;
+}
+
+// By the triangles' signed areas: blobs do not lie on themselves.
+double area_of(const test::ChartItems& charts) {
+  double area = 0;
+  for (const std::vector<Vec2d>& c : charts.corners) {
+    for (std::size_t k = 0; k < c.size(); k += 3) {
+      area += 0.5 * ((c[k + 1].x - c[k].x) * (c[k + 2].y - c[k].y) -
+                     (c[k + 1].y - c[k].y) * (c[k + 2].x - c[k].x));
+    }
+  }
+  return area;
+}
+
+// Valid, of one scale, never less dense than without, and denser by a twentieth in the mean.
+TEST(PressPages, PagesAreFuller) {
+  double gain = 0;
+  int cases = 0;
+  for (const std::uint32_t pages : {2u, 4u}) {
+    for (const std::uint64_t seed : {1u, 2u}) {
+      const test::ChartItems charts = blobs(pages * 5 + seed, 30, 110, 10 * pages + seed);
+      FitOptions o = several(charts, pages);
+      o.padding = seed == 1 ? 1 : 2;
+      const Result<FitResult> pressed = fit_pages(charts.items, o, {});
+      o.press_pages = false;
+      const Result<FitResult> cells = fit_pages(charts.items, o, {});
+      ASSERT_TRUE(pressed.ok() && cells.ok());
+      EXPECT_EQ(
+          test::check_outlines(test::placed_shapes(charts, *pressed), pressed->pages, o.padding),
+          "");
+      ASSERT_EQ(pressed->pages.size(), pages);
+      for (const Extent& page : pressed->pages) EXPECT_EQ(page, (Extent{256, 256}));
+      for (const FitPlacement& p : pressed->placements) EXPECT_EQ(p.scale, pressed->scale);
+      EXPECT_NEAR(pressed->utilization,
+                  area_of(charts) * std::pow(pressed->scale, 2) / (256.0 * 256 * pages), 1e-9);
+      EXPECT_GE(pressed->scale, cells->scale);
+      gain += std::log(pressed->utilization / cells->utilization);
+      ++cases;
+    }
+  }
+  EXPECT_GT(std::exp(gain / cases), 1.05);
+}
+
+// Of twelve like charts the first page is given nine. Pages without an exchange would fit at the
+// scale of the nine.
+TEST(PressPages, ChartsChangePages) {
+  const test::ChartItems charts = blobs(12, 60, 70, 4);
+  const FitOptions o = several(charts, 2);
+  FitResult uneven;
+  uneven.scale = 0.01;
+  uneven.pages.assign(2, {256, 256});
+  uneven.placements.resize(12);
+  uneven.grouping.group.assign(12, 0);
+  for (std::size_t i = 9; i < 12; ++i) uneven.placements[i].page = uneven.grouping.group[i] = 1;
+  const std::vector<pack::ChartOutline> outlines = pack::outlines_of(charts.shapes, {});
+  const std::optional<FitResult> fit = pack::press_pages(uneven, charts.items, outlines, o, {});
+  ASSERT_TRUE(fit.has_value());
+  EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *fit), fit->pages, o.padding), "");
+  std::uint32_t moved = 0, second = 0;
+  for (std::size_t i = 0; i < 12; ++i) {
+    second += fit->placements[i].page;
+    moved += fit->placements[i].page != uneven.grouping.group[i];
+  }
+  EXPECT_NEAR(second, 6, 1);
+  EXPECT_EQ(fit->moved_items, moved);
+}
+
+TEST(PressPages, SameForAnyNumberOfThreads) {
+  const test::ChartItems charts = blobs(14, 30, 90, 77);
+  FitOptions o = several(charts, 3);
+  o.alignment = 4;
+  Context one, eight;
+  one.threads = 1;
+  eight.threads = 8;
+  const Result<FitResult> a = fit_pages(charts.items, o, one);
+  const Result<FitResult> b = fit_pages(charts.items, o, eight);
+  ASSERT_TRUE(a.ok() && b.ok());
+  EXPECT_EQ(a->scale, b->scale);
+  for (std::size_t i = 0; i < charts.items.size(); ++i) {
+    const FitPlacement &p = a->placements[i], &q = b->placements[i];
+    EXPECT_EQ(p.page, q.page);
+    EXPECT_EQ(p.box, q.box);
+    EXPECT_EQ(p.angle, q.angle);
+    EXPECT_EQ(p.box.x % 4 + p.box.y % 4 + p.box.width % 4 + p.box.height % 4, 0);
+  }
+}
+
+// Minimum sides let charts have scales of their own, and a scale that all charts reach leaves
+// nothing to gain: pages stay as they were found by cells.
+TEST(PressPages, NotWhereItHasNoSay) {
+  const test::ChartItems charts = blobs(12, 15, 200, 5);
+  FitOptions held = several(charts, 2), loose = several(charts, 2);
+  held.minimum_side = 40;
+  loose.max_scale = 0.3;
+  for (FitOptions o : {held, loose}) {
+    const Result<FitResult> with = fit_pages(charts.items, o, {});
+    o.press_pages = false;
+    const Result<FitResult> without = fit_pages(charts.items, o, {});
+    ASSERT_TRUE(with.ok() && without.ok());
+    EXPECT_EQ(with->scale, without->scale);
+    for (std::size_t i = 0; i < charts.items.size(); ++i)
+      EXPECT_EQ(with->placements[i].box, without->placements[i].box);
+  }
+}
+
+TEST(PressPages, IsCancelled) {
+  const test::ChartItems charts = blobs(16, 30, 90, 6);
+  const FitOptions o = several(charts, 2);
+  std::atomic<bool> cancel{false};
+  Context context;
+  context.cancel = &cancel;
+  double last = 0;
+  context.progress = [&](std::string_view, double fraction) {
+    EXPECT_GE(fraction, last);
+    last = fraction;
+    cancel = fraction > 0.1;
+  };
+  EXPECT_EQ(fit_pages(charts.items, o, context).status().code(), ErrorCode::cancelled);
+}
+
+}  // namespace
+}  // namespace atlas
