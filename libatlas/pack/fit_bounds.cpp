@@ -46,4 +46,10 @@ FitBounds fit_bounds(std::span<const ChartOutline> outlines, const FitOptions& o
   return bounds;
 }
 
+bool are_slivers(std::span<const ChartOutline> outlines, const FitOptions& options) {
+  constexpr double kLeastShare = 0.25;  // of the page, against gutters
+  return outlines.size() > 1 &&
+         !(fit_bounds(outlines, options, options.page_size, 4).area_share > kLeastShare);
+}
+
 }  // namespace atlas::pack

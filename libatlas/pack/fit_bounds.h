@@ -19,4 +19,8 @@ struct FitBounds {
 FitBounds fit_bounds(std::span<const ChartOutline> outlines, const FitOptions& options,
                      std::int32_t side, std::uint32_t directions);
 
+// Whether gutters take most of the pages. Between such charts what cells round away is not what is
+// lost, and pressing many, each of which may meet all others along its whole length, costs minutes.
+bool are_slivers(std::span<const ChartOutline> outlines, const FitOptions& options);
+
 }  // namespace atlas::pack

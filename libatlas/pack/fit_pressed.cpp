@@ -9,17 +9,6 @@
 #include "libatlas/pack/straight_page.h"
 
 namespace atlas::pack {
-namespace {
-
-// Between slivers gutters take the page, not what cells round away; and pressing many, each of
-// which may meet all others along its whole length, costs minutes.
-bool are_slivers(std::span<const ChartOutline> outlines, const FitOptions& options) {
-  constexpr double kLeastShare = 0.25;  // of the page, against gutters
-  return outlines.size() > 1 &&
-         !(fit_bounds(outlines, options, options.page_size, 4).area_share > kLeastShare);
-}
-
-}  // namespace
 
 std::optional<FitResult> fit_pressed(std::span<const FitItem> items,
                                      std::span<const ChartOutline> outlines,

@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "libatlas/pack/fit_bounds.h"
 #include "libatlas/pack/fit_pages.h"
 #include "libatlas/pack/fit_result.h"
 #include "libatlas/pack/press.h"
@@ -118,7 +119,7 @@ class PagePress {
 
   bool press(Group& group) const {
     const std::vector<ChartOutline> own = outlines_of(group);
-    if (!worth_pressing(own, options_)) return false;
+    if (!worth_pressing(own, options_) || are_slivers(own, options_)) return false;
     group.page = press_outlines(own, options_, context_);
     return group.page.scale > 0;
   }
