@@ -158,14 +158,20 @@ Status plan(const app::ExportCommand& command, const LoadedScene& loaded,
   return write_report(planned_report(loaded, plan, command.options), reading, command, terminal);
 }
 
+bool is_gltf(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  return extension == ".gltf" || extension == ".glb";
+}
+
 // What of the scene this export has a use for.
 ReadOptions read_options(const app::ExportCommand& command) {
   ReadOptions read = command.read;
   read.load_textures = !command.options.charts_only;
   read.unlit_textures = false;  // without light no page has an image
   if (!command.options.keep_scene) return read;
-  read.normals = true;
-  read.encoded_textures = true;
+  // A glTF file that is written again has its normals by itself.
+  read.normals = !(is_gltf(command.scene) && is_gltf(command.options.target));
+  read.encoded_textures = read.rest = true;
   read.load_textures = read.unlit_textures = lower_extension(command.options.target) != ".obj";
   return read;
 }
@@ -188,6 +194,7 @@ Status run(const app::ExportCommand& command, app::Terminal& terminal) {
       context);
   if (!report.ok()) return report.status();
   print_result(*report, command.options.keep_scene, terminal);
+  for (const std::string& line : report->not_kept) terminal.line("not kept: " + line);
   name_old_pages(*report, terminal);
   return write_report(std::move(*report), reading, command, terminal);
 }

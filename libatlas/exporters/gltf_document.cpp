@@ -45,10 +45,15 @@ GltfDocument::GltfDocument(const World& world, bool binary) : binary_(binary) {
   if (!world.info.empty()) json["asset"]["extras"]["info"] = world.info;
 }
 
-std::size_t GltfDocument::add_view(const void* data, std::size_t size, int target) {
+void GltfDocument::add_info(const std::string& line) {
+  json["asset"]["extras"]["info"].push_back(line);
+}
+
+std::size_t GltfDocument::add_view(const void* data, std::size_t size, nlohmann::json view) {
   while (bytes_.size() % 4 != 0) bytes_.push_back('\0');
-  nlohmann::json view = {{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", size}};
-  if (target != 0) view["target"] = target;
+  view["buffer"] = 0;
+  view["byteOffset"] = bytes_.size();
+  view["byteLength"] = size;
   bytes_.append(static_cast<const char*>(data), size);
   json["bufferViews"].push_back(std::move(view));
   return json["bufferViews"].size() - 1;
@@ -60,7 +65,7 @@ std::size_t GltfDocument::add_accessor(nlohmann::json accessor) {
 }
 
 std::size_t GltfDocument::add_bounded(std::span<const Vec3f> values, const nlohmann::json& bounds) {
-  const std::size_t view = add_view(values.data(), values.size_bytes(), kArrayBuffer);
+  const std::size_t view = add_view(values.data(), values.size_bytes(), {{"target", kArrayBuffer}});
   nlohmann::json accessor = {
       {"bufferView", view}, {"componentType", kFloat}, {"type", "VEC3"}, {"count", values.size()}};
   accessor.update(bounds);
@@ -88,7 +93,7 @@ std::size_t GltfDocument::add_vectors(std::span<const Vec3f> values) {
 
 std::size_t GltfDocument::add_uvs(std::vector<Vec2f> values) {
   for (Vec2f& uv : values) uv.y = 1 - uv.y;
-  const std::size_t view = add_view(values.data(), values.size() * sizeof(Vec2f), kArrayBuffer);
+  const std::size_t view = add_view(values.data(), values.size() * sizeof(Vec2f), {{"target", kArrayBuffer}});
   return add_accessor({{"bufferView", view},
                        {"componentType", kFloat},
                        {"type", "VEC2"},
@@ -96,7 +101,7 @@ std::size_t GltfDocument::add_uvs(std::vector<Vec2f> values) {
 }
 
 std::size_t GltfDocument::add_indices(std::span<const std::uint32_t> values) {
-  const std::size_t view = add_view(values.data(), values.size_bytes(), kElementBuffer);
+  const std::size_t view = add_view(values.data(), values.size_bytes(), {{"target", kElementBuffer}});
   return add_accessor({{"bufferView", view},
                        {"componentType", kUint},
                        {"type", "SCALAR"},
@@ -104,7 +109,7 @@ std::size_t GltfDocument::add_indices(std::span<const std::uint32_t> values) {
 }
 
 nlohmann::json GltfDocument::embedded_image(std::span<const char> bytes, const char* mime_type) {
-  return {{"mimeType", mime_type}, {"bufferView", add_view(bytes.data(), bytes.size(), 0)}};
+  return {{"mimeType", mime_type}, {"bufferView", add_view(bytes.data(), bytes.size(), nlohmann::json::object())}};
 }
 
 nlohmann::json GltfDocument::image_beside(const std::string& file_name) {

@@ -31,6 +31,14 @@ class GltfDocument {
   std::size_t add_uvs(std::vector<Vec2f> values);
   std::size_t add_indices(std::span<const std::uint32_t> values);
 
+  // Data of any kind: `view` is what its buffer view says besides where the bytes lie, `accessor`
+  // names a view. Each gives its number.
+  std::size_t add_view(const void* data, std::size_t size, nlohmann::json view);
+  std::size_t add_accessor(nlohmann::json accessor);
+
+  // One line more of information on the whole file.
+  void add_info(const std::string& line);
+
   // An image whose file is embedded in a .glb, and an image that lies beside a .gltf.
   nlohmann::json embedded_image(std::span<const char> bytes, const char* mime_type);
   static nlohmann::json image_beside(const std::string& file_name);
@@ -39,8 +47,6 @@ class GltfDocument {
   Status write(const std::filesystem::path& path, AtomicFiles& files, WorldFile& result);
 
  private:
-  std::size_t add_view(const void* data, std::size_t size, int target);
-  std::size_t add_accessor(nlohmann::json accessor);
   std::size_t add_bounded(std::span<const Vec3f> values, const nlohmann::json& bounds);
   std::string text(const std::string& buffer_uri);
 

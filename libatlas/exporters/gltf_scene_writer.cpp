@@ -1,18 +1,14 @@
 // glTF 2.0 and GLB of a scene with atlas coordinates: a mesh an object, a primitive a material.
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <map>
 
 #include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/gltf_document.h"
+#include "libatlas/exporters/gltf_textures.h"
+#include "libatlas/exporters/losses.h"
 #include "libatlas/exporters/scene_parts.h"
 #include "libatlas/exporters/scene_writers.h"
 #include "libatlas/exporters/vertex_unifier.h"
-#include "libatlas/image/file_kind.h"
-#include "libatlas/image/image_io.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -20,15 +16,6 @@ using nlohmann::json;
 namespace {
 
 constexpr int kLinear = 9729, kLinearMipmapLinear = 9987;
-
-// PNG holds up to four channels; of more the first three are the colour.
-Image8 colour_of(const Image8& image) {
-  if (image.channels <= 4) return image;
-  Image8 colour(image.width, image.height, 3);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) std::copy_n(image.at(x, y), 3, colour.at(x, y));
-  return colour;
-}
 
 // A material without its texture.
 json look_of(const Material& material) {
@@ -51,9 +38,8 @@ json look_of(const Material& material) {
 // The scene's materials and textures as far as they are used, each written once.
 class MaterialWriter {
  public:
-  MaterialWriter(const World& world, const fs::path& path, GltfDocument& document,
-                 AtomicFiles& files)
-      : scene_(*world.scene), path_(path), document_(document), files_(files) {}
+  MaterialWriter(const World& world, GltfDocument& document, GltfTextures& textures)
+      : scene_(*world.scene), document_(document), files_(textures) {}
 
   // The number of a material in the document. Without texture coordinates a reader takes no
   // texture, while a viewer would take one texel of it: then the texture is left out.
@@ -77,7 +63,7 @@ class MaterialWriter {
     const auto [at, is_new] = textures_.try_emplace(index, textures_.size());
     if (!is_new) return at->second;
     json& file = document_.json;
-    auto image = document_.binary() ? embed(index) : write_beside(index);
+    auto image = files_.image(index);
     if (!image.ok()) return image.status();
     file["images"].push_back(std::move(*image));
     // Textures repeat, as they do without a word on it.
@@ -86,42 +72,9 @@ class MaterialWriter {
     return at->second;
   }
 
-  Result<json> embed(std::size_t index) {
-    const Texture& texture = scene_.textures[index];
-    if (!texture.encoded.empty()) {
-      const bool png = image_extension(texture.encoded) == ".png";
-      const auto* bytes = reinterpret_cast<const char*>(texture.encoded.data());
-      return document_.embedded_image({bytes, texture.encoded.size()},
-                                      png ? "image/png" : "image/jpeg");
-    }
-    const fs::path temporary = files_.path_for(scene_texture_path(scene_, index, path_));
-    if (Status s = write_png(temporary, colour_of(texture.image), {}); !s.ok())
-      return files_.told_by_target(s);
-    std::ifstream stream(temporary, std::ios::binary);
-    const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
-    files_.discard(temporary);
-    if (stream.bad() || bytes.empty())
-      return Status(ErrorCode::io, fmt::format("{}: a texture cannot be read to embed it (is the "
-                                               "disk full?)",
-                                               path_.string()));
-    return document_.embedded_image(bytes, "image/png");
-  }
-
-  Result<json> write_beside(std::size_t index) {
-    const Texture& texture = scene_.textures[index];
-    const fs::path target = scene_texture_path(scene_, index, path_);
-    const auto* bytes = reinterpret_cast<const char*>(texture.encoded.data());
-    Status s = texture.encoded.empty()
-                   ? write_png(files_.path_for(target), colour_of(texture.image), {})
-                   : files_.write(target, {bytes, texture.encoded.size()});
-    if (!s.ok()) return files_.told_by_target(s);
-    return GltfDocument::image_beside(target.filename().string());
-  }
-
   const Scene& scene_;
-  const fs::path& path_;
   GltfDocument& document_;
-  AtomicFiles& files_;
+  GltfTextures& files_;
   std::map<std::pair<std::uint32_t, bool>, std::size_t> materials_;  // with or without texture
   std::map<std::size_t, std::size_t> textures_;
 };
@@ -231,20 +184,26 @@ class SceneWriter {
   std::uint32_t object_ = 0;  // that of the last mesh
 };
 
-}  // namespace
-
-fs::path scene_texture_path(const Scene& scene, std::size_t texture, const fs::path& target) {
-  const auto& encoded = scene.textures[texture].encoded;
-  return target.parent_path() / fmt::format("{}_texture{}{}",
-                                            safe_file_name(target.stem().string()), texture,
-                                            encoded.empty() ? ".png" : image_extension(encoded));
+// What an MTL says of materials beside their colour and its texture, by keyword.
+std::vector<std::string> lost_lines(const Scene& scene) {
+  Losses losses;
+  for (const Material& material : scene.materials) {
+    for (const std::string& line : material.mtl_lines) {
+      const std::string keyword = line.substr(0, line.find_first_of(" \t"));
+      if (keyword != "map_Kd") losses.add("lines of the MTL: " + keyword);
+    }
+  }
+  return losses.lines();
 }
+
+}  // namespace
 
 Result<WorldFile> write_gltf_scene(const World& world, const fs::path& path, AtomicFiles& files,
                                    const Context& context) {
   WorldFile result;
   GltfDocument document(world, lower_extension(path) == ".glb");
-  MaterialWriter materials(world, path, document, files);
+  GltfTextures textures(*world.scene, path, document, files);
+  MaterialWriter materials(world, document, textures);
   SceneWriter writer(world, document);
   const std::vector<ScenePart> parts = scene_parts(*world.scene);
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -255,6 +214,9 @@ Result<WorldFile> write_gltf_scene(const World& world, const fs::path& path, Ato
     context.report("writing the world", double(i + 1) / double(parts.size()));
   }
   writer.add_nodes();
+  result.uv_set = "TEXCOORD_1";
+  document.add_info("the new uvs: " + result.uv_set);
+  result.not_kept = lost_lines(*world.scene);
   if (Status s = document.write(path, files, result); !s.ok()) return s;
   return result;
 }

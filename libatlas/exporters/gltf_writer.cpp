@@ -10,6 +10,7 @@
 #include "libatlas/exporters/camera.h"
 #include "libatlas/exporters/gltf_document.h"
 #include "libatlas/exporters/scene_writers.h"
+#include "libatlas/scene/scene.h"
 #include "libatlas/exporters/vertex_unifier.h"
 #include "libatlas/exporters/world.h"
 
@@ -132,7 +133,9 @@ class PagesWriter {
 Result<WorldFile> write_gltf(const World& world, const fs::path& path, AtomicFiles& files,
                              const Context& context) {
   if (Status s = check_world(world); !s.ok()) return s;
-  if (world.scene != nullptr) return write_gltf_scene(world, path, files, context);
+  if (world.scene != nullptr)
+    return world.scene->source ? write_gltf_file(world, path, files, context)
+                               : write_gltf_scene(world, path, files, context);
   WorldFile result;
   GltfDocument document(world, lower_extension(path) == ".glb");
   PagesWriter writer(world, document);

@@ -1,9 +1,12 @@
 // Wavefront OBJ of a scene with atlas coordinates: its objects, materials and normals.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
+#include <string_view>
 
 #include "libatlas/exporters/compact_page.h"
+#include "libatlas/exporters/gltf_losses.h"
 #include "libatlas/exporters/obj_text.h"
 #include "libatlas/exporters/scene_parts.h"
 #include "libatlas/exporters/scene_writers.h"
@@ -43,20 +46,46 @@ std::vector<std::string> material_names(const Scene& scene) {
   return names;
 }
 
-void write_materials(TextFile& mtl, const Scene& scene, const std::vector<std::string>& names) {
+// Whether a line of an MTL names a texture.
+bool names_texture(std::string_view line) {
+  std::string keyword(line.substr(0, line.find_first_of(" \t")));
+  for (char& c : keyword)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  constexpr std::string_view kOthers[] = {"bump", "disp", "decal", "refl", "norm"};
+  return keyword.starts_with("map_") ||
+         std::find(std::begin(kOthers), std::end(kOthers), keyword) != std::end(kOthers);
+}
+
+// The material as its MTL had it. Textures would be drawn at the new uvs, so they are comments.
+std::string other_lines(const Material& material, Losses& losses) {
+  std::string text;
+  for (const std::string& line : material.mtl_lines) {
+    const bool texture = names_texture(line);
+    if (texture) losses.add("textures of materials (lines of the MTL, now comments)");
+    if (texture) text += '#';
+    text += one_line(line);
+    text += '\n';
+  }
+  return text;
+}
+
+void write_materials(TextFile& mtl, const Scene& scene, const std::vector<std::string>& names,
+                     Losses& losses) {
   mtl.write(
       "# The texture coordinates are new ones; the scene's textures (map_Kd) need its own, for\n"
       "# which this format has no room beside them. glTF has.\n");
   for (std::size_t i = 0; i < names.size(); ++i) {
+    const Material& material = scene.materials[i];
     TextBuffer kd;
-    const Vec3f& d = scene.materials[i].diffuse;
+    const Vec3f& d = material.diffuse;
     for (const float value : {d.x, d.y, d.z}) {
       kd.character(' ');
       kd.number(value);
     }
     mtl.write(fmt::format("newmtl {}\nKd{}\n", names[i], kd.bytes()));
-    if (scene.materials[i].alpha_mode == AlphaMode::blend && scene.materials[i].opacity < 1)
-      mtl.write(fmt::format("d {}\n", scene.materials[i].opacity));
+    if (material.alpha_mode == AlphaMode::blend && material.opacity < 1)
+      mtl.write(fmt::format("d {}\n", material.opacity));
+    mtl.write(other_lines(material, losses));
   }
 }
 
@@ -143,13 +172,17 @@ Result<WorldFile> write_obj_scene(const World& world, const fs::path& path, Atom
   mtl_path.replace_extension(".mtl");
   const std::vector<std::string> names = material_names(*world.scene);
   TextFile mtl(files.path_for(mtl_path), mtl_path, false);
-  write_materials(mtl, *world.scene, names);
+  Losses losses;
+  write_materials(mtl, *world.scene, names, losses);
+  if (world.scene->source) count_losses(*world.scene->source, losses);
   if (Status s = mtl.finish(); !s.ok()) return s;
   TextFile file(files.path_for(path), path, false);
   write_obj_head(file, world, mtl_path);
   WorldFile result = write_parts(file, world, names, context);
   if (Status s = file.finish(); !s.ok()) return s;
   result.bytes = mtl.bytes() + file.bytes();
+  result.uv_set = "vt";
+  result.not_kept = losses.lines();
   return result;
 }
 

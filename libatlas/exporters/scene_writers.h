@@ -7,6 +7,9 @@ namespace atlas {
 
 Result<WorldFile> write_gltf_scene(const World& world, const std::filesystem::path& path,
                                    AtomicFiles& files, const Context& context);
+// The glTF file that the scene was read from (Scene::source, not null), with the new uvs.
+Result<WorldFile> write_gltf_file(const World& world, const std::filesystem::path& path,
+                                  AtomicFiles& files, const Context& context);
 Result<WorldFile> write_obj_scene(const World& world, const std::filesystem::path& path,
                                   AtomicFiles& files, const Context& context);
 

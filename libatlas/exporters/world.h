@@ -53,6 +53,10 @@ struct World {
 struct WorldFile {
   std::int64_t bytes = 0;                            // written, all files of the world but images
   std::size_t triangles = 0, vertices = 0, uvs = 0;  // as written: each page has its own
+  // Of World::scene: what of it could not be written, "2 x animations", one string a kind; and of
+  // glTF the attribute that holds the new uvs.
+  std::vector<std::string> not_kept = {};
+  std::string uv_set = {};
   Vec3d origin_left_out;  // to be added to the coordinates written; zero but in VRML, see there
 };
 
@@ -74,19 +78,26 @@ Result<WorldFile> write_vrml(const World& world, const std::filesystem::path& pa
 inline constexpr const char* kZUpNote = "the z axis points up";
 
 // Wavefront OBJ and, beside it, an MTL of the same name with one material `page<i>` a page.
-// World::scene: its objects (`o`), materials (names, all made different, and Kd), normals and
-// light; the format has one set of uvs, which are the new ones, so the scene's and its textures are
-// left out.
+// World::scene: its objects (`o`), materials (names, all made different, Kd, and what else their
+// MTL said), normals and light; the format has one set of uvs, which are the new ones, so the
+// scene's are left out and lines that name textures become comments.
 Result<WorldFile> write_obj(const World& world, const std::filesystem::path& path,
                             AtomicFiles& files, const Context& context);
 
 // glTF 2.0: .glb with everything embedded, or .gltf with a .bin beside it. Materials with an
 // image are KHR_materials_unlit; the root node turns the scene's up to +Y, scales to metres and
-// adds the origin, since glTF fixes both. World::scene: a node and a mesh an object, a primitive a
-// material, with NORMAL, the scene's own uvs as TEXCOORD_0 and the new ones as TEXCOORD_1 (as both
-// where it has none), its light as COLOR_0 (_ILLUMINANCE, where it leaves 0..1); materials have
-// base colours with their textures, and what is seen through them; no camera. Root nodes are the
-// objects themselves where nothing is to be turned, scaled or moved.
+// adds the origin, since glTF fixes both.
+//
+// World::scene with a source (Scene::source): that file again, its nodes, materials, attributes,
+// skins and animations as they are, with the new uvs in the first set behind TEXCOORD_0 that
+// nothing in it has (sets that a primitive lacks before that are the new one, too). What nodes show
+// several times has a mesh for each. A scene whose triangles or positions are not those of its
+// source is refused (bad_input).
+// World::scene without one: a node and a mesh an object, a primitive a material, with NORMAL, the
+// scene's own uvs as TEXCOORD_0 and the new ones as TEXCOORD_1 (as both where it has none), its
+// light as COLOR_0 (_ILLUMINANCE, where it leaves 0..1); materials have base colours with their
+// textures, and what is seen through them; no camera. Root nodes are the objects themselves where
+// nothing is to be turned, scaled or moved.
 Result<WorldFile> write_gltf(const World& world, const std::filesystem::path& path,
                              AtomicFiles& files, const Context& context);
 

@@ -58,8 +58,9 @@ struct ExportOptions {
   bool charts_only = false;  // charts and uvs only: no light is baked, no image written
   // With plain uvs (charts_only, or a scene without light): write the scene's own objects,
   // materials, textures, normals and texture coordinates as well, see World::scene. For .gltf and
-  // .glb, and .obj, which has no room for textures. Scene::normals must have been asked for
-  // (ReadOptions::normals); textures may stay encoded.
+  // .glb, and .obj, which has no room for textures. What Scene has no arrays for must have been
+  // asked for (ReadOptions::rest), normals too (ReadOptions::normals) but from glTF to glTF;
+  // textures may stay encoded.
   bool keep_scene = false;
   bool measure_error = true;  // compare the finished pages with the input's light
 };

@@ -340,6 +340,7 @@ class Export {
     report_.triangles_out = mesh.triangle_chart.size();
     Result<WorldFile> world_file = write_world(world, options_.target, files_, context_);
     if (!world_file.ok()) return world_file.status();
+    report_.not_kept = world_file->not_kept;
     if (lower_extension(options_.target) == ".glb") {  // holds its images itself
       for (const auto& image : image_sources_) files_.discard(image);
       for (PageReport& page : report_.pages) page.image.clear();
@@ -355,14 +356,15 @@ class Export {
       bytes += report_.files.back().second;
     }
     record_.finish(
-        {report_.triangles_out, bytes, "bytes", writing_note(world_file->origin_left_out)});
+        {report_.triangles_out, bytes, "bytes", writing_note(*world_file)});
     return {};
   }
 
-  std::string writing_note(const Vec3d& left_out) const {
+  std::string writing_note(const WorldFile& written) const {
+    const Vec3d& left_out = written.origin_left_out;
     if (options_.keep_scene)
-      return fmt::format("its objects: {}, materials: {}", scene_.object_names.size(),
-                         scene_.materials.size());
+      return fmt::format("its objects: {}, materials: {}; the new uvs: {}",
+                         scene_.object_names.size(), scene_.materials.size(), written.uv_set);
     if (left_out == Vec3d{}) return "";
     return fmt::format("relative to {} {} {}", left_out.x, left_out.y, left_out.z);
   }

@@ -87,6 +87,7 @@ struct ExportReport {
   bool error_measured = false;
   Fidelity fidelity;
   std::vector<std::pair<std::string, std::uint64_t>> files;  // written: name, bytes
+  std::vector<std::string> not_kept;  // with keep_scene: what of the scene was not written
   std::vector<std::string> advice;  // what the figures mean for the user, and the remedy
 };
 

@@ -226,6 +226,7 @@ void add_results(const ExportReport& r, Json& json) {
   Json files = Json::array();
   for (const auto& [name, bytes] : r.files) files.push_back({{"file", name}, {"bytes", bytes}});
   json["files"] = files;
+  json["not_kept"] = r.not_kept;
   json["advice"] = r.advice;
 }
 

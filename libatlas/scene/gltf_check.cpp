@@ -178,7 +178,7 @@ Status malformed_gltf(const fs::path& path, const std::string& what) {
 }
 
 Result<GltfParts> check_gltf(const fs::path& path, std::string_view bytes) {
-  Result<GltfParts> parts = GltfParts{bytes, {}, {}, false, true};
+  Result<GltfParts> parts = GltfParts{bytes, {}, {}, {}, false, true};
   if (bytes.starts_with("glTF")) parts = glb_parts(path, bytes);
   if (!parts.ok()) return parts;
   const std::string_view text = parts->json;
@@ -205,6 +205,7 @@ Result<GltfParts> check_gltf(const fs::path& path, std::string_view bytes) {
     if (uri->get_ref<const std::string&>().starts_with("data:")) continue;
     parts->external_bytes.push_back(buffer["byteLength"].get<double>());
   }
+  parts->document = std::move(file);
   return parts;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,7 @@ Status malformed_gltf(const std::filesystem::path& path, const std::string& what
 // The parts of a file: of a .gltf its JSON is all.
 struct GltfParts {
   std::string_view json, binary;
+  nlohmann::json document;             // the JSON, parsed; an object
   std::vector<double> external_bytes;  // what the buffers need that lie in files of their own
   bool container = false;              // a .glb
   bool plain = true;  // false: a .glb in a form that the format allows, or many write, but tinygltf

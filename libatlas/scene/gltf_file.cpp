@@ -243,16 +243,57 @@ Result<std::vector<T>> read_accessor(const tinygltf::Model& model, int index, in
   return values;
 }
 
+// Of a matrix each column begins at a multiple of 4 bytes.
+std::size_t row_bytes_of(const tinygltf::Accessor& a) {
+  const std::size_t size = component_size(a.componentType);
+  const std::size_t columns = a.type == TINYGLTF_TYPE_MAT2   ? 2
+                              : a.type == TINYGLTF_TYPE_MAT3 ? 3
+                                                             : 1;
+  const int components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type));
+  if (components <= 0) return 0;
+  const std::size_t column = size * static_cast<std::size_t>(components) / columns;
+  return columns == 1 ? column : columns * ((column + 3) / 4 * 4);
+}
+
+// Puts the sparse part of an accessor into its rows.
+Status fill_sparse(const tinygltf::Model& model, int index, GltfRows& rows) {
+  const tinygltf::Accessor& a = model.accessors[index];
+  const auto& where = a.sparse.indices;
+  const auto& what = a.sparse.values;
+  const std::size_t index_size = component_size(where.componentType);
+  if (a.sparse.count < 0 || where.byteOffset < 0 || what.byteOffset < 0 || index_size == 0)
+    return bad_accessor(index, "has a malformed sparse part");
+  const auto count = static_cast<std::size_t>(a.sparse.count);
+  auto indices =
+      rows_of(model, {where.bufferView, std::size_t(where.byteOffset), count, index_size});
+  auto values =
+      rows_of(model, {what.bufferView, std::size_t(what.byteOffset), count, rows.row_bytes});
+  if (!indices.ok()) return bad_accessor(index, indices.status().message());
+  if (!values.ok()) return bad_accessor(index, values.status().message());
+  for (std::size_t k = 0; k < count; ++k) {
+    const double at = gltf_component(indices->data + k * indices->stride, where.componentType);
+    if (!(at >= 0 && at < double(rows.count)))
+      return bad_accessor(index, "has a sparse index out of range");
+    std::memcpy(&rows.filled[std::size_t(at) * rows.row_bytes], values->data + k * values->stride,
+                rows.row_bytes);
+  }
+  return {};
+}
+
 }  // namespace
 
-Result<tinygltf::Model> load_gltf(const fs::path& path, std::vector<fs::path>& buffers) {
+Result<tinygltf::Model> load_gltf(const fs::path& path, std::vector<fs::path>& buffers,
+                                  nlohmann::json* document) {
   auto bytes = read_file_bytes(path);
   if (!bytes.ok()) return bytes.status();
   if (bytes->size > 0xffffffffu) {
     return Status(ErrorCode::unsupported, path.string() + ": larger than 4 GiB (split the scene)");
   }
-  const auto parts = check_gltf(path, bytes->text());
+  auto parts = check_gltf(path, bytes->text());
   if (!parts.ok()) return parts.status();
+  nlohmann::json parsed = std::move(parts->document);
+  if (document != nullptr) *document = std::move(parsed);
+  parsed = nullptr;  // what nobody wants makes room for the second parser
   const std::string rebuilt = parts->plain ? std::string() : plain_glb(*parts);
   const std::string_view data = parts->plain ? bytes->text() : std::string_view(rebuilt);
 
@@ -310,6 +351,37 @@ Result<std::vector<std::uint32_t>> gltf_integers(const tinygltf::Model& model, i
     }
   }
   return read_accessor<std::uint32_t>(model, accessor, 1);
+}
+
+Result<GltfRows> gltf_rows(const tinygltf::Model& model, int accessor) {
+  if (accessor < 0 || std::size_t(accessor) >= model.accessors.size())
+    return bad_accessor(accessor, "does not exist");
+  const tinygltf::Accessor& a = model.accessors[accessor];
+  GltfRows rows;
+  rows.row_bytes = rows.stride = row_bytes_of(a);
+  rows.count = a.count;
+  if (rows.row_bytes == 0) return bad_accessor(accessor, "has values of no known kind");
+  if (a.bufferView >= 0) {
+    auto dense = rows_of(model, {a.bufferView, a.byteOffset, a.count, rows.row_bytes});
+    if (!dense.ok()) return bad_accessor(accessor, dense.status().message());
+    rows.data = dense->data;
+    rows.stride = dense->stride;
+    if (!a.sparse.isSparse) return rows;
+  } else if (a.count > kMostZeros) {
+    return bad_accessor(accessor, "has no data for its count");
+  }
+  rows.filled.resize(a.count * rows.row_bytes);
+  for (std::size_t i = 0; a.bufferView >= 0 && i < a.count; ++i)
+    std::memcpy(&rows.filled[i * rows.row_bytes], rows.data + i * rows.stride, rows.row_bytes);
+  rows.data = rows.filled.data();
+  rows.stride = rows.row_bytes;
+  if (Status s = a.sparse.isSparse ? fill_sparse(model, accessor, rows) : Status(); !s.ok())
+    return s;
+  return rows;
+}
+
+double gltf_component(const std::uint8_t* at, int type) {
+  return component(at, type, false);
 }
 
 }  // namespace atlas

@@ -26,11 +26,13 @@
 namespace atlas {
 
 // Parses .gltf and .glb and loads the buffers, the files of which `buffers` names. Images stay
-// encoded: embedded ones keep their bytes in image.image, others their uri. Errors: not_found (the
-// file or a buffer), bad_input, unsupported (the file requires an extension other than
-// those that are read; the message names it).
+// encoded: embedded ones keep their bytes in image.image, others their uri. `document`, where it is
+// not null, becomes the file's JSON, an object. Errors: not_found (the file or a buffer), bad_input,
+// unsupported (the file requires an extension other than those that are read; the message names
+// it).
 Result<tinygltf::Model> load_gltf(const std::filesystem::path& path,
-                                  std::vector<std::filesystem::path>& buffers);
+                                  std::vector<std::filesystem::path>& buffers,
+                                  nlohmann::json* document = nullptr);
 
 // The bytes of a buffer view; bad_input where it leaves its buffer.
 Result<std::span<const std::uint8_t>> gltf_view(const tinygltf::Model& model, int view);
@@ -41,5 +43,19 @@ Result<std::vector<float>> gltf_floats(const tinygltf::Model& model, int accesso
 
 // The values of a scalar accessor of unsigned integers.
 Result<std::vector<std::uint32_t>> gltf_integers(const tinygltf::Model& model, int accessor);
+
+// The values of an accessor as the file has them, a row of `row_bytes` each, `stride` apart.
+struct GltfRows {
+  const std::uint8_t* data = nullptr;  // of the model, or of `filled`
+  std::size_t stride = 0, row_bytes = 0, count = 0;
+  std::vector<std::uint8_t> filled;  // where a sparse part, or nothing, stands for them
+};
+
+// The columns of matrices are padded to 4 bytes, as in the file. Must not outlive the model. Errors:
+// bad_input, for what leaves its buffer or has no data.
+Result<GltfRows> gltf_rows(const tinygltf::Model& model, int accessor);
+
+// A number of a row, not normalised; `type` is the accessor's componentType.
+double gltf_component(const std::uint8_t* at, int type);
 
 }  // namespace atlas

@@ -11,6 +11,7 @@
 #include "libatlas/scene/gltf_instances.h"
 #include "libatlas/scene/gltf_materials.h"
 #include "libatlas/scene/gltf_pose.h"
+#include "libatlas/scene/gltf_source.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -50,14 +51,18 @@ class GltfParser {
     if (!sets.ok()) return sets.status();
     texcoord_set_ = std::move(*sets);
     on_path_.assign(model_.nodes.size(), false);
-    for (const int node : roots()) {
+    const std::vector<int> shown = roots();
+    if (builder_.source) builder_.source->roots = shown;
+    for (const int node : shown) {
       if (Status s = add_node(node, {}, 0); !s.ok()) return s;
     }
     if (model_.nodes.empty()) {  // a library of meshes
       for (std::size_t i = 0; i < model_.meshes.size(); ++i) {
         tinygltf::Node node;
         node.mesh = static_cast<int>(i);
-        if (Status s = add_mesh(node, glm::dmat4(1)); !s.ok()) return s;
+        GltfPlace place;
+        place.mesh = node.mesh;
+        if (Status s = add_mesh(node, glm::dmat4(1), place); !s.ok()) return s;
       }
     }
     if (builder_.objects.empty()) return nothing_shown();
@@ -81,6 +86,7 @@ class GltfParser {
     std::size_t texcoord_base = 0, texcoord_count = 0;
     bool has_texcoords = false, mirrored = false;
     std::uint32_t material = 0, object = 0;
+    int number = 0;  // in its mesh
     std::string name;
   };
 
@@ -135,11 +141,12 @@ class GltfParser {
     on_path_[index] = true;
     const tinygltf::Node& node = model_.nodes[index];
     const Above here{parent.matrix * gltf_local_matrix(node), parent.hidden || hides(node)};
+    const GltfPlace place{nodes_visited_++, index, node.mesh};
     if (node.mesh >= 0 && here.hidden) {
       builder_.defects.add(DefectKind::node_hidden,
                            [&] { return fmt::format("{}: {}", builder_.file, where); });
     } else if (node.mesh >= 0) {
-      if (Status s = add_instances(node, here.matrix, where); !s.ok()) return s;
+      if (Status s = add_instances(node, here.matrix, place, where); !s.ok()) return s;
     }
     for (const int child : node.children) {
       if (Status s = add_node(child, here, depth + 1); !s.ok()) return s;
@@ -148,25 +155,28 @@ class GltfParser {
     return {};
   }
 
-  Status add_instances(const tinygltf::Node& node, const glm::dmat4& matrix,
+  Status add_instances(const tinygltf::Node& node, const glm::dmat4& matrix, GltfPlace place,
                        const std::string& where) {
     if (std::size_t(node.mesh) >= model_.meshes.size()) {
       return malformed(where, "names a mesh that does not exist");
     }
     const auto instances = gltf_instances(model_, node);
     if (!instances.ok()) return malformed(where, instances.status().message());
+    place.instance = node.extensions.contains("EXT_mesh_gpu_instancing");
     for (const glm::dmat4& instance : *instances) {
       if (++visits_ > kMaxVisits) return malformed(where, "has more instances than can be read");
       if (context_.cancelled()) return Status::cancelled();
-      if (Status s = add_mesh(node, matrix * instance); !s.ok()) return s;
+      place.matrix = instance;
+      if (Status s = add_mesh(node, matrix * instance, place); !s.ok()) return s;
     }
     return {};
   }
 
-  Status add_mesh(const tinygltf::Node& node, const glm::dmat4& matrix) {
+  Status add_mesh(const tinygltf::Node& node, const glm::dmat4& matrix, const GltfPlace& place) {
     const tinygltf::Mesh& mesh = model_.meshes[node.mesh];
     const auto object = static_cast<std::uint32_t>(builder_.objects.size());
     builder_.objects.push_back(!node.name.empty() ? node.name : mesh.name);
+    if (builder_.source) builder_.source->places.push_back(place);
     // Primitives often share one set of vertices and differ in their indices and materials.
     using Attributes = std::map<std::string, int>;
     std::map<std::pair<Attributes, std::vector<Attributes>>, Vertices> shared;
@@ -174,6 +184,7 @@ class GltfParser {
       const tinygltf::Primitive& raw = mesh.primitives[p];
       Primitive primitive;
       primitive.name = fmt::format("mesh {} primitive {}", node.mesh, p);
+      primitive.number = static_cast<int>(p);
       primitive.object = object;
       primitive.mirrored = pose_.mirrors(node, raw, matrix);
       primitive.material = raw.material >= 0 && std::size_t(raw.material) < model_.materials.size()
@@ -316,7 +327,13 @@ class GltfParser {
     for (const Primitive& p : primitives_) {
       builder_.material = p.material;
       builder_.object = p.object;
+      const std::size_t first = builder_.triangle_count();
       for (std::size_t t = 0; t < p.corners.size() / 3; ++t) add_face(p, t);
+      if (builder_.source) {  // objects and places are one each
+        builder_.source->places[p.object].primitives.push_back(
+            {p.number, p.vertices.first, p.vertices.count, first, builder_.triangle_count() - first,
+             p.mirrored});
+      }
     }
   }
 
@@ -344,7 +361,7 @@ class GltfParser {
   std::vector<int> texcoord_set_;  // 1 a material
   GltfPose pose_;
   std::vector<bool> on_path_;  // 1 a node: from the root to the one at hand
-  std::size_t visits_ = 0;
+  std::size_t visits_ = 0, nodes_visited_ = 0;
   std::map<int, std::pair<std::size_t, std::size_t>> texcoords_;  // by accessor: first, count
   std::vector<Primitive> primitives_;
   std::vector<std::pair<std::size_t, std::size_t>> lit_ranges_;  // of vertices, ascending
@@ -354,9 +371,15 @@ class GltfParser {
 }  // namespace
 
 Status read_gltf(const fs::path& path, SceneBuilder& builder, const Context& context) {
-  auto model = load_gltf(path, builder.files);
+  auto source = std::make_shared<GltfSource>();
+  auto model = load_gltf(path, builder.files, builder.wants_rest ? &source->document : nullptr);
   if (!model.ok()) return model.status();
-  return GltfParser(*model, builder, context).run();
+  source->model = std::move(*model);
+  if (builder.wants_rest) {
+    if (Status s = take_data_out(path, *source); !s.ok()) return s;
+    builder.source = source;
+  }
+  return GltfParser(source->model, builder, context).run();
 }
 
 }  // namespace atlas

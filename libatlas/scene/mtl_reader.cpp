@@ -1,4 +1,4 @@
-// MTL: the diffuse part of it.
+// MTL: the diffuse part of it, and its other lines where they are wanted.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,6 +37,7 @@ class MtlParser {
 
   Status parse_line() {
     const std::string_view keyword = scan_.word();
+    if (builder_.wants_rest && inside_ && keyword != "newmtl" && keyword != "Kd") keep_line(keyword);
     if (keyword == "newmtl") {
       builder_.materials.push_back({});
       builder_.materials.back().name = scan_.rest();
@@ -46,6 +47,14 @@ class MtlParser {
     if (keyword != "Kd" && keyword != "map_Kd") return {};
     if (!inside_) return malformed(fmt::format("{} before the first newmtl", keyword));
     return keyword == "Kd" ? parse_colour() : parse_map();
+  }
+
+  // The line whose keyword has just been read, but for its indentation.
+  void keep_line(std::string_view keyword) {
+    if (keyword.starts_with('#')) return;
+    TextScanner rest = scan_;
+    const char* end = rest.rest_with_comment().end();
+    builder_.materials.back().mtl_lines.emplace_back(keyword.data(), end);
   }
 
   Status parse_colour() {

@@ -55,6 +55,7 @@ Result<LoadedScene> read_scene(const fs::path& path, const ReadOptions& options,
   SceneBuilder builder(path);
   builder.wants_textures = options.load_textures;
   builder.wants_normals = options.normals;
+  builder.wants_rest = options.rest;
   if (Status s = read_by_extension(path, builder, context); !s.ok()) return s;
   if (!options.illumination_file.empty()) {
     if (Status s = read_illumination(options.illumination_file, builder, context); !s.ok())

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include "libatlas/core/vec.h"
 
 namespace atlas {
+
+struct GltfSource;  // internal to the library
 
 // What a fourth channel means: nothing, holes where it is below a threshold, or glass.
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
@@ -25,6 +28,9 @@ struct Material {
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;  // the threshold of holes, >= 0
   bool double_sided = true;   // seen from behind, too
+  // Of MTL, where asked for (ReadOptions::rest): its lines but newmtl and Kd, for exports that keep
+  // the scene.
+  std::vector<std::string> mtl_lines = {};
 };
 
 // A diffuse texture. Values are 8-bit sRGB-encoded, repeat outside [0, 1]², origin bottom left.
@@ -56,6 +62,9 @@ struct Scene {
   std::vector<Material> materials;               // at least one when there are triangles
   std::vector<Texture> textures;
   std::vector<std::string> object_names;
+  // Of glTF, where asked for (ReadOptions::rest): the file itself. An export to glTF that keeps the
+  // scene writes it again, so triangles and positions must be those that were read.
+  std::shared_ptr<const GltfSource> source;
 
   static constexpr std::uint32_t kNoTexcoord = 0xffffffffu;
   static constexpr std::uint32_t kNoNormal = 0xffffffffu;

@@ -10,6 +10,7 @@
 #include "libatlas/image/file_kind.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/scene/file_bytes.h"
+#include "libatlas/scene/gltf_source.h"
 
 namespace atlas {
 namespace {
@@ -76,8 +77,8 @@ void SceneBuilder::reserve_triangles(std::size_t count, bool with_texcoords) {
 }
 
 void SceneBuilder::sanitise_values() {
-  const std::string& source = illumination_file.empty() ? file : illumination_file;
-  const auto vertex = [&](std::size_t i) { return fmt::format("{}: vertex {}", source, i + 1); };
+  const std::string& lit_by = illumination_file.empty() ? file : illumination_file;
+  const auto vertex = [&](std::size_t i) { return fmt::format("{}: vertex {}", lit_by, i + 1); };
   for (std::size_t i = 0; i < illumination.size(); ++i) {
     float* values[3] = {&illumination[i].x, &illumination[i].y, &illumination[i].z};
     bool finite = true, negative = false;
@@ -133,6 +134,7 @@ void SceneBuilder::keep_used(Scene& scene) {
     kept.push_back(std::move(materials[old]));
   }
   materials = std::move(kept);
+  if (source) return;
   std::vector<std::int32_t> texture_to(textures.size(), -1);
   std::vector<RawTexture> kept_textures;
   for (RawMaterial& m : materials) {
@@ -217,6 +219,7 @@ void SceneBuilder::load_textures(Scene& scene, bool encoded) {
     const std::int32_t t = materials[i].texture;
     scene.materials[i].texture = t < 0 ? -1 : loaded[t];
   }
+  if (source) source->image_texture = std::move(loaded);
 }
 
 Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Context& context) {
@@ -248,6 +251,8 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   }
   scene.indices = std::move(indices_);
   place_normals(scene);
+  if (source) source->other_light = !options.illumination_file.empty();
+  scene.source = std::move(source);
   if (any_texcoord_) scene.texcoord_indices = std::move(texcoord_indices_);
   scene.texcoords = std::move(texcoords);
   scene.triangle_material = std::move(triangle_material_);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -65,6 +66,8 @@ class SceneBuilder {
   DefectReport defects;
   bool wants_textures = true;                // false: `textures` need not hold any bytes
   bool wants_normals = false;                // false: normals are passed over, whatever they hold
+  bool wants_rest = false;                   // ReadOptions::rest
+  std::shared_ptr<GltfSource> source;        // Scene::source; then all of `textures` are kept
   std::vector<std::filesystem::path> files;  // LoadedScene::files
 
   // What the next faces belong to.

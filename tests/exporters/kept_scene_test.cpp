@@ -10,7 +10,7 @@
 #include "libatlas/image/image_io.h"
 #include "libatlas/scene/check_scene.h"
 #include "libatlas/scene/reader.h"
-#include "tests/exporters/worlds.h"
+#include "tests/exporters/kept_worlds.h"
 #include "tests/scene/temp_folder.h"
 #include "tests/support/kept_scene.h"
 
@@ -19,6 +19,7 @@ namespace {
 
 using test::KeptTriangle;
 using test::TempFolder;
+using test::world_of;
 
 // Four triangles of a square and its back: two objects, two materials.
 Scene small_scene() {
@@ -36,26 +37,8 @@ Scene small_scene() {
   return scene;
 }
 
-// New uvs, one a corner, so that each can be told from the others.
-World world_of(const Scene& scene) {
-  World world;
-  world.positions = scene.positions;
-  world.origin = scene.origin;
-  world.scene = &scene;
-  Page page;
-  page.indices = scene.indices;
-  for (std::size_t k = 0; k < scene.indices.size(); ++k) {
-    page.uv_indices.push_back(std::uint32_t(k));
-    world.uvs.push_back({float(k) / 64, 1 - float(k) / 32});
-  }
-  world.pages = {page};
-  return world;
-}
-
 Status write(const World& world, const std::filesystem::path& path) {
-  AtomicFiles files;
-  const auto written = write_world(world, path, files, {});
-  return written.ok() ? files.commit() : written.status();
+  return test::write_kept(world, path).status();
 }
 
 nlohmann::json gltf_of(const std::filesystem::path& path) {

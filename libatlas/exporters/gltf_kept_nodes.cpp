@@ -1,0 +1,143 @@
+#include "libatlas/exporters/gltf_kept_nodes.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+#include "libatlas/exporters/gltf_document.h"
+#include "libatlas/scene/scene.h"
+
+namespace atlas {
+using nlohmann::json;
+namespace {
+
+constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+
+// Walks as the reader did, so that visits have its numbers.
+class Walk {
+ public:
+  Walk(const GltfSource& source, const std::vector<std::size_t>& meshes, json& nodes)
+      : source_(source), meshes_(meshes), nodes_(nodes), visited_(source.model.nodes.size()) {}
+
+  // The number of the node that shows what `node` shows on this visit.
+  std::size_t visit(int node) {
+    const auto number = static_cast<std::size_t>(node);
+    std::size_t own = number;
+    if (visited_[number]) {
+      own = nodes_.size();
+      nodes_.push_back(source_.document["nodes"][number]);
+    }
+    visited_[number] = true;
+    json children = show(own, visits_++);
+    for (const int child : source_.model.nodes[number].children) children.push_back(visit(child));
+    if (!children.empty()) nodes_[own]["children"] = std::move(children);
+    return own;
+  }
+
+ private:
+  // Gives the node its mesh; instances are the new nodes that are returned.
+  json show(std::size_t node, std::size_t visit) {
+    json instances = json::array();
+    json holder;  // what goes with the mesh
+    for (; next_ < meshes_.size() && source_.places[next_].visit == visit; ++next_) {
+      if (!source_.places[next_].instance) {
+        nodes_[node]["mesh"] = meshes_[next_];
+        continue;
+      }
+      if (instances.empty()) holder = take_mesh(nodes_[node]);
+      json instance = holder;
+      instance["mesh"] = meshes_[next_];
+      const glm::dmat4& m = source_.places[next_].matrix;
+      if (m != glm::dmat4(1)) {
+        instance["matrix"] = json::array();
+        for (int i = 0; i < 16; ++i) instance["matrix"].push_back(m[i / 4][i % 4]);
+      }
+      if (const std::string& name = source_.model.nodes[node_of(next_)].name; !name.empty())
+        instance["name"] = fmt::format("{}_{}", name, instances.size());
+      instances.push_back(nodes_.size());
+      nodes_.push_back(std::move(instance));
+    }
+    return instances;
+  }
+
+  std::size_t node_of(std::size_t place) const {
+    return static_cast<std::size_t>(source_.places[place].node);
+  }
+
+  static json take_mesh(json& node) {
+    json holder = json::object();
+    for (const char* key : {"skin", "weights"})
+      if (node.contains(key)) holder[key] = std::move(node[key]);
+    for (const char* key : {"mesh", "skin", "weights"}) node.erase(key);
+    json& extensions = node["extensions"];
+    extensions.erase(kInstancing);
+    if (extensions.empty()) node.erase("extensions");
+    return holder;
+  }
+
+  const GltfSource& source_;
+  const std::vector<std::size_t>& meshes_;
+  json& nodes_;
+  std::vector<bool> visited_;
+  std::size_t visits_ = 0, next_ = 0;
+};
+
+// The roots of what is shown, as the scene that readers show.
+void set_roots(const GltfSource& source, json roots, json& document) {
+  json& scenes = document["scenes"];
+  if (!scenes.is_array()) scenes = json::array();
+  std::size_t shown = source.model.defaultScene >= 0 ? std::size_t(source.model.defaultScene) : 0;
+  if (shown >= scenes.size()) {
+    shown = scenes.size();
+    scenes.push_back(json::object());
+  }
+  scenes[shown]["nodes"] = std::move(roots);
+  document["scene"] = shown;
+}
+
+}  // namespace
+
+std::vector<std::size_t> number_kept_meshes(const GltfSource& source) {
+  const tinygltf::Model& model = source.model;
+  std::vector<bool> shows(model.nodes.size()), taken(model.meshes.size());
+  for (const GltfPlace& place : source.places)
+    if (place.node >= 0) shows[std::size_t(place.node)] = true;
+  for (std::size_t n = 0; n < model.nodes.size(); ++n) {  // nodes of other scenes, hidden ones
+    const int mesh = model.nodes[n].mesh;
+    if (!shows[n] && mesh >= 0 && std::size_t(mesh) < taken.size()) taken[std::size_t(mesh)] = true;
+  }
+  std::vector<std::size_t> result;
+  std::size_t next = model.meshes.size();
+  for (const GltfPlace& place : source.places) {
+    const auto mesh = static_cast<std::size_t>(place.mesh);
+    result.push_back(taken[mesh] ? next++ : mesh);
+    taken[mesh] = true;
+  }
+  return result;
+}
+
+void place_kept_meshes(const World& world, const std::vector<std::size_t>& meshes, json& document) {
+  const GltfSource& source = *world.scene->source;
+  json& nodes = document["nodes"];
+  if (!nodes.is_array()) nodes = json::array();
+  json roots = json::array();
+  Walk walk(source, meshes, nodes);
+  for (const int root : source.roots) roots.push_back(walk.visit(root));
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    if (source.places[i].node >= 0) continue;
+    roots.push_back(nodes.size());
+    nodes.push_back({{"mesh", meshes[i]}});
+  }
+  if (world.up != Up::y || world.metres_per_unit != 1) {
+    World turned;  // coordinates are the file's own, without an origin
+    turned.up = world.up;
+    turned.metres_per_unit = world.metres_per_unit;
+    json top = gltf_root(turned);
+    top["children"] = std::exchange(roots, json::array({nodes.size()}));
+    nodes.push_back(std::move(top));
+  }
+  set_roots(source, std::move(roots), document);
+}
+
+}  // namespace atlas

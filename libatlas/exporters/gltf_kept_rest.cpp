@@ -1,0 +1,149 @@
+#include "libatlas/exporters/gltf_kept_rest.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <string_view>
+
+namespace atlas {
+using nlohmann::json;
+namespace {
+
+constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+
+// Whether a part has a key that is a number of an accessor or a buffer view wherever extensions
+// have it.
+bool names_data(const json& part) {
+  constexpr std::string_view kKeys[] = {"accessor",    "accessors", "attributes", "bufferView",
+                                        "bufferViews", "indices",   "values"};
+  if (part.is_array()) return std::any_of(part.begin(), part.end(), names_data);
+  if (!part.is_object()) return false;
+  for (const auto& [key, value] : part.items())
+    if (std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys) || names_data(value))
+      return true;
+  return false;
+}
+
+// The names of all extensions that a part of a document has.
+void collect_extensions(const json& part, std::set<std::string>& names) {
+  if (!part.is_structured()) return;
+  for (const auto& [key, value] : part.items()) {
+    if (part.is_object() && key == "extras") continue;
+    if (part.is_object() && key == "extensions" && value.is_object())
+      for (const auto& [name, extension] : value.items()) names.insert(name);
+    collect_extensions(value, names);
+  }
+}
+
+std::set<std::string> listed(const json& document, const char* list) {
+  std::set<std::string> names;
+  const auto at = document.find(list);
+  if (at == document.end() || !at->is_array()) return names;
+  for (const json& name : *at)
+    if (name.is_string()) names.insert(name.get<std::string>());
+  return names;
+}
+
+// What is used is what is there, and what a file may have without any mark (quantised values).
+void list_extensions(const json& before, json& document) {
+  std::set<std::string> had, has;
+  collect_extensions(before, had);
+  collect_extensions(document, has);
+  std::set<std::string> used = has, required;
+  for (const std::string& name : listed(before, "extensionsUsed"))
+    if (!had.contains(name)) used.insert(name);
+  for (const std::string& name : listed(before, "extensionsRequired"))
+    if (used.contains(name)) required.insert(name);
+  for (const char* list : {"extensionsUsed", "extensionsRequired"}) document.erase(list);
+  if (!used.empty()) document["extensionsUsed"] = used;
+  if (!required.empty()) document["extensionsRequired"] = required;
+}
+
+// Data of an animation; false where some of it is missing.
+bool renumber_animation(json& animation, GltfData& data) {
+  const auto samplers = animation.is_object() ? animation.find("samplers") : animation.end();
+  if (!animation.is_object() || samplers == animation.end() || !samplers->is_array()) return false;
+  for (json& sampler : *samplers)
+    if (!sampler.is_object() || !data.renumber(sampler, "input") ||
+        !data.renumber(sampler, "output"))
+      return false;
+  return true;
+}
+
+void keep_animations(GltfData& data, json& document, Losses& losses) {
+  const auto at = document.find("animations");
+  if (at == document.end() || !at->is_array()) return;
+  json kept = json::array();
+  for (json& animation : *at) {
+    if (renumber_animation(animation, data))
+      kept.push_back(std::move(animation));
+    else
+      losses.add("animations whose data cannot be read");
+  }
+  document.erase("animations");
+  if (!kept.empty()) document["animations"] = std::move(kept);
+}
+
+void keep_skins(GltfData& data, json& document, Losses& losses) {
+  const auto at = document.find("skins");
+  if (at == document.end()) return;
+  for (json& skin : *at)
+    if (skin.contains("inverseBindMatrices") && !data.renumber(skin, "inverseBindMatrices"))
+      losses.add("matrices of skins that cannot be read");
+}
+
+// Nodes that are shown have their instances as nodes by now.
+void keep_instances(GltfData& data, json& node, Losses& losses) {
+  json& attributes = node["extensions"][kInstancing]["attributes"];
+  bool whole = attributes.is_object();
+  if (whole)
+    for (const char* name : {"TRANSLATION", "ROTATION", "SCALE"})
+      if (attributes.contains(name)) whole &= data.renumber(attributes, name);
+  if (whole) return;
+  node["extensions"].erase(kInstancing);
+  losses.add("instances of nodes whose data cannot be read");
+}
+
+}  // namespace
+
+json merge_assets(const json& source, json own) {
+  if (!source.is_object()) return own;
+  json merged = source;
+  json& extras = merged["extras"];
+  if (!extras.is_null() && !extras.is_object()) extras = {{"source", std::move(extras)}};
+  if (extras.is_null()) extras = json::object();
+  const json added = own.value("extras", json::object());
+  for (const auto& [key, value] : added.items())
+    if (key != "title" || !extras.contains(key)) extras[key] = value;
+  merged["version"] = own["version"];
+  merged["generator"] = own["generator"];
+  return merged;
+}
+
+void drop_data_extensions(json& part, Losses& losses) {
+  const auto extensions = part.find("extensions");
+  if (extensions == part.end() || !extensions->is_object()) return;
+  for (auto at = extensions->begin(); at != extensions->end();) {
+    const bool drop = at.key() != kInstancing &&
+                      (names_data(*at) || at.key() == "EXT_structural_metadata");
+    if (drop) losses.add(at.key() + " (an extension with data of its own)");
+    at = drop ? extensions->erase(at) : std::next(at);
+  }
+  if (extensions->empty()) part.erase("extensions");
+}
+
+void keep_rest(const GltfSource& source, GltfData& data, json& document, Losses& losses) {
+  keep_animations(data, document, losses);
+  keep_skins(data, document, losses);
+  for (json& node : document["nodes"]) {
+    drop_data_extensions(node, losses);
+    const auto extensions = node.find("extensions");
+    if (extensions != node.end() && extensions->is_object() && extensions->contains(kInstancing))
+      keep_instances(data, node, losses);
+  }
+  drop_data_extensions(document, losses);
+  list_extensions(source.document, document);
+}
+
+}  // namespace atlas

@@ -1,0 +1,396 @@
+// World::scene that was read from glTF: the file that is written against the one that was read, by
+// a reader of the tests' own.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+#include <string>
+
+#include "libatlas/image/image_io.h"
+#include "libatlas/scene/reader.h"
+#include "tests/exporters/kept_worlds.h"
+#include "tests/scene/gltf_maker.h"
+#include "tests/scene/temp_folder.h"
+#include "tests/support/gltf_oracle.h"
+
+namespace atlas::test {
+namespace {
+
+using std::filesystem::path;
+
+const ReadOptions kRest{
+    .unlit_textures = true, .encoded_textures = true, .normals = false, .rest = true};
+
+// Reads `input` and writes it to `output` with new uvs, those of corner k of the scene k/64.
+WorldFile keep(const path& input, const path& output) {
+  const auto loaded = read_scene(input, kRest, {});
+  EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+  if (!loaded.ok()) return {};
+  const World world = world_of(loaded->scene);
+  const auto written = write_kept(world, output);
+  EXPECT_TRUE(written.ok()) << written.status().message();
+  return written.ok() ? *written : WorldFile{};
+}
+
+std::string png(const TempFolder& folder, int value) {
+  const path made = folder / "made.png";
+  EXPECT_TRUE(write_png(made, Image8(4, 2, 3, std::uint8_t(value)), {}).ok());
+  const std::string bytes = TempFolder::read(made);
+  std::filesystem::remove(made);
+  return bytes;
+}
+
+void add_image(Gltf& gltf, const std::string& bytes) {
+  const int view = gltf.view(std::vector<char>(bytes.begin(), bytes.end()));
+  gltf.j["images"].push_back(
+      {{"bufferView", view}, {"mimeType", "image/png"}, {"name", "picture"}});
+}
+
+// A square of two triangles with every attribute that glTF knows, some of them in small integers.
+json rich_attributes(Gltf& gltf) {
+  json a = {{"POSITION", gltf.floats(kSquare, "VEC3", 3)}};
+  // Neither unit vectors nor finite: what the file has is what it gets.
+  a["NORMAL"] = gltf.floats({0, 0, 1, 0, 0, 2, 0, 0, 0, 0.6f, 0, 0.8f}, "VEC3", 3);
+  a["TANGENT"] = gltf.floats({1, 0, 0, 1, 1, 0, 0, -1, 0, 1, 0, 1, 0, 1, 0, -1}, "VEC4", 4);
+  a["TEXCOORD_0"] = gltf.floats({0, 0, 3, 0, 3, 3, 0, 3}, "VEC2", 2);
+  a["COLOR_0"] = gltf.accessor(
+      {{"bufferView",
+        gltf.view(std::vector<std::uint8_t>{255, 0, 0, 9, 0, 255, 0, 9, 0, 0, 255, 9, 5, 6, 7, 9},
+                  4)},
+       {"componentType", 5121},
+       {"normalized", true},
+       {"type", "VEC3"},
+       {"count", 4}});
+  a["TEXCOORD_1"] = gltf.accessor(
+      {{"bufferView", gltf.view(std::vector<std::uint16_t>{0, 0, 65535, 0, 65535, 65535, 0, 65535})},
+       {"componentType", 5123},
+       {"normalized", true},
+       {"type", "VEC2"},
+       {"count", 4}});
+  a["JOINTS_0"] = gltf.accessor({{"bufferView", gltf.view(std::vector<std::uint8_t>(16, 0))},
+                                 {"componentType", 5121},
+                                 {"type", "VEC4"},
+                                 {"count", 4}});
+  a["WEIGHTS_0"] = gltf.floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4", 4);
+  a["_HEAT"] = gltf.floats({1, 2, 3, 4}, "SCALAR", 1);
+  return a;
+}
+
+json rich_material() {
+  const json moved = {{"KHR_texture_transform", {{"offset", {0.5, 0}}, {"texCoord", 1}}}};
+  return {{"name", "paint"},
+          {"pbrMetallicRoughness",
+           {{"baseColorFactor", {0.5, 0.25, 1, 0.75}},
+            {"baseColorTexture", {{"index", 0}, {"extensions", moved}}},
+            {"metallicFactor", 0.25},
+            {"roughnessFactor", 0.125},
+            {"metallicRoughnessTexture", {{"index", 1}, {"texCoord", 1}}}}},
+          {"normalTexture", {{"index", 1}, {"scale", 0.5}}},
+          {"occlusionTexture", {{"index", 0}, {"texCoord", 1}, {"strength", 0.75}}},
+          {"emissiveTexture", {{"index", 0}}},
+          {"emissiveFactor", {1, 0.5, 0}},
+          {"alphaMode", "MASK"},
+          {"alphaCutoff", 0.25},
+          {"doubleSided", true},
+          {"extras", {{"anyTexture", {{"index", 99}}}}},
+          {"extensions",
+           {{"KHR_materials_emissive_strength", {{"emissiveStrength", 4}}},
+            {"KHR_materials_ior", {{"ior", 1.25}}},
+            {"KHR_materials_clearcoat",
+             {{"clearcoatFactor", 1}, {"clearcoatNormalTexture", {{"index", 1}, {"scale", 2}}}}},
+            {"KHR_materials_transmission", {{"transmissionTexture", {{"index", 0}}}}},
+            {"KHR_materials_sheen", {{"sheenColorFactor", {1, 0, 0}}}}}}};
+}
+
+// Two textures with samplers, of which the second is an image that is there twice.
+void add_textures(Gltf& gltf, const TempFolder& folder) {
+  add_image(gltf, png(folder, 40));
+  add_image(gltf, png(folder, 90));
+  gltf.j["samplers"] = json::array({{{"wrapS", 33071}, {"magFilter", 9728}}, {{"wrapT", 33648}}});
+  gltf.j["textures"] =
+      json::array({{{"source", 1}, {"sampler", 1}, {"name", "t"}}, {{"source", 0}, {"sampler", 0}}});
+}
+
+// A tree of nodes that shows one mesh twice, once mirrored; a skin, an animation, morph targets, a
+// camera, a light, points, another scene.
+Gltf rich_file(const TempFolder& folder) {
+  Gltf gltf;
+  add_textures(gltf, folder);
+  gltf.j["materials"] = json::array({rich_material(), {{"extensions", {{"KHR_materials_unlit",
+                                                                       json::object()}}}}});
+  const json attributes = rich_attributes(gltf);
+  const int indices = gltf.indices<std::uint16_t>({0, 1, 2, 0, 2, 3});
+  const int move = gltf.floats({0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 2}, "VEC3", 3);
+  const json square = {{"attributes", attributes},
+                       {"indices", indices},
+                       {"material", 0},
+                       {"targets", {{{"POSITION", move}}}},
+                       {"extras", {{"own", 1}}}};
+  json strip = {{"attributes", {{"POSITION", attributes["POSITION"]}}}, {"mode", 5}};
+  const json points = {{"attributes", {{"POSITION", attributes["POSITION"]}}}, {"mode", 0}};
+  gltf.j["meshes"] = json::array(
+      {{{"name", "m"}, {"primitives", {points, square, strip}}, {"weights", {0}}},
+       {{"name", "elsewhere"}, {"primitives", {strip}}}});
+  gltf.j["nodes"] = json::array(
+      {{{"name", "top"}, {"children", {1, 2}}, {"translation", {100, 0, 0}}, {"extras", {1, 2}}},
+       {{"name", "left"}, {"mesh", 0}, {"rotation", {0, 0.6, 0, 0.8}}},
+       {{"name", "right"},
+        {"mesh", 0},
+        {"children", {3}},
+        {"matrix", {-2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1}}},
+       {{"name", "eye"}, {"camera", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}},
+       {{"name", "other scene"}, {"mesh", 1}}});
+  gltf.j["scenes"] = json::array({{{"nodes", {4}}}, {{"name", "shown"}, {"nodes", {0}}}});
+  gltf.j["scene"] = 1;
+  gltf.j["cameras"] = json::array(
+      {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}});
+  gltf.j["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "point"}}}}}}};
+  const int times = gltf.floats({0, 1}, "SCALAR", 1);
+  const int turns = gltf.floats({0, 0, 0, 1, 0, 1, 0, 0}, "VEC4", 4);
+  gltf.j["animations"] = json::array(
+      {{{"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "rotation"}}}}}},
+        {"samplers", {{{"input", times}, {"output", turns}}}}}});
+  const int inverse =
+      gltf.floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, "MAT4", 16);
+  gltf.j["skins"] = json::array({{{"joints", {3}}, {"inverseBindMatrices", inverse}}});
+  gltf.j["asset"]["copyright"] = "somebody";
+  gltf.j["asset"]["extras"] = {{"title", "theirs"}};
+  gltf.j["extensionsUsed"] = {"KHR_lights_punctual", "KHR_materials_unlit", "KHR_mesh_quantization"};
+  return gltf;
+}
+
+bool near(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() &&
+         std::equal(a.begin(), a.end(), b.begin(),
+                    [](double x, double y) { return std::abs(x - y) < 1e-9; });
+}
+
+// Every triangle has what it had, in the same order, and new uvs as well.
+void expect_kept(const std::vector<OracleTriangle>& before, const std::vector<OracleTriangle>& after,
+                 const std::string& set) {
+  ASSERT_EQ(before.size(), after.size());
+  for (std::size_t t = 0; t < before.size(); ++t) {
+    EXPECT_EQ(before[t].node, after[t].node);
+    EXPECT_EQ(before[t].material, after[t].material);
+    EXPECT_TRUE(near(before[t].matrix, after[t].matrix)) << t;
+    for (const auto& [name, values] : before[t].attributes)
+      EXPECT_EQ(values, after[t].attributes.at(name)) << t << ' ' << name;
+    EXPECT_FALSE(before[t].attributes.contains(set));
+    EXPECT_EQ(after[t].attributes.at(set).size(), 6u);
+  }
+}
+
+// But for the numbers of data, which may be others.
+json without_data(json document) {
+  for (const char* list : {"accessors", "bufferViews", "buffers", "extensionsUsed"})
+    document.erase(list);
+  for (json& image : document["images"]) {
+    image.erase("bufferView");
+    image.erase("uri");
+    image.erase("mimeType");
+  }
+  for (json& animation : document["animations"])
+    for (json& sampler : animation["samplers"]) sampler = nullptr;
+  for (json& skin : document["skins"]) skin.erase("inverseBindMatrices");
+  document.erase("meshes");
+  document.erase("asset");
+  return document;
+}
+
+// Strips become lists for the oracle, which reads nothing else.
+Gltf with_lists(Gltf gltf) {
+  const int list = gltf.indices<std::uint16_t>({0, 1, 2, 2, 1, 3});
+  for (json& mesh : gltf.j["meshes"]) {
+    json& strip = mesh["primitives"].back();
+    strip.erase("mode");
+    strip["indices"] = list;
+  }
+  return gltf;
+}
+
+TEST(KeptGltf, IsTheFileThatItWas) {
+  for (const char* name : {"w.glb", "w.gltf"}) {
+    const TempFolder folder;
+    const Gltf gltf = rich_file(folder);
+    const WorldFile written = keep(folder.write("s.glb", gltf.glb()), folder / name);
+    const GltfOracle before(folder.write("lists.glb", with_lists(gltf).glb()));
+    const GltfOracle after(folder / name);
+    EXPECT_EQ(written.uv_set, "TEXCOORD_2");
+    EXPECT_EQ(written.not_kept,
+              (std::vector<std::string>{"1 x meshes that are not shown and get no new uvs"}));
+    expect_kept(before.triangles(), after.triangles(), "TEXCOORD_2");
+    json expected = without_data(before.document), is = without_data(after.document);
+    // The mirrored node has a mesh of its own.
+    EXPECT_EQ(is["nodes"][2]["mesh"], 2);
+    is["nodes"][2]["mesh"] = 0;
+    EXPECT_EQ(is, expected) << json::diff(expected, is).dump(1);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(before.image(i), after.image(i));
+    const json& sampler = after.document["animations"][0]["samplers"][0];
+    const json& had = before.document["animations"][0]["samplers"][0];
+    for (const char* key : {"input", "output"})
+      EXPECT_EQ(after.values(sampler[key]), before.values(had[key]));
+    EXPECT_EQ(after.values(after.document["skins"][0]["inverseBindMatrices"]),
+              before.values(before.document["skins"][0]["inverseBindMatrices"]));
+  }
+}
+
+TEST(KeptGltf, HasItsMeshesAssetAndExtensions) {
+  const TempFolder folder;
+  keep(folder.write("s.glb", rich_file(folder).glb()), folder / "w.glb");
+  const json after = GltfOracle(folder / "w.glb").document;
+  EXPECT_EQ(after["asset"]["copyright"], "somebody");
+  EXPECT_EQ(after["asset"]["extras"]["title"], "theirs");
+  EXPECT_NE(after["asset"]["extras"]["info"].dump().find("TEXCOORD_2"), std::string::npos);
+  ASSERT_EQ(after["meshes"].size(), 3u);
+  for (const std::size_t m : {0, 2}) {
+    const json& mesh = after["meshes"][m];
+    EXPECT_EQ(mesh["name"], "m");
+    EXPECT_EQ(mesh["weights"], json::array({0}));
+    ASSERT_EQ(mesh["primitives"].size(), 3u);
+    EXPECT_EQ(mesh["primitives"][0]["mode"], 0);  // points: as they are
+    EXPECT_FALSE(mesh["primitives"][0]["attributes"].contains("TEXCOORD_2"));
+    EXPECT_EQ(mesh["primitives"][1]["extras"], json({{"own", 1}}));
+    // Sets before the new one that a primitive lacks are the new one.
+    const json& strip = mesh["primitives"][2]["attributes"];
+    EXPECT_EQ(strip["TEXCOORD_0"], strip["TEXCOORD_2"]);
+    EXPECT_EQ(strip["TEXCOORD_1"], strip["TEXCOORD_2"]);
+  }
+  EXPECT_EQ(after["meshes"][1]["primitives"][0]["mode"], 5);
+  const std::set<std::string> used = after["extensionsUsed"];
+  for (const char* name : {"KHR_materials_ior", "KHR_materials_unlit", "KHR_texture_transform",
+                           "KHR_mesh_quantization", "KHR_lights_punctual"})
+    EXPECT_TRUE(used.contains(name)) << name;
+  // Vertices are those of the corners, which all have uvs of their own here.
+  for (const json& accessor : after["accessors"])
+    if (accessor.contains("max") && accessor["type"] == "VEC3") EXPECT_EQ(accessor["count"], 6);
+}
+
+// What the library reads from both is the same, corner by corner and in the world.
+TEST(KeptGltf, StandsWhereItStoodWithTheNewUvsAtItsCorners) {
+  const TempFolder folder;
+  const path input = folder.write("s.glb", rich_file(folder).glb());
+  keep(input, folder / "w.glb");
+  const auto before = read_scene(input, kRest, {}), after = read_scene(folder / "w.glb", kRest, {});
+  ASSERT_TRUE(before.ok() && after.ok());
+  ASSERT_EQ(before->scene.indices.size(), after->scene.indices.size());
+  for (std::size_t k = 0; k < before->scene.indices.size(); ++k)
+    EXPECT_EQ(before->scene.positions[before->scene.indices[k]],
+              after->scene.positions[after->scene.indices[k]]);
+  EXPECT_EQ(before->scene.object_names, after->scene.object_names);
+  // Corners of the mirrored node's triangles are the scene's from behind.
+  const auto triangles = GltfOracle(folder / "w.glb").triangles();
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const bool mirrored = triangles[t].node == "right";
+    const auto& uvs = triangles[t].attributes.at("TEXCOORD_2");
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t k = 3 * t + (mirrored ? 2 - c : c);
+      EXPECT_EQ(uvs[2 * c], double(k) / 64);
+      EXPECT_EQ(uvs[2 * c + 1], double(k) / 32);
+    }
+  }
+}
+
+TEST(KeptGltf, TheNewUvsTakeTheFirstFreeSet) {
+  const struct {
+    std::vector<int> sets;
+    const char* expected;
+  } cases[] = {{{}, "TEXCOORD_1"},  {{0}, "TEXCOORD_1"},       {{0, 1}, "TEXCOORD_2"},
+               {{7}, "TEXCOORD_1"}, {{0, 1, 2, 4}, "TEXCOORD_3"}};
+  for (const auto& c : cases) {
+    const TempFolder folder;
+    Gltf gltf;
+    json attributes = {{"POSITION", gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3)}};
+    for (const int set : c.sets)
+      attributes["TEXCOORD_" + std::to_string(set)] =
+          gltf.floats({0, 0, 1, 0, 0, float(set)}, "VEC2", 2);
+    gltf.single({{"attributes", attributes}});
+    const path input = folder.write("s.glb", gltf.glb());
+    EXPECT_EQ(keep(input, folder / "w.glb").uv_set, c.expected);
+    const auto triangles = GltfOracle(folder / "w.glb").triangles();
+    ASSERT_EQ(triangles.size(), 1u);
+    const auto& after = triangles[0].attributes;
+    for (const int set : c.sets)
+      EXPECT_EQ(after.at("TEXCOORD_" + std::to_string(set))[5], set);
+    EXPECT_EQ(after.at(c.expected)[2], 1.0 / 64);
+    EXPECT_TRUE(after.contains("TEXCOORD_0"));
+  }
+}
+
+// Each place of a mesh has charts of its own, so it has a mesh of its own.
+TEST(KeptGltf, InstancesBecomeNodes) {
+  const TempFolder folder;
+  Gltf gltf;
+  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+  const int places = gltf.floats({0, 0, 0, 5, 0, 0, 0, 0, 9}, "VEC3", 3);
+  const int scales = gltf.floats({1, 1, 1, -1, 1, 1, 2, 2, 2}, "VEC3", 3);
+  const json instancing = {
+      {"EXT_mesh_gpu_instancing",
+       {{"attributes", {{"TRANSLATION", places}, {"SCALE", scales}}}}}};
+  gltf.single({{"attributes", {{"POSITION", positions}}}},
+              {{"name", "tree"}, {"extensions", instancing}, {"scale", {3, 3, 3}}});
+  gltf.j["extensionsRequired"] = gltf.j["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  const path input = folder.write("s.glb", gltf.glb());
+  EXPECT_TRUE(keep(input, folder / "w.glb").not_kept.empty());
+  const GltfOracle after(folder / "w.glb");
+  EXPECT_FALSE(after.document.contains("extensionsUsed") ||
+               after.document.contains("extensionsRequired"));
+  const auto triangles = after.triangles();
+  ASSERT_EQ(triangles.size(), 3u);
+  EXPECT_EQ(triangles[0].node, "tree_0");
+  EXPECT_EQ(triangles[1].matrix[12], 15);
+  EXPECT_EQ(triangles[1].matrix[0], -3);
+  EXPECT_EQ(triangles[2].matrix[0], 6);
+  EXPECT_EQ(triangles[2].matrix[14], 27);
+  std::set<double> first;
+  for (const auto& t : triangles) first.insert(t.attributes.at("TEXCOORD_1")[0]);
+  EXPECT_EQ(first, (std::set<double>{0, 5.0 / 64, 6.0 / 64}));  // the second is mirrored
+}
+
+// A file should have a tree; many programs show one of which a node has two parents.
+TEST(KeptGltf, NodesOfSeveralParentsBecomeSeveral) {
+  const TempFolder folder;
+  Gltf gltf;
+  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+  gltf.single({{"attributes", {{"POSITION", positions}}}}, {{"name", "leaf"}});
+  gltf.j["nodes"].push_back({{"children", {0}}, {"translation", {10, 0, 0}}});
+  gltf.j["nodes"].push_back({{"children", {0, 1}}, {"translation", {0, 20, 0}}});
+  gltf.j["scenes"][0]["nodes"] = {2};
+  const path input = folder.write("s.glb", gltf.glb());
+  keep(input, folder / "w.glb");
+  const auto before = GltfOracle(input).triangles(), after = GltfOracle(folder / "w.glb").triangles();
+  expect_kept(before, after, "TEXCOORD_1");
+  ASSERT_EQ(after.size(), 2u);
+  EXPECT_NE(after[0].attributes.at("TEXCOORD_1"), after[1].attributes.at("TEXCOORD_1"));
+}
+
+TEST(KeptGltf, ANodeAboveTurnsAndScales) {
+  const TempFolder folder;
+  Gltf gltf;
+  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 0, 1}, "VEC3", 3);
+  gltf.single({{"attributes", {{"POSITION", positions}}}}, {{"translation", {2e6, 0, 0}}});
+  const auto loaded = read_scene(folder.write("s.glb", gltf.glb()), kRest, {});
+  ASSERT_TRUE(loaded.ok());
+  World world = world_of(loaded->scene);
+  world.up = Up::z;
+  world.metres_per_unit = 0.5;
+  ASSERT_TRUE(write_kept(world, folder / "w.glb").ok());
+  const auto triangles = GltfOracle(folder / "w.glb").triangles();
+  ASSERT_EQ(triangles.size(), 1u);
+  EXPECT_TRUE(near(triangles[0].matrix, {0.5, 0, 0, 0, 0, 0, -0.5, 0, 0, 0.5, 0, 0, 1e6, 0, 0, 1}));
+  EXPECT_EQ(triangles[0].attributes.at("POSITION")[8], 1);  // its own, without an origin
+}
+
+// A library of meshes, without nodes and scenes.
+TEST(KeptGltf, MeshesWithoutNodesGetSome) {
+  const TempFolder folder;
+  Gltf gltf;
+  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+  const json mesh = {{"primitives", {{{"attributes", {{"POSITION", positions}}}}}}};
+  gltf.j["meshes"] = json::array({mesh, mesh});
+  keep(folder.write("s.glb", gltf.glb()), folder / "w.glb");
+  EXPECT_EQ(GltfOracle(folder / "w.glb").triangles().size(), 2u);
+}
+
+}  // namespace
+}  // namespace atlas::test

@@ -1,0 +1,319 @@
+// World::scene: what cannot be kept is told, and what is wrong with a file does no harm.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <random>
+#include <string>
+
+#include "libatlas/image/image_io.h"
+#include "libatlas/scene/reader.h"
+#include "tests/exporters/kept_worlds.h"
+#include "tests/scene/gltf_maker.h"
+#include "tests/scene/temp_folder.h"
+#include "tests/support/gltf_oracle.h"
+
+namespace atlas::test {
+namespace {
+
+using std::filesystem::path;
+using Lines = std::vector<std::string>;
+
+const ReadOptions kRest{
+    .unlit_textures = true, .encoded_textures = true, .normals = true, .rest = true};
+// glTF written again needs no normals of the scene.
+const ReadOptions kGltfRest{.unlit_textures = true, .encoded_textures = true, .rest = true};
+
+WorldFile keep(const path& input, const path& output, const ReadOptions& options = kGltfRest) {
+  const auto loaded = read_scene(input, options, {});
+  EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+  if (!loaded.ok()) return {};
+  const World world = world_of(loaded->scene);
+  const auto written = write_kept(world, output);
+  EXPECT_TRUE(written.ok()) << written.status().message();
+  return written.ok() ? *written : WorldFile{};
+}
+
+// A triangle with uvs and a texture that is there.
+Gltf textured(const TempFolder& folder) {
+  Gltf gltf;
+  const path made = folder / "made.png";
+  EXPECT_TRUE(write_png(made, Image8(4, 2, 3, 77), {}).ok());
+  const std::string bytes = TempFolder::read(made);
+  std::filesystem::remove(made);
+  const int view = gltf.view(std::vector<char>(bytes.begin(), bytes.end()));
+  gltf.j["images"] = json::array({{{"bufferView", view}, {"mimeType", "image/png"}}});
+  gltf.j["textures"] = json::array({{{"source", 0}}});
+  gltf.j["materials"] =
+      json::array({{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}});
+  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+  const int uvs = gltf.floats({0, 0, 1, 0, 0, 1}, "VEC2", 2);
+  gltf.single({{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}}}, {"material", 0}});
+  return gltf;
+}
+
+constexpr const char* kNoImage = "1 x textures of materials (no image that can be read)";
+constexpr const char* kNoUvs =
+    "1 x textures of materials (no uvs for them in their primitives)";
+
+TEST(KeptRest, TexturesThatAreNotThereAreToldAndLeftOut) {
+  const struct {
+    const char* line;
+    std::function<void(json&)> spoil;
+  } cases[] = {
+      {kNoImage, [](json& j) { j["materials"][0]["normalTexture"] = {{"index", 99}}; }},
+      {kNoImage, [](json& j) { j["materials"][0]["normalTexture"] = {{"index", -3}}; }},
+      {kNoImage, [](json& j) { j["materials"][0]["normalTexture"] = {{"index", 1.5}}; }},
+      {kNoImage,
+       [](json& j) {
+         j["images"].push_back({{"uri", "gone.png"}});
+         j["textures"].push_back({{"source", 1}});
+         j["materials"][0]["normalTexture"] = {{"index", 1}};
+       }},
+      {kNoImage,
+       [](json& j) {
+         j["textures"].push_back({{"source", 7}});
+         j["materials"][0]["normalTexture"] = {{"index", 1}};
+       }},
+      {kNoUvs,
+       [](json& j) { j["materials"][0]["normalTexture"] = {{"index", 0}, {"texCoord", 7}}; }},
+      {kNoUvs,
+       [](json& j) {  // the new set, which is no set of the material
+         j["materials"][0]["normalTexture"] = {{"index", 0}, {"texCoord", 1}};
+       }},
+      {kNoUvs,
+       [](json& j) {
+         j["materials"][0]["normalTexture"] = {
+             {"index", 0}, {"extensions", {{"KHR_texture_transform", {{"texCoord", 2}}}}}};
+       }},
+      {kNoUvs,
+       [](json& j) {
+         j["materials"][0]["extensions"]["KHR_materials_clearcoat"]["clearcoatTexture"] = {
+             {"index", 0}, {"texCoord", 3}};
+       }},
+  };
+  for (const auto& c : cases) {
+    const TempFolder folder;
+    Gltf gltf = textured(folder);
+    c.spoil(gltf.j);
+    const WorldFile written = keep(folder.write("s.glb", gltf.glb()), folder / "w.glb");
+    EXPECT_EQ(written.not_kept, Lines{c.line});
+    const GltfOracle after(folder / "w.glb");
+    const auto triangles = after.triangles();
+    const json& material = after.document["materials"].at(std::size_t(triangles[0].material));
+    EXPECT_FALSE(material.contains("normalTexture"));
+    EXPECT_EQ(material.dump().find("clearcoatTexture"), std::string::npos);
+    EXPECT_EQ(material["pbrMetallicRoughness"]["baseColorTexture"]["index"], 0);
+    EXPECT_EQ(after.document["textures"][0]["source"], 0);
+  }
+}
+
+// Textures of a kind that glTF itself does not know are PNG in what is written.
+TEST(KeptRest, ImagesOfExtensionsBecomePlainOnes) {
+  const TempFolder folder;
+  Gltf gltf = textured(folder);
+  gltf.j["textures"][0] = {{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}};
+  gltf.j["extensionsUsed"] = {"EXT_texture_webp"};
+  EXPECT_TRUE(keep(folder.write("s.glb", gltf.glb()), folder / "w.glb").not_kept.empty());
+  const json after = GltfOracle(folder / "w.glb").document;
+  EXPECT_EQ(after["textures"][0], json({{"source", 0}}));
+  EXPECT_FALSE(after.contains("extensionsUsed"));
+}
+
+TEST(KeptRest, DataThatIsNotThereIsToldAndLeftOut) {
+  const struct {
+    const char* line;
+    std::function<void(json&)> spoil;
+  } cases[] = {
+      {"1 x animations whose data cannot be read",
+       [](json& j) {
+         j["animations"] = json::array(
+             {{{"channels", json::array()}, {"samplers", {{{"input", 77}, {"output", 0}}}}}});
+       }},
+      {"1 x matrices of skins that cannot be read",
+       [](json& j) {
+         j["skins"] = json::array({{{"joints", {0}}, {"inverseBindMatrices", 99}}});
+       }},
+      {"1 x attributes that are shorter than their positions",
+       [](json& j) { j["meshes"][0]["primitives"][0]["attributes"]["_A"] = 99; }},
+      {"1 x primitives whose data cannot be read",
+       [](json& j) {
+         j["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 99}}}, {"mode", 0}});
+       }},
+      {"1 x EXT_structural_metadata (an extension with data of its own)",
+       [](json& j) { j["extensions"]["EXT_structural_metadata"] = {{"schema", "s"}}; }},
+      {"1 x ACME_outline (an extension with data of its own)",
+       [](json& j) {
+         j["meshes"][0]["primitives"][0]["extensions"]["ACME_outline"] = {{"indices", 0}};
+       }},
+      {"1 x KHR_draco_mesh_compression (an extension with data of its own)",
+       [](json& j) {
+         j["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
+             {"bufferView", 0}, {"attributes", json::object()}};
+       }},
+  };
+  for (const auto& c : cases) {
+    const TempFolder folder;
+    Gltf gltf = textured(folder);
+    c.spoil(gltf.j);
+    const WorldFile written = keep(folder.write("s.glb", gltf.glb()), folder / "w.glb");
+    EXPECT_EQ(written.not_kept, Lines{c.line});
+    const GltfOracle after(folder / "w.glb");
+    EXPECT_EQ(after.triangles().size(), 1u);
+    EXPECT_EQ(after.document.dump().find("99"), std::string::npos);
+    EXPECT_FALSE(after.document.contains("extensionsUsed"));
+  }
+}
+
+TEST(KeptRest, OfGltfInObjIsCounted) {
+  const TempFolder folder;
+  Gltf gltf = textured(folder);
+  gltf.j["materials"][0]["emissiveFactor"] = {1, 0, 0};
+  gltf.j["materials"][0]["emissiveTexture"] = {{"index", 0}};
+  json& primitive = gltf.j["meshes"][0]["primitives"][0];
+  primitive["targets"] = json::array({{{"POSITION", primitive["attributes"]["POSITION"]}}});
+  gltf.j["skins"] = json::array({{{"joints", {0}}}});
+  gltf.j["nodes"][0]["translation"] = {1, 0, 0};
+  const int times = gltf.floats({0, 1}, "SCALAR", 1), moves = gltf.floats({0, 0, 0, 1, 1, 1}, "VEC3", 3);
+  gltf.j["animations"] = json::array(
+      {{{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}},
+        {"samplers", {{{"input", times}, {"output", moves}}}}}});
+  const WorldFile written = keep(folder.write("s.glb", gltf.glb()), folder / "w.obj", kRest);
+  EXPECT_EQ(written.uv_set, "vt");
+  EXPECT_EQ(written.not_kept,
+            (Lines{"1 x animations", "1 x materials of more than a base colour",
+                   "1 x meshes with morph targets, kept at rest",
+                   "1 x nodes with transforms or children, applied to what they show",
+                   "1 x primitives with uvs of their own", "1 x skins, kept at rest",
+                   "2 x textures of materials"}));
+}
+
+// Everything an MTL says stays, textures as comments: the uvs that they are for are not in the file.
+TEST(KeptRest, LinesOfMtl) {
+  const TempFolder folder;
+  folder.write("m.mtl",
+               "Ns 7\nnewmtl a\n  Ka 1 1 1\nKd 0.5 0 0\nKe 2 2 0 # glows\nKs 1 0 1\nNs 250\nd 0.5\n"
+               "Tr 0.5\n# a comment\nillum 2\nmap_Kd -s 2 2 a b.png\nmap_Bump n.png\nbump n.png\n"
+               "MAP_Ks s.png\nNi 1.45\nmap_d \\\n x.png\nnewmtl b\n");
+  const path obj = folder.write(
+      "s.obj",
+      "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\nusemtl b\n"
+      "f 1/1 3/1 2/1\n");
+  const WorldFile written = keep(obj, folder / "w.obj", kRest);
+  EXPECT_EQ(written.not_kept,
+            (Lines{"5 x textures of materials (lines of the MTL, now comments)"}));
+  const std::string mtl = TempFolder::read(folder / "w.mtl");
+  EXPECT_NE(mtl.find("newmtl a\nKd 0.5 0 0\nKa 1 1 1\nKe 2 2 0 # glows\nKs 1 0 1\nNs 250\nd 0.5\n"
+                     "Tr 0.5\nillum 2\n#map_Kd -s 2 2 a b.png\n#map_Bump n.png\n#bump n.png\n"
+                     "#MAP_Ks s.png\nNi 1.45\n#map_d "),
+            std::string::npos)
+      << mtl;
+  EXPECT_NE(mtl.find("\nnewmtl b\nKd 1 1 1\n"), std::string::npos) << mtl;
+  const auto back = read_scene(folder / "w.obj", kRest, {});
+  ASSERT_TRUE(back.ok()) << back.status().message();
+  EXPECT_TRUE(back->scene.textures.empty());
+  EXPECT_EQ(keep(obj, folder / "w.glb", kRest).not_kept,
+            (Lines{"1 x lines of the MTL: Ka", "1 x lines of the MTL: Ke", "1 x lines of the MTL: Ks",
+                   "1 x lines of the MTL: MAP_Ks", "1 x lines of the MTL: Ni",
+                   "1 x lines of the MTL: Ns", "1 x lines of the MTL: Tr",
+                   "1 x lines of the MTL: bump", "1 x lines of the MTL: d",
+                   "1 x lines of the MTL: illum", "1 x lines of the MTL: map_Bump",
+                   "1 x lines of the MTL: map_d"}));
+}
+
+// Who changes the triangles of a scene takes its source away.
+TEST(KeptRest, OtherTrianglesThanWereReadAreRefused) {
+  const TempFolder folder;
+  const path input = folder.write("s.glb", textured(folder).glb());
+  const std::function<void(Scene&)> changes[] = {
+      [](Scene& s) {
+        s.positions.insert(s.positions.end(), 3, {9, 9, 9});
+        s.indices = {3, 4, 5};
+      },
+      [](Scene& s) {
+        s.indices.insert(s.indices.end(), {0, 1, 2});
+        s.texcoord_indices.insert(s.texcoord_indices.end(), {0, 1, 2});
+        s.triangle_material.push_back(0);
+        s.triangle_object.push_back(0);
+      },
+  };
+  for (const auto& change : changes) {
+    auto loaded = read_scene(input, kGltfRest, {});
+    ASSERT_TRUE(loaded.ok());
+    change(loaded->scene);
+    const Result<WorldFile> written = write_kept(world_of(loaded->scene), folder / "w.glb");
+    EXPECT_EQ(written.status().code(), ErrorCode::bad_input);
+    EXPECT_NE(written.status().message().find("Scene::source"), std::string::npos);
+    loaded->scene.source = nullptr;
+    EXPECT_TRUE(write_kept(world_of(loaded->scene), folder / "w.glb").ok());
+    std::filesystem::remove(folder / "w.glb");
+  }
+}
+
+// Light of another file comes beside the colours that the vertices have.
+TEST(KeptRest, LightOfAnotherFileIsWritten) {
+  const TempFolder folder;
+  Gltf gltf = textured(folder);
+  gltf.j["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+      gltf.floats({1, 0, 0, 1, 0, 0, 1, 0, 0}, "VEC3", 3);
+  ReadOptions options = kGltfRest;
+  options.illumination_file = folder.write("light.txt", "5 6 7\n8 9 10\n11 12 13\n");
+  keep(folder.write("s.glb", gltf.glb()), folder / "w.glb", options);
+  const auto triangles = GltfOracle(folder / "w.glb").triangles();
+  EXPECT_EQ(triangles[0].attributes.at("_ILLUMINANCE"),
+            (std::vector<double>{5, 6, 7, 8, 9, 10, 11, 12, 13}));
+  EXPECT_EQ(triangles[0].attributes.at("COLOR_0")[3], 1);
+}
+
+// Triangles that are left out stay out, and the others keep their corners.
+TEST(KeptRest, DefectiveTrianglesAreLeftOut) {
+  const TempFolder folder;
+  Gltf gltf = textured(folder);
+  json& primitive = gltf.j["meshes"][0]["primitives"][0];
+  primitive["indices"] = gltf.indices<std::uint16_t>({0, 1, 77, 2, 0, 1, 0, 1, 2, 9, 9, 9});
+  gltf.j["meshes"][0]["primitives"].push_back(
+      {{"attributes", primitive["attributes"]},
+       {"indices", gltf.indices<std::uint16_t>({50, 51, 52})}});
+  keep(folder.write("s.glb", gltf.glb()), folder / "w.glb");
+  const auto triangles = GltfOracle(folder / "w.glb").triangles();
+  ASSERT_EQ(triangles.size(), 2u);
+  EXPECT_EQ(triangles[0].attributes.at("POSITION"),
+            (std::vector<double>{0, 1, 0, 0, 0, 0, 1, 0, 0}));
+  EXPECT_EQ(triangles[1].attributes.at("TEXCOORD_1")[0], 3.0 / 64);
+}
+
+// Whatever becomes of the bytes: a status, or a file that reads.
+TEST(KeptRest, DamagedFilesAreWrittenSoundOrRefused) {
+  const TempFolder folder;
+  Gltf gltf = textured(folder);
+  gltf.j["skins"] = json::array({{{"joints", {0}}, {"inverseBindMatrices", 0}}});
+  gltf.j["animations"] = json::array({{{"channels", json::array()},
+                                       {"samplers", {{{"input", 0}, {"output", 0}}}}}});
+  gltf.j["extensions"]["KHR_lights_punctual"] = {{"lights", json::array({json::object()})}};
+  gltf.j["materials"][0]["normalTexture"] = {{"index", 0}, {"texCoord", 0}};
+  gltf.j["samplers"] = json::array({json::object()});
+  const std::string good = gltf.glb();
+  std::mt19937 random(11);
+  int written = 0;
+  for (int round = 0; round < 1500; ++round) {
+    std::string bytes = good;
+    const std::size_t begin = 20, end = bytes.size();
+    for (int k = 0; k < 1 + round % 3; ++k) {
+      char& c = bytes[begin + random() % (end - begin)];
+      c = round % 2 == 0 ? char(random()) : "0123456789[]{}\",-x"[random() % 18];
+    }
+    const auto loaded = read_scene(folder.write("d.glb", bytes), kGltfRest, {});
+    if (!loaded.ok()) continue;
+    const World world = world_of(loaded->scene);
+    const auto result = write_kept(world, folder / "w.glb");
+    ASSERT_TRUE(result.ok()) << round << ": " << result.status().message();
+    const auto back = read_scene(folder / "w.glb", {}, {});
+    ASSERT_TRUE(back.ok()) << round << ": " << back.status().message();
+    EXPECT_EQ(back->scene.triangle_count(), loaded->scene.triangle_count()) << round;
+    ++written;
+  }
+  EXPECT_GT(written, 100);
+}
+
+}  // namespace
+}  // namespace atlas::test
