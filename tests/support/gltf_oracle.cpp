@@ -163,7 +163,13 @@ void GltfOracle::add_primitive(const json& primitive, const OracleTriangle& plac
   if (primitive.contains("targets"))
     for (std::size_t t = 0; t < primitive["targets"].size(); ++t)
       add_all(primitive["targets"][t], std::to_string(t) + "/");
-  const auto indices = values(primitive.at("indices"));
+  std::vector<double> indices;
+  if (primitive.contains("indices")) {
+    indices = values(primitive["indices"]);
+  } else {
+    const std::size_t count = all.at("POSITION").second.size() / 3;
+    for (std::size_t i = 0; i < count; ++i) indices.push_back(double(i));
+  }
   if (indices.size() % 3 != 0) throw std::runtime_error("no whole triangles");
   for (std::size_t k = 0; k < indices.size(); k += 3) {
     OracleTriangle triangle = place;
