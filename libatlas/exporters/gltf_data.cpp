@@ -15,7 +15,8 @@ json bounds_of(const tinygltf::Accessor& accessor, const std::string& rows, std:
   const int type = accessor.componentType;
   const auto size =
       std::size_t(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(type)));
-  const int components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
+  const int components =
+      tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
   json low = json::array(), high = json::array();
   for (int c = 0; c < components; ++c) {
     double least = INFINITY, largest = -INFINITY;
@@ -27,8 +28,8 @@ json bounds_of(const tinygltf::Accessor& accessor, const std::string& rows, std:
       largest = std::max(largest, value);
     }
     if (least > largest) least = largest = 0;  // nothing finite, which JSON cannot say
-    const bool real = type == TINYGLTF_COMPONENT_TYPE_FLOAT ||
-                      type == TINYGLTF_COMPONENT_TYPE_DOUBLE;
+    const bool real =
+        type == TINYGLTF_COMPONENT_TYPE_FLOAT || type == TINYGLTF_COMPONENT_TYPE_DOUBLE;
     low.push_back(real ? json(least) : json(static_cast<std::int64_t>(least)));
     high.push_back(real ? json(largest) : json(static_cast<std::int64_t>(largest)));
   }
@@ -109,10 +110,9 @@ std::optional<std::size_t> GltfData::rows(int number, std::span<const std::uint3
   json view = {{"target", kArrayBuffer}};
   if (stride != rows->row_bytes) view["byteStride"] = stride;
   const tinygltf::Accessor& from = source_.model.accessors[std::size_t(number)];
-  json accessor = {{"componentType", from.componentType},
-                   {"type", source_.document["accessors"][std::size_t(number)]["type"]},
-                   {"count", vertices.size()}};
-  if (from.normalized) accessor["normalized"] = true;
+  json accessor = source_.document["accessors"][std::size_t(number)];
+  for (const char* key : {"byteOffset", "sparse", "min", "max"}) accessor.erase(key);
+  accessor["count"] = vertices.size();
   if (bounds) accessor.update(bounds_of(from, bytes, stride));
   accessor["bufferView"] = document_.add_view(bytes.data(), bytes.size(), std::move(view));
   return document_.add_accessor(std::move(accessor));

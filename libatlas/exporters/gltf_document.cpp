@@ -93,7 +93,8 @@ std::size_t GltfDocument::add_vectors(std::span<const Vec3f> values) {
 
 std::size_t GltfDocument::add_uvs(std::vector<Vec2f> values) {
   for (Vec2f& uv : values) uv.y = 1 - uv.y;
-  const std::size_t view = add_view(values.data(), values.size() * sizeof(Vec2f), {{"target", kArrayBuffer}});
+  const std::size_t view =
+      add_view(values.data(), values.size() * sizeof(Vec2f), {{"target", kArrayBuffer}});
   return add_accessor({{"bufferView", view},
                        {"componentType", kFloat},
                        {"type", "VEC2"},
@@ -101,7 +102,8 @@ std::size_t GltfDocument::add_uvs(std::vector<Vec2f> values) {
 }
 
 std::size_t GltfDocument::add_indices(std::span<const std::uint32_t> values) {
-  const std::size_t view = add_view(values.data(), values.size_bytes(), {{"target", kElementBuffer}});
+  const std::size_t view =
+      add_view(values.data(), values.size_bytes(), {{"target", kElementBuffer}});
   return add_accessor({{"bufferView", view},
                        {"componentType", kUint},
                        {"type", "SCALAR"},
@@ -109,7 +111,8 @@ std::size_t GltfDocument::add_indices(std::span<const std::uint32_t> values) {
 }
 
 nlohmann::json GltfDocument::embedded_image(std::span<const char> bytes, const char* mime_type) {
-  return {{"mimeType", mime_type}, {"bufferView", add_view(bytes.data(), bytes.size(), nlohmann::json::object())}};
+  return {{"mimeType", mime_type},
+          {"bufferView", add_view(bytes.data(), bytes.size(), nlohmann::json::object())}};
 }
 
 nlohmann::json GltfDocument::image_beside(const std::string& file_name) {

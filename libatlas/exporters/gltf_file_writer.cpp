@@ -1,4 +1,5 @@
-// glTF 2.0 and GLB of a scene that was read from glTF: the file as it was, with one more set of uvs.
+// glTF 2.0 and GLB of a scene that was read from glTF: the file as it was, with one more set of
+// uvs.
 #include <fmt/format.h>
 
 #include <algorithm>

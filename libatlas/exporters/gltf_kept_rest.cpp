@@ -125,8 +125,8 @@ void drop_data_extensions(json& part, Losses& losses) {
   const auto extensions = part.find("extensions");
   if (extensions == part.end() || !extensions->is_object()) return;
   for (auto at = extensions->begin(); at != extensions->end();) {
-    const bool drop = at.key() != kInstancing &&
-                      (names_data(*at) || at.key() == "EXT_structural_metadata");
+    const bool drop =
+        at.key() != kInstancing && (names_data(*at) || at.key() == "EXT_structural_metadata");
     if (drop) losses.add(at.key() + " (an extension with data of its own)");
     at = drop ? extensions->erase(at) : std::next(at);
   }

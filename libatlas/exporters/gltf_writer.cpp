@@ -10,9 +10,9 @@
 #include "libatlas/exporters/camera.h"
 #include "libatlas/exporters/gltf_document.h"
 #include "libatlas/exporters/scene_writers.h"
-#include "libatlas/scene/scene.h"
 #include "libatlas/exporters/vertex_unifier.h"
 #include "libatlas/exporters/world.h"
+#include "libatlas/scene/scene.h"
 
 namespace atlas {
 namespace fs = std::filesystem;

@@ -355,8 +355,7 @@ class Export {
       report_.files.emplace_back(path.filename().string(), error ? 0 : size);
       bytes += report_.files.back().second;
     }
-    record_.finish(
-        {report_.triangles_out, bytes, "bytes", writing_note(*world_file)});
+    record_.finish({report_.triangles_out, bytes, "bytes", writing_note(*world_file)});
     return {};
   }
 

@@ -88,7 +88,7 @@ struct ExportReport {
   Fidelity fidelity;
   std::vector<std::pair<std::string, std::uint64_t>> files;  // written: name, bytes
   std::vector<std::string> not_kept;  // with keep_scene: what of the scene was not written
-  std::vector<std::string> advice;  // what the figures mean for the user, and the remedy
+  std::vector<std::string> advice;    // what the figures mean for the user, and the remedy
 };
 
 // Writes the report as JSON (docs/report.md names every key), whole or not at all. Of an export

@@ -27,9 +27,9 @@ namespace atlas {
 
 // Parses .gltf and .glb and loads the buffers, the files of which `buffers` names. Images stay
 // encoded: embedded ones keep their bytes in image.image, others their uri. `document`, where it is
-// not null, becomes the file's JSON, an object. Errors: not_found (the file or a buffer), bad_input,
-// unsupported (the file requires an extension other than those that are read; the message names
-// it).
+// not null, becomes the file's JSON, an object. Errors: not_found (the file or a buffer),
+// bad_input, unsupported (the file requires an extension other than those that are read; the
+// message names it).
 Result<tinygltf::Model> load_gltf(const std::filesystem::path& path,
                                   std::vector<std::filesystem::path>& buffers,
                                   nlohmann::json* document = nullptr);
@@ -51,8 +51,8 @@ struct GltfRows {
   std::vector<std::uint8_t> filled;  // where a sparse part, or nothing, stands for them
 };
 
-// The columns of matrices are padded to 4 bytes, as in the file. Must not outlive the model. Errors:
-// bad_input, for what leaves its buffer or has no data.
+// The columns of matrices are padded to 4 bytes, as in the file. Must not outlive the model.
+// Errors: bad_input, for what leaves its buffer or has no data.
 Result<GltfRows> gltf_rows(const tinygltf::Model& model, int accessor);
 
 // A number of a row, not normalised; `type` is the accessor's componentType.

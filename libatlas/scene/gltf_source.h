@@ -1,5 +1,5 @@
-// Internal: a glTF file, and how the scene that was read from it lies in it. Includes tinygltf, so it
-// is for .cpp files only.
+// Internal: a glTF file, and how the scene that was read from it lies in it. Includes tinygltf, so
+// it is for .cpp files only.
 #pragma once
 
 #include <cstddef>

@@ -37,7 +37,8 @@ class MtlParser {
 
   Status parse_line() {
     const std::string_view keyword = scan_.word();
-    if (builder_.wants_rest && inside_ && keyword != "newmtl" && keyword != "Kd") keep_line(keyword);
+    if (builder_.wants_rest && inside_ && keyword != "newmtl" && keyword != "Kd")
+      keep_line(keyword);
     if (keyword == "newmtl") {
       builder_.materials.push_back({});
       builder_.materials.back().name = scan_.rest();

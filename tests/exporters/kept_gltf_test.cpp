@@ -62,12 +62,12 @@ json rich_attributes(Gltf& gltf) {
        {"normalized", true},
        {"type", "VEC3"},
        {"count", 4}});
-  a["TEXCOORD_1"] = gltf.accessor(
-      {{"bufferView", gltf.view(std::vector<std::uint16_t>{0, 0, 65535, 0, 65535, 65535, 0, 65535})},
-       {"componentType", 5123},
-       {"normalized", true},
-       {"type", "VEC2"},
-       {"count", 4}});
+  a["TEXCOORD_1"] = gltf.accessor({{"bufferView", gltf.view(std::vector<std::uint16_t>{
+                                                      0, 0, 65535, 0, 65535, 65535, 0, 65535})},
+                                   {"componentType", 5123},
+                                   {"normalized", true},
+                                   {"type", "VEC2"},
+                                   {"count", 4}});
   a["JOINTS_0"] = gltf.accessor({{"bufferView", gltf.view(std::vector<std::uint8_t>(16, 0))},
                                  {"componentType", 5121},
                                  {"type", "VEC4"},
@@ -108,8 +108,8 @@ void add_textures(Gltf& gltf, const TempFolder& folder) {
   add_image(gltf, png(folder, 40));
   add_image(gltf, png(folder, 90));
   gltf.j["samplers"] = json::array({{{"wrapS", 33071}, {"magFilter", 9728}}, {{"wrapT", 33648}}});
-  gltf.j["textures"] =
-      json::array({{{"source", 1}, {"sampler", 1}, {"name", "t"}}, {{"source", 0}, {"sampler", 0}}});
+  gltf.j["textures"] = json::array(
+      {{{"source", 1}, {"sampler", 1}, {"name", "t"}}, {{"source", 0}, {"sampler", 0}}});
 }
 
 // A tree of nodes that shows one mesh twice, once mirrored; a skin, an animation, morph targets, a
@@ -117,8 +117,8 @@ void add_textures(Gltf& gltf, const TempFolder& folder) {
 Gltf rich_file(const TempFolder& folder) {
   Gltf gltf;
   add_textures(gltf, folder);
-  gltf.j["materials"] = json::array({rich_material(), {{"extensions", {{"KHR_materials_unlit",
-                                                                       json::object()}}}}});
+  gltf.j["materials"] =
+      json::array({rich_material(), {{"extensions", {{"KHR_materials_unlit", json::object()}}}}});
   const json attributes = rich_attributes(gltf);
   const int indices = gltf.indices<std::uint16_t>({0, 1, 2, 0, 2, 3});
   const int move = gltf.floats({0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 2}, "VEC3", 3);
@@ -129,9 +129,9 @@ Gltf rich_file(const TempFolder& folder) {
                        {"extras", {{"own", 1}}}};
   json strip = {{"attributes", {{"POSITION", attributes["POSITION"]}}}, {"mode", 5}};
   const json points = {{"attributes", {{"POSITION", attributes["POSITION"]}}}, {"mode", 0}};
-  gltf.j["meshes"] = json::array(
-      {{{"name", "m"}, {"primitives", {points, square, strip}}, {"weights", {0}}},
-       {{"name", "elsewhere"}, {"primitives", {strip}}}});
+  gltf.j["meshes"] =
+      json::array({{{"name", "m"}, {"primitives", {points, square, strip}}, {"weights", {0}}},
+                   {{"name", "elsewhere"}, {"primitives", {strip}}}});
   gltf.j["nodes"] = json::array(
       {{{"name", "top"}, {"children", {1, 2}}, {"translation", {100, 0, 0}}, {"extras", {1, 2}}},
        {{"name", "left"}, {"mesh", 0}, {"rotation", {0, 0.6, 0, 0.8}}},
@@ -143,32 +143,32 @@ Gltf rich_file(const TempFolder& folder) {
        {{"name", "other scene"}, {"mesh", 1}}});
   gltf.j["scenes"] = json::array({{{"nodes", {4}}}, {{"name", "shown"}, {"nodes", {0}}}});
   gltf.j["scene"] = 1;
-  gltf.j["cameras"] = json::array(
-      {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}});
+  gltf.j["cameras"] =
+      json::array({{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}});
   gltf.j["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "point"}}}}}}};
   const int times = gltf.floats({0, 1}, "SCALAR", 1);
   const int turns = gltf.floats({0, 0, 0, 1, 0, 1, 0, 0}, "VEC4", 4);
   gltf.j["animations"] = json::array(
       {{{"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "rotation"}}}}}},
         {"samplers", {{{"input", times}, {"output", turns}}}}}});
-  const int inverse =
-      gltf.floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, "MAT4", 16);
+  const int inverse = gltf.floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, "MAT4", 16);
   gltf.j["skins"] = json::array({{{"joints", {3}}, {"inverseBindMatrices", inverse}}});
   gltf.j["asset"]["copyright"] = "somebody";
   gltf.j["asset"]["extras"] = {{"title", "theirs"}};
-  gltf.j["extensionsUsed"] = {"KHR_lights_punctual", "KHR_materials_unlit", "KHR_mesh_quantization"};
+  gltf.j["extensionsUsed"] = {"KHR_lights_punctual", "KHR_materials_unlit",
+                              "KHR_mesh_quantization"};
   return gltf;
 }
 
 bool near(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() &&
-         std::equal(a.begin(), a.end(), b.begin(),
-                    [](double x, double y) { return std::abs(x - y) < 1e-9; });
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) {
+           return std::abs(x - y) < 1e-9;
+         });
 }
 
 // Every triangle has what it had, in the same order, and new uvs as well.
-void expect_kept(const std::vector<OracleTriangle>& before, const std::vector<OracleTriangle>& after,
-                 const std::string& set) {
+void expect_kept(const std::vector<OracleTriangle>& before,
+                 const std::vector<OracleTriangle>& after, const std::string& set) {
   ASSERT_EQ(before.size(), after.size());
   for (std::size_t t = 0; t < before.size(); ++t) {
     EXPECT_EQ(before[t].node, after[t].node);
@@ -295,8 +295,11 @@ TEST(KeptGltf, TheNewUvsTakeTheFirstFreeSet) {
   const struct {
     std::vector<int> sets;
     const char* expected;
-  } cases[] = {{{}, "TEXCOORD_1"},  {{0}, "TEXCOORD_1"},       {{0, 1}, "TEXCOORD_2"},
-               {{7}, "TEXCOORD_1"}, {{0, 1, 2, 4}, "TEXCOORD_3"}};
+  } cases[] = {{{}, "TEXCOORD_1"},
+               {{0}, "TEXCOORD_1"},
+               {{0, 1}, "TEXCOORD_2"},
+               {{7}, "TEXCOORD_1"},
+               {{0, 1, 2, 4}, "TEXCOORD_3"}};
   for (const auto& c : cases) {
     const TempFolder folder;
     Gltf gltf;
@@ -310,8 +313,7 @@ TEST(KeptGltf, TheNewUvsTakeTheFirstFreeSet) {
     const auto triangles = GltfOracle(folder / "w.glb").triangles();
     ASSERT_EQ(triangles.size(), 1u);
     const auto& after = triangles[0].attributes;
-    for (const int set : c.sets)
-      EXPECT_EQ(after.at("TEXCOORD_" + std::to_string(set))[5], set);
+    for (const int set : c.sets) EXPECT_EQ(after.at("TEXCOORD_" + std::to_string(set))[5], set);
     EXPECT_EQ(after.at(c.expected)[2], 1.0 / 64);
     EXPECT_TRUE(after.contains("TEXCOORD_0"));
   }
@@ -325,8 +327,7 @@ TEST(KeptGltf, InstancesBecomeNodes) {
   const int places = gltf.floats({0, 0, 0, 5, 0, 0, 0, 0, 9}, "VEC3", 3);
   const int scales = gltf.floats({1, 1, 1, -1, 1, 1, 2, 2, 2}, "VEC3", 3);
   const json instancing = {
-      {"EXT_mesh_gpu_instancing",
-       {{"attributes", {{"TRANSLATION", places}, {"SCALE", scales}}}}}};
+      {"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}, {"SCALE", scales}}}}}};
   gltf.single({{"attributes", {{"POSITION", positions}}}},
               {{"name", "tree"}, {"extensions", instancing}, {"scale", {3, 3, 3}}});
   gltf.j["extensionsRequired"] = gltf.j["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
@@ -358,7 +359,8 @@ TEST(KeptGltf, NodesOfSeveralParentsBecomeSeveral) {
   gltf.j["scenes"][0]["nodes"] = {2};
   const path input = folder.write("s.glb", gltf.glb());
   keep(input, folder / "w.glb");
-  const auto before = GltfOracle(input).triangles(), after = GltfOracle(folder / "w.glb").triangles();
+  const auto before = GltfOracle(input).triangles(),
+             after = GltfOracle(folder / "w.glb").triangles();
   expect_kept(before, after, "TEXCOORD_1");
   ASSERT_EQ(after.size(), 2u);
   EXPECT_NE(after[0].attributes.at("TEXCOORD_1"), after[1].attributes.at("TEXCOORD_1"));

@@ -53,17 +53,25 @@ Gltf textured(const TempFolder& folder) {
 }
 
 constexpr const char* kNoImage = "1 x textures of materials (no image that can be read)";
-constexpr const char* kNoUvs =
-    "1 x textures of materials (no uvs for them in their primitives)";
+constexpr const char* kNoUvs = "1 x textures of materials (no uvs for them in their primitives)";
 
 TEST(KeptRest, TexturesThatAreNotThereAreToldAndLeftOut) {
   const struct {
     const char* line;
     std::function<void(json&)> spoil;
   } cases[] = {
-      {kNoImage, [](json& j) { j["materials"][0]["normalTexture"] = {{"index", 99}}; }},
-      {kNoImage, [](json& j) { j["materials"][0]["normalTexture"] = {{"index", -3}}; }},
-      {kNoImage, [](json& j) { j["materials"][0]["normalTexture"] = {{"index", 1.5}}; }},
+      {kNoImage,
+       [](json& j) {
+         j["materials"][0]["normalTexture"] = {{"index", 99}};
+       }},
+      {kNoImage,
+       [](json& j) {
+         j["materials"][0]["normalTexture"] = {{"index", -3}};
+       }},
+      {kNoImage,
+       [](json& j) {
+         j["materials"][0]["normalTexture"] = {{"index", 1.5}};
+       }},
       {kNoImage,
        [](json& j) {
          j["images"].push_back({{"uri", "gone.png"}});
@@ -76,7 +84,9 @@ TEST(KeptRest, TexturesThatAreNotThereAreToldAndLeftOut) {
          j["materials"][0]["normalTexture"] = {{"index", 1}};
        }},
       {kNoUvs,
-       [](json& j) { j["materials"][0]["normalTexture"] = {{"index", 0}, {"texCoord", 7}}; }},
+       [](json& j) {
+         j["materials"][0]["normalTexture"] = {{"index", 0}, {"texCoord", 7}};
+       }},
       {kNoUvs,
        [](json& j) {  // the new set, which is no set of the material
          j["materials"][0]["normalTexture"] = {{"index", 0}, {"texCoord", 1}};
@@ -141,7 +151,9 @@ TEST(KeptRest, DataThatIsNotThereIsToldAndLeftOut) {
          j["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 99}}}, {"mode", 0}});
        }},
       {"1 x EXT_structural_metadata (an extension with data of its own)",
-       [](json& j) { j["extensions"]["EXT_structural_metadata"] = {{"schema", "s"}}; }},
+       [](json& j) {
+         j["extensions"]["EXT_structural_metadata"] = {{"schema", "s"}};
+       }},
       {"1 x ACME_outline (an extension with data of its own)",
        [](json& j) {
          j["meshes"][0]["primitives"][0]["extensions"]["ACME_outline"] = {{"indices", 0}};
@@ -174,7 +186,8 @@ TEST(KeptRest, OfGltfInObjIsCounted) {
   primitive["targets"] = json::array({{{"POSITION", primitive["attributes"]["POSITION"]}}});
   gltf.j["skins"] = json::array({{{"joints", {0}}}});
   gltf.j["nodes"][0]["translation"] = {1, 0, 0};
-  const int times = gltf.floats({0, 1}, "SCALAR", 1), moves = gltf.floats({0, 0, 0, 1, 1, 1}, "VEC3", 3);
+  const int times = gltf.floats({0, 1}, "SCALAR", 1),
+            moves = gltf.floats({0, 0, 0, 1, 1, 1}, "VEC3", 3);
   gltf.j["animations"] = json::array(
       {{{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}},
         {"samplers", {{{"input", times}, {"output", moves}}}}}});
@@ -188,7 +201,8 @@ TEST(KeptRest, OfGltfInObjIsCounted) {
                    "2 x textures of materials"}));
 }
 
-// Everything an MTL says stays, textures as comments: the uvs that they are for are not in the file.
+// Everything an MTL says stays, textures as comments: the uvs that they are for are not in the
+// file.
 TEST(KeptRest, LinesOfMtl) {
   const TempFolder folder;
   folder.write("m.mtl",
@@ -212,13 +226,13 @@ TEST(KeptRest, LinesOfMtl) {
   const auto back = read_scene(folder / "w.obj", kRest, {});
   ASSERT_TRUE(back.ok()) << back.status().message();
   EXPECT_TRUE(back->scene.textures.empty());
-  EXPECT_EQ(keep(obj, folder / "w.glb", kRest).not_kept,
-            (Lines{"1 x lines of the MTL: Ka", "1 x lines of the MTL: Ke", "1 x lines of the MTL: Ks",
-                   "1 x lines of the MTL: MAP_Ks", "1 x lines of the MTL: Ni",
-                   "1 x lines of the MTL: Ns", "1 x lines of the MTL: Tr",
-                   "1 x lines of the MTL: bump", "1 x lines of the MTL: d",
-                   "1 x lines of the MTL: illum", "1 x lines of the MTL: map_Bump",
-                   "1 x lines of the MTL: map_d"}));
+  EXPECT_EQ(
+      keep(obj, folder / "w.glb", kRest).not_kept,
+      (Lines{"1 x lines of the MTL: Ka", "1 x lines of the MTL: Ke", "1 x lines of the MTL: Ks",
+             "1 x lines of the MTL: MAP_Ks", "1 x lines of the MTL: Ni", "1 x lines of the MTL: Ns",
+             "1 x lines of the MTL: Tr", "1 x lines of the MTL: bump", "1 x lines of the MTL: d",
+             "1 x lines of the MTL: illum", "1 x lines of the MTL: map_Bump",
+             "1 x lines of the MTL: map_d"}));
 }
 
 // Who changes the triangles of a scene takes its source away.
@@ -287,8 +301,8 @@ TEST(KeptRest, DamagedFilesAreWrittenSoundOrRefused) {
   const TempFolder folder;
   Gltf gltf = textured(folder);
   gltf.j["skins"] = json::array({{{"joints", {0}}, {"inverseBindMatrices", 0}}});
-  gltf.j["animations"] = json::array({{{"channels", json::array()},
-                                       {"samplers", {{{"input", 0}, {"output", 0}}}}}});
+  gltf.j["animations"] =
+      json::array({{{"channels", json::array()}, {"samplers", {{{"input", 0}, {"output", 0}}}}}});
   gltf.j["extensions"]["KHR_lights_punctual"] = {{"lights", json::array({{{"type", "point"}}})}};
   gltf.j["materials"][0]["normalTexture"] = {{"index", 0}, {"texCoord", 0}};
   gltf.j["samplers"] = json::array({json::object()});

@@ -179,8 +179,8 @@ TEST(KeepScene, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-// The nodes stay, and the corners of a mirrored node's triangles with them; each place has charts of
-// its own, which do not overlap those of the other.
+// The nodes stay, and the corners of a mirrored node's triangles with them; each place has charts
+// of its own, which do not overlap those of the other.
 TEST(KeepScene, MirroredNodesOfAGltf) {
   const TempFolder folder;
   Gltf gltf;
@@ -202,7 +202,8 @@ TEST(KeepScene, MirroredNodesOfAGltf) {
   gltf.j["scenes"][0]["nodes"] = {0, 1};
   const auto scene = folder.write("scene.glb", gltf.glb());
   export_to(scene, folder / "w.glb", true);
-  const auto before = GltfOracle(scene).triangles(), after = GltfOracle(folder / "w.glb").triangles();
+  const auto before = GltfOracle(scene).triangles(),
+             after = GltfOracle(folder / "w.glb").triangles();
   ASSERT_EQ(before.size(), 2 * shape.indices.size() / 3);
   ASSERT_EQ(after.size(), before.size());
   double areas[2] = {0, 0};  // of uvs, which glTF counts clockwise

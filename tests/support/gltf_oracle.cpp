@@ -50,8 +50,8 @@ double number_at(const char* at, int type) {
 }
 
 std::size_t width_of(const json& accessor) {
-  const std::map<std::string, std::size_t> widths{{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3},
-                                                  {"VEC4", 4},   {"MAT4", 16}};
+  const std::map<std::string, std::size_t> widths{
+      {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}};
   return widths.at(accessor.at("type").get<std::string>());
 }
 
@@ -79,10 +79,22 @@ std::vector<double> local(const json& node) {
   if (node.contains("rotation")) {
     const double x = node["rotation"][0], y = node["rotation"][1], z = node["rotation"][2],
                  w = node["rotation"][3];
-    turn = {1 - 2 * (y * y + z * z), 2 * (x * y + w * z),     2 * (x * z - w * y),     0,
-            2 * (x * y - w * z),     1 - 2 * (x * x + z * z), 2 * (y * z + w * x),     0,
-            2 * (x * z + w * y),     2 * (y * z - w * x),     1 - 2 * (x * x + y * y), 0,
-            0,                       0,                       0,                       1};
+    turn = {1 - 2 * (y * y + z * z),
+            2 * (x * y + w * z),
+            2 * (x * z - w * y),
+            0,
+            2 * (x * y - w * z),
+            1 - 2 * (x * x + z * z),
+            2 * (y * z + w * x),
+            0,
+            2 * (x * z + w * y),
+            2 * (y * z - w * x),
+            1 - 2 * (x * x + y * y),
+            0,
+            0,
+            0,
+            0,
+            1};
   }
   return product(move, product(turn, scale));
 }
@@ -104,8 +116,7 @@ GltfOracle::GltfOracle(const fs::path& path) : folder_(path.parent_path()) {
 std::vector<double> GltfOracle::values(const json& number) const {
   const json& accessor = document.at("accessors").at(number.get<std::size_t>());
   if (accessor.contains("sparse")) throw std::runtime_error("sparse");
-  const json& view =
-      document.at("bufferViews").at(accessor.at("bufferView").get<std::size_t>());
+  const json& view = document.at("bufferViews").at(accessor.at("bufferView").get<std::size_t>());
   const int type = accessor.at("componentType");
   const std::size_t width = width_of(accessor), row = width * size_of(type);
   const std::size_t stride = view.value("byteStride", row), begin = view.value("byteOffset", 0u),
@@ -178,8 +189,7 @@ void GltfOracle::add_primitive(const json& primitive, const OracleTriangle& plac
       const auto& [width, numbers] = attribute;
       for (std::size_t c = 0; c < 3; ++c)
         for (std::size_t i = 0; i < width; ++i)
-          triangle.attributes[name].push_back(
-              numbers.at(std::size_t(indices[k + c]) * width + i));
+          triangle.attributes[name].push_back(numbers.at(std::size_t(indices[k + c]) * width + i));
     }
     to.push_back(std::move(triangle));
   }

@@ -13,8 +13,8 @@ namespace atlas::test {
 
 // A triangle of a primitive where a node shows it.
 struct OracleTriangle {
-  std::string node;         // its name
-  int material = -1;        // -1: none
+  std::string node;            // its name
+  int material = -1;           // -1: none
   std::vector<double> matrix;  // of the node into the world, 16 numbers, column by column
   // By attribute the values of the three corners, one after the other, as they are stored; those of
   // morph targets as "0/POSITION".

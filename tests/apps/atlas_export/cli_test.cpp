@@ -42,15 +42,14 @@ TEST_F(AtlasExport, GlbHoldsItsImages) {
 TEST_F(AtlasExport, TellsWhatItDoesNotKeep) {
   write("m.mtl", "newmtl m\nKd 1 0 0\nKs 1 1 1\nmap_Bump n.png\n");
   write("t.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
-  const RunResult r = run(
-      fmt::format("{0}/t.obj -o {0}/w.glb --keep-scene --report {0}/r.json", dir_.string()));
+  const RunResult r =
+      run(fmt::format("{0}/t.obj -o {0}/w.glb --keep-scene --report {0}/r.json", dir_.string()));
   ASSERT_EQ(r.exit_code, 0) << r.output;
   for (const char* line : {"the new uvs: TEXCOORD_1", "not kept: 1 x lines of the MTL: Ks\n",
                            "not kept: 1 x lines of the MTL: map_Bump\n"})
     EXPECT_NE(r.output.find(line), std::string::npos) << r.output;
   EXPECT_EQ(nlohmann::json::parse(slurp(dir_ / "r.json"))["not_kept"].size(), 2u);
-  const RunResult again =
-      run(fmt::format("{0}/w.glb -o {0}/v.glb --keep-scene", dir_.string()));
+  const RunResult again = run(fmt::format("{0}/w.glb -o {0}/v.glb --keep-scene", dir_.string()));
   EXPECT_EQ(again.exit_code, 0) << again.output;
   EXPECT_NE(again.output.find("the new uvs: TEXCOORD_2"), std::string::npos) << again.output;
   EXPECT_EQ(again.output.find("not kept"), std::string::npos) << again.output;
