@@ -179,6 +179,40 @@ TEST(KeepScene, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
+Vec3f in_world(const OracleTriangle& t, std::size_t corner) {
+  const double* p = &t.attributes.at("POSITION")[3 * corner];
+  const auto row = [&](std::size_t r) {
+    const std::vector<double>& m = t.matrix;
+    return float(m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
+  };
+  return {row(0), row(1), row(2)};
+}
+
+double distance(const Vec3f& a, const Vec3f& b) {
+  return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
+}
+
+// The new uvs of each corner are those of the export without the option, which has the triangles in
+// the world and in the same order; a corner is found by its position.
+void expect_plain_uvs(const std::vector<OracleTriangle>& kept, const std::string& set,
+                      const std::filesystem::path& plain) {
+  const Triangles written = read_kept_obj(plain);
+  ASSERT_EQ(written.size(), kept.size());
+  for (std::size_t t = 0; t < kept.size(); ++t) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto& corners = written[t].corners;
+      const auto same = std::min_element(corners.begin(), corners.end(), [&](auto& a, auto& b) {
+        return distance(a.position, in_world(kept[t], c)) <
+               distance(b.position, in_world(kept[t], c));
+      });
+      ASSERT_LT(distance(same->position, in_world(kept[t], c)), 1e-5) << t;
+      const double* uv = &kept[t].attributes.at(set)[2 * c];
+      ASSERT_NEAR(uv[0], same->texcoord.x, 1e-6) << t;
+      ASSERT_NEAR(1 - uv[1], same->texcoord.y, 1e-6) << t;
+    }
+  }
+}
+
 // The nodes stay, and the corners of a mirrored node's triangles with them; each place has charts
 // of its own, which do not overlap those of the other.
 TEST(KeepScene, MirroredNodesOfAGltf) {
@@ -219,6 +253,8 @@ TEST(KeepScene, MirroredNodesOfAGltf) {
   EXPECT_GT(areas[0], 0.2);
   EXPECT_LT(areas[1], -0.2);  // the file has its corners the other way round
   EXPECT_LT(areas[0] - areas[1], 1);
+  export_to(scene, folder / "plain.obj", false);
+  expect_plain_uvs(after, "TEXCOORD_1", folder / "plain.obj");
 }
 
 // A scene far from zero loses its origin on reading and has it back in the file.
