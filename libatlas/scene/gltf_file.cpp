@@ -126,6 +126,8 @@ double component(const std::uint8_t* at, int type, bool normalized) {
       return normalized ? std::max(load<std::int16_t>(at) / 32767.0, -1.0) : load<std::int16_t>(at);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
       return normalized ? load<std::uint16_t>(at) / 65535.0 : load<std::uint16_t>(at);
+    case TINYGLTF_COMPONENT_TYPE_INT:  // glTF has none, but tinygltf lets it pass
+      return load<std::int32_t>(at);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
       return load<std::uint32_t>(at);
     case TINYGLTF_COMPONENT_TYPE_FLOAT:

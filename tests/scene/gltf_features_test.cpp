@@ -77,6 +77,21 @@ TEST(Gltf, ShortPositionsAreFractions) {
   }
 }
 
+// The format has no signed integers of 32 bits; who writes them all the same has them read as such,
+// and nothing behind the last of them.
+TEST(Gltf, SignedWordsAreWholeNumbers) {
+  const TempFolder folder;
+  Gltf g;
+  const int view = g.view(std::vector<std::int32_t>{0, 0, 0, 70000, 0, 0, 0, -70000, 0});
+  const int positions = g.accessor(
+      {{"bufferView", view}, {"componentType", 5124}, {"type", "VEC3"}, {"count", 3}});
+  g.single({{"attributes", {{"POSITION", positions}}}});
+  const auto loaded = load_glb(folder, g);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->scene.positions[1], (Vec3f{70000, 0, 0}));
+  EXPECT_EQ(loaded->scene.positions[2], (Vec3f{0, -70000, 0}));
+}
+
 // Two primitives: the first is lit and its texture coordinates are one short, the second has
 // neither light nor trouble.
 TEST(Gltf, WhatOnlySomePrimitivesHave) {
