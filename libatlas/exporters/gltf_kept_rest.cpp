@@ -109,13 +109,17 @@ void keep_instances(GltfData& data, json& node, Losses& losses) {
 
 json merge_assets(const json& source, json own) {
   if (!source.is_object()) return own;
+  const bool ours = source.value("generator", json()) == own["generator"];
   json merged = source;
   json& extras = merged["extras"];
   if (!extras.is_null() && !extras.is_object()) extras = {{"source", std::move(extras)}};
   if (extras.is_null()) extras = json::object();
+  json& info = extras["info"];  // of an earlier export: no longer true
+  if (info.is_null() || ours) info = json::array();
+  if (!info.is_array()) info = json::array({std::move(info)});
   const json added = own.value("extras", json::object());
-  for (const auto& [key, value] : added.items())
-    if (key != "title" || !extras.contains(key)) extras[key] = value;
+  if (added.contains("title") && !extras.contains("title")) extras["title"] = added["title"];
+  for (const json& line : added.value("info", json::array())) info.push_back(line);
   merged["version"] = own["version"];
   merged["generator"] = own["generator"];
   return merged;

@@ -7,8 +7,8 @@
 
 namespace atlas {
 
-// The asset that is written: what the source says of its author and licence, and `own`, which wins
-// but for the title.
+// The asset that is written: what the source says of its author and licence, its title if it has
+// one, and the information of both; that of an earlier export is replaced.
 nlohmann::json merge_assets(const nlohmann::json& source, nlohmann::json own);
 
 // Takes extensions out of a part of the document that name data by number, and do so where only

@@ -266,6 +266,29 @@ TEST(KeptGltf, HasItsMeshesAssetAndExtensions) {
     EXPECT_TRUE(!accessor.contains("max") || accessor["count"] == 6) << accessor;
 }
 
+// Whatever else a file has there stays; what an earlier export said of its uvs does not.
+TEST(KeptGltf, InformationIsAdded) {
+  const struct {
+    json asset, info;
+  } cases[] = {
+      {{{"version", "2.0"}}, {"the new uvs: TEXCOORD_1"}},
+      {{{"version", "2.0"}, {"extras", {{"info", "theirs"}}}},
+       {"theirs", "the new uvs: TEXCOORD_1"}},
+      {{{"version", "2.0"}, {"extras", {{"info", {"a", 2}}}}}, {"a", 2, "the new uvs: TEXCOORD_1"}},
+      {{{"version", "2.0"}, {"generator", "libatlas"}, {"extras", {{"info", {"old"}}}}},
+       {"the new uvs: TEXCOORD_1"}},
+      {{{"version", "2.0"}, {"extras", 5}}, {"the new uvs: TEXCOORD_1"}}};
+  for (const auto& c : cases) {
+    const TempFolder folder;
+    Gltf gltf;
+    gltf.single(
+        {{"attributes", {{"POSITION", gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3)}}}});
+    gltf.j["asset"] = c.asset;
+    keep(folder.write("s.glb", gltf.glb()), folder / "w.glb");
+    EXPECT_EQ(GltfOracle(folder / "w.glb").document["asset"]["extras"]["info"], c.info);
+  }
+}
+
 // What the library reads from both is the same, corner by corner and in the world.
 TEST(KeptGltf, StandsWhereItStoodWithTheNewUvsAtItsCorners) {
   const TempFolder folder;

@@ -83,8 +83,8 @@ TEST(Gltf, SignedWordsAreWholeNumbers) {
   const TempFolder folder;
   Gltf g;
   const int view = g.view(std::vector<std::int32_t>{0, 0, 0, 70000, 0, 0, 0, -70000, 0});
-  const int positions = g.accessor(
-      {{"bufferView", view}, {"componentType", 5124}, {"type", "VEC3"}, {"count", 3}});
+  const int positions =
+      g.accessor({{"bufferView", view}, {"componentType", 5124}, {"type", "VEC3"}, {"count", 3}});
   g.single({{"attributes", {{"POSITION", positions}}}});
   const auto loaded = load_glb(folder, g);
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
