@@ -77,7 +77,7 @@ int main_of(int argc, char** argv) {
                   counts_of(*atlas), 100 * atlas->utilization,
                   atlas->aliases ? fmt::format(", {} sharing another's place", atlas->aliases) : "",
                   atlas->cpu_seconds));
-  advise_on_pages(command, *atlas, context);
+  if (atlas->unplaced == 0) advise_on_pages(command, *atlas, context);
   advise_on_room(command, *atlas, context);
   // Whatever was left out has been named; scripts need to know as well.
   if (atlas->unplaced > 0) {

@@ -216,7 +216,8 @@ PackedAtlas describe(const FitResult& fit) {
 // At scale 1 the triangles have the area of the pages; where they lie on each other, more fits.
 double largest_scale(std::span<const ChartShape> shapes, double page_area, const Context& context) {
   constexpr double kRounding = 1e-6;
-  const double covered = covered_area(shapes, context);
+  const Result<double> measured = covered_area(shapes, context);
+  const double covered = measured.ok() ? *measured : 0;  // what is refused the packer refuses, too
   if (!(covered > 0) || covered > (1 - kRounding) * page_area) return 1;
   context.say(
       fmt::format("charts lie on themselves, as those of tiled textures do: all together "

@@ -226,6 +226,21 @@ Status read_list(const PackCommand& c, const Context& context, RectList& list) {
   return check_names(c, list.items);
 }
 
+// A line for each of the first few, and one for all others.
+void tell_unplaced(std::span<const UnplacedItem> unplaced, std::span<const PackedItem> items,
+                   const Context& context) {
+  constexpr std::size_t kTold = 10;
+  for (const UnplacedItem& u : unplaced.first(std::min(kTold, unplaced.size()))) {
+    const PackedItem& item = items[u.item];
+    context.say(fmt::format(
+        "{} ({} x {}) {}", item.name, item.source.width, item.source.height,
+        u.reason == UnplacedReason::too_large ? "is larger than the page" : "has no room left"));
+  }
+  if (unplaced.size() > kTold)
+    context.say(
+        fmt::format("and {} more of {} are not placed", unplaced.size() - kTold, items.size()));
+}
+
 }  // namespace
 
 Result<PackedAtlas> run_rects(const PackCommand& c, const Context& context) {
@@ -247,10 +262,7 @@ Result<PackedAtlas> run_rects(const PackCommand& c, const Context& context) {
   }
   Result<PackResult> packed = pack_rects(sizes, options, context);
   if (!packed.ok()) return packed.status();
-  for (const UnplacedItem& u : packed->unplaced)
-    context.say(fmt::format(
-        "{} ({} x {}) {}", items[u.item].name, sizes[u.item].width, sizes[u.item].height,
-        u.reason == UnplacedReason::too_large ? "is larger than the page" : "has no room left"));
+  tell_unplaced(packed->unplaced, items, context);
   PackedAtlas atlas = make_atlas(std::move(items), *packed);
   const std::string placed =
       ending == ".json" ? to_json(atlas, c.format, kAllPages) : to_csv(atlas);

@@ -20,7 +20,8 @@ struct MeshView {
   std::span<const std::uint32_t> materials = {};  // 1 a triangle, or empty: all alike
   std::span<const float> density = {};  // relative linear texel density a triangle (> 0), or empty
   std::span<const Vec2f> texcoords = {};  // only for ChartOptions::keep_uv_charts
-  // 3 a triangle, likewise; empty with one texcoord a position: those of `indices`.
+  // 3 a triangle, likewise; empty with one texcoord a position: those of `indices`. An index out of
+  // range: that corner has none.
   std::span<const std::uint32_t> texcoord_indices = {};
 };
 

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,7 +28,7 @@ Status check_options(const ChartOptions& options) {
     return {ErrorCode::bad_option, "max-stretch: must be greater than 1"};
   }
   if (!(options.crease_degrees > 0 && options.crease_degrees <= 180)) {
-    return {ErrorCode::bad_option, "crease: must lie in 0..180 degrees"};
+    return {ErrorCode::bad_option, "crease: must be above 0 degrees and at most 180"};
   }
   if (!(options.min_fill >= 0 && options.min_fill < 1)) {
     return {ErrorCode::bad_option, "min-fill: must lie in 0..1 (0: never cut for it)"};
@@ -38,6 +40,11 @@ Status check_options(const ChartOptions& options) {
 }
 
 Status check_texcoords(const MeshView& mesh) {
+  if (mesh.texcoord_indices.empty() && !mesh.texcoords.empty()) {
+    return {ErrorCode::bad_input,
+            fmt::format("mesh: {} texcoords for {} positions (one each, or give texcoord indices)",
+                        mesh.texcoords.size(), mesh.positions.size())};
+  }
   if (mesh.texcoord_indices.empty() || mesh.texcoord_indices.size() == mesh.indices.size()) {
     return {};
   }

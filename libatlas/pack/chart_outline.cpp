@@ -7,6 +7,7 @@
 #include "libatlas/core/counting_sort.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/pack/covered_area.h"
+#include "libatlas/pack/shape_check.h"
 
 namespace atlas::pack {
 namespace {
@@ -200,7 +201,8 @@ std::vector<ChartOutline> outlines_of(std::span<const ChartShape> shapes, const 
 
 namespace atlas {
 
-double covered_area(std::span<const ChartShape> shapes, const Context& context) {
+Result<double> covered_area(std::span<const ChartShape> shapes, const Context& context) {
+  if (Status status = pack::check_shapes(shapes); !status.ok()) return status;
   double area = 0;
   for (const pack::ChartOutline& outline : pack::outlines_of(shapes, context)) area += outline.area;
   return area;

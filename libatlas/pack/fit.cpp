@@ -243,6 +243,9 @@ using pack::BoxFit;
 using pack::BoxLayout;
 
 Status check(std::span<const FitItem> items, const FitOptions& o) {
+  if (o.max_packings < 2)
+    return {ErrorCode::bad_option,
+            fmt::format("fit: max_packings is {} (at least 2)", o.max_packings)};
   if (o.pages == 0) return {ErrorCode::bad_option, "fit: pages is 0 (ask for at least one)"};
   if (o.alignment < 1 || o.padding < 0 || o.page_size < o.alignment + 2 * o.padding ||
       o.page_size > (1 << 20) || o.minimum_side < 0)

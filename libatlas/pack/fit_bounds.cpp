@@ -36,7 +36,7 @@ FitBounds fit_bounds(std::span<const ChartOutline> outlines, const FitOptions& o
   }
   constexpr double kAny = std::numeric_limits<double>::infinity();
   FitBounds bounds;
-  bounds.gutters_exceed_pages = c > pages;
+  bounds.gutters_exceed_pages = c >= pages;
   bounds.alone = longest > 0 ? std::max(0.0, side - 2 * p) * (1 - 1e-9) / longest : kAny;
   // The positive root, in the form that stays exact where a is small.
   const double room = std::max(0.0, pages - c);

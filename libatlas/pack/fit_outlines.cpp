@@ -35,7 +35,7 @@ bool search_scale(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
   scale = std::min({scale, most, bounds.with_gutters});
   constexpr double kLittleMore = 1.02;
   if (best.scale > 0) scale = std::min(most, kLittleMore * best.scale);
-  if (scale <= best.scale) return true;
+  if (scale <= best.scale) return best.scale > 0;
   const double tolerance = scale_tolerance(options, 0.005, options.shapes.size());
   double low = best.scale, high = most * (1 + 1e-9), step = 0.97;
   const double least = 1e-9 * options.max_scale;  // at which minimum sides hold for all charts

@@ -199,9 +199,9 @@ bool below_minimum(std::span<const FitItem> items, const FitOptions& options, do
 std::optional<FitResult> press_pages(const FitResult& fitted, std::span<const FitItem> items,
                                      std::span<const ChartOutline> outlines,
                                      const FitOptions& options, const Context& context) {
-  if (!options.press_pages || options.pages < 2 || fitted.pages.size() < options.pages || options.free_aspect ||
-      fitted.scale >= options.max_scale || options.preset == PackPreset::fast ||
-      below_minimum(items, options, fitted.scale)) {
+  if (!options.press_pages || options.pages < 2 || fitted.pages.size() < options.pages ||
+      options.free_aspect || fitted.scale >= options.max_scale ||
+      options.preset == PackPreset::fast || below_minimum(items, options, fitted.scale)) {
     return std::nullopt;
   }
   PagePress press(outlines, options, context);

@@ -21,8 +21,9 @@ struct ChartShape {
 };
 
 // The area that the charts cover, triangles of a chart that lie on each other counted once: within
-// a hundredth or so of a chart's where some do.
-double covered_area(std::span<const ChartShape> shapes, const Context& context);
+// a hundredth or so of a chart's where some do. Errors: bad_input (a triangle's corner that is not
+// there, or one that is not finite).
+Result<double> covered_area(std::span<const ChartShape> shapes, const Context& context);
 
 struct OutlineOptions {
   Extent page{2048, 2048};      // texels; height 0: one page of open height

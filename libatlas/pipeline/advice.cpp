@@ -41,6 +41,14 @@ std::string on_small_charts(const ExportReport& report, double texels_a_chart) {
       report.charts.size(), texels_a_chart, 100 * (1 - report.uv_utilization));
 }
 
+std::string on_long_texels(const ExportReport& report, const ExportOptions& options,
+                           double texels_a_chart) {
+  return fmt::format(
+      "{} charts have {:.0f} texels each on average, {:.3g} mm long: little of the light is left "
+      "(a shorter --texel)",
+      report.charts.size(), texels_a_chart, 1e3 * options.texel_metres / report.scale);
+}
+
 std::string on_coarse_texels(const ExportReport& report, const ExportOptions& options) {
   return fmt::format(
       "texels are {:.3g} mm long, not the {:.3g} mm of --texel, since the pages hold no more (more "
@@ -72,7 +80,7 @@ float shown(const ExportReport& report, double luminance) {
 
 std::vector<std::string> advice_on(const ExportReport& report, const ExportOptions& options) {
   // Below these, light that the scene has is seen to be missing from the pages.
-  constexpr double kFewTexels = 32 * 32, kLittleUsed = 0.4, kCoarse = 0.5;
+  constexpr double kFewTexels = 32 * 32, kHardlyAny = 8 * 8, kLittleUsed = 0.4, kCoarse = 0.5;
   constexpr std::size_t kManyCharts = 256;
   constexpr float kBlack = 6 / 255.0f;
   std::vector<std::string> lines;
@@ -83,6 +91,8 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
   if (report.charts.size() >= kManyCharts && texels_a_chart < kFewTexels &&
       report.uv_utilization < kLittleUsed)
     lines.push_back(on_small_charts(report, texels_a_chart));
+  else if (options.texel_metres > 0 && report.scale >= kCoarse && texels_a_chart < kHardlyAny)
+    lines.push_back(on_long_texels(report, options, texels_a_chart));
   if (options.texel_metres > 0 && report.scale < kCoarse)
     lines.push_back(on_coarse_texels(report, options));
   // A white that was measured suits the light, even where all of it is equal.

@@ -79,8 +79,8 @@ class Export {
 
  private:
   Status cut_charts() {
-    record_.begin("charts");
-    Result<ChartSet> charts = make_charts(view_of(scene_), options_.charts, context_);
+    const Context& context = record_.begin("charts");
+    Result<ChartSet> charts = make_charts(view_of(scene_), options_.charts, context);
     if (!charts.ok()) return charts.status();
     charts_ = std::move(*charts);
     report_charts();
@@ -105,9 +105,9 @@ class Export {
   }
 
   Status expose() {
-    record_.begin("exposure");
+    const Context& context = record_.begin("exposure");
     sampler_.emplace(scene_, options_.quantity);
-    Result<LuminanceStatistics> statistics = measure_luminance(*sampler_, context_);
+    Result<LuminanceStatistics> statistics = measure_luminance(*sampler_, context);
     if (!statistics.ok()) return statistics.status();
     Result<ToneMapping> tone = make_tone_mapping(options_.tone, *statistics);
     if (!tone.ok()) return tone.status();
@@ -133,10 +133,10 @@ class Export {
   }
 
   Status cut_long_charts() {
-    record_.begin("tiling");
+    const Context& context = record_.begin("tiling");
     const TextureOptions texture = texture_options();
-    const std::vector<double> densities = wanted_densities(*light_, texture, context_);
-    if (context_.cancelled()) return Status::cancelled();
+    const std::vector<double> densities = wanted_densities(*light_, texture, context);
+    if (context.cancelled()) return Status::cancelled();
     const std::size_t before = charts_.charts.size();
     const std::size_t cut =
         cut_to_limits(view_of(scene_), longest_sides(charts_, densities, {texture, options_}),
@@ -148,9 +148,9 @@ class Export {
   }
 
   Status size_textures() {
-    record_.begin("downsizing");
+    const Context& context = record_.begin("downsizing");
     const TextureOptions texture = texture_options();
-    Result<TextureResult> sized = size_chart_textures(*light_, texture, context_);
+    Result<TextureResult> sized = size_chart_textures(*light_, texture, context);
     if (!sized.ok()) return sized.status();
     for (const ChartTexture& t : sized->charts) {
       densities_.push_back(t.texels_per_unit);
@@ -197,16 +197,16 @@ class Export {
   }
 
   // No light asks for no resolution of its own: pages filled as well as packing can.
-  Result<PageLayout> lay_out_plain(const LayoutOptions& options) {
+  Result<PageLayout> lay_out_plain(const LayoutOptions& options, const Context& context) {
     const double texels = double(options.pages) * options.page_size * options.page_size;
     const PlainUvs uvs{view_of(scene_), options_.charts, filling_density(charts_, texels)};
-    Result<PageLayout> layout = fill_pages(uvs, options, charts_, context_);
+    Result<PageLayout> layout = fill_pages(uvs, options, charts_, context);
     report_charts();
     return layout;
   }
 
   Status pack() {
-    record_.begin("packing");
+    const Context& context = record_.begin("packing");
     const std::size_t uncut = charts_.charts.size();
     LayoutOptions layout;
     layout.page_size = page_size();
@@ -225,8 +225,8 @@ class Export {
       layout.square = options_.square_plain_page || options_.plain_pages > 1;
       layout.free_aspect = !layout.square;
     }
-    Result<PageLayout> laid =
-        plan_.bake ? lay_out_pages(charts_, densities_, layout, context_) : lay_out_plain(layout);
+    Result<PageLayout> laid = plan_.bake ? lay_out_pages(charts_, densities_, layout, context)
+                                         : lay_out_plain(layout, context);
     if (!laid.ok()) return in_terms_of_options(laid.status());
     layout_ = std::move(*laid);
     report_.grouping = layout_.grouping;
@@ -260,8 +260,8 @@ class Export {
   }
 
   Status bake() {
-    record_.begin("baking");
-    Result<BakedPages> baked = bake_pages({*light_, layout_, options_}, files_, context_);
+    const Context& context = record_.begin("baking");
+    Result<BakedPages> baked = bake_pages({*light_, layout_, options_}, files_, context);
     if (!baked.ok()) return files_.told_by_target(baked.status());
     report_.pages = baked->pages;
     image_sources_ = std::move(baked->image_sources);
@@ -291,7 +291,7 @@ class Export {
   }
 
   Status simplify() {
-    record_.begin("simplify");
+    const Context& context = record_.begin("simplify");
     std::vector<double> density(charts_.charts.size());
     for (std::size_t c = 0; c < density.size(); ++c) {
       // A texture that shrank because its light is even must not let the surface itself slip
@@ -303,7 +303,7 @@ class Export {
     SimplifyOptions simplify;
     simplify.max_slip_texels = options_.simplify_slip;
     Result<SimplifiedMesh> coarse =
-        simplify_charts({view_of(scene_), charts_, density}, simplify, context_);
+        simplify_charts({view_of(scene_), charts_, density}, simplify, context);
     if (!coarse.ok()) return coarse.status();
     coarse_ = std::move(*coarse);
     report_.simplified = true;
@@ -315,7 +315,7 @@ class Export {
   }
 
   Status write() {
-    record_.begin("writing");
+    const Context& context = record_.begin("writing");
     const ChartedMesh fine(scene_.indices, charts_);
     const WorldMesh mesh =
         coarse_ ? WorldMesh{coarse_->indices, coarse_->uv_indices, coarse_->triangle_chart}
@@ -331,21 +331,21 @@ class Export {
       ViewpointOptions eye;
       eye.up = options_.up;
       eye.metres_per_unit = scene_.metres_per_unit;
-      world.viewpoint = choose_viewpoint(scene_.positions, scene_.indices, eye, context_);
+      world.viewpoint = choose_viewpoint(scene_.positions, scene_.indices, eye, context);
     }
     for (std::size_t p = 0; p < image_sources_.size(); ++p) {
       world.pages[p].image = report_.pages[p].image;
       world.pages[p].image_source = image_sources_[p];
     }
     report_.triangles_out = mesh.triangle_chart.size();
-    Result<WorldFile> world_file = write_world(world, options_.target, files_, context_);
+    Result<WorldFile> world_file = write_world(world, options_.target, files_, context);
     if (!world_file.ok()) return world_file.status();
     report_.not_kept = world_file->not_kept;
     if (lower_extension(options_.target) == ".glb") {  // holds its images itself
       for (const auto& image : image_sources_) files_.discard(image);
       for (PageReport& page : report_.pages) page.image.clear();
     }
-    if (context_.cancelled()) return Status::cancelled();
+    if (context.cancelled()) return Status::cancelled();
     const std::vector<std::filesystem::path> written = files_.targets();
     if (Status s = files_.commit(); !s.ok()) return s;
     std::uint64_t bytes = 0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libatlas/charts/tiles.h"
+#include "libatlas/core/progress.h"
 
 namespace atlas {
 namespace {
@@ -48,7 +49,11 @@ struct Goal {
 // `charts`, cut where that fills pages better, and their layout.
 Result<PageLayout> cut_to_fill(const PlainUvs& uvs, const LayoutOptions& options, ChartSet& charts,
                                const Context& context) {
-  Result<PageLayout> best = lay_out(charts, uvs.density, options, context);
+  constexpr double kParts = 1 + kLongestSides.size();
+  const auto part = [&](double k) {
+    return part_of_stage(context, "pack", k / kParts, (k + 1) / kParts);
+  };
+  Result<PageLayout> best = lay_out(charts, uvs.density, options, part(0));
   const double area = charts.distortion.uv_area, root_area = std::sqrt(charts.surface_area);
   const Goal goal{options, area * uvs.density * uvs.density};
   const bool may_cut = uvs.options.min_fill > 0 && !uvs.options.keep_uv_charts &&
@@ -56,12 +61,13 @@ Result<PageLayout> cut_to_fill(const PlainUvs& uvs, const LayoutOptions& options
   if (!may_cut || !best.ok() || goal.reached(*best)) return best;
   const ChartSet whole = charts;
   const double side = std::sqrt(area / double(options.pages));
-  for (const double longest : kLongestSides) {
-    const std::vector<double> limits(whole.charts.size(), longest * side);
+  for (std::size_t k = 0; k < kLongestSides.size(); ++k) {
+    const std::vector<double> limits(whole.charts.size(), kLongestSides[k] * side);
     ChartSet cut = whole;
     if (cut_to_limits(uvs.mesh, limits, uvs.options.max_stretch, cut) == 0) continue;
-    Result<PageLayout> layout = lay_out(cut, uvs.density, options, context);
-    if (!layout.ok()) return layout;
+    Result<PageLayout> layout = lay_out(cut, uvs.density, options, part(double(k) + 1));
+    if (!layout.ok() && layout.status().code() != ErrorCode::no_solution) return layout;
+    if (!layout.ok()) break;  // gutters around pieces take more than there is; more so around less
     const double gain = goal.covered(*layout) / goal.covered(*best) - 1;
     const double seams = (cut.seam_length - charts.seam_length) / root_area;
     if (!(gain >= std::max(kLeastGain, kSeamPrice * seams))) continue;
@@ -79,9 +85,12 @@ Result<PageLayout> fill_pages(const PlainUvs& uvs, const LayoutOptions& options,
   // Several pages are pressed in the end only: it would take seconds for each way of cutting.
   LayoutOptions unpressed = options;
   unpressed.press_pages = false;
-  Result<PageLayout> layout = cut_to_fill(uvs, unpressed, charts, context);
-  if (!layout.ok() || !options.press_pages || layout->pages.size() < 2) return layout;
-  return lay_out(charts, uvs.density, options, context);
+  constexpr double kPressing = 0.6;
+  const bool press = options.press_pages && options.pages > 1;
+  Result<PageLayout> layout =
+      cut_to_fill(uvs, unpressed, charts, part_of_stage(context, "pack", 0, press ? kPressing : 1));
+  if (!layout.ok() || !press || layout->pages.size() < 2) return layout;
+  return lay_out(charts, uvs.density, options, part_of_stage(context, "pack", kPressing, 1));
 }
 
 }  // namespace atlas

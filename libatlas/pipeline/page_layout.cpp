@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "libatlas/core/progress.h"
+
 namespace atlas {
 namespace {
 
@@ -179,8 +181,8 @@ bool worth_outlining(const ChartSet& charts, std::span<const Vec2d> texels_per_u
 // filled 0.76 instead of 0.64 of theirs.
 constexpr double kPoor = 0.66, kPoorWithGutters = 0.7;
 
-// Nor where gutters are what takes the page, as on small ones, nor with more charts than are pressed
-// together: of 900 loose triangles it won 1 % in 7 s.
+// Nor where gutters are what takes the page, as on small ones, nor with more charts than are
+// pressed together: of 900 loose triangles it won 1 % in 7 s.
 constexpr std::size_t kMostCharts = 128;
 
 // Of the pages, what charts take with their gutters.
@@ -209,19 +211,22 @@ Result<PageLayout> lay_out_better(const ChartSet& charts, std::span<const Vec2d>
                                   const LayoutOptions& options, const Context& context) {
   LayoutOptions boxes = options;
   boxes.outlines = false;
-  Result<PageLayout> boxed = lay_out(charts, texels_per_unit, boxes, context);
+  const auto part = [&](double from, double to) {
+    return part_of_stage(context, "pack", from, to);
+  };
+  Result<PageLayout> boxed = lay_out(charts, texels_per_unit, boxes, part(0, 0.2));
   const auto full = [&] {  // not where a page more would have let all charts be larger
     return boxed->uv_utilization > kFull &&
            (boxed->pages.size() >= options.pages || boxed->scale >= 1);
   };
   if (!options.outlines || (boxed.ok() && (full() || !worth_outlining(charts, texels_per_unit))))
     return boxed;
-  Result<PageLayout> best = lay_out(charts, texels_per_unit, options, context);
+  Result<PageLayout> best = lay_out(charts, texels_per_unit, options, part(0.2, 0.6));
   if (!best.ok() || (boxed.ok() && !better(*best, *boxed, options))) best = std::move(boxed);
   if (!best.ok() || !worth_more_work(charts, *best, options)) return best;
   LayoutOptions harder = options;
   harder.preset = PackPreset::best;
-  Result<PageLayout> more = lay_out(charts, texels_per_unit, harder, context);
+  Result<PageLayout> more = lay_out(charts, texels_per_unit, harder, part(0.6, 1));
   return more.ok() && better(*more, *best, options) ? more : best;
 }
 

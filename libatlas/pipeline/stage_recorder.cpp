@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "libatlas/core/clock.h"
+#include "libatlas/core/progress.h"
 
 namespace atlas {
 
@@ -11,11 +12,13 @@ StageRecorder::StageRecorder(ExportReport& report,
                              const Context& context)
     : report_(report), stage_done_(stage_done), context_(context) {}
 
-void StageRecorder::begin(std::string name) {
+const Context& StageRecorder::begin(std::string name) {
   name_ = std::move(name);
+  stage_context_ = part_of_stage(context_, name_);
   cpu_ = cpu_seconds();
   wall_ = wall_seconds();
-  context_.report(name_, 0);
+  stage_context_.report(name_, 0);
+  return stage_context_;
 }
 
 void StageRecorder::finish(StageOutcome outcome) {

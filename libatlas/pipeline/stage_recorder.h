@@ -23,8 +23,9 @@ class StageRecorder {
   StageRecorder(ExportReport& report, const std::function<void(const StageReport&)>& stage_done,
                 const Context& context);
 
-  // Starts a stage's clocks; finish() stops them and appends the stage to the report.
-  void begin(std::string name);
+  // Starts a stage's clocks; finish() stops them and appends the stage to the report. What the
+  // stage calls with the context returned reports its progress by the stage's name.
+  const Context& begin(std::string name);
   void finish(StageOutcome outcome);
 
   // Appends a stage that was measured elsewhere.
@@ -34,6 +35,7 @@ class StageRecorder {
   ExportReport& report_;
   const std::function<void(const StageReport&)>& stage_done_;
   const Context& context_;
+  Context stage_context_;
   std::string name_;
   double cpu_ = 0, wall_ = 0;  // at begin()
 };

@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cmath>
+#include <unordered_map>
 #include <utility>
 
 #include "libatlas/pipeline/assemble_world.h"
@@ -51,21 +52,25 @@ Result<PageLayout> lay_out(const MeshView& mesh, const UnwrapOptions& options, C
 }
 
 // One vertex for each pair of an input vertex and a uv that some corner names, in the order of the
-// corners. A uv has seldom more than one: the input's vertices at one place are told apart here.
+// corners. A uv has seldom more than one: the input's vertices at one place are told apart here,
+// and the hub of a soup's fan has thousands.
 void join_corners(std::span<const std::uint32_t> indices, std::span<const Vec2f> uvs,
                   UnwrappedMesh& mesh) {
   constexpr std::uint32_t kNone = 0xffffffffu;
-  std::vector<std::uint32_t> first(uvs.size(), kNone), next;
+  std::vector<std::uint32_t> first(uvs.size(), kNone);
+  std::unordered_map<std::uint64_t, std::uint32_t> others;  // by uv and input vertex
   mesh.indices.resize(indices.size());
   for (std::size_t i = 0; i < indices.size(); ++i) {
-    const std::uint32_t uv = mesh.charts.triangle_uv[i];
-    std::uint32_t v = first[uv];
-    while (v != kNone && mesh.vertices[v] != indices[i]) v = next[v];
+    const std::uint32_t uv = mesh.charts.triangle_uv[i],
+                        added = std::uint32_t(mesh.vertices.size());
+    std::uint32_t& v =
+        first[uv] == kNone || mesh.vertices[first[uv]] == indices[i]
+            ? first[uv]
+            : others.try_emplace(std::uint64_t{uv} << 32 | indices[i], kNone).first->second;
     if (v == kNone) {
-      v = std::uint32_t(mesh.vertices.size());
+      v = added;
       mesh.vertices.push_back(indices[i]);
       mesh.uvs.push_back(uvs[uv]);
-      next.push_back(std::exchange(first[uv], v));
     }
     mesh.indices[i] = v;
   }
@@ -92,7 +97,11 @@ Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& opt
   result.texels_per_unit = result.placements[0].texels_per_unit.x;
   const std::vector<Vec2d> exact = page_uvs({result.charts, result.placements, result.pages});
   std::vector<Vec2f> rounded;
-  round_uvs(exact, ChartedMesh(mesh.indices, result.charts).view().uv_indices, rounded);
+  result.closed_triangles =
+      round_uvs(exact, ChartedMesh(mesh.indices, result.charts).view().uv_indices, rounded);
+  if (result.closed_triangles > 0)
+    context.say(fmt::format("{} slivers have no area or are turned over in uvs rounded to floats",
+                            result.closed_triangles));
   join_corners(mesh.indices, rounded, result);
   result.triangle_page.reserve(result.charts.triangle_chart.size());
   for (const std::uint32_t chart : result.charts.triangle_chart)

@@ -18,7 +18,8 @@ struct UnwrapOptions {
   std::int32_t page_size = 2048;  // largest side of a page, texels, 64 to 16384
   std::int32_t padding = 2;       // texels kept free around each chart, >= 0
   // Texels along a unit of length, the same for all charts; 0: as many as the pages hold. Where
-  // they hold less all charts get less; UnwrappedMesh::texels_per_unit tells.
+  // they hold less all charts get less; UnwrappedMesh::texels_per_unit tells. A single page that is
+  // not square is made as full as it can be, not its charts as large.
   double texels_per_unit = 0;
   // Sides are powers of two (page_size must be one), and equal. Else a single page has the shape
   // that packs best, which textures for it must share; several have sides of powers of two.
@@ -34,6 +35,7 @@ struct UnwrappedMesh {
   std::vector<Extent> pages;                 // texels
   double texels_per_unit = 0;                // reached
   double utilization = 0;                    // area of the charts / area of the pages
+  std::uint64_t closed_triangles = 0;        // slivers that floats leave no area, or turn over
   ChartSet charts;                           // with all that was measured: distortion, seams
   std::vector<ChartPlacement> placements;    // 1 a chart
 };

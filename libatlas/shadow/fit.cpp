@@ -34,6 +34,10 @@ bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+double largest(const glm::dvec3& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
 // Columns right, up, towards the light.
 struct Basis {
   glm::dvec3 right, up, back;
@@ -42,7 +46,8 @@ struct Basis {
 Basis light_basis(const glm::dvec3& direction, const Vec3d& wanted_up) {
   glm::dvec3 up = to_glm(wanted_up);
   // Within about 0.6 degrees of the vertical any other axis serves better than rounding noise.
-  if (glm::length(glm::cross(up, direction)) < 0.01 * glm::length(up) || !finite(up)) {
+  if (!(glm::length(glm::cross(up, direction)) >= 0.01 * glm::length(up)) ||
+      !(glm::length(up) > 0) || !finite(up)) {
     const glm::dvec3 a = glm::abs(direction);
     up = a.x <= a.y && a.x <= a.z ? glm::dvec3(1, 0, 0)
                                   : (a.y <= a.z ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1));
@@ -88,6 +93,14 @@ Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene,
     return Status{ErrorCode::bad_option, "shadow map: the light's direction is zero or not finite"};
   if (!finite(low) || !finite(high) || low.x > high.x || low.y > high.y || low.z > high.z)
     return Status{ErrorCode::bad_option, "shadow map: the scene's bounds are empty or not finite"};
+  // Their squares are summed.
+  constexpr double kFarthest = 1e150;
+  if (!(std::max(largest(low), largest(high)) <= kFarthest))
+    return Status{ErrorCode::bad_option, "shadow map: the scene's bounds reach beyond 1e150"};
+  if (!(options.border_texels >= 0))
+    return Status{
+        ErrorCode::bad_option,
+        fmt::format("shadow map: a border of {} texels (0 or more)", options.border_texels)};
   const double free = 1 - 2 * options.border_texels / options.resolution;
   if (options.resolution < 1 || !(free > 0))
     return Status{ErrorCode::bad_option,
@@ -99,7 +112,12 @@ Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene,
   Sphere fitted = whole;
   if (options.view) {
     std::array<glm::dvec3, 8> points;
-    for (int i = 0; i < 8; ++i) points[i] = to_glm(options.view_corners[i]);
+    for (int i = 0; i < 8; ++i) {
+      points[i] = to_glm(options.view_corners[i]);
+      if (!finite(points[i]))
+        return Status{ErrorCode::bad_option,
+                      fmt::format("shadow map: corner {} of the view is not finite", i)};
+    }
     const Sphere view = around(points);
     if (view.radius > 0 && finite(view.centre) && view.radius < whole.radius) fitted = view;
   }

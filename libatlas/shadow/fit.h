@@ -18,7 +18,7 @@ using Matrix4 = std::array<double, 16>;
 
 struct LightFitOptions {
   int resolution = 2048;  // texels a side, >= 1
-  Vec3d up{0, 1, 0};      // the map's vertical, where it is not parallel to the light
+  Vec3d up{0, 1, 0};      // the map's vertical, unless it is zero, not finite or along the light
   bool snap = true;       // move the map in whole texels only: edges do not crawl with the camera
   double border_texels = 4;  // free texels around what is fitted, for filters that look beside it
   // The eight corners of the part of the view to cover; all zero (view == false): the whole scene.
@@ -41,7 +41,8 @@ struct LightFit {
 // bounding sphere are, their casters still being in the depth range. The side is the diameter of
 // the sphere around what is fitted: it does not change when the light turns or the camera does, so
 // texels keep their size. bad_option if the direction is zero, the box has a low above its high,
-// either is not finite, or the border leaves no texel. A box of one point is fitted, too.
+// either or a corner of the view is not finite, the box reaches beyond 1e150, or the border is
+// negative or leaves no texel. A box of one point is fitted, too.
 Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene,
                            const LightFitOptions& options);
 

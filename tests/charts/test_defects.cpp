@@ -91,6 +91,16 @@ TEST(Defects, ADoubledSurfaceIsTwoSheets) {
   EXPECT_LE(whole(mesh).charts.size(), 4u);
 }
 
+// However many sheets lie upon each other, each is a chart.
+TEST(Defects, FortySheetsUponEachOther) {
+  Mesh mesh(grid(6, 6));
+  const std::vector<std::uint32_t> sheet = mesh.indices;
+  for (int k = 1; k < 40; ++k) mesh.indices.insert(mesh.indices.end(), sheet.begin(), sheet.end());
+  const ChartSet set = whole(mesh);
+  EXPECT_EQ(set.charts.size(), 40u);
+  EXPECT_EQ(set.repairs.duplicate_triangles, 39 * sheet.size() / 3);
+}
+
 TEST(Defects, TrianglesWithoutAreaJoinTheirNeighbours) {
   Mesh mesh(grid(6, 6));
   const std::size_t before = mesh.indices.size() / 3;

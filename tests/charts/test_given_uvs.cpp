@@ -406,5 +406,13 @@ TEST(GivenUvs, TooFewIndicesAreAnError) {
   EXPECT_EQ(make_charts(mesh.view(), options, {}).status().code(), ErrorCode::bad_input);
 }
 
+TEST(GivenUvs, TooFewTexcoordsAreAnError) {
+  Mesh mesh(grid(4, 4));
+  mesh.texcoords.resize(mesh.positions.size() - 1);
+  ChartOptions options;
+  options.keep_uv_charts = true;
+  EXPECT_EQ(make_charts(mesh.view(), options, {}).status().code(), ErrorCode::bad_input);
+}
+
 }  // namespace
 }  // namespace atlas::test

@@ -220,9 +220,33 @@ TEST(FitPages, Failures) {
   o.pages = 0;
   EXPECT_EQ(fit_pages(many, o, {}).status().code(), ErrorCode::bad_option);
   o.pages = 1;
+  o.max_packings = 1;
+  EXPECT_EQ(fit_pages(many, o, {}).status().code(), ErrorCode::bad_option);
+  o.max_packings = 2;
   o.page_size = 60;
   EXPECT_EQ(fit_pages(many, o, {}).status().code(), ErrorCode::bad_option);
   EXPECT_TRUE(fit_pages({}, {}, {}).ok());
+}
+
+// Gutters that take the very last texel leave none for a chart.
+TEST(FitPages, NothingFitsBetweenGutters) {
+  for (const int count : {4, 16}) {
+    test::Noise noise{3};
+    std::vector<std::vector<Vec2d>> blobs;
+    for (int k = 0; k < count; ++k) blobs.push_back(test::blob(noise, 20 + k, 7));
+    const test::ChartItems charts(std::move(blobs));
+    FitOptions o;
+    o.page_size = 256;
+    o.padding = count == 4 ? 64 : 32;
+    o.alignment = 1;
+    o.minimum_side = 0;
+    o.shapes = charts.shapes;
+    EXPECT_EQ(fit_pages(charts.items, o, {}).status().code(), ErrorCode::no_solution) << count;
+    o.padding /= 2;
+    const Result<FitResult> fit = fit_pages(charts.items, o, {});
+    ASSERT_TRUE(fit.ok());
+    EXPECT_EQ(fit->placements.size(), charts.items.size());
+  }
 }
 
 TEST(FitPages, OutlinesFitMoreThanBoxes) {

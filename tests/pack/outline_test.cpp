@@ -69,6 +69,16 @@ TEST(Outline, ChartsKeepTheirGutters) {
       }
 }
 
+TEST(Outline, CoveredAreaCountsWhatLiesOnItselfOnce) {
+  const std::vector<Vec2d> corners{{0, 0}, {8, 0}, {8, 8}, {0, 8}};
+  const std::vector<std::uint32_t> twice{0, 1, 2, 0, 2, 3, 0, 1, 2}, beyond{0, 1, 4};
+  const Result<double> area = covered_area(std::vector<ChartShape>{{corners, twice}}, {});
+  ASSERT_TRUE(area.ok());
+  EXPECT_NEAR(*area, 64, 1);
+  EXPECT_EQ(covered_area(std::vector<ChartShape>{{corners, beyond}}, {}).status().code(),
+            ErrorCode::bad_input);
+}
+
 TEST(Outline, RectanglesAreASpecialCase) {
   // Sixteen squares of 30 texels with one texel around each fill a page of 128 exactly.
   const std::vector<Vec2d> square{{0, 0}, {30, 0}, {30, 30}, {0, 0}, {30, 30}, {0, 30}};

@@ -52,6 +52,16 @@ TEST(Advice, PagesOfGuttersAreNamed) {
   EXPECT_TRUE(advice_on(report, {}).empty());
 }
 
+// As of five metres where five millimetres were meant.
+TEST(Advice, TexelsAsLongAsChartsAreNamed) {
+  ExportReport report = report_of(16, 1, 16);
+  ExportOptions options;
+  EXPECT_TRUE(advice_on(report, options).empty());  // none were asked for
+  options.texel_metres = 5;
+  EXPECT_TRUE(holds(advice_on(report, options), "16 charts have 11 texels each on average, 5e+03"));
+  EXPECT_TRUE(advice_on(report_of(2, 1, 16), options).empty());
+}
+
 TEST(Advice, LightThatTheToneCurveLosesIsNamed) {
   ExportReport report = report_of(100, 8, 1024);
   report.luminance.log_average = 100;

@@ -80,6 +80,14 @@ TEST(FillPages, SeamsMustBeWorthIt) {
   EXPECT_DOUBLE_EQ(offered.charts.seam_length, whole.charts.seam_length);
 }
 
+// Wide gutters leave no room for those of pieces; for the charts as they are they do.
+TEST(FillPages, ChartsWhosePiecesHaveNoRoomStayWhole) {
+  for (const std::int32_t padding : {8, 12, 16}) {
+    const UnwrapOptions wide{.pages = 2, .page_size = 64, .padding = padding};
+    EXPECT_EQ(unwrap(grid(16, 16), wide).charts.charts.size(), 1u) << padding;
+  }
+}
+
 TEST(FillPages, WhatFillsItsPageStaysWhole) {
   const UnwrapOptions square{.page_size = 512, .square = true};
   EXPECT_EQ(unwrap(cap(64, 24, 0.3), square).charts.charts.size(), 1u);

@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "libatlas/core/clock.h"
 #include "libatlas/pipeline/export_world.h"
 #include "libatlas/scene/check_scene.h"
 #include "tests/pipeline/lit_scene.h"
@@ -89,6 +90,32 @@ TEST(Unwrap, VerticesOfOnePlaceStayApart) {
   expect_sound(view, *mesh);
   EXPECT_EQ(mesh->vertices, indices);
   EXPECT_LT(mesh->charts.charts.size(), 6u);  // the charts know that the places are one
+}
+
+// A soup of triangles about one hub, each with a copy of the hub's vertex: the copies share a uv in
+// each chart, and there are as many as triangles.
+TEST(Unwrap, AHubOfThousandsIsQuick) {
+  constexpr std::uint32_t kSpokes = 80000;
+  std::vector<Vec3f> positions;
+  std::vector<std::uint32_t> indices;
+  const auto rim = [](std::uint32_t k) {
+    const double a = 2 * M_PI * (k % kSpokes) / kSpokes;
+    return Vec3f{float(std::cos(a)), float(std::sin(a)), 0};
+  };
+  for (std::uint32_t k = 0; k < kSpokes; ++k) {
+    for (const Vec3f& p : {Vec3f{}, rim(k), rim(k + 1)}) {
+      indices.push_back(std::uint32_t(positions.size()));
+      positions.push_back(p);
+    }
+  }
+  MeshView view;
+  view.positions = positions;
+  view.indices = indices;
+  const double begun = cpu_seconds();
+  const auto mesh = unwrap_mesh(view, {.charts = {.preset = ChartPreset::fast}}, {});
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+  EXPECT_EQ(mesh->vertices, indices);
+  EXPECT_LT(cpu_seconds() - begun, 4);
 }
 
 TEST(Unwrap, PagesSquareAndSeveralWithADensity) {
@@ -204,8 +231,13 @@ TEST(ManyThreads, UnwrapAndExportAtOnce) {
   }
 }
 
+// Also where pages are packed several times, cut charts and all.
 TEST(Unwrap, ProgressEndsAtOne) {
   const LoadedScene ring = lit_scene(torus(24, 12));
+  const Shape strip = grid(240, 2, 6, 0.05);
+  MeshView long_strip;
+  long_strip.positions = strip.positions;
+  long_strip.indices = strip.indices;
   Context context;
   std::string last;
   double fraction = -1;
@@ -218,8 +250,16 @@ TEST(Unwrap, ProgressEndsAtOne) {
     last = stage;
     fraction = f;
   };
-  ASSERT_TRUE(unwrap_mesh(view_of(ring.scene), {}, context).ok());
-  EXPECT_EQ(fraction, 1);
+  const UnwrapOptions square{.page_size = 256, .square = true},
+      several{.pages = 4, .page_size = 256};
+  for (const MeshView& mesh : {view_of(ring.scene), long_strip}) {
+    for (const UnwrapOptions& options : {UnwrapOptions{}, square, several}) {
+      last.clear();
+      fraction = -1;
+      ASSERT_TRUE(unwrap_mesh(mesh, options, context).ok());
+      EXPECT_EQ(fraction, 1);
+    }
+  }
 }
 
 TEST(Unwrap, ACallbacksExceptionComesOut) {

@@ -142,6 +142,16 @@ TEST(Fit, ASmallViewKeepsTheDepthOfTheWholeScene) {
   }
 }
 
+TEST(Fit, AnyVerticalWillDo) {
+  for (const Vec3d& up : {Vec3d{0, 0, 0}, Vec3d{std::nan(""), 0, 0}, Vec3d{0, 1, 0}}) {
+    LightFitOptions o;
+    o.up = up;
+    const Result<LightFit> fit = fit_light({0, 1, 0}, {{-1, -1, -1}, {1, 1, 1}}, o);
+    ASSERT_TRUE(fit.ok());
+    for (const double m : fit->to_clip) EXPECT_TRUE(std::isfinite(m));
+  }
+}
+
 TEST(Fit, SaysWhatIsWrong) {
   const Box3 box{{0, 0, 0}, {1, 1, 1}};
   EXPECT_FALSE(fit_light({0, 0, 0}, box, {}).ok());
@@ -151,6 +161,13 @@ TEST(Fit, SaysWhatIsWrong) {
   tiny.resolution = 8;
   EXPECT_FALSE(fit_light({0, 1, 0}, box, tiny).ok());
   EXPECT_TRUE(fit_light({0, 1, 0}, {{5, 5, 5}, {5, 5, 5}}, {}).ok());  // a single point
+  EXPECT_FALSE(fit_light({0, 1, 0}, {{-1e200, 0, 0}, {1e200, 1, 1}}, {}).ok());
+  LightFitOptions negative, nowhere;
+  negative.border_texels = -1;
+  EXPECT_FALSE(fit_light({0, 1, 0}, box, negative).ok());
+  nowhere.view = true;
+  nowhere.view_corners[3].y = std::nan("");
+  EXPECT_FALSE(fit_light({0, 1, 0}, box, nowhere).ok());
 }
 
 }  // namespace

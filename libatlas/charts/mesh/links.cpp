@@ -116,14 +116,17 @@ class Linker {
     std::sort(fan.begin(), fan.end(), [&](std::uint32_t g, std::uint32_t h) {
       return third(g) != third(h) ? third(g) < third(h) : g < h;
     });
-    std::vector<std::uint32_t> originals, copies;
-    for (std::size_t i = 0; i < fan.size(); ++i) {
+    // The first triangles of each third vertex, their first copies, the second ones: as many layers
+    // as the surface lies upon itself.
+    std::vector<std::vector<std::uint32_t>> layers;
+    for (std::size_t i = 0, layer = 0; i < fan.size(); ++i) {
       const bool copy = i > 0 && third(fan[i]) == third(fan[i - 1]);
       if (copy) mark_duplicate(fan[i - 1], fan[i]);
-      (copy ? copies : originals).push_back(fan[i]);
+      layer = copy ? layer + 1 : 0;
+      if (layer == layers.size()) layers.emplace_back();
+      layers[layer].push_back(fan[i]);
     }
-    pair_by_flatness(originals);
-    pair_by_flatness(copies);
+    for (const std::vector<std::uint32_t>& layer : layers) pair_by_flatness(layer);
   }
 
   void pair_by_flatness(const std::vector<std::uint32_t>& fan) {
