@@ -1,6 +1,8 @@
 // glTF 2.0 and GLB of a scene with atlas coordinates: a mesh an object, a primitive a material.
 #include <algorithm>
 #include <map>
+#include <tuple>
+#include <utility>
 
 #include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/gltf_document.h"
@@ -15,7 +17,8 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
 
-constexpr int kLinear = 9729, kLinearMipmapLinear = 9987;
+constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kClampToEdge = 33071,
+              kMirroredRepeat = 33648;
 
 // A material without its texture.
 json look_of(const Material& material) {
@@ -50,7 +53,7 @@ class MaterialWriter {
     if (!is_new) return at->second;
     json entry = look_of(material);
     if (textured) {
-      auto number = texture(std::size_t(material.texture));
+      auto number = texture(material);
       if (!number.ok()) return number.status();
       entry["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", *number}};
     }
@@ -59,16 +62,37 @@ class MaterialWriter {
   }
 
  private:
-  Result<std::size_t> texture(std::size_t index) {
-    const auto [at, is_new] = textures_.try_emplace(index, textures_.size());
+  // One a texture and way to go on outside it.
+  Result<std::size_t> texture(const Material& material) {
+    const auto key = std::tuple(material.texture, material.wrap_u, material.wrap_v);
+    const auto [at, is_new] = textures_.try_emplace(key, textures_.size());
     if (!is_new) return at->second;
-    json& file = document_.json;
+    auto source = image(std::size_t(material.texture));
+    if (!source.ok()) return source.status();
+    document_.json["textures"].push_back(
+        {{"sampler", sampler(material.wrap_u, material.wrap_v)}, {"source", *source}});
+    return at->second;
+  }
+
+  Result<std::size_t> image(std::size_t index) {
+    const auto [at, is_new] = images_.try_emplace(index, images_.size());
+    if (!is_new) return at->second;
     auto image = files_.image(index);
     if (!image.ok()) return image.status();
-    file["images"].push_back(std::move(*image));
-    // Textures repeat, as they do without a word on it.
-    file["samplers"] = json::array({{{"magFilter", kLinear}, {"minFilter", kLinearMipmapLinear}}});
-    file["textures"].push_back({{"sampler", 0}, {"source", at->second}});
+    document_.json["images"].push_back(std::move(*image));
+    return at->second;
+  }
+
+  // Textures repeat without a word on it.
+  std::size_t sampler(TextureWrap u, TextureWrap v) {
+    const auto [at, is_new] = samplers_.try_emplace({u, v}, samplers_.size());
+    if (!is_new) return at->second;
+    json entry = {{"magFilter", kLinear}, {"minFilter", kLinearMipmapLinear}};
+    for (const auto& [name, wrap] : {std::pair("wrapS", u), std::pair("wrapT", v)}) {
+      if (wrap == TextureWrap::clamp) entry[name] = kClampToEdge;
+      if (wrap == TextureWrap::mirror) entry[name] = kMirroredRepeat;
+    }
+    document_.json["samplers"].push_back(std::move(entry));
     return at->second;
   }
 
@@ -76,7 +100,9 @@ class MaterialWriter {
   GltfDocument& document_;
   GltfTextures& files_;
   std::map<std::pair<std::uint32_t, bool>, std::size_t> materials_;  // with or without texture
-  std::map<std::size_t, std::size_t> textures_;
+  std::map<std::tuple<std::int32_t, TextureWrap, TextureWrap>, std::size_t> textures_;
+  std::map<std::size_t, std::size_t> images_;
+  std::map<std::pair<TextureWrap, TextureWrap>, std::size_t> samplers_;
 };
 
 // What vertices carry is a colour to viewers as long as it can be one; the name of what cannot be
@@ -190,7 +216,7 @@ std::vector<std::string> lost_lines(const Scene& scene) {
   for (const Material& material : scene.materials) {
     for (const std::string& line : material.mtl_lines) {
       const std::string keyword = line.substr(0, line.find_first_of(" \t"));
-      if (keyword != "map_Kd") losses.add("lines of the MTL: " + keyword);
+      if (keyword != "map_Kd" && keyword != "d") losses.add("lines of the MTL: " + keyword);
     }
   }
   return losses.lines();

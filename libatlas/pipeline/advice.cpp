@@ -104,4 +104,22 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
   return lines;
 }
 
+std::string advice_on_transparency(const Scene& scene) {
+  std::size_t count = 0;
+  const Material* first = nullptr;
+  for (const Material& m : scene.materials) {
+    const bool holes =
+        m.texture >= 0 && scene.textures[std::size_t(m.texture)].image.channels % 2 == 0;
+    if (m.alpha_mode == AlphaMode::opaque || (m.opacity >= 1 && !holes)) continue;
+    if (count++ == 0) first = &m;
+  }
+  if (count == 0) return "";
+  return fmt::format(
+      "{} material{} ('{}'{}) {} transparent or {} holes: baked pages are opaque (export such "
+      "parts "
+      "by themselves with --keep-scene)",
+      count, count == 1 ? "" : "s", first->name, count == 1 ? "" : ", ...",
+      count == 1 ? "is" : "are", count == 1 ? "has" : "have");
+}
+
 }  // namespace atlas

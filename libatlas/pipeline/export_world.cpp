@@ -70,6 +70,8 @@ class Export {
     if (Status s = write(); !s.ok()) return s;
     report_.carried_out = true;
     report_.advice = advice_on(report_, options_);
+    if (std::string line = plan_.bake ? advice_on_transparency(scene_) : ""; !line.empty())
+      report_.advice.push_back(std::move(line));
     for (const std::string& line : report_.advice) context_.say(line);
     report_.cpu_seconds = cpu_seconds() - cpu;
     report_.wall_seconds = wall_seconds() - wall;

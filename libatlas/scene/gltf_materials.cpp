@@ -139,6 +139,19 @@ void add_transform(const tinygltf::TextureInfo& info, RawMaterial& material) {
   material.uv_v = {s * scale[0], c * scale[1], 1 - c * scale[1] - offset[1]};
 }
 
+TextureWrap wrap_of(int mode) {
+  if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return TextureWrap::clamp;
+  return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? TextureWrap::mirror : TextureWrap::repeat;
+}
+
+void add_wraps(const tinygltf::Model& model, int texture, RawMaterial& material) {
+  if (texture < 0 || std::size_t(texture) >= model.textures.size()) return;
+  const int sampler = model.textures[texture].sampler;
+  if (sampler < 0 || std::size_t(sampler) >= model.samplers.size()) return;
+  material.wrap_u = wrap_of(model.samplers[sampler].wrapS);
+  material.wrap_v = wrap_of(model.samplers[sampler].wrapT);
+}
+
 }  // namespace
 
 Result<std::vector<int>> add_gltf_materials(const tinygltf::Model& model, SceneBuilder& builder) {
@@ -159,6 +172,7 @@ Result<std::vector<int>> add_gltf_materials(const tinygltf::Model& model, SceneB
       });
     }
     add_transform(diffuse.texture, material);
+    add_wraps(model, diffuse.texture.index, material);
     builder.materials.push_back(std::move(material));
     sets.push_back(texcoord_set(diffuse.texture));
   }

@@ -45,6 +45,7 @@ class MtlParser {
       inside_ = true;
       return {};
     }
+    if (keyword == "d") return parse_opacity();
     if (keyword != "Kd" && keyword != "map_Kd") return {};
     if (!inside_) return malformed(fmt::format("{} before the first newmtl", keyword));
     return keyword == "Kd" ? parse_colour() : parse_map();
@@ -56,6 +57,17 @@ class MtlParser {
     TextScanner rest = scan_;
     const char* end = rest.rest_with_comment().end();
     builder_.materials.back().mtl_lines.emplace_back(keyword.data(), end);
+  }
+
+  // What is no share (`d -halo 0.5`) is left out, and so is Tr, which some write for 1 - d and some
+  // for d.
+  Status parse_opacity() {
+    double share = 0;
+    if (!inside_ || !scan_.number(share) || !(share >= 0 && share <= 1)) return {};
+    RawMaterial& material = builder_.materials.back();
+    material.opacity = static_cast<float>(share);
+    material.alpha_mode = material.opacity < 1 ? AlphaMode::blend : AlphaMode::opaque;
+    return {};
   }
 
   Status parse_colour() {
@@ -122,6 +134,10 @@ class MtlParser {
     } else {  // one argument: on|off, a number, or a channel's letter
       const std::string_view argument = next_word(rest);
       if (argument == "off" || option == "-blendu" || option == "-blendv") return {};
+      if (option == "-clamp" && argument == "on") {
+        material.wrap_u = material.wrap_v = TextureWrap::clamp;
+        return {};
+      }
     }
     builder_.defects.add(DefectKind::texture_option_ignored,
                          [&] { return fmt::format("{}: {}", place(), option); });

@@ -18,12 +18,16 @@ struct GltfSource;  // internal to the library
 // What a fourth channel means: nothing, holes where it is below a threshold, or glass.
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 
+// How a texture goes on outside [0, 1]: again and again, mirrored each time, or as at its edge.
+enum class TextureWrap : std::uint8_t { repeat, mirror, clamp };
+
 // Lambertian reflectance: diffuse (linear RGB, 0..1) times the texture, if there is one.
 struct Material {
   std::string name;
   Vec3f diffuse{1, 1, 1};
   std::int32_t texture = -1;  // index into Scene::textures, or -1
-  // Of glTF; handed on by exports that keep the scene. To light every surface is opaque.
+  TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
+  // Handed on by exports that keep the scene. To light every surface is opaque.
   float opacity = 1;  // 0..1, times the texture's
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;  // the threshold of holes, >= 0
@@ -33,7 +37,7 @@ struct Material {
   std::vector<std::string> mtl_lines = {};
 };
 
-// A diffuse texture. Values are 8-bit sRGB-encoded, repeat outside [0, 1]², origin bottom left.
+// A diffuse texture. Values are 8-bit sRGB-encoded, origin bottom left.
 struct Texture {
   std::filesystem::path path;  // where it was read from, for messages
   Image8 image;                // at least 1 channel; grey is channel 0, colour channels 0..2

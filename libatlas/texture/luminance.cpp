@@ -55,6 +55,12 @@ Image8 halve(const TextureLevels::Level& in) {
   return out;
 }
 
+// What is taken off a coordinate first, so that far-off ones lose no precision.
+float whole_repeats(float least, TextureWrap wrap) {
+  if (wrap == TextureWrap::clamp) return 0;
+  return wrap == TextureWrap::mirror ? 2 * std::floor(least / 2) : std::floor(least);
+}
+
 // The texture of triangle t if it has one that can be looked up, or -1.
 std::int32_t texture_of(const Scene& scene, std::uint32_t t) {
   const std::int32_t id = scene.materials[scene.triangle_material[t]].texture;
@@ -167,14 +173,16 @@ LuminanceSampler::Triangle LuminanceSampler::prepare(std::uint32_t t, double sam
   const TextureLevels::Level& level = levels[out.level];
   Vec2f c[3];
   for (int k = 0; k < 3; ++k) c[k] = s.texcoords[s.texcoord_indices[3 * std::size_t(t) + k]];
-  // Repeats are taken off first, so that far-off coordinates lose no precision.
-  const float u0 = std::floor(std::min({c[0].x, c[1].x, c[2].x}));
-  const float v0 = std::floor(std::min({c[0].y, c[1].y, c[2].y}));
+  out.wrap_u = s.materials[s.triangle_material[t]].wrap_u;
+  out.wrap_v = s.materials[s.triangle_material[t]].wrap_v;
+  const float u0 = whole_repeats(std::min({c[0].x, c[1].x, c[2].x}), out.wrap_u);
+  const float v0 = whole_repeats(std::min({c[0].y, c[1].y, c[2].y}), out.wrap_v);
   for (int k = 0; k < 3; ++k) {
     out.texcoord[k][0] = (c[k].x - u0) * level.width;
     out.texcoord[k][1] = (c[k].y - v0) * level.height;
     // Across millions of texels a float knows no position any more: the texture's mean.
-    if (!(out.texcoord[k][0] < kMostTexels) || !(out.texcoord[k][1] < kMostTexels)) {
+    if (!(std::fabs(out.texcoord[k][0]) < kMostTexels) ||
+        !(std::fabs(out.texcoord[k][1]) < kMostTexels)) {
       out.level = static_cast<int>(levels.size()) - 1;
       std::fill_n(&out.texcoord[0][0], 6, 0.0f);
       break;
@@ -188,7 +196,7 @@ Vec3f LuminanceSampler::sample(const Triangle& tri, float b0, float b1, float b2
   if (tri.texture) {
     const float x = b0 * tri.texcoord[0][0] + b1 * tri.texcoord[1][0] + b2 * tri.texcoord[2][0];
     const float y = b0 * tri.texcoord[0][1] + b1 * tri.texcoord[1][1] + b2 * tri.texcoord[2][1];
-    rgb = look_up(tri.texture->levels[tri.level], x, y);
+    rgb = look_up(tri.texture->levels[tri.level], {x, y}, {tri.wrap_u, tri.wrap_v});
   }
   const auto lane = [&](int k) {
     return rgb[k] * (b0 * tri.illumination[0][k] + b1 * tri.illumination[1][k] +

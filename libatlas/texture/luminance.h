@@ -40,6 +40,7 @@ class LuminanceSampler {
     float illumination[3][4];  // corner, RGB (already times Kd), 4th lane 0
     float texcoord[3][2];      // in texels of the mip level `level`
     const TextureLevels* texture = nullptr;
+    TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
     int level = 0;          // mip level to read
     bool constant = false;  // one colour over the whole triangle, illumination[0]
   };
@@ -50,7 +51,7 @@ class LuminanceSampler {
   Triangle prepare(std::uint32_t t, double sample_spacing) const;
 
   // RGB at barycentric coordinates (b0, b1, b2), which may lie a little outside: linear
-  // illumination times bilinear, repeating texture.
+  // illumination times bilinear texture.
   static Vec3f sample(const Triangle& triangle, float b0, float b1, float b2);
 
   // The first of triangle t's corners, 0..2, whose illumination times reflectance is no number, as

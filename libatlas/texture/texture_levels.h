@@ -23,23 +23,33 @@ struct TextureLevels {
   explicit TextureLevels(const Texture& texture);
 };
 
-// Linear RGB at (x, y) in texels of the level, repeating; the 4th lane is about 1.
-inline Lanes look_up(const TextureLevels::Level& level, float x, float y) {
+// The texel, of n, that stands for texel i.
+inline int wrapped(int i, int n, TextureWrap wrap) {
+  if (static_cast<unsigned>(i) < static_cast<unsigned>(n)) return i;
+  if (wrap == TextureWrap::clamp) return i < 0 ? 0 : n - 1;
+  const int period = wrap == TextureWrap::mirror ? 2 * n : n;
+  i %= period;
+  if (i < 0) i += period;
+  return i < n ? i : period - 1 - i;
+}
+
+// How both coordinates go on outside the texture.
+struct TextureWraps {
+  TextureWrap u = TextureWrap::repeat, v = TextureWrap::repeat;
+};
+
+// Linear RGB at (x, y) in texels of the level; the 4th lane is about 1.
+inline Lanes look_up(const TextureLevels::Level& level, Vec2f at_texel, TextureWraps wraps) {
   // Floor by truncation: coordinates are at most a few repeats below 0 and far from overflow.
   const auto floor_of = [](float v) {
     const int i = static_cast<int>(v);
     return i - (v < static_cast<float>(i));
   };
-  const float fx = x - 0.5f, fy = y - 0.5f;
+  const float fx = at_texel.x - 0.5f, fy = at_texel.y - 0.5f;
   const int gx = floor_of(fx), gy = floor_of(fy);
   const float tx = fx - static_cast<float>(gx), ty = fy - static_cast<float>(gy);
-  const auto wrap = [](int a, int n) {
-    if (static_cast<unsigned>(a) < static_cast<unsigned>(n)) return a;
-    a %= n;
-    return a < 0 ? a + n : a;
-  };
-  const int x0 = wrap(gx, level.width), y0 = wrap(gy, level.height);
-  const int x1 = x0 + 1 == level.width ? 0 : x0 + 1, y1 = y0 + 1 == level.height ? 0 : y0 + 1;
+  const int x0 = wrapped(gx, level.width, wraps.u), y0 = wrapped(gy, level.height, wraps.v);
+  const int x1 = wrapped(gx + 1, level.width, wraps.u), y1 = wrapped(gy + 1, level.height, wraps.v);
   const int c = level.channels, green = c >= 3 ? 1 : 0, blue = c >= 3 ? 2 : 0;
   const float* decode = srgb_detail::tables.decode;
   const auto at = [&](int i, int j) {

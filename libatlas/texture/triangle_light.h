@@ -19,7 +19,9 @@ class TriangleLight {
  public:
   // `light` as prepared by the sampler; `tone` may be null.
   TriangleLight(const LuminanceSampler::Triangle& light, const ToneMapping* tone)
-      : tone_(tone), level_(light.texture ? &light.texture->levels[light.level] : nullptr) {
+      : tone_(tone),
+        level_(light.texture ? &light.texture->levels[light.level] : nullptr),
+        wraps_{light.wrap_u, light.wrap_v} {
     for (int k = 0; k < 3; ++k) {
       const float* e = light.illumination[k];
       corner_[k] = Lanes{e[0], e[1], e[2], 1};
@@ -98,7 +100,7 @@ class TriangleLight {
  private:
   Lanes finish(Lanes e, Vec2f uv) const {
     if (level_) {
-      e *= look_up(*level_, uv.x, uv.y);
+      e *= look_up(*level_, uv, wraps_);
       e[3] = 1;
     }
     return tone_ ? show(e) : e;
@@ -127,6 +129,7 @@ class TriangleLight {
 
   const ToneMapping* tone_;
   const TextureLevels::Level* level_;
+  TextureWraps wraps_;
   bool direct_ = false;  // corner_ holds display values
   Lanes corner_[3], step_{};
   Vec2f texcoord_[3], texture_step_;

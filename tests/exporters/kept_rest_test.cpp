@@ -217,7 +217,7 @@ TEST(KeptRest, LinesOfMtl) {
   EXPECT_EQ(written.not_kept,
             (Lines{"5 x textures of materials (lines of the MTL, now comments)"}));
   const std::string mtl = TempFolder::read(folder / "w.mtl");
-  EXPECT_NE(mtl.find("newmtl a\nKd 0.5 0 0\nKa 1 1 1\nKe 2 2 0 # glows\nKs 1 0 1\nNs 250\nd 0.5\n"
+  EXPECT_NE(mtl.find("newmtl a\nKd 0.5 0 0\nd 0.5\nKa 1 1 1\nKe 2 2 0 # glows\nKs 1 0 1\nNs 250\n"
                      "Tr 0.5\nillum 2\n#map_Kd -s 2 2 a b.png\n#map_Bump n.png\n#bump n.png\n"
                      "#MAP_Ks s.png\nNi 1.45\n#map_d "),
             std::string::npos)
@@ -230,9 +230,31 @@ TEST(KeptRest, LinesOfMtl) {
       keep(obj, folder / "w.glb", kRest).not_kept,
       (Lines{"1 x lines of the MTL: Ka", "1 x lines of the MTL: Ke", "1 x lines of the MTL: Ks",
              "1 x lines of the MTL: MAP_Ks", "1 x lines of the MTL: Ni", "1 x lines of the MTL: Ns",
-             "1 x lines of the MTL: Tr", "1 x lines of the MTL: bump", "1 x lines of the MTL: d",
+             "1 x lines of the MTL: Tr", "1 x lines of the MTL: bump",
              "1 x lines of the MTL: illum", "1 x lines of the MTL: map_Bump",
              "1 x lines of the MTL: map_d"}));
+}
+
+// What of an MTL glTF knows as well: opacity, and textures that end at their edges.
+TEST(KeptRest, OpacityAndClampingOfMtlInGltf) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());
+  folder.write("m.mtl", "newmtl a\nd 0.5\nmap_Kd -clamp on a.png\nnewmtl b\nmap_Kd a.png\n");
+  const path obj =
+      folder.write("s.obj",
+                   "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 2 0\nvt 0 2\nusemtl a\n"
+                   "f 1/1 2/2 3/3\nusemtl b\nf 1/1 3/3 2/2\n");
+  EXPECT_EQ(keep(obj, folder / "w.glb", kRest).not_kept, Lines{});
+  const auto back = read_scene(folder / "w.glb", {}, {});
+  ASSERT_TRUE(back.ok()) << back.status().message();
+  const std::vector<Material>& materials = back->scene.materials;
+  ASSERT_EQ(materials.size(), 2u);
+  EXPECT_EQ(materials[0].opacity, 0.5f);
+  EXPECT_EQ(materials[0].alpha_mode, AlphaMode::blend);
+  EXPECT_EQ(materials[0].wrap_u, TextureWrap::clamp);
+  EXPECT_EQ(materials[0].wrap_v, TextureWrap::clamp);
+  EXPECT_EQ(materials[1].wrap_u, TextureWrap::repeat);
+  EXPECT_EQ(back->scene.textures.size(), 1u);
 }
 
 // Who changes the triangles of a scene takes its source away.

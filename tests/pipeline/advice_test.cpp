@@ -62,6 +62,23 @@ TEST(Advice, TexelsAsLongAsChartsAreNamed) {
   EXPECT_TRUE(advice_on(report_of(2, 1, 16), options).empty());
 }
 
+TEST(Advice, TransparencyIsNamed) {
+  Scene scene;
+  scene.materials = {{.name = "wall"}, {.name = "fence"}, {.name = "glass"}};
+  scene.textures.push_back({"leaf.png", Image8(2, 2, 4)});
+  scene.textures.push_back({"bark.png", Image8(2, 2, 3)});
+  scene.materials[0].texture = 0;  // a fourth channel that means nothing
+  scene.materials[1].texture = 1;
+  scene.materials[1].alpha_mode = AlphaMode::mask;  // of no fourth channel
+  EXPECT_EQ(advice_on_transparency(scene), "");
+  scene.materials[1].texture = 0;
+  EXPECT_TRUE(advice_on_transparency(scene).starts_with("1 material ('fence') is transparent"));
+  scene.materials[2].alpha_mode = AlphaMode::blend;
+  scene.materials[2].opacity = 0.3f;
+  EXPECT_TRUE(
+      advice_on_transparency(scene).starts_with("2 materials ('fence', ...) are transparent"));
+}
+
 TEST(Advice, LightThatTheToneCurveLosesIsNamed) {
   ExportReport report = report_of(100, 8, 1024);
   report.luminance.log_average = 100;

@@ -162,7 +162,8 @@ TEST(Gltf, TexturesAreScaledTurnedAndMoved) {
   const json attributes = {{"POSITION", g.floats(kSquare, "VEC3", 3)},
                            {"TEXCOORD_0", g.floats({0, 0, 1, 0, 0, 1, 1, 1}, "VEC2", 2)}};
   g.j["images"] = {{{"uri", "a.png"}}};
-  g.j["textures"] = {{{"source", 0}}};
+  g.j["textures"] = {{{"source", 0}, {"sampler", 0}}};
+  g.j["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}}};
   json info = {{"index", 0}};
   info["extensions"]["KHR_texture_transform"] = {
       {"offset", {0.25, 0.5}}, {"rotation", std::acos(0.0)}, {"scale", {2, 3}}};
@@ -173,6 +174,8 @@ TEST(Gltf, TexturesAreScaledTurnedAndMoved) {
   const auto loaded = load_glb(folder, g);
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   const Scene& s = loaded->scene;
+  EXPECT_EQ(s.materials[0].wrap_u, TextureWrap::clamp);
+  EXPECT_EQ(s.materials[0].wrap_v, TextureWrap::mirror);
   // A quarter turn takes (u, v) to (v, -u), v pointing down.
   const Vec2f expected[] = {{0.25f, 0.5f}, {0.25f, 2.5f}, {3.25f, 0.5f}};
   for (int k = 0; k < 3; ++k) {

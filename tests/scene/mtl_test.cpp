@@ -121,19 +121,39 @@ TEST(Mtl, TextureOptions) {
         "s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nusemtl a\nf 1/1 2/1 3/1\n"));
     EXPECT_EQ(loaded.scene.textures.size(), 1u) << options;
     EXPECT_EQ(loaded.scene.materials[0].texture, 0) << options;
+    const bool clamped = options.find("-clamp on") != std::string::npos;
+    EXPECT_EQ(loaded.scene.materials[0].wrap_v == TextureWrap::clamp, clamped) << options;
     const std::uint64_t count = loaded.defects.count(DefectKind::texture_option_ignored);
     EXPECT_EQ(loaded.defects.empty(), count == 0) << options;
     return count;
   };
-  for (const char* options : {"", "-mm 0 1", "-clamp off", "-blendu on", "-blendv off -cc off",
-                              "-o 0", "-s 1 1 1 -mm 0 1.0 -o 0 0"}) {
+  for (const char* options : {"", "-mm 0 1", "-clamp off", "-clamp on", "-blendu on",
+                              "-blendv off -cc off", "-o 0", "-s 1 1 1 -mm 0 1.0 -o 0 0"}) {
     EXPECT_EQ(ignored(options), 0u) << options;
   }
-  for (const char* options : {"-mm 0.5 1", "-mm 0 2", "-clamp on", "-t 0.1", "-t 0 0 1", "-bm 0.5",
-                              "-imfchan r", "-texres 512"}) {
+  for (const char* options :
+       {"-mm 0.5 1", "-mm 0 2", "-t 0.1", "-t 0 0 1", "-bm 0.5", "-imfchan r", "-texres 512"}) {
     EXPECT_EQ(ignored(options), 1u) << options;
   }
-  EXPECT_EQ(ignored("-clamp on -mm 1 1 -blendu off"), 2u);
+  EXPECT_EQ(ignored("-clamp on -mm 1 1 -blendu off"), 1u);
+}
+
+// `d` alone is clear: what is no share of it, and Tr, which is 1 - d to some, leave a material
+// opaque.
+TEST(Mtl, Opacity) {
+  const TempFolder folder;
+  const auto read = [&](const std::string& line) {
+    folder.write("m.mtl", "newmtl a\n" + line + "\n");
+    return load(folder.write("s.obj",
+                             "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n"))
+        .scene.materials[0];
+  };
+  EXPECT_EQ(read("d 0.25").opacity, 0.25f);
+  EXPECT_EQ(read("d 0.25").alpha_mode, AlphaMode::blend);
+  for (const char* line : {"d 1", "d 2", "d -0.5", "d nan", "d -halo 0.5", "d", "Tr 1", "Tr 0.3"}) {
+    EXPECT_EQ(read(line).opacity, 1) << line;
+    EXPECT_EQ(read(line).alpha_mode, AlphaMode::opaque) << line;
+  }
 }
 
 }  // namespace

@@ -23,8 +23,18 @@ double decode(int code) {
   return d <= 0.04045 ? d / 12.92 : std::pow((d + 0.055) / 1.055, 2.4);
 }
 
-// Repeating bilinear look-up, written from the definition.
-double texel_value(const Image8& image, double u, double v, int channel) {
+// The texel of n that stands for texel i, from the definitions of OpenGL.
+long texel_of(long i, long n, TextureWrap wrap) {
+  if (wrap == TextureWrap::clamp) return std::clamp(i, 0l, n - 1);
+  const long cycle = i - n * std::lround(std::floor(double(i) / double(n)));
+  const bool mirrored =
+      wrap == TextureWrap::mirror && std::lround(std::floor(double(i) / double(n))) % 2 != 0;
+  return mirrored ? n - 1 - cycle : cycle;
+}
+
+// Bilinear look-up, written from the definition.
+double texel_value(const Image8& image, Vec2d uv, const Material& material, int channel) {
+  const double u = uv.x, v = uv.y;
   const double x = u * image.width - 0.5, y = v * image.height - 0.5;
   double sum = 0;
   for (int j = 0; j < 2; ++j)
@@ -32,8 +42,8 @@ double texel_value(const Image8& image, double u, double v, int channel) {
       const long cx = std::lround(std::floor(x)) + i, cy = std::lround(std::floor(y)) + j;
       const double w = (1 - std::fabs(x - static_cast<double>(cx))) *
                        (1 - std::fabs(y - static_cast<double>(cy)));
-      const long px = ((cx % image.width) + image.width) % image.width;
-      const long py = ((cy % image.height) + image.height) % image.height;
+      const long px = texel_of(cx, image.width, material.wrap_u);
+      const long py = texel_of(cy, image.height, material.wrap_v);
       const int c = image.channels >= 3 ? channel : 0;
       sum += w * decode(image.at(static_cast<int>(px), static_cast<int>(py))[c]);
     }
@@ -41,6 +51,7 @@ double texel_value(const Image8& image, double u, double v, int channel) {
 }
 
 TEST(LuminanceSampler, IsIlluminationTimesReflectance) {
+  constexpr TextureWrap kWraps[] = {TextureWrap::repeat, TextureWrap::mirror, TextureWrap::clamp};
   for (const int channels : {1, 2, 3, 4})
     for (const Vec2f repeats : {Vec2f{3.3f, 2.7f}, Vec2f{-5.1f, 0.9f}}) {
       LitShape shape = make_sheet({2, 1, 5, 4, 0.2, {0.5f, 0.25f, 1}}, [](double u, double v) {
@@ -48,6 +59,9 @@ TEST(LuminanceSampler, IsIlluminationTimesReflectance) {
       });
       const Image8 image = noise_image(13, 8, channels);
       add_texture(shape, image, repeats);
+      Material& material = shape.scene.materials[0];
+      material.wrap_u = kWraps[channels % 3];
+      material.wrap_v = kWraps[(channels + (repeats.x > 0)) % 3];
       const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
       const float diffuse[3] = {0.5f, 0.25f, 1};
       std::mt19937 random(4);
@@ -69,9 +83,10 @@ TEST(LuminanceSampler, IsIlluminationTimesReflectance) {
                                        static_cast<float>(b[1]), static_cast<float>(b[2]));
           const float g[3] = {got.x, got.y, got.z};
           for (int c = 0; c < 3; ++c)
-            ASSERT_NEAR(g[c],
-                        e[c] * diffuse[c] * texel_value(image, x * repeats.x, y * repeats.y, c),
-                        2e-4);
+            ASSERT_NEAR(
+                g[c],
+                e[c] * diffuse[c] * texel_value(image, {x * repeats.x, y * repeats.y}, material, c),
+                2e-4);
         }
     }
 }
@@ -137,6 +152,7 @@ TEST(LuminanceSampler, GivesTheMeanWhereCoordinatesAreBeyondPrecision) {
   Image8 image(2, 2, 1);
   image.texels = {255, 0, 0, 255};
   for (const float repeats : {1e9f, -1e30f, 3e38f}) {
+    shape.scene.materials[0].wrap_u = repeats < 0 ? TextureWrap::clamp : TextureWrap::mirror;
     add_texture(shape, image, {repeats, repeats});
     const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
     const Vec3f c = LuminanceSampler::sample(sampler.prepare(0, 0), 0.2f, 0.3f, 0.5f);
