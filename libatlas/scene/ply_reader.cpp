@@ -104,7 +104,7 @@ class PlyParser {
       }
       Status status;
       if (element.name == "vertex") {
-        status = read_vertices(context);
+        status = builder_.positions.empty() ? read_vertices(context) : more_vertices();
       } else if (element.name == "face") {
         status = read_faces(context);
       } else if (element.name == "tristrips") {
@@ -243,6 +243,14 @@ class PlyParser {
     auto next_bad = bad.begin();
     builder_.check_positions([&](std::size_t) { return *next_bad++; });
     return {};
+  }
+
+  // Faces do not say which of several elements they number.
+  Status more_vertices() const {
+    if (element_->count == 0) return {};
+    return {ErrorCode::bad_input,
+            fmt::format("{}: a second element 'vertex', of {} (export all vertices as one element)",
+                        builder_.file, element_->count)};
   }
 
   // Files without any vertex have none after the faces either.

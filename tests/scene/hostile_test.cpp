@@ -83,6 +83,11 @@ const Case kCases[] = {
      kPly + "element face 1\nproperty list uchar int vertex_indices\nelement vertex 1\n" + kXyz +
          "end_header\n3 0 0 0\n0 0 0\n",
      ErrorCode::unsupported, "faces come before vertices"},
+    {"two.ply",
+     kPly + "element vertex 3\n" + kXyz + "element vertex 1\n" + kXyz +
+         "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+         "nan 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n",
+     ErrorCode::bad_input, "a second element 'vertex', of 1"},
     {"list.ply",
      kPly + "element vertex 1\n" + kXyz +
          "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n-1 0 0\n",
