@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "libatlas/bake/least_squares.h"
@@ -56,7 +57,17 @@ struct Job {
   const BakeOptions& options;
   const SampleGrid& grid;
   const ToneMapping* tone;
+  float low, high;  // of the values that texels may take
 };
+
+// Light stays light: beside an edge no texel falls below 0. Other signals have no bounds.
+Job linear_job(const Job& display) {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  const std::vector<Vec3f>& given = display.light.sampler.scene().illumination;
+  const bool negative = std::any_of(given.begin(), given.end(),
+                                    [](const Vec3f& v) { return v.x < 0 || v.y < 0 || v.z < 0; });
+  return {display.light, display.options, display.grid, nullptr, negative ? -kMost : 0, kMost};
+}
 
 // Distance of the samples on the surface, for the choice of the texture's mip level.
 double sample_spacing(const ChartPlacement& p, int side) {
@@ -99,8 +110,7 @@ TexelGrid bake_least_squares(const Job& job, const Box& box) {
     if (kind == SampleKind::grid) lit.set_position(p);
     splat_triangle(p, lit, job.grid, fit);
   }
-  const float high = job.tone ? 1.0f : std::numeric_limits<float>::max();
-  return std::move(fit).solve(0, high);
+  return std::move(fit).solve(job.low, job.high);
 }
 
 // The published scheme. Shifts move the grid by up to half a texel about the texel's centre.
@@ -248,13 +258,16 @@ Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacem
   page.display = Image8(options.page_width, options.page_height, 3);
   if (options.linear) page.linear = ImageF(options.page_width, options.page_height, 3);
   const SampleGrid grid(options.shifts);
+  const Job display{light, options, grid, &light.tone, 0, 1};
+  const std::optional<Job> linear =
+      options.linear ? std::optional(linear_job(display)) : std::nullopt;
   std::vector<std::uint8_t> taken(std::size_t(options.page_width) * options.page_height, 0);
   std::mutex counting;
   std::size_t done = 0;
   parallel_for(context, placements.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end && !context.cancelled(); ++i) {
       const Box box(placements[i], options);
-      TexelGrid texels = bake_box({light, options, grid, &light.tone}, box);
+      TexelGrid texels = bake_box(display, box);
       const std::size_t filled = fill_unknown(texels);
       const OwnTexels own(light.charts, box, options.mip_levels);
       copy_own(texels, own, page.display, quantize8);
@@ -262,8 +275,8 @@ Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacem
         taken[std::size_t(y) * options.page_width + std::size_t(x)] = 1;
       });
       const std::size_t covered = texels.rgb.size() - filled;
-      if (options.linear) {
-        texels = bake_box({light, options, grid, nullptr}, box);
+      if (linear) {
+        texels = bake_box(*linear, box);
         fill_unknown(texels);
         copy_own(texels, own, page.linear, [](float v) { return v; });
       }

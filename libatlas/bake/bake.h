@@ -27,7 +27,8 @@ struct BakeOptions {
   int mip_levels = 2;  // lookups at levels 0..mip_levels stay inside the chart's own texels
   BakeMethod method = BakeMethod::least_squares;
   // Also give scene-linear floats: for EXR, and for signals at the vertices that are no light,
-  // which tone mapping and sRGB would bend.
+  // which tone mapping and sRGB would bend. Values below 0 are only given where some vertex has
+  // one.
   bool linear = false;
 };
 

@@ -240,6 +240,26 @@ TEST(BakePage, GivesSceneLinearValuesOnRequest) {
   EXPECT_TRUE(bake(shape, {p}, options)->linear.texels.empty());
 }
 
+// What is no light may be negative; light may not, whatever edges would make of it.
+TEST(BakePage, SceneLinearValuesAreNegativeOnlyWhereTheSignalIs) {
+  const auto least_of = [](float base) {
+    const LitShape shape = make_sheet({1, 1, 20, 20}, [&](double u, double) {
+      const float v = base + (u < 0.5 ? 0.0f : 2.0f);
+      return Vec3f{v, v, v};
+    });
+    const ChartPlacement p = place(shape.charts, 0, {40, 40}, {4, 4, 0, 0});
+    BakeOptions options = small_page(64);
+    options.linear = true;
+    const auto page = bake(shape, {p}, options);
+    EXPECT_TRUE(page.ok());
+    EXPECT_NEAR(look_up(page->linear, page_texel(p, {0.2, 0.5}), 0), base, 1e-3);
+    EXPECT_NEAR(look_up(page->linear, page_texel(p, {0.8, 0.5}), 0), base + 2, 1e-3);
+    return *std::min_element(page->linear.texels.begin(), page->linear.texels.end());
+  };
+  EXPECT_LT(least_of(-1.5f), -1.5f);  // as far below the step as above it
+  EXPECT_EQ(least_of(0), 0);
+}
+
 LitShape many_charts(std::vector<ChartPlacement>& placements) {
   LitShape shape;
   int x = 4, y = 4;
