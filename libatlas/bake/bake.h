@@ -33,11 +33,13 @@ struct BakeOptions {
 };
 
 struct BakedPage {
-  Image8 display;                    // RGB, tone-mapped, sRGB-encoded; row 0 at the bottom
-  ImageF linear;                     // RGB, scene-linear luminance; empty unless asked for
-  std::uint64_t triangles = 0;       // baked
-  std::uint64_t covered_texels = 0;  // touched by a triangle
-  std::uint64_t filled_texels = 0;   // of boxes and pads, filled from the covered ones
+  Image8 display;               // RGB, tone-mapped, sRGB-encoded; row 0 at the bottom
+  ImageF linear;                // RGB, scene-linear luminance; empty unless asked for
+  std::uint64_t triangles = 0;  // baked
+  // Told by samples: those whose bilinear look-ups one enters (least squares), which reaches up to
+  // a texel beyond the triangles, or those that a triangle touches (average).
+  std::uint64_t covered_texels = 0;
+  std::uint64_t filled_texels = 0;  // the rest of boxes and pads, filled from the covered ones
 };
 
 // Bakes the given placements, all of one page, in parallel over charts; deterministic for any
