@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -188,7 +189,7 @@ void Run::build_simplifiers() {
 // Inner vertices of all charts in parallel, then border vertices, up to the same cost; then both up
 // to a higher one. So borders and insides thin out together, whatever the number of threads.
 void Run::rounds() {
-  constexpr double kGrowth = 3, kLargest = 1e30;
+  constexpr double kGrowth = 3, kLargest = std::numeric_limits<float>::max();  // as costs are kept
   constexpr double kUsualRounds = 24;
   double limit = 0;
   for (int round = 0; !context_.cancelled(); ++round) {
@@ -201,7 +202,7 @@ void Run::rounds() {
     chains_->run(limit, context_);
     double least = chains_->next_cost();
     for (const auto& chart : charts_) least = std::min(least, chart->next_cost());
-    if (std::isinf(least)) break;
+    if (!(least <= kLargest)) break;
     limit = std::min(kLargest, std::max(limit * kGrowth, least * kGrowth));
     context_.report("simplify", std::min(0.99, round / kUsualRounds));
   }

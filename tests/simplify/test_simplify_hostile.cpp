@@ -205,6 +205,22 @@ TEST(SimplifyHostile, HugeTexelsStillLeaveAMesh) {
   EXPECT_GE(coarse.triangles_out, 6U);
 }
 
+// Costs grow with the square of the density, up to the largest float and beyond it.
+TEST(SimplifyHostile, TinyTexelsEndToo) {
+  const ChartedMesh mesh = box(6);
+  for (const double density : {1e12, 1e15, 1e18, 1e21, 1e30, 1e160, 1e300}) {
+    int rounds = 0;
+    std::atomic<bool> cancel{false};
+    Context context;
+    context.cancel = &cancel;
+    context.progress = [&](std::string_view, double) { cancel = ++rounds > 1000; };
+    const std::vector<double> densities(6, density);
+    const auto coarse = simplify_charts({mesh.view(), mesh.charts, densities}, {}, context);
+    ASSERT_TRUE(coarse.ok()) << density;
+    EXPECT_EQ(broken_triangles(mesh, *coarse), 0U) << density;
+  }
+}
+
 TEST(SimplifyHostile, BadOptionsAndInput) {
   const ChartedMesh mesh = box(2);
   const std::vector<double> densities(6, 10);
