@@ -11,6 +11,7 @@
 #include "libatlas/scene/gltf_instances.h"
 #include "libatlas/scene/gltf_materials.h"
 #include "libatlas/scene/gltf_pose.h"
+#include "libatlas/scene/gltf_sizes.h"
 #include "libatlas/scene/gltf_source.h"
 
 namespace atlas {
@@ -23,6 +24,10 @@ constexpr int kMaxDepth = 512;  // of nested nodes
 // for 2^100.
 constexpr std::size_t kMaxVisits = std::size_t{1} << 20;
 
+// Of vertices and corners, those of meshes that are shown several times counted at each: some ten
+// gigabytes. A file of a few kilobytes can ask for a million times as much as it holds.
+constexpr double kMaxShown = double(1 << 29);
+
 Vec3f three(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
@@ -32,13 +37,6 @@ Vec3f direction(const glm::dvec3& v) {
   const double length = glm::length(v);
   const bool fits = length == 0 || (length > 1e-20 && length < 1e20);
   return from_glm(glm::vec3(fits ? v : v / length));
-}
-
-bool hides(const tinygltf::Node& node) {
-  const auto at = node.extensions.find("KHR_node_visibility");
-  if (at == node.extensions.end() || !at->second.IsObject()) return false;
-  const tinygltf::Value& visible = at->second.Get("visible");
-  return visible.IsBool() && !visible.Get<bool>();
 }
 
 class GltfParser {
@@ -52,6 +50,7 @@ class GltfParser {
     texcoord_set_ = std::move(*sets);
     on_path_.assign(model_.nodes.size(), false);
     const std::vector<int> shown = roots();
+    if (gltf_shown_size(model_, shown) > kMaxShown) return too_much();
     if (builder_.source) builder_.source->roots = shown;
     for (const int node : shown) {
       if (Status s = add_node(node, {}, 0); !s.ok()) return s;
@@ -93,6 +92,13 @@ class GltfParser {
   Status malformed(const std::string& where, const std::string& what) const {
     return {ErrorCode::bad_input,
             fmt::format("{}: {}: {} (check it with a glTF validator)", builder_.file, where, what)};
+  }
+
+  Status too_much() const {
+    return {ErrorCode::bad_input,
+            fmt::format("{}: its meshes, each as often as it is shown, have more than {:.0f} "
+                        "vertices and corners of triangles (show fewer instances)",
+                        builder_.file, kMaxShown)};
   }
 
   Status nothing_shown() const {
@@ -140,7 +146,7 @@ class GltfParser {
     if (context_.cancelled()) return Status::cancelled();
     on_path_[index] = true;
     const tinygltf::Node& node = model_.nodes[index];
-    const Above here{parent.matrix * gltf_local_matrix(node), parent.hidden || hides(node)};
+    const Above here{parent.matrix * gltf_local_matrix(node), parent.hidden || gltf_hidden(node)};
     const GltfPlace place{nodes_visited_++, index, node.mesh};
     if (node.mesh >= 0 && here.hidden) {
       builder_.defects.add(DefectKind::node_hidden,

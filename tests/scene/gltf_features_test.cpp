@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "libatlas/core/clock.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/scene/reader.h"
 #include "tests/scene/gltf_maker.h"
@@ -240,6 +241,35 @@ TEST(Gltf, InstancesAreShownWhereTheyStand) {
   EXPECT_NE(broken("SCALE", 0).message().find("another number of SCALE"), std::string::npos);
   EXPECT_EQ(broken("TRANSLATION", 99).code(), ErrorCode::bad_input);
   EXPECT_EQ(broken("TRANSLATION", "x").code(), ErrorCode::bad_input);
+}
+
+// A mesh of 1500 vertices half a million times would be 50 GB: refused before anything is kept.
+TEST(Gltf, MeshesShownBeyondAllMemoryAreRefused) {
+  const TempFolder folder;
+  const auto zeros = [](Gltf& g, int count) {
+    return g.accessor({{"componentType", 5126}, {"type", "VEC3"}, {"count", count}});
+  };
+  Gltf instances;
+  json node;
+  node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] =
+      zeros(instances, 1 << 19);
+  instances.single({{"attributes", {{"POSITION", zeros(instances, 1500)}}}}, node);
+  Gltf parents;
+  parents.single({{"attributes", {{"POSITION", zeros(parents, 1500)}}}});
+  parents.j["nodes"].push_back({{"children", json::array()}});
+  parents.j["nodes"].push_back({{"children", json::array()}});
+  for (int i = 0; i < 700; ++i) {
+    parents.j["nodes"][1]["children"].push_back(0);
+    parents.j["nodes"][2]["children"].push_back(1);
+  }
+  parents.j["scenes"][0]["nodes"] = {2};
+  for (const Gltf* g : {&instances, &parents}) {
+    const Status status = load_glb(folder, *g).status();
+    EXPECT_EQ(status.code(), ErrorCode::bad_input);
+    EXPECT_NE(status.message().find("as often as it is shown"), std::string::npos)
+        << status.message();
+  }
+  EXPECT_LT(peak_memory(), std::int64_t{1} << 30);
 }
 
 // KHR_node_visibility: a node that is hidden hides all nodes below it, whatever they say.
