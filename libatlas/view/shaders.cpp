@@ -124,7 +124,14 @@ std::string colours_text(const ShaderFeatures& f) {
   return s + "  own *= frame.ambient.w;\n";
 }
 
-constexpr const char* kEncode = "pow(clamp(colour, 0.0, 1.0), vec3(1.0 / 2.2))";
+// sRGB's own curve: textures are decoded with it, and pages of baked light show what they hold.
+constexpr const char* kEncode = R"(
+vec4 encoded(vec3 colour) {
+  colour = clamp(colour, 0.0, 1.0);
+  vec3 curve = 1.055 * pow(colour, vec3(1.0 / 2.4)) - 0.055;
+  return vec4(mix(curve, 12.92 * colour, lessThanEqual(colour, vec3(0.0031308))), 1.0);
+}
+)";
 
 std::string fragment_text(const ShaderFeatures& f) {
   std::string s = "#version 450 core\n";
@@ -138,13 +145,14 @@ std::string fragment_text(const ShaderFeatures& f) {
   s += lit(f) ? "layout(location = 0) out uvec4 result;\n"
               : "layout(location = 0) out vec4 result;\n";
   if (lit(f)) s += kWriteSurface;
+  if (!lit(f) && coloured(f)) s += kEncode;
   s += "void main() {\n";
   if (coloured(f)) s += colours_text(f);
   if (lit(f))
     s += coloured(f) ? "  result = surface_of(v_normal, reflectance, own);\n"
                      : "  result = uvec4(0, 0, 0, packSnorm2x16(fold(v_normal)));\n";
   else if (coloured(f))
-    s += fmt::format("  vec3 colour = own;\n  result = vec4({}, 1.0);\n", kEncode);
+    s += "  result = encoded(own);\n";
   else
     s += "  result = vec4(1.0);\n";
   return s + "}\n";
@@ -159,6 +167,7 @@ std::string lighting_text(const ShaderFeatures& f) {
   s += kReadSurface;
   s += "layout(location = 0) out vec4 result;\n";
   if (shadows) s += shadow_text(f);
+  if (coloured(f)) s += kEncode;
   if (coloured(f) && shiny(f)) s += f.shading == Shading::ward ? kWard : kBlinnPhong;
   s += R"(void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -195,9 +204,7 @@ std::string lighting_text(const ShaderFeatures& f) {
   if (shiny(f))
     s += "  if (reach > 0.0) added += vec3(seen * frame.light.w * specular(n, l, -normalize(away), "
          "nl));\n";
-  return s + fmt::format(
-                 "  vec3 colour = own + added * frame.ambient.w;\n  result = vec4({}, 1.0);\n}}\n",
-                 kEncode);
+  return s + "  result = encoded(own + added * frame.ambient.w);\n}\n";
 }
 
 }  // namespace

@@ -14,8 +14,10 @@
 namespace atlas::testing {
 namespace {
 
+// As sRGB.
 double encoded(double value) {
-  return 255 * std::pow(std::clamp(value, 0.0, 1.0), 1 / 2.2);
+  const double v = std::clamp(value, 0.0, 1.0);
+  return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
 }
 
 class Plane : public ::testing::Test {
@@ -110,6 +112,26 @@ TEST_F(Plane, TexturesReflectOrShine) {
   ASSERT_TRUE(r.ok());
   ASSERT_TRUE(r->draw(camera_, still({0, 1, 0})).ok());
   EXPECT_NEAR(*r->read_image().at(32, 32), encoded(0.2158), 1.5);
+}
+
+// Dark ones above all: there a power of 1 / 2.2 differs most from sRGB.
+TEST_F(Plane, BakedPagesAreShownAsTheyAreStored) {
+  scene_.materials[0].texture = 0;
+  scene_.texcoords = {{0, 0}};
+  scene_.texcoord_indices.assign(scene_.indices.size(), 0);
+  software_context();
+  ViewSceneOptions baked;
+  baked.textures_hold_light = true;
+  options_.shading = Shading::unlit;
+  for (const int stored : {0, 1, 3, 6, 10, 12, 20, 40, 80, 128, 200, 254, 255}) {
+    scene_.textures.resize(1);
+    scene_.textures[0].image = Image8(4, 4, 3, static_cast<std::uint8_t>(stored));
+    const ViewScene view = *make_view_scene(scene_, baked);
+    Result<Renderer> r = Renderer::make(view, options_);
+    ASSERT_TRUE(r.ok());
+    ASSERT_TRUE(r->draw(camera_, still({0, 1, 0})).ok());
+    EXPECT_NEAR(*r->read_image().at(32, 32), stored, 1);
+  }
 }
 
 }  // namespace
