@@ -89,6 +89,21 @@ Active select_items(std::span<const Extent> items, const Cells& cells, const Pac
   return active;
 }
 
+// All sums of areas, of items or of pages that are filled, stay below this.
+Status check_area(std::span<const Extent> items, const Active& active) {
+  constexpr double kMost = 0x1p62;
+  double cells = 0, texels = 0;
+  for (std::size_t k = 0; k < active.ids.size(); ++k) {
+    cells += static_cast<double>(active.sizes[k].area());
+    texels += static_cast<double>(items[active.ids[k]].area());
+  }
+  if (std::max(cells, texels) <= kMost) return {};
+  return {ErrorCode::bad_input,
+          fmt::format("pack: {} items of {:.3g} texels^2, {:.3g} cells with their padding (at most "
+                      "2^62 each: pack them in parts, or in larger units)",
+                      active.ids.size(), texels, cells)};
+}
+
 void describe(std::span<const Extent> items, const PackOptions& options, PackResult& result) {
   std::uint32_t pages = 0;
   for (const Placement& p : result.placements)
@@ -125,6 +140,7 @@ Result<PackResult> pack_rects(std::span<const Extent> items, const PackOptions& 
   result.placements.resize(items.size());
   const Cells cells(options);
   const Active active = select_items(items, cells, options, result);
+  if (Status status = check_area(items, active); !status.ok()) return status;
 
   Problem problem;
   problem.items = active.sizes;

@@ -105,7 +105,8 @@ struct PackResult {
 // Packs the items into pages. Input order is kept; ties are broken by index.
 // Degenerate items: a side of 0 takes no room and is reported at the corner of page 0; an item
 // larger than the page (border included) is unplaced, too_large; with max_pages or pinned
-// rectangles exhausted it is unplaced, no_room. Negative sides are bad_input.
+// rectangles exhausted it is unplaced, no_room. Negative sides are bad_input, and so are items of
+// more than 2^62 texels² together, or with their padding, but for those that are too large.
 // Sources: Jylänki 2010 (skyline, waste map, maximal rectangles), Burke et al. 2004 (best fit),
 // Wei et al. 2011 and Leung et al. 2011 (skyline scores, local search); docs/packing.md.
 // Errors: bad_option, bad_input, cancelled.

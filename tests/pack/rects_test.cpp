@@ -100,6 +100,29 @@ TEST(PackRects, BadOptionsAreNamed) {
   EXPECT_EQ(pack_rects(negative, {}, {}).status().code(), ErrorCode::bad_input);
 }
 
+// Areas are summed in 63 bits: of the items, and of the cells that their padding takes.
+TEST(PackRects, AreasThatNoSumHoldsAreRefused) {
+  PackOptions o;
+  o.page = {1 << 30, 1 << 30};
+  const std::vector<Extent> four(4, o.page);
+  const PackResult r = pack(four, o);
+  EXPECT_EQ(r.pages.size(), 4u);
+  EXPECT_EQ(r.placed_area, std::int64_t{1} << 62);
+  EXPECT_EQ(r.utilization, 1);
+  const std::vector<Extent> nine(9, o.page);
+  for (const PackPreset preset : {PackPreset::fast, PackPreset::standard}) {
+    o.preset = preset;
+    EXPECT_EQ(pack_rects(nine, o, {}).status().code(), ErrorCode::bad_input);
+  }
+  const std::vector<Extent> small(1 << 15, {1, 1});
+  o.padding = (1 << 24) - 1;
+  o.page = {1 << 29, 1 << 29};
+  EXPECT_EQ(pack_rects(small, o, {}).status().code(), ErrorCode::bad_input);
+  o.padding = 0;
+  o.page.width = 1 << 20;  // what fits no page is not summed
+  EXPECT_EQ(pack(nine, o).unplaced.size(), 9u);
+}
+
 TEST(PackRects, CancelledWorkSaysSo) {
   const std::atomic<bool> stop{true};
   Context context;
