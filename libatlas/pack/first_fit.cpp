@@ -89,6 +89,10 @@ Layout first_fit(const Problem& problem, std::span<const std::uint32_t> order, P
     pages.push_back(std::move(page));
   };
   for (std::size_t i = 0; i < order.size(); ++i) {
+    if (i % kItemsAPoll == 0 && problem.cancelled()) {
+      layout.unplaced += static_cast<std::uint32_t>(order.size() - i);
+      break;
+    }
     const Extent item = problem.items[order[i]];
     const Extent smallest = remaining.from(i);
     for (std::size_t at = 0;; ++at) {
@@ -121,6 +125,10 @@ Layout first_fit_falling(const Problem& problem, std::span<const std::uint32_t> 
   std::vector<FreeRects> pages;
   HeightIndex index;
   for (std::size_t i = 0; i < order.size(); ++i) {
+    if (i % kItemsAPoll == 0 && problem.cancelled()) {
+      layout.unplaced += static_cast<std::uint32_t>(order.size() - i);
+      break;
+    }
     const Extent item = problem.items[order[i]], smallest = remaining.from(i);
     index.sink(item.height, pages);
     std::size_t at = index.first(item.width);

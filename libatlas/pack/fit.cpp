@@ -88,6 +88,7 @@ bool BoxFit::pack_many(BoxLayout& layout) const {
   problem.items = boxes_;
   problem.page = page_;
   problem.allow_rotation = options_.allow_rotation;
+  problem.context = &context_;
   problem.max_pages = 1;
   Layout packed = pack_widest_first(problem);
   if (packed.unplaced > 0) return false;
@@ -140,6 +141,7 @@ bool BoxFit::pack_jointly(std::uint32_t pages, BoxLayout& layout) {
   problem.items = boxes_;
   problem.page = page_;
   problem.allow_rotation = options_.allow_rotation;
+  problem.context = &context_;
   problem.max_pages = pages;
   const bool fast = options_.preset == PackPreset::fast;
   for (Order order : {Order::area, Order::height}) {
@@ -162,6 +164,7 @@ bool BoxFit::pack_searched(std::uint32_t pages, BoxLayout& layout) {
   problem.items = boxes_;
   problem.page = page_;
   problem.allow_rotation = options_.allow_rotation;
+  problem.context = &context_;
   SearchLimits limits = standard_page_limits(boxes_.size());
   limits.enough_pages = pages;
   PackResult log;
@@ -198,6 +201,7 @@ Extent BoxFit::shrink_page(std::uint32_t page, BoxLayout& layout) const {
     problem.items = sizes;
     problem.page = size;
     problem.allow_rotation = options_.allow_rotation;
+    problem.context = &context_;
     problem.max_pages = 1;
     const Layout packed =
         pack_first_fit(problem, sorted_items(sizes, Order::height), PlaceRule::bottom_left);
@@ -400,6 +404,7 @@ Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& gi
   }
   fit.make_boxes(result.scale);
   finish(fit, options, best, result);
+  if (context.cancelled()) return Status::cancelled();  // pages may be larger than they need be
   return result;
 }
 

@@ -9,14 +9,17 @@ namespace atlas::pack {
 Layout pack_gaps(const Problem& problem, std::span<const std::uint32_t> sequence) {
   Layout layout;
   layout.placements.resize(problem.items.size());
+  layout.unplaced = static_cast<std::uint32_t>(sequence.size());
+  if (problem.cancelled()) return layout;  // before the index: that takes a third of the time
   GapIndex index(problem.items, sequence, problem.allow_rotation);
   std::size_t left = sequence.size();
   std::int64_t filled = 0;
   std::int32_t used = 0;
-  for (; left > 0 && layout.pages < problem.max_pages; ++layout.pages) {
+  for (; left > 0 && layout.pages < problem.max_pages && !problem.cancelled(); ++layout.pages) {
     GapHeap gaps(problem.page);
     filled = used = 0;
     while (left > 0) {
+      if (left % kItemsAPoll == 0 && problem.cancelled()) break;
       const std::uint32_t gap = gaps.lowest();
       const GapHeap::Segment s = gaps.at(gap);
       const std::int32_t room = problem.page.height - s.y;

@@ -145,6 +145,7 @@ Result<PackResult> pack_rects(std::span<const Extent> items, const PackOptions& 
   Problem problem;
   problem.items = active.sizes;
   problem.allow_rotation = options.allow_rotation;
+  problem.context = &context;
   const std::int32_t open = open_side(options, cells);
   problem.page = {
       options.page.width > 0 ? cells.page(options.page.width) : pack::square_width(problem, open),

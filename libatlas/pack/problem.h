@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "libatlas/core/context.h"
 #include "libatlas/pack/free_rects.h"
 #include "libatlas/pack/pack.h"
 
@@ -17,12 +18,19 @@ struct Problem {
   bool allow_rotation = false;
   std::uint32_t max_pages = kNoPage;
   std::vector<std::vector<Rect>> pinned;  // by page; may be shorter than the number of pages
+  // Whoever asks for a layout has to ask it as well: packers that are cancelled leave items out.
+  const Context* context = nullptr;
+
+  bool cancelled() const { return context && context->cancelled(); }
 
   std::span<const Rect> pinned_on(std::size_t page_id) const {
     return page_id < pinned.size() ? std::span<const Rect>(pinned[page_id])
                                    : std::span<const Rect>();
   }
 };
+
+// Items that packers place between two looks at the context: a few hundredths of a second at most.
+constexpr std::size_t kItemsAPoll = 1024;
 
 struct Layout {
   std::vector<Placement> placements;  // 1 an item, cells

@@ -90,7 +90,7 @@ Layout pack_by_height(const Problem& problem, std::uint32_t pages) {
   if (!problem.allow_rotation) return pack(problem);
   Layout best = pack_turned(problem, Turn::none, pack);
   for (const Turn turn : {Turn::standing, Turn::lying})
-    best = better(std::move(best), pack_turned(problem, turn, pack));
+    if (!problem.cancelled()) best = better(std::move(best), pack_turned(problem, turn, pack));
   return best;
 }
 
@@ -105,12 +105,15 @@ Layout pack_large_pages(const Problem& problem, const PackOptions& options, std:
   constexpr std::size_t kFewOnAPage = 5000;
   const bool quick = !problem.allow_rotation && problem.items.size() / bound <= kFewOnAPage;
   Layout best = quick ? pack_by_height(problem, bound) : pack_by(problem, Order::area);
-  const auto done = [&] { return best.pages <= bound && best.unplaced == 0 && !options.crop; };
+  const auto done = [&] {
+    const bool fewest = best.pages <= bound && best.unplaced == 0 && !options.crop;
+    return fewest || problem.cancelled();
+  };
   if (done()) return best;
   if (quick) best = better(std::move(best), pack_by(problem, Order::area));
   if (!done()) best = better(std::move(best), pack_widest_first(problem));
   if (!done()) best = better(std::move(best), pack_by(problem, Order::height));
-  if (options.crop || (!done() && !problem.allow_rotation && !quick))
+  if (!done() && (options.crop || (!problem.allow_rotation && !quick)))
     best = better(std::move(best), pack_by_height(problem, std::max(1u, best.pages)));
   return best;
 }

@@ -84,15 +84,18 @@ class WidestFit {
 Layout pack_widest_first(const Problem& problem) {
   Layout layout;
   layout.placements.resize(problem.items.size());
+  layout.unplaced = static_cast<std::uint32_t>(problem.items.size());
+  if (problem.cancelled()) return layout;  // before the items are sorted
   WidestFit fit(problem);
   std::size_t left = problem.items.size();
   std::vector<std::int64_t> filled;
   std::int32_t used = 0;
-  for (; left > 0 && layout.pages < problem.max_pages; ++layout.pages) {
+  for (; left > 0 && layout.pages < problem.max_pages && !problem.cancelled(); ++layout.pages) {
     GapHeap gaps(problem.page);
     filled.push_back(0);
     used = 0;
     while (left > 0) {
+      if (left % kItemsAPoll == 0 && problem.cancelled()) break;
       const std::uint32_t gap = gaps.lowest();
       const GapHeap::Segment s = gaps.at(gap);
       if (s.y + std::int64_t{fit.lowest()} > problem.page.height)

@@ -2,8 +2,10 @@
 
 #include <limits>
 
+#include "libatlas/core/clock.h"
 #include "libatlas/pack/pack.h"
 #include "tests/pack/checks.h"
+#include "tests/support/slowness.h"
 
 namespace atlas {
 namespace {
@@ -129,6 +131,26 @@ TEST(PackRects, CancelledWorkSaysSo) {
   context.cancel = &stop;
   const std::vector<Extent> items(50, {3, 4});
   EXPECT_EQ(pack_rects(items, {}, context).status().code(), ErrorCode::cancelled);
+}
+
+// Nothing is left to do but to sort the items.
+TEST(PackRects, CancelledWorkOnManyItemsEndsSoon) {
+  const std::atomic<bool> stop{true};
+  Context context;
+  context.cancel = &stop;
+  const std::vector<Extent> items = test::log_normal_rects(300'000, 5);
+  PackOptions o;
+  for (const PackEngine engine : {PackEngine::automatic, PackEngine::skyline_bottom_left,
+                                  PackEngine::skyline_min_waste, PackEngine::max_rects})
+    for (const bool rotation : {false, true})
+      for (const Extent page : {Extent{2048, 2048}, Extent{1 << 14, 0}, Extent{0, 0}}) {
+        o.engine = engine;
+        o.allow_rotation = rotation;
+        o.page = page;
+        const double begun = cpu_seconds();
+        EXPECT_EQ(pack_rects(items, o, context).status().code(), ErrorCode::cancelled);
+        EXPECT_LT(cpu_seconds() - begun, test::kSlowness) << int(engine) << " " << page.width;
+      }
 }
 
 TEST(PackRects, SameResultForEveryThreadCount) {
