@@ -74,8 +74,11 @@ struct FitPlacement {
   std::int32_t content_width = 0, content_height = 0;
   bool rotated = false;
   double angle = 0;  // radians, counterclockwise; 0 or pi/2 for boxes
-  double scale = 1;  // of this chart: the common scale, or more where minimum_side asks for it
-  Vec2d offset;      // outlines only
+  // Of this chart's outline: the common scale, or more where minimum_side asks for it. With boxes
+  // the common scale: each axis has its own, content / size at scale 1, which rounding up and
+  // minimum_side make larger.
+  double scale = 1;
+  Vec2d offset;  // outlines only
 };
 
 struct FitResult {
