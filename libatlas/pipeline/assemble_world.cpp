@@ -1,5 +1,7 @@
 #include "libatlas/pipeline/assemble_world.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "libatlas/pipeline/round_uvs.h"
@@ -42,11 +44,13 @@ std::vector<Vec2d> page_uvs(const PlacedCharts& placed) {
   return uvs;
 }
 
-World assemble_world(const Scene& scene, const PlacedCharts& placed, const WorldMesh& mesh) {
-  World world;
+AssembledWorld assemble_world(const Scene& scene, const PlacedCharts& placed,
+                              const WorldMesh& mesh) {
+  AssembledWorld assembled;
+  World& world = assembled.world;
   world.origin = scene.origin;
   world.positions = scene.positions;
-  round_uvs(page_uvs(placed), mesh.uv_indices, world.uvs);
+  assembled.thin_triangles = round_uvs(page_uvs(placed), mesh.uv_indices, world.uvs);
   world.pages.resize(placed.pages.size());
   for (std::size_t t = 0; t < mesh.triangle_chart.size(); ++t) {
     const ChartPlacement& placement = placed.placements[mesh.triangle_chart[t]];
@@ -55,7 +59,14 @@ World assemble_world(const Scene& scene, const PlacedCharts& placed, const World
     page.uv_indices.insert(page.uv_indices.end(), &mesh.uv_indices[3 * t],
                            &mesh.uv_indices[3 * t] + 3);
   }
-  return world;
+  return assembled;
+}
+
+std::string thin_triangles_text(std::uint64_t thin, std::uint64_t triangles) {
+  return fmt::format(
+      "{} of {} triangles are so thin that their uvs as floats turn them over or close them: other "
+      "programs may complain (more pages, or a mesh without slivers)",
+      thin, triangles);
 }
 
 void keep_scene(const Scene& scene, const ChartSet& charts, World& world) {

@@ -1,8 +1,10 @@
 // From charts on pages to the mesh that exporters write.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "libatlas/bake/placement.h"
@@ -46,8 +48,17 @@ struct PlacedCharts {
 // (origin bottom left); exact, see round_uvs.h.
 std::vector<Vec2d> page_uvs(const PlacedCharts& placed);
 
+struct AssembledWorld {
+  World world;
+  std::size_t thin_triangles = 0;  // turned over or closed by their uvs as floats: see round_uvs.h
+};
+
 // One world page an atlas page, triangles in input order within each; uvs as page fractions.
-World assemble_world(const Scene& scene, const PlacedCharts& placed, const WorldMesh& mesh);
+AssembledWorld assemble_world(const Scene& scene, const PlacedCharts& placed,
+                              const WorldMesh& mesh);
+
+// What whoever uses a world with some has to know.
+std::string thin_triangles_text(std::uint64_t thin, std::uint64_t triangles);
 
 // Turns a world of one page into one that keeps its scene (World::scene), all corners as the scene
 // has them: triangles that cutting had to turn round face again as they did, since the scene's

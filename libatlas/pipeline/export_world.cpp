@@ -72,6 +72,8 @@ class Export {
     report_.advice = advice_on(report_, options_);
     if (std::string line = plan_.bake ? advice_on_transparency(scene_) : ""; !line.empty())
       report_.advice.push_back(std::move(line));
+    if (report_.thin_triangles > 0)
+      report_.advice.push_back(thin_triangles_text(report_.thin_triangles, report_.triangles_out));
     for (const std::string& line : report_.advice) context_.say(line);
     report_.cpu_seconds = cpu_seconds() - cpu;
     report_.wall_seconds = wall_seconds() - wall;
@@ -322,7 +324,10 @@ class Export {
     const WorldMesh mesh =
         coarse_ ? WorldMesh{coarse_->indices, coarse_->uv_indices, coarse_->triangle_chart}
                 : fine.view();
-    World world = assemble_world(scene_, {charts_, layout_.placements, layout_.pages}, mesh);
+    AssembledWorld assembled =
+        assemble_world(scene_, {charts_, layout_.placements, layout_.pages}, mesh);
+    World& world = assembled.world;
+    report_.thin_triangles = assembled.thin_triangles;
     world.up = options_.up;
     world.title = options_.target.stem().string();
     world.metres_per_unit = scene_.metres_per_unit;

@@ -76,6 +76,7 @@ struct ExportReport {
   double utilization = 0;     // chart texels (boxes) or uv area (outlines) / page texels
   double uv_utilization = 0;  // uv area / page area
   bool outlines = false;
+  std::uint64_t thin_triangles = 0;  // of those written: turned over or closed by uvs as floats
   std::vector<PageReport> pages;
   std::uint64_t gpu_bytes = 0;  // RGBA8 with mip chains
 

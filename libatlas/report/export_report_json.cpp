@@ -182,6 +182,7 @@ Json pages_json(const ExportReport& r) {
           {"utilization", r.utilization},
           {"uv_utilization", r.uv_utilization},
           {"gpu_bytes", r.gpu_bytes},
+          {"thin_triangles", r.thin_triangles},
           {"pages", pages}};
 }
 

@@ -1,0 +1,42 @@
+#include "libatlas/pipeline/assemble_world.h"
+
+#include <gtest/gtest.h>
+
+namespace atlas::test {
+namespace {
+
+// A unit square of two triangles on a page of `side` texels; the second has been given uvs that run
+// clockwise.
+TEST(AssembleWorld, TellsOfTrianglesThatStayTurnedOver) {
+  Scene scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  scene.indices = {0, 1, 2, 0, 2, 3};
+  ChartSet charts;
+  charts.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  charts.triangle_uv = {0, 1, 2, 0, 2, 3};
+  charts.triangle_chart = {0, 0};
+  charts.charts.resize(1);
+  charts.charts[0].triangle_count = 2;
+  charts.charts[0].uv_count = 4;
+  ChartPlacement placement;
+  placement.page = 0;
+  placement.x = placement.y = 4;
+  placement.width = placement.height = 56;
+  placement.texels_per_unit = {56, 56};
+  turn_in_box(placement, false);
+  const Extent page{64, 64};
+  const auto thin = [&] {
+    const WorldMesh mesh{scene.indices, charts.triangle_uv, charts.triangle_chart};
+    const AssembledWorld made = assemble_world(scene, {charts, {&placement, 1}, {&page, 1}}, mesh);
+    EXPECT_EQ(made.world.pages[0].indices, scene.indices);
+    EXPECT_NEAR(made.world.uvs[2].x, 60.0 / 64, 1.1 / 64);  // by a texel at most
+    return made.thin_triangles;
+  };
+  EXPECT_EQ(thin(), 0u);
+  std::swap(charts.triangle_uv[4], charts.triangle_uv[5]);
+  EXPECT_EQ(thin(), 1u);
+  EXPECT_TRUE(thin_triangles_text(1, 2).starts_with("1 of 2 triangles are so thin"));
+}
+
+}  // namespace
+}  // namespace atlas::test
