@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "libatlas/pipeline/round_uvs.h"
@@ -44,13 +45,16 @@ std::vector<Vec2d> page_uvs(const PlacedCharts& placed) {
   return uvs;
 }
 
-AssembledWorld assemble_world(const Scene& scene, const PlacedCharts& placed,
-                              const WorldMesh& mesh) {
+AssembledWorld assemble_world(const Scene& scene, const PlacedCharts& placed, const WorldMesh& mesh,
+                              bool baked) {
   AssembledWorld assembled;
   World& world = assembled.world;
   world.origin = scene.origin;
   world.positions = scene.positions;
-  assembled.thin_triangles = round_uvs(page_uvs(placed), mesh.uv_indices, world.uvs);
+  std::int32_t longest = 1;
+  for (const Extent& page : placed.pages) longest = std::max({longest, page.width, page.height});
+  assembled.thin_triangles =
+      round_uvs(page_uvs(placed), mesh.uv_indices, world.uvs, baked ? 1.0 / longest : 1);
   world.pages.resize(placed.pages.size());
   for (std::size_t t = 0; t < mesh.triangle_chart.size(); ++t) {
     const ChartPlacement& placement = placed.placements[mesh.triangle_chart[t]];

@@ -53,9 +53,11 @@ struct AssembledWorld {
   std::size_t thin_triangles = 0;  // turned over or closed by their uvs as floats: see round_uvs.h
 };
 
-// One world page an atlas page, triangles in input order within each; uvs as page fractions.
-AssembledWorld assemble_world(const Scene& scene, const PlacedCharts& placed,
-                              const WorldMesh& mesh);
+// One world page an atlas page, triangles in input order within each; uvs as page fractions. With
+// `baked` the pages hold light by now: rounding moves no uv farther than a texel of the largest,
+// which the gutters forgive at all but the coarsest of their mip levels.
+AssembledWorld assemble_world(const Scene& scene, const PlacedCharts& placed, const WorldMesh& mesh,
+                              bool baked);
 
 // What whoever uses a world with some has to know.
 std::string thin_triangles_text(std::uint64_t thin, std::uint64_t triangles);

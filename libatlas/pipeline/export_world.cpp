@@ -325,7 +325,7 @@ class Export {
         coarse_ ? WorldMesh{coarse_->indices, coarse_->uv_indices, coarse_->triangle_chart}
                 : fine.view();
     AssembledWorld assembled =
-        assemble_world(scene_, {charts_, layout_.placements, layout_.pages}, mesh);
+        assemble_world(scene_, {charts_, layout_.placements, layout_.pages}, mesh, plan_.bake);
     World& world = assembled.world;
     report_.thin_triangles = assembled.thin_triangles;
     world.up = options_.up;

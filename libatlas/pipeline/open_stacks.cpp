@@ -56,9 +56,10 @@ class StackOpener {
   }
 
   // How far the members go, each from its exact place.
-  std::vector<glm::dvec2> run() {
+  std::vector<glm::dvec2> run(double farthest) {
     Vector x = Vector::Zero(Eigen::Index(2 * stack_.members.size()));
     for (const double tether : kTethers) {
+      if (tether * kUvStep > farthest) break;
       find_targets(x);
       for (int i = 0; i < kMostSolves; ++i) {
         if (all_open(x)) return moves(x);
@@ -252,9 +253,10 @@ class StackFinder {
 class StackUvs {
  public:
   StackUvs(std::span<const std::uint32_t> corners, const Buckets& corners_at,
-           std::span<const glm::dvec2> exact, std::vector<Vec2f>& uvs)
+           std::span<const glm::dvec2> exact, double farthest, std::vector<Vec2f>& uvs)
       : corners_(corners),
         exact_(exact),
+        farthest_(farthest),
         uvs_(uvs),
         finder_(corners, corners_at, exact),
         place_(uvs.size(), kNone),
@@ -287,8 +289,11 @@ class StackUvs {
                            [&](std::uint32_t t) { return thin(t); });
     };
     const auto before = count_thin();
-    const std::vector<glm::dvec2> moves = StackOpener(corners_, exact_, stack, place_).run();
+    const std::vector<glm::dvec2> moves =
+        StackOpener(corners_, exact_, stack, place_).run(farthest_);
     moved_ += moves.size();
+    for (const glm::dvec2& move : moves)
+      if (std::max(std::fabs(move.x), std::fabs(move.y)) > farthest_) return;
     std::vector<Vec2f> old;
     for (std::size_t i = 0; i < moves.size(); ++i) {
       const std::uint32_t uv = stack.members[i];
@@ -301,6 +306,7 @@ class StackUvs {
 
   std::span<const std::uint32_t> corners_;
   std::span<const glm::dvec2> exact_;
+  double farthest_;
   std::vector<Vec2f>& uvs_;
   StackFinder finder_;
   std::vector<std::uint32_t> place_;   // 1 a uv
@@ -311,8 +317,8 @@ class StackUvs {
 }  // namespace
 
 void open_stacks(std::span<const std::uint32_t> corners, const Buckets& corners_at,
-                 std::span<const glm::dvec2> exact, std::vector<Vec2f>& uvs) {
-  StackUvs(corners, corners_at, exact, uvs).run();
+                 std::span<const glm::dvec2> exact, double farthest, std::vector<Vec2f>& uvs) {
+  StackUvs(corners, corners_at, exact, farthest, uvs).run();
 }
 
 }  // namespace atlas

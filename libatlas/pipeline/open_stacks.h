@@ -16,9 +16,10 @@ namespace atlas {
 // height that rounding leaves open, and none is closed on the way. The energy is a barrier for each
 // triangle that lacks height (Li et al. 2020, "Incremental potential contact", eq. 6), and a
 // tether to `exact` that is loosened until the heights are reached, at most to some thousand steps
-// between floats. Only what leaves fewer thin triangles (thin_uvs.h) is kept. `exact`: 1 a uv;
-// triangles that are turned over there stay as they are.
+// between floats, or to `farthest` (of the page): a stack that needs more stays as it is. Only what
+// leaves fewer thin triangles (thin_uvs.h) is kept. `exact`: 1 a uv; triangles that are turned over
+// there stay as they are.
 void open_stacks(std::span<const std::uint32_t> corners, const Buckets& corners_at,
-                 std::span<const glm::dvec2> exact, std::vector<Vec2f>& uvs);
+                 std::span<const glm::dvec2> exact, double farthest, std::vector<Vec2f>& uvs);
 
 }  // namespace atlas

@@ -21,8 +21,8 @@ constexpr std::uint8_t kMostPushes = 50;       // a triangle; what takes more is
 class SliverOpener {
  public:
   SliverOpener(std::span<const std::uint32_t> corners, std::span<const Vec2d> exact,
-               std::vector<Vec2f>& uvs)
-      : corners_(corners), exact_(exact), uvs_(uvs) {}
+               double farthest, std::vector<Vec2f>& uvs)
+      : corners_(corners), exact_(exact), farthest_(farthest), uvs_(uvs) {}
 
   // How many stay thin.
   std::size_t run() {
@@ -31,7 +31,7 @@ class SliverOpener {
                                     [&](std::size_t corner) { return corners_[corner]; });
     for (const Vec2d& p : exact_) start_.push_back(to_glm(p));
     push_open();
-    open_stacks(corners_, corners_at_, start_, uvs_);
+    open_stacks(corners_, corners_at_, start_, farthest_, uvs_);
     if (count_thin() == 0) return 0;
     spread_specks(corners_, corners_at_, uvs_);
     for (std::size_t i = 0; i < uvs_.size(); ++i) start_[i] = to_dvec(uvs_[i]);
@@ -108,7 +108,9 @@ class SliverOpener {
       const double length = glm::length(step);
       if (length > kMostPush) step *= kMostPush / length;
       glm::dvec2& p = at_[c[k]];
-      p = glm::clamp(p + step, start_[c[k]] - kMostShift, start_[c[k]] + kMostShift);
+      const glm::dvec2 home = to_glm(exact_[c[k]]);
+      p = glm::clamp(p + step, glm::max(start_[c[k]] - kMostShift, home - farthest_),
+                     glm::min(start_[c[k]] + kMostShift, home + farthest_));
       moved_[c[k]] = 1;
     }
     return true;
@@ -116,6 +118,7 @@ class SliverOpener {
 
   std::span<const std::uint32_t> corners_;
   std::span<const Vec2d> exact_;
+  double farthest_;
   std::vector<Vec2f>& uvs_;
   Buckets corners_at_;                  // each uv
   std::vector<glm::dvec2> start_, at_;  // 1 a uv: where pushing starts, and has come to
@@ -125,12 +128,12 @@ class SliverOpener {
 }  // namespace
 
 std::size_t round_uvs(std::span<const Vec2d> exact, std::span<const std::uint32_t> corners,
-                      std::vector<Vec2f>& rounded) {
+                      std::vector<Vec2f>& rounded, double farthest) {
   rounded.resize(exact.size());
   for (std::size_t i = 0; i < exact.size(); ++i) {
     rounded[i] = {float(exact[i].x), float(exact[i].y)};
   }
-  return SliverOpener(corners, exact, rounded).run();
+  return SliverOpener(corners, exact, farthest, rounded).run();
 }
 
 }  // namespace atlas

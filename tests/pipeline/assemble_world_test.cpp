@@ -27,7 +27,8 @@ TEST(AssembleWorld, TellsOfTrianglesThatStayTurnedOver) {
   const Extent page{64, 64};
   const auto thin = [&] {
     const WorldMesh mesh{scene.indices, charts.triangle_uv, charts.triangle_chart};
-    const AssembledWorld made = assemble_world(scene, {charts, {&placement, 1}, {&page, 1}}, mesh);
+    const AssembledWorld made =
+        assemble_world(scene, {charts, {&placement, 1}, {&page, 1}}, mesh, true);
     EXPECT_EQ(made.world.pages[0].indices, scene.indices);
     EXPECT_NEAR(made.world.uvs[2].x, 60.0 / 64, 1.1 / 64);  // by a texel at most
     return made.thin_triangles;

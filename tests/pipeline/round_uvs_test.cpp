@@ -110,7 +110,7 @@ TEST(RoundUvs, SliversStayOpen) {
 // Places along a line and beside it, in last places of a float; the three triangles at `mid` can
 // only be opened by moving it along the line, by more than a hundred times what they lack in
 // height.
-TEST(RoundUvs, SliversThatLeanOnEachOtherAreOpened) {
+FlatMesh leaning_slivers() {
   FlatMesh mesh;
   enum : std::uint32_t { start, mid, next, last, hub, near, far };
   for (const Vec2d p : {Vec2d{0, 0},
@@ -124,6 +124,11 @@ TEST(RoundUvs, SliversThatLeanOnEachOtherAreOpened) {
   }
   mesh.corners = {next, mid, hub,  mid, next, far,  start, hub,  mid,  start, mid,
                   near, far, near, mid, last, next, hub,   next, last, far};
+  return mesh;
+}
+
+TEST(RoundUvs, SliversThatLeanOnEachOtherAreOpened) {
+  const FlatMesh mesh = leaning_slivers();
   std::vector<Vec2f> rounded;
   EXPECT_EQ(round_uvs(mesh.uvs, mesh.corners, rounded), 0u);
   EXPECT_EQ(in_integers(mesh, rounded), 0u);
@@ -154,7 +159,7 @@ TEST(OpenStacks, WhatIsHemmedInMovesItsNeighbours) {
   ASSERT_TRUE(is_thin(triangle(0), uvs));
   const Buckets corners_at =
       sort_into_buckets(corners.size(), uvs.size(), [&](std::size_t c) { return corners[c]; });
-  open_stacks(corners, corners_at, exact, uvs);
+  open_stacks(corners, corners_at, exact, 1, uvs);
   for (std::uint32_t t = 0; t < corners.size() / 3; ++t) {
     EXPECT_FALSE(is_thin(triangle(t), uvs)) << t;
   }
@@ -177,6 +182,26 @@ TEST(RoundUvs, FansOfManySliversAreOpened) {
   std::vector<Vec2f> rounded;
   EXPECT_EQ(round_uvs(mesh.uvs, mesh.corners, rounded), 0u);
   EXPECT_EQ(in_integers(mesh, rounded), 0u);
+}
+
+// Pages that are baked by now: however large the page, uvs stay within a texel of it.
+TEST(RoundUvs, NoCornerGoesFartherThanAsked) {
+  double moved = 0;
+  for (const FlatMesh& mesh : {stack_of_slivers(100, 6, 0.3, 1e-9), leaning_slivers()}) {
+    for (const double farthest : {1.0, 1.0 / 4096, 1.0 / 16384, 1.0 / 65536}) {
+      std::vector<Vec2f> rounded;
+      const std::size_t left = round_uvs(mesh.uvs, mesh.corners, rounded, farthest);
+      EXPECT_LE(in_integers(mesh, rounded), left);
+      double most = 0;
+      for (std::size_t i = 0; i < mesh.uvs.size(); ++i) {
+        most = std::max({most, std::fabs(rounded[i].x - mesh.uvs[i].x),
+                         std::fabs(rounded[i].y - mesh.uvs[i].y)});
+      }
+      EXPECT_LE(most, farthest + 0x1p-24);
+      moved = std::max(moved, most);
+    }
+  }
+  EXPECT_GT(moved, 1.5 / 16384) << "the test is too easy";
 }
 
 TEST(RoundUvs, SpecksKeepAnArea) {
