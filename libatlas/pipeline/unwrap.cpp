@@ -97,11 +97,11 @@ Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& opt
   result.texels_per_unit = result.placements[0].texels_per_unit.x;
   const std::vector<Vec2d> exact = page_uvs({result.charts, result.placements, result.pages});
   std::vector<Vec2f> rounded;
-  result.closed_triangles =
+  result.thin_triangles =
       round_uvs(exact, ChartedMesh(mesh.indices, result.charts).view().uv_indices, rounded);
-  if (result.closed_triangles > 0)
+  if (result.thin_triangles > 0)
     context.say(fmt::format("{} slivers have no area or are turned over in uvs rounded to floats",
-                            result.closed_triangles));
+                            result.thin_triangles));
   join_corners(mesh.indices, rounded, result);
   result.triangle_page.reserve(result.charts.triangle_chart.size());
   for (const std::uint32_t chart : result.charts.triangle_chart)

@@ -35,7 +35,7 @@ struct UnwrappedMesh {
   std::vector<Extent> pages;                 // texels
   double texels_per_unit = 0;                // reached
   double utilization = 0;                    // area of the charts / area of the pages
-  std::uint64_t closed_triangles = 0;        // slivers that floats leave no area, or turn over
+  std::uint64_t thin_triangles = 0;          // slivers that floats leave no area, or turn over
   ChartSet charts;                           // with all that was measured: distortion, seams
   std::vector<ChartPlacement> placements;    // 1 a chart
 };
