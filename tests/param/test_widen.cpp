@@ -1,0 +1,148 @@
+// Parts that come near each other in uv but not on the surface: drawn apart, and nothing else.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "libatlas/param/distortion.h"
+#include "libatlas/param/halfedges.h"
+#include "libatlas/param/widen.h"
+#include "tests/param/oracles.h"
+#include "tests/param/shapes.h"
+
+namespace atlas {
+namespace {
+
+using testing::Disc;
+
+constexpr double kPi = std::numbers::pi, kClearance = 0.05, kGap = 0.01;
+
+struct Flat {
+  Disc disc;
+  std::vector<Vec2d> uvs;
+};
+
+// A turn of a spiral stair, laid flat as a ring whose two ends come within `gap` of each other.
+// `rise` is what separates them on the surface.
+Flat stair(double rise, double gap, double scale = 1) {
+  const double arc = 2 * kPi - gap;
+  const auto at = [=](double u, double v, double z) {
+    const double r = scale * (1.4 - 0.4 * v);
+    return Vec3d{r * std::cos(arc * u), r * std::sin(arc * u), scale * z};
+  };
+  Flat flat;
+  flat.disc = testing::make_grid(60, 6, [&](double u, double v) { return at(u, v, rise * u); });
+  for (const Vec3d& p :
+       testing::make_grid(60, 6, [&](double u, double v) { return at(u, v, 0); }).positions)
+    flat.uvs.push_back({p.x, p.y});
+  return flat;
+}
+
+WidenOptions with(double clearance, double max_stretch = 1.25) {
+  WidenOptions options;
+  options.clearance = clearance;
+  options.max_stretch = max_stretch;
+  return options;
+}
+
+// Of points spread along the border, the smallest distance in uv of two that are more than `far`
+// from each other on the surface; every pair is looked at.
+double least_gap(const Flat& flat, double far) {
+  struct Point {
+    Vec2d uv;
+    Vec3d place;
+  };
+  std::vector<Point> points;
+  param::HalfEdges half_edges;
+  half_edges.build(flat.disc.view());
+  for (std::uint32_t h = 0; h < 3 * flat.disc.triangles.size(); ++h) {
+    if (half_edges.opposite(h) != param::HalfEdges::none) continue;
+    const std::uint32_t a = half_edges.from(h), b = half_edges.to(h);
+    for (const double t : {0.0, 0.25, 0.5, 0.75}) {
+      const auto mix = [t](double x, double y) { return x + t * (y - x); };
+      const Vec3d p = flat.disc.positions[a], q = flat.disc.positions[b];
+      points.push_back({{mix(flat.uvs[a].x, flat.uvs[b].x), mix(flat.uvs[a].y, flat.uvs[b].y)},
+                        {mix(p.x, q.x), mix(p.y, q.y), mix(p.z, q.z)}});
+    }
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (const Point& p : points) {
+    for (const Point& q : points) {
+      const double apart =
+          std::hypot(p.place.x - q.place.x, p.place.y - q.place.y, p.place.z - q.place.z);
+      if (apart > far) least = std::min(least, std::hypot(p.uv.x - q.uv.x, p.uv.y - q.uv.y));
+    }
+  }
+  return least;
+}
+
+TEST(Widen, FarPartsEndAClearanceApart) {
+  Flat flat = stair(1, kGap);
+  ASSERT_LT(least_gap(flat, 4 * kClearance), 0.02);
+  const double before = measure_distortion(flat.disc.view(), flat.uvs).stretch_l2;
+  const Widened widened = widen_gaps(flat.disc.view(), with(kClearance), flat.uvs);
+  EXPECT_TRUE(widened.moved);
+  EXPECT_GT(widened.near_before, 0.7);
+  EXPECT_EQ(widened.near_after, 0);
+  EXPECT_GT(least_gap(flat, 4 * kClearance), 0.99 * kClearance);
+  EXPECT_LT(least_gap(flat, 4 * kClearance), 1.5 * kClearance) << "no more than it takes";
+  EXPECT_TRUE(testing::injective_by_pairs(flat.disc.view(), flat.uvs));
+  const Distortion after = measure_distortion(flat.disc.view(), flat.uvs);
+  EXPECT_EQ(after.stretch_999, widened.distortion.stretch_999);
+  EXPECT_LE(after.stretch_999, 1.25);
+  EXPECT_LT(after.stretch_l2, before + 0.002);
+}
+
+// The banks of a cut are one place of the surface: texels may mix them.
+TEST(Widen, WhatIsOnePlaceOfTheSurfaceStays) {
+  Flat flat = stair(0, kGap);
+  const std::vector<Vec2d> before = flat.uvs;
+  const Widened widened = widen_gaps(flat.disc.view(), with(kClearance), flat.uvs);
+  EXPECT_FALSE(widened.moved);
+  EXPECT_EQ(widened.near_before, 0);
+  for (std::size_t v = 0; v < before.size(); ++v) {
+    ASSERT_EQ(flat.uvs[v].x, before[v].x);
+    ASSERT_EQ(flat.uvs[v].y, before[v].y);
+  }
+}
+
+// The ends cannot come apart by much of what they lack; what the bound allows is kept.
+TEST(Widen, TheBoundIsKept) {
+  for (const double slack : {1e-6, 1e-3, 1e-2}) {
+    Flat flat = stair(1, kGap);
+    const double bound = measure_distortion(flat.disc.view(), flat.uvs).stretch_999 * (1 + slack);
+    const double gap = least_gap(flat, 4 * kClearance);
+    widen_gaps(flat.disc.view(), with(kClearance, bound), flat.uvs);
+    EXPECT_LE(measure_distortion(flat.disc.view(), flat.uvs).stretch_999, bound) << slack;
+    EXPECT_GE(least_gap(flat, 4 * kClearance), gap * (1 - 1e-9)) << slack;
+    EXPECT_TRUE(testing::injective_by_pairs(flat.disc.view(), flat.uvs)) << slack;
+  }
+}
+
+TEST(Widen, UnitsOfLengthDoNotMatter) {
+  Flat one = stair(1, kGap);
+  widen_gaps(one.disc.view(), with(kClearance), one.uvs);
+  for (const double scale : {std::ldexp(1.0, -20), 1024.0}) {
+    Flat other = stair(1, kGap, scale);
+    widen_gaps(other.disc.view(), with(kClearance * scale), other.uvs);
+    for (std::size_t v = 0; v < one.uvs.size(); ++v) {
+      ASSERT_NEAR(other.uvs[v].x / scale, one.uvs[v].x, 1e-9) << scale;
+      ASSERT_NEAR(other.uvs[v].y / scale, one.uvs[v].y, 1e-9) << scale;
+    }
+  }
+}
+
+TEST(Widen, LooksWithoutMoving) {
+  const Flat flat = stair(1, kGap);
+  const Widened seen = measure_gaps(flat.disc.view(), kClearance, flat.uvs);
+  EXPECT_FALSE(seen.moved);
+  // Two ends of 0.4, and two circles nearly closed.
+  EXPECT_NEAR(seen.border, 0.8 + 2 * kPi * 2.4, 0.05);
+  // All of both ends, and little around their corners.
+  EXPECT_NEAR(seen.near_before, 0.8, 0.25);
+}
+
+}  // namespace
+}  // namespace atlas
