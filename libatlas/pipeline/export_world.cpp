@@ -19,6 +19,7 @@
 #include "libatlas/pipeline/fill_pages.h"
 #include "libatlas/pipeline/longest_sides.h"
 #include "libatlas/pipeline/page_layout.h"
+#include "libatlas/pipeline/part_gaps.h"
 #include "libatlas/pipeline/stage_recorder.h"
 #include "libatlas/scene/check_scene.h"
 #include "libatlas/simplify/simplify.h"
@@ -156,6 +157,12 @@ class Export {
     const TextureOptions texture = texture_options();
     Result<TextureResult> sized = size_chart_textures(*light_, texture, context);
     if (!sized.ok()) return sized.status();
+    const PagesOfCharts pages{view_of(scene_), options_.charts.max_stretch,
+                              double(options_.atlases) * options_.atlas_size * options_.atlas_size,
+                              texture.max_side};
+    report_.opened_charts = open_part_gaps(pages, sized->charts, charts_, context_).charts;
+    if (context_.cancelled()) return Status::cancelled();
+    report_charts();
     for (const ChartTexture& t : sized->charts) {
       densities_.push_back(t.texels_per_unit);
       full_densities_.push_back(t.full_texels_per_unit);
@@ -203,7 +210,14 @@ class Export {
   // No light asks for no resolution of its own: pages filled as well as packing can.
   Result<PageLayout> lay_out_plain(const LayoutOptions& options, const Context& context) {
     const double texels = double(options.pages) * options.page_size * options.page_size;
-    const PlainUvs uvs{view_of(scene_), options_.charts, filling_density(charts_, texels)};
+    const double density = filling_density(charts_, texels);
+    // Uvs for a lightmap.
+    if (options_.keep_scene) {
+      const std::vector<Vec2d> densities(charts_.charts.size(), {density, density});
+      const PagesOfCharts pages{view_of(scene_), options_.charts.max_stretch, texels};
+      report_.opened_charts = open_part_gaps(pages, densities, charts_, context_).charts;
+    }
+    const PlainUvs uvs{view_of(scene_), options_.charts, density};
     Result<PageLayout> layout = fill_pages(uvs, options, charts_, context);
     report_charts();
     return layout;
@@ -233,6 +247,8 @@ class Export {
                                          : lay_out_plain(layout, context);
     if (!laid.ok()) return in_terms_of_options(laid.status());
     layout_ = std::move(*laid);
+    if (plan_.bake)
+      report_.gaps = left_part_gaps(view_of(scene_), charts_, layout_.placements, context_);
     report_.grouping = layout_.grouping;
     report_.scale = layout_.scale;
     report_.utilization = layout_.utilization;

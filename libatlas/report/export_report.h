@@ -9,6 +9,7 @@
 
 #include "libatlas/bake/fidelity.h"
 #include "libatlas/charts/charts.h"
+#include "libatlas/charts/gaps.h"
 #include "libatlas/core/rect.h"
 #include "libatlas/core/status.h"
 #include "libatlas/pack/grouping.h"
@@ -77,6 +78,8 @@ struct ExportReport {
   double uv_utilization = 0;  // uv area / page area
   bool outlines = false;
   std::uint64_t thin_triangles = 0;  // of those written: turned over or closed by uvs as floats
+  std::uint64_t opened_charts = 0;   // parts of which were drawn apart, not to share texels
+  GapReport gaps;  // where some still share them: texels of border; only with baked light
   std::vector<PageReport> pages;
   std::uint64_t gpu_bytes = 0;  // RGBA8 with mip chains
 

@@ -181,6 +181,9 @@ Json pages_json(const ExportReport& r) {
           {"outlines", r.outlines},
           {"utilization", r.utilization},
           {"uv_utilization", r.uv_utilization},
+          {"opened_charts", r.opened_charts},
+          {"border_texels", r.gaps.border},
+          {"shared_border_texels", r.gaps.near_after},
           {"gpu_bytes", r.gpu_bytes},
           {"thin_triangles", r.thin_triangles},
           {"pages", pages}};

@@ -1,0 +1,130 @@
+// Parts of one chart that would share texels: what a viewer sees at their borders.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libatlas/bake/bake.h"
+#include "libatlas/pipeline/page_layout.h"
+#include "libatlas/pipeline/part_gaps.h"
+#include "libatlas/scene/check_scene.h"
+#include "libatlas/texture/chart_textures.h"
+#include "libatlas/texture/srgb.h"
+#include "tests/support/shapes.h"
+
+namespace atlas::test {
+namespace {
+
+constexpr int kColumns = 60, kRows = 6, kPage = 128;
+constexpr double kDensity = 20;  // texels a unit: the ends are two thirds of a texel apart
+
+float light_of(double height) {
+  return srgb_decode(static_cast<float>(0.2 + 0.6 * height));
+}
+
+// A turn of a spiral stair, lit more the higher it is: laid flat it is a ring whose dark and bright
+// ends nearly meet.
+struct Stair {
+  Scene scene;
+  MeshView view;
+  ChartSet charts;
+
+  Stair() {
+    const Shape strip = grid(kColumns, kRows);
+    for (const Vec3f& p : strip.positions) {
+      const double angle = 6.25 * p.x, r = 1.4 - 0.4 * p.y;
+      const double x = r * std::cos(angle), y = r * std::sin(angle);
+      scene.positions.push_back({float(x), float(y), p.x});
+      scene.texcoords.push_back({float((x + 2) / 4), float((y + 2) / 4)});
+      const float light = light_of(p.x);
+      scene.illumination.push_back({light, light, light});
+    }
+    scene.indices = scene.texcoord_indices = strip.indices;
+    EXPECT_TRUE(complete_scene(scene).ok());
+    view.positions = scene.positions;
+    view.indices = scene.indices;
+    view.texcoords = scene.texcoords;
+    view.texcoord_indices = scene.texcoord_indices;
+    ChartOptions options;
+    options.keep_uv_charts = true;
+    auto made = make_charts(view, options, {});
+    EXPECT_TRUE(made.ok()) << made.status().message();
+    charts = std::move(*made);
+    EXPECT_EQ(charts.charts.size(), 1u);
+    charts.charts[0].kept = false;
+  }
+
+  PagesOfCharts pages() const { return {view, 1.25, double(kPage) * kPage, kPage}; }
+};
+
+double look_up(const Image8& page, Vec2d at) {
+  const double x = at.x - 0.5, y = at.y - 0.5;
+  const int i = int(std::floor(x)), j = int(std::floor(y));
+  const double s = x - i, t = y - j;
+  return (1 - t) * ((1 - s) * page.at(i, j)[0] + s * page.at(i + 1, j)[0]) +
+         t * ((1 - s) * page.at(i, j + 1)[0] + s * page.at(i + 1, j + 1)[0]);
+}
+
+// The largest error of a look-up at the ends, in codes.
+double error_at_ends(const Stair& stair) {
+  LayoutOptions options;
+  options.pages = 1;
+  options.page_size = kPage;
+  const std::vector<Vec2d> density{{kDensity, kDensity}};
+  const auto layout = lay_out_pages(stair.charts, density, options, {});
+  EXPECT_TRUE(layout.ok());
+  EXPECT_EQ(layout->scale, 1);
+  const ToneMapping tone;
+  const LuminanceSampler sampler(stair.scene, Quantity::luminance);
+  BakeOptions bake;
+  bake.page_width = layout->pages[0].width;
+  bake.page_height = layout->pages[0].height;
+  const auto page = bake_page({sampler, stair.charts, tone}, layout->placements, bake, {});
+  EXPECT_TRUE(page.ok());
+  double worst = 0;
+  for (std::size_t i = 0; i < stair.charts.uvs.size(); ++i) {
+    const float height = stair.scene.positions[stair.charts.uv_vertex[i]].z;
+    if (height > 0 && height < 1) continue;
+    const Vec2d at = page_texel(layout->placements[0], stair.charts.uvs[i]);
+    worst = std::max(worst, std::abs(look_up(page->display, at) - 255 * (0.2 + 0.6 * height)));
+  }
+  return worst;
+}
+
+TEST(PartGaps, OpenedPartsDoNotBleed) {
+  Stair stair;
+  const double before = error_at_ends(stair);
+  EXPECT_GT(before, 40);
+  const std::vector<Vec2d> density{{kDensity, kDensity}};
+  EXPECT_EQ(open_part_gaps(stair.pages(), density, stair.charts, {}).charts, 1u);
+  EXPECT_LT(error_at_ends(stair), 0.1 * before);
+}
+
+TEST(PartGaps, WhatIsLeftIsMeasuredAsPlaced) {
+  const Stair stair;
+  ChartPlacement placement;
+  placement.texels_per_unit = {kDensity, kDensity};
+  const GapReport near = left_part_gaps(stair.view, stair.charts, {&placement, 1}, {});
+  EXPECT_NEAR(near.near_after, 2 * 0.4 * kDensity, 9) << "both ends, corners included";
+  placement.texels_per_unit = {8 * kDensity, 8 * kDensity};
+  EXPECT_EQ(left_part_gaps(stair.view, stair.charts, {&placement, 1}, {}).near_after, 0);
+}
+
+TEST(PartGaps, OneColourStaysAndNoChartOutgrowsItsPage) {
+  Stair stair;
+  std::vector<ChartTexture> textures(1);
+  textures[0].texels_per_unit = {kDensity, kDensity};
+  textures[0].content = ChartContent::uniform;
+  EXPECT_EQ(open_part_gaps(stair.pages(), textures, stair.charts, {}).charts, 0u);
+  textures[0].content = ChartContent::varied;
+  PagesOfCharts pages = stair.pages();
+  pages.max_side = int(stair.charts.charts[0].size.x * kDensity) - 1;
+  EXPECT_EQ(open_part_gaps(pages, textures, stair.charts, {}).charts, 1u);
+  EXPECT_LE(stair.charts.charts[0].size.x * textures[0].texels_per_unit.x,
+            pages.max_side * (1 + 1e-12));
+  EXPECT_GT(textures[0].texels_per_unit.x, 0.9 * kDensity);
+  EXPECT_EQ(textures[0].texels_per_unit.x, textures[0].texels_per_unit.y);
+}
+
+}  // namespace
+}  // namespace atlas::test
