@@ -17,6 +17,7 @@
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/bake_pages.h"
 #include "libatlas/pipeline/fill_pages.h"
+#include "libatlas/pipeline/layout_options.h"
 #include "libatlas/pipeline/longest_sides.h"
 #include "libatlas/pipeline/page_layout.h"
 #include "libatlas/pipeline/part_gaps.h"
@@ -160,7 +161,7 @@ class Export {
     const PagesOfCharts pages{view_of(scene_), options_.charts.max_stretch,
                               double(options_.atlases) * options_.atlas_size * options_.atlas_size,
                               texture.max_side};
-    report_.opened_charts = open_part_gaps(pages, sized->charts, charts_, context_).charts;
+    report_.opened_charts = open_part_gaps(pages, sized->charts, charts_, context).charts;
     if (context_.cancelled()) return Status::cancelled();
     report_charts();
     for (const ChartTexture& t : sized->charts) {
@@ -185,28 +186,6 @@ class Export {
     return {};
   }
 
-  // The largest side of a page.
-  std::int32_t page_size() const {
-    constexpr double kTexelsAChart = 1024, kExpectedFill = 0.75;
-    constexpr std::int32_t kLargestSide = 16384;
-    if (plan_.bake || !options_.larger_plain_page || options_.plain_pages > 1)
-      return options_.atlas_size;
-    // A page as long as its longest chart is less wide than long where the others do not fill more;
-    // for a square one charts are cut.
-    double longest = 0, area = 0;
-    for (const Chart& chart : charts_.charts) {
-      longest = std::max(longest, chart.size.x);
-      area += chart.distortion.uv_area;
-    }
-    const double filled =
-        options_.square_plain_page ? 1 : area / (kExpectedFill * longest * longest);
-    const double width = std::min(1.0, filled);
-    const double wanted = kTexelsAChart * double(charts_.charts.size());
-    std::int32_t side = options_.atlas_size;
-    while (side < kLargestSide && width * side * side < wanted) side *= 2;
-    return side;
-  }
-
   // No light asks for no resolution of its own: pages filled as well as packing can.
   Result<PageLayout> lay_out_plain(const LayoutOptions& options, const Context& context) {
     const double texels = double(options.pages) * options.page_size * options.page_size;
@@ -215,7 +194,7 @@ class Export {
     if (options_.keep_scene) {
       const std::vector<Vec2d> densities(charts_.charts.size(), {density, density});
       const PagesOfCharts pages{view_of(scene_), options_.charts.max_stretch, texels};
-      report_.opened_charts = open_part_gaps(pages, densities, charts_, context_).charts;
+      report_.opened_charts = open_part_gaps(pages, densities, charts_, context).charts;
     }
     const PlainUvs uvs{view_of(scene_), options_.charts, density};
     Result<PageLayout> layout = fill_pages(uvs, options, charts_, context);
@@ -226,29 +205,13 @@ class Export {
   Status pack() {
     const Context& context = record_.begin("packing");
     const std::size_t uncut = charts_.charts.size();
-    LayoutOptions layout;
-    layout.page_size = page_size();
-    layout.preset = options_.packing;
-    layout.outlines = options_.outlines;
-    if (plan_.bake) {
-      layout.pages = options_.atlases;
-      layout.padding = gutter_pad(options_.mip_levels);
-      layout.alignment = 1 << options_.mip_levels;
-      layout.minimum_side = options_.min_side;
-    } else {
-      layout.pages = options_.plain_pages;
-      layout.padding = 1;
-      layout.alignment = 1;
-      layout.minimum_side = 0;
-      layout.square = options_.square_plain_page || options_.plain_pages > 1;
-      layout.free_aspect = !layout.square;
-    }
+    const LayoutOptions layout = layout_options(charts_, options_, plan_.bake);
     Result<PageLayout> laid = plan_.bake ? lay_out_pages(charts_, densities_, layout, context)
                                          : lay_out_plain(layout, context);
     if (!laid.ok()) return in_terms_of_options(laid.status());
     layout_ = std::move(*laid);
     if (plan_.bake)
-      report_.gaps = left_part_gaps(view_of(scene_), charts_, layout_.placements, context_);
+      report_.gaps = left_part_gaps(view_of(scene_), charts_, layout_.placements, context);
     report_.grouping = layout_.grouping;
     report_.scale = layout_.scale;
     report_.utilization = layout_.utilization;

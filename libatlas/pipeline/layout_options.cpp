@@ -1,0 +1,52 @@
+#include "libatlas/pipeline/layout_options.h"
+
+#include <algorithm>
+
+namespace atlas {
+namespace {
+
+// The largest side of a page for plain uvs.
+std::int32_t plain_page_size(const ChartSet& charts, const ExportOptions& options) {
+  constexpr double kTexelsAChart = 1024, kExpectedFill = 0.75;
+  constexpr std::int32_t kLargestSide = 16384;
+  if (!options.larger_plain_page || options.plain_pages > 1) return options.atlas_size;
+  // A page as long as its longest chart is less wide than long where the others do not fill more;
+  // for a square one charts are cut.
+  double longest = 0, area = 0;
+  for (const Chart& chart : charts.charts) {
+    longest = std::max(longest, chart.size.x);
+    area += chart.distortion.uv_area;
+  }
+  const double filled = options.square_plain_page ? 1 : area / (kExpectedFill * longest * longest);
+  const double width = std::min(1.0, filled);
+  const double wanted = kTexelsAChart * double(charts.charts.size());
+  std::int32_t side = options.atlas_size;
+  while (side < kLargestSide && width * side * side < wanted) side *= 2;
+  return side;
+}
+
+}  // namespace
+
+LayoutOptions layout_options(const ChartSet& charts, const ExportOptions& options, bool bake) {
+  LayoutOptions layout;
+  layout.preset = options.packing;
+  layout.outlines = options.outlines;
+  if (bake) {
+    layout.pages = options.atlases;
+    layout.page_size = options.atlas_size;
+    layout.padding = gutter_pad(options.mip_levels);
+    layout.alignment = 1 << options.mip_levels;
+    layout.minimum_side = options.min_side;
+  } else {
+    layout.pages = options.plain_pages;
+    layout.page_size = plain_page_size(charts, options);
+    layout.padding = 1;
+    layout.alignment = 1;
+    layout.minimum_side = 0;
+    layout.square = options.square_plain_page || options.plain_pages > 1;
+    layout.free_aspect = !layout.square;
+  }
+  return layout;
+}
+
+}  // namespace atlas
