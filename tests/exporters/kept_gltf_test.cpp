@@ -22,15 +22,8 @@ using std::filesystem::path;
 const ReadOptions kRest{
     .unlit_textures = true, .encoded_textures = true, .normals = false, .rest = true};
 
-// Reads `input` and writes it to `output` with new uvs, those of corner k of the scene k/64.
 WorldFile keep(const path& input, const path& output) {
-  const auto loaded = read_scene(input, kRest, {});
-  EXPECT_TRUE(loaded.ok()) << loaded.status().message();
-  if (!loaded.ok()) return {};
-  const World world = world_of(loaded->scene);
-  const auto written = write_kept(world, output);
-  EXPECT_TRUE(written.ok()) << written.status().message();
-  return written.ok() ? *written : WorldFile{};
+  return read_and_keep(input, output, kRest);
 }
 
 std::string png(const TempFolder& folder, int value) {

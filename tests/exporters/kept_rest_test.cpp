@@ -25,13 +25,7 @@ const ReadOptions kRest{
 const ReadOptions kGltfRest{.unlit_textures = true, .encoded_textures = true, .rest = true};
 
 WorldFile keep(const path& input, const path& output, const ReadOptions& options = kGltfRest) {
-  const auto loaded = read_scene(input, options, {});
-  EXPECT_TRUE(loaded.ok()) << loaded.status().message();
-  if (!loaded.ok()) return {};
-  const World world = world_of(loaded->scene);
-  const auto written = write_kept(world, output);
-  EXPECT_TRUE(written.ok()) << written.status().message();
-  return written.ok() ? *written : WorldFile{};
+  return read_and_keep(input, output, options);
 }
 
 // A triangle with uvs and a texture that is there.

@@ -1,12 +1,14 @@
 // Worlds that keep a scene (World::scene).
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdint>
 #include <filesystem>
 
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/exporters/world.h"
-#include "libatlas/scene/scene.h"
+#include "libatlas/scene/reader.h"
 
 namespace atlas::test {
 
@@ -33,6 +35,18 @@ inline Result<WorldFile> write_kept(const World& world, const std::filesystem::p
   if (!written.ok()) return written;
   const Status committed = files.commit();
   return committed.ok() ? written : Result<WorldFile>(committed);
+}
+
+// Reads `input` and writes it to `output` with new uvs; a failure fails the test.
+inline WorldFile read_and_keep(const std::filesystem::path& input,
+                               const std::filesystem::path& output, const ReadOptions& options) {
+  const auto loaded = read_scene(input, options, {});
+  EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+  if (!loaded.ok()) return {};
+  const World world = world_of(loaded->scene);
+  const auto written = write_kept(world, output);
+  EXPECT_TRUE(written.ok()) << written.status().message();
+  return written.ok() ? *written : WorldFile{};
 }
 
 }  // namespace atlas::test

@@ -1,8 +1,6 @@
 #include "tests/support/gltf_oracle.h"
 
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 #include "tests/support/kept_scene.h"
@@ -12,12 +10,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-std::string slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error(path.string() + ": cannot be opened");
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 template <class T>
 double load(const char* at) {
@@ -103,13 +95,13 @@ std::vector<double> local(const json& node) {
 
 GltfOracle::GltfOracle(const fs::path& path) : folder_(path.parent_path()) {
   document = json::parse(gltf_json(path));
-  const std::string bytes = slurp(path);
+  const std::string bytes = bytes_of_file(path);
   if (!document.contains("buffers")) return;
   if (document["buffers"].size() != 1) throw std::runtime_error("buffers");
   if (bytes.starts_with("glTF"))
     buffer_ = bytes.substr(28 + std::size_t(load<std::uint32_t>(bytes.data() + 12)));
   else
-    buffer_ = slurp(folder_ / document["buffers"][0].at("uri"));
+    buffer_ = bytes_of_file(folder_ / document["buffers"][0].at("uri"));
   if (buffer_.size() < document["buffers"][0].at("byteLength")) throw std::runtime_error("buffer");
 }
 
@@ -135,7 +127,7 @@ std::vector<double> GltfOracle::values(const json& number) const {
 
 std::string GltfOracle::image(std::size_t index) const {
   const json& image = document.at("images").at(index);
-  if (image.contains("uri")) return slurp(folder_ / image["uri"].get<std::string>());
+  if (image.contains("uri")) return bytes_of_file(folder_ / image["uri"].get<std::string>());
   const json& view = document.at("bufferViews").at(image.at("bufferView").get<std::size_t>());
   return buffer_.substr(view.at("byteOffset"), view.at("byteLength"));
 }

@@ -14,12 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-std::string slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error(path.string() + ": cannot be opened");
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 std::uint32_t word_at(const std::string& bytes, std::size_t at) {
   std::uint32_t word;
   std::memcpy(&word, bytes.data() + at, 4);
@@ -32,11 +26,11 @@ struct GltfFile {
 
   explicit GltfFile(const fs::path& path) {
     document = json::parse(gltf_json(path));
-    const std::string bytes = slurp(path);
+    const std::string bytes = bytes_of_file(path);
     if (bytes.starts_with("glTF")) {
       buffer = bytes.substr(28 + word_at(bytes, 12));
     } else {
-      buffer = slurp(path.parent_path() / document.at("buffers").at(0).at("uri"));
+      buffer = bytes_of_file(path.parent_path() / document.at("buffers").at(0).at("uri"));
     }
   }
 
@@ -99,7 +93,7 @@ void add_primitive(const GltfFile& file, const json& primitive, const std::strin
 }  // namespace
 
 std::string gltf_json(const fs::path& path) {
-  const std::string bytes = slurp(path);
+  const std::string bytes = bytes_of_file(path);
   return bytes.starts_with("glTF") ? bytes.substr(20, word_at(bytes, 12)) : bytes;
 }
 
@@ -121,7 +115,7 @@ std::vector<KeptTriangle> read_kept_obj(const fs::path& path) {
   std::vector<Vec2f> texcoords;
   std::vector<KeptTriangle> result;
   std::string line, object, material;
-  std::istringstream text(slurp(path));
+  std::istringstream text(bytes_of_file(path));
   while (std::getline(text, line)) {
     std::istringstream words(line);
     std::string key, word;
@@ -154,6 +148,12 @@ std::vector<KeptTriangle> read_kept_obj(const fs::path& path) {
     }
   }
   return result;
+}
+
+std::string bytes_of_file(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw std::runtime_error(path.string() + ": cannot be opened");
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace atlas::test

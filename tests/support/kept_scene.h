@@ -29,6 +29,9 @@ struct KeptTriangle {
 std::vector<KeptTriangle> read_kept_gltf(const std::filesystem::path& path);
 std::vector<KeptTriangle> read_kept_obj(const std::filesystem::path& path);
 
+// Throws std::runtime_error where it cannot be read.
+std::string bytes_of_file(const std::filesystem::path& path);
+
 // The JSON of a .gltf or .glb, as text.
 std::string gltf_json(const std::filesystem::path& path);
 
