@@ -205,11 +205,11 @@ class ChartJob {
   }
   int most_cuts() const { return noisy() && !effort_.whole ? kMostCuts : effort_.cuts; }
 
-  // Whether what is beyond the bound is past saving by cuts to single vertices.
+  // Whether what is beyond the bound is past saving by cuts to single vertices. Not so with slits
+  // or holes in it: a terrain of terraces is one chart by such cuts, and was five without.
   bool cuts_in_vain() const {
-    if (result_.within_bound || result_.uvs.empty()) return false;
-    if (cut_to_tips_) return !result_.crossings.empty();
-    return chart_.loops.size() == 1 && result_.crossings.size() > kMostFirstCrossings;
+    if (result_.within_bound || result_.uvs.empty() || chart_.loops.size() > 1) return false;
+    return result_.crossings.size() > (cut_to_tips_ ? 0 : kMostFirstCrossings);
   }
 
   // Whether a small hole is what the chart closes around.
