@@ -162,7 +162,7 @@ class Export {
                               double(options_.atlases) * options_.atlas_size * options_.atlas_size,
                               texture.max_side};
     report_.opened_charts = open_part_gaps(pages, sized->charts, charts_, context).charts;
-    if (context_.cancelled()) return Status::cancelled();
+    if (context.cancelled()) return Status::cancelled();
     report_charts();
     for (const ChartTexture& t : sized->charts) {
       densities_.push_back(t.texels_per_unit);

@@ -5,7 +5,6 @@
 #include <functional>
 
 #include "libatlas/core/clock.h"
-#include "libatlas/image/image_io.h"
 #include "libatlas/scene/reader.h"
 #include "tests/scene/gltf_maker.h"
 #include "tests/scene/temp_folder.h"
@@ -118,89 +117,6 @@ TEST(Gltf, WhatOnlySomePrimitivesHave) {
   EXPECT_EQ(s.texcoord_indices[4], Scene::kNoTexcoord);
   EXPECT_EQ(s.texcoords[s.texcoord_indices[0]], (Vec2f{0, 1}));
   EXPECT_EQ(s.texcoords[s.texcoord_indices[9]], (Vec2f{.5f, .5f}));
-}
-
-TEST(Gltf, TexturesMayNameASetAndATurn) {
-  const TempFolder folder;
-  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());
-  Gltf g;
-  const int positions = g.floats(kSquare, "VEC3", 3);
-  const int zero = g.floats(std::vector<float>(8, 0), "VEC2", 2);
-  const int one = g.floats({1, 1, 2, 1, 2, 2, 1, 2}, "VEC2", 2);
-  const int two = g.floats({3, 1, 4, 1, 4, 2, 3, 2}, "VEC2", 2);
-  const json attributes = {
-      {"POSITION", positions}, {"TEXCOORD_0", zero}, {"TEXCOORD_1", one}, {"TEXCOORD_2", two}};
-  g.j["images"] = {{{"uri", "a.png"}}};
-  g.j["textures"] = {{{"source", 0}}};
-  json primitives;
-  for (int m = 0; m < 2; ++m) {
-    json info = {{"index", 0}, {"texCoord", 1}};
-    if (m == 1) info["extensions"]["KHR_texture_transform"] = {{"texCoord", 2}, {"rotation", 0.5}};
-    g.j["materials"].push_back({{"pbrMetallicRoughness", {{"baseColorTexture", info}}}});
-    primitives.push_back({{"attributes", attributes},
-                          {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})},
-                          {"material", m}});
-  }
-  g.single(primitives[0]);
-  g.j["meshes"][0]["primitives"] = primitives;
-  const auto loaded = load_glb(folder, g);
-  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
-  const Scene& s = loaded->scene;
-  EXPECT_EQ(s.texcoords[s.texcoord_indices[1]], (Vec2f{2, 0}));
-  // Counterclockwise where v points down: (4, 1) becomes (4 c + s, -4 s + c).
-  const double c = std::cos(0.5), sine = std::sin(0.5);
-  const Vec2f turned = s.texcoords[s.texcoord_indices[4]];
-  EXPECT_NEAR(turned.x, 4 * c + sine, 1e-6);
-  EXPECT_NEAR(turned.y, 1 - (-4 * sine + c), 1e-6);
-  EXPECT_TRUE(loaded->defects.empty());
-}
-
-// Scaled first, then turned, then moved, as Blender's importer has it.
-TEST(Gltf, TexturesAreScaledTurnedAndMoved) {
-  const TempFolder folder;
-  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());
-  Gltf g;
-  const json attributes = {{"POSITION", g.floats(kSquare, "VEC3", 3)},
-                           {"TEXCOORD_0", g.floats({0, 0, 1, 0, 0, 1, 1, 1}, "VEC2", 2)}};
-  g.j["images"] = {{{"uri", "a.png"}}};
-  g.j["textures"] = {{{"source", 0}, {"sampler", 0}}};
-  g.j["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}}};
-  json info = {{"index", 0}};
-  info["extensions"]["KHR_texture_transform"] = {
-      {"offset", {0.25, 0.5}}, {"rotation", std::acos(0.0)}, {"scale", {2, 3}}};
-  g.j["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", info}}}}};
-  g.single({{"attributes", attributes},
-            {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})},
-            {"material", 0}});
-  const auto loaded = load_glb(folder, g);
-  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
-  const Scene& s = loaded->scene;
-  EXPECT_EQ(s.materials[0].wrap_u, TextureWrap::clamp);
-  EXPECT_EQ(s.materials[0].wrap_v, TextureWrap::mirror);
-  // A quarter turn takes (u, v) to (v, -u), v pointing down.
-  const Vec2f expected[] = {{0.25f, 0.5f}, {0.25f, 2.5f}, {3.25f, 0.5f}};
-  for (int k = 0; k < 3; ++k) {
-    EXPECT_NEAR(s.texcoords[s.texcoord_indices[k]].x, expected[k].x, 1e-6) << k;
-    EXPECT_NEAR(s.texcoords[s.texcoord_indices[k]].y, expected[k].y, 1e-6) << k;
-  }
-}
-
-TEST(Gltf, TexturesWithoutAnImageThatIsReadAreTold) {
-  const TempFolder folder;
-  Gltf g;
-  g.j["images"] = {{{"uri", "a.ktx2"}, {"mimeType", "image/ktx2"}}};
-  g.j["textures"] = json::array({json::object()});
-  g.j["textures"][0]["extensions"]["KHR_texture_basisu"]["source"] = 0;
-  g.j["extensionsUsed"] = {"KHR_texture_basisu"};
-  g.j["materials"] = {
-      {{"name", "bark"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
-  g.single({{"attributes", {{"POSITION", g.floats(kSquare, "VEC3", 3)}}},
-            {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})},
-            {"material", 0}});
-  const auto loaded = load_glb(folder, g);
-  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
-  EXPECT_EQ(loaded->defects.count(DefectKind::texture_unreadable), 1u);
-  EXPECT_NE(loaded->defects.lines().front().find("bark"), std::string::npos);
 }
 
 TEST(Gltf, InstancesAreShownWhereTheyStand) {
@@ -388,33 +304,6 @@ TEST(Gltf, SkinsAndMorphTargetsAtRest) {
   }
 }
 
-// An older model of shading, and an image in a format that glTF itself does not know.
-TEST(Gltf, DiffuseColoursOfExtensions) {
-  const TempFolder folder;
-  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());
-  Gltf g;
-  const int positions = g.floats(kSquare, "VEC3", 3);
-  const int uvs = g.floats({0, 0, 1, 0, 1, 1, 0, 1}, "VEC2", 2);
-  g.j["extensionsRequired"] = {"KHR_materials_pbrSpecularGlossiness", "EXT_texture_webp"};
-  g.j["images"] = {{{"uri", "a.png"}}};
-  g.j["textures"] = {{{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}};
-  const json info = {{"index", 0},
-                     {"extensions", {{"KHR_texture_transform", {{"scale", {2, 1}}}}}}};
-  g.j["materials"] = {{{"extensions",
-                        {{"KHR_materials_pbrSpecularGlossiness",
-                          {{"diffuseFactor", {0.5, 0.25, 1, 1}}, {"diffuseTexture", info}}}}}}};
-  g.single({{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}}},
-            {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})},
-            {"material", 0}});
-  const auto loaded = load_glb(folder, g);
-  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
-  const Scene& s = loaded->scene;
-  EXPECT_EQ(s.materials[0].diffuse, (Vec3f{0.5f, 0.25f, 1}));
-  EXPECT_EQ(s.materials[0].texture, 0);
-  EXPECT_EQ(s.textures.size(), 1u);
-  EXPECT_EQ(s.texcoords[s.texcoord_indices[1]], (Vec2f{2, 1}));
-}
-
 // Chunks without padding or bytes, of other kinds, and buffer files longer than their buffer.
 TEST(Gltf, ContainersThatManyWrite) {
   const TempFolder folder;
@@ -457,35 +346,6 @@ TEST(Gltf, CompressedVerticesAreNoZeros) {
   EXPECT_EQ(loaded.status().code(), ErrorCode::unsupported);
   EXPECT_NE(loaded.status().message().find("KHR_draco_mesh_compression"), std::string::npos)
       << loaded.status().message();
-}
-
-TEST(Gltf, TexturesMayBeLeftOutWhereThereIsNoLight) {
-  const TempFolder folder;
-  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());
-  for (const bool lit : {false, true}) {
-    Gltf g;
-    const int positions = g.floats(kSquare, "VEC3", 3);
-    json attributes = {{"POSITION", positions},
-                       {"TEXCOORD_0", g.floats({0, 0, 1, 0, 1, 1, 0, 1}, "VEC2", 2)}};
-    if (lit) attributes["COLOR_0"] = positions;
-    const std::string png = TempFolder::read(folder / "a.png");
-    const int view = g.view(std::vector<char>(png.begin(), png.end()));
-    g.j["images"] = {{{"bufferView", view}, {"mimeType", "image/png"}}};
-    g.j["textures"] = {{{"source", 0}}};
-    g.j["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
-    g.single({{"attributes", attributes},
-              {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})},
-              {"material", 0}});
-    const auto path = folder.write("a.glb", g.glb());
-    ReadOptions options;
-    options.unlit_textures = false;
-    const auto loaded = read_scene(path, options, {});
-    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
-    EXPECT_EQ(loaded->scene.textures.size(), lit ? 1u : 0u);
-    EXPECT_EQ(loaded->scene.materials[0].texture, lit ? 0 : -1);
-    options.load_textures = false;
-    EXPECT_TRUE(read_scene(path, options, {})->scene.textures.empty());
-  }
 }
 
 }  // namespace
