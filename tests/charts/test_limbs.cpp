@@ -162,6 +162,17 @@ TEST(Limbs, WhatIsNotTheWholePageOrFillsItsRectangleStays) {
   EXPECT_EQ(charts_of(mesh, 0.72).charts.size(), 2u) << "there is room for an L beside a big plate";
 }
 
+// The L covers 6 of its rectangle's 12, which a page must hold.
+TEST(Limbs, ARectangleDecidesWhereItExceedsAllCharts) {
+  const Shape l = letters({"L  ", "L  ", "L  ", "LLL"}, 8);
+  const auto beside = [&](float side) {
+    const Mesh mesh(together(l, moved(grid(9, 9, side, side), 1, {20, 0, 0})));
+    return charts_of(mesh, 0.72).charts.size();
+  };
+  EXPECT_EQ(beside(2.85f), 2u) << "0.85 of all charts' area";
+  EXPECT_GT(beside(1.7f), 2u) << "1.35 of it";
+}
+
 TEST(Limbs, ManySprawlingChartsAreCutAsFarAsTheyLeaveAPageEmpty) {
   for (const int n : {1, 4}) {
     const Shape one = letters({"L     ", "L     ", "L     ", "LLLLLL"}, n);
