@@ -383,7 +383,10 @@ Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& gi
   if (items.empty()) return result;
   if (!options.shapes.empty()) {
     options.alignment = outline_alignment(options);
-    return pack::fit_outlines(items, options, context);
+    const std::vector<pack::ChartOutline> outlines = pack::outlines_of(options.shapes, context);
+    Result<FitResult> fitted = pack::fit_outlines(items, outlines, options, context);
+    if (fitted.ok()) fitted->hole_area = pack::lost_to_holes(outlines);
+    return fitted;
   }
   BoxFit fit(items, options, context);
   BoxLayout best;

@@ -86,10 +86,11 @@ struct FitResult {
   std::vector<FitPlacement> placements;  // 1 an item
   std::vector<Extent> pages;             // of those that hold something; at most N
   double utilization = 0;  // area of contents (boxes) or of the shapes (outlines) / area of pages
-  double box_utilization = 0;     // area of the boxes with gutters / area of pages (boxes only)
-  GroupingResult grouping;        // of the box areas at the final scale
-  std::uint32_t moved_items = 0;  // items that did not fit their group's page
-  std::uint32_t packings = 0;     // full packings tried
+  double box_utilization = 0;  // area of the boxes with gutters / area of pages (boxes only)
+  double hole_area = 0;  // of small holes in shapes that no shape could fill, texels² at scale 1
+  GroupingResult grouping;                     // of the box areas at the final scale
+  std::uint32_t moved_items = 0;               // items that did not fit their group's page
+  std::uint32_t packings = 0;                  // full packings tried
   std::vector<std::pair<double, bool>> trace;  // (scale, did it fit) in the order tried
   std::vector<FitProgress> curve;              // improvements in the order found; may be empty
 };

@@ -160,10 +160,10 @@ constexpr std::size_t kFewInRows = 64;  // charts
 
 }  // namespace
 
-Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions& options,
+Result<FitResult> fit_outlines(std::span<const FitItem> items,
+                               std::span<const ChartOutline> outlines, const FitOptions& options,
                                const Context& context) {
   FitResult result;
-  const std::vector<ChartOutline> outlines = outlines_of(options.shapes, context);
   std::optional<FitResult> pressed = fit_pressed(items, outlines, options, context);
   // Straight charts, laid in rows on a page of any shape or pressed by `best` on a given one, may
   // fill more by cells. Of many charts rows are about as good, and far cheaper.

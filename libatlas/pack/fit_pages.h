@@ -51,8 +51,10 @@ class BoxFit {
   std::vector<Extent> contents_, boxes_;
 };
 
-// fit_pages for charts given by their outlines; the arguments have been checked.
-Result<FitResult> fit_outlines(std::span<const FitItem> items, const FitOptions& options,
+// fit_pages for charts given by their outlines; the arguments have been checked. hole_area is left
+// to the caller.
+Result<FitResult> fit_outlines(std::span<const FitItem> items,
+                               std::span<const ChartOutline> outlines, const FitOptions& options,
                                const Context& context);
 
 // The same for one page of few charts, as full as pressing makes it. None where that is not worth

@@ -18,7 +18,7 @@ class PlanMoves {
 
   void disturb(NestPlan& plan, const Nest& nest) {
     const auto n = static_cast<std::uint32_t>(plan.order.size());
-    const std::uint32_t kind = random_.below(n > 1 ? 4 : 1);
+    const std::uint32_t kind = random_.below(4);
     const std::uint32_t i = kind == 3 ? highest(plan, nest) : pick(n);
     if (kind == 0) {
       std::int32_t& direction = plan.direction[plan.order[i]];
@@ -91,6 +91,11 @@ NestSearchResult search_nest(std::span<const Piece> pieces, const NestPlan& star
   BitPage page(options.width, most_rows(pieces, total, options.width), longest_run(pieces));
   std::uint64_t spent = 0;
   NestSearchResult found;
+  // One piece has no order: after the start it is put down in each direction, once.
+  const bool alone = start.order.size() == 1;
+  const std::uint64_t most_layouts =
+      alone ? std::min<std::uint64_t>(options.layouts, 1 + pieces[start.order[0]].masks.size())
+            : options.layouts;
   PlacedPlan current, next;
   const auto evaluate = [&](PlacedPlan& placed) {
     place_pieces_as(pieces, current, page, placed);
@@ -104,11 +109,14 @@ NestSearchResult search_nest(std::span<const Piece> pieces, const NestPlan& star
   found.nest = current.nest;
   PlanMoves moves(pieces, options.seed);
   const double begun = wall_seconds();
-  while (spent < options.work && found.layouts < options.layouts && !pieces.empty()) {
+  while (spent < options.work && found.layouts < most_layouts && !pieces.empty()) {
     if (context.cancelled() || wall_seconds() - begun > options.seconds) break;
     if (found.nest.left_over.empty() && found.nest.used_height <= options.enough) break;
     next.plan = current.plan;
-    moves.disturb(next.plan, current.nest);
+    if (alone)
+      next.plan.direction[start.order[0]] = static_cast<std::int32_t>(found.layouts) - 1;
+    else
+      moves.disturb(next.plan, current.nest);
     const double left =
         1 - std::max(static_cast<double>(spent) / static_cast<double>(options.work),
                      static_cast<double>(found.layouts) / static_cast<double>(options.layouts));

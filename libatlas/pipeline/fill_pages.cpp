@@ -35,14 +35,15 @@ struct Goal {
   const LayoutOptions& options;
   double texels;  // of the charts at scale 1
 
-  double covered(const PageLayout& layout) const {
+  double covered(const PageLayout& layout) const {  // 1 at most
     if (options.free_aspect) return layout.uv_utilization;
     const double room = double(options.pages) * options.page_size * options.page_size;
     return texels * layout.scale * layout.scale / room;
   }
   bool reached(const PageLayout& layout) const {
     const bool dense = !options.free_aspect && layout.scale >= 1;
-    return dense || covered(layout) >= (options.free_aspect ? kFilledFree : kFilled);
+    const double filled = layout.with_holes * covered(layout);
+    return dense || filled >= (options.free_aspect ? kFilledFree : kFilled);
   }
 };
 
@@ -61,16 +62,21 @@ Result<PageLayout> cut_to_fill(const PlainUvs& uvs, const LayoutOptions& options
   if (!may_cut || !best.ok() || goal.reached(*best)) return best;
   const ChartSet whole = charts;
   const double side = std::sqrt(area / double(options.pages));
+  double seams_before = whole.seam_length;
   for (std::size_t k = 0; k < kLongestSides.size(); ++k) {
     const std::vector<double> limits(whole.charts.size(), kLongestSides[k] * side);
     ChartSet cut = whole;
     if (cut_to_limits(uvs.mesh, limits, uvs.options.max_stretch, cut) == 0) continue;
+    if (cut.seam_length == seams_before) continue;  // the same cuts as before
+    seams_before = cut.seam_length;
+    const double seams = (cut.seam_length - charts.seam_length) / root_area;
+    const double least_gain = std::max(kLeastGain, kSeamPrice * seams);
+    if (!((1 + least_gain) * goal.covered(*best) < 1))
+      continue;  // no layout is full enough for that
     Result<PageLayout> layout = lay_out(cut, uvs.density, options, part(double(k) + 1));
     if (!layout.ok() && layout.status().code() != ErrorCode::no_solution) return layout;
     if (!layout.ok()) break;  // gutters around pieces take more than there is; more so around less
-    const double gain = goal.covered(*layout) / goal.covered(*best) - 1;
-    const double seams = (cut.seam_length - charts.seam_length) / root_area;
-    if (!(gain >= std::max(kLeastGain, kSeamPrice * seams))) continue;
+    if (!(goal.covered(*layout) >= (1 + least_gain) * goal.covered(*best))) continue;
     best = std::move(layout);
     charts = std::move(cut);
     if (goal.reached(*best)) break;

@@ -142,6 +142,10 @@ Result<PageLayout> lay_out(const ChartSet& charts, std::span<const Vec2d> texels
   }
   layout.outlines = options.outlines;
   layout.uv_utilization = uv_utilization(charts, layout);
+  double texels = 0;  // at scale 1
+  for (std::size_t c = 0; c < items.size(); ++c)
+    texels += charts.charts[c].distortion.uv_area * texels_per_unit[c].x * texels_per_unit[c].y;
+  if (texels > 0) layout.with_holes = 1 + fitted->hole_area / texels;
   return layout;
 }
 
@@ -202,7 +206,7 @@ double taken(const ChartSet& charts, const PageLayout& layout, const LayoutOptio
 bool worth_more_work(const ChartSet& charts, const PageLayout& layout,
                      const LayoutOptions& options) {
   return options.free_aspect && options.preset == PackPreset::standard &&
-         charts.charts.size() <= kMostCharts && layout.uv_utilization < kPoor &&
+         charts.charts.size() <= kMostCharts && layout.with_holes * layout.uv_utilization < kPoor &&
          taken(charts, layout, options) < kPoorWithGutters;
 }
 
@@ -222,6 +226,7 @@ Result<PageLayout> lay_out_better(const ChartSet& charts, std::span<const Vec2d>
   if (!options.outlines || (boxed.ok() && (full() || !worth_outlining(charts, texels_per_unit))))
     return boxed;
   Result<PageLayout> best = lay_out(charts, texels_per_unit, options, part(0.2, 0.6));
+  if (boxed.ok() && best.ok()) boxed->with_holes = best->with_holes;
   if (!best.ok() || (boxed.ok() && !better(*best, *boxed, options))) best = std::move(boxed);
   if (!best.ok() || !worth_more_work(charts, *best, options)) return best;
   LayoutOptions harder = options;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 #include <utility>
 
@@ -32,6 +33,25 @@ void disturb(test::Noise& noise, std::span<const Piece> pieces, NestPlan& plan) 
     std::swap(plan.order[i], plan.order[j]);
   else
     plan.direction[i] = noise.in(-1, int(pieces[i].masks.size()) - 1);
+}
+
+// In any order it is alone: nothing is left to search for.
+TEST(NestSearch, APieceAloneIsPutDownOnceInEachDirection) {
+  const ChartOutline bar = outline_of({std::vector<Vec2d>{{0, 0}, {30, 0}, {30, 5}}, {}});
+  for (const std::uint32_t directions : {1u, 4u, 8u}) {
+    PieceOptions options;
+    options.directions = directions;
+    const std::vector<Piece> pieces = make_pieces(std::vector{bar}, options, {});
+    NestSearchOptions search;
+    search.width = 40;
+    search.layouts = 1000;
+    const NestSearchResult found = search_nest(pieces, plan_by_size(pieces), search, {});
+    EXPECT_EQ(found.layouts, 1 + directions);
+    std::int32_t lowest = 1 << 20;
+    for (const Mask& m : pieces[0].masks)
+      if (m.width <= search.width) lowest = std::min(lowest, m.height);
+    EXPECT_EQ(found.nest.used_height, lowest);
+  }
 }
 
 // Taking over what two plans have in common changes nothing, not even the work that is counted.

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string_view>
+#include <utility>
 
 #include "libatlas/pipeline/unwrap.h"
 #include "tests/support/shapes.h"
@@ -78,6 +80,50 @@ TEST(FillPages, SeamsMustBeWorthIt) {
   EXPECT_LT(whole.utilization, 0.7);
   EXPECT_EQ(offered.charts.charts.size(), whole.charts.charts.size());
   EXPECT_DOUBLE_EQ(offered.charts.seam_length, whole.charts.seam_length);
+}
+
+// Charts as they are have the first sixth of the stage; the rest is for layouts of cut ones.
+constexpr double kWithoutCuts = 1.0 / 6;
+
+struct Packed {
+  UnwrappedMesh mesh;
+  double last = 0;  // what the stage said before its end
+};
+Packed packed(const Shape& shape) {
+  Packed out;
+  Context context;
+  context.progress = [&](std::string_view stage, double done) {
+    if (stage == "pack" && done < 1) out.last = std::max(out.last, done);
+  };
+  auto mesh = unwrap_mesh(view_of(shape), {.page_size = 512, .square = true}, context);
+  EXPECT_TRUE(mesh.ok()) << mesh.status().message();
+  if (mesh.ok()) out.mesh = std::move(*mesh);
+  return out;
+}
+
+// Holes take a third of the plate.
+TEST(FillPages, HolesThatNothingFitsAreNoFault) {
+  constexpr std::uint32_t kSide = 50;
+  const Shape plate = grid(kSide, kSide);
+  Shape holed;
+  holed.positions = plate.positions;
+  for (std::uint32_t t = 0; t < 2 * kSide * kSide; ++t) {
+    const std::uint32_t column = t / 2 % kSide, row = t / 2 / kSide;
+    if (column % 5 >= 1 && column % 5 <= 3 && row % 5 >= 1 && row % 5 <= 3) continue;
+    for (int k = 0; k < 3; ++k) holed.indices.push_back(plate.indices[3 * t + k]);
+  }
+  const Packed plain = packed(holed);
+  EXPECT_EQ(plain.mesh.charts.charts.size(), 1u);
+  EXPECT_NEAR(plain.mesh.utilization, 0.64, 0.03);
+  EXPECT_GT(plain.last, 0);
+  EXPECT_LE(plain.last, kWithoutCuts);
+}
+
+// Cut to a page's side, a strip of needles would be so many loose ones.
+TEST(FillPages, ACutThatEvenAFullPageWouldNotPayForIsNotLaidOut) {
+  const Packed needles = packed(grid(1000, 1, 1, 100));
+  EXPECT_LE(needles.mesh.charts.charts.size(), 2u);
+  EXPECT_LE(needles.last, kWithoutCuts);
 }
 
 // Wide gutters leave no room for those of pieces; for the charts as they are they do.
