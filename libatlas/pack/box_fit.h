@@ -1,0 +1,56 @@
+// Internal: boxes on pages at one scale, the way to solve a fit without outlines.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libatlas/pack/engines.h"
+#include "libatlas/pack/fit.h"
+#include "libatlas/pack/problem.h"
+
+namespace atlas::pack {
+
+struct BoxLayout {
+  std::vector<Placement> placements;  // 1 an item, cells
+  std::uint32_t pages = 0;
+  std::uint32_t moved = 0;
+  GroupingResult grouping;
+};
+
+// Boxes are in cells of alignment × alignment texels, padding included.
+class BoxFit {
+ public:
+  BoxFit(std::span<const FitItem> items, const FitOptions& options, const Context& context);
+
+  void make_boxes(double scale);
+  double box_area(double scale);  // cells; makes the boxes
+  bool may_fit(double scale);     // necessary conditions only; makes the boxes
+  double least_scale() const;     // at smaller ones boxes are the same: of their minimum sides
+  bool pack_at(double scale, std::uint32_t pages, BoxLayout& layout);
+  Extent shrink_page(std::uint32_t page, BoxLayout& layout) const;
+
+  const std::vector<Extent>& boxes() const { return boxes_; }
+  const std::vector<Extent>& contents() const { return contents_; }
+  const FitOptions& options() const { return options_; }
+  const Context& context() const { return context_; }
+  Extent page() const { return page_; }
+
+ private:
+  bool box_fits_page(const Extent& box) const;
+  bool group(std::uint32_t pages, BoxLayout& layout) const;
+  bool pack_many(BoxLayout& layout) const;
+  bool pack_grouped(std::uint32_t pages, BoxLayout& layout);
+  bool pack_jointly(std::uint32_t pages, BoxLayout& layout);
+  bool pack_searched(std::uint32_t pages, BoxLayout& layout);
+  bool keep(Layout found, BoxLayout& layout) const;
+  bool place(std::uint32_t item, std::uint32_t page, FreeRects& free, BoxLayout& layout) const;
+
+  std::span<const FitItem> items_;
+  const FitOptions& options_;
+  const Context& context_;
+  Extent page_;
+  std::vector<Extent> contents_, boxes_;
+};
+
+}  // namespace atlas::pack
