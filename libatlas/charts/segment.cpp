@@ -92,9 +92,9 @@ std::vector<std::uint32_t> pieces_of(const Topology& topology, const Cells& cell
   return piece;
 }
 
-// Meshes of small pieces are segmented so many triangles at a time: 10^5 pieces would need much
-// memory at once, and parts that fit the processor's caches are faster.
-constexpr std::size_t kTrianglesAtATime = 50000, kSmallPiece = 5000;
+// Meshes of pieces that are smaller on average are segmented so many triangles at a time: 10^5
+// pieces would need much memory at once, and parts that fit the processor's caches are faster.
+constexpr std::size_t kTrianglesAtATime = 50000;
 
 // Seams are straightened as far as cells are uneven, a third of a cell's width to each side, in
 // rings up to
@@ -188,7 +188,7 @@ class Segmenter {
     result_.partition.chart.assign(n, kNoIndex);
     result_.partition.seams.assign(n, 0);
     result_.frames.resize(n);
-    if (n > kTrianglesAtATime && n / kSmallPiece < topology_.component_count) {
+    if (n > kTrianglesAtATime && n / kTrianglesAtATime < topology_.component_count) {
       segment_in_turn();
     } else {
       segment(topology_, {});
