@@ -22,21 +22,19 @@ float round_up(double x) {
 
 ChartSimplifier::ChartSimplifier(const Geometry& geometry, FineChart fine, double texel,
                                  const SlipLimits& limits)
-    : geometry_(geometry),
-      fine_(std::move(fine)),
+    : fine_(std::move(fine)),
+      points_(geometry, fine_),
       texel_(texel),
       limits_(limits),
       mesh_(fine_),
-      measure_(geometry, fine_),
+      measure_(fine_, points_),
       face_slip_(fine_.triangle_count(), 0.0F),
       face_turn_(fine_.triangle_count(), 0.0F) {}
 
 void ChartSimplifier::load(std::uint32_t v) {
   Star& star = star_;
-  const auto uv_at = [&](std::uint32_t u) { return to_glm(geometry_.uv(fine_.vertex_uv[u])); };
-  const auto position_at = [&](std::uint32_t u) {
-    return to_dvec(geometry_.position(fine_.vertex_uv[u]));
-  };
+  const auto uv_at = [&](std::uint32_t u) { return to_glm(points_.uvs[u]); };
+  const auto position_at = [&](std::uint32_t u) { return to_dvec(points_.positions[u]); };
   star.vertex = v;
   mesh_.ring(v, star.ring);
   star.uv = uv_at(v);

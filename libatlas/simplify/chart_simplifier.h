@@ -72,8 +72,8 @@ class ChartSimplifier {
   bool rank(std::uint32_t v);
   void process(std::uint32_t v, float cost);
 
-  const Geometry& geometry_;
   FineChart fine_;
+  VertexPoints points_;
   double texel_;
   SlipLimits limits_;
   ChartMesh mesh_;

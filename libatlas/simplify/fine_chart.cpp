@@ -160,6 +160,15 @@ std::uint32_t FineChart::border_into(std::uint32_t v) const {
   return h;
 }
 
+VertexPoints::VertexPoints(const Geometry& geometry, const FineChart& fine) {
+  uvs.reserve(fine.vertex_uv.size());
+  positions.reserve(fine.vertex_uv.size());
+  for (const std::uint32_t id : fine.vertex_uv) {
+    uvs.push_back(geometry.uv(id));
+    positions.push_back(geometry.position(id));
+  }
+}
+
 FineChart build_fine_chart(const Geometry& geometry, std::uint32_t chart,
                            const std::vector<bool>& flipped) {
   FineChart fine;

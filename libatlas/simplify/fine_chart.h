@@ -53,6 +53,14 @@ struct FineChart {
   std::uint32_t border_into(std::uint32_t v) const;
 };
 
+// Where the vertices of a fine chart lie, in their order: neighbours are close to each other here.
+struct VertexPoints {
+  std::vector<Vec2d> uvs;
+  std::vector<Vec3f> positions;
+
+  VertexPoints(const Geometry& geometry, const FineChart& fine);
+};
+
 // `flipped` marks the triangles of the input that the chart turns over.
 FineChart build_fine_chart(const Geometry& geometry, std::uint32_t chart,
                            const std::vector<bool>& flipped);

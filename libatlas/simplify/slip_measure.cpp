@@ -71,8 +71,8 @@ struct SlipMeasure::Coarse {
   glm::dvec3 p0, e1, e2, normal;
 };
 
-SlipMeasure::SlipMeasure(const Geometry& geometry, const FineChart& fine)
-    : geometry_(geometry), fine_(fine), stamp_(fine.triangle_count(), 0) {}
+SlipMeasure::SlipMeasure(const FineChart& fine, const VertexPoints& points)
+    : fine_(fine), points_(points), stamp_(fine.triangle_count(), 0) {}
 
 void SlipMeasure::push(std::uint32_t triangle) {
   if (stamp_[triangle] == epoch_) return;
@@ -91,42 +91,51 @@ void SlipMeasure::push_fan(std::uint32_t vertex) {
 
 bool SlipMeasure::visit(std::uint32_t triangle, const Coarse& coarse, const SlipLimits& limits,
                         SlipLimits& found) {
+  const std::uint32_t* corners = &fine_.corners[std::size_t{3} * triangle];
   Piece piece;
   piece.count = 3;
-  glm::dvec3 p[3];
   for (int k = 0; k < 3; ++k) {
-    const std::uint32_t uv_id = fine_.vertex_uv[fine_.corners[std::size_t{3} * triangle + k]];
-    const glm::dvec2 d = to_glm(geometry_.uv(uv_id)) - coarse.origin;
-    p[k] = to_dvec(geometry_.position(uv_id));
+    const glm::dvec2 d = to_glm(points_.uvs[corners[k]]) - coarse.origin;
     Sample& s = piece.points[k];
     s.b[1] = glm::dot(coarse.du, d);
     s.b[2] = glm::dot(coarse.dv, d);
     s.b[0] = 1 - s.b[1] - s.b[2];
-    s.gap = coarse.p0 + s.b[1] * coarse.e1 + s.b[2] * coarse.e2 - p[k];
   }
   constexpr double kTouch = 1e-12;  // pieces thinner than rounding are left to their neighbours
+  bool across[3];
   for (int side = 0; side < 3; ++side) {
-    const double top =
-        std::max({piece.points[0].b[side], piece.points[1].b[side], piece.points[2].b[side]});
-    if (top <= kTouch) return true;
+    const double b0 = piece.points[0].b[side], b1 = piece.points[1].b[side],
+                 b2 = piece.points[2].b[side];
+    if (std::max({b0, b1, b2}) <= kTouch) return true;
+    across[side] = std::min({b0, b1, b2}) < 0;
   }
-  for (int side = 0; side < 3; ++side) piece.clip(side);
+  glm::dvec3 p[3];
+  for (int k = 0; k < 3; ++k) {
+    p[k] = to_dvec(points_.positions[corners[k]]);
+    Sample& s = piece.points[k];
+    s.gap = coarse.p0 + s.b[1] * coarse.e1 + s.b[2] * coarse.e2 - p[k];
+  }
+  for (int side = 0; side < 3; ++side)
+    if (across[side]) piece.clip(side);
   const double area = piece.area();
   if (piece.count < 3 || area <= kTouch * kTouch) return true;
   covered_ += area;
+  double gap = 0;  // squared
   for (int i = 0; i < piece.count; ++i) {
-    found.slip = std::max(found.slip, glm::length(piece.points[i].gap));
+    gap = std::max(gap, glm::dot(piece.points[i].gap, piece.points[i].gap));
   }
+  found.slip = std::max(found.slip, std::sqrt(gap));
+  if (found.slip > limits.slip) return false;
   const glm::dvec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);
   const double length = glm::length(normal);
   if (length > 0) {
     const double c = glm::dot(normal, coarse.normal) / length;
-    const double turn = std::acos(std::clamp(c, -1.0, 1.0));
-    if (turn > found.turn && piece.width(coarse.e1, coarse.e2) > kStrip * limits.slip) {
-      found.turn = turn;
+    if (c < turn_cosine_ && piece.width(coarse.e1, coarse.e2) > kStrip * limits.slip) {
+      turn_cosine_ = c;
+      found.turn = std::acos(std::max(c, -1.0));
     }
   }
-  if (found.slip > limits.slip || found.turn > limits.turn) return false;
+  if (found.turn > limits.turn) return false;
   for (int k = 0; k < 3; ++k) {
     const std::uint32_t other = fine_.opposite[std::size_t{3} * triangle + k];
     if (other != kNone) push(other / 3);
@@ -140,9 +149,8 @@ bool SlipMeasure::measure(const std::array<std::uint32_t, 3>& triangle, const Sl
   glm::dvec3 p[3];
   bool at_border = false;
   for (int k = 0; k < 3; ++k) {
-    const std::uint32_t uv_id = fine_.vertex_uv[triangle[k]];
-    uv[k] = to_glm(geometry_.uv(uv_id));
-    p[k] = to_dvec(geometry_.position(uv_id));
+    uv[k] = to_glm(points_.uvs[triangle[k]]);
+    p[k] = to_dvec(points_.positions[triangle[k]]);
     at_border = at_border || fine_.border(triangle[k]);
   }
   Coarse coarse;
@@ -156,6 +164,7 @@ bool SlipMeasure::measure(const std::array<std::uint32_t, 3>& triangle, const Sl
   coarse.e2 = p[2] - p[0];
   coarse.normal = glm::normalize(glm::cross(coarse.e1, coarse.e2));
   found = {};
+  turn_cosine_ = 1;
   covered_ = 0;
   ++epoch_;
   stack_.clear();

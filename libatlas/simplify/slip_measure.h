@@ -19,7 +19,7 @@ struct SlipLimits {
 // visited, spreading over the fine triangles from the coarse triangle's corners.
 class SlipMeasure {
  public:
-  SlipMeasure(const Geometry& geometry, const FineChart& fine);
+  SlipMeasure(const FineChart& fine, const VertexPoints& points);
 
   // Returns false as soon as a limit is exceeded (or, for a triangle away from the border, when the
   // fine chart does not cover it). Otherwise sets `found` to slip and turn of the triangle.
@@ -33,11 +33,12 @@ class SlipMeasure {
   bool visit(std::uint32_t triangle, const Coarse& coarse, const SlipLimits& limits,
              SlipLimits& found);
 
-  const Geometry& geometry_;
   const FineChart& fine_;
+  const VertexPoints& points_;
   std::vector<std::uint32_t> stamp_, stack_;
   std::uint32_t epoch_ = 0;
-  double covered_ = 0;  // of the coarse triangle, 1 is all
+  double turn_cosine_ = 1;  // of the turn found so far
+  double covered_ = 0;      // of the coarse triangle, 1 is all
 };
 
 }  // namespace atlas::simplify
