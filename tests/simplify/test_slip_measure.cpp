@@ -32,7 +32,8 @@ class Measured {
         view_(mesh_.view()),
         geometry_{&view_, &mesh_.charts},
         fine_(simplify::build_fine_chart(geometry_, 0, std::vector<bool>(mesh.triangles()))),
-        measure_(geometry_, fine_) {}
+        points_(geometry_, fine_),
+        measure_(fine_, points_) {}
 
   const FineChart& fine() const { return fine_; }
   Point point(std::uint32_t v) const {
@@ -60,6 +61,7 @@ class Measured {
   MeshView view_;
   simplify::Geometry geometry_;
   FineChart fine_;
+  simplify::VertexPoints points_;
   simplify::SlipMeasure measure_;
 };
 
