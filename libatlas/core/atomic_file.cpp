@@ -137,13 +137,16 @@ Status check_writable(const fs::path& name) {
   const fs::file_status folder = fs::status(directory, error);
   if (error && folder.type() != fs::file_type::not_found)
     return refuse(fmt::format("cannot be looked at: {}", error.message()));
-  if (!fs::is_directory(folder)) return refuse("is not a directory (create it first)");
+  if (!fs::exists(folder)) return refuse("does not exist (create it first)");
+  if (!fs::is_directory(folder)) return refuse("is not a directory (name a folder)");
   const fs::file_status there = fs::status(target, error);
   const long longest = ::pathconf(directory.c_str(), _PC_NAME_MAX);
   if (longest > 0 && target.filename().string().size() > std::size_t(longest))
     return refuse(fmt::format("takes names of up to {} bytes (give a shorter one)", longest));
   if (fs::is_other(there)) return {};
-  if (::access(directory.c_str(), W_OK) != 0) return refuse("does not take files");
+  if (::access(directory.c_str(), W_OK) != 0)
+    return refuse(
+        fmt::format("does not take files: {} (name another folder)", std::strerror(errno)));
   if (fs::is_directory(there)) return refuse("has a directory of that name");
   return {};
 }

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "tests/scene/temp_folder.h"
 #include "tests/support/full_disk.h"
@@ -111,6 +112,39 @@ TEST(AtomicFiles, NamesOfAnyLengthThatTheFileSystemTakes) {
   const Status status = check_writable(folder / std::string(300, 'n'));
   EXPECT_EQ(status.code(), ErrorCode::io);
   EXPECT_NE(status.message().find("up to 255 bytes"), std::string::npos) << status.message();
+}
+
+// As another user, whom permissions bind as they do not bind root: access(2) asks for the real one.
+class NoRoot {
+ public:
+  NoRoot() : user_(::getuid()) {
+    if (user_ == 0) change(65534);
+  }
+  ~NoRoot() {
+    if (user_ == 0) change(0);
+  }
+  NoRoot(const NoRoot&) = delete;
+  NoRoot& operator=(const NoRoot&) = delete;
+
+ private:
+  static void change(uid_t user) { EXPECT_EQ(::setreuid(user, 0), 0); }
+  uid_t user_;
+};
+
+TEST(AtomicFiles, AFolderThatTakesNoFileIsToldWithItsCause) {
+  const TempFolder folder;
+  folder.write("file", "");
+  std::filesystem::create_directories(folder / "closed");
+  ASSERT_EQ(::chmod((folder / "closed").c_str(), 0555), 0);
+  const NoRoot user;
+  for (const auto& [name, words] :
+       {std::pair("closed/a.txt", "closed does not take files: Permission denied (name another"),
+        {"absent/a.txt", "absent does not exist (create it first)"},
+        {"file/a.txt", "file is not a directory (name a folder)"}}) {
+    const Status status = check_writable(folder / name);
+    EXPECT_EQ(status.code(), ErrorCode::io);
+    EXPECT_NE(status.message().find(words), std::string::npos) << status.message();
+  }
 }
 
 TEST(AtomicFiles, LinksAreFollowed) {

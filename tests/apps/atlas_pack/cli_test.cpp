@@ -53,9 +53,10 @@ TEST_F(AtlasPack, WhatCannotBeDoneLeavesNothing) {
       {"rects cut.json -o q.csv", "cut.json"},
       {"rects ok.csv -o ./ok.csv", "would overwrite"},
       {"rects ok.csv -o q.txt", ".csv or .json"},
-      {"rects ok.csv -o no/q.csv", "no is not a directory"},
+      {"rects ok.csv -o no/q.csv", "no does not exist (create it first)"},
+      {"rects ok.csv -o ok.csv/q.csv", "ok.csv is not a directory (name a folder)"},
       {"rects ok.csv -o q.csv --preview p.gif", ".svg or .png"},
-      {"rects ok.csv -o q.csv --preview no/p.svg", "no is not a directory"},
+      {"rects ok.csv -o q.csv --preview no/p.svg", "no does not exist (create it first)"},
       {"rects ok.csv -o q.csv --page 99999999999", "--page"},
       {"rects ok.csv -o q.csv --page 0x512", "--page"},  // no hexadecimal number
       {"rects ok.csv -o q.csv --page 1e2", "--page"},
