@@ -233,13 +233,13 @@ class Export {
     return {};
   }
 
-  // The packer's refusal, with what may be changed here.
+  // The packer's refusal; its remedy, in brackets, gives way to what may be changed here.
   Status in_terms_of_options(const Status& status) const {
     if (status.code() != ErrorCode::no_solution) return status;
-    return {status.code(),
-            status.message() + (plan_.bake ? ": more --atlases or a larger --atlas-size, "
-                                             "or lower --min-side or --mips"
-                                           : ": a larger --atlas-size")};
+    const std::string& message = status.message();
+    return {status.code(), fmt::format("{} (give more --atlases or a larger --atlas-size{})",
+                                       message.substr(0, message.rfind(" (")),
+                                       plan_.bake ? ", or a lower --min-side or --mips" : "")};
   }
 
   Status bake() {

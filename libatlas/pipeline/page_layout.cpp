@@ -81,7 +81,7 @@ double uv_utilization(const ChartSet& charts, const PageLayout& layout) {
 Status no_room(const ChartSet& charts, const LayoutOptions& options) {
   return {ErrorCode::no_solution,
           fmt::format("{} charts do not fit {} page{} of {} x {} even as small as allowed (allow "
-                      "more or larger pages, smaller sides or less padding)",
+                      "more or larger pages, or less padding)",
                       charts.charts.size(), options.pages, options.pages == 1 ? "" : "s",
                       options.page_size, options.page_size)};
 }

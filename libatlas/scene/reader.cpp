@@ -39,9 +39,11 @@ Status read_by_extension(const fs::path& path, SceneBuilder& builder, const Cont
     return {ErrorCode::bad_input,
             fmt::format("{}: is a directory (name a file inside it)", path.string())};
   return {ErrorCode::unsupported,
-          fmt::format("{}: no reader for '{}' (use .obj, .ply, .off, .stl, .gltf, .glb, or a .wrl "
+          fmt::format("{}: no reader for {} (use .obj, .ply, .off, .stl, .gltf, .glb, or a .wrl "
                       "or .wrz written by this program)",
-                      path.string(), path.extension().string())};
+                      path.string(),
+                      path.has_extension() ? fmt::format("'{}'", path.extension().string())
+                                           : "a name without an ending")};
 }
 
 Result<LoadedScene> read_scene(const fs::path& path, const ReadOptions& options,

@@ -14,6 +14,11 @@ TEST_F(AtlasExport, MissingFile) {
   expect_refusal(dir_ / "nowhere.obj", "nowhere.obj");
 }
 
+TEST_F(AtlasExport, AFileWithoutAnEnding) {
+  expect_refusal("/dev/null", "/dev/null: no reader for a name without an ending (use .obj");
+  expect_refusal(write("a.max", ""), "no reader for '.max' (use .obj");
+}
+
 TEST_F(AtlasExport, MalformedLine) {
   expect_refusal(write("bad.obj", "v 0 0 0 1 1 1\nv 1 zero 0 1 1 1\nv 0 1 0 1 1 1\nf 1 2 3\n"),
                  "bad.obj:2");
@@ -165,8 +170,10 @@ TEST_F(AtlasExport, TooManyChartsForThePagesNamesTheOptions) {
   const RunResult r = run(fmt::format("{0} -o {1}/w.obj --atlases 1 --atlas-size 64 --mips 5",
                                       scene.string(), dir_.string()));
   EXPECT_EQ(r.exit_code, 1);
-  EXPECT_NE(r.output.find("do not fit 1 page of 64 x 64"), std::string::npos) << r.output;
-  EXPECT_NE(r.output.find("more --atlases or a larger --atlas-size"), std::string::npos);
+  EXPECT_NE(r.output.find("do not fit 1 page of 64 x 64 even as small as allowed (give more "
+                          "--atlases or a larger --atlas-size, or a lower --min-side or --mips)"),
+            std::string::npos)
+      << r.output;
 }
 
 TEST_F(AtlasExport, LightOnNoArea) {
