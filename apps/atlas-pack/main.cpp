@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
+#include <span>
 #include <string>
 
 #include "apps/atlas-pack/commands.h"
@@ -56,6 +58,15 @@ std::string counts_of(const app::PackedAtlas& atlas) {
                      items == 1 ? "" : "s", pages, pages == 1 ? "" : "s");
 }
 
+// "sheet.png, sheet.json", "sheet-0.png, sheet-0.json, ... sheet-8.json".
+std::string names_of(std::span<const std::filesystem::path> files) {
+  constexpr std::size_t kNamed = 4;
+  std::string names;
+  for (const auto& file : files.first(std::min(files.size(), kNamed) - 1))
+    names += file.string() + ", ";
+  return names + (files.size() > kNamed ? "... " : "") + files.back().string();
+}
+
 int main_of(int argc, char** argv) {
   app::PackCommand command;
   if (const int code = app::parse_command_line(argc, argv, command); code >= 0) return code;
@@ -71,9 +82,10 @@ int main_of(int argc, char** argv) {
     return app::exit_code(atlas.status());
   }
   atlas->cpu_seconds = cpu_seconds() - start;
+  if (!command.preview.empty()) atlas->files.push_back(command.preview);
   if (command.json) app::print(stdout, fmt::format("{}\n", app::to_summary(*atlas)));
   terminal.line(
-      fmt::format("{}: {}, {:.2f} % used{}, {:.3f} CPU s", command.output.string(),
+      fmt::format("{}: {}, {:.2f} % used{}, {:.3f} CPU s", names_of(atlas->files),
                   counts_of(*atlas), 100 * atlas->utilization,
                   atlas->aliases ? fmt::format(", {} sharing another's place", atlas->aliases) : "",
                   atlas->cpu_seconds));

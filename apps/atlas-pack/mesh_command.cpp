@@ -329,7 +329,9 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   if (Status s = write_mesh(c.output, mesh); !s.ok()) return s;
   if (!c.preview.empty())
     if (Status s = draw(c.preview, mesh); !s.ok()) return s;
-  return describe(*fitted);
+  PackedAtlas atlas = describe(*fitted);
+  atlas.files = {c.output, material_file(c.output)};
+  return atlas;
 }
 
 }  // namespace atlas::app

@@ -95,9 +95,11 @@ std::string to_summary(const PackedAtlas& atlas) {
   root["aliases"] = atlas.aliases;
   root["pages"] = Json::array();
   for (Extent e : atlas.pages) root["pages"].push_back({{"width", e.width}, {"height", e.height}});
+  root["files"] = Json::array();
+  for (const std::filesystem::path& file : atlas.files) root["files"].push_back(file.string());
   root["utilization"] = atlas.utilization;
   root["cpu_seconds"] = atlas.cpu_seconds;
-  return root.dump();
+  return root.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace atlas::app

@@ -21,7 +21,8 @@ struct PackedItem {
 struct PackedAtlas {
   std::vector<PackedItem> items;
   std::vector<Extent> pages;
-  std::vector<std::string> images;  // file name a page; empty where no images were written
+  std::vector<std::string> images;           // file name a page; empty where no images were written
+  std::vector<std::filesystem::path> files;  // all that were written, a preview last
   std::size_t unplaced = 0, aliases = 0;
   double utilization = 0;
   double cpu_seconds = 0;

@@ -267,6 +267,7 @@ Result<PackedAtlas> run_rects(const PackCommand& c, const Context& context) {
   const std::string placed =
       ending == ".json" ? to_json(atlas, c.format, kAllPages) : to_csv(atlas);
   if (Status s = write_file(c.output, placed); !s.ok()) return s;
+  atlas.files = {c.output};
   if (!c.preview.empty())
     if (Status s = write_preview(c.preview, atlas); !s.ok()) return s;
   return atlas;

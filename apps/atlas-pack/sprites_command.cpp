@@ -132,6 +132,20 @@ void blit(const Sprite& sprite, const Placement& at, int extrude, Image8& page) 
     }
 }
 
+// Who names the page's image or its list means the base of both names; of images that are no PNG
+// there are none.
+Result<PackCommand> with_base_name(const PackCommand& command) {
+  const std::string ending = lower_extension(command.output);
+  PackCommand c = command;
+  if (ending == ".png" || ending == ".json")
+    c.output.replace_extension();
+  else if (is_image(c.output))
+    return Status(
+        ErrorCode::bad_option,
+        fmt::format("{}: pages are PNG images (name them NAME or NAME.png)", c.output.string()));
+  return c;
+}
+
 // As no program reads images that take more memory than that.
 Status check_sizes(const PackedAtlas& atlas) {
   constexpr std::int64_t kMostTexels = std::int64_t{1} << 30;
@@ -182,6 +196,7 @@ Status write_pages(const PackCommand& c, const std::vector<Sprite>& sprites, Pac
     data.replace_extension(".json");
     if (Status s = files.write(data, to_json(atlas, c.format, p)); !s.ok()) return s;
   }
+  atlas.files = files.targets();
   return files.commit();
 }
 
@@ -205,7 +220,10 @@ Status check_pages(const PackCommand& c) {
 
 }  // namespace
 
-Result<PackedAtlas> run_images(const PackCommand& c, const Context& context) {
+Result<PackedAtlas> run_images(const PackCommand& command, const Context& context) {
+  const Result<PackCommand> named = with_base_name(command);
+  if (!named.ok()) return named.status();
+  const PackCommand& c = *named;
   if (Status s = check_pages(c); !s.ok()) return s;
   if (Status s = check_preview(c); !s.ok()) return s;
   Result<std::vector<Sprite>> read = read_sprites(c, context);

@@ -92,6 +92,34 @@ TEST_F(AtlasPack, PagesOfAnEarlierRunAreNamed) {
   EXPECT_NE(more.output.find("out.png: of an earlier run"), std::string::npos) << more.output;
 }
 
+TEST_F(AtlasPack, TheNameOfAPageMayBeGivenWholeAndTheFilesAreNamed) {
+  fs::create_directories(dir_ / "in");
+  for (int i = 0; i < 3; ++i) {
+    const auto level = static_cast<std::uint8_t>(50 * i);
+    const fs::path image = dir_ / fmt::format("in/{}.png", i);
+    ASSERT_TRUE(atlas::write_png(image, atlas::Image8(40, 40, 3, level), {}).ok());
+  }
+  for (const char* name : {"sheet", "sheet.png", "sheet.PNG", "sheet.json"}) {
+    const RunResult r = run(fmt::format("images in -o {} --crop", name));
+    EXPECT_EQ(r.exit_code, 0) << r.output;
+    EXPECT_EQ(r.output.find("sheet.png, sheet.json: 3 items on 1 page, "), 0u) << r.output;
+    EXPECT_TRUE(fs::remove(dir_ / "sheet.png"));
+    EXPECT_TRUE(fs::remove(dir_ / "sheet.json"));
+  }
+  const RunResult dotted = run("images in -o v1.2 --crop --preview p.svg");
+  EXPECT_EQ(dotted.output.find("v1.2.png, v1.2.json, p.svg: 3 items"), 0u) << dotted.output;
+  const RunResult several = run("images in -o out.png --page 40x40");
+  EXPECT_EQ(several.output.find("out-0.png, out-0.json, out-1.png, ... out-2.json: 3 items"), 0u)
+      << several.output;
+  const auto summary = nlohmann::json::parse(run("images in -o out --page 40x40 --json").output);
+  EXPECT_EQ(summary["files"].size(), 6u);
+  const RunResult refused = run("images in -o sheet.jpg");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.output.find("sheet.jpg: pages are PNG images (name them NAME or NAME.png)"),
+            std::string::npos)
+      << refused.output;
+}
+
 // It took 14 GB before anything was drawn.
 TEST_F(AtlasPack, PagesThatNoMemoryHoldsAreRefused) {
   fs::create_directories(dir_ / "in");
