@@ -94,11 +94,12 @@ void add_texture_options(CLI::App& app, ExportOptions& options, RawText& raw) {
       ->capture_default_str()
       ->check(within(64, 16384));
   app.add_option("--memory", raw.memory,
-                 "Graphics memory for all pages, e.g. 800MB: sets --atlases from --atlas-size")
+                 "Graphics memory for all pages, e.g. 800MB, without a unit bytes: sets --atlases "
+                 "from --atlas-size")
       ->excludes("--atlases");
   app.add_option("--texel", raw.texel,
-                 "Length of a texel on the real surface, e.g. 5mm; default: what the pages can "
-                 "hold, within 1 to 10 mm");
+                 "Length of a texel on the real surface, e.g. 5mm, without a unit metres; default: "
+                 "what the pages can hold, within 1 to 10 mm");
   add_off_flag(app, "--ignore-texture-density", options.follow_textures,
                "Do not refine where the diffuse texture is finer than --texel");
   app.add_option("--threshold", options.threshold,
@@ -190,15 +191,20 @@ std::optional<std::string> interpret(const RawText& raw, ExportCommand& command)
   options.tone.op = *tone;
   if (!raw.memory.empty()) {
     const auto bytes = parse_bytes(raw.memory);
-    if (!bytes) return fmt::format("--memory {}: give a size such as 800MB", raw.memory);
+    if (!bytes)
+      return fmt::format(
+          "--memory {}: give a size such as 800MB, in kB, MB, GB, KiB, MiB or GiB (without a unit: "
+          "bytes)",
+          raw.memory);
     const auto page = [&] {
       return kBytesPerTexel * double(options.atlas_size) * double(options.atlas_size);
     };
     while (options.atlas_size > 64 && page() > double(*bytes)) options.atlas_size /= 2;
     if (page() > double(*bytes))
       return fmt::format(
-          "--memory {}: less than a single page of 64 x 64 texels takes, {:.0f} bytes", raw.memory,
-          page());
+          "--memory {}: {} byte{}, less than the {:.0f} of a single page of 64 x 64 texels (give a "
+          "size such as 800MB)",
+          raw.memory, *bytes, *bytes == 1 ? "" : "s", page());
     options.atlases = std::uint32_t(std::clamp(double(*bytes) / page(), 1.0, kMostPages));
   }
   return std::nullopt;

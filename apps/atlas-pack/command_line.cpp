@@ -26,7 +26,10 @@ std::string parse_page(const std::string& text, Extent& page) {
   Extent read_page{0, 0};
   if (!read(width, 1, read_page.width) ||
       !read(square ? width : all.substr(width.size() + 1), square ? 1 : 0, read_page.height))
-    return "'" + text + "' must be WIDTHxHEIGHT, e.g. 2048x2048 (height 0: as low as possible)";
+    return fmt::format(
+        "'{}' must be WIDTHxHEIGHT, e.g. 2048x2048, with sides of 1..{} (height 0: as low as can "
+        "be)",
+        text, kMost);
   page = read_page;
   return {};
 }
@@ -39,7 +42,7 @@ std::string parse_seconds(const std::string& text, double& seconds) {
   const std::map<std::string, double> units{
       {"", 1}, {"s", 1}, {"ms", 1e-3}, {"m", 60}, {"min", 60}};
   if (end == text.c_str() || !units.count(unit) || !(value >= 0 && value < 1e9))
-    return "'" + text + "' must be a duration such as 1s, 500ms or 2m";
+    return "'" + text + "' must be a duration such as 1s, 500ms or 2m (without a unit: seconds)";
   seconds = value * units.at(unit);
   return {};
 }
@@ -76,7 +79,8 @@ void add_effort_options(CLI::App& app, PackCommand& c) {
              throw CLI::ValidationError("--budget", e);
          })
       ->type_name("TIME")
-      ->description("Time for --preset best, e.g. 1s or 500ms (mesh: on one page)");
+      ->description(
+          "Time for --preset best, e.g. 1s or 500ms, without a unit seconds (mesh: on one page)");
   app.add_option(
          "--effort", c.options.effort,
          "Layouts tried at most by --preset best; with it results repeat exactly (mesh: on one "
@@ -156,7 +160,7 @@ CLI::App* add_images(CLI::App& app, PackCommand& c) {
       ->required();
   images
       ->add_option("-o,--output", c.output,
-                   "Base name: NAME.png and NAME.json, or NAME-0.png ... for several pages")
+                   "NAME or NAME.png: NAME.png and NAME.json, or NAME-0.png ... for several pages")
       ->required();
   images->add_option("--extrude", c.extrude, "Repeat edge texels outwards this many times")
       ->capture_default_str()

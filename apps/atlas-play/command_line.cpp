@@ -128,7 +128,8 @@ struct LightText {
 void add_light_options(CLI::App& app, CommandLine& l, LightText& light) {
   const OptionGroup group(app, "Moving light");
   app.add_option("--light", light.path,
-                 "sun:DAY,LATITUDE,HOUR  fixed:x,y,z  line:x,y,z;x,y,z  arc:...  keys:...;...;...")
+                 "sun:DAY,LATITUDE,HOUR  fixed:x,y,z  line:x,y,z;x,y,z  arc:x,y,z;x,y,z  "
+                 "keys:x,y,z;x,y,z;...")
       ->capture_default_str();
   app.add_option("--light-end", light.end, "at the path's end: loop, back or stop")
       ->check(one_of({{"loop", 0}, {"back", 0}, {"stop", 0}}))

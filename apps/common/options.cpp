@@ -43,23 +43,42 @@ std::string start_of(const std::string& text) {
   return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
 }
 
+// Differences at which one word is still taken for another that was meant.
+std::size_t near(std::string_view word) {
+  return std::max<std::size_t>(1, word.size() / 5);
+}
+
+// Programs that have commands need one before all else.
+bool lacks_command(const CLI::App& app) {
+  return app.get_require_subcommand_min() > 0 && app.get_subcommands().empty();
+}
+
+std::string about_command(const CLI::App& app, const std::string& word) {
+  std::string names, meant;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    const std::string& name = command->get_name();
+    names += (names.empty() ? "" : ", ") + name;
+    if (distance(word, name) <= near(name)) meant = fmt::format(": is {} meant?", name);
+  }
+  return fmt::format("'{}' is none of the commands {}{}", start_of(word), names, meant);
+}
+
 // Words that no option takes. They are told first: --ouput is the reason why --output is missing.
 std::string about_unknown(const CLI::App& app) {
   const std::vector<std::string> words = app.remaining(true);
   if (words.empty()) return {};
+  // A later word may be a command by chance, as a folder that is called so.
+  const std::vector<std::string> own = app.remaining(false);
+  if (app.get_require_subcommand_min() > 0 && !own.empty() && !own.front().starts_with("-"))
+    return about_command(app, own.front());
   const auto option = std::find_if(words.begin(), words.end(),
                                    [](const std::string& w) { return w.starts_with("-"); });
   const std::string& word = option == words.end() ? words.front() : *option;
-  std::string names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    names += (names.empty() ? "" : ", ") + command->get_name();
-  if (option == words.end() && !names.empty() && app.get_subcommands().empty())
-    return fmt::format("'{}' is none of the commands {}", word, names);
   const std::string name = word.substr(0, word.find('='));
-  const std::size_t near = std::max<std::size_t>(1, name.size() / 5);
   for (const CLI::Option* known : command_of(app).get_options())
     for (const std::string& other : known->get_lnames())
-      if (name.size() > 4 && name.starts_with("--") && distance(name.substr(2), other) <= near)
+      if (name.size() > 4 && name.starts_with("--") &&
+          distance(name.substr(2), other) <= near(name))
         return fmt::format("unknown option {}: is --{} meant?", start_of(word), other);
   return "unknown option or one name too many: " + start_of(word);
 }
@@ -91,6 +110,9 @@ std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
   constexpr std::string_view kConfig = "INI was not able to parse ";
   if (text.starts_with(kConfig)) return about_config(app, text.substr(kConfig.size()));
   if (std::string unknown = about_unknown(app); !unknown.empty()) return unknown;
+  constexpr std::string_view kMissing = " missing", kCount = " required ";
+  if (const auto at = text.find(": "); text.ends_with(kMissing) && text.find(kCount) != text.npos)
+    return text.substr(0, at) + " needs a value after it";
   constexpr std::string_view kTwice = ": At Most 1 required";
   if (const auto at = text.find(kTwice); at != std::string::npos)
     return text.substr(0, at) + " is given more than once";
@@ -158,7 +180,10 @@ CLI::Option* add_off_flag(CLI::App& app, const std::string& name, bool& value,
 
 int parse(CLI::App& app, int argc, char** argv) {
   const auto refuse = [&](const std::string& why) {
-    print_error(app.get_name(), why + " (--help lists the options)");
+    const std::string command =
+        app.get_subcommands().empty() ? "" : command_of(app).get_name() + " ";
+    print_error(app.get_name(), fmt::format("{} ({}--help lists the {})", why, command,
+                                            lacks_command(app) ? "commands" : "options"));
     return 2;
   };
   app.set_version_flag("--version", fmt::format("{} {}", app.get_name(), LIBATLAS_VERSION));

@@ -63,7 +63,41 @@ TEST_F(Mistakes, AMisspeltOptionIsTheReasonWhyAnotherIsMissing) {
   expect_complaint(ATLAS_EXPORT, "-t.obj -o a.obj", "unknown option or one name too many: -t.obj");
   expect_complaint(ATLAS_PACK, "rects r.csv -o a.csv --extrude 2",
                    "unknown option or one name too many: --extrude");
-  expect_complaint(ATLAS_PACK, "rect r.csv", "'rect' is none of the commands rects, images, mesh");
+}
+
+TEST_F(Mistakes, AMisspeltCommandIsToldBeforeItsOptions) {
+  expect_complaint(ATLAS_PACK, "rect r.csv",
+                   "'rect' is none of the commands rects, images, mesh: is rects meant? (--help "
+                   "lists the commands)");
+  expect_complaint(ATLAS_PACK, "image images -o a",
+                   "'image' is none of the commands rects, images, mesh: is images meant?");
+  expect_complaint(ATLAS_PACK, "image r.csv -o a",
+                   "'image' is none of the commands rects, images, mesh: is images meant?");
+  expect_complaint(ATLAS_PACK, "shelve r.csv -o a",
+                   "'shelve' is none of the commands rects, images, mesh (--help");
+  expect_complaint(ATLAS_PACK, "--nope", "unknown option or one name too many: --nope");
+  expect_complaint(ATLAS_PACK, "", "the name of a command is needed first (--help lists the comma");
+  expect_complaint(ATLAS_PACK, "rects", "sizes is required (rects --help lists the options)");
+}
+
+TEST_F(Mistakes, OptionsWithoutTheirValue) {
+  expect_complaint(ATLAS_PLAY, "t.obj --headless --bench", "--bench needs a value after it");
+  expect_complaint(ATLAS_PLAY, "t.obj --headless --north", "--north needs a value after it");
+  expect_complaint(ATLAS_EXPORT, "t.obj --output", "--output needs a value after it");
+  expect_complaint(ATLAS_PACK, "rects r.csv -o a.csv --budget", "--budget needs a value after it");
+}
+
+TEST_F(Mistakes, NumbersOutOfRangeAreToldTheirRangeAndUnit) {
+  expect_complaint(ATLAS_PACK, "rects r.csv -o a.csv --page 3000000000x10",
+                   "--page: '3000000000x10' must be WIDTHxHEIGHT, e.g. 2048x2048, with sides of "
+                   "1..1073741824");
+  expect_complaint(ATLAS_PACK, "rects r.csv -o a.csv --preset best --budget 1h",
+                   "--budget: '1h' must be a duration such as 1s, 500ms or 2m (without a unit: "
+                   "seconds)");
+  expect_complaint(ATLAS_EXPORT, "t.obj -o a.obj --memory 10",
+                   "--memory 10: 10 bytes, less than the 21845 of a single page of 64 x 64");
+  expect_complaint(ATLAS_EXPORT, "t.obj -o a.obj --memory lots",
+                   "--memory lots: give a size such as 800MB, in kB, MB");
 }
 
 TEST_F(Mistakes, NamesAreNotEmpty) {
