@@ -14,6 +14,7 @@
 #include <iterator>
 #include <string>
 #include <thread>
+#include <utility>
 
 namespace {
 
@@ -105,6 +106,19 @@ TEST_F(AtlasPlay, AConfigurationFileWithAnOptionThatDoesNotExist) {
   const RunResult r = run(headless + "bad.toml");
   EXPECT_EQ(r.exit_code, 2);
   EXPECT_NE(r.errors.find("widht"), std::string::npos) << r.errors;
+}
+
+TEST_F(AtlasPlay, TheHelpShowsEveryFormOfTheLight) {
+  const std::string help = run("--help").output;
+  for (const auto& [form, light] : {std::pair("sun:DAY,LATITUDE,HOUR", "sun:172,50.45,9"),
+                                    {"fixed:x,y,z", "fixed:1,2,1"},
+                                    {"line:x,y,z;x,y,z", "line:1,1,0;-1,1,0"},
+                                    {"arc:x,y,z;x,y,z", "arc:1,1,0;-1,1,0"},
+                                    {"keys:x,y,z;x,y,z;...", "keys:1,1,0;0,1,1;-1,1,0"}}) {
+    EXPECT_NE(help.find(form), std::string::npos) << help;
+    const RunResult r = run(fmt::format("roof.obj --headless --software -q --light '{}'", light));
+    EXPECT_EQ(r.exit_code, 0) << r.errors;
+  }
 }
 
 TEST_F(AtlasPlay, LooksStraightDownAndUp) {
