@@ -261,9 +261,12 @@ Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> item
   if (!fitted.ok() && fitted.status().code() == ErrorCode::no_solution)
     return Status(
         ErrorCode::no_solution,
-        fmt::format("{}: the gutters of its {} charts leave no room on {} page{} of {} "
-                    "texels (give a larger --page, more --pages or a smaller --padding)",
-                    c.input.string(), items.size(), c.pages, c.pages == 1 ? "" : "s", c.page_side));
+        fmt::format(
+            "{}: its {} charts do not fit {} page{} of {} x {} texels even as small as can be "
+            "(give a larger --page{})",
+            c.input.string(), items.size(), c.pages, c.pages == 1 ? "" : "s", c.page_side,
+            c.page_side,
+            padding > 0 ? ", more --pages or a smaller --padding" : " or more --pages"));
   if (!fitted.ok()) return fitted.status();
   for (FitPlacement& p : fitted->placements) {
     p.offset = {p.offset.x + border, p.offset.y + border};

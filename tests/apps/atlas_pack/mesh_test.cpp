@@ -62,6 +62,28 @@ TEST_F(AtlasPack, MeshChartsThatLieOnThemselvesFillThePage) {
   EXPECT_LE(json["utilization"], 1.0);
 }
 
+// A thousand squares, each a chart.
+TEST_F(AtlasPack, ChartsThatDoNotFitAreToldWithWhatHelps) {
+  std::string text = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n", faces;
+  for (int i = 0; i < 1000; ++i) {
+    text += fmt::format("v {0} 0 0\nv {1} 0 0\nv {1} 1 0\nv {0} 1 0\n", 2 * i, 2 * i + 1);
+    text += fmt::format("vt {0} 0\nvt {1} 0\nvt {1} 1\nvt {0} 1\n", 2 * i + 2, 2 * i + 3);
+    const int v = 4 * i + 1, t = v + 4;
+    faces += fmt::format("f {0}/{4} {1}/{5} {2}/{6}\nf {0}/{4} {2}/{6} {3}/{7}\n", v, v + 1, v + 2,
+                         v + 3, t, t + 1, t + 2, t + 3);
+  }
+  write("many.obj", text + faces);
+  const std::string words =
+      "many.obj: its 1000 charts do not fit 1 page of 16 x 16 texels even as "
+      "small as can be (give a larger --page";
+  const RunResult plain = run("mesh many.obj -o out.obj --page 16");
+  EXPECT_EQ(plain.exit_code, 1);
+  EXPECT_NE(plain.output.find(words + " or more --pages)"), std::string::npos) << plain.output;
+  const RunResult padded = run("mesh many.obj -o out.obj --page 16 --padding 2");
+  EXPECT_NE(padded.output.find(words + ", more --pages or a smaller --padding)"), std::string::npos)
+      << padded.output;
+}
+
 // Eight right triangles, far apart in their own uvs.
 std::string triangles_obj() {
   std::string text;
