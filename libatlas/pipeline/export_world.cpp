@@ -189,17 +189,19 @@ class Export {
   // No light asks for no resolution of its own: pages filled as well as packing can.
   Result<PageLayout> lay_out_plain(const LayoutOptions& options, const Context& context) {
     const double texels = double(options.pages) * options.page_size * options.page_size;
-    const double density = filling_density(charts_, texels);
-    // Uvs for a lightmap.
-    if (options_.keep_scene) {
-      const std::vector<Vec2d> densities(charts_.charts.size(), {density, density});
-      const PagesOfCharts pages{view_of(scene_), options_.charts.max_stretch, texels};
-      report_.opened_charts = open_part_gaps(pages, densities, charts_, context).charts;
+    const PlainUvs uvs{view_of(scene_), options_.charts, filling_density(charts_, texels)};
+    if (!options_.keep_scene) {
+      Result<PageLayout> layout = fill_pages(uvs, options, charts_, context);
+      report_charts();
+      return layout;
     }
-    const PlainUvs uvs{view_of(scene_), options_.charts, density};
-    Result<PageLayout> layout = fill_pages(uvs, options, charts_, context);
+    // Uvs for a lightmap.
+    Result<PagesOfParts> apart = fill_pages_apart(uvs, options, charts_, context);
     report_charts();
-    return layout;
+    if (!apart.ok()) return apart.status();
+    report_.opened_charts = apart->opened;
+    report_.gaps = apart->left;
+    return std::move(apart->layout);
   }
 
   Status pack() {

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
+
+#include "libatlas/core/progress.h"
 
 namespace atlas {
 namespace {
@@ -11,9 +14,18 @@ namespace {
 // usually 0.6 to 0.7. A gap a little wider than needed costs less than one that is not.
 constexpr double kLikelyFill = 0.6;
 
+// By how much charts may still become smaller once their gaps have been opened.
+constexpr double kSmaller = 1.03;
+
 double clearance_at(Vec2d density) {
   const double least = std::min(density.x, density.y);
   return least > 0 ? kTexelsApart / least : 0;
+}
+
+std::vector<double> clearances(std::span<const ChartPlacement> placements) {
+  std::vector<double> clearance(placements.size(), 0);
+  for (const ChartPlacement& p : placements) clearance[p.chart] = clearance_at(p.texels_per_unit);
+  return clearance;
 }
 
 }  // namespace
@@ -48,12 +60,41 @@ GapReport open_part_gaps(const PagesOfCharts& pages, std::span<ChartTexture> tex
 
 GapReport left_part_gaps(const MeshView& mesh, const ChartSet& charts,
                          std::span<const ChartPlacement> placements, const Context& context) {
-  std::vector<double> clearance(charts.charts.size(), 0);
-  for (const ChartPlacement& p : placements) clearance[p.chart] = clearance_at(p.texels_per_unit);
-  GapReport left = measure_gaps(mesh, clearance, charts, context);
+  GapReport left = measure_gaps(mesh, clearances(placements), charts, context);
   for (double* length : {&left.border, &left.near_before, &left.near_after})
     *length *= kTexelsApart;
   return left;
+}
+
+Result<PagesOfParts> fill_pages_apart(const PlainUvs& uvs, const LayoutOptions& options,
+                                      ChartSet& charts, const Context& context) {
+  const double max_stretch = uvs.options.max_stretch;
+  const double texels = double(options.pages) * options.page_size * options.page_size;
+  const std::vector<Vec2d> wanted(charts.charts.size(), {uvs.density, uvs.density});
+  PagesOfParts pages;
+  pages.opened = open_part_gaps({uvs.mesh, max_stretch, texels}, wanted, charts, context).charts;
+  Result<PageLayout> layout =
+      fill_pages(uvs, options, charts, part_of_stage(context, "pack", 0, 0.5));
+  if (!layout.ok()) return layout.status();
+  pages.layout = std::move(*layout);
+  pages.left = left_part_gaps(uvs.mesh, charts, pages.layout.placements, context);
+  if (pages.left.near_after == 0) return pages;
+
+  ChartSet wider = charts;
+  std::vector<double> clearance = clearances(pages.layout.placements);
+  for (double& c : clearance) c *= kSmaller;
+  const std::size_t opened = widen_gaps(uvs.mesh, clearance, max_stretch, wider, context).charts;
+  if (opened == 0) return pages;
+  layout = fill_pages(uvs, options, wider, part_of_stage(context, "pack", 0.5, 1));
+  if (context.cancelled()) return Status::cancelled();
+  if (!layout.ok()) return pages;
+  const GapReport left = left_part_gaps(uvs.mesh, wider, layout->placements, context);
+  if (!(left.near_after < pages.left.near_after)) return pages;
+  pages.opened = std::max(pages.opened, opened);
+  pages.layout = std::move(*layout);
+  pages.left = left;
+  charts = std::move(wider);
+  return pages;
 }
 
 }  // namespace atlas

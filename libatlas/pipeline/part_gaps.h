@@ -7,6 +7,7 @@
 
 #include "libatlas/bake/placement.h"
 #include "libatlas/charts/gaps.h"
+#include "libatlas/pipeline/fill_pages.h"
 #include "libatlas/texture/chart_textures.h"
 
 namespace atlas {
@@ -35,5 +36,15 @@ GapReport open_part_gaps(const PagesOfCharts& pages, std::span<ChartTexture> tex
 // After it: what is left, in texels.
 GapReport left_part_gaps(const MeshView& mesh, const ChartSet& charts,
                          std::span<const ChartPlacement> placements, const Context& context);
+
+// Plain uvs for a lightmap: as fill_pages(), the parts of charts drawn apart before it. Where pages
+// come out emptier than most, so that charts are smaller and their gaps too, both are done again.
+struct PagesOfParts {
+  PageLayout layout;
+  std::size_t opened = 0;  // charts, of the round that opened more
+  GapReport left;          // texels
+};
+Result<PagesOfParts> fill_pages_apart(const PlainUvs& uvs, const LayoutOptions& options,
+                                      ChartSet& charts, const Context& context);
 
 }  // namespace atlas

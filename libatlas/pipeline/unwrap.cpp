@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "libatlas/pipeline/assemble_world.h"
-#include "libatlas/pipeline/fill_pages.h"
+#include "libatlas/pipeline/part_gaps.h"
 #include "libatlas/pipeline/round_uvs.h"
 
 namespace atlas {
@@ -33,12 +33,11 @@ Status check_options(const UnwrapOptions& options) {
   return {};
 }
 
-Result<PageLayout> lay_out(const MeshView& mesh, const UnwrapOptions& options, ChartSet& charts,
-                           const Context& context) {
+Result<PagesOfParts> lay_out(const MeshView& mesh, const UnwrapOptions& options, ChartSet& charts,
+                             const Context& context) {
+  const double texels = double(options.pages) * options.page_size * options.page_size;
   const double density =
-      options.texels_per_unit > 0
-          ? options.texels_per_unit
-          : filling_density(charts, double(options.pages) * options.page_size * options.page_size);
+      options.texels_per_unit > 0 ? options.texels_per_unit : filling_density(charts, texels);
   LayoutOptions layout;
   layout.pages = options.pages;
   layout.page_size = options.page_size;
@@ -48,7 +47,11 @@ Result<PageLayout> lay_out(const MeshView& mesh, const UnwrapOptions& options, C
   layout.outlines = true;
   layout.square = options.square;
   layout.free_aspect = options.pages == 1 && !options.square;
-  return fill_pages({mesh, options.charts, density}, layout, charts, context);
+  const PlainUvs uvs{mesh, options.charts, density};
+  if (options.part_gaps) return fill_pages_apart(uvs, layout, charts, context);
+  Result<PageLayout> filled = fill_pages(uvs, layout, charts, context);
+  if (!filled.ok()) return filled.status();
+  return PagesOfParts{std::move(*filled), 0, {}};
 }
 
 // One vertex for each pair of an input vertex and a uv that some corner names, in the order of the
@@ -86,15 +89,17 @@ Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& opt
     view.texcoord_indices = view.indices;
   Result<ChartSet> charts = make_charts(view, options.charts, context);
   if (!charts.ok()) return charts.status();
-  Result<PageLayout> layout = lay_out(view, options, *charts, context);
-  if (!layout.ok()) return layout.status();
+  Result<PagesOfParts> laid = lay_out(view, options, *charts, context);
+  if (!laid.ok()) return laid.status();
+  PageLayout& layout = laid->layout;
 
   UnwrappedMesh result;
   result.charts = std::move(*charts);
-  result.placements = std::move(layout->placements);
-  result.pages = std::move(layout->pages);
-  result.utilization = layout->uv_utilization;
+  result.placements = std::move(layout.placements);
+  result.pages = std::move(layout.pages);
+  result.utilization = layout.uv_utilization;
   result.texels_per_unit = result.placements[0].texels_per_unit.x;
+  result.gaps = laid->left;
   const std::vector<Vec2d> exact = page_uvs({result.charts, result.placements, result.pages});
   std::vector<Vec2f> rounded;
   result.thin_triangles =

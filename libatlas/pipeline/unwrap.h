@@ -6,6 +6,7 @@
 
 #include "libatlas/bake/placement.h"
 #include "libatlas/charts/charts.h"
+#include "libatlas/charts/gaps.h"
 #include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
 #include "libatlas/pack/pack.h"
@@ -24,6 +25,10 @@ struct UnwrapOptions {
   // Sides are powers of two (page_size must be one), and equal. Else a single page has the shape
   // that packs best, which textures for it must share; several have sides of powers of two.
   bool square = false;
+  // Parts of one chart that are far apart on the surface are kept apart on the page, too, as charts
+  // are: for lightmaps, since bilinear look-ups would mix the light of both. Uvs stretch a little
+  // more there, within ChartOptions::max_stretch.
+  bool part_gaps = false;
 };
 
 // Each vertex is a copy of one of the input's; those along seams are there once for each side.
@@ -36,6 +41,7 @@ struct UnwrappedMesh {
   double texels_per_unit = 0;                // reached
   double utilization = 0;                    // area of the charts / area of the pages
   std::uint64_t thin_triangles = 0;          // slivers that floats leave no area, or turn over
+  GapReport gaps;                            // texels; what part_gaps left; else zeros
   ChartSet charts;                           // with all that was measured: distortion, seams
   std::vector<ChartPlacement> placements;    // 1 a chart
 };

@@ -14,6 +14,7 @@
 
 #include "libatlas/core/clock.h"
 #include "libatlas/pipeline/export_world.h"
+#include "libatlas/pipeline/part_gaps.h"
 #include "libatlas/scene/check_scene.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/scene/temp_folder.h"
@@ -171,6 +172,36 @@ TEST(Unwrap, WhatTurnsTheWrongWayKeepsItsCorners) {
   ASSERT_TRUE(mesh.ok()) << mesh.status().message();
   EXPECT_EQ(mesh->charts.flipped_triangles, std::vector<std::uint32_t>{17});
   expect_sound(view_of(ring.scene), *mesh);
+}
+
+// A turn of a spiral ramp: laid flat its ends nearly meet, though one lies above the other.
+TEST(Unwrap, PartsOfAChartAreKeptApartWhereAsked) {
+  Shape ramp = grid(60, 6);
+  for (Vec3f& p : ramp.positions) {
+    const double angle = 6.25 * p.x, radius = 1.4 - 0.4 * p.y;
+    p = {float(radius * std::cos(angle)), float(radius * std::sin(angle)), 0.3F * p.x};
+  }
+  MeshView view;
+  view.positions = ramp.positions;
+  view.indices = ramp.indices;
+  const auto near = [&](const UnwrappedMesh& mesh) {
+    return left_part_gaps(view, mesh.charts, mesh.placements, {}).near_after;
+  };
+  UnwrapOptions options{.page_size = 128};
+  options.charts.min_fill = 0;  // a ring would be cut for its page
+  const auto close = unwrap_mesh(view, options, {});
+  options.part_gaps = true;
+  const auto open = unwrap_mesh(view, options, {});
+  ASSERT_TRUE(close.ok() && open.ok());
+  ASSERT_EQ(close->charts.charts.size(), 1u);
+  ASSERT_EQ(open->charts.charts.size(), 1u);
+  EXPECT_EQ(close->gaps.border, 0) << "not measured";
+  EXPECT_GT(open->gaps.border, 100);
+  EXPECT_GT(near(*close), 10);
+  EXPECT_LT(near(*open), 1);
+  EXPECT_EQ(near(*open), open->gaps.near_after);
+  EXPECT_LE(open->charts.distortion.stretch_999, options.charts.max_stretch);
+  expect_sound(view, *open);
 }
 
 TEST(Unwrap, WrongOptionsAreNamed) {
