@@ -75,9 +75,15 @@ bool wanted(const Arguments& a, const std::string& stage) {
   return a.stages.empty() || std::find(a.stages.begin(), a.stages.end(), stage) != a.stages.end();
 }
 
+// Each stage begins with the mesh alone, without what others made of it.
 void run_stages(const Arguments& a, const StageRun& run, const std::vector<Rival>& rivals) {
-  for (const StageEntry& stage : kStages)
-    if (wanted(a, stage.name)) stage.run(run);
+  for (const StageEntry& stage : kStages) {
+    if (!wanted(a, stage.name)) continue;
+    in_own_process(run.staged.row(stage.name, "standard", true), run.done,
+                   [&](const TakeRow& take) {
+                     stage.run({run.staged, run.repeats, run.sweep, take});
+                   });
+  }
   const bool named = !a.stages.empty() && wanted(a, "unwrap");
   if (!named && (rivals.empty() || !a.stages.empty())) return;
   bench_ours(run, a.page);

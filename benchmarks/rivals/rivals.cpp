@@ -144,17 +144,19 @@ void bench_ours(const StageRun& run, int page) {
   options.target = folder.path / "out.obj";
   options.charts_only = true;
   options.atlas_size = page;
-  PageSize written{page, page};
-  measure(run.repeats, row, [&]() -> Status {
-    const Result<LoadedScene> scene = read_scene(in, {}, run.staged.context);
-    if (!scene.ok()) return scene.status();
-    const Result<ExportReport> report = export_world(*scene, options, {}, run.staged.context);
-    if (report.ok() && !report->pages.empty())
-      written = {report->pages[0].width, report->pages[0].height};
-    return report.status();
+  in_own_process(row, run.done, [&](const TakeRow& take) {
+    PageSize written{page, page};
+    measure(run.repeats, row, [&]() -> Status {
+      const Result<LoadedScene> scene = read_scene(in, {}, run.staged.context);
+      if (!scene.ok()) return scene.status();
+      const Result<ExportReport> report = export_world(*scene, options, {}, run.staged.context);
+      if (report.ok() && !report->pages.empty())
+        written = {report->pages[0].width, report->pages[0].height};
+      return report.status();
+    });
+    if (row.failure.empty()) judge(options.target, written, row);
+    take(row);
   });
-  if (row.failure.empty()) judge(options.target, written, row);
-  run.done(row);
 }
 
 }  // namespace atlas::bench

@@ -33,6 +33,13 @@ Status bake_all(Staged& staged, const Setting& setting, std::vector<Image8>& pag
   return {};
 }
 
+void judge(const Staged& staged, const std::vector<Image8>& pages, Row& row) {
+  FidelityMeter meter(staged.light(), staged.layout->placements, {});
+  for (std::size_t p = 0; p < pages.size(); ++p) meter.add_page(std::int32_t(p), pages[p]);
+  const Fidelity f = meter.result();
+  row.values = {{"rms", f.rmse_display}, {"psnr", f.psnr}, {"p95", f.p95}, {"p999", f.p999}};
+}
+
 }  // namespace
 
 void bench_baking(const StageRun& run) {
@@ -49,15 +56,12 @@ void bench_baking(const StageRun& run) {
   for (const Setting& setting : settings) {
     Row row = staged.row("baking", setting.name, setting.name == "standard");
     row.unit = "triangles -> texels";
-    std::vector<Image8> pages;
-    measure(run.repeats, row, [&] { return bake_all(staged, setting, pages, row); });
-    if (row.failure.empty()) {
-      FidelityMeter meter(staged.light(), staged.layout->placements, {});
-      for (std::size_t p = 0; p < pages.size(); ++p) meter.add_page(std::int32_t(p), pages[p]);
-      const Fidelity f = meter.result();
-      row.values = {{"rms", f.rmse_display}, {"psnr", f.psnr}, {"p95", f.p95}, {"p999", f.p999}};
-    }
-    run.done(row);
+    in_own_process(row, run.done, [&](const TakeRow& take) {
+      std::vector<Image8> pages;
+      measure(run.repeats, row, [&] { return bake_all(staged, setting, pages, row); });
+      if (row.failure.empty()) judge(staged, pages, row);
+      take(row);
+    });
   }
 }
 

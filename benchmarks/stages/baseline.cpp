@@ -34,7 +34,7 @@ void bench_baseline(const StageRun& run) {
     return report_failure(run, "baseline", s);
   Row row = run.staged.row("baseline", "parse + normals", true);
   row.unit = "triangles read";
-  measure(run.repeats, row, [&]() -> Status {
+  run.measured(row, [&]() -> Status {
     const Result<LoadedScene> read = read_scene(path, {}, run.staged.context);
     if (!read.ok()) return read.status();
     row.size_out = read->scene.triangle_count();
@@ -44,7 +44,6 @@ void bench_baseline(const StageRun& run) {
     return {};
   });
   std::filesystem::remove(path);
-  run.done(row);
 }
 
 }  // namespace atlas::bench

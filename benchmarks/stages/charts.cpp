@@ -52,7 +52,7 @@ void bench_charts(const StageRun& run) {
   for (const ChartSetting& setting : settings(run.sweep)) {
     Row row = staged.row("charts", setting.name, setting.preset);
     row.unit = "triangles -> charts";
-    measure(run.repeats, row, [&]() -> Status {
+    run.measured(row, [&]() -> Status {
       Result<ChartSet> made = make_charts(staged.view(), setting.options, staged.context);
       if (!made.ok()) return made.status();
       row.size_out = made->charts.size();
@@ -63,10 +63,8 @@ void bench_charts(const StageRun& run) {
                     {"flips", double(made->distortion.flips)},
                     {"param_cpu", made->timing.parameterization_cpu}};
       add_parts(made->timing, row);
-      if (setting.name == "standard") staged.charts = std::move(*made);
       return {};
     });
-    run.done(row);
   }
 }
 

@@ -22,7 +22,7 @@ void bench_downsizing(const StageRun& run) {
     options.texel = staged.texel();
     options.threshold = threshold / 255;
     options.max_side = staged.settings.page_size - 2 * gutter_pad(2);
-    measure(run.repeats, row, [&]() -> Status {
+    run.measured(row, [&]() -> Status {
       Result<TextureResult> made = size_chart_textures(staged.light(), options, staged.context);
       if (!made.ok()) return made.status();
       row.size_in = std::uint64_t(made->full_texels);
@@ -31,10 +31,8 @@ void bench_downsizing(const StageRun& run) {
                     {"max", made->max_error},
                     {"kept", double(made->final_texels) /
                                  double(std::max<std::int64_t>(1, made->full_texels))}};
-      if (standard) staged.textures = std::move(*made);
       return {};
     });
-    run.done(row);
   }
 }
 

@@ -43,17 +43,37 @@ std::vector<Setting> settings(const StageRun& run) {
   return list;
 }
 
-void stage_rows(const StageRun& run, const Setting& setting, const ExportReport& report) {
+void stage_rows(const Staged& staged, const Setting& setting, const ExportReport& report,
+                const TakeRow& take) {
   for (const StageReport& stage : report.stages) {
-    Row row = run.staged.row("export/" + stage.stage, setting.name, setting.preset);
+    Row row = staged.row("export/" + stage.stage, setting.name, setting.preset);
     row.size_in = stage.size_in;
     row.size_out = stage.size_out;
     row.unit = stage.unit;
     row.cpu_seconds = stage.cpu_seconds;
     row.wall_seconds = stage.wall_seconds;
     row.memory_mib = double(stage.peak_memory) / (1 << 20);
-    run.done(row);
+    take(row);
   }
+}
+
+// The row, and of standard settings those of its stages.
+void measure_export(const StageRun& run, const Setting& setting, Row row, const TakeRow& take) {
+  ExportReport report;
+  measure(run.repeats, row, [&]() -> Status {
+    Result<ExportReport> made =
+        export_world(run.staged.loaded, setting.options, {}, run.staged.context);
+    if (!made.ok()) return made.status();
+    report = std::move(*made);
+    row.size_out = report.triangles_out;
+    row.values = {{"rms", report.fidelity.rmse_display},  {"psnr", report.fidelity.psnr},
+                  {"p95", report.fidelity.p95},           {"scale", report.scale},
+                  {"pages", double(report.pages.size())}, {"charts", double(report.charts.size())}};
+    return {};
+  });
+  take(row);
+  if (row.failure.empty() && setting.name == "standard")
+    stage_rows(run.staged, setting, report, take);
 }
 
 }  // namespace
@@ -68,21 +88,9 @@ void bench_export(const StageRun& run) {
     setting.options.target = folder / "world.wrl";
     Row row = staged.row("export", setting.name, setting.preset);
     row.unit = "triangles -> triangles";
-    ExportReport report;
-    measure(run.repeats, row, [&]() -> Status {
-      Result<ExportReport> made = export_world(staged.loaded, setting.options, {}, staged.context);
-      if (!made.ok()) return made.status();
-      report = std::move(*made);
-      row.size_out = report.triangles_out;
-      row.values = {
-          {"rms", report.fidelity.rmse_display},  {"psnr", report.fidelity.psnr},
-          {"p95", report.fidelity.p95},           {"scale", report.scale},
-          {"pages", double(report.pages.size())}, {"charts", double(report.charts.size())}};
-      return {};
-    });
+    in_own_process(row, run.done,
+                   [&](const TakeRow& take) { measure_export(run, setting, row, take); });
     fs::remove_all(folder);
-    run.done(row);
-    if (row.failure.empty() && setting.name == "standard") stage_rows(run, setting, report);
   }
 }
 

@@ -31,7 +31,7 @@ void bench_grouping(const StageRun& run) {
     GroupingOptions options;
     options.groups = setting.groups;
     options.refine_work = setting.work;
-    measure(run.repeats, row, [&]() -> Status {
+    run.measured(row, [&]() -> Status {
       const Result<GroupingResult> made = group_sizes(sizes, options, staged.context);
       if (!made.ok()) return made.status();
       row.size_out = made->group_count;
@@ -40,7 +40,6 @@ void bench_grouping(const StageRun& run) {
                     {"proved", double(made->proved_smallest)}};
       return {};
     });
-    run.done(row);
   }
 }
 

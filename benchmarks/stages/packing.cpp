@@ -41,7 +41,7 @@ void bench_packing(const StageRun& run) {
     options.padding = gutter_pad(2);
     options.outlines = setting.outlines;
     options.preset = setting.preset;
-    measure(run.repeats, row, [&]() -> Status {
+    run.measured(row, [&]() -> Status {
       const Result<PageLayout> made =
           lay_out_pages(*staged.charts, densities, options, staged.context);
       if (!made.ok()) return made.status();
@@ -49,7 +49,6 @@ void bench_packing(const StageRun& run) {
       row.values = {{"empty", 1 - made->uv_utilization}, {"scale", made->scale}};
       return {};
     });
-    run.done(row);
   }
 }
 

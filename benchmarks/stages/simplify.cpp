@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "benchmarks/support/staged.h"
+#include "libatlas/pipeline/export_options.h"
 #include "libatlas/simplify/simplify.h"
 
 namespace atlas::bench {
@@ -11,17 +12,17 @@ void bench_simplify(const StageRun& run) {
   Staged& staged = run.staged;
   if (const Status s = staged.need_charts(); !s.ok()) return report_failure(run, "simplify", s);
   const std::vector<double> density(staged.charts->charts.size(), 1 / staged.texel());
-  constexpr double kStandard = 0.2;  // ExportOptions::simplify_slip
-  std::vector<double> slips{kStandard};
+  const double standard_slip = ExportOptions().simplify_slip;
+  std::vector<double> slips{standard_slip};
   if (run.sweep) slips.insert(slips.end(), {0.05, 0.1, 0.5, 1.0});
   for (const double slip : slips) {
-    const bool standard = slip == kStandard;
+    const bool standard = slip == standard_slip;
     Row row =
         staged.row("simplify", standard ? "standard" : fmt::format("slip {}", slip), standard);
     row.unit = "triangles -> triangles";
     SimplifyOptions options;
     options.max_slip_texels = slip;
-    measure(run.repeats, row, [&]() -> Status {
+    run.measured(row, [&]() -> Status {
       const Result<SimplifiedMesh> made =
           simplify_charts({staged.view(), *staged.charts, density}, options, staged.context);
       if (!made.ok()) return made.status();
@@ -31,7 +32,6 @@ void bench_simplify(const StageRun& run) {
                     {"kept", double(made->triangles_out) / double(made->triangles_in)}};
       return {};
     });
-    run.done(row);
   }
 }
 

@@ -21,10 +21,11 @@ void reset_peak() {
   std::ofstream("/proc/self/clear_refs") << "5";
 }
 
-double peak_mib() {
+// VmRSS, resident now, or VmHWM, the largest since reset_peak().
+double resident_mib(const std::string& which) {
   std::ifstream file("/proc/self/status");
   for (std::string word; file >> word;) {
-    if (word != "VmHWM:") continue;
+    if (word != which) continue;
     double kib = 0;
     file >> kib;
     return kib / 1024;
@@ -38,6 +39,7 @@ void measure(int repeats, Row& row, const std::function<Status()>& work) {
   double least = 0, most = 0;
   for (int i = 0; i < repeats; ++i) {
     reset_peak();
+    if (i == 0) row.input_mib = resident_mib("VmRSS:");
     const double cpu = cpu_seconds(), wall = wall_seconds();
     const Status status = [&] {
       const CountedWork counted(row.key());
@@ -48,7 +50,7 @@ void measure(int repeats, Row& row, const std::function<Status()>& work) {
       row.failure = status.message();
       return;
     }
-    row.memory_mib = std::max(row.memory_mib, peak_mib());
+    row.memory_mib = std::max(row.memory_mib, resident_mib("VmHWM:"));
     if (i == 0 || spent < least) {
       least = spent;
       row.wall_seconds = elapsed;

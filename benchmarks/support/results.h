@@ -30,6 +30,7 @@ struct Row {
   double cpu_spread = 0;    // largest / least of the repeats - 1; 0 for one
   double wall_seconds = 0;  // of the repeat with the least CPU time
   double memory_mib = 0;    // largest resident set while it ran, the input included
+  double input_mib = 0;     // of it, resident when it began: the program and the input
   double instructions = 0;  // executed, counted by callgrind on one thread; 0: not counted
   int threads = 0;          // that it ran on; 0: as many as there are cores
   std::string failure;      // empty: it worked; else why there are no figures
@@ -75,6 +76,10 @@ Status check_target(const std::filesystem::path& path);
 // Errors: io; not_found; bad_input, naming what is wrong with the file.
 Status save(const Results& results, const std::filesystem::path& path);
 Result<Results> load(const std::filesystem::path& path);
+
+// One row as a line of such a file. Errors: bad_input.
+std::string to_json_line(const Row& row);
+Result<Row> row_from_line(const std::string& line);
 
 // "charts  sphere:20480  standard  20480 triangles -> 12 charts  seam 5.1  820 ms  41 MiB"
 std::string line(const Row& row);

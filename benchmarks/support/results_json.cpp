@@ -19,14 +19,23 @@ double number(const Json& j) {
 Json to_json(const Row& r) {
   Json values = Json::object();
   for (const auto& [name, v] : r.values) values[name] = v;
-  return {{"stage", r.stage},           {"mesh", r.mesh},
-          {"setting", r.setting},       {"preset", r.preset},
-          {"triangles", r.triangles},   {"size_in", r.size_in},
-          {"size_out", r.size_out},     {"unit", r.unit},
-          {"values", values},           {"cpu_seconds", r.cpu_seconds},
-          {"cpu_spread", r.cpu_spread}, {"wall_seconds", r.wall_seconds},
-          {"memory_mib", r.memory_mib}, {"instructions", r.instructions},
-          {"threads", r.threads},       {"failure", r.failure}};
+  return {{"stage", r.stage},
+          {"mesh", r.mesh},
+          {"setting", r.setting},
+          {"preset", r.preset},
+          {"triangles", r.triangles},
+          {"size_in", r.size_in},
+          {"size_out", r.size_out},
+          {"unit", r.unit},
+          {"values", values},
+          {"cpu_seconds", r.cpu_seconds},
+          {"cpu_spread", r.cpu_spread},
+          {"wall_seconds", r.wall_seconds},
+          {"memory_mib", r.memory_mib},
+          {"input_mib", r.input_mib},
+          {"instructions", r.instructions},
+          {"threads", r.threads},
+          {"failure", r.failure}};
 }
 
 Row row_from(const Json& j) {
@@ -44,6 +53,7 @@ Row row_from(const Json& j) {
   r.cpu_spread = number(j.at("cpu_spread"));
   r.wall_seconds = number(j.at("wall_seconds"));
   r.memory_mib = number(j.at("memory_mib"));
+  r.input_mib = j.value("input_mib", 0.0);  // older files have none
   r.instructions = number(j.at("instructions"));
   r.threads = j.at("threads");
   r.failure = j.at("failure");
@@ -113,6 +123,18 @@ Status unwritable(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+std::string to_json_line(const Row& row) {
+  return to_json(row).dump();
+}
+
+Result<Row> row_from_line(const std::string& line) {
+  try {
+    return row_from(Json::parse(line));
+  } catch (const Json::exception& error) {
+    return Status{ErrorCode::bad_input, std::string("not a row: ") + error.what()};
+  }
+}
 
 Status check_target(const std::filesystem::path& path) {
   if (path.empty()) return {};

@@ -87,6 +87,13 @@ Row Staged::row(const std::string& stage, const std::string& setting, bool prese
   return row;
 }
 
+void StageRun::measured(Row& row, const std::function<Status()>& work) const {
+  in_own_process(row, done, [&](const TakeRow& take) {
+    measure(repeats, row, work);
+    take(row);
+  });
+}
+
 void report_failure(const StageRun& run, const std::string& stage, const Status& status) {
   Row row = run.staged.row(stage, "standard", true);
   row.failure = status.message();

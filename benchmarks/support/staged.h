@@ -7,6 +7,7 @@
 #include <string>
 
 #include "benchmarks/support/measure.h"
+#include "benchmarks/support/own_process.h"
 #include "benchmarks/support/work.h"
 #include "libatlas/charts/charts.h"
 #include "libatlas/pipeline/page_layout.h"
@@ -56,7 +57,11 @@ struct StageRun {
   Staged& staged;
   int repeats = 1;
   bool sweep = true;  // all settings; else the standard one only
-  std::function<void(Row)> done;
+  TakeRow done;
+
+  // Measures `work`, which fills in the row's values, in a process of its own, and hands the row
+  // on; whatever else it leaves is lost.
+  void measured(Row& row, const std::function<Status()>& work) const;
 };
 
 // One a file of stages/. A failure to prepare becomes a row that says so.
