@@ -22,7 +22,7 @@ inline constexpr const char* kWorkKinds =
 //   assembly  boxes, tubes and plates in metres, a part every 48 triangles
 //   fasteners a dozen standard parts, repeated at any turn
 //   genus     plate with fifty holes       soup      unconnected triangles, like foliage
-//   needles   strips of aspect 1000        cabin     examples/cabin
+//   needles   strips of aspect 1000        cabin     what atlas-make-cabin writes
 // Errors: bad_option (unknown kind or number; no cabin in this build); those of read_scene.
 Result<LoadedScene> make_work(const std::string& name, const Context& context);
 

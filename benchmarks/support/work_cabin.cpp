@@ -1,8 +1,6 @@
 #include "benchmarks/support/work.h"
 
-#include <algorithm>
-
-#include "examples/cabin/refine.h"
+#include "examples/cabin/lit_cabin.h"
 
 namespace atlas::bench {
 namespace {
@@ -37,21 +35,11 @@ LoadedScene scene_of(cabin::Mesh&& mesh) {
 
 }  // namespace
 
-// As atlas-make-cabin does it, with fewer rays: what is measured is the export, not the light.
 Result<LoadedScene> make_cabin(std::uint64_t triangles, const Context& context) {
-  constexpr std::size_t kCoarse = 60000;
-  cabin::Mesh mesh =
-      cabin::build_cabin(std::min<std::size_t>(kCoarse, triangles * 35 / 100), triangles * 8 / 10);
-  const cabin::Shell shell = cabin::shell_of(mesh);
-  const cabin::Tracer tracer(shell.positions, shell.triangles);
+  cabin::Mesh mesh = cabin::coarse_cabin(triangles);
   cabin::LightingOptions options;
-  options.direct_samples = 32;
-  options.indirect_samples = 48;
-  const cabin::Lighting lighting(tracer, options);
-  lighting.light_directly(mesh, 0, context);
-  lighting.light_indirectly(mesh, context);
-  cabin::refine(mesh, {std::size_t(triangles), 12}, lighting, context);
-  cabin::show_emitters(mesh);
+  options.direct_samples = cabin::default_samples(triangles);
+  cabin::light_cabin(mesh, triangles, options, context);
   return scene_of(std::move(mesh));
 }
 

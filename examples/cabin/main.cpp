@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -12,8 +11,8 @@
 #include "apps/common/options.h"
 #include "apps/common/program.h"
 #include "apps/common/terminal.h"
+#include "examples/cabin/lit_cabin.h"
 #include "examples/cabin/preview.h"
-#include "examples/cabin/refine.h"
 #include "examples/cabin/write.h"
 #include "libatlas/core/clock.h"
 
@@ -28,11 +27,6 @@ struct Arguments {
   int samples = 0, threads = 0, preview_width = 1280;
   bool quiet = false;
 };
-
-// Larger meshes get fewer shadow rays a vertex, by default: their triangles average them anyway.
-int default_samples(std::size_t triangles) {
-  return triangles <= 200000 ? 192 : triangles <= 1200000 ? 96 : 64;
-}
 
 void describe(CLI::App& app, Arguments& a) {
   app.add_option("-n,--triangles", a.triangles, "how many triangles, met within 3 %")
@@ -96,28 +90,12 @@ atlas::Status run(const Arguments& a, atlas::app::Terminal& terminal) {
   const auto say = [&](const std::string& line) {
     terminal.line(fmt::format("{:7.1f} s  {}", atlas::cpu_seconds() - start, line));
   };
-  // Light between surfaces is gathered on at most this many triangles, whatever the final size: it
-  // varies slowly, and its cost would otherwise be most of the whole.
-  constexpr std::size_t kCoarse = 90000;
-  cabin::Mesh mesh =
-      cabin::build_cabin(std::min(kCoarse, a.triangles * 35 / 100), a.triangles * 8 / 10);
+  cabin::Mesh mesh = cabin::coarse_cabin(a.triangles);
   if (atlas::Status s = check_textures_stay(a, mesh); !s.ok()) return s;
   say(fmt::format("coarse mesh: {} triangles, {} vertices, {} objects", mesh.triangles.size(),
                   mesh.vertices.size(), mesh.objects.size()));
-  const cabin::Shell shell = cabin::shell_of(mesh);
-  const cabin::Tracer tracer(shell.positions, shell.triangles);
-  const cabin::Lighting lighting(tracer, a.lighting);
-  lighting.light_directly(mesh, 0, context);
+  cabin::light_cabin(mesh, a.triangles, a.lighting, context, say);
   if (context.cancelled()) return atlas::Status::cancelled();
-  say("direct light");
-  lighting.light_indirectly(mesh, context);
-  if (context.cancelled()) return atlas::Status::cancelled();
-  say("indirect light");
-  cabin::refine(mesh, {a.triangles, 12}, lighting, context);
-  if (context.cancelled()) return atlas::Status::cancelled();
-  cabin::show_emitters(mesh);
-  say(fmt::format("refined: {} triangles, {} vertices", mesh.triangles.size(),
-                  mesh.vertices.size()));
   if (std::abs(double(mesh.triangles.size()) / double(a.triangles) - 1) > 0.03)
     return {atlas::ErrorCode::no_solution,
             fmt::format("{} triangles came out instead of {} (ask for more)", mesh.triangles.size(),
@@ -143,7 +121,7 @@ int main_of(int argc, char** argv) {
   describe(app, arguments);
   if (const int code = atlas::app::parse(app, argc, argv); code >= 0) return code;
   arguments.lighting.direct_samples =
-      arguments.samples > 0 ? arguments.samples : default_samples(arguments.triangles);
+      arguments.samples > 0 ? arguments.samples : cabin::default_samples(arguments.triangles);
   atlas::app::Terminal terminal("atlas-make-cabin", arguments.quiet);
   const atlas::Status status = run(arguments, terminal);
   if (!status.ok()) terminal.error(status.message());
