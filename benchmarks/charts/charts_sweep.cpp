@@ -22,7 +22,7 @@ std::vector<ChartSetting> settings() {
 
 using Value = double (*)(const ChartsPoint&);
 double loss(const ChartsPoint& p) {
-  return std::max(p.stretch_l2 - 1, 1e-6);
+  return p.stretch_l2 - 1;
 }
 double seams(const ChartsPoint& p) {
   return p.seam;
@@ -77,6 +77,7 @@ Panel panel_of(const std::vector<const ChartsPoint*>& points, Value value) {
   panel.series.push_back({"Pareto front", plotted(front, value), true, false, 3});
   panel.series.push_back({"--preset", plotted(presets, value)});
   panel.series.push_back({"--max-stretch", plotted(joined(bounds, value), value), false, true, 2});
+  raise(panel, kUnseen);
   return panel;
 }
 

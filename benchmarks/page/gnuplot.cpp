@@ -5,15 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <optional>
 
 namespace atlas::bench {
 namespace {
 
-// Sizes in the SVG's pixels. Of a panel, what its axes and title leave.
-constexpr double kPanelWidth = 430, kWideWidth = 860, kPanelHeight = 330, kTallHeight = 480;
-constexpr double kBesideAxes = 95, kAboveAxes = 85;
-constexpr double kLetter = 5.4, kLine = 12, kPoint = 4;  // of labels
+// Sizes in the SVG's pixels. The axes' box is set, not left to gnuplot: where labels lie free and
+// inside is decided here.
+constexpr double kPanelWidth = 430, kWideWidth = 860, kPanelHeight = 300, kTallHeight = 450;
+constexpr double kLeft = 104, kRight = 14, kAbove = 34, kBelow = 54;  // of a panel, around the axes
+constexpr double kTitle = 36, kKey = 56;
+constexpr double kLetter = 5.4, kLine = 11, kPoint = 4;  // of labels
 
 // Colours that stay apart on white, in print and for most colour-blind readers (after Wong 2011).
 constexpr const char* kLineTypes =
@@ -40,7 +41,8 @@ double round_step(double step) {
 // A coordinate's range, with room for labels, and its place in pixels.
 class Axis {
  public:
-  Axis(const Panel& panel, double PlotPoint::*coordinate, bool log, double pixels)
+  // `after`: pixels beyond the last point, for its label.
+  Axis(const Panel& panel, double PlotPoint::*coordinate, bool log, double pixels, double after)
       : coordinate_(coordinate), log_(log), pixels_(pixels) {
     double low = 1e300, high = -1e300;
     for (const Series& s : panel.series)
@@ -48,10 +50,16 @@ class Axis {
         low = std::min(low, value(p.*coordinate));
         high = std::max(high, value(p.*coordinate));
       }
-    double room = 0.12 * (high - low);
-    if (!(room > 0)) room = log ? 0.3 : std::max(0.5 * std::abs(high), 1e-12);  // a single value
-    low_ = low - room;
-    high_ = high + room;
+    constexpr double kRoom = 0.12;
+    const double span = high - low;
+    if (span > 0) {
+      low_ = low - kRoom * span;
+      high_ = high + span * std::max(kRoom, (1 + kRoom) * after / (pixels - after));
+    } else {
+      const double room = log ? 0.3 : std::max(0.5 * std::abs(high), 1e-12);
+      low_ = low - room;
+      high_ = high + room;
+    }
     if (!log && low >= 0) low_ = std::max(low_, 0.0);
   }
 
@@ -60,26 +68,30 @@ class Axis {
   }
   double length() const { return pixels_; }
 
-  // Gnuplot's range, and ticks at 1, 2 and 5 where whole powers of ten would be too few.
-  std::string commands(char name) const {
+  // Gnuplot's range and ticks. That of `floor`, if it is not 0, says that less is drawn there, too.
+  std::string commands(char name, double floor) const {
     if (!log_) {
       return fmt::format(
           "unset logscale {0}\nset {0}range [{1:.9g}:{2:.9g}]\nset {0}tics {3:.9g}\n", name, low_,
           high_, round_step((high_ - low_) / 5));
     }
-    std::string text = fmt::format("set logscale {0}\nset {0}range [{1:.9g}:{2:.9g}]\n", name,
-                                   std::pow(10, low_), std::pow(10, high_));
-    if (high_ - low_ > 2.5) return text + fmt::format("set {}tics autofreq\n", name);
     std::string ticks;
     for (int power = int(std::floor(low_)); power <= int(std::ceil(high_)); ++power)
       for (const double step : {1.0, 2.0, 5.0}) {
+        if (step > 1 && high_ - low_ > kDecades) continue;
         const double tick = step * std::pow(10, power);
-        ticks += fmt::format("{}{:.3g}", ticks.empty() ? "" : ", ", tick);
+        if (tick < 0.99 * floor) continue;
+        const bool lowest = floor > 0 && tick < 1.01 * floor;
+        ticks += fmt::format("{}'{}{:.3g}' {:.3g}", ticks.empty() ? "" : ", ", lowest ? "≤ " : "",
+                             tick, tick);
       }
-    return text + fmt::format("set {}tics ({})\n", name, ticks);
+    return fmt::format("set logscale {0}\nset {0}range [{1:.9g}:{2:.9g}]\nset {0}tics ({3})\n",
+                       name, std::pow(10, low_), std::pow(10, high_), ticks);
   }
 
  private:
+  static constexpr double kDecades = 2.5;  // fewer need ticks at 2 and 5, too
+
   double value(double v) const { return log_ ? std::log10(v) : v; }
 
   double PlotPoint::*coordinate_;
@@ -93,49 +105,94 @@ struct Box {
     return std::max(0.0, std::min(x1, o.x1) - std::max(x0, o.x0)) *
            std::max(0.0, std::min(y1, o.y1) - std::max(y0, o.y0));
   }
+  double distance(double x, double y) const {
+    return std::hypot(std::max({x0 - x, x - x1, 0.0}), std::max({y0 - y, y - y1, 0.0}));
+  }
 };
 
-// Places labels one by one, each in the first of eight places that is free, or the freest.
+// Places labels one by one, each in the place beside its point that is free and nearest to it, or
+// the best of those that are not.
 class Labels {
  public:
   Labels(const Panel& panel, const Axis& x, const Axis& y) : x_(x), y_(y) {
     for (const Series& s : panel.series)
       for (std::size_t i = 0; i < s.points.size(); ++i) {
-        const double px = x.pixel(s.points[i]), py = y.pixel(s.points[i]);
-        if (s.points_too || !s.lines) occupy(px, py, kPoint);
+        const Spot at = spot(s.points[i]);
+        if (s.points_too || !s.lines) {
+          occupy(at, kPoint);
+          points_.push_back(at);
+        }
         if (!s.lines || i == 0) continue;
-        const double dx = x.pixel(s.points[i - 1]) - px, dy = y.pixel(s.points[i - 1]) - py;
-        const int steps = int(std::hypot(dx, dy) / 4);
-        for (int k = 1; k < steps; ++k) occupy(px + dx * k / steps, py + dy * k / steps, 1);
+        const Spot last = spot(s.points[i - 1]);
+        const int steps = int(std::hypot(last.x - at.x, last.y - at.y) / 4);
+        for (int k = 1; k < steps; ++k)
+          occupy({at.x + (last.x - at.x) * k / steps, at.y + (last.y - at.y) * k / steps}, 1);
       }
   }
 
-  std::string place(const PlotPoint& p) {
-    const double px = x_.pixel(p), py = y_.pixel(p), width = kLetter * double(p.label.size());
-    std::optional<Box> best;
-    double least = 1e300;
-    bool best_left = false;
-    for (const double up : {0.0, 0.9, -0.9, 1.7, -1.7})
-      for (const bool left : {false, true}) {
-        const double x0 = left ? px - 2 * kPoint - width : px + 2 * kPoint;
-        const double middle = py + up * kLine;
-        const Box box{x0, middle - kLine / 2, x0 + width, middle + kLine / 2};
-        const double cost = cover(box) + 2 * std::abs(up);
-        if (cost < least) {
-          least = cost;
-          best = box;
-          best_left = left;
-        }
-      }
-    taken_.push_back(*best);
-    return fmt::format("set label '{}' at graph {:.4f},{:.4f} {} font ',9' front\n", plain(p.label),
-                       (best_left ? best->x1 : best->x0) / x_.length(),
-                       (best->y0 + best->y1) / 2 / y_.length(), best_left ? "right" : "left");
+  // Those of one kind: of points that are important, or of the others.
+  std::string place_all(const Panel& panel, bool important) {
+    std::vector<std::pair<Spot, std::string>> labels;
+    for (const Series& s : panel.series)
+      for (const PlotPoint& p : s.points)
+        if (!p.label.empty() && p.important == important) add(spot(p), p.label, labels);
+    std::string text;
+    for (const auto& [at, label] : labels) text += place(at, label);
+    return text;
   }
 
  private:
-  void occupy(double x, double y, double radius) {
-    taken_.push_back({x - radius, y - radius, x + radius, y + radius});
+  struct Spot {
+    double x, y;
+    double distance(const Spot& o) const { return std::hypot(x - o.x, y - o.y); }
+  };
+  static constexpr double kAstray = 60;  // square pixels that a label to be misread is worth
+
+  // Points close by that have the same label share it, as different ones of one place do.
+  static void add(Spot at, const std::string& label,
+                  std::vector<std::pair<Spot, std::string>>& labels) {
+    for (auto& [other, text] : labels) {
+      if (text == label && other.distance(at) < kLine) return;
+      if (other.distance(at) >= kPoint) continue;
+      const std::size_t word = label.rfind(' ') + 1;  // "slip 0.1, 0.5"
+      text += ", " + (text.starts_with(label.substr(0, word)) ? label.substr(word) : label);
+      return;
+    }
+    labels.emplace_back(at, label);
+  }
+
+  std::string place(Spot at, const std::string& label) {
+    struct Side {
+      double start, anchor;  // shares of the label's width
+      const char* justify;
+      double gap;
+    };
+    constexpr Side kSides[] = {
+        {0, 0, "left", 2 * kPoint}, {-1, 1, "right", -2 * kPoint}, {-0.5, 0.5, "center", 0}};
+    const double width = kLetter * double(label.size());
+    std::string best;
+    Box best_box{};
+    double least = 1e300;
+    for (const double up : {0.0, 0.4, -0.4, 1.0, -1.0, 1.8, -1.8})
+      for (const Side& side : kSides) {
+        const double x0 = at.x + side.gap + side.start * width, y = at.y + up * kLine;
+        const Box box{x0, y - kLine / 2, x0 + width, y + kLine / 2};
+        const double cost = cover(box) + kAstray * nearer_to_others(box, at) + 2 * std::abs(up);
+        if (cost >= least) continue;
+        least = cost;
+        best_box = box;
+        best =
+            fmt::format("set label '{}' at graph {:.4f},{:.4f} {} font ',9' front\n", plain(label),
+                        (x0 + side.anchor * width) / x_.length(), y / y_.length(), side.justify);
+      }
+    taken_.push_back(best_box);
+    return best;
+  }
+
+  Spot spot(const PlotPoint& p) const { return {x_.pixel(p), y_.pixel(p)}; }
+
+  void occupy(Spot at, double radius) {
+    taken_.push_back({at.x - radius, at.y - radius, at.x + radius, at.y + radius});
   }
 
   // Square pixels of other labels and points, and of what is outside.
@@ -146,8 +203,17 @@ class Labels {
     return sum + 4 * ((box.x1 - box.x0) * (box.y1 - box.y0) - box.shared(inside));
   }
 
+  // How many points it is nearer to than to its own: whose it would be taken for.
+  double nearer_to_others(const Box& box, Spot own) const {
+    const double distance = box.distance(own.x, own.y);
+    return double(std::count_if(points_.begin(), points_.end(), [&](const Spot& p) {
+      return p.distance(own) >= kPoint && box.distance(p.x, p.y) <= distance;
+    }));
+  }
+
   const Axis &x_, &y_;
   std::vector<Box> taken_;
+  std::vector<Spot> points_;
 };
 
 std::string style_of(const Series& s, bool important) {
@@ -156,21 +222,30 @@ std::string style_of(const Series& s, bool important) {
                      important ? 0.7 : 0.6);
 }
 
-struct Size {
-  double width, height;
-};
+// The axes' box, in pixels from the picture's lower left corner.
+std::string margins(const Box& axes, double width, double height) {
+  return fmt::format(
+      "set lmargin at screen {:.6f}\nset rmargin at screen {:.6f}\n"
+      "set bmargin at screen {:.6f}\nset tmargin at screen {:.6f}\n",
+      axes.x0 / width, axes.x1 / width, axes.y0 / height, axes.y1 / height);
+}
 
-std::string panel_script(const Panel& panel, int index, const Size& size) {
-  const Axis x(panel, &PlotPoint::x, panel.log_x, size.width - kBesideAxes);
-  const Axis y(panel, &PlotPoint::y, panel.log_y, size.height - kAboveAxes);
+// With its distance from the point, pixels.
+double longest_label(const Panel& panel) {
+  std::size_t letters = 0;
+  for (const Series& s : panel.series)
+    for (const PlotPoint& p : s.points) letters = std::max(letters, p.label.size());
+  return letters > 0 ? 3 * kPoint + kLetter * double(letters) : 0;
+}
+
+std::string panel_script(const Panel& panel, int index, const Box& axes) {
+  const Axis x(panel, &PlotPoint::x, panel.log_x, axes.x1 - axes.x0, longest_label(panel));
+  const Axis y(panel, &PlotPoint::y, panel.log_y, axes.y1 - axes.y0, 0);
   std::string data, commands,
       text = fmt::format("set title '{}'\nunset label\n", plain(panel.title));
-  text += x.commands('x') + y.commands('y');
+  text += x.commands('x', 0) + y.commands('y', panel.floor);
   Labels labels(panel, x, y);
-  for (const bool important : {true, false})
-    for (const Series& s : panel.series)
-      for (const PlotPoint& p : s.points)
-        if (!p.label.empty() && p.important == important) text += labels.place(p);
+  for (const bool important : {true, false}) text += labels.place_all(panel, important);
   int block = 0;
   const auto add = [&](const Series& s, const std::vector<PlotPoint>& points, bool important,
                        bool named) {
@@ -200,24 +275,35 @@ std::string panel_script(const Panel& panel, int index, const Size& size) {
   return data + text + commands + "\n";
 }
 
+// One for all panels, whose series have the same names.
+std::string key_command(const Plot& plot, double height) {
+  if (!plot.key) return "unset key\n";
+  return fmt::format("set key at screen 0.5,{:.6f} center center vertical maxrows 2\n",
+                     kKey / 2 / height);
+}
+
 }  // namespace
 
 std::string gnuplot_script(const Plot& plot, const std::filesystem::path& target) {
   const auto panels = int(plot.panels.size());
   const int columns = std::min(panels, panels == 4 ? 2 : 3);
   const int rows = (panels + columns - 1) / std::max(columns, 1);
-  const Size size = panels == 1 ? Size{kWideWidth, kTallHeight} : Size{kPanelWidth, kPanelHeight};
-  const double title = 30;
+  const double across = panels == 1 ? kWideWidth : kPanelWidth;
+  const double down = panels == 1 ? kTallHeight : kPanelHeight;
+  const double key = plot.key ? kKey : 0;
+  const double width = columns * across, height = rows * down + kTitle + key;
   std::string text = fmt::format(
       "set terminal svg size {},{} noenhanced font 'sans,12' background rgb 'white'\n"
-      "set output '{}'\nset grid\nset format '%g'\n{}"
-      "set xlabel '{}'\nset ylabel '{}'\n{}\n"
-      "set multiplot layout {},{} title '{}'\n",
-      columns * size.width, rows * size.height + title, target.string(), kLineTypes,
-      plain(plot.x_axis), plain(plot.y_axis),
-      plot.key ? "set key below center spacing 1.2" : "unset key", rows, columns,
-      plain(plot.title));
-  for (int i = 0; i < panels; ++i) text += panel_script(plot.panels[std::size_t(i)], i, size);
+      "set encoding utf8\nset output '{}'\nset grid\nset tics nomirror\nset format '%g'\n{}"
+      "set xlabel '{}'\nset ylabel '{}'\n{}set multiplot title '{}'\n",
+      width, height, target.string(), kLineTypes, plain(plot.x_axis), plain(plot.y_axis),
+      key_command(plot, height), plain(plot.title));
+  for (int i = 0; i < panels; ++i) {
+    const double left = (i % columns) * across, top = height - kTitle - (i / columns) * down;
+    const Box axes{left + kLeft, top - down + kBelow, left + across - kRight, top - kAbove};
+    text += margins(axes, width, height) + panel_script(plot.panels[std::size_t(i)], i, axes);
+    text += "unset key\n";
+  }
   return text + "unset multiplot\n";
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <map>
 #include <set>
 
@@ -18,7 +19,32 @@ std::string kind_of(const Row& row) {
 }
 
 bool usable(const Row& row) {
-  return row.failure.empty() && !row.values.empty() && row.cpu_seconds > 0 && row.threads == 0;
+  constexpr double kClock = 1e-5;  // CPU seconds: less is a few ticks of the clock
+  return row.failure.empty() && !row.values.empty() && row.cpu_seconds >= kClock &&
+         row.threads == 0;
+}
+
+constexpr double kUnseenOfPrograms = 1e-5;
+
+// What a caption adds where there are any.
+std::string unseen(const Plot& plot) {
+  double floor = 0;
+  for (const Panel& panel : plot.panels) floor = std::max(floor, panel.floor);
+  return floor > 0 ? fmt::format("; errors below {} are drawn at it", floor) : "";
+}
+
+// "scan:100000" as "scan 100 k".
+std::string short_name(const std::string& mesh) {
+  const auto colon = mesh.find(':');
+  std::uint64_t size = 0;
+  const char* end = mesh.data() + mesh.size();
+  if (colon == std::string::npos || std::from_chars(&mesh[colon + 1], end, size).ptr != end)
+    return mesh;
+  const double unit = size >= 1000000 ? 1e6 : size >= 1000 ? 1e3 : 1;
+  return fmt::format("{} {:.3g}{}", mesh.substr(0, colon), double(size) / unit,
+                     unit > 1e3 ? " M"
+                     : unit > 1 ? " k"
+                                : "");
 }
 
 // Largest over smallest value of a coordinate.
@@ -50,11 +76,10 @@ std::string group_of(const std::string& setting) {
 }
 
 PlotPoint point_of(const Row& row) {
-  constexpr double kPerfect = 1e-6;  // where errors of 0 are drawn
-  return {row.cpu_seconds, std::max(row.values.front().second, kPerfect), row.setting, row.preset};
+  return {row.cpu_seconds, row.values.front().second, row.setting, row.preset};
 }
 
-// Settings of one group are joined, in their order, and tell what is common to them once.
+// Settings of one group are joined, in their order; the key tells what is common to them.
 std::vector<Series> grouped(const std::vector<const Row*>& rows) {
   std::map<std::string, int> sizes, colours;
   for (const Row* row : rows) ++sizes[group_of(row->setting)];
@@ -72,12 +97,12 @@ std::vector<Series> grouped(const std::vector<const Row*>& rows) {
     const auto [place, fresh] = at.try_emplace(group, series.size());
     if (fresh) {
       series.emplace_back();
+      series.back().name = group;
       series.back().lines = true;
       const int colour = int(at.size());
       series.back().colour = colour < kFrontColour ? colour : colour + 2;
-    } else {
-      point.label = row->setting.substr(group.size() + 2);
     }
+    point.label = row->setting.substr(group.size() + 2);
     point.important = true;
     series[place->second].points.push_back(point);
   }
@@ -94,6 +119,7 @@ Panel settings_panel(const std::string& mesh, const std::vector<const Row*>& row
   front.points = pareto_front(
       all, [](const PlotPoint& p) { return p.x; }, [](const PlotPoint& p) { return p.y; });
   for (PlotPoint& p : front.points) p.label.clear();
+  front.name = "Pareto front";
   front.lines = true;
   front.points_too = false;
   front.colour = kFrontColour;
@@ -105,9 +131,7 @@ Panel settings_panel(const std::string& mesh, const std::vector<const Row*>& row
 
 using Meshes = std::vector<std::pair<std::string, std::vector<const Row*>>>;  // in their order
 
-// All meshes in one panel, a colour a program; the title counts what has no result. Smaller errors
-// than this are drawn at it.
-constexpr double kUnseen = 1e-5;
+// All meshes in one panel, a colour a program; the title counts what has no result.
 Plot programs_plot(const Meshes& meshes) {
   Plot plot;
   plot.title = "Programs: error against time";
@@ -131,8 +155,7 @@ Plot programs_plot(const Meshes& meshes) {
       const auto [place, fresh] = at.try_emplace(row->setting, panel.series.size());
       if (fresh) panel.series.push_back({row->setting, {}, false, true, int(at.size())});
       PlotPoint point = point_of(*row);
-      point.y = std::max(point.y, kUnseen);
-      point.label = mesh;
+      point.label = short_name(mesh);
       point.important = true;
       panel.series[place->second].points.push_back(point);
       plot.y_axis = axis_name(row->values.front().first);
@@ -140,22 +163,26 @@ Plot programs_plot(const Meshes& meshes) {
   for (const auto& [program, count] : without)
     panel.title += fmt::format("{}{} on {}", panel.title.empty() ? "no result: " : ", ", program,
                                count == 1 ? "one mesh" : fmt::format("{} meshes", count));
+  raise(panel, kUnseenOfPrograms);
   if (!panel.series.empty()) plot.panels.push_back(std::move(panel));
+  plot.title += unseen(plot);
   return plot;
 }
 
 Plot settings_plot(const std::string& stage, const Meshes& meshes) {
   Plot plot;
-  plot.title =
-      stage + ": error against time (filled: presets or joined settings; dashed: Pareto front)";
+  plot.key = true;
   for (const auto& [mesh, rows] : meshes) {
     if (rows.size() < 3) continue;
     Panel panel = settings_panel(mesh, rows);
+    raise(panel, kUnseen);
     panel.log_x = spread(panel.series, &PlotPoint::x) > 3;
     panel.log_y = spread(panel.series, &PlotPoint::y) > 3;
     plot.y_axis = axis_name(rows.back()->values.front().first);
     plot.panels.push_back(std::move(panel));
   }
+  plot.title =
+      stage + ": error against time (filled: presets or joined settings" + unseen(plot) + ")";
   return plot;
 }
 
@@ -266,6 +293,15 @@ void leak_plot(const Results& results, std::vector<Plot>& plots) {
 }
 
 }  // namespace
+
+void raise(Panel& panel, double floor) {
+  for (Series& s : panel.series)
+    for (PlotPoint& p : s.points) {
+      if (p.y >= floor) continue;
+      p.y = floor;
+      panel.floor = floor;
+    }
+}
 
 std::vector<Plot> make_plots(const Results& results) {
   std::vector<Plot> plots;

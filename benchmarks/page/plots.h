@@ -28,7 +28,12 @@ struct Panel {
   std::string title;
   std::vector<Series> series;
   bool log_x = true, log_y = true;
+  double floor = 0;  // smaller values of y are drawn at it; 0: there are none
 };
+
+// Errors below `floor`, which a logarithmic axis has no place for, are moved there.
+constexpr double kUnseen = 1e-6;
+void raise(Panel& panel, double floor);
 
 struct Plot {
   std::string file;  // name without folder, .svg

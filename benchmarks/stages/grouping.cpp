@@ -22,7 +22,7 @@ void bench_grouping(const StageRun& run) {
     for (const std::uint32_t n : {2u, 50u})
       settings.push_back({fmt::format("N = {}", n), n, defaults.refine_work});
     for (const std::uint64_t work : {std::uint64_t(0), std::uint64_t(1) << 26})
-      settings.push_back({fmt::format("refine {}", work), staged.settings.pages, work});
+      settings.push_back({work ? "refine 2^26" : "refine 0", staged.settings.pages, work});
   }
   for (const Setting& setting : settings) {
     Row row = staged.row("grouping", setting.name, setting.name == "standard");

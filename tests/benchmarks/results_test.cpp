@@ -266,7 +266,7 @@ TEST(Plots, AProgramHasItsColourAndThoseThatFailAreCounted) {
   ASSERT_EQ(panel.series.size(), 3u);
   EXPECT_EQ(panel.series[0].name, "ours");
   EXPECT_EQ(panel.series[0].points.size(), 2u);
-  EXPECT_EQ(panel.series[0].points[1].label, "torus:10");
+  EXPECT_EQ(panel.series[0].points[1].label, "torus 10");
   EXPECT_EQ(panel.series[1].points.size(), 1u);
   EXPECT_NE(panel.series[0].colour, panel.series[1].colour);
   EXPECT_NE(panel.series[1].colour, panel.series[2].colour);
