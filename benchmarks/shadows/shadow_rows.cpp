@@ -33,6 +33,16 @@ Row row_of(const BenchError& error, const std::string& name, std::size_t triangl
   return row;
 }
 
+Camera camera_of(const ViewScene& scene, const std::optional<Look>& look) {
+  Camera camera = start_camera(scene, kUp);
+  if (!look) return camera;
+  const Vec3d& o = scene.origin;
+  camera.eye = {look->from.x - o.x, look->from.y - o.y, look->from.z - o.z};
+  camera.target = {look->to.x - o.x, look->to.y - o.y, look->to.z - o.z};
+  fit_planes(camera, scene.bounds);
+  return camera;
+}
+
 }  // namespace
 
 Result<std::vector<Row>> measure_shadows(const Scene& scene, const std::string& name,
@@ -48,14 +58,12 @@ Result<std::vector<Row>> measure_shadows(const Scene& scene, const std::string& 
   bench.render.height = options.height;
   bench.render.map_resolution = options.map_resolution;
   bench.render.up = kUp;
-  bench.camera = start_camera(*view, kUp);
+  bench.camera = camera_of(*view, options.look);
   bench.shadings = {Shading::lambert};
   bench.error_intervals = options.intervals;
   bench.error_frames = options.frames;
   LightPathOptions sun;
-  sun.kind = PathKind::arc;  // a low sun across the windows of one side
-  sun.end = PathEnd::back;
-  sun.directions = {{0.5, 1, 0.4}, {-0.5, 1, 0.3}};
+  sun.sun = {355, 50.45, 11, kUp, {0, 1, 0}};  // low through the windows, onto the seats
   const Result<LightPath> path = LightPath::make(sun);
   if (!path.ok()) return path.status();
   Result<Renderer> renderer = Renderer::make(*view, bench.render);

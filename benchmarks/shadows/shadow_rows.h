@@ -1,7 +1,7 @@
-// Error against time of the shadow methods, drawn without a window.
+// Error against time of the shadow methods, drawn without a window, in the sun of docs/player.md.
 #pragma once
 
-#include <functional>
+#include <optional>
 #include <vector>
 
 #include "benchmarks/support/results.h"
@@ -9,10 +9,15 @@
 
 namespace atlas::bench {
 
+struct Look {
+  Vec3d from, to;
+};
+
 struct ShadowRunOptions {
   int width = 320, height = 200, map_resolution = 1024;
   std::vector<int> intervals{2, 4, 8, 16, 32};  // k: frames between key maps
   int frames = 12;                              // light positions, the sun moving 0.5 degrees each
+  std::optional<Look> look;                     // none: from where worlds begin
   bool software = true;  // not a GPU even if there is one: results can be repeated anywhere
 };
 
