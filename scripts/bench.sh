@@ -2,7 +2,7 @@
 # Builds the benchmark programs, runs them and draws the pages out/bench/index.html and
 # stability.html. Needs no hand; goes on where a part fails, and says so in the end.
 # Usage: scripts/bench.sh [full|small]     small: a few minutes, to see that all works
-#   full  (default) to 3 million triangles; less than half an hour on two cores
+#   full  (default) to 3 million triangles; about a quarter of an hour on two cores
 # LIBATLAS_BENCH_DOCS=1   copies tables, plots and JSON into docs/generated/, nowhere else
 # LIBATLAS_MODELS         a folder of OBJ files: charts of each, and the stability page
 # LIBATLAS_RIVALS         rivals, one a line, each "name=command {in} {out}"; without it those are

@@ -340,7 +340,7 @@ void rivals_table(const Results& all, Document& page) {
 
 void stage_table(const Results& all, const std::string& stage, Document& page) {
   const std::vector<std::string> names = value_names(all, stage);
-  Cells header{"mesh", "setting", "in", "out", "CPU s", "MiB"};
+  Cells header{"mesh", "setting", "in", "out", "CPU s", "MiB", "of it input"};
   header.insert(header.end(), names.begin(), names.end());
   header.push_back("JSON");
   std::vector<Cells> rows;
@@ -350,7 +350,8 @@ void stage_table(const Results& all, const std::string& stage, Document& page) {
     if (row.failure.empty()) {
       cells.insert(cells.end(),
                    {fmt::format("{}", row.size_in), fmt::format("{}", row.size_out),
-                    fmt::format("{:.3g}", row.cpu_seconds), fmt::format("{:.0f}", row.memory_mib)});
+                    fmt::format("{:.3g}", row.cpu_seconds), fmt::format("{:.0f}", row.memory_mib),
+                    row.input_mib > 0 ? fmt::format("{:.0f}", row.input_mib) : "-"});
       for (const std::string& name : names) cells.push_back(figure(row.value(name)));
     } else {
       cells.push_back(row.failure);

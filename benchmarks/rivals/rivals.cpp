@@ -125,6 +125,8 @@ void bench_rival(const StageRun& run, const Rival& rival) {
   const int exit_code = WIFEXITED(code) ? WEXITSTATUS(code) : -1;
   if (exit_code == 124 || exit_code == 137)
     row.failure = fmt::format("timed out after {} s", rival.timeout);
+  else if (exit_code > 128)  // how a shell tells of a signal
+    row.failure = fmt::format("crashed by signal {}{}", exit_code - 128, last_line(complaints));
   else if (exit_code != 0)
     row.failure = fmt::format("ended with code {}{}", exit_code, last_line(complaints));
   else

@@ -272,6 +272,32 @@ TEST(Plots, AProgramHasItsColourAndThoseThatFailAreCounted) {
   EXPECT_NE(panel.series[1].colour, panel.series[2].colour);
 }
 
+TEST(Plots, SmallerErrorsAreDrawnAtTheLowestTickWhichSaysSo) {
+  Results results;
+  for (const double error : {0.0, 1e-4, 1e-2}) {
+    Row made = row(1000, 1 + error, error);
+    made.setting = "setting " + std::to_string(error);
+    results.rows.push_back(made);
+  }
+  std::vector<Plot> plots = make_plots(results);
+  ASSERT_EQ(plots.size(), 1u);
+  EXPECT_EQ(plots[0].panels.at(0).floor, kUnseen);
+  EXPECT_NE(plots[0].title.find("errors below 1e-06 are drawn at it"), std::string::npos);
+  EXPECT_NE(gnuplot_script(plots[0], "x.svg").find("'≤ 1e-06'"), std::string::npos);
+  results.rows[0].values[0].second = 1e-5;
+  plots = make_plots(results);
+  EXPECT_EQ(plots.at(0).panels.at(0).floor, 0);
+  EXPECT_EQ(gnuplot_script(plots[0], "x.svg").find("≤"), std::string::npos);
+}
+
+TEST(Plots, PointsOfOnePlaceShareALabel) {
+  Plot plot{"x.svg", "title", "x", "y", {Panel{}}};
+  plot.panels[0].series.push_back({"", {{1, 5, "slip 1"}, {1, 5, "slip 2"}, {9, 7, "slip 3"}}});
+  const std::string script = gnuplot_script(plot, "x.svg");
+  EXPECT_NE(script.find("set label 'slip 1, 2' at"), std::string::npos);
+  EXPECT_NE(script.find("set label 'slip 3' at"), std::string::npos);
+}
+
 // The page in Markdown after a round through a JSON file; empty if that fails.
 std::string written_page(const Results& results, const fs::path& folder) {
   if (!save(results, folder / "all.json").ok()) return {};

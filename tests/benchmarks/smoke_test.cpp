@@ -1,6 +1,10 @@
 // Every stage's benchmark once on small work: rows with figures come out, whatever they cost.
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 
@@ -8,6 +12,7 @@
 #include "benchmarks/rivals/rivals.h"
 #include "benchmarks/support/callgrind.h"
 #include "benchmarks/support/staged.h"
+#include "libatlas/core/parallel.h"
 
 namespace atlas::bench {
 namespace {
@@ -53,21 +58,70 @@ TEST(Stages, GiveFiguresOnSmallWork) {
   EXPECT_GE(rows.size(), 8u + 4u);
 }
 
+// What one stage freed does not hide what the next one takes, nor does what threads did before.
+TEST(OwnProcess, HoldsItsInputAndWhatItTakesAlone) {
+  std::atomic<std::size_t> chunks = 0;
+  parallel_for({}, 1000, 1, [&](std::size_t, std::size_t) { ++chunks; });
+  EXPECT_EQ(chunks, 1000u);
+  std::vector<Row> rows;
+  const TakeRow keep = [&](Row row) { rows.push_back(std::move(row)); };
+  for (const std::size_t mib : {200, 50, 100})
+    in_own_process({}, keep, [&](const TakeRow& take) {
+      Row row;
+      row.stage = std::to_string(mib);
+      measure(2, row, [&]() -> Status {
+        chunks = 0;
+        parallel_for({}, 1000, 1, [&](std::size_t, std::size_t) { ++chunks; });
+        const std::vector<char> block(mib << 20, 1);
+        row.size_in = std::size_t(std::count(block.begin(), block.end(), 1));
+        row.size_out = chunks;
+        return {};
+      });
+      take(row);
+    });
+  ASSERT_EQ(rows.size(), 3u);
+  for (const Row& row : rows) {
+    EXPECT_EQ(row.size_in, std::stoul(row.stage) << 20);
+    EXPECT_EQ(row.size_out, 1000u);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which keep what is freed
+    EXPECT_NEAR(row.memory_mib - row.input_mib, std::stod(row.stage), 20);
+#endif
+  }
+}
+
+TEST(OwnProcess, ThatDiesIsReported) {
+  std::vector<Row> rows;
+  Row otherwise;
+  otherwise.stage = "doomed";
+  in_own_process(
+      otherwise, [&](Row row) { rows.push_back(std::move(row)); },
+      [](const TakeRow& take) {
+        Row row;
+        row.stage = "first";
+        take(row);
+        ::_exit(3);
+      });
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].stage, "first");
+  EXPECT_EQ(rows[1].stage, "doomed");
+  EXPECT_NE(rows[1].failure.find("code 3"), std::string::npos) << rows[1].failure;
+}
+
 TEST(Rivals, AreJudgedTimedOutAndReported) {
   const Context context;
   Staged staged("sphere:500", lit(test::icosphere(2)), context);
   std::vector<Row> rows;
   const StageRun run{staged, 1, false, [&](Row row) { rows.push_back(std::move(row)); }};
   bench_ours(run, 256);
-  for (const char* text :
-       {"copies=cp {in} {out}", "slow=sleep 20; cp {in} {out}", "broken=false {in} {out}"}) {
+  for (const char* text : {"copies=cp {in} {out}", "slow=sleep 20; cp {in} {out}",
+                           "broken=false {in} {out}", "crashing=kill -SEGV $$; : {in} {out}"}) {
     Result<Rival> rival = parse_rival(text);
     ASSERT_TRUE(rival.ok());
     rival->timeout = 0.3;
     rival->page = 256;
     bench_rival(run, *rival);
   }
-  ASSERT_EQ(rows.size(), 4u);
+  ASSERT_EQ(rows.size(), 5u);
   EXPECT_TRUE(rows[0].failure.empty()) << rows[0].failure;
   EXPECT_EQ(rows[0].value("overlap"), 0);
   EXPECT_EQ(rows[0].value("without_uv"), 0);
@@ -75,6 +129,7 @@ TEST(Rivals, AreJudgedTimedOutAndReported) {
   EXPECT_EQ(rows[1].value("without_uv"), 320);
   EXPECT_NE(rows[2].failure.find("timed out"), std::string::npos) << rows[2].failure;
   EXPECT_NE(rows[3].failure.find("code 1"), std::string::npos) << rows[3].failure;
+  EXPECT_NE(rows[4].failure.find("signal 11"), std::string::npos) << rows[4].failure;
   EXPECT_FALSE(parse_rival("no command").ok());
   EXPECT_FALSE(parse_rival("x=unwrap {in}").ok());
 }
