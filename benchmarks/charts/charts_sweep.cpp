@@ -77,7 +77,7 @@ Panel panel_of(const std::vector<const ChartsPoint*>& points, Value value) {
   panel.series.push_back({"Pareto front", plotted(front, value), true, false, 3});
   panel.series.push_back({"--preset", plotted(presets, value)});
   panel.series.push_back({"--max-stretch", plotted(joined(bounds, value), value), false, true, 2});
-  raise(panel, kUnseen);
+  draw_at_floor(panel, kUnseen);
   return panel;
 }
 

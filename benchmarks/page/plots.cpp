@@ -163,7 +163,7 @@ Plot programs_plot(const Meshes& meshes) {
   for (const auto& [program, count] : without)
     panel.title += fmt::format("{}{} on {}", panel.title.empty() ? "no result: " : ", ", program,
                                count == 1 ? "one mesh" : fmt::format("{} meshes", count));
-  raise(panel, kUnseenOfPrograms);
+  draw_at_floor(panel, kUnseenOfPrograms);
   if (!panel.series.empty()) plot.panels.push_back(std::move(panel));
   plot.title += unseen(plot);
   return plot;
@@ -175,7 +175,7 @@ Plot settings_plot(const std::string& stage, const Meshes& meshes) {
   for (const auto& [mesh, rows] : meshes) {
     if (rows.size() < 3) continue;
     Panel panel = settings_panel(mesh, rows);
-    raise(panel, kUnseen);
+    draw_at_floor(panel, kUnseen);
     panel.log_x = spread(panel.series, &PlotPoint::x) > 3;
     panel.log_y = spread(panel.series, &PlotPoint::y) > 3;
     plot.y_axis = axis_name(rows.back()->values.front().first);
@@ -294,7 +294,7 @@ void leak_plot(const Results& results, std::vector<Plot>& plots) {
 
 }  // namespace
 
-void raise(Panel& panel, double floor) {
+void draw_at_floor(Panel& panel, double floor) {
   for (Series& s : panel.series)
     for (PlotPoint& p : s.points) {
       if (p.y >= floor) continue;

@@ -33,7 +33,7 @@ struct Panel {
 
 // Errors below `floor`, which a logarithmic axis has no place for, are moved there.
 constexpr double kUnseen = 1e-6;
-void raise(Panel& panel, double floor);
+void draw_at_floor(Panel& panel, double floor);
 
 struct Plot {
   std::string file;  // name without folder, .svg

@@ -9,7 +9,6 @@
 #endif
 
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <string>
