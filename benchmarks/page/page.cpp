@@ -54,8 +54,7 @@ void noise(const Results& all, Document& page) {
       "Times are CPU seconds (user and system, all threads), the least of the repeats. Memory is "
       "the largest resident set of a process that runs this stage with this setting only; of it, "
       "input is what it held before: the program, the mesh and what the stage is given. Every "
-      "figure is a value in "
-      "the line of the JSON file that its row names (results/FILE:LINE).";
+      "figure is a value in the line of the JSON file that its row names (results/FILE:LINE).";
   if (!spreads.empty()) {
     std::sort(spreads.begin(), spreads.end());
     text += fmt::format(
