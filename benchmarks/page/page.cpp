@@ -179,8 +179,7 @@ Status write_page(const PageInput& input, const std::filesystem::path& folder) {
       "Written by scripts/bench.sh; do not edit. What is measured and how to read it: "
       "docs/performance.md. One point of a plot is one setting: its error (the first figure after "
       "the memory; smaller is better) against its CPU time. The lowest tick of an axis says with "
-      "\"≤\" where smaller errors are "
-      "drawn. Settings with a star are presets.");
+      "\"≤\" where smaller errors are drawn. Settings with a star are presets.");
   performance(input, speed, pictures, fast);
   Document stable("Stability: results");
   stable.paragraph(

@@ -16,8 +16,9 @@ Mesh coarse_cabin(std::size_t triangles);
 
 // Lights it and refines it; `say` hears of each step that is done. Once the context is cancelled
 // the mesh is left half made.
-void light_cabin(Mesh& mesh, std::size_t triangles, const LightingOptions& options,
-                 const atlas::Context& context,
-                 const std::function<void(const std::string&)>& say = [](const std::string&) {});
+void light_cabin(
+    Mesh& mesh, std::size_t triangles, const LightingOptions& options,
+    const atlas::Context& context,
+    const std::function<void(const std::string&)>& say = [](const std::string&) {});
 
 }  // namespace cabin
