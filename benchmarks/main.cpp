@@ -40,7 +40,7 @@ constexpr StageEntry kStages[] = {
 void describe(CLI::App& app, Arguments& a) {
   app.add_option(
       "--work,-w", a.work,
-      std::string("what to measure on: KIND:TRIANGLES or file:PATH; kinds: ") + kWorkKinds);
+      std::string("what to measure on: KIND:TRIANGLES or file:PATH; kinds: cabin, ") + kShapeKinds);
   std::vector<std::string> names{"unwrap"};
   for (const StageEntry& s : kStages) names.push_back(s.name);
   app.add_option("--stages,-s", a.stages, "which (default: all; unwrap with rivals only)")

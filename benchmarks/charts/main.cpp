@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
                "atlas-bench-charts");
   Arguments a;
   app.add_option("--mesh,-m", a.meshes,
-                 fmt::format("NAME:TRIANGLES ({}, {}) or a file", kFigures, kWorkKinds));
+                 fmt::format("NAME:TRIANGLES ({}, {}) or a file", kFigures, kShapeKinds));
   auto* kind = app.add_option_group("what");
   kind->add_flag("--table", a.table, "a line of figures a mesh");
   kind->add_option("--sweep", a.sweep,

@@ -168,7 +168,7 @@ Result<Shape> make_shape(const std::string& kind, std::uint64_t triangles) {
     shape = test::needles(int(triangles), 1000);
   else
     return Status{ErrorCode::bad_option,
-                  fmt::format("{}: no such work (there are {})", kind, kWorkKinds)};
+                  fmt::format("{}: no such work (there are {})", kind, kShapeKinds)};
   shape.name = fmt::format("{}:{}", kind, triangles);
   return shape;
 }

@@ -10,9 +10,9 @@
 
 namespace atlas::bench {
 
-// The kinds that make_work knows, for help texts.
-inline constexpr const char* kWorkKinds =
-    "cabin, sphere, scan, torus, terrain, assembly, fasteners, genus, soup, needles";
+// The kinds that make_shape knows, for help texts; make_work knows "cabin", too.
+inline constexpr const char* kShapeKinds =
+    "sphere, scan, torus, terrain, assembly, fasteners, genus, soup, needles";
 
 // Makes the work that "KIND:TRIANGLES" names (the number is met within a few per cent), or reads
 // "file:PATH". Metres; lit by a smooth function of the place with one sharp shadow edge, but for
