@@ -49,6 +49,21 @@ int KeySchedule::interval_from(int start, const Ahead& ahead) const {
   return longest;
 }
 
+// Whether the light is somewhere that the keys were not drawn for. Frames that last longer or less
+// long than was foreseen move it off its time between them, but not this far.
+bool KeySchedule::left_keys(const Vec3d& now, const Ahead& ahead) const {
+  const double away = degrees_between(from_.direction, now);
+  if (!ahead) return away > options_.max_key_degrees;
+  if (away > 1.5 * options_.max_key_degrees) return true;
+  const bool at_key = same(from_.direction, now);
+  if (from_.slot == to_.slot) return !at_key && !coming_needs_work_;
+  // Blends would go on to keys that a light at rest never comes to. Not same(): that is what a slow
+  // light is, too.
+  for (int n = 1; n <= length_; ++n)
+    if (!(ahead(n) == now)) return false;
+  return !at_key || !same(to_.direction, now);
+}
+
 int KeySchedule::free_slot() const {
   for (int slot = 0; slot < kSlots; ++slot)
     if (slot != from_.slot && slot != to_.slot) return slot;
@@ -110,8 +125,7 @@ FramePlan KeySchedule::next(const Vec3d& now, const Ahead& ahead) {
   if (!options_.blend) return next_unblended(now);
   FramePlan plan;
   const bool jumped =
-      valid_ && (degrees_between(last_, now) > options_.jump_degrees ||
-                 (!ahead && degrees_between(from_.direction, now) > options_.max_key_degrees));
+      valid_ && (degrees_between(last_, now) > options_.jump_degrees || left_keys(now, ahead));
   if (!valid_ || jumped) {
     refresh(now, ahead, plan);
     begin_interval(now, ahead);

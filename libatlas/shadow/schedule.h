@@ -56,7 +56,9 @@ class KeySchedule {
 
   // Plans the next frame, in which the light is at `now` (towards the light, any length > 0).
   // Keys of a scripted light are at most max_key_degrees apart: a longer interval is cut short. One
-  // moved by hand that runs so far ahead of its keys has jumped.
+  // moved by hand that runs so far ahead of its keys has jumped. A script may change its mind: a
+  // light that comes to rest or leaves it has jumped, and so has one that runs half as far again
+  // from its keys as they may be apart.
   FramePlan next(const Vec3d& now, const Ahead& ahead);
 
   // The maps no longer show the scene: the next frame draws what it samples at once.
@@ -73,6 +75,7 @@ class KeySchedule {
   void refresh(const Vec3d& now, const Ahead& ahead, FramePlan& plan);
   void begin_interval(const Vec3d& now, const Ahead& ahead);
   int interval_from(int start, const Ahead& ahead) const;
+  bool left_keys(const Vec3d& now, const Ahead& ahead) const;
   int free_slot() const;
   void draw_whole(int slot, const Vec3d& direction, FramePlan& plan);
   FramePlan next_unblended(const Vec3d& now);

@@ -233,6 +233,31 @@ TEST(Schedule, AHandThatRunsAwayFromTheKeysRefreshesThem) {
 }
 
 // Moved by hand: blended shadows arrive after at most two intervals, one map serves when it rests.
+// A light with a path whose speed is changed by hand: at rest, moving, at rest, ten times as fast.
+TEST(Schedule, AScriptedLightThatStopsStartsOrHurriesStaysNearItsKeys) {
+  ScheduleOptions options;
+  options.max_key_degrees = 16;
+  KeySchedule schedule(options);
+  FakeRenderer renderer;
+  double at = 0;
+  for (int f = 0; f < 200; ++f) {
+    const double speed = f < 21 ? 0 : f < 66 ? 1.9 : f < 110 ? 0 : f < 143 ? 0.2 : 2;
+    at += speed;
+    const FramePlan plan = schedule.next(turned(at), [&](int n) { return turned(at + n * speed); });
+    renderer.run(plan);
+    const auto off = [&](const Vec3d& key) { return angle_between(key, turned(at)) / kDegree; };
+    EXPECT_LE(angle_between(plan.from_direction, plan.to_direction) / kDegree, 16.1) << f;
+    EXPECT_LE(off(plan.from_direction), 24) << f;
+    if ((f > 2 && f < 21) || (f > 67 && f < 110)) {
+      EXPECT_LT(off(plan.from_direction), 1e-3) << "a light at rest has its own map, frame " << f;
+      EXPECT_TRUE(plan.work.empty()) << f;
+    }
+    if (f >= 21 && f < 66) {
+      EXPECT_LE(off(plan.from_direction), 16) << "a light that starts has keys at once, " << f;
+    }
+  }
+}
+
 TEST(Schedule, AHandMovedLightArrivesWithTheStatedDelay) {
   ScheduleOptions o;
   KeySchedule schedule(o);
