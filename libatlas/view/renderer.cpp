@@ -119,12 +119,13 @@ Status Renderer::Impl::allocate_target(int width, int height, bool lit) {
   }
   target_width = width;
   target_height = height;
+  const Status made = check_gl("making the image");  // whatever is returned, none stays pending
   for (const GlFramebuffer* f : {&target, &surface_target})
     if (*f && glCheckNamedFramebufferStatus(f->get(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
       return {ErrorCode::unsupported,
               fmt::format("the driver does not draw into an image of {} x {} (make it smaller)",
                           width, height)};
-  return check_gl("making the image");
+  return made;
 }
 
 Status Renderer::Impl::compile(const ShaderFeatures& wanted) {
@@ -194,10 +195,13 @@ bool Renderer::Impl::view_left_the_keys(const Camera& camera) const {
   if (!options.fit_view || !view_fit_valid) return false;
   const glm::dvec3 size = to_glm(scene->bounds.high) - to_glm(scene->bounds.low);
   const double reach = options.view_distance > 0 ? options.view_distance : glm::length(size) / 4;
-  for (const Vec3d& corner : view_corners(camera, double(options.width) / options.height, reach)) {
-    const Vec3d m = transform_point(view_fit.to_texture, corner);
-    if (!(m.x >= 0 && m.x <= 1 && m.y >= 0 && m.y <= 1)) return true;
-  }
+  const auto corners = view_corners(camera, double(options.width) / options.height, reach);
+  const LightFit* const fits[] = {&view_fit, &shadow->fit(sampled[0]), &shadow->fit(sampled[1])};
+  for (const LightFit* fit : fits)
+    for (const Vec3d& corner : corners) {
+      const Vec3d m = transform_point(fit->to_texture, corner);
+      if (!(m.x >= 0 && m.x <= 1 && m.y >= 0 && m.y <= 1)) return true;
+    }
   return false;
 }
 
@@ -230,6 +234,8 @@ Result<FrameStats> Renderer::Impl::draw(const Camera& camera, const FrameLight& 
     stats.t = plan.t;
     stats.key_degrees = angle_between(plan.from_direction, plan.to_direction) * 57.29577951308232;
     if (Status s = draw_shadow_maps(camera, plan, stats); !s.ok()) return s;
+    sampled[0] = plan.from;
+    sampled[1] = plan.to;
   }
   lit_timer->begin();
   draw_lit(camera, light, plan, stats);
@@ -262,7 +268,11 @@ Result<Renderer> Renderer::share(const RenderOptions& options) const {
 }
 
 Status Renderer::set_options(const RenderOptions& options) {
-  return impl_->apply(options);
+  const Status s = impl_->apply(options);
+  // What was compiled or freed on the way to the failure is made again.
+  if (!s.ok())
+    if (Status back = impl_->apply(impl_->options); !back.ok()) return back;
+  return s;
 }
 const RenderOptions& Renderer::options() const {
   return impl_->options;

@@ -31,12 +31,13 @@ struct Renderer::Impl {
   std::optional<KeySchedule> schedule;
   std::optional<PassTimer> shadow_timer, lit_timer;
   std::int64_t earlier_passes = 0;  // of schedules replaced by set_options
-  LightFit view_fit;                // fit_view: what the current keys cover
+  LightFit view_fit;                // fit_view: what the newest key covers
   bool view_fit_valid = false;
+  int sampled[2] = {0, 0};  // slots of the last frame's keys, fitted up to three intervals ago
 
-  // A cluster to draw; sorted by texture, then from near to far.
+  // A cluster to draw; sorted by look, then from near to far.
   struct Visible {
-    std::int32_t group;
+    ViewScene::Look look;
     float distance;
     std::uint32_t cluster;
     auto operator<=>(const Visible&) const = default;

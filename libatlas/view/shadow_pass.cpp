@@ -55,6 +55,9 @@ Result<ShadowPass> ShadowPass::make(int resolution, int maps, int bits) {
   pass.layers_ = create<GlTexture>(glCreateTextures, GL_TEXTURE_2D_ARRAY);
   const GLuint layers = pass.layers_.get();
   glTextureStorage3D(layers, 1, format, resolution, resolution, maps);
+  if (Status s = check_gl("making shadow maps"); !s.ok())
+    return Status{s.code(), fmt::format("{} shadow maps of {} x {} texels: {} (make them smaller)",
+                                        maps, resolution, resolution, s.message())};
   for (int i = 0; i < maps; ++i) {
     Map map;
     map.view = create<GlTexture>(glGenTextures);  // a view takes a name that was never bound

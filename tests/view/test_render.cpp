@@ -139,6 +139,34 @@ TEST(Render, ACameraThatLeavesTheFittedPartRefreshesTheKeys) {
   EXPECT_TRUE(r.draw(camera, still({0, 1, 0}))->refreshed);
 }
 
+// Keys are sampled for up to three intervals after they were fitted.
+TEST(Render, AMovingCameraSeesFittedShadowsAtAnySpeed) {
+  Scene scene;  // a floor that is all in the shadow of a roof
+  add_quad(scene, {{-30, 0, 30}, {30, 0, 30}, {30, 0, -30}, {-30, 0, -30}});
+  add_quad(scene, {{-60, 5, 60}, {60, 5, 60}, {60, 5, -60}, {-60, 5, -60}});
+  RenderOptions o = small();
+  o.fit_view = o.show_visibility = true;
+  o.view_distance = 2;
+  o.schedule.interval_frames = 16;
+  for (ShadowMethod method : {ShadowMethod::hold, ShadowMethod::linear, ShadowMethod::march})
+    for (double speed : {0.01, 0.02, 0.04, 0.08, 0.2}) {
+      o.shadows = method;
+      Renderer r = must_render(scene, o);
+      int lit = 0;
+      for (int f = 0; f < 100; ++f) {
+        const auto at = [&](int n) { return Vec3d{0.002 * (f + n), 1, 0.1}; };
+        Camera camera;
+        camera.eye = {-10 + speed * f, 1.9, 0};
+        camera.target = {-10 + speed * f, 0, 0.01};
+        camera.near_plane = 0.1;
+        ASSERT_TRUE(r.draw(camera, {at(0), at}).ok());
+        const Image8 image = r.read_image();
+        lit += int(std::count(image.texels.begin(), image.texels.end(), std::uint8_t{255})) / 3;
+      }
+      EXPECT_EQ(lit, 0) << name_of(method) << " at " << speed;
+    }
+}
+
 TEST(Render, ThePlanSaysWhatIsMissingAndWhy) {
   RenderOptions o = small();
   o.shading = Shading::unlit;
@@ -199,6 +227,29 @@ TEST(Render, WrongOptionsAreSaidAndChangeNothing) {
     EXPECT_EQ(s.code(), ErrorCode::bad_option) << i;
     EXPECT_EQ(s.message().find('\n'), std::string::npos);
     EXPECT_TRUE(r.draw(view.camera, still({0, 1, 0})).ok()) << i;
+  }
+}
+
+// Also where only the driver says so, after half of the way.
+TEST(Render, SettingsThatCannotBeHadLeaveTheFormerPicture) {
+  const View view = courtyard_view();
+  const RenderOptions o = small();
+  Renderer r = must_render(view.scene, o);
+  const FrameLight light = still({0.6, 1, 0.35});
+  ASSERT_TRUE(r.draw(view.camera, light).ok());
+  const Image8 before = r.read_image();
+  for (int i = 0; i < 3; ++i) {
+    RenderOptions bad = o;
+    if (i == 0) bad.map_resolution = 1 << 20;
+    if (i == 1) bad.show_visibility = true, bad.map_resolution = 8;
+    if (i == 2) bad.map_resolution = 16384;  // three gigabytes, more than llvmpipe gives a texture
+    const Status s = r.set_options(bad);
+    EXPECT_FALSE(s.ok()) << i;
+    EXPECT_EQ(s.message().find("does not draw"), std::string::npos) << s.message();
+    EXPECT_EQ(s.message().find('\n'), std::string::npos);
+    const Result<FrameStats> drawn = r.draw(view.camera, light);
+    ASSERT_TRUE(drawn.ok()) << i << ": " << drawn.status().message();
+    EXPECT_EQ(r.read_image().texels, before.texels) << i;
   }
 }
 
