@@ -23,6 +23,7 @@ struct Shape {
   std::vector<Vec2f> uvs;
   std::vector<double> corners, uv_corners;  // indices, with a -1 after each face
   std::string image;
+  bool repeat_u = true, repeat_v = true;
 };
 
 class Malformed {};  // thrown by the parser below and caught by its run(): the place is in at_
@@ -276,6 +277,8 @@ class VrmlParser {
       if (name != "texture") return false;
       if (node_type(next()) != "ImageTexture") fail("an ImageTexture expected");
       fields([&](std::string_view field) {
+        if (field == "repeatS") return shape.repeat_u = next() != "FALSE", true;
+        if (field == "repeatT") return shape.repeat_v = next() != "FALSE", true;
         if (field != "url") return false;
         std::string_view token = next();
         const bool many = token == "[";
@@ -324,6 +327,8 @@ class VrmlParser {
     if (!shape.image.empty()) {
       const fs::path image = fs::path(builder_.file).parent_path() / shape.image;
       material.texture = static_cast<std::int32_t>(builder_.textures.size());
+      if (!shape.repeat_u) material.wrap_u = TextureWrap::clamp;
+      if (!shape.repeat_v) material.wrap_v = TextureWrap::clamp;
       builder_.textures.push_back({image, {}, builder_.file});
     }
     builder_.material = builder_.object = static_cast<std::uint32_t>(number);

@@ -67,8 +67,23 @@ Result<GlTexture> texture_of(const Texture& texture) {
   glTextureSubImage2D(t.get(), 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE,
                       rgba.data());
   glGenerateTextureMipmap(t.get());
-  glTextureParameteri(t.get(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   return t;
+}
+
+GLint wrap_of(TextureWrap wrap) {
+  if (wrap == TextureWrap::clamp) return GL_CLAMP_TO_EDGE;
+  return wrap == TextureWrap::mirror ? GL_MIRRORED_REPEAT : GL_REPEAT;
+}
+
+void make_samplers(GpuScene& gpu) {
+  for (int u = 0; u < 3; ++u)
+    for (int v = 0; v < 3; ++v) {
+      GlSampler& s = gpu.samplers[std::size_t(u)][std::size_t(v)];
+      s = create<GlSampler>(glCreateSamplers);
+      glSamplerParameteri(s.get(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+      glSamplerParameteri(s.get(), GL_TEXTURE_WRAP_S, wrap_of(TextureWrap(u)));
+      glSamplerParameteri(s.get(), GL_TEXTURE_WRAP_T, wrap_of(TextureWrap(v)));
+    }
 }
 
 Status upload_textures(const ViewScene& scene, GpuScene& gpu) {
@@ -77,6 +92,7 @@ Status upload_textures(const ViewScene& scene, GpuScene& gpu) {
     if (!made.ok()) return made.status();
     gpu.textures.push_back(std::move(made.value()));
   }
+  make_samplers(gpu);
   const std::uint8_t v = scene.textures_hold_light ? 0 : 255, texel[4] = {v, v, v, 255};
   gpu.blank = make_texture(GL_RGBA8, 1, 1);
   glTextureSubImage2D(gpu.blank.get(), 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, texel);

@@ -1,6 +1,7 @@
 // Internal: a ViewScene on the GPU.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "libatlas/view/gl_objects.h"
@@ -15,6 +16,11 @@ struct GpuScene {
   std::vector<ViewScene::Cluster> clusters;
   std::vector<GlTexture> textures;  // one a scene texture
   GlTexture blank;  // for triangles without one: white, or black where textures hold light
+  // How textures are sampled: by wrap_u, then by wrap_v.
+  std::array<std::array<GlSampler, 3>, 3> samplers;
+  const GlSampler& sampler(const ViewScene::Look& look) const {
+    return samplers[std::size_t(look.wrap_u)][std::size_t(look.wrap_v)];
+  }
   std::uint32_t triangles = 0;
   Box3 bounds;   // in the scene's own coordinates, as the clusters' balls
   Vec3d origin;  // the box's middle, which uploaded positions are relative to: floats are finest

@@ -223,7 +223,6 @@ void Renderer::Impl::draw_surfaces(const Camera& camera, FrameStats& stats) {
   glClearNamedFramebufferfv(into, GL_DEPTH, 0, &far);
   glUseProgram(program.get());
   glBindVertexArray(scene->lit.get());
-  glBindSampler(0, 0);
   draw_clusters(camera, stats);
 }
 
@@ -259,23 +258,26 @@ void Renderer::Impl::draw_clusters(const Camera& camera, FrameStats& stats) {
     const ViewScene::Cluster& c = scene->clusters[i];
     const glm::vec3 centre = to_glm(c.centre);
     if (!frustum.touches(centre, c.radius)) continue;
-    const std::int32_t group = features.textured ? c.texture : 0;
-    order.push_back({group, glm::length(centre - eye) - c.radius, i});
+    const ViewScene::Look look = features.textured ? c.look : ViewScene::Look{};
+    order.push_back({look, glm::length(centre - eye) - c.radius, i});
   }
   std::sort(order.begin(), order.end());
   for (std::size_t begin = 0; begin < order.size();) {
-    const std::int32_t group = order[begin].group;
+    const ViewScene::Look look = order[begin].look;
     counts.clear();
     offsets.clear();
-    for (; begin < order.size() && order[begin].group == group; ++begin) {
+    for (; begin < order.size() && order[begin].look == look; ++begin) {
       const ViewScene::Cluster& c = scene->clusters[order[begin].cluster];
       counts.push_back(GLsizei(c.count));
       offsets.push_back(reinterpret_cast<const void*>(std::uintptr_t(c.first) * 4));
       stats.triangles_lit += c.count / 3;
     }
-    if (features.textured)
-      glBindTextureUnit(0,
-                        group < 0 ? scene->blank.get() : scene->textures[std::size_t(group)].get());
+    if (features.textured) {
+      const GlTexture& texture =
+          look.texture < 0 ? scene->blank : scene->textures[std::size_t(look.texture)];
+      glBindTextureUnit(0, texture.get());
+      glBindSampler(0, scene->sampler(look).get());
+    }
     glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(),
                         GLsizei(counts.size()));
   }

@@ -124,12 +124,14 @@ class Builder {
     textured_ = scene.textured() && !scene.texcoord_indices.empty();
   }
 
-  std::int32_t texture_of(std::uint32_t triangle) const {
-    if (!textured_) return -1;
-    return scene_.materials[scene_.triangle_material[triangle]].texture;
+  ViewScene::Look look_of(std::uint32_t triangle) const {
+    if (!textured_) return {};
+    const Material& m = scene_.materials[scene_.triangle_material[triangle]];
+    if (m.texture < 0) return {};
+    return {m.texture, m.wrap_u, m.wrap_v};
   }
 
-  // Triangles grouped by texture and, within one, along a curve that keeps neighbours together.
+  // Triangles grouped by look and, within one, along a curve that keeps neighbours together.
   std::vector<std::uint32_t> order() const {
     glm::dvec3 low(1e300), high(-1e300);
     for (const Vec3f& p : scene_.positions) {
@@ -147,7 +149,7 @@ class Builder {
       codes[t] = spread(q.x) | spread(q.y) << 1 | spread(q.z) << 2;
     }
     std::sort(triangles.begin(), triangles.end(), [&](std::uint32_t a, std::uint32_t b) {
-      const auto key = [&](std::uint32_t t) { return std::tuple(texture_of(t), codes[t], t); };
+      const auto key = [&](std::uint32_t t) { return std::tuple(look_of(t), codes[t], t); };
       return key(a) < key(b);
     });
     return triangles;
@@ -155,10 +157,10 @@ class Builder {
 
   ViewScene build(std::uint32_t cluster_triangles) {
     for (std::uint32_t t : order()) {
-      const std::int32_t texture = texture_of(t);
-      if (view_.clusters.empty() || view_.clusters.back().texture != texture ||
+      const ViewScene::Look look = look_of(t);
+      if (view_.clusters.empty() || view_.clusters.back().look != look ||
           view_.clusters.back().count >= 3 * cluster_triangles)
-        view_.clusters.push_back({std::uint32_t(view_.indices.size()), 0, texture, {}, 0});
+        view_.clusters.push_back({std::uint32_t(view_.indices.size()), 0, look, {}, 0});
       for (int k = 0; k < 3; ++k) view_.indices.push_back(vertex(t, k));
       view_.clusters.back().count += 3;
     }

@@ -1,6 +1,7 @@
 // A scene as arrays that can be drawn: normals made, corners welded, triangles grouped by texture.
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -21,15 +22,22 @@ struct ViewScene {
   std::vector<Vec3f> illumination;  // linear, as given
   std::vector<std::uint32_t> indices;
 
-  // Consecutive triangles that lie close together and share a texture (-1: none, drawn with a white
-  // one), so that a frame can skip what is out of view and draw the nearest first.
+  // A texture (-1: none, drawn with a white one) and how it goes on beyond its edges.
+  struct Look {
+    std::int32_t texture = -1;
+    TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
+    auto operator<=>(const Look&) const = default;
+  };
+
+  // Consecutive triangles that lie close together and look alike, so that a frame can skip what is
+  // out of view and draw the nearest first.
   struct Cluster {
     std::uint32_t first = 0, count = 0;  // indices
-    std::int32_t texture = -1;
+    Look look;
     Vec3f centre;  // of a ball that holds them
     float radius = 0;
   };
-  std::vector<Cluster> clusters;  // grouped by texture
+  std::vector<Cluster> clusters;  // grouped by look
 
   // What casts shadows: the same triangles over welded positions.
   std::vector<Vec3f> caster_positions;

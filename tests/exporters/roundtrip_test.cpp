@@ -218,6 +218,18 @@ Transform { children [
   EXPECT_EQ(loaded->defects.count(DefectKind::element_ignored), 1u);
 }
 
+TEST(VrmlWorld, TexturesEndWhereTheyAreSaidTo) {
+  const TempFolder folder;
+  const auto path = folder.write("t.wrl", R"(#VRML V2.0 utf8
+Shape { appearance Appearance { texture ImageTexture { repeatS FALSE url "a.png" repeatT TRUE } }
+  geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0, 1 0 0, 1 1 0 ] }
+    coordIndex [ 0 1 2 -1 ] texCoord TextureCoordinate { point [ 0 0 2 0 2 2 ] } } })");
+  const auto loaded = read_scene(path, {}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->scene.materials[0].wrap_u, TextureWrap::clamp);
+  EXPECT_EQ(loaded->scene.materials[0].wrap_v, TextureWrap::repeat);
+}
+
 TEST(VrmlWorld, DamageIsNoticed) {
   const TempFolder folder;
   AtomicFiles files;

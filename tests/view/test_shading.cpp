@@ -114,6 +114,28 @@ TEST_F(Plane, TexturesReflectOrShine) {
   EXPECT_NEAR(*r->read_image().at(32, 32), encoded(0.2158), 1.5);
 }
 
+TEST_F(Plane, TexturesGoOnBeyondTheirEdgesAsMaterialsSay) {
+  Texture t;
+  t.image = Image8(64, 64, 3, 0);  // its right half is white
+  for (int y = 0; y < 64; ++y) std::fill_n(t.image.at(32, y), 32 * 3, std::uint8_t{255});
+  scene_.textures.push_back(t);
+  scene_.materials[0].texture = 0;
+  scene_.materials[0].diffuse = {1, 1, 1};
+  scene_.texcoord_indices.assign(scene_.indices.size(), 0);
+  options_.shading = Shading::unlit;
+  const auto shown = [&](TextureWrap wrap, float u) {
+    scene_.materials[0].wrap_u = wrap;
+    scene_.texcoords = {{u, 0.5f}};
+    return middle({0, 1, 0})[0];
+  };
+  EXPECT_EQ(shown(TextureWrap::repeat, 1.25f), 0);
+  EXPECT_EQ(shown(TextureWrap::clamp, 1.25f), 255);
+  EXPECT_EQ(shown(TextureWrap::mirror, 1.25f), 255);
+  EXPECT_EQ(shown(TextureWrap::mirror, 2.25f), 0);
+  EXPECT_EQ(shown(TextureWrap::clamp, -0.25f), 0);
+  EXPECT_EQ(shown(TextureWrap::repeat, -0.25f), 255);
+}
+
 // Dark ones above all: there a power of 1 / 2.2 differs most from sRGB.
 TEST_F(Plane, BakedPagesAreShownAsTheyAreStored) {
   scene_.materials[0].texture = 0;
