@@ -23,7 +23,8 @@ std::array<Vec3d, 8> view_corners(const Camera& camera, double aspect, double fa
 // Looks at the whole box from a direction a little above its side; the planes enclose the box.
 Camera camera_for(const Box3& box, const Vec3d& up);
 
-// Near and far planes that enclose the box from where the camera stands.
+// Near and far planes that enclose the box from where the camera stands; from within, what is a
+// ten-thousandth of its diagonal or more away.
 void fit_planes(Camera& camera, const Box3& box);
 
 // Moves along the view (forward, right, up; world units) and turns it (degrees; pitch is limited).

@@ -212,5 +212,32 @@ TEST(Oracle, PlanesOfAnyLeanDoNotShadowThemselves) {
       }
 }
 
+// Depths must find every point of it again, half a metre below the eye and at the horizon.
+TEST(Oracle, AFloorIsLitFromTheFeetToTheHorizon) {
+  View view;
+  add_quad(view.scene, {{-1000, 0, 1000}, {1000, 0, 1000}, {1000, 0, -1000}, {-1000, 0, -1000}});
+  view.camera.eye = {3, 0.5, 900};
+  view.camera.target = {0, 0, 899};
+  view.camera.fov_degrees = 110;
+  fit_planes(view.camera, {{-1000, 0, -1000}, {1000, 0, 1000}});
+  EXPECT_LT(view.camera.near_plane, 0.25);
+  for (const Vec3d& light : {Vec3d{0.3, 1, 0.2}, Vec3d{1, 0.3, 0.5}, Vec3d{0.4, 0.1, -1}}) {
+    RenderOptions o = classic_visibility(3);
+    o.map_resolution = 2048;
+    Renderer renderer = must_render(view.scene, o);
+    ASSERT_TRUE(renderer.draw(view.camera, still(light)).ok());
+    const Image8 image = renderer.read_image();
+    EXPECT_GE(*std::min_element(image.texels.begin(), image.texels.end()), 254) << light.y;
+    RenderOptions colours = o;
+    colours.show_visibility = false;
+    colours.background = {1, 0, 0};
+    ASSERT_TRUE(renderer.set_options(colours).ok());
+    ASSERT_TRUE(renderer.draw(view.camera, still(light)).ok());
+    const Image8 shown = renderer.read_image();
+    const std::uint8_t* feet = shown.at(shown.width / 2, 0);
+    EXPECT_EQ(feet[0], feet[1]) << "the floor is there, not the background";
+  }
+}
+
 }  // namespace
 }  // namespace atlas::testing
