@@ -9,6 +9,7 @@
 
 #include "apps/common/options.h"
 #include "apps/common/program.h"
+#include "apps/common/quantity.h"
 #include "libatlas/view/start_camera.h"
 
 namespace atlas::app {
@@ -40,6 +41,17 @@ void add_picture_options(CLI::App& app, CommandLine& l) {
   app.add_option("--height", l.render.height, "pixels (default: 800 in a window, else 400)")
       ->check(within(1, 16384));
   app.add_option("--camera", l.camera, "where from and where to: x,y,z;x,y,z");
+  app.add_option_function<std::string>(
+         "--unit",
+         [&l](const std::string& text) {
+           l.unit = parse_unit(text);
+           if (!l.unit)
+             throw CLI::ValidationError(
+                 "--unit",
+                 fmt::format("{}: give m, cm, mm, in, ft, km or metres (1e-12 to 1e24)", text));
+         },
+         "length of one scene unit, for the eye's height: m, cm, mm, in, ft, km or metres")
+      ->default_str("m");
   app.add_option("--fov", l.fov, "vertical field of view, degrees")
       ->check(within(1, 170))
       ->capture_default_str();

@@ -8,6 +8,7 @@ Camera start_camera(const ViewScene& scene, const Vec3d& up) {
   Camera camera = camera_for(scene.bounds, up);
   if (up.x != 0) return camera;
   ViewpointOptions eye;
+  eye.metres_per_unit = scene.metres_per_unit;
   eye.up = up.z != 0 ? Up::z : Up::y;
   const Viewpoint start =
       choose_viewpoint(scene.caster_positions, scene.caster_indices, eye, Context{});

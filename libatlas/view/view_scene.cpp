@@ -252,6 +252,7 @@ Result<ViewScene> make_view_scene(const Scene& scene, const ViewSceneOptions& op
   view.textures_hold_light = options.textures_hold_light && view.textured();
   view.light_scale = light_scale(view.illumination);
   view.origin = scene.origin;
+  view.metres_per_unit = scene.metres_per_unit;
   return view;
 }
 

@@ -47,6 +47,7 @@ struct ViewScene {
   bool textures_hold_light = false;  // atlases with baked light
   Box3 bounds;                       // of the positions that triangles use
   Vec3d origin;                      // added to positions gives the coordinates of the file
+  double metres_per_unit = 1;        // > 0; for the height of a visitor's eye
   double light_scale = 1;            // exposure that puts the 99th percentile of the light at 1
 
   std::size_t triangle_count() const { return caster_indices.size() / 3; }

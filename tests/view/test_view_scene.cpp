@@ -137,6 +137,16 @@ TEST(StartCamera, StandsInARoomAndBeforeAThing) {
   }
 }
 
+TEST(StartCamera, TheEyeIsAsHighInAnyUnit) {
+  const double eye = start_camera(*make_view_scene(room(), {}), {0, 1, 0}).eye.y;
+  for (const float units : {100.0f, 1000.0f, 0.001f}) {
+    Scene scene = room();
+    for (Vec3f& p : scene.positions) p = {p.x * units, p.y * units, p.z * units};
+    scene.metres_per_unit = 1 / double(units);
+    EXPECT_NEAR(start_camera(*make_view_scene(scene, {}), {0, 1, 0}).eye.y / units, eye, 1e-3);
+  }
+}
+
 TEST(ViewScene, ASceneWithoutTrianglesIsSaidToBeOne) {
   const Result<ViewScene> v = make_view_scene(Scene{}, {});
   ASSERT_FALSE(v.ok());

@@ -145,6 +145,27 @@ TEST_F(AtlasPlay, TheCameraIsInTheCoordinatesOfTheFile) {
   EXPECT_EQ(text_of(dir_ / "near.png"), text_of(dir_ / "far.png"));
 }
 
+TEST_F(AtlasPlay, ScenesInOtherUnitsAreEnteredAlike) {
+  const auto box = [&](const char* name, double s) {  // seen from within
+    std::ofstream f(dir_ / name);
+    for (int i = 0; i < 8; ++i)
+      f << "v " << s * (i & 1 ? 6 : 0) << ' ' << s * (i & 2 ? 3 : 0) << ' ' << s * (i & 4 ? 4 : 0)
+        << '\n';
+    f << "f 1 2 4 3\nf 5 6 8 7\nf 1 2 6 5\nf 3 4 8 7\nf 1 3 7 5\nf 2 4 8 6\n";
+  };
+  box("m.obj", 1);
+  box("mm.obj", 1000);
+  const std::string options =
+      " --headless --software -q --width 64 --height 48 --map 32 --light fixed:0,1,1 --ambient 1 "
+      "--screenshot ";
+  ASSERT_EQ(run("m.obj" + options + "m.png").exit_code, 0);
+  ASSERT_EQ(run("mm.obj" + options + "mm.png --unit mm").exit_code, 0);
+  EXPECT_EQ(text_of(dir_ / "m.png"), text_of(dir_ / "mm.png"));
+  const RunResult wrong = run("m.obj --headless --software --unit ell");
+  EXPECT_NE(wrong.exit_code, 0);
+  EXPECT_NE(wrong.errors.find("--unit"), std::string::npos) << wrong.errors;
+}
+
 TEST_F(AtlasPlay, SaysWhatTheSceneLacks) {
   std::ofstream(dir_ / "bare.mtl") << "newmtl a\nmap_Kd gone.png\n";
   std::ofstream(dir_ / "bare.obj") << "mtllib bare.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
