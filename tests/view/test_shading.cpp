@@ -136,6 +136,33 @@ TEST_F(Plane, TexturesGoOnBeyondTheirEdgesAsMaterialsSay) {
   EXPECT_EQ(shown(TextureWrap::repeat, -0.25f), 255);
 }
 
+// A dark chart eight texels from bright ones, seen at a grazing angle.
+TEST_F(Plane, ChartsOfAPageDoNotMixFarAway) {
+  Texture t;
+  t.image = Image8(512, 512, 3, 255);
+  for (int y = 0; y < 512; ++y) std::fill_n(t.image.at(0, y), 32 * 3, std::uint8_t{0});
+  scene_.textures.push_back(t);
+  Material& m = scene_.materials[0];
+  m.texture = 0;
+  m.wrap_u = m.wrap_v = TextureWrap::clamp;
+  for (const std::uint32_t i : scene_.indices) {
+    const Vec3f& p = scene_.positions[i];
+    scene_.texcoord_indices.push_back(std::uint32_t(scene_.texcoords.size()));
+    scene_.texcoords.push_back({(16 + 2 * p.x) / 512, (p.z + 4) / 8});
+  }
+  camera_.eye = {0, 0.3, 8};
+  options_.shading = Shading::unlit;
+  software_context();
+  ViewSceneOptions baked;
+  baked.textures_hold_light = true;
+  const ViewScene view = *make_view_scene(scene_, baked);
+  Result<Renderer> r = Renderer::make(view, options_);
+  ASSERT_TRUE(r.ok());
+  ASSERT_TRUE(r->draw(camera_, still({0, 1, 0})).ok());
+  const Image8 image = r->read_image();
+  for (int x = 22; x <= 42; ++x) EXPECT_LE(*image.at(x, 32), 1) << x;
+}
+
 // Dark ones above all: there a power of 1 / 2.2 differs most from sRGB.
 TEST_F(Plane, BakedPagesAreShownAsTheyAreStored) {
   scene_.materials[0].texture = 0;
