@@ -83,8 +83,8 @@ Vec3d sun_direction(const SunOptions& options, double hour) {
   const double decl = sun_declination(options.day_of_year), lat = options.latitude * kDegree;
   const double angle = (hour - 12) * kHour;
   const glm::dvec3 up = unit(options.up);
-  const glm::dvec3 north =
-      glm::normalize(to_glm(options.north) - up * glm::dot(up, to_glm(options.north)));
+  const glm::dvec3 along = unit(options.north);
+  const glm::dvec3 north = glm::normalize(along - up * glm::dot(up, along));
   const glm::dvec3 east = glm::cross(north, up);
   const double e = -std::cos(decl) * std::sin(angle);
   const double n =

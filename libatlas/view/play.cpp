@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <string_view>
+#include <vector>
 
 #include "libatlas/core/clock.h"
 #include "libatlas/core/file_extension.h"
@@ -20,12 +22,17 @@ bool textures_hold_light(const fs::path& path) {
   const std::string extension = lower_extension(path);
   if (extension == ".wrl" || extension == ".wrz") return true;
   if (extension != ".gltf" && extension != ".glb") return false;
-  // The extension is named in the document's text, which GLB puts first.
+  // The extension is named in the document's text, maybe after megabytes of embedded data.
+  constexpr std::string_view kName = "KHR_materials_unlit";
   std::ifstream file(path, std::ios::binary);
-  std::string text(std::size_t{1} << 22, '\0');
-  file.read(text.data(), std::streamsize(text.size()));
-  text.resize(std::size_t(std::max<std::streamsize>(file.gcount(), 0)));
-  return text.find("KHR_materials_unlit") != std::string::npos;
+  std::string text;
+  std::vector<char> block(std::size_t{1} << 22);
+  while (file.read(block.data(), std::streamsize(block.size())), file.gcount() > 0) {
+    text.append(block.data(), std::size_t(file.gcount()));
+    if (text.find(kName) != std::string::npos) return true;
+    text.erase(0, text.size() - std::min(text.size(), kName.size() - 1));
+  }
+  return false;
 }
 
 bool world_is_z_up(const fs::path& path) {

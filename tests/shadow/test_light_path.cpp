@@ -82,6 +82,18 @@ TEST(LightPath, LengthsOfDirectionsMayBeAnything) {
     }
 }
 
+TEST(LightPath, LengthsOfUpAndNorthMayBeAnything) {
+  const Vec3d noon = sun_direction({}, 12);
+  for (double scale : {1e-200, 1e200}) {
+    SunOptions o;
+    o.up = {0, scale, 0};
+    o.north = {0, 0, -scale};
+    const Vec3d d = sun_direction(o, 12);
+    EXPECT_NEAR(d.y, noon.y, 1e-12) << scale;
+    EXPECT_NEAR(d.z, noon.z, 1e-12) << scale;
+  }
+}
+
 TEST(LightPath, EndsLoopReturnOrStay) {
   LightPathOptions o;
   o.kind = PathKind::keys;

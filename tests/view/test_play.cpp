@@ -157,6 +157,11 @@ TEST_F(Play, KnowsWhichFilesHoldLight) {
   std::ofstream(path_ / "b.gltf") << "{}";
   EXPECT_TRUE(textures_hold_light(path_ / "a.gltf"));
   EXPECT_FALSE(textures_hold_light(path_ / "b.gltf"));
+  for (const int embedded : {1 << 22, (1 << 22) - 30, 9'000'000}) {
+    std::ofstream(path_ / "c.gltf") << R"({"buffers":[{"uri":")" << std::string(embedded, 'A')
+                                    << R"("}],"extensionsUsed":["KHR_materials_unlit"]})";
+    EXPECT_TRUE(textures_hold_light(path_ / "c.gltf")) << embedded;
+  }
   EXPECT_FALSE(textures_hold_light(path_ / "absent.gltf"));
   EXPECT_TRUE(textures_hold_light("world.wrl"));
   EXPECT_TRUE(textures_hold_light("WORLD.WRL"));
