@@ -169,6 +169,7 @@ Status Renderer::Impl::apply(const RenderOptions& wanted) {
     if (schedule) earlier_passes += schedule->passes();
     schedule.emplace(schedule_for(wanted));
     view_fit_valid = false;
+    sampled[0] = sampled[1] = 0;
   }
   options = wanted;
   return {};
@@ -233,7 +234,10 @@ Result<FrameStats> Renderer::Impl::draw(const Camera& camera, const FrameLight& 
     stats.refreshed = plan.refreshed;
     stats.t = plan.t;
     stats.key_degrees = angle_between(plan.from_direction, plan.to_direction) * 57.29577951308232;
-    if (Status s = draw_shadow_maps(camera, plan, stats); !s.ok()) return s;
+    if (Status s = draw_shadow_maps(camera, plan, stats); !s.ok()) {
+      schedule->invalidate();  // it takes the maps for drawn
+      return s;
+    }
     sampled[0] = plan.from;
     sampled[1] = plan.to;
   }

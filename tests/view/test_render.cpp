@@ -267,7 +267,11 @@ TEST(Render, ALightOfNoDirectionGivesOneLine) {
   const View view = courtyard_view();
   Renderer r = must_render(view.scene, small());
   EXPECT_FALSE(r.draw(view.camera, still({0, 0, 0})).ok());
-  EXPECT_TRUE(r.draw(view.camera, still({0, 1, 0})).ok());
+  const FrameLight light = still({0.6, 1, 0.35});
+  EXPECT_TRUE(r.draw(view.camera, light).ok());
+  Renderer fresh = must_render(view.scene, small());
+  ASSERT_TRUE(fresh.draw(view.camera, light).ok());
+  EXPECT_EQ(r.read_image().texels, fresh.read_image().texels) << "its shadows come with the next";
 }
 
 }  // namespace
