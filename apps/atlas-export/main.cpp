@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
+#include <vector>
 
 #include "apps/atlas-export/command_line.h"
 #include "apps/common/files.h"
@@ -78,27 +78,28 @@ bool named_as_page(const std::filesystem::path& file, const std::filesystem::pat
          name.find_first_not_of("0123456789", pages.size()) == std::string::npos;
 }
 
-// A world that is exported again brings textures that have the names of the new pages, or of the
-// textures that are written beside the new world.
-Status check_textures_stay(const Scene& scene, const ExportOptions& options) {
+// Images that this export may write and whose names are taken: by an earlier export's pages, or by
+// links to anything.
+std::vector<std::filesystem::path> images_there(const Scene& scene, const ExportOptions& options) {
   const std::filesystem::path& target = options.target;
   const auto folder = target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
-  const bool beside = options.keep_scene && lower_extension(target) == ".gltf";
-  std::set<std::string> written;
-  for (std::size_t i = 0; beside && i < scene.textures.size(); ++i)
-    written.insert(scene_texture_path(scene, i, target).filename().string());
-  for (const Texture& texture : scene.textures) {
-    std::error_code error;
-    const std::filesystem::path name = texture.path.filename();
-    const bool taken =
-        options.keep_scene ? written.contains(name.string()) : named_as_page(texture.path, target);
-    if (taken && std::filesystem::equivalent(folder / name, texture.path, error))
-      return {ErrorCode::bad_option,
-              fmt::format("{}: its images would overwrite {}, a texture of the scene (give the "
-                          "output another name)",
-                          target.string(), texture.path.string())};
+  const std::string world = lower_extension(target);
+  std::vector<std::filesystem::path> there;
+  std::error_code error;
+  if (options.keep_scene) {
+    for (std::size_t i = 0; world == ".gltf" && i < scene.textures.size(); ++i) {
+      std::filesystem::path image = scene_texture_path(scene, i, target);
+      if (std::filesystem::exists(image, error)) there.push_back(std::move(image));
+    }
+  } else if (scene.lit() && !options.charts_only) {
+    std::filesystem::directory_iterator at(folder, error);
+    for (; !error && at != std::filesystem::directory_iterator(); at.increment(error)) {
+      const std::filesystem::path ending = at->path().extension();
+      const bool page = (ending == ".png" && world != ".glb") || (ending == ".exr" && options.exr);
+      if (page && named_as_page(at->path(), target)) there.push_back(at->path());
+    }
   }
-  return {};
+  return there;
 }
 
 // What is written with the target.
@@ -113,6 +114,7 @@ Status check_outputs(const app::ExportCommand& command) {
   const std::filesystem::path &target = command.options.target, &report = command.report;
   const auto& light = command.read.illumination_file;
   if (Status s = app::check_output(target, {command.scene, light, report}); !s.ok()) return s;
+  if (Status s = app::check_output(beside(target), {command.scene, light}); !s.ok()) return s;
   if (Status s = app::check_output(report, {command.scene, light, beside(target)}); !s.ok())
     return s;
   const std::string ending = lower_extension(report);
@@ -125,13 +127,26 @@ Status check_outputs(const app::ExportCommand& command) {
   return {};
 }
 
-// A scene's material files and buffers are known only when it has been read.
+// A scene's material files, buffers and textures are known only when it has been read. A world that
+// is exported again brings textures that have the names of the new pages.
 Status check_files_stay(const LoadedScene& loaded, const app::ExportCommand& command) {
   const std::filesystem::path& target = command.options.target;
-  for (const std::filesystem::path& file : loaded.files)
+  std::vector<std::filesystem::path> known = loaded.files;
+  for (const Texture& texture : loaded.scene.textures) known.push_back(texture.path);
+  for (const std::filesystem::path& file : known)
     for (const std::filesystem::path& output : {target, beside(target), command.report})
       if (Status s = app::check_output(output, {file}); !s.ok()) return s;
-  return check_textures_stay(loaded.scene, command.options);
+  known.insert(known.end(), {command.scene, command.read.illumination_file, command.report});
+  for (const std::filesystem::path& image : images_there(loaded.scene, command.options))
+    for (const std::filesystem::path& file : known) {
+      std::error_code error;
+      if (std::filesystem::equivalent(image, file, error))
+        return {ErrorCode::bad_option,
+                fmt::format("{}: its images would overwrite {}, which is read or written as well "
+                            "(give the output another name)",
+                            target.string(), file.string())};
+    }
+  return {};
 }
 
 // The export's own figures and those of reading, which came before it.

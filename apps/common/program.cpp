@@ -91,7 +91,9 @@ void print_error(std::string_view program, std::string_view text) {
 
 int run_program(const char* name, int argc, char** argv, int (*body)(int, char**)) {
   open_closed_streams();
+  // A reader that has left and a limit on the size of files are errors of writing, to be told.
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
   int code = 1;
   try {
     code = body(argc, argv);

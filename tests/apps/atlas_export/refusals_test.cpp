@@ -110,6 +110,41 @@ TEST_F(AtlasExport, OverwritesNothingThatItReads) {
   EXPECT_EQ(slurp(dir_ / "w_0.png"), page);
 }
 
+// What stands at the end of a link is written over: names tell too little.
+TEST_F(AtlasExport, OverwritesNothingBehindLinks) {
+  ASSERT_EQ(write("box.obj", lit_box(2)), dir_ / "box.obj");
+  ASSERT_EQ(run(fmt::format("{0}/box.obj -o {0}/w.obj -q", dir_.string())).exit_code, 0);
+  fs::rename(dir_ / "w_0.png", dir_ / "wood.png");
+  write("t.mtl", "newmtl t\nmap_Kd wood.png\n");
+  write("textured.obj", "mtllib t.mtl\nusemtl t\n" + lit_box(2));
+  fs::create_symlink("wood.png", dir_ / "texture_0.png");
+  fs::create_symlink("textured.obj", dir_ / "scene_0.exr");
+  fs::create_symlink("t.mtl", dir_ / "materials_1.png");
+  fs::create_symlink("textured.obj", dir_ / "beside.mtl");
+  fs::create_symlink("wood.png", dir_ / "world.gltf");
+  const auto before = files();
+  const std::string image = slurp(dir_ / "wood.png"), text = slurp(dir_ / "textured.obj");
+  const std::string wood = (dir_ / "wood.png").string();
+  for (const std::string& arguments :
+       {std::string("texture.wrl"), std::string("scene.wrl --exr"), std::string("materials.gltf"),
+        std::string("beside.obj"), std::string("world.gltf"), "v.wrl --report " + wood}) {
+    const RunResult r =
+        run(fmt::format("{0}/textured.obj -q -o {0}/{1}", dir_.string(), arguments));
+    EXPECT_EQ(r.exit_code, 2) << arguments;
+    EXPECT_NE(r.output.find("would overwrite"), std::string::npos) << arguments << r.output;
+    EXPECT_EQ(files(), before) << arguments;
+  }
+  EXPECT_EQ(slurp(dir_ / "wood.png"), image);
+  EXPECT_EQ(slurp(dir_ / "textured.obj"), text);
+  // These write no file of such a name: a .glb holds its pages, and EXR was not asked for.
+  for (const char* target : {"texture.glb", "scene.wrl"})
+    EXPECT_EQ(run(fmt::format("{0}/textured.obj -q -o {0}/{1}", dir_.string(), target)).exit_code,
+              0)
+        << target;
+  EXPECT_EQ(slurp(dir_ / "wood.png"), image);
+  EXPECT_EQ(slurp(dir_ / "textured.obj"), text);
+}
+
 TEST_F(AtlasExport, ScenesThatCannotBeKept) {
   const fs::path scene = write("box.obj", lit_box(2));
   expect_refusal(scene, "--keep-scene: VRML has no room", "--keep-scene --charts-only");

@@ -25,16 +25,20 @@ struct RunResult {
   std::string output;
 };
 
-// `arguments` may redirect streams; what stderr still says comes back.
-RunResult run(const std::string& arguments) {
+RunResult shell(const std::string& command) {
   RunResult result;
-  FILE* pipe = ::popen(fmt::format("{} {}", ATLAS_EXPORT, arguments).c_str(), "r");
+  FILE* pipe = ::popen(command.c_str(), "r");
   char buffer[4096];
   while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe))
     result.output.append(buffer, n);
   const int status = ::pclose(pipe);
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return result;
+}
+
+// `arguments` may redirect streams; what stderr still says comes back.
+RunResult run(const std::string& arguments) {
+  return shell(fmt::format("{} {}", ATLAS_EXPORT, arguments));
 }
 
 constexpr const char* kTriangle = "v 0 0 0 1 1 1\nv 1 0 0 1 1 1\nv 0 1 0 2 1 1\nf 1 2 3\n";
@@ -61,6 +65,18 @@ TEST_F(System, OutputThatNobodyTakes) {
   for (int i = 0; i < 200 && !fs::exists(folder_ / "w.glb"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   EXPECT_TRUE(fs::exists(folder_ / "w.glb"));
+}
+
+// The system sends a signal there, which would else end the program and leave what it has begun.
+TEST_F(System, FilesThatMayNotGrow) {
+  for (const char* name : {"w.wrl", "w.glb"}) {
+    const RunResult r =
+        shell(fmt::format("ulimit -f 1 && {} {} -q -o {} 2>&1", ATLAS_EXPORT, scene_, to(name)));
+    EXPECT_EQ(r.exit_code, 1) << name;
+    EXPECT_NE(r.output.find("File too large"), std::string::npos) << r.output;
+    for (const auto& entry : fs::directory_iterator(folder_ / "."))
+      EXPECT_EQ(entry.path().filename(), "tri.obj") << name;
+  }
 }
 
 // The first file that is opened would else be standard output, and hold its lines.
