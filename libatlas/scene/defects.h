@@ -26,7 +26,7 @@ enum class DefectKind : std::uint8_t {
   normal_out_of_range,      // triangle kept without normals: no such normal
   normal_partial,           // triangle kept without normals: some corners lack one
   normal_unusable,          // normal of no direction or not finite: that of its triangles instead
-  illumination_not_finite,  // value replaced by 0
+  illumination_not_finite,  // or beyond kMostLight (scene.h): value replaced by 0
   illumination_negative,    // value kept as it is
   illumination_missing,     // vertex without a value where others have one: 0
   material_file_missing,    // its materials are white

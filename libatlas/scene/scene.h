@@ -46,6 +46,9 @@ struct Texture {
   std::vector<std::uint8_t> encoded = {};
 };
 
+// Light up to here can be worked with: beyond it sums of floats end.
+inline constexpr float kMostLight = 1e36f;
+
 // Flat arrays. A triangle t has corners 3t, 3t+1, 3t+2; input order is kept. A program that fills
 // them in by itself needs positions, indices and mostly illumination; complete_scene()
 // (check_scene.h) adds the rest.
@@ -53,7 +56,7 @@ struct Scene {
   Vec3d origin;                        // added to every position gives the coordinates of the file
   double metres_per_unit = 1;          // length of one scene unit
   std::vector<Vec3f> positions;        // finite, relative to origin
-  std::vector<Vec3f> illumination;     // linear RGB a vertex, unbounded, finite; empty: none given
+  std::vector<Vec3f> illumination;     // linear RGB a vertex, up to kMostLight; empty: none given
   std::vector<Vec2f> texcoords;        // finite; may lie outside [0, 1]
   std::vector<std::uint32_t> indices;  // 3 a triangle, into positions
   std::vector<std::uint32_t> texcoord_indices;  // 3 a triangle, into texcoords, kNoTexcoord where

@@ -81,12 +81,12 @@ void SceneBuilder::sanitise_values() {
   const auto vertex = [&](std::size_t i) { return fmt::format("{}: vertex {}", lit_by, i + 1); };
   for (std::size_t i = 0; i < illumination.size(); ++i) {
     float* values[3] = {&illumination[i].x, &illumination[i].y, &illumination[i].z};
-    bool finite = true, negative = false;
+    bool usable = true, negative = false;
     for (float* value : values) {
-      if (!std::isfinite(*value)) *value = 0, finite = false;
+      if (!(std::fabs(*value) <= kMostLight)) *value = 0, usable = false;
       negative |= *value < 0;
     }
-    if (!finite) defects.add(DefectKind::illumination_not_finite, [&] { return vertex(i); });
+    if (!usable) defects.add(DefectKind::illumination_not_finite, [&] { return vertex(i); });
     if (negative) defects.add(DefectKind::illumination_negative, [&] { return vertex(i); });
   }
   for (std::size_t i = 0; i < texcoords.size(); ++i) {

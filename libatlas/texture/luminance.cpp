@@ -133,7 +133,7 @@ double LuminanceSampler::texture_density(std::uint32_t t) const {
 }
 
 int LuminanceSampler::bad_corner(std::uint32_t t) const {
-  const auto good = [](float v) { return std::fabs(v) <= 1e36f; };
+  const auto good = [](float v) { return std::fabs(v) <= kMostLight; };
   int corner = 0;
   for (; corner < 3; ++corner) {
     const Vec3f e = state_->untextured(t, corner);

@@ -54,8 +54,8 @@ class LuminanceSampler {
   // illumination times bilinear texture.
   static Vec3f sample(const Triangle& triangle, float b0, float b1, float b2);
 
-  // The first of triangle t's corners, 0..2, whose illumination times reflectance is no number, as
-  // no reader leaves it, or beyond 1e36, where sums of floats end; 3 if there is none.
+  // The first of triangle t's corners, 0..2, whose illumination times reflectance is no number
+  // or beyond kMostLight, as no reader leaves illumination; 3 if there is none.
   int bad_corner(std::uint32_t t) const;
 
   // texture_density() of the scene; 0 where it holds luminance, which textures take no part in.

@@ -57,12 +57,13 @@ TEST(Illumination, DefectsAreTheSecondFiles) {
       "mesh.obj", "v 0 0 0 nan 1 1\nv 1 0 0 1 1 1\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
   folder.write("light.obj", "v 0 0 0 1 2 3\nv 0 0 0 1 2 inf\nv 0 0 0 1 2 3\nv 0 0 0\n");
   folder.write("light.txt", "1\nnan\n-1\n4\n");
+  folder.write("huge.obj", "v 0 0 0 1 2 3\nv 0 0 0 1 2 2e36\nv 0 0 0 1e36 2 3\nv 0 0 0\n");
   const auto defects = [&](const std::string& name) {
     ReadOptions options;
     options.illumination_file = folder / name;
     return load(mesh, options).defects;
   };
-  for (const char* name : {"light.obj", "light.txt"}) {
+  for (const char* name : {"light.obj", "light.txt", "huge.obj"}) {
     const DefectReport report = defects(name);
     EXPECT_EQ(report.count(DefectKind::illumination_not_finite), 1u) << name;
     EXPECT_EQ(report.defects.size(), 2u) << name;
