@@ -180,6 +180,24 @@ void name_old_pages(const PackCommand& c, std::size_t pages, const Context& cont
       (c.output.parent_path() / old.front()).string(), old.size() == 1 ? "" : " to " + old.back()));
 }
 
+// Wherever links lead.
+bool lies_in(const fs::path& path, const fs::path& folder) {
+  std::error_code error;
+  for (fs::path up = fs::weakly_canonical(path, error);; up = up.parent_path()) {
+    if (fs::equivalent(up, folder, error)) return true;
+    if (!up.has_relative_path()) return false;
+  }
+}
+
+Status check_links(const PackCommand& c, const fs::path& page) {
+  std::error_code error;
+  if (!fs::is_symlink(page, error) || !lies_in(page, c.input)) return {};
+  return {ErrorCode::bad_option,
+          fmt::format("{}: leads into the folder that is read (remove the link, or give the output "
+                      "another name)",
+                      page.string())};
+}
+
 Status write_pages(const PackCommand& c, const std::vector<Sprite>& sprites, PackedAtlas& atlas) {
   AtomicFiles files;
   for (std::size_t p = 0; p < atlas.pages.size(); ++p)
@@ -190,10 +208,12 @@ Status write_pages(const PackCommand& c, const std::vector<Sprite>& sprites, Pac
       if (sprites[i].alias_of < 0 && atlas.items[i].at.page == p)
         blit(sprites[i], atlas.items[i].at, c.extrude, page);
     const fs::path image = c.output.parent_path() / atlas.images[p];
-    if (Status s = write_png(files.path_for(image), page, {}); !s.ok())
-      return files.told_by_target(s);
     fs::path data = image;
     data.replace_extension(".json");
+    for (const fs::path& file : {image, data})
+      if (Status s = check_links(c, file); !s.ok()) return s;
+    if (Status s = write_png(files.path_for(image), page, {}); !s.ok())
+      return files.told_by_target(s);
     if (Status s = files.write(data, to_json(atlas, c.format, p)); !s.ok()) return s;
   }
   atlas.files = files.targets();
@@ -206,15 +226,11 @@ Status check_pages(const PackCommand& c) {
   if (!c.output.has_filename())
     return {ErrorCode::bad_option,
             fmt::format("{}: is a folder (add the pages' base name)", c.output.string())};
-  std::error_code error;
   const fs::path folder = c.output.has_parent_path() ? c.output.parent_path() : fs::path(".");
-  for (fs::path up = fs::weakly_canonical(folder, error);; up = up.parent_path()) {
-    if (fs::equivalent(up, c.input, error))
-      return {ErrorCode::bad_option,
-              fmt::format("{}: lies in the folder that is read (name another folder)",
-                          c.output.string())};
-    if (!up.has_relative_path()) break;
-  }
+  if (lies_in(folder, c.input))
+    return {ErrorCode::bad_option,
+            fmt::format("{}: lies in the folder that is read (name another folder)",
+                        c.output.string())};
   return check_output(fs::path(c.output) += ".png", {c.preview});
 }
 

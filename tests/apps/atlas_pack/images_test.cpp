@@ -120,6 +120,26 @@ TEST_F(AtlasPack, TheNameOfAPageMayBeGivenWholeAndTheFilesAreNamed) {
       << refused.output;
 }
 
+TEST_F(AtlasPack, NoSpriteIsWrittenOverThroughALink) {
+  fs::create_directories(dir_ / "in");
+  fs::create_directories(dir_ / "out");
+  const fs::path sprite = dir_ / "in/a.png";
+  ASSERT_TRUE(atlas::write_png(sprite, atlas::Image8(40, 40, 3, 9), {}).ok());
+  for (const char* name : {"x.png", "x.json"}) {
+    fs::create_symlink("../in/a.png", dir_ / "out" / name);
+    const RunResult r = run("images in -o out/x --crop");
+    EXPECT_EQ(r.exit_code, 2) << r.output;
+    EXPECT_NE(r.output.find(fmt::format("out/{}: leads into the folder that is read", name)),
+              std::string::npos)
+        << r.output;
+    const auto image = atlas::read_image8(sprite);
+    ASSERT_TRUE(image.ok()) << "still the sprite";
+    EXPECT_EQ(image->width, 40);
+    fs::remove(dir_ / "out" / name);
+  }
+  EXPECT_EQ(run("images in -o out/x --crop").exit_code, 0);
+}
+
 // It took 14 GB before anything was drawn.
 TEST_F(AtlasPack, PagesThatNoMemoryHoldsAreRefused) {
   fs::create_directories(dir_ / "in");
