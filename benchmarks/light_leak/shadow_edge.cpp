@@ -13,14 +13,33 @@ double luma(Vec3f e) {
   return 0.2126 * e.x + 0.7152 * e.y + 0.0722 * e.z;
 }
 
-// The crossings on a triangle's three edges, at most three.
-std::vector<glm::dvec3> crossings(const Scene& scene, std::uint32_t triangle,
+// Over an object's triangles, by area.
+double mean_luma(const Scene& scene, const std::vector<std::uint32_t>& triangles) {
+  double sum = 0, areas = 0;
+  for (const std::uint32_t t : triangles) {
+    glm::dvec3 p[3];
+    double light = 0;
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t v = scene.indices[3 * t + k];
+      p[k] = to_dvec(scene.positions[v]);
+      light += luma(scene.illumination[v]) / 3;
+    }
+    const double area = glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
+    sum += area * light;
+    areas += area;
+  }
+  return areas > 0 ? sum / areas : 0;
+}
+
+// The crossings on a triangle's three edges, at most three, of which one end is at least so light.
+std::vector<glm::dvec3> crossings(const Scene& scene, std::uint32_t triangle, double light,
                                   const ShadowEdgeOptions& options) {
   std::vector<glm::dvec3> found;
   for (int k = 0; k < 3; ++k) {
     const std::uint32_t a = scene.indices[3 * triangle + k];
     const std::uint32_t b = scene.indices[3 * triangle + (k + 1) % 3];
     const double la = luma(scene.illumination[a]), lb = luma(scene.illumination[b]);
+    if (std::max(la, lb) < light) continue;
     const glm::dvec3 pa = to_dvec(scene.positions[a]), pb = to_dvec(scene.positions[b]);
     if (std::abs(la - lb) <= options.drop * std::max(la, lb)) continue;
     if (glm::distance(pa, pb) * scene.metres_per_unit > options.length) continue;
@@ -37,7 +56,10 @@ ShadowEdge find_shadow_edge(const Scene& scene, const ShadowEdgeOptions& options
   for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
     if (scene.object_names[scene.triangle_object[t]] != options.object) continue;
     edge.triangles.push_back(t);
-    const std::vector<glm::dvec3> ends = crossings(scene, t, options);
+  }
+  const double light = mean_luma(scene, edge.triangles);
+  for (const std::uint32_t t : edge.triangles) {
+    const std::vector<glm::dvec3> ends = crossings(scene, t, light, options);
     if (ends.size() == 1) edge.points.push_back(from_glm(glm::vec3(ends[0])));
     for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
       for (std::size_t j = i + 1; j < ends.size(); ++j) {

@@ -18,8 +18,9 @@ struct ShadowEdgeOptions {
 };
 
 // A mesh edge crosses the shadow's edge where the luma (Rec. 709) of the illuminance at its ends
-// differs by more than `drop` times the larger one and it is at most `length` long. The crossing
-// lies where the value, linear along the mesh edge, is the mean of both. In a triangle
+// differs by more than `drop` times the larger one, which is at least the object's mean (nobody
+// sees edges in the dark), and it is at most `length` long. The crossing lies where the value,
+// linear along the mesh edge, is the mean of both. In a triangle
 // with two crossings (three: every pair) the straight line between them is a piece of the shadow's
 // edge; a lone crossing counts as a point.
 struct ShadowEdge {

@@ -226,6 +226,10 @@ TEST(LightLeak, FindsTheEdgeOfAShadow) {
   strict = {};
   strict.drop = 0.95;
   EXPECT_TRUE(find_shadow_edge(staged.scene(), strict).points.empty());
+  Scene dark = staged.scene();  // an edge far below the mean light
+  for (std::size_t i = 0; i < dark.positions.size(); ++i)
+    if (dark.positions[i].x < 0.25f) dark.illumination[i] = {1, 1, 1};
+  EXPECT_EQ(find_shadow_edge(dark, {}).length, edge.length);
   const NearPoints near(edge.points, 0.1);
   EXPECT_NEAR(near.distance({0.55, 0.5, 0}), 0.04375, 1e-3);
   EXPECT_TRUE(std::isinf(near.distance({0.7, 0.5, 0})));
