@@ -44,11 +44,12 @@ void add_picture_options(CLI::App& app, CommandLine& l) {
   app.add_option_function<std::string>(
          "--unit",
          [&l](const std::string& text) {
-           l.unit = parse_unit(text);
-           if (!l.unit)
+           const std::optional<double> unit = parse_unit(text);
+           if (!unit)
              throw CLI::ValidationError(
                  "--unit",
                  fmt::format("{}: give m, cm, mm, in, ft, km or metres (1e-12 to 1e24)", text));
+           l.unit = *unit;
          },
          "length of one scene unit, for the eye's height: m, cm, mm, in, ft, km or metres")
       ->default_str("m");

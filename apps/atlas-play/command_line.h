@@ -18,7 +18,7 @@ struct CommandLine {
   std::optional<bool> baked_textures;  // nothing: chosen by the file
   std::filesystem::path bench;         // a folder; empty: no bench
   bool no_errors = false;              // bench: times only
-  std::optional<double> unit;          // metres a scene unit; nothing: 1
+  double unit = 1;                     // metres a scene unit
   std::string camera;                  // "x,y,z;x,y,z"; empty: looks at the whole
   double fov = 60;
   std::optional<double> key_degrees;  // nothing: 16 in a window, 90 without

@@ -78,7 +78,7 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   const bool baked = line.baked_textures.value_or(textures_hold_light(line.scene));
   Result<ViewScene> scene = load_view(line.scene, baked, context);
   if (!scene.ok()) return scene.status();
-  if (line.unit) scene->metres_per_unit = *line.unit;
+  scene->metres_per_unit = line.unit;
   Result<Camera> camera = camera_of(line, *scene);
   if (!camera.ok()) return camera.status();
   line.play.camera = *camera;

@@ -262,34 +262,36 @@ void size_plot(const Results& results, bool time, std::vector<Plot>& plots) {
   plots.push_back(std::move(plot));
 }
 
+// Distances are from the shadow's edge.
 void leak_plot(const Results& results, std::vector<Plot>& plots) {
-  std::map<std::string, Series> series;
+  const std::pair<const char*, const char*> figures[] = {{"p95", "within 2 texels, 95 %"},
+                                                         {"fixed_p95", "within 10 mm, 95 %"},
+                                                         {"fixed_rms", "within 10 mm, rms"}};
+  std::map<std::string, Panel> meshes;
   for (const Row& row : results.rows) {
     if (row.stage != "light_leak" || !row.failure.empty()) continue;
-    const std::pair<const char*, const char*> figures[] = {
-        {"p95", "within 2 texels of the edge, 95 %"},
-        {"fixed_p95", "within 10 mm of the edge, 95 %"},
-        {"fixed_rms", "within 10 mm of the edge, rms"}};
-    for (const auto& [value, text] : figures) {
-      Series& s = series[row.mesh + ": " + text];
-      s.points.push_back({row.value("texel_mm"), row.value(value), ""});
+    Panel& panel = meshes[row.mesh];
+    panel.title = row.mesh;
+    panel.log_y = false;
+    panel.series.resize(std::size(figures));
+    for (std::size_t i = 0; i < panel.series.size(); ++i) {
+      const auto& [value, text] = figures[i];
+      Series& s = panel.series[i];
+      s.name = text;
       s.lines = true;
+      s.colour = int(i) + 1;
+      s.points.push_back({row.value("texel_mm"), row.value(value), ""});
     }
   }
-  if (series.empty()) return;
-  Panel panel;
-  panel.log_y = false;
-  for (auto& [name, s] : series) {
-    s.name = name;
-    s.colour = int(panel.series.size()) + 1;
-    panel.series.push_back(s);
-  }
-  plots.push_back({"light_leak.svg",
-                   "Light leak along a shadow on the door",
-                   "texel on the surface, mm",
-                   "error, display values",
-                   {std::move(panel)},
-                   true});
+  if (meshes.empty()) return;
+  Plot plot{"light_leak.svg",
+            "Light leak along the edge of a shadow on the door",
+            "texel on the surface, mm",
+            "error, display values",
+            {},
+            true};
+  for (auto& [mesh, panel] : meshes) plot.panels.push_back(std::move(panel));
+  plots.push_back(std::move(plot));
 }
 
 }  // namespace

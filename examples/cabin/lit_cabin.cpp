@@ -18,22 +18,21 @@ Mesh coarse_cabin(std::size_t triangles) {
 }
 
 void light_cabin(Mesh& mesh, std::size_t triangles, const LightingOptions& options,
-                 const atlas::Context& context,
-                 const std::function<void(const std::string&)>& say) {
+                 const atlas::Context& context) {
   const Shell shell = shell_of(mesh);
   const Tracer tracer(shell.positions, shell.triangles);
   const Lighting lighting(tracer, options);
   lighting.light_directly(mesh, 0, context);
   if (context.cancelled()) return;
-  say("direct light");
+  context.say("direct light");
   lighting.light_indirectly(mesh, context);
   if (context.cancelled()) return;
-  say("indirect light");
+  context.say("indirect light");
   refine(mesh, {triangles, 12}, lighting, context);
   if (context.cancelled()) return;
   show_emitters(mesh);
-  say(fmt::format("refined: {} triangles, {} vertices", mesh.triangles.size(),
-                  mesh.vertices.size()));
+  context.say(fmt::format("refined: {} triangles, {} vertices", mesh.triangles.size(),
+                          mesh.vertices.size()));
 }
 
 }  // namespace cabin

@@ -1,9 +1,6 @@
 // The whole cabin, as atlas-make-cabin writes it.
 #pragma once
 
-#include <functional>
-#include <string>
-
 #include "examples/cabin/refine.h"
 
 namespace cabin {
@@ -14,11 +11,9 @@ int default_samples(std::size_t triangles);
 // The cabin that light_cabin() refines to `triangles`, unlit.
 Mesh coarse_cabin(std::size_t triangles);
 
-// Lights it and refines it; `say` hears of each step that is done. Once the context is cancelled
-// the mesh is left half made.
-void light_cabin(
-    Mesh& mesh, std::size_t triangles, const LightingOptions& options,
-    const atlas::Context& context,
-    const std::function<void(const std::string&)>& say = [](const std::string&) {});
+// Lights it and refines it; the context is told of each step that is done. Once it is cancelled the
+// mesh is left half made.
+void light_cabin(Mesh& mesh, std::size_t triangles, const LightingOptions& options,
+                 const atlas::Context& context);
 
 }  // namespace cabin

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "apps/common/files.h"
 #include "apps/common/options.h"
@@ -87,14 +88,16 @@ atlas::Status run(const Arguments& a, atlas::app::Terminal& terminal) {
   if (atlas::Status s = check(a); !s.ok()) return s;
   const atlas::Context context = terminal.context(a.threads);
   const double start = atlas::cpu_seconds();
-  const auto say = [&](const std::string& line) {
+  const auto say = [&](std::string_view line) {
     terminal.line(fmt::format("{:7.1f} s  {}", atlas::cpu_seconds() - start, line));
   };
   cabin::Mesh mesh = cabin::coarse_cabin(a.triangles);
   if (atlas::Status s = check_textures_stay(a, mesh); !s.ok()) return s;
   say(fmt::format("coarse mesh: {} triangles, {} vertices, {} objects", mesh.triangles.size(),
                   mesh.vertices.size(), mesh.objects.size()));
-  cabin::light_cabin(mesh, a.triangles, a.lighting, context, say);
+  atlas::Context lighting = context;
+  lighting.warn = say;  // of its steps
+  cabin::light_cabin(mesh, a.triangles, a.lighting, lighting);
   if (context.cancelled()) return atlas::Status::cancelled();
   if (std::abs(double(mesh.triangles.size()) / double(a.triangles) - 1) > 0.03)
     return {atlas::ErrorCode::no_solution,

@@ -77,14 +77,20 @@ bool BoxFit::pack_at(double scale, std::uint32_t pages, BoxLayout& layout) {
   return pack_grouped(pages, layout) || pack_jointly(pages, layout) || pack_searched(pages, layout);
 }
 
-// Many items leave no gap of a single page empty, whatever the method: the fastest is taken.
-bool BoxFit::pack_many(BoxLayout& layout) const {
+Problem BoxFit::problem_of(std::span<const Extent> items, Extent page,
+                           std::uint32_t max_pages) const {
   Problem problem;
-  problem.items = boxes_;
-  problem.page = page_;
+  problem.items = items;
+  problem.page = page;
   problem.allow_rotation = options_.allow_rotation;
   problem.context = &context_;
-  problem.max_pages = 1;
+  problem.max_pages = max_pages;
+  return problem;
+}
+
+// Many items leave no gap of a single page empty, whatever the method: the fastest is taken.
+bool BoxFit::pack_many(BoxLayout& layout) const {
+  const Problem problem = problem_of(boxes_, page_, 1);
   Layout packed = pack_widest_first(problem);
   if (packed.unplaced > 0) return false;
   layout.placements = std::move(packed.placements);
@@ -132,12 +138,7 @@ bool BoxFit::place(std::uint32_t item, std::uint32_t page, FreeRects& free,
 // First fit over all pages at once: denser than groups when the pages are nearly full, since the
 // small items of all groups fill the gaps of every page.
 bool BoxFit::pack_jointly(std::uint32_t pages, BoxLayout& layout) {
-  Problem problem;
-  problem.items = boxes_;
-  problem.page = page_;
-  problem.allow_rotation = options_.allow_rotation;
-  problem.context = &context_;
-  problem.max_pages = pages;
+  const Problem problem = problem_of(boxes_, page_, pages);
   const bool fast = options_.preset == PackPreset::fast;
   for (Order order : {Order::area, Order::height}) {
     if (keep(pack_gaps(problem, sorted_items(boxes_, order)), layout)) return true;
@@ -155,11 +156,7 @@ bool BoxFit::pack_jointly(std::uint32_t pages, BoxLayout& layout) {
 // dozen boxes, for a hundredth of a second.
 bool BoxFit::pack_searched(std::uint32_t pages, BoxLayout& layout) {
   if (options_.preset == PackPreset::fast || boxes_.size() >= kManyItems) return false;
-  Problem problem;
-  problem.items = boxes_;
-  problem.page = page_;
-  problem.allow_rotation = options_.allow_rotation;
-  problem.context = &context_;
+  const Problem problem = problem_of(boxes_, page_, kNoPage);
   SearchLimits limits = standard_page_limits(boxes_.size());
   limits.enough_pages = pages;
   PackResult log;
@@ -192,12 +189,7 @@ Extent BoxFit::shrink_page(std::uint32_t page, BoxLayout& layout) const {
   for (const Extent& texels : smaller_pages(options_)) {
     const Extent size{texels.width / options_.alignment, texels.height / options_.alignment};
     if (size.area() < area) continue;
-    Problem problem;
-    problem.items = sizes;
-    problem.page = size;
-    problem.allow_rotation = options_.allow_rotation;
-    problem.context = &context_;
-    problem.max_pages = 1;
+    const Problem problem = problem_of(sizes, size, 1);
     const Layout packed =
         pack_first_fit(problem, sorted_items(sizes, Order::height), PlaceRule::bottom_left);
     if (packed.unplaced > 0) continue;

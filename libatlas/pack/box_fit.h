@@ -39,6 +39,7 @@ class BoxFit {
  private:
   bool box_fits_page(const Extent& box) const;
   bool group(std::uint32_t pages, BoxLayout& layout) const;
+  Problem problem_of(std::span<const Extent> items, Extent page, std::uint32_t max_pages) const;
   bool pack_many(BoxLayout& layout) const;
   bool pack_grouped(std::uint32_t pages, BoxLayout& layout);
   bool pack_jointly(std::uint32_t pages, BoxLayout& layout);

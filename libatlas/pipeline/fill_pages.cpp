@@ -71,12 +71,12 @@ Result<PageLayout> cut_to_fill(const PlainUvs& uvs, const LayoutOptions& options
     seams_before = cut.seam_length;
     const double seams = (cut.seam_length - charts.seam_length) / root_area;
     const double least_gain = std::max(kLeastGain, kSeamPrice * seams);
-    if (!((1 + least_gain) * goal.covered(*best) < 1))
-      continue;  // no layout is full enough for that
+    const double wanted = (1 + least_gain) * goal.covered(*best);
+    if (wanted >= 1) continue;  // more than full pages hold
     Result<PageLayout> layout = lay_out(cut, uvs.density, options, part(double(k) + 1));
     if (!layout.ok() && layout.status().code() != ErrorCode::no_solution) return layout;
     if (!layout.ok()) break;  // gutters around pieces take more than there is; more so around less
-    if (!(goal.covered(*layout) >= (1 + least_gain) * goal.covered(*best))) continue;
+    if (goal.covered(*layout) < wanted) continue;
     best = std::move(layout);
     charts = std::move(cut);
     if (goal.reached(*best)) break;

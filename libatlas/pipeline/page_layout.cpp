@@ -77,6 +77,14 @@ double uv_utilization(const ChartSet& charts, const PageLayout& layout) {
   return page_area > 0 ? area / page_area : 0;
 }
 
+// Area of the charts at scale 1, texels.
+double full_texels(const ChartSet& charts, std::span<const Vec2d> texels_per_unit) {
+  double texels = 0;
+  for (std::size_t c = 0; c < charts.charts.size(); ++c)
+    texels += charts.charts[c].distortion.uv_area * texels_per_unit[c].x * texels_per_unit[c].y;
+  return texels;
+}
+
 // The packer's refusal in the words of this stage.
 Status no_room(const ChartSet& charts, const LayoutOptions& options) {
   return {ErrorCode::no_solution,
@@ -142,9 +150,7 @@ Result<PageLayout> lay_out(const ChartSet& charts, std::span<const Vec2d> texels
   }
   layout.outlines = options.outlines;
   layout.uv_utilization = uv_utilization(charts, layout);
-  double texels = 0;  // at scale 1
-  for (std::size_t c = 0; c < items.size(); ++c)
-    texels += charts.charts[c].distortion.uv_area * texels_per_unit[c].x * texels_per_unit[c].y;
+  const double texels = full_texels(charts, texels_per_unit);
   if (texels > 0) layout.with_holes = 1 + fitted->hole_area / texels;
   return layout;
 }
@@ -170,14 +176,12 @@ constexpr double kFull = 0.88;
 bool worth_outlining(const ChartSet& charts, std::span<const Vec2d> texels_per_unit) {
   constexpr std::size_t kMany = 1000;
   if (charts.charts.size() < kMany) return true;
-  double area = 0, box_area = 0;
+  double box_area = 0;
   for (std::size_t c = 0; c < charts.charts.size(); ++c) {
-    const Chart& chart = charts.charts[c];
-    const double texels = texels_per_unit[c].x * texels_per_unit[c].y;
-    area += chart.distortion.uv_area * texels;
-    box_area += chart.size.x * chart.size.y * texels;
+    const Vec2d size = charts.charts[c].size, density = texels_per_unit[c];
+    box_area += size.x * size.y * density.x * density.y;
   }
-  return area < kFull * box_area;
+  return full_texels(charts, texels_per_unit) < kFull * box_area;
 }
 
 // A page for uvs alone of which charts cover less is packed again with PackPreset::best: two or

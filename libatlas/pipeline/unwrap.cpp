@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "libatlas/pipeline/assemble_world.h"
+#include "libatlas/pipeline/fill_pages.h"
 #include "libatlas/pipeline/part_gaps.h"
 #include "libatlas/pipeline/round_uvs.h"
 

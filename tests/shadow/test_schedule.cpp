@@ -232,7 +232,6 @@ TEST(Schedule, AHandThatRunsAwayFromTheKeysRefreshesThem) {
   EXPECT_GT(refreshes, 1);
 }
 
-// Moved by hand: blended shadows arrive after at most two intervals, one map serves when it rests.
 // A light with a path whose speed is changed by hand: at rest, moving, at rest, ten times as fast.
 TEST(Schedule, AScriptedLightThatStopsStartsOrHurriesStaysNearItsKeys) {
   ScheduleOptions options;
@@ -258,6 +257,7 @@ TEST(Schedule, AScriptedLightThatStopsStartsOrHurriesStaysNearItsKeys) {
   }
 }
 
+// Moved by hand: blended shadows arrive after at most two intervals, one map serves when it rests.
 TEST(Schedule, AHandMovedLightArrivesWithTheStatedDelay) {
   ScheduleOptions o;
   KeySchedule schedule(o);
