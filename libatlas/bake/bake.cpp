@@ -83,9 +83,9 @@ void splat_triangle(const TexelTriangle& p, const TriangleLight& lit, const Samp
     const int left = o.x < 0.5 ? -1 : 0, low = o.y < 0.5 ? -1 : 0;
     const LeastSquares::Splat splat(static_cast<float>(o.x - 0.5 - left),
                                     static_cast<float>(o.y - 0.5 - low), weight);
-    LeastSquares::Run run(fit, x0 + left, y + low, splat);
-    lit.row({x0 + o.x, y + o.y}, x1 - x0, [&](int, Lanes rgb) { run.add(rgb); });
-    run.finish();
+    lit.row({x0 + o.x, y + o.y}, x1 - x0, [&](int first, const Lanes* rgb, int n) {
+      fit.add_row({x0 + left + first, y + low, splat}, rgb, n);
+    });
   };
   const auto point = [&](const float* b, float area) {
     const double x = b[0] * p[0].x + b[1] * p[1].x + b[2] * p[2].x - 0.5;
@@ -177,26 +177,41 @@ class OwnTexels {
     own_ = owned_texels(triangles, {box.width, box.height, box.pad, 1 << mip_levels});
   }
 
-  // Calls visit(i, x, y) with each one's number in the box and its place on the page.
+  // Of one row: the first one's number in the box and its place on the page.
+  struct Run {
+    std::size_t first = 0;
+    int x = 0, y = 0, length = 0;
+  };
+
   template <class Visit>
-  void each(const Visit& visit) const {
+  void each_run(const Visit& visit) const {
     const int left = box_.placement.x - box_.pad, bottom = box_.placement.y - box_.pad;
-    std::size_t i = 0;
-    for (int y = bottom; y < bottom + box_.height; ++y)
-      for (int x = left; x < left + box_.width; ++x, ++i)
-        if (own_.empty() || own_[i]) visit(i, x, y);
+    for (int j = 0; j < box_.height; ++j) {
+      const std::size_t row = std::size_t(j) * static_cast<std::size_t>(box_.width);
+      for (int i = 0, end; i < box_.width; i = end) {
+        const bool own = is_own(row + std::size_t(i));
+        for (end = i + 1; end < box_.width && is_own(row + std::size_t(end)) == own;) ++end;
+        if (own) visit(Run{row + std::size_t(i), left + i, bottom + j, end - i});
+      }
+    }
   }
 
  private:
+  bool is_own(std::size_t i) const { return own_.empty() || own_[i] != 0; }
+
   const Box& box_;
   std::vector<std::uint8_t> own_;  // empty: the whole box
 };
 
+// convert(colour) gives the three values to be stored in its first lanes.
 template <class T, class Convert>
 void copy_own(const TexelGrid& in, const OwnTexels& own, Image<T>& page, const Convert& convert) {
-  own.each([&](std::size_t i, int x, int y) {
-    T* to = page.at(x, y);
-    for (int k = 0; k < 3; ++k) to[k] = convert(in.rgb[i][k]);
+  own.each_run([&](const OwnTexels::Run& run) {
+    T* to = page.at(run.x, run.y);
+    for (const Lanes *v = &in.rgb[run.first], *end = v + run.length; v < end; ++v, to += 3) {
+      const auto values = convert(*v);
+      for (int k = 0; k < 3; ++k) to[k] = static_cast<T>(values[k]);
+    }
   });
 }
 
@@ -270,15 +285,16 @@ Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacem
       TexelGrid texels = bake_box(display, box);
       const std::size_t filled = fill_unknown(texels);
       const OwnTexels own(light.charts, box, options.mip_levels);
-      copy_own(texels, own, page.display, quantize8);
-      own.each([&](std::size_t, int x, int y) {
-        taken[std::size_t(y) * options.page_width + std::size_t(x)] = 1;
+      copy_own(texels, own, page.display, quantize_lanes);
+      own.each_run([&](const OwnTexels::Run& run) {
+        std::fill_n(&taken[std::size_t(run.y) * options.page_width + std::size_t(run.x)],
+                    run.length, 1);
       });
       const std::size_t covered = texels.rgb.size() - filled;
       if (linear) {
         texels = bake_box(*linear, box);
         fill_unknown(texels);
-        copy_own(texels, own, page.linear, [](float v) { return v; });
+        copy_own(texels, own, page.linear, [](Lanes v) { return v; });
       }
       const std::lock_guard lock(counting);
       page.triangles += light.charts.charts[placements[i].chart].triangle_count;

@@ -1,44 +1,61 @@
 #include <algorithm>
+#include <cstring>
 
 #include "libatlas/bake/texel_grid.h"
 
 namespace atlas {
 namespace {
 
+using Known = std::vector<std::uint8_t>;
+
 // The next coarser level of a grid or page: means of the known texels, which colour(at) gives.
-template <class Fine, class Known, class Colour>
+template <class Fine, class Colour>
 TexelGrid pull(const Fine& fine, const Known& known, Colour&& colour) {
   TexelGrid coarse((fine.width + 1) / 2, (fine.height + 1) / 2);
+  const auto width = static_cast<std::size_t>(fine.width);
+  std::size_t to = 0;
   for (int y = 0; y < coarse.height; ++y)
-    for (int x = 0; x < coarse.width; ++x) {
+    for (int x = 0; x < coarse.width; ++x, ++to) {
+      const std::size_t at = std::size_t(2 * y) * width + std::size_t(2 * x);
+      const bool two = 2 * x + 1 < fine.width, rows = 2 * y + 1 < fine.height;
+      if (two && rows && (known[at] & known[at + 1] & known[at + width] & known[at + width + 1])) {
+        coarse.rgb[to] =
+            (colour(at) + colour(at + 1) + colour(at + width) + colour(at + width + 1)) * 0.25f;
+        coarse.known[to] = 1;
+        continue;
+      }
       Lanes sum{};
       int n = 0;
-      for (int j = 2 * y; j < std::min(2 * y + 2, fine.height); ++j)
-        for (int i = 2 * x; i < std::min(2 * x + 2, fine.width); ++i) {
-          const std::size_t at = std::size_t(j) * fine.width + i;
-          if (!known[at]) continue;
-          sum += colour(at);
+      for (std::size_t j = 0; j < (rows ? 2 : 1); ++j)
+        for (std::size_t i = at + j * width; i < at + j * width + (two ? 2 : 1); ++i) {
+          if (!known[i]) continue;
+          sum += colour(i);
           ++n;
         }
       if (n == 0) continue;
-      const std::size_t at = std::size_t(y) * coarse.width + x;
-      coarse.rgb[at] = sum / static_cast<float>(n);
-      coarse.known[at] = 1;
+      coarse.rgb[to] = sum / static_cast<float>(n);
+      coarse.known[to] = 1;
     }
   return coarse;
 }
 
 // Unknown texels take the bilinear value of the next coarser level, all of whose texels are filled.
-template <class Fine, class Known, class Set>
+template <class Fine, class Set>
 void push(const TexelGrid& coarse, const Fine& fine, const Known& known, Set&& set) {
   for (int y = 0; y < fine.height; ++y) {
     const int y0 = y / 2, y1 = std::clamp(y0 + (y & 1 ? 1 : -1), 0, coarse.height - 1);
+    const std::size_t from = std::size_t(y) * static_cast<std::size_t>(fine.width);
     for (int x = 0; x < fine.width; ++x) {
-      const std::size_t at = std::size_t(y) * fine.width + x;
-      if (known[at]) continue;
+      const std::uint8_t* here = &known[from + std::size_t(x)];
+      if (*here) {  // on to the next unknown one
+        const void* next = std::memchr(here, 0, static_cast<std::size_t>(fine.width - x));
+        if (!next) break;
+        x += static_cast<int>(static_cast<const std::uint8_t*>(next) - here);
+      }
       const int x0 = x / 2, x1 = std::clamp(x0 + (x & 1 ? 1 : -1), 0, coarse.width - 1);
       const auto c = [&](int i, int j) { return coarse.rgb[std::size_t(j) * coarse.width + i]; };
-      set(at, 0.5625f * c(x0, y0) + 0.1875f * (c(x1, y0) + c(x0, y1)) + 0.0625f * c(x1, y1));
+      set(from + std::size_t(x),
+          0.5625f * c(x0, y0) + 0.1875f * (c(x1, y0) + c(x0, y1)) + 0.0625f * c(x1, y1));
     }
   }
 }
@@ -63,8 +80,7 @@ void fill_unknown(const std::vector<std::uint8_t>& known, Image8& page) {
   if (std::find(known.begin(), known.end(), 0) == known.end()) return;
   TexelGrid coarse = pull(page, known, [&](std::size_t at) {
     const std::uint8_t* t = &page.texels[3 * at];
-    return Lanes{static_cast<float>(t[0]), static_cast<float>(t[1]), static_cast<float>(t[2]), 0} /
-           255.0f;
+    return __builtin_convertvector(IntLanes{t[0], t[1], t[2], 0}, Lanes) / 255.0f;
   });
   fill_unknown(coarse);
   push(coarse, page, known, [&](std::size_t at, Lanes rgb) {

@@ -1,6 +1,10 @@
 #include "libatlas/bake/least_squares.h"
 
 #include <algorithm>
+#include <cstring>
+#include <span>
+
+#include "libatlas/texture/wide_lanes.h"
 
 namespace atlas {
 namespace {
@@ -25,6 +29,122 @@ constexpr int kSweeps = 3;
 
 }  // namespace
 
+struct LeastSquares::Kernels {
+  static void add_narrow(Cell* lower, Cell* upper, const Splat& s, std::span<const Lanes> rgb1) {
+    Lanes east_lower{}, east_upper{}, east_pair{};
+    for (const Lanes& c : rgb1) {
+      lower->value += east_lower + s.value_[0] * c;
+      lower->pair += east_pair + s.pair_[0];
+      upper->value += east_upper + s.value_[2] * c;
+      upper->pair += s.pair_[2];
+      east_lower = s.value_[1] * c;
+      east_upper = s.value_[3] * c;
+      east_pair = s.pair_[1];
+      ++lower;
+      ++upper;
+    }
+    lower->value += east_lower;
+    lower->pair += east_pair;
+    upper->value += east_upper;
+  }
+
+  // The same sums, a cell's value and pair at once.
+  ATLAS_WIDE static void add_wide(Cell* lower, Cell* upper, const Splat& s,
+                                  std::span<const Lanes> rgb1) {
+    const Lanes2 west_lower = join_lanes(s.value_[0], s.pair_[0]),
+                 to_east = join_lanes(s.value_[1], s.pair_[1]);
+    const Lanes2 west_upper = join_lanes(s.value_[2], s.pair_[2]),
+                 to_upper = join_lanes(s.value_[3], Lanes{});
+    Lanes2 east_lower{}, east_upper{};
+    const Lanes ones = splat_lanes(1);
+    for (const Lanes& c : rgb1) {
+      const Lanes2 colour = join_lanes(c, ones);
+      Lanes2 low, high;
+      std::memcpy(&low, lower, sizeof low);
+      std::memcpy(&high, upper, sizeof high);
+      low += east_lower + west_lower * colour;
+      high += east_upper + west_upper * colour;
+      std::memcpy(static_cast<void*>(lower), &low, sizeof low);
+      std::memcpy(static_cast<void*>(upper), &high, sizeof high);
+      east_lower = to_east * colour;
+      east_upper = to_upper * colour;
+      ++lower;
+      ++upper;
+    }
+    lower->value += first_of(east_lower);
+    lower->pair += s.pair_[1];
+    upper->value += first_of(east_upper);
+  }
+
+  // One texel, or two of equal parity in a row.
+  struct One {
+    ATLAS_INLINE static Lanes load(const Lanes* texel) { return *texel; }
+    ATLAS_INLINE static Lanes value(const Cell* c) { return c->value; }
+    ATLAS_INLINE static Lanes pair(const Cell* c) { return c->pair; }
+    template <int k>
+    ATLAS_INLINE static Lanes lane(Lanes v) {
+      return __builtin_shufflevector(v, v, k, k, k, k);
+    }
+    ATLAS_INLINE static void store(Lanes v, Lanes* texel) { *texel = v; }
+  };
+  struct Two {
+    ATLAS_INLINE static Lanes2 load(const Lanes* t) { return join_lanes(t[0], t[2]); }
+    ATLAS_INLINE static Lanes2 value(const Cell* c) { return join_lanes(c[0].value, c[2].value); }
+    ATLAS_INLINE static Lanes2 pair(const Cell* c) { return join_lanes(c[0].pair, c[2].pair); }
+    template <int k>
+    ATLAS_INLINE static Lanes2 lane(Lanes2 v) {
+      return __builtin_shufflevector(v, v, k, k, k, k, k + 4, k + 4, k + 4, k + 4);
+    }
+    ATLAS_INLINE static void store(Lanes2 v, Lanes* t) {
+      t[0] = first_of(v);
+      t[2] = second_of(v);
+    }
+  };
+
+  // Solves the equation of a texel, or two, for its value; `s` is from one row to the next.
+  template <class W>
+  ATLAS_INLINE static void relax(const Cell* c, std::ptrdiff_t s, const Bounds& bounds, Lanes* v) {
+    const Cell* d = c - s;
+    const auto pair = W::pair(c), value = W::value(c);
+    const auto across = W::template lane<0>(pair) * W::load(v + 1) +
+                        W::template lane<0>(W::pair(c - 1)) * W::load(v - 1);
+    const auto above = W::template lane<1>(pair) * W::load(v + s) +
+                       W::template lane<2>(pair) * W::load(v + s + 1) +
+                       W::template lane<3>(pair) * W::load(v + s - 1);
+    const auto below = W::template lane<1>(W::pair(d)) * W::load(v - s) +
+                       W::template lane<2>(W::pair(d - 1)) * W::load(v - s - 1) +
+                       W::template lane<3>(W::pair(d + 1)) * W::load(v - s + 1);
+    W::store(clamp_lanes((value - across - above - below) * W::template lane<3>(value), bounds.low,
+                         bounds.high),
+             v);
+  }
+
+  // Every second texel of a row.
+  struct Texels {
+    const Cell* cells;
+    Lanes* x;
+    int begin, end;
+  };
+
+  static void relax_narrow(const Texels& t, std::ptrdiff_t stride, const Bounds& bounds) {
+    for (int i = t.begin; i < t.end; i += 2) relax<One>(t.cells + i, stride, bounds, t.x + i);
+  }
+
+  ATLAS_WIDE static void relax_wide(const Texels& t, std::ptrdiff_t stride, const Bounds& bounds) {
+    int i = t.begin;
+    for (; i + 2 < t.end; i += 4) relax<Two>(t.cells + i, stride, bounds, t.x + i);
+    if (i < t.end) relax<One>(t.cells + i, stride, bounds, t.x + i);
+  }
+};
+
+void LeastSquares::add_row(const Run& run, const Lanes* rgb1, int n) {
+  if (n < 1) return;
+  Cell* lower = &cells_[index(run.x, run.y)];
+  const std::span<const Lanes> colours(rgb1, static_cast<std::size_t>(n));
+  (has_wide_vectors ? Kernels::add_wide : Kernels::add_narrow)(lower, lower + stride_, run.splat,
+                                                               colours);
+}
+
 // What untouched texels would add to a look-up their touched neighbours' values take over: a
 // constant then stays one. Returns the largest diagonal element.
 float LeastSquares::drop_untouched() {
@@ -46,79 +166,81 @@ float LeastSquares::drop_untouched() {
   return largest;
 }
 
-// Adds the differences between touched neighbours (north-south and east-west) to the matrix.
-// Diagonal elements become their inverses; 0 where no sample came.
-void LeastSquares::smooth(float weight) {
-  const auto touched = [](const Cell& c) { return c.value[3] > 0; };
-  std::vector<unsigned char> count(cells_.size());
-  for (int y = 0; y < height_; ++y)
-    for (int x = 0; x < width_; ++x) {
-      const std::size_t at = index(x, y);
-      if (!touched(cells_[at])) continue;
-      const std::size_t neighbours[2] = {at + 1, at + stride_};
-      for (int k = 0; k < 2; ++k) {
-        if (!touched(cells_[neighbours[k]])) continue;
-        cells_[at].pair[k] -= weight;
-        ++count[at];
-        ++count[neighbours[k]];
-      }
-    }
-  for (std::size_t i = 0; i < cells_.size(); ++i)
-    if (touched(cells_[i]))
-      cells_[i].value[3] = 1 / (cells_[i].value[3] + weight * static_cast<float>(count[i]));
-}
-
 // The mean of the samples around each texel, weighted by its tent: the matrix lumped to its
 // diagonal. Before the differences are added, next to which the sums of small charts would round.
-std::vector<Lanes> LeastSquares::start() const {
-  std::vector<Lanes> x(cells_.size(), Lanes{});
-  for (int j = 0; j < height_; ++j)
-    for (int i = 0; i < width_; ++i) {
-      const std::size_t at = index(i, j);
-      const Cell& c = cells_[at];
-      if (!(c.value[3] > 0)) continue;
-      const Cell *west = &c - 1, *south = &c - stride_;
-      const float row = c.value[3] + c.pair[0] + c.pair[1] + c.pair[2] + c.pair[3] + west->pair[0] +
-                        south->pair[1] + south[-1].pair[2] + south[1].pair[3];
-      x[at] = c.value / row;
-    }
-  return x;
+void LeastSquares::start_row(int j, Solution& to) const {
+  for (int i = 0; i < width_; ++i) {
+    const std::size_t at = index(i, j);
+    const Cell& c = cells_[at];
+    if (!(c.value[3] > 0)) continue;
+    const Cell *west = &c - 1, *south = &c - stride_;
+    const float row = c.value[3] + c.pair[0] + c.pair[1] + c.pair[2] + c.pair[3] + west->pair[0] +
+                      south->pair[1] + south[-1].pair[2] + south[1].pair[3];
+    to.x[at] = c.value / row;
+    to.known[std::size_t(j) * width_ + i] = 1;
+  }
+}
+
+// Adds the differences between touched neighbours (north-south and east-west) to the matrix.
+// Diagonal elements become their inverses; 0 where no sample came.
+void LeastSquares::smooth_row(int j, float weight) {
+  bool touched = false, east = cells_[index(0, j)].value[3] > 0;
+  for (int i = 0; i < width_; ++i) {
+    Cell* c = &cells_[index(i, j)];
+    const bool west = touched;
+    touched = east;
+    east = c[1].value[3] > 0;
+    if (!touched) continue;
+    // Inverses, as the row below has them, are above 0 where their elements were.
+    const bool north = c[stride_].value[3] > 0, south = (c - stride_)->value[3] > 0;
+    // Whole vectors, as they will be read soon: processors wait for parts to be put together.
+    c->pair -= Lanes{east ? weight : 0, north ? weight : 0, 0, 0};
+    Lanes value = c->value;
+    value[3] = 1 / (value[3] + weight * static_cast<float>(east + north + west + south));
+    c->value = value;
+  }
 }
 
 // Even columns before odd ones: texels of equal parity do not wait for one another.
-void LeastSquares::sweep(bool forward, float low, float high, std::vector<Lanes>& x) const {
-  const auto s = static_cast<std::ptrdiff_t>(stride_);
-  for (int row = 0; row < height_; ++row) {
-    const int j = forward ? row : height_ - 1 - row;
-    for (int pass = 0; pass < 2; ++pass)
-      for (int i = forward ? pass : 1 - pass; i < width_; i += 2) {
-        const std::size_t at = index(i, j);
-        const Cell *c = &cells_[at], *d = c - s;
-        Lanes* v = &x[at];
-        const Lanes across = c->pair[0] * v[1] + c[-1].pair[0] * v[-1];
-        const Lanes above = c->pair[1] * v[s] + c->pair[2] * v[s + 1] + c->pair[3] * v[s - 1];
-        const Lanes below =
-            d->pair[1] * v[-s] + d[-1].pair[2] * v[-s - 1] + d[1].pair[3] * v[-s + 1];
-        *v = clamp_lanes((c->value - across - above - below) * c->value[3], low, high);
-      }
-  }
+void LeastSquares::sweep_row(int j, int first, const Bounds& bounds, Solution& to) const {
+  const std::size_t at = index(0, j);
+  for (const int begin : {first, 1 - first})
+    (has_wide_vectors ? Kernels::relax_wide : Kernels::relax_narrow)(
+        {&cells_[at], &to.x[at], begin, width_}, static_cast<std::ptrdiff_t>(stride_), bounds);
+}
+
+// The texels without the border around them.
+TexelGrid LeastSquares::without_border(Solution&& from) const {
+  for (int j = 0; j < height_; ++j)
+    std::copy_n(&from.x[index(0, j)], width_, &from.x[std::size_t(j) * width_]);
+  TexelGrid out(0, 0);
+  out.width = width_;
+  out.height = height_;
+  from.x.resize(from.known.size());
+  out.rgb = std::move(from.x);
+  out.known = std::move(from.known);
+  return out;
 }
 
 TexelGrid LeastSquares::solve(float low, float high) && {
-  const float largest = drop_untouched();
-  std::vector<Lanes> x = start();
-  smooth(kSmoothness * std::min(1.0f, largest / kUsual));
-  for (int i = 0; i < kSweeps; ++i) sweep(i % 2 == 0, low, high, x);
-  std::vector<unsigned char> touched(cells_.size());
-  for (std::size_t i = 0; i < cells_.size(); ++i) touched[i] = cells_[i].value[3] > 0;
-  std::vector<Cell>().swap(cells_);
-  TexelGrid out(width_, height_);
-  for (int j = 0; j < height_; ++j) {
-    const std::size_t from = index(0, j), to = std::size_t(j) * width_;
-    std::copy_n(&x[from], width_, &out.rgb[to]);
-    std::copy_n(&touched[from], width_, &out.known[to]);
+  const Bounds bounds{low, high};
+  const float weight = kSmoothness * std::min(1.0f, drop_untouched() / kUsual);
+  Solution solution{std::vector<Lanes>(cells_.size()),
+                    std::vector<unsigned char>(std::size_t(width_) * height_)};
+  // What comes before and the first sweep, in one pass through memory: a texel's start takes the
+  // matrix of the row below it as it was, its sweep the start of the row above it.
+  for (int j = 0; j <= height_; ++j) {
+    if (j < height_) start_row(j, solution);
+    if (j == 0) continue;
+    smooth_row(j - 1, weight);
+    sweep_row(j - 1, 0, bounds, solution);
   }
-  return out;
+  for (int i = 1; i < kSweeps; ++i)
+    for (int j = 0; j < height_; ++j)
+      i % 2 == 0 ? sweep_row(j, 0, bounds, solution)
+                 : sweep_row(height_ - 1 - j, 1, bounds, solution);
+  std::vector<Cell>().swap(cells_);
+  return without_border(std::move(solution));
 }
 
 }  // namespace atlas

@@ -13,7 +13,7 @@ namespace atlas {
 // normal equations' matrix couples a texel with its eight neighbours; it is symmetric, so four of
 // the eight are stored, and accumulated sample by sample.
 class LeastSquares {
-  struct Cell {
+  struct alignas(32) Cell {
     Lanes value{};  // right-hand side of R, G, B; diagonal element
     Lanes pair{};   // with the east, north, north-east neighbours; with the north-west one
   };
@@ -58,34 +58,14 @@ class LeastSquares {
     d[1].value += s.value_[3] * rgb1;
   }
 
-  // Adds samples of one row, one texel apart: each cell is then read and written once for the two
-  // samples beside it.
-  class Run {
-   public:
-    Run(LeastSquares& fit, int x, int y, const Splat& s)
-        : lower_(&fit.cells_[fit.index(x, y)]), upper_(lower_ + fit.stride_), splat_(s) {}
-    void add(Lanes rgb1) {
-      lower_->value += east_lower_ + splat_.value_[0] * rgb1;
-      lower_->pair += east_pair_ + splat_.pair_[0];
-      upper_->value += east_upper_ + splat_.value_[2] * rgb1;
-      upper_->pair += splat_.pair_[2];
-      east_lower_ = splat_.value_[1] * rgb1;
-      east_upper_ = splat_.value_[3] * rgb1;
-      east_pair_ = splat_.pair_[1];
-      ++lower_;
-      ++upper_;
-    }
-    void finish() {
-      lower_->value += east_lower_;
-      lower_->pair += east_pair_;
-      upper_->value += east_upper_;
-    }
-
-   private:
-    Cell *lower_, *upper_;
-    Splat splat_;
-    Lanes east_lower_{}, east_upper_{}, east_pair_{};
+  // Where a row of samples begins, one texel apart, each as the splat says.
+  struct Run {
+    int x, y;
+    const Splat& splat;
   };
+
+  // Adds n samples of a row: each cell is then read and written once for the two samples beside it.
+  void add_row(const Run& run, const Lanes* rgb1, int n);
 
   // The solution, clamped to [low, high], known where a sample has come. Once only: it uses the
   // sums up, and frees them before it copies.
@@ -95,10 +75,21 @@ class LeastSquares {
   // The grid has a border of cells that nothing touches, so that loops need no tests at its sides.
   std::size_t index(int x, int y) const { return (y + 1) * stride_ + x + 1; }
 
+  struct Kernels;  // with and without wide vectors
+
+  struct Bounds {
+    float low, high;
+  };
+  struct Solution {
+    std::vector<Lanes> x;              // with the border
+    std::vector<unsigned char> known;  // without
+  };
+
   float drop_untouched();
-  std::vector<Lanes> start() const;
-  void smooth(float weight);
-  void sweep(bool forward, float low, float high, std::vector<Lanes>& x) const;
+  void start_row(int j, Solution& to) const;
+  void smooth_row(int j, float weight);
+  void sweep_row(int j, int first, const Bounds& bounds, Solution& to) const;
+  TexelGrid without_border(Solution&& from) const;
 
   int width_, height_;
   std::size_t stride_;

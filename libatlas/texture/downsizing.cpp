@@ -20,12 +20,8 @@ Lanes load(const Texel& t) {
   return v;
 }
 
-Lanes larger(Lanes a, Lanes b) {
-  return a > b ? a : b;
-}
-
 Lanes distance(Lanes a, Lanes b) {
-  return larger(a - b, b - a);
+  return larger_lanes(a - b, b - a);
 }
 
 float largest_channel(Lanes v) {
@@ -66,8 +62,9 @@ int halve_covered(const SampledChart& in, int y, Texel* out, Lanes& deviation) {
       break;
     const Lanes a = load(lower[0]), b = load(lower[1]), c = load(upper[0]), d = load(upper[1]);
     Lanes mean = (a + b + c + d) * 0.25f;
-    deviation = larger(deviation, larger(larger(distance(a, mean), distance(b, mean)),
-                                         larger(distance(c, mean), distance(d, mean))));
+    deviation =
+        larger_lanes(deviation, larger_lanes(larger_lanes(distance(a, mean), distance(b, mean)),
+                                             larger_lanes(distance(c, mean), distance(d, mean))));
     mean[3] = 1;
     std::memcpy(static_cast<void*>(&out[x]), &mean, sizeof mean);
   }
@@ -140,7 +137,7 @@ void measure(const SampledChart& full, const SampledChart& small, Downsizing& ou
       if (!(sum[3] > 0)) continue;
       const Lanes error = distance(sum * (1 / sum[3]), load(texels[x]));
       square += error * error;
-      most = larger(most, error);
+      most = larger_lanes(most, error);
     }
     for (int k = 0; k < 3; ++k) out.square_sum += double{square[k]};
   }

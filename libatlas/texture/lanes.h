@@ -13,26 +13,59 @@ inline Lanes splat_lanes(float v) {
   return Lanes{v, v, v, v};
 }
 
+// Of each lane `a > b ? a : b` and `a < b ? a : b`, `b` where one of them is NaN: one instruction,
+// which compilers do not make of that.
+#ifdef __SSE__
+inline Lanes larger_lanes(Lanes a, Lanes b) {
+  return __builtin_ia32_maxps(a, b);
+}
+inline Lanes smaller_lanes(Lanes a, Lanes b) {
+  return __builtin_ia32_minps(a, b);
+}
+#else
+inline Lanes larger_lanes(Lanes a, Lanes b) {
+  return a > b ? a : b;
+}
+inline Lanes smaller_lanes(Lanes a, Lanes b) {
+  return a < b ? a : b;
+}
+#endif
+
 // NaN gives `low`.
 inline Lanes clamp_lanes(Lanes v, float low, float high) {
-  const Lanes l = splat_lanes(low), h = splat_lanes(high);
-  v = v > l ? v : l;
-  return v < h ? v : h;
+  return smaller_lanes(larger_lanes(v, splat_lanes(low)), splat_lanes(high));
 }
+
+// quantize8 of each lane.
+inline IntLanes quantize_lanes(Lanes display) {
+  return __builtin_convertvector(clamp_lanes(display * 255.0f + 0.5f, 0, 255), IntLanes);
+}
+
+namespace srgb_detail {
+
+// Start and rise of a piece, loaded at once.
+inline double piece_as_double(std::int32_t index) {
+  return std::bit_cast<double>(tables.encode[static_cast<std::uint32_t>(index)]);
+}
+
+}  // namespace srgb_detail
 
 // srgb_encode of the first three lanes; the 4th becomes 1.
 inline Lanes srgb_encode_lanes(Lanes linear) {
   using namespace srgb_detail;
   const Lanes v = clamp_lanes(linear, 0, 1);
   const Lanes smallest = splat_lanes(1.0f / (1 << kOctaves));
-  const auto bits = reinterpret_cast<IntLanes>(v > smallest ? v : smallest);
+  const auto bits = reinterpret_cast<IntLanes>(larger_lanes(v, smallest));
   const IntLanes index = (bits - static_cast<std::int32_t>(kFirst)) >> (23 - kPieceBits);
   const IntLanes low = bits & ((1 << (23 - kPieceBits)) - 1);
   const Lanes t = __builtin_convertvector(low, Lanes) * (1.0f / (1 << (23 - kPieceBits)));
-  const float* table = tables.encode;
-  const Lanes a{table[index[0]], table[index[1]], table[index[2]], 1};
-  const Lanes b{table[index[0] + 1], table[index[1] + 1], table[index[2] + 1], 1};
-  Lanes out = v < smallest ? v * 12.92f : a + t * (b - a);
+  using Pieces = double __attribute__((vector_size(16)));
+  const auto p01 =
+      reinterpret_cast<Lanes>(Pieces{piece_as_double(index[0]), piece_as_double(index[1])});
+  const auto p2 = reinterpret_cast<Lanes>(Pieces{piece_as_double(index[2]), 0});
+  const Lanes start = __builtin_shufflevector(p01, p2, 0, 2, 4, 6);
+  const Lanes rise = __builtin_shufflevector(p01, p2, 1, 3, 5, 7);
+  Lanes out = v < smallest ? v * 12.92f : start + t * rise;
   out[3] = 1;
   return out;
 }

@@ -1,6 +1,7 @@
 #include "libatlas/texture/sample_chart.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "libatlas/raster/sampling.h"
 #include "libatlas/texture/triangle_light.h"
@@ -8,9 +9,15 @@
 namespace atlas {
 namespace {
 
-void add(SampledChart::Texel& texel, Lanes rgb, float weight) {
-  for (int k = 0; k < 3; ++k) texel.rgb[k] += weight * rgb[k];
-  texel.weight += weight;
+using Texel = SampledChart::Texel;
+static_assert(sizeof(Texel) == sizeof(Lanes));
+
+// `rgb1`: a colour and a 1.
+void add(Texel& texel, Lanes rgb1, float weight) {
+  Lanes sum;
+  std::memcpy(&sum, &texel, sizeof sum);
+  sum += weight * rgb1;
+  std::memcpy(static_cast<void*>(&texel), &sum, sizeof sum);
 }
 
 }  // namespace
@@ -37,8 +44,10 @@ void sample_chart(const ChartLight& light, std::uint32_t id, double texels_per_u
     TriangleLight lit(light.sampler.prepare(t, 1 / texels_per_unit), &light.tone);
     if (kind == SampleKind::grid) lit.set_position(p);
     const auto row = [&](int, int y, int x0, int x1) {
-      SampledChart::Texel* texels = &out.texels[std::size_t(y) * size.width + x0];
-      lit.row({x0 + 0.5, y + 0.5}, x1 - x0, [&](int j, Lanes rgb) { add(texels[j], rgb, 1); });
+      Texel* texels = &out.texels[std::size_t(y) * size.width + x0];
+      lit.row({x0 + 0.5, y + 0.5}, x1 - x0, [&](int first, const Lanes* rgb, int count) {
+        for (int j = 0; j < count; ++j) add(texels[first + j], rgb[j], 1);
+      });
     };
     const auto point = [&](const float* b, float weight) {
       const double x = b[0] * p[0].x + b[1] * p[1].x + b[2] * p[2].x;
@@ -49,8 +58,8 @@ void sample_chart(const ChartLight& light, std::uint32_t id, double texels_per_u
     };
     sample_triangle(p, box, grid, SampleVisitor{row, point});
   }
-  for (SampledChart::Texel& texel : out.texels)
-    if (texel.weight > 0)
+  for (Texel& texel : out.texels)
+    if (texel.weight > 0 && texel.weight != 1)
       for (float& v : texel.rgb) v /= texel.weight;
 }
 

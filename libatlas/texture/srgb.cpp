@@ -30,8 +30,11 @@ Tables::Tables() {
   }
   threshold[256] = INFINITY;
   for (std::uint32_t i = 0; i < std::size(encode); ++i)
-    encode[i] =
+    encode[i].start =
         static_cast<float>(encode_exact(std::bit_cast<float>(kFirst + (i << (23 - kPieceBits)))));
+  for (std::size_t i = 0; i + 1 < std::size(encode); ++i)
+    encode[i].rise = encode[i + 1].start - encode[i].start;
+  encode[std::size(encode) - 1].rise = 0;
 }
 
 const Tables tables;

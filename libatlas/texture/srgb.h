@@ -16,7 +16,11 @@ inline constexpr std::uint32_t kFirst = (127 - kOctaves) << 23;
 struct Tables {
   float decode[256];
   float threshold[257];  // the linear value from which code i is the nearest
-  float encode[(kOctaves << kPieceBits) + 2];
+  // The value at which a piece begins and by how much it rises; that from 1 on is level.
+  struct alignas(8) Piece {
+    float start, rise;
+  };
+  Piece encode[(kOctaves << kPieceBits) + 1];
   Tables();
 };
 extern const Tables tables;
@@ -42,8 +46,7 @@ inline float srgb_encode(float linear) {
   const std::uint32_t index = (bits - kFirst) >> (23 - kPieceBits);
   const auto low = static_cast<std::int32_t>(bits & ((1u << (23 - kPieceBits)) - 1));
   const float t = static_cast<float>(low) * (1.0f / (1 << (23 - kPieceBits)));
-  const float a = tables.encode[index], b = tables.encode[index + 1];
-  return a + t * (b - a);
+  return tables.encode[index].start + t * tables.encode[index].rise;
 }
 
 // The 8-bit code nearest to 255 times the display value of `linear`, ties upwards: exact.

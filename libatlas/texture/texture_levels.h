@@ -38,27 +38,48 @@ struct TextureWraps {
   TextureWrap u = TextureWrap::repeat, v = TextureWrap::repeat;
 };
 
-// Linear RGB at (x, y) in texels of the level; the 4th lane is about 1.
+// The lower left of the four texels around a position, and how far it is on the way to the others.
+struct TexturePosition {
+  int left, low;
+  float right_share, high_share;
+};
+
+// Linear RGB between four texels; the 4th lane is about 1.
+inline Lanes bilinear(const TextureLevels::Level& level, const TexturePosition& p,
+                      TextureWraps wraps) {
+  const float* decode = srgb_detail::tables.decode;
+  const int c = level.channels, green = c >= 3 ? 1 : 0, blue = c >= 3 ? 2 : 0;
+  const auto texel = [&](const std::uint8_t* t) {
+    return Lanes{decode[t[0]], decode[t[green]], decode[t[blue]], 1};
+  };
+  int x0 = p.left, x1 = p.left + 1, y0 = p.low, y1 = p.low + 1;
+  if (static_cast<unsigned>(x0) >= static_cast<unsigned>(level.width - 1)) {
+    x0 = wrapped(x0, level.width, wraps.u);
+    x1 = wrapped(x1, level.width, wraps.u);
+  }
+  if (static_cast<unsigned>(y0) >= static_cast<unsigned>(level.height - 1)) {
+    y0 = wrapped(y0, level.height, wraps.v);
+    y1 = wrapped(y1, level.height, wraps.v);
+  }
+  const std::uint8_t* lower = level.texels + std::size_t(y0) * level.width * c;
+  const std::uint8_t* upper = level.texels + std::size_t(y1) * level.width * c;
+  const Lanes a = texel(lower + std::ptrdiff_t(x0) * c), b = texel(lower + std::ptrdiff_t(x1) * c);
+  const Lanes d = texel(upper + std::ptrdiff_t(x0) * c), e = texel(upper + std::ptrdiff_t(x1) * c);
+  const Lanes low = a + p.right_share * (b - a), high = d + p.right_share * (e - d);
+  return low + p.high_share * (high - low);
+}
+
+// At (x, y) in texels of the level.
 inline Lanes look_up(const TextureLevels::Level& level, Vec2f at_texel, TextureWraps wraps) {
   // Floor by truncation: coordinates are at most a few repeats below 0 and far from overflow.
   const auto floor_of = [](float v) {
     const int i = static_cast<int>(v);
     return i - (v < static_cast<float>(i));
   };
-  const float fx = at_texel.x - 0.5f, fy = at_texel.y - 0.5f;
-  const int gx = floor_of(fx), gy = floor_of(fy);
-  const float tx = fx - static_cast<float>(gx), ty = fy - static_cast<float>(gy);
-  const int x0 = wrapped(gx, level.width, wraps.u), y0 = wrapped(gy, level.height, wraps.v);
-  const int x1 = wrapped(gx + 1, level.width, wraps.u), y1 = wrapped(gy + 1, level.height, wraps.v);
-  const int c = level.channels, green = c >= 3 ? 1 : 0, blue = c >= 3 ? 2 : 0;
-  const float* decode = srgb_detail::tables.decode;
-  const auto at = [&](int i, int j) {
-    const std::uint8_t* p = level.texels + (std::size_t(j) * level.width + i) * c;
-    return Lanes{decode[p[0]], decode[p[green]], decode[p[blue]], 1};
-  };
-  const Lanes low = at(x0, y0) + tx * (at(x1, y0) - at(x0, y0));
-  const Lanes high = at(x0, y1) + tx * (at(x1, y1) - at(x0, y1));
-  return low + ty * (high - low);
+  const float x = at_texel.x - 0.5f, y = at_texel.y - 0.5f;
+  const int left = floor_of(x), low = floor_of(y);
+  return bilinear(level, {left, low, x - static_cast<float>(left), y - static_cast<float>(low)},
+                  wraps);
 }
 
 }  // namespace atlas

@@ -7,6 +7,7 @@
 
 #include "libatlas/raster/scan.h"
 #include "libatlas/texture/lanes.h"
+#include "libatlas/texture/light_row.h"
 #include "libatlas/texture/luminance.h"
 #include "libatlas/texture/texture_levels.h"
 #include "libatlas/texture/tone.h"
@@ -74,26 +75,25 @@ class TriangleLight {
     return this->at(b);
   }
 
-  // Calls sample(i, colour) for i in [0, n), in this order, at texel positions (at.x + i, at.y).
-  template <class Sample>
-  void row(Vec2d at, int n, Sample&& sample) const {
+  // Calls take(first, colours, count) with the colours of count samples at a time, in their order,
+  // at texel positions (at.x + i, at.y), first <= i < first + count, until n are done.
+  template <class Take>
+  void row(Vec2d at, int n, Take&& take) const {
     const double dx = at.x - origin_.x, dy = at.y - origin_.y;
     const auto b1 = static_cast<float>(gradient_[0].x * dx + gradient_[0].y * dy);
     const auto b2 = static_cast<float>(gradient_[1].x * dx + gradient_[1].y * dy);
     const Lanes e = corner_[0] + b1 * (corner_[1] - corner_[0]) + b2 * (corner_[2] - corner_[0]);
-    if (direct_) {
-      for (int i = 0; i < n; ++i) sample(i, e + static_cast<float>(i) * step_);
-      return;
-    }
-    Vec2f uv;
-    if (level_)
-      uv = {texcoord_[0].x + b1 * (texcoord_[1].x - texcoord_[0].x) +
-                b2 * (texcoord_[2].x - texcoord_[0].x),
-            texcoord_[0].y + b1 * (texcoord_[1].y - texcoord_[0].y) +
-                b2 * (texcoord_[2].y - texcoord_[0].y)};
-    for (int i = 0; i < n; ++i) {
-      const auto f = static_cast<float>(i);
-      sample(i, finish(e + f * step_, {uv.x + f * texture_step_.x, uv.y + f * texture_step_.y}));
+    Lanes colours[kStretch];
+    for (int first = 0; first < n; first += kStretch) {
+      const int count = std::min(kStretch, n - first);
+      if (direct_ || level_ || !tone_) {
+        for (int i = 0; i < count; ++i) colours[i] = e + static_cast<float>(first + i) * step_;
+        if (level_) apply_texture({b1, b2}, first, count, colours);
+        if (tone_ && !direct_) show_all(count, colours);
+      } else {
+        show_stretch(e + static_cast<float>(first) * step_, count, colours);
+      }
+      take(first, static_cast<const Lanes*>(colours), count);
     }
   }
 
@@ -106,22 +106,72 @@ class TriangleLight {
     return tone_ ? show(e) : e;
   }
 
+  static constexpr int kStretch = 16;
+
+  // `b`: barycentric coordinates of the row's begin.
+  void apply_texture(Vec2f b, int first, int count, Lanes* colours) const {
+    const Vec2f uv = {texcoord_[0].x + b.x * (texcoord_[1].x - texcoord_[0].x) +
+                          b.y * (texcoord_[2].x - texcoord_[0].x),
+                      texcoord_[0].y + b.x * (texcoord_[1].y - texcoord_[0].y) +
+                          b.y * (texcoord_[2].y - texcoord_[0].y)};
+    multiply_by_texture({*level_, wraps_, uv, texture_step_, first}, count, colours);
+    for (int i = 0; i < count; ++i) colours[i][3] = 1;
+  }
+
+  void show_all(int count, Lanes* colours) const {
+    if (tone_->op == ToneOperator::linear) return srgb_encode_row(tone_->scale, count, colours);
+    for (int i = 0; i < count; ++i) colours[i] = show(colours[i]);
+  }
+
+  // Of untextured light from e on. Showing costs more than all else that is done for a sample, so
+  // the curve is followed by lines where it hardly differs from them.
+  void show_stretch(Lanes e, int count, Lanes* shown) const {
+    const int last = count - 1;
+    shown[0] = show(e);
+    if (last > 0) shown[last] = show(e + static_cast<float>(last) * step_);
+    show_between(e, 0, last, shown);
+  }
+
+  // Fills shown[i] for first < i < last, from the two ends and what is shown between them.
+  void show_between(Lanes start, int first, int last, Lanes* shown) const {
+    if (last - first < 2) return;
+    const int middle = (first + last) / 2;
+    const float share = static_cast<float>(middle - first) / static_cast<float>(last - first);
+    shown[middle] = show(start + static_cast<float>(middle) * step_);
+    const Lanes chord = shown[first] + share * (shown[last] - shown[first]);
+    const int ends[3] = {first, middle, last};
+    if (!negligible(shown[middle] - chord)) {
+      for (int k = 0; k < 2; ++k) show_between(start, ends[k], ends[k + 1], shown);
+      return;
+    }
+    for (int k = 0; k < 2; ++k) {
+      const int from = ends[k], to = ends[k + 1];
+      const Lanes slope = (shown[to] - shown[from]) / static_cast<float>(to - from);
+      for (int i = from + 1; i < to; ++i)
+        shown[i] = shown[from] + static_cast<float>(i - from) * slope;
+    }
+  }
+
   Lanes show(Lanes e) const {
     if (tone_->op == ToneOperator::linear) return srgb_encode_lanes(e * tone_->scale);
     const Vec3f v = tone_->map({e[0], e[1], e[2]});
     return srgb_encode_lanes(Lanes{v.x, v.y, v.z, 1});
   }
 
-  // A tenth of an 8-bit step at the middle of the edges is far below what the atlas can hold.
-  void try_direct() {
+  // A tenth of an 8-bit step is far below what the atlas can hold.
+  static bool negligible(Lanes off) {
     constexpr float kTolerance = 0.1f / 255;
+    return std::fabs(off[0]) <= kTolerance && std::fabs(off[1]) <= kTolerance &&
+           std::fabs(off[2]) <= kTolerance;
+  }
+
+  // At the middles of the edges.
+  void try_direct() {
     Lanes d[3];
     for (int i = 0; i < 3; ++i) d[i] = show(corner_[i]);
     for (int i = 0; i < 3; ++i) {
       const int j = i == 2 ? 0 : i + 1;
-      const Lanes off = show(0.5f * (corner_[i] + corner_[j])) - 0.5f * (d[i] + d[j]);
-      for (int k = 0; k < 3; ++k)
-        if (!(std::fabs(off[k]) <= kTolerance)) return;
+      if (!negligible(show(0.5f * (corner_[i] + corner_[j])) - 0.5f * (d[i] + d[j]))) return;
     }
     std::copy_n(d, 3, corner_);
     direct_ = true;

@@ -116,20 +116,19 @@ TEST(LeastSquares, ConstantsStayConstants) {
   }
 }
 
-TEST(LeastSquares, RunsEqualSingleSamples) {
+TEST(LeastSquares, RowsEqualSingleSamples) {
   std::mt19937 random(5);
   LeastSquares single(20, 6), runs(20, 6);
   for (int trial = 0; trial < 200; ++trial) {
     const int x = static_cast<int>(random() % 10), y = static_cast<int>(random() % 5);
     const int n = 1 + static_cast<int>(random() % 9);
     const LeastSquares::Splat splat((random() % 100) / 100.0f, (random() % 100) / 100.0f, 0.25f);
-    LeastSquares::Run run(runs, x, y, splat);
+    std::vector<Lanes> colours;
     for (int i = 0; i < n; ++i) {
-      const Lanes c{(random() % 100) / 100.0f, 0.5f, 0.25f, 1};
-      single.add(x + i, y, splat, c);
-      run.add(c);
+      colours.push_back(Lanes{(random() % 100) / 100.0f, 0.5f, 0.25f, 1});
+      single.add(x + i, y, splat, colours.back());
     }
-    run.finish();
+    runs.add_row({x, y, splat}, colours.data(), n);
   }
   const TexelGrid a = std::move(single).solve(0, 1), b = std::move(runs).solve(0, 1);
   EXPECT_EQ(a.known, b.known);

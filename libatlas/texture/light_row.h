@@ -1,0 +1,25 @@
+// Internal: many samples of one row at once, in as wide vectors as the processor has. Results are
+// those of one sample after another, bit by bit.
+#pragma once
+
+#include "libatlas/core/vec.h"
+#include "libatlas/texture/lanes.h"
+#include "libatlas/texture/texture_levels.h"
+
+namespace atlas {
+
+// Positions at + (first + i) * step in a texture, in texels of the level.
+struct TextureRow {
+  const TextureLevels::Level& level;
+  TextureWraps wraps;
+  Vec2f at, step;
+  int first = 0;
+};
+
+// Multiplies colours[i], 0 <= i < n, by look_up() at position i.
+void multiply_by_texture(const TextureRow& row, int n, Lanes* colours);
+
+// Makes colours[i] srgb_encode_lanes(scale * colours[i]).
+void srgb_encode_row(float scale, int n, Lanes* colours);
+
+}  // namespace atlas

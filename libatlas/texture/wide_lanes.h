@@ -1,0 +1,35 @@
+// Internal: two colours, each as Lanes, in one vector: for functions marked ATLAS_WIDE
+// (core/wide_vectors.h). Files that include this pass them to inlined functions only.
+#pragma once
+
+#include "libatlas/core/wide_vectors.h"
+#include "libatlas/texture/lanes.h"
+
+// How they would be handed over does not matter.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+namespace atlas {
+
+using Lanes2 = float __attribute__((vector_size(32)));
+using IntLanes2 = std::int32_t __attribute__((vector_size(32)));
+
+ATLAS_INLINE Lanes2 join_lanes(Lanes first, Lanes second) {
+  return __builtin_shufflevector(first, second, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+ATLAS_INLINE Lanes first_of(Lanes2 v) {
+  return __builtin_shufflevector(v, v, 0, 1, 2, 3);
+}
+
+ATLAS_INLINE Lanes second_of(Lanes2 v) {
+  return __builtin_shufflevector(v, v, 4, 5, 6, 7);
+}
+
+// NaN gives `low`.
+ATLAS_INLINE Lanes2 clamp_lanes(Lanes2 v, float low, float high) {
+  const Lanes2 l = Lanes2{} + low, h = Lanes2{} + high;
+  v = v > l ? v : l;
+  return v < h ? v : h;
+}
+
+}  // namespace atlas
