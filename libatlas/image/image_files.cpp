@@ -222,6 +222,11 @@ Status write_8_bits(const std::filesystem::path& path, const Image8& image,
                     const PngOptions& options) {
   OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeDesc::UINT8);
   spec["png:compressionLevel"] = options.compression;
+  if (options.smooth && options.compression >= 1 && options.compression <= 5) {
+    constexpr int kPaeth = 128;  // PNG_FILTER_PAETH
+    spec["png:filter"] = kPaeth;
+    spec["compression"] = "rle";
+  }
   spec["oiio:UnassociatedAlpha"] = 1;
   return write(path, image, spec);
 }

@@ -104,7 +104,8 @@ class PageBaker {
     const BookedTime watch(wall_seconds, result_.write_wall);
     return writing.add([this, p, png, exr, page = std::move(baked.value())]() -> Status {
       const BookedTime own_watch(thread_cpu_seconds, write_cpu_[p]);
-      if (Status s = write_png(png, page.display, {options_.png_compression}); !s.ok()) return s;
+      if (Status s = write_png(png, page.display, {options_.png_compression, true}); !s.ok())
+        return s;
       return exr.empty() ? Status() : write_exr(exr, page.linear);
     });
   }

@@ -53,7 +53,7 @@ struct ExportOptions {
   double simplify_slip = 0.15;
   Up up = Up::y;
   bool exr = false;                  // also scene-linear OpenEXR pages
-  std::int32_t png_compression = 3;  // zlib level 0..9
+  std::int32_t png_compression = 3;  // zlib level 0..9; 1 to 5 are one (PngOptions::smooth)
 
   bool charts_only = false;  // charts and uvs only: no light is baked, no image written
   // With plain uvs (charts_only, or a scene without light): write the scene's own objects,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <span>
 
 #include "libatlas/texture/wide_lanes.h"
 
@@ -30,12 +31,95 @@ ATLAS_INLINE Lanes2 encode_two(Lanes2 v) {
 ATLAS_WIDE void encode_wide(float scale, int n, Lanes* colours) {
   int i = 0;
   for (; i + 1 < n; i += 2) {
-    Lanes2 v;
-    std::memcpy(&v, &colours[i], sizeof v);
-    v = encode_two(v * scale);
+    const Lanes2 v = encode_two(join_lanes(colours[i], colours[i + 1]) * scale);
     std::memcpy(&colours[i], &v, sizeof v);
   }
   if (i < n) colours[i] = srgb_encode_lanes(colours[i] * scale);
+}
+
+// Four neighbouring positions of a row.
+struct Positions {
+  IntLanes left, low;
+  Lanes right_share, high_share;
+
+  ATLAS_INLINE Positions(const TextureRow& row, int first) {
+    const IntLanes next{0, 1, 2, 3};
+    const Lanes number = __builtin_convertvector(row.first + first + next, Lanes);
+    const Lanes x = row.at.x + number * row.step.x - 0.5f;
+    const Lanes y = row.at.y + number * row.step.y - 0.5f;
+    left = floor_of(x);
+    low = floor_of(y);
+    right_share = x - __builtin_convertvector(left, Lanes);
+    high_share = y - __builtin_convertvector(low, Lanes);
+  }
+
+  ATLAS_INLINE static IntLanes floor_of(Lanes v) {
+    const IntLanes i = __builtin_convertvector(v, IntLanes);
+    return i + (v < __builtin_convertvector(i, Lanes));  // the comparison gives -1 or 0
+  }
+};
+
+template <class Texels>
+ATLAS_INLINE void multiply_some(const TextureRow& row, const Texels& texels, const Positions& p,
+                                std::span<Lanes> colours) {
+  for (std::size_t k = 0; k < colours.size(); ++k)
+    colours[k] *= bilinear(row.level, texels,
+                           {p.left[k], p.low[k], p.right_share[k], p.high_share[k]}, row.wraps);
+}
+
+template <class Texels>
+void multiply_narrow(const TextureRow& row, const Texels& texels, std::span<Lanes> colours) {
+  for (std::size_t first = 0; first < colours.size(); first += 4)
+    multiply_some(row, texels, Positions(row, static_cast<int>(first)),
+                  colours.subspan(first, std::min<std::size_t>(4, colours.size() - first)));
+}
+
+using Places = std::uint32_t __attribute__((vector_size(16)));
+
+// bilinear() for two positions at once, by the places of their lower left texels.
+template <class Texels>
+ATLAS_INLINE Lanes2 bilinear_two(const Texels& texel, std::size_t width, const std::size_t at[2],
+                                 Lanes2 right_share, Lanes2 high_share) {
+  const std::size_t i = at[0], j = at[1];
+  const Lanes2 a = join_lanes(texel(i), texel(j)), b = join_lanes(texel(i + 1), texel(j + 1));
+  const Lanes2 c = join_lanes(texel(i + width), texel(j + width));
+  const Lanes2 d = join_lanes(texel(i + width + 1), texel(j + width + 1));
+  const Lanes2 low = a + right_share * (b - a), high = c + right_share * (d - c);
+  return low + high_share * (high - low);
+}
+
+template <class Texels>
+ATLAS_WIDE void multiply_wide(const TextureRow& row, const Texels& texels,
+                              std::span<Lanes> colours) {
+  const IntLanes right = IntLanes{} + (row.level.width - 1),
+                 top = IntLanes{} + (row.level.height - 1);
+  const auto width = static_cast<std::size_t>(row.level.width);
+  for (std::size_t first = 0; first < colours.size(); first += 4) {
+    const Positions p(row, static_cast<int>(first));
+    const std::span<Lanes> some =
+        colours.subspan(first, std::min<std::size_t>(4, colours.size() - first));
+    const IntLanes within = (p.left >= 0) & (p.left < right) & (p.low >= 0) & (p.low < top);
+    if (some.size() < 4 || (within[0] & within[1] & within[2] & within[3]) == 0) {
+      multiply_some(row, texels, p, some);
+      continue;
+    }
+    // Unsigned: the largest textures have more texels than signed numbers.
+    const Places at = reinterpret_cast<Places>(p.low) * static_cast<std::uint32_t>(width) +
+                      reinterpret_cast<Places>(p.left);
+    const std::size_t place[4] = {at[0], at[1], at[2], at[3]};
+    const Lanes x = p.right_share, y = p.high_share;
+    const Lanes2 two[2] = {
+        bilinear_two(texels, width, place, __builtin_shufflevector(x, x, 0, 0, 0, 0, 1, 1, 1, 1),
+                     __builtin_shufflevector(y, y, 0, 0, 0, 0, 1, 1, 1, 1)),
+        bilinear_two(texels, width, place + 2,
+                     __builtin_shufflevector(x, x, 2, 2, 2, 2, 3, 3, 3, 3),
+                     __builtin_shufflevector(y, y, 2, 2, 2, 2, 3, 3, 3, 3))};
+    for (std::size_t k = 0; k < 2; ++k) {
+      // Joined, as they were stored: processors wait for what they are to load in larger pieces.
+      const Lanes2 colour = join_lanes(some[2 * k], some[2 * k + 1]) * two[k];
+      std::memcpy(&some[2 * k], &colour, sizeof colour);
+    }
+  }
 }
 
 }  // namespace
@@ -46,22 +130,10 @@ void srgb_encode_row(float scale, int n, Lanes* colours) {
 }
 
 void multiply_by_texture(const TextureRow& row, int n, Lanes* colours) {
-  const auto floor_of = [](Lanes v) {
-    const IntLanes i = __builtin_convertvector(v, IntLanes);
-    return i + (v < __builtin_convertvector(i, Lanes));  // the comparison gives -1 or 0
-  };
-  for (int first = 0; first < n; first += 4) {
-    const IntLanes next{0, 1, 2, 3};
-    const Lanes number = __builtin_convertvector(row.first + first + next, Lanes);
-    const Lanes x = row.at.x + number * row.step.x - 0.5f,
-                y = row.at.y + number * row.step.y - 0.5f;
-    const IntLanes left = floor_of(x), low = floor_of(y);
-    const Lanes right_share = x - __builtin_convertvector(left, Lanes);
-    const Lanes high_share = y - __builtin_convertvector(low, Lanes);
-    for (int k = 0; k < std::min(4, n - first); ++k)
-      colours[first + k] *=
-          bilinear(row.level, {left[k], low[k], right_share[k], high_share[k]}, row.wraps);
-  }
+  const std::span<Lanes> all(colours, static_cast<std::size_t>(n));
+  with_texels(row.level, [&](const auto& texels) {
+    has_wide_vectors ? multiply_wide(row, texels, all) : multiply_narrow(row, texels, all);
+  });
 }
 
 }  // namespace atlas

@@ -11,6 +11,10 @@
 namespace atlas {
 namespace {
 
+// Decoding is a third of a look-up. Textures that repeat over a surface are looked up most, and are
+// small; decoded, all of them together take 16 MiB at most.
+constexpr std::size_t kDecodedTexels = std::size_t{1} << 20;
+
 // Widest triangle that a texture is looked up on, in its texels.
 constexpr float kMostTexels = 1 << 23;
 
@@ -87,6 +91,22 @@ TextureLevels::TextureLevels(const Texture& texture) {
   }
 }
 
+std::size_t TextureLevels::texels() const {
+  std::size_t sum = 0;
+  for (const Level& l : levels) sum += std::size_t(l.width) * l.height;
+  return sum;
+}
+
+void TextureLevels::decode() {
+  decoded_storage.reserve(levels.size());
+  for (Level& l : levels) {
+    const EncodedTexels texel{l.texels, static_cast<std::size_t>(l.channels)};
+    std::vector<Lanes>& to = decoded_storage.emplace_back(std::size_t(l.width) * l.height);
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = texel(i);
+    l.decoded = to.data();
+  }
+}
+
 struct LuminanceSampler::State {
   const Scene& scene;
   Quantity quantity;
@@ -95,7 +115,13 @@ struct LuminanceSampler::State {
   State(const Scene& s, Quantity q) : scene(s), quantity(q) {
     if (quantity == Quantity::illuminance) {
       textures.reserve(scene.textures.size());
-      for (const Texture& t : scene.textures) textures.emplace_back(t);
+      std::size_t room = kDecodedTexels;
+      for (const Texture& t : scene.textures) {
+        textures.emplace_back(t);
+        if (textures.back().texels() > room) continue;
+        textures.back().decode();
+        room -= textures.back().texels();
+      }
     }
   }
 

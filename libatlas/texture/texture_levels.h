@@ -16,11 +16,15 @@ struct TextureLevels {
   struct Level {
     int width = 0, height = 0, channels = 0;
     const std::uint8_t* texels = nullptr;
+    const Lanes* decoded = nullptr;  // linear RGB and 1 of each texel, where there is room for it
   };
   std::vector<Level> levels;
-  std::vector<Image8> storage;  // of levels 1 and up
+  std::vector<Image8> storage;                      // of levels 1 and up
+  std::vector<std::vector<Lanes>> decoded_storage;  // of each level, if any
 
   explicit TextureLevels(const Texture& texture);
+  std::size_t texels() const;  // of all levels
+  void decode();
 };
 
 // The texel, of n, that stands for texel i.
@@ -44,14 +48,26 @@ struct TexturePosition {
   float right_share, high_share;
 };
 
+// Texels of a level by their place in it, decoded before or now.
+struct DecodedTexels {
+  const Lanes* texels;
+  Lanes operator()(std::size_t at) const { return texels[at]; }
+};
+struct EncodedTexels {
+  const std::uint8_t* texels;
+  std::size_t channels;
+  Lanes operator()(std::size_t at) const {
+    const float* decode = srgb_detail::tables.decode;
+    const std::uint8_t* t = texels + at * channels;
+    const std::size_t green = channels >= 3 ? 1 : 0;
+    return Lanes{decode[t[0]], decode[t[green]], decode[t[2 * green]], 1};
+  }
+};
+
 // Linear RGB between four texels; the 4th lane is about 1.
-inline Lanes bilinear(const TextureLevels::Level& level, const TexturePosition& p,
-                      TextureWraps wraps) {
-  const float* decode = srgb_detail::tables.decode;
-  const int c = level.channels, green = c >= 3 ? 1 : 0, blue = c >= 3 ? 2 : 0;
-  const auto texel = [&](const std::uint8_t* t) {
-    return Lanes{decode[t[0]], decode[t[green]], decode[t[blue]], 1};
-  };
+template <class Texels>
+Lanes bilinear(const TextureLevels::Level& level, const Texels& texel, const TexturePosition& p,
+               TextureWraps wraps) {
   int x0 = p.left, x1 = p.left + 1, y0 = p.low, y1 = p.low + 1;
   if (static_cast<unsigned>(x0) >= static_cast<unsigned>(level.width - 1)) {
     x0 = wrapped(x0, level.width, wraps.u);
@@ -61,12 +77,21 @@ inline Lanes bilinear(const TextureLevels::Level& level, const TexturePosition& 
     y0 = wrapped(y0, level.height, wraps.v);
     y1 = wrapped(y1, level.height, wraps.v);
   }
-  const std::uint8_t* lower = level.texels + std::size_t(y0) * level.width * c;
-  const std::uint8_t* upper = level.texels + std::size_t(y1) * level.width * c;
-  const Lanes a = texel(lower + std::ptrdiff_t(x0) * c), b = texel(lower + std::ptrdiff_t(x1) * c);
-  const Lanes d = texel(upper + std::ptrdiff_t(x0) * c), e = texel(upper + std::ptrdiff_t(x1) * c);
-  const Lanes low = a + p.right_share * (b - a), high = d + p.right_share * (e - d);
+  const auto width = static_cast<std::size_t>(level.width);
+  const std::size_t lower = static_cast<std::size_t>(y0) * width;
+  const std::size_t upper = static_cast<std::size_t>(y1) * width;
+  const auto left = static_cast<std::size_t>(x0), right = static_cast<std::size_t>(x1);
+  const Lanes a = texel(lower + left), b = texel(lower + right);
+  const Lanes c = texel(upper + left), d = texel(upper + right);
+  const Lanes low = a + p.right_share * (b - a), high = c + p.right_share * (d - c);
   return low + p.high_share * (high - low);
+}
+
+// Calls use() with the texels of a level as they are at hand.
+template <class Use>
+auto with_texels(const TextureLevels::Level& level, Use&& use) {
+  if (level.decoded) return use(DecodedTexels{level.decoded});
+  return use(EncodedTexels{level.texels, static_cast<std::size_t>(level.channels)});
 }
 
 // At (x, y) in texels of the level.
@@ -78,8 +103,8 @@ inline Lanes look_up(const TextureLevels::Level& level, Vec2f at_texel, TextureW
   };
   const float x = at_texel.x - 0.5f, y = at_texel.y - 0.5f;
   const int left = floor_of(x), low = floor_of(y);
-  return bilinear(level, {left, low, x - static_cast<float>(left), y - static_cast<float>(low)},
-                  wraps);
+  const TexturePosition p{left, low, x - static_cast<float>(left), y - static_cast<float>(low)};
+  return with_texels(level, [&](const auto& texels) { return bilinear(level, texels, p, wraps); });
 }
 
 }  // namespace atlas

@@ -89,7 +89,7 @@ class TriangleLight {
       if (direct_ || level_ || !tone_) {
         for (int i = 0; i < count; ++i) colours[i] = e + static_cast<float>(first + i) * step_;
         if (level_) apply_texture({b1, b2}, first, count, colours);
-        if (tone_ && !direct_) show_all(count, colours);
+        if (!direct_) finish_all(count, colours);
       } else {
         show_stretch(e + static_cast<float>(first) * step_, count, colours);
       }
@@ -115,12 +115,15 @@ class TriangleLight {
                       texcoord_[0].y + b.x * (texcoord_[1].y - texcoord_[0].y) +
                           b.y * (texcoord_[2].y - texcoord_[0].y)};
     multiply_by_texture({*level_, wraps_, uv, texture_step_, first}, count, colours);
-    for (int i = 0; i < count; ++i) colours[i][3] = 1;
   }
 
-  void show_all(int count, Lanes* colours) const {
-    if (tone_->op == ToneOperator::linear) return srgb_encode_row(tone_->scale, count, colours);
-    for (int i = 0; i < count; ++i) colours[i] = show(colours[i]);
+  void finish_all(int count, Lanes* colours) const {
+    if (tone_ && tone_->op == ToneOperator::linear)
+      return srgb_encode_row(tone_->scale, count, colours);
+    for (int i = 0; i < count; ++i) {
+      colours[i][3] = 1;
+      if (tone_) colours[i] = show(colours[i]);
+    }
   }
 
   // Of untextured light from e on. Showing costs more than all else that is done for a sample, so

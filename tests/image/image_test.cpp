@@ -63,6 +63,30 @@ TEST(Image, PngReadsBackExactly) {
   }
 }
 
+// What baked pages are: slopes with a little noise. Levels 1 to 5 are one.
+TEST(Image, SmoothPngReadsBackExactlyAndTakesLessRoom) {
+  const TempFolder folder;
+  Image8 image = noise(300, 200, 3);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (int k = 0; k < 3; ++k) {
+        std::uint8_t& t = image.at(x, y)[k];
+        t = static_cast<std::uint8_t>(x / 3 + y / 4 + 10 * k + t % 2);
+      }
+  const auto file = [&](const PngOptions& options) {
+    EXPECT_TRUE(write_png(folder / "a.png", image, options).ok());
+    const auto read = read_image8(folder / "a.png");
+    EXPECT_TRUE(read.ok() && read->texels == image.texels);
+    return TempFolder::read(folder / "a.png");
+  };
+  const std::string smooth = file({3, true});
+  EXPECT_LT(smooth.size(), file({3}).size());
+  EXPECT_LT(smooth.size(), 1.05 * static_cast<double>(file({6}).size()));
+  EXPECT_EQ(file({1, true}), file({5, true}));
+  EXPECT_EQ(file({9, true}), file({9}));
+  EXPECT_GT(file({0, true}).size(), image.texels.size());
+}
+
 // By a second route: the file's own bytes, unfiltered by hand. Row 0 in memory is the bottom one.
 TEST(Image, PngRowsAreTopDownInTheFile) {
   const TempFolder folder;
