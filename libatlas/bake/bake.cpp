@@ -74,17 +74,41 @@ double sample_spacing(const ChartPlacement& p, int side) {
   return 1 / (std::sqrt(p.texels_per_unit.x * p.texels_per_unit.y) * side);
 }
 
+// A grid's samples in the texels that they lie in: their splat, and where from there its lower left
+// texel is.
+struct GridSplat {
+  int left, low;
+  LeastSquares::Splat splat;
+
+  GridSplat(Vec2d offset, float weight)
+      : left(offset.x < 0.5 ? -1 : 0),
+        low(offset.y < 0.5 ? -1 : 0),
+        splat(static_cast<float>(offset.x - 0.5 - left), static_cast<float>(offset.y - 0.5 - low),
+              weight) {}
+};
+
+std::vector<GridSplat> grid_splats(const SampleGrid& grid) {
+  std::vector<GridSplat> splats;
+  for (int k = 0; k < grid.count; ++k)
+    splats.emplace_back(grid.offset[k], 1.0f / static_cast<float>(grid.count));
+  return splats;
+}
+
+// Where samples go, and those of the grid.
+struct Samples {
+  const SampleGrid& grid;
+  const std::vector<GridSplat>& splats;
+  LeastSquares& fit;
+};
+
 // Splats a triangle's samples; texel (0, 0)'s centre is at (0.5, 0.5).
-void splat_triangle(const TexelTriangle& p, const TriangleLight& lit, const SampleGrid& grid,
-                    LeastSquares& fit) {
-  const float weight = 1.0f / static_cast<float>(grid.count);
+void splat_triangle(const TexelTriangle& p, const TriangleLight& lit, const Samples& samples) {
+  LeastSquares& fit = samples.fit;
   const auto row = [&](int k, int y, int x0, int x1) {
-    const Vec2d o = grid.offset[k];
-    const int left = o.x < 0.5 ? -1 : 0, low = o.y < 0.5 ? -1 : 0;
-    const LeastSquares::Splat splat(static_cast<float>(o.x - 0.5 - left),
-                                    static_cast<float>(o.y - 0.5 - low), weight);
+    const Vec2d o = samples.grid.offset[k];
+    const GridSplat& s = samples.splats[static_cast<std::size_t>(k)];
     lit.row({x0 + o.x, y + o.y}, x1 - x0, [&](int first, const Lanes* rgb, int n) {
-      fit.add_row({x0 + left + first, y + low, splat}, rgb, n);
+      fit.add_row({x0 + s.left + first, y + s.low, s.splat}, rgb, n);
     });
   };
   const auto point = [&](const float* b, float area) {
@@ -96,11 +120,13 @@ void splat_triangle(const TexelTriangle& p, const TriangleLight& lit, const Samp
                                     static_cast<float>(std::clamp(y - j, 0.0, 1.0)), area);
     fit.add(i, j, splat, lit.at(b));
   };
-  sample_triangle(p, {1, 1, fit.width() - 2, fit.height() - 2}, grid, SampleVisitor{row, point});
+  sample_triangle(p, {1, 1, fit.width() - 2, fit.height() - 2}, samples.grid,
+                  SampleVisitor{row, point});
 }
 
 TexelGrid bake_least_squares(const Job& job, const Box& box) {
   LeastSquares fit(box.width, box.height);
+  const std::vector<GridSplat> splats = grid_splats(job.grid);
   const double spacing = sample_spacing(box.placement, job.grid.side);
   for (const std::uint32_t t : triangles_of(job.light.charts, box.chart(job.light.charts))) {
     const TexelTriangle p = box.triangle(job.light.charts, t);
@@ -108,7 +134,7 @@ TexelGrid bake_least_squares(const Job& job, const Box& box) {
     if (kind == SampleKind::none) continue;
     TriangleLight lit(job.light.sampler.prepare(t, spacing), job.tone);
     if (kind == SampleKind::grid) lit.set_position(p);
-    splat_triangle(p, lit, job.grid, fit);
+    splat_triangle(p, lit, {job.grid, splats, fit});
   }
   return std::move(fit).solve(job.low, job.high);
 }

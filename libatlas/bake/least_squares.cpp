@@ -33,13 +33,13 @@ struct LeastSquares::Kernels {
   static void add_narrow(Cell* lower, Cell* upper, const Splat& s, std::span<const Lanes> rgb1) {
     Lanes east_lower{}, east_upper{}, east_pair{};
     for (const Lanes& c : rgb1) {
-      lower->value += east_lower + s.value_[0] * c;
-      lower->pair += east_pair + s.pair_[0];
-      upper->value += east_upper + s.value_[2] * c;
-      upper->pair += s.pair_[2];
-      east_lower = s.value_[1] * c;
-      east_upper = s.value_[3] * c;
-      east_pair = s.pair_[1];
+      lower->value += east_lower + s.share_[0].value * c;
+      lower->pair += east_pair + s.share_[0].pair;
+      upper->value += east_upper + s.share_[2].value * c;
+      upper->pair += s.share_[2].pair;
+      east_lower = s.share_[1].value * c;
+      east_upper = s.share_[3].value * c;
+      east_pair = s.share_[1].pair;
       ++lower;
       ++upper;
     }
@@ -48,22 +48,23 @@ struct LeastSquares::Kernels {
     upper->value += east_upper;
   }
 
+  ATLAS_INLINE static Lanes2 load(const Cell& cell) {
+    Lanes2 both;
+    std::memcpy(&both, &cell, sizeof both);
+    return both;
+  }
+
   // The same sums, a cell's value and pair at once.
   ATLAS_WIDE static void add_wide(Cell* lower, Cell* upper, const Splat& s,
                                   std::span<const Lanes> rgb1) {
-    const Lanes2 west_lower = join_lanes(s.value_[0], s.pair_[0]),
-                 to_east = join_lanes(s.value_[1], s.pair_[1]);
-    const Lanes2 west_upper = join_lanes(s.value_[2], s.pair_[2]),
-                 to_upper = join_lanes(s.value_[3], Lanes{});
+    const Lanes2 west_lower = load(s.share_[0]), to_east = load(s.share_[1]);
+    const Lanes2 west_upper = load(s.share_[2]), to_upper = load(s.share_[3]);
     Lanes2 east_lower{}, east_upper{};
     const Lanes ones = splat_lanes(1);
     for (const Lanes& c : rgb1) {
       const Lanes2 colour = join_lanes(c, ones);
-      Lanes2 low, high;
-      std::memcpy(&low, lower, sizeof low);
-      std::memcpy(&high, upper, sizeof high);
-      low += east_lower + west_lower * colour;
-      high += east_upper + west_upper * colour;
+      const Lanes2 low = load(*lower) + (east_lower + west_lower * colour);
+      const Lanes2 high = load(*upper) + (east_upper + west_upper * colour);
       std::memcpy(static_cast<void*>(lower), &low, sizeof low);
       std::memcpy(static_cast<void*>(upper), &high, sizeof high);
       east_lower = to_east * colour;
@@ -72,12 +73,13 @@ struct LeastSquares::Kernels {
       ++upper;
     }
     lower->value += first_of(east_lower);
-    lower->pair += s.pair_[1];
+    lower->pair += s.share_[1].pair;
     upper->value += first_of(east_upper);
   }
 
   // One texel, or two of equal parity in a row.
   struct One {
+    using V = Lanes;
     ATLAS_INLINE static Lanes load(const Lanes* texel) { return *texel; }
     ATLAS_INLINE static Lanes value(const Cell* c) { return c->value; }
     ATLAS_INLINE static Lanes pair(const Cell* c) { return c->pair; }
@@ -88,6 +90,7 @@ struct LeastSquares::Kernels {
     ATLAS_INLINE static void store(Lanes v, Lanes* texel) { *texel = v; }
   };
   struct Two {
+    using V = Lanes2;
     ATLAS_INLINE static Lanes2 load(const Lanes* t) { return join_lanes(t[0], t[2]); }
     ATLAS_INLINE static Lanes2 value(const Cell* c) { return join_lanes(c[0].value, c[2].value); }
     ATLAS_INLINE static Lanes2 pair(const Cell* c) { return join_lanes(c[0].pair, c[2].pair); }
@@ -101,10 +104,20 @@ struct LeastSquares::Kernels {
     }
   };
 
-  // Solves the equation of a texel, or two, for its value; `s` is from one row to the next.
+  // A row that is solved for, and how far the next one is.
+  struct Row {
+    const Cell* cells;
+    Lanes* x;
+    int width;
+    std::ptrdiff_t stride;
+  };
+
+  // Solves the equation of texel i, or two from it on, for its value.
   template <class W>
-  ATLAS_INLINE static void relax(const Cell* c, std::ptrdiff_t s, const Bounds& bounds, Lanes* v) {
-    const Cell* d = c - s;
+  ATLAS_INLINE static void relax(const Row& row, int i, typename W::V low, typename W::V high) {
+    const std::ptrdiff_t s = row.stride;
+    const Cell *c = row.cells + i, *d = c - s;
+    Lanes* v = row.x + i;
     const auto pair = W::pair(c), value = W::value(c);
     const auto across = W::template lane<0>(pair) * W::load(v + 1) +
                         W::template lane<0>(W::pair(c - 1)) * W::load(v - 1);
@@ -114,26 +127,31 @@ struct LeastSquares::Kernels {
     const auto below = W::template lane<1>(W::pair(d)) * W::load(v - s) +
                        W::template lane<2>(W::pair(d - 1)) * W::load(v - s - 1) +
                        W::template lane<3>(W::pair(d + 1)) * W::load(v - s + 1);
-    W::store(clamp_lanes((value - across - above - below) * W::template lane<3>(value), bounds.low,
-                         bounds.high),
-             v);
+    const auto at_last = (value - across - above - below) * W::template lane<3>(value);
+    W::store(smaller_lanes(larger_lanes(at_last, low), high), v);
   }
 
-  // Every second texel of a row.
-  struct Texels {
-    const Cell* cells;
-    Lanes* x;
-    int begin, end;
-  };
-
-  static void relax_narrow(const Texels& t, std::ptrdiff_t stride, const Bounds& bounds) {
-    for (int i = t.begin; i < t.end; i += 2) relax<One>(t.cells + i, stride, bounds, t.x + i);
+  // Columns of one parity before the others: texels of equal parity do not wait for one another.
+  static void relax_narrow(const Row& row, int first, const Bounds& bounds) {
+    const Lanes low = splat_lanes(bounds.low), high = splat_lanes(bounds.high);
+    for (const int begin : {first, 1 - first})
+      for (int i = begin; i < row.width; i += 2) relax<One>(row, i, low, high);
   }
 
-  ATLAS_WIDE static void relax_wide(const Texels& t, std::ptrdiff_t stride, const Bounds& bounds) {
-    int i = t.begin;
-    for (; i + 2 < t.end; i += 4) relax<Two>(t.cells + i, stride, bounds, t.x + i);
-    if (i < t.end) relax<One>(t.cells + i, stride, bounds, t.x + i);
+  // The same, in one go: the others follow as soon as both their neighbours are done.
+  ATLAS_WIDE static void relax_wide(const Row& row, int first, const Bounds& bounds) {
+    const Lanes low = splat_lanes(bounds.low), high = splat_lanes(bounds.high);
+    const Lanes2 low2 = join_lanes(low, low), high2 = join_lanes(high, high);
+    int early = first, late = 1 - first;
+    for (; early + 2 < row.width; early += 4) {
+      relax<Two>(row, early, low2, high2);
+      if (late > early - 1) continue;
+      relax<Two>(row, late, low2, high2);
+      late += 4;
+    }
+    if (early < row.width) relax<One>(row, early, low, high);
+    for (; late + 2 < row.width; late += 4) relax<Two>(row, late, low2, high2);
+    if (late < row.width) relax<One>(row, late, low, high);
   }
 };
 
@@ -201,12 +219,10 @@ void LeastSquares::smooth_row(int j, float weight) {
   }
 }
 
-// Even columns before odd ones: texels of equal parity do not wait for one another.
 void LeastSquares::sweep_row(int j, int first, const Bounds& bounds, Solution& to) const {
   const std::size_t at = index(0, j);
-  for (const int begin : {first, 1 - first})
-    (has_wide_vectors ? Kernels::relax_wide : Kernels::relax_narrow)(
-        {&cells_[at], &to.x[at], begin, width_}, static_cast<std::ptrdiff_t>(stride_), bounds);
+  (has_wide_vectors ? Kernels::relax_wide : Kernels::relax_narrow)(
+      {&cells_[at], &to.x[at], width_, static_cast<std::ptrdiff_t>(stride_)}, first, bounds);
 }
 
 // The texels without the border around them.

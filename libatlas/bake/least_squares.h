@@ -33,29 +33,29 @@ class LeastSquares {
       const float w[4] = {(1 - tx) * (1 - ty), tx * (1 - ty), (1 - tx) * ty, tx * ty};
       for (int k = 0; k < 4; ++k) {
         const float s = weight * w[k];
-        value_[k] = Lanes{s, s, s, s * w[k]};
+        share_[k].value = Lanes{s, s, s, s * w[k]};
       }
-      pair_[0] = weight * Lanes{w[0] * w[1], w[0] * w[2], w[0] * w[3], 0};
-      pair_[1] = weight * Lanes{0, w[1] * w[3], 0, w[1] * w[2]};
-      pair_[2] = weight * Lanes{w[2] * w[3], 0, 0, 0};
+      share_[0].pair = weight * Lanes{w[0] * w[1], w[0] * w[2], w[0] * w[3], 0};
+      share_[1].pair = weight * Lanes{0, w[1] * w[3], 0, w[1] * w[2]};
+      share_[2].pair = weight * Lanes{w[2] * w[3], 0, 0, 0};
     }
 
    private:
     friend class LeastSquares;
-    Lanes value_[4], pair_[3];
+    Cell share_[4];  // of each texel; values times the colour
   };
 
   // Adds a sample whose lower left texel is (x, y); rgb1 is its colour with a 1 in the 4th lane.
   void add(int x, int y, const Splat& s, Lanes rgb1) {
     Cell* c = &cells_[index(x, y)];
     Cell* d = c + stride_;
-    c[0].value += s.value_[0] * rgb1;
-    c[0].pair += s.pair_[0];
-    c[1].value += s.value_[1] * rgb1;
-    c[1].pair += s.pair_[1];
-    d[0].value += s.value_[2] * rgb1;
-    d[0].pair += s.pair_[2];
-    d[1].value += s.value_[3] * rgb1;
+    c[0].value += s.share_[0].value * rgb1;
+    c[0].pair += s.share_[0].pair;
+    c[1].value += s.share_[1].value * rgb1;
+    c[1].pair += s.share_[1].pair;
+    d[0].value += s.share_[2].value * rgb1;
+    d[0].pair += s.share_[2].pair;
+    d[1].value += s.share_[3].value * rgb1;
   }
 
   // Where a row of samples begins, one texel apart, each as the splat says.

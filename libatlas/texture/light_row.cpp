@@ -13,8 +13,8 @@ namespace {
 ATLAS_INLINE Lanes2 encode_two(Lanes2 v) {
   using namespace srgb_detail;
   constexpr float kSmallest = 1.0f / (1 << kOctaves);
-  v = clamp_lanes(v, 0, 1);
-  const auto bits = reinterpret_cast<IntLanes2>(v > kSmallest ? v : Lanes2{} + kSmallest);
+  v = smaller_lanes(larger_lanes(v, Lanes2{}), Lanes2{} + 1.0f);
+  const auto bits = reinterpret_cast<IntLanes2>(larger_lanes(v, Lanes2{} + kSmallest));
   const IntLanes2 index = (bits - static_cast<std::int32_t>(kFirst)) >> (23 - kPieceBits);
   const IntLanes2 low = bits & ((1 << (23 - kPieceBits)) - 1);
   const Lanes2 t = __builtin_convertvector(low, Lanes2) * (1.0f / (1 << (23 - kPieceBits)));
@@ -53,6 +53,14 @@ struct Positions {
     high_share = y - __builtin_convertvector(low, Lanes);
   }
 
+  // In place of those from `count` on.
+  ATLAS_INLINE void repeat_first(std::size_t count) {
+    const IntLanes number{0, 1, 2, 3};
+    const IntLanes beyond = number >= static_cast<std::int32_t>(count);
+    left = beyond ? IntLanes{} + left[0] : left;
+    low = beyond ? IntLanes{} + low[0] : low;
+  }
+
   ATLAS_INLINE static IntLanes floor_of(Lanes v) {
     const IntLanes i = __builtin_convertvector(v, IntLanes);
     return i + (v < __builtin_convertvector(i, Lanes));  // the comparison gives -1 or 0
@@ -88,36 +96,48 @@ ATLAS_INLINE Lanes2 bilinear_two(const Texels& texel, std::size_t width, const s
   return low + high_share * (high - low);
 }
 
+// Four positions of whose four texels none is beyond the texture's edge.
+template <class Texels>
+ATLAS_INLINE void multiply_four(const TextureRow& row, const Texels& texels, const Positions& p,
+                                Lanes* colours) {
+  const auto width = static_cast<std::size_t>(row.level.width);
+  // Unsigned: the largest textures have more texels than signed numbers.
+  const Places at = reinterpret_cast<Places>(p.low) * static_cast<std::uint32_t>(width) +
+                    reinterpret_cast<Places>(p.left);
+  const std::size_t place[4] = {at[0], at[1], at[2], at[3]};
+  const Lanes x = p.right_share, y = p.high_share;
+  const Lanes2 two[2] = {
+      bilinear_two(texels, width, place, __builtin_shufflevector(x, x, 0, 0, 0, 0, 1, 1, 1, 1),
+                   __builtin_shufflevector(y, y, 0, 0, 0, 0, 1, 1, 1, 1)),
+      bilinear_two(texels, width, place + 2, __builtin_shufflevector(x, x, 2, 2, 2, 2, 3, 3, 3, 3),
+                   __builtin_shufflevector(y, y, 2, 2, 2, 2, 3, 3, 3, 3))};
+  for (int k = 0; k < 2; ++k) {
+    // Joined, as they were stored: processors wait for what they are to load in larger pieces.
+    const Lanes2 colour = join_lanes(colours[2 * k], colours[2 * k + 1]) * two[k];
+    std::memcpy(&colours[2 * k], &colour, sizeof colour);
+  }
+}
+
 template <class Texels>
 ATLAS_WIDE void multiply_wide(const TextureRow& row, const Texels& texels,
                               std::span<Lanes> colours) {
-  const IntLanes right = IntLanes{} + (row.level.width - 1),
-                 top = IntLanes{} + (row.level.height - 1);
-  const auto width = static_cast<std::size_t>(row.level.width);
+  const IntLanes right = IntLanes{} + (row.level.width - 1);
+  const IntLanes top = IntLanes{} + (row.level.height - 1);
   for (std::size_t first = 0; first < colours.size(); first += 4) {
-    const Positions p(row, static_cast<int>(first));
+    Positions p(row, static_cast<int>(first));
     const std::span<Lanes> some =
         colours.subspan(first, std::min<std::size_t>(4, colours.size() - first));
+    if (some.size() < 4) p.repeat_first(some.size());
     const IntLanes within = (p.left >= 0) & (p.left < right) & (p.low >= 0) & (p.low < top);
-    if (some.size() < 4 || (within[0] & within[1] & within[2] & within[3]) == 0) {
+    if ((within[0] & within[1] & within[2] & within[3]) == 0) {
       multiply_some(row, texels, p, some);
-      continue;
-    }
-    // Unsigned: the largest textures have more texels than signed numbers.
-    const Places at = reinterpret_cast<Places>(p.low) * static_cast<std::uint32_t>(width) +
-                      reinterpret_cast<Places>(p.left);
-    const std::size_t place[4] = {at[0], at[1], at[2], at[3]};
-    const Lanes x = p.right_share, y = p.high_share;
-    const Lanes2 two[2] = {
-        bilinear_two(texels, width, place, __builtin_shufflevector(x, x, 0, 0, 0, 0, 1, 1, 1, 1),
-                     __builtin_shufflevector(y, y, 0, 0, 0, 0, 1, 1, 1, 1)),
-        bilinear_two(texels, width, place + 2,
-                     __builtin_shufflevector(x, x, 2, 2, 2, 2, 3, 3, 3, 3),
-                     __builtin_shufflevector(y, y, 2, 2, 2, 2, 3, 3, 3, 3))};
-    for (std::size_t k = 0; k < 2; ++k) {
-      // Joined, as they were stored: processors wait for what they are to load in larger pieces.
-      const Lanes2 colour = join_lanes(some[2 * k], some[2 * k + 1]) * two[k];
-      std::memcpy(&some[2 * k], &colour, sizeof colour);
+    } else if (some.size() == 4) {
+      multiply_four(row, texels, p, some.data());
+    } else {
+      Lanes four[4]{};
+      std::copy(some.begin(), some.end(), four);
+      multiply_four(row, texels, p, four);
+      std::copy_n(four, some.size(), some.begin());
     }
   }
 }

@@ -65,6 +65,14 @@ float whole_repeats(float least, TextureWrap wrap) {
   return wrap == TextureWrap::mirror ? 2 * std::floor(least / 2) : std::floor(least);
 }
 
+// In registers, where memcmp would be called.
+bool same_bits(const float (&a)[4], const float (&b)[4]) {
+  std::uint64_t x[2], y[2];
+  std::memcpy(x, a, sizeof x);
+  std::memcpy(y, b, sizeof y);
+  return ((x[0] ^ y[0]) | (x[1] ^ y[1])) == 0;
+}
+
 // The texture of triangle t if it has one that can be looked up, or -1.
 std::int32_t texture_of(const Scene& scene, std::uint32_t t) {
   const std::int32_t id = scene.materials[scene.triangle_material[t]].texture;
@@ -178,9 +186,8 @@ LuminanceSampler::Triangle LuminanceSampler::prepare(std::uint32_t t, double sam
     out.illumination[k][1] = e.y;
     out.illumination[k][2] = e.z;
   }
-  const bool equal =
-      std::memcmp(out.illumination[0], out.illumination[1], sizeof out.illumination[0]) == 0 &&
-      std::memcmp(out.illumination[0], out.illumination[2], sizeof out.illumination[0]) == 0;
+  const bool equal = same_bits(out.illumination[0], out.illumination[1]) &&
+                     same_bits(out.illumination[0], out.illumination[2]);
   out.texture = state_->texture(t);
   const bool black = equal && out.illumination[0][0] == 0 && out.illumination[0][1] == 0 &&
                      out.illumination[0][2] == 0;

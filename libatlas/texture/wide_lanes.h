@@ -25,11 +25,12 @@ ATLAS_INLINE Lanes second_of(Lanes2 v) {
   return __builtin_shufflevector(v, v, 4, 5, 6, 7);
 }
 
-// NaN gives `low`.
-ATLAS_INLINE Lanes2 clamp_lanes(Lanes2 v, float low, float high) {
-  const Lanes2 l = Lanes2{} + low, h = Lanes2{} + high;
-  v = v > l ? v : l;
-  return v < h ? v : h;
+// As those of Lanes.
+ATLAS_INLINE Lanes2 larger_lanes(Lanes2 a, Lanes2 b) {
+  return a > b ? a : b;
+}
+ATLAS_INLINE Lanes2 smaller_lanes(Lanes2 a, Lanes2 b) {
+  return a < b ? a : b;
 }
 
 }  // namespace atlas
