@@ -152,7 +152,7 @@ void add_page_options(CLI::App& app, ExportOptions& options) {
       ->check(positive());
   app.add_flag("--exr", options.exr, "Also write scene-linear OpenEXR pages")
       ->excludes("--charts-only");
-  app.add_option("--png-level", options.png_compression, "PNG compression, 0..9")
+  app.add_option("--png-level", options.png_compression, "PNG compression, 0..9; 1 to 5 are one")
       ->capture_default_str()
       ->check(within(0, 9));
 }

@@ -26,7 +26,8 @@ enum class Quantity {
 // With Quantity::luminance the values are the input's own (cd/m²).
 //
 // The sampler refers to the scene, which must outlive it and be as check_scene() asks; it builds
-// mip chains of the textures (8-bit, a third of their size). Thread-safe once built.
+// mip chains of the textures (8-bit, a third of their size), and keeps up to 16 MiB of small ones
+// decoded. Thread-safe once built.
 class LuminanceSampler {
  public:
   LuminanceSampler(const Scene& scene, Quantity quantity);
