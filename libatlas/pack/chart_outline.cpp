@@ -172,29 +172,6 @@ Vec2d low_corner_of(const ChartOutline& outline) {
   return bounds_of(outline, 0).low;
 }
 
-double lost_to_holes(std::span<const ChartOutline> outlines) {
-  constexpr double kSmall = 1.0 / 30;  // of all charts' area
-  double all = 0, holes = 0, largest = 0;
-  for (const ChartOutline& o : outlines) all += o.area;
-  for (const ChartOutline& o : outlines) {
-    double twice = 0;
-    for (std::size_t k = 0, first = 0; k < o.edges.size(); ++k) {
-      twice += twice_area(o.edges[first].from, o.edges[k].from, o.edges[k].to);
-      if (k + 1 < o.edges.size() && o.edges[k + 1].from == o.edges[k].to) continue;
-      const double hole = -twice / 2;
-      if (hole > 0 && hole < kSmall * all) {
-        holes += hole;
-        largest = std::max(largest, hole);
-      }
-      first = k + 1;
-      twice = 0;
-    }
-  }
-  for (const ChartOutline& o : outlines)
-    if (o.area < largest) holes -= o.area;
-  return std::max(0.0, holes);
-}
-
 ChartOutline thinned(const ChartOutline& outline, double spacing) {
   ChartOutline thin;
   thin.loose = outline.loose;

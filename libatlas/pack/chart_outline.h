@@ -32,10 +32,6 @@ Vec2d box_of(const ChartOutline& outline, double angle);
 // The lower left corner of its box as it is; 0 for an empty one.
 Vec2d low_corner_of(const ChartOutline& outline);
 
-// Of all holes together, what no chart could lie in: those too small to matter once a chart were
-// cut through them, less the charts that are smaller than the largest of these. Texels² at scale 1.
-double lost_to_holes(std::span<const ChartOutline> outlines);
-
 // With loops whose corners are about `spacing` apart at least: off by no more than that.
 ChartOutline thinned(const ChartOutline& outline, double spacing);
 

@@ -8,6 +8,7 @@
 
 #include "libatlas/pack/chart_outline.h"
 #include "libatlas/pack/fit_pages.h"
+#include "libatlas/pack/lost_room.h"
 #include "libatlas/pack/shape_check.h"
 
 namespace atlas {
@@ -105,7 +106,10 @@ Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& gi
   options.alignment = outline_alignment(options);
   const std::vector<pack::ChartOutline> outlines = pack::outlines_of(options.shapes, context);
   Result<FitResult> fitted = pack::fit_outlines(items, outlines, options, context);
-  if (fitted.ok()) fitted->hole_area = pack::lost_to_holes(outlines);
+  if (fitted.ok())
+    fitted->lost_area =
+        pack::lost_to_holes(outlines) +
+        pack::lost_to_bays(outlines, options.padding / fitted->scale, context);
   return fitted;
 }
 

@@ -190,7 +190,8 @@ Result<FitResult> fit_outlines(std::span<const FitItem> items,
   if (pressed && (!found || (!options.free_aspect && best.scale <= pressed->scale)))
     return std::move(*pressed);
   if (!found) return no_room(items.size(), options);
-  if (options.free_aspect && options.pages == 1) fill_free_page(*fit, result, best);
+  if (options.free_aspect && options.pages == 1 && items.size() > 1)
+    fill_free_page(*fit, result, best);
   if (best.scale == options.max_scale) use_fewer_pages(*fit, options, result, best);
   write_result(*fit, options, best, result);
   if (pressed && options.free_aspect && pressed->utilization >= result.utilization)

@@ -12,7 +12,7 @@ namespace atlas::pack {
 Result<FitResult> fit_boxes(std::span<const FitItem> items, const FitOptions& options,
                             const Context& context);
 
-// fit_pages for charts given by their outlines; the arguments have been checked. hole_area is left
+// fit_pages for charts given by their outlines; the arguments have been checked. lost_area is left
 // to the caller.
 Result<FitResult> fit_outlines(std::span<const FitItem> items,
                                std::span<const ChartOutline> outlines, const FitOptions& options,

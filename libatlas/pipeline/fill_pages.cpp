@@ -42,7 +42,7 @@ struct Goal {
   }
   bool reached(const PageLayout& layout) const {
     const bool dense = !options.free_aspect && layout.scale >= 1;
-    const double filled = layout.with_holes * covered(layout);
+    const double filled = layout.with_lost_room * covered(layout);
     return dense || filled >= (options.free_aspect ? kFilledFree : kFilled);
   }
 };

@@ -37,9 +37,9 @@ struct PageLayout {
   double scale = 1;                        // applied to all densities alike
   double utilization = 0;                  // of the contents the packer saw
   double uv_utilization = 0;               // area of the charts / area of the pages
-  // Of charts with small holes that no chart could fill: their area with these / without; 1 where
-  // outlines were not tried.
-  double with_holes = 1;
+  // Of charts with small holes and narrow bays that no chart could lie in: their area with these /
+  // without; 1 where outlines were not tried.
+  double with_lost_room = 1;
   GroupingResult grouping;
 };
 

@@ -292,20 +292,20 @@ std::vector<Vec2d> perforated(int n, double cell, double hole) {
 
 // Holes too small for cuts to open, less what other charts could put into them.
 TEST(FitPages, TellsWhatSmallHolesTake) {
-  const auto hole_area = [](std::vector<std::vector<Vec2d>> shapes) {
+  const auto lost_area = [](std::vector<std::vector<Vec2d>> shapes) {
     const test::ChartItems charts(std::move(shapes));
     FitOptions o = tight(256);
     o.shapes = charts.shapes;
-    return fit(charts.items, o).hole_area;
+    return fit(charts.items, o).lost_area;
   };
   const auto plate = [](double side) {
     return std::vector<Vec2d>{{0, 0}, {side, 0}, {side, side}, {0, 0}, {side, side}, {0, side}};
   };
-  EXPECT_NEAR(hole_area({perforated(8, 10, 6)}), 64 * 36, 1e-9);
-  EXPECT_NEAR(hole_area({perforated(8, 10, 6), plate(7)}), 64 * 36, 1e-9);
-  EXPECT_NEAR(hole_area({perforated(8, 10, 6), plate(5)}), 64 * 36 - 25, 1e-9);
-  EXPECT_EQ(hole_area({perforated(1, 80, 48)}), 0);
-  EXPECT_EQ(hole_area({plate(20)}), 0);
+  EXPECT_NEAR(lost_area({perforated(8, 10, 6)}), 64 * 36, 1e-9);
+  EXPECT_NEAR(lost_area({perforated(8, 10, 6), plate(7)}), 64 * 36, 1e-9);
+  EXPECT_NEAR(lost_area({perforated(8, 10, 6), plate(5)}), 64 * 36 - 25, 1e-9);
+  EXPECT_EQ(lost_area({perforated(1, 80, 48)}), 0);
+  EXPECT_EQ(lost_area({plate(20)}), 0);
 }
 
 // Rectangles, a third of them with a slanted side.
