@@ -107,9 +107,8 @@ Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& gi
   const std::vector<pack::ChartOutline> outlines = pack::outlines_of(options.shapes, context);
   Result<FitResult> fitted = pack::fit_outlines(items, outlines, options, context);
   if (fitted.ok())
-    fitted->lost_area =
-        pack::lost_to_holes(outlines) +
-        pack::lost_to_bays(outlines, options.padding / fitted->scale, context);
+    fitted->lost_area = pack::lost_to_holes(outlines) +
+                        pack::lost_to_bays(outlines, options.padding / fitted->scale, context);
   return fitted;
 }
 

@@ -90,8 +90,7 @@ double lost_to_holes(std::span<const ChartOutline> outlines) {
   return std::max(0.0, holes);
 }
 
-double lost_to_bays(std::span<const ChartOutline> outlines, double gutter,
-                    const Context& context) {
+double lost_to_bays(std::span<const ChartOutline> outlines, double gutter, const Context& context) {
   constexpr double kNarrow = 1.0 / 40;    // of the side of a square that all charts would fill
   constexpr double kFinest = 1.0 / 1024;  // of a chart's side: masks are no larger than pages
   const double width = std::max(kNarrow * std::sqrt(area_of(outlines)), 4 * gutter);
@@ -101,9 +100,8 @@ double lost_to_bays(std::span<const ChartOutline> outlines, double gutter,
     for (std::size_t i = begin; i < end; ++i) {
       const Vec2d box = box_of(outlines[i], 0);
       const double finest = kFinest * std::max(box.x, box.y);
-      bays[i] = std::min(box.x, box.y) < width
-                    ? -outlines[i].area
-                    : closed_bays(outlines[i], std::max(width, finest));
+      bays[i] = std::min(box.x, box.y) < width ? -outlines[i].area
+                                               : closed_bays(outlines[i], std::max(width, finest));
     }
   });
   return std::max(0.0, std::accumulate(bays.begin(), bays.end(), 0.0));

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "libatlas/core/counting_sort.h"
+#include "libatlas/pack/mask_runs.h"
 
 namespace atlas::pack {
 namespace {
@@ -33,110 +33,23 @@ Bounds clip_to_slab(const std::array<Vec2d, 3>& t, double low, double high) {
   return x;
 }
 
-// Collects runs in any order, then sorts them by row and joins them.
-class RunSet {
- public:
-  struct Item {
-    std::int32_t row;
-    Run run;
-  };
-  std::vector<Item> items;
-
-  // Rows 0 .. rows - 1 are those that add() may know.
-  explicit RunSet(std::int32_t rows = 0) : last_(static_cast<std::size_t>(rows), kNone) {}
-
-  // A run that touches the one before it in its row, as those of edges that follow each other
-  // mostly do, makes that one longer: teeth finer than cells would else take gigabytes.
-  void add(std::int32_t row, Run run) {
-    if (static_cast<std::size_t>(row) < last_.size()) {
-      std::uint32_t& last = last_[static_cast<std::size_t>(row)];
-      if (last != kNone) {
-        Run& before = items[last].run;
-        if (run.begin <= before.end && before.begin <= run.end) {
-          before = {std::min(before.begin, run.begin), std::max(before.end, run.end)};
-          return;
-        }
-      }
-      last = static_cast<std::uint32_t>(items.size());
-    }
-    items.push_back({row, run});
-  }
-
-  Mask build() {
-    Mask mask;
-    if (items.empty()) return mask;
-    left_ = items[0].run.begin;
-    bottom_ = items[0].row;
-    std::int32_t right = items[0].run.end, top = bottom_;
-    for (const Item& i : items) {
-      left_ = std::min(left_, i.run.begin);
-      right = std::max(right, i.run.end);
-      bottom_ = std::min(bottom_, i.row);
-      top = std::max(top, i.row);
-    }
-    mask.width = right - left_;
-    mask.height = top - bottom_ + 1;
-    const std::vector<Run> by_row = sort_by_row(mask);
-    join(by_row, mask);
-    return mask;
-  }
-  std::int32_t left() const { return left_; }
-  std::int32_t bottom() const { return bottom_; }
-
- private:
-  // mask.first gets the first run of every row.
-  std::vector<Run> sort_by_row(Mask& mask) const {
-    std::vector<Run> runs(items.size());
-    mask.first = counting_sort(
-        items.size(), static_cast<std::size_t>(mask.height),
-        [&](std::size_t i) { return static_cast<std::size_t>(items[i].row - bottom_); },
-        [&](std::size_t i, std::uint32_t at) {
-          runs[at] = {items[i].run.begin - left_, items[i].run.end - left_};
-        });
-    return runs;
-  }
-
-  static void join(std::vector<Run> runs, Mask& mask) {
-    std::uint32_t from = 0;
-    for (std::int32_t r = 0; r < mask.height; ++r) {
-      const std::uint32_t to = mask.first[r + 1];
-      std::sort(runs.begin() + from, runs.begin() + to,
-                [](const Run& a, const Run& b) { return a.begin < b.begin; });
-      const std::size_t start = mask.runs.size();
-      mask.first[r] = static_cast<std::uint32_t>(start);
-      for (; from < to; ++from) {
-        if (mask.runs.size() > start && mask.runs.back().end >= runs[from].begin)
-          mask.runs.back().end = std::max(mask.runs.back().end, runs[from].end);
-        else
-          mask.runs.push_back(runs[from]);
-      }
-    }
-    mask.first[mask.height] = static_cast<std::uint32_t>(mask.runs.size());
-    for (const Run& run : mask.runs) mask.cells += run.end - run.begin;
-  }
-
-  static constexpr std::uint32_t kNone = 0xffffffffu;
-  std::vector<std::uint32_t> last_;  // 1 a row: the item added last
-  std::int32_t left_ = 0, bottom_ = 0;
-};
-
 // Rows [first, last] whose widened open slab (r cell - pad, (r + 1) cell + pad) meets [low, high].
 struct Rows {
   std::int32_t first, last;
   Rows(const Bounds& y, double pad, double cell) {
-    const double below = std::floor((y.low - pad) / cell);
-    const auto row0 = static_cast<std::int32_t>(below) - (below == (y.low - pad) / cell);
+    const std::int32_t below = floor_of((y.low - pad) / cell);
+    const std::int32_t row0 = below - (below == (y.low - pad) / cell);
     first = row0 + ((row0 + 1) * cell + pad <= y.low);
-    last = static_cast<std::int32_t>(std::floor((y.high + pad) / cell));
+    last = floor_of((y.high + pad) / cell);
     last -= last * cell - pad >= y.high;
   }
 };
 
 // The cells of a row whose widened open interval meets [x.low, x.high].
 Run cells_within(const Bounds& x, double pad, double cell) {
-  std::int32_t begin = static_cast<std::int32_t>(std::floor((x.low - pad) / cell));
+  std::int32_t begin = floor_of((x.low - pad) / cell);
   while ((begin + 1) * cell + pad <= x.low) ++begin;
-  std::int32_t end = static_cast<std::int32_t>(std::ceil((x.high + pad) / cell));
+  std::int32_t end = ceiling((x.high + pad) / cell);
   while ((end - 1) * cell - pad >= x.high) --end;
   return {begin, std::max(end, begin + 1)};
 }
@@ -174,105 +87,70 @@ void add_edge(Vec2d a, Vec2d b, const RasterOptions& options, RunSet& set) {
   }
 }
 
-// Cells whose centres the edges wind around. What lies nearer to an edge than that is add_edge's.
-class Interior {
- public:
-  // `cells`: the rows and columns that edges may cross.
-  Interior(std::int32_t cell, Extent cells)
-      : cell_(cell),
-        cells_(cells),
-        most_crossings_(std::max(kManyCrossings, std::size_t(cells.area()) / 4)) {}
+// All that a mask can tell of an x.
+struct Column {
+  Run cells;                 // that a point there touches
+  std::int32_t left, right;  // whose centres it lies between
+  bool operator==(const Column&) const = default;
+};
 
-  void add(Vec2d a, Vec2d b) {
-    const std::int32_t sense = a.y < b.y ? 1 : -1;
-    if (sense < 0) std::swap(a, b);
-    // Rows whose middle lies in [a.y, b.y).
-    const auto first = static_cast<std::int32_t>(std::ceil(a.y / cell_ - 0.5));
-    const auto end = static_cast<std::int32_t>(std::ceil(b.y / cell_ - 0.5));
-    if (first >= end) return;
-    const double slope = (b.x - a.x) / (b.y - a.y);
-    for (std::int32_t r = first; r < end; ++r)
-      crossings_.push_back({r, sense, a.x + slope * ((r + 0.5) * cell_ - a.y)});
-    if (crossings_.size() > most_crossings_) count();
+// Draws edges that follow each other. Where several stay within a column, as teeth finer than cells
+// do by the thousand, what they touch is the rows from the lowest to the highest, and what they
+// enclose depends on their ends alone.
+class EdgePen {
+ public:
+  EdgePen(const RasterOptions& options, RunSet& set, Interior& interior)
+      : options_(options), set_(set), interior_(interior) {}
+
+  void move_to(Vec2d p) {
+    finish();
+    begin_at(p, column_of(p.x));
   }
 
-  void fill(RunSet& set) {
-    if (!turns_.empty()) {
-      count();
-      return fill_counted(set);
+  void draw_to(Vec2d p) {
+    const Column column = column_of(p.x);
+    if (column == column_) {
+      at_ = p;
+      rows_.add(p.y);
+      drawn_ = true;
+      return;
     }
-    sort();
-    std::int32_t winding = 0;
-    for (std::size_t k = 0; k + 1 < crossings_.size(); ++k) {
-      const Crossing &c = crossings_[k], &next = crossings_[k + 1];
-      winding = (k > 0 && crossings_[k - 1].row == c.row ? winding : 0) + c.sense;
-      if (winding == 0 || next.row != c.row) continue;
-      const std::int32_t begin = first_beyond(c.x);
-      const auto end = static_cast<std::int32_t>(std::floor(next.x / cell_ - 0.5)) + 1;
-      if (begin < end) set.add(c.row, {begin, end});
-    }
+    finish();
+    add_edge(at_, p, options_, set_);
+    interior_.add(at_, p);
+    begin_at(p, column);
+  }
+
+  void finish() {
+    if (!drawn_) return;
+    const Rows rows(rows_, options_.padding, options_.cell);
+    for (std::int32_t r = rows.first; r <= rows.last; ++r) set_.add(r, column_.cells);
+    interior_.add(from_, at_);
   }
 
  private:
-  struct Crossing {
-    std::int32_t row, sense;
-    double x;
-  };
-  static constexpr std::size_t kManyCrossings = 1 << 21;  // 32 MiB
-
-  // The first cell whose centre is not left of x.
-  std::int32_t first_beyond(double x) const {
-    return static_cast<std::int32_t>(std::ceil(x / cell_ - 0.5));
+  Column column_of(double x) const {
+    Bounds at;
+    at.add(x);
+    return {cells_within(at, options_.padding, options_.cell), interior_.first_beyond(x),
+            interior_.last_before(x)};
   }
 
-  // Crossings that would take more memory than cells are counted by those at which they begin to
-  // matter.
-  void count() {
-    const auto w = static_cast<std::size_t>(cells_.width) + 1;
-    turns_.resize(w * static_cast<std::size_t>(cells_.height));
-    for (const Crossing& c : crossings_) {
-      const std::int32_t row = std::clamp(c.row, 0, cells_.height - 1);
-      const std::int32_t x = std::clamp(first_beyond(c.x), 0, cells_.width);
-      turns_[static_cast<std::size_t>(row) * w + static_cast<std::size_t>(x)] += c.sense;
-    }
-    crossings_.clear();
+  void begin_at(Vec2d p, const Column& column) {
+    from_ = at_ = p;
+    column_ = column;
+    drawn_ = false;
+    rows_ = {};
+    rows_.add(p.y);
   }
 
-  void fill_counted(RunSet& set) const {
-    const std::int32_t* turn = turns_.data();
-    for (std::int32_t r = 0; r < cells_.height; ++r) {
-      std::int32_t winding = 0;
-      for (std::int32_t x = 0; x <= cells_.width; ++x, ++turn) {
-        winding += *turn;
-        if (winding != 0) set.add(r, {x, x + 1});
-      }
-    }
-  }
-
-  // By row, in time linear in crossings and rows, then the few of each row by x.
-  void sort() {
-    if (crossings_.empty()) return;
-    std::int32_t low = crossings_[0].row, high = low;
-    for (const Crossing& c : crossings_) {
-      low = std::min(low, c.row);
-      high = std::max(high, c.row);
-    }
-    std::vector<Crossing> sorted(crossings_.size());
-    const std::vector<std::uint32_t> first = counting_sort(
-        crossings_.size(), static_cast<std::size_t>(high - low) + 1,
-        [&](std::size_t i) { return static_cast<std::size_t>(crossings_[i].row - low); },
-        [&](std::size_t i, std::uint32_t at) { sorted[at] = crossings_[i]; });
-    for (std::size_t r = 0; r + 1 < first.size(); ++r)
-      std::sort(sorted.begin() + first[r], sorted.begin() + first[r + 1],
-                [](const Crossing& a, const Crossing& b) { return a.x < b.x; });
-    crossings_ = std::move(sorted);
-  }
-
-  double cell_;
-  Extent cells_;
-  std::size_t most_crossings_;
-  std::vector<Crossing> crossings_;
-  std::vector<std::int32_t> turns_;  // (cells_.width + 1) a row, where crossings are counted
+  const RasterOptions& options_;
+  RunSet& set_;
+  Interior& interior_;
+  Vec2d from_, at_;  // of what has been drawn in this column
+  Column column_{};
+  Bounds rows_;
+  bool drawn_ = false;  // whether an edge lies within the column
 };
 
 }  // namespace
@@ -303,11 +181,13 @@ Mask rasterize(const ChartOutline& outline, const RasterOptions& options, Vec2d&
   RunSet set(cells(by));
   set.items.reserve(4 * (outline.edges.size() + outline.loose.size()));
   Interior interior(options.cell, {cells(bx), cells(by)});
-  for (const auto& e : outline.edges) {
-    const Vec2d a = place(e.from), b = place(e.to);
-    add_edge(a, b, options, set);
-    interior.add(a, b);
+  EdgePen pen(options, set, interior);
+  for (std::size_t k = 0; k < outline.edges.size(); ++k) {
+    const ChartOutline::Edge& e = outline.edges[k];
+    if (k == 0 || !(outline.edges[k - 1].to == e.from)) pen.move_to(place(e.from));
+    pen.draw_to(place(e.to));
   }
+  pen.finish();
   interior.fill(set);
   for (const auto& t : outline.loose)
     add_triangle({place(t[0]), place(t[1]), place(t[2])}, options, set);

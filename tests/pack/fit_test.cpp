@@ -269,45 +269,6 @@ TEST(FitPages, OutlinesFitMoreThanBoxes) {
             "");
 }
 
-// A square of side n cells with a square hole of side `hole` in each, three by three corners.
-std::vector<Vec2d> perforated(int n, double cell, double hole) {
-  std::vector<Vec2d> corners;
-  const auto quad = [&](Vec2d a, Vec2d b, Vec2d c, Vec2d d) {
-    corners.insert(corners.end(), {a, b, c, a, c, d});
-  };
-  const double in = (cell - hole) / 2;
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i) {
-      const double x0 = i * cell, y0 = j * cell, x1 = (i + 1) * cell, y1 = (j + 1) * cell;
-      const Vec2d a{x0, y0}, b{x1, y0}, c{x1, y1}, d{x0, y1};
-      const Vec2d e{x0 + in, y0 + in}, f{x0 + in + hole, y0 + in};
-      const Vec2d g{x0 + in + hole, y0 + in + hole}, h{x0 + in, y0 + in + hole};
-      quad(a, b, f, e);
-      quad(b, c, g, f);
-      quad(c, d, h, g);
-      quad(d, a, e, h);
-    }
-  return corners;
-}
-
-// Holes too small for cuts to open, less what other charts could put into them.
-TEST(FitPages, TellsWhatSmallHolesTake) {
-  const auto lost_area = [](std::vector<std::vector<Vec2d>> shapes) {
-    const test::ChartItems charts(std::move(shapes));
-    FitOptions o = tight(256);
-    o.shapes = charts.shapes;
-    return fit(charts.items, o).lost_area;
-  };
-  const auto plate = [](double side) {
-    return std::vector<Vec2d>{{0, 0}, {side, 0}, {side, side}, {0, 0}, {side, side}, {0, side}};
-  };
-  EXPECT_NEAR(lost_area({perforated(8, 10, 6)}), 64 * 36, 1e-9);
-  EXPECT_NEAR(lost_area({perforated(8, 10, 6), plate(7)}), 64 * 36, 1e-9);
-  EXPECT_NEAR(lost_area({perforated(8, 10, 6), plate(5)}), 64 * 36 - 25, 1e-9);
-  EXPECT_EQ(lost_area({perforated(1, 80, 48)}), 0);
-  EXPECT_EQ(lost_area({plate(20)}), 0);
-}
-
 // Rectangles, a third of them with a slanted side.
 test::ChartItems straight_charts(std::uint64_t seed, int count) {
   test::Noise noise{seed};

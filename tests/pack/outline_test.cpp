@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "libatlas/pack/bit_page.h"
@@ -198,28 +199,53 @@ std::vector<Vec2d> soup(test::Noise& noise, int round) {
 }
 
 // The rasteriser against the separating axes of square and triangle, cell by cell.
+void expect_exact_mask(std::vector<Vec2d> t, const pack::RasterOptions& o, int round) {
+  Vec2d origin;
+  const Mask m = pack::rasterize(pack::outline_of({t, {}}), o, origin);
+  for (Vec2d& p : t) p = {p.x + origin.x, p.y + origin.y};
+  for (int y = -1; y <= m.height; ++y)
+    for (int x = -1; x <= m.width; ++x) {
+      const Vec2d low{double(x * o.cell - o.padding), double(y * o.cell - o.padding)};
+      const Vec2d high{double((x + 1) * o.cell + o.padding), double((y + 1) * o.cell + o.padding)};
+      double gap = 1e300;
+      for (std::size_t k = 0; k < t.size(); k += 3)
+        gap = std::min(gap, separation(&t[k], low, high));
+      if (std::abs(gap) > 1e-9) {
+        EXPECT_EQ(covers(m, x, y), gap < 0) << round << " " << x << " " << y;
+      }
+    }
+}
+
 TEST(OutlineMask, MatchesSeparatingAxes) {
   test::Noise noise{3};
   for (int round = 0; round < 900; ++round) {
-    std::vector<Vec2d> t = soup(noise, round);
+    const std::vector<Vec2d> t = soup(noise, round);
     pack::RasterOptions o;
     o.padding = noise.in(0, 2);
     o.cell = noise.in(1, 3);
-    Vec2d origin;
-    const Mask m = pack::rasterize(pack::outline_of({t, {}}), o, origin);
-    for (Vec2d& p : t) p = {p.x + origin.x, p.y + origin.y};
-    for (int y = -1; y <= m.height; ++y)
-      for (int x = -1; x <= m.width; ++x) {
-        const Vec2d low{double(x * o.cell - o.padding), double(y * o.cell - o.padding)};
-        const Vec2d high{double((x + 1) * o.cell + o.padding),
-                         double((y + 1) * o.cell + o.padding)};
-        double gap = 1e300;
-        for (std::size_t k = 0; k < t.size(); k += 3)
-          gap = std::min(gap, separation(&t[k], low, high));
-        if (std::abs(gap) > 1e-9) {
-          EXPECT_EQ(covers(m, x, y), gap < 0) << round << " " << x << " " << y;
-        }
-      }
+    expect_exact_mask(t, o, round);
+  }
+}
+
+// Several edges within a column of cells, up and down by different lengths: a comb of slanting
+// teeth, their corners on lines between cells, on cells' middles or anywhere.
+TEST(OutlineMask, FineTeethMatchSeparatingAxes) {
+  test::Noise noise{8};
+  for (int round = 0; round < 90; ++round) {
+    const double grid = std::array{8.0, 16.0, 1000.0}[std::size_t(round) % 3];
+    const auto snapped = [&](double v) { return std::round(v * grid) / grid; };
+    const int teeth = noise.in(8, 40);
+    std::vector<Vec2d> t;
+    for (int k = 0; k < teeth; ++k) {
+      const double left = snapped(6.0 * k / teeth), right = snapped(6.0 * (k + 1) / teeth);
+      const Vec2d tip{snapped(left + noise.unit()), snapped(1 + 7 * noise.unit())};
+      t.insert(t.end(), {{left, 0}, {right, 0}, {right, 1}, {left, 0}, {right, 1}, {left, 1}});
+      t.insert(t.end(), {{left, 1}, {right, 1}, tip});
+    }
+    pack::RasterOptions o;
+    o.padding = noise.in(0, 2);
+    o.cell = noise.in(1, 3);
+    expect_exact_mask(t, o, round);
   }
 }
 
