@@ -35,9 +35,10 @@ double area_of(std::span<const ChartOutline> outlines) {
 
 // Of an outline without holes, what a closing by squares of this side adds to it.
 double closed_bays(const ChartOutline& outline, double width) {
+  constexpr double kSpacing = 1.0 / 32;  // a quarter of a cell
   ChartOutline filled;
   double area = 0;
-  each_loop(outline, [&](Edges loop, double loop_area) {
+  each_loop(thinned(outline, kSpacing * width), [&](Edges loop, double loop_area) {
     if (!(loop_area > 0)) return;
     area += loop_area;
     filled.edges.insert(filled.edges.end(), loop.begin(), loop.end());

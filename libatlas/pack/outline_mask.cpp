@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "libatlas/pack/mask_runs.h"
@@ -104,27 +105,32 @@ class EdgePen {
 
   void move_to(Vec2d p) {
     finish();
-    begin_at(p, column_of(p.x));
+    begin_at(p);
   }
 
   void draw_to(Vec2d p) {
-    const Column column = column_of(p.x);
-    if (column == column_) {
-      at_ = p;
-      rows_.add(p.y);
-      drawn_ = true;
-      return;
+    std::optional<Column> column;
+    if (std::abs(p.x - at_.x) < options_.cell) {  // else in another column, whatever it is
+      if (!column_) column_ = column_of(at_.x);
+      column = column_of(p.x);
+      if (column == column_) {
+        at_ = p;
+        rows_.add(p.y);
+        drawn_ = true;
+        return;
+      }
     }
     finish();
     add_edge(at_, p, options_, set_);
     interior_.add(at_, p);
-    begin_at(p, column);
+    begin_at(p);
+    column_ = column;
   }
 
   void finish() {
     if (!drawn_) return;
     const Rows rows(rows_, options_.padding, options_.cell);
-    for (std::int32_t r = rows.first; r <= rows.last; ++r) set_.add(r, column_.cells);
+    for (std::int32_t r = rows.first; r <= rows.last; ++r) set_.add(r, column_->cells);
     interior_.add(from_, at_);
   }
 
@@ -136,9 +142,9 @@ class EdgePen {
             interior_.last_before(x)};
   }
 
-  void begin_at(Vec2d p, const Column& column) {
+  void begin_at(Vec2d p) {
     from_ = at_ = p;
-    column_ = column;
+    column_.reset();
     drawn_ = false;
     rows_ = {};
     rows_.add(p.y);
@@ -147,8 +153,8 @@ class EdgePen {
   const RasterOptions& options_;
   RunSet& set_;
   Interior& interior_;
-  Vec2d from_, at_;  // of what has been drawn in this column
-  Column column_{};
+  Vec2d from_, at_;               // of what has been drawn in this column
+  std::optional<Column> column_;  // where it has been asked for
   Bounds rows_;
   bool drawn_ = false;  // whether an edge lies within the column
 };

@@ -119,6 +119,23 @@ TEST(FillPages, HolesThatNothingFitsAreNoFault) {
   EXPECT_LE(plain.last, kWithoutCuts);
 }
 
+// Teeth and gaps far narrower than gutters, of which half of the page is lost.
+TEST(FillPages, BaysThatNothingFitsAreNoFault) {
+  constexpr std::uint32_t kTeeth = 1500, kRows = 4;
+  const Shape plate = grid(2 * kTeeth - 1, kRows);
+  Shape comb;
+  comb.positions = plate.positions;
+  for (std::uint32_t t = 0; t < 2 * (2 * kTeeth - 1) * kRows; ++t) {
+    const std::uint32_t column = t / 2 % (2 * kTeeth - 1), row = t / 2 / (2 * kTeeth - 1);
+    if (column % 2 == 1 && row > 0) continue;
+    for (int k = 0; k < 3; ++k) comb.indices.push_back(plate.indices[3 * t + k]);
+  }
+  const Packed plain = packed(comb);
+  EXPECT_EQ(plain.mesh.charts.charts.size(), 1u);
+  EXPECT_GT(plain.last, 0);
+  EXPECT_LE(plain.last, kWithoutCuts);
+}
+
 // Cut to a page's side, a strip of needles would be so many loose ones.
 TEST(FillPages, ACutThatEvenAFullPageWouldNotPayForIsNotLaidOut) {
   const Packed needles = packed(grid(1000, 1, 1, 100));
