@@ -87,8 +87,8 @@ struct FitResult {
   std::vector<Extent> pages;             // of those that hold something; at most N
   double utilization = 0;  // area of contents (boxes) or of the shapes (outlines) / area of pages
   double box_utilization = 0;  // area of the boxes with gutters / area of pages (boxes only)
-  // Of small holes in shapes and narrow bays of their outlines, in which no shape could lie: texels²
-  // at scale 1 (outlines only).
+  // Of small holes and narrow bays in shapes, where no shape could lie: texels² at scale 1; with
+  // outlines only.
   double lost_area = 0;
   GroupingResult grouping;                     // of the box areas at the final scale
   std::uint32_t moved_items = 0;               // items that did not fit their group's page
