@@ -22,6 +22,12 @@ constexpr double kExpectedFill = 0.8;
 // gain one to two points by it, while more starts for all would win a tenth of that in the same
 // time. One that is emptier still is drawn a third time.
 constexpr double kPoorFill = 0.715, kPoorerFill = 0.70;
+// By what further draws raised a page's fill at most.
+constexpr double kMostRedrawn = 1.06;
+// Cells across a page: at first, of many charts, and when drawn again. Finer cells lose less of the
+// gaps between charts with narrow limbs, and take longer.
+constexpr int kCells = 128, kCellsOfMany = 192, kFineCells = 256;
+constexpr std::size_t kManyCharts = 48;
 constexpr double kMostSides = 2;        // of the page, drawn: the longest chart
 constexpr double kMostCells = 1 << 21;  // of the finest grid under one chart's box
 
@@ -79,6 +85,7 @@ class Press {
     scale_ = std::min(by_area, kMostSides * options.page_size / longest);
     side_ = options.page_size * (scale_ / by_area);
     draw();
+    draw_pieces(outlines.size() < kManyCharts ? kCells : kCellsOfMany);
   }
 
   PressedPage run() {
@@ -100,11 +107,11 @@ class Press {
       settle_best(starts, best);
       const double done = book_round(options_, wall_seconds() - begun, fill(best), best);
       if (n == 1) break;
-      if (options_.preset != PackPreset::best) {
-        // Starts are drawn by chance: an empty page deserves a second draw.
-        if (round > 1 || fill(best) >= (round > 0 ? kPoorerFill : kPoorFill)) break;
-        continue;
-      }
+      const bool best_wanted = options_.preset == PackPreset::best;
+      // Starts are drawn by chance: an empty page deserves a second draw.
+      if (!best_wanted && !worth_another_draw(round, fill(best))) break;
+      if (round == 0) draw_pieces(kFineCells);
+      if (!best_wanted) continue;
       if (!(done < 1)) break;
       context_.report("pack", done);
     }
@@ -112,16 +119,24 @@ class Press {
   }
 
  private:
+  bool worth_another_draw(std::uint32_t round, double fill) const {
+    return round < 2 && fill < (round > 0 ? kPoorerFill : kPoorFill) &&
+           kMostRedrawn * fill >= options_.wanted_fill;
+  }
+
   // The search needs outlines only as fine as its cells; exact masks come last.
   void draw() {
     const int fine = std::max(1, options_.page_size / 1024);
     const std::size_t n = outlines_.size();
-    cell_ = std::max(1, options_.page_size / 128);
-
     drawn_.resize(n);
     parallel_for(context_, n, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) draw_one(i, fine);
     });
+  }
+
+  // The pieces of the search, so many cells across the page.
+  void draw_pieces(int cells) {
+    cell_ = std::max(1, options_.page_size / cells);
     std::vector<ChartOutline> thin;
     for (const ChartOutline& o : outlines_) thin.push_back(thinned(o, 0.125 * cell_ / scale_));
     PieceOptions pieces;

@@ -73,7 +73,9 @@ Result<PageLayout> cut_to_fill(const PlainUvs& uvs, const LayoutOptions& options
     const double least_gain = std::max(kLeastGain, kSeamPrice * seams);
     const double wanted = (1 + least_gain) * goal.covered(*best);
     if (wanted >= 1) continue;  // more than full pages hold
-    Result<PageLayout> layout = lay_out(cut, uvs.density, options, part(double(k) + 1));
+    LayoutOptions further = options;
+    further.wanted_fill = wanted;
+    Result<PageLayout> layout = lay_out(cut, uvs.density, further, part(double(k) + 1));
     if (!layout.ok() && layout.status().code() != ErrorCode::no_solution) return layout;
     if (!layout.ok()) break;  // gutters around pieces take more than there is; more so around less
     if (goal.covered(*layout) < wanted) continue;

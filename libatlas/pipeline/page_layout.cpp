@@ -117,6 +117,7 @@ Result<PageLayout> lay_out(const ChartSet& charts, std::span<const Vec2d> texels
                                          kBestLayouts);
   fit.free_aspect = options.free_aspect;
   fit.square = options.square;
+  fit.wanted_fill = options.wanted_fill;
   fit.press_pages = options.press_pages;
   std::optional<Outlines> outlines;
   if (options.outlines) {

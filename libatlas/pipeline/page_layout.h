@@ -26,6 +26,7 @@ struct LayoutOptions {
   // where no texel has a size.
   bool free_aspect = false;
   bool press_pages = true;  // as in FitOptions
+  double wanted_fill = 0;   // as in FitOptions
   bool square = false;      // pages as wide as high; free_aspect overrides it
   PackPreset preset = PackPreset::standard;
 };

@@ -253,6 +253,38 @@ TEST(Press, FewChartsOnOnePage) {
   }
 }
 
+// Stars leave much of any page empty: it is drawn again, unless that is of no use.
+TEST(Press, WhatIsFarFromTheFillWantedIsNotDrawnAgain) {
+  std::vector<std::vector<Vec2d>> stars(20);
+  std::vector<ChartOutline> outlines;
+  double area = 0;
+  for (std::size_t k = 0; k < stars.size(); ++k) {
+    const auto corner = [&](int i) {
+      const double angle = i * std::numbers::pi / 5, r = (30 + 2 * double(k)) * (i % 2 ? 1 : 0.15);
+      return Vec2d{r * std::cos(angle), r * std::sin(angle)};
+    };
+    for (int i = 0; i < 10; ++i)
+      stars[k].insert(stars[k].end(), {{0, 0}, corner(i), corner(i + 1)});
+    outlines.push_back(outline_of({stars[k], {}}));
+    area += outlines.back().area;
+  }
+  const test::ChartItems charts(std::move(stars));
+  FitOptions o = options_for(charts, 512);
+  const auto fill = [&](const PressedPage& page) {
+    return page.scale * page.scale * area / double(page.page.area());
+  };
+  const PressedPage usual = press_outlines(outlines, o, {});
+  ASSERT_GT(usual.scale, 0);
+  ASSERT_LT(fill(usual), 0.6);
+  o.wanted_fill = fill(usual);
+  EXPECT_EQ(press_outlines(outlines, o, {}).layouts, usual.layouts);
+  o.wanted_fill = 0.9;
+  const PressedPage hasty = press_outlines(outlines, o, {});
+  EXPECT_LT(hasty.layouts, usual.layouts);
+  EXPECT_GT(hasty.scale, 0);
+  EXPECT_LE(fill(hasty), fill(usual));
+}
+
 // A chart longer than a square page of all charts lies along a long page.
 TEST(Press, LongChartsLieAlongThePage) {
   std::vector<std::vector<Vec2d>> bars;
