@@ -1,0 +1,201 @@
+#include "libatlas/pack/press_starts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "libatlas/core/parallel.h"
+#include "libatlas/pack/engines.h"
+
+namespace atlas::pack {
+namespace {
+
+// Page fill at which the search begins; only the ratio of charts to gutters depends on it.
+constexpr double kExpectedFill = 0.8;
+constexpr double kMostSides = 2;             // of the page, drawn: the longest chart
+constexpr double kMostCells = 1 << 21;       // of the finest grid under one chart's box
+constexpr std::size_t kStartedCharts = 480;  // over all starts: fewer charts get more of them
+constexpr std::size_t kMostStarts = 20;
+constexpr std::uint64_t kSearchWork = 160'000'000;  // words looked at by all starts, 2 ns each
+constexpr std::uint64_t kLayouts = 32;              // of one start
+constexpr std::uint32_t kMostDoublings = 4;         // of both, a round of `best` each
+constexpr std::uint32_t kDirections = 24;
+// Cells across a page: at first, of many charts, and when drawn again. Finer cells lose less of the
+// gaps between charts with narrow limbs, and take longer.
+constexpr int kCells = 128, kCellsOfMany = 192, kFineCells = 256;
+constexpr std::size_t kManyCharts = 48;
+// Of the square page's side: what is longer may lie along the strip; the narrowest strip.
+constexpr double kLong = 1.2, kNarrow = 0.4;
+constexpr int kTurns = 180;  // of a single chart, in a quarter turn
+
+}  // namespace
+
+double goodness(const SqueezePage& page, const FitOptions& options) {
+  if (!(page.width > 0)) return 0;
+  return 1 / (options.free_aspect ? page.width * page.height
+                                  : std::pow(std::max(page.width, page.height), 2));
+}
+
+PressStarts::PressStarts(std::span<const ChartOutline> outlines, const FitOptions& options,
+                         const Context& context)
+    : outlines_(outlines), options_(options), context_(context) {
+  double area = 0;
+  for (const ChartOutline& o : outlines) area += o.area;
+  const double page = double(options.page_size) * options.page_size;
+  double longest = 0;
+  for (const ChartOutline& o : outlines) {
+    const Vec2d box = box_of(o, 0);
+    longest = std::max({longest, box.x, box.y});
+  }
+  // What is longer will lie along the page, far smaller than its area tells.
+  const double by_area = std::sqrt(kExpectedFill * page / area);
+  scale_ = std::min(by_area, kMostSides * options.page_size / longest);
+  side_ = options.page_size * (scale_ / by_area);
+  draw();
+  draw_pieces(outlines.size() < kManyCharts ? kCells : kCellsOfMany);
+}
+
+std::vector<PressStart> PressStarts::make(std::uint32_t round) {
+  if (round == 1) draw_pieces(kFineCells);
+  const std::size_t n = std::max<std::size_t>(1, outlines_.size());
+  const std::size_t count =
+      n == 1 ? 1 : std::clamp<std::size_t>(kStartedCharts / n, 1, kMostStarts);
+  std::vector<PressStart> starts(count);
+  parallel_for(context_, count, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) starts[k] = start(k, count, round);
+  });
+  return starts;
+}
+
+// The search needs outlines only as fine as its cells; exact masks come last.
+void PressStarts::draw() {
+  const int fine = std::max(1, options_.page_size / 1024);
+  const std::size_t n = outlines_.size();
+  drawn_.resize(n);
+  parallel_for(context_, n, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) draw_one(i, fine);
+  });
+}
+
+// The pieces of the search, so many cells across the page.
+void PressStarts::draw_pieces(int cells) {
+  cell_ = std::max(1, options_.page_size / cells);
+  std::vector<ChartOutline> thin;
+  for (const ChartOutline& o : outlines_) thin.push_back(thinned(o, 0.125 * cell_ / scale_));
+  PieceOptions pieces;
+  pieces.factor = scale_;
+  pieces.padding = options_.padding;
+  pieces.cell = cell_;
+  pieces.directions = kDirections;
+  pieces_ = make_pieces(thin, pieces, context_);
+}
+
+void PressStarts::draw_one(std::size_t i, int fine) {
+  DrawnChart& d = drawn_[i];
+  const Vec2d box = box_of(outlines_[i], 0);
+  while (scale_ * box.x * scale_ * box.y > kMostCells * fine * fine) fine *= 2;
+  RasterOptions raster;
+  raster.factor = scale_;
+  raster.padding = 0;
+  raster.cell = fine;
+  const Mask mask = rasterize(outlines_[i], raster, d.origin);
+  if (mask.cells == 0) return;
+  const double cell = fine;
+  d.bodies[DrawnChart::coarse] = make_body(coarsen(mask, 4), 4 * cell, 12 * cell, 10 * cell);
+  d.bodies[DrawnChart::fine] = make_body(coarsen(mask, 2), 2 * cell, 8 * cell, 2 * cell);
+  // One centre for both.
+  const Vec2d shift{d.bodies[DrawnChart::fine].center.x - d.bodies[DrawnChart::coarse].center.x,
+                    d.bodies[DrawnChart::fine].center.y - d.bodies[DrawnChart::coarse].center.y};
+  for (Vec2d& q : d.bodies[DrawnChart::fine].outline) q = {q.x + shift.x, q.y + shift.y};
+  make_arcs(d.bodies[DrawnChart::fine]);
+  d.bodies[DrawnChart::fine].center = d.bodies[DrawnChart::coarse].center;
+  d.bodies[DrawnChart::fine].radius += std::hypot(shift.x, shift.y);
+}
+
+// Strips of widths around the square page's side. Where pages may have any shape, every fourth is
+// narrower, for few large charts may fill it in one row, and if a chart is longer than the side,
+// every second lays it along the strip.
+std::int32_t PressStarts::strip_width(std::size_t k, std::size_t count, double shift) const {
+  const double side = side_ * std::sqrt(kExpectedFill / 0.69) / cell_;
+  const double spread = (count > 1 ? 0.2 * double(k) / double(count - 1) - 0.1 : 0) + shift;
+  std::int32_t narrowest = 0, longest = 0;
+  for (const Piece& p : pieces_) {
+    std::int32_t least = std::numeric_limits<std::int32_t>::max();
+    for (const Mask& m : p.masks) {
+      least = std::min(least, m.width);
+      longest = std::max(longest, m.width);
+    }
+    if (p.cells() > 0) narrowest = std::max(narrowest, least);
+  }
+  const bool along = options_.free_aspect && longest > kLong * side && k % 2 == 1;
+  const bool narrow = options_.free_aspect && !along && k % 4 == 0;
+  double width = side * (1 + spread);
+  if (along) width = longest * (1.1 + spread) + 1;
+  if (narrow) width = side * (kNarrow + (1 - kNarrow) * double(k) / double(count));
+  return std::max(narrowest, static_cast<std::int32_t>(width));
+}
+
+PressStart PressStarts::start(std::size_t k, std::size_t count, std::uint32_t round) const {
+  Random random(options_.seed * 0x10001 + round * kMostStarts + k);
+  const double shift = round > 0 ? 0.04 * (random.unit() - 0.5) : 0;
+  NestSearchOptions search;
+  search.width = strip_width(k, count, shift);
+  search.seed = random.next();
+
+  const std::uint32_t doublings =
+      options_.preset == PackPreset::best ? std::min(round, kMostDoublings) : 0;
+  search.work = kSearchWork / count << doublings;
+  search.layouts = kLayouts << doublings;
+  PressStart start;
+  if (pieces_.size() == 1) return alone();
+  const auto [nest, layouts] = search_nest(pieces_, plan_by_size(pieces_), search, context_);
+  start.layouts = layouts;
+  if (!nest.left_over.empty()) return start;
+  put_down(nest, start);
+  start.page = {search.width * double(cell_), nest.used_height * double(cell_)};
+  return start;
+}
+
+// A single chart, turned such that its page is small.
+PressStart PressStarts::alone() const {
+  PressStart best;
+  best.layouts = kTurns;
+  const DrawnChart& d = drawn_[0];
+  const Vec2d m = d.center_of_shape();
+  for (int k = 0; k < kTurns; ++k) {
+    const double angle = 0.5 * std::numbers::pi * k / kTurns;
+    const double c = std::cos(angle), s = std::sin(angle), pad = options_.padding + 1;
+    Vec2d low{1e300, 1e300}, high{-1e300, -1e300};
+    const auto reach = [&](Vec2d p) {
+      const Vec2d q{scale_ * p.x - m.x, scale_ * p.y - m.y};
+      const Vec2d t{c * q.x - s * q.y, s * q.x + c * q.y};
+      low = {std::min(low.x, t.x), std::min(low.y, t.y)};
+      high = {std::max(high.x, t.x), std::max(high.y, t.y)};
+    };
+    for (const ChartOutline::Edge& e : outlines_[0].edges) reach(e.from);
+    for (const auto& t : outlines_[0].loose) std::for_each(t.begin(), t.end(), reach);
+    const SqueezePage page{high.x - low.x + 2 * pad, high.y - low.y + 2 * pad};
+    if (goodness(page, options_) <= goodness(best.page, options_)) continue;
+    best.page = page;
+    best.poses = {{{pad - low.x, pad - low.y}, angle}};
+  }
+  return best;
+}
+
+// From cells to rigid bodies.
+void PressStarts::put_down(const Nest& nest, PressStart& start) const {
+  start.poses.resize(pieces_.size());
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    const NestPlace& at = nest.places[i];
+    if (!at.placed) continue;
+    const double angle = 2 * std::numbers::pi * at.direction / kDirections;
+    const double c = std::cos(angle), s = std::sin(angle);
+    const Vec2d o = pieces_[i].origins[at.direction], m = drawn_[i].center_of_shape();
+    start.poses[i] = {{at.at.x * double(cell_) + o.x + c * m.x - s * m.y,
+                       at.at.y * double(cell_) + o.y + s * m.x + c * m.y},
+                      angle};
+  }
+}
+
+}  // namespace atlas::pack
