@@ -17,6 +17,9 @@ constexpr double kFilled = 0.7, kFilledFree = 0.65;
 // Such a page is packed with more work where it is poor (page_layout.cpp), which takes seconds each
 // time with more charts than this.
 constexpr std::size_t kMostChartsFree = 300;
+// Pieces that cover less than this share of what charts did are cut no smaller: more pieces still
+// would be laid out for seconds in vain, as those of a spiral whose windings lay in each other.
+constexpr double kHopeless = 0.5;
 // Of the side of a square page that all charts would fill without gaps: how long charts may be, in
 // turn.
 constexpr std::array kLongestSides{1.1, 0.9, 0.75, 0.6, 0.45};
@@ -78,7 +81,9 @@ Result<PageLayout> cut_to_fill(const PlainUvs& uvs, const LayoutOptions& options
     Result<PageLayout> layout = lay_out(cut, uvs.density, further, part(double(k) + 1));
     if (!layout.ok() && layout.status().code() != ErrorCode::no_solution) return layout;
     if (!layout.ok()) break;  // gutters around pieces take more than there is; more so around less
-    if (goal.covered(*layout) < wanted) continue;
+    const double covered = goal.covered(*layout);
+    if (covered < kHopeless * goal.covered(*best)) break;
+    if (covered < wanted) continue;
     best = std::move(layout);
     charts = std::move(cut);
     if (goal.reached(*best)) break;
