@@ -210,7 +210,7 @@ class Export {
     const LayoutOptions layout = layout_options(charts_, options_, plan_.bake);
     Result<PageLayout> laid = plan_.bake ? lay_out_pages(charts_, densities_, layout, context)
                                          : lay_out_plain(layout, context);
-    if (!laid.ok()) return in_terms_of_options(laid.status());
+    if (!laid.ok()) return laid.status();
     layout_ = std::move(*laid);
     if (plan_.bake)
       report_.gaps = left_part_gaps(view_of(scene_), charts_, layout_.placements, context);
@@ -233,15 +233,6 @@ class Export {
       }
     }
     return {};
-  }
-
-  // The packer's refusal; its remedy, in brackets, gives way to what may be changed here.
-  Status in_terms_of_options(const Status& status) const {
-    if (status.code() != ErrorCode::no_solution) return status;
-    const std::string& message = status.message();
-    return {status.code(), fmt::format("{} (give more --atlases or a larger --atlas-size{})",
-                                       message.substr(0, message.rfind(" (")),
-                                       plan_.bake ? ", or a lower --min-side or --mips" : "")};
   }
 
   Status bake() {

@@ -88,10 +88,9 @@ double full_texels(const ChartSet& charts, std::span<const Vec2d> texels_per_uni
 // The packer's refusal in the words of this stage.
 Status no_room(const ChartSet& charts, const LayoutOptions& options) {
   return {ErrorCode::no_solution,
-          fmt::format("{} charts do not fit {} page{} of {} x {} even as small as allowed (allow "
-                      "more or larger pages, or less padding)",
+          fmt::format("{} charts do not fit {} page{} of {} x {} even as small as allowed ({})",
                       charts.charts.size(), options.pages, options.pages == 1 ? "" : "s",
-                      options.page_size, options.page_size)};
+                      options.page_size, options.page_size, options.remedy)};
 }
 
 // Layouts that PackPreset::best tries, and charts in all of them together: some seconds' work.

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "libatlas/bake/placement.h"
@@ -29,6 +30,8 @@ struct LayoutOptions {
   double wanted_fill = 0;   // as in FitOptions
   bool square = false;      // pages as wide as high; free_aspect overrides it
   PackPreset preset = PackPreset::standard;
+  // What to change where there is no room, in the words of whoever chose the options.
+  std::string remedy = "allow more or larger pages, or less padding";
 };
 
 struct PageLayout {

@@ -46,6 +46,7 @@ Result<PagesOfParts> lay_out(const MeshView& mesh, const UnwrapOptions& options,
   layout.alignment = 1;
   layout.minimum_side = 0;
   layout.outlines = true;
+  layout.remedy = "ask for more pages, a larger page_size or less padding";
   layout.square = options.square;
   layout.free_aspect = options.pages == 1 && !options.square;
   const PlainUvs uvs{mesh, options.charts, density};
