@@ -17,12 +17,10 @@ std::size_t texture_count(const nlohmann::json& part) {
   return count;
 }
 
-// Whether it is more than a base colour and its texture.
+// Whether it is more than a base colour, light of its own, and their textures.
 bool shaded(const tinygltf::Material& m) {
   const auto& pbr = m.pbrMetallicRoughness;
-  return !m.extensions.empty() || pbr.metallicFactor != 1 || pbr.roughnessFactor != 1 ||
-         std::any_of(m.emissiveFactor.begin(), m.emissiveFactor.end(),
-                     [](double e) { return e != 0; });
+  return !m.extensions.empty() || pbr.metallicFactor != 1 || pbr.roughnessFactor != 1;
 }
 
 bool moved(const tinygltf::Node& node) {

@@ -20,6 +20,20 @@ namespace {
 constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kClampToEdge = 33071,
               kMirroredRepeat = 33648;
 
+// A texture that shapes it is not read, and without it all of the surface would glow.
+bool keeps_emission(const Material& material) {
+  return material.emission != Vec3f{} && !material.emission_textured;
+}
+
+// glTF's factors are up to 1; what is stronger needs an extension.
+void add_emission(const Material& material, json& entry) {
+  const Vec3f& e = material.emission;
+  const float strength = std::max({1.f, e.x, e.y, e.z});
+  entry["emissiveFactor"] = {e.x / strength, e.y / strength, e.z / strength};
+  if (strength > 1)
+    entry["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = strength;
+}
+
 // A material without its texture.
 json look_of(const Material& material) {
   const Vec3f& d = material.diffuse;
@@ -28,6 +42,7 @@ json look_of(const Material& material) {
     surface["baseColorFactor"] = {std::clamp(d.x, 0.f, 1.f), std::clamp(d.y, 0.f, 1.f),
                                   std::clamp(d.z, 0.f, 1.f), material.opacity};
   json entry = {{"pbrMetallicRoughness", std::move(surface)}};
+  if (keeps_emission(material)) add_emission(material, entry);
   if (!material.name.empty()) entry["name"] = material.name;
   if (material.double_sided) entry["doubleSided"] = true;
   if (material.alpha_mode == AlphaMode::blend) entry["alphaMode"] = "BLEND";
@@ -57,6 +72,8 @@ class MaterialWriter {
       if (!number.ok()) return number.status();
       entry["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", *number}};
     }
+    if (entry.contains("extensions"))
+      document_.json["extensionsUsed"] = {"KHR_materials_emissive_strength"};
     document_.json["materials"].push_back(std::move(entry));
     return at->second;
   }
@@ -210,13 +227,18 @@ class SceneWriter {
   std::uint32_t object_ = 0;  // that of the last mesh
 };
 
-// What an MTL says of materials beside their colour and its texture, by keyword.
-std::vector<std::string> lost_lines(const Scene& scene) {
+// What an MTL says of materials and glTF is not told here, by keyword, and colours beyond its
+// range.
+std::vector<std::string> losses_of(const Scene& scene) {
   Losses losses;
   for (const Material& material : scene.materials) {
+    losses.add("colours of materials beyond 0 to 1, limited to it",
+               !is_reflectance(material.diffuse));
     for (const std::string& line : material.mtl_lines) {
       const std::string keyword = line.substr(0, line.find_first_of(" \t"));
-      if (keyword != "map_Kd" && keyword != "d") losses.add("lines of the MTL: " + keyword);
+      if (keyword == "map_Kd" || keyword == "d") continue;
+      if (keyword == "Ke" && !material.emission_textured) continue;
+      losses.add("lines of the MTL: " + keyword);
     }
   }
   return losses.lines();
@@ -242,7 +264,7 @@ Result<WorldFile> write_gltf_scene(const World& world, const fs::path& path, Ato
   writer.add_nodes();
   result.uv_set = "TEXCOORD_1";
   document.add_info("the new uvs: " + result.uv_set);
-  result.not_kept = lost_lines(*world.scene);
+  result.not_kept = losses_of(*world.scene);
   if (Status s = document.write(path, files, result); !s.ok()) return s;
   return result;
 }

@@ -70,6 +70,17 @@ std::string other_lines(const Material& material, Losses& losses) {
   return text;
 }
 
+std::string line_of(std::string_view keyword, const Vec3f& colour) {
+  TextBuffer line;
+  line.text(keyword);
+  for (const float value : {colour.x, colour.y, colour.z}) {
+    line.character(' ');
+    line.number(value);
+  }
+  line.character('\n');
+  return std::string(line.bytes());
+}
+
 void write_materials(TextFile& mtl, const Scene& scene, const std::vector<std::string>& names,
                      Losses& losses) {
   mtl.write(
@@ -77,15 +88,11 @@ void write_materials(TextFile& mtl, const Scene& scene, const std::vector<std::s
       "# which this format has no room beside them. glTF has.\n");
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Material& material = scene.materials[i];
-    TextBuffer kd;
-    const Vec3f& d = material.diffuse;
-    for (const float value : {d.x, d.y, d.z}) {
-      kd.character(' ');
-      kd.number(value);
-    }
-    mtl.write(fmt::format("newmtl {}\nKd{}\n", names[i], kd.bytes()));
+    mtl.write(fmt::format("newmtl {}\n{}", names[i], line_of("Kd", material.diffuse)));
     if (material.alpha_mode == AlphaMode::blend && material.opacity < 1)
       mtl.write(fmt::format("d {}\n", material.opacity));
+    if (material.mtl_lines.empty() && !material.emission_textured && material.emission != Vec3f{})
+      mtl.write(line_of("Ke", material.emission));
     mtl.write(other_lines(material, losses));
   }
 }

@@ -76,6 +76,26 @@ float shown(const ExportReport& report, double luminance) {
   return report.tone.display({v, v, v}).x;
 }
 
+// Materials of one kind: how many, and the first.
+struct Named {
+  std::size_t count = 0;
+  std::string first;
+
+  void add(const Material& material) {
+    if (count++ == 0) first = material.name;
+  }
+  std::string text() const {
+    return fmt::format("{} material{} ('{}'{})", count, count == 1 ? "" : "s", first,
+                       count == 1 ? "" : ", ...");
+  }
+};
+
+bool is_open(const Material& m, const Scene& scene) {
+  const bool holes =
+      m.texture >= 0 && scene.textures[std::size_t(m.texture)].image.channels % 2 == 0;
+  return m.alpha_mode != AlphaMode::opaque && (m.opacity < 1 || holes);
+}
+
 }  // namespace
 
 std::vector<std::string> advice_on(const ExportReport& report, const ExportOptions& options) {
@@ -104,22 +124,26 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
   return lines;
 }
 
-std::string advice_on_transparency(const Scene& scene) {
-  std::size_t count = 0;
-  const Material* first = nullptr;
+std::vector<std::string> advice_on_materials(const Scene& scene, Quantity quantity) {
+  Named open, lamps;
   for (const Material& m : scene.materials) {
-    const bool holes =
-        m.texture >= 0 && scene.textures[std::size_t(m.texture)].image.channels % 2 == 0;
-    if (m.alpha_mode == AlphaMode::opaque || (m.opacity >= 1 && !holes)) continue;
-    if (count++ == 0) first = &m;
+    if (is_open(m, scene)) open.add(m);
+    if (m.emission != Vec3f{}) lamps.add(m);
   }
-  if (count == 0) return "";
-  return fmt::format(
-      "{} material{} ('{}'{}) {} transparent or {} holes: baked pages are opaque (export such "
-      "parts "
-      "by themselves with --keep-scene)",
-      count, count == 1 ? "" : "s", first->name, count == 1 ? "" : ", ...",
-      count == 1 ? "is" : "are", count == 1 ? "has" : "have");
+  std::vector<std::string> lines;
+  if (open.count > 0)
+    lines.push_back(fmt::format(
+        "{} {} transparent or {} holes: baked pages are opaque (export such parts by themselves "
+        "with --charts-only --keep-scene)",
+        open.text(), open.count == 1 ? "is" : "are", open.count == 1 ? "has" : "have"));
+  if (lamps.count > 0 && quantity == Quantity::illuminance)
+    lines.push_back(fmt::format(
+        "{} {} light: it is not baked, since its unit need not be that of the vertices, so pages "
+        "show such parts as dark as what they reflect (give vertices all light that leaves them "
+        "and say --quantity luminance, or export such parts by themselves with --charts-only "
+        "--keep-scene)",
+        lamps.text(), lamps.count == 1 ? "emits" : "emit"));
+  return lines;
 }
 
 }  // namespace atlas

@@ -13,7 +13,8 @@ namespace atlas {
 // One line each: what is so, what it means, and which options change it. Empty for most scenes.
 std::vector<std::string> advice_on(const ExportReport& report, const ExportOptions& options);
 
-// A line on materials that are seen through or have holes, which baked pages have not; or empty.
-std::string advice_on_transparency(const Scene& scene);
+// Lines on what materials have and baked pages have not: that they are seen through or have holes,
+// and, unless the quantity holds it already, light of their own.
+std::vector<std::string> advice_on_materials(const Scene& scene, Quantity quantity);
 
 }  // namespace atlas

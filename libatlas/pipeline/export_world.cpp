@@ -72,8 +72,10 @@ class Export {
     if (Status s = write(); !s.ok()) return s;
     report_.carried_out = true;
     report_.advice = advice_on(report_, options_);
-    if (std::string line = plan_.bake ? advice_on_transparency(scene_) : ""; !line.empty())
-      report_.advice.push_back(std::move(line));
+    if (plan_.bake) {
+      for (std::string& line : advice_on_materials(scene_, options_.quantity))
+        report_.advice.push_back(std::move(line));
+    }
     if (report_.thin_triangles > 0)
       report_.advice.push_back(thin_triangles_text(report_.thin_triangles, report_.triangles_out));
     for (const std::string& line : report_.advice) context_.say(line);

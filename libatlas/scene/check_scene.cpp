@@ -107,6 +107,9 @@ Status check_materials(const Scene& scene) {
       return wrong("materials[{}] names texture {}, but there are {} (-1: none)", m,
                    material.texture, scene.textures.size());
     if (!finite(material.diffuse)) return wrong("the diffuse of materials[{}] is not finite", m);
+    const Vec3f& e = material.emission;
+    if (!finite(e) || std::min({e.x, e.y, e.z}) < 0)
+      return wrong("the emission of materials[{}] is not finite or below 0", m);
     if (!(material.opacity >= 0 && material.opacity <= 1))
       return wrong("the opacity of materials[{}] is {} (must be within 0..1)", m, material.opacity);
     if (!(material.alpha_cutoff >= 0) || !std::isfinite(material.alpha_cutoff))

@@ -31,6 +31,8 @@ constexpr Names kNames[] = {
     {"illumination_missing", "vertices without illumination where others have it, taken as 0"},
     {"material_file_missing", "material files not found, their materials are white"},
     {"material_unknown", "materials used but not defined, taken as white"},
+    {"reflectance_beyond_one",
+     "colours of materials beyond 0 to 1, used as they are (write shares: 0.8, not 204)"},
     {"texture_missing", "textures not found, plain diffuse colour used"},
     {"texture_unreadable", "textures that cannot be decoded, plain diffuse colour used"},
     {"texture_option_ignored", "texture options ignored"},

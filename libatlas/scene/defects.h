@@ -31,6 +31,7 @@ enum class DefectKind : std::uint8_t {
   illumination_missing,     // vertex without a value where others have one: 0
   material_file_missing,    // its materials are white
   material_unknown,         // white is used
+  reflectance_beyond_one,   // or below 0: value kept as it is
   texture_missing,          // the material's plain diffuse colour is used
   texture_unreadable,       // likewise
   texture_option_ignored,   // a texture option that has no counterpart here

@@ -109,6 +109,23 @@ Diffuse diffuse_of(const tinygltf::Material& material) {
   return diffuse;
 }
 
+// In any unit: factors of the core are up to 1, an extension makes them stronger.
+void add_emission(const tinygltf::Material& m, RawMaterial& material) {
+  if (m.emissiveFactor.size() < 3) return;
+  double strength = 1;
+  const auto at = m.extensions.find("KHR_materials_emissive_strength");
+  if (at != m.extensions.end() && at->second.IsObject()) {
+    const tinygltf::Value& value = at->second.Get("emissiveStrength");
+    if (value.IsNumber()) strength = value.GetNumberAsDouble();
+  }
+  const auto limited = [&](double factor) {
+    return float(std::clamp(factor * strength, 0.0, double(kMostLight)));
+  };
+  material.emission = {limited(m.emissiveFactor[0]), limited(m.emissiveFactor[1]),
+                       limited(m.emissiveFactor[2])};
+  material.emission_textured = m.emissiveTexture.index >= 0;
+}
+
 void add_transparency(const tinygltf::Material& m, double opacity, RawMaterial& material) {
   material.opacity = float(std::clamp(opacity, 0.0, 1.0));
   material.alpha_mode = m.alphaMode == "MASK"    ? AlphaMode::mask
@@ -163,6 +180,12 @@ Result<std::vector<int>> add_gltf_materials(const tinygltf::Model& model, SceneB
     RawMaterial material;
     material.name = m.name.empty() ? fmt::format("material{}", i) : m.name;
     material.diffuse = diffuse.colour;
+    if (!is_reflectance(material.diffuse)) {
+      builder.defects.add(DefectKind::reflectance_beyond_one, [&] {
+        return fmt::format("{}: material '{}'", builder.file, material.name);
+      });
+    }
+    add_emission(m, material);
     add_transparency(m, diffuse.opacity, material);
     material.texture = image_of(model, diffuse.texture.index);
     if (diffuse.texture.index >= 0 && material.texture < 0) {

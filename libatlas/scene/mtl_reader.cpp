@@ -1,4 +1,4 @@
-// MTL: the diffuse part of it, and its other lines where they are wanted.
+// MTL: its diffuse part, opacity and emission, and its other lines where they are wanted.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,9 +43,14 @@ class MtlParser {
       builder_.materials.push_back({});
       builder_.materials.back().name = scan_.rest();
       inside_ = true;
+      emission_given_ = false;
       return {};
     }
     if (keyword == "d") return parse_opacity();
+    if (keyword == "Ke" || keyword == "map_Ke") {
+      if (inside_) parse_emission(keyword == "map_Ke");
+      return {};
+    }
     if (keyword != "Kd" && keyword != "map_Kd") return {};
     if (!inside_) return malformed(fmt::format("{} before the first newmtl", keyword));
     return keyword == "Kd" ? parse_colour() : parse_map();
@@ -70,6 +75,24 @@ class MtlParser {
     return {};
   }
 
+  // A texture by itself is as bright as it says. What is no colour (`Ke spectral a.rfl`) is left
+  // out.
+  void parse_emission(bool texture) {
+    RawMaterial& material = builder_.materials.back();
+    if (texture) {
+      material.emission_textured = true;
+      if (!emission_given_) material.emission = {1, 1, 1};
+      return;
+    }
+    double c[3];
+    int count = 0;
+    while (count < 3 && scan_.number(c[count]) && c[count] >= 0 && c[count] <= kMostLight) ++count;
+    if (count == 0 || count == 2) return;
+    if (count == 1) c[1] = c[2] = c[0];
+    material.emission = {float(c[0]), float(c[1]), float(c[2])};
+    emission_given_ = true;
+  }
+
   Status parse_colour() {
     double c[3];
     int count = 0;
@@ -80,7 +103,13 @@ class MtlParser {
     }
     if (count == 0 || count == 2) return malformed("Kd needs three numbers, or one");
     if (count == 1) c[1] = c[2] = c[0];
-    builder_.materials.back().diffuse = {float(c[0]), float(c[1]), float(c[2])};
+    RawMaterial& material = builder_.materials.back();
+    material.diffuse = {float(c[0]), float(c[1]), float(c[2])};
+    if (!is_reflectance(material.diffuse)) {
+      builder_.defects.add(DefectKind::reflectance_beyond_one, [&] {
+        return fmt::format("{}: Kd of material '{}'", place(), material.name);
+      });
+    }
     return {};
   }
 
@@ -169,6 +198,7 @@ class MtlParser {
   SceneBuilder& builder_;
   std::uint32_t line_ = 1;
   bool inside_ = false;
+  bool emission_given_ = false;  // by the present material's Ke
 };
 
 }  // namespace

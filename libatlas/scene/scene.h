@@ -21,7 +21,8 @@ enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 // How a texture goes on outside [0, 1]: again and again, mirrored each time, or as at its edge.
 enum class TextureWrap : std::uint8_t { repeat, mirror, clamp };
 
-// Lambertian reflectance: diffuse (linear RGB, 0..1) times the texture, if there is one.
+// Lambertian reflectance: diffuse (linear RGB, 0..1; others are used as they are) times the
+// texture, if there is one.
 struct Material {
   std::string name;
   Vec3f diffuse{1, 1, 1};
@@ -32,6 +33,10 @@ struct Material {
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;  // the threshold of holes, >= 0
   bool double_sided = true;   // seen from behind, too
+  // What it sends out by itself, linear RGB >= 0 in no unit that is known: handed on likewise, and
+  // no part of what is baked. Where a texture shapes it, that is not read.
+  Vec3f emission{0, 0, 0};
+  bool emission_textured = false;
   // Of MTL, where asked for (ReadOptions::rest): its lines but newmtl and Kd, for exports that keep
   // the scene.
   std::vector<std::string> mtl_lines = {};
@@ -45,6 +50,11 @@ struct Texture {
   // scene's textures and do not look into them (ReadOptions::encoded_textures).
   std::vector<std::uint8_t> encoded = {};
 };
+
+// Whether it is what a surface can reflect.
+inline bool is_reflectance(const Vec3f& c) {
+  return c.x >= 0 && c.y >= 0 && c.z >= 0 && c.x <= 1 && c.y <= 1 && c.z <= 1;
+}
 
 // Light up to here can be worked with: beyond it sums of floats end.
 inline constexpr float kMostLight = 1e36f;

@@ -188,8 +188,7 @@ TEST(KeptRest, OfGltfInObjIsCounted) {
   const WorldFile written = keep(folder.write("s.glb", gltf.glb()), folder / "w.obj", kRest);
   EXPECT_EQ(written.uv_set, "vt");
   EXPECT_EQ(written.not_kept,
-            (Lines{"1 x animations", "1 x materials of more than a base colour",
-                   "1 x meshes with morph targets, kept at rest",
+            (Lines{"1 x animations", "1 x meshes with morph targets, kept at rest",
                    "1 x nodes with transforms or children, applied to what they show",
                    "1 x primitives with uvs of their own", "1 x skins, kept at rest",
                    "2 x textures of materials"}));
@@ -222,11 +221,39 @@ TEST(KeptRest, LinesOfMtl) {
   EXPECT_TRUE(back->scene.textures.empty());
   EXPECT_EQ(
       keep(obj, folder / "w.glb", kRest).not_kept,
-      (Lines{"1 x lines of the MTL: Ka", "1 x lines of the MTL: Ke", "1 x lines of the MTL: Ks",
-             "1 x lines of the MTL: MAP_Ks", "1 x lines of the MTL: Ni", "1 x lines of the MTL: Ns",
-             "1 x lines of the MTL: Tr", "1 x lines of the MTL: bump",
-             "1 x lines of the MTL: illum", "1 x lines of the MTL: map_Bump",
-             "1 x lines of the MTL: map_d"}));
+      (Lines{"1 x lines of the MTL: Ka", "1 x lines of the MTL: Ks", "1 x lines of the MTL: MAP_Ks",
+             "1 x lines of the MTL: Ni", "1 x lines of the MTL: Ns", "1 x lines of the MTL: Tr",
+             "1 x lines of the MTL: bump", "1 x lines of the MTL: illum",
+             "1 x lines of the MTL: map_Bump", "1 x lines of the MTL: map_d"}));
+}
+
+// glTF's factor is up to 1; a texture that shapes the light is not read, and is a loss.
+TEST(KeptRest, EmissionOfMtlInGltfAndBack) {
+  const TempFolder folder;
+  folder.write(
+      "m.mtl",
+      "newmtl lamp\nKe 4 2 0\nnewmtl dim\nKe 0.5 0 0\nnewmtl off\nKe 0 0 0\nnewmtl screen\n"
+      "Ke 1 1 1\nmap_Ke a.png\nKd 3 0 0\n");
+  const path obj =
+      folder.write("s.obj",
+                   "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl lamp\nf 1 2 3\n"
+                   "usemtl dim\nf 1 3 2\nusemtl off\nf 1 2 3\nusemtl screen\nf 1 2 3\n");
+  EXPECT_EQ(keep(obj, folder / "w.gltf", kRest).not_kept,
+            (Lines{"1 x colours of materials beyond 0 to 1, limited to it",
+                   "1 x lines of the MTL: Ke", "1 x lines of the MTL: map_Ke"}));
+  const json document = json::parse(TempFolder::read(folder / "w.gltf"));
+  const json& materials = document["materials"];
+  EXPECT_EQ(materials[0]["emissiveFactor"], (json{1, 0.5, 0}));
+  EXPECT_EQ(materials[0]["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"], 4);
+  EXPECT_EQ(document["extensionsUsed"], json{"KHR_materials_emissive_strength"});
+  EXPECT_EQ(materials[1]["emissiveFactor"], (json{0.5, 0, 0}));
+  EXPECT_FALSE(materials[1].contains("extensions"));
+  EXPECT_FALSE(materials[2].contains("emissiveFactor"));
+  EXPECT_FALSE(materials[3].contains("emissiveFactor"));
+  keep(folder / "w.gltf", folder / "back.obj", kRest);
+  const std::string mtl = TempFolder::read(folder / "back.mtl");
+  EXPECT_NE(mtl.find("newmtl lamp\nKd 1 1 1\nKe 4 2 0\n"), std::string::npos) << mtl;
+  EXPECT_EQ(mtl.find("newmtl off\nKd 1 1 1\nKe"), std::string::npos) << mtl;
 }
 
 // What of an MTL glTF knows as well: opacity, and textures that end at their edges.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "libatlas/pipeline/export_world.h"
+#include "libatlas/scene/reader.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/scene/temp_folder.h"
 #include "tests/support/shapes.h"
@@ -70,13 +71,47 @@ TEST(Advice, TransparencyIsNamed) {
   scene.materials[0].texture = 0;  // a fourth channel that means nothing
   scene.materials[1].texture = 1;
   scene.materials[1].alpha_mode = AlphaMode::mask;  // of no fourth channel
-  EXPECT_EQ(advice_on_transparency(scene), "");
+  EXPECT_TRUE(advice_on_materials(scene, Quantity::illuminance).empty());
   scene.materials[1].texture = 0;
-  EXPECT_TRUE(advice_on_transparency(scene).starts_with("1 material ('fence') is transparent"));
+  EXPECT_TRUE(holds(advice_on_materials(scene, Quantity::illuminance),
+                    "1 material ('fence') is transparent or has holes"));
   scene.materials[2].alpha_mode = AlphaMode::blend;
   scene.materials[2].opacity = 0.3f;
-  EXPECT_TRUE(
-      advice_on_transparency(scene).starts_with("2 materials ('fence', ...) are transparent"));
+  EXPECT_TRUE(holds(advice_on_materials(scene, Quantity::luminance),
+                    "2 materials ('fence', ...) are transparent or have holes"));
+}
+
+// Luminance holds what a lamp sends out; illuminance cannot.
+TEST(Advice, LampsAreNamed) {
+  Scene scene;
+  scene.materials = {{.name = "wall"}, {.name = "lamp"}, {.name = "screen"}};
+  scene.materials[1].emission = {0, 0, 2};
+  EXPECT_TRUE(advice_on_materials(scene, Quantity::luminance).empty());
+  EXPECT_TRUE(holds(advice_on_materials(scene, Quantity::illuminance),
+                    "1 material ('lamp') emits light: it is not baked"));
+  scene.materials[2].emission = {1, 1, 1};
+  EXPECT_TRUE(holds(advice_on_materials(scene, Quantity::illuminance),
+                    "2 materials ('lamp', ...) emit light"));
+}
+
+TEST(Advice, ALampOfAnMtlIsToldAndReported) {
+  const TempFolder folder;
+  folder.write("m.mtl", "newmtl lamp\nKe 5 5 5\nnewmtl unused\nKe 1 1 1\n");
+  const auto scene = read_scene(folder.write("s.obj",
+                                             "mtllib m.mtl\nv 0 0 0 1 1 1\nv 1 0 0 1 1 1\n"
+                                             "v 0 1 0 2 2 2\nusemtl lamp\nf 1 2 3\n"),
+                                {}, {});
+  ASSERT_TRUE(scene.ok()) << scene.status().message();
+  ExportOptions options;
+  options.target = folder / "w.obj";
+  const auto advice = [&] {
+    const auto report = export_world(*scene, options, {}, {});
+    EXPECT_TRUE(report.ok()) << report.status().message();
+    return report.ok() ? report->advice : std::vector<std::string>{};
+  };
+  EXPECT_TRUE(holds(advice(), "1 material ('lamp') emits light"));
+  options.charts_only = true;  // nothing is baked, nothing lost
+  EXPECT_TRUE(advice().empty());
 }
 
 TEST(Advice, LightThatTheToneCurveLosesIsNamed) {

@@ -82,6 +82,30 @@ TEST(Gltf, TexturesAreScaledTurnedAndMoved) {
   }
 }
 
+TEST(Gltf, EmissionAndReflectancesBeyondOne) {
+  const TempFolder folder;
+  Gltf g;
+  g.j["materials"] = {{{"name", "lamp"}, {"emissiveFactor", {1, 0.5, 0}}},
+                      {{"name", "bright"}, {"pbrMetallicRoughness", json::object()}}};
+  g.j["materials"][0]["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", 4}};
+  g.j["materials"][1]["pbrMetallicRoughness"]["baseColorFactor"] = {2, 1, 1, 1};
+  const json attributes = {{"POSITION", g.floats(kSquare, "VEC3", 3)}};
+  json primitives;
+  for (int m = 0; m < 2; ++m)
+    primitives.push_back({{"attributes", attributes},
+                          {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})},
+                          {"material", m}});
+  g.single(primitives[0]);
+  g.j["meshes"][0]["primitives"] = primitives;
+  const auto loaded = load_glb(folder, g);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->scene.materials[0].emission, (Vec3f{4, 2, 0}));
+  EXPECT_EQ(loaded->scene.materials[1].emission, Vec3f{});
+  EXPECT_EQ(loaded->scene.materials[1].diffuse, (Vec3f{2, 1, 1}));
+  ASSERT_EQ(loaded->defects.count(DefectKind::reflectance_beyond_one), 1u);
+  EXPECT_TRUE(loaded->defects.defects[0].first_places[0].ends_with(": material 'bright'"));
+}
+
 TEST(Gltf, TexturesWithoutAnImageThatIsReadAreTold) {
   const TempFolder folder;
   Gltf g;

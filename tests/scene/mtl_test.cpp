@@ -109,6 +109,45 @@ TEST(Mtl, LibrariesThatAreMissingAreNamedWhole) {
   EXPECT_EQ(missing("there.mtl"), "");
 }
 
+TEST(Mtl, WhatNoSurfaceReflectsIsKeptAndTold) {
+  const TempFolder folder;
+  folder.write("m.mtl", "newmtl a\nKd 1 0 1\nnewmtl b\nKd 204 180 150\nnewmtl c\nKd -0.1 0 0\n");
+  const LoadedScene loaded = load(folder.write("s.obj",
+                                               "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\n"
+                                               "f 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\n"));
+  ASSERT_EQ(loaded.defects.defects.size(), 1u);
+  const Defect& defect = loaded.defects.defects[0];
+  EXPECT_EQ(defect.kind, DefectKind::reflectance_beyond_one);
+  EXPECT_EQ(defect.count, 2u);
+  EXPECT_TRUE(defect.first_places[0].ends_with("m.mtl:4: Kd of material 'b'"))
+      << defect.first_places[0];
+  EXPECT_TRUE(defect.first_places[1].ends_with("m.mtl:6: Kd of material 'c'"));
+  EXPECT_EQ(loaded.scene.materials[1].diffuse, (Vec3f{204, 180, 150}));
+}
+
+// A zero is what many programs write for every material.
+TEST(Mtl, Emission) {
+  const TempFolder folder;
+  const auto material = [&](const std::string& lines) {
+    folder.write("m.mtl", "newmtl before\nKe 9 9 9\nnewmtl a\n" + lines + "\n");
+    const LoadedScene loaded =
+        load(folder.write("s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n"));
+    EXPECT_TRUE(loaded.defects.empty()) << lines;
+    return loaded.scene.materials.front();
+  };
+  EXPECT_EQ(material("Kd 1 1 1").emission, Vec3f{});
+  EXPECT_EQ(material("Ke 0 0 0").emission, Vec3f{});
+  EXPECT_EQ(material("Ke 2 0.5 0 # glows").emission, (Vec3f{2, 0.5f, 0}));
+  EXPECT_EQ(material("Ke 3").emission, (Vec3f{3, 3, 3}));
+  for (const char* none : {"Ke spectral lamp.rfl", "Ke -1 0 0", "Ke 1e40 0 0", "Ke nan 0 0", "Ke"})
+    EXPECT_EQ(material(none).emission, Vec3f{}) << none;
+  EXPECT_FALSE(material("Ke 1 1 1").emission_textured);
+  EXPECT_EQ(material("map_Ke a.png").emission, (Vec3f{1, 1, 1}));
+  EXPECT_TRUE(material("map_Ke a.png").emission_textured);
+  for (const char* off : {"Ke 0 0 0\nmap_Ke a.png", "map_Ke a.png\nKe 0 0 0"})
+    EXPECT_EQ(material(off).emission, Vec3f{}) << off;
+}
+
 // Options before a texture's name: what changes nothing is passed over, what cannot be followed is
 // told.
 TEST(Mtl, TextureOptions) {
