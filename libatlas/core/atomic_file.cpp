@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "libatlas/core/leftovers.h"
+#include "libatlas/core/write_error.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -158,10 +159,10 @@ Status AtomicFiles::write(const fs::path& target, std::string_view bytes) {
             fmt::format("{}: cannot be written: {}", target.string(), std::strerror(errno))};
   }
   const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  const int write_error = errno;
+  const int error = errno;
   if (std::fclose(file) != 0 || !written) {
     return {ErrorCode::io, fmt::format("{}: writing failed: {}", target.string(),
-                                       std::strerror(written ? errno : write_error))};
+                                       write_error(written ? errno : error))};
   }
   return {};
 }

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <utility>
 
+#include "libatlas/core/write_error.h"
 #include "libatlas/image/image_claim.h"
 
 namespace atlas {
@@ -151,11 +152,37 @@ const char* extension_of(std::span<const std::uint8_t> bytes) {
   return nullptr;
 }
 
-// OpenImageIO tells nobody when a disk is full: what it writes goes into a file of our own, which
-// remembers that.
+// OpenImageIO tells nobody when a disk is full, nor why a write failed: a file of our own remembers
+// the first reason, of which what is called next leaves no trace.
+class RememberingFile : public OIIO::Filesystem::IOFile {
+ public:
+  using IOFile::IOFile;
+
+  size_t write(const void* bytes, size_t size) override {
+    errno = 0;
+    const size_t written = IOFile::write(bytes, size);
+    if (written != size) remember();
+    return written;
+  }
+  bool seek(int64_t offset) override {  // stores what waits in the buffer
+    errno = 0;
+    const bool done = IOFile::seek(offset);
+    if (!done) remember();
+    return done;
+  }
+
+  int reason() const { return reason_; }  // an errno, or 0
+
+ private:
+  void remember() {
+    if (reason_ == 0) reason_ = errno;
+  }
+  int reason_ = 0;
+};
+
 struct Target {
   std::filesystem::path path;
-  OIIO::Filesystem::IOFile file;
+  RememberingFile file;
   std::unique_ptr<OIIO::ImageOutput> writer;  // may still write when it ends: before the file does
 };
 
@@ -179,16 +206,18 @@ Status write(const std::filesystem::path& path, const Image<T>& image,
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (!file) return failure(path, "cannot be written", std::strerror(errno));
   Status status;
+  int reason = 0;
   {
     Target to{path, {file, OIIO::Filesystem::IOProxy::Write}, std::move(writer)};
     status = encode(to, image, spec);
+    to.writer.reset();
+    reason = to.file.reason();
   }
   errno = 0;
   const bool stored = std::fflush(file) == 0 && !std::ferror(file);
-  const int reason = errno ? errno : EIO;
-  if (std::fclose(file) != 0 || !stored) {
-    return failure(path, "writing failed", std::strerror(reason));
-  }
+  if (reason == 0) reason = errno ? errno : EIO;
+  if (std::fclose(file) != 0 || !stored)
+    return failure(path, "writing failed", write_error(reason));
   return status;
 }
 

@@ -208,8 +208,15 @@ TEST(Image, AFullDiskIsNoticed) {
   const Image8 image = noise(200, 200, 3);
   const test::IgnoreLeaks writer;  // as above
   const test::FullDisk full(1000);
-  EXPECT_EQ(write_png(folder / "a.png", image, {}).code(), ErrorCode::io);
-  EXPECT_EQ(write_exr(folder / "a.exr", ImageF(200, 200, 3)).code(), ErrorCode::io);
+  ImageF floats(200, 200, 3);
+  for (std::size_t i = 0; i < floats.texels.size(); ++i) floats.texels[i] = image.texels[i];
+  for (const Status& s :
+       {write_png(folder / "a.png", image, {}), write_exr(folder / "a.exr", floats)}) {
+    EXPECT_EQ(s.code(), ErrorCode::io);
+    EXPECT_NE(s.message().find(": writing failed: File too large (make room there"),
+              std::string::npos)
+        << s.message();
+  }
 }
 
 }  // namespace
