@@ -24,6 +24,14 @@ std::string number(double v) {
   return {text, end};
 }
 
+// The float itself where there is no origin to add: it has fewer digits than the double.
+std::string coordinate(double origin, float offset) {
+  if (origin != 0) return number(origin + double(offset));
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, offset).ptr;
+  return {text, end};
+}
+
 constexpr const char* kWithoutUv = "no_uv";
 
 struct RepackedMesh {
@@ -80,8 +88,8 @@ std::string to_obj(const RepackedMesh& mesh, const std::string& material_file) {
                         fit.pages[page].height);
   text += fmt::format("mtllib {}\n", material_file);
   for (const Vec3f& p : s.positions)
-    text += fmt::format("v {} {} {}\n", number(s.origin.x + p.x), number(s.origin.y + p.y),
-                        number(s.origin.z + p.z));
+    text += fmt::format("v {} {} {}\n", coordinate(s.origin.x, p.x), coordinate(s.origin.y, p.y),
+                        coordinate(s.origin.z, p.z));
   std::string faces;
   UvLines uv_lines(mesh);
   for (std::uint32_t page = 0; page < fit.pages.size(); ++page) {

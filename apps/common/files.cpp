@@ -30,6 +30,9 @@ bool same_file(const fs::path& a, const fs::path& b) {
 
 Status check_output(const fs::path& output, std::initializer_list<fs::path> others) {
   if (output.empty()) return {};
+  if (output == "-")  // elsewhere it is standard output: a file of that name helps nobody
+    return {ErrorCode::bad_option,
+            "-: is no name of an output (/dev/stdout is standard output, ./- a file of that name)"};
   for (const fs::path& other : others)
     if (!other.empty() && same_file(output, other))
       return {

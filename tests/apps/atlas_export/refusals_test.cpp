@@ -63,6 +63,7 @@ TEST_F(AtlasExport, OptionsOutOfRange) {
   // What would do nothing.
   expect_refusal(scene, "--uv-aspect requires --keep-uv-charts", "--uv-aspect 2");
   expect_refusal(scene, "--charts-only excludes --exr", "--charts-only --exr");
+  expect_refusal(scene, "/dev/stdout is standard output", "--report -");
 }
 
 // Every number has its range, and no number is in none.

@@ -43,6 +43,15 @@ TEST_F(AtlasPack, MeshChartsAtUniformDensity) {
   EXPECT_GT(area(0), 0.1);
 }
 
+// Positions are floats: what is written is no longer than what was read.
+TEST_F(AtlasPack, MeshPositionsAreWrittenAsRead) {
+  write("m.obj", "v 0.05 0 0\nv 1.1 0 0\nv 0.05 0.3 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+  const RunResult r = run("mesh m.obj -o out.obj");
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  const std::string text = read("out.obj");
+  EXPECT_NE(text.find("v 0.05 0 0\nv 1.1 0 0\nv 0.05 0.3 0\n"), std::string::npos) << text;
+}
+
 // Uvs of tiles lie on each other: what they cover fills the page, and nothing else is counted.
 TEST_F(AtlasPack, MeshChartsThatLieOnThemselvesFillThePage) {
   std::string text = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
