@@ -29,6 +29,10 @@ constexpr Names kNames[] = {
      "illumination values that are not finite or beyond 1e36, replaced by 0"},
     {"illumination_negative", "negative illumination values, kept"},
     {"illumination_missing", "vertices without illumination where others have it, taken as 0"},
+    {"illumination_elsewhere",
+     "vertices that lie elsewhere in the file of the illumination, which is used in its order "
+     "(give "
+     "both files the same vertices in one order)"},
     {"material_file_missing", "material files not found, their materials are white"},
     {"material_unknown", "materials used but not defined, taken as white"},
     {"reflectance_beyond_one",

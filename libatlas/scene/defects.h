@@ -29,6 +29,7 @@ enum class DefectKind : std::uint8_t {
   illumination_not_finite,  // or beyond kMostLight (scene.h): value replaced by 0
   illumination_negative,    // value kept as it is
   illumination_missing,     // vertex without a value where others have one: 0
+  illumination_elsewhere,   // value used, though its vertex lies elsewhere in the light's own file
   material_file_missing,    // its materials are white
   material_unknown,         // white is used
   reflectance_beyond_one,   // or below 0: value kept as it is

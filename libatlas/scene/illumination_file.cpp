@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/formats.h"
@@ -65,6 +67,41 @@ Result<std::vector<Vec3f>> read_values(const fs::path& path, const Context& cont
   return std::move(other.illumination);
 }
 
+struct Box {
+  Vec3d low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
+
+  explicit Box(const std::vector<Vec3d>& points) {
+    for (const Vec3d& p : points) {
+      if (!usable_position(p)) continue;
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+  }
+
+ private:
+  static constexpr double kFar = std::numeric_limits<double>::max();
+};
+
+double distance(const Vec3d& a, const Vec3d& b) {
+  return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+
+// Light that another program wrote in an order of its own would lie about in pieces. Positions tell
+// only where both files mean the same place: in another unit, or without any, their boxes differ.
+void check_order(const SceneBuilder& other, SceneBuilder& builder) {
+  constexpr double kSameBox = 1e-3, kSamePlace = 1e-2;  // of the diagonal
+  if (other.positions.size() != builder.positions.size()) return;
+  const Box own(builder.positions), theirs(other.positions);
+  const double diagonal = distance(own.low, own.high);
+  if (!(distance(own.low, theirs.low) <= kSameBox * diagonal &&
+        distance(own.high, theirs.high) <= kSameBox * diagonal))
+    return;
+  for (std::size_t i = 0; i < builder.positions.size(); ++i)
+    if (distance(builder.positions[i], other.positions[i]) > kSamePlace * diagonal)
+      builder.defects.add(DefectKind::illumination_elsewhere,
+                          [&] { return fmt::format("{}: vertex {}", other.file, i + 1); });
+}
+
 }  // namespace
 
 Status read_illumination(const fs::path& path, SceneBuilder& builder, const Context& context) {
@@ -87,6 +124,7 @@ Status read_illumination(const fs::path& path, SceneBuilder& builder, const Cont
                std::back_inserter(defects), of_illumination);
   std::sort(defects.begin(), defects.end(),
             [](const Defect& a, const Defect& b) { return a.kind < b.kind; });
+  check_order(other, builder);
   builder.illumination = std::move(*values);
   builder.illumination_file = path.string();
   return {};

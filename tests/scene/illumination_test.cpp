@@ -49,6 +49,25 @@ TEST(Illumination, FromASecondFile) {
   EXPECT_EQ(read_scene(mesh, missing, {}).status().code(), ErrorCode::not_found);
 }
 
+// The order of vertices is all that joins the files; where they mean the same places, it is
+// checked.
+TEST(Illumination, AnotherOrderOfTheSameVerticesIsTold) {
+  const TempFolder folder;
+  const auto mesh = folder.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const auto elsewhere = [&](const std::string& light) {
+    ReadOptions options;
+    options.illumination_file = folder.write("light.obj", light);
+    const LoadedScene loaded = load(mesh, options);
+    EXPECT_EQ(loaded.scene.illumination.size(), 3u);
+    return loaded.defects.count(DefectKind::illumination_elsewhere);
+  };
+  EXPECT_EQ(elsewhere("v 0 0 0 1 1 1\nv 1 0 0 2 2 2\nv 0 1 0 3 3 3\n"), 0u);
+  EXPECT_EQ(elsewhere("v 0 0 0 1 1 1\nv 0 1 0 2 2 2\nv 1 0 0 3 3 3\n"), 2u);
+  EXPECT_EQ(elsewhere("v 0.0004 0 0 1 1 1\nv 1 0.001 0 2 2 2\nv 0 1 0 3 3 3\n"), 0u);
+  EXPECT_EQ(elsewhere("v 0 0 0 1 1 1\nv 0 1000 0 2 2 2\nv 1000 0 0 3 3 3\n"), 0u);  // in mm
+  EXPECT_EQ(elsewhere("v nan 0 0 1 1 1\nv 1 0 0 2 2 2\nv 0 1 0 3 3 3\n"), 0u);
+}
+
 // What is wrong with the second file's light is told, and told of that file; the first one's light
 // is not used.
 TEST(Illumination, DefectsAreTheSecondFiles) {
