@@ -93,8 +93,9 @@ int main_of(int argc, char** argv) {
   advise_on_room(command, *atlas, context);
   // Whatever was left out has been named; scripts need to know as well.
   if (atlas->unplaced > 0) {
-    terminal.error(fmt::format("no place for {} of {} items (allow larger or more pages)",
-                               atlas->unplaced, atlas->items.size()));
+    terminal.error(
+        fmt::format("no place for {} of {} items (give a larger --page or more --max-pages)",
+                    atlas->unplaced, atlas->items.size()));
     return 1;
   }
   return 0;

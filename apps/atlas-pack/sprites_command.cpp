@@ -267,12 +267,11 @@ Result<PackedAtlas> run_images(const PackCommand& command, const Context& contex
   if (!packed.ok()) return packed.status();
   if (!packed->unplaced.empty()) {
     const UnplacedItem& u = packed->unplaced.front();
-    return Status(
-        ErrorCode::no_solution,
-        fmt::format("{}: {} of {} images have no room, first {} ({} x {}) (allow larger or "
-                    "more pages)",
-                    c.input.string(), packed->unplaced.size(), sprites.size(), sprites[u.item].name,
-                    sizes[u.item].width, sizes[u.item].height));
+    return Status(ErrorCode::no_solution,
+                  fmt::format("{}: {} of {} images have no room, first {} ({} x {}) (give a "
+                              "larger --page or more --max-pages)",
+                              c.input.string(), packed->unplaced.size(), sprites.size(),
+                              sprites[u.item].name, sizes[u.item].width, sizes[u.item].height));
   }
   for (std::size_t i = 0; i < items.size(); ++i) {  // from the extruded box to the frame
     packed->placements[i].x += c.extrude;

@@ -63,6 +63,16 @@ std::string about_command(const CLI::App& app, const std::string& word) {
   return fmt::format("'{}' is none of the commands {}{}", start_of(word), names, meant);
 }
 
+// The options that a word is the beginning of, as some programs let them be shortened.
+std::string begun_by(const CLI::App& app, const std::string& word) {
+  std::string names;
+  if (word.size() < 4 || !word.starts_with("--")) return names;
+  for (const CLI::Option* known : command_of(app).get_options())
+    for (const std::string& other : known->get_lnames())
+      if (other.starts_with(word.substr(2))) names += (names.empty() ? "--" : " or --") + other;
+  return names;
+}
+
 // Words that no option takes. They are told first: --ouput is the reason why --output is missing.
 std::string about_unknown(const CLI::App& app) {
   const std::vector<std::string> words = app.remaining(true);
@@ -80,6 +90,8 @@ std::string about_unknown(const CLI::App& app) {
       if (name.size() > 4 && name.starts_with("--") &&
           distance(name.substr(2), other) <= near(name))
         return fmt::format("unknown option {}: is --{} meant?", start_of(word), other);
+  if (const std::string meant = begun_by(app, name); !meant.empty())
+    return fmt::format("unknown option {}: is {} meant?", start_of(word), meant);
   return "unknown option or one name too many: " + start_of(word);
 }
 

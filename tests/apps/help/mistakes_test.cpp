@@ -55,6 +55,8 @@ TEST_F(Mistakes, AMisspeltOptionIsTheReasonWhyAnotherIsMissing) {
                    "unknown option --ouput: is --output meant?");
   expect_complaint(ATLAS_EXPORT, "t.obj --otuput a.wrl",
                    "unknown option --otuput: is --output meant?");
+  expect_complaint(ATLAS_EXPORT, "--atlas 3",
+                   "unknown option --atlas: is --atlases or --atlas-size meant?");
   expect_complaint(ATLAS_EXPORT, "--hlep", "unknown option --hlep: is --help meant?");
   expect_complaint(ATLAS_EXPORT, "t.obj -o a.obj --threshhold=1",
                    "unknown option --threshhold=1: is --threshold meant?");
