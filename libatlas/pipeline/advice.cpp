@@ -104,6 +104,10 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
   constexpr std::size_t kManyCharts = 256;
   constexpr float kBlack = 6 / 255.0f;
   std::vector<std::string> lines;
+  if (options.charts.keep_uv_charts && report.repairs.kept_charts == 0)
+    lines.push_back(
+        "--keep-uv-charts kept no chart: the scene's texture coordinates are missing, flipped or "
+        "lie on each other (leave it out for charts of all new borders)");
   if (report.pages.empty() || report.gpu_bytes == 0) return lines;  // no light, no texels to lose
   if (report.pages.size() > kManyPages) lines.push_back(on_many_pages(report, options));
   const double texels_a_chart =

@@ -81,6 +81,15 @@ TEST(Advice, TransparencyIsNamed) {
                     "2 materials ('fence', ...) are transparent or have holes"));
 }
 
+TEST(Advice, UvChartsOfWhichNoneIsKeptAreNamed) {
+  ExportReport report;
+  ExportOptions options;
+  options.charts.keep_uv_charts = true;
+  EXPECT_TRUE(holds(advice_on(report, options), "--keep-uv-charts kept no chart"));
+  report.repairs.kept_charts = 1;
+  EXPECT_TRUE(advice_on(report, options).empty());
+}
+
 // Luminance holds what a lamp sends out; illuminance cannot.
 TEST(Advice, LampsAreNamed) {
   Scene scene;
