@@ -17,6 +17,16 @@ using test::kSquare;
 using test::load_glb;
 using test::TempFolder;
 
+void add_triangle_of_each_material(Gltf& g, const json& attributes) {
+  json primitives;
+  for (std::size_t m = 0; m < g.j["materials"].size(); ++m)
+    primitives.push_back({{"attributes", attributes},
+                          {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})},
+                          {"material", m}});
+  g.single(primitives[0]);
+  g.j["meshes"][0]["primitives"] = primitives;
+}
+
 TEST(Gltf, TexturesMayNameASetAndATurn) {
   const TempFolder folder;
   ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());
@@ -29,17 +39,12 @@ TEST(Gltf, TexturesMayNameASetAndATurn) {
       {"POSITION", positions}, {"TEXCOORD_0", zero}, {"TEXCOORD_1", one}, {"TEXCOORD_2", two}};
   g.j["images"] = {{{"uri", "a.png"}}};
   g.j["textures"] = {{{"source", 0}}};
-  json primitives;
   for (int m = 0; m < 2; ++m) {
     json info = {{"index", 0}, {"texCoord", 1}};
     if (m == 1) info["extensions"]["KHR_texture_transform"] = {{"texCoord", 2}, {"rotation", 0.5}};
     g.j["materials"].push_back({{"pbrMetallicRoughness", {{"baseColorTexture", info}}}});
-    primitives.push_back({{"attributes", attributes},
-                          {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})},
-                          {"material", m}});
   }
-  g.single(primitives[0]);
-  g.j["meshes"][0]["primitives"] = primitives;
+  add_triangle_of_each_material(g, attributes);
   const auto loaded = load_glb(folder, g);
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   const Scene& s = loaded->scene;
@@ -90,13 +95,7 @@ TEST(Gltf, EmissionAndReflectancesBeyondOne) {
   g.j["materials"][0]["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", 4}};
   g.j["materials"][1]["pbrMetallicRoughness"]["baseColorFactor"] = {2, 1, 1, 1};
   const json attributes = {{"POSITION", g.floats(kSquare, "VEC3", 3)}};
-  json primitives;
-  for (int m = 0; m < 2; ++m)
-    primitives.push_back({{"attributes", attributes},
-                          {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})},
-                          {"material", m}});
-  g.single(primitives[0]);
-  g.j["meshes"][0]["primitives"] = primitives;
+  add_triangle_of_each_material(g, attributes);
   const auto loaded = load_glb(folder, g);
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   EXPECT_EQ(loaded->scene.materials[0].emission, (Vec3f{4, 2, 0}));
