@@ -46,8 +46,8 @@ struct FitOptions {
   // can instead of being as large as they can be. Overrides power_of_two and square. Without
   // shapes, or with several pages, it does that alone.
   bool free_aspect = false;
-  // What fills less of a single page than this is of no use (a share): a page of outlines that comes
-  // out far emptier at first is searched no further. 0: search as usual.
+  // What fills less of a single page than this is of no use (a share): a page of outlines that
+  // comes out far emptier at first is searched no further. 0: search as usual.
   double wanted_fill = 0;
   // Limits of `best` on a single page of outlines. The result depends on effort and seed only,
   // unless effort is 0 and time the limit.
