@@ -8,7 +8,6 @@
 
 #include "libatlas/core/clock.h"
 #include "libatlas/param/first_rotations.h"
-#include "libatlas/param/percentile.h"
 
 namespace atlas::param {
 namespace {
@@ -24,37 +23,19 @@ constexpr double most_envelope_work = 4;
 // from nothing, later as part of what it finds. An exact solve is worth little more than what the
 // next local step changes anyway: a twentieth of that is lost in it, and a thousandth in the last
 // step leaves each column of the results as it was (measured on meshes of 70 thousand and a million
-// triangles). `fine`, 3e-11 of the area, is a mean stretch of some millionths, and at worst a
-// hundred times that.
-constexpr double first_inexactness = 1e-6, rough_share = 0.05, fine_share = 1e-3, fine = 3e-11;
+// triangles).
+constexpr double first_inexactness = 1e-6, rough_share = 0.05;
 // Where no more energy than this is left, as part of the area, the shape may unroll, and each step
 // must be exact: errors of a solve are smooth, and later steps take long to remove them.
 constexpr double may_unroll = 3e-4, exact_first = 1e-9;
 constexpr int most_iterations = 60;
-// How far steps go beyond the minimum for given rotations: every other one, those after them, and
-// those of squeezing. What a long step overshoots the next one mends at once: three steps end where
-// four plain ones do, and squeezing goes further down (measured on 240 meshes).
+// How far steps go beyond the minimum for given rotations: every other one, and those after them.
+// What a long step overshoots the next one mends at once: three steps end where four plain ones do
+// (measured on 240 meshes).
 constexpr double long_step = 3, short_step = 1.3;
-constexpr std::array squeezing_steps{1.7, 1.3};
-// Vertices from which on what is solved and what is measured do not lie in memory together.
-constexpr std::size_t large_mesh = 100000;
 // The fall of the energy by one local step, as part of the area, after which exact solves change no
 // more than inexact ones leave.
 constexpr double converged = 3e-11;
-
-// Steps of squeezing fall by a share of the one before, so far as two of them tell. In a chart of
-// so many triangles, whose steps take long, this ended a third of those in vain, and 25 of 360
-// others (measured on 240 meshes); in smaller ones it would end more of the others for less.
-constexpr std::size_t many_triangles = 2000;
-constexpr double least_share = 0.6, most_share = 0.9;
-
-// Whether what fell from `two_ago` over `one_ago` to `now` will end above the goal.
-bool ends_above(double goal, double two_ago, double one_ago, double now) {
-  const double before = two_ago - one_ago, last = one_ago - now;
-  const double share = before > 0 ? std::clamp(last / before, least_share, most_share) : most_share;
-  const double next = share * (last > 0 ? last : 0.5 * before);
-  return now - next / (1 - share) > goal;
-}
 
 }  // namespace
 
@@ -272,77 +253,6 @@ double ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
     const double times = (steps - i) % 2 == 0 ? long_step : short_step;
     solve_relaxed(times, exact ? Inexactness{last ? fine : exact_first, 0} : rough, uvs);
   }
-}
-
-// Fills w_.stretch with log max(s1, 1/s2) at the scale asked for, and returns the value that 99.9 %
-// of the area stays within.
-double ArapSolver::update_stretch(std::span<const Vec2d> uvs, bool ratio) {
-  constexpr double worst = 10;  // for flipped triangles
-  double area = 0, uv_area = 0, large = 0, small = std::numeric_limits<double>::infinity();
-  w_.stretch.resize(w_.elements.size());
-  w_.sigma.resize(w_.elements.size());
-  for (std::size_t t = 0; t < w_.elements.size(); ++t) {
-    const Element e = w_.elements[t];
-    const Jacobian j = e.jacobian(to_glm(uvs[e.v[0]]), to_glm(uvs[e.v[1]]), to_glm(uvs[e.v[2]]));
-    const SingularValues s = w_.sigma[t] = singular_values(j);
-    area += e.area();
-    uv_area += e.area() * std::abs(j.det());
-    large = std::max(large, s.large);
-    if (s.small > 0) small = std::min(small, s.small);
-  }
-  double scale = uv_area > 0 ? std::sqrt(area / uv_area) : 1;
-  if (ratio && small <= large) scale = 1 / std::sqrt(small * large);
-  w_.tail.clear();
-  for (std::size_t t = 0; t < w_.elements.size(); ++t) {
-    const SingularValues s = w_.sigma[t];
-    const double r = s.small > 0 ? std::max(s.large * scale, 1 / (s.small * scale)) : worst;
-    w_.stretch[t] = std::log(std::clamp(r, 1.0, worst));
-    w_.tail.push_back({w_.stretch[t], w_.elements[t].area()});
-  }
-  return upper_percentile(w_.tail, 0.001);
-}
-
-double ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
-  wake(uvs);
-  // The mean of the 12th power of the stretch stands in for its maximum; 4, 6 and 8 reach less.
-  // Damped by 1 / (power - 2) the weights settle; damped by a half they swing (measured).
-  constexpr double power = 12, damping = 0.1;
-  constexpr int soon = 2;
-  const double log_goal = std::log(options.goal), log_bound = std::log(options.bound);
-  const bool foresees = mesh_.triangles.size() >= many_triangles && !options.ratio;
-  double now = update_stretch(uvs, options.ratio), best = now, one_ago = now;
-  w_.best.assign(uvs.begin(), uvs.end());
-  w_.rotations.resize(w_.elements.size());
-  for (int i = 0; i < options.iterations && best > log_goal; ++i) {
-    for (std::size_t t = 0; t < w_.elements.size(); ++t) {
-      // The outermost 0.1 % may stay as it is: more weight to it would only spoil the rest.
-      const double r = std::clamp(w_.stretch[t] / now, 0.05, 1.0);
-      const double weight = w_.elements[t].weight;
-      w_.elements.set_weight(t, static_cast<float>(std::exp((1 - damping) * std::log(weight) +
-                                                            damping * (power - 2) * std::log(r))));
-    }
-    weighted_ = true;
-    factorize();
-    for (const double times : squeezing_steps) {
-      update(uvs);
-      solve_relaxed(times, {fine, fine_share}, uvs);
-    }
-    now = update_stretch(uvs, options.ratio);
-    const double two_ago = std::exchange(one_ago, best);
-    if (now < best) {
-      best = now;
-      w_.best.assign(uvs.begin(), uvs.end());
-    }
-    // Steps get shorter, though not each: if the rest of them, like the last two, do not suffice,
-    // none will.
-    const bool within = best <= log_bound;
-    const int rest = std::min(options.iterations - 1 - i, within ? soon : options.iterations);
-    const double gain = 0.5 * (two_ago - best);
-    if (i >= 2 && best - gain * rest > (within ? log_goal : log_bound)) break;
-    if (i >= 1 && !within && foresees && ends_above(log_bound, two_ago, one_ago, best)) break;
-  }
-  std::copy(w_.best.begin(), w_.best.end(), uvs.begin());
-  return std::exp(best);
 }
 
 Relaxer::Outcome ArapSolver::remove_flips(std::span<Vec2d> uvs) {

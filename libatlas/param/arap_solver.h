@@ -36,17 +36,19 @@ class ArapSolver {
   // Lowers the stretch that 99.9 % of the area stays within: triangles are weighted by a power of
   // their stretch and the system is solved again (iteratively reweighted least squares towards the
   // maximum norm; Burrus, Barreto and Selesnick 1994, "Iterative reweighted least-squares design of
-  // FIR filters"). Ends when that stretch is at most `goal`, after `iterations`, or when it will
-  // not come within `bound` at this rate or, once it is there, not soon reach the goal. uvs becomes
-  // the best state seen; returns its stretch.
-  // With `ratio` the stretch is taken at the scale in the middle of its range instead of the
+  // FIR filters"). No weight falls below a share of the largest, or faces that hardly stretch would
+  // give way without limit for the little that does. Ends when that stretch is at most `goal`,
+  // after `iterations`, or when it will not come within `bound` at this rate or, once it is there,
+  // not soon reach the goal. uvs becomes the state of least stretch; but where that costs much of
+  // the mean stretch, the first one within the bound, drawn back as far as the bound allows. With
+  // `ratio` the stretch is taken at the scale in the middle of its range instead of the
   // area-preserving one.
   struct Squeeze {
     double goal, bound;
     int iterations;
     bool ratio;
   };
-  double squeeze(const Squeeze& options, std::span<Vec2d> uvs);
+  void squeeze(const Squeeze& options, std::span<Vec2d> uvs);
 
   Relaxer::Outcome remove_flips(std::span<Vec2d> uvs);
 
@@ -82,12 +84,19 @@ class ArapSolver {
   struct Inexactness {
     double area_share, found_share;
   };
+  // Vertices from which on what is solved and what is measured do not lie in memory together.
+  static constexpr std::size_t large_mesh = 100000;
+  // 3e-11 of the area is a mean stretch of some millionths, and at worst a hundred times that.
+  static constexpr double fine = 3e-11, fine_share = 1e-3;
   void solve(const Inexactness& inexactness, std::span<Vec2d> uvs);
   void solve_relaxed(double relaxation, const Inexactness& inexactness, std::span<Vec2d> uvs);
   void solve_directly();
   void take_guess(std::span<Vec2d> uvs);
   double update(std::span<const Vec2d> uvs);
   double update_stretch(std::span<const Vec2d> uvs, bool ratio);
+  double stretch_energy();
+  void weight_by_stretch(double largest, double least);
+  void ease(double log_bound, bool ratio, std::span<Vec2d> uvs);
 
   const LocalMesh& mesh_;
   IsometricOptions options_;

@@ -10,32 +10,15 @@
 #include "libatlas/param/parameterize.h"
 #include "libatlas/param/planar.h"
 #include "tests/param/oracles.h"
+#include "tests/param/results.h"
 #include "tests/param/shapes.h"
 
 namespace atlas {
 namespace {
 
 using testing::Disc;
-
-ParamResult run(const Disc& d, const ParamOptions& options = {}) {
-  ParamWorkspace workspace;
-  return parameterize(d.view(), options, workspace);
-}
-
-// What every result must keep to, whatever the input.
-void expect_consistent(const Disc& d, const ParamResult& r, double max_stretch) {
-  ASSERT_EQ(r.uvs.size(), d.positions.size());
-  for (const Vec2d p : r.uvs) ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y));
-  const Distortion m = measure_distortion(d.view(), r.uvs);
-  EXPECT_NEAR(m.stretch_999, r.distortion.stretch_999, 1e-4 * m.stretch_999);
-  EXPECT_EQ(r.within_bound, r.distortion.stretch_999 <= max_stretch);
-  if (m.surface_area > 0) {
-    EXPECT_NEAR(m.uv_area, m.surface_area, 1e-6 * m.surface_area);
-  }
-  EXPECT_EQ(check_injectivity(d.view(), r.uvs).injective, r.injective);
-  EXPECT_TRUE(!r.injective || m.flips == 0);
-  EXPECT_EQ(r.offenders.empty(), r.injective && r.within_bound);
-}
+using testing::expect_consistent;
+using testing::run;
 
 TEST(Parameterize, ProjectsWhatIsNearlyFlat) {
   const Disc d = testing::make_grid(20, 20, [](double u, double v) {
@@ -85,55 +68,6 @@ TEST(Parameterize, LargeMeshesThatCrossThemselvesAreNotSqueezed) {
   EXPECT_GT(crossing.crossings.size(), 12u);
   EXPECT_TRUE(crossing.uvs == run(large, unsqueezed).uvs);
   EXPECT_FALSE(run(small, options).uvs == run(small, unsqueezed).uvs);
-}
-
-// Milnor 1969, "A problem in cartography": no map of a cap of half-angle a has a smaller ratio of
-// its greatest to its least scale than a / sin a, which the azimuthal equidistant projection has.
-TEST(Parameterize, CapsMeetMilnorsOptimum) {
-  for (const double degrees : {20.0, 45.0, 70.0, 90.0}) {
-    const double a = degrees * std::numbers::pi / 180, optimum = a / std::sin(a);
-    const Disc d = testing::make_cap(a, 40);
-    ParamOptions options;
-    options.method = ParamMethod::isometric;
-    options.iterations = 20;
-    options.max_stretch = 1.0001;  // out of reach: squeeze with all steps
-    options.squeeze_iterations = 40;
-    options.squeeze_ratio = true;
-    const ParamResult r = run(d, options);
-    std::vector<TriangleStretch> s(d.triangles.size());
-    measure_triangles(d.view(), r.uvs, s);
-    double greatest = 0, least = 1e300;
-    for (const TriangleStretch& t : s) {
-      greatest = std::max<double>(greatest, t.s1);
-      least = std::min<double>(least, t.s2);
-    }
-    EXPECT_LT(greatest / least, 1.02 * optimum) << degrees;
-    EXPECT_GT(greatest / least, 0.995 * optimum)
-        << degrees;  // below by the polyhedron's coarseness only
-    EXPECT_TRUE(r.injective);
-  }
-}
-
-TEST(Parameterize, SqueezingReachesABoundThatDescentMisses) {
-  const Disc d = testing::make_grid(50, 50, [](double u, double v) {
-    const double x = 2 * u - 1, y = 2 * v - 1;
-    return Vec3d{x, y, 0.9 * std::exp(-6 * (x * x + y * y))};
-  });
-  ParamOptions plain{.method = ParamMethod::isometric, .iterations = 30, .squeeze_iterations = 0};
-  const double reached = run(d, plain).distortion.stretch_999;
-  ParamOptions squeezed = plain;
-  squeezed.max_stretch = 1 + 0.8 * (reached - 1);
-  EXPECT_FALSE(run(d, {.max_stretch = squeezed.max_stretch,
-                       .method = ParamMethod::isometric,
-                       .iterations = 30,
-                       .squeeze_iterations = 0})
-                   .within_bound);
-  squeezed.squeeze_iterations = 12;
-  const ParamResult r = run(d, squeezed);
-  expect_consistent(d, r, squeezed.max_stretch);
-  EXPECT_TRUE(r.within_bound) << reached << " -> " << r.distortion.stretch_999;
-  squeezed.local = true;  // so many triangles stretch that no few places can be relaxed
-  EXPECT_TRUE(run(d, squeezed).within_bound);
 }
 
 TEST(Parameterize, NoisyHemispheresHaveNoFlips) {

@@ -32,7 +32,7 @@ constexpr double kMinAltitude = 1e-7;
 // Charts of fewer triangles are squeezed towards this stretch even where the bound is wider: it
 // costs them little.
 constexpr std::size_t kLargeChart = 20000;
-constexpr double kAimedStretch = 1.2;
+constexpr double kAimedStretch = 1.18;
 constexpr double kBestStretch = 1.12;
 // Under scan noise, rounds of cutting and of closing what crosses, each going on from the last, in
 // all and of closing, and those in the end that only close. With half as many, or charts divided

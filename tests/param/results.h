@@ -1,0 +1,33 @@
+// Internal: charts flattened for tests.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libatlas/param/parameterize.h"
+#include "tests/param/shapes.h"
+
+namespace atlas::testing {
+
+inline ParamResult run(const Disc& d, const ParamOptions& options = {}) {
+  ParamWorkspace workspace;
+  return parameterize(d.view(), options, workspace);
+}
+
+// What every result must keep to, whatever the input.
+inline void expect_consistent(const Disc& d, const ParamResult& r, double max_stretch) {
+  ASSERT_EQ(r.uvs.size(), d.positions.size());
+  for (const Vec2d p : r.uvs) ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y));
+  const Distortion m = measure_distortion(d.view(), r.uvs);
+  EXPECT_NEAR(m.stretch_999, r.distortion.stretch_999, 1e-4 * m.stretch_999);
+  EXPECT_EQ(r.within_bound, r.distortion.stretch_999 <= max_stretch);
+  if (m.surface_area > 0) {
+    EXPECT_NEAR(m.uv_area, m.surface_area, 1e-6 * m.surface_area);
+  }
+  EXPECT_EQ(check_injectivity(d.view(), r.uvs).injective, r.injective);
+  EXPECT_TRUE(!r.injective || m.flips == 0);
+  EXPECT_EQ(r.offenders.empty(), r.injective && r.within_bound);
+}
+
+}  // namespace atlas::testing

@@ -1,0 +1,162 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "libatlas/param/parameterize.h"
+#include "tests/param/results.h"
+#include "tests/param/shapes.h"
+
+namespace atlas {
+namespace {
+
+using testing::Disc;
+using testing::expect_consistent;
+using testing::run;
+
+// Milnor 1969, "A problem in cartography": no map of a cap of half-angle a has a smaller ratio of
+// its greatest to its least scale than a / sin a, which the azimuthal equidistant projection has.
+TEST(Squeeze, CapsMeetMilnorsOptimum) {
+  for (const double degrees : {20.0, 45.0, 70.0, 90.0}) {
+    const double a = degrees * std::numbers::pi / 180, optimum = a / std::sin(a);
+    const Disc d = testing::make_cap(a, 40);
+    ParamOptions options;
+    options.method = ParamMethod::isometric;
+    options.iterations = 20;
+    options.max_stretch = 1.0001;  // out of reach: squeeze with all steps
+    options.squeeze_iterations = 40;
+    options.squeeze_ratio = true;
+    const ParamResult r = run(d, options);
+    std::vector<TriangleStretch> s(d.triangles.size());
+    measure_triangles(d.view(), r.uvs, s);
+    double greatest = 0, least = 1e300;
+    for (const TriangleStretch& t : s) {
+      greatest = std::max<double>(greatest, t.s1);
+      least = std::min<double>(least, t.s2);
+    }
+    EXPECT_LT(greatest / least, 1.02 * optimum) << degrees;
+    EXPECT_GT(greatest / least, 0.995 * optimum)
+        << degrees;  // below by the polyhedron's coarseness only
+    EXPECT_TRUE(r.injective);
+  }
+}
+
+TEST(Squeeze, ReachesABoundThatDescentMisses) {
+  const Disc d = testing::make_grid(50, 50, [](double u, double v) {
+    const double x = 2 * u - 1, y = 2 * v - 1;
+    return Vec3d{x, y, 0.9 * std::exp(-6 * (x * x + y * y))};
+  });
+  ParamOptions plain{.method = ParamMethod::isometric, .iterations = 30, .squeeze_iterations = 0};
+  const double reached = run(d, plain).distortion.stretch_999;
+  ParamOptions squeezed = plain;
+  squeezed.max_stretch = 1 + 0.8 * (reached - 1);
+  EXPECT_FALSE(run(d, {.max_stretch = squeezed.max_stretch,
+                       .method = ParamMethod::isometric,
+                       .iterations = 30,
+                       .squeeze_iterations = 0})
+                   .within_bound);
+  squeezed.squeeze_iterations = 12;
+  const ParamResult r = run(d, squeezed);
+  expect_consistent(d, r, squeezed.max_stretch);
+  EXPECT_TRUE(r.within_bound) << reached << " -> " << r.distortion.stretch_999;
+  squeezed.local = true;  // so many triangles stretch that no few places can be relaxed
+  EXPECT_TRUE(run(d, squeezed).within_bound);
+}
+
+// A strip of flat faces, folded by right angles, with a small ear between two faces at both ends of
+// each fold: sharp vertices, as CAD parts have them.
+Disc eared_strip(std::uint32_t faces, double corner, double ear) {
+  Disc d;
+  const auto add = [&](Vec3d p) {
+    d.positions.push_back(p);
+    return static_cast<std::uint32_t>(d.positions.size() - 1);
+  };
+  Vec3d at{0, 0, 0};
+  std::array<std::uint32_t, 2> fold{add(at), add({0, 1, 0})};  // its lower and upper end
+  std::array<std::uint32_t, 2> last{};                         // the ears' corners left of it
+  for (std::uint32_t k = 0; k < faces; ++k) {
+    const double x = k % 2 == 0, z = 1 - x;
+    const auto on_face = [&](double a, double y) { return add({at.x + a * x, y, at.z + a * z}); };
+    const double size = ear * (1 + k % 3);
+    const double a = size * std::sin(corner), b = -size * std::cos(corner);
+    const double peak = -0.5 * std::cos(corner) / std::sin(corner);
+    const std::array<std::uint32_t, 2> left{on_face(a, -b), on_face(a, 1 + b)};
+    const std::array<std::uint32_t, 2> peaks{on_face(0.5, -peak), on_face(0.5, 1 + peak)};
+    const std::array<std::uint32_t, 2> right{on_face(1 - a, -b), on_face(1 - a, 1 + b)};
+    const std::array<std::uint32_t, 2> next{on_face(1, 0), on_face(1, 1)};
+    const std::array<std::uint32_t, 10> rim{fold[0], left[0],  peaks[0], right[0], next[0],
+                                            next[1], right[1], peaks[1], left[1],  fold[1]};
+    const std::uint32_t centre = on_face(0.5, 0.5);
+    for (std::uint32_t i = 0; i < 10; ++i)
+      d.triangles.push_back({centre, rim[i], rim[(i + 1) % 10]});
+    if (k > 0) {
+      d.triangles.push_back({left[0], fold[0], last[0]});
+      d.triangles.push_back({last[1], fold[1], left[1]});
+    }
+    at = {at.x + x, 0, at.z + z};
+    fold = next;
+    last = right;
+  }
+  return d;
+}
+
+// The least L2 stretch that a search by chance finds from there on, within the bound.
+double searched_l2(const Disc& d, std::vector<Vec2d> uvs, double bound) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  double least = measure_distortion(d.view(), uvs).stretch_l2, step = 0.01;
+  for (int i = 0; i < 20000; ++i) {
+    std::vector<Vec2d> next = uvs;
+    for (Vec2d& p : next) p = {p.x + step * normal(random), p.y + step * normal(random)};
+    const Distortion m = measure_distortion(d.view(), next);
+    const bool better = m.flips == 0 && m.stretch_999 <= bound && m.stretch_l2 < least;
+    step = std::max(1e-6, step * (better ? 1.5 : 0.93));
+    if (!better) continue;
+    least = m.stretch_l2;
+    uvs = std::move(next);
+  }
+  return least;
+}
+
+// What the ears must give up is not paid for by the faces: squeezed as far as possible, they
+// stretch by twice what they need. Nor do they pay for less stretch than the bound.
+TEST(Squeeze, FlatFacesDoNotGiveWayToASharpVertex) {
+  for (const double degrees : {130.0, 135.0, 140.0}) {
+    for (const double ear : {0.06, 0.1, 0.14}) {
+      const Disc d = eared_strip(7, degrees * std::numbers::pi / 180, ear);
+      ParamOptions options{.method = ParamMethod::isometric, .iterations = 30};
+      options.squeeze_iterations = 0;
+      EXPECT_FALSE(run(d, options).within_bound);
+      options.squeeze_iterations = 12;
+      options.aimed_stretch = 1.18;
+      const ParamResult r = run(d, options);
+      expect_consistent(d, r, options.max_stretch);
+      ASSERT_TRUE(r.within_bound && r.injective);
+      const double least = searched_l2(d, r.uvs, options.max_stretch);
+      EXPECT_LT(r.distortion.stretch_l2 - 1, 1.2 * (least - 1)) << degrees << ", " << ear;
+    }
+  }
+}
+
+// On a curved surface less stretch than the bound costs little, and is had.
+TEST(Squeeze, CurvedSurfacesComeDownToTheAim) {
+  const Disc d = testing::make_grid(30, 30, [](double u, double v) {
+    const double x = 2 * u - 1, y = 2 * v - 1;
+    return Vec3d{x, y, 0.55 * (x * x - y * y)};
+  });
+  ParamOptions options{.max_stretch = 1.25, .method = ParamMethod::isometric};
+  options.squeeze_iterations = 0;
+  const Distortion before = run(d, options).distortion;
+  options.squeeze_iterations = 12;
+  options.aimed_stretch = 1 + 0.8 * (before.stretch_999 - 1);
+  const Distortion after = run(d, options).distortion;
+  EXPECT_LE(after.stretch_999, options.aimed_stretch);
+  EXPECT_LT(after.stretch_l2 - 1, 1.4 * (before.stretch_l2 - 1));
+}
+
+}  // namespace
+}  // namespace atlas
