@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -12,25 +11,12 @@
 #include "apps/common/files.h"
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/file_extension.h"
+#include "libatlas/core/text_buffer.h"
 #include "libatlas/pack/fit.h"
 #include "libatlas/scene/reader.h"
 
 namespace atlas::app {
 namespace {
-
-std::string number(double v) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, v).ptr;
-  return {text, end};
-}
-
-// The float itself where there is no origin to add: it has fewer digits than the double.
-std::string coordinate(double origin, float offset) {
-  if (origin != 0) return number(origin + double(offset));
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, offset).ptr;
-  return {text, end};
-}
 
 constexpr const char* kWithoutUv = "no_uv";
 
@@ -62,14 +48,18 @@ class UvLines {
       : mesh_(mesh), numbers_(mesh.scene.texcoords.size(), 0) {}
 
   // The number of a corner's uv on a page of that size; adds its line to `text` if it is new.
-  std::size_t number_of(std::size_t corner, Extent page, std::string& text) {
+  std::size_t number_of(std::size_t corner, Extent page, TextBuffer& text) {
     std::size_t& vt = numbers_[mesh_.charts.same[mesh_.scene.texcoord_indices[corner]]];
     if (vt != 0) return vt;
     const auto fraction = [](double texels, std::int32_t side) {
-      return number(std::clamp(texels / side, 0.0, 1.0));  // -1e-17 is 0
+      return std::clamp(texels / side, 0.0, 1.0);  // -1e-17 is 0
     };
     const Vec2d uv = mesh_.uvs[corner];
-    text += fmt::format("vt {} {}\n", fraction(uv.x, page.width), fraction(uv.y, page.height));
+    text.text("vt ");
+    text.number(fraction(uv.x, page.width));
+    text.character(' ');
+    text.number(fraction(uv.y, page.height));
+    text.character('\n');
     return vt = ++count_;
   }
 
@@ -82,14 +72,17 @@ class UvLines {
 // The mesh with its new uvs: one material a page.
 std::string to_obj(const RepackedMesh& mesh, const std::string& material_file) {
   const auto& [s, charts, fit, uvs] = mesh;
-  std::string text = "# repacked by atlas-pack\n";
+  TextBuffer text;
+  text.text("# repacked by atlas-pack\n");
   for (std::size_t page = 0; page < fit.pages.size(); ++page)  // the shape textures must have
-    text += fmt::format("# page_{}: {} x {} texels\n", page, fit.pages[page].width,
-                        fit.pages[page].height);
-  text += fmt::format("mtllib {}\n", material_file);
-  for (const Vec3f& p : s.positions)
-    text += fmt::format("v {} {} {}\n", coordinate(s.origin.x, p.x), coordinate(s.origin.y, p.y),
-                        coordinate(s.origin.z, p.z));
+    text.text(fmt::format("# page_{}: {} x {} texels\n", page, fit.pages[page].width,
+                          fit.pages[page].height));
+  text.text(fmt::format("mtllib {}\n", material_file));
+  for (const Vec3f& p : s.positions) {
+    text.text("v ");
+    text.position(s.origin, p);
+    text.character('\n');
+  }
   std::string faces;
   UvLines uv_lines(mesh);
   for (std::uint32_t page = 0; page < fit.pages.size(); ++page) {
@@ -112,7 +105,7 @@ std::string to_obj(const RepackedMesh& mesh, const std::string& material_file) {
     if (charts.chart[t] == UvCharts::kNone)
       faces += fmt::format("f {} {} {}\n", s.indices[3 * t] + 1, s.indices[3 * t + 1] + 1,
                            s.indices[3 * t + 2] + 1);
-  return text + faces;
+  return text.bytes() + faces;
 }
 
 std::string to_mtl(const UvCharts& charts, const FitResult& fit) {

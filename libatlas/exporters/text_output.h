@@ -1,8 +1,6 @@
 // Internal: large text files from pieces that are formatted in parallel.
 #pragma once
 
-#include <cassert>
-#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -12,6 +10,7 @@
 
 #include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
+#include "libatlas/core/text_buffer.h"
 #include "libatlas/exporters/world.h"
 
 namespace atlas {
@@ -19,42 +18,6 @@ namespace atlas {
 // A relative reference in plain ASCII without blanks: some readers split lists there, some choke on
 // UTF-8. Names from safe_file_name() stay as they are.
 std::string encode_uri(const std::string& name);
-
-// Appends numbers without locale. Values must be finite.
-class TextBuffer {
- public:
-  void text(std::string_view s) { bytes_.append(s); }
-  void character(char c) { bytes_.push_back(c); }
-  template <class T>
-  void number(T value) {
-    if (value == 0) value = 0;  // -0 and 0 are equal and must print alike
-    char digits[40];
-    const auto [stop, error] = std::to_chars(digits, digits + sizeof digits, value);
-    assert(error == std::errc{});
-    bytes_.append(digits, stop);
-  }
-  // A coordinate of the file: the float itself where there is no origin to add.
-  void coordinate(double origin, float offset) {
-    origin == 0 ? number(offset) : number(origin + static_cast<double>(offset));
-  }
-  void position(const Vec3d& origin, const Vec3f& p) {
-    coordinate(origin.x, p.x);
-    character(' ');
-    coordinate(origin.y, p.y);
-    character(' ');
-    coordinate(origin.z, p.z);
-  }
-  void uv(const Vec2f& uv) {
-    number(uv.x);
-    character(' ');
-    number(uv.y);
-  }
-  void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
-  const std::string& bytes() const { return bytes_; }
-
- private:
-  std::string bytes_;
-};
 
 // A file, plain or gzipped, that remembers its first error.
 class TextFile {

@@ -43,9 +43,9 @@ TEST_F(AtlasPack, MeshChartsAtUniformDensity) {
   EXPECT_GT(area(0), 0.1);
 }
 
-// Positions are floats: what is written is no longer than what was read.
+// Positions are floats: what is written is no longer than what was read. -0 is 0.
 TEST_F(AtlasPack, MeshPositionsAreWrittenAsRead) {
-  write("m.obj", "v 0.05 0 0\nv 1.1 0 0\nv 0.05 0.3 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+  write("m.obj", "v 0.05 -0 0\nv 1.1 0 0\nv 0.05 0.3 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
   const RunResult r = run("mesh m.obj -o out.obj");
   ASSERT_EQ(r.exit_code, 0) << r.output;
   const std::string text = read("out.obj");
