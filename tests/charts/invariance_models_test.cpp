@@ -4,23 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 
 #include "libatlas/scene/reader.h"
 #include "tests/charts/chart_checks.h"
 #include "tests/charts/invariance.h"
 #include "tests/scene/temp_folder.h"
+#include "tests/support/shared_data.h"
 
 namespace atlas::test {
 namespace {
 
 std::vector<std::filesystem::path> models() {
   std::vector<std::filesystem::path> paths;
-  const char* data = std::getenv("LIBATLAS_DATA");
+  const auto data = shared_data();
   if (!data) return paths;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(std::filesystem::path(data) / "models")) {
+  for (const auto& entry : std::filesystem::directory_iterator(*data / "models")) {
     if (entry.path().extension() == ".obj") paths.push_back(entry.path());
   }
   std::sort(paths.begin(), paths.end());

@@ -2,19 +2,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "tests/charts/chart_checks.h"
+#include "tests/support/shared_data.h"
 
 namespace atlas::test {
 namespace {
 
 std::filesystem::path models() {
-  const char* data = std::getenv("LIBATLAS_DATA");
-  return data ? std::filesystem::path(data) / "models" : std::filesystem::path();
+  const auto data = shared_data();
+  return data ? *data / "models" : std::filesystem::path();
 }
 
 // Vertices and faces are all that is needed of these files.

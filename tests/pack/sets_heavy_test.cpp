@@ -2,12 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include "libatlas/pack/pack.h"
 #include "tests/pack/checks.h"
+#include "tests/support/shared_data.h"
 
 namespace atlas {
 namespace {
@@ -19,10 +19,10 @@ struct Instance {
 
 std::vector<Instance> read_set(const std::string& name) {
   std::vector<Instance> set;
-  const char* data = std::getenv("LIBATLAS_DATA");
+  const auto data = test::shared_data();
   if (!data) return set;
   std::vector<std::filesystem::path> files;
-  const auto folder = std::filesystem::path(data) / "packing" / name;
+  const auto folder = *data / "packing" / name;
   for (const auto& e : std::filesystem::directory_iterator(folder)) files.push_back(e.path());
   std::sort(files.begin(), files.end());
   for (const auto& path : files) {

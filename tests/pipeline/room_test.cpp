@@ -1,12 +1,12 @@
 // The test room of LIBATLAS_DATA, exported as a user would and judged by the independent evaluator.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 
 #include "libatlas/pipeline/export_world.h"
 #include "tests/scene/temp_folder.h"
 #include "tests/support/fidelity.h"
+#include "tests/support/shared_data.h"
 
 namespace atlas::test {
 namespace {
@@ -16,9 +16,9 @@ namespace fs = std::filesystem;
 class Room : public ::testing::Test {
  protected:
   void SetUp() override {
-    const char* data = std::getenv("LIBATLAS_DATA");
+    const auto data = shared_data();
     if (!data) GTEST_SKIP() << "LIBATLAS_DATA is not set: the test room is not here";
-    path_ = fs::path(data) / "room/scene.obj";
+    path_ = *data / "room/scene.obj";
     auto scene = read_scene(path_, {}, {});
     ASSERT_TRUE(scene.ok()) << scene.status().message();
     scene_ = std::move(*scene);

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <random>
 #include <string>
@@ -13,6 +12,7 @@
 #include "libatlas/scene/reader.h"
 #include "tests/scene/load_scene.h"
 #include "tests/scene/temp_folder.h"
+#include "tests/support/shared_data.h"
 
 namespace atlas {
 namespace {
@@ -279,10 +279,10 @@ TEST(Obj, FarScenesGetAnOriginAndKeepTheirShape) {
 }
 
 TEST(Obj, AllModelsOfTheDataFolderLoad) {
-  const char* data = std::getenv("LIBATLAS_DATA");
+  const auto data = test::shared_data();
   if (!data) GTEST_SKIP() << "LIBATLAS_DATA is not set";
   int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(std::string(data) + "/models")) {
+  for (const auto& entry : std::filesystem::directory_iterator(*data / "models")) {
     if (entry.path().extension() != ".obj") continue;
     const auto loaded = read_scene(entry.path(), {}, {});
     ASSERT_TRUE(loaded.ok()) << loaded.status().message();
@@ -290,7 +290,7 @@ TEST(Obj, AllModelsOfTheDataFolderLoad) {
     ++count;
   }
   EXPECT_GT(count, 10);
-  const auto room = read_scene(std::string(data) + "/room/scene.obj", {}, {});
+  const auto room = read_scene(*data / "room/scene.obj", {}, {});
   ASSERT_TRUE(room.ok());
   EXPECT_EQ(room->scene.triangle_count(), 301709u);
   EXPECT_EQ(room->scene.textures.size(), 2u);

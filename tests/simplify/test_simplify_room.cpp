@@ -2,11 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstdlib>
 
 #include "libatlas/charts/charts.h"
 #include "libatlas/scene/reader.h"
 #include "tests/simplify/expect_sound.h"
+#include "tests/support/shared_data.h"
 
 namespace atlas {
 namespace {
@@ -14,11 +14,11 @@ namespace {
 using namespace simplify_test;
 
 TEST(SimplifyRoom, WallsBecomeAHandfulAndNothingOpens) {
-  const char* data = std::getenv("LIBATLAS_DATA");
+  const auto data = test::shared_data();
   if (!data) GTEST_SKIP() << "LIBATLAS_DATA is not set: the room is not there";
   ReadOptions read;
   read.load_textures = false;
-  auto loaded = read_scene(std::filesystem::path(data) / "room/scene.obj", read, {});
+  auto loaded = read_scene(*data / "room/scene.obj", read, {});
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   const Scene& scene = loaded->scene;
 

@@ -15,6 +15,7 @@
 
 #include "tests/support/program_output.h"
 #include "tests/support/shapes.h"
+#include "tests/support/shared_data.h"
 
 namespace atlas::test {
 namespace {
@@ -145,9 +146,9 @@ void write_hard_atlas(const fs::path& path) {
 }
 
 TEST(AtlasMeasure, AgreesWithTheSharedMeasuringProgram) {
-  const char* data = std::getenv("LIBATLAS_DATA");
+  const auto data = shared_data();
   if (!data) GTEST_SKIP() << "LIBATLAS_DATA is not set: no shared program to compare with";
-  const fs::path source = fs::path(data).parent_path() / "tools/atlaseval.cpp";
+  const fs::path source = data->parent_path() / "tools/atlaseval.cpp";
   if (!fs::exists(source)) GTEST_SKIP() << source << " is not there";
   const fs::path folder =
       fs::temp_directory_path() / ("atlas_measure_" + std::to_string(std::rand()));

@@ -14,6 +14,7 @@
 #include "libatlas/image/image_io.h"
 #include "tests/support/program_output.h"
 #include "tests/support/shapes.h"
+#include "tests/support/shared_data.h"
 
 namespace atlas::test {
 namespace {
@@ -133,9 +134,9 @@ void write_files(const WorldMesh& mesh, const fs::path& obj) {
 
 // Cameras differ, so shares of pixels agree only as far as 64 views of one room do.
 TEST(Fidelity, AgreesWithTheSharedMeasuringProgram) {
-  const char* data = std::getenv("LIBATLAS_DATA");
+  const auto data = shared_data();
   if (!data) GTEST_SKIP() << "LIBATLAS_DATA is not set: no shared program to compare with";
-  const fs::path source = fs::path(data).parent_path() / "tools/fidelity.cpp";
+  const fs::path source = data->parent_path() / "tools/fidelity.cpp";
   if (!fs::exists(source)) GTEST_SKIP() << source << " is not there";
   const fs::path folder =
       fs::temp_directory_path() / ("fidelity_" + std::to_string(std::random_device{}()));
