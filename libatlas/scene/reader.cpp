@@ -33,8 +33,15 @@ bool known_extension(const fs::path& path) {
 }
 
 Status read_by_extension(const fs::path& path, SceneBuilder& builder, const Context& context) {
-  if (const Reader read = reader_for(path)) return read(path, builder, context);
-  std::error_code error;
+  std::error_code error;  // what cannot be looked at is told by the reader
+  if (const Reader read = reader_for(path)) {
+    // Of such a file every format would say something else is missing.
+    if (fs::is_regular_file(path, error) && fs::is_empty(path, error))
+      return {ErrorCode::bad_input,
+              fmt::format("{}: is empty (was writing it cut short? export the scene again)",
+                          path.string())};
+    return read(path, builder, context);
+  }
   if (fs::is_directory(path, error))
     return {ErrorCode::bad_input,
             fmt::format("{}: is a directory (name a file inside it)", path.string())};
