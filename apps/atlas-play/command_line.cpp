@@ -252,8 +252,7 @@ Status finish(CommandLine& l, const LightText& light) {
 }  // namespace
 
 Result<Camera> camera_of(const CommandLine& line, const ViewScene& scene) {
-  Camera camera = start_camera(scene, line.render.up);
-  camera.fov_degrees = line.fov;
+  Camera camera = start_camera(scene, line.render.up, line.fov);
   if (line.camera.empty()) return camera;
   Vec3d a, b;
   char rest = 0;

@@ -68,8 +68,11 @@ void fit_planes(Camera& camera, const Box3& box) {
   camera.near_plane = std::max(distance - radius * 1.01, camera.far_plane * 1e-4);
 }
 
-Camera camera_for(const Box3& box, const Vec3d& up) {
+Camera camera_for(const Box3& box, const Vec3d& up, double fov_degrees) {
+  // Of the distance at which the box's ball touches the image's upper and lower edge.
+  constexpr double kRoom = 1.05;
   Camera camera;
+  camera.fov_degrees = fov_degrees;
   const glm::dvec3 centre = (to_glm(box.low) + to_glm(box.high)) * 0.5;
   const double radius = std::max(glm::length(to_glm(box.high) - centre), 1e-30);
   const glm::dvec3 u = glm::normalize(to_glm(up));
@@ -78,7 +81,7 @@ Camera camera_for(const Box3& box, const Vec3d& up) {
   const glm::dvec3 from = glm::normalize(flat + 0.5 * glm::cross(u, flat) + 0.6 * u);
   camera.up = from_glm(u);
   camera.target = from_glm(centre);
-  camera.eye = from_glm(centre + from * radius * 2.1);
+  camera.eye = from_glm(centre + from * (kRoom * radius / std::sin(glm::radians(fov_degrees) / 2)));
   fit_planes(camera, box);
   return camera;
 }

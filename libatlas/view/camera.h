@@ -20,8 +20,9 @@ Matrix4 view_projection(const Camera& camera, double aspect);
 // The corners of the view volume between its near plane and `far` (or its far plane, if nearer).
 std::array<Vec3d, 8> view_corners(const Camera& camera, double aspect, double far);
 
-// Looks at the whole box from a direction a little above its side; the planes enclose the box.
-Camera camera_for(const Box3& box, const Vec3d& up);
+// Looks at the whole box from a direction a little above its side; the planes enclose the box. The
+// wider the field of view, the nearer it stands.
+Camera camera_for(const Box3& box, const Vec3d& up, double fov_degrees);
 
 // Near and far planes that enclose the box from where the camera stands; from within, what is a
 // ten-thousandth of its diagonal or more away.

@@ -4,8 +4,8 @@
 
 namespace atlas {
 
-Camera start_camera(const ViewScene& scene, const Vec3d& up) {
-  Camera camera = camera_for(scene.bounds, up);
+Camera start_camera(const ViewScene& scene, const Vec3d& up, double fov_degrees) {
+  Camera camera = camera_for(scene.bounds, up, fov_degrees);
   if (up.x != 0) return camera;
   ViewpointOptions eye;
   eye.metres_per_unit = scene.metres_per_unit;

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 #include <set>
 
+#include "libatlas/core/glm_bridge.h"
 #include "libatlas/view/start_camera.h"
 #include "libatlas/view/view_scene.h"
 #include "tests/view/shapes.h"
@@ -134,6 +137,25 @@ TEST(StartCamera, StandsInARoomAndBeforeAThing) {
     for (const Vec3f& p : v->positions)
       EXPECT_LE(std::hypot(p.x - camera.eye.x, p.y - camera.eye.y, p.z - camera.eye.z),
                 camera.far_plane);
+  }
+}
+
+TEST(StartCamera, AThingFillsTheViewWhateverItsFieldIs) {
+  Scene ball;
+  add_sphere(ball, {3, 2, 1}, 1, 12);
+  const ViewScene thing = *make_view_scene(ball, {});
+  for (const double fov : {1.0, 20.0, 60.0, 110.0, 170.0}) {
+    const Camera camera = start_camera(thing, {0, 1, 0}, fov);
+    EXPECT_EQ(camera.fov_degrees, fov);
+    const glm::dvec3 eye = to_glm(camera.eye), axis = glm::normalize(to_glm(camera.target) - eye);
+    double widest = 0;  // from the image's middle, as a share of the way to its edge
+    for (const Vec3f& p : thing.positions) {
+      const double cosine = glm::dot(axis, glm::normalize(to_dvec(p) - eye));
+      widest = std::max(widest, glm::degrees(std::acos(std::min(cosine, 1.0))) / (fov / 2));
+    }
+    EXPECT_LT(widest, 1) << fov;
+    EXPECT_GT(widest, 0.35) << fov;
+    EXPECT_GT(camera.near_plane, 0);
   }
 }
 
