@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "libatlas/scene/named_materials.h"
+
 namespace atlas {
 namespace {
 
@@ -76,20 +78,6 @@ float shown(const ExportReport& report, double luminance) {
   return report.tone.display({v, v, v}).x;
 }
 
-// Materials of one kind: how many, and the first.
-struct Named {
-  std::size_t count = 0;
-  std::string first;
-
-  void add(const Material& material) {
-    if (count++ == 0) first = material.name;
-  }
-  std::string text() const {
-    return fmt::format("{} material{} ('{}'{})", count, count == 1 ? "" : "s", first,
-                       count == 1 ? "" : ", ...");
-  }
-};
-
 bool is_open(const Material& m, const Scene& scene) {
   const bool holes =
       m.texture >= 0 && scene.textures[std::size_t(m.texture)].image.channels % 2 == 0;
@@ -129,7 +117,7 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
 }
 
 std::vector<std::string> advice_on_materials(const Scene& scene, Quantity quantity) {
-  Named open, lamps;
+  NamedMaterials open, lamps;
   for (const Material& m : scene.materials) {
     if (is_open(m, scene)) open.add(m);
     if (m.emission != Vec3f{}) lamps.add(m);

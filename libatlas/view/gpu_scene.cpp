@@ -132,6 +132,10 @@ Result<GpuScene> upload(const ViewScene& scene) {
     gpu.illumination = buffer_of(scene.illumination);
     attach(gpu.lit, 4, {gpu.illumination, 3, GL_FLOAT, sizeof(Vec3f)});
   }
+  if ((gpu.emits = !scene.emission.empty())) {
+    gpu.emission = buffer_of(scene.emission);
+    attach(gpu.lit, 5, {gpu.emission, 3, GL_FLOAT, sizeof(Vec3f)});
+  }
   glVertexArrayElementBuffer(gpu.lit.get(), gpu.indices.get());
 
   gpu.caster_positions = buffer_of(moved(scene.caster_positions, origin));

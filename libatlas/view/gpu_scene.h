@@ -10,7 +10,7 @@
 namespace atlas {
 
 struct GpuScene {
-  GlBuffer positions, normals, colours, texcoords, illumination, indices;
+  GlBuffer positions, normals, colours, texcoords, illumination, emission, indices;
   GlBuffer caster_positions, caster_indices;
   GlVertexArray lit, casters;
   std::vector<ViewScene::Cluster> clusters;
@@ -25,7 +25,7 @@ struct GpuScene {
   Box3 bounds;   // in the scene's own coordinates, as the clusters' balls
   Vec3d origin;  // the box's middle, which uploaded positions are relative to: floats are finest
                  // near zero
-  bool textured = false, baked_vertices = false, baked_textures = false;
+  bool textured = false, baked_vertices = false, baked_textures = false, emits = false;
   double light_scale = 1;
 };
 

@@ -11,6 +11,7 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/world.h"
+#include "libatlas/scene/named_materials.h"
 #include "libatlas/scene/reader.h"
 #include "libatlas/view/bench.h"
 #include "libatlas/view/picture_file.h"
@@ -48,10 +49,26 @@ bool world_is_z_up(const fs::path& path) {
   return head.find(kZUpNote) != std::string::npos;
 }
 
+namespace {
+
+void say_what_is_dark(const Scene& scene, const Context& context) {
+  NamedMaterials screens;
+  for (const Material& m : scene.materials)
+    if (m.emission_textured && m.emission != Vec3f{}) screens.add(m);
+  if (screens.count == 0) return;
+  context.say(
+      fmt::format("{} {} light by a texture: it is not shown, only emission of one colour is (give "
+                  "such parts materials with a plain Ke or emissiveFactor)",
+                  screens.text(), screens.count == 1 ? "emits" : "emit"));
+}
+
+}  // namespace
+
 Result<ViewScene> load_view(const fs::path& path, bool baked_textures, const Context& context) {
   Result<LoadedScene> loaded = read_scene(path, {}, context);
   if (!loaded.ok()) return loaded.status();
   for (const std::string& line : loaded->defects.lines()) context.say("defect: " + line);
+  say_what_is_dark(loaded->scene, context);
   ViewSceneOptions options;
   options.textures_hold_light = baked_textures;
   Result<ViewScene> view = make_view_scene(loaded->scene, options);

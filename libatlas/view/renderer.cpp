@@ -31,6 +31,7 @@ ShaderFeatures needed_features(const GpuScene& scene, const RenderOptions& optio
   f.textured = scene.textured && !f.visibility;
   f.baked_textures = scene.baked_textures && f.textured;
   f.baked_vertices = scene.baked_vertices && !f.visibility;
+  f.emission = scene.emits && !f.visibility;
   if (options.shading != Shading::unlit) switch (options.shadows) {
       case ShadowMethod::none:
         break;

@@ -106,6 +106,7 @@ std::string vertex_text(const ShaderFeatures& f) {
   if (coloured(f)) pass(2, "vec3", "colour");
   if (coloured(f) && f.textured) pass(3, "vec2", "texcoord");
   if (coloured(f) && f.baked_vertices) pass(4, "vec3", "illumination");
+  if (coloured(f) && f.emission) pass(5, "vec3", "emission");
   return s + "void main() {\n" + body + "}\n";
 }
 
@@ -121,6 +122,7 @@ std::string colours_text(const ShaderFeatures& f) {
   s += "  vec3 own = reflectance * light;\n";
   if (f.textured && f.baked_textures)
     s += "  own += texture(diffuse, v_texcoord).rgb * frame.inverse.w;\n";
+  if (f.emission) s += "  own += v_emission;\n";
   return s + "  own *= frame.ambient.w;\n";
 }
 
@@ -142,6 +144,7 @@ std::string fragment_text(const ShaderFeatures& f) {
     s += "layout(location = 3) in vec2 v_texcoord;\nlayout(binding = 0) uniform sampler2D "
          "diffuse;\n";
   if (coloured(f) && f.baked_vertices) s += "layout(location = 4) in vec3 v_illumination;\n";
+  if (coloured(f) && f.emission) s += "layout(location = 5) in vec3 v_emission;\n";
   s += lit(f) ? "layout(location = 0) out uvec4 result;\n"
               : "layout(location = 0) out vec4 result;\n";
   if (lit(f)) s += kWriteSurface;
@@ -240,6 +243,7 @@ std::vector<std::string> feature_names(const ShaderFeatures& f) {
   }
   if (f.textured) names.push_back(f.baked_textures ? "baked textures" : "diffuse textures");
   if (f.baked_vertices) names.push_back("baked vertex light");
+  if (f.emission) names.push_back("emission");
   if (f.visibility) names.push_back("visibility output");
   return names;
 }

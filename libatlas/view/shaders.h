@@ -29,6 +29,7 @@ struct ShaderFeatures {
   bool textured = false;        // diffuse textures
   bool baked_vertices = false;  // illumination at the vertices
   bool baked_textures = false;  // the textures hold light (an exported atlas), not reflectance
+  bool emission = false;        // materials that emit light
   int pcf = 3;              // 0: nearest texel; 1: bilinear; 3, 5: that many bilinear taps a side
   bool visibility = false;  // write the light's visibility instead of a colour
   bool operator==(const ShaderFeatures&) const = default;

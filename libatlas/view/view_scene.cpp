@@ -113,6 +113,11 @@ struct CornerHash {
   }
 };
 
+// Textures of emission are not read; their factor alone would light up what they leave dark.
+Vec3f plain_emission(const Material& material) {
+  return material.emission_textured ? Vec3f{} : material.emission;
+}
+
 class Builder {
  public:
   Builder(const Scene& scene, const ViewSceneOptions& options)
@@ -122,6 +127,8 @@ class Builder {
         faces_(face_normals(scene)),
         cosine_(float(std::cos(options.crease_degrees * std::numbers::pi / 180))) {
     textured_ = scene.textured() && !scene.texcoord_indices.empty();
+    emits_ = std::any_of(scene.materials.begin(), scene.materials.end(),
+                         [](const Material& m) { return plain_emission(m) != Vec3f{}; });
   }
 
   ViewScene::Look look_of(std::uint32_t triangle) const {
@@ -182,6 +189,7 @@ class Builder {
     view_.positions.push_back(scene_.positions[p]);
     view_.normals.push_back(from_glm(n));
     view_.colours.push_back(scene_.materials[key.material].diffuse);
+    if (emits_) view_.emission.push_back(plain_emission(scene_.materials[key.material]));
     if (textured_)
       view_.texcoords.push_back(key.texcoord == kNone ? Vec2f{} : scene_.texcoords[key.texcoord]);
     if (scene_.lit()) view_.illumination.push_back(scene_.illumination[p]);
@@ -226,7 +234,7 @@ class Builder {
   Buckets corners_at_;  // each welded vertex
   std::vector<glm::vec3> faces_;
   float cosine_;
-  bool textured_ = false;
+  bool textured_ = false, emits_ = false;
   ViewScene view_;
   std::unordered_map<CornerKey, std::uint32_t, CornerHash> known_;
 };

@@ -17,7 +17,8 @@ namespace atlas {
 struct ViewScene {
   // Per vertex; an array is empty where the scene has no such thing.
   std::vector<Vec3f> positions, normals;
-  std::vector<Vec3f> colours;  // diffuse reflectance of the material, linear
+  std::vector<Vec3f> colours;   // diffuse reflectance of the material, linear
+  std::vector<Vec3f> emission;  // of the material, where it is no texture's; 1 is white
   std::vector<Vec2f> texcoords;
   std::vector<Vec3f> illumination;  // linear, as given
   std::vector<std::uint32_t> indices;

@@ -1,6 +1,7 @@
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <fstream>
@@ -150,6 +151,27 @@ TEST_F(Play, LoadsScenesAndSaysWhatIsWrongWithThem) {
     EXPECT_NE(v.status().message().find(name), std::string::npos);
     EXPECT_EQ(v.status().message().find('\n'), std::string::npos);
   }
+}
+
+TEST_F(Play, SaysWhichMaterialsStayDark) {
+  std::ofstream(path_ / "lamps.obj") << "mtllib lamps.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl "
+                                        "lamp\nf 1 2 3\nusemtl screen\nf 3 2 1\n";
+  std::vector<std::string> said;
+  Context context;
+  context.warn = [&](std::string_view line) { said.emplace_back(line); };
+  std::ofstream(path_ / "lamps.mtl") << "newmtl lamp\nKe 2 2 1\nnewmtl screen\nmap_Ke film.png\n";
+  const Result<ViewScene> view = load_view(path_ / "lamps.obj", false, context);
+  ASSERT_TRUE(view.ok());
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_EQ(said[0].find("1 material ('screen') emits light by a texture: it is not shown"), 0u)
+      << said[0];
+  ASSERT_EQ(view->emission.size(), view->positions.size());
+  const auto shine = [&](const Vec3f& e) {
+    return std::count(view->emission.begin(), view->emission.end(), e);
+  };
+  EXPECT_EQ(shine({2, 2, 1}), 3);
+  EXPECT_EQ(shine({0, 0, 0}), 3);
+  EXPECT_TRUE(make_view_scene(room(), {})->emission.empty()) << "memory for nothing";
 }
 
 TEST_F(Play, KnowsWhichFilesHoldLight) {

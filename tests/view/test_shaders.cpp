@@ -25,6 +25,7 @@ TEST(Shaders, NothingIsCompiledThatIsNotUsed) {
           f.shadow = shadow;
           f.textured = textured;
           f.baked_vertices = baked;
+          f.emission = textured != baked;
           const ShaderText t = shader_text(f);
           const bool lit = shading != Shading::unlit;
           const bool shadows = lit && shadow != ShadowSampling::none;
@@ -32,6 +33,8 @@ TEST(Shaders, NothingIsCompiledThatIsNotUsed) {
           EXPECT_EQ(has(t.vertex, "v_texcoord"), textured);
           EXPECT_EQ(has(t.vertex, "v_illumination"), baked);
           EXPECT_EQ(has(t.fragment, "v_illumination"), baked);
+          EXPECT_EQ(has(t.vertex, "v_emission"), f.emission);
+          EXPECT_EQ(has(t.fragment, "v_emission"), f.emission);
           EXPECT_EQ(has(t.vertex, "v_normal"), lit);
           EXPECT_EQ(has(t.fragment, "v_normal"), lit);
           EXPECT_EQ(!t.lighting_vertex.empty(), lit);
@@ -39,7 +42,8 @@ TEST(Shaders, NothingIsCompiledThatIsNotUsed) {
           // The first pass asks nothing about the moving light, the second nothing about materials.
           for (const char* word : {"visibility_at(", "frame.light", "specular("})
             EXPECT_FALSE(has(body_of(t.fragment), word)) << word;
-          for (const char* word : {"diffuse", "v_illumination", "v_colour", "v_texcoord"})
+          for (const char* word :
+               {"diffuse", "v_illumination", "v_colour", "v_emission", "v_texcoord"})
             EXPECT_FALSE(has(t.lighting_fragment, word)) << word;
           const std::string& second = t.lighting_fragment;
           const bool march = shadows && shadow == ShadowSampling::march;
@@ -60,9 +64,9 @@ TEST(Shaders, VisibilityNeedsNoColours) {
   f.visibility = true;
   f.shadow = ShadowSampling::one;
   f.textured = true;
-  f.baked_vertices = true;
+  f.baked_vertices = f.emission = true;
   const ShaderText t = shader_text(f);
-  for (const char* word : {"v_colour", "v_texcoord", "v_illumination", "diffuse;"}) {
+  for (const char* word : {"v_colour", "v_texcoord", "v_illumination", "v_emission", "diffuse;"}) {
     EXPECT_FALSE(has(t.fragment, word)) << word;
     EXPECT_FALSE(has(t.vertex, word)) << word;
   }

@@ -94,6 +94,23 @@ TEST_F(Plane, BakedLightIsShownAndTheSunAdded) {
   EXPECT_NEAR(middle({0, 1, 0})[0], encoded(0.5 * 0.6 * (200 / y + options_.intensity)), 1.5);
 }
 
+TEST_F(Plane, EmissionIsAddedToWhatIsReflected) {
+  Material& m = scene_.materials[0];
+  m.emission = {0.1f, 0, 3};
+  options_.exposure = 0.5;
+  options_.shading = Shading::unlit;
+  EXPECT_NEAR(middle({0, 1, 0})[0], encoded(0.5 * (0.6 + 0.1)), 1.5);
+  for (Shading shading : {Shading::lambert, Shading::ward}) {
+    options_.shading = shading;
+    const auto p = middle({0, -1, 0});  // the light is on the other side
+    EXPECT_NEAR(p[0], encoded(0.5 * (0.6 * options_.ambient + 0.1)), 1.5);
+    EXPECT_NEAR(p[1], encoded(0.5 * 0.4 * options_.ambient), 1.5);
+    EXPECT_EQ(p[2], 255);
+  }
+  m.emission_textured = true;  // whose texture is not read: most of it may be dark
+  EXPECT_NEAR(middle({0, -1, 0})[2], encoded(0.5 * 0.2 * options_.ambient), 1.5);
+}
+
 TEST_F(Plane, TexturesReflectOrShine) {
   Texture t;
   t.image = Image8(4, 4, 3, 128);  // sRGB 128 is 0.2158 linear

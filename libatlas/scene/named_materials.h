@@ -1,0 +1,27 @@
+// Internal: materials of one kind, for a line of text about them.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <string>
+
+#include "libatlas/scene/scene.h"
+
+namespace atlas {
+
+// How many, and the first.
+struct NamedMaterials {
+  std::size_t count = 0;
+  std::string first;
+
+  void add(const Material& material) {
+    if (count++ == 0) first = material.name;
+  }
+  std::string text() const {
+    return fmt::format("{} material{} ('{}'{})", count, count == 1 ? "" : "s", first,
+                       count == 1 ? "" : ", ...");
+  }
+};
+
+}  // namespace atlas
