@@ -216,6 +216,16 @@ class Labels {
   std::vector<Spot> points_;
 };
 
+// A line through a single point is none: where no panel has a longer one, its name in the key would
+// stand for nothing. The key is the first panel's, which therefore keeps what another one draws.
+bool drawn_somewhere(const Plot& plot, const std::string& name) {
+  return std::any_of(plot.panels.begin(), plot.panels.end(), [&](const Panel& panel) {
+    return std::any_of(panel.series.begin(), panel.series.end(), [&](const Series& s) {
+      return s.name == name && s.points.size() >= (s.lines && !s.points_too ? 2u : 1u);
+    });
+  });
+}
+
 std::string style_of(const Series& s, bool important) {
   if (s.lines && !s.points_too) return "lines";
   return fmt::format("{} pt {} ps {}", s.lines ? "linespoints" : "points", important ? 7 : 6,
@@ -238,7 +248,8 @@ double longest_label(const Panel& panel) {
   return letters > 0 ? 3 * kPoint + kLetter * double(letters) : 0;
 }
 
-std::string panel_script(const Panel& panel, int index, const Box& axes) {
+std::string panel_script(const Plot& plot, int index, const Box& axes) {
+  const Panel& panel = plot.panels[std::size_t(index)];
   const Axis x(panel, &PlotPoint::x, panel.log_x, axes.x1 - axes.x0, longest_label(panel));
   const Axis y(panel, &PlotPoint::y, panel.log_y, axes.y1 - axes.y0, 0);
   std::string data, commands,
@@ -259,6 +270,7 @@ std::string panel_script(const Panel& panel, int index, const Box& axes) {
                     named ? "title '" + plain(s.name) + "'" : "notitle");
   };
   for (const Series& s : panel.series) {
+    if (!drawn_somewhere(plot, s.name)) continue;
     if (s.lines) {
       add(s, s.points, true, !s.name.empty());
       continue;
@@ -301,7 +313,7 @@ std::string gnuplot_script(const Plot& plot, const std::filesystem::path& target
   for (int i = 0; i < panels; ++i) {
     const double left = (i % columns) * across, top = height - kTitle - (i / columns) * down;
     const Box axes{left + kLeft, top - down + kBelow, left + across - kRight, top - kAbove};
-    text += margins(axes, width, height) + panel_script(plot.panels[std::size_t(i)], i, axes);
+    text += margins(axes, width, height) + panel_script(plot, i, axes);
     text += "unset key\n";
   }
   return text + "unset multiplot\n";

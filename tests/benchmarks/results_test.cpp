@@ -7,12 +7,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "benchmarks/page/gnuplot.h"
 #include "benchmarks/page/page.h"
-#include "benchmarks/page/plots.h"
 #include "benchmarks/support/compare.h"
 #include "benchmarks/support/pareto.h"
-#include "libatlas/core/vec.h"
+#include "tests/benchmarks/rows.h"
 
 namespace atlas::bench {
 namespace {
@@ -24,20 +22,6 @@ struct TempFolder {
   TempFolder() { fs::create_directories(path); }
   ~TempFolder() { fs::remove_all(path); }
 };
-
-Row row(std::uint64_t triangles, double cpu, double error) {
-  Row r;
-  r.stage = "charts";
-  r.mesh = "sphere:" + std::to_string(triangles);
-  r.setting = "standard";
-  r.preset = true;
-  r.triangles = r.size_in = triangles;
-  r.unit = "triangles -> charts";
-  r.values = {{"seam", error}, {"l2", 1.01}};
-  r.cpu_seconds = cpu;
-  r.memory_mib = 100;
-  return r;
-}
 
 Results some_results() {
   const char* argv[] = {"/usr/bin/atlas-bench", "--work", "sphere:10 000"};
@@ -220,82 +204,6 @@ TEST(Pareto, KeepsWhatNothingBeats) {
   const std::vector<Point> points{{3, 1}, {1, 5}, {2, 6}, {2, 2}, {4, 1}, {1, 7}};
   EXPECT_EQ(pareto_front(points, x, y), (std::vector<Point>{{1, 5}, {2, 2}, {3, 1}}));
   EXPECT_TRUE(pareto_front(std::vector<Point>{}, x, y).empty());
-}
-
-// Where a script puts a label, in shares of the panel.
-Vec2d label_place(const std::string& script, const std::string& label) {
-  const std::size_t at = script.find("set label '" + label + "' at graph ");
-  Vec2d place{-1, -1};
-  if (at != std::string::npos)
-    std::sscanf(script.c_str() + script.find("graph ", at), "graph %lf,%lf", &place.x, &place.y);
-  return place;
-}
-
-TEST(Plots, LabelsOfOnePlaceLieApartAndInside) {
-  Plot plot{"x.svg", "title", "x", "y", {Panel{}, Panel{}}};
-  plot.panels[0].series.push_back({"", {{1, 5, "first", true}, {1, 5, "second"}, {9, 7, "third"}}});
-  plot.panels[1].series.push_back({"", {{0.25, 4, "it's"}}});  // a range of no length
-  const std::string script = gnuplot_script(plot, "x.svg");
-  const Vec2d first = label_place(script, "first"), second = label_place(script, "second");
-  EXPECT_GE(std::hypot(first.x - second.x, first.y - second.y), 0.02);
-  for (const char* name : {"first", "second", "third", "it s"}) {
-    const Vec2d place = label_place(script, name);
-    EXPECT_GT(std::min(place.x, place.y), 0) << name;
-    EXPECT_LT(std::max(place.x, place.y), 1) << name;
-  }
-  EXPECT_EQ(script.find("nan"), std::string::npos);
-  EXPECT_EQ(script.find("inf"), std::string::npos);
-}
-
-TEST(Plots, AProgramHasItsColourAndThoseThatFailAreCounted) {
-  Results results;
-  for (const char* mesh : {"sphere:10", "torus:10"})
-    for (const char* program : {"ours", "theirs", "third"}) {
-      Row made = row(10, 1, 0.5);
-      made.stage = "unwrap";
-      made.mesh = mesh;
-      made.setting = program;
-      if (mesh[0] == 's' && program[0] == 't') made.failure = "timed out";
-      results.rows.push_back(made);
-    }
-  const std::vector<Plot> plots = make_plots(results);
-  ASSERT_EQ(plots.size(), 1u);
-  ASSERT_EQ(plots[0].panels.size(), 1u);
-  const Panel& panel = plots[0].panels[0];
-  EXPECT_EQ(panel.title, "no result: theirs on one mesh, third on one mesh");
-  ASSERT_EQ(panel.series.size(), 3u);
-  EXPECT_EQ(panel.series[0].name, "ours");
-  EXPECT_EQ(panel.series[0].points.size(), 2u);
-  EXPECT_EQ(panel.series[0].points[1].label, "torus 10");
-  EXPECT_EQ(panel.series[1].points.size(), 1u);
-  EXPECT_NE(panel.series[0].colour, panel.series[1].colour);
-  EXPECT_NE(panel.series[1].colour, panel.series[2].colour);
-}
-
-TEST(Plots, SmallerErrorsAreDrawnAtTheLowestTickWhichSaysSo) {
-  Results results;
-  for (const double error : {0.0, 1e-4, 1e-2}) {
-    Row made = row(1000, 1 + error, error);
-    made.setting = "setting " + std::to_string(error);
-    results.rows.push_back(made);
-  }
-  std::vector<Plot> plots = make_plots(results);
-  ASSERT_EQ(plots.size(), 1u);
-  EXPECT_EQ(plots[0].panels.at(0).floor, kUnseen);
-  EXPECT_NE(plots[0].title.find("errors below 1e-06 are drawn at it"), std::string::npos);
-  EXPECT_NE(gnuplot_script(plots[0], "x.svg").find("'≤ 1e-06'"), std::string::npos);
-  results.rows[0].values[0].second = 1e-5;
-  plots = make_plots(results);
-  EXPECT_EQ(plots.at(0).panels.at(0).floor, 0);
-  EXPECT_EQ(gnuplot_script(plots[0], "x.svg").find("≤"), std::string::npos);
-}
-
-TEST(Plots, PointsOfOnePlaceShareALabel) {
-  Plot plot{"x.svg", "title", "x", "y", {Panel{}}};
-  plot.panels[0].series.push_back({"", {{1, 5, "slip 1"}, {1, 5, "slip 2"}, {9, 7, "slip 3"}}});
-  const std::string script = gnuplot_script(plot, "x.svg");
-  EXPECT_NE(script.find("set label 'slip 1, 2' at"), std::string::npos);
-  EXPECT_NE(script.find("set label 'slip 3' at"), std::string::npos);
 }
 
 // The page in Markdown after a round through a JSON file; empty if that fails.
