@@ -10,6 +10,7 @@
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/formats.h"
 #include "libatlas/scene/text_scanner.h"
+#include "libatlas/scene/vrml_scanner.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -26,27 +27,21 @@ struct Shape {
   bool repeat_u = true, repeat_v = true;
 };
 
-class Malformed {};  // thrown by the parser below and caught by its run(): the place is in at_
-
-class VrmlParser {
+class VrmlParser : VrmlScanner {
  public:
   VrmlParser(const std::string& text, SceneBuilder& builder, const Context& context)
-      : begin_(text.data()),
-        at_(text.data()),
-        end_(text.data() + text.size() - 1),
-        builder_(builder),
-        context_(context) {}
+      : VrmlScanner(text, context), builder_(builder), context_(context) {}
 
   Status run() {
-    if (!std::string_view(begin_, std::size_t(end_ - begin_)).starts_with("#VRML V2.0 utf8")) {
+    if (!text().starts_with("#VRML V2.0 utf8")) {
       return error("a VRML97 file begins with '#VRML V2.0 utf8'");
     }
     try {
       for (std::string_view token = next(); !token.empty(); token = next()) {
         node(token, glm::dmat4(1), 0);
       }
-    } catch (const Malformed&) {
-      return context_.cancelled() ? Status::cancelled() : error(what_);
+    } catch (const MalformedVrml&) {
+      return context_.cancelled() ? Status::cancelled() : error(what());
     }
     finish();
     return {};
@@ -54,119 +49,10 @@ class VrmlParser {
 
  private:
   Status error(const std::string& what) const {
-    const auto line = 1 + std::count(begin_, std::min(at_, end_), '\n');
     return {ErrorCode::bad_input,
             fmt::format("{}:{}: {} (only worlds as this program writes them are "
                         "read; use the original scene)",
-                        builder_.file, line, what)};
-  }
-  [[noreturn]] void fail(std::string what) {
-    what_ = std::move(what);
-    throw Malformed();
-  }
-
-  void skip_blanks() {
-    for (;;) {
-      while (at_ < end_ &&
-             (*at_ == ' ' || *at_ == '\n' || *at_ == ',' || *at_ == '\t' || *at_ == '\r')) {
-        ++at_;
-      }
-      if (at_ >= end_ || *at_ != '#') return;
-      while (at_ < end_ && *at_ != '\n') ++at_;
-    }
-  }
-
-  static bool breaks(char c) {
-    return c == ' ' || c == '\n' || c == ',' || c == '\t' || c == '\r' || c == '{' || c == '}' ||
-           c == '[' || c == ']' || c == '"' || c == '#';
-  }
-
-  // A bracket, a string with its quotes, or a word; empty at the end of the file.
-  std::string_view next() {
-    skip_blanks();
-    const char* start = at_;
-    if (at_ >= end_) return {};
-    if (*at_ == '"') {
-      for (++at_; at_ < end_ && *at_ != '"'; ++at_) at_ += *at_ == '\\';
-      if (at_ >= end_) fail("a string without an end");
-      ++at_;
-    } else if (breaks(*at_)) {
-      ++at_;
-    } else {
-      while (at_ < end_ && !breaks(*at_)) ++at_;
-    }
-    return {start, std::size_t(at_ - start)};
-  }
-  std::string_view peek() {
-    const char* before = at_;
-    const std::string_view token = next();
-    at_ = before;
-    return token;
-  }
-  void expect(std::string_view token) {
-    if (next() != token) fail(fmt::format("'{}' expected", token));
-  }
-
-  bool number(double& value) {
-    skip_blanks();
-    const char* stop = at_ < end_ ? parse_number(at_, end_, value) : nullptr;
-    if (!stop || (stop < end_ && !breaks(*stop))) return false;
-    at_ = stop;
-    return true;
-  }
-
-  // `[ numbers ]`, in rows of `width`.
-  std::vector<double> list(std::size_t width) {
-    std::vector<double> values;
-    expect("[");
-    double value;
-    while (number(value)) values.push_back(value);
-    if (peek() != "]") fail(fmt::format("'{}' is not a number", peek().substr(0, 40)));
-    expect("]");
-    if (values.size() % width != 0)
-      fail(fmt::format("a list of rows of {} with an odd end", width));
-    if (context_.cancelled()) throw Malformed();
-    return values;
-  }
-
-  glm::dvec4 row(int width) {
-    glm::dvec4 v(0);
-    for (int i = 0; i < width; ++i) {
-      if (!number(v[i])) fail("a number expected");
-    }
-    return v;
-  }
-
-  static bool is_field(std::string_view token) {
-    return !token.empty() && token[0] >= 'a' && token[0] <= 'z';
-  }
-
-  // From behind an opening bracket to behind its closing one.
-  void skip_brackets() {
-    for (int open = 1; open > 0;) {
-      const std::string_view token = next();
-      if (token.empty()) fail("the file ends inside a node");
-      open += token == "{" || token == "[" ? 1 : token == "}" || token == "]" ? -1 : 0;
-    }
-  }
-  void skip_value() {
-    for (std::string_view token = peek(); token != "}" && !is_field(token); token = peek()) {
-      if (token.empty()) fail("the file ends inside a node");
-      const bool names = token == "DEF" || token == "USE";
-      next();
-      if (names) next();
-      if (token == "{" || token == "[") skip_brackets();
-    }
-  }
-
-  // Calls field(name) for each field up to the closing bracket; what it does not take is skipped.
-  template <class Field>
-  void fields(const Field& field) {
-    expect("{");
-    for (std::string_view token = next(); token != "}"; token = next()) {
-      if (!is_field(token)) fail(fmt::format("'{}' where a field should be", token.substr(0, 40)));
-      if (!field(token)) skip_value();
-    }
+                        builder_.file, line(), what)};
   }
 
   std::string_view node_type(std::string_view token) {
@@ -209,7 +95,8 @@ class VrmlParser {
         if (!token.starts_with(kNote)) continue;
         const char* p = token.data() + kNote.size();
         glm::dvec3 origin(0);
-        for (int i = 0; i < 3 && p; ++i) p = parse_number(p + (i > 0), end_, origin[i]);
+        for (int i = 0; i < 3 && p; ++i)
+          p = parse_number(p + (i > 0), token.data() + token.size(), origin[i]);
         if (p && *p == ':') origin_ = origin;
       }
       return true;
@@ -226,7 +113,7 @@ class VrmlParser {
       if (name == "center") return centre = glm::dvec3(row(3)), true;
       if (name == "scale") return scale = glm::dvec3(row(3)), true;
       if (name == "rotation") return turn = row(4), true;
-      if (name == "children") children = at_;
+      if (name == "children") children = place();
       return false;
     });
     if (!children) return;
@@ -235,8 +122,8 @@ class VrmlParser {
     if (length > 0) local = glm::mat4_cast(glm::angleAxis(turn.w, glm::dvec3(turn) / length));
     for (int c = 0; c < 3; ++c) local[c] *= scale[c];
     local[3] = glm::dvec4(translation + centre - glm::dvec3(local * glm::dvec4(centre, 0)), 1);
-    const char* after = at_;
-    at_ = children;
+    const char* after = place();
+    go_to(children);
     if (peek() != "[") {
       node(next(), matrix * local, depth + 1);
     } else {
@@ -244,7 +131,7 @@ class VrmlParser {
       for (auto token = next(); token != "]"; token = next())
         node(token, matrix * local, depth + 1);
     }
-    at_ = after;
+    go_to(after);
   }
 
   void shape(const glm::dmat4& matrix) {
@@ -384,10 +271,8 @@ class VrmlParser {
     }
   };
 
-  const char *begin_, *at_, *end_;
   SceneBuilder& builder_;
   const Context& context_;
-  std::string what_;
   glm::dvec3 origin_{0};
   std::vector<Shape> shapes_;
   std::vector<Base> bases_;

@@ -1,34 +1,18 @@
-// ChartOptions::keep_uv_charts: given charts come out as they were, and only bad ones anew.
+// ChartOptions::keep_uv_charts: given charts come out as they were.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <string>
 
-#include "tests/charts/chart_checks.h"
+#include "tests/charts/given_charts.h"
 
 namespace atlas::test {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-ChartSet keep(const Mesh& mesh, ChartOptions options = {}, int threads = 1) {
-  options.keep_uv_charts = true;
-  Context context;
-  context.threads = threads;
-  Result<ChartSet> set = make_charts(mesh.view(), options, context);
-  EXPECT_TRUE(set.ok()) << set.status().message();
-  if (!set.ok()) return {};
-  const ChartFindings found = check_charts(mesh.view(), *set);
-  EXPECT_EQ(found.fault, "");
-  EXPECT_NEAR(found.stretch_l2, set->distortion.stretch_l2, 1e-4 * found.stretch_l2);
-  EXPECT_NEAR(found.stretch_999, set->distortion.stretch_999, 1e-3 * found.stretch_999);
-  EXPECT_NEAR(found.seam, set->seam_length, 1e-5 * (1 + set->seam_length));
-  return std::move(*set);
-}
 
 double distance(double x0, double y0, double x1, double y1) {
   return std::hypot(x1 - x0, y1 - y0);
@@ -62,55 +46,6 @@ void expect_similar(const Mesh& mesh, const ChartSet& set) {
   }
 }
 
-// Gives `mesh` the uvs of `set`, each chart with a place, a turn and sometimes a mirror of its own.
-void wear(const ChartSet& set, double scale, Mesh& mesh) {
-  mesh.texcoords.clear();
-  for (std::size_t k = 0; k < set.charts.size(); ++k) {
-    const Chart& chart = set.charts[k];
-    const double c = scale * std::cos(1.7 * double(k)), s = scale * std::sin(1.7 * double(k));
-    const double mirror = k % 3 == 2 ? -1 : 1;
-    for (std::uint32_t i = chart.first_uv; i < chart.first_uv + chart.uv_count; ++i) {
-      const Vec2d p = set.uvs[i];
-      mesh.texcoords.push_back({float(mirror * (c * p.x - s * p.y) + 0.1 * double(k % 7)),
-                                float(s * p.x + c * p.y + 0.1 * double(k % 5))});
-    }
-  }
-  mesh.texcoord_indices = set.triangle_uv;
-}
-
-ChartSet cut(const Mesh& mesh) {
-  Result<ChartSet> set = make_charts(mesh.view(), {}, {});
-  EXPECT_TRUE(set.ok());
-  return set.ok() ? std::move(*set) : ChartSet{};
-}
-
-// A plate of n x n quads over the unit square with two charts side by side; `place` moves the
-// corners' uvs, given the half (0 or 1).
-Mesh halves(int n, const std::function<Vec2f(Vec3f, int)>& place) {
-  Mesh mesh(grid(n, n));
-  for (const int half : {0, 1}) {
-    for (const Vec3f& p : mesh.positions) mesh.texcoords.push_back(place(p, half));
-  }
-  const auto apart = static_cast<std::uint32_t>(mesh.positions.size());
-  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
-    const bool right = int(i / 6) % n >= n / 2;
-    mesh.texcoord_indices.push_back(mesh.indices[i] + (right ? apart : 0));
-  }
-  return mesh;
-}
-
-Vec2f apart(Vec3f p, int half) {
-  return {p.x + 2 * float(half), p.y};
-}
-
-// The same index for texcoords as for positions.
-Mesh mapped(const Shape& shape, const std::function<Vec2f(Vec3f)>& place) {
-  Mesh mesh(shape);
-  for (const Vec3f& p : mesh.positions) mesh.texcoords.push_back(place(p));
-  mesh.texcoord_indices = mesh.indices;
-  return mesh;
-}
-
 TEST(GivenUvs, OneAVertexNeedsNoIndices) {
   Mesh mesh = mapped(grid(8, 8), [](Vec3f p) { return Vec2f{p.x, 2 * p.y}; });
   const ChartSet named = keep(mesh);
@@ -136,33 +71,6 @@ TEST(GivenUvs, OwnChartsComeBackAsTheyWere) {
     EXPECT_NEAR(set.distortion.stretch_l2, own.distortion.stretch_l2, 1e-4) << shape.name;
     EXPECT_NEAR(set.seam_length, own.seam_length, 1e-9 * (1 + own.seam_length)) << shape.name;
     expect_similar(mesh, set);
-  }
-}
-
-TEST(GivenUvs, AFlippedTriangleCostsItsChartOnly) {
-  Mesh mesh(torus(60, 30));
-  const ChartSet own = cut(mesh);
-  wear(own, 1, mesh);
-  const ChartSet before = keep(mesh);
-  ASSERT_GE(own.charts.size(), 2u);
-  // One corner of one triangle of the last chart goes across the opposite edge.
-  const std::uint32_t t = own.chart_triangles.back(), last = own.triangle_chart[t];
-  const auto uv = [&](int c) -> Vec2f& { return mesh.texcoords[mesh.texcoord_indices[3 * t + c]]; };
-  uv(0) = {uv(1).x + uv(2).x - uv(0).x, uv(1).y + uv(2).y - uv(0).y};
-  const ChartSet set = keep(mesh);
-  EXPECT_EQ(set.repairs.kept_charts, own.charts.size() - 1);
-  EXPECT_EQ(set.repairs.reflattened_charts, 1u);
-  EXPECT_EQ(set.triangle_chart, before.triangle_chart) << "the bad chart flattens in its outline";
-  for (std::uint32_t k = 0; k < set.charts.size(); ++k) {
-    EXPECT_EQ(set.charts[k].kept, k != last);
-    if (k == last) {
-      EXPECT_LE(set.charts[k].distortion.stretch_999, 1.25);
-      continue;
-    }
-    for (std::uint32_t i = set.charts[k].first_uv;
-         i < set.charts[k].first_uv + set.charts[k].uv_count; ++i) {
-      ASSERT_EQ(set.uvs[i], before.uvs[i]) << "not one bit";
-    }
   }
 }
 
@@ -212,16 +120,6 @@ TEST(GivenUvs, MirroredHalvesThatShareTheirMiddleComeApartThere) {
   expect_similar(mesh, set);
 }
 
-TEST(GivenUvs, AFoldWithABadHalfIsFlattenedWhole) {
-  Mesh mesh = mapped(grid(6, 6), [](Vec3f p) { return Vec2f{p.x <= 0.5f ? p.x : 1 - p.x, p.y}; });
-  mesh.texcoords[7 + 5] = {0.9f, 0.9f};  // an inner vertex of the right half goes far
-  const ChartSet set = keep(mesh);
-  EXPECT_EQ(set.repairs.kept_charts, 0u);
-  EXPECT_EQ(set.repairs.reflattened_charts, 1u);
-  ASSERT_EQ(set.charts.size(), 1u);
-  EXPECT_NEAR(set.charts[0].size.y, 1, 1e-5);
-}
-
 TEST(GivenUvs, IslandsThatShareAVertexAreTwoCharts) {
   Mesh mesh = mapped(together(grid(3, 3), moved(grid(3, 3), 1, {1, 1, 0})), [](Vec3f p) {
     return Vec2f{p.x, p.y};
@@ -239,38 +137,6 @@ TEST(GivenUvs, IslandsThatShareAVertexAreTwoCharts) {
   expect_similar(mesh, set);
 }
 
-TEST(GivenUvs, AChartThatCoversItselfIsRepaired) {
-  // All triangles turn the right way, but the band goes twice round.
-  const Mesh mesh = mapped(grid(60, 2, 12, 0.4), [](Vec3f p) {
-    const float r = 1 + p.y;
-    return Vec2f{-r * std::cos(p.x), r * std::sin(p.x)};
-  });
-  const ChartSet set = keep(mesh);
-  EXPECT_EQ(set.repairs.kept_charts, 0u);
-  EXPECT_EQ(set.repairs.reflattened_charts, 1u);
-  ASSERT_EQ(set.charts.size(), 1u);
-  EXPECT_NEAR(set.charts[0].size.x, 12, 1e-3);
-}
-
-TEST(GivenUvs, ClosedSurfacesGetTheChartsTheyNeed) {
-  const Mesh mesh = mapped(icosphere(4), [](Vec3f p) { return Vec2f{p.x, p.y}; });
-  const ChartSet set = keep(mesh);
-  EXPECT_EQ(set.repairs.reflattened_charts, 1u);
-  EXPECT_LE(set.charts.size(), cut(mesh).charts.size());
-  EXPECT_LE(set.distortion.stretch_999, 1.25);
-}
-
-TEST(GivenUvs, FlatTrianglesOfRealOnesAreRepaired) {
-  const Mesh mesh = halves(6, [](Vec3f p, int half) {
-    return half ? Vec2f{2 + p.x, p.y} : Vec2f{p.x, p.y > 0.4f && p.y < 0.6f ? 1 / 3.0f : p.y};
-  });
-  const ChartSet set = keep(mesh);
-  EXPECT_EQ(set.charts.size(), 2u);
-  EXPECT_EQ(set.repairs.kept_charts, 1u);
-  EXPECT_EQ(set.repairs.reflattened_charts, 1u);
-  EXPECT_FALSE(set.charts[set.triangle_chart[0]].kept);
-}
-
 TEST(GivenUvs, TrianglesWithoutAreaCostNothing) {
   Mesh mesh = halves(6, apart);
   for (const std::uint32_t v : {0u, 0u, 1u, 0u, 1u, 2u}) {  // a point twice; three in a row
@@ -281,17 +147,6 @@ TEST(GivenUvs, TrianglesWithoutAreaCostNothing) {
   EXPECT_EQ(set.repairs.degenerate_triangles, 2u);
   EXPECT_EQ(set.repairs.kept_charts, 2u);
   EXPECT_EQ(set.charts.size(), 2u);
-}
-
-TEST(GivenUvs, AChartWithABadCornerIsRepairedInItsOutline) {
-  for (const float bad : {kNan, std::numeric_limits<float>::infinity()}) {
-    Mesh mesh = halves(6, apart);
-    mesh.texcoords[2 * 7 + 1] = {bad, 0.25f};
-    const ChartSet set = keep(mesh);
-    EXPECT_EQ(set.charts.size(), 2u);
-    EXPECT_EQ(set.repairs.kept_charts, 1u);
-    EXPECT_EQ(set.repairs.reflattened_charts, 1u);
-  }
 }
 
 TEST(GivenUvs, WithoutUsableUvsTheMeshIsCutAsUsual) {

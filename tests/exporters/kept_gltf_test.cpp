@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
 #include <set>
 #include <string>
 
 #include "libatlas/image/image_io.h"
 #include "libatlas/scene/reader.h"
-#include "tests/exporters/kept_worlds.h"
+#include "tests/exporters/kept_gltf.h"
 #include "tests/scene/gltf_maker.h"
 #include "tests/scene/temp_folder.h"
 #include "tests/support/gltf_oracle.h"
@@ -18,13 +17,6 @@ namespace atlas::test {
 namespace {
 
 using std::filesystem::path;
-
-const ReadOptions kRest{
-    .unlit_textures = true, .encoded_textures = true, .normals = false, .rest = true};
-
-WorldFile keep(const path& input, const path& output) {
-  return read_and_keep(input, output, kRest);
-}
 
 std::string png(const TempFolder& folder, int value) {
   const path made = folder / "made.png";
@@ -153,27 +145,6 @@ Gltf rich_file(const TempFolder& folder) {
   return gltf;
 }
 
-bool near(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) {
-           return std::abs(x - y) < 1e-9;
-         });
-}
-
-// Every triangle has what it had, in the same order, and new uvs as well.
-void expect_kept(const std::vector<OracleTriangle>& before,
-                 const std::vector<OracleTriangle>& after, const std::string& set) {
-  ASSERT_EQ(before.size(), after.size());
-  for (std::size_t t = 0; t < before.size(); ++t) {
-    EXPECT_EQ(before[t].node, after[t].node);
-    EXPECT_EQ(before[t].material, after[t].material);
-    EXPECT_TRUE(near(before[t].matrix, after[t].matrix)) << t;
-    for (const auto& [name, values] : before[t].attributes)
-      EXPECT_EQ(values, after[t].attributes.at(name)) << t << ' ' << name;
-    EXPECT_FALSE(before[t].attributes.contains(set));
-    EXPECT_EQ(after[t].attributes.at(set).size(), 6u);
-  }
-}
-
 // But for the numbers of data, which may be others.
 json without_data(json document) {
   for (const char* list : {"accessors", "bufferViews", "buffers", "extensionsUsed"})
@@ -287,7 +258,8 @@ TEST(KeptGltf, StandsWhereItStoodWithTheNewUvsAtItsCorners) {
   const TempFolder folder;
   const path input = folder.write("s.glb", rich_file(folder).glb());
   keep(input, folder / "w.glb");
-  const auto before = read_scene(input, kRest, {}), after = read_scene(folder / "w.glb", kRest, {});
+  const auto before = read_scene(input, kGltfRest, {}),
+             after = read_scene(folder / "w.glb", kGltfRest, {});
   ASSERT_TRUE(before.ok() && after.ok());
   ASSERT_EQ(before->scene.indices.size(), after->scene.indices.size());
   for (std::size_t k = 0; k < before->scene.indices.size(); ++k)
@@ -333,81 +305,6 @@ TEST(KeptGltf, TheNewUvsTakeTheFirstFreeSet) {
     EXPECT_EQ(after.at(c.expected)[2], 1.0 / 64);
     EXPECT_TRUE(after.contains("TEXCOORD_0"));
   }
-}
-
-// Each place of a mesh has charts of its own, so it has a mesh of its own.
-TEST(KeptGltf, InstancesBecomeNodes) {
-  const TempFolder folder;
-  Gltf gltf;
-  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
-  const int places = gltf.floats({0, 0, 0, 5, 0, 0, 0, 0, 9}, "VEC3", 3);
-  const int scales = gltf.floats({1, 1, 1, -1, 1, 1, 2, 2, 2}, "VEC3", 3);
-  const json instancing = {
-      {"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}, {"SCALE", scales}}}}}};
-  gltf.single({{"attributes", {{"POSITION", positions}}}},
-              {{"name", "tree"}, {"extensions", instancing}, {"scale", {3, 3, 3}}});
-  gltf.j["extensionsRequired"] = gltf.j["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
-  const path input = folder.write("s.glb", gltf.glb());
-  EXPECT_TRUE(keep(input, folder / "w.glb").not_kept.empty());
-  const GltfOracle after(folder / "w.glb");
-  EXPECT_FALSE(after.document.contains("extensionsUsed") ||
-               after.document.contains("extensionsRequired"));
-  const auto triangles = after.triangles();
-  ASSERT_EQ(triangles.size(), 3u);
-  EXPECT_EQ(triangles[0].node, "tree_0");
-  EXPECT_EQ(triangles[1].matrix[12], 15);
-  EXPECT_EQ(triangles[1].matrix[0], -3);
-  EXPECT_EQ(triangles[2].matrix[0], 6);
-  EXPECT_EQ(triangles[2].matrix[14], 27);
-  std::set<double> first;
-  for (const auto& t : triangles) first.insert(t.attributes.at("TEXCOORD_1")[0]);
-  EXPECT_EQ(first, (std::set<double>{0, 5.0 / 64, 6.0 / 64}));  // the second is mirrored
-}
-
-// A file should have a tree; many programs show one of which a node has two parents.
-TEST(KeptGltf, NodesOfSeveralParentsBecomeSeveral) {
-  const TempFolder folder;
-  Gltf gltf;
-  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
-  gltf.single({{"attributes", {{"POSITION", positions}}}}, {{"name", "leaf"}});
-  gltf.j["nodes"].push_back({{"children", {0}}, {"translation", {10, 0, 0}}});
-  gltf.j["nodes"].push_back({{"children", {0, 1}}, {"translation", {0, 20, 0}}});
-  gltf.j["scenes"][0]["nodes"] = {2};
-  const path input = folder.write("s.glb", gltf.glb());
-  keep(input, folder / "w.glb");
-  const auto before = GltfOracle(input).triangles(),
-             after = GltfOracle(folder / "w.glb").triangles();
-  expect_kept(before, after, "TEXCOORD_1");
-  ASSERT_EQ(after.size(), 2u);
-  EXPECT_NE(after[0].attributes.at("TEXCOORD_1"), after[1].attributes.at("TEXCOORD_1"));
-}
-
-TEST(KeptGltf, ANodeAboveTurnsAndScales) {
-  const TempFolder folder;
-  Gltf gltf;
-  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 0, 1}, "VEC3", 3);
-  gltf.single({{"attributes", {{"POSITION", positions}}}}, {{"translation", {2e6, 0, 0}}});
-  const auto loaded = read_scene(folder.write("s.glb", gltf.glb()), kRest, {});
-  ASSERT_TRUE(loaded.ok());
-  World world = world_of(loaded->scene);
-  world.up = Up::z;
-  world.metres_per_unit = 0.5;
-  ASSERT_TRUE(write_kept(world, folder / "w.glb").ok());
-  const auto triangles = GltfOracle(folder / "w.glb").triangles();
-  ASSERT_EQ(triangles.size(), 1u);
-  EXPECT_TRUE(near(triangles[0].matrix, {0.5, 0, 0, 0, 0, 0, -0.5, 0, 0, 0.5, 0, 0, 1e6, 0, 0, 1}));
-  EXPECT_EQ(triangles[0].attributes.at("POSITION")[8], 1);  // its own, without an origin
-}
-
-// A library of meshes, without nodes and scenes.
-TEST(KeptGltf, MeshesWithoutNodesGetSome) {
-  const TempFolder folder;
-  Gltf gltf;
-  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
-  const json mesh = {{"primitives", {{{"attributes", {{"POSITION", positions}}}}}}};
-  gltf.j["meshes"] = json::array({mesh, mesh});
-  keep(folder.write("s.glb", gltf.glb()), folder / "w.glb");
-  EXPECT_EQ(GltfOracle(folder / "w.glb").triangles().size(), 2u);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "libatlas/image/image_io.h"
 #include "libatlas/scene/reader.h"
-#include "tests/exporters/kept_worlds.h"
+#include "tests/exporters/kept_gltf.h"
 #include "tests/scene/gltf_maker.h"
 #include "tests/scene/temp_folder.h"
 #include "tests/support/gltf_oracle.h"
@@ -21,12 +21,6 @@ using Lines = std::vector<std::string>;
 
 const ReadOptions kRest{
     .unlit_textures = true, .encoded_textures = true, .normals = true, .rest = true};
-// glTF written again needs no normals of the scene.
-const ReadOptions kGltfRest{.unlit_textures = true, .encoded_textures = true, .rest = true};
-
-WorldFile keep(const path& input, const path& output, const ReadOptions& options = kGltfRest) {
-  return read_and_keep(input, output, options);
-}
 
 // A triangle with uvs and a texture that is there.
 Gltf textured(const TempFolder& folder) {

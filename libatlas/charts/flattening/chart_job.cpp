@@ -22,7 +22,6 @@ constexpr double kFlatCone = 1 * M_PI / 180;
 // Of the square root of a chart's area: borders so near each other touch. Equal sides of parts come
 // to lie upon each other when they unroll, and rounding would decide whether they cross.
 constexpr double kTouching = 2e-6;
-constexpr double kSameBank = 1e-6;  // of an edge: how near banks of a cut are that closes again
 // A chart with holes is tried uncut when it is not a tube; a tube's normals exceed this cone.
 constexpr double kOpenCone = 85 * M_PI / 180;
 constexpr int kSmallHole = 16, kLongestSlit = 100;  // edges
@@ -305,7 +304,8 @@ class ChartJob {
   bool unroll() {
     const bool bent = cone_.angle > kFlatCone && chart_.density.empty() && kept_uvs_.empty();
     if (!bent || !lay_unrolled()) return false;
-    if (!result_.injective && !slits_closed_ && close_flat_slits()) {
+    if (!result_.injective && !slits_closed_ &&
+        close_flat_slits(input_.topology, chart_, result_.uvs, partition_)) {
       slits_closed_ = true;
       build(chart_.triangles());
       if (!lay_unrolled()) return false;
@@ -325,29 +325,6 @@ class ChartJob {
         check_injectivity(mesh, result_.uvs, {.clearance = kTouching * std::sqrt(surface_area())});
     result_.injective = check.injective && check.close.empty();
     return true;
-  }
-
-  // Cuts whose banks lie upon each other in result_.uvs are needed no more.
-  bool close_flat_slits() {
-    const auto at = [&](std::uint32_t h) {
-      return to_glm(result_.uvs[chart_.corners[h / 3][h % 3]]);
-    };
-    bool any = false;
-    for (std::uint32_t h = 0; h < chart_.opposite.size(); ++h) {
-      const std::uint32_t own = 3 * chart_.triangles()[h / 3] + h % 3;
-      if (chart_.opposite[h] != kNoIndex || !partition_.seam(own)) continue;
-      const std::uint32_t other = input_.topology.opposite[own];
-      const std::uint32_t o = 3 * partition_.local[other / 3] + other % 3;
-      const double most = kSameBank * glm::distance(at(h), at(next_half_edge(h)));
-      if (glm::distance(at(h), at(next_half_edge(o))) > most ||
-          glm::distance(at(next_half_edge(h)), at(o)) > most) {
-        continue;
-      }
-      partition_.close(own);
-      partition_.close(other);
-      any = true;
-    }
-    return any;
   }
 
   bool flatten(ChartOutcome& outcome) {

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <unordered_map>
 
 #include "libatlas/charts/flattening/split.h"
+#include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/predicates.h"
 
 namespace atlas {
@@ -131,6 +133,28 @@ bool close_cuts(const Topology& topology, const LocalChart& chart,
     triangles.push_back(chart.triangles()[crossing.triangle_b]);
   }
   return CutGraph(topology, chart, partition, darts).zip(triangles);
+}
+
+bool close_flat_slits(const Topology& topology, const LocalChart& chart, std::span<const Vec2d> uvs,
+                      Partition& partition) {
+  constexpr double kSameBank = 1e-6;  // of an edge
+  const auto at = [&](std::uint32_t h) { return to_glm(uvs[chart.corners[h / 3][h % 3]]); };
+  bool any = false;
+  for (std::uint32_t h = 0; h < chart.opposite.size(); ++h) {
+    const std::uint32_t own = 3 * chart.triangles()[h / 3] + h % 3;
+    if (chart.opposite[h] != kNoIndex || !partition.seam(own)) continue;
+    const std::uint32_t other = topology.opposite[own];
+    const std::uint32_t o = 3 * partition.local[other / 3] + other % 3;
+    const double most = kSameBank * glm::distance(at(h), at(next_half_edge(h)));
+    if (glm::distance(at(h), at(next_half_edge(o))) > most ||
+        glm::distance(at(next_half_edge(h)), at(o)) > most) {
+      continue;
+    }
+    partition.close(own);
+    partition.close(other);
+    any = true;
+  }
+  return any;
 }
 
 std::vector<BorderCrossing> turned_loops(const LocalChart& chart, std::span<const Vec2d> uvs) {

@@ -50,6 +50,11 @@ bool cut_to_border(const Topology& topology, const LocalChart& chart,
 bool close_cuts(const Topology& topology, const LocalChart& chart,
                 std::span<const BorderCrossing> crossings, Partition& partition, Darts& darts);
 
+// Closes cuts inside a chart whose banks lie upon each other in `uvs`: it needs them no more. False
+// if there is none.
+bool close_flat_slits(const Topology& topology, const LocalChart& chart, std::span<const Vec2d> uvs,
+                      Partition& partition);
+
 // The triangles along border loops inside the outline that run around it the wrong way, each as a
 // crossing with itself: of cuts whose banks have changed sides without crossing.
 std::vector<BorderCrossing> turned_loops(const LocalChart& chart, std::span<const Vec2d> uvs);

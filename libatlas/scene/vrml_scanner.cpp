@@ -1,0 +1,118 @@
+#include "libatlas/scene/vrml_scanner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "libatlas/scene/text_scanner.h"
+
+namespace atlas {
+
+std::ptrdiff_t VrmlScanner::line() const {
+  return 1 + std::count(begin_, std::min(at_, end_), '\n');
+}
+
+void VrmlScanner::fail(std::string what) {
+  what_ = std::move(what);
+  throw MalformedVrml();
+}
+
+void VrmlScanner::skip_blanks() {
+  for (;;) {
+    while (at_ < end_ &&
+           (*at_ == ' ' || *at_ == '\n' || *at_ == ',' || *at_ == '\t' || *at_ == '\r')) {
+      ++at_;
+    }
+    if (at_ >= end_ || *at_ != '#') return;
+    while (at_ < end_ && *at_ != '\n') ++at_;
+  }
+}
+
+bool VrmlScanner::breaks(char c) {
+  return c == ' ' || c == '\n' || c == ',' || c == '\t' || c == '\r' || c == '{' || c == '}' ||
+         c == '[' || c == ']' || c == '"' || c == '#';
+}
+
+std::string_view VrmlScanner::next() {
+  skip_blanks();
+  const char* start = at_;
+  if (at_ >= end_) return {};
+  if (*at_ == '"') {
+    for (++at_; at_ < end_ && *at_ != '"'; ++at_) at_ += *at_ == '\\';
+    if (at_ >= end_) fail("a string without an end");
+    ++at_;
+  } else if (breaks(*at_)) {
+    ++at_;
+  } else {
+    while (at_ < end_ && !breaks(*at_)) ++at_;
+  }
+  return {start, std::size_t(at_ - start)};
+}
+
+std::string_view VrmlScanner::peek() {
+  const char* before = at_;
+  const std::string_view token = next();
+  at_ = before;
+  return token;
+}
+
+void VrmlScanner::expect(std::string_view token) {
+  if (next() != token) fail(fmt::format("'{}' expected", token));
+}
+
+bool VrmlScanner::number(double& value) {
+  skip_blanks();
+  const char* stop = at_ < end_ ? parse_number(at_, end_, value) : nullptr;
+  if (!stop || (stop < end_ && !breaks(*stop))) return false;
+  at_ = stop;
+  return true;
+}
+
+std::vector<double> VrmlScanner::list(std::size_t width) {
+  std::vector<double> values;
+  expect("[");
+  double value;
+  while (number(value)) values.push_back(value);
+  if (peek() != "]") fail(fmt::format("'{}' is not a number", peek().substr(0, 40)));
+  expect("]");
+  if (values.size() % width != 0) fail(fmt::format("a list of rows of {} with an odd end", width));
+  if (context_.cancelled()) throw MalformedVrml();
+  return values;
+}
+
+glm::dvec4 VrmlScanner::row(int width) {
+  glm::dvec4 v(0);
+  for (int i = 0; i < width; ++i) {
+    if (!number(v[i])) fail("a number expected");
+  }
+  return v;
+}
+
+bool VrmlScanner::is_field(std::string_view token) {
+  return !token.empty() && token[0] >= 'a' && token[0] <= 'z';
+}
+
+void VrmlScanner::skip_brackets() {
+  for (int open = 1; open > 0;) {
+    const std::string_view token = next();
+    if (token.empty()) fail("the file ends inside a node");
+    open += token == "{" || token == "[" ? 1 : token == "}" || token == "]" ? -1 : 0;
+  }
+}
+
+void VrmlScanner::skip_value() {
+  for (std::string_view token = peek(); token != "}" && !is_field(token); token = peek()) {
+    if (token.empty()) fail("the file ends inside a node");
+    const bool names = token == "DEF" || token == "USE";
+    next();
+    if (names) next();
+    if (token == "{" || token == "[") skip_brackets();
+  }
+}
+
+void VrmlScanner::check_field(std::string_view token) {
+  if (!is_field(token)) fail(fmt::format("'{}' where a field should be", token.substr(0, 40)));
+}
+
+}  // namespace atlas

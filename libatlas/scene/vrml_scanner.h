@@ -1,0 +1,70 @@
+// Internal: the words of a VRML97 file, its lists of numbers and its fields.
+#pragma once
+
+#include <cstddef>
+#include <glm/vec4.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libatlas/core/context.h"
+
+namespace atlas {
+
+// What every method below throws where the file is not what it should be, or the work cancelled:
+// the scanner then tells what was wrong and on which line.
+class MalformedVrml {};
+
+class VrmlScanner {
+ public:
+  // `text` ends by a newline that is not part of it.
+  VrmlScanner(const std::string& text, const Context& context)
+      : begin_(text.data()),
+        at_(text.data()),
+        end_(text.data() + text.size() - 1),
+        context_(context) {}
+
+  std::string_view text() const { return {begin_, std::size_t(end_ - begin_)}; }
+  std::ptrdiff_t line() const;
+  const std::string& what() const { return what_; }
+  [[noreturn]] void fail(std::string what);
+
+  // A bracket, a string with its quotes, or a word; empty at the end of the file.
+  std::string_view next();
+  std::string_view peek();
+  void expect(std::string_view token);
+
+  // `[ numbers ]`, in rows of `width`.
+  std::vector<double> list(std::size_t width);
+  glm::dvec4 row(int width);
+
+  // Calls field(name) for each field up to the closing bracket; what it does not take is skipped.
+  template <class Field>
+  void fields(const Field& field) {
+    expect("{");
+    for (std::string_view token = next(); token != "}"; token = next()) {
+      check_field(token);
+      if (!field(token)) skip_value();
+    }
+  }
+  // From behind an opening bracket to behind its closing one.
+  void skip_brackets();
+
+  // A place to go back to.
+  const char* place() const { return at_; }
+  void go_to(const char* place) { at_ = place; }
+
+ private:
+  static bool breaks(char c);
+  static bool is_field(std::string_view token);
+  void skip_blanks();
+  void check_field(std::string_view token);
+  void skip_value();
+  bool number(double& value);
+
+  const char *begin_, *at_, *end_;
+  const Context& context_;
+  std::string what_;
+};
+
+}  // namespace atlas

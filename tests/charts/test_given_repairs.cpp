@@ -1,0 +1,95 @@
+// ChartOptions::keep_uv_charts: of the given charts only bad ones are made anew.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/charts/given_charts.h"
+
+namespace atlas::test {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+TEST(GivenUvs, AFlippedTriangleCostsItsChartOnly) {
+  Mesh mesh(torus(60, 30));
+  const ChartSet own = cut(mesh);
+  wear(own, 1, mesh);
+  const ChartSet before = keep(mesh);
+  ASSERT_GE(own.charts.size(), 2u);
+  // One corner of one triangle of the last chart goes across the opposite edge.
+  const std::uint32_t t = own.chart_triangles.back(), last = own.triangle_chart[t];
+  const auto uv = [&](int c) -> Vec2f& { return mesh.texcoords[mesh.texcoord_indices[3 * t + c]]; };
+  uv(0) = {uv(1).x + uv(2).x - uv(0).x, uv(1).y + uv(2).y - uv(0).y};
+  const ChartSet set = keep(mesh);
+  EXPECT_EQ(set.repairs.kept_charts, own.charts.size() - 1);
+  EXPECT_EQ(set.repairs.reflattened_charts, 1u);
+  EXPECT_EQ(set.triangle_chart, before.triangle_chart) << "the bad chart flattens in its outline";
+  for (std::uint32_t k = 0; k < set.charts.size(); ++k) {
+    EXPECT_EQ(set.charts[k].kept, k != last);
+    if (k == last) {
+      EXPECT_LE(set.charts[k].distortion.stretch_999, 1.25);
+      continue;
+    }
+    for (std::uint32_t i = set.charts[k].first_uv;
+         i < set.charts[k].first_uv + set.charts[k].uv_count; ++i) {
+      ASSERT_EQ(set.uvs[i], before.uvs[i]) << "not one bit";
+    }
+  }
+}
+
+TEST(GivenUvs, AFoldWithABadHalfIsFlattenedWhole) {
+  Mesh mesh = mapped(grid(6, 6), [](Vec3f p) { return Vec2f{p.x <= 0.5f ? p.x : 1 - p.x, p.y}; });
+  mesh.texcoords[7 + 5] = {0.9f, 0.9f};  // an inner vertex of the right half goes far
+  const ChartSet set = keep(mesh);
+  EXPECT_EQ(set.repairs.kept_charts, 0u);
+  EXPECT_EQ(set.repairs.reflattened_charts, 1u);
+  ASSERT_EQ(set.charts.size(), 1u);
+  EXPECT_NEAR(set.charts[0].size.y, 1, 1e-5);
+}
+
+TEST(GivenUvs, AChartThatCoversItselfIsRepaired) {
+  // All triangles turn the right way, but the band goes twice round.
+  const Mesh mesh = mapped(grid(60, 2, 12, 0.4), [](Vec3f p) {
+    const float r = 1 + p.y;
+    return Vec2f{-r * std::cos(p.x), r * std::sin(p.x)};
+  });
+  const ChartSet set = keep(mesh);
+  EXPECT_EQ(set.repairs.kept_charts, 0u);
+  EXPECT_EQ(set.repairs.reflattened_charts, 1u);
+  ASSERT_EQ(set.charts.size(), 1u);
+  EXPECT_NEAR(set.charts[0].size.x, 12, 1e-3);
+}
+
+TEST(GivenUvs, ClosedSurfacesGetTheChartsTheyNeed) {
+  const Mesh mesh = mapped(icosphere(4), [](Vec3f p) { return Vec2f{p.x, p.y}; });
+  const ChartSet set = keep(mesh);
+  EXPECT_EQ(set.repairs.reflattened_charts, 1u);
+  EXPECT_LE(set.charts.size(), cut(mesh).charts.size());
+  EXPECT_LE(set.distortion.stretch_999, 1.25);
+}
+
+TEST(GivenUvs, FlatTrianglesOfRealOnesAreRepaired) {
+  const Mesh mesh = halves(6, [](Vec3f p, int half) {
+    return half ? Vec2f{2 + p.x, p.y} : Vec2f{p.x, p.y > 0.4f && p.y < 0.6f ? 1 / 3.0f : p.y};
+  });
+  const ChartSet set = keep(mesh);
+  EXPECT_EQ(set.charts.size(), 2u);
+  EXPECT_EQ(set.repairs.kept_charts, 1u);
+  EXPECT_EQ(set.repairs.reflattened_charts, 1u);
+  EXPECT_FALSE(set.charts[set.triangle_chart[0]].kept);
+}
+
+TEST(GivenUvs, AChartWithABadCornerIsRepairedInItsOutline) {
+  for (const float bad : {kNan, std::numeric_limits<float>::infinity()}) {
+    Mesh mesh = halves(6, apart);
+    mesh.texcoords[2 * 7 + 1] = {bad, 0.25f};
+    const ChartSet set = keep(mesh);
+    EXPECT_EQ(set.charts.size(), 2u);
+    EXPECT_EQ(set.repairs.kept_charts, 1u);
+    EXPECT_EQ(set.repairs.reflattened_charts, 1u);
+  }
+}
+
+}  // namespace
+}  // namespace atlas::test

@@ -1,0 +1,46 @@
+// glTF files that keep a scene of glTF: writing them, and what every one must have of the first.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/exporters/kept_worlds.h"
+#include "tests/support/gltf_oracle.h"
+
+namespace atlas::test {
+
+// Written again, it needs no normals of the scene.
+inline const ReadOptions kGltfRest{.unlit_textures = true, .encoded_textures = true, .rest = true};
+
+inline WorldFile keep(const std::filesystem::path& input, const std::filesystem::path& output,
+                      const ReadOptions& options = kGltfRest) {
+  return read_and_keep(input, output, options);
+}
+
+inline bool near(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) {
+           return std::abs(x - y) < 1e-9;
+         });
+}
+
+// Every triangle has what it had, in the same order, and new uvs as well.
+inline void expect_kept(const std::vector<OracleTriangle>& before,
+                        const std::vector<OracleTriangle>& after, const std::string& set) {
+  ASSERT_EQ(before.size(), after.size());
+  for (std::size_t t = 0; t < before.size(); ++t) {
+    EXPECT_EQ(before[t].node, after[t].node);
+    EXPECT_EQ(before[t].material, after[t].material);
+    EXPECT_TRUE(near(before[t].matrix, after[t].matrix)) << t;
+    for (const auto& [name, values] : before[t].attributes)
+      EXPECT_EQ(values, after[t].attributes.at(name)) << t << ' ' << name;
+    EXPECT_FALSE(before[t].attributes.contains(set));
+    EXPECT_EQ(after[t].attributes.at(set).size(), 6u);
+  }
+}
+
+}  // namespace atlas::test

@@ -1,0 +1,92 @@
+// World::scene that was read from glTF: nodes, which place each mesh once.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "libatlas/scene/reader.h"
+#include "tests/exporters/kept_gltf.h"
+#include "tests/scene/gltf_maker.h"
+#include "tests/scene/temp_folder.h"
+
+namespace atlas::test {
+namespace {
+
+using std::filesystem::path;
+
+// Each place of a mesh has charts of its own, so it has a mesh of its own.
+TEST(KeptGltf, InstancesBecomeNodes) {
+  const TempFolder folder;
+  Gltf gltf;
+  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+  const int places = gltf.floats({0, 0, 0, 5, 0, 0, 0, 0, 9}, "VEC3", 3);
+  const int scales = gltf.floats({1, 1, 1, -1, 1, 1, 2, 2, 2}, "VEC3", 3);
+  const json instancing = {
+      {"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}, {"SCALE", scales}}}}}};
+  gltf.single({{"attributes", {{"POSITION", positions}}}},
+              {{"name", "tree"}, {"extensions", instancing}, {"scale", {3, 3, 3}}});
+  gltf.j["extensionsRequired"] = gltf.j["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  const path input = folder.write("s.glb", gltf.glb());
+  EXPECT_TRUE(keep(input, folder / "w.glb").not_kept.empty());
+  const GltfOracle after(folder / "w.glb");
+  EXPECT_FALSE(after.document.contains("extensionsUsed") ||
+               after.document.contains("extensionsRequired"));
+  const auto triangles = after.triangles();
+  ASSERT_EQ(triangles.size(), 3u);
+  EXPECT_EQ(triangles[0].node, "tree_0");
+  EXPECT_EQ(triangles[1].matrix[12], 15);
+  EXPECT_EQ(triangles[1].matrix[0], -3);
+  EXPECT_EQ(triangles[2].matrix[0], 6);
+  EXPECT_EQ(triangles[2].matrix[14], 27);
+  std::set<double> first;
+  for (const auto& t : triangles) first.insert(t.attributes.at("TEXCOORD_1")[0]);
+  EXPECT_EQ(first, (std::set<double>{0, 5.0 / 64, 6.0 / 64}));  // the second is mirrored
+}
+
+// A file should have a tree; many programs show one of which a node has two parents.
+TEST(KeptGltf, NodesOfSeveralParentsBecomeSeveral) {
+  const TempFolder folder;
+  Gltf gltf;
+  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+  gltf.single({{"attributes", {{"POSITION", positions}}}}, {{"name", "leaf"}});
+  gltf.j["nodes"].push_back({{"children", {0}}, {"translation", {10, 0, 0}}});
+  gltf.j["nodes"].push_back({{"children", {0, 1}}, {"translation", {0, 20, 0}}});
+  gltf.j["scenes"][0]["nodes"] = {2};
+  const path input = folder.write("s.glb", gltf.glb());
+  keep(input, folder / "w.glb");
+  const auto before = GltfOracle(input).triangles(),
+             after = GltfOracle(folder / "w.glb").triangles();
+  expect_kept(before, after, "TEXCOORD_1");
+  ASSERT_EQ(after.size(), 2u);
+  EXPECT_NE(after[0].attributes.at("TEXCOORD_1"), after[1].attributes.at("TEXCOORD_1"));
+}
+
+TEST(KeptGltf, ANodeAboveTurnsAndScales) {
+  const TempFolder folder;
+  Gltf gltf;
+  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 0, 1}, "VEC3", 3);
+  gltf.single({{"attributes", {{"POSITION", positions}}}}, {{"translation", {2e6, 0, 0}}});
+  const auto loaded = read_scene(folder.write("s.glb", gltf.glb()), kGltfRest, {});
+  ASSERT_TRUE(loaded.ok());
+  World world = world_of(loaded->scene);
+  world.up = Up::z;
+  world.metres_per_unit = 0.5;
+  ASSERT_TRUE(write_kept(world, folder / "w.glb").ok());
+  const auto triangles = GltfOracle(folder / "w.glb").triangles();
+  ASSERT_EQ(triangles.size(), 1u);
+  EXPECT_TRUE(near(triangles[0].matrix, {0.5, 0, 0, 0, 0, 0, -0.5, 0, 0, 0.5, 0, 0, 1e6, 0, 0, 1}));
+  EXPECT_EQ(triangles[0].attributes.at("POSITION")[8], 1);  // its own, without an origin
+}
+
+// A library of meshes, without nodes and scenes.
+TEST(KeptGltf, MeshesWithoutNodesGetSome) {
+  const TempFolder folder;
+  Gltf gltf;
+  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+  const json mesh = {{"primitives", {{{"attributes", {{"POSITION", positions}}}}}}};
+  gltf.j["meshes"] = json::array({mesh, mesh});
+  keep(folder.write("s.glb", gltf.glb()), folder / "w.glb");
+  EXPECT_EQ(GltfOracle(folder / "w.glb").triangles().size(), 2u);
+}
+
+}  // namespace
+}  // namespace atlas::test

@@ -1,0 +1,118 @@
+// Where a visitor of an exported world begins.
+#include "libatlas/exporters/viewpoint.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "tests/exporters/worlds.h"
+#include "tests/scene/temp_folder.h"
+
+namespace atlas {
+namespace {
+
+using test::TempFolder;
+using test::wavy_world;
+
+// An axis-aligned box; walls face in for a room, out for an object. z is up.
+void add_box(std::vector<Vec3f>& positions, std::vector<std::uint32_t>& indices, Vec3f low,
+             Vec3f high, bool inward) {
+  const auto base = std::uint32_t(positions.size());
+  for (int i = 0; i < 8; ++i) {
+    positions.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
+  }
+  const std::uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                     {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  for (const auto& q : quads) {
+    for (const auto& [a, b, c] : {std::array{0, 1, 2}, std::array{0, 2, 3}}) {
+      const std::uint32_t t[3] = {q[a], q[inward ? c : b], q[inward ? b : c]};
+      for (const std::uint32_t v : t) indices.push_back(base + v);
+    }
+  }
+}
+
+TEST(ViewpointChoice, StandsInTheRoomAndLooksAlongIt) {
+  for (const double metres : {1.0, 0.01, 1000.0}) {  // units of a metre, a centimetre, a kilometre
+    std::vector<Vec3f> positions;
+    std::vector<std::uint32_t> indices;
+    add_box(positions, indices, {0, 0, 0}, {20, 6, 3}, true);
+    add_box(positions, indices, {4, 1, 0}, {6, 3, 1}, false);  // a table
+    for (Vec3f& p : positions) {
+      const float s = float(1 / metres);
+      p = {p.x * s, p.y * s, p.z * s};
+    }
+    for (const Up up : {Up::z, Up::y}) {
+      std::vector<Vec3f> turned = positions;
+      if (up == Up::y) {
+        for (Vec3f& p : turned) p = {p.y, p.z, p.x};
+      }
+      ViewpointOptions options;
+      options.up = up;
+      options.metres_per_unit = metres;
+      const Viewpoint view = choose_viewpoint(turned, indices, options, {});
+      EXPECT_TRUE(view.inside);
+      Vec3d p = view.position, d = view.direction;
+      if (up == Up::y) p = {p.z, p.x, p.y}, d = {d.z, d.x, d.y};
+      EXPECT_NEAR(p.z * metres, 1.6, 0.3);
+      EXPECT_TRUE(p.x * metres > 0 && p.x * metres < 20 && p.y * metres > 0 && p.y * metres < 6);
+      EXPECT_FALSE(p.x * metres > 4 && p.x * metres < 6 && p.y * metres > 1 && p.y * metres < 3);
+      EXPECT_GT(std::abs(d.x), 0.8) << "should look along the room";
+      EXPECT_EQ(d.z, 0);
+      // Most of the room lies ahead.
+      EXPECT_GT(d.x > 0 ? 20 - p.x * metres : p.x * metres, 8);
+    }
+  }
+}
+
+TEST(ViewpointChoice, StaysOutOfSingleObjects) {
+  std::vector<Vec3f> positions;
+  std::vector<std::uint32_t> indices;
+  add_box(positions, indices, {-1, -2, -3}, {1, 2, 3}, false);
+  const Viewpoint view = choose_viewpoint(positions, indices, {}, {});
+  EXPECT_FALSE(view.inside);
+  const Vec3d &p = view.position, &d = view.direction;
+  const double distance = std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
+  EXPECT_GT(distance, std::sqrt(14.0));
+  EXPECT_NEAR((p.x * d.x + p.y * d.y + p.z * d.z) / distance, -1, 1e-6) << "looks at the centre";
+}
+
+TEST(ViewpointChoice, DegenerateScenes) {
+  EXPECT_FALSE(choose_viewpoint({}, {}, {}, {}).inside);
+  const std::vector<Vec3f> point(3, {1, 2, 3});
+  const std::vector<std::uint32_t> one{0, 1, 2};
+  const Viewpoint view = choose_viewpoint(point, one, {}, {});
+  EXPECT_TRUE(std::isfinite(view.position.x) && std::isfinite(view.direction.x));
+  World world;
+  world.positions = point;
+  world.viewpoint = view;
+  EXPECT_TRUE(check_world(world).ok());
+}
+
+// What is said to ignore the viewpoint does, and nothing else does.
+TEST(ViewpointChoice, IsHeldByFormatsThatSaySo) {
+  World world = wavy_world(4, 1);
+  world.pages[0].image.clear();
+  for (const char* name : {"w.wrl", "w.wrz", "w.obj", "w.gltf", "w.glb"}) {
+    const TempFolder folder;
+    std::array<std::string, 2> bytes;
+    for (const int k : {0, 1}) {
+      world.viewpoint.position = {1.0 + k, 2, 3};
+      AtomicFiles files;
+      ASSERT_TRUE(write_world(world, folder / name, files, {}).ok());
+      ASSERT_TRUE(files.commit().ok());
+      std::ifstream file(folder / name, std::ios::binary);
+      bytes[k] = {std::istreambuf_iterator<char>(file), {}};
+      ASSERT_FALSE(bytes[k].empty());
+    }
+    EXPECT_EQ(bytes[0] != bytes[1], holds_viewpoint(name)) << name;
+  }
+  EXPECT_FALSE(holds_viewpoint("w.stl"));
+}
+
+}  // namespace
+}  // namespace atlas
