@@ -216,7 +216,7 @@ Status read_list(const PackCommand& c, const Context& context, RectList& list) {
   if (!read.ok()) return read.status();
   std::string& text = *read;
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // as spreadsheets write it
-  const bool json = lower_extension(c.input) == ".json";
+  const bool json = lower_extension(c.input) == ".json" && !text.empty();
   if (Status s = json ? read_json(c, text, list.items) : read_csv(c, text, list); !s.ok()) return s;
   if (list.items.empty())
     return {ErrorCode::bad_input,

@@ -145,6 +145,16 @@ TEST_F(AtlasPack, LinesMayEndByCarriageReturnsAlone) {
   EXPECT_NE(run("rects bad.csv -o placed.csv").output.find("bad.csv:3: "), std::string::npos);
 }
 
+TEST_F(AtlasPack, AnEmptyListHoldsNothing) {
+  for (const char* name : {"empty.json", "empty.csv"}) {
+    write(name, "");
+    const RunResult r = run(std::string("rects ") + name + " -o a.csv");
+    EXPECT_NE(r.exit_code, 0);
+    EXPECT_NE(r.output.find(std::string(name) + ": holds no rectangle"), std::string::npos)
+        << r.output;
+  }
+}
+
 TEST_F(AtlasPack, WrongJsonNamesItsLine) {
   write("cut.json", "[[1, 2],\n[3, 4],\n[5,");
   EXPECT_NE(run("rects cut.json -o a.csv").output.find("cut.json:3: not valid JSON"),
