@@ -38,7 +38,7 @@ void add_probes(const Mask& mask, std::int32_t r, std::vector<Probe>& probes) {
 // Those beyond the width are never free.
 std::size_t words_of(std::int32_t width) {
   const std::size_t words = (static_cast<std::size_t>(width) + 63) / 64;
-  return words <= 2 ? 2 : words > 4 && words < 8 ? 8 : words;
+  return words <= 2 ? 2 : words == 7 ? 8 : words;
 }
 
 // Calls each(integral_constant) for 0 .. kCount - 1: a loop without a counter, whose arrays may
@@ -182,6 +182,10 @@ bool BitPage::find_in_row(const MaskTests& tests, Window window, std::int32_t y,
       return find_narrow<3>(tests, window, y, place);
     case 4:
       return find_narrow<4>(tests, window, y, place);
+    case 5:
+      return find_narrow<5>(tests, window, y, place);
+    case 6:
+      return find_narrow<6>(tests, window, y, place);
     case 8:
       return find_narrow<8>(tests, window, y, place);
     default:
@@ -285,6 +289,10 @@ void BitPage::rebuild(std::int32_t y, std::int32_t begin, std::int32_t end) {
       return rebuild_narrow<3>(y);
     case 4:
       return rebuild_narrow<4>(y);
+    case 5:
+      return rebuild_narrow<5>(y);
+    case 6:
+      return rebuild_narrow<6>(y);
     case 8:
       return rebuild_narrow<8>(y);
     default:

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "libatlas/pack/chart_outline.h"
 #include "libatlas/pack/fit_pages.h"
@@ -88,28 +90,51 @@ std::int32_t outline_alignment(const FitOptions& options) {
   return alignment;
 }
 
+FitOptions for_items(std::size_t items, const FitOptions& given) {
+  FitOptions options = given;
+  if (options.free_aspect) options.power_of_two = options.square = false;
+  options.pages =
+      std::min(given.pages, static_cast<std::uint32_t>(std::max<std::size_t>(1, items)));
+  if (!options.shapes.empty()) options.alignment = outline_alignment(options);
+  return options;
+}
+
+void note_lost_area(std::span<const pack::ChartOutline> outlines, const FitOptions& options,
+                    const Context& context, FitResult& fitted) {
+  fitted.lost_area = pack::lost_to_holes(outlines) +
+                     pack::lost_to_bays(outlines, options.padding / fitted.scale, context);
+}
+
 }  // namespace
 
 Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& given,
                             const Context& context) {
   if (Status status = check(items, given); !status.ok()) return status;
-  FitOptions options = given;
-  if (options.free_aspect) options.power_of_two = options.square = false;
-  options.pages =
-      std::min(given.pages, static_cast<std::uint32_t>(std::max<std::size_t>(1, items.size())));
+  const FitOptions options = for_items(items.size(), given);
   if (items.empty()) {
     FitResult none;
     none.scale = options.max_scale;
     return none;
   }
   if (options.shapes.empty()) return pack::fit_boxes(items, options, context);
-  options.alignment = outline_alignment(options);
   const std::vector<pack::ChartOutline> outlines = pack::outlines_of(options.shapes, context);
   Result<FitResult> fitted = pack::fit_outlines(items, outlines, options, context);
-  if (fitted.ok())
-    fitted->lost_area = pack::lost_to_holes(outlines) +
-                        pack::lost_to_bays(outlines, options.padding / fitted->scale, context);
+  if (fitted.ok()) note_lost_area(outlines, options, context, *fitted);
   return fitted;
+}
+
+Result<FitResult> press_fit(FitResult fitted, std::span<const FitItem> items,
+                            const FitOptions& given, const Context& context) {
+  if (Status status = check(items, given); !status.ok()) return status;
+  if (given.shapes.empty() || fitted.placements.size() != items.size())
+    return Status(ErrorCode::bad_input, "fit: only a fit of these items to outlines is pressed");
+  const FitOptions options = for_items(items.size(), given);
+  const std::vector<pack::ChartOutline> outlines = pack::outlines_of(options.shapes, context);
+  std::optional<FitResult> denser = pack::press_pages(fitted, items, outlines, options, context);
+  if (context.cancelled()) return Status::cancelled();
+  if (!denser) return fitted;
+  note_lost_area(outlines, options, context, *denser);
+  return std::move(*denser);
 }
 
 }  // namespace atlas

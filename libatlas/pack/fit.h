@@ -112,4 +112,9 @@ struct FitResult {
 Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& options,
                             const Context& context);
 
+// The last step of fit_pages with press_pages, for a fit to outlines made without: what it returned
+// for the same items and options, denser where pressing makes it so.
+Result<FitResult> press_fit(FitResult fitted, std::span<const FitItem> items,
+                            const FitOptions& options, const Context& context);
+
 }  // namespace atlas

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -40,7 +41,11 @@ class PagePress {
       group.charts.push_back(i);
       group.area += outlines_[i].area;
     }
-    return std::all_of(groups_.begin(), groups_.end(), [&](Group& g) { return press(g); });
+    return std::all_of(groups_.begin(), groups_.end(), [&](Group& g) {
+      if (!may_press(g)) return false;
+      draw_fully(g);
+      return g.page.scale > 0;
+    });
   }
 
   // Between the tightest page and others, so many times at most.
@@ -50,11 +55,10 @@ class PagePress {
       if (!chosen) return;
       const auto& [from, to, out, in, gain] = *chosen;
       tried_.insert({from, to, out, in});
-      const std::array<Group, 2> changed = exchanged(*chosen);
-      const double scale = std::min(changed[0].page.scale, changed[1].page.scale);
-      if (!(scale > kLeastGain * groups_[from].page.scale)) continue;
-      groups_[from] = changed[0];
-      groups_[to] = changed[1];
+      const std::optional<std::array<Group, 2>> changed = exchanged(*chosen);
+      if (!changed) continue;
+      groups_[from] = (*changed)[0];
+      groups_[to] = (*changed)[1];
       std::erase_if(tried_, [&, a = from, b = to](const auto& t) {
         return std::get<0>(t) == a || std::get<1>(t) == a || std::get<0>(t) == b ||
                std::get<1>(t) == b;
@@ -120,12 +124,40 @@ class PagePress {
     return own;
   }
 
-  bool press(Group& group) const {
+  bool may_press(const Group& group) const {
     const std::vector<ChartOutline> own = outlines_of(group);
-    if (own.size() > kMostCharts || !worth_pressing(own, options_) || are_slivers(own, options_))
-      return false;
-    group.page = press_outlines(own, options_, context_);
-    return group.page.scale > 0;
+    return own.size() <= kMostCharts && worth_pressing(own, options_) &&
+           !are_slivers(own, options_);
+  }
+
+  // One draw more of the group's page; false if none is worth it. Exchanges ask for the same charts
+  // again and again: what was drawn of them is kept.
+  bool draw(Group& group) {
+    PressedPage& page = drawn_[group.charts];
+    const double side = options_.page_size;
+    const double fill = page.scale * page.scale * group.area / (side * side);
+    const bool alone = group.charts.size() == 1;
+    const bool wanted = page.draws == 0 || (!alone && worth_another_draw(page.draws, fill, 0));
+    if (wanted && !context_.cancelled()) {
+      draw_again(outlines_of(group), options_, context_, page);
+      group.page = page;
+      return true;
+    }
+    group.page = page;
+    return false;
+  }
+
+  void draw_fully(Group& group) {
+    while (draw(group)) {
+    }
+  }
+
+  // Draws the page only until it is larger than this scale; false if it never is.
+  bool draw_beyond(double scale, Group& group) {
+    if (!may_press(group)) return false;
+    while (draw(group) && !(group.page.scale > scale)) {
+    }
+    return group.page.scale > scale;
   }
 
   std::uint32_t tightest() const {
@@ -165,8 +197,10 @@ class PagePress {
     return best;
   }
 
-  // Both pages with the charts exchanged; page.scale 0 where one could not be pressed.
-  std::array<Group, 2> exchanged(const Exchange& e) const {
+  // Both pages with the charts exchanged; none where one of them is no looser than the tightest
+  // was.
+  std::optional<std::array<Group, 2>> exchanged(const Exchange& e) {
+    const double least = kLeastGain * groups_[e.from].page.scale;
     std::array<Group, 2> changed;
     const auto take = [&](Group& g, const Group& old, std::uint32_t lost, std::uint32_t got) {
       for (const std::uint32_t i : old.charts) {
@@ -175,11 +209,13 @@ class PagePress {
       if (got != kNone)
         g.charts.insert(std::lower_bound(g.charts.begin(), g.charts.end(), got), got);
       g.area = old.area - area_of(lost) + area_of(got);
-      if (!press(g)) g.page.scale = 0;
+      return draw_beyond(least, g);
     };
-    take(changed[0], groups_[e.from], e.out, e.in);
-    if (changed[0].page.scale > kLeastGain * groups_[e.from].page.scale)
-      take(changed[1], groups_[e.to], e.in, e.out);
+    if (!take(changed[0], groups_[e.from], e.out, e.in) ||
+        !take(changed[1], groups_[e.to], e.in, e.out)) {
+      return std::nullopt;
+    }
+    for (Group& g : changed) draw_fully(g);
     return changed;
   }
 
@@ -187,6 +223,7 @@ class PagePress {
   FitOptions options_;
   const Context& context_;
   std::vector<Group> groups_;
+  std::map<std::vector<std::uint32_t>, PressedPage> drawn_;  // by a page's charts
   std::set<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>> tried_;
 };
 

@@ -43,33 +43,33 @@ class Press {
   PressedPage run() {
     PressedPage best;
     const double begun = wall_seconds();
-    const bool alone = outlines_.size() <= 1;
-    for (std::uint32_t round = 0; !context_.cancelled(); ++round) {
-      std::vector<PressStart> starts = starts_.make(round);
-      for (const PressStart& s : starts) best.layouts += s.layouts;
-      if (!alone) {
-        press_best(starts, kRoughStarts, kRough);
-        press_best(starts, kThoroughStarts, kThorough);
-      }
-      settle_best(starts, best);
+    while (!context_.cancelled()) {
+      draw(best);
       const double done = book_round(options_, wall_seconds() - begun, fill(best), best);
-      if (alone) break;
+      if (alone()) break;
       if (options_.preset == PackPreset::best) {
         if (!(done < 1)) break;
         context_.report("pack", done);
-      } else if (!worth_another_draw(round, fill(best))) {
+      } else if (!worth_another_draw(best.draws, fill(best), options_.wanted_fill)) {
         break;
       }
     }
     return best;
   }
 
- private:
-  // Starts are drawn by chance: an empty page deserves a second draw.
-  bool worth_another_draw(std::uint32_t round, double fill) const {
-    return round < 2 && fill < (round > 0 ? kPoorerFill : kPoorFill) &&
-           kMostRedrawn * fill >= options_.wanted_fill;
+  // Starts are drawn by chance.
+  void draw(PressedPage& best) {
+    std::vector<PressStart> starts = starts_.make(best.draws++);
+    for (const PressStart& s : starts) best.layouts += s.layouts;
+    if (!alone()) {
+      press_best(starts, kRoughStarts, kRough);
+      press_best(starts, kThoroughStarts, kThorough);
+    }
+    settle_best(starts, best);
   }
+
+ private:
+  bool alone() const { return outlines_.size() <= 1; }
 
   // The starts whose pages are smallest, each pushed together.
   void press_best(std::vector<PressStart>& starts, std::size_t most, const Effort& effort) const {
@@ -221,6 +221,16 @@ bool worth_pressing(std::span<const ChartOutline> outlines, const FitOptions& op
 PressedPage press_outlines(std::span<const ChartOutline> outlines, const FitOptions& options,
                            const Context& context) {
   return Press(outlines, options, context).run();
+}
+
+void draw_again(std::span<const ChartOutline> outlines, const FitOptions& options,
+                const Context& context, PressedPage& page) {
+  Press(outlines, options, context).draw(page);
+}
+
+bool worth_another_draw(std::uint32_t draws, double fill, double wanted_fill) {
+  return draws < 3 && fill < (draws > 1 ? kPoorerFill : kPoorFill) &&
+         kMostRedrawn * fill >= wanted_fill;
 }
 
 }  // namespace atlas::pack

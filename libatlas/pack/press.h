@@ -33,6 +33,7 @@ struct PressedPage {
   double target_scale = 0;
   std::vector<FitProgress> curve;
   std::uint64_t layouts = 0;
+  std::uint32_t draws = 0;  // of starts, by chance
 };
 
 // Books a round of a search that has come to `best` after so many seconds: a step of its curve
@@ -47,5 +48,11 @@ bool worth_pressing(std::span<const ChartOutline> outlines, const FitOptions& op
 // bodies, the best of them placed exactly. The options have been checked.
 PressedPage press_outlines(std::span<const ChartOutline> outlines, const FitOptions& options,
                            const Context& context);
+
+// press_outlines draw by draw, for what compares pages and needs few of them in full: the next draw
+// of a page, and whether one is worth it, as press_outlines decides except for `best`.
+void draw_again(std::span<const ChartOutline> outlines, const FitOptions& options,
+                const Context& context, PressedPage& page);
+bool worth_another_draw(std::uint32_t draws, double fill, double wanted_fill);
 
 }  // namespace atlas::pack

@@ -53,11 +53,10 @@ PressStarts::PressStarts(std::span<const ChartOutline> outlines, const FitOption
   scale_ = std::min(by_area, kMostSides * options.page_size / longest);
   side_ = options.page_size * (scale_ / by_area);
   draw();
-  draw_pieces(outlines.size() < kManyCharts ? kCells : kCellsOfMany);
 }
 
 std::vector<PressStart> PressStarts::make(std::uint32_t round) {
-  if (round == 1) draw_pieces(kFineCells);
+  draw_pieces(round > 0 ? kFineCells : outlines_.size() < kManyCharts ? kCells : kCellsOfMany);
   const std::size_t n = std::max<std::size_t>(1, outlines_.size());
   const std::size_t count =
       n == 1 ? 1 : std::clamp<std::size_t>(kStartedCharts / n, 1, kMostStarts);
@@ -80,6 +79,8 @@ void PressStarts::draw() {
 
 // The pieces of the search, so many cells across the page.
 void PressStarts::draw_pieces(int cells) {
+  if (cells == cells_) return;
+  cells_ = cells;
   cell_ = std::max(1, options_.page_size / cells);
   std::vector<ChartOutline> thin;
   for (const ChartOutline& o : outlines_) thin.push_back(thinned(o, 0.125 * cell_ / scale_));

@@ -65,6 +65,7 @@ class PressStarts {
   const Context& context_;
   double scale_ = 1;
   double side_ = 0;  // of a square page, texels, that the charts as drawn fill as well as hoped for
+  int cells_ = 0;    // across the page, as the pieces are drawn; 0: not yet
   std::int32_t cell_ = 1;
   std::vector<DrawnChart> drawn_;
   std::vector<Piece> pieces_;

@@ -102,8 +102,11 @@ Result<PageLayout> fill_pages(const PlainUvs& uvs, const LayoutOptions& options,
   const bool press = options.press_pages && options.pages > 1;
   Result<PageLayout> layout =
       cut_to_fill(uvs, unpressed, charts, part_of_stage(context, "pack", 0, press ? kPressing : 1));
-  if (layout.ok() && press && layout->pages.size() > 1)
-    layout = lay_out(charts, uvs.density, options, part_of_stage(context, "pack", kPressing, 1));
+  if (layout.ok() && press && layout->pages.size() > 1) {
+    const std::vector<Vec2d> densities(charts.charts.size(), Vec2d{uvs.density, uvs.density});
+    layout = press_layout(charts, densities, options, *layout,
+                          part_of_stage(context, "pack", kPressing, 1));
+  }
   context.report("pack", 1);
   return layout;
 }

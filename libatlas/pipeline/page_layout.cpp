@@ -96,47 +96,51 @@ Status no_room(const ChartSet& charts, const LayoutOptions& options) {
 // Layouts that PackPreset::best tries, and charts in all of them together: some seconds' work.
 constexpr std::uint64_t kBestLayouts = 8000, kBestCharts = 75000;
 
-// One kind of packing, as options.outlines says.
-Result<PageLayout> lay_out(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
-                           const LayoutOptions& options, const Context& context) {
-  std::vector<FitItem> items(charts.charts.size());
-  for (std::size_t c = 0; c < items.size(); ++c) {
-    items[c] = {charts.charts[c].size.x * texels_per_unit[c].x,
-                charts.charts[c].size.y * texels_per_unit[c].y};
-  }
-  FitOptions fit;
-  fit.pages = options.pages;
-  fit.page_size = options.page_size;
-  fit.padding = options.padding;
-  fit.alignment = options.alignment;
-  fit.minimum_side = options.minimum_side;
-  fit.preset = options.preset;
-  // In place of a limit on time, which would let the result depend on how busy the machine is.
-  fit.effort = std::clamp<std::uint64_t>(kBestCharts / std::max<std::size_t>(1, items.size()), 1,
-                                         kBestLayouts);
-  fit.free_aspect = options.free_aspect;
-  fit.square = options.square;
-  fit.wanted_fill = options.wanted_fill;
-  fit.press_pages = options.press_pages;
+// The packer's problem, as options.outlines says: by boxes or by outlines.
+struct Problem {
+  std::vector<FitItem> items;
   std::optional<Outlines> outlines;
-  if (options.outlines) {
-    outlines.emplace(charts, texels_per_unit);
-    fit.shapes = outlines->shapes;
-  }
-  Result<FitResult> fitted = fit_pages(items, fit, context);
-  if (!fitted.ok()) {
-    const bool full = fitted.status().code() == ErrorCode::no_solution;
-    return full ? no_room(charts, options) : fitted.status();
-  }
+  FitOptions fit;
 
+  Problem(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
+          const LayoutOptions& options)
+      : items(charts.charts.size()) {
+    for (std::size_t c = 0; c < items.size(); ++c) {
+      items[c] = {charts.charts[c].size.x * texels_per_unit[c].x,
+                  charts.charts[c].size.y * texels_per_unit[c].y};
+    }
+    fit.pages = options.pages;
+    fit.page_size = options.page_size;
+    fit.padding = options.padding;
+    fit.alignment = options.alignment;
+    fit.minimum_side = options.minimum_side;
+    fit.preset = options.preset;
+    // In place of a limit on time, which would let the result depend on how busy the machine is.
+    fit.effort = std::clamp<std::uint64_t>(kBestCharts / std::max<std::size_t>(1, items.size()), 1,
+                                           kBestLayouts);
+    fit.free_aspect = options.free_aspect;
+    fit.square = options.square;
+    fit.wanted_fill = options.wanted_fill;
+    fit.press_pages = options.press_pages;
+    if (options.outlines) {
+      outlines.emplace(charts, texels_per_unit);
+      fit.shapes = outlines->shapes;
+    }
+  }
+};
+
+// What the packer found, in the terms of this stage.
+PageLayout layout_of(FitResult fitted, const Problem& problem, const ChartSet& charts,
+                     std::span<const Vec2d> texels_per_unit, const LayoutOptions& options) {
   PageLayout layout;
-  layout.scale = fitted->scale;
-  layout.pages = fitted->pages;
-  layout.utilization = fitted->utilization;
-  layout.grouping = std::move(fitted->grouping);
-  layout.placements.resize(items.size());
-  for (std::size_t c = 0; c < items.size(); ++c) {
-    const FitPlacement& from = fitted->placements[c];
+  layout.scale = fitted.scale;
+  layout.pages = std::move(fitted.pages);
+  layout.utilization = fitted.utilization;
+  layout.grouping = std::move(fitted.grouping);
+  layout.placements.resize(fitted.placements.size());
+  for (std::size_t c = 0; c < fitted.placements.size(); ++c) {
+    const FitPlacement& from = fitted.placements[c];
+    const FitItem& item = problem.items[c];
     ChartPlacement& to = layout.placements[c];
     to = options.outlines ? outlined(from, options) : boxed(from, options);
     to.chart = std::uint32_t(c);
@@ -145,14 +149,26 @@ Result<PageLayout> lay_out(const ChartSet& charts, std::span<const Vec2d> texels
     to.texels_per_unit =
         options.outlines
             ? Vec2d{wanted.x * from.scale, wanted.y * from.scale}
-            : Vec2d{scaled_density(wanted.x, items[c].width, layout.scale, fit.minimum_side),
-                    scaled_density(wanted.y, items[c].height, layout.scale, fit.minimum_side)};
+            : Vec2d{scaled_density(wanted.x, item.width, layout.scale, options.minimum_side),
+                    scaled_density(wanted.y, item.height, layout.scale, options.minimum_side)};
   }
   layout.outlines = options.outlines;
   layout.uv_utilization = uv_utilization(charts, layout);
   const double texels = full_texels(charts, texels_per_unit);
-  if (texels > 0) layout.with_lost_room = 1 + fitted->lost_area / texels;
+  if (texels > 0) layout.with_lost_room = 1 + fitted.lost_area / texels;
   return layout;
+}
+
+// One kind of packing, as options.outlines says.
+Result<PageLayout> lay_out(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
+                           const LayoutOptions& options, const Context& context) {
+  const Problem problem(charts, texels_per_unit, options);
+  Result<FitResult> fitted = fit_pages(problem.items, problem.fit, context);
+  if (!fitted.ok()) {
+    const bool full = fitted.status().code() == ErrorCode::no_solution;
+    return full ? no_room(charts, options) : fitted.status();
+  }
+  return layout_of(std::move(*fitted), problem, charts, texels_per_unit, options);
 }
 
 std::int64_t page_texels(const PageLayout& layout) {
@@ -208,11 +224,15 @@ double taken(const ChartSet& charts, const PageLayout& layout, const LayoutOptio
   return page_texels > 0 ? texels / page_texels : 0;
 }
 
+// Nor where the page would be of no use even then: by what it seldom becomes fuller.
+constexpr double kMostWon = 1.1;
+
 bool worth_more_work(const ChartSet& charts, const PageLayout& layout,
                      const LayoutOptions& options) {
   return options.free_aspect && options.preset == PackPreset::standard &&
          charts.charts.size() > 1 && charts.charts.size() <= kMostCharts &&
          layout.with_lost_room * layout.uv_utilization < kPoor &&
+         kMostWon * layout.uv_utilization >= options.wanted_fill &&
          taken(charts, layout, options) < kPoorWithGutters;
 }
 
@@ -265,6 +285,24 @@ Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> 
   if (context.cancelled()) return Status::cancelled();
   context.report("pack", 1);
   return layout;
+}
+
+Result<PageLayout> press_layout(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
+                                const LayoutOptions& options, const PageLayout& unpressed,
+                                const Context& context) {
+  if (!unpressed.outlines) return lay_out_pages(charts, texels_per_unit, options, context);
+  const Problem problem(charts, texels_per_unit, options);
+  FitResult fitted;
+  fitted.scale = unpressed.scale;
+  fitted.pages = unpressed.pages;
+  fitted.grouping = unpressed.grouping;
+  for (const ChartPlacement& p : unpressed.placements) {
+    fitted.placements.emplace_back().page = std::uint32_t(p.page);
+  }
+  Result<FitResult> pressed = press_fit(std::move(fitted), problem.items, problem.fit, context);
+  if (!pressed.ok()) return pressed.status();
+  if (!(pressed->scale > unpressed.scale)) return unpressed;
+  return layout_of(std::move(*pressed), problem, charts, texels_per_unit, options);
 }
 
 }  // namespace atlas

@@ -56,4 +56,10 @@ double filling_density(const ChartSet& charts, double texels);
 Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
                                  const LayoutOptions& options, const Context& context);
 
+// The same, once it has been found without press_pages for charts and options alike: pages are not
+// searched again, only pressed.
+Result<PageLayout> press_layout(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
+                                const LayoutOptions& options, const PageLayout& unpressed,
+                                const Context& context);
+
 }  // namespace atlas

@@ -97,6 +97,30 @@ TEST(PressPages, ChartsChangePages) {
   EXPECT_EQ(fit->moved_items, moved);
 }
 
+// Found first, and pressed in a second step: as in one.
+TEST(PressPages, AFitIsPressedLater) {
+  const test::ChartItems charts = blobs(11, 30, 110, 21);
+  FitOptions o = several(charts, 2);
+  const Result<FitResult> at_once = fit_pages(charts.items, o, {});
+  o.press_pages = false;
+  const Result<FitResult> cells = fit_pages(charts.items, o, {});
+  ASSERT_TRUE(at_once.ok() && cells.ok());
+  ASSERT_GT(at_once->scale, cells->scale);
+  EXPECT_EQ(press_fit(*cells, charts.items, o, {})->scale, cells->scale);
+  o.press_pages = true;
+  const Result<FitResult> later = press_fit(*cells, charts.items, o, {});
+  ASSERT_TRUE(later.ok());
+  EXPECT_EQ(later->scale, at_once->scale);
+  EXPECT_EQ(later->lost_area, at_once->lost_area);
+  for (std::size_t i = 0; i < charts.items.size(); ++i) {
+    EXPECT_EQ(later->placements[i].page, at_once->placements[i].page);
+    EXPECT_EQ(later->placements[i].box, at_once->placements[i].box);
+    EXPECT_EQ(later->placements[i].angle, at_once->placements[i].angle);
+  }
+  o.shapes = {};
+  EXPECT_EQ(press_fit(*cells, charts.items, o, {}).status().code(), ErrorCode::bad_input);
+}
+
 TEST(PressPages, SameForAnyNumberOfThreads) {
   const test::ChartItems charts = blobs(14, 30, 90, 77);
   FitOptions o = several(charts, 3);
