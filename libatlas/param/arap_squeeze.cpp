@@ -19,15 +19,15 @@ constexpr double power = 12, damping = 0.1;
 constexpr std::array steps{1.7, 1.3};
 
 // What no weight falls below, by the largest: at first, and what it falls by in each iteration. The
-// flat faces of CAD parts gave way by a tenth for a chamfer between them where a hundredth does: with
-// this and what follows L2 - 1 is a sixth less, for as many charts (347 meshes).
+// flat faces of CAD parts gave way by a tenth for a chamfer between them where a hundredth does:
+// with this and what follows L2 - 1 is a seventh less, with a hundredth fewer charts (347 meshes).
 constexpr double least_weight = 0.4, less_each_time = 0.75;
-// Within the bound it is at most this, and where the goal is not near it falls down to the last:
-// what weighs that little still keeps its shape where that costs nothing.
+// Within the bound it is at most this. Where the bound or the goal is not near it falls down to the
+// last: what weighs that little still keeps its shape where that costs nothing.
 constexpr double least_within = 0.1, less_when_slow = 0.3, last_weight = 0.02;
-// Stretch within the bound is not lowered to the goal where that takes so many times the energy that
-// there was: on curved surfaces it takes next to nothing, on flat faces with a sharp vertex ten times
-// as much.
+// Stretch within the bound is not lowered to the goal where that takes so many times the energy
+// that there was: on curved surfaces it takes next to nothing, on flat faces with a sharp vertex
+// ten times as much.
 constexpr double dear = 1.7;
 constexpr int easing_steps = 3;
 constexpr double rounding = 1e-4;  // of what is drawn back to the bound, in the stretch
@@ -134,15 +134,15 @@ void ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
       best = now;
     }
     // Steps get shorter, though not each: if the rest of them, like the last two, do not suffice,
-    // none will.
+    // none will with these least weights.
     const bool within = best <= log_bound;
     const int rest = std::min(options.iterations - 1 - i, within ? soon : options.iterations);
     const double gain = 0.5 * (two_ago - best);
-    if (i >= 2 && best - gain * rest > (within ? log_goal : log_bound)) {
-      if (!within || least < last_weight) break;
-      least *= less_when_slow;
-    }
-    if (i >= 1 && !within && foresees && ends_above(log_bound, two_ago, one_ago, best)) break;
+    const bool slow =
+        (i >= 2 && best - gain * rest > (within ? log_goal : log_bound)) ||
+        (i >= 1 && !within && foresees && ends_above(log_bound, two_ago, one_ago, best));
+    if (slow && least < last_weight) break;
+    if (slow) least *= less_when_slow;
   }
   if (too_dear()) {
     ease(log_bound - rounding, options.ratio, uvs);
