@@ -20,7 +20,7 @@ constexpr std::array steps{1.7, 1.3};
 
 // What no weight falls below, by the largest: at first, and what it falls by in each iteration. The
 // flat faces of CAD parts gave way by a tenth for a chamfer between them where a hundredth does:
-// with this and what follows L2 - 1 is a seventh less, with a hundredth fewer charts (347 meshes).
+// with this and what follows L2 - 1 is an eighth less, with a hundredth fewer charts (347 meshes).
 constexpr double least_weight = 0.4, less_each_time = 0.75;
 // Within the bound it is at most this. Where the bound or the goal is not near it falls down to the
 // last: what weighs that little still keeps its shape where that costs nothing.
@@ -108,10 +108,10 @@ void ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
   wake(uvs);
   const double log_goal = std::log(options.goal), log_bound = std::log(options.bound);
   const bool foresees = mesh_.triangles.size() >= many_triangles && !options.ratio;
-  const bool chooses = uvs.size() < large_mesh;  // there is room for more states
+  const bool chooses = !options.rough && uvs.size() < large_mesh;  // there is room for more states
   double now = update_stretch(uvs, options.ratio), best = now, one_ago = now;
   const double energy_before = chooses ? stretch_energy() : std::numeric_limits<double>::infinity();
-  double best_energy = energy_before, least = least_weight;
+  double best_energy = energy_before, least = options.rough ? 0 : least_weight;
   w_.best.assign(uvs.begin(), uvs.end());
   if (chooses) w_.unsqueezed = w_.first_within = w_.best;
   w_.rotations.resize(w_.elements.size());

@@ -200,7 +200,7 @@ void lower_tail(const Descent& d, ParamResult& r) {
   const auto& [mesh, options, solver, laid] = d;
   const double bound = kWithin * options.max_stretch;
   if (solver.lower_tail(bound, r.uvs) != param::Tail::wide) return;
-  solver.squeeze({bound, bound, options.squeeze_iterations, options.squeeze_ratio}, r.uvs);
+  solver.squeeze({bound, bound, options.squeeze_iterations, options.squeeze_ratio, true}, r.uvs);
   turn_flips(d, r);
   if (count_flips(mesh, r.uvs) == 0) solver.lower_tail(bound, r.uvs);
 }
