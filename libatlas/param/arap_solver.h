@@ -47,7 +47,7 @@ class ArapSolver {
     double goal, bound;
     int iterations;
     bool ratio;
-    bool rough = false;  // no face is flat: each may give way as far as it helps
+    bool rough;  // ParamOptions::rough
   };
   void squeeze(const Squeeze& options, std::span<Vec2d> uvs);
 

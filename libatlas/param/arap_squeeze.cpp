@@ -20,7 +20,7 @@ constexpr std::array steps{1.7, 1.3};
 
 // What no weight falls below, by the largest: at first, and what it falls by in each iteration. The
 // flat faces of CAD parts gave way by a tenth for a chamfer between them where a hundredth does:
-// with this and what follows L2 - 1 is an eighth less, with a hundredth fewer charts (347 meshes).
+// with this and what follows L2 - 1 is 14 % less, with a hundredth fewer charts (347 meshes).
 constexpr double least_weight = 0.4, less_each_time = 0.75;
 // Within the bound it is at most this. Where the bound or the goal is not near it falls down to the
 // last: what weighs that little still keeps its shape where that costs nothing.

@@ -200,7 +200,8 @@ void lower_tail(const Descent& d, ParamResult& r) {
   const auto& [mesh, options, solver, laid] = d;
   const double bound = kWithin * options.max_stretch;
   if (solver.lower_tail(bound, r.uvs) != param::Tail::wide) return;
-  solver.squeeze({bound, bound, options.squeeze_iterations, options.squeeze_ratio, true}, r.uvs);
+  solver.squeeze({bound, bound, options.squeeze_iterations, options.squeeze_ratio, options.rough},
+                 r.uvs);
   turn_flips(d, r);
   if (count_flips(mesh, r.uvs) == 0) solver.lower_tail(bound, r.uvs);
 }
@@ -268,7 +269,8 @@ void descend(const Descent& d, PhaseClock& clock, ParamResult& r) {
       break;
     }
     if (entangled(mesh, options, r.uvs)) break;
-    solver.squeeze({aim, options.max_stretch, options.squeeze_iterations, options.squeeze_ratio},
+    solver.squeeze({aim, options.max_stretch, options.squeeze_iterations, options.squeeze_ratio,
+                    options.rough},
                    r.uvs);
   }
   clock.book(&Phase::solve);

@@ -37,6 +37,8 @@ struct ParamOptions {
   // Within max_stretch is good enough, and what is beyond lies in small places, which alone are
   // relaxed; squeezes only where those are many. For rough surfaces.
   bool local = false;
+  // No face is flat: each may give way as far as it helps when the whole is squeezed.
+  bool rough = false;
   // Borders that come apart only beyond max_stretch are left as they cross within it, for whoever
   // can take triangles away there.
   bool leave_crossings = false;

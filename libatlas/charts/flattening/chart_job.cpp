@@ -276,6 +276,7 @@ class ChartJob {
       param.aimed_stretch = std::min(options.max_stretch, aim);
     }
     param.local = noisy() || effort_.little;
+    param.rough = noisy();
     // Six charts in a thousand fewer than with cuts there, on 80 meshes.
     param.leave_crossings = !noisy() && !effort_.little;
     if (best) param.iterations = kBestIterations;
