@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "libatlas/core/clock.h"
 #include "libatlas/param/first_rotations.h"

@@ -30,7 +30,7 @@ struct ParamOptions {
   IsometricStart start = {};    // what the isometric solver starts from
   int iterations = 3;           // local/global steps before the bound is looked at
   int squeeze_iterations = 12;  // reweighted steps at most, when the aim is missed:
-  double aimed_stretch = 0;     // <= max_stretch; 0: max_stretch
+  double aimed_stretch = 0;     // <= max_stretch; 0: max_stretch. Missed where it is dear in L2.
   // The scale at which squeezing measures: the area-preserving one, as in the bound, or whichever
   // suits best, so that the ratio of the largest to the smallest singular value falls.
   bool squeeze_ratio = false;
