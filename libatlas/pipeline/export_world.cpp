@@ -16,6 +16,7 @@
 #include "libatlas/pipeline/advice.h"
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/bake_pages.h"
+#include "libatlas/pipeline/draw_once.h"
 #include "libatlas/pipeline/fill_pages.h"
 #include "libatlas/pipeline/layout_options.h"
 #include "libatlas/pipeline/longest_sides.h"
@@ -302,6 +303,10 @@ class Export {
         assemble_world(scene_, {charts_, layout_.placements, layout_.pages}, mesh, plan_.bake);
     World& world = assembled.world;
     report_.thin_triangles = assembled.thin_triangles;
+    if (!plan_.bake) {
+      const PlacedCharts placed{charts_, layout_.placements, layout_.pages};
+      report_.texels_drawn_twice = draw_once(placed, mesh.uv_indices, world.uvs, context).after;
+    }
     world.up = options_.up;
     world.title = options_.target.stem().string();
     world.metres_per_unit = scene_.metres_per_unit;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "libatlas/pipeline/assemble_world.h"
+#include "libatlas/pipeline/draw_once.h"
 #include "libatlas/pipeline/fill_pages.h"
 #include "libatlas/pipeline/part_gaps.h"
 #include "libatlas/pipeline/round_uvs.h"
@@ -102,13 +103,19 @@ Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& opt
   result.utilization = layout.uv_utilization;
   result.texels_per_unit = result.placements[0].texels_per_unit.x;
   result.gaps = laid->left;
-  const std::vector<Vec2d> exact = page_uvs({result.charts, result.placements, result.pages});
+  const PlacedCharts placed{result.charts, result.placements, result.pages};
+  const ChartedMesh charted(mesh.indices, result.charts);
   std::vector<Vec2f> rounded;
-  result.thin_triangles =
-      round_uvs(exact, ChartedMesh(mesh.indices, result.charts).view().uv_indices, rounded);
+  result.thin_triangles = round_uvs(page_uvs(placed), charted.view().uv_indices, rounded);
   if (result.thin_triangles > 0)
     context.say(fmt::format("{} slivers have no area or are turned over in uvs rounded to floats",
                             result.thin_triangles));
+  const DrawnTwice drawn = draw_once(placed, charted.view().uv_indices, rounded, context);
+  result.texels_drawn_twice = drawn.after;
+  for (const DrawnTwice::Move& move : drawn.moves) {
+    Vec2d& offset = result.placements[move.chart].offset;
+    offset = {offset.x + move.texels.x, offset.y + move.texels.y};
+  }
   join_corners(mesh.indices, rounded, result);
   result.triangle_page.reserve(result.charts.triangle_chart.size());
   for (const std::uint32_t chart : result.charts.triangle_chart)

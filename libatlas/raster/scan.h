@@ -21,6 +21,10 @@ inline constexpr int kSubTexelBits = 12;
 // Largest coordinate that scan_triangle takes: beyond it the integer products would overflow.
 inline constexpr double kMaxTexelCoordinate = 1 << 17;
 
+// Which points on a triangle's edges belong to it: of two triangles that share an edge those of one
+// (the rule of graphics hardware), or all.
+enum class EdgeRule { top_left, closed };
+
 namespace raster_detail {
 
 // Nearest integer (ties to even) without a library call, for |x| < 2^51.
@@ -39,10 +43,10 @@ inline std::int64_t floor_div(std::int64_t a, std::int64_t b) {  // b > 0
 struct Edge {
   std::int64_t dx, dy, ax, ay, bias;
 
-  Edge(const std::int64_t a[2], const std::int64_t b[2])
+  Edge(const std::int64_t a[2], const std::int64_t b[2], EdgeRule rule)
       : dx(b[0] - a[0]), dy(b[1] - a[1]), ax(a[0]), ay(a[1]) {
     const bool left = dy < 0, top = dy == 0 && dx < 0;
-    bias = left || top ? 0 : -1;
+    bias = left || top || rule == EdgeRule::closed ? 0 : -1;
   }
   std::int64_t value(std::int64_t x, std::int64_t y) const {
     return dx * (y - ay) - dy * (x - ax) + bias;
@@ -65,11 +69,12 @@ inline void clip_span(std::int64_t value, std::int64_t slope, std::int64_t& lo, 
 // Calls span(y, x0, x1) for each row of `clip` in which the sample points (x + offset.x,
 // y + offset.y), x0 <= x < x1, lie inside the triangle of either orientation. A point on an edge
 // shared by two triangles belongs to exactly one of them (top-left rule), a triangle without area
-// has none. Coordinates must be finite and within kMaxTexelCoordinate.
-template <class Span>
+// has none. Coordinates must be finite and within kMaxTexelCoordinate; `bits`: their steps a texel,
+// of which coordinates times 2^bits must keep within 2^29.
+template <int bits = kSubTexelBits, EdgeRule rule = EdgeRule::top_left, class Span>
 void scan_triangle(const TexelTriangle& p, const Rect& clip, Vec2d offset, Span&& span) {
   using namespace raster_detail;
-  constexpr std::int64_t kOne = std::int64_t{1} << kSubTexelBits;
+  constexpr std::int64_t kOne = std::int64_t{1} << bits;
   std::int64_t v[3][2];
   for (int k = 0; k < 3; ++k) {
     v[k][0] = round_fixed((p[k].x - offset.x) * kOne);
@@ -79,8 +84,8 @@ void scan_triangle(const TexelTriangle& p, const Rect& clip, Vec2d offset, Span&
       (v[1][0] - v[0][0]) * (v[2][1] - v[0][1]) - (v[1][1] - v[0][1]) * (v[2][0] - v[0][0]);
   if (area == 0) return;
   if (area < 0) std::swap(v[1], v[2]);
-  const auto up = [](std::int64_t a) { return (a + kOne - 1) >> kSubTexelBits; };
-  const auto down = [](std::int64_t a) { return a >> kSubTexelBits; };
+  const auto up = [](std::int64_t a) { return (a + kOne - 1) >> bits; };
+  const auto down = [](std::int64_t a) { return a >> bits; };
   const std::int64_t x_lo =
       std::max<std::int64_t>(clip.x, up(std::min({v[0][0], v[1][0], v[2][0]})));
   const std::int64_t x_hi =
@@ -91,7 +96,7 @@ void scan_triangle(const TexelTriangle& p, const Rect& clip, Vec2d offset, Span&
       std::min<std::int64_t>(clip.top() - 1, down(std::max({v[0][1], v[1][1], v[2][1]})));
   if (x_lo > x_hi || y_lo > y_hi) return;
 
-  const Edge edge[3] = {Edge(v[0], v[1]), Edge(v[1], v[2]), Edge(v[2], v[0])};
+  const Edge edge[3] = {Edge(v[0], v[1], rule), Edge(v[1], v[2], rule), Edge(v[2], v[0], rule)};
   std::int64_t row[3], slope[3];
   for (int k = 0; k < 3; ++k) {
     row[k] = edge[k].value(x_lo * kOne, y_lo * kOne);

@@ -186,6 +186,7 @@ Json pages_json(const ExportReport& r) {
           {"shared_border_texels", r.gaps.near_after},
           {"gpu_bytes", r.gpu_bytes},
           {"thin_triangles", r.thin_triangles},
+          {"texels_drawn_twice", r.texels_drawn_twice},
           {"pages", pages}};
 }
 

@@ -30,6 +30,35 @@ int side(const std::int64_t a[2], const std::int64_t b[2], std::int64_t x, std::
   return v > 0 ? 1 : v < 0 ? -1 : 0;
 }
 
+// Coarse steps, so that many points lie on edges and corners.
+TEST(ScanTriangle, ClosedTrianglesHaveAllPointsOfTheirEdges) {
+  constexpr int kBits = 1;
+  const Rect clip{0, 0, 24, 24};
+  int on_edges = 0;
+  for (const TexelTriangle& t : random_triangles(3000, 2, 24)) {
+    Hits hits;
+    scan_triangle<kBits, EdgeRule::closed>(t, clip, {0.5, 0.5}, [&](int y, int x0, int x1) {
+      for (int x = x0; x < x1; ++x) ++hits[{x, y}];
+    });
+    std::int64_t v[3][2];
+    for (int k = 0; k < 3; ++k) {
+      v[k][0] = std::llrint(2 * (t[k].x - 0.5));
+      v[k][1] = std::llrint(2 * (t[k].y - 0.5));
+    }
+    const int turn = side(v[0], v[1], v[2][0], v[2][1]);
+    for (int y = 0; y < clip.height; ++y)
+      for (int x = 0; x < clip.width; ++x) {
+        int inside = 1;
+        for (int k = 0; k < 3; ++k)
+          inside = std::min(inside, turn * side(v[k], v[(k + 1) % 3], 2 * x, 2 * y));
+        on_edges += turn != 0 && inside == 0;
+        const int hit = hits.count({x, y}) ? hits[{x, y}] : 0;
+        ASSERT_EQ(hit, turn != 0 && inside >= 0) << x << ' ' << y;
+      }
+  }
+  EXPECT_GT(on_edges, 1000);
+}
+
 TEST(ScanTriangle, AgreesWithPointByPointTestsOffTheEdges) {
   const Rect clip{0, 0, 24, 24};
   const Vec2d offset{0.375, 0.625};

@@ -1,0 +1,227 @@
+#include "libatlas/pipeline/draw_once.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <tuple>
+
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/parallel.h"
+#include "libatlas/pack/chart_outline.h"
+#include "libatlas/pipeline/chart_drawing.h"
+
+namespace atlas {
+namespace {
+
+constexpr int kFarthest = kDrawnSteps / 4;  // steps
+// Places that are looked at for neighbours, and of these drawn.
+constexpr std::size_t kPlaces = 256, kDrawings = 16;
+
+struct Box {
+  glm::dvec2 low{std::numeric_limits<double>::infinity()};
+  glm::dvec2 high{-std::numeric_limits<double>::infinity()};
+
+  void add(glm::dvec2 p) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+};
+
+// Calls texel(x, y) for each texel that bilinear lookups along a segment read: the four around each
+// square between texels' centres that it meets.
+template <class Texel>
+void lookups_along(glm::dvec2 a, glm::dvec2 b, Texel&& texel) {
+  a -= 0.5;
+  b -= 0.5;
+  if (a.y > b.y) std::swap(a, b);
+  const glm::dvec2 d = b - a;
+  const auto x_at = [&](double y) {
+    return d.y > 0 ? a.x + d.x * std::clamp((y - a.y) / d.y, 0.0, 1.0) : a.x;
+  };
+  for (int y = int(std::floor(a.y)); y <= int(std::floor(b.y)); ++y) {
+    const double x0 = x_at(y), x1 = d.y > 0 ? x_at(y + 1.0) : b.x;
+    const int last = int(std::floor(std::max(x0, x1))) + 1;
+    for (int x = int(std::floor(std::min(x0, x1))); x <= last; ++x) {
+      texel(x, y);
+      texel(x, y + 1);
+    }
+  }
+}
+
+template <class Texel>
+void lookups_of(const pack::ChartOutline& outline, glm::dvec2 shift, Texel&& texel) {
+  for (const pack::ChartOutline::Edge& e : outline.edges)
+    lookups_along(to_glm(e.from) + shift, to_glm(e.to) + shift, texel);
+  for (const auto& t : outline.loose) {
+    for (int k = 0; k < 3; ++k)
+      lookups_along(to_glm(t[k]) + shift, to_glm(t[(k + 1) % 3]) + shift, texel);
+  }
+}
+
+class Mover {
+ public:
+  Mover(const PlacedCharts& placed, std::span<const std::uint32_t> corners, std::vector<Vec2f>& uvs)
+      : placed_(placed), corners_(corners), uvs_(uvs) {}
+
+  DrawnTwice run(const Context& context) {
+    const std::size_t n = placed_.charts.charts.size();
+    std::vector<std::size_t> twice(n, 0);
+    parallel_for(context, n, 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t c = begin; c < end; ++c) twice[c] = drawing(c).texels_drawn_twice({0, 0});
+    });
+    DrawnTwice drawn;
+    for (std::size_t c = 0; c < n && !context.cancelled(); ++c) {
+      if (twice[c] == 0) continue;
+      if (boxes_.empty()) find_boxes();
+      drawn.before += twice[c];
+      const Place best = best_place(c, twice[c]);
+      drawn.after += best.texels;
+      if (best.steps == glm::ivec2(0)) continue;
+      drawn.moves.push_back({std::uint32_t(c), from_glm(glm::dvec2(best.steps) / kSteps)});
+      ChartDrawing draw = drawing(c);
+      const std::span<const Vec2f> moved = draw.moved(best.steps);
+      std::copy(moved.begin(), moved.end(), uvs_.begin() + chart(c).first_uv);
+    }
+    return drawn;
+  }
+
+ private:
+  static constexpr double kSteps = kDrawnSteps;
+  struct Place {
+    glm::ivec2 steps{0};
+    std::size_t texels = 0;  // drawn twice
+  };
+  // One byte a texel of a chart's box and some around it: whether other charts' lookups read it.
+  struct Taken {
+    Rect box;
+    std::vector<std::uint8_t> texels;
+
+    std::uint8_t* at(int x, int y) {
+      if (x < box.x || x >= box.right() || y < box.y || y >= box.top()) return nullptr;
+      return &texels[std::size_t(y - box.y) * std::size_t(box.width) + std::size_t(x - box.x)];
+    }
+  };
+
+  const Chart& chart(std::size_t c) const { return placed_.charts.charts[c]; }
+  glm::dvec2 page_of(std::size_t c) const {
+    const Extent page = placed_.pages[std::size_t(placed_.placements[c].page)];
+    return {page.width, page.height};
+  }
+
+  std::vector<std::uint32_t> corners_of(std::size_t c) const {
+    std::vector<std::uint32_t> corners;
+    corners.reserve(3 * std::size_t(chart(c).triangle_count));
+    for (std::uint32_t i = 0; i < chart(c).triangle_count; ++i) {
+      const std::size_t t = placed_.charts.chart_triangles[chart(c).first_triangle + i];
+      corners.insert(corners.end(), &corners_[3 * t], &corners_[3 * t] + 3);
+    }
+    return corners;
+  }
+
+  ChartDrawing drawing(std::size_t c) const {
+    return {corners_of(c), {chart(c).first_uv, chart(c).uv_count}, uvs_, page_of(c)};
+  }
+
+  // On its page, in texels.
+  pack::ChartOutline outline(std::size_t c) const {
+    std::vector<Vec2d> texels;
+    for (std::uint32_t i = 0; i < chart(c).uv_count; ++i)
+      texels.push_back(from_glm(to_dvec(uvs_[chart(c).first_uv + i]) * page_of(c)));
+    std::vector<std::uint32_t> corners = corners_of(c);
+    for (std::uint32_t& corner : corners) corner -= chart(c).first_uv;
+    return pack::outline_of({texels, corners});
+  }
+
+  void find_boxes() {
+    for (std::size_t c = 0; c < placed_.charts.charts.size(); ++c) {
+      Box& box = boxes_.emplace_back();
+      for (std::uint32_t i = 0; i < chart(c).uv_count; ++i)
+        box.add(to_dvec(uvs_[chart(c).first_uv + i]) * page_of(c));
+    }
+  }
+
+  Taken taken_around(std::size_t c) const {
+    constexpr double kReach = 3;  // texels: of a lookup, and of a move
+    const glm::dvec2 low = glm::floor(boxes_[c].low - kReach),
+                     high = glm::ceil(boxes_[c].high + kReach);
+    Taken taken;
+    taken.box = {int(low.x), int(low.y), int(high.x - low.x), int(high.y - low.y)};
+    taken.texels.assign(std::size_t(taken.box.area()), 0);
+    for (std::size_t other = 0; other < boxes_.size(); ++other) {
+      if (other == c || placed_.placements[other].page != placed_.placements[c].page) continue;
+      if (glm::any(glm::lessThan(boxes_[other].high + kReach, low)) ||
+          glm::any(glm::greaterThan(boxes_[other].low - kReach, high)))
+        continue;
+      lookups_of(outline(other), {}, [&](int x, int y) {
+        if (std::uint8_t* texel = taken.at(x, y)) *texel = 1;
+      });
+    }
+    return taken;
+  }
+
+  bool within_page(std::size_t c, glm::dvec2 shift) const {
+    const Box& box = boxes_[c];
+    const glm::dvec2 low = glm::min(box.low, glm::dvec2(1)),
+                     high = glm::max(box.high, page_of(c) - 1.0);
+    return glm::all(glm::greaterThanEqual(box.low + shift, low)) &&
+           glm::all(glm::lessThanEqual(box.high + shift, high));
+  }
+
+  // Those with the fewest hits first, of these the nearest.
+  static std::vector<glm::ivec2> places(std::span<const std::uint32_t> hits) {
+    using Key = std::tuple<std::uint32_t, int, int, int>;
+    std::vector<Key> keys;
+    for (int y = -kFarthest; y <= kFarthest; ++y) {
+      for (int x = -kFarthest; x <= kFarthest; ++x) {
+        const int column = (x + kDrawnSteps) % kDrawnSteps, row = (y + kDrawnSteps) % kDrawnSteps;
+        if (x != 0 || y != 0)
+          keys.emplace_back(hits[std::size_t(row) * kDrawnSteps + std::size_t(column)],
+                            x * x + y * y, x, y);
+      }
+    }
+    std::partial_sort(keys.begin(), keys.begin() + kPlaces, keys.end());
+    std::vector<glm::ivec2> sorted;
+    for (std::size_t i = 0; i < kPlaces; ++i)
+      sorted.emplace_back(std::get<2>(keys[i]), std::get<3>(keys[i]));
+    return sorted;
+  }
+
+  Place best_place(std::size_t c, std::size_t texels) const {
+    ChartDrawing draw = drawing(c);
+    const std::size_t thin = draw.thin_triangles({0, 0});
+    const pack::ChartOutline border = outline(c);
+    Taken taken = taken_around(c);
+    Place best{{0, 0}, texels};
+    std::size_t drawings = 0;
+    for (const glm::ivec2 steps : places(draw.hits_of_turned())) {
+      const glm::dvec2 shift = glm::dvec2(steps) / kSteps;
+      if (!within_page(c, shift)) continue;
+      bool meets = false;
+      lookups_of(border, shift, [&](int x, int y) {
+        const std::uint8_t* texel = taken.at(x, y);
+        meets = meets || (texel && *texel);
+      });
+      if (meets || draw.thin_triangles(steps) > thin) continue;
+      const std::size_t left = draw.texels_drawn_twice(steps);
+      if (left < best.texels) best = {steps, left};
+      if (best.texels == 0 || ++drawings == kDrawings) break;
+    }
+    return best;
+  }
+
+  const PlacedCharts& placed_;
+  std::span<const std::uint32_t> corners_;
+  std::vector<Vec2f>& uvs_;
+  std::vector<Box> boxes_;  // 1 a chart, texels; once a chart is to be moved
+};
+
+}  // namespace
+
+DrawnTwice draw_once(const PlacedCharts& placed, std::span<const std::uint32_t> corners,
+                     std::vector<Vec2f>& uvs, const Context& context) {
+  return Mover(placed, corners, uvs).run(context);
+}
+
+}  // namespace atlas

@@ -1,0 +1,156 @@
+// No texel is drawn twice: held to another rasteriser (tests/support/atlas_measure.h) over random
+// slivers, among neighbours that leave no more room than gutters do.
+#include "libatlas/pipeline/draw_once.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "tests/support/atlas_measure.h"
+
+namespace atlas::test {
+namespace {
+
+constexpr std::int32_t kPage = 1024;
+
+// Charts on one page, by their texels.
+struct Drawn {
+  ChartSet set;
+  std::vector<ChartPlacement> placements;
+  std::vector<Extent> pages{{kPage, kPage}};
+  std::vector<Vec2f> uvs;
+
+  // `corners`: 3 a triangle, into `texels`.
+  void add(const std::vector<Vec2d>& texels, const std::vector<std::uint32_t>& corners) {
+    Chart chart;
+    chart.first_uv = std::uint32_t(uvs.size());
+    chart.uv_count = std::uint32_t(texels.size());
+    chart.first_triangle = std::uint32_t(set.triangle_chart.size());
+    chart.triangle_count = std::uint32_t(corners.size() / 3);
+    for (const Vec2d t : texels) uvs.push_back({float(t.x / kPage), float(t.y / kPage)});
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      set.triangle_uv.push_back(chart.first_uv + corners[i]);
+      if (i % 3 != 0) continue;
+      set.chart_triangles.push_back(std::uint32_t(set.triangle_chart.size()));
+      set.triangle_chart.push_back(std::uint32_t(set.charts.size()));
+    }
+    ChartPlacement placement;
+    placement.chart = std::uint32_t(set.charts.size());
+    placement.page = 0;
+    placements.push_back(placement);
+    set.charts.push_back(chart);
+  }
+
+  DrawnTwice draw(int threads) {
+    Context context;
+    context.threads = threads;
+    return draw_once({set, placements, pages}, set.triangle_uv, uvs, context);
+  }
+
+  AtlasMeasures measured() const {
+    UvMesh mesh;
+    for (const Vec2f uv : uvs) {
+      mesh.uvs.push_back({uv.x, uv.y});
+      mesh.positions.push_back({uv.x, uv.y, 0});
+    }
+    for (std::size_t i = 0; i < set.triangle_uv.size(); i += 3) {
+      const std::uint32_t* c = &set.triangle_uv[i];
+      mesh.faces.push_back({{c[0], c[1], c[2]}, {c[0], c[1], c[2]}, 0});
+    }
+    return measure_atlas(mesh, kPage, kPage);
+  }
+};
+
+// A kite whose lower sides bulge by thousandths of a texel: slivers under proper triangles. Walls
+// at `gap` texels below, above, left and right of it.
+Drawn kite_between_walls(unsigned seed, double gap) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const Vec2d a{40 + unit(random), 480 + 60 * unit(random)},
+      b{960 + unit(random), 480 + 60 * unit(random)}, c{500 + 50 * unit(random), 900.5},
+      d{500 + 50 * unit(random), 100.5};
+  Drawn drawn;
+  std::vector<Vec2d> texels{a, d, b, c};
+  std::vector<std::uint32_t> corners{0, 1, 2, 0, 2, 3};
+  for (const auto& [from, to] : {std::pair{0u, 1u}, std::pair{1u, 2u}}) {
+    const Vec2d p = texels[from], q = texels[to];
+    const double length = std::hypot(q.x - p.x, q.y - p.y),
+                 out = 0.0003 * (1 + unit(random)) / length;
+    texels.push_back({(p.x + q.x) / 2 + out * (q.y - p.y), (p.y + q.y) / 2 - out * (q.x - p.x)});
+    corners.insert(corners.end(), {from, std::uint32_t(texels.size() - 1), to});
+  }
+  drawn.add(texels, corners);
+  const auto wall = [&](Vec2d low, Vec2d high) {
+    drawn.add({low, {high.x, low.y}, high, {low.x, high.y}}, {0, 1, 2, 0, 2, 3});
+  };
+  wall({200, d.y - gap - 20}, {800, d.y - gap});
+  wall({200, c.y + gap}, {800, c.y + gap + 20});
+  wall({a.x - gap - 20, 300}, {a.x - gap, 700});
+  wall({b.x + gap, 300}, {b.x + gap + 20, 700});
+  return drawn;
+}
+
+TEST(DrawOnce, NoTexelIsDrawnTwiceBetweenNeighbours) {
+  int hit = 0, held = 0;
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    SCOPED_TRACE(seed);
+    Drawn drawn = kite_between_walls(seed, 2.1);
+    const std::vector<Vec2f> before = drawn.uvs;
+    const AtlasMeasures first = drawn.measured();
+    ASSERT_EQ(first.bleed, 0u);
+    const DrawnTwice result = drawn.draw(2);
+    EXPECT_GE(result.before, first.overlap);  // edges count there, whichever way up
+    const AtlasMeasures last = drawn.measured();
+    EXPECT_EQ(last.bleed, 0u);
+    EXPECT_EQ(last.flipped, first.flipped);
+    EXPECT_LE(last.overlap, result.after);
+    EXPECT_LE(result.after, result.before);
+    hit += first.overlap > 0;
+    held += result.after > 0;
+    if (result.before == 0) {
+      EXPECT_EQ(drawn.uvs, before);
+    }
+    for (const DrawnTwice::Move& move : result.moves) {
+      EXPECT_EQ(move.chart, 0u);
+      EXPECT_EQ(256 * move.texels.x, std::round(256 * move.texels.x));
+      EXPECT_LE(std::hypot(move.texels.x, move.texels.y), 0.36);
+      for (int i = 0; i < 4; ++i) {
+        EXPECT_NEAR(kPage * (drawn.uvs[i].x - before[i].x), move.texels.x, 2e-4);
+        EXPECT_NEAR(kPage * (drawn.uvs[i].y - before[i].y), move.texels.y, 2e-4);
+      }
+    }
+    Drawn again = kite_between_walls(seed, 2.1);
+    again.draw(1);
+    EXPECT_EQ(again.uvs, drawn.uvs);
+  }
+  EXPECT_GE(hit, 10);  // else the slivers show nothing
+  EXPECT_LE(held, 2);
+}
+
+TEST(DrawOnce, StaysWhereEveryMoveWouldTouchNeighbours) {
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    Drawn drawn = kite_between_walls(seed, 1.2);  // nearer than gutters are: none may come nearer
+    const std::uint64_t bleed = drawn.measured().bleed;
+    drawn.draw(1);
+    EXPECT_LE(drawn.measured().bleed, bleed) << seed;
+  }
+}
+
+TEST(DrawOnce, LeavesChartsThatCancellingLeft) {
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    Drawn drawn = kite_between_walls(seed, 2.1);
+    const std::vector<Vec2f> before = drawn.uvs;
+    Context context;
+    const std::atomic<bool> cancel = true;
+    context.cancel = &cancel;
+    draw_once({drawn.set, drawn.placements, drawn.pages}, drawn.set.triangle_uv, drawn.uvs,
+              context);
+    EXPECT_EQ(drawn.uvs, before);
+  }
+}
+
+}  // namespace
+}  // namespace atlas::test
