@@ -29,7 +29,12 @@ class FanSolver {
   explicit FanSolver(const Fans& fans) : fans_(fans) {}
 
   // Factorises the stiffness of these fans, which must stay for the steps to come.
-  void factorize(const JoinedFans& joined, std::size_t vertex_count);
+  void factorize(const JoinedFans& joined, std::size_t vertex_count) {
+    factorize(joined, vertex_count, {});
+  }
+  // The same where vertices from `first_held` on stay as `uvs` (1 a vertex) has them; free ones are
+  // joined to some of these, if there are any.
+  void factorize(const JoinedFans& joined, std::size_t first_held, std::span<const Vec2d> uvs);
   // A local and a global step from uvs (1 a vertex, of a std::vector), in place, `relaxation` times
   // as long as to the minimum for given rotations: below 2 the energy falls (see
   // ArapSolver::iterate).
@@ -41,7 +46,7 @@ class FanSolver {
   struct Kernels;
 
   void find_envelope();
-  void fill(std::size_t place);
+  void fill(std::size_t place, std::span<const Vec2d> uvs);
   Factor factor();
   Fan scratch_fan();
   std::uint32_t row_of(std::uint32_t vertex) const {
@@ -55,10 +60,12 @@ class FanSolver {
   std::vector<std::uint32_t> first_;  // that column, 1 a pair
   std::vector<std::size_t> row_;      // where the pair begins
   std::vector<double> factor_, inverse_pivot_;
-  std::uint32_t count_ = 0;      // of rows that are not mere padding
-  std::vector<Vec2d> load_;      // 1 a cell, 1 a row; then the rows' solution
-  std::vector<double> scratch_;  // for the fan at hand, see Fan
-  std::size_t longest_ = 0;      // of the fans, and some beyond
+  std::uint32_t count_ = 0;       // of rows that are not mere padding
+  std::size_t held_ = 0;          // vertices
+  std::vector<Vec2d> held_load_;  // 1 a row: what these ask of it
+  std::vector<Vec2d> load_;       // 1 a cell, 1 a row; then the rows' solution
+  std::vector<double> scratch_;   // for the fan at hand, see Fan
+  std::size_t longest_ = 0;       // of the fans, and some beyond
   std::vector<std::uint32_t> columns_;
   std::vector<double*> rows_;
 };

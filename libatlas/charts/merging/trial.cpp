@@ -38,6 +38,10 @@ constexpr double kCloseFit = 0.005, kSettledStart = 0.05;
 constexpr double kLastFall = 0.5;  // what further steps leave of energy, at least
 // A descent never changed the share of hull or rectangle that is filled by more (the same trials).
 constexpr double kShapeChange = 0.04;
+// What so few cells that are joined to so many change lies around them: descending there alone, a
+// wheel whose charts have hundreds of cells is merged in 0.7 instead of 1.6 s. 8448 charts of 276
+// meshes became 8432.
+constexpr std::size_t kLargeChart = 96, kLittleChart = 6, kPatchCells = 40;
 // Of the chart's size: what crosses itself by less may come apart when the chart grows. Of 1220
 // that had crossed and were tried again 9 did, 6 of them from less, as 150 of all (90 meshes).
 constexpr double kDeepCrossing = 0.002;
@@ -250,11 +254,23 @@ bool Trial::fits_unrolled(TrialOutcome& outcome) {
 
 // False: it was ended before its time, for it would not have met the limits.
 bool Trial::descend(const TrialLimits& limits, TrialOutcome& outcome) {
-  solver_.factorize(joined_.fans(), uvs_.size());
-  for (std::size_t i = 0; i < kRelaxation.size(); ++i) {
-    if (i == kLookAfter && !promising(limits, outcome)) return false;
-    solver_.step(kRelaxation[i], uvs_);
+  const std::size_t all = joined_.cells().size();
+  const bool little = all >= kLargeChart && all - joined_.first_count() <= kLittleChart;
+  if (little) {
+    patch_.take(joined_, kPatchCells, uvs_);
+    solver_.factorize(patch_.fans(), patch_.first_held(), patch_.uvs());
+  } else {
+    solver_.factorize(joined_.fans(), uvs_.size());
   }
+  const std::span<Vec2d> moving = little ? patch_.uvs() : uvs_;
+  for (std::size_t i = 0; i < kRelaxation.size(); ++i) {
+    if (i == kLookAfter) {
+      if (little) patch_.give_back(uvs_);
+      if (!promising(limits, outcome)) return false;
+    }
+    solver_.step(kRelaxation[i], moving);
+  }
+  if (little) patch_.give_back(uvs_);
   return true;
 }
 

@@ -11,6 +11,7 @@
 #include "libatlas/charts/merging/fan_measure.h"
 #include "libatlas/charts/merging/fan_solver.h"
 #include "libatlas/charts/merging/trial_mesh.h"
+#include "libatlas/charts/merging/trial_patch.h"
 
 namespace atlas {
 
@@ -86,6 +87,7 @@ class Trial {
   const Fans& fans_;
   CoarseUv& uv_;
   TrialMesh joined_;
+  TrialPatch patch_;
   FanSolver solver_;
   FanMeasure measure_;
   CrossingFinder crossings_;

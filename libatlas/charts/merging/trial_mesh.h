@@ -44,6 +44,11 @@ class TrialMesh {
   int euler() const { return euler_; }
   // Vertices of the arcs that are not joined.
   std::span<const std::array<std::uint32_t, 2>> border() const { return border_; }
+  // Places of the cells that a cell is joined to.
+  std::span<const std::uint32_t> neighbours(std::uint32_t place) const {
+    return {neighbour_.data() + first_neighbour_[place],
+            neighbour_.data() + first_neighbour_[place + 1]};
+  }
   bool in_first(std::uint32_t cell) const { return scratch_.place[cell] < first_count_; }
 
  private:
@@ -65,7 +70,7 @@ class TrialMesh {
   std::vector<std::uint32_t> class_;             // of a vertex that is no centre
   std::vector<std::array<std::uint32_t, 2>> border_;
   std::vector<std::uint32_t> united_;  // classes with an alias
-  // Places of the cells that a cell is joined to; where its own begin, and one more.
+  // As neighbours() has them; where a cell's begin, and one more.
   std::vector<std::uint32_t> neighbour_, first_neighbour_;
   std::vector<std::uint32_t> queue_, met_;  // of sweeps; met_: 1 a cell, the last that met it
   std::uint32_t sweeps_ = 0;
