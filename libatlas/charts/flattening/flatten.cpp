@@ -10,6 +10,7 @@
 #include "libatlas/charts/flattening/absorb.h"
 #include "libatlas/charts/flattening/chart_job.h"
 #include "libatlas/charts/flattening/newcomers.h"
+#include "libatlas/charts/flattening/relieve.h"
 #include "libatlas/charts/seams/straighten.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
@@ -125,6 +126,7 @@ class Flattener {
     Stopwatch watch(cpu_seconds);
     const auto scratch = pool_.take();
     absorb_charts({input_, partition_, *scratch}, result.charts, context);
+    relieve_charts({input_, partition_, *scratch}, result.charts, context);
     result.timing.absorb_cpu = watch.lap();
     std::sort(result.charts.begin(), result.charts.end(),
               [](const FlatChart& a, const FlatChart& b) {

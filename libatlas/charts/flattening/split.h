@@ -44,6 +44,14 @@ struct Darts {
 bool cut_to_border(const Topology& topology, const LocalChart& chart,
                    std::span<const std::uint32_t> offenders, Darts& darts, Partition& partition);
 
+// Ways to cut a disc open from its border, as half-edges of the chart from their ends on: to the
+// sharpest tip among the triangles (local ids), and to the vertex that is farthest inside, if it is
+// another tip. Tips have less than the full angle around them; cuts to others let a chart overlap
+// itself.
+std::vector<std::vector<std::uint32_t>> ways_to_tips(const Topology& topology,
+                                                     const LocalChart& chart,
+                                                     std::span<const std::uint32_t> triangles);
+
 // Closes darts inside a chart where their banks cross, and those that then lead to no tip: what is
 // left of a dart is a slit that does not reach the border. Other cuts stay, for they may be what
 // makes the chart a disc. False if no dart is there.

@@ -1,0 +1,102 @@
+// Darts for charts that stretch more than a cut is worth.
+#include "libatlas/charts/flattening/relieve.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/charts/chart_checks.h"
+
+namespace atlas::test {
+namespace {
+
+// All of a mesh as one chart.
+FlatChart flattened(const Shape& shape, const ChartOptions& options = {}) {
+  const Mesh mesh(shape);
+  const Result<Topology> topology = build_topology(mesh.view(), {}, {});
+  EXPECT_TRUE(topology.ok());
+  Partition partition;
+  partition.chart.assign(shape.triangle_count(), 0);
+  Frames frames;
+  FlattenResult result = flatten_charts({*topology, {}, options, frames}, partition, {});
+  EXPECT_EQ(result.charts.size(), 1u);
+  return std::move(result.charts.front());
+}
+
+// Rings around the vertex (0, 0, 0), the last one a circle about (`off`, 0); `height` at distance
+// 1, by the angle.
+template <class Height>
+Shape rings(const char* name, int around, int along, double off, const Height& height) {
+  Shape shape;
+  shape.name = name;
+  shape.positions.push_back({0, 0, 0});
+  for (int j = 1; j <= along; ++j) {
+    for (int i = 0; i < around; ++i) {
+      const double r = double(j) / along, angle = 2 * M_PI * i / around;
+      const double x = r * (std::cos(angle) + off), y = r * std::sin(angle);
+      shape.positions.push_back(
+          {float(x), float(y), float(std::hypot(x, y) * height(std::atan2(y, x)))});
+    }
+  }
+  const auto at = [&](int i, int j) {
+    return j == 0 ? 0u : std::uint32_t(1 + (j - 1) * around + i % around);
+  };
+  for (int j = 0; j < along; ++j) {
+    for (int i = 0; i < around; ++i) {
+      shape.indices.insert(shape.indices.end(), {at(i, j), at(i, j + 1), at(i + 1, j + 1)});
+      if (j == 0) continue;
+      shape.indices.insert(shape.indices.end(), {at(i, j), at(i + 1, j + 1), at(i + 1, j)});
+    }
+  }
+  return shape;
+}
+
+// A cone whose tip, near its border, lacks so much of the full angle.
+Shape cone_lacking(double defect, int around, int along) {
+  const double cosine = 1 - defect / (2 * M_PI), height = std::sqrt(1 / (cosine * cosine) - 1);
+  return rings("cone", around, along, 0.6, [&](double) { return height; });
+}
+
+// Its middle has more than the full angle.
+Shape saddle(int around, int along, double height) {
+  return rings("saddle", around, along, 0, [&](double a) { return height * std::cos(2 * a); });
+}
+
+// With a dart to its tip a cone is flat without stretch.
+TEST(Relieve, ADartToTheTipFlattensACone) {
+  for (const double defect : {0.6, 0.65, 0.7}) {
+    for (const int around : {12, 30}) {
+      for (const int along : {3, 10}) {
+        const Shape shape = cone_lacking(defect, around, along);
+        const FlatChart chart = flattened(shape);
+        EXPECT_LT(chart.distortion.stretch_l2, 1 + 1e-5) << defect << ' ' << around;
+        EXPECT_EQ(chart.uvs.size(), shape.positions.size() + std::size_t(along));
+        EXPECT_EQ(chart.triangles.size(), shape.triangle_count());
+        ChartOptions fast;
+        fast.preset = ChartPreset::fast;
+        const FlatChart closed = flattened(shape, fast);
+        EXPECT_EQ(closed.uvs.size(), shape.positions.size());
+        EXPECT_GT(closed.distortion.stretch_l2, 1 + 5e-4) << defect << ' ' << around;
+      }
+    }
+  }
+}
+
+TEST(Relieve, WhatNoDartHelpsStaysWhole) {
+  for (const Shape& shape : {saddle(24, 6, 0.25), saddle(40, 8, 0.35), cap(40, 10, 0.5)}) {
+    const FlatChart chart = flattened(shape);
+    EXPECT_GT(chart.distortion.stretch_l2, 1 + 1e-5) << shape.name;
+    EXPECT_EQ(chart.uvs.size(), shape.positions.size()) << shape.name;
+  }
+}
+
+// A dart as long as the cone costs more than a cone that hardly lacks anything.
+TEST(Relieve, ADartMustBeWorthItsSeam) {
+  const Shape shape = cone_lacking(0.1, 30, 10);
+  const FlatChart chart = flattened(shape);
+  EXPECT_GT(chart.distortion.stretch_l2, 1 + 1e-6);
+  EXPECT_EQ(chart.uvs.size(), shape.positions.size());
+}
+
+}  // namespace
+}  // namespace atlas::test
