@@ -77,6 +77,23 @@ std::int64_t page_in_use(const OutlineLayout& layout) {
   return width * height;
 }
 
+// Of the least such page.
+double fill(const OutlineFit& fit, const OutlineLayout& layout) {
+  const double cell = fit.grid().cell;
+  return layout.scale * layout.scale * fit.area() / (cell * cell * double(page_in_use(layout)));
+}
+
+// Once more on a single page, large frames first: what is small then comes to lie within them.
+void place_by_boxes(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
+  fit.place(LargestBy::boxes);
+  OutlineLayout larger;
+  larger.scale = best.scale;
+  search_scale(fit, result, larger);
+  if (larger.scale == best.scale) return;
+  if (fit.options().free_aspect && fill(fit, larger) <= fill(fit, best)) return;
+  best = std::move(larger);
+}
+
 // On a page of any shape the largest scale is not always the best: where the longest chart takes
 // all of the page's side, others may fit beside each other at a slightly smaller one, on a far
 // smaller page.
@@ -84,21 +101,17 @@ void fill_free_page(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
   constexpr double kAtTheSide = 0.98, kStep = 0.97, kLeast = 0.7;
   constexpr double kFull = 0.75;    // of the page: not worth the time of a dozen packings
   constexpr double kFuller = 1.05;  // what a smaller scale must gain
-  const double cell = fit.grid().cell;
-  const auto fill = [&](const OutlineLayout& layout) {
-    return layout.scale * layout.scale * fit.area() / (cell * cell * double(page_in_use(layout)));
-  };
   const double largest = best.scale;
-  if (fill(best) > kFull || largest < kAtTheSide * fit.bounds().alone) return;
-  double wanted = kFuller * fill(best);
+  if (fill(fit, best) > kFull || largest < kAtTheSide * fit.bounds().alone) return;
+  double wanted = kFuller * fill(fit, best);
   for (double scale = kStep * largest; scale > kLeast * largest; scale *= kStep) {
     OutlineLayout smaller;
     if (++result.packings > fit.options().max_packings || fit.context().cancelled() ||
         !fit.pack_at(scale, 1, smaller)) {
       return;
     }
-    if (fill(smaller) < wanted) continue;
-    wanted = fill(smaller);
+    if (fill(fit, smaller) < wanted) continue;
+    wanted = fill(fit, smaller);
     best = std::move(smaller);
   }
 }
@@ -186,6 +199,7 @@ Result<FitResult> fit_outlines(std::span<const FitItem> items,
     found = search_scale(all, result, best) || found;
     if (best.scale > before) fit = &all;
   }
+  if (found && options.pages == 1 && items.size() < kManyItems) place_by_boxes(*fit, result, best);
   if (context.cancelled()) return Status::cancelled();
   if (pressed && (!found || (!options.free_aspect && best.scale <= pressed->scale)))
     return std::move(*pressed);

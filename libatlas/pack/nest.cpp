@@ -107,15 +107,28 @@ std::int32_t longest_run(std::span<const Piece> pieces) {
   return longest;
 }
 
-NestPlan plan_by_size(std::span<const Piece> pieces) {
+namespace {
+
+// Of a piece as it was drawn first. By boxes the cells still have a quarter of the say.
+double size_of(const Piece& piece, LargestBy by) {
+  const auto drawn = std::find_if(piece.masks.begin(), piece.masks.end(),
+                                  [](const Mask& m) { return m.cells > 0; });
+  if (drawn == piece.masks.end()) return 0;
+  const double cells = double(drawn->cells), box = double(drawn->width) * drawn->height;
+  return by == LargestBy::cells ? cells : box * std::sqrt(std::sqrt(cells / box));
+}
+
+}  // namespace
+
+NestPlan plan_by_size(std::span<const Piece> pieces, LargestBy by) {
   NestPlan plan;
   plan.order.resize(pieces.size());
   std::iota(plan.order.begin(), plan.order.end(), 0u);
-  std::vector<std::int64_t> cells;
-  cells.reserve(pieces.size());
-  for (const Piece& p : pieces) cells.push_back(p.cells());
+  std::vector<double> sizes;
+  sizes.reserve(pieces.size());
+  for (const Piece& p : pieces) sizes.push_back(size_of(p, by));
   std::stable_sort(plan.order.begin(), plan.order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return cells[a] > cells[b]; });
+                   [&](std::uint32_t a, std::uint32_t b) { return sizes[a] > sizes[b]; });
   plan.direction.assign(pieces.size(), kFree);
   return plan;
 }

@@ -52,7 +52,10 @@ struct NestPlan {
   double most_height = std::numeric_limits<double>::infinity();
 };
 
-NestPlan plan_by_size(std::span<const Piece> pieces);
+// Largest first, by their cells alone or by their boxes, too: large frames, as of rings, then come
+// while there are pieces that lie within them.
+enum class LargestBy : std::uint8_t { cells, boxes };
+NestPlan plan_by_size(std::span<const Piece> pieces, LargestBy by = LargestBy::cells);
 
 struct NestPlace {
   bool placed = false;

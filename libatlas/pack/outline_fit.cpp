@@ -98,7 +98,7 @@ bool OutlineFit::pack_pages(std::uint32_t pages, OutlineLayout& layout) const {
   const std::int32_t longest = longest_run(layout.pieces);
   for (std::uint32_t p = 0; p < pages; ++p) open.emplace_back(side_, side_, longest);
   std::vector<std::vector<std::uint32_t>> orders(pages);
-  for (const std::uint32_t i : plan_by_size(layout.pieces).order)
+  for (const std::uint32_t i : plan_by_size(layout.pieces, by_).order)
     orders[layout.page[i]].push_back(i);
   parallel_for(context_, pages, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p)

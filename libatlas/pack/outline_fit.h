@@ -40,6 +40,9 @@ class OutlineFit {
 
   FitBounds bounds() const;
 
+  // In which order pages are filled from now on; at first by cells.
+  void place(LargestBy by) { by_ = by; }
+
   // Of all pages, that masks take at this scale: found by drawing them, without packing.
   double share(double scale) const;
 
@@ -83,6 +86,7 @@ class OutlineFit {
   GridChoice grid_;
   std::int32_t side_ = 0;
   double area_ = 0;
+  LargestBy by_ = LargestBy::cells;
   double groups_fail_at_ = std::numeric_limits<double>::infinity();
 };
 

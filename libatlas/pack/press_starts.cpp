@@ -150,7 +150,9 @@ PressStart PressStarts::start(std::size_t k, std::size_t count, std::uint32_t ro
   search.layouts = kLayouts << doublings;
   PressStart start;
   if (pieces_.size() == 1) return alone();
-  const auto [nest, layouts] = search_nest(pieces_, plan_by_size(pieces_), search, context_);
+  // Few charts change places often enough in the search.
+  const LargestBy by = pieces_.size() < kManyCharts ? LargestBy::cells : LargestBy::boxes;
+  const auto [nest, layouts] = search_nest(pieces_, plan_by_size(pieces_, by), search, context_);
   start.layouts = layouts;
   if (!nest.left_over.empty()) return start;
   put_down(nest, start);
