@@ -12,9 +12,10 @@
 namespace atlas {
 namespace {
 
-// Of the pages, what is full enough; of one that takes the shape that suits its charts best, too.
-constexpr double kFilled = 0.7, kFilledFree = 0.65;
-// Such a page is packed with more work where it is poor (page_layout.cpp), which takes seconds each
+// Of the pages, what is full enough: of a square one, of several, and of one that takes the shape
+// that suits its charts best. Less than the last is poor.
+constexpr double kFilled = 0.7, kFilledSeveral = 0.68, kFilledFree = 0.65;
+// The latter is packed with more work where it is poor (page_layout.cpp), which takes seconds each
 // time with more charts than this.
 constexpr std::size_t kMostChartsFree = 300;
 // Pieces that cover less than this share of what charts did are cut no smaller: more pieces still
@@ -24,14 +25,10 @@ constexpr double kHopeless = 0.5;
 // turn.
 constexpr std::array kLongestSides{1.1, 0.9, 0.75, 0.6, 0.45};
 // By how much more charts must cover for pieces to be worth it, at least, and for each square root
-// of the surface's area that seams become longer by.
-constexpr double kLeastGain = 0.1, kSeamPrice = 0.06;
-
-Result<PageLayout> lay_out(const ChartSet& charts, double density, const LayoutOptions& options,
-                           const Context& context) {
-  const std::vector<Vec2d> densities(charts.charts.size(), Vec2d{density, density});
-  return lay_out_pages(charts, densities, options, context);
-}
+// of the surface's area that seams become longer by; half of that where pages are poor no more.
+constexpr double kLeastGain = 0.1, kLeastGainSeveral = 0.05, kSeamPrice = 0.06, kOfPoor = 0.5;
+// By what pressing seldom lets charts on several pages cover more.
+constexpr double kMostPressed = 1.2;
 
 // How well layouts fill the pages that there may be.
 struct Goal {
@@ -43,70 +40,141 @@ struct Goal {
     const double room = double(options.pages) * options.page_size * options.page_size;
     return texels * layout.scale * layout.scale / room;
   }
+  bool several() const { return options.pages > 1; }
+  double enough() const {
+    return options.free_aspect ? kFilledFree : several() ? kFilledSeveral : kFilled;
+  }
   bool reached(const PageLayout& layout) const {
     const bool dense = !options.free_aspect && layout.scale >= 1;
-    const double filled = layout.with_lost_room * covered(layout);
-    return dense || filled >= (options.free_aspect ? kFilledFree : kFilled);
+    return dense || layout.with_lost_room * covered(layout) >= enough();
+  }
+  // What pieces must cover, with seams so much longer.
+  double wanted(const PageLayout& before, double seams) const {
+    const double gain = std::max(several() ? kLeastGainSeveral : kLeastGain, kSeamPrice * seams);
+    const double now = covered(before), worth = (1 + gain) * now;
+    const double poor = kFilledFree / before.with_lost_room;
+    return now < poor ? std::min(worth, std::max((1 + kOfPoor * gain) * now, poor)) : worth;
   }
 };
 
-// `charts`, cut where that fills pages better, and their layout.
-Result<PageLayout> cut_to_fill(const PlainUvs& uvs, const LayoutOptions& options, ChartSet& charts,
-                               const Context& context) {
-  constexpr double kParts = 1 + kLongestSides.size();
-  const auto part = [&](double k) {
-    return part_of_stage(context, "pack", k / kParts, (k + 1) / kParts);
-  };
-  Result<PageLayout> best = lay_out(charts, uvs.density, options, part(0));
-  const double area = charts.distortion.uv_area, root_area = std::sqrt(charts.surface_area);
-  const Goal goal{options, area * uvs.density * uvs.density};
-  const bool may_cut = uvs.options.min_fill > 0 && !uvs.options.keep_uv_charts &&
-                       (!options.free_aspect || charts.charts.size() <= kMostChartsFree);
-  if (!may_cut || !best.ok() || goal.reached(*best)) return best;
-  const ChartSet whole = charts;
-  const double side = std::sqrt(area / double(options.pages));
-  double seams_before = whole.seam_length;
-  for (std::size_t k = 0; k < kLongestSides.size(); ++k) {
-    const std::vector<double> limits(whole.charts.size(), kLongestSides[k] * side);
-    ChartSet cut = whole;
-    if (cut_to_limits(uvs.mesh, limits, uvs.options.max_stretch, cut) == 0) continue;
-    if (cut.seam_length == seams_before) continue;  // the same cuts as before
-    seams_before = cut.seam_length;
-    const double seams = (cut.seam_length - charts.seam_length) / root_area;
-    const double least_gain = std::max(kLeastGain, kSeamPrice * seams);
-    const double wanted = (1 + least_gain) * goal.covered(*best);
-    if (wanted >= 1) continue;  // more than full pages hold
-    LayoutOptions further = options;
-    further.wanted_fill = wanted;
-    Result<PageLayout> layout = lay_out(cut, uvs.density, further, part(double(k) + 1));
-    if (!layout.ok() && layout.status().code() != ErrorCode::no_solution) return layout;
-    if (!layout.ok()) break;  // gutters around pieces take more than there is; more so around less
-    const double covered = goal.covered(*layout);
-    if (covered < kHopeless * goal.covered(*best)) break;
-    if (covered < wanted) continue;
-    best = std::move(layout);
-    charts = std::move(cut);
-    if (goal.reached(*best)) break;
+// A way of cutting charts, none at first, and their layout.
+struct Way {
+  ChartSet charts;
+  PageLayout layout;
+  bool pressed = false;
+};
+
+class PageFiller {
+ public:
+  PageFiller(const PlainUvs& uvs, const LayoutOptions& options, const ChartSet& charts,
+             const Context& context)
+      : uvs_(uvs),
+        options_(options),
+        unpressed_(options),
+        context_(context),
+        goal_{options_, charts.distortion.uv_area * uvs.density * uvs.density} {
+    // Several pages are pressed where it may decide, and in the end: it takes up to a second a way.
+    unpressed_.press_pages = false;
   }
-  return best;
-}
+
+  // Replaces the charts by those laid out.
+  Result<PageLayout> run(ChartSet& charts) {
+    Result<PageLayout> first = lay_out(charts, unpressed_);
+    if (!first.ok()) return first;
+    Way best{charts, std::move(*first)};
+    if (may_cut(charts) && !goal_.reached(best.layout)) {
+      if (Status s = press(best, kFilledFree); !s.ok()) return s;
+      if (!goal_.reached(best.layout)) {
+        if (Status s = cut(charts, best); !s.ok()) return s;
+      }
+    }
+    if (Status s = press(best, 0); !s.ok()) return s;
+    charts = std::move(best.charts);
+    return std::move(best.layout);
+  }
+
+ private:
+  static constexpr double kParts = 1 + kLongestSides.size();
+
+  // What is laid out next is one part of the stage.
+  Context part(double from, double to) const {
+    return part_of_stage(context_, "pack", (parts_ + from) / kParts, (parts_ + to) / kParts);
+  }
+
+  std::vector<Vec2d> densities(const ChartSet& charts) const {
+    return std::vector<Vec2d>(charts.charts.size(), Vec2d{uvs_.density, uvs_.density});
+  }
+
+  Result<PageLayout> lay_out(const ChartSet& charts, const LayoutOptions& options) const {
+    return lay_out_pages(charts, densities(charts), options,
+                         part(0, goal_.several() ? kLaidOut : 1));
+  }
+
+  // Presses pages, if they may then cover so much.
+  Status press(Way& way, double wanted) const {
+    if (way.pressed || !options_.press_pages || way.layout.pages.size() < 2 ||
+        kMostPressed * goal_.covered(way.layout) < wanted) {
+      return {};
+    }
+    Result<PageLayout> pressed =
+        press_layout(way.charts, densities(way.charts), options_, way.layout, part(kLaidOut, 1));
+    if (!pressed.ok()) return pressed.status();
+    way.layout = std::move(*pressed);
+    way.pressed = true;
+    return {};
+  }
+
+  bool may_cut(const ChartSet& charts) const {
+    return uvs_.options.min_fill > 0 && !uvs_.options.keep_uv_charts &&
+           (!options_.free_aspect || charts.charts.size() <= kMostChartsFree);
+  }
+
+  // Ever shorter, until pages are full enough. `best` becomes a way that is worth its seams.
+  Status cut(const ChartSet& whole, Way& best) {
+    const double area = whole.distortion.uv_area, root_area = std::sqrt(whole.surface_area);
+    const double side = std::sqrt(area / double(options_.pages));
+    double seams_before = whole.seam_length;
+    for (const double longest : kLongestSides) {
+      ++parts_;
+      const std::vector<double> limits(whole.charts.size(), longest * side);
+      Way way{whole, {}};
+      if (cut_to_limits(uvs_.mesh, limits, uvs_.options.max_stretch, way.charts) == 0) continue;
+      if (way.charts.seam_length == seams_before) continue;  // the same cuts as before
+      seams_before = way.charts.seam_length;
+      const double seams = (way.charts.seam_length - best.charts.seam_length) / root_area;
+      const double wanted = goal_.wanted(best.layout, seams);
+      if (wanted >= 1) continue;  // more than full pages hold
+      LayoutOptions further = unpressed_;
+      further.wanted_fill = wanted;
+      Result<PageLayout> layout = lay_out(way.charts, further);
+      if (!layout.ok() && layout.status().code() != ErrorCode::no_solution) return layout.status();
+      // Gutters around pieces take more than there is; more so around less.
+      if (!layout.ok()) return {};
+      way.layout = std::move(*layout);
+      if (goal_.covered(way.layout) < kHopeless * goal_.covered(best.layout)) return {};
+      if (Status s = press(way, wanted); !s.ok()) return s;
+      if (goal_.covered(way.layout) < wanted) continue;
+      best = std::move(way);
+      if (goal_.reached(best.layout)) return {};
+    }
+    return {};
+  }
+
+  static constexpr double kLaidOut = 0.4;  // of a part; the rest presses several pages
+
+  const PlainUvs& uvs_;
+  const LayoutOptions& options_;
+  LayoutOptions unpressed_;
+  const Context& context_;
+  Goal goal_;
+  int parts_ = 0;  // done
+};
 
 }  // namespace
 
 Result<PageLayout> fill_pages(const PlainUvs& uvs, const LayoutOptions& options, ChartSet& charts,
                               const Context& context) {
-  // Several pages are pressed in the end only: it would take seconds for each way of cutting.
-  LayoutOptions unpressed = options;
-  unpressed.press_pages = false;
-  constexpr double kPressing = 0.6;
-  const bool press = options.press_pages && options.pages > 1;
-  Result<PageLayout> layout =
-      cut_to_fill(uvs, unpressed, charts, part_of_stage(context, "pack", 0, press ? kPressing : 1));
-  if (layout.ok() && press && layout->pages.size() > 1) {
-    const std::vector<Vec2d> densities(charts.charts.size(), Vec2d{uvs.density, uvs.density});
-    layout = press_layout(charts, densities, options, *layout,
-                          part_of_stage(context, "pack", kPressing, 1));
-  }
+  Result<PageLayout> layout = PageFiller(uvs, options, charts, context).run(charts);
   context.report("pack", 1);
   return layout;
 }
