@@ -152,7 +152,7 @@ class PageFiller {
       if (!layout.ok()) return {};
       way.layout = std::move(*layout);
       if (goal_.covered(way.layout) < kHopeless * goal_.covered(best.layout)) return {};
-      if (Status s = press(way, wanted); !s.ok()) return s;
+      if (Status s = press(way, std::max(wanted, kFilledFree)); !s.ok()) return s;
       if (goal_.covered(way.layout) < wanted) continue;
       best = std::move(way);
       if (goal_.reached(best.layout)) return {};
