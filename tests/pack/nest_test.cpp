@@ -4,11 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 #include <utility>
+#include <vector>
 
 #include "libatlas/pack/plain_page.h"
 #include "tests/pack/checks.h"
+#include "tests/pack/one_page.h"
 
 namespace atlas {
 namespace {
@@ -55,6 +59,35 @@ TEST(NestSearch, APieceAloneIsPutDownOnceInEachDirection) {
 }
 
 // Taking over what two plans have in common changes nothing, not even the work that is counted.
+std::vector<Vec2d> ring(double radius, double width) {
+  std::vector<Vec2d> triangles;
+  constexpr int kParts = 48;
+  const auto at = [](double r, int k) {
+    const double angle = 2 * std::numbers::pi * k / kParts;
+    return Vec2d{r * std::cos(angle), r * std::sin(angle)};
+  };
+  for (int k = 0; k < kParts; ++k) {
+    const Vec2d a = at(radius - width, k), b = at(radius, k), c = at(radius, k + 1),
+                d = at(radius - width, k + 1);
+    for (const Vec2d p : {a, b, c, a, c, d}) triangles.push_back(p);
+  }
+  return triangles;
+}
+
+// More charts than are pressed. Each of the squares is larger than a ring, but fits into one.
+TEST(NestPlans, RingsComeBeforeWhatLiesWithinThem) {
+  std::vector<std::vector<Vec2d>> shapes;
+  for (int k = 0; k < 12; ++k) shapes.push_back(ring(100, 3));
+  for (int k = 0; k < 130; ++k) shapes.push_back(test::box(64, 64));
+  const test::ChartItems charts(std::move(shapes));
+  const FitOptions options = test::options_for(charts, 2048);
+  const Result<FitResult> page = fit_pages(charts.items, options, {});
+  ASSERT_TRUE(page.ok());
+  EXPECT_GT(page->utilization, 0.55);
+  EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *page), page->pages, options.padding),
+            "");
+}
+
 TEST(NestPlans, PlacesTakenOverAreThoseSearchedFor) {
   test::Noise noise{41};
   for (int round = 0; round < 12; ++round) {

@@ -52,6 +52,17 @@ TEST(FillPages, ASheetIsCutForSeveralPages) {
   EXPECT_GT(cut.texels_per_unit, 1.6 * whole.texels_per_unit);
 }
 
+// Cells alone tell little of what a cut will win: pressed, pages of smaller charts fill far better.
+TEST(FillPages, WhatPressingMakesOfCutsCounts) {
+  const std::uint32_t pages[] = {4, 6};
+  for (const std::uint32_t count : pages) {
+    const UnwrappedMesh cut = unwrap(torus(48, 24), {.pages = count, .page_size = 512});
+    EXPECT_EQ(cut.pages.size(), count);
+    EXPECT_GT(cut.utilization, 0.65) << count;
+    EXPECT_LE(cut.charts.charts.size(), 6 * count) << count;
+  }
+}
+
 TEST(FillPages, WhatFitsAsDenseAsItIsWantedStaysWhole) {
   const UnwrappedMesh mesh =
       unwrap(plate_and_strip(), {.page_size = 1024, .texels_per_unit = 20, .square = true});
