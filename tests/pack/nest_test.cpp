@@ -58,7 +58,6 @@ TEST(NestSearch, APieceAloneIsPutDownOnceInEachDirection) {
   }
 }
 
-// Taking over what two plans have in common changes nothing, not even the work that is counted.
 std::vector<Vec2d> ring(double radius, double width) {
   std::vector<Vec2d> triangles;
   constexpr int kParts = 48;
@@ -88,6 +87,7 @@ TEST(NestPlans, RingsComeBeforeWhatLiesWithinThem) {
             "");
 }
 
+// Taking over what two plans have in common changes nothing, not even the work that is counted.
 TEST(NestPlans, PlacesTakenOverAreThoseSearchedFor) {
   test::Noise noise{41};
   for (int round = 0; round < 12; ++round) {
