@@ -27,8 +27,11 @@ constexpr std::array kLongestSides{1.1, 0.9, 0.75, 0.6, 0.45};
 // By how much more charts must cover for pieces to be worth it, at least, and for each square root
 // of the surface's area that seams become longer by; half of that where pages are poor no more.
 constexpr double kLeastGain = 0.1, kLeastGainSeveral = 0.05, kSeamPrice = 0.06, kOfPoor = 0.5;
-// By what pressing seldom lets charts on several pages cover more.
-constexpr double kMostPressed = 1.2;
+// By what pressing seldom lets charts on several pages cover more, and how many ways of cutting are
+// pressed in vain. With more charts a page it takes seconds each: then pages need only not be poor.
+constexpr double kMostPressed = 1.15;
+constexpr int kMostVain = 2;
+constexpr std::size_t kFewAPage = 16;
 
 // How well layouts fill the pages that there may be.
 struct Goal {
@@ -41,19 +44,22 @@ struct Goal {
     return texels * layout.scale * layout.scale / room;
   }
   bool several() const { return options.pages > 1; }
-  double enough() const {
-    return options.free_aspect ? kFilledFree : several() ? kFilledSeveral : kFilled;
+  double enough(std::size_t charts) const {
+    if (options.free_aspect || (several() && charts > kFewAPage * options.pages))
+      return kFilledFree;
+    return several() ? kFilledSeveral : kFilled;
   }
   bool reached(const PageLayout& layout) const {
     const bool dense = !options.free_aspect && layout.scale >= 1;
-    return dense || layout.with_lost_room * covered(layout) >= enough();
+    return dense || layout.with_lost_room * covered(layout) >= enough(layout.placements.size());
   }
   // What pieces must cover, with seams so much longer.
   double wanted(const PageLayout& before, double seams) const {
     const double gain = std::max(several() ? kLeastGainSeveral : kLeastGain, kSeamPrice * seams);
     const double now = covered(before), worth = (1 + gain) * now;
     const double poor = kFilledFree / before.with_lost_room;
-    return now < poor ? std::min(worth, std::max((1 + kOfPoor * gain) * now, poor)) : worth;
+    return now < poor && worth < 1 ? std::min(worth, std::max((1 + kOfPoor * gain) * now, poor))
+                                   : worth;
   }
 };
 
@@ -73,7 +79,7 @@ class PageFiller {
         unpressed_(options),
         context_(context),
         goal_{options_, charts.distortion.uv_area * uvs.density * uvs.density} {
-    // Several pages are pressed where it may decide, and in the end: it takes up to a second a way.
+    // Several pages are pressed where it may decide, and in the end: it takes a second or more a way.
     unpressed_.press_pages = false;
   }
 
@@ -134,6 +140,7 @@ class PageFiller {
     const double area = whole.distortion.uv_area, root_area = std::sqrt(whole.surface_area);
     const double side = std::sqrt(area / double(options_.pages));
     double seams_before = whole.seam_length;
+    int vain = 0;
     for (const double longest : kLongestSides) {
       ++parts_;
       const std::vector<double> limits(whole.charts.size(), longest * side);
@@ -152,8 +159,13 @@ class PageFiller {
       if (!layout.ok()) return {};
       way.layout = std::move(*layout);
       if (goal_.covered(way.layout) < kHopeless * goal_.covered(best.layout)) return {};
-      if (Status s = press(way, std::max(wanted, kFilledFree)); !s.ok()) return s;
-      if (goal_.covered(way.layout) < wanted) continue;
+      if (vain < kMostVain) {
+        if (Status s = press(way, std::max(wanted, kFilledFree)); !s.ok()) return s;
+      }
+      if (goal_.covered(way.layout) < wanted) {
+        vain += way.pressed;
+        continue;
+      }
       best = std::move(way);
       if (goal_.reached(best.layout)) return {};
     }
