@@ -79,7 +79,8 @@ class PageFiller {
         unpressed_(options),
         context_(context),
         goal_{options_, charts.distortion.uv_area * uvs.density * uvs.density} {
-    // Several pages are pressed where it may decide, and in the end: it takes a second or more a way.
+    // Several pages are pressed where it may decide, and in the end: it takes a second or more a
+    // way.
     unpressed_.press_pages = false;
   }
 
