@@ -14,8 +14,7 @@
 namespace atlas {
 
 // Where a triangle lies is decided for corners rounded to 1/256 of a texel, halves up
-// (Direct3D 11.3 Functional Specification, 3.2.4; D3D12_SUBPIXEL_FRACTIONAL_BIT_COUNT; the least
-// that Vulkan's Roadmap 2022 profile asks for).
+// (Direct3D 11.3 Functional Specification, 3.2.4; D3D12_SUBPIXEL_FRACTIONAL_BIT_COUNT).
 inline constexpr int kDrawnBits = 8;
 inline constexpr int kDrawnSteps = 1 << kDrawnBits;
 

@@ -126,7 +126,7 @@ class Flattener {
     Stopwatch watch(cpu_seconds);
     const auto scratch = pool_.take();
     absorb_charts({input_, partition_, *scratch}, result.charts, context);
-    relieve_charts({input_, partition_, *scratch}, result.charts, context);
+    relieve_charts(input_, partition_, result.charts, context);
     result.timing.absorb_cpu = watch.lap();
     std::sort(result.charts.begin(), result.charts.end(),
               [](const FlatChart& a, const FlatChart& b) {

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <utility>
 
+#include "libatlas/charts/flattening/chart_job.h"
 #include "libatlas/charts/flattening/split.h"
 #include "libatlas/charts/merging/merge_options.h"
 #include "libatlas/charts/seams/refine.h"
+#include "libatlas/core/parallel.h"
 #include "libatlas/param/distortion.h"
 
 namespace atlas {
@@ -37,28 +39,33 @@ double box(const FlatChart& chart) {
 
 class Reliever {
  public:
-  Reliever(const AbsorbInput& input, std::vector<FlatChart>& charts)
+  Reliever(const FlattenInput& input, Partition& partition, std::vector<FlatChart>& charts)
       : input_(input),
-        topology_(input.flatten.topology),
+        topology_(input.topology),
+        partition_(partition),
         charts_(charts),
-        seam_worth_(merge_options(input.flatten.options.max_stretch).seam_worth),
-        crease_cosine_(std::cos(input.flatten.options.crease_degrees * M_PI / 180)),
+        seam_worth_(merge_options(input.options.max_stretch).seam_worth),
+        crease_cosine_(std::cos(input.options.crease_degrees * M_PI / 180)),
         piece_area_(topology_.component_count, 0) {}
 
   void run(const Context& context) {
-    auto& label = input_.partition.chart;
+    auto& label = partition_.chart;
     for (std::uint32_t k = 0; k < charts_.size(); ++k) {
       for (const std::uint32_t t : charts_[k].triangles) label[t] = k;
       piece_area_[piece(charts_[k])] += charts_[k].distortion.surface_area;
     }
-    for (FlatChart& chart : charts_) {
-      if (context.cancelled()) return;
-      if (chart.triangles.size() > kMostTriangles) continue;
-      const double least = kLeastEnergy * piece_area_[piece(chart)];
-      for (int i = 0; i < kMostDarts && energy(chart) > least; ++i) {
-        if (!relieve(chart)) break;
+    const std::size_t grain = std::max<std::size_t>(4, charts_.size() / 64);
+    parallel_for(context, charts_.size(), grain, [&](std::size_t begin, std::size_t end) {
+      ChartScratch scratch;
+      for (std::size_t k = begin; k < end && !context.cancelled(); ++k) {
+        FlatChart& chart = charts_[k];
+        if (chart.triangles.size() > kMostTriangles) continue;
+        const double least = kLeastEnergy * piece_area_[piece(chart)];
+        for (int i = 0; i < kMostDarts && energy(chart) > least; ++i) {
+          if (!relieve(chart, scratch)) break;
+        }
       }
-    }
+    });
   }
 
  private:
@@ -69,18 +76,18 @@ class Reliever {
   }
 
   // False if no dart is worth it.
-  bool relieve(FlatChart& chart) {
+  bool relieve(FlatChart& chart, ChartScratch& scratch) {
     FlatChart best;
     const Dart* best_dart = nullptr;
     double least = energy(chart);
-    const std::vector<Dart> darts = darts_for(chart);
+    const std::vector<Dart> darts = darts_for(chart, scratch.chart);
     for (const Dart& dart : darts) {
       const double price = price_of(dart, piece_area_[piece(chart)]);
       if (price > kMostPrice * energy(chart)) continue;
-      for (const std::uint32_t h : dart) input_.partition.cut(h);
-      ChartOutcome outcome = flatten_chart(input_.flatten, input_.partition, chart.triangles,
-                                           {.cuts = 0, .whole = true}, input_.scratch);
-      for (const std::uint32_t h : dart) input_.partition.close(h);
+      for (const std::uint32_t h : dart) partition_.cut(h);
+      ChartOutcome outcome =
+          flatten_chart(input_, partition_, chart.triangles, {.cuts = 0, .whole = true}, scratch);
+      for (const std::uint32_t h : dart) partition_.close(h);
       if (!outcome.parts.empty() || box(outcome.flat) > kMostBox * box(chart)) continue;
       const double cost = energy(outcome.flat) + price;
       if (cost >= least) continue;
@@ -89,19 +96,18 @@ class Reliever {
       best_dart = &dart;
     }
     if (!best_dart) return false;
-    for (const std::uint32_t h : *best_dart) input_.partition.cut(h);
+    for (const std::uint32_t h : *best_dart) partition_.cut(h);
     best.triangles = std::move(chart.triangles);
     best.fragment = chart.fragment;
     chart = std::move(best);
     return true;
   }
 
-  std::vector<Dart> darts_for(const FlatChart& chart) {
-    LocalChart& local = input_.scratch.chart;
-    local.build(topology_, input_.partition, chart.triangles);
+  std::vector<Dart> darts_for(const FlatChart& chart, LocalChart& local) {
+    local.build(topology_, partition_, chart.triangles);
     std::vector<Dart> darts;
     if (local.corners != chart.corners) return darts;  // a seam was closed since
-    for (const auto& way : ways_to_tips(topology_, local, most_stretched(chart))) {
+    for (const auto& way : ways_to_tips(topology_, local, most_stretched(chart, local))) {
       Dart& dart = darts.emplace_back();
       for (const std::uint32_t h : way) {
         for (const std::uint32_t side : {h, local.opposite[h]})
@@ -112,8 +118,8 @@ class Reliever {
   }
 
   // Places in its list.
-  std::vector<std::uint32_t> most_stretched(const FlatChart& chart) const {
-    const LocalMesh mesh{input_.scratch.chart.positions.view(), chart.corners, {}};
+  std::vector<std::uint32_t> most_stretched(const FlatChart& chart, const LocalChart& local) const {
+    const LocalMesh mesh{local.positions.view(), chart.corners, {}};
     std::vector<TriangleStretch> stretch(chart.corners.size());
     measure_triangles(mesh, chart.uvs, stretch);
     double area = 0, uv_area = 0;
@@ -147,8 +153,9 @@ class Reliever {
     return seam_worth_ * weight * std::sqrt(piece_area);
   }
 
-  const AbsorbInput& input_;
+  const FlattenInput& input_;
   const Topology& topology_;
+  Partition& partition_;
   std::vector<FlatChart>& charts_;
   double seam_worth_, crease_cosine_;
   std::vector<double> piece_area_;
@@ -156,12 +163,12 @@ class Reliever {
 
 }  // namespace
 
-void relieve_charts(const AbsorbInput& input, std::vector<FlatChart>& charts,
+void relieve_charts(const FlattenInput& input, Partition& partition, std::vector<FlatChart>& charts,
                     const Context& context) {
-  const ChartOptions& options = input.flatten.options;
+  const ChartOptions& options = input.options;
   if (options.preset == ChartPreset::fast || options.cone_degrees > 0) return;
-  if (!input.flatten.topology.calm_normals.empty()) return;
-  Reliever(input, charts).run(context);
+  if (!input.topology.calm_normals.empty()) return;
+  Reliever(input, partition, charts).run(context);
 }
 
 }  // namespace atlas
