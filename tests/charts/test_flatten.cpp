@@ -7,6 +7,7 @@
 #include "libatlas/charts/flattening/flatten.h"
 #include "libatlas/charts/mesh/noise.h"
 #include "tests/charts/chart_checks.h"
+#include "tests/charts/whole_chart.h"
 
 namespace atlas::test {
 namespace {
@@ -32,17 +33,6 @@ Shape bottle(int around, int along, double bottom) {
     }
   }
   return shape;
-}
-
-// All of a mesh as one chart.
-FlattenResult flatten_whole(const Shape& shape, const ChartOptions& options = {}) {
-  const Mesh mesh(shape);
-  const Result<Topology> topology = build_topology(mesh.view(), {}, {});
-  EXPECT_TRUE(topology.ok());
-  Partition partition;
-  partition.chart.assign(shape.triangle_count(), 0);
-  Frames frames;
-  return flatten_charts({*topology, {}, options, frames}, partition, {});
 }
 
 void expect_whole(const FlattenResult& result, const Shape& shape, double bound) {

@@ -5,20 +5,13 @@
 
 #include <cmath>
 
-#include "tests/charts/chart_checks.h"
+#include "tests/charts/whole_chart.h"
 
 namespace atlas::test {
 namespace {
 
-// All of a mesh as one chart.
 FlatChart flattened(const Shape& shape, const ChartOptions& options = {}) {
-  const Mesh mesh(shape);
-  const Result<Topology> topology = build_topology(mesh.view(), {}, {});
-  EXPECT_TRUE(topology.ok());
-  Partition partition;
-  partition.chart.assign(shape.triangle_count(), 0);
-  Frames frames;
-  FlattenResult result = flatten_charts({*topology, {}, options, frames}, partition, {});
+  FlattenResult result = flatten_whole(shape, options);
   EXPECT_EQ(result.charts.size(), 1u);
   return std::move(result.charts.front());
 }
