@@ -5,11 +5,10 @@
 #include <span>
 #include <utility>
 
+#include "libatlas/charts/cut_pieces.h"
 #include "libatlas/charts/flattening/uv_folds.h"
 #include "libatlas/charts/geometry/cone.h"
 #include "libatlas/charts/mesh/local_chart.h"
-#include "libatlas/charts/segment.h"
-#include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/param/injectivity.h"
@@ -273,13 +272,15 @@ class GivenSet {
 
   // Each wanted component segmented as if there were no uvs.
   std::vector<FlatChart> flatten_segments(const std::vector<std::uint8_t>& wanted) {
-    if (!any(wanted)) return {};
-    const double start = cpu_seconds();
-    Segmentation segmentation = segment(only(wanted), input_.options, 0, context_);
-    result_.timing.segmentation_cpu += cpu_seconds() - start;
-    add_parts(segmentation.timing, result_.timing);
-    if (context_.cancelled()) return {};
-    return flatten(segmentation.partition, std::move(segmentation.frames));
+    std::vector<std::uint32_t> pieces;
+    for (std::uint32_t k = 0; k < wanted.size(); ++k) {
+      if (wanted[k]) pieces.push_back(k);
+    }
+    if (pieces.empty()) return {};
+    CutCharts cut = cut_pieces(input_, pieces, context_);
+    result_.timing.segmentation_cpu += cut.timing.segmentation_cpu;
+    add_parts(cut.timing, result_.timing);
+    return std::move(cut.charts);
   }
 
   std::vector<FlatChart> flatten(Partition& partition, Frames frames) {
@@ -287,25 +288,6 @@ class GivenSet {
         flatten_charts({topology_, input_.density, input_.options, frames}, partition, context_);
     add_parts(flat.timing, result_.timing);
     return std::move(flat.charts);
-  }
-
-  // The topology with all other triangles marked as degenerate: linked triangles share a component,
-  // so no link leads there.
-  Topology only(const std::vector<std::uint8_t>& wanted) const {
-    Topology masked = topology_;
-    std::vector<std::uint32_t> name(wanted.size(), kNoIndex);
-    masked.component_count = 0;
-    for (std::size_t k = 0; k < wanted.size(); ++k) {
-      if (wanted[k]) name[k] = masked.component_count++;
-    }
-    for (std::size_t t = 0; t < masked.component.size(); ++t) {
-      std::uint32_t& k = masked.component[t];
-      if (k != kNoIndex) k = name[k];
-      if (k != kNoIndex) continue;
-      masked.flags[t] |= Topology::kDegenerate;
-      masked.areas[t] = 0;
-    }
-    return masked;
   }
 
   const FlattenInput& input_;

@@ -16,6 +16,7 @@
 #include "libatlas/charts/totals.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/parallel.h"
 
 namespace atlas {
 namespace {
@@ -73,7 +74,7 @@ std::vector<FlatChart> cut_charts(const Work& work, const Context& context, Char
   add_parts(cut.timing, set.timing);
   set.repairs.split_charts = cut.split_charts;
   set.copied_pieces = cut.copied_pieces;
-  Stopwatch watch(cpu_seconds);
+  Stopwatch watch(own_cpu_seconds);
   Frames none;
   const FlattenInput input{work.topology, work.mesh.density, work.options, none};
   cut_limbs(input, cut.charts, context);
@@ -278,7 +279,7 @@ void add_parts(const ChartSet::Timing& parts, ChartSet::Timing& sum) {
 Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
                              const Context& context) {
   if (Status status = check_options(options); !status.ok()) return status;
-  const double start = cpu_seconds();
+  const double start = own_cpu_seconds();
   context.report("charts", 0);
   MeshView given = mesh;
   std::vector<std::uint32_t> texcoord_indices;
@@ -297,7 +298,7 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
   count_defects(topology.defects, set.repairs);
   for (const float area : topology.areas) set.surface_area += area;
   set.surface_area /= topology.scale * topology.scale;
-  set.timing.segmentation_cpu = cpu_seconds() - start;
+  set.timing.segmentation_cpu = own_cpu_seconds() - start;
   set.timing.noise_cpu = topology.noise_cpu;
   set.timing.topology_cpu = set.timing.segmentation_cpu - topology.noise_cpu;
 
@@ -310,7 +311,7 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
   Assembler(mesh, topology, set).run(charts);
   set.seam_length = seam_length(topology, set);
   set.distortion = total_distortion(set.charts);
-  set.timing.parameterization_cpu = cpu_seconds() - start - set.timing.segmentation_cpu;
+  set.timing.parameterization_cpu = own_cpu_seconds() - start - set.timing.segmentation_cpu;
   context.report("charts", 1);
   return set;
 }

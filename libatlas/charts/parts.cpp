@@ -1,13 +1,10 @@
 #include "libatlas/charts/parts.h"
 
 #include <algorithm>
-#include <compare>
 #include <iterator>
+#include <numeric>
 
 #include "libatlas/charts/copies.h"
-#include "libatlas/charts/mesh/pieces.h"
-#include "libatlas/charts/segment.h"
-#include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
 
 namespace atlas {
@@ -15,93 +12,6 @@ namespace {
 
 // Pieces that repeat others are set aside if they are at least this part of the triangles.
 constexpr std::size_t kCopiedShare = 4;
-
-// Ways to cut a mesh that ChartPreset::best tries, each from other cells.
-constexpr int kBestAttempts = 4;
-
-// What was made of a piece; the less the better.
-struct Cost {
-  std::size_t charts = 0;
-  double seams = 0;  // length
-  auto operator<=>(const Cost&) const = default;
-};
-
-std::vector<Cost> costs(const Topology& topology, const Partition& partition,
-                        std::span<const FlatChart> charts) {
-  std::vector<Cost> costs(topology.component_count);
-  for (const FlatChart& chart : charts) ++costs[topology.component[chart.triangles.front()]].charts;
-  for (std::uint32_t h = 0; h < topology.opposite.size(); ++h) {
-    const std::uint32_t o = topology.opposite[h];
-    if (o == kNoIndex || partition.chart[h / 3] == kNoIndex) continue;
-    if (partition.chart[h / 3] == partition.chart[o / 3] && !partition.seam(h)) continue;
-    costs[topology.component[h / 3]].seams += 0.5 * edge_length(topology, h);
-  }
-  return costs;
-}
-
-// The charts of a mesh, as one attempt after the other made them: of each piece the best so far.
-class BestCharts {
- public:
-  explicit BestCharts(const Topology& topology) : topology_(topology) {}
-
-  void take(const Partition& partition, std::vector<FlatChart> charts) {
-    const std::vector<Cost> made = costs(topology_, partition, charts);
-    std::vector<bool> better(made.size(), least_.empty());
-    for (std::size_t piece = 0; piece < least_.size(); ++piece) {
-      better[piece] = made[piece] < least_[piece];
-      if (better[piece]) least_[piece] = made[piece];
-    }
-    if (least_.empty()) least_ = made;
-    const auto changes = [&](const FlatChart& chart) {
-      return better[topology_.component[chart.triangles.front()]];
-    };
-    std::erase_if(charts_, changes);
-    std::copy_if(std::move_iterator(charts.begin()), std::move_iterator(charts.end()),
-                 std::back_inserter(charts_), changes);
-  }
-
-  std::vector<FlatChart> charts() && {
-    std::sort(charts_.begin(), charts_.end(), [](const FlatChart& a, const FlatChart& b) {
-      return a.triangles.front() < b.triangles.front();
-    });
-    return std::move(charts_);
-  }
-
- private:
-  const Topology& topology_;
-  std::vector<FlatChart> charts_;
-  std::vector<Cost> least_;  // 1 a piece
-};
-
-// Appends the charts of a mesh, without regard to copies.
-void cut_mesh(const FlattenInput& mesh, const Context& context, CutCharts& out) {
-  const int attempts = mesh.options.preset == ChartPreset::best ? kBestAttempts : 1;
-  BestCharts best(mesh.topology);
-  for (int i = 0; i < attempts; ++i) {
-    const double start = cpu_seconds();
-    Segmentation segmentation = segment(mesh.topology, mesh.options, double(i) / attempts, context);
-    if (context.cancelled()) return;
-    return_freed_memory();
-    out.timing.segmentation_cpu += cpu_seconds() - start;
-    context.report("charts", (i + 0.5) / attempts);
-    FlattenResult flat =
-        flatten_charts({mesh.topology, mesh.density, mesh.options, segmentation.frames},
-                       segmentation.partition, context);
-    add_parts(segmentation.timing, out.timing);
-    add_parts(flat.timing, out.timing);
-    out.split_charts += flat.split_charts;
-    if (context.cancelled()) return;
-    if (attempts == 1) {
-      std::move(flat.charts.begin(), flat.charts.end(), std::back_inserter(out.charts));
-    } else {
-      best.take(segmentation.partition, std::move(flat.charts));
-    }
-  }
-  if (attempts > 1) {
-    std::vector<FlatChart> charts = std::move(best).charts();
-    std::move(charts.begin(), charts.end(), std::back_inserter(out.charts));
-  }
-}
 
 class Repeater {
  public:
@@ -113,10 +23,10 @@ class Repeater {
     for (std::uint32_t piece = 0; piece < copies_.original.size(); ++piece) {
       if (copies_.original[piece] == piece) originals.push_back(piece);
     }
-    cut_pieces(originals);
+    append(cut_pieces(mesh_, originals, context_));
     if (context_.cancelled()) return {};
     const std::vector<std::uint32_t> failed = copy_charts();
-    if (!failed.empty()) cut_pieces(failed);
+    if (!failed.empty()) append(cut_pieces(mesh_, failed, context_));
     std::sort(out_.charts.begin(), out_.charts.end(), [](const FlatChart& a, const FlatChart& b) {
       return a.triangles.front() < b.triangles.front();
     });
@@ -128,21 +38,11 @@ class Repeater {
     return mesh_.topology.component[chart.triangles.front()];
   }
 
-  // Appends the charts of these pieces.
-  void cut_pieces(std::span<const std::uint32_t> pieces) {
-    const PieceMesh part = PieceCutter(mesh_.topology).cut(pieces);
-    std::vector<float> density;
-    if (!mesh_.density.empty()) {
-      for (const std::uint32_t t : part.triangles) density.push_back(mesh_.density[t]);
-    }
-    Frames none;
-    const std::size_t before = out_.charts.size();
-    cut_mesh({part.topology, density, mesh_.options, none}, context_, out_);
-    for (std::size_t k = before; k < out_.charts.size(); ++k) {
-      FlatChart& chart = out_.charts[k];
-      for (std::uint32_t& t : chart.triangles) t = part.triangles[t];
-      for (std::uint32_t& v : chart.vertex) v = part.topology.source_vertex[v];
-    }
+  void append(CutCharts cut) {
+    std::move(cut.charts.begin(), cut.charts.end(), std::back_inserter(out_.charts));
+    out_.timing.segmentation_cpu += cut.timing.segmentation_cpu;
+    add_parts(cut.timing, out_.timing);
+    out_.split_charts += cut.split_charts;
   }
 
   // Gives the copies their originals' charts; returns those that cannot take them.
@@ -212,21 +112,22 @@ CutCharts cut_into_charts(const Topology& topology, std::span<const float> densi
                           const ChartOptions& options, const Context& context) {
   Frames none;
   const FlattenInput mesh{topology, density, options, none};
+  const double start = own_cpu_seconds();
+  double looking = 0;
+  CutCharts out;
   if (topology.component_count > 1) {
-    const double start = cpu_seconds();
     const PieceCopies copies = find_copies(topology, density);
-    const double looking = cpu_seconds() - start;
-    CutCharts out;
+    looking = own_cpu_seconds() - start;
     if (kCopiedShare * copies.copied_triangles >= topology.triangle_count()) {
       out = Repeater(mesh, copies, context).run();
-    } else {
-      cut_mesh(mesh, context, out);
+      out.timing.segmentation_cpu += looking;
+      return out;
     }
-    out.timing.segmentation_cpu += looking;
-    return out;
   }
-  CutCharts out;
-  cut_mesh(mesh, context, out);
+  std::vector<std::uint32_t> pieces(topology.component_count);
+  std::iota(pieces.begin(), pieces.end(), 0u);
+  out = cut_pieces(mesh, pieces, context);
+  out.timing.segmentation_cpu += looking;
   return out;
 }
 

@@ -2,18 +2,10 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
-#include "libatlas/charts/flattening/flatten.h"
+#include "libatlas/charts/cut_pieces.h"
 
 namespace atlas {
-
-struct CutCharts {
-  std::vector<FlatChart> charts;    // ordered by first triangle
-  std::uint64_t split_charts = 0;   // that failed and were cut into smaller ones, in all attempts
-  std::uint64_t copied_pieces = 0;  // that took the charts of another piece
-  ChartSet::Timing timing;          // segmentation_cpu, and the parts of both sums
-};
 
 // Every triangle with area ends in one chart. Pieces that repeat others (find_copies) take their
 // charts where they are a quarter of the mesh at least; what breaks a limit there is cut and

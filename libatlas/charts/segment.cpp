@@ -7,12 +7,12 @@
 #include "libatlas/charts/cells/cells.h"
 #include "libatlas/charts/merging/coarse.h"
 #include "libatlas/charts/merging/merge.h"
-#include "libatlas/charts/mesh/pieces.h"
 #include "libatlas/charts/seams/refine.h"
 #include "libatlas/charts/seams/slit_paths.h"
 #include "libatlas/charts/seams/straighten.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/parallel.h"
 
 namespace atlas {
 namespace {
@@ -42,16 +42,14 @@ Frame cell_frame(const CoarseMesh& mesh, const CoarseUv& uv, std::uint32_t k) {
   return {c * u - s * v, s * u + c * v};
 }
 
-// A mesh, or pieces of one, cut into charts.
+// A mesh cut into charts.
 struct Cut {
   const Topology& topology;
-  std::span<const std::uint32_t> triangles;  // 1 a triangle: its name in the mesh; empty: its own
   Cells cells;
   CoarseMesh coarse;
   MergeResult merged;
   std::vector<std::uint8_t> left_out;  // 1 a piece
 
-  std::uint32_t name(std::uint32_t t) const { return triangles.empty() ? t : triangles[t]; }
   bool takes(std::uint32_t t) const {
     return cells.of_triangle[t] != kNoIndex && !left_out[topology.component[t]];
   }
@@ -59,7 +57,7 @@ struct Cut {
 
 // Triangle labels (from `first_label`), frames and the seams of charts with themselves.
 void spread_to_triangles(const Cut& cut, std::uint32_t first_label, Segmentation& result) {
-  const auto& [topology, triangles, cells, coarse, merged, left_out] = cut;
+  const auto& [topology, cells, coarse, merged, left_out] = cut;
   Partition& partition = result.partition;
   std::vector<std::uint32_t> frames(coarse.cells.size());
   for (std::uint32_t k = 0; k < frames.size(); ++k) {
@@ -70,13 +68,13 @@ void spread_to_triangles(const Cut& cut, std::uint32_t first_label, Segmentation
   for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
     if (!cut.takes(t)) continue;
     const std::uint32_t k = cells.of_triangle[t];
-    partition.chart[cut.name(t)] = first_label + merged.chart_of_cell[k];
-    result.frames.share(cut.name(t), frames[k]);
+    partition.chart[t] = first_label + merged.chart_of_cell[k];
+    result.frames.share(t, frames[k]);
   }
   for (std::size_t i = 0; i < coarse.rim_half_edges.size(); ++i) {
     const std::uint32_t h = coarse.rim_half_edges[i], o = topology.opposite[h];
     if (o == kNoIndex || merged.joined[coarse.rim_arcs[i]] || !cut.takes(h / 3)) continue;
-    const std::uint32_t a = cut.name(h / 3), b = cut.name(o / 3);
+    const std::uint32_t a = h / 3, b = o / 3;
     if (partition.chart[a] != partition.chart[b]) continue;
     partition.seams[a] |= static_cast<std::uint8_t>(1u << (h % 3));
     partition.seams[b] |= static_cast<std::uint8_t>(1u << (o % 3));
@@ -91,10 +89,6 @@ std::vector<std::uint32_t> pieces_of(const Topology& topology, const Cells& cell
   }
   return piece;
 }
-
-// Meshes of pieces that are smaller on average are segmented so many triangles at a time: 10^5
-// pieces would need much memory at once, and parts that fit the processor's caches are faster.
-constexpr std::size_t kTrianglesAtATime = 50000;
 
 // Seams are straightened as far as cells are uneven, a third of a cell's width to each side, in
 // rings up to
@@ -188,13 +182,9 @@ class Segmenter {
     result_.partition.chart.assign(n, kNoIndex);
     result_.partition.seams.assign(n, 0);
     result_.frames.resize(n);
-    if (n > kTrianglesAtATime && n / kTrianglesAtATime < topology_.component_count) {
-      segment_in_turn();
-    } else {
-      segment(topology_, {});
-    }
+    cut_into_labels();
     if (context_.cancelled()) return {};
-    Stopwatch watch(cpu_seconds);
+    Stopwatch watch(own_cpu_seconds);
     const BorderRules rules{options_.crease_degrees, {axes_, std::cos(cone_ - 1e-5)}};
     Slits slits(topology_, {rules, bands_}, result_.partition, result_.frames);
     slits.close();
@@ -208,25 +198,11 @@ class Segmenter {
   }
 
  private:
-  void segment_in_turn() {
-    PieceCutter cutter(topology_);
-    for (std::uint32_t first = 0, last = 0; first < cutter.piece_count() && !context_.cancelled();
-         first = last) {
-      std::size_t count = 0;
-      while (last < cutter.piece_count() && count < kTrianglesAtATime) {
-        count += cutter.triangle_count(last++);
-      }
-      const PieceMesh pieces = cutter.cut(first, last);
-      segment(pieces.topology, pieces.triangles);
-    }
-  }
-
-  // `triangles` as in Cut.
-  void segment(const Topology& topology, std::span<const std::uint32_t> triangles) {
-    Stopwatch watch(cpu_seconds);
+  void cut_into_labels() {
+    Stopwatch watch(own_cpu_seconds);
     const CellOptions options = cell_options();
-    const CellPlan plan = plan_cells(topology, options);
-    const Faces faces = find_faces(topology, plan);
+    const CellPlan plan = plan_cells(topology_, options);
+    const Faces faces = find_faces(topology_, plan);
     Ways ways(faces, plan.pieces, options_.preset);
     result_.timing.cells_cpu += watch.lap();
     std::vector<Cut> cuts;
@@ -234,7 +210,7 @@ class Segmenter {
       if (walled && !cuts.empty()) ways.spare(piece_costs(cuts[0]));
       const std::span<const std::uint8_t> left_out = walled ? ways.walled : ways.plain;
       if (std::find(left_out.begin(), left_out.end(), 0) == left_out.end()) continue;
-      cuts.push_back(cut({topology, plan, walled ? &faces : nullptr, left_out}, triangles));
+      cuts.push_back(cut({topology_, plan, walled ? &faces : nullptr, left_out}));
       if (context_.cancelled()) return;
     }
     if (cuts.size() == 2) choose(cuts[0], cuts[1]);
@@ -261,25 +237,24 @@ class Segmenter {
   }
 
   // Incomplete if the context is cancelled.
-  Cut cut(const CellInput& input, std::span<const std::uint32_t> triangles) {
-    Stopwatch watch(cpu_seconds);
-    const Topology& topology = input.topology;
-    Cut made{topology, triangles, {}, {}, {}, {input.left_out.begin(), input.left_out.end()}};
+  Cut cut(const CellInput& input) {
+    Stopwatch watch(own_cpu_seconds);
+    Cut made{topology_, {}, {}, {}, {input.left_out.begin(), input.left_out.end()}};
     made.cells = grow_cells(input, cell_options(), context_);
     if (context_.cancelled()) return made;
-    if (cone_ > 0) split_by_cone(topology, cone_, made.cells);
+    if (cone_ > 0) split_by_cone(topology_, cone_, made.cells);
     result_.timing.cells_cpu += watch.lap();
-    made.coarse = build_coarse(topology, options_.crease_degrees, made.cells);
+    made.coarse = build_coarse(topology_, options_.crease_degrees, made.cells);
     result_.timing.coarse_cpu += watch.lap();
     MergeOptions merge = merge_options(options_.max_stretch);
     ExtremeNormals normals;
     if (cone_ > 0) {
       // Ends are kept clear of the limit: what is measured in the end is rounded otherwise.
-      normals = extreme_normals(topology, made.cells);
+      normals = extreme_normals(topology_, made.cells);
       merge.cone = std::max(1e-9, cone_ - 2e-5);
       merge.cell_normals = &normals;
     }
-    made.merged = merge_cells(made.coarse, pieces_of(topology, made.cells), merge, context_);
+    made.merged = merge_cells(made.coarse, pieces_of(topology_, made.cells), merge, context_);
     result_.timing.merging_cpu += watch.lap();
     return made;
   }

@@ -6,7 +6,11 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <optional>
+#include <thread>
+
+#include "libatlas/core/clock.h"
 
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
@@ -55,7 +59,35 @@ struct Task {
   ATLAS_UNSEEN void operator()(std::size_t chunk) const { (*run)(chunk); }
 };
 
+thread_local double lent_seconds = 0;  // of this thread's loops, on others
+thread_local bool in_chunk = false;    // of a loop that has threads already
+
+// One chunk on a thread that may not be the loop's own.
+class ChunkOnThread {
+ public:
+  explicit ChunkOnThread(std::atomic<double>& lent, std::thread::id owner)
+      : lent_(lent), away_(std::this_thread::get_id() != owner), nested_(in_chunk) {
+    in_chunk = true;
+    if (away_) begun_ = own_cpu_seconds();
+  }
+  ~ChunkOnThread() {
+    in_chunk = nested_;
+    if (away_) lent_.fetch_add(own_cpu_seconds() - begun_, std::memory_order_relaxed);
+  }
+  ChunkOnThread(const ChunkOnThread&) = delete;
+  ChunkOnThread& operator=(const ChunkOnThread&) = delete;
+
+ private:
+  std::atomic<double>& lent_;
+  bool away_, nested_;
+  double begun_ = 0;
+};
+
 }  // namespace
+
+double own_cpu_seconds() {
+  return thread_cpu_seconds() + lent_seconds;
+}
 
 void parallel_for(const Context& context, std::size_t n, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body) {
@@ -68,23 +100,34 @@ void parallel_for(const Context& context, std::size_t n, std::size_t grain,
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) run_chunk(chunk);
     return;
   }
-  // More threads than cores are a valid wish (it is how tests show that results do not depend on
-  // their number), which TBB grants only when told so.
-  std::optional<tbb::global_control> limit;
-  if (context.threads > tbb::info::default_concurrency()) {
-    limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(context.threads));
-  }
   HandOver hand_over;
-  const auto run_in_thread = [&](std::size_t chunk) {
+  std::atomic<double> lent{0};
+  const auto run_in_thread = [&, owner = std::this_thread::get_id()](std::size_t chunk) {
     HandOver::chunk_begins();
-    run_chunk(chunk);
+    {
+      const ChunkOnThread on_thread(lent, owner);
+      run_chunk(chunk);
+    }
     hand_over.chunk_ends();
   };
   const Task<decltype(run_in_thread)> task{&run_in_thread};
+  const auto run_all = [&] {
+    tbb::parallel_for(std::size_t{0}, chunks, task, tbb::simple_partitioner());
+  };
   HandOver::loop_begins();
-  tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
-  arena.execute(
-      [&] { tbb::parallel_for(std::size_t{0}, chunks, task, tbb::simple_partitioner()); });
+  if (in_chunk) {
+    tbb::this_task_arena::isolate(run_all);
+  } else {
+    // More threads than cores are a valid wish (it is how tests show that results do not depend on
+    // their number), which TBB grants only when told so.
+    std::optional<tbb::global_control> limit;
+    if (context.threads > tbb::info::default_concurrency()) {
+      limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(context.threads));
+    }
+    tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
+    arena.execute(run_all);
+  }
+  lent_seconds += lent;
 }
 
 }  // namespace atlas

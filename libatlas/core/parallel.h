@@ -12,7 +12,12 @@ namespace atlas {
 // Calls body(begin, end) over [0, n) in chunks of at most `grain` (>= 1) indices, on up to
 // context.threads threads. Once context.cancelled(), chunks not yet begun are skipped: the caller
 // checks context.cancelled() afterwards.
+// A loop within a chunk of another one shares its threads.
 void parallel_for(const Context& context, std::size_t n, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+// CPU time of the calling thread, and of what its loops have run on others: what a call took,
+// whatever else the process does meanwhile. Seconds, for differences only.
+double own_cpu_seconds();
 
 }  // namespace atlas

@@ -243,7 +243,7 @@ void Run::collect() {
 }
 
 Result<SimplifiedMesh> Run::operator()() {
-  const double start = cpu_seconds();
+  const double start = own_cpu_seconds();
   context_.report("simplify", 0);
   out_.triangles_in = geometry_.mesh->indices.size() / 3;
   build_charts();
@@ -254,7 +254,7 @@ Result<SimplifiedMesh> Run::operator()() {
   if (context_.cancelled()) return Status::cancelled();
   collect();
   if (context_.cancelled()) return Status::cancelled();
-  out_.cpu_seconds = cpu_seconds() - start;
+  out_.cpu_seconds = own_cpu_seconds() - start;
   context_.report("simplify", 1);
   return std::move(out_);
 }

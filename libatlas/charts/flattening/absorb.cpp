@@ -120,8 +120,9 @@ class Absorber {
     const FlatChart& chart = charts_[k];
     const std::size_t size = chart.triangles.size();
     if (size < patience_.few || small(k)) return true;
-    return chart.fragment && (!topology_.calm_normals.empty() ||
-                              double(size) <= kSmallShare * double(topology_.triangle_count()));
+    const std::size_t all = std::max(topology_.whole_triangles, topology_.triangle_count());
+    return chart.fragment &&
+           (!topology_.calm_normals.empty() || double(size) <= kSmallShare * double(all));
   }
 
   std::uint32_t absorb(std::uint32_t k) {

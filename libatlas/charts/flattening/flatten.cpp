@@ -123,7 +123,7 @@ class Flattener {
     charts_ = {};
     result.charts = std::move(flats_);
     std::erase_if(result.charts, [](const FlatChart& chart) { return chart.triangles.empty(); });
-    Stopwatch watch(cpu_seconds);
+    Stopwatch watch(own_cpu_seconds);
     const auto scratch = pool_.take();
     absorb_charts({input_, partition_, *scratch}, result.charts, context);
     relieve_charts(input_, partition_, result.charts, context);

@@ -1,7 +1,6 @@
 #include "libatlas/charts/mesh/pieces.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace atlas {
 
@@ -10,12 +9,6 @@ PieceCutter::PieceCutter(const Topology& whole)
       pieces_(whole),
       place_(whole.triangle_count(), kNoIndex),
       vertex_(whole.points.size(), 0) {}
-
-PieceMesh PieceCutter::cut(std::uint32_t first, std::uint32_t last) {
-  std::vector<std::uint32_t> pieces(last - first);
-  std::iota(pieces.begin(), pieces.end(), first);
-  return cut(pieces);
-}
 
 PieceMesh PieceCutter::cut(std::span<const std::uint32_t> pieces) {
   PieceMesh out;

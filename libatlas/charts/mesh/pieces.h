@@ -30,8 +30,6 @@ class PieceCutter {
 
   // These pieces, in this order. Linear in their triangles.
   PieceMesh cut(std::span<const std::uint32_t> pieces);
-  // Pieces first to last - 1.
-  PieceMesh cut(std::uint32_t first, std::uint32_t last);
 
  private:
   void add_piece(std::uint32_t piece, PieceMesh& out);

@@ -11,6 +11,7 @@
 #include "libatlas/charts/mesh/links.h"
 #include "libatlas/charts/mesh/noise.h"
 #include "libatlas/core/clock.h"
+#include "libatlas/core/parallel.h"
 #include "libatlas/core/drop_rounding.h"
 #include "libatlas/core/glm_bridge.h"
 
@@ -322,7 +323,7 @@ Result<Topology> build_topology(const MeshView& mesh, const TopologyOptions& opt
   if (context.cancelled()) return Status::cancelled();
   Pieces(topology).run();
   count_nonmanifold_vertices(topology);
-  Stopwatch watch(cpu_seconds);
+  Stopwatch watch(own_cpu_seconds);
   calm_noise(topology, context);
   topology.noise_cpu = watch.lap();
   return topology;

@@ -1,0 +1,193 @@
+#include "libatlas/charts/cut_pieces.h"
+
+#include <algorithm>
+#include <compare>
+#include <iterator>
+#include <mutex>
+
+#include "libatlas/charts/mesh/pieces.h"
+#include "libatlas/charts/segment.h"
+#include "libatlas/core/clock.h"
+#include "libatlas/core/parallel.h"
+
+namespace atlas {
+namespace {
+
+constexpr std::size_t kTrianglesAtATime = 50000;
+
+// Ways to cut a mesh that ChartPreset::best tries, each from other cells.
+constexpr int kBestAttempts = 4;
+
+// What was made of a piece; the less the better.
+struct Cost {
+  std::size_t charts = 0;
+  double seams = 0;  // length
+  auto operator<=>(const Cost&) const = default;
+};
+
+std::vector<Cost> costs(const Topology& topology, const Partition& partition,
+                        std::span<const FlatChart> charts) {
+  std::vector<Cost> costs(topology.component_count);
+  for (const FlatChart& chart : charts) ++costs[topology.component[chart.triangles.front()]].charts;
+  for (std::uint32_t h = 0; h < topology.opposite.size(); ++h) {
+    const std::uint32_t o = topology.opposite[h];
+    if (o == kNoIndex || partition.chart[h / 3] == kNoIndex) continue;
+    if (partition.chart[h / 3] == partition.chart[o / 3] && !partition.seam(h)) continue;
+    costs[topology.component[h / 3]].seams += 0.5 * edge_length(topology, h);
+  }
+  return costs;
+}
+
+// The charts of a mesh, as one attempt after the other made them: of each piece the best so far.
+class BestCharts {
+ public:
+  explicit BestCharts(const Topology& topology) : topology_(topology) {}
+
+  void take(const Partition& partition, std::vector<FlatChart> charts) {
+    const std::vector<Cost> made = costs(topology_, partition, charts);
+    std::vector<bool> better(made.size(), least_.empty());
+    for (std::size_t piece = 0; piece < least_.size(); ++piece) {
+      better[piece] = made[piece] < least_[piece];
+      if (better[piece]) least_[piece] = made[piece];
+    }
+    if (least_.empty()) least_ = made;
+    const auto changes = [&](const FlatChart& chart) {
+      return better[topology_.component[chart.triangles.front()]];
+    };
+    std::erase_if(charts_, changes);
+    std::copy_if(std::move_iterator(charts.begin()), std::move_iterator(charts.end()),
+                 std::back_inserter(charts_), changes);
+  }
+
+  std::vector<FlatChart> charts() && { return std::move(charts_); }
+
+ private:
+  const Topology& topology_;
+  std::vector<FlatChart> charts_;
+  std::vector<Cost> least_;  // 1 a piece
+};
+
+void sort_by_triangle(std::vector<FlatChart>& charts) {
+  std::sort(charts.begin(), charts.end(), [](const FlatChart& a, const FlatChart& b) {
+    return a.triangles.front() < b.triangles.front();
+  });
+}
+
+// All at once.
+CutCharts cut_mesh(const FlattenInput& mesh, const Context& context) {
+  const int attempts = mesh.options.preset == ChartPreset::best ? kBestAttempts : 1;
+  CutCharts out;
+  BestCharts best(mesh.topology);
+  for (int i = 0; i < attempts; ++i) {
+    const double start = own_cpu_seconds();
+    Segmentation segmentation = segment(mesh.topology, mesh.options, double(i) / attempts, context);
+    if (context.cancelled()) return out;
+    if (mesh.topology.triangle_count() > kTrianglesAtATime) return_freed_memory();
+    out.timing.segmentation_cpu += own_cpu_seconds() - start;
+    context.report("charts", (i + 0.5) / attempts);
+    FlattenResult flat =
+        flatten_charts({mesh.topology, mesh.density, mesh.options, segmentation.frames},
+                       segmentation.partition, context);
+    add_parts(segmentation.timing, out.timing);
+    add_parts(flat.timing, out.timing);
+    out.split_charts += flat.split_charts;
+    if (context.cancelled()) return out;
+    if (attempts == 1) {
+      out.charts = std::move(flat.charts);
+    } else {
+      best.take(segmentation.partition, std::move(flat.charts));
+    }
+  }
+  if (attempts > 1) out.charts = std::move(best).charts();
+  sort_by_triangle(out.charts);
+  return out;
+}
+
+// Pieces of a mesh, as many at a time as have about so many triangles.
+class Batches {
+ public:
+  Batches(const FlattenInput& mesh, std::span<const std::uint32_t> pieces, const Context& context)
+      : mesh_(mesh), pieces_(pieces), context_(context), cutter_(mesh.topology) {
+    std::size_t count = 0;
+    for (std::uint32_t i = 0; i < pieces.size(); ++i) {
+      if (count == 0) first_.push_back(i);
+      all_ += cutter_.triangle_count(pieces[i]);
+      count += cutter_.triangle_count(pieces[i]);
+      if (count >= kTrianglesAtATime) count = 0;
+    }
+    first_.push_back(static_cast<std::uint32_t>(pieces.size()));
+    inner_ = context;
+    if (first_.size() > 2) inner_.progress = nullptr;
+  }
+
+  CutCharts run() {
+    std::vector<CutCharts> made(first_.size() - 1);
+    parallel_for(context_, made.size(), 1, [&](std::size_t begin, std::size_t) {
+      made[begin] = cut(pieces_.subspan(first_[begin], first_[begin + 1] - first_[begin]));
+    });
+    CutCharts out;
+    for (CutCharts& batch : made) {
+      std::move(batch.charts.begin(), batch.charts.end(), std::back_inserter(out.charts));
+      out.timing.segmentation_cpu += batch.timing.segmentation_cpu;
+      add_parts(batch.timing, out.timing);
+      out.split_charts += batch.split_charts;
+      batch = {};
+    }
+    sort_by_triangle(out.charts);
+    return out;
+  }
+
+ private:
+  CutCharts cut(std::span<const std::uint32_t> pieces) {
+    const double start = own_cpu_seconds();
+    PieceMesh part;
+    {
+      const std::lock_guard lock(mutex_);  // the cutter's notes are of the whole mesh
+      part = cutter_.cut(pieces);
+    }
+    std::vector<float> density;
+    if (!mesh_.density.empty()) {
+      for (const std::uint32_t t : part.triangles) density.push_back(mesh_.density[t]);
+    }
+    Frames none;
+    const double cutting = own_cpu_seconds() - start;
+    CutCharts made = cut_mesh({part.topology, density, mesh_.options, none}, inner_);
+    made.timing.segmentation_cpu += cutting;
+    for (FlatChart& chart : made.charts) {
+      for (std::uint32_t& t : chart.triangles) t = part.triangles[t];
+      for (std::uint32_t& v : chart.vertex) v = part.topology.source_vertex[v];
+    }
+    if (!inner_.progress) report(part.triangles.size());
+    return made;
+  }
+
+  void report(std::size_t triangles) {
+    const std::lock_guard lock(mutex_);
+    done_ += triangles;
+    context_.report("charts", double(done_) / double(all_));
+  }
+
+  const FlattenInput& mesh_;
+  std::span<const std::uint32_t> pieces_;
+  const Context& context_;
+  Context inner_;  // of a batch
+  std::mutex mutex_;
+  PieceCutter cutter_;
+  std::vector<std::uint32_t> first_;  // 1 a batch and the end, into pieces_
+  std::size_t all_ = 0, done_ = 0;    // triangles
+};
+
+}  // namespace
+
+CutCharts cut_pieces(const FlattenInput& mesh, std::span<const std::uint32_t> pieces,
+                     const Context& context) {
+  const std::size_t n = mesh.topology.triangle_count();
+  // A large piece with few beside it gains nothing, and would stand twice in memory.
+  if (pieces.size() == mesh.topology.component_count &&
+      (n <= kTrianglesAtATime || n / kTrianglesAtATime >= pieces.size())) {
+    return cut_mesh(mesh, context);
+  }
+  return Batches(mesh, pieces, context).run();
+}
+
+}  // namespace atlas
