@@ -17,6 +17,7 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/progress.h"
 
 namespace atlas {
 namespace {
@@ -303,9 +304,10 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
   set.timing.topology_cpu = set.timing.segmentation_cpu - topology.noise_cpu;
 
   context.report("charts", 0.1);
+  const Context rest = part_of_stage(context, "charts", 0.1);
   std::vector<FlatChart> charts = options.keep_uv_charts
-                                      ? keep_charts({topology, given, options}, context, set)
-                                      : cut_charts({topology, given, options}, context, set);
+                                      ? keep_charts({topology, given, options}, rest, set)
+                                      : cut_charts({topology, given, options}, rest, set);
   if (context.cancelled()) return Status::cancelled();
   return_freed_memory();
   Assembler(mesh, topology, set).run(charts);

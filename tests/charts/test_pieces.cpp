@@ -1,9 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <random>
+#include <string>
+#include <string_view>
 
 #include "libatlas/charts/mesh/pieces.h"
+#include "libatlas/core/parallel.h"
 #include "tests/charts/chart_checks.h"
 
 namespace atlas::test {
@@ -27,6 +31,12 @@ Mesh shuffled_parts() {
   return mesh;
 }
 
+std::vector<std::uint32_t> from_to(std::uint32_t first, std::uint32_t last) {
+  std::vector<std::uint32_t> pieces;
+  for (std::uint32_t k = first; k < last; ++k) pieces.push_back(k);
+  return pieces;
+}
+
 TEST(Pieces, AreTheWholeMeshRenamed) {
   const Mesh mesh = shuffled_parts();
   const Result<Topology> built = build_topology(mesh.view(), {}, {});
@@ -35,7 +45,7 @@ TEST(Pieces, AreTheWholeMeshRenamed) {
   ASSERT_EQ(whole.component_count, 4u);
   PieceCutter cutter(whole);
   for (const auto& [first, last] : {std::pair{0u, 2u}, {2u, 3u}, {1u, 4u}, {0u, 4u}}) {
-    const PieceMesh part = cutter.cut(first, last);
+    const PieceMesh part = cutter.cut(from_to(first, last));
     const Topology& t = part.topology;
     std::size_t expected = 0;
     for (const std::uint32_t k : whole.component) expected += k >= first && k < last;
@@ -67,7 +77,7 @@ TEST(Pieces, ShareNoVertices) {
   const Mesh mesh = shuffled_parts();
   const Result<Topology> built = build_topology(mesh.view(), {}, {});
   ASSERT_TRUE(built.ok());
-  const PieceMesh part = PieceCutter(*built).cut(0, 4);
+  const PieceMesh part = PieceCutter(*built).cut(from_to(0, 4));
   std::vector<std::uint32_t> owner(part.topology.points.size(), kNoIndex);
   for (std::uint32_t h = 0; h < part.topology.corner_vertex.size(); ++h) {
     std::uint32_t& k = owner[part.topology.corner_vertex[h]];
@@ -77,9 +87,8 @@ TEST(Pieces, ShareNoVertices) {
   EXPECT_EQ(std::count(owner.begin(), owner.end(), kNoIndex), 0);
 }
 
-// More triangles than are segmented at a time, no part like another: charts are those of the parts,
-// in any order.
-TEST(Pieces, ManyBecomeChartsInTurn) {
+// More triangles than are cut at a time, no part like another.
+Mesh many_parts() {
   Shape all;
   for (int i = 0; i < 1200; ++i) {
     const double x = i % 40, y = i / 40;
@@ -90,20 +99,56 @@ TEST(Pieces, ManyBecomeChartsInTurn) {
       all.positions.push_back(
           {float(p.x + 4 * x), float(p.y + 4 * y), float(p.z * (1 + 0.001 * i))});
   }
-  ASSERT_GT(all.triangle_count(), 50000u);
-  const Mesh mesh(all);
-  Context one, two;
-  one.threads = 1;
-  two.threads = 2;
-  const Result<ChartSet> set = make_charts(mesh.view(), {}, one);
-  ASSERT_TRUE(set.ok());
-  EXPECT_EQ(check_charts(mesh.view(), *set).fault, "");
-  EXPECT_EQ(set->copied_pieces, 0u);
-  EXPECT_LE(set->charts.size(), 6 * 1200u);
-  EXPECT_GE(set->charts.size(), 1200u);
-  const Result<ChartSet> again = make_charts(mesh.view(), {}, two);
-  ASSERT_TRUE(again.ok());
-  EXPECT_EQ(bytes(*again), bytes(*set));
+  return Mesh(all);
+}
+
+TEST(Pieces, ManyBecomeChartsInParallel) {
+  const Mesh mesh = many_parts();
+  ASSERT_GT(mesh.indices.size(), 3 * 50000u);
+  std::string one;
+  for (const int threads : {1, 3}) {
+    Context context;
+    context.threads = threads;
+    std::atomic<int> inside{0};
+    double last = -1;
+    int reports = 0;
+    context.progress = [&](std::string_view stage, double fraction) {
+      EXPECT_EQ(++inside, 1);
+      EXPECT_EQ(stage, "charts");
+      EXPECT_GE(fraction, last);
+      EXPECT_LE(fraction, 1);
+      last = fraction;
+      ++reports;
+      --inside;
+    };
+    const double start = own_cpu_seconds();
+    const Result<ChartSet> set = make_charts(mesh.view(), {}, context);
+    const double spent = own_cpu_seconds() - start;
+    ASSERT_TRUE(set.ok());
+    EXPECT_EQ(check_charts(mesh.view(), *set).fault, "");
+    EXPECT_EQ(set->copied_pieces, 0u);
+    EXPECT_LE(set->charts.size(), 6 * 1200u);
+    EXPECT_GE(set->charts.size(), 1200u);
+    EXPECT_GE(reports, 4);
+    EXPECT_EQ(last, 1);
+    EXPECT_NEAR(set->timing.segmentation_cpu + set->timing.parameterization_cpu, spent, 5e-3);
+    EXPECT_GT(set->timing.segmentation_cpu, 0.1 * spent);
+    EXPECT_GT(set->timing.parameterization_cpu, 0.1 * spent);
+    if (one.empty()) one = bytes(*set);
+    EXPECT_EQ(bytes(*set), one);
+  }
+}
+
+TEST(Pieces, InParallelEndWhenCancelled) {
+  const Mesh mesh = many_parts();
+  std::atomic<bool> cancel{false};
+  Context context;
+  context.threads = 3;
+  context.cancel = &cancel;
+  context.progress = [&](std::string_view, double fraction) { cancel = fraction > 0.1; };
+  const Result<ChartSet> set = make_charts(mesh.view(), {}, context);
+  ASSERT_FALSE(set.ok());
+  EXPECT_EQ(set.status().code(), ErrorCode::cancelled);
 }
 
 }  // namespace
