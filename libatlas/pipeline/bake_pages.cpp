@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "libatlas/core/background.h"
 #include "libatlas/core/clock.h"
+#include "libatlas/core/parallel.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/image/image_io.h"
 
@@ -32,8 +35,9 @@ std::vector<std::vector<ChartPlacement>> placements_by_page(const PageLayout& la
   return pages;
 }
 
-// Pages that wait to be written take at most so many bytes together, but for the first.
-constexpr std::size_t kBytesBeingWritten = std::size_t{256} << 20;
+// Pages that are baked, and those that wait to be written, take at most so many bytes each
+// together, but for the first.
+constexpr std::size_t kBytesAtOnce = std::size_t{256} << 20;
 
 class PageBaker {
  public:
@@ -44,18 +48,20 @@ class PageBaker {
         files_(files),
         context_(context),
         pages_(placements_by_page(layout_)),
-        write_cpu_(layout_.pages.size(), 0) {}
+        write_cpu_(layout_.pages.size(), 0),
+        fraction_(layout_.pages.size(), 0) {}
 
   Result<BakedPages> run() {
-    const double cpu = cpu_seconds();
+    const double cpu = own_cpu_seconds();
     if (options_.measure_error) {
       const BookedTime cpu_watch(thread_cpu_seconds, result_.measure_cpu);
       const BookedTime wall_watch(wall_seconds, result_.measure_wall);
       meter_.emplace(light_, layout_.placements, FidelityOptions{});
     }
-    Background writing(pages_written_at_once());
-    for (std::size_t p = 0; p < pages_.size(); ++p) {
-      if (Status s = add_page(p, writing); !s.ok()) return s;
+    const std::size_t at_once = pages_at_once();
+    Background writing(writes_itself() ? 0 : at_once);
+    for (std::size_t p = 0; p < pages_.size(); p += at_once) {
+      if (Status s = add_pages(p, std::min(at_once, pages_.size() - p), writing); !s.ok()) return s;
     }
     {
       const BookedTime watch(wall_seconds, result_.write_wall);
@@ -67,31 +73,49 @@ class PageBaker {
       result_.pages[p].image_bytes = error ? 0 : bytes;
       result_.write_cpu += write_cpu_[p];
     }
-    result_.bake_cpu = cpu_seconds() - cpu - result_.write_cpu - result_.measure_cpu;
+    result_.bake_cpu = own_cpu_seconds() - cpu - result_.measure_cpu;
+    if (writes_itself()) result_.bake_cpu -= result_.write_cpu;
     if (meter_) result_.fidelity = meter_->result();
     return std::move(result_);
   }
 
  private:
-  std::size_t pages_written_at_once() const {
-    if (context_.threads == 1 || pages_.size() < 2) return 0;
+  // The caller's thread, not one in the background.
+  bool writes_itself() const { return pages_.size() < 2 || context_.threads == 1; }
+
+  // So many are baked, and so many written beside that: as many as there are threads, since a page
+  // may hold a single chart.
+  std::size_t pages_at_once() const {
+    if (writes_itself()) return 1;
     const std::size_t texel = options_.exr ? 3 + 3 * sizeof(float) : 3;
     const std::size_t bytes =
         texel * std::size_t(layout_.pages[0].width) * std::size_t(layout_.pages[0].height);
     const std::size_t threads =
         context_.threads > 0 ? std::size_t(context_.threads) : std::thread::hardware_concurrency();
-    return std::clamp<std::size_t>(kBytesBeingWritten / bytes, 1,
-                                   std::max<std::size_t>(threads, 1));
+    return std::clamp<std::size_t>(kBytesAtOnce / bytes, 1, std::max<std::size_t>(threads, 1));
   }
 
-  Status add_page(std::size_t p, Background& writing) {
-    Result<BakedPage> baked = bake(p);
-    if (!baked.ok()) return baked.status();
-    result_.covered_texels += baked->covered_texels;
+  Status add_pages(std::size_t first, std::size_t count, Background& writing) {
+    std::vector<std::optional<Result<BakedPage>>> baked(count);
+    {
+      const BookedTime watch(wall_seconds, result_.bake_wall);
+      parallel_for(context_, count, 1,
+                   [&](std::size_t i, std::size_t) { baked[i].emplace(bake(first + i)); });
+    }
+    if (context_.cancelled()) return Status::cancelled();
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!baked[i]->ok()) return baked[i]->status();
+      if (Status s = add_page(first + i, std::move(baked[i]->value()), writing); !s.ok()) return s;
+    }
+    return {};
+  }
+
+  Status add_page(std::size_t p, BakedPage baked, Background& writing) {
+    result_.covered_texels += baked.covered_texels;
     if (meter_) {
       const BookedTime cpu_watch(thread_cpu_seconds, result_.measure_cpu);
       const BookedTime wall_watch(wall_seconds, result_.measure_wall);
-      meter_->add_page(std::int32_t(p), baked->display);
+      meter_->add_page(std::int32_t(p), baked.display);
     }
     const std::string name = page_name(options_.target, p) + ".png";
     std::filesystem::path target = options_.target.parent_path() / name;
@@ -102,7 +126,7 @@ class PageBaker {
     result_.pages.push_back({name, layout_.pages[p].width, layout_.pages[p].height,
                              std::uint32_t(pages_[p].size()), 0});
     const BookedTime watch(wall_seconds, result_.write_wall);
-    return writing.add([this, p, png, exr, page = std::move(baked.value())]() -> Status {
+    return writing.add([this, p, png, exr, page = std::move(baked)]() -> Status {
       const BookedTime own_watch(thread_cpu_seconds, write_cpu_[p]);
       if (Status s = write_png(png, page.display, {options_.png_compression, true}); !s.ok())
         return s;
@@ -111,10 +135,11 @@ class PageBaker {
   }
 
   Result<BakedPage> bake(std::size_t p) {
-    const BookedTime watch(wall_seconds, result_.bake_wall);
     Context context = context_;
     context.progress = [&](std::string_view, double fraction) {
-      context_.report("baking", (double(p) + fraction) / double(pages_.size()));
+      const std::lock_guard lock(reporting_);
+      fractions_ += fraction - std::exchange(fraction_[p], fraction);
+      context_.report("baking", std::min(1.0, fractions_ / double(pages_.size())));
     };
     BakeOptions bake;
     bake.page_width = layout_.pages[p].width;
@@ -134,6 +159,9 @@ class PageBaker {
   std::vector<std::vector<ChartPlacement>> pages_;
   std::optional<FidelityMeter> meter_;
   std::vector<double> write_cpu_;  // by page: each writer adds to its own
+  std::mutex reporting_;
+  std::vector<double> fraction_;  // by page: done
+  double fractions_ = 0;          // their sum
   BakedPages result_;
 };
 
