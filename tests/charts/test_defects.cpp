@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <map>
+#include <random>
 
+#include "libatlas/core/random.h"
 #include "tests/charts/chart_checks.h"
 
 namespace atlas::test {
@@ -34,6 +38,59 @@ Mesh band(int n, int half_turns) {
     for (const std::uint32_t v : {a, b, c, b, d, c}) mesh.indices.push_back(v);
   }
   return mesh;
+}
+
+// The outside of cubes that fill half of a grid of 4 x 4 x 4 at random.
+Mesh cubes(std::uint64_t seed) {
+  constexpr int kSide = 4;
+  std::mt19937_64 random(seed);
+  std::array<bool, kSide * kSide * kSide> full;
+  for (bool& cube : full) cube = uniform(random) < 0.5;
+  full[0] = true;
+  const auto filled = [&](std::array<int, 3> p) {
+    for (const int c : p) {
+      if (c < 0 || c >= kSide) return false;
+    }
+    return full[std::size_t((p[0] * kSide + p[1]) * kSide + p[2])];
+  };
+  Mesh mesh;
+  std::map<std::array<int, 3>, std::uint32_t> vertices;
+  const auto corner = [&](std::array<int, 3> p) {
+    const auto [at, added] = vertices.try_emplace(p, std::uint32_t(mesh.positions.size()));
+    if (added) mesh.positions.push_back({float(p[0]), float(p[1]), float(p[2])});
+    return at->second;
+  };
+  for (int i = 0; i < 3 * 2 * kSide * kSide * kSide; ++i) {
+    const int axis = i % 3, out = i / 3 % 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const std::array<int, 3> p{i / 6 / kSide / kSide, i / 6 / kSide % kSide, i / 6 % kSide};
+    std::array<int, 3> next = p, q = p;
+    next[axis] += out ? 1 : -1;
+    if (!filled(p) || filled(next)) continue;
+    q[axis] += out;
+    std::array<std::uint32_t, 4> face;
+    for (int k = 0; k < 4; ++k) {
+      std::array<int, 3> at = q;
+      at[u] += k == 1 || k == 2;
+      at[v] += k >= 2;
+      face[std::size_t(out ? k : 3 - k)] = corner(at);
+    }
+    for (const int k : {0, 1, 2, 0, 2, 3}) mesh.indices.push_back(face[std::size_t(k)]);
+  }
+  return mesh;
+}
+
+// Charts of cubes come to touch themselves when they unroll. Turned for the packer they still must
+// not overlap, though rounding moves what touches.
+TEST(Defects, ChartsOfCubesTouchButDoNotOverlap) {
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    SCOPED_TRACE(seed);
+    const Mesh mesh = cubes(seed);
+    ChartOptions options;
+    options.preset = seed % 2 ? ChartPreset::standard : ChartPreset::fast;
+    const Result<ChartSet> set = make_charts(mesh.view(), options, {});
+    ASSERT_TRUE(set.ok());
+    EXPECT_EQ(check_charts(mesh.view(), *set).fault, "");
+  }
 }
 
 TEST(Defects, AMoebiusStripIsCut) {

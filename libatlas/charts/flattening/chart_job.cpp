@@ -337,7 +337,6 @@ class ChartJob {
     const bool single = chart_.triangles().size() == 1;
     if (!single && !(result_.injective && result_.within_bound)) return false;
     FlatChart& flat = outcome.flat;
-    flat.uvs = std::move(result_.uvs);
     scratch_.border.clear();
     for (std::uint32_t h = 0; h < chart_.opposite.size(); ++h) {
       if (chart_.opposite[h] == kNoIndex) {
@@ -345,13 +344,23 @@ class ChartJob {
                                    chart_.corners[next_half_edge(h) / 3][next_half_edge(h) % 3]});
       }
     }
-    flat.size = orient_for_packing(flat.uvs, scratch_.border).size;
+    flat.size = orient_for_packing(result_.uvs, scratch_.border).size;
+    if (!single && !injective_as_turned()) return false;
+    flat.uvs = std::move(result_.uvs);
     flat.corners = chart_.corners;
     flat.vertex = chart_.vertex;
     flat.cone = cone_;
     flat.distortion = result_.distortion;
     flat.planar = result_.planar;
     return true;
+  }
+
+  // Turning rounds: where borders touch, as those of boxes do that unroll, they may cross now.
+  bool injective_as_turned() {
+    Injectivity check = check_injectivity(chart_.mesh(), result_.uvs);
+    result_.injective = check.injective;
+    if (!check.injective) result_.crossings = std::move(check.crossings);
+    return check.injective;
   }
 
   const FlattenInput& input_;
