@@ -147,5 +147,20 @@ TEST(NormalCone, IsTheSmallestOfThreeNormals) {
   EXPECT_NEAR(normal_cone(normals, one).angle, 0, 1e-5);
 }
 
+// Coordinates of a few steps of the smallest float there is: what scales them to unit size is
+// beyond float.
+TEST(Topology, DenormalCoordinatesAreScaledToo) {
+  Mesh mesh(grid(4, 4));
+  for (Vec3f& p : mesh.positions) p = {p.x * 0x1p-146f, p.y * 0x1p-146f, 0};
+  const Topology topology = topology_of(mesh);
+  EXPECT_EQ(topology.points.size(), mesh.positions.size());
+  for (const Vec3f& p : topology.points) EXPECT_TRUE(p.x >= 0 && p.x <= 2 && p.y >= 0 && p.y <= 2);
+  EXPECT_EQ(topology.defects.degenerate_triangles, 0u);
+  const Result<ChartSet> set = make_charts(mesh.view(), {}, {});
+  ASSERT_TRUE(set.ok()) << set.status().message();
+  EXPECT_EQ(set->charts.size(), 1u);
+  EXPECT_EQ(set->distortion.degenerate, 0u);
+}
+
 }  // namespace
 }  // namespace atlas::test

@@ -129,8 +129,11 @@ void weld(const MeshView& mesh, const std::vector<std::uint8_t>& used, Topology&
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
     topology.corner_vertex[i] = id[mesh.indices[i]];
   }
-  const auto scale = static_cast<float>(topology.scale);
-  for (Vec3f& p : topology.points) p = {p.x * scale, p.y * scale, p.z * scale};
+  // In double: the scale of a mesh of denormal numbers is beyond float.
+  const double scale = topology.scale;
+  for (Vec3f& p : topology.points) {
+    p = {float(p.x * scale), float(p.y * scale), float(p.z * scale)};
+  }
 }
 
 glm::dvec3 point(const Topology& topology, std::uint32_t corner) {
