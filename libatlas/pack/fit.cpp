@@ -56,11 +56,12 @@ Status check(std::span<const FitItem> items, const FitOptions& o) {
         fmt::format("fit: page_size {}, padding {}, alignment {} and minimum_side {} do not go "
                     "together (page_size in [alignment + 2 padding, 2^20], others not negative)",
                     o.page_size, o.padding, o.alignment, o.minimum_side)};
-  if (o.power_of_two && !std::has_single_bit(static_cast<std::uint32_t>(o.page_size)))
+  const bool power_of_two = o.power_of_two && !o.free_aspect;
+  if (power_of_two && !std::has_single_bit(static_cast<std::uint32_t>(o.page_size)))
     return {ErrorCode::bad_option,
             fmt::format("fit: page_size {} is not a power of two (use {})", o.page_size,
                         std::bit_floor(static_cast<std::uint32_t>(o.page_size)))};
-  if (o.power_of_two && !std::has_single_bit(static_cast<std::uint32_t>(o.alignment)))
+  if (power_of_two && !std::has_single_bit(static_cast<std::uint32_t>(o.alignment)))
     return {ErrorCode::bad_option, "fit: with power-of-two pages the alignment must be one too"};
   if (!(o.max_scale > 0) || !std::isfinite(o.max_scale))
     return {ErrorCode::bad_option, "fit: max_scale must be finite and above 0"};

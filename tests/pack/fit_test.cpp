@@ -210,6 +210,18 @@ TEST(FitPages, FreePagesAreCropped) {
   }
 }
 
+// Pages of any shape need no power of two.
+TEST(FitPages, FreePagesHaveAnyLargestSide) {
+  FitOptions o;
+  o.page_size = 1000;
+  o.free_aspect = true;
+  const Result<FitResult> fitted = fit_pages(std::vector<FitItem>{{900, 30}, {700, 40}}, o, {});
+  ASSERT_TRUE(fitted.ok()) << fitted.status().message();
+  EXPECT_LE(fitted->pages[0].width, 1000);
+  o.free_aspect = false;
+  EXPECT_FALSE(fit_pages(std::vector<FitItem>{{900, 30}}, o, {}).ok());
+}
+
 TEST(FitPages, Failures) {
   FitOptions o;
   o.page_size = 64;
