@@ -130,9 +130,8 @@ class SliverOpener {
 std::size_t round_uvs(std::span<const Vec2d> exact, std::span<const std::uint32_t> corners,
                       std::vector<Vec2f>& rounded, double farthest) {
   rounded.resize(exact.size());
-  for (std::size_t i = 0; i < exact.size(); ++i) {
-    rounded[i] = {float(exact[i].x), float(exact[i].y)};
-  }
+  // Charts at the page's edge may be off it by what turning them has rounded.
+  for (std::size_t i = 0; i < exact.size(); ++i) rounded[i] = rounded_uv(to_glm(exact[i]));
   return SliverOpener(corners, exact, farthest, rounded).run();
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <unordered_map>
@@ -38,8 +39,10 @@ Status check_options(const UnwrapOptions& options) {
 Result<PagesOfParts> lay_out(const MeshView& mesh, const UnwrapOptions& options, ChartSet& charts,
                              const Context& context) {
   const double texels = double(options.pages) * options.page_size * options.page_size;
+  // More than full pages hold is as much as they hold; sizes in texels stay finite.
+  const double filling = filling_density(charts, texels);
   const double density =
-      options.texels_per_unit > 0 ? options.texels_per_unit : filling_density(charts, texels);
+      options.texels_per_unit > 0 ? std::min(options.texels_per_unit, filling) : filling;
   LayoutOptions layout;
   layout.pages = options.pages;
   layout.page_size = options.page_size;

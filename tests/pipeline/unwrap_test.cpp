@@ -146,6 +146,29 @@ TEST(Unwrap, PagesSquareAndSeveralWithADensity) {
   EXPECT_GT(fine->texels_per_unit, 4);
 }
 
+TEST(Unwrap, MoreTexelsThanPagesHoldAreAsManyAsTheyHold) {
+  const LoadedScene ring = lit_scene(torus(24, 12));
+  UnwrapOptions options{.page_size = 128};
+  const auto full = unwrap_mesh(view_of(ring.scene), options, {});
+  options.texels_per_unit = 1e300;  // sides of charts in texels would be beyond double
+  const auto asked = unwrap_mesh(view_of(ring.scene), options, {});
+  ASSERT_TRUE(full.ok() && asked.ok()) << asked.status().message();
+  EXPECT_EQ(asked->uvs, full->uvs);
+}
+
+// Without padding charts reach the page's edges, and beyond by what turning them has rounded.
+TEST(Unwrap, UvsAtThePagesEdgesAreOnIt) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const Shape shape = soup(3, seed);
+    MeshView view;
+    view.positions = shape.positions;
+    view.indices = shape.indices;
+    const auto mesh = unwrap_mesh(view, {.page_size = 64, .padding = 0, .square = true}, {});
+    ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+    expect_sound(view, *mesh);
+  }
+}
+
 TEST(Unwrap, UvsOfVerticesAreKept) {
   const LoadedScene ring = lit_scene(torus(24, 12));
   const auto made = unwrap_mesh(view_of(ring.scene), {}, {});
