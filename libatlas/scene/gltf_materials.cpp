@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "libatlas/scene/finite_float.h"
+
 namespace atlas {
 namespace fs = std::filesystem;
 namespace {
@@ -88,15 +90,15 @@ Diffuse diffuse_of(const tinygltf::Material& material) {
   if (glossy == material.extensions.end() || !glossy->second.IsObject()) {
     const auto& pbr = material.pbrMetallicRoughness;
     if (pbr.baseColorFactor.size() >= 3) {
-      diffuse.colour = {float(pbr.baseColorFactor[0]), float(pbr.baseColorFactor[1]),
-                        float(pbr.baseColorFactor[2])};
+      diffuse.colour = {finite_float(pbr.baseColorFactor[0]), finite_float(pbr.baseColorFactor[1]),
+                        finite_float(pbr.baseColorFactor[2])};
     }
     if (pbr.baseColorFactor.size() >= 4) diffuse.opacity = pbr.baseColorFactor[3];
     diffuse.texture = pbr.baseColorTexture;
     return diffuse;
   }
   const auto rgb = numbers<3>(glossy->second, "diffuseFactor", 1);
-  diffuse.colour = {float(rgb[0]), float(rgb[1]), float(rgb[2])};
+  diffuse.colour = {finite_float(rgb[0]), finite_float(rgb[1]), finite_float(rgb[2])};
   diffuse.opacity = numbers<4>(glossy->second, "diffuseFactor", 1)[3];
   const tinygltf::Value& info = glossy->second.Get("diffuseTexture");
   if (!info.IsObject() || !info.Get("index").IsInt()) return diffuse;

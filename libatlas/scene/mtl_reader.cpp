@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "libatlas/scene/file_bytes.h"
+#include "libatlas/scene/finite_float.h"
 #include "libatlas/scene/formats.h"
 #include "libatlas/scene/mtl_names.h"
 #include "libatlas/scene/text_scanner.h"
@@ -104,7 +105,7 @@ class MtlParser {
     if (count == 0 || count == 2) return malformed("Kd needs three numbers, or one");
     if (count == 1) c[1] = c[2] = c[0];
     RawMaterial& material = builder_.materials.back();
-    material.diffuse = {float(c[0]), float(c[1]), float(c[2])};
+    material.diffuse = {finite_float(c[0]), finite_float(c[1]), finite_float(c[2])};
     if (!is_reflectance(material.diffuse)) {
       builder_.defects.add(DefectKind::reflectance_beyond_one, [&] {
         return fmt::format("{}: Kd of material '{}'", place(), material.name);

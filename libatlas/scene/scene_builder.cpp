@@ -162,7 +162,15 @@ void SceneBuilder::move_texcoords() {
       const auto row = [&](const std::array<double, 3>& r) {
         return float(uv.x * r[0] + uv.y * r[1] + r[2]);
       };
-      texcoords.push_back({row(raw.uv_u), row(raw.uv_v)});
+      Vec2f to{row(raw.uv_u), row(raw.uv_v)};
+      if (!std::isfinite(to.x) || !std::isfinite(to.y)) {
+        to = {};
+        defects.add(DefectKind::texcoord_not_finite, [&] {
+          return fmt::format("{}: texture coordinate {} as material '{}' moves it", file,
+                             texcoord_indices_[k] + 1, raw.name);
+        });
+      }
+      texcoords.push_back(to);
     }
     texcoord_indices_[k] = at->second;
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libatlas/image/image_io.h"
+#include "libatlas/scene/check_scene.h"
 #include "libatlas/scene/reader.h"
 #include "tests/scene/gltf_maker.h"
 #include "tests/scene/temp_folder.h"
@@ -103,6 +104,30 @@ TEST(Gltf, EmissionAndReflectancesBeyondOne) {
   EXPECT_EQ(loaded->scene.materials[1].diffuse, (Vec3f{2, 1, 1}));
   ASSERT_EQ(loaded->defects.count(DefectKind::reflectance_beyond_one), 1u);
   EXPECT_TRUE(loaded->defects.defects[0].first_places[0].ends_with(": material 'bright'"));
+}
+
+// JSON's numbers go beyond float, and so may coordinates that a texture's scale moves.
+TEST(Gltf, NumbersBeyondFloatLeaveFiniteMaterialsAndCoordinates) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());
+  Gltf g;
+  const json attributes = {{"POSITION", g.floats(kSquare, "VEC3", 3)},
+                           {"TEXCOORD_0", g.floats({0, 0, 1, 0, 0, 1, 1, 1}, "VEC2", 2)}};
+  g.j["images"] = {{{"uri", "a.png"}}};
+  g.j["textures"] = {{{"source", 0}}};
+  json info = {{"index", 0}};
+  info["extensions"]["KHR_texture_transform"] = {{"scale", {1e39, 1}}};
+  g.j["materials"] = {{{"pbrMetallicRoughness",
+                        {{"baseColorTexture", info}, {"baseColorFactor", {1e39, 1, 1, 1}}}}},
+                      {{"name", "glossy"}}};
+  g.j["materials"][1]["extensions"]["KHR_materials_pbrSpecularGlossiness"] = {
+      {"diffuseFactor", {-1e39, 1, 1, 1}}};
+  add_triangle_of_each_material(g, attributes);
+  const auto loaded = load_glb(folder, g);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(check_scene(loaded->scene).message(), "");
+  EXPECT_EQ(loaded->defects.count(DefectKind::texcoord_not_finite), 1u);
+  EXPECT_EQ(loaded->defects.count(DefectKind::reflectance_beyond_one), 2u);
 }
 
 TEST(Gltf, TexturesWithoutAnImageThatIsReadAreTold) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "libatlas/image/image_io.h"
+#include "libatlas/scene/check_scene.h"
 #include "libatlas/scene/reader.h"
 #include "tests/scene/load_scene.h"
 #include "tests/scene/temp_folder.h"
@@ -123,6 +124,17 @@ TEST(Mtl, WhatNoSurfaceReflectsIsKeptAndTold) {
       << defect.first_places[0];
   EXPECT_TRUE(defect.first_places[1].ends_with("m.mtl:6: Kd of material 'c'"));
   EXPECT_EQ(loaded.scene.materials[1].diffuse, (Vec3f{204, 180, 150}));
+}
+
+TEST(Mtl, NumbersBeyondFloatLeaveFiniteMaterialsAndCoordinates) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 77), {}).ok());
+  folder.write("m.mtl", "newmtl a\nKd 1e39 1 -1e39\nmap_Kd -s 1e39 1 a.png\n");
+  const LoadedScene loaded = load(folder.write(
+      "s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nusemtl a\nf 1/1 2/1 3/1\n"));
+  EXPECT_EQ(check_scene(loaded.scene).message(), "");
+  EXPECT_EQ(loaded.defects.count(DefectKind::texcoord_not_finite), 1u);
+  EXPECT_EQ(loaded.defects.count(DefectKind::reflectance_beyond_one), 1u);
 }
 
 // A zero is what many programs write for every material.
