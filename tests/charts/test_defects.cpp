@@ -93,6 +93,22 @@ TEST(Defects, ChartsOfCubesTouchButDoNotOverlap) {
   }
 }
 
+// Pieces that are cut off for the page's sake keep to the cone, too.
+TEST(Defects, PiecesOfCubesStayWithinAWideCone) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(seed);
+    const Mesh mesh = cubes(seed);
+    ChartOptions options;
+    options.cone_degrees = 120;
+    options.max_stretch = 1.01;
+    const Result<ChartSet> set = make_charts(mesh.view(), options, {});
+    ASSERT_TRUE(set.ok());
+    const ChartFindings found = check_charts(mesh.view(), *set);
+    EXPECT_EQ(found.fault, "");
+    EXPECT_LE(found.cone_degrees, 120.01);
+  }
+}
+
 TEST(Defects, AMoebiusStripIsCut) {
   const ChartSet set = whole(band(40, 1));
   EXPECT_LE(set.charts.size(), 6u);

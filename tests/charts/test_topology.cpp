@@ -147,6 +147,20 @@ TEST(NormalCone, IsTheSmallestOfThreeNormals) {
   EXPECT_NEAR(normal_cone(normals, one).angle, 0, 1e-5);
 }
 
+// Opposite sides of a box: their sum is the worst axis of the part, and the whole's is within 90
+// degrees of all.
+TEST(NormalCone, OfAPartIsNotWiderThanTheWhole) {
+  const std::vector<Vec3f> normals = {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1},
+                                      {0, 1, 0},  {0, 1, 0},  {0, 1, 0}};
+  const std::vector<std::uint32_t> ids = {0, 1, 2, 3, 4, 5};
+  const float half = std::sqrt(0.5f);
+  const NormalCone whole{{-half, 0, -half}, 1.8};
+  EXPECT_GT(normal_cone(normals, ids).angle, 2);
+  EXPECT_NEAR(part_of_cone(normals, ids, whole).angle, M_PI / 2, 1e-6);
+  const std::vector<std::uint32_t> one = {3};
+  EXPECT_NEAR(part_of_cone(normals, one, whole).angle, 0, 1e-5);
+}
+
 // Coordinates of a few steps of the smallest float there is: what scales them to unit size is
 // beyond float.
 TEST(Topology, DenormalCoordinatesAreScaledToo) {

@@ -72,7 +72,7 @@ FlatChart part_of_chart(const FlattenInput& input, const FlatChart& whole,
     }
   }
   piece.size = orient_for_packing(piece.uvs, border).size;
-  piece.cone = normal_cone(input.topology.normals, piece.triangles);
+  piece.cone = part_of_cone(input.topology.normals, piece.triangles, whole.cone);
   return piece;
 }
 

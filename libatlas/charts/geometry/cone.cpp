@@ -113,6 +113,15 @@ NormalCone normal_cone(std::span<const Vec3f> normals, std::span<const std::uint
   return smallest_cone(ids.size(), [&](std::size_t i) { return normals[ids[i]]; });
 }
 
+NormalCone part_of_cone(std::span<const Vec3f> normals, std::span<const std::uint32_t> ids,
+                        const NormalCone& whole) {
+  const NormalCone own = normal_cone(normals, ids);
+  if (own.angle <= whole.angle) return own;
+  const auto normal = [&](std::size_t i) { return normals[ids[i]]; };
+  const glm::dvec3 axis = to_dvec(whole.axis);
+  return {whole.axis, angle_between(axis, farthest(ids.size(), normal, to_glm(whole.axis)).first)};
+}
+
 NormalCone normal_cone(std::span<const Vec3f> normals) {
   return smallest_cone(normals.size(), [&](std::size_t i) { return normals[i]; });
 }

@@ -18,6 +18,10 @@ struct NormalCone {
 // smallest ball around the normals, found on a growing set of extreme ones (Badoiu and Clarkson
 // 2003). Otherwise the axis is that of their sum. O(n) a round, a dozen rounds at most.
 NormalCone normal_cone(std::span<const Vec3f> normals, std::span<const std::uint32_t> ids);
+// The same of a part of what `whole` is the cone of, and nowhere wider than it: of normals that no
+// half-space holds another axis may be found than the whole's, and a worse one.
+NormalCone part_of_cone(std::span<const Vec3f> normals, std::span<const std::uint32_t> ids,
+                        const NormalCone& whole);
 // Over all of them.
 NormalCone normal_cone(std::span<const Vec3f> normals);
 
