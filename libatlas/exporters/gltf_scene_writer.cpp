@@ -236,7 +236,8 @@ std::vector<std::string> losses_of(const Scene& scene) {
                !is_reflectance(material.diffuse));
     for (const std::string& line : material.mtl_lines) {
       const std::string keyword = line.substr(0, line.find_first_of(" \t"));
-      if (keyword == "map_Kd" || keyword == "d") continue;
+      const bool halo = line.find("-halo") != line.npos;  // a share that depends on the view
+      if (keyword == "map_Kd" || (keyword == "d" && !halo)) continue;
       if (keyword == "Ke" && !material.emission_textured) continue;
       losses.add("lines of the MTL: " + keyword);
     }

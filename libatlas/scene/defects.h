@@ -32,6 +32,7 @@ enum class DefectKind : std::uint8_t {
   illumination_elsewhere,   // value used, though its vertex lies elsewhere in the light's own file
   material_file_missing,    // its materials are white
   material_unknown,         // white is used
+  reflectance_unknown,      // no red, green and blue: white, or what the material had before
   reflectance_beyond_one,   // or below 0: value kept as it is
   texture_missing,          // the material's plain diffuse colour is used
   texture_unreadable,       // likewise

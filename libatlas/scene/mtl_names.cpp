@@ -24,6 +24,39 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
+std::string in_small_letters(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
+// What a folder holds under this name, whether in capitals or small letters; of several the first
+// in the order of their bytes. Empty where there is nothing.
+fs::path in_any_case(const fs::path& folder, const fs::path& name) {
+  const std::string wanted = in_small_letters(name.string());
+  fs::path found;
+  std::error_code ignored;  // a folder that cannot be listed holds nothing
+  for (fs::directory_iterator at(folder.empty() ? "." : folder, ignored), end; at != end;
+       at.increment(ignored)) {
+    const fs::path entry = at->path().filename();
+    if (in_small_letters(entry.string()) == wanted && (found.empty() || entry < found))
+      found = entry;
+  }
+  return found.empty() ? found : folder / found;
+}
+
+// The file of this path, folder by folder in any case from `folder` on; empty where there is none.
+fs::path file_in_any_case(const fs::path& folder, const fs::path& path) {
+  if (path.is_absolute()) return {};
+  fs::path at = folder;
+  std::error_code ignored;
+  for (const fs::path& part : path) {
+    at = fs::exists(at / part, ignored) ? at / part : in_any_case(at, part);
+    if (at.empty()) return {};
+  }
+  return is_file(at) ? at : fs::path();
+}
+
 // Where the word that begins at `begin` ends.
 std::size_t word_end(std::string_view text, std::size_t begin) {
   return std::min(text.find_first_of(kBlanks, begin), text.size());
@@ -63,7 +96,13 @@ std::size_t unknown_name(const fs::path& folder, std::string_view names) {
 fs::path named_file(const fs::path& folder, std::string_view name) {
   const fs::path file = path_in(folder, name), beside = folder / file.filename();
   std::error_code ignored;
-  return !fs::exists(file, ignored) && is_file(beside) ? beside : file;
+  if (fs::exists(file, ignored)) return file;
+  if (is_file(beside)) return beside;
+  // Where the file was written capitals may have meant nothing.
+  for (const fs::path& path : {file.lexically_relative(folder), file.filename()}) {
+    if (fs::path found = file_in_any_case(folder, path); !found.empty()) return found;
+  }
+  return file;
 }
 
 std::string_view quoted_name(std::string_view text) {

@@ -8,8 +8,8 @@
 namespace atlas {
 
 // The file that `name` means in a file of `folder`: backslashes part folders as slashes do, and a
-// file that is not where the name says, as those of another machine, is looked for in `folder`.
-// Where there is neither it is the first of the two.
+// file that is not where the name says, as those of another machine, is looked for in `folder`,
+// and both once more in any mix of capitals and small letters. Where there is none it is the first.
 std::filesystem::path named_file(const std::filesystem::path& folder, std::string_view name);
 
 // What the quotes at the beginning of `text` enclose, which some programs write around names with

@@ -14,6 +14,20 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
+char small(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+// A keyword that is read here as the format spells it: some programs write kd and map_kd.
+std::string_view spelled(std::string_view keyword) {
+  for (const std::string_view known : {"newmtl", "Kd", "map_Kd", "d", "map_d", "Ke", "map_Ke"}) {
+    if (std::equal(keyword.begin(), keyword.end(), known.begin(), known.end(),
+                   [](char a, char b) { return small(a) == small(b); }))
+      return known;
+  }
+  return keyword;
+}
+
 class MtlParser {
  public:
   MtlParser(const fs::path& path, const FileBytes& bytes, SceneBuilder& builder)
@@ -37,9 +51,9 @@ class MtlParser {
   }
 
   Status parse_line() {
-    const std::string_view keyword = scan_.word();
+    const std::string_view word = scan_.word(), keyword = spelled(word);
     if (builder_.wants_rest && inside_ && keyword != "newmtl" && keyword != "Kd")
-      keep_line(keyword);
+      keep_line(keyword, word.end());
     if (keyword == "newmtl") {
       builder_.materials.push_back({});
       builder_.materials.back().name = scan_.rest();
@@ -48,6 +62,10 @@ class MtlParser {
       return {};
     }
     if (keyword == "d") return parse_opacity();
+    if (keyword == "map_d") {
+      if (inside_) builder_.materials.back().opacity_textured = true;
+      return {};
+    }
     if (keyword == "Ke" || keyword == "map_Ke") {
       if (inside_) parse_emission(keyword == "map_Ke");
       return {};
@@ -57,12 +75,12 @@ class MtlParser {
     return keyword == "Kd" ? parse_colour() : parse_map();
   }
 
-  // The line whose keyword has just been read, but for its indentation.
-  void keep_line(std::string_view keyword) {
+  // The line whose keyword has just been read, up to `at`, but for its indentation.
+  void keep_line(std::string_view keyword, const char* at) {
     if (keyword.starts_with('#')) return;
     TextScanner rest = scan_;
-    const char* end = rest.rest_with_comment().end();
-    builder_.materials.back().mtl_lines.emplace_back(keyword.data(), end);
+    std::string& line = builder_.materials.back().mtl_lines.emplace_back(keyword);
+    line.append(at, rest.rest_with_comment().end());
   }
 
   // What is no share (`d -halo 0.5`) is left out, and so is Tr, which some write for 1 - d and some
@@ -94,7 +112,20 @@ class MtlParser {
     emission_given_ = true;
   }
 
+  // The format has colours as curves (`spectral FILE`) and as CIE XYZ, too.
+  bool is_other_colour() const {
+    TextScanner ahead = scan_;
+    const std::string_view form = ahead.word();
+    return form == "spectral" || form == "xyz";
+  }
+
   Status parse_colour() {
+    if (is_other_colour()) {
+      builder_.defects.add(DefectKind::reflectance_unknown, [&] {
+        return fmt::format("{}: material '{}'", place(), builder_.materials.back().name);
+      });
+      return {};
+    }
     double c[3];
     int count = 0;
     for (; count < 3 && !scan_.at_line_end(); ++count) {

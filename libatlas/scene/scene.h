@@ -37,6 +37,7 @@ struct Material {
   // no part of what is baked. Where a texture shapes it, that is not read.
   Vec3f emission{0, 0, 0};
   bool emission_textured = false;
+  bool opacity_textured = false;  // by a texture of its own (map_d), which is not read
   // Of MTL, where asked for (ReadOptions::rest): its lines but newmtl and Kd, for exports that keep
   // the scene.
   std::vector<std::string> mtl_lines = {};

@@ -195,7 +195,7 @@ TEST(KeptRest, LinesOfMtl) {
   folder.write("m.mtl",
                "Ns 7\nnewmtl a\n  Ka 1 1 1\nKd 0.5 0 0\nKe 2 2 0 # glows\nKs 1 0 1\nNs 250\nd 0.5\n"
                "Tr 0.5\n# a comment\nillum 2\nmap_Kd -s 2 2 a b.png\nmap_Bump n.png\nbump n.png\n"
-               "MAP_Ks s.png\nNi 1.45\nmap_d \\\n x.png\nnewmtl b\n");
+               "MAP_Ks s.png\nNi 1.45\nmap_d \\\n x.png\nnewmtl b\nkd 0.25 0 0\nd -halo 0.3\n");
   const path obj = folder.write(
       "s.obj",
       "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\nusemtl b\n"
@@ -209,7 +209,7 @@ TEST(KeptRest, LinesOfMtl) {
                      "#MAP_Ks s.png\nNi 1.45\n#map_d "),
             std::string::npos)
       << mtl;
-  EXPECT_NE(mtl.find("\nnewmtl b\nKd 1 1 1\n"), std::string::npos) << mtl;
+  EXPECT_NE(mtl.find("\nnewmtl b\nKd 0.25 0 0\nd -halo 0.3\n"), std::string::npos) << mtl;
   const auto back = read_scene(folder / "w.obj", kRest, {});
   ASSERT_TRUE(back.ok()) << back.status().message();
   EXPECT_TRUE(back->scene.textures.empty());
@@ -217,7 +217,7 @@ TEST(KeptRest, LinesOfMtl) {
       keep(obj, folder / "w.glb", kRest).not_kept,
       (Lines{"1 x lines of the MTL: Ka", "1 x lines of the MTL: Ks", "1 x lines of the MTL: MAP_Ks",
              "1 x lines of the MTL: Ni", "1 x lines of the MTL: Ns", "1 x lines of the MTL: Tr",
-             "1 x lines of the MTL: bump", "1 x lines of the MTL: illum",
+             "1 x lines of the MTL: bump", "1 x lines of the MTL: d", "1 x lines of the MTL: illum",
              "1 x lines of the MTL: map_Bump", "1 x lines of the MTL: map_d"}));
 }
 

@@ -79,6 +79,8 @@ TEST(Advice, TransparencyIsNamed) {
   scene.materials[2].opacity = 0.3f;
   EXPECT_TRUE(holds(advice_on_materials(scene, Quantity::luminance),
                     "2 materials ('fence', ...) are transparent or have holes"));
+  scene.materials[0].opacity_textured = true;
+  EXPECT_TRUE(holds(advice_on_materials(scene, Quantity::illuminance), "3 materials ('wall'"));
 }
 
 TEST(Advice, UvChartsOfWhichNoneIsKeptAreNamed) {

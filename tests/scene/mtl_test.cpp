@@ -47,6 +47,57 @@ TEST(Mtl, ATextureOfAnotherMachineIsFoundBesideTheMaterials) {
   EXPECT_EQ(loaded.scene.textures[0].path.filename(), "wood.png");
 }
 
+// As scenes that were written where capitals mean nothing.
+TEST(Mtl, FilesAreFoundInAnyCase) {
+  const TempFolder folder;
+  std::filesystem::create_directory(folder / "Maps");
+  ASSERT_TRUE(write_png(folder / "Maps" / "Wood.PNG", Image8(2, 2, 3, 77), {}).ok());
+  ASSERT_TRUE(write_png(folder / "beside.png", Image8(2, 2, 3, 77), {}).ok());
+  ASSERT_TRUE(write_png(folder / "BESIDE.png", Image8(2, 2, 3, 77), {}).ok());
+  const auto texture = [&](const std::string& name) {
+    folder.write("Scene.MTL", "newmtl a\nmap_Kd " + name + "\n");
+    const LoadedScene loaded = load(folder.write(
+        "s.obj", "mtllib scene.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nusemtl a\nf 1/1 2/1 3/1\n"));
+    EXPECT_EQ(loaded.defects.count(DefectKind::material_file_missing), 0u);
+    return loaded.scene.textures.empty() ? "" : loaded.scene.textures[0].path.filename().string();
+  };
+  EXPECT_EQ(texture("maps\\wood.png"), "Wood.PNG");
+  EXPECT_EQ(texture("MAPS/../Maps/WOOD.png"), "Wood.PNG");
+  EXPECT_EQ(texture("beside.png"), "beside.png");  // exactly this one
+  EXPECT_EQ(texture("C:\\x\\Beside.Png"), "BESIDE.png");
+  EXPECT_EQ(texture("wood.png"), "");  // it is in another folder
+}
+
+TEST(Mtl, KeywordsMayBeInAnyCase) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "wood.png", Image8(2, 2, 3, 77), {}).ok());
+  folder.write("m.mtl", "NewMtl a\nkd 0.1 0.2 0.3\nmap_kd wood.png\nKE 1 2 3\nD 0.5\n");
+  const LoadedScene loaded = load(folder.write(
+      "s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nusemtl a\nf 1/1 2/1 3/1\n"));
+  EXPECT_TRUE(loaded.defects.empty());
+  const Material& material = loaded.scene.materials[0];
+  EXPECT_EQ(material.diffuse, (Vec3f{0.1f, 0.2f, 0.3f}));
+  EXPECT_EQ(material.texture, 0);
+  EXPECT_EQ(material.emission, (Vec3f{1, 2, 3}));
+  EXPECT_EQ(material.opacity, 0.5f);
+}
+
+// The format has them; they are no reason to refuse the scene.
+TEST(Mtl, ColoursThatAreNoRgbAreADefect) {
+  const TempFolder folder;
+  folder.write("m.mtl",
+               "newmtl a\nKd spectral gold.rfl 1\nnewmtl b\nKd 0.5 0.5 0.5\nKd xyz 0.2 0.3 0.4\n");
+  const LoadedScene loaded = load(folder.write(
+      "s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n"));
+  ASSERT_EQ(loaded.defects.defects.size(), 1u);
+  const Defect& defect = loaded.defects.defects[0];
+  EXPECT_EQ(defect.kind, DefectKind::reflectance_unknown);
+  EXPECT_EQ(defect.count, 2u);
+  EXPECT_TRUE(defect.first_places[0].ends_with("m.mtl:2: material 'a'")) << defect.first_places[0];
+  EXPECT_EQ(loaded.scene.materials[0].diffuse, (Vec3f{1, 1, 1}));
+  EXPECT_EQ(loaded.scene.materials[1].diffuse, (Vec3f{0.5f, 0.5f, 0.5f}));
+}
+
 TEST(Mtl, NamesMayHoldWhatElseBeginsAComment) {
   const TempFolder folder;
   ASSERT_TRUE(write_png(folder / "wood #2 b.png", Image8(2, 2, 3, 77), {}).ok());
@@ -204,7 +255,9 @@ TEST(Mtl, Opacity) {
   for (const char* line : {"d 1", "d 2", "d -0.5", "d nan", "d -halo 0.5", "d", "Tr 1", "Tr 0.3"}) {
     EXPECT_EQ(read(line).opacity, 1) << line;
     EXPECT_EQ(read(line).alpha_mode, AlphaMode::opaque) << line;
+    EXPECT_FALSE(read(line).opacity_textured) << line;
   }
+  EXPECT_TRUE(read("map_d holes.png").opacity_textured);
 }
 
 }  // namespace
