@@ -4,8 +4,36 @@
 #include <system_error>
 
 namespace atlas {
+namespace {
+
+const char* after_digits(const char* at, const char* end) {
+  while (at < end && *at >= '0' && *at <= '9') ++at;
+  return at;
+}
+
+// What is no finite number as Microsoft's runtime wrote it until 2015: "-1.#IND00", "1.#QNAN",
+// "1.#INF00e+000". Exporters of that time leave it where a normal has no length. Null where it is
+// something else.
+const char* parse_special(const char* at, const char* end, double& value) {
+  const bool signed_ = *at == '-' || *at == '+';
+  const std::string_view text(at + signed_, std::size_t(end - at) - signed_);
+  for (const std::string_view name : {"1.#INF", "1.#IND", "1.#QNAN", "1.#SNAN"}) {
+    if (!text.starts_with(name)) continue;
+    using Limits = std::numeric_limits<double>;
+    value = name == "1.#INF" ? Limits::infinity() : Limits::quiet_NaN();
+    if (*at == '-') value = -value;
+    const char* stop = after_digits(text.data() + name.size(), end);
+    if (stop + 2 < end && *stop == 'e' && (stop[1] == '+' || stop[1] == '-'))
+      stop = after_digits(stop + 2, end);
+    return stop;
+  }
+  return nullptr;
+}
+
+}  // namespace
 
 const char* parse_number_slow(const char* at, const char* end, double& value) {
+  if (const char* stop = at < end ? parse_special(at, end, value) : nullptr) return stop;
   const char* start = *at == '+' ? at + 1 : at;
   if (start > at && *start == '-') return nullptr;
   const auto [stop, error] = std::from_chars(start, end, value);

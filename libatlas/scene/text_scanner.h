@@ -7,9 +7,10 @@
 
 namespace atlas {
 
-// Reads a decimal number, "nan" or "inf" at `at`, where text goes on to a non-digit at or before
-// `end`; what is beyond double becomes infinite or 0. Returns where it ends, or null where there is
-// none. Unlike std::from_chars it takes a leading '+', "5." and out-of-range values.
+// Reads a decimal number, "nan", "inf" or what Microsoft's runtime wrote for these ("1.#IND") at
+// `at`, where text goes on to a non-digit at or before `end`; what is beyond double becomes
+// infinite or 0. Returns where it ends, or null where there is none. Unlike std::from_chars it
+// takes a leading '+', "5." and out-of-range values.
 const char* parse_number_slow(const char* at, const char* end, double& value);
 
 // Up to 15 digits and a power of ten up to 22 are both exact doubles, so one multiplication or
@@ -31,7 +32,7 @@ inline const char* parse_number(const char* at, const char* end, double& value) 
     }
     exponent = -int(p - point);
   }
-  if (digits == 0 || digits > 15 || *p == 'e' || *p == 'E' || exponent < -22) {
+  if (digits == 0 || digits > 15 || *p == 'e' || *p == 'E' || *p == '#' || exponent < -22) {
     return parse_number_slow(at, end, value);
   }
   const double magnitude = double(mantissa) / kPowers[-exponent];

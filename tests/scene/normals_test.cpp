@@ -116,7 +116,7 @@ TEST(Normals, LinesOfObjThatAreNoneEndTheReading) {
 // What has no direction takes that of its triangles; those without area have none to give.
 TEST(Normals, WithoutDirectionAreReplacedAndCounted) {
   const TempFolder folder;
-  for (const char* bad : {"0 0 0", "nan 0 1", "0 inf 0", "-1e999 0 0"}) {
+  for (const char* bad : {"0 0 0", "nan 0 1", "0 inf 0", "-1e999 0 0", "-1.#IND 0 0"}) {
     const LoadedScene loaded = load_normals(
         folder.write("a.obj", kObjSquare + fmt::format("vn {}\nvn {}\nvn 3 0 4\n"
                                                        "f 3//1 2//1 1//3\nf 1//2 1//2 1//2\n",

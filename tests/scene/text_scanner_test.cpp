@@ -41,6 +41,13 @@ TEST(TextScanner, OddNumbers) {
   for (const char* bad : {"", ".", "-", "+-3", "1.2.3", "12a", "e5", "0x10", "1,5", "--1"}) {
     EXPECT_FALSE(parse(bad, v)) << bad;
   }
+  for (const char* none : {"-1.#IND", "-1.#IND00", "1.#QNAN", "+1.#SNAN0", "-1.#IND00e+000"})
+    EXPECT_TRUE(parse(none, v) && std::isnan(v)) << none;
+  EXPECT_TRUE(parse("1.#INF", v) && v > 0 && std::isinf(v));
+  EXPECT_TRUE(parse("-1.#INF00", v) && v < 0 && std::isinf(v));
+  for (const char* bad : {"1.#IN", "2.#IND", "1.#INDx", "1.#INF00e+"}) {
+    EXPECT_FALSE(parse(bad, v) && !std::isfinite(v)) << bad;
+  }
   EXPECT_TRUE(parse("1e999", v) && std::isinf(v));
   EXPECT_TRUE(parse("-1e999", v) && v < 0 && std::isinf(v));
   EXPECT_TRUE(parse("1e-999", v) && v == 0);
