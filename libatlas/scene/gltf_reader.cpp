@@ -178,6 +178,17 @@ class GltfParser {
     return {};
   }
 
+  // White, behind the file's own, where there is none.
+  std::uint32_t material_of(const tinygltf::Primitive& raw, const std::string& name) {
+    const std::size_t count = model_.materials.size();
+    if (raw.material >= 0 && std::size_t(raw.material) < count) return std::uint32_t(raw.material);
+    if (raw.material >= 0)
+      builder_.defects.add(DefectKind::material_unknown, [&] {
+        return fmt::format("{}: {}: material {} of {}", builder_.file, name, raw.material, count);
+      });
+    return std::uint32_t(count);
+  }
+
   Status add_mesh(const tinygltf::Node& node, const glm::dmat4& matrix, const GltfPlace& place) {
     const tinygltf::Mesh& mesh = model_.meshes[node.mesh];
     const auto object = static_cast<std::uint32_t>(builder_.objects.size());
@@ -193,9 +204,7 @@ class GltfParser {
       primitive.number = static_cast<int>(p);
       primitive.object = object;
       primitive.mirrored = pose_.mirrors(node, raw, matrix);
-      primitive.material = raw.material >= 0 && std::size_t(raw.material) < model_.materials.size()
-                               ? static_cast<std::uint32_t>(raw.material)
-                               : static_cast<std::uint32_t>(model_.materials.size());
+      primitive.material = material_of(raw, primitive.name);
       const int mode = raw.mode < 0 ? TINYGLTF_MODE_TRIANGLES : raw.mode;
       if (mode != TINYGLTF_MODE_TRIANGLES && mode != TINYGLTF_MODE_TRIANGLE_STRIP &&
           mode != TINYGLTF_MODE_TRIANGLE_FAN) {

@@ -148,6 +148,20 @@ TEST(Gltf, TexturesWithoutAnImageThatIsReadAreTold) {
   EXPECT_NE(loaded->defects.lines().front().find("bark"), std::string::npos);
 }
 
+TEST(Gltf, MaterialsThatDoNotExistAreTold) {
+  const TempFolder folder;
+  Gltf g;
+  g.j["materials"] = {{{"name", "bark"}}};
+  g.single({{"attributes", {{"POSITION", g.floats(kSquare, "VEC3", 3)}}},
+            {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})},
+            {"material", 3}});
+  const auto loaded = load_glb(folder, g);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->defects.count(DefectKind::material_unknown), 1u);
+  EXPECT_NE(loaded->defects.lines().front().find("mesh 0 primitive 0: material 3 of 1"),
+            std::string::npos);
+}
+
 // An older model of shading, and an image in a format that glTF itself does not know.
 TEST(Gltf, DiffuseColoursOfExtensions) {
   const TempFolder folder;
