@@ -123,8 +123,9 @@ class StraightPage {
     const double begun = wall_seconds();
     for (std::uint32_t round = 0; !context_.cancelled(); ++round) {
       std::vector<Start> starts(kStarts);
+      const std::uint64_t layouts = layouts_of_start(round, best.layouts);
       parallel_for(context_, kStarts, 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) starts[k] = start(k, round);
+        for (std::size_t k = begin; k < end; ++k) starts[k] = start(k, round, layouts);
       });
       for (const Start& s : starts) best.layouts += s.layouts;
       slide_fullest(starts, best);
@@ -155,7 +156,16 @@ class StraightPage {
     return scale < kLong * most ? scale : most * (1 - (1 - kLong) * at);
   }
 
-  Start start(std::size_t k, std::uint32_t round) const {
+  // Twice as many each round, but no more than the effort leaves: the last round would be as long
+  // as all before it.
+  std::uint64_t layouts_of_start(std::uint32_t round, std::uint64_t done) const {
+    const std::uint64_t wanted = kLayouts << std::min(round, kMostDoublings);
+    if (options_.preset != PackPreset::best || options_.effort == 0) return wanted;
+    const std::uint64_t left = options_.effort > done ? options_.effort - done : 0;
+    return std::clamp<std::uint64_t>((left + kStarts - 1) / kStarts, 1, wanted);
+  }
+
+  Start start(std::size_t k, std::uint32_t round, std::uint64_t layouts) const {
     Random random(options_.seed * 0x10001 + round * kStarts + k);
     Start start;
     start.scale = scale_of(k, round > 0 ? 0.06 * (random.unit() - 0.5) : 0);
@@ -164,7 +174,7 @@ class StraightPage {
     NestSearchOptions search;
     search.width = options_.page_size / cell_;
     search.seed = random.next();
-    search.layouts = kLayouts << std::min(round, kMostDoublings);
+    search.layouts = layouts;
     NestSearchResult found = search_nest(pieces, plan_by_size(pieces), search, context_);
     Nest& nest = found.nest;
     start.layouts = found.layouts;

@@ -63,6 +63,21 @@ TEST(StraightPage, BestIsNoWorseOnASquarePage) {
   EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *best), best->pages, 1), "");
 }
 
+// To the starts of one round, which share what is left.
+TEST(StraightPage, BestTriesNoMoreLayoutsThanItsEffort) {
+  std::vector<std::vector<Vec2d>> bars;
+  for (int k = 0; k < 12; ++k) bars.push_back(box(60 + 17 * k, 20 + 11 * (k % 5)));
+  const test::ChartItems charts(std::move(bars));
+  FitOptions o = options_for(charts, 512);
+  o.preset = PackPreset::best;
+  for (const std::uint64_t effort : {1, 330, 500, 1000}) {
+    o.effort = effort;
+    const PressedPage page = pack_straight(outlines_of(charts.shapes, {}), o, {});
+    EXPECT_GE(page.layouts, effort);
+    EXPECT_LE(page.layouts, effort + 15);
+  }
+}
+
 // Masks of whole blocks, as pages with mip levels need them.
 TEST(StraightPage, KeepsTheAlignment) {
   std::vector<std::vector<Vec2d>> bars;
