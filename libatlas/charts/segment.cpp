@@ -11,36 +11,10 @@
 #include "libatlas/charts/seams/slit_paths.h"
 #include "libatlas/charts/seams/straighten.h"
 #include "libatlas/core/clock.h"
-#include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
 
 namespace atlas {
 namespace {
-
-using Frame = std::array<glm::dvec3, 2>;
-
-// The map from space to the plane that a cell's coarse flattening stands for: the rotation that
-// best takes its fan to its flat coordinates.
-Frame cell_frame(const CoarseMesh& mesh, const CoarseUv& uv, std::uint32_t k) {
-  const CoarseCell& cell = mesh.cells[k];
-  const glm::dvec3 n = to_glm(cell.normal);
-  const glm::dvec3 u = glm::normalize(std::abs(n.x) < 0.6 ? glm::cross(n, glm::dvec3(1, 0, 0))
-                                                          : glm::cross(n, glm::dvec3(0, 1, 0)));
-  const glm::dvec3 v = glm::cross(n, u);
-  double c = 0, s = 0;
-  for (std::uint32_t i = cell.first_slot; i < cell.first_slot + cell.slot_count; ++i) {
-    const glm::dvec3 d = to_glm(mesh.slot_position[i]) - to_glm(cell.centre);
-    const glm::dvec2 a(glm::dot(d, u), glm::dot(d, v));
-    const glm::dvec2 b = to_glm(uv.slot[i]) - to_glm(uv.centre[k]);
-    c += glm::dot(a, b);
-    s += a.x * b.y - a.y * b.x;
-  }
-  const double norm = std::sqrt(c * c + s * s);
-  if (!(norm > 0)) return {u, v};
-  c /= norm;
-  s /= norm;
-  return {c * u - s * v, s * u + c * v};
-}
 
 // A mesh cut into charts.
 struct Cut {
@@ -61,9 +35,7 @@ void spread_to_triangles(const Cut& cut, std::uint32_t first_label, Segmentation
   Partition& partition = result.partition;
   std::vector<std::uint32_t> frames(coarse.cells.size());
   for (std::uint32_t k = 0; k < frames.size(); ++k) {
-    const Frame frame = cell_frame(coarse, merged.uv, k);
-    frames[k] =
-        result.frames.add({coarse.cells[k].normal, {from_glm(frame[0]), from_glm(frame[1])}});
+    frames[k] = result.frames.add({coarse.cells[k].normal, cell_frame(coarse, merged.uv, k)});
   }
   for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
     if (!cut.takes(t)) continue;

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "libatlas/charts/cells/cells.h"
+#include "libatlas/charts/geometry/tangents.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -131,15 +132,13 @@ ExtremeNormals extreme_normals(const Topology& topology, const Cells& cells) {
     if (lists.of(k).empty()) continue;
     const NormalCone cone = normal_cone(topology.normals, lists.of(k));
     const glm::dvec3 axis = to_dvec(cone.axis);
-    const glm::dvec3 u =
-        glm::normalize(std::abs(axis.x) < 0.6 ? glm::cross(axis, glm::dvec3(1, 0, 0))
-                                              : glm::cross(axis, glm::dvec3(0, 1, 0)));
-    const glm::dvec3 v = glm::cross(axis, u);
+    const Tangents plane(axis);
     points.clear();
     for (const std::uint32_t t : lists.of(k)) {
       const glm::dvec3 n = to_dvec(topology.normals[t]);
       const double height = cone.angle < kHullCone ? glm::dot(n, axis) : 1;
-      points.push_back({glm::dot(n, u) / height, glm::dot(n, v) / height, topology.normals[t]});
+      const glm::dvec2 p = plane.of(n) / height;
+      points.push_back({p.x, p.y, topology.normals[t]});
     }
     std::sort(points.begin(), points.end(), [](const ProjectedNormal& a, const ProjectedNormal& b) {
       return a.x != b.x ? a.x < b.x : a.y < b.y;

@@ -25,10 +25,6 @@ constexpr double kLeastTogether = 0.68;
 constexpr double kLeastFall = 0.1;
 constexpr double kWasteParts = 4096;  // wastes are compared in parts of all hulls: equal ones tie
 
-double box_of(const FlatChart& chart) {
-  return chart.size.x * chart.size.y;
-}
-
 double hull_of(const FlatChart& chart) {
   std::vector<Vec2d> points = chart.uvs, hull;
   return hull_area(points, hull);
@@ -43,10 +39,10 @@ class LimbCharts {
     double hulls = 0;  // at most
     for (const FlatChart& chart : charts_) {
       area_ += chart.distortion.uv_area;
-      hulls += std::min(box_of(chart), bound_shape(chart.uvs).hull);
+      hulls += std::min(chart.box_area(), bound_shape(chart.uvs).hull);
     }
     for (std::size_t k = 0; k < charts_.size(); ++k) {
-      if (box_of(charts_[k]) >= kDominant * area_) cut(k);
+      if (charts_[k].box_area() >= kDominant * area_) cut(k);
     }
     if (area_ < kLeastTogether * hulls) cut_most_wasteful();
     replace();
@@ -92,7 +88,7 @@ class LimbCharts {
   bool cut(std::size_t k) {
     const FlatChart& chart = charts_[k];
     const double wanted = input_.options.min_fill;
-    if (chart.distortion.uv_area >= kPoor * wanted * box_of(chart)) return false;
+    if (chart.distortion.uv_area >= kPoor * wanted * chart.box_area()) return false;
     std::vector<FlatChart> pieces;
     for (const std::vector<std::uint32_t>& limb : limbs_of(chart, wanted, area_, context_)) {
       // A cut along a ragged border may leave a triangle beside its limb.

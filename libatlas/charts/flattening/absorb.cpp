@@ -259,15 +259,15 @@ class Absorber {
   bool is_better(const FlatChart& both, std::uint32_t k, const ChartNeighbour& neighbour) const {
     const std::uint32_t into = neighbour.chart;
     if (both.distortion.stretch_l2 > kMostL2) return false;
-    const Extent extent{both.distortion.uv_area, both.size.x * both.size.y};
+    const Extent extent{both.distortion.uv_area, both.box_area()};
     if (!fills(k, into, extent, kMostWaste)) return false;
     const FlatChart &a = charts_[k], &b = charts_[into];
     // What the seam is worth in stretch.
     const double times = a.fragment || b.fragment ? kFragmentWorth : kWorth;
     const double worth =
         times * seam_worth_ * seam_of(neighbour.edges).weight * std::sqrt(piece_area(k));
-    return (area_[k] + area_[into]) * energy(both) <=
-           area_[k] * energy(a) + area_[into] * energy(b) + worth;
+    return (area_[k] + area_[into]) * both.excess() <=
+           area_[k] * a.excess() + area_[into] * b.excess() + worth;
   }
 
   struct Extent {
@@ -279,18 +279,13 @@ class Absorber {
     const double least =
         a.fragment || b.fragment ? std::min({patience_.fill, fill(a), fill(b)}) : kWholeFill;
     if (!(extent.covered < least * extent.box)) return true;
-    const double waste = extent.box - a.size.x * a.size.y - b.size.x * b.size.y;
+    const double waste = extent.box - a.box_area() - b.box_area();
     return (small(k) || small(into)) && waste <= most_waste * piece_area(k);
   }
 
   static double fill(const FlatChart& chart) {
-    const double box = chart.size.x * chart.size.y;
+    const double box = chart.box_area();
     return box > 0 ? chart.distortion.uv_area / box : 1;
-  }
-
-  // By the area.
-  static double energy(const FlatChart& chart) {
-    return chart.distortion.stretch_l2 * chart.distortion.stretch_l2 - 1;
   }
 
   struct Seam {

@@ -27,6 +27,10 @@ struct FlatChart {
   bool planar = false;
   bool kept = false;      // given, not flattened
   bool fragment = false;  // of a chart that was divided, or left over by a limit on cones
+
+  // What it stretches, by its area.
+  double excess() const { return distortion.stretch_l2 * distortion.stretch_l2 - 1; }
+  double box_area() const { return size.x * size.y; }
 };
 
 struct FlattenInput {

@@ -26,14 +26,9 @@ constexpr double kMostBox = 1.1;  // of the chart's rectangle, by the one before
 // The most stretched triangles, which have this part of the energy: the tip is one of theirs.
 constexpr double kStretchedPart = 0.5;
 
-// Area times (L2 stretch squared - 1).
+// What a chart stretches in all.
 double energy(const FlatChart& chart) {
-  const double l2 = chart.distortion.stretch_l2;
-  return chart.distortion.surface_area * (l2 * l2 - 1);
-}
-
-double box(const FlatChart& chart) {
-  return chart.size.x * chart.size.y;
+  return chart.distortion.surface_area * chart.excess();
 }
 
 class Reliever {
@@ -95,7 +90,7 @@ class Reliever {
       ChartOutcome outcome =
           flatten_chart(input_, partition_, chart.triangles, {.cuts = 0, .whole = true}, scratch);
       for (const std::uint32_t h : dart) partition_.close(h);
-      if (!outcome.parts.empty() || box(outcome.flat) > kMostBox * box(chart)) continue;
+      if (!outcome.parts.empty() || outcome.flat.box_area() > kMostBox * chart.box_area()) continue;
       const double cost = energy(outcome.flat) + price;
       if (cost >= least) continue;
       least = cost;

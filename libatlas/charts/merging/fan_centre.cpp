@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "libatlas/charts/geometry/tangents.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -14,14 +15,11 @@ constexpr double kThinFan = 1e-3;
 
 class FanCentre {
  public:
-  FanCentre(const CoarseMesh& mesh, const CoarseCell& cell) : cell_(cell) {
-    const glm::dvec3 n = to_glm(cell.normal);
-    u_ = glm::normalize(std::abs(n.x) < 0.6 ? glm::cross(n, glm::dvec3(1, 0, 0))
-                                            : glm::cross(n, glm::dvec3(0, 1, 0)));
-    v_ = glm::cross(n, u_);
+  FanCentre(const CoarseMesh& mesh, const CoarseCell& cell)
+      : cell_(cell), plane_(to_glm(cell.normal)) {
     for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
       const glm::dvec3 d = to_glm(mesh.slot_position[s]) - to_glm(cell.centre);
-      outline_.push_back({glm::dot(d, u_), glm::dot(d, v_)});
+      outline_.push_back(plane_.of(d));
     }
   }
 
@@ -46,7 +44,7 @@ class FanCentre {
     if (kernel.empty()) return;
     glm::dvec2 mean(0);
     for (const glm::dvec2& p : kernel) mean += p / double(kernel.size());
-    centre = from_glm(to_glm(cell_.centre) + mean.x * u_ + mean.y * v_);
+    centre = from_glm(to_glm(cell_.centre) + mean.x * plane_.u + mean.y * plane_.v);
   }
 
  private:
@@ -68,7 +66,7 @@ class FanCentre {
   }
 
   const CoarseCell& cell_;
-  glm::dvec3 u_, v_;
+  Tangents plane_;
   std::vector<glm::dvec2> outline_;  // around the centre, in the plane of the mean normal
 };
 

@@ -115,28 +115,12 @@ class Merger {
     if (cell.unrolls) {
       result_.uv.centre[k] = cell.flat_centre;
     } else {
-      project(k);
+      project_cell(mesh_, k, result_.uv);
     }
     for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
       own.arcs.push_back(mesh_.slot_arc[s]);
       own.perimeter += mesh_.arcs[mesh_.slot_arc[s]].length;
       if (cell.unrolls) result_.uv.slot[s] = mesh_.flat_slot[s];
-    }
-  }
-
-  // Turns a cell's corners into the plane of its mean normal, each at its distance.
-  void project(std::uint32_t k) {
-    const CoarseCell& cell = mesh_.cells[k];
-    const glm::dvec3 n = to_glm(cell.normal);
-    const glm::dvec3 u = glm::normalize(std::abs(n.x) < 0.6 ? glm::cross(n, glm::dvec3(1, 0, 0))
-                                                            : glm::cross(n, glm::dvec3(0, 1, 0)));
-    const glm::dvec3 v = glm::cross(n, u);
-    result_.uv.centre[k] = {0, 0};
-    for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
-      const glm::dvec3 d = to_glm(mesh_.slot_position[s]) - to_glm(cell.centre);
-      const glm::dvec2 flat(glm::dot(d, u), glm::dot(d, v));
-      const double length = glm::length(flat);
-      result_.uv.slot[s] = from_glm(length > 0 ? flat * (glm::length(d) / length) : flat);
     }
   }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libatlas/charts/merging/coarse.h"
+#include "libatlas/charts/merging/coarse_uv.h"
 #include "libatlas/charts/merging/crossing_finder.h"
 #include "libatlas/charts/merging/fan_measure.h"
 #include "libatlas/charts/merging/fan_solver.h"
@@ -14,12 +15,6 @@
 #include "libatlas/charts/merging/trial_patch.h"
 
 namespace atlas {
-
-// The flat coordinates of cells, kept while charts grow.
-struct CoarseUv {
-  std::vector<Vec2d> centre;  // 1 a cell
-  std::vector<Vec2d> slot;    // 1 a slot
-};
 
 struct TrialLimits {
   double stretch_l2 = 1.01;    // of the merged chart
