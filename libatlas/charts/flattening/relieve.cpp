@@ -16,8 +16,8 @@ namespace atlas {
 namespace {
 
 // Of 5600 darts tried on 521 meshes, most of them CAD parts, in a seventh of all charts' time,
-// those within these limits took a seventh of it, and made four fifths of the savings. Of the
-// piece's area, by the chart's share of the triangles and the root of their number:
+// those within these limits took a third of it, and made nine tenths of the savings. Of the piece's
+// area, by the chart's share of its triangles times the root of their number:
 constexpr double kLeastEnergy = 5e-5;
 constexpr double kMostPrice = 0.3;  // of a dart, by the chart's energy
 
