@@ -14,7 +14,7 @@ struct CellOptions {
   // cells_of_small_mesh in all, whose charts would have few to choose from, and where it has
   // handles,
   std::uint32_t triangles_per_cell = 80;
-  std::uint32_t cells_of_small_mesh = 180;
+  std::uint32_t cells_of_small_mesh = 146;
   std::uint32_t max_cells_per_piece = 600;  // but not more than this, however fine it is.
   // Cells are added, beyond those numbers, until no grain leans more than this to its cell's seed.
   double max_lean_degrees = 55;
