@@ -52,7 +52,8 @@ struct FitOptions {
   // Limits of `best` on a single page of outlines. The result depends on effort and seed only,
   // unless effort is 0 and time the limit.
   double time_budget = 1.0;  // wall seconds
-  std::uint64_t effort = 0;  // layouts tried at most, checked every few hundred; 0: no limit
+  std::uint64_t effort = 0;  // layouts tried at most, checked every few hundred; 0: no limit.
+                             // Those that take long count for several
   std::uint64_t seed = 1;
 };
 
@@ -96,6 +97,7 @@ struct FitResult {
   GroupingResult grouping;                     // of the box areas at the final scale
   std::uint32_t moved_items = 0;               // items that did not fit their group's page
   std::uint32_t packings = 0;                  // full packings tried
+  std::uint64_t layouts = 0;                   // of outlines, on one page each: tried in all
   std::vector<std::pair<double, bool>> trace;  // (scale, did it fit) in the order tried
   std::vector<FitProgress> curve;              // improvements in the order found; may be empty
 };

@@ -23,6 +23,7 @@ bool search_scale(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
     ++result.packings;
     const bool ok = fit.pack_at(scale, options.pages, layout);
     result.trace.emplace_back(scale, ok);
+    result.layouts += layout.layouts;
     if (ok && scale > best.scale) best = std::move(layout);
     context.report("pack", std::min(1.0, double(result.packings) / options.max_packings));
     return ok;
@@ -106,10 +107,10 @@ void fill_free_page(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
   double wanted = kFuller * fill(fit, best);
   for (double scale = kStep * largest; scale > kLeast * largest; scale *= kStep) {
     OutlineLayout smaller;
-    if (++result.packings > fit.options().max_packings || fit.context().cancelled() ||
-        !fit.pack_at(scale, 1, smaller)) {
-      return;
-    }
+    if (++result.packings > fit.options().max_packings || fit.context().cancelled()) return;
+    const bool fits = fit.pack_at(scale, 1, smaller);
+    result.layouts += smaller.layouts;
+    if (!fits) return;
     if (fill(fit, smaller) < wanted) continue;
     wanted = fill(fit, smaller);
     best = std::move(smaller);
@@ -124,7 +125,9 @@ void use_fewer_pages(OutlineFit& fit, const FitOptions& options, FitResult& resu
   for (; n < best.page_sizes.size() && result.packings < options.max_packings; ++n) {
     OutlineLayout fewer;
     ++result.packings;
-    if (!fit.pack_at(best.scale, n, fewer)) continue;
+    const bool fits = fit.pack_at(best.scale, n, fewer);
+    result.layouts += fewer.layouts;
+    if (!fits) continue;
     best = std::move(fewer);
     return;
   }

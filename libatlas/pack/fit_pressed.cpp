@@ -30,6 +30,7 @@ std::optional<FitResult> fit_pressed(std::span<const FitItem> items,
   FitResult result;
   result.scale = pressed.scale;
   result.packings = 1;
+  result.layouts = pressed.layouts;
   result.trace.emplace_back(pressed.scale, true);
   result.curve = std::move(pressed.curve);
   Extent page{options.page_size, options.page_size};

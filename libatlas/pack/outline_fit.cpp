@@ -94,7 +94,7 @@ void OutlineFit::deal_out(std::uint32_t pages, OutlineLayout& layout) const {
 
 bool OutlineFit::pack_pages(std::uint32_t pages, OutlineLayout& layout) const {
   std::vector<BitPage> open;
-  std::vector<Nest> nests(pages);
+  std::vector<NestSearchResult> found(pages);
   const std::int32_t longest = longest_run(layout.pieces);
   for (std::uint32_t p = 0; p < pages; ++p) open.emplace_back(side_, side_, longest);
   std::vector<std::vector<std::uint32_t>> orders(pages);
@@ -102,17 +102,19 @@ bool OutlineFit::pack_pages(std::uint32_t pages, OutlineLayout& layout) const {
     orders[layout.page[i]].push_back(i);
   parallel_for(context_, pages, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p)
-      nests[p] = fill_group(layout.pieces, orders, p, open[p]);
+      found[p] = fill_group(layout.pieces, orders, p, open[p]);
   });
   layout.places.resize(layout.pieces.size());
   std::vector<std::uint32_t> left;
   for (std::uint32_t p = 0; p < pages; ++p) {
+    const Nest& nest = found[p].nest;
     for (std::uint32_t i = 0; i < layout.pieces.size(); ++i)
-      if (nests[p].places[i].placed) {
+      if (nest.places[i].placed) {
         layout.page[i] = p;
-        layout.places[i] = nests[p].places[i];
+        layout.places[i] = nest.places[i];
       }
-    left.insert(left.end(), nests[p].left_over.begin(), nests[p].left_over.end());
+    left.insert(left.end(), nest.left_over.begin(), nest.left_over.end());
+    layout.layouts += found[p].layouts;
   }
   layout.page_sizes.assign(pages, {side_, side_});
   return place_left_over(left, open, layout);
@@ -135,31 +137,54 @@ bool OutlineFit::group(std::uint32_t pages, OutlineLayout& layout) const {
   return group_areas(cells, pages, context_, layout.grouping);
 }
 
-Nest OutlineFit::fill_group(std::span<const Piece> pieces,
-                            std::span<const std::vector<std::uint32_t>> orders, std::size_t p,
-                            BitPage& page) const {
-  Nest nest;
+NestSearchOptions OutlineFit::search_of(std::size_t page) const {
+  constexpr std::uint64_t kLayouts = 300, kWork = 16'000'000, kBestWork = 400'000'000;
+  // Of the packings in a search for the scale about eight fail, which take all they may.
+  constexpr std::uint64_t kPackings = 8, kWordsALayout = 25'000;
+  NestSearchOptions search;
+  search.width = search.enough = side_;
+  search.seed = page + 1;
+  search.work = kWork;
+  if (options_.preset != PackPreset::best) {
+    search.layouts = kLayouts;
+  } else if (options_.effort == 0 || options_.pages > 1) {
+    search.work = kBestWork;
+  } else {
+    // Without this every packing that fails, a dozen in the search for the scale, tried 40 000
+    // layouts of six charts: 12 s for 1.7 points of a page of 64 texels.
+    const std::uint64_t share = options_.effort / kPackings;
+    search.layouts = std::max(kLayouts, share);
+    search.work = std::clamp(std::min(share, kBestWork) * kWordsALayout, kWork, kBestWork);
+  }
+  search.work /= options_.pages;
+  return search;
+}
+
+NestSearchResult OutlineFit::fill_group(std::span<const Piece> pieces,
+                                        std::span<const std::vector<std::uint32_t>> orders,
+                                        std::size_t p, BitPage& page) const {
+  NestSearchResult filled;
+  filled.layouts = 1;
   NestPlan plan;
   plan.order = orders[p];
   plan.direction.assign(pieces.size(), kFree);
-  place_pieces(pieces, plan, page, nest);
-  if (nest.left_over.empty() || options_.preset == PackPreset::fast) return nest;
-  if (plan.order.size() < 2) return nest;  // one chart has been tried in every direction
+  place_pieces(pieces, plan, page, filled.nest);
+  if (filled.nest.left_over.empty() || options_.preset == PackPreset::fast) return filled;
+  if (plan.order.size() < 2) return filled;  // one chart has been tried in every direction
   // A search over orders is worth it where it can try more than a few.
-  NestSearchOptions search;
-  search.width = search.enough = side_;
-  search.seed = p + 1;
-  if (options_.preset != PackPreset::best) search.layouts = 300;
-  search.work = (options_.preset == PackPreset::best ? 400'000'000u : 16'000'000u) / orders.size();
+  const NestSearchOptions search = search_of(p);
   if (layout_cost(plan.order.size(), side_, grid_.directions) * 4 > double(search.work))
-    return nest;
-  Nest found = search_nest(pieces, plan, search, context_).nest;
-  if (!found.left_over.empty() || found.used_height > side_) return nest;
+    return filled;
+  NestSearchResult found = search_nest(pieces, plan, search, context_);
+  filled.layouts += found.layouts;
+  if (!found.nest.left_over.empty() || found.nest.used_height > side_) return filled;
+  filled.nest = std::move(found.nest);
   page.clear();
-  for (std::uint32_t i : plan.order)
-    if (found.places[i].placed)
-      page.put(pieces[i].masks[found.places[i].direction], found.places[i].at);
-  return found;
+  for (std::uint32_t i : plan.order) {
+    const NestPlace& at = filled.nest.places[i];
+    if (at.placed) page.put(pieces[i].masks[at.direction], at.at);
+  }
+  return filled;
 }
 
 bool OutlineFit::place_left_over(std::vector<std::uint32_t> left, std::vector<BitPage>& open,

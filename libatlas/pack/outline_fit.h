@@ -22,6 +22,7 @@ struct OutlineLayout {
   std::vector<NestPlace> places;    // 1 a piece
   std::vector<Extent> page_sizes;   // cells
   std::uint32_t moved = 0;          // pieces that left their group's page
+  std::uint64_t layouts = 0;        // tried, of all pages
   GroupingResult grouping;
 };
 
@@ -71,9 +72,13 @@ class OutlineFit {
   // False if the pieces' cells alone exceed the pages.
   bool group(std::uint32_t pages, OutlineLayout& layout) const;
 
+  // How long orders are searched for one page. An effort is shared by the packings.
+  NestSearchOptions search_of(std::size_t page) const;
+
   // Page p gets the charts orders[p], largest first.
-  Nest fill_group(std::span<const Piece> pieces, std::span<const std::vector<std::uint32_t>> orders,
-                  std::size_t p, BitPage& page) const;
+  NestSearchResult fill_group(std::span<const Piece> pieces,
+                              std::span<const std::vector<std::uint32_t>> orders, std::size_t p,
+                              BitPage& page) const;
 
   // Charts without room in their group's page go to the first page that has some, largest first.
   bool place_left_over(std::vector<std::uint32_t> left, std::vector<BitPage>& open,

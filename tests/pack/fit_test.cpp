@@ -358,5 +358,28 @@ TEST(FitPages, FewStraightChartsFillAPageAsWellAsByCells) {
   }
 }
 
+// On a page too small to be pressed, and for which packings that fail have no other end.
+TEST(FitPages, PackingsShareTheEffort) {
+  test::Noise noise{5};
+  std::vector<std::vector<Vec2d>> blobs;
+  for (int k = 0; k < 6; ++k) blobs.push_back(test::blob(noise, 20 + 10 * noise.unit(), 7));
+  const test::ChartItems charts(std::move(blobs));
+  FitOptions o;
+  o.page_size = 64;
+  o.padding = o.alignment = 1;
+  o.minimum_side = 0;
+  o.max_scale = 100;
+  o.free_aspect = true;
+  o.shapes = charts.shapes;
+  const Result<FitResult> standard = fit_pages(charts.items, o, {});
+  o.preset = PackPreset::best;
+  o.effort = 8000;
+  const Result<FitResult> best = fit_pages(charts.items, o, {});
+  ASSERT_TRUE(standard.ok() && best.ok());
+  EXPECT_GE(best->scale, standard->scale);
+  EXPECT_GT(best->layouts, standard->layouts);
+  EXPECT_LE(best->layouts, 3 * o.effort);
+}
+
 }  // namespace
 }  // namespace atlas
