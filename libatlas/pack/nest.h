@@ -105,6 +105,7 @@ struct NestSearchOptions {
 struct NestSearchResult {
   Nest nest;                  // the lowest one found
   std::uint64_t layouts = 0;  // tried
+  std::uint64_t work = 0;     // words
 };
 NestSearchResult search_nest(std::span<const Piece> pieces, const NestPlan& start,
                              const NestSearchOptions& options, const Context& context);

@@ -89,8 +89,8 @@ NestSearchResult search_nest(std::span<const Piece> pieces, const NestPlan& star
   double total = 0;
   for (const Piece& p : pieces) total += static_cast<double>(p.cells());
   BitPage page(options.width, most_rows(pieces, total, options.width), longest_run(pieces));
-  std::uint64_t spent = 0;
   NestSearchResult found;
+  std::uint64_t& spent = found.work;
   // One piece has no order: after the start it is put down in each direction, once.
   const bool alone = start.order.size() == 1;
   const std::uint64_t most_layouts =

@@ -60,7 +60,10 @@ class Press {
   // Starts are drawn by chance.
   void draw(PressedPage& best) {
     std::vector<PressStart> starts = starts_.make(best.draws++);
-    for (const PressStart& s : starts) best.layouts += s.layouts;
+    for (const PressStart& s : starts) {
+      best.layouts += s.layouts;
+      best.work += s.work;
+    }
     if (!alone()) {
       press_best(starts, kRoughStarts, kRough);
       press_best(starts, kThoroughStarts, kThorough);
@@ -204,8 +207,12 @@ class Press {
 double book_round(const FitOptions& options, double seconds, double use, PressedPage& best) {
   if (best.scale > 0 && (best.curve.empty() || best.curve.back().utilization < use))
     best.curve.push_back({seconds, best.layouts, use});
-  return options.effort > 0 ? double(best.layouts) / double(options.effort)
-                            : seconds / options.time_budget;
+  if (options.effort == 0) return seconds / options.time_budget;
+  // One of 60 triangles of one size, that all fit nearly everywhere, takes 2 million words on a
+  // page of 512 cells a side, which made 1250 of them last 3.5 s: such a layout counts for several.
+  constexpr double kWordsALayout = 500'000;
+  const double work = double(best.work) / kWordsALayout;
+  return std::max(double(best.layouts), work) / double(options.effort);
 }
 
 bool worth_pressing(std::span<const ChartOutline> outlines, const FitOptions& options) {

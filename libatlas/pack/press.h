@@ -32,8 +32,8 @@ struct PressedPage {
   std::vector<SettleTarget> targets;
   double target_scale = 0;
   std::vector<FitProgress> curve;
-  std::uint64_t layouts = 0;
-  std::uint32_t draws = 0;  // of starts, by chance
+  std::uint64_t layouts = 0, work = 0;  // of starts; work in words looked at
+  std::uint32_t draws = 0;              // of starts, by chance
 };
 
 // Books a round of a search that has come to `best` after so many seconds: a step of its curve

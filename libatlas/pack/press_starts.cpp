@@ -152,8 +152,10 @@ PressStart PressStarts::start(std::size_t k, std::size_t count, std::uint32_t ro
   if (pieces_.size() == 1) return alone();
   // Few charts change places often enough in the search.
   const LargestBy by = pieces_.size() < kManyCharts ? LargestBy::cells : LargestBy::boxes;
-  const auto [nest, layouts] = search_nest(pieces_, plan_by_size(pieces_, by), search, context_);
-  start.layouts = layouts;
+  const NestSearchResult found = search_nest(pieces_, plan_by_size(pieces_, by), search, context_);
+  const Nest& nest = found.nest;
+  start.layouts = found.layouts;
+  start.work = found.work;
   if (!nest.left_over.empty()) return start;
   put_down(nest, start);
   start.page = {search.width * double(cell_), nest.used_height * double(cell_)};

@@ -31,7 +31,7 @@ struct DrawnChart {
 struct PressStart {
   std::vector<std::pair<Vec2d, double>> poses;  // 1 a chart: centre and angle
   SqueezePage page;
-  std::uint64_t layouts = 0;
+  std::uint64_t layouts = 0, work = 0;
 };
 
 // The smaller such a page, the higher; 0 for one without area. Of a square one the longer side

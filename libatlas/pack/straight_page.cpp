@@ -18,8 +18,10 @@ namespace {
 // is lost. Halving either costs a quarter to half a point of the page, doubling wins a tenth.
 constexpr int kCellsASide = 512;
 constexpr std::size_t kStarts = 16, kSlidStarts = 4;
-constexpr std::uint64_t kLayouts = 20;       // of one start
-constexpr std::uint32_t kMostDoublings = 4;  // of them, a round of `best` each
+constexpr std::uint64_t kLayouts = 20;  // of one start
+// Words looked at by all starts of a round, 2 ns each.
+constexpr std::uint64_t kSearchWork = 320'000'000;
+constexpr std::uint32_t kMostDoublings = 4;  // of both, a round of `best` each
 constexpr int kSlides = 2;                   // down and left; a third finds nothing any more
 constexpr std::uint32_t kDirections = 4;
 
@@ -28,7 +30,7 @@ struct Start {
   double scale = 0, fill = 0;
   std::vector<NestPlace> places;  // 1 a chart
   std::vector<Vec2d> origins;     // of the cells' masks, in the direction placed
-  std::uint64_t layouts = 0;
+  std::uint64_t layouts = 0, work = 0;
 };
 
 // Charts at their exact places.
@@ -127,7 +129,10 @@ class StraightPage {
       parallel_for(context_, kStarts, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) starts[k] = start(k, round, layouts);
       });
-      for (const Start& s : starts) best.layouts += s.layouts;
+      for (const Start& s : starts) {
+        best.layouts += s.layouts;
+        best.work += s.work;
+      }
       slide_fullest(starts, best);
       const double done = book_round(options_, wall_seconds() - begun, fill(best), best);
       if (options_.preset != PackPreset::best) break;
@@ -175,9 +180,11 @@ class StraightPage {
     search.width = options_.page_size / cell_;
     search.seed = random.next();
     search.layouts = layouts;
+    search.work = kSearchWork / kStarts << std::min(round, kMostDoublings);
     NestSearchResult found = search_nest(pieces, plan_by_size(pieces), search, context_);
     Nest& nest = found.nest;
     start.layouts = found.layouts;
+    start.work = found.work;
     if (!nest.left_over.empty() || nest.used_height == 0) return start;
     start.fill =
         start.scale * start.scale * area_ / (double(options_.page_size) * nest.used_height * cell_);

@@ -97,5 +97,28 @@ TEST(StraightPage, KeepsTheAlignment) {
   }
 }
 
+// Triangles of about one size, of which a layout takes far more work than of other charts.
+TEST(StraightPage, WorkIsLimited) {
+  test::Noise noise{3};
+  std::vector<std::vector<Vec2d>> triangles;
+  for (int k = 0; k < 100; ++k) {
+    const double w = 80 + 10 * noise.unit(), h = 8 + 6 * noise.unit();
+    triangles.push_back({{0, 0}, {w, 0}, {w * noise.unit(), h}});
+  }
+  const test::ChartItems charts(std::move(triangles));
+  FitOptions o = options_for(charts, 1024);
+  const std::vector<ChartOutline> outlines = outlines_of(charts.shapes, {});
+  ASSERT_TRUE(is_straight(outlines));
+  const PressedPage standard = pack_straight(outlines, o, {});
+  EXPECT_GT(standard.scale, 0);
+  EXPECT_LT(standard.layouts, 16 * 20u);
+  EXPECT_LT(standard.work, 420'000'000u);
+  o.preset = PackPreset::best;
+  o.effort = 16 * 30;
+  const PressedPage best = pack_straight(outlines, o, {});
+  EXPECT_EQ(best.scale, standard.scale);
+  EXPECT_LT(best.layouts, o.effort);
+}
+
 }  // namespace
 }  // namespace atlas
