@@ -27,8 +27,8 @@ std::optional<FitResult> fit_pressed(std::span<const FitItem> items,
 
 // A fit to several pages of few charts each made denser: every page is pressed, and charts change
 // pages until no page is much tighter than the others. None where that is not worth trying or finds
-// no larger scale than the fit's.
-std::optional<FitResult> press_pages(const FitResult& fitted, std::span<const FitItem> items,
+// no larger scale than the fit's. Layouts are added to those of the fit in any case.
+std::optional<FitResult> press_pages(FitResult& fitted, std::span<const FitItem> items,
                                      std::span<const ChartOutline> outlines,
                                      const FitOptions& options, const Context& context);
 

@@ -174,5 +174,26 @@ TEST(PressPages, IsCancelled) {
   EXPECT_EQ(fit_pages(charts.items, o, context).status().code(), ErrorCode::cancelled);
 }
 
+// Where pages come out emptier than those of the fit, by more than further draws win, the first
+// draw of each is all that is tried.
+TEST(PressPages, WhatCannotWinIsGivenUp) {
+  const test::ChartItems charts = blobs(12, 40, 70, 4);
+  const FitOptions o = several(charts, 2);
+  FitOptions by_cells = o;
+  by_cells.press_pages = false;
+  const Result<FitResult> cells = fit_pages(charts.items, by_cells, {});
+  ASSERT_TRUE(cells.ok());
+  const std::vector<pack::ChartOutline> outlines = pack::outlines_of(charts.shapes, {});
+  FitResult full = *cells, fuller = *cells;
+  full.layouts = fuller.layouts = 0;
+  fuller.scale *= 1.2;
+  EXPECT_TRUE(pack::press_pages(full, charts.items, outlines, o, {}).has_value());
+  EXPECT_FALSE(pack::press_pages(fuller, charts.items, outlines, o, {}).has_value());
+  constexpr std::uint64_t kADraw = 20 * 32;  // layouts
+  EXPECT_GT(fuller.layouts, 0u);
+  EXPECT_LE(fuller.layouts, 2 * kADraw);
+  EXPECT_GT(full.layouts, 2 * kADraw);
+}
+
 }  // namespace
 }  // namespace atlas
