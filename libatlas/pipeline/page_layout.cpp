@@ -224,15 +224,13 @@ double taken(const ChartSet& charts, const PageLayout& layout, const LayoutOptio
   return page_texels > 0 ? texels / page_texels : 0;
 }
 
-// Nor where the page would be of no use even then: by what it seldom becomes fuller.
-constexpr double kMostWon = 1.1;
-
+// Nor where the page would be of no use even then.
 bool worth_more_work(const ChartSet& charts, const PageLayout& layout,
                      const LayoutOptions& options) {
   return options.free_aspect && options.preset == PackPreset::standard &&
          charts.charts.size() > 1 && charts.charts.size() <= kMostCharts &&
          layout.with_lost_room * layout.uv_utilization < kPoor &&
-         kMostWon * layout.uv_utilization >= options.wanted_fill &&
+         options.most_won * layout.uv_utilization >= options.wanted_fill &&
          taken(charts, layout, options) < kPoorWithGutters;
 }
 
@@ -258,7 +256,10 @@ Result<PageLayout> lay_out_better(const ChartSet& charts, std::span<const Vec2d>
   LayoutOptions harder = options;
   harder.preset = PackPreset::best;
   Result<PageLayout> more = lay_out(charts, texels_per_unit, harder, part(0.6, 1));
-  return more.ok() && better(*more, *best, options) ? more : best;
+  const double before = best->uv_utilization;
+  if (more.ok() && better(*more, *best, options)) best = std::move(more);
+  if (best.ok()) best->won = before > 0 ? best->uv_utilization / before : 1;
+  return best;
 }
 
 }  // namespace

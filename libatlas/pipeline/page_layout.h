@@ -28,6 +28,7 @@ struct LayoutOptions {
   bool free_aspect = false;
   bool press_pages = true;  // as in FitOptions
   double wanted_fill = 0;   // as in FitOptions
+  double most_won = 1.1;    // by what packing a poor page with more work may make it fuller
   bool square = false;      // pages as wide as high; free_aspect overrides it
   PackPreset preset = PackPreset::standard;
   // What to change where there is no room, in the words of whoever chose the options.
@@ -44,6 +45,7 @@ struct PageLayout {
   // Of charts with small holes and narrow bays that no chart could lie in: their area with these /
   // without; 1 where outlines were not tried.
   double with_lost_room = 1;
+  double won = 0;  // by what more work made a poor page fuller; 0 where it was not packed with more
   GroupingResult grouping;
 };
 

@@ -69,6 +69,30 @@ TEST(Layout, APoorPageOfPlainUvsIsPackedWithMoreWork) {
   EXPECT_GE(use(PackPreset::standard), std::min(0.66, best));
 }
 
+// Where a page is of no use below a share, more work is spent only if it may win as much.
+TEST(Layout, MoreWorkIsSpentWhereItMayWinEnough) {
+  const Shape shape = rings_and_strips();
+  MeshView mesh;
+  mesh.positions = shape.positions;
+  mesh.indices = shape.indices;
+  const Result<ChartSet> charts = make_charts(mesh, {.min_fill = 0}, {});
+  ASSERT_TRUE(charts.ok());
+  LayoutOptions options{.pages = 1, .page_size = 256, .padding = 1, .alignment = 1};
+  options.minimum_side = 0;
+  options.outlines = options.free_aspect = true;
+  const std::vector<Vec2d> densities(charts->charts.size(), Vec2d{600, 600});
+  const auto won = [&](double wanted_fill, double most_won) {
+    options.wanted_fill = wanted_fill;
+    options.most_won = most_won;
+    const Result<PageLayout> layout = lay_out_pages(*charts, densities, options, {});
+    EXPECT_TRUE(layout.ok());
+    return layout.ok() ? layout->won : -1;
+  };
+  EXPECT_GE(won(0, 1.1), 1);
+  EXPECT_EQ(won(0.9, 1.1), 0);
+  EXPECT_GE(won(0.9, 2), 1);
+}
+
 // The sides of the page that plain uvs of a shape get, where 256 are asked for.
 std::pair<int, int> plain_page(const Shape& shape, bool may_grow) {
   TempFolder folder;
