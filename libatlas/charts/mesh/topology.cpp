@@ -11,9 +11,9 @@
 #include "libatlas/charts/mesh/links.h"
 #include "libatlas/charts/mesh/noise.h"
 #include "libatlas/core/clock.h"
-#include "libatlas/core/parallel.h"
 #include "libatlas/core/drop_rounding.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/parallel.h"
 
 namespace atlas {
 namespace {
