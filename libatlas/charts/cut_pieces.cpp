@@ -67,12 +67,6 @@ class BestCharts {
   std::vector<Cost> least_;  // 1 a piece
 };
 
-void sort_by_triangle(std::vector<FlatChart>& charts) {
-  std::sort(charts.begin(), charts.end(), [](const FlatChart& a, const FlatChart& b) {
-    return a.triangles.front() < b.triangles.front();
-  });
-}
-
 // All at once.
 CutCharts cut_mesh(const FlattenInput& mesh, const Context& context) {
   const int attempts = mesh.options.preset == ChartPreset::best ? kBestAttempts : 1;
@@ -98,8 +92,10 @@ CutCharts cut_mesh(const FlattenInput& mesh, const Context& context) {
       best.take(segmentation.partition, std::move(flat.charts));
     }
   }
-  if (attempts > 1) out.charts = std::move(best).charts();
-  sort_by_triangle(out.charts);
+  if (attempts > 1) {
+    out.charts = std::move(best).charts();
+    sort_by_triangle(out.charts);
+  }
   return out;
 }
 
@@ -126,13 +122,7 @@ class Batches {
       made[begin] = cut(pieces_.subspan(first_[begin], first_[begin + 1] - first_[begin]));
     });
     CutCharts out;
-    for (CutCharts& batch : made) {
-      std::move(batch.charts.begin(), batch.charts.end(), std::back_inserter(out.charts));
-      out.timing.segmentation_cpu += batch.timing.segmentation_cpu;
-      add_parts(batch.timing, out.timing);
-      out.split_charts += batch.split_charts;
-      batch = {};
-    }
+    for (CutCharts& batch : made) append(std::move(batch), out);
     sort_by_triangle(out.charts);
     return out;
   }
@@ -178,6 +168,20 @@ class Batches {
 };
 
 }  // namespace
+
+void append(CutCharts part, CutCharts& whole) {
+  std::move(part.charts.begin(), part.charts.end(), std::back_inserter(whole.charts));
+  whole.split_charts += part.split_charts;
+  whole.copied_pieces += part.copied_pieces;
+  whole.timing.segmentation_cpu += part.timing.segmentation_cpu;
+  add_parts(part.timing, whole.timing);
+}
+
+void sort_by_triangle(std::vector<FlatChart>& charts) {
+  std::sort(charts.begin(), charts.end(), [](const FlatChart& a, const FlatChart& b) {
+    return a.triangles.front() < b.triangles.front();
+  });
+}
 
 CutCharts cut_pieces(const FlattenInput& mesh, std::span<const std::uint32_t> pieces,
                      const Context& context) {

@@ -15,6 +15,10 @@ struct CutCharts {
   ChartSet::Timing timing;          // segmentation_cpu, and the parts of both sums
 };
 
+// Appends charts; they are in no order then.
+void append(CutCharts part, CutCharts& whole);
+void sort_by_triangle(std::vector<FlatChart>& charts);
+
 // Segments and flattens these pieces (ascending) of a mesh; of the mesh's frames none are used.
 // Pieces of large meshes are cut so many triangles at a time, and in parallel: pieces know nothing
 // of each other, 10^5 of them would need much memory at once, and parts that fit the processor's

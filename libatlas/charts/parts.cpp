@@ -23,26 +23,17 @@ class Repeater {
     for (std::uint32_t piece = 0; piece < copies_.original.size(); ++piece) {
       if (copies_.original[piece] == piece) originals.push_back(piece);
     }
-    append(cut_pieces(mesh_, originals, context_));
+    append(cut_pieces(mesh_, originals, context_), out_);
     if (context_.cancelled()) return {};
     const std::vector<std::uint32_t> failed = copy_charts();
-    if (!failed.empty()) append(cut_pieces(mesh_, failed, context_));
-    std::sort(out_.charts.begin(), out_.charts.end(), [](const FlatChart& a, const FlatChart& b) {
-      return a.triangles.front() < b.triangles.front();
-    });
+    if (!failed.empty()) append(cut_pieces(mesh_, failed, context_), out_);
+    sort_by_triangle(out_.charts);
     return std::move(out_);
   }
 
  private:
   std::uint32_t piece_of(const FlatChart& chart) const {
     return mesh_.topology.component[chart.triangles.front()];
-  }
-
-  void append(CutCharts cut) {
-    std::move(cut.charts.begin(), cut.charts.end(), std::back_inserter(out_.charts));
-    out_.timing.segmentation_cpu += cut.timing.segmentation_cpu;
-    add_parts(cut.timing, out_.timing);
-    out_.split_charts += cut.split_charts;
   }
 
   // Gives the copies their originals' charts; returns those that cannot take them.
@@ -113,20 +104,18 @@ CutCharts cut_into_charts(const Topology& topology, std::span<const float> densi
   Frames none;
   const FlattenInput mesh{topology, density, options, none};
   const double start = own_cpu_seconds();
-  double looking = 0;
+  PieceCopies copies;
+  if (topology.component_count > 1) copies = find_copies(topology, density);
+  const double looking = own_cpu_seconds() - start;
   CutCharts out;
-  if (topology.component_count > 1) {
-    const PieceCopies copies = find_copies(topology, density);
-    looking = own_cpu_seconds() - start;
-    if (kCopiedShare * copies.copied_triangles >= topology.triangle_count()) {
-      out = Repeater(mesh, copies, context).run();
-      out.timing.segmentation_cpu += looking;
-      return out;
-    }
+  if (copies.copied_triangles > 0 &&
+      kCopiedShare * copies.copied_triangles >= topology.triangle_count()) {
+    out = Repeater(mesh, copies, context).run();
+  } else {
+    std::vector<std::uint32_t> pieces(topology.component_count);
+    std::iota(pieces.begin(), pieces.end(), 0u);
+    out = cut_pieces(mesh, pieces, context);
   }
-  std::vector<std::uint32_t> pieces(topology.component_count);
-  std::iota(pieces.begin(), pieces.end(), 0u);
-  out = cut_pieces(mesh, pieces, context);
   out.timing.segmentation_cpu += looking;
   return out;
 }

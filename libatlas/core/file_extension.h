@@ -4,14 +4,14 @@
 #include <filesystem>
 #include <string>
 
+#include "libatlas/core/small_letters.h"
+
 namespace atlas {
 
 // ".obj" of "scene.OBJ": in small letters, however the name has it, whatever the locale; empty
 // where there is none.
 inline std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return extension;
+  return small_letters(path.extension().string());
 }
 
 }  // namespace atlas

@@ -5,6 +5,7 @@
 #include <set>
 #include <string_view>
 
+#include "libatlas/core/small_letters.h"
 #include "libatlas/exporters/compact_page.h"
 #include "libatlas/exporters/gltf_losses.h"
 #include "libatlas/exporters/obj_text.h"
@@ -48,9 +49,7 @@ std::vector<std::string> material_names(const Scene& scene) {
 
 // Whether a line of an MTL names a texture.
 bool names_texture(std::string_view line) {
-  std::string keyword(line.substr(0, line.find_first_of(" \t")));
-  for (char& c : keyword)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const std::string keyword = small_letters(std::string(line.substr(0, line.find_first_of(" \t"))));
   constexpr std::string_view kOthers[] = {"bump", "disp", "decal", "refl", "norm"};
   return keyword.starts_with("map_") ||
          std::find(std::begin(kOthers), std::end(kOthers), keyword) != std::end(kOthers);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "libatlas/core/file_extension.h"
+#include "libatlas/core/small_letters.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -24,23 +25,16 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
-std::string in_small_letters(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return text;
-}
-
 // What a folder holds under this name, whether in capitals or small letters; of several the first
 // in the order of their bytes. Empty where there is nothing.
 fs::path in_any_case(const fs::path& folder, const fs::path& name) {
-  const std::string wanted = in_small_letters(name.string());
+  const std::string wanted = small_letters(name.string());
   fs::path found;
   std::error_code ignored;  // a folder that cannot be listed holds nothing
   for (fs::directory_iterator at(folder.empty() ? "." : folder, ignored), end; at != end;
        at.increment(ignored)) {
     const fs::path entry = at->path().filename();
-    if (in_small_letters(entry.string()) == wanted && (found.empty() || entry < found))
-      found = entry;
+    if (small_letters(entry.string()) == wanted && (found.empty() || entry < found)) found = entry;
   }
   return found.empty() ? found : folder / found;
 }

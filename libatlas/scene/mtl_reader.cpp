@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/core/small_letters.h"
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/finite_float.h"
 #include "libatlas/scene/formats.h"
@@ -14,16 +15,11 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
-char small(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
 // A keyword that is read here as the format spells it: some programs write kd and map_kd.
 std::string_view spelled(std::string_view keyword) {
+  const std::string wanted = small_letters(std::string(keyword));
   for (const std::string_view known : {"newmtl", "Kd", "map_Kd", "d", "map_d", "Ke", "map_Ke"}) {
-    if (std::equal(keyword.begin(), keyword.end(), known.begin(), known.end(),
-                   [](char a, char b) { return small(a) == small(b); }))
-      return known;
+    if (small_letters(std::string(known)) == wanted) return known;
   }
   return keyword;
 }

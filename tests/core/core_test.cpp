@@ -145,9 +145,12 @@ TEST(ParallelFor, LoopsWithinLoopsShareTheThreads) {
     context.threads = threads;
     std::vector<std::atomic<int>> touched(40 * 50);
     std::atomic<int> running{0}, most{0};
+    Context inner;
+    inner.threads = 6;  // more than there are
     parallel_for(context, 40, 1, [&](std::size_t outer, std::size_t) {
-      parallel_for(context, 50, 3, [&](std::size_t begin, std::size_t end) {
+      parallel_for(threads == 1 ? context : inner, 50, 3, [&](std::size_t begin, std::size_t end) {
         const int now = ++running;
+        std::this_thread::sleep_for(std::chrono::microseconds(200));  // for others to come
         for (int seen = most; seen < now && !most.compare_exchange_weak(seen, now);) continue;
         for (std::size_t i = begin; i < end; ++i) ++touched[50 * outer + i];
         --running;

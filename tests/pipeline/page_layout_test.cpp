@@ -47,12 +47,16 @@ Shape rings_and_strips() {
   return all;
 }
 
-TEST(Layout, APoorPageOfPlainUvsIsPackedWithMoreWork) {
+Result<ChartSet> charts_of_rings_and_strips() {
   const Shape shape = rings_and_strips();
   MeshView mesh;
   mesh.positions = shape.positions;
   mesh.indices = shape.indices;
-  const Result<ChartSet> charts = make_charts(mesh, {.min_fill = 0}, {});
+  return make_charts(mesh, {.min_fill = 0}, {});
+}
+
+TEST(Layout, APoorPageOfPlainUvsIsPackedWithMoreWork) {
+  const Result<ChartSet> charts = charts_of_rings_and_strips();
   ASSERT_TRUE(charts.ok());
   LayoutOptions options{.pages = 1, .padding = 1, .alignment = 1, .minimum_side = 0};
   options.outlines = options.free_aspect = true;
@@ -71,11 +75,7 @@ TEST(Layout, APoorPageOfPlainUvsIsPackedWithMoreWork) {
 
 // Where a page is of no use below a share, more work is spent only if it may win as much.
 TEST(Layout, MoreWorkIsSpentWhereItMayWinEnough) {
-  const Shape shape = rings_and_strips();
-  MeshView mesh;
-  mesh.positions = shape.positions;
-  mesh.indices = shape.indices;
-  const Result<ChartSet> charts = make_charts(mesh, {.min_fill = 0}, {});
+  const Result<ChartSet> charts = charts_of_rings_and_strips();
   ASSERT_TRUE(charts.ok());
   LayoutOptions options{.pages = 1, .page_size = 256, .padding = 1, .alignment = 1};
   options.minimum_side = 0;

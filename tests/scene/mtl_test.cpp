@@ -15,6 +15,8 @@ namespace {
 using test::load;
 using test::TempFolder;
 
+constexpr char kTexturedTriangle[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nusemtl a\nf 1/1 2/1 3/1\n";
+
 TEST(Mtl, TexturesThatAreMissingOrBrokenFallBackToTheColour) {
   const TempFolder folder;
   folder.write("broken.png", "this is no image");
@@ -40,8 +42,8 @@ TEST(Mtl, ATextureOfAnotherMachineIsFoundBesideTheMaterials) {
   const TempFolder folder;
   ASSERT_TRUE(write_png(folder / "wood.png", Image8(2, 2, 3, 77), {}).ok());
   folder.write("m.mtl", "newmtl a\nmap_Kd C:\\Users\\me\\My Maps\\wood.png\n");
-  const LoadedScene loaded = load(folder.write(
-      "s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nusemtl a\nf 1/1 2/1 3/1\n"));
+  const LoadedScene loaded =
+      load(folder.write("s.obj", std::string("mtllib m.mtl\n") + kTexturedTriangle));
   EXPECT_TRUE(loaded.defects.empty());
   ASSERT_EQ(loaded.scene.textures.size(), 1u);
   EXPECT_EQ(loaded.scene.textures[0].path.filename(), "wood.png");
@@ -56,8 +58,8 @@ TEST(Mtl, FilesAreFoundInAnyCase) {
   ASSERT_TRUE(write_png(folder / "BESIDE.png", Image8(2, 2, 3, 77), {}).ok());
   const auto texture = [&](const std::string& name) {
     folder.write("Scene.MTL", "newmtl a\nmap_Kd " + name + "\n");
-    const LoadedScene loaded = load(folder.write(
-        "s.obj", "mtllib scene.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nusemtl a\nf 1/1 2/1 3/1\n"));
+    const LoadedScene loaded =
+        load(folder.write("s.obj", std::string("mtllib scene.mtl\n") + kTexturedTriangle));
     EXPECT_EQ(loaded.defects.count(DefectKind::material_file_missing), 0u);
     return loaded.scene.textures.empty() ? "" : loaded.scene.textures[0].path.filename().string();
   };
@@ -72,8 +74,8 @@ TEST(Mtl, KeywordsMayBeInAnyCase) {
   const TempFolder folder;
   ASSERT_TRUE(write_png(folder / "wood.png", Image8(2, 2, 3, 77), {}).ok());
   folder.write("m.mtl", "NewMtl a\nkd 0.1 0.2 0.3\nmap_kd wood.png\nKE 1 2 3\nD 0.5\n");
-  const LoadedScene loaded = load(folder.write(
-      "s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nusemtl a\nf 1/1 2/1 3/1\n"));
+  const LoadedScene loaded =
+      load(folder.write("s.obj", std::string("mtllib m.mtl\n") + kTexturedTriangle));
   EXPECT_TRUE(loaded.defects.empty());
   const Material& material = loaded.scene.materials[0];
   EXPECT_EQ(material.diffuse, (Vec3f{0.1f, 0.2f, 0.3f}));
@@ -103,11 +105,11 @@ TEST(Mtl, NamesMayHoldWhatElseBeginsAComment) {
   ASSERT_TRUE(write_png(folder / "wood #2 b.png", Image8(2, 2, 3, 77), {}).ok());
   ASSERT_TRUE(write_png(folder / "#1.png", Image8(2, 2, 3, 77), {}).ok());
   ASSERT_TRUE(write_png(folder / "plain.png", Image8(2, 2, 3, 77), {}).ok());
-  const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nusemtl a\nf 1/1 2/1 3/1\n";
   const auto texture = [&](const std::string& library, const std::string& map) {
     folder.write("m #1 x.mtl", "newmtl a # of wood\nmap_Kd " + map + "\n");
     folder.write("m.mtl", "newmtl a # of wood\nmap_Kd " + map + "\n");
-    const LoadedScene loaded = load(folder.write("s.obj", "mtllib " + library + "\n" + mesh));
+    const LoadedScene loaded =
+        load(folder.write("s.obj", "mtllib " + library + "\n" + kTexturedTriangle));
     EXPECT_TRUE(loaded.defects.empty()) << library << ", " << map;
     return loaded.scene.textures.empty() ? "" : loaded.scene.textures[0].path.filename().string();
   };
@@ -181,8 +183,8 @@ TEST(Mtl, NumbersBeyondFloatLeaveFiniteMaterialsAndCoordinates) {
   const TempFolder folder;
   ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 77), {}).ok());
   folder.write("m.mtl", "newmtl a\nKd 1e39 1 -1e39\nmap_Kd -s 1e39 1 a.png\n");
-  const LoadedScene loaded = load(folder.write(
-      "s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nusemtl a\nf 1/1 2/1 3/1\n"));
+  const LoadedScene loaded =
+      load(folder.write("s.obj", std::string("mtllib m.mtl\n") + kTexturedTriangle));
   EXPECT_EQ(check_scene(loaded.scene).message(), "");
   EXPECT_EQ(loaded.defects.count(DefectKind::texcoord_not_finite), 1u);
   EXPECT_EQ(loaded.defects.count(DefectKind::reflectance_beyond_one), 1u);
@@ -219,8 +221,8 @@ TEST(Mtl, TextureOptions) {
   ASSERT_TRUE(write_png(folder / "maps" / "a b.png", Image8(2, 2, 3, 77), {}).ok());
   const auto ignored = [&](const std::string& options) {
     folder.write("m.mtl", "newmtl a\nmap_Kd " + options + " maps\\a b.png\n");
-    const LoadedScene loaded = load(folder.write(
-        "s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nusemtl a\nf 1/1 2/1 3/1\n"));
+    const LoadedScene loaded =
+        load(folder.write("s.obj", std::string("mtllib m.mtl\n") + kTexturedTriangle));
     EXPECT_EQ(loaded.scene.textures.size(), 1u) << options;
     EXPECT_EQ(loaded.scene.materials[0].texture, 0) << options;
     const bool clamped = options.find("-clamp on") != std::string::npos;
