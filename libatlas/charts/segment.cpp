@@ -80,9 +80,7 @@ constexpr std::uint32_t kFastTrianglesPerCell = 250, kFastCellsOfSmallMesh = 60;
 // of the charts, but some parts with fillets in more (121 CAD parts and models: a twenty-fifth
 // fewer charts, a sixth less seam, in the same time).
 constexpr double kSomeFaces = 0.1, kAllFaces = 0.93;
-// Not so in pieces of more triangles, whose cells are fine enough to find their creases: it spared
-// hardly a chart there, and a cabin of a million triangles took three times as long.
-constexpr std::size_t kManyTriangles = 20000, kFewCharts = 3;
+constexpr std::size_t kFewCharts = 3;
 
 // What the charts of a piece cost; the less the better.
 struct PieceCost {
@@ -113,12 +111,11 @@ std::vector<PieceCost> piece_costs(const Cut& cut) {
 struct Ways {
   std::vector<std::uint8_t> plain, walled;
 
-  Ways(const Faces& faces, const PieceList& pieces, ChartPreset preset) {
+  Ways(const Faces& faces, ChartPreset preset) {
     const double least = preset == ChartPreset::fast ? kAllFaces : kSomeFaces;
-    for (std::uint32_t k = 0; k < pieces.count(); ++k) {
-      const double share = pieces.of(k).size() > kManyTriangles ? 0 : faces.share[k];
-      plain.push_back(share >= kAllFaces);
-      walled.push_back(share < least);
+    for (std::size_t k = 0; k < faces.share.size(); ++k) {
+      plain.push_back(faces.share[k] >= kAllFaces);
+      walled.push_back(faces.share[k] < least);
     }
   }
 
@@ -161,7 +158,9 @@ class Segmenter {
     Slits slits(topology_, {rules, bands_}, result_.partition, result_.frames);
     slits.close();
     smooth_borders(topology_, rules, result_.partition, result_.frames);
-    straighten_borders(topology_, {rules, bands_}, result_.partition, result_.frames);
+    const std::vector<std::uint32_t> moved =
+        straighten_borders(topology_, {rules, bands_}, result_.partition, context_);
+    carry_frames(topology_, moved, result_.frames);
     smooth_borders(topology_, rules, result_.partition, result_.frames);
     slits.reopen();
     slits.straighten();
@@ -175,7 +174,7 @@ class Segmenter {
     const CellOptions options = cell_options();
     const CellPlan plan = plan_cells(topology_, options);
     const Faces faces = find_faces(topology_, plan);
-    Ways ways(faces, plan.pieces, options_.preset);
+    Ways ways(faces, options_.preset);
     result_.timing.cells_cpu += watch.lap();
     std::vector<Cut> cuts;
     for (const bool walled : {false, true}) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/pool.h"
 #include "libatlas/texture/chart_triangles.h"
 #include "libatlas/texture/downsizing.h"
 #include "libatlas/texture/sample_chart.h"
@@ -90,45 +91,26 @@ struct ChartOutcome {
   bool raised = false;
 };
 
-// What one chart's textures are held in. Each thread at work borrows one.
+// What one chart's textures are held in.
 struct Room {
   SampledChart full;
   HalvedCharts halved;
-};
-
-class Rooms {
- public:
-  std::unique_ptr<Room> borrow() {
-    const std::lock_guard lock(mutex_);
-    if (free_.empty()) return std::make_unique<Room>();
-    std::unique_ptr<Room> room = std::move(free_.back());
-    free_.pop_back();
-    return room;
-  }
-  void give_back(std::unique_ptr<Room> room) {
-    const std::lock_guard lock(mutex_);
-    free_.push_back(std::move(room));
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<Room>> free_;
 };
 
 // What size_chart works with.
 struct Sizing {
   const ChartLight& light;
   const TextureOptions& options;
-  Rooms& rooms;
+  Pool<Room>& rooms;
 };
 
 void downsize_chart(const Sizing& sizing, std::uint32_t id, ChartTexture& out,
                     ChartOutcome& outcome) {
   const double density = out.full_texels_per_unit.x;
-  std::unique_ptr<Room> room = sizing.rooms.borrow();
+  std::unique_ptr<Room> room = sizing.rooms.take();
   sample_chart(sizing.light, id, density, room->full);
   const Downsizing d = downsize(room->full, sizing.options, room->halved);
-  sizing.rooms.give_back(std::move(room));
+  sizing.rooms.give(std::move(room));
   out.sampled = true;
   out.halvings = d.halvings;
   out.width = d.width;
@@ -231,7 +213,7 @@ Result<TextureResult> size_chart_textures(const ChartLight& light, const Texture
   TextureResult result;
   result.charts.resize(n);
   std::vector<ChartOutcome> outcomes(n);
-  Rooms rooms;
+  Pool<Room> rooms;
   std::mutex reporting;
   std::size_t triangles_done = 0;
   parallel_for(context, n, 1, [&](std::size_t begin, std::size_t end) {

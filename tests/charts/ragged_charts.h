@@ -96,7 +96,7 @@ struct RaggedCharts {
   }
   void straighten(const SeamBand& band, double crease_degrees = 40) {
     const std::vector<SeamBand> of_chart(64, band);
-    straighten_borders(topology, {{crease_degrees, {}}, of_chart}, partition, frames);
+    straighten_borders(topology, {{crease_degrees, {}}, of_chart}, partition, {});
   }
 };
 

@@ -18,8 +18,8 @@ struct Faces {
   bool part(std::uint32_t t, std::uint32_t u) const { return of_triangle[t] != of_triangle[u]; }
 };
 
-// None in pieces that they would divide into three times as many regions as the plan has cells for
-// them. Linear in the number of triangles.
+// None in pieces of more than 20 000 triangles, and in those that they would divide into three
+// times as many regions as the plan has cells for them. Linear in the number of triangles.
 Faces find_faces(const Topology& topology, const CellPlan& plan);
 
 }  // namespace atlas

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <utility>
 
 #include "libatlas/charts/flattening/absorb.h"
@@ -14,6 +13,7 @@
 #include "libatlas/charts/seams/straighten.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/pool.h"
 
 namespace atlas {
 namespace {
@@ -45,35 +45,6 @@ void fit_scratch(std::size_t triangles, ChartScratch& scratch) {
   }
   scratch.largest = std::max(scratch.largest, triangles);
 }
-
-// One scratch a running thread, handed out and taken back.
-class ScratchPool {
- public:
-  std::unique_ptr<ChartScratch> take() {
-    const std::lock_guard lock(mutex_);
-    if (free_.empty()) return std::make_unique<ChartScratch>();
-    auto scratch = std::move(free_.back());
-    free_.pop_back();
-    return scratch;
-  }
-  void give(std::unique_ptr<ChartScratch> scratch) {
-    const std::lock_guard lock(mutex_);
-    free_.push_back(std::move(scratch));
-  }
-  // Of those that were given back.
-  void add_times(ChartSet::Timing& timing) const {
-    for (const auto& scratch : free_) {
-      timing.cuts_cpu += scratch->cuts_cpu;
-      timing.solve_cpu += scratch->workspace.timing.solve;
-      timing.flips_cpu += scratch->workspace.timing.flips;
-      timing.overlaps_cpu += scratch->workspace.timing.overlaps;
-    }
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<ChartScratch>> free_;
-};
 
 // Rounds over all charts that still have to be flattened. Charts run in parallel; what changes the
 // partition happens between rounds, in order.
@@ -108,13 +79,18 @@ class Flattener {
         }
         pool_.give(std::move(scratch));
       });
-      if (!context.cancelled()) settle(failures);
+      if (!context.cancelled()) settle(failures, context);
     }
   }
 
   FlattenResult take_result(const Context& context) {
     FlattenResult result;
-    pool_.add_times(result.timing);
+    for (const auto& scratch : pool_.idle()) {
+      result.timing.cuts_cpu += scratch->cuts_cpu;
+      result.timing.solve_cpu += scratch->workspace.timing.solve;
+      result.timing.flips_cpu += scratch->workspace.timing.flips;
+      result.timing.overlaps_cpu += scratch->workspace.timing.overlaps;
+    }
     result.split_charts = split_;
     for (std::size_t k = 0; k < charts_.size(); ++k) {
       flats_[k].triangles = std::move(charts_[k].triangles);
@@ -195,7 +171,7 @@ class Flattener {
     todo_.push_back(chart);
   }
 
-  void settle(std::vector<std::unique_ptr<ChartOutcome>>& failures) {
+  void settle(std::vector<std::unique_ptr<ChartOutcome>>& failures, const Context& context) {
     const std::vector<std::uint32_t> done = std::move(todo_);
     todo_.clear();
     for (const std::uint32_t chart : done) charts_[chart].queued = charts_[chart].grown = false;
@@ -209,7 +185,7 @@ class Flattener {
       split_ += failures[i]->failed;
       divide(done[i], failures[i]->parts);
     }
-    straighten_parts();
+    straighten_parts(context);
     relist();
     if (!todo_.empty()) return;
     for (const std::uint32_t chart : std::exchange(grown_, {})) {
@@ -282,7 +258,7 @@ class Flattener {
   }
 
   // What divides a chart leaves ragged borders.
-  void straighten_parts() {
+  void straighten_parts(const Context& context) {
     const std::vector<std::uint32_t> parts = std::exchange(parts_, {});
     if (parts.empty() || input_.options.cone_degrees > 0) return;
     std::vector<SeamBand> bands(charts_.size());
@@ -295,8 +271,9 @@ class Flattener {
       own.clear();
     }
     std::sort(triangles.begin(), triangles.end());
-    straighten_borders(input_.topology, {{input_.options.crease_degrees, {}}, bands, triangles},
-                       partition_, input_.frames);
+    const StraightenOptions options{{input_.options.crease_degrees, {}}, bands, triangles};
+    carry_frames(input_.topology, straighten_borders(input_.topology, options, partition_, context),
+                 input_.frames);
     for (const std::uint32_t t : triangles) charts_[partition_.chart[t]].triangles.push_back(t);
   }
 
@@ -347,7 +324,7 @@ class Flattener {
 
   const FlattenInput& input_;
   Partition& partition_;
-  ScratchPool pool_;
+  Pool<ChartScratch> pool_;
   std::vector<State> charts_;
   std::vector<FlatChart> flats_;  // their results; triangles are filled in the end
   std::vector<std::uint32_t> todo_, moved_;

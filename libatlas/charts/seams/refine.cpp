@@ -115,11 +115,20 @@ Frames::Frame carry_frame(const Topology& topology, const Frames::Frame& frame, 
                         wide(topology.normals[to]));
 }
 
+void carry_frames(const Topology& topology, std::span<const std::uint32_t> half_edges,
+                  Frames& frames) {
+  if (frames.empty()) return;
+  for (const std::uint32_t h : half_edges) {
+    const std::uint32_t t = h / 3, from = topology.opposite[h] / 3;
+    frames.put(t, carry_frame(topology, frames.at(topology, from), from, t));
+  }
+}
+
 void move_triangle(const Topology& topology, std::uint32_t h, Partition& partition,
                    Frames& frames) {
-  const std::uint32_t t = h / 3, to = topology.opposite[h] / 3;
-  partition.chart[t] = partition.chart[to];
-  if (!frames.empty()) frames.put(t, carry_frame(topology, frames.at(topology, to), to, t));
+  const std::uint32_t t = h / 3;
+  partition.chart[t] = partition.chart[topology.opposite[h] / 3];
+  carry_frames(topology, {&h, 1}, frames);
   for (std::uint32_t g = 3 * t; g < 3 * t + 3; ++g) {
     if (!partition.seam(g)) continue;
     const std::uint32_t o = topology.opposite[g];

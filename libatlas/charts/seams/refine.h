@@ -42,4 +42,9 @@ void smooth_borders(const Topology& topology, const BorderRules& rules, Partitio
 Frames::Frame carry_frame(const Topology& topology, const Frames::Frame& frame, std::uint32_t from,
                           std::uint32_t to);
 
+// Gives each half-edge's triangle the frame from across, one after the other; none where `frames`
+// is empty.
+void carry_frames(const Topology& topology, std::span<const std::uint32_t> half_edges,
+                  Frames& frames);
+
 }  // namespace atlas

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "libatlas/charts/seams/refine.h"
+#include "libatlas/core/context.h"
 
 namespace atlas {
 
@@ -26,8 +28,10 @@ struct StraightenOptions {
 // the narrower and stiffer of their bands, found as a minimum cut of the dual graph (the idea: Katz
 // and Tal 2003). Where single triangles cannot shorten a border, as on the steps of a
 // staircase, this can. A border stays as it is where a chart would come apart, close to a ring or
-// leave its cone.
-void straighten_borders(const Topology& topology, const StraightenOptions& options,
-                        Partition& partition, Frames& frames);
+// leave its cone. Borders between different charts are straightened at once.
+// Returns the half-edges across which triangles changed charts, in order, for carry_frames().
+std::vector<std::uint32_t> straighten_borders(const Topology& topology,
+                                              const StraightenOptions& options,
+                                              Partition& partition, const Context& context);
 
 }  // namespace atlas

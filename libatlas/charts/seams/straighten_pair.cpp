@@ -1,0 +1,336 @@
+#include "libatlas/charts/seams/straighten_pair.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <utility>
+
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+constexpr double kSteps = 256;        // a mean edge's length in the cut's integers
+constexpr double kLongest = 1 << 16;  // so many steps at most, for 32 bits
+
+class PairStraightener {
+ public:
+  PairStraightener(const SharedBands& shared, const BorderPair& pair, PairScratch& scratch)
+      : topology_(shared.topology),
+        rules_(shared.rules),
+        bands_(shared.bands),
+        partition_(shared.partition),
+        places_(shared.places),
+        crease_cosine_(std::cos(shared.rules.crease_degrees * M_PI / 180)),
+        charts_(pair.charts),
+        border_(pair.border),
+        band_(scratch.band),
+        list_(scratch.list),
+        fans_(scratch.fans),
+        visited_(scratch.visited),
+        cut_(scratch.cut) {}
+
+  // Where a cut in the whole band would change too much, one in a narrower band may not.
+  std::vector<std::uint32_t> run() {
+    int rings = std::min(bands_[charts_[0]].rings, bands_[charts_[1]].rings);
+    do {
+      refused_ = false;
+      find_band(rings);
+      for (std::uint32_t first = 0; first < band_.size();) first = straighten_from(first);
+      for (const std::uint32_t t : band_) places_[t] = kNoIndex;
+      rings /= 2;
+    } while (refused_ && rings > 0);
+    return std::move(moved_);
+  }
+
+ private:
+  // Of any triangle, while others may hand theirs to each other.
+  std::uint32_t chart(std::uint32_t t) const {
+    return std::atomic_ref(partition_.chart[t]).load(std::memory_order_relaxed);
+  }
+
+  // 0 or 1: which of the two charts; 2: neither.
+  std::uint32_t side(std::uint32_t t) const {
+    const std::uint32_t own = chart(t);
+    return own == charts_[0] ? 0 : own == charts_[1] ? 1 : 2;
+  }
+
+  // Its place in the band; kNoIndex: it has none.
+  std::uint32_t place(std::uint32_t t) const { return side(t) == 2 ? kNoIndex : places_[t]; }
+
+  void reach(std::uint32_t t) {
+    if (side(t) == 2 || places_[t] != kNoIndex || partition_.seams[t]) return;
+    places_[t] = static_cast<std::uint32_t>(band_.size());
+    band_.push_back(t);
+  }
+
+  // The triangles within `rings` of the border, reordered so that what hangs together is adjacent.
+  void find_band(int rings) {
+    band_.clear();
+    for (const std::uint32_t h : border_) {
+      const std::uint32_t a = h / 3, b = topology_.opposite[h] / 3;
+      if (side(a) + side(b) != 1) continue;  // an earlier pair has changed it
+      reach(a);
+      reach(b);
+    }
+    std::size_t begin = 0;
+    for (int ring = 1; ring < rings; ++ring) {
+      const std::size_t end = band_.size();
+      for (; begin < end; ++begin) {
+        for (std::uint32_t h = 3 * band_[begin]; h < 3 * band_[begin] + 3; ++h) {
+          const std::uint32_t o = topology_.opposite[h];
+          if (o != kNoIndex) reach(o / 3);
+        }
+      }
+    }
+    order_by_component();
+  }
+
+  void order_by_component() {
+    std::vector<std::uint32_t>& order = list_;
+    order.clear();
+    for (const std::uint32_t seed : band_) {
+      if (places_[seed] == kTaken) continue;
+      places_[seed] = kTaken;
+      order.push_back(seed);
+      for (std::size_t i = order.size() - 1; i < order.size(); ++i) {
+        for (std::uint32_t h = 3 * order[i]; h < 3 * order[i] + 3; ++h) {
+          const std::uint32_t o = topology_.opposite[h];
+          if (o == kNoIndex || place(o / 3) == kNoIndex || places_[o / 3] == kTaken) continue;
+          places_[o / 3] = kTaken;
+          order.push_back(o / 3);
+        }
+      }
+    }
+    band_.swap(order);
+    for (std::uint32_t i = 0; i < band_.size(); ++i) places_[band_[i]] = i;
+  }
+
+  bool in_band(std::uint32_t t) const {
+    const std::uint32_t at = place(t);
+    return at != kNoIndex && at >= first_ && at < last_;
+  }
+
+  // Straightens the part of the band that begins at `first`; returns where the next begins.
+  std::uint32_t straighten_from(std::uint32_t first) {
+    first_ = first;
+    last_ = static_cast<std::uint32_t>(band_.size());
+    std::uint32_t end = first + 1;
+    for (std::uint32_t i = first; i < end; ++i) {
+      for (std::uint32_t h = 3 * band_[i]; h < 3 * band_[i] + 3; ++h) {
+        const std::uint32_t o = topology_.opposite[h];
+        if (o != kNoIndex && in_band(o / 3)) end = std::max(end, places_[o / 3] + 1);
+      }
+    }
+    last_ = end;
+    if (!cut_and_apply()) refused_ = true;
+    return end;
+  }
+
+  // False if that would have changed more than a border.
+  bool cut_and_apply() {
+    if (!build_cut()) return false;
+    cut_.run();
+    bool moved = false;
+    for (std::uint32_t i = first_; i < last_; ++i) moved |= changes(band_[i]);
+    if (!moved) return true;
+    if (!same_euler() || !held()) return false;
+    apply();
+    return true;
+  }
+
+  static std::int32_t steps(double length) {
+    return static_cast<std::int32_t>(std::lround(std::min(length, kLongest)));
+  }
+
+  // False if one of the charts lies wholly in the band: the shortest border would be none.
+  bool build_cut() {
+    double mean = 0;
+    for (std::uint32_t i = first_; i < last_; ++i) mean += edge_length(topology_, 3 * band_[i]);
+    const double unit = mean / (last_ - first_) / kSteps;
+    if (!(unit > 0)) return false;
+    cut_.reset(last_ - first_);
+    const double stiffness = std::max(bands_[charts_[0]].stiffness, bands_[charts_[1]].stiffness);
+    bool anchored[2] = {false, false};
+    for (std::uint32_t i = first_; i < last_; ++i) {
+      const std::uint32_t t = band_[i], own = side(t);
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) add_edge(h, unit, anchored);
+      const double size = std::sqrt(static_cast<double>(topology_.areas[t]));
+      cut_.tie(i - first_, own, steps(stiffness * size / unit));
+      if (rules_.cone.excludes(topology_.normals[t], charts_[1 - own]))
+        cut_.tie(i - first_, own, MinCut::kForever);
+    }
+    return anchored[0] && anchored[1];
+  }
+
+  void add_edge(std::uint32_t h, double unit, bool (&anchored)[2]) {
+    const std::uint32_t o = topology_.opposite[h], i = places_[h / 3] - first_;
+    if (o == kNoIndex || partition_.seam(h)) return;
+    const bool within = in_band(o / 3);
+    if (within && o < h) return;  // one side adds it for both
+    const std::int32_t w = steps(border_weight(topology_, h, crease_cosine_) / unit);
+    if (within) {
+      cut_.set_edge({i, h % 3}, {places_[o / 3] - first_, o % 3}, w);
+    } else if (const std::uint32_t there = side(o / 3); there < 2) {
+      anchored[there] = true;
+      cut_.tie(i, there, w);
+    }
+  }
+
+  // The number of a chart's vertices, less edges, plus triangles: what changes it closes rings,
+  // opens them or divides. Vertices where a chart touches itself count as often as it comes by.
+  bool same_euler() {
+    int change[2] = {0, 0};
+    fans_.clear();
+    for (std::uint32_t i = first_; i < last_; ++i) {
+      const std::uint32_t t = band_[i];
+      if (!changes(t)) continue;
+      const std::uint32_t was = side(t);
+      ++change[1 - was];
+      --change[was];
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        const std::uint32_t o = topology_.opposite[h];
+        if (o == kNoIndex || !changes(o / 3) || h < o) {
+          for (std::uint32_t s = 0; s < 2; ++s) {
+            change[s] -= edge_in(h, s, true) - edge_in(h, s, false);
+          }
+        }
+        fans_.push_back(first_of_fan(h));
+      }
+    }
+    std::sort(fans_.begin(), fans_.end());
+    fans_.erase(std::unique(fans_.begin(), fans_.end()), fans_.end());
+    for (const std::uint32_t fan : fans_) {
+      for (std::uint32_t s = 0; s < 2; ++s)
+        change[s] += runs_in_fan(fan, s, true) - runs_in_fan(fan, s, false);
+    }
+    return change[0] == 0 && change[1] == 0;
+  }
+
+  bool changes(std::uint32_t t) const {
+    return in_band(t) && cut_.side(places_[t] - first_) != side(t);
+  }
+  std::uint32_t side_at(std::uint32_t t, bool after) const {
+    return after && in_band(t) ? cut_.side(places_[t] - first_) : side(t);
+  }
+  bool edge_in(std::uint32_t h, std::uint32_t s, bool after) const {
+    const std::uint32_t o = topology_.opposite[h];
+    return side_at(h / 3, after) == s || (o != kNoIndex && side_at(o / 3, after) == s);
+  }
+  // Names the fan of triangles around the start of h: its first half-edge in anticlockwise order,
+  // the least one if the fan is closed.
+  std::uint32_t first_of_fan(std::uint32_t h) const {
+    std::uint32_t least = h;
+    for (std::uint32_t at = h;;) {
+      if (topology_.opposite[at] == kNoIndex) return at;
+      at = next_half_edge(topology_.opposite[at]);
+      if (at == h) return least;
+      least = std::min(least, at);
+    }
+  }
+
+  // How many vertices of side s a fan holds: as many as there are runs of its triangles.
+  int runs_in_fan(std::uint32_t first, std::uint32_t s, bool after) const {
+    int triangles = 0, links = 0;
+    bool closed = false;
+    for (std::uint32_t h = first; !closed;) {
+      const bool in = side_at(h / 3, after) == s;
+      triangles += in;
+      const std::uint32_t back = previous_half_edge(h), o = topology_.opposite[back];
+      if (o == kNoIndex) break;
+      links += in && side_at(o / 3, after) == s && !partition_.seam(back);
+      h = o;
+      closed = h == first;
+    }
+    return closed && triangles > 0 && links == triangles ? 1 : triangles - links;
+  }
+
+  // Whether all parts of both charts in the band would have a hold outside it. Parts need not hang
+  // together within the band: where the characteristics stay, a chart could come apart only if it
+  // got a hole as well. (If one does, flattening takes its pieces for charts.)
+  bool held() {
+    visited_.assign(last_ - first_, 0);
+    for (std::uint32_t i = 0; i < visited_.size(); ++i) {
+      if (visited_[i]) continue;
+      visited_[i] = 1;
+      bool hold = false;
+      list_.assign(1, band_[first_ + i]);
+      for (std::size_t k = 0; k < list_.size(); ++k) {
+        const std::uint32_t t = list_[k];
+        for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+          const std::uint32_t o = topology_.opposite[h];
+          if (o == kNoIndex || partition_.seam(h)) continue;
+          if (side_at(o / 3, true) != side_at(t, true)) continue;
+          if (!in_band(o / 3)) {
+            hold = true;
+          } else if (std::uint8_t& seen = visited_[places_[o / 3] - first_]; !seen) {
+            seen = 1;
+            list_.push_back(o / 3);
+          }
+        }
+      }
+      if (!hold) return false;
+    }
+    return true;
+  }
+
+  // Triangles change sides, each over an edge to a neighbour that was there before or has changed
+  // already. They have no seam bits.
+  void apply() {
+    list_.clear();
+    for (std::uint32_t i = first_; i < last_; ++i) {
+      if (changes(band_[i])) list_.push_back(band_[i]);
+    }
+    for (std::size_t left = list_.size(); left > 0;) {
+      std::size_t kept = 0;
+      for (std::size_t k = 0; k < left; ++k) {
+        const std::uint32_t t = list_[k], h = way_over(t);
+        if (h == kNoIndex) {
+          list_[kept++] = t;
+        } else {
+          std::atomic_ref(partition_.chart[t])
+              .store(chart(topology_.opposite[h] / 3), std::memory_order_relaxed);
+          moved_.push_back(h);
+        }
+      }
+      if (kept == left) break;  // cannot be: held() has seen a way to each
+      left = kept;
+    }
+  }
+
+  // A half-edge of t to a triangle of the chart that t changes to.
+  std::uint32_t way_over(std::uint32_t t) const {
+    const std::uint32_t to = charts_[cut_.side(places_[t] - first_)];
+    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+      const std::uint32_t o = topology_.opposite[h];
+      if (o != kNoIndex && chart(o / 3) == to) return h;
+    }
+    return kNoIndex;
+  }
+
+  static constexpr std::uint32_t kTaken = kNoIndex - 1;
+
+  const Topology& topology_;
+  const BorderRules& rules_;
+  std::span<const SeamBand> bands_;
+  Partition& partition_;
+  std::span<std::uint32_t> places_;
+  double crease_cosine_;
+  std::array<std::uint32_t, 2> charts_;
+  std::span<const std::uint32_t> border_;
+  std::vector<std::uint32_t>&band_, &list_, &fans_;
+  std::vector<std::uint8_t>& visited_;
+  MinCut& cut_;
+  std::vector<std::uint32_t> moved_;
+  std::uint32_t first_ = 0, last_ = 0;  // the part of band_ that is at work
+  bool refused_ = false;                // a cut in the band at hand
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> straighten_pair(const SharedBands& shared, const BorderPair& pair,
+                                           PairScratch& scratch) {
+  return PairStraightener(shared, pair, scratch).run();
+}
+
+}  // namespace atlas
