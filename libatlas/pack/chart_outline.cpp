@@ -203,8 +203,10 @@ namespace atlas {
 
 Result<double> covered_area(std::span<const ChartShape> shapes, const Context& context) {
   if (Status status = pack::check_shapes(shapes); !status.ok()) return status;
+  const std::vector<pack::ChartOutline> outlines = pack::outlines_of(shapes, context);
+  if (context.cancelled()) return Status::cancelled();
   double area = 0;
-  for (const pack::ChartOutline& outline : pack::outlines_of(shapes, context)) area += outline.area;
+  for (const pack::ChartOutline& outline : outlines) area += outline.area;
   return area;
 }
 

@@ -121,6 +121,7 @@ Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& gi
   const std::vector<pack::ChartOutline> outlines = pack::outlines_of(options.shapes, context);
   Result<FitResult> fitted = pack::fit_outlines(items, outlines, options, context);
   if (fitted.ok()) note_lost_area(outlines, options, context, *fitted);
+  if (context.cancelled()) return Status::cancelled();
   return fitted;
 }
 
@@ -132,10 +133,9 @@ Result<FitResult> press_fit(FitResult fitted, std::span<const FitItem> items,
   const FitOptions options = for_items(items.size(), given);
   const std::vector<pack::ChartOutline> outlines = pack::outlines_of(options.shapes, context);
   std::optional<FitResult> denser = pack::press_pages(fitted, items, outlines, options, context);
+  if (denser) note_lost_area(outlines, options, context, *denser);
   if (context.cancelled()) return Status::cancelled();
-  if (!denser) return fitted;
-  note_lost_area(outlines, options, context, *denser);
-  return std::move(*denser);
+  return denser ? std::move(*denser) : std::move(fitted);
 }
 
 }  // namespace atlas

@@ -184,8 +184,8 @@ Result<FitResult> fit_outlines(std::span<const FitItem> items,
   // Straight charts, laid in rows on a page of any shape or pressed by `best` on a given one, may
   // fill more by cells. Of many charts rows are about as good, and far cheaper.
   const bool many = options.free_aspect && items.size() > kFewInRows;
-  if (pressed && (many || !is_straight(outlines))) return std::move(*pressed);
   if (context.cancelled()) return Status::cancelled();
+  if (pressed && (many || !is_straight(outlines))) return std::move(*pressed);
   FitOptions by_cells = options;
   if (pressed) by_cells.preset = PackPreset::standard;
   // With more directions each chart finds a lower place, but not all charts a higher scale: those

@@ -104,6 +104,7 @@ bool OutlineFit::pack_pages(std::uint32_t pages, OutlineLayout& layout) const {
     for (std::size_t p = begin; p < end; ++p)
       found[p] = fill_group(layout.pieces, orders, p, open[p]);
   });
+  if (context_.cancelled()) return false;  // pages may not have been filled
   layout.places.resize(layout.pieces.size());
   std::vector<std::uint32_t> left;
   for (std::uint32_t p = 0; p < pages; ++p) {

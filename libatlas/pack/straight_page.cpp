@@ -213,7 +213,9 @@ class StraightPage {
     for (std::size_t k = 0; k < kSlidStarts && !context_.cancelled(); ++k) {
       const Start& s = starts[k];
       if (s.fill == 0) return;
-      Slider slider(pieces_at(s.scale, options_.alignment), s, options_, cell_);
+      std::vector<Piece> pieces = pieces_at(s.scale, options_.alignment);
+      if (context_.cancelled()) return;  // pieces may not have been drawn
+      Slider slider(std::move(pieces), s, options_, cell_);
       if (!slider.put_down()) continue;
       for (int slide = 0; slide < kSlides; ++slide) {
         slider.slide_to({0, -1});
