@@ -281,6 +281,27 @@ TEST(Export, CancelledBeforeItBeganWritesNothing) {
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
+TEST(Export, CancelledInAnyStageWritesNothing) {
+  const LoadedScene room = lit_room(8);
+  for (const char* stage :
+       {"charts", "exposure", "downsizing", "packing", "baking", "simplify", "writing"}) {
+    const TempFolder folder;
+    std::atomic<bool> cancel{false};
+    Context context;
+    context.threads = 3;
+    context.cancel = &cancel;
+    context.progress = [&](std::string_view at, double) {
+      if (at == stage) cancel = true;
+    };
+    ExportOptions options = small_pages(folder);
+    options.simplify = true;
+    const auto report = export_world(room, options, {}, context);
+    ASSERT_FALSE(report.ok()) << stage;
+    EXPECT_EQ(report.status().code(), ErrorCode::cancelled) << stage;
+    EXPECT_TRUE(fs::is_empty(folder.path())) << stage;
+  }
+}
+
 TEST(Export, RefusesOptionsOutOfRange) {
   using Change = std::function<void(ExportOptions&)>;
   const auto nan = std::numeric_limits<double>::quiet_NaN();
