@@ -176,11 +176,12 @@ Status read_json(const PackCommand& c, const std::string& text, std::vector<Pack
   if (!list.is_array()) return bad("expected an array of [w, h] or {\"name\", \"w\", \"h\"}");
   for (std::size_t i = 0; i < list.size(); ++i) {
     const nlohmann::json& e = list[i];
+    // Looked at in place: a copy calls itself for each level, and a million brackets end the stack.
     const auto side = [&](std::size_t at, const char* brief, const char* full) -> std::int64_t {
-      nlohmann::json v;
-      if (e.is_array() && e.size() == 2) v = e[at];
-      if (e.is_object()) v = e.contains(brief) ? e[brief] : e.value(full, nlohmann::json());
-      return v.is_number_integer() ? v.get<std::int64_t>() : -1;
+      const nlohmann::json* v = e.is_array() && e.size() == 2 ? &e[at] : nullptr;
+      for (const char* name : {full, brief})
+        if (e.is_object() && e.contains(name)) v = &e[name];
+      return v && v->is_number_integer() ? v->get<std::int64_t>() : -1;
     };
     const std::int64_t w = side(0, "w", "width"), h = side(1, "h", "height");
     if (w < 0 || h < 0 || w > INT32_MAX || h > INT32_MAX)

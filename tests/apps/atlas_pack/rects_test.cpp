@@ -164,6 +164,18 @@ TEST_F(AtlasPack, WrongJsonNamesItsLine) {
             std::string::npos);
 }
 
+// Each level that was copied took a piece of the stack, which ended the program.
+TEST_F(AtlasPack, DeepBracketsAreNoSides) {
+  const std::string open(1'000'000, '['), closed(1'000'000, ']');
+  write("array.json", "[[" + open + closed + ",1]]");
+  write("object.json", "[{\"width\":" + open + closed + ",\"h\":1}]");
+  for (const char* name : {"array.json", "object.json"}) {
+    const RunResult r = run(std::string("rects ") + name + " -o a.csv");
+    EXPECT_EQ(r.exit_code, 1) << name;
+    EXPECT_NE(r.output.find("element 0 has no whole sides"), std::string::npos) << r.output;
+  }
+}
+
 // It waited for the writer, and signals did not end that.
 TEST_F(AtlasPack, APipeWithoutAWriterCanBeInterrupted) {
   ASSERT_EQ(::mkfifo((dir_ / "pipe").c_str(), 0600), 0);
