@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
+#include <sstream>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -202,7 +203,10 @@ int parse(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& done) {
-    return app.exit(done);
+    std::ostringstream help;
+    const int code = app.exit(done, help, help);
+    print(stdout, help.str());
+    return code;
   } catch (const CLI::ParseError& error) {
     return refuse(complaint(app, error));
   }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -65,6 +64,14 @@ TEST_F(System, OutputThatNobodyTakes) {
   for (int i = 0; i < 200 && !fs::exists(folder_ / "w.glb"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   EXPECT_TRUE(fs::exists(folder_ / "w.glb"));
+}
+
+// As `--help | head -1` does.
+TEST_F(System, HelpThatNobodyReadsToItsEnd) {
+  const RunResult r = shell(fmt::format(
+      "{{ {{ sleep 0.2; {} --help 2>&3; echo $? >&3; }} | true; }} 3>&1", ATLAS_EXPORT));
+  EXPECT_EQ(r.output, "0\n");
+  EXPECT_EQ(run("--help >/dev/full 2>&1").exit_code, 1);
 }
 
 // The system sends a signal there, which would else end the program and leave what it has begun.
