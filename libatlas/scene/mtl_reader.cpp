@@ -160,13 +160,7 @@ class MtlParser {
       if (Status s = parse_option(option, rest); !s.ok()) return s;
     }
     if (rest.empty() || rest[0] == '#') return malformed("map_Kd names no file");
-    const fs::path file = texture_file(rest);
-    auto& textures = builder_.textures;
-    const auto same = std::find_if(textures.begin(), textures.end(), [&](const RawTexture& t) {
-      return t.bytes.empty() && t.path == file;
-    });
-    builder_.materials.back().texture = static_cast<std::int32_t>(same - textures.begin());
-    if (same == textures.end()) textures.push_back({file, {}, place()});
+    builder_.materials.back().texture = builder_.texture_of(texture_file(rest), place());
     return {};
   }
 

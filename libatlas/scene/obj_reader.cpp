@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "libatlas/core/parallel.h"
 #include "libatlas/scene/file_bytes.h"
@@ -160,8 +161,10 @@ class Merger {
     return {};
   }
 
+  // Some programs name one library before each object: it is read once.
   Status read_library_list(const ObjEvent& event) {
     for (const LibraryFile& file : library_files(path_.parent_path(), event.text)) {
+      if (!libraries_.insert(file.path).second) continue;
       if (!file.exists) {
         builder_.defects.add(DefectKind::material_file_missing, [&] {
           return fmt::format("{} ({})", file.path.string(), place(event.line));
@@ -229,6 +232,7 @@ class Merger {
   std::vector<Counts> counts_;           // 1 a chunk
   std::vector<std::string> bad_places_;  // of the first unusable positions
   std::map<std::string, std::uint32_t> material_id_, object_id_;
+  std::set<fs::path> libraries_;  // that have been looked at
 };
 
 // A face at the very end that lost its corners, in a last line without a line end, was cut off.

@@ -68,6 +68,14 @@ std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& ids, std::size_t 
 
 }  // namespace
 
+std::int32_t SceneBuilder::texture_of(const std::filesystem::path& texture_file,
+                                      const std::string& place) {
+  const auto next = static_cast<std::int32_t>(textures.size());
+  const auto [at, is_new] = texture_files_.try_emplace(texture_file, next);
+  if (is_new) textures.push_back({texture_file, {}, place});
+  return at->second;
+}
+
 void SceneBuilder::reserve_triangles(std::size_t count, bool with_texcoords) {
   indices_.reserve(count * 3);
   texcoord_indices_.reserve(with_texcoords ? count * 3 : 0);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -82,6 +83,9 @@ class SceneBuilder {
       defects.add(DefectKind::position_not_finite, [&] { return place_of_vertex(i); });
     }
   }
+
+  // The texture of this file, one for all that ask for it; `place` is the first that does.
+  std::int32_t texture_of(const std::filesystem::path& texture_file, const std::string& place);
 
   void reserve_triangles(std::size_t count, bool with_texcoords);
 
@@ -178,6 +182,7 @@ class SceneBuilder {
   std::vector<std::uint32_t> triangle_material_, triangle_object_;
   std::vector<Vec3d> corners_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
+  std::map<std::filesystem::path, std::int32_t> texture_files_;  // by what texture_of() was asked
 };
 
 }  // namespace atlas

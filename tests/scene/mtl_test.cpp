@@ -140,6 +140,22 @@ TEST(Mtl, NamesOfLibrariesMayHoldBlanksAndStandInQuotes) {
   }
 }
 
+// Each of them was read anew, and a file of a megabyte could ask for a million times as much.
+TEST(Mtl, ALibraryThatIsNamedAgainIsReadOnce) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "wood.png", Image8(2, 2, 3, 77), {}).ok());
+  folder.write("m.mtl", "newmtl a\nKd 2 2 2\nmap_Kd wood.png\nnewmtl b\nmap_Kd wood.png\n");
+  const LoadedScene loaded = load(folder.write(
+      "s.obj",
+      "mtllib m.mtl none.mtl\nmtllib m.mtl\nmtllib none.mtl m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
+      "vt 0 0\nusemtl a\nf 1/1 2/1 3/1\nusemtl b\nf 1/1 2/1 3/1\n"));
+  EXPECT_EQ(loaded.files.size(), 1u);
+  EXPECT_EQ(loaded.defects.count(DefectKind::reflectance_beyond_one), 1u);
+  EXPECT_EQ(loaded.defects.count(DefectKind::material_file_missing), 1u);
+  EXPECT_EQ(loaded.scene.textures.size(), 1u);
+  EXPECT_EQ(loaded.scene.materials[1].texture, 0);
+}
+
 TEST(Mtl, LibrariesThatAreMissingAreNamedWhole) {
   const TempFolder folder;
   folder.write("there.mtl", "newmtl a\n");
