@@ -1,11 +1,10 @@
 #include "libatlas/exporters/gltf_document.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/exporters/camera.h"
@@ -128,13 +127,14 @@ std::string GltfDocument::text(const std::string& buffer_uri) {
 }
 
 Status GltfDocument::write(const fs::path& path, AtomicFiles& files, WorldFile& result) {
-  if (bytes_.size() > 0xf0000000u) {
+  fs::path buffer_path = path;
+  buffer_path.replace_extension(".bin");
+  std::string document = text(binary_ ? "" : encode_uri(buffer_path.filename().string()));
+  if (bytes_.size() + document.size() > 0xf0000000u) {  // a .glb counts its bytes in 32 bits
     return {
         ErrorCode::unsupported,
         path.string() + ": more than 4 GB of data (use fewer or smaller pages, or another format)"};
   }
-  fs::path buffer_path = path;
-  buffer_path.replace_extension(".bin");
   if (!binary_) {
     TextFile buffer(files.path_for(buffer_path), buffer_path, false);
     buffer.write(bytes_);
@@ -143,9 +143,9 @@ Status GltfDocument::write(const fs::path& path, AtomicFiles& files, WorldFile& 
   }
   TextFile file(files.path_for(path), path, false);
   if (binary_) {
-    write_glb(file, text(""), bytes_);
+    write_glb(file, std::move(document), bytes_);
   } else {
-    file.write(text(encode_uri(buffer_path.filename().string())));
+    file.write(document);
   }
   if (Status s = file.finish(); !s.ok()) return s;
   result.bytes += file.bytes();

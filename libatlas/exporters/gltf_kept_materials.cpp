@@ -1,7 +1,8 @@
 #include "libatlas/exporters/gltf_kept_materials.h"
 
 #include <functional>
-#include <string_view>
+
+#include "libatlas/scene/gltf_check.h"
 
 namespace atlas {
 using nlohmann::json;
@@ -28,19 +29,14 @@ std::size_t strip_textures(json& part, const std::function<bool(const json&)>& s
   return stripped;
 }
 
-std::int64_t integer(const json& object, const char* key, std::int64_t absent) {
-  const auto at = object.find(key);
-  return at != object.end() && at->is_number_integer() ? at->get<std::int64_t>() : absent;
-}
-
 // The set of uvs that a texture lies in. KHR_texture_transform may name another than the texture.
 std::int64_t set_of(const json& texture) {
-  const std::int64_t own = integer(texture, "texCoord", 0);
+  const std::int64_t own = integer_at(texture, "texCoord", 0);
   const auto extensions = texture.find("extensions");
   if (extensions == texture.end() || !extensions->is_object()) return own;
   const auto transform = extensions->find("KHR_texture_transform");
   return transform != extensions->end() && transform->is_object()
-             ? integer(*transform, "texCoord", own)
+             ? integer_at(*transform, "texCoord", own)
              : own;
 }
 
@@ -50,7 +46,7 @@ std::int64_t set_of(const json& texture) {
 bool KeptMaterials::name_image(json& texture,
                                const std::vector<std::optional<std::size_t>>& images) {
   const auto image = [&](const json& object) {
-    const std::int64_t source = integer(object, "source", -1);
+    const std::int64_t source = integer_at(object, "source", -1);
     return source >= 0 && std::size_t(source) < images.size() ? images[std::size_t(source)]
                                                               : std::nullopt;
   };
@@ -90,7 +86,7 @@ Status KeptMaterials::write_images(GltfTextures& textures) {
     usable[t] = name_image(document_["textures"][t], images);
   for (std::size_t m = 0; m < source_.model.materials.size(); ++m) {
     const auto stays = [&](const json& texture) {
-      const std::int64_t index = integer(texture, "index", -1);
+      const std::int64_t index = integer_at(texture, "index", -1);
       if (index < 0 || std::size_t(index) >= usable.size() || !usable[std::size_t(index)])
         return false;
       wanted_[int(m)].insert(set_of(texture));

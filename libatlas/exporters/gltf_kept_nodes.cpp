@@ -6,13 +6,12 @@
 #include <utility>
 
 #include "libatlas/exporters/gltf_document.h"
+#include "libatlas/scene/gltf_instances.h"
 #include "libatlas/scene/scene.h"
 
 namespace atlas {
 using nlohmann::json;
 namespace {
-
-constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 
 // Walks as the reader did, so that visits have its numbers.
 class Walk {
@@ -71,7 +70,7 @@ class Walk {
       if (node.contains(key)) holder[key] = std::move(node[key]);
     for (const char* key : {"mesh", "skin", "weights"}) node.erase(key);
     json& extensions = node["extensions"];
-    extensions.erase(kInstancing);
+    extensions.erase(kGltfInstancing);
     if (extensions.empty()) node.erase("extensions");
     return holder;
   }

@@ -1,16 +1,14 @@
 #include "libatlas/exporters/gltf_kept_rest.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <set>
 #include <string_view>
 
+#include "libatlas/scene/gltf_instances.h"
+
 namespace atlas {
 using nlohmann::json;
 namespace {
-
-constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 
 // Whether a part has a key that is a number of an accessor or a buffer view wherever extensions
 // have it.
@@ -95,13 +93,13 @@ void keep_skins(GltfData& data, json& document, Losses& losses) {
 
 // Nodes that are shown have their instances as nodes by now.
 void keep_instances(GltfData& data, json& node, Losses& losses) {
-  json& attributes = node["extensions"][kInstancing]["attributes"];
+  json& attributes = node["extensions"][kGltfInstancing]["attributes"];
   bool whole = attributes.is_object();
   if (whole)
     for (const char* name : {"TRANSLATION", "ROTATION", "SCALE"})
       if (attributes.contains(name)) whole &= data.renumber(attributes, name);
   if (whole) return;
-  node["extensions"].erase(kInstancing);
+  node["extensions"].erase(kGltfInstancing);
   losses.add("instances of nodes whose data cannot be read");
 }
 
@@ -130,7 +128,7 @@ void drop_data_extensions(json& part, Losses& losses) {
   if (extensions == part.end() || !extensions->is_object()) return;
   for (auto at = extensions->begin(); at != extensions->end();) {
     const bool drop =
-        at.key() != kInstancing && (names_data(*at) || at.key() == "EXT_structural_metadata");
+        at.key() != kGltfInstancing && (names_data(*at) || at.key() == "EXT_structural_metadata");
     if (drop) losses.add(at.key() + " (an extension with data of its own)");
     at = drop ? extensions->erase(at) : std::next(at);
   }
@@ -143,7 +141,8 @@ void keep_rest(const GltfSource& source, GltfData& data, json& document, Losses&
   for (json& node : document["nodes"]) {
     drop_data_extensions(node, losses);
     const auto extensions = node.find("extensions");
-    if (extensions != node.end() && extensions->is_object() && extensions->contains(kInstancing))
+    if (extensions != node.end() && extensions->is_object() &&
+        extensions->contains(kGltfInstancing))
       keep_instances(data, node, losses);
   }
   drop_data_extensions(document, losses);

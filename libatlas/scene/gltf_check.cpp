@@ -32,7 +32,8 @@ Status old_version(const fs::path& path, const std::string& version) {
                       path.string(), version)};
 }
 
-// Both parsers of JSON call themselves for each level, and a file of brackets would end the stack.
+// What copies JSON or takes it apart calls itself for each level, and a file of brackets would end
+// the stack.
 bool nested_too_deeply(std::string_view text) {
   constexpr int kMost = 1000;
   int depth = 0;
@@ -114,11 +115,6 @@ Status check_extensions(const fs::path& path, const json& file) {
   return {};
 }
 
-std::int64_t integer(const json& object, const char* key, std::int64_t absent) {
-  const auto at = object.find(key);
-  return at != object.end() && at->is_number_integer() ? at->get<std::int64_t>() : absent;
-}
-
 // tinygltf takes anything else for an empty list.
 Status check_lists(const fs::path& path, const json& file) {
   for (const char* name : {"accessors", "buffers", "bufferViews", "images", "materials", "meshes",
@@ -159,18 +155,23 @@ bool image_views_fit(const json& file) {
   if (images == file.end()) return true;
   for (const auto& image : *images) {
     if (!image.contains("bufferView")) continue;
-    const json* view = element("bufferViews", integer(image, "bufferView", -1));
-    const json* buffer = view ? element("buffers", integer(*view, "buffer", -1)) : nullptr;
+    const json* view = element("bufferViews", integer_at(image, "bufferView", -1));
+    const json* buffer = view ? element("buffers", integer_at(*view, "buffer", -1)) : nullptr;
     if (!buffer) return false;
-    const std::int64_t offset = integer(*view, "byteOffset", 0);
-    const std::int64_t length = integer(*view, "byteLength", -1);
-    if (offset < 0 || length < 1 || length > integer(*buffer, "byteLength", -1) - offset)
+    const std::int64_t offset = integer_at(*view, "byteOffset", 0);
+    const std::int64_t length = integer_at(*view, "byteLength", -1);
+    if (offset < 0 || length < 1 || length > integer_at(*buffer, "byteLength", -1) - offset)
       return false;
   }
   return true;
 }
 
 }  // namespace
+
+std::int64_t integer_at(const json& object, const char* key, std::int64_t absent) {
+  const auto at = object.find(key);
+  return at != object.end() && at->is_number_integer() ? at->get<std::int64_t>() : absent;
+}
 
 Status malformed_gltf(const fs::path& path, const std::string& what) {
   return {ErrorCode::bad_input,

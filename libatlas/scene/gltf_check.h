@@ -1,6 +1,7 @@
 // Internal: what is looked at in a glTF file before tinygltf parses it.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -13,6 +14,9 @@ namespace atlas {
 
 // The file breaks the rules of glTF: `what` says how.
 Status malformed_gltf(const std::filesystem::path& path, const std::string& what);
+
+// The whole number that an object has under a key; `absent` where it has none.
+std::int64_t integer_at(const nlohmann::json& object, const char* key, std::int64_t absent);
 
 // The parts of a file: of a .gltf its JSON is all.
 struct GltfParts {

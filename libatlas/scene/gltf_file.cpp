@@ -166,9 +166,6 @@ Result<Rows> rows_of(const tinygltf::Model& model, const RowsAsked& asked) {
   return Rows{bytes->data() + offset, stride};
 }
 
-// Accessors without a view are zeros that a sparse part fills; their count has no data behind it.
-constexpr std::size_t kMostZeros = std::size_t{1} << 24;
-
 template <class Store>
 Status read_dense(const tinygltf::Model& model, int index, int components, const Store& store) {
   const tinygltf::Accessor& a = model.accessors[index];
@@ -236,7 +233,7 @@ Result<std::vector<T>> read_accessor(const tinygltf::Model& model, int index, in
     auto bytes = gltf_view(model, a.bufferView);
     if (!bytes.ok()) return bad_accessor(index, bytes.status().message());
     if (a.count > bytes->size()) return bad_accessor(index, "is longer than its buffer view");
-  } else if (a.count > kMostZeros) {
+  } else if (a.count > kMostGltfZeros) {
     return bad_accessor(index, "has no data for its count");
   }
   values.assign(a.count * components, T{});
@@ -369,7 +366,7 @@ Result<GltfRows> gltf_rows(const tinygltf::Model& model, int accessor) {
     rows.data = dense->data;
     rows.stride = dense->stride;
     if (!a.sparse.isSparse) return rows;
-  } else if (a.count > kMostZeros) {
+  } else if (a.count > kMostGltfZeros) {
     return bad_accessor(accessor, "has no data for its count");
   }
   rows.filled.resize(a.count * rows.row_bytes);

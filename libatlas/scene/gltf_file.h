@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
-#include <string>
 #include <vector>
 
 #define TINYGLTF_NO_STB_IMAGE
@@ -24,6 +23,9 @@
 #include "libatlas/core/status.h"
 
 namespace atlas {
+
+// Accessors without a view are zeros that a sparse part fills; their count has no data behind it.
+inline constexpr std::size_t kMostGltfZeros = std::size_t{1} << 24;
 
 // Parses .gltf and .glb and loads the buffers, the files of which `buffers` names. Images stay
 // encoded: embedded ones keep their bytes in image.image, others their uri. `document`, where it is

@@ -31,7 +31,7 @@ glm::dmat4 matrix_of(const float* move, const float* turn, const float* scale) {
 
 Result<std::vector<glm::dmat4>> gltf_instances(const tinygltf::Model& model,
                                                const tinygltf::Node& node) {
-  const auto at = node.extensions.find("EXT_mesh_gpu_instancing");
+  const auto at = node.extensions.find(kGltfInstancing);
   if (at == node.extensions.end() || !at->second.IsObject() || !at->second.Has("attributes"))
     return std::vector{glm::dmat4(1)};
   struct Attribute {

@@ -8,6 +8,8 @@
 
 namespace atlas {
 
+inline constexpr const char* kGltfInstancing = "EXT_mesh_gpu_instancing";
+
 // Where the node shows its mesh, relative to the node: at its own place (one unit matrix), or where
 // the extension says. Errors: bad_input.
 Result<std::vector<glm::dmat4>> gltf_instances(const tinygltf::Model& model,

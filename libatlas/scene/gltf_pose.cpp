@@ -64,8 +64,9 @@ GltfPose::GltfPose(const tinygltf::Model& model, bool normals)
 
 glm::dmat4 GltfPose::world_of(int node) const {
   glm::dmat4 m(1);
-  // A cycle of nodes is refused where the scene is walked through; here it only must end.
-  for (std::size_t steps = 0; node >= 0 && steps <= parent_.size(); ++steps) {
+  // Cycles and chains that are too deep are refused where the scene is walked through; joints need
+  // not be part of it, and here it only must end.
+  for (int steps = 0; node >= 0 && steps <= kMostNodeDepth; ++steps) {
     m = gltf_local_matrix(model_.nodes[node]) * m;
     node = parent_[node];
   }

@@ -10,6 +10,9 @@
 
 namespace atlas {
 
+// Nodes that are nested deeper are refused.
+inline constexpr int kMostNodeDepth = 512;
+
 // What a node's transform is, relative to its parent.
 glm::dmat4 gltf_local_matrix(const tinygltf::Node& node);
 

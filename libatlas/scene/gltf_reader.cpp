@@ -18,8 +18,6 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kMaxDepth = 512;  // of nested nodes
-
 // Of nodes and of instances, those of several parents counted at each: a hundred of them can stand
 // for 2^100.
 constexpr std::size_t kMaxVisits = std::size_t{1} << 20;
@@ -140,7 +138,7 @@ class GltfParser {
       return malformed(where, "does not exist");
     }
     // A node should have one parent; one of several is shown at each, as most programs do.
-    if (on_path_[index] || depth > kMaxDepth || ++visits_ > kMaxVisits) {
+    if (on_path_[index] || depth > kMostNodeDepth || ++visits_ > kMaxVisits) {
       return malformed(where, "the nodes form no tree");
     }
     if (context_.cancelled()) return Status::cancelled();
@@ -168,7 +166,7 @@ class GltfParser {
     }
     const auto instances = gltf_instances(model_, node);
     if (!instances.ok()) return malformed(where, instances.status().message());
-    place.instance = node.extensions.contains("EXT_mesh_gpu_instancing");
+    place.instance = node.extensions.contains(kGltfInstancing);
     for (const glm::dmat4& instance : *instances) {
       if (++visits_ > kMaxVisits) return malformed(where, "has more instances than can be read");
       if (context_.cancelled()) return Status::cancelled();

@@ -5,6 +5,9 @@
 #include <set>
 #include <utility>
 
+#include "libatlas/scene/gltf_instances.h"
+#include "libatlas/scene/gltf_pose.h"
+
 namespace atlas {
 namespace {
 
@@ -23,8 +26,7 @@ class ShownSize {
 
   // Of a node and all below it; 0 for one that is below itself, or deeper than any is read.
   double of_node(int index, int depth = 0) {
-    constexpr int kMostDepth = 1000;
-    if (index < 0 || std::size_t(index) >= nodes_.size() || depth > kMostDepth) return 0;
+    if (index < 0 || std::size_t(index) >= nodes_.size() || depth > kMostNodeDepth) return 0;
     double& known = nodes_[std::size_t(index)];
     if (known != kUnknown) return known;
     known = 0;
@@ -42,12 +44,11 @@ class ShownSize {
 
   // None where there is less behind it.
   double count(int accessor) const {
-    constexpr std::size_t kMostWithoutData = std::size_t{1} << 24;
     if (accessor < 0 || std::size_t(accessor) >= model_.accessors.size()) return 0;
     const tinygltf::Accessor& a = model_.accessors[std::size_t(accessor)];
     const bool in_view = a.bufferView >= 0 && std::size_t(a.bufferView) < model_.bufferViews.size();
     const std::size_t most =
-        in_view ? model_.bufferViews[std::size_t(a.bufferView)].byteLength : kMostWithoutData;
+        in_view ? model_.bufferViews[std::size_t(a.bufferView)].byteLength : kMostGltfZeros;
     return a.count <= most ? double(a.count) : 0;
   }
 
@@ -69,7 +70,7 @@ class ShownSize {
   }
 
   double instances(const tinygltf::Node& node) const {
-    const auto at = node.extensions.find("EXT_mesh_gpu_instancing");
+    const auto at = node.extensions.find(kGltfInstancing);
     if (at == node.extensions.end() || !at->second.IsObject()) return 1;
     const tinygltf::Value& attributes = at->second.Get("attributes");
     double most = 1;
