@@ -71,12 +71,17 @@ glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) {
   return length > 0 ? glm::vec3(d / length) : otherwise;
 }
 
+// A vertex with more corners is the hub of slivers, which keep normals of their own: to compare
+// each with all others takes quadratic time.
+constexpr std::size_t kHub = 1024;
+
 // The normal of a corner: the mean of the faces at its vertex that lie within the crease angle of
 // its own face. Faces of opposite winding count as if they were turned.
 glm::vec3 corner_normal(std::span<const std::uint32_t> corners_there,
                         const std::vector<glm::vec3>& faces, std::uint32_t own,
                         float least_cosine) {
   const glm::vec3 mine = unit_or(faces[own], glm::vec3(0, 0, 1));
+  if (corners_there.size() > kHub) return mine;
   glm::vec3 sum(0);
   for (const std::uint32_t corner : corners_there) {
     const glm::vec3& other = faces[corner / 3];

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/scene/check_scene.h"
 #include "libatlas/view/start_camera.h"
 #include "libatlas/view/view_scene.h"
 #include "tests/view/shapes.h"
@@ -54,6 +55,22 @@ TEST(ViewScene, DrawsAndCastsTheTrianglesOfTheScene) {
   const auto wanted = triangles(scene.positions, scene.indices);
   EXPECT_EQ(triangles(v.positions, v.indices), wanted);
   EXPECT_EQ(triangles(v.caster_positions, v.caster_indices), wanted);
+}
+
+// Each facet was compared with all others at the tip: a minute for half as many.
+TEST(ViewScene, ATipOfManyFacetsTakesNoMinutes) {
+  constexpr std::uint32_t kFacets = 100000;
+  Scene cone;
+  cone.positions.push_back({0, 1, 0});
+  for (std::uint32_t i = 0; i < kFacets; ++i) {
+    const double angle = 2 * glm::radians(180.0) * i / kFacets;
+    cone.positions.push_back({float(std::cos(angle)), 0, float(std::sin(angle))});
+    cone.indices.insert(cone.indices.end(), {0u, 1 + (i + 1) % kFacets, 1 + i});
+  }
+  ASSERT_TRUE(complete_scene(cone).ok());
+  const ViewScene v = *make_view_scene(cone, {});
+  EXPECT_EQ(v.indices.size(), cone.indices.size());
+  for (const Vec3f& n : v.normals) EXPECT_NEAR(n.y, std::sqrt(0.5), 1e-3);
 }
 
 TEST(ViewScene, NormalsAreFlatOnBoxesAndRadialOnSpheresAtEveryScale) {
