@@ -8,14 +8,16 @@
 
 namespace atlas {
 
+inline bool begins_with(std::span<const std::uint8_t> bytes, std::string_view signature) {
+  return bytes.size() >= signature.size() &&
+         std::equal(signature.begin(), signature.end(), bytes.begin(),
+                    [](char a, std::uint8_t b) { return std::uint8_t(a) == b; });
+}
+
 // ".png" or ".jpg", the kinds that every program knows; empty for all others.
 inline std::string_view image_extension(std::span<const std::uint8_t> bytes) {
-  constexpr std::uint8_t kPng[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-  constexpr std::uint8_t kJpeg[] = {0xff, 0xd8, 0xff};
-  const auto begins = [&](std::span<const std::uint8_t> mark) {
-    return bytes.size() > mark.size() && std::equal(mark.begin(), mark.end(), bytes.begin());
-  };
-  return begins(kPng) ? ".png" : begins(kJpeg) ? ".jpg" : "";
+  if (begins_with(bytes, "\x89PNG\r\n\x1a\n")) return ".png";
+  return begins_with(bytes, "\xff\xd8\xff") ? ".jpg" : "";
 }
 
 }  // namespace atlas

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "libatlas/image/file_kind.h"
+
 namespace atlas {
 namespace {
 
@@ -12,12 +14,6 @@ using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::string_view kJpeg = "\xff\xd8", kGif = "GIF8", kCodeStream = "\xff\x4f\xff\x51";
 constexpr double kHarmlessBytes = 64.0 * (1 << 20);
-
-bool begins_with(Bytes bytes, std::string_view signature) {
-  return bytes.size() >= signature.size() &&
-         std::equal(signature.begin(), signature.end(), bytes.begin(),
-                    [](char a, std::uint8_t b) { return std::uint8_t(a) == b; });
-}
 
 std::int64_t big_endian(Bytes bytes, std::size_t at, int count) {
   std::int64_t value = 0;

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "libatlas/core/write_error.h"
+#include "libatlas/image/file_kind.h"
 #include "libatlas/image/image_claim.h"
 
 namespace atlas {
@@ -141,14 +142,9 @@ Result<Image<T>> read(const std::filesystem::path& path) {
 
 // OpenImageIO picks its reader by extension; the signature at the start tells the common formats.
 const char* extension_of(std::span<const std::uint8_t> bytes) {
-  const auto starts_with = [&](std::string_view signature) {
-    return bytes.size() >= signature.size() &&
-           std::equal(signature.begin(), signature.end(), bytes.begin(),
-                      [](char a, std::uint8_t b) { return std::uint8_t(a) == b; });
-  };
-  if (starts_with("\x89PNG")) return ".png";
-  if (starts_with("\xff\xd8")) return ".jpg";
-  if (starts_with("RIFF")) return ".webp";
+  if (begins_with(bytes, "\x89PNG")) return ".png";
+  if (begins_with(bytes, "\xff\xd8")) return ".jpg";
+  if (begins_with(bytes, "RIFF")) return ".webp";
   return nullptr;
 }
 

@@ -62,15 +62,21 @@ Module load() {
   return {reinterpret_cast<decltype(&libatlas_image_files)>(entry)(), {}};
 }
 
-// Calls the module's function, or says why there is none. Never unloaded: OpenImageIO has threads.
+// Loaded once, and never unloaded: OpenImageIO has threads.
+const Module& module() {
+  static const Module loaded = load();
+  return loaded;
+}
+
+// Calls the module's function, or says why there is none.
 template <class Function, class... Arguments>
 auto call(Function ImageFiles::*function, const std::string& name, Arguments&&... arguments)
     -> decltype((std::declval<ImageFiles>().*function)(arguments...)) {
-  static const Module module = load();
-  if (!module.functions) {
-    return Status(ErrorCode::unsupported, fmt::format("{}: {}", name, module.why_not));
+  const Module& files = module();
+  if (!files.functions) {
+    return Status(ErrorCode::unsupported, fmt::format("{}: {}", name, files.why_not));
   }
-  return (module.functions->*function)(std::forward<Arguments>(arguments)...);
+  return (files.functions->*function)(std::forward<Arguments>(arguments)...);
 }
 
 // The module would read past the end of an image that is shorter than its sizes say.
