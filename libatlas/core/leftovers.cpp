@@ -10,6 +10,8 @@
 #include <fstream>
 #include <string_view>
 
+#include "libatlas/core/text_hash.h"
+
 namespace atlas {
 namespace fs = std::filesystem;
 namespace {
@@ -22,10 +24,7 @@ std::string world_of_processes() {
   std::error_code error;
   const fs::path space = fs::read_symlink("/proc/self/ns/pid", error);
   if (!std::getline(start, text) || text.empty() || error) return {};
-  text += space.string();
-  std::uint32_t hash = 2166136261u;  // FNV-1a
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
-  return fmt::format("{:08x}", hash);
+  return fmt::format("{:08x}", text_hash(text + space.string()));
 }
 
 const std::string& world() {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string_view>
 
+#include "libatlas/core/text_hash.h"
 #include "libatlas/exporters/text_output.h"
 #include "libatlas/scene/check_scene.h"
 
@@ -108,8 +109,7 @@ std::string safe_file_name(const std::string& text) {
   if (name.empty()) return "world";
   if (name == text) return name;
   // Names of another script would all become the same row of '_'.
-  std::uint32_t hash = 2166136261u;  // FNV-1a
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
+  const std::uint32_t hash = text_hash(text);
   return fmt::format("{}-{:04x}", name, (hash ^ (hash >> 16)) & 0xffff);
 }
 

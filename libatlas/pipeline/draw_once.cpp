@@ -11,6 +11,7 @@
 #include "libatlas/core/parallel.h"
 #include "libatlas/pack/chart_outline.h"
 #include "libatlas/pipeline/chart_drawing.h"
+#include "libatlas/texture/chart_triangles.h"
 
 namespace atlas {
 namespace {
@@ -113,10 +114,8 @@ class Mover {
   std::vector<std::uint32_t> corners_of(std::size_t c) const {
     std::vector<std::uint32_t> corners;
     corners.reserve(3 * std::size_t(chart(c).triangle_count));
-    for (std::uint32_t i = 0; i < chart(c).triangle_count; ++i) {
-      const std::size_t t = placed_.charts.chart_triangles[chart(c).first_triangle + i];
+    for (const std::size_t t : triangles_of(placed_.charts, chart(c)))
       corners.insert(corners.end(), &corners_[3 * t], &corners_[3 * t] + 3);
-    }
     return corners;
   }
 

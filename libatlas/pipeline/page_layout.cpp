@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "libatlas/core/progress.h"
+#include "libatlas/texture/chart_triangles.h"
 
 namespace atlas {
 namespace {
@@ -24,8 +25,7 @@ struct Outlines {
       for (std::uint32_t i = chart.first_uv; i < chart.first_uv + chart.uv_count; ++i) {
         corners[i] = {set.uvs[i].x * density[c].x, set.uvs[i].y * density[c].y};
       }
-      for (std::uint32_t i = 0; i < chart.triangle_count; ++i) {
-        const std::size_t t = set.chart_triangles[chart.first_triangle + i];
+      for (const std::size_t t : triangles_of(set, chart)) {
         for (int k = 0; k < 3; ++k) {
           triangles.push_back(set.triangle_uv[3 * t + k] - chart.first_uv);
         }

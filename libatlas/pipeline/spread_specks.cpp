@@ -150,10 +150,7 @@ class SpeckSpreader {
     const double first = kFirstRadius * std::sqrt(double(c.members.size())) * kUvStep;
     for (double radius = first; radius <= most_radius && least > 0; radius *= 2) {
       const std::vector<glm::dvec2> drawn = draw(c, centre, radius);
-      for (std::size_t i = 0; i < drawn.size(); ++i) {
-        const glm::vec2 p = glm::clamp(glm::vec2(drawn[i]), 0.0f, 1.0f);
-        uvs_[c.members[i]] = {p.x, p.y};
-      }
+      for (std::size_t i = 0; i < drawn.size(); ++i) uvs_[c.members[i]] = rounded_uv(drawn[i]);
       const std::size_t now = count_thin(c);
       if (now >= least) continue;
       least = now;

@@ -20,12 +20,7 @@ constexpr double kThinnest = 2e-4, kNoArea = 1e-7;
 // Around a vertex with many neighbours only the nearest are tried as targets.
 constexpr std::size_t kManyNeighbours = 14, kNearest = 8;
 
-// Exactly the sign of the orientation; the plain determinant decides when rounding cannot matter.
 bool turns_left(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
-  const double left = (a.x - c.x) * (b.y - c.y), right = (a.y - c.y) * (b.x - c.x);
-  const double det = left - right, bound = 4e-16 * (std::abs(left) + std::abs(right));
-  if (det > bound) return true;
-  if (det < -bound) return false;
   return orientation(from_glm(a), from_glm(b), from_glm(c)) > 0;
 }
 

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "libatlas/raster/sampling.h"
+#include "libatlas/texture/chart_triangles.h"
 #include "libatlas/texture/triangle_light.h"
 
 namespace atlas {
@@ -32,8 +33,7 @@ void sample_chart(const ChartLight& light, std::uint32_t id, double texels_per_u
   out.texels.assign(std::size_t(size.width) * size.height, {});
   const Rect box{0, 0, size.width, size.height};
   const SampleGrid grid(1);
-  for (std::uint32_t i = 0; i < chart.triangle_count; ++i) {
-    const std::uint32_t t = charts.chart_triangles[chart.first_triangle + i];
+  for (const std::uint32_t t : triangles_of(charts, chart)) {
     TexelTriangle p;
     for (int k = 0; k < 3; ++k) {
       const Vec2d uv = charts.uvs[charts.triangle_uv[3 * std::size_t(t) + k]];
