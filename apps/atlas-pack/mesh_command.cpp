@@ -10,6 +10,7 @@
 #include "apps/atlas-pack/uv_charts.h"
 #include "apps/common/files.h"
 #include "libatlas/core/atomic_file.h"
+#include "libatlas/core/counting_sort.h"
 #include "libatlas/core/file_extension.h"
 #include "libatlas/core/text_buffer.h"
 #include "libatlas/pack/fit.h"
@@ -85,12 +86,12 @@ std::string to_obj(const RepackedMesh& mesh, const std::string& material_file) {
   }
   std::string faces;
   UvLines uv_lines(mesh);
-  for (std::uint32_t page = 0; page < fit.pages.size(); ++page) {
-    bool named = false;
-    for (std::size_t c = 0; c < charts.members.size(); ++c) {
-      if (fit.placements[c].page != page) continue;
-      if (!named) faces += fmt::format("usemtl page_{}\n", page);
-      named = true;
+  const Buckets charts_of =
+      sort_into_buckets(charts.members.size(), fit.pages.size(),
+                        [&fit = fit](std::size_t c) { return fit.placements[c].page; });
+  for (std::size_t page = 0; page < charts_of.size(); ++page) {
+    if (!charts_of[page].empty()) faces += fmt::format("usemtl page_{}\n", page);
+    for (const std::uint32_t c : charts_of[page]) {
       for (const std::size_t t : charts.members[c]) {
         faces += "f";
         for (std::size_t corner = 3 * t; corner < 3 * t + 3; ++corner)
@@ -139,16 +140,8 @@ std::int32_t round_up(std::int32_t side) {
 // Every chart a path of its triangles, y down.
 std::string to_svg(const RepackedMesh& mesh) {
   const auto& [scene, charts, fit, uvs] = mesh;
-  std::int64_t width = 0, height = 1;
-  std::vector<std::int64_t> left;
-  std::string pages, paths;
-  for (Extent p : fit.pages) {
-    left.push_back(width);
-    pages += fmt::format("<rect x=\"{}\" width=\"{}\" height=\"{}\" fill=\"#333\"/>\n", width,
-                         p.width, p.height);
-    width += p.width + 16;
-    height = std::max<std::int64_t>(height, p.height);
-  }
+  const PageRow row(fit.pages);
+  std::string paths;
   for (std::size_t c = 0; c < charts.members.size(); ++c) {
     const std::uint32_t page = fit.placements[c].page;
     std::uint8_t rgb[3];
@@ -159,14 +152,12 @@ std::string to_svg(const RepackedMesh& mesh) {
     for (std::uint32_t t : charts.members[c])
       for (std::size_t k = 0; k < 3; ++k) {
         const Vec2d q = uvs[3 * std::size_t(t) + k];
-        paths += fmt::format("{}{:.2f} {:.2f}{}", k ? "L" : "M", q.x + double(left[page]),
+        paths += fmt::format("{}{:.2f} {:.2f}{}", k ? "L" : "M", q.x + double(row.left[page]),
                              fit.pages[page].height - q.y, k == 2 ? "Z" : "");
       }
     paths += fmt::format("\"><title>chart{}</title></path>\n", c);
   }
-  return fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\">\n{}{}</svg>\n",
-      std::max<std::int64_t>(1, width - 16), height, pages, paths);
+  return to_svg(row, fit.pages, paths);
 }
 
 Status draw(const std::filesystem::path& path, const RepackedMesh& mesh) {

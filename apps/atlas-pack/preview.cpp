@@ -28,36 +28,22 @@ std::string xml_text(const std::string& text) {
 }
 
 std::string to_svg(const PackedAtlas& atlas) {
-  std::int64_t width = 0, height = 1;
-  for (Extent p : atlas.pages) {
-    width += p.width + kGap;
-    height = std::max<std::int64_t>(height, p.height);
-  }
-  std::string svg =
-      fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\">\n",
-                  std::max<std::int64_t>(1, width - kGap), height);
-  std::vector<std::int64_t> left;
-  std::int64_t x = 0;
-  for (Extent p : atlas.pages) {
-    left.push_back(x);
-    svg += fmt::format("<rect x=\"{}\" y=\"0\" width=\"{}\" height=\"{}\" fill=\"#333\"/>\n", x,
-                       p.width, p.height);
-    x += p.width + kGap;
-  }
+  const PageRow row(atlas.pages);
+  std::string items;
   for (std::size_t i = 0; i < atlas.items.size(); ++i) {
     const PackedItem& item = atlas.items[i];
-    if (!item.at.placed() || item.at.page >= left.size()) continue;
+    if (!item.at.placed() || item.at.page >= row.left.size()) continue;
     Extent e = item.size;
     if (item.at.rotated) std::swap(e.width, e.height);
     std::uint8_t rgb[3];
     item_color(i, rgb);
-    svg += fmt::format(
+    items += fmt::format(
         "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"#{:02x}{:02x}{:02x}\">"
         "<title>{}</title></rect>\n",
-        left[item.at.page] + item.at.x, item.at.y, e.width, e.height, rgb[0], rgb[1], rgb[2],
+        row.left[item.at.page] + item.at.x, item.at.y, e.width, e.height, rgb[0], rgb[1], rgb[2],
         xml_text(item.name));
   }
-  return svg + "</svg>\n";
+  return to_svg(row, atlas.pages, items);
 }
 
 }  // namespace
@@ -73,26 +59,41 @@ void item_color(std::size_t i, std::uint8_t rgb[3]) {
   }
 }
 
+PageRow::PageRow(std::span<const Extent> pages) {
+  std::int64_t at = 0;
+  for (const Extent& page : pages) {
+    left.push_back(at);
+    width = at + page.width;
+    height = std::max<std::int64_t>(height, page.height);
+    at = width + kGap;
+  }
+}
+
+std::string to_svg(const PageRow& row, std::span<const Extent> pages, const std::string& items) {
+  std::string svg = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\">\n", row.width, row.height);
+  for (std::size_t p = 0; p < pages.size(); ++p)
+    svg += fmt::format("<rect x=\"{}\" y=\"0\" width=\"{}\" height=\"{}\" fill=\"#333\"/>\n",
+                       row.left[p], pages[p].width, pages[p].height);
+  return svg + items + "</svg>\n";
+}
+
 PreviewSheet::PreviewSheet(std::span<const Extent> pages) {
   constexpr std::int64_t kLargest = 4096;
-  std::int64_t width = 0, height = 1;
-  for (const Extent& page : pages) {
-    width += page.width + kGap;
-    height = std::max<std::int64_t>(height, page.height);
-  }
+  const PageRow row(pages);
+  const std::int64_t width = row.width + kGap, height = row.height;
   const std::int64_t step =
       std::clamp<std::int64_t>((std::max(width, height) + kLargest - 1) / kLargest, 1, 1 << 30);
   step_ = static_cast<std::int32_t>(step);
   image_ = Image8(static_cast<int>(std::max<std::int64_t>(1, width / step)),
                   static_cast<int>((height + step - 1) / step), 3, 255);
   constexpr std::uint8_t kFree[3] = {51, 51, 51};
-  std::int64_t left = 0;
-  for (const Extent& page : pages) {
-    const auto at = static_cast<std::int32_t>(left / step);
+  for (std::uint32_t p = 0; p < pages.size(); ++p) {
+    const Extent page = pages[p];
+    const auto at = static_cast<std::int32_t>(row.left[p] / step);
     pages_.push_back({at, std::min(page.width / step_, image_.width - at), page.height / step_});
-    fill(std::uint32_t(pages_.size() - 1), {0, 0, page.width, page.height}, kFree,
+    fill(p, {0, 0, page.width, page.height}, kFree,
          [](std::int32_t, std::int32_t) { return true; });
-    left += page.width + kGap;
   }
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "apps/atlas-pack/packed_atlas.h"
@@ -15,6 +17,17 @@ namespace atlas::app {
 
 // A colour for item i, RGB; neighbours in the list differ in hue.
 void item_color(std::size_t i, std::uint8_t rgb[3]);
+
+// Where pages lie beside each other with gaps between them, texels.
+struct PageRow {
+  std::vector<std::int64_t> left;      // 1 a page
+  std::int64_t width = 1, height = 1;  // of all
+
+  explicit PageRow(std::span<const Extent> pages);
+};
+
+// A picture of them, items drawn upon it by `items`: SVG elements, y down.
+std::string to_svg(const PageRow& row, std::span<const Extent> pages, const std::string& items);
 
 // Pages side by side with a gap, drawn at every step-th texel so that the picture has at most about
 // 4096 pixels a side, however large the pages are.

@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <set>
+#include <tuple>
 
 #include "apps/atlas-pack/commands.h"
 #include "apps/atlas-pack/preview.h"
 #include "apps/common/files.h"
 #include "libatlas/core/atomic_file.h"
-#include "libatlas/core/clock.h"
 #include "libatlas/core/file_extension.h"
 #include "libatlas/image/image_io.h"
 
@@ -109,12 +109,14 @@ Result<std::vector<Sprite>> read_sprites(const PackCommand& c, const Context& co
 
 // Finds images with the same texels; the first by name keeps them.
 void find_aliases(std::vector<Sprite>& sprites) {
-  std::map<std::pair<std::pair<int, int>, std::vector<std::uint8_t>>, std::int32_t> seen;
+  const auto before = [&](std::int32_t a, std::int32_t b) {
+    const Image8 &x = sprites[std::size_t(a)].image, &y = sprites[std::size_t(b)].image;
+    return std::tie(x.width, x.height, x.texels) < std::tie(y.width, y.height, y.texels);
+  };
+  std::set<std::int32_t, decltype(before)> seen(before);
   for (std::size_t i = 0; i < sprites.size(); ++i) {
-    const Image8& image = sprites[i].image;
-    const auto [at, fresh] =
-        seen.try_emplace({{image.width, image.height}, image.texels}, static_cast<std::int32_t>(i));
-    if (!fresh) sprites[i].alias_of = at->second;
+    const auto [at, fresh] = seen.insert(static_cast<std::int32_t>(i));
+    if (!fresh) sprites[i].alias_of = *at;
   }
 }
 

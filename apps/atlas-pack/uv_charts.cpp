@@ -6,18 +6,10 @@
 #include <unordered_map>
 
 #include "libatlas/core/disjoint_sets.h"
+#include "libatlas/scene/triangle_area.h"
 
 namespace atlas::app {
 namespace {
-
-double area_in_space(const Scene& s, std::size_t t) {
-  const Vec3f &a = s.positions[s.indices[3 * t]], &b = s.positions[s.indices[3 * t + 1]],
-              &c = s.positions[s.indices[3 * t + 2]];
-  const double ux = double(b.x) - a.x, uy = double(b.y) - a.y, uz = double(b.z) - a.z;
-  const double vx = double(c.x) - a.x, vy = double(c.y) - a.y, vz = double(c.z) - a.z;
-  const double x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
-  return std::sqrt(x * x + y * y + z * z) / 2;
-}
 
 double area_of(const Vec2d* p) {
   return std::abs((p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x)) /
@@ -93,13 +85,13 @@ UvCharts find_charts(const Scene& s) {
 void make_uniform(const Scene& s, double page_area, UvCharts& charts) {
   double total = 0;
   for (const auto& members : charts.members)
-    for (std::uint32_t t : members) total += area_in_space(s, t);
+    for (std::uint32_t t : members) total += triangle_area(s, t);
   const double texels = total > 0 ? std::sqrt(page_area / total) : 0;
   for (const auto& members : charts.members) {
     std::vector<Vec2d> corners;
     double flat = 0, real = 0;
     for (std::uint32_t t : members) {
-      real += area_in_space(s, t);
+      real += triangle_area(s, t);
       for (std::size_t k = 3 * std::size_t(t); k < 3 * std::size_t(t) + 3; ++k) {
         const Vec2f uv = s.texcoords[s.texcoord_indices[k]];
         corners.push_back({uv.x, uv.y});
