@@ -8,7 +8,6 @@
 #include <cstdio>
 
 #include "apps/common/program.h"
-#include "libatlas/core/clock.h"
 
 namespace atlas::app {
 namespace {
@@ -70,7 +69,6 @@ void Terminal::progress(std::string_view stage, double fraction) {
   if (stage != stage_) {
     stage_ = stage;
     shown_percent_ = -1;
-    stage_start_ = wall_seconds();
   }
   const int percent = int(100 * fraction);
   if (percent <= shown_percent_) return;

@@ -9,8 +9,8 @@
 
 namespace atlas::app {
 
-// Draws one progress bar a stage on stderr where that is a terminal, one plain line a finished
-// stage otherwise, nothing when quiet. Ctrl-C raises the context's cancel flag. One at a time.
+// Draws one progress bar a stage on stderr where that is a terminal, none otherwise or when quiet.
+// Ctrl-C raises the context's cancel flag. One at a time.
 class Terminal {
  public:
   Terminal(std::string program, bool quiet);
@@ -32,7 +32,6 @@ class Terminal {
   std::string program_, stage_;
   bool quiet_, is_terminal_, bar_shown_ = false;
   int shown_percent_ = -1;
-  double stage_start_ = 0;
 };
 
 // The exit code of every application: 0 done, 1 failed, 2 bad command line, 130 cancelled.

@@ -1,6 +1,6 @@
-// Bakes the pages one by one and measures each against the input. With more than one thread pages
-// are written while the next ones are baked: one is held, and up to 256 MiB that wait to be
-// written.
+// Bakes the pages and measures each against the input. With more than one thread as many pages as
+// there are threads are baked at once, and as many written beside that: each of the two up to
+// 256 MiB of texels, one page at least.
 #pragma once
 
 #include <cstddef>

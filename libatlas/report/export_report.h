@@ -10,7 +10,6 @@
 #include "libatlas/bake/fidelity.h"
 #include "libatlas/charts/charts.h"
 #include "libatlas/charts/gaps.h"
-#include "libatlas/core/rect.h"
 #include "libatlas/core/status.h"
 #include "libatlas/pack/grouping.h"
 #include "libatlas/report/export_plan.h"
@@ -19,13 +18,13 @@
 
 namespace atlas {
 
-// One stage's cost. Sizes in and out are in the stage's own items, named by `unit`.
+// One stage's cost. Sizes in and out are in the stage's own items.
 struct StageReport {
   std::string stage;
   double wall_seconds = 0, cpu_seconds = 0;
   std::int64_t peak_memory = 0;  // of the process after the stage, bytes
   std::uint64_t size_in = 0, size_out = 0;
-  std::string unit;     // "triangles -> charts"
+  std::string unit;     // of size_out: "charts"
   std::string quality;  // one phrase with the figure that matters
 };
 
@@ -100,7 +99,8 @@ struct ExportReport {
 // that was not carried out there is the plan, and nothing of what it would have given.
 Status write_json(const ExportReport& report, const std::filesystem::path& path);
 
-// One line for people: "charts      301709 triangles -> 68 charts  L2 1.001  0.82 s  120 MiB".
+// One line for people: "charts  301709 -> 68 charts, L2 1.0012, 99.9 % 1.112  0.82 s  120 MiB", CPU
+// seconds.
 std::string stage_line(const StageReport& stage);
 
 }  // namespace atlas

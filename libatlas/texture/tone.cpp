@@ -17,13 +17,13 @@ constexpr std::array<std::pair<ToneOperator, std::string_view>, 4> kOperators{{
     {ToneOperator::reinhard_devlin, "reinhard-devlin"},
 }};
 
-// Rec. 709 weights. Written so that a NaN or a negative channel counts as 0.
+// Rec. 709 weights.
 float luma(const Vec3f& c) {
   return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
 }
 
 // A scaled channel that no curve overflows on: infinity over infinity would show the brightest
-// light black.
+// light black. NaN and negative ones count as 0.
 float bounded(float v) {
   return v > 0 ? std::min(v, 1e36f) : 0.0f;
 }
