@@ -1,7 +1,5 @@
 #include "libatlas/exporters/gltf_losses.h"
 
-#include <algorithm>
-
 #include "libatlas/scene/gltf_source.h"
 
 namespace atlas {

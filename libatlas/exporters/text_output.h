@@ -11,7 +11,6 @@
 #include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
 #include "libatlas/core/text_buffer.h"
-#include "libatlas/exporters/world.h"
 
 namespace atlas {
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 #include "libatlas/pack/cells.h"
 #include "libatlas/pack/page_shape.h"

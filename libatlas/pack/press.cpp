@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"

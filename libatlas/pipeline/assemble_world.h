@@ -9,7 +9,6 @@
 
 #include "libatlas/bake/placement.h"
 #include "libatlas/charts/charts.h"
-#include "libatlas/core/rect.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/pack/pack.h"
 #include "libatlas/scene/scene.h"

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "libatlas/core/context.h"
-#include "libatlas/core/rect.h"
 #include "libatlas/core/status.h"
+#include "libatlas/pack/pack.h"
 #include "libatlas/pipeline/export_options.h"
 #include "libatlas/pipeline/plan.h"
 #include "libatlas/report/export_report.h"

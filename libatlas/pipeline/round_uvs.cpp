@@ -1,6 +1,5 @@
 #include "libatlas/pipeline/round_uvs.h"
 
-#include <algorithm>
 #include <deque>
 
 #include "libatlas/core/counting_sort.h"

@@ -4,8 +4,6 @@
 #include <cstdint>
 #include <memory>
 
-#include "libatlas/core/context.h"
-#include "libatlas/core/status.h"
 #include "libatlas/core/vec.h"
 #include "libatlas/scene/scene.h"
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/view/renderer_impl.h"

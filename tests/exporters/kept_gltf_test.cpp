@@ -2,7 +2,6 @@
 // a reader of the tests' own.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <set>
 #include <string>
 

@@ -1,7 +1,6 @@
 // World::scene: what cannot be kept is told, and what is wrong with a file does no harm.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <functional>
 #include <random>
 #include <string>

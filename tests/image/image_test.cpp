@@ -4,7 +4,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <cmath>
 #include <random>
 
 #include "tests/scene/temp_folder.h"

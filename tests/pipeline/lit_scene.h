@@ -1,8 +1,6 @@
 // Lit scenes for pipeline tests, made of tests/support shapes.
 #pragma once
 
-#include <string>
-
 #include "libatlas/scene/reader.h"
 #include "tests/support/shapes.h"
 

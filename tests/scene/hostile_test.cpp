@@ -1,5 +1,4 @@
 // Files that are wrong: each must end in one line that names the file and says what to do.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 

@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cstring>
-
 #include "libatlas/scene/reader.h"
 #include "tests/scene/temp_folder.h"
 

@@ -1,9 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <bit>
-#include <cmath>
-#include <cstring>
 #include <random>
 
 #include "libatlas/scene/reader.h"

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <random>
 
 #include "libatlas/scene/reader.h"
