@@ -32,6 +32,7 @@ struct CoarseChart {
   double area = 0, perimeter = 0;
   double energy = 0;     // area times (L2 stretch squared - 1) of its coarse flattening
   double high_area = 0;  // of it stretched beyond TrialLimits::stretch_high
+  double box = 0;        // smallest rectangle around that; 0: not known yet
   int euler = 1;         // characteristic
   bool flat = false;     // all cells in one plane
   bool unrolls = false;  // without stretch, exactly
@@ -265,6 +266,10 @@ class Merger {
     }
     if (options_.cone > 0) limits.solidity = limits.fill = kConeFill;
     limits.unrolls = p.unrolls && q.unrolls;
+    for (CoarseChart* half : {&chart(a), &chart(b)}) {
+      if (half->box == 0) half->box = trial_.box(half->cells);
+      limits.box += half->box;
+    }
     const double spare = area * (limits.stretch_l2 * limits.stretch_l2 - 1) - p.energy - q.energy;
     const double spare_area = limits.high_area - p.high_area - q.high_area;
     if (refused(a, b, spare, spare_area) || refused(b, a, spare, spare_area)) {
@@ -322,6 +327,7 @@ class Merger {
     p.energy = energy_;
     p.high_area = high_area_;
     p.euler = euler_;
+    p.box = 0;
     p.unrolls = unrolls_;
     if (options_.cone > 0) result_.chart_axis[a] = axis_;
     std::move(q.refusals.begin(), q.refusals.end(), std::back_inserter(p.refusals));

@@ -21,7 +21,8 @@ struct TrialLimits {
   double stretch_high = 1.17;  // over all but this area:
   double high_area = 0;
   double solidity = 0.7;  // share of its convex hull that it fills
-  double fill = 0.58;     // share of its smallest rectangle
+  double fill = 0.58;     // share of its smallest rectangle, unless
+  double box = 0;         // that is no larger: both charts' own ones together
   bool unrolls = false;   // both charts unroll: where they fit each other, no descent is needed
 };
 
@@ -55,6 +56,8 @@ class Trial {
   int euler(int first, int second, std::span<const std::uint32_t> glue) {
     return joined_.joined_euler(first, second, glue);
   }
+  // Area of the smallest rectangle around a chart, as it lies now.
+  double box(std::span<const std::uint32_t> cells);
   // Stores the last trial's coordinates.
   void commit();
 
