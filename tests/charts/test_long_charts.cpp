@@ -110,5 +110,13 @@ TEST(LongCharts, StayWholeWhereOthersLeaveRoom) {
   }
 }
 
+// No edge of a spike leads across it: its needles would come off one by one, each as long as it.
+TEST(LongCharts, OfNeedlesStayWhole) {
+  for (const int around : {24, 200}) {
+    const Mesh spike(closed_cone(around, 30));
+    EXPECT_LE(checked_charts(spike, ChartOptions{}.min_fill).charts.size(), 3u) << around;
+  }
+}
+
 }  // namespace
 }  // namespace atlas::test

@@ -52,23 +52,6 @@ TEST(Unroll, ConesOfAnyAngle) {
   }
 }
 
-// As modelling programs make it: a fan of needles around the tip, another one below.
-Shape closed_cone(int around, double height) {
-  Shape shape;
-  for (int i = 0; i < around; ++i) {
-    const double a = 2 * M_PI * i / around;
-    shape.positions.push_back({float(std::cos(a)), float(std::sin(a)), 0});
-  }
-  shape.positions.push_back({0, 0, float(height)});
-  shape.positions.push_back({0, 0, 0});
-  const auto rim = std::uint32_t(around);
-  for (std::uint32_t i = 0; i < rim; ++i) {
-    const std::uint32_t k = (i + 1) % rim;
-    shape.indices.insert(shape.indices.end(), {i, k, rim, k, i, rim + 1});
-  }
-  return shape;
-}
-
 // A needle fills half of its rectangle only, and so do several.
 TEST(Unroll, NeedlesAroundATipBecomeSectors) {
   for (const int around : {32, 100, 256}) {

@@ -193,6 +193,23 @@ Shape cone(int around, int along, double half_angle, double slant) {
   return shape;
 }
 
+Shape closed_cone(int around, double height) {
+  Shape shape;
+  shape.name = "closed cone";
+  for (int i = 0; i < around; ++i) {
+    const double a = 2 * kPi * i / around;
+    shape.positions.push_back({float(std::cos(a)), float(std::sin(a)), 0});
+  }
+  shape.positions.push_back({0, 0, float(height)});
+  shape.positions.push_back({0, 0, 0});
+  const auto rim = std::uint32_t(around);
+  for (std::uint32_t i = 0; i < rim; ++i) {
+    const std::uint32_t k = (i + 1) % rim;
+    shape.indices.insert(shape.indices.end(), {i, k, rim, k, i, rim + 1});
+  }
+  return shape;
+}
+
 Shape cap(int around, int rings, double theta) {
   Shape shape;
   shape.name = "cap";

@@ -33,6 +33,8 @@ Shape torus(int around, int across, double major = 1, double minor = 0.4);
 // mantle.
 Shape cylinder(int around, int along, double radius = 1, double height = 2);
 Shape cone(int around, int along, double half_angle, double slant = 1);
+// On a disc of radius 1: two fans of triangles.
+Shape closed_cone(int around, double height);
 // A geodesic cap of the unit sphere, of half-angle theta (radians) about +z.
 Shape cap(int around, int rings, double theta);
 // A closed plate with `holes` square holes in a row: genus = holes. Every cell side is cut into n.

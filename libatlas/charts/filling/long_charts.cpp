@@ -21,6 +21,9 @@ constexpr std::size_t kMostParts = 2;  // for each length
 // Of a length: how far cuts stray to either side to be short, and the area of what stays with the
 // next one.
 constexpr double kBand = 0.3, kCrumb = 0.01;
+// Of a chart's length, what its pieces may have at most: needles that lie along it cannot be cut
+// across, and would come off one by one.
+constexpr double kShorter = 0.9;
 // Times the charts' area, their borders by the longest side: a page of 2048 texels that this chart
 // spans needs a quarter as much for gutters of 1.3 texels on each side of a border as for charts.
 // Of 796 meshes seven need more, each of them more than twice as long as a square page.
@@ -121,13 +124,19 @@ std::vector<FlatChart> cut(const FlattenInput& input, const FlatChart& chart, Le
   return pieces;
 }
 
+bool all_shorter(const std::vector<FlatChart>& pieces, const FlatChart& chart) {
+  return std::all_of(pieces.begin(), pieces.end(), [&](const FlatChart& piece) {
+    return longer(piece) <= kShorter * longer(chart);
+  });
+}
+
 // From either end; one length more may keep to the bound where these do not.
 std::vector<FlatChart> cut(const FlattenInput& input, const FlatChart& chart, std::size_t count) {
   for (const std::size_t tried : {count, count + 1}) {
     Lengths lengths = lengths_of(chart, tried);
     for (int way = 0; way < 2; ++way) {
       std::vector<FlatChart> pieces = cut(input, chart, lengths);
-      if (!pieces.empty()) return pieces;
+      if (!pieces.empty() && all_shorter(pieces, chart)) return pieces;
       std::reverse(lengths.begin(), lengths.end());
     }
   }
