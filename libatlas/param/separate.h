@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "libatlas/param/halfedges.h"
@@ -12,8 +13,8 @@ namespace atlas::param {
 
 // Where two stretches of the border cross, each reaches into the other. Their vertices there are
 // drawn out of the other side's triangles, which give way without flipping (Relaxer::pull), and so
-// on until no border crosses. Overlaps deeper than a few dozen border vertices, or a tenth of
-// the chart's width, are left alone: those need a cut.
+// on until no border crosses. Overlaps longer than a few dozen border vertices, more in fine charts,
+// or deeper than a tenth of the chart's width are left alone: those need a cut.
 class Separator {
  public:
   // All triangles positive. Returns whether the map is injective afterwards; uvs are as they were
@@ -63,6 +64,9 @@ class Separator {
   bool collides(std::uint32_t half_edge) const;
 
   Injectivity check(std::span<const Vec2d> uvs) const;
+  double longest() const;
+  int rings(std::span<const Vec2d> uvs) const;
+  void hold_moved();
   bool stalled();
   bool draw_until_simple(Relaxer& relaxer, std::span<Vec2d> uvs);
   void settle(Relaxer& relaxer, double least_gain, std::span<Vec2d> uvs);
@@ -82,11 +86,13 @@ class Separator {
   bool across_ = false;                         // not by way of the edges that cross the stretch
   std::vector<Relaxer::Spring> springs_;
   double width_ = 0;                  // square root of what the triangles cover
+  double fineness_ = 1;               // how many times as wide as fine_chart it is in edges, or 1
   bool deep_ = false;                 // the overlap, so that nothing was tried
   std::vector<double> pulled_;        // 1 a vertex: how far its spring reaches
   std::vector<double> pulls_;         // 1 a round: how far all springs reach together
   std::vector<std::uint32_t> place_;  // 1 a vertex: 1 + its spring's place, or 0
-  std::vector<std::uint32_t> moved_;  // vertices that had a spring
+  std::vector<std::uint32_t> moved_;  // vertices that had a spring, each once
+  std::unordered_map<std::uint32_t, Vec2d> targets_;  // of their last ones
   std::vector<Vec2d> saved_;
   std::vector<BorderCrossing> left_;
 };

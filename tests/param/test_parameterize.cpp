@@ -122,6 +122,19 @@ TEST(Parameterize, DrawsApartBordersThatOverlapALittle) {
   }
 }
 
+// What is a little, by the chart's width, is many edges in a fine mesh.
+TEST(Parameterize, DrawsApartWhateverTheMeshesFineness) {
+  for (const int columns : {120, 360, 600, 1200}) {
+    const Disc d = testing::make_grid(columns, columns / 15, [](double u, double v) {
+      const double a = (2 * std::numbers::pi + 0.003) * u, r = 1 + 0.5 * v;
+      return Vec3d{r * std::cos(a), r * std::sin(a), 0.002 * a};
+    });
+    const ParamResult r = run(d);
+    EXPECT_TRUE(r.injective && r.within_bound) << columns;
+    EXPECT_LT(r.distortion.stretch_999, 1.13) << columns;
+  }
+}
+
 TEST(Parameterize, LeavesCrossingsThatTheBoundKeepsTogether) {
   // The same ramps under a tight bound: what comes apart only beyond it is reported as it lay
   // within it, with its crossings.

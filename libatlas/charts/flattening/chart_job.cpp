@@ -184,7 +184,7 @@ class ChartJob {
     const auto around = around_crossings(chart_, result_.crossings, effort_.rings);
     if (around.size() > std::max<std::size_t>(2, chart_.triangles().size() / 20)) return;
     for (const std::uint32_t t : around) outcome.remove.push_back(chart_.triangles()[t]);
-    if (chart_.triangles().size() <= kMostResumed) outcome.uvs = corner_uvs();
+    outcome.uvs = corner_uvs();
   }
 
   bool noisy() const { return !input_.topology.calm_normals.empty(); }

@@ -20,10 +20,6 @@ struct ChartScratch {
   std::size_t largest = 0;  // triangles of the largest chart so far
 };
 
-// Of triangles, in what goes on from an earlier attempt when some have gone or come: more would
-// take memory that large meshes need elsewhere.
-constexpr std::size_t kMostResumed = 200000;
-
 // What became of a chart: flat; or to be divided; or to lose a few triangles to its neighbours.
 struct ChartOutcome {
   FlatChart flat;

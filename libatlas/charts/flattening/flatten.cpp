@@ -296,8 +296,8 @@ class Flattener {
     for (const std::uint32_t chart : todo_) drop_lost(chart);
     std::sort(moved_.begin(), moved_.end());
     moved_.erase(std::unique(moved_.begin(), moved_.end()), moved_.end());
+    add_moved();
     for (const std::uint32_t t : moved_) {
-      add_triangle(partition_.chart[t], t);
       if (!std::exchange(charts_[partition_.chart[t]].grown, true)) {
         grown_.push_back(partition_.chart[t]);
       }
@@ -305,21 +305,44 @@ class Flattener {
     std::erase_if(todo_, [&](std::uint32_t chart) { return charts_[chart].triangles.empty(); });
   }
 
-  // Unless it is there.
-  void add_triangle(std::uint32_t chart, std::uint32_t t) {
+  // To the lists of the charts that they are in now.
+  void add_moved() {
+    std::vector<std::uint32_t> sorted = moved_;  // by chart, ascending
+    std::stable_sort(sorted.begin(), sorted.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return partition_.chart[a] < partition_.chart[b];
+    });
+    for (auto first = sorted.begin(), last = first; first != sorted.end(); first = last) {
+      const std::uint32_t chart = partition_.chart[*first];
+      while (last != sorted.end() && partition_.chart[*last] == chart) ++last;
+      add_triangles(chart, {first, last});
+    }
+  }
+
+  // Ascending; but for those that are there.
+  void add_triangles(std::uint32_t chart, std::vector<std::uint32_t> added) {
     State& state = charts_[chart];
-    const auto at = std::lower_bound(state.triangles.begin(), state.triangles.end(), t);
-    if (at != state.triangles.end() && *at == t) return;
-    const FlatChart& flat = flats_[chart];
-    if (state.uvs.empty() && !flat.corners.empty() && flat.corners.size() <= kMostResumed) {
-      for (const auto& corners : flat.corners) {
-        for (const std::uint32_t v : corners) state.uvs.push_back(flat.uvs[v]);
+    std::vector<std::uint32_t>& all = state.triangles;
+    std::erase_if(added,
+                  [&](std::uint32_t t) { return std::binary_search(all.begin(), all.end(), t); });
+    if (added.empty()) return;
+    if (state.uvs.empty()) {
+      for (const auto& corners : flats_[chart].corners) {
+        for (const std::uint32_t v : corners) state.uvs.push_back(flats_[chart].uvs[v]);
       }
     }
-    if (!state.uvs.empty()) {
-      state.uvs.insert(state.uvs.begin() + 3 * (at - state.triangles.begin()), 3, unplaced());
+    const bool placed = !state.uvs.empty();
+    std::size_t old = all.size(), at = old + added.size();
+    all.resize(at);
+    if (placed) state.uvs.resize(3 * at);
+    while (!added.empty()) {  // from behind
+      --at;
+      const bool fresh = old == 0 || all[old - 1] < added.back();
+      all[at] = fresh ? added.back() : all[--old];
+      for (std::size_t i = 0; placed && i < 3; ++i) {
+        state.uvs[3 * at + i] = fresh ? unplaced() : state.uvs[3 * old + i];
+      }
+      if (fresh) added.pop_back();
     }
-    state.triangles.insert(at, t);
   }
 
   const FlattenInput& input_;
