@@ -13,8 +13,8 @@ namespace atlas::param {
 
 // Where two stretches of the border cross, each reaches into the other. Their vertices there are
 // drawn out of the other side's triangles, which give way without flipping (Relaxer::pull), and so
-// on until no border crosses. Overlaps longer than a few dozen border vertices, more in fine charts,
-// or deeper than a tenth of the chart's width are left alone: those need a cut.
+// on until no border crosses. Overlaps longer than a few dozen border vertices, more in fine
+// charts, or deeper than a tenth of the chart's width are left alone: those need a cut.
 class Separator {
  public:
   // All triangles positive. Returns whether the map is injective afterwards; uvs are as they were
