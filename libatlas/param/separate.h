@@ -48,6 +48,7 @@ class Separator {
     }
   };
 
+  bool fine() const { return fineness_ > 1; }
   void map_border(const LocalMesh& mesh);
   bool collect(std::span<const BorderCrossing> crossings, std::span<const Vec2d> uvs);
   std::vector<double> loop_areas(std::span<const Vec2d> uvs) const;
