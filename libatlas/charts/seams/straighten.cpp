@@ -1,7 +1,6 @@
 #include "libatlas/charts/seams/straighten.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "libatlas/charts/seams/straighten_pair.h"
