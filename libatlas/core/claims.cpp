@@ -4,7 +4,6 @@
 #include <condition_variable>
 #include <mutex>
 #include <queue>
-#include <thread>
 #include <unordered_map>
 #include <vector>
 
@@ -88,10 +87,8 @@ void for_each_claim(const Context& context, std::span<const Claims> tasks,
     for (std::size_t i = 0; i < tasks.size() && !context.cancelled(); ++i) body(i);
     return;
   }
-  const std::size_t threads =
-      context.threads > 0 ? context.threads : std::max(1u, std::thread::hardware_concurrency());
   Queue queue(tasks);
-  parallel_for(context, std::min(threads, tasks.size()), 1,
+  parallel_for(context, std::min(thread_count(context), tasks.size()), 1,
                [&](std::size_t, std::size_t) { queue.work(context, body); });
 }
 

@@ -85,6 +85,11 @@ class ChunkOnThread {
 
 }  // namespace
 
+std::size_t thread_count(const Context& context) {
+  return context.threads > 0 ? std::size_t(context.threads)
+                             : std::max(1u, std::thread::hardware_concurrency());
+}
+
 double own_cpu_seconds() {
   return thread_cpu_seconds() + lent_seconds;
 }

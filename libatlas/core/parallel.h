@@ -16,6 +16,9 @@ namespace atlas {
 void parallel_for(const Context& context, std::size_t n, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
+// How many threads a context asks for: the machine's where it leaves that open; at least 1.
+std::size_t thread_count(const Context& context);
+
 // CPU time of the calling thread, and of what its loops have run on others: what a call took,
 // whatever else the process does meanwhile. Seconds, for differences only.
 double own_cpu_seconds();

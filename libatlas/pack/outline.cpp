@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <thread>
 
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
@@ -159,10 +158,7 @@ OnePage search_one_page(std::span<const Piece> pieces, const Grid& grid, const O
   const std::size_t chains = o.preset == PackPreset::best ? 4 : 1;
   if (o.preset == PackPreset::best) {
     // With fewer threads than chains they run one after another and share the time.
-    const double threads = context.threads > 0
-                               ? context.threads
-                               : std::max(1.0, double(std::thread::hardware_concurrency()));
-    s.seconds = o.time_budget * std::min(1.0, threads / double(chains));
+    s.seconds = o.time_budget * std::min(1.0, double(thread_count(context)) / double(chains));
     if (o.effort) s.layouts = std::max<std::uint64_t>(1, o.effort / chains);
   }
   std::vector<pack::NestSearchResult> found(chains);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <mutex>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "libatlas/core/background.h"
@@ -90,9 +89,7 @@ class PageBaker {
     const std::size_t texel = options_.exr ? 3 + 3 * sizeof(float) : 3;
     const std::size_t bytes =
         texel * std::size_t(layout_.pages[0].width) * std::size_t(layout_.pages[0].height);
-    const std::size_t threads =
-        context_.threads > 0 ? std::size_t(context_.threads) : std::thread::hardware_concurrency();
-    return std::clamp<std::size_t>(kBytesAtOnce / bytes, 1, std::max<std::size_t>(threads, 1));
+    return std::clamp<std::size_t>(kBytesAtOnce / bytes, 1, thread_count(context_));
   }
 
   Status add_pages(std::size_t first, std::size_t count, Background& writing) {
