@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/atlas-export/command_line.h"
+#include "apps/atlas-export/flag_names.h"
 #include "apps/common/files.h"
 #include "apps/common/program.h"
 #include "apps/common/terminal.h"
@@ -154,6 +155,7 @@ Status write_report(ExportReport report, const StageReport& reading,
                     const app::ExportCommand& command, app::Terminal& terminal) {
   if (command.report.empty()) return {};
   report.scene = command.scene;
+  for (std::string& line : report.advice) line = app::with_flag_names(line);
   report.stages.insert(report.stages.begin(), reading);
   report.cpu_seconds += reading.cpu_seconds;
   report.wall_seconds += reading.wall_seconds;
@@ -219,6 +221,7 @@ int main_of(int argc, char** argv) {
   const auto command = app::parse_export_command(argc, argv, code);
   if (!command) return code;
   app::Terminal terminal("atlas-export", command->quiet);
+  terminal.reword(app::with_flag_names);
   const Status status = run(*command, terminal);
   if (!status.ok()) terminal.error(status.message());
   return app::exit_code(status);

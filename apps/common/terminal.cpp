@@ -56,13 +56,14 @@ void Terminal::line(std::string_view text) {
 
 void Terminal::error(std::string_view text) {
   clear_bar();
-  print_error(program_, text);
+  print_error(program_, words_ ? words_(text) : std::string(text));
 }
 
 void Terminal::warning(std::string_view text) {
   if (quiet_) return;
   clear_bar();
-  print(stderr, fmt::format("{}: {}\n", program_, one_line(text)));
+  print(stderr,
+        fmt::format("{}: {}\n", program_, one_line(words_ ? words_(text) : std::string(text))));
 }
 
 void Terminal::progress(std::string_view stage, double fraction) {

@@ -1,8 +1,10 @@
 // What the applications share on a terminal: a progress line, warnings, ctrl-C.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
@@ -21,6 +23,10 @@ class Terminal {
   // A context whose progress, warnings and cancel flag are this terminal's; it must not outlive it.
   Context context(int threads);
 
+  // How warnings and errors of the library are worded for the program's users; as they are, at
+  // first.
+  void reword(std::function<std::string(std::string_view)> words) { words_ = std::move(words); }
+
   void line(std::string_view text);   // to stdout, after clearing the bar; not when quiet
   void error(std::string_view text);  // to stderr, always, as "program: error: text"
 
@@ -30,6 +36,7 @@ class Terminal {
   void clear_bar();
 
   std::string program_, stage_;
+  std::function<std::string(std::string_view)> words_;
   bool quiet_, is_terminal_, bar_shown_ = false;
   int shown_percent_ = -1;
 };

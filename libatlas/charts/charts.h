@@ -33,23 +33,26 @@ struct ChartOptions {
   double cone_degrees = 0;
   // Bound on max(s1, 1/s2) at the chart's area-preserving scale over 99.9 % of its area; > 1.
   double max_stretch = 1.25;
-  // Edges sharper than this are preferred as seams, degrees.
+  // Edges sharper than this are preferred as seams; degrees, above 0, at most 180.
   double crease_degrees = 40;
   bool split_at_materials = true;  // a chart holds triangles of one material only
   // Keep the charts of the given texcoords and their shapes (scaled, turned, unmirrored), whatever
   // they stretch; only what is flipped, overlapping, degenerate, missing or beyond cone_degrees is
   // flattened anew.
   bool keep_uv_charts = false;
-  // Width / height of the page that the given texcoords run over from 0 to 1; > 0.
+  // Width / height of the page that the given texcoords run over from 0 to 1; 1e-6..1e6.
   double uv_aspect = 1;
   ChartPreset preset = ChartPreset::standard;
   // A chart so large that its smallest rectangle decides the page's size is cut across its limbs
   // until the pieces fill this share of their rectangles; so are the most wasteful charts where all
   // together fill little of their convex hulls. unwrap_mesh() and exports also cut, where this is
-  // not 0, what is too long or too large for the pages that they pack. 0..1, 0: never. Not with
-  // keep_uv_charts.
+  // not 0, what is too long or too large for the pages that they pack. At least 0 (never) and below
+  // 1. Not with keep_uv_charts.
   double min_fill = 0.72;
 };
+
+// Whether every option lies in the range given above; the message names the field and its range.
+Status check_options(const ChartOptions& options);
 
 // One chart and how good it is.
 struct Chart {
@@ -106,8 +109,9 @@ struct ChartSet {
 
 // Cuts the mesh into charts and flattens them. Geometry is scale- and translation-free; the result
 // is the same for every thread count. Sources: Barladian et al., stage 1 (normal cones); Sander et
-// al. 2001 (stretch); see docs/charts-method.md. Errors: bad_input when there is no triangle or an
-// index is out of range; cancelled.
+// al. 2001 (stretch); see docs/charts-method.md. Errors: bad_option, see check_options();
+// bad_input where there is no triangle, an index is out of range, a position or a density is not
+// usable, or an array has the wrong length; unsupported beyond 2^30 triangles; cancelled.
 Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
                              const Context& context);
 

@@ -22,25 +22,6 @@
 namespace atlas {
 namespace {
 
-Status check_options(const ChartOptions& options) {
-  if (!(options.cone_degrees >= 0 && options.cone_degrees <= 180)) {
-    return {ErrorCode::bad_option, "cone: must lie in 0..180 degrees (0: no limit)"};
-  }
-  if (!(options.max_stretch > 1) || !std::isfinite(options.max_stretch)) {
-    return {ErrorCode::bad_option, "max-stretch: must be greater than 1"};
-  }
-  if (!(options.crease_degrees > 0 && options.crease_degrees <= 180)) {
-    return {ErrorCode::bad_option, "crease: must be above 0 degrees and at most 180"};
-  }
-  if (!(options.min_fill >= 0 && options.min_fill < 1)) {
-    return {ErrorCode::bad_option, "min-fill: must lie in 0..1 (0: never cut for it)"};
-  }
-  if (!(options.uv_aspect >= 1e-6 && options.uv_aspect <= 1e6)) {
-    return {ErrorCode::bad_option, "uv-aspect: must be a page's width / height (1: square)"};
-  }
-  return {};
-}
-
 Status check_texcoords(const MeshView& mesh) {
   if (mesh.texcoord_indices.empty() && !mesh.texcoords.empty()) {
     return {ErrorCode::bad_input,
@@ -202,17 +183,21 @@ class Assembler {
         return;
       }
     }
-    const std::uint32_t chart = chart_of_material(t);
+    const std::uint32_t chart = first_chart_of_material(t);
     set_.triangle_chart[t] = chart;
     for (std::uint32_t c = 0; c < 3; ++c) {
       set_.triangle_uv[3 * t + c] = set_.charts[chart].first_uv;
     }
   }
 
-  std::uint32_t chart_of_material(std::uint32_t t) {
-    for (std::uint32_t k = 0; k < set_.charts.size(); ++k) {
-      if (set_.charts[k].material == material(t)) return k;
+  std::uint32_t first_chart_of_material(std::uint32_t t) {
+    if (first_of_material_.empty()) {
+      for (std::uint32_t k = 0; k < set_.charts.size(); ++k)
+        first_of_material_.emplace(set_.charts[k].material, k);
     }
+    const auto id = static_cast<std::uint32_t>(set_.charts.size());
+    const auto [known, added] = first_of_material_.emplace(material(t), id);
+    if (!added) return known->second;
     Chart chart;  // a single point
     chart.first_uv = static_cast<std::uint32_t>(set_.uvs.size());
     chart.uv_count = 1;
@@ -222,7 +207,7 @@ class Assembler {
     set_.uvs.push_back({});
     set_.uv_vertex.push_back(mesh_.indices[3 * std::size_t{t}]);
     set_.charts.push_back(chart);
-    return static_cast<std::uint32_t>(set_.charts.size() - 1);
+    return id;
   }
 
   void number_triangles() {
@@ -245,6 +230,7 @@ class Assembler {
   const Topology& topology_;
   ChartSet& set_;
   double unscale_;
+  std::unordered_map<std::uint32_t, std::uint32_t> first_of_material_;  // filled when asked for
 };
 
 // Length of the edges that exactly two triangles share in space, but not in uv.
@@ -267,6 +253,25 @@ double seam_length(const Topology& topology, const ChartSet& set) {
 }
 
 }  // namespace
+
+Status check_options(const ChartOptions& options) {
+  const auto must = [](const char* field, double value, const char* range) {
+    return Status(ErrorCode::bad_option,
+                  fmt::format("ChartOptions::{} is {:g}; it must {}", field, value, range));
+  };
+  if (!(options.cone_degrees >= 0 && options.cone_degrees <= 180))
+    return must("cone_degrees", options.cone_degrees, "lie within 0..180 degrees (0: no limit)");
+  if (!(options.max_stretch > 1) || !std::isfinite(options.max_stretch))
+    return must("max_stretch", options.max_stretch, "be a number above 1");
+  if (!(options.crease_degrees > 0 && options.crease_degrees <= 180))
+    return must("crease_degrees", options.crease_degrees, "be above 0 degrees and at most 180");
+  if (!(options.min_fill >= 0 && options.min_fill < 1))
+    return must("min_fill", options.min_fill, "be at least 0 (never cut for it) and below 1");
+  if (!(options.uv_aspect >= 1e-6 && options.uv_aspect <= 1e6))
+    return must("uv_aspect", options.uv_aspect,
+                "be a page's width / height within 1e-6..1e6 (1: square)");
+  return {};
+}
 
 void add_parts(const ChartSet::Timing& parts, ChartSet::Timing& sum) {
   using T = ChartSet::Timing;

@@ -27,19 +27,23 @@ std::string on_many_pages(const ExportReport& report, const ExportOptions& optio
   while (side < kCommonSide && count() > std::int64_t(kManyPages) / 2) side *= 2;
   const std::string larger =
       side > options.atlas_size
-          ? fmt::format("--atlas-size {} --atlases {} holds as much; ", side, count())
+          ? fmt::format("ExportOptions::atlas_size {} ExportOptions::atlases {} holds as much; ",
+                        side, count())
           : "";
   return fmt::format(
       "{} charts on {} pages of {} x {}: viewers load and draw every page by itself, which so many "
-      "make slow ({}a longer --texel or a higher --threshold needs fewer)",
+      "make slow ({}a longer ExportOptions::texel_metres or a higher ExportOptions::threshold "
+      "needs fewer)",
       report.charts.size(), report.pages.size(), options.atlas_size, options.atlas_size, larger);
 }
 
 std::string on_small_charts(const ExportReport& report, double texels_a_chart) {
   return fmt::format(
       "{} charts have {:.0f} texels each on average, and {:.0f} % of the pages are gutters and "
-      "gaps between them (more --atlases, a larger --atlas-size or a lower --mips leave more for "
-      "the light; a larger --max-stretch or --across-materials makes fewer charts)",
+      "gaps between them (more ExportOptions::atlases, a larger ExportOptions::atlas_size or a "
+      "lower ExportOptions::mip_levels leave more for "
+      "the light; a larger ChartOptions::max_stretch or charts across materials "
+      "(ChartOptions::split_at_materials) make fewer charts)",
       report.charts.size(), texels_a_chart, 100 * (1 - report.uv_utilization));
 }
 
@@ -47,28 +51,30 @@ std::string on_long_texels(const ExportReport& report, const ExportOptions& opti
                            double texels_a_chart) {
   return fmt::format(
       "{} charts have {:.0f} texels each on average, {:.3g} mm long: little of the light is left "
-      "(a shorter --texel)",
+      "(a shorter ExportOptions::texel_metres)",
       report.charts.size(), texels_a_chart, 1e3 * options.texel_metres / report.scale);
 }
 
 std::string on_coarse_texels(const ExportReport& report, const ExportOptions& options) {
   return fmt::format(
-      "texels are {:.3g} mm long, not the {:.3g} mm of --texel, since the pages hold no more (more "
-      "--atlases or a larger --atlas-size, or a longer --texel)",
+      "texels are {:.3g} mm long, not the {:.3g} mm of ExportOptions::texel_metres, since the "
+      "pages hold no more (more "
+      "ExportOptions::atlases or a larger ExportOptions::atlas_size, or a longer "
+      "ExportOptions::texel_metres)",
       1e3 * options.texel_metres / report.scale, 1e3 * options.texel_metres);
 }
 
 std::string on_white(const ExportReport& report) {
   return fmt::format(
       "light of {:.3g}, the geometric mean, is shown white like all above {:.3g}: most shadows are "
-      "lost (a larger --white or a lower --exposure)",
+      "lost (a larger ToneOptions::white or a lower ToneOptions::exposure_stops)",
       double(report.luminance.log_average), report.exposure_white);
 }
 
 std::string on_black(const ExportReport& report) {
   return fmt::format(
       "light of {:.3g}, the brightest that is seen but for 1 %, is shown black; white begins at "
-      "{:.3g} (a smaller --white or a higher --exposure)",
+      "{:.3g} (a smaller ToneOptions::white or a higher ToneOptions::exposure_stops)",
       double(report.luminance.percentile99), report.exposure_white);
 }
 
@@ -94,7 +100,8 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
   std::vector<std::string> lines;
   if (options.charts.keep_uv_charts && report.repairs.kept_charts == 0)
     lines.push_back(
-        "--keep-uv-charts kept no chart: the scene's texture coordinates are missing, flipped or "
+        "ChartOptions::keep_uv_charts kept no chart: the scene's texture coordinates are missing, "
+        "flipped or "
         "lie on each other (leave it out for charts of all new borders)");
   if (report.pages.empty() || report.gpu_bytes == 0) return lines;  // no light, no texels to lose
   if (report.pages.size() > kManyPages) lines.push_back(on_many_pages(report, options));
@@ -126,14 +133,15 @@ std::vector<std::string> advice_on_materials(const Scene& scene, Quantity quanti
   if (open.count > 0)
     lines.push_back(fmt::format(
         "{} {} transparent or {} holes: baked pages are opaque (export such parts by themselves "
-        "with --charts-only --keep-scene)",
+        "with ExportOptions::charts_only ExportOptions::keep_scene)",
         open.text(), open.count == 1 ? "is" : "are", open.count == 1 ? "has" : "have"));
   if (lamps.count > 0 && quantity == Quantity::illuminance)
     lines.push_back(fmt::format(
         "{} {} light: it is not baked, since its unit need not be that of the vertices, so pages "
         "show such parts as dark as what they reflect (give vertices all light that leaves them "
-        "and say --quantity luminance, or export such parts by themselves with --charts-only "
-        "--keep-scene)",
+        "and say ExportOptions::quantity luminance, or export such parts by themselves with "
+        "ExportOptions::charts_only "
+        "ExportOptions::keep_scene)",
         lamps.text(), lamps.count == 1 ? "emits" : "emit"));
   return lines;
 }

@@ -10,8 +10,8 @@
 namespace atlas {
 namespace {
 
-Status out_of_range(const char* option, const std::string& range) {
-  return {ErrorCode::bad_option, fmt::format("{} must be {}", option, range)};
+Status out_of_range(const char* field, const std::string& range) {
+  return {ErrorCode::bad_option, fmt::format("ExportOptions::{} must be {}", field, range)};
 }
 
 }  // namespace
@@ -20,54 +20,41 @@ Status check_options(const ExportOptions& o) {
   if (Status s = check_world_extension(o.target); !s.ok()) return s;
   if (o.keep_scene && !holds_scene(o.target)) {
     return {ErrorCode::bad_option,
-            "--keep-scene: VRML has no room for uvs beside the scene's own (write .gltf, .glb or "
+            "ExportOptions::keep_scene: VRML has no room for uvs beside the scene's own (write "
+            ".gltf, .glb or "
             ".obj)"};
   }
-  if (o.plain_pages < 1) return out_of_range("--atlases", "at least 1");
+  if (o.plain_pages < 1) return out_of_range("plain_pages", "at least 1");
   if (o.keep_scene && o.plain_pages > 1) {
     return {ErrorCode::bad_option,
-            "--keep-scene: a scene that is kept has its uvs on one page (leave out --atlases)"};
+            "ExportOptions::keep_scene: a scene that is kept has its uvs on one page (leave out "
+            "ExportOptions::plain_pages)"};
   }
   const bool power_of_two = (o.atlas_size & (o.atlas_size - 1)) == 0;
-  if (o.atlases < 1) return out_of_range("--atlases", "at least 1");
+  if (o.atlases < 1) return out_of_range("atlases", "at least 1");
   if (o.atlas_size < 64 || o.atlas_size > 16384 || !power_of_two) {
-    return out_of_range("--atlas-size", "a power of two from 64 to 16384");
+    return out_of_range("atlas_size", "a power of two from 64 to 16384");
   }
   if (!(o.texel_metres >= 0) || !std::isfinite(o.texel_metres))
-    return out_of_range("--texel", "a positive length");
-  if (!(o.threshold >= 0 && o.threshold <= 1)) return out_of_range("--threshold", "within 0..1");
-  if (o.mip_levels < 0 || o.mip_levels > 5) return out_of_range("--mips", "within 0..5");
-  if (o.shifts < 1 || o.shifts > 64) return out_of_range("--shifts", "within 1..64");
+    return out_of_range("texel_metres", "a positive length");
+  if (!(o.threshold >= 0 && o.threshold <= 1)) return out_of_range("threshold", "within 0..1");
+  if (o.mip_levels < 0 || o.mip_levels > 5) return out_of_range("mip_levels", "within 0..5");
+  if (o.shifts < 1 || o.shifts > 64) return out_of_range("shifts", "within 1..64");
   const int room = o.atlas_size - 2 * gutter_pad(o.mip_levels);
   if (o.min_side < 1 || o.min_side > std::min(256, room)) {
-    return out_of_range("--min-side", fmt::format("within 1..{} (--atlas-size {}, --mips {})",
-                                                  std::min(256, room), o.atlas_size, o.mip_levels));
+    return out_of_range(
+        "min_side",
+        fmt::format("within 1..{} (ExportOptions::atlas_size {}, ExportOptions::mip_levels {})",
+                    std::min(256, room), o.atlas_size, o.mip_levels));
   }
   if (!(o.simplify_slip > 0) || !std::isfinite(o.simplify_slip)) {
-    return out_of_range("--slip", "a positive number");
+    return out_of_range("simplify_slip", "a positive number");
   }
   if (o.png_compression < 0 || o.png_compression > 9) {
-    return out_of_range("--png-level", "within 0..9");
+    return out_of_range("png_compression", "within 0..9");
   }
-  if (!(o.charts.cone_degrees >= 0 && o.charts.cone_degrees <= 180)) {
-    return out_of_range("--cone", "within 0..180 degrees");
-  }
-  if (!(o.charts.max_stretch > 1) || !std::isfinite(o.charts.max_stretch)) {
-    return out_of_range("--max-stretch", "a number above 1");
-  }
-  if (!(o.charts.crease_degrees > 0 && o.charts.crease_degrees <= 180)) {
-    return out_of_range("--crease", "above 0 and at most 180 degrees");
-  }
-  if (!(o.charts.uv_aspect >= 1e-6 && o.charts.uv_aspect <= 1e6)) {
-    return out_of_range("--uv-aspect", "a page's width / height (1: square)");
-  }
-  if (!(o.tone.white >= 0) || !std::isfinite(o.tone.white)) {
-    return out_of_range("--white", "a luminance above 0, or 0 to measure it");
-  }
-  if (!(std::abs(o.tone.exposure_stops) <= 64)) {
-    return out_of_range("--exposure", "within -64..64 stops");
-  }
-  return {};
+  if (Status s = check_options(o.charts); !s.ok()) return s;
+  return check_options(o.tone);
 }
 
 }  // namespace atlas

@@ -65,8 +65,8 @@ struct ExportOptions {
   bool measure_error = true;  // compare the finished pages with the input's light
 };
 
-// Checks every range documented above. The message names the option, as atlas-export spells it
-// (--atlas-size is atlas_size, --texel texel_metres), and its range.
+// Checks every range documented above, and those of charts and tone. The message names the field
+// with its struct (ExportOptions::atlas_size), and its range.
 Status check_options(const ExportOptions& options);
 
 }  // namespace atlas

@@ -31,14 +31,14 @@ LayoutOptions layout_options(const ChartSet& charts, const ExportOptions& option
   LayoutOptions layout;
   layout.preset = options.packing;
   layout.outlines = options.outlines;
-  layout.remedy = "give more --atlases or a larger --atlas-size";
+  layout.remedy = "give more ExportOptions::atlases or a larger ExportOptions::atlas_size";
   if (bake) {
     layout.pages = options.atlases;
     layout.page_size = options.atlas_size;
     layout.padding = gutter_pad(options.mip_levels);
     layout.alignment = 1 << options.mip_levels;
     layout.minimum_side = options.min_side;
-    layout.remedy += ", or a lower --min-side or --mips";
+    layout.remedy += ", or a lower ExportOptions::min_side or ExportOptions::mip_levels";
   } else {
     layout.pages = options.plain_pages;
     layout.page_size = plain_page_size(charts, options);

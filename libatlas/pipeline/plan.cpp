@@ -211,8 +211,9 @@ Status check_plan(const ExportPlan& plan, const ExportOptions& options) {
   const std::filesystem::path& target = options.target;
   if (options.keep_scene && plan.bake) {
     return {ErrorCode::bad_option,
-            "--keep-scene: this scene carries light, whose textures take the place of its own (add "
-            "--charts-only to get uvs without light)"};
+            "ExportOptions::keep_scene: this scene carries light, whose textures take the place of "
+            "its own (add "
+            "ExportOptions::charts_only to get uvs without light)"};
   }
   if (Status s = check_writable(target); !s.ok() || !plan.bake) return s;
   const std::string last_page = page_name(target, options.atlases - 1) + ".png";
@@ -223,8 +224,9 @@ Status check_plan(const ExportPlan& plan, const ExportOptions& options) {
   if (!(across > 0))
     return {ErrorCode::bad_input, "no triangle has an area, nothing can be lit (check the scene)"};
   return {ErrorCode::bad_option,
-          fmt::format("--texel: {:g} m is more than the whole scene, {:g} m across (check --texel "
-                      "and --unit)",
+          fmt::format("ExportOptions::texel_metres: {:g} m is more than the whole scene, {:g} m "
+                      "across (check ExportOptions::texel_metres "
+                      "and ReadOptions::metres_per_unit)",
                       plan.texel_metres, across)};
 }
 

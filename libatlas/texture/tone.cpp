@@ -52,27 +52,6 @@ float photoreceptor(float v, float adaptation, float m) {
   return v > 0 ? v / (v + std::pow(adaptation, m)) : 0.0f;
 }
 
-Status bad(std::string_view what, double value, std::string_view range) {
-  return {ErrorCode::bad_option,
-          fmt::format("tone mapping: {} is {}; it must be {}", what, value, range)};
-}
-
-Status check(const ToneOptions& o) {
-  const auto within = [](double v, double lo, double hi) { return v >= lo && v <= hi; };
-  if (!(o.white >= 0) || !std::isfinite(o.white))
-    return bad("white", o.white, "a luminance above 0, or 0 for automatic");
-  if (!within(o.exposure_stops, -64, 64)) return bad("exposure", o.exposure_stops, "-64..64 stops");
-  if (!within(o.key, 1e-6, 1e6)) return bad("key", o.key, "in 1e-6..1e6 (0.18 is middle grey)");
-  if (!within(o.bias, 0.5, 0.999)) return bad("bias", o.bias, "in 0.5..0.999");
-  if (o.contrast != 0 && !within(o.contrast, 0.01, 1.5))
-    return bad("contrast", o.contrast, "0 (automatic) or in 0.01..1.5");
-  if (!within(o.chromatic_adaptation, 0, 1))
-    return bad("chromatic adaptation", o.chromatic_adaptation, "in 0..1");
-  if (!within(o.light_adaptation, 0, 1))
-    return bad("light adaptation", o.light_adaptation, "in 0..1");
-  return {};
-}
-
 // Reinhard and Devlin 2005, section 3: contrast from the key of the scene.
 double automatic_contrast(const LuminanceStatistics& s) {
   const double range = s.maximum_log - s.minimum_log;
@@ -110,6 +89,28 @@ void set_reinhard_devlin(ToneMapping& tone, const ToneOptions& o, const Luminanc
 }
 
 }  // namespace
+
+Status check_options(const ToneOptions& o) {
+  const auto within = [](double v, double lo, double hi) { return v >= lo && v <= hi; };
+  const auto must = [](std::string_view field, double value, std::string_view range) {
+    return Status(ErrorCode::bad_option,
+                  fmt::format("ToneOptions::{} is {:g}; it must be {}", field, value, range));
+  };
+  if (!(o.white >= 0) || !std::isfinite(o.white))
+    return must("white", o.white, "a luminance above 0, or 0 to measure it");
+  if (!within(o.exposure_stops, -64, 64))
+    return must("exposure_stops", o.exposure_stops, "within -64..64 stops");
+  if (!within(o.key, 1e-6, 1e6))
+    return must("key", o.key, "within 1e-6..1e6 (0.18 is middle grey)");
+  if (!within(o.bias, 0.5, 0.999)) return must("bias", o.bias, "within 0.5..0.999");
+  if (o.contrast != 0 && !within(o.contrast, 0.01, 1.5))
+    return must("contrast", o.contrast, "0 (automatic) or within 0.01..1.5");
+  if (!within(o.chromatic_adaptation, 0, 1))
+    return must("chromatic_adaptation", o.chromatic_adaptation, "within 0..1");
+  if (!within(o.light_adaptation, 0, 1))
+    return must("light_adaptation", o.light_adaptation, "within 0..1");
+  return {};
+}
 
 Result<ToneOperator> parse_tone_operator(std::string_view name) {
   std::string choices;
@@ -149,7 +150,7 @@ Vec3f ToneMapping::map_curve(Vec3f luminance) const {
 
 Result<ToneMapping> make_tone_mapping(const ToneOptions& options,
                                       const LuminanceStatistics& statistics) {
-  if (Status s = check(options); !s.ok()) return s;
+  if (Status s = check_options(options); !s.ok()) return s;
   ToneMapping tone;
   tone.op = options.op;
   const bool linear = options.op == ToneOperator::linear;

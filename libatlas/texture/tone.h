@@ -49,13 +49,16 @@ struct ToneOptions {
   // Scene luminance that becomes display white; 0: automatic. linear: the 99th percentile of what
   // is visible; the others: the largest luminance.
   double white = 0;                 // >= 0
-  double exposure_stops = 0;        // brightens (+) or darkens (-) by powers of two
-  double key = 0.18;                // reinhard: middle grey
-  double bias = 0.85;               // drago: 0.5..1
-  double contrast = 0;              // reinhard_devlin: m, 0: automatic, else 0.3..1
+  double exposure_stops = 0;        // brightens (+) or darkens (-) by powers of two, -64..64
+  double key = 0.18;                // reinhard: middle grey, 1e-6..1e6
+  double bias = 0.85;               // drago: 0.5..0.999
+  double contrast = 0;              // reinhard_devlin: m, 0: automatic (0.3..1), else 0.01..1.5
   double chromatic_adaptation = 0;  // reinhard_devlin: c, 0..1
   double light_adaptation = 1;      // reinhard_devlin: a, 0..1
 };
+
+// Whether every option lies in the range given above; the message names the field and its range.
+Status check_options(const ToneOptions& options);
 
 // A tone curve with all its numbers fixed. Cheap to copy, thread-safe.
 //

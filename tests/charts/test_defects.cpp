@@ -7,6 +7,7 @@
 
 #include "libatlas/core/random.h"
 #include "tests/charts/chart_checks.h"
+#include "tests/support/slowness.h"
 
 namespace atlas::test {
 namespace {
@@ -195,6 +196,31 @@ TEST(Defects, NothingButTrianglesWithoutArea) {
   const ChartSet set = whole(mesh);
   EXPECT_EQ(set.charts.size(), 1u);
   EXPECT_EQ(set.seam_length, 0);
+}
+
+// Degenerate triangles that touch nothing, of materials with and without other triangles.
+TEST(Defects, TrianglesWithoutAreaJoinTheirMaterial) {
+  constexpr std::uint32_t kTriangles = 40000, kMaterials = 20000;
+  Mesh mesh;
+  for (std::uint32_t t = 0; t < kTriangles; ++t) {
+    const float x = 3 * float(t % 200), y = 3 * float(t / 200);
+    mesh.positions.insert(mesh.positions.end(), {{x, y, 0}, {x + 1, y, 0}, {x, y + 1, 0}});
+    for (std::uint32_t c = 0; c < 3; ++c) mesh.indices.push_back(3 * t + c);
+    mesh.materials.push_back(t % kMaterials);
+  }
+  for (std::uint32_t i = 0; i < 2 * kMaterials; ++i) {  // each material twice, half of them new
+    const auto apart = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.push_back({-1 - float(i), -5, 1});
+    mesh.indices.insert(mesh.indices.end(), 3, apart);
+    mesh.materials.push_back(kMaterials / 2 + i % kMaterials);
+  }
+  const Result<ChartSet> set = make_charts(mesh.view(), {}, {});
+  ASSERT_TRUE(set.ok()) << set.status().message();
+  EXPECT_EQ(set->charts.size(), kTriangles + kMaterials / 2);
+  for (std::uint32_t t = 0; t < mesh.materials.size(); ++t)
+    ASSERT_EQ(set->charts[set->triangle_chart[t]].material, mesh.materials[t]) << t;
+  // Looking through the charts for each of them took more than ten times as long.
+  EXPECT_LT(set->timing.parameterization_cpu, kSlowness * 0.5);
 }
 
 TEST(Defects, SlicedNeedlesAndSoup) {

@@ -37,10 +37,13 @@ TEST(Advice, ManyPagesNameLargerOnesThatHoldAsMuch) {
   ExportOptions options;
   EXPECT_TRUE(holds(advice_on(report_of(16000, 200, 2048), options),
                     "16000 charts on 200 pages of 2048 x 2048"));
-  EXPECT_TRUE(holds(advice_on(report_of(16000, 200, 2048), options),
-                    "(--atlas-size 8192 --atlases 13 holds as much; a longer --texel"));
+  EXPECT_TRUE(
+      holds(advice_on(report_of(16000, 200, 2048), options),
+            "(ExportOptions::atlas_size 8192 ExportOptions::atlases 13 holds as much; a longer "
+            "ExportOptions::texel_metres"));
   options.atlas_size = 8192;  // not all cards take larger ones
-  EXPECT_TRUE(holds(advice_on(report_of(16000, 200, 8192), options), "(a longer --texel"));
+  EXPECT_TRUE(holds(advice_on(report_of(16000, 200, 8192), options),
+                    "(a longer ExportOptions::texel_metres"));
 }
 
 TEST(Advice, PagesOfGuttersAreNamed) {
@@ -87,7 +90,7 @@ TEST(Advice, UvChartsOfWhichNoneIsKeptAreNamed) {
   ExportReport report;
   ExportOptions options;
   options.charts.keep_uv_charts = true;
-  EXPECT_TRUE(holds(advice_on(report, options), "--keep-uv-charts kept no chart"));
+  EXPECT_TRUE(holds(advice_on(report, options), "ChartOptions::keep_uv_charts kept no chart"));
   report.repairs.kept_charts = 1;
   EXPECT_TRUE(advice_on(report, options).empty());
 }
@@ -151,7 +154,8 @@ TEST(Advice, TexelsThatPagesCannotHoldAreNamed) {
   EXPECT_TRUE(advice_on(report, {}).empty());  // none were asked for
   ExportOptions options;
   options.texel_metres = 0.005;
-  EXPECT_TRUE(holds(advice_on(report, options), "texels are 25 mm long, not the 5 mm of --texel"));
+  EXPECT_TRUE(holds(advice_on(report, options),
+                    "texels are 25 mm long, not the 5 mm of ExportOptions::texel_metres"));
 }
 
 TEST(Advice, AnExportSaysAndReportsIt) {

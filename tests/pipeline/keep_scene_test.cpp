@@ -279,7 +279,7 @@ TEST(KeepScene, IsRefusedWhereLightIsBakedAndForVrml) {
   options.keep_scene = true;
   const auto baked = export_world(lit, options, {}, {});
   EXPECT_EQ(baked.status().code(), ErrorCode::bad_option);
-  EXPECT_NE(baked.status().message().find("--charts-only"), std::string::npos);
+  EXPECT_NE(baked.status().message().find("ExportOptions::charts_only"), std::string::npos);
   options.charts_only = true;
   EXPECT_TRUE(export_world(lit, options, {}, {}).ok());
   options.target = folder / "w.wrl";

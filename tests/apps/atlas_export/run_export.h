@@ -68,6 +68,7 @@ class AtlasExport : public testing::Test {
     EXPECT_TRUE(r.exit_code == 1 || r.exit_code == 2) << r.exit_code << "\n" << r.output;
     EXPECT_EQ(std::count(r.output.begin(), r.output.end(), '\n'), 1) << r.output;
     EXPECT_NE(r.output.find(expected), std::string::npos) << r.output;
+    EXPECT_EQ(r.output.find("Options::"), std::string::npos) << r.output;  // its flag is named
     EXPECT_EQ(files(), before);
   }
 
