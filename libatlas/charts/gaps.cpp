@@ -109,13 +109,14 @@ GapReport measure_gaps(const MeshView& mesh, std::span<const double> clearance,
   });
 }
 
-GapReport widen_gaps(const MeshView& mesh, std::span<const double> clearance, double max_stretch,
-                     ChartSet& charts, const Context& context) {
-  const GapReport report = look_at_all(charts, clearance, context, [&](std::size_t c) {
+GapReport widen_gaps(const MeshView& mesh, const GapLimits& limits, ChartSet& charts,
+                     const Context& context) {
+  const GapReport report = look_at_all(charts, limits.clearance, context, [&](std::size_t c) {
     Chart& chart = charts.charts[c];
     if (chart.kept) return Widened{};
     const double root = std::sqrt(chart.distortion.surface_area);
-    return widen(mesh, {clearance[c], max_stretch, kMinAltitude * root}, charts, chart);
+    const WidenOptions options{limits.clearance[c], limits.max_stretch, kMinAltitude * root};
+    return widen(mesh, options, charts, chart);
   });
   if (report.charts > 0) charts.distortion = total_distortion(charts.charts);
   return report;

@@ -16,19 +16,24 @@ struct GapReport {
   double near_before = 0, near_after = 0;  // of it, what is too near to another part
 };
 
+struct GapLimits {
+  std::span<const double> clearance = {};  // 1 a chart, in units of its uvs; 0: not looked at
+  double max_stretch = 1.25;               // > 1: charts may be stretched so far, see ChartOptions
+};
+
 // How much of the charts' borders is nearer to another part of the same chart than its clearance
-// (in units of its uvs, 1 a chart; 0: not looked at), though the two are far apart on the surface:
+// (as in GapLimits), though the two are far apart on the surface:
 // more than three clearances. Charts whose clearance is more than a fifth of the root of their area
 // are not looked at. Nothing is changed.
 GapReport measure_gaps(const MeshView& mesh, std::span<const double> clearance,
                        const ChartSet& charts, const Context& context);
 
 // Opens such gaps: the border is drawn back on both sides, so far as the chart stays within
-// max_stretch (or what it stretches already) and injective. Charts keep their triangles and seams;
-// uvs, size and distortion change a little, the total as well. Given charts (Chart::kept) are not
-// looked at either, and where the work is cancelled some charts may be left. The result is the same
-// for every thread count.
-GapReport widen_gaps(const MeshView& mesh, std::span<const double> clearance, double max_stretch,
-                     ChartSet& charts, const Context& context);
+// limits.max_stretch (or what it stretches already) and injective. Charts keep their triangles and
+// seams; uvs, size and distortion change a little, the total as well. Given charts (Chart::kept)
+// are not looked at either, and where the work is cancelled some charts may be left. The result is
+// the same for every thread count.
+GapReport widen_gaps(const MeshView& mesh, const GapLimits& limits, ChartSet& charts,
+                     const Context& context);
 
 }  // namespace atlas

@@ -1,4 +1,5 @@
-// Tasks done beside the caller's own work, such as writing a page while the next one is baked.
+// Internal: tasks done beside the caller's own work, such as writing a page while the next one is
+// baked.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-// A parallel loop over tasks that share things, as the borders between charts share the charts.
+// Internal: a parallel loop over tasks that share things, as the borders between charts share the
+// charts.
 #pragma once
 
 #include <array>

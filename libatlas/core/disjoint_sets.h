@@ -1,4 +1,4 @@
-// Which of n things hang together, when told pair by pair.
+// Internal: union-find: which of n items are connected, given pair by pair.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What double arithmetic leaves of a coordinate that is 0.
+// Internal: what double arithmetic leaves of a coordinate that is 0.
 #pragma once
 
 #include <cmath>

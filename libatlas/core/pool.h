@@ -1,4 +1,4 @@
-// Objects that are dear to make, one a running task: handed out and taken back.
+// Internal: objects that are dear to make, one a running task: handed out and taken back.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// Progress of work that is done in several parts.
+// Internal: progress of work that is done in several parts.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Why a file could not be written, for messages.
+// Internal: why a file could not be written, for messages.
 #pragma once
 
 #include <cerrno>

@@ -1,4 +1,4 @@
-// From charts on pages to the mesh that exporters write.
+// Internal: from charts on pages to the mesh that exporters write.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
-// Bakes the pages and measures each against the input. With more than one thread as many pages as
-// there are threads are baked at once, and as many written beside that: each of the two up to
-// 256 MiB of texels, one page at least.
+// Internal: bakes the pages and measures each against the input. With more than one thread as many
+// pages as there are threads are baked at once, and as many written beside that: each of the two up
+// to 256 MiB of texels, one page at least.
 #pragma once
 
 #include <cstddef>

@@ -39,7 +39,7 @@ GapReport open_part_gaps(const PagesOfCharts& pages, std::span<const Vec2d> dens
   const double scale = wanted > left ? std::sqrt(left / wanted) : 1;
   std::vector<double> clearance;
   for (const Vec2d d : densities) clearance.push_back(clearance_at(d) / scale);
-  return widen_gaps(pages.mesh, clearance, pages.max_stretch, charts, context);
+  return widen_gaps(pages.mesh, {clearance, pages.max_stretch}, charts, context);
 }
 
 GapReport open_part_gaps(const PagesOfCharts& pages, std::span<ChartTexture> textures,
@@ -83,7 +83,7 @@ Result<PagesOfParts> fill_pages_apart(const PlainUvs& uvs, const LayoutOptions& 
   ChartSet wider = charts;
   std::vector<double> clearance = clearances(pages.layout.placements);
   for (double& c : clearance) c *= kSmaller;
-  const std::size_t opened = widen_gaps(uvs.mesh, clearance, max_stretch, wider, context).charts;
+  const std::size_t opened = widen_gaps(uvs.mesh, {clearance, max_stretch}, wider, context).charts;
   if (opened == 0) return pages;
   layout = fill_pages(uvs, options, wider, part_of_stage(context, "pack", 0.5, 1));
   if (context.cancelled()) return Status::cancelled();

@@ -1,4 +1,4 @@
-// Page fractions as floats, no triangle turned over.
+// Internal: page fractions as floats, no triangle turned over.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Measures the stages of an export and writes them into its report.
+// Internal: measures the stages of an export and writes them into its report.
 #pragma once
 
 #include <cstdint>

@@ -64,7 +64,7 @@ TEST(Gaps, ChartsKeepWhatTheyPromise) {
     for (const double share : {0.01, 0.09}) {
       ChartSet set = before;
       const GapReport report =
-          widen_gaps(mesh.view(), clearances(set, share), kMaxStretch, set, {});
+          widen_gaps(mesh.view(), {clearances(set, share), kMaxStretch}, set, {});
       changed += report.charts;
       EXPECT_LE(report.near_after, report.near_before) << shape.name;
       const ChartFindings found = check_charts(mesh.view(), set);
@@ -88,7 +88,7 @@ TEST(Gaps, EndsOfAStairPart) {
   const std::vector<double> clearance = clearances(set, 0.05);
   const GapReport before = measure_gaps(mesh.view(), clearance, set, {});
   ASSERT_GT(before.near_before, 1);
-  const GapReport report = widen_gaps(mesh.view(), clearance, kMaxStretch, set, {});
+  const GapReport report = widen_gaps(mesh.view(), {clearance, kMaxStretch}, set, {});
   EXPECT_EQ(report.charts, 1u);
   EXPECT_DOUBLE_EQ(report.near_before, before.near_before);
   const GapReport after = measure_gaps(mesh.view(), clearance, set, {});
@@ -100,11 +100,11 @@ TEST(Gaps, KeptChartsAndThoseOfNoInterestStay) {
   const Mesh mesh = stairs(1);
   const ChartSet before = flat_stairs(mesh);
   ChartSet set = before;
-  EXPECT_EQ(widen_gaps(mesh.view(), clearances(set, 0), kMaxStretch, set, {}).charts, 0u);
-  EXPECT_EQ(widen_gaps(mesh.view(), clearances(set, 0.21), kMaxStretch, set, {}).charts, 0u);
+  EXPECT_EQ(widen_gaps(mesh.view(), {clearances(set, 0), kMaxStretch}, set, {}).charts, 0u);
+  EXPECT_EQ(widen_gaps(mesh.view(), {clearances(set, 0.21), kMaxStretch}, set, {}).charts, 0u);
   EXPECT_EQ(bytes(set), bytes(before));
   set.charts[0].kept = true;
-  EXPECT_EQ(widen_gaps(mesh.view(), clearances(set, 0.05), kMaxStretch, set, {}).charts, 0u);
+  EXPECT_EQ(widen_gaps(mesh.view(), {clearances(set, 0.05), kMaxStretch}, set, {}).charts, 0u);
   set.charts[0].kept = false;
   EXPECT_EQ(bytes(set), bytes(before));
 }
@@ -118,7 +118,7 @@ TEST(Gaps, SameBytesForAnyThreadCount) {
     context.threads = threads;
     ChartSet set = before;
     const GapReport report =
-        widen_gaps(mesh.view(), clearances(set, 0.05), kMaxStretch, set, context);
+        widen_gaps(mesh.view(), {clearances(set, 0.05), kMaxStretch}, set, context);
     EXPECT_GT(report.charts, 5u);
     if (threads == 1) one = bytes(set);
     EXPECT_EQ(bytes(set), one) << threads;
