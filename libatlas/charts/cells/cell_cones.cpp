@@ -9,17 +9,19 @@
 namespace atlas {
 namespace {
 
-// A chart's cone is measured anew in the end, with other rounding: keep clear of the limit.
+// A chart's cone is measured again at the end, with different rounding. The margin (radians) keeps
+// cells clear of the limit.
 constexpr double kMargin = 1e-5;
 
-constexpr double kHullCone = 80 * M_PI / 180;  // wider ones have no useful image in a plane
+// Wider cones are not projected to the tangent plane, where their normals would lie too far out.
+constexpr double kHullCone = 80 * M_PI / 180;
 
 struct ProjectedNormal {
   double x, y;
   Vec3f normal;
 };
 
-// Monotone chain; `points` come sorted by x, then y.
+// Andrew's monotone chain. `points` must be sorted by x, then by y.
 void reduce_to_hull(std::vector<ProjectedNormal>& points) {
   std::vector<ProjectedNormal> hull;
   for (int pass = 0; pass < 2; ++pass) {
@@ -63,8 +65,9 @@ class ConeSplitter {
   ConeSplitter(const Topology& topology, double cone, Cells& cells)
       : topology_(topology), least_(std::cos(std::max(0.0, cone - kMargin))), cells_(cells) {}
 
-  // First the connected parts around the mean normal, then patches around what is left, each
-  // around its first triangle. The first part keeps the cell's number.
+  // First separates the connected parts whose normals lie around the mean normal. What is left
+  // becomes patches, each grown around the normal of its first triangle. The first part keeps the
+  // cell's number.
   void divide(std::uint32_t k, std::span<const std::uint32_t> triangles) {
     glm::dvec3 mean(0);
     for (const std::uint32_t t : triangles) {

@@ -1,4 +1,5 @@
-// Internal: what cells are grown by: path length that the lean of normals makes longer.
+// Internal: the distance that cells are grown by, which is path length, longer where normals
+// deviate from the seed's.
 #pragma once
 
 #include <algorithm>
@@ -12,13 +13,15 @@ namespace atlas {
 
 inline constexpr float kFar = std::numeric_limits<float>::infinity();
 
-// From seed s over a step to a place with normal n: its length times (1 + 8 (1 - n·n_s)).
+// The distance over a step of this length from a seed with normal `axis` to a place with normal
+// `normal`: step * (1 + 8 (1 - normal·axis)).
 inline float cell_distance(float step, const glm::vec3& normal, const glm::vec3& axis) {
   constexpr float normal_weight = 8;
   return step * (1 + normal_weight * (1 - glm::dot(normal, axis)));
 }
 
-// What distances in a piece are measured by: its mean step.
+// Compares and quantizes the distances within one piece. Its tolerances are shares of the piece's
+// mean step, the square root of the area per node.
 class CellRuler {
  public:
   CellRuler() = default;
@@ -35,8 +38,8 @@ class CellRuler {
   bool shorter(float a, float b) const { return a < b - tie_; }
   bool about_as_far(float a, float farthest) const { return a >= farthest - far_tie_; }
 
-  // What is nearest so far, and to which seed. Of seeds that tie the lowest counts. Returns whether
-  // the other one is nearer.
+  // Updates the nearest seed of a node with one more candidate. Among seeds that tie, the one with
+  // the lowest number wins. Returns whether the candidate wins.
   bool take(float distance, std::uint32_t seed, float& nearest, std::uint32_t& owner) const {
     if (distance > nearest + tie_ || (seed == owner && !(distance < nearest))) return false;
     if (distance >= nearest - tie_ && seed > owner) return false;
@@ -46,13 +49,14 @@ class CellRuler {
   }
 
  private:
-  // Distances that differ by less than this share of a mean step tie: symmetric meshes are full of
-  // ties, which rounding would break otherwise for every rotation and unit. (Whole parts of a step,
-  // compared instead, differ where what ties lies at the limit of one.) At 0.0041 teapot had a
-  // triangle just at the limit, and another chart in every eighth direction.
+  // Distances that differ by less than this share of a mean step tie. Symmetric meshes are full of
+  // ties, and rounding would otherwise break them differently for every rotation and unit.
+  // (Comparing distances in whole parts of a step does not help: ties that lie at the limit of a
+  // part would still differ.) At 0.0041 the teapot had a triangle just at the limit, and other
+  // charts in every eighth direction.
   static constexpr double kTie = 0.00411;
-  // The same among what is farthest from all seeds: at kTie, two of 117 meshes had grains just at
-  // the limit, and other seeds in other units.
+  // The same among the grains that are farthest from all seeds. With the value of kTie, two of 117
+  // meshes had grains just at the limit, and got other seeds in other units.
   static constexpr double kFarTie = 0.0042;
   static constexpr double kKeysPerStep = 66, kLargestKey = 2e9;
 

@@ -8,8 +8,9 @@ namespace atlas {
 namespace {
 
 constexpr std::uint32_t kLeastPerCell = 3;
-// Cells for each handle and each loop of the border, as long as cells have so many triangles:
-// without these plates full of holes came out in half as many charts again (35 generated meshes).
+// kCellsAHandle cells are added for each boundary loop of a piece, and twice as many for each
+// handle, as long as its cells keep kLeastTriangles triangles. Without them plates full of holes
+// came out in half as many charts again (35 generated meshes).
 constexpr std::size_t kCellsAHandle = 10, kLeastTriangles = 40;
 
 class CellBudget {
@@ -27,7 +28,7 @@ class CellBudget {
     return static_cast<std::uint32_t>(std::clamp<std::size_t>(std::min(wanted, most), 1, most_));
   }
 
-  // By Euler's formula: a handle counts twice, each loop of the border once.
+  // Returns 2 - Euler characteristic: each handle counts two, each boundary loop one.
   std::size_t handles(std::uint32_t piece, std::span<const std::uint32_t> triangles) {
     std::size_t vertices = 0, sides = 0;
     for (const std::uint32_t t : triangles) {
@@ -43,7 +44,7 @@ class CellBudget {
  private:
   const Topology& topology_;
   std::uint32_t most_, triangles_per_cell_;
-  std::vector<std::uint32_t> seen_in_;  // 1 a vertex: the last piece that it was found in
+  std::vector<std::uint32_t> seen_in_;  // one per vertex: the last piece that it was found in
 };
 
 }  // namespace

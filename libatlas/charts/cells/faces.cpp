@@ -8,19 +8,23 @@
 namespace atlas {
 namespace {
 
-// Normals in one plane lean less than a quarter of a degree to each other.
+// The normals of triangles in one plane differ by less than a quarter of a degree.
 constexpr float kFlatCosine = 1 - 1e-5f;
-// Of a piece's area by its cells. No round value: facets of one size must not be at the limit.
+// A face has at least this share of the mean area of a cell in its piece. The value is not round,
+// so that facets of equal size do not lie at the limit.
 constexpr double kLeastArea = 0.2563;
-// For each cell that a piece gets by its plan: more would all become cells.
+// Faces are ignored in a piece that they would divide into more regions than this for each planned
+// cell, since every region would become a cell.
 constexpr std::size_t kMostRegions = 3;
-// Facets: planes that bend by less than 35 degrees, along so much of their border, to others of
-// more than this part of their area.
+// A plane is a facet of something round, and no face, if it bends by less than 35 degrees to its
+// neighbours along more than kMostSoft of its border. Only neighbours with more than kFacet of its
+// area count.
 constexpr double kSoftCosine = 0.82, kMostSoft = 0.5, kFacet = 0.25;
-constexpr std::uint32_t kAlone = kNoIndex - 1, kRest = kNoIndex - 2;  // no names of planes
+constexpr std::uint32_t kAlone = kNoIndex - 1, kRest = kNoIndex - 2;  // not names of planes
 
-// In pieces of more triangles, whose cells are fine enough to find their creases, faces spared
-// hardly a chart, and a cabin of a million triangles took three times as long.
+// The largest piece that is searched for faces. Larger pieces have cells fine enough to find the
+// creases: faces saved hardly a chart there, and a cabin of a million triangles took three times as
+// long.
 constexpr std::size_t kManyTriangles = 20000;
 
 class FaceFinder {
@@ -37,7 +41,7 @@ class FaceFinder {
   }
 
  private:
-  // Connected triangles of one plane: a range of triangles_.
+  // Connected triangles in one plane: a range of triangles_.
   struct Plane {
     std::uint32_t first = 0, last = 0;
     double area = 0;
@@ -82,7 +86,7 @@ class FaceFinder {
     return glm::dot(normal(t), normal(u)) >= kFlatCosine;
   }
 
-  // Most triangles of what is not made of planes are.
+  // Whether no neighbour lies in the triangle's plane, as for most triangles of curved surfaces.
   bool alone(std::uint32_t t) const {
     for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
       const std::uint32_t o = topology_.opposite[h];
@@ -115,7 +119,8 @@ class FaceFinder {
     planes_.push_back(plane);
   }
 
-  // Whether it is no facet of something round: those lean little to others of about their size.
+  // Whether the plane is a face and not a facet of something round. Such facets bend little to
+  // neighbours of about their size.
   bool is_face(const Plane& plane) const {
     double border = 0, soft = 0;
     for (const std::uint32_t t : of(plane)) {
@@ -131,7 +136,7 @@ class FaceFinder {
     return soft <= kMostSoft * border;
   }
 
-  // Marks what lies between faces around a triangle; whether that is new.
+  // Marks the region between faces that contains the seed. Returns whether that region is new.
   bool flood_rest(std::uint32_t seed) {
     const auto enter = [&](std::uint32_t t) {
       if (faces_.of_triangle[t] != kNoIndex) return false;
@@ -151,7 +156,7 @@ class FaceFinder {
   const Topology& topology_;
   const CellPlan& plan_;
   Faces faces_;
-  std::vector<std::uint32_t> plane_;  // 1 a triangle
+  std::vector<std::uint32_t> plane_;  // one per triangle
   std::vector<Plane> planes_;         // of the piece
   std::vector<std::uint32_t> triangles_, queue_;
 };

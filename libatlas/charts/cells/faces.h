@@ -9,17 +9,18 @@
 
 namespace atlas {
 
-// Connected triangles of one plane, about as large as a quarter of a cell at least.
+// Faces: connected triangles in one plane, with at least about a quarter of a cell's area.
 struct Faces {
-  std::vector<std::uint32_t> of_triangle;  // 1 a triangle: a name; kNoIndex: it belongs to none
-  std::vector<double> share;               // 1 a piece: of its area
+  std::vector<std::uint32_t> of_triangle;  // one per triangle: its face; kNoIndex: none
+  std::vector<double> share;               // one per piece: the share of its area in faces
 
-  // Whether an edge between these triangles bounds a face.
+  // Whether the edge between these triangles bounds a face.
   bool part(std::uint32_t t, std::uint32_t u) const { return of_triangle[t] != of_triangle[u]; }
 };
 
-// None in pieces of more than 20 000 triangles, and in those that they would divide into three
-// times as many regions as the plan has cells for them. Linear in the number of triangles.
+// Finds the faces of all pieces. It finds none in pieces of more than 20 000 triangles, nor where
+// faces would divide a piece into more than three times as many regions as it has planned cells.
+// Linear in the number of triangles.
 Faces find_faces(const Topology& topology, const CellPlan& plan);
 
 }  // namespace atlas

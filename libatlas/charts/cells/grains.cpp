@@ -7,7 +7,8 @@
 namespace atlas {
 namespace {
 
-// Breadth-first patches of about `size` triangles that lean less than 45 degrees to their first.
+// Grows breadth-first patches of about `size` triangles whose normals are within 45 degrees of that
+// of the first triangle.
 class GrainBuilder {
  public:
   explicit GrainBuilder(const CellInput& input) : input_(input), topology_(input.topology) {}
@@ -61,10 +62,10 @@ class GrainBuilder {
     grains_.component.push_back(component);
   }
 
-  // Each row ascending.
+  // Links neighbouring grains. Each row is in ascending order.
   void connect() {
     const auto count = static_cast<std::uint32_t>(grains_.count());
-    std::vector<std::uint32_t> met(count, kNoIndex);  // by which grain last
+    std::vector<std::uint32_t> met(count, kNoIndex);  // the last grain that met it
     std::vector<std::uint32_t>& rows = grains_.neighbour;
     grains_.first.reserve(count + 1);
     for (std::uint32_t g = 0; g < count; ++g) {
@@ -93,7 +94,8 @@ class GrainBuilder {
   const CellInput& input_;
   const Topology& topology_;
   Grains grains_;
-  std::vector<std::uint32_t> order_, row_;  // triangles by grain; where each begins, and the end
+  // Triangles sorted by grain; where each grain begins, and the end.
+  std::vector<std::uint32_t> order_, row_;
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Internal: what cells are grown from.
+// Internal: grains, the small patches of triangles that cells are grown from.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,16 @@
 
 namespace atlas {
 
-// Small patches of triangles: the graph on which seeds are chosen.
+// Grains: small patches of triangles. They form the graph on which seeds are chosen.
 struct Grains {
   std::vector<std::uint32_t> of_triangle;
   std::vector<glm::vec3> centroid, normal;
   std::vector<float> area;
-  std::vector<std::uint32_t> size;              // triangles
-  std::vector<std::uint32_t> component;         // ascending: grains of a piece are contiguous
+  std::vector<std::uint32_t> size;       // number of triangles
+  std::vector<std::uint32_t> component;  // its piece; ascending, so the grains of a piece are
+                                         // contiguous
   std::vector<std::uint32_t> first, neighbour;  // compressed rows
-  std::vector<float> distance;                  // 1 a neighbour: between the centroids
+  std::vector<float> distance;                  // one per neighbour: between the centroids
   std::size_t count() const { return area.size(); }
 };
 
@@ -29,8 +30,8 @@ inline glm::vec3 centroid(const Topology& topology, std::uint32_t t) {
          (1.0f / 3.0f);
 }
 
-// Breadth-first patches, about twelve a cell, of triangles that lean less than 45 degrees to their
-// first.
+// Grows grains breadth-first, about twelve per cell. The normals of a grain's triangles are within
+// 45 degrees of that of its first triangle.
 Grains grow_grains(const CellInput& input);
 
 }  // namespace atlas

@@ -5,7 +5,8 @@
 namespace atlas {
 namespace {
 
-// A hole of the mesh whose rim is shorter than this share of its cell's is passed over.
+// A hole of the mesh counts as small, and is ignored, if its boundary loop is shorter than this
+// share of the cell's longest loop.
 constexpr double kSmallHole = 0.35;
 constexpr int kDivideRounds = 8;
 
@@ -47,7 +48,7 @@ class Divider {
     flood({a}, old, 2);
     const std::uint32_t b = queue_.back();
     if (a == b) return;
-    // Both grow at once; who came first keeps a triangle.
+    // Both parts grow at once; a triangle belongs to the one that reaches it first.
     queue_ = {a, b};
     mark_[a] = 3;
     mark_[b] = 4;
@@ -85,7 +86,8 @@ class Divider {
   std::vector<std::uint32_t> queue_;
 };
 
-// The cell that has two or three of a triangle's edges on its own side; kNoIndex: none has.
+// Returns the cell across two or three of a triangle's edges, which may be its own; kNoIndex if
+// there is none.
 std::uint32_t most_around(const Topology& topology, const Faces* faces, const Cells& cells,
                           std::uint32_t t) {
   std::uint32_t around[3];

@@ -13,12 +13,12 @@ namespace atlas {
 struct RimLoop {
   std::uint32_t begin, end;  // range of Rims::path
   double length;
-  bool open;  // all of it on the mesh's border
+  bool open;  // the whole loop lies on the mesh's boundary
 };
 
 class Rims {
  public:
-  // Linear in the number of triangles. Both must outlive this.
+  // Linear in the number of triangles. Both arguments must outlive the object.
   Rims(const Topology& topology, const Cells& cells);
 
   bool on_rim(std::uint32_t h) const { return cell(h) != kNoIndex && across(h) != cell(h); }
@@ -26,7 +26,7 @@ class Rims {
   std::span<const RimLoop> loops(std::uint32_t k) const {
     return {loops_.data() + first_loop_[k], first_loop_[k + 1] - first_loop_[k]};
   }
-  // Of all cells, by cell and id.
+  // The border half-edges of all cells, sorted by cell and id.
   const std::vector<std::uint32_t>& half_edges() const { return rim_; }
 
   std::vector<std::uint32_t> path;
@@ -45,21 +45,22 @@ class Rims {
   std::vector<std::uint32_t> first_, rim_;
   std::vector<std::uint8_t> seen_;
   std::vector<RimLoop> loops_;
-  std::vector<std::uint32_t> first_loop_;  // 1 a cell and the end
+  std::vector<std::uint32_t> first_loop_;  // one per cell, and the end
 };
 
-// The place of the longest loop; of nearly equal ones the first. Precondition: not empty.
+// Returns the index of the longest loop, the first one among nearly equal ones. Precondition: not
+// empty.
 std::size_t longest_loop(std::span<const RimLoop> loops);
 
-// Triangles with two edges on one other cell join it, one after the other, as long as there are
-// any: where two fronts came by at about the same time, rounding would decide, and whether one
-// triangle is in a cell or not can change what is merged later. Cells stay connected, and none
-// loses its last triangle. Ends: every move shortens the rims by an edge at least.
-// None crosses what bounds a face, if `faces` is not null.
+// Moves each triangle with two or three edges on one other cell to that cell, until none is left.
+// Where two fronts arrive at about the same time, rounding would otherwise decide, and a single
+// triangle can change what is merged later. Cells stay connected, and none loses its last triangle.
+// The loop ends because every move shortens the borders by at least one edge. If `faces` is not
+// null, no triangle crosses the border of a face.
 void pull_teeth(const Topology& topology, const Faces* faces, Cells& cells);
 
-// Divides cells in two, again and again, until the border of each is one loop but for small holes
-// of the mesh. Returns the rims.
+// Divides cells in two, repeatedly, until the border of each is one loop, apart from small holes of
+// the mesh. Returns the borders.
 Rims divide_rings(const Topology& topology, Cells& cells);
 
 }  // namespace atlas

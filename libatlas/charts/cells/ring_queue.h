@@ -1,4 +1,4 @@
-// Internal: a priority queue for small whole keys that never fall below the last one taken.
+// Internal: a priority queue for small integer keys that never fall below the last key taken.
 #pragma once
 
 #include <algorithm>
@@ -10,17 +10,17 @@
 
 namespace atlas {
 
-// Buckets in a ring, one a key (Dial 1969, "Algorithm 360: Shortest-path forest with topological
-// ordering"), those in use marked in a bit field; what lies more than a ring ahead waits aside
-// until the ring has been emptied. An entry is written once and read once, where heaps move it
-// again and again. Entry has a `key`; equal keys come in no particular order, but the same for the
-// same pushes.
+// A ring of buckets, one per key (Dial 1969, "Algorithm 360: Shortest-path forest with topological
+// ordering"). A bit field marks the buckets in use. Entries more than a ring ahead wait in a list
+// until the ring is empty. Each entry is written once and read once, where a heap would move it
+// repeatedly. Entry has a member `key`. Equal keys come out in no particular order, but always in
+// the same order for the same pushes.
 template <class Entry>
 class RingQueue {
  public:
   bool empty() const { return size_ == 0; }
 
-  // Allows for any key again. Precondition: empty.
+  // Allows any key again. Precondition: empty.
   void restart() { base_ = next_ = 0; }
 
   // Precondition: the key is not below that of the last entry taken since the last restart.
@@ -33,14 +33,14 @@ class RingQueue {
     }
   }
 
-  // The entry that pop() will return after `count` others, if that is known already and not far;
-  // else nullptr. For fetching ahead what it needs.
+  // Returns the entry that pop() will return after `count` others, if it is in the current bucket;
+  // else nullptr. Callers use it for prefetching.
   const Entry* ahead(std::size_t count) const {
     const auto& bucket = buckets_[next_];
     return count < bucket.size() ? &bucket[bucket.size() - 1 - count] : nullptr;
   }
 
-  // An entry of the smallest key, taken out. Precondition: not empty.
+  // Removes and returns an entry with the smallest key. Precondition: not empty.
   Entry pop() {
     std::uint32_t word = next_ / 64;
     if (!used_[word]) {
@@ -65,7 +65,7 @@ class RingQueue {
     used_[place / 64] |= std::uint64_t{1} << (place % 64);
   }
 
-  // Returns the first word in use.
+  // Moves the waiting entries into the ring. Returns the first word in use, which is 0.
   std::uint32_t refill() {
     moving_.swap(far_);
     base_ = moving_.front().key;
@@ -76,7 +76,7 @@ class RingQueue {
     return 0;
   }
 
-  std::pmr::monotonic_buffer_resource memory_;  // thousands of small buckets, gone together
+  std::pmr::monotonic_buffer_resource memory_;  // thousands of small buckets, freed together
   std::pmr::vector<std::pmr::vector<Entry>> buckets_{kBuckets, &memory_};
   std::array<std::uint64_t, kBuckets / 64> used_{};
   std::vector<Entry> far_, moving_;

@@ -14,13 +14,16 @@ namespace {
 
 constexpr double kFlatSpread = 1e-6;
 constexpr std::uint32_t kCalmGrain = 3;
-constexpr float kBetweenParts = 0.29f;  // so that round values are not at a part's limit
+// Keeps round cosines away from the limits between parts.
+constexpr float kBetweenParts = 0.29f;
 constexpr float kCosineParts = 4096;
-constexpr std::uint32_t kStretch = 64;  // grains
-// The first seeds of a large piece are more than so many grains apart, one for some twenty grains,
-// and at most this share of its cells: the farthest point from what is well spaced is near, from
-// few seeds far. Half of the time of sampling, and as many charts with seams as long (100 meshes,
-// ten segmentations each). Not around handles and holes, where charts would be a third more.
+constexpr std::uint32_t kStretch = 64;  // grains per block of farthest_
+// In a large piece the first seeds are scattered: they are more than kHops grains apart, one for
+// some twenty grains, and make up at most kScatteredShare of its cells. Once seeds are well spaced,
+// growing from the farthest point stays local, whereas with few seeds it covers most of the piece.
+// This takes half of the time of sampling and gives as many charts with seams as long (100 meshes,
+// ten segmentations each). It is not done in pieces with handles or holes, which would get a third
+// more charts.
 constexpr std::uint8_t kHops = 3, kNotCovered = 0xff;
 constexpr double kScatteredShare = 0.8;
 constexpr std::uint32_t kManyCells = 16;
@@ -58,7 +61,8 @@ class Seeder {
   }
 
  private:
-  // A piece that lies in one plane is one chart whatever its outline, so one cell will do.
+  // Whether a piece lies in one plane. It is then one chart whatever its outline, so one cell will
+  // do.
   bool flat(std::uint32_t first, std::uint32_t last) const {
     glm::dvec3 sum(0);
     double area = 0;
@@ -84,7 +88,7 @@ class Seeder {
   }
 
   void spread() {
-    // What is read again and again, where no write can be thought to change it.
+    // Local copies of what is read repeatedly, which the compiler knows that no write changes.
     const CellRuler ruler = ruler_;
     const std::uint32_t *const first = grains_.first.data(), *const neighbour =
                                                                  grains_.neighbour.data();
@@ -116,14 +120,15 @@ class Seeder {
     }
     while (!context_.cancelled()) {
       const std::uint32_t grain = farthest(first, last);
-      if (distance_[grain] == kFar) ++budget;  // beyond what bounds a face
+      if (distance_[grain] == kFar) ++budget;  // beyond the border of a face
       if (distance_[grain] == 0 || seeds_.size() - first_seed >= budget) break;
       add_seed(grain);
     }
     add_leaning(first, last);
   }
 
-  // Seeds in order of the grains, from the start-th one on, each where no other is within kHops.
+  // Scatters seeds in the order of the grains, starting with the start-th, each where no other seed
+  // is within kHops.
   void scatter(std::uint32_t first, std::uint32_t last, std::uint32_t start, std::uint32_t most) {
     const std::uint32_t n = last - first;
     hops_.assign(n, kNotCovered);
@@ -140,7 +145,7 @@ class Seeder {
     spread();
   }
 
-  // Breadth-first, as far as no other seed is as near.
+  // Marks, breadth-first, the grains within kHops of the seed that are not as near to another one.
   void cover(std::uint32_t first, std::uint32_t seed) {
     hops_[seed - first] = 0;
     reached_.assign(1, seed);
@@ -157,15 +162,17 @@ class Seeder {
     }
   }
 
-  // The last of those that are farthest from all seeds. While seeds are added distances only fall,
-  // so what is remembered of a stretch of grains bounds them, and few stretches are looked at
-  // again.
+  // Returns the last of the grains that are farthest from all seeds. Distances only fall while
+  // seeds are added, so the remembered maximum of each block of grains is an upper bound, and few
+  // blocks have to be searched again.
   std::uint32_t farthest(std::uint32_t first, std::uint32_t last) {
     const auto end_of = [&](std::size_t s) {
       return std::min<std::uint32_t>(last, first + kStretch * static_cast<std::uint32_t>(s + 1));
     };
     const auto look_again = [&](std::size_t s) {
-      std::int32_t most = 0;  // bits order as what they stand for; compilers compare four at once
+      // The bits of non-negative floats order as the numbers do, and compilers compare four
+      // integers at once.
+      std::int32_t most = 0;
       for (std::uint32_t g = first + kStretch * std::uint32_t(s); g < end_of(s); ++g) {
         most = std::max(most, std::bit_cast<std::int32_t>(distance_[g]));
       }
@@ -183,11 +190,12 @@ class Seeder {
       }
       look_again(s);
     }
-    return first;  // not reached: the farthest itself is no nearer
+    return first;  // not reached: the farthest grain itself passes the test
   }
 
-  // Seeds that are about equally far from all others are found in an order that rounding decides.
-  // It is forgotten here, for ties fall by a seed's number: the last grain's seed comes first.
+  // Renumbers the seeds of a piece by their grains, the last grain's seed first. They were found in
+  // an order that rounding decides where several are about equally far from all others, and ties
+  // are broken by number.
   void number_by_grain(std::uint32_t first, std::uint32_t last, std::size_t first_seed) {
     const auto begin = static_cast<std::uint32_t>(first_seed);
     std::vector<std::uint32_t> order(seeds_.size() - first_seed), number(order.size());
@@ -205,7 +213,8 @@ class Seeder {
     for (std::uint32_t g = first; g < last; ++g) owner_[g] = number[owner_[g] - begin];
   }
 
-  // Seeds for what leans too far from its cell, a few at a time.
+  // Adds seeds where a grain's normal deviates too far from that of its seed, worst first, in up to
+  // six rounds.
   void add_leaning(std::uint32_t first, std::uint32_t last) {
     const auto limit = static_cast<float>(std::cos(options_.max_lean_degrees * M_PI / 180));
     const auto cosine = [&](std::uint32_t g) {
@@ -227,11 +236,13 @@ class Seeder {
         if (cosine(g) < limit) add_seed(g);
       }
       find_changed(first, before, look);
-      for (const auto& [worst, g] : leaning) look[g - first] = 1;  // it may be a seed already
+      for (const auto& [worst, g] : leaning)
+        look[g - first] = 1;  // it may have got a seed before
+                              // its turn
     }
   }
 
-  // Others lean no more than they did.
+  // Marks the grains that got another seed, and their neighbours. All others deviate as before.
   void find_changed(std::uint32_t first, const std::vector<std::uint32_t>& before,
                     std::vector<std::uint8_t>& changed) const {
     std::fill(changed.begin(), changed.end(), 0);
@@ -244,8 +255,9 @@ class Seeder {
     }
   }
 
-  // A grain's normal; of several triangles, with its neighbours' in the cell, for a few triangles
-  // may lean by noise alone.
+  // Returns a grain's normal. For a grain of several triangles, this is averaged with the
+  // neighbouring grains of its cell, since the normals of a few triangles may deviate by noise
+  // alone.
   glm::vec3 calm_normal(std::uint32_t g) const {
     if (grains_.size[g] < kCalmGrain) return grains_.normal[g];
     glm::vec3 sum = grains_.area[g] * grains_.normal[g];
@@ -260,7 +272,8 @@ class Seeder {
 
   void recentre(std::uint32_t first, std::uint32_t last, std::size_t first_seed) {
     struct Sum {
-      glm::dvec3 middle{0}, normal{0};  // double: single would decide what nearly ties
+      // In double: single precision would decide near ties.
+      glm::dvec3 middle{0}, normal{0};
       double area = 0;
       float best = kFar;
     };
@@ -296,13 +309,14 @@ class Seeder {
   const CellOptions& options_;
   const Context& context_;
   std::vector<std::uint32_t> seeds_;  // grains
-  std::vector<glm::vec3> normals_;    // 1 a seed
+  std::vector<glm::vec3> normals_;    // one per seed
   std::vector<float> distance_;
   std::vector<std::uint32_t> owner_;
-  std::vector<float> farthest_;         // 1 a stretch of the piece's grains: none is farther
-  std::vector<std::uint8_t> hops_;      // 1 a grain of the piece: to the nearest scattered seed
+  std::vector<float> farthest_;     // one per block of the piece's grains: no grain is farther
+  std::vector<std::uint8_t> hops_;  // one per grain of the piece: steps to the nearest scattered
+                                    // seed
   std::vector<std::uint32_t> reached_;  // by cover()
-  CellRuler ruler_;                     // of the piece at hand
+  CellRuler ruler_;                     // of the current piece
   RingQueue<Visit> queue_;
 };
 

@@ -1,4 +1,4 @@
-// Internal: the grains that cells grow from.
+// Internal: the choice of the grains that cells grow from.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,18 @@
 
 namespace atlas {
 
-// Those of a piece are contiguous, numbered by their place in the mesh, the last grain's first.
+// The seeds of a piece are contiguous and numbered by their place in the mesh, the last grain's
+// first.
 struct CellSeeds {
-  std::vector<std::uint32_t> grain;  // 1 a seed
-  std::vector<glm::vec3> normal;     // 1 a seed: the mean of what it stands for
-  std::vector<std::uint32_t> owner;  // 1 a grain: its seed
+  std::vector<std::uint32_t> grain;  // one per seed
+  std::vector<glm::vec3> normal;     // one per seed: the mean normal of its grains
+  std::vector<std::uint32_t> owner;  // one per grain: its seed
 };
 
-// In large pieces without handles or holes seeds a few grains apart; then farthest-point sampling
-// on the grains by cell_distance(), seeds for what leans too far from its own, and two recentring
-// steps. What cancelling leaves must not be used.
+// Chooses the seeds of all pieces. Large pieces without handles or holes begin with seeds a few
+// grains apart. Then follow farthest-point sampling on the grains by cell_distance(), more seeds
+// where normals deviate too far, and two recentring steps. After cancellation the result must not
+// be used.
 CellSeeds choose_seeds(const CellInput& input, const Grains& grains, const CellOptions& options,
                        const Context& context);
 

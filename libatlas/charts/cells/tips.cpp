@@ -7,15 +7,15 @@
 namespace atlas {
 namespace {
 
-// Radians: of a tip at least, and of all other vertices of its piece together, to which each adds
-// what rounding of coordinates makes.
+// Angle defects in radians. A tip has at least kTip. All other vertices of its piece together have
+// at most kOthers, plus kRounding each for the rounding of coordinates.
 constexpr double kTip = 5e-3, kOthers = 0.02, kRounding = 1e-5;
-// A piece of n triangles has at most so many tips and one for so many of them.
+// A piece of n triangles has at most kFewTips + n / kTrianglesATip tips.
 constexpr std::size_t kFewTips = 2, kTrianglesATip = 200;
 
 struct Piece {
   std::size_t triangles = 0, tips = 0, others = 0;
-  double rest = 0;  // of all but the tips
+  double rest = 0;  // the sum over all other vertices
 
   bool curved() const {
     return tips > kFewTips + triangles / kTrianglesATip ||
@@ -23,7 +23,8 @@ struct Piece {
   }
 };
 
-// Divides one cell after the other by breadth-first search from both halves of a tip's triangles.
+// Divides the cells around tips one after the other, each by breadth-first search from the two
+// halves of the triangles around its tip.
 class TipDivider {
  public:
   TipDivider(const Topology& topology, Cells& cells) : topology_(topology), cells_(cells) {}

@@ -1,4 +1,4 @@
-// Internal: the few points where a surface that unrolls elsewhere does not.
+// Internal: tips, the few points where a surface that is developable elsewhere is not.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,17 @@
 
 namespace atlas {
 
-// By how much the angles around the vertex where h starts fall short of a full turn, or exceed it
-// (negative), radians in [-pi, pi]: whole turns are left out. 0 at the mesh's border.
+// Returns by how much the angles around the vertex where h starts fall short of a full turn
+// (negative: exceed it), in radians in [-pi, pi], modulo whole turns. Returns 0 at the mesh's
+// boundary.
 double angle_defect(const Topology& topology, std::uint32_t h);
 
-// Apexes of cones, corners of boxes: half-edges, each starting at a vertex with an angle defect, in
-// pieces that have none at nearly all others. Linear in the number of triangles; curved pieces are
-// told by a few.
+// Finds tips such as the apexes of cones and the corners of boxes. Returns half-edges, each
+// starting at a vertex with an angle defect, in pieces where nearly all other vertices have none.
+// Linear in the number of triangles; a curved piece is given up after a few vertices.
 std::vector<std::uint32_t> find_tips(const Topology& topology);
 
-// Divides the cells that lie all around a tip in two, for what unrolls has tips on its border only.
+// Divides the cells that surround a tip in two. What unrolls has tips on its border only.
 void divide_at_tips(const Topology& topology, const std::vector<std::uint32_t>& tips, Cells& cells);
 
 }  // namespace atlas

@@ -1,4 +1,4 @@
-// Internal: what lies around a vertex of a chart that is no mesh of its own yet.
+// Internal: walks around the vertices of a chart that has not been cut out as a mesh of its own.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,8 @@ class ChartFans {
   }
   bool linked(std::uint32_t h) const { return inner(h) && !partition_.seam(h); }
 
-  // The half-edges that leave the start of h, as far as `passes(g)` says that one may go on across
-  // g; whether that led all around.
+  // Visits the half-edges that leave the start of h, in both directions as far as `passes(g)`
+  // allows crossing g. Returns whether that led all the way around.
   template <class Passes, class Visit>
   bool around(std::uint32_t h, const Passes& passes, const Visit& visit) const {
     std::uint32_t g = h;
@@ -41,7 +41,7 @@ class ChartFans {
     return true;
   }
 
-  // h leaves the vertex.
+  // Returns where the start of h lies.
   Place place(std::uint32_t h) const {
     bool seams = false;
     const bool closed = around(

@@ -1,4 +1,4 @@
-// Internal: where the flattening of each triangle starts.
+// Internal: the maps from space to the plane that the flattening of each triangle starts from.
 #pragma once
 
 #include <array>
@@ -9,9 +9,9 @@
 
 namespace atlas {
 
-// One map from space to the plane a triangle, as IsometricStart::frames wants them. The triangles
-// of a cell share its map, turned to the normal of each only when it is asked for: that happens
-// once, and a map of its own would be 24 bytes a triangle.
+// One map from space to the plane for each triangle, in the form that IsometricStart::frames takes.
+// The triangles of a cell share a map, which is turned to the normal of each only when it is asked
+// for. That happens once, whereas a stored map would take 24 bytes per triangle.
 class Frames {
  public:
   using Frame = std::array<Vec3f, 2>;
@@ -20,22 +20,23 @@ class Frames {
     std::array<Vec3d, 2> rows;
   };
 
-  // Turned by the shortest rotation that takes normal `from` to `to`; as they are where these are
-  // opposite.
+  // Returns `rows` turned by the shortest rotation that takes normal `from` to `to`. Where these
+  // are opposite, the rows are not turned.
   static Frame turned(const std::array<Vec3d, 2>& rows, const Vec3d& from, const Vec3d& to);
 
   bool empty() const { return source_.empty(); }
   void resize(std::size_t triangles) { source_.resize(triangles, kNoIndex); }
   std::uint32_t add(const Shared& map);  // returns its number
   void share(std::uint32_t t, std::uint32_t map) { source_[t] = map; }
-  void put(std::uint32_t t, const Frame& frame);  // one of its own
-  // Zero for a triangle that has none.
+  void put(std::uint32_t t, const Frame& frame);  // gives the triangle its own map
+  // Returns zero for a triangle that has no map.
   Frame at(const Topology& topology, std::uint32_t t) const;
 
  private:
   static constexpr std::uint32_t kOwn = 0x80000000u;
 
-  std::vector<std::uint32_t> source_;  // 1 a triangle: in shared_, or, with that bit, in own_
+  // One per triangle: an index into shared_ or, if the bit kOwn is set, into own_.
+  std::vector<std::uint32_t> source_;
   std::vector<Shared> shared_;
   std::vector<Frame> own_;
 };

@@ -8,9 +8,10 @@
 namespace atlas {
 namespace {
 
-// Two of several triangles at an edge continue each other if they fold by less than 60 degrees.
+// Of several triangles at an edge, two are linked as neighbours only if they fold by less than 60
+// degrees.
 constexpr double kFlatPair = 0.5;
-// Larger fans around one edge are left open rather than paired by a quadratic search.
+// Larger fans around one edge are left open, since pairing takes quadratic time.
 constexpr std::size_t kMaxPairedFan = 32;
 
 glm::dvec3 point(const Topology& topology, std::uint32_t corner) {
@@ -27,8 +28,8 @@ class Linker {
     sort_by_lower_vertex();
     topology_.opposite.assign(topology_.corner_vertex.size(), kNoIndex);
     duplicate_.assign(topology_.triangle_count(), 0);
-    // What linking needs of half-edges lies anywhere in memory: asked for so long before, it is
-    // there.
+    // The data for linking a half-edge may lie anywhere in memory. It is prefetched this many
+    // half-edges ahead.
     constexpr std::size_t ahead = 64;
     std::size_t asked = 0;
     for (std::size_t v = 0; v + 1 < first_.size(); ++v) {
@@ -79,7 +80,8 @@ class Linker {
       return a.upper != b.upper ? a.upper < b.upper : a.half_edge < b.half_edge;
     };
     if (end - begin <= 12) {
-      for (Edge* i = begin; i < end; ++i) {  // insertion sort: most buckets hold three to six
+      // Insertion sort: most buckets hold three to six entries.
+      for (Edge* i = begin; i < end; ++i) {
         const Edge moved = *i;
         Edge* j = i;
         for (; j > begin && order(moved, j[-1]); --j) *j = j[-1];
@@ -116,8 +118,9 @@ class Linker {
     std::sort(fan.begin(), fan.end(), [&](std::uint32_t g, std::uint32_t h) {
       return third(g) != third(h) ? third(g) < third(h) : g < h;
     });
-    // The first triangles of each third vertex, their first copies, the second ones: as many layers
-    // as the surface lies upon itself.
+    // The first layer holds the first triangle with each third vertex, the second layer the first
+    // duplicates of these, and so on. There are as many layers as the surface has coincident copies
+    // here.
     std::vector<std::vector<std::uint32_t>> layers;
     for (std::size_t i = 0, layer = 0; i < fan.size(); ++i) {
       const bool copy = i > 0 && third(fan[i]) == third(fan[i - 1]);
@@ -156,7 +159,7 @@ class Linker {
     }
   }
 
-  // The direction in which a triangle leaves its edge, square to the edge.
+  // Returns the unit direction, perpendicular to the edge, in which the triangle of h lies.
   glm::dvec3 wing(std::uint32_t h) const {
     const std::uint32_t low = from(h) < to(h) ? h : next_half_edge(h);
     const std::uint32_t high = from(h) < to(h) ? next_half_edge(h) : h;

@@ -7,8 +7,10 @@
 namespace atlas {
 namespace {
 
-constexpr std::uint32_t kManyTriangles = 30000;  // whose solver no longer fits the caches
-// Triangles before which memory is asked for; else waiting for it would take most of the time.
+// The solver of a chart of this size no longer fits the caches.
+constexpr std::uint32_t kManyTriangles = 30000;
+// Data is prefetched this many triangles ahead; waiting for memory would otherwise take most of the
+// time.
 constexpr std::uint32_t kAhead = 16;
 
 }  // namespace
@@ -22,15 +24,15 @@ void LocalChart::build(const Topology& topology, Partition& partition,
   find_components();
   number_vertices(topology);
   find_loops();
-  if (n >= kManyTriangles) {  // leave the room to the solver
+  if (n >= kManyTriangles) {  // frees memory for the solver
     std::vector<std::uint32_t>().swap(queue_);
     std::vector<std::uint8_t>().swap(seen_);
     if (component_count == 1) std::vector<std::uint32_t>().swap(component);
   }
 }
 
-// A chart that is the whole mesh, and not cut, takes the mesh's links as they are: what such a mesh
-// takes is the most that any does.
+// A chart that is the whole mesh and has no seams uses the mesh's links without copying them, since
+// such a chart needs the most memory of all.
 void LocalChart::link(const Topology& topology, const Partition& partition) {
   const auto n = static_cast<std::uint32_t>(triangles_.size());
   const auto cut = [](std::uint8_t seams) { return seams != 0; };
@@ -51,8 +53,8 @@ void LocalChart::link(const Topology& topology, const Partition& partition) {
   opposite = linked_;
 }
 
-// A local vertex is a fan of corners joined by edges of the chart, so that a vertex where only
-// corners touch comes apart. In large charts neighbours get numbers near each other: solvers then
+// A local vertex is a fan of corners joined by edges of the chart, so a vertex where only corners
+// touch is duplicated. In large charts neighbours get numbers close to each other, so that solvers
 // work within the processor's caches, whatever the order of the mesh.
 void LocalChart::number_vertices(const Topology& topology) {
   const auto n = static_cast<std::uint32_t>(triangles_.size());

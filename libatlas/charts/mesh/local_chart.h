@@ -1,4 +1,4 @@
-// Internal: one chart cut out of the mesh, with vertices of its own.
+// Internal: LocalChart, one chart cut out of the mesh, with its own vertices.
 #pragma once
 
 #include <array>
@@ -11,16 +11,18 @@
 
 namespace atlas {
 
-// Which triangles belong together. Written between parallel phases only, but for the seam bits and
-// local indices of a chart's own triangles.
+// Assigns triangles to charts. It is written between parallel phases only, except for the seam bits
+// and local indices of a chart's own triangles.
 struct Partition {
-  std::vector<std::uint32_t> chart;  // 1 a triangle; kNoIndex: none
-  std::vector<std::uint8_t> seams;   // 1 a triangle: bit c set where half-edge c is cut although
-                                     // both sides belong to the same chart
-  std::vector<std::uint32_t> local;  // 1 a triangle: scratch, its place in its chart's list
+  std::vector<std::uint32_t> chart;  // one per triangle; kNoIndex: none
+  // One per triangle: bit c is set where half-edge c is cut although both sides belong to the same
+  // chart.
+  std::vector<std::uint8_t> seams;
+  // One per triangle: scratch, its index in its chart's list.
+  std::vector<std::uint32_t> local;
 
   bool seam(std::uint32_t h) const { return seams[h / 3] >> (h % 3) & 1; }
-  // Of one side; the other half-edge wants the same.
+  // cut() and close() change one side; the opposite half-edge must be changed likewise.
   void cut(std::uint32_t h) { seams[h / 3] |= static_cast<std::uint8_t>(1u << (h % 3)); }
   void close(std::uint32_t h) { seams[h / 3] &= static_cast<std::uint8_t>(~(1u << (h % 3))); }
 };
@@ -32,7 +34,8 @@ class LocalChart {
   LocalChart(LocalChart&&) = default;  // no copies: `opposite` may point into the chart
   LocalChart& operator=(LocalChart&&) = default;
 
-  // Relative to the first one, scaled as the topology; kept in single precision, as they are there.
+  // Positions relative to the first one, scaled as in the topology, and kept in single precision as
+  // there.
   class Positions {
    public:
     void clear() { points_.clear(); }
@@ -45,7 +48,8 @@ class LocalChart {
     std::vector<Vec3f> points_;
   };
 
-  // `triangles` is the whole chart, ascending; its triangles carry the same Partition::chart.
+  // Cuts out a chart. `triangles` are all triangles with one value of Partition::chart, ascending,
+  // and must outlive this object.
   void build(const Topology& topology, Partition& partition,
              std::span<const std::uint32_t> triangles);
 
@@ -55,12 +59,12 @@ class LocalChart {
   Positions positions;
   std::vector<std::array<std::uint32_t, 3>> corners;
   std::vector<double> density;              // filled by the caller, or empty
-  std::vector<std::uint32_t> vertex;        // 1 a position: of the topology
-  std::span<const std::uint32_t> opposite;  // 1 a half-edge; kNoIndex at the border
-  std::vector<std::uint32_t> loops;         // one half-edge of each border loop
-  std::uint32_t border_count = 0;           // half-edges on the border
+  std::vector<std::uint32_t> vertex;        // one per position: its vertex in the topology
+  std::span<const std::uint32_t> opposite;  // one per half-edge; kNoIndex on the boundary
+  std::vector<std::uint32_t> loops;         // one half-edge of each boundary loop
+  std::uint32_t border_count = 0;           // half-edges on the boundary
   std::uint32_t component_count = 0;
-  std::vector<std::uint32_t> component;  // 1 a triangle; may be empty where there is but one
+  std::vector<std::uint32_t> component;  // one per triangle; may be empty if there is only one
 
   int euler() const {
     const auto v = static_cast<std::int64_t>(positions.size());
@@ -80,9 +84,9 @@ class LocalChart {
   void find_components();
 
   std::span<const std::uint32_t> triangles_;
-  std::vector<std::uint32_t> linked_;  // `opposite`, unless that is the topology's
+  std::vector<std::uint32_t> linked_;  // storage of `opposite`, unless that is the topology's
   std::vector<std::uint8_t> seen_;
-  std::vector<std::uint32_t> queue_;  // its triangles, breadth-first
+  std::vector<std::uint32_t> queue_;  // the chart's triangles, breadth-first
 };
 
 }  // namespace atlas

@@ -9,7 +9,7 @@
 
 namespace atlas {
 
-// Those of a piece in order of id.
+// The triangles of each piece, in order of id.
 struct PieceList {
   std::vector<std::uint32_t> first, triangles;
 

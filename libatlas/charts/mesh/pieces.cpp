@@ -56,7 +56,7 @@ void PieceCutter::add_corners(std::uint32_t first_triangle, std::uint32_t first_
     for (std::uint32_t c = 0; c < 3; ++c) {
       const std::uint32_t h = 3 * out.triangles[i] + c, v = whole_.corner_vertex[h];
       std::uint32_t& name = vertex_[v];
-      // A name left by an earlier piece does not lead back to v.
+      // An index that an earlier piece left here does not lead back to v.
       if (name < first_vertex || name >= t.points.size() || t.source_vertex[name] != v) {
         name = static_cast<std::uint32_t>(t.points.size());
         t.points.push_back(whole_.points[v]);

@@ -1,5 +1,5 @@
-// Internal: pieces of a mesh as a small mesh of their own, so that what a step needs for them does
-// not grow with the rest.
+// Internal: cuts pieces out of a mesh as a small mesh of their own, so that the memory a step needs
+// does not grow with the rest of the mesh.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@
 namespace atlas {
 
 struct PieceMesh {
-  // Of these pieces alone, numbered from 0 in their order; triangles of a piece keep theirs.
-  // Vertices belong to one piece each. Without defects, and source_vertex names vertices of the
-  // whole.
+  // The mesh of these pieces alone. Pieces are numbered from 0 in the order given; the triangles of
+  // a piece keep their order. Each vertex belongs to one piece. Defects are not counted, and
+  // source_vertex holds vertices of the whole topology.
   Topology topology;
-  std::vector<std::uint32_t> triangles;  // 1 a triangle: its name in the whole
+  std::vector<std::uint32_t> triangles;  // one per triangle: its index in the whole
 };
 
 class PieceCutter {
@@ -28,7 +28,7 @@ class PieceCutter {
     return pieces_.first[piece + 1] - pieces_.first[piece];
   }
 
-  // These pieces, in this order. Linear in their triangles.
+  // Returns the mesh of these pieces, in this order. Linear in their number of triangles.
   PieceMesh cut(std::span<const std::uint32_t> pieces);
 
  private:
@@ -37,8 +37,8 @@ class PieceCutter {
 
   const Topology& whole_;
   PieceList pieces_;
-  std::vector<std::uint32_t> place_;   // 1 a triangle of the whole: its name in its mesh
-  std::vector<std::uint32_t> vertex_;  // 1 a vertex of the whole: its name in the last piece
+  std::vector<std::uint32_t> place_;   // one per triangle of the whole: its index in its mesh
+  std::vector<std::uint32_t> vertex_;  // one per vertex of the whole: its index in the last mesh
 };
 
 }  // namespace atlas

@@ -18,11 +18,11 @@
 namespace atlas {
 namespace {
 
-// Twice the area below this share of the longest edge squared is rounding, not shape: double
-// products of float coordinates are good to 1e-16.
+// A triangle is degenerate if twice its area is at most this share of its longest edge squared.
+// Double products of float coordinates are good to 1e-16, so such an area is rounding, not shape.
 constexpr double kDegenerateShare = 1e-12;
 
-// What a loop needs from anywhere in memory is asked for so many triangles before: meshes' orders
+// Data at random places in memory is prefetched this many triangles ahead. The orders of meshes
 // differ, and waiting would take most of the time.
 constexpr std::size_t kAhead = 20;
 
@@ -62,7 +62,7 @@ bool finite(const Vec3f& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-// Which vertices triangles have, 1 a vertex.
+// One per vertex: whether any triangle uses it.
 std::vector<std::uint8_t> used_vertices(const MeshView& mesh) {
   std::vector<std::uint8_t> used(mesh.positions.size(), 0);
   for (const std::uint32_t v : mesh.indices) used[v] = 1;
@@ -80,7 +80,7 @@ Status check_positions(const MeshView& mesh, const std::vector<std::uint8_t>& us
                       (at - mesh.indices.begin()) / 3, *at)};
 }
 
-// The power of two that brings the largest extent of the used vertices into [1, 2).
+// Returns the power of two that scales the largest extent of the used vertices into [1, 2).
 double unit_scale(const MeshView& mesh, const std::vector<std::uint8_t>& used) {
   glm::vec3 low(std::numeric_limits<float>::max()), high(-low);
   for (std::size_t v = 0; v < used.size(); ++v) {
@@ -129,7 +129,7 @@ void weld(const MeshView& mesh, const std::vector<std::uint8_t>& used, Topology&
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
     topology.corner_vertex[i] = id[mesh.indices[i]];
   }
-  // In double: the scale of a mesh of denormal numbers is beyond float.
+  // In double, since the scale of a mesh of denormal numbers is beyond float.
   const double scale = topology.scale;
   for (Vec3f& p : topology.points) {
     p = {float(p.x * scale), float(p.y * scale), float(p.z * scale)};
@@ -162,8 +162,8 @@ void measure_triangles(Topology& topology) {
   }
 }
 
-// Numbers the pieces and finds which triangles to turn so that neighbours agree. Where no choice
-// agrees, the link is cut. Each piece keeps the orientation that most of its area has.
+// Numbers the pieces and finds the triangles that must be turned so that neighbours agree. Where no
+// choice agrees, the link is cut. Each piece keeps the orientation of most of its area.
 class Pieces {
  public:
   explicit Pieces(Topology& topology) : topology_(topology) {}
@@ -191,8 +191,9 @@ class Pieces {
     return topology_.corner_vertex[h] == topology_.corner_vertex[o];
   }
 
-  // Where all triangles agree as they are, there is nothing to find but the pieces. Each triangle
-  // points to a lower one of its piece, or to itself; unlike a flood, this reads the mesh in order.
+  // Where all triangles agree already, only the pieces have to be found. This is a union-find in
+  // which each triangle points to a lower one of its piece, or to itself. Unlike a flood fill, it
+  // reads the mesh in order.
   void join() {
     const auto n = static_cast<std::uint32_t>(topology_.triangle_count());
     std::vector<std::uint32_t>& lower = topology_.component;
@@ -205,7 +206,7 @@ class Pieces {
       std::uint32_t own = lower[t] = t;
       for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
         const std::uint32_t o = topology_.opposite[h];
-        if (o >= h) continue;  // kNoIndex is above all
+        if (o >= h) continue;  // kNoIndex is the largest
         const std::uint32_t other = root(o / 3);
         lower[std::max(own, other)] = std::min(own, other);
         own = std::min(own, other);
@@ -276,11 +277,11 @@ class Pieces {
   std::vector<std::uint32_t> queue_;
 };
 
-// Counts vertices around which the triangles form more than one fan: one fan then holds less than
-// all of a vertex's corners.
+// Counts the vertices around which triangles form more than one fan. There, one fan has fewer than
+// all of the vertex's corners.
 void count_nonmanifold_vertices(Topology& topology) {
   const auto corners = static_cast<std::uint32_t>(topology.corner_vertex.size());
-  std::vector<std::uint32_t> valence(topology.points.size(), 0);  // 0 once it is judged
+  std::vector<std::uint32_t> valence(topology.points.size(), 0);  // 0 once the vertex is judged
   for (std::uint32_t h = 0; h < corners; ++h) {
     valence[topology.corner_vertex[h]] += !topology.degenerate(h / 3);
   }
@@ -293,7 +294,7 @@ void count_nonmanifold_vertices(Topology& topology) {
     std::uint32_t& all = valence[topology.corner_vertex[start]];
     if (all == 0 || topology.degenerate(start / 3)) continue;
     std::uint32_t h = start, fan = 1, o;
-    for (;; ++fan) {  // one way around, until the start or a border
+    for (;; ++fan) {  // in one direction, until the start or a boundary
       o = topology.opposite[previous_half_edge(h)];
       if (o == kNoIndex || o == start) break;
       h = o;

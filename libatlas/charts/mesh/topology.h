@@ -1,7 +1,7 @@
 // Internal: the working copy of a mesh that chart segmentation runs on. Positions are welded where
-// they are bitwise equal, once coordinates that are nothing but rounding are 0; they are scaled by
-// a power of two to about unit size, and triangles of one piece are turned to agree; edges know the
-// half-edge across.
+// they are bitwise equal, after coordinates that are mere rounding have become 0, and scaled by a
+// power of two to about unit size. The triangles of a piece are turned to agree. Half-edges know
+// their opposite half-edge.
 #pragma once
 
 #include <cmath>
@@ -25,26 +25,29 @@ struct TopologyDefects {
 // Half-edge h = 3 t + c runs from corner c of triangle t to corner (c + 1) % 3.
 struct Topology {
   enum Flag : std::uint8_t {
-    kDegenerate = 1,  // no area: linked to nothing
-    kFlipped = 2,     // corners 1 and 2 are exchanged against the input
+    kDegenerate = 1,  // without area: linked to nothing
+    kFlipped = 2,     // corners 1 and 2 are swapped against the input
   };
 
-  std::vector<Vec3f> points;                 // welded and scaled, 1 a vertex
-  std::vector<std::uint32_t> source_vertex;  // 1 a vertex: the first input vertex at its position
-  std::vector<std::uint32_t> corner_vertex;  // 3 a triangle, in working order
-  std::vector<std::uint32_t> opposite;       // 1 a half-edge, kNoIndex at borders
-  std::vector<Vec3f> normals;                // 1 a triangle, unit; 0 if degenerate
-  std::vector<Vec3f> calm_normals;           // the same without scan noise; empty: there is none
-  std::vector<float> areas;                  // 1 a triangle, scaled units squared
-  std::vector<std::uint8_t> flags;           // 1 a triangle, of Flag
-  std::vector<std::uint32_t> component;      // 1 a triangle; kNoIndex if degenerate
+  std::vector<Vec3f> points;                 // welded and scaled, one per vertex
+  std::vector<std::uint32_t> source_vertex;  // one per vertex: the first input vertex at its
+                                             // position
+  std::vector<std::uint32_t> corner_vertex;  // three per triangle, in working order
+  std::vector<std::uint32_t> opposite;       // one per half-edge, kNoIndex at boundaries
+  std::vector<Vec3f> normals;                // one per triangle, unit length; 0 if degenerate
+  std::vector<Vec3f> calm_normals;       // the same without scan noise; empty if there is no noise
+  std::vector<float> areas;              // one per triangle, scaled units squared
+  std::vector<std::uint8_t> flags;       // one per triangle: a combination of Flag
+  std::vector<std::uint32_t> component;  // one per triangle: its piece; kNoIndex if degenerate
   std::uint32_t component_count = 0;
-  std::size_t whole_triangles = 0;  // of the mesh that this is a part of; 0: it is all
-  double cut_length = 0;  // of edges that exactly two triangles share without a link, input units
-  double scale = 1;       // points = positions * scale, a power of two
-  double noise_cpu = 0;   // seconds that calm_normals took
+  // The number of triangles of the mesh that this is a part of; 0: this is the whole mesh.
+  std::size_t whole_triangles = 0;
+  // The length of edges that exactly two triangles share without a link, in input units.
+  double cut_length = 0;
+  double scale = 1;      // points = positions * scale, a power of two
+  double noise_cpu = 0;  // CPU seconds that calm_normals took
   TopologyDefects defects;
-  // Linked half-edges (one of each pair) of edges that more than two triangles share.
+  // One half-edge of each linked pair at edges that more than two triangles share.
   std::vector<std::uint32_t> fan_links;
 
   std::size_t triangle_count() const { return flags.size(); }
@@ -52,7 +55,7 @@ struct Topology {
   const Vec3f& calm_normal(std::uint32_t t) const {
     return calm_normals.empty() ? normals[t] : calm_normals[t];
   }
-  // The corner of the input triangle that working corner h stands for.
+  // Returns the corner of the input triangle that working corner h corresponds to.
   std::uint32_t input_corner(std::uint32_t h) const {
     const std::uint32_t t = h / 3, c = h % 3;
     return (flags[t] & kFlipped) && c ? 3 * t + 3 - c : h;
@@ -66,7 +69,7 @@ inline std::uint32_t previous_half_edge(std::uint32_t h) {
   return h % 3 == 0 ? h + 2 : h - 1;
 }
 
-// Scaled units.
+// In scaled units.
 inline double edge_length(const Topology& topology, std::uint32_t half_edge) {
   const Vec3f& a = topology.points[topology.corner_vertex[half_edge]];
   const Vec3f& b = topology.points[topology.corner_vertex[next_half_edge(half_edge)]];
@@ -74,16 +77,18 @@ inline double edge_length(const Topology& topology, std::uint32_t half_edge) {
   return std::sqrt(x * x + y * y + z * z);
 }
 
-// Where triangles that share an edge are nevertheless not linked.
+// Where triangles that share an edge are not linked although they could be.
 struct TopologyOptions {
   bool cut_at_materials = true;  // where MeshView::materials differ
   bool cut_at_uv_seams = false;  // where the corners' texcoords differ
 };
 
-// Linear in the number of triangles. Edges of more than two triangles are paired by flatness and
-// otherwise left open; an edge that no orientation satisfies (a Möbius strip) is cut; duplicates
-// (same three vertices) are never linked to their original.
-// Errors: bad_input for an index out of range, a position that is not finite, or no triangle.
+// Builds the working copy of a mesh, in time linear in the number of triangles. Edges of more than
+// two triangles are linked in pairs, the flattest first, and otherwise left open. An edge that no
+// orientation satisfies (as on a Möbius strip) is cut. Duplicate triangles (with the same three
+// vertices) are never linked to their original. Errors: bad_input for an index out of range, a
+// position that is not finite, no triangle, or wrong materials or densities; unsupported for more
+// than 2^30 triangles; cancelled.
 Result<Topology> build_topology(const MeshView& mesh, const TopologyOptions& options,
                                 const Context& context);
 
