@@ -16,8 +16,9 @@ namespace {
 
 // Arcs longer than this share of the rim get corners in between, so that the fan follows them.
 constexpr double kLongArc = 0.26;
-// Scan noise: most edges fold by more than nine degrees, though a cell has many triangles. Smooth
-// meshes of that size fold by three to five at most edges.
+// A piece has scan noise if more than kNoisyShare of its edges fold by more than nine degrees
+// although its cells have more than kNoisyCell triangles on average. Smooth meshes of that size
+// fold by three to five degrees at most edges.
 constexpr double kNoisyCosine = 0.988, kNoisyShare = 0.6, kNoisyCell = 20;
 
 class CoarseBuilder {
@@ -70,7 +71,7 @@ class CoarseBuilder {
     }
   }
 
-  // A vertex where three rims meet, or two at the mesh's border.
+  // Corners are vertices where three rims meet, or two at the mesh's boundary.
   void find_corners() {
     std::vector<std::uint8_t> count(topology_.points.size(), 0), open(topology_.points.size(), 0);
     for (const std::uint32_t h : rims_.half_edges()) {
@@ -81,7 +82,8 @@ class CoarseBuilder {
     for (std::size_t v = 0; v < count.size(); ++v) corner_[v] = count[v] + open[v] >= 3;
   }
 
-  // Corners along arcs that are long for their cell. Both sides see them: they belong to vertices.
+  // Adds corners along arcs that are long for their cell. Corners belong to vertices, so the cells
+  // on both sides get them.
   void add_corners(std::uint32_t k) {
     const std::span<const RimLoop> loops = rims_.loops(k);
     if (loops.empty()) return;
@@ -107,7 +109,8 @@ class CoarseBuilder {
       for (std::uint32_t j = i; j + 1 < end && mark < pieces; ++j) {
         const double step = edge_length(topology_, path[(first + j) % n]);
         walked += step;
-        // The middle of an edge may be the very place: rounding must not choose the corner.
+        // If a corner is due at the middle of an edge, the tolerance keeps rounding from choosing
+        // its end.
         if (walked + (0.5 + 1e-4) * step < mark * length / pieces) continue;
         corner_[from(path[(first + j + 1) % n])] = 1;
         ++mark;
@@ -136,7 +139,7 @@ class CoarseBuilder {
     cell.slot_count = static_cast<std::uint32_t>(mesh_.slot_position.size()) - cell.first_slot;
   }
 
-  // Pieces with scan noise, see kNoisyShare.
+  // Finds the pieces with scan noise, see kNoisyShare.
   void find_noise() {
     struct Fold {
       double sharp = 0, edges = 0, triangles = 0;
@@ -163,7 +166,7 @@ class CoarseBuilder {
     }
   }
 
-  // Where a half-edge starts; on noisy pieces the mean of the vertices around.
+  // Returns where a half-edge starts; on noisy pieces, the mean of that vertex and its neighbours.
   glm::dvec3 corner_position(std::uint32_t head) const {
     const auto place = [&](std::uint32_t h) { return to_dvec(topology_.points[from(h)]); };
     if (!noisy_[topology_.component[head / 3]]) return place(head);

@@ -1,4 +1,4 @@
-// Internal: the flat coordinates of cells.
+// Internal: the flat coordinates of the coarse mesh.
 #pragma once
 
 #include <array>
@@ -9,17 +9,18 @@
 
 namespace atlas {
 
-// Kept while charts grow: cells of one chart lie in one plane.
+// Coordinates persist while charts grow: the cells of one chart lie in one common plane.
 struct CoarseUv {
-  std::vector<Vec2d> centre;  // 1 a cell
-  std::vector<Vec2d> slot;    // 1 a slot
+  std::vector<Vec2d> centre;  // one per cell
+  std::vector<Vec2d> slot;    // one per slot
 };
 
-// Turns a cell's corners into the plane of its mean normal, each at its distance from the centre.
+// Projects a cell's corners to the plane of its mean normal, keeping their distances from the
+// centre.
 void project_cell(const CoarseMesh& mesh, std::uint32_t k, CoarseUv& uv);
 
-// The map from space to the plane that a cell's coarse flattening stands for: the rotation that
-// best takes its fan to its flat coordinates, as two rows.
+// Returns the map from space to the plane that a cell's coarse flattening implies, as two rows: the
+// rotation that best takes its fan to its flat coordinates.
 std::array<Vec3d, 2> cell_frame(const CoarseMesh& mesh, const CoarseUv& uv, std::uint32_t k);
 
 }  // namespace atlas

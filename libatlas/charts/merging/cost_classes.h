@@ -1,4 +1,5 @@
-// Internal: what mergers cost, so that rounding does not decide which comes first.
+// Internal: groups nearly equal costs of mergers, so that rounding does not decide which comes
+// first.
 #pragma once
 
 #include <algorithm>
@@ -8,12 +9,13 @@
 
 namespace atlas {
 
-// Gives costs that differ by less than `tie` one value, that of the first of them: symmetric meshes
-// are full of ties, which rounding would break otherwise for every rotation and unit.
+// Gives all costs that differ by less than `tie` the value of the first of them. Symmetric meshes
+// are full of ties, and rounding would otherwise break them differently for every rotation and
+// unit.
 class CostClasses {
  public:
   static constexpr double tie = 1e-4;
-  // The most and, negative, the least. What is no number, as that of cells without area, costs it.
+  // Costs are clamped to [-most, most]. NaN, the cost of cells without area, becomes `most`.
   static constexpr double most = 1e9;
 
   double operator()(double cost) {
@@ -33,7 +35,8 @@ class CostClasses {
   }
 
  private:
-  // A hash table of values by cells of their range as wide as `tie`: each holds one or so.
+  // A hash table of values, keyed by intervals as wide as `tie`. Each interval holds about one
+  // value.
   struct Entry {
     std::int64_t cell = 0;
     double value = kNone;
@@ -62,7 +65,7 @@ class CostClasses {
 
   std::vector<Entry> table_;
   std::size_t count_ = 0;
-  int shift_ = 60;  // what is left of a hash names a place in the table
+  int shift_ = 60;  // shifts a hash down to an index into the table
 };
 
 }  // namespace atlas

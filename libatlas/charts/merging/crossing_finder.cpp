@@ -12,12 +12,13 @@ namespace {
 using Boxes = CrossingFinder::Boxes;
 using Edges = std::span<const std::array<std::uint32_t, 2>>;
 
-// All pairs of the few dozen edges that charts of cells have take less time than to sort them. In
-// longer borders groups of edges, neighbours mostly, are looked at first.
-constexpr double kTouching = 1e-3;  // of what is deep
+// Charts of cells have a few dozen border edges, and testing all pairs takes less time than sorting
+// them. Borders of more than kLongBorder edges are first tested in groups of kGroup edges, which
+// are mostly neighbours.
+constexpr double kTouching = 1e-3;  // as a share of the depth that counts as deep
 constexpr std::size_t kLongBorder = 256, kGroup = 32;
 
-// How far one of two edges that cross would have to move for them not to.
+// Returns how far one of two crossing edges would have to move for them not to cross.
 double crossing_depth(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& d) {
   const auto nearest = [](const Vec2d& p, const Vec2d& q, const Vec2d& r, const Vec2d& s) {
     const double length = std::hypot(q.x - p.x, q.y - p.y);
@@ -26,7 +27,7 @@ double crossing_depth(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2
   return std::min(nearest(a, b, c, d), nearest(c, d, a, b));
 }
 
-// Whether an end of one segment is nearer than `distance` to the other.
+// Whether an end of one segment is closer than `distance` to the other.
 bool touch(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& d, double distance) {
   const auto near = [&](const Vec2d& p, const Vec2d& q, const Vec2d& r) {
     const double x = r.x - q.x, y = r.y - q.y, squared = x * x + y * y;
@@ -42,7 +43,7 @@ struct Box {
   double left, right, low, high;
 };
 
-// Four more than are asked for: the last ones are read together with what lies behind them.
+// Reserves four extra entries, since boxes are read four at a time, beyond the last one too.
 void resize(std::size_t count, Boxes& boxes) {
   boxes.stride = count + 4;
   boxes.sides.assign(4 * boxes.stride, 0);
@@ -82,8 +83,8 @@ void fill_groups(const Boxes& edges, std::size_t count, Boxes& groups) {
   }
 }
 
-// The first of the boxes from `next` on, four looked at together, that meets `box`, or up to three
-// more than `count`.
+// Returns the index of the first box from `next` on that meets `box`. If there is none, returns
+// `count` or up to three more. Four boxes are tested at a time.
 ATLAS_INLINE std::size_t find_near(const Boxes& boxes, const Box& box, std::size_t next,
                                    std::size_t count) {
   const double *const left = boxes.sides.data(), *const right = left + boxes.stride,
@@ -106,8 +107,8 @@ std::size_t find_near_narrow(const Boxes& boxes, const Box& box, std::size_t nex
   return find_near(boxes, box, next, count);
 }
 
-// Calls visit(i) for the boxes from `next` to `count` that meet `box` until it returns false;
-// whether it never did.
+// Calls visit(i) for the boxes from `next` to `count` that meet `box`, until it returns false.
+// Returns whether it never did.
 template <class Visit>
 bool visit_near(const Boxes& boxes, const Box& box, std::size_t next, std::size_t count,
                 const Visit& visit) {

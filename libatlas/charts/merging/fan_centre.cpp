@@ -10,7 +10,7 @@
 namespace atlas {
 namespace {
 
-// A triangle of a fan may be this thin, relative to the cell's area.
+// The smallest accepted value of twice a fan triangle's area, relative to the cell's area.
 constexpr double kThinFan = 1e-3;
 
 class FanCentre {
@@ -32,7 +32,7 @@ class FanCentre {
     return true;
   }
 
-  // Leaves `centre` as it is if no point sees all of the outline.
+  // Leaves `centre` unchanged if no point sees the whole outline.
   void find(Vec3d& centre) const {
     double reach = 0;
     for (const glm::dvec2& p : outline_) reach = std::max({reach, std::abs(p.x), std::abs(p.y)});
@@ -48,7 +48,7 @@ class FanCentre {
   }
 
  private:
-  // Twice the area of a, b, p.
+  // Twice the signed area of triangle a, b, p.
   static double side(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p) {
     return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
   }
@@ -67,7 +67,7 @@ class FanCentre {
 
   const CoarseCell& cell_;
   Tangents plane_;
-  std::vector<glm::dvec2> outline_;  // around the centre, in the plane of the mean normal
+  std::vector<glm::dvec2> outline_;  // relative to the centre, in the plane of the mean normal
 };
 
 }  // namespace

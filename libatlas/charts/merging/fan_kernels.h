@@ -1,4 +1,4 @@
-// Internal: what inner loops over the fans of a coarse mesh have in common, see wide_vectors.h.
+// Internal: helpers for the inner loops over the fans of a coarse mesh, see wide_vectors.h.
 #pragma once
 
 #include <cmath>
@@ -14,8 +14,8 @@
 
 namespace atlas {
 
-// A Pair is two neighbouring entries of a row, or a point. Pairs are read in place; a Vec2d of its
-// own need not lie where they must.
+// A Pair is two neighbouring entries of a row, or a point. Pairs are read in place, since a
+// separate Vec2d need not have the alignment of a Pair.
 static_assert(sizeof(Vec2d) == sizeof(Pair));
 
 ATLAS_INLINE const Pair& pair_at(const double* from) {
@@ -28,8 +28,8 @@ ATLAS_INLINE const Pair& pair_at(const Vec2d& p) {
   return reinterpret_cast<const Pair&>(p);
 }
 
-// Four numbers that may lie anywhere. Not read through a reference to a type that says so: clang
-// would take them for aligned.
+// Four numbers at any alignment. They are not read through a reference to an unaligned type, which
+// clang would take for aligned.
 struct QuadAt {
   ATLAS_INLINE explicit QuadAt(const double* from) { std::memcpy(&quad, from, sizeof quad); }
   Quad quad;
@@ -47,11 +47,11 @@ ATLAS_INLINE void take_root(Quad& x) {
 #endif
 }
 
-// The sides of four triangles of a fan, from its centre to the slots and to the next ones.
+// The sides of four triangles of a fan: from its centre to their slots, and to the next slots.
 struct Sides {
   Quad ax, ay, bx, by;
 };
-// The coordinates of four points.
+// Returns the coordinates of four points in x and y.
 ATLAS_INLINE void gather(const Pair& p0, const Pair& p1, const Pair& p2, const Pair& p3, Quad& x,
                          Quad& y) {
   const Quad even = __builtin_shufflevector(p0, p2, 0, 1, 2, 3),

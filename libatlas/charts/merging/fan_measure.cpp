@@ -9,8 +9,8 @@ namespace atlas {
 
 struct FanMeasure::Kernels {
   struct Fan {
-    std::uint32_t begin, end;  // its triangles
-    std::size_t slot = 0;      // of each, less its place among all triangles
+    std::uint32_t begin, end;  // range of its triangles
+    std::size_t slot = 0;      // a triangle's slot minus its index among all triangles
     Vec2d centre{};
   };
   ATLAS_INLINE static Fan fan_of(const JoinedFans& joined, const Vec2d* uvs, std::size_t c) {
@@ -22,7 +22,7 @@ struct FanMeasure::Kernels {
     return fan;
   }
 
-  // What is read beyond the end of a fan is written before the next one's.
+  // The entries written beyond the end of a fan are overwritten by the next fan.
   ATLAS_INLINE static void measure_maps(FanMeasure& m, const JoinedFans& joined, const Vec2d* uvs) {
     double *const squares = m.squares_.data(), *const product = m.product_.data(),
                   *const area = m.area_.data();
@@ -36,7 +36,7 @@ struct FanMeasure::Kernels {
         const Quad inverse = QuadAt(m.fans_.inverse_area.data() + fan.slot + i).quad;
         Sides d;
         find_sides(joined.triangles.data() + i, uvs, fan.centre, d);
-        // The map's columns, times area.
+        // The columns of the map, times the area.
         const Quad xx = g1x * d.ax + g2x * d.bx, xy = g1x * d.ay + g2x * d.by;
         const Quad yx = g1y * d.ax + g2y * d.bx, yy = g1y * d.ay + g2y * d.by;
         const Quad scale = inverse * inverse;
@@ -75,8 +75,9 @@ struct FanMeasure::Kernels {
     sums.flipped = flipped[0] | flipped[1] | flipped[2] | flipped[3];
   }
 
-  // The area of triangles of which the larger singular value or the inverse of the smaller one is
-  // too large: the squares of both are the roots of x² - squares x + product².
+  // Returns the area of the triangles whose larger singular value, or the inverse of whose smaller
+  // one, is too large. The squares of both singular values are the roots of x² - squares x +
+  // product².
   ATLAS_INLINE static double area_beyond(const FanMeasure& m, double least, double most) {
     double above = 0;
     for (std::size_t i = 0; i < m.count_; i += 4) {
@@ -159,7 +160,8 @@ FanStretch FanMeasure::stretch(const JoinedFans& joined, std::span<const Vec2d> 
     result.energy = rigid_energy();
     return result;
   }
-  const double squared = sums.area > 0 ? sums.uv_area / sums.area : 1;  // the scale's
+  // The square of the map's linear scale.
+  const double squared = sums.area > 0 ? sums.uv_area / sums.area : 1;
   const double l2 = sums.l2 * (0.5 * squared);
   const double most = high * high * squared, least = squared / (high * high);
   result.high_area = (has_wide_vectors ? Kernels::area_beyond_wide : Kernels::area_beyond_narrow)(
@@ -169,7 +171,8 @@ FanStretch FanMeasure::stretch(const JoinedFans& joined, std::span<const Vec2d> 
   return result;
 }
 
-// Of the singular values less 1, the smaller one with the sign of the product.
+// Returns the sum of area times (s1 - 1)² + (s2 - 1)² over all triangles, where the smaller
+// singular value s2 has the sign of the determinant.
 double FanMeasure::rigid_energy() const {
   double rigid = 0;
   for (std::size_t i = 0; i < count_; ++i) {

@@ -1,4 +1,4 @@
-// Internal: what flattening makes of the fans of a coarse mesh.
+// Internal: measures the stretch of a flattening of the fans of a coarse mesh.
 #pragma once
 
 #include <span>
@@ -9,20 +9,23 @@
 namespace atlas {
 
 struct FanStretch {
-  bool flipped = false;  // a triangle; then only the energy is known
+  bool flipped = false;  // some triangle is; then only `energy` is filled
   double l2 = 1, high_area = 0;
-  double energy = 0;  // area times (l2 squared - 1); of a map with flips what it costs at least
+  // Area times (l2 squared - 1); of a map with flips, a lower bound on what it costs.
+  double energy = 0;
 };
 
 class FanMeasure {
  public:
   explicit FanMeasure(const Fans& fans) : fans_(fans) {}
 
-  // At the scale that keeps the area: the mean stretch, the area stretched by more than `high`.
+  // Returns, at the area-preserving scale, the L2 stretch and the area stretched by more than
+  // `high`.
   FanStretch stretch(const JoinedFans& joined, std::span<const Vec2d> uvs, double high);
-  // Of the flat fans, negative where they are mirrored.
+  // Returns twice the area of the flat fans, where mirrored triangles count negatively.
   double twice_area(const JoinedFans& joined, std::span<const Vec2d> uvs, bool& flipped);
-  // The area (not twice) by the maps of the triangles: those without area on the surface have none.
+  // Returns the flat area (not twice), summed over the triangles' maps. Triangles without area on
+  // the surface count as zero.
   double mapped_area(const JoinedFans& joined, std::span<const Vec2d> uvs);
 
  private:
@@ -32,8 +35,8 @@ class FanMeasure {
   double rigid_energy() const;
 
   const Fans& fans_;
-  // 1 a triangle and some beyond: of the map to uv the sum of the squared singular values and their
-  // product, the area.
+  // One per triangle, and some beyond: the sum of the squared singular values of the map to uv,
+  // their product, and the area.
   std::vector<double> squares_, product_, area_;
   std::size_t count_ = 0;
 };

@@ -8,9 +8,10 @@
 namespace atlas {
 namespace {
 
-constexpr double kNoPivot = 1e-15;  // of the diagonal: rounding
-// Of a triangle's area: what turns and scales by less is a mirror image, whose rotation rounding
-// alone would choose.
+// Pivots below this share of the diagonal are mere rounding.
+constexpr double kNoPivot = 1e-15;
+// If the part of a triangle's map that turns and scales is smaller than this share of its area, the
+// map is a mirror image, and mere rounding would choose its rotation.
 constexpr double kNoTurn = 1e-3;
 
 ATLAS_INLINE Pair lower_half(const Quad& q) {
@@ -22,32 +23,32 @@ ATLAS_INLINE Pair upper_half(const Quad& q) {
 
 }  // namespace
 
-// The factor as if each row began with column 0.
+// The factor, addressed as if each row began with column 0.
 struct FanSolver::Factor {
   const std::uint32_t* first;
   const std::size_t* begin;
   double *values, *inverse_pivot;
   std::uint32_t pairs;
-  std::uint32_t count;  // of rows; the last of these is held
+  std::uint32_t count;  // number of rows; the last one is held
 
   ATLAS_INLINE double* blocks(std::uint32_t pair) const {
     return values + begin[pair] - 2 * std::size_t{first[pair]};
   }
 };
 
-// The fan at hand: four numbers at a time lie side by side.
+// The current fan. Values are stored as arrays, so that four of them can be processed at a time.
 struct FanSolver::Fan {
   const JoinedFans::Triangle* triangles;
   std::uint32_t count;
   const double *g1x, *g1y, *g2x, *g2y, *area;
-  double *turn_x, *turn_y, *squared;  // the part of its maps that turns and scales, times area
-  Vec2d* loads;                       // of each triangle on its slot and the next
+  double *turn_x, *turn_y, *squared;  // turning and scaling part of the maps, times area
+  Vec2d* loads;                       // of each triangle, on its slot and on the next
 };
 
 struct FanSolver::Kernels {
-  // Products of the two rows of `own` with those of `other`, over so many columns.
+  // Products of the two rows of `own` with those of `other`, over a range of columns.
   struct Products {
-    Quad upper, lower;  // with the upper and the lower row of `other`, two parts of each sum
+    Quad upper, lower;  // with the upper and the lower row of `other`; each sum is in two parts
   };
   ATLAS_INLINE static void multiply(const double* own, const double* other, std::uint32_t begin,
                                     std::uint32_t end, Products& products) {
@@ -62,7 +63,7 @@ struct FanSolver::Kernels {
     products.lower = lower;
   }
 
-  // Two rows of the factor, all above done.
+  // Computes two rows of the factor, when all rows above are done.
   ATLAS_INLINE static void eliminate(const Factor& factor, std::uint32_t pair) {
     const std::uint32_t i = 2 * pair, begin = factor.first[pair];
     double *const own = factor.blocks(pair), *const inverse = factor.inverse_pivot;
@@ -79,7 +80,7 @@ struct FanSolver::Kernels {
     }
     multiply(own, own, begin, i, p);
     double* const corner = own + 2 * i;
-    // Of a connected chart that is free the last pivot is nothing but rounding: that vertex is
+    // In a connected chart without held vertices the last pivot is mere rounding, so that vertex is
     // held.
     const auto invert = [&](double pivot, double diagonal, std::uint32_t at) {
       const bool held = at + 1 >= factor.count || !(pivot > kNoPivot * diagonal);
@@ -110,7 +111,8 @@ struct FanSolver::Kernels {
       }
       x = (lower_half(xs) + upper_half(xs)) * inverse[0];
       y = (lower_half(ys) + upper_half(ys) - own[4 * p + 2] * x) * inverse[1];
-      // At once, for they are read so: processors wait where one read needs two writes.
+      // Both are written at once, since they are read at once: processors stall where one read
+      // needs the results of two writes.
       put_quad(&load[2 * p].x, __builtin_shufflevector(x, y, 0, 1, 2, 3));
     }
     for (std::uint32_t p = factor.pairs; p-- > 0;) {
@@ -131,7 +133,7 @@ struct FanSolver::Kernels {
     }
   }
 
-  // Triangles without rotation take that of the whole fan.
+  // Gives triangles without a clear rotation the rotation of the whole fan.
   static void mend_turns(const Fan& fan) {
     double x = 0, y = 0;
     for (std::uint32_t i = 0; i < fan.count; ++i) {
@@ -150,8 +152,8 @@ struct FanSolver::Kernels {
     }
   }
 
-  // The parts of a fan's maps that turn and scale: conjugate gradients times differences, times
-  // area. Points are complex numbers here.
+  // Finds the parts of a fan's maps that turn and scale, times area: conjugate gradients times
+  // differences, where points are complex numbers.
   ATLAS_INLINE static void find_turns(const Fan& fan, const Vec2d* uvs) {
     const Vec2d centre = uvs[fan.triangles->centre];
     auto clear = Quad{} == Quad{};
@@ -171,7 +173,7 @@ struct FanSolver::Kernels {
     if (!(clear[0] & clear[1] & clear[2] & clear[3])) mend_turns(fan);
   }
 
-  // What the rotations nearest to a fan's maps ask of its vertices.
+  // Finds the loads on a fan's vertices for the rotations nearest to its maps.
   ATLAS_INLINE static void find_loads(const Fan& fan) {
     for (std::uint32_t i = 0; i < fan.count; i += 4) {
       Quad root = QuadAt(fan.squared + i).quad;
@@ -184,7 +186,7 @@ struct FanSolver::Kernels {
       const Quad ax = g1x * c - g1y * s, ay = g1x * s + g1y * c;
       const Quad bx = g2x * c - g2y * s, by = g2x * s + g2y * c;
       double* const out = &fan.loads[2 * i].x;
-      // Of triangles 0 and 2, 1 and 3.
+      // Of triangles 0 and 2, and of 1 and 3.
       const Quad a02 = __builtin_shufflevector(ax, ay, 0, 4, 2, 6),
                  a13 = __builtin_shufflevector(ax, ay, 1, 5, 3, 7);
       const Quad b02 = __builtin_shufflevector(bx, by, 0, 4, 2, 6),
@@ -322,7 +324,7 @@ void FanSolver::find_envelope() {
   for (std::uint32_t p = 0; p < pairs; ++p) row_[p + 1] = row_[p] + 2 * (2 * p + 2 - first_[p]);
 }
 
-// Adds the stiffness of one fan without its centre.
+// Adds the stiffness of one fan, with its centre eliminated.
 void FanSolver::fill(std::size_t place, std::span<const Vec2d> uvs) {
   const auto* const fan = &joined_.triangles[joined_.first[place]];
   const auto n = joined_.first[place + 1] - joined_.first[place];

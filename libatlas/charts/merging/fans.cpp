@@ -9,9 +9,11 @@
 namespace atlas {
 namespace {
 
-// Altitudes are raised to this part of the base, which keeps the stiffness of slivers finite.
+// Altitudes are raised to at least this share of the base, which keeps the stiffness of slivers
+// finite.
 constexpr double kLeastAltitude = 1e-9;
-// Slots no farther apart by the triangle's longest edge are one vertex of the mesh.
+// Two slots are one vertex of the mesh if their distance is at most this share of the triangle's
+// longest edge.
 constexpr double kSamePlace = 1e-9;
 
 struct FanTriangle {

@@ -15,29 +15,29 @@
 namespace atlas {
 namespace {
 
-// 1 - |mean normal| of what counts as lying in one plane: normals within a thousandth of a radian,
-// the noise of float coordinates.
+// Normals count as lying in one plane if 1 - |mean normal| is below this: they then differ by about
+// a thousandth of a radian, the noise of float coordinates.
 constexpr double kFlatSpread = 1e-6;
-// A seam along a crease is hidden: to remove it is worth this much less.
+// A seam along a crease is hidden, so removing it is worth less by this share.
 constexpr double kHiddenSeam = 0.75;
-// Within a cone limit charts are small, and their outlines free: what counts is how few they are.
+// Under a cone limit charts are small and their outlines hardly matter; the number of charts does.
 constexpr double kConeWeight = 1;
-constexpr double kConeFill = 0.4;  // of hull and rectangle
+constexpr double kConeFill = 0.4;  // of both convex hull and rectangle
 
 struct CoarseChart {
   std::vector<std::uint32_t> cells;
-  std::vector<std::uint32_t> arcs;  // not joined, in any order
+  std::vector<std::uint32_t> arcs;  // arcs that are not joined, in any order
   Moments moments{};
   glm::dvec3 normal_sum{0};
   double area = 0, perimeter = 0;
   double energy = 0;     // area times (L2 stretch squared - 1) of its coarse flattening
-  double high_area = 0;  // of it stretched beyond TrialLimits::stretch_high
-  double box = 0;        // smallest rectangle around that; 0: not known yet
-  int euler = 1;         // characteristic
+  double high_area = 0;  // area of that flattening stretched beyond TrialLimits::stretch_high
+  double box = 0;        // area of the smallest rectangle around it; 0: not known yet
+  int euler = 1;         // Euler characteristic
   bool flat = false;     // all cells in one plane
-  bool unrolls = false;  // without stretch, exactly
+  bool unrolls = false;  // exactly, without stretch
   std::uint32_t version = 0;
-  std::vector<Refusal> refusals;  // each kept by one of its two charts
+  std::vector<Refusal> refusals;  // each is stored with one of its two charts
 };
 
 struct Candidate {
@@ -57,7 +57,7 @@ struct Border {
 // Merges the cells of one piece of the mesh.
 class Merger {
  public:
-  // `place` (1 a cell) is scratch: a cell's place in its piece's list.
+  // `place` (one per cell) is scratch: a cell's index in its piece's list.
   Merger(const CoarseMesh& mesh, const MergeOptions& options, std::vector<std::uint32_t>& place,
          MergeResult& result, Trial& trial)
       : mesh_(mesh), options_(options), place_(place), result_(result), trial_(trial) {}
@@ -125,7 +125,7 @@ class Merger {
     }
   }
 
-  // The charts that share arcs with `a`, ordered by id.
+  // Finds the charts that share arcs with `a`, ordered by id.
   void find_borders(std::uint32_t a) {
     borders_.clear();
     for (const std::uint32_t arc : chart(a).arcs) {
@@ -169,7 +169,7 @@ class Merger {
     Moments m;
     for (int i = 0; i < 6; ++i) m[i] = (p.moments[i] + q.moments[i]) / area;
     m = about(m, from_glm((p.normal_sum + q.normal_sum) / area));
-    // Within a cone limit what counts is how much of the cone is used up.
+    // Under a cone limit the cost is how much of the cone is used up.
     const double spread = options_.cone > 0 ? kConeWeight * (m[0] + m[3] + m[5])
                                             : std::max(0.0, smallest_eigenvalue(m));
     const double perimeter = p.perimeter + q.perimeter - 2 * border.length;
@@ -178,7 +178,7 @@ class Merger {
            (border.length > 0 ? options_.crease_weight * border.crease / border.length : 0);
   }
 
-  // Whether all normals lie in one cone within the limit; keeps its axis in axis_.
+  // Whether all normals lie in one cone within the limit. Stores its axis in axis_.
   bool within_cone(std::uint32_t a, std::uint32_t b) {
     if (options_.cone <= 0) return true;
     normals_.clear();
@@ -237,8 +237,8 @@ class Merger {
     });
   }
 
-  // Pieces of one plane join without a trial, whatever their outline: nothing is stretched, and an
-  // oriented surface in a plane does not overlap itself.
+  // Whether both charts lie in one plane. They then join without a trial, whatever their outline:
+  // nothing is stretched, and an oriented surface in a plane does not overlap itself.
   bool coplanar(std::uint32_t a, std::uint32_t b) const {
     const CoarseChart &p = chart(a), &q = chart(b);
     if (!p.flat || !q.flat) return false;
@@ -253,7 +253,7 @@ class Merger {
     const CoarseChart &p = chart(a), &q = chart(b);
     const double area = p.area + q.area;
     if (relaxed_) length += options_.chart_worth * std::sqrt(piece_area_);
-    // What the merge may cost in stretch is worth the seam that it saves.
+    // The merger may cost as much stretch as the seam that it saves is worth.
     const double worth = options_.seam_worth * length * std::sqrt(piece_area_);
     TrialLimits limits = options_.limits;
     limits.stretch_l2 =
@@ -289,7 +289,8 @@ class Merger {
     return outcome;
   }
 
-  // Whether less was known to fail, or to cost more than what may be spent on joining the two.
+  // Whether an earlier trial of parts of the two charts shows that joining them would fail, or cost
+  // more than the given energy or area.
   bool refused(std::uint32_t a, std::uint32_t b, double energy, double high_area) const {
     for (const Refusal& r : chart(a).refusals) {
       if (result_.chart_of_cell[r.cell] == b && fails_again(r, glue_, energy, high_area)) {
@@ -299,7 +300,7 @@ class Merger {
     return false;
   }
 
-  // Where seams of either chart with itself end, and tips.
+  // Returns where seams of either chart with itself end, and the tips.
   std::vector<Vec3d> seam_ends(std::uint32_t a, std::uint32_t b) const {
     std::vector<Vec3d> ends;
     for (const std::uint32_t name : {a, b}) {
@@ -343,15 +344,15 @@ class Merger {
   const CoarseMesh& mesh_;
   const MergeOptions& options_;
   std::vector<std::uint32_t>& place_;
-  std::vector<CoarseChart> charts_;  // 1 a cell of the piece
+  std::vector<CoarseChart> charts_;  // one per cell of the piece
   MergeResult& result_;
   Trial& trial_;
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> heap_;
   CostClasses cost_classes_;
   std::vector<Border> borders_;
   std::vector<std::uint32_t> glue_;
-  std::vector<Vec3f> normals_;  // of the candidate, with a limit on cones
-  Vec3f axis_;                  // of their cone
+  std::vector<Vec3f> normals_;  // of the candidate, under a cone limit
+  Vec3f axis_;                  // axis of their cone
   double piece_area_ = 0;
   bool relaxed_ = false;
   double energy_ = 0, high_area_ = 0;  // of the last accepted trial

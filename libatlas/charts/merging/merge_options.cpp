@@ -8,10 +8,10 @@
 namespace atlas {
 namespace {
 
-constexpr double kWidestRatio = 8;  // wider bounds than 3 merge no more
-// Narrower bounds than 1.025 merge no less: below it a fan's own error, of a mesh that unrolls
-// exactly, is larger than what merging would allow (cylinders at 1.001 came out in 9 to 39 charts;
-// from 0.1 on in one or two, while spheres need a thirtieth more).
+constexpr double kWidestRatio = 8;  // bounds wider than 3 allow no more mergers
+// Bounds narrower than 1.025 allow no fewer mergers. Below that, the fan's own error on a mesh that
+// unrolls exactly exceeds what merging would allow. With a bound of 1.001, cylinders came out in 9
+// to 39 charts; if this ratio is 0.1 or more, in one or two, while spheres need a thirtieth more.
 constexpr double kLeastRatio = 0.1;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Internal: stretches of common border.
+// Internal: runs, the connected parts of the common border of two charts.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 
 namespace atlas {
 
-// Of several separate stretches of common border, the arcs `glue`, keeps the longest: the rest
-// becomes a seam of the chart with itself. False if there is only one. A point of `forks`, where a
-// seam ends, between two arcs parts them, or the chart would close around it.
+// Of several separate runs of the common border `glue`, keeps the longest; the rest becomes a seam
+// of the chart with itself. Returns false if there is only one run. Runs also end at the points
+// `forks`, where a seam ends: otherwise the chart would close around such a point.
 bool keep_longest_run(const CoarseMesh& mesh, std::span<const Vec3d> forks,
                       std::vector<std::uint32_t>& glue);
 

@@ -10,43 +10,52 @@
 namespace atlas {
 namespace {
 
-// Of lengths: float coordinates of a part that lies a hundred of its sizes from the origin.
+// Relative error of lengths, as float coordinates have for a part that lies a hundred times its
+// size from the origin.
 constexpr double kUnrolledError = 1e-3;
-// Of hull and rectangle, by what unrolls: its parts may be needles, and it will go on growing.
+// The share of hull and rectangle that charts that unroll have to fill. It is low because their
+// parts may be needles, and they go on growing.
 constexpr double kUnrolledFill = 0.3;
-// The steps of a descent, relaxed in turn: a long one for what is slow to settle, and a plain one
-// for what that overshoots. Five plain steps end no lower (measured on 240 meshes).
+// Relaxation of the steps of a descent. Long steps serve what settles slowly, and plain ones what
+// those overshoot. Five plain steps reach no lower energy (measured on 240 meshes).
 constexpr std::array kRelaxation{1.0, 2.5, 1.0, 1.5};
-// After two steps a descent is far from its end if its energy is still so many times the one
-// allowed, less with flips, or the area with high stretch, or both by less. Of 15600 descents on
-// 130 meshes that failed this ends 5900 early, and of 39300 others 70.
+// After kLookAfter steps a descent is given up if its energy is still kFarEnergy times the allowed
+// one (with flips, kFarWithFlips times), or the area of high stretch kFarArea times; if the energy
+// exceeds kNearEnergy times the allowed one, kNearArea times is enough. Measured on 130 meshes:
+// this ends 5900 of 15 600 descents that would have failed, and 70 of 39 300 others.
 constexpr std::size_t kLookAfter = 2;
 constexpr double kFarEnergy = 1.5, kFarWithFlips = 1, kFarArea = 8;
 constexpr double kNearEnergy = 0.9, kNearArea = 3;
-// Halves that meet with flipped triangles and so many times the energy allowed, or so far apart for
-// their size, do not settle: of some 19000 trials on 33 meshes this ended 2800 unseen, half of the
-// time that refusals took, and two that would have come within the limits. Large halves may.
+// A start is hopeless if it has flipped triangles and this many times the allowed energy, or if the
+// halves lie farther apart than kFarApart of the square root of their area. Measured on 33 meshes
+// with some 19 000 trials: this ended 2800 without a descent, which saved half of the time for
+// refused trials, and 2 of these would have come within the limits. Large halves recover more
+// often.
 constexpr double kFoldedStart = 12, kFoldedLargeStart = 60, kFarApart = 0.3;
 constexpr std::size_t kLargeHalf = 7;  // cells
-// Halves that meet in several stretches: of some 24000 such trials that began with flips 190 came
-// within the limits, in a quarter of all trials' time (200 meshes); along the longest stretch alone
-// they are tried again.
+// The limit for halves that meet along several runs. Of some 24 000 such trials that began with
+// flips, 190 came within the limits, for a quarter of the time of all trials (200 meshes). They are
+// tried again along the longest run alone.
 constexpr double kFoldedRing = 2;
-// Halves that fit each other so closely and with so little of the energy allowed are as good as
-// descended: this spares a twelfth of all trials' time.
+// Halves that fit each other this closely, with so small a share of the allowed energy, count as
+// descended. This saves a twelfth of the time of all trials.
 constexpr double kCloseFit = 0.005, kSettledStart = 0.05;
-constexpr double kLastFall = 0.5;  // what further steps leave of energy, at least
-// A descent never changed the share of hull or rectangle that is filled by more (the same trials).
+constexpr double kLastFall = 0.5;  // further steps leave at least this share of the energy
+// No descent in the same trials changed the filled share of the hull or rectangle by more than
+// this.
 constexpr double kShapeChange = 0.04;
-// What fills its rectangle poorly wastes no more of it than its halves do, but for rounding: a
-// needle fills half of its own, and so do two side by side, as around the tip of a cone.
+// A union that fills little of its rectangle is accepted if that is no larger than the rectangles
+// of both halves together, but for rounding. A needle fills half of its rectangle, and so do two
+// needles side by side, as around the tip of a cone.
 constexpr double kNoLarger = 1.001;
-// What so few cells that are joined to so many change lies around them: descending there alone, a
-// wheel whose charts have hundreds of cells is merged in 0.7 instead of 1.6 s. 8448 charts of 276
-// meshes became 8432.
+// If at most kLittleChart cells are joined to a chart, with at least kLargeChart cells in all, only
+// the kPatchCells nearest cells descend, since the changes lie around the small part. A wheel whose
+// charts have hundreds of cells is thus merged in 0.7 instead of 1.6 s. 8448 charts of 276 meshes
+// became 8432.
 constexpr std::size_t kLargeChart = 96, kLittleChart = 6, kPatchCells = 40;
-// Of the chart's size: what crosses itself by less may come apart when the chart grows. Of 1220
-// that had crossed and were tried again 9 did, 6 of them from less, as 150 of all (90 meshes).
+// A crossing is deep beyond this share of the chart's size. Shallower ones may vanish when the
+// chart grows: of 1220 charts that had crossed themselves and were tried again, 9 no longer did. 6
+// of these 9 had been shallow, as had 150 of all 1220 (90 meshes).
 constexpr double kDeepCrossing = 0.002;
 
 }  // namespace
@@ -58,7 +67,7 @@ void Trial::assemble(std::span<const std::uint32_t> first, std::span<const std::
   for (const std::uint32_t k : joined_.cells()) area_ += mesh_.cells[k].area;
 }
 
-// A rotation about a point, then what takes that point to another.
+// A rotation about `from`, followed by the translation that takes `from` to `to`.
 struct Trial::Move {
   glm::dvec2 from, to;
   double c, s;
@@ -69,8 +78,8 @@ struct Trial::Move {
   }
 };
 
-// Brings the second chart's coordinates next to the first's (rigid Procrustes on the glued slots)
-// and averages where they meet.
+// Brings the second chart's coordinates next to the first's (rigid Procrustes alignment of the
+// glued slots) and averages them where they meet.
 void Trial::align(std::span<const std::uint32_t> glue) {
   glm::dvec2 mean_p(0), mean_q(0);
   pairs_.clear();
@@ -110,7 +119,7 @@ void Trial::align(std::span<const std::uint32_t> glue) {
   place({mean_q, mean_p, c, s});
 }
 
-// Vertices that several slots are joined to lie between these.
+// Places all vertices. A vertex that joins several slots gets the mean of their places.
 void Trial::place(const Move& of_second) {
   uvs_.assign(joined_.vertex_count(), Vec2d{});
   weight_.assign(uvs_.size(), 0);
@@ -138,8 +147,8 @@ void Trial::place(const Move& of_second) {
   }
 }
 
-// Fills what the outcome says of stretch; false: a triangle is flipped, and only the energy was
-// found.
+// Fills the stretch of the outcome. Returns false if a triangle is flipped; then only the energy is
+// filled.
 bool Trial::measure_stretch(double stretch_high, TrialOutcome& outcome) {
   const FanStretch stretch = measure_.stretch(joined_.fans(), uvs_, stretch_high);
   outcome.energy = stretch.energy;
@@ -169,13 +178,13 @@ Trial::Start Trial::judge_start(std::size_t smaller_half, const TrialLimits& lim
                       : smaller_half < kLargeHalf ? kFoldedStart
                                                   : kFoldedLargeStart;
   if (misfit <= kFarApart && (whole || outcome.energy <= most * allowed)) return Start::open;
-  // The least that ends a descent: a start says little of where it leads.
+  // The least energy that ends a descent: a start says little about where it leads.
   outcome.energy = kLastFall * kFarWithFlips * allowed;
   outcome.high_area = 0;
   return Start::hopeless;
 }
 
-// Whether a descent may still end within the limits.
+// Whether the descent may still end within the limits.
 bool Trial::promising(const TrialLimits& limits, TrialOutcome& outcome) {
   const bool whole = measure_stretch(limits.stretch_high, outcome);
   const double energy = outcome.energy / (area_ * (limits.stretch_l2 * limits.stretch_l2 - 1));
@@ -199,12 +208,12 @@ double Trial::box(std::span<const std::uint32_t> cells) {
   return box_area(hull_);
 }
 
-// Whether hull and rectangle are filled as far as the limits say, or by `slack` less.
+// Whether the union fills hull and rectangle as far as the limits require, or by `slack` less.
 bool Trial::shape_fits(const TrialLimits& limits, double slack, TrialOutcome& outcome) {
   points_.clear();
   for (const auto& [a, b] : joined_.border()) points_.push_back(uvs_[a]);
   const double twice = measure_.twice_area(joined_.fans(), uvs_, flipped_);
-  // A passing shape need not be known any better, nor one that stays so whatever a descent does.
+  // Bounds suffice if the shape passes anyway, even after any change that a descent may make.
   const double enough = slack > 0 ? kShapeChange : 0;
   const ShapeBounds most = bound_shape(points_);
   outcome.solidity = 0.5 * twice / most.hull;
@@ -243,8 +252,8 @@ void Trial::join_flat(std::span<const std::uint32_t> first, std::span<const std:
   align(glue);
 }
 
-// Whether the aligned halves keep all lengths as they are, as those of boxes and tubes do: a
-// descent would change nothing that the limits could see.
+// Whether the aligned halves keep all lengths, as those of boxes and tubes do. A descent would then
+// change nothing that the limits could detect.
 bool Trial::unrolled() const {
   const auto kept = [&](std::uint32_t a, std::uint32_t b, double squared) {
     const glm::dvec2 flat = to_glm(uvs_[b]) - to_glm(uvs_[a]);
@@ -259,14 +268,15 @@ bool Trial::unrolled() const {
   return true;
 }
 
-// Whether two charts that unroll still do when they are joined: then their sides match.
+// Whether two charts that unroll still do so when joined, that is, whether their sides match.
 bool Trial::fits_unrolled(TrialOutcome& outcome) {
   const double area = measure_.mapped_area(joined_.fans(), uvs_);
   outcome.unrolled = area > 0 && misfit_ < kUnrolledError * std::sqrt(area);
   return outcome.unrolled;
 }
 
-// False: it was ended before its time, for it would not have met the limits.
+// Runs the steps of the descent. Returns false if it was given up early, since it would not have
+// met the limits.
 bool Trial::descend(const TrialLimits& limits, TrialOutcome& outcome) {
   const std::size_t all = joined_.cells().size();
   const bool little = all >= kLargeChart && all - joined_.first_count() <= kLittleChart;

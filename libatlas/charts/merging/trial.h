@@ -1,4 +1,4 @@
-// Internal: would two charts of the coarse mesh flatten well as one?
+// Internal: tests whether two charts of the coarse mesh flatten well as one.
 #pragma once
 
 #include <array>
@@ -18,47 +18,49 @@ namespace atlas {
 
 struct TrialLimits {
   double stretch_l2 = 1.01;    // of the merged chart
-  double stretch_high = 1.17;  // over all but this area:
+  double stretch_high = 1.17;  // the limit everywhere but in an area of high_area
   double high_area = 0;
-  double solidity = 0.7;  // share of its convex hull that it fills
-  double fill = 0.58;     // share of its smallest rectangle, unless
-  double box = 0;         // that is no larger: both charts' own ones together
-  bool unrolls = false;   // both charts unroll: where they fit each other, no descent is needed
+  double solidity = 0.7;  // least share of its convex hull that it fills
+  // The least share of its smallest rectangle that it fills, unless that rectangle is no larger
+  // than box.
+  double fill = 0.58;
+  double box = 0;        // area of both charts' own rectangles together
+  bool unrolls = false;  // both charts unroll: where they fit each other, no descent is needed
 };
 
 struct TrialOutcome {
   bool accepted = false;
   double stretch_l2 = 1, high_area = 0, solidity = 1, fill = 1;
-  double energy =
-      0;  // area times (stretch_l2 squared - 1); of a map with flips what it costs at least
+  // Area times (stretch_l2 squared - 1); of a map with flips, a lower bound on what it costs.
+  double energy = 0;
   int euler = 1;
-  bool unrolled = false;   // TrialLimits::unrolls, and they fit
-  bool settled = false;    // stretch and border were judged after all steps of the descent
-  bool entangled = false;  // then the border crosses itself, and not just by a little
+  bool unrolled = false;   // with TrialLimits::unrolls: the charts fit each other
+  bool settled = false;    // stretch and border were judged after the whole descent
+  bool entangled = false;  // then: the border crosses itself deeply
 };
 
-// Works on one candidate at a time; not shared between threads.
+// Tries one candidate at a time. Not shared between threads.
 class Trial {
  public:
   Trial(const CoarseMesh& mesh, const Fans& fans, TrialScratch& scratch, CoarseUv& uv)
       : mesh_(mesh), fans_(fans), uv_(uv), joined_(mesh, scratch), solver_(fans), measure_(fans) {}
 
-  // Flattens the cells of two charts (`second` may be empty) with the arcs `glue` joined besides
-  // those where `joined` (1 an arc) is set. If accepted, `glue` is set in `joined`, too; the
-  // coordinates are not kept until commit().
+  // Flattens the cells of two charts (`second` may be empty), with the arcs `glue` joined in
+  // addition to those where `joined` (one per arc) is set. If the trial is accepted, sets `glue` in
+  // `joined`, too. The coordinates are not stored until commit().
   TrialOutcome run(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
                    std::span<const std::uint32_t> glue, std::vector<std::uint8_t>& joined,
                    const TrialLimits& limits);
-  // The same for two charts of one plane: aligned, not flattened, always accepted.
+  // The same for two charts in one plane: they are aligned but not flattened, and always accepted.
   void join_flat(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
                  std::span<const std::uint32_t> glue, std::vector<std::uint8_t>& joined);
-  // TrialOutcome::euler of two charts of which it is known.
+  // Returns the Euler characteristic of the union of two charts whose own ones are given.
   int euler(int first, int second, std::span<const std::uint32_t> glue) {
     return joined_.joined_euler(first, second, glue);
   }
-  // Area of the smallest rectangle around a chart, as it lies now.
+  // Returns the area of the smallest rectangle around a chart's current coordinates.
   double box(std::span<const std::uint32_t> cells);
-  // Stores the last trial's coordinates.
+  // Stores the coordinates of the last trial.
   void commit();
 
  private:
@@ -73,7 +75,8 @@ class Trial {
   bool fits_unrolled(TrialOutcome& outcome);
   bool measure_stretch(double stretch_high, TrialOutcome& outcome);
   bool descend(const TrialLimits& limits, TrialOutcome& outcome);
-  // What a descent from the aligned halves would come to: nothing new, who knows, or no acceptance.
+  // The prospects of a descent from the aligned halves: it is not needed, its outcome is open, or
+  // it cannot be accepted.
   enum class Start { settled, open, hopeless };
   Start judge_start(std::size_t smaller_half, const TrialLimits& limits, TrialOutcome& outcome);
   bool promising(const TrialLimits& limits, TrialOutcome& outcome);
@@ -92,10 +95,11 @@ class Trial {
   double area_ = 0;  // of all cells
   std::vector<Vec2d> uvs_;
   std::vector<double> weight_;
-  std::vector<std::array<std::uint32_t, 2>> pairs_;  // slots of first and second chart
+  std::vector<std::array<std::uint32_t, 2>> pairs_;  // glued slots of the first and the second
+                                                     // chart
   std::vector<Vec2d> points_, hull_;
-  bool flipped_ = false;  // a triangle, when shape_fits() last looked
-  double misfit_ = 0;     // largest distance of two glued slots, as aligned
+  bool flipped_ = false;  // whether any triangle is, as of the last shape_fits()
+  double misfit_ = 0;     // largest distance between two glued slots after alignment
 };
 
 }  // namespace atlas

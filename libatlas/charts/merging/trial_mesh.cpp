@@ -73,7 +73,8 @@ void TrialMesh::list_cells(std::span<const std::uint32_t> first,
   triangles_.resize(first_.back() + JoinedFans::kBeyond);
 }
 
-// Until vertices are numbered a triangle keeps its class and the place of the cell across.
+// Until vertices are numbered, a triangle stores its slot class in `a` and the index of the cell
+// across in `b`.
 void TrialMesh::list_triangles(const std::vector<std::uint8_t>& joined) {
   neighbour_.clear();
   first_neighbour_.clear();
@@ -97,8 +98,8 @@ void TrialMesh::list_triangles(const std::vector<std::uint8_t>& joined) {
   std::fill_n(t, JoinedFans::kBeyond, JoinedFans::Triangle{});
 }
 
-// By cells, breadth-first from one end of the charts, the cell farthest from any, and back (reverse
-// Cuthill-McKee).
+// Numbers the vertices by cells, in reverse Cuthill-McKee order: breadth-first from the cell that
+// an earlier sweep found farthest away, then backwards.
 void TrialMesh::number_vertices() {
   met_.resize(std::max(met_.size(), cells_.size()), 0);
   sweep(0);
@@ -131,7 +132,7 @@ void TrialMesh::number_vertices() {
   euler_ = static_cast<int>(vertex_count()) + joined_sides / 2 - count;
 }
 
-// Fills queue_.
+// Fills queue_ with the cells, breadth-first from `start`.
 void TrialMesh::sweep(std::uint32_t start) {
   ++sweeps_;
   queue_.assign(1, start);

@@ -1,4 +1,4 @@
-// Internal: the fans of two charts of the coarse mesh, joined for a trial.
+// Internal: TrialMesh, the fans of two charts of the coarse mesh, joined for a trial.
 #pragma once
 
 #include <array>
@@ -11,27 +11,28 @@
 
 namespace atlas {
 
-// What trials keep of slots and cells; different pieces of the mesh touch different entries.
+// Data of slots and cells that trials share. Different pieces of the mesh use different entries.
 struct TrialScratch {
   explicit TrialScratch(const CoarseMesh& mesh);
-  std::vector<std::uint32_t> slot_class;  // a slot of those it is joined with in the charts so far
-  std::vector<std::uint32_t> alias;       // union-find over classes, for the arcs on trial
-  std::vector<std::uint32_t> vertex;      // of a class, while vertices are numbered
-  std::vector<std::uint32_t> place;       // of a cell on trial
+  // One per slot: the representative of the slots that it is joined with in the charts so far.
+  std::vector<std::uint32_t> slot_class;
+  std::vector<std::uint32_t> alias;   // union-find over classes, for the arcs on trial
+  std::vector<std::uint32_t> vertex;  // of a class, while vertices are numbered
+  std::vector<std::uint32_t> place;   // of a cell on trial: its index among them
 };
 
 class TrialMesh {
  public:
   TrialMesh(const CoarseMesh& mesh, TrialScratch& scratch) : mesh_(mesh), scratch_(scratch) {}
 
-  // The cells of two charts with the arcs `glue` joined, besides those that are already; `joined`
-  // (1 an arc) names all of them. The vertices of a fan get numbers close to each other: what is
-  // factorised gains by that.
+  // Joins the cells of two charts along the arcs `glue`, in addition to those joined already;
+  // `joined` (one per arc) is set for all of these. The vertices of a fan get numbers close to each
+  // other, which makes factorization cheaper.
   void assemble(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
                 std::span<const std::uint32_t> glue, const std::vector<std::uint8_t>& joined);
-  // What euler() would be for two charts of which it is known.
+  // Returns what euler() would be for two charts whose own values are given.
   int joined_euler(int first, int second, std::span<const std::uint32_t> glue);
-  // The slots so joined stay so.
+  // Makes the slots joined on trial stay joined.
   void commit();
 
   JoinedFans fans() const { return {cells_, first_, triangles()}; }
@@ -42,9 +43,9 @@ class TrialMesh {
     return {triangles_.data(), triangles_.size() - JoinedFans::kBeyond};
   }
   int euler() const { return euler_; }
-  // Vertices of the arcs that are not joined.
+  // The vertices of each arc that is not joined.
   std::span<const std::array<std::uint32_t, 2>> border() const { return border_; }
-  // Places of the cells that a cell is joined to.
+  // Returns the indices of the cells that a cell is joined to.
   std::span<const std::uint32_t> neighbours(std::uint32_t place) const {
     return {neighbour_.data() + first_neighbour_[place],
             neighbour_.data() + first_neighbour_[place + 1]};
@@ -65,14 +66,15 @@ class TrialMesh {
   TrialScratch& scratch_;
   std::vector<std::uint32_t> cells_;
   std::size_t first_count_ = 0;
-  std::vector<std::uint32_t> first_;             // triangle of a cell, and one more
-  std::vector<JoinedFans::Triangle> triangles_;  // and some beyond
-  std::vector<std::uint32_t> class_;             // of a vertex that is no centre
+  std::vector<std::uint32_t> first_;             // first triangle of each cell, and the end
+  std::vector<JoinedFans::Triangle> triangles_;  // and kBeyond more
+  std::vector<std::uint32_t> class_;             // of each vertex that is not a centre
   std::vector<std::array<std::uint32_t, 2>> border_;
   std::vector<std::uint32_t> united_;  // classes with an alias
-  // As neighbours() has them; where a cell's begin, and one more.
+  // neighbours() of all cells; where those of each cell begin, and the end.
   std::vector<std::uint32_t> neighbour_, first_neighbour_;
-  std::vector<std::uint32_t> queue_, met_;  // of sweeps; met_: 1 a cell, the last that met it
+  // Scratch of sweeps; met_, one per cell, is the last sweep that met it.
+  std::vector<std::uint32_t> queue_, met_;
   std::uint32_t sweeps_ = 0;
   int euler_ = 1;
 };

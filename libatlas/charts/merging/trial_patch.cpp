@@ -4,8 +4,8 @@
 
 namespace atlas {
 
-// Breadth-first from the cells that places_ begins with. Within the patch: those that the last
-// sweep met.
+// Adds cells to places_, breadth-first from those that are in it. If `within_patch`, only cells
+// that the last sweep met are added.
 void TrialPatch::sweep(const TrialMesh& mesh, bool within_patch, std::size_t cells) {
   const std::uint32_t last = sweeps_++;
   for (const std::uint32_t c : places_) met_[c] = sweeps_;
@@ -26,7 +26,7 @@ void TrialPatch::take(const TrialMesh& mesh, std::size_t cells, std::span<const 
   for (auto c = static_cast<std::uint32_t>(mesh.first_count()); c < count; ++c)
     places_.push_back(c);
   sweep(mesh, false, cells);
-  // From one end to the other, so that numbers within a fan are close to each other.
+  // A sweep from one end to the other keeps the numbers within a fan close to each other.
   const std::size_t taken = places_.size();
   places_ = {places_.back()};
   sweep(mesh, true, taken);

@@ -11,20 +11,22 @@
 namespace atlas {
 namespace {
 
-// What the angles around a cell's vertices may lack or exceed in all, radians: a cell of 1 / 600 of
-// a sphere lacks 0.02. Rounding of coordinates cancels in the sum, but not in that of magnitudes.
+// Limits on the angle defects of a cell's vertices in radians: on the magnitude of their sum, and
+// on the sum of their magnitudes. A cell of 1 / 600 of a sphere has 0.02. Rounding of coordinates
+// cancels in the former, but not in the latter.
 constexpr double kCurvature = 2e-4, kRoughness = 5e-3;
-// Where triangles meet again around a hole, of the cell's size.
+// The largest gap where triangles meet again around a hole, relative to the cell's size.
 constexpr double kClosing = 1e-3;
 constexpr double kFlatSpread = 1e-6;  // of normals in one plane, as in merging
 
-// A triangle in its plane: corners at (0, 0), (length, 0) and (along, height).
+// A triangle in its plane, with corners at (0, 0), (length, 0) and (along, height).
 struct Flat {
   Flat(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) : length(glm::length(b - a)) {
     along = glm::dot(c - a, b - a) / length;
     height = glm::length(glm::cross(b - a, c - a)) / length;
   }
-  // From the first corner to the third, if the unit vector e leads to the second.
+  // Returns the vector from the first corner to the third, if the unit vector e points to the
+  // second.
   glm::dvec2 rise(const glm::dvec2& e) const { return along * e + height * glm::dvec2(-e.y, e.x); }
 
   double length, along, height;
@@ -39,7 +41,7 @@ class Unroller {
     }
   }
 
-  // Bent cells first; cells in one plane only where they touch what unrolls.
+  // Lays out bent cells first; cells in one plane only where they touch cells that unroll.
   void run() {
     std::vector<std::uint32_t> found;
     for (std::uint32_t k = 0; k < mesh_.cells.size(); ++k) {
@@ -82,7 +84,8 @@ class Unroller {
 
   bool unroll(std::uint32_t k) { return mesh_.cells[k].unrolls = uncurved(k) && lay_flat(k); }
 
-  // Lists the cell's triangles by breadth-first search, as far as their vertices are flat.
+  // Lists the cell's triangles breadth-first in queue_, as long as angle defects stay small.
+  // Returns whether the cell is developable.
   bool uncurved(std::uint32_t k) {
     if (seen_.empty()) {
       seen_.assign(topology_.points.size(), kNoIndex);
@@ -114,8 +117,8 @@ class Unroller {
     return place_[t] < queue_.size() && queue_[place_[t]] / 3 == t;
   }
 
-  // In the queue's order: each triangle comes by one of its half-edges, over whose other side it
-  // was reached.
+  // Lays the triangles out in the queue's order. Each entry is a half-edge, over whose opposite the
+  // triangle was reached. Returns whether they fit each other.
   bool lay_flat(std::uint32_t k) {
     CoarseCell& cell = mesh_.cells[k];
     flat_.resize(queue_.size());
@@ -147,10 +150,10 @@ class Unroller {
     return true;
   }
 
-  // Where the start of h lies in the plane. Precondition: its triangle is laid.
+  // Returns where the start of h lies in the plane. Precondition: its triangle has been placed.
   glm::dvec2 at(std::uint32_t h) const { return flat_[place_[h / 3]][h % 3]; }
 
-  // Lays the triangle of h with that edge from a to b, to its left.
+  // Places the triangle of h, with that edge running from a to b and the triangle to its left.
   void put(std::size_t i, std::uint32_t h, const glm::dvec2& a, const glm::dvec2& b) {
     flat_[i][h % 3] = a;
     flat_[i][next_half_edge(h) % 3] = b;
@@ -161,19 +164,19 @@ class Unroller {
   const Topology& topology_;
   const Cells& cells_;
   CoarseMesh& mesh_;
-  // 1 a piece: it is curved somewhere. What unrolls in it would join untried into charts that the
-  // rest then hangs on; they were cut again, at three times the cost (a cabin of a million
-  // triangles).
+  // One per piece: it is curved somewhere. Parts of it that unroll would be joined untried to
+  // charts that the rest then depends on, and those had to be cut again, at three times the cost (a
+  // cabin of a million triangles).
   std::vector<std::uint8_t> curved_;
   std::unordered_set<std::uint32_t> tips_;
-  std::vector<std::uint32_t> seen_;              // 1 a vertex: the last cell that asked
-  std::vector<std::uint32_t> place_;             // 1 a triangle, in queue_
+  std::vector<std::uint32_t> seen_;              // one per vertex: the last cell that visited it
+  std::vector<std::uint32_t> place_;             // one per triangle: its index in queue_
   std::vector<std::uint32_t> queue_;             // half-edges
-  std::vector<std::array<glm::dvec2, 3>> flat_;  // 1 a queue entry
+  std::vector<std::array<glm::dvec2, 3>> flat_;  // one per queue entry
 };
 
-// How far from its place a corner may come, of the edge across it, before a chart counts as curved:
-// what rounding of coordinates adds up to from triangle to triangle is less.
+// A chart counts as curved if a corner misses its earlier place by more than this share of the edge
+// opposite to it. The rounding of coordinates, added up from triangle to triangle, is less.
 constexpr double kMostGap = 0.02;
 
 class ChartUnroller {
@@ -198,9 +201,9 @@ class ChartUnroller {
   }
 
  private:
-  // A half-edge of a triangle that is laid, and the unit vector along it. Directions are handed on
-  // from triangle to triangle, not found from the ends: errors of those would grow exponentially
-  // over triangles that are higher than wide.
+  // A half-edge of a placed triangle and the unit vector along it. Directions are passed on from
+  // triangle to triangle and not computed from the end points, whose errors would grow
+  // exponentially over triangles that are higher than wide.
   struct Side {
     std::uint32_t half_edge;
     glm::dvec2 direction;
@@ -213,8 +216,8 @@ class ChartUnroller {
     placed_[v] = 1;
   }
 
-  // Lays the triangle of that side, whose ends are placed: the corner across it gets its place, or
-  // must lie there.
+  // Places the triangle of that side, whose ends are placed. The third corner gets its place or, if
+  // it has one, must lie there. Returns false if it does not, or if the triangle is too thin.
   bool lay(const Side& side) {
     const std::uint32_t h = side.half_edge, g = next_half_edge(h), k = previous_half_edge(h);
     reached_[h / 3] = 1;
@@ -222,7 +225,7 @@ class ChartUnroller {
     const glm::dvec2 first = flat.rise(side.direction),
                      second = first - flat.length * side.direction;
     const double to_first = glm::length(first), to_second = glm::length(second);
-    // Not so for triangles without length, either.
+    // Written so that triangles without any length fail, too.
     const double longest = std::max({flat.length, to_first, to_second});
     if (!(flat.length * flat.height >= min_altitude_ * longest)) return false;
     queue_.push_back({g, second / to_second});
@@ -237,7 +240,7 @@ class ChartUnroller {
   const LocalChart& chart_;
   double min_altitude_;
   std::vector<Vec2d>& uvs_;
-  std::vector<std::uint8_t> placed_, reached_;  // 1 a vertex, 1 a triangle
+  std::vector<std::uint8_t> placed_, reached_;  // one per vertex; one per triangle
   std::vector<Side> queue_;
 };
 

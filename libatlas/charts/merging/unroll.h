@@ -1,4 +1,4 @@
-// Internal: cells that can be laid flat as paper can.
+// Internal: lays cells and charts flat that can be unrolled as paper can.
 #pragma once
 
 #include <vector>
@@ -10,20 +10,20 @@
 
 namespace atlas {
 
-// Finds the bent cells around whose vertices the angles sum to a full turn, those of the rim
-// included: parts of cylinders, cones and other developable surfaces. Their triangles are laid flat
-// one beside the other, edge on edge, which stretches nothing; sets CoarseCell::unrolls and
-// flat_centre, and CoarseMesh::flat_slot. Two such cells fit each other along whatever border they
-// share, so merging need not try them on the coarse mesh, whose fans are too coarse for ribbons
-// that are narrower than a cell is bent. Cells in one plane count
-// only where they touch bent ones: coplanar() and fans serve them as well.
-// Curved cells are told by their first vertex, so this costs as much as there is to unroll.
+// Finds the bent cells around whose vertices, including those of the rim, the angles sum to a full
+// turn: parts of cylinders, cones and other developable surfaces. Lays their triangles flat, edge
+// on edge, which stretches nothing, and sets CoarseCell::unrolls and flat_centre, and
+// CoarseMesh::flat_slot. Two such cells fit each other along any border that they share. Merging
+// therefore need not try them on the coarse mesh, whose fans are too coarse for ribbons narrower
+// than their cells are bent. Cells in one plane are included only where they touch bent ones;
+// elsewhere coplanar() and fans serve them as well. Curved cells are recognized by their first
+// vertices, so the time depends on how much there is to unroll.
 void unroll_cells(const Topology& topology, const Cells& cells, CoarseMesh& mesh);
 
-// Lays a connected chart without densities flat, triangle by triangle. False as soon as one does
-// not fit those beside it, or is thinner than min_altitude: nearly all charts that cannot be
-// unrolled show that within a few steps. What comes out may overlap itself, and stretches by what
-// rounding of coordinates adds up to.
+// Lays a connected chart without densities flat, triangle by triangle. Returns false as soon as a
+// triangle does not fit its neighbours, or is thinner than min_altitude; nearly all charts that
+// cannot be unrolled fail within a few steps. The result may overlap itself, and is stretched by
+// the accumulated rounding of coordinates.
 bool unroll_chart(const LocalChart& chart, double min_altitude, std::vector<Vec2d>& uvs);
 
 }  // namespace atlas
