@@ -14,55 +14,63 @@
 namespace atlas {
 namespace {
 
-// What a union costs is bounded: by the neighbours tried for a chart, and by the triangles of all
-// unions as a multiple of the mesh's, which keeps the time linear.
+// Limits on the work of joining charts: neighbours tried per chart, and the triangles of all unions
+// as a multiple of the mesh's, which keeps the time linear.
 struct Patience {
   std::size_t neighbours;
-  double work, fill;  // fill: of its rectangle by a union, or as much as the sparser part
-  std::size_t few;    // charts of fewer triangles are tried, too, though they are no fragments
-  std::size_t small_neighbours;  // tried for a small chart
+  // The least share of its rectangle that a union must fill, if both parts fill as much.
+  double work, fill;
+  // Charts of fewer triangles are tried, too, although they are not fragments.
+  std::size_t few;
+  std::size_t small_neighbours;  // neighbours tried for a small chart
 };
-// Of charts with fewer triangles than a cell the coarse mesh knows hardly more than the outline:
-// whether to merge them is seen here.
-// A work of 1 left a tenth more charts, most of them around a large one (208 meshes), in 3 % less
-// time; 16 spares hardly more.
+// Of charts with fewer triangles than a cell the coarse mesh knows little more than the outline, so
+// the decision to merge them is made here. A work of 1 left a tenth more charts, most of them
+// around a large one (208 meshes), in 3 % less time; 16 removes hardly more.
 constexpr Patience kSmooth{3, 4, 0.45, 60, 6};
 constexpr Patience kFast{2, 0.25, 0.45, 0, 2};
 constexpr Patience kBest{6, 4, 0.45, kNoIndex, 6};
-// Scan noise divides charts that need not be divided. A work of 3 for four neighbours, of fragments
-// and small charts alone, left 7 % more charts in a twelfth less time (60 noisy meshes).
+// Scan noise divides charts that need not be divided. A work of 3 with four neighbours, and only
+// fragments and small charts tried, left 7 % more charts in a twelfth less time (60 noisy meshes).
 constexpr Patience kNoisy{6, 4, 0.45, 200, 8};
-// A limit on cones leaves many small charts, cheap to try.
+// A cone limit leaves many small charts, which are cheap to try.
 constexpr Patience kInCone{6, 3, 0.3, 0, 6};
-// Of a piece's area: charts below it are small. To be rid of one its rectangle and its neighbour's
-// may become larger together, by as much of the piece's area as the waste.
+// Charts below kSmallArea of their piece's area are small. To remove a small chart, the rectangle
+// of the union may exceed the rectangles of both parts by kMostWaste of the piece's area.
 constexpr double kSmallArea = 0.015, kMostWaste = 0.01;
-constexpr double kSmallShare = 0.01;  // of the triangles, what is tried on smooth meshes
-constexpr double kMostL2 = 1.01;      // of a union's stretch, as when cells are merged
-constexpr double kWholeFill = 0.6;    // of a union of charts that are no fragments
-// A seam is worth so many times the stretch that it is when cells are merged, whose flattening is
-// coarser: that saves 2 % of the charts for 1 % more L2 - 1 (228 meshes).
+constexpr double kSmallShare = 0.01;  // of all triangles: the largest fragment tried on smooth
+                                      // meshes
+constexpr double kMostL2 = 1.01;      // L2 stretch of a union, as when cells are merged
+constexpr double kWholeFill = 0.6;  // the share filled by a union of charts that are not fragments
+// A union may cost this many times the stretch that its seam is worth when cells are merged, whose
+// flattening is coarser. This saves 2 % of the charts for 1 % more L2 - 1 (228 meshes).
 constexpr double kWorth = 2.5, kFragmentWorth = 4;
-// Solving never raised the share that a union fills by more: of 1600 it spared 260, in a seventh of
-// the time, and none that succeeded (90 meshes).
+// The share that a union fills never rose by more than 1 / kSureFill when it was solved for. Of
+// 1600 unions this spares 260, with a seventh of the time, none of which would have succeeded (90
+// meshes).
 constexpr double kSureFill = 0.995;
-// Charts apart along creases, as the sides of a box, merging knew well enough: their seams weigh
-// less than this part of their length. Small ones are tried all the same.
+// Charts that meet along creases, as the sides of a box, were judged well enough by merging. They
+// are not tried if the weight of their seam is below this share of its length, except for small
+// charts and fragments.
 constexpr double kHidden = 0.5;
-// Charts whose common border has shapes so different, by its length, do not go together; of short
-// borders that says little, but of charts that are no fragments (of 72 and 55 none went together).
-// Small charts have many neighbours to try.
+// Charts are not joined if the two shapes of their common border differ by more than this share of
+// its length. For short borders that says little, except between charts that are not fragments
+// (none of 72 and 55 such pairs could be joined). Small charts have many neighbours to try, so
+// their limit is stricter.
 constexpr double kMostMisfit = 0.1, kMostShortMisfit = 0.25;
 constexpr double kMostSmallMisfit = 0.07;
-// Unions of so many triangles that overlap so much as they are placed were 750 of 13000, 15 of
-// which succeeded, and took 38 % of the time of those that failed (208 meshes).
+// A union of at least kManyTriangles is not tried if its parts overlap in kMostOverlap places
+// before it is solved for. Of 13 000 unions 750 were like that; 15 of these succeeded, and they
+// took 38 % of the time of all failures (208 meshes).
 constexpr std::size_t kManyTriangles = 250, kMostOverlap = 16;
-// Where a whole border does not fit, its longest run that fits so well, by the run's length, is
-// tried. Runs below this share of the smaller chart's border leave about as much seam as before.
+// Where a whole border does not fit, the longest run of it that fits to kMostRunMisfit of its
+// length is tried. Runs below kLeastRun of the smaller chart's border would leave about as much
+// seam as before.
 constexpr double kMostRunMisfit = 0.03, kLeastRun = 0.1;
 constexpr std::size_t kLeastFitted = 8;  // edges
-// Unions of so many times their smaller part's triangles keep the larger one's uvs but around it,
-// which costs half as much a triangle: a quarter less time for all unions.
+// If a union has more than kLittle times the triangles of its smaller part, the larger part keeps
+// its uvs except around the smaller one. That costs half as much per triangle, and saves a quarter
+// of the time for all unions.
 constexpr std::size_t kLittle = 10;
 constexpr double kLittleWork = 0.5;
 
@@ -94,7 +102,7 @@ class Absorber {
     while (!queue.empty() && !context.cancelled() && work_ > 0) {
       const auto [size, k] = queue.top();
       queue.pop();
-      if (charts_[k].triangles.size() != size) continue;  // it has changed since
+      if (charts_[k].triangles.size() != size) continue;  // the chart has changed since
       const std::uint32_t into = absorb(k);
       if (into != kNoIndex && candidate_[into]) {
         queue.push({charts_[into].triangles.size(), into});
@@ -144,8 +152,8 @@ class Absorber {
     return between <= 2 * limit && std::max(a.cone.angle, b.cone.angle) <= limit;
   }
 
-  // Joins a small chart that fits no neighbour as a whole along the longest run of their border
-  // that fits, with a seam along the rest. So tips come off as petals.
+  // Joins a small chart that fits no neighbour along its whole border along the longest run of the
+  // border that fits, with a seam along the rest. This is how tips come off as petals.
   std::uint32_t attach(std::uint32_t k, std::span<const ChartNeighbour> neighbours) {
     struct Run {
       double length;
@@ -171,7 +179,7 @@ class Absorber {
     return kNoIndex;
   }
 
-  // Whether two charts may become one at all, as far as can be told without trying.
+  // Whether two charts may become one, as far as can be known without trying.
   bool promising(std::uint32_t k, const ChartNeighbour& neighbour, const Joint& joint) {
     const FlatChart &a = charts_[k], &b = charts_[neighbour.chart];
     const bool fragment = a.fragment || b.fragment;
@@ -188,14 +196,14 @@ class Absorber {
            joint.overlap(around_a, around_b, kMostOverlap) < kMostOverlap;
   }
 
-  // Kept until the chart changes.
+  // Returns the chart's outline, which is kept until the chart changes.
   const Outline& outline(std::uint32_t k) {
     Outline& outline = outlines_[k];
     if (outline.edges.empty()) outline = outline_of(topology_, input_.partition, charts_[k]);
     return outline;
   }
 
-  // Along the whole border with the neighbour, once for each size of the two.
+  // Joins along the whole border with the neighbour. Tried once for each size of the two.
   bool join(std::uint32_t k, const ChartNeighbour& neighbour) {
     const std::size_t size =
         charts_[k].triangles.size() + charts_[neighbour.chart].triangles.size();
@@ -242,7 +250,7 @@ class Absorber {
     return false;
   }
 
-  // Leaves a seam along what of a border is not glued.
+  // Leaves a seam along the part of a border that is not glued.
   void sew(std::span<const BorderEdge> border, std::span<const BorderEdge> glue) {
     for (const BorderEdge& edge : border) {
       input_.partition.cut(edge.half_edge);
@@ -254,15 +262,16 @@ class Absorber {
     }
   }
 
-  // Whether a union is better than its parts. It must not cost more stretch than the seam that it
-  // saves is worth; fragments were meant to be one chart.
+  // Whether a union is better than its parts. It must not cost more stretch than a multiple of what
+  // the seam that it saves is worth; the multiple is higher for fragments, which were meant to be
+  // one chart.
   bool is_better(const FlatChart& both, std::uint32_t k, const ChartNeighbour& neighbour) const {
     const std::uint32_t into = neighbour.chart;
     if (both.distortion.stretch_l2 > kMostL2) return false;
     const Extent extent{both.distortion.uv_area, both.box_area()};
     if (!fills(k, into, extent, kMostWaste)) return false;
     const FlatChart &a = charts_[k], &b = charts_[into];
-    // What the seam is worth in stretch.
+    // The multiple of the seam's worth that the union may cost.
     const double times = a.fragment || b.fragment ? kFragmentWorth : kWorth;
     const double worth =
         times * seam_worth_ * seam_of(neighbour.edges).weight * std::sqrt(piece_area(k));
@@ -289,7 +298,7 @@ class Absorber {
   }
 
   struct Seam {
-    double length = 0, weight = 0;  // weight: creases count less, they hide it
+    double length = 0, weight = 0;  // weight: creases count less, since they hide the seam
   };
   Seam seam_of(std::span<const BorderEdge> edges) const {
     Seam seam;
@@ -317,11 +326,13 @@ class Absorber {
   double seam_worth_;
   double crease_cosine_;
   double work_;
-  std::vector<std::uint8_t> candidate_;  // 1 a chart: tried by itself, as what it joins with others
-  std::vector<double> area_;             // 1 a chart, of the surface
+  // One per chart: whether it is tried by itself, also after it has taken in others.
+  std::vector<std::uint8_t> candidate_;
+  std::vector<double> area_;  // one per chart: surface area
   std::vector<double> piece_area_;
-  std::vector<Outline> outlines_;  // 1 a chart; empty: not known
-  // Triangles of the union that was tried last of each two charts: the same again fails again.
+  std::vector<Outline> outlines_;  // one per chart; empty: not known
+  // For each pair of charts, the number of triangles of the union that was tried last. The same
+  // union would fail again.
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> failed_;
 };
 

@@ -1,4 +1,4 @@
-// Internal: gives small charts another chance to be part of a neighbour.
+// Internal: joins small charts and fragments with their neighbours.
 #pragma once
 
 #include <vector>
@@ -14,13 +14,14 @@ struct AbsorbInput {
   ChartScratch& scratch;
 };
 
-// Fragments (FlatChart::fragment), small charts (of a hundredth or two of their piece's area) and
-// those of few triangles (with the preset `best`: all), smallest first, are flattened together with
-// the neighbour that they share most border with, the next ones if that fails; small ones that fit
-// none along their whole border are joined along a part of it. They stay joined if the union meets
-// all limits and does not sprawl, and if, fragments apart, it costs no more stretch than the seam
-// was worth. Charts that were joined to others are removed from `charts`. In order, so the same for
-// every thread count.
+// Tries to join charts with their neighbours, smallest first. Tried are fragments
+// (FlatChart::fragment), small charts (up to 1.5 % of their piece's area) and charts of few
+// triangles; with the preset `best`, all charts. Each is flattened together with the neighbour that
+// it shares most border with, and with the next ones if that fails. Small charts that fit no
+// neighbour along their whole border are joined along a part of it. A union is kept if it meets all
+// limits, does not sprawl, and costs no more stretch than a multiple of what the seam was worth.
+// Charts that were joined to others are removed from `charts`. The order of trials, and so the
+// result, is the same for every thread count.
 void absorb_charts(const AbsorbInput& input, std::vector<FlatChart>& charts,
                    const Context& context);
 

@@ -14,47 +14,49 @@
 namespace atlas {
 namespace {
 
-// A projection this close to isometric is taken without asking the solver.
+// A projection this close to isometric is accepted without calling the solver.
 constexpr double kPlanarStretch = 1.001;
 constexpr double kFastPlanarStretch = 1.1;
-// Within a narrower cone a projection does.
+// Charts within a narrower cone are left to the projection, and not unrolled.
 constexpr double kFlatCone = 1 * M_PI / 180;
-// Of the square root of a chart's area: borders so near each other touch. Equal sides of parts come
-// to lie upon each other when they unroll, and rounding would decide whether they cross.
+// Borders closer to each other than this share of the square root of the chart's area touch. Equal
+// sides come to lie on each other when parts unroll, and rounding would decide whether they cross.
 constexpr double kTouching = 2e-6;
-// A chart with holes is tried uncut when it is not a tube; a tube's normals exceed this cone.
+// A chart with holes is tried uncut if its cone is narrower; the normals of a tube exceed this.
 constexpr double kOpenCone = 85 * M_PI / 180;
 constexpr int kSmallHole = 16, kLongestSlit = 100;  // edges
-// Altitude kept for slivers, relative to the square root of the chart's area.
+// The altitude that slivers keep, relative to the square root of the chart's area.
 constexpr double kMinAltitude = 1e-7;
 
-// Charts of fewer triangles are squeezed towards this stretch even where the bound is wider: it
-// costs them little time, and the solver leaves it where it costs much L2 stretch.
+// Charts of fewer triangles are squeezed towards kAimedStretch (with the preset `best`, all charts
+// to kBestStretch) even if the bound is wider. That costs them little time, and the solver stops
+// where it would cost much L2 stretch.
 constexpr std::size_t kLargeChart = 20000;
 constexpr double kAimedStretch = 1.18;
 constexpr double kBestStretch = 1.12;
-// Under scan noise, rounds of cutting and of closing what crosses, each going on from the last, in
-// all and of closing, and those in the end that only close. With half as many, or charts divided
-// for 8 crossings whatever their size, time and charts were a tenth and a twentieth more (11 noisy
-// meshes).
+// Under scan noise, each round of cutting, or of closing cuts that cross, continues from the last
+// one. These are the most rounds of both, the most that close, and the further ones that only
+// close. With half as many, or with charts divided for 8 crossings whatever their size, time and
+// charts were a tenth and a twentieth more (11 noisy meshes).
 constexpr int kMostCuts = 12, kMostClosings = 10, kLastClosings = 4;
-// Crossings of the banks of cuts, with more of which a chart is divided: so many, or more in a
-// large one, a crossing for so many triangles.
+// Under scan noise a chart is divided if the banks of its cuts cross more often than both
+// kMostCrossingsLeft times and once for kTrianglesACrossing triangles.
 constexpr std::size_t kMostCrossingsLeft = 8, kTrianglesACrossing = 150;
-constexpr int kTelling = 2;  // cuts
-// Of a union's loops: of 5900 unions none came out after more.
+// That decision is made after this number of cuts, or earlier if the chart is within the bound.
+constexpr int kTelling = 2;
+// Rounds of joining boundary loops of a union: of 5900 unions none succeeded after more.
 constexpr int kMostJoints = 2;
 constexpr int kBestIterations = 8;
-// Charts of so many triangles that are stretched beyond the bound over more than this share of
-// their area were saved by no cut to a vertex (measured); a hole in them may be what they close
+// Charts of at least kManyTriangles that exceed the bound over more than kWideShare of their area
+// were never saved by cuts to vertices (measured). If they have a hole, it may be what they close
 // around.
 constexpr std::size_t kManyTriangles = 1000;
 constexpr double kWideShare = 0.04;
-// What stretches by so many times the bound around a small hole was saved by 25 of 34 joints of the
-// hole with the border, and by no cut to a vertex of 250 (measured on 90 meshes).
+// Measured on 90 meshes: where charts exceed the bound by this factor around a small hole, joining
+// the hole with the border saved 25 of 34, and a cut to a vertex none of 250.
 constexpr double kHoleStretch = 1.1;
-// Charts beyond the bound whose border crosses itself more often were never saved, nor (10 of 700)
-// those whose border still crosses itself after cuts to single vertices.
+// Charts beyond the bound whose border crosses itself more often were never saved. Of those whose
+// border still crosses itself after cuts to single vertices, 10 of 700 were.
 constexpr std::size_t kMostFirstCrossings = 3;
 
 class ChartJob {
@@ -100,7 +102,8 @@ class ChartJob {
     cone_ = normal_cone(input_.topology.normals, triangles);
   }
 
-  // What the last attempt left, for the next one to go on from: a cut opens where it is made.
+  // Keeps the uvs of the last attempt as the start of the next one, since a cut opens where it is
+  // made. Only under scan noise.
   void keep_uvs() {
     kept_uvs_.clear();
     if (noisy()) kept_uvs_ = corner_uvs();
@@ -123,8 +126,8 @@ class ChartJob {
     return flattens && (only_darts() || cone_.angle < kOpenCone) && flatten(outcome);
   }
 
-  // Whether all loops but one are small, or banks of cuts to single vertices: those need not be
-  // joined to anything.
+  // Whether the chart has genus 0 and all its boundary loops but one are small, or banks of cuts to
+  // single vertices. Such loops need not be joined to anything.
   bool only_darts() const {
     return large_loops().size() <= 1 && chart_.euler() == 2 - static_cast<int>(chart_.loops.size());
   }
@@ -145,15 +148,17 @@ class ChartJob {
     return large;
   }
 
-  // Charts within an open cone are tried after each joint; others will not flatten before all are
-  // made.
+  // Joins boundary loops. Charts within an open cone are tried after each joint; others will not
+  // flatten before all large loops are joined.
   bool join_loops() {
     std::vector<std::uint32_t> wanted;
     if (cone_.angle >= kOpenCone) wanted = large_loops();
     return atlas::join_loops(input_.topology, chart_, wanted, partition_);
   }
 
-  // A seam that may help: from loop to loop, or to where curvature stretches it too much.
+  // Cuts a seam that may help: from loop to loop, or to where curvature causes too much stretch.
+  // Under scan noise, may instead close cuts whose banks cross. Returns false if there is nothing
+  // to do.
   bool cut_open(int cuts) {
     const int closings = effort_.whole || !noisy() ? effort_.closings : kMostClosings;
     if (noisy() && result_.within_bound && !result_.injective && closings_ < closings &&
@@ -161,7 +166,7 @@ class ChartJob {
       ++closings_;
       return true;
     }
-    // What was just closed would be cut again.
+    // Otherwise the cuts just closed would be made again.
     if (closings_ > 0 && !only_darts()) return false;
     if (!only_darts() || hole_in_the_way(cuts)) return join_loops();
     if (cuts >= most_cuts() || result_.within_bound || result_.offenders.empty()) return false;
@@ -177,7 +182,8 @@ class ChartJob {
     return any;
   }
 
-  // Where the border crosses itself in a few places.
+  // If the border crosses itself in few places, lists the triangles around these, for neighbours to
+  // take.
   void list_removable(ChartOutcome& outcome) const {
     if (result_.crossings.empty()) return;
     outcome.crossings = result_.crossings.size();
@@ -204,14 +210,15 @@ class ChartJob {
   }
   int most_cuts() const { return noisy() && !effort_.whole ? kMostCuts : effort_.cuts; }
 
-  // Whether what is beyond the bound is past saving by cuts to single vertices. Not so with slits
-  // or holes in it: a terrain of terraces is one chart by such cuts, and was five without.
+  // Whether a chart beyond the bound can no longer be saved by cuts to single vertices. This does
+  // not hold for charts with slits or holes: a terrain of terraces is one chart by such cuts, and
+  // was five without them.
   bool cuts_in_vain() const {
     if (result_.within_bound || result_.uvs.empty() || chart_.loops.size() > 1) return false;
     return result_.crossings.size() > (cut_to_tips_ ? 0 : kMostFirstCrossings);
   }
 
-  // Whether a small hole is what the chart closes around.
+  // Whether the chart seems to close around a small hole.
   bool hole_in_the_way(int cuts) const {
     if (chart_.loops.size() < 2 || noisy()) return false;
     const bool far_beyond =
@@ -219,9 +226,9 @@ class ChartJob {
     return far_beyond || (cuts == 0 && stretched_widely());
   }
 
-  // Cuts whose banks cross in many places: closing some, or handing triangles to neighbours, hardly
-  // ever saved such a chart. Nor did further cuts, one of 24 (160 meshes), where it is beyond the
-  // bound yet.
+  // Whether the banks of cuts cross in so many places that the chart is given up. Closing some
+  // cuts, or giving triangles to neighbours, hardly ever saved such a chart; neither did further
+  // cuts if it is still beyond the bound (1 of 24; 160 meshes).
   bool hopeless(int cuts) const {
     const std::size_t crossings = std::max(result_.crossings.size(), crossings_left().size());
     return noisy() && (result_.within_bound || cuts >= kTelling) && !result_.injective &&
@@ -229,7 +236,7 @@ class ChartJob {
                std::max(kMostCrossingsLeft, chart_.triangles().size() / kTrianglesACrossing);
   }
 
-  // Whether what exceeds the bound is more than the surroundings of a few sharp vertices.
+  // Whether more than the surroundings of a few sharp vertices exceeds the bound.
   bool stretched_widely() const {
     if (noisy() || result_.within_bound || result_.uvs.empty()) return false;
     if (chart_.triangles().size() < kManyTriangles) return false;
@@ -277,7 +284,7 @@ class ChartJob {
     }
     param.local = noisy() || effort_.little;
     param.rough = noisy();
-    // Six charts in a thousand fewer than with cuts there, on 80 meshes.
+    // This gives 6 in 1000 fewer charts than cutting such charts open (80 meshes).
     param.leave_crossings = !noisy() && !effort_.little;
     if (best) param.iterations = kBestIterations;
     param.max_planar_stretch =
@@ -300,8 +307,8 @@ class ChartJob {
     return param;
   }
 
-  // Lays a chart that unrolls flat without asking the solver. False if it does not, or would
-  // overlap itself.
+  // Lays a chart that unrolls flat, without calling the solver. Returns false if it does not
+  // unroll, or would overlap itself.
   bool unroll() {
     const bool bent = cone_.angle > kFlatCone && chart_.density.empty() && kept_uvs_.empty();
     if (!bent || !lay_unrolled()) return false;
@@ -331,7 +338,7 @@ class ChartJob {
   bool flatten(ChartOutcome& outcome) {
     if (!unroll()) {
       const LocalMesh mesh = chart_.mesh();
-      result_ = {};  // large, and needed no more
+      result_ = {};  // large, and no longer needed
       result_ = parameterize(mesh, param_options(mesh), scratch_.workspace);
     }
     const bool single = chart_.triangles().size() == 1;
@@ -355,7 +362,8 @@ class ChartJob {
     return true;
   }
 
-  // Turning rounds: where borders touch, as those of boxes do that unroll, they may cross now.
+  // Checks injectivity again after turning, which rounds: borders that touch, as those of boxes
+  // that unroll, may now cross.
   bool injective_as_turned() {
     Injectivity check = check_injectivity(chart_.mesh(), result_.uvs);
     result_.injective = check.injective;
@@ -371,11 +379,11 @@ class ChartJob {
   Darts darts_;
   int closings_ = 0;
   bool cut_to_tips_ = false;
-  bool slits_closed_ = false;  // those that opened a chart that unrolls
+  bool slits_closed_ = false;  // slits that opened a chart that unrolls
   NormalCone cone_;
   ParamResult result_;            // of the last attempt
-  std::vector<Vec2d> kept_uvs_;   // 1 a corner, or empty: to go on from
-  std::vector<Vec2d> start_uvs_;  // the same, 1 a vertex
+  std::vector<Vec2d> kept_uvs_;   // one per corner, or empty: where to continue from
+  std::vector<Vec2d> start_uvs_;  // the same, one per vertex
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Internal: one chart on its way to flat coordinates.
+// Internal: flattens one chart, or says how to divide it.
 #pragma once
 
 #include <array>
@@ -11,42 +11,45 @@
 
 namespace atlas {
 
-// Memory that one thread needs at a time.
+// The memory that one thread needs at a time.
 struct ChartScratch {
   LocalChart chart;
   ParamWorkspace workspace;
   std::vector<std::array<std::uint32_t, 2>> border;
-  double cuts_cpu = 0;      // seconds spent on cutting charts open
-  std::size_t largest = 0;  // triangles of the largest chart so far
+  double cuts_cpu = 0;      // CPU seconds spent on cutting charts open
+  std::size_t largest = 0;  // number of triangles of the largest chart so far
 };
 
-// What became of a chart: flat; or to be divided; or to lose a few triangles to its neighbours.
+// The outcome for one chart: it is flat, or is to be divided, or should lose a few triangles to its
+// neighbours.
 struct ChartOutcome {
   FlatChart flat;
-  std::vector<std::uint8_t> parts;    // 1 a triangle: the part it goes to, if not empty
-  std::vector<std::uint32_t> remove;  // triangles whose going would help; parts is set as well, for
-                                      // when no neighbour takes them
-  std::size_t crossings = 0;          // of its border, that remove is to undo
-  std::vector<Vec2d> uvs;             // with remove, 3 a triangle: what to go on from
-  bool failed = false;                // could not be flattened as it was
+  std::vector<std::uint8_t> parts;  // one per triangle: its part, if the chart is to be divided
+  // Triangles whose removal would help. `parts` is set as well, in case no neighbour takes them.
+  std::vector<std::uint32_t> remove;
+  std::size_t crossings = 0;  // crossings of the border that the removal should undo
+  std::vector<Vec2d> uvs;     // with `remove`, three per triangle: where to continue from
+  bool failed = false;        // the chart could not be flattened as it was
 };
 
 struct ChartEffort {
-  int rings = 1;     // of triangles around a crossing of the border, that are listed for removal
-  int cuts = 3;      // rounds of cutting it open, before it is divided
-  int closings = 1;  // rounds, among these, of closing cuts whose banks cross
-  // 3 a triangle, or empty: of flat parts that are to be joined (see ParamOptions::joined).
+  // Rings of triangles around a crossing of the border that are listed for removal.
+  int rings = 1;
+  int cuts = 3;      // rounds of cutting the chart open before it is divided
+  int closings = 1;  // how many of these may close cuts whose banks cross
+  // Three per triangle, or empty: uvs of the flat parts to be joined (see ParamOptions::joined).
   std::span<const Vec2d> joined = {};
-  // 3 a triangle, or empty: where an earlier attempt came to that was within the bound; unplaced()
-  // (newcomers.h) for triangles that the chart got since.
+  // Three per triangle, or empty: the uvs of an earlier attempt within the bound; unplaced()
+  // (newcomers.h) for triangles that the chart has got since.
   std::span<const Vec2d> resumed = {};
-  // What is joined or resumed is one large part and little else: only the places beyond the bound
-  // are relaxed.
+  // The joined or resumed uvs are one large part and little else, so only the places beyond the
+  // bound are relaxed.
   bool little = false;
-  bool whole = false;  // what fails needs no division: its parts are a single one
+  bool whole = false;  // a failure needs no division: `parts` is then one entry
 };
 
-// Flattens one chart, cutting it open where that helps (seams of its own triangles only).
+// Flattens one chart, and cuts it open where that helps (only seams of its own triangles are
+// changed).
 ChartOutcome flatten_chart(const FlattenInput& input, Partition& partition,
                            std::span<const std::uint32_t> triangles, const ChartEffort& effort,
                            ChartScratch& scratch);

@@ -10,7 +10,7 @@
 namespace atlas {
 namespace {
 
-// The darts of one chart, as a graph over the vertices of the mesh.
+// The darts of one chart, as a graph on the vertices of the mesh.
 class CutGraph {
  public:
   CutGraph(const Topology& topology, const LocalChart& chart, Partition& partition, Darts& darts)
@@ -26,7 +26,8 @@ class CutGraph {
     }
   }
 
-  // Closes the cuts that touch these triangles, and what of them then leads nowhere.
+  // Closes the darts at these triangles, and the parts of darts that then lead nowhere. Returns
+  // whether there were any.
   bool zip(std::span<const std::uint32_t> triangles) {
     bool any = false;
     for (const std::uint32_t t : triangles) {
@@ -72,7 +73,8 @@ class CutGraph {
     partition_.close(topology_.opposite[h]);
   }
 
-  // A tree of cuts without a tip of its own, or of one edge away from the border, opens nothing.
+  // Closes trees of cuts that open nothing: those without a tip of their own, and single edges away
+  // from the border.
   void drop_idle() {
     std::erase_if(edges_, [&](std::uint32_t h) { return !partition_.seam(h); });
     for (const std::uint32_t h : edges_) {
@@ -101,7 +103,7 @@ class CutGraph {
   std::unordered_map<std::uint32_t, Node> nodes_;
 };
 
-// The lexicographically lowest corner of a border loop. turn: to the left, 1, or the right, -1.
+// The lexicographically lowest corner of a boundary loop. turn: 1 to the left, -1 to the right.
 struct Corner {
   Vec2d at{std::numeric_limits<double>::infinity(), 0};
   int turn = 0;
@@ -137,7 +139,7 @@ bool close_cuts(const Topology& topology, const LocalChart& chart,
 
 bool close_flat_slits(const Topology& topology, const LocalChart& chart, std::span<const Vec2d> uvs,
                       Partition& partition) {
-  constexpr double kSameBank = 1e-6;  // of an edge
+  constexpr double kSameBank = 1e-6;  // relative to the edge's length
   const auto at = [&](std::uint32_t h) { return to_glm(uvs[chart.corners[h / 3][h % 3]]); };
   bool any = false;
   for (std::uint32_t h = 0; h < chart.opposite.size(); ++h) {
@@ -160,7 +162,7 @@ bool close_flat_slits(const Topology& topology, const LocalChart& chart, std::sp
 std::vector<BorderCrossing> turned_loops(const LocalChart& chart, std::span<const Vec2d> uvs) {
   std::vector<Corner> corners;
   for (const std::uint32_t loop : chart.loops) corners.push_back(lowest_corner(chart, uvs, loop));
-  std::size_t outline = 0;  // it reaches farther than what it encloses
+  std::size_t outline = 0;  // the outer loop reaches farther than the ones inside
   for (std::size_t i = 1; i < corners.size(); ++i) {
     if (corners[i] < corners[outline]) outline = i;
   }

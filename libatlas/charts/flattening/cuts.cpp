@@ -11,26 +11,30 @@
 namespace atlas {
 namespace {
 
-constexpr double kCreaseDiscount = 4;  // how much shorter a fully folded edge is to cut along
-// Angle defects below this, in radians, are not what stretches a chart beyond its bound.
+// A fully folded edge counts 1 / (1 + kCreaseDiscount) of its length as part of a cut.
+constexpr double kCreaseDiscount = 4;
+// Angle defects below this (radians) do not stretch a chart beyond its bound.
 constexpr double kLeastDefect = 0.02;
-// In radians. Symmetric charts have tips alike but for rounding, which must not choose among them.
+// Defects are rounded to multiples of this (radians): the tips of symmetric charts are equal but
+// for rounding, which must not choose between them.
 constexpr double kSameDefect = 1e-4;
-// Nor between ways that mirror each other: of a triangle's mean width, what lengths are multiples
-// of.
+// Lengths are rounded to multiples of this share of a triangle's mean width, so that rounding does
+// not choose between ways that mirror each other either.
 constexpr double kLengthStep = 1e-3;
-// Spikes of scan noise: a cone that leans by 20 degrees lacks this.
-constexpr std::size_t kLongestDart = 12;  // edges; what the tip needs is room beside it
-constexpr double kDetour = 4;             // how far around an edge that was cut in vain
+// The most edges of a dart: what a tip needs is room beside it.
+constexpr std::size_t kLongestDart = 12;
+// Edges that were cut in vain count this many times their length.
+constexpr double kDetour = 4;
+// Spikes of scan noise have larger defects: a cone whose normals lean by 20 degrees has this one.
 constexpr double kSharpDefect = 0.4;
-constexpr double kFreeShare = 0.001;  // of the area, that no bound is put on
+constexpr double kFreeShare = 0.001;  // share of the area that the bound does not apply to
 constexpr double kFar = std::numeric_limits<double>::max();
 
 std::uint32_t whole_half_edge(const LocalChart& chart, std::uint32_t h) {
   return 3 * chart.triangles()[h / 3] + h % 3;
 }
 
-// As Darts name it.
+// Returns the edge's number in Darts.
 std::uint32_t dart_edge(const LocalChart& chart, std::uint32_t h) {
   return std::min(whole_half_edge(chart, h), whole_half_edge(chart, chart.opposite[h]));
 }
@@ -57,7 +61,7 @@ class EdgePaths {
   std::uint32_t from(std::uint32_t h) const { return chart_.corners[h / 3][h % 3]; }
   bool on_border(std::uint32_t v) const { return chart_.opposite[out_[v]] == kNoIndex; }
 
-  // 2 pi less the angles around an inner vertex.
+  // Returns the angle defect of an inner vertex: 2 pi minus the angles around it.
   double defect(std::uint32_t v) const {
     double sum = 2 * M_PI;
     std::uint32_t h = out_[v];
@@ -80,22 +84,23 @@ class EdgePaths {
     } while (h != kNoIndex && h != out_[v]);
   }
 
-  // Forgets all paths.
+  // Discards all paths.
   void clear() {
     distance_.assign(chart_.positions.size(), kFar);
     through_.assign(chart_.positions.size(), kNoIndex);
     heap_ = {};
   }
 
-  // A path may start at v.
+  // Lets paths start at v.
   void start_at(std::uint32_t v) {
     distance_[v] = 0;
     through_[v] = kNoIndex;
     heap_.push({0, v});
   }
 
-  // Spreads until it comes to a vertex that is wanted; kNoIndex if there is none. Goes on from
-  // where it was; paths pass no vertex that was wanted, unless they start there.
+  // Spreads until it reaches a vertex that is wanted, and returns it; kNoIndex if there is none.
+  // Each call continues where the last one ended. Paths do not pass through wanted vertices, unless
+  // they start there.
   template <class Wanted>
   std::uint32_t spread_to(Wanted&& wanted) {
     while (!heap_.empty()) {
@@ -116,7 +121,8 @@ class EdgePaths {
     return kNoIndex;
   }
 
-  // The half-edges from v back to where its path started; later paths may start anywhere on it.
+  // Returns the half-edges from v back to the start of its path. Later paths may start anywhere on
+  // it.
   std::vector<std::uint32_t> take_path(std::uint32_t v) {
     std::vector<std::uint32_t> path;
     for (std::uint32_t w = v; through_[w] != kNoIndex; w = from(through_[w])) {
@@ -127,7 +133,7 @@ class EdgePaths {
     return path;
   }
 
-  // Distances to the border, for way_out().
+  // Computes distances to the border, for way_out().
   void spread_from_border() {
     clear();
     for (std::uint32_t v = 0; v < distance_.size(); ++v) {
@@ -137,7 +143,8 @@ class EdgePaths {
   }
   double distance(std::uint32_t v) const { return distance_[v]; }
 
-  // The half-edges from v to the nearest border or earlier way out, which others may end on.
+  // Returns the half-edges from v to the nearest point of the border or of an earlier way out.
+  // Later ways may end on this one.
   std::vector<std::uint32_t> way_out(std::uint32_t v) {
     if (distance_[v] == kFar) return {};
     std::vector<std::uint32_t> path = take_path(v);
@@ -157,7 +164,7 @@ class EdgePaths {
     return avoid_->contains(dart_edge(chart_, h));
   }
 
-  // In steps.
+  // In multiples of step_.
   double length(std::uint32_t h) const {
     const std::uint32_t s = chart_.triangles()[h / 3],
                         t = chart_.triangles()[chart_.opposite[h] / 3];
@@ -168,7 +175,8 @@ class EdgePaths {
     return std::round((avoided(h) ? kDetour * plain : plain) / step_);
   }
 
-  // From a border half-edge the walk meets every inner edge of the fan once.
+  // Visits the inner edges at v. Starting from a border half-edge, the walk meets each of them
+  // once.
   template <class Body>
   void each_inner_edge(std::uint32_t v, Body&& body) const {
     std::uint32_t h = out_[v];
@@ -181,10 +189,10 @@ class EdgePaths {
   const Topology& topology_;
   const LocalChart& chart_;
   const std::unordered_set<std::uint32_t>* avoid_;
-  double step_ = 0;                 // scaled units
-  std::vector<std::uint32_t> out_;  // a half-edge from each vertex, the one on the border if any
+  double step_ = 0;                 // in scaled units
+  std::vector<std::uint32_t> out_;  // a half-edge from each vertex, the boundary one if any
   std::vector<double> distance_;
-  std::vector<std::uint32_t> through_;  // the half-edge that leads to a vertex
+  std::vector<std::uint32_t> through_;  // the half-edge by which a vertex is reached
   std::priority_queue<Visit, std::vector<Visit>, std::greater<>> heap_;
 };
 
@@ -202,7 +210,8 @@ bool join_loops(const Topology& topology, const LocalChart& chart,
                 std::span<const std::uint32_t> wanted, Partition& partition) {
   EdgePaths paths(topology, chart);
   paths.clear();
-  std::vector<std::uint32_t> loop_at(chart.positions.size(), kNoIndex);  // not joined yet
+  std::vector<std::uint32_t> loop_at(chart.positions.size(), kNoIndex);  // the loop at a vertex, if
+                                                                         // not joined yet
   const auto each_vertex = [&](std::uint32_t loop, auto&& body) {
     std::uint32_t h = loop;
     do {
@@ -235,8 +244,8 @@ bool join_loops(const Topology& topology, const LocalChart& chart,
 
 namespace {
 
-// The vertices that cuts should lead to: the most curved one among the offenders, and further sharp
-// ones until what they sit in makes up for the excess.
+// Chooses the vertices that cuts should lead to: the vertex of the offenders with the largest angle
+// defect, and further sharp ones until the offenders around them make up for the excess area.
 std::vector<std::uint32_t> choose_tips(const Topology& topology, const LocalChart& chart,
                                        std::span<const std::uint32_t> offenders,
                                        const EdgePaths& paths) {
@@ -245,11 +254,11 @@ std::vector<std::uint32_t> choose_tips(const Topology& topology, const LocalChar
   const auto area = [&](std::uint32_t t) { return topology.areas[chart.triangles()[t]]; };
   for (const std::uint32_t t : offenders) excess += area(t);
   struct Tip {
-    double defect;  // a multiple of kSameDefect
+    double defect;  // rounded to a multiple of kSameDefect
     std::uint32_t vertex;
   };
   std::vector<Tip> tips;
-  std::vector<double> around(chart.positions.size(), 0);  // area of the offenders at a vertex
+  std::vector<double> around(chart.positions.size(), 0);  // area of the offenders at each vertex
   for (const std::uint32_t t : offenders) {
     for (const std::uint32_t v : chart.corners[t]) {
       if (paths.on_border(v)) continue;
@@ -283,7 +292,8 @@ bool cut_to_border(const Topology& topology, const LocalChart& chart,
   if (tips.empty()) return false;
   paths.spread_from_border();
   bool any = false;
-  while (!tips.empty()) {  // the nearest first; those that follow may end on its cut
+  // The nearest tip comes first; later cuts may end on its cut.
+  while (!tips.empty()) {
     const auto nearest =
         std::min_element(tips.begin(), tips.end(), [&](std::uint32_t a, std::uint32_t b) {
           return paths.distance(a) != paths.distance(b) ? paths.distance(a) < paths.distance(b)

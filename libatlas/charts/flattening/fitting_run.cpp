@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::size_t none = std::size_t(-1);
 
-// An edge of the common border in both charts' uvs, its two ends in the order of the first chart.
+// An edge of the common border in both charts' uvs, with its two ends in the order of the first
+// chart.
 struct Link {
   std::array<std::uint32_t, 2> own, other;
   std::size_t next = none, previous = none;
@@ -21,7 +22,7 @@ struct Link {
 std::vector<Link> link_edges(const Topology& topology, const ChartPair& pair,
                              std::span<const BorderEdge> edges) {
   std::vector<Link> links;
-  std::map<std::uint32_t, std::size_t> leaving;  // by the own vertex
+  std::map<std::uint32_t, std::size_t> leaving;  // by the first chart's vertex
   for (const BorderEdge& edge : edges) {
     const auto [to, from] = ends_of(pair.b, topology.opposite[edge.half_edge]);
     links.push_back({ends_of(pair.a, edge.half_edge), {from, to}});
@@ -36,7 +37,8 @@ std::vector<Link> link_edges(const Topology& topology, const ChartPair& pair,
   return links;
 }
 
-// All maximal runs; one that closes is listed twice in a row, but for its last edge.
+// Lists all maximal runs. The edges of a closed run are listed twice in a row, without the last
+// one.
 std::vector<std::vector<std::size_t>> list_runs(std::span<const Link> links) {
   std::vector<std::vector<std::size_t>> runs;
   std::vector<bool> seen(links.size(), false);
@@ -65,7 +67,7 @@ std::vector<BorderEdge> find_fitting_run(const Topology& topology, const ChartPa
   std::vector<BorderEdge> best;
   double best_share = 0;
   for (const std::vector<std::size_t>& run : list_runs(links)) {
-    std::vector<RigidFit> fits;  // of the edges before
+    std::vector<RigidFit> fits;  // of all edges before
     const Link& first = links[run[0]];
     fits.emplace_back(to_glm(pair.a.uvs[first.own[0]]), to_glm(pair.b.uvs[first.other[0]]));
     for (const std::size_t i : run) {

@@ -1,4 +1,5 @@
-// Internal: flattens every chart of a partition, cutting and splitting those that resist.
+// Internal: flattens every chart of a partition, and cuts or divides those that cannot be
+// flattened.
 #pragma once
 
 #include <array>
@@ -15,44 +16,45 @@
 
 namespace atlas {
 
-// A chart that is done. Lengths in units of the topology (scaled), times density.
+// A flat chart. Lengths are in units of the topology (scaled), times density.
 struct FlatChart {
   std::vector<std::uint32_t> triangles;               // ascending
-  std::vector<std::array<std::uint32_t, 3>> corners;  // 1 a triangle, into uvs; working order
-  std::vector<std::uint32_t> vertex;                  // 1 a uv: of the topology
+  std::vector<std::array<std::uint32_t, 3>> corners;  // one per triangle, into uvs; working order
+  std::vector<std::uint32_t> vertex;                  // one per uv: vertex of the topology
   std::vector<Vec2d> uvs;
   NormalCone cone;
   Distortion distortion;
   Vec2d size;
   bool planar = false;
-  bool kept = false;      // given, not flattened
-  bool fragment = false;  // of a chart that was divided, or left over by a limit on cones
+  bool kept = false;      // the given uvs' shape, not flattened
+  bool fragment = false;  // part of a divided chart, or any chart under a cone limit
 
-  // What it stretches, by its area.
+  // What its stretch costs, relative to its area.
   double excess() const { return distortion.stretch_l2 * distortion.stretch_l2 - 1; }
   double box_area() const { return size.x * size.y; }
 };
 
 struct FlattenInput {
   const Topology& topology;
-  std::span<const float> density;  // 1 a triangle, or empty
+  std::span<const float> density;  // one per triangle, or empty
   const ChartOptions& options;
-  // Where the solver starts, or empty; triangles that change charts get new ones.
+  // Where the solver starts, or empty. Triangles that change charts get new frames.
   Frames& frames;
 };
 
 struct FlattenResult {
   std::vector<FlatChart> charts;   // ordered by first triangle
-  std::uint64_t split_charts = 0;  // that failed and were cut into smaller ones
-  ChartSet::Timing timing;         // the parts of parameterisation so far
+  std::uint64_t split_charts = 0;  // charts that failed and were divided
+  ChartSet::Timing timing;         // the parts of parameterization so far
 };
 
-// Adds the parts, not the two sums, of one to the other.
+// Adds the parts of parameterization, but not the two totals, to `sum`.
 void add_parts(const ChartSet::Timing& parts, ChartSet::Timing& sum);
 
-// Every triangle with a chart in `partition` ends in exactly one FlatChart; each is injective,
-// within the stretch bound and, if asked for, within the cone. `partition` is left as it came out
-// in the end. Charts run in parallel; the result does not depend on how.
+// Flattens all charts. Every triangle with a chart in `partition` ends up in exactly one FlatChart;
+// each is injective, within the stretch bound and, if there is a limit, within the cone.
+// `partition` is changed to the final charts. Charts run in parallel; the result does not depend on
+// the number of threads.
 FlattenResult flatten_charts(const FlattenInput& input, Partition& partition,
                              const Context& context);
 

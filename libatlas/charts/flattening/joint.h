@@ -1,4 +1,4 @@
-// Internal: flat charts laid side by side along their common border.
+// Internal: places two flat charts side by side along their common border.
 #pragma once
 
 #include <array>
@@ -14,53 +14,55 @@ namespace atlas {
 
 // An edge of a chart's border with another chart.
 struct BorderEdge {
-  std::uint32_t other, half_edge;  // other: the chart across; half_edge: the own one
+  std::uint32_t other, half_edge;  // other: the chart across; half_edge: on this chart's side
   double length;
 };
 
-// Lengths of borders are compared in parts of the whole: where a mesh is symmetric many are equal
-// but for rounding.
+// Border lengths are compared as multiples of 1 / kBorderParts of the whole border. In symmetric
+// meshes many are equal but for rounding.
 constexpr double kBorderParts = 1024;
 
 struct ChartNeighbour {
   std::uint32_t chart;
-  double border;  // length, in such parts of the border with all
+  double border;  // length, in such parts of the whole border with other charts
   std::span<const BorderEdge> edges;
 };
 
 double length_of(std::span<const BorderEdge> edges);
 
-// `chart`: its label in `partition`. Sorted by the chart across.
+// Returns the edges of a chart's border with other charts, sorted by the chart across. `chart` is
+// its label in `partition`.
 std::vector<BorderEdge> find_border(const Topology& topology, const Partition& partition,
                                     std::span<const std::uint32_t> triangles, std::uint32_t chart);
 
-// Of the chart whose border it is; the longest common border first. The edges point into `border`.
+// Returns the neighbours of the chart with that border, the one with the longest common border
+// first. Their edges point into `border`.
 std::vector<ChartNeighbour> find_neighbours(std::span<const BorderEdge> border);
 
 struct ChartPair {
   const FlatChart &a, &b;
 };
 
-// The half-edge's two ends in the uvs of its chart: from, to.
+// Returns the two ends of a half-edge as indices into its chart's uvs: from, to.
 std::array<std::uint32_t, 2> ends_of(const FlatChart& chart, std::uint32_t half_edge);
 
-// Two charts that become one: `a` is moved to where `b` continues best across `edges`, the border
-// of `a` with it or a part of that.
+// Two charts that are to become one. `a` is moved to where it best continues `b` across `edges`,
+// which are the border of `a` with `b` or a part of it.
 class Joint {
  public:
   Joint(const Topology& topology, const ChartPair& pair, std::span<const BorderEdge> edges);
 
   const Motion& motion() const { return motion_; }
   std::size_t triangle_count() const { return a_.triangles.size() + b_.triangles.size(); }
-  // Ascending.
+  // The triangles of both charts, ascending.
   std::vector<std::uint32_t> triangles() const;
-  // 3 a triangle in that order, those of `a` moved.
+  // Three uvs per triangle in that order; those of `a` are moved.
   std::vector<Vec2d> uvs() const;
-  // The smallest rectangle around both as they are, side by side: its area. The outlines are those
-  // of `a` and `b`, as they are.
+  // Returns the area of the smallest rectangle around both charts, side by side. The outlines are
+  // those of `a` and `b`, not moved.
   double box(const Outline& a, const Outline& b) const;
-  // How much of `a` lies on `b` where they do not go together: how many sides of triangles of `a`
-  // cross the border of `b`, inner ones twice; counts no further than `most`.
+  // Measures how much of `a` would lie on `b`: returns how many sides of triangles of `a` cross the
+  // border of `b`, where inner sides count twice. Stops counting at `most`.
   std::size_t overlap(const Outline& a, const Outline& b, std::size_t most) const;
 
  private:
@@ -68,7 +70,7 @@ class Joint {
   const FlatChart& a_;
   const FlatChart& b_;
   std::span<const BorderEdge> edges_;
-  Motion motion_;  // misfit: by the length of the edges
+  Motion motion_;  // misfit relative to the length of the edges
 };
 
 }  // namespace atlas

@@ -11,7 +11,7 @@ bool placed(const Vec2d& uv) {
   return !std::isnan(uv.x);
 }
 
-// Lays triangle t on its edge whose ends have a place. False if it has none.
+// Places triangle t on its edge whose ends are placed. Returns false if there is no such edge.
 bool lay_down(const LocalMesh& mesh, std::size_t t, std::span<Vec2d> uvs) {
   const auto& v = mesh.triangles[t];
   int known = 0, apex = 0;

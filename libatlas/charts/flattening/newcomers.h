@@ -1,4 +1,4 @@
-// Internal: triangles that a flat chart got from its neighbours are laid beside those it had.
+// Internal: places the triangles that a flat chart got from its neighbours beside those it had.
 #pragma once
 
 #include <limits>
@@ -10,16 +10,17 @@
 
 namespace atlas {
 
-// Stands for the uv of a corner that is not known.
+// The uv of a corner that is not known yet.
 inline Vec2d unplaced() {
   constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
   return {nothing, nothing};
 }
 
-// Fills `uvs`, 1 a vertex, from those of the corners, 3 a triangle: all three of a triangle are
-// known, or unplaced(). Triangles that were not there keep their shape, at the scale of the edge
-// that they are laid on; in a notch they take the shape that it leaves them, turned over perhaps.
-// False, and `uvs` of no use, if one hangs on no edge of the rest.
+// Fills `uvs`, one per vertex, from those of the corners, three per triangle, which are either all
+// known or all unplaced(). A new triangle keeps its shape, at the scale of the edge that it is
+// placed on; in a notch, whose corners are all placed, it takes the notch's shape and may be
+// flipped. Returns false if a new triangle shares no edge with the rest; `uvs` must then not be
+// used.
 bool place_newcomers(const LocalMesh& mesh, std::span<const Vec2d> corner_uvs,
                      std::vector<Vec2d>& uvs);
 

@@ -35,7 +35,7 @@ Box box_around(std::span<const Outline::Edge> edges) {
 struct Swept {
   Box box;
   const Outline::Edge* edge;
-  int side;  // 0: of a, 1: of b
+  int side;  // 0: an edge of a, 1: an edge of b
 };
 
 void add_near(std::span<const Outline::Edge> edges, const Box& near, int side,
@@ -66,7 +66,7 @@ Outline outline_of(const Topology& topology, const Partition& partition, const F
   return outline;
 }
 
-// A sweep along u, over what lies where both are.
+// A sweep along u over the edges near both sets.
 std::size_t count_crossings(std::span<const Outline::Edge> a, std::span<const Outline::Edge> b,
                             std::size_t most) {
   std::vector<Swept> edges;
@@ -74,7 +74,7 @@ std::size_t count_crossings(std::span<const Outline::Edge> a, std::span<const Ou
   add_near(b, box_around(a), 1, edges);
   std::sort(edges.begin(), edges.end(),
             [](const Swept& s, const Swept& t) { return s.box.left < t.box.left; });
-  std::array<std::vector<const Swept*>, 2> open;  // that may reach farther right
+  std::array<std::vector<const Swept*>, 2> open;  // those that may reach further to the right
   std::size_t count = 0;
   for (const Swept& edge : edges) {
     auto& others = open[1 - edge.side];

@@ -1,4 +1,4 @@
-// Internal: what of a flat chart its surroundings see.
+// Internal: the outline of a flat chart, that is, its border and convex hull.
 #pragma once
 
 #include <cstddef>
@@ -15,14 +15,15 @@ struct Outline {
     std::uint32_t half_edge;
     Vec2d from, to;
   };
-  std::vector<Edge> edges;  // of the border; seams of the chart with itself are part of it
+  std::vector<Edge> edges;  // border edges, including seams of the chart with itself
   std::vector<Vec2d> hull;  // corners of the convex hull, counter-clockwise
 };
 
-// In the chart's uvs. `partition` is the one that the chart has been flattened with.
+// Returns the outline in the chart's uvs. `partition` must be the one that the chart was flattened
+// with.
 Outline outline_of(const Topology& topology, const Partition& partition, const FlatChart& chart);
 
-// How many pairs of an edge of `a` and one of `b` cross, but no more than `most` are counted.
+// Returns how many pairs of an edge of `a` and an edge of `b` cross, but at most `most`.
 std::size_t count_crossings(std::span<const Outline::Edge> a, std::span<const Outline::Edge> b,
                             std::size_t most);
 

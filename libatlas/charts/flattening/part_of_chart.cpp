@@ -12,7 +12,8 @@
 namespace atlas {
 namespace {
 
-// What stretched a small part of a chart too much may be a large part of a piece.
+// Relaxes a piece beyond the bound. What was a small part of a chart may be a large part of the
+// piece.
 void relax(const LocalMesh& mesh, double max_stretch, FlatChart& piece) {
   ParamOptions options;
   options.max_stretch = max_stretch;

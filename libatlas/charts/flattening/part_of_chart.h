@@ -1,4 +1,4 @@
-// Internal: some triangles of a flat chart as a chart of their own.
+// Internal: makes some triangles of a flat chart a chart of their own.
 #pragma once
 
 #include <cstdint>
@@ -9,21 +9,21 @@
 
 namespace atlas {
 
-// Those triangles with their coordinates and vertices, numbered anew; nothing is measured.
+// Returns those triangles with their coordinates and vertices, renumbered. Nothing is measured.
 FlatChart take_triangles(const FlatChart& whole, std::span<const std::uint32_t> triangles);
 
-// Measures piece.distortion (mesh: the piece's own, relative to some origin). Where it exceeds
-// max_stretch the coordinates are relaxed, if that brings them within it.
+// Measures piece.distortion; `mesh` is the piece's own, relative to any origin. If it exceeds
+// max_stretch, relaxes the coordinates, if that brings them within it.
 void keep_to_bound(const LocalMesh& mesh, double max_stretch, FlatChart& piece);
 
-// `triangles`: places in whole.triangles, ascending, at least one. They keep their coordinates but
-// for the turn that packing wants, or are relaxed where they exceed max_stretch by themselves, if
-// that helps; size, cone and distortion are measured anew.
+// Returns those triangles as a chart; `triangles` are indices into whole.triangles, ascending, at
+// least one. They keep their coordinates except for the turn for packing, or are relaxed if they
+// exceed max_stretch by themselves and that helps. Size, cone and distortion are measured again.
 FlatChart part_of_chart(const FlattenInput& input, const FlatChart& whole,
                         std::span<const std::uint32_t> triangles);
 
-// What of `triangles`, places as above, hangs together by whole sides: each list ascending, in the
-// order of their first triangles.
+// Divides `triangles`, indices as above, into parts connected by edges. Each list is ascending, and
+// the lists are in the order of their first triangles.
 std::vector<std::vector<std::uint32_t>> connected_parts(const FlatChart& whole,
                                                         std::span<const std::uint32_t> triangles);
 

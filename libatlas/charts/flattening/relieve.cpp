@@ -15,19 +15,22 @@
 namespace atlas {
 namespace {
 
-// Of 5600 darts tried on 521 meshes, most of them CAD parts, in a seventh of all charts' time,
-// those within these two limits took a third of it, and made nine tenths of the savings.
-constexpr double kMostPrice = 0.3;  // of a dart, by the chart's energy
-// Of what a seam as long as the root of the piece's area is worth, by the chart's share of the
-// piece's triangles times the root of their number.
+// 5600 darts were tried on 521 meshes, most of them CAD parts, which took a seventh of the time for
+// charts. Those within the following two limits took a third of that, and made nine tenths of the
+// savings.
+constexpr double kMostPrice = 0.3;  // of a dart, relative to the chart's energy
+// The least energy of charts that are tried, relative to the worth of a seam as long as the square
+// root of the piece's area, times the chart's share of the piece's triangles, times the square root
+// of their number.
 constexpr double kLeastEnergy = 0.04;
 
 constexpr int kMostDarts = 3;
-constexpr double kMostBox = 1.1;  // of the chart's rectangle, by the one before
-// The most stretched triangles, which have this part of the energy: the tip is one of theirs.
+constexpr double kMostBox = 1.1;  // of the chart's rectangle, relative to the previous one
+// A tip is searched for in the most stretched triangles that together have this share of the
+// energy.
 constexpr double kStretchedPart = 0.5;
 
-// What a chart stretches in all.
+// The chart's stretch energy: area times (L2 stretch squared - 1).
 double energy(const FlatChart& chart) {
   return chart.distortion.surface_area * chart.excess();
 }
@@ -71,14 +74,15 @@ class Reliever {
     return topology_.component[chart.triangles.front()];
   }
 
-  // Below it a chart is not worth trying: that takes time by its triangles.
+  // Charts with less energy are not worth trying, which takes time in proportion to their
+  // triangles.
   double least_energy(const FlatChart& chart) const {
     const std::uint32_t p = piece(chart);
     return kLeastEnergy * seam_worth_ * piece_area_[p] * double(chart.triangles.size()) /
            std::sqrt(piece_triangles_[p]);
   }
 
-  // False if no dart is worth it.
+  // Cuts the better dart. Returns false if no dart is worth its seam.
   bool relieve(FlatChart& chart, ChartScratch& scratch) {
     FlatChart best;
     const Dart* best_dart = nullptr;
@@ -120,7 +124,7 @@ class Reliever {
     return darts;
   }
 
-  // Places in its list.
+  // Returns indices into the chart's triangle list.
   std::vector<std::uint32_t> most_stretched(const FlatChart& chart, const LocalChart& local) const {
     const LocalMesh mesh{local.positions.view(), chart.corners, {}};
     std::vector<TriangleStretch> stretch(chart.corners.size());
@@ -130,7 +134,7 @@ class Reliever {
       area += t.area;
       uv_area += t.uv_area;
     }
-    std::vector<std::pair<double, std::uint32_t>> order;  // minus the energy, place
+    std::vector<std::pair<double, std::uint32_t>> order;  // minus the energy; index
     double all = 0;
     for (std::uint32_t i = 0; i < stretch.size(); ++i) {
       const double s1 = stretch[i].s1, s2 = stretch[i].s2;

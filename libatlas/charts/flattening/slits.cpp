@@ -10,7 +10,7 @@
 namespace atlas {
 namespace {
 
-constexpr double kTolerance = 1e-6;  // of an edge
+constexpr double kTolerance = 1e-6;  // relative to an edge's length
 
 class SlitCloser {
  public:
@@ -27,7 +27,7 @@ class SlitCloser {
   }
 
  private:
-  // Whether two uvs of one vertex lie near each other, by the size of the chart.
+  // Whether two uvs of one vertex lie close to each other, relative to the chart's size.
   bool touches_itself(const FlatChart& chart) {
     const double near = kTolerance * (chart.size.x + chart.size.y);
     bool found = false;
@@ -43,7 +43,7 @@ class SlitCloser {
     return found;
   }
 
-  // same_as_: what the uvs become one with.
+  // Fills same_as_, the sets of uvs that become one.
   void weld(const FlatChart& chart) {
     same_as_ = DisjointSets(chart.uvs.size());
     for (std::uint32_t i = 0; i < chart.triangles.size(); ++i) {
@@ -94,8 +94,8 @@ class SlitCloser {
   }
 
   const Topology& topology_;
-  std::vector<std::uint32_t> first_uv_;  // 1 a vertex; kNoIndex between charts
-  std::vector<std::uint32_t> local_;     // 1 a triangle, likewise
+  std::vector<std::uint32_t> first_uv_;  // one per vertex; kNoIndex between charts
+  std::vector<std::uint32_t> local_;     // one per triangle, likewise
   DisjointSets same_as_{0};
 };
 

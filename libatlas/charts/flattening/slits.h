@@ -1,4 +1,4 @@
-// Internal: seams of a chart with itself that are seams no more.
+// Internal: closes seams of charts with themselves that are no longer needed.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace atlas {
 
-// Closes slits whose banks have come to lie upon each other, to a millionth of their edges: a plate
-// with holes that was cut open and unrolled exactly becomes a ring again. Only where the chart
+// Closes slits whose banks lie on each other to within a millionth of their edges: a plate with
+// holes that was cut open and unrolled exactly becomes a ring again. Only done where the chart
 // stays injective, by exact predicates. Returns how many charts changed.
 std::size_t close_slits(const Topology& topology, std::vector<FlatChart>& charts,
                         const Context& context);

@@ -12,7 +12,8 @@
 namespace atlas {
 namespace {
 
-constexpr double kNormalWeight = 8;  // of the fold at an edge in the distance across it
+// Weight of the fold at an edge in the distance across it.
+constexpr double kNormalWeight = 8;
 constexpr double kFar = std::numeric_limits<double>::max();
 
 struct Visit {
@@ -37,7 +38,7 @@ double fold(const Topology& topology, const LocalChart& chart, std::uint32_t s, 
                       to_dvec(topology.normals[chart.triangles()[t]]));
 }
 
-// Dijkstra over the triangles; owner may be null.
+// Dijkstra's algorithm over the triangles; `owner` may be null.
 void spread(const Topology& topology, const LocalChart& chart, Heap& heap,
             std::vector<double>& distance, std::vector<std::uint8_t>* owner) {
   while (!heap.empty()) {
@@ -70,7 +71,8 @@ std::uint32_t farthest_from(const Topology& topology, const LocalChart& chart,
   for (std::uint32_t t = 0; t < distance.size(); ++t) {
     if (distance[t] < kFar && distance[t] > distance[farthest]) farthest = t;
   }
-  if (farthest == start) {  // all in one point: any other triangle will do
+  // All triangles lie in one point: any other one will do.
+  if (farthest == start) {
     for (std::uint32_t t = 0; t < distance.size(); ++t) {
       if (t != start && distance[t] < kFar) return t;
     }
@@ -97,7 +99,7 @@ std::vector<std::uint8_t> divide(const Topology& topology, const LocalChart& cha
   std::vector<std::uint8_t> owner(chart.corners.size(), 0);
   Heap heap;
   for (std::uint32_t s = 0; s < seeds.size(); ++s) {
-    distance[seeds[s]] = 0;  // no other source may take it
+    distance[seeds[s]] = 0;  // no other seed may take it
     owner[seeds[s]] = static_cast<std::uint8_t>(s);
   }
   for (std::uint32_t s = 0; s < seeds.size(); ++s) {

@@ -1,4 +1,4 @@
-// Internal: how a chart that cannot be flattened is made easier.
+// Internal: ways to make a chart flatten: cutting it open, dividing it, or removing triangles.
 #pragma once
 
 #include <array>
@@ -13,58 +13,62 @@
 
 namespace atlas {
 
-// Two local triangles far from each other, or {0, 0} for a single triangle.
+// Returns two local triangles far from each other, or {0, 0} for a single triangle.
 std::array<std::uint32_t, 2> far_pair(const Topology& topology, const LocalChart& chart);
 
-// Grows the chart's triangles from the given local ones, at least two different, at equal speed
-// (slower across creases); returns 1 label a triangle, each label's triangles connected. The chart
-// is connected.
+// Divides a connected chart by growing regions from the given local triangles, at least two
+// different ones, at equal speed (slower across creases). Returns one label per triangle; the
+// triangles of each label are connected.
 std::vector<std::uint8_t> divide(const Topology& topology, const LocalChart& chart,
                                  std::span<const std::uint32_t> seeds);
 
-// Local triangles around one side of each crossing, the one with fewer neighbours, with so many
-// rings of neighbours: what may go to other charts so that the border does not cross itself.
+// Returns the local triangles around each crossing that may go to other charts to remove it. For
+// each crossing these are the one of its two triangles with fewer neighbours, and `rings` rings of
+// triangles around that.
 std::vector<std::uint32_t> around_crossings(const LocalChart& chart,
                                             std::span<const BorderCrossing> crossings, int rings);
 
-// Joins border loops of a connected chart to its first one and to what is joined to that, nearest
-// first, by shortest paths of edges (creases are shorter), marking their half-edges as seams: until
-// all wanted ones (of chart.loops) are joined, but at least one. False if there is only one loop.
+// Joins boundary loops of a connected chart to its first loop and those joined to that, nearest
+// first, by shortest paths along edges (creases count less). The half-edges of the paths become
+// seams. Joins at least one loop, and continues until all `wanted` ones (of chart.loops) are
+// joined. Returns false if there is only one loop.
 bool join_loops(const Topology& topology, const LocalChart& chart,
                 std::span<const std::uint32_t> wanted, Partition& partition);
 
-// Cuts to single vertices, as edges by their lower half-edge.
+// The edges of cuts to single vertices, each named by its lower half-edge.
 struct Darts {
-  std::unordered_set<std::uint32_t> cut;     // whether closed since or not
-  std::unordered_set<std::uint32_t> closed;  // of them
+  std::unordered_set<std::uint32_t> cut;     // all that were cut, including those closed since
+  std::unordered_set<std::uint32_t> closed;  // those closed since
 };
 
-// Cuts a disc open from its border to the vertex among the offending triangles' (local ids) where
-// curvature is most concentrated; it stays a disc. Notes the edges. False if there is none inside.
+// Cuts a disc open from its border to the vertex, of those in the offending triangles (local ids),
+// where curvature is most concentrated, and possibly to further sharp ones. It stays a disc. Adds
+// the edges to `darts`. Returns false if there is no such vertex inside.
 bool cut_to_border(const Topology& topology, const LocalChart& chart,
                    std::span<const std::uint32_t> offenders, Darts& darts, Partition& partition);
 
-// Ways to cut a disc open from its border, as half-edges of the chart from their ends on: to the
-// sharpest tip among the triangles (local ids), and to the vertex that is farthest inside, if it is
-// another tip. Tips have less than the full angle around them; cuts to others let a chart overlap
-// itself.
+// Returns ways to cut a disc open from its border, each as half-edges of the chart beginning at the
+// tip: to the sharpest tip in the triangles (local ids), and to the tip farthest from the border,
+// if that is another one. Tips are vertices with less than the full angle around them; cuts to
+// other vertices let a chart overlap itself.
 std::vector<std::vector<std::uint32_t>> ways_to_tips(const Topology& topology,
                                                      const LocalChart& chart,
                                                      std::span<const std::uint32_t> triangles);
 
-// Closes darts inside a chart where their banks cross, and those that then lead to no tip: what is
-// left of a dart is a slit that does not reach the border. Other cuts stay, for they may be what
-// makes the chart a disc. False if no dart is there.
+// Closes darts inside a chart where their banks cross, and those that then lead to no tip. The
+// remainder of a dart is a slit that does not reach the border. Other cuts stay, since they may be
+// what makes the chart a disc. Returns false if no dart is there.
 bool close_cuts(const Topology& topology, const LocalChart& chart,
                 std::span<const BorderCrossing> crossings, Partition& partition, Darts& darts);
 
-// Closes cuts inside a chart whose banks lie upon each other in `uvs`: it needs them no more. False
-// if there is none.
+// Closes cuts inside a chart whose banks lie on each other in `uvs`, since they are no longer
+// needed. Returns false if there are none.
 bool close_flat_slits(const Topology& topology, const LocalChart& chart, std::span<const Vec2d> uvs,
                       Partition& partition);
 
-// The triangles along border loops inside the outline that run around it the wrong way, each as a
-// crossing with itself: of cuts whose banks have changed sides without crossing.
+// Finds boundary loops inside the outline that run around it in the wrong direction, as those of
+// cuts do whose banks have changed sides without crossing. Returns the triangles along them, each
+// as a crossing with itself.
 std::vector<BorderCrossing> turned_loops(const LocalChart& chart, std::span<const Vec2d> uvs);
 
 }  // namespace atlas

@@ -9,9 +9,10 @@
 namespace atlas {
 namespace {
 
+// The least share of the area in a part.
 constexpr double kSmallestPart = 0.05;
 
-// Sense of rotation of the triangle's given uvs; 0 also if it has none.
+// Returns the orientation of the triangle's given uvs; 0 also if it has none.
 int turn(const GivenMesh& given, std::uint32_t t) {
   if (given.mesh.texcoord_indices.empty()) return 0;
   std::array<Vec2d, 3> uv;
@@ -24,7 +25,7 @@ int turn(const GivenMesh& given, std::uint32_t t) {
   return orientation(uv[0], uv[1], uv[2]);
 }
 
-// Names the part around `seed`; returns its area.
+// Assigns `name` to the part around `seed`. Returns its area.
 double flood(const GivenMesh& given, std::uint32_t seed, std::uint32_t name, UvFolds& folds) {
   const Topology& topology = given.topology;
   const int sense = turn(given, seed);

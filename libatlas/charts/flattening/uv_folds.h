@@ -1,4 +1,4 @@
-// Internal: given charts that are folded over.
+// Internal: finds given charts that fold over, and divides them at their folds.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,12 @@
 
 namespace atlas {
 
-// A part is a connected set of triangles that turn the same way in uv.
+// A part is a connected set of triangles with the same orientation in uv.
 struct UvFolds {
-  std::vector<std::uint32_t> part;   // 1 a triangle; kNoIndex: not divided; or empty: none is
-  std::vector<std::uint32_t> owner;  // 1 a part: its component; those of one stand together
+  std::vector<std::uint32_t> part;  // one per triangle; kNoIndex: not divided; empty: no component
+                                    // is
+  // One per part: its component. The parts of a component are contiguous.
+  std::vector<std::uint32_t> owner;
 };
 
 struct GivenMesh {
@@ -21,10 +23,10 @@ struct GivenMesh {
   const MeshView& mesh;  // texcoord_indices as from usable_texcoords
 };
 
-// Divides one component (its triangles) where its given uvs fold over, as mirrored halves do that
-// share the texcoords of their common edge, and adds its parts to `folds`. It stays whole if it has
-// no fold, a triangle without uv area, or a part of less than 5 % of its area, which rather is a
-// few flipped triangles. Senses of rotation are exact.
+// Divides one component (given by its triangles) where its given uvs fold over, as mirrored halves
+// do that share the texcoords of their common edge. Adds its parts to `folds`. The component stays
+// whole if it has no fold, a triangle without uv area, or a part of less than 5 % of its area,
+// which is more likely a few flipped triangles. Orientations are exact.
 void divide_at_folds(const GivenMesh& given, std::uint32_t component,
                      std::span<const std::uint32_t> triangles, UvFolds& folds);
 
