@@ -9,13 +9,14 @@
 namespace atlas {
 namespace {
 
-// A path may be this much longer than its chord; what strays from the chord counts as longer by
-// this times the square of how far it strays, in chords: a tenth doubles it.
+// A path may be at most kLongestPath times as long as its chord. An edge at distance d from the
+// chord, in chord lengths, counts 1 + kStrayWeight d² times its length: at a tenth it counts
+// double.
 constexpr double kLongestPath = 1.6, kStrayWeight = 100;
 constexpr double kMostStray = 0.5;
 constexpr std::uint32_t kUnseen = kNoIndex - 1;
 
-// How far p lies from the chord, in chords.
+// Returns the distance of p from the chord, in chord lengths.
 double stray(const Vec2d& p, const Vec2d& from, const Vec2d& to) {
   const double dx = to.x - from.x, dy = to.y - from.y;
   return std::sqrt(squared_distance_to_segment(p, from, to) / (dx * dx + dy * dy));

@@ -11,10 +11,14 @@ namespace atlas {
 namespace {
 
 constexpr std::size_t kMostCorners = 100;  // of the simplified outline
-constexpr int kSpacing = 96;               // parts of the perimeter that further ends lie apart
-constexpr double kFineness = 0.006;        // of the outline's width, what simplifying may move
-constexpr std::ptrdiff_t kMostEdges = 3;   // from a corner, that may be chords
-constexpr double kShortSeam = 0.05;        // of the width: shorter cuts count as long as this
+// Further chord ends are 1 / kSpacing of the perimeter apart.
+constexpr int kSpacing = 96;
+// Simplification moves the outline by at most this share of its width.
+constexpr double kFineness = 0.006;
+// Edges from a corner that are considered as chords.
+constexpr std::ptrdiff_t kMostEdges = 3;
+// Share of the width that is added to the lengths of cuts in their scores.
+constexpr double kShortSeam = 0.05;
 
 // Chooses corners of the outline, then chords between them.
 class ChordFinder {
@@ -60,7 +64,7 @@ class ChordFinder {
     std::vector<Vec2d> points, hull;
   };
 
-  // Of the corners from `first` to `last`, both included; returns its area.
+  // Computes the hull of the corners from `first` to `last`, both included. Returns its area.
   double hull_of(std::uint32_t first, std::uint32_t last, Side& side) const {
     const auto n = std::uint32_t(corners_.size());
     side.points.clear();
@@ -80,7 +84,7 @@ class ChordFinder {
     });
   }
 
-  // The ends of the shortest edges from a place.
+  // Returns the shortest edges that start at a place of the outline.
   std::span<const Edge> edges_from(std::uint32_t place) const {
     const auto less = [](const Edge& e, std::uint32_t p) { return e[0] < p; };
     const auto first = std::lower_bound(edges_.begin(), edges_.end(), place, less);
@@ -89,8 +93,8 @@ class ChordFinder {
     return {first, last};
   }
 
-  // The corners that matter, and others between them so that a chord can end on a straight side or
-  // at the far end of an edge.
+  // Chooses the corners of the simplified outline, and others between them, so that a chord can end
+  // on a straight side or at the far end of an edge.
   void choose_corners() {
     const std::vector<std::uint32_t> simple = simplified();
     std::vector<std::uint8_t> at_edge(outline_.size(), 0);
@@ -123,7 +127,7 @@ class ChordFinder {
     }
   }
 
-  // Part of the outline, and the place in it that is farthest from the line between its ends.
+  // A part of the outline, and the index in it that is farthest from the line between its ends.
   struct Part {
     std::uint32_t first, last, worst = 0;
     double distance = 0;  // squared
@@ -143,8 +147,8 @@ class ChordFinder {
     return part;
   }
 
-  // Douglas and Peucker's choice of places, ascending, from two far ones; those that matter most
-  // first, for there may be too many.
+  // Returns the indices that Douglas and Peucker's method chooses, ascending, starting from two
+  // indices far apart. Those that matter most are chosen first, since their number is limited.
   std::vector<std::uint32_t> simplified() const {
     const auto n = std::uint32_t(outline_.size());
     std::uint32_t far = 0;
@@ -192,12 +196,12 @@ class ChordFinder {
                        [&](const Edge& edge) { return edge[1] == corners_[j]; });
   }
 
-  // Whether the chord runs inside.
+  // Whether the chord lies inside the outline.
   bool visible(std::uint32_t i, std::uint32_t j) const {
     const auto n = std::uint32_t(corners_.size());
     const Vec2d &a = corner(i), &b = corner(j);
     const Vec2d &before = corner(i + n - 1), &after = corner(i + 1);
-    // i is concave: b lies left of one of its sides at least.
+    // Corner i is concave, so b lies to the left of at least one of its sides.
     if (cross(before, a, b) <= 0 && cross(a, after, b) <= 0) return false;
     const Vec2d middle{(a.x + b.x) / 2, (a.y + b.y) / 2};
     bool inside = false;
@@ -213,10 +217,10 @@ class ChordFinder {
   }
 
   std::span<const Vec2d> outline_;
-  std::vector<Edge> edges_;  // from every place, the shortest first
+  std::vector<Edge> edges_;  // sorted by start, then by length
   double width_ = 0, whole_ = 0;
-  std::vector<std::uint32_t> corners_;  // places in the outline, ascending
-  std::vector<std::uint8_t> concave_;   // 1 a corner
+  std::vector<std::uint32_t> corners_;  // indices into the outline, ascending
+  std::vector<std::uint8_t> concave_;   // one per corner
   std::vector<std::uint32_t> by_x_;     // corners
   Side sides_[2];                       // of a chord
 };

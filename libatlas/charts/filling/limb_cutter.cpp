@@ -16,27 +16,29 @@ namespace atlas {
 namespace {
 
 constexpr std::size_t kMostPieces = 32;
-// So many charts lie close whatever their rectangles, once they fill so much of their convex hulls:
-// cut like that 157 meshes have as many charts as with a dozen pieces at most, and the worst page
-// holds 0.67 instead of 0.63.
+// This many charts pack closely, whatever their rectangles, once they fill kHullFill of their
+// convex hulls. With this rule 157 meshes have as many charts as with at most a dozen pieces, and
+// the worst page is filled to 0.67 instead of 0.63.
 constexpr std::size_t kMany = 12;
 constexpr double kHullFill = 0.75;
 constexpr double kLeastFall = 0.01;     // of the chart's sprawl by one cut
 constexpr double kLeastPiece = 0.0005;  // of the chart's area
-// Share of the rectangles' area that must be gained for a seam as long as the square root of the
-// chart's area.
+// The share of the rectangles' area that a seam as long as the square root of the chart's area must
+// gain.
 constexpr double kSeamPrice = 0.12;
 constexpr std::size_t kChordsTried = 12;
-// What leaves so much of its hull empty, once no chord is left, is a frame, or bent. Where its
-// rectangle covers that share of all charts' area it is divided near its middle all the same, after
-// everything that pays by itself; smaller ones nest: cut as well, two parts of concentric rings had
-// half as many charts again.
+// A piece that leaves this share of its hull empty when no chord is left is a frame, or bent. If
+// its rectangle covers at least kFrameBox of all charts' area, it is divided near its middle even
+// without gain, after all cuts that pay by themselves (hence the low score). Smaller frames nest in
+// each other: when they were cut as well, two parts of concentric rings had half as many charts
+// again.
 constexpr double kFrame = 0.25, kFrameBox = 0.05, kFrameScore = 1e-9;
-constexpr std::size_t kMostHoles = 100;  // of a frame: 32 pieces of a sieve are sieves
+// The most holes of a frame: dividing a sieve into 32 pieces only gives smaller sieves.
+constexpr std::size_t kMostHoles = 100;
 
-using Triangles = std::vector<std::uint32_t>;  // of the chart
+using Triangles = std::vector<std::uint32_t>;  // indices into the chart's triangles
 
-// A flat chart on its way to pieces.
+// Cuts one flat chart into pieces.
 class LimbCutter {
  public:
   LimbCutter(const FlatChart& chart, double all_charts)
@@ -56,7 +58,7 @@ class LimbCutter {
     pieces_.push_back(std::move(whole));
   }
 
-  // The triangles of each piece, ascending; empty if cutting does not pay.
+  // Returns the triangles of each piece, ascending; empty if cutting does not pay.
   std::vector<Triangles> run(double wanted, const Context& context) {
     const double box = pieces_[0].box, area = pieces_[0].area;
     while (!filled(wanted) && pieces_.size() < kMostPieces && !context.cancelled()) {
@@ -77,12 +79,12 @@ class LimbCutter {
  private:
   struct Piece {
     Triangles triangles;
-    std::vector<std::uint32_t> outline;  // uvs along its longest border
+    std::vector<std::uint32_t> outline;  // uvs along the loop that encloses most area
     std::size_t borders = 0;
     double area = 0, hull = 0, box = 0, sprawl = 0;
     bool searched = false;
-    double score = 0;              // of its best cut, 0: none
-    std::vector<Triangles> parts;  // by it
+    double score = 0;              // of its best cut; 0: none
+    std::vector<Triangles> parts;  // by that cut
   };
 
   bool filled(double wanted) const {
@@ -108,13 +110,13 @@ class LimbCutter {
 
   std::uint32_t uv_at(std::uint32_t h) const { return chart_.corners[h / 3][h % 3]; }
 
-  // The half-edge across h in the same piece.
+  // Returns the half-edge opposite to h, if it is in the same piece.
   std::uint32_t across(std::uint32_t h) const {
     const std::uint32_t o = half_edges_.opposite(h);
     return o != kNoIndex && piece_of_[o / 3] == piece_of_[h / 3] ? o : kNoIndex;
   }
 
-  // Fills in what follows from the triangles, which belong to the piece of that number.
+  // Computes what follows from the triangles, and assigns these to the piece with that number.
   void measure(Piece& piece, std::uint32_t number) {
     piece.area = 0;
     for (const std::uint32_t t : piece.triangles) {
@@ -221,7 +223,7 @@ class LimbCutter {
     piece.parts = std::move(cut.parts);
   }
 
-  // Fills piece.parts; false unless the path leaves two pieces of some size that sprawl less.
+  // Fills piece.parts with the two sides of the path. Returns false if one of them is too small.
   bool divide(Piece& piece, const std::vector<std::uint32_t>& path) {
     const auto block = [&](std::uint8_t value) {
       for (const std::uint32_t h : path) blocked_[h] = blocked_[half_edges_.opposite(h)] = value;
@@ -251,7 +253,7 @@ class LimbCutter {
 
   double chart_area() const { return chart_.distortion.uv_area; }
 
-  // Lengths of the cuts between two pieces each.
+  // Returns the length of the cut between each two pieces.
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> seams() const {
     std::map<std::pair<std::uint32_t, std::uint32_t>, double> lengths;
     for (std::uint32_t h = 0; h < 3 * piece_of_.size(); ++h) {
@@ -264,7 +266,8 @@ class LimbCutter {
     return lengths;
   }
 
-  // Joins pieces again, least harm for the seam first, while the rectangles stay within `most`.
+  // Joins pieces again, those first whose seam is longest for the harm, while the sum of the
+  // rectangles stays within `most`.
   void heal(double most) {
     while (pieces_.size() > 1) {
       double best = 0;
@@ -300,12 +303,12 @@ class LimbCutter {
   }
 
   const FlatChart& chart_;
-  double all_charts_;  // their area
+  double all_charts_;  // area of all charts
   param::HalfEdges half_edges_;
-  std::vector<std::uint32_t> piece_of_;  // 1 a triangle of the chart
+  std::vector<std::uint32_t> piece_of_;  // one per triangle of the chart
   ChordPaths paths_;
-  std::vector<std::uint8_t> side_;            // the same: of a path
-  std::vector<std::uint8_t> seen_, blocked_;  // 1 a half-edge
+  std::vector<std::uint8_t> side_;            // one per triangle: its side of a path
+  std::vector<std::uint8_t> seen_, blocked_;  // one per half-edge
   std::vector<Piece> pieces_;
   double least_fall_ = 0;
 };

@@ -13,17 +13,20 @@
 namespace atlas {
 namespace {
 
-// Of all charts' area, a rectangle that fills a page. Cut from 0.75 on, six meshes of 178 took up
-// to twice as many charts, though they fill 0.71 to 0.75 of their pages uncut.
+// A chart whose rectangle covers this share of all charts' area determines the page. When charts
+// were cut from 0.75 on, six meshes of 178 took up to twice as many charts, though they fill 0.71
+// to 0.75 of their pages uncut.
 constexpr double kDominant = 1;
-constexpr double kPoor = 0.9;  // of min_fill: what fills more is left as it is
-// Of the charts' convex hulls, what charts must fill together. Two meshes of 178 took an eighth
-// more charts at 0.72 and filled 0.01 and 0.02 more of their pages; one fell to 0.67 at 0.66.
+constexpr double kPoor = 0.9;  // of min_fill: charts that fill more stay whole
+// The least share of their convex hulls that all charts together must fill. With 0.72, two meshes
+// of 178 took an eighth more charts and filled 0.01 and 0.02 more of their pages; with 0.66, one
+// mesh fell to 0.67.
 constexpr double kLeastTogether = 0.68;
-// By how much each further piece must let hulls shrink, by the mean hull: crumbs cut into crumbs
-// fill no page.
+// Each further piece must let the hulls shrink by this share of the mean hull: cutting small pieces
+// into smaller ones fills no page.
 constexpr double kLeastFall = 0.1;
-constexpr double kWasteParts = 4096;  // wastes are compared in parts of all hulls: equal ones tie
+constexpr double kWasteParts = 4096;  // wastes are rounded to parts of all hulls: nearly equal ones
+                                      // tie
 
 double hull_of(const FlatChart& chart) {
   std::vector<Vec2d> points = chart.uvs, hull;
@@ -36,7 +39,7 @@ class LimbCharts {
       : input_(input), context_(context), charts_(charts), pieces_(charts.size()) {}
 
   std::size_t run() {
-    double hulls = 0;  // at most
+    double hulls = 0;  // an upper bound
     for (const FlatChart& chart : charts_) {
       area_ += chart.distortion.uv_area;
       hulls += std::min(chart.box_area(), bound_shape(chart.uvs).hull);
@@ -91,7 +94,7 @@ class LimbCharts {
     if (chart.distortion.uv_area >= kPoor * wanted * chart.box_area()) return false;
     std::vector<FlatChart> pieces;
     for (const std::vector<std::uint32_t>& limb : limbs_of(chart, wanted, area_, context_)) {
-      // A cut along a ragged border may leave a triangle beside its limb.
+      // A cut along a ragged border may leave a triangle unconnected to its limb.
       for (const std::vector<std::uint32_t>& triangles : connected_parts(chart, limb)) {
         pieces.push_back(part_of_chart(input_, chart, triangles));
         const Distortion& d = pieces.back().distortion;
@@ -104,7 +107,7 @@ class LimbCharts {
     return true;
   }
 
-  // Pieces take their chart's place.
+  // Replaces cut charts by their pieces.
   void replace() {
     if (count_ == 0) return;
     std::vector<FlatChart> all;
@@ -122,8 +125,8 @@ class LimbCharts {
   const Context& context_;
   std::vector<FlatChart>& charts_;
   double area_ = 0;                             // of all charts
-  std::vector<std::vector<FlatChart>> pieces_;  // of each chart; empty: it is whole
-  std::size_t count_ = 0;                       // of charts cut
+  std::vector<std::vector<FlatChart>> pieces_;  // of each chart; empty: the chart is whole
+  std::size_t count_ = 0;                       // number of charts cut
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Internal: charts that sprawl over the page are cut, so that the page can be filled.
+// Internal: cuts charts that sprawl over the page, so that the page can be filled.
 #pragma once
 
 #include <vector>
@@ -8,12 +8,12 @@
 
 namespace atlas {
 
-// A chart whose smallest rectangle covers more than all charts' area, and which fills clearly less
-// of it than ChartOptions::min_fill, decides how well a page is used: nothing is left to put around
-// it. So do charts that fill less than 0.68 of their convex hulls together, as strips at odd angles
-// do, which unroll as one; there the most wasteful are cut first, until the rest fill that much.
-// Such charts are cut as limbs_of() says. Pieces are as part_of_chart() makes them; those of a
-// chart follow each other in its place. A chart stays whole if a piece
+// Cuts two kinds of charts across (limbs_of()). First, charts whose smallest rectangle covers at
+// least the area of all charts, and that fill clearly less of it than ChartOptions::min_fill: they
+// determine how well a page is used, since nothing is left to put around them. Second, if all
+// charts fill less than 0.68 of their convex hulls together, as strips at odd angles that unroll as
+// one do, the most wasteful charts first until the rest fill that much. Pieces are made by
+// part_of_chart(); those of a chart follow each other in its place. A chart stays whole if a piece
 // exceeds max_stretch. Returns how many charts were cut.
 std::size_t cut_limbs(const FlattenInput& input, std::vector<FlatChart>& charts,
                       const Context& context);

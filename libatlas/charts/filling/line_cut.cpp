@@ -10,13 +10,15 @@
 namespace atlas {
 namespace {
 
-constexpr double kStray = 0.5;      // what lies at the end of the band counts for longer by this
-constexpr double kUnits = 1 << 14;  // weights are integers: the longest edge's
-// Triangles that a minimum cut may pass. Where a band holds more, it is made as narrow as that
-// around the line in it that crosses the least: minimum cuts through a lattice of 839250 triangles
-// took a minute.
+// An edge at the end of the band counts as longer by this share.
+constexpr double kStray = 0.5;
+// Weights are integers: the longest edge has this one.
+constexpr double kUnits = 1 << 14;
+// The most triangles in the graph of a minimum cut. Where a band holds more, it is narrowed to as
+// many around that line in it that crosses the least edge length. Without this, minimum cuts
+// through a lattice of 839 250 triangles took a minute.
 constexpr std::size_t kMostInside = 4000;
-constexpr std::size_t kLines = 128;  // to choose from
+constexpr std::size_t kLines = 128;  // candidates for that line
 
 }  // namespace
 
@@ -78,7 +80,7 @@ void LineCutter::narrow(double& line, double& band) const {
   for (std::size_t i = 0; i < away.size(); ++i) away[i] = std::abs(along_[i] - line);
   const auto inside = std::count_if(away.begin(), away.end(), [&](double d) { return d < band; });
   if (std::size_t(inside) <= kMostInside) return;
-  // Each edge counts for all lines between the middles of its triangles.
+  // Each edge counts for all lines between the centroids of its two triangles.
   const double first = line - band, step = 2 * band / double(kLines - 1);
   const auto next_line = [&](double at) {
     return std::size_t(std::clamp(std::ceil((at - first) / step), 0.0, double(kLines)));
@@ -134,7 +136,7 @@ void LineCutter::find_sides(double line, double band) {
   for (const std::uint32_t i : inside) side_[i] = std::uint8_t(min_cut_.side(node_[i]));
 }
 
-// Connected triangles of one side each.
+// Returns the connected parts of both sides.
 std::vector<LineCut::Part> LineCutter::parts() const {
   std::vector<LineCut::Part> parts;
   std::vector<std::uint32_t> part_of(triangles_.size(), kNoIndex), queue;
@@ -160,7 +162,7 @@ std::vector<LineCut::Part> LineCutter::parts() const {
   return parts;
 }
 
-// To the other side; whether there were any.
+// Moves parts smaller than `crumb` to the other side. Returns whether there were any.
 bool LineCutter::move_crumbs(const std::vector<LineCut::Part>& parts, double crumb) {
   bool moved = false;
   for (const LineCut::Part& part : parts) {

@@ -1,4 +1,4 @@
-// Internal: a flat piece divided along edges near a straight line.
+// Internal: divides a flat piece along edges near a straight line.
 #pragma once
 
 #include <cstdint>
@@ -13,29 +13,31 @@ namespace atlas {
 
 struct LineCut {
   struct Part {
-    std::vector<std::uint32_t> triangles;  // ascending, in one piece
-    bool beyond;                           // the line
+    std::vector<std::uint32_t> triangles;  // ascending, connected
+    bool beyond;                           // on the far side of the line
   };
-  std::vector<Part> parts;  // two at least, or none
+  std::vector<Part> parts;  // at least two, or none
   double length = 0;        // of the edges between them
 };
 
 // Divides the same triangles near any number of lines.
 class LineCutter {
  public:
-  // `triangles`: places in chart.triangles, in one piece; chart and list must outlive the cutter.
+  // `triangles` are connected, as indices into chart.triangles. All arguments must outlive the
+  // cutter.
   LineCutter(const FlatChart& chart, const param::HalfEdges& half_edges,
              std::span<const std::uint32_t> triangles);
 
-  // Lines are across this direction from now on (radians from u on). A triangle lies where its
-  // middle does.
+  // Sets the direction that lines are perpendicular to (radians from u). A triangle's position is
+  // that of its centroid.
   void face(double angle);
   double low() const { return low_; }
   double high() const { return high_; }
 
-  // The shortest way between what lies `band` before the line and what lies as far beyond, of equal
-  // ones the straightest; where the band holds many triangles, near the line in it that crosses the
-  // least. Parts of less than `crumb` area stay with a neighbour.
+  // Returns the shortest cut between the triangles at least `band` before the line and those as far
+  // beyond it; among equally short ones, the straightest. Where the band holds many triangles, the
+  // cut is made near the line in it that crosses the least edge length. Parts of less than `crumb`
+  // area stay with a neighbour.
   LineCut cut(double line, double band, double crumb);
 
  private:
@@ -47,10 +49,11 @@ class LineCutter {
   const FlatChart& chart_;
   std::span<const std::uint32_t> triangles_;
   double longest_ = 0, low_ = 0, high_ = 0;
-  // 3 a triangle of the piece: the side of another one that it is joined to, or kNoIndex; lengths.
+  // Three per triangle of the piece: the opposite side in the piece, or kNoIndex; and the length.
   std::vector<std::uint32_t> joined_;
   std::vector<float> length_;
-  // 1 a triangle of the piece: where its middle lies, its side, its place among those of the band.
+  // One per triangle of the piece: its position, its side of the cut, and its node in the minimum
+  // cut.
   std::vector<double> along_;
   std::vector<std::uint8_t> side_;
   std::vector<std::uint32_t> node_;

@@ -14,19 +14,21 @@
 namespace atlas {
 namespace {
 
-constexpr double kLeastFill = 0.75;  // of the least page
-constexpr double kStrip = 4;         // times as long as wide, and each piece still longer than wide
+constexpr double kLeastFill = 0.75;  // of the smallest possible page
+// A strip to be cut into n pieces is at least kStrip n / 2 times as long as wide.
+constexpr double kStrip = 4;
 constexpr std::size_t kMostStrips = 64;
-constexpr std::size_t kMostParts = 2;  // for each length
-// Of a length: how far cuts stray to either side to be short, and the area of what stays with the
-// next one.
+constexpr std::size_t kMostParts = 2;  // per length
+// kBand is how far cuts may stray to either side to be short, as a share of a length; kCrumb, the
+// area of parts that stay with a neighbour, likewise.
 constexpr double kBand = 0.3, kCrumb = 0.01;
-// Of a chart's length, what its pieces may have at most: needles that lie along it cannot be cut
+// The most that pieces may have of a chart's length. Long needles along the chart cannot be cut
 // across, and would come off one by one.
 constexpr double kShorter = 0.9;
-// Times the charts' area, their borders by the longest side: a page of 2048 texels that this chart
-// spans needs a quarter as much for gutters of 1.3 texels on each side of a border as for charts.
-// Of 796 meshes seven need more, each of them more than twice as long as a square page.
+// The largest product of the perimeters of all charts' rectangles and the longest side, relative to
+// the charts' area. At this value a page of 2048 texels that the longest chart spans needs a
+// quarter as much for gutters (1.3 texels on each side of a border) as for charts. Of 796 meshes
+// seven exceed it, and their longest charts are each more than twice as long as a square page.
 constexpr double kMostGutter = 400;
 
 double longer(const FlatChart& chart) {
@@ -36,7 +38,8 @@ double shorter(const FlatChart& chart) {
   return std::min(chart.size.x, chart.size.y);
 }
 
-// The least page for the longest chart and the widest of the others, above it or at its end.
+// Returns the area of the smallest page for the longest chart and the widest of the others, which
+// lies beside it or at its end.
 double least_page(const std::vector<FlatChart>& charts, std::size_t longest) {
   std::size_t widest = longest;
   for (std::size_t k = 0; k < charts.size(); ++k) {
@@ -49,14 +52,14 @@ double least_page(const std::vector<FlatChart>& charts, std::size_t longest) {
                   (longer(strip) + shorter(other)) * std::max(shorter(strip), longer(other)));
 }
 
-// Into how many lengths the chart must be cut for the page to be filled,
+// Returns into how many lengths the chart must be cut for the page to be filled.
 std::size_t pieces_for_page(const std::vector<FlatChart>& charts, std::size_t longest,
                             double area) {
   const double page = least_page(charts, longest);
   return static_cast<std::size_t>(std::ceil(kLeastFill * page / area));
 }
 
-// and for gutters to leave room for charts.
+// Returns into how many lengths the chart must be cut for gutters to leave room for charts.
 std::size_t pieces_for_gutters(const std::vector<FlatChart>& charts, std::size_t longest,
                                double area) {
   double around = 0;
@@ -69,7 +72,8 @@ std::size_t pieces_for_gutters(const std::vector<FlatChart>& charts, std::size_t
 
 using Lengths = std::vector<std::vector<std::uint32_t>>;
 
-// The triangles of each of `count` lengths, about equal ones; none if one of them would be empty.
+// Returns the triangles of `count` lengths, about equal ones; nothing if one of them would be
+// empty.
 Lengths lengths_of(const FlatChart& chart, std::size_t count) {
   std::vector<std::uint32_t> all(chart.triangles.size());
   std::iota(all.begin(), all.end(), 0u);
@@ -95,7 +99,7 @@ Lengths lengths_of(const FlatChart& chart, std::size_t count) {
   return lengths;
 }
 
-// A length as charts, one if it hangs together; none if one of them exceeds the bound.
+// Returns a length as charts, one if it is connected; nothing if one of them exceeds the bound.
 std::vector<FlatChart> charts_of(const FlattenInput& input, const FlatChart& chart,
                                  const std::vector<std::uint32_t>& length) {
   std::vector<FlatChart> pieces;
@@ -107,8 +111,9 @@ std::vector<FlatChart> charts_of(const FlattenInput& input, const FlatChart& cha
   return pieces;
 }
 
-// What stretched a thousandth of the chart too much may be more of a length: that stays with the
-// next one. None if there is no next one, or if lengths are in more than kMostParts each.
+// Makes the lengths charts. A length that exceeds the bound stays with the next one: what stretched
+// a thousandth of the whole chart too much may be more of a length. Returns nothing if there is no
+// next one, or if there are more than kMostParts charts per length.
 std::vector<FlatChart> cut(const FlattenInput& input, const FlatChart& chart, Lengths lengths) {
   std::vector<FlatChart> pieces;
   for (std::size_t k = 0; k < lengths.size(); ++k) {
@@ -130,7 +135,8 @@ bool all_shorter(const std::vector<FlatChart>& pieces, const FlatChart& chart) {
   });
 }
 
-// From either end; one length more may keep to the bound where these do not.
+// Tries the lengths from either end, and then one length more, which may keep to the bound where
+// these do not.
 std::vector<FlatChart> cut(const FlattenInput& input, const FlatChart& chart, std::size_t count) {
   for (const std::size_t tried : {count, count + 1}) {
     Lengths lengths = lengths_of(chart, tried);

@@ -11,11 +11,12 @@
 namespace atlas {
 namespace {
 
-constexpr int kDirections = 4;  // over half a turn, from the chart's long side on
+constexpr int kDirections = 4;  // over half a turn, from u, the chart's long side
 constexpr std::array<double, 3> kPlaces{0.5, 0.33, 0.67};  // along the piece, the middle first
-constexpr double kBand = 0.15;                             // of its length
+constexpr double kBand = 0.15;                             // as a share of its length
 
-// Corners of the border are enough; those of its holes do no harm.
+// Returns the sprawl of these triangles. Only corners on boundary loops are used; those of holes do
+// no harm.
 double sprawl_of(const FlatChart& chart, const param::HalfEdges& half_edges,
                  std::span<const std::uint32_t> triangles, std::vector<std::uint8_t>& belongs) {
   for (const std::uint32_t t : triangles) belongs[t] = 1;

@@ -1,5 +1,4 @@
-// Internal: where a frame, a lattice or a slit ring can be divided, which no chord divides with
-// gain.
+// Internal: divides frames, lattices and slit rings, which no chord divides with gain.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +11,9 @@
 namespace atlas {
 
 struct MiddleCut {
-  std::vector<std::vector<std::uint32_t>> parts;  // two at least, each ascending and in one piece
-  double fall = 0;  // of what the parts sprawl together, below the whole; may be negative
+  std::vector<std::vector<std::uint32_t>> parts;  // at least two, each ascending and connected
+  // The whole's sprawl minus the sum of the parts' ones; may be negative.
+  double fall = 0;
   double length = 0;
 };
 
@@ -22,10 +22,10 @@ struct MiddleCutLimits {
   double least_fall = 0;  // area
 };
 
-// Divides `triangles` of the chart (places in chart.triangles, in one piece) near lines in several
-// directions and places (LineCutter). Of those cuts that let the sprawl fall by least_fall at
-// least, the one with the most of it for its length; else the shortest one through the middle; none
-// where triangles are too large for any.
+// Divides `triangles` (indices into chart.triangles, connected) near lines in several directions
+// and places (LineCutter). Of the cuts that reduce the sprawl by at least least_fall, returns the
+// one with the largest reduction for its length; if there is none, the shortest one through the
+// middle. Returns no parts where triangles are too large for any cut.
 MiddleCut cut_middle(const FlatChart& chart, const param::HalfEdges& half_edges,
                      std::span<const std::uint32_t> triangles, const MiddleCutLimits& limits);
 
