@@ -12,7 +12,7 @@ namespace atlas {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::max();
-constexpr double kSteps = 256;  // a mean edge's length in the costs' integers
+constexpr double kSteps = 256;  // the length of a mean edge in integer costs
 
 }  // namespace
 
@@ -54,15 +54,15 @@ void BandPaths::add(std::uint32_t h, int level) {
   band_.push_back(v);
 }
 
-// Costs are whole numbers of a small part of these edges' mean length: of paths as long as each
-// other, as on a regular grid, rounding does not choose one.
+// Costs are multiples of a small part of these edges' mean length. Otherwise rounding would choose
+// among equally long paths, as on a regular grid.
 void BandPaths::choose_unit(const Path& edges) {
   double length = 0;
   for (const std::uint32_t h : edges) length += edge_length(topology_, h);
   unit_ = length > 0 ? length / (kSteps * double(edges.size())) : 1;
 }
 
-// To the vertices within `rings` edges of those that the band holds.
+// Extends the band to all vertices within `rings` edges of those that it holds.
 void BandPaths::spread(int rings) {
   const auto linked = [&](std::uint32_t g) { return fans_.linked(g); };
   for (std::size_t i = 0; i < band_.size(); ++i) {
@@ -72,7 +72,7 @@ void BandPaths::spread(int rings) {
   }
 }
 
-// To the border if no goals are named. Dijkstra.
+// Dijkstra's algorithm. Returns a path to the border if `goals` is empty.
 BandPaths::Path BandPaths::find(const Ends& starts, const Ends& goals, double stiffness) {
   using Visit = std::pair<double, std::uint32_t>;
   std::priority_queue<Visit, std::vector<Visit>, std::greater<>> heap;

@@ -1,4 +1,4 @@
-// Internal: shortest paths along edges, within a chart and near some place.
+// Internal: finds shortest paths along edges, within a chart and near a given path or vertex.
 #pragma once
 
 #include <cstdint>
@@ -9,26 +9,28 @@
 
 namespace atlas {
 
-// Paths pass vertices inside the chart only (ChartFans::Place); vertices are named by half-edges
-// that leave them. Keeps memory for all vertices from call to call.
+// Paths only pass vertices inside the chart (ChartFans::Place). A vertex is given by any half-edge
+// that leaves it. The object keeps its memory for all vertices between calls.
 class BandPaths {
  public:
-  using Path = std::vector<std::uint32_t>;  // half-edges, one after the other
+  using Path = std::vector<std::uint32_t>;  // consecutive half-edges
   using Ends = std::vector<std::uint32_t>;
 
-  // `crease_cosine` as for border_weight(), which is what an edge costs.
+  // An edge costs border_weight(), with this `crease_cosine`.
   BandPaths(const Topology& topology, const Partition& partition, double crease_cosine);
 
   struct Band {
-    int rings;         // edges that the path may lie away from the one given
-    double stiffness;  // by which share of its length an edge costs more for each of them
+    // How many edges the new path may lie away from the given one.
+    int rings;
+    // The share of its length that an edge costs more for each of these.
+    double stiffness;
   };
-  // The cheapest one beside `path` from one of the first ends to one of the second. Empty if there
-  // is none.
+  // Returns the cheapest path near `path` from one of the first ends to one of the second; empty if
+  // there is none.
   Path beside(const Path& path, const std::pair<Ends, Ends>& ends, const Band& band);
 
-  // From the start of h, inside the chart, to its nearest border, within `rings` edges; empty if
-  // that is farther.
+  // Returns the path from the start of h, inside the chart, to the nearest border, if that is
+  // within `rings` edges; else an empty path.
   Path to_border(std::uint32_t h, int rings);
 
  private:
@@ -42,10 +44,11 @@ class BandPaths {
   const Topology& topology_;
   ChartFans fans_;
   double crease_cosine_, unit_ = 1;
-  // 1 a vertex, of the band at hand.
+  // One per vertex of the current band.
   std::vector<double> distance_;
-  std::vector<std::uint32_t> through_, out_;  // half-edges: how a path comes; one that leaves
-  std::vector<int> level_;                    // edges from the path; -1: not in the band
+  std::vector<std::uint32_t> through_, out_;  // half-edges: by which a path arrives; one that
+                                              // leaves
+  std::vector<int> level_;                    // edges from the given path; -1: not in the band
   std::vector<std::uint32_t> band_;           // vertices
 };
 

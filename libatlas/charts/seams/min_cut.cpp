@@ -31,7 +31,8 @@ void MinCut::run() {
   while (find_levels()) augment();
 }
 
-// Levels of all nodes that the source still reaches; whether the sink is among them.
+// Finds the levels of all nodes that the source still reaches. Returns whether the sink is among
+// them.
 bool MinCut::find_levels() {
   level_.assign(source_.size(), kUnreached);
   queue_.clear();
@@ -62,7 +63,7 @@ void MinCut::augment() {
   }
 }
 
-// Pushes along paths of rising level until the root has nothing left or no way on.
+// Pushes flow along paths of rising level, until the root has none left or no path continues.
 void MinCut::augment_from(std::uint32_t root) {
   path_.clear();  // arcs
   std::uint32_t at = root;
@@ -92,7 +93,8 @@ void MinCut::augment_from(std::uint32_t root) {
   }
 }
 
-// As much as goes along the path. What is left of it ends where nothing more would go on.
+// Pushes as much flow as the path admits, and shortens the path to the part before the first full
+// arc.
 void MinCut::push(std::uint32_t root, std::uint32_t end) {
   std::int32_t flow = std::min(source_[root], sink_[end]);
   for (const std::uint32_t a : path_) flow = std::min(flow, capacity_[a]);

@@ -37,7 +37,7 @@ class Smoother {
   }
 
  private:
-  static constexpr int kMaxRounds = 64;  // a seam wanders by at most so many triangles
+  static constexpr int kMaxRounds = 64;  // a seam moves by at most this many triangles
 
   bool at_border(std::uint32_t t) const {
     for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
@@ -150,8 +150,8 @@ bool removable(const Topology& topology, const Partition& partition, std::uint32
   }
   if (links <= 1) return true;
   if (links == 3) return false;
-  // The two links meet at the corner opposite the open edge: walk the fan there from one to the
-  // other without t.
+  // The two links meet at the corner opposite to the open edge. Walks the fan there from one link
+  // to the other, without passing t.
   const std::uint32_t start = previous_half_edge(open);
   std::uint32_t h = topology.opposite[previous_half_edge(start)];
   while (h / 3 != t) {

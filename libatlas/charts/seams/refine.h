@@ -1,4 +1,4 @@
-// Internal: moves single triangles between charts, to make seams shorter or charts easier.
+// Internal: moves single triangles between charts, to make seams shorter or charts simpler.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,18 @@
 
 namespace atlas {
 
-// Hands triangle t to the chart across half-edge h of it, with a frame that fits there.
+// Moves triangle t, which half-edge h belongs to, to the chart across h, with a frame that fits
+// there.
 void move_triangle(const Topology& topology, std::uint32_t h, Partition& partition, Frames& frames);
 
-// Whether the chart of t stays in one piece without it (decided around t's corners).
+// Whether the chart of t stays connected without t, judged from the triangles around t's corners.
 bool removable(const Topology& topology, const Partition& partition, std::uint32_t t);
 
-// What a linked edge costs in a border: its length, or a quarter of it where the fold is sharper.
+// Returns what a linked edge costs in a border: its length, or a quarter of it if the fold is
+// sharper than the crease angle.
 double border_weight(const Topology& topology, std::uint32_t half_edge, double crease_cosine);
 
-// A limit on charts' normals; empty axes: none.
+// A limit on charts' normals. No limit if `axes` is empty.
 struct ConeLimit {
   std::span<const Vec3f> axes;  // by Partition::chart
   double least_cosine = -1;
@@ -33,17 +35,18 @@ struct BorderRules {
   ConeLimit cone;
 };
 
-// Moves triangles while that shortens the borders between charts. No triangle goes where its normal
-// leaves the cone. Ends: every move shortens. Linear in the number of border triangles.
+// Moves triangles while that shortens the borders between charts. No triangle goes to a chart whose
+// cone excludes its normal. Terminates, since every move shortens the borders. Linear in the number
+// of border triangles.
 void smooth_borders(const Topology& topology, const BorderRules& rules, Partition& partition,
                     Frames& frames);
 
-// The frame of triangle `from` carried to `to`, across their common edge.
+// Returns the frame of triangle `from` carried to `to`, across their common edge.
 Frames::Frame carry_frame(const Topology& topology, const Frames::Frame& frame, std::uint32_t from,
                           std::uint32_t to);
 
-// Gives each half-edge's triangle the frame from across, one after the other; none where `frames`
-// is empty.
+// Gives the triangle of each half-edge the frame from across it, one after the other. Does nothing
+// if `frames` is empty.
 void carry_frames(const Topology& topology, std::span<const std::uint32_t> half_edges,
                   Frames& frames);
 

@@ -15,15 +15,16 @@ namespace {
 using Path = BandPaths::Path;
 
 constexpr int kRounds = 4, kTubeRounds = 16;
-constexpr double kLeastGain = 0.01;  // of a path's cost
-// An edge costs this part of its length more for each edge that it is away from the path as it was:
-// where merging cut a chart open it stretches least. Not along tubes, which stretch as much
-// wherever they are cut, and fill more of their rectangles where that is straight.
+constexpr double kLeastGain = 0.01;  // share of a path's cost
+// An edge costs this share of its length more for each edge that it is away from the old path,
+// because a chart stretches least where merging cut it open. Does not apply to tubes, which stretch
+// as much wherever they are cut, and fill more of their rectangles with a straight cut.
 constexpr double kStiffness = 0.15;
-// Of rings: in narrower bands borders hardly move.
+// In bands of fewer rings borders hardly move.
 constexpr int kWideBand = 3;
-constexpr int kReach = 4;  // by rings: how far a slit is drawn on
-// Triangles between two paths, by their edges and the width of the band: more are no lune.
+constexpr int kReach = 4;  // times the rings: how far a slit may be extended
+// The most triangles between two paths, per edge of the paths and ring of the band. Larger regions
+// do not lie between them.
 constexpr std::size_t kLuneTriangles = 6, kSmallLune = 64;
 
 }  // namespace
@@ -76,15 +77,15 @@ class Slits::Straightener {
   struct Slit {
     Path path;
     std::uint32_t chart;
-    bool free_start, free_end;  // on the border
+    bool free_start, free_end;  // the end lies on the border
   };
 
-  // Whether it leads from border to border.
+  // Whether the slit leads from border to border.
   bool is_tube(const Slit& slit) const {
     return slit.free_start && slit.free_end && bands_[slit.chart].rings >= kWideBand;
   }
 
-  // Maximal paths of seams, none of which passes a vertex where others end.
+  // Lists the maximal paths of seams. No path passes a vertex where others end.
   void list_paths() {
     slits_.clear();
     std::vector<std::uint32_t> seams;
@@ -102,7 +103,7 @@ class Slits::Straightener {
       for (auto it = back.rbegin(); it != back.rend(); ++it) {
         path.push_back(topology_.opposite[*it]);
       }
-      if (fans_.to(back.back()) == fans_.from(back.front())) continue;  // it closes
+      if (fans_.to(back.back()) == fans_.from(back.front())) continue;  // a closed path
       const Path forth = follow(h, seen);
       path.insert(path.end(), forth.begin() + 1, forth.end());
       const std::uint32_t chart = partition_.chart[h / 3];
@@ -112,13 +113,13 @@ class Slits::Straightener {
     }
   }
 
-  // Whether the start of h is.
+  // Whether the start of h lies on the chart's border.
   bool on_border(std::uint32_t h) const {
     return !fans_.around(
         h, [&](std::uint32_t g) { return fans_.inner(g); }, [](std::uint32_t) {});
   }
 
-  // From where a slit ends inside the chart, the start of h, on to the nearest border.
+  // Extends a slit that ends inside the chart, at the start of h, to the nearest border.
   void draw_on(std::uint32_t h, int rings) {
     int seams = 0;
     const bool inside = fans_.around(
@@ -128,7 +129,7 @@ class Slits::Straightener {
     cut(paths_.to_border(h, rings));
   }
 
-  // From the seam h on, to where the path ends or branches.
+  // Returns the path from seam h on, to where it ends or branches.
   Path follow(std::uint32_t h, std::vector<std::uint8_t>& seen) const {
     const auto inner = [&](std::uint32_t g) { return fans_.inner(g); };
     Path path{h};
@@ -167,7 +168,7 @@ class Slits::Straightener {
     return sum;
   }
 
-  // False if there is none that is much shorter.
+  // Replaces the path by a shorter one. Returns false if no path is clearly shorter.
   bool shorten(Path& path, const BandPaths::Band& band) {
     seal(path);
     const std::vector<std::uint32_t> starts = ends(path.front(), band.rings),
@@ -193,8 +194,8 @@ class Slits::Straightener {
     return true;
   }
 
-  // Half-edges that leave the vertices where the path may end: that where h starts, and those
-  // beside it if it lies on the chart's border.
+  // Returns half-edges that leave the vertices where the path may end: the start of h and, if that
+  // lies on the chart's border, vertices along the border on both sides of it.
   std::vector<std::uint32_t> ends(std::uint32_t h, int rings) const {
     std::vector<std::uint32_t> out{h};
     if (fans_.place(h) != ChartFans::Place::border) return out;
@@ -216,8 +217,8 @@ class Slits::Straightener {
     return out;
   }
 
-  // Takes what lies between the two paths from one bank to the other. False, and nothing changed
-  // but that `found` is sealed, if it is not between them.
+  // Moves the triangles between the two paths from one bank to the other. If they are not between
+  // them, returns false and changes nothing, except that `found` is closed.
   bool move_banks(const Path& path, const Path& found, int rings) {
     cut(path);
     cut(found);
@@ -225,7 +226,7 @@ class Slits::Straightener {
     const std::size_t most =
         kSmallLune + kLuneTriangles * std::size_t(rings) * (path.size() + found.size());
     std::vector<std::vector<std::uint32_t>> lunes;
-    std::vector<std::uint32_t> done;  // triangles of lunes, sorted
+    std::vector<std::uint32_t> done;  // triangles of all lunes, sorted
     for (const std::uint32_t h : left) {
       const std::uint32_t a = h / 3, b = topology_.opposite[h] / 3;
       const auto taken = [&](std::uint32_t t) {
@@ -246,7 +247,7 @@ class Slits::Straightener {
     return true;
   }
 
-  // Those of a path that are not in the other one, whichever way.
+  // Returns the edges of a path that are not in the other one, in either direction.
   Path less(const Path& path, const Path& other) const {
     Path all;
     for (const std::uint32_t h : other) {
@@ -261,8 +262,8 @@ class Slits::Straightener {
     return rest;
   }
 
-  // What hangs together with one of two triangles, whichever is less, sorted; empty if both are
-  // more than `most`, or the same. Both grow in turn.
+  // Returns the triangles connected to one of two triangles, whichever are fewer, sorted. Both sets
+  // grow in turn. Returns nothing if both have more than `most`, or if they meet.
   std::vector<std::uint32_t> smaller_side(std::uint32_t a, std::uint32_t b, std::size_t most) {
     in_.resize(topology_.triangle_count(), 0);
     std::array<std::vector<std::uint32_t>, 2> sides{{{a}, {b}}};
@@ -287,7 +288,7 @@ class Slits::Straightener {
     return std::move(sides[least]);
   }
 
-  // By the neighbours of t; false if one of them is on the other side.
+  // Adds the neighbours of t. Returns false if one of them is on the other side.
   bool grow(std::uint32_t t, std::uint8_t mark, std::vector<std::uint32_t>& side) {
     for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
       if (!fans_.linked(h)) continue;
@@ -299,7 +300,7 @@ class Slits::Straightener {
     return true;
   }
 
-  // By the angle between the frames on both sides of the edges that close.
+  // Turns the frames of a lune by the angle between the frames on both sides of the closing edges.
   void turn_frames(const std::vector<std::uint32_t>& lune, const Path& closing) {
     double c = 0, s = 0;
     for (const std::uint32_t edge : closing) {
@@ -331,7 +332,7 @@ class Slits::Straightener {
   double crease_cosine_;
   ChartFans fans_;
   BandPaths paths_;
-  std::vector<std::uint8_t> in_;  // 1 a triangle: which side it is on, 0: none
+  std::vector<std::uint8_t> in_;  // one per triangle: which side it is on; 0: none
   std::vector<Slit> slits_;
 };
 

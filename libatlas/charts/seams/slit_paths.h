@@ -1,4 +1,4 @@
-// Internal: seams of charts with themselves, drawn straight.
+// Internal: straightens slits, the seams of charts with themselves.
 #pragma once
 
 #include <memory>
@@ -7,23 +7,25 @@
 
 namespace atlas {
 
-// The borders between charts, too, become straighter where they need not stop at the ends of slits.
-// Those from border to border, as along tubes, are closed meanwhile; then they are opened again so
-// far as they lie within their charts, and drawn on to the border where that has moved away.
+// Borders between charts also become straighter if they need not stop at the ends of slits. Slits
+// from border to border, as along tubes, are therefore closed in the meantime. Afterwards they are
+// opened again as far as they lie within their charts, and extended to the border where that has
+// moved away.
 class Slits {
  public:
-  // `options` as for straighten_borders(), `triangles` empty. Keeps references to all.
+  // `options` are as for straighten_borders(), with `triangles` empty. Keeps references to all
+  // arguments.
   Slits(const Topology& topology, const StraightenOptions& options, Partition& partition,
         Frames& frames);
   ~Slits();
 
-  // In charts of at least three rings.
+  // Closes slits from border to border, in charts whose bands have at least three rings.
   void close();
-  void reopen();  // those
-  // Replaces each path by a shorter one (creases count a quarter) within `rings` edges of it, a few
-  // times, as long as that saves much. Ends on the chart's border move along it, others stay. What
-  // lies between the two paths changes banks, and its frames turn with it. What topology forbids
-  // stays as it is.
+  void reopen();  // opens those again
+  // Replaces each slit by a shorter path (creases count a quarter) within `rings` edges of it, a
+  // few times, as long as that saves enough. Ends on the chart's border move along it; other ends
+  // stay. The triangles between both paths change banks, and their frames turn accordingly. Slits
+  // that topology does not allow to move stay as they are.
   void straighten();
 
  private:

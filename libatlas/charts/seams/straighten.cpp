@@ -10,7 +10,7 @@
 namespace atlas {
 namespace {
 
-// Shorter borders, in all, are not worth the threads.
+// If all borders together are shorter, threads are not worth their cost.
 constexpr std::size_t kFewEdges = 300;
 
 class Straightener {
@@ -72,9 +72,9 @@ class Straightener {
   const Topology& topology_;
   const StraightenOptions& options_;
   Partition& partition_;
-  std::vector<Claims> pairs_;              // of charts
-  std::vector<std::uint32_t> half_edges_;  // on their borders
-  std::vector<std::uint32_t> first_;       // 1 a pair and the end, into half_edges_
+  std::vector<Claims> pairs_;              // pairs of charts
+  std::vector<std::uint32_t> half_edges_;  // half-edges on their borders
+  std::vector<std::uint32_t> first_;       // one per pair, and the end: index into half_edges_
 };
 
 }  // namespace

@@ -10,8 +10,8 @@
 namespace atlas {
 namespace {
 
-constexpr double kSteps = 256;        // a mean edge's length in the cut's integers
-constexpr double kLongest = 1 << 16;  // so many steps at most, for 32 bits
+constexpr double kSteps = 256;        // the length of a mean edge in the cut's integers
+constexpr double kLongest = 1 << 16;  // the most steps of an edge, so that sums fit 32 bits
 
 class PairStraightener {
  public:
@@ -30,7 +30,7 @@ class PairStraightener {
         visited_(scratch.visited),
         cut_(scratch.cut) {}
 
-  // Where a cut in the whole band would change too much, one in a narrower band may not.
+  // Where a cut in the whole band would change too much, a cut in a narrower band may not.
   std::vector<std::uint32_t> run() {
     int rings = std::min(bands_[charts_[0]].rings, bands_[charts_[1]].rings);
     do {
@@ -44,18 +44,19 @@ class PairStraightener {
   }
 
  private:
-  // Of any triangle, while others may hand theirs to each other.
+  // Returns the chart of any triangle. Atomic, since other threads may move their triangles
+  // meanwhile.
   std::uint32_t chart(std::uint32_t t) const {
     return std::atomic_ref(partition_.chart[t]).load(std::memory_order_relaxed);
   }
 
-  // 0 or 1: which of the two charts; 2: neither.
+  // Returns which of the two charts the triangle is in, 0 or 1; 2: neither.
   std::uint32_t side(std::uint32_t t) const {
     const std::uint32_t own = chart(t);
     return own == charts_[0] ? 0 : own == charts_[1] ? 1 : 2;
   }
 
-  // Its place in the band; kNoIndex: it has none.
+  // Returns the triangle's index in the band; kNoIndex: not in the band.
   std::uint32_t place(std::uint32_t t) const { return side(t) == 2 ? kNoIndex : places_[t]; }
 
   void reach(std::uint32_t t) {
@@ -64,7 +65,7 @@ class PairStraightener {
     band_.push_back(t);
   }
 
-  // The triangles within `rings` of the border, reordered so that what hangs together is adjacent.
+  // Finds the triangles within `rings` of the border, ordered by connected components.
   void find_band(int rings) {
     band_.clear();
     for (const std::uint32_t h : border_) {
@@ -111,7 +112,8 @@ class PairStraightener {
     return at != kNoIndex && at >= first_ && at < last_;
   }
 
-  // Straightens the part of the band that begins at `first`; returns where the next begins.
+  // Straightens the component of the band that begins at `first`. Returns where the next one
+  // begins.
   std::uint32_t straighten_from(std::uint32_t first) {
     first_ = first;
     last_ = static_cast<std::uint32_t>(band_.size());
@@ -127,7 +129,7 @@ class PairStraightener {
     return end;
   }
 
-  // False if that would have changed more than a border.
+  // Returns false if the cut would have changed more than a border.
   bool cut_and_apply() {
     if (!build_cut()) return false;
     cut_.run();
@@ -143,7 +145,8 @@ class PairStraightener {
     return static_cast<std::int32_t>(std::lround(std::min(length, kLongest)));
   }
 
-  // False if one of the charts lies wholly in the band: the shortest border would be none.
+  // Returns false if the band contains all of one of the charts: the shortest border would be
+  // empty.
   bool build_cut() {
     double mean = 0;
     for (std::uint32_t i = first_; i < last_; ++i) mean += edge_length(topology_, 3 * band_[i]);
@@ -167,7 +170,7 @@ class PairStraightener {
     const std::uint32_t o = topology_.opposite[h], i = places_[h / 3] - first_;
     if (o == kNoIndex || partition_.seam(h)) return;
     const bool within = in_band(o / 3);
-    if (within && o < h) return;  // one side adds it for both
+    if (within && o < h) return;  // added once for both directions
     const std::int32_t w = steps(border_weight(topology_, h, crease_cosine_) / unit);
     if (within) {
       cut_.set_edge({i, h % 3}, {places_[o / 3] - first_, o % 3}, w);
@@ -177,8 +180,9 @@ class PairStraightener {
     }
   }
 
-  // The number of a chart's vertices, less edges, plus triangles: what changes it closes rings,
-  // opens them or divides. Vertices where a chart touches itself count as often as it comes by.
+  // Whether both charts keep their Euler characteristics: vertices minus edges plus triangles. A
+  // change means that a chart closes to a ring, opens, or comes apart. A vertex where a chart
+  // touches itself counts once for each time.
   bool same_euler() {
     int change[2] = {0, 0};
     fans_.clear();
@@ -217,8 +221,8 @@ class PairStraightener {
     const std::uint32_t o = topology_.opposite[h];
     return side_at(h / 3, after) == s || (o != kNoIndex && side_at(o / 3, after) == s);
   }
-  // Names the fan of triangles around the start of h: its first half-edge in anticlockwise order,
-  // the least one if the fan is closed.
+  // Returns a name for the fan of triangles around the start of h: its first half-edge in
+  // counter-clockwise order, or the smallest one if the fan is closed.
   std::uint32_t first_of_fan(std::uint32_t h) const {
     std::uint32_t least = h;
     for (std::uint32_t at = h;;) {
@@ -229,7 +233,7 @@ class PairStraightener {
     }
   }
 
-  // How many vertices of side s a fan holds: as many as there are runs of its triangles.
+  // Returns how many vertices of side s a fan contains: one for each run of triangles on that side.
   int runs_in_fan(std::uint32_t first, std::uint32_t s, bool after) const {
     int triangles = 0, links = 0;
     bool closed = false;
@@ -245,9 +249,10 @@ class PairStraightener {
     return closed && triangles > 0 && links == triangles ? 1 : triangles - links;
   }
 
-  // Whether all parts of both charts in the band would have a hold outside it. Parts need not hang
-  // together within the band: where the characteristics stay, a chart could come apart only if it
-  // got a hole as well. (If one does, flattening takes its pieces for charts.)
+  // Whether all parts of both charts within the band would still touch their chart outside of it.
+  // Parts need not be connected within the band: with equal Euler characteristics, a chart could
+  // come apart only if it also got a hole. (If that happens, flattening makes its components
+  // charts.)
   bool held() {
     visited_.assign(last_ - first_, 0);
     for (std::uint32_t i = 0; i < visited_.size(); ++i) {
@@ -274,8 +279,8 @@ class PairStraightener {
     return true;
   }
 
-  // Triangles change sides, each over an edge to a neighbour that was there before or has changed
-  // already. They have no seam bits.
+  // Moves triangles to the other chart, each across an edge to a triangle that was there before or
+  // has moved already. These triangles have no seam bits.
   void apply() {
     list_.clear();
     for (std::uint32_t i = first_; i < last_; ++i) {
@@ -293,12 +298,12 @@ class PairStraightener {
           moved_.push_back(h);
         }
       }
-      if (kept == left) break;  // cannot be: held() has seen a way to each
+      if (kept == left) break;  // impossible: held() has found a way to each
       left = kept;
     }
   }
 
-  // A half-edge of t to a triangle of the chart that t changes to.
+  // Returns a half-edge of t towards the chart that t changes to.
   std::uint32_t way_over(std::uint32_t t) const {
     const std::uint32_t to = charts_[cut_.side(places_[t] - first_)];
     for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
@@ -322,8 +327,8 @@ class PairStraightener {
   std::vector<std::uint8_t>& visited_;
   MinCut& cut_;
   std::vector<std::uint32_t> moved_;
-  std::uint32_t first_ = 0, last_ = 0;  // the part of band_ that is at work
-  bool refused_ = false;                // a cut in the band at hand
+  std::uint32_t first_ = 0, last_ = 0;  // range of the current component in band_
+  bool refused_ = false;                // a cut in the current band was
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Internal: the border between two charts drawn straight, by minimum cuts in a band along it.
+// Internal: straightens the border between two charts, by minimum cuts in a band along it.
 #pragma once
 
 #include <array>
@@ -11,28 +11,30 @@
 
 namespace atlas {
 
-// What pairs at work at once have in common. Each reads and writes its own charts' triangles alone;
-// of others it sees no more than that they are.
+// The data that pairs processed in parallel share. Each pair reads and writes only the triangles of
+// its own charts; of other triangles it sees only that they belong to others.
 struct SharedBands {
   const Topology& topology;
   const BorderRules& rules;
-  std::span<const SeamBand> bands;  // 1 a chart
+  std::span<const SeamBand> bands;  // one per chart
   Partition& partition;
-  std::span<std::uint32_t> places;  // 1 a triangle, kNoIndex: its place in the band at work
+  std::span<std::uint32_t> places;  // one per triangle: its index in the band of its pair, or
+                                    // kNoIndex
 };
 
 struct BorderPair {
   std::array<std::uint32_t, 2> charts;
-  std::span<const std::uint32_t> border;  // half-edges, one for both sides; some may be none by now
+  // One half-edge for both sides; some may no longer be on the border.
+  std::span<const std::uint32_t> border;
 };
 
 struct PairScratch {
   std::vector<std::uint32_t> band, list, fans;
-  std::vector<std::uint8_t> visited;  // 1 a triangle of the part
+  std::vector<std::uint8_t> visited;  // one per triangle of the component
   MinCut cut;
 };
 
-// Returns the half-edges across which triangles came to the other chart, in order.
+// Straightens the border. Returns the half-edges across which triangles changed charts, in order.
 std::vector<std::uint32_t> straighten_pair(const SharedBands& shared, const BorderPair& pair,
                                            PairScratch& scratch);
 
