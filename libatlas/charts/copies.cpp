@@ -12,11 +12,13 @@
 namespace atlas {
 namespace {
 
-constexpr double kTolerance = 1e-5;  // of a part's size
-// Units in the last place of the largest coordinate: what placing a part costs it.
+constexpr double kTolerance = 1e-5;  // relative to a part's size
+// Rounding when a part is placed: up to this share of the largest coordinate, 4 units in its last
+// place.
 constexpr double kRounding = 4.0 / (1 << 23);
-constexpr double kMostRounding = 1e-3;  // of a part's size: rougher ones are not compared
-// Originals that a piece is compared with, if they have the same edges in sum.
+// Parts whose rounding exceeds this share of their size are not compared.
+constexpr double kMostRounding = 1e-3;
+// The most originals with the same sum of edge lengths that a piece is compared with.
 constexpr std::size_t kMostCompared = 8;
 
 std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
@@ -24,11 +26,12 @@ std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
   return hash ^ (hash >> 29);
 }
 
-// What pieces are told apart by before they are compared.
+// Properties of a piece that are compared first.
 struct Digest {
-  std::uint64_t hash = 0;  // of the connectivity and the densities
-  double edges = 0;        // summed lengths
-  double slack = 0;        // of each length; 0: the piece is too far from the origin
+  std::uint64_t hash = 0;  // of connectivity and densities
+  double edges = 0;        // sum of the lengths
+  // Tolerance of a length; 0: the piece is too far from the origin.
+  double slack = 0;
   std::uint32_t piece = 0;
 };
 
@@ -114,7 +117,7 @@ class Finder {
     return d;
   }
 
-  // Of the originals with about the same sum of edges, the latest that the piece repeats.
+  // Returns the latest of the originals with about the same sum of edges that the piece repeats.
   const Digest* original_of(const Digest& own) {
     std::size_t compared = 0;
     for (std::size_t i = originals_.size(); i-- > 0 && compared < kMostCompared; ++compared) {
@@ -139,7 +142,7 @@ class Finder {
     return true;
   }
 
-  // Vertices and links correspond; name_ is the twin here, in piece b.
+  // Whether vertices and links correspond. name_ is the corresponding vertex of piece b.
   bool same_corner(std::uint32_t ha, std::uint32_t hb, std::uint32_t b) {
     const std::uint32_t va = topology_.corner_vertex[ha], vb = topology_.corner_vertex[hb];
     if (owner_[va] != b) {
@@ -152,7 +155,7 @@ class Finder {
     return place_[oa / 3] == place_[ob / 3] && oa % 3 == ob % 3;
   }
 
-  // Lengths agree, and so do the folds: how far the triangle across rises, and to which side.
+  // Whether lengths agree, and folds too: how far the triangle across rises, and to which side.
   bool same_edge(std::uint32_t ha, std::uint32_t hb, double slack) const {
     const double la = glm::distance(point(ha), point(next_half_edge(ha)));
     const double lb = glm::distance(point(hb), point(next_half_edge(hb)));
@@ -173,9 +176,9 @@ class Finder {
   const Topology& topology_;
   std::span<const float> density_;
   PieceList pieces_;
-  std::vector<std::uint32_t> place_;         // 1 a triangle: its place in its piece
-  std::vector<std::uint32_t> name_, owner_;  // 1 a vertex: in the piece that was seen last there
-  std::vector<Digest> originals_;            // with the hash at hand, by sum of edges
+  std::vector<std::uint32_t> place_;         // one per triangle: its index in its piece
+  std::vector<std::uint32_t> name_, owner_;  // one per vertex: in the last piece that visited it
+  std::vector<Digest> originals_;            // with the current hash, by sum of edges
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Internal: pieces of a mesh that repeat others, as the screws of an assembly do.
+// Internal: finds pieces of a mesh that repeat others, as the screws of an assembly do.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,24 @@
 namespace atlas {
 
 struct PieceCopies {
-  std::vector<std::uint32_t> original;  // 1 a piece: the piece that it repeats, or itself
-  std::size_t copied_triangles = 0;     // of pieces that repeat another one
+  std::vector<std::uint32_t> original;  // one per piece: the piece that it repeats, or itself
+  std::size_t copied_triangles = 0;     // triangles of pieces that repeat another one
 };
 
-// A copy has its original's triangles in the same order, joined alike, with the same densities
-// (`density`: 1 a triangle, or empty), and its edges and folds to 1e-5 of its size or to what
-// coordinates so far from the origin can tell, whatever its place and turn; a mirrored part is no
-// copy. Linear but for a sort of the pieces.
+// Finds the pieces that repeat others, in time linear except for a sort of the pieces. A copy has
+// its original's triangles in the same order, with the same links and the same densities
+// (`density`: one per triangle, or empty). Its edges and folds agree to 1e-5 of its size, or to the
+// precision of coordinates that far from the origin. Position and rotation do not matter; a
+// mirrored part is not a copy.
 PieceCopies find_copies(const Topology& topology, std::span<const float> density);
 
-// Carries charts from originals to copies. Both name triangles and vertices of the whole mesh.
+// Copies charts from originals to copies. Charts refer to triangles and vertices of the whole mesh.
 class ChartCopier {
  public:
   ChartCopier(const FlattenInput& input, const PieceList& pieces);
 
-  // The chart of piece `from` as piece `to` has it: the same uvs, its own cone and distortion.
-  // False: that breaks a limit.
+  // Makes `out` the counterpart in piece `to` of a chart of piece `from`: with the same uvs, but
+  // its own cone and distortion. Returns false if these exceed a limit.
   bool copy(const FlatChart& chart, std::uint32_t from, std::uint32_t to, FlatChart& out) const;
 
  private:

@@ -15,10 +15,10 @@ namespace {
 
 constexpr std::size_t kTrianglesAtATime = 50000;
 
-// Ways to cut a mesh that ChartPreset::best tries, each from other cells.
+// How many segmentations ChartPreset::best tries, each from other cells.
 constexpr int kBestAttempts = 4;
 
-// What was made of a piece; the less the better.
+// The cost of a piece's charts; less is better.
 struct Cost {
   std::size_t charts = 0;
   double seams = 0;  // length
@@ -38,7 +38,7 @@ std::vector<Cost> costs(const Topology& topology, const Partition& partition,
   return costs;
 }
 
-// The charts of a mesh, as one attempt after the other made them: of each piece the best so far.
+// The best charts of each piece in several attempts.
 class BestCharts {
  public:
   explicit BestCharts(const Topology& topology) : topology_(topology) {}
@@ -64,10 +64,10 @@ class BestCharts {
  private:
   const Topology& topology_;
   std::vector<FlatChart> charts_;
-  std::vector<Cost> least_;  // 1 a piece
+  std::vector<Cost> least_;  // one per piece
 };
 
-// All at once.
+// Cuts the whole mesh at once.
 CutCharts cut_mesh(const FlattenInput& mesh, const Context& context) {
   const int attempts = mesh.options.preset == ChartPreset::best ? kBestAttempts : 1;
   CutCharts out;
@@ -99,7 +99,7 @@ CutCharts cut_mesh(const FlattenInput& mesh, const Context& context) {
   return out;
 }
 
-// Pieces of a mesh, as many at a time as have about so many triangles.
+// Cuts pieces of a mesh in batches of about kTrianglesAtATime triangles.
 class Batches {
  public:
   Batches(const FlattenInput& mesh, std::span<const std::uint32_t> pieces, const Context& context)
@@ -132,7 +132,7 @@ class Batches {
     const double start = own_cpu_seconds();
     PieceMesh part;
     {
-      const std::lock_guard lock(mutex_);  // the cutter's notes are of the whole mesh
+      const std::lock_guard lock(mutex_);  // the cutter's scratch memory covers the whole mesh
       part = cutter_.cut(pieces);
     }
     std::vector<float> density;
@@ -163,7 +163,7 @@ class Batches {
   Context inner_;  // of a batch
   std::mutex mutex_;
   PieceCutter cutter_;
-  std::vector<std::uint32_t> first_;  // 1 a batch and the end, into pieces_
+  std::vector<std::uint32_t> first_;  // one per batch, and the end: index into pieces_
   std::size_t all_ = 0, done_ = 0;    // triangles
 };
 
@@ -186,7 +186,7 @@ void sort_by_triangle(std::vector<FlatChart>& charts) {
 CutCharts cut_pieces(const FlattenInput& mesh, std::span<const std::uint32_t> pieces,
                      const Context& context) {
   const std::size_t n = mesh.topology.triangle_count();
-  // A large piece with few beside it gains nothing, and would stand twice in memory.
+  // A large piece with little beside it gains nothing from batches, and would be in memory twice.
   if (pieces.size() == mesh.topology.component_count &&
       (n <= kTrianglesAtATime || n / kTrianglesAtATime >= pieces.size())) {
     return cut_mesh(mesh, context);

@@ -1,4 +1,4 @@
-// Internal: the way from pieces of a mesh to flat charts.
+// Internal: turns pieces of a mesh into flat charts.
 #pragma once
 
 #include <span>
@@ -9,20 +9,22 @@
 namespace atlas {
 
 struct CutCharts {
-  std::vector<FlatChart> charts;    // ordered by first triangle
-  std::uint64_t split_charts = 0;   // that failed and were cut into smaller ones, in all attempts
-  std::uint64_t copied_pieces = 0;  // that took the charts of another piece
+  std::vector<FlatChart> charts;  // ordered by first triangle
+  // Charts that failed and were divided, in all attempts.
+  std::uint64_t split_charts = 0;
+  std::uint64_t copied_pieces = 0;  // pieces that took the charts of another piece
   ChartSet::Timing timing;          // segmentation_cpu, and the parts of both sums
 };
 
-// Appends charts; they are in no order then.
+// Appends charts. They are not in order afterwards.
 void append(CutCharts part, CutCharts& whole);
 void sort_by_triangle(std::vector<FlatChart>& charts);
 
-// Segments and flattens these pieces (ascending) of a mesh; of the mesh's frames none are used.
-// Pieces of large meshes are cut so many triangles at a time, and in parallel: pieces know nothing
-// of each other, 10^5 of them would need much memory at once, and parts that fit the processor's
-// caches are faster. The result does not depend on the number of threads. Incomplete if cancelled.
+// Segments and flattens these pieces (ascending) of a mesh; the mesh's frames are not used. In
+// large meshes the pieces are processed in batches of 50 000 triangles, in parallel: pieces do not
+// depend on each other, 10^5 of them would need much memory at once, and batches that fit the
+// processor's caches are faster. The result does not depend on the number of threads. It is
+// incomplete if cancelled.
 CutCharts cut_pieces(const FlattenInput& mesh, std::span<const std::uint32_t> pieces,
                      const Context& context);
 

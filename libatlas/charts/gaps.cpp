@@ -15,10 +15,11 @@
 namespace atlas {
 namespace {
 
-constexpr double kMinAltitude = 1e-7;  // of the root of a chart's area, as where it was flattened
+// Relative to the square root of a chart's area, as in flattening.
+constexpr double kMinAltitude = 1e-7;
 
-// Of the root of a chart's area: where a clearance is more, every place of the border is near
-// another one, and moving it that far would tear the chart up.
+// The largest clearance, relative to the square root of a chart's area. With more, every place of
+// the border is close to another one, and moving it that far would tear the chart up.
 constexpr double kWidest = 0.2;
 
 // A chart as a mesh of its own, without the triangles that cover nothing.
@@ -76,8 +77,8 @@ Widened widen(const MeshView& mesh, const WidenOptions& options, ChartSet& set, 
   return widened;
 }
 
-// Calls look(c) for every chart that has a clearance that it is large enough for, and sums up what
-// it returns.
+// Calls look(c) for every chart that has a clearance and is large enough for it. Returns the sums
+// of the results.
 template <class Look>
 GapReport look_at_all(const ChartSet& charts, std::span<const double> clearance,
                       const Context& context, const Look& look) {

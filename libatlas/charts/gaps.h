@@ -1,4 +1,5 @@
-// Charts whose parts come so near each other on the page that texels would mix them.
+// Finds and widens gaps between parts of a chart that are so narrow that texels would mix both
+// sides.
 #pragma once
 
 #include <cstddef>
@@ -8,31 +9,33 @@
 
 namespace atlas {
 
-// Lengths are in clearances of the chart that the border belongs to: twice as many texels, where a
-// clearance is two of them.
+// Lengths are relative to the clearance of the chart that the border belongs to. In texels they are
+// twice that, if a clearance is two texels.
 struct GapReport {
-  std::size_t charts = 0;  // that were changed
-  double border = 0;       // of the charts that were looked at; seams count on both sides
-  double near_before = 0, near_after = 0;  // of it, what is too near to another part
+  std::size_t charts = 0;  // charts that were changed
+  double border = 0;       // of the charts that were examined; seams count on both sides
+  // The part of it that is too close to another part.
+  double near_before = 0, near_after = 0;
 };
 
 struct GapLimits {
-  std::span<const double> clearance = {};  // 1 a chart, in units of its uvs; 0: not looked at
-  double max_stretch = 1.25;               // > 1: charts may be stretched so far, see ChartOptions
+  // Per chart, in units of its uvs, such as the distance across two texels. Charts with 0 are not
+  // examined, nor are those with more than a fifth of the square root of their area.
+  std::span<const double> clearance = {};
+  double max_stretch = 1.25;  // > 1, see ChartOptions::max_stretch
 };
 
-// How much of the charts' borders is nearer to another part of the same chart than its clearance
-// (as in GapLimits), though the two are far apart on the surface:
-// more than three clearances. Charts whose clearance is more than a fifth of the root of their area
-// are not looked at. Nothing is changed.
+// Measures how much of the charts' borders is closer than the clearance (see GapLimits) to another
+// part of the same chart, although both are far apart on the surface: more than three clearances.
+// Changes nothing.
 GapReport measure_gaps(const MeshView& mesh, std::span<const double> clearance,
                        const ChartSet& charts, const Context& context);
 
-// Opens such gaps: the border is drawn back on both sides, so far as the chart stays within
-// limits.max_stretch (or what it stretches already) and injective. Charts keep their triangles and
-// seams; uvs, size and distortion change a little, the total as well. Given charts (Chart::kept)
-// are not looked at either, and where the work is cancelled some charts may be left. The result is
-// the same for every thread count.
+// Widens such gaps by moving the border back on both sides, as far as the chart stays injective and
+// within limits.max_stretch (or its present stretch). Charts keep their triangles and seams; their
+// uvs, size and distortion change a little, and so does the total. Given charts (Chart::kept) are
+// not examined. If cancelled, some charts may remain unchanged. The result is the same for every
+// thread count.
 GapReport widen_gaps(const MeshView& mesh, const GapLimits& limits, ChartSet& charts,
                      const Context& context);
 

@@ -17,19 +17,20 @@
 namespace atlas {
 namespace {
 
-// Triangles of a smaller altitude, relative to the square root of the chart's area, are at the
-// mercy of the rounding of what is written.
+// Triangles of a smaller altitude, relative to the square root of the chart's area, may be flipped
+// by the rounding of what is written.
 constexpr double kMinAltitude = 1e-7;
 
 using Border = std::vector<std::array<std::uint32_t, 2>>;
 
-// One given chart on trial.
+// Decides whether one given chart can be kept.
 class GivenChart {
  public:
   GivenChart(const FlattenInput& input, const MeshView& mesh, Partition& partition)
       : input_(input), mesh_(mesh), partition_(partition) {}
 
-  enum class Verdict { kept, bad, useless };  // useless: says nothing about how to lay it out
+  // useless: its uvs do not help to flatten it.
+  enum class Verdict { kept, bad, useless };
 
   Verdict run(std::span<const std::uint32_t> triangles, FlatChart& flat) {
     chart_.build(input_.topology, partition_, triangles);
@@ -60,8 +61,8 @@ class GivenChart {
   }
 
  private:
-  // Relative to the first corner's, which costs floats no digit. Returns how many corners have
-  // none.
+  // Takes the uvs, relative to the first corner's, which loses no digit of floats. Returns the
+  // number of corners without uvs.
   std::size_t take_uvs() {
     uvs_.assign(chart_.positions.size(), Vec2d{});
     const std::span<const std::uint32_t> triangles = chart_.triangles();
@@ -85,7 +86,7 @@ class GivenChart {
     return missing;
   }
 
-  // Of the surface times density squared.
+  // Returns the surface area, times density squared.
   double surface_area() const {
     double area = 0;
     for (std::size_t i = 0; i < chart_.corners.size(); ++i) {
@@ -99,7 +100,7 @@ class GivenChart {
     return area;
   }
 
-  // Mirrors uvs of negative area; returns the sum of the triangles' absolute areas.
+  // Mirrors the uvs if their area is negative. Returns the sum of the triangles' absolute areas.
   double unmirror() {
     double twice = 0, absolute = 0;
     for (const auto& [a, b, c] : chart_.corners) {
@@ -200,7 +201,7 @@ class GivenSet {
     return verdicts;
   }
 
-  // A folded chart is kept if all of its parts are good.
+  // Keeps folded charts all of whose parts can be kept.
   void take_over_folded(const Lists& lists) {
     UvFolds folds;
     for (std::uint32_t k = 0; k < verdicts_.size(); ++k) {
@@ -237,7 +238,8 @@ class GivenSet {
     if (context_.cancelled()) return;
     std::vector<FlatChart> parts = flatten_segments(wanted);
     for (const FlatChart& chart : parts) ++other[component(chart)];
-    const auto better = [&](std::uint32_t k) {  // the segments
+    // Whether the segments are better than the chart as a whole.
+    const auto better = [&](std::uint32_t k) {
       return other[k] > 0 && (count[k] == 0 || other[k] < count[k]);
     };
     for (FlatChart& chart : whole) {
@@ -259,7 +261,7 @@ class GivenSet {
     return std::find(wanted.begin(), wanted.end(), 1) != wanted.end();
   }
 
-  // Each wanted component as one chart, divided where it must be.
+  // Flattens each wanted component as one chart, which is divided where necessary.
   std::vector<FlatChart> flatten_outlines(const std::vector<std::uint8_t>& wanted) {
     if (!any(wanted)) return {};
     Partition partition;
@@ -270,7 +272,7 @@ class GivenSet {
     return flatten(partition, {});
   }
 
-  // Each wanted component segmented as if there were no uvs.
+  // Segments and flattens each wanted component as if there were no uvs.
   std::vector<FlatChart> flatten_segments(const std::vector<std::uint8_t>& wanted) {
     std::vector<std::uint32_t> pieces;
     for (std::uint32_t k = 0; k < wanted.size(); ++k) {
@@ -295,7 +297,7 @@ class GivenSet {
   const Context& context_;
   const Topology& topology_;
   Partition partition_;            // of the trials
-  std::vector<Verdict> verdicts_;  // 1 a component
+  std::vector<Verdict> verdicts_;  // one per component
   GivenUvsResult result_;
 };
 

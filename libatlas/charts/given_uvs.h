@@ -1,4 +1,4 @@
-// Internal: the charts of an input uv set, taken over as they are where they are usable.
+// Internal: keeps the charts of a given uv set where they are usable, and flattens the others.
 #pragma once
 
 #include <cstdint>
@@ -11,27 +11,28 @@
 
 namespace atlas {
 
-// 1 a corner: MeshView::texcoord_indices with kNoIndex where it is out of range or the texcoord is
-// not finite; empty if the mesh has none. Corners without texcoord agree with each other, so that
-// an unusable region stays in one piece.
+// Returns MeshView::texcoord_indices, one per corner, with kNoIndex where the index is out of range
+// or the texcoord is not finite; empty if the mesh has none. Corners without texcoord agree with
+// each other, so an unusable region stays connected.
 std::vector<std::uint32_t> usable_texcoords(const MeshView& mesh);
 
 struct GivenUvsResult {
   std::vector<FlatChart> charts;   // ordered by first triangle
-  std::uint64_t kept_charts = 0;   // given charts whose uvs were taken,
-  std::uint64_t reflattened = 0;   // and the others
-  std::uint64_t split_charts = 0;  // of those others: cut into smaller ones
-  ChartSet::Timing timing;         // of segmenting, and the parts of everything
+  std::uint64_t kept_charts = 0;   // given charts whose uvs were kept
+  std::uint64_t reflattened = 0;   // the other given charts
+  std::uint64_t split_charts = 0;  // reflattened charts that were divided
+  ChartSet::Timing timing;         // of segmentation, and the parts of everything
 };
 
-// `input.topology` was cut at the uv seams of `mesh`, whose texcoord_indices are those of
-// usable_texcoords: its components are the given charts. A given chart is kept if its uvs, exactly
-// mirrored back where they are mirrored as a whole, are injective before and after they are scaled
-// to the surface's area and turned for packing, no triangle is too thin to survive being written,
-// and the cone is within the limit; a chart that is folded over, if all of its parts are (see
-// uv_folds.h). The others are flattened anew inside their outlines; where one does not flatten in
-// one piece, it is segmented as well, and what gives fewer charts is taken. Charts run in parallel;
-// the result does not depend on how.
+// Keeps or flattens the given charts, which are the components of `input.topology`: it must have
+// been cut at the uv seams of `mesh`, whose texcoord_indices must be those of usable_texcoords(). A
+// given chart is kept if its uvs (mirrored back exactly where they are mirrored as a whole) are
+// injective, both before and after they are scaled to the surface's area and turned for packing, if
+// no triangle is too thin to survive being written, and if the cone is within the limit. A chart
+// that is folded over is kept if all of its parts can be (see uv_folds.h). The others are flattened
+// within their outlines; those that do not flatten in one piece are segmented as well, and the way
+// that gives fewer charts is taken. Charts run in parallel; the result does not depend on the
+// number of threads.
 GivenUvsResult flatten_given_uvs(const FlattenInput& input, const MeshView& mesh,
                                  const Context& context);
 

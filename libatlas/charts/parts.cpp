@@ -10,7 +10,7 @@
 namespace atlas {
 namespace {
 
-// Pieces that repeat others are set aside if they are at least this part of the triangles.
+// Copies are treated separately if they have at least one kCopiedShare-th of the triangles.
 constexpr std::size_t kCopiedShare = 4;
 
 class Repeater {
@@ -36,7 +36,7 @@ class Repeater {
     return mesh_.topology.component[chart.triangles.front()];
   }
 
-  // Gives the copies their originals' charts; returns those that cannot take them.
+  // Gives the copies their originals' charts. Returns the copies that cannot take them.
   std::vector<std::uint32_t> copy_charts() {
     const std::vector<std::uint32_t> first = charts_by_piece();
     std::vector<std::uint32_t> copies, place;
@@ -79,7 +79,7 @@ class Repeater {
     return failed;
   }
 
-  // Sorts the charts by piece; returns where those of each start.
+  // Sorts the charts by piece. Returns where those of each piece start.
   std::vector<std::uint32_t> charts_by_piece() {
     std::stable_sort(
         out_.charts.begin(), out_.charts.end(),

@@ -1,4 +1,4 @@
-// Internal: the way from a mesh to flat charts; what it repeats is cut and flattened once.
+// Internal: turns a mesh into flat charts. Repeated pieces are cut and flattened only once.
 #pragma once
 
 #include <span>
@@ -7,9 +7,9 @@
 
 namespace atlas {
 
-// Every triangle with area ends in one chart. Pieces that repeat others (find_copies) take their
-// charts where they are a quarter of the mesh at least; what breaks a limit there is cut and
-// flattened by itself. `density`: 1 a triangle, or empty.
+// Cuts a mesh into charts; every triangle with area ends up in one. Pieces that repeat others
+// (find_copies) take their charts, if such pieces are at least a quarter of the mesh; those that
+// would exceed a limit are cut and flattened by themselves. `density`: one per triangle, or empty.
 CutCharts cut_into_charts(const Topology& topology, std::span<const float> density,
                           const ChartOptions& options, const Context& context);
 

@@ -16,20 +16,21 @@
 namespace atlas {
 namespace {
 
-// A mesh cut into charts.
+// A mesh whose cells are merged into charts.
 struct Cut {
   const Topology& topology;
   Cells cells;
   CoarseMesh coarse;
   MergeResult merged;
-  std::vector<std::uint8_t> left_out;  // 1 a piece
+  std::vector<std::uint8_t> left_out;  // one per piece
 
   bool takes(std::uint32_t t) const {
     return cells.of_triangle[t] != kNoIndex && !left_out[topology.component[t]];
   }
 };
 
-// Triangle labels (from `first_label`), frames and the seams of charts with themselves.
+// Gives triangles their labels (beginning with `first_label`) and frames, and marks the seams of
+// charts with themselves.
 void spread_to_triangles(const Cut& cut, std::uint32_t first_label, Segmentation& result) {
   const auto& [topology, cells, coarse, merged, left_out] = cut;
   Partition& partition = result.partition;
@@ -53,7 +54,7 @@ void spread_to_triangles(const Cut& cut, std::uint32_t first_label, Segmentation
   }
 }
 
-// Which cell lies in which component.
+// Returns the component that each cell lies in.
 std::vector<std::uint32_t> pieces_of(const Topology& topology, const Cells& cells) {
   std::vector<std::uint32_t> piece(cells.count, kNoIndex);
   for (std::uint32_t t = 0; t < cells.of_triangle.size(); ++t) {
@@ -62,27 +63,28 @@ std::vector<std::uint32_t> pieces_of(const Topology& topology, const Cells& cell
   return piece;
 }
 
-// Seams are straightened as far as cells are uneven, a third of a cell's width to each side, in
-// rings up to
-constexpr double kMostRings = 12;  // since wider bands are dear on fine meshes.
-// Where cells have no more than kCoarseCell triangles, each of these is a large part of its chart.
-// The more they have, the freer they are. Half as stiff as that, in bands a quarter wider, seams
-// are 1.4 % shorter for 6 % more L2 - 1 and 9 % more time (97 meshes). Not in ChartPreset::fast:
-// where charts fail by it, it would take as long as the default.
+// The widest band, in rings, within which seams are straightened. The band is as wide as cells are
+// uneven, a third of a cell's width to each side, but wider ones take too long on fine meshes.
+constexpr double kMostRings = 12;
+// The stiffness of seams. In cells of at most kCoarseCell triangles each triangle is a large part
+// of its chart; with more triangles per cell, seams are freer in proportion. With half the
+// stiffness, in bands a quarter wider, seams are 1.4 % shorter for 6 % more L2 - 1 and 9 % more
+// time (97 meshes). Does not apply to ChartPreset::fast: where charts fail as a result, it would
+// take as long as the default.
 constexpr double kCoarseCell = 40, kCoarseStiffness = 0.3;
 
-// Cells of ChartPreset::fast, larger and so fewer: a twelfth less time for a thirtieth more charts
-// (77 meshes).
+// ChartPreset::fast has larger and therefore fewer cells: this takes a twelfth less time for a
+// thirtieth more charts (77 meshes).
 constexpr std::uint32_t kFastTrianglesPerCell = 250, kFastCellsOfSmallMesh = 60;
 
-// Where faces cover this share of a piece's area it is cut a second time, with cells that they
-// bound, and only like that where they cover nearly all of it: boxes with holes came out in a third
-// of the charts, but some parts with fillets in more (121 CAD parts and models: a twenty-fifth
-// fewer charts, a sixth less seam, in the same time).
+// Where faces cover kSomeFaces of a piece's area, it is cut a second time, with cells that faces
+// bound; where they cover kAllFaces, only in that way. Boxes with holes came out in a third of the
+// charts, but some parts with fillets in more (121 CAD parts and models: a twenty-fifth fewer
+// charts, a sixth less seam, in the same time).
 constexpr double kSomeFaces = 0.1, kAllFaces = 0.93;
 constexpr std::size_t kFewCharts = 3;
 
-// What the charts of a piece cost; the less the better.
+// The cost of a piece's charts; less is better.
 struct PieceCost {
   std::size_t charts = 0;
   double seams = 0;  // length
@@ -90,7 +92,7 @@ struct PieceCost {
   bool operator<(const PieceCost& other) const {
     return charts < other.charts || (charts == other.charts && seams < kShorter * other.seams);
   }
-  static constexpr double kShorter = 1 - 1e-3;  // so that rounding does not decide
+  static constexpr double kShorter = 1 - 1e-3;  // keeps rounding from deciding
 };
 
 std::vector<PieceCost> piece_costs(const Cut& cut) {
@@ -107,7 +109,7 @@ std::vector<PieceCost> piece_costs(const Cut& cut) {
   return costs;
 }
 
-// Which pieces are left out where cells go as they like, and where faces bound them.
+// Which pieces are left out where cells ignore faces, and where faces bound them.
 struct Ways {
   std::vector<std::uint8_t> plain, walled;
 
@@ -119,7 +121,7 @@ struct Ways {
     }
   }
 
-  // Pieces that came out in so few charts are not cut again.
+  // Leaves out pieces with few charts from the second way.
   void spare(const std::vector<PieceCost>& costs) {
     for (std::size_t k = 0; k < costs.size(); ++k) {
       if (!plain[k] && costs[k].charts <= kFewCharts) walled[k] = 1;
@@ -127,7 +129,7 @@ struct Ways {
   }
 };
 
-// Of pieces that were cut both ways the worse one is left out.
+// Leaves out the worse result of pieces that were cut in both ways.
 void choose(Cut& a, Cut& b) {
   const std::vector<PieceCost> cost_a = piece_costs(a), cost_b = piece_costs(b);
   for (std::size_t k = 0; k < cost_a.size(); ++k) {
@@ -207,7 +209,7 @@ class Segmenter {
     return options;
   }
 
-  // Incomplete if the context is cancelled.
+  // The result is incomplete if the context is cancelled.
   Cut cut(const CellInput& input) {
     Stopwatch watch(own_cpu_seconds);
     Cut made{topology_, {}, {}, {}, {input.left_out.begin(), input.left_out.end()}};
@@ -220,7 +222,7 @@ class Segmenter {
     MergeOptions merge = merge_options(options_.max_stretch);
     ExtremeNormals normals;
     if (cone_ > 0) {
-      // Ends are kept clear of the limit: what is measured in the end is rounded otherwise.
+      // Keeps clear of the limit, since the final cone is measured with other rounding.
       normals = extreme_normals(topology_, made.cells);
       merge.cone = std::max(1e-9, cone_ - 2e-5);
       merge.cell_normals = &normals;
@@ -244,7 +246,8 @@ class Segmenter {
     }
   }
 
-  // By the mean number of triangles in a chart's cells, and the one that was planned for the mesh.
+  // Returns the band for the mean number of triangles in a chart's cells, and for the planned
+  // number.
   SeamBand seam_band(double in_cell, double planned) const {
     const double fineness = options_.preset == ChartPreset::fast
                                 ? 1
@@ -260,7 +263,7 @@ class Segmenter {
   double cone_;  // radians
   Segmentation result_;
   std::vector<SeamBand> bands_;  // by label
-  std::uint32_t labels_ = 0;     // given so far
+  std::uint32_t labels_ = 0;     // number of labels given so far
   std::vector<Vec3f> axes_;      // by label; only with a cone limit
 };
 

@@ -1,4 +1,4 @@
-// Internal: the whole way from a mesh to a partition into charts.
+// Internal: divides a mesh into charts that are not flat yet.
 #pragma once
 
 #include <array>
@@ -14,11 +14,12 @@ namespace atlas {
 
 struct Segmentation {
   Partition partition;
-  Frames frames;            // or empty
+  Frames frames;            // may be empty
   ChartSet::Timing timing;  // the parts of segmentation after the topology
 };
 
-// Each component on its own; texcoords play no part. `first_seed`: CellOptions::first_seed.
+// Segments each component by itself. Texcoords are not used. `first_seed` is
+// CellOptions::first_seed.
 Segmentation segment(const Topology& topology, const ChartOptions& options, double first_seed,
                      const Context& context);
 

@@ -16,10 +16,11 @@
 namespace atlas {
 namespace {
 
-// How far a cut may stray to be short, as parts of a piece's length: as far as the piece may grow
-// within its limit, but within these.
+// How far a cut may stray to be short, relative to a piece's even share of the length: as far as
+// the piece stays within its limit, but between kLeastBand and kMostBand.
 constexpr double kLeastBand = 0.1, kMostBand = 0.25, kNoBand = 1e-9;
-constexpr double kCrumb = 0.01;  // of a piece's area: what stays with the other side of a cut
+// Parts below this share of a piece's area stay with the other side of a cut.
+constexpr double kCrumb = 0.01;
 
 struct Extent1 {
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -45,13 +46,13 @@ bool names_uv_twice(const std::array<std::uint32_t, 3>& c) {
   return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
 }
 
-// A chart in pieces.
+// Cuts one chart into pieces.
 class Tiler {
  public:
   Tiler(const MeshView& mesh, double limit, double max_stretch)
       : mesh_(mesh), limit_(limit), max_stretch_(max_stretch) {}
 
-  // In the order of the cuts, each measured.
+  // Returns the pieces, in the order of the cuts, each measured.
   std::vector<FlatChart> run(FlatChart chart) {
     cut(std::move(chart));
     return std::move(pieces_);
@@ -66,7 +67,8 @@ class Tiler {
       return;
     }
     const std::vector<std::vector<std::uint32_t>> parts = divide(piece, box);
-    if (parts.empty()) {  // one triangle, or nothing that a cut would separate
+    // A single triangle, or no cut separates anything.
+    if (parts.empty()) {
       keeps_to_bound(piece);
       pieces_.push_back(std::move(piece));
       return;
@@ -87,7 +89,8 @@ class Tiler {
     const double band = std::clamp(limit_ / share - 1, kLeastBand, kMostBand) * share;
     const double crumb = kCrumb * box.u.length() * box.v.length() / shares;
     LineCut cut = cutter.cut(line, band, crumb);
-    if (cut.parts.empty()) {  // where triangles are as large as the piece, by their middles
+    // Triangles as large as the piece are divided by their centroids.
+    if (cut.parts.empty()) {
       cut = cutter.cut((cutter.low() + cutter.high()) / 2, kNoBand * share, 0);
     }
     std::vector<std::vector<std::uint32_t>> parts;
@@ -112,7 +115,7 @@ class Tiler {
   std::vector<FlatChart> pieces_;
 };
 
-// The chart set with some charts in pieces, built chart by chart.
+// Builds the new chart set, chart by chart, with some charts divided.
 class Rebuilder {
  public:
   Rebuilder(const MeshView& mesh, const ChartSet& old) : mesh_(mesh), old_(old), fresh_(old) {
@@ -141,14 +144,14 @@ class Rebuilder {
     fresh_.charts.push_back(chart);
   }
 
-  // Whether there is more than one piece.
+  // Returns whether the chart was divided into more than one piece.
   bool divide(const Chart& old, double limit, double max_stretch) {
     FlatChart whole = flat(old);
     if (whole.triangles.empty()) {
       keep(old);
       return false;
     }
-    // Given charts keep their shapes; what itself exceeds the bound is not asked for more.
+    // Given charts keep their shapes, and charts beyond the bound need not keep to it.
     const bool bounded = !old.kept && old.distortion.stretch_999 <= max_stretch;
     if (!bounded) max_stretch = std::numeric_limits<double>::infinity();
     std::vector<FlatChart> pieces = Tiler(mesh_, limit, max_stretch).run(std::move(whole));
@@ -181,7 +184,7 @@ class Rebuilder {
     fresh_.triangle_chart[t] = std::uint32_t(fresh_.charts.size());
   }
 
-  // Of the triangles that cover something in uv; the vertices are the mesh's.
+  // Returns the triangles that cover something in uv. Vertices are those of the mesh.
   FlatChart flat(const Chart& chart) const {
     FlatChart flat;
     for (std::uint32_t i = chart.first_uv; i < chart.first_uv + chart.uv_count; ++i) {
@@ -199,7 +202,7 @@ class Rebuilder {
     return flat;
   }
 
-  // A piece's edge in uvs of the old set.
+  // A piece's edge, as uvs of the old set.
   using UvEdge = std::array<std::uint32_t, 2>;
   static UvEdge edge(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
   struct OwnedEdge {
@@ -222,7 +225,7 @@ class Rebuilder {
     return edges;
   }
 
-  // Length on the surface of the edges along which a chart was cut.
+  // Returns the length on the surface of the edges along which a chart was cut.
   double length_between(const std::vector<OwnedEdge>& edges) const {
     double length = 0;
     for (std::size_t i = 1; i < edges.size(); ++i) {
@@ -234,7 +237,7 @@ class Rebuilder {
     return length;
   }
 
-  // Triangles without area lie on an edge or at a corner of one of the pieces. 1 a piece.
+  // Assigns triangles without area to pieces on whose edge or corner they lie. One list per piece.
   std::vector<std::vector<std::uint32_t>> loose_triangles(
       const Chart& chart, const std::vector<FlatChart>& pieces,
       const std::vector<OwnedEdge>& edges) const {
@@ -301,7 +304,8 @@ class Rebuilder {
   const MeshView& mesh_;
   const ChartSet& old_;
   ChartSet fresh_;
-  std::vector<std::uint8_t> opposite_;  // 1 a triangle: its orientation is not its chart's
+  // One per triangle: its orientation is opposite to its chart's.
+  std::vector<std::uint8_t> opposite_;
   std::vector<std::uint32_t> local_ = std::vector<std::uint32_t>(old_.uvs.size(), kNoIndex);
 };
 

@@ -1,4 +1,4 @@
-// Charts that are too long for a page at the density asked for, cut into pieces that are not.
+// Cuts charts that are too long for a page at the desired density into pieces that fit.
 #pragma once
 
 #include <span>
@@ -7,16 +7,15 @@
 
 namespace atlas {
 
-// Cuts every chart whose box is longer than its limit (scene units, 1 a chart, > 0) across its long
-// side, again and again, until the pieces fit or no cut divides them. A cut is the shortest way
-// along edges near the even share: on regular meshes it is straight. Pieces keep their parent's
-// uvs, shifted (and turned by 90 degrees where that lays their long side along u), and so its
-// injectivity. What stretched a small part of a chart by more than max_stretch may be a large part
-// of a piece: such a piece is relaxed, or cut further; not so where the parent itself exceeds it
-// or was given (Chart::kept).
-// Each piece hangs together by edges. Cone and axis stay the parent's; distortion is measured anew,
-// the total as well. Charts within their limit keep their order; pieces follow in place of their
-// parent. Returns how many charts were cut.
+// Cuts every chart whose box is longer than its limit (scene units, one per chart, > 0) across its
+// long side, repeatedly, until the pieces fit or no cut divides them. A cut is the shortest path
+// along edges near the even share; on regular meshes it is straight. Pieces keep their parent's
+// uvs, shifted (and turned by 90 degrees if that puts their long side along u), and therefore stay
+// injective. What stretched a small part of a chart by more than max_stretch may be a large part of
+// a piece: such a piece is relaxed or cut further, unless the parent itself exceeds the bound or
+// was given (Chart::kept). Each piece is connected by edges. Cone and axis stay the parent's;
+// distortion is measured again, and so is the total. Charts within their limit keep their order;
+// pieces take the place of their parent. Returns how many charts were cut.
 std::size_t cut_to_limits(const MeshView& mesh, std::span<const double> limits, double max_stretch,
                           ChartSet& charts);
 

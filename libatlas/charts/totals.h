@@ -1,4 +1,4 @@
-// Internal: all charts of a set together.
+// Internal: sums over all charts of a set.
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 
 namespace atlas {
 
-// The distortion of all charts together, each at the scale it is given out with.
+// Returns the distortion of all charts together, each at the scale of its uvs.
 Distortion total_distortion(std::span<const Chart> charts);
 
 }  // namespace atlas

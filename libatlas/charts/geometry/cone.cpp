@@ -23,7 +23,7 @@ Ball ball(const glm::dvec3& a, const glm::dvec3& b) {
   return {centre, glm::dot(d, d)};
 }
 
-// The ball with a, b, c on a great circle of it.
+// The ball with a, b and c on a great circle.
 Ball ball(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const glm::dvec3 u = b - a, v = c - a, w = glm::cross(u, v);
   const double w2 = glm::dot(w, w);
@@ -33,8 +33,8 @@ Ball ball(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   return {a + offset, glm::dot(offset, offset)};
 }
 
-// Smallest ball of a few points on the unit sphere that lie within a half-space: its border holds
-// two or three of them.
+// Returns the smallest ball around a few points on the unit sphere that lie within a half-space.
+// Two or three of them determine it.
 Ball smallest_ball(const std::vector<glm::dvec3>& points) {
   Ball best;
   best.radius2 = 4;
@@ -57,8 +57,8 @@ Ball smallest_ball(const std::vector<glm::dvec3>& points) {
   return best;
 }
 
-// The normal farthest from the axis, and the cosine between them. `normal` gives the i-th of
-// `count`.
+// Returns the normal farthest from the axis, and the cosine between them. `normal(i)` is the i-th
+// of `count`.
 template <class Normal>
 std::pair<glm::dvec3, double> farthest(std::size_t count, const Normal& normal,
                                        const glm::vec3& axis) {
@@ -96,7 +96,7 @@ NormalCone smallest_cone(std::size_t count, const Normal& normal) {
       best = angle;
       best_axis = axis;
     }
-    if (round == 0 && cosine <= 0) break;  // a half-space may not hold them all
+    if (round == 0 && cosine <= 0) break;  // there may be no half-space that contains them all
     if (std::find(support.begin(), support.end(), worst) != support.end()) break;
     support.push_back(worst);
     const Ball enclosing = smallest_ball(support);

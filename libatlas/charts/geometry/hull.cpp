@@ -41,7 +41,7 @@ double sorted_hull_area(std::vector<Vec2d>& points, std::vector<Vec2d>& hull) {
     const std::size_t base = hull.size();
     const Vec2d first = points.front(), last = points.back();
     for (const Vec2d& p : points) {
-      if (cross(first, last, p) > 0) continue;  // it lies on the other pass's side
+      if (cross(first, last, p) > 0) continue;  // on the other pass's side
       while (hull.size() >= base + 2 && cross(hull[hull.size() - 2], hull.back(), p) <= 0) {
         hull.pop_back();
       }
@@ -57,12 +57,14 @@ double sorted_hull_area(std::vector<Vec2d>& points, std::vector<Vec2d>& hull) {
 
 namespace {
 
-// Directions in steps of a sixteenth of a turn: four in the first quarter, four in the second.
+// Directions in steps of a sixteenth of a turn: four in the first quadrant, four in the second.
 constexpr double kStepCosine = 0.92387953251128674, kStepSine = 0.38268343236508977;
 constexpr double kDiagonal = 0.70710678118654752;
-constexpr double kRounding = 1e-9;  // of areas
+// Relative rounding error of areas.
+constexpr double kRounding = 1e-9;
 
-// How far the points reach in eight directions and, less, in the opposite ones.
+// How far the points reach in eight directions (`most`) and, negatively, in the opposite ones
+// (`least`).
 struct Reach {
   Quad most[2], least[2];
 };
@@ -94,7 +96,7 @@ ShapeBounds bound_shape(const std::vector<Vec2d>& points) {
   if (points.empty()) return {};
   Reach reach;
   (has_wide_vectors ? find_reach_wide : find_reach_narrow)(points, reach);
-  double support[18];  // all around, from the last direction to the first
+  double support[18];  // all around, with the last direction also first, and the first also last
   for (int k = 0; k < 4; ++k) {
     support[1 + k] = reach.most[0][k];
     support[5 + k] = reach.most[1][k];
@@ -103,7 +105,9 @@ ShapeBounds bound_shape(const std::vector<Vec2d>& points) {
   }
   support[0] = support[16];
   support[17] = support[1];
-  double twice = 0;  // of the polygon that the sixteen tangents bound: reach by side
+  // Of the polygon that sixteen tangents bound: each distance from the origin times its side's
+  // length.
+  double twice = 0;
   for (int k = 1; k <= 16; ++k) {
     twice += support[k] * (support[k - 1] + support[k + 1] - 2 * kStepCosine * support[k]);
   }

@@ -14,28 +14,29 @@ inline double cross(const Vec2d& o, const Vec2d& a, const Vec2d& b) {
 
 double distance(const Vec2d& a, const Vec2d& b);
 
-// From p to the segment from a to b. Squared: long outlines ask for it millions of times.
+// Returns the squared distance from p to the segment from a to b. Squared, since long outlines need
+// it millions of times.
 double squared_distance_to_segment(const Vec2d& p, const Vec2d& a, const Vec2d& b);
 
-// Whether the inner points of two segments cross; touching ends are decided either way.
+// Whether the interiors of two segments cross. If only ends touch, the result may be either.
 bool cross_each_other(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& d);
 
-// Area of the convex hull, whose corners go to `hull`, counter-clockwise; sorts `points`
-// (Andrew 1979).
+// Returns the area of the convex hull, and stores its corners in `hull`, counter-clockwise. Sorts
+// `points` (Andrew 1979).
 double hull_area(std::vector<Vec2d>& points, std::vector<Vec2d>& hull);
 
-// The same of points that ascend by x and, where that is equal, y.
+// The same for points sorted by x and, where that is equal, by y.
 double sorted_hull_area(std::vector<Vec2d>& points, std::vector<Vec2d>& hull);
 
-// What hull and smallest rectangle cover at most, from how far the points reach in sixteen
-// directions: hardly more than they do for shapes that are not slim.
+// Upper bounds on the areas of the convex hull and of the smallest rectangle, from the extents of
+// the points in sixteen directions. They are close unless the shape is slim.
 struct ShapeBounds {
   double hull = 0, box = 0;
 };
 ShapeBounds bound_shape(const std::vector<Vec2d>& points);
 
-// Area of the smallest rectangle around a convex polygon: one side lies along an edge of it
-// (Freeman and Shapira 1975). Quadratic, for some dozen corners.
+// Returns the area of the smallest rectangle around a convex polygon, one side of which lies along
+// an edge of the polygon (Freeman and Shapira 1975). Quadratic, for some dozen corners.
 double box_area(const std::vector<Vec2d>& hull);
 
 }  // namespace atlas

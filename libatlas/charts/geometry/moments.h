@@ -11,13 +11,13 @@ namespace atlas {
 
 using Moments = std::array<double, 6>;  // of a symmetric matrix: xx, xy, xz, yy, yz, zz
 
-// Covariance: mean products less the products of the mean.
+// Returns the covariance: the mean of products minus the products of the means.
 inline Moments about(const Moments& m, const Vec3d& mean) {
   return {m[0] - mean.x * mean.x, m[1] - mean.x * mean.y, m[2] - mean.x * mean.z,
           m[3] - mean.y * mean.y, m[4] - mean.y * mean.z, m[5] - mean.z * mean.z};
 }
 
-// Smith 1961, "Eigenvalues of a symmetric 3 x 3 matrix".
+// Method: Smith 1961, "Eigenvalues of a symmetric 3 x 3 matrix".
 inline double smallest_eigenvalue(const Moments& m) {
   const double off = m[1] * m[1] + m[2] * m[2] + m[4] * m[4];
   const double mean = (m[0] + m[3] + m[5]) / 3;

@@ -1,4 +1,4 @@
-// Internal: the turn and shift that take points of a plane best to others (Procrustes).
+// Internal: the rotation and translation that best take points of the plane to others (Procrustes).
 #pragma once
 
 #include <algorithm>
@@ -8,10 +8,11 @@
 
 namespace atlas {
 
-// A turn and a shift; applied to complex numbers.
+// A rotation, as a complex factor, and a translation.
 struct Motion {
   glm::dvec2 turn{1, 0}, shift{0};
-  double misfit = 0;  // root mean square distance of what should meet, by the sum of the weights
+  // Root mean square distance between corresponding points, relative to the sum of the weights.
+  double misfit = 0;
 
   glm::dvec2 operator()(glm::dvec2 p) const { return turned(p) + shift; }
   Vec2d operator()(Vec2d p) const { return from_glm((*this)(to_glm(p))); }
@@ -20,7 +21,7 @@ struct Motion {
   }
 };
 
-// Sums over pairs of points. Coordinates are relative to the first pair, against cancellation.
+// Sums over pairs of points. Coordinates are relative to the first pair, to avoid cancellation.
 class RigidFit {
  public:
   RigidFit(glm::dvec2 from, glm::dvec2 to) : from_origin_(from), to_origin_(to) {}
@@ -35,7 +36,7 @@ class RigidFit {
     squares_ += weight * (glm::dot(p, p) + glm::dot(q, q));
   }
 
-  // Of what was added since.
+  // Returns the sums over what was added since `earlier`.
   RigidFit since(const RigidFit& earlier) const {
     RigidFit rest = *this;
     rest.weight_ -= earlier.weight_;

@@ -1,4 +1,4 @@
-// Internal: two directions across a third one.
+// Internal: two directions perpendicular to a third one.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace atlas {
 
-// With the unit vector `normal` they are a right-handed frame: cross(u, v) = normal.
+// u and v form a right-handed frame with the unit vector `normal`: cross(u, v) = normal.
 struct Tangents {
   glm::dvec3 u, v;
 
