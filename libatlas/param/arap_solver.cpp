@@ -11,28 +11,28 @@
 namespace atlas::param {
 namespace {
 
-// Up to so many vertices each solver is the fastest (measured); multigrid takes the rest.
+// Up to these numbers of vertices each solver is the fastest (measured); multigrid takes the rest.
 constexpr std::size_t envelope_limit = 4500;
 constexpr std::size_t direct_limit = 6000;
-// What elimination within the envelope may take, by the vertices to the power of 1.5: discs take
-// 0.4 to 1.1 in the mean, and 12 of 43000 took more than this, up to 190, where needles meet in a
-// few vertices that all others are next to.
+// The most work of elimination within the envelope, relative to the number of vertices to the power
+// of 1.5. Discs take 0.4 to 1.1 on average. 12 of 43 000 took more than this limit, up to 190:
+// there, needles meet in a few vertices that are adjacent to all others.
 constexpr double most_envelope_work = 4;
-// The energy that an inexact solve may leave: as part of the area in the first step, which starts
-// from nothing, later as part of what it finds. An exact solve is worth little more than what the
-// next local step changes anyway: a twentieth of that is lost in it, and a thousandth in the last
-// step leaves each column of the results as it was (measured on meshes of 70 thousand and a million
-// triangles).
+// The energy of the error that an inexact solve may leave: in the first step, which starts from
+// nothing, as a share of the area; later, as a share of what it finds. Exact solves are hardly
+// better: an error of a twentieth disappears in what the next local step changes, and with a
+// thousandth in the last step each column of the results stays as it was (measured on meshes of 70
+// thousand and a million triangles).
 constexpr double first_inexactness = 1e-6, rough_share = 0.05;
-// Where no more energy than this is left, as part of the area, the shape may unroll, and each step
-// must be exact: errors of a solve are smooth, and later steps take long to remove them.
+// If no more energy than this share of the area is left, the shape may unroll, and each step must
+// be exact: errors of a solve are smooth, and later steps take long to remove them.
 constexpr double may_unroll = 3e-4, exact_first = 1e-9;
 constexpr int most_iterations = 60;
-// How far steps go beyond the minimum for given rotations: every other one, and those after them.
-// What a long step overshoots the next one mends at once: three steps end where four plain ones do
-// (measured on 240 meshes).
+// Lengths of steps, relative to the step to the minimum for the current rotations: of every other
+// step, and of those in between. A step mends at once what a long step before it overshoots: three
+// steps end where four plain ones do (measured on 240 meshes).
 constexpr double long_step = 3, short_step = 1.3;
-// The fall of the energy by one local step, as part of the area, after which exact solves change no
+// If one local step lowers the energy by less than this share of the area, exact solves change no
 // more than inexact ones leave.
 constexpr double converged = 3e-11;
 
@@ -81,9 +81,10 @@ void ArapSolver::factorize() {
     w_.half_edges.build(mesh_);
     method_ = Method::multigrid;
     if (w_.multigrid.build(w_.elements, w_.half_edges, n)) {
-      // A twenty-fifth of what the program holds by now are gaps that the set-up left.
+      // The set-up leaves gaps, a twenty-fifth of the memory that the program holds by now.
       if (n >= large_mesh && !weighted_) return_freed_memory();
-      w_.load.resize(n);  // no sooner: the set-up has arrays of its own
+      // Not earlier, since the set-up has arrays of its own.
+      w_.load.resize(n);
       return;
     }
   }
@@ -122,7 +123,7 @@ void ArapSolver::factorize_envelope() {
   w_.envelope.factorize(w_.elements);
 }
 
-// Solves for w_.load, which is not kept; uvs come in as a guess.
+// Solves for w_.load, which is overwritten. `uvs` come in as an initial guess.
 void ArapSolver::solve(const Inexactness& inexactness, std::span<Vec2d> uvs) {
   if (method_ == Method::multigrid) {
     const MultigridAccuracy accuracy{inexactness.area_share * area_, inexactness.found_share,
@@ -140,10 +141,11 @@ void ArapSolver::solve(const Inexactness& inexactness, std::span<Vec2d> uvs) {
   for (std::size_t v = 0; v < uvs.size(); ++v) uvs[v] = from_glm(w_.solution[v]);
 }
 
-// The same, but as many times as far from the uvs that come in.
+// The same, but the step from the given uvs is `relaxation` times as long.
 void ArapSolver::solve_relaxed(double relaxation, const Inexactness& inexactness,
                                std::span<Vec2d> uvs) {
-  if (relaxation == 1 || uvs.size() >= large_mesh) return solve(inexactness, uvs);  // no room there
+  // Large meshes have no memory for a copy.
+  if (relaxation == 1 || uvs.size() >= large_mesh) return solve(inexactness, uvs);
   w_.before.assign(uvs.begin(), uvs.end());
   solve(inexactness, uvs);
   for (std::size_t v = 0; v < uvs.size(); ++v) {
@@ -191,7 +193,7 @@ void ArapSolver::join(std::span<const Vec2d> corner_uvs, std::span<Vec2d> uvs) {
   std::fill(w_.load.begin(), w_.load.end(), glm::dvec2(0));
   for (std::size_t t = 0; t < w_.elements.size(); ++t) {
     const Element e = w_.elements[t];
-    const auto& corners = mesh_.triangles[t];  // the element may begin at another one
+    const auto& corners = mesh_.triangles[t];  // the element may begin at another corner
     const std::size_t first = corners[0] == e.v[0] ? 0 : corners[1] == e.v[0] ? 1 : 2;
     std::array<glm::dvec2, 3> p;
     for (std::size_t i = 0; i < 3; ++i) p[i] = to_glm(corner_uvs[3 * t + (first + i) % 3]);
@@ -206,7 +208,7 @@ void ArapSolver::join(std::span<const Vec2d> corner_uvs, std::span<Vec2d> uvs) {
   start(uvs);
 }
 
-// uvs become what the first solve starts from.
+// Makes uvs the initial guess of the first solve.
 void ArapSolver::take_guess(std::span<Vec2d> uvs) {
   if (guess_.empty()) {
     std::fill(uvs.begin(), uvs.end(), Vec2d{});
@@ -216,7 +218,7 @@ void ArapSolver::take_guess(std::span<Vec2d> uvs) {
   guess_ = uvs;  // of the next call
 }
 
-// The local step; returns by how much it lowers the energy.
+// The local step. Returns by how much it lowers the energy.
 double ArapSolver::update(std::span<const Vec2d> uvs) {
   return update_rotations(w_.elements, {uvs, options_.shear_weight}, w_.rotations, w_.load);
 }
@@ -256,7 +258,7 @@ double ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
 
 Relaxer::Outcome ArapSolver::remove_flips(std::span<Vec2d> uvs) {
   wake(uvs);
-  // By Euler's formula, where it is known which edges are borders.
+  // By Euler's formula, if the mesh says which edges are on the boundary.
   const auto borders = std::count(mesh_.opposite.begin(), mesh_.opposite.end(), HalfEdges::none);
   const bool holed = !mesh_.opposite.empty() &&
                      2 * mesh_.positions.size() < mesh_.triangles.size() + std::size_t(borders) + 2;

@@ -1,4 +1,4 @@
-// Internal: the state of one chart's isometric descent.
+// Internal: ArapSolver, which flattens one chart by isometric descent.
 #pragma once
 
 #include <span>
@@ -9,40 +9,42 @@
 
 namespace atlas::param {
 
-// Works in the workspace it is given; one at a time for each workspace.
+// Works in the given workspace. Only one solver may use a workspace at a time.
 class ArapSolver {
  public:
-  // Builds the elements; the matrix and its factor when a step first needs them.
+  // Builds the elements. The matrix and its factor are built when a step first needs them.
   ArapSolver(const LocalMesh& mesh, const IsometricOptions& options,
              ParamWorkspace::Impl& workspace);
 
-  // What the first global step goes on from. Weights of an earlier squeeze are dropped.
+  // Sets what the first global step starts from. Weights of an earlier squeeze are dropped.
   void start(const IsometricStart& start);
   void start(std::span<const Vec2d> uvs);
 
-  // Joins flat parts: uvs become those whose gradients come nearest to the given ones', 3 a
-  // triangle, which need not agree where triangles meet. The next step goes on from them.
+  // Joins flat parts: uvs become those whose gradients are closest to those of corner_uvs. These
+  // are three per triangle and need not agree where triangles meet. The next step starts from the
+  // result.
   void join(std::span<const Vec2d> corner_uvs, std::span<Vec2d> uvs);
 
-  // Global steps, with local steps between them, from the current rotations. But in large
-  // meshes all after the first are relaxed, every other one far, the last a little: for given
-  // rotations the energy is quadratic and nowhere below the one that falls, so that any step up to
-  // twice as long as to its minimum descends (Salakhutdinov and Roweis 2003, "Adaptive overrelaxed
-  // bound optimization methods"). Those that go far are longer and may rise; the step after each
-  // more than mends that, and what is slow to settle does in fewer. Returns by how much the last
-  // local step lowered the energy, as part of the area; infinite if there was none.
+  // Makes global steps, with local steps in between, from the current rotations. Except in large
+  // meshes, all steps after the first are over-relaxed, every other one by much, the last one by
+  // little. For given rotations the energy is quadratic and an upper bound on the energy that is
+  // minimized, so any step up to twice as long as that to its minimum descends (Salakhutdinov and
+  // Roweis 2003, "Adaptive overrelaxed bound optimization methods"). The long steps exceed that and
+  // may raise the energy; the step after each more than mends this, and slowly converging parts
+  // take fewer steps. Returns by how much the last local step lowered the energy, as a share of the
+  // area; infinite if there was none.
   double iterate(int steps, std::span<Vec2d> uvs);
 
   // Lowers the stretch that 99.9 % of the area stays within: triangles are weighted by a power of
   // their stretch and the system is solved again (iteratively reweighted least squares towards the
   // maximum norm; Burrus, Barreto and Selesnick 1994, "Iterative reweighted least-squares design of
-  // FIR filters"). No weight falls below a share of the largest, or faces that hardly stretch would
-  // give way without limit for the little that does. Ends when that stretch is at most `goal`,
-  // after `iterations`, or when it will not come within `bound` at this rate or, once it is there,
-  // not soon reach the goal. uvs becomes the state of least stretch; but where that costs much of
-  // the mean stretch, the first one within the bound, drawn back as far as the bound allows. With
-  // `ratio` the stretch is taken at the scale in the middle of its range instead of the
-  // area-preserving one.
+  // FIR filters"). No weight falls below a share of the largest; otherwise faces that hardly
+  // stretch would give way without limit for the sake of a few others. Ends when that stretch is at
+  // most `goal`, after `iterations`, or when at this rate it will not come within `bound` or, once
+  // within, will not reach the goal soon. uvs become the state with the least stretch. If that
+  // costs much L2 stretch, they become the first state within the bound instead, moved back as far
+  // as the bound allows. With `ratio`, stretch is measured at the scale in the middle of its range
+  // instead of the area-preserving one.
   struct Squeeze {
     double goal, bound;
     int iterations;
@@ -56,18 +58,18 @@ class ArapSolver {
   // Relaxer::lower_tail.
   Tail lower_tail(double bound, std::span<Vec2d> uvs);
 
-  // Draws apart what overlaps a little; all triangles positive. Returns whether uvs are injective
-  // now.
+  // Moves borders apart that overlap a little. All triangles must be positive. Returns whether uvs
+  // are injective now.
   bool separate_borders(std::span<Vec2d> uvs);
-  // After that: spreads the distortion that it left, further than it does itself.
+  // To be called after that: spreads the distortion that it left further than it does itself.
   void settle_borders(std::span<Vec2d> uvs);
-  // Of the last call, if it failed: the crossings when they were fewest.
+  // If the last call failed: the crossings of the round with the fewest.
   std::span<const BorderCrossing> crossings_left() const { return w_.separator.left(); }
 
   IsometricResult measure(std::span<const Vec2d> uvs);
 
-  // Gives the memory back that a large mesh took; what is asked for next makes anew what it needs.
-  // Steps then go on from the uvs at hand.
+  // Frees the memory that a large mesh takes; later calls build again what they need. Steps then
+  // continue from the current uvs.
   void rest();
 
  private:
@@ -80,14 +82,15 @@ class ArapSolver {
   void factorize_envelope();
   bool wide();
   const CornerLists& corners();
-  // The energy of the error that multigrid may leave: the larger of a part of the area and a part
-  // of what it finds.
+  // The energy of the error that multigrid may leave: the larger of a share of the area and a share
+  // of the energy that it finds.
   struct Inexactness {
     double area_share, found_share;
   };
-  // Vertices from which on what is solved and what is measured do not lie in memory together.
+  // Meshes of at least this many vertices do not keep the data for solving and for measuring in
+  // memory at the same time.
   static constexpr std::size_t large_mesh = 100000;
-  // 3e-11 of the area is a mean stretch of some millionths, and at worst a hundred times that.
+  // 3e-11 of the area means a mean stretch of some millionths, and at worst a hundred times that.
   static constexpr double fine = 3e-11, fine_share = 1e-3;
   void solve(const Inexactness& inexactness, std::span<Vec2d> uvs);
   void solve_relaxed(double relaxation, const Inexactness& inexactness, std::span<Vec2d> uvs);
@@ -106,7 +109,7 @@ class ArapSolver {
   double first_shear_weight_ = 1;  // of the local step from there
   Method method_ = Method::envelope;
   bool analyzed_ = false, ordered_ = false;  // by the direct and the envelope solver
-  bool wide_ = false;                        // once ordered_
+  bool wide_ = false;                        // valid once ordered_
   bool cornered_ = false;                    // the workspace's corner lists are this mesh's
   double area_ = 0;                          // weighted
   bool weighted_ = false;

@@ -11,37 +11,40 @@
 namespace atlas::param {
 namespace {
 
-// The mean of the 12th power of the stretch stands in for its maximum; 4, 6 and 8 reach less.
-// Damped by 1 / (power - 2) the weights settle; damped by a half they swing (measured).
+// The mean of the 12th power of the stretch approximates its maximum; powers of 4, 6 and 8 reach
+// less. Weights settle if damped by 1 / (power - 2), and oscillate if damped by a half (measured).
 constexpr double power = 12, damping = 0.1;
-// How far steps go beyond the minimum for given weights and rotations: so the stretch falls further
-// (measured on 240 meshes).
+// Lengths of steps, relative to the step to the minimum for the current weights and rotations. With
+// these the stretch falls further than with plain steps (measured on 240 meshes).
 constexpr std::array steps{1.7, 1.3};
 
-// What no weight falls below, by the largest: at first, and what it falls by in each iteration. The
-// flat faces of CAD parts gave way by a tenth for a chamfer between them where a hundredth does:
-// with this and what follows L2 - 1 is 14 % less, with a hundredth fewer charts (347 meshes).
+// The least weight relative to the largest: initially, and its factor in each iteration. Without a
+// least weight, flat faces of CAD parts stretched by a tenth for the sake of a chamfer between
+// them, where a hundredth is enough. With it and the following limits L2 - 1 is 14 % less, with a
+// hundredth fewer charts (347 meshes).
 constexpr double least_weight = 0.4, less_each_time = 0.75;
-// Within the bound it is at most this. Where the bound or the goal is not near it falls down to the
-// last: what weighs that little still keeps its shape where that costs nothing.
+// Within the bound the least weight is at most least_within. If the bound or the goal is not near,
+// it is lowered down to last_weight: a triangle of that weight still keeps its shape where that
+// costs nothing.
 constexpr double least_within = 0.1, less_when_slow = 0.3, last_weight = 0.02;
-// Stretch within the bound is not lowered to the goal where that takes so many times the energy
-// that there was: on curved surfaces it takes next to nothing, on flat faces with a sharp vertex
-// ten times as much.
+// Stretch within the bound is not lowered to the goal if that takes this many times the initial
+// energy. On curved surfaces it takes hardly more, on flat faces with a sharp vertex ten times as
+// much.
 constexpr double dear = 1.7;
 constexpr int easing_steps = 3;
-constexpr double rounding = 1e-4;  // of what is drawn back to the bound, in the stretch
+constexpr double rounding = 1e-4;  // margin kept to the bound when moving back, in log stretch
 
-// Once within the bound, the goal is near if so many iterations may reach it.
+// Once within the bound, the goal is near if this many iterations may reach it.
 constexpr int soon = 2;
 
-// Stretch falls by a share of the iteration before, so far as two of them tell. In a chart of so
-// many triangles, whose iterations take long, this ended a third of those in vain, and 25 of 360
-// others (measured on 240 meshes); in smaller ones it would end more of the others for less.
+// The decrease of stretch in an iteration is a share of that in the one before, which is estimated
+// from two iterations. In charts of at least many_triangles, whose iterations take long, this ended
+// a third of the futile iterations, and 25 of 360 others (measured on 240 meshes). In smaller
+// charts it would end more of the others and save less.
 constexpr std::size_t many_triangles = 2000;
 constexpr double least_share = 0.6, most_share = 0.9;
 
-// Whether what fell from `two_ago` over `one_ago` to `now` will end above the goal.
+// Whether a value that fell from `two_ago` to `one_ago` and `now` will end above the goal.
 bool ends_above(double goal, double two_ago, double one_ago, double now) {
   const double before = two_ago - one_ago, last = one_ago - now;
   const double share = before > 0 ? std::clamp(last / before, least_share, most_share) : most_share;
@@ -51,8 +54,8 @@ bool ends_above(double goal, double two_ago, double one_ago, double now) {
 
 }  // namespace
 
-// Fills w_.stretch with log max(s1, 1/s2) at the scale asked for, and returns the value that 99.9 %
-// of the area stays within.
+// Fills w_.stretch with log max(s1, 1/s2) at the chosen scale. Returns the value that 99.9 % of the
+// area stays within.
 double ArapSolver::update_stretch(std::span<const Vec2d> uvs, bool ratio) {
   constexpr double worst = 10;  // for flipped triangles
   double area = 0, uv_area = 0, large = 0, small = std::numeric_limits<double>::infinity();
@@ -79,7 +82,8 @@ double ArapSolver::update_stretch(std::span<const Vec2d> uvs, bool ratio) {
   return upper_percentile(w_.tail, 0.001);
 }
 
-// L2 stretch squared less 1 of what update_stretch() measured last; infinite with flips.
+// Returns L2 stretch squared minus 1 of the uvs that update_stretch() measured last; infinite with
+// flips.
 double ArapSolver::stretch_energy() {
   double energy = 0, area = 0, uv_area = 0;
   for (std::size_t t = 0; t < w_.elements.size(); ++t) {
@@ -95,7 +99,7 @@ double ArapSolver::stretch_energy() {
 
 void ArapSolver::weight_by_stretch(double largest, double least) {
   for (std::size_t t = 0; t < w_.elements.size(); ++t) {
-    // The outermost 0.1 % may stay as it is: more weight to it would only spoil the rest.
+    // The worst 0.1 % may stay as it is: more weight on it would only spoil the rest.
     const double r = std::clamp(w_.stretch[t] / largest, 0.05, 1.0);
     const double weight = std::exp((1 - damping) * std::log(w_.elements[t].weight) +
                                    damping * (power - 2) * std::log(r));
@@ -108,7 +112,8 @@ void ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
   wake(uvs);
   const double log_goal = std::log(options.goal), log_bound = std::log(options.bound);
   const bool foresees = mesh_.triangles.size() >= many_triangles && !options.ratio;
-  const bool chooses = !options.rough && uvs.size() < large_mesh;  // there is room for more states
+  const bool chooses = !options.rough && uvs.size() < large_mesh;  // there is memory for more
+                                                                   // states
   double now = update_stretch(uvs, options.ratio), best = now, one_ago = now;
   const double energy_before = chooses ? stretch_energy() : std::numeric_limits<double>::infinity();
   double best_energy = energy_before, least = options.rough ? 0 : least_weight;
@@ -133,8 +138,8 @@ void ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
       if (chooses) best_energy = stretch_energy();
       best = now;
     }
-    // Steps get shorter, though not each: if the rest of them, like the last two, do not suffice,
-    // none will with these least weights.
+    // Steps get shorter, though not each one. If the remaining steps, extrapolated from the last
+    // two, do not suffice, none will with these least weights.
     const bool within = best <= log_bound;
     const int rest = std::min(options.iterations - 1 - i, within ? soon : options.iterations);
     const double gain = 0.5 * (two_ago - best);
@@ -151,8 +156,8 @@ void ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
   }
 }
 
-// uvs become what costs least of w_.first_within and some blends of it and w_.unsqueezed, within
-// the bound.
+// Makes uvs the one with the least L2 stretch, within the bound, of w_.first_within and some blends
+// of it with w_.unsqueezed.
 void ArapSolver::ease(double log_bound, bool ratio, std::span<Vec2d> uvs) {
   const auto blend = [&](double share) {
     for (std::size_t v = 0; v < uvs.size(); ++v) {
@@ -168,7 +173,7 @@ void ArapSolver::ease(double log_bound, bool ratio, std::span<Vec2d> uvs) {
   const double stretch_inside = update_stretch(uvs, ratio);
   double least = stretch_energy();
   for (int i = 0; i < easing_steps; ++i) {
-    // By the secant, a little on the safe side, then by halves.
+    // First by the secant method, a little on the safe side, then by bisection.
     double at = 0.5 * (outside + inside);
     if (i == 0) {
       const double share = (stretch_outside - log_bound) / (stretch_outside - stretch_inside);

@@ -1,5 +1,4 @@
-// Internal: the border's half of the injectivity check, for callers that have the half-edges
-// already.
+// Internal: the boundary part of the injectivity check, for callers that already have half-edges.
 #pragma once
 
 #include <span>
@@ -9,7 +8,7 @@
 
 namespace atlas::param {
 
-// Sets loops, crossings, close and nested of `out`, given out.flipped.
+// Sets loops, crossings, close and nested of `out`. out.flipped must be filled.
 void check_border(const HalfEdges& half_edges, const HalfEdges::Border& border,
                   std::span<const Vec2d> uvs, const InjectivityOptions& options, Injectivity& out);
 

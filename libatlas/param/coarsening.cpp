@@ -7,12 +7,12 @@ namespace atlas::param {
 namespace {
 
 constexpr std::uint32_t none = 0xffffffff;
-constexpr double strong_coupling = 0.06;  // against the geometric mean of the two diagonals
-// Of a coupling between groups, the part that counts, in groups of one row. Groups are as far apart
-// as the square root of their size, and what is linear there should cost as much energy as in the
-// finer matrix. Between 0.8 and 1 it makes little difference (measured).
+constexpr double strong_coupling = 0.06;  // relative to the geometric mean of the two diagonals
+// The factor of couplings between groups, for groups of one row. Groups are as far apart as the
+// square root of their size, and a function that is linear there should have as much energy as in
+// the finer matrix. Values between 0.8 and 1 make little difference (measured).
 constexpr double group_coupling = 0.9;
-// Steps along the lists of couplings for each entry of the matrix; charts take some five.
+// The most steps along lists of couplings per entry of the matrix; charts take about five.
 constexpr std::size_t most_steps = 100;
 
 }  // namespace
@@ -44,7 +44,7 @@ void Coarsening<Real>::measure_diagonal(const GraphLaplacian<Real>& a,
   }
 }
 
-// Gives every row a group; returns how many there are.
+// Assigns every row to a group. Returns the number of groups.
 template <class Real>
 std::uint32_t Coarsening<Real>::aggregate(const GraphLaplacian<Real>& a) {
   const auto n = static_cast<std::uint32_t>(a.rows());
@@ -53,7 +53,7 @@ std::uint32_t Coarsening<Real>::aggregate(const GraphLaplacian<Real>& a) {
     return -entry.value > strength_[i] * strength_[entry.column];
   };
   std::uint32_t count = 0;
-  // Whole neighbourhoods first,
+  // First, whole neighbourhoods become groups.
   for (std::uint32_t i = 0; i < n; ++i) {
     if (group_[i] != none) continue;
     const auto taken = [&](const auto& entry) {
@@ -68,7 +68,7 @@ std::uint32_t Coarsening<Real>::aggregate(const GraphLaplacian<Real>& a) {
     });
     ++count;
   }
-  // then what is left joins the neighbour it hangs on most,
+  // Then, each remaining row joins the neighbour that it is most strongly coupled to.
   join_.assign(n, none);
   for (std::uint32_t i = 0; i < n; ++i) {
     if (group_[i] != none) continue;
@@ -79,27 +79,27 @@ std::uint32_t Coarsening<Real>::aggregate(const GraphLaplacian<Real>& a) {
       join_[i] = group_[entry.column];
     });
   }
-  // and what has no such neighbour stands alone.
+  // Rows without such a neighbour become groups of their own.
   for (std::uint32_t i = 0; i < n; ++i) {
     if (group_[i] == none) group_[i] = join_[i] != none ? join_[i] : count++;
   }
   return count;
 }
 
-// Rows of P = (I - omega D^-1 A) P0, where P0 has a one at each row's group.
+// Computes the rows of P = (I - omega D^-1 A) P0, where P0 has a one at each row's group.
 template <class Real>
 void Coarsening<Real>::prolongate(const GraphLaplacian<Real>& a, GraphRows<Real>& out) {
   const auto n = static_cast<std::uint32_t>(a.rows());
   out.first.resize(n + 1);
   out.entries.clear();
-  // A row has some three entries, and as many edges.
+  // A row has about three entries, and as many edges.
   out.entries.reserve(n + a.lower.entries.size());
   place_.assign(groups_, 0);
   for (std::uint32_t i = 0; i < n; ++i) {
     const auto begin = static_cast<std::uint32_t>(out.entries.size());
     out.first[i] = begin;
-    // Half the row's absolute sum bounds the diagonal from above where couplings of both signs
-    // meet.
+    // Where couplings have both signs, half the row's absolute sum is an upper bound on the
+    // diagonal.
     Real sum = 0, absolute = 0;
     a.each_of_row(i, [&](const auto& entry) {
       sum -= entry.value;
@@ -107,7 +107,7 @@ void Coarsening<Real>::prolongate(const GraphLaplacian<Real>& a, GraphRows<Real>
     });
     const Real bound = sum + absolute;
     const Real damping = bound > 0 ? Real(4.0 / 3.0) / bound : 0;
-    // The row's own coefficient is what the others leave of its sum: constants stay constant.
+    // The row's own coefficient makes its sum one, so constants stay constant.
     out.entries.push_back({group_[i], 1 - damping * sum});
     place_[group_[i]] = begin;
     a.each_of_row(i, [&](const auto& entry) {
@@ -124,7 +124,7 @@ void Coarsening<Real>::prolongate(const GraphLaplacian<Real>& a, GraphRows<Real>
   out.first[n] = static_cast<std::uint32_t>(out.entries.size());
 }
 
-// Sums up the couplings between groups. False: they are too many.
+// Sums the couplings between groups. Returns false if there are too many.
 template <class Real>
 bool Coarsening<Real>::couple_groups(const GraphLaplacian<Real>& a) {
   const std::size_t most_couplings = a.lower.entries.size();
@@ -146,7 +146,7 @@ bool Coarsening<Real>::couple_groups(const GraphLaplacian<Real>& a) {
   return true;
 }
 
-// Returns the steps it took.
+// Returns the number of steps taken.
 template <class Real>
 std::size_t Coarsening<Real>::couple(std::uint32_t row, std::uint32_t column, double value) {
   std::size_t steps = 1;

@@ -17,9 +17,9 @@ using param::cross;
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-constexpr double upper_share = 0.001;  // of the area, that stretch_999 leaves out
+constexpr double upper_share = 0.001;  // of the area, which stretch_999 leaves out
 
-// Triangles below this part of the mean area say nothing but rounding noise.
+// Triangles below this share of the mean area contain nothing but rounding noise.
 constexpr double negligible_area = 1e-14;
 
 TriangleStretch measure_triangle(const LocalMesh& mesh, std::span<const Vec2d> uvs, std::size_t t) {
@@ -30,18 +30,19 @@ TriangleStretch measure_triangle(const LocalMesh& mesh, std::span<const Vec2d> u
   out.area = rest.area();
   out.uv_area = 0.5 * cross(u1 - u0, u2 - u0);
   if (!(out.area > 0)) return out;
-  // The Jacobian times twice the area: fewer divisions.
+  // The Jacobian times twice the area, which saves divisions.
   const glm::dvec2 base = u1 - u0;
   const param::Jacobian j{rest.altitude * base, rest.length * (u2 - u0) - rest.foot * base};
   const double large = param::largest_singular_value(j), twice_area = rest.length * rest.altitude;
   const double determinant = std::abs(j.det());
-  // The smaller value is the determinant by the larger, which keeps digits that a difference loses.
+  // The smaller value is the determinant divided by the larger one, which keeps digits that a
+  // difference would lose.
   out.s1 = determinant > 0 ? static_cast<float>(twice_area * large / determinant) : infinity;
   out.s2 = large > 0 ? static_cast<float>(twice_area / large) : infinity;
   return out;
 }
 
-// Infinite where the scale is 0, too: 0 times infinity must not enter what is sorted.
+// Infinite also if the scale is 0: the NaN of 0 times infinity must not enter the sorted values.
 float stretch(const TriangleStretch& t, double scale) {
   const double worst = std::max(t.s1 * scale, 1 / (t.s2 * scale));
   return std::isnan(worst) ? infinity : static_cast<float>(worst);

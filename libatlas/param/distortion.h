@@ -1,4 +1,4 @@
-// How far a flattening is from an isometry.
+// Measures how far a flattening is from an isometry.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,9 @@
 
 namespace atlas {
 
-// Area-weighted over the surface, at the set's own area-preserving scale. s1 >= s2 are the singular
-// values of the uv-to-surface map (Sander et al. 2001); 1 is perfect everywhere.
+// Distortion of a set of triangles, weighted by surface area, at the set's own area-preserving
+// scale. s1 >= s2 are the singular values of the uv-to-surface map (Sander et al. 2001); 1 is
+// perfect everywhere.
 struct Distortion {
   double stretch_l2 = 1;      // sqrt of the mean of (s1² + s2²) / 2
   double stretch_linf = 1;    // largest max(s1, 1/s2)
@@ -24,32 +25,32 @@ struct Distortion {
   std::uint64_t degenerate = 0;  // triangles with zero uv area but not zero surface area
 };
 
-// One triangle's part in it, before any scale is taken out.
+// The distortion of one triangle, before any scale is applied.
 struct TriangleStretch {
   double area = 0;     // on the surface, times density squared; >= 0
   double uv_area = 0;  // signed, negative: flipped
-  float s1 = 1;        // singular values of the uv-to-surface map as it is, s1 >= s2 >= 0;
-  float s2 = 1;  // both 1 for a triangle without surface area, s1 = inf for one without uv area
+  float s1 = 1;        // singular values of the uv-to-surface map, s1 >= s2 >= 0
+  // Both are 1 for a triangle without surface area; s1 is infinite for one without uv area.
+  float s2 = 1;
 };
 
-// Fills out[t] for every triangle; out.size() == triangles.size(), uvs.size() == positions.size().
-// Any set of triangles will do.
+// Fills out[t] for every triangle, of any set of triangles. out.size() must be triangles.size(),
+// and uvs.size() positions.size().
 void measure_triangles(const LocalMesh& mesh, std::span<const Vec2d> uvs,
                        std::span<TriangleStretch> out);
 
-// Sums triangles up: of one chart, or of many charts whose entries stand one after another. scale
-// multiplies s1 and s2; 0 stands for the area-preserving one, sqrt(uv area / surface area).
-// Triangles of less than 1e-14 of the mean area count for flips (if their uv area is negative) and
-// nothing else. Takes O(n); uses memory for 2 n doubles. Source: Sander et al. 2001, section 3.
+// Sums triangles of one chart, or of many charts one after another. `scale` multiplies s1 and s2; 0
+// means the area-preserving one, sqrt(uv area / surface area). Triangles of less than 1e-14 of the
+// mean area count only for areas and flips (if their uv area is negative). Takes O(n). Source:
+// Sander et al. 2001, section 3.
 Distortion summarize_distortion(std::span<const TriangleStretch> triangles, double scale = 0);
 
-// Both steps for one chart. per_triangle (1 a triangle, or empty) receives max(s1, 1/s2) at the
-// area-preserving scale; infinite for a flipped triangle or one without uv area.
+// Both steps for one chart. per_triangle (one per triangle, or empty) receives max(s1, 1/s2) at the
+// area-preserving scale; it is infinite for a flipped triangle or one without uv area.
 Distortion measure_distortion(const LocalMesh& mesh, std::span<const Vec2d> uvs,
                               std::span<double> per_triangle = {});
 
-// The area-preserving scale: sqrt(surface area / uv area), the factor that uvs need; 0 without
-// area.
+// Returns the factor that makes uvs area-preserving, sqrt(surface area / uv area); 0 without area.
 double area_preserving_scale(const Distortion& distortion);
 
 }  // namespace atlas

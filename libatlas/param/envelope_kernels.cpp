@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::size_t side = EnvelopeBlocks::side;
 
-// A block of the factor from the sum of what was filled in; `a` and `b` are the first blocks that
-// its row and its column's row have both.
+// Computes a block of the factor from the entries that were filled in. `a` and `b` are the first
+// blocks in the columns that its row and its column's row share.
 template <class Vector>
 ATLAS_INLINE void eliminate_block(double* own, const double* a, const double* b,
                                   const double* inverse_pivot) {
@@ -19,7 +19,7 @@ ATLAS_INLINE void eliminate_block(double* own, const double* a, const double* b,
   Vector* const out = reinterpret_cast<Vector*>(own);
   for (std::size_t i = 0; i < side * parts; ++i) sum[i] = out[i];
   for (; a != own; a += EnvelopeBlocks::size, b += EnvelopeBlocks::size) {
-#pragma GCC unroll 1  // else the sum does not stay in registers
+#pragma GCC unroll 1  // otherwise the sum does not stay in registers
     for (std::size_t k = 0; k < side; ++k) {
       const Vector* const column = reinterpret_cast<const Vector*>(a + side * k);
       for (std::size_t j = 0; j < side; ++j) {

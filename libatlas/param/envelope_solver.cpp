@@ -15,13 +15,14 @@ constexpr std::size_t side = EnvelopeBlocks::side, block_size = EnvelopeBlocks::
 
 }  // namespace
 
-// Where entry (i, j) of the reordered matrix lies, j <= i.
+// Returns where entry (i, j) of the reordered matrix is stored, j <= i.
 inline std::size_t EnvelopeSolver::place(std::size_t i, std::size_t j) const {
   return block_size * (row_[i / side] + (j / side - first_[i / side])) + side * (j % side) +
          i % side;
 }
 
-// In the order in which elements name them.
+// Builds the graph of the elements' vertices. Neighbours are in the order in which elements list
+// them.
 EnvelopeSolver::Graph EnvelopeSolver::connect(const Elements& elements, std::size_t vertices) {
   graph_first_.assign(vertices + 1, 0);
   graph_column_.resize(6 * elements.size());
@@ -46,8 +47,8 @@ EnvelopeSolver::Graph EnvelopeSolver::connect(const Elements& elements, std::siz
   return {graph_first_, graph_column_};
 }
 
-// Breadth-first from start over vertices whose position_ is unseen; fills queue_ and returns the
-// last.
+// Fills queue_ breadth-first from `start`, over vertices whose position_ is unseen. Returns the
+// last one.
 std::uint32_t EnvelopeSolver::sweep(const Graph& graph, std::uint32_t start) {
   queue_.assign(1, start);
   position_[start] = 0;
@@ -73,7 +74,8 @@ void EnvelopeSolver::order(const Graph& graph) {
     const std::uint32_t start = sweep(graph, v);  // the farthest vertex is a good end
     for (const std::uint32_t w : queue_) position_[w] = unseen;
     sweep(graph, start);
-    held_[start] = 1;  // the last of its piece to be eliminated: its pivot is nothing but rounding
+    // The last vertex of its piece to be eliminated: its pivot is mere rounding.
+    held_[start] = 1;
     order_.insert(order_.end(), queue_.begin(), queue_.end());
   }
   std::reverse(order_.begin(), order_.end());
@@ -112,7 +114,7 @@ void EnvelopeSolver::find_places(const Elements& elements) {
   });
 }
 
-// Copies the matrix into the envelope; rows beyond the last are 0.
+// Copies the matrix into the envelope. Rows beyond the last one are 0.
 void EnvelopeSolver::fill(const SymmetricMatrix& matrix) {
   factor_.assign(block_size * row_.back(), 0);
   for (std::uint32_t i = 0; i < matrix.rows(); ++i) {
@@ -167,7 +169,7 @@ void EnvelopeSolver::factorize(const Elements& elements) {
   eliminate(diagonal_);
 }
 
-// The factor of what was filled in, whose diagonal is given, 1 a vertex.
+// Factorizes the filled matrix, whose diagonal is given, one per vertex.
 void EnvelopeSolver::eliminate(std::span<const double> diagonal) {
   const std::size_t blocks = first_.size();
   inverse_pivot_.assign(side * blocks, 0);

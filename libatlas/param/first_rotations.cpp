@@ -9,13 +9,13 @@
 namespace atlas::param {
 namespace {
 
-// Seen edge-on, or from behind, a triangle has no rotation near its map: its smaller singular value
-// must be more than a quarter of the larger one, within some 75 degrees of the view.
+// Seen edge-on or from behind, a triangle has no rotation near its map. The smaller singular value
+// must be more than a quarter of the larger one, which holds within about 75 degrees of the view.
 bool trustworthy(const Jacobian& j) {
   return j.det() > 4.0 / 17 * (glm::dot(j.x, j.x) + glm::dot(j.y, j.y));
 }
 
-// The map that a frame makes of an element, times its length.
+// Returns the map of an element that a frame implies, times the element's length.
 Jacobian map_of_frame(const LocalMesh& mesh, const Element& e, const std::array<Vec3f, 2>& frame) {
   const glm::dvec3 p = to_glm(mesh.positions[e.v[0]]), a = to_dvec(frame[0]), b = to_dvec(frame[1]);
   const glm::dvec3 base = to_glm(mesh.positions[e.v[1]]) - p;
@@ -46,7 +46,7 @@ std::uint32_t middle_triangle(const LocalMesh& mesh) {
   return best;
 }
 
-// The unit vector from a to b, both corners of e, in e's rest plane.
+// Returns the unit vector from a to b, both corners of e, in e's rest plane.
 glm::dvec2 edge_direction(const Element& e, std::uint32_t a, std::uint32_t b) {
   const auto place = [&](std::uint32_t v) {
     return v == e.v[0]   ? glm::dvec2(0)
@@ -58,21 +58,21 @@ glm::dvec2 edge_direction(const Element& e, std::uint32_t a, std::uint32_t b) {
   return l > 0 ? d / l : glm::dvec2(1, 0);
 }
 
-// Rotation of the triangle beyond half-edge h's edge that unfolds it along that edge.
+// Returns the rotation of the triangle across half-edge h that unfolds it along that edge.
 glm::dvec2 carried(const ParamWorkspace::Impl& w, std::uint32_t h) {
   const std::uint32_t t = HalfEdges::triangle(h);
   const std::uint32_t other = HalfEdges::triangle(w.half_edges.opposite(h));
   const std::uint32_t a = w.half_edges.from(h), b = w.half_edges.to(h);
   const glm::dvec2 here = edge_direction(w.elements[t], a, b);
   const glm::dvec2 there = edge_direction(w.elements[other], a, b);
-  // rotation of other = rotation of t * here / there, as complex numbers of unit length
+  // Rotation of `other` = rotation of t * here / there, as complex numbers of unit length.
   const glm::dvec2 r(w.rotations[t]);
   const glm::dvec2 turn(glm::dot(here, there), cross(there, here));
   return glm::normalize(glm::dvec2(r.x * turn.x - r.y * turn.y, r.x * turn.y + r.y * turn.x));
 }
 
-// Gives every triangle whose rotation is (0, 0) one, breadth-first from w.queue, each unfolded
-// along the edge by which it is reached.
+// Gives a rotation to every triangle whose rotation is (0, 0), breadth-first from w.queue: each is
+// unfolded along the edge by which it is reached.
 void flood_rotations(ParamWorkspace::Impl& w) {
   for (std::size_t i = 0; i < w.queue.size(); ++i) {
     const std::uint32_t t = w.queue[i];
@@ -85,7 +85,7 @@ void flood_rotations(ParamWorkspace::Impl& w) {
   }
 }
 
-// Triangles whose map was doubtful were left without a rotation: they take it from their
+// Gives triangles that were left without a rotation, since their map was doubtful, that of their
 // neighbours.
 void complete_rotations(const LocalMesh& mesh, ParamWorkspace::Impl& w) {
   w.queue.clear();

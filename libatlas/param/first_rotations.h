@@ -1,4 +1,4 @@
-// Internal: the rotations of a mesh's triangles that the solver begins with.
+// Internal: finds the rotations of a mesh's triangles that the solver starts from.
 #pragma once
 
 #include "libatlas/param/isometric.h"
@@ -7,12 +7,12 @@
 
 namespace atlas::param {
 
-// Fill ParamWorkspace::Impl::rotations; its elements must be the mesh's.
+// These functions fill ParamWorkspace::Impl::rotations; its elements must be the mesh's.
 
-// Each triangle unfolded along the edge by which it is reached, breadth-first from the middle.
+// Unfolds each triangle along the edge by which it is reached, breadth-first from the middle.
 void carry_rotations(const LocalMesh& mesh, ParamWorkspace::Impl& w);
 
-// Nearest to what the frames make of the triangles; where that is doubtful, carried from
+// Takes the rotations nearest to the frames; where that is doubtful, carries them over from
 // neighbours.
 void rotations_from_frames(const LocalMesh& mesh, const FrameView& frames, ParamWorkspace::Impl& w);
 

@@ -14,7 +14,7 @@ double edge_couplings(const Elements& elements, const HalfEdges& half_edges,
     const Element e = elements[t];
     const auto& corners = half_edges.corners(t);
     const std::uint32_t base = 3 * t + (corners[0] == e.v[0] ? 0 : corners[1] == e.v[0] ? 1 : 2);
-    // Half the cotangents of the angles that face the edges, the base and the two others.
+    // Half the cotangents of the angles opposite to the edges: to the base and to the two others.
     const double rest = e.length - e.foot, scale = 0.5 / e.altitude;
     const double behind = e.foot * scale, before = rest * scale;
     const double top = 0.5 * (e.altitude - e.foot * rest / e.altitude) / e.length;
@@ -36,7 +36,7 @@ void build_graph(std::span<const Real> couplings, const HalfEdges& half_edges, s
       const auto& corners = half_edges.corners(t);
       for (std::uint32_t c = 0; c < 3; ++c) {
         const std::uint32_t h = 3 * t + c, o = half_edges.opposite(h);
-        if (o < h) continue;  // `none` is above all
+        if (o < h) continue;  // `none` is the largest
         body(corners[c], corners[c == 2 ? 0 : c + 1],
              o == HalfEdges::none ? couplings[h] : couplings[h] + couplings[o]);
       }

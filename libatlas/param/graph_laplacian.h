@@ -1,6 +1,6 @@
 // Internal: a stiffness matrix as a weighted graph. Its rows sum to zero, so the couplings of
-// vertices are all of it: K x = sum over edges of a_ij (x_j - x_i), which holds the constants
-// exactly in its kernel whatever the couplings are rounded to.
+// vertices determine it: K x = sum over edges of a_ij (x_j - x_i). Constants are exactly in its
+// kernel, however the couplings are rounded.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct GraphEntry {
 
 template <class Real>
 struct GraphRows {
-  std::vector<std::uint32_t> first;  // 1 a row, and the end
+  std::vector<std::uint32_t> first;  // one per row, and the end
   std::vector<GraphEntry<Real>> entries;
 
   std::size_t rows() const { return first.size() - 1; }
@@ -30,8 +30,9 @@ struct GraphRows {
   }
 };
 
-// The entries off the diagonal, negative between most neighbours; a pair of vertices may have
-// several. Those below the diagonal and those above it apart: only a set-up needs both.
+// The entries off the diagonal, which are negative between most neighbours. A pair of vertices may
+// have several. Entries below and above the diagonal are stored separately, since only a set-up
+// needs both.
 template <class Real>
 struct GraphLaplacian {
   GraphRows<Real> lower, upper;
@@ -44,11 +45,11 @@ struct GraphLaplacian {
   }
 };
 
-// Makes the two from edges: each(body) calls body(a, b, value) once for every edge, the same each
-// time.
+// Builds both halves from edges. each(body) must call body(a, b, value) once for every edge, in the
+// same order each time.
 template <class Real, class Each>
 void gather_edges(std::size_t vertices, const Each& each, GraphLaplacian<Real>& out) {
-  // first[v + 1] counts, then moves from the beginning of v's row to its end.
+  // first[v + 1] first counts, then moves from the beginning of v's row to its end.
   for (GraphRows<Real>* half : {&out.lower, &out.upper}) half->first.assign(vertices + 2, 0);
   std::uint32_t *lower = out.lower.first.data(), *upper = out.upper.first.data();
   each([&](std::uint32_t a, std::uint32_t b, Real) {
@@ -68,8 +69,8 @@ void gather_edges(std::size_t vertices, const Each& each, GraphLaplacian<Real>& 
   out.upper.first.pop_back();
 }
 
-// What the matrix of the elements has for the edge of each half-edge, 3 a triangle; a matrix entry
-// is the sum of an edge's two. Returns the largest magnitude, weights left out.
+// Computes the contribution of each half-edge to the matrix entry of its edge, three per triangle;
+// an entry is the sum of an edge's two. Returns the largest magnitude, without weights.
 template <class Real>
 double edge_couplings(const Elements& elements, const HalfEdges& half_edges,
                       std::vector<Real>& out);

@@ -17,7 +17,7 @@ void HalfEdges::build(std::span<const std::array<std::uint32_t, 3>> triangles,
     for (const std::uint32_t v : tri) ++first_[v + 1];
   }
   for (std::size_t v = 1; v < first_.size(); ++v) first_[v] += first_[v - 1];
-  // Outgoing half-edges of each vertex; filling moves first_[v] to the end of v's range.
+  // Lists the outgoing half-edges of each vertex. Filling moves first_[v] to the end of v's range.
   out_.resize(count);
   for (std::uint32_t h = 0; h < count; ++h) out_[first_[from(h)]++] = h;
   found_.assign(count, none);
@@ -31,8 +31,8 @@ void HalfEdges::build(std::span<const std::array<std::uint32_t, 3>> triangles,
   opposite_ = found_;
 }
 
-// Among the triangles of its end or of its start, whichever has fewer: hubs would take quadratic
-// time.
+// Searches the triangles around the end or the start of h, whichever are fewer; otherwise vertices
+// of high valence would take quadratic time.
 std::uint32_t HalfEdges::find_opposite(std::uint32_t h) const {
   const std::uint32_t a = from(h), b = to(h);
   const auto outgoing = [&](std::uint32_t v) {

@@ -1,4 +1,4 @@
-// Internal: which halves of a triangle set's edges have no opposite, and walks along them.
+// Internal: finds the opposite of each half-edge of a triangle set, and walks along boundary loops.
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@ class HalfEdges {
  public:
   static constexpr std::uint32_t none = 0xffffffff;
 
-  // Takes the mesh's opposites, or finds them in O(n), hubs included. Where more than
-  // two triangles meet in an edge, pairs are made in order of id.
+  // Takes the mesh's opposites, or finds them in O(n), even with vertices of high valence. Where
+  // more than two triangles share an edge, pairs are made in order of id.
   void build(const LocalMesh& mesh);
   void build(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertices);
 
@@ -27,15 +27,15 @@ class HalfEdges {
   std::uint32_t to(std::uint32_t h) const { return from(next(h)); }
   const std::array<std::uint32_t, 3>& corners(std::uint32_t t) const { return triangles_[t]; }
 
-  // The border half-edge that follows h along its loop.
+  // Returns the boundary half-edge that follows h along its loop.
   std::uint32_t next_border(std::uint32_t h) const {
     h = next(h);
     while (opposite_[h] != none) h = next(opposite_[h]);
     return h;
   }
 
-  // Half-edges without opposite, loop after loop; loop_start holds each loop's first place and the
-  // total at the end.
+  // Half-edges without an opposite, loop after loop. loop_start holds the index of each loop's
+  // first one, and the total at the end.
   struct Border {
     std::vector<std::uint32_t> half_edges, loop_start;
   };

@@ -23,11 +23,11 @@ struct Box {
 struct Edge {
   Vec2d a, b;
   std::uint32_t from, to, triangle;
-  Vec2d before;  // the border's corner before a
+  Vec2d before;  // the boundary corner before a
 };
 
-// Whether the direction from e.a to p points into the chart at that corner: strictly between those
-// to e.b and, counter-clockwise, to e.before.
+// Whether the direction from e.a to p points into the chart at that corner: strictly between the
+// directions to e.b and, counter-clockwise, to e.before.
 bool points_inside(const Edge& e, Vec2d p) {
   const int after_first = orientation(e.a, e.b, p), before_last = orientation(e.a, p, e.before);
   const int turn = orientation(e.a, e.b, e.before);
@@ -36,8 +36,8 @@ bool points_inside(const Edge& e, Vec2d p) {
   return after_first > 0;
 }
 
-// Of two border vertices that have come to lie in one point: whether their triangles overlap there.
-// They fill the corners, so these must be apart.
+// Whether the triangles at two boundary vertices in the same point overlap there. Triangles fill
+// the corners, so these must not overlap.
 bool corners_overlap(const Edge& e, const Edge& f) {
   return points_inside(e, f.b) || points_inside(e, f.before) || points_inside(f, e.b) ||
          points_inside(f, e.before);
@@ -50,8 +50,9 @@ double distance(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
   return glm::length(p - a - t * d);
 }
 
-// Of two edges that do not cross. With a common vertex: how far the shorter one's other end is from
-// the longer one, which says how little would turn it over.
+// Returns the distance of two edges that do not cross. If they share a vertex, this is the distance
+// of the shorter one's other end from the longer one: a smaller displacement cannot flip the
+// corner.
 double gap(const Edge& e, const Edge& f) {
   const glm::dvec2 ea = to_glm(e.a), eb = to_glm(e.b), fa = to_glm(f.a), fb = to_glm(f.b);
   const bool shared = e.to == f.from || f.to == e.from;
@@ -60,14 +61,13 @@ double gap(const Edge& e, const Edge& f) {
         {distance(ea, fa, fb), distance(eb, fa, fb), distance(fa, ea, eb), distance(fb, ea, eb)});
   }
   const bool e_shorter = glm::dot(eb - ea, eb - ea) < glm::dot(fb - fa, fb - fa);
-  const bool forward = e.to == f.from;  // e then f
+  const bool forward = e.to == f.from;  // e is followed by f
   if (e_shorter) return distance(forward ? ea : eb, fa, fb);
   return distance(forward ? fb : fa, ea, eb);
 }
 
-// A binary tree of boxes over the border in its own order: neighbours on the border are neighbours
-// in the plane, so the boxes are as tight as sorting would make them, whatever the lengths of
-// edges.
+// A binary tree of boxes over the border in its own order. Neighbours on the border are neighbours
+// in the plane, so boxes are as tight as if edges were sorted, whatever their lengths.
 class BorderTree {
  public:
   BorderTree(std::span<const Edge> edges, const InjectivityOptions& options, Injectivity& result)
@@ -88,8 +88,8 @@ class BorderTree {
   struct Node {
     std::uint32_t id, begin, end;
     bool is_leaf() const { return end - begin <= leaf; }
-    // Cut at a multiple of the leaf size, so that there are never more nodes than twice the leaves
-    // rounded up to a power of two.
+    // Ranges are divided at a multiple of the leaf size, so there are never more nodes than twice
+    // the leaves rounded up to a power of two.
     std::uint32_t middle() const {
       const std::uint32_t leaves = (end - begin + leaf - 1) / leaf;
       return begin + leaves / 2 * leaf;
@@ -180,9 +180,9 @@ class BorderTree {
   std::vector<Box> boxes_;
 };
 
-// The turning sense of a closed polygon that may touch itself in corners, exactly: the turn at its
-// lexicographically lowest corner. Where several of its corners lie there, they are apart, and the
-// outermost edges belong to a turn to the right if there is one: the polygon goes round a hole.
+// Returns the turning sense of a closed polygon that may touch itself in corners, exactly: the turn
+// at its lexicographically lowest corner. If several of its corners lie there, they do not overlap,
+// and if any of them turns right, the outermost edges do: the polygon encloses a hole.
 int turning_sense(std::span<const Edge> loop) {
   const auto before = [](Vec2d a, Vec2d b) { return a.x != b.x ? a.x < b.x : a.y < b.y; };
   Vec2d lowest = loop[0].a;

@@ -1,12 +1,12 @@
-// Whether a flattening is one-to-one: decided by exact predicates, not by tolerance.
+// Decides whether a flattening is injective: by exact predicates, not by tolerance.
 //
 // Theorem used. Let every triangle be positively oriented in uv. The number of triangles that cover
 // a point off all edges is then the degree of the map there, and the degree is the winding number
-// of the border's image about the point. If the border's loops are simple, touch at most in points
-// where their corners are apart, and exactly one turns counter-clockwise, that number is 0 or 1
-// everywhere: no two triangles overlap. For a disc (one loop) a simple border suffices. Interior
-// vertices that the triangles go round twice are thereby excluded as well: a neighbourhood of one
-// would be covered twice.
+// of the border's image about the point. If the boundary loops are simple, touch at most in points
+// where their corners do not overlap, and exactly one of them turns counter-clockwise, that number
+// is 0 or 1 everywhere: no two triangles overlap. For a disc (one loop) a simple border suffices.
+// This also excludes interior vertices that the triangles surround twice, since a neighbourhood of
+// such a vertex would be covered twice.
 #pragma once
 
 #include <array>
@@ -20,37 +20,37 @@
 namespace atlas {
 
 struct InjectivityOptions {
-  // Room for rounding: uvs written with an absolute error of at most e in each coordinate keep a
-  // map injective that passes with clearance = 3 e (uv units). It asks that every triangle's
-  // smallest altitude, and the gap between any two border edges without a common vertex, are not
-  // below it. 0: none.
+  // Margin for rounding: uvs written with an absolute error of at most e in each coordinate keep a
+  // map injective that passes with clearance = 3 e (uv units). The check then lists as thin and
+  // close what is below the clearance: the smallest altitude of a triangle, or the gap between two
+  // border edges without a common vertex. 0: no such check.
   double clearance = 0;
-  std::size_t max_crossings = 64;  // stop listing there; the verdict does not change
+  std::size_t max_crossings = 64;  // listing stops there; the verdict does not change
 };
 
 struct BorderCrossing {
   std::array<std::uint32_t, 2> a, b;  // border edges as vertex pairs, in their triangle's direction
-  std::uint32_t triangle_a = 0, triangle_b = 0;  // the triangles they belong to
+  std::uint32_t triangle_a = 0, triangle_b = 0;  // the triangles that they belong to
 };
 
 struct Injectivity {
   bool injective = false;
   std::vector<std::uint32_t> flipped;  // triangles whose orientation in uv is not positive (exact)
-  std::vector<BorderCrossing>
-      crossings;            // pairs of border edges that cross, stretch along each other, or begin
-                            // at two vertices in one point, around which triangles overlap
-  std::uint32_t loops = 0;  // border loops
-  bool nested =
-      false;  // no crossing, yet not exactly one loop counter-clockwise: folded over itself
-  // Only with clearance > 0; they do not make `injective` false.
-  std::vector<std::uint32_t> thin;    // triangles with an altitude below clearance
-  std::vector<BorderCrossing> close;  // border edges nearer than clearance
+  // Pairs of border edges that cross, that overlap along their length, or that begin at two
+  // vertices in the same point around which triangles overlap.
+  std::vector<BorderCrossing> crossings;
+  std::uint32_t loops = 0;  // boundary loops
+  // No crossing, but not exactly one loop is counter-clockwise: the map folds over itself.
+  bool nested = false;
+  // Only with clearance > 0. These do not make `injective` false.
+  std::vector<std::uint32_t> thin;    // triangles with an altitude below the clearance
+  std::vector<BorderCrossing> close;  // border edges closer to each other than the clearance
 };
 
-// uvs.size() == positions.size(). The mesh's border must be a manifold: each border vertex has one
-// outgoing border edge (else `nested` is set when the exact walk meets it). O(n log n) for borders
-// that do not cross themselves everywhere. Two borders that touch in coincident end points only do
-// not cross.
+// Checks a map with uvs.size() == positions.size(). The mesh's border must be a manifold: each
+// border vertex has one outgoing border edge (otherwise `nested` is set when the exact walk meets
+// it). O(n log n), unless the border crosses itself everywhere. Two borders that touch only in
+// coincident end points do not cross.
 Injectivity check_injectivity(const LocalMesh& mesh, std::span<const Vec2d> uvs,
                               const InjectivityOptions& options = {});
 

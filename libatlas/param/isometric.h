@@ -1,6 +1,7 @@
-// Flattenings that keep lengths as well as can be: as-rigid-as-possible local/global descent (Liu
-// et al. 2008, "A local/global approach to mesh parameterization") with a weight for shear, its
-// reweighted form that lowers the worst triangles, and a barrier relaxation that removes flips.
+// Flattening that preserves lengths as well as possible: as-rigid-as-possible local/global descent
+// (Liu et al. 2008, "A local/global approach to mesh parameterization") with a weight for shear.
+// The solver also has a reweighted form that improves the worst triangles, and a barrier relaxation
+// that removes flips.
 #pragma once
 
 #include <array>
@@ -14,8 +15,8 @@
 
 namespace atlas {
 
-// Scratch memory of the solvers, kept between calls so that thousands of small charts cost no
-// allocation. One for each thread; results never depend on what was solved before.
+// Scratch memory of the solvers, kept between calls so that thousands of small charts need no
+// allocations. Each thread needs its own. Results never depend on earlier calls.
 class ParamWorkspace {
  public:
   ParamWorkspace();
@@ -37,44 +38,45 @@ class ParamWorkspace {
 
 struct IsometricOptions {
   int iterations = 5;  // local/global steps
-  // Triangles are given at least this altitude (uv units) in the plane shape they strive for, so
-  // that slivers keep a positive area that survives rounding. Besides it there is always a floor of
-  // 1e-9 of the longest edge. Zero-area triangles get a place this way.
+  // Triangles have at least this altitude (uv units) in the flat shape that they are to take, so
+  // that slivers keep a positive area that survives rounding. There is also always a floor of 1e-9
+  // of the longest edge. This gives zero-area triangles a place.
   double min_altitude = 0;
-  // How much shear counts against change of area, in (0, 1]. With singular values 1 + a and 1 + b
-  // of a triangle's map the energy is (a + b)² + shear_weight (a - b)². 1: as rigid as possible,
-  // which is a² + b² but for a factor. L2 stretch (Sander et al. 2001) at the area-preserving scale
-  // grows as a half makes it, in second order; a little more is what few steps reach it best with.
+  // The weight of shear relative to change of area, in (0, 1]. If 1 + a and 1 + b are the singular
+  // values of a triangle's map, the energy is (a + b)² + shear_weight (a - b)². The value 1 gives
+  // as rigid as possible, which is a² + b² up to a factor. To second order, L2 stretch (Sander et
+  // al. 2001) at the area-preserving scale grows as with the value 0.5; with few steps, a little
+  // more gives the least L2 stretch.
   double shear_weight = 0.6;
 };
 
-// The rows of each triangle's 2x3 map.
+// Returns the rows of the 2x3 map of the i-th triangle.
 using FrameView = std::function<std::array<Vec3f, 2>(std::size_t)>;
 
-// What the first local step starts from; exactly one of uvs and frames is set, or none: then the
-// rotations are carried over the triangles from the one nearest to the middle.
+// What the first local step starts from. At most one of uvs and frames may be set. If none is,
+// rotations are carried over the triangles, beginning with the one nearest to the centre.
 struct IsometricStart {
-  std::span<const Vec2d> uvs = {};  // 1 a vertex
-  bool rough = false;               // of uvs only the rotations count, as of a projection
-  // 1 a triangle: rows of a 2x3 map from space to uv, near a rotation of the triangle's plane into
-  // the uv plane (the nearest one is taken). Jumps between neighbours are fine: the first solve
-  // levels them.
+  std::span<const Vec2d> uvs = {};  // one per vertex
+  bool rough = false;               // use only the rotations of uvs, as for a projection
+  // One per triangle: the rows of a 2x3 map from space to uv, close to a rotation of the triangle's
+  // plane into the uv plane (the nearest rotation is taken). Differences between neighbours do no
+  // harm: the first solve smooths them.
   FrameView frames = nullptr;
 };
 
 struct IsometricResult {
-  // Sum over triangles of area * |J - R|² after the last step, J = uv per surface length, R the
-  // nearest rotation; whatever the shear's weight.
+  // Sum over triangles of area * |J - R|² after the last step, where J is uv per surface length and
+  // R the nearest rotation, independent of shear_weight.
   double energy = 0;
-  std::uint64_t flips =
-      0;  // triangles of non-positive uv area (in floating point; see injectivity.h)
+  // Triangles of non-positive uv area (in floating point; see injectivity.h).
+  std::uint64_t flips = 0;
 };
 
-// Minimises the energy of `options.shear_weight` in so many steps and writes uvs (1 a vertex).
-// `start.uvs` may be the same memory as `uvs`. The scale is that of the surface (times density);
-// not area-preserving to the last digit. O(n) a step up to factors that grow slowly: a band solver
-// for small charts, a sparse factorisation up to some ten thousand triangles, a
-// multilevel-preconditioned solve above.
+// Minimizes the energy with `options.shear_weight` in `options.iterations` steps, and writes uvs
+// (one per vertex). `start.uvs` may be the same memory as `uvs`. The scale is that of the surface
+// (times density), but not exactly area-preserving. A step takes O(n) up to factors that grow
+// slowly: it uses a band solver for small charts, a sparse factorization up to some ten thousand
+// triangles, and a multilevel-preconditioned solver above.
 IsometricResult flatten_isometric(const LocalMesh& mesh, const IsometricStart& start,
                                   const IsometricOptions& options, std::span<Vec2d> uvs,
                                   ParamWorkspace& workspace);

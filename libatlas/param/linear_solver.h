@@ -1,4 +1,4 @@
-// Internal: solvers for the stiffness systems, two right-hand sides (u and v) at once.
+// Internal: solvers for the stiffness systems, for two right-hand sides (u and v) at once.
 #pragma once
 
 #include <array>
@@ -10,15 +10,18 @@
 
 namespace atlas::param {
 
-// Cholesky factorisation within the envelope of the reordered matrix (reverse Cuthill-McKee), O(n²)
-// at worst for a disc of n vertices and faster than anything cleverer up to some thousands. The
-// kernel holds the constants: one vertex of each connected piece gets the solution 0.
+// Cholesky factorization within the envelope of the reordered matrix (reverse Cuthill-McKee). It
+// takes O(n²) at worst for a disc of n vertices, and is faster than more elaborate methods up to
+// some thousands. The kernel contains the constants, so one vertex of each connected piece gets the
+// solution 0.
 class EnvelopeSolver {
  public:
   void factorize(const SymmetricMatrix& matrix);
-  // Orders the vertices of elements; returns the work of a factorisation (products of blocks).
+  // Orders the vertices of the elements. Returns the work of a factorization, in products of
+  // blocks.
   double analyze(const Elements& elements, std::size_t vertices);
-  // The stiffness (as build_stiffness) of what was analyzed last, but for weights.
+  // Factorizes the stiffness (as build_stiffness) of the elements analyzed last, whose weights may
+  // differ.
   void factorize(const Elements& elements);
   // Overwrites x with the solution for the right-hand side `load`.
   void solve(std::span<const glm::dvec2> load, std::span<glm::dvec2> x);
@@ -41,26 +44,26 @@ class EnvelopeSolver {
   std::size_t place(std::size_t i, std::size_t j) const;
 
   std::vector<std::uint32_t> order_, position_, queue_;
-  std::vector<std::uint8_t> held_;  // 1 a vertex
-  // The factor in blocks of 4 x 4: row b's blocks first_[b] .. b start at block row_[b].
+  std::vector<std::uint8_t> held_;  // one per vertex
+  // The factor in blocks of 4 x 4: the blocks first_[b] .. b of block row b start at block row_[b].
   std::vector<std::uint32_t> first_;
   std::vector<std::size_t> row_;
   std::vector<double> factor_, inverse_pivot_;
   std::vector<glm::dvec2> work_;
-  // Of elements: their graph; where the entries of an element's sides opposite to its corners lie
-  // in the factor; the sums on the diagonal, 1 a vertex.
+  // For elements: their graph; where the entries of each element's sides, opposite to its corners,
+  // are stored in the factor; the sums on the diagonal, one per vertex.
   std::vector<std::uint32_t> graph_first_, graph_column_;
   std::vector<std::array<std::size_t, 3>> places_;
   std::vector<double> diagonal_;
 };
 
-// Eigen's simplicial LDLT behind a pointer, so that its headers stay in one file.
+// Eigen's simplicial LDLT behind a pointer, so that its headers are included in one file only.
 class SparseDirectSolver {
  public:
   SparseDirectSolver();
   ~SparseDirectSolver();
-  // same_pattern: the entries stand where they stood in the last call, so its ordering is kept.
-  // False: not definite to working precision.
+  // same_pattern: the entries are where they were in the last call, so its ordering is kept.
+  // Returns false if the matrix is not definite to working precision.
   bool factorize(const SymmetricMatrix& matrix, bool same_pattern);
   void solve(std::span<const glm::dvec2> load, std::span<glm::dvec2> x);
 

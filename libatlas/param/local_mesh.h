@@ -1,4 +1,4 @@
-// The mesh that every function of this folder works on: one chart (or candidate chart) with its own
+// The mesh that the functions in this folder work on: one chart (or candidate chart) with its own
 // compact vertex numbering.
 #pragma once
 
@@ -12,8 +12,8 @@
 
 namespace atlas {
 
-// Points in double; or in float, of which another is taken off in double as they are asked for:
-// half the memory, and no digit less.
+// Points in double; or in float, relative to an origin that is subtracted in double on access,
+// which takes half the memory without losing a digit.
 class PositionView {
  public:
   PositionView() = default;
@@ -35,20 +35,20 @@ class PositionView {
   Vec3d origin_;
 };
 
-// A view of `triangles` over `positions`; what it points at must outlive it. Every index is below
-// positions.size() and the positions are finite. Unless a function says otherwise the triangles
-// form one connected, consistently oriented manifold with a border. Zero-area triangles, needles
-// and coincident positions are allowed, a triangle that names a vertex twice is not. Results do not
-// depend on the unit of length; subtract a common origin first, so that no digits are lost to a far
-// offset.
+// A view of `triangles` over `positions`; the memory it refers to must outlive it. Every index is
+// below positions.size() and the positions are finite. Unless a function says otherwise, the
+// triangles form one connected, consistently oriented manifold with a border. Zero-area triangles,
+// needles and coincident positions are allowed; a triangle with a repeated vertex is not. Results
+// do not depend on the unit of length. Subtract a common origin first, so that no digits are lost
+// to a large offset.
 struct LocalMesh {
   PositionView positions;
   std::span<const std::array<std::uint32_t, 3>> triangles;
-  // Linear density wanted a triangle (uv length per surface length, > 0), 1 a triangle; empty: 1
-  // everywhere. Distortion is measured against the surface scaled by it.
+  // Desired linear density of each triangle (uv length per surface length, > 0), one per triangle;
+  // empty: 1 everywhere. Distortion is measured relative to the surface scaled by it.
   std::span<const double> density = {};
-  // The other side of each half-edge (3 t + k runs from corner k of triangle t to corner k + 1),
-  // 0xffffffff at the border; empty: to be found by the vertices' numbers.
+  // The opposite of each half-edge (3 t + k runs from corner k of triangle t to corner k + 1),
+  // 0xffffffff on the boundary. Empty: opposites are found from the vertices' numbers.
   std::span<const std::uint32_t> opposite = {};
 };
 

@@ -9,13 +9,14 @@
 namespace atlas::param {
 namespace {
 
-constexpr std::size_t direct_limit = 300;  // rows that the envelope solver takes at the bottom
-// Half a cotangent up to which single precision will do: rounding then moves no corner of a sliver
-// by more than 3e-5 of its altitude.
+constexpr std::size_t direct_limit = 300;  // rows that the envelope solver handles on the coarsest
+                                           // level
+// Up to this value of half a cotangent single precision is enough: rounding then moves no corner of
+// a sliver by more than 3e-5 of its altitude.
 constexpr double most_single_coupling = 500;
 
-// The two coordinates as one register. Such vectors are elementary to every 64-bit processor, and
-// their arithmetic is that of their elements.
+// Both coordinates in one register. Every 64-bit processor has such vectors, and their arithmetic
+// is elementwise.
 template <class Real>
 struct Pairs {
   using type __attribute__((vector_size(2 * sizeof(Real)), may_alias)) = Real;
@@ -36,7 +37,7 @@ glm::dvec2 in_double(const glm::vec<2, Real>& v) {
   return glm::dvec2(v);
 }
 
-// load -= factor K x, both halves at once from the lower one.
+// load -= factor K x, with both halves of K computed from the lower one.
 template <class Real, class Vector>
 void subtract_product(const GraphLaplacian<Real>& matrix, const Vector& x, double factor,
                       std::span<glm::dvec2> load) {
@@ -124,9 +125,8 @@ void MultigridLevels<Real>::solve_coarsest(Level& level) {
   }
 }
 
-// A forward Gauss-Seidel sweep that starts from 0 meets nothing but zeros above the diagonal, and
-// leaves nothing but that part in the residual. Row i knows its own part of it as soon as it has
-// its x.
+// A forward Gauss-Seidel sweep that starts from 0 meets only zeros above the diagonal, and leaves
+// only that part in the residual. Row i's part of it is known as soon as its x is.
 template <class Real>
 void MultigridLevels<Real>::smooth_down(std::size_t depth) {
   Level& level = levels_[depth];
@@ -167,7 +167,7 @@ void MultigridLevels<Real>::restrict_rest(std::size_t depth) {
   }
 }
 
-// The next level's solution comes up, and a backward sweep makes the cycle symmetric.
+// Adds the next level's solution. A backward sweep then makes the cycle symmetric.
 template <class Real>
 void MultigridLevels<Real>::smooth_up(std::size_t depth) {
   Level& level = levels_[depth];
@@ -188,7 +188,7 @@ void MultigridLevels<Real>::smooth_up(std::size_t depth) {
     rest[i] = load[i];
   }
   for (std::uint32_t i = n; i-- > 0;) {
-    // What lies below the diagonal waits for nothing; what lies above is in rest by now.
+    // The part below the diagonal is available at once; the part above is in `rest` by now.
     Pair<Real> sum{};
     for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
       sum += entries[k].value * x[entries[k].column];
@@ -200,7 +200,7 @@ void MultigridLevels<Real>::smooth_up(std::size_t depth) {
   }
 }
 
-// x of the level becomes an approximate solution for its load.
+// Makes x of the level an approximate solution for its load.
 template <class Real>
 void MultigridLevels<Real>::cycle(std::size_t depth) {
   if (depth == depth_) return solve_coarsest(levels_[depth]);
@@ -210,8 +210,8 @@ void MultigridLevels<Real>::cycle(std::size_t depth) {
   smooth_up(depth);
 }
 
-// The next direction, its product with the matrix in the finest level's rest; returns the inner
-// product of the two.
+// Computes the next direction, and its product with the matrix in the finest level's rest. Returns
+// the inner product of both.
 template <class Real>
 double MultigridLevels<Real>::step_direction(Real beta) {
   Level& level = levels_[0];
@@ -249,8 +249,9 @@ void MultigridLevels<Real>::advance(Real alpha) {
   }
 }
 
-// Iterates correction_, from 0, for the finest level's load; both are given in 1 / unit. `again`:
-// rounding lets the energy fall no further, and the residual must be found anew.
+// Iterates correction_, from 0, for the finest level's load; both are in multiples of `unit`.
+// Returns `again` if rounding keeps the energy from falling further, and the residual must be
+// computed again.
 template <class Real>
 auto MultigridLevels<Real>::correct(const MultigridAccuracy& accuracy, double unit,
                                     Progress& progress) -> Outcome {
@@ -270,7 +271,8 @@ auto MultigridLevels<Real>::correct(const MultigridAccuracy& accuracy, double un
     if (now <= least) return Outcome::again;
     if (progress.steps_left-- == 0) return Outcome::failed;
     const double beta = step > 0 ? now / rho : 0;
-    // The error falls at a steady rate; when this step will do, the next need not confirm it.
+    // The error falls at a steady rate. If this step will be enough, no further cycle need confirm
+    // it.
     const bool last = step > 0 && now * beta <= progress.goal;
     rho = now;
     const double energy = unit * unit * step_direction(static_cast<Real>(beta));
@@ -295,7 +297,7 @@ bool MultigridLevels<Real>::solve(const MultigridAccuracy& accuracy, std::span<g
       if (!std::isfinite(r.x + r.y)) return false;
       largest = std::max({largest, std::abs(r.x), std::abs(r.y)});
     }
-    // Brought to the size of 1 by a power of two, so that no digit is lost in single precision.
+    // Scaled to about 1 by a power of two, so that no digit is lost in single precision.
     const int exponent = largest > 0 ? std::ilogb(largest) : 0;
     const double unit = std::ldexp(1.0, exponent), shrink = std::ldexp(1.0, -exponent);
     for (std::size_t i = 0; i < n; ++i) level.load[i] = glm::vec<2, Real>(load[i] * shrink);

@@ -1,5 +1,5 @@
 // Internal: conjugate gradients preconditioned by algebraic multigrid, for charts whose
-// factorisation would take longer.
+// factorization would take longer.
 #pragma once
 
 #include <cstdint>
@@ -13,22 +13,22 @@
 namespace atlas::param {
 
 struct MultigridAccuracy {
-  double energy;        // stop when the error's energy, estimated, is at most this,
-  double share;         // ... or at most this part of what it was,
-  int most_iterations;  // ... or after so many
+  double energy;        // stop when the estimated energy of the error is at most this,
+  double share;         // ... or at most this share of its initial value,
+  int most_iterations;  // ... or after this many iterations
 };
 
-// A V-cycle of symmetric Gauss-Seidel sweeps over the levels that Coarsening makes preconditions
-// the iteration. Set-up and a step cost O(n). The constant vector is in the matrix's kernel, so
-// solutions are determined up to a shift. Of each matrix the lower half is kept. A correction is
-// iterated in Real; what is still to be corrected is found in double.
+// Conjugate gradients, preconditioned by a V-cycle of symmetric Gauss-Seidel sweeps over the levels
+// that Coarsening makes. Set-up and a step take O(n). The constants are in the matrix's kernel, so
+// solutions are determined up to a translation. Of each large matrix only the lower half is kept.
+// Corrections are iterated in Real; residuals between corrections are computed in double.
 template <class Real>
 class MultigridLevels {
  public:
-  // Takes the matrix. False: the levels do not shrink.
+  // Takes over the matrix. Returns false if the levels do not shrink.
   bool build(GraphLaplacian<Real>& matrix);
-  // Improves x for the right-hand side `load`, and leaves in `load` what x lacks of it. False: not
-  // accurate enough after the iterations.
+  // Improves x for the right-hand side `load`, and leaves the residual in `load`. Returns false if
+  // x is not accurate enough after the iterations.
   bool solve(const MultigridAccuracy& accuracy, std::span<glm::dvec2> load, std::span<Vec2d> x);
 
  private:
@@ -38,7 +38,7 @@ class MultigridLevels {
     GraphRows<Real> prolongation;
     std::vector<Real> inverse_diagonal;
     Vector x, load;
-    Vector rest;  // what a sweep leaves; scratch
+    Vector rest;  // residual of a sweep; scratch
   };
   struct Progress {
     double goal;
@@ -60,18 +60,19 @@ class MultigridLevels {
   void solve_coarsest(Level& level);
 
   std::vector<Level> levels_;
-  std::size_t depth_ = 0;  // levels in use; the last one is solved directly
+  std::size_t depth_ = 0;  // levels above the coarsest one, which is solved directly
   Coarsening<Real> coarsening_;
   EnvelopeSolver coarsest_;
   Vector direction_, correction_;
   std::vector<glm::dvec2> coarse_load_, coarse_x_;
 };
 
-// Single precision halves what is moved through memory. Where slivers would suffer from rounded
-// couplings, double precision is taken.
+// Single precision halves the memory traffic. Double precision is used where rounded couplings
+// would harm slivers.
 class MultigridSolver {
  public:
-  // False: the levels do not shrink (many vertices without strong neighbours, or of huge valence).
+  // Returns false if the levels do not shrink (many vertices without strong neighbours, or with
+  // very high valence).
   bool build(const Elements& elements, const HalfEdges& half_edges, std::size_t vertices);
   bool solve(const MultigridAccuracy& accuracy, std::span<glm::dvec2> load, std::span<Vec2d> x);
 

@@ -8,12 +8,15 @@
 namespace atlas::param {
 namespace {
 
-constexpr double kPiece = 0.5;           // of the clearance
-constexpr double kMostPieces = 1 << 15;  // of a half-edge: twice the texels along the largest page
-// Pieces are found by their middles, this much of the clearance at most from what is nearest.
+constexpr double kPiece = 0.5;  // share of the clearance
+// Pieces per half-edge: twice the texels along the largest page.
+constexpr double kMostPieces = 1 << 15;
+// Pieces are found by their midpoints, which are at most this multiple of the clearance from the
+// nearest point.
 constexpr double kCell = 1 + kPiece;
 constexpr std::uint64_t kRow = std::uint64_t{1} << 32;
-constexpr double kTouching = 0.1;  // of the clearance: what is nearer has no direction of its own
+// At a smaller share of the clearance the direction between two places is not reliable.
+constexpr double kTouching = 0.1;
 
 glm::dvec2 nearest(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
   const glm::dvec2 d = b - a;
@@ -48,7 +51,7 @@ glm::dvec2 NearParts::at(std::uint32_t half_edge, double along, std::span<const 
   return a + along * (to_glm(uvs[half_edges_.to(half_edge)]) - a);
 }
 
-// To the right of the border's direction, away from its triangles.
+// Returns the unit vector to the right of the border's direction, away from its triangles.
 glm::dvec2 NearParts::outward(std::uint32_t half_edge, std::span<const Vec2d> uvs) const {
   const glm::dvec2 d = at(half_edge, 1, uvs) - at(half_edge, 0, uvs);
   return unit({d.y, -d.x});
@@ -60,7 +63,7 @@ bool NearParts::far(const Piece& a, const Piece& b) const {
   return glm::dot(d, d) > apart * apart;
 }
 
-// Cells of a row follow one another, and above each is the one kRow later.
+// Cells of a row have consecutive keys; the cell above one has a key larger by kRow.
 void NearParts::sort_into_cells(std::span<const Vec2d> uvs) {
   middles_.clear();
   glm::dvec2 low(0);

@@ -1,5 +1,5 @@
-// Internal: where a border comes near itself in uv, between places that are far apart on the
-// surface.
+// Internal: finds where a border comes close to itself in uv, between places that are far apart on
+// the surface.
 #pragma once
 
 #include <cstdint>
@@ -12,35 +12,35 @@
 
 namespace atlas::param {
 
-// Texels mix what lies less than two of them apart. Along the banks of a cut, and around a corner
-// of the border, that is the same place of the surface or one beside it; here only what is farther
-// from each other on the surface than kFar times the clearance counts.
+// Texels mix places less than two texels apart. Along the banks of a cut, and around a corner of
+// the border, these are the same place on the surface or adjacent ones. Here only places count that
+// are farther from each other on the surface than kFar times the clearance.
 class NearParts {
  public:
   static constexpr double kFar = 3;
 
-  // A place on the border that is too near to another one.
+  // A place on the border that is too close to another one.
   struct Place {
     std::uint32_t half_edge;
-    double along;     // where on it, 0 to 1
-    double length;    // of border that the place stands for
-    double short_by;  // of the clearance
+    double along;     // position on it, 0 to 1
+    double length;    // length of border that the place represents
+    double short_by;  // how much is missing to the clearance
     glm::dvec2 away;  // unit vector away from the other place
   };
 
-  // `clearance` in units of uv, > 0. What is passed must outlive it.
+  // `clearance` is in uv units, > 0. All arguments but uvs must outlive the object.
   NearParts(const LocalMesh& mesh, const HalfEdges& half_edges, const HalfEdges::Border& border,
             double clearance, std::span<const Vec2d> uvs);
 
-  // In the order of the border; the border must not cross itself. O(n log n).
+  // Returns the places in the order of the border, which must not cross itself. O(n log n).
   std::span<const Place> find(std::span<const Vec2d> uvs);
 
  private:
-  // The border in pieces of at most half the clearance.
+  // A part of the border, at most half the clearance long.
   struct Piece {
     std::uint32_t half_edge;
-    double begin, end;  // on it, 0 to 1
-    glm::dvec3 point;   // of its middle, on the surface
+    double begin, end;  // range on it, 0 to 1
+    glm::dvec3 point;   // its midpoint on the surface
     double density;
   };
   struct Cell {
@@ -60,8 +60,8 @@ class NearParts {
   const HalfEdges& half_edges_;
   double clearance_, cell_;
   std::vector<Piece> pieces_;
-  std::vector<glm::dvec2> middles_;  // 1 a piece
-  std::vector<std::uint64_t> keys_;  // likewise: of its cell
+  std::vector<glm::dvec2> middles_;  // one per piece
+  std::vector<std::uint64_t> keys_;  // one per piece: the key of its cell
   std::vector<Cell> cells_;          // sorted
   std::vector<Place> places_;
 };

@@ -14,7 +14,8 @@ namespace {
 
 using param::cross;
 
-// Keeps the points that may be on the hull: those not inside the quadrilateral of the extreme ones.
+// Keeps the points that may be on the hull: those not inside the quadrilateral of the extreme
+// points.
 std::vector<Vec2d> hull_candidates(std::span<const Vec2d> points) {
   std::array<Vec2d, 4> corner = {points[0], points[0], points[0], points[0]};
   for (const Vec2d p : points) {
@@ -35,8 +36,8 @@ std::vector<Vec2d> hull_candidates(std::span<const Vec2d> points) {
   return kept;
 }
 
-// Counter-clockwise convex hull without collinear points, from the lexicographically lowest one
-// (Andrew 1979, monotone chain).
+// Returns the convex hull, counter-clockwise and without collinear points, starting at the
+// lexicographically lowest point (Andrew 1979, monotone chain).
 std::vector<Vec2d> convex_hull(std::span<const Vec2d> points) {
   std::vector<Vec2d> p = hull_candidates(points);
   std::sort(p.begin(), p.end(),
@@ -58,7 +59,8 @@ std::vector<Vec2d> convex_hull(std::span<const Vec2d> points) {
   return hull;
 }
 
-// What the hull is made of: where edges on the border begin, each corner of a loop once.
+// Returns the points that the hull is made of: the starts of border edges, each corner of a loop
+// once.
 std::vector<Vec2d> outline(std::span<const Vec2d> uvs,
                            std::span<const std::array<std::uint32_t, 2>> edges) {
   if (edges.empty()) return {uvs.begin(), uvs.end()};
@@ -75,7 +77,7 @@ struct Box {
   double area() const { return width() * height(); }
 };
 
-// Box of the points in the frame whose first axis is the unit vector d.
+// Returns the box of the points in the frame whose first axis is the unit vector d.
 Box box_along(std::span<const Vec2d> points, glm::dvec2 d) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   Box box{{inf, inf}, {-inf, -inf}};
@@ -87,8 +89,8 @@ Box box_along(std::span<const Vec2d> points, glm::dvec2 d) {
   return box;
 }
 
-// Direction of the hull edge whose box is the smallest. The calipers move their other three
-// contacts forward only, so that all edges together cost O(hull).
+// Returns the direction of the hull edge with the smallest box. The calipers move their three other
+// contacts only forward, so all edges together take O(hull).
 glm::dvec2 smallest_box(const std::vector<Vec2d>& hull) {
   const std::size_t n = hull.size();
   if (n < 2) return {1, 0};
@@ -114,10 +116,10 @@ glm::dvec2 smallest_box(const std::vector<Vec2d>& hull) {
   return best;
 }
 
-// Quadrupled angles make directions modulo 90 degrees add up.
+// At four times the angle, directions that are equal modulo 90 degrees add up.
 struct BorderEdge {
   double length;
-  glm::dvec2 quadrupled;  // unit vector at four times its angle
+  glm::dvec2 quadrupled;  // unit vector at four times the edge's angle
 };
 
 std::vector<BorderEdge> border_directions(std::span<const Vec2d> uvs,
@@ -135,8 +137,8 @@ std::vector<BorderEdge> border_directions(std::span<const Vec2d> uvs,
   return out;
 }
 
-// The mean direction, modulo 90 degrees, of the edges near `angle`, taken over narrower and
-// narrower windows, so that long straight borders outweigh those that are merely nearly so.
+// Returns the mean direction, modulo 90 degrees, of the edges near `angle`, over narrower and
+// narrower windows, so that long straight borders outweigh those that are only nearly straight.
 glm::dvec2 refine_direction(std::span<const BorderEdge> edges, double angle) {
   for (const double window : {0.5, 0.1, 0.02}) {
     const double limit = std::cos(4 * window * std::numbers::pi / 180);
@@ -153,9 +155,10 @@ glm::dvec2 refine_direction(std::span<const BorderEdge> edges, double angle) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-// The direction modulo 90 degrees that carries most border length, if it carries enough.
+// Finds the direction, modulo 90 degrees, with the largest border length. Returns false if that is
+// too little.
 bool straight_direction(std::span<const BorderEdge> edges, glm::dvec2* out) {
-  constexpr int bins = 180;  // half a degree each
+  constexpr int bins = 180;  // of half a degree each
   std::array<double, bins> length{};
   double total = 0;
   for (const BorderEdge& e : edges) {
@@ -197,7 +200,7 @@ Orientation orient_for_packing(std::span<Vec2d> uvs,
     box = box_along(hull, d);
   }
   for (Vec2d& p : uvs) {
-    // Rounding may put a point a digit outside of the box, hence the max.
+    // Rounding may put a point slightly outside of the box, hence the max.
     p = {std::max(d.x * p.x + d.y * p.y - box.low.x, 0.0),
          std::max(d.x * p.y - d.y * p.x - box.low.y, 0.0)};
   }

@@ -22,8 +22,8 @@ void scale_to_surface_area(ParamResult& r) {
   r.distortion.uv_area *= scale * scale;
 }
 
-// Flipped triangles first, then those at crossings, then those beyond the bound, worst first.
-// `stretch`, 1 a triangle, is asked for only where r is not within the bound.
+// Lists flipped triangles first, then those at crossings, then those beyond the bound, worst first.
+// `stretch`, one per triangle, is only used if r is not within the bound.
 void list_offenders(const LocalMesh& mesh, ParamResult& r, const Injectivity& check,
                     std::span<const double> stretch, double bound) {
   r.crossings = check.crossings;
@@ -48,7 +48,7 @@ void list_offenders(const LocalMesh& mesh, ParamResult& r, const Injectivity& ch
   for (const std::uint32_t t : beyond) add(t);
 }
 
-// Measures, scales and judges r.uvs; `known` is their distortion if that was measured before.
+// Measures, scales and judges r.uvs. `known` is their distortion, if it has been measured.
 void finish(const LocalMesh& mesh, const ParamOptions& options, ParamResult& r,
             const Distortion* known = nullptr) {
   std::vector<double> stretch;
@@ -61,16 +61,17 @@ void finish(const LocalMesh& mesh, const ParamOptions& options, ParamResult& r,
   scale_to_surface_area(r);
   const Injectivity check = check_injectivity(mesh, r.uvs);
   r.injective = check.injective;
-  // The L2 stretch, too: what lies beyond 99.9 % of the area may be a sliver drawn out without end.
+  // The L2 stretch as well: beyond 99.9 % of the area there may be a sliver that is stretched
+  // without limit.
   r.within_bound =
       std::max(r.distortion.stretch_999, r.distortion.stretch_l2) <= options.max_stretch;
   list_offenders(mesh, r, check, stretch, options.max_stretch);
 }
 
-// The distortion of the projection along axis, which goes to uvs, if it is within the bound.
+// Writes the projection along `axis` to uvs. Returns its distortion if that is within the bound.
 std::optional<Distortion> project(const LocalMesh& mesh, Vec3d axis, double bound,
                                   std::span<Vec2d> uvs) {
-  // At the area-preserving scale every triangle's 1 / s2 is the root of this product.
+  // At the area-preserving scale the square root of this product is 1 / s2 of every triangle.
   if (mesh.density.empty() && !(bound * bound * projected_share(mesh, axis) >= 1)) return {};
   project_planar(mesh, axis, uvs);
   const Distortion d = measure_distortion(mesh, uvs);
@@ -78,37 +79,40 @@ std::optional<Distortion> project(const LocalMesh& mesh, Vec3d axis, double boun
   return d;
 }
 
-// What stretches as little in the mean can be unrolled, and few more steps do it exactly.
+// A chart with at most this mean stretch can be unrolled, and a few more steps do it exactly.
 constexpr double kUnrolls = 1 + 1e-4, kUnrolled = 1 + 2e-4;
 constexpr double kUnrollsExactly = 1 + 2e-6, kUnrolledStretch = 1.001;
 constexpr int kUnrollingRounds = 4;
-// So many times L2 stretch less 1 the energy must have fallen in the last step: of 60 charts of
-// more than 400 triangles where it fell by less none came down by more than a fifth in a round.
+// In the last step, the energy must have fallen by more than this multiple of the L2 stretch minus
+// 1. Of 60 charts of more than 400 triangles where it fell by less, none came down by more than a
+// fifth in a round.
 constexpr double kUnrollingFall = 3;
 
-// The goal of relaxing single places, as part of the bound: rounding may not cross it.
+// The goal when single places are relaxed, as a share of the bound, so that rounding does not cross
+// it.
 constexpr double kWithin = 1 - 1e-4;
 
-// On rough surfaces what crosses itself in more places is hardly ever drawn apart, and closing the
-// cuts that cross is cheaper: with 16, eight noisy meshes took a quarter more time for as many
-// charts. Parts that were joined are left apart then: 50 of 17100 charts were spared by trying on,
-// in a quarter of the time that joining takes (208 meshes).
+// On rough surfaces, borders that cross themselves in more places can hardly ever be moved apart,
+// and closing the cuts that cross is cheaper: with 16, eight noisy meshes took a quarter more time
+// for as many charts. Charts on trial as one (`joined`) are then given up: further attempts would
+// have removed 50 of 17 100 charts, for a quarter of the time that joining takes (208 meshes).
 constexpr std::size_t kMostSeparable = 2;
 
-// Flat parts that stretch so many times the bound when they are joined never came within it
+// Flat parts that stretch by this multiple of the bound when they are joined never came within it
 // (measured).
 constexpr double kPoorJoint = 1.75;
 
-// With a bound this tight, what is still folded once flips were turned never came within it (25
+// With a bound this tight, charts still folded after flips were removed never came within it (25
 // charts of 170 meshes).
 constexpr double kTightBound = 1.5;
-// Nor, of 1340 charts with flips in 240 meshes, did any of 31 that began with more, by number and
-// as a share of the triangles.
+// The most flips, as a number and as 1 / kMostFlipsShare of the triangles, that are removed with
+// such a bound. Of 1340 charts with flips in 240 meshes, 31 began with more, and none of them came
+// within it.
 constexpr std::size_t kMostFlips = 150, kMostFlipsShare = 100;
 
-// Squeezing hardly ever helps a chart that stretches by so many times the bound: 22 of 420 came
-// within it (measured on 60 meshes; nearer to it, 800 of 1190). The smaller the chart, the more may
-// try: it is cheap.
+// Charts that stretch by more than this multiple of the bound are not squeezed: only 22 of 420 of
+// them came within it (measured on 60 meshes; of those closer to it, 800 of 1190). Smaller charts
+// may try from farther away, since that is cheap.
 double most_squeezed(std::size_t triangles) {
   return triangles < 50     ? std::numeric_limits<double>::infinity()
          : triangles < 300  ? 4
@@ -116,8 +120,8 @@ double most_squeezed(std::size_t triangles) {
                             : 1.6;
 }
 
-// Of 55 charts of so many triangles whose border crossed itself in more places before they were
-// squeezed none was saved (180 meshes).
+// Measured on 180 meshes: of 55 charts of at least kManyTriangles whose border crossed itself in
+// more places before they were squeezed, none could be saved.
 constexpr std::size_t kMostCrossings = 12, kManyTriangles = 3000;
 
 bool entangled(const LocalMesh& mesh, const ParamOptions& options, std::span<const Vec2d> uvs) {
@@ -127,7 +131,7 @@ bool entangled(const LocalMesh& mesh, const ParamOptions& options, std::span<con
   return check_injectivity(mesh, uvs, {.max_crossings = most + 1}).crossings.size() > most;
 }
 
-// Books what passed since the last call on a phase.
+// Adds the time since the last call to a phase.
 class PhaseClock {
  public:
   PhaseClock(std::size_t triangles, ParamWorkspace& workspace) : timing_(workspace.timing) {
@@ -151,15 +155,15 @@ std::size_t count_flips(const LocalMesh& mesh, std::span<const Vec2d> uvs) {
   return std::size_t(std::count_if(mesh.triangles.begin(), mesh.triangles.end(), flipped));
 }
 
-// What every part of a descent works with.
+// The data that all parts of a descent share.
 struct Descent {
   const LocalMesh& mesh;
   const ParamOptions& options;
   param::ArapSolver& solver;
-  bool laid = false;  // the uvs hold what to go on from
+  bool laid = false;  // r.uvs contain what to start from
 };
 
-// Returns what ArapSolver::iterate() does.
+// Computes the first uvs. Returns what ArapSolver::iterate() does, or infinity.
 double first_uvs(const Descent& d, std::span<Vec2d> uvs) {
   const auto& [mesh, options, solver, laid] = d;
   double fall = std::numeric_limits<double>::infinity();
@@ -184,7 +188,8 @@ void turn_flips(const Descent& d, ParamResult& r) {
   r.unflipped += static_cast<int>(solver.remove_flips(r.uvs).turned);
 }
 
-// More steps for what may unroll, as long as they change much: the last one by `fall`.
+// Takes more steps with what may unroll, as long as they change much: the last one changed by
+// `fall`.
 Distortion unroll(const Descent& d, double fall, Distortion now, std::span<Vec2d> uvs) {
   for (int round = 0; round < kUnrollingRounds; ++round) {
     if (fall <= kUnrollingFall * (now.stretch_l2 - 1)) break;
@@ -194,8 +199,8 @@ Distortion unroll(const Descent& d, double fall, Distortion now, std::span<Vec2d
   return now;
 }
 
-// For rough surfaces. What is stretched too much in more than a few places is squeezed as a whole
-// before: cuts would change nothing there.
+// For rough surfaces. If the stretch is too high in more than a few places, first squeezes the
+// whole, since cuts would not help there.
 void lower_tail(const Descent& d, ParamResult& r) {
   const auto& [mesh, options, solver, laid] = d;
   const double bound = kWithin * options.max_stretch;
@@ -206,8 +211,8 @@ void lower_tail(const Descent& d, ParamResult& r) {
   if (count_flips(mesh, r.uvs) == 0) solver.lower_tail(bound, r.uvs);
 }
 
-// What is within the bound but for borders that cross. Where it fails, the result names the
-// crossings that stayed.
+// Moves crossing borders apart, if all else is within the bound. If that fails, the result lists
+// the crossings that remained.
 void draw_apart(const Descent& d, ParamResult& r) {
   const auto& [mesh, options, solver, laid] = d;
   if (r.injective || !r.within_bound || r.distortion.flips > 0) return;
@@ -233,15 +238,15 @@ void draw_apart(const Descent& d, ParamResult& r) {
   if (!r.within_bound && options.leave_crossings) r = std::move(crossed);
 }
 
-// From the solver's rotations to a finished result: flips out, then the stretch down; squeezing may
-// flip anew, hence the second round.
+// From the solver's rotations to a finished result: removes flips, then lowers the stretch.
+// Squeezing may flip triangles again, hence the second round.
 void descend(const Descent& d, PhaseClock& clock, ParamResult& r) {
   const auto& [mesh, options, solver, laid] = d;
   const bool joining = !options.joined.empty();
   const double fall = first_uvs(d, r.uvs);
   double aim =
       options.aimed_stretch > 0 && !options.local ? options.aimed_stretch : options.max_stretch;
-  std::optional<Distortion> last;  // of r.uvs as they are
+  std::optional<Distortion> last;  // of the current r.uvs
   for (int round = 0; round < 2; ++round) {
     clock.book(&Phase::solve);
     turn_flips(d, r);
@@ -249,7 +254,7 @@ void descend(const Descent& d, PhaseClock& clock, ParamResult& r) {
     if (options.squeeze_iterations <= 0 || round > 0) break;
     Distortion now = measure_distortion(mesh, r.uvs);
     if (now.flips > 0 && options.max_stretch <= kTightBound) break;
-    // Not with the rotations of what was folded.
+    // Not if flips were removed, since the rotations are those of the folded state.
     if (!options.resume && r.unflipped == 0 && now.stretch_l2 < kUnrolls &&
         now.stretch_999 > kUnrolled && now.stretch_999 <= aim) {
       now = unroll(d, fall, now, r.uvs);
@@ -280,11 +285,11 @@ void descend(const Descent& d, PhaseClock& clock, ParamResult& r) {
   clock.book(&Phase::overlaps);
 }
 
-// What fits so well, by the shortest edge at a vertex, needs no solving.
+// Parts that fit this well, relative to the shortest edge at a vertex, need no solving.
 constexpr double kExactFit = 1e-3;
 
-// Each vertex in the mean of its corners in options.joined. Returns the farthest any of them is
-// from there, by the shorter edge of its triangle.
+// Places each vertex at the mean of its corners in corner_uvs. Returns the largest distance of a
+// corner from there, relative to the shorter edge of its triangle.
 double lay_side_by_side(const LocalMesh& mesh, std::span<const Vec2d> corner_uvs,
                         std::span<Vec2d> uvs) {
   std::vector<glm::dvec3> sum(uvs.size(), glm::dvec3(0));
@@ -358,7 +363,7 @@ ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
   descend({mesh, options, solver}, clock, r);
   const bool folded = r.unflipped > 0 || r.distortion.flips > 0;
   if (r.injective || unfolded || !folded) return r;
-  // A bad start leaves folds that no descent undoes well; unfolding triangle by triangle has none.
+  // A bad start leaves folds that no descent removes well; unfolding triangle by triangle has none.
   ParamResult other;
   other.uvs.resize(mesh.positions.size());
   solver.start(IsometricStart{});

@@ -1,5 +1,5 @@
-// One chart in, its flat coordinates out: injective and within the stretch bound, or a list of the
-// triangles that stand in the way.
+// Flattens one chart: the result is injective and within the stretch bound, or lists the triangles
+// that prevent this.
 #pragma once
 
 #include <cstdint>
@@ -15,67 +15,71 @@
 namespace atlas {
 
 enum class ParamMethod {
-  automatic,  // planar where that is within the bound, else isometric
+  automatic,  // planar if that is within the bound, else isometric
   planar,     // projection only
   isometric,  // never the projection
 };
 
 struct ParamOptions {
   double max_stretch = 1.25;  // bound on Distortion::stretch_999; > 1
-  // The projection is taken when its own stretch_999 is at most this; <= max_stretch. 0:
-  // max_stretch.
+  // The projection is used if its own stretch_999 is at most this; <= max_stretch. 0: max_stretch.
   double max_planar_stretch = 0;
   ParamMethod method = ParamMethod::automatic;
   Vec3d axis = {};              // of the projection; (0, 0, 0): the mean normal
   IsometricStart start = {};    // what the isometric solver starts from
-  int iterations = 3;           // local/global steps before the bound is looked at
-  int squeeze_iterations = 12;  // reweighted steps at most, when the aim is missed:
-  double aimed_stretch = 0;     // <= max_stretch; 0: max_stretch. Missed where it is dear in L2.
-  // The scale at which squeezing measures: the area-preserving one, as in the bound, or whichever
-  // suits best, so that the ratio of the largest to the smallest singular value falls.
+  int iterations = 3;           // local/global steps before the bound is checked
+  int squeeze_iterations = 12;  // most reweighted steps, if the aim is missed
+  // The aim of squeezing, <= max_stretch; 0: max_stretch. Not reached if that costs much L2
+  // stretch.
+  double aimed_stretch = 0;
+  // The scale at which squeezing measures. false: the area-preserving one, as for the bound. true:
+  // the one that suits best, so that the ratio of the largest to the smallest singular value falls.
   bool squeeze_ratio = false;
-  // Within max_stretch is good enough, and what is beyond lies in small places, which alone are
-  // relaxed; squeezes only where those are many. For rough surfaces.
+  // Being within max_stretch is enough, and only the small places beyond it are relaxed. The whole
+  // is squeezed only if there are many of them. For rough surfaces.
   bool local = false;
-  // No face is flat: each may give way as far as it helps when the whole is squeezed.
+  // No face is flat: when the whole is squeezed, each triangle may give way as far as it helps.
   bool rough = false;
-  // Borders that come apart only beyond max_stretch are left as they cross within it, for whoever
-  // can take triangles away there.
+  // Borders that can be moved apart only beyond max_stretch are left crossing within it, for
+  // callers that can remove triangles there.
   bool leave_crossings = false;
-  // start.uvs, nearly all of their triangles positive, are kept but where others are turned over or
-  // the stretch exceeds the bound: for a flattening that failed, after a cut, or one that grew.
+  // Keeps start.uvs, of which nearly all triangles must be positive, except near triangles that are
+  // flipped or stretched beyond the bound. For a flattening that failed, after a cut, or for a
+  // chart that grew.
   bool resume = false;
-  // 3 a triangle, or empty: parts of the mesh that are flat already, placed next to each other, to
-  // go on from instead of `start`. What they stretch is kept, so far as they fit together.
+  // Three per triangle, or empty: uvs of parts of the mesh that are flat already and placed side by
+  // side. They replace `start`. Their stretch is kept as far as they fit each other.
   std::span<const Vec2d> joined = {};
-  // One of these parts is small: places beyond the bound are relaxed around it, nothing is solved.
+  // One of these parts is small: places beyond the bound are relaxed around it, and nothing is
+  // solved.
   bool patch = false;
-  // Triangles are kept at least this thick (uv units) where possible, so that rounding of what is
-  // written leaves them positive.
+  // Triangles keep at least this altitude (uv units) where possible, so that they stay positive
+  // when the result is rounded for output.
   double min_altitude = 0;
 };
 
 struct ParamResult {
-  std::vector<Vec2d> uvs;  // 1 a vertex; uv area = surface area (times density squared), positive
+  // One per vertex. The uv area is the surface area (times density squared), and positive.
+  std::vector<Vec2d> uvs;
   Distortion distortion;
-  bool planar = false;        // the projection was enough
-  bool injective = false;     // certain: exact predicates (injectivity.h)
+  bool planar = false;        // the projection was good enough
+  bool injective = false;     // certain, by exact predicates (injectivity.h)
   bool within_bound = false;  // stretch_999 and stretch_l2 <= max_stretch
-  // Empty if both hold. Else triangles in the way, worst first: flipped ones, those at border
-  // crossings, those beyond the bound. Cutting the chart near or between them helps.
+  // Empty if both hold. Otherwise the triangles that prevent it, worst first: flipped ones, those
+  // at border crossings, those beyond the bound. It helps to cut the chart near or between them.
   std::vector<std::uint32_t> offenders;
-  // Pairs of border edges that overlap; cutting between the two of a pair helps.
+  // Pairs of border edges that overlap. It helps to cut between the two edges of a pair.
   std::vector<BorderCrossing> crossings;
-  // What was left of them when drawing the borders apart had come furthest (edges of the same
-  // border, perhaps other pairs); empty if that was not tried, which it is only within the bound.
+  // The crossings that remained when moving the borders apart had come furthest (edges of the same
+  // border, perhaps other pairs). Empty if that was not tried; it is only tried within the bound.
   std::vector<BorderCrossing> stubborn_crossings;
-  int unflipped = 0;  // triangles that the barrier step turned right
+  int unflipped = 0;  // flipped triangles that the barrier step corrected
 };
 
-// Precondition: the mesh is a disc (see local_mesh.h); other sets are flattened too, if connected,
-// but may then need cuts that no offender points at. Deterministic; reentrant with one workspace a
-// thread. A single triangle always succeeds with stretch 1; a triangle without area is given
-// min_altitude.
+// Flattens a chart. The mesh must be a disc (see local_mesh.h); other connected meshes are
+// flattened too, but may need cuts that no offender indicates. Deterministic; reentrant with one
+// workspace per thread. A single triangle always succeeds with stretch 1; a triangle without area
+// gets min_altitude.
 ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
                          ParamWorkspace& workspace);
 

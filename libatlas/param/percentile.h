@@ -15,11 +15,11 @@ inline bool larger(const WeightedValue& a, const WeightedValue& b) {
   return a.value != b.value ? a.value > b.value : a.weight > b.weight;
 }
 
-// The smallest value that all but `budget` of the weight does not exceed; 0 for none. Reorders
-// values.
+// Returns the smallest value such that the weight of larger values is at most `budget`; 0 if there
+// are no values. Reorders the values.
 inline double value_above_budget(std::vector<WeightedValue>& values, double budget) {
   if (values.empty()) return 0;
-  // Only the upper tail need be sorted; take a longer one until it holds the budget.
+  // Only the upper tail has to be sorted. Takes a longer one until it exceeds the budget.
   for (std::size_t tail = values.size() / 256 + 16;; tail *= 4) {
     tail = std::min(tail, values.size());
     const auto end = values.begin() + static_cast<std::ptrdiff_t>(tail);
@@ -37,15 +37,15 @@ inline double value_above_budget(std::vector<WeightedValue>& values, double budg
   }
 }
 
-// The same for a budget of `share` of their weight.
+// The same for a budget of `share` of the total weight.
 inline double upper_percentile(std::vector<WeightedValue>& values, double share) {
   double total = 0;
   for (const WeightedValue& v : values) total += v.weight;
   return value_above_budget(values, share * total);
 }
 
-// Of values that come one by one, those that value_above_budget() may need for any budget up to
-// `budget`: a small part of the values of a large chart.
+// Collects, from values that arrive one by one, those that value_above_budget() may need for
+// budgets up to `budget`: a small part of the values of a large chart.
 class UpperTail {
  public:
   explicit UpperTail(double budget) : budget_(budget) {}

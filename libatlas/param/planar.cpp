@@ -11,15 +11,15 @@
 namespace atlas {
 namespace {
 
-// Twice the area times the unit normal.
+// Returns twice the area times the unit normal.
 glm::dvec3 area_vector(const LocalMesh& mesh, std::size_t t) {
   const auto& tri = mesh.triangles[t];
   const glm::dvec3 p = to_glm(mesh.positions[tri[0]]);
   return glm::cross(to_glm(mesh.positions[tri[1]]) - p, to_glm(mesh.positions[tri[2]]) - p);
 }
 
-// Two unit vectors that make a right-handed frame with the unit vector n; the first is made from
-// the coordinate axis farthest from n.
+// Returns two unit vectors that form a right-handed frame with the unit vector n. The first is made
+// from the coordinate axis farthest from n.
 std::array<glm::dvec3, 2> frame_of(const glm::dvec3& n) {
   const glm::dvec3 a = glm::abs(n);
   glm::dvec3 other(0);

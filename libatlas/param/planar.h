@@ -1,4 +1,5 @@
-// Orthogonal projection: the cheapest flattening, with a bound known beforehand.
+// Orthogonal projection: the cheapest flattening, with a bound on the stretch that is known
+// beforehand.
 #pragma once
 
 #include <span>
@@ -9,23 +10,23 @@
 
 namespace atlas {
 
-// Projects along `axis` (any length > 0) onto the plane it is normal to; right-handed seen from the
-// axis's tip, so a triangle whose normal lies within 90 degrees of the axis keeps its orientation.
-// uvs.size() == positions.size(); any set of triangles.
-// A triangle whose normal makes the angle a with the axis has s1 = 1 / cos a and s2 = 1 exactly: at
-// the projection's own scale the stretch is at most 1 / cos(cone angle). The area-preserving scale
-// lies between, hence at that scale max(s1, 1/s2) stays within 1 / cos(cone angle), too.
+// Projects along `axis` (any length > 0) onto the plane perpendicular to it, right-handed seen from
+// the axis's tip: a triangle whose normal is within 90 degrees of the axis keeps its orientation.
+// uvs.size() must be positions.size(); any set of triangles will do. A triangle whose normal makes
+// the angle a with the axis has exactly s1 = 1 / cos a and s2 = 1, so at the projection's own scale
+// the stretch is at most 1 / cos(cone angle). The area-preserving scale lies between, so max(s1,
+// 1/s2) stays within 1 / cos(cone angle) at that scale, too.
 void project_planar(const LocalMesh& mesh, Vec3d axis, std::span<Vec2d> uvs);
 
-// The largest 1 / cos a over the triangles that have an area, infinite if one stands at 90 degrees
-// or more to the axis: the bound of the sentence above.
+// Returns the largest 1 / cos a over the triangles with area, which is the bound above; infinite if
+// the normal of any is at 90 degrees or more to the axis.
 double planar_stretch_bound(const LocalMesh& mesh, Vec3d axis);
 
-// The signed area of that projection, as part of the surface's: at the area-preserving scale the
-// stretch of some triangle is at least the root of its inverse. 1 where there is no area.
+// Returns the signed area of that projection as a share of the surface area; 1 if there is no area.
+// At the area-preserving scale some triangle has at least the stretch 1 / sqrt(share).
 double projected_share(const LocalMesh& mesh, Vec3d axis);
 
-// The unit direction of the area-weighted mean normal; (0, 0, 1) where that vanishes.
+// Returns the unit direction of the area-weighted mean normal; (0, 0, 1) if that vanishes.
 Vec3d mean_normal(const LocalMesh& mesh);
 
 }  // namespace atlas

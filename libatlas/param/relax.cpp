@@ -10,20 +10,20 @@ namespace atlas::param {
 
 namespace {
 
-// A spared triangle's symmetric Dirichlet energy, in this unit, gives way to what exceeds a bound
-// of 1.25 by far, but does not let the triangle vanish.
+// The weight of a spared triangle's symmetric Dirichlet energy. It is small against the energy of
+// triangles far beyond a bound of 1.25, but keeps the triangle from vanishing.
 constexpr double spared_weight = 1e5;
 constexpr VertexStar::Kind spared_energy{VertexEnergy::symmetric_dirichlet};
 
-// A spring's stiffness. A vertex among equilateral triangles answers the symmetric Dirichlet energy
-// with about 28 near an isometry, so targets win.
+// The stiffness of a spring. For a vertex among equilateral triangles near an isometry, the
+// symmetric Dirichlet energy has a stiffness of about 28, so springs prevail.
 constexpr double spring_stiffness = 200;
 
-// While some vertices are drawn, others follow where a neighbour moves by more than this part of a
-// mean triangle's size: a fifth to a third off the time. With thrice as much, charts end beyond
-// their bound (measured).
+// When springs pull some vertices, others move only after a neighbour has moved by more than this
+// share of a mean triangle's size: this saves a fifth to a third of the time. With three times as
+// much, charts end beyond their bound (measured).
 constexpr double still_step = 0.003;
-// The same while the largest stretch is lowered: a quarter off the time of noisy meshes.
+// The same while the largest stretch is lowered: this saves a quarter of the time of noisy meshes.
 constexpr double still_tail_step = 0.01;
 
 }  // namespace
@@ -81,7 +81,7 @@ void Relaxer::load_vertex(std::uint32_t v) {
     Element room;
     const Element& e = elements_.at(t, room);
     const std::array uvs{to_glm(uvs_[e.v[0]]), to_glm(uvs_[e.v[1]]), to_glm(uvs_[e.v[2]])};
-    const double weight = e.area() + 0.1 * mean_area_;  // slivers have a say
+    const double weight = e.area() + 0.1 * mean_area_;  // the second term gives slivers some weight
     if (sparing && spared_[t]) {
       spared_star_.add(e, k, uvs, weight * spared_weight);
     } else {
@@ -99,7 +99,7 @@ double Relaxer::energy(glm::dvec2 m) const {
   return sum;
 }
 
-// Newton's step with the Hessian's eigenvalues made positive.
+// Newton's step, with the Hessian's eigenvalues made positive.
 glm::dvec2 Relaxer::newton_step() const {
   VertexStar::Derivatives s = star_.derivatives({energy_, epsilon_});
   if (!spared_star_.empty()) {
@@ -168,10 +168,11 @@ double Relaxer::least_determinant() const {
   return least;
 }
 
-// Whether every triangle of the neighbourhood ends up clearly positive.
+// Untangles the neighbourhood. Returns whether all of its triangles are positive in the end.
 bool Relaxer::untangle(int sweeps) {
   constexpr double clearly = 1e-3;
-  // What came right at last had become this much better by half-time (measured).
+  // Neighbourhoods that became positive in the end had improved by this share at half-time
+  // (measured).
   constexpr double half_time_gain = 0.05;
   double start = 0;
   energy_ = VertexEnergy::untangling;
@@ -230,8 +231,8 @@ void Relaxer::measure_again(std::span<const std::uint32_t> triangles) {
   }
 }
 
-// Fills `out` with the triangles stretched beyond `from`; returns what 99.9 % of the area stays
-// within, or `from` where that is less.
+// Fills `out` with the triangles stretched beyond `from`. Returns the stretch that 99.9 % of the
+// area stays within, or `from` if that is larger.
 double Relaxer::find_tail(double from, std::vector<std::uint32_t>& out) {
   double area = 0, uv_area = 0;
   for (const Sizes& s : sizes_) {
@@ -273,7 +274,7 @@ void Relaxer::spare_worst(double bound, std::vector<std::uint32_t> tail) {
 Tail Relaxer::lower_tail(ElementView elements, const CornerLists& corners, double bound,
                          std::span<Vec2d> uvs) {
   constexpr int rounds = 12, rings = 2, sweeps = 4, patience = 2;
-  // What is nearly as bad moves as well. A longer tail is no matter of a few places.
+  // Triangles that are nearly as bad move as well. A longer tail is not limited to a few places.
   constexpr double near = 0.97, longest_share = 0.05, least_gain = 1e-3;
   begin(elements, corners, uvs);
   awake_.assign(uvs.size(), 1);
@@ -309,11 +310,13 @@ Tail Relaxer::lower_tail(ElementView elements, const CornerLists& corners, doubl
 Relaxer::Outcome Relaxer::remove_flips(ElementView elements, const CornerLists& corners, bool holed,
                                        std::span<Vec2d> uvs) {
   constexpr int largest_ring = 16, untangling_sweeps = 40, smoothing_sweeps = 8;
-  // With more flips left after the first rings, by number or as a share of the triangles, a chart
-  // is folded as a whole, which wider rings never undid (measured on charts of some thousands).
+  // If more flips are left after the first rings, as a number and as a share of the triangles, the
+  // chart is folded as a whole, which wider rings never undid (measured on charts of some
+  // thousands).
   constexpr std::size_t most_left = 64, most_left_share = 200;
-  // Around holes, what a ring leaves of them as a share: what folds there is seldom undone, and by
-  // wider rings 2 of 46 times that one had left more (measured on 130 meshes).
+  // In a mesh with holes, the search ends if a ring leaves more than this share of the flips: folds
+  // there are seldom undone, and wider rings undid 2 of the 46 where one had left more (measured on
+  // 130 meshes).
   constexpr double least_undone = 0.8;
   begin(elements, corners, uvs);
   std::vector<std::uint32_t> seeds;
@@ -329,7 +332,7 @@ Relaxer::Outcome Relaxer::remove_flips(ElementView elements, const CornerLists& 
   for (int rings = 1; rings <= largest_ring && !seeds.empty(); rings *= 2) {
     gather(seeds, rings);
     if (untangle(untangling_sweeps)) {
-      // Spread what the few triangles took over more of them.
+      // Spreads the distortion of the few triangles over more of them.
       gather(seeds, rings + 3);
       energy_ = VertexEnergy::symmetric_dirichlet;
       for (int i = 0; i < smoothing_sweeps; ++i) sweep();

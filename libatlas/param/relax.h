@@ -1,4 +1,4 @@
-// Internal: vertex-by-vertex descent that turns flipped triangles right and keeps the others so.
+// Internal: vertex-by-vertex descent that corrects flipped triangles without flipping others.
 #pragma once
 
 #include <cstdint>
@@ -11,28 +11,28 @@
 
 namespace atlas::param {
 
-// Of what a bound on the stretch exceeds.
+// The outcome for the stretch that exceeds a bound.
 enum class Tail : std::uint8_t {
-  lowered,  // it is within now
+  lowered,  // it is within the bound now
   left,
-  wide  // too many triangles to be lowered one place after the other
+  wide  // too many triangles to be lowered place by place
 };
 
-// Newton steps on one vertex at a time over small neighbourhoods, three energies of each triangle's
-// map J with d = det J and f = |J|²:
-// - untangling, (f + 1 + d²) / chi(d, e) with chi = (d + sqrt(d² + e²)) / 2, finite for flipped
-//   triangles; e follows the worst d down (Garanzha, Kaporin, Kudryavtseva, Protais, Ray and
-//   Sokolov 2021, "Foldover-free maps in 50 lines of code");
-// - once all are positive, the symmetric Dirichlet energy f (1 + 1 / d²), a barrier against new
-//   flips, each step limited by the roots of the triangles' determinants (Smith and Schaefer 2015,
-//   "Bijective parameterization with free boundaries");
-// - a high power mean of the singular values and their inverses, which the worst triangles rule;
-//   the same barrier.
+// Newton steps on one vertex at a time, over small neighbourhoods. There are three energies of each
+// triangle's map J, with d = det J and f = |J|²:
+// - untangling, (f + 1 + d²) / chi(d, e) with chi = (d + sqrt(d² + e²)) / 2, which is finite for
+//   flipped triangles; e follows the worst d down (Garanzha, Kaporin, Kudryavtseva, Protais, Ray
+//   and Sokolov 2021, "Foldover-free maps in 50 lines of code");
+// - once all triangles are positive, the symmetric Dirichlet energy f (1 + 1 / d²), a barrier
+//   against new flips, where each step is limited by the roots of the triangles' determinants
+//   (Smith and Schaefer 2015, "Bijective parameterization with free boundaries");
+// - a high power mean of the singular values and their inverses, which the worst triangles
+//   dominate, with the same barrier.
 class Relaxer {
  public:
   struct Outcome {
-    std::uint32_t turned = 0;  // triangles turned right
-    std::uint32_t left = 0;    // still not positive
+    std::uint32_t turned = 0;  // flipped triangles that were corrected
+    std::uint32_t left = 0;    // triangles that are still not positive
   };
 
   struct Spring {
@@ -40,26 +40,27 @@ class Relaxer {
     Vec2d target;
   };
 
-  // Moves the vertices near non-positive triangles and no others. Starts with a ring about them,
-  // and doubles the rings while that is not enough, less patiently where the mesh has holes.
+  // Corrects flipped triangles by moving the vertices near them, and no others. Starts with one
+  // ring around them, and doubles the rings as long as that is not enough; gives up earlier if the
+  // mesh has holes.
   Outcome remove_flips(ElementView elements, const CornerLists& corners, bool holed,
                        std::span<Vec2d> uvs);
 
   struct Pull {
     std::span<const Spring> springs;
     int rings, sweeps;
-    double least_gain = 0;  // ends with a sweep that gains less than this share of the best one's
+    double least_gain = 0;  // ends after a sweep that gains less than this share of the best
   };
 
-  // Draws vertices towards targets while the neighbourhood, so many rings wide, follows by the
-  // symmetric Dirichlet energy; nothing flips. All triangles must be positive.
+  // Pulls vertices towards targets while the neighbourhood, `rings` wide, follows by the symmetric
+  // Dirichlet energy; nothing flips. All triangles must be positive.
   void pull(ElementView elements, const CornerLists& corners, const Pull& pull,
             std::span<Vec2d> uvs);
 
   // Lowers max(s1, 1/s2) of the uv-to-surface map's singular values, at the area-preserving scale,
-  // where it exceeds `bound`, until 99.9 % of the area stays within it; of the rest, most of 0.1 %
-  // is spared. Only what lies near those triangles moves. All triangles must be positive and stay
-  // so. uvs become the best state seen.
+  // where it exceeds `bound`, until 99.9 % of the area is within it; most of the other 0.1 % is
+  // spared. Only vertices near those triangles move. All triangles must be positive, and stay so.
+  // uvs become the best state found.
   Tail lower_tail(ElementView elements, const CornerLists& corners, double bound,
                   std::span<Vec2d> uvs);
 
@@ -81,26 +82,27 @@ class Relaxer {
   ElementView elements_;
   const CornerLists* corners_ = nullptr;
   std::span<Vec2d> uvs_;
-  std::vector<std::uint32_t> vertices_,
-      triangles_;  // the neighbourhood: what moves, what is touched
+  // The neighbourhood: the vertices that move and the triangles that change.
+  std::vector<std::uint32_t> vertices_, triangles_;
   std::vector<std::uint8_t> vertex_in_, triangle_in_;
-  std::vector<std::uint8_t> awake_;  // 1 a vertex: a sweep is to look at it; empty: at all
-  VertexStar star_,
-      spared_star_;  // of the vertex that is moving; triangles with an energy of their own
-  std::vector<std::uint32_t> spring_of_;  // 1 a vertex: 1 + its place in springs_, or 0
+  // One per vertex: whether a sweep has to visit it. Empty: it visits all.
+  std::vector<std::uint8_t> awake_;
+  // Triangles around the moving vertex; spared ones have an energy of their own.
+  VertexStar star_, spared_star_;
+  std::vector<std::uint32_t> spring_of_;  // one per vertex: 1 + its index in springs_, or 0
   std::span<const Spring> springs_;
-  const Spring* spring_ = nullptr;  // of the vertex that is moving
-  glm::dvec2 offset_{0};            // from the spring's target to where that vertex is
+  const Spring* spring_ = nullptr;  // of the moving vertex
+  glm::dvec2 offset_{0};            // from the spring's target to that vertex
   double mean_area_ = 0;
-  double epsilon_ = 0;  // of untangling
+  double epsilon_ = 0;  // of the untangling energy
   VertexEnergy energy_ = VertexEnergy::symmetric_dirichlet;
-  struct Sizes {  // of a triangle's map, before any scale is taken out
+  struct Sizes {  // of a triangle's map, before any scale is applied
     double area, uv_area, large, inverse_small;
   };
-  std::vector<Sizes> sizes_;     // 1 a triangle, of find_tail()
+  std::vector<Sizes> sizes_;     // one per triangle, for find_tail()
   std::vector<double> stretch_;  // likewise
   std::vector<WeightedValue> ranked_;
-  std::vector<std::uint8_t> spared_;  // 1 a triangle, or empty
+  std::vector<std::uint8_t> spared_;  // one per triangle, or empty
   std::vector<Vec2d> best_;
 };
 

@@ -1,5 +1,5 @@
-// Internal: a triangle laid flat, the shape that a flattening should give it, and the map from
-// there to uv. Include it from .cpp files only.
+// Internal: the rest shape of a triangle, which is the triangle laid flat, as a flattening should
+// map it, and the map from there to uv. Include this from .cpp files only.
 #pragma once
 
 #include <array>
@@ -11,11 +11,11 @@
 
 namespace atlas::param {
 
-// Corners at (0, 0), (length, 0) and (foot, altitude). The base is the longest edge, so the foot
-// lies on it, altitude <= length, and nothing below divides by the short side of a sliver.
+// Corners are at (0, 0), (length, 0) and (foot, altitude). The base is the longest edge, so the
+// foot is on it, altitude <= length, and nothing below divides by the short side of a sliver.
 struct RestShape {
-  std::array<std::uint32_t, 3> v;  // the triangle's vertices, turned so that the base comes first
-  std::uint8_t base = 0;           // which of its corners that is
+  std::array<std::uint32_t, 3> v;  // the triangle's vertices, rotated so that the base comes first
+  std::uint8_t base = 0;           // the corner where the base begins
   double length = 0, foot = 0, altitude = 0;
   double area() const { return 0.5 * length * altitude; }
 };
@@ -45,13 +45,13 @@ inline RestShape rest_shape(const LocalMesh& mesh, std::size_t t) {
   return s;
 }
 
-// The 2x2 matrix of the map from the rest shape to uv; columns are the images of the axes.
+// The 2x2 matrix of the map from the rest shape to uv. Its columns are the images of the axes.
 struct Jacobian {
   glm::dvec2 x, y;
   double det() const { return x.x * y.y - x.y * y.x; }
 };
 
-// Singular values, large >= |small|; small carries the determinant's sign.
+// Singular values, large >= |small|; small has the determinant's sign.
 struct SingularValues {
   double large, small;
 };
@@ -68,7 +68,8 @@ inline SingularValues singular_values(const Jacobian& j) {
           large > 0 ? j.det() / large : 0};  // the quotient keeps digits that a difference loses
 }
 
-// (cosine, sine) of the rotation nearest to j in the Frobenius norm; (1, 0) where none is nearest.
+// Returns (cosine, sine) of the rotation nearest to j in the Frobenius norm; (1, 0) if there is
+// none.
 inline glm::dvec2 nearest_rotation(const Jacobian& j) {
   const double c = j.x.x + j.y.y, s = j.x.y - j.y.x;
   const double norm = std::sqrt(c * c + s * s);

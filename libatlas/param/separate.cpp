@@ -10,39 +10,41 @@
 namespace atlas::param {
 namespace {
 
-// Charts of so many vertices are fine: what is a little by their width is many edges. Arcs may be
-// longer there and rings that give way more by as much as charts are wider, and rings so many times
-// as many as overlaps are deep in edges. With two rings, overlaps of 1.6 edges in charts of 10^6
-// vertices did not come apart. In coarser charts wider rings took 4 to 11 % more of all time for as
-// many charts (527 meshes).
+// Charts with more vertices than fine_chart are fine: an overlap that is small relative to their
+// width is many edges deep. In fine charts arcs may be longer, and more rings give way: in
+// proportion to the chart's width in edges, or rings_a_depth times the depth of the overlaps in
+// edges. With two rings, overlaps of 1.6 edges in charts of 10^6 vertices did not come apart. In
+// coarser charts more rings took 4 to 11 % more of all time for as many charts (527 meshes).
 constexpr double fine_chart = 20000, rings_a_depth = 10;
 constexpr int least_rings = 2, most_rings = 40;
 constexpr std::size_t most_crossings = 256;
-// More crossings than these that do not get fewer in so many rounds hardly ever came apart; a few
-// often did after many rounds (measured on cuts under scan noise).
+// More crossings than few_crossings that do not get fewer in a number of rounds could hardly ever
+// be removed; a few crossings often could after many rounds (measured on cuts under scan noise).
 constexpr std::size_t few_crossings = 4;
 constexpr int patience = 3, patience_with_many = 2;
-// What came to so many crossings more than at its best came apart twice in 400 times, and took a
-// sixth of all the time (measured).
+// Borders with this many crossings more than at their best came apart twice in 400 times, and took
+// a sixth of all time (measured).
 constexpr std::size_t most_growth = 5;
-// After so many rounds, the least that the springs of the recent ones pull, all together, must be
-// below this share of the least before. Of 3000 overlaps in 170 meshes this ended 250 of 490 that
-// would have stayed, 55 of 1590 that would not, and the second way 300 and 28 of 134.
+// After `rounds` rounds, the smallest total length of springs in the `recent` last rounds must be
+// below `share` of the smallest one before. Of 3000 overlaps in 170 meshes this ended 250 of 490
+// that would have stayed and 55 of 1590 that would have come apart; in the second way, 300 and 28
+// of 134.
 struct Stall {
   std::size_t rounds, recent;
   double share;
 };
 constexpr Stall first_way{6, 4, 0.9}, second_way{4, 3, 0.7};
-// Overlaps of which a spring at first reaches further than this share of the chart's width hardly
-// ever come apart within the bound: leaving them alone spared 88 meshes a tenth of the time, with
-// as many charts.
+// Overlaps where a first spring is longer than this share of the chart's width hardly ever come
+// apart within the bound. Leaving them alone spared 88 meshes a tenth of the time, with as many
+// charts.
 constexpr double longest_pull = 0.1;
-constexpr double usual_gain = 0.05;   // of a sweep, with which settling ends
-constexpr double gap_of_edge = 0.01;  // the gap left, as part of an edge's length
-// Of what a vertex is drawn by already, that it is drawn further at least if that did not do.
+constexpr double usual_gain = 0.05;   // of a sweep; settling ends with less
+constexpr double gap_of_edge = 0.01;  // the gap to be left, as a share of an edge's length
+// If a spring did not reach its goal, it is lengthened by at least this share of its present
+// length.
 constexpr double drawn_on = 0.5;
 
-// The unit vector to the right of the border's direction, away from its triangles.
+// Returns the unit vector to the right of the border's direction, away from its triangles.
 glm::dvec2 outward(glm::dvec2 a, glm::dvec2 b) {
   const glm::dvec2 d = b - a;
   const double l = glm::length(d);
@@ -55,8 +57,8 @@ bool simple(const Injectivity& border) {
 
 }  // namespace
 
-// Measured against all the stretches but the vertex's own: where several crossings make one
-// overlap, its other side is put together from them.
+// Measures the depth against all candidates except the vertex's own arc: where several crossings
+// make one overlap, its other side consists of several arcs.
 Separator::Depth Separator::depth(std::uint32_t vertex, bool may_be_within, int most_role,
                                   std::span<const Vec2d> uvs) const {
   const std::uint32_t before = half_edges_.from(previous_[vertex]);
@@ -86,7 +88,7 @@ Separator::Depth Separator::depth(std::uint32_t vertex, bool may_be_within, int 
     const bool inside = may_be_within && glm::dot(p - q, out) < 0;
     result.margin = gap_of_edge * std::sqrt(squared);
     result.outside = inside ? -distance : distance;
-    // The shortest way, unless it is too short to have a direction.
+    // The shortest way, unless it is too short to have a reliable direction.
     result.out = distance > 0.1 * result.margin ? (inside ? q - p : p - q) / distance : out;
   }
   return result;
@@ -112,7 +114,7 @@ void Separator::draw(std::uint32_t vertex, const Depth& depth, double share,
       from_glm(at + held + depth.out * std::max(pull, drawn_on * so_far));
 }
 
-// Draws the stretch's vertices out of the candidates' triangles.
+// Adds springs that pull the arc's vertices out of the candidates' triangles.
 void Separator::draw_out(const Arc& arc, double share, std::span<const Vec2d> uvs) {
   const auto draw_vertex = [&](std::uint32_t v, bool may_be_within) {
     Depth d = depth(v, may_be_within, across_ ? free_edge : crossing_edge, uvs);
@@ -123,14 +125,14 @@ void Separator::draw_out(const Arc& arc, double share, std::span<const Vec2d> uv
   for (const std::uint32_t v : arc.beside) draw_vertex(v, false);
 }
 
-// Triangles stay positive all the time, so the border alone decides.
+// Triangles stay positive all the time, so only the border has to be checked.
 Injectivity Separator::check(std::span<const Vec2d> uvs) const {
   Injectivity out;
   check_border(half_edges_, border_, uvs, {.max_crossings = most_crossings}, out);
   return out;
 }
 
-// Lets the distortion of what moved spread, with the border held where it is now.
+// Spreads the distortion around the moved vertices, with these held where they are.
 void Separator::settle(Relaxer& relaxer, double least_gain, std::span<Vec2d> uvs) {
   constexpr int rings = 10, sweeps = 30;
   saved_.assign(uvs.begin(), uvs.end());
@@ -141,14 +143,14 @@ void Separator::settle(Relaxer& relaxer, double least_gain, std::span<Vec2d> uvs
   if (!simple(check(uvs))) std::copy(saved_.begin(), saved_.end(), uvs.begin());
 }
 
-// Of the springs at hand.
+// Returns the length of the longest current spring.
 double Separator::longest() const {
   double longest = 0;
   for (const Relaxer::Spring& s : springs_) longest = std::max(longest, pulled_[s.vertex]);
   return longest;
 }
 
-// How many rings give way to the springs at hand.
+// Returns how many rings give way to the current springs.
 int Separator::rings(std::span<const Vec2d> uvs) const {
   if (!fine()) return least_rings;
   double edges = 0;
@@ -160,10 +162,11 @@ int Separator::rings(std::span<const Vec2d> uvs) const {
   return std::max(int(least_rings * fineness_), int(std::lround(rings_a_depth * deep / edges)));
 }
 
-// Springs give way to what they draw: one that starts where the last one ended, and not where that
-// left its vertex, gets there in the end. What needs no further drawing would fall back without. In
-// coarser charts that spared 13 of 31402 charts (527 meshes), and stretched what came apart so much
-// that 3 more of 81 ramps with a tooth over their beginning were divided.
+// Springs yield to the vertices that they pull. A spring therefore starts where the last one ended,
+// not where that left its vertex, and so gets there in the end. Vertices that need no further pull
+// are held; they would fall back otherwise. In coarser charts holding spared 13 of 31 402 charts
+// (527 meshes), but stretched what came apart so much that 3 more of 81 ramps with a tooth over
+// their beginning were divided.
 void Separator::hold_moved() {
   for (const Relaxer::Spring& s : springs_) {
     if (targets_.insert_or_assign(s.vertex, s.target).second) moved_.push_back(s.vertex);
@@ -174,7 +177,7 @@ void Separator::hold_moved() {
   }
 }
 
-// Whether the springs at hand are too long to begin with; or, as those of the rounds before, hardly
+// Whether the current springs are too long to begin with, or those of recent rounds are hardly
 // shorter than earlier ones.
 bool Separator::stalled() {
   double pull = 0;
@@ -190,7 +193,7 @@ bool Separator::stalled() {
 }
 
 bool Separator::draw_until_simple(Relaxer& relaxer, std::span<Vec2d> uvs) {
-  // More sweeps a round, or wider rings, let the rest of intricate borders drift into new
+  // More sweeps per round, or more rings, let the rest of intricate borders drift into new
   // crossings: with five rings seventeen meshes took a tenth more time for a hundredth more charts.
   constexpr int rounds = 16, sweeps_a_ring = 6;
   std::size_t fewest = most_crossings;
@@ -232,9 +235,9 @@ bool Separator::separate(const LocalMesh& mesh, ElementView elements, const Corn
   const std::vector<double> areas = loop_areas(uvs);
   width_ = std::sqrt(std::max(0.0, std::accumulate(areas.begin(), areas.end(), 0.0)));
   deep_ = false;
-  // The nearest way out first. Near the corner of a band that lies on another that way leads across
-  // the edge that crosses the band, along the overlap and not out of it; so it is closed the second
-  // time.
+  // The first way takes the nearest way out. Near the corner of a band that lies on another, this
+  // leads across the edge that crosses the band, along the overlap and not out of it. The second
+  // way therefore excludes such edges.
   for (const bool across : {false, true}) {
     across_ = across;
     if (draw_until_simple(relaxer, uvs)) return true;

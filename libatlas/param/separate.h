@@ -1,4 +1,4 @@
-// Internal: draws borders apart that overlap a little.
+// Internal: Separator, which removes small overlaps between parts of a border.
 #pragma once
 
 #include <span>
@@ -11,38 +11,41 @@
 
 namespace atlas::param {
 
-// Where two stretches of the border cross, each reaches into the other. Their vertices there are
-// drawn out of the other side's triangles, which give way without flipping (Relaxer::pull), and so
-// on until no border crosses. Overlaps longer than a few dozen border vertices, more in fine
-// charts, or deeper than a tenth of the chart's width are left alone: those need a cut.
+// Where the border crosses itself, an arc on each side reaches into the triangles of the other.
+// Springs pull the vertices there out of the other side's triangles, which give way without
+// flipping (Relaxer::pull), and this is repeated until the border does not cross itself. Overlaps
+// that are longer than a few dozen border vertices (more in fine charts), or deeper than a tenth of
+// the chart's width, are left alone: they need a cut.
 class Separator {
  public:
-  // All triangles positive. Returns whether the map is injective afterwards; uvs are as they were
-  // if not.
+  // Removes overlaps; all triangles must be positive. Returns whether the map is injective
+  // afterwards. If not, uvs are unchanged.
   bool separate(const LocalMesh& mesh, ElementView elements, const CornerLists& corners,
                 Relaxer& relaxer, std::span<Vec2d> uvs);
 
-  // After that, if distortion around what moved is too high: lets it spread further.
+  // To be called after that, if distortion around the moved vertices is too high: lets it spread
+  // further.
   void settle_further(Relaxer& relaxer, std::span<Vec2d> uvs) { settle(relaxer, 0, uvs); }
 
-  // Of the last call, if it failed: the crossings when they were fewest.
+  // If the last call failed: the crossings of the round with the fewest.
   std::span<const BorderCrossing> left() const { return left_; }
 
  private:
-  struct Arc {                              // a stretch of border
+  struct Arc {                              // a part of the border between crossings
     std::vector<std::uint32_t> half_edges;  // in order, from crossing to crossing
-    std::vector<std::uint32_t> within;  // its vertices that may lie in the other side's triangles
+    // Its vertices that may lie in the other side's triangles.
+    std::vector<std::uint32_t> within;
     std::vector<std::uint32_t> beside;  // vertices a little beyond its ends
   };
   struct Depth {
-    double outside;  // signed distance from the other side's triangles; negative: within them
-    double margin;   // what it should be
+    double outside;  // signed distance from the other side's triangles; negative: inside
+    double margin;   // the distance that is needed
     glm::dvec2 out;  // unit vector that leads there
   };
   enum Role : std::uint8_t { free_edge, crossing_edge, own_edge };
-  struct Meeting {  // of one border half-edge with another
+  struct Meeting {  // the point where one border half-edge meets another
     std::uint32_t half_edge;
-    double along;  // where on it, 0 to 1
+    double along;  // position on it, 0 to 1
     bool operator<(const Meeting& other) const {
       return half_edge != other.half_edge ? half_edge < other.half_edge : along < other.along;
     }
@@ -79,21 +82,22 @@ class Separator {
   const CornerLists* corners_ = nullptr;
   HalfEdges half_edges_;
   HalfEdges::Border border_;
-  std::vector<std::uint32_t> next_, previous_;  // 1 a border vertex: the half-edge from and to it
-  std::vector<Meeting> meetings_;               // sorted
-  std::vector<Arc> arcs_;                       // two a crossing, one after the other
-  std::vector<std::uint32_t> candidates_;       // half-edges of all of them, sorted
-  std::vector<std::uint8_t> role_;              // 1 a half-edge, for the stretch that is looked at
-  bool across_ = false;                         // not by way of the edges that cross the stretch
+  // One per border vertex: the half-edge from it, and the one to it.
+  std::vector<std::uint32_t> next_, previous_;
+  std::vector<Meeting> meetings_;          // sorted
+  std::vector<Arc> arcs_;                  // two per crossing, one after the other
+  std::vector<std::uint32_t> candidates_;  // half-edges of all arcs, sorted
+  std::vector<std::uint8_t> role_;         // one per half-edge, for the current arc
+  bool across_ = false;  // the second way, which excludes edges that cross the arc
   std::vector<Relaxer::Spring> springs_;
-  double width_ = 0;                  // square root of what the triangles cover
-  double fineness_ = 1;               // how many times as wide as fine_chart it is in edges, or 1
-  bool deep_ = false;                 // the overlap, so that nothing was tried
-  std::vector<double> pulled_;        // 1 a vertex: how far its spring reaches
-  std::vector<double> pulls_;         // 1 a round: how far all springs reach together
-  std::vector<std::uint32_t> place_;  // 1 a vertex: 1 + its spring's place, or 0
+  double width_ = 0;                  // square root of the area of all triangles
+  double fineness_ = 1;               // width in edges, relative to that of fine_chart, or 1
+  bool deep_ = false;                 // the overlap is too deep, so nothing was tried
+  std::vector<double> pulled_;        // one per vertex: the length of its spring
+  std::vector<double> pulls_;         // one per round: the total length of all springs
+  std::vector<std::uint32_t> place_;  // one per vertex: 1 + its spring's index, or 0
   std::vector<std::uint32_t> moved_;  // vertices that had a spring, each once
-  std::unordered_map<std::uint32_t, Vec2d> targets_;  // of their last ones
+  std::unordered_map<std::uint32_t, Vec2d> targets_;  // of their last springs
   std::vector<Vec2d> saved_;
   std::vector<BorderCrossing> left_;
 };

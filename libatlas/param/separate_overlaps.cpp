@@ -1,4 +1,4 @@
-// What overlaps: stretches of border between crossings.
+// Finds what overlaps: the arcs of the border between crossings.
 #include <algorithm>
 #include <cmath>
 
@@ -7,12 +7,11 @@
 namespace atlas::param {
 namespace {
 
-constexpr std::size_t longest_arc = 64;  // vertices
-constexpr std::size_t most_candidates =
-    2000;                          // half-edges; beyond it is no little overlap any more
-constexpr int extra_vertices = 2;  // looked after beyond the ends of an overlap
+constexpr std::size_t longest_arc = 64;        // vertices
+constexpr std::size_t most_candidates = 2000;  // half-edges; with more the overlap is not small
+constexpr int extra_vertices = 2;  // vertices beyond each end of an overlap, checked as well
 
-// Where, from 0 to 1 along ab, the line cd meets it.
+// Returns where on ab, from 0 to 1, the line cd meets it.
 double meeting_place(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
   const double from = cross(d - c, a - c), to = cross(d - c, b - c);
   if (from == to) return 0.5;
@@ -47,7 +46,8 @@ void Separator::widen(Arc& arc, std::uint32_t first, std::uint32_t last) const {
   }
 }
 
-// The angle that the triangles at a vertex fill in uv; beyond a full turn if they overlap there.
+// Returns the angle that the triangles at a vertex fill in uv, which exceeds a full turn if they
+// overlap.
 double Separator::corner_angle(std::uint32_t vertex, std::span<const Vec2d> uvs) const {
   double sum = 0;
   for (std::uint32_t i = corners_->first[vertex]; i < corners_->first[vertex + 1]; ++i) {
@@ -60,8 +60,8 @@ double Separator::corner_angle(std::uint32_t vertex, std::span<const Vec2d> uvs)
   return sum;
 }
 
-// A stretch that returns to the very crossing it came from goes round the end of a slit, where the
-// border turns back: keep the bank that it begins with, up to there.
+// An arc that returns to the crossing that it came from goes around the end of a slit, where the
+// border turns back. Keeps only the bank that it begins with, up to that end.
 void Separator::keep_one_bank(Arc& arc, std::span<const Vec2d> uvs) const {
   std::size_t end = 0;
   double widest = 0;
@@ -75,8 +75,8 @@ void Separator::keep_one_bank(Arc& arc, std::span<const Vec2d> uvs) const {
   arc.half_edges.resize(end + 1);
 }
 
-// The stretch of border that goes through half_edge, where it crosses `other`, into the triangles
-// there, up to its next crossing.
+// Finds the arc that leads from half_edge, where it crosses `other`, into the triangles there, up
+// to its next crossing. Returns false if it is too long.
 bool Separator::reach(std::uint32_t half_edge, std::uint32_t other, std::span<const Vec2d> uvs,
                       Arc& out) {
   const auto from = [&](std::uint32_t h) { return to_glm(uvs[half_edges_.from(h)]); };
@@ -109,7 +109,7 @@ bool Separator::reach(std::uint32_t half_edge, std::uint32_t other, std::span<co
   return true;
 }
 
-// Marks, for one stretch, its own half-edges and those that cross them.
+// Marks, for one arc, its own half-edges and those that cross them.
 void Separator::mark(const Arc& arc, std::span<const BorderCrossing> crossings, bool set) {
   for (const std::uint32_t h : arc.half_edges) role_[h] = set ? own_edge : free_edge;
   for (const BorderCrossing& c : crossings) {
@@ -124,7 +124,8 @@ void Separator::mark(const Arc& arc, std::span<const BorderCrossing> crossings, 
   }
 }
 
-// What each loop of the border goes around, counter-clockwise; together what the triangles cover.
+// Returns the area that each boundary loop encloses, counter-clockwise. The sum is the triangles'
+// area.
 std::vector<double> Separator::loop_areas(std::span<const Vec2d> uvs) const {
   std::vector<double> area(border_.loop_start.size() - 1, 0);
   for (std::size_t l = 0; l < area.size(); ++l) {
@@ -139,7 +140,7 @@ std::vector<double> Separator::loop_areas(std::span<const Vec2d> uvs) const {
   return area;
 }
 
-// Loops that nothing crosses but that turn the wrong way: a hole pulled inside out.
+// Handles loops that nothing crosses but that turn the wrong way: holes that are inside out.
 bool Separator::collect_turned_loops(std::span<const Vec2d> uvs) {
   const std::vector<double> area = loop_areas(uvs);
   const std::size_t loops = area.size();
@@ -187,7 +188,8 @@ bool Separator::collect(std::span<const BorderCrossing> crossings, std::span<con
   if (candidates_.size() > most_candidates) return false;
   for (std::size_t i = 0; i < arcs_.size(); ++i) {
     mark(arcs_[i], crossings, true);
-    // Both sides move half-way; a side that has no vertices within the other cannot.
+    // Both sides move half-way. If one side has no vertices within the other, the other moves all
+    // the way.
     draw_out(arcs_[i], arcs_[i ^ 1].within.empty() ? 1.1 : 0.6, uvs);
     mark(arcs_[i], crossings, false);
   }

@@ -8,7 +8,7 @@
 
 namespace atlas::param {
 
-// Vertex 0 is held at 0 by leaving its row and column out.
+// Vertex 0 is held at 0 by leaving out its row and column.
 struct SparseDirectSolver::Impl {
   Eigen::SparseMatrix<double> matrix;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor;
@@ -33,8 +33,8 @@ bool SparseDirectSolver::factorize(const SymmetricMatrix& matrix, bool same_patt
   impl_->matrix.resize(n, n);
   impl_->matrix.setFromTriplets(triplets.begin(), triplets.end());
   if (!same_pattern) impl_->factor.analyzePattern(impl_->matrix);
-  // Slivers' stiffness can drown what holds them in rounding; a slightly larger diagonal restores
-  // it.
+  // Rounding in the stiffness of slivers can exceed the stiffness that holds them. A slightly
+  // larger diagonal makes the matrix definite again.
   for (const double lift : {0.0, 1e-13, 1e-10, 1e-7}) {
     if (lift > 0) {
       for (int i = 0; i < n; ++i) impl_->matrix.coeffRef(i, i) += lift * matrix.diagonal[i + 1];
@@ -50,9 +50,11 @@ bool SparseDirectSolver::factorize(const SymmetricMatrix& matrix, bool same_patt
   return false;
 }
 
-// Both right-hand sides in one sweep over the factor: Eigen's own solve reads it once for each.
+// Solves for both right-hand sides in one pass over the factor. Eigen's own solve reads it once for
+// each.
 void SparseDirectSolver::solve(std::span<const glm::dvec2> load, std::span<glm::dvec2> x) {
-  const auto& lower = impl_->factor.matrixL().nestedExpression();  // by columns, ones left out
+  const auto& lower = impl_->factor.matrixL().nestedExpression();  // by columns, without the
+                                                                   // diagonal of ones
   const int n = static_cast<int>(lower.cols());
   const int *first = lower.outerIndexPtr(), *row = lower.innerIndexPtr();
   const double *value = lower.valuePtr(), *inverse_pivot = impl_->inverse_pivot.data();

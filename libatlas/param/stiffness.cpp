@@ -11,8 +11,8 @@ namespace {
 
 constexpr double relative_floor = 1e-9;
 
-// The shear that is kept falls by 1 / (1 + much_shear |B|²), B the part of the map that shears: at
-// 1.2 and 1 / 1.2 by a fourth, at 2 and 1/2 by six sevenths.
+// The shear that is kept decreases by 1 / (1 + much_shear |B|²), where B is the shearing part of
+// the map: with singular values 1.2 and 1 / 1.2 by a fourth, with 2 and 1/2 by six sevenths.
 constexpr double much_shear = 10;
 
 Element element_of(const RestShape& s, double min_altitude) {
@@ -29,8 +29,8 @@ void Elements::build(const LocalMesh& mesh, double min_altitude) {
   shapes_.resize(count < large ? 0 : count);
   base_.resize(shapes_.size());
   weights_.clear();
-  // Several zero-length triangles must not make the matrix overflow, hence a floor by the whole's
-  // size.
+  // The floor depends on the whole mesh's size, since several zero-length triangles must not make
+  // the matrix overflow.
   double longest = 0;
   for (std::size_t t = 0; t < whole_.size(); ++t) {
     whole_[t] = element_of(rest_shape(mesh, t), min_altitude);
@@ -43,7 +43,7 @@ void Elements::build(const LocalMesh& mesh, double min_altitude) {
     base_[t] = s.base;
     longest = std::max(longest, s.length);
   }
-  if (!(longest > 0)) longest = 1;  // nothing but points: any size will do
+  if (!(longest > 0)) longest = 1;  // only points: any size will do
   const double speck = std::max(min_altitude, relative_floor * longest);
   const auto widen = [&](auto& e) {
     if (e.length >= speck) return;
@@ -106,7 +106,7 @@ void fill_stiffness(const Each& each, std::size_t count, const CornerLists& corn
   const std::size_t n = corners.first.size() - 1;
   out.diagonal.resize(n);
   out.first.resize(n + 1);
-  // Two for each edge; a disc has as many edges as vertices and triangles together, less one.
+  // Two entries per edge. A disc has one edge less than vertices and triangles together.
   const auto reserve = [&](std::size_t entries) {
     if (entries <= out.column.size()) return;
     out.column.resize(entries);
@@ -157,7 +157,7 @@ void build_stiffness(const Elements& elements, const CornerLists& corners, Symme
 
 namespace {
 
-// Adds what an element with this map, by columns, asks of its vertices.
+// Adds the loads of an element with the given map (by columns) on its vertices.
 ATLAS_INLINE void add_load(const Element& e, const Pair& x, const Pair& y,
                            std::span<glm::dvec2> out) {
   const Pair along = x * double(e.weight), across = y * double(e.weight);
@@ -168,7 +168,7 @@ ATLAS_INLINE void add_load(const Element& e, const Pair& x, const Pair& y,
   }
 }
 
-// Uvs lie where callers have them, which need not be at multiples of 16 bytes.
+// Uvs are where callers store them, which need not be aligned to 16 bytes.
 Pair pair_at(std::span<const Vec2d> uvs, std::uint32_t v) {
   using PairInPlace = double __attribute__((vector_size(16), aligned(8), may_alias));
   return *reinterpret_cast<const PairInPlace*>(&uvs[v]);
@@ -215,7 +215,7 @@ void rotation_load(const Elements& elements, const Rotations& rotations,
 
 namespace {
 
-// Adds the energy of one element; returns the determinant of its map.
+// Adds the energy of one element. Returns the determinant of its map.
 double add_energy(const Element& e, std::span<const Vec2d> uvs, double& energy) {
   const Jacobian j = e.jacobian(to_glm(uvs[e.v[0]]), to_glm(uvs[e.v[1]]), to_glm(uvs[e.v[2]]));
   const glm::dvec2 r = nearest_rotation(j);

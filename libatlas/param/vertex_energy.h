@@ -1,5 +1,5 @@
-// Internal: energies of a triangle's map J, by f = |J|² and d = det J (relax.h says what they are
-// for), and their derivatives; of a double, or of several triangles at once.
+// Internal: energies of a triangle's map J as functions of f = |J|² and d = det J (see relax.h for
+// their uses), and their derivatives; for a double, or for several triangles at once.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "libatlas/core/wide_vectors.h"
 
-// All of this is inlined: how Quads would be handed over does not matter.
+// Everything here is inlined, so how Quads are passed does not matter.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"
 
@@ -17,7 +17,7 @@ namespace atlas::param {
   template <class Real> \
   [[gnu::always_inline]] inline
 
-// Partial derivatives of a triangle's energy by f and d.
+// Partial derivatives of a triangle's energy with respect to f and d.
 template <class Real>
 struct EnergyDerivatives {
   Real f, d, dd, fd, ff{};
@@ -30,7 +30,7 @@ ATLAS_INLINE Quad root_of(const Quad& x) {
   return Quad{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
 }
 
-// `energy` where d is positive, else infinite.
+// Returns `energy` where d is positive, otherwise infinity.
 ATLAS_ENERGY Real where_positive(const Real& d, const Real& energy) {
   const Real infinite = std::numeric_limits<double>::infinity() + Real{};
   return d > 0 ? energy : infinite;
@@ -44,7 +44,7 @@ ATLAS_ENERGY Real untangling(const Real& f, const Real& d, double epsilon) {
 ATLAS_ENERGY EnergyDerivatives<Real> untangling_derivatives(const Real& f, const Real& d,
                                                             double epsilon) {
   const Real root = root_of(d * d + epsilon * epsilon);
-  // For negative d the sum cancels; this form of it does not.
+  // For negative d the sum cancels; the second form does not.
   const Real plain = 0.5 * (d + root), other = 0.5 * epsilon * epsilon / (root - d);
   const Real chi = d > 0 ? plain : other;
   const Real chi1 = chi / root, chi2 = 0.5 * epsilon * epsilon / (root * root * root);
@@ -81,7 +81,7 @@ ATLAS_ENERGY Real high_power(const Real& f, const Real& d) {
 }
 
 ATLAS_ENERGY EnergyDerivatives<Real> high_power_derivatives(const Real& f, const Real& d) {
-  // The sum of q-th powers with its derivatives by f and D = d², the product with those by D.
+  // The sum of q-th powers with its derivatives by f and D = d², and the product with those by D.
   const Real D = d * d;
   Real sum = f, sum_f = 1 + Real{}, sum_D{}, sum_ff{}, sum_fD{}, sum_DD{}, product = D;
   double q = 1;

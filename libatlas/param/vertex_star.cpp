@@ -5,12 +5,12 @@
 
 #include "libatlas/param/vertex_energy.h"
 
-// Quads never leave this file: how they would be handed over does not matter.
+// Quads never leave this file, so how they are passed does not matter.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace atlas::param {
 
-// Each once for processors with wide vectors and once for others.
+// Each kernel exists once for processors with wide vectors and once for others.
 struct VertexStar::Kernels {
   using Groups = std::span<const Terms>;
 
@@ -137,7 +137,8 @@ struct VertexStar::Kernels {
 
 void VertexStar::add(const Element& element, std::uint32_t corner,
                      const std::array<glm::dvec2, 3>& uvs, double weight) {
-  // What fills up the last four: an upright triangle that does not move and weighs nothing.
+  // Fills the unused lanes of the last group: a right-angled triangle that does not move and has no
+  // weight.
   static constexpr Shapes none{{1, 1, 1, 1}, {}, {1, 1, 1, 1}, {}, {1, 1, 1, 1},
                                {},           {}, {1, 1, 1, 1}, {}, {}};
   const std::size_t group = size_ / lanes, lane = size_ % lanes;

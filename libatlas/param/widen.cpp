@@ -15,16 +15,17 @@ using param::NearParts;
 using param::Relaxer;
 
 constexpr int kRounds = 12, kSweeps = 12;
-// Of what is missing to a little more than the clearance, the share that each side moves: springs
-// give way.
+// The share of the missing distance, up to kMore times the clearance, that each side moves. Both
+// together move more than is missing, since springs yield.
 constexpr double kShare = 0.55, kMore = 1.05;
-// A round that leaves more than this of what was missing, or breaks the bound, is followed by one
-// with half its share; not below the least.
+// If a round leaves more than kWorthIt of what was missing, or exceeds the bound, the share of the
+// next one is halved. Rounds end when it is below kLeastShare.
 constexpr double kWorthIt = 0.9, kLeastShare = 0.1;
-// Triangles so far around follow, in clearances; at least, and at most, so many rings of them.
+// Triangles within this distance, in clearances, follow; the least and the most rings of them.
 constexpr double kFollow = 6, kLeastRings = 3, kMostRings = 24;
-constexpr double kWithin = 0.999;  // of the bound, that is aimed at where it is exceeded
-constexpr int kHalvings = 3;       // of a move that goes beyond the bound
+// The goal where the bound is exceeded, as a share of the bound.
+constexpr double kWithin = 0.999;
+constexpr int kHalvings = 3;  // of a move that exceeds the bound
 
 double length_of(const param::HalfEdges::Border& border, const param::HalfEdges& half_edges,
                  std::span<const Vec2d> uvs) {
@@ -88,7 +89,8 @@ class Widener {
   }
 
  private:
-  // Both ends of an edge move so that the place on it does, the nearer one more.
+  // Makes springs. Both ends of an edge move so that the place on it moves as needed, the nearer
+  // one more.
   void collect(std::span<const NearParts::Place> places) {
     springs_.clear();
     longest_.assign(uvs_.size(), 0);
@@ -124,8 +126,9 @@ class Widener {
     return now_.stretch_999 <= bound_;
   }
 
-  // What a few triangles around the places took is spread, first with the border held where it has
-  // come to, then not. What is left of it is taken back. Whether that made the map a valid one.
+  // Spreads the stretch of the few triangles around the moved places beyond the bound, first with
+  // the border held where it is now, then freely. Then takes back moves as far as necessary.
+  // Returns whether the map is valid in the end.
   bool keep_to_bound() {
     constexpr int rings = 10, sweeps = 30;
     constexpr double least_gain = 0.05;
@@ -146,7 +149,7 @@ class Widener {
   const LocalMesh& mesh_;
   const WidenOptions& options_;
   std::span<Vec2d> uvs_;
-  std::vector<Vec2d> before_;  // of the round
+  std::vector<Vec2d> before_;  // at the start of the round
   Distortion now_;
   double bound_ = 0, share_ = kShare;
   param::HalfEdges half_edges_;
@@ -155,8 +158,8 @@ class Widener {
   param::CornerLists corners_;
   Relaxer relaxer_;
   std::vector<Relaxer::Spring> springs_;
-  std::vector<double> longest_;       // 1 a vertex: how far its spring reaches
-  std::vector<std::uint32_t> place_;  // 1 a vertex: 1 + its spring's place, or 0
+  std::vector<double> longest_;       // one per vertex: the length of its spring
+  std::vector<std::uint32_t> place_;  // one per vertex: 1 + its spring's index, or 0
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Internal: what a ParamWorkspace holds.
+// Internal: the contents of a ParamWorkspace.
 #pragma once
 
 #include "libatlas/param/halfedges.h"
