@@ -7,7 +7,7 @@
 namespace atlas {
 namespace {
 
-constexpr double kSameLength = 1e-4;  // symmetric meshes are full of ties, see merge.cpp
+constexpr double kSameLength = 1e-4;  // symmetric meshes are full of ties, see cost_classes.h
 
 }  // namespace
 

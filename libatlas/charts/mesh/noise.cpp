@@ -7,10 +7,10 @@
 namespace atlas {
 namespace {
 
-// A piece is noisy if it has more than 600 edges (some 400 triangles), of which more than kFoldShare
-// fold by more than nine degrees. Smooth meshes of that size fold by three to five degrees at most
-// edges. Rough meshes of few triangles, with noise or not, also come out in fewer charts when they
-// count as noisy.
+// A piece is noisy if it has more than 600 edges (some 400 triangles), of which more than
+// kFoldShare fold by more than nine degrees. Smooth meshes of that size fold by three to five
+// degrees at most edges. Rough meshes of few triangles, with noise or not, also come out in fewer
+// charts when they count as noisy.
 constexpr double kFoldCosine = 0.988, kFoldShare = 0.6;
 constexpr std::size_t kManyTriangles = 800;
 constexpr int kRounds = 4;
