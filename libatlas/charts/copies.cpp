@@ -18,7 +18,7 @@ constexpr double kTolerance = 1e-5;  // relative to a part's size
 constexpr double kRounding = 4.0 / (1 << 23);
 // Parts whose rounding exceeds this share of their size are not compared.
 constexpr double kMostRounding = 1e-3;
-// The most originals with the same sum of edge lengths that a piece is compared with.
+// The most originals with about the same sum of edge lengths that a piece is compared with.
 constexpr std::size_t kMostCompared = 8;
 
 std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {

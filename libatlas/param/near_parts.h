@@ -28,7 +28,8 @@ class NearParts {
     glm::dvec2 away;  // unit vector away from the other place
   };
 
-  // `clearance` is in uv units, > 0. All arguments but uvs must outlive the object.
+  // `clearance` is in uv units, > 0. `half_edges`, and the mesh that it was built from, must
+  // outlive the object.
   NearParts(const LocalMesh& mesh, const HalfEdges& half_edges, const HalfEdges::Border& border,
             double clearance, std::span<const Vec2d> uvs);
 

@@ -23,8 +23,8 @@ struct LineCut {
 // Divides the same triangles near any number of lines.
 class LineCutter {
  public:
-  // `triangles` are connected, as indices into chart.triangles. All arguments must outlive the
-  // cutter.
+  // `triangles` are connected, as indices into chart.triangles. The chart and the list must outlive
+  // the cutter.
   LineCutter(const FlatChart& chart, const param::HalfEdges& half_edges,
              std::span<const std::uint32_t> triangles);
 
