@@ -19,8 +19,8 @@ struct GapReport {
 };
 
 struct GapLimits {
-  // Per chart, in units of its uvs, such as the distance across two texels. Charts with 0 are not
-  // examined, nor are those with more than a fifth of the square root of their area.
+  // Per chart, in units of its uvs, such as the distance across two texels. Charts whose
+  // clearance is 0, or more than a fifth of the square root of their area, are not examined.
   std::span<const double> clearance = {};
   double max_stretch = 1.25;  // > 1, see ChartOptions::max_stretch
 };

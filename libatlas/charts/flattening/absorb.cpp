@@ -53,10 +53,11 @@ constexpr double kSureFill = 0.995;
 // are not tried if the weight of their seam is below this share of its length, except for small
 // charts and fragments.
 constexpr double kHidden = 0.5;
-// Charts are not joined if the two shapes of their common border differ by more than this share of
-// its length. For short borders that says little, except between charts that are not fragments
-// (none of 72 and 55 such pairs could be joined). Small charts have many neighbours to try, so
-// their limit is stricter.
+// Charts are not joined if the two shapes of their common border differ by more than kMostMisfit of
+// its length. A border of fragments with fewer than kLeastFitted edges says little, so its limit is
+// kMostShortMisfit; between charts that are not fragments, none of 72 and 55 pairs with a short
+// border and more misfit could be joined. Small charts have many neighbours to try, so their limit
+// is stricter.
 constexpr double kMostMisfit = 0.1, kMostShortMisfit = 0.25;
 constexpr double kMostSmallMisfit = 0.07;
 // A union of at least kManyTriangles is not tried if its parts overlap in kMostOverlap places
