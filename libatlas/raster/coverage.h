@@ -1,5 +1,5 @@
-// Exact area coverage: every texel that a triangle touches, with the part of it that is covered.
-// Header-only, so that the caller's work per texel is inlined.
+// Exact area coverage: finds every texel that a triangle touches, and which part of the texel the
+// triangle covers. Header-only, so that the caller's work per texel is inlined.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,8 @@ namespace atlas {
 
 namespace raster_detail {
 
-// A convex polygon of at most a triangle's corners plus one for each side of a texel.
+// A convex polygon. It has at most the three corners of a triangle and one more for each of the
+// four sides of a texel that cut it.
 struct Polygon {
   int n = 0;
   Vec2d p[8];
@@ -38,7 +39,7 @@ void cut(const Polygon& in, double at, Polygon& below, Polygon& above) {
   }
 }
 
-// Area (positive for either orientation) and centroid.
+// The area of a polygon (positive for either orientation) and its centroid.
 struct Moments {
   double area = 0;
   Vec2d centroid;
@@ -71,7 +72,8 @@ inline void bounds(const Polygon& q, int axis, double& lo, double& hi) {
   }
 }
 
-// The x at which the polygon's horizontal chord at height y begins and ends; false if it has none.
+// Sets `lo` and `hi` to the x at which the polygon's horizontal edge or corner at height y begins
+// and ends. Returns false if the polygon has no corner at that height.
 inline bool chord(const Polygon& q, double y, double& lo, double& hi) {
   bool any = false;
   for (int i = 0; i < q.n; ++i) {
@@ -86,14 +88,15 @@ inline bool chord(const Polygon& q, double y, double& lo, double& hi) {
   return any;
 }
 
-// The texels of one row: `strip` is the triangle cut to y in [y, y + 1].
+// Visits the texels of one row. `strip` is the part of the triangle between y and y + 1.
 template <class Texel>
 void cover_row(Polygon strip, int y, const Rect& clip, Texel&& texel) {
   double lo, hi, l0, h0, l1, h1;
   bounds(strip, 0, lo, hi);
   int x = std::max(static_cast<int>(std::floor(lo)), clip.x);
   const int end = std::min(static_cast<int>(std::ceil(hi)), clip.right());
-  // Texels between the chords at both sides of the row are covered whole, by convexity.
+  // A texel between the chords at the row's lower and upper side is covered completely, because the
+  // triangle is convex.
   int full_begin = end, full_end = end;
   if (chord(strip, y, l0, h0) && chord(strip, y + 1, l1, h1)) {
     const int a = static_cast<int>(std::ceil(std::max(l0, l1)));
@@ -101,7 +104,7 @@ void cover_row(Polygon strip, int y, const Rect& clip, Texel&& texel) {
     if (a < b) full_begin = std::max(a, clip.x), full_end = std::min(b, end);
   }
   Polygon part, rest;
-  if (x > lo) {  // clipped at the left
+  if (x > lo) {  // the strip begins left of the clip rectangle
     cut<0>(strip, x, part, rest);
     strip = rest;
   }
@@ -122,9 +125,10 @@ void cover_row(Polygon strip, int y, const Rect& clip, Texel&& texel) {
 
 }  // namespace raster_detail
 
-// Calls texel(x, y, area, centroid) for each texel of `clip` that shares area with the triangle (of
-// either orientation): the shared area in (0, 1], and its centroid in texels. The areas sum to the
-// triangle's within rounding. Coordinates must be finite and within kMaxTexelCoordinate.
+// Calls texel(x, y, area, centroid) for each texel of `clip` that shares area with the triangle,
+// which may have either orientation. `area` is the shared area in (0, 1], and `centroid` its
+// centroid in texels. The areas sum to the triangle's area within rounding. Coordinates must be
+// finite and within kMaxTexelCoordinate.
 template <class Texel>
 void cover_triangle(const TexelTriangle& p, const Rect& clip, Texel&& texel) {
   using namespace raster_detail;
@@ -136,7 +140,7 @@ void cover_triangle(const TexelTriangle& p, const Rect& clip, Texel&& texel) {
   bounds(rest, 0, left, right);
   int y = static_cast<int>(std::floor(lo));
   const int x = static_cast<int>(std::floor(left));
-  if (hi <= y + 1 && right <= x + 1) {  // inside one texel: most triangles of a fine mesh
+  if (hi <= y + 1 && right <= x + 1) {  // inside one texel, as most triangles of a fine mesh are
     if (x < clip.x || x >= clip.right() || y < clip.y || y >= clip.top()) return;
     const Moments m = moments(rest);
     if (m.area > 0) texel(x, y, m.area, m.centroid);

@@ -8,8 +8,9 @@ SampleGrid::SampleGrid(int shifts) {
   const double step = 1.0 / side;
   for (int j = 0; j < side; ++j)
     for (int i = 0; i < side; ++i) {
-      // Row j moves by a fraction of a step to the right, column i by one down: each x and each y
-      // then occurs once among the K positions.
+      // Row j is moved to the right by a fraction of a step that grows with j, and column i is
+      // moved down relative to the columns before it. Each x and each y then occurs only once among
+      // the K positions.
       const double dx = (j + 0.5) * step, dy = (side - 1 - i + 0.5) * step;
       offset[j * side + i] = {(i + dx) * step, (j + dy) * step};
     }

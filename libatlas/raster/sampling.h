@@ -1,6 +1,7 @@
-// Sample points on a triangle, as many as its texels ask for: shifted grids on large triangles,
-// quadrature points on small and thin ones, so that no triangle is missed between grid points.
-// Header-only, so that the caller's work per sample is inlined.
+// Sample points on a triangle, in a number that suits the texels it covers. Large triangles are
+// sampled by shifted grids. Small and thin triangles are sampled by quadrature points, because they
+// could lie between the grid points and be missed. Header-only, so that the caller's work per
+// sample is inlined.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +12,10 @@
 
 namespace atlas {
 
-// K sample positions in the unit texel, K rounded up to a square and clamped to 64: a grid whose
-// rows and columns are sheared so that no two positions share an x or a y (near-vertical and
-// near-horizontal edges then get K coverage levels, not sqrt K). K = 1 is the texel's centre.
+// K sample positions in the unit texel. K is rounded up to a square and is at most 64. The
+// positions form a grid whose rows and columns are sheared so that no two positions share an x or a
+// y. Near-vertical and near-horizontal edges therefore get K coverage levels and not sqrt K. With K
+// = 1 the only position is the texel's centre.
 struct SampleGrid {
   int count = 1;
   int side = 1;
@@ -35,7 +37,8 @@ inline double length2(Vec2d a, Vec2d b) {
   return (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
 }
 
-// The rule with one point (centroid) or three (exact for quadratics).
+// Visits the points of a quadrature rule: one point (the centroid), or three points, which are
+// exact for quadratic functions.
 template <class Point>
 void quadrature(float area, bool three, Point&& point) {
   if (!three) {
@@ -50,8 +53,8 @@ void quadrature(float area, bool three, Point&& point) {
   }
 }
 
-// Cuts a thin triangle across its longest edge into slices of about `step` and visits their
-// centroids, each with its area.
+// Cuts a thin triangle across its longest edge into slices of about the width `step`, and visits
+// the centroid of each slice with the slice's area.
 template <class Point>
 void slices(const TexelTriangle& p, float area, double step, Point&& point) {
   const double l[3] = {length2(p[1], p[2]), length2(p[2], p[0]), length2(p[0], p[1])};
@@ -60,20 +63,22 @@ void slices(const TexelTriangle& p, float area, double step, Point&& point) {
     if (l[k] > l[e]) e = k;
   const int ends[2] = {(e + 1) % 3, (e + 2) % 3};
   const Vec2d a = p[ends[0]], b = p[ends[1]];
-  // Where e's foot divides the longest edge; the part on either side of it tapers to an end.
+  // The position on the longest edge, from 0 to 1, of the foot of the altitude from corner e. The
+  // parts of the triangle on both sides of that altitude taper to the ends of the edge.
   const double foot =
       std::clamp(((p[e].x - a.x) * (b.x - a.x) + (p[e].y - a.y) * (b.y - a.y)) / l[e], 0.0, 1.0);
   for (int k = 0; k < 2; ++k) {
     const double share = k == 0 ? foot : 1 - foot;
     if (!(share > 0)) continue;
     const int n = static_cast<int>(std::ceil(share * std::sqrt(l[e]) / step));
-    // The middle of the segment from the foot to corner e.
+    // The middle of the altitude, in barycentric coordinates.
     double middle[3];
     middle[e] = 0.5;
     middle[ends[0]] = 0.5 * (1 - foot);
     middle[ends[1]] = 0.5 * foot;
     for (int i = 0; i < n; ++i) {
-      // Slice i of a triangle cut across: area as i², first moment as i³.
+      // Slice i counted from the tip. The area up to the end of slice i grows as the square of its
+      // number, and the first moment as the cube.
       const double squares = 2.0 * i + 1, cubes = 3.0 * i * i + 3.0 * i + 1;
       const double f = 2.0 / 3 * cubes / (squares * n);
       float c[3];
@@ -94,26 +99,28 @@ inline SampleKind sample_kind(const TexelTriangle& p, const SampleGrid& grid) {
   const double longest2 = std::max({length2(p[0], p[1]), length2(p[1], p[2]), length2(p[2], p[0])});
   const double limit = grid.side == 1 ? 1.0 : 2.0 / grid.side;
   if (longest2 <= limit * limit) return SampleKind::points;
-  // Lower than 0.7 grid steps: whole stretches of it may lie between the grid's points.
+  // If the triangle's height is below 0.7 grid steps, whole stretches of it may lie between the
+  // grid's points.
   const double low = 0.7 / grid.side;
   if (area2 * area2 < low * low * longest2) return SampleKind::thin;
   return SampleKind::grid;
 }
 
-// What takes a triangle's weighted samples.
+// The two functions that receive a triangle's weighted samples.
 template <class Row, class Point>
 struct SampleVisitor {
-  // row(k, y, x0, x1): grid samples (x + grid.offset[k].x, y + grid.offset[k].y), x0 <= x < x1,
-  // each of weight 1 / grid.count, inside the clip rectangle.
+  // row(k, y, x0, x1) receives the grid samples (x + grid.offset[k].x, y + grid.offset[k].y) with
+  // x0 <= x < x1. Each has the weight 1 / grid.count, and all lie inside the clip rectangle.
   Row row;
-  // point(bary, weight): one sample by its barycentric coordinates, float[3]; not clipped.
+  // point(bary, weight) receives one sample by its barycentric coordinates, float[3]. These samples
+  // are not clipped.
   Point point;
 };
 template <class Row, class Point>
 SampleVisitor(Row, Point) -> SampleVisitor<Row, Point>;
 
-// Visits weighted samples whose weights sum to about the triangle's area in texels; exactly so
-// (up to rounding) where it is sampled by quadrature.
+// Visits weighted samples of a triangle. The weights sum to about the triangle's area in texels,
+// and to exactly that area (up to rounding) if the triangle is sampled by quadrature or in slices.
 template <class Row, class Point>
 void sample_triangle(const TexelTriangle& p, const Rect& clip, const SampleGrid& grid,
                      SampleVisitor<Row, Point> visit) {
@@ -132,9 +139,9 @@ void sample_triangle(const TexelTriangle& p, const Rect& clip, const SampleGrid&
         any = true;
         visit.row(k, y, x0, x1);
       });
-    if (any) return;  // else it lies between the grid's points, or outside the clip
+    if (any) return;  // otherwise the triangle lies between the grid's points or outside the clip
   }
-  // Far below a texel one point says it all.
+  // One point is enough for a triangle far smaller than a texel.
   const bool three = grid.side > 1 && area > 0.02f / static_cast<float>(grid.count);
   quadrature(area, three, visit.point);
 }

@@ -1,5 +1,5 @@
-// Which texels' sample points lie in a triangle: the fill rule of graphics hardware, exactly.
-// Header-only, so that the caller's work per span is inlined.
+// Finds the texels whose sample points lie in a triangle, exactly, by the fill rule of graphics
+// hardware. Header-only, so that the caller's work per span is inlined.
 #pragma once
 
 #include <algorithm>
@@ -15,14 +15,15 @@ namespace atlas {
 
 using TexelTriangle = std::array<Vec2d, 3>;  // corners in texels; texel (i, j) is [i,i+1]x[j,j+1]
 
-// Corners are rounded to this many steps a texel before the exact integer tests, so that triangles
-// that share a corner still share it.
+// Corners are rounded to 2^kSubTexelBits steps a texel before the exact integer tests. Triangles
+// that share a corner still share it after that.
 inline constexpr int kSubTexelBits = 12;
-// Largest coordinate that scan_triangle takes: beyond it the integer products would overflow.
+// The largest coordinate that scan_triangle accepts. Beyond it the integer products would overflow.
 inline constexpr double kMaxTexelCoordinate = 1 << 17;
 
-// Which points on a triangle's edges belong to it: of two triangles that share an edge those of one
-// (the rule of graphics hardware), or all.
+// Which points on a triangle's edges belong to the triangle. With top_left, the rule of graphics
+// hardware, a point on an edge shared by two triangles belongs to one of them. With closed, all
+// points on the edges belong to the triangle.
 enum class EdgeRule { top_left, closed };
 
 namespace raster_detail {
@@ -38,8 +39,9 @@ inline std::int64_t floor_div(std::int64_t a, std::int64_t b) {  // b > 0
   return q - (a % b < 0);
 }
 
-// One directed edge of a counter-clockwise triangle: value >= 0 means inside. Edges that do not own
-// their points (neither left nor top) have 1 taken off, which makes the test strict.
+// One directed edge of a counter-clockwise triangle. value() >= 0 means inside. For edges whose
+// points do not belong to the triangle (edges that are neither left nor top), 1 is subtracted,
+// which makes the test strict.
 struct Edge {
   std::int64_t dx, dy, ax, ay, bias;
 
@@ -66,11 +68,12 @@ inline void clip_span(std::int64_t value, std::int64_t slope, std::int64_t& lo, 
 
 }  // namespace raster_detail
 
-// Calls span(y, x0, x1) for each row of `clip` in which the sample points (x + offset.x,
-// y + offset.y), x0 <= x < x1, lie inside the triangle of either orientation. A point on an edge
-// shared by two triangles belongs to exactly one of them (top-left rule), a triangle without area
-// has none. Coordinates must be finite and within kMaxTexelCoordinate; `bits`: their steps a texel,
-// of which coordinates times 2^bits must keep within 2^29.
+// Calls span(y, x0, x1) for each row of `clip` in which sample points lie inside the triangle,
+// which may have either orientation. The sample points are (x + offset.x, y + offset.y) with x0 <=
+// x < x1. With the top-left rule a point on an edge shared by two triangles belongs to exactly one
+// of them. A triangle without area has no points. Coordinates must be finite and within
+// kMaxTexelCoordinate. They are rounded to 2^bits steps a texel, and coordinates times 2^bits must
+// be at most 2^29.
 template <int bits = kSubTexelBits, EdgeRule rule = EdgeRule::top_left, class Span>
 void scan_triangle(const TexelTriangle& p, const Rect& clip, Vec2d offset, Span&& span) {
   using namespace raster_detail;
