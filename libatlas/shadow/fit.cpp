@@ -38,14 +38,15 @@ double largest(const glm::dvec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-// Columns right, up, towards the light.
+// Unit vectors to the right and up in the map, and towards the light.
 struct Basis {
   glm::dvec3 right, up, back;
 };
 
 Basis light_basis(const glm::dvec3& direction, const Vec3d& wanted_up) {
   glm::dvec3 up = to_glm(wanted_up);
-  // Within about 0.6 degrees of the vertical any other axis serves better than rounding noise.
+  // If the light is within about 0.6 degrees of the wanted vertical, the right axis would mostly be
+  // rounding noise. The coordinate axis farthest from the light is then used as the vertical.
   if (!(glm::length(glm::cross(up, direction)) >= 0.01 * glm::length(up)) ||
       !(glm::length(up) > 0) || !finite(up)) {
     const glm::dvec3 a = glm::abs(direction);
@@ -93,7 +94,7 @@ Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene,
     return Status{ErrorCode::bad_option, "shadow map: the light's direction is zero or not finite"};
   if (!finite(low) || !finite(high) || low.x > high.x || low.y > high.y || low.z > high.z)
     return Status{ErrorCode::bad_option, "shadow map: the scene's bounds are empty or not finite"};
-  // Their squares are summed.
+  // Squares of the coordinates are summed below and must not overflow.
   constexpr double kFarthest = 1e150;
   if (!(std::max(largest(low), largest(high)) <= kFarthest))
     return Status{ErrorCode::bad_option, "shadow map: the scene's bounds reach beyond 1e150"};
@@ -125,12 +126,13 @@ Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene,
   const double smallest = std::max(glm::length(fitted.centre) * 1e-9, 1e-30);
   double side = std::max(2 * fitted.radius, smallest) / free;
   if (options.snap && options.view)
-    side = std::exp2(std::ceil(std::log2(side) * 8) / 8);  // sizes in steps of 9 %, for zooming
+    side = std::exp2(std::ceil(std::log2(side) * 8) / 8);  // steps of 9 %: steady while zooming
   const double texel = side / options.resolution;
 
   double x = glm::dot(basis.right, fitted.centre), y = glm::dot(basis.up, fitted.centre);
   if (options.snap) {
-    // Distances from the scene's centre, not from the origin: far-off scenes snap as finely.
+    // Positions are rounded relative to the scene's centre and not to the origin, so that scenes
+    // far from the origin snap as finely as others.
     const double cx = glm::dot(basis.right, whole.centre), cy = glm::dot(basis.up, whole.centre);
     x = cx + std::round((x - cx) / texel) * texel;
     y = cy + std::round((y - cy) / texel) * texel;

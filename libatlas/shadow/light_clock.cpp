@@ -6,10 +6,11 @@
 namespace atlas {
 namespace {
 
-// Weight of the newest frame in the mean: about the last twenty count.
+// Weight of the newest frame in the mean. About the last twenty frames count.
 constexpr double kNewest = 0.05;
 
-// An infinite time would stay in the mean for ever, and is NaN degrees of a light at rest.
+// Infinite values count as 0. An infinite time would stay in the mean for ever, and multiplied by
+// the speed of a light at rest it would be NaN.
 double positive_or_zero(double value) {
   return value > 0 && std::isfinite(value) ? value : 0;
 }

@@ -1,11 +1,12 @@
-// How far a light has travelled along its path in a window, where frames last as long as they like.
+// How far a light has travelled along its path in a window, where the duration of frames varies.
 #pragma once
 
 namespace atlas {
 
 struct LightClockOptions {
-  // A light moves at most so far from one frame to the next, degrees, > 0 and finite: where frames
-  // are slow it slows down too, instead of leaping past what shadows between keys can follow.
+  // The largest movement of a light from one frame to the next, in degrees, > 0 and finite. If
+  // frames are slow, the light slows down too. Otherwise it would move further than shadows between
+  // keys can follow.
   double max_step = 2;
 };
 
@@ -13,15 +14,16 @@ class LightClock {
  public:
   explicit LightClock(const LightClockOptions& options = {});
 
-  // The next frame, `seconds` after the last one, of a light with this speed (what is
-  // negative, infinite or NaN counts as 0; a light of speed 0 rests).
+  // Begins the next frame, `seconds` after the last one, for a light with this speed. Arguments
+  // that are negative, infinite or NaN count as 0. A light of speed 0 rests.
   void advance(double seconds, double degrees_per_second);
 
-  // Degrees travelled so far; and what they will be so many frames later if these last as long as
-  // the last ones did in the mean (times jitter, and a key a little early is exact for its place).
+  // travelled() gives the degrees travelled so far. ahead() gives what they will be after so many
+  // more frames, if these last as long as the mean of the last frames. Since frame times vary, a
+  // key may come a little early or late, but it is exact for its own direction.
   double travelled() const { return travelled_; }
   double ahead(int frames) const { return travelled_ + frames * step_ahead_; }
-  // The last step was cut to max_step.
+  // Whether the last step was shortened to max_step.
   bool slowed() const { return slowed_; }
 
  private:

@@ -17,7 +17,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kHour = 15 * kDegree;  // the earth turns 15 degrees an hour
 
-// By hypot, since the squares of long and short directions leave the range of doubles.
+// Uses hypot, since the squares of very long and very short directions leave the range of doubles.
 glm::dvec3 unit(const Vec3d& v) {
   return to_glm(v) / std::hypot(v.x, v.y, v.z);
 }
@@ -27,9 +27,10 @@ bool usable(const Vec3d& v) {
   return length > 0 && std::isfinite(length);
 }
 
-// Great-circle interpolation; a and b are unit vectors less than pi apart. By the part of b that is
-// square to a: the sum and the difference, of which one is small near 0 and near pi, keep its
-// direction where sines of the angle lose theirs.
+// Great-circle interpolation between the unit vectors a and b, which are less than pi apart. It
+// uses the part of b that is perpendicular to a. This part is computed from the difference of a and
+// b, or from their sum if the angle is above a right angle. Near 0 and near pi that vector is small
+// but keeps its direction, where the usual formula would divide by a sine that has lost its digits.
 glm::dvec3 slerp(const glm::dvec3& a, const glm::dvec3& b, double t) {
   const double angle = angle_between(from_glm(a), from_glm(b));
   if (angle < kSlerpMinSine) return glm::normalize(glm::mix(a, b, t));
@@ -135,8 +136,8 @@ double LightPath::folded(double degrees) const {
       return length_ > 0 ? std::min(there, 2 * length_ - there) : 0;
     }
     case PathEnd::loop:
-      // The end point itself belongs to the path: without this a path that ends after a whole
-      // number of steps would never be seen at its end.
+      // The end point itself belongs to the path. Otherwise a path that ends after a whole number
+      // of steps would never be seen at its end.
       return degrees <= length_ ? degrees : std::fmod(degrees, length_);
   }
   return 0;

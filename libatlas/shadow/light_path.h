@@ -1,6 +1,7 @@
-// Where a moving directional light is: paths measured in degrees travelled on the sphere, so that a
-// speed in degrees a second means the same on each of them (on a line in the mean only: it is even
-// along the line, whose far parts are small on the sphere). Directions point towards the light.
+// Where a moving directional light is. Paths are measured in degrees travelled on the sphere, so
+// that a speed in degrees a second means the same on each of them. On a line this holds in the mean
+// only: the light moves evenly along the line, and the line's far parts are small on the sphere.
+// Directions point towards the light.
 #pragma once
 
 #include <string>
@@ -14,12 +15,12 @@ namespace atlas {
 enum class PathKind {
   fixed,  // does not move
   line,   // the light moves along the straight segment between the tips of the first two directions
-  arc,    // the great circle between the first two directions
-  sun,    // the sun over one day
-  keys,   // great circles through all directions in turn
+  arc,    // the light moves along the great circle between the first two directions
+  sun,    // the light follows the sun over one day
+  keys,   // the light moves along great circles through all directions in turn
 };
 
-// What happens at the end of a path: start again (the light jumps), go back, or stay.
+// What happens at the end of a path: the light starts again (it jumps), goes back, or stays.
 enum class PathEnd { loop, back, stop };
 
 struct SunOptions {
@@ -37,29 +38,33 @@ struct LightPathOptions {
   SunOptions sun;
 };
 
-// Declination of the sun on a day, radians: Cooper's formula (Solar Energy 12, 1969), good to about
-// half a degree.
+// Returns the declination of the sun on a day, in radians, by Cooper's formula (Solar Energy 12,
+// 1969), which is accurate to about half a degree.
 double sun_declination(int day_of_year);
 
-// Direction towards the sun at an hour of local solar time (east = north x up).
+// Returns the direction towards the sun at an hour of local solar time (east = north x up).
 Vec3d sun_direction(const SunOptions& options, double hour);
 
 class LightPath {
  public:
   LightPath() : options_{PathKind::fixed, PathEnd::loop, {{0, 1, 0}}, {}} {}  // rests at +y
-  // bad_option with the reason: too few directions, a zero or non-finite one, two opposite ones
-  // (no unique arc, and a line through the origin), a sun that never rises on that day.
+  // Error: bad_option with the reason. Reasons are a wrong number of directions, a direction that
+  // is zero or not finite, two consecutive directions that are opposite (no unique arc joins them,
+  // and a line would pass through the origin), a day, latitude or hour out of range, an up parallel
+  // to north, and a sun that never rises on that day.
   static Result<LightPath> make(const LightPathOptions& options);
 
-  // Unit direction after so many degrees of travel from the start (negative and NaN count as 0).
-  // On the sun's path travel runs at the sun's own angular speed and starts at start_hour, moved to
-  // sunrise or sunset if the sun is down then; the path lasts until sunset and, looping, goes on
-  // from sunrise.
+  // Returns the unit direction after so many degrees of travel from the start. Negative values and
+  // NaN count as 0. On the sun's path, travel has the sun's own angular speed. It starts at
+  // start_hour, or at sunrise or sunset if the sun is down then. The path lasts until sunset. If it
+  // loops, it continues from sunrise.
   Vec3d direction(double degrees) const;
 
-  // Length of the path from its start to its end, degrees; 0 if it does not move.
+  // The length of the whole path in degrees (the sun's is from sunrise to sunset); 0 if the light
+  // does not move.
   double length() const { return length_; }
-  // Local solar time at a travel, hours; NaN if this is not the sun's path.
+  // The local solar time in hours after so many degrees of travel; NaN if this is not the sun's
+  // path.
   double hour(double degrees) const;
 
  private:
@@ -72,7 +77,7 @@ class LightPath {
 };
 
 // Reads "fixed:x,y,z", "line:x,y,z;x,y,z", "arc:x,y,z;x,y,z", "keys:...;...;..." or
-// "sun:DAY,LATITUDE,HOUR" into options whose other fields are kept.
+// "sun:DAY,LATITUDE,HOUR" into `options`. Fields that the text does not name keep their values.
 Result<LightPathOptions> parse_light_path(const std::string& text, LightPathOptions options);
 
 }  // namespace atlas

@@ -18,7 +18,8 @@ Status malformed(const std::string& text, std::string_view why) {
                       text, why)};
 }
 
-// Numbers separated by commas; false if anything else is there.
+// Appends the numbers of a comma-separated list to `out`. Returns false if the text contains
+// anything else.
 bool numbers(std::string_view text, std::vector<double>& out) {
   const std::string copy(text);
   const char* p = copy.c_str();

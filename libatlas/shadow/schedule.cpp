@@ -8,7 +8,8 @@
 namespace atlas {
 namespace {
 
-// Two directions closer than this draw the same map: at 4096 texels across, a hundredth of a texel.
+// Two directions closer than this (radians) draw the same map. On a map of 4096 texels a side the
+// difference is a hundredth of a texel.
 constexpr double kSameAngle = 2e-6;
 
 bool same(const Vec3d& a, const Vec3d& b) {
@@ -28,7 +29,7 @@ KeySchedule::KeySchedule(const ScheduleOptions& options) : options_(options) {
     options_.max_key_degrees = kMaxKeyDegrees;
 }
 
-// Frames from the key `start` frames ahead to the one after it.
+// Returns the number of frames from the key that is `start` frames ahead to the one after it.
 int KeySchedule::interval_from(int start, const Ahead& ahead) const {
   const bool by_degrees = options_.interval_degrees > 0;
   const int longest = by_degrees ? options_.max_frames : options_.interval_frames;
@@ -49,16 +50,17 @@ int KeySchedule::interval_from(int start, const Ahead& ahead) const {
   return longest;
 }
 
-// Whether the light is somewhere that the keys were not drawn for. Frames that last longer or less
-// long than was foreseen move it off its time between them, but not this far.
+// Returns whether the light is at a place that the keys were not drawn for. If frames last longer
+// or shorter than was predicted, the light is ahead of or behind its time between the keys, but not
+// as far away as this.
 bool KeySchedule::left_keys(const Vec3d& now, const Ahead& ahead) const {
   const double away = degrees_between(from_.direction, now);
   if (!ahead) return away > options_.max_key_degrees;
   if (away > 1.5 * options_.max_key_degrees) return true;
   const bool at_key = same(from_.direction, now);
   if (from_.slot == to_.slot) return !at_key && !coming_needs_work_;
-  // Blends would go on to keys that a light at rest never comes to. Not same(): that is what a slow
-  // light is, too.
+  // A light at rest never reaches the next key, so blends must not go on to it. The test is exact
+  // equality and not same(), because same() would also hold for a slow light.
   for (int n = 1; n <= length_; ++n)
     if (!(ahead(n) == now)) return false;
   return !at_key || !same(to_.direction, now);
@@ -80,7 +82,8 @@ void KeySchedule::refresh(const Vec3d& now, const Ahead& ahead, FramePlan& plan)
   from_ = to_ = {0, now};
   draw_whole(0, now, plan);
   length_ = interval_from(0, ahead);
-  // A light that jumps in every frame gets one map a frame, like the classic method, not two.
+  // A light that jumps in every frame gets one map a frame, as with the classic method, and not
+  // two.
   if (!ahead || degrees_between(ahead(1), now) > options_.jump_degrees) return;
   const Vec3d end = ahead(length_);
   if (!same(end, now)) {
@@ -89,13 +92,14 @@ void KeySchedule::refresh(const Vec3d& now, const Ahead& ahead, FramePlan& plan)
   }
 }
 
-// from_ and to_ are set; chooses what to draw during this interval for the one after it.
+// Chooses what to draw during this interval for the next one. from_ and to_ must be set.
 void KeySchedule::begin_interval(const Vec3d& now, const Ahead& ahead) {
   frame_ = 0;
   coming_ = to_;
   coming_needs_work_ = false;
   next_length_ = interval_from(length_, ahead);
-  // A jump before the interval ends will refresh everything: nothing drawn now would be sampled.
+  // If the light jumps before the interval ends, everything will be refreshed. Nothing that was
+  // drawn now would be sampled.
   for (int n = 0; ahead && n < length_; ++n)
     if (degrees_between(ahead(n), ahead(n + 1)) > options_.jump_degrees) return;
   const Vec3d target = ahead ? ahead(length_ + next_length_) : now;

@@ -1,10 +1,12 @@
-// Which key shadow maps exist when, which of them a frame samples, and which part of the next one
-// it draws. Knows no OpenGL: maps are numbered slots, work is a fraction of a map's triangles.
+// Decides which key shadow maps exist at what time, which of them a frame samples, and which part
+// of the next one a frame draws. This file knows no OpenGL: maps are numbered slots, and work is a
+// fraction of a map's triangles.
 //
 // With a scripted light the key after the next is drawn ahead, a slice in each frame of the current
-// interval, so that no frame draws a whole map and the keys are exact. A light moved by hand cannot
-// be known ahead: its keys are the directions that it had when they were begun, so blended shadows
-// follow it with a delay of one to two intervals (nothing is predicted, nothing overshoots).
+// interval. No frame therefore draws a whole map, and the keys are exact. The directions of a light
+// moved by hand are not known ahead. Its keys are the directions that it had when they were begun,
+// so blended shadows follow it with a delay of one to two intervals. Nothing is predicted, so
+// nothing overshoots.
 #pragma once
 
 #include <cstdint>
@@ -18,19 +20,20 @@ namespace atlas {
 
 struct ScheduleOptions {
   int interval_frames = 8;      // k >= 1; 1 draws a map every frame
-  double interval_degrees = 0;  // > 0: keys every so many degrees instead, at most max_frames apart
-  int max_frames = 64;          // longest interval when keys go by degrees, >= 1
-  // Keys are at most this far apart, (0, kMaxKeyDegrees], however few frames that leaves between
-  // them: a fast light, or a slow machine, then costs more of a map a frame instead of shadows
-  // interpolated over half the sky.
+  double interval_degrees = 0;  // > 0: a key every so many degrees instead, or after max_frames
+  int max_frames = 64;          // longest interval if interval_degrees is used, >= 1
+  // Keys are at most this far apart, in (0, kMaxKeyDegrees], even if that leaves few frames between
+  // them. With a fast light, or on a slow machine, a frame then draws a larger part of a map. The
+  // alternative would be shadows interpolated over half the sky.
   double max_key_degrees = kMaxKeyDegrees;
-  bool blend = true;         // two keys a frame; false: the last one is held
-  bool sliced = true;        // spread each map over the interval; false: one frame draws it all
-  double jump_degrees = 20;  // a light that moves more than this in one frame has jumped
+  bool blend = true;         // a frame samples two keys; false: it samples the last one only
+  bool sliced = true;        // each map is drawn over the interval; false: one frame draws it all
+  double jump_degrees = 20;  // a light that moves further than this in one frame has jumped
 };
 
-// One share of drawing a map: triangles [begin, end) as fractions of the whole, all for one
-// direction. begin == 0 means: clear the map first; end == 1: the map is complete after this.
+// One part of the drawing of a map: the triangles [begin, end), as fractions of all triangles, for
+// one direction of the light. If begin is 0, the map has to be cleared first. If end is 1, the map
+// is complete after this part.
 struct MapWork {
   int slot = 0;
   Vec3d direction;
@@ -39,32 +42,34 @@ struct MapWork {
 
 struct FramePlan {
   std::vector<MapWork> work;  // to be done before the frame samples anything
-  int from = 0, to = 0;       // slots to sample; equal when one map serves
+  int from = 0, to = 0;       // slots to sample; equal if one map is enough
   Vec3d from_direction, to_direction;
-  double t = 0;            // [0, 1): time between the two keys
-  bool refreshed = false;  // a first frame, a jump or invalidate(): maps were drawn at once
+  double t = 0;            // position in time between the two keys, [0, 1)
+  bool refreshed = false;  // maps were drawn at once: first frame, jump or invalidate()
 };
 
 class KeySchedule {
  public:
   static constexpr int kSlots = 3;
-  // The light's direction so many frames after the current one; called with 0 up to
-  // 2 * max(interval_frames, max_frames). Null for a light moved by hand.
+  // Gives the light's direction so many frames after the current one. It is called with 0 up to
+  // 2 * max(interval_frames, max_frames). It is null for a light moved by hand.
   using Ahead = std::function<Vec3d(int frames)>;
 
   explicit KeySchedule(const ScheduleOptions& options);
 
-  // Plans the next frame, in which the light is at `now` (towards the light, any length > 0).
-  // Keys of a scripted light are at most max_key_degrees apart: a longer interval is cut short. One
-  // moved by hand that runs so far ahead of its keys has jumped. A script may change its mind: a
-  // light that comes to rest or leaves it has jumped, and so has one that runs half as far again
-  // from its keys as they may be apart.
+  // Plans the next frame, in which the light is at `now` (a direction towards the light, of any
+  // length > 0). Keys of a scripted light are at most max_key_degrees apart; a longer interval is
+  // shortened. A light moved by hand that is further than max_key_degrees from its key has jumped.
+  // A scripted light may deviate from its prediction: it has jumped if it stops or starts, or if
+  // its distance from its key is more than one and a half times max_key_degrees.
   FramePlan next(const Vec3d& now, const Ahead& ahead);
 
-  // The maps no longer show the scene: the next frame draws what it samples at once.
+  // Says that the maps no longer show the scene. The next frame draws the maps that it samples at
+  // once.
   void invalidate() { valid_ = false; }
 
-  // Whole maps begun since construction. A static light makes it 1, whatever the options.
+  // The number of maps begun since construction. It stays 1 for a static light, whatever the
+  // options.
   std::int64_t passes() const { return passes_; }
 
  private:
