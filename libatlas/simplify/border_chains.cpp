@@ -6,13 +6,13 @@
 namespace atlas::simplify {
 namespace {
 
-// A border half-edge of one chart between two points (bitwise equal positions).
+// A border half-edge of one chart between two points. Vertices at equal positions are one point.
 struct Side {
   std::uint32_t low, high;  // points
   std::uint32_t chart, half;
 };
 
-// Sides over the same two points are one edge.
+// The border edges of all charts. All sides between the same two points form one edge.
 class BorderGraph {
  public:
   BorderGraph(const Geometry& geometry, const std::vector<FineChart>& charts) : charts_(charts) {
@@ -30,7 +30,8 @@ class BorderGraph {
   std::uint32_t edge_of(std::uint32_t s) const { return side_edge_[s]; }
   std::uint32_t low(std::uint32_t edge) const { return sides_[edge_begin_[edge]].low; }
   std::uint32_t high(std::uint32_t edge) const { return sides_[edge_begin_[edge]].high; }
-  // Whether a chain runs on beyond `point`: all sides of the edge continue into the same next edge.
+  // Whether a chain continues beyond `point`. It does if all sides of the edge continue into the
+  // same next edge.
   bool through(std::uint32_t edge, std::uint32_t point) const {
     return through_[std::size_t{2} * edge + (high(edge) == point)];
   }
@@ -84,7 +85,8 @@ class BorderGraph {
   std::vector<bool> through_;  // 2 an edge: at low, at high
 };
 
-// Points: distinct positions among the border vertices (0 and -0 are the same).
+// Gives each border vertex its point. Points are the distinct positions among the border vertices
+// (0 and -0 are the same).
 void BorderGraph::weld(const Geometry& geometry) {
   std::vector<std::uint32_t> order(vertices_.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -143,8 +145,9 @@ void BorderGraph::group() {
   });
 }
 
-// Where other borders pass through the same point, open borders still run on (meshes that meet with
-// different steps share a point now and then, and an open border hardly moves), but seams end.
+// Finds where chains continue. If other borders pass through the same point, a seam ends there, but
+// an open border continues: meshes that meet with different steps share a point now and then, and
+// an open border hardly moves.
 void BorderGraph::connect() {
   std::vector<std::uint8_t> degree(point_count_, 0);
   for (std::uint32_t e = 0; e < edge_count(); ++e) {
@@ -163,7 +166,7 @@ void BorderGraph::connect() {
   }
 }
 
-// Walks chains over the graph.
+// Walks along the edges of the graph and collects the chains.
 class ChainFinder {
  public:
   ChainFinder(const BorderGraph& graph, BorderChains& out)
@@ -216,7 +219,8 @@ class ChainFinder {
   }
   void finish(std::uint32_t slots, bool closed) {
     const std::uint32_t k = static_cast<std::uint32_t>(sides_.size());
-    // Around a closed chain the sides may come back exchanged: then the start stays as an end.
+    // Around a closed chain the sides may come back exchanged. Then the chain counts as open, and
+    // its start stays as both ends.
     closed = closed && std::equal(vertices_.begin(), vertices_.begin() + k, vertices_.end() - k);
     if (closed) {
       --slots;

@@ -96,8 +96,9 @@ double ChainSimplifier::bound(const BorderChain& chain) const {
   return chain.side_count == 1 ? open_slip_ : slip_;
 }
 
-// The slip of a fine vertex against the straight edge between two others; t is the place matched
-// with it, never before the one given.
+// Returns the slip of the fine vertex at `slot` against the straight edge between the slots `ends`.
+// t is set to the position on the edge that is matched with the vertex. It never moves back behind
+// the value given, so that matched points keep their order.
 double ChainSimplifier::deviation(const BorderChain& chain, const std::uint32_t (&ends)[2],
                                   std::uint32_t slot, double& t) const {
   const auto position = [&](std::uint32_t s) {
@@ -118,7 +119,8 @@ double ChainSimplifier::deviation(const BorderChain& chain, const std::uint32_t 
   return worst;
 }
 
-// The same over all fine vertices between two slots.
+// Returns the largest slip over all fine vertices between two slots. It stops as soon as the bound
+// is exceeded.
 double ChainSimplifier::measure(const BorderChain& chain, std::uint32_t from,
                                 std::uint32_t to) const {
   const std::uint32_t ends[2] = {from, to};
@@ -135,7 +137,7 @@ double ChainSimplifier::measure(const BorderChain& chain, std::uint32_t from,
 
 bool ChainSimplifier::may_go(const BorderChain& chain, std::uint32_t slot) const {
   const std::uint32_t a = previous_[slot], b = next_[slot];
-  if (a == kNone || b == kNone || a == b || next_[b] == a) return false;  // three stay
+  if (a == kNone || b == kNone || a == b || next_[b] == a) return false;  // keeps three vertices
   return !(geometry_.position(uv_of(chain, a, 0)) == geometry_.position(uv_of(chain, b, 0)));
 }
 
@@ -155,8 +157,9 @@ ChainSimplifier::Candidate ChainSimplifier::judge(std::uint32_t slot, std::uint3
   return candidate;
 }
 
-// Two sides in one chart are collapsed one after the other: their surroundings must not overlap,
-// or the first would change what was decided about the second.
+// Returns whether the sides can be collapsed independently. Two sides in one chart are collapsed
+// one after the other. Their surroundings must not overlap, because the first collapse would
+// otherwise change what was decided about the second.
 bool ChainSimplifier::apart(const BorderChain& chain) const {
   for (std::uint32_t i = 0; i < chain.side_count; ++i) {
     for (std::uint32_t j = 0; j < i; ++j) {

@@ -1,4 +1,4 @@
-// Internal: removes border vertices, from all charts that share them at once.
+// Internal: removes border vertices, each from all charts that share it at once.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,17 @@
 
 namespace atlas::simplify {
 
-// The slip along a border: each fine border vertex is matched with a point of the coarse border
-// edge, in order; the slip is the distance between the two in space plus that between their uvs,
-// both in texels, in the chart where this is largest. Between matched points both borders are
-// linear, so it is nowhere larger.
+// Removes the vertices of border chains within the bounds of slip. The slip along a border is
+// defined as follows. Each fine border vertex is matched with a point of the coarse border edge, in
+// order. The slip is the distance between the two in space plus the distance between their uvs,
+// both in texels, in the chart where this sum is largest. Between matched points both borders are
+// linear, so the slip is nowhere larger.
 class ChainSimplifier {
  public:
   ChainSimplifier(const Geometry& geometry, std::vector<std::unique_ptr<ChartSimplifier>>& charts,
                   BorderChains chains, std::span<const double> texels_per_unit);
 
-  // Open borders have a bound of their own.
+  // Sets the bounds of slip in texels. Open borders have a bound of their own.
   void set_limits(double slip, double open_slip) {
     slip_ = slip;
     open_slip_ = open_slip;
@@ -28,7 +29,7 @@ class ChainSimplifier {
   void run(double limit, const Context& context);
   double next_cost() const;
   void wake(std::uint32_t chart, const std::vector<std::uint32_t>& vertices);
-  double worst_slip() const;  // bound over all coarse border edges, texels
+  double worst_slip() const;  // upper bound of the slip over all coarse border edges, texels
 
  private:
   struct Entry {
@@ -64,12 +65,12 @@ class ChainSimplifier {
   std::span<const double> texels_per_unit_;
   double slip_ = 0, open_slip_ = 0;
   std::vector<std::uint32_t> next_, previous_;  // remaining neighbours along the chain, or kNone
-  std::vector<float> edge_slip_;                // bound of the coarse edge to next_
+  std::vector<float> edge_slip_;                // slip bound of the coarse edge to next_, texels
   std::vector<std::uint8_t> alive_;
   std::vector<float> key_;
   std::vector<Entry> heap_;
-  std::vector<Home> homes_;      // by chart and vertex
-  std::vector<Collapse> sides_;  // of the attempt at hand
+  std::vector<Home> homes_;      // the slot of each local vertex, sorted by chart and vertex
+  std::vector<Collapse> sides_;  // one collapse a side, of the current attempt
   std::vector<Ring> rings_;
 };
 

@@ -32,8 +32,8 @@ struct ChartMesh::Impl {
   Mesh mesh;
 };
 
-// The neighbours are known already: linking the arrays directly is several times faster than
-// add_face, and cannot fail on an unlucky order of the faces.
+// The half-edges are linked directly, because the neighbours are known already. This is several
+// times faster than add_face, and cannot fail on an unlucky order of the faces.
 ChartMesh::ChartMesh(const FineChart& fine) : impl_(std::make_unique<Impl>()) {
   Mesh& mesh = impl_->mesh;
   const std::uint32_t halves = static_cast<std::uint32_t>(fine.corners.size());

@@ -1,4 +1,4 @@
-// Internal: the half-edge mesh of one chart. OpenMesh stays behind this header, in one .cpp.
+// Internal: the half-edge mesh of one chart. OpenMesh is included only in chart_mesh.cpp.
 #pragma once
 
 #include <array>
@@ -11,14 +11,14 @@
 
 namespace atlas::simplify {
 
-// The neighbours of a vertex, counter-clockwise in uv. Face i lies between neighbours i and i + 1;
-// a border vertex has one face fewer than neighbours.
+// The neighbours of a vertex, counter-clockwise in uv. Face i lies between the neighbours i and i
+// + 1. A border vertex has one face fewer than it has neighbours.
 struct Ring {
   std::vector<std::uint32_t> vertices, faces;
   bool border = false;
 };
 
-// Face and vertex ids are those of the fine chart, for as long as they live.
+// The half-edge mesh. Faces and vertices keep the ids of the fine chart until they are removed.
 class ChartMesh {
  public:
   explicit ChartMesh(const FineChart& fine);
@@ -26,9 +26,9 @@ class ChartMesh {
   ChartMesh(ChartMesh&&) noexcept;
 
   void ring(std::uint32_t v, Ring& out) const;
-  // Number of neighbours, counted no further than `limit`.
+  // The number of neighbours. Counting stops at `limit`.
   std::size_t valence(std::uint32_t v, std::size_t limit) const;
-  // Whether v may be merged into its neighbour w without making the mesh non-manifold.
+  // Whether v can be merged into its neighbour w without making the mesh non-manifold.
   bool can_collapse(std::uint32_t v, std::uint32_t w);
   void collapse(std::uint32_t v, std::uint32_t w);
   bool vertex_alive(std::uint32_t v) const;

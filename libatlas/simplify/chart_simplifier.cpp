@@ -8,11 +8,12 @@ namespace atlas::simplify {
 namespace {
 
 constexpr float kIdle = std::numeric_limits<float>::infinity();
-// Collapses do not give a vertex more neighbours than this, and a vertex that has more from the
-// start is looked at once a run only, not after each of its neighbours' collapses: both would take
-// quadratic time.
+// A collapse must not give a vertex more neighbours than this. A vertex that has more from the
+// start is examined once a run only, and not after each collapse of a neighbour. Without these two
+// rules the time would be quadratic.
 constexpr std::size_t kHub = 96;
-constexpr std::size_t kAttempts = 4;  // targets whose bounds are checked before a vertex rests
+// The number of targets whose bounds are checked before a vertex is left alone.
+constexpr std::size_t kAttempts = 4;
 
 float round_up(double x) {
   return static_cast<float>(x * (1 + 1e-6));
@@ -132,7 +133,8 @@ void ChartSimplifier::push(std::uint32_t v, float cost) {
   std::push_heap(heap_.begin(), heap_.end(), costs_more);
 }
 
-// Judges all targets of an inner vertex and sorts the possible ones by cost.
+// Judges the targets of an inner vertex and sorts the possible ones by cost. Returns false if there
+// is none.
 bool ChartSimplifier::rank(std::uint32_t v) {
   load(v);
   star_.pick_targets(targets_);

@@ -1,4 +1,4 @@
-// Internal: removes vertices of one chart while slip and turn stay within their bounds.
+// Internal: removes vertices of one chart as long as slip and turn stay within their bounds.
 #pragma once
 
 #include <cstdint>
@@ -13,19 +13,21 @@
 namespace atlas::simplify {
 
 struct Collapse : Estimate {
-  std::vector<std::uint32_t> faces;  // that stay and change
-  std::vector<SlipLimits> bounds;    // of these, after check()
+  std::vector<std::uint32_t> faces;  // the faces around v that stay and change
+  std::vector<SlipLimits> bounds;    // upper bounds for these faces, set by check()
 };
 
-// How far a border vertex's removal moves the border, which its chart then reckons with.
+// How far the removal of a border vertex moves the border. check() of the chart takes this into
+// account.
 struct BorderStep {
-  double before = 0;  // bound of the coarse border around it so far, texels
-  double step = 0;    // what is added, texels
+  double before = 0;  // slip bound of the coarse border around the vertex so far, texels
+  double step = 0;    // slip that the removal adds, texels
 };
 
 class ChartSimplifier {
  public:
-  // `texel` is the length of a texel of this chart on its surface. Limits: slip in texels.
+  // `texel` is the length of a texel of this chart on its surface. The slip in `limits` is in
+  // texels.
   ChartSimplifier(const Geometry& geometry, FineChart fine, double texel, const SlipLimits& limits);
   ChartSimplifier(const ChartSimplifier&) = delete;
   ChartSimplifier& operator=(const ChartSimplifier&) = delete;
@@ -35,13 +37,15 @@ class ChartSimplifier {
 
   // Removes inner vertices, cheapest first, as long as they cost at most `limit`.
   void run(double limit, const Context& context);
-  double next_cost() const;  // of the cheapest vertex still queued, infinity when there is none
-  // Border vertices whose surroundings changed since the last call.
+  // The cost of the cheapest vertex in the queue: 0 if a vertex with very many neighbours waits,
+  // and infinity if there is none.
+  double next_cost() const;
+  // Returns the border vertices whose surroundings have changed since the last call.
   std::vector<std::uint32_t> take_touched();
 
-  // For border vertices, whose collapse several charts must agree on: judge() tells whether the new
-  // triangles are well oriented and fills cost and offset; check() whether slip and turn stay
-  // bounded; apply() does it.
+  // Several charts must agree on the collapse of a border vertex, so it is done in three steps.
+  // judge() returns whether the new triangles are well oriented, and sets cost and offset. check()
+  // returns whether slip and turn stay within their bounds. apply() performs the collapse.
   bool judge(std::uint32_t v, std::uint32_t w, Estimate& out);
   bool check(const BorderStep& border, Collapse& collapse);
   void apply(const Collapse& collapse);
@@ -53,7 +57,7 @@ class ChartSimplifier {
     std::uint32_t source;
   };
   void collect(std::vector<Triangle>& out) const;
-  SlipLimits worst() const;  // over the remaining triangles, texels and radians
+  SlipLimits worst() const;  // largest bounds over the remaining triangles, texels and radians
 
  private:
   struct Entry {
@@ -79,12 +83,12 @@ class ChartSimplifier {
   ChartMesh mesh_;
   SlipMeasure measure_;
   std::vector<float> face_slip_, face_turn_;  // upper bounds, texels and radians
-  std::vector<float> key_;                    // cost under which a vertex is queued, or infinity
+  std::vector<float> key_;                    // cost a vertex is queued with, or infinity
   std::vector<Entry> heap_;
   std::vector<std::uint32_t> touched_;
-  std::vector<std::uint32_t> hubs_;   // vertices with very many neighbours, looked at once a run
-  std::vector<bool> hub_;             // 1 a vertex: is one, and waits in hubs_
-  std::vector<Estimate> candidates_;  // of the vertex at hand, cheapest first
+  std::vector<std::uint32_t> hubs_;   // vertices with very many neighbours, examined once a run
+  std::vector<bool> hub_;             // for each vertex, whether it waits in hubs_
+  std::vector<Estimate> candidates_;  // of the current vertex, cheapest first
   std::vector<std::size_t> targets_;
   Collapse attempt_;
   Star star_;

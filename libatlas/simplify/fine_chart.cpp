@@ -31,7 +31,7 @@ void collect_triangles(const Geometry& geometry, std::uint32_t chart,
   }
 }
 
-// Fills `opposite`; corners hold uvs relative to `first_uv` .. `first_uv + uv_count` here.
+// Fills `opposite`. At this point `corners` holds uvs between `first_uv` and `first_uv + uv_count`.
 void glue(FineChart& fine, std::uint32_t first_uv, std::uint32_t uv_count) {
   const std::uint32_t halves = static_cast<std::uint32_t>(fine.corners.size());
   fine.opposite.assign(halves, kNone);
@@ -56,7 +56,7 @@ void glue(FineChart& fine, std::uint32_t first_uv, std::uint32_t uv_count) {
   }
 }
 
-// Turns uvs in `corners` into local vertices, one a fan.
+// Replaces the uvs in `corners` by local vertices, one for each fan of triangles.
 void split_fans(FineChart& fine) {
   const std::uint32_t halves = static_cast<std::uint32_t>(fine.corners.size());
   std::vector<std::uint32_t> local(halves, kNone);
@@ -64,7 +64,7 @@ void split_fans(FineChart& fine) {
     if (local[first] != kNone) continue;
     const std::uint32_t vertex = fine.vertex_count();
     fine.vertex_uv.push_back(fine.corners[first]);
-    std::uint32_t start = first;  // back to the border, or once around
+    std::uint32_t start = first;  // moved back to the border if there is one, else once around
     while (fine.opposite[start] != kNone) {
       start = next_half(fine.opposite[start]);
       if (start == first) break;
@@ -85,8 +85,8 @@ std::uint64_t mix(std::uint64_t h) {
   return h ^ (h >> 32);
 }
 
-// Equal positions have equal keys (0 and -0, too). That different ones differ is all but certain,
-// and a needless cut does no harm.
+// Equal positions have equal keys (0 and -0, too). Different positions almost certainly have
+// different keys. If they have not, the worst result is a needless cut, which does no harm.
 std::uint64_t point_key(const Vec3f& p) {
   const auto bits = [](float x) { return std::uint64_t{std::bit_cast<std::uint32_t>(x + 0.0F)}; };
   return mix(mix(bits(p.x) << 32 | bits(p.y)) + bits(p.z));
@@ -96,7 +96,8 @@ std::uint64_t edge_key(std::uint64_t a, std::uint64_t b) {
   return mix(std::min(a, b)) + std::max(a, b);
 }
 
-// Border edges of all charts by their end points, with a filter for end points in front.
+// An index of the border edges of all charts by their end points. A bit filter of the end points
+// rules out most other points quickly.
 class BorderIndex {
  public:
   BorderIndex(const Geometry& geometry, const std::vector<FineChart>& charts)

@@ -1,4 +1,5 @@
-// Internal: one chart of the fine mesh as a manifold with border: local vertices, neighbours.
+// Internal: one chart of the fine mesh as a manifold with border, with local vertices and
+// neighbours.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +12,8 @@ namespace atlas::simplify {
 
 inline constexpr std::uint32_t kNone = 0xffffffffu;
 
-// Half-edge h = 3 t + i runs from corner i of triangle t to corner (i + 1) % 3, its triangle on its
-// left in uv.
+// Half-edge h = 3 t + i runs from corner i of triangle t to corner (i + 1) % 3. In uv, its triangle
+// is on its left.
 inline std::uint32_t next_half(std::uint32_t h) {
   return h % 3 == 2 ? h - 2 : h + 1;
 }
@@ -20,7 +21,7 @@ inline std::uint32_t previous_half(std::uint32_t h) {
   return h % 3 == 0 ? h + 2 : h - 1;
 }
 
-// Where vertices lie; shared by all charts.
+// Where vertices lie. All charts share this.
 struct Geometry {
   const MeshView* mesh = nullptr;
   const ChartSet* charts = nullptr;
@@ -32,14 +33,15 @@ struct Geometry {
   }
 };
 
-// Triangles are glued where exactly two of them share an edge between the same two uvs, in opposite
-// directions; every other edge is border. A local vertex is one fan of triangles around one uv, so
-// that each vertex has one disk or one half-disk.
+// One chart as a manifold. Two triangles are neighbours if exactly these two share an edge between
+// the same two uvs, in opposite directions. Every other edge is a border edge. A local vertex is
+// one fan of triangles around one uv, so that each vertex has one disk or one half-disk of
+// triangles.
 struct FineChart {
   std::vector<std::uint32_t> corners;      // 3 a triangle: local vertices
   std::vector<std::uint32_t> opposite;     // 3 a triangle: the half-edge on the other side or kNone
-  std::vector<std::uint32_t> vertex_half;  // 1 a vertex: a half-edge leaving it; for a border
-                                           // vertex the one along the border
+  std::vector<std::uint32_t> vertex_half;  // 1 a vertex: a half-edge that leaves it; for a border
+                                           // vertex, the one that runs along the border
   std::vector<std::uint32_t> vertex_uv;    // 1 a vertex: into ChartSet::uvs
   std::vector<std::uint32_t> source;       // 1 a triangle: triangle of the input
   std::uint64_t dropped = 0;               // triangles with two equal corners
@@ -53,7 +55,8 @@ struct FineChart {
   std::uint32_t border_into(std::uint32_t v) const;
 };
 
-// Where the vertices of a fine chart lie, in their order: neighbours are close to each other here.
+// Where the vertices of a fine chart lie, in the order of the vertices. Neighbours are close to
+// each other in these arrays.
 struct VertexPoints {
   std::vector<Vec2d> uvs;
   std::vector<Vec3f> positions;
@@ -61,13 +64,14 @@ struct VertexPoints {
   VertexPoints(const Geometry& geometry, const FineChart& fine);
 };
 
-// `flipped` marks the triangles of the input that the chart turns over.
+// Builds one chart. `flipped` marks the triangles of the input whose orientation the chart
+// reverses.
 FineChart build_fine_chart(const Geometry& geometry, std::uint32_t chart,
                            const std::vector<bool>& flipped);
 
-// Cuts charts open along edges where the border of another sheet is fixed to them (three walls that
-// share an edge of which two lie in one chart), so that all are simplified alike and none comes
-// off. Returns the number of edges cut.
+// Cuts charts open along edges to which the border of another sheet is attached. An example are
+// three walls that share an edge, two of which lie in one chart. After the cut, all sheets at the
+// edge are simplified together and none comes off. Returns the number of edges cut.
 std::uint64_t cut_shared_edges(const Geometry& geometry, std::vector<FineChart>& charts,
                                const Context& context);
 

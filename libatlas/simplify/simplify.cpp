@@ -98,7 +98,7 @@ Status check_input(const SimplifyInput& input) {
   return {};
 }
 
-// Twice the areas of a fine triangle.
+// Twice the areas of a triangle in space and in uv.
 struct Areas {
   double space = 0, uv = 0;
 };
@@ -112,7 +112,8 @@ Areas areas_of(const Geometry& geometry, const std::uint32_t (&uv)[3]) {
           a.x * b.y - a.y * b.x};
 }
 
-// The run: fine charts, their borders, then rounds of ever costlier collapses.
+// One run of the simplification: it builds the fine charts, finds their borders, and then collapses
+// vertices in rounds of rising cost.
 class Run {
  public:
   Run(const Geometry& geometry, std::span<const double> texels_per_unit,
@@ -170,7 +171,7 @@ void Run::build_simplifiers() {
         sum.space += areas.space;
         sum.uv += areas.uv;
       }
-      // The chart's scale: one on the whole unless relative densities differ.
+      // The chart's scale from uv to the surface. It is about 1 unless relative densities differ.
       const double scale = sum.space > 0 && sum.uv > 0 ? std::sqrt(sum.space / sum.uv) : 1;
       charts_[c] = std::make_unique<ChartSimplifier>(geometry_, std::move(fine_[c]),
                                                      scale / density_[c], limits);
@@ -186,10 +187,11 @@ void Run::build_simplifiers() {
                       std::min(options_.max_border_slip_texels, options_.max_slip_texels));
 }
 
-// Inner vertices of all charts in parallel, then border vertices, up to the same cost; then both up
-// to a higher one. So borders and insides thin out together, whatever the number of threads.
+// Each round collapses the inner vertices of all charts in parallel, and then border vertices up to
+// the same cost. The next round does both up to a higher cost. Borders and insides are therefore
+// simplified together, whatever the number of threads.
 void Run::rounds() {
-  constexpr double kGrowth = 3, kLargest = std::numeric_limits<float>::max();  // as costs are kept
+  constexpr double kGrowth = 3, kLargest = std::numeric_limits<float>::max();  // costs are floats
   constexpr double kUsualRounds = 24;
   double limit = 0;
   for (int round = 0; !context_.cancelled(); ++round) {
@@ -236,7 +238,8 @@ void Run::collect() {
     }
     triangles[c] = {};
   }
-  // Bounds are kept as floats rounded up: they were checked before that.
+  // Bounds are stored as floats that are rounded up. They were checked against the options before
+  // the rounding, so the excess is only rounding.
   out_.max_slip_texels = std::min(out_.max_slip_texels, options_.max_slip_texels);
   out_.max_turn_degrees = std::min(out_.max_turn_degrees, options_.max_turn_degrees);
   out_.triangles_out = out_.triangle_chart.size();

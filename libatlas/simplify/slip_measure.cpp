@@ -8,13 +8,13 @@
 namespace atlas::simplify {
 namespace {
 
-// Strips narrower than this share of the slip's bound do not count for the turn: along a crease uvs
-// are straight up to the solver's tolerance only, so that a triangle on one side covers a sliver of
-// the other.
+// Strips narrower than this share of the slip's bound do not count for the turn. Along a crease,
+// uvs are straight only up to the solver's tolerance, so a triangle on one side of the crease
+// covers a sliver of the other side.
 constexpr double kStrip = 0.1;
 
-// A point of the clipped piece: barycentric coordinates in the coarse triangle (two of them; the
-// third is the rest) and the gap between the surfaces there.
+// A point of the clipped piece: its barycentric coordinates in the coarse triangle, and the gap
+// between the two surfaces there.
 struct Sample {
   double b[3];
   glm::dvec3 gap;
@@ -27,7 +27,7 @@ Sample between(const Sample& p, const Sample& q, double t) {
   return r;
 }
 
-// Clips a convex polygon by the three sides of the coarse triangle.
+// A fine triangle clipped by sides of the coarse triangle: a convex polygon.
 struct Piece {
   Sample points[8];
   int count = 0;
@@ -53,7 +53,7 @@ struct Piece {
     }
     return std::abs(twice);
   }
-  // Area over longest side in space, on a coarse triangle with these edges.
+  // The area in space divided by the longest side, on a coarse triangle with the edges e1 and e2.
   double width(const glm::dvec3& e1, const glm::dvec3& e2) const {
     double longest = 0;
     for (int i = 0; i < count; ++i) {
@@ -101,7 +101,7 @@ bool SlipMeasure::visit(std::uint32_t triangle, const Coarse& coarse, const Slip
     s.b[2] = glm::dot(coarse.dv, d);
     s.b[0] = 1 - s.b[1] - s.b[2];
   }
-  constexpr double kTouch = 1e-12;  // pieces thinner than rounding are left to their neighbours
+  constexpr double kTouch = 1e-12;  // thinner pieces are rounding; neighbours cover them
   bool across[3];
   for (int side = 0; side < 3; ++side) {
     const double b0 = piece.points[0].b[side], b1 = piece.points[1].b[side],
@@ -174,7 +174,7 @@ bool SlipMeasure::measure(const std::array<std::uint32_t, 3>& triangle, const Sl
     stack_.pop_back();
     if (!visit(next, coarse, limits, found)) return false;
   }
-  constexpr double kCoverage = 1e-6;  // rounding of the clipped areas' sum
+  constexpr double kCoverage = 1e-6;  // allows for rounding of the sum of clipped areas
   return at_border || covered_ > 1 - kCoverage;
 }
 

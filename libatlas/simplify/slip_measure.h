@@ -1,4 +1,4 @@
-// Internal: the exact slip and turn of one coarse triangle against the fine chart.
+// Internal: measures the exact slip and turn of one coarse triangle against the fine chart.
 #pragma once
 
 #include <array>
@@ -10,19 +10,21 @@
 namespace atlas::simplify {
 
 struct SlipLimits {
-  double slip = 0;  // scene units
+  double slip = 0;  // scene units in SlipMeasure, texels elsewhere
   double turn = 0;  // radians
 };
 
-// Coarse and fine surface are linear over the pieces into which the coarse triangle and the fine
-// ones cut each other in uv, so the largest distance is at a corner of a piece: these are all
-// visited, spreading over the fine triangles from the coarse triangle's corners.
+// The coarse triangle and the fine triangles cut each other into pieces in uv. Both surfaces are
+// linear over each piece, so the largest distance is at a corner of a piece. All these corners are
+// visited, beginning with the fine triangles at the coarse triangle's corners and spreading from
+// there.
 class SlipMeasure {
  public:
   SlipMeasure(const FineChart& fine, const VertexPoints& points);
 
-  // Returns false as soon as a limit is exceeded (or, for a triangle away from the border, when the
-  // fine chart does not cover it). Otherwise sets `found` to slip and turn of the triangle.
+  // Returns false as soon as a limit is exceeded. It also returns false if the fine chart does not
+  // cover the triangle and the triangle has no corner on the border. Otherwise it sets `found` to
+  // the slip and turn of the triangle.
   bool measure(const std::array<std::uint32_t, 3>& triangle, const SlipLimits& limits,
                SlipLimits& found);
 
@@ -37,8 +39,8 @@ class SlipMeasure {
   const VertexPoints& points_;
   std::vector<std::uint32_t> stamp_, stack_;
   std::uint32_t epoch_ = 0;
-  double turn_cosine_ = 1;  // of the turn found so far
-  double covered_ = 0;      // of the coarse triangle, 1 is all
+  double turn_cosine_ = 1;  // cosine of the largest turn found so far
+  double covered_ = 0;      // share of the coarse triangle that was covered, 1 is all
 };
 
 }  // namespace atlas::simplify

@@ -9,15 +9,17 @@
 namespace atlas::simplify {
 namespace {
 
-// Weight of an edge's length (texels) against slip (in units of the bound). It spreads the
-// vertices of flat parts evenly, and is small enough to leave curved parts to the slip.
+// Weight of an edge's length (in texels) against slip (in units of the bound). It spreads the
+// vertices of flat parts evenly, and is small enough that slip decides on curved parts.
 constexpr double kLengthWeight = 0.02;
 // A needle of quality q costs 1 + kNeedle / q times as much.
 constexpr double kNeedle = 0.1;
-// No triangle thinner than this arises (1 is equilateral, 0 has no area) where there was none: a
-// strip of one to ten thousand still may.
+// No triangle of lower quality than kThinnest arises where there was none before (1 is equilateral,
+// 0 has no area). A strip with sides of one to ten thousand is still allowed. Where there was a
+// thinner one before, kNoArea is the lowest limit.
 constexpr double kThinnest = 2e-4, kNoArea = 1e-7;
-// Around a vertex with many neighbours only the nearest are tried as targets.
+// If a vertex has more than kManyNeighbours neighbours, only the kNearest nearest are tried as
+// targets.
 constexpr std::size_t kManyNeighbours = 14, kNearest = 8;
 
 bool turns_left(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
@@ -48,7 +50,8 @@ void Star::measure_faces() {
   }
 }
 
-// Finds the new triangle that holds v's uv, and the gap there.
+// Finds the new triangle that contains v's uv, and sets `offset` to the gap there. Returns false if
+// there is no new triangle.
 bool Star::locate(std::size_t target, double texel, Estimate& out) const {
   double best = -std::numeric_limits<double>::infinity();
   const glm::dvec2& o = uvs[target];
@@ -84,7 +87,7 @@ bool Star::judge(std::size_t target, double texel, double slip_bound, Estimate& 
     if (normals[i] != glm::dvec3(0) && glm::dot(normal, normals[i]) <= 0) return false;
     worst = std::min(worst, q);
   }
-  if (!locate(target, texel, out)) return false;  // nothing would be left
+  if (!locate(target, texel, out)) return false;  // no triangle would be left
   out.v = vertex;
   out.w = ring.vertices[target];
   const double slip = out.outside ? 0 : out.offset / slip_bound;

@@ -1,4 +1,4 @@
-// Internal: a vertex and what lies around it, and what merging it into a neighbour would do.
+// Internal: a vertex with its surroundings, and the effect of merging it into a neighbour.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,17 @@
 
 namespace atlas::simplify {
 
-// What merging a vertex v into its neighbour w would do.
+// The effect of merging a vertex v into its neighbour w.
 struct Estimate {
   std::uint32_t v = kNone, w = kNone;
-  double cost = 0;  // dimensionless: (slip / bound)² + (small factor x length in texels)², worse
-                    // for needles
+  double cost = 0;  // dimensionless: (slip / bound)² + (small factor x length in texels)², and more
+                    // if needles arise
   double offset = 0;     // distance in space between v and the new surface at its uv, texels
   bool outside = false;  // v's uv lies outside the new triangles (border vertices only)
 };
 
-// The surroundings of the vertex at hand, fetched once for all its targets. Targets are numbers of
-// neighbours in the ring.
+// The surroundings of the current vertex, fetched once for all its targets. A target is a neighbour
+// that the vertex could be merged into, given as an index into the ring.
 struct Star {
   Ring ring;
   std::uint32_t vertex = kNone;
@@ -36,18 +36,20 @@ struct Star {
     return face != target && after(face) != target;
   }
 
-  // Fills normals and worst_quality from what comes before them.
+  // Fills normals and worst_quality from the members before them.
   void measure_faces();
 
-  // The neighbours that are tried: all, or the nearest of many.
+  // Collects the neighbours that are tried: all of them, or the nearest ones if there are many.
   void pick_targets(std::vector<std::size_t>& out) const;
 
-  // False where new triangles would be turned, much thinner than the old ones, or none. `texel` is
-  // its length on the surface, `slip` the bound in texels.
+  // Returns false if a new triangle would be turned over or be much thinner than the old ones, or
+  // if no triangle would be left. `texel` is the length of a texel on the surface, and `slip` the
+  // bound of the slip in texels.
   bool judge(std::size_t target, double texel, double slip, Estimate& out) const;
 
-  // Largest distance between the surfaces before and after, at the same uv, where an edge that goes
-  // crosses one that comes. (At the vertex itself it is Estimate::offset.)
+  // The largest distance, in scene units, between the surfaces before and after the collapse, at
+  // the uvs where a removed edge crosses a new one. (At the vertex itself the distance is
+  // Estimate::offset.)
   double step_slip(std::size_t target) const;
   double step_turn(std::size_t target) const;  // largest angle between old and new faces, radians
 
