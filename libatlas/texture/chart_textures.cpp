@@ -40,8 +40,8 @@ double uv_area2(const ChartSet& charts, std::size_t t) {
   return std::fabs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
 }
 
-// Density of the chart's diffuse textures: root mean square over the area, so that the chart gets
-// as many texels as its textures have there.
+// Returns the density of the chart's diffuse textures. It is the root mean square over the area, so
+// that the chart gets as many texels as its textures have there.
 double texture_density(const ChartLight& light, const Chart& chart) {
   double area = 0, texels = 0;
   for (const std::uint32_t t : triangles_of(light.charts, chart)) {
@@ -57,7 +57,7 @@ double wanted_density(const ChartLight& light, const TextureOptions& options, co
   return std::max(1 / options.texel, own * options.texture_sampling);
 }
 
-// Whether one colour fills the chart, from the corners alone.
+// Returns whether one colour fills the chart. The corners of the triangles are enough to decide.
 ChartContent content(const ChartLight& light, const Chart& chart) {
   bool first = true, unlit = true;
   float colour[3] = {0, 0, 0};
@@ -73,7 +73,8 @@ ChartContent content(const ChartLight& light, const Chart& chart) {
   return unlit ? ChartContent::unlit : ChartContent::uniform;
 }
 
-// Shrinks each side on its own to min_side: one colour needs no shape.
+// Shrinks each side to min_side. The sides are independent, because a texture of one colour needs
+// no particular shape.
 void shrink(ChartTexture& texture, Vec2d size, int min_side) {
   const auto side = [min_side](std::int32_t full, double length, double& density) {
     if (full <= min_side) return full;
@@ -90,13 +91,13 @@ struct ChartOutcome {
   bool raised = false;
 };
 
-// What one chart's textures are held in.
+// Memory for the textures of one chart. It is used again for other charts.
 struct Room {
   SampledChart full;
   HalvedCharts halved;
 };
 
-// What size_chart works with.
+// The input of size_chart, with the memory that it uses.
 struct Sizing {
   const ChartLight& light;
   const TextureOptions& options;
@@ -185,7 +186,8 @@ Status check_light(const ChartLight& light, std::uint32_t chart) {
 }
 
 TexelSize texel_size(Vec2d size, Vec2d texels_per_unit) {
-  // A millionth of a texel more than a whole number is rounding, and sticks out of the box unseen.
+  // A millionth of a texel more than a whole number is rounding. The chart then extends beyond its
+  // box by that amount, which is not visible.
   const auto side = [](double texels) {
     return static_cast<std::int32_t>(std::clamp(std::ceil(texels - 1e-6), 1.0, 1e9));
   };

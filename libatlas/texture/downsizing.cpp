@@ -28,7 +28,8 @@ float largest_channel(Lanes v) {
   return std::max({v[0], v[1], v[2]});
 }
 
-// The mean of the covered texels of the quad at (2x, 2y), and the largest deviation from it.
+// Returns the mean of the covered texels of the quad at (2x, 2y), and raises `deviation` to the
+// largest deviation from the mean.
 Texel quad_mean(const SampledChart& in, int x, int y, float& deviation) {
   const Texel* covered[4];
   int n = 0;
@@ -50,8 +51,9 @@ Texel quad_mean(const SampledChart& in, int x, int y, float& deviation) {
   return mean;
 }
 
-// Quads of covered texels only, which most are: the same sums for all channels at once. Returns how
-// many quads from the left of row y it has halved.
+// Halves quads of row y from the left, up to the first quad that is not completely covered. Most
+// quads are, and for these the sums of all channels are computed at once. Returns the number of
+// halved quads.
 int halve_covered(const SampledChart& in, int y, Texel* out, Lanes& deviation) {
   if (2 * y + 1 >= in.height) return 0;
   const Texel* lower = &in.texels[std::size_t(2 * y) * in.width];
@@ -71,7 +73,8 @@ int halve_covered(const SampledChart& in, int y, Texel* out, Lanes& deviation) {
   return x;
 }
 
-// False as soon as a row holds a quad that moves too far.
+// Halves the texture. Returns false as soon as a row contains a quad that changes by the threshold
+// or more.
 bool halve(const SampledChart& in, float threshold, SampledChart& out) {
   out.width = (in.width + 1) / 2;
   out.height = (in.height + 1) / 2;
@@ -89,10 +92,10 @@ bool halve(const SampledChart& in, float threshold, SampledChart& out) {
   return true;
 }
 
-// Between which texels of a row or column, and where between them, a full texel's centre lies.
+// The two texels of a row or column of the halved texture that a full texel's centre lies between.
 struct Between {
   int low = 0, high = 0;
-  float share = 0;  // of `high`
+  float share = 0;  // weight of `high` in the interpolation
 };
 
 std::vector<Between> places(int full, int small, int halvings) {
@@ -107,9 +110,10 @@ std::vector<Between> places(int full, int small, int halvings) {
   return out;
 }
 
-// Halved texels have weight 1 if covered, else they are 0 all over: sums of them times weights hold
-// the colour times the sum of the covered ones' weights in R, G, B, and that sum in the 4th lane.
-// One row of them between two rows of texels.
+// Interpolates one row between two rows of halved texels. A halved texel has weight 1 if it is
+// covered, and is 0 in all lanes otherwise. An interpolated sum therefore holds the sum of the
+// covered texels' interpolation weights in the 4th lane, and the mean colour of these texels times
+// that sum in R, G, B.
 void blend_rows(const SampledChart& in, const Between& row, std::vector<Lanes>& out) {
   const Texel* low = &in.texels[std::size_t(row.low) * in.width];
   const Texel* high = &in.texels[std::size_t(row.high) * in.width];
@@ -117,7 +121,7 @@ void blend_rows(const SampledChart& in, const Between& row, std::vector<Lanes>& 
     out[i] = (1 - row.share) * load(low[i]) + row.share * load(high[i]);
 }
 
-// `full` against the bilinear values of `small`'s covered texels.
+// Measures the errors of `full` against the bilinear values of `small`'s covered texels.
 void measure(const SampledChart& full, const SampledChart& small, Downsizing& out) {
   const std::vector<Between> columns = places(full.width, small.width, out.halvings);
   const std::vector<Between> rows = places(full.height, small.height, out.halvings);

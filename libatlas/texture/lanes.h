@@ -1,5 +1,5 @@
-// Internal: four floats that the compiler keeps in one SIMD register (GCC and Clang vector
-// extension), for colours in inner loops.
+// Internal: four floats that the compiler keeps in one SIMD register (a vector extension of GCC and
+// Clang). Inner loops use them for colours.
 #pragma once
 
 #include "libatlas/texture/srgb.h"
@@ -13,8 +13,9 @@ inline Lanes splat_lanes(float v) {
   return Lanes{v, v, v, v};
 }
 
-// Of each lane `a > b ? a : b` and `a < b ? a : b`, `b` where one of them is NaN: one instruction,
-// which compilers do not make of that.
+// larger_lanes is `a > b ? a : b` of each lane, and smaller_lanes is `a < b ? a : b`. Both give `b`
+// if one of the two is NaN. The intrinsics are one instruction, which compilers do not make of
+// these expressions.
 #ifdef __SSE__
 inline Lanes larger_lanes(Lanes a, Lanes b) {
   return __builtin_ia32_maxps(a, b);
@@ -31,7 +32,7 @@ inline Lanes smaller_lanes(Lanes a, Lanes b) {
 }
 #endif
 
-// NaN gives `low`.
+// Clamps each lane to [low, high]. NaN gives `low`.
 inline Lanes clamp_lanes(Lanes v, float low, float high) {
   return smaller_lanes(larger_lanes(v, splat_lanes(low)), splat_lanes(high));
 }
@@ -43,14 +44,14 @@ inline IntLanes quantize_lanes(Lanes display) {
 
 namespace srgb_detail {
 
-// Start and rise of a piece, loaded at once.
+// Loads start and rise of a piece at once.
 inline double piece_as_double(std::int32_t index) {
   return std::bit_cast<double>(tables.encode[static_cast<std::uint32_t>(index)]);
 }
 
 }  // namespace srgb_detail
 
-// srgb_encode of the first three lanes; the 4th becomes 1.
+// Applies srgb_encode to the first three lanes. The 4th becomes 1.
 inline Lanes srgb_encode_lanes(Lanes linear) {
   using namespace srgb_detail;
   const Lanes v = clamp_lanes(linear, 0, 1);

@@ -9,7 +9,7 @@
 namespace atlas {
 namespace {
 
-// srgb_encode_lanes of two colours.
+// Applies srgb_encode_lanes to two colours at once.
 ATLAS_INLINE Lanes2 encode_two(Lanes2 v) {
   using namespace srgb_detail;
   constexpr float kSmallest = 1.0f / (1 << kOctaves);
@@ -37,7 +37,8 @@ ATLAS_WIDE void encode_wide(float scale, int n, Lanes* colours) {
   if (i < n) colours[i] = srgb_encode_lanes(colours[i] * scale);
 }
 
-// Four neighbouring positions of a row.
+// Four consecutive sample positions of a row, each as its lower left texel and the shares of the
+// texels to the right and above.
 struct Positions {
   IntLanes left, low;
   Lanes right_share, high_share;
@@ -53,7 +54,7 @@ struct Positions {
     high_share = y - __builtin_convertvector(low, Lanes);
   }
 
-  // In place of those from `count` on.
+  // Replaces the positions from `count` on by the first one.
   ATLAS_INLINE void repeat_first(std::size_t count) {
     const IntLanes number{0, 1, 2, 3};
     const IntLanes beyond = number >= static_cast<std::int32_t>(count);
@@ -84,7 +85,7 @@ void multiply_narrow(const TextureRow& row, const Texels& texels, std::span<Lane
 
 using Places = std::uint32_t __attribute__((vector_size(16)));
 
-// bilinear() for two positions at once, by the places of their lower left texels.
+// Does bilinear() for two positions at once. `at` holds the indices of their lower left texels.
 template <class Texels>
 ATLAS_INLINE Lanes2 bilinear_two(const Texels& texel, std::size_t width, const std::size_t at[2],
                                  Lanes2 right_share, Lanes2 high_share) {
@@ -96,12 +97,13 @@ ATLAS_INLINE Lanes2 bilinear_two(const Texels& texel, std::size_t width, const s
   return low + high_share * (high - low);
 }
 
-// Four positions of whose four texels none is beyond the texture's edge.
+// Multiplies four colours. None of the four texels around any of the positions may lie beyond the
+// texture's edge.
 template <class Texels>
 ATLAS_INLINE void multiply_four(const TextureRow& row, const Texels& texels, const Positions& p,
                                 Lanes* colours) {
   const auto width = static_cast<std::size_t>(row.level.width);
-  // Unsigned: the largest textures have more texels than signed numbers.
+  // Unsigned, because the largest textures have more texels than a signed number can count.
   const Places at = reinterpret_cast<Places>(p.low) * static_cast<std::uint32_t>(width) +
                     reinterpret_cast<Places>(p.left);
   const std::size_t place[4] = {at[0], at[1], at[2], at[3]};
@@ -112,7 +114,8 @@ ATLAS_INLINE void multiply_four(const TextureRow& row, const Texels& texels, con
       bilinear_two(texels, width, place + 2, __builtin_shufflevector(x, x, 2, 2, 2, 2, 3, 3, 3, 3),
                    __builtin_shufflevector(y, y, 2, 2, 2, 2, 3, 3, 3, 3))};
   for (int k = 0; k < 2; ++k) {
-    // Joined, as they were stored: processors wait for what they are to load in larger pieces.
+    // Two colours are loaded and joined, because they were stored one by one. A single load of both
+    // would have to wait until the processor has completed both stores.
     const Lanes2 colour = join_lanes(colours[2 * k], colours[2 * k + 1]) * two[k];
     std::memcpy(&colours[2 * k], &colour, sizeof colour);
   }

@@ -1,5 +1,5 @@
-// Internal: many samples of one row at once, in as wide vectors as the processor has. Results are
-// those of one sample after another, bit by bit.
+// Internal: processes many samples of one row at once, in vectors as wide as the processor has. The
+// results are the same, bit by bit, as those of one sample after another.
 #pragma once
 
 #include "libatlas/core/vec.h"
@@ -8,7 +8,7 @@
 
 namespace atlas {
 
-// Positions at + (first + i) * step in a texture, in texels of the level.
+// The positions at + (first + i) * step in a texture, in texels of the level.
 struct TextureRow {
   const TextureLevels::Level& level;
   TextureWraps wraps;
@@ -16,10 +16,10 @@ struct TextureRow {
   int first = 0;
 };
 
-// Multiplies colours[i], 0 <= i < n, by look_up() at position i.
+// Multiplies colours[i], 0 <= i < n, by the result of look_up() at position i.
 void multiply_by_texture(const TextureRow& row, int n, Lanes* colours);
 
-// Makes colours[i] srgb_encode_lanes(scale * colours[i]).
+// Replaces colours[i], 0 <= i < n, by srgb_encode_lanes(scale * colours[i]).
 void srgb_encode_row(float scale, int n, Lanes* colours);
 
 }  // namespace atlas

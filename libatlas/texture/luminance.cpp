@@ -11,15 +11,15 @@
 namespace atlas {
 namespace {
 
-// Decoding is a third of a look-up. Textures that repeat over a surface are looked up most, and are
-// small; decoded, all of them together take 16 MiB at most.
+// The number of texels that are kept decoded, over all textures: 16 MiB. Decoding takes a third of
+// the time of a lookup. Textures that repeat over a surface are looked up most, and they are small.
 constexpr std::size_t kDecodedTexels = std::size_t{1} << 20;
 
-// Widest triangle that a texture is looked up on, in its texels.
+// The largest texture coordinate of a triangle, in texels, at which the texture is still looked up.
 constexpr float kMostTexels = 1 << 23;
 
-// For each of n outputs of a row of `size` inputs: the first input and the weights of those it
-// spans.
+// The inputs that one output of a shortened row spans: the first of them, their number and their
+// weights.
 struct Span {
   int first = 0, count = 0;
   float weight[4] = {};
@@ -59,13 +59,14 @@ Image8 halve(const TextureLevels::Level& in) {
   return out;
 }
 
-// What is taken off a coordinate first, so that far-off ones lose no precision.
+// Returns the number of whole repeats that is subtracted from the coordinates of a triangle, so
+// that coordinates far from zero lose no precision.
 float whole_repeats(float least, TextureWrap wrap) {
   if (wrap == TextureWrap::clamp) return 0;
   return wrap == TextureWrap::mirror ? 2 * std::floor(least / 2) : std::floor(least);
 }
 
-// In registers, where memcmp would be called.
+// Compares in registers. memcmp would be a function call.
 bool same_bits(const float (&a)[4], const float (&b)[4]) {
   std::uint64_t x[2], y[2];
   std::memcpy(x, a, sizeof x);
@@ -73,7 +74,7 @@ bool same_bits(const float (&a)[4], const float (&b)[4]) {
   return ((x[0] ^ y[0]) | (x[1] ^ y[1])) == 0;
 }
 
-// The texture of triangle t if it has one that can be looked up, or -1.
+// Returns the texture of triangle t if it has one that can be looked up, or -1.
 std::int32_t texture_of(const Scene& scene, std::uint32_t t) {
   const std::int32_t id = scene.materials[scene.triangle_material[t]].texture;
   if (id < 0 || scene.texcoord_indices.empty()) return -1;
@@ -93,7 +94,7 @@ TextureLevels::TextureLevels(const Texture& texture) {
   levels.push_back(level);
   while (level.width > 1 || level.height > 1) {
     storage.push_back(halve(level));
-    const Image8& small = storage.back();  // its texels stay where they are when storage grows
+    const Image8& small = storage.back();  // its texels do not move when storage grows
     level = {small.width, small.height, small.channels, small.texels.data()};
     levels.push_back(level);
   }
@@ -137,7 +138,7 @@ struct LuminanceSampler::State {
     return scene.materials[scene.triangle_material[t]];
   }
 
-  // Illumination times Kd at a corner of triangle t.
+  // Returns the illumination at a corner of triangle t, times Kd if it is illuminance.
   Vec3f untextured(std::uint32_t t, int corner) const {
     const std::size_t at = 3 * std::size_t(t) + static_cast<std::size_t>(corner);
     const Vec3f e = scene.lit() ? scene.illumination[scene.indices[at]] : Vec3f{1, 1, 1};
@@ -197,8 +198,8 @@ LuminanceSampler::Triangle LuminanceSampler::prepare(std::uint32_t t, double sam
     return out;
   }
   const auto& levels = out.texture->levels;
-  // Slightly more than one texture texel a sample still reads level 0: half a level too sharp
-  // shows less than half a level too blurred.
+  // If a sample spans slightly more than one texel of the texture, level 0 is still read. A texture
+  // that is half a level too sharp is less visible than one that is half a level too blurred.
   const double ratio = sample_spacing * texture_density(t);
   if (ratio > 1)
     out.level =
@@ -213,7 +214,8 @@ LuminanceSampler::Triangle LuminanceSampler::prepare(std::uint32_t t, double sam
   for (int k = 0; k < 3; ++k) {
     out.texcoord[k][0] = (c[k].x - u0) * level.width;
     out.texcoord[k][1] = (c[k].y - v0) * level.height;
-    // Across millions of texels a float knows no position any more: the texture's mean.
+    // A float cannot represent positions across millions of texels. The texture's mean, which is
+    // the last level, is used instead.
     if (!(std::fabs(out.texcoord[k][0]) < kMostTexels) ||
         !(std::fabs(out.texcoord[k][1]) < kMostTexels)) {
       out.level = static_cast<int>(levels.size()) - 1;

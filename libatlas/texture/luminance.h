@@ -1,4 +1,4 @@
-// What the atlases hold: the light that leaves the surface, sampled anywhere on a triangle.
+// The light that leaves the surface, sampled at any point of a triangle. Atlases store this light.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@ namespace atlas {
 
 struct TextureLevels;
 
-// What Scene::illumination holds.
+// The quantity that Scene::illumination holds.
 enum class Quantity {
-  illuminance,  // E: the diffuse reflectance still has to be applied
-  luminance,    // already what leaves the surface: taken as it is
+  illuminance,  // E; the diffuse reflectance still has to be applied
+  luminance,    // the light that leaves the surface; it is taken as it is
 };
 
 // "Luminance" here is, as in Barladian et al. (section 2), illuminance times diffuse reflectance,
@@ -23,9 +23,9 @@ enum class Quantity {
 // constant that exposure absorbs, so it is left out: values stay comparable with the input's.
 // With Quantity::luminance the values are the input's own (cd/m²).
 //
-// The sampler refers to the scene, which must outlive it and be as check_scene() asks; it builds
-// mip chains of the textures (8-bit, a third of their size), and keeps up to 16 MiB of small ones
-// decoded. Thread-safe once built.
+// The sampler refers to the scene, which must outlive it and pass check_scene(). It builds mip
+// chains of the textures (8-bit, a third of the textures' size), and keeps up to 16 MiB of small
+// textures decoded. It is thread-safe once built.
 class LuminanceSampler {
  public:
   LuminanceSampler(const Scene& scene, Quantity quantity);
@@ -33,10 +33,10 @@ class LuminanceSampler {
   LuminanceSampler(LuminanceSampler&&) noexcept;
   LuminanceSampler& operator=(LuminanceSampler&&) noexcept;
 
-  // A triangle prepared for many samples: corner illumination (1 where the scene has none) and, if
-  // textured, corner texture coordinates in units of texture texels.
+  // A triangle prepared for many samples. It holds the illumination at the corners (1 if the scene
+  // has none) and, if the triangle is textured, the texture coordinates at the corners in texels.
   struct Triangle {
-    float illumination[3][4];  // corner, RGB (already times Kd), 4th lane 0
+    float illumination[3][4];  // of each corner: RGB (already times Kd), and 0 in the 4th lane
     float texcoord[3][2];      // in texels of the mip level `level`
     const TextureLevels* texture = nullptr;
     TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
@@ -44,20 +44,22 @@ class LuminanceSampler {
     bool constant = false;  // one colour over the whole triangle, illumination[0]
   };
 
-  // Prepares triangle t. `sample_spacing` is the distance of the samples to be taken, in the same
-  // length unit as positions: the texture is read from the finest mip level whose texels are not
-  // smaller than about that; 0 reads level 0.
+  // Prepares triangle t. `sample_spacing` is the distance of the samples to be taken, in the length
+  // unit of positions. The texture is read from the finest mip level whose texels are not smaller
+  // than about this distance. With 0, level 0 is read.
   Triangle prepare(std::uint32_t t, double sample_spacing) const;
 
-  // RGB at barycentric coordinates (b0, b1, b2), which may lie a little outside: linear
-  // illumination times bilinear texture.
+  // Returns the RGB value at the barycentric coordinates (b0, b1, b2), which may lie a little
+  // outside the triangle. It is the linearly interpolated illumination times the bilinearly
+  // interpolated texture.
   static Vec3f sample(const Triangle& triangle, float b0, float b1, float b2);
 
-  // The first of triangle t's corners, 0..2, whose illumination times reflectance is no number
-  // or beyond kMostLight, as no reader leaves illumination; 3 if there is none.
+  // Returns the first of triangle t's corners, 0..2, whose illumination times reflectance is not a
+  // number or is beyond kMostLight, and 3 if there is none. Readers leave no such illumination.
   int bad_corner(std::uint32_t t) const;
 
-  // texture_density() of the scene; 0 where it holds luminance, which textures take no part in.
+  // Returns texture_density() of the scene, or 0 if the scene holds luminance, because textures are
+  // not applied to that.
   double texture_density(std::uint32_t t) const;
 
   const Scene& scene() const;
@@ -67,8 +69,8 @@ class LuminanceSampler {
   std::unique_ptr<const State> state_;
 };
 
-// Texture texels per length unit of the surface of triangle t (geometric mean over directions);
-// 0 if it has no texture, no coordinates or no area.
+// Returns the texture's texels per length unit of the surface of triangle t (geometric mean over
+// directions). It is 0 if the triangle has no texture, no texture coordinates or no area.
 double texture_density(const Scene& scene, std::uint32_t t);
 
 }  // namespace atlas

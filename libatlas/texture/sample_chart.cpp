@@ -13,7 +13,7 @@ namespace {
 using Texel = SampledChart::Texel;
 static_assert(sizeof(Texel) == sizeof(Lanes));
 
-// `rgb1`: a colour and a 1.
+// Adds a weighted sample to a texel. `rgb1` is a colour with a 1 in the 4th lane.
 void add(Texel& texel, Lanes rgb1, float weight) {
   Lanes sum;
   std::memcpy(&sum, &texel, sizeof sum);

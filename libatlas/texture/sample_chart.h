@@ -1,4 +1,4 @@
-// Internal: the full-resolution texture of one chart.
+// Internal: computes the full-resolution texture of one chart.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,8 @@
 
 namespace atlas {
 
-// Display values and how much of each texel was sampled; 0: not covered.
+// A texture of display values. The weight of a texel says how much of it was sampled; 0 means that
+// the texel is not covered.
 struct SampledChart {
   int width = 0, height = 0;
   struct Texel {
@@ -17,10 +18,9 @@ struct SampledChart {
   std::vector<Texel> texels;  // row 0 at the bottom
 };
 
-// One sample at the centre of each covered texel; triangles small or thin beside a texel are
-// averaged by area instead, so that every one of them counts.
-// `out` may be used again: allocating tens of megabytes anew for each chart costs as much as
-// halving.
+// Samples the chart at the centre of each covered texel. Triangles that are small or thin compared
+// with a texel are averaged by area instead, so that each of them counts. `out` may be used again
+// for other charts, because allocating tens of megabytes for each chart costs as much as halving.
 void sample_chart(const ChartLight& light, std::uint32_t chart, double texels_per_unit,
                   SampledChart& out);
 

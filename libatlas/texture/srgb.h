@@ -8,15 +8,17 @@ namespace atlas {
 
 namespace srgb_detail {
 
-// The encoding curve between 2^-9 and 1 as straight pieces, 128 an octave: a float's upper bits are
-// the index, its lower ones the position in the piece. Below 2^-9 < 0.0031308 it is a line.
+// The encoding curve between 2^-9 and 1 consists of straight pieces, 128 an octave. A float's upper
+// bits are the index of the piece, and its lower bits are the position in the piece. Below 2^-9,
+// which is less than 0.0031308, the curve is a line.
 inline constexpr int kPieceBits = 7, kOctaves = 9;
 inline constexpr std::uint32_t kFirst = (127 - kOctaves) << 23;
 
 struct Tables {
   float decode[256];
   float threshold[257];  // the linear value from which code i is the nearest
-  // The value at which a piece begins and by how much it rises; that from 1 on is level.
+  // The value at which a piece begins, and by how much it rises. The last piece, from 1 on, is
+  // level.
   struct alignas(8) Piece {
     float start, rise;
   };
@@ -27,16 +29,18 @@ extern const Tables tables;
 
 }  // namespace srgb_detail
 
-// Linear value in [0, 1] of an 8-bit sRGB code. Table look-up.
+// Returns the linear value in [0, 1] of an 8-bit sRGB code, from a table.
 inline float srgb_decode8(std::uint8_t code) {
   return srgb_detail::tables.decode[code];
 }
 
-// Linear value of a display value in [0, 1]; inputs outside are clamped. Exact to float rounding.
+// Returns the linear value of a display value in [0, 1]. Inputs outside that range are clamped. The
+// result is exact to float rounding.
 float srgb_decode(float display);
 
-// Display value in [0, 1] of a linear value; inputs outside [0, 1] are clamped, NaN gives 0.
-// Table with linear interpolation: within 2e-6 of the definition.
+// Returns the display value in [0, 1] of a linear value. Inputs outside [0, 1] are clamped, and NaN
+// gives 0. The result comes from a table with linear interpolation, and is within 2e-6 of the
+// definition.
 inline float srgb_encode(float linear) {
   using namespace srgb_detail;
   if (!(linear > 0)) return 0;
@@ -49,10 +53,11 @@ inline float srgb_encode(float linear) {
   return tables.encode[index].start + t * tables.encode[index].rise;
 }
 
-// The 8-bit code nearest to 255 times the display value of `linear`, ties upwards: exact.
+// Returns the 8-bit code nearest to 255 times the display value of `linear`. Ties are rounded up.
+// The result is exact.
 std::uint8_t srgb_encode8(float linear);
 
-// The nearest 8-bit code of a display value, clamped to [0, 255]; NaN gives 0.
+// Returns the 8-bit code nearest to 255 times a display value, clamped to [0, 255]. NaN gives 0.
 inline std::uint8_t quantize8(float display) {
   const float scaled = display * 255.0f + 0.5f;
   if (!(scaled > 0)) return 0;

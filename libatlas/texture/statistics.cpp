@@ -1,4 +1,4 @@
-// Area-weighted luminance statistics for automatic exposure.
+// Computes area-weighted luminance statistics for automatic exposure.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -11,13 +11,15 @@
 namespace atlas {
 namespace {
 
-// Enough for a 99th percentile of about one part in a hundred of its rank.
+// The number of samples. It gives a 99th percentile whose rank is accurate to about one part in a
+// hundred.
 constexpr std::size_t kSamples = 1 << 18;
 
-// Fewer sightings than this say nothing about a 99th percentile.
+// Fewer seen samples than this are not enough for a 99th percentile.
 constexpr std::size_t kSeenNeeded = 4096;
 
-// Point i of the plastic-number sequence (Roberts 2018), folded into barycentric coordinates.
+// Computes point i of the plastic-number sequence (Roberts 2018), folded into barycentric
+// coordinates.
 void barycentric(std::uint64_t i, float b[3]) {
   double u = 0.5 + 0.7548776662466927 * static_cast<double>(i);
   double v = 0.5 + 0.5698402909980532 * static_cast<double>(i);
@@ -40,8 +42,8 @@ Vec3f point(const Scene& s, std::size_t t, const float b[3]) {
 
 struct Collector {
   LuminanceStatistics out;
-  std::vector<SurfaceSample> samples;  // of finite luminance
-  std::vector<float> peak, luma;       // of the lit ones
+  std::vector<SurfaceSample> samples;  // those of finite luminance
+  std::vector<float> peak, luma;       // largest channel and luma of the lit samples
   double sum = 0, rgb[3] = {0, 0, 0}, log_sum = 0;
   std::size_t unlit = 0;
 
@@ -106,7 +108,8 @@ Result<LuminanceStatistics> measure_luminance(const LuminanceSampler& sampler,
   if (!(total > 0) || !std::isfinite(total))
     return Status{ErrorCode::bad_input, "the scene has no triangle with area, so no luminance"};
 
-  // One sample at the middle of each of kSamples equal shares of the running area.
+  // The area of the triangles, added up in their order, is divided into kSamples equal shares. One
+  // sample is taken for the middle of each share.
   const double share = total / kSamples;
   Collector collector;
   double area = 0;

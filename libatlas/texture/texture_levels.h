@@ -20,14 +20,15 @@ struct TextureLevels {
   };
   std::vector<Level> levels;
   std::vector<Image8> storage;                      // of levels 1 and up
-  std::vector<std::vector<Lanes>> decoded_storage;  // of each level, if any
+  std::vector<std::vector<Lanes>> decoded_storage;  // of each level, after decode()
 
   explicit TextureLevels(const Texture& texture);
-  std::size_t texels() const;  // of all levels
+  std::size_t texels() const;  // the number of texels of all levels
   void decode();
 };
 
-// The texel, of n, that stands for texel i.
+// Returns the index, from 0 to n - 1, of the texel that a lookup of texel i reads in a row of n
+// texels.
 inline int wrapped(int i, int n, TextureWrap wrap) {
   if (static_cast<unsigned>(i) < static_cast<unsigned>(n)) return i;
   if (wrap == TextureWrap::clamp) return i < 0 ? 0 : n - 1;
@@ -37,18 +38,20 @@ inline int wrapped(int i, int n, TextureWrap wrap) {
   return i < n ? i : period - 1 - i;
 }
 
-// How both coordinates go on outside the texture.
+// How the texture continues beyond its edges, for each coordinate.
 struct TextureWraps {
   TextureWrap u = TextureWrap::repeat, v = TextureWrap::repeat;
 };
 
-// The lower left of the four texels around a position, and how far it is on the way to the others.
+// A position in a texture: the lower left of the four texels around it, and the position's share of
+// the way to the texels on the right and above.
 struct TexturePosition {
   int left, low;
   float right_share, high_share;
 };
 
-// Texels of a level by their place in it, decoded before or now.
+// Two ways to read the texel of a level at an index: DecodedTexels were decoded before,
+// EncodedTexels are decoded when they are read.
 struct DecodedTexels {
   const Lanes* texels;
   Lanes operator()(std::size_t at) const { return texels[at]; }
@@ -64,7 +67,7 @@ struct EncodedTexels {
   }
 };
 
-// Linear RGB between four texels; the 4th lane is about 1.
+// Returns linear RGB, interpolated between four texels. The 4th lane is about 1.
 template <class Texels>
 Lanes bilinear(const TextureLevels::Level& level, const Texels& texel, const TexturePosition& p,
                TextureWraps wraps) {
@@ -87,16 +90,17 @@ Lanes bilinear(const TextureLevels::Level& level, const Texels& texel, const Tex
   return low + p.high_share * (high - low);
 }
 
-// Calls use() with the texels of a level as they are at hand.
+// Calls use() with the texels of a level, decoded ones if the level has them.
 template <class Use>
 auto with_texels(const TextureLevels::Level& level, Use&& use) {
   if (level.decoded) return use(DecodedTexels{level.decoded});
   return use(EncodedTexels{level.texels, static_cast<std::size_t>(level.channels)});
 }
 
-// At (x, y) in texels of the level.
+// Looks up the texture at a position in texels of the level.
 inline Lanes look_up(const TextureLevels::Level& level, Vec2f at_texel, TextureWraps wraps) {
-  // Floor by truncation: coordinates are at most a few repeats below 0 and far from overflow.
+  // The floor is computed by truncation. Coordinates are at most a few repeats below 0 and far from
+  // overflow.
   const auto floor_of = [](float v) {
     const int i = static_cast<int>(v);
     return i - (v < static_cast<float>(i));

@@ -1,5 +1,5 @@
-// Internal: the light of one triangle as a function of texel position, for the loops of texture/
-// and bake/.
+// Internal: the light of one triangle as a function of the texel position. The loops of texture/
+// and bake/ use it.
 #pragma once
 
 #include <algorithm>
@@ -14,11 +14,11 @@
 
 namespace atlas {
 
-// Display values (with a tone mapping) or scene-linear luminance (without) over a triangle. Colours
-// are R, G, B and a 1.
+// The light over a triangle: display values if there is a tone mapping, and scene-linear luminance
+// otherwise. Colours are R, G, B and a 1.
 class TriangleLight {
  public:
-  // `light` as prepared by the sampler; `tone` may be null.
+  // `light` is what the sampler's prepare() returns. `tone` may be null.
   TriangleLight(const LuminanceSampler::Triangle& light, const ToneMapping* tone)
       : tone_(tone),
         level_(light.texture ? &light.texture->levels[light.level] : nullptr),
@@ -34,8 +34,9 @@ class TriangleLight {
     }
   }
 
-  // For many samples of a triangle: prepares row(). Where the curve is straight enough between the
-  // corners, only those are shown, and display values are interpolated.
+  // Prepares row() and inside() for many samples of a triangle. If the tone curve is straight
+  // enough between the corners, display values are computed at the corners only, and interpolated
+  // between them.
   void set_position(const TexelTriangle& p) {
     if (tone_ && !level_ && !direct_) try_direct();
     const double ax = p[1].x - p[0].x, ay = p[1].y - p[0].y;
@@ -51,7 +52,7 @@ class TriangleLight {
         g0 * (texcoord_[1].y - texcoord_[0].y) + g1 * (texcoord_[2].y - texcoord_[0].y)};
   }
 
-  // The colour at barycentric coordinates.
+  // Returns the colour at barycentric coordinates.
   Lanes at(const float b[3]) const {
     Lanes e = b[0] * corner_[0] + b[1] * corner_[1] + b[2] * corner_[2];
     e[3] = 1;
@@ -63,8 +64,9 @@ class TriangleLight {
     return finish(e, uv);
   }
 
-  // The colour at a texel position of the triangle, which rounding may have put outside: slivers'
-  // gradients would make much of that.
+  // Returns the colour at a texel position. Rounding may have moved the position out of the
+  // triangle. It is clamped to the triangle's barycentric range, because the large gradients of a
+  // sliver would amplify the excess.
   Lanes inside(Vec2d at) const {
     const double dx = at.x - origin_.x, dy = at.y - origin_.y;
     const auto within = [](double v, double most) { return v > 0 ? std::min(v, most) : 0.0; };
@@ -75,8 +77,9 @@ class TriangleLight {
     return this->at(b);
   }
 
-  // Calls take(first, colours, count) with the colours of count samples at a time, in their order,
-  // at texel positions (at.x + i, at.y), first <= i < first + count, until n are done.
+  // Calls take(first, colours, count) repeatedly, with the colours of `count` samples at a time,
+  // until n samples are done. The samples come in order, at the texel positions (at.x + i, at.y)
+  // with first <= i < first + count.
   template <class Take>
   void row(Vec2d at, int n, Take&& take) const {
     const double dx = at.x - origin_.x, dy = at.y - origin_.y;
@@ -108,7 +111,7 @@ class TriangleLight {
 
   static constexpr int kStretch = 16;
 
-  // `b`: barycentric coordinates of the row's begin.
+  // `b` holds the second and third barycentric coordinate at the beginning of the row.
   void apply_texture(Vec2f b, int first, int count, Lanes* colours) const {
     const Vec2f uv = {texcoord_[0].x + b.x * (texcoord_[1].x - texcoord_[0].x) +
                           b.y * (texcoord_[2].x - texcoord_[0].x),
@@ -126,8 +129,9 @@ class TriangleLight {
     }
   }
 
-  // Of untextured light from e on. Showing costs more than all else that is done for a sample, so
-  // the curve is followed by lines where it hardly differs from them.
+  // Computes display values of untextured light, beginning with the light e. show() costs more than
+  // everything else that is done for a sample. Where the tone curve hardly differs from lines,
+  // values are therefore interpolated.
   void show_stretch(Lanes e, int count, Lanes* shown) const {
     const int last = count - 1;
     shown[0] = show(e);
@@ -135,7 +139,9 @@ class TriangleLight {
     show_between(e, 0, last, shown);
   }
 
-  // Fills shown[i] for first < i < last, from the two ends and what is shown between them.
+  // Fills shown[i] for first < i < last. shown[first] and shown[last] must be set. The middle is
+  // computed; if it lies on the line between the ends, the rest is interpolated, and otherwise both
+  // halves are filled in the same way.
   void show_between(Lanes start, int first, int last, Lanes* shown) const {
     if (last - first < 2) return;
     const int middle = (first + last) / 2;
@@ -161,14 +167,16 @@ class TriangleLight {
     return srgb_encode_lanes(Lanes{v.x, v.y, v.z, 1});
   }
 
-  // A tenth of an 8-bit step is far below what the atlas can hold.
+  // Returns whether a difference is negligible. A tenth of an 8-bit step is far below what the
+  // atlas can store.
   static bool negligible(Lanes off) {
     constexpr float kTolerance = 0.1f / 255;
     return std::fabs(off[0]) <= kTolerance && std::fabs(off[1]) <= kTolerance &&
            std::fabs(off[2]) <= kTolerance;
   }
 
-  // At the middles of the edges.
+  // Replaces the light at the corners by display values if interpolating these is accurate enough
+  // at the middles of the edges.
   void try_direct() {
     Lanes d[3];
     for (int i = 0; i < 3; ++i) d[i] = show(corner_[i]);

@@ -13,15 +13,15 @@ namespace atlas {
 namespace {
 
 constexpr int kPoints = 12288, kRays = 16, kNeeded = 10;
-// Samples lie about one spacing apart; a wall is closed to rays when its voxels are larger than
-// that.
+// The size of a voxel in spacings of the samples. Samples lie about one spacing apart. A wall has
+// no holes for rays if voxels are larger than that.
 constexpr double kVoxelSpacings = 2.5;
-// Half-angle of 50 degrees: about what a viewer's camera shows.
+// The cosine of a half-angle of 50 degrees, which is about what a viewer's camera shows.
 constexpr double kViewCosine = 0.64;
 constexpr double kMaxVoxels = 1 << 24;
 
-// A direction within the cone about `axis` whose half-angle has the given cosine, uniform by
-// solid angle; -1: any direction.
+// Sets d to a random direction within the cone about `axis` whose half-angle has the given cosine.
+// Directions are uniform by solid angle. With the cosine -1, any direction may result.
 void direction_in_cone(std::mt19937_64& random, const double axis[3], double cosine, double d[3]) {
   const double z = 1 - (1 - cosine) * uniform(random), phi = 2 * std::numbers::pi * uniform(random);
   const double s = std::sqrt(std::max(0.0, 1 - z * z)), x = s * std::cos(phi),
@@ -60,7 +60,8 @@ class VoxelGrid {
 
   double size(int k) const { return size_[k]; }
 
-  // The sample met from `from` (in voxels) along `direction`, and how far; or nothing.
+  // Follows a ray from `from` (in voxels) along `direction`. Returns the value of a sample in the
+  // first voxel with samples, chosen by `pick`, and sets `distance`. Returns null if there is none.
   const float* cast(const double from[3], const double direction[3], std::uint64_t pick,
                     double& distance) const {
     distance = 0;
@@ -114,7 +115,7 @@ class VoxelGrid {
 
   double low_[3], voxel_ = 1;
   int size_[3];
-  std::vector<std::uint32_t> first_;  // of each voxel's samples; one more at the end
+  std::vector<std::uint32_t> first_;  // index of each voxel's first sample; one more at the end
   std::vector<float> values_;
 };
 

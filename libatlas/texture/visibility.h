@@ -1,4 +1,4 @@
-// Internal: which surface samples are seen from where people can stand.
+// Internal: finds which surface samples are seen from places where people can stand.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,16 @@ struct SurfaceSample {
   float value = 0;  // max(R, G, B)
 };
 
-// Stands at random points in the empty space of the samples' box, looks along the longest of 16
-// random lines of sight, as people do, and returns the values of the samples met within 50 degrees
-// of it, those equal to 0 left out. Surfaces in narrow gaps are hardly met.
+// Returns the values of samples that observers see. The observers stand at random points in the
+// empty space of the samples' box. As people do, each looks along the longest of 16 random lines of
+// sight, and sees the samples within 50 degrees of it. Values that are not above 0 are left out.
+// Surfaces in narrow gaps are hardly seen.
 //
-// Rays are marched through a voxel grid of 2.5 sample distances or more: a sketch of visibility
-// that needs no ray-tracing structure and costs the same for any triangle count. Points of which
-// fewer than five rays in eight meet anything stand outside and are passed over; empty if all do.
-// `area` is the surface that the samples stand for, evenly. Deterministic, scale-free.
+// Rays are marched through a grid of voxels of 2.5 sample distances or more. This approximates
+// visibility, needs no ray-tracing structure, and costs the same for any triangle count. A point
+// from which fewer than five rays in eight meet a sample is outside the scene, and is skipped. If
+// all points are skipped, the result is empty. `area` is the surface that the samples represent
+// evenly. The result is deterministic and does not depend on the scale.
 std::vector<float> seen_values(std::span<const SurfaceSample> samples, double area);
 
 }  // namespace atlas

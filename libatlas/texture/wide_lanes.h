@@ -1,11 +1,13 @@
-// Internal: two colours, each as Lanes, in one vector: for functions marked ATLAS_WIDE
-// (core/wide_vectors.h). Files that include this pass them to inlined functions only.
+// Internal: vectors that hold two colours, each as Lanes. They are for functions marked ATLAS_WIDE
+// (core/wide_vectors.h). Files that include this header pass such vectors to inlined functions
+// only.
 #pragma once
 
 #include "libatlas/core/wide_vectors.h"
 #include "libatlas/texture/lanes.h"
 
-// How they would be handed over does not matter.
+// The warning is about how functions pass such vectors, which does not matter for inlined
+// functions.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace atlas {
@@ -25,7 +27,7 @@ ATLAS_INLINE Lanes second_of(Lanes2 v) {
   return __builtin_shufflevector(v, v, 4, 5, 6, 7);
 }
 
-// As those of Lanes.
+// The same as larger_lanes and smaller_lanes of Lanes.
 ATLAS_INLINE Lanes2 larger_lanes(Lanes2 a, Lanes2 b) {
   return a > b ? a : b;
 }
