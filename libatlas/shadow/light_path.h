@@ -54,10 +54,10 @@ class LightPath {
   // to north, and a sun that never rises on that day.
   static Result<LightPath> make(const LightPathOptions& options);
 
-  // Returns the unit direction after so many degrees of travel from the start. Negative values and
-  // NaN count as 0. On the sun's path, travel has the sun's own angular speed. It starts at
-  // start_hour, or at sunrise or sunset if the sun is down then. The path lasts until sunset. If it
-  // loops, it continues from sunrise.
+  // Returns the unit direction after so many degrees of travel from the start. Values that are
+  // negative or not finite count as 0. On the sun's path, travel has the sun's own angular speed.
+  // It starts at start_hour, or at sunrise or sunset if the sun is down then. The path lasts until
+  // sunset. If it loops, it continues from sunrise.
   Vec3d direction(double degrees) const;
 
   // The length of the whole path in degrees (the sun's is from sunrise to sunset); 0 if the light

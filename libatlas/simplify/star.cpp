@@ -16,7 +16,7 @@ constexpr double kLengthWeight = 0.02;
 constexpr double kNeedle = 0.1;
 // No triangle of lower quality than kThinnest arises where there was none before (1 is equilateral,
 // 0 has no area). A strip with sides of one to ten thousand is still allowed. Where there was a
-// thinner one before, kNoArea is the lowest limit.
+// thinner one before, its quality is the limit, but at least kNoArea.
 constexpr double kThinnest = 2e-4, kNoArea = 1e-7;
 // If a vertex has more than kManyNeighbours neighbours, only the kNearest nearest are tried as
 // targets.
