@@ -34,9 +34,7 @@ class GivenChart {
 
   Verdict run(std::span<const std::uint32_t> triangles, FlatChart& flat) {
     chart_.build(input_.topology, partition_, triangles);
-    if (!input_.density.empty()) {
-      for (const std::uint32_t t : triangles) chart_.density.push_back(input_.density[t]);
-    }
+    chart_.take_density(input_.density);
     const std::size_t missing = take_uvs();
     if (missing > 0) return missing < 3 * triangles.size() ? Verdict::bad : Verdict::useless;
     const double surface = surface_area(), uv_area = unmirror();

@@ -15,17 +15,6 @@
 namespace atlas::test {
 namespace {
 
-std::vector<std::filesystem::path> models() {
-  std::vector<std::filesystem::path> paths;
-  const auto data = shared_data();
-  if (!data) return paths;
-  for (const auto& entry : std::filesystem::directory_iterator(*data / "models")) {
-    if (entry.path().extension() == ".obj") paths.push_back(entry.path());
-  }
-  std::sort(paths.begin(), paths.end());
-  return paths;
-}
-
 WideMesh read_wide(const std::filesystem::path& path) {
   const Result<LoadedScene> read = read_scene(path, {}, {});
   EXPECT_TRUE(read.ok()) << read.status().message();
@@ -36,12 +25,12 @@ WideMesh read_wide(const std::filesystem::path& path) {
 class ModelInvariance : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (models().empty()) GTEST_SKIP() << "LIBATLAS_DATA is not set";
+    if (shared_models().empty()) GTEST_SKIP() << lacks("models");
   }
 };
 
 TEST_F(ModelInvariance, PowersOfTwoChangeNoBit) {
-  for (const auto& path : models()) {
+  for (const auto& path : shared_models()) {
     const Shape shape = narrowed(read_wide(path));
     const ChartSet reference = charts_of(shape);
     for (const int exponent : {-20, 20}) {
@@ -57,7 +46,7 @@ TEST_F(ModelInvariance, PowersOfTwoChangeNoBit) {
 
 TEST_F(ModelInvariance, AnyUnitAndDirectionGivesTheSameCharts) {
   Comparison comparison;
-  for (const auto& path : models()) {
+  for (const auto& path : shared_models()) {
     const WideMesh mesh = read_wide(path);
     const ChartSet reference = charts_of(narrowed(mesh));
     for (const double factor : {1e-6, 0.01, 1e6}) {
@@ -74,7 +63,7 @@ TEST_F(ModelInvariance, AnyUnitAndDirectionGivesTheSameCharts) {
 TEST_F(ModelInvariance, AnOffsetOfAMillionTimesTheSizeChangesNothing) {
   const TempFolder folder;
   Comparison comparison;
-  for (const auto& path : models()) {
+  for (const auto& path : shared_models()) {
     const WideMesh mesh = read_wide(path);
     const ChartSet reference = charts_of(narrowed(mesh));
     const double far = 1e6 * std::sqrt(reference.surface_area);
@@ -94,7 +83,7 @@ TEST_F(ModelInvariance, AnOffsetOfAMillionTimesTheSizeChangesNothing) {
 }
 
 TEST_F(ModelInvariance, SameBytesWithOneTwoAndEightThreads) {
-  for (const auto& path : models()) {
+  for (const auto& path : shared_models()) {
     const Shape shape = narrowed(read_wide(path));
     const std::string one = bytes(charts_of(shape, 1));
     EXPECT_EQ(one, bytes(charts_of(shape, 2))) << path;

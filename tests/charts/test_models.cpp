@@ -12,11 +12,6 @@
 namespace atlas::test {
 namespace {
 
-std::filesystem::path models() {
-  const auto data = shared_data();
-  return data ? *data / "models" : std::filesystem::path();
-}
-
 // Vertices and faces are all that is needed of these files.
 Mesh read(const std::filesystem::path& path) {
   Mesh mesh;
@@ -42,16 +37,15 @@ Mesh read(const std::filesystem::path& path) {
 }
 
 TEST(Models, AllComeOutWhole) {
-  if (models().empty()) GTEST_SKIP() << "LIBATLAS_DATA is not set";
-  for (const auto& entry : std::filesystem::directory_iterator(models())) {
-    if (entry.path().extension() != ".obj") continue;
-    const Mesh mesh = read(entry.path());
+  if (shared_models().empty()) GTEST_SKIP() << lacks("models");
+  for (const std::filesystem::path& path : shared_models()) {
+    const Mesh mesh = read(path);
     const Result<ChartSet> set = make_charts(mesh.view(), {}, {});
-    ASSERT_TRUE(set.ok()) << entry.path() << set.status().message();
+    ASSERT_TRUE(set.ok()) << path << set.status().message();
     const ChartFindings found = check_charts(mesh.view(), *set);
-    EXPECT_EQ(found.fault, "") << entry.path();
-    EXPECT_LE(found.stretch_999, 1.25 * (1 + 1e-6)) << entry.path();
-    EXPECT_NEAR(found.seam, set->seam_length, 1e-4 * (1 + found.seam)) << entry.path();
+    EXPECT_EQ(found.fault, "") << path;
+    EXPECT_LE(found.stretch_999, 1.25 * (1 + 1e-6)) << path;
+    EXPECT_NEAR(found.seam, set->seam_length, 1e-4 * (1 + found.seam)) << path;
   }
 }
 
@@ -62,12 +56,12 @@ struct Wanted {
 };
 
 TEST(Models, NoWorseThanTheFiguresAskedFor) {
-  if (models().empty()) GTEST_SKIP() << "LIBATLAS_DATA is not set";
+  if (shared_models().empty()) GTEST_SKIP() << lacks("models");
   for (const Wanted& wanted :
        {Wanted{"spot", 22, 1.002, 13}, Wanted{"fandisk", 12, 1.001, 8.5},
         Wanted{"rocker-arm", 25, 1.002, 14}, Wanted{"stanford-bunny", 24, 1.003, 12.5},
         Wanted{"igl-armadillo", 60, 1.005, 20}}) {
-    const Mesh mesh = read(models() / (std::string(wanted.name) + ".obj"));
+    const Mesh mesh = read(*shared_data("models") / (std::string(wanted.name) + ".obj"));
     const Result<ChartSet> set = make_charts(mesh.view(), {}, {});
     ASSERT_TRUE(set.ok()) << wanted.name;
     EXPECT_LE(set->charts.size(), wanted.charts) << wanted.name;
@@ -77,9 +71,9 @@ TEST(Models, NoWorseThanTheFiguresAskedFor) {
 }
 
 TEST(Models, ScanNoiseAddsHalfAsManyChartsAtMost) {
-  if (models().empty()) GTEST_SKIP() << "LIBATLAS_DATA is not set";
+  if (shared_models().empty()) GTEST_SKIP() << lacks("models");
   for (const char* name : {"rocker-arm", "igl-fertility"}) {
-    const Mesh smooth = read(models() / (std::string(name) + ".obj"));
+    const Mesh smooth = read(*shared_data("models") / (std::string(name) + ".obj"));
     const Result<ChartSet> calm = make_charts(smooth.view(), {}, {});
     ASSERT_TRUE(calm.ok()) << name;
     const Mesh mesh(noisy_along_normals({name, smooth.positions, smooth.indices}, 0.15));

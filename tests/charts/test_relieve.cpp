@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "tests/charts/whole_chart.h"
 
@@ -89,6 +90,24 @@ TEST(Relieve, ADartMustBeWorthItsSeam) {
   const FlatChart chart = flattened(shape);
   EXPECT_GT(chart.distortion.stretch_l2, 1 + 1e-6);
   EXPECT_EQ(chart.uvs.size(), shape.positions.size());
+}
+
+// Energy and seams scale alike with the surface; texels must not come in on one side only.
+TEST(Relieve, AUniformDensityChangesNothing) {
+  const Shape shape = cone_lacking(0.65, 30, 10);
+  const Result<ChartSet> plain = make_charts({shape.positions, shape.indices}, {}, {});
+  ASSERT_TRUE(plain.ok()) << plain.status().message();
+  EXPECT_GT(plain->uvs.size(), shape.positions.size());  // it has a dart
+  for (const float density : {1.0f / 64, 1.0f, 64.0f}) {
+    const std::vector<float> densities(shape.triangle_count(), density);
+    MeshView mesh{shape.positions, shape.indices};
+    mesh.density = densities;
+    const Result<ChartSet> set = make_charts(mesh, {}, {});
+    ASSERT_TRUE(set.ok()) << set.status().message();
+    EXPECT_EQ(set->charts.size(), 1u) << density;
+    EXPECT_EQ(set->uvs.size(), plain->uvs.size()) << density;
+    EXPECT_NEAR(set->distortion.stretch_l2, plain->distortion.stretch_l2, 1e-7) << density;
+  }
 }
 
 }  // namespace

@@ -19,11 +19,10 @@ struct Instance {
 
 std::vector<Instance> read_set(const std::string& name) {
   std::vector<Instance> set;
-  const auto data = test::shared_data();
+  const auto data = test::shared_data("packing/" + name);
   if (!data) return set;
   std::vector<std::filesystem::path> files;
-  const auto folder = *data / "packing" / name;
-  for (const auto& e : std::filesystem::directory_iterator(folder)) files.push_back(e.path());
+  for (const auto& e : std::filesystem::directory_iterator(*data)) files.push_back(e.path());
   std::sort(files.begin(), files.end());
   for (const auto& path : files) {
     std::ifstream file(path);
@@ -40,7 +39,7 @@ std::vector<Instance> read_set(const std::string& name) {
 
 TEST(PackSets, Class) {
   const auto set = read_set("CLASS");
-  if (set.empty()) GTEST_SKIP() << "LIBATLAS_DATA is not set";
+  if (set.empty()) GTEST_SKIP() << test::lacks("packing");
   for (bool rotate : {false, true}) {
     std::size_t bins = 0;
     for (const Instance& in : set) {
@@ -57,7 +56,7 @@ TEST(PackSets, Class) {
 }
 
 TEST(PackSets, Strips) {
-  if (read_set("C_HT2001").empty()) GTEST_SKIP() << "LIBATLAS_DATA is not set";
+  if (read_set("C_HT2001").empty()) GTEST_SKIP() << test::lacks("packing");
   const std::pair<const char*, std::pair<double, double>> sets[] = {{"C_HT2001", {4.5, 3.1}},
                                                                     {"NT_HOPPER", {6.8, 4.0}}};
   for (const auto& [name, limits] : sets)

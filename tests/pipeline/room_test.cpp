@@ -16,9 +16,9 @@ namespace fs = std::filesystem;
 class Room : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto data = shared_data();
-    if (!data) GTEST_SKIP() << "LIBATLAS_DATA is not set: the test room is not here";
-    path_ = *data / "room/scene.obj";
+    const auto data = shared_data("room");
+    if (!data) GTEST_SKIP() << lacks("room");
+    path_ = *data / "scene.obj";
     auto scene = read_scene(path_, {}, {});
     ASSERT_TRUE(scene.ok()) << scene.status().message();
     scene_ = std::move(*scene);

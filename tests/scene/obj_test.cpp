@@ -279,18 +279,19 @@ TEST(Obj, FarScenesGetAnOriginAndKeepTheirShape) {
 }
 
 TEST(Obj, AllModelsOfTheDataFolderLoad) {
-  const auto data = test::shared_data();
-  if (!data) GTEST_SKIP() << "LIBATLAS_DATA is not set";
-  int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(*data / "models")) {
-    if (entry.path().extension() != ".obj") continue;
-    const auto loaded = read_scene(entry.path(), {}, {});
+  const auto models = test::shared_models();
+  if (models.empty()) GTEST_SKIP() << test::lacks("models");
+  for (const std::filesystem::path& path : models) {
+    const auto loaded = read_scene(path, {}, {});
     ASSERT_TRUE(loaded.ok()) << loaded.status().message();
-    EXPECT_EQ(loaded->defects.triangles_left_out, 0u) << entry.path();
-    ++count;
+    EXPECT_EQ(loaded->defects.triangles_left_out, 0u) << path;
   }
-  EXPECT_GT(count, 10);
-  const auto room = read_scene(*data / "room/scene.obj", {}, {});
+}
+
+TEST(Obj, TheRoomOfTheDataFolderLoads) {
+  const auto data = test::shared_data("room");
+  if (!data) GTEST_SKIP() << test::lacks("room");
+  const auto room = read_scene(*data / "scene.obj", {}, {});
   ASSERT_TRUE(room.ok());
   EXPECT_EQ(room->scene.triangle_count(), 301709u);
   EXPECT_EQ(room->scene.textures.size(), 2u);

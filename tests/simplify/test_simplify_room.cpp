@@ -14,11 +14,11 @@ namespace {
 using namespace simplify_test;
 
 TEST(SimplifyRoom, WallsBecomeAHandfulAndNothingOpens) {
-  const auto data = test::shared_data();
-  if (!data) GTEST_SKIP() << "LIBATLAS_DATA is not set: the room is not there";
+  const auto data = test::shared_data("room");
+  if (!data) GTEST_SKIP() << test::lacks("room");
   ReadOptions read;
   read.load_textures = false;
-  auto loaded = read_scene(*data / "room/scene.obj", read, {});
+  auto loaded = read_scene(*data / "scene.obj", read, {});
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   const Scene& scene = loaded->scene;
 

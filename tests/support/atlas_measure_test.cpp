@@ -146,10 +146,9 @@ void write_hard_atlas(const fs::path& path) {
 }
 
 TEST(AtlasMeasure, AgreesWithTheSharedMeasuringProgram) {
-  const auto data = shared_data();
-  if (!data) GTEST_SKIP() << "LIBATLAS_DATA is not set: no shared program to compare with";
-  const fs::path source = data->parent_path() / "tools/atlaseval.cpp";
-  if (!fs::exists(source)) GTEST_SKIP() << source << " is not there";
+  const auto shared = shared_data("../tools/atlaseval.cpp");
+  if (!shared) GTEST_SKIP() << lacks("a shared program beside it to compare with");
+  const fs::path source = *shared;
   const fs::path folder =
       fs::temp_directory_path() / ("atlas_measure_" + std::to_string(std::rand()));
   fs::create_directories(folder);

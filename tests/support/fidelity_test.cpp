@@ -134,10 +134,9 @@ void write_files(const WorldMesh& mesh, const fs::path& obj) {
 
 // Cameras differ, so shares of pixels agree only as far as 64 views of one room do.
 TEST(Fidelity, AgreesWithTheSharedMeasuringProgram) {
-  const auto data = shared_data();
-  if (!data) GTEST_SKIP() << "LIBATLAS_DATA is not set: no shared program to compare with";
-  const fs::path source = data->parent_path() / "tools/fidelity.cpp";
-  if (!fs::exists(source)) GTEST_SKIP() << source << " is not there";
+  const auto shared = shared_data("../tools/fidelity.cpp");
+  if (!shared) GTEST_SKIP() << lacks("a shared program beside it to compare with");
+  const fs::path source = *shared;
   const fs::path folder =
       fs::temp_directory_path() / ("fidelity_" + std::to_string(std::random_device{}()));
   fs::create_directories(folder);

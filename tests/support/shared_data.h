@@ -1,17 +1,39 @@
-// The folder of models, rooms and packing instances that LIBATLAS_DATA names.
+// The folder of models, rooms and packing instances that LIBATLAS_DATA names, see docs/building.md.
 #pragma once
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace atlas::test {
 
-// None where the variable is unset or empty, as scripts leave it: tests that need the data skip.
-inline std::optional<std::filesystem::path> shared_data() {
+// A part of it ("models", "room", "packing"); none where the variable is unset or empty, as scripts
+// leave it, or where the folder lacks that part: tests that need it skip.
+inline std::optional<std::filesystem::path> shared_data(const std::string& part) {
   const char* folder = std::getenv("LIBATLAS_DATA");
   if (!folder || !*folder) return std::nullopt;
-  return folder;
+  const std::filesystem::path path = std::filesystem::path(folder) / part;
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  return path;
+}
+
+// Why a test skips.
+inline std::string lacks(const std::string& part) {
+  return "LIBATLAS_DATA names no folder with " + part;
+}
+
+// Its OBJ models, by name.
+inline std::vector<std::filesystem::path> shared_models() {
+  std::vector<std::filesystem::path> paths;
+  const auto folder = shared_data("models");
+  if (!folder) return paths;
+  for (const auto& entry : std::filesystem::directory_iterator(*folder))
+    if (entry.path().extension() == ".obj") paths.push_back(entry.path());
+  std::sort(paths.begin(), paths.end());
+  return paths;
 }
 
 }  // namespace atlas::test

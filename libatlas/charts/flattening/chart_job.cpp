@@ -96,9 +96,7 @@ class ChartJob {
  private:
   void build(std::span<const std::uint32_t> triangles) {
     chart_.build(input_.topology, partition_, triangles);
-    if (!input_.density.empty()) {
-      for (const std::uint32_t t : triangles) chart_.density.push_back(input_.density[t]);
-    }
+    chart_.take_density(input_.density);
     cone_ = normal_cone(input_.topology.normals, triangles);
   }
 

@@ -30,11 +30,6 @@ constexpr double kMostBox = 1.1;  // of the chart's rectangle, relative to the p
 // energy.
 constexpr double kStretchedPart = 0.5;
 
-// The chart's stretch energy: area times (L2 stretch squared - 1).
-double energy(const FlatChart& chart) {
-  return chart.distortion.surface_area * chart.excess();
-}
-
 class Reliever {
  public:
   Reliever(const FlattenInput& input, Partition& partition, std::vector<FlatChart>& charts)
@@ -44,24 +39,27 @@ class Reliever {
         charts_(charts),
         seam_worth_(merge_options(input.options.max_stretch).seam_worth),
         crease_cosine_(std::cos(input.options.crease_degrees * M_PI / 180)),
+        chart_area_(charts.size(), 0),
         piece_area_(topology_.component_count, 0),
         piece_triangles_(topology_.component_count, 0) {}
 
   void run(const Context& context) {
     auto& label = partition_.chart;
     for (std::uint32_t k = 0; k < charts_.size(); ++k) {
-      for (const std::uint32_t t : charts_[k].triangles) label[t] = k;
-      piece_area_[piece(charts_[k])] += charts_[k].distortion.surface_area;
+      for (const std::uint32_t t : charts_[k].triangles) {
+        label[t] = k;
+        chart_area_[k] += topology_.areas[t];
+      }
+      piece_area_[piece(charts_[k])] += chart_area_[k];
       piece_triangles_[piece(charts_[k])] += double(charts_[k].triangles.size());
     }
     const std::size_t grain = std::max<std::size_t>(4, charts_.size() / 64);
     parallel_for(context, charts_.size(), grain, [&](std::size_t begin, std::size_t end) {
       ChartScratch scratch;
       for (std::size_t k = begin; k < end && !context.cancelled(); ++k) {
-        FlatChart& chart = charts_[k];
-        const double least = least_energy(chart);
-        for (int i = 0; i < kMostDarts && energy(chart) > least; ++i) {
-          if (!relieve(chart, scratch)) break;
+        const double least = least_energy(charts_[k]);
+        for (int i = 0; i < kMostDarts && energy(k, charts_[k]) > least; ++i) {
+          if (!relieve(k, scratch)) break;
         }
       }
     });
@@ -74,6 +72,12 @@ class Reliever {
     return topology_.component[chart.triangles.front()];
   }
 
+  // The stretch energy of chart k as it is flattened in `flat`: its area times (L2 stretch squared
+  // - 1). Like the price of a dart, it does not depend on the density.
+  double energy(std::size_t k, const FlatChart& flat) const {
+    return chart_area_[k] * flat.excess();
+  }
+
   // Charts with less energy are not worth trying, which takes time in proportion to their
   // triangles.
   double least_energy(const FlatChart& chart) const {
@@ -83,20 +87,21 @@ class Reliever {
   }
 
   // Cuts the better dart. Returns false if no dart is worth its seam.
-  bool relieve(FlatChart& chart, ChartScratch& scratch) {
+  bool relieve(std::size_t k, ChartScratch& scratch) {
+    FlatChart& chart = charts_[k];
     FlatChart best;
     const Dart* best_dart = nullptr;
-    double least = energy(chart);
+    double least = energy(k, chart);
     const std::vector<Dart> darts = darts_for(chart, scratch.chart);
     for (const Dart& dart : darts) {
       const double price = price_of(dart, piece_area_[piece(chart)]);
-      if (price > kMostPrice * energy(chart)) continue;
+      if (price > kMostPrice * energy(k, chart)) continue;
       for (const std::uint32_t h : dart) partition_.cut(h);
       ChartOutcome outcome =
           flatten_chart(input_, partition_, chart.triangles, {.cuts = 0, .whole = true}, scratch);
       for (const std::uint32_t h : dart) partition_.close(h);
       if (!outcome.parts.empty() || outcome.flat.box_area() > kMostBox * chart.box_area()) continue;
-      const double cost = energy(outcome.flat) + price;
+      const double cost = energy(k, outcome.flat) + price;
       if (cost >= least) continue;
       least = cost;
       best = std::move(outcome.flat);
@@ -112,6 +117,7 @@ class Reliever {
 
   std::vector<Dart> darts_for(const FlatChart& chart, LocalChart& local) {
     local.build(topology_, partition_, chart.triangles);
+    local.take_density(input_.density);
     std::vector<Dart> darts;
     if (local.corners != chart.corners) return darts;  // a seam was closed since
     for (const auto& way : ways_to_tips(topology_, local, most_stretched(chart, local))) {
@@ -126,7 +132,7 @@ class Reliever {
 
   // Returns indices into the chart's triangle list.
   std::vector<std::uint32_t> most_stretched(const FlatChart& chart, const LocalChart& local) const {
-    const LocalMesh mesh{local.positions.view(), chart.corners, {}};
+    const LocalMesh mesh = local.mesh();
     std::vector<TriangleStretch> stretch(chart.corners.size());
     measure_triangles(mesh, chart.uvs, stretch);
     double area = 0, uv_area = 0;
@@ -165,7 +171,7 @@ class Reliever {
   Partition& partition_;
   std::vector<FlatChart>& charts_;
   double seam_worth_, crease_cosine_;
-  std::vector<double> piece_area_, piece_triangles_;
+  std::vector<double> chart_area_, piece_area_, piece_triangles_;
 };
 
 }  // namespace

@@ -130,4 +130,10 @@ void LocalChart::find_components() {
   }
 }
 
+void LocalChart::take_density(std::span<const float> all) {
+  density.clear();
+  if (all.empty()) return;
+  for (const std::uint32_t t : triangles_) density.push_back(all[t]);
+}
+
 }  // namespace atlas

@@ -52,13 +52,15 @@ class LocalChart {
   // and must outlive this object.
   void build(const Topology& topology, Partition& partition,
              std::span<const std::uint32_t> triangles);
+  // Takes the density of its triangles from `all`: one per triangle of the topology, or empty.
+  void take_density(std::span<const float> all);
 
   std::span<const std::uint32_t> triangles() const { return triangles_; }
   LocalMesh mesh() const { return {positions.view(), corners, density, opposite}; }
 
   Positions positions;
   std::vector<std::array<std::uint32_t, 3>> corners;
-  std::vector<double> density;              // filled by the caller, or empty
+  std::vector<double> density;              // see take_density()
   std::vector<std::uint32_t> vertex;        // one per position: its vertex in the topology
   std::span<const std::uint32_t> opposite;  // one per half-edge; kNoIndex on the boundary
   std::vector<std::uint32_t> loops;         // one half-edge of each boundary loop
