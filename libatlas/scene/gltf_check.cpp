@@ -94,7 +94,8 @@ Status check_version(const fs::path& path, const json& file) {
     return named ? old_version(path, "1") : Status();
   }
   const json& version = (*asset)["version"];
-  const std::string text = version.is_string() ? version.get<std::string>() : version.dump();
+  const std::string text =
+      version.is_string() && version != "" ? version.get<std::string>() : version.dump();
   return text.starts_with("2") ? Status() : old_version(path, text.substr(0, 20));
 }
 
@@ -140,6 +141,37 @@ Status check_lists(const fs::path& path, const json& file) {
     const auto primitives = (*meshes)[i].find("primitives");
     if (primitives != (*meshes)[i].end() && !primitives->is_array()) {
       return malformed_gltf(path, fmt::format("'primitives' of mesh {} is not a list", i));
+    }
+  }
+  return {};
+}
+
+// What an extension alone holds has no place in a buffer. tinygltf calls such indices malformed,
+// and a validator, which its message would lead to, finds no fault in them.
+bool indices_are_compressed(const json& file, const json& primitive) {
+  const auto extensions = primitive.find("extensions");
+  if (extensions == primitive.end() || !extensions->is_object() ||
+      !extensions->contains(kGltfDraco))
+    return false;
+  const auto accessors = file.find("accessors");
+  const std::int64_t indices = integer_at(primitive, "indices", -1);
+  if (accessors == file.end() || indices < 0 || std::size_t(indices) >= accessors->size())
+    return false;
+  return integer_at((*accessors)[std::size_t(indices)], "bufferView", -1) < 0;
+}
+
+// A file that holds nothing else should say that it requires the extension; not all do.
+Status check_compression(const fs::path& path, const json& file) {
+  const auto meshes = file.find("meshes");
+  for (std::size_t i = 0; meshes != file.end() && i < meshes->size(); ++i) {
+    const auto primitives = (*meshes)[i].find("primitives");
+    if (primitives == (*meshes)[i].end()) continue;
+    for (const json& primitive : *primitives) {
+      if (!primitive.is_object() || !indices_are_compressed(file, primitive)) continue;
+      return {ErrorCode::unsupported,
+              fmt::format("{}: mesh {} holds nothing but {}, which is not supported (export "
+                          "without it)",
+                          path.string(), i, kGltfDraco)};
     }
   }
   return {};
@@ -199,6 +231,7 @@ Result<GltfParts> check_gltf(const fs::path& path, std::string_view bytes) {
   if (Status s = check_version(path, file); !s.ok()) return s;
   if (Status s = check_extensions(path, file); !s.ok()) return s;
   if (Status s = check_lists(path, file); !s.ok()) return s;
+  if (Status s = check_compression(path, file); !s.ok()) return s;
   if (!image_views_fit(file)) return malformed_gltf(path, "an embedded image leaves its buffer");
   for (const auto& buffer : file.value("buffers", json::array())) {
     const auto uri = buffer.find("uri");

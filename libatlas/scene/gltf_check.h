@@ -15,6 +15,8 @@ namespace atlas {
 // The file breaks the rules of glTF: `what` says how.
 Status malformed_gltf(const std::filesystem::path& path, const std::string& what);
 
+inline constexpr const char* kGltfDraco = "KHR_draco_mesh_compression";
+
 // The whole number that an object has under a key; `absent` where it has none.
 std::int64_t integer_at(const nlohmann::json& object, const char* key, std::int64_t absent);
 
@@ -29,8 +31,8 @@ struct GltfParts {
 };
 
 // Finds the parts, and checks in the JSON what tinygltf passes over in silence or trusts: the
-// version, required extensions, lists that are none, ranges of embedded images. Errors: bad_input,
-// unsupported.
+// version, required extensions, lists that are none, indices that are there only compressed, ranges
+// of embedded images. Errors: bad_input, unsupported.
 Result<GltfParts> check_gltf(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace atlas

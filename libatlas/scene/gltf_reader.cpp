@@ -7,6 +7,7 @@
 
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/scene/formats.h"
+#include "libatlas/scene/gltf_check.h"
 #include "libatlas/scene/gltf_file.h"
 #include "libatlas/scene/gltf_instances.h"
 #include "libatlas/scene/gltf_materials.h"
@@ -228,8 +229,8 @@ class GltfParser {
   // A file that has no other vertices should say that it requires the extension; not all do.
   bool attributes_are_compressed(const tinygltf::Primitive& raw) const {
     const auto position = static_cast<std::size_t>(attribute(raw, "POSITION"));
-    return raw.extensions.contains("KHR_draco_mesh_compression") &&
-           position < model_.accessors.size() && model_.accessors[position].bufferView < 0;
+    return raw.extensions.contains(kGltfDraco) && position < model_.accessors.size() &&
+           model_.accessors[position].bufferView < 0;
   }
 
   static int attribute(const tinygltf::Primitive& raw, const std::string& name) {
@@ -242,9 +243,9 @@ class GltfParser {
     if (attribute(raw, "POSITION") < 0) return malformed(where, "has no POSITION");
     if (attributes_are_compressed(raw)) {
       return Status{ErrorCode::unsupported,
-                    fmt::format("{}: {} holds nothing but KHR_draco_mesh_compression, which is not "
-                                "supported (export without it)",
-                                builder_.file, where)};
+                    fmt::format("{}: {} holds nothing but {}, which is not supported (export "
+                                "without it)",
+                                builder_.file, where, kGltfDraco)};
     }
     auto posed = pose_.vertices(node, raw, matrix);
     if (!posed.ok()) return malformed(where, posed.status().message());

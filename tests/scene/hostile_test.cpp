@@ -166,6 +166,11 @@ const Case kCases[] = {
     {"draco.gltf",
      R"({"asset":{"version":"2.0"},"extensionsRequired":["KHR_draco_mesh_compression"]})",
      ErrorCode::unsupported, "KHR_draco_mesh_compression"},
+    {"compressed.gltf",  // draco that the file uses without a word that it needs it
+     R"({"asset":{"version":"2.0"},"accessors":[{"type":"VEC3","componentType":5126,"count":3},{"type":"SCALAR","componentType":5123,"count":3}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0}}}]}]})",
+     ErrorCode::unsupported, "mesh 0 holds nothing but KHR_draco_mesh_compression"},
+    {"unversioned.gltf", R"({"asset":{"version":""}})", ErrorCode::unsupported,
+     "glTF version \"\"; only 2.0"},
     {"buffer.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"uri":"gone.bin","byteLength":4}]})",
      ErrorCode::not_found, "gone.bin"},
     {"cycle.gltf",
