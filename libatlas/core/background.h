@@ -11,7 +11,8 @@
 
 namespace atlas {
 
-// Used by one thread. Tasks begin in the order of asking, each on a thread of its own.
+// Used by one thread. Tasks begin in the order of asking, each on a thread of its own; what they
+// take counts as the user's (own_cpu_seconds) once they have been waited for.
 class Background {
  public:
   // At most `at_once` tasks are under way; 0: each is done before add() returns.
@@ -29,11 +30,15 @@ class Background {
   Status finish();
 
  private:
+  struct Done {
+    Status status;
+    double cpu_seconds = 0;
+  };
   void wait_for_oldest();
 
   std::size_t at_once_;
   Status status_;
-  std::deque<std::future<Status>> under_way_;
+  std::deque<std::future<Done>> under_way_;
 };
 
 }  // namespace atlas

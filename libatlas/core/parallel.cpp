@@ -59,7 +59,7 @@ struct Task {
   ATLAS_UNSEEN void operator()(std::size_t chunk) const { (*run)(chunk); }
 };
 
-thread_local double lent_seconds = 0;  // of this thread's loops, on others
+thread_local double lent_seconds = 0;  // of this thread's loops and background tasks, on others
 thread_local bool in_chunk = false;    // of a loop that has threads already
 
 // One chunk on a thread that may not be the loop's own.
@@ -92,6 +92,10 @@ std::size_t thread_count(const Context& context) {
 
 double own_cpu_seconds() {
   return thread_cpu_seconds() + lent_seconds;
+}
+
+void add_own_cpu_seconds(double seconds) {
+  lent_seconds += seconds;
 }
 
 void parallel_for(const Context& context, std::size_t n, std::size_t grain,

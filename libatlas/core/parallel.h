@@ -19,8 +19,12 @@ void parallel_for(const Context& context, std::size_t n, std::size_t grain,
 // How many threads a context asks for: the machine's where it leaves that open; at least 1.
 std::size_t thread_count(const Context& context);
 
-// CPU time of the calling thread, and of what its loops have run on others: what a call took,
-// whatever else the process does meanwhile. Seconds, for differences only.
+// CPU time of the calling thread, and of what its loops and background tasks (background.h) have
+// run on others: what a call took, whatever else the process does meanwhile. Seconds, for
+// differences only.
 double own_cpu_seconds();
+
+// Adds to own_cpu_seconds() of the calling thread what another thread has spent for it.
+void add_own_cpu_seconds(double seconds);
 
 }  // namespace atlas

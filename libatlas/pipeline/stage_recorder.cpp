@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "libatlas/core/clock.h"
+#include "libatlas/core/parallel.h"
 #include "libatlas/core/progress.h"
 
 namespace atlas {
@@ -15,14 +16,14 @@ StageRecorder::StageRecorder(ExportReport& report,
 const Context& StageRecorder::begin(std::string name) {
   name_ = std::move(name);
   stage_context_ = part_of_stage(context_, name_);
-  cpu_ = cpu_seconds();
+  cpu_ = own_cpu_seconds();
   wall_ = wall_seconds();
   stage_context_.report(name_, 0);
   return stage_context_;
 }
 
 void StageRecorder::finish(StageOutcome outcome) {
-  add(name_, cpu_seconds() - cpu_, wall_seconds() - wall_, std::move(outcome));
+  add(name_, own_cpu_seconds() - cpu_, wall_seconds() - wall_, std::move(outcome));
 }
 
 void StageRecorder::add(std::string name, double cpu_seconds, double wall_seconds,

@@ -23,8 +23,9 @@ class StageRecorder {
   StageRecorder(ExportReport& report, const std::function<void(const StageReport&)>& stage_done,
                 const Context& context);
 
-  // Starts a stage's clocks; finish() stops them and appends the stage to the report. What the
-  // stage calls with the context returned reports its progress by the stage's name.
+  // Starts a stage's clocks; finish() stops them and appends the stage to the report, with the CPU
+  // time of this thread, its loops and its background tasks, not of the process. What the stage
+  // calls with the context returned reports its progress by the stage's name.
   const Context& begin(std::string name);
   void finish(StageOutcome outcome);
 

@@ -117,6 +117,29 @@ TEST(Background, BeginsNothingAfterAFailureAndTellsTheFirst) {
   EXPECT_THROW(static_cast<void>(throwing.finish()), std::bad_alloc);
 }
 
+// Tasks on threads of their own are the caller's time all the same, once they are done.
+TEST(Background, CountsAsTheTimeOfItsUser) {
+  for (const std::size_t at_once : {0u, 1u, 3u}) {
+    const double begun = own_cpu_seconds();
+    Background background(at_once);
+    for (int i = 0; i < 6; ++i) {
+      ASSERT_TRUE(background
+                      .add([] {
+                        volatile double sum = 0;
+                        for (const double start = thread_cpu_seconds();
+                             thread_cpu_seconds() - start < 0.01;)
+                          sum = sum + 1;
+                        return Status();
+                      })
+                      .ok());
+    }
+    ASSERT_TRUE(background.finish().ok());
+    const double spent = own_cpu_seconds() - begun;
+    EXPECT_GE(spent, 0.06) << at_once;
+    EXPECT_LT(spent, 0.06 + 0.03) << at_once;
+  }
+}
+
 TEST(ParallelFor, CoversEachIndexOnceInTheSameChunks) {
   for (const std::size_t n : {0u, 1u, 7u, 64u, 1000u}) {
     for (const std::size_t grain : {0u, 1u, 3u, 64u, 5000u}) {
