@@ -177,17 +177,20 @@ Json pages_json(const ExportReport& r) {
                      {"charts", p.charts},
                      {"bytes", p.image_bytes}});
   }
-  return {{"scale", r.scale},
-          {"outlines", r.outlines},
-          {"utilization", r.utilization},
-          {"uv_utilization", r.uv_utilization},
-          {"opened_charts", r.opened_charts},
-          {"border_texels", r.gaps.border},
-          {"shared_border_texels", r.gaps.near_after},
-          {"gpu_bytes", r.gpu_bytes},
-          {"thin_triangles", r.thin_triangles},
-          {"texels_drawn_twice", r.texels_drawn_twice},
-          {"pages", pages}};
+  Json packing{{"scale", r.scale},
+               {"outlines", r.outlines},
+               {"utilization", r.utilization},
+               {"uv_utilization", r.uv_utilization},
+               {"opened_charts", r.opened_charts}};
+  if (r.gaps_measured) {
+    packing["border_texels"] = r.gaps.border;
+    packing["shared_border_texels"] = r.gaps.near_after;
+  }
+  packing["gpu_bytes"] = r.gpu_bytes;
+  packing["thin_triangles"] = r.thin_triangles;
+  if (r.drawn_twice_measured) packing["texels_drawn_twice"] = r.texels_drawn_twice;
+  packing["pages"] = pages;
+  return packing;
 }
 
 // What no sample told is null: a 0 would read as a perfect or a hopeless result.
@@ -213,10 +216,11 @@ Json error_json(const Fidelity& f, ToneOperator tone) {
           {"max", of_lit(f.maximum)}};
 }
 
+// What was not measured has no key: a 0 would read as a perfect result.
 void add_results(const ExportReport& r, Json& json) {
   json["charts"] = charts_json(r);
   json["packing"] = pages_json(r);
-  json["grouping"] = grouping_json(r.grouping);
+  if (r.plan.runs("grouping")) json["grouping"] = grouping_json(r.grouping);
   if (r.full_texels > 0) {
     json["light"] = light_json(r);
     json["textures"] = textures_json(r);

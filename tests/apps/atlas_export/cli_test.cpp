@@ -53,6 +53,29 @@ TEST_F(AtlasExport, GlbHoldsItsImages) {
   EXPECT_EQ(files(), (std::set<std::string>{"box.obj", "w.glb"}));
 }
 
+// What was not measured has no key, which would read as a perfect 0.
+TEST_F(AtlasExport, TheReportHasNoKeysOfWhatNobodyMeasured) {
+  write("box.obj", lit_box(4));
+  struct Case {
+    const char* options;
+    bool gaps, drawn_twice, grouping;
+  };
+  for (const Case& c : {Case{"-o {0}/w.wrl", true, false, true},
+                        Case{"-o {0}/w.wrl --atlases 1", true, false, false},
+                        Case{"-o {0}/w.obj --charts-only", false, true, false},
+                        Case{"-o {0}/w.glb --charts-only --keep-scene", true, true, false}}) {
+    const std::string options = fmt::format(fmt::runtime(c.options), dir_.string());
+    const RunResult r =
+        run(fmt::format("{0}/box.obj {1} --report {0}/r.json", dir_.string(), options));
+    ASSERT_EQ(r.exit_code, 0) << r.output;
+    const auto report = nlohmann::json::parse(slurp(dir_ / "r.json"));
+    EXPECT_EQ(report["packing"].contains("border_texels"), c.gaps) << c.options;
+    EXPECT_EQ(report["packing"].contains("shared_border_texels"), c.gaps) << c.options;
+    EXPECT_EQ(report["packing"].contains("texels_drawn_twice"), c.drawn_twice) << c.options;
+    EXPECT_EQ(report.contains("grouping"), c.grouping) << c.options;
+  }
+}
+
 // What is kept of a scene is seen in the result; what is not, and where the new uvs are, is told.
 TEST_F(AtlasExport, TellsWhatItDoesNotKeep) {
   write("m.mtl", "newmtl m\nKd 1 0 0\nKs 1 1 1\nmap_Bump n.png\n");
