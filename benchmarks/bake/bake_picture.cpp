@@ -112,9 +112,10 @@ Status draw_methods(const char* path) {
     options.method = method;
     const Result<BakedPage> page = bake_page(light, {&placement, 1}, options, {});
     if (!page.ok()) return page.status();
-    FidelityMeter meter(light, {&placement, 1}, {});
-    meter.add_page(0, page->display);
-    app::print(stdout, fmt::format("{}: {:.1f} dB\n", name, meter.result().psnr));
+    Result<FidelityMeter> meter = FidelityMeter::make(light, {&placement, 1}, {}, {});
+    if (!meter.ok()) return meter.status();
+    meter->add_page(0, page->display);
+    app::print(stdout, fmt::format("{}: {:.1f} dB\n", name, meter->result().psnr));
     tiles.push_back(draw([&](double x, double y) {
       return bench::lookup(page->display, page_texel(placement, {x, y}));
     }));

@@ -34,9 +34,11 @@ Status bake_all(Staged& staged, const Setting& setting, std::vector<Image8>& pag
 }
 
 void judge(const Staged& staged, const std::vector<Image8>& pages, Row& row) {
-  FidelityMeter meter(staged.light(), staged.layout->placements, {});
-  for (std::size_t p = 0; p < pages.size(); ++p) meter.add_page(std::int32_t(p), pages[p]);
-  const Fidelity f = meter.result();
+  Result<FidelityMeter> meter =
+      FidelityMeter::make(staged.light(), staged.layout->placements, {}, {});
+  if (!meter.ok()) return;
+  for (std::size_t p = 0; p < pages.size(); ++p) meter->add_page(std::int32_t(p), pages[p]);
+  const Fidelity f = meter->result();
   row.values = {{"rms", f.rmse_display}, {"psnr", f.psnr}, {"p95", f.p95}, {"p999", f.p999}};
 }
 

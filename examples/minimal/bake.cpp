@@ -83,12 +83,13 @@ int main(int argc, char** argv) {
   bake.page_height = pages->pages[0].height;
   const auto page = atlas::bake_page(light, pages->placements, bake, {});
   if (!page.ok()) return complain(page.status());
-  atlas::FidelityMeter meter(light, pages->placements, {});
-  meter.add_page(0, page->display);
+  auto meter = atlas::FidelityMeter::make(light, pages->placements, {}, {});
+  if (!meter.ok()) return complain(meter.status());
+  meter->add_page(0, page->display);
   if (argc > 1)
     if (auto s = atlas::write_png(argv[1], page->display, {}); !s.ok()) return complain(s);
   std::printf("%zu charts, texels %lld -> %lld, page %d x %d, %.1f dB\n", charts->charts.size(),
               static_cast<long long>(sizes->full_texels),
               static_cast<long long>(sizes->final_texels), bake.page_width, bake.page_height,
-              meter.result().psnr);
+              meter->result().psnr);
 }

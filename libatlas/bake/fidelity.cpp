@@ -1,10 +1,15 @@
 #include "libatlas/bake/fidelity.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
+#include <utility>
 #include <vector>
 
+#include "libatlas/core/parallel.h"
 #include "libatlas/core/random.h"
 #include "libatlas/scene/triangle_area.h"
 #include "libatlas/texture/srgb.h"
@@ -107,65 +112,110 @@ struct Sums {
   }
 };
 
+// Where a sample lies, before its light is known.
+struct Point {
+  std::uint32_t triangle = 0;
+  double weight[3] = {0, 0, 0};  // of the triangle's corners
+};
+
+// Stratified: one point at a random place in each equal share of the running area. None if there is
+// no area.
+std::vector<Point> draw_points(const Scene& scene, const FidelityOptions& options,
+                               const Context& context) {
+  std::vector<Point> points;
+  double total = 0;
+  for (std::size_t t = 0; t < scene.triangle_count(); ++t) total += triangle_area(scene, t);
+  if (!(total > 0)) return points;
+  const double share = total / options.samples;
+  std::mt19937_64 random(options.seed);
+  double area = 0, next = share * uniform(random);
+  points.reserve(options.samples);
+  for (std::size_t t = 0; t < scene.triangle_count() && !context.cancelled(); ++t) {
+    area += triangle_area(scene, t);
+    while (next < area && points.size() < options.samples) {
+      const double r = std::sqrt(uniform(random)), v = uniform(random);
+      points.push_back({static_cast<std::uint32_t>(t), {1 - r, r * (1 - v), r * v}});
+      next = share * (static_cast<double>(points.size()) + uniform(random));
+    }
+  }
+  return points;
+}
+
+// The light of points, and where it lies on the pages.
+struct SampleMaker {
+  const ChartLight& light;
+  std::span<const ChartPlacement> placements;
+  const std::vector<std::int64_t>& placed;  // 1 a chart: its placement, or -1
+
+  void make(std::span<const Point> points, std::span<Sample> samples) const {
+    for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
+      const std::uint32_t t = points[begin].triangle;
+      const auto lit = light.sampler.prepare(t, 0);
+      for (end = begin; end < points.size() && points[end].triangle == t; ++end) {
+        const double* b = points[end].weight;
+        samples[end].luminance = LuminanceSampler::sample(
+            lit, static_cast<float>(b[0]), static_cast<float>(b[1]), static_cast<float>(b[2]));
+        place(points[end], samples[end]);
+      }
+    }
+  }
+
+  void place(const Point& point, Sample& sample) const {
+    const std::int64_t at = placed[light.charts.triangle_chart[point.triangle]];
+    if (at < 0) return;
+    Vec2d uv;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t corner = 3 * std::size_t{point.triangle} + k;
+      const Vec2d q = light.charts.uvs[light.charts.triangle_uv[corner]];
+      uv = {uv.x + point.weight[k] * q.x, uv.y + point.weight[k] * q.y};
+    }
+    const ChartPlacement& placement = placements[std::size_t(at)];
+    const Vec2d texel = page_texel(placement, uv);
+    sample.texel = {static_cast<float>(texel.x), static_cast<float>(texel.y)};
+    sample.page = placement.page;
+  }
+};
+
 }  // namespace
 
 struct FidelityMeter::State {
-  const ToneMapping& tone;
+  ToneMapping tone;
   std::vector<Sample> samples;         // in the order drawn
   std::vector<std::uint32_t> by_page;  // sample ids sorted by page
 };
 
-FidelityMeter::FidelityMeter(const ChartLight& light, std::span<const ChartPlacement> placements,
-                             const FidelityOptions& options)
-    : state_(new State{light.tone, {}, {}}) {
-  const Scene& scene = light.sampler.scene();
-  const ChartSet& charts = light.charts;
-  std::vector<std::int64_t> placed(charts.charts.size(), -1);
-  for (std::size_t i = 0; i < placements.size(); ++i)
-    placed[placements[i].chart] = static_cast<std::int64_t>(i);
+FidelityMeter::FidelityMeter(std::unique_ptr<State> state) : state_(std::move(state)) {}
+FidelityMeter::FidelityMeter(FidelityMeter&&) noexcept = default;
+FidelityMeter& FidelityMeter::operator=(FidelityMeter&&) noexcept = default;
 
-  double total = 0;
-  for (std::size_t t = 0; t < scene.triangle_count(); ++t) total += triangle_area(scene, t);
-  if (!(total > 0)) return;
-  // Stratified: one sample at a random place in each equal share of the running area.
-  const double share = total / options.samples;
-  std::mt19937_64 random(options.seed);
-  double area = 0, next = share * uniform(random);
-  std::uint32_t drawn = 0;
-  state_->samples.reserve(options.samples);
-  for (std::size_t t = 0; t < scene.triangle_count() && drawn < options.samples; ++t) {
-    area += triangle_area(scene, t);
-    if (next >= area) continue;
-    const auto id = static_cast<std::uint32_t>(t);
-    const auto lit = light.sampler.prepare(id, 0);
-    while (next < area && drawn < options.samples) {
-      const double r = std::sqrt(uniform(random)), v = uniform(random);
-      const double b[3] = {1 - r, r * (1 - v), r * v};
-      Sample s;
-      s.luminance = LuminanceSampler::sample(lit, static_cast<float>(b[0]),
-                                             static_cast<float>(b[1]), static_cast<float>(b[2]));
-      const std::int64_t at = placed[charts.triangle_chart[t]];
-      if (at >= 0) {
-        Vec2d uv;
-        for (int k = 0; k < 3; ++k) {
-          const Vec2d q = charts.uvs[charts.triangle_uv[3 * t + k]];
-          uv = {uv.x + b[k] * q.x, uv.y + b[k] * q.y};
-        }
-        const Vec2d texel = page_texel(placements[at], uv);
-        s.texel = {static_cast<float>(texel.x), static_cast<float>(texel.y)};
-        s.page = placements[at].page;
-      }
-      state_->samples.push_back(s);
-      ++drawn;
-      next = share * (drawn + uniform(random));
-    }
+Result<FidelityMeter> FidelityMeter::make(const ChartLight& light,
+                                          std::span<const ChartPlacement> placements,
+                                          const FidelityOptions& options, const Context& context) {
+  std::vector<std::int64_t> placed(light.charts.charts.size(), -1);
+  for (std::size_t i = 0; i < placements.size(); ++i) {
+    if (placements[i].chart >= placed.size())
+      return Status(ErrorCode::bad_input,
+                    fmt::format("placement {} names chart {}, but there are {}", i,
+                                placements[i].chart, placed.size()));
+    placed[placements[i].chart] = static_cast<std::int64_t>(i);
   }
-  state_->by_page.resize(state_->samples.size());
-  for (std::uint32_t i = 0; i < state_->by_page.size(); ++i) state_->by_page[i] = i;
-  std::stable_sort(state_->by_page.begin(), state_->by_page.end(),
+  const std::vector<Point> points = draw_points(light.sampler.scene(), options, context);
+  auto state = std::make_unique<State>(State{light.tone, std::vector<Sample>(points.size()),
+                                             std::vector<std::uint32_t>(points.size())});
+  const SampleMaker maker{light, placements, placed};
+  // So many that the light of a large triangle is looked for once for many of its samples.
+  constexpr std::size_t kGrain = 1024;
+  parallel_for(context, points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    maker.make(std::span(points).subspan(begin, end - begin),
+               std::span(state->samples).subspan(begin, end - begin));
+  });
+  if (context.cancelled()) return Status::cancelled();
+  std::iota(state->by_page.begin(), state->by_page.end(), 0u);
+  std::stable_sort(state->by_page.begin(), state->by_page.end(),
                    [&](std::uint32_t a, std::uint32_t b) {
-                     return state_->samples[a].page < state_->samples[b].page;
+                     return state->samples[a].page < state->samples[b].page;
                    });
+  return FidelityMeter(std::move(state));
 }
 
 FidelityMeter::~FidelityMeter() = default;

@@ -7,7 +7,9 @@
 
 #include "libatlas/bake/bake.h"
 #include "libatlas/bake/placement.h"
+#include "libatlas/core/context.h"
 #include "libatlas/core/image.h"
+#include "libatlas/core/status.h"
 
 namespace atlas {
 
@@ -36,10 +38,14 @@ struct Fidelity {
 // Takes the pages one by one, in any order, so that they need not be in memory together.
 class FidelityMeter {
  public:
-  // Draws the samples (deterministic). `placements` of all pages; everything must outlive the
-  // meter.
-  FidelityMeter(const ChartLight& light, std::span<const ChartPlacement> placements,
-                const FidelityOptions& options);
+  // Draws the samples, the same for every thread count. `placements` of all pages; what is given
+  // here is not looked at any more once the call is over. Errors: bad_input (a placement names a
+  // chart that is not there); cancelled.
+  static Result<FidelityMeter> make(const ChartLight& light,
+                                    std::span<const ChartPlacement> placements,
+                                    const FidelityOptions& options, const Context& context);
+  FidelityMeter(FidelityMeter&&) noexcept;
+  FidelityMeter& operator=(FidelityMeter&&) noexcept;
   ~FidelityMeter();
 
   // Looks up this page's samples bilinearly in the 8-bit image, as a viewer does. `display` is what
@@ -51,6 +57,8 @@ class FidelityMeter {
 
  private:
   struct State;
+  explicit FidelityMeter(std::unique_ptr<State> state);
+
   std::unique_ptr<State> state_;
 };
 

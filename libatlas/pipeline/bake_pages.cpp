@@ -52,11 +52,7 @@ class PageBaker {
 
   Result<BakedPages> run() {
     const double cpu = own_cpu_seconds();
-    if (options_.measure_error) {
-      const BookedTime cpu_watch(thread_cpu_seconds, result_.measure_cpu);
-      const BookedTime wall_watch(wall_seconds, result_.measure_wall);
-      meter_.emplace(light_, layout_.placements, FidelityOptions{});
-    }
+    if (Status s = draw_samples(); !s.ok()) return s;
     const std::size_t at_once = pages_at_once();
     Background writing(writes_itself() ? 0 : at_once);
     for (std::size_t p = 0; p < pages_.size(); p += at_once) {
@@ -72,13 +68,22 @@ class PageBaker {
       result_.pages[p].image_bytes = error ? 0 : bytes;
       result_.write_cpu += write_cpu_[p];
     }
-    result_.bake_cpu = own_cpu_seconds() - cpu - result_.measure_cpu;
-    if (writes_itself()) result_.bake_cpu -= result_.write_cpu;
+    result_.bake_cpu = own_cpu_seconds() - cpu - result_.measure_cpu - result_.write_cpu;
     if (meter_) result_.fidelity = meter_->result();
     return std::move(result_);
   }
 
  private:
+  Status draw_samples() {
+    if (!options_.measure_error) return {};
+    const BookedTime cpu_watch(own_cpu_seconds, result_.measure_cpu);
+    const BookedTime wall_watch(wall_seconds, result_.measure_wall);
+    Result<FidelityMeter> meter = FidelityMeter::make(light_, layout_.placements, {}, context_);
+    if (!meter.ok()) return meter.status();
+    meter_.emplace(std::move(*meter));
+    return {};
+  }
+
   // The caller's thread, not one in the background.
   bool writes_itself() const { return pages_.size() < 2 || context_.threads == 1; }
 
@@ -110,7 +115,7 @@ class PageBaker {
   Status add_page(std::size_t p, BakedPage baked, Background& writing) {
     result_.covered_texels += baked.covered_texels;
     if (meter_) {
-      const BookedTime cpu_watch(thread_cpu_seconds, result_.measure_cpu);
+      const BookedTime cpu_watch(own_cpu_seconds, result_.measure_cpu);
       const BookedTime wall_watch(wall_seconds, result_.measure_wall);
       meter_->add_page(std::int32_t(p), baked.display);
     }
@@ -124,7 +129,7 @@ class PageBaker {
                              std::uint32_t(pages_[p].size()), 0});
     const BookedTime watch(wall_seconds, result_.write_wall);
     return writing.add([this, p, png, exr, page = std::move(baked)]() -> Status {
-      const BookedTime own_watch(thread_cpu_seconds, write_cpu_[p]);
+      const BookedTime own_watch(own_cpu_seconds, write_cpu_[p]);
       if (Status s = write_png(png, page.display, {options_.png_compression, true}); !s.ok())
         return s;
       return exr.empty() ? Status() : write_exr(exr, page.linear);
@@ -138,6 +143,12 @@ class PageBaker {
       fractions_ += fraction - std::exchange(fraction_[p], fraction);
       context_.report("baking", std::min(1.0, fractions_ / double(pages_.size())));
     };
+    if (context_.warn) {
+      context.warn = [&, p](std::string_view line) {
+        const std::lock_guard lock(reporting_);
+        context_.say(fmt::format("page {}: {}", p, line));
+      };
+    }
     BakeOptions bake;
     bake.page_width = layout_.pages[p].width;
     bake.page_height = layout_.pages[p].height;

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <memory>
 #include <random>
+#include <utility>
 
 #include "tests/bake/bake_fixture.h"
 
@@ -48,10 +50,17 @@ std::vector<Image8> bake_pages(const Setup& s) {
   return pages;
 }
 
+FidelityMeter meter_of(const ChartLight& light, std::span<const ChartPlacement> placements,
+                       const FidelityOptions& options) {
+  auto meter = FidelityMeter::make(light, placements, options, {});
+  EXPECT_TRUE(meter.ok()) << meter.status().message();
+  return std::move(*meter);
+}
+
 TEST(Fidelity, OfAPerfectBakeIsTheRoundingOfEightBits) {
   const auto s = two_pages();
   const std::vector<Image8> pages = bake_pages(*s);
-  FidelityMeter meter(s->light(), s->placements, {});
+  FidelityMeter meter = meter_of(s->light(), s->placements, {});
   meter.add_page(0, pages[0]);
   meter.add_page(1, pages[1]);
   const Fidelity f = meter.result();
@@ -72,7 +81,7 @@ TEST(Fidelity, MeasuresAKnownErrorExactly) {
   for (Image8& page : pages)
     for (std::size_t i = 1; i < page.texels.size(); i += 3)
       page.texels[i] = static_cast<std::uint8_t>(page.texels[i] + 20);
-  FidelityMeter meter(s->light(), s->placements, {});
+  FidelityMeter meter = meter_of(s->light(), s->placements, {});
   meter.add_page(1, pages[1]);
   meter.add_page(0, pages[0]);
   const Fidelity f = meter.result();
@@ -99,7 +108,7 @@ TEST(Fidelity, WeighsAPartOfATriangleByItsArea) {
         if (inside(x - 4, y - 4))
           for (int k = 0; k < 3; ++k)
             page.at(x, y)[k] = static_cast<std::uint8_t>(page.at(x, y)[k] + 50);
-    FidelityMeter meter(light, placements, {});
+    FidelityMeter meter = meter_of(light, placements, {});
     meter.add_page(0, page);
     const double rmse = meter.result().rmse_display;
     return rmse * rmse;
@@ -123,7 +132,7 @@ TEST(Fidelity, DoesNotDependOnTheOrderOfPagesAndRepeats) {
   const auto s = two_pages();
   const std::vector<Image8> pages = bake_pages(*s);
   const auto measure = [&](std::uint64_t seed, bool backwards) {
-    FidelityMeter meter(s->light(), s->placements, {20000, seed});
+    FidelityMeter meter = meter_of(s->light(), s->placements, {20000, seed});
     for (int i = 0; i < 2; ++i) meter.add_page(backwards ? 1 - i : i, pages[backwards ? 1 - i : i]);
     return meter.result();
   };
@@ -137,7 +146,7 @@ TEST(Fidelity, CountsWhatHasNoPage) {
   const auto s = two_pages();
   const std::vector<Image8> pages = bake_pages(*s);
   s->placements.pop_back();
-  FidelityMeter meter(s->light(), s->placements, {});
+  FidelityMeter meter = meter_of(s->light(), s->placements, {});
   meter.add_page(0, pages[0]);
   Image8 cut_short = pages[1];
   cut_short.texels.pop_back();
@@ -150,11 +159,46 @@ TEST(Fidelity, CountsWhatHasNoPage) {
   EXPECT_GT(f.psnr, 56);
 }
 
+TEST(Fidelity, RefusesPlacementsOfChartsThatAreNotThere) {
+  const auto s = two_pages();
+  s->placements[1].chart = 3;
+  const auto meter = FidelityMeter::make(s->light(), s->placements, {}, {});
+  ASSERT_EQ(meter.status().code(), ErrorCode::bad_input);
+  EXPECT_EQ(meter.status().message(), "placement 1 names chart 3, but there are 3");
+}
+
+TEST(Fidelity, StopsWhenCancelled) {
+  const auto s = two_pages();
+  const std::atomic<bool> stop{true};
+  Context context;
+  context.cancel = &stop;
+  EXPECT_EQ(FidelityMeter::make(s->light(), s->placements, {}, context).status().code(),
+            ErrorCode::cancelled);
+}
+
+TEST(Fidelity, IsTheSameForEveryNumberOfThreads) {
+  const auto s = two_pages();
+  const std::vector<Image8> pages = bake_pages(*s);
+  Fidelity found[2];
+  for (const int threads : {1, 4}) {
+    Context context;
+    context.threads = threads;
+    auto meter = FidelityMeter::make(s->light(), s->placements, {}, context);
+    ASSERT_TRUE(meter.ok());
+    for (int i = 0; i < 2; ++i) meter->add_page(i, pages[i]);
+    found[threads > 1] = meter->result();
+  }
+  EXPECT_EQ(found[0].rmse, found[1].rmse);
+  EXPECT_EQ(found[0].psnr, found[1].psnr);
+  EXPECT_EQ(found[0].psnr_all, found[1].psnr_all);
+  EXPECT_EQ(found[0].maximum, found[1].maximum);
+}
+
 TEST(Fidelity, LeavesClippedSamplesOutOfTheSceneUnits) {
   auto s = two_pages();
   for (Vec3f& e : s->shape.scene.illumination) e = {e.x * 4, e.y * 4, e.z * 4};
   const std::vector<Image8> pages = bake_pages(*s);
-  FidelityMeter meter(s->light(), s->placements, {});
+  FidelityMeter meter = meter_of(s->light(), s->placements, {});
   for (int i = 0; i < 2; ++i) meter.add_page(i, pages[i]);
   const Fidelity f = meter.result();
   EXPECT_GT(f.clipped, 1000u);
@@ -168,7 +212,7 @@ TEST(Fidelity, OfNothingIsNothing) {
   for (Vec3f& p : shape.scene.positions) p = {};
   const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
   const ChartLight light{sampler, shape.charts, kPlain};
-  const FidelityMeter meter(light, {}, {});
+  const FidelityMeter meter = meter_of(light, {}, {});
   const Fidelity f = meter.result();
   EXPECT_EQ(f.lit + f.unlit + f.unplaced, 0u);
   EXPECT_EQ(f.psnr, 0);
