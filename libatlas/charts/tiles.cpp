@@ -11,6 +11,7 @@
 #include "libatlas/charts/flattening/part_of_chart.h"
 #include "libatlas/charts/totals.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/parallel.h"
 #include "libatlas/param/halfedges.h"
 
 namespace atlas {
@@ -144,26 +145,21 @@ class Rebuilder {
     fresh_.charts.push_back(chart);
   }
 
-  // Returns whether the chart was divided into more than one piece.
-  bool divide(const Chart& old, double limit, double max_stretch) {
+  // A chart's pieces, one at most if it stays whole. May be called for several charts at once.
+  std::vector<FlatChart> pieces_of(const Chart& old, double limit, double max_stretch) const {
     FlatChart whole = flat(old);
-    if (whole.triangles.empty()) {
-      keep(old);
-      return false;
-    }
+    if (whole.triangles.empty()) return {};
     // Given charts keep their shapes, and charts beyond the bound need not keep to it.
     const bool bounded = !old.kept && old.distortion.stretch_999 <= max_stretch;
     if (!bounded) max_stretch = std::numeric_limits<double>::infinity();
-    std::vector<FlatChart> pieces = Tiler(mesh_, limit, max_stretch).run(std::move(whole));
-    if (pieces.size() < 2) {
-      keep(old);
-      return false;
-    }
+    return Tiler(mesh_, limit, max_stretch).run(std::move(whole));
+  }
+
+  void divide(const Chart& old, std::vector<FlatChart> pieces) {
     const std::vector<OwnedEdge> edges = edges_of(pieces);
     fresh_.seam_length += length_between(edges);
     std::vector<std::vector<std::uint32_t>> loose = loose_triangles(old, pieces, edges);
     for (std::size_t i = 0; i < pieces.size(); ++i) add(old, pieces[i], loose[i]);
-    return true;
   }
 
   ChartSet finish() {
@@ -309,21 +305,44 @@ class Rebuilder {
   std::vector<std::uint32_t> local_ = std::vector<std::uint32_t>(old_.uvs.size(), kNoIndex);
 };
 
+// Charts whose pieces are made at a time have about so many triangles together, which bounds what
+// pieces take besides the charts themselves.
+constexpr std::size_t kTrianglesAtOnce = std::size_t{1} << 20;
+
+// The end of the charts from `first` on that are cut at a time.
+std::size_t end_of_batch(const std::vector<Chart>& charts, std::size_t first) {
+  std::size_t end = first, triangles = 0;
+  while (end < charts.size() && triangles < kTrianglesAtOnce)
+    triangles += charts[end++].triangle_count;
+  return end;
+}
+
 }  // namespace
 
-std::size_t cut_to_limits(const MeshView& mesh, std::span<const double> limits, double max_stretch,
-                          ChartSet& charts) {
-  const auto too_long = [&](std::size_t c) { return charts.charts[c].size.x > limits[c]; };
+Result<std::size_t> cut_to_limits(const MeshView& mesh, const TileLimits& limits, ChartSet& charts,
+                                  const Context& context) {
+  const std::vector<Chart>& old = charts.charts;
+  const auto too_long = [&](std::size_t c) { return old[c].size.x > limits.sides[c]; };
   std::size_t first = 0;
-  while (first < charts.charts.size() && !too_long(first)) ++first;
-  if (first == charts.charts.size()) return 0;
+  while (first < old.size() && !too_long(first)) ++first;
+  if (first == old.size()) return std::size_t{0};
   Rebuilder fresh(mesh, charts);
   std::size_t count = 0;
-  for (std::size_t c = 0; c < charts.charts.size(); ++c) {
-    if (too_long(c)) {
-      count += fresh.divide(charts.charts[c], limits[c], max_stretch);
-    } else {
-      fresh.keep(charts.charts[c]);
+  for (std::size_t begin = 0, end = 0; begin < old.size(); begin = end) {
+    end = end_of_batch(old, begin);
+    std::vector<std::vector<FlatChart>> pieces(end - begin);
+    parallel_for(context, end - begin, 1, [&](std::size_t i, std::size_t) {
+      if (!too_long(begin + i)) return;
+      pieces[i] = fresh.pieces_of(old[begin + i], limits.sides[begin + i], limits.max_stretch);
+    });
+    if (context.cancelled()) return Status::cancelled();
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      if (pieces[i].size() < 2) {
+        fresh.keep(old[begin + i]);
+        continue;
+      }
+      fresh.divide(old[begin + i], std::move(pieces[i]));
+      ++count;
     }
   }
   charts = fresh.finish();

@@ -10,6 +10,7 @@
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/file_extension.h"
+#include "libatlas/core/parallel.h"
 #include "libatlas/exporters/viewpoint.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/pipeline/advice.h"
@@ -53,7 +54,7 @@ class Export {
         record_(report_, stage_done, context) {}
 
   Result<ExportReport> run() {
-    const double cpu = cpu_seconds(), wall = wall_seconds();
+    const double cpu = own_cpu_seconds(), wall = wall_seconds();
     if (Status s = check_plan(plan_, options_); !s.ok()) return s;
     if (Status s = plan_.bake ? check_images(scene_) : Status(); !s.ok()) return s;
     if (Status s = cut_charts(); !s.ok()) return s;
@@ -79,7 +80,7 @@ class Export {
     if (report_.thin_triangles > 0)
       report_.advice.push_back(thin_triangles_text(report_.thin_triangles, report_.triangles_out));
     for (const std::string& line : report_.advice) context_.say(line);
-    report_.cpu_seconds = cpu_seconds() - cpu;
+    report_.cpu_seconds = own_cpu_seconds() - cpu;
     report_.wall_seconds = wall_seconds() - wall;
     report_.peak_memory = peak_memory();
     return std::move(report_);
@@ -146,12 +147,13 @@ class Export {
     const std::vector<double> densities = wanted_densities(*light_, texture, context);
     if (context.cancelled()) return Status::cancelled();
     const std::size_t before = charts_.charts.size();
-    const std::size_t cut =
-        cut_to_limits(view_of(scene_), longest_sides(charts_, densities, {texture, options_}),
-                      options_.charts.max_stretch, charts_);
+    const std::vector<double> sides = longest_sides(charts_, densities, {texture, options_});
+    const Result<std::size_t> cut =
+        cut_to_limits(view_of(scene_), {sides, options_.charts.max_stretch}, charts_, context);
+    if (!cut.ok()) return cut.status();
     report_charts();
     record_.finish(
-        {before, charts_.charts.size(), "charts", fmt::format("{} longer than half a page", cut)});
+        {before, charts_.charts.size(), "charts", fmt::format("{} longer than half a page", *cut)});
     return {};
   }
 
@@ -203,6 +205,7 @@ class Export {
     if (!apart.ok()) return apart.status();
     report_.opened_charts = apart->opened;
     report_.gaps = apart->left;
+    report_.gaps_measured = true;
     return std::move(apart->layout);
   }
 
@@ -214,8 +217,10 @@ class Export {
                                          : lay_out_plain(layout, context);
     if (!laid.ok()) return laid.status();
     layout_ = std::move(*laid);
-    if (plan_.bake)
+    if (plan_.bake) {
       report_.gaps = left_part_gaps(view_of(scene_), charts_, layout_.placements, context);
+      report_.gaps_measured = true;
+    }
     report_.grouping = layout_.grouping;
     report_.scale = layout_.scale;
     report_.utilization = layout_.utilization;
@@ -305,6 +310,7 @@ class Export {
     if (!plan_.bake) {
       const PlacedCharts placed{charts_, layout_.placements, layout_.pages};
       report_.texels_drawn_twice = draw_once(placed, mesh.uv_indices, world.uvs, context).after;
+      report_.drawn_twice_measured = true;
     }
     world.up = options_.up;
     world.title = options_.target.stem().string();

@@ -156,7 +156,10 @@ class PageFiller {
       ++parts_;
       const std::vector<double> limits(whole.charts.size(), longest * side);
       Way way{whole, {}};
-      if (cut_to_limits(uvs_.mesh, limits, uvs_.options.max_stretch, way.charts) == 0) continue;
+      const Result<std::size_t> pieces =
+          cut_to_limits(uvs_.mesh, {limits, uvs_.options.max_stretch}, way.charts, context_);
+      if (!pieces.ok()) return pieces.status();
+      if (*pieces == 0) continue;
       if (way.charts.seam_length == seams_before) continue;  // the same cuts as before
       seams_before = way.charts.seam_length;
       const double seams = (way.charts.seam_length - best.charts.seam_length) / root_area;

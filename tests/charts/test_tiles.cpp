@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "libatlas/charts/tiles.h"
@@ -25,8 +26,10 @@ double longest(const ChartSet& set) {
 }
 
 std::size_t cut(const Mesh& mesh, double limit, ChartSet& set) {
-  return cut_to_limits(mesh.view(), std::vector<double>(set.charts.size(), limit), kMaxStretch,
-                       set);
+  const std::vector<double> sides(set.charts.size(), limit);
+  const auto count = cut_to_limits(mesh.view(), {sides, kMaxStretch}, set, {});
+  EXPECT_TRUE(count.ok()) << count.status().message();
+  return *count;
 }
 
 double longest_edge(const Mesh& mesh, std::uint32_t t) {
@@ -63,6 +66,44 @@ TEST(Tiles, KeepWhatChartsPromise) {
       }
     }
   }
+}
+
+TEST(Tiles, AreTheSameForEveryNumberOfThreads) {
+  Shape many = grid(120, 5, 40, 1);
+  for (int i = 1; i < 12; ++i)
+    many = together(many, moved(grid(60 + 20 * i, 4, 20 + i, 0.7), 1, {0, 2.0 * i, 0}));
+  const Mesh mesh(many);
+  const ChartSet whole = charts_of(mesh);
+  const std::vector<double> sides(whole.charts.size(), 6.5);
+  ChartSet sets[2] = {whole, whole};
+  for (const int threads : {1, 4}) {
+    Context context;
+    context.threads = threads;
+    const auto count = cut_to_limits(mesh.view(), {sides, kMaxStretch}, sets[threads > 1], context);
+    ASSERT_TRUE(count.ok());
+    EXPECT_EQ(*count, whole.charts.size());
+  }
+  EXPECT_EQ(sets[0].triangle_uv, sets[1].triangle_uv);
+  EXPECT_EQ(sets[0].triangle_chart, sets[1].triangle_chart);
+  EXPECT_EQ(sets[0].seam_length, sets[1].seam_length);
+  ASSERT_EQ(sets[0].uvs.size(), sets[1].uvs.size());
+  for (std::size_t i = 0; i < sets[0].uvs.size(); ++i) {
+    ASSERT_EQ(sets[0].uvs[i].x, sets[1].uvs[i].x);
+    ASSERT_EQ(sets[0].uvs[i].y, sets[1].uvs[i].y);
+  }
+}
+
+TEST(Tiles, OnceCancelledChartsAreWhatTheyWere) {
+  const Mesh mesh(grid(200, 5, 40, 1));
+  ChartSet set = charts_of(mesh);
+  const std::atomic<bool> stop{true};
+  Context context;
+  context.cancel = &stop;
+  const std::vector<double> sides(set.charts.size(), 10.5);
+  const auto count = cut_to_limits(mesh.view(), {sides, kMaxStretch}, set, context);
+  EXPECT_EQ(count.status().code(), ErrorCode::cancelled);
+  EXPECT_EQ(set.charts.size(), 1u);
+  EXPECT_EQ(check_charts(mesh.view(), set).fault, "");
 }
 
 // Each cut of a regular strip runs straight across it.
