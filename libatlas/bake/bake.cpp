@@ -7,10 +7,13 @@
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "libatlas/bake/chart_box.h"
 #include "libatlas/bake/least_squares.h"
-#include "libatlas/bake/ownership.h"
+#include "libatlas/bake/page_owners.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/raster/coverage.h"
 #include "libatlas/raster/sampling.h"
@@ -19,37 +22,6 @@
 
 namespace atlas {
 namespace {
-
-// The box of one chart with its pads; positions inside are relative to its corner. It ends where
-// the packer's box does: at a multiple of 2^mip_levels, if it begins at one, so that no texel of
-// the coarsest level is left half filled.
-struct Box {
-  const ChartPlacement& placement;
-  int pad, width, height;
-
-  Box(const ChartPlacement& p, const BakeOptions& o)
-      : placement(p),
-        pad(gutter_pad(o.mip_levels)),
-        width(side(p.x - pad, p.width + 2 * pad, o.page_width, o.mip_levels)),
-        height(side(p.y - pad, p.height + 2 * pad, o.page_height, o.mip_levels)) {}
-
-  static int side(int begin, int length, int page, int mip_levels) {
-    const int unit = 1 << mip_levels;
-    if (begin % unit != 0) return length;
-    return std::min((begin + length + unit - 1) / unit * unit, page) - begin;
-  }
-
-  const Chart& chart(const ChartSet& charts) const { return charts.charts[placement.chart]; }
-
-  TexelTriangle triangle(const ChartSet& charts, std::uint32_t t) const {
-    TexelTriangle out;
-    for (int k = 0; k < 3; ++k) {
-      const Vec2d q = page_texel(placement, charts.uvs[charts.triangle_uv[3 * std::size_t(t) + k]]);
-      out[k] = {q.x - placement.x + pad, q.y - placement.y + pad};
-    }
-    return out;
-  }
-};
 
 // What one chart's bake needs; `tone` null gives scene-linear values.
 struct Job {
@@ -124,7 +96,7 @@ void splat_triangle(const TexelTriangle& p, const TriangleLight& lit, const Samp
                   SampleVisitor{row, point});
 }
 
-TexelGrid bake_least_squares(const Job& job, const Box& box) {
+TexelGrid bake_least_squares(const Job& job, const ChartBox& box) {
   LeastSquares fit(box.width, box.height);
   const std::vector<GridSplat> splats = grid_splats(job.grid);
   const double spacing = sample_spacing(box.placement, job.grid.side);
@@ -140,7 +112,7 @@ TexelGrid bake_least_squares(const Job& job, const Box& box) {
 }
 
 // The published scheme. Shifts move the grid by up to half a texel about the texel's centre.
-TexelGrid bake_average(const Job& job, const Box& box) {
+TexelGrid bake_average(const Job& job, const ChartBox& box) {
   TexelGrid out(box.width, box.height);
   const double spacing = sample_spacing(box.placement, 1);
   const Rect clip{0, 0, box.width, box.height};
@@ -170,7 +142,7 @@ TexelGrid bake_average(const Job& job, const Box& box) {
 
 // A chart too small to weigh anything takes the mean of its triangles' middles: black would be seen
 // where coarse mip levels mix it with its neighbours.
-void fill_tiny(const Job& job, const Box& box, TexelGrid& texels) {
+void fill_tiny(const Job& job, const ChartBox& box, TexelGrid& texels) {
   if (std::find(texels.known.begin(), texels.known.end(), 1) != texels.known.end()) return;
   Lanes sum{};
   for (const std::uint32_t t : triangles_of(job.light.charts, box.chart(job.light.charts))) {
@@ -184,61 +156,31 @@ void fill_tiny(const Job& job, const Box& box, TexelGrid& texels) {
   texels.known[at] = 1;
 }
 
-TexelGrid bake_box(const Job& job, const Box& box) {
+TexelGrid bake_box(const Job& job, const ChartBox& box) {
   TexelGrid texels = job.options.method == BakeMethod::average ? bake_average(job, box)
                                                                : bake_least_squares(job, box);
   fill_tiny(job, box, texels);
   return texels;
 }
 
-// The texels of a box that are its chart's own: neighbours packed by their outlines have the
-// others.
-class OwnTexels {
- public:
-  OwnTexels(const ChartSet& charts, const Box& box, int mip_levels) : box_(box) {
-    if (!box.placement.outlined) return;
-    std::vector<TexelTriangle> triangles;
-    for (const std::uint32_t t : triangles_of(charts, box.chart(charts)))
-      triangles.push_back(box.triangle(charts, t));
-    own_ = owned_texels(triangles, {box.width, box.height, box.pad, 1 << mip_levels});
-  }
-
-  // Of one row: the first one's number in the box and its place on the page.
-  struct Run {
-    std::size_t first = 0;
-    int x = 0, y = 0, length = 0;
-  };
-
-  template <class Visit>
-  void each_run(const Visit& visit) const {
-    const int left = box_.placement.x - box_.pad, bottom = box_.placement.y - box_.pad;
-    for (int j = 0; j < box_.height; ++j) {
-      const std::size_t row = std::size_t(j) * static_cast<std::size_t>(box_.width);
-      for (int i = 0, end; i < box_.width; i = end) {
-        const bool own = is_own(row + std::size_t(i));
-        for (end = i + 1; end < box_.width && is_own(row + std::size_t(end)) == own;) ++end;
-        if (own) visit(Run{row + std::size_t(i), left + i, bottom + j, end - i});
-      }
-    }
-  }
-
- private:
-  bool is_own(std::size_t i) const { return own_.empty() || own_[i] != 0; }
-
-  const Box& box_;
-  std::vector<std::uint8_t> own_;  // empty: the whole box
+// The texels that a box's chart writes.
+struct OwnTexels {
+  const ChartBox& box;
+  const std::vector<TexelRun>& runs;
 };
 
 // convert(colour) gives the three values to be stored in its first lanes.
 template <class T, class Convert>
 void copy_own(const TexelGrid& in, const OwnTexels& own, Image<T>& page, const Convert& convert) {
-  own.each_run([&](const OwnTexels::Run& run) {
+  for (const TexelRun& run : own.runs) {
+    const std::size_t row = std::size_t(run.y - own.box.bottom()) * std::size_t(in.width),
+                      first = row + std::size_t(run.x - own.box.left());
     T* to = page.at(run.x, run.y);
-    for (const Lanes *v = &in.rgb[run.first], *end = v + run.length; v < end; ++v, to += 3) {
+    for (const Lanes *v = &in.rgb[first], *end = v + run.length; v < end; ++v, to += 3) {
       const auto values = convert(*v);
       for (int k = 0; k < 3; ++k) to[k] = static_cast<T>(values[k]);
     }
-  });
+  }
 }
 
 constexpr int kLargest = 1 << 16;
@@ -290,6 +232,17 @@ Status check(const ChartLight& light, std::span<const ChartPlacement> placements
   return {};
 }
 
+// What whoever bakes a page that was packed for fewer mip levels has to know.
+std::string contested_text(const PageOwners& owners, int mip_levels) {
+  return fmt::format(
+      "{} texels belong to several charts, the first at ({}, {}) to {} and {}: look-ups at the "
+      "coarser of mip levels 0 to {} mix their light (pack with a padding of {} and an alignment "
+      "of "
+      "{} texels, or bake fewer mip levels)",
+      owners.contested, owners.x, owners.y, owners.charts[0], owners.charts[1], mip_levels,
+      gutter_pad(mip_levels), 1 << mip_levels);
+}
+
 }  // namespace
 
 Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacement> placements,
@@ -302,20 +255,17 @@ Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacem
   const Job display{light, options, grid, &light.tone, 0, 1};
   const std::optional<Job> linear =
       options.linear ? std::optional(linear_job(display)) : std::nullopt;
-  std::vector<std::uint8_t> taken(std::size_t(options.page_width) * options.page_height, 0);
+  const PageOwners owners = find_owners(light.charts, placements, options, context);
+  page.contested_texels = owners.contested;
   std::mutex counting;
   std::size_t done = 0;
   parallel_for(context, placements.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end && !context.cancelled(); ++i) {
-      const Box box(placements[i], options);
+      const ChartBox box(placements[i], options);
       TexelGrid texels = bake_box(display, box);
       const std::size_t filled = fill_unknown(texels);
-      const OwnTexels own(light.charts, box, options.mip_levels);
+      const OwnTexels own{box, owners.runs[i]};
       copy_own(texels, own, page.display, quantize_lanes);
-      own.each_run([&](const OwnTexels::Run& run) {
-        std::fill_n(&taken[std::size_t(run.y) * options.page_width + std::size_t(run.x)],
-                    run.length, 1);
-      });
       const std::size_t covered = texels.rgb.size() - filled;
       if (linear) {
         texels = bake_box(*linear, box);
@@ -332,7 +282,8 @@ Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacem
   if (context.cancelled()) return Status::cancelled();
   // No lookup at the guarded mip levels reads texels that no chart owns, but viewers build the
   // whole chain: black there would draw dark lines along distant seams.
-  fill_unknown(taken, page.display);
+  fill_unknown(owners.taken, page.display);
+  if (owners.contested > 0) context.say(contested_text(owners, options.mip_levels));
   return page;
 }
 

@@ -44,22 +44,55 @@ void fill_cells(std::vector<std::uint8_t>& mask, const OwnershipGrid& grid) {
   }
 }
 
-}  // namespace
-
-std::vector<std::uint8_t> owned_texels(std::span<const TexelTriangle> triangles,
-                                       const OwnershipGrid& grid) {
+std::vector<std::uint8_t> touched_texels(std::span<const TexelTriangle> triangles,
+                                         const OwnershipGrid& grid) {
   std::vector<std::uint8_t> mask(std::size_t(grid.width) * grid.height, 0);
   const Rect all{0, 0, grid.width, grid.height};
   for (const TexelTriangle& triangle : triangles) {
     cover_triangle(triangle, all,
                    [&](int x, int y, double, Vec2d) { mask[std::size_t(y) * grid.width + x] = 1; });
   }
+  return mask;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> owned_texels(std::span<const TexelTriangle> triangles,
+                                       const OwnershipGrid& grid) {
+  std::vector<std::uint8_t> mask = touched_texels(triangles, grid);
   widen_rows(mask, grid.width, grid.pad);
   mask = transposed(mask, grid.width, grid.height);
   widen_rows(mask, grid.height, grid.pad);
   mask = transposed(mask, grid.height, grid.width);
   if (grid.cell > 1) fill_cells(mask, grid);
   return mask;
+}
+
+// Two sweeps give chessboard distances exactly (Rosenfeld and Pfaltz 1968).
+std::vector<std::uint16_t> texels_to_triangles(std::span<const TexelTriangle> triangles,
+                                               const OwnershipGrid& grid) {
+  constexpr int kFar = 65535;
+  const std::vector<std::uint8_t> touched = touched_texels(triangles, grid);
+  std::vector<std::uint16_t> distance(touched.size());
+  for (std::size_t i = 0; i < touched.size(); ++i) distance[i] = touched[i] ? 0 : kFar;
+  const auto sweep = [&](int first_y, int step) {
+    const auto at = [&](int x, int y) -> std::uint16_t& {
+      return distance[std::size_t(y) * std::size_t(grid.width) + std::size_t(x)];
+    };
+    const int first_x = step > 0 ? 0 : grid.width - 1;
+    for (int y = first_y; y >= 0 && y < grid.height; y += step) {
+      for (int x = first_x; x >= 0 && x < grid.width; x += step) {
+        int least = kFar;
+        if (x != first_x) least = at(x - step, y);
+        for (int i = std::max(0, x - 1); y != first_y && i <= std::min(grid.width - 1, x + 1); ++i)
+          least = std::min<int>(least, at(i, y - step));
+        at(x, y) = static_cast<std::uint16_t>(std::min<int>(at(x, y), std::min(least + 1, kFar)));
+      }
+    }
+  };
+  sweep(0, 1);
+  sweep(grid.height - 1, -1);
+  return distance;
 }
 
 }  // namespace atlas

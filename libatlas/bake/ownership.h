@@ -16,9 +16,14 @@ struct OwnershipGrid {
 };
 
 // 1 a texel of the box, row-major: whether it lies in a cell that comes within `pad` texels of one
-// of the triangles (in the box's texels). The box begins and ends at multiples of `cell`. This is
-// the packer's own rule (pack/outline.h), so texels of two charts never meet.
+// of the triangles (in the box's texels). Where the box begins and ends at multiples of `cell`,
+// this is the packer's own rule (pack/outline.h), so texels of two charts packed by it never meet.
 std::vector<std::uint8_t> owned_texels(std::span<const TexelTriangle> triangles,
                                        const OwnershipGrid& grid);
+
+// 1 a texel of the box, row-major: how many texels it is from the nearest one that a triangle
+// touches, along rows or columns, whichever is more; 65535 where none is nearer.
+std::vector<std::uint16_t> texels_to_triangles(std::span<const TexelTriangle> triangles,
+                                               const OwnershipGrid& grid);
 
 }  // namespace atlas

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
+#include <string_view>
 
 #include "tests/bake/bake_fixture.h"
 
@@ -118,6 +120,105 @@ TEST(Gutter, OutlinedChartsKeepToTheirCells) {
         }
     }
   }
+}
+
+// Charts of one colour each, nearer to each other than their gutters are wide: two texels lie
+// between them, where four or more are asked for.
+LitShape crowded(bool outlined, std::vector<ChartPlacement>& placements) {
+  LitShape shape;
+  std::mt19937 random(23);
+  for (std::uint32_t i = 0; i < 64; ++i) {
+    const double red = 0.15 + 0.1 * (i % 8), green = 0.15 + 0.1 * (i / 8);
+    append(shape,
+           make_sheet({0.2, 0.2, 3, 3},
+                      [&](double, double) {
+                        return Vec3f{srgb_decode(float(red)), srgb_decode(float(green)), 1};
+                      }),
+           {0, 0, float(i)});
+    ChartPlacement p = place(shape.charts, i, {79.9, 79.9}, {4, 4, 0, 0});
+    EXPECT_EQ(p.width, 16);  // nearly full: rounding reaches no further texel
+    p.x += 18 * static_cast<int>(i % 8);
+    p.y += 18 * static_cast<int>(i / 8);
+    turn_in_box(p, random() % 2);
+    p.outlined = outlined;
+    placements.push_back(p);
+  }
+  return shape;
+}
+
+TEST(Gutter, ChartsTooNearToEachOtherAreTheSameForAnyThreadsAndOrder) {
+  for (const bool outlined : {false, true}) {
+    for (const int levels : {0, 2, 3}) {
+      std::vector<ChartPlacement> placements;
+      const LitShape shape = crowded(outlined, placements);
+      BakeOptions options = small_page(160);
+      options.mip_levels = levels;
+      options.linear = true;
+      if (levels == 3) {
+        for (ChartPlacement& p : placements) p.x += 2, p.offset.x += 2;  // off the cells' corners
+      }
+      const auto one = bake(shape, placements, options, 1);
+      ASSERT_TRUE(one.ok()) << one.status().message();
+      EXPECT_EQ(one->contested_texels > 0, levels > 0) << outlined << ' ' << levels;
+      for (int repeat = 0; repeat < 10; ++repeat) {
+        std::shuffle(placements.begin(), placements.end(), std::mt19937(repeat));
+        const auto four = bake(shape, placements, options, 4);
+        ASSERT_TRUE(four.ok());
+        ASSERT_EQ(one->display.texels, four->display.texels) << outlined << ' ' << levels;
+        ASSERT_EQ(one->linear.texels, four->linear.texels) << outlined << ' ' << levels;
+        ASSERT_EQ(one->contested_texels, four->contested_texels);
+      }
+      // Look-ups at level 0 see their own chart alone, borders included.
+      for (const ChartPlacement& p : placements) {
+        const Vec3f want =
+            kPlain.display(shape.scene.illumination[shape.charts.charts[p.chart].first_uv]);
+        for (int n = 0; n < 81; ++n) {
+          const Vec2d at = page_texel(p, {0.2 * (n % 9) / 8, 0.2 * (n / 9) / 8});
+          ASSERT_NEAR(look_up(one->display, at, 0), 255 * want.x, 0.51) << outlined << levels;
+          ASSERT_NEAR(look_up(one->display, at, 1), 255 * want.y, 0.51) << outlined << levels;
+        }
+      }
+    }
+  }
+}
+
+// How many texels are contested, by rectangles alone; what is told names two charts that are.
+TEST(Gutter, ContestedTexelsAreCountedAndTold) {
+  std::vector<ChartPlacement> placements;
+  const LitShape shape = crowded(false, placements);
+  BakeOptions options = small_page(160);
+  options.mip_levels = 2;
+  std::vector<int> claims(160 * 160, 0);
+  for (const ChartPlacement& p : placements) {
+    const auto end = [](int begin, int length) {  // of a box that grows to whole cells
+      return begin % 4 == 0 ? (begin + length + 3) / 4 * 4 : begin + length;
+    };
+    for (int y = p.y - 2; y < end(p.y - 2, p.height + 4); ++y)
+      for (int x = p.x - 2; x < end(p.x - 2, p.width + 4); ++x) ++claims[y * 160 + x];
+  }
+  const auto several =
+      std::count_if(claims.begin(), claims.end(), [](int count) { return count > 1; });
+  const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+  std::vector<std::string> lines;
+  Context context;
+  context.warn = [&](std::string_view line) { lines.emplace_back(line); };
+  const auto page = bake_page({sampler, shape.charts, kPlain}, placements, options, context);
+  ASSERT_TRUE(page.ok());
+  EXPECT_EQ(page->contested_texels, std::uint64_t(several));
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_NE(lines[0].find("to 0 and 1:"), std::string::npos) << lines[0];
+  EXPECT_NE(lines[0].find("padding of 2 and an alignment of 4"), std::string::npos) << lines[0];
+  // With room for their gutters nothing is contested, and nothing said.
+  for (ChartPlacement& p : placements) {
+    p.x = 2 + 20 * (p.x - 4) / 18;
+    p.y = 2 + 20 * (p.y - 4) / 18;
+    turn_in_box(p, false);
+  }
+  options.page_width = options.page_height = 176;
+  const auto roomy = bake_page({sampler, shape.charts, kPlain}, placements, options, context);
+  ASSERT_TRUE(roomy.ok());
+  EXPECT_EQ(roomy->contested_texels, 0u);
+  EXPECT_EQ(lines.size(), 1u);
 }
 
 TEST(Gutter, BoxesKeepWithinThemselves) {
