@@ -198,9 +198,8 @@ class StackOpener {
 
 class StackFinder {
  public:
-  StackFinder(std::span<const std::uint32_t> corners, const Buckets& corners_at,
-              std::span<const glm::dvec2> exact)
-      : corners_(corners), corners_at_(corners_at), exact_(exact) {}
+  explicit StackFinder(const ExactTriangles& triangles)
+      : corners_(triangles.corners), corners_at_(triangles.corners_at), exact_(triangles.exact) {}
 
   // Triangle t with all that lack height and hang together by uvs, and `rings` more around them.
   Stack find(std::uint32_t t, int rings, std::vector<std::uint32_t>& place) const {
@@ -252,15 +251,14 @@ class StackFinder {
 
 class StackUvs {
  public:
-  StackUvs(std::span<const std::uint32_t> corners, const Buckets& corners_at,
-           std::span<const glm::dvec2> exact, double farthest, std::vector<Vec2f>& uvs)
-      : corners_(corners),
-        exact_(exact),
+  StackUvs(const ExactTriangles& triangles, double farthest, std::vector<Vec2f>& uvs)
+      : corners_(triangles.corners),
+        exact_(triangles.exact),
         farthest_(farthest),
         uvs_(uvs),
-        finder_(corners, corners_at, exact),
+        finder_(triangles),
         place_(uvs.size(), kNone),
-        in_vain_(corners.size() / 3, 0) {}
+        in_vain_(triangles.corners.size() / 3, 0) {}
 
   void run() {
     for (std::uint32_t t = 0; t < in_vain_.size(); ++t) {
@@ -316,9 +314,8 @@ class StackUvs {
 
 }  // namespace
 
-void open_stacks(std::span<const std::uint32_t> corners, const Buckets& corners_at,
-                 std::span<const glm::dvec2> exact, double farthest, std::vector<Vec2f>& uvs) {
-  StackUvs(corners, corners_at, exact, farthest, uvs).run();
+void open_stacks(const ExactTriangles& triangles, double farthest, std::vector<Vec2f>& uvs) {
+  StackUvs(triangles, farthest, uvs).run();
 }
 
 }  // namespace atlas

@@ -30,7 +30,7 @@ class SliverOpener {
                                     [&](std::size_t corner) { return corners_[corner]; });
     for (const Vec2d& p : exact_) start_.push_back(to_glm(p));
     push_open();
-    open_stacks(corners_, corners_at_, start_, farthest_, uvs_);
+    open_stacks({corners_, corners_at_, start_}, farthest_, uvs_);
     if (count_thin() == 0) return 0;
     spread_specks(corners_, corners_at_, uvs_);
     for (std::size_t i = 0; i < uvs_.size(); ++i) start_[i] = to_dvec(uvs_[i]);

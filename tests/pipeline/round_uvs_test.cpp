@@ -159,7 +159,7 @@ TEST(OpenStacks, WhatIsHemmedInMovesItsNeighbours) {
   ASSERT_TRUE(is_thin(triangle(0), uvs));
   const Buckets corners_at =
       sort_into_buckets(corners.size(), uvs.size(), [&](std::size_t c) { return corners[c]; });
-  open_stacks(corners, corners_at, exact, 1, uvs);
+  open_stacks({corners, corners_at, exact}, 1, uvs);
   for (std::uint32_t t = 0; t < corners.size() / 3; ++t) {
     EXPECT_FALSE(is_thin(triangle(t), uvs)) << t;
   }
