@@ -5,7 +5,10 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <numeric>
+#include <optional>
 #include <tuple>
+#include <utility>
 
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
@@ -20,6 +23,9 @@ constexpr int kFarthest = kDrawnSteps / 4;  // steps
 // Places that are looked at for neighbours, and of these drawn.
 constexpr std::size_t kPlaces = 256, kDrawings = 16;
 
+// Of lookups, and of a move: texels.
+constexpr double kReach = 3;
+
 struct Box {
   glm::dvec2 low{std::numeric_limits<double>::infinity()};
   glm::dvec2 high{-std::numeric_limits<double>::infinity()};
@@ -28,6 +34,69 @@ struct Box {
     low = glm::min(low, p);
     high = glm::max(high, p);
   }
+};
+
+// Charts' boxes by the squares of their pages that they reach into.
+class BoxBuckets {
+ public:
+  BoxBuckets(const PlacedCharts& placed, const std::vector<Box>& boxes)
+      : placed_(placed), boxes_(boxes), seen_(boxes.size(), 0) {
+    first_.push_back(0);
+    for (const Extent& page : placed.pages) {
+      const glm::ivec2 count = squares(page);
+      first_.push_back(first_.back() + std::size_t(count.x) * std::size_t(count.y));
+    }
+    charts_.resize(first_.back());
+    for (std::uint32_t c = 0; c < boxes.size(); ++c)
+      each_square(c, [&](std::size_t square) { charts_[square].push_back(c); });
+  }
+
+  // The other charts of c's page whose box is at most twice kReach from its own, along both axes.
+  std::vector<std::uint32_t> near(std::size_t c) {
+    std::vector<std::uint32_t> found;
+    ++searches_;
+    seen_[c] = searches_;
+    each_square(c, [&](std::size_t square) {
+      for (const std::uint32_t other : charts_[square]) {
+        if (std::exchange(seen_[other], searches_) != searches_) found.push_back(other);
+      }
+    });
+    return found;
+  }
+
+ private:
+  // Texels a side of a square; no more than 64 of them along a page, since strips at a slant have
+  // boxes that reach into most.
+  static int side(const Extent& page) {
+    return std::max(64, (std::max(page.width, page.height) + 63) / 64);
+  }
+  static glm::ivec2 squares(const Extent& page) {
+    return (glm::ivec2(page.width, page.height) + side(page) - 1) / side(page);
+  }
+
+  template <class Visit>
+  void each_square(std::size_t c, const Visit& visit) const {
+    if (!(boxes_[c].low.x <= boxes_[c].high.x)) return;  // a chart without uvs
+    const auto p = std::size_t(placed_.placements[c].page);
+    const glm::ivec2 count = squares(placed_.pages[p]);
+    const auto square = [&](glm::dvec2 at) {
+      const glm::dvec2 place = glm::floor(at / double(side(placed_.pages[p])));
+      return glm::clamp(glm::ivec2(place), glm::ivec2(0), count - 1);
+    };
+    const glm::ivec2 low = square(boxes_[c].low - kReach - 1.0),
+                     high = square(boxes_[c].high + kReach + 1.0);
+    for (int y = low.y; y <= high.y; ++y) {
+      for (int x = low.x; x <= high.x; ++x)
+        visit(first_[p] + std::size_t(y) * std::size_t(count.x) + std::size_t(x));
+    }
+  }
+
+  const PlacedCharts& placed_;
+  const std::vector<Box>& boxes_;
+  std::vector<std::size_t> first_;  // square of each page
+  std::vector<std::vector<std::uint32_t>> charts_;
+  std::vector<std::uint32_t> seen_;  // 1 a chart: the last search that found it
+  std::uint32_t searches_ = 0;
 };
 
 // Calls texel(x, y) for each texel that bilinear lookups along a segment read: the four around each
@@ -61,19 +130,56 @@ void lookups_of(const pack::ChartOutline& outline, glm::dvec2 shift, Texel&& tex
   }
 }
 
-class Mover {
+// The charts of all pages as they are drawn.
+class Drawings {
  public:
-  Mover(const PlacedCharts& placed, std::span<const std::uint32_t> corners, std::vector<Vec2f>& uvs)
+  Drawings(const PlacedCharts& placed, std::span<const std::uint32_t> corners,
+           std::span<const Vec2f> uvs)
       : placed_(placed), corners_(corners), uvs_(uvs) {}
 
-  DrawnTwice run(const Context& context) {
+  // 1 a chart: texels drawn twice.
+  std::vector<std::size_t> count(const Context& context) const {
     const std::size_t n = placed_.charts.charts.size();
     std::vector<std::size_t> twice(n, 0);
     parallel_for(context, n, 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t c = begin; c < end; ++c) twice[c] = drawing(c).texels_drawn_twice({0, 0});
     });
+    return twice;
+  }
+
+ protected:
+  const Chart& chart(std::size_t c) const { return placed_.charts.charts[c]; }
+  glm::dvec2 page_of(std::size_t c) const {
+    const Extent page = placed_.pages[std::size_t(placed_.placements[c].page)];
+    return {page.width, page.height};
+  }
+
+  std::vector<std::uint32_t> corners_of(std::size_t c) const {
+    std::vector<std::uint32_t> corners;
+    corners.reserve(3 * std::size_t(chart(c).triangle_count));
+    for (const std::size_t t : triangles_of(placed_.charts, chart(c)))
+      corners.insert(corners.end(), &corners_[3 * t], &corners_[3 * t] + 3);
+    return corners;
+  }
+
+  ChartDrawing drawing(std::size_t c) const {
+    return {corners_of(c), {chart(c).first_uv, chart(c).uv_count}, uvs_, page_of(c)};
+  }
+
+  const PlacedCharts& placed_;
+  std::span<const std::uint32_t> corners_;
+  std::span<const Vec2f> uvs_;
+};
+
+class Mover : private Drawings {
+ public:
+  Mover(const PlacedCharts& placed, std::span<const std::uint32_t> corners, std::vector<Vec2f>& uvs)
+      : Drawings(placed, corners, uvs), moving_uvs_(uvs) {}
+
+  DrawnTwice run(const Context& context) {
+    const std::vector<std::size_t> twice = count(context);
     DrawnTwice drawn;
-    for (std::size_t c = 0; c < n && !context.cancelled(); ++c) {
+    for (std::size_t c = 0; c < twice.size() && !context.cancelled(); ++c) {
       if (twice[c] == 0) continue;
       if (boxes_.empty()) find_boxes();
       drawn.before += twice[c];
@@ -83,7 +189,8 @@ class Mover {
       drawn.moves.push_back({std::uint32_t(c), from_glm(glm::dvec2(best.steps) / kSteps)});
       ChartDrawing draw = drawing(c);
       const std::span<const Vec2f> moved = draw.moved(best.steps);
-      std::copy(moved.begin(), moved.end(), uvs_.begin() + chart(c).first_uv);
+      std::copy(moved.begin(), moved.end(), moving_uvs_.begin() + chart(c).first_uv);
+      outlines_[c].reset();
     }
     return drawn;
   }
@@ -105,32 +212,16 @@ class Mover {
     }
   };
 
-  const Chart& chart(std::size_t c) const { return placed_.charts.charts[c]; }
-  glm::dvec2 page_of(std::size_t c) const {
-    const Extent page = placed_.pages[std::size_t(placed_.placements[c].page)];
-    return {page.width, page.height};
-  }
-
-  std::vector<std::uint32_t> corners_of(std::size_t c) const {
-    std::vector<std::uint32_t> corners;
-    corners.reserve(3 * std::size_t(chart(c).triangle_count));
-    for (const std::size_t t : triangles_of(placed_.charts, chart(c)))
-      corners.insert(corners.end(), &corners_[3 * t], &corners_[3 * t] + 3);
-    return corners;
-  }
-
-  ChartDrawing drawing(std::size_t c) const {
-    return {corners_of(c), {chart(c).first_uv, chart(c).uv_count}, uvs_, page_of(c)};
-  }
-
-  // On its page, in texels.
-  pack::ChartOutline outline(std::size_t c) const {
+  // On its page, in texels. Kept until the chart is moved, since many charts may have it for their
+  // neighbour.
+  const pack::ChartOutline& outline(std::size_t c) {
+    if (outlines_[c]) return *outlines_[c];
     std::vector<Vec2d> texels;
     for (std::uint32_t i = 0; i < chart(c).uv_count; ++i)
       texels.push_back(from_glm(to_dvec(uvs_[chart(c).first_uv + i]) * page_of(c)));
     std::vector<std::uint32_t> corners = corners_of(c);
     for (std::uint32_t& corner : corners) corner -= chart(c).first_uv;
-    return pack::outline_of({texels, corners});
+    return outlines_[c].emplace(pack::outline_of({texels, corners}));
   }
 
   void find_boxes() {
@@ -139,17 +230,17 @@ class Mover {
       for (std::uint32_t i = 0; i < chart(c).uv_count; ++i)
         box.add(to_dvec(uvs_[chart(c).first_uv + i]) * page_of(c));
     }
+    outlines_.resize(boxes_.size());
+    buckets_.emplace(placed_, boxes_);
   }
 
-  Taken taken_around(std::size_t c) const {
-    constexpr double kReach = 3;  // texels: of a lookup, and of a move
+  Taken taken_around(std::size_t c) {
     const glm::dvec2 low = glm::floor(boxes_[c].low - kReach),
                      high = glm::ceil(boxes_[c].high + kReach);
     Taken taken;
     taken.box = {int(low.x), int(low.y), int(high.x - low.x), int(high.y - low.y)};
     taken.texels.assign(std::size_t(taken.box.area()), 0);
-    for (std::size_t other = 0; other < boxes_.size(); ++other) {
-      if (other == c || placed_.placements[other].page != placed_.placements[c].page) continue;
+    for (const std::uint32_t other : buckets_->near(c)) {
       if (glm::any(glm::lessThan(boxes_[other].high + kReach, low)) ||
           glm::any(glm::greaterThan(boxes_[other].low - kReach, high)))
         continue;
@@ -187,11 +278,11 @@ class Mover {
     return sorted;
   }
 
-  Place best_place(std::size_t c, std::size_t texels) const {
+  Place best_place(std::size_t c, std::size_t texels) {
     ChartDrawing draw = drawing(c);
     const std::size_t thin = draw.thin_triangles({0, 0});
-    const pack::ChartOutline border = outline(c);
     Taken taken = taken_around(c);
+    const pack::ChartOutline& border = outline(c);
     Place best{{0, 0}, texels};
     std::size_t drawings = 0;
     for (const glm::ivec2 steps : places(draw.hits_of_turned())) {
@@ -210,10 +301,11 @@ class Mover {
     return best;
   }
 
-  const PlacedCharts& placed_;
-  std::span<const std::uint32_t> corners_;
-  std::vector<Vec2f>& uvs_;
-  std::vector<Box> boxes_;  // 1 a chart, texels; once a chart is to be moved
+  std::vector<Vec2f>& moving_uvs_;
+  // Once a chart is to be moved; boxes and outlines 1 a chart, in texels.
+  std::vector<Box> boxes_;
+  std::vector<std::optional<pack::ChartOutline>> outlines_;
+  std::optional<BoxBuckets> buckets_;
 };
 
 }  // namespace
@@ -221,6 +313,14 @@ class Mover {
 DrawnTwice draw_once(const PlacedCharts& placed, std::span<const std::uint32_t> corners,
                      std::vector<Vec2f>& uvs, const Context& context) {
   return Mover(placed, corners, uvs).run(context);
+}
+
+DrawnTwice drawn_twice(const PlacedCharts& placed, std::span<const std::uint32_t> corners,
+                       std::span<const Vec2f> uvs, const Context& context) {
+  const std::vector<std::size_t> twice = Drawings(placed, corners, uvs).count(context);
+  DrawnTwice drawn;
+  drawn.before = drawn.after = std::accumulate(twice.begin(), twice.end(), std::size_t{0});
+  return drawn;
 }
 
 }  // namespace atlas

@@ -31,4 +31,8 @@ struct DrawnTwice {
 DrawnTwice draw_once(const PlacedCharts& placed, std::span<const std::uint32_t> corners,
                      std::vector<Vec2f>& uvs, const Context& context);
 
+// The same without moving anything: what is drawn twice is counted, and uvs stay as they are.
+DrawnTwice drawn_twice(const PlacedCharts& placed, std::span<const std::uint32_t> corners,
+                       std::span<const Vec2f> uvs, const Context& context);
+
 }  // namespace atlas

@@ -130,6 +130,55 @@ TEST(DrawOnce, NoTexelIsDrawnTwiceBetweenNeighbours) {
   EXPECT_LE(held, 2);
 }
 
+// A page full of small diamonds, each with slivers along its sides, which leave each other three
+// texels. Texels' centres lie along their sides within a hair, so that many slivers meet some.
+Drawn crowd(unsigned seed) {
+  Drawn drawn;
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  constexpr double kCell = 32;
+  for (double y = kCell; y + 2 * kCell < kPage; y += kCell) {
+    for (double x = kCell; x + 2 * kCell < kPage; x += kCell) {
+      const double s = 28, u = 14;
+      std::vector<Vec2d> texels{{x + u, y}, {x + s, y + u}, {x + s - u, y + s}, {x, y + s - u}};
+      for (Vec2d& p : texels) p = {p.x + 0.008 * unit(random), p.y + 0.008 * unit(random)};
+      std::vector<std::uint32_t> corners{0, 1, 2, 0, 2, 3};
+      for (std::uint32_t k = 0; k < 4; ++k) {
+        const Vec2d p = texels[k], q = texels[(k + 1) % 4];
+        const double length = std::hypot(q.x - p.x, q.y - p.y),
+                     out = 0.0003 * (1 + unit(random)) / length;
+        texels.push_back(
+            {(p.x + q.x) / 2 + out * (q.y - p.y), (p.y + q.y) / 2 - out * (q.x - p.x)});
+        corners.insert(corners.end(), {k, std::uint32_t(texels.size() - 1), (k + 1) % 4});
+      }
+      drawn.add(texels, corners);
+    }
+  }
+  return drawn;
+}
+
+TEST(DrawOnce, NeighboursOfNeighboursThatMovedStayApart) {
+  Drawn drawn = crowd(7), again = crowd(7);
+  const AtlasMeasures first = drawn.measured();
+  ASSERT_EQ(first.bleed, 0u);
+  const std::vector<Vec2f> before = drawn.uvs;
+  const DrawnTwice counted =
+      drawn_twice({drawn.set, drawn.placements, drawn.pages}, drawn.set.triangle_uv, drawn.uvs, {});
+  EXPECT_EQ(drawn.uvs, before);
+  const DrawnTwice result = drawn.draw(2);
+  EXPECT_EQ(counted.before, result.before);
+  EXPECT_EQ(counted.after, result.before);
+  EXPECT_TRUE(counted.moves.empty());
+  EXPECT_GE(result.moves.size(), 50u);  // else few of those that move have neighbours that did
+  EXPECT_LT(result.after, result.before / 4);
+  const AtlasMeasures last = drawn.measured();
+  EXPECT_EQ(last.bleed, 0u);
+  EXPECT_EQ(last.flipped, first.flipped);
+  EXPECT_LE(last.overlap, result.after);
+  again.draw(1);
+  EXPECT_EQ(again.uvs, drawn.uvs);
+}
+
 TEST(DrawOnce, StaysWhereEveryMoveWouldTouchNeighbours) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     Drawn drawn = kite_between_walls(seed, 1.2);  // nearer than gutters are: none may come nearer
