@@ -123,8 +123,9 @@ class PageFiller {
         kMostPressed * goal_.covered(way.layout) < wanted) {
       return {};
     }
+    const std::vector<Vec2d> wanted_densities = densities(way.charts);
     Result<PageLayout> pressed =
-        press_layout(way.charts, densities(way.charts), options_, way.layout, part(kLaidOut, 1));
+        press_layout({way.charts, wanted_densities}, options_, way.layout, part(kLaidOut, 1));
     if (!pressed.ok()) return pressed.status();
     way.layout = std::move(*pressed);
     way.pressed = true;

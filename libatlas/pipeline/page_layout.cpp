@@ -98,13 +98,18 @@ constexpr std::uint64_t kBestLayouts = 8000, kBestCharts = 75000;
 
 // The packer's problem, as options.outlines says: by boxes or by outlines.
 struct Problem {
+  const ChartSet& charts;
+  std::span<const Vec2d> texels_per_unit;
+  const LayoutOptions& options;
   std::vector<FitItem> items;
   std::optional<Outlines> outlines;
   FitOptions fit;
 
-  Problem(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
-          const LayoutOptions& options)
-      : items(charts.charts.size()) {
+  Problem(const WantedCharts& wanted, const LayoutOptions& how)
+      : charts(wanted.charts),
+        texels_per_unit(wanted.texels_per_unit),
+        options(how),
+        items(charts.charts.size()) {
     for (std::size_t c = 0; c < items.size(); ++c) {
       items[c] = {charts.charts[c].size.x * texels_per_unit[c].x,
                   charts.charts[c].size.y * texels_per_unit[c].y};
@@ -114,6 +119,7 @@ struct Problem {
     fit.padding = options.padding;
     fit.alignment = options.alignment;
     fit.minimum_side = options.minimum_side;
+    fit.allow_rotation = options.allow_rotation;
     fit.preset = options.preset;
     // In place of a limit on time, which would let the result depend on how busy the machine is.
     fit.effort = std::clamp<std::uint64_t>(kBestCharts / std::max<std::size_t>(1, items.size()), 1,
@@ -130,8 +136,8 @@ struct Problem {
 };
 
 // What the packer found, in the terms of this stage.
-PageLayout layout_of(FitResult fitted, const Problem& problem, const ChartSet& charts,
-                     std::span<const Vec2d> texels_per_unit, const LayoutOptions& options) {
+PageLayout layout_of(FitResult fitted, const Problem& problem) {
+  const LayoutOptions& options = problem.options;
   PageLayout layout;
   layout.scale = fitted.scale;
   layout.pages = std::move(fitted.pages);
@@ -145,7 +151,7 @@ PageLayout layout_of(FitResult fitted, const Problem& problem, const ChartSet& c
     to = options.outlines ? outlined(from, options) : boxed(from, options);
     to.chart = std::uint32_t(c);
     to.page = std::int32_t(from.page);
-    const Vec2d wanted = texels_per_unit[c];
+    const Vec2d wanted = problem.texels_per_unit[c];
     to.texels_per_unit =
         options.outlines
             ? Vec2d{wanted.x * from.scale, wanted.y * from.scale}
@@ -153,8 +159,8 @@ PageLayout layout_of(FitResult fitted, const Problem& problem, const ChartSet& c
                     scaled_density(wanted.y, item.height, layout.scale, options.minimum_side)};
   }
   layout.outlines = options.outlines;
-  layout.uv_utilization = uv_utilization(charts, layout);
-  const double texels = full_texels(charts, texels_per_unit);
+  layout.uv_utilization = uv_utilization(problem.charts, layout);
+  const double texels = full_texels(problem.charts, problem.texels_per_unit);
   if (texels > 0) layout.with_lost_room = 1 + fitted.lost_area / texels;
   return layout;
 }
@@ -162,13 +168,13 @@ PageLayout layout_of(FitResult fitted, const Problem& problem, const ChartSet& c
 // One kind of packing, as options.outlines says.
 Result<PageLayout> lay_out(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
                            const LayoutOptions& options, const Context& context) {
-  const Problem problem(charts, texels_per_unit, options);
+  const Problem problem({charts, texels_per_unit}, options);
   Result<FitResult> fitted = fit_pages(problem.items, problem.fit, context);
   if (!fitted.ok()) {
     const bool full = fitted.status().code() == ErrorCode::no_solution;
     return full ? no_room(charts, options) : fitted.status();
   }
-  return layout_of(std::move(*fitted), problem, charts, texels_per_unit, options);
+  return layout_of(std::move(*fitted), problem);
 }
 
 std::int64_t page_texels(const PageLayout& layout) {
@@ -288,11 +294,11 @@ Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> 
   return layout;
 }
 
-Result<PageLayout> press_layout(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
-                                const LayoutOptions& options, const PageLayout& unpressed,
-                                const Context& context) {
-  if (!unpressed.outlines) return lay_out_pages(charts, texels_per_unit, options, context);
-  const Problem problem(charts, texels_per_unit, options);
+Result<PageLayout> press_layout(const WantedCharts& wanted, const LayoutOptions& options,
+                                const PageLayout& unpressed, const Context& context) {
+  if (!unpressed.outlines)
+    return lay_out_pages(wanted.charts, wanted.texels_per_unit, options, context);
+  const Problem problem(wanted, options);
   FitResult fitted;
   fitted.scale = unpressed.scale;
   fitted.pages = unpressed.pages;
@@ -303,7 +309,7 @@ Result<PageLayout> press_layout(const ChartSet& charts, std::span<const Vec2d> t
   Result<FitResult> pressed = press_fit(std::move(fitted), problem.items, problem.fit, context);
   if (!pressed.ok()) return pressed.status();
   if (!(pressed->scale > unpressed.scale)) return unpressed;
-  return layout_of(std::move(*pressed), problem, charts, texels_per_unit, options);
+  return layout_of(std::move(*pressed), problem);
 }
 
 }  // namespace atlas

@@ -26,10 +26,11 @@ struct LayoutOptions {
   // One page whose sides are at most page_size, as full as it can be made: for uvs without images,
   // where no texel has a size.
   bool free_aspect = false;
-  bool press_pages = true;  // as in FitOptions
-  double wanted_fill = 0;   // as in FitOptions
-  double most_won = 1.1;    // by what packing a poor page with more work may make it fuller
-  bool square = false;      // pages as wide as high; free_aspect overrides it
+  bool press_pages = true;     // as in FitOptions
+  double wanted_fill = 0;      // as in FitOptions
+  double most_won = 1.1;       // by what packing a poor page with more work may make it fuller
+  bool square = false;         // pages as wide as high; free_aspect overrides it
+  bool allow_rotation = true;  // charts are turned to pack better; else they lie as their uvs do
   PackPreset preset = PackPreset::standard;
   // What to change where there is no room, in the words of whoever chose the options.
   std::string remedy = "allow more or larger pages, or less padding";
@@ -58,10 +59,15 @@ double filling_density(const ChartSet& charts, double texels);
 Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
                                  const LayoutOptions& options, const Context& context);
 
+// What lay_out_pages() places.
+struct WantedCharts {
+  const ChartSet& charts;
+  std::span<const Vec2d> texels_per_unit;  // 1 a chart, > 0
+};
+
 // The same, once it has been found without press_pages for charts and options alike: pages are not
 // searched again, only pressed.
-Result<PageLayout> press_layout(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
-                                const LayoutOptions& options, const PageLayout& unpressed,
-                                const Context& context);
+Result<PageLayout> press_layout(const WantedCharts& wanted, const LayoutOptions& options,
+                                const PageLayout& unpressed, const Context& context);
 
 }  // namespace atlas

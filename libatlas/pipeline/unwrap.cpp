@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
+#include <string>
 #include <unordered_map>
 #include <utility>
 
@@ -16,6 +18,21 @@
 
 namespace atlas {
 namespace {
+
+std::int32_t padding(const UnwrapOptions& options) {
+  if (options.mip_levels == 0) return options.padding;
+  return std::max(options.padding, gutter_pad(options.mip_levels));
+}
+
+std::int32_t alignment(const UnwrapOptions& options) {
+  return std::lcm(options.alignment, 1 << options.mip_levels);
+}
+
+// Whether charts may be moved by a hair: what they own for their mip levels may be a texel more
+// then.
+bool may_move(const UnwrapOptions& options) {
+  return options.mip_levels == 0 || options.padding > gutter_pad(options.mip_levels);
+}
 
 Status check_options(const UnwrapOptions& options) {
   const auto bad = [](std::string text) {
@@ -30,6 +47,14 @@ Status check_options(const UnwrapOptions& options) {
                            options.page_size));
   if (options.padding < 0 || options.padding > options.page_size / 4)
     return bad(fmt::format("padding is {} (0 to a quarter of page_size)", options.padding));
+  if (options.mip_levels < 0 || options.mip_levels > 10)
+    return bad(fmt::format("mip_levels is {} (0 to 10)", options.mip_levels));
+  if (options.alignment < 1 || options.alignment > options.page_size / 4)
+    return bad(fmt::format("alignment is {} (1 to a quarter of page_size)", options.alignment));
+  if (alignment(options) > options.page_size / 4 || padding(options) > options.page_size / 4)
+    return bad(fmt::format(
+        "mip_levels is {}, whose cells of {} texels are more than a quarter of page_size",
+        options.mip_levels, alignment(options)));
   if (!(options.texels_per_unit >= 0) || !std::isfinite(options.texels_per_unit))
     return bad(fmt::format("texels_per_unit is {} (a number above 0, or 0 for as many as fit)",
                            options.texels_per_unit));
@@ -46,11 +71,13 @@ Result<PagesOfParts> lay_out(const MeshView& mesh, const UnwrapOptions& options,
   LayoutOptions layout;
   layout.pages = options.pages;
   layout.page_size = options.page_size;
-  layout.padding = options.padding;
-  layout.alignment = 1;
+  layout.padding = padding(options);
+  layout.alignment = alignment(options);
+  layout.allow_rotation = options.allow_rotation;
+  layout.preset = options.packing;
   layout.minimum_side = 0;
   layout.outlines = true;
-  layout.remedy = "ask for more pages, a larger page_size or less padding";
+  layout.remedy = "ask for more pages, a larger page_size, less padding or fewer mip_levels";
   layout.square = options.square;
   layout.free_aspect = options.pages == 1 && !options.square;
   const PlainUvs uvs{mesh, options.charts, density};
@@ -113,7 +140,9 @@ Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& opt
   if (result.thin_triangles > 0)
     context.say(fmt::format("{} slivers have no area or are turned over in uvs rounded to floats",
                             result.thin_triangles));
-  const DrawnTwice drawn = draw_once(placed, charted.view().uv_indices, rounded, context);
+  const DrawnTwice drawn = may_move(options)
+                               ? draw_once(placed, charted.view().uv_indices, rounded, context)
+                               : drawn_twice(placed, charted.view().uv_indices, rounded, context);
   result.texels_drawn_twice = drawn.after;
   for (const DrawnTwice::Move& move : drawn.moves) {
     Vec2d& offset = result.placements[move.chart].offset;

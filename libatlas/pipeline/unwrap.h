@@ -18,6 +18,15 @@ struct UnwrapOptions {
   std::uint32_t pages = 1;        // at most, >= 1
   std::int32_t page_size = 2048;  // largest side of a page, texels, 64 to 16384
   std::int32_t padding = 2;       // texels kept free around each chart, >= 0
+  // To bake the pages with as many mip levels (BakeOptions::mip_levels), 0 to 10: from 1 on each
+  // chart gets gutter_pad(mip_levels) texels of padding at least, and whole cells of 2^mip_levels
+  // texels. To bake with 0, a padding of 1 does.
+  std::int32_t mip_levels = 0;
+  // Boxes and cells of charts begin and end at multiples of this, in texels, >= 1 (4 for textures
+  // compressed in blocks). More where mip_levels ask for it.
+  std::int32_t alignment = 1;
+  bool allow_rotation = true;  // charts are turned to pack better; else they lie as their uvs do
+  PackPreset packing = PackPreset::standard;
   // Texels along a unit of length, the same for all charts; 0: as many as the pages hold. Where
   // they hold less all charts get less; UnwrappedMesh::texels_per_unit tells. A single page that is
   // not square is made as full as it can be, not its charts as large.
@@ -42,7 +51,8 @@ struct UnwrappedMesh {
   double utilization = 0;                    // area of the charts / area of the pages
   std::uint64_t thin_triangles = 0;          // slivers that floats leave no area, or turn over
   // Texels whose centres more than one triangle covers once corners are rounded to 1/256 of a
-  // texel, as graphics hardware does: 0 but for masses of slivers.
+  // texel, as graphics hardware does: 0 but for masses of slivers, and where mip levels leave no
+  // padding to spare that charts could be moved into by a hair.
   std::uint64_t texels_drawn_twice = 0;
   GapReport gaps;                          // texels; what part_gaps left; else zeros
   ChartSet charts;                         // with all that was measured: distortion, seams
