@@ -205,7 +205,6 @@ class Export {
     if (!apart.ok()) return apart.status();
     report_.opened_charts = apart->opened;
     report_.gaps = apart->left;
-    report_.gaps_measured = true;
     return std::move(apart->layout);
   }
 
@@ -217,10 +216,8 @@ class Export {
                                          : lay_out_plain(layout, context);
     if (!laid.ok()) return laid.status();
     layout_ = std::move(*laid);
-    if (plan_.bake) {
+    if (plan_.bake)
       report_.gaps = left_part_gaps(view_of(scene_), charts_, layout_.placements, context);
-      report_.gaps_measured = true;
-    }
     report_.grouping = layout_.grouping;
     report_.scale = layout_.scale;
     report_.utilization = layout_.utilization;
@@ -310,7 +307,6 @@ class Export {
     if (!plan_.bake) {
       const PlacedCharts placed{charts_, layout_.placements, layout_.pages};
       report_.texels_drawn_twice = draw_once(placed, mesh.uv_indices, world.uvs, context).after;
-      report_.drawn_twice_measured = true;
     }
     world.up = options_.up;
     world.title = options_.target.stem().string();

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -76,12 +77,11 @@ struct ExportReport {
   double utilization = 0;     // chart texels (boxes) or uv area (outlines) / page texels
   double uv_utilization = 0;  // uv area / page area
   bool outlines = false;
-  std::uint64_t thin_triangles = 0;      // of those written: turned over or closed by uvs as floats
-  bool drawn_twice_measured = false;     // without baked light
-  std::uint64_t texels_drawn_twice = 0;  // UnwrappedMesh has it
-  std::uint64_t opened_charts = 0;       // parts of which were drawn apart, not to share texels
-  bool gaps_measured = false;            // with baked light, and with uvs for a lightmap
-  GapReport gaps;                        // where some still share them: texels of border
+  std::uint64_t thin_triangles = 0;  // of those written: turned over or closed by uvs as floats
+  std::uint64_t opened_charts = 0;   // parts of which were drawn apart, not to share texels
+  // Where some still share them: texels of border. With baked light, and with uvs for a lightmap.
+  std::optional<GapReport> gaps;
+  std::optional<std::uint64_t> texels_drawn_twice;  // UnwrappedMesh has it; without baked light
   std::vector<PageReport> pages;
   std::uint64_t gpu_bytes = 0;  // RGBA8 with mip chains
 

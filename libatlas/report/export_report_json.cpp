@@ -182,13 +182,13 @@ Json pages_json(const ExportReport& r) {
                {"utilization", r.utilization},
                {"uv_utilization", r.uv_utilization},
                {"opened_charts", r.opened_charts}};
-  if (r.gaps_measured) {
-    packing["border_texels"] = r.gaps.border;
-    packing["shared_border_texels"] = r.gaps.near_after;
+  if (r.gaps) {
+    packing["border_texels"] = r.gaps->border;
+    packing["shared_border_texels"] = r.gaps->near_after;
   }
   packing["gpu_bytes"] = r.gpu_bytes;
   packing["thin_triangles"] = r.thin_triangles;
-  if (r.drawn_twice_measured) packing["texels_drawn_twice"] = r.texels_drawn_twice;
+  if (r.texels_drawn_twice) packing["texels_drawn_twice"] = *r.texels_drawn_twice;
   packing["pages"] = pages;
   return packing;
 }

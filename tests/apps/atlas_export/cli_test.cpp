@@ -33,17 +33,21 @@ TEST_F(AtlasExport, WritesWorldImagesAndReport) {
 
 TEST_F(AtlasExport, ThePageOfTheReportNamesItsKeys) {
   write("box.obj", lit_box(4));
-  ASSERT_EQ(
-      run(fmt::format("{0}/box.obj -o {0}/w.wrl --report {0}/r.json", dir_.string())).exit_code, 0);
-  const auto report = nlohmann::json::parse(slurp(dir_ / "r.json"));
   const std::string page = slurp(REPORT_PAGE);
-  for (const auto& object : {report, report["charts"], report["charts"]["cpu_parts_s"],
-                             report["charts"]["charts"][0], report["packing"]})
-    for (const auto& [key, value] : object.items()) {
-      const bool named = page.find(fmt::format("`{}`", key)) != page.npos ||
-                         page.find(fmt::format("`{}[]`", key)) != page.npos;
-      EXPECT_TRUE(named) << key;
-    }
+  for (const char* more : {"", " --charts-only"}) {
+    ASSERT_EQ(
+        run(fmt::format("{0}/box.obj -o {0}/w.wrl --report {0}/r.json{1}", dir_.string(), more))
+            .exit_code,
+        0);
+    const auto report = nlohmann::json::parse(slurp(dir_ / "r.json"));
+    for (const auto& object : {report, report["charts"], report["charts"]["cpu_parts_s"],
+                               report["charts"]["charts"][0], report["packing"]})
+      for (const auto& [key, value] : object.items()) {
+        const bool named = page.find(fmt::format("`{}`", key)) != page.npos ||
+                           page.find(fmt::format("`{}[]`", key)) != page.npos;
+        EXPECT_TRUE(named) << key;
+      }
+  }
 }
 
 TEST_F(AtlasExport, GlbHoldsItsImages) {

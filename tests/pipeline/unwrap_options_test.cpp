@@ -1,0 +1,112 @@
+// unwrap_mesh: pages to bake, their alignment, charts that are not turned, and more work.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "libatlas/bake/bake.h"
+#include "libatlas/pipeline/unwrap.h"
+#include "tests/pipeline/lit_scene.h"
+#include "tests/pipeline/unwrap_checks.h"
+#include "tests/support/shapes.h"
+
+namespace atlas::test {
+namespace {
+
+// Its charts and placements are what bake_page takes: no texel of the page depends on the threads,
+// and none is contested where it was packed for as many mip levels.
+TEST(Unwrap, PagesAreBakedWithMipLevels) {
+  const LoadedScene scene = lit_scene(torus(64, 32));
+  const LuminanceSampler sampler(scene.scene, Quantity::illuminance);
+  const ToneMapping tone{};
+  for (const int levels : {-1, 0, 1, 2, 3}) {
+    UnwrapOptions options{.page_size = 256, .padding = 2};
+    options.mip_levels = std::max(levels, 0);
+    const auto mesh = unwrap_mesh(view_of(scene.scene), options, {});
+    ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+    ASSERT_EQ(mesh->pages.size(), 1u);
+    expect_sound(view_of(scene.scene), *mesh);
+    BakeOptions bake;  // -1: its defaults upon those of unwrap_mesh
+    if (levels >= 0) bake.mip_levels = levels;
+    bake.page_width = mesh->pages[0].width;
+    bake.page_height = mesh->pages[0].height;
+    std::vector<std::uint8_t> reference;
+    for (const int threads : {1, 4, 4, 4}) {
+      Context context;
+      context.threads = threads;
+      const auto page = bake_page({sampler, mesh->charts, tone}, mesh->placements, bake, context);
+      ASSERT_TRUE(page.ok()) << page.status().message();
+      EXPECT_EQ(page->contested_texels > 0, levels < 0) << page->contested_texels;
+      if (reference.empty()) reference = page->display.texels;
+      EXPECT_EQ(page->display.texels, reference) << levels;
+    }
+  }
+}
+
+// Sides of the page, and of the boxes that charts keep to.
+TEST(Unwrap, AlignmentIsKept) {
+  const LoadedScene scene = lit_room(6);
+  UnwrapOptions options{.page_size = 512};
+  options.alignment = 8;
+  const auto mesh = unwrap_mesh(view_of(scene.scene), options, {});
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+  expect_sound(view_of(scene.scene), *mesh);
+  EXPECT_EQ(mesh->pages[0].width % 8, 0);
+  EXPECT_EQ(mesh->pages[0].height % 8, 0);
+  for (const ChartPlacement& p : mesh->placements) {
+    EXPECT_EQ((p.x - options.padding) % 8, 0);
+    EXPECT_EQ((p.y - options.padding) % 8, 0);
+  }
+}
+
+// Directions of edges in uvs, before and after packing.
+TEST(Unwrap, ChartsAreNotTurnedWhereThatIsForbidden) {
+  for (const Shape& shape : {torus(24, 12), box(2), together(grid(9, 9, 1, 3), grid(9, 2, 5, 1))}) {
+    MeshView view;
+    view.positions = shape.positions;
+    view.indices = shape.indices;
+    for (const std::uint32_t pages : {1u, 3u}) {
+      for (const PackPreset packing : {PackPreset::fast, PackPreset::standard, PackPreset::best}) {
+        UnwrapOptions options{.pages = pages, .page_size = 256};
+        options.allow_rotation = false;
+        options.packing = packing;
+        const auto mesh = unwrap_mesh(view, options, {});
+        ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+        expect_sound(view, *mesh);
+        for (const ChartPlacement& p : mesh->placements) {
+          EXPECT_EQ(p.cosine, 1) << shape.name;
+          EXPECT_EQ(p.sine, 0) << shape.name;
+        }
+        for (std::size_t i = 0; i < mesh->indices.size(); i += 3) {
+          const Extent page = mesh->pages[mesh->triangle_page[i / 3]];
+          const Vec2d a = mesh->charts.uvs[mesh->charts.triangle_uv[i]],
+                      b = mesh->charts.uvs[mesh->charts.triangle_uv[i + 1]];
+          const Vec2f p = mesh->uvs[mesh->indices[i]], q = mesh->uvs[mesh->indices[i + 1]];
+          EXPECT_NEAR((q.x - p.x) * page.width, (b.x - a.x) * mesh->texels_per_unit, 1e-2);
+          EXPECT_NEAR((q.y - p.y) * page.height, (b.y - a.y) * mesh->texels_per_unit, 1e-2);
+        }
+      }
+    }
+  }
+}
+
+TEST(Unwrap, MoreWorkFillsThePageNoWorse) {
+  const LoadedScene ring = lit_scene(torus(24, 12));
+  double fill[3];
+  int k = 0;
+  for (const PackPreset packing : {PackPreset::fast, PackPreset::standard, PackPreset::best}) {
+    UnwrapOptions options;
+    options.packing = packing;
+    options.charts.cone_degrees = 40;
+    const auto mesh = unwrap_mesh(view_of(ring.scene), options, {});
+    ASSERT_TRUE(mesh.ok());
+    fill[k++] = mesh->utilization;
+  }
+  EXPECT_NE(fill[0], fill[1]);
+  EXPECT_GE(fill[1], fill[0]);
+  EXPECT_GE(fill[2], fill[1]);
+}
+
+}  // namespace
+}  // namespace atlas::test
