@@ -130,17 +130,19 @@ TEST(DrawOnce, NoTexelIsDrawnTwiceBetweenNeighbours) {
   EXPECT_LE(held, 2);
 }
 
-// A page full of small diamonds, each with slivers along its sides, which leave each other three
-// texels. Texels' centres lie along their sides within a hair, so that many slivers meet some.
+// A page full of small diamonds side by side, each with slivers along its sides, which leave each
+// other two texels and a bit. Texels' centres lie along their sides within a hair, so that many
+// slivers meet some.
 Drawn crowd(unsigned seed) {
   Drawn drawn;
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(0, 1);
-  constexpr double kCell = 32;
-  for (double y = kCell; y + 2 * kCell < kPage; y += kCell) {
-    for (double x = kCell; x + 2 * kCell < kPage; x += kCell) {
-      const double s = 28, u = 14;
-      std::vector<Vec2d> texels{{x + u, y}, {x + s, y + u}, {x + s - u, y + s}, {x, y + s - u}};
+  constexpr double kCell = 32.5, kRadius = 14;
+  for (int row = 0; row < 56; ++row) {
+    for (int column = 0; column < 28; ++column) {
+      const double x = kCell * (1 + column + 0.5 * (row % 2)), y = kCell * (1 + 0.5 * row);
+      std::vector<Vec2d> texels{
+          {x, y - kRadius}, {x + kRadius, y}, {x, y + kRadius}, {x - kRadius, y}};
       for (Vec2d& p : texels) p = {p.x + 0.008 * unit(random), p.y + 0.008 * unit(random)};
       std::vector<std::uint32_t> corners{0, 1, 2, 0, 2, 3};
       for (std::uint32_t k = 0; k < 4; ++k) {
