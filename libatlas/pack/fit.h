@@ -47,7 +47,8 @@ struct FitOptions {
   // shapes, or with several pages, it does that alone.
   bool free_aspect = false;
   // What fills less of a single page than this is of no use (a share): a page of outlines that
-  // comes out far emptier at first is searched no further. 0: search as usual.
+  // comes out far emptier at first, or does not come to it as long as `best` wins something, is
+  // searched no further. 0: search as usual.
   double wanted_fill = 0;
   // Limits of `best` on a single page of outlines. The result depends on effort and seed only,
   // unless effort is 0 and time the limit.
@@ -55,6 +56,10 @@ struct FitOptions {
   std::uint64_t effort = 0;  // layouts tried at most, checked every few hundred; 0: no limit.
                              // Those that take long count for several
   std::uint64_t seed = 1;
+  // Of `best` where a single page of outlines is pressed or laid in rows: the layouts that
+  // `standard` has tried of the same items. They count as effort, and what would only repeat them
+  // is left out.
+  std::uint64_t tried = 0;
 };
 
 // A point of the curve of density against effort.

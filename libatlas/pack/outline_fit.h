@@ -44,6 +44,9 @@ class OutlineFit {
   // In which order pages are filled from now on; at first by cells.
   void place(LargestBy by) { by_ = by; }
 
+  // From now on few other orders are searched where that one fails.
+  void search_little() { search_little_ = true; }
+
   // Of all pages, that masks take at this scale: found by drawing them, without packing.
   double share(double scale) const;
 
@@ -92,6 +95,7 @@ class OutlineFit {
   std::int32_t side_ = 0;
   double area_ = 0;
   LargestBy by_ = LargestBy::cells;
+  bool search_little_ = false;
   double groups_fail_at_ = std::numeric_limits<double>::infinity();
 };
 

@@ -36,6 +36,9 @@ struct PressedPage {
   std::uint32_t draws = 0;              // of starts, by chance
 };
 
+// Where a search begins: before the first round, or after it where `standard` has made it already.
+PressedPage begun_page(const FitOptions& options);
+
 // Books a round of a search that has come to `best` after so many seconds: a step of its curve
 // where it fills more of the page than before (`use`, a share). Returns the share of the effort, or
 // of the time, that is spent.

@@ -121,9 +121,11 @@ class StraightPage {
   }
 
   PressedPage run() {
-    PressedPage best;
+    PressedPage best = begun_page(options_);
     const double begun = wall_seconds();
-    for (std::uint32_t round = 0; !context_.cancelled(); ++round) {
+    while (!context_.cancelled()) {
+      const std::uint32_t round = best.draws++;
+      const double before = fill(best);
       std::vector<Start> starts(kStarts);
       const std::uint64_t layouts = layouts_of_start(round, best.layouts);
       parallel_for(context_, kStarts, 1, [&](std::size_t begin, std::size_t end) {
@@ -136,7 +138,7 @@ class StraightPage {
       slide_fullest(starts, best);
       const double done = book_round(options_, wall_seconds() - begun, fill(best), best);
       if (options_.preset != PackPreset::best) break;
-      if (!(done < 1)) break;
+      if (!(done < 1) || in_vain(round, before, best)) break;
       context_.report("pack", done);
     }
     return best;
@@ -168,6 +170,13 @@ class StraightPage {
     if (options_.preset != PackPreset::best || options_.effort == 0) return wanted;
     const std::uint64_t left = options_.effort > done ? options_.effort - done : 0;
     return std::clamp<std::uint64_t>((left + kStarts - 1) / kStarts, 1, wanted);
+  }
+
+  // What a round that wins nothing, with twice the layouts of the one before, leaves to those after
+  // it is two or three thousandths of the page: up to 8000 layouts of eight charts took 1.2 s for
+  // these. Where time is the limit it is there to be used.
+  bool in_vain(std::uint32_t round, double before, const PressedPage& best) const {
+    return options_.effort > 0 && round > 0 && fill(best) <= std::max(before, options_.wanted_fill);
   }
 
   Start start(std::size_t k, std::uint32_t round, std::uint64_t layouts) const {

@@ -127,6 +127,7 @@ struct Problem {
     fit.free_aspect = options.free_aspect;
     fit.square = options.square;
     fit.wanted_fill = options.wanted_fill;
+    fit.tried = options.tried;
     fit.press_pages = options.press_pages;
     if (options.outlines) {
       outlines.emplace(charts, texels_per_unit);
@@ -159,6 +160,7 @@ PageLayout layout_of(FitResult fitted, const Problem& problem) {
                     scaled_density(wanted.y, item.height, layout.scale, options.minimum_side)};
   }
   layout.outlines = options.outlines;
+  layout.layouts = fitted.layouts;
   layout.uv_utilization = uv_utilization(problem.charts, layout);
   const double texels = full_texels(problem.charts, problem.texels_per_unit);
   if (texels > 0) layout.with_lost_room = 1 + fitted.lost_area / texels;
@@ -256,11 +258,14 @@ Result<PageLayout> lay_out_better(const ChartSet& charts, std::span<const Vec2d>
   if (!options.outlines || (boxed.ok() && (full() || !worth_outlining(charts, texels_per_unit))))
     return boxed;
   Result<PageLayout> best = lay_out(charts, texels_per_unit, options, part(0.2, 0.6));
+  const std::uint64_t tried = best.ok() ? best->layouts : 0;
   if (boxed.ok() && best.ok()) boxed->with_lost_room = best->with_lost_room;
   if (!best.ok() || (boxed.ok() && !better(*best, *boxed, options))) best = std::move(boxed);
   if (!best.ok() || !worth_more_work(charts, *best, options)) return best;
   LayoutOptions harder = options;
   harder.preset = PackPreset::best;
+  harder.tried = tried;
+  harder.wanted_fill = std::max(options.wanted_fill, best->uv_utilization);
   Result<PageLayout> more = lay_out(charts, texels_per_unit, harder, part(0.6, 1));
   const double before = best->uv_utilization;
   if (more.ok() && better(*more, *best, options)) best = std::move(more);

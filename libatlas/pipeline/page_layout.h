@@ -28,6 +28,7 @@ struct LayoutOptions {
   bool free_aspect = false;
   bool press_pages = true;     // as in FitOptions
   double wanted_fill = 0;      // as in FitOptions
+  std::uint64_t tried = 0;     // as in FitOptions
   double most_won = 1.1;       // by what packing a poor page with more work may make it fuller
   bool square = false;         // pages as wide as high; free_aspect overrides it
   bool allow_rotation = true;  // charts are turned to pack better; else they lie as their uvs do
@@ -46,6 +47,7 @@ struct PageLayout {
   // Of charts with small holes and narrow bays that no chart could lie in: their area with these /
   // without; 1 where outlines were not tried.
   double with_lost_room = 1;
+  std::uint64_t layouts = 0;  // of outlines, tried
   double won = 0;  // by what more work made a poor page fuller; 0 where it was not packed with more
   GroupingResult grouping;
 };

@@ -281,6 +281,36 @@ TEST(Press, WhatIsFarFromTheFillWantedIsNotDrawnAgain) {
 }
 
 // A chart longer than a square page of all charts lies along a long page.
+TEST(Press, BestGoesOnAfterStandard) {
+  test::Noise noise{31};
+  std::vector<std::vector<Vec2d>> blobs;
+  for (int k = 0; k < 10; ++k) blobs.push_back(test::blob(noise, 30 + 40 * noise.unit(), 6));
+  const test::ChartItems charts(std::move(blobs));
+  FitOptions o = options_for(charts, 512);
+  const std::vector<ChartOutline> outlines = outlines_of(charts.shapes, {});
+  PressedPage first;
+  draw_again(outlines, o, {}, first);
+  o.preset = PackPreset::best;
+  o.effort = first.layouts + 1;  // two rounds
+  const PressedPage whole = press_outlines(outlines, o, {});
+  o.tried = first.layouts;
+  const PressedPage rest = press_outlines(outlines, o, {});
+  EXPECT_EQ(whole.draws, 2u);
+  EXPECT_EQ(rest.layouts, whole.layouts);
+  EXPECT_EQ(rest.work + first.work, whole.work);
+  const auto fill = [](const PressedPage& p) { return p.scale * p.scale / double(p.page.area()); };
+  EXPECT_EQ(std::max(fill(first), fill(rest)), fill(whole));
+}
+
+// Of 139 pages seven gained more than that by a second and third draw.
+TEST(Press, PagesThatDrawsWouldHardlyBringToWhatIsWantedAreNotDrawnAgain) {
+  EXPECT_TRUE(worth_another_draw(1, 0.64, 0));
+  EXPECT_TRUE(worth_another_draw(1, 0.64, 0.66));
+  EXPECT_FALSE(worth_another_draw(1, 0.64, 0.674));
+  EXPECT_TRUE(worth_another_draw(2, 0.64, 0.65));
+  EXPECT_FALSE(worth_another_draw(2, 0.64, 0.66));
+}
+
 TEST(Press, LongChartsLieAlongThePage) {
   std::vector<std::vector<Vec2d>> bars;
   for (int k = 0; k < 24; ++k) {

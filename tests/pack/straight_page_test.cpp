@@ -78,6 +78,39 @@ TEST(StraightPage, BestTriesNoMoreLayoutsThanItsEffort) {
   }
 }
 
+// Boxes of one size lie as well as they can at once.
+TEST(StraightPage, BestEndsWithARoundThatWinsNothing) {
+  const test::ChartItems charts(std::vector<std::vector<Vec2d>>(6, box(60, 20)));
+  FitOptions o = options_for(charts, 512);
+  const std::vector<ChartOutline> outlines = outlines_of(charts.shapes, {});
+  const PressedPage standard = pack_straight(outlines, o, {});
+  o.preset = PackPreset::best;
+  o.effort = 8000;
+  const PressedPage best = pack_straight(outlines, o, {});
+  EXPECT_EQ(best.scale, standard.scale);
+  EXPECT_LE(best.layouts, 3 * standard.layouts);
+}
+
+// What it begins with would repeat what `standard` has done.
+TEST(StraightPage, BestGoesOnAfterStandard) {
+  std::vector<std::vector<Vec2d>> bars;
+  for (int k = 0; k < 12; ++k) bars.push_back(box(60 + 17 * k, 20 + 11 * (k % 5)));
+  const test::ChartItems charts(std::move(bars));
+  FitOptions o = options_for(charts, 512);
+  const std::vector<ChartOutline> outlines = outlines_of(charts.shapes, {});
+  const PressedPage standard = pack_straight(outlines, o, {});
+  o.preset = PackPreset::best;
+  o.effort = 960;
+  const PressedPage whole = pack_straight(outlines, o, {});
+  o.tried = standard.layouts;
+  const PressedPage rest = pack_straight(outlines, o, {});
+  EXPECT_EQ(rest.layouts, whole.layouts);
+  EXPECT_LT(rest.work, whole.work);
+  EXPECT_EQ(rest.work + standard.work, whole.work);
+  const auto fill = [](const PressedPage& p) { return p.scale * p.scale / double(p.page.area()); };
+  EXPECT_EQ(std::max(fill(standard), fill(rest)), fill(whole));
+}
+
 // Masks of whole blocks, as pages with mip levels need them.
 TEST(StraightPage, KeepsTheAlignment) {
   std::vector<std::vector<Vec2d>> bars;
