@@ -69,7 +69,16 @@ GridChoice choose_grid(const GridWish& wish) {
     return layout_cost(wish.charts, wish.page_side / double(best.cell), directions) <=
            wish.affordable;
   };
-  while (!is_affordable(best.directions) && cells_a_chart(2 * best.cell) >= 8) best.cell *= 2;
+  // Nor do needles fit coarse cells, which take a thousand long charts from 0.59 of a page to 0.56:
+  // for them a layout may cost more.
+  constexpr double kForNeedles = 8;
+  const auto too_coarse = [&](std::int32_t cell) {
+    const double cost =
+        layout_cost(wish.charts, wish.page_side / double(cell / 2), best.directions);
+    const bool narrow = wish.mean_side > 0 && wish.mean_side < 8 * cell;
+    return cells_a_chart(cell) < 8 || (narrow && cost <= kForNeedles * wish.affordable);
+  };
+  while (!is_affordable(best.directions) && !too_coarse(2 * best.cell)) best.cell *= 2;
   while (best.directions * 2 <= wish.rotations && is_affordable(best.directions * 2))
     best.directions *= 2;
   while (best.directions > 4 && wish.rotations % best.directions != 0) best.directions -= 4;

@@ -9,6 +9,26 @@
 
 namespace atlas::pack {
 
+namespace {
+
+// What charts of these areas and boxes would have for sides on full pages if they were alike
+// squares: of needles about twice their width.
+double mean_side(std::span<const ChartOutline> outlines, const FitOptions& options) {
+  constexpr double kFull = 0.75;
+  double area = 0, sides = 0;
+  for (const ChartOutline& o : outlines) {
+    const Vec2d box = box_of(o, 0);
+    area += o.area;
+    sides += box.x + box.y;
+  }
+  if (!(sides > 0) || !(area > 0)) return 0;
+  const double page = double(options.page_size) * options.page_size * options.pages;
+  const double alone = fit_bounds(outlines, options, options.page_size, 4).alone;
+  return 2 * area / sides * std::min(std::sqrt(kFull * page / area), alone);
+}
+
+}  // namespace
+
 OutlineFit::OutlineFit(std::span<const FitItem> items, std::span<const ChartOutline> outlines,
                        const FitOptions& options, const Context& context)
     : items_(items), outlines_(outlines), options_(options), context_(context) {
@@ -16,7 +36,8 @@ OutlineFit::OutlineFit(std::span<const FitItem> items, std::span<const ChartOutl
       options.allow_rotation ? options.rotations : std::min(options.rotations, 1u);
   // A tenth of a second a packing and page, much less with many charts.
   grid_ = choose_grid({items.size() / options.pages + 1, options.page_size, options.alignment,
-                       rotations, options.preset == PackPreset::fast ? 5e6 : 30e6});
+                       rotations, options.preset == PackPreset::fast ? 5e6 : 30e6,
+                       mean_side(outlines, options)});
   side_ = options.page_size / grid_.cell;
   for (const ChartOutline& o : outlines) area_ += o.area;
 }

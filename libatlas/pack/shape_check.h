@@ -17,6 +17,8 @@ struct GridWish {
   std::int32_t page_side = 0, alignment = 1;  // texels
   std::uint32_t rotations = 4;                // directions at most
   double affordable = 0;                      // looks at words that one layout may cost, about
+  double mean_side =
+      0;  // of the charts on a full page, texels (mean_side()); 0: as by their number
 };
 
 // Cell size (a power of two times the alignment) and number of directions.
