@@ -371,7 +371,7 @@ TEST(FitPages, CellsBesideRowsTakeFewLayouts) {
   }
 }
 
-// Needles at a slant, of which coarse cells would take half of the page.
+// Needles, around which coarse cells, as their number alone asks for, lose two points of the page.
 TEST(FitPages, NeedlesLieOnFineCells) {
   test::Noise noise{8};
   std::vector<std::vector<Vec2d>> needles;
@@ -390,7 +390,7 @@ TEST(FitPages, NeedlesLieOnFineCells) {
   EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, page), page.pages, o.padding), "");
   const double texels = double(page.pages[0].area());
   EXPECT_NEAR(page.utilization, area * page.scale * page.scale / texels, 1e-6);
-  EXPECT_GT(page.utilization, 0.6);
+  EXPECT_GT(page.utilization, 0.66);
 }
 
 // On a page too small to be pressed, and for which packings that fail have no other end.
