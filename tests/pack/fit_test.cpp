@@ -371,28 +371,6 @@ TEST(FitPages, CellsBesideRowsTakeFewLayouts) {
   }
 }
 
-// Needles, around which coarse cells, as their number alone asks for, lose two points of the page.
-TEST(FitPages, NeedlesLieOnFineCells) {
-  test::Noise noise{8};
-  std::vector<std::vector<Vec2d>> needles;
-  double area = 0;
-  for (int k = 0; k < 1200; ++k) {
-    const double w = 100 + 300 * noise.unit(), h = 4 + 4 * noise.unit();
-    needles.push_back({{0, 0}, {w, 0}, {w, h}, {0, 0}, {w, h}, {0, h}});
-    area += w * h;
-  }
-  const test::ChartItems charts(std::move(needles));
-  FitOptions o = tight(2048);
-  o.max_scale = 100;
-  o.free_aspect = true;
-  o.shapes = charts.shapes;
-  const FitResult page = fit(charts.items, o);
-  EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, page), page.pages, o.padding), "");
-  const double texels = double(page.pages[0].area());
-  EXPECT_NEAR(page.utilization, area * page.scale * page.scale / texels, 1e-6);
-  EXPECT_GT(page.utilization, 0.66);
-}
-
 // On a page too small to be pressed, and for which packings that fail have no other end.
 TEST(FitPages, PackingsShareTheEffort) {
   test::Noise noise{5};
