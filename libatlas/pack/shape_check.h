@@ -17,8 +17,9 @@ struct GridWish {
   std::int32_t page_side = 0, alignment = 1;  // texels
   std::uint32_t rotations = 4;                // directions at most
   double affordable = 0;                      // looks at words that one layout may cost, about
-  double mean_side =
-      0;  // of the charts on a full page, texels (mean_side()); 0: as by their number
+  // How wide the charts are on a full page, in texels: about twice the width of needles; 0: only
+  // their number counts.
+  double mean_side = 0;
 };
 
 // Cell size (a power of two times the alignment) and number of directions.
