@@ -9,6 +9,7 @@
 
 #include "apps/common/options.h"
 #include "apps/common/program.h"
+#include "libatlas/core/parse_number.h"
 
 namespace atlas::app {
 namespace {
@@ -36,12 +37,12 @@ std::string parse_page(const std::string& text, Extent& page) {
 
 // "1s", "500ms", "2m" or seconds.
 std::string parse_seconds(const std::string& text, double& seconds) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  const std::string unit = end;
+  double value = 0;
+  const char* end = parse_number(text.data(), text.data() + text.size(), value);
+  const std::string unit = end ? end : "";
   const std::map<std::string, double> units{
       {"", 1}, {"s", 1}, {"ms", 1e-3}, {"m", 60}, {"min", 60}};
-  if (end == text.c_str() || !units.count(unit) || !(value >= 0 && value < 1e9))
+  if (end == nullptr || !units.count(unit) || !(value >= 0 && value < 1e9))
     return "'" + text + "' must be a duration such as 1s, 500ms or 2m (without a unit: seconds)";
   seconds = value * units.at(unit);
   return {};

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
+#include <string_view>
 
 #include "apps/common/options.h"
 #include "apps/common/program.h"
 #include "apps/common/quantity.h"
+#include "libatlas/core/parse_number.h"
 #include "libatlas/view/start_camera.h"
 
 namespace atlas::app {
@@ -249,16 +250,27 @@ Status finish(CommandLine& l, const LightText& light) {
   return {};
 }
 
+// Of "x,y,z;x,y,z"; false if anything else is there.
+bool two_points(const std::string& text, Vec3d& a, Vec3d& b) {
+  constexpr std::string_view kBehind = ",,;,,";
+  double* const values[] = {&a.x, &a.y, &a.z, &b.x, &b.y, &b.z};
+  const char *p = text.data(), *const end = p + text.size();
+  for (std::size_t i = 0; i < 6; ++i) {
+    while (*p == ' ') ++p;
+    p = parse_number(p, end, *values[i]);
+    if (p == nullptr) return false;
+    if (i < kBehind.size() && *p++ != kBehind[i]) return false;
+  }
+  return p == end;
+}
+
 }  // namespace
 
 Result<Camera> camera_of(const CommandLine& line, const ViewScene& scene) {
   Camera camera = start_camera(scene, line.render.up, line.fov);
   if (line.camera.empty()) return camera;
   Vec3d a, b;
-  char rest = 0;
-  if (std::sscanf(line.camera.c_str(), "%lf,%lf,%lf;%lf,%lf,%lf%c", &a.x, &a.y, &a.z, &b.x, &b.y,
-                  &b.z, &rest) != 6 ||
-      a == b || !std::isfinite(a.x + a.y + a.z + b.x + b.y + b.z))
+  if (!two_points(line.camera, a, b) || a == b || !std::isfinite(a.x + a.y + a.z + b.x + b.y + b.z))
     return Status{ErrorCode::bad_option,
                   fmt::format("--camera {}: give two different points, x,y,z;x,y,z", line.camera)};
   const Vec3d& o = scene.origin;

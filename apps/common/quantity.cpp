@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "libatlas/core/small_letters.h"
+
 namespace atlas::app {
 namespace {
 
@@ -55,8 +57,7 @@ std::optional<double> parse_unit(const std::string& text) {
 std::optional<std::int64_t> parse_bytes(const std::string& text) {
   const auto split = leading_number(text);
   if (!split) return std::nullopt;
-  std::string unit(split->second);
-  for (char& c : unit) c = char(std::tolower(static_cast<unsigned char>(c)));
+  const std::string unit = small_letters(std::string(split->second));
   const bool binary = unit.size() >= 2 && unit[1] == 'i';
   double factor = 1;
   if (!unit.empty() && unit != "b") {

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <cstring>
 
+#include "libatlas/core/small_letters.h"
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/formats.h"
 #include "libatlas/scene/text_scanner.h"
@@ -20,7 +20,7 @@ constexpr std::size_t kHeader = 84, kRecord = 50;  // bytes of a binary file
 
 bool same_word(std::string_view word, std::string_view lower) {
   return std::equal(word.begin(), word.end(), lower.begin(), lower.end(),
-                    [](unsigned char a, char b) { return std::tolower(a) == b; });
+                    [](char a, char b) { return small_letter(a) == b; });
 }
 
 // Faces whose corners are points: numbers the points in the order in which they come.

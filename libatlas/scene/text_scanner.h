@@ -5,40 +5,9 @@
 #include <limits>
 #include <string_view>
 
+#include "libatlas/core/parse_number.h"
+
 namespace atlas {
-
-// Reads a decimal number, "nan", "inf" or what Microsoft's runtime wrote for these ("1.#IND") at
-// `at`, where text goes on to a non-digit at or before `end`; what is beyond double becomes
-// infinite or 0. Returns where it ends, or null where there is none. Unlike std::from_chars it
-// takes a leading '+', "5." and out-of-range values.
-const char* parse_number_slow(const char* at, const char* end, double& value);
-
-// Up to 15 digits and a power of ten up to 22 are both exact doubles, so one multiplication or
-// division rounds correctly (Clinger 1990); the rest goes to the library.
-inline const char* parse_number(const char* at, const char* end, double& value) {
-  constexpr double kPowers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-  const char* p = at;
-  const bool negative = *p == '-';
-  if (*p == '-' || *p == '+') ++p;
-  std::uint64_t mantissa = 0;
-  int digits = 0, exponent = 0;
-  for (; *p >= '0' && *p <= '9'; ++p, ++digits) mantissa = mantissa * 10 + std::uint64_t(*p - '0');
-  if (*p == '.') {
-    const char* point = ++p;
-    for (; *p >= '0' && *p <= '9'; ++p, ++digits) {
-      mantissa = mantissa * 10 + std::uint64_t(*p - '0');
-    }
-    exponent = -int(p - point);
-  }
-  if (digits == 0 || digits > 15 || *p == 'e' || *p == 'E' || *p == '#' || exponent < -22) {
-    return parse_number_slow(at, end, value);
-  }
-  const double magnitude = double(mantissa) / kPowers[-exponent];
-  value = negative ? -magnitude : magnitude;
-  return p;
-}
 
 // Walks over text that ends with a newline at or after `end`. A backslash before a line break joins
 // the lines, as OBJ has it; never_joined takes it as any other character.

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <string_view>
 
+#include "libatlas/core/parse_number.h"
 #include "libatlas/shadow/light_path.h"
 
 namespace atlas {
@@ -18,18 +18,17 @@ Status malformed(const std::string& text, std::string_view why) {
                       text, why)};
 }
 
-// Appends the numbers of a comma-separated list to `out`. Returns false if the text contains
-// anything else.
+// Appends the numbers of a comma-separated list, which may have blanks before each of them, to
+// `out`. Returns false if the text contains anything else.
 bool numbers(std::string_view text, std::vector<double>& out) {
-  const std::string copy(text);
-  const char* p = copy.c_str();
+  const std::string copy(text);  // ends with 0, which is no digit
+  const char *p = copy.data(), *const end = p + copy.size();
   while (true) {
-    char* end = nullptr;
-    out.push_back(std::strtod(p, &end));
-    if (end == p) return false;
-    if (*end == 0) return true;
-    if (*end != ',') return false;
-    p = end + 1;
+    while (*p == ' ') ++p;
+    p = parse_number(p, end, out.emplace_back());
+    if (p == nullptr) return false;
+    if (p == end) return true;
+    if (*p++ != ',') return false;
   }
 }
 

@@ -8,6 +8,7 @@
 #include "libatlas/scene/reader.h"
 #include "tests/scene/sound.h"
 #include "tests/scene/temp_folder.h"
+#include "tests/support/foreign_locale.h"
 
 namespace atlas {
 namespace {
@@ -148,6 +149,19 @@ TEST(Stl, RandomDamageNeverCrashes) {
     ASSERT_TRUE(test::sound(loaded->scene));
   }
   EXPECT_GT(survived, 100);
+}
+
+// The small letter of I has no dot in Turkish.
+TEST(Stl, KeywordsAreTheSameInEveryLocale) {
+  const test::ForeignLocale turkish(LC_CTYPE, "tr_TR", "ISO-8859-9");
+  if (!turkish.entered()) GTEST_SKIP() << "no Turkish locale can be made here";
+  const test::TempFolder folder;
+  const auto file = folder.write("s.stl",
+                                 "SOLID s\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\n"
+                                 "VERTEX 1 0 0\nVERTEX 0 1 0\nENDLOOP\nENDFACET\nENDSOLID s\n");
+  const auto loaded = read_scene(file, {}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->scene.triangle_count(), 1u);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "libatlas/shadow/blend.h"
 #include "libatlas/shadow/light_path.h"
+#include "tests/support/foreign_locale.h"
 
 namespace atlas {
 namespace {
@@ -193,6 +194,19 @@ TEST(LightPath, Text) {
        {"", "moon:1,2,3", "arc", "arc:", "arc:1,2", "arc:1,2,3;", "sun:1,2", "sun:1,2,x",
         "fixed:1,2,3,4", "sun:1e99,0,0", "sun:1.5,0,0", "fixed:1,,2"})
     EXPECT_FALSE(parse_light_path(bad, {}).ok()) << bad;
+}
+
+// A host program may have set a locale whose decimal point is a comma.
+TEST(LightPathText, ReadsTheSameInEveryLocale) {
+  const test::ForeignLocale german(LC_NUMERIC, "de_DE", "ISO-8859-1");
+  if (!german.entered()) GTEST_SKIP() << "no locale with a decimal comma can be made here";
+  ASSERT_EQ(*std::localeconv()->decimal_point, ',');
+  const auto fixed = parse_light_path("fixed:1,2.5,1", {});
+  ASSERT_TRUE(fixed.ok()) << fixed.status().message();
+  EXPECT_EQ(fixed->directions[0], (Vec3d{1, 2.5, 1}));
+  const auto sun = parse_light_path("sun:172,50.45,9", {});
+  ASSERT_TRUE(sun.ok()) << sun.status().message();
+  EXPECT_EQ(sun->sun.latitude, 50.45);
 }
 
 }  // namespace

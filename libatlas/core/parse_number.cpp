@@ -1,6 +1,8 @@
-#include "libatlas/scene/text_scanner.h"
+#include "libatlas/core/parse_number.h"
 
 #include <charconv>
+#include <limits>
+#include <string_view>
 #include <system_error>
 
 namespace atlas {
