@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "libatlas/exporters/gltf_textures.h"
-#include "libatlas/exporters/losses.h"
 #include "libatlas/scene/gltf_source.h"
+#include "libatlas/scene/losses.h"
 
 namespace atlas {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "libatlas/exporters/gltf_data.h"
-#include "libatlas/exporters/losses.h"
+#include "libatlas/scene/losses.h"
 
 namespace atlas {
 

@@ -7,10 +7,10 @@
 #include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/gltf_document.h"
 #include "libatlas/exporters/gltf_textures.h"
-#include "libatlas/exporters/losses.h"
 #include "libatlas/exporters/scene_parts.h"
 #include "libatlas/exporters/scene_writers.h"
 #include "libatlas/exporters/vertex_unifier.h"
+#include "libatlas/scene/losses.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -227,20 +227,15 @@ class SceneWriter {
   std::uint32_t object_ = 0;  // that of the last mesh
 };
 
-// What an MTL says of materials and glTF is not told here, by keyword, and colours beyond its
-// range.
+// What an MTL says of materials and glTF is not told here, what the reader left in the file, and
+// colours beyond glTF's range.
 std::vector<std::string> losses_of(const Scene& scene) {
   Losses losses;
+  losses.add(scene.not_read);
   for (const Material& material : scene.materials) {
     losses.add("colours of materials beyond 0 to 1, limited to it",
                !is_reflectance(material.diffuse));
-    for (const std::string& line : material.mtl_lines) {
-      const std::string keyword = line.substr(0, line.find_first_of(" \t"));
-      const bool halo = line.find("-halo") != line.npos;  // a share that depends on the view
-      if (keyword == "map_Kd" || (keyword == "d" && !halo)) continue;
-      if (keyword == "Ke" && !material.emission_textured) continue;
-      losses.add("lines of the MTL: " + keyword);
-    }
+    count_mtl_losses(material, losses);
   }
   return losses.lines();
 }

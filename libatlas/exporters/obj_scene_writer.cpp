@@ -7,10 +7,11 @@
 
 #include "libatlas/core/small_letters.h"
 #include "libatlas/exporters/compact_page.h"
-#include "libatlas/exporters/gltf_losses.h"
 #include "libatlas/exporters/obj_text.h"
 #include "libatlas/exporters/scene_parts.h"
 #include "libatlas/exporters/scene_writers.h"
+#include "libatlas/scene/gltf_losses.h"
+#include "libatlas/scene/gltf_source.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -94,6 +95,14 @@ void write_materials(TextFile& mtl, const Scene& scene, const std::vector<std::s
       mtl.write(line_of("Ke", material.emission));
     mtl.write(other_lines(material, losses));
   }
+}
+
+// What the scene's file has and this one does not: told by the file itself where it is there.
+void count_file_losses(const Scene& scene, Losses& losses) {
+  if (scene.source) return count_losses(scene.source->model, losses);
+  losses.add(scene.not_read);
+  for (const Material& material : scene.materials)
+    losses.add("textures of materials", material.mtl_lines.empty() && material.texture >= 0);
 }
 
 // The corners of all parts, one after the other, numbered as the file has its lines.
@@ -181,7 +190,7 @@ Result<WorldFile> write_obj_scene(const World& world, const fs::path& path, Atom
   TextFile mtl(files.path_for(mtl_path), mtl_path, false);
   Losses losses;
   write_materials(mtl, *world.scene, names, losses);
-  if (world.scene->source) count_losses(*world.scene->source, losses);
+  count_file_losses(*world.scene, losses);
   if (Status s = mtl.finish(); !s.ok()) return s;
   TextFile file(files.path_for(path), path, false);
   write_obj_head(file, world, mtl_path);

@@ -10,6 +10,7 @@
 #include "libatlas/scene/gltf_check.h"
 #include "libatlas/scene/gltf_file.h"
 #include "libatlas/scene/gltf_instances.h"
+#include "libatlas/scene/gltf_losses.h"
 #include "libatlas/scene/gltf_materials.h"
 #include "libatlas/scene/gltf_pose.h"
 #include "libatlas/scene/gltf_sizes.h"
@@ -392,6 +393,8 @@ Status read_gltf(const fs::path& path, SceneBuilder& builder, const Context& con
   if (builder.wants_rest) {
     if (Status s = take_data_out(path, *source); !s.ok()) return s;
     builder.source = source;
+  } else {
+    builder.not_read = gltf_not_read(source->model);
   }
   return GltfParser(source->model, builder, context).run();
 }

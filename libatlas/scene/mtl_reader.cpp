@@ -1,4 +1,5 @@
-// MTL: its diffuse part, opacity and emission, and its other lines where they are wanted.
+// MTL: its diffuse part, opacity and emission, and its other lines, of which the builder lists or
+// counts those of materials in use.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,8 +49,7 @@ class MtlParser {
 
   Status parse_line() {
     const std::string_view word = scan_.word(), keyword = spelled(word);
-    if (builder_.wants_rest && inside_ && keyword != "newmtl" && keyword != "Kd")
-      keep_line(keyword, word.end());
+    if (inside_ && keyword != "newmtl" && keyword != "Kd") keep_line(keyword, word.end());
     if (keyword == "newmtl") {
       builder_.materials.push_back({});
       builder_.materials.back().name = scan_.rest();

@@ -53,8 +53,10 @@ Status read_by_extension(const fs::path& path, SceneBuilder& builder, const Cont
                                            : "a name without an ending")};
 }
 
-Result<LoadedScene> read_scene(const fs::path& path, const ReadOptions& options,
+Result<LoadedScene> read_scene(const fs::path& path, const ReadOptions& given,
                                const Context& context) {
+  ReadOptions options = given;
+  if (options.keep_scene) options.encoded_textures = options.normals = options.rest = true;
   if (!(options.metres_per_unit > 0) || !std::isfinite(options.metres_per_unit)) {
     return Status(ErrorCode::bad_option,
                   fmt::format("{} metres a unit: the unit's length must be positive",

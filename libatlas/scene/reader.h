@@ -22,9 +22,11 @@ struct ReadOptions {
   // PNG and JPEG textures stay as they are, in Texture::encoded: for what only hands them on.
   bool encoded_textures = false;
   bool normals = false;  // true: the file's normals too, in Scene::normals
-  // For exports that keep the scene: what Scene has no arrays for, in Scene::source (glTF) and
-  // Material::mtl_lines (OBJ). All images of a glTF file are textures then, in the file's order.
+  // What Scene has no arrays for, in Scene::source (glTF) and Material::mtl_lines (OBJ). All images
+  // of a glTF file are textures then, in the file's order. False: Scene::not_read counts it.
   bool rest = false;
+  // For exports that keep the scene: encoded_textures, normals and rest, together.
+  bool keep_scene = false;
 };
 
 struct LoadedScene {

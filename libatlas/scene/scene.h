@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,6 +15,9 @@
 namespace atlas {
 
 struct GltfSource;  // internal to the library
+
+// How often there is what, in the plural: 2 "animations".
+using LossCounts = std::map<std::string, std::size_t>;
 
 // What a fourth channel means: nothing, holes where it is below a threshold, or glass.
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
@@ -83,6 +87,9 @@ struct Scene {
   // Of glTF, where asked for (ReadOptions::rest): the file itself. An export to glTF that keeps the
   // scene writes it again, so triangles and positions must be those that were read.
   std::shared_ptr<const GltfSource> source;
+  // Without it: what the file has that these members do not hold. An export that keeps the scene
+  // tells it as not kept.
+  LossCounts not_read = {};
 
   static constexpr std::uint32_t kNoTexcoord = 0xffffffffu;
   static constexpr std::uint32_t kNoNormal = 0xffffffffu;

@@ -12,6 +12,7 @@
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/gltf_source.h"
 
+#include "libatlas/scene/losses.h"
 namespace atlas {
 namespace {
 
@@ -238,6 +239,20 @@ void SceneBuilder::load_textures(Scene& scene, bool encoded) {
   if (source) source->image_texture = std::move(loaded);
 }
 
+// Without the textures, which load_textures() gives them.
+void SceneBuilder::place_materials(Scene& scene) {
+  Losses losses;
+  losses.add(not_read);
+  for (const RawMaterial& m : materials) {
+    scene.materials.push_back(m);
+    scene.materials.back().texture = -1;
+    if (wants_rest) continue;
+    count_mtl_losses(m, losses);
+    scene.materials.back().mtl_lines.clear();
+  }
+  scene.not_read = losses.counts();
+}
+
 Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Context& context) {
   if (triangle_count() == 0) {
     const std::string why = defects.triangles_left_out == 0
@@ -258,10 +273,7 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   if (context.cancelled()) return Status::cancelled();
   keep_used(scene);
   move_texcoords();
-  for (const RawMaterial& m : materials) {
-    scene.materials.push_back(m);
-    scene.materials.back().texture = -1;
-  }
+  place_materials(scene);
   if (options.load_textures && (options.unlit_textures || !illumination.empty())) {
     load_textures(scene, options.encoded_textures);
   }

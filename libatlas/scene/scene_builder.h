@@ -69,6 +69,7 @@ class SceneBuilder {
   bool wants_normals = false;                // false: normals are passed over, whatever they hold
   bool wants_rest = false;                   // ReadOptions::rest
   std::shared_ptr<GltfSource> source;        // Scene::source; then all of `textures` are kept
+  LossCounts not_read;                       // Scene::not_read, but for materials' MTL lines
   std::vector<std::filesystem::path> files;  // LoadedScene::files
 
   // What the next faces belong to.
@@ -173,6 +174,7 @@ class SceneBuilder {
   void keep_used(Scene& scene);
   void move_texcoords();
   void place_normals(Scene& scene);
+  void place_materials(Scene& scene);
   void load_textures(Scene& scene, bool encoded);
   bool keep_encoded(RawTexture& raw, Scene& scene) const;
   Result<Image8> load_texture(const RawTexture& raw) const;

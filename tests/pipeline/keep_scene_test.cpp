@@ -300,5 +300,75 @@ TEST(KeepScene, EncodedTexturesAreNotBaked) {
   EXPECT_NE(baked.status().message().find("textures[0] has no image"), std::string::npos);
 }
 
+// As docs/library.md has it.
+Status add_lightmap_uvs(const char* from, const char* to) {
+  const auto loaded = read_scene(from, {.keep_scene = true}, {});
+  if (!loaded.ok()) return loaded.status();
+  const ExportOptions options{.target = to, .charts_only = true, .keep_scene = true};
+  return export_world(*loaded, options, {}, {}).status();
+}
+
+// Two nodes, one of which shows nothing, a shiny material, and a camera.
+std::filesystem::path shiny_scene(const TempFolder& folder) {
+  Gltf gltf;
+  gltf.j["materials"] = json::array(
+      {{{"name", "steel"},
+        {"pbrMetallicRoughness", {{"metallicFactor", 0.9}, {"roughnessFactor", 0.2}}}}});
+  gltf.j["cameras"] =
+      json::array({{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}});
+  gltf.single({{"attributes", {{"POSITION", gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3)}}},
+               {"material", 0}});
+  gltf.j["nodes"].push_back({{"name", "empty"}, {"camera", 0}});
+  gltf.j["nodes"][0]["children"] = {1};
+  return folder.write("shiny.glb", gltf.glb());
+}
+
+TEST(KeepScene, RecipeForLightmapsKeepsWhatGltfHas) {
+  const TempFolder folder;
+  const std::filesystem::path input = shiny_scene(folder), output = folder / "out.glb";
+  const Status status = add_lightmap_uvs(input.c_str(), output.c_str());
+  ASSERT_TRUE(status.ok()) << status.message();
+  const json after = GltfOracle(output).document;
+  const json& surface = after["materials"][0]["pbrMetallicRoughness"];
+  EXPECT_EQ(surface["metallicFactor"], 0.9);
+  EXPECT_EQ(surface["roughnessFactor"], 0.2);
+  ASSERT_EQ(after["nodes"].size(), 2u);
+  EXPECT_EQ(after["nodes"][1]["name"], "empty");
+  EXPECT_TRUE(GltfOracle(output).triangles()[0].attributes.contains("TEXCOORD_1"));
+}
+
+// Nothing is lost in silence where the scene was read without its rest.
+TEST(KeepScene, WhatWasNotReadIsToldAsNotKept) {
+  const TempFolder folder;
+  const std::filesystem::path input = shiny_scene(folder);
+  for (const char* name : {"out.glb", "out.obj"}) {
+    const auto loaded = read_scene(input, {.encoded_textures = true, .normals = true}, {});
+    ASSERT_TRUE(loaded.ok());
+    const ExportOptions options{.target = folder / name, .charts_only = true, .keep_scene = true};
+    const auto report = export_world(*loaded, options, {}, {});
+    ASSERT_TRUE(report.ok()) << report.status().message();
+    const std::vector<std::string> lost = {
+        "1 x cameras", "1 x materials of more than a base colour",
+        "1 x nodes with transforms or children, applied to what they show"};
+    EXPECT_EQ(report->not_kept, lost) << name;
+  }
+}
+
+TEST(KeepScene, LinesOfMtlThatWereNotReadAreToldAsNotKept) {
+  const TempFolder folder;
+  folder.write("s.mtl", "newmtl used\nKd 1 0 0\nNs 30\nKs 1 1 1\nnewmtl unused\nKs 1 1 1\n");
+  const auto input =
+      folder.write("s.obj", "mtllib s.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl used\nf 1 2 3\n");
+  const auto loaded = read_scene(input, {}, {});
+  ASSERT_TRUE(loaded.ok());
+  EXPECT_TRUE(loaded->scene.materials[0].mtl_lines.empty());
+  const ExportOptions options{
+      .target = folder / "out.glb", .charts_only = true, .keep_scene = true};
+  const auto report = export_world(*loaded, options, {}, {});
+  ASSERT_TRUE(report.ok()) << report.status().message();
+  const std::vector<std::string> lost = {"1 x lines of the MTL: Ks", "1 x lines of the MTL: Ns"};
+  EXPECT_EQ(report->not_kept, lost);
+}
+
 }  // namespace
 }  // namespace atlas::test

@@ -1,12 +1,12 @@
 // Internal: what of a scene an export that keeps it has to leave out.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cstddef>
 #include <map>
 #include <string>
 #include <vector>
+
+#include "libatlas/scene/scene.h"
 
 namespace atlas {
 
@@ -16,16 +16,20 @@ class Losses {
   void add(const std::string& what, std::size_t times = 1) {
     if (times > 0) counts_[what] += times;
   }
-
-  // "2 x animations", one string a kind, by name (WorldFile::not_kept).
-  std::vector<std::string> lines() const {
-    std::vector<std::string> result;
-    for (const auto& [what, count] : counts_) result.push_back(fmt::format("{} x {}", count, what));
-    return result;
+  void add(const LossCounts& counts) {
+    for (const auto& [what, count] : counts) add(what, count);
   }
 
+  const LossCounts& counts() const { return counts_; }
+
+  // "2 x animations", one string a kind, by name (WorldFile::not_kept).
+  std::vector<std::string> lines() const;
+
  private:
-  std::map<std::string, std::size_t> counts_;
+  LossCounts counts_;
 };
+
+// Adds those of Material::mtl_lines that say what no other member holds, by keyword.
+void count_mtl_losses(const Material& material, Losses& losses);
 
 }  // namespace atlas
