@@ -25,32 +25,6 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
-// What a folder holds under this name, whether in capitals or small letters; of several the first
-// in the order of their bytes. Empty where there is nothing.
-fs::path in_any_case(const fs::path& folder, const fs::path& name) {
-  const std::string wanted = small_letters(name.string());
-  fs::path found;
-  std::error_code ignored;  // a folder that cannot be listed holds nothing
-  for (fs::directory_iterator at(folder.empty() ? "." : folder, ignored), end; at != end;
-       at.increment(ignored)) {
-    const fs::path entry = at->path().filename();
-    if (small_letters(entry.string()) == wanted && (found.empty() || entry < found)) found = entry;
-  }
-  return found.empty() ? found : folder / found;
-}
-
-// The file of this path, folder by folder in any case from `folder` on; empty where there is none.
-fs::path file_in_any_case(const fs::path& folder, const fs::path& path) {
-  if (path.is_absolute()) return {};
-  fs::path at = folder;
-  std::error_code ignored;
-  for (const fs::path& part : path) {
-    at = fs::exists(at / part, ignored) ? at / part : in_any_case(at, part);
-    if (at.empty()) return {};
-  }
-  return is_file(at) ? at : fs::path();
-}
-
 // Where the word that begins at `begin` ends.
 std::size_t word_end(std::string_view text, std::size_t begin) {
   return std::min(text.find_first_of(kBlanks, begin), text.size());
@@ -87,16 +61,49 @@ std::size_t unknown_name(const fs::path& folder, std::string_view names) {
 
 }  // namespace
 
-fs::path named_file(const fs::path& folder, std::string_view name) {
-  const fs::path file = path_in(folder, name), beside = folder / file.filename();
+const NamedFiles::Listing& NamedFiles::listing(const fs::path& folder) {
+  const auto [at, is_new] = listings_.try_emplace(folder);
+  if (!is_new) return at->second;
+  std::error_code ignored;  // a folder that cannot be listed holds nothing
+  for (fs::directory_iterator entry(folder.empty() ? "." : folder, ignored), end; entry != end;
+       entry.increment(ignored)) {
+    const fs::path name = entry->path().filename();
+    fs::path& first = at->second[small_letters(name.string())];
+    if (first.empty() || name < first) first = name;
+  }
+  return at->second;
+}
+
+// What a folder holds under this name, whether in capitals or small letters. Empty where there is
+// nothing.
+fs::path NamedFiles::in_any_case(const fs::path& folder, const fs::path& name) {
+  const Listing& names = listing(folder);
+  const auto found = names.find(small_letters(name.string()));
+  return found == names.end() ? fs::path() : folder / found->second;
+}
+
+// The file of this path, folder by folder in any case from `folder` on; empty where there is none.
+fs::path NamedFiles::file_in_any_case(const fs::path& folder, const fs::path& path) {
+  if (path.is_absolute()) return {};
+  fs::path at = folder;
   std::error_code ignored;
-  if (fs::exists(file, ignored)) return file;
+  for (const fs::path& part : path) {
+    at = fs::exists(at / part, ignored) ? at / part : in_any_case(at, part);
+    if (at.empty()) return {};
+  }
+  return is_file(at) ? at : fs::path();
+}
+
+fs::path NamedFiles::file(const fs::path& folder, std::string_view name) {
+  const fs::path exact = path_in(folder, name), beside = folder / exact.filename();
+  std::error_code ignored;
+  if (fs::exists(exact, ignored)) return exact;
   if (is_file(beside)) return beside;
   // Where the file was written capitals may have meant nothing.
-  for (const fs::path& path : {file.lexically_relative(folder), file.filename()}) {
+  for (const fs::path& path : {exact.lexically_relative(folder), exact.filename()}) {
     if (fs::path found = file_in_any_case(folder, path); !found.empty()) return found;
   }
-  return file;
+  return exact;
 }
 
 std::string_view quoted_name(std::string_view text) {
@@ -105,7 +112,7 @@ std::string_view quoted_name(std::string_view text) {
   return end == text.npos ? std::string_view() : text.substr(1, end - 1);
 }
 
-std::vector<LibraryFile> library_files(const fs::path& folder, std::string_view names) {
+std::vector<LibraryFile> NamedFiles::library_files(const fs::path& folder, std::string_view names) {
   std::vector<LibraryFile> files;
   while (!names.empty()) {
     std::size_t length = longest_file(folder, names);
@@ -116,7 +123,7 @@ std::vector<LibraryFile> library_files(const fs::path& folder, std::string_view 
       length = name.empty() ? unknown_name(folder, names) : name.size() + 2;
       if (name.empty()) name = names.substr(0, length);
     }
-    const fs::path path = named_file(folder, name);
+    const fs::path path = file(folder, name);
     files.push_back({path, is_file(path)});
     names.remove_prefix(next_word(names, length));
   }

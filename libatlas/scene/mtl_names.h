@@ -2,15 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 namespace atlas {
-
-// The file that `name` means in a file of `folder`: backslashes part folders as slashes do, and a
-// file that is not where the name says, as those of another machine, is looked for in `folder`,
-// and both once more in any mix of capitals and small letters. Where there is none it is the first.
-std::filesystem::path named_file(const std::filesystem::path& folder, std::string_view name);
 
 // What the quotes at the beginning of `text` enclose, which some programs write around names with
 // blanks; empty where there are none.
@@ -21,9 +19,33 @@ struct LibraryFile {
   bool exists;
 };
 
-// The files of an `mtllib` line, whose names are apart by blanks, and may hold blanks. The longest
-// run of words that is a file wins; what is none goes as far as ".mtl". What begins with '#' where
-// a name could is a comment.
-std::vector<LibraryFile> library_files(const std::filesystem::path& folder, std::string_view names);
+// Finds files by their names, and lists every folder once, however many names are not there.
+class NamedFiles {
+ public:
+  // The file that `name` means in a file of `folder`: backslashes part folders as slashes do, and a
+  // file that is not where the name says, as those of another machine, is looked for in `folder`,
+  // and both once more in any mix of capitals and small letters. Where there is none it is the
+  // first.
+  std::filesystem::path file(const std::filesystem::path& folder, std::string_view name);
+
+  // The files of an `mtllib` line, whose names are apart by blanks, and may hold blanks. The
+  // longest run of words that is a file wins; what is none goes as far as ".mtl". What begins with
+  // '#' where a name could is a comment.
+  std::vector<LibraryFile> library_files(const std::filesystem::path& folder,
+                                         std::string_view names);
+
+ private:
+  // What a folder holds, by its name in small letters; of several the first in the order of their
+  // bytes.
+  using Listing = std::unordered_map<std::string, std::filesystem::path>;
+
+  const Listing& listing(const std::filesystem::path& folder);
+  std::filesystem::path in_any_case(const std::filesystem::path& folder,
+                                    const std::filesystem::path& name);
+  std::filesystem::path file_in_any_case(const std::filesystem::path& folder,
+                                         const std::filesystem::path& path);
+
+  std::map<std::filesystem::path, Listing> listings_;
+};
 
 }  // namespace atlas

@@ -145,11 +145,12 @@ class MtlParser {
   // named so.
   fs::path texture_file(std::string_view name) const {
     const fs::path folder = path_.parent_path();
-    const fs::path whole = named_file(folder, name);
+    const fs::path whole = builder_.named_files.file(folder, name);
     std::error_code ignored;  // what cannot be asked about is not there
     if (fs::exists(whole, ignored)) return whole;
     const std::string_view quoted = quoted_name(name);
-    return named_file(folder, quoted.empty() ? TextScanner::without_comment(name) : quoted);
+    return builder_.named_files.file(folder,
+                                     quoted.empty() ? TextScanner::without_comment(name) : quoted);
   }
 
   // Options come first; what follows them is the name, which may have blanks.

@@ -163,7 +163,8 @@ class Merger {
 
   // Some programs name one library before each object: it is read once.
   Status read_library_list(const ObjEvent& event) {
-    for (const LibraryFile& file : library_files(path_.parent_path(), event.text)) {
+    for (const LibraryFile& file :
+         builder_.named_files.library_files(path_.parent_path(), event.text)) {
       if (!libraries_.insert(file.path).second) continue;
       if (!file.exists) {
         builder_.defects.add(DefectKind::material_file_missing, [&] {

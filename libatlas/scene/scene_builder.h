@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "libatlas/core/vec.h"
+#include "libatlas/scene/mtl_names.h"
 #include "libatlas/scene/polygon.h"
 #include "libatlas/scene/reader.h"
 
@@ -69,6 +70,7 @@ class SceneBuilder {
   bool wants_normals = false;                // false: normals are passed over, whatever they hold
   bool wants_rest = false;                   // ReadOptions::rest
   std::shared_ptr<GltfSource> source;        // Scene::source; then all of `textures` are kept
+  NamedFiles named_files;                    // material libraries and their textures
   LossCounts not_read;                       // Scene::not_read, but for materials' MTL lines
   std::vector<std::filesystem::path> files;  // LoadedScene::files
 
