@@ -8,15 +8,12 @@
 
 #include "libatlas/core/counting_sort.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/predicates.h"
 
 namespace atlas {
 namespace {
 
 constexpr std::size_t kMaxConcave = std::size_t{1} << 20;  // no surface of use has more
-
-double cross2(Vec2d a, Vec2d b, Vec2d c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
 
 // Drops the coordinate along which the polygon's normal is largest and keeps it counter-clockwise.
 std::vector<Vec2d> project(std::span<const Vec3d> corners) {
@@ -46,7 +43,7 @@ bool convex(const std::vector<Vec2d>& p) {
   double last = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
     const Vec2d &a = p[i], &b = p[(i + 1) % p.size()], &c = p[(i + 2) % p.size()];
-    if (cross2(a, b, c) < 0) return false;
+    if (orientation(a, b, c) < 0) return false;
     const double step = b.x - a.x;
     if (step == 0) continue;
     if (last != 0 && (step > 0) != (last > 0)) ++sign_changes;
@@ -56,7 +53,7 @@ bool convex(const std::vector<Vec2d>& p) {
 }
 
 bool inside(Vec2d a, Vec2d b, Vec2d c, Vec2d p) {
-  return cross2(a, b, p) >= 0 && cross2(b, c, p) >= 0 && cross2(c, a, p) >= 0;
+  return orientation(a, b, p) >= 0 && orientation(b, c, p) >= 0 && orientation(c, a, p) >= 0;
 }
 
 // Points in square cells, about one in each, so that a triangle meets few of them.
@@ -186,7 +183,7 @@ class EarClipper {
 
   bool is_ear(std::uint32_t i) const {
     const Vec2d a = points_[before_[i]], b = points_[i], c = points_[after_[i]];
-    if (cross2(a, b, c) <= 0) return false;
+    if (orientation(a, b, c) <= 0) return false;
     const auto blocks = [&](std::uint32_t k) {
       const Vec2d p = points_[k];
       return alive_[k] && p != a && p != b && p != c && inside(a, b, c, p);

@@ -120,6 +120,81 @@ TEST(Polygon, EarsAreNotAllAtOneCorner) {
   EXPECT_LE(*std::max_element(at.begin(), at.end()), 20);
 }
 
+// Twice the area of a triangle in units of 2^-106, without rounding: coordinates are multiples of
+// 2^-53 below 64.
+__int128 exact_area2(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const auto whole = [](double v) { return static_cast<__int128>(std::ldexp(v, 53)); };
+  return (whole(b.x) - whole(a.x)) * (whole(c.y) - whole(a.y)) -
+         (whole(b.y) - whole(a.y)) * (whole(c.x) - whole(a.x));
+}
+
+int exact_side(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const __int128 area = exact_area2(a, b, c);
+  return (area > 0) - (area < 0);
+}
+
+// Whether segments ab and cd touch or cross.
+bool meet(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
+  const auto boxes = [](double p, double q, double r, double s) {
+    return std::max(p, q) >= std::min(r, s) && std::max(r, s) >= std::min(p, q);
+  };
+  return boxes(a.x, b.x, c.x, d.x) && boxes(a.y, b.y, c.y, d.y) &&
+         exact_side(a, b, c) * exact_side(a, b, d) <= 0 &&
+         exact_side(c, d, a) * exact_side(c, d, b) <= 0;
+}
+
+// Whether edges meet at their shared corners only.
+bool simple(const std::vector<Vec3d>& p) {
+  const std::size_t n = p.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    if (exact_side(p[i], p[(i + 1) % n], p[(i + 2) % n]) == 0) return false;
+    for (std::size_t k = i + 2; k < n && (k + 1) % n != i; ++k)
+      if (meet(p[i], p[i + 1], p[k], p[(k + 1) % n])) return false;
+  }
+  return true;
+}
+
+// Corners along a diagonal, closer to it than products are rounded, which takes them to either side
+// of it, and a corner far from it.
+std::vector<Vec3d> near_a_line(std::mt19937& random) {
+  std::vector<Vec3d> corners;
+  const std::size_t count = 3 + random() % 4;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double at = std::array{0.5, 0.5, 12.0, 24.0}[random() % 4];
+    const double step = std::ldexp(1, at < 1 ? -53 : at < 16 ? -49 : -48);
+    corners.push_back({at + double(random() % 64) * step, at + double(random() % 64) * step, 0});
+  }
+  std::sort(corners.begin(), corners.end(),
+            [](const Vec3d& a, const Vec3d& b) { return a.x + a.y < b.x + b.y; });
+  corners.insert(corners.begin(), {0, 0, 0});
+  corners.push_back({-5, 30, 0});
+  return corners;
+}
+
+TEST(Polygon, CornersNextToALineAreCutExactly) {
+  std::mt19937 random(11);
+  int checked = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const std::vector<Vec3d> corners = near_a_line(random);
+    if (!simple(corners)) continue;
+    ++checked;
+    __int128 area = 0, sum = 0;
+    for (std::size_t k = 2; k < corners.size(); ++k)
+      area += exact_area2(corners[0], corners[k - 1], corners[k]);
+    ASSERT_TRUE(area > 0);
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    ASSERT_TRUE(triangulate(corners, triangles));
+    ASSERT_EQ(triangles.size(), corners.size() - 2);
+    for (const auto& t : triangles) {
+      const __int128 part = exact_area2(corners[t[0]], corners[t[1]], corners[t[2]]);
+      ASSERT_TRUE(part >= 0) << "polygon " << i;
+      sum += part;
+    }
+    ASSERT_TRUE(sum == area) << "polygon " << i;
+  }
+  EXPECT_GT(checked, 5000);
+}
+
 TEST(Polygon, DegenerateOnesStillGiveTriangles) {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   EXPECT_TRUE(triangulate(std::vector<Vec3d>(7, Vec3d{1, 2, 3}), triangles));
