@@ -84,6 +84,7 @@ class FileWriter {
     }
     document_.json["meshes"] = std::move(meshes);
     place_kept_meshes(world_, numbers, document_.json);
+    drop_empty_meshes(document_.json, losses_);
     keep_rest(source_, data_, document_.json, losses_);
     result.uv_set = texcoord_name(set_);
     document_.add_info("the new uvs: " + result.uv_set);

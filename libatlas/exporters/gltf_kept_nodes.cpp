@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -12,6 +13,11 @@
 namespace atlas {
 using nlohmann::json;
 namespace {
+
+// The format has neither a skin nor weights without a mesh.
+void leave_mesh(json& node) {
+  for (const char* key : {"mesh", "skin", "weights"}) node.erase(key);
+}
 
 // Walks as the reader did, so that visits have its numbers.
 class Walk {
@@ -68,7 +74,7 @@ class Walk {
     json holder = json::object();
     for (const char* key : {"skin", "weights"})
       if (node.contains(key)) holder[key] = std::move(node[key]);
-    for (const char* key : {"mesh", "skin", "weights"}) node.erase(key);
+    leave_mesh(node);
     json& extensions = node["extensions"];
     extensions.erase(kGltfInstancing);
     if (extensions.empty()) node.erase("extensions");
@@ -137,6 +143,27 @@ void place_kept_meshes(const World& world, const std::vector<std::size_t>& meshe
     nodes.push_back(std::move(top));
   }
   set_roots(source, std::move(roots), document);
+}
+
+void drop_empty_meshes(json& document, Losses& losses) {
+  json meshes = json::array();
+  std::vector<std::optional<std::size_t>> numbers;
+  for (json& mesh : document["meshes"]) {
+    const bool empty = mesh["primitives"].empty();
+    losses.add("meshes of which no primitive is left", empty);
+    numbers.push_back(empty ? std::nullopt : std::optional(meshes.size()));
+    if (!empty) meshes.push_back(std::move(mesh));
+  }
+  document["meshes"] = std::move(meshes);
+  for (json& node : document["nodes"]) {
+    const auto at = node.find("mesh");
+    if (at == node.end() || !at->is_number_integer()) continue;
+    const auto number = at->get<std::size_t>();
+    if (number < numbers.size() && numbers[number])
+      *at = *numbers[number];
+    else
+      leave_mesh(node);
+  }
 }
 
 }  // namespace atlas

@@ -6,6 +6,7 @@
 
 #include "libatlas/exporters/world.h"
 #include "libatlas/scene/gltf_source.h"
+#include "libatlas/scene/losses.h"
 
 namespace atlas {
 
@@ -18,5 +19,9 @@ std::vector<std::size_t> number_kept_meshes(const GltfSource& source);
 // the nodes that are shown stands another where the world is not in metres or not y-up.
 void place_kept_meshes(const World& world, const std::vector<std::size_t>& meshes,
                        nlohmann::json& document);
+
+// The format has no mesh without a primitive: those that have lost all of theirs go, and with them
+// what of nodes is about the mesh. Others get new numbers.
+void drop_empty_meshes(nlohmann::json& document, Losses& losses);
 
 }  // namespace atlas
