@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 #include "libatlas/image/file_kind.h"
 #include "libatlas/image/image_io.h"
+#include "libatlas/scene/file_bytes.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -36,14 +35,13 @@ Result<json> GltfTextures::embed(std::size_t index) {
   const fs::path temporary = files_.path_for(scene_texture_path(scene_, index, path_));
   if (Status s = write_png(temporary, colour_of(texture.image), {}); !s.ok())
     return files_.told_by_target(s);
-  std::ifstream stream(temporary, std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+  const auto bytes = read_file_bytes(temporary);
   files_.discard(temporary);
-  if (stream.bad() || bytes.empty())
+  if (!bytes.ok() || bytes->size == 0)
     return Status(ErrorCode::io, fmt::format("{}: a texture cannot be read to embed it (is the "
                                              "disk full?)",
                                              path_.string()));
-  return document_.embedded_image(bytes, "image/png");
+  return document_.embedded_image(bytes->text(), "image/png");
 }
 
 Result<json> GltfTextures::write_beside(std::size_t index) {

@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 #include "libatlas/core/file_extension.h"
 #include "libatlas/core/glm_bridge.h"
@@ -12,6 +10,7 @@
 #include "libatlas/exporters/scene_writers.h"
 #include "libatlas/exporters/vertex_unifier.h"
 #include "libatlas/exporters/world.h"
+#include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/scene.h"
 
 namespace atlas {
@@ -97,7 +96,7 @@ class PagesWriter {
       if (document_.binary()) {
         auto bytes = read_image_bytes(page);
         if (!bytes.ok()) return bytes.status();
-        image = document_.embedded_image(*bytes, "image/png");
+        image = document_.embedded_image(bytes->text(), "image/png");
       } else {
         image = GltfDocument::image_beside(page.image);
       }
@@ -111,10 +110,9 @@ class PagesWriter {
     return {};
   }
 
-  static Result<std::string> read_image_bytes(const Page& page) {
-    std::ifstream stream(page.image_source, std::ios::binary);
-    std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-    if (stream.bad() || bytes.empty()) {
+  static Result<FileBytes> read_image_bytes(const Page& page) {
+    auto bytes = read_file_bytes(page.image_source);
+    if (!bytes.ok() || bytes->size == 0) {
       return Status(ErrorCode::io,
                     fmt::format("the page's image {} cannot be read from '{}' to embed it "
                                 "(Page::image_source names where it lies)",

@@ -6,7 +6,8 @@
 
 #include <algorithm>
 #include <cstring>
-#include <stdexcept>
+#include <exception>
+#include <new>
 
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/gltf_check.h"
@@ -186,36 +187,41 @@ Status read_dense(const tinygltf::Model& model, int index, int components, const
   return {};
 }
 
-template <class Store>
-Status read_sparse(const tinygltf::Model& model, int index, int components, const Store& store) {
+// Calls put(row of the accessor, its value in the sparse part) for each value of that part, if the
+// accessor has one, `row_bytes` long each.
+template <class Put>
+Status for_sparse(const tinygltf::Model& model, int index, std::size_t row_bytes, const Put& put) {
   const tinygltf::Accessor& a = model.accessors[index];
   if (!a.sparse.isSparse) return {};
-  const std::size_t size = component_size(a.componentType);
-  const std::size_t index_size = component_size(a.sparse.indices.componentType);
-  const auto row = size * tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type));
-  if (a.sparse.count < 0 || a.sparse.indices.byteOffset < 0 || a.sparse.values.byteOffset < 0 ||
-      index_size == 0) {
-    return bad_accessor(index, "has a malformed sparse part");
-  }
-  const auto count = static_cast<std::size_t>(a.sparse.count);
   const auto& where = a.sparse.indices;
   const auto& what = a.sparse.values;
+  const std::size_t index_size = component_size(where.componentType);
+  if (a.sparse.count < 0 || where.byteOffset < 0 || what.byteOffset < 0 || index_size == 0)
+    return bad_accessor(index, "has a malformed sparse part");
+  const auto count = static_cast<std::size_t>(a.sparse.count);
   auto indices =
       rows_of(model, {where.bufferView, std::size_t(where.byteOffset), count, index_size});
   if (!indices.ok()) return bad_accessor(index, indices.status().message());
-  auto values = rows_of(model, {what.bufferView, std::size_t(what.byteOffset), count, row});
+  auto values = rows_of(model, {what.bufferView, std::size_t(what.byteOffset), count, row_bytes});
   if (!values.ok()) return bad_accessor(index, values.status().message());
   for (std::size_t k = 0; k < count; ++k) {
-    const double at =
-        component(indices->data + k * indices->stride, a.sparse.indices.componentType, false);
+    const double at = component(indices->data + k * indices->stride, where.componentType, false);
     if (!(at >= 0 && at < double(a.count)))
       return bad_accessor(index, "has a sparse index out of range");
-    for (int c = 0; c < components; ++c) {
-      store(static_cast<std::size_t>(at), c,
-            component(values->data + k * values->stride + c * size, a.componentType, a.normalized));
-    }
+    put(static_cast<std::size_t>(at), values->data + k * values->stride);
   }
   return {};
+}
+
+template <class Store>
+Status read_sparse(const tinygltf::Model& model, int index, int components, const Store& store) {
+  const tinygltf::Accessor& a = model.accessors[index];
+  const std::size_t size = component_size(a.componentType);
+  const auto row = size * tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type));
+  return for_sparse(model, index, row, [&](std::size_t at, const std::uint8_t* value) {
+    for (int c = 0; c < components; ++c)
+      store(at, c, component(value + c * size, a.componentType, a.normalized));
+  });
 }
 
 template <class T>
@@ -254,31 +260,6 @@ std::size_t row_bytes_of(const tinygltf::Accessor& a) {
   return columns == 1 ? column : columns * ((column + 3) / 4 * 4);
 }
 
-// Puts the sparse part of an accessor into its rows.
-Status fill_sparse(const tinygltf::Model& model, int index, GltfRows& rows) {
-  const tinygltf::Accessor& a = model.accessors[index];
-  const auto& where = a.sparse.indices;
-  const auto& what = a.sparse.values;
-  const std::size_t index_size = component_size(where.componentType);
-  if (a.sparse.count < 0 || where.byteOffset < 0 || what.byteOffset < 0 || index_size == 0)
-    return bad_accessor(index, "has a malformed sparse part");
-  const auto count = static_cast<std::size_t>(a.sparse.count);
-  auto indices =
-      rows_of(model, {where.bufferView, std::size_t(where.byteOffset), count, index_size});
-  auto values =
-      rows_of(model, {what.bufferView, std::size_t(what.byteOffset), count, rows.row_bytes});
-  if (!indices.ok()) return bad_accessor(index, indices.status().message());
-  if (!values.ok()) return bad_accessor(index, values.status().message());
-  for (std::size_t k = 0; k < count; ++k) {
-    const double at = gltf_component(indices->data + k * indices->stride, where.componentType);
-    if (!(at >= 0 && at < double(rows.count)))
-      return bad_accessor(index, "has a sparse index out of range");
-    std::memcpy(&rows.filled[std::size_t(at) * rows.row_bytes], values->data + k * values->stride,
-                rows.row_bytes);
-  }
-  return {};
-}
-
 }  // namespace
 
 Result<tinygltf::Model> load_gltf(const fs::path& path, std::vector<fs::path>& buffers,
@@ -310,8 +291,10 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, std::vector<fs::path>& b
     loaded = parts->container
                  ? loader.LoadBinaryFromMemory(&model, &error, &warning, raw, size, base)
                  : loader.LoadASCIIFromString(&model, &error, &warning, data.data(), size, base);
-  } catch (const std::out_of_range& exception) {  // where it trusts an index
-    error = exception.what();
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& exception) {  // where it trusts an index, or the kind of a value
+    error = fmt::format("its parser gave up: {}", exception.what());
   }
   if (!folder.status.ok()) return folder.status;
   if (!loaded) return malformed_gltf(path, error.empty() ? "not a glTF file" : short_line(error));
@@ -374,8 +357,10 @@ Result<GltfRows> gltf_rows(const tinygltf::Model& model, int accessor) {
     std::memcpy(&rows.filled[i * rows.row_bytes], rows.data + i * rows.stride, rows.row_bytes);
   rows.data = rows.filled.data();
   rows.stride = rows.row_bytes;
-  if (Status s = a.sparse.isSparse ? fill_sparse(model, accessor, rows) : Status(); !s.ok())
-    return s;
+  const auto fill = [&](std::size_t at, const std::uint8_t* value) {
+    std::memcpy(&rows.filled[at * rows.row_bytes], value, rows.row_bytes);
+  };
+  if (Status s = for_sparse(model, accessor, rows.row_bytes, fill); !s.ok()) return s;
   return rows;
 }
 
