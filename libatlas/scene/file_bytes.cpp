@@ -12,8 +12,6 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kMaxText = std::size_t{1} << 33;  // a small gzip file can hold terabytes
-
 constexpr std::string_view kMark = "\xef\xbb\xbf";
 
 // Lines of old Macs, and of programs that keep to them, end by a carriage return. In files of both
@@ -86,7 +84,7 @@ Result<FileBytes> read_text_bytes(const fs::path& path) {
   return bytes;
 }
 
-Result<std::string> read_text_or_gzip(const fs::path& path) {
+Result<std::string> read_text_or_gzip(const fs::path& path, std::size_t most) {
   auto bytes = read_file_bytes(path);
   if (!bytes.ok()) return bytes.status();
   std::string text;
@@ -100,13 +98,18 @@ Result<std::string> read_text_or_gzip(const fs::path& path) {
   gzbuffer(file, 1 << 18);
   std::string piece(std::size_t{1} << 20, '\0');
   int got = 0;
-  while (text.size() < kMaxText &&
+  while (text.size() < most &&
          (got = gzread(file, piece.data(), static_cast<unsigned>(piece.size()))) > 0) {
     text.append(piece.data(), static_cast<std::size_t>(got));
   }
   int error = Z_OK;
   gzerror(file, &error);
   gzclose(file);
+  if (text.size() >= most) {
+    return Status(ErrorCode::unsupported,
+                  fmt::format("{}: holds {} MiB of text or more, unpacked (split the scene)",
+                              path.string(), most >> 20));
+  }
   if (got != 0 || (error != Z_OK && error != Z_STREAM_END)) {
     return Status(
         ErrorCode::bad_input,

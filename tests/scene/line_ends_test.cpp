@@ -1,7 +1,9 @@
 // The same files with the line ends of three worlds, and with the mark that editors put first.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
+#include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/reader.h"
 #include "tests/scene/temp_folder.h"
 
@@ -108,6 +110,25 @@ TEST(LineEnds, OfBinaryPly) {
       EXPECT_EQ(s.origin.z + double(s.positions[2].z), 1) << first << " " << end.size();
     }
   }
+}
+
+// A file that is whole, but holds more than can be read, is not called damaged.
+TEST(TextFiles, TooMuchTextInAGzipFileIsToldApartFromDamage) {
+  const TempFolder folder;
+  const std::filesystem::path path = folder / "s.wrz";
+  const gzFile file = gzopen(path.c_str(), "wb");
+  ASSERT_NE(file, nullptr);
+  const std::string text(5 << 20, 'a');
+  EXPECT_GT(gzwrite(file, text.data(), unsigned(text.size())), 0);
+  gzclose(file);
+  EXPECT_EQ(read_text_or_gzip(path)->size(), text.size() + 1);
+  const auto much = read_text_or_gzip(path, std::size_t{3} << 20);
+  EXPECT_EQ(much.status().code(), ErrorCode::unsupported);
+  EXPECT_NE(much.status().message().find("holds 3 MiB of text or more"), std::string::npos)
+      << much.status().message();
+  const std::string bytes = TempFolder::read(path);
+  const auto cut = read_text_or_gzip(folder.write("cut.wrz", bytes.substr(0, bytes.size() / 2)));
+  EXPECT_EQ(cut.status().code(), ErrorCode::bad_input);
 }
 
 }  // namespace
