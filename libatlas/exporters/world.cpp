@@ -6,6 +6,7 @@
 #include <limits>
 #include <string_view>
 
+#include "libatlas/core/is_finite.h"
 #include "libatlas/core/text_hash.h"
 #include "libatlas/exporters/text_output.h"
 #include "libatlas/scene/check_scene.h"
@@ -30,7 +31,7 @@ Status check_numbers(const World& world) {
     }
   }
   for (std::size_t i = 0; i < world.uvs.size(); ++i) {
-    if (!std::isfinite(world.uvs[i].x) || !std::isfinite(world.uvs[i].y)) {
+    if (!is_finite(world.uvs[i])) {
       return wrong(fmt::format("texture coordinate {} is not finite", i));
     }
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "libatlas/core/is_finite.h"
 #include "libatlas/image/file_kind.h"
 
 namespace atlas {
@@ -17,25 +18,16 @@ Status wrong(fmt::format_string<Arguments...> text, Arguments&&... arguments) {
           "scene: " + fmt::format(text, std::forward<Arguments>(arguments)...)};
 }
 
-bool finite(const Vec2f& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y);
-}
-
-template <class Vector>
-bool finite(const Vector& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 // The first element that is not finite, or size().
 template <class Vector>
 std::size_t first_not_finite(const std::vector<Vector>& values) {
   return std::size_t(
-      std::find_if(values.begin(), values.end(), [](const Vector& v) { return !finite(v); }) -
+      std::find_if(values.begin(), values.end(), [](const Vector& v) { return !is_finite(v); }) -
       values.begin());
 }
 
 Status check_vertices(const Scene& scene) {
-  if (!finite(scene.origin)) return wrong("origin is not finite");
+  if (!is_finite(scene.origin)) return wrong("origin is not finite");
   if (!(scene.metres_per_unit > 0) || !std::isfinite(scene.metres_per_unit))
     return wrong("metres_per_unit is {} (give the length of a unit, above 0)",
                  scene.metres_per_unit);
@@ -106,9 +98,9 @@ Status check_materials(const Scene& scene) {
     if (material.texture < -1 || material.texture >= std::int64_t(scene.textures.size()))
       return wrong("materials[{}] names texture {}, but there are {} (-1: none)", m,
                    material.texture, scene.textures.size());
-    if (!finite(material.diffuse)) return wrong("the diffuse of materials[{}] is not finite", m);
+    if (!is_finite(material.diffuse)) return wrong("the diffuse of materials[{}] is not finite", m);
     const Vec3f& e = material.emission;
-    if (!finite(e) || std::min({e.x, e.y, e.z}) < 0)
+    if (!is_finite(e) || std::min({e.x, e.y, e.z}) < 0)
       return wrong("the emission of materials[{}] is not finite or below 0", m);
     if (!(material.opacity >= 0 && material.opacity <= 1))
       return wrong("the opacity of materials[{}] is {} (must be within 0..1)", m, material.opacity);

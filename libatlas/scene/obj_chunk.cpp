@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libatlas/core/is_finite.h"
 #include "libatlas/scene/scene_builder.h"
 #include "libatlas/scene/text_scanner.h"
 
@@ -95,7 +96,7 @@ class Parser {
   }
 
   void add_colour(Vec3f c) {
-    if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z)) {
+    if (!is_finite(c)) {
       chunk_.bad_values.push_back(line_);
       for (float* value : {&c.x, &c.y, &c.z}) {
         if (!std::isfinite(*value)) *value = 0;

@@ -7,12 +7,13 @@
 #include <unordered_map>
 
 #include "libatlas/core/drop_rounding.h"
+#include "libatlas/core/is_finite.h"
 #include "libatlas/image/file_kind.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/gltf_source.h"
-
 #include "libatlas/scene/losses.h"
+
 namespace atlas {
 namespace {
 
@@ -99,7 +100,7 @@ void SceneBuilder::sanitise_values() {
     if (negative) defects.add(DefectKind::illumination_negative, [&] { return vertex(i); });
   }
   for (std::size_t i = 0; i < texcoords.size(); ++i) {
-    if (std::isfinite(texcoords[i].x) && std::isfinite(texcoords[i].y)) continue;
+    if (is_finite(texcoords[i])) continue;
     texcoords[i] = {};
     defects.add(DefectKind::texcoord_not_finite,
                 [&] { return fmt::format("{}: texture coordinate {}", file, i + 1); });
@@ -128,8 +129,7 @@ Status SceneBuilder::place_positions(Scene& scene) const {
     const Vec3f q{drop_rounding(p.x - origin.x, diagonal), drop_rounding(p.y - origin.y, diagonal),
                   drop_rounding(p.z - origin.z, diagonal)};
     // A vertex that no triangle uses may be anything; the array promises finite numbers.
-    const bool finite = std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z);
-    scene.positions[i] = finite ? q : Vec3f{};
+    scene.positions[i] = is_finite(q) ? q : Vec3f{};
   }
   return {};
 }
@@ -172,7 +172,7 @@ void SceneBuilder::move_texcoords() {
         return float(uv.x * r[0] + uv.y * r[1] + r[2]);
       };
       Vec2f to{row(raw.uv_u), row(raw.uv_v)};
-      if (!std::isfinite(to.x) || !std::isfinite(to.y)) {
+      if (!is_finite(to)) {
         to = {};
         defects.add(DefectKind::texcoord_not_finite, [&] {
           return fmt::format("{}: texture coordinate {} as material '{}' moves it", file,

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/is_finite.h"
 
 namespace atlas {
 namespace {
@@ -30,10 +31,6 @@ std::array<glm::dvec3, 8> corners(const Box3& box) {
   return c;
 }
 
-bool finite(const glm::dvec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 double largest(const glm::dvec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
@@ -48,7 +45,7 @@ Basis light_basis(const glm::dvec3& direction, const Vec3d& wanted_up) {
   // If the light is within about 0.6 degrees of the wanted vertical, the right axis would mostly be
   // rounding noise. The coordinate axis farthest from the light is then used as the vertical.
   if (!(glm::length(glm::cross(up, direction)) >= 0.01 * glm::length(up)) ||
-      !(glm::length(up) > 0) || !finite(up)) {
+      !(glm::length(up) > 0) || !is_finite(up)) {
     const glm::dvec3 a = glm::abs(direction);
     up = a.x <= a.y && a.x <= a.z ? glm::dvec3(1, 0, 0)
                                   : (a.y <= a.z ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1));
@@ -92,7 +89,7 @@ Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene,
   const double length = glm::length(to_glm(direction));
   if (!(length > 0) || !std::isfinite(length))
     return Status{ErrorCode::bad_option, "shadow map: the light's direction is zero or not finite"};
-  if (!finite(low) || !finite(high) || low.x > high.x || low.y > high.y || low.z > high.z)
+  if (!is_finite(low) || !is_finite(high) || low.x > high.x || low.y > high.y || low.z > high.z)
     return Status{ErrorCode::bad_option, "shadow map: the scene's bounds are empty or not finite"};
   // Squares of the coordinates are summed below and must not overflow.
   constexpr double kFarthest = 1e150;
@@ -115,12 +112,12 @@ Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene,
     std::array<glm::dvec3, 8> points;
     for (int i = 0; i < 8; ++i) {
       points[i] = to_glm(options.view_corners[i]);
-      if (!finite(points[i]))
+      if (!is_finite(points[i]))
         return Status{ErrorCode::bad_option,
                       fmt::format("shadow map: corner {} of the view is not finite", i)};
     }
     const Sphere view = around(points);
-    if (view.radius > 0 && finite(view.centre) && view.radius < whole.radius) fitted = view;
+    if (view.radius > 0 && is_finite(view.centre) && view.radius < whole.radius) fitted = view;
   }
   // A scene of one point still needs a map of some size.
   const double smallest = std::max(glm::length(fitted.centre) * 1e-9, 1e-30);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "libatlas/core/is_finite.h"
 #include "libatlas/scene/triangle_area.h"
 #include "libatlas/texture/tone.h"
 #include "libatlas/texture/visibility.h"
@@ -48,7 +49,7 @@ struct Collector {
   std::size_t unlit = 0;
 
   void add(const Vec3f& position, const Vec3f& c) {
-    if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z)) {
+    if (!is_finite(c)) {
       ++out.not_finite;
       return;
     }
