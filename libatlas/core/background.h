@@ -11,8 +11,9 @@
 
 namespace atlas {
 
-// Used by one thread. Tasks begin in the order of asking, each on a thread of its own; what they
-// take counts as the user's (own_cpu_seconds) once they have been waited for.
+// Used by one thread. Tasks begin in the order of asking, each on a thread of its own, or on the
+// caller's thread if the system starts no more. What they take counts as the user's
+// (own_cpu_seconds) once they have been waited for.
 class Background {
  public:
   // At most `at_once` tasks are under way; 0: each is done before add() returns.
@@ -34,6 +35,7 @@ class Background {
     Status status;
     double cpu_seconds = 0;
   };
+  static std::future<Done> start(std::function<Status()> task);
   void wait_for_oldest();
 
   std::size_t at_once_;

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include <algorithm>
 #include <atomic>
@@ -93,6 +94,39 @@ TEST(Background, RunsAtMostSoManyTasksAtOnceAndAllOfThem) {
     EXPECT_EQ(done, 20u);
     EXPECT_LE(most, std::max<std::size_t>(at_once, 1));
   }
+}
+
+// As where a container's limit of processes is reached: threads ask for stacks that nobody has.
+TEST(Background, RunsTasksByItselfWhereNoThreadCanStart) {
+  pthread_attr_t before, huge;
+  ASSERT_EQ(pthread_getattr_default_np(&before), 0);
+  ASSERT_EQ(pthread_attr_init(&huge), 0);
+  ASSERT_EQ(pthread_attr_setstacksize(&huge, std::size_t{1} << 46), 0);
+  ASSERT_EQ(pthread_setattr_default_np(&huge), 0);
+  std::vector<int> order;
+  bool thrown = false;
+  Status status;
+  {
+    EXPECT_THROW(std::thread([] {}).join(), std::system_error);
+    Background background(2);
+    for (int i = 0; i < 5; ++i)
+      (void)background.add([&order, i] {
+        order.push_back(i);
+        return i < 3 ? Status() : Status(ErrorCode::io, std::to_string(i));
+      });
+    status = background.finish();
+    Background throwing(2);
+    (void)throwing.add([]() -> Status { throw std::bad_alloc(); });
+    try {
+      (void)throwing.finish();
+    } catch (const std::bad_alloc&) {
+      thrown = true;
+    }
+  }
+  ASSERT_EQ(pthread_setattr_default_np(&before), 0);
+  EXPECT_EQ(order, (std::vector<int>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(status.message(), "3");
+  EXPECT_TRUE(thrown);
 }
 
 TEST(Background, BeginsNothingAfterAFailureAndTellsTheFirst) {
