@@ -274,7 +274,8 @@ Status write_floats(const std::filesystem::path& path, const ImageF& image) {
   return write(path, image, spec);
 }
 
-constexpr ImageFiles functions = {read_8_bits, decode, read_floats, write_8_bits, write_floats};
+constexpr ImageFiles functions = {image_files_mark(), read_8_bits,  decode,
+                                  read_floats,        write_8_bits, write_floats};
 
 }  // namespace
 }  // namespace atlas

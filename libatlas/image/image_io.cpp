@@ -14,22 +14,37 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// What this code was linked into: a shared library, or the program.
+fs::path own_file() {
+  Dl_info own{};
+  const bool known = dladdr(reinterpret_cast<const void*>(&own_file), &own) != 0 && own.dli_fname;
+  return known ? fs::path(own.dli_fname) : fs::path();
+}
+
+// Where the module was built, for files of the same build tree; empty for all others, so that what
+// is installed never loads what a builder has left. No path of the builder's machine is needed.
+fs::path built_folder(const fs::path& file) {
+  std::error_code none;
+  for (fs::path up = fs::canonical(file, none).parent_path(); up.has_relative_path();
+       up = up.parent_path()) {
+    if (fs::exists(up / "CMakeCache.txt", none)) return up / LIBATLAS_BUILT_IN;
+  }
+  return {};
+}
+
 // Where the module may be: beside what this code was linked into or the program, where the two lie
 // in bin/ and lib/ of one place, where they were built, where they were to be installed.
 std::vector<fs::path> module_folders() {
+  std::error_code none;
   std::vector<fs::path> folders;
-  const auto add = [&](const fs::path& file) {
-    if (!file.has_parent_path()) return;
+  const std::vector<fs::path> files = {own_file(), fs::read_symlink("/proc/self/exe", none)};
+  for (const fs::path& file : files) {
+    if (!file.has_parent_path()) continue;
     folders.push_back(file.parent_path());
     folders.push_back(file.parent_path() / ".." / LIBATLAS_LIBRARY_FOLDER);
-  };
-  Dl_info own{};
-  if (dladdr(reinterpret_cast<const void*>(&module_folders), &own) != 0 && own.dli_fname) {
-    add(own.dli_fname);
   }
-  std::error_code none;
-  add(fs::read_symlink("/proc/self/exe", none));
-  folders.push_back(LIBATLAS_BUILD_FOLDER);
+  for (const fs::path& file : files)
+    if (const fs::path built = built_folder(file); !built.empty()) folders.push_back(built);
   folders.push_back(LIBATLAS_INSTALL_FOLDER);
   return folders;
 }
@@ -59,7 +74,14 @@ Module load() {
   if (!handle) handle = dlopen(LIBATLAS_IMAGE_MODULE, RTLD_NOW | RTLD_LOCAL);
   void* entry = handle ? dlsym(handle, "libatlas_image_files") : nullptr;
   if (!entry) return failure();
-  return {reinterpret_cast<decltype(&libatlas_image_files)>(entry)(), {}};
+  const ImageFiles* files = reinterpret_cast<decltype(&libatlas_image_files)>(entry)();
+  if (files->mark == image_files_mark()) return {files, {}};
+  Dl_info where{};
+  const bool known = dladdr(entry, &where) != 0 && where.dli_fname;
+  return {nullptr,
+          fmt::format("image files need the {} that was built with this program; {} is "
+                      "of another build (install both from one)",
+                      LIBATLAS_IMAGE_MODULE, known ? where.dli_fname : "the one that was found")};
 }
 
 // Loaded once, and never unloaded: OpenImageIO has threads.

@@ -1,0 +1,9 @@
+// Says why no image can be read, in a process of its own: the module is looked for once.
+#include <cstdio>
+
+#include "libatlas/image/image_io.h"
+
+int main(int, char** argument) {
+  const auto image = atlas::read_image8(argument[1]);
+  std::puts(image.ok() ? "read" : image.status().message().c_str());
+}
