@@ -121,16 +121,15 @@ std::filesystem::path material_file(std::filesystem::path mesh) {
   return mesh.replace_extension("mtl");
 }
 
-// Mesh and materials appear together.
-Status write_mesh(const std::filesystem::path& target, const RepackedMesh& mesh) {
+Status write_mesh(const std::filesystem::path& target, const RepackedMesh& mesh,
+                  AtomicFiles& files) {
   const std::filesystem::path materials = material_file(target);
-  AtomicFiles files;
   const std::string obj = to_obj(mesh, materials.filename().string());
   for (const auto& [path, text] :
        {std::pair(materials, to_mtl(mesh.charts, mesh.fit)), {target, obj}}) {
     if (Status status = files.write(path, text); !status.ok()) return status;
   }
-  return files.commit();
+  return {};
 }
 
 std::int32_t round_up(std::int32_t side) {
@@ -160,8 +159,8 @@ std::string to_svg(const RepackedMesh& mesh) {
   return to_svg(row, fit.pages, paths);
 }
 
-Status draw(const std::filesystem::path& path, const RepackedMesh& mesh) {
-  if (lower_extension(path) == ".svg") return write_file(path, to_svg(mesh));
+Status draw(const std::filesystem::path& path, const RepackedMesh& mesh, AtomicFiles& files) {
+  if (lower_extension(path) == ".svg") return files.write(path, to_svg(mesh));
   const auto& [scene, charts, fit, uvs] = mesh;
   PreviewSheet sheet(fit.pages);
   for (std::size_t c = 0; c < charts.members.size(); ++c) {
@@ -187,7 +186,7 @@ Status draw(const std::filesystem::path& path, const RepackedMesh& mesh) {
       sheet.fill(fit.placements[c].page, {x0, y0, x1 - x0 + 1, y1 - y0 + 1}, rgb, covered);
     }
   }
-  return sheet.write(path);
+  return sheet.write(path, files);
 }
 
 PackedAtlas describe(const FitResult& fit) {
@@ -321,9 +320,11 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   if (!fitted.ok()) return fitted.status();
   if (context.cancelled()) return Status::cancelled();  // a search gives what it has so far
   const RepackedMesh mesh = repack(scene, charts, *fitted);
-  if (Status s = write_mesh(c.output, mesh); !s.ok()) return s;
+  AtomicFiles files;  // mesh, materials and preview appear together
+  if (Status s = write_mesh(c.output, mesh, files); !s.ok()) return s;
   if (!c.preview.empty())
-    if (Status s = draw(c.preview, mesh); !s.ok()) return s;
+    if (Status s = draw(c.preview, mesh, files); !s.ok()) return s;
+  if (Status s = files.commit(); !s.ok()) return s;
   PackedAtlas atlas = describe(*fitted);
   atlas.files = {c.output, material_file(c.output)};
   return atlas;

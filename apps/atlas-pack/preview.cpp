@@ -97,11 +97,8 @@ PreviewSheet::PreviewSheet(std::span<const Extent> pages) {
   }
 }
 
-Status PreviewSheet::write(const std::filesystem::path& path) const {
-  AtomicFiles files;
-  if (Status s = write_png(files.path_for(path), image_, {}); !s.ok())
-    return files.told_by_target(s);
-  return files.commit();
+Status PreviewSheet::write(const std::filesystem::path& path, AtomicFiles& files) const {
+  return files.told_by_target(write_png(files.path_for(path), image_, {}));
 }
 
 Status check_preview(const PackCommand& command) {
@@ -113,8 +110,9 @@ Status check_preview(const PackCommand& command) {
   return check_output(preview, {command.input});
 }
 
-Status write_preview(const std::filesystem::path& path, const PackedAtlas& atlas) {
-  if (lower_extension(path) == ".svg") return write_file(path, to_svg(atlas));
+Status write_preview(const std::filesystem::path& path, const PackedAtlas& atlas,
+                     AtomicFiles& files) {
+  if (lower_extension(path) == ".svg") return files.write(path, to_svg(atlas));
   PreviewSheet sheet(atlas.pages);
   for (std::size_t i = 0; i < atlas.items.size(); ++i) {
     const PackedItem& item = atlas.items[i];
@@ -127,7 +125,7 @@ Status write_preview(const std::filesystem::path& path, const PackedAtlas& atlas
     sheet.fill(item.at.page, {item.at.x, bottom, e.width, e.height}, rgb,
                [](std::int32_t, std::int32_t) { return true; });
   }
-  return sheet.write(path);
+  return sheet.write(path, files);
 }
 
 }  // namespace atlas::app

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/atlas-pack/packed_atlas.h"
+#include "libatlas/core/atomic_file.h"
 #include "libatlas/core/image.h"
 #include "libatlas/core/rect.h"
 #include "libatlas/core/status.h"
@@ -46,7 +47,8 @@ class PreviewSheet {
         if (inside(x * step_, y * step_)) std::copy_n(rgb, 3, image_.at(to.left + x, y));
   }
 
-  Status write(const std::filesystem::path& path) const;
+  // As one of `files`.
+  Status write(const std::filesystem::path& path, AtomicFiles& files) const;
 
  private:
   struct Drawn {
@@ -60,7 +62,8 @@ class PreviewSheet {
 // Whether the command's preview, if any, has a format that is known and can be written.
 Status check_preview(const PackCommand& command);
 
-// Draws the frames; the extension (.svg or .png) chooses the format.
-Status write_preview(const std::filesystem::path& path, const PackedAtlas& atlas);
+// Draws the frames as one of `files`; the extension (.svg or .png) chooses the format.
+Status write_preview(const std::filesystem::path& path, const PackedAtlas& atlas,
+                     AtomicFiles& files);
 
 }  // namespace atlas::app

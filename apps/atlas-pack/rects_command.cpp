@@ -267,10 +267,12 @@ Result<PackedAtlas> run_rects(const PackCommand& c, const Context& context) {
   PackedAtlas atlas = make_atlas(std::move(items), *packed);
   const std::string placed =
       ending == ".json" ? to_json(atlas, c.format, kAllPages) : to_csv(atlas);
-  if (Status s = write_file(c.output, placed); !s.ok()) return s;
-  atlas.files = {c.output};
+  AtomicFiles files;
+  if (Status s = files.write(c.output, placed); !s.ok()) return s;
   if (!c.preview.empty())
-    if (Status s = write_preview(c.preview, atlas); !s.ok()) return s;
+    if (Status s = write_preview(c.preview, atlas, files); !s.ok()) return s;
+  atlas.files = {c.output};
+  if (Status s = files.commit(); !s.ok()) return s;
   return atlas;
 }
 

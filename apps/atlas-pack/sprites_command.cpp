@@ -200,7 +200,8 @@ Status check_links(const PackCommand& c, const fs::path& page) {
                       page.string())};
 }
 
-Status write_pages(const PackCommand& c, const std::vector<Sprite>& sprites, PackedAtlas& atlas) {
+// Pages, what lies where on them, and the preview, together.
+Status write_files(const PackCommand& c, const std::vector<Sprite>& sprites, PackedAtlas& atlas) {
   AtomicFiles files;
   for (std::size_t p = 0; p < atlas.pages.size(); ++p)
     atlas.images.push_back(page_image(c, p, atlas.pages.size()));
@@ -219,6 +220,8 @@ Status write_pages(const PackCommand& c, const std::vector<Sprite>& sprites, Pac
     if (Status s = files.write(data, to_json(atlas, c.format, p)); !s.ok()) return s;
   }
   atlas.files = files.targets();
+  if (!c.preview.empty())
+    if (Status s = write_preview(c.preview, atlas, files); !s.ok()) return s;
   return files.commit();
 }
 
@@ -284,10 +287,8 @@ Result<PackedAtlas> run_images(const PackCommand& command, const Context& contex
     if (sprites[i].alias_of >= 0) atlas.items[i].at = atlas.items[sprites[i].alias_of].at;
   atlas.aliases = aliases;
   if (Status s = check_sizes(atlas); !s.ok()) return s;
-  if (Status s = write_pages(c, sprites, atlas); !s.ok()) return s;
+  if (Status s = write_files(c, sprites, atlas); !s.ok()) return s;
   name_old_pages(c, atlas.pages.size(), context);
-  if (!c.preview.empty())
-    if (Status s = write_preview(c.preview, atlas); !s.ok()) return s;
   return atlas;
 }
 

@@ -11,6 +11,7 @@
 
 #include "libatlas/image/image_io.h"
 #include "tests/apps/atlas_pack/run_pack.h"
+#include "tests/support/full_disk.h"
 
 namespace atlas::test {
 namespace {
@@ -210,6 +211,24 @@ TEST_F(AtlasPack, PreviewsOfPagesOfAnySizeAreSmall) {
   const std::uint8_t *item = picture->at(picture->width / 2, picture->height / 2),
                      *free = picture->at(picture->width * 7 / 8, picture->height * 7 / 8);
   EXPECT_FALSE(std::equal(item, item + 3, free));
+}
+
+// All files appear together or not at all.
+TEST_F(AtlasPack, APreviewThatFailsLeavesNothing) {
+  std::string list;
+  for (int i = 0; i < 60; ++i) list += "4,4\n";
+  write("sizes.csv", list);
+  {
+    const FullDisk disk(3000);  // the list of places takes half of it, the preview twice as much
+    const RunResult r = run("rects sizes.csv -o placed.csv --preview p.svg");
+    EXPECT_EQ(r.exit_code, 1) << r.output;
+    EXPECT_NE(r.output.find("p.svg"), std::string::npos) << r.output;
+  }
+  EXPECT_FALSE(fs::exists(dir_ / "placed.csv"));
+  EXPECT_FALSE(fs::exists(dir_ / "p.svg"));
+  EXPECT_EQ(run("rects sizes.csv -o placed.csv --preview p.svg").exit_code, 0);
+  EXPECT_LT(fs::file_size(dir_ / "placed.csv"), 2500u);
+  EXPECT_GT(fs::file_size(dir_ / "p.svg"), 3500u);
 }
 
 }  // namespace
