@@ -11,6 +11,8 @@ find_package(nlohmann_json REQUIRED)      # nlohmann-json3-dev: reports
 find_package(ZLIB REQUIRED)               # zlib1g-dev: gzipped worlds
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 find_package(CGAL REQUIRED)               # libcgal-dev: exact predicates
+find_library(LIBATLAS_MPFR_LIBRARY mpfr REQUIRED)  # which CGAL's predicates need
+find_library(LIBATLAS_GMP_LIBRARY gmp REQUIRED)
 pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)  # libopenimageio-dev: image files
 
 find_path(OPENMESH_INCLUDE_DIR OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh REQUIRED)
@@ -18,6 +20,15 @@ find_library(OPENMESH_CORE_LIBRARY OpenMeshCore REQUIRED)     # libopenmesh-dev:
 add_library(atlas_openmesh INTERFACE)
 target_include_directories(atlas_openmesh SYSTEM INTERFACE ${OPENMESH_INCLUDE_DIR})
 target_link_libraries(atlas_openmesh INTERFACE ${OPENMESH_CORE_LIBRARY})
+
+# Libraries without a CMake package that all systems have. cmake/libatlasConfig.cmake.in makes the
+# same targets for those who use the installed library, wherever the files are there.
+foreach(found mpfr=${LIBATLAS_MPFR_LIBRARY} gmp=${LIBATLAS_GMP_LIBRARY}
+              OpenMeshCore=${OPENMESH_CORE_LIBRARY})
+  string(REGEX MATCH "^([^=]*)=(.*)$" found "${found}")
+  add_library(libatlas::${CMAKE_MATCH_1} UNKNOWN IMPORTED GLOBAL)
+  set_target_properties(libatlas::${CMAKE_MATCH_1} PROPERTIES IMPORTED_LOCATION ${CMAKE_MATCH_2})
+endforeach()
 
 if(LIBATLAS_BUILD_TESTS)
   find_package(GTest REQUIRED)            # libgtest-dev

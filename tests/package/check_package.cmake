@@ -1,4 +1,4 @@
-# Run by ctest with SOURCE, BUILD, GENERATOR, CXX and FLAGS set.
+# Run by ctest with SOURCE, BUILD, GENERATOR, CXX and FLAGS set, and the files OPENMESH and GMP.
 cmake_minimum_required(VERSION 3.22)
 set(prefix ${BUILD}/tests/package/prefix)
 file(REMOVE_RECURSE ${prefix} ${BUILD}/tests/package/minimal)
@@ -57,6 +57,30 @@ if(NOT output MATCHES "2304 triangles, [1-9][0-9]* charts, stretch 1\\.[0-9]+")
   message(FATAL_ERROR "unwrap printed: ${output}")
 endif()
 message(STATUS "find_package: ${output}")
+
+# Where libraries have prefixes of their own. A shared libatlas brings them itself.
+file(GLOB_RECURSE archive ${prefix}/*/libatlasgeo.a)
+if(archive)
+  set(elsewhere ${BUILD}/tests/package/elsewhere)
+  file(REMOVE_RECURSE ${elsewhere} ${BUILD}/tests/package/minimal_elsewhere)
+  foreach(library OPENMESH GMP)
+    get_filename_component(folder ${${library}} DIRECTORY)
+    get_filename_component(name ${${library}} NAME)
+    file(GLOB files ${folder}/${name}*)
+    file(COPY ${files} DESTINATION ${elsewhere}/lib)
+  endforeach()
+  run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE}/examples/minimal
+      -B ${BUILD}/tests/package/minimal_elsewhere "-DCMAKE_PREFIX_PATH=${prefix}\\;${elsewhere}"
+      -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS})
+  run(${CMAKE_COMMAND} --build ${BUILD}/tests/package/minimal_elsewhere --target unwrap --verbose)
+  foreach(library OPENMESH GMP)
+    get_filename_component(name ${${library}} NAME)
+    if(NOT output MATCHES "tests/package/elsewhere/lib/${name}")
+      message(FATAL_ERROR "${name} is not linked where it lies:\n${output}")
+    endif()
+  endforeach()
+  run(${BUILD}/tests/package/minimal_elsewhere/unwrap)
+endif()
 
 # What docs/library.md shows, as it stands there, with warnings as errors. Brackets and semicolons
 # would be lists to CMake, so the page is cut at its fences by position.
