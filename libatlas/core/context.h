@@ -10,9 +10,9 @@ namespace atlas {
 // Passed by const reference to every stage. Default-constructed: all cores, silent, not
 // cancellable.
 //
-// Threads: every function of the library may be called from several threads at once, also on the
-// same input; each call works on threads of its own. One object is used by one thread at a time,
-// unless its header says more; const members of results are plain data.
+// Threads: every function but those of windows (view/context.h) may be called from several threads
+// at once, also on the same input, and works on threads of its own. One object is used by one
+// thread at a time, unless its header says more; const members of results are plain data.
 // Exceptions: the library throws none of its own but std::bad_alloc. One that a callback throws
 // ends the stage and comes out of the call that was given the callback; files are whole or absent
 // then, too.

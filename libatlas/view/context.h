@@ -1,5 +1,6 @@
 // OpenGL 4.5 core contexts: without a window through EGL (which works on Mesa's software renderer
-// and needs no display), or in a GLFW window.
+// and needs no display), or in a GLFW window. Windows are for the main thread only, as GLFW is:
+// make_window(), every member of a window, its end, and play_in_window().
 #pragma once
 
 #include <cstdint>
@@ -68,12 +69,15 @@ struct WindowOptions {
 class GlWindow : public GlContext {
  public:
   virtual GLFWwindow* handle() = 0;
-  // The display server has gone: nothing can be shown any more, and the window is not closed but
-  // left behind.
+  // The display server has gone: no window of the process can show anything any more, nor can new
+  // ones be made. The window is not closed but left behind.
   virtual bool lost() const = 0;
 };
 
-// `unsupported` with the reason if there is no display or it has no OpenGL 4.5.
+// `unsupported` with the reason if there is no display or it has no OpenGL 4.5. The first window
+// begins GLFW and the end of the last one ends it, unless the program has called glfwInit() before:
+// a program with GLFW windows of its own does so, and calls glfwTerminate() when both are gone.
+// Hints for windows are at their defaults afterwards.
 Result<std::unique_ptr<GlWindow>> make_window(const ContextOptions& options,
                                               const WindowOptions& window);
 

@@ -23,23 +23,32 @@ void on_error(int, const char* text) {
   last_error() = text;
 }
 
-std::atomic<bool>& display_lost() {
-  static std::atomic<bool> lost = false;
-  return lost;
+// Xlib's Display* is a void* here. GLFW has one for all windows of the process; the program may
+// have others, which are no concern of ours.
+using Handler = int (*)(void*);
+struct DisplayWatch {
+  void* connection = nullptr;  // GLFW's
+  Handler before = nullptr;    // what the program had set
+  std::atomic<bool> lost = false;
+};
+
+DisplayWatch& watch() {
+  static DisplayWatch state;
+  return state;
 }
 
-int on_display_lost(void*) {
-  display_lost() = true;
+int on_display_lost(void* display) {
+  DisplayWatch& state = watch();
+  if (display != state.connection) return state.before ? state.before(display) : 0;
+  state.lost = true;
   return 0;
 }
 void keep_running(void*, void*) {}
 
 // Xlib ends the process with a message of its own when the X server goes, unless both handlers are
 // set (the second exists since libX11 1.7). The functions are looked up in what GLFW has loaded
-// (3.4 keeps the library to itself): there may be no X11 at all. `void*` stands for Xlib's
-// Display*.
+// (3.4 keeps the library to itself): there may be no X11 at all.
 void watch_display() {
-  using Handler = int (*)(void*);
   using ExitHandler = void (*)(void*, void*);
   void* const x11 = dlopen("libX11.so.6", RTLD_NOW | RTLD_NOLOAD);
   const auto find = [&](const char* name) {
@@ -52,7 +61,9 @@ void watch_display() {
   if (!display || !set || !set_exit) return;
   void* const connection = reinterpret_cast<void* (*)()>(display)();
   if (!connection) return;
-  reinterpret_cast<Handler (*)(Handler)>(set)(on_display_lost);
+  watch().connection = connection;
+  const Handler before = reinterpret_cast<Handler (*)(Handler)>(set)(on_display_lost);
+  if (before != on_display_lost) watch().before = before;
   reinterpret_cast<void (*)(void*, ExitHandler, void*)>(set_exit)(connection, keep_running,
                                                                   nullptr);
   // A write to a connection that is gone is to fail, not to end the process before they are called.
@@ -62,17 +73,66 @@ void watch_display() {
   }
 }
 
+// GLFW is begun once and ended once a process, and ending it closes all windows: also those of a
+// program that has begun it by itself, which then ends it, too.
+class GlfwUse {
+ public:
+  GlfwUse() = default;
+  ~GlfwUse() {
+    if (!begun_ || --users() > 0 || !ours() || watch().lost) return;
+    glfwTerminate();
+  }
+  GlfwUse(const GlfwUse&) = delete;
+  GlfwUse& operator=(const GlfwUse&) = delete;
+
+  bool begin() {
+    if (users() == 0) {
+      glfwGetTime();  // does nothing but tell
+      ours() = glfwGetError(nullptr) == GLFW_NOT_INITIALIZED;
+    }
+    begun_ = glfwInit() == GLFW_TRUE;
+    users() += begun_;
+    return begun_;
+  }
+
+ private:
+  static int& users() {
+    static int count = 0;
+    return count;
+  }
+  static bool& ours() {
+    static bool begun_here = false;
+    return begun_here;
+  }
+  bool begun_ = false;
+};
+
+// Takes the text of what goes wrong while it lives, then gives the callback back to the program.
+class GlfwCall {
+ public:
+  GlfwCall() : before_(glfwSetErrorCallback(on_error)) {}
+  ~GlfwCall() { glfwSetErrorCallback(before_); }
+  GlfwCall(const GlfwCall&) = delete;
+  GlfwCall& operator=(const GlfwCall&) = delete;
+
+ private:
+  GLFWerrorfun before_;
+};
+
 class GlfwWindow : public GlWindow {
  public:
   ~GlfwWindow() override {
-    if (lost()) return;  // a dead connection takes no requests, not even to destroy its window
-    if (window_) glfwDestroyWindow(window_);
-    glfwTerminate();
+    // A dead connection takes no requests, not even to destroy its window.
+    if (window_ && !lost()) glfwDestroyWindow(window_);
   }
   GLFWwindow* handle() override { return window_; }
-  bool lost() const override { return display_lost(); }
+  bool lost() const override { return watch().lost; }
 
   Status open(const ContextOptions& options, const WindowOptions& wanted) {
+    if (!use_.begin())
+      return {ErrorCode::unsupported, fmt::format("no window: {} (try --headless)", last_error())};
+    watch_display();
+    glfwDefaultWindowHints();
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
@@ -81,6 +141,7 @@ class GlfwWindow : public GlWindow {
     glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
     glfwWindowHint(GLFW_VISIBLE, wanted.visible);
     window_ = glfwCreateWindow(wanted.width, wanted.height, wanted.title.c_str(), nullptr, nullptr);
+    glfwDefaultWindowHints();  // the next window may be the program's own
     if (!window_)
       return {ErrorCode::unsupported,
               fmt::format("no OpenGL 4.5 window: {} (try --headless)", last_error())};
@@ -90,6 +151,7 @@ class GlfwWindow : public GlWindow {
   }
 
  private:
+  GlfwUse use_;  // ends after the window
   GLFWwindow* window_ = nullptr;
 };
 
@@ -97,11 +159,8 @@ class GlfwWindow : public GlWindow {
 
 Result<std::unique_ptr<GlWindow>> make_window(const ContextOptions& options,
                                               const WindowOptions& window) {
-  glfwSetErrorCallback(on_error);
-  if (!glfwInit())
-    return Status{ErrorCode::unsupported,
-                  fmt::format("no window: {} (try --headless)", last_error())};
-  watch_display();
+  if (watch().lost) return Status{ErrorCode::unsupported, "no window: the display server has gone"};
+  const GlfwCall call;
   auto made = std::make_unique<GlfwWindow>();
   if (Status s = made->open(options, window); !s.ok()) return s;
   return std::unique_ptr<GlWindow>(std::move(made));

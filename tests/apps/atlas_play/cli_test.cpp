@@ -16,6 +16,8 @@
 #include <thread>
 #include <utility>
 
+#include "tests/support/xvfb.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -257,44 +259,8 @@ TEST_F(AtlasPlay, ThePlanNamesWhatIsNotCompiled) {
     EXPECT_NE(r.output.find(words), std::string::npos) << words << "\n" << r.output;
 }
 
-// An X server of our own, on a number that it chooses.
-class Xvfb {
- public:
-  Xvfb() {
-    int ends[2];
-    if (::pipe(ends) != 0) return;
-    pid_ = ::fork();
-    if (pid_ == 0) {
-      const int quiet = ::open("/dev/null", O_WRONLY);
-      ::dup2(ends[1], 3);
-      ::dup2(quiet, 2);
-      ::execlp("Xvfb", "Xvfb", "-displayfd", "3", "-screen", "0", "320x240x24", nullptr);
-      ::_exit(127);
-    }
-    ::close(ends[1]);
-    char c = 0;
-    while (::read(ends[0], &c, 1) == 1 && c != '\n') display_ += c;
-    ::close(ends[0]);
-  }
-  ~Xvfb() { kill(); }
-  Xvfb(const Xvfb&) = delete;
-  Xvfb& operator=(const Xvfb&) = delete;
-  bool runs() const { return !display_.empty(); }
-  std::string environment() const { return "-u WAYLAND_DISPLAY DISPLAY=:" + display_; }
-  void kill() {
-    if (pid_ <= 0) return;
-    ::kill(pid_, SIGKILL);
-    ::waitpid(pid_, nullptr, 0);
-    pid_ = -1;
-  }
-
- private:
-  pid_t pid_ = -1;
-  std::string display_;
-};
-
 TEST_F(AtlasPlay, AWindowShowsItsPanelAndCloses) {
-  const Xvfb server;
+  const atlas::test::Xvfb server;
   if (!server.runs()) GTEST_SKIP() << "Xvfb is not installed";
   const RunResult r =
       run("roof.obj --width 160 --height 120 --map 64 --close-after 5 --screenshot w.png --debug",
@@ -305,7 +271,7 @@ TEST_F(AtlasPlay, AWindowShowsItsPanelAndCloses) {
 }
 
 TEST_F(AtlasPlay, ADisplayThatGoes) {
-  Xvfb server;
+  atlas::test::Xvfb server;
   if (!server.runs()) GTEST_SKIP() << "Xvfb is not installed";
   RunResult r;
   std::thread player(
