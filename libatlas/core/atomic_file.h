@@ -1,5 +1,7 @@
-// Output files that are either whole or absent: written under a temporary name beside the target,
-// renamed on commit, removed otherwise.
+// Output files that are either whole or absent, however the process ends: written under a temporary
+// name beside the target, renamed on commit, removed otherwise. What the machine leaves that loses
+// its power or stops working is up to its file system: nothing waits for the disk, which would take
+// some 4 milliseconds a file.
 #pragma once
 
 #include <cstddef>
