@@ -20,7 +20,8 @@ class Xvfb {
       const int quiet = ::open("/dev/null", O_WRONLY);
       ::dup2(ends[1], 3);
       ::dup2(quiet, 2);
-      ::execlp("Xvfb", "Xvfb", "-displayfd", "3", "-screen", "0", "320x240x24", nullptr);
+      ::execlp("Xvfb", "Xvfb", "-displayfd", "3", "-noreset", "-screen", "0", "320x240x24",
+               nullptr);
       ::_exit(127);
     }
     ::close(ends[1]);
