@@ -390,12 +390,9 @@ Status read_gltf(const fs::path& path, SceneBuilder& builder, const Context& con
   auto model = load_gltf(path, builder.files, builder.wants_rest ? &source->document : nullptr);
   if (!model.ok()) return model.status();
   source->model = std::move(*model);
-  if (builder.wants_rest) {
-    if (Status s = take_data_out(path, *source); !s.ok()) return s;
-    builder.source = source;
-  } else {
-    builder.not_read = gltf_not_read(source->model);
-  }
+  if (Status s = builder.wants_rest ? take_data_out(path, *source) : Status(); !s.ok()) return s;
+  if (builder.wants_rest) builder.source = source;
+  if (!builder.wants_rest) builder.not_read = gltf_not_read(source->model);
   return GltfParser(source->model, builder, context).run();
 }
 

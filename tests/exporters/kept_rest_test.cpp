@@ -320,26 +320,23 @@ TEST(KeptRest, MeshesOfDefectsOnlyAreLeftOut) {
   const TempFolder folder;
   Gltf gltf = textured(folder);
   const json attributes = gltf.j["meshes"][0]["primitives"][0]["attributes"];
-  const json good = gltf.j["meshes"][0];
   const int matrices = gltf.floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, "MAT4", 16);
   gltf.j["skins"] = json::array({{{"joints", {0}}, {"inverseBindMatrices", matrices}}});
   gltf.j["meshes"] = json::array(
       {{{"name", "broken"},
         {"primitives", json::array({{{"attributes", attributes},
                                      {"indices", gltf.indices<std::uint16_t>({50, 51, 52})}}})}},
-       good});
+       gltf.j["meshes"][0]});
   gltf.j["nodes"] = json::array(
       {{{"name", "a"}, {"mesh", 0}, {"skin", 0}, {"children", {1}}}, {{"name", "b"}, {"mesh", 1}}});
   const WorldFile written = keep(folder.write("s.glb", gltf.glb()), folder / "w.glb");
   EXPECT_EQ(written.not_kept, Lines{"1 x meshes of which no primitive is left"});
   const json after = GltfOracle(folder / "w.glb").document;
-  for (const json& mesh : after["meshes"]) EXPECT_FALSE(mesh["primitives"].empty());
-  ASSERT_EQ(after["nodes"].size(), 2u);
   EXPECT_EQ(after["nodes"][0]["name"], "a");
   EXPECT_FALSE(after["nodes"][0].contains("mesh"));
   EXPECT_FALSE(after["nodes"][0].contains("skin"));
-  ASSERT_EQ(after["meshes"].size(), 1u);
-  EXPECT_EQ(after["nodes"][1]["mesh"], 0);
+  EXPECT_EQ(after["meshes"].size(), 1u);
+  EXPECT_EQ(after["nodes"].at(1)["mesh"], 0);
   EXPECT_EQ(GltfOracle(folder / "w.glb").triangles().size(), 1u);
 }
 
