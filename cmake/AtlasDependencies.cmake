@@ -21,8 +21,8 @@ add_library(atlas_openmesh INTERFACE)
 target_include_directories(atlas_openmesh SYSTEM INTERFACE ${OPENMESH_INCLUDE_DIR})
 target_link_libraries(atlas_openmesh INTERFACE ${OPENMESH_CORE_LIBRARY})
 
-# Libraries without a CMake package that all systems have. cmake/libatlasConfig.cmake.in makes the
-# same targets for those who use the installed library, wherever the files are there.
+# Not every system has CMake packages of these libraries, so their files are looked up and become
+# targets. cmake/libatlasConfig.cmake.in makes the same targets for users of the installed library.
 foreach(found mpfr=${LIBATLAS_MPFR_LIBRARY} gmp=${LIBATLAS_GMP_LIBRARY}
               OpenMeshCore=${OPENMESH_CORE_LIBRARY})
   string(REGEX MATCH "^([^=]*)=(.*)$" found "${found}")

@@ -320,7 +320,7 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   if (!fitted.ok()) return fitted.status();
   if (context.cancelled()) return Status::cancelled();  // a search gives what it has so far
   const RepackedMesh mesh = repack(scene, charts, *fitted);
-  AtomicFiles files;  // mesh, materials and preview appear together
+  AtomicFiles files;  // so that mesh, materials and preview appear together
   if (Status s = write_mesh(c.output, mesh, files); !s.ok()) return s;
   if (!c.preview.empty())
     if (Status s = draw(c.preview, mesh, files); !s.ok()) return s;

@@ -47,7 +47,7 @@ class PreviewSheet {
         if (inside(x * step_, y * step_)) std::copy_n(rgb, 3, image_.at(to.left + x, y));
   }
 
-  // As one of `files`.
+  // Writes the picture as one of `files`.
   Status write(const std::filesystem::path& path, AtomicFiles& files) const;
 
  private:

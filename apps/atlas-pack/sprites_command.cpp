@@ -200,7 +200,7 @@ Status check_links(const PackCommand& c, const fs::path& page) {
                       page.string())};
 }
 
-// Pages, what lies where on them, and the preview, together.
+// Writes the pages, the data of what lies where on them, and the preview. They appear together.
 Status write_files(const PackCommand& c, const std::vector<Sprite>& sprites, PackedAtlas& atlas) {
   AtomicFiles files;
   for (std::size_t p = 0; p < atlas.pages.size(); ++p)

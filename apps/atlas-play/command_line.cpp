@@ -250,7 +250,7 @@ Status finish(CommandLine& l, const LightText& light) {
   return {};
 }
 
-// Of "x,y,z;x,y,z"; false if anything else is there.
+// Reads "x,y,z;x,y,z". Returns false if the text contains anything else.
 bool two_points(const std::string& text, Vec3d& a, Vec3d& b) {
   constexpr std::string_view kBehind = ",,;,,";
   double* const values[] = {&a.x, &a.y, &a.z, &b.x, &b.y, &b.z};

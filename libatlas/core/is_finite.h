@@ -5,7 +5,7 @@
 
 namespace atlas {
 
-// Whether both or all three coordinates of a vector are: a Vec2f, a glm::dvec3, ...
+// Returns whether all coordinates of a vector of two or three are finite (Vec2f, glm::dvec3, ...).
 template <class Vector>
 bool is_finite(const Vector& v) {
   const bool flat = std::isfinite(v.x) && std::isfinite(v.y);

@@ -14,7 +14,7 @@ namespace atlas {
 using nlohmann::json;
 namespace {
 
-// The format has neither a skin nor weights without a mesh.
+// Takes the mesh from a node, and its skin and weights, which the format allows only with a mesh.
 void leave_mesh(json& node) {
   for (const char* key : {"mesh", "skin", "weights"}) node.erase(key);
 }

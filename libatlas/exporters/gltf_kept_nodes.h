@@ -20,8 +20,8 @@ std::vector<std::size_t> number_kept_meshes(const GltfSource& source);
 void place_kept_meshes(const World& world, const std::vector<std::size_t>& meshes,
                        nlohmann::json& document);
 
-// The format has no mesh without a primitive: those that have lost all of theirs go, and with them
-// what of nodes is about the mesh. Others get new numbers.
+// Removes meshes that have lost all of their primitives, since the format allows none without, and
+// takes them from their nodes. The other meshes get new numbers.
 void drop_empty_meshes(nlohmann::json& document, Losses& losses);
 
 }  // namespace atlas

@@ -227,8 +227,8 @@ class SceneWriter {
   std::uint32_t object_ = 0;  // that of the last mesh
 };
 
-// What an MTL says of materials and glTF is not told here, what the reader left in the file, and
-// colours beyond glTF's range.
+// Counts what an MTL says of materials and this file does not, what the reader left in the scene's
+// file, and colours beyond glTF's range.
 std::vector<std::string> losses_of(const Scene& scene) {
   Losses losses;
   losses.add(scene.not_read);

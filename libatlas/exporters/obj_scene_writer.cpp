@@ -97,7 +97,8 @@ void write_materials(TextFile& mtl, const Scene& scene, const std::vector<std::s
   }
 }
 
-// What the scene's file has and this one does not: told by the file itself where it is there.
+// Counts what the scene's file has and this one does not. If the scene holds its file, the file
+// tells more than what the reader has counted.
 void count_file_losses(const Scene& scene, Losses& losses) {
   if (scene.source) return count_losses(scene.source->model, losses);
   losses.add(scene.not_read);

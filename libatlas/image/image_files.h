@@ -16,8 +16,9 @@ namespace atlas {
 
 // The functions of image_io.h, name for name.
 struct ImageFiles {
-  std::uint64_t
-      mark;  // image_files_mark() of where the module was compiled; stays the first member
+  // image_files_mark() of where the module was compiled. It stays the first member, so that it can
+  // be read whatever the rest is.
+  std::uint64_t mark;
   Result<Image8> (*read_image8)(const std::filesystem::path&);
   Result<Image8> (*decode_image8)(std::span<const std::uint8_t>, const std::string&);
   Result<ImageF> (*read_image_float)(const std::filesystem::path&);
@@ -25,11 +26,11 @@ struct ImageFiles {
   Status (*write_exr)(const std::filesystem::path&, const ImageF&);
 };
 
-// Library and module pass C++ objects to each other, so they must have been compiled alike: differs
-// where the functions do (count kVersion up then), or the size of what they are given.
+// Library and module pass C++ objects to each other, so they must have been compiled alike. The
+// mark differs if the sizes of those objects differ. Count kVersion up when the functions change.
 constexpr std::uint64_t image_files_mark() {
   constexpr std::uint64_t kVersion = 1;
-  std::uint64_t mark = 0x9e3779b97f4a7c15u + kVersion;  // no address of a function
+  std::uint64_t mark = 0x9e3779b97f4a7c15u + kVersion;  // no function has such an address
   for (const std::uint64_t size :
        {sizeof(ImageFiles), sizeof(std::filesystem::path), sizeof(std::string), sizeof(Image8),
         sizeof(ImageF), sizeof(PngOptions), sizeof(Status), sizeof(Result<Image8>)})

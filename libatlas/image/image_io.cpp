@@ -14,15 +14,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What this code was linked into: a shared library, or the program.
+// Returns the file that this code was linked into: a shared library or the program.
 fs::path own_file() {
   Dl_info own{};
   const bool known = dladdr(reinterpret_cast<const void*>(&own_file), &own) != 0 && own.dli_fname;
   return known ? fs::path(own.dli_fname) : fs::path();
 }
 
-// Where the module was built, for files of the same build tree; empty for all others, so that what
-// is installed never loads what a builder has left. No path of the builder's machine is needed.
+// Returns the folder where the module was built if `file` lies in the same build tree, else an
+// empty path, so that an installed program never loads a module that a builder has left. The tree
+// is found from the file on, so that no path of the builder's machine becomes part of the library.
 fs::path built_folder(const fs::path& file) {
   std::error_code none;
   for (fs::path up = fs::canonical(file, none).parent_path(); up.has_relative_path();

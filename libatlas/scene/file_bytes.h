@@ -38,8 +38,8 @@ Result<FileBytes> read_text_bytes(const std::filesystem::path& path);
 inline constexpr std::size_t kMostText = std::size_t{1} << 33;
 
 // The text of a plain or gzipped file, in lines as above, followed by a newline. Errors: the same;
-// bad_input for damaged gzip data; unsupported for `most` bytes unpacked or more: a small gzip file
-// can hold terabytes.
+// bad_input for damaged gzip data; unsupported for `most` bytes or more when unpacked, since a
+// small gzip file can hold terabytes.
 Result<std::string> read_text_or_gzip(const std::filesystem::path& path,
                                       std::size_t most = kMostText);
 

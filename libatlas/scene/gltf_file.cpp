@@ -187,8 +187,8 @@ Status read_dense(const tinygltf::Model& model, int index, int components, const
   return {};
 }
 
-// Calls put(row of the accessor, its value in the sparse part) for each value of that part, if the
-// accessor has one, `row_bytes` long each.
+// Calls put(row of the accessor, bytes of its value) for each value of the accessor's sparse part,
+// if it has one. A value is `row_bytes` long.
 template <class Put>
 Status for_sparse(const tinygltf::Model& model, int index, std::size_t row_bytes, const Put& put) {
   const tinygltf::Accessor& a = model.accessors[index];
@@ -293,7 +293,7 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, std::vector<fs::path>& b
                  : loader.LoadASCIIFromString(&model, &error, &warning, data.data(), size, base);
   } catch (const std::bad_alloc&) {
     throw;
-  } catch (const std::exception& exception) {  // where it trusts an index, or the kind of a value
+  } catch (const std::exception& exception) {  // tinygltf trusts some indices
     error = fmt::format("its parser gave up: {}", exception.what());
   }
   if (!folder.status.ok()) return folder.status;

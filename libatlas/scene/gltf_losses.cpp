@@ -20,7 +20,7 @@ std::size_t texture_count(const tinygltf::ExtensionMap& extensions) {
   return count;
 }
 
-// But for the base colour's.
+// Returns how many textures a material has besides that of its base colour.
 std::size_t other_textures(const tinygltf::Material& m) {
   const auto& pbr = m.pbrMetallicRoughness;
   std::size_t count = texture_count(m.extensions) + texture_count(pbr.extensions);
@@ -47,7 +47,7 @@ std::size_t uv_sets(const tinygltf::Primitive& primitive) {
   return count;
 }
 
-// What neither a scene nor OBJ holds.
+// Adds what neither a Scene nor an OBJ file holds.
 void count_common(const tinygltf::Model& model, Losses& losses) {
   losses.add("animations", model.animations.size());
   losses.add("skins, kept at rest", model.skins.size());

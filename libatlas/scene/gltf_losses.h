@@ -7,11 +7,11 @@
 
 namespace atlas {
 
-// What no scene holds but by Scene::source: all but meshes at rest with names, normals, colours,
-// one set of uvs, and materials of a base colour with its texture.
+// Returns what a Scene holds only by Scene::source. Its arrays hold meshes at rest with names,
+// normals, colours, one set of uvs, and materials of a base colour with its texture.
 LossCounts gltf_not_read(const tinygltf::Model& model);
 
-// Adds what OBJ cannot hold, which has no uvs and textures beside the new uvs either.
+// Adds what OBJ cannot hold, uvs and textures among it, since the new uvs are the only ones.
 void count_losses(const tinygltf::Model& model, Losses& losses);
 
 }  // namespace atlas

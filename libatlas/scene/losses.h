@@ -29,7 +29,7 @@ class Losses {
   LossCounts counts_;
 };
 
-// Adds those of Material::mtl_lines that say what no other member holds, by keyword.
+// Adds those of Material::mtl_lines that say what no other member of Material holds, by keyword.
 void count_mtl_losses(const Material& material, Losses& losses);
 
 }  // namespace atlas

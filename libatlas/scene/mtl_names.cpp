@@ -74,15 +74,15 @@ const NamedFiles::Listing& NamedFiles::listing(const fs::path& folder) {
   return at->second;
 }
 
-// What a folder holds under this name, whether in capitals or small letters. Empty where there is
-// nothing.
+// Returns the file or folder of this name in `folder`, whether in capitals or small letters, or an
+// empty path.
 fs::path NamedFiles::in_any_case(const fs::path& folder, const fs::path& name) {
   const Listing& names = listing(folder);
   const auto found = names.find(small_letters(name.string()));
   return found == names.end() ? fs::path() : folder / found->second;
 }
 
-// The file of this path, folder by folder in any case from `folder` on; empty where there is none.
+// Returns the file of this path, folder by folder in any case from `folder` on, or an empty path.
 fs::path NamedFiles::file_in_any_case(const fs::path& folder, const fs::path& path) {
   if (path.is_absolute()) return {};
   fs::path at = folder;

@@ -19,7 +19,8 @@ struct LibraryFile {
   bool exists;
 };
 
-// Finds files by their names, and lists every folder once, however many names are not there.
+// Finds files by their names. It lists each folder once only, since thousands of names may be
+// missing in a folder of thousands of files.
 class NamedFiles {
  public:
   // The file that `name` means in a file of `folder`: backslashes part folders as slashes do, and a
@@ -35,8 +36,8 @@ class NamedFiles {
                                          std::string_view names);
 
  private:
-  // What a folder holds, by its name in small letters; of several the first in the order of their
-  // bytes.
+  // The entries of a folder by their names in small letters. Of entries whose names differ only in
+  // case it has the first in the order of their bytes.
   using Listing = std::unordered_map<std::string, std::filesystem::path>;
 
   const Listing& listing(const std::filesystem::path& folder);

@@ -23,9 +23,9 @@ struct ReadOptions {
   bool encoded_textures = false;
   bool normals = false;  // true: the file's normals too, in Scene::normals
   // What Scene has no arrays for, in Scene::source (glTF) and Material::mtl_lines (OBJ). All images
-  // of a glTF file are textures then, in the file's order. False: Scene::not_read counts it.
+  // of a glTF file are textures then, in the file's order. If false, Scene::not_read counts it.
   bool rest = false;
-  // For exports that keep the scene: encoded_textures, normals and rest, together.
+  // true: sets encoded_textures, normals and rest, which exports that keep the scene need.
   bool keep_scene = false;
 };
 

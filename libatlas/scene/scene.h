@@ -16,7 +16,7 @@ namespace atlas {
 
 struct GltfSource;  // internal to the library
 
-// How often there is what, in the plural: 2 "animations".
+// How often each kind of thing occurs. Kinds are in the plural, for example "animations".
 using LossCounts = std::map<std::string, std::size_t>;
 
 // What a fourth channel means: nothing, holes where it is below a threshold, or glass.
@@ -87,8 +87,8 @@ struct Scene {
   // Of glTF, where asked for (ReadOptions::rest): the file itself. An export to glTF that keeps the
   // scene writes it again, so triangles and positions must be those that were read.
   std::shared_ptr<const GltfSource> source;
-  // Without it: what the file has that these members do not hold. An export that keeps the scene
-  // tells it as not kept.
+  // What the file has and the other members do not hold, if ReadOptions::rest was not set. An
+  // export that keeps the scene lists it as not kept.
   LossCounts not_read = {};
 
   static constexpr std::uint32_t kNoTexcoord = 0xffffffffu;

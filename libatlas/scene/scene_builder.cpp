@@ -239,7 +239,7 @@ void SceneBuilder::load_textures(Scene& scene, bool encoded) {
   if (source) source->image_texture = std::move(loaded);
 }
 
-// Without the textures, which load_textures() gives them.
+// Moves the materials into the scene. Their textures follow in load_textures().
 void SceneBuilder::place_materials(Scene& scene) {
   Losses losses;
   losses.add(not_read);

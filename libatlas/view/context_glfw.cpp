@@ -23,8 +23,8 @@ void on_error(int, const char* text) {
   last_error() = text;
 }
 
-// Xlib's Display* is a void* here. GLFW has one for all windows of the process; the program may
-// have others, which are no concern of ours.
+// Xlib's Display* is a void* here. GLFW has one for all windows of the process. The program may
+// have others, whose errors are left to the program.
 using Handler = int (*)(void*);
 struct DisplayWatch {
   void* connection = nullptr;  // GLFW's
@@ -73,8 +73,8 @@ void watch_display() {
   }
 }
 
-// GLFW is begun once and ended once a process, and ending it closes all windows: also those of a
-// program that has begun it by itself, which then ends it, too.
+// Initialises GLFW with the first window and terminates it with the last one, since glfwTerminate()
+// closes all windows. A program that has initialised GLFW by itself terminates it, too.
 class GlfwUse {
  public:
   GlfwUse() = default;
@@ -87,7 +87,7 @@ class GlfwUse {
 
   bool begin() {
     if (users() == 0) {
-      glfwGetTime();  // does nothing but tell
+      glfwGetTime();  // sets the error if GLFW is not initialised
       ours() = glfwGetError(nullptr) == GLFW_NOT_INITIALIZED;
     }
     begun_ = glfwInit() == GLFW_TRUE;
@@ -107,7 +107,7 @@ class GlfwUse {
   bool begun_ = false;
 };
 
-// Takes the text of what goes wrong while it lives, then gives the callback back to the program.
+// Keeps the text of errors while it lives, then gives the callback back to the program.
 class GlfwCall {
  public:
   GlfwCall() : before_(glfwSetErrorCallback(on_error)) {}

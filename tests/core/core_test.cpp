@@ -96,7 +96,8 @@ TEST(Background, RunsAtMostSoManyTasksAtOnceAndAllOfThem) {
   }
 }
 
-// As where a container's limit of processes is reached: threads ask for stacks that nobody has.
+// No thread can start either where a container's limit of processes is reached. Here threads ask
+// for stacks that are larger than memory.
 TEST(Background, RunsTasksByItselfWhereNoThreadCanStart) {
   pthread_attr_t before, huge;
   ASSERT_EQ(pthread_getattr_default_np(&before), 0);

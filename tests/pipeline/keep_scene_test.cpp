@@ -300,7 +300,7 @@ TEST(KeepScene, EncodedTexturesAreNotBaked) {
   EXPECT_NE(baked.status().message().find("textures[0] has no image"), std::string::npos);
 }
 
-// As docs/library.md has it.
+// This is the recipe of docs/library.md.
 Status add_lightmap_uvs(const char* from, const char* to) {
   const auto loaded = read_scene(from, {.keep_scene = true}, {});
   if (!loaded.ok()) return loaded.status();
@@ -308,7 +308,7 @@ Status add_lightmap_uvs(const char* from, const char* to) {
   return export_world(*loaded, options, {}, {}).status();
 }
 
-// Two nodes, one of which shows nothing, a shiny material, and a camera.
+// The scene has two nodes, one of which shows nothing, a shiny material, and a camera.
 std::filesystem::path shiny_scene(const TempFolder& folder) {
   Gltf gltf;
   gltf.j["materials"] = json::array(

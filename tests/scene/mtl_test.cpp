@@ -50,7 +50,7 @@ TEST(Mtl, ATextureOfAnotherMachineIsFoundBesideTheMaterials) {
   EXPECT_EQ(loaded.scene.textures[0].path.filename(), "wood.png");
 }
 
-// Each name that is not there would list the folder again: 2000 among 2000 files took 11 seconds.
+// When each missing name listed the folder again, 2000 of them among 2000 files took 11 seconds.
 TEST(Mtl, MissingTexturesOfLargeFoldersTakeNoTime) {
   const TempFolder folder;
   constexpr int kMany = 3000;
