@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,6 +19,7 @@ class Xvfb {
     pid_ = ::fork();
     if (pid_ == 0) {
       const int quiet = ::open("/dev/null", O_WRONLY);
+      ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that crashes does not leave it behind
       ::dup2(ends[1], 3);
       ::dup2(quiet, 2);
       ::execlp("Xvfb", "Xvfb", "-displayfd", "3", "-noreset", "-screen", "0", "320x240x24",
