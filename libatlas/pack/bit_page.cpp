@@ -17,13 +17,14 @@ std::int32_t longest_in(const Mask& mask, std::int32_t r) {
   return longest;
 }
 
-// Classes of lengths: 1 to 15 cells, then eighths of an octave, rounded down.
+// The class of a length. There is one class for each length from 1 to 15 cells; longer ones are
+// rounded down to eighths of an octave.
 int class_of(std::int32_t length) {
   const int octave = std::max(0, level_of(length) - 3);
   return 8 * octave + (length >> octave) - 1;
 }
 
-// A run of length L at x is free if two bits are set: see BitPage.
+// Adds the two bits that must be set if a run of length L at x is free; see BitPage.
 void add_probes(const Mask& mask, std::int32_t r, std::vector<Probe>& probes) {
   for (const Run& run : mask.row(r)) {
     const int level = level_of(run.end - run.begin);
@@ -34,15 +35,15 @@ void add_probes(const Mask& mask, std::int32_t r, std::vector<Probe>& probes) {
   }
 }
 
-// Words a row: as many as a page of that width needs, or the next number that has code of its own.
-// Those beyond the width are never free.
+// Words per row: as many as a page of this width needs, or the next number that has specialised
+// code. Words beyond the width are never free.
 std::size_t words_of(std::int32_t width) {
   const std::size_t words = (static_cast<std::size_t>(width) + 63) / 64;
   return words <= 2 ? 2 : words == 7 ? 8 : words;
 }
 
-// Calls each(integral_constant) for 0 .. kCount - 1: a loop without a counter, whose arrays may
-// live in registers.
+// Calls each(integral_constant) for 0 .. kCount - 1. Since this loop has no counter at run time,
+// arrays that it indexes may be kept in registers.
 template <std::size_t kCount, class Each>
 void unrolled(Each each) {
   [&]<std::size_t... k>(std::index_sequence<k...>) {
@@ -51,7 +52,7 @@ void unrolled(Each each) {
   (std::make_index_sequence<kCount>());
 }
 
-// Word w of a row moved down by `shift` cells, below 64.
+// Word w of a row that is moved down by `shift` cells; `shift` is below 64.
 inline std::uint64_t shifted(const std::uint64_t* bits, std::size_t w, unsigned shift) {
   return bits[w] >> shift | bits[w + 1] << 1 << (63 - shift);
 }
@@ -110,7 +111,7 @@ void BitPage::clear() {
 
 void BitPage::grow(std::int32_t rows) {
   if (rows <= rows_) return;
-  // Rows of cleared pages are used again. Shifted reads may go beyond the last one.
+  // Rows of cleared pages are used again. Shifted reads may go beyond the last row.
   const std::size_t needed = static_cast<std::size_t>(rows) * empty_.size() + 2 * stride_;
   if (bits_.size() < needed) bits_.resize(needed);
   for (; rows_ < rows; ++rows_) std::copy(empty_.begin(), empty_.end(), row(0, rows_));
@@ -128,7 +129,8 @@ void BitPage::set_longest(std::int32_t y, std::int32_t longest) {
   for (int c = before + 1; c <= now; ++c) words[c] |= bit;
 }
 
-// Narrows the candidates to those x where a level has the bit x + offset. False if none is left.
+// Keeps only the candidates x where the level has bit x + offset set. Returns false if none is
+// left.
 bool BitPage::narrows(const std::uint64_t* bits, std::uint32_t offset) {
   const std::uint64_t* from = bits + offset / 64;
   const unsigned shift = offset % 64;
@@ -147,7 +149,7 @@ bool BitPage::narrows(const std::uint64_t* bits, std::uint32_t offset) {
 std::uint64_t BitPage::likely_feet(const MaskTests& tests, std::int32_t y) {
   std::uint64_t feet = ~std::uint64_t{0};
   const std::size_t count = long_rows_.size() / classes_;
-  // What so many rows, spread over the mask, have let pass is found out faster by the cells.
+  // If this many rows, spread over the mask, rule nothing out, testing the cells is faster.
   constexpr std::size_t kMostLooks = 24;
   std::size_t looked_at = 0;
   for (const RowTest& test : tests.rows) {
@@ -215,7 +217,7 @@ bool BitPage::find_narrow(const MaskTests& tests, Window window, std::int32_t y,
   all_candidates(window.x0, window.x1);
   std::uint64_t left[kWords];
   unrolled<kWords>([&](auto w) { left[w] = w >= low_ && w < high_ ? candidates_[w] : 0; });
-  // What lies beyond the row's end is read, but no candidate reaches it.
+  // Words beyond the row's end are read, but no candidate reaches them.
   for (const Probe& p : tests.probes) {
     if (y + p.row >= rows_) continue;
     const std::uint64_t* from = row(static_cast<int>(p.level), y + p.row) + p.offset / 64;
@@ -247,7 +249,7 @@ bool BitPage::find(const MaskTests& tests, Window window, Place& place) {
   return false;
 }
 
-// Length of the longest run of ones in level 0.
+// Returns the length of the longest run of ones in level 0.
 std::int32_t BitPage::longest_free(std::int32_t y) const {
   const std::uint64_t* bits = row(0, y);
   std::int32_t longest = 0, current = 0;
@@ -265,7 +267,7 @@ std::int32_t BitPage::longest_free(std::int32_t y) const {
         current = 0;
       }
       word >>= zeros;
-      const int ones = std::countr_one(word);  // below 64: the word is not all ones
+      const int ones = std::countr_one(word);  // below 64, because the word is not all ones
       current += ones;
       word >>= ones;
       left -= zeros + ones;
@@ -278,7 +280,7 @@ std::int32_t BitPage::longest_free(std::int32_t y) const {
   return std::max(longest, current);
 }
 
-// Derives the levels of a row from level 0, where cells [begin, end) have changed.
+// Derives the levels of a row from level 0, in which cells [begin, end) have changed.
 void BitPage::rebuild(std::int32_t y, std::int32_t begin, std::int32_t end) {
   const std::size_t last = static_cast<std::size_t>(end - 1) / 64 + 1;
   work_ += static_cast<std::uint64_t>(levels_) * (last - static_cast<std::size_t>(begin) / 64);
@@ -321,8 +323,8 @@ void BitPage::rebuild_wide(std::int32_t y, std::int32_t begin, std::int32_t end)
   set_longest(y, longest_free(y));
 }
 
-// All words and all levels, also those beyond the longest run asked for: they tell the longest free
-// run, as exactly as its class needs it, in a few steps.
+// Computes all words and all levels, also those beyond the longest run asked for: from these it
+// finds the longest free run, exactly enough for its class, in a few steps.
 template <std::size_t kWords>
 void BitPage::rebuild_narrow(std::int32_t y) {
   constexpr std::size_t kMostLevels = std::bit_width(64 * kWords);

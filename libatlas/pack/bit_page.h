@@ -1,5 +1,5 @@
-// Internal: the free cells of a page as bit rows, with the tables that make the search for a place
-// of an arbitrary mask fast.
+// Internal: the free cells of a page as rows of bits, with tables that speed up the search for a
+// place of an arbitrary mask.
 #pragma once
 
 #include <cstdint>
@@ -9,21 +9,21 @@
 
 namespace atlas::pack {
 
-// A row of a mask: what a page's row needs at least to take it.
+// The minimum that one row of a mask requires of a page's row.
 struct RowTest {
   std::int32_t row = 0;
-  std::int32_t length_class = 0;  // of the row's longest run: see BitPage
+  std::int32_t length_class = 0;  // class of the length of the row's longest run; see BitPage
 };
 
-// Bit x + offset of this level says whether a part of a run of this row is free when the mask is
-// at x.
+// If the mask is at x, bit x + offset of this level in the page's row says whether a part of a run
+// of the mask's row is free.
 struct Probe {
   std::int32_t row = 0;
   std::uint32_t level : 5, offset : 27;
 };
 
-// How a mask is looked for, in an order that finds out early about a place that does not work: the
-// row with the longest run first, then rows spread over the whole height.
+// The tests of a place for a mask, in an order that rejects an unsuitable place early: first the
+// row with the longest run, then rows spread over the whole height.
 struct MaskTests {
   std::int32_t width = 0, height = 0;
   std::vector<RowTest> rows;
@@ -31,13 +31,13 @@ struct MaskTests {
 };
 MaskTests test_order(const Mask& mask);
 
-// Level k of a row has bit x set if the 2^k cells from x on are free. A run of length L at x is
-// free if and only if level floor(log2 L) has the bits x and x + L - 2^floor(log2 L): two word-wise
-// ANDs test 64 positions of x at once, whatever the length.
+// In level k of a row, bit x is set if the 2^k cells from x on are free. A run of length L at x is
+// free if and only if level floor(log2 L) has the bits x and x + L - 2^floor(log2 L). So two
+// word-wise ANDs test 64 positions of x at once, whatever the length is.
 class BitPage {
  public:
-  // longest_run: of all masks that will be asked for; height may be generous, rows cost memory
-  // only when first touched.
+  // longest_run: the length of the longest run of all masks that will be placed. The height may be
+  // generous, because rows take memory only when they are first used.
   BitPage(std::int32_t width, std::int32_t height, std::int32_t longest_run);
 
   std::int32_t width() const { return width_; }
@@ -49,28 +49,30 @@ class BitPage {
     bool operator==(const Place&) const = default;
   };
 
-  // Where to look: the box's lower left corner within these limits, inclusive.
+  // Limits of a search: the box's lower left corner must lie within them, bounds included.
   struct Window {
     std::int32_t x0 = 0, x1 = 1 << 30, y0 = 0, y1 = 1 << 30;
   };
 
-  // The lowest place (then leftmost) in the window, or false.
+  // Finds the lowest, then leftmost place in the window. Returns false if there is none.
   bool find(const MaskTests& tests, Window window, Place& place);
 
-  // Bit k says whether the mask may lie with its foot in row y + k >= 0: for each of its rows the
-  // page has a free run about as long as it needs. What this denies is sure; it looks at 64 feet at
+  // Bit k says whether the mask may lie with its foot in row y + k, where y >= 0: whether the
+  // page's rows have free runs that are about as long as the mask's rows need. Up to 24 rows of the
+  // mask are tested. A bit that is 0 rules the row out for certain. The function tests 64 feet at
   // once.
   std::uint64_t likely_feet(const MaskTests& tests, std::int32_t y);
 
-  // The leftmost place with the foot in row y and x0 <= x <= x1 <= width() - mask.width, or false.
+  // Finds the leftmost place with the foot in row y and window.x0 <= x <= window.x1, where
+  // window.x1 must be at most width() - mask.width. Returns false if there is none.
   bool find_in_row(const MaskTests& tests, Window window, std::int32_t y, Place& place);
 
   void put(const Mask& mask, Place place);
   void take_away(const Mask& mask, Place place);
   void clear();
 
-  // Words looked at or written so far: the measure of effort for limits that must not depend on a
-  // clock.
+  // The number of words read or written so far. It measures effort for limits that must not depend
+  // on a clock.
   std::uint64_t work() const { return work_; }
 
   bool is_free(std::int32_t x, std::int32_t y) const;
@@ -82,7 +84,7 @@ class BitPage {
   std::uint64_t* row(int level, std::int32_t y) {
     return bits_.data() + (std::size_t(y) * levels_ + level) * stride_;
   }
-  // Pages of few words a row, as the search for a plan has them, keep rows in registers.
+  // Pages with few words per row, which the search for a plan uses, keep rows in registers.
   template <std::size_t kWords>
   bool find_narrow(const MaskTests& tests, Window window, std::int32_t y, Place& place);
   template <std::size_t kWords>
@@ -99,19 +101,19 @@ class BitPage {
 
   std::int32_t width_, height_;
   int levels_;
-  std::size_t words_, stride_;  // words a row; with one spare word for shifted reads
-  std::int32_t rows_ = 0;       // rows that exist in bits_; all above are free
+  std::size_t words_, stride_;  // words per row; stride_ has a spare word for shifted reads
+  std::int32_t rows_ = 0;       // number of rows that exist in bits_; all rows above are free
   std::int32_t used_height_ = 0;
   std::vector<std::uint64_t> bits_;
-  std::vector<std::int32_t> longest_;  // 1 a row: length of its longest free run
+  std::vector<std::int32_t> longest_;  // one per row: the length of its longest free run
   // The same for 64 rows at once: bit y % 64 of word y / 64 * classes_ + c is set if row y has a
-  // free run of length_of(c) cells.
+  // free run whose length is at least that of class c.
   std::size_t classes_;
   std::vector<std::uint64_t> long_rows_;
   std::vector<std::uint64_t> empty_;  // the levels of a free row
   std::vector<std::uint64_t> candidates_;
   std::uint64_t work_ = 0;
-  std::size_t low_ = 0, high_ = 0;  // words of candidates_ that may be nonzero
+  std::size_t low_ = 0, high_ = 0;  // the words of candidates_ that may not be zero
 };
 
 }  // namespace atlas::pack

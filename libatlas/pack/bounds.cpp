@@ -8,15 +8,16 @@
 namespace atlas::pack {
 namespace {
 
-// U(e) of Fekete and Schepers, times the side: lengths above side - e count as the whole side,
-// lengths below e as nothing. For e <= side / 2 items that fit along one line never count more
-// than one side together.
+// U(e) of Fekete and Schepers, multiplied by the side: a length above side - e counts as the whole
+// side, a length below e as nothing. For e <= side / 2, items that fit along one line never count
+// more than one side together.
 std::int64_t dual_feasible(std::int64_t length, std::int64_t side, std::int64_t e) {
   if (length > side - e) return side;
   return length < e ? 0 : length;
 }
 
-// Thresholds worth trying: the lengths up to half a side, thinned out to at most 16.
+// Returns the thresholds that are worth a try: the lengths up to half a side, thinned out to at
+// most 16.
 std::vector<std::int64_t> thresholds(std::vector<std::int64_t> lengths, std::int64_t side) {
   std::erase_if(lengths, [&](std::int64_t v) { return 2 * v > side; });
   std::sort(lengths.begin(), lengths.end());
@@ -31,8 +32,9 @@ std::vector<std::int64_t> thresholds(std::vector<std::int64_t> lengths, std::int
   return chosen;
 }
 
-// Shares of a page that the items count for: 1 a threshold and item, width and height apart, of the
-// items as they are or turned. An item that does not fit this way round counts as a whole page.
+// The share of a page side that each item counts for, separately for width and height: one per
+// threshold and item. The items are taken as they are or turned. An item that does not fit in this
+// direction counts as a whole page.
 struct Shares {
   std::vector<double> across, up;
 
@@ -67,7 +69,8 @@ std::uint32_t page_bound(const Problem& problem) {
       heights.push_back(e.width);
     }
   }
-  // Of more than 2000 items the area is nearly as good, but for those that exceed half a side.
+  // For more than 2000 items the area is nearly as good a bound, except for items that exceed half
+  // a side.
   std::vector<std::int64_t> along{0, problem.page.width / 2}, up{0, problem.page.height / 2};
   if (problem.items.size() <= 2000) {
     along = thresholds(std::move(widths), problem.page.width);
@@ -93,14 +96,14 @@ std::uint32_t page_bound(const Problem& problem) {
 std::int64_t height_bound(const Problem& problem) {
   std::int64_t area_rest = 0, rows = 0, tallest = 0, stacked = 0;
   for (const Extent& e : problem.items) {
-    // Sums of row counts and rests: the total area may pass 2^63.
+    // Counts full rows and remaining cells separately, because the total area may exceed 2^63.
     rows += e.area() / problem.page.width;
     area_rest += e.area() % problem.page.width;
     rows += area_rest / problem.page.width;
     area_rest %= problem.page.width;
     const std::int32_t small = std::min(e.width, e.height);
     tallest = std::max<std::int64_t>(tallest, problem.allow_rotation ? small : e.height);
-    // Items wider than half the strip lie above each other.
+    // Items wider than half the strip cannot lie beside each other, so their heights add up.
     if (2 * std::int64_t{problem.allow_rotation ? small : e.width} > problem.page.width)
       stacked += problem.allow_rotation ? small : e.height;
   }

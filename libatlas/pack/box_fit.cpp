@@ -12,7 +12,7 @@ namespace {
 
 std::int32_t content_side(double extent, double scale, std::int32_t minimum) {
   const double least = std::min<double>(minimum, std::ceil(extent));
-  // The small slack keeps 100 texels at scale 0.5 from becoming 51 by rounding error.
+  // The small slack prevents that rounding error turns 100 texels at scale 0.5 into 51.
   const double side = std::ceil(extent * scale * (1 - 1e-12));
   return static_cast<std::int32_t>(std::clamp(side, std::max(least, 1.0), 1e9));
 }
@@ -51,7 +51,7 @@ bool BoxFit::box_fits_page(const Extent& box) const {
   return box.width <= page_.width && box.height <= page_.height;
 }
 
-// Whether every single box fits the page and all together do not exceed the pages' area.
+// Returns whether every single box fits the page and all together do not exceed the pages' area.
 bool BoxFit::may_fit(double scale) {
   const double area = box_area(scale);
   for (const Extent& b : boxes_)
@@ -88,7 +88,8 @@ Problem BoxFit::problem_of(std::span<const Extent> items, Extent page,
   return problem;
 }
 
-// Many items leave no gap of a single page empty, whatever the method: the fastest is taken.
+// Many items leave no gap of a single page empty, whatever the method is, so the fastest one is
+// used.
 bool BoxFit::pack_many(BoxLayout& layout) const {
   const Problem problem = problem_of(boxes_, page_, 1);
   Layout packed = pack_widest_first(problem);
@@ -106,7 +107,8 @@ bool BoxFit::group(std::uint32_t pages, BoxLayout& layout) const {
   return group_areas(areas, pages, context_, layout.grouping);
 }
 
-// Each group into its own page, largest items first; what is left over goes wherever it fits.
+// Packs each group into its own page, largest items first. Items that find no room go to any page
+// that has some.
 bool BoxFit::pack_grouped(std::uint32_t pages, BoxLayout& layout) {
   layout.moved = 0;
   layout.placements.assign(boxes_.size(), {});
@@ -135,8 +137,8 @@ bool BoxFit::place(std::uint32_t item, std::uint32_t page, FreeRects& free,
   return true;
 }
 
-// First fit over all pages at once: denser than groups when the pages are nearly full, since the
-// small items of all groups fill the gaps of every page.
+// Packs all pages at once by first fit. If the pages are nearly full, this is denser than groups,
+// since the small items of all groups fill the gaps of every page.
 bool BoxFit::pack_jointly(std::uint32_t pages, BoxLayout& layout) {
   const Problem problem = problem_of(boxes_, page_, pages);
   const bool fast = options_.preset == PackPreset::fast;
@@ -152,8 +154,8 @@ bool BoxFit::pack_jointly(std::uint32_t pages, BoxLayout& layout) {
   return false;
 }
 
-// By local search, where the items are few enough for it: 1 to 4 % larger scales on pages of a
-// dozen boxes, for a hundredth of a second.
+// Packs by local search if the items are few enough for it. On pages of a dozen boxes this gives 1
+// to 4 % larger scales, and it takes a hundredth of a second.
 bool BoxFit::pack_searched(std::uint32_t pages, BoxLayout& layout) {
   if (options_.preset == PackPreset::fast || boxes_.size() >= kManyItems) return false;
   const Problem problem = problem_of(boxes_, page_, kNoPage);
@@ -164,7 +166,7 @@ bool BoxFit::pack_searched(std::uint32_t pages, BoxLayout& layout) {
   return found.pages <= pages && keep(std::move(found), layout);
 }
 
-// Makes a layout of all boxes that of the fit; false if it lacks any.
+// Makes `found` the layout of the fit. Returns false if it lacks any box.
 bool BoxFit::keep(Layout found, BoxLayout& layout) const {
   if (found.unplaced > 0) return false;
   layout.moved = 0;
@@ -175,7 +177,8 @@ bool BoxFit::keep(Layout found, BoxLayout& layout) const {
   return true;
 }
 
-// Packs the items of one page again into the smallest page size that holds them.
+// Packs the items of one page again into the smallest page size that holds them. Returns that size
+// in cells.
 Extent BoxFit::shrink_page(std::uint32_t page, BoxLayout& layout) const {
   std::vector<std::uint32_t> members;
   std::vector<Extent> sizes;

@@ -1,4 +1,4 @@
-// Internal: boxes on pages at one scale, the way to solve a fit without outlines.
+// Internal: packs boxes on pages at one scale, to solve a fit without outlines.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,22 @@
 namespace atlas::pack {
 
 struct BoxLayout {
-  std::vector<Placement> placements;  // 1 an item, cells
+  std::vector<Placement> placements;  // one per item, in cells
   std::uint32_t pages = 0;
   std::uint32_t moved = 0;
   GroupingResult grouping;
 };
 
-// Boxes are in cells of alignment × alignment texels, padding included.
+// Boxes are measured in cells of alignment × alignment texels, padding included.
 class BoxFit {
  public:
   BoxFit(std::span<const FitItem> items, const FitOptions& options, const Context& context);
 
   void make_boxes(double scale);
-  double box_area(double scale);  // cells; makes the boxes
-  bool may_fit(double scale);     // necessary conditions only; makes the boxes
-  double least_scale() const;     // at smaller ones boxes are the same: of their minimum sides
+  double box_area(double scale);  // in cells; also makes the boxes
+  bool may_fit(double scale);     // checks necessary conditions only; also makes the boxes
+  // At smaller scales the boxes stay the same: they have their minimum sides.
+  double least_scale() const;
   bool pack_at(double scale, std::uint32_t pages, BoxLayout& layout);
   Extent shrink_page(std::uint32_t page, BoxLayout& layout) const;
 

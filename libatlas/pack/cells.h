@@ -1,4 +1,4 @@
-// Internal: from texels to the whole cells that the engines work in.
+// Internal: conversion between texels and the whole cells in which the engines work.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 
 namespace atlas::pack {
 
-// Maps the user's texels to the packer's cells. An item with its padding to the right and above
-// takes whole cells; the page gains one padding, since none is needed at its far edge.
+// Maps the user's texels to the packer's cells. An item, with its padding to the right and above,
+// takes whole cells. The page gains one padding, since none is needed at its far edges.
 class Cells {
  public:
   explicit Cells(const PackOptions& o) : options_(o) {
@@ -18,7 +18,7 @@ class Cells {
   std::int64_t item(std::int64_t side) const {
     return (side + options_.padding + options_.alignment - 1) / options_.alignment;
   }
-  // Cells along a page side; 0 if nothing fits.
+  // Returns the number of cells along a page side; 0 if nothing fits.
   std::int32_t page(std::int64_t side) const {
     const std::int64_t inner = side - options_.border - origin_ + options_.padding;
     return static_cast<std::int32_t>(std::max<std::int64_t>(0, inner / options_.alignment));
@@ -27,7 +27,7 @@ class Cells {
   std::int32_t cell(std::int32_t texel) const { return (texel - origin_) / options_.alignment; }
   std::int32_t corner() const { return origin_; }
 
-  // The cells that a pinned rectangle and the padding around it keep others out of.
+  // Returns the cells that a pinned rectangle and the padding around it keep free of other items.
   Rect pinned(const Rect& r, Extent page_cells) const {
     const std::int64_t a = options_.alignment, p = options_.padding;
     const auto down = [&](std::int64_t v) { return v >= 0 ? v / a : -((-v + a - 1) / a); };

@@ -1,4 +1,4 @@
-// Internal: independent searches in rounds, so that the result depends on the number of rounds
+// Internal: runs independent searches in rounds, so that the result depends on the number of rounds
 // only, never on the number of threads.
 #pragma once
 
@@ -12,9 +12,10 @@
 
 namespace atlas::pack {
 
-// Chain: step() tries one layout; done() tells that the bound is reached; cost() orders chains
-// (pages, then last_used, smaller is better). All chains make the same number of steps a round;
-// the clock is read between rounds only. Returns the best chain, ties to the first.
+// A Chain has step(), which tries one layout, done(), which says that the bound is reached, and
+// cost(), by which chains are compared (pages, then last_used; smaller is better). In a round all
+// chains make the same number of steps. The clock is read between rounds only. Returns the index of
+// the best chain. On a tie the earlier choice stays.
 template <class Chain>
 std::size_t run_chains(std::vector<Chain>& chains, const SearchLimits& limits,
                        const Context& context, PackResult& result) {
@@ -50,7 +51,7 @@ std::size_t run_chains(std::vector<Chain>& chains, const SearchLimits& limits,
     left -= std::min(left, steps * chains.size());
     result.layouts_tried += steps * chains.size();
     choose();
-    // Rounds grow to about a fiftieth of the budget, so that the clock costs nothing.
+    // Rounds grow to about a fiftieth of the time budget, so that reading the clock costs nothing.
     const double round = wall_seconds() - start - elapsed;
     if (round * 50 < limits.seconds && per_round < 4096) per_round *= 2;
     if (std::isfinite(limits.seconds) && limits.seconds > 0)

@@ -16,7 +16,7 @@ double twice_area(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// Numbers corners that are given three by three: equal places get equal numbers.
+// Numbers corners that are given three by three. Corners at equal positions get equal numbers.
 std::vector<std::uint32_t> weld(std::span<const Vec2d> corners) {
   std::vector<std::uint32_t> order(corners.size()), number(corners.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -32,8 +32,8 @@ std::vector<std::uint32_t> weld(std::span<const Vec2d> corners) {
   return number;
 }
 
-// Directed edges, of which opposite ones cancel. They are kept by their lower corner, which few of
-// them share.
+// A set of directed edges in which opposite edges cancel. The edges are grouped by their lower
+// corner, which few of them share.
 class EdgeSum {
  public:
   EdgeSum(std::size_t corners, std::size_t edges) : corners_(corners) { edges_.reserve(edges); }
@@ -43,7 +43,8 @@ class EdgeSum {
     edges_.push_back({std::min(from, to), std::max(from, to), from < to ? 1 : -1});
   }
 
-  // Calls visit(from, to) for every edge that is left, ascending by its corners.
+  // Calls visit(from, to) for every edge that has not been cancelled, in ascending order of its
+  // lower and then its higher corner.
   template <class Visit>
   void remaining(Visit visit) {
     std::vector<Half> halves(edges_.size());
@@ -84,8 +85,8 @@ using Link = std::pair<std::uint32_t, std::uint32_t>;  // from, to
 std::vector<Link> loops_of(std::vector<Link> links) {
   std::sort(links.begin(), links.end());
   std::vector<Link> loops;
-  // Of the links from one corner, in order, so many are taken: a corner may have very many. Kept at
-  // the first of them.
+  // For each corner, the number of links from it that have been used. It is stored at the first of
+  // these links, which are used in order. This stays fast if very many links begin at one corner.
   std::vector<std::uint32_t> taken(links.size());
   const auto take_from = [&](std::uint32_t corner) {
     const auto first =
@@ -156,7 +157,8 @@ Bounds2 bounds_of(const ChartOutline& outline, double angle) {
     bounds.low = {std::min(bounds.low.x, q.x), std::min(bounds.low.y, q.y)};
     bounds.high = {std::max(bounds.high.x, q.x), std::max(bounds.high.y, q.y)};
   };
-  for (const ChartOutline::Edge& e : outline.edges) reach(e.from);  // closed: every end begins one
+  // Loops are closed: every end begins an edge.
+  for (const ChartOutline::Edge& e : outline.edges) reach(e.from);
   for (const auto& t : outline.loose) std::for_each(t.begin(), t.end(), reach);
   return bounds;
 }

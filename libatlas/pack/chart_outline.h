@@ -1,4 +1,4 @@
-// Internal: what of a chart's triangles decides which cells it touches.
+// Internal: the edges and triangles of a chart that decide which cells it touches.
 #pragma once
 
 #include <array>
@@ -10,29 +10,32 @@
 namespace atlas::pack {
 
 // A point is in the chart if the edges wind around it or if it lies in a loose triangle. Inner
-// edges of the mesh cancel: a chart of n triangles has some sqrt(n) edges.
+// edges of the mesh cancel, so a chart of n triangles has about sqrt(n) edges.
 struct ChartOutline {
   struct Edge {
     Vec2d from, to;
   };
-  std::vector<Edge> edges;                  // loop after loop, the chart to their left
-  std::vector<std::array<Vec2d, 3>> loose;  // triangles without area or against the others' sense
-  double area = 0;                          // that it covers (covered_area.h)
+  std::vector<Edge> edges;  // loop after loop, with the chart to their left
+  // Degenerate triangles and those of the opposite orientation.
+  std::vector<std::array<Vec2d, 3>> loose;
+  double area = 0;  // the area that it covers (covered_area.h)
 
   bool empty() const { return edges.empty() && loose.empty(); }
 };
 
-// O(n) for shapes with indices, O(n log n) for others.
+// Makes a shape's outline. It takes O(n) for shapes with indices and O(n log n) for others.
 ChartOutline outline_of(const ChartShape& shape);
 std::vector<ChartOutline> outlines_of(std::span<const ChartShape> shapes, const Context& context);
 
-// Width and height of the chart's box when it is turned by so many radians; 0 for an empty one.
+// Returns width and height of the chart's box after turning it by this angle in radians; 0 for an
+// empty chart.
 Vec2d box_of(const ChartOutline& outline, double angle);
 
-// The lower left corner of its box as it is; 0 for an empty one.
+// Returns the lower left corner of the box of the chart as it is; 0 for an empty chart.
 Vec2d low_corner_of(const ChartOutline& outline);
 
-// With loops whose corners are about `spacing` apart at least: off by no more than that.
+// Returns the outline with simplified loops, whose corners are at least about `spacing` apart. It
+// deviates by no more than that.
 ChartOutline thinned(const ChartOutline& outline, double spacing);
 
 }  // namespace atlas::pack

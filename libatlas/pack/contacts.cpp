@@ -10,7 +10,7 @@ double length(double x, double y) {
   return std::sqrt(x * x + y * y);
 }
 
-// How far a point of the body may have come by turning.
+// Returns how far a point of the body may have moved by rotation alone.
 double turned(const Body& body, const Pose& now, const Pose& then) {
   return body.radius * length(now.cosine - then.cosine, now.sine - then.sine);
 }
@@ -104,12 +104,12 @@ void Contacts::look_at(Pair& pair, std::span<const Pose> poses) const {
 
 void Contacts::find_points(std::uint32_t i, std::uint32_t j, std::span<const Pose> poses,
                            std::vector<Contact>& found) const {
-  // The field between its samples is as steep as sqrt(2) at most.
+  // Between its samples the field is at most as steep as sqrt(2).
   constexpr double kSteepest = 1.5;
   const double skin = kSkin + options_.clearance;
   DistanceField::Sample s;
   const Body &body = bodies_[i], &other = bodies_[j];
-  // From i's coordinates to those of j's field.
+  // Maps i's coordinates to those of j's field.
   Pose to_field;
   to_field.cosine = poses[i].cosine * poses[j].cosine + poses[i].sine * poses[j].sine;
   to_field.sine = poses[i].sine * poses[j].cosine - poses[i].cosine * poses[j].sine;

@@ -1,4 +1,4 @@
-// Internal: which points of which bodies may touch another body or the page's edge soon.
+// Internal: finds the points of bodies that may soon touch another body or the page's edge.
 #pragma once
 
 #include <cstdint>
@@ -22,15 +22,15 @@ struct Pose {
   }
 };
 
-// Points near another chart when last looked at; others cannot touch it before both have moved far
-// against each other (the neighbour lists of Verlet 1967). Each pair is looked at again when it
-// has.
+// The points that were near another chart when they were last searched for. Other points cannot
+// touch that chart before both charts have moved far against each other (the neighbour lists of
+// Verlet 1967). The points of a pair are searched for again when that has happened.
 class Contacts {
  public:
   Contacts(std::span<const Body> bodies, const SqueezeOptions& options);
 
-  // A point of a body's outline, in the body's own frame. It may touch once its body has moved by
-  // `room` against the other.
+  // A point of a body's outline, in the body's own frame. It can only touch once its body has moved
+  // by `room` against the other.
   struct Contact {
     Vec2d point;
     double room;
@@ -38,7 +38,7 @@ class Contacts {
   struct Pair {
     std::uint32_t i = 0, j = 0;
     std::vector<Contact> of_i, of_j;  // points of i near j, and of j near i
-    double moved = 0;                 // against each other since they were looked for
+    double moved = 0;                 // relative movement since the points were searched for
 
    private:
     friend class Contacts;
@@ -54,18 +54,20 @@ class Contacts {
     Pose seen;
   };
 
-  // Brings all up to date.
+  // Brings all contacts up to date.
   void update(std::span<const Pose> poses);
-  // The page's edges have moved.
+  // Tells the object that the page's edges have moved.
   void set_page(const SqueezePage& page, std::span<const Pose> poses);
 
-  const std::vector<Wall>& walls() const { return walls_; }  // 1 a body
+  const std::vector<Wall>& walls() const { return walls_; }  // one per body
   std::size_t near_count() const { return near_.size(); }
   const Pair& near(std::size_t k) const { return pairs_[near_[k]]; }
 
  private:
-  static constexpr double kSkin = 5;  // texels that a pair may move before it is looked at again
-  static constexpr double kFarSkin = 128;  // that two bodies may move before all pairs are
+  // Relative movement in texels after which a pair is searched again.
+  static constexpr double kSkin = 5;
+  // Movement in texels of two bodies together after which all pairs are checked again.
+  static constexpr double kFarSkin = 128;
 
   void list_near_pairs(std::span<const Pose> poses);
   void look_at(Pair& pair, std::span<const Pose> poses) const;
@@ -77,9 +79,9 @@ class Contacts {
   const SqueezeOptions& options_;
   SqueezePage page_;
   std::vector<Wall> walls_;
-  std::vector<Pair> pairs_;          // of all bodies, ascending
-  std::vector<std::uint32_t> near_;  // those that may have contacts, ascending
-  std::vector<Pose> listed_;         // when near_ was made
+  std::vector<Pair> pairs_;          // all pairs of bodies, ascending
+  std::vector<std::uint32_t> near_;  // indices of the pairs that may have contacts, ascending
+  std::vector<Pose> listed_;         // the poses when near_ was made
 };
 
 }  // namespace atlas::pack

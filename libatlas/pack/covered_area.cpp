@@ -7,7 +7,7 @@
 namespace atlas::pack {
 namespace {
 
-// Lengths of the chart on lines y = constant.
+// Measures the lengths of the chart on lines y = constant.
 class Lines {
  public:
   Lines(const ChartOutline& outline, int count) : count_(count) {
@@ -38,15 +38,15 @@ class Lines {
   struct Crossing {
     int line;
     double x;
-    int change;  // of the number of triangles to the right of it
+    int change;  // change in the number of triangles to the right of the crossing
   };
 
-  // The chart lies to the left of the edge: to the right of what runs down.
+  // The chart lies to the left of the edge, so it lies to the right of an edge that goes down.
   void cross(Vec2d from, Vec2d to) {
     const int change = to.y < from.y ? 1 : -1;
     if (change > 0) std::swap(from, to);
     if (!(to.y > from.y)) return;
-    const auto line_above = [&](double y) {  // the first whose y is not below
+    const auto line_above = [&](double y) {  // the first line that is not below y
       return int(std::clamp(std::ceil((y - low_) / spacing_ - 0.5), 0.0, double(count_)));
     };
     const int end = line_above(to.y);

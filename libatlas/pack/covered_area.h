@@ -1,13 +1,13 @@
-// Internal: how much of a chart lies on itself.
+// Internal: measures how far a chart overlaps itself.
 #pragma once
 
 #include "libatlas/pack/chart_outline.h"
 
 namespace atlas::pack {
 
-// The area that the chart covers as a share of the sum of its triangles' areas: 1 where none
-// overlap, as far as sixteen lines across it tell, else within a hundredth or so. Given uvs often
-// lie on each other many times over.
+// Returns the area that the chart covers as a share of the sum of its triangles' areas. The share
+// is 1 if sixteen lines across the chart cross no overlap; otherwise it is exact to about a
+// hundredth. Uvs that are given with a mesh often overlap many times over.
 double covered_share(const ChartOutline& outline);
 
 }  // namespace atlas::pack

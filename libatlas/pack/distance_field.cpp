@@ -6,10 +6,11 @@
 namespace atlas::pack {
 namespace {
 
-// Squared distances in cells from each cell to the nearest of the other kind, exactly: first within
-// the columns, then as lower envelopes of parabolas along the rows (Felzenszwalb and Huttenlocher
-// 2012). A row's run of one kind is an envelope of its own: the cells that end it are nearer to its
-// own than what lies beyond them.
+// Computes the exact squared distances, in cells, from each cell to the nearest cell of the other
+// kind: first within the columns, and then along the rows as lower envelopes of parabolas
+// (Felzenszwalb and Huttenlocher 2012). Each run of equal cells in a row has an envelope of its
+// own. Cells beyond the two that end the run need not be examined, because the run's cells are
+// nearer to these two.
 class SquaredDistances {
  public:
   SquaredDistances(int width, const std::vector<std::uint8_t>& kind, std::vector<float>& grid)
@@ -29,7 +30,7 @@ class SquaredDistances {
  private:
   static constexpr float kFar = 1e6f;
 
-  // Rows to the nearest cell of the other kind, below first, then above.
+  // Counts the rows to the nearest cell of the other kind, first below, then above.
   void columns() {
     std::fill(grid_.begin(), grid_.begin() + std::ptrdiff_t(width_), kFar);
     for (std::size_t i = width_; i < grid_.size(); ++i)
@@ -38,9 +39,9 @@ class SquaredDistances {
       grid_[i] = kind_[i] == kind_[i + width_] ? std::min(grid_[i], grid_[i + width_] + 1) : 1;
   }
 
-  // Columns [begin, end) of a row, which are of one kind.
+  // Processes the columns [begin, end) of a row, which are of one kind.
   void transform(std::size_t row, std::size_t begin, std::size_t end) {
-    // line_[0] is the cell before the run, where the row has one.
+    // line_[0] is the cell before the run, if the row has one.
     const int count = int(end - begin);
     line_[0] = begin > 0 ? 0.f : kFar * kFar;
     for (int q = 1; q <= count; ++q) {
@@ -74,7 +75,7 @@ class SquaredDistances {
   }
 
   std::size_t width_;
-  const std::vector<std::uint8_t>& kind_;  // 1 a cell
+  const std::vector<std::uint8_t>& kind_;  // one per cell
   std::vector<float>& grid_;
   std::vector<float> line_, border_;
   std::vector<int> apex_;
@@ -99,16 +100,18 @@ DistanceField::DistanceField(const Mask& mask, double cell, double reach) {
   values_.resize(count);
   SquaredDistances(width_, inside, values_);
   for (std::size_t i = 0; i < count; ++i) {
-    // From centre to centre; the mask's edge lies half a cell before, the chart's another half.
+    // The distances are from centre to centre. The mask's edge lies half a cell nearer, and the
+    // chart's outline is assumed another half cell inside the mask.
     const double d = inside[i] ? 1.0 - std::sqrt(double(values_[i])) : std::sqrt(values_[i]);
     values_[i] = static_cast<float>(d * cell);
   }
 }
 
-// One step along the gradient.
+// Moves p one step along the gradient.
 Vec2d DistanceField::onto_outline(Vec2d p) const {
   Sample s, ahead;
-  const double h = 0.5 / inverse_;  // from a cell's centre: the mean of both sides
+  // Half a cell: from a cell's centre this gives the mean of both sides.
+  const double h = 0.5 / inverse_;
   if (!sample({p.x - h, p.y - h}, s) || !sample({p.x + h, p.y + h}, ahead)) return p;
   const Vec2d g{s.gradient.x + ahead.gradient.x, s.gradient.y + ahead.gradient.y};
   const double length = std::hypot(g.x, g.y);

@@ -8,9 +8,9 @@
 
 namespace atlas::pack {
 
-// Coordinates are those of the mask it was made from: texels from the lower left corner of the
-// mask's box. Negative inside the chart. The mask covers its chart by up to a cell too much on
-// each side; half a cell, the mean of that, is taken off again.
+// The coordinates are those of the mask from which the field is made: texels from the lower left
+// corner of the mask's box. The distance is negative inside the chart. A mask exceeds its chart by
+// up to one cell on each side; the mean of this, half a cell, is subtracted.
 class DistanceField {
  public:
   DistanceField() = default;
@@ -20,7 +20,7 @@ class DistanceField {
     double distance = 0;
     Vec2d gradient;  // not normalised
   };
-  // False farther than `reach` outside the mask's box.
+  // Returns false if p is farther than `reach` outside the mask's box.
   bool sample(Vec2d p, Sample& out) const {
     const double gx = p.x * inverse_ + shift_, gy = p.y * inverse_ + shift_;
     if (!(gx >= 0) || !(gy >= 0) || gx >= width_ - 1 || gy >= height_ - 1) return false;
@@ -34,13 +34,13 @@ class DistanceField {
     return true;
   }
 
-  // Whether sample() may be true within `radius` of p.
+  // Returns whether sample() may be true for a point within `radius` of p.
   bool near_grid(Vec2d p, double radius) const {
     const double gx = p.x * inverse_ + shift_, gy = p.y * inverse_ + shift_, r = radius * inverse_;
     return gx > -r && gy > -r && gx < width_ - 1 + r && gy < height_ - 1 + r;
   }
 
-  // Points on the outline, about one for every `spacing` texels.
+  // Returns points on the outline, about one per `spacing` texels.
   std::vector<Vec2d> outline(double spacing) const;
 
  private:
@@ -48,7 +48,7 @@ class DistanceField {
 
   int width_ = 0, height_ = 0;
   double inverse_ = 1, shift_ = 0;
-  std::vector<float> values_;  // at the cells' centres, row by row
+  std::vector<float> values_;  // values at the cells' centres, row by row
 };
 
 }  // namespace atlas::pack

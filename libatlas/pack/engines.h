@@ -1,4 +1,4 @@
-// Internal: the ways to solve a packing problem, and the choice between them.
+// Internal: the engines that solve a packing problem, and the choice between them.
 #pragma once
 
 #include "libatlas/pack/problem.h"
@@ -15,7 +15,7 @@ class Random {
     z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
     return z ^ (z >> 31);
   }
-  // In [0, n), n below 2^32.
+  // Returns a number in [0, n); n is below 2^32.
   std::uint32_t below(std::uint32_t n) {
     return static_cast<std::uint32_t>(((next() >> 32) * n) >> 32);
   }
@@ -25,49 +25,55 @@ class Random {
   std::uint64_t state_;
 };
 
-// When a search ends: on reaching the bound, after this much work, or when the time is up.
+// Limits of a search. A search ends when it reaches the bound, has done this much work, or has used
+// up its time.
 struct SearchLimits {
-  std::uint64_t layouts = 0;  // tried at most, all chains together; 0: no limit
-  double seconds = 0;         // wall time
+  // Maximum number of layouts tried by all chains together; 0: no limit.
+  std::uint64_t layouts = 0;
+  double seconds = 0;  // wall time
   std::uint64_t seed = 1;
-  std::uint32_t chains = 1;        // independent searches, each on one thread at a time
-  std::uint32_t enough_pages = 1;  // fewer are not looked for
-  // Strips: part layouts that beam searches may keep, all together, and their wall time.
+  std::uint32_t chains = 1;  // independent searches, each of which runs on one thread at a time
+  std::uint32_t enough_pages = 1;  // the search does not try to use fewer pages than this
+  // For strips: the number of partial layouts that all beam searches together may keep, and their
+  // wall time.
   std::uint64_t beam_states = 0;
   double beam_seconds = 0;
 };
 
-// Those of `standard` for so many items on pages.
+// Returns the limits of `standard` for this number of items on pages.
 SearchLimits standard_page_limits(std::size_t items);
 
-// Solves by the preset. Fills in page_lower_bound, layouts_tried and curve of the result.
+// Solves the problem according to the preset. Fills in page_lower_bound, layouts_tried and curve of
+// the result.
 Layout solve(const Problem& problem, const PackOptions& options, const Context& context,
              PackResult& result);
 
-// No packing of all items uses fewer pages (bins) or less height (a strip): by area, single sides,
-// and dual feasible functions (Fekete and Schepers 2004).
+// Lower bounds: no packing of all items uses fewer pages (bins) or less height (a strip). The bound
+// on pages follows from dual feasible functions (Fekete and Schepers 2004), the bound on height
+// from the area and from single sides.
 std::uint32_t page_bound(const Problem& problem);
 std::int64_t height_bound(const Problem& problem);
 
-// Page after page, each gap of the skyline filled with the widest item that fits: O(n log n).
+// Fills page after page. Each gap of the skyline gets the widest item that fits: O(n log n).
 // Ignores pinned rectangles.
 Layout pack_widest_first(const Problem& problem);
 
-// Page after page by the scores of gap_fill.h, the items in this order; the same layout as
-// GapFill's in O(n sqrt n) at worst, in about O(n log n) mostly. Ignores pinned rectangles.
+// Fills page after page with the items in this order, by the scores of gap_fill.h. The layout is
+// the same as that of GapFill. It takes O(n sqrt n) at worst and mostly about O(n log n). Ignores
+// pinned rectangles.
 Layout pack_gaps(const Problem& problem, std::span<const std::uint32_t> sequence);
 
-// Local search for few pages: empties and refills two to four pages at a time. Starts from the best
-// of the sorted orders. Ignores pinned rectangles.
+// Local search for few pages, which empties and refills two to four pages at a time. It starts from
+// the best of the sorted orders. Ignores pinned rectangles.
 Layout search_pages(const Problem& problem, const SearchLimits& limits, const Context& context,
                     PackResult& result);
 
-// Local search for a low strip: swaps and moves in the order of the items, simulated annealing;
-// where items may be turned, then beam searches below the height found.
+// Local search for a low strip. It changes the order of the items by swaps and moves, with
+// simulated annealing. If limits.beam_states is not 0, beam searches below the height found follow.
 Layout search_strip(const Problem& problem, const SearchLimits& limits, const Context& context,
                     PackResult& result);
 
-// Local search over orders for first fit by maximal rectangles; honours pinned rectangles.
+// Local search over orders for first fit by maximal rectangles. Respects pinned rectangles.
 Layout search_first_fit(const Problem& problem, const SearchLimits& limits, const Context& context,
                         PackResult& result);
 

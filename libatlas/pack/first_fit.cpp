@@ -25,8 +25,8 @@ std::array<std::int64_t, 3> sort_key(Extent e, Order order) {
   return {};
 }
 
-// The smallest sides among the items not yet placed, in steps: forgetting holes that are too small
-// for all of them keeps the free lists short.
+// The smallest sides among the items that are not yet placed. Free rectangles that are too small
+// for all of these items can be removed, which keeps the lists short.
 class RemainingMinimum {
  public:
   RemainingMinimum(const Problem& problem, std::span<const std::uint32_t> order) {
@@ -98,7 +98,8 @@ Layout first_fit(const Problem& problem, std::span<const std::uint32_t> order, P
     for (std::size_t at = 0;; ++at) {
       at = index.next(at, item, problem.allow_rotation);
       if (at == pages.size()) {
-        // A page is opened until one has room; past the pinned pages the first new one has.
+        // Pages are opened until one has room. If no pinned rectangle lies on it, the first new
+        // page has.
         if (pages.size() >= problem.max_pages) break;
         open_page(smallest);
       }
@@ -117,7 +118,8 @@ Layout first_fit(const Problem& problem, std::span<const std::uint32_t> order, P
   return layout;
 }
 
-// The same for items that come in order of falling height: a page's room is then known exactly.
+// Does the same for items that come in descending order of height. The room of each page is then
+// known exactly.
 Layout first_fit_falling(const Problem& problem, std::span<const std::uint32_t> order) {
   Layout layout;
   layout.placements.resize(problem.items.size());

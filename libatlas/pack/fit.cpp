@@ -81,9 +81,10 @@ Status check(std::span<const FitItem> items, const FitOptions& o) {
   return {};
 }
 
-// Outlines are laid on cells, whose number grows with the square of the page's side: one of 32768
-// texels took 2.8 GB and a minute. Cells of which so many make a side lose a ten-thousandth of it
-// around each chart; they are multiples of what was asked for.
+// Returns the alignment for outlines. They are laid on cells, whose number grows with the square of
+// the page's side: packing a page of 32768 texels took 2.8 GB and a minute. So a side has at most
+// kMostCells cells, which rounds each chart's gutter up by at most a ten-thousandth of the side or
+// so. The cell is a multiple of the alignment that was asked for.
 std::int32_t outline_alignment(const FitOptions& options) {
   constexpr std::int32_t kMostCells = 8192;
   std::int32_t alignment = options.alignment;

@@ -1,5 +1,6 @@
-// The joint problem of an exporter: N pages of at most S × S texels, and the largest common scale
-// at which all charts fit. Solved by packing, not by area alone.
+// Solves the joint problem of an exporter: given N pages of at most S × S texels, it finds the
+// largest common scale at which all charts fit. The scale is found by packing, not from areas
+// alone.
 #pragma once
 
 #include <cstdint>
@@ -14,113 +15,130 @@
 
 namespace atlas {
 
-// Size of a chart's texture in texels at scale 1; finite, >= 0.
+// The size of a chart's texture in texels at scale 1. Both sides are finite and >= 0.
 struct FitItem {
   double width = 0, height = 0;
 };
 
 struct FitOptions {
   std::uint32_t pages = 1;        // N, at least 1
-  std::int32_t page_size = 2048;  // S, texels, at least alignment + 2 padding
-  bool power_of_two = true;       // page sides are powers of two <= S (else multiples of alignment)
+  std::int32_t page_size = 2048;  // S in texels; at least alignment + 2 padding
+  // Page sides are powers of two <= S; otherwise multiples of alignment.
+  bool power_of_two = true;
   bool square = false;
-  std::int32_t padding = 2;    // texels kept free on each side of a chart: 2^(M-1) for mips 0..M
-  std::int32_t alignment = 4;  // boxes begin and end at multiples of this: 2^M
-  std::int32_t minimum_side = 16;  // a side never shrinks below min(this, its size at scale 1)
-  double max_scale = 1;            // > 0; the scale returned is at most this
-  bool allow_rotation = true;      // quarter turns
+  // Texels kept free on each side of a chart; mip levels 0..M need 2^(M-1).
+  std::int32_t padding = 2;
+  // Boxes begin and end at multiples of this; mip levels 0..M need 2^M.
+  std::int32_t alignment = 4;
+  // A side never becomes smaller than min(this, its size at scale 1).
+  std::int32_t minimum_side = 16;
+  double max_scale = 1;        // > 0; the scale that is found is at most this
+  bool allow_rotation = true;  // allows quarter turns
   PackPreset preset = PackPreset::standard;
-  // Full packings spent on the search for the scale, at least 2; as many again with more than four
-  // directions where four find no room.
+  // Number of full packings that the search for the scale may use; at least 2. If four directions
+  // find no room, the search with more than four directions may use as many again.
   std::uint32_t max_packings = 25;
-  // Charts as outlines instead of boxes: one an item in the texels of the items' sizes, or empty.
-  // Placements are then of the mask's box, boxes may overlap, masks never do. See outline.h.
+  // Packs the charts as outlines instead of boxes. The list is empty or has one shape per item, in
+  // the texels of the items' sizes. Each placement is then that of the mask's box. Boxes may
+  // overlap, but masks never do. See outline.h.
   std::span<const ChartShape> shapes;
-  std::uint32_t rotations = 4;  // directions tried for outlines at most: multiples of
-                                // 360/rotations degrees; 1, 2, 4 or a multiple of 4
-  bool any_angle = true;        // outlines may be turned by angles between those, too
-  // Several pages of few outlines each are pressed one by one, and charts exchanged between them:
-  // a twentieth to a sixth more of the pages is filled, for some tenths of a second a page.
+  // Maximum number of directions tried for outlines, in multiples of 360/rotations degrees; 1, 2, 4
+  // or a multiple of 4.
+  std::uint32_t rotations = 4;
+  bool any_angle = true;  // outlines may also be turned by angles between those
+  // If there are several pages with few outlines each, every page is pressed by itself, and charts
+  // are exchanged between pages. This fills a twentieth to a sixth more of the pages and takes some
+  // tenths of a second per page.
   bool press_pages = true;
-  // A single page: its sides are at most page_size, and outlines are made to fill it as far as they
-  // can instead of being as large as they can be. Overrides power_of_two and square. Without
-  // shapes, or with several pages, it does that alone.
+  // For a single page of outlines: the page may take any shape with sides of at most page_size, and
+  // the outlines are packed so that they fill it as far as possible, instead of being as large as
+  // possible. This overrides power_of_two and square. Without shapes it does nothing else. With
+  // several pages it also turns press_pages off.
   bool free_aspect = false;
-  // What fills less of a single page than this is of no use (a share): a page of outlines that
-  // comes out far emptier at first, or does not come to it as long as `best` wins something, is
-  // searched no further. 0: search as usual.
+  // A single page that is filled less than this share is of no use to the caller. So the search for
+  // a layout of outlines ends early if the page is far emptier after the first draws. If charts are
+  // laid in rows and `best` has an effort, it also ends if the page is still below this share after
+  // a further round. 0: the search is as long as usual.
   double wanted_fill = 0;
   // Limits of `best` on a single page of outlines. The result depends on effort and seed only,
-  // unless effort is 0 and time the limit.
-  double time_budget = 1.0;  // wall seconds
-  std::uint64_t effort = 0;  // layouts tried at most, checked every few hundred; 0: no limit.
-                             // Those that take long count for several
+  // unless effort is 0 and time is the limit.
+  double time_budget = 1.0;  // wall time in seconds
+  // Maximum number of layouts that are tried; 0: no limit. It is checked every few hundred layouts.
+  // A layout that takes long counts as several.
+  std::uint64_t effort = 0;
   std::uint64_t seed = 1;
-  // Of `best` where a single page of outlines is pressed or laid in rows: the layouts that
-  // `standard` has tried of the same items. They count as effort, and what would only repeat them
-  // is left out.
+  // For `best` on a single page of outlines that is pressed or laid in rows: the number of layouts
+  // that `standard` has already tried for the same items. They count as effort, and whatever would
+  // only repeat them is left out.
   std::uint64_t tried = 0;
 };
 
 // A point of the curve of density against effort.
 struct FitProgress {
   double seconds = 0;         // wall time since the start
-  std::uint64_t layouts = 0;  // tried so far
+  std::uint64_t layouts = 0;  // layouts tried so far
   double utilization = 0;
 };
 
-// The box of chart i in its page, padding included, after rotation; content = box without
-// padding. With boxes: content_width × content_height texels are the chart's scaled size rounded
-// up (before rotation), placed at (box.x + padding, box.y + padding), and rotated tells whether
-// width and height are swapped (a quarter turn counterclockwise: chart point (u, v) goes to
-// (box.x + padding + content_height - v, box.y + padding + u)).
-// With outlines: chart point p (texels at scale 1) goes to offset + scale · R(angle) · p; the
-// content is the shape's own box, and minimum_side holds for its longer side, so that charts keep
-// their proportions.
+// The place of one chart. `box` is the chart's box in its page after rotation, padding included.
+// The content is the box without padding.
+// With boxes: content_width × content_height texels are the chart's scaled size before rotation,
+// rounded up. The content is placed at (box.x + padding, box.y + padding). `rotated` means that
+// width and height are swapped by a quarter turn counterclockwise: the chart point (u, v) goes to
+// (box.x + padding + content_height - v, box.y + padding + u).
+// With outlines: the chart point p (texels at scale 1) goes to offset + scale · R(angle) · p. The
+// content is the shape's own box. minimum_side applies to the shape's longer side, so that charts
+// keep their proportions.
 struct FitPlacement {
   std::uint32_t page = 0;
   Rect box;
   std::int32_t content_width = 0, content_height = 0;
   bool rotated = false;
-  double angle = 0;  // radians, counterclockwise; 0 or pi/2 for boxes
-  // Of this chart's outline: the common scale, or more where minimum_side asks for it. With boxes
-  // the common scale: each axis has its own, content / size at scale 1, which rounding up and
-  // minimum_side make larger.
+  double angle = 0;  // in radians, counterclockwise; 0 or pi/2 for boxes
+  // With outlines this is the scale of this chart: the common scale, or a larger one if
+  // minimum_side demands it. With boxes it is the common scale. There each axis has a scale of its
+  // own, which is the content divided by the size at scale 1; rounding up and minimum_side make it
+  // larger.
   double scale = 1;
-  Vec2d offset;  // outlines only
+  Vec2d offset;  // set for outlines only
 };
 
 struct FitResult {
   double scale = 1;
-  std::vector<FitPlacement> placements;  // 1 an item
-  std::vector<Extent> pages;             // of those that hold something; at most N
-  double utilization = 0;  // area of contents (boxes) or of the shapes (outlines) / area of pages
-  double box_utilization = 0;  // area of the boxes with gutters / area of pages (boxes only)
-  // Of small holes and narrow bays in shapes, where no shape could lie: texels² at scale 1; with
-  // outlines only.
+  std::vector<FitPlacement> placements;  // one per item
+  std::vector<Extent> pages;             // the pages that hold something; at most N
+  // Area of the contents (boxes) or shapes (outlines) / area of the pages.
+  double utilization = 0;
+  double box_utilization = 0;  // area of the boxes with gutters / area of the pages; boxes only
+  // The area of small holes and narrow bays in shapes in which no shape could lie, in square texels
+  // at scale 1. Set for outlines only.
   double lost_area = 0;
-  GroupingResult grouping;                     // of the box areas at the final scale
-  std::uint32_t moved_items = 0;               // items that did not fit their group's page
-  std::uint32_t packings = 0;                  // full packings tried
-  std::uint64_t layouts = 0;                   // of outlines, on one page each: tried in all
-  std::vector<std::pair<double, bool>> trace;  // (scale, did it fit) in the order tried
-  std::vector<FitProgress> curve;              // improvements in the order found; may be empty
+  GroupingResult grouping;        // the grouping of the box areas at the final scale
+  std::uint32_t moved_items = 0;  // number of items that did not fit their group's page
+  std::uint32_t packings = 0;     // number of full packings tried
+  // Number of layouts of outlines on one page that were tried in total.
+  std::uint64_t layouts = 0;
+  std::vector<std::pair<double, bool>> trace;  // (scale, whether it fitted), in the order tried
+  std::vector<FitProgress> curve;              // the improvements, in the order found; may be empty
 };
 
-// Finds the largest common scale <= max_scale at which every item fits. At each scale: groups by
-// F(A) = N on box areas, packs each group into its page (largest first), moves what did not fit
-// into whatever page still has room, and failing that packs all pages jointly. Bisection between
-// an area bound and the best scale seen to fit; feasibility is not monotone, so the answer is
-// the largest scale that was *seen* to fit. Minimum sides that exceed all pages by themselves are
-// refused without a packing.
-// If everything fits at max_scale, pages are made as few, then as small, as packing finds.
-// Errors: bad_option, bad_input (negative or non-finite size), no_solution (the minimum sides
-// alone do not fit N pages), cancelled.
+// Finds the largest common scale <= max_scale at which every item fits. At each scale it groups the
+// box areas by F(A) = N, packs each group into its page (largest items first), and moves the items
+// that did not fit into any page that still has room. If that fails, it packs all pages jointly.
+// The scale is found by bisection between an area bound and the best scale that was seen to fit.
+// Whether a scale fits is not monotone, so the result is the largest scale that was *seen* to fit.
+// If the minimum sides alone exceed all pages, the items are refused without a packing. If
+// everything fits at max_scale, the number of pages is made as small as packing allows, and then
+// their size.
+// Errors: bad_option, bad_input (negative or non-finite size), no_solution (the minimum sides alone
+// do not fit N pages), cancelled.
 Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& options,
                             const Context& context);
 
-// The last step of fit_pages with press_pages, for a fit to outlines made without: what it returned
-// for the same items and options, denser where pressing makes it so.
+// Does the last step of fit_pages with press_pages for a fit to outlines that was made without it.
+// `fitted` is the result of fit_pages for the same items and options. Returns a denser fit if
+// pressing finds one, otherwise `fitted`. Errors: those of fit_pages, and bad_input if `fitted` is
+// not a fit of these items to outlines.
 Result<FitResult> press_fit(FitResult fitted, std::span<const FitItem> items,
                             const FitOptions& options, const Context& context);
 

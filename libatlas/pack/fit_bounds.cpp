@@ -8,7 +8,7 @@
 namespace atlas::pack {
 namespace {
 
-// The longer side of the chart's box in the direction in which that is shortest.
+// Returns the longer side of the chart's box, in the direction in which that side is shortest.
 double least_side(const ChartOutline& outline, std::uint32_t directions) {
   double least = std::numeric_limits<double>::infinity();
   for (std::uint32_t k = 0; k < std::max(1u, directions / 4); ++k) {
@@ -22,8 +22,8 @@ double least_side(const ChartOutline& outline, std::uint32_t directions) {
 
 FitBounds fit_bounds(std::span<const ChartOutline> outlines, const FitOptions& options,
                      std::int32_t side, std::uint32_t directions) {
-  // A connected chart with gutters of p around it covers its area, 2 p of every column and row that
-  // it meets, and 4 p^2 at the corners: a s^2 + b s + c texels at scale s.
+  // A connected chart with gutters of p around it covers its area, 2 p in every column and row that
+  // it meets, and 4 p^2 at the corners. At scale s this is a s^2 + b s + c square texels.
   const double pages = double(side) * side * options.pages, p = options.padding;
   double a = 0, b = 0, c = 0, longest = 0;
   for (const ChartOutline& o : outlines) {
@@ -38,7 +38,7 @@ FitBounds fit_bounds(std::span<const ChartOutline> outlines, const FitOptions& o
   FitBounds bounds;
   bounds.gutters_exceed_pages = c >= pages;
   bounds.alone = longest > 0 ? std::max(0.0, side - 2 * p) * (1 - 1e-9) / longest : kAny;
-  // The positive root, in the form that stays exact where a is small.
+  // This is the positive root, in the form that stays exact if a is small.
   const double room = std::max(0.0, pages - c);
   bounds.with_gutters = a + b > 0 ? 2 * room / (b + std::sqrt(b * b + 4 * a * room)) : kAny;
   if (const double s = std::min(bounds.alone, bounds.with_gutters); s < kAny)
@@ -47,7 +47,8 @@ FitBounds fit_bounds(std::span<const ChartOutline> outlines, const FitOptions& o
 }
 
 bool are_slivers(std::span<const ChartOutline> outlines, const FitOptions& options) {
-  constexpr double kLeastShare = 0.25;  // of the page, against gutters
+  // Share of the page that charts must take, compared with their gutters.
+  constexpr double kLeastShare = 0.25;
   return outlines.size() > 1 &&
          !(fit_bounds(outlines, options, options.page_size, 4).area_share > kLeastShare);
 }

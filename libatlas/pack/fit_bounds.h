@@ -1,4 +1,4 @@
-// Internal: scales beyond which outlines cannot fit pages, found without packing.
+// Internal: finds scales above which outlines cannot fit pages, without packing.
 #pragma once
 
 #include <span>
@@ -9,18 +9,21 @@
 namespace atlas::pack {
 
 struct FitBounds {
-  double alone = 0;         // at larger ones some chart alone exceeds the page in every direction
-  double with_gutters = 0;  // at larger ones charts, if connected, and gutters exceed all pages
-  double area_share = 0;    // of the charts' area, against gutters, at the smaller of both
-  bool gutters_exceed_pages = false;  // whatever the scale
+  double alone = 0;  // above this scale some single chart exceeds the page in every direction
+  // Above this scale the charts, if they are connected, and their gutters exceed all pages.
+  double with_gutters = 0;
+  // The charts' share of the area of charts and gutters, at the smaller of both scales.
+  double area_share = 0;
+  bool gutters_exceed_pages = false;  // at every scale
 };
 
-// Pages are squares of this side in texels; charts are turned in so many directions.
+// Pages are squares of this side in texels. Charts may be turned in this many directions.
 FitBounds fit_bounds(std::span<const ChartOutline> outlines, const FitOptions& options,
                      std::int32_t side, std::uint32_t directions);
 
-// Whether gutters take most of the pages. Between such charts what cells round away is not what is
-// lost, and pressing many, each of which may meet all others along its whole length, costs minutes.
+// Returns whether gutters take most of the page (at least three quarters). Rounding to cells is
+// then not the main loss, so pressing gains little. But pressing many such charts takes minutes,
+// since each may touch all others along its whole length.
 bool are_slivers(std::span<const ChartOutline> outlines, const FitOptions& options);
 
 }  // namespace atlas::pack

@@ -9,8 +9,8 @@
 namespace atlas::pack {
 namespace {
 
-// The largest scale that was seen to fit, by bisection; the layout of that scale. Each packing
-// halves the interval on average; with 12 of them the scale is within 0.1 % of the threshold.
+// Finds by bisection the largest scale that was seen to fit, and its layout. Each packing halves
+// the interval on average. With 12 packings the scale is within 0.1 % of the threshold.
 bool search_scale(BoxFit& fit, FitResult& result, BoxLayout& best) {
   const FitOptions& options = fit.options();
   const Context& context = fit.context();
@@ -29,11 +29,12 @@ bool search_scale(BoxFit& fit, FitResult& result, BoxLayout& best) {
   if (fit.may_fit(options.max_scale) && attempt(options.max_scale)) return true;
   if (!fit.may_fit(fit.least_scale())) return false;
   double high = options.max_scale, low = 0;
-  while (high - low > 1e-4 * high) {  // by area and single boxes: cheap
+  while (high - low > 1e-4 * high) {  // by area and single boxes only, which is cheap
     const double middle = (low + high) / 2;
     (fit.may_fit(middle) ? low : high) = middle;
   }
-  // Packings reach 90 to 98 % of the area, so a step below the area bound is likely to fit.
+  // Packings fill 90 to 98 % of the area, so a scale slightly below the area bound is likely to
+  // fit.
   bool found = false;
   const double first = low * 0.97;
   double step = first;
@@ -97,7 +98,7 @@ Result<FitResult> fit_boxes(std::span<const FitItem> items, const FitOptions& op
   const bool found = search_scale(fit, result, best);
   if (context.cancelled()) return Status::cancelled();
   if (!found) return no_room(items.size(), options);
-  // With everything at its largest scale, fewer pages may do.
+  // If everything has its largest scale, fewer pages may be enough.
   if (result.scale == options.max_scale) {
     const double pages = fit.box_area(result.scale) / static_cast<double>(fit.page().area());
     for (auto n = static_cast<std::uint32_t>(std::max(1.0, std::ceil(pages)));
@@ -111,7 +112,7 @@ Result<FitResult> fit_boxes(std::span<const FitItem> items, const FitOptions& op
   }
   fit.make_boxes(result.scale);
   finish(fit, options, best, result);
-  if (context.cancelled()) return Status::cancelled();  // pages may be larger than they need be
+  if (context.cancelled()) return Status::cancelled();  // pages may be larger than necessary
   return result;
 }
 

@@ -12,9 +12,9 @@
 namespace atlas::pack {
 namespace {
 
-// Up by steps while it fits, down while it does not, then halving: few packings, each seen to fit
-// or not. The guess is the scale at which shapes fill 74 % of the pages, or a little more than what
-// `best` has come to already.
+// Increases the scale in steps while it fits, or decreases it until it fits, and then bisects. This
+// takes few packings, and each scale was seen to fit or not. The first guess is the scale at which
+// shapes fill 74 % of the pages, or slightly more than the scale that `best` already has.
 bool search_scale(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
   const FitOptions& options = fit.options();
   const Context& context = fit.context();
@@ -39,25 +39,27 @@ bool search_scale(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
   if (scale <= best.scale) return best.scale > 0;
   const double tolerance = scale_tolerance(options, 0.005, options.shapes.size());
   double low = best.scale, high = most * (1 + 1e-9), step = 0.97;
-  const double least = 1e-9 * options.max_scale;  // at which minimum sides hold for all charts
-  constexpr double kTight = 0.8;                  // of the pages: such masks seldom fit
+  // A scale at which all charts have their minimum sides.
+  const double least = 1e-9 * options.max_scale;
+  constexpr double kTight = 0.8;  // share of the pages; masks that take more seldom fit
   std::uint32_t failures = 0;
-  const std::uint32_t in_vain = low > 0 ? 0 : result.packings;  // those of a search before
+  // The packings of an earlier search that found no scale.
+  const std::uint32_t in_vain = low > 0 ? 0 : result.packings;
   while (result.packings + 1 < options.max_packings + in_vain && !context.cancelled()) {
     const bool ok = attempt(scale);
     if (ok && scale >= most) return true;
     (ok ? low : high) = scale;
     if (low > 0 && high - low < tolerance * high) return true;
     if (low == 0) {
-      // Minimum sides that take all pages are no matter of the scale. Twice in vain is rare where
-      // they do not.
+      // If the minimum sides alone take all pages, no scale helps. If they do not, two failures in
+      // a row are rare, so this is checked after the second failure.
       if (++failures == 2) {
         const double share = fit.share(least);
         if (share > 1 || (share > kTight && !attempt(least))) return false;
         if (share > kTight) low = least;
       }
       scale *= step;
-      step *= step > 0.5 ? 0.97 : 1;  // faster and faster, should minimum sides be in the way
+      step *= step > 0.5 ? 0.97 : 1;  // ever faster, in case minimum sides are the obstacle
     } else {
       scale = high > most ? std::min(most, low * kLittleMore) : (low + high) / 2;
     }
@@ -65,7 +67,8 @@ bool search_scale(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
   return low > 0 || attempt(least);
 }
 
-// The least page of any shape that holds the layout's one page, cells.
+// Returns the area in cells of the smallest rectangle, of any shape, that holds the layout's one
+// page.
 std::int64_t page_in_use(const OutlineLayout& layout) {
   std::int64_t width = 0, height = 0;
   for (std::size_t i = 0; i < layout.pieces.size(); ++i) {
@@ -78,13 +81,14 @@ std::int64_t page_in_use(const OutlineLayout& layout) {
   return width * height;
 }
 
-// Of the least such page.
+// Returns the share of that rectangle that the charts fill.
 double fill(const OutlineFit& fit, const OutlineLayout& layout) {
   const double cell = fit.grid().cell;
   return layout.scale * layout.scale * fit.area() / (cell * cell * double(page_in_use(layout)));
 }
 
-// Once more on a single page, large frames first: what is small then comes to lie within them.
+// Searches once more for a single page, with large frames first, so that small charts then lie
+// within them.
 void place_by_boxes(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
   fit.place(LargestBy::boxes);
   OutlineLayout larger;
@@ -95,13 +99,14 @@ void place_by_boxes(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
   best = std::move(larger);
 }
 
-// On a page of any shape the largest scale is not always the best: where the longest chart takes
-// all of the page's side, others may fit beside each other at a slightly smaller one, on a far
-// smaller page.
+// On a page of any shape the largest scale is not always the best. If the longest chart takes the
+// whole side of the page, a slightly smaller scale may let other charts fit beside each other, on a
+// far smaller page.
 void fill_free_page(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
   constexpr double kAtTheSide = 0.98, kStep = 0.97, kLeast = 0.7;
-  constexpr double kFull = 0.75;    // of the page: not worth the time of a dozen packings
-  constexpr double kFuller = 1.05;  // what a smaller scale must gain
+  // Share of the page; above it, a dozen packings are not worth their time.
+  constexpr double kFull = 0.75;
+  constexpr double kFuller = 1.05;  // the factor by which a smaller scale must raise the fill
   const double largest = best.scale;
   if (fill(fit, best) > kFull || largest < kAtTheSide * fit.bounds().alone) return;
   double wanted = kFuller * fill(fit, best);
@@ -181,21 +186,24 @@ Result<FitResult> fit_outlines(std::span<const FitItem> items,
                                const Context& context) {
   FitResult result;
   std::optional<FitResult> pressed = fit_pressed(items, outlines, options, context);
-  // Straight charts, laid in rows on a page of any shape or pressed by `best` on a given one, may
-  // fill more by cells. Of many charts rows are about as good, and far cheaper.
+  // Straight charts are laid in rows on a page of any shape, or pressed by `best` on a page of
+  // given shape. The search over cells may fill more. With many charts, rows are about as good, and
+  // far cheaper.
   const bool many = options.free_aspect && items.size() > kFewInRows;
   if (context.cancelled()) return Status::cancelled();
   if (pressed && (many || options.tried > 0 || !is_straight(outlines))) return std::move(*pressed);
   FitOptions by_cells = options;
   if (pressed) by_cells.preset = PackPreset::standard;
-  // With more directions each chart finds a lower place, but not all charts a higher scale: those
-  // that lie askew keep others from lying straight. So four come first, and more have to beat them.
+  // With more directions each chart finds a lower place, but the common scale does not always
+  // become larger, because charts that lie askew keep others from lying straight. So four
+  // directions come first, and more directions have to beat them.
   FitOptions by_quarters = by_cells;
   by_quarters.rotations = std::min(by_cells.rotations, 4u);
   OutlineFit quarters(items, outlines, by_quarters, context);
   OutlineFit all(items, outlines, by_cells, context);
-  // Where cells fill more than rows, they mostly do so by far and in the first order: a search as
-  // long as elsewhere took as long as the rows of 68 pages, and won a hundredth of a point.
+  // Where cells fill more than rows, they mostly do so by far and with the first order. On 68
+  // pages, a search as long as elsewhere took as long as the rows did, and gained a hundredth of a
+  // percentage point.
   if (pressed && options.free_aspect) {
     quarters.search_little();
     all.search_little();

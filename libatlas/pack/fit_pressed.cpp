@@ -15,7 +15,8 @@ std::optional<FitResult> fit_pressed(std::span<const FitItem> items,
                                      const FitOptions& options, const Context& context) {
   if (!worth_pressing(outlines, options)) return std::nullopt;
   const bool straight = outlines.size() > 1 && is_straight(outlines);
-  // On a page of given shape the search over cells fills more with them than the press does.
+  // On a page of given shape, the search over cells fills more with straight charts than pressing
+  // does.
   if (straight && !options.free_aspect && options.preset != PackPreset::best) return std::nullopt;
   if (!straight && are_slivers(outlines, options)) return std::nullopt;
   PressedPage pressed = straight && options.free_aspect

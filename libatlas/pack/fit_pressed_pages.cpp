@@ -16,16 +16,21 @@
 namespace atlas::pack {
 namespace {
 
-// Pairs of pages pressed anew with charts exchanged, a page; `best` tries more.
+// Number of attempts, per page, to press a pair of pages again with charts exchanged. `best` tries
+// more.
 constexpr std::size_t kExchanges = 2, kBestExchanges = 12;
-// Of a page: 95 charts filled 0.755 of theirs by cells and pressed, 48 0.718 and 0.728.
+// Maximum number of charts on a page. Pages of 95 charts were filled to 0.755 both by cells and by
+// pressing, pages of 48 charts to 0.718 by cells and to 0.728 by pressing.
 constexpr std::size_t kMostCharts = 64;
-// By what further draws and exchanges make pages larger that are smaller, balanced, after the first
-// ones than those of the fit. Those of 135 triangles, 0.96 to 0.97 of it, were drawn for 15 s in
-// vain, three times; 22 models on 2, 4 and 8 pages lose nothing.
+// Further draws and exchanges are expected to enlarge the scale by at most this factor. If the
+// balanced scale after the first draws, times this factor, is below the scale of the fit, the fit's
+// pages are kept. Pages of 135 triangles, at 0.96 to 0.97 of the fit's scale, were drawn three
+// times in vain for 15 s. 22 models on 2, 4 and 8 pages lose nothing by this rule.
 constexpr double kMostRedrawn = 1.02;
-constexpr double kLeastGain = 1.002;      // of the scale, by an exchange or by all
-constexpr double kLeastExpected = 1.005;  // before both pages are pressed for it
+// Minimum gain in scale, by an exchange or by all together.
+constexpr double kLeastGain = 1.002;
+// Minimum gain that must be expected before both pages are pressed.
+constexpr double kLeastExpected = 1.005;
 
 class PagePress {
  public:
@@ -33,12 +38,13 @@ class PagePress {
             const Context& context)
       : outlines_(outlines), options_(options), context_(context) {
     options_.pages = 1;
-    options_.max_scale = std::numeric_limits<double>::max();  // a page by itself has no limit
+    options_.max_scale = std::numeric_limits<double>::max();  // a single page has no limit
     options_.preset = PackPreset::standard;
   }
 
-  // False where a page is not worth pressing, or pressing it finds nothing. Pages that are emptier
-  // after their first draws than those of the fit, by more than further ones win, are left alone.
+  // Returns false if a page is not worth pressing, or if pressing it finds nothing. It also returns
+  // false if the first draws give a scale that is smaller than that of the fit by more than further
+  // draws gain.
   bool start(const FitResult& fitted) {
     groups_.resize(fitted.pages.size());
     for (std::uint32_t i = 0; i < outlines_.size(); ++i) {
@@ -58,7 +64,7 @@ class PagePress {
     return true;
   }
 
-  // Between the tightest page and others, so many times at most.
+  // Exchanges charts between the tightest page and others, with at most this many attempts.
   void exchange(std::size_t attempts) {
     for (; attempts > 0 && !context_.cancelled(); --attempts) {
       const std::optional<Exchange> chosen = best_exchange();
@@ -76,7 +82,8 @@ class PagePress {
     }
   }
 
-  // At which all would fit if charts could be shared out such that every page is as tight.
+  // Returns the scale at which all charts would fit if they could be distributed such that every
+  // page is equally tight.
   double balanced_scale() const {
     double used = 0, area = 0;
     for (const Group& g : groups_) {
@@ -86,17 +93,17 @@ class PagePress {
     return area > 0 ? std::sqrt(used / area) : 0;
   }
 
-  // Layouts of all draws.
+  // Returns the number of layouts of all draws.
   std::uint64_t layouts() const {
     std::uint64_t sum = 0;
     for (const auto& [charts, page] : drawn_) sum += page.layouts;
     return sum;
   }
 
-  // At which every page was seen to fit.
+  // Returns the scale at which every page was seen to fit.
   double common_scale() const { return groups_[tightest()].page.scale; }
 
-  // All pages at this scale; false if one does not fit.
+  // Places the charts of all pages at this scale. Returns false if one page does not fit.
   bool settle(double scale) {
     for (Group& g : groups_) {
       if (context_.cancelled()) return false;
@@ -135,13 +142,14 @@ class PagePress {
  private:
   struct Group {
     std::vector<std::uint32_t> charts;  // ascending
-    double area = 0;                    // texels at scale 1
+    double area = 0;                    // in square texels at scale 1
     PressedPage page, settled;
   };
-  // Charts that change pages; kNone: none does.
+  // Chart `out` goes from page `from` to page `to`, and chart `in` goes back; kNone stands for no
+  // chart.
   struct Exchange {
     std::uint32_t from, to, out, in;
-    double gain;  // of the scale, expected
+    double gain;  // the factor by which the scale is expected to grow
   };
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
@@ -157,8 +165,8 @@ class PagePress {
            !are_slivers(own, options_);
   }
 
-  // One draw more of the group's page; false if none is worth it. Exchanges ask for the same charts
-  // again and again: what was drawn of them is kept.
+  // Makes one more draw of the group's page. Returns false if none is worthwhile. Exchanges ask for
+  // the same charts again and again, so what was drawn for a set of charts is kept.
   bool draw(Group& group) {
     PressedPage& page = drawn_[group.charts];
     const double side = options_.page_size;
@@ -179,7 +187,7 @@ class PagePress {
     }
   }
 
-  // Draws the page only until it is larger than this scale; false if it never is.
+  // Draws the page until its scale exceeds `scale`. Returns false if it never does.
   bool draw_beyond(double scale, Group& group) {
     if (!may_press(group)) return false;
     while (draw(group) && !(group.page.scale > scale)) {
@@ -195,8 +203,8 @@ class PagePress {
 
   double area_of(std::uint32_t chart) const { return chart == kNone ? 0 : outlines_[chart].area; }
 
-  // The one after which the tighter of two pages should be loosest, if both stay as full as they
-  // are: what is relieved is the tightest page of all.
+  // Returns the exchange after which the tighter of the two pages is expected to have the largest
+  // scale, if both stay as full as they are. One of the pages is the tightest of all.
   std::optional<Exchange> best_exchange() const {
     std::optional<Exchange> best;
     const std::uint32_t from = tightest();
@@ -224,8 +232,8 @@ class PagePress {
     return best;
   }
 
-  // Both pages with the charts exchanged; none where one of them is no looser than the tightest
-  // was.
+  // Returns both pages with the charts exchanged, or nothing if the scale of one of them is not
+  // larger than that of the tightest page was.
   std::optional<std::array<Group, 2>> exchanged(const Exchange& e) {
     const double least = kLeastGain * groups_[e.from].page.scale;
     std::array<Group, 2> changed;
@@ -250,11 +258,11 @@ class PagePress {
   FitOptions options_;
   const Context& context_;
   std::vector<Group> groups_;
-  std::map<std::vector<std::uint32_t>, PressedPage> drawn_;  // by a page's charts
+  std::map<std::vector<std::uint32_t>, PressedPage> drawn_;  // by the charts of a page
   std::set<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>> tried_;
 };
 
-// Whether a minimum side would hold at this scale.
+// Returns whether some item would have its minimum side at this scale.
 bool below_minimum(std::span<const FitItem> items, const FitOptions& options, double scale) {
   return std::any_of(items.begin(), items.end(), [&](const FitItem& item) {
     const double side = std::max(item.width, item.height);

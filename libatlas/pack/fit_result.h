@@ -1,4 +1,4 @@
-// Internal: what the ways of fitting charts to pages have in common when they write their result.
+// Internal: what the different ways to fit charts to pages share when they write their result.
 #pragma once
 
 #include "libatlas/pack/chart_outline.h"
@@ -6,30 +6,32 @@
 
 namespace atlas::pack {
 
-// Where a chart's outline came to lie; box is its mask's, gutters included.
+// Where a chart's outline lies. `box` is the box of its mask, gutters included.
 struct OutlinePlace {
-  Rect box;          // texels
-  double angle = 0;  // radians, counterclockwise
-  Vec2d offset;      // page texel of the shape's origin
+  Rect box;          // in texels
+  double angle = 0;  // in radians, counterclockwise
+  Vec2d offset;      // position in the page, in texels, of the shape's origin
 };
 
-// Writes the place into `out`, whose scale and page are set already.
+// Writes the place into `out`, whose scale and page must be set by the caller.
 void write_outline(const OutlinePlace& at, const FitOptions& options, FitPlacement& out);
 
-// The same for a chart that meets no cell, as one without area or gutters may: it lies at the
-// page's corner.
+// Does the same for a chart that covers no cell, as a chart without area or gutters may. It is
+// placed at the page's corner.
 void write_at_corner(const ChartOutline& outline, FitPlacement& out);
 
-// Takes pages that hold no chart out of the result: equal charts may need fewer than N.
+// Removes pages that hold no chart from the result. If charts are equal, fewer than N pages may be
+// needed.
 void drop_empty_pages(FitResult& result);
 
-// Makes a page without a size of its own hold the box as well.
+// Enlarges a page whose size is not given so that it also holds the box.
 void enclose(const Rect& box, const FitOptions& options, Extent& page);
 
-// A page's sides as the options want them, when its size is free.
+// Returns the sides of a page with a free size as the options require them: equal if pages have to
+// be square.
 Extent squared(Extent page, const FitOptions& options);
 
-// `content` over the area of all pages; 0 without pages.
+// Returns `content` divided by the area of all pages; 0 if there are no pages.
 double share_of_pages(double content, const FitResult& result);
 
 Status no_room(std::size_t charts, const FitOptions& options);

@@ -118,9 +118,9 @@ void FreeRects::place(const Rect& rect) {
   measure_room();
 }
 
-// Survivors stay maximal: a piece lies inside the old maximal rectangle it was cut from, and a
-// survivor inside the piece would have been inside that. So only the pieces need a test, against
-// each other and against the survivors.
+// The rectangles that the placed one does not meet stay maximal: each piece lies within the maximal
+// rectangle from which it was cut, so a rectangle within the piece would have been within that,
+// too. So only the pieces have to be compared, with each other and with the other rectangles.
 void FreeRects::keep_maximal() {
   std::sort(fresh_.begin(), fresh_.end(), below_left);
   std::size_t kept = 0;
@@ -129,7 +129,8 @@ void FreeRects::keep_maximal() {
     const auto holds = [&](const Rect& o) { return contains(o, r); };
     bool inside = i > 0 && kept > 0 && fresh_[kept - 1] == r;
     for (std::size_t k = 0; k < fresh_.size() && !inside; ++k)
-      // Pieces before `kept` are final; those from i on are untouched; the gap holds stale ones.
+      // Pieces before `kept` are final, and those after i have not been moved yet. Those in between
+      // are outdated.
       inside = (k < kept || k > i) && contains(fresh_[k], r) && !(fresh_[k] == r);
     for (std::size_t k = 0; k < free_.size() && !inside; ++k) {
       if (free_[k].y > r.y) break;

@@ -1,4 +1,4 @@
-// Internal: one page as the list of its maximal free rectangles.
+// Internal: a page represented by the list of its maximal free rectangles.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,13 @@
 namespace atlas::pack {
 
 enum class PlaceRule {
-  bottom_left,  // lowest top edge, then leftmost
-  contact,      // longest touching perimeter, then bottom-left (maximal rectangles only)
-  min_waste,    // least area buried, then bottom-left (skyline only)
+  bottom_left,  // the lowest top edge, then the leftmost; skylines compare the buried area before
+                // the latter
+  contact,      // the longest touching perimeter, then bottom_left (maximal rectangles only)
+  min_waste,    // the least buried area, then bottom_left (skylines only)
 };
 
-// A place found for an item; smaller (first, second, third) is better.
+// A place found for an item. Places are compared by (first, second, third), and smaller is better.
 struct Spot {
   Rect rect;
   bool rotated = false;
@@ -28,9 +29,9 @@ struct Spot {
   }
 };
 
-// The maximal free rectangles of a page (Jylänki 2010, "MaxRects"), kept sorted by (y, x): the
-// first that is large enough is the bottom-left place, and a placed rectangle meets only those
-// below its top edge.
+// The maximal free rectangles of a page (Jylänki 2010, "MaxRects"), sorted by (y, x). The first
+// rectangle that is large enough is therefore the bottom-left place, and a rectangle can only lie
+// within one that is not behind it in y.
 class FreeRects {
  public:
   explicit FreeRects(Extent page);
@@ -46,14 +47,14 @@ class FreeRects {
   }
   std::int32_t used_height() const { return used_height_; }
 
-  // Finds the best place by the rule; false if there is none. Sides must be positive.
+  // Finds the best place by the rule. Returns false if there is none. Sides must be positive.
   bool find(Extent item, bool allow_rotation, PlaceRule rule, Spot& spot) const;
 
-  // Takes `rect`, wherever it lies in the page, out of the free space.
+  // Removes `rect`, which may lie anywhere in the page, from the free space.
   void place(const Rect& rect);
   void block(const Rect& rect) { place(rect); }
 
-  // Forgets free rectangles that no item of at least these sides fits into.
+  // Removes free rectangles that are too small for every item of at least these sides.
   void drop_smaller(std::int32_t width, std::int32_t height);
 
   const Room& room() const { return room_; }

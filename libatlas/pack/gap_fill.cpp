@@ -16,7 +16,7 @@ GapFill::Choice GapFill::choose(std::span<const std::uint32_t> sequence, std::si
   const std::int32_t left = (gap > 0 ? skyline_[gap - 1].y : page_.height) - s.y;
   const std::int32_t right = (gap + 1 < skyline_.size() ? skyline_[gap + 1].y : page_.height) - s.y;
   const std::int32_t room = page_.height - s.y;
-  // The taller wall first: items that do not match lean against it.
+  // Items that match neither wall are put against the taller one.
   const bool tall_right = right > left;
   const std::int32_t tall = tall_right ? right : left, low = tall_right ? left : right;
   Choice best;
@@ -55,7 +55,7 @@ void GapFill::merge(std::size_t i) {
   }
 }
 
-// Nothing fits the gap: it is lifted to its lower wall and lost.
+// Nothing fits the gap, so it is lifted to its lower wall, and its area is wasted.
 void GapFill::raise(std::size_t gap) {
   std::int32_t level = page_.height;
   if (gap > 0) level = std::min(level, skyline_[gap - 1].y);

@@ -1,5 +1,5 @@
-// Internal: fills one page gap by gap along its skyline, choosing at each gap the item that fits
-// it best (Burke et al. 2004; the scores are Leung et al. 2011's, extended by the page's top).
+// Internal: fills one page gap by gap along its skyline. For each gap it chooses the item that fits
+// best (Burke et al. 2004). The scores are those of Leung et al. 2011, extended by the page's top.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,13 @@ struct GapPlacement {
   bool rotated = false;
 };
 
-// Keeps its memory between calls: a local search calls it thousands of times a second.
+// Keeps its memory between calls, since a local search calls it thousands of times per second.
 class GapFill {
  public:
   GapFill(std::span<const Extent> items, Extent page, bool allow_rotation)
       : items_(items), page_(page), allow_rotation_(allow_rotation) {}
 
-  // Fills an empty page from `sequence` (item ids; earlier ones win ties); what was placed is
+  // Fills an empty page from `sequence` (item ids; earlier ones win ties). The placed items are
   // appended to placed() and removed from the sequence, whose order is kept. Returns the used
   // height.
   std::int32_t fill(std::vector<std::uint32_t>& sequence);

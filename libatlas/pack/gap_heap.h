@@ -9,7 +9,8 @@
 
 namespace atlas::pack {
 
-// The skyline as a linked list, and its segments in a heap by (y, x); stale entries are skipped.
+// The skyline as a linked list, with a heap of its segments by (y, x). Outdated entries of the heap
+// are skipped.
 class GapHeap {
  public:
   explicit GapHeap(Extent page) : page_(page) {
@@ -17,7 +18,7 @@ class GapHeap {
     heap_.push({0, 0, 0});
   }
 
-  // The lowest, then leftmost segment.
+  // Returns the lowest segment, and the leftmost of several.
   std::uint32_t lowest() {
     while (true) {
       const Key key = heap_.top();
@@ -40,7 +41,7 @@ class GapHeap {
     settle(id);
   }
 
-  // Puts a block on the segment's left end, or right end.
+  // Puts a block on the left or the right end of the segment.
   void put(std::uint32_t id, Extent size, bool at_right) {
     if (size.width == segments_[id].width) return raise(id, segments_[id].y + size.height);
     const auto fresh = static_cast<std::uint32_t>(segments_.size());
@@ -74,7 +75,7 @@ class GapHeap {
   };
   static constexpr std::uint32_t kEnd = UINT32_MAX;
 
-  // Joins a segment with neighbours of its height and files it.
+  // Joins a segment with neighbours of the same height and adds it to the heap.
   void settle(std::uint32_t id) {
     Segment& s = segments_[id];
     if (s.right != kEnd && segments_[s.right].y == s.y) absorb(id, s.right);

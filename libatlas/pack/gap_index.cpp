@@ -139,7 +139,7 @@ std::uint32_t FittingTree::first(Extent room) const {
 }
 
 void FittingTree::remove(std::uint32_t rank) {
-  // Which leaf holds an entry follows from how build() halves ranges.
+  // The leaf of an entry follows from how build() halves ranges.
   const std::size_t at = place_[rank];
   Range range{0, entries_.size()};
   std::size_t node = 1;

@@ -9,9 +9,9 @@
 namespace atlas {
 namespace {
 
-// First-fit over at most `limit` bins in O(log limit) an item: a tournament tree over the room
-// left, whose inner nodes hold the largest room of their leaves. Unopened bins have full room, so
-// the leftmost leaf with enough room is the first fit.
+// First fit over at most `limit` bins in O(log limit) per item. It uses a tournament tree over the
+// remaining room, whose inner nodes hold the largest room of their leaves. Bins that are not open
+// yet have their full room, so the leftmost leaf with enough room is the first fit.
 class FirstFit {
  public:
   FirstFit(std::uint64_t capacity, std::uint32_t limit)
@@ -28,13 +28,13 @@ class FirstFit {
     std::fill(room_.begin(), room_.end(), capacity);
   }
 
-  // The bin the item went to; limit if none has room.
+  // Returns the bin into which the item was put; limit if no bin has room.
   std::uint32_t place(std::uint64_t size) {
     if (room_[1] < size) return limit_;
     std::size_t node = 1;
     while (node < leaves_) node = 2 * node + (room_[2 * node] < size);
     const auto bin = static_cast<std::uint32_t>(node - leaves_);
-    if (bin >= limit_) return limit_;  // only the padding leaves have room
+    if (bin >= limit_) return limit_;  // only leaves beyond the limit have room
     room_[node] -= size;
     largest_load_ = std::max(largest_load_, capacity_ - room_[node]);
     used_ = std::max(used_, bin + 1);
@@ -61,13 +61,13 @@ std::vector<std::uint32_t> descending_order(std::span<const std::uint64_t> sizes
   return order;
 }
 
-// The search for the smallest capacity, over sizes already sorted descending.
+// The search for the smallest capacity. The sizes must be sorted in descending order.
 class Search {
  public:
   Search(std::vector<std::uint64_t> sorted, std::uint32_t groups, GroupingResult& result)
       : sorted_(std::move(sorted)), groups_(groups), fit_(0, groups), result_(result) {}
 
-  // F(capacity), counted up to groups + 1, and noted in the trace.
+  // Returns F(capacity), counted up to groups + 1, and adds it to the trace.
   std::uint32_t evaluate(std::uint64_t capacity) {
     fit_.reset(capacity);
     std::uint32_t count = 0;
@@ -85,16 +85,16 @@ class Search {
     return count;
   }
 
-  // Bisection: `low` is a capacity known not to do (or one below the lower bound), `high` one that
-  // does. Every capacity kept as `high` was evaluated with F <= N, so the answer is valid whether
-  // or not F is monotone; the interval halves every step, so it ends after at most 64 steps. What
-  // non-monotonicity costs is only that a smaller good capacity may hide below `low`.
+  // Bisection. `low` is a capacity known to be too small (or one below the lower bound), `high` one
+  // that is enough. Every capacity that becomes `high` was evaluated with F <= N, so the result is
+  // valid whether or not F is monotone. The interval halves in every step, so there are at most 64
+  // steps. If F is not monotone, a smaller capacity that works may be missed below `low`.
   std::uint64_t bisect(std::uint64_t low, std::uint64_t high, const Context& context) {
     while (high - low > 1 && !context.cancelled()) {
       const std::uint64_t middle = low + (high - low) / 2;
-      // A run that fits proves more than its capacity: with the capacity cut to its largest load
-      // every decision of the run stays the same (an item refused for want of room is refused
-      // again, an accepted one still fits), hence F(largest load) <= N as well.
+      // A run that fits also proves a smaller capacity. If the capacity is reduced to the run's
+      // largest load, every decision stays the same: an item that did not fit still does not, and
+      // an item that fitted still fits. Hence F(largest load) <= N as well.
       if (evaluate(middle) <= groups_)
         high = std::max(low + 1, fit_.largest_load());
       else
@@ -103,10 +103,11 @@ class Search {
     return high;
   }
 
-  // Walks down from the capacity below `best` through all different runs. A run with capacity C
-  // whose largest load is L makes the same decisions for every capacity in [L, C], so the next
-  // capacity worth a try is L - 1. Reaching the lower bound proves `best` smallest. A run that
-  // fails (more than N groups) is continued over unlimited bins to learn its true largest load.
+  // Tries the capacities below `best` that lead to different runs, in descending order. A run with
+  // capacity C and largest load L makes the same decisions for every capacity in [L, C], so the
+  // next capacity worth a try is L - 1. If the search reaches the lower bound, `best` is proved to
+  // be the smallest. A run that fails (more than N groups) is continued over unlimited bins to find
+  // its true largest load.
   std::uint64_t refine(std::uint64_t best, std::uint64_t lower, std::uint64_t work,
                        const Context& context) {
     const std::uint64_t cost = std::max<std::uint64_t>(sorted_.size(), 1);
@@ -132,7 +133,7 @@ class Search {
   GroupingResult& result_;
 };
 
-// ceil(total / groups) in 64 bits; false if it does not fit below 2^62.
+// Computes ceil(total / groups) in 64 bits. Returns false if it, or a size, exceeds 2^62.
 bool mean_size(std::span<const std::uint64_t> sizes, std::uint32_t groups, std::uint64_t& mean) {
   constexpr std::uint64_t limit = std::uint64_t{1} << 62;
   std::uint64_t quotient = 0, rest = 0;
@@ -181,7 +182,8 @@ Result<GroupingResult> group_sizes(std::span<const std::uint64_t> sizes,
     return Status(ErrorCode::bad_option, "grouping: groups is 0 (ask for at least one)");
   GroupingResult result;
   if (sizes.empty()) return result;
-  // More groups than items are never used: with a capacity of the largest item they all fit alone.
+  // More groups than items are never used: with the largest item as capacity, each item fits a
+  // group of its own.
   const auto groups =
       static_cast<std::uint32_t>(std::min<std::size_t>(options.groups, sizes.size()));
   std::uint64_t mean = 0;

@@ -1,4 +1,4 @@
-// Internal: the first open page with room for items that come in order of falling height.
+// Internal: finds the first open page with room for items that come in descending order of height.
 #pragma once
 
 #include <algorithm>
@@ -10,10 +10,10 @@
 
 namespace atlas::pack {
 
-// A tournament tree over the width of every page's widest hole that is at least as high as the
-// present item: exact, so a page that passes has room. A page's width changes when it is used, and
-// when the height falls below that of a hole that is wider and was too low; the latter wait in a
-// heap.
+// A tournament tree over the pages. It stores the width of each page's widest hole that is at least
+// as high as the present item, so it is exact: a page that passes has room. A page's width changes
+// when the page is used. It also changes when the present height falls to that of a hole that is
+// wider, but was too low before; such pages wait in a heap.
 class HeightIndex {
  public:
   void push_back(const FreeRects& page) {
@@ -36,17 +36,19 @@ class HeightIndex {
       widest_[node] = std::max(widest_[2 * node], widest_[2 * node + 1]);
   }
 
-  // Items are no higher from now on.
+  // Items are at most this high from now on.
   void sink(std::int32_t height, const std::vector<FreeRects>& pages) {
     height_ = height;
     while (!waiting_.empty() && waiting_.top().first >= height) {
       const auto [level, page] = waiting_.top();
       waiting_.pop();
-      if (pages_[page] == level) update(page, pages[page]);  // else it has been used since
+      // Otherwise the page has been used since.
+      if (pages_[page] == level) update(page, pages[page]);
     }
   }
 
-  // The first page with room for an item of this width and the present height; count() if none.
+  // Returns the first page with room for an item of this width and the present height; count() if
+  // there is none.
   std::size_t first(std::int32_t width) const {
     if (count_ == 0 || widest_[1] < width) return count_;
     std::size_t node = 1;
@@ -69,8 +71,8 @@ class HeightIndex {
 
   std::int32_t height_ = INT32_MAX;
   std::size_t leaves_ = 0, count_ = 0;
-  std::vector<std::int32_t> widest_;  // nodes of the tree
-  std::vector<std::int32_t> pages_;   // of each, the height at which it changes; 0: never
+  std::vector<std::int32_t> widest_;  // the nodes of the tree
+  std::vector<std::int32_t> pages_;   // by page: the height at which its width changes; 0: never
   std::priority_queue<std::pair<std::int32_t, std::size_t>> waiting_;
 };
 

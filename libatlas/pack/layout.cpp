@@ -39,8 +39,8 @@ struct AtlasLayout::State {
     return free;
   }
 
-  // The free rectangles of a page from its items: maximal rectangles that were cut by an item since
-  // removed cannot be glued together locally.
+  // Makes the free rectangles of a page anew from its items. They cannot be updated locally after
+  // an item was removed, because the maximal rectangles that it cut cannot be joined again.
   void rebuild(std::uint32_t p) {
     pages[p] = fresh_page(p);
     for (std::uint32_t id : on_page[p]) pages[p].place(box_of(items[id]));
@@ -63,8 +63,8 @@ struct AtlasLayout::State {
   std::vector<Item> items;
   std::size_t present = 0;
   std::vector<FreeRects> pages;
-  std::vector<std::vector<std::uint32_t>> on_page;  // ids with area, by page
-  std::vector<bool> stale;                          // something was removed since the last rebuild
+  std::vector<std::vector<std::uint32_t>> on_page;  // ids of the items with area, by page
+  std::vector<bool> stale;                          // an item was removed since the last rebuild
   pack::PageIndex index;
 };
 
@@ -76,7 +76,7 @@ AtlasLayout::~AtlasLayout() = default;
 Result<AtlasLayout> AtlasLayout::create(const PackOptions& options) {
   if (options.page.width < 1 || options.page.height < 1)
     return Status(ErrorCode::bad_option, "layout: both sides of the page must be given");
-  // pack_rects knows what is wrong with the options, and says so.
+  // pack_rects checks the options and describes the error.
   if (Result<PackResult> checked = pack_rects({}, options, {}); !checked.ok())
     return checked.status();
   return AtlasLayout(std::make_unique<State>(options));

@@ -13,7 +13,7 @@ namespace {
 
 using Edges = std::span<const ChartOutline::Edge>;
 
-// Calls visit(edges, area) for every loop; holes have areas below 0.
+// Calls visit(edges, area) for every loop. Holes have negative areas.
 template <class Visit>
 void each_loop(const ChartOutline& outline, Visit visit) {
   const Edges edges = outline.edges;
@@ -33,9 +33,11 @@ double area_of(std::span<const ChartOutline> outlines) {
                          [](double sum, const ChartOutline& o) { return sum + o.area; });
 }
 
-// Of an outline without holes, what a closing by squares of this side adds to it.
+// Ignores the outline's holes and returns the area that a morphological closing by squares of this
+// side adds.
 double closed_bays(const ChartOutline& outline, double width) {
-  constexpr double kSpacing = 1.0 / 32;  // a quarter of a cell
+  // A quarter of a cell; cells are 1/8 of the square's side.
+  constexpr double kSpacing = 1.0 / 32;
   ChartOutline filled;
   double area = 0;
   each_loop(thinned(outline, kSpacing * width), [&](Edges loop, double loop_area) {
@@ -44,8 +46,8 @@ double closed_bays(const ChartOutline& outline, double width) {
     filled.edges.insert(filled.edges.end(), loop.begin(), loop.end());
   });
   if (filled.edges.empty()) return 0;
-  // A cell belongs to the mask where the chart is nearer to its centre than padding and half a cell
-  // together: whole cells, which the erosion takes away again without a bias.
+  // A cell belongs to the mask if the chart is nearer to its centre than the padding plus half a
+  // cell. That is a whole number of cells, which the erosion removes again without bias.
   constexpr std::int32_t kReach = 4, kCell = 2;
   RasterOptions raster;
   raster.cell = kCell;
@@ -67,7 +69,8 @@ double closed_bays(const ChartOutline& outline, double width) {
     const Run e = eroded(run);
     cells += std::max(0, e.end - e.begin);
   }
-  // Along straight borders the rounding may be the same everywhere, up to a cell from side to side.
+  // Along straight borders the rounding may be the same everywhere: up to one cell from side to
+  // side.
   const double side = kCell / raster.factor;
   const Vec2d box = box_of(filled, 0);
   const double rounding = side * (box.x + box.y + side);
@@ -77,7 +80,7 @@ double closed_bays(const ChartOutline& outline, double width) {
 }  // namespace
 
 double lost_to_holes(std::span<const ChartOutline> outlines) {
-  constexpr double kSmall = 1.0 / 30;  // of all charts' area
+  constexpr double kSmall = 1.0 / 30;  // relative to the area of all charts
   const double all = area_of(outlines);
   double holes = 0, largest = 0;
   for (const ChartOutline& o : outlines)
@@ -92,8 +95,10 @@ double lost_to_holes(std::span<const ChartOutline> outlines) {
 }
 
 double lost_to_bays(std::span<const ChartOutline> outlines, double gutter, const Context& context) {
-  constexpr double kNarrow = 1.0 / 40;    // of the side of a square that all charts would fill
-  constexpr double kFinest = 1.0 / 1024;  // of a chart's side: masks are no larger than pages
+  // Relative to the side of a square that all charts would fill.
+  constexpr double kNarrow = 1.0 / 40;
+  // Relative to a chart's longer side; so masks are no larger than pages.
+  constexpr double kFinest = 1.0 / 1024;
   const double width = std::max(kNarrow * std::sqrt(area_of(outlines)), 4 * gutter);
   if (!(width > 0)) return 0;
   std::vector<double> bays(outlines.size());

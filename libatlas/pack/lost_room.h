@@ -1,4 +1,4 @@
-// Internal: room within charts' outlines that no packing could use.
+// Internal: the area of holes and bays in charts' outlines that no packing could use.
 #pragma once
 
 #include <span>
@@ -7,14 +7,17 @@
 
 namespace atlas::pack {
 
-// Of all holes together, what no chart could lie in: those too small to matter once a chart were
-// cut through them, less the charts that are smaller than the largest of these. Texels² at scale 1.
+// Returns the area of all small holes together in which no chart could lie, in square texels at
+// scale 1. A hole is small if its area is less than a thirtieth of the area of all charts; cutting
+// a chart open through such a hole would gain little. The area of the charts that are smaller than
+// the largest small hole is subtracted, since these charts could lie in holes.
 double lost_to_holes(std::span<const ChartOutline> outlines);
 
-// The same of bays, which the outer borders leave open, as between the teeth of a comb or the
-// windings of a spiral: those narrower than a small share of the side of all charts, or than two
-// gutters on either side; less the charts that are narrower than such bays. `gutter`: around each
-// chart, texels at scale 1.
+// Returns the same for narrow bays, which are open to the outside, like the space between the teeth
+// of a comb or between the windings of a spiral. A bay is narrow if its width is less than a
+// fortieth of the side of a square that all charts would fill, or less than four gutters. The area
+// of the charts that are narrower than this width is subtracted. `gutter` is the width of the
+// gutter around each chart, in texels at scale 1.
 double lost_to_bays(std::span<const ChartOutline> outlines, double gutter, const Context& context);
 
 }  // namespace atlas::pack

@@ -1,4 +1,5 @@
-// Internal: the parts that a mask is made of, cells along a chart's edges and those between them.
+// Internal: collects the runs that make up a mask: cells along a chart's edges, and the cells
+// between them.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +12,8 @@
 
 namespace atlas::pack {
 
-// As std::floor and std::ceil, which are calls where the processor may be old: masks take millions.
+// The same as std::floor and std::ceil. Those are function calls if the build has to support old
+// processors, and rasterising calls them millions of times.
 inline std::int32_t floor_of(double v) {
   const auto whole = static_cast<std::int32_t>(v);
   return whole - (v < whole);
@@ -21,7 +23,7 @@ inline std::int32_t ceiling(double v) {
   return whole + (v > whole);
 }
 
-// Collects runs in any order, then sorts them by row and joins them.
+// Collects runs in any order, then sorts them by row and joins those that touch.
 class RunSet {
  public:
   struct Item {
@@ -30,11 +32,12 @@ class RunSet {
   };
   std::vector<Item> items;
 
-  // Rows 0 .. rows - 1 are those that add() may know.
+  // add() may join runs in rows 0 .. rows - 1.
   explicit RunSet(std::int32_t rows = 0) : last_(static_cast<std::size_t>(rows), kNone) {}
 
-  // A run that touches the one before it in its row, as those of edges that follow each other
-  // mostly do, makes that one longer: teeth finer than cells would else take gigabytes.
+  // Adds a run. If it touches the last run added in its row, that run is extended instead, which is
+  // the usual case for consecutive edges. Otherwise outlines with teeth finer than cells would take
+  // gigabytes.
   void add(std::int32_t row, Run run) {
     if (static_cast<std::size_t>(row) < last_.size()) {
       std::uint32_t& last = last_[static_cast<std::size_t>(row)];
@@ -72,7 +75,7 @@ class RunSet {
   std::int32_t bottom() const { return bottom_; }
 
  private:
-  // mask.first gets the first run of every row.
+  // Sets mask.first to the index of the first run of every row.
   std::vector<Run> sort_by_row(Mask& mask) const {
     std::vector<Run> runs(items.size());
     mask.first = counting_sort(
@@ -104,11 +107,12 @@ class RunSet {
   }
 
   static constexpr std::uint32_t kNone = 0xffffffffu;
-  std::vector<std::uint32_t> last_;  // 1 a row: the item added last
+  std::vector<std::uint32_t> last_;  // one per row: the index of the item added last
   std::int32_t left_ = 0, bottom_ = 0;
 };
 
-// Cells whose centres the edges wind around. What lies nearer to an edge than that is add_edge's.
+// Finds the cells whose centres the edges wind around. Cells that are nearer to an edge are left to
+// add_edge().
 class Interior {
  public:
   // `cells`: the rows and columns that edges may cross.
@@ -120,7 +124,7 @@ class Interior {
   void add(Vec2d a, Vec2d b) {
     const std::int32_t sense = a.y < b.y ? 1 : -1;
     if (sense < 0) std::swap(a, b);
-    // Rows whose middle lies in [a.y, b.y).
+    // The rows whose middle lies in [a.y, b.y).
     const std::int32_t first = first_beyond(a.y), end = first_beyond(b.y);
     if (first >= end) return;
     const double slope = (b.x - a.x) / (b.y - a.y);
@@ -129,8 +133,8 @@ class Interior {
     if (crossings_.size() > most_crossings_) count();
   }
 
-  // The first cell whose centre is not left of x, and the last one whose centre is not right of it;
-  // of rows, below and above.
+  // first_beyond() returns the first cell whose centre is not left of x, last_before() the last
+  // cell whose centre is not right of x. For rows the same holds with below and above.
   std::int32_t first_beyond(double x) const { return ceiling(x / cell_ - 0.5); }
   std::int32_t last_before(double x) const { return floor_of(x / cell_ - 0.5); }
 
@@ -158,8 +162,8 @@ class Interior {
   };
   static constexpr std::size_t kManyCrossings = 1 << 21;  // 32 MiB
 
-  // Crossings that would take more memory than cells are counted by those at which they begin to
-  // matter.
+  // If the crossings would take more memory than the cells, they are added up per cell: each is
+  // counted at the first cell that it affects.
   void count() {
     const auto w = static_cast<std::size_t>(cells_.width) + 1;
     turns_.resize(w * static_cast<std::size_t>(cells_.height));
@@ -182,7 +186,8 @@ class Interior {
     }
   }
 
-  // By row, in time linear in crossings and rows, then the few of each row by x.
+  // Sorts the crossings by row, in time linear in crossings and rows, and then the few crossings of
+  // each row by x.
   void sort() {
     if (crossings_.empty()) return;
     std::int32_t low = crossings_[0].row, high = low;
@@ -205,7 +210,8 @@ class Interior {
   Extent cells_;
   std::size_t most_crossings_;
   std::vector<Crossing> crossings_;
-  std::vector<std::int32_t> turns_;  // (cells_.width + 1) a row, where crossings are counted
+  // There are cells_.width + 1 entries per row. Used if crossings are counted.
+  std::vector<std::int32_t> turns_;
 };
 
 }  // namespace atlas::pack

@@ -20,13 +20,14 @@ double center_height(const Mask& mask) {
   return mask.cells > 0 ? sum / static_cast<double>(mask.cells) : 0;
 }
 
-// Where the lower left corner of the box goes when chart and mask turn by 90 degrees: chart point p
-// at origin + q of a box of height h (texels) comes to (h - origin.y - q.y, origin.x + q.x).
+// Returns the new lower left corner of the box if the chart and its mask turn by 90 degrees. A
+// chart point p at origin + q in a box of height h (texels) moves to (h - origin.y - q.y, origin.x
+// + q.x).
 Vec2d turned_origin(Vec2d origin, double box_height) {
   return {box_height - origin.y, origin.x};
 }
 
-// Whether the mask of a box of this size, in texels, stays within the page in some quarter turn.
+// Returns whether the mask of a box of this size, in texels, fits the page in some quarter turn.
 bool may_fit(Vec2d box, const PieceOptions& options) {
   if (options.page == Extent{}) return true;
   const auto cells = [&](double side) {
@@ -55,7 +56,7 @@ Piece make_piece(const ChartOutline& shape, double factor, const PieceOptions& o
     if (!may_fit({factor * box.x, factor * box.y}, options)) continue;
     piece.too_large = false;
     masks[b] = rasterize(shape, raster, piece.origins[b]);
-    // Two directions are half a turn apart, four a quarter.
+    // Two directions are half a turn apart, four are a quarter turn apart.
     if (n >= 4) {
       const double height = double(masks[b].height) * options.cell;
       masks[b + bases] = quarter_turn(masks[b]);
@@ -109,7 +110,8 @@ std::int32_t longest_run(std::span<const Piece> pieces) {
 
 namespace {
 
-// Of a piece as it was drawn first. By boxes the cells still have a quarter of the say.
+// Returns the size of a piece in the first direction in which it has a mask. If sizes are compared
+// by boxes, the number of cells still counts with a weight of a quarter.
 double size_of(const Piece& piece, LargestBy by) {
   const auto drawn = std::find_if(piece.masks.begin(), piece.masks.end(),
                                   [](const Mask& m) { return m.cells > 0; });
@@ -135,10 +137,11 @@ NestPlan plan_by_size(std::span<const Piece> pieces, LargestBy by) {
 
 namespace {
 
-// Where pieces of about one size were last put. Many pieces come largest first, and what is below
-// the last place of their size has been searched in vain already, or nearly: the next one is looked
-// for from there on, so that a page of n pieces is not scanned n times from the bottom. Sizes are
-// classes of a quarter of an octave; each class begins at the bottom and fills holes of its own.
+// The rows in which pieces of about the same size were last placed. Pieces come largest first.
+// Below the last place of a size class, the search has already failed for this size, or nearly so.
+// So the search for the next piece begins there, and a page with n pieces is not scanned n times
+// from the bottom. A class covers a quarter of an octave in width and in height. Each class begins
+// at the bottom and fills holes of its own.
 class LastPlaces {
  public:
   explicit LastPlaces(std::size_t pieces) : on_(used(pieces)) {}
@@ -148,7 +151,8 @@ class LastPlaces {
   std::int32_t lowest(const Mask& mask) {
     return on_ ? row_[static_cast<std::size_t>(class_of(mask))] : 0;
   }
-  // Nothing below `y` is free for this size; beyond the page when there was no place at all.
+  // Records that no place for this size is free below `y`. If there was no place at all, `y` is
+  // beyond the page.
   void searched(const Mask& mask, std::int32_t y) {
     if (!on_) return;
     std::int32_t& row = row_[static_cast<std::size_t>(class_of(mask))];
@@ -168,9 +172,9 @@ class LastPlaces {
   std::vector<std::int32_t> row_ = std::vector<std::int32_t>(on_ ? kSteps * kSteps : 0);
 };
 
-// The best direction and place of a piece on the page: heights are visited from the lowest up, at
-// each of them the directions whose feet may stand there. Each direction waits in the queue of the
-// next height that concerns it, so that nearly all heights are passed without a look at it.
+// Finds the best direction and place of a piece on the page. It visits heights from the lowest up,
+// and at each height the directions whose feet may stand there. Each direction waits in the queue
+// at the next height that concerns it, so nearly all heights are passed without examining it.
 class PlaceSearch {
  public:
   PlaceSearch(const Piece& piece, std::int32_t only, BitPage& page, LastPlaces& last)
@@ -209,26 +213,26 @@ class PlaceSearch {
  private:
   static constexpr std::int32_t kNowhere = std::numeric_limits<std::int32_t>::max();
   static constexpr std::size_t kMostDirections = 64;
-  static constexpr std::int32_t kQueue = 128;  // heights
+  static constexpr std::int32_t kQueue = 128;  // number of heights
 
   struct Foot {
     std::uint32_t direction;
-    std::int32_t lift;       // whole cells
-    std::int32_t row, last;  // the next row to stand on, and the last one
-    std::uint64_t likely;    // bit k: row + k; as many as are known
+    std::int32_t lift;       // in whole cells
+    std::int32_t row, last;  // the next row to stand on, and the last possible row
+    std::uint64_t likely;    // bit k: row + k; `known` bits are valid
     std::int32_t known;
 
     std::int32_t height() const { return row + lift; }
   };
 
-  // Heights far ahead are waited for in steps.
+  // A direction whose next height is beyond the queue waits in steps.
   void wait(std::size_t k, std::int32_t height) {
     const std::int32_t next = std::min(feet_[k].height(), height + kQueue - 1);
     queue_[static_cast<std::size_t>(next) % kQueue] |= std::uint64_t{1} << k;
   }
 
-  // Whether the foot may stand on its row; if not, it is moved to the next that has to be looked
-  // at.
+  // Returns whether the foot may stand on its row. If not, it is moved to the next row that has to
+  // be examined.
   bool visit(Foot& f, NestPlace& place) {
     const MaskTests& tests = piece_.tests[f.direction];
     if (f.known == 0) {
@@ -250,8 +254,8 @@ class PlaceSearch {
     return false;
   }
 
-  // Rows of every direction up to this height have been searched, at it only those before the one
-  // that was found.
+  // Records that the rows of every direction up to this height have been searched. At the height
+  // itself, only the directions before the one that was found have been searched.
   void note_searched(std::int32_t height, bool placed) {
     for (std::size_t k = 0; k < count_; ++k) {
       const Foot& f = feet_[k];
@@ -280,7 +284,7 @@ class Placer {
     nest.places.resize(pieces.size());
   }
 
-  // Looks for the piece's place; false if there is none, or nothing to place.
+  // Searches for the piece's place. Returns false if there is none, or if the piece has no cells.
   bool find(std::uint32_t id) {
     const Piece& piece = pieces_[id];
     if (piece.too_large) nest_.left_over.push_back(id);
@@ -293,7 +297,7 @@ class Placer {
     return false;
   }
 
-  // False if the page has become too high.
+  // Puts the piece on the page. Returns false if the page has become too high.
   bool put(std::uint32_t id) {
     const NestPlace& place = nest_.places[id];
     page_.put(pieces_[id].masks[place.direction], place.at);
@@ -341,7 +345,8 @@ void place_pieces_as(std::span<const Piece> pieces, const PlacedPlan& like, BitP
   page.clear();
   nest = {};
   placed.work.assign(n, 0);
-  // Where searches begin at the last place of their size, what was searched for before matters.
+  // If searches begin at the last place of a size, the result depends on earlier searches, so
+  // places cannot be copied.
   const bool known = like.work.size() == n && like.nest.left_over.empty() &&
                      like.nest.used_height <= plan.most_height && !LastPlaces::used(n);
   std::size_t begin = 0, end = n;
@@ -357,7 +362,7 @@ void place_pieces_as(std::span<const Piece> pieces, const PlacedPlan& like, BitP
       placed.work[k] = like.work[k];
       if (!nest.places[id].placed) continue;
       if (k >= end)
-        placer.count(id);  // nothing is looked for any more
+        placer.count(id);  // no more places are searched for
       else if (!placer.put(id))
         break;
       continue;

@@ -1,4 +1,4 @@
-// Internal: placing outlines on one page, and the search for a good order.
+// Internal: places outlines on one page, and searches for a good order of placing them.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +10,20 @@
 
 namespace atlas::pack {
 
-// One chart in all directions tried: direction k is turned by k · 360 / directions degrees.
+// One chart in all directions that are tried. Direction k is turned by k · 360 / directions
+// degrees.
 struct Piece {
   std::vector<Mask> masks;
   std::vector<MaskTests> tests;
   std::vector<Vec2d> origins;   // see RasterOptions; empty for coarse pieces
-  std::vector<double> centers;  // height of the mask's centre of mass
-  // A place's height is its foot's plus the direction's lift: half the mask's height and half the
-  // height of its centre.
+  std::vector<double> centers;  // height of each mask's centre of mass
+  // A direction's lift is half the mask's height plus half the height of its centre. The height of
+  // a place, by which places are compared, is the row of its foot plus the lift.
   std::vector<double> lifts;
-  std::vector<std::uint32_t> by_fraction;  // directions by the fraction of their lifts
-  bool too_large = false;  // in every direction: without masks, although the shape has corners
+  // Directions in ascending order of the fractional parts of their lifts.
+  std::vector<std::uint32_t> by_fraction;
+  // Too large in every direction: it has no masks, although the shape has corners.
+  bool too_large = false;
 
   std::int64_t cells() const {
     for (const Mask& m : masks)
@@ -30,30 +33,34 @@ struct Piece {
 };
 
 struct PieceOptions {
-  double factor = 1;                // texels of page a texel of the shape
-  std::span<const double> factors;  // 1 a shape, instead of the common factor; or empty
+  double factor = 1;                // texels of the page per texel of the shape
+  std::span<const double> factors;  // one per shape, instead of the common factor; or empty
   std::int32_t padding = 1, cell = 1;
   std::uint32_t directions = 4;
-  Extent page;  // cells; a direction in which a shape exceeds it gets no mask. 0 x 0: no limit
+  // The page in cells. A shape gets no mask in a direction in which it exceeds the page. 0 x 0: no
+  // limit.
+  Extent page;
 };
 
-// Rasterises shapes in all directions; quarter turns are exact turns of the masks. Without a page's
-// limit masks take memory by the length of the shapes.
+// Rasterises the shapes in all directions. Quarter turns are made by turning masks, which is exact.
+// Without the page as a limit, the memory that masks take grows with the length of the shapes.
 std::vector<Piece> make_pieces(std::span<const ChartOutline> shapes, const PieceOptions& options,
                                const Context& context);
 
 inline constexpr std::int32_t kFree = -1;
 
-// The order in which pieces are placed, and the direction of each (kFree: the best).
+// The order in which pieces are placed, and the direction of each (kFree: the best direction).
 struct NestPlan {
   std::vector<std::uint32_t> order;
-  std::vector<std::int32_t> direction;  // 1 a piece
-  // Placing ends with the piece that makes the page higher than this, which is left over.
+  std::vector<std::int32_t> direction;  // one per piece
+  // Placing ends with the first piece that makes the page higher than this. That piece is left
+  // over.
   double most_height = std::numeric_limits<double>::infinity();
 };
 
-// Largest first, by their cells alone or by their boxes, too: large frames, as of rings, then come
-// while there are pieces that lie within them.
+// Sorts by size, largest first. The size is the number of cells, or a weighted geometric mean of
+// this and the area of the box. With boxes, large frames such as rings are placed while there are
+// still pieces left that fit within them.
 enum class LargestBy : std::uint8_t { cells, boxes };
 NestPlan plan_by_size(std::span<const Piece> pieces, LargestBy by = LargestBy::cells);
 
@@ -66,46 +73,52 @@ struct NestPlace {
 };
 
 struct Nest {
-  std::vector<NestPlace> places;         // 1 a piece
-  std::vector<std::uint32_t> left_over;  // pieces without room, in order
+  std::vector<NestPlace> places;         // one per piece
+  std::vector<std::uint32_t> left_over;  // the pieces that found no room, in the order tried
   std::int32_t used_height = 0;
-  double potential = 0;  // sum over pieces of cells × height of the centre: breaks ties of height
+  // The sum over all pieces of cells × height of the centre; breaks ties of height.
+  double potential = 0;
 };
 
-// Puts the pieces of the plan on the page one after another, each where it ends lowest: the sum of
-// its foot, half its height and half the height of its centre is smallest. Pieces already in
-// nest.places stay.
+// Puts the pieces of the plan on the page one after another. Each goes where it ends lowest: where
+// the sum of its foot, half its height and half the height of its centre is smallest. Places in
+// nest.places of pieces that the plan does not contain are kept.
 void place_pieces(std::span<const Piece> pieces, const NestPlan& plan, BitPage& page, Nest& nest);
 
-// A plan, where its pieces came to lie on an empty page, and what looking for each place took.
+// A plan, the places of its pieces on a page that was empty at first, and the work that the search
+// for each place took.
 struct PlacedPlan {
   NestPlan plan;
   Nest nest;
-  std::vector<std::uint64_t> work;  // 1 a piece of the order, words; as if all had been looked for
+  // One per position of the order, in words; as if every place had been searched for.
+  std::vector<std::uint64_t> work;
 };
 
-// Places the plan of `placed` on the page, which is emptied first: as place_pieces() does, but
-// places are taken from `like` where both plans begin alike, and where they end alike if the pieces
-// between came to lie as they did. A page where that is so may lack the last pieces afterwards.
+// Places the plan of `placed` on the page, which is emptied first. The result is that of
+// place_pieces(). But if the plans of `placed` and `like` begin with the same pieces and
+// directions, the places of these are copied from `like`. If the plans also end alike, the places
+// at the end are copied as well, provided that the pieces in between lie as in `like`. In that case
+// the page may lack the last pieces afterwards.
 void place_pieces_as(std::span<const Piece> pieces, const PlacedPlan& like, BitPage& page,
                      PlacedPlan& placed);
 
 std::int32_t longest_run(std::span<const Piece> pieces);
 
-// A search for a plan that makes a strip of this width (cells) low, limited by work in words
-// looked at (2 to 5 ns each), by layouts or by time; deterministic unless time is the limit.
+// Limits of a search for a plan that makes a strip of this width (in cells) low. The work is
+// measured in words that are examined (2 to 5 ns each). The search is deterministic unless the time
+// limit ends it.
 struct NestSearchOptions {
   std::int32_t width = 0;
-  std::uint64_t work = UINT64_MAX;     // words
-  std::uint64_t layouts = UINT64_MAX;  // tried at most
-  std::int32_t enough = 0;             // stop when the strip is this low
+  std::uint64_t work = UINT64_MAX;     // in words
+  std::uint64_t layouts = UINT64_MAX;  // maximum number of layouts that are tried
+  std::int32_t enough = 0;             // the search stops when the strip is this low
   std::uint64_t seed = 1;
   double seconds = 1e300;  // wall time, for `best`
 };
 struct NestSearchResult {
-  Nest nest;                  // the lowest one found
-  std::uint64_t layouts = 0;  // tried
-  std::uint64_t work = 0;     // words
+  Nest nest;                  // the lowest nest found
+  std::uint64_t layouts = 0;  // layouts tried
+  std::uint64_t work = 0;     // in words
 };
 NestSearchResult search_nest(std::span<const Piece> pieces, const NestPlan& start,
                              const NestSearchOptions& options, const Context& context);

@@ -10,8 +10,8 @@
 namespace atlas::pack {
 namespace {
 
-// Disturbs a plan: swaps two pieces, moves one, or changes one's direction. Large pieces, which are
-// early in the order, decide the layout and are chosen more often.
+// Changes a plan a little: it swaps two pieces, moves one, or changes the direction of one. Large
+// pieces, which come early in the order, decide the layout and are chosen more often.
 class PlanMoves {
  public:
   PlanMoves(std::span<const Piece> pieces, std::uint64_t seed) : pieces_(pieces), random_(seed) {}
@@ -38,8 +38,8 @@ class PlanMoves {
   double unit() { return random_.unit(); }
 
  private:
-  // Position of the piece that ends highest: it comes earlier next time ("squeaky wheel", Joslin
-  // and Clements 1999).
+  // Returns the position of the piece whose top is highest. It is moved to an earlier position next
+  // time ("squeaky wheel", Joslin and Clements 1999).
   std::uint32_t highest(const NestPlan& plan, const Nest& nest) const {
     std::uint32_t best = 0;
     std::int32_t top = -1;
@@ -63,15 +63,17 @@ class PlanMoves {
   Random random_;
 };
 
-// Height in cells, with the potential as a fraction below one.
+// Returns the height in cells plus the potential as a fraction below one. Pieces that are left over
+// weigh more than any height.
 double energy(const Nest& nest, double total_cells) {
   if (!nest.left_over.empty()) return 1e6 * static_cast<double>(nest.left_over.size());
   const double mean = nest.potential / std::max(1.0, total_cells);
   return nest.used_height + mean / std::max(1.0, double(nest.used_height));
 }
 
-// How high a strip may become: pieces that do not nest, as slanted needles, could pile up for ever.
-// Beyond 256 MiB of rows, and four times what the pieces fill, they are left over.
+// Returns the maximum height of a strip. Pieces that do not nest, such as slanted needles, could
+// pile up without limit. They are left over beyond the larger of 256 MiB of rows and four times the
+// height that the pieces fill.
 std::int32_t most_rows(std::span<const Piece> pieces, double total_cells, std::int32_t width) {
   constexpr double kBytes = 1 << 28, kLevels = 12;
   std::int32_t tallest = 1;
@@ -91,7 +93,7 @@ NestSearchResult search_nest(std::span<const Piece> pieces, const NestPlan& star
   BitPage page(options.width, most_rows(pieces, total, options.width), longest_run(pieces));
   NestSearchResult found;
   std::uint64_t& spent = found.work;
-  // One piece has no order: after the start it is put down in each direction, once.
+  // A single piece has no order. After the start it is placed in each direction once.
   const bool alone = start.order.size() == 1;
   const std::uint64_t most_layouts =
       alone ? std::min<std::uint64_t>(options.layouts, 1 + pieces[start.order[0]].masks.size())
@@ -121,7 +123,8 @@ NestSearchResult search_nest(std::span<const Piece> pieces, const NestPlan& star
         1 - std::max(static_cast<double>(spent) / static_cast<double>(options.work),
                      static_cast<double>(found.layouts) / static_cast<double>(options.layouts));
     const double temperature = std::max(1e-9, 0.004 * best_energy * left * left);
-    // Metropolis' rule, the chance drawn first: a layout is given up as soon as it is too high.
+    // This is Metropolis' rule, but the random number is drawn first, so that a layout can be given
+    // up as soon as it is too high.
     const double most = current_energy - temperature * std::log(std::max(1e-300, moves.unit()));
     next.plan.most_height = most;
     const double e = evaluate(next);

@@ -50,7 +50,7 @@ void parallel_chains(const Context& context, std::size_t chains,
   });
 }
 
-// A piece costs about 0.0055 looks at a word a direction and a squared page side in cells.
+// A piece costs about 0.0055 examined words per direction and squared page side in cells.
 double layout_cost(std::size_t count, double side_cells, std::uint32_t directions) {
   return static_cast<double>(count) * directions * side_cells * side_cells * 0.0055;
 }
@@ -58,8 +58,8 @@ double layout_cost(std::size_t count, double side_cells, std::uint32_t direction
 GridChoice choose_grid(const GridWish& wish) {
   GridChoice best{wish.alignment, std::min(wish.rotations, 4u)};
   const double n = static_cast<double>(std::max<std::size_t>(wish.charts, 1));
-  // Coarse cells cost half a cell around each chart. A mean chart of 32 cells a side loses a few
-  // percent, and finer grids buy less than more layouts do.
+  // Coarse cells cost half a cell around each chart. If a mean chart is 32 cells wide, this is a
+  // few percent, and finer grids gain less than more layouts do.
   const auto cells_a_chart = [&](std::int32_t cell) {
     return wish.page_side / double(cell) * std::sqrt(0.75 / n);
   };
@@ -69,8 +69,8 @@ GridChoice choose_grid(const GridWish& wish) {
     return layout_cost(wish.charts, wish.page_side / double(best.cell), directions) <=
            wish.affordable;
   };
-  // Nor do needles fit coarse cells, which take a thousand long charts from 0.59 of a page to 0.56:
-  // for them a layout may cost more.
+  // Needles do not fit coarse cells well either: these reduced the fill of a page with a thousand
+  // long charts from 0.59 to 0.56. So a layout of needles may cost more.
   constexpr double kForNeedles = 8;
   const auto too_coarse = [&](std::int32_t cell) {
     const double cost =
@@ -94,7 +94,8 @@ using pack::Nest;
 using pack::NestPlan;
 using pack::Piece;
 
-constexpr std::int32_t kMostTexels = 1 << 17;  // of a page's side, and of a chart in an open page
+// Maximum side of a page, and of a chart on an open page.
+constexpr std::int32_t kMostTexels = 1 << 17;
 
 Status check(std::span<const ChartShape> shapes, const OutlineOptions& o) {
   if (o.page.width < 1 || o.page.height < 0 || o.page.width > kMostTexels ||
@@ -113,17 +114,17 @@ Status check(std::span<const ChartShape> shapes, const OutlineOptions& o) {
   return pack::check_shapes(shapes);
 }
 
-// The page in cells, after its border.
+// The page in cells, without its border.
 struct Grid {
-  std::int32_t cell = 1, origin = 0;  // texels
+  std::int32_t cell = 1, origin = 0;  // in texels
   std::uint32_t directions = 4;
-  Extent page;  // cells
+  Extent page;  // in cells
   bool open = false;
 };
 
 constexpr std::int32_t kOpenRows = 1 << 22;
 
-// `standard` spends about this many looks at words, 2 to 5 ns each.
+// `standard` examines about this many words, which take 2 to 5 ns each.
 constexpr double kStandardWork = 60e6, kAffordable = 100e6;
 
 Grid make_grid(std::size_t count, const OutlineOptions& o) {
@@ -139,7 +140,8 @@ Grid make_grid(std::size_t count, const OutlineOptions& o) {
                          fast ? 0.2 * kAffordable : kAffordable});
   grid.cell = choice.cell;
   grid.directions = choice.directions;
-  // Cells are a power of two times the alignment: the border is rounded up to the alignment only.
+  // Cells are a power of two times the alignment, but the border is only rounded up to the
+  // alignment.
   grid.origin = (o.border + o.alignment - 1) / o.alignment * o.alignment;
   const auto cells = [&](std::int32_t texels) {
     return std::max(0, (texels - o.border - grid.origin) / grid.cell);
@@ -154,7 +156,7 @@ struct OnePage {
   double seconds = 0;
 };
 
-// Searches over plans on a single page; returns the best of a few chains in the case of `best`.
+// Searches over plans on a single page. `best` runs a few chains, and the best result is returned.
 OnePage search_one_page(std::span<const Piece> pieces, const Grid& grid, const OutlineOptions& o,
                         const Context& context) {
   pack::NestSearchOptions s;
@@ -166,7 +168,7 @@ OnePage search_one_page(std::span<const Piece> pieces, const Grid& grid, const O
   if (o.preset == PackPreset::standard) s.work = static_cast<std::uint64_t>(kStandardWork);
   const std::size_t chains = o.preset == PackPreset::best ? 4 : 1;
   if (o.preset == PackPreset::best) {
-    // With fewer threads than chains they run one after another and share the time.
+    // If there are fewer threads than chains, the chains run one after another and share the time.
     s.seconds = o.time_budget * std::min(1.0, double(thread_count(context)) / double(chains));
     if (o.effort) s.layouts = std::max<std::uint64_t>(1, o.effort / chains);
   }
@@ -191,7 +193,7 @@ OnePage search_one_page(std::span<const Piece> pieces, const Grid& grid, const O
   return page;
 }
 
-// Fills page after page with what is left, largest first.
+// Fills page after page with the remaining pieces, largest first.
 std::vector<Nest> fill_pages(std::span<const Piece> pieces, const Grid& grid,
                              const OutlineOptions& o) {
   std::vector<Nest> nests;
@@ -208,7 +210,7 @@ std::vector<Nest> fill_pages(std::span<const Piece> pieces, const Grid& grid,
   return nests;
 }
 
-// Writes one page's nest into the result; pieces that no page holds are counted by the caller.
+// Writes one page's nest into the result. The caller lists the pieces that no page holds.
 void write_page(std::span<const Piece> pieces, const Nest& nest, const Grid& grid,
                 OutlineResult& result) {
   const auto page = static_cast<std::uint32_t>(result.pages.size());
@@ -227,7 +229,7 @@ void write_page(std::span<const Piece> pieces, const Nest& nest, const Grid& gri
   }
 }
 
-// Where a chart that meets no cell goes.
+// Returns the place of a chart that covers no cell.
 OutlinePlacement corner_place(const pack::ChartOutline& outline, double scale) {
   const Vec2d low = pack::low_corner_of(outline);
   OutlinePlacement place;
@@ -255,7 +257,7 @@ Result<OutlineResult> pack_outlines(std::span<const ChartShape> shapes,
   const std::vector<Piece> pieces = pack::make_pieces(outlines, piece_options, context);
   if (context.cancelled()) return Status::cancelled();
 
-  // A search for one page is of use where all may fit it.
+  // A search for one page is only useful if all charts may fit it.
   double cells = 0;
   bool one_page = options.max_pages == 1 || grid.open;
   for (const Piece& p : pieces) {

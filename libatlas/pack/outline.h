@@ -12,56 +12,62 @@
 
 namespace atlas {
 
-// A flat chart: a soup of triangles, 3 corners each, in texels at scale 1 (any origin, finite,
-// either orientation). What it points at must outlive it. No triangle: takes no room.
+// A flat chart: an unordered set of triangles in texels at scale 1. The coordinates may have any
+// origin; they must be finite and below 1e9 in absolute value. The triangles may have either
+// orientation. The data that the spans refer to must outlive the shape. A shape without triangles
+// takes no space.
 struct ChartShape {
-  std::span<const Vec2d> corners;            // the vertices
-  std::span<const std::uint32_t> triangles;  // 3 a triangle into corners; empty: corners are
-                                             // taken three by three
+  std::span<const Vec2d> corners;  // the vertices
+  // Three indices into corners per triangle; if empty, every three corners are a triangle.
+  std::span<const std::uint32_t> triangles;
 };
 
-// The area that the charts cover, triangles of a chart that lie on each other counted once: within
-// a hundredth or so of a chart's where some do. Errors: bad_input (a triangle's corner that is not
-// there, or one that is not finite).
+// Returns the area that the charts cover. Where triangles of one chart overlap, the area counts
+// once; the result for such a chart is exact to about a hundredth. Errors: bad_input (a triangle
+// refers to a corner that does not exist, a number of corners is not a multiple of three, or a
+// coordinate is not finite or reaches 1e9).
 Result<double> covered_area(std::span<const ChartShape> shapes, const Context& context);
 
 struct OutlineOptions {
-  Extent page{2048, 2048};      // texels; height 0: one page of open height
-  std::uint32_t max_pages = 1;  // 0: as many as it takes
-  double scale = 1;             // texels of page per texel of shape, > 0
-  std::int32_t padding = 1;     // texels around each chart that no other chart's padding touches
-  std::int32_t border = 0;      // free texels along the page's edges beyond the padding
-  std::int32_t alignment = 1;   // charts own whole cells of alignment × alignment texels
-  std::uint32_t rotations = 4;  // directions tried: multiples of 360/rotations degrees
+  Extent page{2048, 2048};      // in texels; height 0: one page of open height
+  std::uint32_t max_pages = 1;  // 0: as many as needed
+  double scale = 1;             // texels of the page per texel of a shape; > 0
+  // Width of the gutter around each chart in texels; gutters of two charts never overlap.
+  std::int32_t padding = 1;
+  std::int32_t border = 0;     // free texels along the page's edges, in addition to the padding
+  std::int32_t alignment = 1;  // charts own whole cells of alignment × alignment texels
+  // Maximum number of directions tried: multiples of 360/rotations degrees.
+  std::uint32_t rotations = 4;
   PackPreset preset = PackPreset::standard;
-  double time_budget = 1.0;  // of `best`, wall seconds
-  std::uint64_t effort = 0;  // of `best`: layouts tried at most; 0: no limit
+  double time_budget = 1.0;  // of `best`: wall time in seconds
+  std::uint64_t effort = 0;  // of `best`: maximum number of layouts that are tried; 0: no limit
   std::uint64_t seed = 1;
 };
 
-// Chart point p (texels at scale 1) goes to offset + scale · R(angle) · p in its page.
+// The chart point p (texels at scale 1) goes to offset + scale · R(angle) · p in its page.
 struct OutlinePlacement {
   std::uint32_t page = kNoPage;
-  double angle = 0;  // radians, counterclockwise
+  double angle = 0;  // in radians, counterclockwise
   Vec2d offset;
-  Rect box;  // cells owned, as texels, padding included; boxes of two charts may overlap
+  // The box of the owned cells in texels, padding included; boxes of two charts may overlap.
+  Rect box;
 };
 
 struct OutlineResult {
-  std::vector<OutlinePlacement> placements;  // 1 a shape
-  std::vector<Extent> pages;                 // texels; an open page's height is what was used
-  std::vector<std::uint32_t> unplaced;       // shapes without room, ascending
-  double shape_area = 0;                     // of the placed shapes, texels² of page
-  double utilization = 0;                    // shape_area / area of the pages
+  std::vector<OutlinePlacement> placements;  // one per shape
+  std::vector<Extent> pages;            // in texels; the height of an open page is the used height
+  std::vector<std::uint32_t> unplaced;  // shapes that found no room, ascending
+  double shape_area = 0;                // area of the placed shapes, in square texels of the page
+  double utilization = 0;               // shape_area / area of the pages
   std::uint64_t layouts_tried = 0;
   std::vector<PackProgress> curve;
 };
 
-// Places every shape such that no two padded shapes share a cell. "Padded" is exact: a cell
-// belongs to a chart if it touches (shares a point of positive distance < padding in the maximum
-// norm with) one of its triangles.
+// Places the shapes such that no two padded shapes share a cell. A cell belongs to a padded chart
+// if the cell's open square, widened by the padding on each side, meets one of the chart's
+// triangles. The masks hold exactly these cells.
 // Sources: Lévy et al. 2002, section 5 (horizons); docs/packing.md.
-// Errors: bad_option, bad_input (a coordinate is not finite), cancelled.
+// Errors: bad_option, bad_input (as for covered_area), cancelled.
 Result<OutlineResult> pack_outlines(std::span<const ChartShape> shapes,
                                     const OutlineOptions& options, const Context& context);
 

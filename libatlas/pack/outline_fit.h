@@ -1,4 +1,4 @@
-// Internal: charts laid out on pages at one scale, for the search of the largest.
+// Internal: lays charts out on pages at one scale, for the search for the largest scale.
 #pragma once
 
 #include <cstdint>
@@ -15,18 +15,19 @@
 namespace atlas::pack {
 
 struct OutlineLayout {
-  double scale = 0;                 // common; 0: none
-  std::vector<Piece> pieces;        // 1 a chart, as drawn
-  std::vector<double> factors;      // 1 a piece: its scale, larger where a minimum side asks for it
-  std::vector<std::uint32_t> page;  // 1 a piece
-  std::vector<NestPlace> places;    // 1 a piece
-  std::vector<Extent> page_sizes;   // cells
-  std::uint32_t moved = 0;          // pieces that left their group's page
-  std::uint64_t layouts = 0;        // tried, of all pages
+  double scale = 0;           // the common scale; 0: there is no layout
+  std::vector<Piece> pieces;  // one per chart, as rasterised
+  // One per piece: its scale, which is larger than the common one if a minimum side demands it.
+  std::vector<double> factors;
+  std::vector<std::uint32_t> page;  // one per piece
+  std::vector<NestPlace> places;    // one per piece
+  std::vector<Extent> page_sizes;   // in cells
+  std::uint32_t moved = 0;          // number of pieces that left their group's page
+  std::uint64_t layouts = 0;        // layouts tried on all pages
   GroupingResult grouping;
 };
 
-// Everything handed to it must outlive it.
+// All arguments of the constructor must outlive the object.
 class OutlineFit {
  public:
   OutlineFit(std::span<const FitItem> items, std::span<const ChartOutline> outlines,
@@ -41,49 +42,54 @@ class OutlineFit {
 
   FitBounds bounds() const;
 
-  // In which order pages are filled from now on; at first by cells.
+  // Sets the order in which pages are filled from now on. At first it is by cells.
   void place(LargestBy by) { by_ = by; }
 
-  // From now on few other orders are searched where that one fails.
+  // From now on, only few other orders are searched if the first order fails.
   void search_little() { search_little_ = true; }
 
-  // Of all pages, that masks take at this scale: found by drawing them, without packing.
+  // Returns the share of all pages that the masks take at this scale. The masks are rasterised for
+  // it, but not packed.
   double share(double scale) const;
 
-  // Lays all charts out on so many pages at this scale; false where they find no room. First with
-  // the groups of F(A) = N. They are balanced by area, but the first ones hold the few
-  // largest charts and nothing to fill the gaps with; where they fail, charts are dealt out such
-  // that every page gets large and small ones. A scale at which the groups failed is remembered:
-  // above it they are not tried again.
+  // Lays out all charts on this many pages at this scale. Returns false if they find no room. The
+  // groups of F(A) = N are tried first. They are balanced by area, but the first groups hold the
+  // few largest charts and nothing that fills the gaps between them. If the groups fail, the charts
+  // are dealt out such that every page gets large and small ones. The scale at which the groups
+  // failed is remembered, and they are not tried again at this scale or above.
   bool pack_at(double scale, std::uint32_t pages, OutlineLayout& layout);
 
   // Packs the charts of one page again into the smallest page size that holds them.
   void shrink_page(std::uint32_t page, OutlineLayout& layout) const;
 
  private:
-  // Draws the pieces.
+  // Rasterises the pieces.
   void prepare(double scale, OutlineLayout& layout) const;
 
-  // Largest first, each to the page with the least in it.
+  // Assigns the charts to pages, largest first, each to the page whose charts have the fewest cells
+  // so far.
   void deal_out(std::uint32_t pages, OutlineLayout& layout) const;
 
-  // Packs every page with the charts that layout.page gives it; what is left over moves.
+  // Packs every page with the charts that layout.page assigns to it. The charts that find no room
+  // move to other pages.
   bool pack_pages(std::uint32_t pages, OutlineLayout& layout) const;
 
   std::int64_t cells_of_pages(std::uint32_t pages) const;
   static std::int64_t cells_of(std::span<const Piece> pieces);
-  // False if the pieces' cells alone exceed the pages.
+  // Returns false if the pieces' cells alone exceed the pages.
   bool group(std::uint32_t pages, OutlineLayout& layout) const;
 
-  // How long orders are searched for one page. An effort is shared by the packings.
+  // Returns the limits of the search over orders for one page. A given effort is shared by the
+  // packings.
   NestSearchOptions search_of(std::size_t page) const;
 
-  // Page p gets the charts orders[p], largest first.
+  // Packs the charts orders[p], which come largest first, into page p.
   NestSearchResult fill_group(std::span<const Piece> pieces,
                               std::span<const std::vector<std::uint32_t>> orders, std::size_t p,
                               BitPage& page) const;
 
-  // Charts without room in their group's page go to the first page that has some, largest first.
+  // Puts charts that found no room in their group's page into the first page that has room, largest
+  // first.
   bool place_left_over(std::vector<std::uint32_t> left, std::vector<BitPage>& open,
                        OutlineLayout& layout) const;
 

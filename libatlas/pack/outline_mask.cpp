@@ -21,7 +21,8 @@ struct Bounds {
   }
 };
 
-// The x range of a triangle within the slab low <= y <= high, which it is known to enter.
+// Returns the x range of a triangle within the slab low <= y <= high. The triangle must enter the
+// slab.
 Bounds clip_to_slab(const std::array<Vec2d, 3>& t, double low, double high) {
   Bounds x;
   for (int i = 0; i < 3; ++i) {
@@ -34,7 +35,8 @@ Bounds clip_to_slab(const std::array<Vec2d, 3>& t, double low, double high) {
   return x;
 }
 
-// Rows [first, last] whose widened open slab (r cell - pad, (r + 1) cell + pad) meets [low, high].
+// The rows [first, last] whose widened open slab (r cell - pad, (r + 1) cell + pad) meets [low,
+// high].
 struct Rows {
   std::int32_t first, last;
   Rows(const Bounds& y, double pad, double cell) {
@@ -46,7 +48,7 @@ struct Rows {
   }
 };
 
-// The cells of a row whose widened open interval meets [x.low, x.high].
+// Returns the cells of a row whose widened open interval meets [x.low, x.high].
 Run cells_within(const Bounds& x, double pad, double cell) {
   std::int32_t begin = floor_of((x.low - pad) / cell);
   while ((begin + 1) * cell + pad <= x.low) ++begin;
@@ -88,16 +90,16 @@ void add_edge(Vec2d a, Vec2d b, const RasterOptions& options, RunSet& set) {
   }
 }
 
-// All that a mask can tell of an x.
+// All that a mask can distinguish about an x coordinate.
 struct Column {
-  Run cells;                 // that a point there touches
-  std::int32_t left, right;  // whose centres it lies between
+  Run cells;                 // the cells that a point at this x touches
+  std::int32_t left, right;  // the cells between whose centres it lies
   bool operator==(const Column&) const = default;
 };
 
-// Draws edges that follow each other. Where several stay within a column, as teeth finer than cells
-// do by the thousand, what they touch is the rows from the lowest to the highest, and what they
-// enclose depends on their ends alone.
+// Draws consecutive edges. Edges that stay within one column, which are thousands for teeth finer
+// than cells, are drawn together: they touch all rows from their lowest to their highest point, and
+// what they enclose depends only on their two ends.
 class EdgePen {
  public:
   EdgePen(const RasterOptions& options, RunSet& set, Interior& interior)
@@ -110,7 +112,7 @@ class EdgePen {
 
   void draw_to(Vec2d p) {
     std::optional<Column> column;
-    if (std::abs(p.x - at_.x) < options_.cell) {  // else in another column, whatever it is
+    if (std::abs(p.x - at_.x) < options_.cell) {  // otherwise it is another column in any case
       if (!column_) column_ = column_of(at_.x);
       column = column_of(p.x);
       if (column == column_) {
@@ -153,8 +155,8 @@ class EdgePen {
   const RasterOptions& options_;
   RunSet& set_;
   Interior& interior_;
-  Vec2d from_, at_;               // of what has been drawn in this column
-  std::optional<Column> column_;  // where it has been asked for
+  Vec2d from_, at_;               // ends of the part drawn in this column
+  std::optional<Column> column_;  // the column of at_, if it has been computed
   Bounds rows_;
   bool drawn_ = false;  // whether an edge lies within the column
 };
@@ -173,9 +175,11 @@ Mask rasterize(const ChartOutline& outline, const RasterOptions& options, Vec2d&
     bx.add(p.x);
     by.add(p.y);
   };
-  for (const auto& e : outline.edges) reach(e.from);  // closed: every end is a beginning
+  // Loops are closed: every end begins an edge.
+  for (const auto& e : outline.edges) reach(e.from);
   for (const auto& t : outline.loose) std::for_each(t.begin(), t.end(), reach);
-  // The chart's lower left corner lies one padding inside its box's, so no cell is wasted there.
+  // The chart's lower left corner lies one padding inside that of its box, so no cell is wasted
+  // there.
   origin = {options.padding - bx.low, options.padding - by.low};
   const auto place = [&](Vec2d p) {
     p = turn(p);
@@ -204,9 +208,9 @@ Mask rasterize(const ChartOutline& outline, const RasterOptions& options, Vec2d&
 }
 
 Mask quarter_turn(const Mask& mask) {
-  // (x, y) -> (height - 1 - y, x): a row of the result is a column of the input. Where a row
-  // differs from the one below it, a run of the column begins or ends; the difference of two rows
-  // is given by their run ends, sorted and taken in pairs.
+  // (x, y) moves to (height - 1 - y, x), so a row of the result is a column of the input. A run of
+  // the column begins or ends where a row differs from the one below it. The difference of two rows
+  // is found by sorting the ends of their runs and taking these in pairs.
   RunSet set;
   std::vector<std::int32_t> begun(static_cast<std::size_t>(mask.width), -1), ends;
   for (std::int32_t r = 0; r <= mask.height; ++r) {

@@ -1,4 +1,4 @@
-// Internal: a chart's shape on the cell grid, as runs of cells row by row.
+// Internal: a chart's mask, which is its shape on the cell grid as runs of cells row by row.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,15 @@
 
 namespace atlas::pack {
 
-// Cells [begin, end) of a row.
+// The cells [begin, end) of a row.
 struct Run {
   std::int32_t begin = 0, end = 0;
   bool operator==(const Run&) const = default;
 };
 
-// Rows 0 .. height - 1 from the bottom; the runs of row r are runs[first[r]] .. runs[first[r + 1]],
-// ascending, neither empty nor touching. The box is tight.
+// Rows are numbered 0 .. height - 1 from the bottom. The runs of row r are runs[first[r]] ..
+// runs[first[r + 1] - 1]. They are in ascending order, not empty, and do not touch. The box is
+// tight.
 struct Mask {
   std::int32_t width = 0, height = 0;
   std::vector<std::uint32_t> first;
@@ -29,27 +30,30 @@ struct Mask {
   bool operator==(const Mask&) const = default;
 };
 
-// How a chart meets the cell grid: chart point p lies at origin + factor · R(angle) · p texels from
-// the lower left corner of the mask's box.
+// How a chart is mapped to the cell grid: the chart point p lies at origin + factor · R(angle) · p
+// texels from the lower left corner of the mask's box.
 struct RasterOptions {
   double factor = 1, angle = 0;
   std::int32_t padding = 1, cell = 1;
 };
 
-// All cells whose open square, widened by the padding on each side, meets a triangle. A chart with
-// corners but without area still owns the cells around them. No corner: an empty mask.
+// Returns all cells whose open square, widened by the padding on each side, meets a triangle. A
+// chart that has corners but no area still owns the cells around the corners. A chart without
+// corners gets an empty mask. `origin` receives the origin of RasterOptions.
 Mask rasterize(const ChartOutline& outline, const RasterOptions& options, Vec2d& origin);
 
-// The mask turned by 90 degrees counterclockwise.
+// Returns the mask turned by 90 degrees counterclockwise.
 Mask quarter_turn(const Mask& mask);
 
-// By 180 degrees: far less work.
+// Returns the mask turned by 180 degrees. This takes far less work than a quarter turn.
 Mask half_turn(const Mask& mask);
 
-// Whether a cell of `a` lies on one of `b` when b is put dx, dy cells right of and above a.
+// Returns whether a cell of `a` coincides with one of `b` if b is put dx cells to the right of a
+// and dy cells above it.
 bool overlap(const Mask& a, const Mask& b, std::int32_t dx, std::int32_t dy);
 
-// The mask on cells `factor` times as large: every cell that holds one of the mask.
+// Returns the mask on cells that are `factor` times as large: every large cell that contains a cell
+// of the mask.
 Mask coarsen(const Mask& mask, std::int32_t factor);
 
 }  // namespace atlas::pack

@@ -15,10 +15,11 @@ using pack::Cells;
 using pack::Layout;
 using pack::Problem;
 
-// Of a page and the padding that its cells reach beyond it, texels: sums of two stay in 32 bits.
+// Maximum side of a page in texels, with the padding that its cells extend beyond it. Sums of two
+// sides stay within 32 bits.
 constexpr std::int32_t kLongestSide = 1 << 30;
 
-// Cells along a side that is open: as many as the longest page has.
+// Returns the number of cells along an open side: as many as the longest page has.
 std::int32_t open_side(const PackOptions& options, const Cells& cells) {
   return cells.page(kLongestSide - options.padding);
 }
@@ -57,7 +58,7 @@ Status check(std::span<const Extent> items, const PackOptions& o) {
   return {};
 }
 
-// The items that the engines get to see, in cells, and who they are.
+// The items that the engines are given, in cells, and their ids.
 struct Active {
   std::vector<Extent> sizes;
   std::vector<std::uint32_t> ids;
@@ -88,7 +89,7 @@ Active select_items(std::span<const Extent> items, const Cells& cells, const Pac
   return active;
 }
 
-// All sums of areas, of items or of pages that are filled, stay below this.
+// Checks that sums of areas, of items or of filled pages, stay below kMost.
 Status check_area(std::span<const Extent> items, const Active& active) {
   constexpr double kMost = 0x1p62;
   double cells = 0, texels = 0;

@@ -1,4 +1,5 @@
-// Packing rectangles into pages. Knows integers only: charts, images and sprites look alike here.
+// Packs rectangles into pages. It works on integers only, so charts, images and sprites are all the
+// same to it.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +21,10 @@ struct Extent {
 
 inline constexpr std::uint32_t kNoPage = std::numeric_limits<std::uint32_t>::max();
 
-// Where an item went. The item covers [x, x + width) × [y, y + height) of its page, with width and
-// height swapped if rotated (a quarter turn counterclockwise).
+// The place of an item. The item covers [x, x + width) × [y, y + height) of its page. If `rotated`
+// is set, the item is turned a quarter counterclockwise, and its width and height are swapped.
 struct Placement {
-  std::uint32_t page = kNoPage;  // kNoPage: not placed
+  std::uint32_t page = kNoPage;  // kNoPage: the item was not placed
   std::int32_t x = 0, y = 0;
   bool rotated = false;
   bool placed() const { return page != kNoPage; }
@@ -31,46 +32,50 @@ struct Placement {
 };
 
 enum class PackPreset {
-  fast,      // one pass over the gaps of the skyline, widest item first: O(n log n)
-  standard,  // the better of a few passes of free-rectangle and skyline engines within a small
-             // effort
-  best,      // standard, then local search over orders until a time or effort budget is spent
+  fast,      // fills the gaps of the skyline in one pass, widest item first: O(n log n)
+  standard,  // up to 1000 items: local search with a small, fixed effort; more: the best of a few
+             // passes of the gap, free-rectangle and skyline engines
+  best,      // local search over orders until a time or effort budget is spent
 };
 
-// Which packer does the work; automatic lets the preset choose.
+// Which packer does the work. With `automatic` the preset decides.
 enum class PackEngine {
   automatic,
-  skyline_bottom_left,  // first fit by height over skylines with waste maps, lowest place first
-  skyline_min_waste,    // the same, place with the least buried area first
+  skyline_bottom_left,  // first fit by height over skylines with waste maps; takes the lowest place
+  skyline_min_waste,    // the same, but takes the place that buries the least area
   max_rects,            // first fit by height over lists of maximal free rectangles
 };
 
-// A rectangle that must stay where it is. Nothing else is put there; it may lie anywhere in a page.
+// A rectangle that must stay where it is. Nothing else is put there. It may lie anywhere in a page.
 struct PinnedRect {
   std::uint32_t page = 0;
   Rect rect;
 };
 
 struct PackOptions {
-  // Largest page, texels (1 .. 2^30 less the padding). height 0: one page of open height (a strip)
-  // whose used height is made small. Both 0: one page, free in both directions, made nearly square.
-  // An open side is at most that long, too.
+  // Largest page, in texels; each side is in 1 .. 2^30 - padding. If the height is 0, there is one
+  // page of open height (a strip), and its used height is made small. If both sides are 0, there is
+  // one page that is free in both directions, and it is made nearly square. An open side is limited
+  // to 2^30 - padding, too.
   Extent page{2048, 2048};
-  std::uint32_t max_pages = 0;  // 0: as many as it takes
-  bool allow_rotation = false;  // quarter turns
-  std::int32_t padding = 0;     // free texels between any two items, >= 0
-  std::int32_t border = 0;      // free texels along the page's edges, >= 0
-  std::int32_t alignment = 1;   // items begin at multiples of this (from the page's corner), >= 1
-  // Shape of the pages reported in the result: cut to what is used, then rounded up.
-  bool crop = false;          // false: pages keep the size `page`
-  bool power_of_two = false;  // each side rounded up to a power of two (needs page sides to be)
+  std::uint32_t max_pages = 0;  // 0: as many as needed
+  bool allow_rotation = false;  // allows quarter turns
+  std::int32_t padding = 0;     // free texels between any two items; >= 0
+  std::int32_t border = 0;      // free texels along the page's edges; >= 0
+  // Items begin at multiples of this, counted from the page's corner; >= 1.
+  std::int32_t alignment = 1;
+  // The shape of the pages that the result reports: each is cut to what is used and then rounded
+  // up.
+  bool crop = false;  // false: pages keep the size `page`
+  // Each side is rounded up to a power of two; the sides of `page` must be powers of two.
+  bool power_of_two = false;
   bool square = false;
   PackPreset preset = PackPreset::standard;
   PackEngine engine = PackEngine::automatic;
-  // Limits of `best`. The result depends on effort and seed only, never on the thread count, as
-  // long as the time limit does not strike first.
-  double time_budget = 1.0;  // wall seconds; infinity allowed
-  std::uint64_t effort = 0;  // layouts tried at most; 0: no limit
+  // Limits of `best`. As long as the time limit is not reached, the result depends on effort and
+  // seed only, never on the thread count.
+  double time_budget = 1.0;  // wall time in seconds; infinity is allowed
+  std::uint64_t effort = 0;  // maximum number of layouts that are tried; 0: no limit
   std::uint64_t seed = 1;
   std::span<const PinnedRect> pinned;
 };
@@ -85,30 +90,31 @@ struct UnplacedItem {
 // A point of the curve of density against effort.
 struct PackProgress {
   double seconds = 0;         // wall time since the start
-  std::uint64_t layouts = 0;  // tried so far
+  std::uint64_t layouts = 0;  // layouts tried so far
   std::uint32_t pages = 0;
-  std::int64_t used_height = 0;  // of the last page
+  std::int64_t used_height = 0;  // used height of the last page
 };
 
 struct PackResult {
-  std::vector<Placement> placements;   // 1 an item, in input order
-  std::vector<Extent> pages;           // size of every page used
-  std::vector<UnplacedItem> unplaced;  // counted and named, ascending by item
-  std::int64_t placed_area = 0;        // texels² of the items, without padding
+  std::vector<Placement> placements;   // one per item, in input order
+  std::vector<Extent> pages;           // the size of every page used
+  std::vector<UnplacedItem> unplaced;  // every item that was not placed, ascending by item
+  std::int64_t placed_area = 0;        // area of the placed items without padding, in square texels
   double utilization = 0;              // placed_area / total area of the pages
-  double fill_without_last = 0;        // the same without the last page; 1 if there is only one
+  double fill_without_last = 0;  // the same without the last page; 1 if there is only one page
   std::uint32_t page_lower_bound = 0;  // no packing needs fewer pages than this
   std::uint64_t layouts_tried = 0;
-  std::vector<PackProgress> curve;  // improvements in the order found
+  std::vector<PackProgress> curve;  // the improvements, in the order in which they were found
 };
 
-// Packs the items into pages. Input order is kept; ties are broken by index.
-// Degenerate items: a side of 0 takes no room and is reported at the corner of page 0; an item
-// larger than the page (border included) is unplaced, too_large; with max_pages or pinned
-// rectangles exhausted it is unplaced, no_room. Negative sides are bad_input, and so are items of
-// more than 2^62 texels² together, or with their padding, but for those that are too large.
-// Sources: Jylänki 2010 (skyline, waste map, maximal rectangles), Burke et al. 2004 (best fit),
-// Wei et al. 2011 and Leung et al. 2011 (skyline scores, local search); docs/packing.md.
+// Packs the items into pages. The placements are in input order, and ties are broken by index. An
+// item with a side of 0 takes no space and is reported at the corner of page 0. An item that is
+// larger than the page (border included) is unplaced as too_large. An item that finds no free
+// place, because of max_pages or pinned rectangles, is unplaced as no_room. Negative sides are
+// bad_input. So are items whose total area exceeds 2^62 square texels, or 2^62 cells of alignment ×
+// alignment texels with their padding; items that are too large do not count.
+// Sources: Jylänki 2010 (skyline, waste map, maximal rectangles), Burke et al. 2004 (best fit), Wei
+// et al. 2011 and Leung et al. 2011 (skyline scores, local search); docs/packing.md.
 // Errors: bad_option, bad_input, cancelled.
 Result<PackResult> pack_rects(std::span<const Extent> items, const PackOptions& options,
                               const Context& context);

@@ -1,4 +1,4 @@
-// Internal: finds the first open page that may have room for an item in logarithmic time.
+// Internal: finds the first open page that may have room for an item, in logarithmic time.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace atlas::pack {
 
-// A tournament tree over what the pages offer at most. A page that passes may still turn out to
-// have no room (see Room): ask for the next.
+// A tournament tree over the Rooms of the pages. A page that passes may still turn out to have no
+// room (see Room); the caller then asks for the next page.
 class PageIndex {
  public:
   void push_back(const Room& room) {
@@ -28,7 +28,7 @@ class PageIndex {
     }
   }
 
-  // The first page >= from that passes for the item; count() if none.
+  // Returns the first page >= from that passes for the item; count() if there is none.
   std::size_t next(std::size_t from, Extent item, bool allow_rotation) const {
     if (from >= count_) return count_;
     const std::size_t found = descend(1, 0, leaves_, {from, item, allow_rotation});

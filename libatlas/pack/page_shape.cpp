@@ -22,7 +22,8 @@ std::int32_t widest_item(const Problem& problem) {
   return widest;
 }
 
-// Around the square's; of pages that are rounded up the sides that these can have.
+// Returns the widths to try, around that of the square. If pages are rounded up to powers of two,
+// these are the sides that pages can have.
 std::vector<std::int32_t> widths_to_try(const Problem& problem, const PackOptions& options) {
   const bool free = options.page.width == 0;
   const std::int32_t most = free ? problem.page.height : problem.page.width;
@@ -46,7 +47,7 @@ std::vector<std::int32_t> widths_to_try(const Problem& problem, const PackOption
   return widths;
 }
 
-// What a layout uses of its page, texels.
+// Returns the part of its page, in texels, that a layout uses.
 Extent used_page(const Problem& problem, const Layout& layout, const PackOptions& options) {
   Extent used;
   for (std::size_t i = 0; i < problem.items.size(); ++i) {
@@ -83,8 +84,8 @@ std::int32_t square_width(const Problem& problem, std::int32_t most) {
 
 namespace {
 
-// The smallest page over all widths to try, if it is smaller than that of `best`, which may be
-// empty.
+// Returns the layout with the smallest page over all widths to try, or `best` if none is smaller.
+// `best` may be empty.
 Layout solve_widths(const Problem& problem, const PackOptions& options, const Context& context,
                     PackResult& result, Layout best) {
   const bool free = options.page.width == 0;

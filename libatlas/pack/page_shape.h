@@ -1,4 +1,4 @@
-// Internal: pages that may be smaller than they are allowed to be.
+// Internal: pages that may be smaller than the largest size allowed.
 #pragma once
 
 #include "libatlas/pack/cells.h"
@@ -6,15 +6,16 @@
 
 namespace atlas::pack {
 
-// The page reported for what is used of it, texels: cropped and rounded up as asked for.
+// Returns the page that is reported if `used` texels of it are used: cropped and rounded up as the
+// options demand.
 Extent shaped_page(Extent used, const PackOptions& options);
 
-// Width of a free page, cells: of a square that the items would fill to 95 %, but wide enough for
-// each, and at most `most`.
+// Returns the width of a free page in cells. It is that of a square that the items would fill to 95
+// %, but at least the width of every item, and at most `most`.
 std::int32_t square_width(const Problem& problem, std::int32_t most);
 
-// Solves by the preset; a page that is free, or cropped and enough for all, also at other widths,
-// of which the smallest page is taken.
+// Solves the problem according to the preset. If the page is free, or is cropped and holds all
+// items, other widths are tried as well, and the smallest page is taken.
 Layout solve_shape(const Problem& problem, const PackOptions& options, const Context& context,
                    PackResult& result);
 

@@ -1,4 +1,4 @@
-// Internal: the taken cells of a page, where places are only checked and not searched for.
+// Internal: the occupied cells of a page on which places are only checked, not searched for.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,8 @@
 
 namespace atlas::pack {
 
-// A bit a cell: a tenth of a BitPage's memory and of the time to put a mask there.
+// Stores one bit per cell. Compared with BitPage, it takes a tenth of the memory and a tenth of the
+// time to put a mask.
 class PlainPage {
  public:
   PlainPage() = default;
@@ -21,9 +22,11 @@ class PlainPage {
   std::int32_t width() const { return width_; }
   std::int32_t height() const { return height_; }
 
-  // Whether all cells of the mask, put there, are free. The mask's box lies in the page.
+  // Returns whether all cells of the mask at this place are free. The mask's box must lie in the
+  // page.
   bool is_free(const Mask& mask, BitPage::Place at) const {
-    // Halves first, then quarters, ...: overlaps mostly span a few rows.
+    // Checks rows in the order of halves, quarters and so on, since overlaps mostly span a few
+    // rows.
     std::int32_t step = 1;
     while (step < mask.height) step *= 2;
     if (mask.height > 0 && meets(mask, 0, at)) return false;
@@ -58,7 +61,7 @@ class PlainPage {
         for_words(run, at.x, [&](std::size_t w, std::uint64_t cells) { visit(row[w], cells); });
   }
 
-  // Calls visit(word, cells of the run in it).
+  // Calls visit(word, cells of the run in this word).
   template <class Visit>
   static void for_words(const Run& run, std::int32_t x, Visit visit) {
     const auto begin = static_cast<std::size_t>(x + run.begin);

@@ -11,15 +11,16 @@
 namespace atlas::pack {
 namespace {
 
-// A page emptier than this, as a third of those measured are, is drawn a second time: the emptiest
-// gain one to two points by it, while more starts for all would win a tenth of that in the same
-// time. One that is emptier still is drawn a third time.
+// A page that is filled less than this gets a second draw of random starts; of the pages that were
+// measured, these were a third. The emptiest pages gain one to two percentage points, whereas more
+// starts for all pages would gain a tenth of that in the same time. A page that is filled less than
+// kPoorerFill gets a third draw.
 constexpr double kPoorFill = 0.715, kPoorerFill = 0.70;
-// By what further draws raise a page's fill at most but for one of twenty pages that are drawn
-// again: after the first and the second.
+// Further draws raise the fill of 19 of 20 redrawn pages by at most these factors: after the first
+// draw, and after the second.
 constexpr double kMostRedrawn = 1.045, kMostRedrawnTwice = 1.025;
-// Few are worth pressing: what a start's cells say about its page is nearly what the press makes of
-// it. What the time of more of them buys is less than that of more layouts.
+// Only few starts are worth pressing, because the layout on cells nearly determines how well its
+// page can be pressed. More layouts gain more than pressing more starts in the same time.
 constexpr std::size_t kRoughStarts = 4, kThoroughStarts = 2;
 constexpr std::size_t kMostCharts = 128;
 
@@ -57,7 +58,7 @@ class Press {
     return best;
   }
 
-  // Starts are drawn by chance.
+  // Makes a draw: random starts, of which the best are pressed and settled.
   void draw(PressedPage& best) {
     std::vector<PressStart> starts = starts_.make(best.draws++);
     for (const PressStart& s : starts) {
@@ -74,7 +75,7 @@ class Press {
  private:
   bool alone() const { return outlines_.size() <= 1; }
 
-  // The starts whose pages are smallest, each pushed together.
+  // Pushes the charts of the starts with the smallest pages together.
   void press_best(std::vector<PressStart>& starts, std::size_t most, const Effort& effort) const {
     sort_starts(starts);
     parallel_for(
@@ -85,7 +86,8 @@ class Press {
         });
   }
 
-  // The page's longer side will be the largest allowed: a texel of it is `texel` of the bodies'.
+  // The page's longer side will be the largest allowed. One texel of it is `texel` units of the
+  // bodies.
   SqueezeOptions squeeze_options(const SqueezePage& page, const Effort& effort) const {
     SqueezeOptions options;
     options.first_step = effort.first_step;
@@ -131,11 +133,13 @@ class Press {
     });
   }
 
-  // The fullest start is pressed once more with finer outlines and placed exactly, and the next
-  // where that fails, or where charts are so few that chance decides which of two comes out fuller.
+  // Presses the fullest start once more with finer outlines and places it exactly. The next start
+  // follows if that fails, or if there are so few charts that chance decides which of two starts
+  // becomes fuller.
   void settle_best(std::vector<PressStart>& starts, PressedPage& best) const {
     constexpr std::size_t kFew = 16, kMost = 6;
-    constexpr double kClose = 0.99;  // one emptier than this share of the fullest never does
+    // Share of the fullest start's fill; an emptier start never becomes fuller.
+    constexpr double kClose = 0.99;
     sort_starts(starts);
     const double fullest = goodness(starts.front().page, options_);
     bool settled = false;
@@ -149,11 +153,12 @@ class Press {
     }
   }
 
-  // Exact masks reach up to a cell beyond the bodies. Where charts lie in each other's notches and
-  // little of the page's fill is left for that, bodies with more room around them do better.
+  // Exact masks extend up to a cell beyond the bodies. If charts lie in each other's notches,
+  // settling may lose much of the page's fill. Then bodies with more room around them give a better
+  // result.
   bool settle_start(PressStart& s, PressedPage& best) const {
-    constexpr double kMostLost = 0.03;         // of the fill
-    constexpr std::array kMoreRoom{0.0, 0.8};  // alignments
+    constexpr double kMostLost = 0.03;         // share of the fill
+    constexpr std::array kMoreRoom{0.0, 0.8};  // in multiples of the alignment
     bool settled = false;
     for (const double more : kMoreRoom) {
       if (s.poses.empty() || goodness(s.page, options_) == 0) return settled;
@@ -162,7 +167,8 @@ class Press {
       const SqueezePage before = s.page;
       push_together(DrawnChart::fine, polish, s);
       const bool polished = goodness(s.page, options_) > 0;
-      if (!polished) s.page = before;  // finer outlines overlap too much: as they were
+      // Finer outlines overlap too much, so the page stays as it was.
+      if (!polished) s.page = before;
       const double pressed = fill(starts_.scale(), s.page.width, s.page.height);
       const PressedPage page = settle_exactly(s);
       settled = settled || page.scale > 0;
@@ -216,15 +222,16 @@ double book_round(const FitOptions& options, double seconds, double use, Pressed
   if (best.scale > 0 && (best.curve.empty() || best.curve.back().utilization < use))
     best.curve.push_back({seconds, best.layouts, use});
   if (options.effort == 0) return seconds / options.time_budget;
-  // One of 60 triangles of one size, that all fit nearly everywhere, takes 2 million words on a
-  // page of 512 cells a side, which made 1250 of them last 3.5 s: such a layout counts for several.
+  // 1250 layouts of 60 triangles of one size, which all fit nearly everywhere, took 3.5 s: each
+  // examines 2 million words on a page of 512 cells a side. Such a layout counts as several.
   constexpr double kWordsALayout = 500'000;
   const double work = double(best.work) / kWordsALayout;
   return std::max(double(best.layouts), work) / double(options.effort);
 }
 
 bool worth_pressing(std::span<const ChartOutline> outlines, const FitOptions& options) {
-  constexpr double kSurelyFits = 0.5;  // at the largest scale: the page may even be smaller
+  // Share of the page at the largest scale; the page may even become smaller.
+  constexpr double kSurelyFits = 0.5;
   const double page = double(options.page_size) * options.page_size;
   double area = 0;
   for (const ChartOutline& o : outlines) area += o.area;

@@ -1,4 +1,4 @@
-// Internal: few charts on one page, packed as full as a search, a press and exact masks allow.
+// Internal: packs few charts on one page as densely as a search, pressing and exact masks allow.
 #pragma once
 
 #include <cstdint>
@@ -12,48 +12,55 @@ namespace atlas::pack {
 struct PressedPlace {
   bool placed = false;
   double angle = 0;
-  Vec2d offset;  // page texel of the shape's origin
-  Rect box;      // of the mask, texels
+  Vec2d offset;  // position in the page, in texels, of the shape's origin
+  Rect box;      // the mask's box in texels
 };
 
-// Where a chart should be: its point p at origin + scale · R(angle) (p + from), origin in texels of
-// a page whose longer side is the largest allowed.
+// Where a chart should lie. Its point p should be at origin + scale · R(angle) (p + from). The
+// origin is in texels of a page whose longer side is the largest allowed.
 struct SettleTarget {
   Vec2d origin, from;
   double angle = 0;
 };
 
 struct PressedPage {
-  double scale = 0;                  // 0: found none
-  Extent page;                       // texels; both sides at most options.page_size
-  std::vector<PressedPlace> places;  // 1 a shape
-  // What the places came from: where bodies lay at this scale, a little larger than `scale`. Empty
-  // where charts were not pressed but laid in rows.
+  double scale = 0;                  // 0: no layout was found
+  Extent page;                       // in texels; both sides are at most options.page_size
+  std::vector<PressedPlace> places;  // one per shape
+  // The targets from which the places were made: the poses of the rigid bodies at target_scale,
+  // which is a little larger than `scale`. Empty if the charts were laid in rows instead of
+  // pressed.
   std::vector<SettleTarget> targets;
   double target_scale = 0;
   std::vector<FitProgress> curve;
-  std::uint64_t layouts = 0, work = 0;  // of starts; work in words looked at
-  std::uint32_t draws = 0;              // of starts, by chance
+  // The number of layouts tried, and of words examined, to find the layouts from which pressing
+  // starts.
+  std::uint64_t layouts = 0, work = 0;
+  std::uint32_t draws = 0;  // number of times that random starts were drawn
 };
 
-// Where a search begins: before the first round, or after it where `standard` has made it already.
+// Returns the page with which a search begins: an empty one, or the state after the first round if
+// `standard` has done that already.
 PressedPage begun_page(const FitOptions& options);
 
-// Books a round of a search that has come to `best` after so many seconds: a step of its curve
-// where it fills more of the page than before (`use`, a share). Returns the share of the effort, or
-// of the time, that is spent.
+// Records a round of a search that has found `best` after this many seconds. `use` is the share of
+// the page that it fills. If this is more than before, a point is added to the curve. Returns the
+// share of the effort, or of the time, that has been spent.
 double book_round(const FitOptions& options, double seconds, double use, PressedPage& best);
 
-// Whether press_outlines is meant for this: one page, no hurry, not too many charts, free turns.
+// Returns whether press_outlines is suitable: there is one page of at least 256 texels a side, the
+// preset is not `fast`, the charts are few and may be turned by any angle, and they are likely to
+// be larger than half the page at the largest scale.
 bool worth_pressing(std::span<const ChartOutline> outlines, const FitOptions& options);
 
-// Layouts on coarse cells for several widths of the page, each then pushed together as rigid
-// bodies, the best of them placed exactly. The options have been checked.
+// Makes layouts on coarse cells for several widths of the page, pushes the best of them together as
+// rigid bodies, and places the best of these exactly. The options must have been checked.
 PressedPage press_outlines(std::span<const ChartOutline> outlines, const FitOptions& options,
                            const Context& context);
 
-// press_outlines draw by draw, for what compares pages and needs few of them in full: the next draw
-// of a page, and whether one is worth it, as press_outlines decides except for `best`.
+// These do what press_outlines does, one draw at a time, for callers that compare pages and need
+// few of them in full. draw_again makes the next draw of a page. worth_another_draw returns whether
+// one is worthwhile, by the rule that press_outlines uses for all presets but `best`.
 void draw_again(std::span<const ChartOutline> outlines, const FitOptions& options,
                 const Context& context, PressedPage& page);
 bool worth_another_draw(std::uint32_t draws, double fill, double wanted_fill);

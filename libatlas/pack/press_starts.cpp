@@ -11,23 +11,29 @@
 namespace atlas::pack {
 namespace {
 
-// Page fill at which the search begins; only the ratio of charts to gutters depends on it.
+// The fill of the page at which the search begins. Only the ratio of charts to gutters depends on
+// it.
 constexpr double kExpectedFill = 0.8;
-constexpr double kMostSides = 2;             // of the page, drawn: the longest chart
-constexpr double kMostCells = 1 << 21;       // of the finest grid under one chart's box
-constexpr std::size_t kStartedCharts = 480;  // over all starts: fewer charts get more of them
+// Relative to the page's side: maximum length of a rasterised chart.
+constexpr double kMostSides = 2;
+constexpr double kMostCells = 1 << 21;  // number of cells of the finest grid in one chart's box
+// Charts in all starts together; fewer charts get more starts.
+constexpr std::size_t kStartedCharts = 480;
 constexpr std::size_t kMostStarts = 20;
-constexpr std::uint64_t kSearchWork = 160'000'000;  // words looked at by all starts, 2 ns each
-constexpr std::uint64_t kLayouts = 32;              // of one start
-constexpr std::uint32_t kMostDoublings = 4;         // of both, a round of `best` each
+// Words examined by all starts together, 2 ns each.
+constexpr std::uint64_t kSearchWork = 160'000'000;
+constexpr std::uint64_t kLayouts = 32;  // layouts of one start
+// Maximum number of doublings: `best` doubles both kSearchWork and kLayouts each round.
+constexpr std::uint32_t kMostDoublings = 4;
 constexpr std::uint32_t kDirections = 24;
-// Cells across a page: at first, of many charts, and when drawn again. Finer cells lose less of the
-// gaps between charts with narrow limbs, and take longer.
+// The number of cells across a page: normally, for many charts, and from the second draw on. Finer
+// cells lose less of the gaps between charts with narrow limbs, but they take longer.
 constexpr int kCells = 128, kCellsOfMany = 192, kFineCells = 256;
 constexpr std::size_t kManyCharts = 48;
-// Of the square page's side: what is longer may lie along the strip; the narrowest strip.
+// Relative to the square page's side: charts longer than kLong may lie along the strip, and kNarrow
+// is the width of the narrowest strip.
 constexpr double kLong = 1.2, kNarrow = 0.4;
-constexpr int kTurns = 180;  // of a single chart, in a quarter turn
+constexpr int kTurns = 180;  // number of directions of a single chart within a quarter turn
 
 }  // namespace
 
@@ -48,7 +54,7 @@ PressStarts::PressStarts(std::span<const ChartOutline> outlines, const FitOption
     const Vec2d box = box_of(o, 0);
     longest = std::max({longest, box.x, box.y});
   }
-  // What is longer will lie along the page, far smaller than its area tells.
+  // A longer chart will lie along the page, and the scale is far smaller than its area suggests.
   const double by_area = std::sqrt(kExpectedFill * page / area);
   scale_ = std::min(by_area, kMostSides * options.page_size / longest);
   side_ = options.page_size * (scale_ / by_area);
@@ -67,7 +73,8 @@ std::vector<PressStart> PressStarts::make(std::uint32_t round) {
   return starts;
 }
 
-// The search needs outlines only as fine as its cells; exact masks come last.
+// Rasterises the charts as rigid bodies. The search only needs outlines as fine as its cells,
+// because exact masks are used later.
 void PressStarts::draw() {
   const int fine = std::max(1, options_.page_size / 1024);
   const std::size_t n = outlines_.size();
@@ -77,7 +84,7 @@ void PressStarts::draw() {
   });
 }
 
-// The pieces of the search, so many cells across the page.
+// Rasterises the pieces of the search on a grid with this many cells across the page.
 void PressStarts::draw_pieces(int cells) {
   if (cells == cells_) return;
   cells_ = cells;
@@ -105,7 +112,7 @@ void PressStarts::draw_one(std::size_t i, int fine) {
   const double cell = fine;
   d.bodies[DrawnChart::coarse] = make_body(coarsen(mask, 4), 4 * cell, 12 * cell, 10 * cell);
   d.bodies[DrawnChart::fine] = make_body(coarsen(mask, 2), 2 * cell, 8 * cell, 2 * cell);
-  // One centre for both.
+  // Both bodies get the same centre.
   const Vec2d shift{d.bodies[DrawnChart::fine].center.x - d.bodies[DrawnChart::coarse].center.x,
                     d.bodies[DrawnChart::fine].center.y - d.bodies[DrawnChart::coarse].center.y};
   for (Vec2d& q : d.bodies[DrawnChart::fine].outline) q = {q.x + shift.x, q.y + shift.y};
@@ -114,9 +121,10 @@ void PressStarts::draw_one(std::size_t i, int fine) {
   d.bodies[DrawnChart::fine].radius += std::hypot(shift.x, shift.y);
 }
 
-// Strips of widths around the square page's side. Where pages may have any shape, every fourth is
-// narrower, for few large charts may fill it in one row, and if a chart is longer than the side,
-// every second lays it along the strip.
+// Returns the width of start k's strip in cells. The widths are spread around the square page's
+// side. If pages may have any shape, every fourth strip is narrower, since a few large charts may
+// fill it in one row. If a chart is also longer than the side, every second strip lets it lie along
+// the strip.
 std::int32_t PressStarts::strip_width(std::size_t k, std::size_t count, double shift) const {
   const double side = side_ * std::sqrt(kExpectedFill / 0.69) / cell_;
   const double spread = (count > 1 ? 0.2 * double(k) / double(count - 1) - 0.1 : 0) + shift;
@@ -150,7 +158,7 @@ PressStart PressStarts::start(std::size_t k, std::size_t count, std::uint32_t ro
   search.layouts = kLayouts << doublings;
   PressStart start;
   if (pieces_.size() == 1) return alone();
-  // Few charts change places often enough in the search.
+  // If there are only few charts, the search changes their order often enough.
   const LargestBy by = pieces_.size() < kManyCharts ? LargestBy::cells : LargestBy::boxes;
   const NestSearchResult found = search_nest(pieces_, plan_by_size(pieces_, by), search, context_);
   const Nest& nest = found.nest;
@@ -162,7 +170,7 @@ PressStart PressStarts::start(std::size_t k, std::size_t count, std::uint32_t ro
   return start;
 }
 
-// A single chart, turned such that its page is small.
+// Places a single chart in the direction in which its page is smallest.
 PressStart PressStarts::alone() const {
   PressStart best;
   best.layouts = kTurns;
@@ -188,7 +196,7 @@ PressStart PressStarts::alone() const {
   return best;
 }
 
-// From cells to rigid bodies.
+// Turns a layout on cells into poses of the rigid bodies.
 void PressStarts::put_down(const Nest& nest, PressStart& start) const {
   start.poses.resize(pieces_.size());
   for (std::size_t i = 0; i < pieces_.size(); ++i) {

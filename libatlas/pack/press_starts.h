@@ -1,4 +1,4 @@
-// Internal: what the press begins with: charts as rigid bodies, and layouts of them on coarse
+// Internal: the starting points of pressing: charts as rigid bodies, and layouts of them on coarse
 // cells.
 #pragma once
 
@@ -13,42 +13,42 @@
 
 namespace atlas::pack {
 
-// A chart in the frame of its mask at the scale that starts are made at: shape point p is at
-// origin + scale p.
+// A chart in the frame of its mask, at the scale of the starts: the shape's point p lies at origin
+// + scale p.
 struct DrawnChart {
   enum Level { coarse, fine };
   Vec2d origin;
-  Body bodies[2];  // by Level, with one centre
+  Body bodies[2];  // by Level; both have the same centre
 
-  // In texels from the shape's own origin.
+  // Returns the centre in texels from the shape's own origin.
   Vec2d center_of_shape() const {
     const Vec2d c = bodies[coarse].center;
     return {c.x - origin.x, c.y - origin.y};
   }
 };
 
-// One layout, to be pushed together.
+// A layout whose charts are to be pushed together.
 struct PressStart {
-  std::vector<std::pair<Vec2d, double>> poses;  // 1 a chart: centre and angle
+  std::vector<std::pair<Vec2d, double>> poses;  // one per chart: centre and angle
   SqueezePage page;
   std::uint64_t layouts = 0, work = 0;
 };
 
-// The smaller such a page, the higher; 0 for one without area. Of a square one the longer side
-// counts.
+// Returns a number that is higher the smaller the page is; 0 for a page without area. If the page
+// has to be square, only its longer side counts.
 double goodness(const SqueezePage& page, const FitOptions& options);
 
-// What is handed to it must outlive it.
+// All arguments of the constructor must outlive the object.
 class PressStarts {
  public:
   PressStarts(std::span<const ChartOutline> outlines, const FitOptions& options,
               const Context& context);
 
   double scale() const { return scale_; }
-  std::span<const DrawnChart> charts() const { return drawn_; }  // 1 an outline
+  std::span<const DrawnChart> charts() const { return drawn_; }  // one per outline
 
-  // Layouts for several widths of the page, by a search on coarse cells; other ones each round, on
-  // finer cells from the second on.
+  // Makes layouts for several widths of the page, by a search on coarse cells. Each round gives
+  // other layouts. From the second round on, cells are finer.
   std::vector<PressStart> make(std::uint32_t round);
 
  private:
@@ -64,8 +64,10 @@ class PressStarts {
   const FitOptions& options_;
   const Context& context_;
   double scale_ = 1;
-  double side_ = 0;  // of a square page, texels, that the charts as drawn fill as well as hoped for
-  int cells_ = 0;    // across the page, as the pieces are drawn; 0: not yet
+  // Side in texels of a square page that the charts, as rasterised, fill to the expected share.
+  double side_ = 0;
+  // Cells across the page with which the pieces are rasterised; 0: not rasterised yet.
+  int cells_ = 0;
   std::int32_t cell_ = 1;
   std::vector<DrawnChart> drawn_;
   std::vector<Piece> pieces_;

@@ -1,4 +1,4 @@
-// Internal: the packing problem in whole cells, after padding, border and alignment are taken out.
+// Internal: the packing problem in whole cells, without padding, border and alignment.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,16 @@
 
 namespace atlas::pack {
 
-// Sides of all items are >= 1 and every item fits an empty page in some allowed direction.
+// All items have sides >= 1, and every item fits an empty page in some allowed direction.
 struct Problem {
   std::span<const Extent> items;
   Extent page;
   bool allow_rotation = false;
   std::uint32_t max_pages = kNoPage;
-  std::vector<std::vector<Rect>> pinned;  // by page; may be shorter than the number of pages
-  // Whoever asks for a layout has to ask it as well: packers that are cancelled leave items out.
+  // By page; may have fewer entries than there are pages.
+  std::vector<std::vector<Rect>> pinned;
+  // A caller that asks for a layout has to check this context as well, because packers that are
+  // cancelled leave items out.
   const Context* context = nullptr;
 
   bool cancelled() const { return context && context->cancelled(); }
@@ -29,15 +31,17 @@ struct Problem {
   }
 };
 
-// Items that packers place between two looks at the context: a few hundredths of a second at most.
+// Number of items that packers place between two checks of the context; that takes a few hundredths
+// of a second at most.
 constexpr std::size_t kItemsAPoll = 1024;
 
 struct Layout {
-  std::vector<Placement> placements;  // 1 an item, cells
-  std::uint32_t pages = 0;            // pages that hold something
+  std::vector<Placement> placements;  // one per item, in cells
+  std::uint32_t pages = 0;            // number of pages that hold something
   std::uint32_t unplaced = 0;
-  std::int64_t last_used = 0;  // area on the fullest-to-emptiest last page, or used height of
-                               // a single page: smaller is closer to doing without
+  // The area that is filled on the last page, or the used height if there is a single page. A
+  // smaller value is closer to a layout with one page less.
+  std::int64_t last_used = 0;
 
   bool better_than(const Layout& other) const {
     if (unplaced != other.unplaced) return unplaced < other.unplaced;
@@ -48,13 +52,15 @@ struct Layout {
 
 enum class Order { area, height, max_side, width, perimeter };
 
-// Item ids sorted descending by the key, then by the other sides, then by id.
+// Returns the item ids sorted in descending order of the key, then of the other sides, then in
+// ascending order of the id.
 std::vector<std::uint32_t> sorted_items(std::span<const Extent> items, Order order);
 
-// Every item, in this order, into the first page with room, by maximal free rectangles.
+// Puts the items, in this order, into the first page that has room. Pages are lists of maximal free
+// rectangles.
 Layout pack_first_fit(const Problem& problem, std::span<const std::uint32_t> order, PlaceRule rule);
 
-// The same by skylines with waste maps.
+// Does the same with skylines and waste maps.
 Layout pack_skyline(const Problem& problem, std::span<const std::uint32_t> order, PlaceRule rule);
 
 }  // namespace atlas::pack

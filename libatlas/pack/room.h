@@ -1,4 +1,5 @@
-// Internal: what a page offers at most, in a form that is quick to compare and to join.
+// Internal: an upper limit on the items that a page has room for. It is quick to compare and to
+// join.
 #pragma once
 
 #include <algorithm>
@@ -10,16 +11,17 @@
 
 namespace atlas::pack {
 
-// For classes of height, two an octave, the width of the widest hole that is at least so high. An
-// item may fit only where its class, rounded down, is wide enough; classes this fine let pass few
-// pages that turn out to have no room.
+// Stores, for classes of height (two per octave), the width of the widest hole that is at least so
+// high. An item can fit only if the width stored for its height's class, rounded down, is large
+// enough. With classes this fine, few pages pass the test that have no room.
 class Room {
  public:
   void add(Extent hole) {
     std::int32_t& w = width_[class_of(hole.height)];
     w = std::max(w, hole.width);
   }
-  // After the last add: what is high enough for a class is for all below it.
+  // To be called after the last add(). A hole that is high enough for a class is high enough for
+  // all lower classes.
   void finish() {
     for (std::size_t c = kClasses - 1; c-- > 0;) width_[c] = std::max(width_[c], width_[c + 1]);
   }
@@ -35,7 +37,8 @@ class Room {
   bool operator==(const Room&) const = default;
 
  private:
-  // 1, 2, 3, 4, 6, 8, 12, ... 2048; higher ones share the last class.
+  // The classes begin at heights 1, 2, 3, 4, 6, 8, 12, ... 3072. Greater heights belong to the last
+  // class.
   static constexpr std::size_t kClasses = 24;
   static std::size_t class_of(std::int32_t height) {
     const auto h = static_cast<std::uint32_t>(std::max(1, height));

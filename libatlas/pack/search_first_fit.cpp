@@ -4,8 +4,8 @@
 namespace atlas::pack {
 namespace {
 
-// Hill climbing over orders for first fit; slower a layout than the gap searches, but it works
-// around pinned rectangles.
+// Hill climbing over orders for first fit. A layout takes longer than with the gap searches, but
+// pinned rectangles are respected.
 class OrderChain {
  public:
   OrderChain(const Problem& problem, std::uint64_t seed) : problem_(problem), random_(seed) {}
@@ -16,7 +16,8 @@ class OrderChain {
   }
   bool done() const { return order_.size() < 2; }
   std::pair<std::uint32_t, std::int64_t> cost() const {
-    // Unplaced items weigh more than any page.
+    // With equal numbers of pages, an unplaced item weighs more than any difference of last_used
+    // below 2^40.
     return {best_.pages, best_.last_used + (std::int64_t{best_.unplaced} << 40)};
   }
   const Layout& best() const { return best_; }
@@ -46,8 +47,9 @@ class OrderChain {
 Layout search_first_fit(const Problem& problem, const SearchLimits& limits, const Context& context,
                         PackResult& result) {
   const double begun = wall_seconds();
-  double longest = 0;   // of the layouts so far: the next may take as long
-  bool falling = true;  // these were of falling heights only, which go ten times as fast
+  double longest = 0;  // seconds of the longest layout so far; the next may take as long
+  // Whether only items of falling heights were packed, which is ten times as fast.
+  bool falling = true;
   const auto late = [&] {
     const double next = falling ? 10 * longest : longest;
     return context.cancelled() || wall_seconds() - begun + next > limits.seconds;

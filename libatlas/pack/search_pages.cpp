@@ -12,10 +12,10 @@ struct FilledPage {
   std::int64_t area = 0;
 };
 
-// One search: a division of the items into pages, and steps that empty some of them and fill them
-// anew from a disturbed order. A step is kept if the sum of squared fills grows (full pages and
-// one emptying out are what saves a page), or by simulated annealing at a low constant
-// temperature.
+// One search. Its state is a distribution of the items over pages. A step empties some pages and
+// fills them again from a disturbed order. It is kept if the sum of squared fills grows, because
+// full pages and one that becomes empty are what saves a page. Otherwise it is kept with the
+// probability of simulated annealing at a low, constant temperature.
 class PageChain {
  public:
   PageChain(const Problem& problem, std::uint32_t bound, std::uint64_t seed)
@@ -46,7 +46,7 @@ class PageChain {
     }
     if (!sequence_.empty()) return;
     for (std::size_t p : chosen_) before += squared(pages_[p]);
-    constexpr double temperature = 0.01;  // in squared fills of a page
+    constexpr double temperature = 0.01;  // in units of a page's squared fill
     if (after < before && random_.unit() >= std::exp((after - before) / temperature)) return;
     replace();
     const auto now = cost_of(pages_);
@@ -68,7 +68,7 @@ class PageChain {
     return fill * fill;
   }
 
-  // Two to four pages, the least filled among them in half of the steps.
+  // Chooses two to four pages. In half of the steps the least filled page is among them.
   void choose_pages() {
     const auto count = static_cast<std::uint32_t>(pages_.size());
     const std::size_t wanted = std::min<std::size_t>(count, 2 + random_.below(3));
@@ -86,8 +86,9 @@ class PageChain {
     std::sort(chosen_.begin(), chosen_.end());
   }
 
-  // Sorts the items of the chosen pages by one of four keys, in logarithms, plus noise whose
-  // amplitude is itself random: mostly small, up to a factor of e.
+  // Sorts the items of the chosen pages by the logarithm of one of four keys, plus noise. The
+  // amplitude of the noise is itself random: it is mostly small, and at most 1, which is a factor
+  // of e.
   void disturb_order() {
     const std::uint32_t kind = random_.below(4);
     const double u = random_.unit(), noise = u * u;
@@ -136,7 +137,8 @@ std::vector<FilledPage> fill_in_order(const Problem& problem, Order order) {
   return pages;
 }
 
-// Fullest pages first; with fewer pages allowed than needed the emptiest are given up.
+// Sorts the fullest pages first. If fewer pages are allowed than needed, the emptiest are dropped,
+// and their items are unplaced.
 Layout to_layout(const Problem& problem, std::vector<FilledPage> pages) {
   std::stable_sort(pages.begin(), pages.end(),
                    [](const FilledPage& a, const FilledPage& b) { return a.area > b.area; });
@@ -171,7 +173,7 @@ Layout search_pages(const Problem& problem, const SearchLimits& limits, const Co
       start = std::move(pages);
     if (start.size() <= limits.enough_pages) break;
   }
-  // The bound costs more than a layout: asked for only where the area does not settle the matter.
+  // The bound takes longer than a layout, so it is only computed if the area does not decide.
   double area = 0;
   for (const Extent& e : problem.items) area += static_cast<double>(e.area());
   const auto by_area =

@@ -9,15 +9,15 @@
 namespace atlas::pack {
 namespace {
 
-// One search over sequences: the strip is filled gap by gap, and the sequence decides between
-// items that fit a gap equally well (the evaluation of Leung et al. 2011; the neighbourhood is
-// theirs, swaps, and single moves).
+// One search over sequences. The strip is filled gap by gap, and the sequence decides between items
+// that fit a gap equally well. The evaluation is that of Leung et al. 2011; the neighbourhood
+// consists of their swaps and of moves of one item.
 class StripChain {
  public:
   StripChain(const Problem& problem, std::int64_t bound, std::uint64_t seed)
       : fill_(problem.items, problem.page, problem.allow_rotation), bound_(bound), random_(seed) {}
 
-  // Starts from the first sequence, and remembers it as the best.
+  // Starts from this sequence and remembers its layout as the best one.
   void start(std::vector<std::uint32_t> sequence) {
     current_ = std::move(sequence);
     current_height_ = evaluate(current_);
@@ -63,8 +63,9 @@ class StripChain {
     return fill_.fill(scratch_);
   }
 
-  // Temperature falls linearly from 1 % of the height to zero within a cycle; each cycle is twice
-  // as long as the last. Counted in steps, not seconds, so that runs repeat exactly.
+  // The temperature falls linearly from 1 % of the height to zero within a cycle, and each cycle is
+  // twice as long as the last. Cycles are counted in steps instead of seconds, so that runs are
+  // repeatable.
   void cool_down() {
     if (++step_ >= cycle_) {
       step_ = 0;
@@ -93,15 +94,15 @@ std::int32_t top_of(const Problem& problem, std::span<const GapPlacement> placed
   return top;
 }
 
-// A strip and its lowest layout so far.
+// A strip and the lowest layout found so far.
 struct LowStrip {
   const Problem& problem;
-  std::int64_t bound = 0;  // no layout is lower
+  std::int64_t bound = 0;  // no layout is lower than this
   std::int64_t height = 0;
   std::vector<GapPlacement> placed;
 };
 
-// Takes what is lower into `low`. Whether anything was.
+// Copies layouts that are lower than `low` into it. Returns whether there was any.
 bool lower(std::span<std::vector<GapPlacement>> found, LowStrip& low) {
   const std::int64_t before = low.height;
   for (std::vector<GapPlacement>& layout : found) {
@@ -114,9 +115,9 @@ bool lower(std::span<std::vector<GapPlacement>> found, LowStrip& low) {
   return low.height < before;
 }
 
-// Beams of all widths, each below the lowest height known, four that prefer large items differently
-// at a time: the lowest layout of the four counts, so that threads change nothing. The beam widens
-// where none of them finds anything.
+// Runs beam searches of increasing width, each below the lowest height known. Four run at a time,
+// which prefer large items to different degrees. The lowest layout of the four is used, so that the
+// result does not depend on the number of threads. The beam doubles if none of them finds a layout.
 void search_beams(LowStrip& low, const SearchLimits& limits, const Context& context,
                   PackResult& result) {
   const Problem& problem = low.problem;
@@ -127,7 +128,7 @@ void search_beams(LowStrip& low, const SearchLimits& limits, const Context& cont
   };
   std::vector<StripBeam> beams(
       kLargeFirst.size(), StripBeam(problem.items, problem.page.width, problem.allow_rotation));
-  // Memory: a state has up to four children an item.
+  // This limits memory, since a state has up to four children per item.
   const std::size_t widest = std::max<std::size_t>(8, 1'000'000 / problem.items.size());
   std::uint64_t left = limits.beam_states;
   double last = begun;

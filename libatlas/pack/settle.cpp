@@ -24,8 +24,9 @@ class Settler {
     std::iota(order_.begin(), order_.end(), 0u);
   }
 
-  // Charts shrink to this share; most of the room that this makes goes to the page's upper and
-  // right edges, where charts give way to those before them.
+  // Places the charts after shrinking them to this share of their size. Their targets move together
+  // by less, so most of the free space that results is at the page's upper and right edges. There,
+  // charts can move out of the way of those placed before them.
   bool place_at(double share, PressedPage& result) {
     const double scale = share * scale_;
     draw(scale, std::pow(share, kCloser));
@@ -55,9 +56,9 @@ class Settler {
     return true;
   }
 
-  // Takes out the slack that targets leave between exact masks, of the layout placed last.
+  // Moves the charts of the last layout together, since targets leave slack between exact masks.
   void close_up(PressedPage& result) {
-    constexpr int kSlides = 3;  // each way; a fourth finds nothing
+    constexpr int kSlides = 3;  // in each direction; a fourth slide gains nothing
     const std::int32_t a = options_.alignment;
     PlainPage page(options_.page_size / a, options_.page_size / a);
     std::vector<SlidingMask> masks;
@@ -75,7 +76,7 @@ class Settler {
     measure(result);
   }
 
-  // Whether the last layout has charts far from their targets.
+  // Returns whether the last layout has charts that are far from their targets.
   bool displaced() const { return !displaced_.empty(); }
 
  private:
@@ -86,7 +87,7 @@ class Settler {
     return masks_[i].cells * kSmallShare < side * side;
   }
 
-  // Small charts may go to any hole within the page that the others need.
+  // Puts small charts into any hole within the page that the others need.
   bool place_displaced(std::int32_t side, PressedPage& result) {
     const std::int32_t a = options_.alignment;
     std::int32_t longest = 1;
@@ -111,8 +112,9 @@ class Settler {
     return true;
   }
 
-  // A chart that sits tightly in the notch of a larger one may have kept it from its place: the
-  // notch shrinks with the chart, so that no smaller scale helps. Takes such charts off the page.
+  // A chart that lies tightly in the notch of a larger one may have kept the larger one from its
+  // place. The notch shrinks with its chart, so a smaller scale does not help. This function
+  // removes such small charts from the page. Returns whether it removed any.
   bool make_way(std::uint32_t i, PlainPage& page, PressedPage& result) {
     const std::int32_t side = page.width();
     bool any = false;
@@ -171,7 +173,7 @@ class Settler {
     });
   }
 
-  // From the page's lower left corner outwards.
+  // Sorts the charts by their distance from the page's lower left corner.
   void sort_by_distance() {
     const auto distance = [&](std::uint32_t i) {
       return wanted_[i].x + wanted_[i].y + 0.5 * (masks_[i].width + masks_[i].height);
@@ -180,7 +182,7 @@ class Settler {
                      [&](std::uint32_t a, std::uint32_t b) { return distance(a) < distance(b); });
   }
 
-  // Places within a few cells of the wanted one, nearest first.
+  // A place within a few cells of the wanted one. places_near() sorts them, nearest first.
   struct Nearby {
     double distance;
     BitPage::Place at;
@@ -213,7 +215,8 @@ class Settler {
     return false;
   }
 
-  // Whether chart i has a place near the wanted one where it does not meet chart j, put at `at`.
+  // Returns whether chart i has a place near the wanted one where it does not overlap chart j,
+  // which lies at `at`.
   bool has_room_beside(std::uint32_t i, std::uint32_t j, BitPage::Place at,
                        const PlainPage& page) const {
     const Neighbourhood places = places_near(i, page);
@@ -238,8 +241,9 @@ PressedPage settle(const SettleTargets& targets, std::span<const ChartOutline> o
                    const FitOptions& options, const Context& context) {
   Settler settler(targets, outlines, options, context);
   PressedPage best, tried;
-  // The bodies' outlines are as exact as half a cell: all of the scale hardly ever remains, and a
-  // tenth of a percent of it is no share of the page worth another try.
+  // The bodies' outlines are exact to half a cell, so the full scale hardly ever fits. Shares
+  // between it and the first one are not tried, because a tenth of a percent of the scale is not
+  // worth it.
   constexpr std::array kShares{0.998, 0.99, 0.98, 0.96, 0.93, 0.89};
   const auto fill = [&](const PressedPage& p) {
     const double side = std::max(p.page.width, p.page.height);

@@ -1,4 +1,4 @@
-// Internal: from rigid bodies that nearly touch to exact masks on the page's cells.
+// Internal: replaces rigid bodies that nearly touch by exact masks on the page's cells.
 #pragma once
 
 #include <span>
@@ -7,19 +7,20 @@
 
 namespace atlas::pack {
 
-// Where all charts should be, at this scale.
+// Where all charts should lie at this scale.
 struct SettleTargets {
-  std::span<const SettleTarget> places;  // 1 a chart
+  std::span<const SettleTarget> places;  // one per chart
   double scale = 1;
 };
 
-// Places every chart on free cells as near to its target as possible, at the largest scale
-// below the targets' that allows it, then closes up down and to the left. scale 0 in the result:
-// none did.
+// Places every chart on free cells as near to its target as possible, at a scale below that of the
+// targets that is as large as possible, and then moves the charts together, down and to the left.
+// Small charts may go elsewhere. If no scale works, the result has scale 0.
 PressedPage settle(const SettleTargets& targets, std::span<const ChartOutline> outlines,
                    const FitOptions& options, const Context& context);
 
-// The same at this scale, at most the targets'; scale 0 in the result: charts found no place.
+// Does the same at exactly this scale, which is at most that of the targets. If charts find no
+// place, the result has scale 0.
 PressedPage settle_at(double scale, const SettleTargets& targets,
                       std::span<const ChartOutline> outlines, const FitOptions& options,
                       const Context& context);

@@ -1,4 +1,4 @@
-// Internal: what pack_outlines and fit_pages share about shapes and grids.
+// Internal: checks of shapes and the choice of a grid, shared by pack_outlines and fit_pages.
 #pragma once
 
 #include <functional>
@@ -11,18 +11,18 @@ namespace atlas::pack {
 Status check_shapes(std::span<const ChartShape> shapes);
 Status check_rotations(std::uint32_t rotations);
 
-// What a grid is chosen for.
+// The conditions for which a grid is chosen.
 struct GridWish {
   std::size_t charts = 0;
-  std::int32_t page_side = 0, alignment = 1;  // texels
-  std::uint32_t rotations = 4;                // directions at most
-  double affordable = 0;                      // looks at words that one layout may cost, about
-  // How wide the charts are on a full page, in texels: about twice the width of needles; 0: only
-  // their number counts.
+  std::int32_t page_side = 0, alignment = 1;  // in texels
+  std::uint32_t rotations = 4;                // maximum number of directions
+  double affordable = 0;  // number of words that one layout may examine, approximately
+  // The mean width of the charts on a full page in texels. For needles it is about twice their
+  // width. 0: only the number of charts counts.
   double mean_side = 0;
 };
 
-// Cell size (a power of two times the alignment) and number of directions.
+// The cell size in texels (a power of two times the alignment) and the number of directions.
 struct GridChoice {
   std::int32_t cell = 1;
   std::uint32_t directions = 4;
@@ -30,7 +30,7 @@ struct GridChoice {
 double layout_cost(std::size_t count, double side_cells, std::uint32_t directions);
 GridChoice choose_grid(const GridWish& wish);
 
-// One task a chain, on up to context.threads threads.
+// Runs one task per chain, on up to context.threads threads.
 void parallel_chains(const Context& context, std::size_t chains,
                      const std::function<void(std::size_t)>& run);
 

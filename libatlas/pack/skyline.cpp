@@ -39,7 +39,7 @@ bool WasteMap::take(Extent item, bool allow_rotation, Rect& place, bool& rotated
     holes.pop_back();
     if (rotated) std::swap(item.width, item.height);
     place = {hole.x, hole.y, item.width, item.height};
-    // Cut along the shorter rest, so that the longer one stays whole.
+    // The rest is cut such that the longer part stays whole.
     const std::int32_t right = hole.width - item.width, above = hole.height - item.height;
     const bool tall_right = right > above;
     add({hole.x + item.width, hole.y, right, tall_right ? hole.height : item.height});
@@ -79,11 +79,12 @@ bool Skyline::find(Extent item, bool allow_rotation, PlaceRule rule, Spot& spot)
 
 bool Skyline::find_over(Extent item, PlaceRule rule, Spot& spot) const {
   if (item.width > page_.width || item.height > page_.height) return false;
-  // Candidate left ends are the segments' left ends. `below` is the area under the skyline within
-  // the window [x, x + width), and `highest` holds the window's segments with falling heights.
+  // Candidates for the left end are the left ends of the segments. `below` is the area under the
+  // skyline within the window [x, x + width). `highest` holds the window's segments with falling
+  // heights.
   std::deque<std::size_t> highest;
   std::int64_t below = 0;
-  std::size_t end = 0;  // first segment not wholly in `below`
+  std::size_t end = 0;  // the first segment that is not yet in `below`
   bool found = false;
   for (std::size_t i = 0; i < segments_.size(); ++i) {
     const std::int32_t right = segments_[i].x + item.width;
@@ -126,8 +127,8 @@ void Skyline::place(const Rect& rect) {
 
 void Skyline::block(const Rect& rect) {
   if (rect.area() == 0) return;
-  // What lies between the skyline and the rectangle is free, but another blocked rectangle may
-  // come to lie there: it is given up.
+  // The space between the skyline and the rectangle is free. But another blocked rectangle may be
+  // put there, so it does not become a hole of the waste map.
   raise(rect, false);
 }
 
@@ -158,7 +159,7 @@ Room Skyline::room() const {
   std::int32_t lowest = page_.height;
   for (const Segment& s : segments_) lowest = std::min(lowest, s.y);
   Room room;
-  // Holes may be as wide and as tall as the page; their sizes are not tracked.
+  // Holes may be as wide and as tall as the page, because their sizes are not tracked.
   if (waste_.size() > 0) lowest = 0;
   if (lowest < page_.height) room.add({page_.width, page_.height - lowest});
   room.finish();

@@ -1,4 +1,4 @@
-// Internal: charts on a page move up to each other.
+// Internal: moves charts on a page towards each other.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +19,8 @@ inline bool is_free_at(const SlidingMask& m, BitPage::Place at, const PlainPage&
          page.is_free(*m.mask, at);
 }
 
-// Every mask as far down (step 0, -1) or left (-1, 0) as it can go, those first that have nothing
-// but the edge before them; `masks` are what lies on the page. Whether one has moved.
+// Moves every mask as far as it can go, down (step 0, -1) or left (-1, 0), beginning with those
+// nearest to the edge. `masks` must be all masks on the page. Returns whether any mask has moved.
 inline bool slide(BitPage::Place step, PlainPage& page, std::vector<SlidingMask>& masks) {
   const auto along = [&](const SlidingMask& m) { return step.x != 0 ? m.at.x : m.at.y; };
   std::stable_sort(masks.begin(), masks.end(),

@@ -5,17 +5,18 @@
 namespace atlas::pack {
 namespace {
 
-// `standard` stops after this much work, counted in looks at an item: 500 instances of 20 to 100
-// items take about 0.1 s, a strip of 200 items 0.05 to 0.1 s.
+// `standard` stops after this much work, counted as examinations of an item. 500 instances of 20 to
+// 100 items take about 0.1 s, a strip of 200 items 0.05 to 0.1 s.
 constexpr std::uint64_t kPageWork = 160'000, kStripWork = 25'000'000, kBeamWork = 3'000'000;
 
-// Above this many items the gap engines, quadratic in the items of a page, are not the ones to ask.
+// Above this number of items, the gap engines that examine every item are not used, because they
+// take quadratic time in the items of a page.
 constexpr std::size_t kSmall = 1000;
 
 SearchLimits limits_for(const Problem& problem, const PackOptions& options, bool strip) {
   SearchLimits limits;
   limits.seed = options.seed;
-  // Without turns beams seldom find what annealing does not.
+  // If items may not be turned, beam searches seldom find a better layout than annealing.
   const bool beams = strip && options.allow_rotation;
   if (options.preset == PackPreset::best) {
     limits.layouts = options.effort;
@@ -50,7 +51,7 @@ Layout pack_by(const Problem& problem, Order order) {
 
 enum class Turn { none, standing, lying };
 
-// All items turned alike before they are packed, but for those that would not fit.
+// Packs all items after turning them alike, except for those that would not fit.
 template <class Pack>
 Layout pack_turned(const Problem& problem, Turn turn, const Pack& pack) {
   std::vector<Extent> items(problem.items.begin(), problem.items.end());
@@ -73,13 +74,13 @@ Layout pack_turned(const Problem& problem, Turn turn, const Pack& pack) {
   return layout;
 }
 
-// On one page of so many items the lists of free rectangles grow long: 2 10^5 took up to nine
-// seconds, for a thousandth of the height.
+// On a page with more items than this, the lists of free rectangles become long: 2 10^5 items took
+// up to nine seconds, for a gain of a thousandth of the height.
 constexpr std::size_t kMostOnAPage = 50'000;
 
-// Free rectangles; gaps where the page has too many items for them. In large sets choosing each
-// item's turn by the hole at hand loses more than it wins: the items no longer come in order of
-// their heights.
+// Packs by maximal free rectangles, or by gaps if a page has too many items for them. In large
+// sets, choosing each item's direction by the hole at hand loses more than it gains, because the
+// items then no longer come in order of their heights.
 Layout pack_by_height(const Problem& problem, std::uint32_t pages) {
   const auto pack = [&](const Problem& fixed) {
     return fixed.items.size() / pages > kMostOnAPage
@@ -98,9 +99,10 @@ Layout pack_large_strip(const Problem& problem) {
   return better(pack_widest_first(problem), pack_by_height(problem, 1));
 }
 
-// Gaps filled in order of area need fewest pages, 2 to 6 % fewer than other engines where a page
-// holds ten items. Free rectangles leave one page lowest, and take half the time where pages hold
-// few thousand items: then they often do.
+// Gaps filled in order of area need the fewest pages: 2 to 6 % fewer than other engines if a page
+// holds ten items. Free rectangles give the lowest single page. If pages hold at most a few
+// thousand items, they take half the time and often need no more pages than the bound, so they are
+// tried first.
 Layout pack_large_pages(const Problem& problem, const PackOptions& options, std::uint32_t bound) {
   constexpr std::size_t kFewOnAPage = 5000;
   const bool quick = !problem.allow_rotation && problem.items.size() / bound <= kFewOnAPage;

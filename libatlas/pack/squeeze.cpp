@@ -18,7 +18,7 @@ class Solver {
     }
   }
 
-  // Takes overlaps out until none is deeper than the tolerance.
+  // Removes overlaps until none is deeper than the tolerance. Returns false if this fails.
   bool relax(const SqueezePage& page, std::uint32_t sweeps) {
     double before = 1e300;
     contacts_.set_page(page, poses_);
@@ -78,7 +78,7 @@ class Solver {
     return deepest;
   }
 
-  // Takes point `local` of i out of j. Returns how deep it was.
+  // Pushes point `local` of i out of j. Returns how deep it was.
   double push_out(std::uint32_t i, std::uint32_t j, Vec2d local) {
     DistanceField::Sample s;
     const Vec2d p = poses_[i].to_page(local);
@@ -108,13 +108,15 @@ class Solver {
     return deepest;
   }
 
-  // Where one body lies in another, which way is out, and how far.
+  // The point at which one body lies in another, the direction in which it must move out, and the
+  // depth.
   struct Overlap {
     Vec2d point, normal;
     double depth;
   };
 
-  // Moves i along the normal and j, unless it is kWall, the other way, lighter ones more.
+  // Moves i along the normal, and j in the opposite direction unless it is kWall. Lighter bodies
+  // move more.
   void resolve(std::uint32_t i, std::uint32_t j, const Overlap& overlap) {
     const Vec2d n = overlap.normal;
     const auto lever = [&](std::uint32_t b) {
@@ -130,9 +132,9 @@ class Solver {
       aj = lj / bodies_[j].gyration;
       sum += wj * (1 + aj * lj);
     }
-    constexpr double kRelaxation = 0.6;  // neighbouring points push as well
-    // A body that lies deep in another is pushed both ways: the whole depth at once would throw it
-    // and its neighbours across the page.
+    constexpr double kRelaxation = 0.6;  // because neighbouring points push as well
+    // A body that lies deep in another is pushed both ways. Resolving the whole depth at once would
+    // throw it and its neighbours across the page.
     const double step = kRelaxation * std::min(overlap.depth, kMostPush) / sum;
     move(i, n, step * wi, ai);
     if (j != kWall) move(j, n, -step * wj, aj);
@@ -145,7 +147,8 @@ class Solver {
     const double most = kMostPush / bodies_[b].radius;
     const double by = std::clamp(lever * step, -most, most);
     if (by == 0) return;
-    // To second order, and normalised: a sine each contact would cost more than all the rest.
+    // The rotation is computed to second order and normalised. A sine per contact would take more
+    // time than all the rest.
     const double c = 1 - by * by / 2, s = by;
     const double cosine = pose.cosine * c - pose.sine * s;
     const double sine = pose.sine * c + pose.cosine * s;
@@ -162,8 +165,8 @@ class Solver {
   static constexpr double kMostPush = 4;
 };
 
-// Orders points such that those of every kArc that follow each other lie close together: halves
-// across the longer side, again and again.
+// Orders points such that every kArc consecutive ones lie close together, by splitting the set
+// across its longer side recursively.
 void sort_into_arcs(std::span<Vec2d> points) {
   if (points.size() <= Body::kArc) return;
   Vec2d low = points[0], high = low;
@@ -233,15 +236,15 @@ SqueezePage squeeze(std::span<Body> bodies, SqueezePage page, const SqueezeOptio
     solver.stretch(side / page.width, side / page.height);
     page = {side, side};
   }
-  // The start may overlap a little: more room then, as little as will do.
-  constexpr double kMostRoom = 0.05;  // of a side, at once
+  // The bodies may overlap a little at the start. Then the page is enlarged as little as necessary.
+  constexpr double kMostRoom = 0.05;  // maximum enlargement of a side in one step
   for (double more = 0.5 * options.first_step; !solver.relax(page, 100); more *= 1.5) {
     if (more > kMostRoom) return {};
     page = {page.width * (1 + more), page.height * (1 + more)};
     solver.stretch(1 + more, 1 + more);
   }
   std::vector<Pose> kept = solver.poses();
-  // Both sides at once while that works, then one at a time, in ever smaller steps.
+  // Shrinks both sides at once while that works, then one side at a time, in ever smaller steps.
   double step = options.first_step;
   {
     int failed = 0;

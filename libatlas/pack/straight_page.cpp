@@ -14,26 +14,29 @@
 namespace atlas::pack {
 namespace {
 
-// Finer cells win more than more layouts: between straight sides nothing but the rounding to cells
-// is lost. Halving either costs a quarter to half a point of the page, doubling wins a tenth.
+// More cells gain more than more layouts do: between straight sides, only the rounding to cells is
+// lost. Halving either number costs a quarter to half a percentage point of the page, and doubling
+// it gains a tenth.
 constexpr int kCellsASide = 512;
 constexpr std::size_t kStarts = 16, kSlidStarts = 4;
-constexpr std::uint64_t kLayouts = 20;  // of one start
-// Words looked at by all starts of a round, 2 ns each.
+constexpr std::uint64_t kLayouts = 20;  // layouts of one start
+// Words that all starts of a round examine together, 2 ns each.
 constexpr std::uint64_t kSearchWork = 320'000'000;
-constexpr std::uint32_t kMostDoublings = 4;  // of both, a round of `best` each
-constexpr int kSlides = 2;                   // down and left; a third finds nothing any more
+// Maximum number of doublings: `best` doubles both kLayouts and kSearchWork each round.
+constexpr std::uint32_t kMostDoublings = 4;
+constexpr int kSlides = 2;  // down and left; a third slide gains nothing
 constexpr std::uint32_t kDirections = 4;
 
-// A layout on cells; the cells' masks cover the exact ones at the same scale.
+// A layout on cells. At the same scale, the masks on cells cover the exact masks.
 struct Start {
   double scale = 0, fill = 0;
-  std::vector<NestPlace> places;  // 1 a chart
-  std::vector<Vec2d> origins;     // of the cells' masks, in the direction placed
+  std::vector<NestPlace> places;  // one per chart
+  // Origins of the masks on cells, in the direction in which they are placed.
+  std::vector<Vec2d> origins;
   std::uint64_t layouts = 0, work = 0;
 };
 
-// Charts at their exact places.
+// The charts at their exact places.
 class Slider {
  public:
   Slider(std::vector<Piece> pieces, const Start& start, const FitOptions& options,
@@ -44,18 +47,20 @@ class Slider {
       const NestPlace& p = start.places[i];
       const Mask& mask = pieces_[i].masks[p.direction];
       if (mask.cells == 0) continue;
-      // Both masks hold the same padded chart: where their origins differ, their corners do.
+      // Both masks hold the same padded chart, so their corners differ by the difference of their
+      // origins.
       const Vec2d coarse = start.origins[i], exact = pieces_[i].origins[p.direction];
       const BitPage::Place at{cells(p.at.x * double(cell) + coarse.x - exact.x),
                               cells(p.at.y * double(cell) + coarse.y - exact.y)};
       masks_.push_back({&mask, at, i});
       top = std::max(top, at.y + mask.height);
     }
-    page_ = PlainPage(options.page_size / unit_, top + 1);  // they go down, but for one cell
+    // Charts move down only, except for one cell.
+    page_ = PlainPage(options.page_size / unit_, top + 1);
   }
 
-  // False where a chart has no room although its cells had: outlines thinned for the cells may miss
-  // a corner.
+  // Puts the charts on the page. Returns false if a chart has no room although its mask on cells
+  // had some: outlines that are thinned for the cells may lack a corner.
   bool put_down() {
     for (SlidingMask& m : masks_) {
       if (!nearest_free(m)) return false;
@@ -102,7 +107,7 @@ class Slider {
   const Start& start_;
   std::int32_t unit_;
   PlainPage page_;
-  std::vector<SlidingMask> masks_;  // of the charts that have one
+  std::vector<SlidingMask> masks_;  // of the charts that have a mask
 };
 
 class StraightPage {
@@ -150,8 +155,9 @@ class StraightPage {
     return std::max(box.x, box.y);
   }
 
-  // The page is as wide as allowed; the scale decides how high it is, between a square and a half.
-  // Charts longer than such pages lie along them: the scale is what leaves them some room.
+  // Returns the scale of start k. The page is as wide as allowed, and the scale decides how high it
+  // becomes: from a square down to 0.6 of that. If charts are nearly as long as the page at this
+  // scale, or longer, they lie along the page, and the scale is one at which they fit.
   double scale_of(std::size_t k, double shift) const {
     constexpr double kExpectedFill = 0.74, kLowest = 0.6, kLong = 0.8;
     const double at = std::clamp(double(k) / double(kStarts - 1) + shift, 0.0, 1.0);
@@ -163,8 +169,8 @@ class StraightPage {
     return scale < kLong * most ? scale : most * (1 - (1 - kLong) * at);
   }
 
-  // Twice as many each round, but no more than the effort leaves: the last round would be as long
-  // as all before it.
+  // Returns the number of layouts per start. It doubles each round, but does not exceed what
+  // remains of the effort; otherwise the last round would take as long as all before it.
   std::uint64_t layouts_of_start(std::uint32_t round, std::uint64_t done) const {
     const std::uint64_t wanted = kLayouts << std::min(round, kMostDoublings);
     if (options_.preset != PackPreset::best || options_.effort == 0) return wanted;
@@ -172,9 +178,9 @@ class StraightPage {
     return std::clamp<std::uint64_t>((left + kStarts - 1) / kStarts, 1, wanted);
   }
 
-  // What a round that wins nothing, with twice the layouts of the one before, leaves to those after
-  // it is two or three thousandths of the page: up to 8000 layouts of eight charts took 1.2 s for
-  // these. Where time is the limit it is there to be used.
+  // A round has twice the layouts of the one before. If it gains nothing, the rounds after it gain
+  // only two or three thousandths of the page: up to 8000 layouts of eight charts took 1.2 s for
+  // that. If the time is the limit, all of it is used.
   bool in_vain(std::uint32_t round, double before, const PressedPage& best) const {
     return options_.effort > 0 && round > 0 && fill(best) <= std::max(before, options_.wanted_fill);
   }
@@ -223,7 +229,7 @@ class StraightPage {
       const Start& s = starts[k];
       if (s.fill == 0) return;
       std::vector<Piece> pieces = pieces_at(s.scale, options_.alignment);
-      if (context_.cancelled()) return;  // pieces may not have been drawn
+      if (context_.cancelled()) return;  // pieces may not have been rasterised
       Slider slider(std::move(pieces), s, options_, cell_);
       if (!slider.put_down()) continue;
       for (int slide = 0; slide < kSlides; ++slide) {
@@ -252,8 +258,8 @@ class StraightPage {
 }  // namespace
 
 bool is_straight(std::span<const ChartOutline> outlines) {
-  // Of those measured they take 70 % of the length and more where this is so, and less than 35 %
-  // elsewhere.
+  // Of the sets of charts that were measured, straight ones had 70 % or more of their length along
+  // the axes, and all others less than 35 %.
   constexpr double kAlong = 0.02, kShare = 0.45;
   double all = 0, along = 0;
   for (const ChartOutline& o : outlines)

@@ -1,4 +1,4 @@
-// Internal: charts whose sides are straight, on one page of any shape.
+// Internal: packs charts whose sides are straight on one page of any shape.
 #pragma once
 
 #include <span>
@@ -7,13 +7,13 @@
 
 namespace atlas::pack {
 
-// Whether the charts' outlines run along their frames, as machine parts' do: such charts lie
-// closest side by side, turned by right angles only.
+// Returns whether the charts' outlines run mostly along the axes of their frames, like those of
+// machine parts. Such charts are packed most densely side by side, turned by right angles only.
 bool is_straight(std::span<const ChartOutline> outlines);
 
-// Layouts on cells for several scales, then every chart slid down and to the left on exact masks.
-// No side of the page exceeds options.page_size. For options.free_aspect; the options have been
-// checked.
+// Makes layouts on cells for several scales, and then slides every chart down and to the left on
+// exact masks. No side of the page exceeds options.page_size. This is for options.free_aspect. The
+// options must have been checked.
 PressedPage pack_straight(std::span<const ChartOutline> outlines, const FitOptions& options,
                           const Context& context);
 

@@ -63,14 +63,15 @@ void StripBeam::merge(std::vector<Segment>& skyline, std::size_t i) {
   }
 }
 
-// Height of the wall beside a segment, above it; the strip's sides reach up to its top.
+// Returns the height of the wall beside a segment, measured from the segment. The strip's sides are
+// walls up to its top.
 std::int32_t StripBeam::wall(const State& state, std::size_t gap, bool right) const {
   const auto& s = state.skyline;
   if (right) return (gap + 1 < s.size() ? s[gap + 1].y : height_) - s[gap].y;
   return (gap > 0 ? s[gap - 1].y : height_) - s[gap].y;
 }
 
-// A gap that is given up is lifted to its lower wall.
+// Gives up a gap: it is lifted to its lower wall.
 void StripBeam::raise(State& state, std::size_t gap) const {
   const std::int32_t up = std::min(wall(state, gap, false), wall(state, gap, true));
   state.waste += std::int64_t{up} * state.skyline[gap].width;
@@ -86,8 +87,8 @@ std::int32_t StripBeam::smallest_left(State& state) const {
   return allow_rotation_ ? std::min(e.width, e.height) : e.width;
 }
 
-// Gaps between two walls that no item left is narrow enough for are waste already. False if that is
-// more than allowed.
+// Gives up gaps between two walls that are too narrow for every item left. Returns false if the
+// waste then exceeds what is allowed.
 bool StripBeam::close_narrow_gaps(State& state) const {
   const std::int32_t least = smallest_left(state);
   for (std::size_t i = 0; i < state.skyline.size() && state.skyline.size() > 1;) {
@@ -101,7 +102,8 @@ bool StripBeam::close_narrow_gaps(State& state) const {
   return state.waste <= allowed_waste_;
 }
 
-// The lowest gap that some item left fits; lower ones are given up. False if that wastes too much.
+// Finds the lowest gap that some item left fits. Lower gaps are given up. Returns false if that
+// wastes too much.
 bool StripBeam::next_gap(State& state, std::size_t& gap) const {
   while (state.waste <= allowed_waste_) {
     gap = lowest(state.skyline);
@@ -125,9 +127,9 @@ Extent StripBeam::turned(const Child& child) const {
   return child.rotated ? Extent{e.height, e.width} : e;
 }
 
-// Waste, and a share of a mean item for every segment of the skyline, for the mean area of the
-// items placed: large ones are wanted first. The weights were tuned on zero-waste strips, where
-// half or twice of each is little worse.
+// The guide is the waste, plus a share of the mean item's area for every segment of the skyline,
+// divided by a power of the area placed. The power expresses how much large items are preferred.
+// The weights were tuned on zero-waste strips. Half or twice of each is only slightly worse.
 void StripBeam::try_child(const State& state, std::size_t gap, Child child) {
   constexpr double kBase = 0.02, kSegment = 0.05;
   const Extent e = turned(child);
@@ -169,7 +171,7 @@ void StripBeam::add_children(std::uint32_t index, State& state) {
   }
 }
 
-// Puts the child's item into the lowest gap.
+// Puts the child's item into the lowest gap. Returns false if the waste exceeds what is allowed.
 bool StripBeam::grow(const Child& child, State& state) const {
   auto& skyline = state.skyline;
   const std::size_t gap = lowest(skyline);
@@ -192,7 +194,7 @@ bool StripBeam::grow(const Child& child, State& state) const {
   return close_narrow_gaps(state);
 }
 
-// Equal for part layouts with the same items and the same skyline, or one that is its mirror image.
+// Equal for partial layouts with the same items and the same or a mirrored skyline.
 std::uint64_t StripBeam::fingerprint(const State& state) const {
   std::uint64_t shape = 0, mirror = 0;
   for (const Segment& s : state.skyline) {
@@ -233,7 +235,8 @@ std::vector<GapPlacement> StripBeam::pack(const Limits& limits) {
   for (std::size_t placed = 0; placed < count_; ++placed) {
     children_.clear();
     for (std::uint32_t i = 0; i < current.size(); ++i) add_children(i, current[i]);
-    // Some turn out to be alike or to waste too much.
+    // More children than needed are kept, because some turn out to be duplicates or to waste too
+    // much.
     const std::size_t enough = std::min(children_.size(), 3 * states);
     std::nth_element(children_.begin(), children_.begin() + static_cast<std::ptrdiff_t>(enough),
                      children_.end(), before);

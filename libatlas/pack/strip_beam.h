@@ -10,20 +10,21 @@
 
 namespace atlas::pack {
 
-// Builds part layouts gap by gap along their skylines, all with the same number of items, and goes
-// on with those that waste least for the items they hold (Libralesso and Fontan 2021 guide their
-// search alike). Good where little waste is allowed: it is what ends a part layout early.
+// Builds partial layouts gap by gap along their skylines. All have the same number of items, and
+// the search continues with those that waste least for the items they hold (Libralesso and Fontan
+// 2021 use a similar guide). This works well if little waste is allowed, because exceeding it is
+// what ends a partial layout early.
 class StripBeam {
  public:
   StripBeam(std::span<const Extent> items, std::int32_t width, bool allow_rotation);
 
   struct Limits {
-    std::int32_t height = 0;     // of the layout, at most
-    std::size_t states = 8;      // part layouts kept
+    std::int32_t height = 0;     // maximum height of the layout
+    std::size_t states = 8;      // number of partial layouts that are kept
     double large_first = 3;      // how much large items are preferred: an exponent of their area
-    std::function<bool()> stop;  // asked after every item; or empty
+    std::function<bool()> stop;  // called after every item; true ends the search; may be empty
   };
-  // Places all items; empty: found nothing.
+  // Places all items. Returns an empty list if it found no layout.
   std::vector<GapPlacement> pack(const Limits& limits);
 
  private:
@@ -36,9 +37,9 @@ class StripBeam {
   };
   struct State {
     std::vector<Segment> skyline;
-    std::vector<std::uint16_t> left;  // items of each kind
+    std::vector<std::uint16_t> left;  // number of items left of each kind
     std::int64_t waste = 0, area = 0;
-    std::uint64_t contents = 0;  // hash of what has been placed
+    std::uint64_t contents = 0;  // hash of the items that have been placed
     std::uint32_t node = 0, smallest = 0;
   };
   struct Child {
@@ -74,7 +75,8 @@ class StripBeam {
   std::size_t count_ = 0;
   std::int64_t total_ = 0, allowed_waste_ = 0;
   std::vector<Kind> kinds_;
-  std::vector<std::uint32_t> by_side_;  // kinds ascending by their least width
+  // Kinds in ascending order of their smallest possible width.
+  std::vector<std::uint32_t> by_side_;
   std::vector<Child> children_;
   std::vector<Node> nodes_;
 };

@@ -8,7 +8,7 @@
 namespace atlas::pack {
 namespace {
 
-// Items in both allowed directions, sorted by width; finds the widest that fits a gap.
+// Items in both allowed directions, sorted by width. Finds the widest item that fits a gap.
 class WidestFit {
  public:
   explicit WidestFit(const Problem& problem) {
@@ -23,7 +23,8 @@ class WidestFit {
       if (a.size.height != b.size.height) return a.size.height < b.size.height;
       return a.item != b.item ? a.item > b.item : a.rotated > b.rotated;
     });
-    leaves_ = std::bit_ceil(entries_.size() + 1);  // one spare: find() starts behind the last
+    // One spare leaf, because find() starts behind the last entry.
+    leaves_ = std::bit_ceil(entries_.size() + 1);
     lowest_.assign(2 * leaves_, kGone);
     other_.assign(problem.items.size(), {kNone, kNone});
     for (std::size_t k = 0; k < entries_.size(); ++k) {
@@ -40,13 +41,15 @@ class WidestFit {
     bool rotated;
   };
 
-  // The widest item (ties: tallest, smallest id) no larger than the room; null if there is none.
+  // Returns the widest item (ties: the tallest, then the smallest id) that is no larger than the
+  // room; null if there is none.
   const Entry* find(Extent room) const {
     const auto after =
         std::upper_bound(entries_.begin(), entries_.end(), room.width,
                          [](std::int32_t width, const Entry& e) { return width < e.size.width; });
     std::size_t node = leaves_ + static_cast<std::size_t>(after - entries_.begin());
-    // Up from the end of the range until a subtree to the left holds one low enough, then down.
+    // Goes up from the end of the range until a subtree to the left holds an item that is low
+    // enough, then down into it.
     while (node > 1) {
       if ((node & 1) && lowest_[node - 1] <= room.height) {
         --node;
@@ -75,7 +78,7 @@ class WidestFit {
   static constexpr std::size_t kNone = SIZE_MAX;
   std::vector<Entry> entries_;
   std::size_t leaves_ = 0;
-  std::vector<std::int32_t> lowest_;  // tree: smallest height among what is left
+  std::vector<std::int32_t> lowest_;  // a tree: the smallest height among the remaining items
   std::vector<std::array<std::size_t, 2>> other_;
 };
 
@@ -99,7 +102,7 @@ Layout pack_widest_first(const Problem& problem) {
       const std::uint32_t gap = gaps.lowest();
       const GapHeap::Segment s = gaps.at(gap);
       if (s.y + std::int64_t{fit.lowest()} > problem.page.height)
-        break;  // so for all that are higher
+        break;  // nor does any item fit a higher gap
       const std::int32_t l = gaps.height_of(s.left), r = gaps.height_of(s.right);
       const WidestFit::Entry* entry = fit.find({s.width, problem.page.height - s.y});
       if (!entry) {
