@@ -23,16 +23,17 @@
 namespace atlas {
 namespace {
 
-// What one chart's bake needs; `tone` null gives scene-linear values.
+// What baking a chart needs. If `tone` is null, texels get scene-linear values.
 struct Job {
   const ChartLight& light;
   const BakeOptions& options;
   const SampleGrid& grid;
   const ToneMapping* tone;
-  float low, high;  // of the values that texels may take
+  float low, high;  // bounds of the texels' values
 };
 
-// Light stays light: beside an edge no texel falls below 0. Other signals have no bounds.
+// Light is never negative, so texels beside an edge are kept from falling below 0. If any value is
+// negative, the signal is not light and has no bounds.
 Job linear_job(const Job& display) {
   constexpr float kMost = std::numeric_limits<float>::max();
   const std::vector<Vec3f>& given = display.light.sampler.scene().illumination;
@@ -41,13 +42,14 @@ Job linear_job(const Job& display) {
   return {display.light, display.options, display.grid, nullptr, negative ? -kMost : 0, kMost};
 }
 
-// Distance of the samples on the surface, for the choice of the texture's mip level.
+// Returns the distance between samples on the surface in scene units, which determines the mip
+// level that is read from textures.
 double sample_spacing(const ChartPlacement& p, int side) {
   return 1 / (std::sqrt(p.texels_per_unit.x * p.texels_per_unit.y) * side);
 }
 
-// A grid's samples in the texels that they lie in: their splat, and where from there its lower left
-// texel is.
+// The samples of one grid, relative to the texels that they lie in: their bilinear weights, and the
+// lower left of the four texels around a sample, relative to the texel that contains it.
 struct GridSplat {
   int left, low;
   LeastSquares::Splat splat;
@@ -66,14 +68,14 @@ std::vector<GridSplat> grid_splats(const SampleGrid& grid) {
   return splats;
 }
 
-// Where samples go, and those of the grid.
+// The sample grids, the weights of their samples, and the equations that samples are added to.
 struct Samples {
   const SampleGrid& grid;
   const std::vector<GridSplat>& splats;
   LeastSquares& fit;
 };
 
-// Splats a triangle's samples; texel (0, 0)'s centre is at (0.5, 0.5).
+// Adds a triangle's samples to the equations. The centre of texel (0, 0) is at (0.5, 0.5).
 void splat_triangle(const TexelTriangle& p, const TriangleLight& lit, const Samples& samples) {
   LeastSquares& fit = samples.fit;
   const auto row = [&](int k, int y, int x0, int x1) {
@@ -111,7 +113,8 @@ TexelGrid bake_least_squares(const Job& job, const ChartBox& box) {
   return std::move(fit).solve(job.low, job.high);
 }
 
-// The published scheme. Shifts move the grid by up to half a texel about the texel's centre.
+// The published method. Its shifts move the grid by up to half a texel around the centre of the
+// texel.
 TexelGrid bake_average(const Job& job, const ChartBox& box) {
   TexelGrid out(box.width, box.height);
   const double spacing = sample_spacing(box.placement, 1);
@@ -140,8 +143,9 @@ TexelGrid bake_average(const Job& job, const ChartBox& box) {
   return out;
 }
 
-// A chart too small to weigh anything takes the mean of its triangles' middles: black would be seen
-// where coarse mip levels mix it with its neighbours.
+// If a chart is so small that no texel has got a value, the texel in the middle of its box takes
+// the mean of the light at the centroids of its triangles. Black would be visible where coarse mip
+// levels mix it with its neighbours.
 void fill_tiny(const Job& job, const ChartBox& box, TexelGrid& texels) {
   if (std::find(texels.known.begin(), texels.known.end(), 1) != texels.known.end()) return;
   Lanes sum{};
@@ -163,13 +167,14 @@ TexelGrid bake_box(const Job& job, const ChartBox& box) {
   return texels;
 }
 
-// The texels that a box's chart writes.
+// The texels of a box that its chart writes.
 struct OwnTexels {
   const ChartBox& box;
   const std::vector<TexelRun>& runs;
 };
 
-// convert(colour) gives the three values to be stored in its first lanes.
+// Copies the chart's own texels to the page. convert(colour) returns the three values to store, in
+// its first three lanes.
 template <class T, class Convert>
 void copy_own(const TexelGrid& in, const OwnTexels& own, Image<T>& page, const Convert& convert) {
   for (const TexelRun& run : own.runs) {
@@ -185,8 +190,9 @@ void copy_own(const TexelGrid& in, const OwnTexels& own, Image<T>& page, const C
 
 constexpr int kLargest = 1 << 16;
 
-// Farthest corner of a chart from its box, texels: more than the diagonal of the largest page, less
-// than what the rasteriser counts to.
+// How far a corner of a chart may lie from the lower left corner of its box along either axis, in
+// texels. This is more than the diagonal of the largest page, and less than the largest coordinate
+// that the rasteriser accepts.
 constexpr double kReach = 1.5 * kLargest;
 static_assert(kReach > 1.4143 * kLargest && kReach < kMaxTexelCoordinate - kLargest / 4);
 
@@ -232,7 +238,7 @@ Status check(const ChartLight& light, std::span<const ChartPlacement> placements
   return {};
 }
 
-// What whoever bakes a page that was packed for fewer mip levels has to know.
+// Returns the warning for a page that was packed for fewer mip levels than are baked.
 std::string contested_text(const PageOwners& owners, int mip_levels) {
   return fmt::format(
       "{} texels belong to several charts, the first at ({}, {}) to {} and {}: look-ups at the "
@@ -280,8 +286,8 @@ Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacem
     }
   });
   if (context.cancelled()) return Status::cancelled();
-  // No lookup at the guarded mip levels reads texels that no chart owns, but viewers build the
-  // whole chain: black there would draw dark lines along distant seams.
+  // Lookups at the guarded mip levels never read texels that no chart owns. But viewers build the
+  // whole mip chain, and black texels there would draw dark lines along distant seams.
   fill_unknown(owners.taken, page.display);
   if (owners.contested > 0) context.say(contested_text(owners, options.mip_levels));
   return page;

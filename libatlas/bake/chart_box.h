@@ -1,4 +1,4 @@
-// Internal: the texels around one chart that its bake fits and fills.
+// Internal: ChartBox, the texels around one chart that its bake fits and fills.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +11,9 @@
 
 namespace atlas {
 
-// The box of one chart with its pads; positions inside are relative to its corner. It ends where
-// the packer's box does: at a multiple of 2^mip_levels, if it begins at one, so that no texel of
-// the coarsest level is left half filled.
+// The box of one chart with its pads. Positions inside the box are relative to its lower left
+// corner. If the box begins at a multiple of 2^mip_levels, it ends at one, too (or at the page's
+// edge), like the packer's box, so that no texel of the coarsest level is filled only in part.
 struct ChartBox {
   const ChartPlacement& placement;
   int pad, width, height;
@@ -30,7 +30,7 @@ struct ChartBox {
     return std::min((begin + length + unit - 1) / unit * unit, page) - begin;
   }
 
-  // The page's texel at the corner.
+  // The page texel at the lower left corner of the box.
   int left() const { return placement.x - pad; }
   int bottom() const { return placement.y - pad; }
 

@@ -19,8 +19,8 @@ namespace {
 
 struct Sample {
   std::int32_t page = -1;
-  Vec2f texel;      // page position
-  Vec3f luminance;  // of the input
+  Vec2f texel;      // position on the page
+  Vec3f luminance;  // the input's
   Vec3f shown;      // display values found in the atlas
   bool found = false;
 };
@@ -49,7 +49,7 @@ double decibels(double mean_square) {
   return mean_square > 0 ? -10 * std::log10(mean_square) : kPerfectDecibels;
 }
 
-// Sums over samples, in their order.
+// The sums of errors over samples, which are added in the order in which they were drawn.
 struct Sums {
   const ToneMapping& tone;
   Fidelity out;
@@ -112,14 +112,14 @@ struct Sums {
   }
 };
 
-// Where a sample lies, before its light is known.
+// The place of a sample on the surface, before its light is known.
 struct Point {
   std::uint32_t triangle = 0;
-  double weight[3] = {0, 0, 0};  // of the triangle's corners
+  double weight[3] = {0, 0, 0};  // barycentric coordinates
 };
 
-// Stratified: one point at a random place in each equal share of the running area. None if there is
-// no area.
+// Draws stratified points: one at a random place in each equal share of the running area. Returns
+// none if the surface has no area.
 std::vector<Point> draw_points(const Scene& scene, const FidelityOptions& options,
                                const Context& context) {
   std::vector<Point> points;
@@ -141,11 +141,11 @@ std::vector<Point> draw_points(const Scene& scene, const FidelityOptions& option
   return points;
 }
 
-// The light of points, and where it lies on the pages.
+// Determines the light of points, and where they lie on the pages.
 struct SampleMaker {
   const ChartLight& light;
   std::span<const ChartPlacement> placements;
-  const std::vector<std::int64_t>& placed;  // 1 a chart: its placement, or -1
+  const std::vector<std::int64_t>& placed;  // one per chart: the index of its placement, or -1
 
   void make(std::span<const Point> points, std::span<Sample> samples) const {
     for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
@@ -203,7 +203,8 @@ Result<FidelityMeter> FidelityMeter::make(const ChartLight& light,
   auto state = std::make_unique<State>(State{light.tone, std::vector<Sample>(points.size()),
                                              std::vector<std::uint32_t>(points.size())});
   const SampleMaker maker{light, placements, placed};
-  // So many that the light of a large triangle is looked for once for many of its samples.
+  // Blocks of this many points are long enough that the light of a large triangle is prepared once
+  // for many of its samples.
   constexpr std::size_t kGrain = 1024;
   parallel_for(context, points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     maker.make(std::span(points).subspan(begin, end - begin),

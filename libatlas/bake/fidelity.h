@@ -1,4 +1,4 @@
-// How far the finished atlases are from the light they were made of.
+// Measures how far the finished atlases are from the light that they were made from.
 #pragma once
 
 #include <cstdint>
@@ -14,33 +14,38 @@
 namespace atlas {
 
 struct FidelityOptions {
-  std::uint32_t samples = 100000;  // area-uniform over the whole surface
+  std::uint32_t samples = 100000;  // distributed uniformly over the area of the whole surface
   std::uint64_t seed = 1;
 };
 
-// The PSNR of samples without any error.
+// The PSNR of samples without any error, dB.
 inline constexpr double kPerfectDecibels = 999;
 
-// Of the lit samples, unless said otherwise.
+// The error of the lit samples, unless said otherwise.
 struct Fidelity {
-  std::uint64_t lit = 0, unlit = 0;  // samples: luminance not exactly zero / exactly zero
-  std::uint64_t clipped = 0;         // lit samples above display white in a channel
-  std::uint64_t unplaced = 0;        // samples on charts without a placement or page: left out
-  double rmse = 0;  // of luma, scene units, after decoding; only where the curve inverts:
-                    // `linear` tone mapping and samples not clipped; else 0
-  double psnr = 0;  // dB, of display values (sRGB-encoded, peak 1), all three channels
+  std::uint64_t lit = 0, unlit = 0;  // samples whose luminance is not / is exactly zero
+  std::uint64_t clipped = 0;         // lit samples at or above display white in a channel
+  std::uint64_t unplaced = 0;  // samples on charts without a placement or page; they are left out
+  // The root mean square error of luma after decoding, scene units. It is measured only where the
+  // tone curve can be inverted, that is with `linear` tone mapping and for samples that are not
+  // clipped; else it is 0.
+  double rmse = 0;
+  double psnr = 0;  // of display values (sRGB-encoded, peak 1) over all three channels, dB
   double psnr_channel[3] = {0, 0, 0};
-  double psnr_all = 0;                    // the same with unlit samples counted in
-  double rmse_display = 0;                // root mean square of the display error over channels
-  double p95 = 0, p999 = 0, maximum = 0;  // of the largest channel's absolute display error
+  double psnr_all = 0;      // as psnr, but with unlit samples included
+  double rmse_display = 0;  // root mean square error of display values over channels
+  // The 95th and 99.9th percentile and the maximum of the absolute display error in a sample's
+  // worst channel.
+  double p95 = 0, p999 = 0, maximum = 0;
 };
 
-// Takes the pages one by one, in any order, so that they need not be in memory together.
+// Measures the error of pages that are given one by one, in any order, so that they need not be in
+// memory together.
 class FidelityMeter {
  public:
-  // Draws the samples, the same for every thread count. `placements` of all pages; what is given
-  // here is not looked at any more once the call is over. Errors: bad_input (a placement names a
-  // chart that is not there); cancelled.
+  // Draws the samples, which are the same for every thread count. `placements` are those of all
+  // pages. The arguments are no longer used after the call. Errors: bad_input (a placement names a
+  // chart that does not exist); cancelled.
   static Result<FidelityMeter> make(const ChartLight& light,
                                     std::span<const ChartPlacement> placements,
                                     const FidelityOptions& options, const Context& context);
@@ -48,9 +53,9 @@ class FidelityMeter {
   FidelityMeter& operator=(FidelityMeter&&) noexcept;
   ~FidelityMeter();
 
-  // Looks up this page's samples bilinearly in the 8-bit image, as a viewer does. `display` is what
-  // bake_page gave, or of the same size. Samples of an image that is empty, not whole, or of fewer
-  // than three channels count as if the page had none.
+  // Looks up this page's samples bilinearly in the 8-bit image, as a viewer does. `display` is the
+  // image from bake_page, or one of the same size. If the image is empty, not whole, or has fewer
+  // than three channels, its samples count as if the charts had no page.
   void add_page(std::int32_t page, const Image8& display);
 
   Fidelity result() const;

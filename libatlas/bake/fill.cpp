@@ -8,7 +8,8 @@ namespace {
 
 using Known = std::vector<std::uint8_t>;
 
-// The next coarser level of a grid or page: means of the known texels, which colour(at) gives.
+// Returns the next coarser level of a grid or page. Its texels are the means of the known texels of
+// the finer level, whose colours colour(at) returns.
 template <class Fine, class Colour>
 TexelGrid pull(const Fine& fine, const Known& known, Colour&& colour) {
   TexelGrid coarse((fine.width + 1) / 2, (fine.height + 1) / 2);
@@ -39,7 +40,8 @@ TexelGrid pull(const Fine& fine, const Known& known, Colour&& colour) {
   return coarse;
 }
 
-// Unknown texels take the bilinear value of the next coarser level, all of whose texels are filled.
+// Gives unknown texels the bilinearly interpolated value of the next coarser level, all of whose
+// texels are filled.
 template <class Fine, class Set>
 void push(const TexelGrid& coarse, const Fine& fine, const Known& known, Set&& set) {
   for (int y = 0; y < fine.height; ++y) {
@@ -47,7 +49,7 @@ void push(const TexelGrid& coarse, const Fine& fine, const Known& known, Set&& s
     const std::size_t from = std::size_t(y) * static_cast<std::size_t>(fine.width);
     for (int x = 0; x < fine.width; ++x) {
       const std::uint8_t* here = &known[from + std::size_t(x)];
-      if (*here) {  // on to the next unknown one
+      if (*here) {  // skip to the next unknown texel
         const void* next = std::memchr(here, 0, static_cast<std::size_t>(fine.width - x));
         if (!next) break;
         x += static_cast<int>(static_cast<const std::uint8_t*>(next) - here);

@@ -1,4 +1,5 @@
-// Internal: texels whose bilinear interpolation fits weighted samples best.
+// Internal: LeastSquares, which finds the texels whose bilinear interpolation fits weighted samples
+// best.
 #pragma once
 
 #include <cstddef>
@@ -9,13 +10,13 @@
 namespace atlas {
 
 // Minimises sum_i w_i |bilinear(texels, x_i) - c_i|² plus a small multiple of the squared
-// differences between neighbouring texels, which decides those that hardly any sample sees. The
-// normal equations' matrix couples a texel with its eight neighbours; it is symmetric, so four of
-// the eight are stored, and accumulated sample by sample.
+// differences between neighbouring texels, which determines the texels that hardly any sample
+// reads. The matrix of the normal equations couples a texel with its eight neighbours. It is
+// symmetric, so only four of the eight elements are stored. They are accumulated sample by sample.
 class LeastSquares {
   struct alignas(32) Cell {
     Lanes value{};  // right-hand side of R, G, B; diagonal element
-    Lanes pair{};   // with the east, north, north-east neighbours; with the north-west one
+    Lanes pair{};   // elements with the east, north, north-east and north-west neighbours
   };
 
  public:
@@ -25,10 +26,11 @@ class LeastSquares {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  // The four texels around a sample and its bilinear weights, already times its weight.
+  // The bilinear weights of a sample for the four texels around it, already multiplied by its own
+  // weight.
   class Splat {
    public:
-    // (tx, ty): position between the centres of texels (0, 0) and (1, 1), in [0, 1].
+    // (tx, ty) is the position between the centres of texels (0, 0) and (1, 1), in [0, 1].
     Splat(float tx, float ty, float weight) {
       const float w[4] = {(1 - tx) * (1 - ty), tx * (1 - ty), (1 - tx) * ty, tx * ty};
       for (int k = 0; k < 4; ++k) {
@@ -42,10 +44,10 @@ class LeastSquares {
 
    private:
     friend class LeastSquares;
-    Cell share_[4];  // of each texel; values times the colour
+    Cell share_[4];  // one per texel; `value` is still to be multiplied by the colour
   };
 
-  // Adds a sample whose lower left texel is (x, y); rgb1 is its colour with a 1 in the 4th lane.
+  // Adds a sample whose lower left texel is (x, y). rgb1 is its colour, with a 1 in the 4th lane.
   void add(int x, int y, const Splat& s, Lanes rgb1) {
     Cell* c = &cells_[index(x, y)];
     Cell* d = c + stride_;
@@ -58,24 +60,28 @@ class LeastSquares {
     d[1].value += s.share_[3].value * rgb1;
   }
 
-  // Where a row of samples begins, one texel apart, each as the splat says.
+  // The lower left texel of the first sample of a row of samples. They are one texel apart, and the
+  // splat applies to each of them.
   struct Run {
     int x, y;
     const Splat& splat;
   };
 
-  // Adds n samples of a row: each cell is then read and written once for the two samples beside it.
+  // Adds n samples of a row. Each cell is then read and written only once, for the two samples
+  // beside it.
   void add_row(const Run& run, const Lanes* rgb1, int n);
 
-  // The solution, clamped to [low, high], known where a sample has come. Once only: it uses the
-  // sums up, and frees them before it copies.
+  // Returns the solution, clamped to [low, high]. A texel is known if a sample has touched it. May
+  // be called only once, because it overwrites the sums, and frees them before it copies the
+  // result.
   TexelGrid solve(float low, float high) &&;
 
  private:
-  // The grid has a border of cells that nothing touches, so that loops need no tests at its sides.
+  // The grid has a border of cells that no sample touches, so that loops need no tests at its
+  // sides.
   std::size_t index(int x, int y) const { return (y + 1) * stride_ + x + 1; }
 
-  struct Kernels;  // with and without wide vectors
+  struct Kernels;  // the inner loops, with and without wide vectors
 
   struct Bounds {
     float low, high;

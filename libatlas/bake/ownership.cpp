@@ -7,7 +7,7 @@
 namespace atlas {
 namespace {
 
-// Every texel within `pad` of a set one along rows becomes set.
+// Sets every texel that is within `pad` texels of a set one in the same row.
 void widen_rows(std::vector<std::uint8_t>& mask, int width, int pad) {
   std::vector<std::uint8_t> row(static_cast<std::size_t>(width));
   for (std::size_t begin = 0; begin < mask.size(); begin += row.size()) {
@@ -28,7 +28,7 @@ std::vector<std::uint8_t> transposed(const std::vector<std::uint8_t>& mask, int 
   return out;
 }
 
-// A cell with one set texel becomes set as a whole.
+// Sets all texels of each cell that contains a set texel.
 void fill_cells(std::vector<std::uint8_t>& mask, const OwnershipGrid& grid) {
   for (int y = 0; y < grid.height; y += grid.cell) {
     const int y1 = std::min(y + grid.cell, grid.height);
@@ -68,7 +68,7 @@ std::vector<std::uint8_t> owned_texels(std::span<const TexelTriangle> triangles,
   return mask;
 }
 
-// Two sweeps give chessboard distances exactly (Rosenfeld and Pfaltz 1968).
+// Two sweeps give exact chessboard distances (Rosenfeld and Pfaltz 1968).
 std::vector<std::uint16_t> texels_to_triangles(std::span<const TexelTriangle> triangles,
                                                const OwnershipGrid& grid) {
   constexpr int kFar = 65535;

@@ -1,4 +1,4 @@
-// Internal: which texels of its box belong to a chart that was packed by its outline.
+// Internal: determines which texels of its box belong to a chart that was packed by its outline.
 #pragma once
 
 #include <cstdint>
@@ -10,19 +10,21 @@
 namespace atlas {
 
 struct OwnershipGrid {
-  int width = 0, height = 0;  // of the box with its pads, texels
-  int pad = 1;                // texels around every triangle that belong to the chart
-  int cell = 1;               // texels a side of the cells that the packer hands out
+  int width = 0, height = 0;  // size of the box with its pads, texels
+  int pad = 1;                // how many texels around every triangle belong to the chart
+  int cell = 1;               // side of the cells that the packer assigns, texels
 };
 
-// 1 a texel of the box, row-major: whether it lies in a cell that comes within `pad` texels of one
-// of the triangles (in the box's texels). Where the box begins and ends at multiples of `cell`,
-// this is the packer's own rule (pack/outline.h), so texels of two charts packed by it never meet.
+// Returns one value per texel of the box, row-major: 1 if the texel lies in a cell that comes
+// within `pad` texels of one of the triangles (whose corners are in the box's texels), else 0. If
+// the box begins and ends at multiples of `cell`, this is the packer's own rule (pack/outline.h),
+// so two charts that were packed by it never own the same texel.
 std::vector<std::uint8_t> owned_texels(std::span<const TexelTriangle> triangles,
                                        const OwnershipGrid& grid);
 
-// 1 a texel of the box, row-major: how many texels it is from the nearest one that a triangle
-// touches, along rows or columns, whichever is more; 65535 where none is nearer.
+// Returns one value per texel of the box, row-major: its distance to the nearest texel that a
+// triangle touches, counted in texels along rows or columns, whichever is more. The value is 65535
+// if no touched texel is nearer.
 std::vector<std::uint16_t> texels_to_triangles(std::span<const TexelTriangle> triangles,
                                                const OwnershipGrid& grid);
 

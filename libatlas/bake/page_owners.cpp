@@ -14,7 +14,7 @@ namespace atlas {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
-constexpr std::uint8_t kOne = 1, kSeveral = 2;  // of `taken`
+constexpr std::uint8_t kOne = 1, kSeveral = 2;  // values of `taken`
 
 class OwnerFinder {
  public:
@@ -79,7 +79,7 @@ class OwnerFinder {
                    [](std::uint8_t before) { return before == 0 ? kOne : kSeveral; });
   }
 
-  // Calls visit(texel) for what is contested of a placement's texels, in their order.
+  // Calls visit(texel) for each contested texel of a placement, in the order of its runs.
   template <class Visit>
   void each_contested(std::size_t i, const Visit& visit) const {
     for (const TexelRun& run : out_.runs[i]) {
@@ -88,7 +88,8 @@ class OwnerFinder {
     }
   }
 
-  // Of the contested texels of a placement, from its triangles or inner box.
+  // Returns how far each contested texel of a placement is from its triangles or inner box, in
+  // texels.
   std::vector<std::uint16_t> distances(std::size_t i) const {
     std::vector<std::uint16_t> found;
     const ChartBox box = this->box(i);
@@ -133,7 +134,7 @@ class OwnerFinder {
     for (std::size_t i = 0; i < placements_.size(); ++i) give_up(i, owner);
   }
 
-  // The lowest contested texel and the two lowest charts that claim it.
+  // Stores the lowest contested texel, and the two lowest charts that claim it.
   void name_first(const std::vector<std::uint32_t>& order) {
     const auto first =
         std::size_t(std::find(out_.taken.begin(), out_.taken.end(), kSeveral) - out_.taken.begin());
@@ -149,7 +150,7 @@ class OwnerFinder {
     }
   }
 
-  // What others own.
+  // Removes from the runs of a placement the texels that other placements own.
   void give_up(std::size_t i, const std::vector<std::uint32_t>& owner) {
     std::vector<TexelRun> left;
     for (const TexelRun& run : out_.runs[i]) {
