@@ -1,4 +1,5 @@
-// What will be done for a scene, and what it does not need, with the figures that decided it.
+// The plan of an export: which stages run for a scene and which it does not need, with the figures
+// that decide it.
 #pragma once
 
 #include <algorithm>
@@ -11,18 +12,20 @@ namespace atlas {
 struct PlanStep {
   std::string stage;
   bool run = true;
-  std::string reason;  // why it runs or is skipped, with the numbers it follows from
+  std::string reason;  // why the stage runs or is skipped, with the figures that decide it
 };
 
 struct ExportPlan {
   std::vector<PlanStep> steps;
   double surface_area_m2 = 0;
-  double texel_metres = 0;         // ExportOptions::texel_metres, or what was chosen for it
-  double estimated_texels = 0;     // before downsizing: at texel_metres, or as textures ask for
-  double unlit_share = 0;          // of the area, triangles whose corners are all exactly black
-  double uniform_share = 0;        // of the area, triangles whose corners are all equal and lit
+  double texel_metres = 0;  // ExportOptions::texel_metres, or the length chosen if that is 0
+  // Before downsizing, with texels of texel_metres, or finer ones where textures ask for them.
+  double estimated_texels = 0;
+  double unlit_share = 0;  // share of the area whose triangles have exactly black corners only
+  // Share of the area whose triangles are untextured and have three equally lit corners.
+  double uniform_share = 0;
   bool bake = true;                // there is light to bake
-  bool sample_reflectance = true;  // textures take part
+  bool sample_reflectance = true;  // diffuse textures are sampled
   bool simplify = true;
 
   bool runs(std::string_view stage) const {

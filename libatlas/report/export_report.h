@@ -1,4 +1,5 @@
-// What an export did, stage by stage, with the quality of each measured: the JSON report's content.
+// The report of an export, which the JSON report is written from: what each stage did, what it
+// cost, and how good its result is.
 #pragma once
 
 #include <cstdint>
@@ -19,18 +20,18 @@
 
 namespace atlas {
 
-// One stage's cost. Sizes in and out are in the stage's own items.
+// The cost of one stage. size_in and size_out count items of the kind that the stage handles.
 struct StageReport {
   std::string stage;
   double wall_seconds = 0, cpu_seconds = 0;
-  std::int64_t peak_memory = 0;  // of the process after the stage, bytes
+  std::int64_t peak_memory = 0;  // of the process until the end of the stage, bytes
   std::uint64_t size_in = 0, size_out = 0;
-  std::string unit;     // of size_out: "charts"
+  std::string unit;     // what size_out counts, such as "charts"
   std::string quality;  // one phrase with the figure that matters
 };
 
 struct PageReport {
-  std::string image;  // file name; empty without baked light
+  std::string image;  // file name; empty without baked light, or if the target embeds images
   std::int32_t width = 0, height = 0;
   std::uint32_t charts = 0;
   std::uint64_t image_bytes = 0;
@@ -45,7 +46,7 @@ struct ExportReport {
   Vec3d origin;
   DefectReport defects;
   ExportPlan plan;
-  bool carried_out = false;  // else nothing below is known but the stages that have run
+  bool carried_out = false;  // if false, nothing below is known but the stages run so far
   std::vector<StageReport> stages;
   double wall_seconds = 0, cpu_seconds = 0;
   std::int64_t peak_memory = 0;
@@ -63,27 +64,31 @@ struct ExportReport {
   LuminanceStatistics luminance;
 
   // Textures
-  double texel = 0;  // asked for, scene units
+  double texel = 0;  // the length asked for, scene units
   std::int64_t full_texels = 0, final_texels = 0;
   std::uint64_t halved_charts = 0, uniform_charts = 0, unlit_charts = 0, capped_charts = 0,
                 raised_charts = 0;
   std::uint64_t sampled_charts = 0;
   std::int64_t sampled_texels = 0;
-  double downsizing_rms = 0, downsizing_max = 0;  // display values, over sampled_texels
+  double downsizing_rms = 0, downsizing_max = 0;  // of display values, over sampled_texels
 
   // Pages
   GroupingResult grouping;
-  double scale = 1;           // applied to all textures alike
-  double utilization = 0;     // chart texels (boxes) or uv area (outlines) / page texels
-  double uv_utilization = 0;  // uv area / page area
+  double scale = 1;  // common to all textures
+  // The texels of the charts' boxes, or with outlines the charts' uv area, divided by the pages'
+  // texels.
+  double utilization = 0;
+  double uv_utilization = 0;  // uv area of the charts / area of the pages
   bool outlines = false;
-  std::uint64_t thin_triangles = 0;  // of those written: turned over or closed by uvs as floats
-  std::uint64_t opened_charts = 0;   // parts of which were drawn apart, not to share texels
-  // Where some still share them: texels of border. With baked light, and with uvs for a lightmap.
+  // Triangles written that rounding the uvs to floats turns over or leaves no area.
+  std::uint64_t thin_triangles = 0;
+  std::uint64_t opened_charts = 0;  // charts whose parts were moved apart so as not to share texels
+  // The length of the charts' borders and of the parts that still share texels, in texels. Present
+  // with baked light, and with uvs for a lightmap.
   std::optional<GapReport> gaps;
-  std::optional<std::uint64_t> texels_drawn_twice;  // UnwrappedMesh has it; without baked light
+  std::optional<std::uint64_t> texels_drawn_twice;  // as in UnwrappedMesh; without baked light
   std::vector<PageReport> pages;
-  std::uint64_t gpu_bytes = 0;  // RGBA8 with mip chains
+  std::uint64_t gpu_bytes = 0;  // memory of the pages as RGBA8 with mip chains
 
   // The coarser mesh
   bool simplified = false;
@@ -92,17 +97,18 @@ struct ExportReport {
 
   bool error_measured = false;
   Fidelity fidelity;
-  std::vector<std::pair<std::string, std::uint64_t>> files;  // written: name, bytes
-  std::vector<std::string> not_kept;  // with keep_scene: what of the scene was not written
+  std::vector<std::pair<std::string, std::uint64_t>> files;  // files written: name, size in bytes
+  std::vector<std::string> not_kept;  // with keep_scene: what of the scene could not be written
   std::vector<std::string> advice;    // what the figures mean for the user, and the remedy
 };
 
-// Writes the report as JSON (docs/report.md names every key), whole or not at all. Of an export
-// that was not carried out there is the plan, and nothing of what it would have given.
+// Writes the report as JSON (docs/report.md explains every key). The file is written completely or
+// not at all. If the export was not carried out, the file has the plan and the stages so far, but
+// no results.
 Status write_json(const ExportReport& report, const std::filesystem::path& path);
 
-// One line for people: "charts  301709 -> 68 charts, L2 1.0012, 99.9 % 1.112  0.82 s  120 MiB", CPU
-// seconds.
+// Returns a line of text for users, such as the following. The seconds are CPU time.
+//   charts  301709 -> 68 charts, L2 1.0012, 99.9 % 1.112  0.82 s  120 MiB
 std::string stage_line(const StageReport& stage);
 
 }  // namespace atlas

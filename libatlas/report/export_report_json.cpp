@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kMebibyte = 1024.0 * 1024.0;
 
-// JSON has no infinities: they are written as null.
+// JSON has no infinities, so they are written as null.
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
@@ -193,7 +193,8 @@ Json pages_json(const ExportReport& r) {
   return packing;
 }
 
-// What no sample told is null: a 0 would read as a perfect or a hopeless result.
+// A value that no sample determines is written as null, because a 0 would read as a perfect or a
+// hopeless result. So is the PSNR of samples without any error.
 Json error_json(const Fidelity& f, ToneOperator tone) {
   const bool inverted = tone == ToneOperator::linear && f.lit > f.clipped;
   const auto decibels = [](double value, std::uint64_t samples) {
@@ -216,7 +217,7 @@ Json error_json(const Fidelity& f, ToneOperator tone) {
           {"max", of_lit(f.maximum)}};
 }
 
-// What was not measured has no key: a 0 would read as a perfect result.
+// Values that were not measured have no key, because a 0 would read as a perfect result.
 void add_results(const ExportReport& r, Json& json) {
   json["charts"] = charts_json(r);
   json["packing"] = pages_json(r);
@@ -247,7 +248,8 @@ Status write_json(const ExportReport& r, const std::filesystem::path& path) {
             {"scene", scene_json(r)},      {"plan", json_of(r.plan)},
             {"stages", stages_json(r)},    {"skipped", skipped_json(r.plan)}};
   if (r.carried_out) add_results(r, json);
-  // Names come from files: bytes that are no UTF-8 are replaced instead of ending the export.
+  // Names come from files and may hold bytes that are not UTF-8. Such bytes are replaced, because
+  // otherwise they would end the export.
   return write_file(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
