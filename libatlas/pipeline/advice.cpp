@@ -10,9 +10,9 @@
 namespace atlas {
 namespace {
 
-// The paper's scenes have about 50 pages, a cabin of three million triangles 39.
+// The paper's scenes have about 50 pages, and a cabin of three million triangles has 39.
 constexpr std::size_t kManyPages = 64;
-constexpr std::int32_t kCommonSide = 8192;  // textures that every graphics card takes
+constexpr std::int32_t kCommonSide = 8192;  // side of textures that every graphics card supports
 
 double page_texels(const ExportReport& report) {
   double texels = 0;
@@ -78,7 +78,7 @@ std::string on_black(const ExportReport& report) {
       double(report.luminance.percentile99), report.exposure_white);
 }
 
-// What the tone curve shows of grey light.
+// Returns the display value of grey light.
 float shown(const ExportReport& report, double luminance) {
   const auto v = static_cast<float>(luminance);
   return report.tone.display({v, v, v}).x;
@@ -93,7 +93,7 @@ bool is_open(const Material& m, const Scene& scene) {
 }  // namespace
 
 std::vector<std::string> advice_on(const ExportReport& report, const ExportOptions& options) {
-  // Below these, light that the scene has is seen to be missing from the pages.
+  // Below these limits, it shows that pages lack light that the scene has.
   constexpr double kFewTexels = 32 * 32, kHardlyAny = 8 * 8, kLittleUsed = 0.4, kCoarse = 0.5;
   constexpr std::size_t kManyCharts = 256;
   constexpr float kBlack = 6 / 255.0f;
@@ -103,7 +103,7 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
         "ChartOptions::keep_uv_charts kept no chart: the scene's texture coordinates are missing, "
         "flipped or "
         "lie on each other (leave it out for charts of all new borders)");
-  if (report.pages.empty() || report.gpu_bytes == 0) return lines;  // no light, no texels to lose
+  if (report.pages.empty() || report.gpu_bytes == 0) return lines;  // no light was baked
   if (report.pages.size() > kManyPages) lines.push_back(on_many_pages(report, options));
   const double texels_a_chart =
       report.uv_utilization * page_texels(report) / double(report.charts.size());
@@ -114,7 +114,7 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
     lines.push_back(on_long_texels(report, options, texels_a_chart));
   if (options.texel_metres > 0 && report.scale < kCoarse)
     lines.push_back(on_coarse_texels(report, options));
-  // A white that was measured suits the light, even where all of it is equal.
+  // A measured white suits the light, even if all light is equal.
   if (options.tone.white <= 0 && options.tone.exposure_stops == 0) return lines;
   const LuminanceStatistics& light = report.luminance;
   if (shown(report, light.log_average) >= 1) lines.push_back(on_white(report));

@@ -1,4 +1,4 @@
-// What the figures of a finished export should make its user think of.
+// Derives advice for the user from the figures of a finished export.
 #pragma once
 
 #include <string>
@@ -10,11 +10,12 @@
 
 namespace atlas {
 
-// One line each: what is so, what it means, and which options change it. Empty for most scenes.
+// Returns one line for each problem: what it is, what it means, and which options change it. Most
+// scenes have none.
 std::vector<std::string> advice_on(const ExportReport& report, const ExportOptions& options);
 
-// Lines on what materials have and baked pages have not: that they are seen through or have holes,
-// and, unless the quantity holds it already, light of their own.
+// Returns lines on properties of materials that baked pages do not have: that they are transparent
+// or have holes, and, unless the quantity already includes it, that they emit light.
 std::vector<std::string> advice_on_materials(const Scene& scene, Quantity quantity);
 
 }  // namespace atlas

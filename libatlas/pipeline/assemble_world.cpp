@@ -10,7 +10,7 @@
 namespace atlas {
 namespace {
 
-// The corner list with the given triangles' orientation reversed.
+// Returns the corner list with the given triangles' orientation reversed.
 std::vector<std::uint32_t> turned_round(std::span<const std::uint32_t> from,
                                         std::span<const std::uint32_t> triangles) {
   std::vector<std::uint32_t> corners(from.begin(), from.end());

@@ -16,7 +16,7 @@
 namespace atlas {
 namespace {
 
-// Adds the time since its construction to a sum.
+// Adds the time between its construction and its destruction to a sum.
 class BookedTime {
  public:
   BookedTime(double (*clock)(), double& sum) : clock_(clock), sum_(sum), start_(clock()) {}
@@ -34,8 +34,8 @@ std::vector<std::vector<ChartPlacement>> placements_by_page(const PageLayout& la
   return pages;
 }
 
-// Pages that are baked, and those that wait to be written, take at most so many bytes each
-// together, but for the first.
+// The pages that are baked at once take at most this many bytes together, and so do those that wait
+// to be written. A single page may take more.
 constexpr std::size_t kBytesAtOnce = std::size_t{256} << 20;
 
 class PageBaker {
@@ -84,11 +84,11 @@ class PageBaker {
     return {};
   }
 
-  // The caller's thread, not one in the background.
+  // Returns whether the caller's thread writes images, instead of threads in the background.
   bool writes_itself() const { return pages_.size() < 2 || context_.threads == 1; }
 
-  // So many are baked, and so many written beside that: as many as there are threads, since a page
-  // may hold a single chart.
+  // Returns how many pages are baked at once, while as many others are written. This is the number
+  // of threads if memory allows, because a page may hold a single chart, which occupies one thread.
   std::size_t pages_at_once() const {
     if (writes_itself()) return 1;
     const std::size_t texel = options_.exr ? 3 + 3 * sizeof(float) : 3;
@@ -166,9 +166,9 @@ class PageBaker {
   const Context& context_;
   std::vector<std::vector<ChartPlacement>> pages_;
   std::optional<FidelityMeter> meter_;
-  std::vector<double> write_cpu_;  // by page: each writer adds to its own
+  std::vector<double> write_cpu_;  // one per page; each writer adds to its own
   std::mutex reporting_;
-  std::vector<double> fraction_;  // by page: done
+  std::vector<double> fraction_;  // one per page: how much is done
   double fractions_ = 0;          // their sum
   BakedPages result_;
 };

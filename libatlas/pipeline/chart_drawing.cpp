@@ -81,8 +81,9 @@ std::size_t ChartDrawing::texels_drawn_twice(glm::ivec2 steps) {
   return count;
 }
 
-// One that is turned over lies upon triangles which have all of its texels already; which of those
-// on its edges depends on which way up the page is drawn.
+// A triangle that is turned over lies on triangles that cover all of its texels already, so it
+// draws all of them twice. Which of the texels on its edges it draws depends on which way up the
+// page is drawn, so all of these count.
 void ChartDrawing::draw(const Snapped& triangle) {
   const std::int64_t area = twice_area(triangle);
   const TexelTriangle p = scaled(triangle, 1.0 / kDrawnSteps);
@@ -116,7 +117,8 @@ std::vector<std::uint32_t> ChartDrawing::hits_of_turned() {
     const auto [x_low, x_high] = std::minmax({c[0].x, c[1].x, c[2].x});
     const auto [y_low, y_high] = std::minmax({c[0].y, c[1].y, c[2].y});
     const Rect box{int(x_low), int(y_low), int(x_high - x_low) + 1, int(y_high - y_low) + 1};
-    // A point of steps is a texel's centre once the chart is moved from there to half a texel.
+    // A point of the grid of steps becomes a texel's centre if the chart is moved by half a texel
+    // minus that point.
     scan_triangle<0, EdgeRule::closed>(scaled(c, 1), box, {0, 0}, [&](int y, int x0, int x1) {
       std::uint32_t* row = &hits[std::size_t((kDrawnSteps / 2 - y) & kLast) * kDrawnSteps];
       for (int x = x0; x < x1; ++x) ++row[(kDrawnSteps / 2 - x) & kLast];

@@ -1,4 +1,4 @@
-// Internal: a chart of the page as graphics hardware draws it.
+// Internal: ChartDrawing, a chart of the page as graphics hardware draws it.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace atlas {
 
-// Where a triangle lies is decided for corners rounded to 1/256 of a texel, halves up
-// (Direct3D 11.3 Functional Specification, 3.2.4; D3D12_SUBPIXEL_FRACTIONAL_BIT_COUNT).
+// Graphics hardware decides where a triangle lies after rounding its corners to 1/256 of a texel,
+// halves up (Direct3D 11.3 Functional Specification, 3.2.4; D3D12_SUBPIXEL_FRACTIONAL_BIT_COUNT).
 inline constexpr int kDrawnBits = 8;
 inline constexpr int kDrawnSteps = 1 << kDrawnBits;
 
@@ -22,24 +22,27 @@ struct UvRange {
   std::uint32_t first = 0, count = 0;
 };
 
-// Triangles that are counter-clockwise and do not overlap, drawn with such corners. Thinner ones
-// than a step may then be turned over, and lie upon their neighbours.
+// Draws triangles that are counter-clockwise and do not overlap, after rounding their corners like
+// this. Triangles thinner than a step may then be turned over, and lie on their neighbours.
 class ChartDrawing {
  public:
-  // `corners`: 3 a triangle, uvs of the range; those that name a uv twice are not drawn.
+  // `corners` are three per triangle, uvs of the range. Triangles that name a uv twice are not
+  // drawn. `page` is the size of the page in texels.
   ChartDrawing(std::span<const std::uint32_t> corners, UvRange range,
                std::span<const Vec2f> page_uvs, glm::dvec2 page);
 
-  // Of all, how many texels' centres more than one triangle covers, when the chart is moved by so
-  // many steps.
+  // Returns how many texels have centres that more than one triangle covers if the chart is moved
+  // by `steps`.
   std::size_t texels_drawn_twice(glm::ivec2 steps);
-  // How many triangles floats leave no area, or turn over (thin_uvs.h), likewise.
+  // Returns how many triangles floats leave no area, or turn over (thin_uvs.h), if the chart is
+  // moved by `steps`.
   std::size_t thin_triangles(glm::ivec2 steps);
-  // The chart's uvs, moved; 1 a uv of the range. Valid until the next call of a method.
+  // Returns the chart's uvs moved by `steps`, one per uv of the range. They are valid until the
+  // next call of a method.
   std::span<const Vec2f> moved(glm::ivec2 steps);
 
-  // hits[kDrawnSteps * y + x]: how many texels' centres triangles that are turned over would cover,
-  // edges included, if the chart were moved by (x, y) steps, modulo kDrawnSteps.
+  // Returns hits[kDrawnSteps * y + x]: how many texel centres the triangles that are turned over
+  // would cover, edges included, if the chart were moved by (x, y) steps, modulo kDrawnSteps.
   std::vector<std::uint32_t> hits_of_turned();
 
  private:
@@ -48,14 +51,14 @@ class ChartDrawing {
   void draw(const Snapped& triangle);
   void mark(int y, int x0, int x1, bool turned);
 
-  std::vector<std::uint32_t> corners_;  // 3 a triangle, local
-  std::span<const Vec2f> uvs_;          // local
+  std::vector<std::uint32_t> corners_;  // three per triangle, into uvs_
+  std::span<const Vec2f> uvs_;          // those of the range
   glm::dvec2 page_;
   std::vector<Vec2f> moved_;
-  std::vector<glm::i64vec2> at_;  // of moved_, steps
+  std::vector<glm::i64vec2> at_;  // positions of moved_, in steps
   Rect box_;                      // texels
   std::size_t row_words_ = 0;
-  std::vector<std::uint64_t> once_, twice_;  // 1 a texel of the box
+  std::vector<std::uint64_t> once_, twice_;  // one bit per texel of the box
 };
 
 }  // namespace atlas

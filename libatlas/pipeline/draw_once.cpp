@@ -19,11 +19,11 @@
 namespace atlas {
 namespace {
 
-constexpr int kFarthest = kDrawnSteps / 4;  // steps
-// Places that are looked at for neighbours, and of these drawn.
+constexpr int kFarthest = kDrawnSteps / 4;  // along each axis, in steps
+// How many places are checked for neighbours, and how many of these are drawn.
 constexpr std::size_t kPlaces = 256, kDrawings = 16;
 
-// Of lookups, and of a move: texels.
+// How far lookups and a move reach beyond a chart at most, in texels.
 constexpr double kReach = 3;
 
 struct Box {
@@ -36,7 +36,7 @@ struct Box {
   }
 };
 
-// Charts' boxes by the squares of their pages that they reach into.
+// Sorts the boxes of charts by the squares of their pages that they reach into.
 class BoxBuckets {
  public:
   BoxBuckets(const PlacedCharts& placed, const std::vector<Box>& boxes)
@@ -51,7 +51,8 @@ class BoxBuckets {
       each_square(c, [&](std::size_t square) { charts_[square].push_back(c); });
   }
 
-  // The other charts of c's page whose box is at most twice kReach from its own, along both axes.
+  // Returns the other charts of c's page whose boxes may be within twice kReach of c's box along
+  // both axes: those that share a square with c when the boxes are enlarged.
   std::vector<std::uint32_t> near(std::size_t c) {
     std::vector<std::uint32_t> found;
     ++searches_;
@@ -65,8 +66,8 @@ class BoxBuckets {
   }
 
  private:
-  // Texels a side of a square; no more than 64 of them along a page, since strips at a slant have
-  // boxes that reach into most.
+  // Returns the side of a square in texels. A page has at most 64 squares along a side, because the
+  // boxes of slanted strips reach into most of them.
   static int side(const Extent& page) {
     return std::max(64, (std::max(page.width, page.height) + 63) / 64);
   }
@@ -93,14 +94,14 @@ class BoxBuckets {
 
   const PlacedCharts& placed_;
   const std::vector<Box>& boxes_;
-  std::vector<std::size_t> first_;  // square of each page
+  std::vector<std::size_t> first_;  // one per page: its first square
   std::vector<std::vector<std::uint32_t>> charts_;
-  std::vector<std::uint32_t> seen_;  // 1 a chart: the last search that found it
+  std::vector<std::uint32_t> seen_;  // one per chart: the last search that found it
   std::uint32_t searches_ = 0;
 };
 
-// Calls texel(x, y) for each texel that bilinear lookups along a segment read: the four around each
-// square between texels' centres that it meets.
+// Calls texel(x, y) for each texel that bilinear lookups along a segment read. Those are the four
+// texels around each square between texel centres that the segment meets.
 template <class Texel>
 void lookups_along(glm::dvec2 a, glm::dvec2 b, Texel&& texel) {
   a -= 0.5;
@@ -130,14 +131,14 @@ void lookups_of(const pack::ChartOutline& outline, glm::dvec2 shift, Texel&& tex
   }
 }
 
-// The charts of all pages as they are drawn.
+// The charts of all pages as graphics hardware draws them.
 class Drawings {
  public:
   Drawings(const PlacedCharts& placed, std::span<const std::uint32_t> corners,
            std::span<const Vec2f> uvs)
       : placed_(placed), corners_(corners), uvs_(uvs) {}
 
-  // 1 a chart: texels drawn twice.
+  // Returns, for each chart, how many texels are drawn twice.
   std::vector<std::size_t> count(const Context& context) const {
     const std::size_t n = placed_.charts.charts.size();
     std::vector<std::size_t> twice(n, 0);
@@ -201,7 +202,8 @@ class Mover : private Drawings {
     glm::ivec2 steps{0};
     std::size_t texels = 0;  // drawn twice
   };
-  // One byte a texel of a chart's box and some around it: whether other charts' lookups read it.
+  // One byte per texel of a chart's box and its surroundings: whether lookups of other charts read
+  // it.
   struct Taken {
     Rect box;
     std::vector<std::uint8_t> texels;
@@ -212,8 +214,8 @@ class Mover : private Drawings {
     }
   };
 
-  // On its page, in texels. Kept until the chart is moved, since many charts may have it for their
-  // neighbour.
+  // Returns the outline of a chart on its page, in texels. It is kept until the chart is moved,
+  // because many charts may have this one as their neighbour.
   const pack::ChartOutline& outline(std::size_t c) {
     if (outlines_[c]) return *outlines_[c];
     std::vector<Vec2d> texels;
@@ -259,7 +261,7 @@ class Mover : private Drawings {
            glm::all(glm::lessThanEqual(box.high + shift, high));
   }
 
-  // Those with the fewest hits first, of these the nearest.
+  // Returns the places with the fewest hits first, and among these the nearest first.
   static std::vector<glm::ivec2> places(std::span<const std::uint32_t> hits) {
     using Key = std::tuple<std::uint32_t, int, int, int>;
     std::vector<Key> keys;
@@ -302,7 +304,7 @@ class Mover : private Drawings {
   }
 
   std::vector<Vec2f>& moving_uvs_;
-  // Once a chart is to be moved; boxes and outlines 1 a chart, in texels.
+  // Filled once a chart is to be moved. There is one box and one outline per chart, in texels.
   std::vector<Box> boxes_;
   std::vector<std::optional<pack::ChartOutline>> outlines_;
   std::optional<BoxBuckets> buckets_;

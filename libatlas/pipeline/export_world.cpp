@@ -40,8 +40,8 @@ MeshView view_of(const Scene& scene) {
   return view;
 }
 
-// The state that one stage hands to the next. Each method is one stage: it fills its part of the
-// report and returns early with a Status.
+// Holds the state that one stage hands to the next. Each method is one stage: it fills its part of
+// the report, and returns early if it fails.
 class Export {
  public:
   Export(const LoadedScene& loaded, const ExportOptions& options,
@@ -106,7 +106,7 @@ class Export {
     return {};
   }
 
-  // Again whenever charts were cut.
+  // Must be called again whenever charts were cut.
   void report_charts() {
     report_.charts = charts_.charts;
     report_.distortion = charts_.distortion;
@@ -190,7 +190,7 @@ class Export {
     return {};
   }
 
-  // No light asks for no resolution of its own: pages filled as well as packing can.
+  // Without light, no texel density is required, so pages are filled as well as packing can.
   Result<PageLayout> lay_out_plain(const LayoutOptions& options, const Context& context) {
     const double texels = double(options.pages) * options.page_size * options.page_size;
     const PlainUvs uvs{view_of(scene_), options_.charts, filling_density(charts_, texels)};
@@ -199,7 +199,7 @@ class Export {
       report_charts();
       return layout;
     }
-    // Uvs for a lightmap.
+    // With keep_scene, the uvs are for a lightmap.
     Result<PagesOfParts> apart = fill_pages_apart(uvs, options, charts_, context);
     report_charts();
     if (!apart.ok()) return apart.status();
@@ -274,8 +274,8 @@ class Export {
     const Context& context = record_.begin("simplify");
     std::vector<double> density(charts_.charts.size());
     for (std::size_t c = 0; c < density.size(); ++c) {
-      // A texture that shrank because its light is even must not let the surface itself slip
-      // further: the texel meant is that of the full texture, at the pages' common scale.
+      // A texture that shrank because its light is even must not let the surface slip further. A
+      // texel is therefore at most as long as that of the full texture at the pages' common scale.
       const Vec2d final = layout_.placements[c].texels_per_unit;
       const Vec2d full = full_densities_[c];
       density[c] = std::max({final.x, final.y, layout_.scale * std::min(full.x, full.y)});
@@ -328,7 +328,7 @@ class Export {
     Result<WorldFile> world_file = write_world(world, options_.target, files_, context);
     if (!world_file.ok()) return world_file.status();
     report_.not_kept = world_file->not_kept;
-    if (lower_extension(options_.target) == ".glb") {  // holds its images itself
+    if (lower_extension(options_.target) == ".glb") {  // embeds its images
       for (const auto& image : image_sources_) files_.discard(image);
       for (PageReport& page : report_.pages) page.image.clear();
     }
@@ -364,7 +364,7 @@ class Export {
   std::optional<LuminanceSampler> sampler_;
   ToneMapping tone_;
   std::optional<ChartLight> light_;
-  std::vector<Vec2d> densities_, full_densities_;  // texels a unit, 1 a chart
+  std::vector<Vec2d> densities_, full_densities_;  // texels per unit, one per chart
   PageLayout layout_;
   std::optional<SimplifiedMesh> coarse_;
   std::vector<std::filesystem::path> image_sources_;  // where the pages' images lie until commit

@@ -1,4 +1,4 @@
-// The whole method, one call: a lit scene in, a walkable world with atlases out.
+// The whole method in one call: turns a lit scene into a walkable world with atlases.
 #pragma once
 
 #include <functional>
@@ -15,19 +15,19 @@
 
 namespace atlas {
 
-// Runs the stages that `plan` keeps and writes options.target with its images beside it: all files
-// appear together at the end, or none does. Scenes without illumination, and
-// ExportOptions::charts_only, give plain uvs. The report's scene path, wall_seconds and so on are
-// filled except for reading, which the caller adds. A scene that a program has built by itself is
-// passed as `LoadedScene{.scene = std::move(scene)}` after complete_scene() (scene/check_scene.h).
+// Runs the stages of the scene's plan (make_plan), and writes options.target with its images beside
+// it. All files appear together at the end, or none does. Scenes without illumination, and
+// ExportOptions::charts_only, give plain uvs. The report lacks the path of the scene and what
+// reading it took, which the caller adds. A scene that a program has built itself is passed as
+// `LoadedScene{.scene = std::move(scene)}` after complete_scene() (scene/check_scene.h).
 // `stage_done` (may be empty) is called after each stage.
-// Errors: bad_option (named), bad_input, no_solution, io, cancelled.
+// Errors: bad_option (the message names the option), bad_input, no_solution, io, cancelled.
 Result<ExportReport> export_world(const LoadedScene& loaded, const ExportOptions& options,
                                   const std::function<void(const StageReport&)>& stage_done,
                                   const Context& context);
 
-// What whoever uses plain uvs has to know of their pages (one at least): uvs run from 0 to 1 along
-// both sides of each.
+// Returns the message that tells users of plain uvs about their pages (there must be at least one).
+// The uvs run from 0 to 1 along both sides of each page.
 std::string plain_pages_text(std::span<const Extent> pages);
 
 }  // namespace atlas

@@ -12,33 +12,38 @@
 namespace atlas {
 namespace {
 
-// Of the pages, what is full enough: of a square one, of several, and of one that takes the shape
-// that suits its charts best. Less than the last is poor.
+// The share of the pages that charts must cover for the pages to be full enough: for a square page,
+// for several pages, and for one page that takes the shape that suits its charts best. Pages that
+// are filled to less than the last count as poorly filled.
 constexpr double kFilled = 0.7, kFilledSeveral = 0.68, kFilledFree = 0.65;
-// The latter is packed with more work where it is poor (page_layout.cpp), which takes seconds each
-// time with more charts than this.
+// A page of free shape is filled by cutting only if it has at most this many charts. With more,
+// laying out takes seconds for each way of cutting.
 constexpr std::size_t kMostChartsFree = 300;
-// Pieces that cover less than this share of what charts did are cut no smaller: more pieces still
-// would be laid out for seconds in vain, as those of a spiral whose windings lay in each other.
+// If pieces cover less than this share of what the charts covered, they are cut no smaller: even
+// more pieces would be laid out for seconds in vain. This was the case for a spiral whose windings
+// lay inside each other.
 constexpr double kHopeless = 0.5;
-// Of the side of a square page that all charts would fill without gaps: how long charts may be, in
-// turn.
+// How long charts may be, in the order tried, relative to the side of a square page that all charts
+// would fill without gaps.
 constexpr std::array kLongestSides{1.1, 0.9, 0.75, 0.6, 0.45};
-// By how much more charts must cover for pieces to be worth it, at least, and for each square root
-// of the surface's area that seams become longer by; half of that where pages are poor no more.
+// Pieces are worth it if they cover more than the charts did, by at least kLeastGain (of one page)
+// or kLeastGainSeveral (of several), and by at least kSeamPrice for each square root of the
+// surface's area by which seams become longer. For poorly filled pages, kOfPoor of that is enough
+// if they are then no longer poorly filled.
 constexpr double kLeastGain = 0.1, kLeastGainSeveral = 0.05, kSeamPrice = 0.06, kOfPoor = 0.5;
-// By what pressing seldom lets charts on several pages cover more, and how many ways of cutting are
-// pressed in vain. With more charts a page it takes seconds each: then pages need only not be poor.
+// Pressing seldom lets charts on several pages cover more than kMostPressed times as much. At most
+// kMostVain ways of cutting are pressed in vain. With more than kFewAPage charts per page, pressing
+// takes seconds for each way, so such pages only need kFilledFree.
 constexpr double kMostPressed = 1.15;
 constexpr int kMostVain = 2;
 constexpr std::size_t kFewAPage = 16;
 
-// How well layouts fill the pages that there may be.
+// Tells how well layouts fill the pages that may be used.
 struct Goal {
   const LayoutOptions& options;
-  double texels;  // of the charts at scale 1
+  double texels;  // area of the charts at scale 1
 
-  double covered(const PageLayout& layout) const {  // 1 at most
+  double covered(const PageLayout& layout) const {  // share of the pages, at most 1
     if (options.free_aspect) return layout.uv_utilization;
     const double room = double(options.pages) * options.page_size * options.page_size;
     return texels * layout.scale * layout.scale / room;
@@ -53,7 +58,8 @@ struct Goal {
     const bool dense = !options.free_aspect && layout.scale >= 1;
     return dense || layout.with_lost_room * covered(layout) >= enough(layout.placements.size());
   }
-  // What pieces must cover, with seams so much longer.
+  // Returns the share of the pages that pieces must cover. `seams` is by how much seams become
+  // longer, relative to the square root of the surface's area.
   double wanted(const PageLayout& before, double seams) const {
     const double gain = std::max(several() ? kLeastGainSeveral : kLeastGain, kSeamPrice * seams);
     const double now = covered(before), worth = (1 + gain) * now;
@@ -63,7 +69,7 @@ struct Goal {
   }
 };
 
-// A way of cutting charts, none at first, and their layout.
+// A way of cutting charts (at first none is cut), and the layout of the pieces.
 struct Way {
   ChartSet charts;
   PageLayout layout;
@@ -79,12 +85,12 @@ class PageFiller {
         unpressed_(options),
         context_(context),
         goal_{options_, charts.distortion.uv_area * uvs.density * uvs.density} {
-    // Several pages are pressed where it may decide, and in the end: it takes a second or more a
-    // way.
+    // Several pages are pressed only if it may decide between ways, and at the end, because it
+    // takes a second or more for each way.
     unpressed_.press_pages = false;
   }
 
-  // Replaces the charts by those laid out.
+  // Replaces the charts by those that are laid out.
   Result<PageLayout> run(ChartSet& charts) {
     Result<PageLayout> first = lay_out(charts, unpressed_);
     if (!first.ok()) return first;
@@ -103,7 +109,8 @@ class PageFiller {
  private:
   static constexpr double kParts = 1 + kLongestSides.size();
 
-  // What is laid out next is one part of the stage.
+  // Returns the context for a section of the current part. Each way of cutting is one part of the
+  // stage.
   Context part(double from, double to) const {
     return part_of_stage(context_, "pack", (parts_ + from) / kParts, (parts_ + to) / kParts);
   }
@@ -117,7 +124,7 @@ class PageFiller {
                          part(0, goal_.several() ? kLaidOut : 1));
   }
 
-  // Presses pages, if they may then cover so much.
+  // Presses the pages, if they may then cover the share `wanted`.
   Status press(Way& way, double wanted) const {
     if (way.pressed || !options_.press_pages || way.layout.pages.size() < 2 ||
         kMostPressed * goal_.covered(way.layout) < wanted) {
@@ -137,16 +144,17 @@ class PageFiller {
            (!options_.free_aspect || charts.charts.size() <= kMostChartsFree);
   }
 
-  // By what more work may fill the page of pieces, by what it did to that of charts. Of 60
-  // triangles of one size it won a hundredth in 3.5 s, and as much once more for each way of
-  // cutting.
+  // Estimates the factor by which more effort may fill the page of pieces, from the factor for the
+  // page of whole charts. With 60 triangles of one size, more effort won 1 % in 3.5 s, and took
+  // that long again for each way of cutting.
   double most_won_by_pieces(const PageLayout& whole) const {
     constexpr double kOnceMore = 2, kLeast = 1.01;
     if (whole.won == 0) return unpressed_.most_won;
     return std::clamp(1 + kOnceMore * (whole.won - 1), kLeast, unpressed_.most_won);
   }
 
-  // Ever shorter, until pages are full enough. `best` becomes a way that is worth its seams.
+  // Cuts charts ever shorter until the pages are full enough. `best` becomes the last way that is
+  // worth its seams.
   Status cut(const ChartSet& whole, Way& best) {
     const double area = whole.distortion.uv_area, root_area = std::sqrt(whole.surface_area);
     const double side = std::sqrt(area / double(options_.pages));
@@ -171,7 +179,8 @@ class PageFiller {
       further.most_won = most_won;
       Result<PageLayout> layout = lay_out(way.charts, further);
       if (!layout.ok() && layout.status().code() != ErrorCode::no_solution) return layout.status();
-      // Gutters around pieces take more than there is; more so around less.
+      // The gutters around the pieces take more room than there is, and those around smaller pieces
+      // would take even more.
       if (!layout.ok()) return {};
       way.layout = std::move(*layout);
       if (goal_.covered(way.layout) < kHopeless * goal_.covered(best.layout)) return {};
@@ -188,14 +197,14 @@ class PageFiller {
     return {};
   }
 
-  static constexpr double kLaidOut = 0.4;  // of a part; the rest presses several pages
+  static constexpr double kLaidOut = 0.4;  // share of a part; pressing several pages is the rest
 
   const PlainUvs& uvs_;
   const LayoutOptions& options_;
   LayoutOptions unpressed_;
   const Context& context_;
   Goal goal_;
-  int parts_ = 0;  // done
+  int parts_ = 0;  // how many are done
 };
 
 }  // namespace

@@ -5,13 +5,13 @@
 namespace atlas {
 namespace {
 
-// The largest side of a page for plain uvs.
+// Returns the largest side of a page for plain uvs.
 std::int32_t plain_page_size(const ChartSet& charts, const ExportOptions& options) {
   constexpr double kTexelsAChart = 1024, kExpectedFill = 0.75;
   constexpr std::int32_t kLargestSide = 16384;
   if (!options.larger_plain_page || options.plain_pages > 1) return options.atlas_size;
-  // A page as long as its longest chart is less wide than long where the others do not fill more;
-  // for a square one charts are cut.
+  // A page that is as long as its longest chart is less wide than long if the other charts do not
+  // fill more. For a square page, charts are cut instead.
   double longest = 0, area = 0;
   for (const Chart& chart : charts.charts) {
     longest = std::max(longest, chart.size.x);

@@ -1,4 +1,4 @@
-// Internal: what an export asks of its pages.
+// Internal: derives the layout options of pages from an export's options.
 #pragma once
 
 #include "libatlas/charts/charts.h"
@@ -7,8 +7,9 @@
 
 namespace atlas {
 
-// `bake`: whether pages get images, whose gutters and smallest charts depend on their mip levels;
-// else plain uvs, for which a single page grows with the number of charts where that is asked for
+// Returns the layout options. With `bake`, pages get images, so their padding and alignment follow
+// from the mip levels, and min_side limits how small charts become. Without it, they are for plain
+// uvs; a single page then grows with the number of charts if that is requested
 // (ExportOptions::larger_plain_page).
 LayoutOptions layout_options(const ChartSet& charts, const ExportOptions& options, bool bake);
 

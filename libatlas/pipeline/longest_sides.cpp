@@ -8,17 +8,18 @@
 namespace atlas {
 namespace {
 
-constexpr double kLongestShare = 0.5;  // of a page, that a chart may take along a side
+constexpr double kLongestShare = 0.5;  // share of a page's side that a chart may take
 
 double texels_of_pages(const ExportOptions& options) {
   return double(options.atlases) * options.atlas_size * options.atlas_size;
 }
 
-// Of the common scale, from above: what the charts want before downsizing against what the pages
-// hold. A scene of kilometres would else be cut into thousands of pieces of a few texels.
+// Returns an upper estimate of the common scale, from the texels that the charts want and those
+// that the pages hold. Otherwise a scene of kilometres would be cut into thousands of pieces of a
+// few texels.
 double likely_scale(const ChartSet& charts, std::span<const double> densities,
                     const ExportOptions& options) {
-  const double left = options.threshold > 0 ? 0.25 : 1;  // of the texels, after downsizing
+  const double left = options.threshold > 0 ? 0.25 : 1;  // share of texels left by downsizing
   double wanted = 0;
   for (std::size_t c = 0; c < densities.size(); ++c) {
     wanted += charts.charts[c].distortion.uv_area * densities[c] * densities[c];
@@ -26,8 +27,9 @@ double likely_scale(const ChartSet& charts, std::span<const double> densities,
   return wanted > 0 ? std::min(1.0, std::sqrt(texels_of_pages(options) / (left * wanted))) : 1;
 }
 
-// Pieces are no use where so many, each with its gutter, do not fit however small they become:
-// limits are doubled until the smallest boxes take less than half of the pages.
+// Doubles the limits until the smallest boxes take at most half of the pages. Cutting is of no use
+// if there are so many pieces, each with its gutter, that they do not fit however small they
+// become.
 void spare_small_pages(const ChartSet& charts, const ExportOptions& options,
                        std::vector<double>& limits) {
   const auto pieces_of = [&](std::size_t c) {
@@ -37,7 +39,7 @@ void spare_small_pages(const ChartSet& charts, const ExportOptions& options,
   const int cell = 1 << options.mip_levels;
   const double side =
       cell * std::ceil((options.min_side + 2.0 * gutter_pad(options.mip_levels)) / cell);
-  constexpr int kMostDoublings = 60;  // also ends where a limit is none
+  constexpr int kMostDoublings = 60;  // also ends the loop if a limit is 0
   for (int doublings = 0; doublings < kMostDoublings; ++doublings) {
     double pieces = 0;
     for (std::size_t c = 0; c < limits.size(); ++c) pieces += pieces_of(c);

@@ -1,4 +1,4 @@
-// Internal: how long a chart may be before it is cut for the sake of the others.
+// Internal: determines from which length on a chart is cut for the sake of the others.
 #pragma once
 
 #include <span>
@@ -15,9 +15,10 @@ struct PageBudget {
   const ExportOptions& options;
 };
 
-// A chart longer than a page would lose density that its neighbours keep, and one nearly as long
-// leaves a page half empty: in the test room halves let the common scale rise from 0.76 to 0.87.
-// `densities`: texels per unit that each chart wants. Returns scene units, 1 a chart.
+// Returns how long each chart may be, in scene units, one value per chart. A chart longer than a
+// page would lose density that its neighbours keep, and one nearly as long would leave a page half
+// empty. In the test room, charts of at most half a page let the common scale rise from 0.76 to
+// 0.87. `densities` are the texels per unit that each chart wants.
 std::vector<double> longest_sides(const ChartSet& charts, std::span<const double> densities,
                                   const PageBudget& budget);
 

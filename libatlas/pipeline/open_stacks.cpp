@@ -15,23 +15,26 @@ namespace atlas {
 namespace {
 
 constexpr std::uint32_t kNone = ~0u;
-// Uvs of a stack, and of all together: 1000 take a second at the most.
+// The most uvs of one stack, and of all stacks together. 1000 uvs take a second at the most.
 constexpr std::size_t kMostMembers = 1000, kMostInAll = 20000;
-// Steps between floats: how far uvs may go from where they belong for an energy of a half.
+// How far a uv may go from its exact place for an energy of a half, in steps between floats. These
+// are tried in turn.
 constexpr std::array kTethers{8.0, 32.0, 128.0, 512.0, 2048.0, 8192.0};
-// A stack that does not open by itself is tried with those around it.
+// A stack that does not open by itself is tried together with up to this many rings of triangles
+// around it.
 constexpr int kMostRings = 3;
-constexpr int kMostSolves = 40;  // a tether
+constexpr int kMostSolves = 40;  // per tether
 constexpr int kMostHalvings = 30;
-// Triangles feel the barrier below this, where 1 is as high as they shall be.
+// Triangles feel the barrier if their height is below this, where 1 is the height that they should
+// get.
 constexpr double kFelt = 2;
 
 struct Stack {
   std::vector<std::uint32_t> members;    // uvs
-  std::vector<std::uint32_t> triangles;  // with a member; not those turned over
+  std::vector<std::uint32_t> triangles;  // those with a member as a corner, unless turned over
 };
 
-// The barrier's value and derivatives at height d.
+// The value and the derivatives of the barrier at height d.
 struct Barrier {
   double value = 0, slope = 0, curvature = 0;
 
@@ -46,7 +49,7 @@ struct Barrier {
 
 class StackOpener {
  public:
-  // In steps between floats.
+  // The moves of all members, in steps between floats.
   using Vector = Eigen::VectorXd;
 
   StackOpener(std::span<const std::uint32_t> corners, std::span<const glm::dvec2> exact,
@@ -55,7 +58,7 @@ class StackOpener {
     origin_ = exact[stack.members.front()];
   }
 
-  // How far the members go, each from its exact place.
+  // Returns how far each member moves from its exact place.
   std::vector<glm::dvec2> run(double farthest) {
     Vector x = Vector::Zero(Eigen::Index(2 * stack_.members.size()));
     for (const double tether : kTethers) {
@@ -72,7 +75,7 @@ class StackOpener {
  private:
   struct Corner {
     glm::dvec2 at;
-    std::uint32_t place;  // or kNone
+    std::uint32_t place;  // among the members, or kNone
   };
 
   std::array<Corner, 3> corners(std::uint32_t t, const Vector& x) const {
@@ -107,7 +110,7 @@ class StackOpener {
     });
   }
 
-  // Infinite where a triangle has no area.
+  // Returns infinity if some triangle has no area.
   double energy(const Vector& x, double tether) const {
     double sum = x.squaredNorm() / (2 * tether * tether);
     for (std::size_t i = 0; i < stack_.triangles.size(); ++i) {
@@ -118,8 +121,8 @@ class StackOpener {
     return sum;
   }
 
-  // One step of Newton's method, halved until no triangle closes and the energy falls; false where
-  // that gains nothing.
+  // Makes one step of Newton's method, halved until no triangle closes and the energy falls.
+  // Returns false if that gains nothing.
   bool descend(Vector& x, double tether) const {
     const double weight = 1 / (tether * tether);
     Vector gradient = weight * x;
@@ -144,12 +147,12 @@ class StackOpener {
     return false;
   }
 
-  // The barrier's gradient and the positive part of its Hessian.
+  // Adds the gradient of the barrier, and the positive semidefinite part of its Hessian.
   static void add_barrier(const std::array<Corner, 3>& c, double target, Vector& gradient,
                           std::vector<Eigen::Triplet<double>>& entries) {
     const Barrier barrier(twice_area(c) / target);
     if (barrier.value <= 0) return;
-    Eigen::Matrix<double, 6, 1> g;  // of the height
+    Eigen::Matrix<double, 6, 1> g;  // gradient of the height
     for (int k = 0; k < 3; ++k) {
       const glm::dvec2 across = c[std::size_t(k + 2) % 3].at - c[std::size_t(k + 1) % 3].at;
       g[2 * k] = -across.y / target;
@@ -157,7 +160,7 @@ class StackOpener {
     }
     Eigen::Matrix<double, 6, 6> h = barrier.curvature * g * g.transpose();
     for (int k = 0; k < 3; ++k) {
-      // The cross product of corners k and k + 1.
+      // The second derivatives of the cross product of corners k and k + 1.
       const int p = 2 * k, q = 2 * ((k + 1) % 3);
       const double part = barrier.slope / target;
       h(p, q + 1) += part;
@@ -191,9 +194,9 @@ class StackOpener {
   std::span<const std::uint32_t> corners_;
   std::span<const glm::dvec2> exact_;
   const Stack& stack_;
-  std::vector<std::uint32_t>& place_;  // 1 a uv: its place among the members, or kNone
+  std::vector<std::uint32_t>& place_;  // one per uv: its place among the members, or kNone
   glm::dvec2 origin_;
-  std::vector<double> targets_;  // 1 a triangle: twice the area that it shall have, squared steps
+  std::vector<double> targets_;  // one per triangle: twice the area wanted, squared steps
 };
 
 class StackFinder {
@@ -201,7 +204,8 @@ class StackFinder {
   explicit StackFinder(const ExactTriangles& triangles)
       : corners_(triangles.corners), corners_at_(triangles.corners_at), exact_(triangles.exact) {}
 
-  // Triangle t with all that lack height and hang together by uvs, and `rings` more around them.
+  // Returns the stack of triangle t: all triangles that lack height and are connected to it through
+  // uvs, and `rings` more rings of triangles around them.
   Stack find(std::uint32_t t, int rings, std::vector<std::uint32_t>& place) const {
     Stack stack;
     const auto add = [&](std::uint32_t triangle) {
@@ -212,7 +216,7 @@ class StackFinder {
       }
     };
     add(t);
-    std::size_t inner = 0;  // members whose triangles are known
+    std::size_t inner = 0;  // number of members whose triangles are listed
     for (int ring = 0; ring <= rings; ++ring) {
       const std::vector<std::uint32_t> known = stack.triangles;
       for (const std::uint32_t triangle : known) add(triangle);
@@ -236,7 +240,7 @@ class StackFinder {
     return corners_.subspan(3 * std::size_t(t)).first<3>();
   }
 
-  // Twice its exact area, and what that should be; 0 for points and lines.
+  // Returns twice the exact area of a triangle, and what that should be; 0 for points and lines.
   std::pair<double, double> areas(std::uint32_t t) const {
     const auto c = corners_of(t);
     if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) return {0, 0};
@@ -279,7 +283,7 @@ class StackUvs {
     return is_thin(corners_.subspan(3 * std::size_t(t)).first<3>(), uvs_);
   }
 
-  // Moves its uvs, if fewer triangles are thin then.
+  // Moves the uvs of a stack, if fewer triangles are thin then.
   void open(const Stack& stack) {
     if (stack.members.size() > kMostMembers) return;
     const auto count_thin = [&] {
@@ -307,8 +311,8 @@ class StackUvs {
   double farthest_;
   std::vector<Vec2f>& uvs_;
   StackFinder finder_;
-  std::vector<std::uint32_t> place_;   // 1 a uv
-  std::vector<std::uint8_t> in_vain_;  // 1 a triangle
+  std::vector<std::uint32_t> place_;   // one per uv
+  std::vector<std::uint8_t> in_vain_;  // one per triangle: was tried in vain
   std::size_t moved_ = 0;
 };
 

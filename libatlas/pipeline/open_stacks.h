@@ -1,4 +1,4 @@
-// Internal: stacks of slivers that lean on each other, opened together.
+// Internal: opens stacks of slivers that lean on each other, all slivers of a stack together.
 #pragma once
 
 #include <cstdint>
@@ -11,21 +11,22 @@
 
 namespace atlas {
 
-// Triangles by their uvs before these were rounded.
+// Triangles with their uvs before rounding.
 struct ExactTriangles {
-  std::span<const std::uint32_t> corners;  // 3 a triangle, into exact
-  const Buckets& corners_at;               // those of each uv
-  std::span<const glm::dvec2> exact;       // 1 a uv
+  std::span<const std::uint32_t> corners;  // three per triangle, into exact
+  const Buckets& corners_at;               // the corners at each uv
+  std::span<const glm::dvec2> exact;       // one per uv
 };
 
-// Where slivers of a stack can only be opened by moving along them, or their far ends, by much more
-// than they lack in height: all uvs of a stack move at once, so that each triangle there gets the
-// height that rounding leaves open, and none is closed on the way. The energy is a barrier for each
-// triangle that lacks height (Li et al. 2020, "Incremental potential contact", eq. 6), and a
-// tether to the exact uvs that is loosened until the heights are reached, at most to some thousand
-// steps between floats, or to `farthest` (of the page): a stack that needs more stays as it is.
-// Only what leaves fewer thin triangles (thin_uvs.h) is kept. Triangles that are turned over in
-// their exact uvs stay as they are.
+// Opens stacks of thin triangles that cannot be opened one by one: their uvs, or those at their far
+// ends, would have to move along the slivers by much more than these lack in height. All uvs of a
+// stack move at once, so that each triangle there gets a height that rounding leaves open, and none
+// is closed on the way. This minimises an energy: a barrier for each triangle that lacks height (Li
+// et al. 2020, "Incremental potential contact", eq. 6), and a tether to the exact uvs. The tether
+// is loosened until the heights are reached, at most to some thousand steps between floats, or to
+// `farthest` (a share of the page). A stack that needs more stays as it is. A move is kept only if
+// it leaves fewer thin triangles (thin_uvs.h). Triangles that are turned over in their exact uvs
+// stay as they are.
 void open_stacks(const ExactTriangles& triangles, double farthest, std::vector<Vec2f>& uvs);
 
 }  // namespace atlas

@@ -12,7 +12,8 @@
 namespace atlas {
 namespace {
 
-// The charts as the packer sees outlines: corners in texels at scale 1, triangles local to a chart.
+// The outlines of charts, as the packer takes them: corners in texels at scale 1, and triangles
+// whose corners are numbered within their chart.
 struct Outlines {
   std::vector<Vec2d> corners;
   std::vector<std::uint32_t> triangles;
@@ -39,7 +40,8 @@ struct Outlines {
   }
 };
 
-// What is left of a box's side after the common scale: sides stop at the smallest one allowed.
+// Returns the density that the common scale leaves for a box's side. Sides stop shrinking at the
+// smallest length that is allowed.
 double scaled_density(double density, double side, double scale, double minimum_side) {
   const double floor_side = std::min(minimum_side, side);
   return side > 0 ? density * std::max(scale, floor_side / side) : density * scale;
@@ -77,7 +79,7 @@ double uv_utilization(const ChartSet& charts, const PageLayout& layout) {
   return page_area > 0 ? area / page_area : 0;
 }
 
-// Area of the charts at scale 1, texels.
+// Returns the area of the charts at scale 1, in texels.
 double full_texels(const ChartSet& charts, std::span<const Vec2d> texels_per_unit) {
   double texels = 0;
   for (std::size_t c = 0; c < charts.charts.size(); ++c)
@@ -85,7 +87,7 @@ double full_texels(const ChartSet& charts, std::span<const Vec2d> texels_per_uni
   return texels;
 }
 
-// The packer's refusal in the words of this stage.
+// Returns the error for charts that do not fit, in the words of this stage.
 Status no_room(const ChartSet& charts, const LayoutOptions& options) {
   return {ErrorCode::no_solution,
           fmt::format("{} charts do not fit {} page{} of {} x {} even as small as allowed ({})",
@@ -93,10 +95,11 @@ Status no_room(const ChartSet& charts, const LayoutOptions& options) {
                       options.page_size, options.page_size, options.remedy)};
 }
 
-// Layouts that PackPreset::best tries, and charts in all of them together: some seconds' work.
+// Limits of what PackPreset::best tries: the number of layouts, and the number of charts in all of
+// them together. This takes some seconds.
 constexpr std::uint64_t kBestLayouts = 8000, kBestCharts = 75000;
 
-// The packer's problem, as options.outlines says: by boxes or by outlines.
+// The problem for the packer, by boxes or by outlines as options.outlines says.
 struct Problem {
   const ChartSet& charts;
   std::span<const Vec2d> texels_per_unit;
@@ -121,7 +124,8 @@ struct Problem {
     fit.minimum_side = options.minimum_side;
     fit.allow_rotation = options.allow_rotation;
     fit.preset = options.preset;
-    // In place of a limit on time, which would let the result depend on how busy the machine is.
+    // Effort is limited instead of time, because a limit on time would make the result depend on
+    // how busy the machine is.
     fit.effort = std::clamp<std::uint64_t>(kBestCharts / std::max<std::size_t>(1, items.size()), 1,
                                            kBestLayouts);
     fit.free_aspect = options.free_aspect;
@@ -136,7 +140,7 @@ struct Problem {
   }
 };
 
-// What the packer found, in the terms of this stage.
+// Converts the packer's result to the terms of this stage.
 PageLayout layout_of(FitResult fitted, const Problem& problem) {
   const LayoutOptions& options = problem.options;
   PageLayout layout;
@@ -167,7 +171,7 @@ PageLayout layout_of(FitResult fitted, const Problem& problem) {
   return layout;
 }
 
-// One kind of packing, as options.outlines says.
+// Packs in one way, by boxes or by outlines as options.outlines says.
 Result<PageLayout> lay_out(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
                            const LayoutOptions& options, const Context& context) {
   const Problem problem({charts, texels_per_unit}, options);
@@ -185,18 +189,19 @@ std::int64_t page_texels(const PageLayout& layout) {
   return texels;
 }
 
-// More texels for the charts first, then less room for the same.
+// Returns whether layout a is better than b. More texels for the charts are better, and for the
+// same texels, smaller pages are. With free_aspect, the fuller page is better.
 bool better(const PageLayout& a, const PageLayout& b, const LayoutOptions& options) {
   if (options.free_aspect) return a.uv_utilization > b.uv_utilization;
   if (a.scale != b.scale) return a.scale > b.scale;
   return page_texels(a) < page_texels(b);
 }
 
-// Of boxes or pages: what is fuller leaves outlines nothing to win.
+// If boxes or pages are filled to a larger share than this, outlines have nothing to win.
 constexpr double kFull = 0.88;
 
-// Whether outlines may win: not where many charts nearly fill their boxes, which then leave less of
-// a page empty than outlines do.
+// Returns whether packing by outlines may win. It does not if there are many charts that nearly
+// fill their boxes, because packing by boxes then leaves less of a page empty.
 bool worth_outlining(const ChartSet& charts, std::span<const Vec2d> texels_per_unit) {
   constexpr std::size_t kMany = 1000;
   if (charts.charts.size() < kMany) return true;
@@ -208,17 +213,20 @@ bool worth_outlining(const ChartSet& charts, std::span<const Vec2d> texels_per_u
   return full_texels(charts, texels_per_unit) < kFull * box_area;
 }
 
-// A page for uvs alone of which charts cover less is packed again with PackPreset::best: two or
-// three of a hundred models, for one to four seconds, of which chairs with ring-shaped seats then
-// filled 0.76 instead of 0.64 of theirs.
+// A page for uvs alone is packed again with PackPreset::best if its charts, with their small holes
+// and narrow bays, cover less of it than kPoor, and with their gutters less than kPoorWithGutters.
+// Gutters take most of small pages, where packing again does not help. This concerns two or three
+// of a hundred models, and takes one to four seconds. Among these, chairs with ring-shaped seats
+// then filled 0.76 of their page instead of 0.64.
 constexpr double kPoor = 0.66, kPoorWithGutters = 0.7;
 
-// Nor where gutters are what takes the page, as on small ones, nor with more charts than are
-// pressed together: of 900 loose triangles it won 1 % in 7 s. A single one has been turned in all
-// ways already.
+// Pages with more charts than this, which are not pressed together, are not packed again: with 900
+// loose triangles, packing again won 1 % in 7 s. Neither is a page with a single chart, which has
+// been turned in all ways already.
 constexpr std::size_t kMostCharts = 128;
 
-// Of the pages, what charts take with their gutters.
+// Returns the share of the pages that charts take with their gutters, which are estimated from the
+// size of their boxes.
 double taken(const ChartSet& charts, const PageLayout& layout, const LayoutOptions& options) {
   double texels = 0, page_texels = 0;
   for (const ChartPlacement& p : layout.placements) {
@@ -232,7 +240,8 @@ double taken(const ChartSet& charts, const PageLayout& layout, const LayoutOptio
   return page_texels > 0 ? texels / page_texels : 0;
 }
 
-// Nor where the page would be of no use even then.
+// Returns whether packing a page again with more effort may be worth it. It is not if even then the
+// page would be less full than the caller wants.
 bool worth_more_work(const ChartSet& charts, const PageLayout& layout,
                      const LayoutOptions& options) {
   return options.free_aspect && options.preset == PackPreset::standard &&
@@ -242,7 +251,7 @@ bool worth_more_work(const ChartSet& charts, const PageLayout& layout,
          taken(charts, layout, options) < kPoorWithGutters;
 }
 
-// By boxes, by outlines where these may win, and with more work where that may win much.
+// Packs by boxes, by outlines if these may win, and with more effort if that may win much.
 Result<PageLayout> lay_out_better(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
                                   const LayoutOptions& options, const Context& context) {
   LayoutOptions boxes = options;
@@ -251,7 +260,7 @@ Result<PageLayout> lay_out_better(const ChartSet& charts, std::span<const Vec2d>
     return part_of_stage(context, "pack", from, to);
   };
   Result<PageLayout> boxed = lay_out(charts, texels_per_unit, boxes, part(0, 0.2));
-  const auto full = [&] {  // not where a page more would have let all charts be larger
+  const auto full = [&] {  // false if one more page could make all charts larger
     return boxed->uv_utilization > kFull &&
            (boxed->pages.size() >= options.pages || boxed->scale >= 1);
   };

@@ -10,11 +10,12 @@
 namespace atlas {
 namespace {
 
-// Of the pages' texels, that charts will cover at least where the pages are full: with gutters,
-// usually 0.6 to 0.7. A gap a little wider than needed costs less than one that is not.
+// The share of the pages' texels that charts will cover at least if the pages are full. With
+// gutters, it is usually 0.6 to 0.7. The lower figure is used because a gap that is a little wider
+// than needed costs less than one that is too narrow.
 constexpr double kLikelyFill = 0.6;
 
-// By how much charts may still become smaller once their gaps have been opened.
+// The factor by which charts may still become smaller once their gaps have been opened.
 constexpr double kSmaller = 1.03;
 
 double clearance_at(Vec2d density) {

@@ -1,4 +1,5 @@
-// Internal: gaps between the parts of a chart, as gutters between charts, where they can be had.
+// Internal: opens gaps between the parts of a chart, like the gutters between charts, where that is
+// possible.
 #pragma once
 
 #include <cstdint>
@@ -12,36 +13,39 @@
 
 namespace atlas {
 
-// Bilinear look-ups from two places read the same texels where both coordinates differ by less than
-// two; parts lie in any direction from each other.
+// Bilinear look-ups at two places read common texels if both coordinates differ by less than two
+// texels. Parts may lie in any direction from each other, so they are kept apart by this many
+// texels.
 constexpr double kTexelsApart = 2 * std::numbers::sqrt2;
 
 struct PagesOfCharts {
   MeshView mesh;
-  double max_stretch = 1.25;  // of charts
-  double texels = 0;          // of all pages
-  std::int32_t max_side = 0;  // of a chart, texels; only for textures
+  double max_stretch = 1.25;  // largest stretch of charts
+  double texels = 0;          // number of texels of all pages
+  std::int32_t max_side = 0;  // longest side of a chart, texels; only for textures
 };
 
-// Before packing: with the density that charts will likely have once the common scale is known.
-// `densities`: texels a unit, 1 a chart; 0: of no interest.
+// Opens gaps before packing, for the density that charts will likely have once the common scale is
+// known. `densities` are texels per unit, one per chart; charts with 0 are left alone.
 GapReport open_part_gaps(const PagesOfCharts& pages, std::span<const Vec2d> densities,
                          ChartSet& charts, const Context& context);
 
-// The same for charts with light: those of one colour have none to mix. What thereby grows longer
-// than a page gives way in density.
+// Does the same for charts with light. Charts of one colour are left alone, because they have no
+// light to mix. A chart that becomes longer than a page gets a lower density.
 GapReport open_part_gaps(const PagesOfCharts& pages, std::span<ChartTexture> textures,
                          ChartSet& charts, const Context& context);
 
-// After it: what is left, in texels.
+// Measures after packing which gaps are still too narrow, in texels.
 GapReport left_part_gaps(const MeshView& mesh, const ChartSet& charts,
                          std::span<const ChartPlacement> placements, const Context& context);
 
-// Plain uvs for a lightmap: as fill_pages(), the parts of charts drawn apart before it. Where pages
-// come out emptier than most, so that charts are smaller and their gaps too, both are done again.
+// The result of fill_pages_apart(), which lays out plain uvs for a lightmap. It opens gaps between
+// the parts of charts, and then calls fill_pages(). If pages become emptier than most, charts are
+// smaller and so are their gaps. Both steps are then done again, and the second result is kept if
+// less of the borders is too near.
 struct PagesOfParts {
   PageLayout layout;
-  std::size_t opened = 0;  // charts, of the round that opened more
+  std::size_t opened = 0;  // charts opened, in the round that opened more
   GapReport left;          // texels
 };
 Result<PagesOfParts> fill_pages_apart(const PlainUvs& uvs, const LayoutOptions& options,

@@ -43,9 +43,10 @@ SceneFacts gather_facts(const Scene& scene) {
   return facts;
 }
 
-// As fine as the budget could hold if nothing were downsized and packing lost nothing, within the
-// paper's 0.1 to 1 cm: finer would be sampled in vain, coarser would leave room unused. A scene of
-// centimetres gets 64 texels across all the same.
+// Returns the texel length, in metres, at which the texels would just fill the budget if nothing
+// were downsized and packing lost nothing. Finer texels would be sampled in vain, and coarser ones
+// would leave room unused. The length is kept within the paper's 0.1 to 1 cm, except that a scene
+// of centimetres gets 64 texels across.
 double affordable_texel(double area_m2, const ExportOptions& options) {
   constexpr double kFinest = 0.001, kCoarsest = 0.01;  // metres
   const double room = double(options.atlases) * options.atlas_size * options.atlas_size;
@@ -53,9 +54,10 @@ double affordable_texel(double area_m2, const ExportOptions& options) {
   return std::clamp(std::sqrt(area_m2 / room), finest, kCoarsest);
 }
 
-// Of the whole surface before downsizing, finer where a diffuse texture is.
+// Estimates the texels of the whole surface before downsizing. They are finer where a diffuse
+// texture is.
 double estimate_texels(const Scene& scene, const ExportPlan& plan, const ExportOptions& options) {
-  const double base = scene.metres_per_unit / plan.texel_metres;  // a unit of length
+  const double base = scene.metres_per_unit / plan.texel_metres;  // texels per unit of length
   if (!plan.sample_reflectance || !options.follow_textures)
     return plan.surface_area_m2 / (plan.texel_metres * plan.texel_metres);
   const double sampling = texture_sampling(options);
@@ -82,7 +84,7 @@ std::string charts_reason(const ChartOptions& charts) {
       charts.max_stretch);
 }
 
-// The plan's steps in the order of the pipeline, each with the reason that this scene gives.
+// Lists the plan's steps in the order of the pipeline, each with its reason for this scene.
 class StepList {
  public:
   StepList(const Scene& scene, const ExportOptions& options, ExportPlan& plan)
@@ -100,7 +102,7 @@ class StepList {
     plan_.steps.push_back({std::move(stage), run, std::move(reason)});
   }
 
-  // A step that only baked light needs.
+  // Adds a step that only baked light needs.
   void add_baked(std::string stage, bool run, std::string reason) {
     add(std::move(stage), plan_.bake && run, plan_.bake ? std::move(reason) : "no light to bake");
   }
@@ -164,8 +166,9 @@ class StepList {
 }  // namespace
 
 double texture_sampling(const ExportOptions& options) {
-  // With a texel of the user's own the diffuse texture's density is kept (the paper's rule); else
-  // it is exceeded where the budget lets it, since a texture sampled at its own density blurs.
+  // If the user gives a texel length, the diffuse texture's density is kept (the paper's rule).
+  // Otherwise it is exceeded where the budget allows that, because a texture that is sampled at its
+  // own density becomes blurred.
   constexpr double kExceeding = 1.5;
   return options.texel_metres > 0 ? 1 : kExceeding;
 }
@@ -218,7 +221,7 @@ Status check_plan(const ExportPlan& plan, const ExportOptions& options) {
   if (Status s = check_writable(target); !s.ok() || !plan.bake) return s;
   const std::string last_page = page_name(target, options.atlases - 1) + ".png";
   if (Status s = check_writable(target.parent_path() / last_page); !s.ok()) return s;
-  // Charts smaller than a texel have no place on a page.
+  // A chart smaller than a texel has no place on a page.
   const double across = std::sqrt(plan.surface_area_m2);
   if (plan.texel_metres <= across) return {};
   if (!(across > 0))

@@ -1,4 +1,4 @@
-// What will be done for this scene, and what it does not need: decided before any work is done.
+// Decides what is done for a scene and what the scene does not need, before any work is done.
 #pragma once
 
 #include "libatlas/pipeline/export_options.h"
@@ -8,18 +8,19 @@
 
 namespace atlas {
 
-// Linear in the number of triangles, a small share of reading the file.
+// Makes the plan. This takes time in proportion to the number of triangles, a small share of what
+// reading the file takes.
 ExportPlan make_plan(const Scene& scene, const ExportOptions& options);
 
-// How many texels along a side a diffuse texture's texel is given.
+// Returns how many texels along a side the atlas has for each texel of a diffuse texture.
 double texture_sampling(const ExportOptions& options);
 
-// The report of an export that has not begun: it tells of the scene and of the plan.
+// Returns the report of an export that has not begun. It describes the scene and the plan.
 ExportReport planned_report(const LoadedScene& loaded, const ExportPlan& plan,
                             const ExportOptions& options);
 
-// What would else be found out after minutes: texels larger than the scene, files that could not
-// be written. Errors: bad_input, bad_option, io.
+// Finds errors that would otherwise show only after minutes: texels larger than the scene, and
+// files that could not be written. Errors: bad_input, bad_option, io.
 Status check_plan(const ExportPlan& plan, const ExportOptions& options);
 
 }  // namespace atlas

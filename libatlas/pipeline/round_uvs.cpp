@@ -10,20 +10,20 @@
 namespace atlas {
 namespace {
 
-constexpr double kMostPush = 16 * kUvStep;     // of a corner at a time
-constexpr double kMostShift = 2048 * kUvStep;  // of a corner in all
-constexpr std::uint8_t kMostPushes = 50;       // a triangle; what takes more is left to open_stacks
+constexpr double kMostPush = 16 * kUvStep;     // the longest move of a corner at a time
+constexpr double kMostShift = 2048 * kUvStep;  // the longest move of a corner in all
+constexpr std::uint8_t kMostPushes = 50;  // per triangle; what takes more is left to open_stacks
 
-// Pushes thin triangles open, and in turn what that closes, one at a time (position-based dynamics,
-// Müller et al. 2007): a corner moves in proportion to the edge across, so that of a sliver the
-// two near corners part.
+// Pushes thin triangles open one at a time, and in turn those that this closes (position-based
+// dynamics, Müller et al. 2007). A corner moves in proportion to the length of the opposite edge,
+// so the two near corners of a sliver are parted.
 class SliverOpener {
  public:
   SliverOpener(std::span<const std::uint32_t> corners, std::span<const Vec2d> exact,
                double farthest, std::vector<Vec2f>& uvs)
       : corners_(corners), exact_(exact), farthest_(farthest), uvs_(uvs) {}
 
-  // How many stay thin.
+  // Returns how many triangles stay thin.
   std::size_t run() {
     if (count_thin() == 0) return 0;
     corners_at_ = sort_into_buckets(corners_.size(), uvs_.size(),
@@ -49,7 +49,7 @@ class SliverOpener {
     return count;
   }
 
-  // From start_.
+  // Starts from start_.
   void push_open() {
     at_ = start_;
     moved_.assign(uvs_.size(), 0);
@@ -82,7 +82,7 @@ class SliverOpener {
     }
   }
 
-  // Twice the area that a triangle lacks.
+  // Returns twice the area that a triangle lacks.
   double lacks(std::uint32_t t) const {
     const std::uint32_t* c = &corners_[3 * std::size_t(t)];
     if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) return 0;
@@ -90,7 +90,7 @@ class SliverOpener {
     return open_area(u, v) - (u.x * v.y - u.y * v.x);
   }
 
-  // False if it is open.
+  // Returns false if the triangle is open already.
   bool push(std::uint32_t t) {
     const double lack = lacks(t);
     if (lack <= 0) return false;
@@ -119,8 +119,8 @@ class SliverOpener {
   std::span<const Vec2d> exact_;
   double farthest_;
   std::vector<Vec2f>& uvs_;
-  Buckets corners_at_;                  // each uv
-  std::vector<glm::dvec2> start_, at_;  // 1 a uv: where pushing starts, and has come to
+  Buckets corners_at_;                  // the corners at each uv
+  std::vector<glm::dvec2> start_, at_;  // one per uv: where pushing starts, and has come to
   std::vector<std::uint8_t> moved_;
 };
 
@@ -129,7 +129,8 @@ class SliverOpener {
 std::size_t round_uvs(std::span<const Vec2d> exact, std::span<const std::uint32_t> corners,
                       std::vector<Vec2f>& rounded, double farthest) {
   rounded.resize(exact.size());
-  // Charts at the page's edge may be off it by what turning them has rounded.
+  // rounded_uv() clamps uvs to the page: charts at its edge may leave it by the rounding error of
+  // their turn.
   for (std::size_t i = 0; i < exact.size(); ++i) rounded[i] = rounded_uv(to_glm(exact[i]));
   return SliverOpener(corners, exact, farthest, rounded).run();
 }

@@ -12,24 +12,26 @@ namespace atlas {
 namespace {
 
 constexpr std::uint32_t kNone = ~0u;
-// Steps between floats: uvs nearer to each other are one cluster; if it cannot be spread, so are
-// those a few times farther.
+// In steps between floats: uvs that are nearer to each other than this form one cluster. If the
+// cluster cannot be spread, the next larger distance is tried.
 constexpr std::array kNear{16.0, 64.0, 256.0};
-constexpr double kFirstRadius = 8, kMostRadius = 2;  // steps by the root of the count; times near
+// The first radius, in steps per square root of the number of members, and the largest, relative to
+// the distance above.
+constexpr double kFirstRadius = 8, kMostRadius = 2;
 constexpr std::size_t kMostMembers = 64;
-constexpr int kSweeps = 4;  // a member
+constexpr int kSweeps = 4;  // per member
 
 struct DirectedEdge {
   std::uint32_t from, to;
   auto operator<=>(const DirectedEdge&) const = default;
 };
 
-// Uvs near each other, with what is joined to them.
+// Uvs that are near each other (members), and the triangles and edges at them.
 struct Cluster {
   std::vector<std::uint32_t> members, triangles;
   std::vector<DirectedEdge> edges;  // sorted; those with a member
-  // Along the mesh's border: another uv, members, another uv; or all of it, from a member to
-  // itself.
+  // The mesh's border at the cluster: a uv outside, members, a uv outside; or if all of the border
+  // lies in the cluster, members only, from one back to itself.
   std::vector<std::uint32_t> rim;
 };
 
@@ -40,7 +42,8 @@ class SpeckSpreader {
       : corners_(corners), corners_at_(corners_at), uvs_(uvs), place_(uvs.size(), kNone) {}
 
   void run() {
-    std::vector<std::uint8_t> in_vain(corners_.size() / 3, 0);  // 1 a triangle: was in a cluster
+    // One per triangle: whether a cluster with it could not be spread.
+    std::vector<std::uint8_t> in_vain(corners_.size() / 3, 0);
     for (std::uint32_t t = 0; t < in_vain.size(); ++t) {
       if (in_vain[t] || !thin(t)) continue;
       for (const double near : kNear) {
@@ -62,8 +65,9 @@ class SpeckSpreader {
     return place_[uv] < c.members.size() && c.members[place_[uv]] == uv;
   }
 
-  // Around the triangle's shortest side; none if that is not near, or the cluster is large, or
-  // touches the border of the mesh more than once.
+  // Returns the cluster around the first side of the triangle that is shorter than `near`. Returns
+  // none if no side is, or if the cluster is large or touches the border of the mesh more than
+  // once.
   std::optional<Cluster> find_cluster(std::uint32_t t, double near) {
     Cluster c;
     const auto v = corners_of(t);
@@ -104,8 +108,8 @@ class SpeckSpreader {
     std::sort(c.edges.begin(), c.edges.end());
   }
 
-  // False if the border passes through the cluster more than once, or within it; all the way around
-  // it may.
+  // Returns false if the border passes through the cluster more than once, or if a closed border
+  // lies within the cluster. The border may run all the way around the cluster.
   bool find_rim(Cluster& c) const {
     std::vector<DirectedEdge> border;
     for (const DirectedEdge& e : c.edges) {
@@ -138,7 +142,8 @@ class SpeckSpreader {
                                      [&](std::uint32_t t) { return thin(t); }));
   }
 
-  // Whether no triangle is thin then. What leaves the fewest is kept.
+  // Returns whether no triangle is thin afterwards. The places that leave the fewest thin triangles
+  // are kept.
   bool spread(const Cluster& c, double most_radius) {
     std::vector<Vec2f> best;
     glm::dvec2 centre(0);
@@ -160,8 +165,8 @@ class SpeckSpreader {
     return least == 0;
   }
 
-  // Each member amid its neighbours, those outside on a circle in their directions; members on the
-  // border lie on its rest.
+  // Places each member amid its neighbours. Neighbours outside the cluster count as points of the
+  // circle in their directions. Members on the border lie on the rest of the circle.
   std::vector<glm::dvec2> draw(const Cluster& c, glm::dvec2 centre, double radius) const {
     std::vector<glm::dvec2> p(c.members.size(), centre);
     std::vector<bool> fixed(c.members.size(), false);
@@ -173,8 +178,8 @@ class SpeckSpreader {
       return centre + radius * glm::dvec2(std::cos(angle), std::sin(angle));
     };
     if (!c.rim.empty()) {
-      // The inside is on the left: counter-clockwise from where the border comes from to where it
-      // goes on there is nothing.
+      // The mesh lies on the left of its border. There is none of it counter-clockwise from the
+      // direction that the border comes from to the direction in which it goes on.
       const bool closed = is_member(c, c.rim.front());
       const double begin = angle_of(c.rim.front());
       double span = closed ? 2 * M_PI : angle_of(c.rim.back()) - begin;
@@ -192,7 +197,7 @@ class SpeckSpreader {
     };
     std::vector<Sum> around(c.members.size());
     for (const DirectedEdge& e : c.edges) {
-      // Inner edges come in both directions.
+      // Edges inside the mesh are listed in both directions.
       if (!is_member(c, e.from)) continue;
       Sum& sum = around[place_[e.from]];
       ++sum.count;
@@ -216,7 +221,7 @@ class SpeckSpreader {
   std::span<const std::uint32_t> corners_;
   const Buckets& corners_at_;
   std::vector<Vec2f>& uvs_;
-  std::vector<std::uint32_t> place_;  // 1 a uv: among its cluster's members
+  std::vector<std::uint32_t> place_;  // one per uv: its place among its cluster's members
 };
 
 }  // namespace

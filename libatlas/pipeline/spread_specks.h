@@ -1,4 +1,4 @@
-// Internal: uvs that single precision leaves no room between.
+// Internal: spreads clusters of uvs that are too close to each other for single precision.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,14 @@
 
 namespace atlas {
 
-// Scans cut out of a grid have specks of a few millionths of a millionth of the mesh around a grid
-// point; their uvs are equal, or turned over by rounding. Such clusters of thin triangles
-// (thin_uvs.h) are drawn anew within a circle of some ten to five hundred last places of a float,
-// uniformly (Tutte 1963, "How to draw a graph"), with their surroundings where they are seen from
-// the middle. What would not leave fewer thin triangles stays as it is. `corners`: 3 a triangle,
-// counter-clockwise but for what rounding turned; `corners_at`: those of each uv.
+// Scans that were cut out of a grid have specks: clusters of tiny triangles around a grid point, of
+// a few millionths of a millionth of the mesh. Their uvs are equal, or are turned over by rounding.
+// Such clusters of thin triangles (thin_uvs.h) are drawn anew within a circle whose radius is some
+// ten to five hundred last places of a float. Each uv is placed at the mean of its neighbours
+// (Tutte 1963, "How to draw a graph"), and uvs around the cluster count as points of the circle in
+// their direction from the middle. A cluster stays as it is if that would not leave fewer thin
+// triangles. `corners` are three per triangle, counter-clockwise except for what rounding has
+// turned over. `corners_at` are the corners at each uv.
 void spread_specks(std::span<const std::uint32_t> corners, const Buckets& corners_at,
                    std::vector<Vec2f>& uvs);
 

@@ -10,22 +10,22 @@
 
 namespace atlas {
 
-// What a stage turned into what, and the one phrase of quality that its line shows.
+// What went into a stage and came out, and the phrase of quality that its line shows.
 struct StageOutcome {
   std::uint64_t in = 0, out = 0;
   std::string unit;  // of `out`
   std::string quality;
 };
 
-// All references outlive the recorder; `stage_done` may be empty.
+// All references must outlive the recorder. `stage_done` may be empty.
 class StageRecorder {
  public:
   StageRecorder(ExportReport& report, const std::function<void(const StageReport&)>& stage_done,
                 const Context& context);
 
-  // Starts a stage's clocks; finish() stops them and appends the stage to the report, with the CPU
-  // time of this thread, its loops and its background tasks, not of the process. What the stage
-  // calls with the context returned reports its progress by the stage's name.
+  // Starts a stage's clocks. finish() stops them and appends the stage to the report. The CPU time
+  // is that of this thread, its loops and its background tasks, not that of the process. What the
+  // stage calls with the returned context reports its progress under the stage's name.
   const Context& begin(std::string name);
   void finish(StageOutcome outcome);
 

@@ -1,4 +1,5 @@
-// Internal: which triangles of single-precision uvs readers may find turned over or without area.
+// Internal: tests which triangles of single-precision uvs programs may find turned over or without
+// area.
 #pragma once
 
 #include <algorithm>
@@ -10,14 +11,16 @@
 
 namespace atlas {
 
-constexpr double kUvStep = 0x1p-24;  // between floats just below one
-// How far a uv may be off for readers: the shortest decimals of a float, read as a double, are off
-// by half of that; floats multiplied by a page's size by as much again.
+constexpr double kUvStep = 0x1p-24;  // step between floats just below 1
+// How far a uv may be off for programs that read it. The shortest decimals of a float, read as a
+// double, are off by up to half a step. Floats that are multiplied by a page's size are off by as
+// much again.
 constexpr double kUvSlack = kUvStep;
-constexpr double kLeastUvArea = 1.1e-12;  // of the page: less counts as nothing
+constexpr double kLeastUvArea = 1.1e-12;  // share of the page; less counts as no area
 
-// Whether the triangle of three uvs is turned over, or would be if they were off by kUvSlack. Not
-// if two of them are the same: points and lines are meant to be so.
+// Returns whether the triangle of three uvs is turned over, or could be if they were off by
+// kUvSlack, or has less than kLeastUvArea. A triangle with two equal uvs does not count, because
+// points and lines are meant to be so.
 inline bool is_thin(std::span<const std::uint32_t, 3> c, std::span<const Vec2f> uvs) {
   if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) return false;
   const glm::dvec2 p = to_dvec(uvs[c[0]]), u = to_dvec(uvs[c[1]]) - p, v = to_dvec(uvs[c[2]]) - p;
@@ -26,8 +29,9 @@ inline bool is_thin(std::span<const std::uint32_t, 3> c, std::span<const Vec2f> 
   return twice <= std::max(kUvSlack * (sides.x + sides.y), 2 * kLeastUvArea);
 }
 
-// Twice the area from which on rounding leaves the triangle of sides u, v open: rounding moves each
-// corner by half a step along each axis, and twice the area by that times the side across.
+// Returns twice the area from which on rounding leaves the triangle with sides u and v open.
+// Rounding moves each corner by at most half a step along each axis, and changes twice the area by
+// that times the length of the opposite side.
 inline double open_area(glm::dvec2 u, glm::dvec2 v) {
   const glm::dvec2 sides = glm::abs(u) + glm::abs(v) + glm::abs(v - u);
   return std::max((kUvSlack + 0.51 * kUvStep) * (sides.x + sides.y), 3 * kLeastUvArea);

@@ -28,8 +28,8 @@ std::int32_t alignment(const UnwrapOptions& options) {
   return std::lcm(options.alignment, 1 << options.mip_levels);
 }
 
-// Whether charts may be moved by a hair: what they own for their mip levels may be a texel more
-// then.
+// Returns whether charts may be moved by fractions of a texel. After such a move, the texels that a
+// chart owns for its mip levels may reach a texel further.
 bool may_move(const UnwrapOptions& options) {
   return options.mip_levels == 0 || options.padding > gutter_pad(options.mip_levels);
 }
@@ -64,7 +64,8 @@ Status check_options(const UnwrapOptions& options) {
 Result<PagesOfParts> lay_out(const MeshView& mesh, const UnwrapOptions& options, ChartSet& charts,
                              const Context& context) {
   const double texels = double(options.pages) * options.page_size * options.page_size;
-  // More than full pages hold is as much as they hold; sizes in texels stay finite.
+  // A density above what full pages hold is lowered to that, which also keeps sizes in texels
+  // finite.
   const double filling = filling_density(charts, texels);
   const double density =
       options.texels_per_unit > 0 ? std::min(options.texels_per_unit, filling) : filling;
@@ -87,9 +88,9 @@ Result<PagesOfParts> lay_out(const MeshView& mesh, const UnwrapOptions& options,
   return PagesOfParts{std::move(*filled), 0, {}};
 }
 
-// One vertex for each pair of an input vertex and a uv that some corner names, in the order of the
-// corners. A uv has seldom more than one: the input's vertices at one place are told apart here,
-// and the hub of a soup's fan has thousands.
+// Makes one vertex for each pair of an input vertex and a uv that some corner names, in the order
+// of the corners. A uv seldom has more than one vertex. It has several if several input vertices
+// lie at its place, and thousands if it is the hub of a fan in a triangle soup.
 void join_corners(std::span<const std::uint32_t> indices, std::span<const Vec2f> uvs,
                   UnwrappedMesh& mesh) {
   constexpr std::uint32_t kNone = 0xffffffffu;

@@ -1,4 +1,5 @@
-// A mesh in memory, unwrapped in one call: charts, packed onto pages, as vertices to draw with.
+// Unwraps a mesh in memory in one call: makes charts, packs them onto pages, and returns vertices
+// to draw with.
 #pragma once
 
 #include <cstdint>
@@ -15,56 +16,59 @@ namespace atlas {
 
 struct UnwrapOptions {
   ChartOptions charts = {};
-  std::uint32_t pages = 1;        // at most, >= 1
+  std::uint32_t pages = 1;        // the most pages to use, >= 1
   std::int32_t page_size = 2048;  // largest side of a page, texels, 64 to 16384
   std::int32_t padding = 2;       // texels kept free around each chart, >= 0
-  // To bake the pages with as many mip levels (BakeOptions::mip_levels), 0 to 10: from 1 on each
-  // chart gets gutter_pad(mip_levels) texels of padding at least, and whole cells of 2^mip_levels
-  // texels. To bake with 0, a padding of 1 does.
+  // Prepares the pages to be baked with this many mip levels (BakeOptions::mip_levels), 0 to 10.
+  // From 1 on, each chart gets at least gutter_pad(mip_levels) texels of padding, and whole cells
+  // of 2^mip_levels texels. A padding of 1 is enough to bake with 0.
   std::int32_t mip_levels = 0;
-  // Boxes and cells of charts begin and end at multiples of this, in texels, >= 1 (4 for textures
-  // compressed in blocks). More where mip_levels ask for it.
+  // Boxes and cells of charts begin and end at multiples of this many texels, >= 1 (4 for textures
+  // compressed in blocks), and also at multiples of 2^mip_levels.
   std::int32_t alignment = 1;
-  bool allow_rotation = true;  // charts are turned to pack better; else they lie as their uvs do
+  bool allow_rotation = true;  // turn charts to pack better; else they lie as their uvs do
   PackPreset packing = PackPreset::standard;
-  // Texels along a unit of length, the same for all charts; 0: as many as the pages hold. Where
-  // they hold less all charts get less; UnwrappedMesh::texels_per_unit tells. A single page that is
-  // not square is made as full as it can be, not its charts as large.
+  // Texels per unit of length, the same for all charts; 0 for as many as the pages hold. If the
+  // pages hold less, all charts get less, see UnwrappedMesh::texels_per_unit. A single page that is
+  // not square is made as full as possible, instead of making its charts as large as possible.
   double texels_per_unit = 0;
-  // Sides are powers of two (page_size must be one), and equal. Else a single page has the shape
-  // that packs best, which textures for it must share; several have sides of powers of two.
+  // Page sides are equal and powers of two (page_size must be one). Otherwise a single page has the
+  // shape that packs best, and textures for it must have the same shape; several pages have sides
+  // that are powers of two.
   bool square = false;
-  // Parts of one chart that are far apart on the surface are kept apart on the page, too, as charts
-  // are: for lightmaps, since bilinear look-ups would mix the light of both. Uvs stretch a little
-  // more there, within ChartOptions::max_stretch.
+  // Parts of one chart that are far apart on the surface are kept apart on the page, too, like
+  // different charts. Lightmaps need this, because bilinear look-ups would otherwise mix the light
+  // of both parts. The uvs stretch a little more there, within ChartOptions::max_stretch.
   bool part_gaps = false;
 };
 
-// Each vertex is a copy of one of the input's; those along seams are there once for each side.
+// Each vertex is a copy of one of the input's vertices. A vertex on a seam has a copy for each
+// side.
 struct UnwrappedMesh {
-  std::vector<std::uint32_t> vertices;       // 1 a vertex: the vertex of the input it is a copy of
-  std::vector<Vec2f> uvs;                    // 1 a vertex: 0..1 over its page, origin bottom left
-  std::vector<std::uint32_t> indices;        // 3 a triangle, input order, into vertices and uvs
-  std::vector<std::uint32_t> triangle_page;  // 1 a triangle, into pages
+  std::vector<std::uint32_t> vertices;  // one per vertex: the input vertex that it copies
+  std::vector<Vec2f> uvs;               // one per vertex: 0..1 over its page, origin bottom left
+  std::vector<std::uint32_t> indices;   // three per triangle, input order; into vertices and uvs
+  std::vector<std::uint32_t> triangle_page;  // one per triangle, into pages
   std::vector<Extent> pages;                 // texels
-  double texels_per_unit = 0;                // reached
+  double texels_per_unit = 0;                // the density that was reached
   double utilization = 0;                    // area of the charts / area of the pages
-  std::uint64_t thin_triangles = 0;          // slivers that floats leave no area, or turn over
-  // Texels whose centres more than one triangle covers once corners are rounded to 1/256 of a
-  // texel, as graphics hardware does: 0 but for masses of slivers, and where mip levels leave no
-  // padding to spare that charts could be moved into by a hair.
+  std::uint64_t thin_triangles = 0;          // slivers that rounding to floats closes or turns over
+  // How many texels have centres that more than one triangle covers once corners are rounded to
+  // 1/256 of a texel, as graphics hardware does. There are none except with very many slivers, or
+  // where mip levels leave no spare padding within which charts could be moved by fractions of a
+  // texel.
   std::uint64_t texels_drawn_twice = 0;
-  GapReport gaps;                          // texels; what part_gaps left; else zeros
-  ChartSet charts;                         // with all that was measured: distortion, seams
-  std::vector<ChartPlacement> placements;  // 1 a chart
+  GapReport gaps;   // in texels: what part_gaps left; zeros without part_gaps
+  ChartSet charts;  // with what was measured on them: distortion, seams
+  std::vector<ChartPlacement> placements;  // one per chart
 };
 
-// Nothing is left out: triangle t of the input is triangle t of the result, its corners in the same
-// order. Triangles that the mesh holds the wrong way round against their neighbours
-// (ChartSet::flipped_triangles) are the only ones whose uvs turn clockwise. Charts that leave the
-// pages poorly filled are cut (ChartOptions::min_fill). MeshView::texcoords,
-// for ChartOptions::keep_uv_charts, may go without texcoord_indices if there is one a vertex.
-// The result is the same for every thread count.
+// Unwraps a mesh. Nothing is left out: triangle t of the input is triangle t of the result, with
+// its corners in the same order. Only triangles whose orientation in the mesh is opposite to that
+// of their neighbours (ChartSet::flipped_triangles) get clockwise uvs. Charts that leave the pages
+// poorly filled are cut (ChartOptions::min_fill). MeshView::texcoords, for
+// ChartOptions::keep_uv_charts, need no texcoord_indices if there is one texcoord per vertex. The
+// result is the same for every thread count.
 // Errors: those of make_charts; bad_option; no_solution (more charts than the pages hold texels
 // for); cancelled.
 Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& options,
