@@ -1,4 +1,4 @@
-// atlas-export as its users meet it: exit codes, messages, and what lies on the disk afterwards.
+// Tests atlas-export as users run it: exit codes, messages, and the files afterwards.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -27,7 +27,7 @@ TEST_F(AtlasExport, WritesWorldImagesAndReport) {
   EXPECT_EQ(report["scene"]["triangles"], 12 * 12 * 2 * 6);
   EXPECT_EQ(report["charts"]["distortion"]["flips"], 0);
   EXPECT_GT(report["error"]["psnr"].get<double>(), 45);
-  // Six flat sides: two triangles each are enough once the light is in the texture.
+  // For six flat sides, two triangles each are enough once the light is in the texture.
   EXPECT_LE(report["simplify"]["triangles_out"].get<int>(), 6 * 4);
 }
 
@@ -57,7 +57,7 @@ TEST_F(AtlasExport, GlbHoldsItsImages) {
   EXPECT_EQ(files(), (std::set<std::string>{"box.obj", "w.glb"}));
 }
 
-// What was not measured has no key, which would read as a perfect 0.
+// What was not measured has no key, because its value would read as a perfect 0.
 TEST_F(AtlasExport, TheReportHasNoKeysOfWhatNobodyMeasured) {
   write("box.obj", lit_box(4));
   struct Case {
@@ -80,7 +80,8 @@ TEST_F(AtlasExport, TheReportHasNoKeysOfWhatNobodyMeasured) {
   }
 }
 
-// What is kept of a scene is seen in the result; what is not, and where the new uvs are, is told.
+// What is kept of a scene shows in the result. The program reports what is not kept, and where the
+// new uvs are.
 TEST_F(AtlasExport, TellsWhatItDoesNotKeep) {
   write("m.mtl", "newmtl m\nKd 1 0 0\nKs 1 1 1\nmap_Bump n.png\n");
   write("t.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
@@ -97,7 +98,7 @@ TEST_F(AtlasExport, TellsWhatItDoesNotKeep) {
   EXPECT_EQ(again.output.find("not kept"), std::string::npos) << again.output;
 }
 
-// A number where nothing was measured would read as perfect, or as hopeless.
+// A number for an error that was not measured would read as perfect, or as very bad.
 TEST_F(AtlasExport, TheReportTellsNoErrorThatNobodyMeasured) {
   const auto report = [&](const std::string& scene, const std::string& more) {
     write("s.obj", scene);
@@ -131,7 +132,7 @@ TEST_F(AtlasExport, SameBytesForEveryThreadCount) {
   }
 }
 
-// The soup of an STL becomes one chart, since its corners are joined.
+// The separate triangles of an STL become one chart, because their corners are joined.
 TEST_F(AtlasExport, StlAndOffWithoutLight) {
   std::string stl = "solid strip\n", off = "OFF 18 16 0\n";
   const auto at = [](int i) { return fmt::format("{} {} 0", i / 2, i % 2); };
@@ -156,7 +157,7 @@ TEST_F(AtlasExport, StlAndOffWithoutLight) {
   expect_refusal(write("cut.off", off.substr(0, off.size() / 2)), "cut.off");
 }
 
-// A few millimetres across, and no texel is asked for.
+// The scene is a few millimetres across, and no texel size is given.
 TEST_F(AtlasExport, SmallScenesGetTexels) {
   write("box.obj", lit_box(4));
   const RunResult r =
@@ -266,7 +267,8 @@ TEST_F(AtlasExport, InterruptLeavesNothing) {
     int status = 0;
     ::waitpid(child, &status, 0);
     ASSERT_TRUE(WIFEXITED(status) || WIFSIGNALED(status));
-    // Stopped before the handler stood, or by it: either way the folder is as it was.
+    // The program was stopped before its handler was installed, or by the handler. Either way the
+    // folder must be as before.
     ASSERT_FALSE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "the scene was too small";
     EXPECT_EQ(files(), before) << milliseconds;
   }

@@ -1,4 +1,4 @@
-// What atlas-export refuses: one line that says why and what to do, and nothing is written.
+// What atlas-export refuses: it prints one line with the reason and the remedy, and writes nothing.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +24,8 @@ TEST_F(AtlasExport, MalformedLine) {
                  "bad.obj:2");
 }
 
-// Colours, titles and moves of a terminal would outlive the message; a megabyte would hide it.
+// Control sequences of a terminal (colours, titles, cursor moves) would outlive the message, and a
+// megabyte of text would hide it.
 TEST_F(AtlasExport, MessagesObeyNothingThatFilesHold) {
   expect_refusal(write("bad.obj", "v 0 0 \033[31m\302\233x\n"), "'?[31m?x' is not a number");
   write("name.gltf", "{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[\"a" +
@@ -60,13 +61,13 @@ TEST_F(AtlasExport, OptionsOutOfRange) {
   expect_refusal(scene, "--tone", "--tone sepia");
   expect_refusal(scene, "--memory", "--memory lots");
   expect_refusal(scene, "mm, in, ft or km", "--texel 1um");
-  // What would do nothing.
+  // Options that would have no effect.
   expect_refusal(scene, "--uv-aspect requires --keep-uv-charts", "--uv-aspect 2");
   expect_refusal(scene, "--charts-only excludes --exr", "--charts-only --exr");
   expect_refusal(scene, "/dev/stdout is standard output", "--report -");
 }
 
-// Every number has its range, and no number is in none.
+// Every number has its range, and NaN is in none.
 TEST_F(AtlasExport, AbsurdNumbers) {
   const fs::path scene = write("box.obj", lit_box(2));
   for (const std::string option :
@@ -96,7 +97,7 @@ TEST_F(AtlasExport, OverwritesNothingThatItReads) {
     EXPECT_NE(r.output.find(name), std::string::npos) << r.output;
   }
   EXPECT_EQ(slurp(scene), text);
-  // A scene whose texture has the name of the first new page.
+  // The texture of a scene has the name of the first new page.
   ASSERT_EQ(run(fmt::format("{0}/box.obj -o {0}/w.obj -q", dir_.string())).exit_code, 0);
   const std::string page = slurp(dir_ / "w_0.png");
   write("t.mtl", "newmtl t\nmap_Kd w_0.png\n");
@@ -106,12 +107,12 @@ TEST_F(AtlasExport, OverwritesNothingThatItReads) {
   EXPECT_NE(again.output.find("w_0.png"), std::string::npos) << again.output;
   EXPECT_EQ(slurp(dir_ / "w_0.png"), page);
   EXPECT_EQ(run(fmt::format("{0}/textured.obj -o {0}/v.wrl -q", dir_.string())).exit_code, 0);
-  // A world without light of its own gets no pages, and needs no textures.
+  // A world without its own light gets no pages, and needs no textures.
   EXPECT_EQ(run(fmt::format("{0}/w.obj -o {0}/w.gltf -q", dir_.string())).exit_code, 0);
   EXPECT_EQ(slurp(dir_ / "w_0.png"), page);
 }
 
-// What stands at the end of a link is written over: names tell too little.
+// The target of a link is overwritten, too, so comparing names is not enough.
 TEST_F(AtlasExport, OverwritesNothingBehindLinks) {
   ASSERT_EQ(write("box.obj", lit_box(2)), dir_ / "box.obj");
   ASSERT_EQ(run(fmt::format("{0}/box.obj -o {0}/w.obj -q", dir_.string())).exit_code, 0);
@@ -137,7 +138,7 @@ TEST_F(AtlasExport, OverwritesNothingBehindLinks) {
   }
   EXPECT_EQ(slurp(dir_ / "wood.png"), image);
   EXPECT_EQ(slurp(dir_ / "textured.obj"), text);
-  // These write no file of such a name: a .glb holds its pages, and EXR was not asked for.
+  // These write no file of that name: a .glb contains its pages, and EXR was not asked for.
   for (const char* target : {"texture.glb", "scene.wrl"})
     EXPECT_EQ(run(fmt::format("{0}/textured.obj -q -o {0}/{1}", dir_.string(), target)).exit_code,
               0)
@@ -160,7 +161,7 @@ TEST_F(AtlasExport, ScenesThatCannotBeKept) {
   EXPECT_EQ(files(), before);
 }
 
-// The textures of a scene that is kept are copied beside a .gltf, not over one of them.
+// The textures of a scene that is kept are copied beside a .gltf, but never over one of them.
 TEST_F(AtlasExport, AKeptSceneOverwritesNoneOfItsTextures) {
   const fs::path scene = write("box.obj", lit_box(2));
   ASSERT_EQ(run(fmt::format("{0}/box.obj -o {0}/lit.obj -q", dir_.string())).exit_code, 0);
@@ -183,7 +184,7 @@ TEST_F(AtlasExport, AKeptSceneOverwritesNoneOfItsTextures) {
   EXPECT_EQ(slurp(dir_ / "w_texture0.png"), image);
 }
 
-// An OBJ's materials, a glTF's buffer: known only when the scene has been read.
+// The materials of an OBJ and the buffer of a glTF are known only when the scene has been read.
 TEST_F(AtlasExport, OverwritesNoMaterialsAndNoBuffer) {
   const fs::path materials = write("m.mtl", "newmtl red\nKd 1 0 0\n");
   write("box.obj", "mtllib m.mtl\nusemtl red\n" + lit_box(2));

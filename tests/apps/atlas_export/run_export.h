@@ -1,4 +1,4 @@
-// Runs the program in a folder of its own; a lit scene for it.
+// Runs the program in its own folder, and makes a lit scene for it.
 #pragma once
 
 #include <fmt/format.h>
@@ -58,8 +58,8 @@ class AtlasExport : public testing::Test {
     return names;
   }
 
-  // Runs on a scene that cannot be exported: one line that contains `expected`, exit 1 or 2,
-  // nothing written.
+  // Runs on a scene that cannot be exported. Expects one line that contains `expected`, exit code 1
+  // or 2, and no new file.
   void expect_refusal(const fs::path& scene, const std::string& expected,
                       const std::string& more = "") {
     const auto before = files();
@@ -68,14 +68,16 @@ class AtlasExport : public testing::Test {
     EXPECT_TRUE(r.exit_code == 1 || r.exit_code == 2) << r.exit_code << "\n" << r.output;
     EXPECT_EQ(std::count(r.output.begin(), r.output.end(), '\n'), 1) << r.output;
     EXPECT_NE(r.output.find(expected), std::string::npos) << r.output;
-    EXPECT_EQ(r.output.find("Options::"), std::string::npos) << r.output;  // its flag is named
+    // Messages name the flag instead.
+    EXPECT_EQ(r.output.find("Options::"), std::string::npos) << r.output;
     EXPECT_EQ(files(), before);
   }
 
   fs::path dir_;
 };
 
-// A room of n x n quads a side seen from inside, lit by a smooth function of the position.
+// Returns a room with n x n quads per side, seen from inside and lit by a smooth function of the
+// position.
 inline std::string lit_box(int n) {
   std::ostringstream obj;
   int first = 1;

@@ -1,5 +1,5 @@
-// atlas-export where the system does not play along: streams that are closed or full, names that
-// are too long, no memory left, signals.
+// atlas-export under adverse conditions of the system: closed or full streams, too long names, no
+// memory, signals.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -35,7 +35,7 @@ RunResult shell(const std::string& command) {
   return result;
 }
 
-// `arguments` may redirect streams; what stderr still says comes back.
+// `arguments` may redirect streams. Returns what is still written to stderr.
 RunResult run(const std::string& arguments) {
   return shell(fmt::format("{} {}", ATLAS_EXPORT, arguments));
 }
@@ -58,7 +58,7 @@ TEST_F(System, OutputThatNobodyTakes) {
   EXPECT_EQ(full.exit_code, 1);
   EXPECT_EQ(full.output, "atlas-export: error: standard output: No space left on device\n");
   EXPECT_EQ(run("nosuch.obj -o w.glb 2>/dev/full").exit_code, 1);
-  // A reader that leaves at once ends nothing: the world is there.
+  // If the reader of its output ends at once, the program still completes the world.
   fs::remove(folder_ / "w.glb");
   (void)run(command + "| true");
   for (int i = 0; i < 200 && !fs::exists(folder_ / "w.glb"); ++i)
@@ -66,7 +66,7 @@ TEST_F(System, OutputThatNobodyTakes) {
   EXPECT_TRUE(fs::exists(folder_ / "w.glb"));
 }
 
-// As `--help | head -1` does.
+// As with `--help | head -1`.
 TEST_F(System, HelpThatNobodyReadsToItsEnd) {
   const RunResult r = shell(fmt::format(
       "{{ {{ sleep 0.2; {} --help 2>&3; echo $? >&3; }} | true; }} 3>&1", ATLAS_EXPORT));
@@ -74,7 +74,8 @@ TEST_F(System, HelpThatNobodyReadsToItsEnd) {
   EXPECT_EQ(run("--help >/dev/full 2>&1").exit_code, 1);
 }
 
-// The system sends a signal there, which would else end the program and leave what it has begun.
+// The system sends a signal in this case. By default it would end the program and leave incomplete
+// files.
 TEST_F(System, FilesThatMayNotGrow) {
   for (const char* name : {"w.wrl", "w.glb"}) {
     const RunResult r =
@@ -86,7 +87,7 @@ TEST_F(System, FilesThatMayNotGrow) {
   }
 }
 
-// The first file that is opened would else be standard output, and hold its lines.
+// Otherwise the first opened file would become standard output and receive its lines.
 TEST_F(System, ClosedStreams) {
   ASSERT_EQ(run(fmt::format("{} -o {} -q", scene_, to("a.wrl"))).exit_code, 0);
   fs::create_directories(folder_ / "b");
@@ -100,7 +101,7 @@ TEST_F(System, NamesThatAreTooLong) {
   for (const std::string& arguments :
        {fmt::format("{} -o {}.glb", scene_, to(name)), fmt::format("{0}.obj -o {0}.glb", name),
         fmt::format("{} -o {} --report {}.json", scene_, to("w.glb"), to(name)),
-        // Its own name would do, but not those of its pages.
+        // Its own name would be short enough, but not those of its pages.
         fmt::format("{} -o {}.wrl", scene_, to(std::string(250, 'n')))}) {
     const RunResult r = run(arguments + " -q 2>&1");
     EXPECT_EQ(r.exit_code, 1) << r.output;
@@ -155,7 +156,7 @@ TEST_F(System, ExtensionsInCapitals) {
     EXPECT_TRUE(fs::exists(folder_ / name));
   }
   EXPECT_EQ(TempFolder::read(folder_ / "V.GLB").substr(0, 4), "glTF");
-  EXPECT_FALSE(fs::exists(folder_ / "V_0.png"));  // is inside
+  EXPECT_FALSE(fs::exists(folder_ / "V_0.png"));  // the page is inside the .glb
   EXPECT_EQ(run(fmt::format("{0} -o {0} -q 2>&1", to("TRI.OBJ"))).exit_code, 2);
 }
 

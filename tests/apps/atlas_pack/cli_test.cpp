@@ -1,4 +1,4 @@
-// What all commands of atlas-pack have in common.
+// Tests what all commands of atlas-pack have in common.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace atlas::test {
 namespace {
 
-// With an effort the clock ends nothing, so that results repeat.
+// With an effort, no time limit applies, so that results can be repeated.
 TEST(PackCommandLine, AnEffortIsTheOnlyLimitUnlessABudgetIsGivenToo) {
   const auto budget = [](std::vector<const char*> words) {
     words.insert(words.begin(),
@@ -30,14 +30,14 @@ TEST(PackCommandLine, AnEffortIsTheOnlyLimitUnlessABudgetIsGivenToo) {
   EXPECT_TRUE(std::isinf(budget({"--effort", "500"})));
 }
 
-// One line that contains the words, and no file.
+// Expects one line that contains the words, and no output file.
 TEST_F(AtlasPack, WhatCannotBeDoneLeavesNothing) {
   fs::create_directories(dir_ / "folder");
   write("ok.csv", "a,4,5\nb,6,7\n");
   write("empty.csv", "");
   write("twice.csv", "a,4,5\na,6,7\n");
   write("header.csv", "name,width,height\n");
-  write("short.csv", "a,4\nb,6,7\n");  // no header: it has a number
+  write("short.csv", "a,4\nb,6,7\n");  // its first line is no header, because it contains a number
   write("huge.csv", "a,99999999999,5\n");
   write("cut.json", "[[4,5],[6");
   write("uv.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
@@ -58,7 +58,7 @@ TEST_F(AtlasPack, WhatCannotBeDoneLeavesNothing) {
       {"rects ok.csv -o q.csv --preview p.gif", ".svg or .png"},
       {"rects ok.csv -o q.csv --preview no/p.svg", "no does not exist (create it first)"},
       {"rects ok.csv -o q.csv --page 99999999999", "--page"},
-      {"rects ok.csv -o q.csv --page 0x512", "--page"},  // no hexadecimal number
+      {"rects ok.csv -o q.csv --page 0x512", "--page"},  // hexadecimal numbers are not accepted
       {"rects ok.csv -o q.csv --page 1e2", "--page"},
       {"rects ok.csv -o q.csv --threads -1", "--threads"},
       {"rects ok.csv -o q.csv --effort -1", "--effort"},
@@ -101,8 +101,8 @@ TEST_F(AtlasPack, InterruptLeavesNothing) {
   }
   write("m.obj", obj);
   write("r.csv", sizes);
-  // A shell's background jobs ignore the signal until they have a handler of their own, which a
-  // busy machine may take long to come to.
+  // Background jobs of a shell ignore the signal until they install their own handler, which may
+  // take long on a busy machine.
   const std::string interrupt =
       "& for i in $(seq 200); do grep -q 'SigCgt:.*[2367abef]$' /proc/$!/status && break;"
       " sleep 0.1; done; sleep 0.3; kill -INT $!; wait $!";

@@ -1,4 +1,4 @@
-// atlas-pack images: sprites.
+// Tests atlas-pack images, which packs sprites.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -35,7 +35,7 @@ TEST_F(AtlasPack, SpritesKeepTheirTexels) {
   const auto page = atlas::read_image8(dir_ / "sheet.png");
   ASSERT_TRUE(page.ok());
   const auto frames = nlohmann::json::parse(read("sheet.json"))["frames"];
-  EXPECT_EQ(frames["a.png"]["frame"], frames["b.png"]["frame"]);  // identical images share
+  EXPECT_EQ(frames["a.png"]["frame"], frames["b.png"]["frame"]);  // identical images share a place
   for (const auto& [name, image] : {std::pair("a.png", &a), {"sub/c.png", &c}}) {
     const auto& f = frames[name];
     const int w = f["frame"]["w"], h = f["frame"]["h"];
@@ -43,7 +43,8 @@ TEST_F(AtlasPack, SpritesKeepTheirTexels) {
     EXPECT_EQ(f["sourceSize"]["w"], image->width);
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x) {
-        // Read back as a game does: y down, clockwise if rotated.
+        // Reads the sprite back as a game does: y points down, and rotated sprites are turned
+        // clockwise.
         const bool turned = f["rotated"];
         const int px = int(f["frame"]["x"]) + (turned ? h - 1 - y : x);
         const int py = int(f["frame"]["y"]) + (turned ? x : y);
@@ -140,7 +141,7 @@ TEST_F(AtlasPack, NoSpriteIsWrittenOverThroughALink) {
   EXPECT_EQ(run("images in -o out/x --crop").exit_code, 0);
 }
 
-// It took 14 GB before anything was drawn.
+// Such a page once took 14 GB before anything was drawn.
 TEST_F(AtlasPack, PagesThatNoMemoryHoldsAreRefused) {
   fs::create_directories(dir_ / "in");
   ASSERT_TRUE(atlas::write_png(dir_ / "in/a.png", atlas::Image8(8, 8, 3, 9), {}).ok());

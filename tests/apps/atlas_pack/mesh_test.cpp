@@ -1,4 +1,4 @@
-// atlas-pack mesh: the charts of a mesh's own uvs.
+// Tests atlas-pack mesh, which packs the charts of a mesh's own uvs.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace atlas::test {
 namespace {
 
 TEST_F(AtlasPack, MeshChartsAtUniformDensity) {
-  // Two unit squares whose uvs differ in size tenfold.
+  // Two unit squares whose uvs differ in size by a factor of ten.
   write("m.obj",
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
         "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 0 0\nvt 0.1 0\nvt 0.1 0.1\nvt 0 0.1\n"
@@ -26,7 +26,7 @@ TEST_F(AtlasPack, MeshChartsAtUniformDensity) {
   ASSERT_EQ(r.exit_code, 0) << r.output;
   EXPECT_TRUE(fs::exists(dir_ / "p.png"));
   std::istringstream lines(read("out.obj"));
-  std::vector<std::pair<double, double>> vt, uv;  // uv: 3 a triangle
+  std::vector<std::pair<double, double>> vt, uv;  // uv: three per triangle
   for (std::string line; std::getline(lines, line);) {
     double u = 0, v = 0;
     std::size_t t[3];
@@ -43,7 +43,7 @@ TEST_F(AtlasPack, MeshChartsAtUniformDensity) {
   EXPECT_GT(area(0), 0.1);
 }
 
-// Positions are floats: what is written is no longer than what was read. -0 is 0.
+// Positions are floats, so the written numbers are no longer than those read. -0 becomes 0.
 TEST_F(AtlasPack, MeshPositionsAreWrittenAsRead) {
   write("m.obj", "v 0.05 -0 0\nv 1.1 0 0\nv 0.05 0.3 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
   const RunResult r = run("mesh m.obj -o out.obj");
@@ -52,10 +52,10 @@ TEST_F(AtlasPack, MeshPositionsAreWrittenAsRead) {
   EXPECT_NE(text.find("v 0.05 0 0\nv 1.1 0 0\nv 0.05 0.3 0\n"), std::string::npos) << text;
 }
 
-// Uvs of tiles lie on each other: what they cover fills the page, and nothing else is counted.
+// Uvs of tiles overlap. The area that they cover fills the page, and overlaps are counted once.
 TEST_F(AtlasPack, MeshChartsThatLieOnThemselvesFillThePage) {
   std::string text = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
-  for (int k = 0; k < 10; ++k) {  // a strip whose squares are turned over in turns
+  for (int k = 0; k < 10; ++k) {  // a strip in which every other square is mirrored
     text += fmt::format("v {0} 0 0\nv {0} 1 0\n", k);
     if (k == 0) continue;
     const int v = 2 * k - 1, left = k % 2 ? 1 : 2, right = 3 - left;
@@ -71,7 +71,7 @@ TEST_F(AtlasPack, MeshChartsThatLieOnThemselvesFillThePage) {
   EXPECT_LE(json["utilization"], 1.0);
 }
 
-// A thousand squares, each a chart.
+// A thousand squares, each of which is a chart.
 TEST_F(AtlasPack, ChartsThatDoNotFitAreToldWithWhatHelps) {
   std::string text = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n", faces;
   for (int i = 0; i < 1000; ++i) {
@@ -93,7 +93,7 @@ TEST_F(AtlasPack, ChartsThatDoNotFitAreToldWithWhatHelps) {
       << padded.output;
 }
 
-// Eight right triangles, far apart in their own uvs.
+// Returns eight right triangles that are far apart in their own uvs.
 std::string triangles_obj() {
   std::string text;
   for (int k = 0; k < 8; ++k) {
@@ -106,7 +106,8 @@ std::string triangles_obj() {
   return text;
 }
 
-// Two squares of two triangles each whose corners all have their own vt: still two charts.
+// Two squares of two triangles each, in which every corner has its own vt. They are still two
+// charts.
 TEST_F(AtlasPack, MeshChartsAreFoundByPlaceAndValueAndStayCharts) {
   write("m.obj",
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 5\nv 1 0 5\nv 1 1 5\nv 0 1 5\n"
@@ -130,7 +131,7 @@ TEST_F(AtlasPack, MeshChartsAreFoundByPlaceAndValueAndStayCharts) {
     }
   }
   EXPECT_EQ(vts, 8);
-  // A material file that is read stays.
+  // A material file that the input uses must stay.
   write("mine.mtl", "newmtl red\n");
   write("other.obj", "mtllib mine.mtl\n" + read("m.obj"));
   const RunResult over = run("mesh other.obj -o mine.obj");
@@ -159,7 +160,7 @@ TEST_F(AtlasPack, MeshOptionsDoWhatTheySay) {
   const auto square = pages("--crop --square");
   EXPECT_EQ(square["pages"][0]["width"], square["pages"][0]["height"]);
   EXPECT_LE(pages("--max-pages 2")["pages"].size(), 2u);
-  // Seed and effort alone decide about `best`.
+  // The result of `best` depends only on seed and effort.
   pages("--preset best --effort 100 --seed 3 --threads 1");
   const std::string first = read("out.obj");
   pages("--preset best --effort 100 --seed 3 --threads 2");
@@ -183,7 +184,8 @@ TEST_F(AtlasPack, MeshOptionsDoWhatTheySay) {
   EXPECT_NE(full.output.find("a larger --page, more --pages or a smaller --padding"),
             std::string::npos)
       << full.output;
-  EXPECT_EQ(run("mesh t.obj -o out.obj --max-width 99").exit_code, 2);  // charts: square pages
+  // Not accepted for meshes, whose charts get square pages.
+  EXPECT_EQ(run("mesh t.obj -o out.obj --max-width 99").exit_code, 2);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// atlas-pack rects: lists of rectangles.
+// Tests atlas-pack rects, which packs lists of rectangles.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -39,7 +39,7 @@ TEST_F(AtlasPack, CommentsFollowLinesAndNamesHoldNumberSigns) {
   EXPECT_NE(r.output.find("\"width\":10"), std::string::npos) << r.output;
 }
 
-// Published instances begin with `width height count`; --page has the last word.
+// Published instances begin with `width height count`; --page overrides them.
 TEST_F(AtlasPack, InstancesSayTheirPage) {
   write("a.txt", "# three\n10 10 3\n10 4\n5 6\n5 6\n");
   const RunResult r = run("rects a.txt -o a.csv --json");
@@ -57,7 +57,7 @@ TEST_F(AtlasPack, InstancesSayTheirPage) {
   EXPECT_EQ(cut.exit_code, 1);
   EXPECT_NE(cut.output.find("cut.txt:1: a page of 10 x 10 and 3 rectangles"), std::string::npos)
       << cut.output;
-  write("named.txt", "1 10 3\n2 10 4\n");  // all are named: a list
+  write("named.txt", "1 10 3\n2 10 4\n");  // all lines begin with a name, so it is a list
   EXPECT_EQ(nlohmann::json::parse(run("rects named.txt -o a.csv --json").output)["items"], 2);
 }
 
@@ -71,7 +71,7 @@ TEST_F(AtlasPack, HeadersFollowCommentsAndExtensionsMayBeCapitals) {
   EXPECT_EQ(nlohmann::json::parse(read("B.JSON"))["frames"]["0"]["frame"]["h"], 4);
 }
 
-// Blocks of compressed texels are counted from the upper edge, whatever the page's height.
+// Blocks of compressed texels are counted from the upper edge, whatever the height of the page.
 TEST_F(AtlasPack, AlignedItemsBeginAtMultiplesFromTheUpperLeftCorner) {
   write("sizes.csv",
         "\xef\xbb\xbf"
@@ -136,7 +136,8 @@ TEST_F(AtlasPack, VeryManyPagesAreNamedWithTheLargerOnesThatWouldDo) {
             std::string::npos);
 }
 
-// A lone carriage return was none: "1,2" and "3,4" became one rectangle "1" of 23 x 4.
+// A lone carriage return once did not end a line: "1,2" and "3,4" became one rectangle "1" of 23 x
+// 4.
 TEST_F(AtlasPack, LinesMayEndByCarriageReturnsAlone) {
   write("mac.csv", "name,width,height\ra,10,20\rb,30,40\r");
   ASSERT_EQ(run("rects mac.csv -o placed.csv").exit_code, 0);
@@ -165,7 +166,7 @@ TEST_F(AtlasPack, WrongJsonNamesItsLine) {
             std::string::npos);
 }
 
-// Each level that was copied took a piece of the stack, which ended the program.
+// Copying the JSON once used stack space for every level, which made the program crash.
 TEST_F(AtlasPack, DeepBracketsAreNoSides) {
   const std::string open(1'000'000, '['), closed(1'000'000, ']');
   write("array.json", "[[" + open + closed + ",1]]");
@@ -177,7 +178,7 @@ TEST_F(AtlasPack, DeepBracketsAreNoSides) {
   }
 }
 
-// It waited for the writer, and signals did not end that.
+// Opening the pipe once waited for the writer, and signals did not end that.
 TEST_F(AtlasPack, APipeWithoutAWriterCanBeInterrupted) {
   ASSERT_EQ(::mkfifo((dir_ / "pipe").c_str(), 0600), 0);
   const RunResult r = run("rects pipe -o a.csv & sleep 0.5; kill $!; wait $!");
@@ -190,7 +191,7 @@ TEST_F(AtlasPack, APipeWithoutAWriterCanBeInterrupted) {
   EXPECT_NE(fed.output.find("2 items on 1 page"), std::string::npos) << fed.output;
 }
 
-// A list in Latin-1 ended the program.
+// A list in Latin-1 once made the program fail.
 TEST_F(AtlasPack, NamesNeedNotBeUtf8) {
   write("latin.csv", "caf\xe9,5,5\nb,6,6\n");
   const RunResult r = run("rects latin.csv -o out.json --preview out.svg");
@@ -198,7 +199,7 @@ TEST_F(AtlasPack, NamesNeedNotBeUtf8) {
   EXPECT_EQ(nlohmann::json::parse(read("out.json"))["frames"].size(), 2u);
 }
 
-// A page of 2^30 texels a side was drawn in full before it was scaled down.
+// A page of 2^30 texels per side was once drawn in full before it was scaled down.
 TEST_F(AtlasPack, PreviewsOfPagesOfAnySizeAreSmall) {
   write("one.csv", "5,5\n800000000,600000000\n");
   const RunResult r =
@@ -207,7 +208,7 @@ TEST_F(AtlasPack, PreviewsOfPagesOfAnySizeAreSmall) {
   const Result<Image8> picture = read_image8(dir_ / "out.png");
   ASSERT_TRUE(picture.ok());
   EXPECT_LE(std::max(picture->width, picture->height), 4096);
-  // Three quarters of the width and more than half of the height are the item's.
+  // The item covers three quarters of the width and more than half of the height.
   const std::uint8_t *item = picture->at(picture->width / 2, picture->height / 2),
                      *free = picture->at(picture->width * 7 / 8, picture->height * 7 / 8);
   EXPECT_FALSE(std::equal(item, item + 3, free));

@@ -1,4 +1,4 @@
-// Runs the program in a folder of its own.
+// Runs the program in its own folder.
 #pragma once
 
 #include <fmt/format.h>

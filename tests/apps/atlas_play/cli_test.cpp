@@ -1,4 +1,4 @@
-// atlas-play as its users meet it: what goes wrong ends in one clear line and exit code 1.
+// Tests atlas-play as users run it: every failure ends in one clear line and exit code 1.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -44,8 +44,8 @@ class AtlasPlay : public testing::Test {
   }
   void TearDown() override { fs::remove_all(dir_); }
 
-  // `environment` as for env(1). Leak checks are for the tests of the library: drivers leak.
-  // Without XDG_RUNTIME_DIR, which desktops set, Wayland's library has a line of its own to say.
+  // `environment` is as for env(1). Leak checks are disabled because graphics drivers leak. Without
+  // XDG_RUNTIME_DIR, which desktops set, the Wayland library would print a line of its own.
   RunResult run(const std::string& arguments, const std::string& environment = "") const {
     const std::string command = fmt::format(
         "cd '{0}' && env {1} XDG_RUNTIME_DIR='{0}' LSAN_OPTIONS=detect_leaks=0 '{2}' {3} >out "
@@ -56,7 +56,7 @@ class AtlasPlay : public testing::Test {
             text_of(dir_ / "err")};
   }
 
-  // The program's own complaint, the only one of its lines on stderr.
+  // Expects the program's own error message as the only line on stderr.
   static void expect_one_line(const RunResult& r, const std::string& words) {
     EXPECT_EQ(r.exit_code, 1) << r.errors;
     EXPECT_EQ(r.errors.rfind("atlas-play: error: ", 0), 0u) << r.errors;
@@ -148,7 +148,7 @@ TEST_F(AtlasPlay, TheCameraIsInTheCoordinatesOfTheFile) {
 }
 
 TEST_F(AtlasPlay, ScenesInOtherUnitsAreEnteredAlike) {
-  const auto box = [&](const char* name, double s) {  // seen from within
+  const auto box = [&](const char* name, double s) {  // seen from inside
     std::ofstream f(dir_ / name);
     for (int i = 0; i < 8; ++i)
       f << "v " << s * (i & 1 ? 6 : 0) << ' ' << s * (i & 2 ? 3 : 0) << ' ' << s * (i & 4 ? 4 : 0)
@@ -179,7 +179,7 @@ TEST_F(AtlasPlay, SaysWhatTheSceneLacks) {
   EXPECT_EQ(run(command + " -q").errors, "");
 }
 
-// Said before anything is drawn.
+// The error is reported before anything is drawn.
 TEST_F(AtlasPlay, PlacesThatTakeNoFiles) {
   for (const char* option :
        {"--record roof.obj", "--bench roof.obj", "--screenshot a.xyz", "--screenshot no/a.png"}) {

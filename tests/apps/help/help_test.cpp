@@ -1,4 +1,4 @@
-// docs/programs.md names the options that --help prints, all of them and no others.
+// Checks that docs/programs.md lists exactly the options that --help prints.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -12,7 +12,8 @@ namespace {
 
 using Names = std::set<std::string>;
 
-// What stands in the first column: lines that begin with `start`, up to the first of `ends`.
+// Returns the options in the first column of lines that begin with `start`. The column ends at the
+// first character that is in `ends`.
 Names options_in(const std::string& text, const std::string& start, const std::string& ends) {
   Names names;
   const std::regex option("--[a-z0-9-]+");

@@ -1,5 +1,5 @@
-// Command lines that are wrong, odd or contradict themselves: one line that names the option and
-// the remedy, exit code 2, nothing written.
+// Command lines that are wrong, odd or contradictory: the program prints one line that names the
+// option and the remedy, exits with code 2, and writes nothing.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
