@@ -1,4 +1,4 @@
-// A lit shape, placed by hand on one page, and look-ups as a viewer makes them.
+// A lit shape that is placed by hand on one page, and look-ups as a viewer makes them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 
 namespace atlas {
 
-// Display values are the sRGB encoding of luminance: white is 1.
+// Display values are the sRGB encoding of luminance; white is 1.
 inline const ToneMapping kPlain{};
 
 inline Vec3f shown(double d) {
@@ -22,7 +22,7 @@ inline Vec3f shown(double d) {
   return {v, v, v};
 }
 
-// Places chart `id` at the corner of its inner box.
+// Places chart `id` with the corner of its inner box at `corner`.
 inline ChartPlacement place(const ChartSet& charts, std::uint32_t id, Vec2d density, Rect corner,
                             bool rotated = false) {
   ChartPlacement p;
@@ -53,7 +53,7 @@ inline BakeOptions small_page(int side, BakeMethod method = BakeMethod::least_sq
   return o;
 }
 
-// Bilinear look-up at a page position in texels; values as stored.
+// A bilinear look-up at a page position in texels. Returns the value as stored.
 template <class T>
 double look_up(const Image<T>& image, Vec2d at, int channel) {
   const double x = at.x - 0.5, y = at.y - 0.5;

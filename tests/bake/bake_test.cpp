@@ -12,9 +12,10 @@
 namespace atlas {
 namespace {
 
-// Every point of a chart of display values a + b u + c v, looked up in the page.
+// The errors over all points of a chart with the display values a + b u + c v, looked up in the
+// page.
 struct WorstErrors {
-  double inside = 0, border = 0;  // a texel or more from the border; nearer
+  double inside = 0, border = 0;  // at least a texel from the border; nearer
 };
 
 WorstErrors ramp_errors(const Image8& page, const ChartPlacement& p, Vec2d size, double a, double b,
@@ -23,7 +24,7 @@ WorstErrors ramp_errors(const Image8& page, const ChartPlacement& p, Vec2d size,
   WorstErrors worst;
   for (int i = 0; i < 20000; ++i) {
     Vec2d uv{size.x * (random() % 10001) / 10000.0, size.y * (random() % 10001) / 10000.0};
-    if (i % 10 == 0) uv.x = i % 20 ? 0 : size.x;  // the border itself
+    if (i % 10 == 0) uv.x = i % 20 ? 0 : size.x;  // exactly on the border
     if (i % 15 == 0) uv.y = i % 30 ? 0 : size.y;
     const double want = a + b * uv.x + c * uv.y;
     const double error = std::fabs(look_up(page, page_texel(p, uv), 1) / 255 - want);
@@ -37,7 +38,8 @@ WorstErrors ramp_errors(const Image8& page, const ChartPlacement& p, Vec2d size,
 }
 
 TEST(BakePage, ReproducesALinearRampUpToTheBorder) {
-  // Display-linear over fine cells; its texels are then the ramp itself, beyond the border too.
+  // The values are linear in display space over fine cells, so the texels form the ramp itself,
+  // also beyond the border.
   const Vec2d size{1.37, 0.61};
   for (const int cells : {25, 60, 300})  // triangles of 3, 1 and 0.2 texels
     for (const bool rotated : {false, true})
@@ -66,8 +68,9 @@ TEST(BakePage, AverageReproducesARampInside) {
                   1.0 / 255);
 }
 
-// Curves other than the linear one are applied to each sample's colour, of the light as of its
-// product with a texture, on large triangles and on ones that no sample position meets.
+// Tone curves other than the linear one are applied to the colour of each sample, that is to the
+// light or to its product with a texture. Tests large triangles and ones that no sample position
+// meets.
 TEST(BakePage, ShowsLightAndTexturesThroughAnyToneCurve) {
   LuminanceStatistics statistics;
   statistics.log_average = 0.5;
@@ -85,7 +88,7 @@ TEST(BakePage, ShowsLightAndTexturesThroughAnyToneCurve) {
     const auto tone = make_tone_mapping(how, statistics);
     ASSERT_TRUE(tone.ok());
     for (const bool textured : {false, true}) {
-      for (const int cells : {4, 120}) {  // 120: six a texel
+      for (const int cells : {4, 120}) {  // 120: six cells per texel
         LitShape shape = make_sheet({1, 1, cells, cells}, at);
         if (textured) add_texture(shape, Image8(8, 8, 3, 170), {3, 3});
         const float reflectance = textured ? srgb_decode(170.0f / 255) : 1;
@@ -112,7 +115,7 @@ TEST(BakePage, ShowsLightAndTexturesThroughAnyToneCurve) {
 }
 
 TEST(BakePage, LeastSquaresIsNearerToTheLightThanTheAverage) {
-  // A soft shadow's edge at a slant, a few texels wide, and fine noise.
+  // The slanted edge of a soft shadow, a few texels wide, with fine noise.
   std::mt19937 random(9);
   const auto light = [&](double u, double v) {
     const double edge = 1 / (1 + std::exp(-(u + 0.37 * v - 0.6) * 60));
@@ -162,7 +165,7 @@ TEST(BakePage, GivesSceneLinearValuesOnRequest) {
   EXPECT_TRUE(bake(shape, {p}, options)->linear.texels.empty());
 }
 
-// What is no light may be negative; light may not, whatever edges would make of it.
+// Values that are not light may be negative. Light may not, whatever the fit would do at edges.
 TEST(BakePage, SceneLinearValuesAreNegativeOnlyWhereTheSignalIs) {
   const auto least_of = [](float base) {
     const LitShape shape = make_sheet({1, 1, 20, 20}, [&](double u, double) {
@@ -222,7 +225,7 @@ TEST(BakePage, TakesSliversAndTrianglesWithoutArea) {
   for (std::size_t i = 0; i < shape.charts.uvs.size(); i += 3) {
     Vec2d& q = shape.charts.uvs[i];
     const Vec2d& other = shape.charts.uvs[(i + 1) % shape.charts.uvs.size()];
-    // Onto a neighbour, or nearly so.
+    // Moves the point onto a neighbour, or nearly so.
     q = {other.x + (random() % 3) * 1e-13, other.y + (random() % 3) * 1e-9};
   }
   for (const BakeMethod method : {BakeMethod::least_squares, BakeMethod::average}) {
@@ -246,7 +249,7 @@ TEST(BakePage, RefusesWhatCannotBe) {
   using O = BakeOptions;
   using P = ChartPlacement;
   EXPECT_EQ(code([](O&, P&) {}), ErrorCode::ok);
-  EXPECT_EQ(code([](O&, P& p) { p.x = 1; }), ErrorCode::bad_input);  // its pad leaves the page
+  EXPECT_EQ(code([](O&, P& p) { p.x = 1; }), ErrorCode::bad_input);  // its padding leaves the page
   EXPECT_EQ(code([](O&, P& p) { p.y = 11; }), ErrorCode::bad_input);
   EXPECT_EQ(code([](O&, P& p) { p.x = 2147483647; }), ErrorCode::bad_input);
   EXPECT_EQ(code([](O&, P& p) { p.width = 0; }), ErrorCode::bad_input);
@@ -257,7 +260,7 @@ TEST(BakePage, RefusesWhatCannotBe) {
   EXPECT_EQ(code([](O& o, P&) { o.page_width = 0; }), ErrorCode::bad_option);
 }
 
-// However little of a texel they cover: they were black.
+// Charts show their light however little of a texel they cover. They were once black.
 TEST(BakePage, ShowsTheLightOfChartsFarBelowATexel) {
   for (const BakeMethod method : {BakeMethod::least_squares, BakeMethod::average})
     for (const double density : {1e-2, 1e-5, 1e-20, 1e-200}) {

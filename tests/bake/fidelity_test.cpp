@@ -20,7 +20,7 @@ struct Setup {
   ChartLight light() const { return {sampler, shape.charts, kPlain}; }
 };
 
-// Two lit sheets on pages 0 and 1, an unlit one on page 1, areas 1, 1 and 2.
+// Two lit sheets on pages 0 and 1 and an unlit one on page 1, with areas 1, 1 and 2.
 std::unique_ptr<Setup> two_pages() {
   LitShape shape =
       make_sheet({1, 1, 60, 60}, [](double u, double) { return shown(0.2 + 0.5 * u); });
@@ -65,9 +65,9 @@ TEST(Fidelity, OfAPerfectBakeIsTheRoundingOfEightBits) {
   meter.add_page(1, pages[1]);
   const Fidelity f = meter.result();
   EXPECT_EQ(f.lit + f.unlit, 100000u);
-  EXPECT_NEAR(static_cast<double>(f.unlit), 50000, 10);  // by area, stratified
+  EXPECT_NEAR(static_cast<double>(f.unlit), 50000, 10);  // by area, because samples are stratified
   EXPECT_EQ(f.unplaced, 0u);
-  EXPECT_GT(f.psnr, 56);  // rounding alone: 58.9 dB
+  EXPECT_GT(f.psnr, 56);  // rounding alone gives 58.9 dB
   EXPECT_LT(f.maximum, 1.2 / 255);
   EXPECT_GT(f.psnr_all, f.psnr);
   EXPECT_GT(f.rmse, 0);
@@ -77,7 +77,7 @@ TEST(Fidelity, OfAPerfectBakeIsTheRoundingOfEightBits) {
 TEST(Fidelity, MeasuresAKnownErrorExactly) {
   const auto s = two_pages();
   std::vector<Image8> pages = bake_pages(*s);
-  // One channel off by 20 codes everywhere: its PSNR is -20 log10(20/255) within rounding.
+  // One channel is wrong by 20 codes everywhere, so its PSNR is -20 log10(20/255) within rounding.
   for (Image8& page : pages)
     for (std::size_t i = 1; i < page.texels.size(); i += 3)
       page.texels[i] = static_cast<std::uint8_t>(page.texels[i] + 20);
@@ -92,8 +92,8 @@ TEST(Fidelity, MeasuresAKnownErrorExactly) {
   EXPECT_NEAR(f.rmse_display, 20 / 255.0 / std::sqrt(3.0), 0.001);
 }
 
-// An error in a corner of two large triangles weighs as its area does: samples are even over a
-// triangle, not only over the mesh.
+// An error in the corner of two large triangles counts in proportion to its area, because samples
+// are even within a triangle and not only over the mesh.
 TEST(Fidelity, WeighsAPartOfATriangleByItsArea) {
   LitShape shape = make_sheet({1, 1, 1, 1}, [](double, double) { return shown(0.5); });
   const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
@@ -122,7 +122,7 @@ TEST(Fidelity, WeighsAPartOfATriangleByItsArea) {
         if (corner & 2) y = 95 - y;
         return x < side && y < side;
       });
-      // The look-ups blur the border of the square: about a fiftieth.
+      // The look-ups blur the border of the square, which changes about a fiftieth.
       EXPECT_NEAR(part / whole, share, 0.03 * share + 0.002) << side << ' ' << corner;
     }
   }

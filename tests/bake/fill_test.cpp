@@ -27,7 +27,7 @@ TEST(FillUnknown, KeepsWhatIsKnownAndStaysBetweenItsExtremes) {
         ASSERT_EQ(grid.rgb[i][0], before.rgb[i][0]);
       }
       if (unknown == grid.rgb.size()) {
-        ASSERT_EQ(grid.rgb[i][1], 0);  // nothing to go by
+        ASSERT_EQ(grid.rgb[i][1], 0);  // no texel is known
         continue;
       }
       ASSERT_NEAR(grid.rgb[i][1], 0.5f, 1e-5);
@@ -37,8 +37,8 @@ TEST(FillUnknown, KeepsWhatIsKnownAndStaysBetweenItsExtremes) {
   }
 }
 
-// No direction is preferred: what is filled in a mirrored grid is the mirror image, where sides are
-// powers of two, so that levels are halved alike from both ends.
+// No direction is preferred: filling a mirrored grid gives the mirror image. Sides are powers of
+// two, so that levels are halved equally from both ends.
 TEST(FillUnknown, MirrorsWhatIsMirrored) {
   std::mt19937 random(4);
   constexpr int w = 64, h = 32;

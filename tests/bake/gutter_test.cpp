@@ -1,5 +1,5 @@
-// No trilinear look-up of a chart sees another's texels: checked with charts of one colour each and
-// a mip chain made as graphics drivers make it.
+// No trilinear look-up in a chart reads another chart's texels. Checked with charts of one colour
+// each and a mip chain made as graphics drivers make it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ ImageF halve(const ImageF& in) {
   return out;
 }
 
-// Charts of random sizes in boxes aligned to 2^levels, shelf by shelf, with no space between boxes.
+// Places charts of random sizes in boxes aligned to 2^levels, in rows, with no space between boxes.
 LitShape tiled(int levels, int page, std::vector<ChartPlacement>& placements) {
   LitShape shape;
   std::mt19937 random(17);
@@ -32,7 +32,7 @@ LitShape tiled(int levels, int page, std::vector<ChartPlacement>& placements) {
   int x = 0, y = 0, shelf = 0;
   for (std::uint32_t i = 0;; ++i) {
     const double w = 0.02 + (random() % 400) / 1000.0, h = 0.02 + (random() % 300) / 1000.0;
-    // Colours far from their neighbours' and from black.
+    // The colours differ clearly from those of neighbours and from black.
     const float red = srgb_decode(0.2f + 0.1f * static_cast<float>(i % 8));
     const float green = srgb_decode(0.2f + 0.1f * static_cast<float>(i / 8 % 8));
     const LitShape sheet = make_sheet({w, h, 2 + int(i % 5), 2, 0.2}, [&](double, double) {
@@ -71,7 +71,7 @@ TEST(Gutter, NoLookUpSeesANeighbourAtAnyPromisedLevel) {
           const Vec3f e = shape.scene.illumination[shape.charts.charts[p.chart].first_uv];
           const Vec3f want = kPlain.display(e);
           for (int n = 0; n < 60; ++n) {
-            // Anywhere in the inner box, corners and sides first.
+            // Tests points anywhere in the inner box, its corners first.
             const double s = n < 4 ? n % 2 : (random() % 1001) / 1000.0;
             const double t = n < 4 ? n / 2 : (random() % 1001) / 1000.0;
             const double scale = std::ldexp(1.0, -level);
@@ -84,7 +84,7 @@ TEST(Gutter, NoLookUpSeesANeighbourAtAnyPromisedLevel) {
     }
 }
 
-// Two slanting strips whose boxes overlap, as the outline packer lays them.
+// Two slanted strips whose boxes overlap, placed as the outline packer does.
 TEST(Gutter, OutlinedChartsKeepToTheirCells) {
   LitShape shape = make_sheet({1, 0.1, 9, 2}, [](double, double) { return shown(0.4); });
   append(shape, make_sheet({1, 0.1, 9, 2}, [](double, double) { return shown(0.9); }), {0, 0, 1});
@@ -122,8 +122,8 @@ TEST(Gutter, OutlinedChartsKeepToTheirCells) {
   }
 }
 
-// Charts of one colour each, nearer to each other than their gutters are wide: two texels lie
-// between them, where four or more are asked for.
+// Charts of one colour each that are closer than their gutters are wide: two texels lie between
+// them, although mip levels ask for four or more.
 LitShape crowded(bool outlined, std::vector<ChartPlacement>& placements) {
   LitShape shape;
   std::mt19937 random(23);
@@ -136,7 +136,7 @@ LitShape crowded(bool outlined, std::vector<ChartPlacement>& placements) {
                       }),
            {0, 0, float(i)});
     ChartPlacement p = place(shape.charts, i, {79.9, 79.9}, {4, 4, 0, 0});
-    EXPECT_EQ(p.width, 16);  // nearly full: rounding reaches no further texel
+    EXPECT_EQ(p.width, 16);  // the box is nearly full, so rounding reaches no further texel
     p.x += 18 * static_cast<int>(i % 8);
     p.y += 18 * static_cast<int>(i / 8);
     turn_in_box(p, random() % 2);
@@ -168,7 +168,7 @@ TEST(Gutter, ChartsTooNearToEachOtherAreTheSameForAnyThreadsAndOrder) {
         ASSERT_EQ(one->linear.texels, four->linear.texels) << outlined << ' ' << levels;
         ASSERT_EQ(one->contested_texels, four->contested_texels);
       }
-      // Look-ups at level 0 see their own chart alone, borders included.
+      // Look-ups at level 0 read only their own chart, including at borders.
       for (const ChartPlacement& p : placements) {
         const Vec3f want =
             kPlain.display(shape.scene.illumination[shape.charts.charts[p.chart].first_uv]);
@@ -182,7 +182,7 @@ TEST(Gutter, ChartsTooNearToEachOtherAreTheSameForAnyThreadsAndOrder) {
   }
 }
 
-// How many texels are contested, by rectangles alone; what is told names two charts that are.
+// Contested texels are counted independently from rectangles. The warning names two of the charts.
 TEST(Gutter, ContestedTexelsAreCountedAndTold) {
   std::vector<ChartPlacement> placements;
   const LitShape shape = crowded(false, placements);
@@ -208,7 +208,7 @@ TEST(Gutter, ContestedTexelsAreCountedAndTold) {
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_NE(lines[0].find("to 0 and 1:"), std::string::npos) << lines[0];
   EXPECT_NE(lines[0].find("padding of 2 and an alignment of 4"), std::string::npos) << lines[0];
-  // With room for their gutters nothing is contested, and nothing said.
+  // If there is space for the gutters, nothing is contested and there is no warning.
   for (ChartPlacement& p : placements) {
     p.x = 2 + 20 * (p.x - 4) / 18;
     p.y = 2 + 20 * (p.y - 4) / 18;
@@ -228,7 +228,7 @@ TEST(Gutter, BoxesKeepWithinThemselves) {
   options.linear = true;
   const auto all = bake(shape, placements, options);
   ASSERT_TRUE(all.ok());
-  // Without one chart the others' boxes are the same, and nothing is baked into its own.
+  // Without one chart the boxes of the others are the same, and nothing is baked into its box.
   const ChartPlacement gone = placements[5];
   placements.erase(placements.begin() + 5);
   const auto rest = bake(shape, placements, options);
@@ -252,7 +252,7 @@ TEST(Gutter, TexelsOfNoChartTakeTheColoursAroundThem) {
   const LitShape shape = tiled(2, 256, placements);
   const auto page = bake(shape, placements, small_page(256));
   ASSERT_TRUE(page.ok());
-  // Every chart is lit in blue by more than nothing, so no texel of the page may stay black in it.
+  // Every chart has blue light, so no texel of the page may stay black in that channel.
   std::size_t black = 0;
   for (int y = 0; y < 256; ++y)
     for (int x = 0; x < 256; ++x) black += page->display.at(x, y)[2] == 0;

@@ -1,4 +1,4 @@
-// The iterative solution against dense normal equations solved directly.
+// Compares the iterative solution with dense normal equations that are solved directly.
 #include "libatlas/bake/least_squares.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 struct Problem {
   int width, height;
   struct Sample {
-    double x, y, weight;  // between texel centres: 0..width-1, 0..height-1
+    double x, y, weight;  // between texel centres: 0 to width-1, 0 to height-1
     Lanes rgb;
   };
   std::vector<Sample> samples;
@@ -33,7 +33,7 @@ TexelGrid solve(const Problem& p, float low, float high) {
   return std::move(fit).solve(low, high);
 }
 
-// Minimum-norm least squares by QR over all samples, without any smoothing.
+// Returns the minimum-norm least-squares solution by QR over all samples, without smoothing.
 Eigen::MatrixXd solve_directly(const Problem& p) {
   const int n = p.width * p.height, m = static_cast<int>(p.samples.size());
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(m, n), b(m, 3);
@@ -68,8 +68,8 @@ TEST(LeastSquares, MeetsTheDirectSolution) {
       ASSERT_TRUE(got.known[i]);
       for (int k = 0; k < 3; ++k) ASSERT_NEAR(got.rgb[i][k], want(i, k), 0.03) << i;
     }
-    // What the sweeps leave is seen in the energy, which they bring within a few parts in a
-    // hundred.
+    // The remaining error of the sweeps shows in the energy, which is within a few per cent of the
+    // best. The test allows 25 %.
     const auto energy = [&](auto value) {
       double e = 0;
       for (const auto& s : p.samples) {
@@ -89,8 +89,9 @@ TEST(LeastSquares, MeetsTheDirectSolution) {
   }
 }
 
-// Whatever the samples weigh and wherever they lie: charts far below a texel, slivers, borders that
-// reach a texel by a hair. Of slivers a twentieth of the value was lost to the differences' weight.
+// Holds for all weights and positions of samples: charts far below a texel, slivers, and borders
+// that barely reach a texel. Slivers once lost a twentieth of the value to the weight of the
+// differences.
 TEST(LeastSquares, ConstantsStayConstants) {
   std::mt19937 random(6);
   const auto uniform = [&](double most) { return most * (random() % 1000000) / 999999.0; };
@@ -137,7 +138,7 @@ TEST(LeastSquares, RowsEqualSingleSamples) {
 
 TEST(LeastSquares, KeepsToItsBoundsAndLeavesUntouchedTexelsUnknown) {
   LeastSquares fit(40, 4);
-  // A step from 0 to 1: unbounded texels would swing beyond both.
+  // A step from 0 to 1. Without bounds, the texels would overshoot on both sides.
   for (int i = 4; i < 30; ++i)
     for (int s = 0; s < 8; ++s) {
       const float tx = (static_cast<float>(s) + 0.5f) / 8;

@@ -1,4 +1,4 @@
-// Means over texels, by points and integrals of the test's own.
+// Compares means over texels with the test's own point samples and integrals.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ double encoded_srgb(double linear) {
 }
 
 // Calls visit(x, y, weights of the corners) for the points (x + 0.5, y + 0.5) in a triangle, found
-// one by one. Those on an edge are in both of its triangles.
+// one by one. A point on an edge is in both of its triangles.
 template <class Visit>
 void each_point_in(const Vec2d (&q)[3], const Visit& visit) {
   const auto cross = [](Vec2d a, Vec2d b, Vec2d p) {
@@ -35,8 +35,8 @@ void each_point_in(const Vec2d (&q)[3], const Visit& visit) {
 }
 
 TEST(BakePage, AverageIsTheAreaMeanOverEachTexel) {
-  // Values that jump from vertex to vertex, triangles of 0.1 to 3 texels, against many point
-  // samples.
+  // Compares values that jump from vertex to vertex, on triangles of 0.1 to 3 texels, with many
+  // point samples.
   for (const int cells : {8, 30, 90}) {
     std::mt19937 random(6);
     const LitShape shape = make_sheet({1, 1, cells, cells, 0.25}, [&](double, double) {
@@ -48,7 +48,7 @@ TEST(BakePage, AverageIsTheAreaMeanOverEachTexel) {
     options.mip_levels = 0;
     const auto page = bake(shape, {p}, options);
     ASSERT_TRUE(page.ok());
-    // The oracle: 40 x 40 point samples a texel.
+    // The expected value is the mean of 40 x 40 point samples per texel.
     constexpr int kSide = 40;
     std::vector<double> sum(24 * 24), count(24 * 24);
     for (std::size_t t = 0; t < shape.scene.triangle_count(); ++t) {
@@ -68,7 +68,8 @@ TEST(BakePage, AverageIsTheAreaMeanOverEachTexel) {
     for (int y = 0; y < 24; ++y)
       for (int x = 0; x < 24; ++x) {
         const double want = sum[y * 24 + x] / count[y * 24 + x];
-        // A part's value is taken at its centroid: exact but for the curve of the display encoding.
+        // The baker takes a part's value at its centroid, which is exact except for the curve of
+        // the display encoding.
         ASSERT_NEAR(page->display.at(x + 2, y + 2)[0] / 255.0, want, 6.0 / 255)
             << cells << ' ' << x << ' ' << y;
       }
@@ -76,15 +77,15 @@ TEST(BakePage, AverageIsTheAreaMeanOverEachTexel) {
 }
 
 TEST(BakePage, CountsEveryTriangleHoweverSmall) {
-  // A hundred cells a texel, one column in five bright: each texel is near the mean, whatever
-  // the samples' positions.
+  // A texel has a hundred cells, and one column in five is bright. Each texel must be near the
+  // mean, whatever the positions of the samples.
   const int n = 200;
   const LitShape shape = make_sheet({1, 1, n, n}, [&](double u, double) {
     const int column = static_cast<int>(std::lround(u * n));
     return shown(column % 5 == 0 ? 1.0 : 0.2);
   });
-  // Of five columns of cells two change from bright to dark or back, linearly in light; three are
-  // dark. The mean of their display values, by the midpoint rule.
+  // Of five columns of cells, two change between bright and dark, linearly in light, and three are
+  // dark. Computes the mean of their display values by the midpoint rule.
   const double dark = std::pow((0.2 + 0.055) / 1.055, 2.4);
   constexpr int kSteps = 100000;
   double changing = 0;

@@ -15,7 +15,7 @@ TEST(Placement, MapsTheChartsBoxOntoItsInnerBox) {
   turn_in_box(p, false);
   EXPECT_EQ(page_texel(p, {0, 0}), (Vec2d{10, 20}));
   EXPECT_EQ(page_texel(p, {10, 4}), (Vec2d{50, 28}));
-  // A quarter turn counter-clockwise: u runs up, v runs to the left.
+  // After a quarter turn counter-clockwise, u points up and v points to the left.
   p.width = 8;
   p.height = 40;
   turn_in_box(p, true);
