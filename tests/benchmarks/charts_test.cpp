@@ -1,4 +1,4 @@
-// Every kind of generated mesh comes out whole, judged from the written OBJ.
+// Every kind of generated mesh is complete after export, as measured from the written OBJ.
 #include <gtest/gtest.h>
 
 #include "benchmarks/charts/charts_bench.h"

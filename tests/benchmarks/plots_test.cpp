@@ -1,4 +1,4 @@
-// Plots and their scripts, of numbers made up here.
+// Tests plots and their scripts with invented numbers.
 #include "benchmarks/page/plots.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 namespace atlas::bench {
 namespace {
 
-// Where a script puts a label, in shares of the panel.
+// Returns the position of a label in the script, as shares of the panel.
 Vec2d label_place(const std::string& script, const std::string& label) {
   const std::size_t at = script.find("set label '" + label + "' at graph ");
   Vec2d place{-1, -1};
@@ -28,7 +28,7 @@ Vec2d label_place(const std::string& script, const std::string& label) {
 TEST(Plots, LabelsOfOnePlaceLieApartAndInside) {
   Plot plot{"x.svg", "title", "x", "y", {Panel{}, Panel{}}};
   plot.panels[0].series.push_back({"", {{1, 5, "first", true}, {1, 5, "second"}, {9, 7, "third"}}});
-  plot.panels[1].series.push_back({"", {{0.25, 4, "it's"}}});  // a range of no length
+  plot.panels[1].series.push_back({"", {{0.25, 4, "it's"}}});  // its range has no length
   const std::string script = gnuplot_script(plot, "x.svg");
   const Vec2d first = label_place(script, "first"), second = label_place(script, "second");
   EXPECT_GE(std::hypot(first.x - second.x, first.y - second.y), 0.02);
@@ -87,7 +87,7 @@ TEST(Plots, SmallerErrorsAreDrawnAtTheLowestTickWhichSaysSo) {
 TEST(Plots, AFrontOfOneSettingIsNotInTheKey) {
   Results results;
   for (const double error : {0.3, 0.2, 0.1}) {
-    Row made = row(1000, 1 + error, error);  // the fastest is the best, too
+    Row made = row(1000, 1 + error, error);  // the fastest one is also the best
     made.setting = "setting " + std::to_string(error);
     results.rows.push_back(made);
   }

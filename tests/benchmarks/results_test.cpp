@@ -1,4 +1,4 @@
-// Result files, fits, fronts and comparisons, on numbers made up here.
+// Tests result files, fits, fronts and comparisons with invented numbers.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -78,12 +78,12 @@ TEST(Results, TargetsAreTriedBeforeARun) {
   EXPECT_FALSE(fs::exists(fresh));
   ASSERT_TRUE(save(some_results(), fresh).ok());
   EXPECT_TRUE(check_target(fresh).ok());
-  EXPECT_TRUE(load(fresh).ok());  // still there
+  EXPECT_TRUE(load(fresh).ok());  // it still exists
   EXPECT_FALSE(check_target(folder.path / "missing" / "r.json").ok());
   EXPECT_FALSE(check_target(folder.path).ok());
 }
 
-// What a citation says must stand in that line of the file.
+// The cited line of the file must contain what it is cited for.
 TEST(Results, EveryRowAndCheckCitesItsLine) {
   const TempFolder folder;
   Results results = some_results();
@@ -168,9 +168,9 @@ TEST(Compare, EqualFilesHaveNoRegression) {
 TEST(Compare, NeedsBothThresholdsAndPutsQualityFirst) {
   const Results base = some_results();
   Results head = base;
-  head.rows[0].cpu_seconds *= 1.1;    // relative threshold not met
-  head.rows[1].cpu_seconds *= 2;      // both met
-  head.rows[2].values[0].second = 6;  // error
+  head.rows[0].cpu_seconds *= 1.1;    // below the relative threshold
+  head.rows[1].cpu_seconds *= 2;      // above both thresholds
+  head.rows[2].values[0].second = 6;  // worse error
   std::vector<Regression> found = compare(base, head, {});
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].kind, Regression::quality);
@@ -206,7 +206,8 @@ TEST(Pareto, KeepsWhatNothingBeats) {
   EXPECT_TRUE(pareto_front(std::vector<Point>{}, x, y).empty());
 }
 
-// The page in Markdown after a round through a JSON file; empty if that fails.
+// Returns the page in Markdown after saving and loading the results as JSON, or an empty string if
+// that fails.
 std::string written_page(const Results& results, const fs::path& folder) {
   if (!save(results, folder / "all.json").ok()) return {};
   const Result<Results> loaded = load(folder / "all.json");
@@ -234,13 +235,14 @@ TEST(Page, TablesForThreadsInstructionsAndRivals) {
                            "slow program | 7000 | timed out after 60 s", "## Stage: charts"})
     EXPECT_NE(page.find(text), std::string::npos) << text;
   EXPECT_EQ(page.find("Stage: unwrap"), std::string::npos);
-  // Rows of the thread series and counted ones stay out of the stage's own table.
+  // Rows of the thread series and rows with counted instructions are not in the stage's own table.
   const std::string stage = page.substr(page.find("## Stage: charts"));
   EXPECT_EQ(stage.find("sphere:5000 "), std::string::npos);
   EXPECT_EQ(stage.find("sphere:6000 "), std::string::npos);
 }
 
-// A mesh beyond twelve times "parse + normals" is said with the parts that take most of it.
+// If a mesh takes more than twelve times "parse + normals", the page names the parts that take most
+// of it.
 TEST(Page, TellsWhichPartsOfChartsTakeTheTime) {
   const TempFolder folder;
   Results results;

@@ -1,4 +1,4 @@
-// A made-up row of results.
+// Returns an invented row of results.
 #pragma once
 
 #include <cstdint>

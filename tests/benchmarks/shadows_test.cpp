@@ -1,4 +1,4 @@
-// The shadow methods' benchmark on a small scene, where there is OpenGL.
+// Runs the benchmark of the shadow methods on a small scene, if OpenGL is available.
 #include <gtest/gtest.h>
 
 #include "benchmarks/shadows/shadow_rows.h"

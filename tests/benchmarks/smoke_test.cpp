@@ -1,4 +1,5 @@
-// Every stage's benchmark once on small work: rows with figures come out, whatever they cost.
+// Runs the benchmark of every stage once on small work. They must give rows with figures; costs are
+// not checked.
 #include <gtest/gtest.h>
 
 #include <unistd.h>
@@ -58,7 +59,8 @@ TEST(Stages, GiveFiguresOnSmallWork) {
   EXPECT_GE(rows.size(), 8u + 4u);
 }
 
-// What one stage freed does not hide what the next one takes, nor does what threads did before.
+// Memory that one stage freed does not hide what the next one takes, nor does the earlier use of
+// threads.
 TEST(OwnProcess, HoldsItsInputAndWhatItTakesAlone) {
   std::atomic<std::size_t> chunks = 0;
   parallel_for({}, 1000, 1, [&](std::size_t, std::size_t) { ++chunks; });
@@ -83,7 +85,7 @@ TEST(OwnProcess, HoldsItsInputAndWhatItTakesAlone) {
   for (const Row& row : rows) {
     EXPECT_EQ(row.size_in, std::stoul(row.stage) << 20);
     EXPECT_EQ(row.size_out, 1000u);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which keep what is freed
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which keep freed memory
     EXPECT_NEAR(row.memory_mib - row.input_mib, std::stod(row.stage), 20);
 #endif
   }
@@ -134,7 +136,8 @@ TEST(Rivals, AreJudgedTimedOutAndReported) {
   EXPECT_FALSE(parse_rival("x=unwrap {in}").ok());
 }
 
-// A rectangle twice as wide as high that fills its page: isometric on a page of these proportions.
+// A rectangle twice as wide as high that fills its page. It is isometric on a page of these
+// proportions.
 TEST(Rivals, PagesNeedNotBeSquare) {
   const Context context;
   Staged staged("sphere:500", lit(test::icosphere(2)), context);
@@ -149,7 +152,7 @@ TEST(Rivals, PagesNeedNotBeSquare) {
     ASSERT_TRUE(rival.ok());
     bench_rival(run, *rival);
     ASSERT_TRUE(rows.at(0).failure.empty()) << rows[0].failure;
-    // Singular values 1/sqrt(2) and sqrt(2) in a square.
+    // On a square page the singular values are 1/sqrt(2) and sqrt(2).
     EXPECT_NEAR(rows[0].value("l2_minus_1"), told ? 0 : std::sqrt(1.25) - 1, 1e-6);
   }
 }
@@ -201,7 +204,7 @@ TEST(CommandLine, NonsenseIsRefusedBeforeAnythingRuns) {
   }
 }
 
-// A plane with a straight shadow edge at x = 1/2, one mesh cell wide.
+// A plane with a straight shadow edge at x = 1/2, which is one mesh cell wide.
 Staged half_lit(const Context& context) {
   LoadedScene loaded = lit(test::grid(80, 80));
   for (std::size_t i = 0; i < loaded.scene.positions.size(); ++i) {
@@ -221,7 +224,7 @@ TEST(LightLeak, FindsTheEdgeOfAShadow) {
   for (const Vec3f& p : edge.points) EXPECT_NEAR(p.x, 0.50625, 1e-5);
   EXPECT_NEAR(edge.length, 1, 1e-3);
   ShadowEdgeOptions strict;
-  strict.length = 0.005;  // shorter than the mesh's edges
+  strict.length = 0.005;  // shorter than the edges of the mesh
   EXPECT_TRUE(find_shadow_edge(staged.scene(), strict).points.empty());
   strict = {};
   strict.drop = 0.95;

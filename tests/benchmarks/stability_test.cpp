@@ -1,4 +1,4 @@
-// The small cases of the stability page: no bound may be exceeded.
+// Runs the small cases of the stability page. None may exceed its bound.
 #include <gtest/gtest.h>
 
 #include <limits>
