@@ -1,4 +1,5 @@
-// The bound steers the merging: a wide one saves charts and seams, a narrow one lowers the stretch.
+// The stretch bound steers the merging: a wide bound saves charts and seams, a narrow one lowers
+// the stretch.
 #include <gtest/gtest.h>
 
 #include "tests/charts/invariance.h"
@@ -45,9 +46,9 @@ TEST(Bound, WhatUnrollsNeedsFewChartsAtAnyBound) {
   }
 }
 
-// Of charts with few triangles merging knows little: they are tried again once they are flat.
+// Merging knows little about charts with few triangles. They are tried again once they are flat.
 TEST(Bound, CoarseMeshesTakeFewerChartsTheMoreIsTried) {
-  std::size_t charts[3] = {0, 0, 0};  // of fast, standard, best
+  std::size_t charts[3] = {0, 0, 0};  // of the presets fast, standard and best
   double seams[3] = {0, 0, 0};
   for (const Shape& shape :
        {torus(24, 12), noisy(icosphere(3), 0.03, 5), box(3), sphere(20, 10),
@@ -69,7 +70,7 @@ TEST(Bound, CoarseMeshesTakeFewerChartsTheMoreIsTried) {
 }
 
 TEST(Bound, OfSeveralAttemptsTheBestIsTakenPieceByPiece) {
-  std::size_t alone[2] = {0, 0};  // of standard, best
+  std::size_t alone[2] = {0, 0};  // of the presets standard and best
   Shape all;
   double place = 0;
   for (const Shape& shape :
@@ -80,8 +81,8 @@ TEST(Bound, OfSeveralAttemptsTheBestIsTakenPieceByPiece) {
     all = all.positions.empty() ? shape : together(all, moved(shape, 1, {place += 4, 0, 0}));
   }
   EXPECT_LT(alone[1], alone[0]);
-  // Together they can be fewer, for one may have the work of absorbing that another leaves, or one
-  // more: cells are larger in a larger mesh.
+  // Together the shapes can take fewer charts, because one attempt may absorb charts that another
+  // leaves. They can also take one more, because the cells of a larger mesh are larger.
   EXPECT_LE(bounded(all, 1.25, ChartPreset::best).charts.size(), alone[1] + 1);
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 using Triangle = std::array<Vec2d, 3>;
 
-// Whether an edge of `a` (counter-clockwise) has all of `b` on its outer side.
+// Returns whether an edge of `a` (counter-clockwise) has all of `b` on its outer side.
 bool separates(const Triangle& a, const Triangle& b) {
   for (int i = 0; i < 3; ++i) {
     const Vec2d p = a[i], q = a[(i + 1) % 3];
@@ -162,7 +162,8 @@ class Checker {
     }
   }
 
-  // Singular values by the metric: lengths of the images of the uv axes on the surface.
+  // Computes singular values from the metric, that is from the lengths of the images of the uv axes
+  // on the surface.
   void stretch(const Chart& c, const std::vector<std::uint32_t>& list) {
     double surface = 0, flat = 0;
     for (const std::uint32_t t : list) {
@@ -203,7 +204,8 @@ class Checker {
     found_.stretch_l2 = surface_ > 0 ? std::sqrt(l2_ / surface_) : 1;
   }
 
-  // Edges by place; a seam is one of two triangles that differ in uv.
+  // Finds edges by their positions. An edge is a seam if its two triangles have different uvs
+  // there.
   void seams() {
     using Place = std::array<float, 3>;
     struct Side {

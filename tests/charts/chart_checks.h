@@ -1,4 +1,4 @@
-// What every ChartSet has to be, found out without the library's own measures.
+// Checks what every ChartSet has to fulfil, without using the library's own measures.
 #pragma once
 
 #include <cstdint>
@@ -23,26 +23,28 @@ struct Mesh {
 };
 
 struct ChartFindings {
-  std::string fault;        // the first broken promise; empty: none
-  double stretch_999 = 1;   // largest of a chart, recomputed at the chart's own scale
-  double stretch_l2 = 1;    // whole mesh
-  double seam = 0;          // recomputed; scene units
-  double cone_degrees = 0;  // largest angle to a chart's axis, recomputed
+  std::string fault;       // the first violation; empty if there is none
+  double stretch_999 = 1;  // largest 99.9 % stretch of a chart, recomputed at the chart's own scale
+  double stretch_l2 = 1;   // recomputed for the whole mesh
+  double seam = 0;         // recomputed length of the seams, in scene units
+  // Largest angle between a triangle's normal and its chart's axis, recomputed.
+  double cone_degrees = 0;
 };
 
-// Checks: every triangle in one chart and in that chart's range; uvs lie in their charts' boxes and
-// stand for the corners' positions; triangles with area are positively oriented (exact) once the
-// flipped ones are turned; no two triangles of a chart share inner points (exact separating-axis
-// tests on a grid of buckets); sizes and counts agree.
+// Checks that every triangle is in one chart and in that chart's range; that uvs lie in their
+// charts' boxes and refer to the corners' positions; that triangles with area are positively
+// oriented (tested exactly) once the flipped ones are turned; that no two triangles of a chart
+// share inner points (exact separating-axis tests on a grid of buckets); and that sizes and counts
+// agree.
 ChartFindings check_charts(const MeshView& mesh, const ChartSet& set);
 
-// The charts of a mesh with that ChartOptions::min_fill; a fault fails the test.
+// Returns the charts of a mesh for the given ChartOptions::min_fill. A violation fails the test.
 ChartSet checked_charts(const Mesh& mesh, double min_fill);
 
-// Area of the charts / area of their boxes.
+// Returns the area of the charts divided by the area of their boxes.
 double box_fill(const ChartSet& set);
 
-// All of a ChartSet's numbers in one string of bytes.
+// Returns all numbers of a ChartSet as one string of bytes.
 std::string bytes(const ChartSet& set);
 
 }  // namespace atlas::test

@@ -17,7 +17,7 @@ inline Topology topology_of(const Shape& shape) {
   return std::move(*topology);
 }
 
-// With cells of forty triangles.
+// Returns the coarse mesh of a shape with cells of forty triangles.
 inline CoarseMesh coarse_of(const Shape& shape) {
   const Topology topology = topology_of(shape);
   CellOptions options;

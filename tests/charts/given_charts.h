@@ -1,4 +1,4 @@
-// Meshes that bring uvs, and the charts that are made of them.
+// Meshes with uvs of their own, and the charts that are made from them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 
 namespace atlas::test {
 
-// Keeps the given charts; what comes out must be sound.
+// Makes charts that keep the given ones, and expects the result to be sound.
 inline ChartSet keep(const Mesh& mesh, ChartOptions options = {}, int threads = 1) {
   options.keep_uv_charts = true;
   Context context;
@@ -27,7 +27,8 @@ inline ChartSet keep(const Mesh& mesh, ChartOptions options = {}, int threads = 
   return std::move(*set);
 }
 
-// Gives `mesh` the uvs of `set`, each chart with a place, a turn and sometimes a mirror of its own.
+// Gives `mesh` the uvs of `set`. Each chart gets its own position and rotation; every third one is
+// mirrored.
 inline void wear(const ChartSet& set, double scale, Mesh& mesh) {
   mesh.texcoords.clear();
   for (std::size_t k = 0; k < set.charts.size(); ++k) {
@@ -49,8 +50,8 @@ inline ChartSet cut(const Mesh& mesh) {
   return set.ok() ? std::move(*set) : ChartSet{};
 }
 
-// A plate of n x n quads over the unit square with two charts side by side; `place` moves the
-// corners' uvs, given the half (0 or 1).
+// Returns a plate of n x n quads over the unit square with two charts side by side. `place` returns
+// the uv of a point, given the half (0 or 1) that the corner belongs to.
 inline Mesh halves(int n, const std::function<Vec2f(Vec3f, int)>& place) {
   Mesh mesh(grid(n, n));
   for (const int half : {0, 1}) {
@@ -68,7 +69,7 @@ inline Vec2f apart(Vec3f p, int half) {
   return {p.x + 2 * float(half), p.y};
 }
 
-// The same index for texcoords as for positions.
+// Returns a mesh whose texcoords have the same indices as its positions.
 inline Mesh mapped(const Shape& shape, const std::function<Vec2f(Vec3f)>& place) {
   Mesh mesh(shape);
   for (const Vec3f& p : mesh.positions) mesh.texcoords.push_back(place(p));

@@ -18,7 +18,7 @@ WideMesh widened(const Shape& shape) {
   return mesh;
 }
 
-// Rodrigues' formula.
+// Uses Rodrigues' formula.
 Turn turn_about(Vec3d axis, double angle) {
   const glm::dvec3 a = glm::normalize(to_glm(axis));
   const double c = std::cos(angle), s = std::sin(angle), d = 1 - c;

@@ -1,5 +1,5 @@
-// The same shape in other units, directions and places: what may change in its charts, and what
-// not.
+// Compares the charts of a shape in other units, orientations and positions, and says what may
+// differ.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace atlas::test {
 
-// A mesh in double, as a file of many digits holds it.
+// A mesh in double precision, as a file with many digits holds it.
 struct WideMesh {
   std::string name;
   std::vector<Vec3d> positions;
@@ -20,7 +20,8 @@ struct WideMesh {
 
 WideMesh widened(const Shape& shape);
 
-// Row-major 3x3 matrices: the turn by `angle` about (x, y, z), and one of random axis and angle.
+// Row-major 3x3 matrices: the rotation by `angle` about (x, y, z), and one with a random axis and
+// angle.
 using Turn = std::array<double, 9>;
 Turn turn_about(Vec3d axis, double angle);
 Turn random_turn(std::uint64_t seed);
@@ -29,20 +30,21 @@ WideMesh turned(WideMesh mesh, const Turn& turn);
 WideMesh scaled(WideMesh mesh, double factor);
 WideMesh shifted(WideMesh mesh, Vec3d offset);
 
-// Positions rounded to float once.
+// Rounds the positions to float, once.
 Shape narrowed(const WideMesh& mesh);
 
 ChartSet charts_of(const Shape& shape, int threads = 1);
 
-// Holds what became of a mesh's charts against the original's, case by case. Every case has to
-// keep its L2 stretch within 1 %, to flip nothing, and to keep the number of charts within 3 %;
-// nine cases of ten have to keep the seams, too: rounding may move a border.
+// Compares the charts of changed meshes with those of the original, case by case. In every case the
+// L2 stretch has to stay within 1 % and the number of charts within 3 %, and no triangle may be
+// flipped. In nine of ten cases the length of the seams has to stay within 3 %, too; rounding may
+// move a border in the others.
 class Comparison {
  public:
-  // `factor`: of the lengths.
+  // `factor` is the one by which the lengths were scaled.
   void add(const std::string& name, const ChartSet& charts, const ChartSet& reference,
            double factor);
-  ~Comparison();  // reports
+  ~Comparison();  // reports the result
 
  private:
   int cases_ = 0, alike_ = 0;

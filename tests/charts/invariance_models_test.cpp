@@ -1,4 +1,4 @@
-// The same properties on public models; skipped where they are not at hand.
+// Tests the same properties on public models. It is skipped if they are not available.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

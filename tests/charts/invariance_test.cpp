@@ -1,4 +1,4 @@
-// Units, directions, places and threads: charts depend on the shape alone.
+// Charts depend on the shape alone, not on units, orientation, position or the number of threads.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 namespace atlas::test {
 namespace {
 
-// Smooth, sharp, open, closed, with handles, in many pieces, noisy, and badly shaped ones.
+// Shapes that are smooth, sharp, open, closed, noisy, badly shaped, with handles or in many pieces.
 std::vector<Shape> subjects() {
   std::vector<Shape> shapes = zoo();
   shapes.push_back(torus(72, 36));
@@ -64,7 +64,7 @@ TEST(Invariance, AnyDirectionGivesTheSameCharts) {
   Comparison comparison;
   for (const Shape& shape : subjects()) {
     if (shape.name.find("cone") != std::string::npos)
-      continue;  // opened by 1e-17, welded by a turn
+      continue;  // its tip is open by 1e-17, which a rotation closes
     const ChartSet reference = charts_of(shape);
     for (std::size_t i = 0; i < turns.size(); ++i) {
       const ChartSet set = charts_of(narrowed(turned(widened(shape), turns[i])));
@@ -73,7 +73,8 @@ TEST(Invariance, AnyDirectionGivesTheSameCharts) {
   }
 }
 
-// What one triangle more or less in a cell does to the order of merging cannot be foreseen.
+// Compares cells only, because one triangle more or less in a cell changes the order of merging
+// unpredictably.
 TEST(Invariance, CellsStandWithEveryTriangle) {
   const auto cells_of = [](const Shape& shape) {
     const Mesh mesh(shape);
@@ -134,7 +135,7 @@ std::string as_ply(const WideMesh& mesh) {
   return text;
 }
 
-// glTF has no doubles for vertices: the offset is the node's, in decimal.
+// glTF has no doubles for vertices, so the offset is that of the node, written in decimal.
 std::filesystem::path write_gltf(const TempFolder& folder, const Shape& shape, Vec3d offset) {
   std::string buffer;
   Vec3f low = shape.positions[0], high = low;

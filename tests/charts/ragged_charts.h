@@ -1,4 +1,4 @@
-// A mesh whose charts tests choose by hand or at random, before any is flat.
+// A mesh whose charts are chosen by hand or at random, before any is flattened.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ struct RaggedCharts {
     for (std::uint32_t t = 0; t < n; ++t) frames.put(t, frame_of(t));
   }
 
-  // Two directions at right angles in the plane of triangle t.
+  // Returns two perpendicular directions in the plane of triangle t.
   std::array<Vec3f, 2> frame_of(std::uint32_t t) const {
     const glm::dvec3 n = to_dvec(topology.normals[t]);
     const glm::dvec3 u = glm::normalize(
@@ -42,7 +42,8 @@ struct RaggedCharts {
     return {from_glm(glm::vec3(u)), from_glm(glm::vec3(glm::cross(n, u)))};
   }
 
-  // Grows `count` charts from random triangles at random speeds: ragged, but in one piece each.
+  // Grows `count` charts from random triangles at random speeds. They are ragged, but each is
+  // connected.
   void grow(std::uint32_t count, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     std::vector<std::uint32_t> front;
@@ -76,7 +77,7 @@ struct RaggedCharts {
     return length / topology.scale;
   }
 
-  // Pieces and Euler characteristic of each chart.
+  // Returns the number of pieces and the Euler characteristic of each chart.
   std::map<std::uint32_t, std::pair<std::uint32_t, int>> topologies() {
     std::map<std::uint32_t, std::vector<std::uint32_t>> lists;
     for (std::uint32_t t = 0; t < partition.chart.size(); ++t) {

@@ -1,4 +1,4 @@
-// Small charts that are tried together with their neighbours once they are flat: which unions stay.
+// Tests which small charts are united with their neighbours once they are flat.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace atlas::test {
 namespace {
 
-// The grid with its points at place(u, v), u and v from 0 to 1.
+// Returns a grid with its points at place(u, v), where u and v are from 0 to 1.
 template <class Place>
 Shape bent(int columns, int rows, const Place& place) {
   Shape shape = grid(columns, rows);
@@ -18,7 +18,7 @@ Shape bent(int columns, int rows, const Place& place) {
   return shape;
 }
 
-// A square patch of the unit sphere, `angle` across.
+// Returns a square patch of the unit sphere that is `angle` (radians) across.
 Shape patch(double angle) {
   return bent(6, 6, [=](double u, double v) {
     const double x = angle * (u - 0.5), y = angle * (v - 0.5), r = std::hypot(x, y);
@@ -38,7 +38,7 @@ FlattenResult flatten(const Shape& shape, std::vector<std::uint32_t> charts,
   return flatten_charts({*topology, {}, options, frames}, partition, {});
 }
 
-// The charts of two halves of a patch, or of the patch as one.
+// Returns the number of charts of a patch that is given as two halves or as one chart.
 std::size_t charts_of_patch(double angle, double bound, bool halves, double& stretch_l2) {
   const Shape shape = patch(angle);
   std::vector<std::uint32_t> charts;
@@ -53,7 +53,7 @@ std::size_t charts_of_patch(double angle, double bound, bool halves, double& str
   return result.charts.size();
 }
 
-// A wider bound weighs a seam more; beyond a stretch of 1.01 none is worth it.
+// With a wider bound a seam costs more. Beyond a stretch of 1.01 no seam is worth a union.
 TEST(Absorb, AUnionMustBeWorthItsStretch) {
   struct Case {
     double angle, bound;
@@ -65,13 +65,14 @@ TEST(Absorb, AUnionMustBeWorthItsStretch) {
     double halves = 0, whole = 0;
     EXPECT_EQ(charts_of_patch(c.angle, c.bound, true, halves), c.charts)
         << c.angle << ' ' << c.bound;
-    EXPECT_EQ(charts_of_patch(c.angle, c.bound, false, whole), 1u);  // it could be
+    EXPECT_EQ(charts_of_patch(c.angle, c.bound, false, whole), 1u);  // one chart would be possible
     EXPECT_LE(halves, 1.01);
   }
 }
 
-// Two flat strips of 5 squares as one chart each, on a mesh of which they are little: side by side
-// they fill their rectangle, as an L a third of it. Returns the charts that they become.
+// Two flat strips of 5 squares are one chart each, in a mesh of which they are a small part. Side
+// by side they fill their rectangle, as an L they fill about a third of it. Returns the number of
+// charts that the strips become.
 std::size_t charts_of_strips(bool corner, double cone) {
   Shape other = corner ? grid(1, 5, 1, 5) : grid(5, 1, 5, 1);
   for (Vec3f& p : other.positions) p.y += 1;
@@ -88,13 +89,14 @@ std::size_t charts_of_strips(bool corner, double cone) {
 TEST(Absorb, AUnionMustFillItsRectangle) {
   EXPECT_EQ(charts_of_strips(false, 0), 1u);
   EXPECT_EQ(charts_of_strips(true, 0), 2u);
-  // What a limit on cones leaves over is not so particular.
+  // With a limit on cones, unions need not fill their rectangles as well.
   EXPECT_EQ(charts_of_strips(false, 30), 1u);
   EXPECT_EQ(charts_of_strips(true, 30), 1u);
 }
 
-// A tube with one end closed by a fan. That ring of edges fits the tube's straight end nowhere as a
-// whole, but along each edge: as a petal the end belongs to the tube, if it is small.
+// A tube with one end closed by a fan. Its rim as a whole fits nowhere along the straight end of
+// the flat tube, but it fits along each edge. If the fan is small, it is joined to the tube as a
+// petal.
 std::size_t charts_of_closed_tube(double length) {
   constexpr int kAround = 8, kAlong = 60;
   Shape shape = cylinder(kAround, kAlong, 1, length);
@@ -125,7 +127,7 @@ TEST(Absorb, SmallEndsOfTubesBecomePetals) {
   EXPECT_EQ(charts_of_closed_tube(3), 2u);
 }
 
-// Two sides of a box that meet at its edge.
+// Two sides of a box that meet at an edge.
 TEST(Absorb, CreasesStaySeams) {
   for (const double degrees : {10.0, 90.0}) {
     const Shape shape = bent(6, 3, [=](double u, double v) {

@@ -1,4 +1,4 @@
-// The cells that charts are assembled from, and how their borders are drawn.
+// The cells that charts are assembled from, and the straightening of their borders.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ std::vector<std::uint32_t> sizes(const Cells& cells) {
   return size;
 }
 
-// Edges of a triangle that lie on cell k.
+// Returns the number of the triangle's edges that border on cell k.
 int edges_on(const Topology& topology, const Cells& cells, std::uint32_t t, std::uint32_t k) {
   int count = 0;
   for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
@@ -45,7 +45,7 @@ int teeth(const Topology& topology, const Cells& cells) {
   return count;
 }
 
-// Parts that the cells' triangles form, joined over edges.
+// Returns the number of parts that the cells' triangles form when joined over edges.
 std::uint32_t parts(const Topology& topology, const Cells& cells) {
   std::vector<std::uint8_t> seen(topology.triangle_count(), 0);
   std::vector<std::uint32_t> queue;
@@ -80,7 +80,7 @@ TEST(Cells, AreConnectedAndHaveNoTeeth) {
   }
 }
 
-// Few cells know nothing of what goes on around a hole.
+// If cells are few, they do not resolve the surface around a hole.
 TEST(Cells, AreMoreWhereTheSurfaceHasHandles) {
   const auto triangles_a_cell = [](const Shape& shape) {
     const Topology topology = topology_of(shape);
@@ -119,7 +119,7 @@ TEST(Teeth, ARaggedBorderIsDrawnStraighter) {
 TEST(Teeth, ACellKeepsItsLastTriangle) {
   const Topology topology = topology_of(grid(4, 4));
   Cells cells{std::vector<std::uint32_t>(topology.triangle_count(), 0), 2};
-  std::uint32_t inner = 0;  // with neighbours all around
+  std::uint32_t inner = 0;  // an inner triangle, with neighbours on all sides
   while (edges_on(topology, cells, inner, 0) < 3) ++inner;
   cells.of_triangle[inner] = 1;
   pull_teeth(topology, nullptr, cells);

@@ -1,5 +1,5 @@
-// One chart that does not flatten as it is: what it hands to its neighbours, what it goes on from,
-// where it is cut, and when cutting is not even tried.
+// Flattens one chart that cannot be flattened as it is: which triangles it hands to its neighbours,
+// from which uvs it continues, where it is cut, and when no cut is tried.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,10 +16,11 @@
 namespace atlas::test {
 namespace {
 
-constexpr int kColumns = 150, kRows = 6, kTurn = 110;  // kTurn: columns in a whole turn
+// kTurn is the number of columns in a whole turn.
+constexpr int kColumns = 150, kRows = 6, kTurn = 110;
 
-// A ramp about the z axis, `inner` from it and of width 1, with z = height(turn, row) beside its
-// rise. Of more than a turn it comes to lie upon itself when it is laid flat.
+// Returns a ramp around the z axis with inner radius `inner` and width 1. Its z is its rise plus
+// height(column, row). A ramp of more than one turn overlaps itself when it is laid flat.
 template <class Height>
 Shape ramp(int columns, double inner, const Height& height) {
   Shape shape;
@@ -41,22 +42,23 @@ Shape ramp(int columns, double inner, const Height& height) {
   return shape;
 }
 
-// Waves, so that no part of it unrolls exactly.
+// Adds waves, so that no part of the ramp unrolls exactly.
 Shape wavy_ramp(double wave, int columns = kColumns) {
   return ramp(columns, 3, [=](int a, int b) {
     return wave * std::sin(M_PI * b / kRows) * std::sin(18 * M_PI * a / kTurn);
   });
 }
 
-// A spike of so many rows' height at the middle of some columns.
+// Adds spikes that are `spike` rows high at the middle of some columns.
 Shape spiked_ramp(double spike, int columns) {
   return ramp(columns, 2,
               [=](int a, int b) { return b == kRows / 2 && a % 60 == 30 ? spike / kRows : 0; });
 }
 
-// `rounds` charts of almost a turn of the ramp each, from chart 0 on, with a tooth of `length`
-// columns and `width` rows at its end, which reaches beyond its beginning and into the next chart,
-// each at other rows; one chart more before them and one after them.
+// Assigns `rounds` charts of almost one turn of the ramp each, from chart 0 on. Each has a tooth of
+// `length` columns and `width` rows at its end, in other rows than the next chart's tooth. The
+// tooth reaches beyond the chart's own beginning and into the next chart. There is one more chart
+// before these and one after them.
 std::vector<std::uint32_t> toothed(int length, int width, int rounds = 1, int columns = kColumns) {
   constexpr int kFirst = 10, kLong = kTurn - 1;
   std::vector<std::uint32_t> charts;
@@ -74,7 +76,7 @@ std::vector<std::uint32_t> toothed(int length, int width, int rounds = 1, int co
   return charts;
 }
 
-// A mesh with charts, and what flattening one of them needs.
+// A mesh with charts, and what is needed to flatten one of them.
 struct Bench {
   Topology topology;
   Partition partition;
@@ -123,7 +125,8 @@ Triangle2 scaled(const Triangle2& t, double factor) {
   return {at(0), at(1), at(2)};
 }
 
-// Of a triangle's edges, how much their lengths differ: only turned and shifted, it is rounding.
+// Returns the largest relative change of a triangle's edge lengths. If it was only rotated and
+// moved, that is rounding.
 double change(const Triangle2& a, const Triangle2& b) {
   double most = 0;
   for (int k = 0; k < 3; ++k) {
@@ -147,7 +150,7 @@ TEST(ChartJob, NamesTheTrianglesThatShouldGo) {
   ASSERT_FALSE(outcome.remove.empty());
   EXPECT_LT(outcome.remove.size(), own.size() / 20);
   EXPECT_EQ(outcome.uvs.size(), 3 * own.size());
-  // All near the tooth or where it comes to lie, no one twice.
+  // All are near the tooth or where it overlaps the chart, and none is listed twice.
   std::vector<std::uint32_t> remove = outcome.remove;
   std::sort(remove.begin(), remove.end());
   EXPECT_EQ(std::adjacent_find(remove.begin(), remove.end()), remove.end());
@@ -155,7 +158,8 @@ TEST(ChartJob, NamesTheTrianglesThatShouldGo) {
     const int column = int(t) / (2 * kRows);
     EXPECT_TRUE(column < 20 || column > kTurn) << column;
   }
-  // More rings around the crossings are more triangles, of which the first are these.
+  // With more rings around the crossings there are more triangles, and these include the first
+  // ones.
   Bench again(wavy_ramp(0.05), toothed(5, 2));
   std::vector<std::uint32_t> more = again.flatten(0, {.rings = 2}).remove;
   std::sort(more.begin(), more.end());
@@ -163,7 +167,7 @@ TEST(ChartJob, NamesTheTrianglesThatShouldGo) {
   EXPECT_TRUE(std::includes(more.begin(), more.end(), remove.begin(), remove.end()));
 }
 
-// The tooth goes to the chart that follows; nothing is divided, and nothing is lost.
+// The tooth goes to the following chart. Nothing is divided and nothing is lost.
 TEST(ChartJob, WhatCrossesGoesToTheNeighbours) {
   for (const auto& [wave, length, width] : {std::tuple{0.05, 5, 1}, std::tuple{0.02, 5, 2},
                                             std::tuple{0.0, 5, 2}, std::tuple{0.0, 2, 3}}) {
@@ -185,7 +189,7 @@ TEST(ChartJob, WhatCrossesGoesToTheNeighbours) {
   }
 }
 
-// Without the triangles that went, a chart keeps the uvs that it had: it goes on from them.
+// After losing triangles, a chart continues from the uvs that it had.
 TEST(ChartJob, GoesOnFromItsUvsWhenTrianglesAreGone) {
   Bench bench(wavy_ramp(0.05), toothed(5, 2));
   const std::vector<std::uint32_t> before = bench.triangles(0);
@@ -195,7 +199,7 @@ TEST(ChartJob, GoesOnFromItsUvsWhenTrianglesAreGone) {
   std::vector<Triangle2> was;
   for (std::size_t i = 0; i < before.size(); ++i) {
     const std::uint32_t t = before[i];
-    if (int(t) / (2 * kRows) >= 10 + kTurn - 1) {  // the tooth
+    if (int(t) / (2 * kRows) >= 10 + kTurn - 1) {  // it belongs to the tooth
       bench.partition.chart[t] = 2;
       continue;
     }
@@ -205,14 +209,14 @@ TEST(ChartJob, GoesOnFromItsUvsWhenTrianglesAreGone) {
   const ChartOutcome resumed = bench.flatten(0, {.resumed = kept});
   ASSERT_TRUE(resumed.parts.empty());
   ASSERT_EQ(resumed.flat.corners.size(), was.size());
-  // It keeps to the surface's area, which is less by the tooth's.
+  // The chart keeps the area of its surface, which has lost that of the tooth.
   const double scale = size_of(corners_of(resumed.flat, 0)) / size_of(was[0]);
   for (std::size_t i = 0; i < was.size(); ++i) {
     EXPECT_LT(change(scaled(was[i], scale), corners_of(resumed.flat, i)), 1e-9) << i;
   }
 }
 
-// Triangles that come back are laid beside the rest, which stays as it is.
+// Triangles that come back are placed beside the rest, which stays as it is.
 TEST(ChartJob, LaysWhatItGotBesideWhatItHad) {
   constexpr int kShort = 90;
   Bench bench(wavy_ramp(0.05, kShort), std::vector<std::uint32_t>(2 * kRows * kShort, 0));
@@ -244,8 +248,8 @@ TEST(ChartJob, LaysWhatItGotBesideWhatItHad) {
   EXPECT_GT(moved, 0u);
 }
 
-// The same where it was cut short between two rounds: what is left of the chart is in the list of
-// its triangles, and each has its own uvs.
+// Does the same for a job that is interrupted between two rounds. What is left of the chart is in
+// its list of triangles, each with its own uvs.
 TEST(ChartJob, RoundsGoOnFromTheLast) {
   Bench once(wavy_ramp(0.05), toothed(4, 1)), rounds(wavy_ramp(0.05), toothed(4, 1));
   const std::vector<std::uint32_t> before = once.triangles(0);
@@ -269,8 +273,8 @@ TEST(ChartJob, RoundsGoOnFromTheLast) {
   EXPECT_EQ(same, kept->triangles.size());
 }
 
-// Two charts that cross themselves hand triangles over, the first ones to the second, which is in
-// need of other uvs than it had then.
+// Two charts that cross themselves hand over triangles. The first gives some to the second, which
+// then needs other uvs than before.
 TEST(ChartJob, ChartsThatGetTrianglesComeOutWhole) {
   const int columns = 10 + 2 * (kTurn - 1) + 40;
   for (const double wave : {0.0, 0.05}) {
@@ -289,8 +293,8 @@ TEST(ChartJob, ChartsThatGetTrianglesComeOutWhole) {
   }
 }
 
-// Spikes stretch beyond the bound until they are cut open; where the border crosses itself as well,
-// no cut is made, for none would help.
+// Spikes stretch beyond the bound until they are cut open. Where the border crosses itself, too, no
+// cut is made, because none would help.
 TEST(ChartJob, NothingIsCutThatCrossesItselfAnyway) {
   for (const double spike : {1.0, 1.3}) {
     Bench open(spiked_ramp(spike, 99), std::vector<std::uint32_t>(99 * 2 * kRows, 0));
@@ -304,7 +308,7 @@ TEST(ChartJob, NothingIsCutThatCrossesItselfAnyway) {
   }
 }
 
-// A chart in several pieces comes apart into them, and that is no failure.
+// A chart of several pieces is divided into them, which is not a failure.
 TEST(ChartJob, PiecesComeApart) {
   const Shape shape = together(together(grid(4, 4), moved(grid(3, 3), 1, {5, 0, 0})),
                                moved(grid(2, 2), 1, {0, 5, 0}));
@@ -321,8 +325,8 @@ TEST(ChartJob, PiecesComeApart) {
   EXPECT_EQ(result.charts[1].triangles.size(), 18u);
 }
 
-// A large part that is flat already and two columns that do not fit: only what lies around them is
-// changed, where a union of equals is squeezed as a whole.
+// A large part is flat already, and two columns do not fit it. Only their surroundings change,
+// whereas the union of two equal parts is squeezed as a whole.
 TEST(ChartJob, ALittlePartLeavesALargeOneAsItIs) {
   constexpr int columns = 80, fitting = columns - 2;
   for (const double stretch : {1.4, 1.5, 1.6}) {
@@ -345,7 +349,7 @@ TEST(ChartJob, ALittlePartLeavesALargeOneAsItIs) {
       ASSERT_TRUE(both.parts.empty());
       EXPECT_LE(both.flat.distortion.stretch_999, 1.25);
       EXPECT_EQ(both.flat.distortion.flips, 0u);
-      // Both keep to the surface's area: compared at the first triangle's size.
+      // Both keep the area of the surface, so they are compared at the size of the first triangle.
       const double scale = size_of(corners_of(both.flat, 0)) / size_of(was[0]);
       const std::size_t far_off = 50 * 2 * kRows;
       double most = 0;
@@ -361,8 +365,8 @@ TEST(ChartJob, ALittlePartLeavesALargeOneAsItIs) {
   }
 }
 
-// Of the two triangles of a crossing the one goes that holds on to fewer, with as many rings around
-// it as asked for.
+// Of the two triangles of a crossing, the one with fewer neighbours is removed, with the given
+// number of rings around it.
 TEST(ChartJob, TheLooserSideOfACrossingGoes) {
   Bench bench(grid(6, 6), std::vector<std::uint32_t>(72, 0));
   LocalChart& chart = bench.scratch.chart;

@@ -67,7 +67,7 @@ TEST(Charts, TheConeIsAHardLimit) {
 TEST(Charts, AConeTakesFewCharts) {
   ChartOptions options;
   options.cone_degrees = 30;
-  // Twenty caps of 29.6 degrees cover a sphere; greedy merging takes 35.
+  // Twenty caps of 29.6 degrees cover a sphere; greedy merging needs 35.
   EXPECT_LE(charts_of(Mesh(geodesic_sphere(30)), options).charts.size(), 40u);
   EXPECT_LE(charts_of(Mesh(box(6)), options).charts.size(), 6u);
 }
@@ -118,7 +118,8 @@ TEST(Charts, CurvedShapesNeedFewCharts) {
   EXPECT_LE(count(plate_with_holes(2, 8)), 16u);
 }
 
-// A wavy prism as CAD programs triangulate it: caps and walls of needles that zigzag.
+// A wavy prism as CAD programs triangulate it: both caps and the walls consist of needles in
+// zigzag.
 Shape needle_prism(int around, double height) {
   Shape shape;
   shape.name = "needle prism";

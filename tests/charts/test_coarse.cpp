@@ -1,4 +1,4 @@
-// The coarse mesh that merging tries charts on.
+// The coarse mesh on which merging tries charts.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace atlas::test {
 namespace {
 
-// One cell around the given flat outline, its centre where the caller says.
+// Returns a mesh of one cell with the given flat outline and centre.
 CoarseMesh one_cell(const std::vector<Vec2d>& outline, Vec2d centre, double area) {
   CoarseMesh mesh;
   CoarseCell cell;
@@ -23,7 +23,7 @@ CoarseMesh one_cell(const std::vector<Vec2d>& outline, Vec2d centre, double area
   return mesh;
 }
 
-// Smallest area of a triangle of the fan.
+// Returns the smallest area of a triangle of the fan.
 double thinnest(const CoarseMesh& mesh) {
   const Vec3d c = mesh.cells[0].centre;
   double least = 1e9;
@@ -36,7 +36,8 @@ double thinnest(const CoarseMesh& mesh) {
 }
 
 TEST(FanCentre, MovesToWhereAllOfTheOutlineIsSeen) {
-  // An L whose centroid sees both arms only from the corner's square.
+  // An L whose arms are both visible only from the square at its corner; the centroid lies outside
+  // it.
   CoarseMesh ell = one_cell({{0, 0}, {10, 0}, {10, 1}, {1, 1}, {1, 10}, {0, 10}}, {2.9, 2.9}, 19);
   ASSERT_LT(thinnest(ell), 0);
   centre_fan(ell, ell.cells[0]);
@@ -50,7 +51,7 @@ TEST(FanCentre, StaysWhereItIsGoodOrWhereNothingIsBetter) {
   CoarseMesh square = one_cell({{0, 0}, {2, 0}, {2, 2}, {0, 2}}, {1.3, 0.8}, 4);
   centre_fan(square, square.cells[0]);
   EXPECT_EQ(square.cells[0].centre, (Vec3d{1.3, 0.8, 5}));
-  // A U: no point sees both ends.
+  // A U, in which no point sees both ends.
   CoarseMesh u =
       one_cell({{0, 0}, {3, 0}, {3, 5}, {2, 5}, {2, 1}, {1, 1}, {1, 5}, {0, 5}}, {1.5, 2.1}, 11);
   centre_fan(u, u.cells[0]);

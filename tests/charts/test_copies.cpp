@@ -10,7 +10,7 @@
 namespace atlas::test {
 namespace {
 
-// The part turned anyhow and put somewhere, in double, rounded once.
+// Returns the part with a random rotation and position, computed in double and rounded once.
 Shape placed(Shape part, std::mt19937& random) {
   std::normal_distribution<double> gauss;
   double q[4], norm = 0;
@@ -42,7 +42,7 @@ const std::vector<Shape>& kinds() {
 
 struct Assembly {
   Mesh mesh;
-  std::vector<std::size_t> kind, first_triangle;  // 1 a part
+  std::vector<std::size_t> kind, first_triangle;  // one entry per part
 };
 
 Assembly assembly(int parts) {
@@ -79,7 +79,7 @@ TEST(Copies, TakeTheChartsOfTheirOriginals) {
   EXPECT_EQ(found.fault, "");
   EXPECT_LE(found.stretch_999, 1.25 + 1e-6);
   EXPECT_EQ(set.copied_pieces, 40 - kinds().size());
-  std::map<std::size_t, std::size_t> original;  // of a kind: the part seen first
+  std::map<std::size_t, std::size_t> original;  // the first part of each kind
   for (std::size_t i = 0; i < parts.kind.size(); ++i) {
     const std::size_t a = parts.first_triangle[original.emplace(parts.kind[i], i).first->second];
     const std::size_t b = parts.first_triangle[i];
@@ -119,7 +119,7 @@ TEST(Copies, KeepTheLimitOnCones) {
   EXPECT_GT(set.copied_pieces, 0u);
 }
 
-// A part beside another one that differs from it.
+// Returns the number of copies found when the other part lies beside the first one.
 std::size_t copied_beside(const Shape& part, Shape other, const std::vector<float>& density = {}) {
   other = moved(std::move(other), 1, {10, 3, 2});
   const Mesh mesh(together(part, other));
@@ -138,7 +138,7 @@ TEST(Copies, AreNothingButCongruent) {
   };
   EXPECT_EQ(copied_beside(part, stretched(1 + 2e-6)), 1u);
   EXPECT_EQ(copied_beside(part, stretched(1.001)), 0u);
-  EXPECT_EQ(copied_beside(part, stretched(-1)), 0u);  // mirrored, inside out
+  EXPECT_EQ(copied_beside(part, stretched(-1)), 0u);  // mirrored and inside out
   Shape mirrored = stretched(-1);
   for (std::size_t i = 0; i < mirrored.indices.size(); i += 3) {
     std::swap(mirrored.indices[i + 1], mirrored.indices[i + 2]);
@@ -153,7 +153,7 @@ TEST(Copies, AreNothingButCongruent) {
   EXPECT_EQ(copied_beside(part, part, density), 0u);
 }
 
-// A flap bent up and one bent down have the same edges in a row.
+// A flap that is bent up and one that is bent down have the same edge lengths in order.
 TEST(Copies, FoldToTheSameSide) {
   Shape up;
   up.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1.25f, 1, 0.5f}};

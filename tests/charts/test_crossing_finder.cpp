@@ -18,8 +18,8 @@ struct Outline {
   std::vector<std::array<std::uint32_t, 2>> edges;
 };
 
-// A closed polygon of n corners around the origin, `amplitude` ragged; one that is more than 1
-// crosses itself in many places.
+// Returns a closed polygon of n corners around the origin with angles jittered by `amplitude`. If
+// that is more than 1, the polygon crosses itself in many places.
 Outline ragged(std::uint32_t n, double amplitude, std::mt19937_64& random) {
   std::uniform_real_distribution<double> unit(-0.5, 0.5);
   Outline outline;
@@ -53,8 +53,8 @@ Crossing all_pairs(const Outline& outline, double deep) {
   return worst;
 }
 
-// Short borders and long ones, which are searched in groups; none, shallow and deep ones among
-// them.
+// Short borders and long ones, which are searched in groups, with no, shallow and deep crossings
+// among them.
 TEST(CrossingFinder, FindsWhatAllPairsDo) {
   std::mt19937_64 random(3);
   CrossingFinder check;
@@ -73,7 +73,7 @@ TEST(CrossingFinder, FindsWhatAllPairsDo) {
   for (const int count : found) EXPECT_GT(count, 20);
 }
 
-// One crossing of two edges far from each other in the list, wherever groups begin.
+// One crossing of two edges that are far apart in the list, wherever the groups begin.
 TEST(CrossingFinder, FindsASingleCrossingInALongBorder) {
   std::mt19937_64 random(5);
   CrossingFinder check;
@@ -86,8 +86,8 @@ TEST(CrossingFinder, FindsASingleCrossingInALongBorder) {
   }
 }
 
-// Two teeth of a comb side by side, a little apart or a little into each other: rounding may make
-// either of what lies upon each other.
+// Two teeth of a comb side by side, slightly apart or slightly overlapping. If they touch, rounding
+// may decide either way.
 TEST(CrossingFinder, WhatTouchesCrosses) {
   CrossingFinder check;
   for (const double turn : {0.0, 0.3, 1.1}) {

@@ -20,7 +20,7 @@ ChartSet whole(const Mesh& mesh) {
   return std::move(*set);
 }
 
-// A band of n quads, turned by half_turns * 180 degrees before its ends meet.
+// A band of n quads that is twisted by half_turns * 180 degrees before its ends meet.
 Mesh band(int n, int half_turns) {
   Mesh mesh;
   for (int i = 0; i < n; ++i) {
@@ -41,7 +41,7 @@ Mesh band(int n, int half_turns) {
   return mesh;
 }
 
-// The outside of cubes that fill half of a grid of 4 x 4 x 4 at random.
+// The outer faces of cubes that fill half of a grid of 4 x 4 x 4 at random.
 Mesh cubes(std::uint64_t seed) {
   constexpr int kSide = 4;
   std::mt19937_64 random(seed);
@@ -80,8 +80,8 @@ Mesh cubes(std::uint64_t seed) {
   return mesh;
 }
 
-// Charts of cubes come to touch themselves when they unroll. Turned for the packer they still must
-// not overlap, though rounding moves what touches.
+// Charts of cubes touch themselves when they unroll. After they are rotated for the packer they
+// must not overlap, although rounding moves touching parts.
 TEST(Defects, ChartsOfCubesTouchButDoNotOverlap) {
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     SCOPED_TRACE(seed);
@@ -94,7 +94,7 @@ TEST(Defects, ChartsOfCubesTouchButDoNotOverlap) {
   }
 }
 
-// Pieces that are cut off for the page's sake keep to the cone, too.
+// Pieces that are cut off to save page area keep to the cone, too.
 TEST(Defects, PiecesOfCubesStayWithinAWideCone) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     SCOPED_TRACE(seed);
@@ -165,7 +165,7 @@ TEST(Defects, ADoubledSurfaceIsTwoSheets) {
   EXPECT_LE(whole(mesh).charts.size(), 4u);
 }
 
-// However many sheets lie upon each other, each is a chart.
+// Each of the coincident sheets becomes a chart, however many there are.
 TEST(Defects, FortySheetsUponEachOther) {
   Mesh mesh(grid(6, 6));
   const std::vector<std::uint32_t> sheet = mesh.indices;
@@ -198,7 +198,7 @@ TEST(Defects, NothingButTrianglesWithoutArea) {
   EXPECT_EQ(set.seam_length, 0);
 }
 
-// Degenerate triangles that touch nothing, of materials with and without other triangles.
+// Degenerate triangles that touch nothing, with materials that other triangles have or do not have.
 TEST(Defects, TrianglesWithoutAreaJoinTheirMaterial) {
   constexpr std::uint32_t kTriangles = 40000, kMaterials = 20000;
   Mesh mesh;
@@ -208,7 +208,7 @@ TEST(Defects, TrianglesWithoutAreaJoinTheirMaterial) {
     for (std::uint32_t c = 0; c < 3; ++c) mesh.indices.push_back(3 * t + c);
     mesh.materials.push_back(t % kMaterials);
   }
-  for (std::uint32_t i = 0; i < 2 * kMaterials; ++i) {  // each material twice, half of them new
+  for (std::uint32_t i = 0; i < 2 * kMaterials; ++i) {  // each material twice; half of them are new
     const auto apart = static_cast<std::uint32_t>(mesh.positions.size());
     mesh.positions.push_back({-1 - float(i), -5, 1});
     mesh.indices.insert(mesh.indices.end(), 3, apart);
@@ -219,7 +219,7 @@ TEST(Defects, TrianglesWithoutAreaJoinTheirMaterial) {
   EXPECT_EQ(set->charts.size(), kTriangles + kMaterials / 2);
   for (std::uint32_t t = 0; t < mesh.materials.size(); ++t)
     ASSERT_EQ(set->charts[set->triangle_chart[t]].material, mesh.materials[t]) << t;
-  // Looking through the charts for each of them took more than ten times as long.
+  // A search through all charts for each of these triangles took more than ten times as long.
   EXPECT_LT(set->timing.parameterization_cpu, kSlowness * 0.5);
 }
 
@@ -241,7 +241,8 @@ TEST(Defects, ManyTinyPiecesAreQuick) {
   const ChartSet set = whole(mesh);
   EXPECT_LE(set.charts.size(), 3000u * 6);
   EXPECT_NEAR(set.distortion.stretch_l2, 1, 1e-6);
-  // Seconds on any machine would be a defect: about ten microseconds a triangle are expected.
+  // About ten microseconds per triangle are expected, so taking seconds would be a defect on any
+  // machine.
   EXPECT_LT(set.timing.segmentation_cpu + set.timing.parameterization_cpu, 10.0);
 }
 

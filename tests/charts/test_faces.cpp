@@ -55,13 +55,13 @@ TEST(Faces, AreNoFacetsOfSomethingRound) {
   for (const Shape& shape : {cylinder(400, 20), cone(60, 30, 0.5), torus(24, 12)}) {
     EXPECT_EQ(count(part_of(shape).faces), 0u) << shape.name;
   }
-  EXPECT_EQ(count(part_of(cylinder(6, 20)).faces), 6u);  // a hexagonal prism's sides
+  EXPECT_EQ(count(part_of(cylinder(6, 20)).faces), 6u);  // the sides of a hexagonal prism
 }
 
 TEST(Faces, AreNotFoundWhereTheyWouldBeMoreThanCells) {
   const Part part = part_of(box(2));
   CellPlan plan = part.plan;
-  plan.cells[0] = 1;  // of which six sides are more than three
+  plan.cells[0] = 1;  // one cell, and six sides are more than three per cell
   EXPECT_EQ(count(find_faces(part.topology, plan)), 0u);
 }
 

@@ -1,4 +1,4 @@
-// One chart given, and what becomes of it: flat as it is, slit open, or divided.
+// Flattens one given chart: as it is, slit open, or divided.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 namespace atlas::test {
 namespace {
 
-// A wall around the z axis that bulges, so that it does not unroll exactly; `around` edges and the
-// radius `bottom` at its lower hole.
+// A wall around the z axis that bulges, so that it does not unroll exactly. It has `around` edges,
+// and the radius `bottom` at its lower hole.
 Shape bottle(int around, int along, double bottom) {
   Shape shape;
   shape.name = "bottle";
@@ -71,7 +71,7 @@ TEST(Flatten, ClosedAndFoldedSurfacesEndWithinTheBound) {
   }
 }
 
-// Pieces large enough to tell noise from few triangles.
+// The pieces are large enough to distinguish noise from the effect of few triangles.
 TEST(Noise, IsFoundOnSomeHundredTriangles) {
   const auto calmed = [](const Shape& shape) {
     const Mesh mesh(shape);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kTolerance = 1e-6;
 
-// Normals are all that frames want to know.
+// Frames need only the normals of a topology.
 Topology with_normals(std::vector<Vec3f> normals) {
   Topology topology;
   topology.normals = std::move(normals);
@@ -36,7 +36,7 @@ TEST(Frames, ASharedMapIsTurnedToEachNormal) {
     expect_frame(topology, t, frames.at(topology, t));
   }
   EXPECT_EQ(frames.at(topology, 0), (Frames::Frame{Vec3f{1, 0, 0}, Vec3f{0, 1, 0}}));
-  // About the y axis, which stays.
+  // The rotation is about the y axis, which stays.
   EXPECT_NEAR(frames.at(topology, 1)[1].y, 1, kTolerance);
 }
 
@@ -55,7 +55,7 @@ TEST(Frames, TrianglesMayHaveMapsOfTheirOwn) {
   frames.put(1, back);
   EXPECT_EQ(frames.at(topology, 0), turned);
   EXPECT_EQ(frames.at(topology, 1), back);
-  EXPECT_EQ(frames.at(topology, 2), Frames::Frame{});  // none was given
+  EXPECT_EQ(frames.at(topology, 2), Frames::Frame{});  // none was set
 }
 
 }  // namespace

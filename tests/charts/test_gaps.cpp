@@ -1,4 +1,4 @@
-// Parts of charts that are drawn apart: what charts promise holds, and nothing else changes.
+// Narrow gaps in charts are widened: what charts guarantee still holds, and nothing else changes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ ChartSet charts_of(const Mesh& mesh) {
   return std::move(*charts);
 }
 
-// For each chart that share of the root of its area.
+// Returns for each chart `share` times the square root of its area.
 std::vector<double> clearances(const ChartSet& set, double share) {
   std::vector<double> clearance;
   for (const Chart& chart : set.charts)
@@ -27,7 +27,7 @@ std::vector<double> clearances(const ChartSet& set, double share) {
   return clearance;
 }
 
-// Turns of spiral stairs, each with uvs that lay it flat as a ring whose ends nearly meet.
+// Returns turns of spiral stairs. The uvs of each lay it flat as a ring whose ends nearly meet.
 Mesh stairs(int count) {
   constexpr double kArc = 6.25, kRise = 1;
   const Shape strip = grid(60, 6);
@@ -46,7 +46,7 @@ Mesh stairs(int count) {
   return mesh;
 }
 
-// Their charts, as if they had been flattened.
+// Returns their charts, marked as if they had been flattened.
 ChartSet flat_stairs(const Mesh& mesh) {
   ChartSet set = charts_of(mesh);
   for (Chart& chart : set.charts) {

@@ -1,4 +1,4 @@
-// ChartOptions::keep_uv_charts where a part of the mesh is cut anew, and the rest is not touched.
+// ChartOptions::keep_uv_charts where one part of the mesh is cut anew and the rest is not touched.
 #include <gtest/gtest.h>
 
 #include "tests/charts/chart_checks.h"
@@ -6,7 +6,7 @@
 namespace atlas::test {
 namespace {
 
-// A plate with uvs of its own beside a sphere whose uvs fold.
+// A plate with uvs of its own beside a sphere whose uvs fold over.
 TEST(GivenUvs, OnlyTheSurfaceWhoseUvsFoldIsCutAnew) {
   const Shape plate = grid(12, 12, 2, 3), ball = moved(icosphere(3), 1, {9, 0, 0});
   Mesh mesh(together(plate, ball));
@@ -21,7 +21,7 @@ TEST(GivenUvs, OnlyTheSurfaceWhoseUvsFoldIsCutAnew) {
   EXPECT_LE(found.stretch_999, 1.25 * (1 + 1e-6));
   EXPECT_EQ(set->repairs.kept_charts, 1u);
   EXPECT_EQ(set->repairs.reflattened_charts, 1u);
-  // As many charts as the sphere takes by itself, beside the plate's one.
+  // There are as many charts as the sphere takes by itself, and one for the plate.
   const Result<ChartSet> alone = make_charts(Mesh(ball).view(), {}, {});
   ASSERT_TRUE(alone.ok());
   EXPECT_LE(set->charts.size(), alone->charts.size() + 1);

@@ -1,4 +1,4 @@
-// ChartOptions::keep_uv_charts: of the given charts only bad ones are made anew.
+// ChartOptions::keep_uv_charts remakes only the bad ones among the given charts.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ TEST(GivenUvs, AFlippedTriangleCostsItsChartOnly) {
   wear(own, 1, mesh);
   const ChartSet before = keep(mesh);
   ASSERT_GE(own.charts.size(), 2u);
-  // One corner of one triangle of the last chart goes across the opposite edge.
+  // One corner of one triangle of the last chart moves across the opposite edge.
   const std::uint32_t t = own.chart_triangles.back(), last = own.triangle_chart[t];
   const auto uv = [&](int c) -> Vec2f& { return mesh.texcoords[mesh.texcoord_indices[3 * t + c]]; };
   uv(0) = {uv(1).x + uv(2).x - uv(0).x, uv(1).y + uv(2).y - uv(0).y};
@@ -40,7 +40,7 @@ TEST(GivenUvs, AFlippedTriangleCostsItsChartOnly) {
 
 TEST(GivenUvs, AFoldWithABadHalfIsFlattenedWhole) {
   Mesh mesh = mapped(grid(6, 6), [](Vec3f p) { return Vec2f{p.x <= 0.5f ? p.x : 1 - p.x, p.y}; });
-  mesh.texcoords[7 + 5] = {0.9f, 0.9f};  // an inner vertex of the right half goes far
+  mesh.texcoords[7 + 5] = {0.9f, 0.9f};  // moves an inner vertex of the right half far away
   const ChartSet set = keep(mesh);
   EXPECT_EQ(set.repairs.kept_charts, 0u);
   EXPECT_EQ(set.repairs.reflattened_charts, 1u);
@@ -49,7 +49,7 @@ TEST(GivenUvs, AFoldWithABadHalfIsFlattenedWhole) {
 }
 
 TEST(GivenUvs, AChartThatCoversItselfIsRepaired) {
-  // All triangles turn the right way, but the band goes twice round.
+  // All triangles are oriented correctly, but the band goes around twice.
   const Mesh mesh = mapped(grid(60, 2, 12, 0.4), [](Vec3f p) {
     const float r = 1 + p.y;
     return Vec2f{-r * std::cos(p.x), r * std::sin(p.x)};

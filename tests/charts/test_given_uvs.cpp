@@ -1,4 +1,4 @@
-// ChartOptions::keep_uv_charts: given charts come out as they were.
+// With ChartOptions::keep_uv_charts, given charts come out as they were.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,8 +18,8 @@ double distance(double x0, double y0, double x1, double y1) {
   return std::hypot(x1 - x0, y1 - y0);
 }
 
-// Every edge of every kept chart has `scale` times its given length, one scale a chart, and the
-// chart has its surface's area.
+// Expects every edge of a kept chart to have the same multiple of its given length, and the chart
+// to have the area of its surface.
 void expect_similar(const Mesh& mesh, const ChartSet& set) {
   for (std::size_t k = 0; k < set.charts.size(); ++k) {
     const Chart& chart = set.charts[k];
@@ -124,7 +124,7 @@ TEST(GivenUvs, IslandsThatShareAVertexAreTwoCharts) {
   Mesh mesh = mapped(together(grid(3, 3), moved(grid(3, 3), 1, {1, 1, 0})), [](Vec3f p) {
     return Vec2f{p.x, p.y};
   });
-  // The corner (1, 1) of both is one texcoord.
+  // The corner (1, 1) of both is the same texcoord.
   std::uint32_t shared = kNone;
   for (std::uint32_t& i : mesh.texcoord_indices) {
     if (!(mesh.texcoords[i] == Vec2f{1, 1})) continue;
@@ -139,7 +139,8 @@ TEST(GivenUvs, IslandsThatShareAVertexAreTwoCharts) {
 
 TEST(GivenUvs, TrianglesWithoutAreaCostNothing) {
   Mesh mesh = halves(6, apart);
-  for (const std::uint32_t v : {0u, 0u, 1u, 0u, 1u, 2u}) {  // a point twice; three in a row
+  // One point used twice; three points on a line.
+  for (const std::uint32_t v : {0u, 0u, 1u, 0u, 1u, 2u}) {
     mesh.indices.push_back(v);
     mesh.texcoord_indices.push_back(v);
   }
@@ -156,7 +157,7 @@ TEST(GivenUvs, WithoutUsableUvsTheMeshIsCutAsUsual) {
   Mesh zero = mapped(shape, [](Vec3f) { return Vec2f{0, 0}; });
   Mesh nan = mapped(shape, [](Vec3f) { return Vec2f{kNan, kNan}; });
   Mesh loose = nan, missing = nan, beyond = nan;
-  loose.texcoords.assign(shape.indices.size(), {kNan, 0});  // one for each corner
+  loose.texcoords.assign(shape.indices.size(), {kNan, 0});  // one per corner
   for (std::uint32_t i = 0; i < loose.texcoord_indices.size(); ++i) loose.texcoord_indices[i] = i;
   missing.texcoord_indices.assign(shape.indices.size(), kNone);
   beyond.texcoords.clear();
@@ -183,7 +184,8 @@ TEST(GivenUvs, AnyUnitOfUvsWillDo) {
 TEST(GivenUvs, SheetsAroundOneEdgeAreKeptApart) {
   Mesh mesh(sheets(7));
   mesh.texcoords = {{-0.5f, 0},
-                    {0.5f, 0}};  // of the edge, which all use; every second one mirrored
+                    // Of the edge that all sheets share; every second sheet is mirrored.
+                    {0.5f, 0}};
   for (int i = 0; i < 7; ++i) mesh.texcoords.push_back({0, i % 2 ? 1.0f : -1.0f});
   mesh.texcoord_indices = mesh.indices;
   const ChartSet set = keep(mesh);

@@ -1,4 +1,5 @@
-// Flat charts side by side: the motion that fits them, and the run of their border that fits best.
+// Flat charts side by side: the motion that fits one to the other, and the run of the border that
+// fits best.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,14 +13,14 @@ namespace {
 
 constexpr int kColumns = 24;
 
-// A strip of squares two rows high, each row a chart of its own; the upper one's uvs are moved, and
-// bent where `curvature` says so for a column.
+// A strip of squares two rows high, each row a chart of its own. The upper row's uvs are moved, and
+// bent by `curvature` at each column.
 struct TwoRows {
   Mesh mesh{grid(kColumns, 2, kColumns, 2)};
   Topology topology = *build_topology(mesh.view(), {}, {});
   Partition partition;
   FlatChart upper, lower;
-  std::vector<BorderEdge> border;  // of the upper one
+  std::vector<BorderEdge> border;  // of the upper chart
 
   explicit TwoRows(const std::vector<double>& curvature) {
     for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
@@ -45,8 +46,8 @@ struct TwoRows {
     }
   }
 
-  // Lays the upper row along a path whose direction turns by so much at each column, as a whole
-  // turned and moved away.
+  // Lays the upper row along a path that turns by curvature[i] at column i, rotated and moved away
+  // as a whole.
   void bend(const std::vector<double>& curvature) {
     const double scale = topology.scale;
     std::vector<glm::dvec2> path{{0, 0}};
@@ -66,7 +67,7 @@ struct TwoRows {
     }
   }
 
-  // Least squares over all turns, by trying them; independent of Procrustes' formula.
+  // Finds the least-squares rotation by trying many, independently of the Procrustes formula.
   double misfit(std::size_t begin, std::size_t end) const {
     std::vector<std::array<glm::dvec2, 2>> pairs;
     double length = 0;
@@ -110,11 +111,11 @@ TEST(Joint, TakesOneChartToTheOther) {
   const TwoRows rows(std::vector<double>(kColumns, 0.0));
   ASSERT_EQ(rows.border.size(), std::size_t(kColumns));
   const Joint joint(rows.topology, {rows.upper, rows.lower}, rows.border);
-  EXPECT_LT(joint.motion().misfit, 1e-7);  // a root of differences
+  EXPECT_LT(joint.motion().misfit, 1e-7);  // it is the square root of differences
   EXPECT_EQ(joint.triangles().size(), rows.topology.triangle_count());
   const std::vector<Vec2d> uvs = joint.uvs();
   for (std::uint32_t t = 0; t < rows.topology.triangle_count(); ++t) {
-    for (int c = 0; c < 3; ++c) {  // the strip as it was
+    for (int c = 0; c < 3; ++c) {  // the strip must have its original shape
       const Vec3f& p = rows.topology.points[rows.topology.corner_vertex[3 * t + c]];
       EXPECT_NEAR(uvs[3 * t + c].x, p.x, 1e-6);
       EXPECT_NEAR(uvs[3 * t + c].y, p.y, 1e-6);
@@ -134,7 +135,8 @@ bool cross(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
   return side(a, b, c) != side(a, b, d) && side(c, d, a) != side(c, d, b);
 }
 
-// Joined along their first edges, a bent row lies on the other one, or away from it.
+// The rows are joined along their first edges. A bent row then overlaps the other one or leads away
+// from it.
 TEST(Joint, OverlapCountsSidesOnTheOther) {
   for (const double turn : {-0.1, -0.02, 0.03, 0.1}) {
     const TwoRows rows(std::vector<double>(kColumns, turn));
@@ -168,7 +170,7 @@ TEST(Joint, OverlapCountsSidesOnTheOther) {
     if (turn < 0) {
       EXPECT_GT(expected, 10u) << turn;
     } else {
-      EXPECT_LE(expected, 2u) << turn;  // beside what goes together
+      EXPECT_LE(expected, 2u) << turn;  // next to the joined edges
     }
   }
 }
@@ -185,7 +187,7 @@ TEST(Joint, TheLongestRunThatFitsIsFound) {
     for (const double most : {0.001, 0.01, 0.03}) {
       const auto found =
           find_fitting_run(rows.topology, {rows.upper, rows.lower}, rows.border, most);
-      // The border ascends, edges are alike: runs are intervals.
+      // The border is in ascending order and its edges are equally long, so runs are intervals.
       std::size_t longest = 0;
       for (std::size_t i = 0; i < rows.border.size(); ++i) {
         for (std::size_t j = i + 1; j <= rows.border.size(); ++j) {
@@ -198,7 +200,7 @@ TEST(Joint, TheLongestRunThatFitsIsFound) {
       parts += found.size() < rows.border.size();
     }
   }
-  EXPECT_GT(parts, 60u);  // it was not all or nothing
+  EXPECT_GT(parts, 60u);  // the runs were not just all or nothing
 }
 
 }  // namespace

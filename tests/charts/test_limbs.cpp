@@ -14,8 +14,8 @@
 namespace atlas::test {
 namespace {
 
-// A flat mesh of the letters in `rows` that are not spaces, each n x n quads, bent slightly so that
-// no two edges are equal.
+// A flat mesh of the letters in `rows` that are not spaces, each of n x n quads. It is bent
+// slightly so that no two edges are equal.
 Shape letters(const std::vector<std::string>& rows, int n) {
   const int wide = int(rows[0].size()), high = int(rows.size());
   const Shape full = grid(wide * n, high * n, wide, high);
@@ -42,7 +42,7 @@ Shape star(int points, int rings) {
   const int around = 8 * points;
   for (int r = 1; r <= rings; ++r) {
     for (int i = 0; i < around; ++i) {
-      const double sawtooth = std::fabs(double(i % 8) / 4 - 1);  // 1 at the tips
+      const double sawtooth = std::fabs(double(i % 8) / 4 - 1);  // 1 at the tips of the star
       const double radius = (0.35 + 0.65 * sawtooth) * r / rings, angle = 2 * M_PI * i / around;
       shape.positions.push_back(
           {float(radius * std::cos(angle)), float(radius * std::sin(angle)), 0});
@@ -70,7 +70,7 @@ std::vector<Shape> sprawling() {
           star(5, 10)};
 }
 
-// Jarvis's march.
+// Uses Jarvis's march.
 double hull_area(const std::vector<Vec2d>& points) {
   std::size_t first = 0;
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -122,14 +122,15 @@ TEST(Limbs, AChartThatSprawlsIsCutUntilItsPiecesFillTheirRectangles) {
     const ChartFindings found = check_charts(mesh.view(), cut);
     EXPECT_EQ(found.fault, "") << shape.name;
     EXPECT_NEAR(found.seam, cut.seam_length, 1e-6 * (1 + cut.seam_length)) << shape.name;
-    // Five triangles and a pentagon are not rectangles whatever is cut.
+    // The star becomes five triangles and a pentagon, which do not fill their rectangles wherever
+    // it is cut.
     EXPECT_GT(box_fill(cut), shape.name == "star" ? 0.62 : 0.7) << shape.name;
     EXPECT_LE(cut.charts.size(), 6u) << shape.name;
     EXPECT_LT(cut.distortion.stretch_linf, 1 + 1e-6) << shape.name;
   }
 }
 
-// A hair of less than a hundredth of its area can make a chart's rectangle twice as large.
+// A thin flag of less than a hundredth of a chart's area can double the chart's rectangle.
 TEST(Limbs, FlagsAreCutOffHoweverThin) {
   constexpr int n = 12;
   Shape plate = grid(2 * n, 2 * n, 2, 2);
@@ -162,7 +163,7 @@ TEST(Limbs, WhatIsNotTheWholePageOrFillsItsRectangleStays) {
   EXPECT_EQ(charts_of(mesh, 0.72).charts.size(), 2u) << "there is room for an L beside a big plate";
 }
 
-// The L covers 6 of its rectangle's 12, which a page must hold.
+// The L covers half of its rectangle, which has an area of 12. The page must hold that rectangle.
 TEST(Limbs, ARectangleDecidesWhereItExceedsAllCharts) {
   const Shape l = letters({"L  ", "L  ", "L  ", "LLL"}, 8);
   const auto beside = [&](float side) {
@@ -190,7 +191,7 @@ TEST(Limbs, ManySprawlingChartsAreCutAsFarAsTheyLeaveAPageEmpty) {
 }
 
 TEST(Limbs, EdgesOfACoarseMeshMayBeChords) {
-  // An L whose inner corner, place 4, is joined to no other place but its outer corner.
+  // An L whose inner corner (point 4) is connected to no other point than its outer corner.
   const std::vector<Vec2d> outline{{0, 0}, {0.7, 0}, {5, 0}, {5, 1}, {1, 1}, {1, 5}, {0, 5}};
   const std::vector<std::array<std::uint32_t, 2>> edges{{0, 4}};
   const auto across = [](const std::vector<Chord>& chords) {
@@ -232,9 +233,9 @@ TEST(Limbs, OptionIsChecked) {
   }
 }
 
-// Triangles that share a corner, or nothing, are parts of their own.
+// Triangles that share only a corner, or nothing, are separate parts.
 TEST(PartOfChart, WhatHangsTogetherByWholeSides) {
-  FlatChart chart;  // squares of two triangles in a row of four, corners by column and row
+  FlatChart chart;  // four squares of two triangles in a row; corners are ordered by column and row
   for (std::uint32_t x = 0; x < 4; ++x) {
     const std::uint32_t a = 2 * x, b = a + 2;
     for (const auto& corners : {std::array{a, b, a + 1}, std::array{b, b + 1, a + 1}}) {
@@ -248,7 +249,7 @@ TEST(PartOfChart, WhatHangsTogetherByWholeSides) {
   };
   using Parts = std::vector<std::vector<std::uint32_t>>;
   EXPECT_EQ(parts({0, 1, 2, 3, 4, 5, 6, 7}), (Parts{{0, 1, 2, 3, 4, 5, 6, 7}}));
-  EXPECT_EQ(parts({0, 2, 3}), (Parts{{0}, {2, 3}}));  // 0 and 2 share a corner
+  EXPECT_EQ(parts({0, 2, 3}), (Parts{{0}, {2, 3}}));  // 0 and 2 share only a corner
   EXPECT_EQ(parts({1, 2, 6, 7}), (Parts{{1, 2}, {6, 7}}));
 }
 

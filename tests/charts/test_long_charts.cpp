@@ -1,4 +1,4 @@
-// Strips that alone would decide how long a page is.
+// Strips whose length alone would determine the length of a page.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +9,8 @@
 namespace atlas::test {
 namespace {
 
-// Of the longest chart by the widest other one: no page is smaller.
+// Returns a lower bound of the page's area: the longest chart times the width of the widest other
+// one.
 double least_page(const ChartSet& set) {
   double longest = 0, page = 0;
   std::size_t at = 0;
@@ -45,7 +46,7 @@ TEST(LongCharts, TakeARowOfThePage) {
   EXPECT_EQ(checked_charts(mesh, ChartOptions{}.min_fill).charts.size(), 4u);
 }
 
-// Half of a hairpin's length is half of one arm and half of the other.
+// Half of a hairpin's length consists of half of one arm and half of the other.
 TEST(LongCharts, AreCutWhereTheyLieBesideThemselves) {
   constexpr int n = 48;
   Shape pin = grid(n, 3, 8, 0.3f);
@@ -64,7 +65,7 @@ TEST(LongCharts, AreCutWhereTheyLieBesideThemselves) {
   EXPECT_LT(least_page(cut), 0.7 * least_page(whole));
 }
 
-// A page as long as the rod would be gutters around specks.
+// On a page as long as the rod, gutters around tiny charts would take much of the area.
 TEST(LongCharts, AreCutWhereGuttersWouldTakeThePage) {
   const Shape rod = grid(160, 2, 40, 0.5f);
   const auto page = [&](int specks) {
@@ -92,7 +93,7 @@ TEST(LongCharts, AreCutWhereGuttersWouldTakeThePage) {
   EXPECT_EQ(cut.charts.size(), whole.charts.size() + 1);
 }
 
-// The columns of a rod of long triangles are elsewhere than at even lengths.
+// The columns of a rod of long triangles do not lie at even divisions of its length.
 TEST(LongCharts, AreCutAlongTheShortestEdges) {
   const Mesh mesh(together(grid(7, 12, 24, 0.3), moved(grid(9, 9, 2, 2), 1, {0, 4, 0})));
   const ChartSet cut = checked_charts(mesh, ChartOptions{}.min_fill);
@@ -102,7 +103,7 @@ TEST(LongCharts, AreCutAlongTheShortestEdges) {
 
 TEST(LongCharts, StayWholeWhereOthersLeaveRoom) {
   for (const Shape& shape :
-       {cylinder(200, 4, 1, 0.02),  // it is alone
+       {cylinder(200, 4, 1, 0.02),  // it is the only chart
         together(cylinder(80, 4, 1, 0.02), moved(grid(9, 9, 8, 8), 1, {4, 0, 0}))}) {
     const Mesh mesh(shape);
     EXPECT_EQ(checked_charts(mesh, 0.72).charts.size(), checked_charts(mesh, 0).charts.size())
@@ -110,7 +111,7 @@ TEST(LongCharts, StayWholeWhereOthersLeaveRoom) {
   }
 }
 
-// No edge of a spike leads across it: its needles would come off one by one, each as long as it.
+// No edge leads across a spike: its needles would come off one by one, each as long as the spike.
 TEST(LongCharts, OfNeedlesStayWhole) {
   for (const int around : {24, 200}) {
     const Mesh spike(closed_cone(around, 30));

@@ -1,4 +1,4 @@
-// Frames, lattices and slit rings, which no chord divides with gain.
+// Frames, lattices and slit rings, which no chord divides with a gain.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,8 @@
 namespace atlas::test {
 namespace {
 
-// A flat band of radii 1 and 1 + `width` over `share` of a full turn, closed at 1.
+// A flat band between the radii 1 and 1 + `width` over `share` of a full turn. It is closed if
+// `share` is 1.
 Shape ring(double width, double share, int around) {
   Shape shape;
   shape.name = "ring";
@@ -74,12 +75,13 @@ TEST(MiddleCut, FramesComeApart) {
 }
 
 TEST(MiddleCut, SievesStayWhole) {
-  for (const Shape& shape : {lattice(12, 6), lattice(9, 3)}) {  // too many holes; too little gain
+  // The first has too many holes, the second would gain too little.
+  for (const Shape& shape : {lattice(12, 6), lattice(9, 3)}) {
     EXPECT_EQ(checked_charts(Mesh(shape), ChartOptions{}.min_fill).charts.size(), 1u);
   }
 }
 
-// The chart of a flat shape as it lies.
+// Returns the chart of a flat shape with the shape's own coordinates.
 FlatChart as_it_lies(const Shape& shape) {
   FlatChart chart;
   chart.triangles.resize(shape.triangle_count());
@@ -92,7 +94,7 @@ FlatChart as_it_lies(const Shape& shape) {
   return chart;
 }
 
-// Length of the edges between different parts, each found by its two ends.
+// Returns the length of the edges between different parts, each found by its two vertices.
 double length_between(const FlatChart& chart, const std::vector<std::uint32_t>& part_of) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> first;
   double length = 0;
@@ -108,7 +110,7 @@ double length_between(const FlatChart& chart, const std::vector<std::uint32_t>& 
 }
 
 TEST(MiddleCut, GoesTheShortestWay) {
-  // A bow tie of two plates and a bridge that is narrow off its middle.
+  // A bow tie: two plates and a bridge that is narrowest beside its middle.
   Shape tie = grid(60, 20, 6, 2);
   for (Vec3f& p : tie.positions) {
     p.y = (p.y - 1) * (std::abs(p.x - 3.3f) < 0.15f ? 0.2f : 0.5f + std::abs(p.x - 3.3f));
@@ -135,7 +137,8 @@ TEST(MiddleCut, GoesTheShortestWay) {
   }
 }
 
-// Halves of a slit ring, of which one falls apart, sprawl less than the whole.
+// The halves of a slit ring, one of which falls into two parts, have less sprawl together than the
+// whole.
 TEST(MiddleCut, KnowsWhatItSaves) {
   const FlatChart chart = as_it_lies(ring(0.05, 0.98, 200));
   param::HalfEdges half_edges;

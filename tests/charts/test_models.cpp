@@ -1,4 +1,4 @@
-// The public models that the figures are about; skipped where they are not at hand.
+// Public models with known figures. The tests are skipped if the models are not available.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace atlas::test {
 namespace {
 
-// Vertices and faces are all that is needed of these files.
+// Only vertices and faces are needed from these files.
 Mesh read(const std::filesystem::path& path) {
   Mesh mesh;
   std::ifstream in(path);

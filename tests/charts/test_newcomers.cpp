@@ -1,4 +1,4 @@
-// Triangles without a place are laid beside those that have one.
+// Triangles without uvs are placed beside those that have some.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ PositionView points_of(const Shape& shape) {
   return {std::span<const Vec3f>(shape.positions), Vec3f{}};
 }
 
-// Twice as large as the shape, and elsewhere.
+// Returns uvs that are twice as large as the shape, and moved.
 std::vector<Vec2d> laid_flat(const Shape& shape) {
   std::vector<Vec2d> corners;
   for (const std::uint32_t v : shape.indices) {
@@ -40,7 +40,7 @@ TEST(Newcomers, ContinueWhatIsThere) {
   const Shape shape = grid(3, 2);
   const Triangles triangles = triangles_of(shape);
   const std::vector<Vec2d> known = laid_flat(shape);
-  for (std::size_t t = 0; t < triangles.size(); ++t) {  // the only one that is there
+  for (std::size_t t = 0; t < triangles.size(); ++t) {  // the only triangle with uvs
     std::vector<Vec2d> corners(known.size(), unplaced()), uvs;
     std::copy_n(known.begin() + 3 * t, 3, corners.begin() + 3 * t);
     ASSERT_TRUE(place_newcomers({points_of(shape), triangles}, corners, uvs));

@@ -13,7 +13,7 @@
 namespace atlas::test {
 namespace {
 
-// Parts that touch at corners, their triangles in random order, one of them without area.
+// Parts that touch at corners, with their triangles in random order, one of them without area.
 Mesh shuffled_parts() {
   Shape all = box(2);
   all = together(all, moved(box(1), 1, {1, 1, 1}));
@@ -87,7 +87,7 @@ TEST(Pieces, ShareNoVertices) {
   EXPECT_EQ(std::count(owner.begin(), owner.end(), kNoIndex), 0);
 }
 
-// More triangles than are cut at a time, no part like another.
+// There are more triangles than are cut at a time, and no part equals another.
 Mesh many_parts() {
   Shape all;
   for (int i = 0; i < 1200; ++i) {

@@ -1,4 +1,4 @@
-// Darts for charts that stretch more than a cut is worth.
+// Darts for charts whose stretch is worth a cut.
 #include "libatlas/charts/flattening/relieve.h"
 
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@ FlatChart flattened(const Shape& shape, const ChartOptions& options = {}) {
   return std::move(result.charts.front());
 }
 
-// Rings around the vertex (0, 0, 0), the last one a circle about (`off`, 0); `height` at distance
-// 1, by the angle.
+// Rings around the vertex (0, 0, 0); the last ring is a circle around (`off`, 0). `height` returns
+// the height at distance 1 for an angle.
 template <class Height>
 Shape rings(const char* name, int around, int along, double off, const Height& height) {
   Shape shape;
@@ -45,18 +45,18 @@ Shape rings(const char* name, int around, int along, double off, const Height& h
   return shape;
 }
 
-// A cone whose tip, near its border, lacks so much of the full angle.
+// A cone whose tip lies near its border and lacks the angle `defect` (radians) of the full angle.
 Shape cone_lacking(double defect, int around, int along) {
   const double cosine = 1 - defect / (2 * M_PI), height = std::sqrt(1 / (cosine * cosine) - 1);
   return rings("cone", around, along, 0.6, [&](double) { return height; });
 }
 
-// Its middle has more than the full angle.
+// A saddle, whose middle has more than the full angle.
 Shape saddle(int around, int along, double height) {
   return rings("saddle", around, along, 0, [&](double a) { return height * std::cos(2 * a); });
 }
 
-// With a dart to its tip a cone is flat without stretch.
+// With a dart to its tip, a cone is flat without stretch.
 TEST(Relieve, ADartToTheTipFlattensACone) {
   for (const double defect : {0.6, 0.65, 0.7}) {
     for (const int around : {12, 30}) {
@@ -84,7 +84,7 @@ TEST(Relieve, WhatNoDartHelpsStaysWhole) {
   }
 }
 
-// A dart as long as the cone costs more than a cone that hardly lacks anything.
+// For a small defect, a dart as long as the cone costs more than the stretch that it removes.
 TEST(Relieve, ADartMustBeWorthItsSeam) {
   const Shape shape = cone_lacking(0.1, 30, 10);
   const FlatChart chart = flattened(shape);
@@ -92,12 +92,13 @@ TEST(Relieve, ADartMustBeWorthItsSeam) {
   EXPECT_EQ(chart.uvs.size(), shape.positions.size());
 }
 
-// Energy and seams scale alike with the surface; texels must not come in on one side only.
+// Energy and seams scale alike with the surface; the texel density must not enter into only one of
+// them.
 TEST(Relieve, AUniformDensityChangesNothing) {
   const Shape shape = cone_lacking(0.65, 30, 10);
   const Result<ChartSet> plain = make_charts({shape.positions, shape.indices}, {}, {});
   ASSERT_TRUE(plain.ok()) << plain.status().message();
-  EXPECT_GT(plain->uvs.size(), shape.positions.size());  // it has a dart
+  EXPECT_GT(plain->uvs.size(), shape.positions.size());  // there is a dart
   for (const float density : {1.0f / 64, 1.0f, 64.0f}) {
     const std::vector<float> densities(shape.triangle_count(), density);
     MeshView mesh{shape.positions, shape.indices};

@@ -1,4 +1,4 @@
-// The queue of whole keys against std::multimap.
+// Compares the queue of integer keys with std::multimap.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ struct Entry {
   std::uint32_t key, number;
 };
 
-// Both at once; whatever one says the other must say.
+// Applies every operation to both and expects equal results.
 class Twins {
  public:
   void push(std::uint32_t key) {
@@ -25,7 +25,7 @@ class Twins {
     EXPECT_FALSE(queue_.empty());
   }
 
-  // Returns the key, the smallest of all.
+  // Returns the key, which is the smallest of all.
   std::uint32_t pop() {
     const Entry entry = queue_.pop();
     EXPECT_EQ(entry.key, expected_.begin()->first);
@@ -48,7 +48,7 @@ class Twins {
   std::uint32_t number_ = 0;
 };
 
-// Pushes and takes at random, keys up to `reach` ahead of the last one taken.
+// Pushes and pops at random, with keys up to `reach` ahead of the last one popped.
 void mix(Twins& twins, std::uint32_t start, std::uint32_t reach, int steps, std::mt19937& random) {
   std::uint32_t last = start;
   for (int i = 0; i < steps; ++i) {
@@ -63,7 +63,7 @@ void mix(Twins& twins, std::uint32_t start, std::uint32_t reach, int steps, std:
 
 TEST(RingQueue, TakesTheSmallestKeyHoweverFarTheNextOnesLie) {
   std::mt19937 random(1);
-  // A few keys, some words of the ring, the ring's size and one more, far beyond it.
+  // The keys cover few values, several words of the ring, about the size of the ring, and far more.
   for (const std::uint32_t reach : {0u, 3u, 200u, 4095u, 4096u, 4097u, 20000u, 50000000u}) {
     Twins twins;
     for (int round = 0; round < 5; ++round) {

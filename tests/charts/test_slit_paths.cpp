@@ -1,4 +1,4 @@
-// Seams of charts with themselves, drawn straight.
+// Straightens the seams that charts have with themselves (slits).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,8 +18,8 @@ struct Slitted : RaggedCharts {
   std::uint32_t from(std::uint32_t h) const { return topology.corner_vertex[h]; }
   std::uint32_t to(std::uint32_t h) const { return from(next_half_edge(h)); }
 
-  // Cuts within chart k along a crooked path, from a vertex that `start` likes to one that `end`
-  // does.
+  // Cuts within chart k along a crooked path from a vertex for which `start` holds to one for which
+  // `end` does.
   void cut(std::uint32_t k, const std::function<bool(std::uint32_t)>& start,
            const std::function<bool(std::uint32_t)>& end, std::uint64_t seed) {
     std::mt19937_64 random(seed);
@@ -33,7 +33,7 @@ struct Slitted : RaggedCharts {
     std::vector<double> distance(topology.points.size(), 1e300);
     std::vector<std::uint32_t> through(topology.points.size(), kNoIndex);
     for (std::uint32_t v = 0; v < distance.size(); ++v) distance[v] = start(v) ? 0 : 1e300;
-    for (bool any = true; any;) {  // Bellman and Ford
+    for (bool any = true; any;) {  // Bellman-Ford
       any = false;
       for (std::uint32_t h = 0; h < weight.size(); ++h) {
         if (weight[h] > 1e8 || start(to(h)) || end(from(h))) continue;
@@ -95,7 +95,7 @@ struct Slitted : RaggedCharts {
     }
   }
 
-  // The worst agreement, as a cosine, of frames across edges that are no seams.
+  // Returns the worst agreement of frames across edges that are no seams, as a cosine.
   double least_agreement() const {
     double least = 1;
     for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
@@ -126,7 +126,7 @@ Slitted tube(int around, int along, double height) {
   return charts;
 }
 
-using Disc = std::pair<std::uint32_t, int>;  // pieces, Euler characteristic
+using Disc = std::pair<std::uint32_t, int>;  // number of pieces, Euler characteristic
 
 TEST(SlitPaths, ATubesSlitBecomesStraighter) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -168,7 +168,7 @@ TEST(SlitPaths, TipsStayWhereTheyAre) {
   EXPECT_LT(sum_after, 0.95 * sum_before);
 }
 
-// Slits that branch, or leave a border for a tip: whatever they were, discs stay discs.
+// Slits that branch or end in the interior, starting at a border: charts that are discs stay discs.
 TEST(SlitPaths, DiscsStayDiscs) {
   int shorter = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -198,7 +198,7 @@ TEST(SlitPaths, DiscsStayDiscs) {
   EXPECT_GT(shorter, 15);
 }
 
-// Two tubes end to end, with a ragged border that their slits come to.
+// Two tubes end to end, with a ragged border between them where their slits end.
 TEST(SlitPaths, BordersMoveAcrossClosedSlits) {
   int shorter = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -236,7 +236,7 @@ TEST(SlitPaths, BordersMoveAcrossClosedSlits) {
     slits.reopen();
     slits.straighten();
     EXPECT_EQ(charts.topologies(), were) << seed;
-    EXPECT_LT(charts.slit_length(), 7.5);  // nothing is drawn far on
+    EXPECT_LT(charts.slit_length(), 7.5);  // the slits do not become long detours
     shorter += charts.border_length() < 0.8 * before;
   }
   EXPECT_GT(shorter, 10);

@@ -1,4 +1,4 @@
-// Seams of a chart with itself: closed where their banks coincide, and only there.
+// Seams of a chart with itself are closed where both sides coincide, and only there.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 namespace atlas::test {
 namespace {
 
-// A flat grid of n x n quads as one chart, cut open along x = 1/2 from the border at y = 0 to the
-// middle; the right bank lies `gap` beside the left one.
+// A flat grid of n x n quads as one chart. It is cut open along x = 1/2 from the border at y = 0 to
+// the middle; the right side of the slit lies `gap` beside the left one.
 struct SlitGrid {
   Topology topology;
   std::vector<FlatChart> charts{1};
@@ -68,7 +68,8 @@ TEST(Slits, StayWhereBanksAreApartOrCross) {
   }
 }
 
-// Closing must leave the chart injective: here one of its triangles is folded over.
+// Slits are only closed if the chart is injective afterwards. Here one of its triangles is folded
+// over.
 TEST(Slits, StayInAChartThatIsNotInjective) {
   SlitGrid grid(8, 0);
   FlatChart& chart = grid.charts[0];
@@ -103,7 +104,7 @@ TEST(Slits, APlateWithHolesKeepsNone) {
   }
 }
 
-// A grid of 8 x 8 quads with a slit along x = 1/2 from y = 1/4 to 3/4, whose right bank lies `gap`
+// A grid of 8 x 8 quads with a slit along x = 1/2 from y = 1/4 to 3/4, whose right side lies `gap`
 // beside the left one.
 TEST(Slits, BanksThatHaveChangedSidesAreFoundAndClosed) {
   const Mesh mesh(grid(8, 8));
@@ -138,7 +139,7 @@ TEST(Slits, BanksThatHaveChangedSidesAreFoundAndClosed) {
     }
     const std::vector<BorderCrossing> turned = turned_loops(chart, uvs);
     EXPECT_EQ(turned.size(), gap > 0 ? 0u : 8u);
-    // Cuts that are no darts stay: they may be what makes a chart a disc.
+    // Cuts that are not darts stay, because they may be what makes a chart a disc.
     EXPECT_FALSE(close_cuts(*topology, chart, turned, partition, none));
     EXPECT_TRUE(none.closed.empty());
     EXPECT_EQ(close_cuts(*topology, chart, turned, partition, darts), gap < 0);

@@ -1,5 +1,5 @@
-// Seams drawn straight: the cut against all cuts, borders against straight lines, charts against
-// what they were.
+// Straightening of seams. Compares the minimum cut with all cuts, borders with straight lines, and
+// the charts with those before.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -52,13 +52,13 @@ TEST(MinCut, CostsWhatTheBestOfAllCutsCosts) {
   }
 }
 
-// Two charts of a square, whose border has teeth four quads high.
+// Two charts of a square with teeth along their border that are four quads high.
 RaggedCharts sawtooth() {
   const int n = 40;
   RaggedCharts charts(grid(n, n));
   for (std::uint32_t t = 0; t < charts.partition.chart.size(); ++t) {
     const int x = int(t / 2) % n, y = int(t / 2) / n;
-    const int tooth = std::abs(y % 8 - 4);  // 0 to 4
+    const int tooth = std::abs(y % 8 - 4);  // from 0 to 4
     charts.partition.chart[t] = x < n / 2 - 2 + tooth ? 0 : 1;
   }
   return charts;
@@ -72,8 +72,8 @@ TEST(Straighten, SawtoothBecomesALine) {
   EXPECT_NEAR(charts.border_length(), 1, 1e-6);
 }
 
-// Of the least sum of length and cost the length rises with the price of what changes sides, and
-// less does.
+// The sum of length and stiffness cost is minimised. When triangles cost more to move, fewer move
+// and the border is longer.
 TEST(Straighten, StifferSeamsMoveLess) {
   const RaggedCharts start = sawtooth();
   double length = 0;
@@ -94,8 +94,8 @@ TEST(Straighten, StifferSeamsMoveLess) {
   EXPECT_NEAR(length, start.border_length(), 1e-6);
 }
 
-// The band is narrower than teeth are high: the border comes to lie along its rim, where the band
-// of one side falls into parts that hang together outside of it.
+// The band is narrower than the teeth are high, so the border comes to lie along the rim of the
+// band. There the band of one side falls into parts that are only connected outside of it.
 TEST(Straighten, NarrowBandsShortenWhatTheyCan) {
   for (const std::uint8_t rings : {2, 3, 4, 6}) {
     RaggedCharts charts = sawtooth();
@@ -112,7 +112,7 @@ TEST(Straighten, BordersOfChartsWithoutRingsStay) {
   charts.grow(6, 3);
   const std::vector<std::uint32_t> were = charts.partition.chart;
   const std::vector<SeamBand> bands{{8}, {8}, {8}, {0}, {0}, {0}};
-  std::vector<std::uint32_t> triangles;  // of charts with rings
+  std::vector<std::uint32_t> triangles;  // triangles of charts with rings
   for (std::uint32_t t = 0; t < were.size(); ++t) {
     if (bands[were[t]].rings > 0) triangles.push_back(t);
   }
@@ -131,7 +131,7 @@ TEST(Straighten, BordersOfChartsWithoutRingsStay) {
 }
 
 TEST(Straighten, GoesToTheCreaseNearby) {
-  // A border one quad beside a box's edge: the edge counts a quarter.
+  // A border lies one quad beside an edge of a box. Along that edge, the length counts a quarter.
   RaggedCharts charts(box(16));
   const auto height = [&](std::uint32_t t) {
     double z = 0;
@@ -149,8 +149,8 @@ TEST(Straighten, GoesToTheCreaseNearby) {
   }
 }
 
-// Neither comes a chart apart, nor does it close to a ring; borders get no longer; every frame lies
-// in its triangle's plane.
+// Charts neither fall apart nor close to a ring, borders do not get longer, and every frame lies in
+// its triangle's plane.
 TEST(Straighten, KeepsWhatChartsAre) {
   std::vector<Shape> shapes = {grid(30, 30),           sphere(40, 20),
                                torus(48, 16),          cylinder(60, 12),
@@ -174,11 +174,11 @@ TEST(Straighten, KeepsWhatChartsAre) {
       }
     }
   }
-  EXPECT_GT(shorter, 24);  // of 48
+  EXPECT_GT(shorter, 24);  // of 48 cases
 }
 
-// What changed charts, in order, leads from the charts that were to those that came out, which do
-// not depend on how many borders are at work at once.
+// Applied in order, the listed changes lead from the charts before to those after. The result does
+// not depend on how many borders are processed at once.
 TEST(Straighten, BordersAtOnceComeOutAsOneByOne) {
   for (const std::uint32_t count : {5u, 40u}) {
     RaggedCharts start(sphere(160, 80));

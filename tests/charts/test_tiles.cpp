@@ -1,4 +1,4 @@
-// Charts cut to a length.
+// Charts that are cut to a maximum length.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -125,7 +125,8 @@ TEST(Tiles, WhatIsWithinItsLimitStays) {
   EXPECT_EQ(bytes(set), bytes(whole));
 }
 
-// A spike of less than a thousandth of a sheet may stretch as it likes, but not in a small piece.
+// A spike of less than a thousandth of a sheet may stretch beyond the bound, but not in a small
+// piece of it.
 TEST(Tiles, APieceKeepsToTheBoundThatTheWholeKeeps) {
   Shape sheet = grid(60, 60);
   for (Vec3f& p : sheet.positions) p.z = 0.2f * (p.x * p.x - p.y * p.y);
@@ -146,7 +147,7 @@ double uv_edge(const ChartSet& set, std::size_t corner) {
   return std::hypot(a.x - b.x, a.y - b.y);
 }
 
-// However much they stretch.
+// The pieces keep their shape, however much they stretch.
 TEST(Tiles, PiecesOfGivenChartsKeepTheirShape) {
   Mesh mesh(grid(24, 6, 4, 1));
   for (const Vec3f& p : mesh.positions) mesh.texcoords.push_back({p.x / 4, p.y / 12});
@@ -163,7 +164,7 @@ TEST(Tiles, PiecesOfGivenChartsKeepTheirShape) {
     ASSERT_NEAR(uv_edge(pieces, corner), uv_edge(*given, corner), 1e-9);
 }
 
-// Triangles without area go where their edge or corner is.
+// Triangles without area go to the piece that their edge or corner belongs to.
 TEST(Tiles, TakeTrianglesWithoutAreaAlong) {
   Shape sheet = grid(40, 4, 10, 1);
   const auto vertex = [](int x, int y) { return std::uint32_t(41 * y + x); };

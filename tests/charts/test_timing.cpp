@@ -1,4 +1,4 @@
-// The seconds that a chart set says its stages took.
+// The seconds that a chart set reports for its stages.
 #include <gtest/gtest.h>
 
 #include "libatlas/charts/charts.h"
@@ -30,7 +30,7 @@ TEST(ChartTiming, PartsStayWithinTheirSums) {
   EXPECT_GT(t.merging_cpu, 0);
   EXPECT_GT(t.solve_cpu, 0);
   EXPECT_LE(first, t.segmentation_cpu * 1.001 + 1e-3);
-  // The threads' clocks and the process's are read at different times.
+  // The clocks of the threads and of the process are read at different times.
   EXPECT_LE(second, t.parameterization_cpu * 1.1 + 5e-3);
   EXPECT_GT(first + second, 0.5 * (t.segmentation_cpu + t.parameterization_cpu));
   EXPECT_LE(t.segmentation_cpu + t.parameterization_cpu, spent + 1e-3);

@@ -1,4 +1,4 @@
-// Closed cones, boxes: surfaces that unroll but for a few points.
+// Surfaces that unroll except for a few points, such as closed cones and boxes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace atlas::test {
 namespace {
 
-// The mantle, without its base.
+// The cone without its base.
 Shape closed_cone(int around, int along, double half_angle) {
   Shape shape{"closed cone", {{0, 0, 0}}, {}};
   const auto at = [&](int ring, int i) {
@@ -42,7 +42,7 @@ TEST(Tips, OfAConeIsItsApex) {
     const std::vector<std::uint32_t> tips = find_tips(topology);
     ASSERT_EQ(tips.size(), 1u) << half_angle;
     EXPECT_EQ(topology.source_vertex[topology.corner_vertex[tips[0]]], 0u);
-    // Forty flat triangles around it, each with the angle at its tip by the cosine theorem.
+    // Around the tip are forty flat triangles, whose angles there follow from the law of cosines.
     const double s = 0.1, chord = 2 * s * std::sin(half_angle) * std::sin(M_PI / 40);
     const double around = 40 * 2 * std::asin(0.5 * chord / s);
     EXPECT_NEAR(std::remainder(angle_defect(topology, tips[0]) + around, 2 * M_PI), 0, 1e-4)
@@ -82,7 +82,7 @@ TEST(Tips, LieOnTheBordersOfCells) {
   EXPECT_EQ(around.size(), 2u);
 }
 
-// A cone of one row is a fan of needles, each cell a few of them.
+// A cone of one row is a fan of needles, and each of its cells has only a few of them.
 TEST(Tips, ClosedConesTakeFewCharts) {
   for (const int around : {24, 40, 400}) {
     for (const int rows : {1, 12}) {

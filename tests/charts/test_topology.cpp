@@ -72,7 +72,7 @@ TEST(Topology, PiecesAreNumberedInTheOrderOfTheirFirstTriangles) {
 }
 
 TEST(Topology, VerticesOfSeveralFansAreCountedOnce) {
-  // Three closed fans about vertex 0, two with a border about vertex 1.
+  // Three closed fans around vertex 0, and two with a border around vertex 1.
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {5, 0, 0}};
   const auto fan = [&](std::uint32_t centre, std::uint32_t corners, bool closed) {
@@ -93,15 +93,15 @@ TEST(Topology, VerticesOfSeveralFansAreCountedOnce) {
 
 TEST(Topology, NamesTheTriangleWhosePositionIsNotFinite) {
   Mesh mesh(icosphere(1));
-  mesh.positions.push_back({NAN, 0, 0});  // of no triangle: no error
+  mesh.positions.push_back({NAN, 0, 0});  // no triangle uses it, so it is no error
   EXPECT_TRUE(build_topology(mesh.view(), {}, {}).ok());
   mesh.indices[7] = static_cast<std::uint32_t>(mesh.positions.size()) - 1;
   const std::string message = build_topology(mesh.view(), {}, {}).status().message();
   EXPECT_NE(message.find("triangle 2"), std::string::npos) << message;
 }
 
-// Two halves of a sheet that were turned in double by a right angle each, so that their common edge
-// lies in 0 here and in 1e-16 there.
+// Two halves of a sheet that were rotated in double by a right angle each, so that their common
+// edge lies at 0 in one half and at 1e-16 in the other.
 TEST(Topology, RoundingAroundZeroLeavesNoCrack) {
   for (const float size : {1.0f, 1e-6f, 3e5f}) {
     const float nearly = 2.4e-16f * size, next = -6e-33f * size;
@@ -130,7 +130,7 @@ TEST(Topology, CoincidentVerticesAreWelded) {
 }
 
 TEST(NormalCone, IsTheSmallestOfThreeNormals) {
-  // Normals at 30 degrees around an axis: the cone's axis is that axis.
+  // Normals at the same angle around an axis: the axis of the cone is that axis.
   const float s = std::sin(0.5f), c = std::cos(0.5f);
   const std::vector<Vec3f> normals = {{s, 0, c},
                                       {-0.5f * s, 0.8660254f * s, c},
@@ -147,8 +147,8 @@ TEST(NormalCone, IsTheSmallestOfThreeNormals) {
   EXPECT_NEAR(normal_cone(normals, one).angle, 0, 1e-5);
 }
 
-// Opposite sides of a box: their sum is the worst axis of the part, and the whole's is within 90
-// degrees of all.
+// The part has opposite sides of a box, so the sum of its normals is the worst possible axis. The
+// axis of the whole is within 90 degrees of all of them.
 TEST(NormalCone, OfAPartIsNotWiderThanTheWhole) {
   const std::vector<Vec3f> normals = {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1},
                                       {0, 1, 0},  {0, 1, 0},  {0, 1, 0}};
@@ -161,8 +161,8 @@ TEST(NormalCone, OfAPartIsNotWiderThanTheWhole) {
   EXPECT_NEAR(part_of_cone(normals, one, whole).angle, 0, 1e-5);
 }
 
-// Coordinates of a few steps of the smallest float there is: what scales them to unit size is
-// beyond float.
+// Coordinates of a few steps of the smallest float. The factor that would scale them to unit size
+// exceeds the range of float.
 TEST(Topology, DenormalCoordinatesAreScaledToo) {
   Mesh mesh(grid(4, 4));
   for (Vec3f& p : mesh.positions) p = {p.x * 0x1p-146f, p.y * 0x1p-146f, 0};

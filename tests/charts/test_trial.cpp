@@ -24,7 +24,7 @@
 namespace atlas::test {
 namespace {
 
-// Two charts of a coarse mesh: cells below and above the plane that `offset` along `axis` names.
+// Two charts of a coarse mesh, divided by a predicate on the centres of its cells.
 struct Halves {
   std::vector<std::uint32_t> first, second, inside_first, inside_second, glue;
 
@@ -81,7 +81,7 @@ TEST(TrialMesh, ChartsKeepWhatIsJoinedInThem) {
   grown.commit();
   grown.assemble(halves.second, {}, halves.inside_second, apart);
   grown.commit();
-  // A trial that is not taken leaves nothing behind.
+  // A trial that is not accepted leaves nothing behind.
   grown.assemble(halves.first, halves.second, halves.glue, joined);
   grown.assemble(halves.first, halves.second, {}, apart);
   EXPECT_EQ(grown.euler(), 2);
@@ -93,7 +93,7 @@ TEST(TrialMesh, ChartsKeepWhatIsJoinedInThem) {
   EXPECT_EQ(grown.border().size(), whole.border().size());
 }
 
-// A cap's cells as one mesh, with a solver for them and the uvs that they start from.
+// The cells of a spherical cap as one mesh, with a solver for them and their initial uvs.
 struct CapFans {
   CoarseMesh mesh = coarse_of(cap(60, 20, 1.2));
   Halves halves{mesh, kEast};
@@ -123,7 +123,7 @@ struct CapFans {
     }
   }
   LocalMesh view() const { return {places, triangles, {}}; }
-  double energy() const {  // as rigid as possible, of maps without flips
+  double energy() const {  // as-rigid-as-possible energy, for maps without flips
     std::vector<TriangleStretch> stretch(triangles.size());
     measure_triangles(view(), uvs, stretch);
     double sum = 0;
@@ -142,7 +142,7 @@ TEST(FanSolver, AgreesWithTheGeneralSolver) {
   CapFans cap;
   std::vector<Vec2d> expected = cap.uvs;
   ParamWorkspace workspace;
-  for (int i = 0; i < 4; ++i) {  // plain steps
+  for (int i = 0; i < 4; ++i) {  // without over-relaxation
     flatten_isometric(cap.view(), {expected, {}}, {.iterations = 1, .shear_weight = 1}, expected,
                       workspace);
   }
@@ -203,8 +203,8 @@ TEST(FanMeasure, AgreesWithTheGeneralOne) {
   EXPECT_TRUE(flipped);
 }
 
-// A ramp that winds so many times around its axis, farther and farther out, but by less than its
-// width each time.
+// A ramp that winds around its axis `turns` times with a growing radius, which grows by less than
+// the ramp's width per turn.
 Shape ramp(double turns) {
   constexpr int around = 120, across = 6;
   Shape shape = grid(around, across);
@@ -260,7 +260,7 @@ TEST(Refusal, SaysMoreOfTheSameGlueThanOfALonger) {
   const std::vector<std::uint32_t> glue{3, 5}, longer{2, 3, 5}, other{3, 6};
   const Refusal dear{0, 1.2, 0, true, false, glue};
   EXPECT_TRUE(fails_again(dear, glue, 1, 1));
-  EXPECT_FALSE(fails_again(dear, glue, 1.3, 1));  // more may be spent by now
+  EXPECT_FALSE(fails_again(dear, glue, 1.3, 1));  // now it may cost more
   EXPECT_FALSE(fails_again(dear, longer, 1, 1));
   EXPECT_TRUE(fails_again(dear, longer, 0.7, 1));
   EXPECT_FALSE(fails_again(dear, other, 0.1, 1));
@@ -278,8 +278,8 @@ TEST(CostClasses, NearlyEqualCostsAreEqual) {
   EXPECT_EQ(cost(1 + 0.9 * tie), 1);
   EXPECT_EQ(cost(1 - 0.9 * tie), 1);
   EXPECT_EQ(cost(1 + 1.5 * tie), 1 + 1.5 * tie);
-  EXPECT_EQ(cost(1 + 0.9 * tie), 1);  // of two the lower one
-  // What has no area has no cost; others keep theirs.
+  EXPECT_EQ(cost(1 + 0.9 * tie), 1);  // of two neighbours, the lower one
+  // Without area there is no finite cost. Other costs stay as they are.
   EXPECT_EQ(cost(std::numeric_limits<double>::quiet_NaN()), CostClasses::most);
   EXPECT_EQ(cost(std::numeric_limits<double>::infinity()), CostClasses::most);
   EXPECT_EQ(cost(-std::numeric_limits<double>::infinity()), -CostClasses::most);

@@ -1,4 +1,5 @@
-// A descent around a small chart that is joined to a large one.
+// An optimisation that is limited to the surroundings of a small chart that is joined to a large
+// one.
 #include "libatlas/charts/merging/trial_patch.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +21,8 @@ namespace {
 
 constexpr std::size_t kCells = 20;
 
-// A cap's cells, those of its eastern end being the second chart, flattened by many plain steps.
+// The cells of a spherical cap, flattened by many plain steps. Those of its eastern end are the
+// second chart.
 struct JoinedCap {
   CoarseMesh mesh = coarse_of(cap(60, 30, 1.2));
   TrialScratch scratch{mesh};
@@ -64,7 +66,8 @@ TEST(TrialPatch, HoldsTheVerticesThatOtherCellsHave) {
   EXPECT_EQ(cells.size(), kCells);
   for (std::size_t c = cap.trial.first_count(); c < all.cells.size(); ++c)
     EXPECT_TRUE(cells.count(all.cells[c])) << c;
-  std::vector<std::uint32_t> vertex(cap.mesh.slot_position.size());  // of a slot, in the trial
+  // The trial's vertex of each slot.
+  std::vector<std::uint32_t> vertex(cap.mesh.slot_position.size());
   std::set<std::uint32_t> outside;
   for (const JoinedFans::Triangle& t : all.triangles) {
     vertex[t.slot] = t.a;
@@ -83,7 +86,8 @@ TEST(TrialPatch, HoldsTheVerticesThatOtherCellsHave) {
   EXPECT_GT(held, 3u);
 }
 
-// From wherever its own vertices are, to where all cells together had brought them.
+// From any position of its own vertices, the patch converges to where the optimisation of all cells
+// had brought them.
 TEST(TrialPatch, DescendsToWhereTheWholeCame) {
   JoinedCap cap;
   TrialPatch patch;
@@ -121,7 +125,8 @@ TEST(TrialPatch, IsAllOfWhatIsNoLarger) {
   solver.step(1, patch.uvs());
   std::vector<Vec2d> moved = cap.uvs;
   patch.give_back(moved);
-  const Vec2d shift{moved[0].x - cap.uvs[0].x, moved[0].y - cap.uvs[0].y};  // nothing holds it
+  // No vertex is held, so the patch may move as a whole.
+  const Vec2d shift{moved[0].x - cap.uvs[0].x, moved[0].y - cap.uvs[0].y};
   for (std::size_t v = 0; v < moved.size(); ++v) {
     EXPECT_NEAR(moved[v].x - shift.x, cap.uvs[v].x, 1e-6) << v;
     EXPECT_NEAR(moved[v].y - shift.y, cap.uvs[v].y, 1e-6) << v;

@@ -1,4 +1,4 @@
-// Surfaces that unroll without stretching: one chart would do, and two are allowed.
+// Surfaces that unroll without stretch. One chart would be enough; two are allowed.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 namespace atlas::test {
 namespace {
 
-// `most`: 99.9 % stretch.
+// `most` limits the 99.9 % stretch.
 void expect_unrolled(const Shape& shape, double bound, double most, const std::string& name) {
   const Mesh mesh(shape);
   ChartOptions options;
@@ -52,7 +52,7 @@ TEST(Unroll, ConesOfAnyAngle) {
   }
 }
 
-// A needle fills half of its rectangle only, and so do several.
+// A needle fills only half of its rectangle, and so do several.
 TEST(Unroll, NeedlesAroundATipBecomeSectors) {
   for (const int around : {32, 100, 256}) {
     for (const double height : {0.5, 2.0, 5.0}) {
@@ -65,8 +65,8 @@ TEST(Unroll, NeedlesAroundATipBecomeSectors) {
   }
 }
 
-// A disc with `corners` corners around, its caps triangulated in zigzag from side to side, as CAD
-// programs do: needles, beside each other with centroids far apart.
+// A disc with `corners` corners around it. Its caps are triangulated in zigzag from side to side,
+// as CAD programs do. Adjacent triangles are needles whose centroids are far apart.
 Shape zigzag_disc(int corners, double radius, double height) {
   Shape shape;
   for (const double z : {0.0, height}) {
@@ -105,7 +105,7 @@ TEST(Unroll, CapsOfNeedlesEndAtTheirCreases) {
   }
 }
 
-// Where a cell unrolls, its flat corners are no farther from each other than along its rim.
+// If a cell unrolls, its flat corners are no farther from each other than along its rim.
 TEST(Unroll, CellsOfACylinderAndOfASphere) {
   const CoarseMesh tube = coarse_of(cylinder(200, 100));
   ASSERT_GT(tube.cells.size(), 100u);
@@ -125,8 +125,8 @@ TEST(Unroll, CellsOfACylinderAndOfASphere) {
   for (const CoarseCell& cell : coarse_of(sphere(300, 150)).cells) EXPECT_FALSE(cell.unrolls);
 }
 
-// The largest stretch of the half x > 0 of a shape (all of it: `whole`) laid flat as one chart; 0
-// if it does not unroll.
+// Lays the half x > 0 of a shape (or all of it, if `whole`) flat as one chart. Returns its largest
+// stretch, or 0 if it does not unroll.
 double unrolled_stretch(const Shape& shape, bool whole = false, double min_altitude = 0) {
   const Mesh mesh(shape);
   const Result<Topology> topology = build_topology(mesh.view(), {}, {});
@@ -151,7 +151,8 @@ double unrolled_stretch(const Shape& shape, bool whole = false, double min_altit
 }
 
 TEST(Unroll, AChartIsLaidFlatExactly) {
-  // Of triangles much higher than wide, too: errors must not grow from one to the next.
+  // Also for triangles that are much higher than wide: errors must not grow from one triangle to
+  // the next.
   for (const double height : {0.1, 1.0, 30.0}) {
     const double stretch = unrolled_stretch(cylinder(150, 40, 1, height));
     EXPECT_GE(stretch, 1) << height;

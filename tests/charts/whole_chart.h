@@ -1,4 +1,4 @@
-// A mesh flattened as one chart.
+// Flattens a mesh as one chart.
 #pragma once
 
 #include <gtest/gtest.h>
