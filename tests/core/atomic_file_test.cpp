@@ -30,7 +30,7 @@ TEST(AtomicFiles, AppearTogetherOrNotAtAll) {
     EXPECT_EQ(TempFolder::read(folder / "a.txt"), "old");
     EXPECT_EQ(folder.count(), 3u);
   }
-  EXPECT_EQ(folder.count(), 1u);  // dropped without a commit
+  EXPECT_EQ(folder.count(), 1u);  // it was dropped without a commit
   EXPECT_EQ(TempFolder::read(folder / "a.txt"), "old");
   AtomicFiles files;
   const auto temporary = files.path_for(folder / "b.png");
@@ -55,7 +55,7 @@ TEST(AtomicFiles, AFailedCommitTakesBackWhatItDid) {
   EXPECT_EQ(folder.count(), 0u);
 }
 
-// Where one of several files cannot be put in place, the others stand as they did before.
+// If one of several files cannot be put in place, the others are restored.
 TEST(AtomicFiles, AFailedCommitBringsBackWhatItReplaced) {
   const TempFolder folder;
   folder.write("old.txt", "old");
@@ -95,7 +95,7 @@ TEST(AtomicFiles, WriteFileReportsWhereItCannot) {
 TEST(AtomicFiles, NamesOfAnyLengthThatTheFileSystemTakes) {
   const TempFolder folder;
   AtomicFiles files;
-  // Alike as far as temporary names go, but files of their own.
+  // Their temporary names would be equal after truncation, but they are separate files.
   for (const char* end : {"1.txt", "2.txt"})
     std::ofstream(files.path_for(folder / (std::string(250, 'n') + end))) << end;
   EXPECT_TRUE(check_writable(folder / (std::string(250, 'n') + "3.txt")).ok());
@@ -103,7 +103,7 @@ TEST(AtomicFiles, NamesOfAnyLengthThatTheFileSystemTakes) {
   EXPECT_EQ(TempFolder::read(folder / (std::string(250, 'n') + "1.txt")), "1.txt");
   EXPECT_EQ(TempFolder::read(folder / (std::string(250, 'n') + "2.txt")), "2.txt");
   EXPECT_EQ(folder.count(), 2u);
-  // The same of their extensions.
+  // The same holds for their extensions.
   for (const char* end : {"1", "2"})
     std::ofstream(files.path_for(folder / ("n." + std::string(70, 'x') + end))) << end;
   ASSERT_TRUE(files.commit().ok());
@@ -114,7 +114,7 @@ TEST(AtomicFiles, NamesOfAnyLengthThatTheFileSystemTakes) {
   EXPECT_NE(status.message().find("up to 255 bytes"), std::string::npos) << status.message();
 }
 
-// As another user, whom permissions bind as they do not bind root: access(2) asks for the real one.
+// Acts as another user, because root is not bound by permissions. access(2) checks the real user.
 class NoRoot {
  public:
   NoRoot() : user_(::getuid()) {
@@ -156,7 +156,7 @@ TEST(AtomicFiles, LinksAreFollowed) {
   ASSERT_TRUE(write_file(folder / "link.txt", "new").ok());
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
   EXPECT_EQ(TempFolder::read(folder / "store" / "real.txt"), "new");
-  // One that leads nowhere is replaced.
+  // A symbolic link that leads nowhere is replaced.
   std::filesystem::create_symlink("none.txt", folder / "loose.txt");
   ASSERT_TRUE(write_file(folder / "loose.txt", "new").ok());
   EXPECT_EQ(TempFolder::read(folder / "loose.txt"), "new");
@@ -191,11 +191,11 @@ TEST(AtomicFiles, MessagesNameTheTarget) {
   EXPECT_EQ(told.message(), (folder / "page.png").string() + ": writing failed");
 }
 
-// What does not fit leaves the old file as it was.
+// If the new content does not fit on the disk, the old file stays as it was.
 TEST(AtomicFiles, AFullDiskChangesNothing) {
   const TempFolder folder;
   folder.write("x.json", "old");
-  // Both below and beyond what the C library holds back until a file is closed.
+  // The lengths are below and above what the C library buffers until a file is closed.
   for (const std::size_t length : {100u, 100'000u}) {
     Status status;
     {
@@ -210,8 +210,8 @@ TEST(AtomicFiles, AFullDiskChangesNothing) {
   }
 }
 
-// Two threads of one program that export to one name, or share a page's name (a.wrl and a.gltf):
-// each output is whole.
+// Two threads of one program export to the same name, or share the name of a page (a.wrl and
+// a.gltf). Each output must be complete.
 TEST(AtomicFiles, TwoAtOnceDoNotShareATemporaryFile) {
   const TempFolder folder;
   AtomicFiles first, second;
@@ -224,7 +224,7 @@ TEST(AtomicFiles, TwoAtOnceDoNotShareATemporaryFile) {
   EXPECT_EQ(folder.count(), 1u);
 }
 
-// A process that is killed before it could commit, and the files that it had begun.
+// A process that is killed before it commits, and the files that it had begun.
 class KilledWriter {
  public:
   explicit KilledWriter(const std::filesystem::path& target) : process_(::fork()) {

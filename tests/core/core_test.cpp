@@ -26,7 +26,7 @@ namespace {
 TEST(DisjointSets, JoinInAnyOrderToTheLeastMember) {
   std::mt19937 random(3);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  std::vector<std::uint32_t> least(500);  // by spreading until nothing changes
+  std::vector<std::uint32_t> least(500);  // spread until nothing changes
   for (std::uint32_t i = 0; i < least.size(); ++i) least[i] = i;
   for (int i = 0; i < 300; ++i) pairs.emplace_back(random() % 500, random() % 500);
   for (bool changed = true; changed;) {
@@ -152,7 +152,7 @@ TEST(Background, BeginsNothingAfterAFailureAndTellsTheFirst) {
   EXPECT_THROW(static_cast<void>(throwing.finish()), std::bad_alloc);
 }
 
-// Tasks on threads of their own are the caller's time all the same, once they are done.
+// The time of tasks on other threads counts as the caller's once they are done.
 TEST(Background, CountsAsTheTimeOfItsUser) {
   for (const std::size_t at_once : {0u, 1u, 3u}) {
     const double begun = own_cpu_seconds();
@@ -209,7 +209,8 @@ TEST(ParallelFor, LoopsWithinLoopsShareTheThreads) {
     parallel_for(context, 40, 1, [&](std::size_t outer, std::size_t) {
       parallel_for(threads == 1 ? context : inner, 50, 3, [&](std::size_t begin, std::size_t end) {
         const int now = ++running;
-        std::this_thread::sleep_for(std::chrono::microseconds(200));  // for others to come
+        // Gives other threads time to come.
+        std::this_thread::sleep_for(std::chrono::microseconds(200));
         for (int seen = most; seen < now && !most.compare_exchange_weak(seen, now);) continue;
         for (std::size_t i = begin; i < end; ++i) ++touched[50 * outer + i];
         --running;
@@ -269,7 +270,7 @@ TEST(ForEachClaim, IsASerialLoopForWhatTasksShare) {
       Context context;
       context.threads = threads;
       std::vector<std::uint64_t> state(things, 1);
-      for_each_claim(context, tasks, [&](std::size_t i) {  // no two of these commute
+      for_each_claim(context, tasks, [&](std::size_t i) {  // no two of these operations commute
         auto& [a, b] = tasks[i];
         state[a] = 3 * state[a] + state[b] + i;
         std::this_thread::sleep_for(std::chrono::microseconds(20));
@@ -302,7 +303,7 @@ TEST(ForEachClaim, EndsWhenCancelledOrThrownAt) {
     std::atomic<bool> cancel{false};
     Context context;
     context.threads = threads;
-    const std::vector<Claims> tasks(100, Claims{0, 0});  // one after the other
+    const std::vector<Claims> tasks(100, Claims{0, 0});  // forces them to run one after the other
     const auto fail = [](std::size_t i) {
       if (i == 7) throw std::bad_alloc();
     };
@@ -317,8 +318,9 @@ TEST(ForEachClaim, EndsWhenCancelledOrThrownAt) {
   }
 }
 
-// Integers small enough for exact 64-bit determinants are the oracle; the predicate sees them moved
-// by a power of two, where doubles still hold them but naive products round.
+// Integers that are small enough for exact 64-bit determinants give the expected sign. The
+// predicate gets them moved by a power of two, so that doubles still represent them but naive
+// products round.
 TEST(Predicates, OrientationIsExact) {
   std::mt19937_64 random(4);
   std::uniform_int_distribution<std::int64_t> small(-3, 3);
@@ -340,13 +342,13 @@ TEST(Predicates, SegmentsCross) {
   EXPECT_TRUE(segments_cross({0, 0}, {2, 2}, {0, 2}, {2, 0}));
   EXPECT_FALSE(segments_cross({0, 0}, {1, 1}, {2, 0}, {3, 5}));
   EXPECT_FALSE(segments_cross({0, 0}, {1, 1}, {1, 1}, {2, 0}));  // a shared end
-  EXPECT_TRUE(segments_cross({0, 0}, {3, 0}, {1, 0}, {5, 0}));   // overlap along a stretch
+  EXPECT_TRUE(segments_cross({0, 0}, {3, 0}, {1, 0}, {5, 0}));   // an overlap along a part
   EXPECT_FALSE(segments_cross({0, 0}, {1, 0}, {1, 0}, {2, 0}));  // end to end on one line
   EXPECT_FALSE(segments_cross({0, 0}, {1, 0}, {2, 0}, {3, 0}));
 }
 
-// Whether the segments share a point that is no end of both, or are the same: by the signs of whole
-// numbers, with no regard to how the predicate goes about it.
+// Returns whether the segments share a point that is not an end of both, or are equal. Computed
+// from the signs of integers, independently of the method of the predicate.
 bool cross_by_integers(const int (&c)[8]) {
   const auto side = [&](int a, int b, int p) {
     const int det = (c[b] - c[a]) * (c[p + 1] - c[a + 1]) - (c[b + 1] - c[a + 1]) * (c[p] - c[a]);
