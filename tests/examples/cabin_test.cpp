@@ -1,4 +1,5 @@
-// The sample scene: its size, its light against closed forms and brute force, its files.
+// Tests the sample scene: its size, its light (against closed forms and brute force), and its
+// files.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -96,7 +97,7 @@ TEST(Cabin, NamesTheDoorAndItsFrame) {
     EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
 }
 
-// Each object's triangles follow each other, so that files name it once.
+// The triangles of each object are consecutive, so that files name it once.
 TEST(Cabin, ObjectsAreWhole) {
   std::set<int> seen;
   int current = -1;
@@ -108,7 +109,8 @@ TEST(Cabin, ObjectsAreWhole) {
   EXPECT_EQ(seen.size(), shared_cabin().objects.size());
 }
 
-// Refinement may leave no vertex inside an edge: closed objects stay closed, each edge used twice.
+// Refinement leaves no vertex inside an edge: closed objects stay closed, with each edge used
+// twice.
 TEST(Cabin, RefinementConforms) {
   const Mesh& mesh = shared_cabin();
   std::map<std::string, std::map<std::pair<Id, Id>, int>> edges;
@@ -140,8 +142,8 @@ TEST(Cabin, PointsHaveOnePlace) {
   EXPECT_GT(creases, 100u);
 }
 
-// Smaller triangles where light changes: along the frame's shadow on the wall more than elsewhere
-// on it.
+// Triangles are smaller where light changes, for example along the shadow of the door frame on the
+// wall.
 TEST(Cabin, RefinesWhereLightChanges) {
   const Mesh& mesh = shared_cabin();
   double change_of_small = 0, change_of_large = 0;
@@ -171,8 +173,8 @@ TEST(Cabin, IsTheSameForEveryThreadCount) {
   EXPECT_NE(bytes_of(folder.path / "one.ply"), bytes_of(folder.path / "seed.ply"));
 }
 
-// Two parallel unit squares' distance apart: the form factor from a point under the middle of a
-// rectangle a x b at height c has a closed form (a corner's, four times).
+// For a point under the middle of a square of side 2 at height h, the form factor has a closed
+// form: four times that of a quarter with a corner above the point.
 TEST(CabinLight, FormFactorHasItsClosedForm) {
   for (double h : {0.1, 0.5, 1.0, 3.0}) {
     const std::vector<glm::vec3> square{{-1, -1, h}, {-1, 1, h}, {1, 1, h}, {1, -1, h}};
@@ -187,7 +189,7 @@ TEST(CabinLight, FormFactorHasItsClosedForm) {
   }
 }
 
-// Half below the horizon: what is left is half of what the whole would give, by symmetry.
+// Half of the wall is below the horizon. Only the upper half counts.
 TEST(CabinLight, FormFactorIsClippedAtTheHorizon) {
   const std::vector<glm::vec3> wall{{1, -1, -1}, {1, -1, 1}, {1, 1, 1}, {1, 1, -1}};
   const std::vector<glm::vec3> upper{{1, -1, 0}, {1, -1, 1}, {1, 1, 1}, {1, 1, 0}};
@@ -201,7 +203,8 @@ TEST(CabinLight, FormFactorIsClippedAtTheHorizon) {
   }
 }
 
-// Direct light at points of the cabin against plain Monte Carlo over each light's area.
+// Compares direct light at points of the cabin with plain Monte Carlo integration over the area of
+// each light.
 TEST(CabinLight, AgreesWithBruteForce) {
   const Mesh mesh = build_cabin(20000, 60000);
   const Shell shell = shell_of(mesh);
@@ -217,7 +220,7 @@ TEST(CabinLight, AgreesWithBruteForce) {
     glm::dvec3 sum(0);
     constexpr int kSamples = 20000;
     for (const AreaLight& light : cabin_lights()) {
-      // Fan triangles, each sampled in proportion to its area.
+      // Samples each triangle of the light's fan in proportion to its area.
       for (std::size_t i = 1; i + 1 < light.corners.size(); ++i) {
         const glm::vec3 a = light.corners[0], u = light.corners[i] - a,
                         v = light.corners[i + 1] - a;
