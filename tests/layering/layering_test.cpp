@@ -1,5 +1,6 @@
-// The order of the house: a folder of libatlas/ includes only those above it, public headers show
-// nothing internal and no third party's vectors, and each stands on its own.
+// The layers of the library: a folder of libatlas/ includes only folders listed above it, public
+// headers show nothing internal and no vector types of third parties, and each header compiles on
+// its own.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The folders in the order in which libatlas/CMakeLists.txt adds them.
+// Returns the folders in the order in which libatlas/CMakeLists.txt adds them.
 std::vector<std::string> folder_order() {
   const std::string text = read(kRoot / "libatlas/CMakeLists.txt");
   std::smatch match;
@@ -28,7 +29,7 @@ std::vector<std::string> folder_order() {
 }
 
 struct Include {
-  std::string target;  // between the quotes or brackets
+  std::string target;  // the text between the quotes or brackets
   int line;
 };
 
@@ -89,8 +90,9 @@ TEST(Layering, FoldersIncludeOnlyThoseAboveThem) {
   EXPECT_GT(seen, 100);
 }
 
-// The same within charts/, in the order in which its CMakeLists.txt first names the folders. What
-// lies in none of them, but its public headers, knows them all.
+// The same rule within charts/, in the order in which its CMakeLists.txt first names the folders.
+// Files directly in charts/ may include all folders, but of these files the folders may include
+// only the public headers.
 TEST(Layering, FoldersOfChartsIncludeOnlyThoseAboveThem) {
   const std::string listed = read(kRoot / "libatlas/charts/CMakeLists.txt");
   int seen = 0;
@@ -147,7 +149,7 @@ TEST(Layering, HeadersAreGuardedOnce) {
     EXPECT_NE(read(path).find("#pragma once"), std::string::npos) << path;
 }
 
-// Nothing below libatlas/ knows of the programs, the tests or the examples.
+// Nothing in libatlas/ depends on the programs, the tests, the examples or the benchmarks.
 TEST(Layering, TheLibraryKnowsNobodyAboveIt) {
   for (const fs::path& path : sources(""))
     for (const Include& include : includes_of(path))

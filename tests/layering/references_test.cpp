@@ -1,4 +1,4 @@
-// Whatever the code and the documents cite as "Author Year" stands in docs/references.bib.
+// Whatever the code and the documents cite as "Author Year" is listed in docs/references.bib.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -21,15 +21,15 @@ std::vector<Entry> bibliography() {
   const std::regex pattern(R"(author = \{(.*)\},\n[^@]*?year = \{(\d{4})\})");
   std::vector<Entry> entries;
   for (std::sregex_iterator i(text.begin(), text.end(), pattern), end; i != end; ++i) {
-    std::string authors = (*i)[1];  // accents are written as TeX does: {\'e} and so on
+    std::string authors = (*i)[1];  // accents are in TeX notation: {\'e} and so on
     authors = std::regex_replace(authors, std::regex(R"(\{\\.(\{\w\}|\w)\})"), "?");
     entries.push_back({authors, (*i)[2]});
   }
   return entries;
 }
 
-// Comments' line breaks joined, letters beyond ASCII as '?': "Lévy et al. 2002" -> "L?vy et al.
-// 2002".
+// Joins the lines of comments and replaces letters beyond ASCII by '?': "Lévy et al. 2002" becomes
+// "L?vy et al. 2002".
 std::string plain(std::string text) {
   text = std::regex_replace(text, std::regex(R"(\n\s*(//)?\s*)"), " ");
   return std::regex_replace(text, std::regex("[\xC3\xC4\xC5][\x80-\xBF]"), "?");
@@ -45,7 +45,7 @@ TEST(References, EveryCitationStandsInTheBibliography) {
   ASSERT_GE(entries.size(), 40u);
   const std::regex citation(
       R"(\b([A-Z][A-Za-z?]+(?:-[A-Z][a-z]+)?)(?:'s)?(?: et al\.,?| and [A-Z][A-Za-z?]+)? \(?((?:19|20)\d{2})\b)");
-  // What looks like a citation and is none: standards, dates, names of programs with a year.
+  // Phrases that look like citations but are not: standards, dates, names of programs with a year.
   const std::regex other(
       "January|February|March|April|May|June|July|August|September|October|November|December|ISO|"
       "Debian|The|In|At|Every|From|With|About|OBJ|CLASS|Copyright");
