@@ -1,4 +1,4 @@
-// Work on outlines that is cancelled from another thread, at any moment.
+// Cancels packing by outlines from another thread at any moment.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -16,7 +16,7 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-// Raises the flag after the time given, unless the work has ended by then.
+// Sets its flag after the given time, unless the work has ended by then.
 class Alarm {
  public:
   explicit Alarm(Seconds after)
@@ -43,7 +43,7 @@ double seconds_of(const test::ChartItems& charts, const FitOptions& options) {
   return Seconds(std::chrono::steady_clock::now() - begun).count();
 }
 
-// A loop that was cut short leaves pieces undrawn and pages unfilled: they were read all the same.
+// A loop that is cut short leaves pieces undrawn and pages unfilled; none of them may be read.
 void cancel_at_any_time(const test::ChartItems& charts, const FitOptions& options) {
   constexpr int kMoments = 20;
   const double whole = seconds_of(charts, options);
@@ -53,7 +53,7 @@ void cancel_at_any_time(const test::ChartItems& charts, const FitOptions& option
     context.threads = 2;
     context.cancel = alarm.flag();
     const Result<FitResult> fit = fit_pages(charts.items, options, context);
-    if (fit.ok())  // sooner than the first time
+    if (fit.ok())  // it was faster than the first time
       EXPECT_EQ(
           test::check_outlines(test::placed_shapes(charts, *fit), fit->pages, options.padding), "");
     else
@@ -78,7 +78,7 @@ TEST(CancelledFit, OfSeveralPages) {
   cancel_at_any_time(charts, o);
 }
 
-// What has been found by then is not returned as if it were the result.
+// What was found before the cancellation must not be returned as if it were the result.
 TEST(CancelledFit, InARoundOfBest) {
   const test::ChartItems charts = blobs(12, 90);
   FitOptions o = test::options_for(charts, 256);

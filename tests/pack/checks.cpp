@@ -120,8 +120,8 @@ std::vector<Vec2d> blob(Noise& noise, double radius, int corners) {
 
 namespace {
 
-// Whether the open square around texel (x, y), grown by `reach`, meets the triangle: no axis of the
-// square and no normal of the triangle separates them.
+// Returns whether the open square around texel (x, y), grown by `reach`, meets the triangle. They
+// do not meet if an axis of the square or a normal of the triangle separates them.
 bool meets(const Vec2d* t, int x, int y, double reach) {
   const double half = 0.5 + reach, cx = x + 0.5, cy = y + 0.5;
   const auto separated = [&](double nx, double ny) {
@@ -142,7 +142,7 @@ bool meets(const Vec2d* t, int x, int y, double reach) {
   return true;
 }
 
-// One owner a texel.
+// Records the owner of every texel of a page; a texel can have only one.
 class Claims {
  public:
   explicit Claims(Extent page)
@@ -176,7 +176,8 @@ class Claims {
 
 std::string check_outlines(std::span<const PlacedShape> placed, std::span<const Extent> pages,
                            int padding) {
-  // Every triangle claims the texels that come within the padding of it; no texel has two owners.
+  // Every triangle claims the texels that lie within the padding of it. No texel may have two
+  // owners.
   const double reach = padding - 0.001;
   std::vector<Claims> claims(pages.begin(), pages.end());
   for (std::uint32_t i = 0; i < placed.size(); ++i) {

@@ -1,4 +1,4 @@
-// Independent checks of layouts: brute force where the packers are clever.
+// Independent checks of layouts, by brute force where the packers use clever methods.
 #pragma once
 
 #include <cstdint>
@@ -12,26 +12,26 @@
 
 namespace atlas::test {
 
-// SplitMix64, written anew.
+// The SplitMix64 generator, written independently of the library's.
 struct Noise {
   std::uint64_t state;
   std::uint64_t next();
-  int in(int low, int high);  // inclusive
+  int in(int low, int high);  // both bounds inclusive
   double unit();
 };
 
-// Rectangles with log-normal sides, as the generator of the shared instances draws them.
+// Returns rectangles with log-normal sides, drawn as the generator of the shared instances does.
 std::vector<Extent> log_normal_rects(std::size_t count, std::uint64_t seed);
 
-// "" if no item leaves its page (border kept), none comes closer than the padding to another or to
-// a pinned rectangle, all begin at multiples of the alignment, and only allowed ones are turned;
-// otherwise what is wrong. Compares all pairs.
+// Checks that no item leaves its page (less the border), that none comes closer than the padding to
+// another one or to a pinned rectangle, that all begin at multiples of the alignment, and that only
+// allowed ones are rotated. Compares all pairs. Returns "" or what is wrong.
 std::string check_layout(std::span<const Extent> items, std::span<const Placement> placements,
                          std::span<const Extent> pages, const PackOptions& options);
 
-// "" if no texel lies within the padding (maximum norm, less a thousandth) of two charts and none
-// within the padding of a chart is outside the page. Every triangle is tried on every texel near
-// it.
+// Checks that no texel lies within the padding (maximum norm, less a thousandth) of two charts, and
+// that no texel within the padding of a chart is outside the page. Tests every triangle against
+// every texel near it. Returns "" or what is wrong.
 struct PlacedShape {
   ChartShape shape;
   std::uint32_t page = 0;
@@ -41,8 +41,8 @@ struct PlacedShape {
 std::string check_outlines(std::span<const PlacedShape> placed, std::span<const Extent> pages,
                            int padding);
 
-// Charts for fit_pages, 3 corners a triangle, and their boxes. Moved, not copied: shapes point at
-// corners.
+// Charts for fit_pages (three corners per triangle) and their boxes. It can be moved but not
+// copied, because the shapes point at the corners.
 struct ChartItems {
   std::vector<std::vector<Vec2d>> corners;
   std::vector<ChartShape> shapes;
@@ -52,10 +52,10 @@ struct ChartItems {
   ChartItems(ChartItems&&) = default;
 };
 
-// The same charts where the result has put them.
+// Returns the same charts at the places that the result gives them.
 std::vector<PlacedShape> placed_shapes(const ChartItems& charts, const FitResult& fit);
 
-// A blob with `corners` corners around the origin, as a fan of triangles (3 corners each).
+// Returns a blob with `corners` corners around the origin, as a fan of triangles (3 corners each).
 std::vector<Vec2d> blob(Noise& noise, double radius, int corners);
 
 }  // namespace atlas::test

@@ -1,4 +1,5 @@
-// Charts that no page suits: each must end soon, in bounded memory, with what fits or one error.
+// Charts that suit no page. Packing must end soon and in bounded memory, either with the charts
+// that fit or with one error.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,7 +44,7 @@ FitOptions outlines(const test::ChartItems& charts) {
   return o;
 }
 
-// Every box on its page.
+// Expects every box to lie on its page.
 void expect_on_pages(const FitResult& fit) {
   for (const FitPlacement& p : fit.placements) {
     ASSERT_LT(p.page, fit.pages.size());
@@ -53,7 +54,7 @@ void expect_on_pages(const FitResult& fit) {
   }
 }
 
-// As what no page holds, within so many CPU seconds.
+// Expects fit_pages to report that no page holds the charts, within the given CPU seconds.
 void expect_refused(const test::ChartItems& charts, const FitOptions& options, double seconds) {
   const double begun = cpu_seconds();
   const Result<FitResult> fit = fit_pages(charts.items, options, {});
@@ -74,7 +75,8 @@ TEST(Extremes, NeedlesOfAnyLengthTakeThePagesLength) {
         const Result<FitResult> fit = fit_pages(charts.items, o, {});
         ASSERT_TRUE(fit.ok()) << fit.status().message();
         expect_on_pages(*fit);
-        // Slanted ones that cells do not nest share 1024^2 texels, or four times as many.
+        // Cells do not nest slanted needles, so they share the area of one page of 1024^2 texels,
+        // or of four.
         EXPECT_GT(fit->scale * length, count == 1 ? 1000 : 150) << length << " " << count;
         EXPECT_LT(cpu_seconds() - begun, 20) << length << " " << count;
       }
@@ -83,8 +85,8 @@ TEST(Extremes, NeedlesOfAnyLengthTakeThePagesLength) {
   EXPECT_LT(peak_memory(), std::int64_t{1} << 30);
 }
 
-// A comb whose teeth are all far finer than a cell: neither its runs nor its crossings of rows may
-// be kept one by one, which would take 4 GiB.
+// All teeth of the comb are far narrower than a cell. If its runs or its crossings of rows were
+// stored one by one, they would take 4 GiB.
 TEST(Extremes, TeethFinerThanCellsTakeLittleMemory) {
   constexpr int kTeeth = 20'000;
   std::vector<Vec2d> comb;
@@ -99,11 +101,11 @@ TEST(Extremes, TeethFinerThanCellsTakeLittleMemory) {
   const pack::Mask mask = pack::rasterize(pack::outline_of({comb, {}}), {}, origin);
   EXPECT_EQ(mask.width, 2002);
   EXPECT_EQ(mask.height, 2002);
-  EXPECT_EQ(mask.cells, std::int64_t{2002} * 2002);  // within a texel of a tooth
+  EXPECT_EQ(mask.cells, std::int64_t{2002} * 2002);  // every cell is within a texel of a tooth
   EXPECT_LT(peak_memory(), std::int64_t{1} << 30);
 }
 
-// Cells of single texels would take 45 GB.
+// Cells of one texel each would take 45 GB.
 TEST(Extremes, HugePagesTakeNoMoreThanLargeOnes) {
   test::Noise noise{3};
   std::vector<std::vector<Vec2d>> corners;
@@ -128,8 +130,8 @@ TEST(Extremes, HugePagesTakeNoMoreThanLargeOnes) {
   EXPECT_LT(peak_memory(), std::int64_t{1} << 30);
 }
 
-// 10^5 triangles that share one corner only: looking for each loop's next edge there must not begin
-// anew at the first one, which took 7 s.
+// 10^5 triangles share only one corner. When the search for each loop's next edge there began at
+// the first edge every time, it took 7 s.
 TEST(Extremes, PetalsAroundOneCornerTakeLittleTime) {
   constexpr std::uint32_t kPetals = 100'000;
   std::vector<Vec2d> corners{{0, 0}};
@@ -145,7 +147,7 @@ TEST(Extremes, PetalsAroundOneCornerTakeLittleTime) {
   const pack::ChartOutline outline = pack::outline_of({corners, triangles});
   EXPECT_LT(cpu_seconds() - begun, test::kSlowness);
   ASSERT_EQ(outline.edges.size(), 3 * kPetals);
-  for (std::size_t k = 0; k < outline.edges.size(); ++k)  // loops of three
+  for (std::size_t k = 0; k < outline.edges.size(); ++k)  // loops of three edges
     EXPECT_EQ(outline.edges[k].to, outline.edges[k % 3 == 2 ? k - 2 : k + 1].from);
 }
 
@@ -166,14 +168,14 @@ TEST(Extremes, BoxesOfNeedles) {
   const auto charts = needles(50, 1e8, 1, 0.01, 0.02);
   FitOptions o = outlines(charts);
   o.shapes = {};
-  o.max_scale = 1e6;  // far from what fits: the search must not end before it comes there
+  o.max_scale = 1e6;  // far above what fits; the search must not end before it gets down to that
   const Result<FitResult> fit = fit_pages(charts.items, o, {});
   ASSERT_TRUE(fit.ok()) << fit.status().message();
   expect_on_pages(*fit);
   EXPECT_GT(fit->scale * 1e8, 500);
 }
 
-// A chart without area or gutters may meet no cell at all; that does not make it too large.
+// A chart without area or gutters may meet no cell at all. That does not make it too large.
 TEST(Extremes, ChartsThatMeetNoCellFitAnywhere) {
   const test::ChartItems charts({turned_quad(30, 0, 0), turned_quad(20, 20, 0)});
   FitOptions o = outlines(charts);
@@ -193,7 +195,7 @@ TEST(Extremes, ChartsThatMeetNoCellFitAnywhere) {
   EXPECT_TRUE(r->unplaced.empty());
 }
 
-// Wherever it is, a chart that meets no cell lies within its page.
+// A chart that meets no cell lies within its page, wherever its points are.
 TEST(Extremes, PointsLieOnTheirPage) {
   const std::vector<Vec2d> point(3, Vec2d{310, -210});
   const test::ChartItems charts({turned_quad(20, 20, 0), point, turned_quad(20, 20, 0.5)});
@@ -217,7 +219,7 @@ TEST(Extremes, PointsLieOnTheirPage) {
   EXPECT_EQ(r->placements[1].offset.y, 210);
 }
 
-// So are those whose minimum sides exceed all pages, before a search over scales.
+// Charts whose minimum sides exceed all pages are refused without a search over scales.
 TEST(Extremes, MinimumSidesBeyondThePagesAreRefusedSoon) {
   const test::ChartItems charts(std::vector<std::vector<Vec2d>>(20000, turned_quad(30, 20, 0.3)));
   FitOptions o = outlines(charts);
@@ -226,7 +228,7 @@ TEST(Extremes, MinimumSidesBeyondThePagesAreRefusedSoon) {
   expect_refused(charts, o, 1);
 }
 
-// More charts than their gutters leave room for are refused before any is drawn.
+// More charts than their gutters leave space for are refused before any is drawn.
 TEST(Extremes, GuttersBeyondThePagesAreRefusedAtOnce) {
   std::vector<std::vector<Vec2d>> tiny(20000, turned_quad(1, 1, 0.3));
   const test::ChartItems charts(std::move(tiny));
@@ -249,10 +251,11 @@ TEST(Extremes, PackOutlinesNamesWhatNoPageHolds) {
     o.max_pages = max_pages;
     const Result<OutlineResult> r = pack_outlines(views, o, {});
     ASSERT_TRUE(r.ok()) << r.status().message();
-    // The fourth fits when it is turned, the sixth would at an angle that is not tried.
+    // Chart 3 fits after a quarter turn. Chart 5 is longer than the page's diagonal.
     EXPECT_EQ(r->unplaced, (std::vector<std::uint32_t>{1, 4, 5, 7})) << max_pages;
   }
-  o.page = {260, 0};  // what is longer than any page's side is no strip's either
+  // A chart that is longer than both sides of a page does not fit a strip either.
+  o.page = {260, 0};
   const Result<OutlineResult> strip = pack_outlines(views, o, {});
   ASSERT_TRUE(strip.ok()) << strip.status().message();
   EXPECT_EQ(strip->unplaced, (std::vector<std::uint32_t>{1, 7}));
@@ -275,7 +278,8 @@ TEST(Extremes, BoundsHoldForCharts) {
     EXPECT_FALSE(bounds.gutters_exceed_pages);
     const Result<FitResult> fit = fit_pages(charts.items, o, {});
     ASSERT_TRUE(fit.ok()) << fit.status().message();
-    // Pressed charts may be turned by any angle, cells only by quarter turns. One chart has a page.
+    // Pressed charts may be turned by any angle, charts on cells only by quarter turns. A chart
+    // that is alone on its page is pressed, too.
     const bool pressed = o.press_pages || o.pages == 1 || charts.items.size() == 1;
     EXPECT_LE(fit->scale, bounds.alone * (pressed ? std::sqrt(2.0) : 1));
     EXPECT_LE(fit->scale, bounds.with_gutters);

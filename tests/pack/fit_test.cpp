@@ -50,7 +50,7 @@ FitResult valid_fit(const std::vector<FitItem>& items, const FitOptions& options
   return r;
 }
 
-// A texel of padding, and boxes of any size anywhere.
+// A texel of padding, boxes of any size, and no restriction on their positions.
 FitOptions tight(std::int32_t page_size) {
   FitOptions o;
   o.page_size = page_size;
@@ -101,7 +101,8 @@ TEST(FitPages, FullPagesAtTheLargestScale) {
   EXPECT_EQ(r.pages.size(), 2u);
 }
 
-// Pages of six to a hundred boxes: 0.838, 0.884, 0.922 of them without a search.
+// Four pages with 6, 20 or 100 boxes each. Without a search, 0.838, 0.884 and 0.922 of the pages'
+// area was filled.
 TEST(FitPages, FewBoxesFillTheirPages) {
   for (const auto& [boxes, least] : {std::pair{6, 0.88}, {20, 0.90}, {100, 0.93}}) {
     double filled = 0;
@@ -132,7 +133,7 @@ TEST(FitPages, SmallContentTakesFewSmallPages) {
   EXPECT_EQ(r.pages[0], (Extent{64, 64}));
 }
 
-// Ten equal sizes never make six groups.
+// Ten items of equal size never make six groups.
 TEST(FitPages, PagesWithoutItemsAreLeftOut) {
   const std::vector<std::vector<Vec2d>> squares(
       10, {{0, 0}, {40, 0}, {40, 40}, {0, 0}, {40, 40}, {0, 40}});
@@ -170,7 +171,8 @@ TEST(FitPages, TheLargestScaleMayBeFarFromWhatFits) {
   EXPECT_GT(r.scale, 3);
 }
 
-// Few packings may end at the minimum sides: the scale at which they begin, not none.
+// If few packings are allowed, the search may end at its first scale, at which all charts have the
+// minimum sides. It must not end at zero.
 TEST(FitPages, TheScaleIsNeverZero) {
   const std::vector<FitItem> items(30, FitItem{200, 160});
   FitOptions o;
@@ -183,20 +185,20 @@ TEST(FitPages, TheScaleIsNeverZero) {
   EXPECT_GE(r.scale, 4.0 / 200);
 }
 
-// Thousands of boxes on one page of any shape: full, valid, and no row of it empty.
+// Thousands of boxes on one page of any shape: the layout is full and valid, and no row is empty.
 TEST(FitPages, ManyItemsFillOnePage) {
   const auto items = items_of(4000, 1, 8);
   FitOptions o = tight(1024);
   o.free_aspect = true;
   const FitResult r = fit(items, o);
-  o.power_of_two = false;  // what free_aspect means
+  o.power_of_two = false;  // this is what free_aspect implies
   expect_valid(items, o, r);
   ASSERT_EQ(r.pages.size(), 1u);
   EXPECT_GT(r.box_utilization, 0.97);
   EXPECT_LT(r.scale, 1);
 }
 
-// What no pressing is tried for gets a page cut to its charts, too.
+// Pages are cropped to their charts even where pressing is not tried.
 TEST(FitPages, FreePagesAreCropped) {
   const test::ChartItems charts({{{0, 0}, {400, 0}, {400, 20}}, {{0, 0}, {400, 20}, {0, 20}}});
   FitOptions o = tight(256);
@@ -210,7 +212,7 @@ TEST(FitPages, FreePagesAreCropped) {
   }
 }
 
-// Pages of any shape need no power of two.
+// The largest side of pages of any shape need not be a power of two.
 TEST(FitPages, FreePagesHaveAnyLargestSide) {
   FitOptions o;
   o.page_size = 1000;
@@ -281,7 +283,7 @@ TEST(FitPages, OutlinesFitMoreThanBoxes) {
             "");
 }
 
-// Rectangles, a third of them with a slanted side.
+// Rectangles; a third of them have a slanted side.
 test::ChartItems straight_charts(std::uint64_t seed, int count) {
   test::Noise noise{seed};
   std::vector<std::vector<Vec2d>> shapes;
@@ -293,7 +295,7 @@ test::ChartItems straight_charts(std::uint64_t seed, int count) {
   return test::ChartItems(std::move(shapes));
 }
 
-// Askew they fit lower one by one, and worse all together.
+// At oblique angles each chart finds a lower place, but the layout as a whole gets worse.
 TEST(FitPages, MoreDirectionsAreNeverWorseThanFour) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const test::ChartItems charts = straight_charts(seed, 60);
@@ -311,7 +313,7 @@ TEST(FitPages, MoreDirectionsAreNeverWorseThanFour) {
   }
 }
 
-// Given uvs may lie on each other many times over, as those of tiles do.
+// Triangles of given uvs may lie on each other many times, as in charts of tiled textures.
 TEST(FitPages, ChartsThatLieOnThemselvesTakeTheirRoomOnce) {
   std::vector<std::vector<Vec2d>> once, often;
   test::Noise noise{7};
@@ -319,7 +321,7 @@ TEST(FitPages, ChartsThatLieOnThemselvesTakeTheirRoomOnce) {
     const double w = 10 + 50 * noise.unit(), h = 10 + 25 * noise.unit();
     once.push_back({{0, 0}, {w, 0}, {w, h}, {0, 0}, {w, h}, {0, h}});
     often.push_back(once.back());
-    for (int copy = 0; copy < 9; ++copy) {  // every other one is turned over
+    for (int copy = 0; copy < 9; ++copy) {  // every other copy has the opposite orientation
       const double x = w * copy / 9;
       if (copy % 2 == 0)
         often.back().insert(often.back().end(), {{0, 0}, {x, 0}, {w, h}});
@@ -341,7 +343,7 @@ TEST(FitPages, ChartsThatLieOnThemselvesTakeTheirRoomOnce) {
             "");
 }
 
-// A page of any shape gets the fuller of rows and cells.
+// A page of any shape gets the fuller of two layouts: in rows or on cells.
 TEST(FitPages, FewStraightChartsFillAPageAsWellAsByCells) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const test::ChartItems charts = straight_charts(seed, 12);
@@ -358,7 +360,7 @@ TEST(FitPages, FewStraightChartsFillAPageAsWellAsByCells) {
   }
 }
 
-// Cells beside rows are searched little: ten packings that fail, of fifty layouts each.
+// Beside rows, cells are searched little: ten failed packings of fifty layouts each.
 TEST(FitPages, CellsBesideRowsTakeFewLayouts) {
   constexpr std::uint64_t kOfRows = 16 * 20;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
@@ -371,7 +373,7 @@ TEST(FitPages, CellsBesideRowsTakeFewLayouts) {
   }
 }
 
-// On a page too small to be pressed, and for which packings that fail have no other end.
+// The page is too small for pressing, and only the effort limits packings that fail.
 TEST(FitPages, PackingsShareTheEffort) {
   test::Noise noise{5};
   std::vector<std::vector<Vec2d>> blobs;

@@ -10,7 +10,8 @@ TEST(PackFuzz, MillionOperationSequences) {
     ASSERT_EQ(test::fuzz_layout(seed), "") << "seed " << seed;
 }
 
-// A million in all, in cases that end well before the time limit of a test, also side by side.
+// A million sets in all, in cases that end well before the time limit of a test, even when several
+// run at once.
 constexpr std::uint64_t kRectangleSets = 1000000, kRectangleCases = 10;
 
 class PackRectangleFuzz : public ::testing::TestWithParam<std::uint64_t> {};

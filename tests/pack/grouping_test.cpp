@@ -12,7 +12,8 @@ namespace {
 
 using Sizes = std::vector<std::uint64_t>;
 
-// F(A) as the paper words it: fill one group after another with the largest item left that fits.
+// F(A) as the paper words it: fills one group after another with the largest remaining item that
+// fits.
 std::uint32_t paper_groups(Sizes sizes, std::uint64_t capacity) {
   std::sort(sizes.rbegin(), sizes.rend());
   if (!sizes.empty() && sizes.front() > capacity) return UINT32_MAX;
@@ -77,7 +78,7 @@ TEST(Grouping, SmallestCapacityOfAllOnSmallCases) {
     EXPECT_TRUE(r.proved_smallest);
     harder += r.capacity > r.lower_bound;
   }
-  EXPECT_GT(harder, 100);  // the lower bound alone did not decide
+  EXPECT_GT(harder, 100);  // in these cases the lower bound alone did not decide
 }
 
 TEST(Grouping, ALimitOfAnyHeightTakesNoMemory) {
@@ -86,8 +87,8 @@ TEST(Grouping, ALimitOfAnyHeightTakesNoMemory) {
   EXPECT_EQ(count_groups({}, 5, UINT32_MAX - 1), 0u);
 }
 
-// 11/9 and 13/11 of the optimum are proved for first-fit decreasing and MULTIFIT; the optimum here
-// is found by trying all assignments.
+// Bounds of 11/9 and 13/11 of the optimum are proved for first-fit decreasing and MULTIFIT. The
+// optimum is found here by trying all assignments.
 TEST(Grouping, WithinMultifitsBoundOfTheOptimum) {
   test::Noise noise{11};
   for (int round = 0; round < 60; ++round) {
@@ -113,7 +114,7 @@ TEST(Grouping, WithinMultifitsBoundOfTheOptimum) {
   }
 }
 
-// Coffman, Garey and Johnson: a larger capacity needs more groups.
+// Coffman, Garey and Johnson: a larger capacity can need more groups.
 TEST(Grouping, AnomalyOfFirstFitDecreasing) {
   const Sizes sizes{44, 24, 24, 22, 21, 17, 8, 8, 6, 6};
   ASSERT_EQ(count_groups(sizes, 60, 9), 3u);
@@ -121,7 +122,7 @@ TEST(Grouping, AnomalyOfFirstFitDecreasing) {
   const GroupingResult r = group(sizes, 3);
   EXPECT_EQ(r.capacity, 60u);
   EXPECT_EQ(r.group_count, 3u);
-  // Bisection that starts from 61, where F is 4, must not be led astray.
+  // A bisection that starts from 61, where F is 4, must still find 60.
   const GroupingResult from_page = group(sizes, 3, 61);
   EXPECT_LE(from_page.group_count, 3u);
   EXPECT_EQ(from_page.capacity, 60u);

@@ -12,14 +12,14 @@
 
 namespace atlas::test {
 
-// Waking others takes longer than these small tasks do.
+// Waking other threads takes longer than these small tasks do.
 inline Context one_thread() {
   Context context;
   context.threads = 1;
   return context;
 }
 
-// "" or what went wrong; the whole sequence follows from the seed.
+// Returns "" or what went wrong. The seed determines the whole sequence.
 inline std::string fuzz_layout(std::uint64_t seed) {
   Noise noise{seed * 77 + 5};
   PackOptions o;
@@ -65,7 +65,7 @@ inline std::string fuzz_layout(std::uint64_t seed) {
   return {};
 }
 
-// pack_rects with any options and rectangles, some of them degenerate.
+// Calls pack_rects with random options and rectangles, some of them degenerate.
 inline std::string fuzz_rects(std::uint64_t seed) {
   Noise noise{seed * 91 + 3};
   PackOptions o;
@@ -101,7 +101,7 @@ inline std::string fuzz_rects(std::uint64_t seed) {
   return check_layout(items, r->placements, r->pages, o);
 }
 
-// pack_outlines with any options: gutters, border, cells and what is left out.
+// Calls pack_outlines with random options and checks gutters, border, cells and what is left out.
 inline std::string fuzz_pack_outlines(const ChartItems& charts, Noise& noise) {
   OutlineOptions o;
   o.page = {noise.in(20, 300), noise.in(0, 4) ? noise.in(20, 300) : 0};
@@ -127,7 +127,7 @@ inline std::string fuzz_pack_outlines(const ChartItems& charts, Noise& noise) {
     const double turns = p.angle / (2 * std::numbers::pi) * o.rotations;
     if (std::abs(turns - std::round(turns)) > 1e-9) return "outlines: a direction not asked for";
     if (p.box.x % o.alignment || p.box.y % o.alignment) return "outlines: a box off its cells";
-    if (p.box.area() == 0) continue;  // meets no cell: at the corner
+    if (p.box.area() == 0) continue;  // the chart meets no cell, so it is at the corner
     const Extent page = r->pages.at(p.page);
     if (std::min(p.box.x, p.box.y) < o.border || p.box.right() > page.width - o.border ||
         p.box.top() > page.height - o.border)
@@ -138,13 +138,13 @@ inline std::string fuzz_pack_outlines(const ChartItems& charts, Noise& noise) {
   return check_outlines(placed, r->pages, o.padding);
 }
 
-// Outlines: fit_pages on one or two pages, and pack_outlines, gutters checked.
+// Calls fit_pages on one or two pages, and pack_outlines, and checks the gutters.
 inline std::string fuzz_outlines(std::uint64_t seed) {
   Noise noise{seed * 131 + 17};
   std::vector<std::vector<Vec2d>> blobs;
   for (int n = noise.in(1, 9); n > 0; --n) {
     blobs.push_back(blob(noise, noise.in(0, 9) ? 4 + 30 * noise.unit() : 0, noise.in(3, 9)));
-    if (noise.in(0, 9) == 0)  // no width
+    if (noise.in(0, 9) == 0)  // without width
       for (Vec2d& p : blobs.back()) p.y = 0;
   }
   const ChartItems charts(std::move(blobs));

@@ -20,7 +20,7 @@ TEST(AtlasLayout, InsertsRemovesRepacks) {
   EXPECT_TRUE(layout->remove(0));
   EXPECT_FALSE(layout->remove(0));
   EXPECT_FALSE(layout->contains(0));
-  // The freed rows are found again.
+  // The freed rows are used again.
   EXPECT_EQ(*layout->insert({7, 6}), 3u);
   EXPECT_EQ(layout->placement(3).page, 0u);
   ASSERT_TRUE(layout->repack({}).ok());

@@ -20,7 +20,7 @@ std::vector<Vec2d> rectangle(double width, double height) {
   return corners;
 }
 
-// What charts lose on one page of 256 texels, a texel of padding around each.
+// Returns the lost area of charts on one page of 256 texels, with a padding of one texel.
 double lost_area(std::vector<std::vector<Vec2d>> shapes) {
   const test::ChartItems charts(std::move(shapes));
   FitOptions o;
@@ -33,7 +33,8 @@ double lost_area(std::vector<std::vector<Vec2d>> shapes) {
   return r.ok() ? r->lost_area : -1;
 }
 
-// A square of side n cells with a square hole of side `hole` in each, three by three corners.
+// Returns a square of n x n cells, each with a square hole of side `hole` (three corners per
+// triangle).
 std::vector<Vec2d> perforated(int n, double cell, double hole) {
   std::vector<Vec2d> corners;
   const auto quad = [&](Vec2d a, Vec2d b, Vec2d c, Vec2d d) { add_quad(a, b, c, d, corners); };
@@ -52,7 +53,8 @@ std::vector<Vec2d> perforated(int n, double cell, double hole) {
   return corners;
 }
 
-// Holes too small for cuts to open, less what other charts could put into them.
+// Holes that are too small for cuts to open count as lost, less the area of other charts that fit
+// into them.
 TEST(LostRoom, SmallHoles) {
   EXPECT_NEAR(lost_area({perforated(8, 10, 6)}), 64 * 36, 1e-9);
   EXPECT_NEAR(lost_area({perforated(8, 10, 6), rectangle(7, 7)}), 64 * 36, 1e-9);
@@ -80,7 +82,8 @@ std::vector<Vec2d> teeth_of(const Comb& comb) {
   return corners;
 }
 
-// Gaps between teeth that are narrower than gutters, less what other charts could put into them.
+// Gaps between teeth that are narrower than gutters count as lost, less the area of other charts
+// that fit into them.
 TEST(LostRoom, NarrowBays) {
   const std::vector<Vec2d> narrow = teeth_of({40, 3, 3, 180, 30});
   const double gaps = 39 * 3 * 180, near = 0.03 * gaps;
@@ -92,8 +95,9 @@ TEST(LostRoom, NarrowBays) {
   EXPECT_EQ(lost_area({rectangle(500, 1)}), 0);
 }
 
-// A strip wound in a spiral, r = turns / 2 pi to r + kStrip, and the closing of its points by a
-// square, each compared with all around it.
+// A strip that is wound in a spiral, with radii from turns / (2 pi) to that plus kStrip. Also
+// computes the morphological closing of its points by a square, comparing each point with all
+// around it.
 class Spiral {
  public:
   static constexpr double kStrip = 0.3, kFirst = 2, kLast = 9;
@@ -159,7 +163,7 @@ TEST(LostRoom, BaysAreThoseOfAClosing) {
   const Spiral spiral;
   const std::vector<Vec2d> strip = spiral.strip();
   const std::vector outlines{pack::outline_of({strip, {}})};
-  // On cells of which eight make the width, a gap may be wider by one.
+  // The function uses cells of an eighth of the width, so a bay may be wider by one cell.
   for (const double width : {0.35, 0.55, 0.65, 0.8, 1.2}) {
     const double bays = pack::lost_to_bays(outlines, width / 4, {});
     EXPECT_GE(bays, 0.95 * spiral.closed_bays(width) - 1) << width;

@@ -1,4 +1,4 @@
-// Placing pieces by plans, and the page that only checks places.
+// Places pieces by plans, and tests the page that only checks places.
 #include "libatlas/pack/nest.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ void disturb(test::Noise& noise, std::span<const Piece> pieces, NestPlan& plan) 
     plan.direction[i] = noise.in(-1, int(pieces[i].masks.size()) - 1);
 }
 
-// In any order it is alone: nothing is left to search for.
+// A single piece has only one order, so there is nothing left to search for.
 TEST(NestSearch, APieceAloneIsPutDownOnceInEachDirection) {
   const ChartOutline bar = outline_of({std::vector<Vec2d>{{0, 0}, {30, 0}, {30, 5}}, {}});
   for (const std::uint32_t directions : {1u, 4u, 8u}) {
@@ -73,7 +73,8 @@ std::vector<Vec2d> ring(double radius, double width) {
   return triangles;
 }
 
-// More charts than are pressed. Each of the squares is larger than a ring, but fits into one.
+// There are more charts than pressing accepts. Each square covers more area than a ring, but fits
+// inside one.
 TEST(NestPlans, RingsComeBeforeWhatLiesWithinThem) {
   std::vector<std::vector<Vec2d>> shapes;
   for (int k = 0; k < 12; ++k) shapes.push_back(ring(100, 3));
@@ -87,13 +88,14 @@ TEST(NestPlans, RingsComeBeforeWhatLiesWithinThem) {
             "");
 }
 
-// Taking over what two plans have in common changes nothing, not even the work that is counted.
+// Reusing the places that two plans have in common changes nothing, not even the counted work.
 TEST(NestPlans, PlacesTakenOverAreThoseSearchedFor) {
   test::Noise noise{41};
   for (int round = 0; round < 12; ++round) {
     const int width = noise.in(60, round % 3 == 0 ? 600 : 150);
     const std::vector<Piece> pieces = blob_pieces(noise, noise.in(1, 14), round % 2 ? 8 : 4);
-    const std::int32_t height = round == 5 ? 40 : 1 << 20;  // 40: not all have room
+    // With a height of 40 some pieces do not fit.
+    const std::int32_t height = round == 5 ? 40 : 1 << 20;
     BitPage page(width, height, longest_run(pieces));
     PlacedPlan before, now;
     now.plan = plan_by_size(pieces);

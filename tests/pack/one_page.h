@@ -12,7 +12,7 @@ inline std::vector<Vec2d> box(double width, double height) {
   return {{0, 0}, {width, 0}, {width, height}, {0, 0}, {width, height}, {0, height}};
 }
 
-// Of one page of any shape, a texel between charts.
+// Returns options for one page of any shape, with a texel between charts.
 inline FitOptions options_for(const ChartItems& charts, int page_size) {
   FitOptions o;
   o.page_size = page_size;

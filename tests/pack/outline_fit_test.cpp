@@ -1,4 +1,4 @@
-// Many charts on cells: how fine these are.
+// How fine the cells are when many charts are packed on them.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -10,7 +10,8 @@
 namespace atlas {
 namespace {
 
-// Needles, around which coarse cells, as their number alone asks for, lose two points of the page.
+// Coarse cells, as the number of needles alone would suggest, lose two percent of the page around
+// them.
 TEST(OutlineFit, NeedlesLieOnFineCells) {
   test::Noise noise{8};
   std::vector<std::vector<Vec2d>> needles;

@@ -81,7 +81,7 @@ TEST(Outline, CoveredAreaCountsWhatLiesOnItselfOnce) {
 }
 
 TEST(Outline, RectanglesAreASpecialCase) {
-  // Sixteen squares of 30 texels with one texel around each fill a page of 128 exactly.
+  // Sixteen squares of 30 texels with one texel around each exactly fill a page of 128.
   const std::vector<Vec2d> square{{0, 0}, {30, 0}, {30, 30}, {0, 0}, {30, 30}, {0, 30}};
   const std::vector<ChartShape> shapes(16, ChartShape{square, {}});
   OutlineOptions o;
@@ -153,7 +153,8 @@ bool covers(const Mask& m, int x, int y) {
   return false;
 }
 
-// Largest separation of triangle and rectangle over their axes; negative: they overlap.
+// Returns the largest separation of triangle and rectangle over their axes. It is negative if they
+// overlap.
 double separation(const Vec2d* t, Vec2d low, Vec2d high) {
   double gap = -1e300;
   const auto axis = [&](double ax, double ay) {
@@ -179,8 +180,8 @@ double separation(const Vec2d* t, Vec2d low, Vec2d high) {
   return gap;
 }
 
-// Triangles of three corners each, on a grid coarse enough that many coincide, lie in a line or
-// share edges: single ones, soups in both senses, and fans.
+// Returns triangles of three corners each: single ones, soups with both orientations, and fans. The
+// grid of their corners is so coarse that many coincide, lie on a line or share edges.
 std::vector<Vec2d> soup(test::Noise& noise, int round) {
   const auto point = [&] {
     return Vec2d{double(noise.in(0, 40)) / 4, double(noise.in(0, 40)) / 4};
@@ -198,7 +199,7 @@ std::vector<Vec2d> soup(test::Noise& noise, int round) {
   return t;
 }
 
-// The rasteriser against the separating axes of square and triangle, cell by cell.
+// Compares the rasteriser with a separating-axis test of square and triangle, cell by cell.
 void expect_exact_mask(std::vector<Vec2d> t, const pack::RasterOptions& o, int round) {
   Vec2d origin;
   const Mask m = pack::rasterize(pack::outline_of({t, {}}), o, origin);
@@ -227,8 +228,8 @@ TEST(OutlineMask, MatchesSeparatingAxes) {
   }
 }
 
-// Several edges within a column of cells, up and down by different lengths: a comb of slanting
-// teeth, their corners on lines between cells, on cells' middles or anywhere.
+// Several edges pass through one column of cells and rise or fall by different heights: a comb of
+// slanted teeth whose corners lie on lines between cells, on centres of cells or anywhere.
 TEST(OutlineMask, FineTeethMatchSeparatingAxes) {
   test::Noise noise{8};
   for (int round = 0; round < 90; ++round) {
@@ -249,7 +250,8 @@ TEST(OutlineMask, FineTeethMatchSeparatingAxes) {
   }
 }
 
-// More crossings of rows than are sorted: bars of 4 cells, one free cell between two.
+// There are more row crossings than the rasteriser sorts: bars of 4 cells with one free cell
+// between.
 TEST(OutlineMask, BarsWithoutNumberStayApart) {
   constexpr int kBars = 3000, kHeight = 700;
   std::vector<Vec2d> t;
@@ -288,7 +290,7 @@ TEST(OutlineMask, QuarterTurnsTurn) {
   }
 }
 
-// The search for a place against a scan over all cells.
+// Compares the search for a place with a scan over all cells.
 TEST(BitPage, FindsTheLowestLeftmostPlace) {
   test::Noise noise{17};
   for (int round = 0; round < 60; ++round) {

@@ -1,4 +1,4 @@
-// Several pages of few charts: each pressed, charts exchanged between them.
+// Several pages of few charts: each page is pressed, and charts are exchanged between pages.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -32,7 +32,7 @@ FitOptions several(const test::ChartItems& charts, std::uint32_t pages) {
   return o;
 }
 
-// By the triangles' signed areas: blobs do not lie on themselves.
+// Sums the signed areas of the triangles, which is valid because blobs do not overlap themselves.
 double area_of(const test::ChartItems& charts) {
   double area = 0;
   for (const std::vector<Vec2d>& c : charts.corners) {
@@ -44,7 +44,8 @@ double area_of(const test::ChartItems& charts) {
   return area;
 }
 
-// Valid, of one scale, never less dense than without, and denser by a twentieth in the mean.
+// The pages are valid and of one scale, never less full than without pressing, and 5 % fuller in
+// the geometric mean.
 TEST(PressPages, PagesAreFuller) {
   double gain = 0;
   int cases = 0;
@@ -73,8 +74,8 @@ TEST(PressPages, PagesAreFuller) {
   EXPECT_GT(std::exp(gain / cases), 1.05);
 }
 
-// Of twelve like charts the first page is given nine. Pages without an exchange would fit at the
-// scale of the nine.
+// The first page is given nine of twelve similar charts. Without an exchange, the pages would be
+// packed at the scale that fits the nine.
 TEST(PressPages, ChartsChangePages) {
   const test::ChartItems charts = blobs(12, 60, 70, 4);
   const FitOptions o = several(charts, 2);
@@ -97,7 +98,7 @@ TEST(PressPages, ChartsChangePages) {
   EXPECT_EQ(fit->moved_items, moved);
 }
 
-// Found first, and pressed in a second step: as in one.
+// A fit that is found first and pressed in a second step equals one made in a single step.
 TEST(PressPages, AFitIsPressedLater) {
   const test::ChartItems charts = blobs(11, 30, 110, 21);
   FitOptions o = several(charts, 2);
@@ -141,8 +142,8 @@ TEST(PressPages, SameForAnyNumberOfThreads) {
   }
 }
 
-// Minimum sides let charts have scales of their own, and a scale that all charts reach leaves
-// nothing to gain: pages stay as they were found by cells.
+// Minimum sides let charts have scales of their own, and nothing can be gained where all charts
+// already have the largest scale. In both cases pages stay as they were found on cells.
 TEST(PressPages, NotWhereItHasNoSay) {
   const test::ChartItems charts = blobs(12, 15, 200, 5);
   FitOptions held = several(charts, 2), loose = several(charts, 2);
@@ -174,8 +175,8 @@ TEST(PressPages, IsCancelled) {
   EXPECT_EQ(fit_pages(charts.items, o, context).status().code(), ErrorCode::cancelled);
 }
 
-// Where pages come out emptier than those of the fit, by more than further draws win, the first
-// draw of each is all that is tried.
+// If the pressed pages are emptier than those of the fit by more than further draws gain, only the
+// first draw of each page is tried.
 TEST(PressPages, WhatCannotWinIsGivenUp) {
   const test::ChartItems charts = blobs(12, 40, 70, 4);
   const FitOptions o = several(charts, 2);
@@ -189,7 +190,7 @@ TEST(PressPages, WhatCannotWinIsGivenUp) {
   fuller.scale *= 1.2;
   EXPECT_TRUE(pack::press_pages(full, charts.items, outlines, o, {}).has_value());
   EXPECT_FALSE(pack::press_pages(fuller, charts.items, outlines, o, {}).has_value());
-  constexpr std::uint64_t kADraw = 20 * 32;  // layouts
+  constexpr std::uint64_t kADraw = 20 * 32;  // layouts per draw
   EXPECT_GT(fuller.layouts, 0u);
   EXPECT_LE(fuller.layouts, 2 * kADraw);
   EXPECT_GT(full.layouts, 2 * kADraw);

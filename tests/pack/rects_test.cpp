@@ -102,7 +102,8 @@ TEST(PackRects, BadOptionsAreNamed) {
   EXPECT_EQ(pack_rects(negative, {}, {}).status().code(), ErrorCode::bad_input);
 }
 
-// Areas are summed in 63 bits: of the items, and of the cells that their padding takes.
+// Areas are summed in 63 bits: those of the items, and of the cells that they take with their
+// padding.
 TEST(PackRects, AreasThatNoSumHoldsAreRefused) {
   PackOptions o;
   o.page = {1 << 30, 1 << 30};
@@ -121,7 +122,7 @@ TEST(PackRects, AreasThatNoSumHoldsAreRefused) {
   o.page = {1 << 29, 1 << 29};
   EXPECT_EQ(pack_rects(small, o, {}).status().code(), ErrorCode::bad_input);
   o.padding = 0;
-  o.page.width = 1 << 20;  // what fits no page is not summed
+  o.page.width = 1 << 20;  // items that fit no page are not part of the sum
   EXPECT_EQ(pack(nine, o).unplaced.size(), 9u);
 }
 
@@ -133,7 +134,7 @@ TEST(PackRects, CancelledWorkSaysSo) {
   EXPECT_EQ(pack_rects(items, {}, context).status().code(), ErrorCode::cancelled);
 }
 
-// Nothing is left to do but to sort the items.
+// Cancelled at the start, packing does nothing but sort the items.
 TEST(PackRects, CancelledWorkOnManyItemsEndsSoon) {
   const std::atomic<bool> stop{true};
   Context context;
@@ -167,7 +168,7 @@ TEST(PackRects, SameResultForEveryThreadCount) {
   }
 }
 
-// A layout pinned down: whoever changes it on purpose changes the number, and says why.
+// This layout is fixed. Whoever changes it on purpose has to change the number and say why.
 TEST(PackRects, GoldenLayout) {
   const std::vector<Extent> items = test::log_normal_rects(200, 20240601);
   const auto fingerprint = [&](PackPreset preset) {
@@ -229,7 +230,7 @@ TEST(PackRects, PagesTakeTheShapeAskedFor) {
   EXPECT_EQ(square.pages[0].width, square.pages[0].height);
 }
 
-// Not as wide as the page may be, and a square as high.
+// A cropped page is narrower than the page may be; a square one is as high as it is wide.
 TEST(PackRects, CroppedPagesAreNoLargerThanNeeded) {
   test::Noise noise{9};
   for (const int n : {12, 200, 1500}) {
@@ -249,7 +250,7 @@ TEST(PackRects, CroppedPagesAreNoLargerThanNeeded) {
         EXPECT_GE(r.utilization, preset == PackPreset::fast ? 0.6 : 0.75) << n << " " << square;
       }
   }
-  // What no narrower page holds keeps the whole one.
+  // If no narrower page holds the items, the page keeps its full size.
   PackOptions o;
   o.page = {64, 64};
   o.crop = true;
@@ -263,7 +264,7 @@ TEST(PackRects, PowersOfTwoAreTheSmallest) {
   o.page = {4096, 4096};
   o.crop = o.power_of_two = true;
   o.padding = 2;
-  const std::vector<Extent> items(100, {23, 23});  // ten of them a row of 248 texels
+  const std::vector<Extent> items(100, {23, 23});  // ten of them make a row of 248 texels
   for (const Extent page : {Extent{4096, 4096}, Extent{0, 0}}) {
     o.page = page;
     const PackResult r = pack(items, o);
@@ -273,7 +274,8 @@ TEST(PackRects, PowersOfTwoAreTheSmallest) {
 }
 
 TEST(PackRects, EnormousItemsStayInTheOpenPage) {
-  // Three of these above each other would pass 2^31 texels: cells are counted, texels must fit.
+  // Three of these above each other would exceed 2^31 texels. The packer counts cells, but texels
+  // must fit, too.
   std::vector<Extent> items(4, Extent{1000000000, 7});
   items.push_back({2, 3});
   PackOptions o;
@@ -291,7 +293,7 @@ TEST(PackRects, EnormousItemsStayInTheOpenPage) {
   }
 }
 
-// Beyond 2^30 texels a side has no power of two in 32 bits.
+// Sides above 2^30 texels cannot be rounded up to a power of two in 32 bits.
 TEST(PackRects, OpenSidesEndAtTheLongestPage) {
   const std::vector<Extent> items{{5, (1 << 30) - 3}, {7, 9}};
   PackOptions o;

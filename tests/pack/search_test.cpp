@@ -1,4 +1,4 @@
-// The engines below the public functions: holes are found again, bounds hold.
+// The engines below the public functions: freed space is found again, and bounds hold.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 using namespace pack;
 
-// The maximal free rectangles against all rectangles of a small grid.
+// Compares the maximal free rectangles with all rectangles of a small grid.
 TEST(FreeRects, HoldExactlyTheMaximalRectangles) {
   test::Noise noise{4};
   for (int round = 0; round < 200; ++round) {
@@ -65,11 +65,11 @@ TEST(Skyline, WasteIsUsedAgain) {
   };
   EXPECT_EQ(put({4, 6}), (Rect{0, 0, 4, 6}));
   EXPECT_EQ(put({6, 2}), (Rect{4, 0, 6, 2}));
-  EXPECT_EQ(put({8, 4}), (Rect{0, 6, 8, 4}));  // buries 4 x 4 above the second
+  EXPECT_EQ(put({8, 4}), (Rect{0, 6, 8, 4}));  // covers a free 4 x 4 area above the second item
   EXPECT_EQ(put({4, 4}), (Rect{4, 2, 4, 4}));
 }
 
-// Items cut from a strip by guillotine: a layout without waste exists.
+// Cuts a strip into items by guillotine cuts, so that a layout without waste exists.
 std::vector<Extent> cut_strip(test::Noise& noise, Extent strip, std::size_t count) {
   std::vector<Extent> parts{strip};
   while (parts.size() < count) {
@@ -109,7 +109,7 @@ TEST(StripBeam, LayoutsAreValidAndAsLowAsAsked) {
       const std::vector<Extent> pages{{strip.width, strip.height + slack}};
       ASSERT_EQ(test::check_layout(items, at, pages, o), "");
     }
-    EXPECT_TRUE(beam.pack({strip.height - 1, 64, 3, {}}).empty());  // less than the area
+    EXPECT_TRUE(beam.pack({strip.height - 1, 64, 3, {}}).empty());  // less than the items' area
   }
   EXPECT_GE(full, 30);
   EXPECT_GE(found, 50);
@@ -136,7 +136,7 @@ TEST(StripSearch, TurnsHelpAndThreadsChangeNothing) {
   EXPECT_EQ(test::check_layout(items, a->placements, a->pages, o), "");
 }
 
-// What the index finds against a look at every item, for any order of them.
+// Compares what the index finds with a look at every item, for any order of the items.
 TEST(GapPages, AreThoseOfGapFill) {
   test::Noise noise{17};
   for (int round = 0; round < 1500; ++round) {
@@ -174,7 +174,8 @@ TEST(GapPages, StopAtTheMostPages) {
   EXPECT_EQ(layout.unplaced, 2u);
 }
 
-// Pages of ten items each: 190 and 121 by free rectangles, 186 and 113 by the fast preset.
+// About ten items fit on a page. For the two sets, free rectangles took 190 and 121 pages, and the
+// fast preset 186 and 113.
 TEST(LargeSets, OfFewItemsAPageTakeFewPages) {
   test::Noise noise{11};
   std::vector<Extent> thick(2000), long_ones(2000);
@@ -200,7 +201,8 @@ TEST(LargeSets, OfFewItemsAPageTakeFewPages) {
   }
 }
 
-// Large sets: what may be turned is packed no worse than what may not, on strips in about the time.
+// In large sets, items that may be rotated are packed no worse than items that may not. On strips,
+// that takes about the same time.
 TEST(Turns, NeverCostRoomInLargeSets) {
   test::Noise noise{5};
   std::vector<Extent> items(2000);
@@ -217,7 +219,7 @@ TEST(Turns, NeverCostRoomInLargeSets) {
     EXPECT_LE(turned->pages.size(), fixed->pages.size()) << page.width;
     EXPECT_LE(turned->pages.back().height, fixed->pages.back().height) << page.width;
   }
-  // What fits one way only is turned, whatever the others are.
+  // An item that fits in one orientation only is rotated accordingly, whatever the others are.
   items.push_back({60, 500});
   items.push_back({500, 60});
   PackOptions o;
@@ -231,7 +233,7 @@ TEST(Turns, NeverCostRoomInLargeSets) {
   EXPECT_EQ(test::check_layout(items, low->placements, low->pages, o), "");
 }
 
-// A layout of this many takes a good part of a second, and four chains would try sixteen.
+// One layout of this many items takes a good part of a second, and four chains would try sixteen.
 TEST(Budget, LargeSetsEndNearIt) {
   test::Noise noise{7};
   std::vector<Extent> items(60000);
@@ -246,7 +248,7 @@ TEST(Budget, LargeSetsEndNearIt) {
   EXPECT_EQ(test::check_layout(items, result->placements, result->pages, o), "");
 }
 
-// The index against a look at every page.
+// Compares the index with a look at every page.
 TEST(HeightIndex, NamesTheFirstPageWithRoom) {
   test::Noise noise{41};
   for (int round = 0; round < 40; ++round) {
@@ -275,7 +277,7 @@ TEST(HeightIndex, NamesTheFirstPageWithRoom) {
 }
 
 TEST(Bounds, NeverAboveALayoutKnownToExist) {
-  // Pages cut by random guillotines: the number of pages is the optimum.
+  // The pages are cut by random guillotine cuts, so their number is the optimum.
   test::Noise noise{6};
   for (int round = 0; round < 100; ++round) {
     std::vector<Extent> items;

@@ -1,4 +1,4 @@
-// The published instance sets, where LIBATLAS_DATA points at them: totals that must not get worse.
+// The published instance sets, if LIBATLAS_DATA points at them. The totals must not get worse.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Masks that slide over a page, against the page cell by cell.
+// Masks that slide over a page, compared with the page cell by cell.
 #include "libatlas/pack/slide.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ Cells cells_of(const SlidingMask& m, BitPage::Place at) {
   return cells;
 }
 
-// Whether one of the cells lies left of or below the page, or on another mask.
+// Returns whether one of the cells lies left of the page, below it, or on another mask.
 bool meets(const Cells& cells, std::size_t self, const std::vector<SlidingMask>& masks) {
   for (const auto& [x, y] : cells)
     if (x < 0 || y < 0) return true;
@@ -63,7 +63,7 @@ TEST(Slide, MasksGoAsFarAsTheyCanAndNoFarther) {
       EXPECT_TRUE(meets(cells_of(m, {m.at.x + step.x, m.at.y + step.y}), k, masks));
       const BitPage::Place from = before[m.chart].at;
       EXPECT_EQ(step.x == 0 ? m.at.x : m.at.y, step.x == 0 ? from.x : from.y);
-      for (const auto& [x, y] : cells_of(m, m.at)) {  // the page knows where they are
+      for (const auto& [x, y] : cells_of(m, m.at)) {  // the page must know where they are
         Mask one;
         one.width = one.height = 1;
         one.first = {0, 1};

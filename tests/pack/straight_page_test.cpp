@@ -17,8 +17,8 @@ using namespace pack;
 using test::box;
 using test::options_for;
 
-// Charts with straight sides lie side by side, turned by right angles; notched bars, some of which
-// fill the notches of others.
+// Charts with straight sides lie side by side, turned by right angles. The charts are notched bars,
+// some of which fill the notches of others.
 TEST(StraightPage, ChartsLieSideBySide) {
   test::Noise noise{12};
   std::vector<std::vector<Vec2d>> bars;
@@ -47,7 +47,7 @@ TEST(StraightPage, ChartsLieSideBySide) {
   }
 }
 
-// `best` obeys its effort on a square page, and is never worse than the search over cells.
+// `best` keeps to its effort on a square page, and is never worse than the search over cells.
 TEST(StraightPage, BestIsNoWorseOnASquarePage) {
   std::vector<std::vector<Vec2d>> bars;
   for (int k = 0; k < 12; ++k) bars.push_back(box(60 + 17 * k, 20 + 11 * (k % 5)));
@@ -63,7 +63,7 @@ TEST(StraightPage, BestIsNoWorseOnASquarePage) {
   EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *best), best->pages, 1), "");
 }
 
-// To the starts of one round, which share what is left.
+// The effort may be exceeded by the starts of one round, which share what is left of it.
 TEST(StraightPage, BestTriesNoMoreLayoutsThanItsEffort) {
   std::vector<std::vector<Vec2d>> bars;
   for (int k = 0; k < 12; ++k) bars.push_back(box(60 + 17 * k, 20 + 11 * (k % 5)));
@@ -78,7 +78,7 @@ TEST(StraightPage, BestTriesNoMoreLayoutsThanItsEffort) {
   }
 }
 
-// Boxes of one size lie as well as they can at once.
+// Boxes of one size are packed as well as possible at once.
 TEST(StraightPage, BestEndsWithARoundThatWinsNothing) {
   const test::ChartItems charts(std::vector<std::vector<Vec2d>>(6, box(60, 20)));
   FitOptions o = options_for(charts, 512);
@@ -91,7 +91,7 @@ TEST(StraightPage, BestEndsWithARoundThatWinsNothing) {
   EXPECT_LE(best.layouts, 3 * standard.layouts);
 }
 
-// What it begins with would repeat what `standard` has done.
+// `best` would begin by repeating what `standard` has done, so it continues after that instead.
 TEST(StraightPage, BestGoesOnAfterStandard) {
   std::vector<std::vector<Vec2d>> bars;
   for (int k = 0; k < 12; ++k) bars.push_back(box(60 + 17 * k, 20 + 11 * (k % 5)));
@@ -111,7 +111,7 @@ TEST(StraightPage, BestGoesOnAfterStandard) {
   EXPECT_EQ(std::max(fill(standard), fill(rest)), fill(whole));
 }
 
-// Masks of whole blocks, as pages with mip levels need them.
+// Masks consist of whole blocks, as pages with mip levels need.
 TEST(StraightPage, KeepsTheAlignment) {
   std::vector<std::vector<Vec2d>> bars;
   for (int k = 0; k < 20; ++k) bars.push_back(box(60 + 7 * k, 20 + 3 * k));
@@ -130,7 +130,7 @@ TEST(StraightPage, KeepsTheAlignment) {
   }
 }
 
-// Triangles of about one size, of which a layout takes far more work than of other charts.
+// Triangles of about the same size; a layout of them takes far more work than one of other charts.
 TEST(StraightPage, WorkIsLimited) {
   test::Noise noise{3};
   std::vector<std::vector<Vec2d>> triangles;
