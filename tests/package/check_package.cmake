@@ -14,8 +14,8 @@ endfunction()
 
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} --component development)
 
-# Nothing may be called libatlas.so or libatlas.a, which belong to the ATLAS BLAS; and what is internal
-# stays at home.
+# Nothing may be called libatlas.so or libatlas.a, which belong to the ATLAS BLAS. Internal headers
+# must not be installed.
 file(GLOB_RECURSE installed RELATIVE ${prefix} ${prefix}/*)
 foreach(file IN LISTS installed)
   if(file MATCHES "/libatlas\\.(so|a)")
@@ -33,7 +33,7 @@ foreach(name LICENSE THIRD_PARTY.md)
   endif()
 endforeach()
 
-# By find_package.
+# Uses the package with find_package.
 run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE}/examples/minimal -B ${BUILD}/tests/package/minimal
     -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS})
 run(${CMAKE_COMMAND} --build ${BUILD}/tests/package/minimal)
@@ -106,7 +106,7 @@ if(snippets LESS 6)
   message(FATAL_ERROR "docs/library.md shows ${snippets} pieces of code")
 endif()
 
-# All public headers together: no name of one is another's.
+# Compiles all public headers together: no two may define the same name.
 file(GLOB_RECURSE headers RELATIVE ${prefix}/include ${prefix}/include/*.h)
 list(TRANSFORM headers REPLACE "(.+)" "#include <\\1>\n")
 list(JOIN headers "" together)
@@ -114,7 +114,8 @@ file(WRITE ${BUILD}/tests/package/together.cpp "${together}")
 run(${CXX} -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I${prefix}/include
     ${BUILD}/tests/package/together.cpp)
 
-# By add_subdirectory, which asks for nothing that only programs and tests need.
+# Uses the project with add_subdirectory, which must not require packages for programs and tests
+# only.
 file(REMOVE_RECURSE ${BUILD}/tests/package/parent)
 file(WRITE ${BUILD}/tests/package/parent/CMakeLists.txt "
 cmake_minimum_required(VERSION 3.22)
@@ -137,7 +138,7 @@ foreach(part APPS EXAMPLES)
       -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS} -DLIBATLAS_BUILD_${part}=OFF)
 endforeach()
 
-# By pkg-config.
+# Uses the package with pkg-config.
 file(GLOB_RECURSE pc ${prefix}/*/libatlas.pc)
 get_filename_component(pc_dir ${pc} DIRECTORY)
 run(${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${pc_dir} pkg-config --cflags --libs libatlas)
@@ -150,7 +151,7 @@ if(NOT output MATCHES "2304 triangles")
   message(FATAL_ERROR "unwrap by pkg-config printed: ${output}")
 endif()
 
-# Image files, whose module is found where the library was installed.
+# Reads and writes image files. Their module is found where the library was installed.
 file(GLOB_RECURSE module ${prefix}/*/libatlasgeo_images-*.so)
 if(NOT module)
   message(FATAL_ERROR "the image module is not installed")
@@ -169,7 +170,7 @@ int main(int, char** argument) {
 ]])
 run(${CXX} -std=c++20 ${flags} ${BUILD}/tests/package/image.cpp -o ${BUILD}/tests/package/image ${link})
 run(${BUILD}/tests/package/image ${BUILD}/tests/package/image.png)
-# Who reads no image loads none of what reading takes.
+# A program that reads no image loads none of the libraries for reading.
 run(ldd ${BUILD}/tests/package/image)
 if(output MATCHES "OpenImageIO")
   message(FATAL_ERROR "OpenImageIO is loaded at the start:\n${output}")
