@@ -23,7 +23,7 @@ double isometric_energy(const LocalMesh& mesh, std::span<const Vec2d> uvs, doubl
     const Eigen::Vector2d s = Eigen::JacobiSVD<Eigen::Matrix2d>(j).singularValues();
     const double small = j.determinant() < 0 ? -s[1] : s[1];
     const double p = s[0] + small - 2, q = s[0] - small;
-    // The integral over q of kept shear, (1 - weight) q / (1 + 10 (q / 2)²).
+    // The integral over q of the spared shear, (1 - weight) q / (1 + 10 (q / 2)²).
     const double spared = (1 - shear_weight) / 5 * std::log(1 + 2.5 * q * q);
     sum += 0.5 * e.cross(f).norm() * (0.5 * (p * p + q * q) - spared);
   }

@@ -14,7 +14,8 @@ namespace {
 using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
 using Triangle = Kernel::Triangle_2;
 
-// The T that a variant holds, or null: CGAL 5 returns boost's, CGAL 6 the standard's.
+// Returns the T that a variant holds, or null. CGAL 5 returns boost's variant, CGAL 6 the
+// standard's.
 template <class T, class Variant>
 const T* held(const Variant& variant) {
   if constexpr (requires { std::get_if<T>(&variant); }) {

@@ -15,7 +15,7 @@ inline ParamResult run(const Disc& d, const ParamOptions& options = {}) {
   return parameterize(d.view(), options, workspace);
 }
 
-// What every result must keep to, whatever the input.
+// Expects what must hold for every result, whatever the input.
 inline void expect_consistent(const Disc& d, const ParamResult& r, double max_stretch) {
   ASSERT_EQ(r.uvs.size(), d.positions.size());
   for (const Vec2d p : r.uvs) ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y));

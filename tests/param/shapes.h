@@ -19,7 +19,8 @@ struct Disc {
   LocalMesh view() const { return {positions, triangles, {}}; }
 };
 
-// A grid of columns x rows quads over [0, 1]², each cut in two, at the points that `surface` gives.
+// A grid of columns x rows quads over [0, 1]², each divided into two triangles, at the points that
+// `surface` returns.
 inline Disc make_grid(std::uint32_t columns, std::uint32_t rows,
                       const std::function<Vec3d(double, double)>& surface) {
   Disc disc;
@@ -38,7 +39,7 @@ inline Disc make_grid(std::uint32_t columns, std::uint32_t rows,
   return disc;
 }
 
-// Rings of 6, 12, 18, ... triangles' corners about a pole; surface(r, angle) with r in [0, 1].
+// Rings of 6, 12, 18, ... vertices around a pole, at surface(r, angle) with r in [0, 1].
 inline Disc make_rings(std::uint32_t rings, const std::function<Vec3d(double, double)>& surface) {
   Disc disc;
   const auto id = [](std::uint32_t ring, std::uint32_t i) {
@@ -76,7 +77,7 @@ inline Disc make_cylinder(double arc, double height, std::uint32_t columns, std:
   });
 }
 
-// A band of the cone with the half-angle whose sine is `slope`, cut along a line.
+// A band of a cone whose half-angle has the sine `slope`, cut along a line.
 inline Disc make_cone(double slope, double arc, std::uint32_t columns, std::uint32_t rows) {
   return make_grid(columns, rows, [=](double u, double v) {
     const double l = 0.3 + v;

@@ -16,8 +16,8 @@ namespace {
 
 using testing::Disc;
 
-// Sander's singular values by another route: eigenvalues of the Gram matrix of the two partial
-// derivatives.
+// Returns Sander's singular values by an independent method: from the eigenvalues of the Gram
+// matrix of the two partial derivatives.
 std::array<double, 2> sander(const Disc& d, std::span<const Vec2d> uv, std::size_t t) {
   const auto& tri = d.triangles[t];
   const Vec2d a = uv[tri[0]], b = uv[tri[1]], c = uv[tri[2]];
@@ -124,7 +124,7 @@ TEST(Distortion, CountsFlippedAndDegenerate) {
 }
 
 TEST(Distortion, CollapsedToALineIsInfinite) {
-  // No scale fits. Some triangles keep a length, others are a point.
+  // No scale fits. Some triangles keep a length, others become a point.
   std::vector<TriangleStretch> triangles(1000);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     triangles[t].area = 1 + double(t % 7);
@@ -203,7 +203,7 @@ TEST(Distortion, APartOfTheValuesHasTheirPercentile) {
     std::vector<param::WeightedValue> all(200000);
     double total = 0;
     for (param::WeightedValue& v : all) {
-      v = {std::round(100 * value(random)) / 50, weight(random)};  // with many ties
+      v = {std::round(100 * value(random)) / 50, weight(random)};  // with many equal values
       total += v.weight;
     }
     param::UpperTail tail(share * total);

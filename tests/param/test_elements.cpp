@@ -18,8 +18,8 @@ Disc hills(std::uint32_t columns, std::uint32_t rows) {
   });
 }
 
-// The elements of a large mesh are put together of what is kept of them; those of a single triangle
-// are kept whole.
+// The elements of a large mesh are computed from fewer stored values; those of a single triangle
+// are stored completely.
 TEST(Elements, ALargeMeshHasThoseOfItsTriangles) {
   const Disc disc = hills(260, 200);
   param::Elements elements, one;

@@ -23,7 +23,7 @@ std::vector<Vec2d> drop_z(const Disc& d) {
   return uv;
 }
 
-// A band of quads along a curve of the plane.
+// Returns a band of quads along a curve in the plane.
 Disc make_band(int n, double width, const std::function<Vec2d(double)>& curve) {
   return testing::make_grid(static_cast<std::uint32_t>(n), 1, [&](double t, double side) {
     const Vec2d a = curve(t), b = curve(t + 1e-6);
@@ -64,7 +64,7 @@ TEST(Injectivity, MatchesExactPairsOnIntegerGrids) {
     }
     const bool expected = testing::injective_by_pairs(d.view(), uv);
     const Injectivity result = check_injectivity(d.view(), uv);
-    // A border vertex that lies on another border edge counts as a crossing: stricter than sharing
+    // A border vertex on another border edge counts as a crossing, which is stricter than sharing
     // area.
     if (result.injective) {
       EXPECT_TRUE(expected) << "seed " << seed;
@@ -87,7 +87,7 @@ TEST(Injectivity, SeesSpiralsApart) {
 }
 
 TEST(Injectivity, ReportsALoopThatOverlapsItself) {
-  // A ring of a turn and a half: every triangle is positive, the band lies on itself.
+  // A ring of one and a half turns: every triangle is positive, but the band overlaps itself.
   const Disc d = make_band(90, 0.3, [](double t) {
     const double a = 3 * std::numbers::pi * t;
     return Vec2d{std::cos(a), std::sin(a)};
@@ -102,7 +102,7 @@ TEST(Injectivity, ReportsALoopThatOverlapsItself) {
   }
 }
 
-// Quads between pairs of points left and right of a way.
+// Returns quads between pairs of points to the left and right of a path.
 Disc make_strip(const std::vector<std::array<Vec2d, 2>>& pairs) {
   Disc strip;
   for (const auto& [left, right] : pairs) {
@@ -117,8 +117,8 @@ Disc make_strip(const std::vector<std::array<Vec2d, 2>>& pairs) {
 }
 
 TEST(Injectivity, ReportsALoopThatCrossesItselfInVerticesOnly) {
-  // A strip along the x axis comes back across itself; the two borders cross where both have
-  // vertices.
+  // A strip along the x axis comes back across itself. The two borders cross at points where both
+  // have vertices.
   std::vector<std::array<Vec2d, 2>> way;
   for (int x = -3; x <= 3; ++x) way.push_back({Vec2d{double(x), 1}, Vec2d{double(x), 0}});
   way.insert(way.end(), {{{{4, 1}, {5, 0}}},
@@ -133,15 +133,15 @@ TEST(Injectivity, ReportsALoopThatCrossesItselfInVerticesOnly) {
   EXPECT_TRUE(result.flipped.empty());
   EXPECT_FALSE(result.injective);
   EXPECT_FALSE(result.crossings.empty());
-  // Turned back at the axis, the way only touches the first strip with a corner.
+  // If the path turns back at the axis, it only touches the first strip with a corner.
   while (way.back()[0].x < 1) way.pop_back();
   const Disc touching = make_strip(way);
   EXPECT_TRUE(testing::injective_by_pairs(touching.view(), drop_z(touching)));
   EXPECT_TRUE(check_injectivity(touching.view(), drop_z(touching)).injective);
 }
 
-// Triangles set one on another's edge, with corners at random places of a small grid: all positive,
-// many in each other's way, borders that meet in vertices abound.
+// Adds triangles on edges of others, with corners at random points of a small grid. All are
+// positive, many overlap, and borders often meet in vertices.
 Disc grow_tree(std::mt19937& random, int triangles) {
   std::uniform_int_distribution<int> place(0, 4);
   const auto left_of = [&](const Vec3d& a, const Vec3d& b) {
@@ -159,7 +159,7 @@ Disc grow_tree(std::mt19937& random, int triangles) {
     const auto [a, b] = border[at];
     const Vec3d &pa = tree.positions[a], &pb = tree.positions[b];
     if ((pa.x == pb.x && (pa.x == 0 || pa.x == 4)) || (pa.y == pb.y && (pa.y == 0 || pa.y == 4)))
-      continue;  // perhaps no place to its right
+      continue;  // perhaps there is no point to its right
     const auto apex = static_cast<std::uint32_t>(tree.positions.size());
     tree.positions.push_back(left_of(pb, pa));
     tree.triangles.push_back({b, a, apex});
@@ -196,7 +196,8 @@ TEST(Injectivity, MatchesExactPairsWhereCornersCoincide) {
 }
 
 TEST(Injectivity, ReportsAVertexThatIsGoneRoundTwice) {
-  // A fan of twice the full turn about an inner vertex: positive triangles, doubly covered.
+  // A fan of twice the full turn around an inner vertex: positive triangles that cover the area
+  // twice.
   Disc d;
   std::vector<Vec2d> uv = {{0, 0}};
   const int n = 16;
@@ -213,7 +214,7 @@ TEST(Injectivity, ReportsAVertexThatIsGoneRoundTwice) {
 }
 
 TEST(Injectivity, ReportsTwoPiecesOnTopOfEachOther) {
-  // Concentric squares, not connected: no borders cross, but one lies in the other.
+  // Concentric squares that are not connected: no borders cross, but one lies in the other.
   Disc d;
   d.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
   std::vector<Vec2d> uv = {{0, 0}, {3, 0}, {3, 3}, {0, 3}, {1, 1}, {2, 1}, {2, 2}, {1, 2}};
@@ -229,7 +230,7 @@ TEST(Injectivity, AcceptsARingWithAHole) {
     const double a = 2 * std::numbers::pi * t;
     return Vec2d{std::cos(a), std::sin(a)};
   });
-  Disc closed = d;  // weld the last column to the first
+  Disc closed = d;  // the last column is welded to the first
   for (auto& t : closed.triangles) {
     for (auto& v : t) v = v == 40 ? 0 : v == 81 ? 41 : v;
   }
@@ -239,9 +240,9 @@ TEST(Injectivity, AcceptsARingWithAHole) {
 }
 
 TEST(Injectivity, AcceptsAHoleThatTouchesItself) {
-  // Inside a square frame a thorn reaches from the right side of the hole into its lowest corner:
-  // of the two corners of the hole's border there, one turns like a hole's and one like an
-  // outline's.
+  // Inside a square frame, a thorn reaches from the right side of the hole to its lowest corner. Of
+  // the two corners of the hole's border there, one turns like that of a hole and one like that of
+  // an outline.
   Disc frame;
   const auto vertex = [](std::uint32_t x, std::uint32_t y) { return 6 * y + x; };
   for (int i = 0; i < 36; ++i) frame.positions.push_back({double(i % 6), double(i / 6), 0});
@@ -270,7 +271,7 @@ TEST(Injectivity, DecidesTheLastDigit) {
   d.positions.assign(3, {});
   d.triangles = {{0, 1, 2}};
   const double next = std::nextafter(0.1, 1);
-  // Points on the diagonal, the middle one a digit aside.
+  // Points on the diagonal; the middle one may be off by one step of a double.
   EXPECT_FALSE(
       check_injectivity(d.view(), std::vector<Vec2d>{{0, 0}, {0.3, 0.3}, {0.1, 0.1}}).injective);
   EXPECT_TRUE(
@@ -300,7 +301,7 @@ TEST(Injectivity, ClearanceSurvivesRounding) {
 }
 
 TEST(Injectivity, FindsACloseSlit) {
-  // A square with a slit from one side whose banks are 1e-6 apart.
+  // A square with a slit from one side; the two sides of the slit are 1e-6 apart.
   Disc d;
   d.triangles = {{0, 1, 3}, {1, 2, 3}, {3, 4, 0}, {4, 5, 0}};
   const std::vector<Vec2d> uv = {{0, 0}, {2, -1}, {2, -1e-6}, {0.5, 0}, {2, 1e-6}, {2, 1}};
@@ -315,7 +316,7 @@ TEST(Injectivity, FindsACloseSlit) {
 }
 
 TEST(Injectivity, ManyBorderEdgesAreFast) {
-  // 2 * 10^5 border edges of very unequal length; quadratic work would take minutes.
+  // 2 * 10^5 border edges of very unequal length. Quadratic work would take minutes.
   const Disc d = make_band(100000, 1e-3, [](double t) {
     const double a = 40 * std::numbers::pi * t * t, r = 0.1 + a;
     return Vec2d{r * std::cos(a), r * std::sin(a)};
@@ -324,8 +325,8 @@ TEST(Injectivity, ManyBorderEdgesAreFast) {
 }
 
 TEST(Injectivity, AHubIsFast) {
-  // A fan of 4 * 10^5 triangles: to look for opposites among all of its hub's triangles would take
-  // a minute.
+  // A fan of 4 * 10^5 triangles. A search for opposite half-edges among all triangles of the hub
+  // would take a minute.
   Disc d;
   const std::uint32_t n = 400000;
   d.positions = {{0, 0, 0}};

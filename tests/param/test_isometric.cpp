@@ -47,7 +47,8 @@ TEST(Isometric, CylinderHasItsLengths) {
   const std::uint32_t columns = 30, rows = 10;
   const Disc d = testing::make_cylinder(arc, height, columns, rows);
   const auto uv = flatten(d, 3);
-  const double chord = 2 * std::sin(arc / columns / 2) * columns;  // of the inscribed polygon
+  // Length of the inscribed polygon.
+  const double chord = 2 * std::sin(arc / columns / 2) * columns;
   const Vec2d a = uv[0], b = uv[columns], c = uv[(columns + 1) * rows];
   EXPECT_NEAR(std::hypot(b.x - a.x, b.y - a.y), chord, 1e-9);
   EXPECT_NEAR(std::hypot(c.x - a.x, c.y - a.y), height, 1e-9);
@@ -89,27 +90,27 @@ TEST(Isometric, StepsNeverRaiseTheEnergyAndReachAStationaryPoint) {
   }
 }
 
-// Weighed half as much as a change of area, shear costs what it does in L2 stretch.
+// With half the weight of a change of area, shear costs as much as in L2 stretch.
 TEST(Isometric, LessWeightOfShearIsLessL2Stretch) {
   for (const double angle : {0.4, 0.8, 1.2}) {
     const Disc d = testing::make_cap(angle, 20);
     const double rigid = l2_stretch(d, flatten(d, {.iterations = 60, .shear_weight = 1})) - 1;
     const double half = l2_stretch(d, flatten(d, {.iterations = 60, .shear_weight = 0.5})) - 1;
     EXPECT_LT(half, 0.92 * rigid) << angle;
-    // Of all weights the best, while stretch is small.
+    // While stretch is small, this weight is the best of all.
     for (const double weight : {0.25, 0.75}) {
       if (angle > 1) continue;
       const auto uv = flatten(d, {.iterations = 60, .shear_weight = weight});
       EXPECT_LT(half, l2_stretch(d, uv) - 1) << angle << ' ' << weight;
     }
-    // Few steps of the default come near.
+    // A few steps with the defaults come near that.
     EXPECT_LT(l2_stretch(d, flatten(d, 3)) - 1, 1.1 * half) << angle;
   }
 }
 
-// Every other step goes beyond the minimum that it is given, and the next one gains by it.
+// Every other step goes beyond the minimum that it is given, from which the next one gains.
 TEST(Isometric, RelaxedStepsEndBelowAsManyPlainOnes) {
-  for (const std::uint32_t rings : {8u, 40u, 60u}) {  // a solver each
+  for (const std::uint32_t rings : {8u, 40u, 60u}) {  // each uses another solver
     const Disc d = testing::make_cap(1.3, rings);
     const auto energy = [&](std::span<const Vec2d> uvs) {
       return testing::isometric_energy(d.view(), uvs, IsometricOptions{}.shear_weight);
@@ -132,14 +133,14 @@ TEST(Isometric, FramesAndUvsStartAlike) {
   const auto c = static_cast<float>(u.x), s = static_cast<float>(u.y);
   const std::vector<std::array<Vec3f, 2>> frames(d.triangles.size(),
                                                  {Vec3f{c, -s, 0}, Vec3f{s, c, 0}});
-  const IsometricOptions options{.iterations = 4, .shear_weight = 1};  // frames hold no shear
+  const IsometricOptions options{.iterations = 4, .shear_weight = 1};  // frames contain no shear
   const double from_uvs = testing::arap_energy(d.view(), flatten(d, options, {.uvs = uv}));
   const double from_frames = testing::arap_energy(
       d.view(), flatten(d, options, {.frames = [&](std::size_t t) { return frames[t]; }}));
   EXPECT_NEAR(from_frames, from_uvs, 1e-9);
 }
 
-// The solver changes with the size: small discs take one, large ones another. All must agree.
+// The solver depends on the size of the disc. All solvers must agree.
 TEST(Isometric, SolversAgreeAcrossTheirLimits) {
   for (const std::uint32_t n : {8u, 30u, 45u, 90u, 180u}) {
     const Disc d = testing::make_cylinder(2.5, 1.5, n, n);

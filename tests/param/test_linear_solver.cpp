@@ -15,8 +15,8 @@ namespace {
 
 using testing::Disc;
 
-// The stiffness by its textbook formula, half the cotangents of the angles opposite to each edge,
-// as a dense matrix.
+// Returns the stiffness matrix by its textbook formula, half the cotangents of the angles opposite
+// to each edge, as a dense matrix.
 Eigen::MatrixXd cotangent_matrix(const Disc& disc, const std::vector<float>& weights) {
   const auto at = [&](std::uint32_t v) {
     const Vec3d& p = disc.positions[v];
@@ -55,8 +55,8 @@ std::vector<float> random_weights(std::size_t count, unsigned seed) {
   return out;
 }
 
-// Solves for a known solution; it comes back up to a constant for each piece, whose first vertices
-// are given.
+// Solves for a known solution and expects it up to a constant per piece. The first vertices of the
+// pieces are given.
 void expect_solution(const Eigen::MatrixXd& k, param::EnvelopeSolver& solver,
                      const std::vector<std::uint32_t>& first_of_piece) {
   const Eigen::MatrixXd wanted = Eigen::MatrixXd::Random(k.rows(), 2);
@@ -131,7 +131,7 @@ TEST(EnvelopeSolver, HoldsAVertexOfEachPiece) {
   expect_solution(cotangent_matrix(disc, even), of_matrix, {0, first});
 }
 
-// Nothing of an earlier mesh is left in what comes after it.
+// Nothing of an earlier mesh may affect later results.
 TEST(EnvelopeSolver, ForgetsEarlierMeshes) {
   const Disc disc = rough_grid(20, 20, 9);
   param::Elements elements;
@@ -139,7 +139,7 @@ TEST(EnvelopeSolver, ForgetsEarlierMeshes) {
   std::vector<std::vector<glm::dvec2>> solutions;
   for (int run = 0; run < 2; ++run) {
     param::EnvelopeSolver solver;
-    if (run > 0) {  // used before, for another mesh
+    if (run > 0) {  // it was used for another mesh before
       const Disc other = rough_grid(31, 8, 1);
       param::Elements others;
       others.build(other.view(), 0);

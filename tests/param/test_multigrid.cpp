@@ -21,7 +21,7 @@ Vector vector_of(const Uvs& uvs) {
   return out;
 }
 
-// A disc's system, with its matrix as the direct solvers have it.
+// The system of a disc, with the matrix that the direct solvers use.
 struct System {
   explicit System(const Disc& disc) {
     elements.build(disc.view(), 0);
@@ -58,7 +58,7 @@ Disc hills(std::uint32_t columns, std::uint32_t rows, double width) {
   });
 }
 
-// Solutions with both long and short waves.
+// Returns a solution with long and short waves.
 Vector waves(const Disc& disc) {
   Vector x;
   for (std::size_t i = 0; i < disc.positions.size(); ++i) {
@@ -86,7 +86,8 @@ TEST(Multigrid, ErrorsFallAsFarAsAskedFor) {
 }
 
 TEST(Multigrid, ErrorsFallBelowWhatOneCorrectionReaches) {
-  // A correction in single precision ends far above this; the residual is then found anew.
+  // A correction in single precision ends far above this error, so the residual has to be computed
+  // again.
   expect_solved(hills(60, 60, 1), 1e-14);
 }
 

@@ -33,7 +33,7 @@ TEST(Parameterize, ProjectsWhatIsNearlyFlat) {
   EXPECT_LT(other.distortion.stretch_l2, r.distortion.stretch_l2);
 }
 
-// Between solving and measuring, large meshes give the solver's memory back.
+// Between solving and measuring, large meshes release the solver's memory.
 TEST(Parameterize, LargeMeshesGoOnAfterTheyWereMeasured) {
   const Disc cylinder = testing::make_cylinder(5, 2, 500, 220);
   const ParamResult unrolled = run(cylinder, {.method = ParamMethod::isometric});
@@ -42,14 +42,14 @@ TEST(Parameterize, LargeMeshesGoOnAfterTheyWereMeasured) {
   const Disc cap = testing::make_cap(1.1, 190);
   ParamOptions options{.method = ParamMethod::isometric};
   const double plain = run(cap, options).distortion.stretch_999;
-  options.aimed_stretch = 1.1;  // out of reach, and tried
+  options.aimed_stretch = 1.1;  // cannot be reached, but is tried
   const ParamResult squeezed = run(cap, options);
   EXPECT_TRUE(squeezed.injective);
   EXPECT_LT(squeezed.distortion.stretch_999, plain);
 }
 
-// A band that winds more than twice around, so that its wavy sides cross in dozens of places:
-// squeezing would not change that, and takes long.
+// A band that winds more than twice around, so that its wavy sides cross in dozens of places.
+// Squeezing would take long and not change that.
 TEST(Parameterize, LargeMeshesThatCrossThemselvesAreNotSqueezed) {
   const auto band = [](int columns) {
     return testing::make_grid(columns, 10, [](double u, double v) {
@@ -95,7 +95,7 @@ TEST(Parameterize, RemovesTheFlipsThatRoughNoiseBrings) {
 }
 
 TEST(Parameterize, ReportsWhatCannotBeFlattenedWithoutOverlap) {
-  // Two and a half turns of a helicoid's ramp near its axis come to lie on each other.
+  // Two and a half turns of a helicoid's ramp near its axis overlap each other.
   const Disc d = testing::make_grid(100, 6, [](double u, double v) {
     const double a = 5 * std::numbers::pi * u, r = 1 + 0.5 * v;
     return Vec3d{r * std::cos(a), r * std::sin(a), 0.05 * a};
@@ -109,7 +109,8 @@ TEST(Parameterize, ReportsWhatCannotBeFlattenedWithoutOverlap) {
 }
 
 TEST(Parameterize, DrawsApartBordersThatOverlapALittle) {
-  // A ramp of just over a turn: unrolled it overlaps by a sliver, which a little stretch resolves.
+  // A ramp of slightly more than a turn. Unrolled it overlaps by a sliver, which a little stretch
+  // resolves.
   for (const double excess : {1e-9, 0.001, 0.01, 0.03}) {
     const Disc d = testing::make_grid(120, 8, [=](double u, double v) {
       const double a = (2 * std::numbers::pi + excess) * u, r = 1 + 0.5 * v;
@@ -122,7 +123,7 @@ TEST(Parameterize, DrawsApartBordersThatOverlapALittle) {
   }
 }
 
-// What is a little, by the chart's width, is many edges in a fine mesh.
+// An overlap that is small relative to the chart's width spans many edges in a fine mesh.
 TEST(Parameterize, DrawsApartWhateverTheMeshesFineness) {
   for (const int columns : {120, 360, 600, 1200}) {
     const Disc d = testing::make_grid(columns, columns / 15, [](double u, double v) {
@@ -136,8 +137,8 @@ TEST(Parameterize, DrawsApartWhateverTheMeshesFineness) {
 }
 
 TEST(Parameterize, LeavesCrossingsThatTheBoundKeepsTogether) {
-  // The same ramps under a tight bound: what comes apart only beyond it is reported as it lay
-  // within it, with its crossings.
+  // The same ramps under a tight bound. If an overlap can only be removed beyond the bound, the
+  // chart is reported within it, together with its crossings.
   for (const double excess : {0.005, 0.01, 0.03}) {
     const Disc d = testing::make_grid(120, 8, [=](double u, double v) {
       const double a = (2 * std::numbers::pi + excess) * u, r = 1 + 0.5 * v;
@@ -150,15 +151,15 @@ TEST(Parameterize, LeavesCrossingsThatTheBoundKeepsTogether) {
   }
 }
 
-// Half a pipe unrolled by its formula and stretched by a tenth, each triangle moved somewhere else:
-// only the gradients count, and they are kept, where any descent would have made them isometric.
+// Half a pipe, unrolled by its formula and stretched by a tenth. Each triangle is moved somewhere
+// else, because only the gradients count. They are kept; a descent would have made them isometric.
 TEST(Parameterize, JoinsFlatPartsAsTheyAre) {
   constexpr double stretch = 1.1;
   const Disc d = testing::make_grid(24, 8, [](double u, double v) {
     const double angle = std::numbers::pi * u;
     return Vec3d{std::cos(angle), v, std::sin(angle)};
   });
-  // The chord of one of 24 steps: the grid's own length, so that the map is exact.
+  // The chord of one of 24 steps, which is the grid's own length, so that the map is exact.
   const double step = 2 * std::sin(std::numbers::pi / 48);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> anywhere(-3, 3);
@@ -198,8 +199,8 @@ TEST(Parameterize, RecoversFromFramesThatLie) {
   EXPECT_LT(r.distortion.stretch_linf, 1.01);
 }
 
-// A frame of its own for each triangle, turned anyhow: nothing that descends from there comes out
-// of its folds, but what begins without them does.
+// Each triangle has its own frame with a random rotation. A descent from there does not remove the
+// folds, but one that starts without the frames does.
 TEST(Parameterize, RecoversFromFramesThatDisagree) {
   for (const Disc& d :
        {testing::make_cylinder(5, 2, 60, 20), testing::make_cone(0.5, 5.5, 60, 10)}) {
@@ -228,7 +229,7 @@ TEST(Parameterize, RecoversFromFramesThatDisagree) {
 }
 
 TEST(Parameterize, ReportsTheTipThatBreaksTheBound) {
-  // A needle on a plate: nothing flattens it within 1.25, and the worst triangles are the needle's.
+  // A needle on a plate. Nothing flattens it within 1.25, and its triangles are the worst ones.
   const Disc d = testing::make_rings(12, [](double r, double angle) {
     return Vec3d{r * std::cos(angle), r * std::sin(angle), r < 0.3 ? 3 * (0.3 - r) : 0};
   });
@@ -241,7 +242,7 @@ TEST(Parameterize, ReportsTheTipThatBreaksTheBound) {
 
 TEST(Parameterize, SliversDoNotSinkTheirChart) {
   for (const double aspect : {1e2, 1e4, 1e6, 1e8, 1e10, 1e12}) {
-    // Columns alternate between wide ones and slivers of the given aspect, on a cylinder.
+    // Columns on a cylinder alternate between wide ones and slivers of the given aspect.
     const std::uint32_t n = 20;
     const Disc d = testing::make_grid(n, n, [&](double u, double v) {
       const auto i = static_cast<std::uint32_t>(std::lround(u * n));
@@ -256,7 +257,8 @@ TEST(Parameterize, SliversDoNotSinkTheirChart) {
 }
 
 TEST(Parameterize, ZeroAreaTrianglesGetAPlace) {
-  // A row of the grid collapsed onto its neighbour, a doubled vertex, and a vertex on an edge.
+  // One row of the grid is collapsed onto its neighbour, one vertex is doubled, and one lies on an
+  // edge.
   Disc d = testing::make_grid(10, 10, [](double u, double v) {
     return Vec3d{u, std::abs(v - 0.5) < 1e-9 ? 0.4 : v, 0.2 * std::sin(3 * u)};
   });

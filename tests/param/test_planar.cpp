@@ -70,7 +70,7 @@ TEST(Planar, SurvivesAClosedMeanNormal) {
   EXPECT_EQ(mean_normal(d.view()), (Vec3d{0, 0, 1}));
 }
 
-// The smallest box over finely sampled directions.
+// Returns the area of the smallest box over finely sampled directions.
 double sampled_box(std::span<const Vec2d> points) {
   double best = 1e300;
   for (int k = 0; k < 3600; ++k) {
@@ -104,7 +104,7 @@ TEST(Orient, FindsTheSmallestBox) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       low = {std::min(low.x, points[i].x), std::min(low.y, points[i].y)};
       high = {std::max(high.x, points[i].x), std::max(high.y, points[i].y)};
-      // A rotation, not a reflection: the documented one.
+      // The result is the documented rotation, not a reflection.
       const Vec2d p{before[i].x - before[0].x, before[i].y - before[0].y};
       EXPECT_NEAR(points[i].x - points[0].x, o.cosine * p.x - o.sine * p.y, 1e-12 * o.size.x);
       EXPECT_NEAR(points[i].y - points[0].y, o.sine * p.x + o.cosine * p.y, 1e-12 * o.size.x);
@@ -116,8 +116,8 @@ TEST(Orient, FindsTheSmallestBox) {
 }
 
 TEST(Orient, StraightBordersWinWithinTheSlack) {
-  // A square with a bump on one side: the smallest box is turned, the long straight borders are
-  // not.
+  // A square with a bump on one side. The smallest box is rotated; the long straight borders would
+  // not be.
   std::vector<Vec2d> points = {{0, 0}, {1, 0}, {1, 1}, {0.5, 1.004}, {0, 1}};
   std::vector<std::array<std::uint32_t, 2>> border = {{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 0}};
   for (Vec2d& p : points)

@@ -1,4 +1,4 @@
-// The barrier relaxation on its own.
+// Tests of the barrier relaxation alone.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,7 +43,7 @@ Disc plate(std::uint32_t n) {
   return testing::make_grid(n, n, [](double u, double v) { return Vec3d{u, v, 0}; });
 }
 
-// Far more than a chart may have left after the first rings.
+// There are far more flips than a chart may have left after the first rings.
 TEST(Relax, ManyFlipsFarFromEachOtherAreAllTurned) {
   const std::uint32_t n = 80;
   const Disc d = plate(n);
@@ -60,8 +60,8 @@ TEST(Relax, ManyFlipsFarFromEachOtherAreAllTurned) {
   EXPECT_GT(out.turned, 400u);
 }
 
-// Half of it lies mirrored on the other half: no neighbourhood is the cause, so none wider than the
-// first ring about the flips is moved.
+// One half of the chart lies mirrored on the other. No local cause exists, so nothing beyond the
+// first ring around the flips moves.
 TEST(Relax, AFoldedChartIsGivenUp) {
   const std::uint32_t n = 60;
   const Disc d = plate(n);
@@ -85,7 +85,7 @@ TEST(Relax, AFoldedChartIsGivenUp) {
   }
 }
 
-// From singular values directly, and by differences.
+// Compares with values computed directly from singular values, and with finite differences.
 TEST(Relax, TheHighPowerAndItsDerivativesAreRight) {
   const double power = 2 * std::exp2(param::doublings);
   for (const auto& stretches : {std::pair{1.25, 0.8}, {1.1, 1.05}, {0.9, 0.7}, {1.4, 1.0}}) {
@@ -117,7 +117,7 @@ TEST(Relax, TheHighPowerAndItsDerivativesAreRight) {
   }
 }
 
-// Spikes of scan noise far from each other: what is not near them stays where it is.
+// Spikes of scan noise that are far from each other: vertices that are not near them do not move.
 TEST(Relax, TheTailIsLoweredWhereItIs) {
   const std::uint32_t n = 60;
   Disc d = plate(n);

@@ -19,7 +19,8 @@ using testing::expect_consistent;
 using testing::run;
 
 // Milnor 1969, "A problem in cartography": no map of a cap of half-angle a has a smaller ratio of
-// its greatest to its least scale than a / sin a, which the azimuthal equidistant projection has.
+// its greatest to its least scale than a / sin a, which the azimuthal equidistant projection
+// reaches.
 TEST(Squeeze, CapsMeetMilnorsOptimum) {
   for (const double degrees : {20.0, 45.0, 70.0, 90.0}) {
     const double a = degrees * std::numbers::pi / 180, optimum = a / std::sin(a);
@@ -27,7 +28,7 @@ TEST(Squeeze, CapsMeetMilnorsOptimum) {
     ParamOptions options;
     options.method = ParamMethod::isometric;
     options.iterations = 20;
-    options.max_stretch = 1.0001;  // out of reach: squeeze with all steps
+    options.max_stretch = 1.0001;  // cannot be reached, so all squeeze steps are done
     options.squeeze_iterations = 40;
     options.squeeze_ratio = true;
     const ParamResult r = run(d, options);
@@ -40,7 +41,7 @@ TEST(Squeeze, CapsMeetMilnorsOptimum) {
     }
     EXPECT_LT(greatest / least, 1.02 * optimum) << degrees;
     EXPECT_GT(greatest / least, 0.995 * optimum)
-        << degrees;  // below by the polyhedron's coarseness only
+        << degrees;  // only the coarseness of the polyhedron makes it lower
     EXPECT_TRUE(r.injective);
   }
 }
@@ -63,12 +64,12 @@ TEST(Squeeze, ReachesABoundThatDescentMisses) {
   const ParamResult r = run(d, squeezed);
   expect_consistent(d, r, squeezed.max_stretch);
   EXPECT_TRUE(r.within_bound) << reached << " -> " << r.distortion.stretch_999;
-  squeezed.local = true;  // so many triangles stretch that no few places can be relaxed
+  squeezed.local = true;  // so many triangles stretch that relaxing few places is not possible
   EXPECT_TRUE(run(d, squeezed).within_bound);
 }
 
-// A strip of flat faces, folded by right angles, with a small ear between two faces at both ends of
-// each fold: sharp vertices, as CAD parts have them.
+// A strip of flat faces that are folded by right angles, with a small ear between two faces at both
+// ends of each fold. These sharp vertices occur in CAD parts.
 Disc eared_strip(std::uint32_t faces, double corner, double ear) {
   Disc d;
   const auto add = [&](Vec3d p) {
@@ -77,7 +78,7 @@ Disc eared_strip(std::uint32_t faces, double corner, double ear) {
   };
   Vec3d at{0, 0, 0};
   std::array<std::uint32_t, 2> fold{add(at), add({0, 1, 0})};  // its lower and upper end
-  std::array<std::uint32_t, 2> last{};                         // the ears' corners left of it
+  std::array<std::uint32_t, 2> last{};                         // the corners of the ears left of it
   for (std::uint32_t k = 0; k < faces; ++k) {
     const double x = k % 2 == 0, z = 1 - x;
     const auto on_face = [&](double a, double y) { return add({at.x + a * x, y, at.z + a * z}); };
@@ -104,7 +105,7 @@ Disc eared_strip(std::uint32_t faces, double corner, double ear) {
   return d;
 }
 
-// The least L2 stretch that a search by chance finds from there on, within the bound.
+// Returns the least L2 stretch that a random search finds from the given uvs, within the bound.
 double searched_l2(const Disc& d, std::vector<Vec2d> uvs, double bound) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
@@ -122,8 +123,8 @@ double searched_l2(const Disc& d, std::vector<Vec2d> uvs, double bound) {
   return least;
 }
 
-// What the ears must give up is not paid for by the faces: squeezed as far as possible, they
-// stretch by twice what they need. Nor do they pay for less stretch than the bound.
+// The flat faces must not stretch to relieve the ears: squeezed as far as possible, the faces would
+// stretch twice as much as needed. Nor must they stretch to get below the bound.
 TEST(Squeeze, FlatFacesDoNotGiveWayToASharpVertex) {
   for (const double degrees : {130.0, 135.0, 140.0}) {
     for (const double ear : {0.06, 0.1, 0.14}) {
@@ -142,7 +143,7 @@ TEST(Squeeze, FlatFacesDoNotGiveWayToASharpVertex) {
   }
 }
 
-// On a curved surface less stretch than the bound costs little, and is had.
+// On a curved surface, less stretch than the bound costs little and is therefore reached.
 TEST(Squeeze, CurvedSurfacesComeDownToTheAim) {
   const Disc d = testing::make_grid(30, 30, [](double u, double v) {
     const double x = 2 * u - 1, y = 2 * v - 1;

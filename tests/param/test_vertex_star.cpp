@@ -1,4 +1,5 @@
-// The energy of a vertex's triangles, four at a time, against each triangle's by its definition.
+// Compares the energy of a vertex's triangles, computed four at a time, with that of each triangle
+// by its definition.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,12 +27,12 @@ struct Triangle {
 };
 
 struct Map {
-  Real xx, xy, yx, yy;  // where the rest's unit vectors come to
+  Real xx, xy, yx, yy;  // images of the unit vectors of the rest pose
   Real det() const { return xx * yy - xy * yx; }
   Real squared() const { return xx * xx + xy * xy + yx * yx + yy * yy; }
 };
 
-// The linear map that takes the rest's edges (length, 0) and (foot, altitude) to those of the uvs.
+// Returns the linear map from the rest edges (length, 0) and (foot, altitude) to those of the uvs.
 Map map_of(const Triangle& t, Real mx, Real my) {
   std::array<std::array<Real, 2>, 3> u;
   for (std::uint32_t k = 0; k < 3; ++k) {
@@ -65,7 +66,7 @@ Real energy_of(const std::vector<Triangle>& star, const VertexStar::Kind& kind, 
   return sum;
 }
 
-// Triangles about as large as at rest, turned, and none too thin for finite differences.
+// Returns triangles of about their rest size, rotated, and none too thin for finite differences.
 std::vector<Triangle> random_star(std::size_t count, bool flipped, std::mt19937& random) {
   const auto in = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
@@ -93,7 +94,7 @@ std::vector<Triangle> random_star(std::size_t count, bool flipped, std::mt19937&
   return star;
 }
 
-// Loads one after another into the same: nothing may be left of what was larger.
+// Loads several stars into the same object. Nothing of a larger one may remain.
 class VertexStars : public ::testing::TestWithParam<VertexEnergy> {
  protected:
   const VertexStar& load(const std::vector<Triangle>& triangles) {
@@ -185,7 +186,8 @@ TEST(VertexStar, StepsEndFourFifthsBeforeTheFirstTriangleThatTheyDegenerate) {
       for (const Triangle& t : triangles) {
         star.add(t.element, t.corner, t.uvs, t.weight);
         const Real before = map_of(t, 0, 0).det();
-        const Real change = map_of(t, step.x, step.y).det() - before;  // det is linear in the step
+        // The determinant is linear in the step.
+        const Real change = map_of(t, step.x, step.y).det() - before;
         if (change < 0) expected = std::min(expected, double(-0.8L * before / change));
       }
       star.finish();

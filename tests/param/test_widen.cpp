@@ -1,4 +1,4 @@
-// Parts that come near each other in uv but not on the surface: drawn apart, and nothing else.
+// Parts that are near each other in uv but not on the surface are moved apart, and nothing else is.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct Flat {
 };
 
 // A turn of a spiral stair, laid flat as a ring whose two ends come within `gap` of each other.
-// `rise` is what separates them on the surface.
+// `rise` separates the ends on the surface.
 Flat stair(double rise, double gap, double scale = 1) {
   const double arc = 2 * kPi - gap;
   const auto at = [=](double u, double v, double z) {
@@ -47,8 +47,8 @@ WidenOptions with(double clearance, double max_stretch = 1.25) {
   return options;
 }
 
-// Of points spread along the border, the smallest distance in uv of two that are more than `far`
-// from each other on the surface; every pair is looked at.
+// Returns the smallest uv distance between two points sampled along the border that are more than
+// `far` apart on the surface. Compares every pair.
 double least_gap(const Flat& flat, double far) {
   struct Point {
     Vec2d uv;
@@ -95,7 +95,7 @@ TEST(Widen, FarPartsEndAClearanceApart) {
   EXPECT_LT(after.stretch_l2, before + 0.002);
 }
 
-// The banks of a cut are one place of the surface: texels may mix them.
+// Both sides of a cut are the same place on the surface, so texels may mix them.
 TEST(Widen, WhatIsOnePlaceOfTheSurfaceStays) {
   Flat flat = stair(0, kGap);
   const std::vector<Vec2d> before = flat.uvs;
@@ -108,7 +108,7 @@ TEST(Widen, WhatIsOnePlaceOfTheSurfaceStays) {
   }
 }
 
-// The ends cannot come apart by much of what they lack; what the bound allows is kept.
+// Within the bound, the ends cannot be moved apart by much. What the bound allows is kept.
 TEST(Widen, TheBoundIsKept) {
   for (const double slack : {1e-6, 1e-3, 1e-2}) {
     Flat flat = stair(1, kGap);
@@ -138,9 +138,9 @@ TEST(Widen, LooksWithoutMoving) {
   const Flat flat = stair(1, kGap);
   const Widened seen = measure_gaps(flat.disc.view(), kClearance, flat.uvs);
   EXPECT_FALSE(seen.moved);
-  // Two ends of 0.4, and two circles nearly closed.
+  // The border consists of two ends of length 0.4 and two nearly closed circles.
   EXPECT_NEAR(seen.border, 0.8 + 2 * kPi * 2.4, 0.05);
-  // All of both ends, and little around their corners.
+  // Both ends are near entirely, and a little of the border around their corners.
   EXPECT_NEAR(seen.near_before, 0.8, 0.25);
 }
 
