@@ -11,7 +11,7 @@
 namespace atlas::test {
 namespace {
 
-// A baked export of so many charts on so many square pages.
+// Returns the report of a baked export with so many charts on so many square pages.
 ExportReport report_of(std::size_t charts, std::size_t pages, std::int32_t side) {
   ExportReport report;
   report.charts.resize(charts);
@@ -41,7 +41,7 @@ TEST(Advice, ManyPagesNameLargerOnesThatHoldAsMuch) {
       holds(advice_on(report_of(16000, 200, 2048), options),
             "(ExportOptions::atlas_size 8192 ExportOptions::atlases 13 holds as much; a longer "
             "ExportOptions::texel_metres"));
-  options.atlas_size = 8192;  // not all cards take larger ones
+  options.atlas_size = 8192;  // not all graphics cards support larger ones
   EXPECT_TRUE(holds(advice_on(report_of(16000, 200, 8192), options),
                     "(a longer ExportOptions::texel_metres"));
 }
@@ -56,11 +56,11 @@ TEST(Advice, PagesOfGuttersAreNamed) {
   EXPECT_TRUE(advice_on(report, {}).empty());
 }
 
-// As of five metres where five millimetres were meant.
+// As if five metres were given where five millimetres were meant.
 TEST(Advice, TexelsAsLongAsChartsAreNamed) {
   ExportReport report = report_of(16, 1, 16);
   ExportOptions options;
-  EXPECT_TRUE(advice_on(report, options).empty());  // none were asked for
+  EXPECT_TRUE(advice_on(report, options).empty());  // no texel size was given
   options.texel_metres = 5;
   EXPECT_TRUE(holds(advice_on(report, options), "16 charts have 11 texels each on average, 5e+03"));
   EXPECT_TRUE(advice_on(report_of(2, 1, 16), options).empty());
@@ -71,9 +71,9 @@ TEST(Advice, TransparencyIsNamed) {
   scene.materials = {{.name = "wall"}, {.name = "fence"}, {.name = "glass"}};
   scene.textures.push_back({"leaf.png", Image8(2, 2, 4)});
   scene.textures.push_back({"bark.png", Image8(2, 2, 3)});
-  scene.materials[0].texture = 0;  // a fourth channel that means nothing
+  scene.materials[0].texture = 0;  // a fourth channel without meaning
   scene.materials[1].texture = 1;
-  scene.materials[1].alpha_mode = AlphaMode::mask;  // of no fourth channel
+  scene.materials[1].alpha_mode = AlphaMode::mask;  // its texture has no fourth channel
   EXPECT_TRUE(advice_on_materials(scene, Quantity::illuminance).empty());
   scene.materials[1].texture = 0;
   EXPECT_TRUE(holds(advice_on_materials(scene, Quantity::illuminance),
@@ -95,7 +95,7 @@ TEST(Advice, UvChartsOfWhichNoneIsKeptAreNamed) {
   EXPECT_TRUE(advice_on(report, options).empty());
 }
 
-// Luminance holds what a lamp sends out; illuminance cannot.
+// Luminance includes what a lamp emits; illuminance cannot.
 TEST(Advice, LampsAreNamed) {
   Scene scene;
   scene.materials = {{.name = "wall"}, {.name = "lamp"}, {.name = "screen"}};
@@ -124,7 +124,7 @@ TEST(Advice, ALampOfAnMtlIsToldAndReported) {
     return report.ok() ? report->advice : std::vector<std::string>{};
   };
   EXPECT_TRUE(holds(advice(), "1 material ('lamp') emits light"));
-  options.charts_only = true;  // nothing is baked, nothing lost
+  options.charts_only = true;  // nothing is baked, so nothing is lost
   EXPECT_TRUE(advice().empty());
 }
 
@@ -151,7 +151,7 @@ TEST(Advice, LightThatTheToneCurveLosesIsNamed) {
 TEST(Advice, TexelsThatPagesCannotHoldAreNamed) {
   ExportReport report = report_of(100, 8, 1024);
   report.scale = 0.2;
-  EXPECT_TRUE(advice_on(report, {}).empty());  // none were asked for
+  EXPECT_TRUE(advice_on(report, {}).empty());  // no texel size was given
   ExportOptions options;
   options.texel_metres = 0.005;
   EXPECT_TRUE(holds(advice_on(report, options),

@@ -5,8 +5,8 @@
 namespace atlas::test {
 namespace {
 
-// A unit square of two triangles on a page of `side` texels; the second has been given uvs that run
-// clockwise.
+// A unit square of two triangles on a page of 64 texels. The second triangle is later given
+// clockwise uvs.
 TEST(AssembleWorld, TellsOfTrianglesThatStayTurnedOver) {
   Scene scene;
   scene.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -30,7 +30,7 @@ TEST(AssembleWorld, TellsOfTrianglesThatStayTurnedOver) {
     const AssembledWorld made =
         assemble_world(scene, {charts, {&placement, 1}, {&page, 1}}, mesh, true);
     EXPECT_EQ(made.world.pages[0].indices, scene.indices);
-    EXPECT_NEAR(made.world.uvs[2].x, 60.0 / 64, 1.1 / 64);  // by a texel at most
+    EXPECT_NEAR(made.world.uvs[2].x, 60.0 / 64, 1.1 / 64);  // at most one texel off
     return made.thin_triangles;
   };
   EXPECT_EQ(thin(), 0u);

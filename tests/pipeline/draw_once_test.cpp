@@ -1,5 +1,5 @@
-// No texel is drawn twice: held to another rasteriser (tests/support/atlas_measure.h) over random
-// slivers, among neighbours that leave no more room than gutters do.
+// No texel is drawn twice. Checked with another rasteriser (tests/support/atlas_measure.h) on
+// random slivers, among neighbours that leave no more space than gutters do.
 #include "libatlas/pipeline/draw_once.h"
 
 #include <gtest/gtest.h>
@@ -16,14 +16,14 @@ namespace {
 
 constexpr std::int32_t kPage = 1024;
 
-// Charts on one page, by their texels.
+// Charts on one page, given by their texels.
 struct Drawn {
   ChartSet set;
   std::vector<ChartPlacement> placements;
   std::vector<Extent> pages{{kPage, kPage}};
   std::vector<Vec2f> uvs;
 
-  // `corners`: 3 a triangle, into `texels`.
+  // `corners` has three indices into `texels` per triangle.
   void add(const std::vector<Vec2d>& texels, const std::vector<std::uint32_t>& corners) {
     Chart chart;
     chart.first_uv = std::uint32_t(uvs.size());
@@ -64,8 +64,8 @@ struct Drawn {
   }
 };
 
-// A kite whose lower sides bulge by thousandths of a texel: slivers under proper triangles. Walls
-// at `gap` texels below, above, left and right of it.
+// A kite whose lower sides bulge by thousandths of a texel, which makes slivers under proper
+// triangles. Walls lie `gap` texels below, above, left and right of it.
 Drawn kite_between_walls(unsigned seed, double gap) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -102,7 +102,7 @@ TEST(DrawOnce, NoTexelIsDrawnTwiceBetweenNeighbours) {
     const AtlasMeasures first = drawn.measured();
     ASSERT_EQ(first.bleed, 0u);
     const DrawnTwice result = drawn.draw(2);
-    EXPECT_GE(result.before, first.overlap);  // edges count there, whichever way up
+    EXPECT_GE(result.before, first.overlap);  // edges count there, whatever the orientation
     const AtlasMeasures last = drawn.measured();
     EXPECT_EQ(last.bleed, 0u);
     EXPECT_EQ(last.flipped, first.flipped);
@@ -126,13 +126,13 @@ TEST(DrawOnce, NoTexelIsDrawnTwiceBetweenNeighbours) {
     again.draw(1);
     EXPECT_EQ(again.uvs, drawn.uvs);
   }
-  EXPECT_GE(hit, 10);  // else the slivers show nothing
+  EXPECT_GE(hit, 10);  // otherwise the slivers would show nothing
   EXPECT_LE(held, 2);
 }
 
-// A page full of small diamonds side by side, each with slivers along its sides, which leave each
-// other two texels and a bit. Texels' centres lie along their sides within a hair, so that many
-// slivers meet some.
+// A page full of small diamonds side by side, each with slivers along its sides. Slightly more than
+// two texels lie between them. Texel centres lie very close to their sides, so that many slivers
+// cover some.
 Drawn crowd(unsigned seed) {
   Drawn drawn;
   std::mt19937 random(seed);
@@ -171,7 +171,7 @@ TEST(DrawOnce, NeighboursOfNeighboursThatMovedStayApart) {
   EXPECT_EQ(counted.before, result.before);
   EXPECT_EQ(counted.after, result.before);
   EXPECT_TRUE(counted.moves.empty());
-  EXPECT_GE(result.moves.size(), 50u);  // else few of those that move have neighbours that did
+  EXPECT_GE(result.moves.size(), 50u);  // otherwise few moved charts would have moved neighbours
   EXPECT_LT(result.after, result.before / 4);
   const AtlasMeasures last = drawn.measured();
   EXPECT_EQ(last.bleed, 0u);
@@ -183,7 +183,8 @@ TEST(DrawOnce, NeighboursOfNeighboursThatMovedStayApart) {
 
 TEST(DrawOnce, StaysWhereEveryMoveWouldTouchNeighbours) {
   for (unsigned seed = 0; seed < 60; ++seed) {
-    Drawn drawn = kite_between_walls(seed, 1.2);  // nearer than gutters are: none may come nearer
+    // Closer than gutters, so none may come even closer.
+    Drawn drawn = kite_between_walls(seed, 1.2);
     const std::uint64_t bleed = drawn.measured().bleed;
     drawn.draw(1);
     EXPECT_LE(drawn.measured().bleed, bleed) << seed;

@@ -1,4 +1,5 @@
-// The whole export against the independent evaluator: what was written is measured from the file.
+// Tests the whole export with the independent evaluator: all measures are taken from the written
+// file.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +32,8 @@ ExportOptions small_pages(const TempFolder& folder) {
   return options;
 }
 
-// Corners by place, rotated so that the least comes first: equal for equal oriented triangles.
+// Positions of the corners, rotated so that the least one comes first. They are equal for equal
+// oriented triangles.
 using Corners = std::array<std::array<double, 3>, 3>;
 
 Corners sorted_cyclically(Corners c) {
@@ -68,7 +70,8 @@ std::vector<Corners> triangles_of(const UvMesh& mesh) {
   return all;
 }
 
-// Mip level m of a page has 1/2^m of its texels a side: no lookup at it may touch two charts.
+// Mip level m of a page has 1/2^m of its texels per side. No lookup at that level may read two
+// charts.
 void expect_no_neighbour_seen(const UvMesh& mesh, const ExportReport& report, int mip_levels) {
   for (int level = 0; level <= mip_levels; ++level) {
     const int width = report.pages[0].width >> level, height = report.pages[0].height >> level;
@@ -97,7 +100,7 @@ TEST(Export, EveryShapeOfTheZooIsPlacedWithoutOverlap) {
     EXPECT_EQ(mesh->faces.size(), scene.scene.triangle_count());
     EXPECT_LE(report->pages.size(), 3u);
     ++shapes;
-    if (!same_page_sizes(*report)) continue;  // the evaluator knows one page size
+    if (!same_page_sizes(*report)) continue;  // the evaluator supports only one page size
     ++measured;
     const AtlasMeasures at_twice =
         measure_atlas(*mesh, 2 * report->pages[0].width, 2 * report->pages[0].height);
@@ -161,7 +164,7 @@ TEST(Export, ScalesAllTexturesAlikeIntoASmallBudget) {
   EXPECT_GT(report->fidelity.psnr, 40);
 }
 
-// A room of four kilometres wants a million times the texels that the pages hold.
+// The room asks for far more texels than pages hold: a million times as many as the small one.
 TEST(Export, HugeScenesAreNotCutIntoCrumbs) {
   const TempFolder folder;
   ExportOptions options = small_pages(folder);
@@ -175,7 +178,7 @@ TEST(Export, HugeScenesAreNotCutIntoCrumbs) {
   EXPECT_GT(large->fidelity.psnr, 40);
 }
 
-// Pieces of which each takes its smallest box would not fit where the whole does.
+// If each piece took its smallest allowed box, the pieces would not fit where the whole does.
 TEST(Export, SmallPagesDoNotDrownInPieces) {
   const TempFolder folder;
   const LoadedScene scene = lit_scene(grid(20, 20));
@@ -227,7 +230,7 @@ TEST(Export, ChartsOnlyNeedsNoLight) {
   EXPECT_NEAR(m.stretch_l2, report->distortion.stretch_l2, 0.01);
   EXPECT_FALSE(fs::exists(folder / "world_0.png"));
 
-  // Its shape is seldom square, and told; or square, where that is asked for.
+  // The page's shape is seldom square and is stated in the file. It is square if that is asked for.
   const Extent page{report->pages[0].width, report->pages[0].height};
   const auto has_line = [&](const std::string& line) {
     std::stringstream text;
@@ -351,7 +354,7 @@ TEST(Plan, NamesWhatASceneDoesNotNeed) {
   ExportOptions options;
   options.target = "w.wrl";
   const ExportPlan plan = make_plan(dark.scene, options);
-  EXPECT_FALSE(plan.runs("reflectance"));  // no textures
+  EXPECT_FALSE(plan.runs("reflectance"));  // the scene has no textures
   EXPECT_TRUE(plan.runs("baking"));
   EXPECT_DOUBLE_EQ(plan.unlit_share, 1);
   options.threshold = 0;
@@ -360,8 +363,7 @@ TEST(Plan, NamesWhatASceneDoesNotNeed) {
   EXPECT_FALSE(make_plan(dark.scene, options).runs("baking"));
 }
 
-// Gutters would take most of a small page from ten thousand charts.
-// A square metre under a texture that is finer than the texel, and one without.
+// A square metre with a texture that is finer than the texel, and one without a texture.
 TEST(Plan, CountsTheTexelsThatTexturesAskFor) {
   const TempFolder folder;
   LoadedScene loaded = lit_scene(grid(2, 2));
@@ -380,7 +382,7 @@ TEST(Plan, CountsTheTexelsThatTexturesAskFor) {
   const auto report = export_world(loaded, options, {}, {});
   ASSERT_TRUE(report.ok()) << report.status().message();
   EXPECT_NEAR(double(report->full_texels), plan.estimated_texels, 300);
-  options.texel_metres = 0;  // 1 mm, or 1.5 times a texture of 2000 texels a metre
+  options.texel_metres = 0;  // 1 mm, or 1.5 times a texture of 2000 texels per metre
   scene.textures[0].image = Image8(2000, 2000, 3, 77);
   EXPECT_NEAR(make_plan(scene, options).estimated_texels, 9e6, 900);
   options.follow_textures = false;

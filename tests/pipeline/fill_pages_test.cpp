@@ -1,4 +1,4 @@
-// Uvs without light on square pages and on several: long and large charts leave none of them empty.
+// Uvs without light on square and on several pages: long and large charts leave none of them empty.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ UnwrappedMesh unwrap(const Shape& shape, UnwrapOptions options, double min_fill 
   return std::move(*mesh);
 }
 
-// A plate, and a strip five times as long as a page of both.
+// Returns a plate, and a strip five times as long as the side of a square page of both.
 Shape plate_and_strip() {
   return together(grid(9, 9, 1, 1), moved(grid(240, 2, 6, 0.05), 1, {0, 2, 0}));
 }
@@ -42,7 +42,7 @@ TEST(FillPages, AStripIsCutForASquarePage) {
   EXPECT_NEAR(cut.charts.seam_length, 0.05 * double(cut.charts.charts.size() - 2), 0.02);
 }
 
-// One sheet as large as four pages.
+// A single sheet as large as four pages.
 TEST(FillPages, ASheetIsCutForSeveralPages) {
   const UnwrapOptions four{.pages = 4, .page_size = 256};
   const UnwrappedMesh whole = unwrap(grid(64, 64), four, 0), cut = unwrap(grid(64, 64), four);
@@ -52,7 +52,8 @@ TEST(FillPages, ASheetIsCutForSeveralPages) {
   EXPECT_GT(cut.texels_per_unit, 1.6 * whole.texels_per_unit);
 }
 
-// Cells alone tell little of what a cut will win: pressed, pages of smaller charts fill far better.
+// The layout on cells shows little of what a cut gains: after pressing, pages of smaller charts are
+// much fuller.
 TEST(FillPages, WhatPressingMakesOfCutsCounts) {
   const std::uint32_t pages[] = {4, 6};
   for (const std::uint32_t count : pages) {
@@ -66,7 +67,8 @@ TEST(FillPages, WhatPressingMakesOfCutsCounts) {
 TEST(FillPages, WhatFitsAsDenseAsItIsWantedStaysWhole) {
   const UnwrappedMesh mesh =
       unwrap(plate_and_strip(), {.page_size = 1024, .texels_per_unit = 20, .square = true});
-  EXPECT_EQ(mesh.charts.charts.size(), 5u);  // as make_charts() cuts them for a page of any shape
+  // As many as make_charts() makes for a page of any shape.
+  EXPECT_EQ(mesh.charts.charts.size(), 5u);
   EXPECT_DOUBLE_EQ(mesh.texels_per_unit, 20);
 }
 
@@ -83,7 +85,7 @@ TEST(FillPages, GivenChartsStayWhole) {
   EXPECT_EQ(kept->charts.charts.size(), 2u);
 }
 
-// The page is less than 0.7 full, but no cut would let it hold so much more.
+// The page is less than 0.7 full, but no cut would let it hold enough more.
 TEST(FillPages, SeamsMustBeWorthIt) {
   const UnwrapOptions square{.page_size = 512, .square = true};
   const UnwrappedMesh whole = unwrap(torus(48, 24), square, 0),
@@ -93,12 +95,12 @@ TEST(FillPages, SeamsMustBeWorthIt) {
   EXPECT_DOUBLE_EQ(offered.charts.seam_length, whole.charts.seam_length);
 }
 
-// Charts as they are have the first sixth of the stage; the rest is for layouts of cut ones.
+// The first sixth of the stage is for the charts as they are, the rest for layouts of cut ones.
 constexpr double kWithoutCuts = 1.0 / 6;
 
 struct Packed {
   UnwrappedMesh mesh;
-  double last = 0;  // what the stage said before its end
+  double last = 0;  // the last progress of the stage before its end
 };
 Packed packed(const Shape& shape) {
   Packed out;
@@ -112,7 +114,7 @@ Packed packed(const Shape& shape) {
   return out;
 }
 
-// Holes take a third of the plate.
+// The holes take 36 % of the plate.
 TEST(FillPages, HolesThatNothingFitsAreNoFault) {
   constexpr std::uint32_t kSide = 50;
   const Shape plate = grid(kSide, kSide);
@@ -130,7 +132,7 @@ TEST(FillPages, HolesThatNothingFitsAreNoFault) {
   EXPECT_LE(plain.last, kWithoutCuts);
 }
 
-// Teeth and gaps far narrower than gutters, of which half of the page is lost.
+// Teeth and gaps are far narrower than gutters, and half of the page is lost to them.
 TEST(FillPages, BaysThatNothingFitsAreNoFault) {
   constexpr std::uint32_t kTeeth = 1500, kRows = 4;
   const Shape plate = grid(2 * kTeeth - 1, kRows);
@@ -147,14 +149,14 @@ TEST(FillPages, BaysThatNothingFitsAreNoFault) {
   EXPECT_LE(plain.last, kWithoutCuts);
 }
 
-// Cut to a page's side, a strip of needles would be so many loose ones.
+// If a strip of needles was cut to the side of a page, it would fall into as many separate needles.
 TEST(FillPages, ACutThatEvenAFullPageWouldNotPayForIsNotLaidOut) {
   const Packed needles = packed(grid(1000, 1, 1, 100));
   EXPECT_LE(needles.mesh.charts.charts.size(), 2u);
   EXPECT_LE(needles.last, kWithoutCuts);
 }
 
-// Wide gutters leave no room for those of pieces; for the charts as they are they do.
+// There is space for the wide gutters of the whole charts, but not for those of pieces.
 TEST(FillPages, ChartsWhosePiecesHaveNoRoomStayWhole) {
   for (const std::int32_t padding : {8, 12, 16}) {
     const UnwrapOptions wide{.pages = 2, .page_size = 64, .padding = padding};

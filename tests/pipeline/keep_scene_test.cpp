@@ -1,5 +1,5 @@
-// Exports that keep the scene, from file to file: corner by corner what was there, and the uvs of
-// the same export without the option.
+// Exports that keep the scene, from file to file: every corner keeps what it had, and gets the uvs
+// of the same export without that option.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ auto tuple_of(const Vec2f& v) {
   return std::tuple(v.x, v.y);
 }
 
-// All but the new uvs.
+// Returns everything except the new uvs.
 auto own_of(const KeptTriangle& t) {
   const auto corner = [&](int c) {
     const KeptCorner& k = t.corners[std::size_t(c)];
@@ -61,8 +61,8 @@ Triangles sorted(Triangles triangles) {
   return triangles;
 }
 
-// The uvs that the export without the option gives to the input's triangles, which keep their
-// order; those that it turns round begin with another corner.
+// Adds the uvs that the export without the option gives to the input's triangles. These keep their
+// order; those that the export reverses begin with another corner.
 void add_plain_uvs(const std::filesystem::path& plain, Triangles& input) {
   const Triangles written = read_kept_obj(plain);
   ASSERT_EQ(written.size(), input.size());
@@ -93,9 +93,9 @@ void expect_kept(const Triangles& input, const Triangles& written, double tolera
   }
 }
 
-// Three shapes as objects, cut among three materials, with normals and uvs of their own, which some
-// faces lack, all of few digits, so that nothing rounds them. One triangle of each is turned round,
-// one has no area, one is there twice.
+// Returns three shapes as objects that are divided among three materials. They have their own
+// normals and uvs, which some faces lack. All numbers have few digits, so that nothing is rounded.
+// One triangle of each is reversed, one has no area, and one is duplicated.
 std::string made_obj() {
   std::string text = "mtllib m.mtl\n";
   const std::pair<const char*, Shape> objects[] = {
@@ -135,7 +135,7 @@ std::string made_obj() {
   return text;
 }
 
-// What the writers leave out of what was read.
+// Returns what remains in an OBJ, whose only texcoords are the new uvs.
 Triangles without_texcoords(Triangles triangles) {
   for (KeptTriangle& t : triangles) {
     t.has_texcoords = true;
@@ -154,7 +154,7 @@ TEST(KeepScene, AnObjToGltfAndObj) {
   for (const char* name : {"kept.glb", "kept.gltf"}) {
     export_to(scene, folder / name, true);
     Triangles written = read_kept_gltf(folder / name);
-    // Without uvs of its own a corner has the new ones twice.
+    // A corner without its own uvs has the new ones in both sets.
     for (KeptTriangle& t : written)
       for (KeptCorner& c : t.corners)
         if (!t.has_texcoords) c.texcoord = {};
@@ -191,8 +191,8 @@ double distance(const Vec3f& a, const Vec3f& b) {
   return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
 }
 
-// The new uvs of each corner are those of the export without the option, which has the triangles in
-// the world and in the same order; a corner is found by its position.
+// Expects the new uvs of each corner to be those of the export without the option, which has the
+// triangles in world space and in the same order. Corners are found by position.
 void expect_plain_uvs(const std::vector<OracleTriangle>& kept, const std::string& set,
                       const std::filesystem::path& plain) {
   const Triangles written = read_kept_obj(plain);
@@ -212,8 +212,8 @@ void expect_plain_uvs(const std::vector<OracleTriangle>& kept, const std::string
   }
 }
 
-// The nodes stay, and the corners of a mirrored node's triangles with them; each place has charts
-// of its own, which do not overlap those of the other.
+// The nodes are kept, and so are the corners of a mirrored node's triangles. Each of the two
+// instances has its own charts, which do not overlap those of the other.
 TEST(KeepScene, MirroredNodesOfAGltf) {
   const TempFolder folder;
   Gltf gltf;
@@ -239,7 +239,7 @@ TEST(KeepScene, MirroredNodesOfAGltf) {
              after = GltfOracle(folder / "w.glb").triangles();
   ASSERT_EQ(before.size(), 2 * shape.indices.size() / 3);
   ASSERT_EQ(after.size(), before.size());
-  double areas[2] = {0, 0};  // of uvs, which glTF counts clockwise
+  double areas[2] = {0, 0};  // areas of uvs, which glTF counts clockwise
   for (std::size_t t = 0; t < after.size(); ++t) {
     EXPECT_EQ(after[t].node, before[t].node);
     EXPECT_EQ(after[t].matrix, before[t].matrix);
@@ -250,13 +250,13 @@ TEST(KeepScene, MirroredNodesOfAGltf) {
         ((uv[4] - uv[0]) * (uv[3] - uv[1]) - (uv[2] - uv[0]) * (uv[5] - uv[1])) / 2;
   }
   EXPECT_GT(areas[0], 0.2);
-  EXPECT_LT(areas[1], -0.2);  // the file has its corners the other way round
+  EXPECT_LT(areas[1], -0.2);  // the file has its corners in reverse order
   EXPECT_LT(areas[0] - areas[1], 1);
   export_to(scene, folder / "plain.obj", false);
   expect_plain_uvs(after, "TEXCOORD_1", folder / "plain.obj");
 }
 
-// A scene far from zero loses its origin on reading and has it back in the file.
+// Reading removes the origin of a scene that is far from zero; writing adds it again.
 TEST(KeepScene, TheOriginIsAddedAgain) {
   const TempFolder folder;
   const auto scene =
@@ -287,7 +287,7 @@ TEST(KeepScene, IsRefusedWhereLightIsBakedAndForVrml) {
   EXPECT_EQ(folder.count(), 1u);
 }
 
-// Textures that were not decoded cannot be baked from.
+// Textures that were not decoded cannot be used for baking.
 TEST(KeepScene, EncodedTexturesAreNotBaked) {
   const TempFolder folder;
   LoadedScene lit = lit_scene(box(2));

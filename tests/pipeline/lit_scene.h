@@ -1,4 +1,4 @@
-// Lit scenes for pipeline tests, made of tests/support shapes.
+// Lit scenes for pipeline tests, made from shapes of tests/support.
 #pragma once
 
 #include "libatlas/scene/reader.h"
@@ -6,11 +6,12 @@
 
 namespace atlas::test {
 
-// The shape as a scene of one white material, lit by a smooth positive function of the position,
-// different in every channel and in no way symmetric.
+// Returns the shape as a scene with one white material. It is lit by a smooth positive function of
+// the position that differs between channels and has no symmetry.
 LoadedScene lit_scene(const Shape& shape);
 
-// A furnished box seen from inside: walls of n x n quads, 4 x 3 x 2.5 m, z up, and a ball in it.
+// Returns a box seen from inside, 4 x 3 x 2.5 m with walls of n x n quads and z up, with a ball in
+// it.
 LoadedScene lit_room(int n);
 
 }  // namespace atlas::test

@@ -1,4 +1,4 @@
-// Pages of plain uvs: how large they are, and how full.
+// Pages of plain uvs: how large and how full they are.
 #include "libatlas/pipeline/page_layout.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ TEST(Layout, RefusesDensitiesThatAreMissingOrNotAboveZero) {
   EXPECT_EQ(code({{10, 10}, {10, std::nan("")}}), ErrorCode::bad_input);
 }
 
-// Four sectors of rings, three quarters of a turn each, and strips as long as they are wide.
+// Returns four ring sectors of three quarters of a turn each, and strips.
 Shape rings_and_strips() {
   Shape all = grid(1, 1, 0.01, 0.01);
   for (int k = 0; k < 4; ++k) {
@@ -73,7 +73,7 @@ TEST(Layout, APoorPageOfPlainUvsIsPackedWithMoreWork) {
   EXPECT_GE(use(PackPreset::standard), std::min(0.66, best));
 }
 
-// Where a page is of no use below a share, more work is spent only if it may win as much.
+// If a page is only useful from a given fill on, more work is spent only if it may gain that much.
 TEST(Layout, MoreWorkIsSpentWhereItMayWinEnough) {
   const Result<ChartSet> charts = charts_of_rings_and_strips();
   ASSERT_TRUE(charts.ok());
@@ -93,7 +93,7 @@ TEST(Layout, MoreWorkIsSpentWhereItMayWinEnough) {
   EXPECT_GE(won(0.9, 2), 1);
 }
 
-// The sides of the page that plain uvs of a shape get, where 256 are asked for.
+// Returns the sides of the page that a shape's plain uvs get if 256 texels are asked for.
 std::pair<int, int> plain_page(const Shape& shape, bool may_grow) {
   TempFolder folder;
   ExportOptions options;
@@ -112,7 +112,7 @@ std::pair<int, int> plain_page(const Shape& shape, bool may_grow) {
 TEST(PlainPage, GrowsWithItsCharts) {
   const Shape shape = soup(200, 5);
   const int grown = plain_page(shape, true).second;
-  EXPECT_GT(grown, 256);  // 1024 texels for each of 200 charts are 453 squared
+  EXPECT_GT(grown, 256);  // 200 charts of 1024 texels each need 453 texels squared
   EXPECT_LE(grown, 512);
   EXPECT_LE(plain_page(shape, false).second, 256);
 }
@@ -122,7 +122,7 @@ TEST(PlainPage, IsLongerWhereAChartIsLong) {
   const double side = std::sqrt(surface_area(shape));
   shape = together(shape, moved(grid(90, 1, 5 * side, 0.02 * side), 1, {50, 0, 0}));
   const auto [width, length] = plain_page(shape, true);
-  EXPECT_GT(length, 1024);  // twenty times as long as wide
+  EXPECT_GT(length, 1024);  // the page is about twenty times as long as wide
   EXPECT_GT(double(width) * length, 200 * 1024);
 }
 

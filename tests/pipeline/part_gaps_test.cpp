@@ -16,14 +16,14 @@ namespace atlas::test {
 namespace {
 
 constexpr int kColumns = 60, kRows = 6, kPage = 128;
-constexpr double kDensity = 20;  // texels a unit: the ends are two thirds of a texel apart
+constexpr double kDensity = 20;  // texels per unit: the ends are two thirds of a texel apart
 
 float light_of(double height) {
   return srgb_decode(static_cast<float>(0.2 + 0.6 * height));
 }
 
-// A turn of a spiral stair, lit more the higher it is: laid flat it is a ring whose dark and bright
-// ends nearly meet.
+// A turn of a spiral stair that is brighter the higher it is. Laid flat it is a ring whose dark and
+// bright ends nearly meet.
 struct Stair {
   Scene scene;
   MeshView view;
@@ -65,7 +65,7 @@ double look_up(const Image8& page, Vec2d at) {
          t * ((1 - s) * page.at(i, j + 1)[0] + s * page.at(i + 1, j + 1)[0]);
 }
 
-// The largest error of a look-up at the ends, in codes.
+// Returns the largest error of a look-up at the ends, in 8-bit codes.
 double error_at_ends(const Stair& stair) {
   LayoutOptions options;
   options.pages = 1;

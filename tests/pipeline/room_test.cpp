@@ -1,4 +1,5 @@
-// The test room of LIBATLAS_DATA, exported as a user would and judged by the independent evaluator.
+// The test room of LIBATLAS_DATA, exported as a user would and measured by the independent
+// evaluator.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -24,7 +25,7 @@ class Room : public ::testing::Test {
     scene_ = std::move(*scene);
   }
 
-  // Eight pages of 2048², linear tone mapping: the defaults.
+  // Uses the defaults: eight pages of 2048² and linear tone mapping.
   Fidelity judge(const TempFolder& folder, bool simplify) const {
     ExportOptions options;
     options.target = folder / (simplify ? "coarse.wrl" : "fine.wrl");
@@ -54,7 +55,8 @@ TEST_F(Room, LooksLikeTheSceneAndTheCoarserMeshToo) {
     // The 99th percentile of what is seen depends on where the cameras stand.
     EXPECT_GE(f.white, 0.8);
     EXPECT_LE(f.white, 1.5);
-    EXPECT_LE(f.miss, 5e-6);  // rays that slip between two triangles of either mesh: no crack
+    // Rays that pass between two triangles of either mesh; there is no crack.
+    EXPECT_LE(f.miss, 5e-6);
   }
 }
 

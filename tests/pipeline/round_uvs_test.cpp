@@ -1,4 +1,4 @@
-// Uvs rounded to floats leave every triangle positive, for readers in floats and in doubles.
+// Rounding uvs to floats leaves every triangle positive, for readers that use floats or doubles.
 #include "libatlas/pipeline/round_uvs.h"
 
 #include <gtest/gtest.h>
@@ -22,8 +22,8 @@ struct FlatMesh {
   std::vector<std::uint32_t> corners;
 };
 
-// Rows of points along a line of that slope, each `height` above the last, all joined: rows 0 and
-// `rows` - 1 are the sides of proper triangles.
+// Rows of points along a line with the given slope, each `height` above the last, all connected.
+// The first and the last row of slivers adjoin proper triangles.
 FlatMesh stack_of_slivers(int rows, int columns, double slope, double height) {
   FlatMesh mesh;
   mesh.name = std::to_string(rows) + " rows " + std::to_string(height) + " apart, slope " +
@@ -50,7 +50,7 @@ FlatMesh stack_of_slivers(int rows, int columns, double slope, double height) {
   return mesh;
 }
 
-// As text has it: the shortest decimals of the float, read as a double.
+// Reads a float back as from a text file: its shortest decimals, parsed as a double.
 double read_back(float value) {
   char text[64];
   const auto end = std::to_chars(text, text + sizeof text, value).ptr;
@@ -71,7 +71,7 @@ std::size_t not_positive(const FlatMesh& mesh, const std::vector<Vec2f>& uvs, Re
 }
 
 std::size_t in_integers(const FlatMesh& mesh, const std::vector<Vec2f>& uvs) {
-  // Floats from 1/4 to 1 are multiples of 2^-26; products of two stay below 2^52.
+  // Floats from 1/4 to 1 are multiples of 2^-26, and products of two stay below 2^52.
   return not_positive<std::int64_t>(mesh, uvs,
                                     [](float v) { return std::int64_t(std::ldexp(v, 26)); });
 }
@@ -107,9 +107,9 @@ TEST(RoundUvs, SliversStayOpen) {
   EXPECT_GT(turned, 100u) << "the test is too easy";
 }
 
-// Places along a line and beside it, in last places of a float; the three triangles at `mid` can
-// only be opened by moving it along the line, by more than a hundred times what they lack in
-// height.
+// Points along a line and beside it, in units of a float's last place. The three triangles at `mid`
+// can only be opened by moving it along the line, by more than a hundred times the height that they
+// lack.
 FlatMesh leaning_slivers() {
   FlatMesh mesh;
   enum : std::uint32_t { start, mid, next, last, hub, near, far };
@@ -138,8 +138,7 @@ TEST(RoundUvs, SliversThatLeanOnEachOtherAreOpened) {
   }
 }
 
-// Fans of slivers on both sides of a line that is straight but for a last place of a float.
-// A needle between slivers that are open, but give no way unless their own far corners move.
+// A needle lies between slivers that are open, but cannot move unless their own far corners move.
 TEST(OpenStacks, WhatIsHemmedInMovesItsNeighbours) {
   const double step = 0x1p-24, length = 0.125, open = 3.2 * step;
   const std::vector<glm::dvec2> exact{{0.5, 0.5},
@@ -165,6 +164,8 @@ TEST(OpenStacks, WhatIsHemmedInMovesItsNeighbours) {
   }
 }
 
+// Fans of slivers on both sides of a line that is straight except for less than a float's last
+// place.
 TEST(RoundUvs, FansOfManySliversAreOpened) {
   FlatMesh mesh;
   constexpr int n = 100;
@@ -184,7 +185,7 @@ TEST(RoundUvs, FansOfManySliversAreOpened) {
   EXPECT_EQ(in_integers(mesh, rounded), 0u);
 }
 
-// Pages that are baked by now: however large the page, uvs stay within a texel of it.
+// These pages are baked already: however large the page, uvs stay within a texel.
 TEST(RoundUvs, NoCornerGoesFartherThanAsked) {
   double moved = 0;
   for (const FlatMesh& mesh : {stack_of_slivers(100, 6, 0.3, 1e-9), leaning_slivers()}) {
@@ -222,7 +223,7 @@ TEST(RoundUvs, SpecksKeepAnArea) {
   EXPECT_GT(twice / 2, 1e-12);
 }
 
-// A grid whose points nearer to (u, v) than `reach` columns are drawn together there; `size` 0:
+// A grid whose points closer to `around` than `reach` columns are contracted there; with size 0
 // into one point.
 FlatMesh speck_in_grid(int n, Vec2d around, double reach, double size) {
   FlatMesh mesh;
@@ -282,11 +283,12 @@ TEST(RoundUvs, APieceThatIsASpeckIsSpread) {
     expect_spread(speck_in_grid(3, {0.55, 0.55}, 9, size), 4e-5);
 }
 
-// Where a mesh is cut open up to the speck its border passes there twice: left to the other means.
+// Where the mesh is open up to the contracted points, its border passes there twice. Such points
+// are left to the other methods.
 TEST(RoundUvs, SpecksThatPinchTheBorderEnd) {
   FlatMesh mesh = speck_in_grid(6, {0.55, 0.55}, 1.4, 1e-9);
   const std::vector<std::uint32_t> all = std::move(mesh.corners);
-  for (std::size_t t = 0; t < all.size(); t += 3) {  // two opposite corners of the grid are gone
+  for (std::size_t t = 0; t < all.size(); t += 3) {  // two opposite corners of the grid are removed
     const bool low = all[t] % 7 < 3 && all[t] / 7 < 3, high = all[t] % 7 > 3 && all[t] / 7 > 3;
     if (!low && !high) mesh.corners.insert(mesh.corners.end(), &all[t], &all[t] + 3);
   }

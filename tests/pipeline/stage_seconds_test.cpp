@@ -1,4 +1,4 @@
-// What the report says that stages took.
+// The seconds that the report states for stages.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -13,7 +13,7 @@ namespace atlas::test {
 namespace {
 
 // The seconds of an export are those of the call, whatever else the process does meanwhile. With
-// one thread they are those that the system books to the calling thread.
+// one thread they are those that the system counts for the calling thread.
 TEST(Export, SecondsAreThoseOfTheCall) {
   const TempFolder folder;
   std::atomic<bool> done{false};

@@ -1,4 +1,4 @@
-// What every unwrapped mesh keeps to.
+// Checks what must hold for every unwrapped mesh.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ inline void expect_sound(const MeshView& input, const UnwrappedMesh& mesh) {
     room += double(mesh.pages[p].area());
   }
   EXPECT_NEAR(texels / room, mesh.utilization, 1e-4);
-  // One density for all: texels of a chart per area of its uvs.
+  // All charts have one density: texels of a chart per area of its uvs.
   EXPECT_NEAR(std::sqrt(texels / mesh.charts.distortion.uv_area), mesh.texels_per_unit,
               1e-3 * mesh.texels_per_unit);
 }

@@ -1,4 +1,5 @@
-// unwrap_mesh: pages to bake, their alignment, charts that are not turned, and more work.
+// Options of unwrap_mesh: pages to bake, their alignment, charts that must not be rotated, and more
+// work.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,8 +15,8 @@
 namespace atlas::test {
 namespace {
 
-// Its charts and placements are what bake_page takes: no texel of the page depends on the threads,
-// and none is contested where it was packed for as many mip levels.
+// Its charts and placements can be passed to bake_page. No texel of the page depends on the number
+// of threads, and none is contested if the page was packed for as many mip levels.
 TEST(Unwrap, PagesAreBakedWithMipLevels) {
   const LoadedScene scene = lit_scene(torus(64, 32));
   const LuminanceSampler sampler(scene.scene, Quantity::illuminance);
@@ -27,7 +28,7 @@ TEST(Unwrap, PagesAreBakedWithMipLevels) {
     ASSERT_TRUE(mesh.ok()) << mesh.status().message();
     ASSERT_EQ(mesh->pages.size(), 1u);
     expect_sound(view_of(scene.scene), *mesh);
-    BakeOptions bake;  // -1: its defaults upon those of unwrap_mesh
+    BakeOptions bake;  // -1: the baker's defaults with those of unwrap_mesh
     if (levels >= 0) bake.mip_levels = levels;
     bake.page_width = mesh->pages[0].width;
     bake.page_height = mesh->pages[0].height;
@@ -46,7 +47,7 @@ TEST(Unwrap, PagesAreBakedWithMipLevels) {
   }
 }
 
-// Sides of the page, and of the boxes that charts keep to.
+// Checks the sides of the page, and of the boxes that charts keep to.
 TEST(Unwrap, AlignmentIsKept) {
   const LoadedScene scene = lit_room(6);
   UnwrapOptions options{.page_size = 512};
@@ -62,7 +63,7 @@ TEST(Unwrap, AlignmentIsKept) {
   }
 }
 
-// Directions of edges in uvs, before and after packing.
+// Compares directions of edges in uvs before and after packing.
 TEST(Unwrap, ChartsAreNotTurnedWhereThatIsForbidden) {
   for (const Shape& shape : {torus(16, 8), together(grid(9, 9, 1, 3), grid(9, 2, 5, 1))}) {
     MeshView view;

@@ -1,4 +1,4 @@
-// unwrap_mesh: nothing is lost, vertices keep what they are copies of, uvs turn no triangle over.
+// unwrap_mesh loses nothing, vertices keep what they are copies of, and uvs flip no triangle.
 #include "libatlas/pipeline/unwrap.h"
 
 #include <gtest/gtest.h>
@@ -30,11 +30,11 @@ TEST(Unwrap, ATorusOnOnePage) {
   expect_sound(view_of(ring.scene), *mesh);
   EXPECT_EQ(mesh->pages.size(), 1u);
   EXPECT_GT(mesh->utilization, 0.55);
-  EXPECT_GT(mesh->vertices.size(), ring.scene.positions.size());  // seams
+  EXPECT_GT(mesh->vertices.size(), ring.scene.positions.size());  // because of seams
 }
 
-// Vertices at one place with normals of their own, as renderers have them: a vertex of the result
-// is a copy of the very vertex that the triangle names, not of another at its place.
+// Vertices at one position have different normals, as renderers need them. A vertex of the result
+// is a copy of the vertex that the triangle names, not of another one at the same position.
 TEST(Unwrap, VerticesOfOnePlaceStayApart) {
   const Shape cube = box(1);
   std::vector<Vec3f> positions;
@@ -50,11 +50,11 @@ TEST(Unwrap, VerticesOfOnePlaceStayApart) {
   ASSERT_TRUE(mesh.ok()) << mesh.status().message();
   expect_sound(view, *mesh);
   EXPECT_EQ(mesh->vertices, indices);
-  EXPECT_LT(mesh->charts.charts.size(), 6u);  // the charts know that the places are one
+  EXPECT_LT(mesh->charts.charts.size(), 6u);  // charts treat equal positions as one
 }
 
-// A soup of triangles about one hub, each with a copy of the hub's vertex: the copies share a uv in
-// each chart, and there are as many as triangles.
+// A soup of triangles around one hub, each with its own copy of the hub's vertex. The copies share
+// a uv in each chart, and there are as many as triangles.
 TEST(Unwrap, AHubOfThousandsIsQuick) {
   constexpr std::uint32_t kSpokes = 80000;
   std::vector<Vec3f> positions;
@@ -110,13 +110,14 @@ TEST(Unwrap, MoreTexelsThanPagesHoldAreAsManyAsTheyHold) {
   const LoadedScene ring = lit_scene(torus(24, 12));
   UnwrapOptions options{.page_size = 128};
   const auto full = unwrap_mesh(view_of(ring.scene), options, {});
-  options.texels_per_unit = 1e300;  // sides of charts in texels would be beyond double
+  options.texels_per_unit = 1e300;  // sides of charts in texels would exceed the range of double
   const auto asked = unwrap_mesh(view_of(ring.scene), options, {});
   ASSERT_TRUE(full.ok() && asked.ok()) << asked.status().message();
   EXPECT_EQ(asked->uvs, full->uvs);
 }
 
-// Without padding charts reach the page's edges, and beyond by what turning them has rounded.
+// Without padding, charts reach the edges of the page, and go beyond them by the rounding of their
+// rotation.
 TEST(Unwrap, UvsAtThePagesEdgesAreOnIt) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     const Shape shape = soup(3, seed);
@@ -138,7 +139,7 @@ TEST(Unwrap, UvsOfVerticesAreKept) {
   MeshView view;
   view.positions = positions;
   view.indices = made->indices;
-  view.texcoords = made->uvs;  // one a vertex: no second list of indices
+  view.texcoords = made->uvs;  // one per vertex, so there is no second list of indices
   UnwrapOptions options;
   options.charts.keep_uv_charts = true;
   options.charts.uv_aspect = double(made->pages[0].width) / made->pages[0].height;
@@ -157,7 +158,7 @@ TEST(Unwrap, WhatTurnsTheWrongWayKeepsItsCorners) {
   expect_sound(view_of(ring.scene), *mesh);
 }
 
-// A turn of a spiral ramp: laid flat its ends nearly meet, though one lies above the other.
+// A turn of a spiral ramp. Laid flat its ends nearly meet, although one lies above the other.
 TEST(Unwrap, PartsOfAChartAreKeptApartWhereAsked) {
   Shape ramp = grid(60, 6);
   for (Vec3f& p : ramp.positions) {
@@ -171,7 +172,7 @@ TEST(Unwrap, PartsOfAChartAreKeptApartWhereAsked) {
     return left_part_gaps(view, mesh.charts, mesh.placements, {}).near_after;
   };
   UnwrapOptions options{.page_size = 128};
-  options.charts.min_fill = 0;  // a ring would be cut for its page
+  options.charts.min_fill = 0;  // otherwise a ring would be cut to save page area
   const auto close = unwrap_mesh(view, options, {});
   options.part_gaps = true;
   const auto open = unwrap_mesh(view, options, {});
@@ -221,7 +222,8 @@ TEST(Unwrap, WrongOptionsAreNamed) {
   });
 }
 
-// Calls from several threads at once, on the same input, give what one gives: context.h says so.
+// Calls from several threads on the same input give what a single call gives, as context.h
+// guarantees.
 TEST(ManyThreads, UnwrapAndExportAtOnce) {
   const TempFolder folder;
   const LoadedScene scene = lit_room(4);
@@ -230,7 +232,7 @@ TEST(ManyThreads, UnwrapAndExportAtOnce) {
   std::vector<std::vector<Vec2f>> uvs(4);
   std::vector<Status> exported(4);
   std::vector<std::thread> threads;
-  const char* targets[] = {"a.wrl", "a.gltf", "a.obj", "a.wrl"};  // one name for their pages
+  const char* targets[] = {"a.wrl", "a.gltf", "a.obj", "a.wrl"};  // their pages have the same name
   for (std::size_t i = 0; i < 4; ++i) {
     threads.emplace_back([&, i] {
       const auto mesh = unwrap_mesh(view_of(scene.scene), {}, {});
@@ -252,7 +254,7 @@ TEST(ManyThreads, UnwrapAndExportAtOnce) {
   }
 }
 
-// Also where pages are packed several times, cut charts and all.
+// Also if pages are packed several times and charts are cut.
 TEST(Unwrap, ProgressEndsAtOne) {
   const LoadedScene ring = lit_scene(torus(24, 12));
   const Shape strip = grid(240, 2, 6, 0.05);
@@ -298,7 +300,8 @@ TEST(Unwrap, ACallbacksExceptionComesOut) {
   EXPECT_EQ(folder.count(), 0u);
 }
 
-// A scene out of a program's own arrays, also one without materials, and one out of step.
+// A scene from a program's own arrays, also one without materials, and one with inconsistent
+// arrays.
 TEST(HandMadeScene, IsExportedOrRefusedByName) {
   const TempFolder folder;
   LoadedScene loaded = lit_scene(torus(24, 12));

@@ -1,6 +1,6 @@
-// What an independent viewer shows of an exported world, pixel by pixel against the lit scene it
-// was made of. A texture upside down, a wrong index or a wrong viewpoint loads fine everywhere:
-// only the pixels tell.
+// Compares what an independent viewer shows of an exported world with the original lit scene, pixel
+// by pixel. A flipped texture, a wrong index or a wrong viewpoint loads without errors everywhere;
+// only the pixels show it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ bool installed(const char* program) {
   return std::system(fmt::format("command -v {} >/dev/null 2>&1", program).c_str()) == 0;
 }
 
-// view3dscene always exits with 0; what it disliked is in its log.
+// view3dscene always exits with 0; its complaints are in its log.
 std::string view(const fs::path& world, const fs::path& picture, const fs::path& home) {
   const std::string command = fmt::format(
       "HOME={0} XDG_CONFIG_HOME={0}/.config LIBGL_ALWAYS_SOFTWARE=1 timeout 100 xvfb-run -a -s "
@@ -45,7 +45,7 @@ std::string view(const fs::path& world, const fs::path& picture, const fs::path&
   std::ifstream log(home / ".config/view3dscene/view3dscene.log");
   if (!log) return "view3dscene wrote no log";
   std::string line, warnings;
-  // Its own start-up writes of settings and folders, not of the world.
+  // Start-up messages of the viewer about settings and folders, which do not concern the world.
   const std::regex own("ApplicationConfig|Config: |not be saved|^Rendering|^Path:");
   while (std::getline(log, line)) {
     if (line.starts_with("Warning") && !std::regex_search(line, own)) warnings += line + "\n";
@@ -58,7 +58,7 @@ float encode(float c) {
   return c <= 0.0031308f ? c * 12.92f : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
 }
 
-// The scene's own light as a pinhole camera sees it, display values; row 0 at the bottom.
+// The scene's own light as a pinhole camera sees it, in display values. Row 0 is at the bottom.
 class SceneView {
  public:
   SceneView(const Scene& scene, const Viewpoint& eye, double white)
@@ -72,7 +72,7 @@ class SceneView {
         glm::normalize(glm::vec3(eye_.direction.x, eye_.direction.y, eye_.direction.z));
     const glm::vec3 right = glm::normalize(glm::cross(forward, glm::vec3(0, 0, 1)));
     const glm::vec3 up = glm::cross(right, forward);
-    const float reach = float(std::tan(eye_.fov / 2)) / (0.5f * kHeight);  // the smaller side
+    const float reach = float(std::tan(eye_.fov / 2)) / (0.5f * kHeight);  // of the smaller side
     const glm::vec3 direction = forward + reach * ((float(x) + 0.5f - 0.5f * kWidth) * right +
                                                    (float(y) + 0.5f - 0.5f * kHeight) * up);
     const glm::vec3 from(eye_.position.x, eye_.position.y, eye_.position.z);
@@ -109,7 +109,8 @@ class SceneView {
   cabin::Tracer tracer_;
 };
 
-// Mean squared difference over all channels, of the picture and the view; every `step`th pixel.
+// Returns the mean squared difference between picture and view over all channels, for every
+// `step`th pixel.
 double mean_square(const Image8& picture, const SceneView& scene, int step) {
   double sum = 0;
   std::size_t n = 0;
@@ -159,7 +160,7 @@ TEST(Viewer, View3dsceneShowsTheLightOfTheScene) {
   const SceneView scene(room.scene, viewpoint, report->exposure_white);
   const double psnr = -10 * std::log10(mean_square(*picture, scene, 3));
   EXPECT_GT(psnr, 32);
-  // The measure must notice: the same picture turned over is nothing like the scene.
+  // The measure must be sensitive: the flipped picture differs clearly from the scene.
   EXPECT_LT(-10 * std::log10(mean_square(upside_down(*picture), scene, 3)), 25);
 }
 
