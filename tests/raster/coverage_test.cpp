@@ -66,7 +66,7 @@ TEST(CoverTriangle, EachTexelsShareAgreesWithSupersampling) {
           }
         const auto it = c.find({x, y});
         const double got = it == c.end() ? 0 : it->second.area;
-        // A straight edge crosses at most about 2 * kSide of the samples' cells.
+        // A straight edge crosses about 2 * kSide of the samples' cells at most.
         ASSERT_NEAR(got, inside / double(kSide * kSide), 3.0 / kSide) << x << ' ' << y;
         ++texels;
       }
@@ -75,7 +75,7 @@ TEST(CoverTriangle, EachTexelsShareAgreesWithSupersampling) {
 }
 
 TEST(CoverTriangle, TrianglesOfATessellationFillEachTexelOnce) {
-  // A jittered grid of triangles much finer, about as fine and much coarser than texels.
+  // A jittered grid of triangles that are much finer than texels, about as fine, or much coarser.
   for (const double cell : {0.13, 0.9, 5.7}) {
     const int n = static_cast<int>(std::ceil(20 / cell));
     std::mt19937 random(6);

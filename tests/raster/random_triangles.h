@@ -1,4 +1,4 @@
-// Triangles of every size and thinness, some with corners on the grid.
+// Triangles of every size and aspect, some with corners on the grid.
 #pragma once
 
 #include <cmath>

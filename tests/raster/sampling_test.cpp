@@ -90,7 +90,8 @@ TEST(SampleTriangle, MissesNoTriangleThatHasArea) {
       if (area == 0) continue;
       const Sum s = samples(t, grid);
       ASSERT_GT(s.samples, 0) << area;
-      // Grid samples estimate the area to within about the cells along the outline.
+      // The samples on a grid estimate the area with an error of about the area of the cells along
+      // the outline.
       double outline = 0;
       for (int k = 0; k < 3; ++k)
         outline += std::sqrt(raster_detail::length2(t[k], t[(k + 1) % 3]));

@@ -23,14 +23,14 @@ void scan_into(Hits& hits, const TexelTriangle& t, const Rect& clip, Vec2d offse
   });
 }
 
-// Sign of the exact area of (a, b, point) on the sub-texel grid, point by point.
+// Returns the sign of the exact area of (a, b, point) on the sub-texel grid.
 int side(const std::int64_t a[2], const std::int64_t b[2], std::int64_t x, std::int64_t y) {
   const __int128 v = static_cast<__int128>(b[0] - a[0]) * (y - a[1]) -
                      static_cast<__int128>(b[1] - a[1]) * (x - a[0]);
   return v > 0 ? 1 : v < 0 ? -1 : 0;
 }
 
-// Coarse steps, so that many points lie on edges and corners.
+// Coordinates have coarse steps, so that many points lie on edges and corners.
 TEST(ScanTriangle, ClosedTrianglesHaveAllPointsOfTheirEdges) {
   constexpr int kBits = 1;
   const Rect clip{0, 0, 24, 24};
@@ -88,7 +88,8 @@ TEST(ScanTriangle, AgreesWithPointByPointTestsOffTheEdges) {
 }
 
 TEST(ScanTriangle, TrianglesThatShareEdgesOwnEachPointOnce) {
-  // Fans round a hub, rim and hub on sample points too: every point within belongs to one triangle.
+  // Fans around a hub; rim and hub may lie on sample points, too. Every point inside belongs to
+  // exactly one triangle.
   const Rect clip{0, 0, 40, 40};
   std::mt19937 random(2);
   for (int trial = 0; trial < 300; ++trial) {
@@ -111,7 +112,7 @@ TEST(ScanTriangle, TrianglesThatShareEdgesOwnEachPointOnce) {
     for (int i = 1; i + 1 < n; ++i)
       scan_into(outline, {rim[0], rim[i], rim[i + 1]}, clip, {0.5, 0.5});
     for (const auto& [at, count] : fan) ASSERT_EQ(count, 1) << at.first << ' ' << at.second;
-    // Another triangulation of the same convex rim owns the same points, when the rim is convex.
+    // If the rim is convex, another triangulation of it owns the same points.
     if (!on_grid) {
       ASSERT_EQ(fan, outline);
     }
@@ -119,8 +120,8 @@ TEST(ScanTriangle, TrianglesThatShareEdgesOwnEachPointOnce) {
 }
 
 TEST(ScanTriangle, OwnsTheLeftAndTheTopEdgeOfASquare) {
-  // Corners on sample points: 4 x 4 points of the 5 x 5 on or in the square, left column and top
-  // row included.
+  // The corners lie on sample points. Of the 5 x 5 points in the closed square, 4 x 4 are owned,
+  // including the left column and the top row.
   const Vec2d a{2.5, 3.5}, b{6.5, 3.5}, c{6.5, 7.5}, d{2.5, 7.5};
   Hits hits;
   scan_into(hits, {a, b, c}, {0, 0, 16, 16}, {0.5, 0.5});
@@ -148,12 +149,12 @@ TEST(ScanTriangle, IsTheSameForEveryCornerOrderAndForAnyClip) {
 }
 
 TEST(ScanTriangle, CountsThePointsOfAHugeTriangle) {
-  // 65536 texels a side: the products of the edge tests need the full 64 bits.
+  // At 65536 texels per side, the products of the edge tests need the full 64 bits.
   const double n = 1 << 16;
   std::int64_t points = 0;
   scan_triangle({Vec2d{0, 0}, {n, 0}, {0, n}}, {0, 0, 1 << 16, 1 << 16}, {0.5, 0.5},
                 [&](int, int x0, int x1) { points += x1 - x0; });
-  // The diagonal passes through n centres; it is not a left or top edge.
+  // The diagonal passes through n centres. It is neither a left nor a top edge.
   EXPECT_EQ(points, (std::int64_t{1} << 31) - (1 << 15));
 }
 
