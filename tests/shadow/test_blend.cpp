@@ -25,8 +25,8 @@ TEST(Blend, EndsSelectOneKey) {
     }
 }
 
-// The raw weights must rotate one unit vector into the other: that is what SLERP is defined by
-// (Shoemake 1985), and it is another route than the formula.
+// The raw weights must rotate one unit vector into the other. That is the definition of SLERP
+// (Shoemake 1985), and does not use the formula under test.
 TEST(Blend, RawSphericalWeightsStayOnTheArc) {
   for (double angle = 0.001; angle <= kPi / 2; angle += 0.05)
     for (double t = 0; t <= 1; t += 0.125) {
@@ -61,7 +61,7 @@ TEST(Blend, FiniteAndContinuousWhereTheFormulaIsNot) {
         EXPECT_TRUE(w.from >= 0 && w.from <= 1) << angle << " " << t;
         EXPECT_TRUE(w.to >= 0 && w.to <= 1) << angle << " " << t;
       }
-  // No visible step where the linear weights take over.
+  // There must be no visible step where the linear weights begin.
   const BlendWeights below = blend_weights(KeyBlend::slerp_raw, 0.3, 0.99e-4);
   const BlendWeights above = blend_weights(KeyBlend::slerp_raw, 0.3, 1.01e-4);
   EXPECT_NEAR(below.from, above.from, 1e-8);

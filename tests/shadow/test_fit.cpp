@@ -49,12 +49,12 @@ TEST(Fit, ItIsASimilarityWithTheStatedTexelAndDepth) {
   for (int i = 0; i < 100; ++i) {
     LightFitOptions o;
     const LightFit fit = *fit_light(random_direction(rng), box, o);
-    // Going towards the light by one unit changes the depth by 1/range and nothing else.
+    // A step of one unit towards the light changes the depth by 1/range and nothing else.
     const Vec3d along = transform_vector(fit.to_texture, fit.direction);
     EXPECT_NEAR(along.x, 0, 1e-12);
     EXPECT_NEAR(along.y, 0, 1e-12);
     EXPECT_NEAR(along.z * fit.depth_range, -1, 1e-9);
-    // Any step has the length that texel and range say.
+    // Every step has the length that texel size and depth range imply.
     const Vec3d v = random_direction(rng), m = transform_vector(fit.to_texture, v);
     const double scale = fit.texel * o.resolution;
     EXPECT_NEAR(std::hypot(m.x * scale, m.y * scale, m.z * fit.depth_range),
@@ -97,7 +97,8 @@ TEST(Fit, AMovingCameraMovesTheMapByWholeTexels) {
       const Vec3d v = transform_point(fit.to_texture, corner);
       EXPECT_TRUE(v.x > 0 && v.x < 1 && v.y > 0 && v.y < 1);
     }
-    // A caster anywhere in the scene keeps its depth in range though it may lie beside the map.
+    // The depth of a caster anywhere in the scene stays in range, even if the caster lies beside
+    // the map.
     for (double y1 : {0.0, 10.0}) {
       const Vec3d v = transform_point(fit.to_texture, {-50, y1, 50});
       EXPECT_TRUE(v.z >= 0 && v.z <= 1);
@@ -105,7 +106,8 @@ TEST(Fit, AMovingCameraMovesTheMapByWholeTexels) {
   }
 }
 
-// Zooming changes the map's size in few steps, each by a tenth at most, and it is never too small.
+// Zooming changes the map's size in few steps of less than a tenth each, and the map is never too
+// small.
 TEST(Fit, AZoomingCameraChangesTheTexelInSmallSteps) {
   const Box3 box{{-500, 0, -500}, {500, 10, 500}};
   std::set<double> sizes;
@@ -121,11 +123,12 @@ TEST(Fit, AZoomingCameraChangesTheTexelInSmallSteps) {
     EXPECT_LE(snapped, needed * 1.0906);
     sizes.insert(snapped);
   }
-  EXPECT_LE(sizes.size(), 6 * 8 + 1u);  // six octaves
+  EXPECT_LE(sizes.size(), 6 * 8 + 1u);  // six octaves of eight steps each
   EXPECT_GE(sizes.size(), 6 * 8 - 1u);
 }
 
-// A view of a part of the scene: what lies beside it, but before the light, still casts.
+// The view shows a part of the scene. Casters that lie beside the view but towards the light must
+// still have depths in range.
 TEST(Fit, ASmallViewKeepsTheDepthOfTheWholeScene) {
   const Box3 box{{-50, 0, -50}, {50, 80, 50}};
   LightFitOptions o;

@@ -1,4 +1,4 @@
-// The light of a window on fast and slow machines, with the schedule it drives.
+// The light of a window on fast and slow machines, with the schedule that the light drives.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,11 +22,11 @@ Vec3d turned(double degrees) {
 
 struct Walk {
   int refreshes = 0, frames = 0;
-  double furthest = 0;   // between the keys sampled, degrees
-  double most_work = 0;  // maps in a frame, refreshes apart
+  double furthest = 0;   // largest angle between the sampled keys, in degrees
+  double most_work = 0;  // most maps drawn in a frame; frames with a refresh are left out
 };
 
-// A window of so many frames a second, whose lengths vary by `jitter`.
+// Simulates a window with `fps` frames per second whose durations vary by `jitter` (a fraction).
 Walk walk(double fps, double speed, double jitter) {
   ScheduleOptions options;
   options.max_key_degrees = 16;
@@ -55,7 +55,7 @@ TEST(LightClock, NoMachineIsSoSlowThatEveryFrameRefreshes) {
       for (double jitter : {0.0, 0.6}) {
         const Walk w = walk(fps, speed, jitter);
         EXPECT_EQ(w.refreshes, 1) << fps << " fps, " << speed << " degrees a second";
-        // Jitter moves the mean step, and with it the key after the next.
+        // Jitter changes the mean step, and with it the key after the next one.
         EXPECT_LE(w.furthest, 16 * (jitter > 0 ? 1.5 : 1.0 + 1e-6)) << fps << " " << speed;
         EXPECT_LE(w.most_work, 1.0 / 7) << fps << " " << speed;
       }

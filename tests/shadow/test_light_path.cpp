@@ -40,7 +40,7 @@ TEST(LightPath, ArcRunsAtItsSpeedOnTheGreatCircle) {
   EXPECT_NEAR(path.direction(std::nan("")).x, 1, 1e-12);
 }
 
-// Nearly opposite directions: the sun of the equator from horizon to horizon.
+// Nearly opposite directions, as of the sun from horizon to horizon at the equator.
 TEST(LightPath, ArcOfNearlyHalfATurnKeepsItsSpeed) {
   for (const double short_of : {1e-2, 1e-3, 9e-5, 1e-5, 2e-6}) {
     const double end = std::numbers::pi - short_of;
@@ -113,8 +113,9 @@ TEST(LightPath, EndsLoopReturnOrStay) {
   }
 }
 
-// Known positions of the real sun, not of this formula: noon elevation is 90 - latitude +
-// declination, the pole's sun circles level, the equinox sun rises due east at six.
+// Known positions of the real sun, which do not depend on the formula: the noon elevation is 90 -
+// latitude + declination, at the pole the sun circles at constant height, and at the equinox it
+// rises due east at six.
 TEST(LightPath, TheSunIsWhereItIs) {
   SunOptions s;
   s.latitude = 50;
@@ -147,7 +148,8 @@ TEST(LightPath, SunPathStaysAboveTheHorizonAtConstantSpeed) {
       const Vec3d d = path.direction(i * 0.5);
       EXPECT_GE(d.y, -1e-6) << latitude;
       const double step = angle_between(previous, d) / kDegree;
-      // Chords of a small circle are a little longer or shorter than its arc, never by much.
+      // Chords of a small circle differ a little in length from its arc. Jumps are counted
+      // separately.
       if (step > 0.6)
         ++jumps;
       else

@@ -19,8 +19,8 @@ Vec3d turned(double degrees) {
   return {std::cos(degrees * kDegree), std::sin(degrees * kDegree), 0.2};
 }
 
-// What a renderer would hold: for each slot the direction and how much of it is drawn. Checks every
-// rule that a plan must keep, and counts.
+// Holds what a renderer would hold: for each slot the direction and how much of its map is drawn.
+// Checks every rule that a plan must keep, and counts the work.
 struct FakeRenderer {
   struct Map {
     Vec3d direction;
@@ -67,7 +67,7 @@ TEST(Schedule, KeysAreExactAndWorkIsEven) {
       const FramePlan plan =
           schedule.next(turned(f * 0.5), [&](int n) { return turned((f + n) * 0.5); });
       r.run(plan);
-      if (f == 0) r.most = r.work = 0;  // the first frame draws two maps at once, and says so
+      if (f == 0) r.most = r.work = 0;  // the first frame draws two maps at once, and reports this
       EXPECT_EQ(plan.refreshed, f == 0);
       EXPECT_LT(angle_between(plan.from_direction, turned(f / k * k * 0.5)), 1e-9);
       EXPECT_LT(angle_between(plan.to_direction, turned((f / k + 1) * k * 0.5)), 1e-9);
@@ -165,7 +165,7 @@ TEST(Schedule, KeysByDegrees) {
   }
 }
 
-// A slow light does not keep an old map for ever: max_frames holds for held maps, too.
+// Under a slow light, no map is kept for ever: max_frames applies to held maps, too.
 TEST(Schedule, HeldKeysByDegreesAreAtMostSoManyFramesOld) {
   ScheduleOptions o;
   o.blend = false;
@@ -213,8 +213,8 @@ TEST(Schedule, AFastLightShortensTheIntervalInsteadOfStretchingIt) {
   }
 }
 
-// Pulled quickly by hand, never by a jump in one frame: keys are drawn anew before they are further
-// from the light than is allowed.
+// A light that is moved quickly by hand, but never jumps in one frame: keys are drawn anew before
+// they are further from the light than allowed.
 TEST(Schedule, AHandThatRunsAwayFromTheKeysRefreshesThem) {
   ScheduleOptions o;
   o.max_key_degrees = 16;
@@ -232,7 +232,8 @@ TEST(Schedule, AHandThatRunsAwayFromTheKeysRefreshesThem) {
   EXPECT_GT(refreshes, 1);
 }
 
-// A light with a path whose speed is changed by hand: at rest, moving, at rest, ten times as fast.
+// A light on a path whose speed is changed by hand: at rest, moving, at rest, slow, ten times as
+// fast.
 TEST(Schedule, AScriptedLightThatStopsStartsOrHurriesStaysNearItsKeys) {
   ScheduleOptions options;
   options.max_key_degrees = 16;
@@ -257,7 +258,8 @@ TEST(Schedule, AScriptedLightThatStopsStartsOrHurriesStaysNearItsKeys) {
   }
 }
 
-// Moved by hand: blended shadows arrive after at most two intervals, one map serves when it rests.
+// A light that is moved by hand: blended shadows arrive after two intervals at most, and one map is
+// enough when the light rests.
 TEST(Schedule, AHandMovedLightArrivesWithTheStatedDelay) {
   ScheduleOptions o;
   KeySchedule schedule(o);
