@@ -36,7 +36,7 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) {
   return a.x * b.y - a.y * b.x;
 }
 
-// The point of the triangle nearest to u in uv, as weights.
+// Returns the point of the triangle that is nearest to u in uv, as barycentric weights.
 glm::dvec3 nearest(const Flat& t, const glm::dvec2& u) {
   const glm::dvec2 a = t.uv[1] - t.uv[0], b = t.uv[2] - t.uv[0], d = u - t.uv[0];
   const double det = cross(a, b), x = cross(d, b) / det, y = cross(a, d) / det;
@@ -56,7 +56,7 @@ glm::dvec3 nearest(const Flat& t, const glm::dvec2& u) {
   return best;
 }
 
-// Coarse triangles of one chart in a grid over uv.
+// Finds coarse triangles of one chart by a grid over uv.
 class Finder {
  public:
   explicit Finder(std::vector<Flat> triangles) : triangles_(std::move(triangles)) {
@@ -79,10 +79,10 @@ class Finder {
       }
     }
   }
-  // The triangle that covers u, else the one that is least off in uv and space together, and the
-  // weights of its point nearest to u. Where several cover u (borders closer to each other than a
-  // texel), the one whose point is nearest to p in space. `density`: texels per uv unit; `texel`:
-  // its size in space.
+  // Returns the triangle that covers u, or else the one with the least distance in uv and space
+  // together, and the weights of its point nearest to u. If several cover u (borders closer to each
+  // other than a texel), it is the one whose point is nearest to p in space. `density` is in texels
+  // per uv unit; `texel` is the size of a texel in space.
   std::pair<const Flat*, glm::dvec3> find(const glm::dvec2& u, const glm::dvec3& p, double density,
                                           double texel) const {
     const auto [cx, cy] = cell(u);
@@ -113,7 +113,7 @@ class Finder {
 
  private:
   static constexpr int kCells = 64;
-  static constexpr double kInside = 1e-12;  // of uv lengths about 1
+  static constexpr double kInside = 1e-12;  // tolerance for uv lengths of about 1
   std::pair<int, int> cell(const glm::dvec2& u) const {
     const auto clamp = [](double x) { return static_cast<int>(std::clamp(x, 0.0, kCells - 1.0)); };
     return {clamp((u.x - low_.x) / cell_), clamp((u.y - low_.y) / cell_)};
@@ -130,7 +130,7 @@ struct Tally {
   double least_cosine = 0, turned = 0, area = 0;
 };
 
-// A chart's texels per uv unit, their size in space, its largest stretch.
+// A chart's texels per uv unit, the size of a texel in space, and the chart's largest stretch.
 struct Scale {
   double density, texel, stretch;
 };
@@ -145,7 +145,7 @@ void sample(const Flat& fine, const Finder& finder, const Scale& scale, std::mt1
     x = 1 - x;
     y = 1 - y;
   }
-  if (unit(random) < 0.2) x = 0;  // along edges, and at corners
+  if (unit(random) < 0.2) x = 0;  // some samples lie on edges and at corners
   if (unit(random) < 0.2) y = 0;
   const glm::dvec3 w(1 - x - y, x, y);
   const glm::dvec2 u = Finder::at(fine, w);
@@ -217,7 +217,7 @@ std::size_t broken_triangles(const ChartedMesh& mesh, const SimplifiedMesh& coar
 
 SampledSlip sample_slip(const ChartedMesh& mesh, const SimplifiedMesh& coarse,
                         std::span<const double> texels_per_unit, double max_turn_degrees) {
-  const int samples = mesh.triangles() > 100000 ? 2 : 12;  // a triangle
+  const int samples = mesh.triangles() > 100000 ? 2 : 12;  // per triangle
   std::vector<std::vector<Flat>> triangles(mesh.charts.charts.size());
   for (std::size_t t = 0; t < coarse.triangle_chart.size(); ++t) {
     triangles[coarse.triangle_chart[t]].push_back(flat(mesh, &coarse.uv_indices[3 * t]));

@@ -28,7 +28,7 @@ void expect_sound(const ChartedMesh& mesh, const SimplifiedMesh& coarse,
   const OpenEdges before = open_edges(mesh.positions, mesh.indices),
                   after = open_edges(mesh.positions, coarse.indices);
   EXPECT_LE(after.count, before.count);
-  // Less is well: borders of different steps along one line may come to match.
+  // They may be shorter, because borders with different steps along one line may come to match.
   EXPECT_LE(after.length, before.length * 1.001);
 
   const SampledSlip slip = sample_slip(mesh, coarse, densities, options.max_turn_degrees);

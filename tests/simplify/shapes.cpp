@@ -106,8 +106,8 @@ ChartedMesh sphere(int n) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const int side : {0, 1}) {
       builder.add_grid(n, n, [&](double s, double t) {
-        // Points that faces share must come out bitwise equal: everything is computed from the
-        // point of the cube.
+        // Points that faces share must be bitwise equal, so everything is computed from the point
+        // on the cube.
         double p[3];
         p[axis] = side ? 1 : -1;
         p[(axis + 1) % 3] = 2 * (side ? s : t) - 1;
@@ -148,7 +148,7 @@ ChartedMesh cylinder(int n, bool cut) {
   for (int c = 0; c < charts; ++c) {
     builder.add_grid(n / charts, n, [&](double s, double t) {
       const int step = static_cast<int>(std::lround(s * (n / charts))) + c * (n / charts);
-      const double angle = 2 * kPi * (step % n) / n;  // the cut's two sides are bitwise equal
+      const double angle = 2 * kPi * (step % n) / n;  // both sides of the cut are bitwise equal
       return ChartedMeshBuilder::Vertex{
           {as_float(std::cos(angle)), as_float(std::sin(angle)), as_float(2 * t)},
           {2 * kPi * s / charts, 2 * t}};
@@ -213,7 +213,7 @@ ChartedMesh moebius(int n) {
   builder.add_grid(6 * n, n, [n](double s, double t) {
     const int step = static_cast<int>(std::lround(s * 6 * n)),
               row = static_cast<int>(std::lround(t * n));
-    // Half a turn further, the row runs the other way.
+    // After one turn around, the row runs the other way.
     const double a = 2 * kPi * (step % (6 * n)) / (6 * n);
     const double w = 2.0 * (step == 6 * n ? n - row : row) / n - 1;
     const double r = 4 + w * std::cos(a / 2);

@@ -73,7 +73,7 @@ TEST(Simplify, ChartsThatMeetThemselves) {
   expect_sound(band, coarse_band, 8);
   EXPECT_LT(coarse_ring.triangles_out, ring.triangles() / 4);
   EXPECT_LT(coarse_band.triangles_out, band.triangles() / 4);
-  // The cuts are simplified, too: a vertex of a seam is used by fewer edges than before.
+  // The cuts are simplified, too: fewer edges than before use a vertex of a seam.
   EXPECT_EQ(open_edges(ring.positions, coarse_ring.indices).count, 0U);
 }
 
@@ -124,8 +124,8 @@ TEST(Simplify, ScaleFree) {
   EXPECT_EQ(simplify(mesh, 64).uv_indices, simplify(large, 64.0 / kScale).uv_indices);
 }
 
-// Charts of random outline over a height field: seams of every kind, points where many charts
-// meet, charts in several parts that touch at points, holes.
+// Charts of random outline over a height field: seams of every kind, points where many charts meet,
+// charts with several parts that touch at points, and holes.
 TEST(Simplify, Patchworks) {
   for (std::uint32_t seed = 1; seed <= 24; ++seed) {
     SCOPED_TRACE(seed);

@@ -23,7 +23,7 @@ TEST(SimplifyHeavy, ThreeMillionTrianglesOfWalls) {
 TEST(SimplifyHeavy, ThreeMillionTrianglesOfASphere) {
   const ChartedMesh mesh = sphere(500);
   const SimplifiedMesh coarse = simplify(mesh, 500);
-  // Of the whole process, with the mesh, its charts and their making.
+  // The memory of the whole process, including the mesh, its charts and making them.
   const double bytes = double(peak_memory()) / double(coarse.triangles_in);
   std::printf("%.2f CPU s, %.0f bytes a triangle\n", coarse.cpu_seconds, bytes);
   EXPECT_LT(bytes, 400);

@@ -57,7 +57,8 @@ TEST(SimplifyHostile, TrianglesThatAreListedTwiceStay) {
 
 TEST(SimplifyHostile, DegenerateTrianglesGoOrStayButDoNotMultiply) {
   ChartedMeshBuilder builder;
-  // A strip whose middle row has triangles without area: corners in line, or two equal.
+  // A strip whose middle row has triangles without area: their corners lie on a line, or two are
+  // equal.
   Vertices vertices;
   std::vector<std::uint32_t> triangles;
   constexpr std::uint32_t n = 12;
@@ -67,7 +68,7 @@ TEST(SimplifyHostile, DegenerateTrianglesGoOrStayButDoNotMultiply) {
   for (std::uint32_t i = 0; i < n; ++i) {
     const std::uint32_t a = i, b = i + 1, c = i + n + 1, d = c + 1, e = c + n + 1, f = e + 1;
     triangles.insert(triangles.end(), {a, b, c, b, d, c});
-    if (i % 4 == 1) {  // a vertex on the edge c d, joined below by a triangle without area
+    if (i % 4 == 1) {  // adds a vertex on the edge c d, with a triangle without area
       const auto m = static_cast<std::uint32_t>(vertices.size());
       vertices.push_back(flat_vertex(i + 0.5, 1));
       triangles.insert(triangles.end(), {c, d, m, c, m, e, m, d, f, m, f, e});
@@ -98,14 +99,14 @@ TEST(SimplifyHostile, OnlyDegenerateTriangles) {
   EXPECT_EQ(coarse.triangles_out, coarse.degenerate_kept);
 }
 
-// A middle with many spokes, all of whose neighbours can go before it does.
+// A vertex with many neighbours, all of which can be removed before it is.
 TEST(SimplifyHostile, AHubInsideGoesOnceItsNeighboursHave) {
   constexpr std::uint32_t n = 400;
   Vertices vertices = {flat_vertex(0, 0)};
   std::vector<std::uint32_t> triangles;
   for (const double radius : {0.5, 1.0}) {
     for (std::uint32_t i = 0; i < n; ++i) {
-      // A square: its sides are straight, so that the rim goes, too.
+      // The points lie on a square. Its sides are straight, so the border can be simplified, too.
       const double angle = 2 * 3.14159265358979 * (i + 0.5) / n, x = std::cos(angle),
                    y = std::sin(angle), side = radius / std::max(std::abs(x), std::abs(y));
       vertices.push_back(flat_vertex(side * x, side * y));
@@ -125,7 +126,7 @@ TEST(SimplifyHostile, AHubInsideGoesOnceItsNeighboursHave) {
 }
 
 TEST(SimplifyHostile, FansThatTouchAtOneVertex) {
-  // Two plates in one chart share a single uv; two more share the position only.
+  // Two plates of one chart share a single uv; two more share only the position.
   ChartedMeshBuilder builder;
   builder.add_grid(
       16, 16, [](double s, double t) { return flat_vertex(16 * s, 16 * t); },
@@ -161,7 +162,7 @@ TEST(SimplifyHostile, RandomSoup) {
 }
 
 TEST(SimplifyHostile, FarFromTheOriginAndTiny) {
-  // A box of a millimetre, a kilometre away: the floats hold about sixteen steps of it.
+  // A box of a thousandth, a thousand units away: a float has about sixteen steps over its size.
   const ChartedMesh mesh = box(10, 1.0 / 1024, {1000, 1000, 1000});
   const SimplifiedMesh coarse = simplify(mesh, 1e5);
   EXPECT_LE(coarse.triangles_out, mesh.triangles());
@@ -170,7 +171,7 @@ TEST(SimplifyHostile, FarFromTheOriginAndTiny) {
 }
 
 TEST(SimplifyHostile, AFanOfManyTriangles) {
-  // A disc with one vertex in the middle and all others on its rim.
+  // A disc with one vertex in the middle and all others on its border.
   constexpr std::uint32_t n = 8000;
   Vertices vertices = {flat_vertex(0, 0)};
   std::vector<std::uint32_t> triangles;
@@ -185,7 +186,8 @@ TEST(SimplifyHostile, AFanOfManyTriangles) {
   const SimplifiedMesh coarse = simplify(mesh, 100);
   EXPECT_EQ(broken_triangles(mesh, coarse), 0U);
   EXPECT_LT(coarse.triangles_out, 500U);
-  EXPECT_LT(coarse.cpu_seconds, 5);  // ranking the middle again after each would take far longer
+  // Ranking the hub again after each collapse would take far longer.
+  EXPECT_LT(coarse.cpu_seconds, 5);
 }
 
 TEST(SimplifyHostile, EmptyAndSmall) {
@@ -205,7 +207,7 @@ TEST(SimplifyHostile, HugeTexelsStillLeaveAMesh) {
   EXPECT_GE(coarse.triangles_out, 6U);
 }
 
-// Costs grow with the square of the density, up to the largest float and beyond it.
+// Costs grow with the square of the density, up to the largest float and beyond.
 TEST(SimplifyHostile, TinyTexelsEndToo) {
   const ChartedMesh mesh = box(6);
   for (const double density : {1e12, 1e15, 1e18, 1e21, 1e30, 1e160, 1e300}) {

@@ -1,4 +1,4 @@
-// The lit room of the shared data: LIBATLAS_DATA points at the folder that holds room/scene.obj.
+// The lit room of the shared data: LIBATLAS_DATA names the folder that contains room/scene.obj.
 #include <gtest/gtest.h>
 
 #include <cstdio>

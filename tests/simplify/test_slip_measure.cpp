@@ -1,4 +1,4 @@
-// Slip and turn of single coarse triangles, against points strewn along the fine edges.
+// Compares slip and turn of single coarse triangles with samples along the fine edges.
 #include "libatlas/simplify/slip_measure.h"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ class Measured {
                   SlipLimits& found) {
     return measure_.measure(t, limits, found);
   }
-  // Twice the area in uv of a triangle of vertices.
+  // Returns twice the area of a triangle in uv.
   double area(const std::array<std::uint32_t, 3>& t) const {
     const Point a = point(t[0]), b = point(t[1]), c = point(t[2]);
     return cross(b.uv - a.uv, c.uv - a.uv);
@@ -65,7 +65,7 @@ class Measured {
   simplify::SlipMeasure measure_;
 };
 
-// A triangle in space over uv.
+// A triangle in space, parameterised by uv.
 struct Plane {
   Point p[3];
 
@@ -92,8 +92,8 @@ Plane plane(const Measured& m, const std::array<std::uint32_t, 3>& t) {
   return {{m.point(t[0]), m.point(t[1]), m.point(t[2])}};
 }
 
-// The largest gap at points of fine edges, and the largest turn of fine triangles: those that lie
-// wholly over the coarse one (sure), and all that share a point with it (possible).
+// The largest gap at samples of fine edges, and the largest turn of fine triangles: of those that
+// lie entirely over the coarse one (sure), and of all that share a point with it (possible).
 struct Oracle {
   double slip = 0, sure_turn = 0, possible_turn = 0;
 };
@@ -137,7 +137,8 @@ TEST(SlipMeasure, AgreesWithPointsAlongTheFineEdges) {
       if (measured.area(t) < 0.02) continue;
       ++judged;
       const Oracle oracle = strew(measured, t);
-      // Strips count from a tenth of the slip's limit on, so that whole fine triangles do.
+      // Strips of fine triangles count from a width of a tenth of the slip limit, so entire
+      // triangles do.
       const SlipLimits wide{0.3, 3};
       SlipLimits found;
       ASSERT_TRUE(measured(t, wide, found));
@@ -155,7 +156,8 @@ TEST(SlipMeasure, AgreesWithPointsAlongTheFineEdges) {
   }
 }
 
-// A roof: every fine triangle is turned by the angle of its side against what spans the ridge.
+// A roof: a coarse triangle that spans the ridge turns every fine triangle by the slope of its
+// side.
 TEST(SlipMeasure, OfARoofIsItsHeightAndSlope) {
   for (const double slope : {0.1, 0.5, 1.0}) {
     ChartedMeshBuilder builder;
@@ -182,8 +184,8 @@ TEST(SlipMeasure, OfARoofIsItsHeightAndSlope) {
   }
 }
 
-// How far a point is from the middle third of the unit square, which the plate leaves out; negative
-// inside.
+// Returns the distance of a point from the middle third of the unit square, which the plate leaves
+// out. It is negative inside.
 double from_hole(const glm::dvec2& uv) {
   return std::max(std::abs(uv.x - 0.5), std::abs(uv.y - 0.5)) - 1.0 / 6;
 }
