@@ -20,12 +20,12 @@ namespace {
 
 using Id = std::uint32_t;
 
-// Faces with welded places and uvs in texels.
+// Faces with welded positions, and with uvs in texels.
 struct Prepared {
   const UvMesh& mesh;
-  std::vector<Id> place;          // 1 a position
-  std::vector<glm::dvec2> texel;  // 1 a uv
-  std::vector<Id> chart;          // 1 a face
+  std::vector<Id> place;          // one per position
+  std::vector<glm::dvec2> texel;  // one per uv
+  std::vector<Id> chart;          // one per face
   double seam = 0;
 
   Prepared(const UvMesh& m, int width, int height);
@@ -40,7 +40,7 @@ struct Prepared {
 
 struct Side {
   Id face;
-  glm::dvec2 low, high;  // texels at the edge's lower and higher place
+  glm::dvec2 low, high;  // texels at the edge's lower and higher position
 };
 
 Prepared::Prepared(const UvMesh& m, int width, int height) : mesh(m) {
@@ -91,8 +91,8 @@ double surface_area(const Prepared& p, std::size_t f) {
   return 0.5 * glm::length(glm::cross(p.position(f, 1) - a, p.position(f, 2) - a));
 }
 
-// Singular values of the map from texels to the surface, larger first: that of the 2x2 matrix which
-// takes uv edges to the triangle's edges in a frame of its own plane.
+// Returns the singular values of the map from texels to the surface, the larger one first. They are
+// those of the 2x2 matrix that maps uv edges to the triangle's edges in a frame of its plane.
 std::pair<double, double> singular_values(const Prepared& p, std::size_t f) {
   const auto t = p.uv(f);
   const glm::dvec3 e1 = p.position(f, 1) - p.position(f, 0),
@@ -170,7 +170,8 @@ std::int64_t floor_div(std::int64_t a, std::int64_t b) {
 using Snapped =
     std::array<std::array<std::int64_t, 2>, 3>;  // corners in 1/256 texel, anticlockwise
 
-// The texels of one row whose centres lie inside: each edge bounds x from one side.
+// Returns the first and last texel of a row whose centres lie inside. Each edge bounds x from one
+// side.
 std::pair<std::int64_t, std::int64_t> row_span(const Snapped& c, std::int64_t y,
                                                std::int64_t width) {
   std::int64_t first = 0, last = width - 1;
@@ -179,8 +180,9 @@ std::pair<std::int64_t, std::int64_t> row_span(const Snapped& c, std::int64_t y,
     const auto& a = c[k];
     const auto& b = c[(k + 1) % 3];
     const std::int64_t dx = b[0] - a[0], dy = b[1] - a[1];
-    // Inside where dx (py - ay) - dy (px - ax) > 0, or = 0 on a left or top edge: dy > 0, or dy = 0
-    // and dx < 0. With px = 256 x + 128 that is dy 256 x <= limit (strictly less: limit - 1).
+    // A centre is inside where dx (py - ay) - dy (px - ax) > 0, or = 0 on a left or top edge (dy >
+    // 0, or dy = 0 and dx < 0). With px = 256 x + 128 that means dy 256 x <= limit, where limit is
+    // one less for the strict comparison.
     const bool owns = dy > 0 || (dy == 0 && dx < 0);
     const std::int64_t limit = dx * (py - a[1]) + dy * (a[0] - 128) - (owns ? 0 : 1);
     if (dy > 0)
@@ -193,8 +195,9 @@ std::pair<std::int64_t, std::int64_t> row_span(const Snapped& c, std::int64_t y,
   return {first, last};
 }
 
-// Whether bilinear lookups inside the triangle read texel (x, y): the triangle and the open square
-// of two texels about the centre meet. Separating axes; the square loses 1e-6 for rounding.
+// Returns whether bilinear lookups inside the triangle read texel (x, y). They do if the triangle
+// and the open square of two texels around the centre intersect, tested by separating axes. The
+// square is smaller by 1e-6 because of rounding.
 bool reads(const std::array<glm::dvec2, 3>& t, int x, int y) {
   const glm::dvec2 centre(x + 0.5, y + 0.5);
   constexpr double kHalf = 1 - 1e-6;
@@ -209,7 +212,7 @@ bool reads(const std::array<glm::dvec2, 3>& t, int x, int y) {
   return true;
 }
 
-// One page's texels.
+// Measures the texels of one page.
 class PageMeter {
  public:
   PageMeter(int width, int height)
@@ -277,7 +280,7 @@ class PageMeter {
   std::vector<std::uint8_t> shared_;
 };
 
-// "v/t/n" to (v, t), 0 where there is none.
+// Parses "v/t/n" and returns (v, t), with 0 for a missing number.
 std::pair<long, long> corner_of(const std::string& word) {
   const char* end = word.data() + word.size();
   long v = 0, t = 0;

@@ -1,5 +1,5 @@
-// The judge itself is held against closed forms, and against the shared measuring program where it
-// can be compiled.
+// Checks the measures against closed forms, and against the shared measuring program if it can be
+// compiled.
 #include "tests/support/atlas_measure.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A mesh whose uvs are its x and y, mapped by (a x + b, c y + d).
+// Returns a mesh whose uvs are its x and y, mapped by (a x + b, c y + d).
 UvMesh flat_mesh(const Shape& shape, double a, double b, double c, double d) {
   UvMesh mesh;
   for (const Vec3f& p : shape.positions) {
@@ -66,7 +66,8 @@ TEST(AtlasMeasure, AnIsometryIsPerfect) {
 }
 
 TEST(AtlasMeasure, AnAnisotropicMapHasItsClosedForm) {
-  // uv = (x k, y / k): singular values of uv -> surface at the area-preserving scale are k and 1/k.
+  // With uv = (x k, y / k), the singular values from uv to the surface are k and 1/k at the
+  // area-preserving scale.
   const double k = 1.25;
   const AtlasMeasures m =
       measure_atlas(flat_mesh(grid(5, 7), 0.5 * k, 0.1, 0.5 / k, 0.1), 128, 128);
@@ -80,7 +81,7 @@ TEST(AtlasMeasure, AnAnisotropicMapHasItsClosedForm) {
 TEST(AtlasMeasure, AMirroredChartAndAFlippedTriangleAreSeen) {
   EXPECT_EQ(measure_atlas(flat_mesh(grid(3, 3), -0.5, 0.9, 0.5, 0.1), 32, 32).mirrored, 1u);
   UvMesh mesh = flat_mesh(grid(3, 3), 0.5, 0.1, 0.5, 0.1);
-  mesh.uvs[0] = {0.9, 0.9};  // the corner's triangles turn over, and cover others
+  mesh.uvs[0] = {0.9, 0.9};  // the triangles of that corner flip and cover others
   const AtlasMeasures m = measure_atlas(mesh, 64, 64);
   EXPECT_GE(m.flipped, 1u);
   EXPECT_GT(m.overlap, 0u);
@@ -98,13 +99,13 @@ TEST(AtlasMeasure, OverlapCountsEveryTexelOnce) {
 
 TEST(AtlasMeasure, BleedBeginsWithinOneTexel) {
   for (const int gap : {0, 1, 2, 3}) {
-    // Two squares of 8 texels, `gap` texels apart, edges on texel borders.
+    // Two squares of 8 texels are `gap` texels apart, with their edges on texel borders.
     UvMesh mesh = flat_mesh(grid(1, 1), 8 / 64.0, 8 / 64.0, 8 / 64.0, 8 / 64.0);
     append(mesh, flat_mesh(moved(grid(1, 1), 1, {4, 0, 0}), 8 / 64.0, (16 + gap - 32) / 64.0,
                            8 / 64.0, 8 / 64.0));
     const AtlasMeasures m = measure_atlas(mesh, 64, 64);
     EXPECT_EQ(m.overlap, 0u);
-    // Lookups reach one texel beyond each square: the columns that both reach, 10 texels high.
+    // Lookups read one texel beyond each square. The columns that both read are 10 texels high.
     EXPECT_EQ(m.bleed, std::uint64_t(std::max(0, 2 - gap)) * 10) << "gap " << gap;
   }
 }
@@ -112,7 +113,8 @@ TEST(AtlasMeasure, BleedBeginsWithinOneTexel) {
 TEST(AtlasMeasure, SeamIsTheLengthOfCutEdges) {
   UvMesh mesh = flat_mesh(grid(1, 1), 0.25, 0, 0.25, 0);
   append(mesh, flat_mesh(moved(grid(1, 1), 1, {1, 0, 0}), 0.25, 0.25, 0.25, 0));
-  // One edge of length 1 between them, shared by place but not by texture coordinate.
+  // One edge of length 1 lies between them. Its positions are shared, its texture coordinates are
+  // not.
   const AtlasMeasures m = measure_atlas(mesh, 64, 64);
   EXPECT_EQ(m.charts, 2u);
   EXPECT_NEAR(m.seam, 1 / std::sqrt(2.0), 1e-12);
@@ -127,7 +129,7 @@ TEST(AtlasMeasure, DegenerateAndOutsideAreCounted) {
   EXPECT_EQ(m.outside, 2u);
 }
 
-// An OBJ whose charts are the faces of a box, some mirrored, some overlapping, one too close.
+// Writes an OBJ of a torus on two pages, with charts that are mirrored, overlap or are too close.
 void write_hard_atlas(const fs::path& path) {
   const Shape shape = torus(24, 12);
   std::ofstream out(path);

@@ -27,8 +27,8 @@ float encode(float c) {
   return c <= 0.0031308f ? c * 12.92f : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
 }
 
-// Bilinear; scenes repeat their textures and are decoded first, pages clamp and are shown as they
-// are.
+// A bilinear lookup. For a scene, the texture repeats and is decoded to linear values first; a page
+// clamps and is shown as it is.
 glm::vec3 look_up(const Image8& image, glm::vec2 uv, bool scene) {
   const float x = uv.x * float(image.width) - 0.5f, y = uv.y * float(image.height) - 0.5f;
   const int ix = int(std::floor(x)), iy = int(std::floor(y));
@@ -149,8 +149,8 @@ std::vector<Pixel> render(const WorldMesh& scene, const WorldMesh& world,
   return pixels;
 }
 
-// Mean squared difference on every third pixel, differences beyond 0.1 counted as 0.1: what has
-// moved or is missing must not pull the exposure.
+// Returns the mean squared difference over every third pixel. Differences beyond 0.1 count as 0.1,
+// so that moved or missing parts do not affect the exposure.
 double exposure_error(const std::vector<Pixel>& pixels, double scale) {
   double sum = 0;
   std::size_t n = 0;
@@ -165,7 +165,8 @@ double exposure_error(const std::vector<Pixel>& pixels, double scale) {
   return n > 0 ? sum / double(n) : 0;
 }
 
-// The exposure of least error: a coarse scan over powers of two, then golden section.
+// Returns the exposure of least error, found by a coarse scan over powers of two and a
+// golden-section search.
 double fit_scale(const std::vector<Pixel>& pixels, double start) {
   double best = std::log2(start), least = std::numeric_limits<double>::max();
   for (double e = best - 6; e <= std::log2(start) + 6; e += 0.125) {

@@ -1,4 +1,4 @@
-// How an exported world looks beside its lit scene: both are ray-cast from the same cameras.
+// Compares an exported world with its lit scene by casting rays into both from the same cameras.
 #pragma once
 
 #include <filesystem>
@@ -11,20 +11,20 @@ struct ViewOptions {
   int cameras = 12, width = 480, height = 320;
 };
 
-// Display values are sRGB-coded, 0..1. The export must have used linear tone mapping: its one scale
-// factor is fitted.
+// Display values are sRGB-encoded, 0 to 1. The export must have used linear tone mapping; its
+// single scale factor is fitted.
 struct Fidelity {
-  double psnr = 0;  // dB over all pixels that either hits; 120 where nothing differs
+  double psnr = 0;                    // dB over all pixels that hit either; 120 if nothing differs
   double p50 = 0, p99 = 0, p999 = 0;  // percentiles of a pixel's largest absolute difference
-  double bad8 = 0;                    // share of pixels off by more than 8/255
-  double miss = 0;                    // share of pixels that only one of the two hits
-  double scale = 0;                   // display value a unit of scene light
-  double white = 0;  // display value of the scene's 99th percentile: 1 is a well exposed export
+  double bad8 = 0;                    // share of pixels that differ by more than 8/255
+  double miss = 0;                    // share of pixels that hit only one of the two
+  double scale = 0;                   // display value per unit of scene light
+  double white = 0;  // display value of the scene's 99th percentile; 1 for a well exposed export
   std::size_t cameras = 0, triangles_in = 0, triangles_out = 0, pages = 0;
 };
 
-// Cameras stand in open places inside the scene's box and look where it is far to see; the same
-// ones for the same scene and options. 0 cameras are found in a scene that nobody can stand in.
+// Places cameras in open places inside the scene's box, looking in directions of long sight. They
+// are the same for the same scene and options. In a scene without open places there are 0 cameras.
 Fidelity compare_views(const WorldMesh& scene, const WorldMesh& world, const ViewOptions& options);
 
 }  // namespace atlas::test

@@ -1,4 +1,4 @@
-// The visual judge on rooms whose answer is known.
+// Tests the visual comparison on rooms with known results.
 #include "tests/support/fidelity.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ double encode(double c) {
   return c <= 0.0031308 ? c * 12.92 : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
 }
 
-// The inside of a box, one surface a wall, wall k lit with (k + 1) / 10.
+// Returns the inside of a box with one surface per wall, wall k lit with (k + 1) / 10.
 WorldMesh lit_room() {
   const Shape shape = box(1, {4, 3, 2.5});
   WorldMesh room;
@@ -44,7 +44,7 @@ WorldMesh lit_room() {
   return room;
 }
 
-// The export of lit_room: one page a wall, of one colour; 0.6 is display white.
+// Returns the export of lit_room: one page of a single colour per wall, with 0.6 as display white.
 WorldMesh exported_room(const WorldMesh& room) {
   WorldMesh world = room;
   world.texcoords.assign(1, glm::vec2(0.5f));
@@ -64,7 +64,7 @@ TEST(Fidelity, AFaithfulWorldDiffersByRoundingOnly) {
   const WorldMesh room = lit_room();
   const Fidelity f = compare_views(room, exported_room(room), kSmall);
   EXPECT_EQ(f.cameras, 6u);
-  EXPECT_GT(f.psnr, 53);  // 8-bit rounding, uniform: 58.9 dB; the six values here: at least this
+  EXPECT_GT(f.psnr, 53);  // uniform 8-bit rounding gives 58.9 dB; these six values at least 53
   EXPECT_LT(f.p999, 1 / 255.0);
   EXPECT_EQ(f.bad8, 0);
   EXPECT_EQ(f.miss, 0);
@@ -80,7 +80,8 @@ TEST(Fidelity, OneWrongWallIsItsShareOfThePicture) {
   const Fidelity f = compare_views(room, world, kSmall);
   EXPECT_GT(f.bad8, 0.02);
   EXPECT_LT(f.bad8, 0.6);
-  // The mean square is that of the wrong pixels, 40/255 (less what the fitted exposure takes back).
+  // The mean square is that of the wrong pixels, 40/255 (less what the fitted exposure
+  // compensates).
   const double expected = -10 * std::log10(f.bad8 * std::pow(40 / 255.0, 2));
   EXPECT_NEAR(f.psnr, expected, 1.5);
 }
@@ -106,7 +107,7 @@ TEST(Fidelity, ADarkExportIsToldByItsWhite) {
 
 namespace fs = std::filesystem;
 
-// As files: an OBJ, its MTL, and the images as PNG.
+// Writes the mesh as files: an OBJ, its MTL, and the images as PNG.
 void write_files(const WorldMesh& mesh, const fs::path& obj) {
   const std::string stem = obj.stem().string();
   std::ofstream out(obj), mtl(fs::path(obj).replace_extension(".mtl"));
@@ -132,7 +133,8 @@ void write_files(const WorldMesh& mesh, const fs::path& obj) {
   }
 }
 
-// Cameras differ, so shares of pixels agree only as far as 64 views of one room do.
+// The cameras of both programs differ, so the shares of pixels agree only as well as 64 views of
+// one room do.
 TEST(Fidelity, AgreesWithTheSharedMeasuringProgram) {
   const auto shared = shared_data("../tools/fidelity.cpp");
   if (!shared) GTEST_SKIP() << lacks("a shared program beside it to compare with");

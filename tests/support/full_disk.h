@@ -1,4 +1,4 @@
-// A disk that is full, as far as the writing program can tell.
+// Simulates a full disk for the writing process.
 #pragma once
 
 #include <signal.h>
@@ -6,7 +6,7 @@
 
 namespace atlas::test {
 
-// While one lives, no file of this process grows beyond `bytes`.
+// While an instance exists, no file of this process can grow beyond `bytes`.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) : handler_(::signal(SIGXFSZ, SIG_IGN)) {

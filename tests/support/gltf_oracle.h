@@ -1,5 +1,5 @@
-// glTF files as plain numbers, read by code of our own: what judges an export must not share its
-// readers.
+// Reads glTF files as plain numbers. The code is independent, because a test of an exporter must
+// not use the library's own readers.
 #pragma once
 
 #include <cstdint>
@@ -11,29 +11,29 @@
 
 namespace atlas::test {
 
-// A triangle of a primitive where a node shows it.
+// A triangle of a primitive, as an instance of one node.
 struct OracleTriangle {
-  std::string node;            // its name
-  int material = -1;           // -1: none
-  std::vector<double> matrix;  // of the node into the world, 16 numbers, column by column
-  // By attribute the values of the three corners, one after the other, as they are stored; those of
-  // morph targets as "0/POSITION".
+  std::string node;            // the node's name
+  int material = -1;           // -1 if it has none
+  std::vector<double> matrix;  // from the node to the world, 16 numbers in column-major order
+  // For each attribute the values of the three corners, one after the other, as they are stored.
+  // Attributes of morph targets are named like "0/POSITION".
   std::map<std::string, std::vector<double>> attributes;
 };
 
-// A .glb, or a .gltf with one buffer beside it. All functions throw std::exception where the file
-// breaks the format.
+// A .glb, or a .gltf with one buffer file beside it. All functions throw std::exception if the file
+// violates the format.
 class GltfOracle {
  public:
   explicit GltfOracle(const std::filesystem::path& path);
 
   nlohmann::json document;
 
-  // All values of an accessor as they are stored; sparse ones are refused.
+  // Returns all values of an accessor as they are stored. Sparse accessors are refused.
   std::vector<double> values(const nlohmann::json& accessor) const;
-  // The bytes of an image, embedded or beside the file.
+  // Returns the bytes of an image, which is embedded or beside the file.
   std::string image(std::size_t index) const;
-  // The triangles of the default scene, node by node, children after their parents.
+  // Returns the triangles of the default scene, node by node, children after their parents.
   std::vector<OracleTriangle> triangles() const;
 
  private:

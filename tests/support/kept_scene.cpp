@@ -34,7 +34,7 @@ struct GltfFile {
     }
   }
 
-  // `width` values a row, of four bytes each.
+  // Returns the values of an accessor, four bytes each, with `width` values per element.
   template <class T>
   std::vector<T> values(std::size_t accessor, std::size_t width) const {
     const json& a = document.at("accessors").at(accessor);

@@ -1,4 +1,5 @@
-// Leaks of other people's libraries, which the tests under AddressSanitizer are not about.
+// Ignores leaks of third-party libraries, which are not the subject of tests under
+// AddressSanitizer.
 #pragma once
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -7,7 +8,7 @@
 
 namespace atlas::test {
 
-// What is allocated while one lives, by the thread that made it, may leak.
+// While an instance exists, memory that the creating thread allocates may leak.
 class IgnoreLeaks {
  public:
 #if defined(__SANITIZE_ADDRESS__)

@@ -1,4 +1,4 @@
-// atlas-measure: the tests' judges as a program.
+// atlas-measure: the measures of the tests as a program.
 //   atlas-measure atlas FILE.obj WIDTH HEIGHT               uv quality, overlaps and bleeding
 //   atlas-measure world SCENE.obj WORLD.(wrl|obj) [CAMERAS] how the world looks beside the scene
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// What a program prints, for tests that run one.
+// The output of programs, for tests that run them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 
 namespace atlas::test {
 
-// The standard output of a shell command; empty if it fails.
+// Returns the standard output of a shell command, or an empty string if it fails.
 inline std::string output_of(const std::string& command) {
   std::string output;
   FILE* pipe = popen(command.c_str(), "r");
@@ -19,7 +19,7 @@ inline std::string output_of(const std::string& command) {
   return pclose(pipe) == 0 ? output : std::string();
 }
 
-// The field `name` of a flat JSON object.
+// Returns the number in field `name` of a flat JSON object.
 inline double json_field(const std::string& json, const std::string& name) {
   const std::size_t at = json.find("\"" + name + "\":");
   EXPECT_NE(at, std::string::npos) << name << " in " << json;

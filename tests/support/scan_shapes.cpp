@@ -1,4 +1,5 @@
-// Round shapes as scanners leave them: even triangles of any number, noise along the normals.
+// Round shapes as scanners produce them: evenly triangulated at any resolution, with noise along
+// the normals.
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -23,7 +24,7 @@ Shape geodesic_sphere(int n, double radius) {
   std::map<std::array<std::uint32_t, 4>, std::uint32_t> known;  // points on corners and edges
   for (std::size_t f = 0; f < solid.indices.size(); f += 3) {
     const std::uint32_t* v = &solid.indices[f];
-    // The point with weights n - i - j, i, j; those on a corner or an edge are shared.
+    // Returns the point with weights n - i - j, i, j. Points on a corner or an edge are shared.
     const auto at = [&](int i, int j) {
       const std::array<std::pair<std::uint32_t, int>, 3> weights{
           {{v[0], n - i - j}, {v[1], i}, {v[2], j}}};
@@ -76,7 +77,8 @@ Shape noisy_along_normals(Shape shape, double sigma, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto uniform = [&] { return double(random() >> 11) * 0x1p-53; };
   for (std::size_t v = 0; v < normal.size(); ++v) {
-    // Box and Muller, for the standard library's distribution differs between systems.
+    // Uses the Box-Muller transform, because the standard library's distribution differs between
+    // systems.
     const double radius = std::sqrt(-2 * std::log(1 - uniform()));
     const double gauss = radius * std::cos(2 * kPi * uniform());
     const double size = glm::length(normal[v]);

@@ -14,13 +14,13 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Adds the two triangles of the quad a b c d, anticlockwise.
+// Adds the two triangles of the quad a b c d, which is anticlockwise.
 void quad(Shape& shape, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   for (std::uint32_t v : {a, b, c, a, c, d}) shape.indices.push_back(v);
 }
 
-// Vertices of a (columns + 1) x (rows + 1) lattice; closed in the first direction if `wrap`, which
-// then has `columns` of them.
+// Returns a lattice of (columns + 1) x (rows + 1) vertices. If `wrap`, it is closed in the first
+// direction, which then has `columns` vertices.
 template <class Place>
 Shape lattice(int columns, int rows, bool wrap, const Place& place) {
   Shape shape;
@@ -36,7 +36,7 @@ Shape lattice(int columns, int rows, bool wrap, const Place& place) {
   return shape;
 }
 
-// Vertices by place, so that faces made one by one share them.
+// Finds vertices by position, so that faces that are made separately share them.
 class Welder {
  public:
   explicit Welder(Shape& shape) : shape_(shape) {}
@@ -52,7 +52,7 @@ class Welder {
   std::map<std::array<float, 3>, std::uint32_t> index_;
 };
 
-// An n x n grid over the parallelogram at `corner`, facing du x dv.
+// Adds an n x n grid over the parallelogram at `corner`, facing in the direction du x dv.
 void add_face(Shape& shape, Welder& weld, const std::array<glm::dvec3, 3>& face, int n) {
   const glm::dvec3 corner = face[0], du = face[1], dv = face[2];
   const auto at = [&](int i, int j) {
@@ -179,7 +179,7 @@ Shape cone(int around, int along, double half_angle, double slant) {
   const auto at = [&](int ring, int i) { return std::uint32_t(1 + (ring - 1) * (around + 1) + i); };
   for (int j = 1; j <= along; ++j)
     for (int i = 0; i <= around; ++i) {
-      // A billionth of a turn is left open, or rounding would decide whether the sides meet.
+      // A billionth of a turn is left open. Otherwise rounding would decide whether the sides meet.
       const double a = 2 * kPi * (1 - 1e-9) * i / around, s = slant * j / along,
                    r = s * std::sin(half_angle);
       shape.positions.push_back(

@@ -39,7 +39,7 @@ TEST(Shapes, AreasApproachTheirClosedForms) {
   EXPECT_NEAR(surface_area(cap(200, 100, 0.9)), 2 * pi * (1 - std::cos(0.9)), 0.01);
 }
 
-// Twice the signed volume of a closed mesh is positive when its triangles face outwards.
+// Six times the signed volume of a closed mesh is positive if its triangles face outwards.
 TEST(Shapes, ClosedOnesFaceOutwards) {
   for (const Shape& s : {box(3), sphere(12, 7), icosphere(2), geodesic_sphere(5), torus(12, 6),
                          plate_with_holes(2, 2)}) {

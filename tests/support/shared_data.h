@@ -1,4 +1,4 @@
-// The folder of models, rooms and packing instances that LIBATLAS_DATA names, see docs/building.md.
+// The folder of models, rooms and packing instances that LIBATLAS_DATA names; see docs/building.md.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,9 @@
 
 namespace atlas::test {
 
-// A part of it ("models", "room", "packing"); none where the variable is unset or empty, as scripts
-// leave it, or where the folder lacks that part: tests that need it skip.
+// Returns a part of that folder ("models", "room", "packing"). Returns nothing if the variable is
+// unset or empty (as scripts leave it), or if the folder lacks that part; tests that need it skip
+// then.
 inline std::optional<std::filesystem::path> shared_data(const std::string& part) {
   const char* folder = std::getenv("LIBATLAS_DATA");
   if (!folder || !*folder) return std::nullopt;
@@ -20,12 +21,12 @@ inline std::optional<std::filesystem::path> shared_data(const std::string& part)
   return path;
 }
 
-// Why a test skips.
+// Returns the reason why a test skips.
 inline std::string lacks(const std::string& part) {
   return "LIBATLAS_DATA names no folder with " + part;
 }
 
-// Its OBJ models, by name.
+// Returns the folder's OBJ models, sorted by name.
 inline std::vector<std::filesystem::path> shared_models() {
   std::vector<std::filesystem::path> paths;
   const auto folder = shared_data("models");

@@ -35,7 +35,7 @@ TEST(SharedData, IsWhatIsThere) {
   if (before) ::setenv(kName, before->c_str(), 1);
 }
 
-// A misspelt name would let all tests that need the data skip unnoticed.
+// If the name was misspelt, all tests that need the data would skip unnoticed.
 TEST(SharedData, TheFolderThatIsNamedExists) {
   if (!given() || given()->empty()) GTEST_SKIP() << kName << " is not set";
   EXPECT_TRUE(fs::is_directory(*given())) << kName << " is " << *given();

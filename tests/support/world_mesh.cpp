@@ -38,7 +38,7 @@ int load_image(WorldMesh& mesh, std::map<std::string, int>& known, const fs::pat
   return it->second;
 }
 
-// Words of a text, cut at white space; line ends are told apart.
+// Splits a text at white space into words, with line ends as separate events.
 class Words {
  public:
   explicit Words(std::string_view text) : text_(text) {}
@@ -47,7 +47,7 @@ class Words {
     if (at_ < text_.size()) ++at_;
     return at_ < text_.size();
   }
-  std::string_view word() {  // empty at the line's end
+  std::string_view word() {  // empty at the end of a line
     while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t' || text_[at_] == '\r'))
       ++at_;
     const std::size_t first = at_;
@@ -132,7 +132,7 @@ void read_obj(const fs::path& path, WorldMesh& mesh) {
   } while (words.next_line());
 }
 
-// What a VRML field holds.
+// The value of a VRML field.
 struct Value {
   std::vector<double> numbers;
   std::vector<std::string> strings;
@@ -299,7 +299,7 @@ glm::dmat4 transform_of(const VrmlNode& node) {
   return glm::scale(m, {s[0], s[1], s[2]});
 }
 
-// Gathers the Shapes under a node.
+// Collects the Shapes under a node.
 class Gatherer {
  public:
   Gatherer(WorldMesh& mesh, fs::path folder) : mesh_(mesh), folder_(std::move(folder)) {}

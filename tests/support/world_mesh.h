@@ -1,5 +1,5 @@
-// Lit scenes and exported worlds as plain triangles, read by code of our own: what judges an export
-// must not share its readers.
+// Reads lit scenes and exported worlds as plain triangles. The code is independent, because a test
+// of an exporter must not use the library's own readers.
 #pragma once
 
 #include <array>
@@ -17,12 +17,12 @@ namespace atlas::test {
 struct WorldMesh {
   struct Surface {
     glm::vec3 diffuse{1};
-    int image = -1;  // into images, or -1
+    int image = -1;  // index into images, or -1
   };
   static constexpr std::uint32_t kNoTexcoord = ~0u;
 
   std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> light;  // one a position; ones where the file has none
+  std::vector<glm::vec3> light;  // one per position; all ones if the file has none
   std::vector<glm::vec2> texcoords;
   std::vector<std::array<std::uint32_t, 3>> triangles, triangle_texcoords;
   std::vector<std::uint32_t> triangle_surface;
@@ -30,8 +30,8 @@ struct WorldMesh {
   std::vector<Image8> images;  // origin bottom left
 };
 
-// By the ending: .obj (with its MTL; v x y z r g b) or .wrl (Shapes under Transforms,
-// ImageTexture).
+// Reads a file by its extension: .obj (with its MTL; v x y z r g b) or .wrl (Shapes under
+// Transforms, ImageTexture).
 Result<WorldMesh> read_world(const std::filesystem::path& path);
 
 }  // namespace atlas::test
