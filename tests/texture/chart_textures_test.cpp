@@ -13,7 +13,7 @@
 namespace atlas {
 namespace {
 
-// Display values are the sRGB encoding of luminance: white is 1.
+// Display values are the sRGB encoding of luminance; white is 1.
 const ToneMapping kPlain{};
 
 TextureResult size_textures(const LitShape& shape, const TextureOptions& options, int threads = 1) {
@@ -25,7 +25,7 @@ TextureResult size_textures(const LitShape& shape, const TextureOptions& options
   return *r;
 }
 
-// Illumination whose display value is d.
+// Returns the illumination whose display value is d.
 Vec3f shown(double d) {
   const float v = srgb_decode(static_cast<float>(d));
   return {v, v, v};
@@ -52,7 +52,7 @@ TEST(ChartTextures, HaveTheTexelLengthAskedFor) {
 TEST(ChartTextures, ShrinkChartsOfOneColourToTheSmallestSide) {
   LitShape shape = make_sheet({4, 1, 9, 9}, [](double, double) { return Vec3f{1, 2, 3}; });
   append(shape, make_sheet({4, 0.1, 9, 9}, [](double, double) { return Vec3f{}; }), {0, 0, 1});
-  // Lit, but black: unlit as far as a texture goes.
+  // The sheet is lit but its material is black, so its texture counts as unlit.
   append(shape, make_sheet({4, 4, 3, 3, 0, {0, 0, 0}}, [](double u, double) { return shown(u); }),
          {0, 0, 2});
   const TextureResult r = size_textures(shape, options(0.01));
@@ -63,7 +63,7 @@ TEST(ChartTextures, ShrinkChartsOfOneColourToTheSmallestSide) {
   EXPECT_NEAR(r.charts[0].texels_per_unit.y, 16, 1e-12);
   EXPECT_EQ(r.charts[1].content, ChartContent::unlit);
   EXPECT_EQ(r.charts[1].width, 16);
-  EXPECT_EQ(r.charts[1].height, 10);  // already smaller
+  EXPECT_EQ(r.charts[1].height, 10);  // it is already smaller
   EXPECT_EQ(r.charts[2].content, ChartContent::unlit);
   EXPECT_EQ(r.uniform, 1u);
   EXPECT_EQ(r.unlit, 2u);
@@ -108,11 +108,11 @@ TEST(ChartTextures, FitThePage) {
 }
 
 TEST(ChartTextures, HalveARampAsOftenAsItsSlopeAllows) {
-  // Display values rise by `step` a texel along u. A quad's texels are then 2^k step / 2 off its
-  // mean at the halving k (0, 1, ...): allowed while that is below the threshold.
+  // Display values rise by `step` per texel along u. At halving k (0, 1, ...) the texels of a quad
+  // then differ from its mean by 2^k step / 2, which is allowed while it is below the threshold.
   for (const double step : {0.0006, 0.0011, 0.0021, 0.0041, 0.0077, 0.0163}) {
     const int n = 256;
-    // A vertex at every texel centre keeps display values linear in between.
+    // With a vertex at every texel centre, display values are linear in between.
     const LitShape shape = make_sheet({1, 1, 2 * n, 1}, [&](double u, double) {
       return shown(std::min(1.0, step * u * n / 4 + 0.2));
     });
@@ -123,7 +123,7 @@ TEST(ChartTextures, HalveARampAsOftenAsItsSlopeAllows) {
     EXPECT_EQ(t.width, n >> want);
     EXPECT_EQ(t.height, n >> want);
     EXPECT_EQ(t.texels_per_unit.x, n >> want);
-    // A ramp is linear: up-sampling repeats it but at the ends, where half a coarse texel is
+    // Up-sampling reproduces a linear ramp, except at the ends, where half a coarse texel is
     // missing.
     EXPECT_LE(t.max_error, step / 4 * (std::ldexp(0.5, want) - 0.5) + 1e-4);
     EXPECT_LE(t.rms_error, t.max_error);
@@ -209,7 +209,7 @@ TEST(ChartTextures, StopWhenCancelled) {
   EXPECT_EQ(r.status().code(), ErrorCode::cancelled);
 }
 
-// --- The halving itself, on random textures with holes, against the definition ---
+// --- The halving itself, on random textures with holes, compared with the definition ---
 
 SampledChart random_texture(std::mt19937& random, double amplitude) {
   SampledChart c;
@@ -225,7 +225,7 @@ SampledChart random_texture(std::mt19937& random, double amplitude) {
   return c;
 }
 
-// Largest |mean - texel| over quads; the halved texture in `out`.
+// Halves the texture into `out`. Returns the largest |mean - texel| over its quads.
 double definition(const SampledChart& in, SampledChart& out) {
   double worst = 0;
   out = {(in.width + 1) / 2, (in.height + 1) / 2, {}};
@@ -272,8 +272,9 @@ TEST(Downsizing, FollowsTheDefinition) {
       current = next;
       ++want;
     }
-    if (close) continue;                           // rounding decides
-    const Downsizing d = downsize(full, o, room);  // used again and again, as the library does
+    if (close) continue;  // rounding decides
+    // `room` is used again and again, as in the library.
+    const Downsizing d = downsize(full, o, room);
     ASSERT_EQ(d.halvings, want);
     ASSERT_EQ(d.width, current.width);
     ASSERT_EQ(d.height, current.height);
@@ -283,8 +284,8 @@ TEST(Downsizing, FollowsTheDefinition) {
 }
 
 TEST(Downsizing, ReportsTheErrorOfTheUpSampledTexture) {
-  // Noise about one value: up-sampling to full size gives values between the coarse texels', so
-  // that errors can be bounded by hand; one texel sticks out by a known amount.
+  // All texels have one value, except that one texel differs from it by a known amount. Up-sampled
+  // values then lie between those of the coarse texels, and the errors can be computed by hand.
   SampledChart c{64, 64, std::vector<SampledChart::Texel>(64 * 64)};
   for (auto& t : c.texels) {
     t.weight = 1;
@@ -297,8 +298,8 @@ TEST(Downsizing, ReportsTheErrorOfTheUpSampledTexture) {
   const Downsizing d = downsize(c, o, room);
   ASSERT_EQ(d.halvings, 1);
   EXPECT_EQ(d.covered, 64 * 64);
-  // The quad's mean is 0.5015. The look-up at the texel lies a quarter texel off the coarse centre
-  // in x and y: (3/4)² of that rise is found, and the neighbours get the rest of the tent.
+  // The quad's mean is 0.5015. The look-up at the texel is a quarter texel off the coarse centre in
+  // x and y, so it finds (3/4)² of the difference. The neighbours get the rest of the tent filter.
   const double rise = 0.0015, weights[4] = {0.25, 0.75, 0.75, 0.25};
   double sum = 0, worst = 0;
   for (int j = 0; j < 4; ++j)

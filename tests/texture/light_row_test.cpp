@@ -1,4 +1,4 @@
-// Rows of samples against samples taken one by one.
+// Compares rows of samples with samples taken one by one.
 #include "libatlas/texture/light_row.h"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,8 @@ TEST(LightRow, LooksUpAsOneByOne) {
   }
 }
 
-// Where the curve is followed by lines: from the dark to beyond white, on steep and on flat light.
+// Tests where the tone curve is approximated by line segments: from dark to beyond white, in steep
+// and in flat light.
 TEST(LightRow, ShowsLightAsTheToneCurveDoes) {
   std::mt19937 random(3);
   const auto uniform = [&](double most) { return most * (random() % 100000) / 99999.0; };

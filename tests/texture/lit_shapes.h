@@ -1,5 +1,5 @@
-// Small lit scenes with charts laid out by hand, so that texture/ and bake/ are tested without the
-// chart stage.
+// Small lit scenes whose charts are laid out by hand, so that texture/ and bake/ are tested without
+// the chart stage.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +16,11 @@ struct LitShape {
   ChartSet charts;
 };
 
-// Illumination at (u, v) of a chart, in scene units.
+// Returns the illumination at (u, v) of a chart, in scene units.
 using Light = std::function<Vec3f(double u, double v)>;
 
-// One flat rectangle in z = 0 of columns x rows cells of two triangles each, as one chart whose uvs
-// are x and y. `jitter` (0..0.3) moves inner vertices by a share of a cell.
+// A flat rectangle in z = 0 of columns x rows cells of two triangles each. It is one chart whose
+// uvs are x and y. `jitter` (0 to 0.3) moves inner vertices by up to that share of a cell.
 struct Sheet {
   double width = 1, height = 1;
   int columns = 8, rows = 8;
@@ -29,10 +29,10 @@ struct Sheet {
 };
 LitShape make_sheet(const Sheet& sheet, const Light& light);
 
-// Adds the other's triangles, materials and charts; its positions are moved by `offset`.
+// Adds the triangles, materials and charts of `from`, whose positions are moved by `offset`.
 void append(LitShape& to, const LitShape& from, Vec3f offset);
 
-// A texture on every triangle of the first material: uv = (x, y) * repeats.
+// Puts a texture on every triangle of the first material, with uv = (x, y) * repeats.
 void add_texture(LitShape& shape, const Image8& image, Vec2f repeats);
 
 }  // namespace atlas

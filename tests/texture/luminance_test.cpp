@@ -23,7 +23,7 @@ double decode(int code) {
   return d <= 0.04045 ? d / 12.92 : std::pow((d + 0.055) / 1.055, 2.4);
 }
 
-// The texel of n that stands for texel i, from the definitions of OpenGL.
+// Returns the texel (0 to n - 1) that stands for texel i, by the definitions of OpenGL.
 long texel_of(long i, long n, TextureWrap wrap) {
   if (wrap == TextureWrap::clamp) return std::clamp(i, 0l, n - 1);
   const long cycle = i - n * std::lround(std::floor(double(i) / double(n)));
@@ -32,7 +32,7 @@ long texel_of(long i, long n, TextureWrap wrap) {
   return mirrored ? n - 1 - cycle : cycle;
 }
 
-// Bilinear look-up, written from the definition.
+// A bilinear look-up that follows the definition.
 double texel_value(const Image8& image, Vec2d uv, const Material& material, int channel) {
   const double u = uv.x, v = uv.y;
   const double x = u * image.width - 0.5, y = v * image.height - 0.5;
@@ -112,14 +112,14 @@ TEST(LuminanceSampler, TakesIlluminationAsOneWhereThereIsNone) {
 
 TEST(LuminanceSampler, KnowsHowFineATextureIsOnTheSurface) {
   LitShape shape = make_sheet({4, 2, 2, 2}, [](double, double) { return Vec3f{1, 1, 1}; });
-  add_texture(shape, noise_image(64, 16, 3), {0.5f, 4});  // 32 x 64 texels a unit
+  add_texture(shape, noise_image(64, 16, 3), {0.5f, 4});  // 32 x 64 texels per unit
   const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
   for (std::uint32_t t = 0; t < shape.scene.triangle_count(); ++t)
     EXPECT_NEAR(sampler.texture_density(t), std::sqrt(32.0 * 64.0), 1e-3);
 }
 
 TEST(LuminanceSampler, ReadsCoarserLevelsForWiderSamples) {
-  // A checkerboard of black and white texels: every coarser level is its mean in linear light.
+  // A checkerboard of black and white texels: every coarser level is their mean in linear light.
   Image8 image(64, 64, 3);
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x)
@@ -138,7 +138,7 @@ TEST(LuminanceSampler, ReadsCoarserLevelsForWiderSamples) {
 }
 
 TEST(LuminanceSampler, AveragesLevelsOfOddSizes) {
-  // One white texel in 5 x 3: the mean over the whole is kept by every level.
+  // One of 5 x 3 texels is white. Every level must keep the mean over the whole texture.
   Image8 image(5, 3, 1);
   image.at(2, 1)[0] = 255;
   LitShape shape = make_sheet({1, 1, 1, 1}, [](double, double) { return Vec3f{1, 1, 1}; });

@@ -9,7 +9,7 @@
 namespace atlas {
 namespace {
 
-// The definition, IEC 61966-2-1.
+// The definition of IEC 61966-2-1.
 double encode(double l) {
   return l <= 0.0031308 ? 12.92 * l : 1.055 * std::pow(l, 1 / 2.4) - 0.055;
 }
@@ -28,14 +28,14 @@ TEST(Srgb, QuantisesExactly) {
     const float x = std::pow(static_cast<float>(i) / 2000000, 2.0f);
     ASSERT_EQ(srgb_encode8(x), static_cast<int>(std::floor(encode(x) * 255 + 0.5))) << x;
   }
-  // Around each bound between two codes, float by float.
+  // Tests every float around each bound between two codes.
   for (int code = 1; code < 256; ++code) {
     const double d = (code - 0.5) / 255;
     float x = static_cast<float>(d <= 0.04045 ? d / 12.92 : std::pow((d + 0.055) / 1.055, 2.4));
     for (int k = 0; k < 4; ++k) x = std::nextafter(x, 0.0f);
     for (int k = 0; k < 9; ++k, x = std::nextafter(x, 2.0f)) {
       const double scaled = encode(x) * 255 + 0.5;
-      if (std::fabs(scaled - code) < 1e-9) continue;  // on the bound within double rounding
+      if (std::fabs(scaled - code) < 1e-9) continue;  // within double rounding of the bound
       ASSERT_EQ(srgb_encode8(x), static_cast<int>(std::floor(scaled))) << code;
     }
   }

@@ -15,7 +15,8 @@ LuminanceStatistics measure(const LitShape& shape) {
   return *s;
 }
 
-// A closed box of six sheets, each of one illumination; corner at `at`.
+// Adds a closed box of six sheets with its corner at `at`. The floor has the illumination
+// `floor_value`, the other sides have `value`.
 void add_box(LitShape& to, Vec3f at, float size, float value, float floor_value) {
   for (int side = 0; side < 6; ++side) {
     const float v = side == 0 ? floor_value : value;
@@ -31,7 +32,7 @@ void add_box(LitShape& to, Vec3f at, float size, float value, float floor_value)
 }
 
 TEST(Statistics, AreWeightedByArea) {
-  // Three quarters at 1, one quarter at 4, and as much unlit as lit.
+  // Three quarters of the lit area are at 1 and one quarter is at 4. As much area is unlit as lit.
   LitShape shape = make_sheet({3, 1, 7, 2}, [](double, double) { return Vec3f{1, 1, 1}; });
   append(shape,
          make_sheet({1, 1, 30, 30},
@@ -47,19 +48,19 @@ TEST(Statistics, AreWeightedByArea) {
   EXPECT_NEAR(s.log_average, std::pow(4.0, 0.25), 0.001);
   EXPECT_NEAR(s.maximum, 4, 1e-5);
   EXPECT_NEAR(s.percentile99, 4, 1e-5);
-  EXPECT_FALSE(s.seen);  // sheets in a plane enclose no space
+  EXPECT_FALSE(s.seen);  // sheets in one plane enclose no space
   EXPECT_EQ(s.not_finite, 0u);
 }
 
 TEST(Statistics, LeaveOutWhatIsClosedIn) {
-  // A room at 1 with a bright floor at 2 holds many small closed boxes, lit inside at 50.
+  // A room at 1 with a bright floor at 2 contains small closed boxes, which are lit inside at 50.
   LitShape room;
   add_box(room, {0, 0, 0}, 10, 1, 2);
   for (int i = 0; i < 6; ++i) add_box(room, {1.5f + static_cast<float>(i), 5, 5}, 0.7f, 50, 50);
   const LuminanceStatistics s = measure(room);
   EXPECT_TRUE(s.seen);
-  // Their outsides are the same surface, so that a few sight lines do end on them; of the surface
-  // they are 3 parts in 100, of what is seen fewer.
+  // The outsides of the boxes are the same surface, so a few sight lines do end on them. They are 3
+  // % of the surface, and less of what is seen.
   EXPECT_GT(s.percentile99, 1.5);
   LitShape empty;
   add_box(empty, {0, 0, 0}, 10, 1, 2);

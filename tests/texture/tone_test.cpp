@@ -64,7 +64,7 @@ TEST(ToneMapping, FollowsThePublishedCurves) {
     EXPECT_NEAR(reinhard.map({f, f, f}).x, std::min(1.0, l * (1 + l / (w * w)) / (1 + l)), 1e-5);
   };
   for (const double y : {0.001, 0.1, 1.0, 3.0, 9.0}) expect_reinhard(y);
-  // Drago et al. 2003, eq. 4, bias 0.85: the exponent of the base's interpolation is
+  // Drago et al. 2003, eq. 4, with bias 0.85. The exponent in the interpolation of the base is
   // log(b) / log(0.5).
   const ToneMapping drago = mapping(ToneOperator::drago, 1);
   for (const double y : {0.001, 0.1, 1.0, 3.0, 9.0}) {
@@ -76,7 +76,8 @@ TEST(ToneMapping, FollowsThePublishedCurves) {
   }
 }
 
-// Drago et al. 2003, section 3.2: another bias changes what the eye has adapted to, too.
+// Drago et al. 2003, section 3.2: another bias also changes the luminance that the eye has adapted
+// to.
 TEST(ToneMapping, DragosBiasCorrectsTheAdaptation) {
   for (const double bias : {0.6, 0.75, 0.95}) {
     ToneOptions options;
@@ -112,7 +113,7 @@ TEST(ToneMapping, PhotoreceptorsFollowThePublishedModel) {
         const double y = 0.2126 * in[0] + 0.7152 * in[1] + 0.0722 * in[2];
         const Vec3f mapped = tone.map(colour);
         const float got[3] = {mapped.x, mapped.y, mapped.z};
-        // Of grey, which adapts to itself and to the mean of 0.5.
+        // White is grey light, which adapts to itself and to the mean of 0.5.
         const double mean = chromatic * 0.5 / 0.3 + (1 - chromatic), white = 10 / 0.3;
         const double at_white = white / (white + std::pow(light * white + (1 - light), m));
         for (int c = 0; c < 3; ++c) {
@@ -181,7 +182,7 @@ TEST(ToneMapping, RisesOverAllThatAFloatHolds) {
         float last = 0;
         for (float v = 1e-38f; v < largest / 1.1f; v *= 1.1f) {
           const Vec3f d = tone.map({v, v, v});
-          // The ratio of two rounded logarithms need not rise by less than rounding.
+          // The ratio of two rounded logarithms may fall by as much as rounding.
           ASSERT_GE(d.y + 1e-12f, 0.99999f * last)
               << tone_operator_name(op) << ' ' << scale << ' ' << stops << ' ' << v;
           last = d.y;

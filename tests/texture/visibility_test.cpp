@@ -1,4 +1,4 @@
-// What is seen from where people stand, against a room whose walls are known.
+// What people see from where they stand, compared with a room whose walls are known.
 #include "libatlas/texture/visibility.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ double uniform(std::mt19937_64& random) {
   return static_cast<double>(random() >> 11) * 0x1p-53;
 }
 
-// The walls of a room from 0 to `size`, sampled evenly; those across the x axis have the value 9,
+// Samples the walls of a room from 0 to `size` evenly. Those across the x axis have the value 9,
 // the others 1.
 std::vector<SurfaceSample> room(const Size& size, std::size_t samples, double& area) {
   std::mt19937_64 random(3);
@@ -42,7 +42,7 @@ std::array<double, 3> direction(std::mt19937_64& random) {
   return {s * std::cos(phi), s * std::sin(phi), z};
 }
 
-// Where a ray leaves the room: how far, and through which pair of walls.
+// Returns the distance at which a ray leaves the room, and sets `wall` to the pair of walls there.
 double leaves(const Size& size, const Size& from, const Size& d, int& wall) {
   double nearest = 1e30;
   for (int k = 0; k < 3; ++k) {
@@ -52,7 +52,7 @@ double leaves(const Size& size, const Size& from, const Size& d, int& wall) {
   return nearest;
 }
 
-// The share of sightings that end on the walls across x, by rays that meet planes.
+// Returns the share of sight lines that end on the walls across x, computed by rays and planes.
 double share_by_planes(const Size& size) {
   std::mt19937_64 random(11);
   std::size_t across = 0, all = 0;
@@ -85,12 +85,13 @@ TEST(Visibility, PeopleLookAlongTheLongestLineOfSight) {
     const std::vector<float> seen = seen_values(samples, area);
     const auto across = std::count(seen.begin(), seen.end(), 9.0f);
     EXPECT_NEAR(double(across) / double(seen.size()), share_by_planes(size), 0.03) << size[0];
-    // Walls are closed: hardly a point is taken for one outside, hardly a ray gets through.
+    // The walls are closed: hardly any point is mistaken for one outside, and hardly any ray passes
+    // through.
     EXPECT_GT(seen.size(), 150'000u);
   }
 }
 
-// Two walls far from each other enclose nothing, though each is met by rays.
+// Two walls far from each other enclose no space, although rays meet both.
 TEST(Visibility, WhoSeesLittleStandsOutside) {
   std::mt19937_64 random(5);
   std::vector<SurfaceSample> samples;
@@ -103,7 +104,7 @@ TEST(Visibility, WhoSeesLittleStandsOutside) {
   EXPECT_TRUE(seen_values(samples, 0).empty());
 }
 
-// Black is no light: it is met, and left out.
+// Black surfaces emit no light: rays that meet them are left out.
 TEST(Visibility, UnlitWallsAreSeenAsNothing) {
   double area = 0;
   auto samples = room({5, 5, 5}, 1 << 16, area);
