@@ -1,4 +1,4 @@
-// The cabin as a whole: its lights, and its coarse mesh of a wished size.
+// The whole cabin: its lights, and its coarse mesh of a wanted size.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -10,7 +10,7 @@
 namespace cabin {
 namespace {
 
-// Turns the corners so that they run clockwise seen from the side of `towards`.
+// Orders the corners clockwise as seen from the side to which `towards` points.
 AreaLight make_light(std::vector<glm::vec3> corners, glm::vec3 exitance, glm::vec3 towards) {
   const glm::vec3 n = glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
   const bool turned = glm::dot(n, towards) > 0;
@@ -18,7 +18,8 @@ AreaLight make_light(std::vector<glm::vec3> corners, glm::vec3 exitance, glm::ve
   return {std::move(corners), exitance, turned ? n : -n};
 }
 
-// The sky in a window's opening. To port it is the side of the low sun: warmer and brighter.
+// Returns the sky in the opening of a window. The low sun is on the port side, so the sky there is
+// warmer and brighter.
 AreaLight window_light(int side, int bay) {
   const double height = wall_height(kWindowHeight), x = (bay + 0.5) * kBay;
   const glm::dvec3 centre = wall_point(side, x, height, -kRevealDepth);
@@ -77,7 +78,8 @@ Sun cabin_sun() {
 Mesh build_cabin(std::size_t triangles, std::size_t limit) {
   double fine = 0.01, wide = 0.8;
   const bool coarse = model(wide, false).triangle_count() > limit;
-  // The count falls with the edge length, in steps: bisect for the finest that is not too many.
+  // The count falls in steps as the edge length rises. Bisects for the finest mesh that has not too
+  // many triangles.
   for (int i = 0; i < 10; ++i) {
     const double middle = std::sqrt(fine * wide);
     (model(middle, coarse).triangle_count() <= triangles ? wide : fine) = middle;

@@ -20,7 +20,8 @@ struct KeyHash {
   }
 };
 
-// The odd offset keeps round coordinates, of which a cabin is full, away from the cells' borders.
+// The odd offset keeps round coordinates, of which the cabin has many, away from the borders of
+// cells.
 std::int64_t cell(double x, double size) {
   return std::int64_t(std::floor(x / size + 0.37));
 }
@@ -116,7 +117,7 @@ Mesh Builder::finish(std::vector<SurfaceMaterial> materials) const {
              p2 = mesh.vertices[v[2]].point;
     if (p0 != p1 && p1 != p2 && p2 != p0) mesh.triangles.push_back(triangle);
   }
-  // Parts are modelled piece by piece; files want each object in one go.
+  // Parts are modelled piece by piece, but files need the triangles of an object to be consecutive.
   std::stable_sort(mesh.triangles.begin(), mesh.triangles.end(),
                    [](const Triangle& a, const Triangle& b) {
                      return std::pair(a.object, a.material) < std::pair(b.object, b.material);

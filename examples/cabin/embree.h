@@ -1,4 +1,4 @@
-// Embree 3 and 4 behind the same two calls.
+// The same two functions for Embree 3 and 4.
 #pragma once
 
 #if __has_include(<embree4/rtcore.h>)
@@ -9,7 +9,7 @@
 
 namespace cabin {
 
-// The nearest hit along the ray, written into `query`.
+// Finds the nearest hit along the ray and writes it into `query`.
 inline void intersect(RTCScene scene, RTCRayHit& query) {
 #if RTC_VERSION_MAJOR >= 4
   rtcIntersect1(scene, &query);
@@ -20,7 +20,8 @@ inline void intersect(RTCScene scene, RTCRayHit& query) {
 #endif
 }
 
-// True if anything lies between the ray's tnear and tfar; tfar becomes negative then.
+// Returns whether anything lies between the ray's tnear and tfar; in that case tfar becomes
+// negative.
 inline bool occluded(RTCScene scene, RTCRay& ray) {
 #if RTC_VERSION_MAJOR >= 4
   rtcOccluded1(scene, &ray);

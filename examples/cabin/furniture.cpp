@@ -1,4 +1,4 @@
-// Overhead bins and seats, with the closed hollows inside them that no light reaches.
+// Overhead bins and seats, with the closed cavities inside them that no light reaches.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,8 @@
 namespace cabin {
 namespace {
 
-// A closed room inside a body: real models have them, and a lit mesh carries them all in black.
+// Adds a closed cavity inside a body. Real models have such cavities, and in a lit mesh all of
+// their surface is black.
 void add_hollow(Builder& builder, const RoundedBox& body, double wall) {
   RoundedBox hollow = body;
   hollow.half -= wall;
@@ -26,7 +27,7 @@ void add_bin(Builder& builder, int side, int index, double length) {
   bin.half = {length / 2 - 0.004, 0.365, 0.225};
   bin.least = {1, 1, 2};
   bin.radius = 0.055;
-  // The front leans: it is lower at the nose, as bins that swing up are, and bulges a little.
+  // The front leans, as on bins that swing up: it is lower at the nose and bulges a little.
   bin.warp = [side](glm::dvec3 p) {
     const double across = (p.y * side - 0.62) / 0.73;  // 0 at the front, 1 at the lining
     const double up = (p.z - 1.735) / 0.225;
@@ -46,7 +47,7 @@ void add_bin(Builder& builder, int side, int index, double length) {
   add_rounded_box(builder, latch);
 }
 
-// Leans a seat's back about the axis y through `pivot` by `angle`.
+// Rotates a point of a seat's back about the axis y through `pivot` by `angle`.
 glm::dvec3 lean(glm::dvec3 p, glm::dvec3 pivot, double angle) {
   const double x = p.x - pivot.x, z = p.z - pivot.z;
   return {pivot.x + x * std::cos(angle) + z * std::sin(angle), p.y,
@@ -63,7 +64,7 @@ void add_cushion(Builder& builder, const std::string& name, glm::dvec3 at) {
   cushion.tiles_per_metre = 4;
   cushion.warp = [at](glm::dvec3 p) {
     const double x = (p.x - at.x) / 0.245, y = (p.y - at.y) / 0.235;
-    // A crown in the middle, a raised front edge that rolls over, and side bolsters.
+    // Shapes a crown in the middle, a raised front edge that rolls over, and bolsters at the sides.
     const double top = std::max(0.0, (p.z - 0.36) / 0.115);
     p.z += top * (0.022 * (1 - y * y) + 0.02 * y * y * y * y - 0.03 * std::max(0.0, -x - 0.55));
     p.z += 0.02 * (1 - x) * 0.5;
@@ -86,7 +87,7 @@ void add_back(Builder& builder, const std::string& name, glm::dvec3 at) {
   back.warp = [at, pivot](glm::dvec3 p) {
     const double y = (p.y - at.y) / 0.232, z = (p.z - 0.745) / 0.365;
     const double front = std::max(0.0, (at.x + 0.255 - p.x) / 0.062 + 0.2);
-    // Bolsters at the sides, a lumbar swell, narrower at the top.
+    // Shapes bolsters at the sides and a lumbar swell; the back is narrower at the top.
     p.x -= front * (0.026 * y * y * y * y + 0.02 * std::exp(-8 * (z + 0.45) * (z + 0.45)) - 0.008);
     p.y = at.y + (p.y - at.y) * (1 - 0.10 * std::max(0.0, z) * std::max(0.0, z));
     return lean(p, pivot, 0.2);
@@ -153,7 +154,8 @@ void add_bins(Builder& builder) {
   const double length = (kLength - 0.02 - kBinStart) / 5;
   for (int side : {-1, 1}) {
     for (int i = 0; i < 5; ++i) add_bin(builder, side, i, length);
-    // What carries the strips above the bins, and the panel that closes their front end.
+    // Adds the rails that carry the strips above the bins, and the panel that closes their front
+    // end.
     builder.begin("bin_rails", "trim");
     RoundedBox rail;
     rail.centre = {(kBinStart + kLength) / 2, side * 0.637, 1.952};

@@ -1,4 +1,4 @@
-// The cabin's measures, in metres. x runs aft, z up from the floor, y across from the middle.
+// The cabin's dimensions, in metres. x points aft, z up from the floor, y across from the middle.
 // Passengers look towards -x, where the door and the galley are.
 #pragma once
 
@@ -16,42 +16,43 @@ namespace cabin {
 
 constexpr double kLength = 6.2;       // between the bulkheads
 constexpr double kRadius = 1.55;      // of the lining
-constexpr double kAxisHeight = 0.78;  // of the fuselage's axis over the floor
+constexpr double kAxisHeight = 0.78;  // of the fuselage's axis above the floor
 constexpr int kBays = 12;             // window bays along each side
 constexpr double kBay = kLength / kBays;
-constexpr double kWindowHeight = 1.0;  // of the windows' centres
+constexpr double kWindowHeight = 1.0;  // height of the windows' centres along the wall
 constexpr glm::dvec2 kWindowHalf{0.135, 0.185};
 constexpr double kRevealDepth = 0.07, kRevealScale = 0.86;
 constexpr int kRows = 5;
 constexpr double kFirstRow = 2.15, kRowPitch = 0.82;
 constexpr double kBinStart = 1.95;
 
-// Where side walls are described: x along the cabin, `height` the arc length along the wall from
-// the fuselage's widest line, `depth` how far in front of the wall. side is +1 or -1, the sign of
-// y.
+// Converts wall coordinates to space. `x` is along the cabin, `height` is the arc length along the
+// wall from the widest line of the fuselage, and `depth` is the distance in front of the wall.
+// `side` is +1 or -1, the sign of y.
 inline glm::dvec3 wall_point(int side, double x, double height, double depth) {
   const double angle = height / kRadius, r = kRadius - depth;
   return {x, side * r * std::cos(angle), kAxisHeight + r * std::sin(angle)};
 }
-// The arc length of a height over the floor.
+// Returns the arc length along the wall for a height above the floor.
 inline double wall_height(double z) {
   return kRadius * std::asin((z - kAxisHeight) / kRadius);
 }
-// Half the cabin's width at a height over the floor.
+// Returns half the cabin's width at a height above the floor.
 inline double half_width(double z) {
   return std::sqrt(std::max(0.0, kRadius * kRadius - (z - kAxisHeight) * (z - kAxisHeight)));
 }
 
-// Which bays have a window: the door and the galley take the place of two on each side.
+// Returns whether a bay has a window. The door and the galley take the place of two windows on each
+// side.
 inline bool has_window(int bay) {
   return bay <= 1 || bay >= 4;
 }
-// The share of a window that its blind covers.
+// Returns the share of a window that its blind covers.
 inline double blind_share(int side, int bay) {
   if (side < 0) return bay == 6 ? 0.35 : bay == 9 ? 0.6 : 0;
   return bay == 5 ? 0.5 : bay == 8 ? 0.25 : bay == 11 ? 1.0 : 0;
 }
-// A point of a window's rim: (qx, qy) on the border of [-1, 1]², mapped to a superellipse.
+// Returns a point of a window's rim: maps (qx, qy) on the border of [-1, 1]² to a superellipse.
 inline glm::dvec2 window_rim(double qx, double qy) {
   const double n = std::pow(qx * qx * qx * qx + qy * qy * qy * qy, 0.25);
   return {kWindowHalf.x * qx / n, kWindowHalf.y * qy / n};
@@ -63,7 +64,7 @@ struct AreaLight {
   glm::vec3 normal;                // unit, towards the lit side
 };
 
-// What the parts' functions add to the mesh.
+// Each function adds one part to the mesh.
 void add_shell(Builder& builder);
 void add_ceiling(Builder& builder);
 void add_bins(Builder& builder);
@@ -71,12 +72,12 @@ void add_seats(Builder& builder);
 void add_door(Builder& builder);
 void add_galley(Builder& builder);
 
-// The lights that belong to the shapes above.
+// Returns the lights that belong to the shapes above.
 std::vector<AreaLight> cabin_lights();
-// A strip of light along x, as wide as from -> to, in `pieces` of equal length.
+// A strip of light along x that extends across from `from` to `to`, in `pieces` of equal length.
 struct Strip {
   double x0, x1;
-  glm::dvec2 from, to;  // (y, z); it shines along x cross (to - from)
+  glm::dvec2 from, to;  // (y, z); it shines in the direction x cross (to - from)
   int pieces;
   std::string material;
 };
@@ -84,8 +85,8 @@ std::vector<Strip> light_strips();
 
 std::vector<SurfaceMaterial> cabin_materials();
 
-// The whole cabin, welded, in at most `triangles` triangles or in as few as its round shapes take.
-// If those are more than `limit`, small parts are left angular.
+// Returns the whole cabin, welded, with at most `triangles` triangles or with as few as its round
+// shapes need. If those are more than `limit`, small parts stay angular.
 Mesh build_cabin(std::size_t triangles, std::size_t limit);
 
 }  // namespace cabin

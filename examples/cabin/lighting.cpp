@@ -14,7 +14,8 @@ namespace cabin {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-// How far off its surface a ray starts, metres: well under the 8 mm of air behind the door's frame.
+// The distance from the surface at which rays start, in metres. It is much less than the 8 mm of
+// air behind the door's frame.
 constexpr float kLift = 2e-4f;
 
 std::uint32_t hash(std::uint32_t x) {
@@ -25,7 +26,7 @@ std::uint32_t hash(std::uint32_t x) {
   return x ^ (x >> 16);
 }
 
-// Two numbers in [0, 1) that depend on the place alone.
+// Returns two numbers in [0, 1) that depend only on the position.
 glm::vec2 rotation_at(glm::vec3 p, std::uint32_t seed) {
   std::uint32_t bits[3];
   std::memcpy(bits, &p, sizeof bits);
@@ -33,7 +34,7 @@ glm::vec2 rotation_at(glm::vec3 p, std::uint32_t seed) {
   return {float(a >> 8) / 16777216.0f, float(hash(a + 0x9E3779B9u) >> 8) / 16777216.0f};
 }
 
-// The i-th point of the R2 sequence (Roberts 2018, after Weyl), shifted, in [0, 1)².
+// Returns the i-th point of the R2 sequence (Roberts 2018, after Weyl), shifted, in [0, 1)².
 glm::vec2 low_discrepancy(int i, glm::vec2 shift) {
   const double x = shift.x + 0.75487766624669276 * (i + 1),
                y = shift.y + 0.56984029099805327 * (i + 1);
@@ -47,14 +48,15 @@ std::tuple<glm::vec3, glm::vec3> frame_of(glm::vec3 n) {
   return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}};
 }
 
-// Where rays from a vertex start: the coarse mesh's surface, or the smooth one where that bulges
-// out.
+// Returns where rays from a vertex start: on the surface of the coarse mesh, or on the smooth one
+// where that bulges outwards.
 glm::vec3 ray_origin(const Vertex& v) {
   const float bulge = glm::dot(v.position - v.ray_start, v.normal);
   return v.ray_start + v.normal * (std::max(0.0f, bulge) + kLift);
 }
 
-// A point of a convex polygon, uniform by area: a fan's triangle is chosen, then a place in it.
+// Returns a point of a convex polygon, uniformly distributed by area: chooses a triangle of the
+// fan, then a point in it.
 glm::vec3 point_of(const AreaLight& light, glm::vec2 r) {
   const std::size_t fan = light.corners.size() - 2;
   std::array<float, 32> area{};
@@ -74,7 +76,7 @@ float luminance(glm::vec3 c) {
   return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
 }
 
-// One ray of the radiosity pass: what it met, packed.
+// One ray of the radiosity pass and what it hit, in packed form.
 struct Link {
   Id triangle;  // ~0: nothing that sends light
   std::uint16_t u, v;
@@ -160,7 +162,7 @@ void Lighting::light_directly(Mesh& mesh, std::size_t first, const atlas::Contex
 
 namespace {
 
-// A vertex's hemisphere rays, cosine-weighted.
+// The cosine-weighted hemisphere rays of a vertex.
 class Hemisphere {
  public:
   Hemisphere(const Vertex& v, std::uint32_t seed)
@@ -200,8 +202,8 @@ glm::vec3 gather(const Mesh& mesh, std::span<const Link> links,
   return sum / float(links.size());
 }
 
-// Averages each vertex with its neighbours on the same sheet, `rounds` times: the gathered light is
-// smooth, its sampling noise is not.
+// Averages each vertex with its neighbours on the same sheet, `rounds` times. The gathered light is
+// smooth, but its sampling noise is not.
 void smooth(const Mesh& mesh, std::vector<glm::vec3>& values, int rounds) {
   std::vector<std::array<Id, 2>> edges;
   for (const Triangle& t : mesh.triangles)
@@ -242,7 +244,7 @@ void Lighting::light_indirectly(Mesh& mesh, const atlas::Context& context) const
   mesh.indirect.assign(count, glm::vec3(0));
   if (context.cancelled()) return;  // links that were not found lead nowhere
   std::vector<glm::vec3> total = mesh.direct;
-  // The brightest surfaces reflect 0.8: eight bounces leave less than a fifth of the last one
+  // The brightest surfaces reflect 0.8, so eight bounces leave less than a fifth of the light
   // unsent.
   for (int bounce = 0; bounce < 8; ++bounce) {
     atlas::parallel_for(context, count, 256, [&](std::size_t begin, std::size_t end) {
@@ -255,8 +257,8 @@ void Lighting::light_indirectly(Mesh& mesh, const atlas::Context& context) const
 }
 
 void show_emitters(Mesh& mesh) {
-  // A display's white is put near the brightest surfaces: the full exitance of lamps in plain view
-  // would leave the cabin that they light in the dark.
+  // Emitters are shown near the brightest surfaces. If visible lamps had their full exitance, the
+  // cabin that they light would be dark in comparison.
   constexpr float kShown = 0.4f;
   for (const Triangle& t : mesh.triangles) {
     const glm::vec3 emission = mesh.materials[t.material].emission;

@@ -1,5 +1,5 @@
-// Illuminance at the cabin's vertices: the sun, the sky in the windows and the strips directly, and
-// what the surfaces send each other.
+// Computes the illuminance at the cabin's vertices: directly from the sun, the sky in the windows
+// and the strips, and indirectly from surfaces that light each other.
 #pragma once
 
 #include <cstdint>
@@ -19,25 +19,26 @@ struct Sun {
 
 struct LightingOptions {
   std::uint32_t seed = 1;
-  int direct_samples = 64;     // shadow rays a vertex, shared among its lights
-  int indirect_samples = 384;  // gathering rays a vertex of the coarse mesh
+  int direct_samples = 64;     // shadow rays per vertex, shared among its lights
+  int indirect_samples = 384;  // gathering rays per vertex of the coarse mesh
 };
 
 class Lighting {
  public:
-  // Keeps references: both must outlive it.
+  // Keeps references, so both must outlive the object.
   Lighting(const Tracer& tracer, const LightingOptions& options);
 
-  // Illuminance straight from the lights, lux. The same place gives the same answer, whatever else
-  // is asked and in whichever order.
+  // Returns the illuminance directly from the lights, in lux. The same position gives the same
+  // result, independently of other calls and of their order.
   glm::vec3 direct_at(const Vertex& vertex) const;
 
-  // direct_at for the vertices from `first` on, in parallel.
+  // Computes direct_at for the vertices from `first` on, in parallel.
   void light_directly(Mesh& mesh, std::size_t first, const atlas::Context& context) const;
 
-  // Fills mesh.indirect from mesh.direct by radiosity: hemisphere rays from every vertex are traced
-  // once and kept, then light is passed along them until the bounces die away. Meant for the coarse
-  // mesh that the tracer was made of; emitters count as black here, being lights already.
+  // Computes mesh.indirect from mesh.direct by radiosity. Hemisphere rays from every vertex are
+  // traced and stored once; then light is passed along them for eight bounces. Meant for the coarse
+  // mesh that the tracer was made of. Emitters count as black here, because they are lights
+  // already.
   void light_indirectly(Mesh& mesh, const atlas::Context& context) const;
 
  private:
@@ -49,13 +50,13 @@ class Lighting {
 
 Sun cabin_sun();
 
-// Gives the vertices of emitting surfaces a part of what they shine with as their light, so that
-// lamps look lit: at the end, when nothing gathers any more.
+// Gives the vertices of emitting surfaces a part of their own exitance as light, so that lamps look
+// lit. To be called at the end, when no more light is gathered.
 void show_emitters(Mesh& mesh);
 
-// The share (0..1) of an unshadowed polygon's exitance that a surface at `point` with `normal`
-// receives, exactly: Lambert's formula clipped at the horizon (Lambert, Photometria, 1760; Baum et
-// al. 1989). Corners run clockwise seen from the point.
+// Returns the exact share (0 to 1) of an unshadowed polygon's exitance that a surface at `point`
+// with `normal` receives: Lambert's formula clipped at the horizon (Lambert, Photometria, 1760;
+// Baum et al. 1989). The corners run clockwise seen from the point.
 float polygon_form_factor(std::span<const glm::vec3> corners, glm::vec3 point, glm::vec3 normal);
 
 }  // namespace cabin

@@ -11,8 +11,8 @@ int default_samples(std::size_t triangles) {
 }
 
 Mesh coarse_cabin(std::size_t triangles) {
-  // Light between surfaces is gathered on at most this many triangles, whatever the final size: it
-  // varies slowly, and its cost would otherwise be most of the whole.
+  // Light between surfaces is gathered on at most this many triangles, whatever the final size. It
+  // varies slowly, and its cost would otherwise dominate.
   constexpr std::size_t kCoarse = 90000;
   return build_cabin(std::min(kCoarse, triangles * 35 / 100), triangles * 8 / 10);
 }

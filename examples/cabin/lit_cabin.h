@@ -1,18 +1,19 @@
-// The whole cabin, as atlas-make-cabin writes it.
+// The whole cabin as atlas-make-cabin writes it.
 #pragma once
 
 #include "examples/cabin/refine.h"
 
 namespace cabin {
 
-// Shadow rays a vertex. Larger meshes get fewer: their triangles average them anyway.
+// Returns the number of shadow rays per vertex. Larger meshes get fewer, because many vertices
+// average out the noise.
 int default_samples(std::size_t triangles);
 
-// The cabin that light_cabin() refines to `triangles`, unlit.
+// Returns the unlit cabin that light_cabin() refines to `triangles`.
 Mesh coarse_cabin(std::size_t triangles);
 
-// Lights it and refines it; the context is told of each step that is done. Once it is cancelled the
-// mesh is left half made.
+// Lights the mesh and refines it, and reports each completed step to the context. If cancelled, the
+// mesh is incomplete.
 void light_cabin(Mesh& mesh, std::size_t triangles, const LightingOptions& options,
                  const atlas::Context& context);
 

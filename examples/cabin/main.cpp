@@ -1,5 +1,5 @@
-// atlas-make-cabin: an aircraft cabin in as many triangles as wished, lit, for demos, tests and
-// measurements that need real work and no download.
+// atlas-make-cabin: a lit aircraft cabin with a wanted number of triangles, for demos, tests and
+// measurements that need realistic work without a download.
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
@@ -56,7 +56,7 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_flag("-q,--quiet", a.quiet, "print nothing");
 }
 
-// Before minutes of work.
+// Checks the arguments before minutes of work.
 atlas::Status check(const Arguments& a) {
   if (a.output.empty() && a.preview.empty())
     return {atlas::ErrorCode::bad_option,
@@ -69,11 +69,11 @@ atlas::Status check(const Arguments& a) {
   return atlas::app::check_output(a.preview, {a.output});
 }
 
-// The scene's textures lie beside it, and a picture there may have the name of one.
+// Refuses a preview that would overwrite a texture beside the scene.
 atlas::Status check_textures_stay(const Arguments& a, const cabin::Mesh& mesh) {
   if (a.output.empty() || a.preview.empty()) return {};
   const std::filesystem::path output = std::filesystem::absolute(a.output);
-  if (output.extension() == ".ply") return {};  // has none
+  if (output.extension() == ".ply") return {};  // a .ply has no textures
   const std::filesystem::path preview = std::filesystem::absolute(a.preview);
   std::error_code error;
   for (const cabin::SurfaceMaterial& m : mesh.materials)
@@ -96,7 +96,7 @@ atlas::Status run(const Arguments& a, atlas::app::Terminal& terminal) {
   say(fmt::format("coarse mesh: {} triangles, {} vertices, {} objects", mesh.triangles.size(),
                   mesh.vertices.size(), mesh.objects.size()));
   atlas::Context lighting = context;
-  lighting.warn = say;  // of its steps
+  lighting.warn = say;  // reports its steps
   cabin::light_cabin(mesh, a.triangles, a.lighting, lighting);
   if (context.cancelled()) return atlas::Status::cancelled();
   if (std::abs(double(mesh.triangles.size()) / double(a.triangles) - 1) > 0.03)

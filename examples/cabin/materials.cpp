@@ -1,4 +1,4 @@
-// The cabin's materials, with textures made in code: wood grain, fabric weave, carpet, terrazzo.
+// The cabin's materials, with generated textures: wood grain, fabric weave, carpet, terrazzo.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -24,7 +24,7 @@ double lattice(int x, int y, glm::ivec2 cells, std::uint32_t seed) {
   return mix_bits(seed * 0x9E3779B9u + std::uint32_t(y) * 7919u + std::uint32_t(x)) / 4294967296.0;
 }
 
-// Value noise in [0, 1] of so many cells in the unit square, beyond which it repeats.
+// Returns value noise in [0, 1] with so many cells in the unit square, beyond which it repeats.
 double noise(double u, double v, glm::ivec2 cells, std::uint32_t seed) {
   const double x = cells.x * u, y = cells.y * v;
   const int ix = int(std::floor(x)), iy = int(std::floor(y));
@@ -35,7 +35,7 @@ double noise(double u, double v, glm::ivec2 cells, std::uint32_t seed) {
          (at(0, 1) * (1 - fx) + at(1, 1) * fx) * fy;
 }
 
-// u and v run over [0, 1) and must repeat; the value is a colour, sRGB-encoded 0..1.
+// Returns the sRGB-encoded colour, 0 to 1. It must repeat in u and v, which run over [0, 1).
 using Shader = std::function<glm::dvec3(double u, double v, int x, int y)>;
 
 atlas::Image8 paint(int size, const Shader& shader) {
@@ -49,7 +49,7 @@ atlas::Image8 paint(int size, const Shader& shader) {
   return image;
 }
 
-// Grain along v: bands whose position wanders, fine fibres over them.
+// Draws grain along v: bands whose position wanders, with fine fibres over them.
 atlas::Image8 wood_texture() {
   return paint(256, [](double u, double v, int, int) {
     const double wander = 0.7 * noise(u, v, {4, 2}, 11) + 0.3 * noise(u, v, {8, 4}, 12);
@@ -61,7 +61,7 @@ atlas::Image8 wood_texture() {
   });
 }
 
-// A twill: threads over and under on a grid, their tone from noise.
+// Draws a twill: threads that pass over and under on a grid, with their tone from noise.
 atlas::Image8 weave_texture(glm::dvec3 warp_colour, glm::dvec3 weft_colour, std::uint32_t seed) {
   return paint(128, [=](double u, double v, int x, int y) {
     const int tx = x / 4, ty = y / 4;

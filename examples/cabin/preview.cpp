@@ -13,7 +13,8 @@
 namespace cabin {
 namespace {
 
-// Seen by one who has just come in: the door to the left, the galley to the right, the rows ahead.
+// The view of somebody who has just come in: the door to the left, the galley to the right, the
+// rows ahead.
 const glm::vec3 kEye(0.08f, -0.46f, 1.50f), kTarget(3.0f, 0.44f, 1.03f);
 constexpr float kTanHalfWidth = 0.83f;
 
@@ -60,7 +61,8 @@ glm::vec3 shade(const Mesh& mesh, const Tracer& tracer, glm::vec3 eye, glm::vec3
   return light * m.diffuse * (m.texture_file.empty() ? glm::vec3(1) : bilinear(m.texture, uv));
 }
 
-// Reinhard's global operator (2002) with its white point at 5 times the exposure, sRGB-encoded.
+// Applies Reinhard's global operator (2002) with its white point at 5 times the exposure, and
+// encodes as sRGB.
 std::uint8_t display(float luminance, float exposure) {
   const float x = luminance * exposure;
   const float c = std::clamp(x * (1 + x / 25) / (1 + x), 0.0f, 1.0f);
@@ -93,7 +95,7 @@ atlas::Status write_preview(const std::filesystem::path& path, const Mesh& mesh,
             }
       });
   if (context.cancelled()) return atlas::Status::cancelled();
-  // The picture's mean luminance is put a little under the middle of the curve.
+  // The picture's mean luminance is mapped slightly below the middle of the curve.
   double mean = 0;
   for (float v : light.texels) mean += std::log(1.0 + v);
   const float exposure = float(0.36 / std::expm1(mean / double(light.texels.size())));

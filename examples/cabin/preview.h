@@ -1,4 +1,4 @@
-// A picture of the lit cabin, for those who want to see what was made.
+// Renders a picture of the lit cabin.
 #pragma once
 
 #include <filesystem>
@@ -11,11 +11,11 @@ namespace cabin {
 
 struct PreviewOptions {
   int width = 1280, height = 720;
-  int samples = 3;  // a side of a pixel
+  int samples = 3;  // per side of a pixel
 };
 
 // Renders the mesh as a viewer of the exported world would show it: illuminance times reflectance,
-// interpolated along triangles, through a global tone curve.
+// interpolated over triangles, through a global tone curve.
 atlas::Status write_preview(const std::filesystem::path& path, const Mesh& mesh,
                             const PreviewOptions& options, const atlas::Context& context);
 

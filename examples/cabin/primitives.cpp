@@ -9,9 +9,9 @@ namespace cabin {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kStep = 1e-5;  // of finite differences, in parameter or metre
+constexpr double kStep = 1e-5;  // step of finite differences, in parameter or metre
 
-// The normal after a warp: that of the images of two tangents.
+// Returns the normal after a warp, from the images of two tangents.
 glm::dvec3 warped_normal(const Warp& warp, glm::dvec3 p, glm::dvec3 n) {
   const glm::dvec3 helper = std::abs(n.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
   const glm::dvec3 t1 = glm::normalize(glm::cross(helper, n)), t2 = glm::cross(n, t1);
@@ -26,8 +26,8 @@ glm::dvec3 surface_normal(const Surface& s, double u, double v) {
   return glm::length(n) > 0 ? glm::normalize(n) : glm::dvec3(0, 0, 1);
 }
 
-// One coordinate of a rounded box's face: the inner box's coordinate, and the tangent of the angle
-// by which the normal leans along it.
+// One coordinate of a rounded box's face: the coordinate of the inner box, and the tangent of the
+// angle by which the normal leans along it.
 struct Station {
   double inner, lean, arc;
 };
@@ -39,7 +39,8 @@ std::vector<Station> stations(const Builder& builder, const RoundedBox& box, int
   const int few = std::min(box.least[axis], 1);
   std::vector<Station> result;
   if (builder.coarse()) {
-    // The roughest box still has its round normals: a few stations, none where the rounding starts.
+    // The coarsest box still has its round normals: it has few stations, none of them where the
+    // rounding starts.
     result.push_back({-flat, -1, -flat - radius * kPi / 4});
     if (few > 0) result.push_back({0, 0, 0});
     result.push_back({flat, 1, flat + radius * kPi / 4});
@@ -60,13 +61,14 @@ std::vector<Station> stations(const Builder& builder, const RoundedBox& box, int
   return result;
 }
 
-// Where a ring passes, and its direction outwards there.
+// A point of a ring's path, and the outward direction there.
 struct PathPoint {
   glm::dvec2 place, outwards;
   double arc = 0;  // length of the path so far
 };
 
-// A rounded rectangle, anticlockwise and closed: corners cut evenly, straights by the edge length.
+// Returns a closed rounded rectangle, anticlockwise. Corners are divided evenly, straight sides by
+// the edge length.
 std::vector<PathPoint> ring_path(const Builder& builder, const Ring& ring) {
   const double radius = ring.path_radius;
   const glm::dvec2 flat = ring.path_half - radius;
@@ -79,7 +81,7 @@ std::vector<PathPoint> ring_path(const Builder& builder, const Ring& ring) {
       const glm::dvec2 out(std::cos(angle), std::sin(angle));
       path.push_back({sign * flat + radius * out, out});
     }
-    // The straight to the next corner, without its ends.
+    // The straight side to the next corner, without its ends.
     const double length = 2 * (quarter % 2 == 0 ? flat.x : flat.y);
     const int cuts = builder.segments(length, builder.coarse()   ? 1
                                               : quarter % 2 == 0 ? 3
@@ -120,7 +122,7 @@ void add_grid(Builder& builder, const GridShape& shape) {
 void add_rounded_box(Builder& builder, const RoundedBox& box) {
   const double radius = box.radius;
   for (int axis = 0; axis < 3; ++axis) {
-    // v runs upwards wherever it can, so that grain does.
+    // Where possible, v points upwards, so that wood grain does, too.
     const int a = axis == 1 ? 0 : (axis + 1) % 3, b = axis == 1 ? 2 : (axis + 2) % 3;
     const auto along_a = stations(builder, box, a), along_b = stations(builder, box, b);
     for (double side : {-1.0, 1.0}) {

@@ -16,13 +16,13 @@ std::uint64_t pair_key(Id a, Id b) {
   return a < b ? std::uint64_t(a) << 32 | b : std::uint64_t(b) << 32 | a;
 }
 
-// The mesh's edges by place, so that both sides of a crease share one.
+// The mesh's edges by position, so that both sides of a crease share one.
 struct Edges {
   struct Edge {
-    Id first = 0, count = 0;  // range of `users`: 3 * triangle + corner it starts at
+    Id first = 0, count = 0;  // range of `users`: 3 * triangle + corner where it starts
     double length = 0;
     float priority = 0;
-    bool smooth = false;  // one sheet passes through: its middle may leave the straight line
+    bool smooth = false;  // a single smooth sheet, so its midpoint may leave the straight line
     bool split = false;
   };
   std::vector<Edge> edges;
@@ -34,7 +34,7 @@ struct Edges {
 };
 
 float tone(glm::vec3 light) {
-  // Near what an eye makes of it: differences in the dark count, those in full sun less.
+  // Approximates perception: differences in the dark count more than those in full sun.
   return std::sqrt(std::max(0.0f, (light.x + light.y + light.z) / 3) + 2.0f);
 }
 
@@ -67,7 +67,8 @@ Edges::Edges(const Mesh& mesh) {
                                   glm::dvec3(mesh.vertices[b].position));
       const float change = std::abs(tone(mesh.direct[a] + mesh.indirect[a]) -
                                     tone(mesh.direct[b] + mesh.indirect[b]));
-      // The small constant keeps dark and even areas refining at the end, largest edges first.
+      // Because of the small constant, dark and even areas are refined at the end, too, largest
+      // edges first.
       edge.priority = std::max(edge.priority, float((change + 0.05) * edge.length));
       users[j] = user;
       of_triangle[user / 3][user % 3] = Id(edges.size());
@@ -79,7 +80,7 @@ Edges::Edges(const Mesh& mesh) {
   longest.resize(mesh.triangles.size());
   for (std::size_t t = 0; t < of_triangle.size(); ++t) {
     const auto& e = of_triangle[t];
-    // Equal lengths are told apart by the edge's id: all triangles must agree on the order.
+    // Edges of equal length are ordered by their id, because all triangles must agree on the order.
     const auto longer = [&](int a, int b) {
       return std::pair(edges[e[a]].length, e[a]) > std::pair(edges[e[b]].length, e[b]);
     };
@@ -89,7 +90,7 @@ Edges::Edges(const Mesh& mesh) {
   }
 }
 
-// Marks `edge` and what conformity asks for; returns how many triangles that adds.
+// Marks `edge` and the edges that conformity requires. Returns how many triangles that adds.
 std::size_t mark(Edges& all, Id edge, std::vector<Id>& stack) {
   std::size_t added = 0;
   stack.assign(1, edge);
@@ -107,7 +108,7 @@ std::size_t mark(Edges& all, Id edge, std::vector<Id>& stack) {
   return added;
 }
 
-// Splits triangles; vertices and texture coordinates in the middle of split edges are made once.
+// Splits triangles. Vertices and texture coordinates at the middle of split edges are made once.
 class Splitter {
  public:
   Splitter(Mesh& mesh, const Edges& edges)
@@ -118,7 +119,7 @@ class Splitter {
     texcoords_.reserve(split + split / 8);
   }
 
-  // Splits one triangle by its marked edges: the longest first, then what is left of the others.
+  // Splits one triangle at its marked edges: first the longest, then the others in what is left.
   void split(std::size_t t, std::vector<Triangle>& out) {
     const Triangle& old = mesh_.triangles[t];
     const auto& e = edges_.of_triangle[t];

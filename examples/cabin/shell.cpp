@@ -1,4 +1,4 @@
-// The lining with its windows, the floor, the bulkheads, the ceiling and the strips of light.
+// The lining with its windows, the floor, the bulkheads, the ceiling and the light strips.
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -11,9 +11,9 @@
 namespace cabin {
 namespace {
 
-constexpr double kBandHalf = 0.25;  // half the height of the band of wall that holds the windows
+constexpr double kBandHalf = 0.25;  // half the height of the wall band that holds the windows
 
-// A piece of wall between two places along the cabin and two heights.
+// A piece of wall between two positions along the cabin and two heights.
 struct WallPiece {
   int side;
   glm::dvec2 x, height;
@@ -32,18 +32,18 @@ void add_wall(Builder& builder, const WallPiece& piece, glm::ivec2 cells) {
   add_grid(builder, grid);
 }
 
-// The inward normal of the wall.
+// Returns the inward normal of the wall.
 glm::dvec3 wall_normal(int side, double height) {
   const double angle = height / kRadius;
   return {0, -side * std::cos(angle), -std::sin(angle)};
 }
 
-// At p.x along the cabin and the height p.y.
+// Returns the corner at p.x along the cabin and at the height p.y.
 Corner wall_corner(int side, glm::dvec2 p) {
   return {wall_point(side, p.x, p.y, 0), wall_normal(side, p.y), {p.x / 0.5, p.y / 0.5}};
 }
 
-// The border of the square [-1, 1]² in 4 n steps, anticlockwise.
+// Returns the border of the square [-1, 1]² in 4 n steps, anticlockwise.
 std::vector<glm::dvec2> square_border(int n) {
   std::vector<glm::dvec2> border;
   const glm::dvec2 start[] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
@@ -58,7 +58,7 @@ struct Window {
   glm::dvec2 centre;
 };
 
-// The piece of wall around a window: rings from the band's rectangle to the window's rim.
+// Adds the wall around a window: rings from the rectangle of the band to the rim of the window.
 void add_window_wall(Builder& builder, const Window& window, int n) {
   const auto border = square_border(n);
   const int rings = builder.segments(0.12, builder.coarse() ? 1 : 2);
@@ -74,7 +74,7 @@ void add_window_wall(Builder& builder, const Window& window, int n) {
                    corner(ring + 1, i));
 }
 
-// The funnel from the rim outwards, and the blind at its end.
+// Adds the funnel from the rim outwards, and the blind at its end.
 void add_reveal(Builder& builder, const Window& window, int n) {
   const int side = window.side;
   const glm::dvec2 centre = window.centre;
@@ -84,7 +84,7 @@ void add_reveal(Builder& builder, const Window& window, int n) {
   const auto corner = [&](int ring, std::size_t i) {
     const glm::dvec2 q = border[i % border.size()];
     const double t = double(ring) / rings;
-    // Steep at the rim, then straight: a rounded funnel.
+    // A rounded funnel: steep at the rim, then straight.
     const double scale = 1 - (1 - kRevealScale) * (1 - (1 - t) * (1 - t));
     const glm::dvec2 p = centre + scale * window_rim(q.x, q.y);
     const glm::dvec3 out = wall_normal(side, centre.y);
@@ -133,7 +133,7 @@ void add_bay(Builder& builder, int side, int bay) {
   add_reveal(builder, window, n);
 }
 
-// The crown of the fuselage above the bins and the ceiling, where no light comes.
+// Adds the crown of the fuselage above the bins and the ceiling, which no light reaches.
 void add_crown(Builder& builder) {
   builder.begin("crown", "dado");
   GridShape crown;
@@ -205,11 +205,11 @@ void add_shell(Builder& builder) {
 std::vector<Strip> light_strips() {
   std::vector<Strip> strips;
   for (int side : {-1, 1}) {
-    // Along the bins' upper edge, inwards.
+    // Along the upper edge of the bins, shining inwards.
     const glm::dvec2 a(side * 0.614, 1.915), b(side * 0.606, 1.99);
-    // On top of the bins, up at the ceiling.
+    // On top of the bins, shining up to the ceiling.
     const glm::dvec2 c(side * 0.66, 1.975), d(side * 0.80, 1.975);
-    // Below the bins, down the lining.
+    // Below the bins, shining down the lining.
     const glm::dvec2 e(side * 1.32, 1.49), f(side * 1.24, 1.49);
     const bool left = side > 0;
     strips.push_back({kBinStart, kLength - 0.02, left ? a : b, left ? b : a, 6, "strip"});

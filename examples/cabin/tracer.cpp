@@ -44,8 +44,8 @@ Tracer::Tracer(std::span<const glm::vec3> positions,
   impl_->device = rtcNewDevice(nullptr);
   if (!impl_->device) throw std::runtime_error("Embree could not be started");
   impl_->scene = rtcNewScene(impl_->device);
-  // Robust: no ray slips through the edge between two triangles, where it would look like a light
-  // leak. High quality: the tree is built once and asked a hundred million times.
+  // Robust: no ray passes through the edge between two triangles, where it would look like a light
+  // leak. High quality: the tree is built once and used for a hundred million rays.
   rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
   RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);

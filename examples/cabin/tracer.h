@@ -1,4 +1,4 @@
-// Rays against a triangle mesh: the one place that knows Embree, version 3 or 4.
+// Traces rays against a triangle mesh. Only its implementation uses Embree (version 3 or 4).
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ struct Hit {
   std::uint32_t triangle = ~0u;  // ~0: nothing was hit
   float u = 0, v = 0;            // weights of the triangle's second and third corner
   float distance = 0;
-  bool front = false;  // the ray came from the side that the triangle faces
+  bool front = false;  // the ray hit the side that the triangle faces
 };
 
 class Tracer {

@@ -1,4 +1,4 @@
-// The door with its frame, and the galley that faces it.
+// The door with its frame, and the galley opposite.
 #include <algorithm>
 #include <cmath>
 
@@ -9,10 +9,12 @@ namespace cabin {
 namespace {
 
 constexpr double kDoorMiddle = 1.38;
-const double kDoorHeight = (wall_height(0.07) + wall_height(1.86)) / 2;  // of its centre, as arc
+// Of its centre, as arc length.
+const double kDoorHeight = (wall_height(0.07) + wall_height(1.86)) / 2;
 const glm::dvec2 kDoorHalf{0.37, (wall_height(1.86) - wall_height(0.07)) / 2};
 
-// From (along the wall, arc height, depth) about the door's centre to space, on the side y > 0.
+// Converts (along the wall, arc height, depth) relative to the door's centre to space, on the side
+// y > 0.
 glm::dvec3 on_wall(glm::dvec3 p) {
   return wall_point(1, kDoorMiddle + p.x, kDoorHeight + p.y, p.z);
 }
@@ -35,7 +37,7 @@ void add_door_window(Builder& builder) {
   add_rounded_box(builder, glass);
 }
 
-// A body of revolution for the galley's counter: belly, neck, lid with a knob.
+// Adds a body of revolution for the galley's counter: a pot with belly, neck and a lid with a knob.
 void add_pot(Builder& builder, glm::dvec3 at) {
   builder.begin("pots", "metal");
   Revolved pot;
@@ -70,7 +72,7 @@ struct Cupboards {
   int columns, rows;
 };
 
-// The front of the galley is the plane y = front; doors stand 4 mm apart.
+// Adds cupboards whose doors stand 8 mm apart. The front of the galley is the plane y = front.
 void add_cupboards(Builder& builder, const std::string& name, const Cupboards& c, double front) {
   const double width = (c.x1 - c.x0) / c.columns, height = (c.z1 - c.z0) / c.rows;
   for (int i = 0; i < c.columns; ++i)
@@ -121,8 +123,8 @@ void add_door(Builder& builder) {
   frame.path_radius = 0.13;
   frame.least = 9;
   frame.half = {0.038, 0.016};
-  // 8 mm of air behind it: its shadow on the wall is sharp, the case that leaks light into coarse
-  // texels.
+  // There are 8 mm of air behind the frame. Its shadow on the wall is sharp, which is the case that
+  // leaks light into coarse texels.
   frame.warp = [](glm::dvec3 p) { return on_wall(p + glm::dvec3(0, 0, 0.024)); };
   add_ring(builder, frame);
   add_door_window(builder);

@@ -17,7 +17,8 @@ glm::vec3 turned(glm::vec3 p, bool y_up) {
   return y_up ? glm::vec3(p.x, p.z, -p.y) : p;
 }
 
-// Text to a file through a buffer of its own; numbers are the shortest that read back alike.
+// Writes text to a file through its own buffer. Numbers have the shortest form that reads back as
+// the same value.
 class Writer {
  public:
   explicit Writer(const fs::path& path) : file_(path, std::ios::binary) {

@@ -1,4 +1,4 @@
-// Lit cabin to files: OBJ with its MTL and textures, PLY, GLB.
+// Writes the lit cabin to files: OBJ with its MTL and textures, PLY, GLB.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +8,12 @@
 
 namespace cabin {
 
-// Whether write_scene() can write there: ask before long work. Errors: bad_option, io.
+// Checks whether write_scene() can write there; to be called before long work. Errors: bad_option,
+// io.
 atlas::Status check_scene_path(const std::filesystem::path& path);
 
-// Writes by the extension of `path`: .obj (v x y z r g b, plus MTL and PNG textures beside it),
-// .ply (binary, colours as floats, without texture coordinates), .glb (attribute _ILLUMINANCE,
+// Writes a file by the extension of `path`: .obj (v x y z r g b, plus MTL and PNG textures beside
+// it), .ply (binary, colours as floats, without texture coordinates), .glb (attribute _ILLUMINANCE,
 // textures beside it). Illuminance is linear RGB in lux, not yet multiplied by the reflectance.
 atlas::Status write_scene(const std::filesystem::path& path, const Mesh& mesh, bool y_up);
 

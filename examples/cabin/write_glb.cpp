@@ -17,12 +17,12 @@ using nlohmann::json;
 
 constexpr int kFloat = 5126, kUnsigned = 5125;  // glTF component types
 
-// The binary chunk and its description, grown side by side.
+// The JSON description and the binary chunk, which grow together.
 struct Glb {
   json root;
   std::vector<char> binary;
 
-  // Adds a buffer view with one accessor over it and returns the accessor's index.
+  // Adds a buffer view with one accessor over it and returns the index of the accessor.
   template <class T>
   std::size_t add(const std::vector<T>& data, int component, const char* type, std::size_t count) {
     const std::size_t offset = binary.size(), size = data.size() * sizeof(T);
@@ -37,8 +37,8 @@ struct Glb {
   }
 };
 
-// The triangles of one object and material, with vertices of their own: glTF wants one index for
-// position and texture coordinate together.
+// The triangles of one object and material, with their own vertices, because glTF has a single
+// index for position and texture coordinate.
 struct Part {
   bool y_up;
   std::vector<glm::vec3> positions = {}, light = {};
@@ -54,7 +54,7 @@ void add_corner(Part& part, const Mesh& mesh, Id vertex, Id texcoord) {
     const glm::vec3 p = mesh.vertices[vertex].position;
     part.positions.push_back(part.y_up ? glm::vec3(p.x, p.z, -p.y) : p);
     part.light.push_back(mesh.direct[vertex] + mesh.indirect[vertex]);
-    // glTF's textures start at the top.
+    // Textures in glTF start at the top.
     part.texcoords.push_back({mesh.texcoords[texcoord].x, 1 - mesh.texcoords[texcoord].y});
   }
   part.indices.push_back(it->second);
@@ -108,7 +108,7 @@ atlas::Status write_glb(const std::filesystem::path& path, const std::filesystem
   Glb glb;
   glb.root["asset"] = {{"version", "2.0"}, {"generator", "atlas-make-cabin"}};
   add_materials(glb, mesh);
-  // Triangles of an object stay together from the start: a change of object closes a node.
+  // The triangles of an object are consecutive, so a change of object ends a node.
   json nodes = json::array(), roots = json::array();
   for (std::size_t t = 0; t < mesh.triangles.size();) {
     const std::uint16_t object = mesh.triangles[t].object;
