@@ -1,6 +1,6 @@
-// A colour at each vertex, linear RGB, baked into one texture with gutters for mip levels: a sphere
-// here, lit from one side. Also how large each chart's texture has to be, and how far the
-// result is from the input.
+// Bakes a linear RGB colour at each vertex into one texture with gutters for mip levels. Also finds
+// how large each chart's texture has to be, and how far the result is from the input. The mesh is a
+// sphere that is lit from one side.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
   const auto charts = atlas::make_charts(mesh, {}, {});
   if (!charts.ok()) return complain(charts.status());
 
-  // The colours as they are: nothing to be lit, 1 is white.
+  // The colours are used as they are: there is nothing to be lit, and 1 is white.
   const atlas::LuminanceSampler sampler(scene, atlas::Quantity::luminance);
   const auto statistics = atlas::measure_luminance(sampler, {});
   if (!statistics.ok()) return complain(statistics.status());
@@ -60,7 +60,8 @@ int main(int argc, char** argv) {
   if (!tone.ok()) return complain(tone.status());
   const atlas::ChartLight light{sampler, *charts, *tone};
 
-  // 0.005 units a texel, halved where no colour changes by more than the threshold.
+  // The texel size is 0.005 units. Textures are halved where no colour changes by more than the
+  // threshold.
   atlas::TextureOptions textures;
   textures.texel = 0.005;
   textures.threshold = 4.0 / 255;

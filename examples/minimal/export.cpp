@@ -1,5 +1,5 @@
-// A lit mesh in memory, exported as a world with its textures in one call, with progress and a stop
-// from another thread (or a signal): a floor with a spot of light here.
+// Exports a lit mesh in memory as a world with its textures in one call, with progress and with
+// cancellation from another thread (or a signal). The mesh is a floor with a spot of light.
 //   export world.wrl          or .wrz, .gltf, .glb, .obj
 #include <atomic>
 #include <cmath>

@@ -1,5 +1,5 @@
-// Sprites of many sizes onto pages of one size: as few pages as hold them, or on so many as are
-// given, all scaled alike where they are too many.
+// Packs sprites of many sizes onto pages of one size: onto as few pages as hold them, or onto a
+// given number, for which all are scaled equally if necessary.
 #include <cstdint>
 #include <cstdio>
 #include <vector>
@@ -35,17 +35,18 @@ int main() {
   options.allow_rotation = true;
   const auto packed = atlas::pack_rects(sizes, options, {});
   if (!packed.ok()) return complain(packed.status());
-  // Too large for a page: named, not an error.
+  // Sprites that are too large for a page are listed, which is not an error.
   for (const atlas::UnplacedItem& item : packed->unplaced)
     std::fprintf(stderr, "sprite %u does not fit\n", item.item);
-  const atlas::Placement& first = packed->placements[0];  // of sprite 0, as of every other
+  // Of sprite 0; placements are in the order of the sprites.
+  const atlas::Placement& first = packed->placements[0];
   std::printf(
       "%zu sprites, %zu pages (no packing needs fewer than %u), %.1f %% used; the first on "
       "page %u at %d, %d%s\n",
       sizes.size(), packed->pages.size(), packed->page_lower_bound, 100 * packed->utilization,
       first.page, first.x, first.y, first.rotated ? ", turned" : "");
 
-  // The same on four pages: charts share out by F(A) = N, and shrink until they fit.
+  // The same on four pages: sprites are distributed by F(A) = N and shrink until they fit.
   std::vector<atlas::FitItem> items;
   for (const atlas::Extent& size : sizes)
     items.push_back({double(size.width), double(size.height)});

@@ -1,4 +1,4 @@
-// A mesh of flat arrays in, a vertex buffer with uvs for one texture out: a torus here.
+// Turns a mesh of flat arrays (here a torus) into a vertex buffer with uvs for one texture.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -37,8 +37,8 @@ int main() {
     return 1;
   }
 
-  // What to draw: these vertices, and unwrapped->indices. Attributes besides the position, such as
-  // normals, are copied in the same way.
+  // Draw these vertices with unwrapped->indices. Other attributes, such as normals, are copied in
+  // the same way as the position.
   std::vector<Vertex> vertices;
   for (std::size_t v = 0; v < unwrapped->vertices.size(); ++v) {
     const atlas::Vec3f p = positions[unwrapped->vertices[v]];
