@@ -1,5 +1,5 @@
-// The picture of docs/bake.md: a wooden floor with the edge of the sun and a narrow beam on it, as
-// the mesh holds the light and as both methods of baking show it.
+// Draws the picture of docs/bake.md: a wooden floor with the edge of sunlight and a narrow beam on
+// it, once as the mesh holds the light and once for each baking method.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -17,11 +17,12 @@ namespace {
 
 using namespace atlas;
 
-constexpr int kCells = 300, kTexels = 50;  // along a side of a metre
-constexpr int kPixels = kCells;            // of the picture
+constexpr int kCells = 300, kTexels = 50;  // per side of one metre
+constexpr int kPixels = kCells;            // side of the picture
 
 Vec3f light_at(double x, double y) {
-  constexpr double kShadow = 0.06, kJoint = 0.12;  // of the sun's light, of the wood's reflectance
+  // Factors for sunlight in shadow and for reflectance in joints.
+  constexpr double kShadow = 0.06, kJoint = 0.12;
   const double across = x + 0.45 * y;
   const bool sun = across < 0.5 || std::fabs(across - 1.18) < 0.022;
   const bool joint = std::fabs(y - 0.42) < 0.008 || std::fabs(y - 0.91) < 0.008;
@@ -51,7 +52,7 @@ Scene make_floor() {
   return scene;
 }
 
-// The floor as one chart, whose uvs are its own coordinates.
+// Returns the floor as one chart, whose uvs are its own coordinates.
 ChartSet one_chart(const Scene& scene) {
   ChartSet set;
   Chart chart;
@@ -81,7 +82,8 @@ Image8 draw(const Colour& colour) {
   return tile;
 }
 
-// The light in the middle of a cell: half-way along the diagonal that its two triangles share.
+// Draws the light in the middle of each cell, half-way along the diagonal between its two
+// triangles.
 Image8 draw_light(const LuminanceSampler& sampler, const ToneMapping& tone) {
   return draw([&](double x, double y) {
     const int cell = int(y * kCells) * kCells + int(x * kCells);
