@@ -22,7 +22,7 @@ double distance(const Blob& blob, const glm::dvec3& p) {
   return glm::length(p - a - t * d) - (blob.radius_a + t * (blob.radius_b - blob.radius_a));
 }
 
-// A sampled field on a regular grid and the net of its zero surface.
+// A field that is sampled on a regular grid, and the surface net of its zero set.
 class SurfaceNet {
  public:
   SurfaceNet(const std::vector<Blob>& blobs, double smoothing, int resolution)
@@ -57,10 +57,10 @@ class SurfaceNet {
     return (std::size_t(z) * size_[1] + y) * size_[0] + x;
   }
   glm::dvec3 place(int x, int y, int z) const {
-    return origin_ + step_ * glm::dvec3(x + 0.137, y + 0.291, z + 0.419);  // no exact zeros
+    return origin_ + step_ * glm::dvec3(x + 0.137, y + 0.291, z + 0.419);  // avoids exact zeros
   }
 
-  // Smooth minimum of all distances: -s log sum exp(-d / s).
+  // Computes the smooth minimum of all distances: -s log sum exp(-d / s).
   void sample() {
     value_.resize(std::size_t(size_[0]) * size_[1] * size_[2]);
     for (int z = 0; z < size_[2]; ++z)
@@ -174,8 +174,8 @@ std::vector<Blob> bust() {
   return b;
 }
 
-// A closed surface of revolution about z; the profile is a closed polygon (radius, height), given
-// anticlockwise, and every side is cut into pieces about as long as the arcs around.
+// Returns a closed surface of revolution about z. The profile is a closed polygon (radius, height),
+// anticlockwise. Each of its sides is divided into pieces about twice as long as the arcs around.
 Shape turned(const std::vector<Vec2d>& profile, int around) {
   std::vector<Vec2d> points;
   for (std::size_t i = 0; i < profile.size(); ++i) {

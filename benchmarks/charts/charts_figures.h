@@ -1,4 +1,4 @@
-// Meshes like those that people unwrap, made in code: statues, scans, machine parts, terrain.
+// Generated meshes like those that people unwrap: statues, scans, machine parts, terrain.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace atlas::bench {
 
-// Names that make_figure knows.
+// The names that make_figure accepts.
 inline constexpr const char* kFigures =
     "figure, hound, bust, figure-scan, terraces, shaft, bracket";
 
@@ -25,10 +25,11 @@ inline constexpr const char* kFigures =
 // Any other name goes to make_shape (support/work.h). Errors: bad_option.
 Result<test::Shape> make_figure(const std::string& name);
 
-// The surface where a signed distance-like field changes sign, by naive surface nets (Gibson 1998):
-// one vertex a cell of the grid that it crosses, at the mean of its edges' crossings.
+// Returns the surface where a field similar to a signed distance changes sign, by naive surface
+// nets (Gibson 1998). Each cell of the grid that it crosses gets one vertex, at the mean of the
+// crossings of its edges.
 struct Blob {
-  Vec3d a, b;  // ends of a capsule; equal: a ball
+  Vec3d a, b;  // ends of a capsule; a ball if they are equal
   double radius_a, radius_b;
 };
 test::Shape blend(const std::vector<Blob>& blobs, double smoothing, std::uint64_t triangles);

@@ -10,7 +10,7 @@
 namespace atlas::bench {
 namespace {
 
-constexpr int kSamples = 3;  // a pixel's side
+constexpr int kSamples = 3;  // per side of a pixel
 constexpr std::uint32_t kEmpty = 0xffffffffu;
 constexpr glm::dvec3 kPaper(1, 1, 1);
 
@@ -24,7 +24,7 @@ glm::dvec3 colour(std::uint32_t chart) {
   return rgb;
 }
 
-// A square of samples: the nearest face's chart and how bright it is.
+// A square of samples with the chart of the nearest face and its brightness.
 class Canvas {
  public:
   explicit Canvas(int side)
@@ -35,7 +35,7 @@ class Canvas {
 
   int side() const { return side_; }
 
-  // Corners: x, y in samples, z towards the eye.
+  // Draws a triangle. Corners have x, y in samples and z towards the eye.
   void draw(const std::array<glm::dvec3, 3>& p, std::uint32_t chart, double light) {
     const auto cross = [](const glm::dvec3& o, const glm::dvec3& a, const glm::dvec3& b) {
       return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
@@ -61,7 +61,7 @@ class Canvas {
       }
   }
 
-  // Averages the samples into `image` with its lower left corner at (left, bottom).
+  // Averages the samples into `image` with the lower left corner at (left, bottom).
   void finish(Image8& image, int left, int bottom) const {
     for (int y = 0; y < side_ / kSamples; ++y)
       for (int x = 0; x < side_ / kSamples; ++x) {

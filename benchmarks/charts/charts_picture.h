@@ -1,4 +1,5 @@
-// Pictures of charts: each mesh in space and its page below, one colour a chart, seams drawn.
+// Pictures of charts: each mesh in space and its page below, with one colour per chart and with
+// seams.
 #pragma once
 
 #include <filesystem>
@@ -14,8 +15,8 @@ struct UnwrappedMesh {
   double aspect = 1;  // width / height of the first page
 };
 
-// One column of `side` x 2 `side` pixels a mesh, z up, seen from the front right; the page's first
-// page only.
+// Draws one column of `side` x 2 `side` pixels per mesh, with z up, seen from the front right.
+// Shows only the first page.
 Image8 charts_picture(const std::vector<UnwrappedMesh>& meshes, int side);
 
 }  // namespace atlas::bench

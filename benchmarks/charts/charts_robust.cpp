@@ -28,7 +28,7 @@ Result<ChartSet> charts_of(const Positions& positions, const Scene& scene, int t
 
 struct Range {
   std::size_t least = SIZE_MAX, most = 0;
-  double change = 0;  // largest relative change of L2
+  double change = 0;  // largest relative change of the L2 stretch
   void add(const ChartSet& set, const ChartSet& reference) {
     least = std::min(least, set.charts.size());
     most = std::max(most, set.charts.size());
@@ -49,7 +49,7 @@ Positions scaled(const Positions& positions, double factor) {
   return result;
 }
 
-// A random unit quaternion (Shoemake 1992) applied in double.
+// Applies a random unit quaternion (Shoemake 1992) in double.
 Positions turned(const Positions& positions, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto uniform = [&] { return double(random() >> 11) * 0x1p-53; };
@@ -67,7 +67,7 @@ Positions turned(const Positions& positions, std::uint64_t seed) {
   return result;
 }
 
-// Written with all digits of a double, read back.
+// Writes the moved mesh with all digits of a double and reads it back.
 Result<LoadedScene> moved(const Scene& scene, double offset, const Context& context) {
   const auto path =
       std::filesystem::temp_directory_path() / fmt::format("atlas_robust_{}.obj", ::getpid());
@@ -84,7 +84,7 @@ Result<LoadedScene> moved(const Scene& scene, double offset, const Context& cont
   return read;
 }
 
-// How many of the cases keep their charts within 3 %, and what the others came out with.
+// Counts the cases that keep the number of charts within 3 %, and the numbers of the other cases.
 struct Kept {
   std::size_t reference;
   int cases = 0, kept = 0;
@@ -177,7 +177,7 @@ Result<std::string> charts_cases_row(const std::string& name, const LoadedScene&
   if (!reference.ok()) return reference.status();
   Kept rotations{reference->charts.size()}, units = rotations, offsets = rotations;
   std::mt19937_64 random(1);
-  const auto power = [&](double from, double to) {  // of ten
+  const auto power = [&](double from, double to) {  // a random power of ten
     return std::pow(10, from + (to - from) * double(random() >> 11) * 0x1p-53);
   };
   for (int i = 1; i <= cases; ++i) {

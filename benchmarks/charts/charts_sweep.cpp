@@ -15,7 +15,7 @@ namespace {
 
 std::vector<ChartSetting> settings() {
   std::vector<ChartSetting> list = chart_presets();
-  list[1].name = "default";  // as on the command line
+  list[1].name = "default";  // the name on the command line
   for (const double stretch : {1.05, 1.1, 1.15, 1.5, 2.0}) list.push_back(with_stretch(stretch));
   return list;
 }
@@ -32,7 +32,7 @@ double time(const ChartsPoint* p) {
   return p->cpu_seconds;
 }
 
-// Bounds that come to the same place share a point and its label.
+// Bounds with nearly equal results share a point and its label.
 std::vector<ChartsPoint> joined(const std::vector<const ChartsPoint*>& points, Value value) {
   constexpr double kNearTime = 0.05, kNearValue = 0.02;
   std::vector<ChartsPoint> kept;
@@ -57,7 +57,7 @@ std::vector<PlotPoint> plotted(const std::vector<ChartsPoint>& points, Value val
   return plotted;
 }
 
-// The points of one mesh.
+// Returns the panel with the points of one mesh.
 Panel panel_of(const std::vector<const ChartsPoint*>& points, Value value) {
   std::vector<ChartsPoint> presets, front;
   std::vector<const ChartsPoint*> bounds;

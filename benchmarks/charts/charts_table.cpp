@@ -22,7 +22,7 @@ struct Folder {
   ~Folder() { fs::remove_all(path); }
 };
 
-// What must be zero, named if it is not.
+// Names the counts that must be zero but are not.
 std::string faults(const test::AtlasMeasures& m, std::size_t triangles) {
   std::string text;
   const std::pair<const char*, std::uint64_t> counts[] = {
@@ -80,7 +80,7 @@ Status draw_charts(const std::vector<LoadedScene>& meshes, const std::filesystem
     ExportOptions options;
     options.target = folder.path / "out.obj";
     options.charts_only = true;
-    options.square_plain_page = true;  // narrow ones would be small in the picture
+    options.square_plain_page = true;  // narrow pages would be small in the picture
     const Result<ExportReport> report = export_world(loaded, options, {}, context);
     if (!report.ok()) return report.status();
     Result<test::UvMesh> mesh = test::read_uv_obj(options.target);
