@@ -1,4 +1,5 @@
-// atlas-bench-compare BASE.json HEAD.json: 0 if nothing got worse, 1 if something did, 2 on errors.
+// atlas-bench-compare BASE.json HEAD.json: exits with 0 if nothing got worse, 1 if something did, 2
+// on errors.
 #include "benchmarks/support/compare.h"
 
 #include <fmt/format.h>
