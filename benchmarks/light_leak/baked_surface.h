@@ -11,7 +11,7 @@
 
 namespace atlas::bench {
 
-// The page's colour between its texels, as a viewer looks it up: bilinear, in [0, 1].
+// Returns the page's colour between its texels, as a viewer looks it up: bilinear, in [0, 1].
 inline glm::dvec3 lookup(const Image8& page, Vec2d at) {
   const double x = at.x - 0.5, y = at.y - 0.5;
   const int i = int(std::floor(x)), j = int(std::floor(y));

@@ -13,7 +13,7 @@
 namespace atlas::bench {
 namespace {
 
-// Collects errors; percentiles by sorting.
+// Collects errors. Percentiles are found by sorting.
 class Errors {
  public:
   void add(double error) { errors_.push_back(float(error)); }
@@ -39,7 +39,7 @@ class Errors {
   std::vector<float> errors_;
 };
 
-// Bakes the pages that hold charts of the object.
+// Bakes the pages that contain wanted charts.
 Status bake_pages_of(Staged& staged, const std::vector<bool>& wanted, BakeMethod method,
                      std::vector<Image8>& pages) {
   const PageLayout& layout = *staged.layout;
@@ -63,7 +63,7 @@ Status bake_pages_of(Staged& staged, const std::vector<bool>& wanted, BakeMethod
   return {};
 }
 
-// Centres of the n² equal parts of a triangle, as barycentric coordinates.
+// Visits the centres of the n² equal parts of a triangle, as barycentric coordinates.
 template <class Visit>
 void each_part(int n, const Visit& visit) {
   for (int i = 0; i < n; ++i)
@@ -82,7 +82,7 @@ struct Probe {
   double band, fixed;  // scene units
   Errors in_band, in_fixed, everywhere;
 
-  // Every point stands for (nearly) the same area: parts are as many as the area asks for.
+  // Every point represents (nearly) the same area, because the number of parts depends on the area.
   void visit(const BakedSurface& s, double spacing) {
     const double squares = std::ceil(s.area() / (spacing * spacing));
     const int parts = int(std::clamp(std::round(std::sqrt(squares)), 1.0, 400.0));

@@ -1,4 +1,4 @@
-// atlas-bench-leak: the door's light leak against the texel's size, as rows of stage "light_leak".
+// atlas-bench-leak: the door's light leak against the texel size, as rows of stage "light_leak".
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -90,7 +90,8 @@ int main(int argc, char** argv) {
   Staged staged(a.work, std::move(*scene), context);
   staged.settings.pages = a.pages;
   staged.settings.page_size = a.page;
-  if (const Status s = staged.need_charts(); !s.ok()) return fail(s);  // not the first texel's cost
+  // Not part of the first texel size's cost.
+  if (const Status s = staged.need_charts(); !s.ok()) return fail(s);
   Results results;
   results.machine = describe_machine(argc, argv);
   for (const double millimetres : a.texels) {

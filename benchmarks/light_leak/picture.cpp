@@ -19,7 +19,7 @@ glm::dvec3 place(const Vec3f& p) {
   return {p.x, p.y, p.z};
 }
 
-// Of 64 points along the edge the one with most others around it.
+// Returns the one of 64 points along the edge that has the most others around it.
 glm::dvec3 busiest(const std::vector<Vec3f>& points, double radius) {
   const std::size_t step = std::max<std::size_t>(1, points.size() / 64);
   glm::dvec3 best = place(points.front());
@@ -69,7 +69,7 @@ class Canvas {
         depth_(std::size_t(pixels) * std::size_t(pixels), -std::numeric_limits<double>::infinity()),
         picture_{Image8(pixels, pixels, 3, 255), Image8(pixels, pixels, 3, 255)} {}
 
-  // Pixel coordinates and height above the patch's plane.
+  // Returns pixel coordinates and the height above the plane of the patch.
   glm::dvec3 seen(glm::dvec3 p) const {
     const glm::dvec3 d = p - patch_.centre;
     const double scale = pixels_ / patch_.side;

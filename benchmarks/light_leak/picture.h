@@ -1,5 +1,4 @@
-// Pictures of the light leak: a square of the object across the shadow's edge, seen along its
-// normal.
+// Pictures of the light leak: a square of the object across the shadow edge, seen along its normal.
 #pragma once
 
 #include <vector>
@@ -14,18 +13,18 @@ struct PatchOptions {
   int pixels = 240;
 };
 
-// The same square twice, display values, 3 channels: the light as the mesh holds it, and as the
-// pages show it. Pixels that no triangle covers are white.
+// The same square twice, as display values with 3 channels: the light as the mesh holds it, and as
+// the pages show it. Pixels that no triangle covers are white.
 struct LeakPicture {
   Image8 input, baked;
 };
 
-// The square lies where the shadow's edge is longest within it. `pages` as baked from
-// staged.layout; pages without triangles of the object may be empty.
+// Draws the square in which the shadow edge is longest. `pages` must be baked from staged.layout;
+// pages without triangles of the object may be empty.
 LeakPicture draw_patch(const Staged& staged, const std::vector<Image8>& pages,
                        const ShadowEdge& edge, const PatchOptions& options);
 
-// Tiles of equal height side by side with a white gap.
+// Returns tiles of equal height side by side with a white gap.
 Image8 side_by_side(const std::vector<Image8>& tiles);
 
 }  // namespace atlas::bench

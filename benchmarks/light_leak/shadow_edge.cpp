@@ -13,7 +13,7 @@ double luma(Vec3f e) {
   return 0.2126 * e.x + 0.7152 * e.y + 0.0722 * e.z;
 }
 
-// Over an object's triangles, by area.
+// Returns the area-weighted mean over an object's triangles.
 double mean_luma(const Scene& scene, const std::vector<std::uint32_t>& triangles) {
   double sum = 0, areas = 0;
   for (const std::uint32_t t : triangles) {
@@ -31,7 +31,8 @@ double mean_luma(const Scene& scene, const std::vector<std::uint32_t>& triangles
   return areas > 0 ? sum / areas : 0;
 }
 
-// The crossings on a triangle's three edges, at most three, of which one end is at least so light.
+// Returns the crossings on a triangle's three edges (at most three) of which one end has at least
+// the given light.
 std::vector<glm::dvec3> crossings(const Scene& scene, std::uint32_t triangle, double light,
                                   const ShadowEdgeOptions& options) {
   std::vector<glm::dvec3> found;
@@ -43,7 +44,7 @@ std::vector<glm::dvec3> crossings(const Scene& scene, std::uint32_t triangle, do
     const glm::dvec3 pa = to_dvec(scene.positions[a]), pb = to_dvec(scene.positions[b]);
     if (std::abs(la - lb) <= options.drop * std::max(la, lb)) continue;
     if (glm::distance(pa, pb) * scene.metres_per_unit > options.length) continue;
-    found.push_back(0.5 * (pa + pb));  // linear between: the mean value lies half-way
+    found.push_back(0.5 * (pa + pb));  // linear between both ends, so the mean value lies half-way
   }
   return found;
 }
@@ -88,7 +89,8 @@ NearPoints::NearPoints(const std::vector<Vec3f>& points, double radius)
   });
 }
 
-// 21 bits an axis: cells that far apart never share a key within a scene of a million radii.
+// Uses 21 bits per axis. Cells whose keys would collide are so far apart that they are never in the
+// same scene of up to a million radii.
 std::uint64_t NearPoints::key(std::int64_t x, std::int64_t y, std::int64_t z) const {
   constexpr std::uint64_t kMask = (1u << 21) - 1;
   return (std::uint64_t(x) & kMask) << 42 | (std::uint64_t(y) & kMask) << 21 |
