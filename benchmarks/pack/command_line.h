@@ -1,4 +1,4 @@
-// What the packing benchmarks' command lines have in common.
+// Command-line options that the packing benchmarks share.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -9,7 +9,7 @@
 
 namespace atlas::bench {
 
-// --preset, --budget and --effort, for options that have all three.
+// Adds --preset, --budget and --effort, for options that have all three.
 template <class Options>
 void add_effort_options(CLI::App& app, Options& options) {
   const std::map<std::string, PackPreset> presets{

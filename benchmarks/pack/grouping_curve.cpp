@@ -1,4 +1,4 @@
-// Prints F(A) around the bisection's answer and the steps taken, for the plot of grouping_curve.gp.
+// Prints F(A) around the result of the bisection and its steps, for the plot of grouping_curve.gp.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>

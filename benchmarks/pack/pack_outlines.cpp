@@ -1,6 +1,7 @@
 // Packs the uv charts of OBJ files by their outlines, checks every layout independently, and prints
-// a line a model. Uvs that a page of another shape than a square has squeezed get the proportions
-// of the surface back. A single page gets the shape that packs best unless it shall be square.
+// one line per model. Uvs that were made for a page that is not square are rescaled to the
+// proportions of the surface. A single page gets the shape that packs best, unless it has to be
+// square.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,11 +26,12 @@ using atlas::test::UvMesh;
 
 struct Model {
   std::string name;
-  std::vector<std::vector<Vec2d>> charts;  // 3 corners a triangle
+  std::vector<std::vector<Vec2d>> charts;  // 3 corners per triangle
 };
 
-// Gives the charts the proportions they have on the surface: u and v are stretched by the factors
-// with which the edges' squared lengths, s du² + t dv², come closest to those on the surface.
+// Gives the charts the proportions that they have on the surface: scales u by sqrt(s / t), where s
+// and t are the factors with which the squared lengths of edges, s du² + t dv², come closest to
+// those on the surface.
 void unsqueeze(UvMesh& mesh) {
   double aa = 0, ab = 0, bb = 0, ad = 0, bd = 0;
   for (const UvMesh::Face& f : mesh.faces)
@@ -74,7 +76,7 @@ double area_of(const std::vector<Vec2d>& c) {
   return twice / 2;
 }
 
-// At scale 1 the charts fill the pages.
+// Scales the charts so that they have the area of the pages at scale 1.
 void fill_pages(Model& model, const atlas::FitOptions& o) {
   double area = 0;
   for (const auto& c : model.charts) area += area_of(c);

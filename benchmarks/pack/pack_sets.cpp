@@ -1,5 +1,5 @@
 // Runs pack_rects over instances ("W H n", then n lines "w h"; H = 0: a strip), checks every layout
-// independently, and prints totals. With --strip the optimum is taken to be the area bound.
+// independently, and prints totals. With --strip, the area bound is used as the optimum.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,7 +38,8 @@ atlas::Result<Instance> read_instance(const std::filesystem::path& path) {
                   path.string()));
 }
 
-// Every item inside its page, none overlapping: a sweep over x with the active items by y.
+// Checks that every item lies inside its page and that none overlap, by a sweep over x with the
+// active items ordered by y.
 bool valid(const Instance& in, const atlas::PackResult& result, bool rotate) {
   struct Box {
     std::uint32_t page;
@@ -77,7 +78,7 @@ struct Arguments {
   std::vector<std::string> places;
 };
 
-// The files themselves and the .txt files of the folders, sorted.
+// Returns the given files and the .txt files of given folders, sorted.
 std::vector<std::filesystem::path> instances_in(const std::vector<std::string>& places) {
   std::vector<std::filesystem::path> files;
   for (const std::filesystem::path place : places) {
@@ -98,7 +99,7 @@ struct Totals {
   int strips = 0, invalid = 0;
 };
 
-// Packs an instance, adds its figures to the totals and prints them if each is wanted.
+// Packs an instance, adds its figures to the totals, and prints them if each instance is wanted.
 void run(Instance in, Arguments& arguments, Totals& totals) {
   if (arguments.strip) in.page.height = 0;
   arguments.options.page = in.page;
