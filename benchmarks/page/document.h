@@ -1,4 +1,4 @@
-// Text, tables and pictures that come out as Markdown and as HTML alike.
+// Text, tables and pictures, written as Markdown and as HTML.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ class Document {
   void paragraph(const std::string& text);
   // `file` lies in the folder plots/ beside the document.
   void image(const std::string& file, const std::string& text);
-  // Rows whose last cell is one of the marks "EXCEEDED" and "missed" stand out in the HTML.
+  // Rows whose last cell is "EXCEEDED" or "missed" are highlighted in the HTML.
   void table(const Cells& header, const std::vector<Cells>& rows);
 
   std::string markdown, html;

@@ -9,28 +9,30 @@
 namespace atlas::bench {
 namespace {
 
-// Sizes in the SVG's pixels. The axes' box is set, not left to gnuplot: where labels lie free and
-// inside is decided here.
+// Sizes in pixels of the SVG. The box of the axes is set explicitly and not by gnuplot, because the
+// positions of labels are chosen here.
 constexpr double kPanelWidth = 430, kWideWidth = 860, kPanelHeight = 300, kTallHeight = 450;
-constexpr double kLeft = 104, kRight = 14, kAbove = 34, kBelow = 54;  // of a panel, around the axes
+// Margins of a panel around its axes.
+constexpr double kLeft = 104, kRight = 14, kAbove = 34, kBelow = 54;
 constexpr double kTitle = 36, kKey = 56;
 constexpr double kLetter = 5.4, kLine = 11, kPoint = 4;  // of labels
 
-// Colours that stay apart on white, in print and for most colour-blind readers (after Wong 2011).
+// Colours that are distinguishable on white, in print and for most colour-blind readers (after Wong
+// 2011).
 constexpr const char* kLineTypes =
     "set linetype 1 lc rgb '#0072b2' lw 1.5\nset linetype 2 lc rgb '#d55e00' lw 1.5\n"
     "set linetype 3 lc rgb '#009e73' lw 1.5\nset linetype 4 lc rgb '#cc79a7' lw 1.5\n"
     "set linetype 5 lc rgb '#7f7f7f' lw 1.5\nset linetype 6 lc rgb '#000000' lw 1.5\n"
     "set linetype 7 lc rgb '#e69f00' lw 1.5\nset linetype 8 lc rgb '#56b4e9' lw 1.5\n";
 
-// Both quotes end a string.
+// Replaces both quotes, which would end a string, and backslashes.
 std::string plain(std::string text) {
   for (char& c : text)
     if (c == '"' || c == '\'' || c == '\\') c = ' ';
   return text;
 }
 
-// The least of 1, 2 and 5 times a power of ten that is not below `step`.
+// Returns the least of 1, 2 and 5 times a power of ten that is not below `step`.
 double round_step(double step) {
   const double power = std::pow(10, std::floor(std::log10(step)));
   for (const double times : {1.0, 2.0, 5.0})
@@ -38,10 +40,10 @@ double round_step(double step) {
   return 10 * power;
 }
 
-// A coordinate's range, with room for labels, and its place in pixels.
+// The range of a coordinate with space for labels, and its mapping to pixels.
 class Axis {
  public:
-  // `after`: pixels beyond the last point, for its label.
+  // `after` is the space in pixels beyond the last point for its label.
   Axis(const Panel& panel, double PlotPoint::*coordinate, bool log, double pixels, double after)
       : coordinate_(coordinate), log_(log), pixels_(pixels) {
     double low = 1e300, high = -1e300;
@@ -68,7 +70,8 @@ class Axis {
   }
   double length() const { return pixels_; }
 
-  // Gnuplot's range and ticks. That of `floor`, if it is not 0, says that less is drawn there, too.
+  // Returns gnuplot's range and ticks. If `floor` is not 0, its tick says that smaller values are
+  // drawn there, too.
   std::string commands(char name, double floor) const {
     if (!log_) {
       return fmt::format(
@@ -90,7 +93,7 @@ class Axis {
   }
 
  private:
-  static constexpr double kDecades = 2.5;  // fewer need ticks at 2 and 5, too
+  static constexpr double kDecades = 2.5;  // fewer decades need ticks at 2 and 5, too
 
   double value(double v) const { return log_ ? std::log10(v) : v; }
 
@@ -110,8 +113,8 @@ struct Box {
   }
 };
 
-// Places labels one by one, each in the place beside its point that is free and nearest to it, or
-// the best of those that are not.
+// Places labels one by one. Each gets the free position beside its point that is nearest to it, or
+// else the best of those that are not free.
 class Labels {
  public:
   Labels(const Panel& panel, const Axis& x, const Axis& y) : x_(x), y_(y) {
@@ -130,7 +133,7 @@ class Labels {
       }
   }
 
-  // Those of one kind: of points that are important, or of the others.
+  // Places the labels of important points, or those of the others.
   std::string place_all(const Panel& panel, bool important) {
     std::vector<std::pair<Spot, std::string>> labels;
     for (const Series& s : panel.series)
@@ -146,15 +149,15 @@ class Labels {
     double x, y;
     double distance(const Spot& o) const { return std::hypot(x - o.x, y - o.y); }
   };
-  static constexpr double kAstray = 60;  // square pixels that a label to be misread is worth
+  static constexpr double kAstray = 60;  // penalty in square pixels for a label that may be misread
 
-  // Points close by that have the same label share it, as different ones of one place do.
+  // Close points with the same label share it; different labels at one point are joined.
   static void add(Spot at, const std::string& label,
                   std::vector<std::pair<Spot, std::string>>& labels) {
     for (auto& [other, text] : labels) {
       if (text == label && other.distance(at) < kLine) return;
       if (other.distance(at) >= kPoint) continue;
-      const std::size_t word = label.rfind(' ') + 1;  // "slip 0.1, 0.5"
+      const std::size_t word = label.rfind(' ') + 1;  // the setting's name, as in "slip 0.1, 0.5"
       text += ", " + (text.starts_with(label.substr(0, word)) ? label.substr(word) : label);
       return;
     }
@@ -195,7 +198,7 @@ class Labels {
     taken_.push_back({at.x - radius, at.y - radius, at.x + radius, at.y + radius});
   }
 
-  // Square pixels of other labels and points, and of what is outside.
+  // Returns the covered square pixels of other labels and points, and of the area outside.
   double cover(const Box& box) const {
     double sum = 0;
     for (const Box& other : taken_) sum += box.shared(other);
@@ -203,7 +206,8 @@ class Labels {
     return sum + 4 * ((box.x1 - box.x0) * (box.y1 - box.y0) - box.shared(inside));
   }
 
-  // How many points it is nearer to than to its own: whose it would be taken for.
+  // Returns the number of points to which the label is nearer than to its own, so that it could be
+  // misread.
   double nearer_to_others(const Box& box, Spot own) const {
     const double distance = box.distance(own.x, own.y);
     return double(std::count_if(points_.begin(), points_.end(), [&](const Spot& p) {
@@ -216,8 +220,9 @@ class Labels {
   std::vector<Spot> points_;
 };
 
-// A line through a single point is none: where no panel has a longer one, its name in the key would
-// stand for nothing. The key is the first panel's, which therefore keeps what another one draws.
+// A line through a single point is not drawn. If no panel has a longer line, its name in the key
+// would have no meaning. The key is that of the first panel, which therefore keeps what another
+// panel draws.
 bool drawn_somewhere(const Plot& plot, const std::string& name) {
   return std::any_of(plot.panels.begin(), plot.panels.end(), [&](const Panel& panel) {
     return std::any_of(panel.series.begin(), panel.series.end(), [&](const Series& s) {
@@ -232,7 +237,7 @@ std::string style_of(const Series& s, bool important) {
                      important ? 0.7 : 0.6);
 }
 
-// The axes' box, in pixels from the picture's lower left corner.
+// Sets the box of the axes, in pixels from the lower left corner of the picture.
 std::string margins(const Box& axes, double width, double height) {
   return fmt::format(
       "set lmargin at screen {:.6f}\nset rmargin at screen {:.6f}\n"
@@ -240,7 +245,7 @@ std::string margins(const Box& axes, double width, double height) {
       axes.x0 / width, axes.x1 / width, axes.y0 / height, axes.y1 / height);
 }
 
-// With its distance from the point, pixels.
+// Returns the length of the longest label and its distance from the point, in pixels.
 double longest_label(const Panel& panel) {
   std::size_t letters = 0;
   for (const Series& s : panel.series)
@@ -287,7 +292,7 @@ std::string panel_script(const Plot& plot, int index, const Box& axes) {
   return data + text + commands + "\n";
 }
 
-// One for all panels, whose series have the same names.
+// Returns the key for all panels, whose series have the same names.
 std::string key_command(const Plot& plot, double height) {
   if (!plot.key) return "unset key\n";
   return fmt::format("set key at screen 0.5,{:.6f} center center vertical maxrows 2\n",

@@ -1,4 +1,4 @@
-// Plots by gnuplot, as SVG.
+// Draws plots with gnuplot, as SVG.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +8,11 @@
 
 namespace atlas::bench {
 
-// The gnuplot script of one plot, which writes `target`. Labels lie beside their points, where they
-// cover no other point or label if there is such a place.
+// Returns the gnuplot script of one plot, which writes `target`. Labels lie beside their points, in
+// a position that covers no other point or label if there is one.
 std::string gnuplot_script(const Plot& plot, const std::filesystem::path& target);
 
-// Errors: io when gnuplot is missing or fails.
+// Errors: io if gnuplot is missing or fails.
 Status draw(const Plot& plot, const std::filesystem::path& folder);
 
 }  // namespace atlas::bench

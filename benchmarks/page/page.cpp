@@ -84,7 +84,7 @@ class Pictures {
     }
   }
 
-  // A picture that another program drew into the folder, if it did.
+  // Shows a picture that another program drew into the folder, if it exists.
   void show_drawn(const std::string& file, const std::string& title, Document& page) const {
     if (std::filesystem::exists(folder_ / file)) page.image(file, title);
   }
@@ -147,7 +147,7 @@ void stability(const PageInput& input, const Results& all, const Pictures& pictu
                         c.holds() ? "holds" : "EXCEEDED"});
     page.table({"stress", "quantity", "value", "bound", "reference or limit", "JSON", ""}, rows);
     pictures.show("stability_" + group + ".svg", page);
-    bool measured = false;  // rows of a stage of the group's name go into its section
+    bool measured = false;  // rows of the stage that has the group's name belong to its section
     for (const Row& row : all.rows) measured |= row.stage == group;
     if (measured) stage_table(all, group, page);
   }
@@ -168,7 +168,7 @@ Status write_page(const PageInput& input, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder / "plots", error);
   if (error) return {ErrorCode::io, folder.string() + ": " + error.message()};
   const Results all = joined(input);
-  Results speed = all;  // rows of the stability page's sections are not repeated
+  Results speed = all;  // rows that the stability page shows are not repeated
   std::erase_if(speed.rows, [&](const Row& row) {
     return std::any_of(all.checks.begin(), all.checks.end(),
                        [&](const Check& c) { return c.group == row.stage; });

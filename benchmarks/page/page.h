@@ -8,13 +8,14 @@
 
 namespace atlas::bench {
 
-// All rows, fits and checks together; machines are listed one a file, each with its command.
+// The rows, fits and checks of all files are combined. Machines are listed per file, each with its
+// command.
 struct PageInput {
   std::vector<Results> files;
 };
 
 // Writes index.html, stability.html, performance.md, stability.md and the plots (SVG) into
-// `folder`, which is created. A plot that cannot be drawn is left out, with its reason on the page.
+// `folder`, which is created. If a plot cannot be drawn, the page states the reason instead.
 // Errors: io.
 Status write_page(const PageInput& input, const std::filesystem::path& folder);
 

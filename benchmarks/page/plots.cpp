@@ -19,21 +19,21 @@ std::string kind_of(const Row& row) {
 }
 
 bool usable(const Row& row) {
-  constexpr double kClock = 1e-5;  // CPU seconds: less is a few ticks of the clock
+  constexpr double kClock = 1e-5;  // CPU seconds; less than a few ticks of the clock is unreliable
   return row.failure.empty() && !row.values.empty() && row.cpu_seconds >= kClock &&
          row.threads == 0;
 }
 
 constexpr double kUnseenOfPrograms = 1e-5;
 
-// What a caption adds where there are any.
+// Returns the addition to a caption if values lie below the floor.
 std::string unseen(const Plot& plot) {
   double floor = 0;
   for (const Panel& panel : plot.panels) floor = std::max(floor, panel.floor);
   return floor > 0 ? fmt::format("; errors below {} are drawn at it", floor) : "";
 }
 
-// "scan:100000" as "scan 100 k".
+// Shortens "scan:100000" to "scan 100 k".
 std::string short_name(const std::string& mesh) {
   const auto colon = mesh.find(':');
   std::uint64_t size = 0;
@@ -47,7 +47,7 @@ std::string short_name(const std::string& mesh) {
                                 : "");
 }
 
-// Largest over smallest value of a coordinate.
+// Returns the ratio of the largest to the smallest value of a coordinate.
 double spread(const std::vector<Series>& all, double PlotPoint::*coordinate) {
   double low = 1e300, high = 0;
   for (const Series& s : all)
@@ -58,7 +58,7 @@ double spread(const std::vector<Series>& all, double PlotPoint::*coordinate) {
   return high / low;
 }
 
-// What a row's first value is called on an axis.
+// Returns the name on an axis for a row's first value.
 std::string axis_name(const std::string& value) {
   static const std::map<std::string, std::string> names = {
       {"empty", "empty share of the pages"}, {"imbalance", "largest group over the mean, less 1"},
@@ -69,7 +69,7 @@ std::string axis_name(const std::string& value) {
   return name == names.end() ? value : name->second;
 }
 
-// "linear, k = 4" is one of the settings "linear".
+// Returns the group of a setting: that of "linear, k = 4" is "linear".
 std::string group_of(const std::string& setting) {
   const auto comma = setting.rfind(", ");
   return comma == std::string::npos ? "" : setting.substr(0, comma);
@@ -79,7 +79,7 @@ PlotPoint point_of(const Row& row) {
   return {row.cpu_seconds, row.values.front().second, row.setting, row.preset};
 }
 
-// Settings of one group are joined, in their order; the key tells what is common to them.
+// Joins the settings of one group in their order. The key shows their common name.
 std::vector<Series> grouped(const std::vector<const Row*>& rows) {
   std::map<std::string, int> sizes, colours;
   for (const Row* row : rows) ++sizes[group_of(row->setting)];
@@ -129,9 +129,10 @@ Panel settings_panel(const std::string& mesh, const std::vector<const Row*>& row
   return panel;
 }
 
-using Meshes = std::vector<std::pair<std::string, std::vector<const Row*>>>;  // in their order
+// In the order of the rows.
+using Meshes = std::vector<std::pair<std::string, std::vector<const Row*>>>;
 
-// All meshes in one panel, a colour a program; the title counts what has no result.
+// Draws all meshes in one panel with a colour per program. The title counts missing results.
 Plot programs_plot(const Meshes& meshes) {
   Plot plot;
   plot.title = "Programs: error against time";
@@ -186,7 +187,8 @@ Plot settings_plot(const std::string& stage, const Meshes& meshes) {
   return plot;
 }
 
-// One plot a stage that was run with several settings, a panel a mesh; one of the programs.
+// Makes one plot for every stage that was run with several settings, with a panel per mesh, and one
+// plot of the programs.
 void error_plots(const Results& results, std::vector<Plot>& plots) {
   std::map<std::string, Meshes> stages;
   for (const Row& row : results.rows) {
@@ -209,7 +211,8 @@ void error_plots(const Results& results, std::vector<Plot>& plots) {
   }
 }
 
-// The file with most sizes of one kind of work: rows of others were measured with other budgets.
+// Returns the file with the most sizes of one kind of work. Rows of other files were measured with
+// other budgets.
 std::string file_of_sizes(const Results& results) {
   std::map<std::string, std::set<std::uint64_t>> sizes;
   for (const Row& row : results.rows)
@@ -246,7 +249,7 @@ void size_plot(const Results& results, bool time, std::vector<Plot>& plots) {
   plot.y_axis = time ? "CPU seconds" : "MiB";
   plot.key = true;
   Panel panel;
-  std::map<std::string, int> colours;  // one a stage; kinds of work are told apart by dashes
+  std::map<std::string, int> colours;  // one per stage; dashes distinguish kinds of work
   std::map<std::string, int> dashes;
   for (auto& [name, points] : series) {
     if (points.size() < 2) continue;
@@ -262,7 +265,7 @@ void size_plot(const Results& results, bool time, std::vector<Plot>& plots) {
   plots.push_back(std::move(plot));
 }
 
-// Distances are from the shadow's edge.
+// Distances are measured from the shadow edge.
 void leak_plot(const Results& results, std::vector<Plot>& plots) {
   const std::pair<const char*, const char*> figures[] = {{"p95", "within 2 texels, 95 %"},
                                                          {"fixed_p95", "within 10 mm, 95 %"},

@@ -1,4 +1,4 @@
-// What the page draws: a stage's error against CPU time, cost against size.
+// The plots of the page: a stage's error against CPU time, cost against size.
 #pragma once
 
 #include <string>
@@ -15,11 +15,11 @@ struct PlotPoint {
 };
 
 struct Series {
-  std::string name;  // in the key; empty: not there
+  std::string name;  // name in the key; empty: not in it
   std::vector<PlotPoint> points;
-  bool lines = false;  // joined in the order given
+  bool lines = false;  // joined in the given order
   bool points_too = true;
-  int colour = 1;  // 1 and on
+  int colour = 1;  // from 1
   int dash = 1;    // gnuplot's dash type; 1 is solid
 };
 
@@ -31,19 +31,19 @@ struct Panel {
   double floor = 0;  // smaller values of y are drawn at it; 0: there are none
 };
 
-// Errors below `floor`, which a logarithmic axis has no place for, are moved there.
+// Moves errors below `floor` to it, because a logarithmic axis cannot show them.
 constexpr double kUnseen = 1e-6;
 void draw_at_floor(Panel& panel, double floor);
 
 struct Plot {
   std::string file;  // name without folder, .svg
   std::string title, x_axis, y_axis;
-  std::vector<Panel> panels;  // side by side, three in a row at most
-  bool key = false;           // names the series, below
+  std::vector<Panel> panels;  // side by side, at most three in a row
+  bool key = false;           // whether a key below names the series
 };
 
-// All plots that these results give: a stage's error against CPU time with a panel a mesh, the
-// same of the rivals, time and memory against size, the light leak.
+// Returns all plots that these results allow: a stage's error against CPU time with a panel per
+// mesh, the same for the rivals, time and memory against size, and the light leak.
 std::vector<Plot> make_plots(const Results& results);
 
 }  // namespace atlas::bench

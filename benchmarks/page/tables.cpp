@@ -9,7 +9,8 @@
 namespace atlas::bench {
 namespace {
 
-// Rows that were measured as everybody would: no thread series, no counted instructions.
+// Returns whether a row was measured normally, that is not in a thread series and without counted
+// instructions.
 bool ordinary(const Row& row) {
   return row.threads == 0 && row.instructions == 0;
 }
@@ -23,7 +24,8 @@ const Row* find_row(const Results& all, const std::string& stage, const std::str
   return nullptr;
 }
 
-// Values that are CPU seconds of a row's parts, not qualities: they have a table of their own.
+// Returns whether a value is the CPU seconds of a part instead of a quality. Parts have their own
+// table.
 bool is_part(const std::string& name) {
   return name.size() > 4 && name.compare(name.size() - 4, 4, "_cpu") == 0;
 }
@@ -50,7 +52,8 @@ const Fit* find_fit(const Results& all, const std::string& stage, const std::str
   return nullptr;
 }
 
-// The two largest cabins that were exported with standard settings; null where there are not two.
+// Returns the two largest cabins that were exported with standard settings, or null if there are
+// fewer than two.
 std::pair<const Row*, const Row*> largest_exports(const Results& all) {
   std::vector<const Row*> found;
   for (const Row& row : all.rows)
@@ -83,7 +86,7 @@ void goals_table(const Results& all, Document& page) {
                     fmt::format("{:.3f}", fit->exponent), fmt::format("{}", bound),
                     verdict(fit->exponent <= bound)});
   }
-  // The fit hides what comes last: pages of a fixed size cost the same for small meshes.
+  // The fit hides the last increase, because pages of a fixed size cost the same for small meshes.
   const auto [smaller, larger] = largest_exports(all);
   if (larger && smaller->cpu_seconds > 0) {
     const double size = std::log(double(larger->triangles) / double(smaller->triangles));
@@ -153,7 +156,7 @@ namespace {
 struct Part {
   const char *name, *what;
 };
-// Of make_charts, as Row::values names them: what each does, and why it cannot be for nothing.
+// The parts of make_charts, as Row::values names them, with what each does and why it takes time.
 constexpr Part kParts[] = {
     {"topology_cpu", "welding, edge links and pieces: every triangle once, by counting sorts"},
     {"noise_cpu", "normals without scan noise"},
@@ -172,7 +175,7 @@ constexpr Part kParts[] = {
     {"absorb_cpu", "fragments joined again: each is tried with its neighbours"},
     {"limbs_cpu", "limbs cut"}};
 
-// "merging 40 %, isometric descent 22 %": what takes most of a charts row.
+// Returns the parts that take most of a charts row, as "merging 40 %, isometric descent 22 %".
 std::string dearest_parts(const Row& row) {
   std::vector<std::pair<double, const Part*>> order;
   for (const Part& part : kParts) order.emplace_back(row.value(part.name), &part);
