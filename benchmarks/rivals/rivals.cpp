@@ -45,7 +45,7 @@ std::string filled_in(std::string command, const std::string& key, const fs::pat
   return command;
 }
 
-// ": " and the last line of a program's complaints, if it made any.
+// Returns ": " and the last line of a program's error output, or "" if there is none.
 std::string last_line(const fs::path& path) {
   std::ifstream file(path);
   std::string last;
@@ -64,7 +64,8 @@ struct PageSize {
   int width, height;
 };
 
-// What the file says in a comment "# page WIDTH HEIGHT" before its first face; else a square.
+// Returns the size in a comment "# page WIDTH HEIGHT" before the first face of the file, or else a
+// square.
 PageSize page_of(const fs::path& path, int side) {
   std::ifstream file(path);
   for (std::string text; std::getline(file, text) && !text.starts_with("f ");) {
@@ -76,7 +77,7 @@ PageSize page_of(const fs::path& path, int side) {
   return {side, side};
 }
 
-// The row's error is L2 - 1; seams, which trade against it, stand beside it.
+// Measures the output. The row's error is L2 - 1; the seams, which trade against it, are added.
 void judge(const fs::path& path, PageSize page, Row& row) {
   const Result<test::UvMesh> mesh = test::read_uv_obj(path);
   if (!mesh.ok()) {
@@ -125,7 +126,7 @@ void bench_rival(const StageRun& run, const Rival& rival) {
   const int exit_code = WIFEXITED(code) ? WEXITSTATUS(code) : -1;
   if (exit_code == 124 || exit_code == 137)
     row.failure = fmt::format("timed out after {} s", rival.timeout);
-  else if (exit_code > 128)  // how a shell tells of a signal
+  else if (exit_code > 128)  // how a shell reports a signal
     row.failure = fmt::format("crashed by signal {}{}", exit_code - 128, last_line(complaints));
   else if (exit_code != 0)
     row.failure = fmt::format("ended with code {}{}", exit_code, last_line(complaints));

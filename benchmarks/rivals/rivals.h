@@ -1,5 +1,5 @@
-// Other programs beside ours: an OBJ in, an OBJ with UVs out, all judged by the project's
-// evaluator.
+// Compares libatlas with other programs: each turns an OBJ into an OBJ with uvs, which the
+// project's evaluator measures.
 #pragma once
 
 #include <string>
@@ -8,21 +8,22 @@
 
 namespace atlas::bench {
 
-// command holds {in} and {out}, paths of the OBJ files; it is run by `sh -c`.
+// `command` contains {in} and {out}, which stand for the paths of the OBJ files. It is run by `sh
+// -c`.
 struct Rival {
   std::string name, command;
   double timeout = 60;  // wall seconds
-  int page = 2048;  // side of its pages, texels, where its OBJ does not say "# page WIDTH HEIGHT"
+  int page = 2048;      // side of its pages in texels, if its OBJ has no "# page WIDTH HEIGHT"
 };
 
-// "name=command {in} {out}". Errors: bad_option.
+// Parses "name=command {in} {out}". Errors: bad_option.
 Result<Rival> parse_rival(const std::string& text);
 
-// One row of stage "unwrap"; CPU seconds are those of the child processes. Beyond the timeout the
-// row says so and has no figures.
+// Measures one row of stage "unwrap". CPU seconds are those of the child processes. Beyond the
+// timeout, the row states that and has no figures.
 void bench_rival(const StageRun& run, const Rival& rival);
 
-// libatlas itself under the same conditions: reading, charts, packing and writing an OBJ.
+// Measures libatlas under the same conditions: reading, charts, packing and writing an OBJ.
 void bench_ours(const StageRun& run, int page);
 
 }  // namespace atlas::bench

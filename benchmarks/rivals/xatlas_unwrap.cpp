@@ -1,7 +1,7 @@
 // Unwraps an OBJ (v and triangular f lines) with native xatlas, default options:
 //   c++ -O2 -std=c++17 -I XATLAS/source/xatlas xatlas_unwrap.cpp XATLAS/source/xatlas/xatlas.cpp
 //   xatlas_unwrap IN.obj OUT.obj [PAGE] [PADDING]
-// Not part of the build: XATLAS is a clone of github.com/jpcy/xatlas made by whoever compares.
+// Not part of the build: whoever compares makes XATLAS, a clone of github.com/jpcy/xatlas.
 #include <cctype>
 #include <cstdio>
 #include <cstdlib>
@@ -48,8 +48,8 @@ bool write(const char* path, const Mesh& in, const xatlas::Atlas& atlas) {
   for (unsigned i = 0; i < out.vertexCount; ++i)
     std::fprintf(file, "vt %.9g %.9g\n", out.vertexArray[i].uv[0] / float(atlas.width),
                  out.vertexArray[i].uv[1] / float(atlas.height));
-  // One material a page, so that charts on different pages are not taken for overlaps. Triangles
-  // that xatlas gave no chart (page -1) are written without texture coordinates.
+  // Each page has its own material, so that charts on different pages are not counted as overlaps.
+  // Triangles without a chart (page -1) are written without texture coordinates.
   int page = -2;
   for (unsigned i = 0; i < out.indexCount; i += 3) {
     const xatlas::Vertex* corner[3];
@@ -81,13 +81,13 @@ int main(int argc, char** argv) {
   decl.indexData = mesh.indices.data();
   decl.indexCount = unsigned(mesh.indices.size());
   decl.indexFormat = xatlas::IndexFormat::UInt32;
-  // Of all threads, and welding and adjacency count, as they do in this library's figures.
+  // The time is that of all threads. Welding and adjacency count, as in this library's figures.
   const std::clock_t begun = std::clock();
   if (xatlas::AddMesh(atlas, decl) != xatlas::AddMeshError::Success) return 3;
   xatlas::AddMeshJoin(atlas);
   xatlas::ComputeCharts(atlas, xatlas::ChartOptions());
   const double charts = double(std::clock() - begun) / CLOCKS_PER_SEC;
-  xatlas::PackOptions pack;  // one page: the density follows from its resolution
+  xatlas::PackOptions pack;  // one page, whose resolution determines the density
   pack.resolution = argc > 3 ? unsigned(std::atoi(argv[3])) : 2048;
   pack.padding = argc > 4 ? unsigned(std::atoi(argv[4])) : 2;
   xatlas::PackCharts(atlas, pack);
