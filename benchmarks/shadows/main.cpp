@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
     options.intervals = {4, 8};
     options.frames = 4;
   }
-  // Of docs/player.md: the seats that the sun shines on, and shadows move over.
+  // The view of docs/player.md: seats in the sun, over which shadows move.
   if (work.starts_with("cabin:")) options.look = {{4.6, -0.5, 1.75}, {2.6, 0.9, 0.5}};
   options.software = !gpu;
   const auto fail = [](const Status& status) {

@@ -71,7 +71,7 @@ Result<std::vector<Row>> measure_shadows(const Scene& scene, const std::string& 
   const Result<std::vector<BenchError>> errors = bench_errors(*renderer, *path, bench);
   if (!errors.ok()) return errors.status();
   std::vector<Row> rows;
-  bool classic = false;  // the same for every interval
+  bool classic = false;  // equal for every interval
   for (const BenchError& error : *errors) {
     if (error.method == ShadowMethod::classic && std::exchange(classic, true)) continue;
     rows.push_back(row_of(error, name, view->triangle_count()));
