@@ -1,4 +1,4 @@
-// Every stage under stress, each figure with the bound that the tests enforce. References are
+// Checks every stage under stress. Each figure has a bound that the tests enforce. References are
 // closed forms, exact integers or the same computation without the stress.
 #pragma once
 
@@ -13,13 +13,13 @@
 namespace atlas::bench {
 
 struct StabilityOptions {
-  bool full = false;  // the large cases too (10^5 fans, 10^6 items); the tests take the small ones
+  bool full = false;  // also large cases (10^5 fans, 10^6 items); the tests run the small ones
   std::vector<std::filesystem::path> models;  // meshes for scale, offset and rotation, if any
 };
 
 class CheckList;
 
-// One stress of a group: what is measured under it.
+// One stress of a group, to which measured figures are added.
 class StressChecks {
  public:
   StressChecks(CheckList& list, std::string group, std::string stress)
@@ -32,7 +32,7 @@ class StressChecks {
   std::string group_, stress_;
 };
 
-// Every function below adds to one.
+// The list of checks that every function below extends.
 class CheckList {
  public:
   CheckList(const StabilityOptions& o, const Context& c) : options(o), context(c) {}
@@ -45,10 +45,10 @@ class CheckList {
   std::vector<Row> rows;  // figures without a bound, of the stage with the group's name
 };
 
-// All groups below.
+// Runs all groups below.
 void all_checks(CheckList& list);
 
-void check_degradation(CheckList& list);      // from which stress on methods degrade
+void check_degradation(CheckList& list);      // the stress from which methods degrade
 void check_scale_and_place(CheckList& list);  // units, offsets, rotations
 void check_bad_triangles(CheckList& list);    // needles, fans, coincident vertices
 void check_cones(CheckList& list);            // cone limits, 1/cos, cosines at the limit

@@ -53,7 +53,7 @@ void check_cap(CheckList& list, double degrees) {
   ParamOptions options;
   options.method = ParamMethod::isometric;
   options.iterations = 20;
-  options.max_stretch = 1.0001;  // out of reach, so that every step is spent
+  options.max_stretch = 1.0001;  // cannot be reached, so that every step is used
   options.squeeze_iterations = 60;
   options.squeeze_ratio = true;
   ParamWorkspace workspace;
@@ -72,8 +72,8 @@ void check_cap(CheckList& list, double degrees) {
   at.add("not injective", result.injective ? 0 : 1, 0);
 }
 
-// Projection along an axis: every triangle has s1 = 1 / cos of its normal's angle and s2 = 1, so
-// that the set stays within the bound that planar_stretch_bound() tells beforehand.
+// Projects along an axis. Every triangle has s1 = 1 / cos of its normal's angle and s2 = 1, so the
+// set stays within the bound that planar_stretch_bound() gives beforehand.
 void check_projection(CheckList& list, double degrees) {
   const Disc cap(
       test::noisy(test::cap(40, 10, degrees * std::numbers::pi / 180), 3e-5 * degrees, 5));
@@ -91,7 +91,7 @@ void check_projection(CheckList& list, double degrees) {
       over = std::max(over, t.s1 / bound - 1);
       off = std::max(off, std::abs(double(t.s2) - 1));
     }
-    // At the area-preserving scale the bound stands as well.
+    // The bound also holds at the area-preserving scale.
     over = std::max(over, measure_distortion(cap.mesh(), uvs).stretch_linf / bound - 1);
   }
   const std::string stress = fmt::format("noisy cap of {} degrees, projected", degrees);

@@ -1,5 +1,5 @@
-// The parameterisation's linear systems on stiff discs: condition numbers, what the solvers leave,
-// flips before and after the fallbacks, and what these cost.
+// The parameterisation's linear systems on ill-conditioned discs: condition numbers, errors of the
+// solvers, flips before and after the fallbacks, and the cost of these.
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
@@ -19,21 +19,21 @@
 namespace atlas::bench {
 namespace {
 
-constexpr double kSteepest = 1.0;  // of spikes that are drawn flat without a flip
+constexpr double kSteepest = 1.0;  // steepest spike that is flattened without a flip
 using param::SymmetricMatrix;
 using Vector = std::vector<glm::dvec2>;
 
 // A disc in polar coordinates: a vertex in the middle, then rings from the inside out.
 struct PolarDisc {
   std::string name;
-  double spike = 0;  // its height, of discs with one
+  double spike = 0;  // height of the spike, if the disc has one
   std::vector<Vec3d> positions;
-  std::vector<Vec2d> polar;  // (r cos a, r sin a) with r along the surface: a first layout
+  std::vector<Vec2d> polar;  // first layout: (r cos a, r sin a) with r along the surface
   std::vector<std::array<std::uint32_t, 3>> triangles;
   LocalMesh mesh() const { return {positions, triangles}; }
 };
 
-template <class Profile>  // r in (0, 1] -> (distance from the axis, height)
+template <class Profile>  // maps r in (0, 1] to (distance from the axis, height)
 PolarDisc polar_disc(std::string name, const std::vector<double>& radii, int around,
                      const Profile& profile) {
   PolarDisc disc;
@@ -60,7 +60,7 @@ PolarDisc polar_disc(std::string name, const std::vector<double>& radii, int aro
   return disc;
 }
 
-// A geodesic cap whose rings come in pairs: the triangles between the two of a pair have the
+// A geodesic cap with pairs of rings. The triangles between the two rings of a pair have the given
 // aspect.
 PolarDisc sliver_cap(double aspect, int rings, int around) {
   std::vector<double> radii;
@@ -74,7 +74,7 @@ PolarDisc sliver_cap(double aspect, int rings, int around) {
   });
 }
 
-// A plane with a Gaussian spike of the height, a tenth as wide as the disc.
+// A plane with a Gaussian spike of the given height, a tenth as wide as the disc.
 PolarDisc spike(double height, int rings, int around) {
   std::vector<double> radii;
   for (int i = 1; i <= 2 * rings; ++i) radii.push_back(i / (2.0 * rings));
@@ -86,7 +86,7 @@ PolarDisc spike(double height, int rings, int around) {
   return disc;
 }
 
-// A sphere but for a hole of the angle around the pole.
+// A sphere with a hole of the given angle around the pole.
 PolarDisc opened_ball(double hole_degrees, int rings, int around) {
   std::vector<double> radii;
   for (int i = 1; i <= 2 * rings; ++i) radii.push_back(i / (2.0 * rings));
@@ -105,7 +105,7 @@ void multiply(const SymmetricMatrix& k, const Vector& x, Vector& out) {
   }
 }
 
-// Takes the mean out, scales to length one and returns the length before.
+// Subtracts the mean, scales to length one and returns the length before.
 double normalise(Vector& x) {
   glm::dvec2 mean(0);
   for (const glm::dvec2& v : x) mean += v / double(x.size());
@@ -119,8 +119,8 @@ double normalise(Vector& x) {
   return length;
 }
 
-// Largest over smallest eigenvalue on what is not the kernel (the constants): power iteration with
-// the matrix, and with its inverse by Cholesky factors.
+// Returns the ratio of the largest to the smallest eigenvalue outside the kernel (the constants),
+// by power iteration with the matrix and with its inverse (Cholesky factors).
 double condition(const SymmetricMatrix& k) {
   param::EnvelopeSolver solver;
   solver.factorize(k);
@@ -141,7 +141,7 @@ double condition(const SymmetricMatrix& k) {
   return largest * inverse;
 }
 
-// Backward error: |K x - b| over |K| |x| + |b|, maximum norms.
+// Returns the backward error |K x - b| / (|K| |x| + |b|), in maximum norms.
 double backward_error(const SymmetricMatrix& k, const Vector& x, const Vector& b) {
   double norm = 0, most_x = 0, most_b = 0, worst = 0;
   for (std::size_t i = 0; i < k.rows(); ++i) {
@@ -161,8 +161,8 @@ double backward_error(const SymmetricMatrix& k, const Vector& x, const Vector& b
   return worst / (norm * most_x + most_b);
 }
 
-// Largest difference from the solution in long double (dense factors, the first vertex held), in
-// parts of its extent.
+// Returns the largest difference from the solution in long double (dense factors, the first vertex
+// fixed), relative to the extent of the solution.
 double forward_error(const SymmetricMatrix& k, const Vector& x, const Vector& b) {
   using Real = long double;
   const auto n = Eigen::Index(k.rows()) - 1;
@@ -246,8 +246,9 @@ void check_solvers(CheckList& list, const PolarDisc& disc, Row& row) {
          "against a dense solve in long double");
 }
 
-// Four plain local/global steps against parameterize(), which adds the fallbacks: unfolding anew,
-// the barrier step, reweighting towards the bound, drawing borders apart, the exact check.
+// Compares four plain local/global steps with parameterize(), which adds the fallbacks: unfolding
+// again, the barrier step, reweighting towards the bound, overlap removal at borders, and the exact
+// check.
 void check_fallbacks(CheckList& list, const PolarDisc& disc, Row& row) {
   ParamWorkspace workspace;
   const LocalMesh mesh = disc.mesh();
@@ -275,7 +276,7 @@ void check_fallbacks(CheckList& list, const PolarDisc& disc, Row& row) {
                                        {"injective", double(full.injective)},
                                        {"cost_times", cost}});
   const StressChecks at = list.at("conditioning", disc.name);
-  // A spike beyond kSteepest cannot be drawn flat in one piece: make_charts cuts it.
+  // A spike above kSteepest cannot be flattened in one piece; make_charts cuts it.
   if (disc.spike <= kSteepest)
     at.add("flips with the fallbacks", double(full.distortion.flips), 0,
            fmt::format("{} without them", plain.flips));
@@ -283,7 +284,7 @@ void check_fallbacks(CheckList& list, const PolarDisc& disc, Row& row) {
          0, "exact predicates");
 }
 
-// What parameterize() reports as impossible in one piece, make_charts has to cut.
+// If parameterize() reports that one piece is impossible, make_charts has to cut.
 void check_cutting(CheckList& list, const PolarDisc& disc) {
   test::Shape shape;
   for (const Vec3d& p : disc.positions)
@@ -298,7 +299,7 @@ void check_cutting(CheckList& list, const PolarDisc& disc) {
                     : set.status().message());
 }
 
-// From which height on a spike flips triangles, by rows measured before.
+// Finds the heights from which a spike flips triangles, in rows that were measured before.
 void find_onsets(CheckList& list, const std::vector<PolarDisc>& discs) {
   double without = INFINITY, with = INFINITY;
   for (std::size_t i = 0; i < discs.size(); ++i) {

@@ -1,6 +1,7 @@
-// Where a method does degrade: the stress at which it starts, measured, against the one that
-// docs/stability.md names. Every row is documented onset / measured onset (or the inverse, where
-// small values are the stress) and must not exceed one: nothing may start earlier than told.
+// Where a method degrades: compares the measured stress at which that starts with the one that
+// docs/stability.md states. Every row is documented onset / measured onset (or the inverse, where
+// small values are the stress) and must not exceed one, so nothing may start earlier than
+// documented.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +21,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr const char* kGroup = "where methods degrade";
 
-// `documented` and `measured` are the stress from which on the quantity leaves its tolerance.
+// `documented` and `measured` are the stress from which the quantity leaves its tolerance.
 void onset(const StressChecks& at, const std::string& what, double documented, double measured) {
   at.add(what, documented / measured, 1,
          std::isinf(measured)
@@ -42,7 +43,7 @@ void check_unit(CheckList& list, const test::Shape& shape, const ChartSet& refer
            "coordinates round anew, so near ties fall otherwise; powers of two change nothing");
 }
 
-// The smallest power of ten at which an OBJ in doubles, moved that far, gives other charts.
+// Finds the smallest power of ten at which an OBJ in doubles, moved that far, gives other charts.
 void check_offset(CheckList& list, const test::Shape& shape, const ChartSet& reference) {
   double from = kInfinity;
   bool lost = false;
@@ -64,7 +65,7 @@ void check_offset(CheckList& list, const test::Shape& shape, const ChartSet& ref
 
 void check_drago(CheckList& list) {
   double from = kInfinity;
-  for (double ratio = 10; ratio < 1e12; ratio *= 1.5) {  // white over the log-average
+  for (double ratio = 10; ratio < 1e12; ratio *= 1.5) {  // white relative to the log-average
     LuminanceStatistics statistics;
     statistics.lit_area = statistics.log_average = statistics.mean = 1;
     statistics.maximum = statistics.percentile99 = ratio;
@@ -109,7 +110,7 @@ void check_half(CheckList& list) {
         1 / 6.2e-5, low > 0 ? 1 / low : kInfinity);
 }
 
-// Raw SLERP weights against their formula in long double.
+// Compares raw SLERP weights with their formula in long double.
 void check_slerp(CheckList& list) {
   double small = kInfinity, large = kInfinity;
   for (double angle = 1e-9; angle < std::numbers::pi; angle *= 1.05) {

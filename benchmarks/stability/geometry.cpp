@@ -1,4 +1,5 @@
-// Charts under changes of unit, place and direction, and on triangles that hardly are any.
+// Charts under changes of unit, position and orientation, and on degenerate or nearly degenerate
+// triangles.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,13 +17,13 @@ using test::Shape;
 
 constexpr double kNever = std::numeric_limits<double>::quiet_NaN();  // fails every bound
 
-// Relative; 0 where both are 0, as the seams of a single flat chart are.
+// Returns the relative growth. It is 0 if both are 0, as for the seams of a single flat chart.
 double growth(double value, double reference) {
   return value == reference ? 0 : value / reference - 1;
 }
 
 void check_scales(CheckList& list, const Shape& shape, const ChartSet& reference) {
-  // A power of two only shifts exponents: everything has to be the same, bit for bit.
+  // A power of two only changes exponents, so every bit of the result has to be the same.
   for (const int exponent : {-40, -20, 20, 40}) {
     const double scale = std::ldexp(1, exponent);
     const Result<ChartSet> set = charts_of(test::moved(shape, scale), {}, list.context);
@@ -153,7 +154,7 @@ void check_cones(CheckList& list) {
            fmt::format("{} charts were projected; see closed forms, too", projected));
     at.add("triangles lost or flipped", set.ok() ? broken(*set) : kNever, 0);
   }
-  // Two planes whose normals lie exactly at the limit, and one ulp of the cosine to either side.
+  // Two planes whose normals lie exactly at the limit, or one ulp of the cosine to either side.
   for (const int ulps : {-1, 0, 1}) {
     ChartOptions options;
     options.cone_degrees = 45;

@@ -33,8 +33,8 @@ bool is_finite(Vec3f v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// Display values must stay within [0, 1] whatever comes, and rise with the luminance up to far
-// beyond what the curve was made for. Where they first fall is told.
+// Display values must stay within [0, 1] for all input, and rise with the luminance until far
+// beyond the range that the curve was made for. The check states where they first fall.
 void check_curve(CheckList& list, const ToneMapping& tone, const std::string& stress) {
   const double white = double(tone.white) / tone.scale;
   double outside = 0, falls = 0, previous = -1, first_fall = kInfinity;
@@ -96,7 +96,8 @@ void check_export(CheckList& list, const Field& field) {
   std::filesystem::remove_all(folder);
   const auto& light = plane.scene.illumination;
   const StressChecks at = list.at("light", field.name);
-  if (!std::all_of(light.begin(), light.end(), is_finite)) {  // readers mend it, callers must
+  // Readers replace such values, but callers must do so themselves.
+  if (!std::all_of(light.begin(), light.end(), is_finite)) {
     at.add("exports that are not refused", report.ok() ? 1 : 0, 0,
            report.ok() ? "" : report.status().message());
     return;
@@ -171,7 +172,7 @@ void check_downsizing(CheckList& list) {
     at.add(threshold <= 0 ? "texels lost although there is no threshold"
                           : "largest error over 4 x threshold",
            over, 1e-6, "halvings add up: 2 of them here at most count");
-    if (threshold > 0) {  // the first has no smaller one before it
+    if (threshold > 0) {  // there is no smaller threshold before the first
       at.add("texels more than at a smaller threshold", grown, 0);
     }
   }

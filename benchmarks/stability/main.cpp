@@ -1,4 +1,4 @@
-// atlas-bench-stability: the stress cases of stability/checks.h; fails if a bound does not hold.
+// atlas-bench-stability: the stress cases of stability/checks.h. Fails if a bound does not hold.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

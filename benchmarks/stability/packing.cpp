@@ -1,4 +1,4 @@
-// Grouping and packing at the ends of their ranges; all references are exact integers.
+// Grouping and packing at the limits of their ranges. All references are exact integers.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
 using Sizes = std::vector<std::uint64_t>;
 
-// Items in no group, groups that are counted wrongly or larger than the capacity, too many groups.
+// Counts items in no group, groups with a wrong total or above the capacity, and too many groups.
 double wrong(const Sizes& sizes, const GroupingResult& r, std::uint32_t limit) {
   std::uint64_t bad = r.group_count > limit;
   Sizes totals(r.group_count);
@@ -33,7 +33,7 @@ double wrong(const Sizes& sizes, const GroupingResult& r, std::uint32_t limit) {
 void group(CheckList& list, const std::string& stress, const Sizes& sizes, std::uint32_t groups) {
   GroupingOptions options;
   options.groups = groups;
-  options.refine_work = 0;  // the bisection alone, whose length has a bound
+  options.refine_work = 0;  // the bisection alone, whose number of steps has a bound
   const Result<GroupingResult> r = group_sizes(sizes, options, list.context);
   const StressChecks at = list.at("grouping", stress);
   at.add("wrong groups", r.ok() ? wrong(sizes, *r, groups) : kNever, 0);

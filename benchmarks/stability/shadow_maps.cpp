@@ -1,5 +1,5 @@
-// Shadow maps under grazing light, with few bits of depth, and in tiny, huge and far scenes,
-// against rays followed in double.
+// Compares shadow maps with rays traced in double: under grazing light, with few bits of depth, and
+// in tiny, huge and distant scenes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kWidth = 256, kHeight = 160, kMap = 1024;
 
-// A ground with a wall and a beam above it: what a ray meets is known in closed form.
+// A ground with a wall and a beam above it. What a ray hits is known in closed form.
 struct Stage {
   struct Box {
     glm::dvec3 low, high;
@@ -28,8 +28,8 @@ struct Stage {
   double ground;
   std::vector<Box> boxes;
 
-  // Boxes and ground are where their float coordinates say: far from the origin these are coarse,
-  // and the file's doing is not the shadows'.
+  // Boxes and ground are at their float coordinates. Far from the origin these are coarse, which
+  // must not count as an error of the shadows.
   explicit Stage(double times = 1, const glm::dvec3& moved = glm::dvec3(0))
       : scale(times), offset(moved), ground(rounded({0, 0, 0}).y) {
     for (const Box& b : {Box{{-0.1, 0, -1.2}, {0.1, 0.6, 1.2}}, Box{{0.9, 0.9, -2}, {1.1, 1, 2}}})
@@ -41,7 +41,7 @@ struct Stage {
   }
 };
 
-// A parallelogram, cut `cuts` times along both sides.
+// A parallelogram that is divided into `cuts` parts along both sides.
 struct Face {
   glm::dvec3 corner, a, b;
   int cuts;
@@ -100,7 +100,7 @@ bool blocked(const Stage& stage, const glm::dvec3& from, const glm::dvec3& along
 }
 
 struct Shares {
-  double acne = 0, leak = 0;  // of the lit pixels that are dark, of the shadowed that are lit
+  double acne = 0, leak = 0;  // of the lit pixels that are dark, of the shadowed ones that are lit
   int lit = 0, shadowed = 0;
 };
 
@@ -111,9 +111,10 @@ Camera camera_of(const Stage& stage) {
   return camera;
 }
 
-// Ground pixels further than two texels of the map from any edge of the shadow.
+// Compares ground pixels that are further than two texels of the map from any edge of the shadow.
 Shares compare(const Stage& stage, const Image8& image, const glm::dvec3& light, double texel) {
-  const glm::dvec3 eye(1, 6, 5.5);  // of the unplaced stage, as camera_of() places it
+  // In the stage without scale and offset, as camera_of() places it.
+  const glm::dvec3 eye(1, 6, 5.5);
   const glm::dvec3 forward = glm::normalize(-eye);
   const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(0, 1, 0)));
   const glm::dvec3 up = glm::cross(right, forward);
@@ -158,8 +159,8 @@ Result<Shares> shares_of(const Stage& stage, const glm::dvec3& light, RenderOpti
   if (!renderer.ok()) return renderer.status();
   Camera camera = camera_of(stage);
   fit_planes(camera, renderer->bounds());
-  // The light comes to its place over four frames of a key interval: what lies between keys is
-  // measured, not the keys themselves.
+  // The light reaches its position over four frames of a key interval, so that the light between
+  // keys is measured and not the keys themselves.
   Vec3d now = from_glm(light);
   const auto at = [&](int frame) {
     const double a = glm::radians(0.5 * (frame - 4));
@@ -185,11 +186,12 @@ glm::dvec3 light_at(double elevation) {
   return {std::cos(e) * 0.96, std::sin(e), std::cos(e) * 0.28};
 }
 
-// Half of what the tests grant classic maps beside rays: 99 % of the pixels away from edges agree.
+// Half of what the tests allow for classic maps relative to rays, where 99 % of the pixels away
+// from edges agree.
 constexpr double kBound = 5e-3;
 
-// Lower lights cast shadows that are edges all over: two texels cover 2 / sin(elevation) of them on
-// the ground.
+// With lower lights, shadows consist of edges only: on the ground, two texels cover 2 /
+// sin(elevation) times their size.
 constexpr double kLowestShadow = 0.4;
 
 double sine_of(const glm::dvec3& light) {
@@ -203,11 +205,11 @@ struct Stress {
   RenderOptions options = {};
 };
 
-// One stress with classic maps and with the march between two keys.
+// Adds one stress with classic maps and with the march between two keys.
 void add_rows(CheckList& list, const Stress& stress) {
   const glm::dvec3& light = stress.light;
   const bool shadows = sine_of(light) > std::sin(glm::radians(kLowestShadow)) * (1 - 1e-9);
-  const bool overhead = sine_of(light) > std::sin(glm::radians(85.0));  // little shadow is seen
+  const bool overhead = sine_of(light) > std::sin(glm::radians(85.0));  // little shadow is visible
   for (const ShadowMethod method : {ShadowMethod::classic, ShadowMethod::march}) {
     RenderOptions options = stress.options;
     options.shadows = method;

@@ -17,7 +17,7 @@ TemporaryFile::TemporaryFile(const std::string& name)
            fmt::format("atlas_stability_{}_{}", ::getpid(), name)) {}
 
 TemporaryFile::~TemporaryFile() {
-  std::error_code ignored;  // it may never have been written
+  std::error_code ignored;  // the file may never have been written
   std::filesystem::remove(path, ignored);
 }
 

@@ -1,4 +1,4 @@
-// What several groups of stability checks share.
+// Functions that several groups of stability checks share.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,8 @@
 
 namespace atlas::bench {
 
-// A path of this process's own in the system's folder for such files; removed at the end.
+// A path in the system's temporary folder that only this process uses. The file is removed at the
+// end.
 struct TemporaryFile {
   std::filesystem::path path;
   explicit TemporaryFile(const std::string& name);
@@ -21,18 +22,18 @@ struct TemporaryFile {
 Result<ChartSet> charts_of(const test::Shape& shape, const ChartOptions& options,
                            const Context& context);
 
-// Triangles that are in no chart, uvs that are not finite, flips.
+// Counts triangles that are in no chart, uvs that are not finite, and flips.
 double broken(const ChartSet& set);
 
-// Largest |uv / scale - uv of the reference| relative to the reference's extent; infinite if the
-// charts differ.
+// Returns the largest |uv / scale - uv of the reference| relative to the reference's extent, or
+// infinity if the charts differ.
 double uv_drift(const ChartSet& set, const ChartSet& reference, double scale);
 
-// Two shapes of the suite's own and the models of the options.
+// Returns two generated shapes and the models of the options.
 std::vector<test::Shape> subjects(const CheckList& list);
 
-// The shape moved far away and read back through an OBJ written in double, as a scene in world
-// coordinates comes.
+// Returns the shape after moving it far away and reading it from an OBJ in double, as scenes in
+// world coordinates are stored.
 Result<LoadedScene> read_moved(const test::Shape& shape, double offset, const Context& context);
 
 }  // namespace atlas::bench
