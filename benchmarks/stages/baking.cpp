@@ -12,7 +12,7 @@ struct Setting {
   int shifts;
 };
 
-// The meter's own time is spent outside the measured work: pages are kept (8-bit) in between.
+// The time of the meter is not part of the measured work, so pages are kept (as 8 bits) in between.
 Status bake_all(Staged& staged, const Setting& setting, std::vector<Image8>& pages, Row& row) {
   std::vector<std::vector<ChartPlacement>> by_page(staged.layout->pages.size());
   for (const ChartPlacement& p : staged.layout->placements)

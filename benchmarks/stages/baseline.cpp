@@ -1,4 +1,4 @@
-// The distance from the physical limit: reading the mesh and computing its normals, no more.
+// The physical limit for comparison: only reads the mesh and computes its normals.
 #include <filesystem>
 
 #include "benchmarks/support/staged.h"

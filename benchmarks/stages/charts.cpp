@@ -9,7 +9,7 @@
 namespace atlas::bench {
 namespace {
 
-// The standard one first.
+// The standard setting comes first.
 std::vector<ChartSetting> settings(bool sweep) {
   const std::vector<ChartSetting> presets = chart_presets();
   std::vector<ChartSetting> list{presets[1]};
@@ -26,7 +26,7 @@ std::vector<ChartSetting> settings(bool sweep) {
   return list;
 }
 
-// CPU seconds of the parts of segmentation, then of parameterisation.
+// Adds the CPU seconds of the parts of segmentation, then those of parameterisation.
 void add_parts(const ChartSet::Timing& t, Row& row) {
   for (const auto& [name, seconds] :
        std::initializer_list<std::pair<const char*, double>>{{"topology_cpu", t.topology_cpu},

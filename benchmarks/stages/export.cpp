@@ -1,5 +1,5 @@
-// The whole export, files written to a temporary folder. Its stages become rows of their own, named
-// "export/STAGE", so that the page shows where the time went.
+// Measures the whole export with files written to a temporary folder. Its stages become separate
+// rows named "export/STAGE", so that the page shows how the time is distributed.
 #include <fmt/format.h>
 
 #include <unistd.h>
@@ -35,7 +35,7 @@ std::vector<Setting> settings(const StageRun& run) {
   options.charts.preset = ChartPreset::fast;
   options.packing = PackPreset::fast;
   options.bake_method = BakeMethod::average;
-  options.shifts = 1;  // with more of them averaging takes longer than the default
+  options.shifts = 1;  // with more shifts, averaging takes longer than the default
   list.push_back({"fast", true, options});
   options = base;
   options.simplify = false;
@@ -57,7 +57,7 @@ void stage_rows(const Staged& staged, const Setting& setting, const ExportReport
   }
 }
 
-// The row, and of standard settings those of its stages.
+// Measures the row and, for standard settings, those of its stages.
 void measure_export(const StageRun& run, const Setting& setting, Row row, const TakeRow& take) {
   ExportReport report;
   measure(run.repeats, row, [&]() -> Status {

@@ -23,9 +23,11 @@ void bench_packing(const StageRun& run) {
     settings.push_back({"boxes, standard", false, PackPreset::standard});
     settings.push_back({"boxes, best", false, PackPreset::best});
   }
-  // Settings are compared on one page: on several the largest chart alone may decide the scale.
+  // Settings are compared on one page. On several pages, the largest chart alone may determine the
+  // scale.
   const std::uint32_t pages = run.sweep ? 1 : std::uint32_t(staged.settings.pages);
-  // So dense that every budget is full: then the scale that fits tells how good the packing is.
+  // The density is so high that every budget is full. The scale that fits then shows the quality of
+  // the packing.
   double area = 0;
   for (const Chart& chart : staged.charts->charts) area += chart.distortion.uv_area;
   const double room = double(pages) * staged.settings.page_size * staged.settings.page_size;
