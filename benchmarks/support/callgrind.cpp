@@ -53,7 +53,7 @@ std::string quoted(const std::string& text) {
   return result + "'";
 }
 
-// A dump names its trigger and ends with the sum of all costs.
+// Reads a dump, which names its trigger and ends with the sum of all costs.
 void read_dump(const fs::path& path, std::map<std::string, double>& counts) {
   const std::string trigger = "desc: Trigger: Client Request: ", totals = "totals: ";
   std::ifstream file(path);

@@ -1,4 +1,4 @@
-// Instruction counts: the same program run again under valgrind's callgrind.
+// Instruction counts, found by running the same program again under valgrind's callgrind.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace atlas::bench {
 
-// Brackets one piece of work: under callgrind its instructions are counted and dumped as `key`;
-// elsewhere nothing happens.
+// Encloses one piece of work. Under callgrind its instructions are counted and dumped as `key`;
+// otherwise nothing happens.
 class CountedWork {
  public:
   explicit CountedWork(std::string key);
@@ -19,11 +19,11 @@ class CountedWork {
   std::string key_;
 };
 
-// Whether this process runs under valgrind, where times mean nothing.
+// Returns whether this process runs under valgrind, where times have no meaning.
 bool under_valgrind();
 
-// Runs `arguments` (a program that measures with CountedWork and writes results to `--out FILE`,
-// which is added) under callgrind and returns its results with Row::instructions filled in.
+// Runs `arguments` under callgrind and returns the results with Row::instructions filled in. They
+// name a program that measures with CountedWork and writes results to `--out FILE`, which is added.
 // Errors: unsupported (no valgrind, or built without its header); io; those of load().
 Result<Results> count_instructions(const std::vector<std::string>& arguments);
 

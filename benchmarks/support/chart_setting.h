@@ -1,4 +1,4 @@
-// Settings of the charts' stage that benchmarks compare.
+// Settings of the charts stage that benchmarks compare.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,11 +12,11 @@ namespace atlas::bench {
 
 struct ChartSetting {
   std::string name;
-  bool preset = false;  // else one option of the standard preset was changed
+  bool preset = false;  // otherwise one option of the standard preset was changed
   ChartOptions options;
 };
 
-// fast, standard, best.
+// Returns fast, standard and best.
 inline std::vector<ChartSetting> chart_presets() {
   std::vector<ChartSetting> list{{"fast", true, {}}, {"standard", true, {}}, {"best", true, {}}};
   list[0].options.preset = ChartPreset::fast;
@@ -24,7 +24,7 @@ inline std::vector<ChartSetting> chart_presets() {
   return list;
 }
 
-// Named by the prefix and the number.
+// Returns a setting that is named by the prefix and the number.
 inline ChartSetting with_stretch(double max_stretch, const std::string& prefix = "") {
   ChartSetting setting{fmt::format("{}{}", prefix, max_stretch), false, {}};
   setting.options.max_stretch = max_stretch;

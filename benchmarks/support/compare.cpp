@@ -34,7 +34,7 @@ class Comparison {
     if (base.instructions > 0 && head.instructions > 0) {
       figure(Regression::instructions, base.key() + ": instructions", base.instructions,
              head.instructions);
-      return;  // under callgrind times and memory mean nothing
+      return;  // under callgrind, times and memory have no meaning
     }
     figure(Regression::time, base.key() + ": CPU s", base.cpu_seconds, head.cpu_seconds);
     figure(Regression::memory, base.key() + ": MiB", base.memory_mib, head.memory_mib);

@@ -1,4 +1,4 @@
-// Two result files against each other: what got worse by more than noise.
+// Compares two result files and finds what got worse by more than noise.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace atlas::bench {
 
-// A figure is worse when it exceeds the base by the relative *and* by the absolute threshold.
+// A figure is worse if it exceeds the base by the relative *and* by the absolute threshold.
 struct CompareOptions {
   double quality_relative = 0.02, quality_absolute = 1e-4;  // of every row's error
   double time_relative = 0.15, time_absolute = 0.05;        // CPU seconds
@@ -21,9 +21,9 @@ struct Regression {
   std::string what;  // one line: row, figure, base, head
 };
 
-// Quality first, then rows that vanished or fail now, then instructions (where both
-// files count them), time and memory. Checks of the stability
-// page that held in the base and do not in the head count as quality. New rows are no regression.
+// Returns quality first, then rows that vanished or fail now, then instructions (if both files
+// count them), time and memory. Checks of the stability page that held in the base and do not hold
+// in the head count as quality. New rows are no regression.
 std::vector<Regression> compare(const Results& base, const Results& head,
                                 const CompareOptions& options);
 

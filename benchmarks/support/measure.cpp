@@ -21,7 +21,7 @@ void reset_peak() {
   std::ofstream("/proc/self/clear_refs") << "5";
 }
 
-// VmRSS, resident now, or VmHWM, the largest since reset_peak().
+// Returns VmRSS (resident now) or VmHWM (the largest since reset_peak()), in MiB.
 double resident_mib(const std::string& which) {
   std::ifstream file("/proc/self/status");
   for (std::string word; file >> word;) {

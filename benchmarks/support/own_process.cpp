@@ -18,7 +18,7 @@
 namespace atlas::bench {
 namespace {
 
-// The half of a pipe that is read or written, as a stream that closes itself.
+// One end of a pipe as a stream that closes itself.
 class Stream {
  public:
   Stream(int descriptor, const char* mode) : file_(fdopen(descriptor, mode)) {}
@@ -30,7 +30,7 @@ class Stream {
     std::fprintf(file_, "%s\n", line.c_str());
     std::fflush(file_);
   }
-  // False at the end.
+  // Returns false at the end.
   bool read(std::string& line) {
     line.clear();
     for (int c; (c = std::fgetc(file_)) != EOF; line += char(c))
@@ -42,8 +42,8 @@ class Stream {
   FILE* file_;
 };
 
-// A child has the thread that forked and no other, so that a pool would wait for its workers for
-// ever. TBB starts its pool anew when it is next needed, here and there.
+// A child process has only the thread that forked, so a thread pool would wait for its workers for
+// ever. TBB starts its pool again when it is next needed, in parent and child.
 bool end_threads() {
   tbb::task_scheduler_handle pool{tbb::attach{}};
   return tbb::finalize(pool, std::nothrow);
@@ -55,7 +55,7 @@ bool end_threads() {
     work([&](const Row& row) { parent.write(to_json_line(row)); });
   }
   std::fflush(stdout);
-  ::_exit(0);  // destructors and exit handlers are the parent's to run
+  ::_exit(0);  // destructors and exit handlers are left to the parent
 }
 
 int wait_for(pid_t child) {
@@ -79,7 +79,7 @@ void in_own_process(const Row& otherwise, const TakeRow& done,
 #ifdef __GLIBC__
   malloc_trim(0);
 #endif
-  std::fflush(nullptr);  // else both would write what waits
+  std::fflush(nullptr);  // otherwise both processes would write buffered output
   int ends[2];
   if (::pipe(ends) != 0) return fail(fmt::format("no pipe: {}", std::strerror(errno)));
   const pid_t child = ::fork();
@@ -92,7 +92,7 @@ void in_own_process(const Row& otherwise, const TakeRow& done,
   if (child < 0) return fail(fmt::format("no process: {}", std::strerror(errno)));
   for (std::string text; stream.read(text);) {
     Result<Row> row = row_from_line(text);
-    if (!row.ok()) break;  // cut short: the child died, which its status tells
+    if (!row.ok()) break;  // the line is incomplete: the child died, which its status shows
     done(std::move(*row));
   }
   const int status = wait_for(child);

@@ -1,4 +1,4 @@
-// Work in a process of its own.
+// Runs work in a separate process.
 #pragma once
 
 #include <functional>
@@ -9,12 +9,13 @@ namespace atlas::bench {
 
 using TakeRow = std::function<void(Row)>;
 
-// Forks this process, runs `work` in the child and hands here, to `done`, each row that it gave, as
-// soon as it comes. A child begins with what is alive here and nothing that was freed; what it
-// allocates, loads or starts ends with it. `otherwise` is the row, with a failure that says why,
-// for a child that dies or cannot be started. Children may nest.
-// TBB's threads are ended first: call it outside of parallel loops, from the only thread left.
-// Under valgrind, where memory is not measured and one process counts, the work runs in place.
+// Forks this process, runs `work` in the child and passes each row from there to `done` in this
+// process as soon as it arrives. A child begins with the memory that is in use here, without freed
+// memory; what it allocates, loads or starts ends with it. If a child dies or cannot be started,
+// the row is `otherwise` with a failure that states the reason. Children may nest. TBB's threads
+// are ended first, so call it outside of parallel loops, from the only remaining thread. Under
+// valgrind, where memory is not measured and a single process counts, the work runs in this
+// process.
 void in_own_process(const Row& otherwise, const TakeRow& done,
                     const std::function<void(const TakeRow& done)>& work);
 

@@ -1,4 +1,4 @@
-// Of several settings, those that are worth having.
+// Finds the Pareto front of several settings.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,8 @@
 
 namespace atlas::bench {
 
-// Items that no other beats in both coordinates, by ascending x; x and y give an item's.
+// Returns the items that no other beats in both coordinates, by ascending x. x and y return the
+// coordinates of an item.
 template <class Item, class X, class Y>
 std::vector<Item> pareto_front(std::vector<Item> items, X x, Y y) {
   std::stable_sort(items.begin(), items.end(), [&](const Item& a, const Item& b) {

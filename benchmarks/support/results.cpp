@@ -58,7 +58,7 @@ std::vector<Fit> fit_exponents(const std::vector<Row>& rows, std::uint64_t small
   for (const Row& row : rows) {
     const auto colon = row.mesh.find(':');
     if (!row.preset || !row.failure.empty() || colon == std::string::npos) continue;
-    if (row.mesh.rfind("file:", 0) == 0) continue;  // different shapes, not sizes of one
+    if (row.mesh.rfind("file:", 0) == 0) continue;  // these are different shapes, not sizes of one
     if (row.triangles < smallest || row.cpu_seconds <= 0 || row.memory_mib <= 0) continue;
     series[row.stage + "|" + row.mesh.substr(0, colon) + "|" + row.setting + "|" +
            std::to_string(row.threads)]

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// JSON knows neither infinity nor NaN: both become null, and null reads back as NaN.
+// JSON has neither infinity nor NaN. Both become null, and null is read as NaN.
 double number(const Json& j) {
   return j.is_null() ? std::numeric_limits<double>::quiet_NaN() : j.get<double>();
 }
@@ -101,7 +101,8 @@ void write_list(std::ostream& file, const char* name, const std::vector<Item>& i
   file << "]";
 }
 
-// Where each item of a list stands, in the layout that save() writes; 0 where the list is absent.
+// Returns the first line of a list's items in the layout that save() writes, or 0 if there is no
+// such list.
 std::size_t first_line(const std::filesystem::path& path, const std::string& list) {
   std::ifstream file(path);
   std::size_t number = 1;

@@ -1,5 +1,5 @@
-// A scene on its way through the stages, with defaults, each stage run once when first needed: what
-// a stage's benchmark starts from.
+// A scene on its way through the stages with default settings. Each stage runs once, when it is
+// first needed. Benchmarks of stages start from it.
 #pragma once
 
 #include <functional>
@@ -26,7 +26,7 @@ class Staged {
  public:
   Staged(std::string name, LoadedScene loaded, const Context& context);
 
-  // Each runs what it needs. Errors: those of the stages.
+  // Each function runs the stages that it needs. Errors: those of the stages.
   Status need_charts();
   Status need_light();     // sampler and tone curve
   Status need_textures();  // sizes after downsizing
@@ -35,16 +35,16 @@ class Staged {
   const Scene& scene() const { return loaded.scene; }
   MeshView view() const;
   ChartLight light() const { return {*sampler, *charts, *tone}; }
-  double texel() const;                  // settings.texel, or what stands for 0
-  std::vector<Vec2d> densities() const;  // 1 a chart, from textures
-  // A row of this scene with everything but the results filled in.
+  double texel() const;                  // settings.texel, or the value that 0 stands for
+  std::vector<Vec2d> densities() const;  // one per chart, from textures
+  // Returns a row of this scene with everything except the results.
   Row row(const std::string& stage, const std::string& setting, bool preset = false) const;
 
   const std::string name;
   LoadedScene loaded;
   const Context& context;
   StageSettings settings;
-  int threads = 0;  // as Row::threads
+  int threads = 0;  // as in Row::threads
   std::optional<ChartSet> charts;
   std::optional<LuminanceSampler> sampler;
   std::optional<ToneMapping> tone;
@@ -52,19 +52,19 @@ class Staged {
   std::optional<PageLayout> layout;
 };
 
-// What a stage's benchmark is given.
+// The input of a stage's benchmark.
 struct StageRun {
   Staged& staged;
   int repeats = 1;
-  bool sweep = true;  // all settings; else the standard one only
+  bool sweep = true;  // all settings; otherwise only the standard one
   TakeRow done;
 
-  // Measures `work`, which fills in the row's values, in a process of its own, and hands the row
-  // on; whatever else it leaves is lost.
+  // Measures `work`, which fills in the row's values, in a separate process, and passes on the row.
+  // Other effects of `work` are lost.
   void measured(Row& row, const std::function<Status()>& work) const;
 };
 
-// One a file of stages/. A failure to prepare becomes a row that says so.
+// There is one per file of stages/. If preparation fails, there is a row that says so.
 void bench_baseline(const StageRun& run);    // parse an OBJ of the mesh, compute its normals
 void bench_charts(const StageRun& run);      // error: seam length / sqrt(area)
 void bench_downsizing(const StageRun& run);  // error: rms of display values

@@ -19,13 +19,14 @@ int side(double value) {
   return std::max(3, int(std::lround(value)));
 }
 
-// Even triangles: at the poles of a latitude-longitude ball noise would be larger than edges.
+// The triangles are even. At the poles of a latitude-longitude ball, noise would be larger than
+// edges.
 Shape ball(std::uint64_t triangles) {
   const double n = std::sqrt(double(triangles) / 20);
   return test::geodesic_sphere(std::max(1, int(std::lround(n))), 0.5);
 }
 
-// Noise of the size that triangulating scanners leave: a fifth of the mean edge.
+// Adds noise as triangulating scanners leave it: a fifth of the mean edge length.
 Shape scan(std::uint64_t triangles) {
   Shape shape = ball(triangles);
   for (Vec3f& p : shape.positions) {
@@ -60,7 +61,7 @@ void append(Shape& all, const Shape& part, double turn, Vec3d offset) {
   for (const std::uint32_t i : part.indices) all.indices.push_back(first + i);
 }
 
-// Parts of millimetres to decimetres on a 10 m floor, as CAD systems export them.
+// Parts of millimetres to decimetres on a floor of 10 m, as CAD systems export them.
 Shape assembly(std::uint64_t triangles) {
   std::mt19937_64 random(11);
   const auto uniform = [&](double a, double b) {
@@ -87,7 +88,7 @@ Shape assembly(std::uint64_t triangles) {
   return all;
 }
 
-// A vertex turned by a unit quaternion, then shifted.
+// Rotates a vertex by a unit quaternion, then moves it.
 Vec3f placed(const Vec3f& p, const std::array<double, 4>& q, Vec3d offset) {
   const double x = q[1] * p.z - q[2] * p.y + q[3] * p.x, y = q[2] * p.x - q[0] * p.z + q[3] * p.y,
                z = q[0] * p.y - q[1] * p.x + q[3] * p.z;
@@ -96,8 +97,8 @@ Vec3f placed(const Vec3f& p, const std::array<double, 4>& q, Vec3d offset) {
           float(p.z + 2 * (q[0] * y - q[1] * x) + offset.z)};
 }
 
-// What holds assemblies together: a dozen standard parts (screws, washers, brackets) again and
-// again, turned anyhow, in a space of a metre.
+// Fastening parts of assemblies: a dozen standard parts (screws, washers, brackets) repeated with
+// random rotations in a space of one metre.
 Shape fasteners(std::uint64_t triangles) {
   std::mt19937_64 random(12);
   const auto uniform = [&](double a, double b) {
@@ -128,7 +129,7 @@ Shape fasteners(std::uint64_t triangles) {
   return all;
 }
 
-// Cells a hole, found by making the smallest one.
+// Finds the cells per hole by making the smallest such plate.
 Shape genus(std::uint64_t triangles) {
   const auto least = double(test::plate_with_holes(50, 1).triangle_count());
   return test::plate_with_holes(
