@@ -7,7 +7,7 @@
 
 int main() {
   using namespace atlas;
-  LuminanceStatistics interior;  // of a lit room: most of it dim, some lamps
+  LuminanceStatistics interior;  // a lit room: most of it dim, with some lamps
   interior.lit_area = 1;
   interior.log_average = 0.3;
   interior.mean = 0.6;
