@@ -19,7 +19,7 @@ using namespace atlas::bench;
 struct Arguments {
   std::vector<std::string> work{"cabin:20000", "sphere:20000"}, stages, rivals;
   std::string out;
-  std::vector<int> threads;  // none: as many as there are cores
+  std::vector<int> threads;  // empty: as many as there are cores
   int repeats = 1, page = 2048;
   std::uint32_t pages = 8;
   double timeout = 60, texel = 0;
@@ -75,7 +75,7 @@ bool wanted(const Arguments& a, const std::string& stage) {
   return a.stages.empty() || std::find(a.stages.begin(), a.stages.end(), stage) != a.stages.end();
 }
 
-// Each stage begins with the mesh alone, without what others made of it.
+// Each stage begins with the mesh alone, without what other stages made from it.
 void run_stages(const Arguments& a, const StageRun& run, const std::vector<Rival>& rivals) {
   for (const StageEntry& stage : kStages) {
     if (!wanted(a, stage.name)) continue;
@@ -107,7 +107,7 @@ Result<std::vector<Rival>> parse_rivals(const Arguments& a) {
   return rivals;
 }
 
-// One mesh through all stages that are wanted, once for each number of threads.
+// Runs one mesh through all wanted stages, once for each number of threads.
 Status run_work(const Arguments& a, const std::string& work, const std::vector<Rival>& rivals,
                 Results& results) {
   Result<LoadedScene> scene = make_work(work, {});
@@ -167,7 +167,8 @@ int main(int argc, char** argv) {
   results.machine = describe_machine(argc, argv);
   for (const std::string& work : a.work) {
     if (const Status s = run_work(a, work, *rivals, results); !s.ok()) return fail(s);
-    if (a.out.empty()) continue;  // after every mesh, so that an interrupted run leaves something
+    // Saved after every mesh, so that an interrupted run leaves something.
+    if (a.out.empty()) continue;
     results.fits = fit_exponents(results.rows, a.fit_from);
     if (const Status s = save(results, a.out); !s.ok()) return fail(s);
   }
