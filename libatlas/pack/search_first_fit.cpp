@@ -1,8 +1,17 @@
+#include <compare>
+#include <cstdint>
 
 #include "libatlas/pack/chains.h"
 
 namespace atlas::pack {
 namespace {
+
+// Compares like Layout::better_than(). The names are those of the pairs of other chains.
+struct OrderCost {
+  std::uint32_t unplaced, first;  // items; pages
+  std::int64_t second;            // last_used
+  auto operator<=>(const OrderCost&) const = default;
+};
 
 // Hill climbing over orders for first fit. A layout takes longer than with the gap searches, but
 // pinned rectangles are respected.
@@ -15,11 +24,7 @@ class OrderChain {
     best_ = std::move(layout);
   }
   bool done() const { return order_.size() < 2; }
-  std::pair<std::uint32_t, std::int64_t> cost() const {
-    // With equal numbers of pages, an unplaced item weighs more than any difference of last_used
-    // below 2^40.
-    return {best_.pages, best_.last_used + (std::int64_t{best_.unplaced} << 40)};
-  }
+  OrderCost cost() const { return {best_.unplaced, best_.pages, best_.last_used}; }
   const Layout& best() const { return best_; }
 
   void step() {

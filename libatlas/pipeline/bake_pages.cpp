@@ -92,9 +92,10 @@ class PageBaker {
   std::size_t pages_at_once() const {
     if (writes_itself()) return 1;
     const std::size_t texel = options_.exr ? 3 + 3 * sizeof(float) : 3;
-    const std::size_t bytes =
-        texel * std::size_t(layout_.pages[0].width) * std::size_t(layout_.pages[0].height);
-    return std::clamp<std::size_t>(kBytesAtOnce / bytes, 1, thread_count(context_));
+    std::size_t largest = 1;  // texels of a page
+    for (const auto& page : layout_.pages)
+      largest = std::max(largest, std::size_t(page.width) * std::size_t(page.height));
+    return std::clamp<std::size_t>(kBytesAtOnce / (texel * largest), 1, thread_count(context_));
   }
 
   Status add_pages(std::size_t first, std::size_t count, Background& writing) {
