@@ -16,15 +16,17 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
-// A hidden name in the same folder. Long ones are cut, so that it stays a name that file systems
-// take; the number tells all files of this process apart, whose threads may write to one target.
+// Returns a hidden name in the same folder. Long names are shortened so that file systems accept
+// the result. The number distinguishes all files of this process, whose threads may write to the
+// same target.
 fs::path name_beside(const fs::path& target, std::string_view kind) {
   static std::atomic<std::uint64_t> number = 0;
   constexpr std::size_t kLongestStem = 120, kLongestExtension = 60;  // bytes
   std::string stem = target.stem().string(), extension = target.extension().string();
   if (stem.size() > kLongestStem) {
     std::size_t end = kLongestStem;
-    while (end > 0 && (static_cast<unsigned char>(stem[end]) & 0xc0) == 0x80) --end;  // in UTF-8
+    // Does not cut a UTF-8 character.
+    while (end > 0 && (static_cast<unsigned char>(stem[end]) & 0xc0) == 0x80) --end;
     stem.resize(end);
   }
   if (extension.size() > kLongestExtension) extension.clear();
@@ -34,7 +36,8 @@ fs::path name_beside(const fs::path& target, std::string_view kind) {
   return beside;
 }
 
-// Where a link leads to; the path itself where it is none or leads nowhere.
+// Returns the path that a symbolic link leads to, or `path` itself if it is no link or leads
+// nowhere.
 fs::path behind_links(const fs::path& path) {
   std::error_code error;
   if (!fs::is_symlink(path, error)) return path;
@@ -42,7 +45,7 @@ fs::path behind_links(const fs::path& path) {
   return error ? path : end;
 }
 
-// Something that a file cannot take the place of: a device, a pipe, a socket.
+// Returns whether this is something that a file cannot replace: a device, a pipe, a socket.
 bool is_special(const fs::path& path) {
   std::error_code error;
   return fs::is_other(path, error);

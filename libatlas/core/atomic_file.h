@@ -1,7 +1,7 @@
-// Output files that are either whole or absent, however the process ends: written under a temporary
-// name beside the target, renamed on commit, removed otherwise. What the machine leaves that loses
-// its power or stops working is up to its file system: nothing waits for the disk, which would take
-// some 4 milliseconds a file.
+// Output files that are either whole or absent, however the process ends: each is written under a
+// temporary name beside its target, and renamed on commit or removed otherwise. After a power
+// failure or a crash of the machine, the file system determines what is left: the library does not
+// wait for the disk (no fsync), which would take about 4 milliseconds per file.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +13,10 @@
 
 namespace atlas {
 
-// Collects the files of one export. Ask path_for() where to write each; commit() renames them all
-// into place in the order they were asked for; the destructor removes what was not committed. Used
-// by one thread; others may write to the same targets meanwhile: whoever commits last wins.
+// Collects the files of one export. path_for() returns the path to write each file to; commit()
+// renames them all to their targets, in the order of the path_for() calls; the destructor removes
+// the files that were not committed. An object is for one thread. Others may write to the same
+// targets meanwhile: the last commit wins.
 class AtomicFiles {
  public:
   AtomicFiles() = default;
@@ -23,41 +24,43 @@ class AtomicFiles {
   AtomicFiles(const AtomicFiles&) = delete;
   AtomicFiles& operator=(const AtomicFiles&) = delete;
 
-  // The temporary path to write `target` under. It keeps the extension, since image writers choose
-  // the format by it. Links are followed: what they lead to is replaced, not they themselves. What
-  // cannot be replaced by a file (a device, a pipe) is written to at once. Temporary files that
-  // processes ended by force have left in the target's folder are removed.
+  // Returns the temporary path to which `target` is to be written. It keeps the extension, since
+  // image writers choose the format by it. Symbolic links are followed: the file that they lead to
+  // is replaced, not the links. If a file cannot replace the target (a device, a pipe), the target
+  // itself is returned and so written directly. Also removes the temporary files that killed
+  // processes have left in the target's folder.
   std::filesystem::path path_for(const std::filesystem::path& target);
 
-  // Writes `bytes` to what will be `target`. Errors: io, naming the target.
+  // Writes `bytes` to the temporary file of `target`. Errors: io; the message names the target.
   Status write(const std::filesystem::path& target, std::string_view bytes);
 
-  // The same status with targets where its message says temporary names.
+  // Returns `status` with the temporary names in its message replaced by those of the targets.
   Status told_by_target(const Status& status) const;
 
-  // Removes what was written under this temporary path; commit() will not put it in place.
+  // Removes the file at this temporary path; commit() will not put it in place.
   void discard(const std::filesystem::path& temporary);
 
-  // What commit() will put in place, in the order asked for.
+  // Returns the targets that commit() will put in place, in the order of the path_for() calls.
   std::vector<std::filesystem::path> targets() const;
 
-  // Renames every file to its target. On failure no temporary name is left, and what this call had
-  // already replaced stands there again (on file systems with hard links; on others it is gone).
+  // Renames every file to its target. On failure, the targets that this call had already replaced
+  // get their previous files back (only on file systems with hard links; on others the targets are
+  // gone), and the destructor removes the other temporary files. Errors: io.
   Status commit();
 
  private:
   struct Entry {
-    std::filesystem::path temporary, target, name;  // name: the target as it was asked for
-    std::filesystem::path before = {};  // a second name of what stood at the target, or empty
+    std::filesystem::path temporary, target, name;  // name: the target as the caller gave it
+    std::filesystem::path before = {};              // a hard link to the replaced file, or empty
   };
   static Status put_in_place(Entry& entry);
   static void take_back(Entry& entry);
   std::vector<Entry> entries_;
 };
 
-// Whether a file could be written at `target`: its directory exists and takes files, its name is
-// none too long. Ask before long work, so that it does not end in vain. Error: io, naming the
-// directory.
+// Checks that a file can be written at `target`: its directory exists and takes files, and its name
+// is not too long. To be called before long work, so that the work is not in vain. Errors: io; the
+// message names the directory.
 Status check_writable(const std::filesystem::path& target);
 
 // Writes `bytes` to `target` under a temporary name, then renames it.

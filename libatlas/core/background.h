@@ -1,5 +1,5 @@
-// Internal: tasks done beside the caller's own work, such as writing a page while the next one is
-// baked.
+// Internal: Background, which runs tasks beside the caller's own work, such as writing a page while
+// the next one is baked.
 #pragma once
 
 #include <cstddef>
@@ -11,23 +11,24 @@
 
 namespace atlas {
 
-// Used by one thread. Tasks begin in the order of asking, each on a thread of its own, or on the
-// caller's thread if the system starts no more. What they take counts as the user's
-// (own_cpu_seconds) once they have been waited for.
+// Runs tasks in the order in which they are added, each on a thread of its own, or on the caller's
+// thread if the system starts no more threads. An object is for one thread. The CPU time of a task
+// is added to that thread's own_cpu_seconds() once the task has been waited for.
 class Background {
  public:
-  // At most `at_once` tasks are under way; 0: each is done before add() returns.
+  // At most `at_once` tasks run at the same time. If it is 0, add() runs each task before it
+  // returns.
   explicit Background(std::size_t at_once) : at_once_(at_once) {}
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;
-  ~Background() = default;  // waits for what is under way
+  ~Background() = default;  // waits for the running tasks
 
-  // While `at_once` tasks are under way, waits for the oldest first. After a failure nothing is
-  // begun any more: gives back the first one, in the order of asking. Exceptions of a task leave
-  // from here or from finish().
+  // If `at_once` tasks are running, waits for the oldest one first. Once a task that failed has
+  // been waited for, no further task begins, and the failure is returned: the first one in the
+  // order of adding. Exceptions of a task leave this function or finish().
   Status add(std::function<Status()> task);
 
-  // Waits for all; the first failure in the order of asking.
+  // Waits for all tasks. Returns the first failure in the order of adding.
   Status finish();
 
  private:

@@ -12,12 +12,12 @@
 namespace atlas {
 namespace {
 
-// Which tasks may run. A worker only waits while another one is at work: what is first of those
-// left has nothing to wait for.
+// The tasks and what they wait for. A worker waits only while another one runs a task, because the
+// first of the unfinished tasks never has to wait for another.
 class Queue {
  public:
   explicit Queue(std::span<const Claims> tasks) : left_(tasks.size()), nodes_(tasks.size()) {
-    std::unordered_map<std::uint32_t, std::uint32_t> last;  // task that claims a thing
+    std::unordered_map<std::uint32_t, std::uint32_t> last;  // the last task that claims each object
     for (std::uint32_t i = 0; i < tasks.size(); ++i) {
       for (const std::uint32_t thing : tasks[i]) {
         const auto [at, is_first] = last.emplace(thing, i);
@@ -30,7 +30,7 @@ class Queue {
     }
   }
 
-  // Runs tasks until there are none.
+  // Runs tasks until none is left.
   void work(const Context& context, const std::function<void(std::size_t)>& body) {
     std::unique_lock lock(mutex_);
     for (;;) {
@@ -48,7 +48,7 @@ class Queue {
  private:
   struct Node {
     std::vector<std::uint32_t> next;
-    std::uint32_t before = 0;  // tasks to wait for
+    std::uint32_t before = 0;  // number of tasks to wait for
   };
 
   void run(const Context& context, std::uint32_t task,
@@ -64,7 +64,7 @@ class Queue {
   }
 
   void finish(std::uint32_t task) {
-    if (left_ == 0) return;  // another one has failed
+    if (left_ == 0) return;  // another task has thrown
     --left_;
     for (const std::uint32_t next : nodes_[task].next) {
       if (--nodes_[next].before == 0) ready_.push(next);

@@ -30,8 +30,8 @@ double thread_cpu_seconds() {
 
 void return_freed_memory() {
 #ifdef __GLIBC__
-  // To give little back and ask for it again takes some hundredths of the time of a small mesh's
-  // charts.
+  // Returning less and requesting it again would cost some hundredths of the time in which a small
+  // mesh is cut into charts.
   constexpr std::size_t worth_it = std::size_t{4} << 20;
   if (mallinfo2().fordblks >= worth_it) malloc_trim(0);
 #endif

@@ -1,5 +1,5 @@
-// Internal: sorting by small keys in linear time: triangles by vertex, edges by their lower end,
-// runs by row.
+// Internal: counting sort, which sorts by small integer keys in linear time: for example triangles
+// by vertex, edges by their lower end, runs by row.
 #pragma once
 
 #include <cstddef>
@@ -9,13 +9,15 @@
 
 namespace atlas {
 
-// Calls place(i, at) for each of the items 0, 1, ... in turn, where `at` is its place once all are
-// sorted by bucket_of(i) < buckets; those of one bucket keep their order. Returns where each bucket
-// begins, and after the last one the end. bucket_of is called twice for each item.
+// Sorts the items 0, 1, ..., items - 1 by bucket_of(i), which must be less than `buckets`; items of
+// one bucket keep their order. Calls place(i, at) for each item in turn, where `at` is its position
+// in the sorted order. Returns the position at which each bucket begins, followed by the end of the
+// last one. Calls bucket_of twice for each item.
 template <class BucketOf, class Place>
 std::vector<std::uint32_t> counting_sort(std::size_t items, std::size_t buckets,
                                          const BucketOf& bucket_of, const Place& place) {
-  // begin[b + 2] counts the items of b; then begin[b + 1] moves from the beginning of b to its end.
+  // begin[b + 2] first counts the items of bucket b. After the sums, begin[b + 1] is where b
+  // begins, and each placed item moves it on, up to the end of b.
   std::vector<std::uint32_t> begin(buckets + 2, 0);
   for (std::size_t i = 0; i < items; ++i) ++begin[bucket_of(i) + 2];
   for (std::size_t b = 2; b < begin.size(); ++b) begin[b] += begin[b - 1];
@@ -24,9 +26,9 @@ std::vector<std::uint32_t> counting_sort(std::size_t items, std::size_t buckets,
   return begin;
 }
 
-// The items 0, 1, ... of each bucket, ascending.
+// The items 0, 1, ... sorted into buckets; within a bucket they ascend.
 struct Buckets {
-  std::vector<std::uint32_t> begin;  // of each bucket in `items`, and the end
+  std::vector<std::uint32_t> begin;  // where each bucket begins in `items`, and the end
   std::vector<std::uint32_t> items;
 
   std::size_t size() const { return begin.size() - 1; }

@@ -1,4 +1,5 @@
-// Internal: union-find: which of n items are connected, given pair by pair.
+// Internal: DisjointSets, a union-find structure: which of n items are connected, given pair by
+// pair.
 #pragma once
 
 #include <algorithm>
@@ -11,12 +12,12 @@ namespace atlas {
 
 class DisjointSets {
  public:
-  // n sets of one member each.
+  // Makes n sets of one member each.
   explicit DisjointSets(std::size_t n) : parent_(n) {
     std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});
   }
 
-  // The least member of i's set: it does not depend on the order of joining.
+  // Returns the least member of i's set, which does not depend on the order of the joins.
   std::uint32_t find(std::uint32_t i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;

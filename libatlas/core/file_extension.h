@@ -1,4 +1,4 @@
-// The part of a file's name that chooses its format.
+// The extension of a file's name, which determines the format.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace atlas {
 
-// ".obj" of "scene.OBJ": in small letters, however the name has it, whatever the locale; empty
-// where there is none.
+// Returns the extension in lower case, independent of the locale: ".obj" for "scene.OBJ"; empty if
+// there is none.
 inline std::string lower_extension(const std::filesystem::path& path) {
   return small_letters(path.extension().string());
 }

@@ -1,5 +1,5 @@
-// Internal: conversions between the plain vectors of the public headers and GLM's, which do the
-// algebra inside the library. Include it from .cpp files only.
+// Internal: conversions between the plain vectors of the public headers and GLM's vectors, which do
+// the algebra inside the library. Include it only from .cpp files and internal headers.
 #pragma once
 
 #include <glm/geometric.hpp>

@@ -1,4 +1,4 @@
-// Images in memory: row-major texels of interleaved channels, row 0 at the bottom (see
+// Images in memory: rows of texels whose channels are interleaved, with row 0 at the bottom (see
 // core/rect.h).
 #pragma once
 
@@ -18,7 +18,7 @@ struct Image {
       : width(w), height(h), channels(c), texels(std::size_t(w) * h * c, fill) {}
 
   bool empty() const { return width == 0 || height == 0 || channels == 0; }
-  // Whether `texels` has the length that the sizes ask for.
+  // Returns whether no side is negative and `texels` has width * height * channels values.
   bool whole() const {
     return width >= 0 && height >= 0 && channels >= 0 &&
            texels.size() == std::size_t(width) * std::size_t(height) * std::size_t(channels);

@@ -1,11 +1,11 @@
-// Internal: vectors that are numbers.
+// Internal: is_finite() for vectors.
 #pragma once
 
 #include <cmath>
 
 namespace atlas {
 
-// Returns whether all coordinates of a vector of two or three are finite (Vec2f, glm::dvec3, ...).
+// Returns whether all two or three coordinates of a vector (Vec2f, glm::dvec3, ...) are finite.
 template <class Vector>
 bool is_finite(const Vector& v) {
   const bool flat = std::isfinite(v.x) && std::isfinite(v.y);

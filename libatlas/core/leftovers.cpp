@@ -16,8 +16,9 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
-// Process numbers mean something only within one start of a machine and one name space of it;
-// folders may be shared between several. Empty where the system does not tell.
+// Returns a hash of the machine's boot and the process namespace, or nothing if the system does not
+// tell them. A process number identifies a process only within both, while several machines or
+// containers may share a folder.
 std::string world_of_processes() {
   std::ifstream start("/proc/sys/kernel/random/boot_id");
   std::string text;
@@ -36,7 +37,7 @@ bool has_ended(pid_t process) {
   return ::kill(process, 0) != 0 && errno == ESRCH;
 }
 
-// Whether a file of this name was a temporary one of a process that has ended.
+// Returns whether a file of this name is a temporary file of a process that has ended.
 bool is_leftover(std::string_view name) {
   const std::string before_number = fmt::format(".{}-", world());
   const std::size_t at = name.rfind(before_number);
@@ -64,7 +65,7 @@ void remove_leftovers(const fs::path& folder) {
   std::error_code error;
   fs::directory_iterator entry(folder.empty() ? fs::path(".") : folder, error);
   for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
-    std::error_code ignored;  // what another process removes at the same time is gone as well
+    std::error_code ignored;  // another process may have removed it meanwhile
     if (is_leftover(entry->path().filename().string())) fs::remove(entry->path(), ignored);
   }
 }

@@ -1,4 +1,4 @@
-// Internal: temporary files that a process left when it was ended by force.
+// Internal: finds and removes the temporary files that killed processes have left.
 #pragma once
 
 #include <filesystem>
@@ -6,12 +6,14 @@
 
 namespace atlas {
 
-// What this process puts into the names of its temporary files, "5ab81c07-1234": in which world of
-// processes it runs (this start of this machine, this container), and its number there.
+// Returns the mark that this process puts into the names of its temporary files, for example
+// "5ab81c07-1234". The first part identifies the machine's boot and the process namespace
+// (container) that the process runs in; the second is its process number there.
 std::string process_mark();
 
-// Removes the files of `folder` whose names hold ".MARK.part" or ".MARK.before" where MARK is that
-// of a process that has ended. Those of another world, whose processes cannot be asked for, stay.
+// Removes the files of `folder` whose names contain ".MARK.part" or ".MARK.before", where MARK is
+// the mark of a process that has ended. Files of another boot or namespace stay, because it is not
+// possible to find out whether their processes have ended.
 void remove_leftovers(const std::filesystem::path& folder);
 
 }  // namespace atlas

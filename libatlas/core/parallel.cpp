@@ -22,9 +22,9 @@
 namespace atlas {
 namespace {
 
-// What TBB's hand-over between threads means, for ThreadSanitizer, which does not see into its
-// library: what came before the loop is known to every chunk, and what chunks did after it. Chunks
-// know nothing of each other.
+// Tells ThreadSanitizer how TBB synchronises threads, which it cannot see inside TBB's library:
+// every chunk sees what happened before the loop, and the code after the loop sees what the chunks
+// did. Chunks see nothing of each other.
 class HandOver {
  public:
 #ifdef __SANITIZE_THREAD__
@@ -42,7 +42,7 @@ class HandOver {
   }
 
  private:
-  // One for all loops, since not even a loop's own address may be read by a chunk before.
+  // All loops share it, because a chunk may not even read the address of its own loop before this.
   inline static char begun_ = 0;
   char done_ = 0;
 #else
@@ -52,17 +52,20 @@ class HandOver {
 #endif
 };
 
-// What TBB copies from task to task on any thread: reading it is part of the hand-over.
+// The function object that TBB copies between tasks on any thread. Reading it is part of TBB's
+// synchronisation, so ThreadSanitizer does not check it.
 template <class Run>
 struct Task {
   const Run* run;
   ATLAS_UNSEEN void operator()(std::size_t chunk) const { (*run)(chunk); }
 };
 
-thread_local double lent_seconds = 0;  // of this thread's loops and background tasks, on others
-thread_local bool in_chunk = false;    // of a loop that has threads already
+// CPU time that this thread's loops and background tasks have used on other threads.
+thread_local double lent_seconds = 0;
+thread_local bool in_chunk = false;  // whether this thread runs a chunk of a loop
 
-// One chunk on a thread that may not be the loop's own.
+// Lives while a thread runs one chunk. If that is not the loop's own thread, its CPU time is added
+// to `lent`.
 class ChunkOnThread {
  public:
   explicit ChunkOnThread(std::atomic<double>& lent, std::thread::id owner)
@@ -127,8 +130,8 @@ void parallel_for(const Context& context, std::size_t n, std::size_t grain,
   if (in_chunk) {
     tbb::this_task_arena::isolate(run_all);
   } else {
-    // More threads than cores are a valid wish (it is how tests show that results do not depend on
-    // their number), which TBB grants only when told so.
+    // A context may ask for more threads than there are cores (tests do so to show that results do
+    // not depend on the number). TBB grants them only with this limit.
     std::optional<tbb::global_control> limit;
     if (context.threads > tbb::info::default_concurrency()) {
       limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(context.threads));

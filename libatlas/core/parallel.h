@@ -1,5 +1,6 @@
-// Parallel loops (oneTBB behind the .cpp) whose results cannot depend on the number of threads:
-// the range is cut into chunks by `grain` alone, and chunks write disjoint outputs.
+// Parallel loops (by oneTBB, which only the .cpp includes) whose results do not depend on the
+// number of threads: `grain` alone determines how the range is divided into chunks, and chunks
+// write to disjoint outputs.
 #pragma once
 
 #include <cstddef>
@@ -9,22 +10,24 @@
 
 namespace atlas {
 
-// Calls body(begin, end) over [0, n) in chunks of at most `grain` (>= 1) indices, on up to
-// context.threads threads. Once context.cancelled(), chunks not yet begun are skipped: the caller
-// checks context.cancelled() afterwards.
-// A loop within a chunk of another one shares its threads.
+// Calls body(begin, end) for chunks of at most `grain` (>= 1) indices that together cover [0, n),
+// on up to context.threads threads. Once context.cancelled(), chunks that have not begun are
+// skipped, so the caller must check context.cancelled() afterwards. A loop inside a chunk of
+// another loop shares its threads.
 void parallel_for(const Context& context, std::size_t n, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-// How many threads a context asks for: the machine's where it leaves that open; at least 1.
+// Returns the number of threads that a context asks for, at least 1: the machine's number if the
+// context leaves it open.
 std::size_t thread_count(const Context& context);
 
-// CPU time of the calling thread, and of what its loops and background tasks (background.h) have
-// run on others: what a call took, whatever else the process does meanwhile. Seconds, for
-// differences only.
+// Returns the CPU time of the calling thread, plus that which its loops and background tasks
+// (background.h) have used on other threads, in seconds. Differences of it are the CPU time that a
+// call took, whatever else the process did meanwhile.
 double own_cpu_seconds();
 
-// Adds to own_cpu_seconds() of the calling thread what another thread has spent for it.
+// Adds CPU time that another thread has spent for the calling thread to own_cpu_seconds() of the
+// calling thread.
 void add_own_cpu_seconds(double seconds);
 
 }  // namespace atlas

@@ -13,9 +13,9 @@ const char* after_digits(const char* at, const char* end) {
   return at;
 }
 
-// What is no finite number as Microsoft's runtime wrote it until 2015: "-1.#IND00", "1.#QNAN",
-// "1.#INF00e+000". Exporters of that time leave it where a normal has no length. Null where it is
-// something else.
+// Reads a value that is not finite as Microsoft's runtime wrote it until 2015: "-1.#IND00",
+// "1.#QNAN", "1.#INF00e+000". Exporters of that time wrote it, for example for normals of length 0.
+// Returns null if the text is something else.
 const char* parse_special(const char* at, const char* end, double& value) {
   const bool signed_ = *at == '-' || *at == '+';
   const std::string_view text(at + signed_, std::size_t(end - at) - signed_);
@@ -40,7 +40,7 @@ const char* parse_number_slow(const char* at, const char* end, double& value) {
   if (start > at && *start == '-') return nullptr;
   const auto [stop, error] = std::from_chars(start, end, value);
   if (error == std::errc::result_out_of_range) {
-    // Too small or too large: from_chars says only that it is one of them.
+    // from_chars does not say whether the number is too small or too large.
     std::string_view digits(start, std::size_t(stop - start));
     if (digits.front() == '-') digits.remove_prefix(1);
     const std::size_t e = digits.find_first_of("eE");

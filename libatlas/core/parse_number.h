@@ -1,18 +1,19 @@
-// Internal: numbers in text, whatever the locale.
+// Internal: reads numbers from text, independent of the locale.
 #pragma once
 
 #include <cstdint>
 
 namespace atlas {
 
-// Reads a decimal number, "nan", "inf" or what Microsoft's runtime wrote for these ("1.#IND") at
-// `at`, where text goes on to a non-digit at or before `end`; what is beyond double becomes
-// infinite or 0. Returns where it ends, or null where there is none. Unlike std::from_chars it
-// takes a leading '+', "5." and out-of-range values.
+// Reads a decimal number, "nan", "inf", or what Microsoft's runtime wrote for these ("1.#IND"), at
+// `at`; the text must continue to a non-digit at or before `end`. Numbers beyond the range of
+// double become infinite or 0. Returns where the number ends, or null if there is none. Unlike
+// std::from_chars, it accepts a leading '+' and returns a value for numbers out of range.
 const char* parse_number_slow(const char* at, const char* end, double& value);
 
-// Up to 15 digits and a power of ten up to 22 are both exact doubles, so one multiplication or
-// division rounds correctly (Clinger 1990); the rest goes to the library.
+// The same, but fast for common numbers: an integer of up to 15 digits and a power of ten up to
+// 10^22 are both exact doubles, so one division of them rounds correctly (Clinger 1990). All other
+// numbers go to parse_number_slow().
 inline const char* parse_number(const char* at, const char* end, double& value) {
   constexpr double kPowers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                 1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,

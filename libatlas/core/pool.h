@@ -1,4 +1,4 @@
-// Internal: objects that are dear to make, one a running task: handed out and taken back.
+// Internal: Pool, which lends objects that are expensive to create, one to each running task.
 #pragma once
 
 #include <memory>
@@ -8,11 +8,11 @@
 
 namespace atlas {
 
-// Its members may be called from several threads at once, but for idle().
+// All members except idle() may be called from several threads at once.
 template <class T>
 class Pool {
  public:
-  // One that was given back, or a new one.
+  // Returns an object that was given back, or a new one.
   std::unique_ptr<T> take() {
     const std::lock_guard lock(mutex_);
     if (idle_.empty()) return std::make_unique<T>();
@@ -25,7 +25,7 @@ class Pool {
     idle_.push_back(std::move(object));
   }
 
-  // Those that were given back.
+  // Returns the objects that were given back.
   const std::vector<std::unique_ptr<T>>& idle() const { return idle_; }
 
  private:

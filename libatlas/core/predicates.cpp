@@ -1,8 +1,8 @@
 #include "libatlas/core/predicates.h"
 
-// CGAL's start-up check of rounding modes ends the program under valgrind, which rounds to nearest
-// only and counts instructions all the same. What the check guards is tested: tests/core compares
-// the predicates with exact arithmetic.
+// CGAL checks the rounding modes at start-up. That check ends the program under valgrind, which can
+// only round to nearest, but is still needed to count instructions. Instead, tests/core compares
+// the predicates with exact arithmetic, which tests what the check guards.
 #define CGAL_DISABLE_ROUNDING_MATH_CHECK
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
@@ -17,13 +17,13 @@ Kernel::Point_2 point(Vec2d p) {
   return {p.x, p.y};
 }
 
-// With a, b, p collinear: whether p lies strictly between a and b.
+// Returns whether p lies strictly between a and b. The three must be collinear.
 bool strictly_between(Vec2d a, Vec2d b, Vec2d p) {
   if (a.x != b.x) return std::min(a.x, b.x) < p.x && p.x < std::max(a.x, b.x);
   return std::min(a.y, b.y) < p.y && p.y < std::max(a.y, b.y);
 }
 
-// Whether the segments ab and bc, as neighbours on a border are, overlap along a stretch.
+// Returns whether the segments ab and bc, neighbours on a border, overlap along a stretch.
 bool fold_back(Vec2d a, Vec2d b, Vec2d c) {
   if (orientation(a, b, c) != 0) return false;
   return strictly_between(a, b, c) || strictly_between(b, c, a) || (a == c && !(a == b));
@@ -32,7 +32,8 @@ bool fold_back(Vec2d a, Vec2d b, Vec2d c) {
 }  // namespace
 
 int close_orientation(Vec2d a, Vec2d b, Vec2d c) {
-  // Neighbouring edges share a point, and for three points of which two are one no bound decides.
+  // Neighbouring edges share a point, and if two of the three points are equal, the bound in
+  // orientation() never decides.
   if (a == b || b == c || a == c) return 0;
   return static_cast<int>(CGAL::orientation(point(a), point(b), point(c)));
 }

@@ -1,5 +1,5 @@
-// Exact geometric predicates (CGAL's filtered kernel behind the .cpp): the sign is the sign of the
-// true determinant of the doubles given, never a rounding error's.
+// Exact geometric predicates (by CGAL's filtered kernel, which only the .cpp includes): the sign is
+// that of the true determinant of the given doubles, unaffected by rounding errors.
 #pragma once
 
 #include <algorithm>
@@ -9,10 +9,11 @@
 
 namespace atlas {
 
-// Where rounding may decide. For orientation() only.
+// Decides the cases in which rounding may change the sign. For orientation() only.
 int close_orientation(Vec2d a, Vec2d b, Vec2d c);
 
-// +1 if a, b, c turn left, -1 if right, 0 if collinear. Coordinates must be finite.
+// Returns +1 if a, b, c turn left, -1 if they turn right, 0 if they are collinear. Coordinates must
+// be finite.
 inline int orientation(Vec2d a, Vec2d b, Vec2d c) {
   // Shewchuk 1997, "Adaptive precision floating-point arithmetic and fast robust geometric
   // predicates", section 4.1: beyond this bound rounding cannot have changed the sign. It presumes
@@ -23,11 +24,11 @@ inline int orientation(Vec2d a, Vec2d b, Vec2d c) {
   return close_orientation(a, b, c);
 }
 
-// Where their boxes meet. For segments_cross() only.
+// Decides the cases in which the segments' bounding boxes meet. For segments_cross() only.
 bool near_segments_cross(Vec2d a, Vec2d b, Vec2d c, Vec2d d);
 
-// Whether the open segments ab and cd cross, or overlap along a stretch. Touching at a shared end
-// point only does not count.
+// Returns whether the segments ab and cd cross, overlap along a stretch, or touch because an end
+// point of one lies inside the other. Segments that only share an end point do not count.
 inline bool segments_cross(Vec2d a, Vec2d b, Vec2d c, Vec2d d) {
   const bool apart =
       std::max(a.x, b.x) < std::min(c.x, d.x) || std::max(c.x, d.x) < std::min(a.x, b.x) ||

@@ -11,8 +11,9 @@
 
 namespace atlas {
 
-// The context of a part of a stage: whatever the part calls its fractions, they are reported as
-// those of `stage` from `from` to `to`, and never fall, should the part try several ways.
+// Returns the context for a part of a stage. Whatever stage the part names, its fractions are
+// reported as those of `stage`, scaled to the range from `from` to `to`. They never fall, even if
+// the part tries several methods in turn.
 inline Context part_of_stage(const Context& outer, std::string stage, double from = 0,
                              double to = 1) {
   Context part = outer;

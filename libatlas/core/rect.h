@@ -1,5 +1,6 @@
-// Integer rectangles on a texel grid. Page coordinates have their origin at the bottom left, x to
-// the right and y up, so that uv = (texel / page size) without a flip; image writers turn the rows.
+// Integer rectangles on a texel grid. The origin of a page is at the bottom left, x points to the
+// right and y up, so that uv = texel / page size without a flip; image writers reverse the order of
+// the rows.
 #pragma once
 
 #include <cstdint>

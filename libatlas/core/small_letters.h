@@ -1,11 +1,11 @@
-// Names where capitals mean nothing.
+// Conversion to lower case, for names whose case does not matter.
 #pragma once
 
 #include <string>
 
 namespace atlas {
 
-// Whatever the locale: letters beyond a to z stay as they are.
+// Both change only A to Z, independent of the locale.
 inline char small_letter(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }

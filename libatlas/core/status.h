@@ -1,6 +1,6 @@
-// How the library says that something went wrong: bad data and failed input or output give a
-// Status with a message that names file, place, reason and remedy; broken preconditions assert, and
-// are undefined where NDEBUG is defined.
+// How the library reports errors. Bad data and failed input or output return a Status whose message
+// names the file, the place, the reason and a remedy. Broken preconditions assert; they are
+// undefined behaviour if NDEBUG is defined.
 #pragma once
 
 #include <cassert>
@@ -38,7 +38,7 @@ class [[nodiscard]] Status {
   std::string message_;
 };
 
-// A value or the Status that says why there is none: ask ok() before value(), *, or ->.
+// A value, or the Status that says why there is none. Check ok() before value(), * or ->.
 template <class T>
 class [[nodiscard]] Result {
  public:

@@ -1,4 +1,4 @@
-// Internal: numbers as text files hold them.
+// Internal: TextBuffer, which formats numbers for text files.
 #pragma once
 
 #include <cassert>
@@ -12,7 +12,7 @@
 
 namespace atlas {
 
-// Appends numbers without locale. Values must be finite.
+// Appends numbers independent of the locale. Values must be finite.
 class TextBuffer {
  public:
   void text(std::string_view s) { bytes_.append(s); }
@@ -25,7 +25,8 @@ class TextBuffer {
     assert(error == std::errc{});
     bytes_.append(digits, stop);
   }
-  // A coordinate of the file: the float itself where there is no origin to add.
+  // Appends a coordinate of the file, origin + offset. If the origin is 0, that is the float
+  // itself.
   void coordinate(double origin, float offset) {
     origin == 0 ? number(offset) : number(origin + static_cast<double>(offset));
   }

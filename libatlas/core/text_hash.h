@@ -1,4 +1,4 @@
-// Internal: a short mark of a text, for names of files.
+// Internal: a short hash of a text, for names of files.
 #pragma once
 
 #include <cstdint>

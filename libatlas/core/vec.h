@@ -1,5 +1,6 @@
-// Plain vectors for public headers. They carry no arithmetic on purpose: inside the library the
-// algebra is GLM's (core/glm_bridge.h) or Eigen's, and neither leaks to those who include us.
+// Plain vectors for the public headers. They deliberately have no arithmetic: inside the library,
+// GLM (core/glm_bridge.h) or Eigen does the algebra, and programs that include the public headers
+// need neither.
 #pragma once
 
 namespace atlas {

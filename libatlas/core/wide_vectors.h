@@ -1,25 +1,26 @@
-// Internal: vectors of two and four doubles for inner loops. Arithmetic on them is that of their
-// elements, so results do not depend on what the processor has.
+// Internal: vectors of two and four doubles for inner loops. Arithmetic is done on each element
+// separately, so results do not depend on the processor's instructions.
 #pragma once
 
 namespace atlas {
 
-// Elementary to every 64-bit processor. Lies at multiples of 16 bytes, as what std::vector
-// allocates begins.
+// Every 64-bit processor handles it in one instruction. It is aligned to 16 bytes, like the memory
+// that std::vector allocates.
 using Pair = double __attribute__((vector_size(16), may_alias));
 static_assert(__STDCPP_DEFAULT_NEW_ALIGNMENT__ >= sizeof(Pair));
 
-// One instruction's worth where has_wide_vectors, in functions marked ATLAS_WIDE; elsewhere
-// compilers make two of each, and may run out of registers. QuadInPlace is how they are read from
-// arrays.
+// If has_wide_vectors, functions marked ATLAS_WIDE handle it in one instruction. Elsewhere
+// compilers split it into two, and may run out of registers. QuadInPlace is the type for reading it
+// from arrays.
 using Quad = double __attribute__((vector_size(32)));
 using QuadInPlace = double __attribute__((vector_size(32), aligned(16), may_alias));
 
-// For what functions with and without ATLAS_WIDE share: it is compiled for each.
+// For functions that are called by functions with and without ATLAS_WIDE: they are compiled for
+// each.
 #define ATLAS_INLINE [[gnu::always_inline]] inline
 
-// Clang forgets that QuadInPlace need not lie at multiples of 32 where it is a template's argument
-// or behind a reference, and reads it by instructions that insist on them.
+// Clang gets no wide vectors: where QuadInPlace is a template argument or behind a reference, Clang
+// forgets that it need not be aligned to 32 bytes, and reads it with instructions that require it.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define ATLAS_WIDE [[gnu::target("avx2")]]
 inline const bool has_wide_vectors = __builtin_cpu_supports("avx2");

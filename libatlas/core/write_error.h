@@ -1,4 +1,4 @@
-// Internal: why a file could not be written, for messages.
+// Internal: the reason why a file could not be written, for messages.
 #pragma once
 
 #include <cerrno>
@@ -7,7 +7,7 @@
 
 namespace atlas {
 
-// What the system calls the error (an errno), and the remedy where it is want of room.
+// Returns the system's text for `error` (an errno), with a remedy if there is not enough space.
 inline std::string write_error(int error) {
   const bool room = error == ENOSPC || error == EDQUOT || error == EFBIG;
   return std::strerror(error) + std::string(room ? " (make room there, or write elsewhere)" : "");
