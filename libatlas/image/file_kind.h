@@ -1,4 +1,4 @@
-// Internal: what kind of image file some bytes are, told by how they begin.
+// Internal: recognises the format of an image file by its first bytes.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ inline bool begins_with(std::span<const std::uint8_t> bytes, std::string_view si
                     [](char a, std::uint8_t b) { return std::uint8_t(a) == b; });
 }
 
-// ".png" or ".jpg", the kinds that every program knows; empty for all others.
+// Returns ".png" or ".jpg", the formats that every program reads; empty for all other formats.
 inline std::string_view image_extension(std::span<const std::uint8_t> bytes) {
   if (begins_with(bytes, "\x89PNG\r\n\x1a\n")) return ".png";
   return begins_with(bytes, "\xff\xd8\xff") ? ".jpg" : "";

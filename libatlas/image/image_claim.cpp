@@ -21,10 +21,10 @@ std::int64_t big_endian(Bytes bytes, std::size_t at, int count) {
   return value;
 }
 
-// The size stands in the frame header, behind segments that each tell their length.
+// Returns the size in the frame header, which follows segments that each state their length.
 std::optional<ImageClaim> jpeg_claim(Bytes b) {
   for (std::size_t at = 2; at + 10 <= b.size();) {
-    if (b[at] != 0xff || b[at + 1] == 0xff) {  // fill bytes, and what decoders skip
+    if (b[at] != 0xff || b[at + 1] == 0xff) {  // fill bytes, and bytes that decoders skip
       ++at;
       continue;
     }
@@ -47,7 +47,7 @@ std::optional<ImageClaim> gif_claim(Bytes b) {
   return ImageClaim{b[6] | b[7] << 8, b[8] | b[9] << 8, 4, 1, kPackedByte};
 }
 
-// A bare code stream, or one in the boxes of a JP2.
+// Returns whether this is a bare JPEG 2000 code stream, or one in the boxes of a JP2 file.
 bool is_jpeg2000(Bytes b) {
   return begins_with(b, kCodeStream) || (b.size() > 8 && begins_with(b.subspan(4), "jP  "));
 }

@@ -1,5 +1,5 @@
-// Internal: what an image file claims to hold, judged before memory is taken for it. A header of
-// thirty bytes can claim ten gigabytes, and most readers believe it.
+// Internal: the size that an image file claims to have, which is checked before memory is allocated
+// for it. A header of thirty bytes can claim ten gigabytes, and most readers believe it.
 #pragma once
 
 #include <cstdint>
@@ -11,32 +11,34 @@
 
 namespace atlas {
 
-// An image's decoded size in memory at most: 32768 x 32768 of four 8-bit channels, 16384 x 16384 of
-// four floats.
+// The largest decoded size of an image in memory, in bytes: 32768 x 32768 texels of four 8-bit
+// channels, or 16384 x 16384 of four floats.
 constexpr double kLargestImageBytes = 4.0 * (1 << 30);
 
 struct ImageClaim {
   std::int64_t width = 0, height = 0, channels = 3;
-  double channel_bytes = 1;  // in memory
-  double packing = 1;        // channel values that one byte of such a file can hold at most
+  double channel_bytes = 1;  // bytes per channel value in memory
+  double packing = 1;        // most channel values that one byte of such a file can hold
 };
 
-// What one byte holds at most in formats that deflate, LZW, run lengths or Huffman codes compress.
-// Deflate is the tightest of them: 258 bytes in two bits, and a palette makes four channels of a
-// bit.
+// The most channel values that one byte of a file can hold, in formats with Deflate, LZW,
+// run-length or Huffman compression. Deflate has the highest bound: it stores 258 bytes in two
+// bits, and a palette makes four channels of one bit.
 constexpr double kPackedByte = 1032.0 * 8 * 4;
-// In formats that store a plain area in next to nothing.
+// The same in formats that store an area of one colour in almost no space.
 constexpr double kFlatByte = 1 << 20;
 
-// Whether this is a format for which OpenImageIO takes memory as it opens a file (JPEG, GIF and
-// JP2), so that its size has to be found before; by the first 16 bytes.
+// Returns whether OpenImageIO allocates the image's memory already when it opens a file of this
+// format (JPEG, GIF and JPEG 2000), so that the size must be found before. `head` holds the first
+// 16 bytes of the file.
 bool takes_memory_to_open(std::span<const std::uint8_t> head);
 
-// What the first bytes of such a file say, if they reach as far as its size.
+// Returns the size that such a file claims, or nothing if `head`, its first bytes, ends before it.
 std::optional<ImageClaim> claim_of(std::span<const std::uint8_t> head);
 
-// Refuses what is larger than kLargestImageBytes or than a file of so many bytes can hold. Images
-// of 64 MiB and less are left to their reader.
+// Refuses images that claim to be larger than kLargestImageBytes (unsupported), and those that
+// claim more than 64 MiB and more than a file of `file_bytes` can hold, or a side or channel count
+// below 1 (bad_input). `name` is for the message.
 Status check_claim(const ImageClaim& claim, std::uint64_t file_bytes, const std::string& name);
 
 }  // namespace atlas

@@ -33,8 +33,8 @@ OIIO::TypeDesc type_of<float>() {
   return OIIO::TypeDesc::FLOAT;
 }
 
-// OpenImageIO walks rows by stride: starting at the last row with a negative stride turns the
-// image.
+// Returns the bytes per row. OpenImageIO advances by a stride from row to row, so that starting at
+// the last row with a negative stride reverses the order of the rows.
 template <class T>
 OIIO::stride_t row_bytes(const Image<T>& image) {
   return OIIO::stride_t(sizeof(T)) * image.width * image.channels;
@@ -44,7 +44,7 @@ Status failure(const std::filesystem::path& path, const char* what, const std::s
   return {ErrorCode::io, fmt::format("{}: {}: {}", path.string(), what, why)};
 }
 
-// An image as OpenImageIO reads it, and what is said of it.
+// An image that OpenImageIO reads, and its name for messages.
 struct Source {
   std::unique_ptr<OIIO::ImageInput> input;
   std::uint64_t bytes = 0;  // of the file
@@ -60,7 +60,8 @@ ImageClaim spec_claim(const OIIO::ImageInput& input) {
           flat ? kFlatByte : kPackedByte};
 }
 
-// What readers tell of images that they took for whole. A JPEG's other complaints are harmless.
+// Returns whether an image is damaged, judged by the message of a reader that reported success. Of
+// the JPEG reader's messages all but one are harmless.
 bool damaged(const OIIO::ImageInput& input, const std::string& complaint) {
   if (std::string_view(input.format_name()) != "jpeg") return !complaint.empty();
   return complaint.find("premature end") != std::string::npos;
@@ -95,7 +96,8 @@ OIIO::ImageSpec input_settings() {
   return config;
 }
 
-// Calls what reads an image; some readers take memory before they can be asked how much.
+// Calls `reader`, and returns an error if memory runs out: some readers allocate memory before they
+// can be asked how much.
 template <class Function>
 auto within_memory(const std::string& name, const Function& reader) -> decltype(reader()) {
   try {
@@ -105,7 +107,8 @@ auto within_memory(const std::string& name, const Function& reader) -> decltype(
   }
 }
 
-// As much of a file as tells its size, whatever comments precede that.
+// Reads as much of a file as contains its size, whatever comments precede that: up to 16 MiB. For
+// formats that take no memory to open, only the first 16 bytes are read.
 std::vector<std::uint8_t> head_of(const std::filesystem::path& path, std::uint64_t bytes) {
   constexpr std::uint64_t kEnough = 1 << 24;
   std::vector<std::uint8_t> head(16);
@@ -140,7 +143,8 @@ Result<Image<T>> read(const std::filesystem::path& path) {
   });
 }
 
-// OpenImageIO picks its reader by extension; the signature at the start tells the common formats.
+// Returns the extension by which OpenImageIO picks its reader, judged by the signature at the
+// start; null if the format is not PNG, JPEG or WebP.
 const char* extension_of(std::span<const std::uint8_t> bytes) {
   if (begins_with(bytes, "\x89PNG")) return ".png";
   if (begins_with(bytes, "\xff\xd8")) return ".jpg";
@@ -148,8 +152,8 @@ const char* extension_of(std::span<const std::uint8_t> bytes) {
   return nullptr;
 }
 
-// OpenImageIO tells nobody when a disk is full, nor why a write failed: a file of our own remembers
-// the first reason, of which what is called next leaves no trace.
+// A file that remembers the reason of its first failure. OpenImageIO reports neither that a disk is
+// full nor why a write failed, and later calls overwrite errno.
 class RememberingFile : public OIIO::Filesystem::IOFile {
  public:
   using IOFile::IOFile;
@@ -160,7 +164,7 @@ class RememberingFile : public OIIO::Filesystem::IOFile {
     if (written != size) remember();
     return written;
   }
-  bool seek(int64_t offset) override {  // stores what waits in the buffer
+  bool seek(int64_t offset) override {  // flushes the buffer
     errno = 0;
     const bool done = IOFile::seek(offset);
     if (!done) remember();
@@ -179,7 +183,9 @@ class RememberingFile : public OIIO::Filesystem::IOFile {
 struct Target {
   std::filesystem::path path;
   RememberingFile file;
-  std::unique_ptr<OIIO::ImageOutput> writer;  // may still write when it ends: before the file does
+  // The writer may still write when it is destroyed, so it is declared last and destroyed before
+  // the file.
+  std::unique_ptr<OIIO::ImageOutput> writer;
 };
 
 template <class T>
@@ -256,8 +262,8 @@ Status write_8_bits(const std::filesystem::path& path, const Image8& image,
   return write(path, image, spec);
 }
 
-// Whether halves hold an image with at least ten bits down to a hundredth of its brightest value.
-// Sunlight does not fit: 100 000 lux would become infinite.
+// Returns whether half floats represent an image with at least ten bits for all values down to a
+// hundredth of its brightest one. Sunlight does not fit: 100 000 lux would become infinite.
 bool fits_halves(const ImageF& image) {
   constexpr float kLargest = 65504, kSmallestNormal = 0x1p-14f;
   float largest = 0;
@@ -269,7 +275,7 @@ Status write_floats(const std::filesystem::path& path, const ImageF& image) {
   const OIIO::TypeDesc type = fits_halves(image) ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT;
   OIIO::ImageSpec spec(image.width, image.height, image.channels, type);
   spec["compression"] = "zip";
-  // Left out, it would be the time of writing: the same input gives the same bytes.
+  // Without this, it would be the time of writing; the same input must give the same bytes.
   spec["DateTime"] = "1970:01:01 00:00:00";
   return write(path, image, spec);
 }

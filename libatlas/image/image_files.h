@@ -1,8 +1,8 @@
-// Internal: what the module that reads and writes image files gives to image_io.cpp.
+// Internal: the interface of the module that reads and writes image files, for image_io.cpp.
 //
-// OpenImageIO brings some 250 shared libraries and 115 MiB with it, and takes longer to load than a
-// small mesh to cut into charts. Few runs see an image file, so what needs OpenImageIO is a module
-// of its own, which is loaded when the first image is asked for.
+// OpenImageIO brings some 250 shared libraries and 115 MiB with it, and loading it takes longer
+// than cutting a small mesh into charts. Few runs read or write image files, so the code that needs
+// OpenImageIO is a module of its own, which is loaded when the first image is asked for.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@
 
 namespace atlas {
 
-// The functions of image_io.h, name for name.
+// The functions of image_io.h, by the same names.
 struct ImageFiles {
-  // image_files_mark() of where the module was compiled. It stays the first member, so that it can
-  // be read whatever the rest is.
+  // The value of image_files_mark() where the module was compiled. It must stay the first member,
+  // so that it can be read whatever the other members are.
   std::uint64_t mark;
   Result<Image8> (*read_image8)(const std::filesystem::path&);
   Result<Image8> (*decode_image8)(std::span<const std::uint8_t>, const std::string&);
@@ -26,8 +26,9 @@ struct ImageFiles {
   Status (*write_exr)(const std::filesystem::path&, const ImageF&);
 };
 
-// Library and module pass C++ objects to each other, so they must have been compiled alike. The
-// mark differs if the sizes of those objects differ. Count kVersion up when the functions change.
+// The library and the module pass C++ objects to each other, so they must have been compiled alike.
+// The mark differs if the sizes of those objects differ. Increase kVersion when the functions
+// change.
 constexpr std::uint64_t image_files_mark() {
   constexpr std::uint64_t kVersion = 1;
   std::uint64_t mark = 0x9e3779b97f4a7c15u + kVersion;  // no function has such an address
@@ -40,5 +41,5 @@ constexpr std::uint64_t image_files_mark() {
 
 }  // namespace atlas
 
-// The module's one entry.
+// The module's only entry point.
 extern "C" const atlas::ImageFiles* libatlas_image_files();

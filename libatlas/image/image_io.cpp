@@ -33,8 +33,9 @@ fs::path built_folder(const fs::path& file) {
   return {};
 }
 
-// Where the module may be: beside what this code was linked into or the program, where the two lie
-// in bin/ and lib/ of one place, where they were built, where they were to be installed.
+// Returns the folders where the module may be: beside the file that this code was linked into and
+// beside the program; in the lib/ next to the folder of either; where the module was built; where
+// it was to be installed.
 std::vector<fs::path> module_folders() {
   std::error_code none;
   std::vector<fs::path> folders;
@@ -71,7 +72,7 @@ Module load() {
     handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle) return failure();
   }
-  // Else where the system looks for libraries, the program's rpath included.
+  // Otherwise the system searches its library folders, including the program's rpath.
   if (!handle) handle = dlopen(LIBATLAS_IMAGE_MODULE, RTLD_NOW | RTLD_LOCAL);
   void* entry = handle ? dlsym(handle, "libatlas_image_files") : nullptr;
   if (!entry) return failure();
@@ -85,13 +86,13 @@ Module load() {
                       LIBATLAS_IMAGE_MODULE, known ? where.dli_fname : "the one that was found")};
 }
 
-// Loaded once, and never unloaded: OpenImageIO has threads.
+// Returns the module. It is loaded once and never unloaded, because OpenImageIO has threads.
 const Module& module() {
   static const Module loaded = load();
   return loaded;
 }
 
-// Calls the module's function, or says why there is none.
+// Calls the module's function, or returns the reason why there is no module.
 template <class Function, class... Arguments>
 auto call(Function ImageFiles::*function, const std::string& name, Arguments&&... arguments)
     -> decltype((std::declval<ImageFiles>().*function)(arguments...)) {
@@ -102,7 +103,8 @@ auto call(Function ImageFiles::*function, const std::string& name, Arguments&&..
   return (files.functions->*function)(std::forward<Arguments>(arguments)...);
 }
 
-// The module would read past the end of an image that is shorter than its sizes say.
+// Refuses an image whose sides or channels are out of range, or whose texels are not as many as
+// these say: the module would read past the end of a shorter one.
 template <class T>
 Status check_image(const fs::path& path, const Image<T>& image, int most_channels) {
   const std::string sizes = fmt::format("{}: the image is {} x {} with {} channels", path.string(),

@@ -1,8 +1,9 @@
-// Image files in and out. Rows are bottom-up in memory (core/image.h) and turned here. The first
-// call loads the module that does it; without the module every call returns ErrorCode::unsupported.
-// Errors besides: not_found, io, bad_input (what is read is no image, or more than its file can
-// hold; what is to be written is not as large as its sizes say), bad_option. Every function may be
-// called from several threads at once.
+// Reads and writes image files. Rows are bottom-up in memory (core/image.h), and their order is
+// reversed here. The first call loads the module that does the work; without the module, calls
+// return ErrorCode::unsupported. Other errors: not_found, io (the file is no image or is damaged),
+// bad_input (the file claims a larger image than it can hold; the image to write is not as large as
+// its sides say), unsupported (the image takes more than 4 GiB or is a volume), bad_option. Every
+// function may be called from several threads at once.
 #pragma once
 
 #include <cstdint>
@@ -15,31 +16,32 @@
 
 namespace atlas {
 
-// Reads any format that OpenImageIO knows as 8-bit values, all channels, without any colour
+// Reads any format that OpenImageIO supports as 8-bit values, with all channels and without colour
 // conversion (an sRGB file stays sRGB-encoded).
 Result<Image8> read_image8(const std::filesystem::path& path);
 
-// The same for an encoded file held in memory; `name` is for messages, the format is found out
-// from the bytes.
+// The same for an encoded file (PNG, JPEG or WebP) in memory. Its bytes tell the format; `name` is
+// for messages.
 Result<Image8> decode_image8(std::span<const std::uint8_t> bytes, const std::string& name);
 
-// The same as floats; integer files are scaled to [0, 1].
+// The same as floats; integer values are scaled to [0, 1].
 Result<ImageF> read_image_float(const std::filesystem::path& path);
 
 struct PngOptions {
   int compression = 3;  // zlib level, 0 (none) to 9
-  // Neighbouring texels are much alike and nothing repeats, as on baked pages: levels 1 to 5 then
-  // are one, which looks for runs only, after Paeth's filter. Baked pages take less than half the
-  // time and an eighth less room than at level 3, about those of level 6.
+  // For images such as baked pages, whose neighbouring texels are similar and in which nothing
+  // repeats. Levels 1 to 5 then all do the same: they apply Paeth's filter and compress only runs.
+  // Baked pages take less than half the time of level 3, and an eighth less space than it, about as
+  // much as at level 6.
   bool smooth = false;
 };
 
-// Writes a 1 to 4 channel PNG. `path` is written directly: see core/atomic_file.h for
-// whole-or-absent.
+// Writes a PNG file with 1 to 4 channels. `path` is written directly; core/atomic_file.h makes
+// files whole or absent.
 Status write_png(const std::filesystem::path& path, const Image8& image, const PngOptions& options);
 
-// Writes a ZIP-compressed OpenEXR file of scene-linear values: half floats, or floats where the
-// image is brighter (above 65504) or darker (nothing above 0.006) than halves can tell.
+// Writes a ZIP-compressed OpenEXR file of scene-linear values: as half floats, or as floats if the
+// image is too bright (a value above 65504) or too dark (no value above 0.006) for half floats.
 Status write_exr(const std::filesystem::path& path, const ImageF& image);
 
 }  // namespace atlas
