@@ -9,8 +9,8 @@
 
 namespace atlas {
 
-// The unit quaternion (x, y, z, w) that takes the default camera of VRML and glTF (looking along
-// -Z, +Y up) to looking along `direction` without roll: a pitch about X, then a yaw about Y.
+// Returns the unit quaternion (x, y, z, w) that turns the default camera of VRML and glTF (looking
+// along -Z, +Y up) to look along `direction` without roll: a pitch about X, then a yaw about Y.
 inline std::array<double, 4> camera_rotation(glm::dvec3 direction) {
   direction = glm::normalize(direction);
   const double yaw = std::atan2(-direction.x, -direction.z) / 2;
@@ -19,7 +19,7 @@ inline std::array<double, 4> camera_rotation(glm::dvec3 direction) {
           -std::sin(yaw) * std::sin(pitch), std::cos(yaw) * std::cos(pitch)};
 }
 
-// Coordinates of a y-up system for those of a z-up one: what was +Z becomes +Y.
+// Converts coordinates of a z-up system to those of a y-up one: +Z becomes +Y.
 inline glm::dvec3 z_up_to_y_up(const glm::dvec3& v) {
   return {v.x, v.z, -v.y};
 }

@@ -1,4 +1,4 @@
-// Internal: the vertices that one page uses, numbered for itself.
+// Internal: Compactor, which numbers the vertices of a page by themselves.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace atlas {
 
-// Renumbers index lists by first use, one after the other, with memory for one table only.
+// Renumbers index lists by first use, one list after the other, with the memory of a single table.
 class Compactor {
  public:
   explicit Compactor(std::size_t count) : to_(count, kUnset) {}

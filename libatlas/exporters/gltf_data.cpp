@@ -10,7 +10,7 @@ namespace atlas {
 using nlohmann::json;
 namespace {
 
-// The least and largest of each component, as numbers of the accessor's type.
+// Returns the smallest and largest value of each component, as numbers of the accessor's type.
 json bounds_of(const tinygltf::Accessor& accessor, const std::string& rows, std::size_t stride) {
   const int type = accessor.componentType;
   const auto size =
@@ -27,7 +27,7 @@ json bounds_of(const tinygltf::Accessor& accessor, const std::string& rows, std:
       least = std::min(least, value);
       largest = std::max(largest, value);
     }
-    if (least > largest) least = largest = 0;  // nothing finite, which JSON cannot say
+    if (least > largest) least = largest = 0;  // no value is finite, and JSON has no others
     const bool real =
         type == TINYGLTF_COMPONENT_TYPE_FLOAT || type == TINYGLTF_COMPONENT_TYPE_DOUBLE;
     low.push_back(real ? json(least) : json(static_cast<std::int64_t>(least)));
@@ -45,11 +45,11 @@ std::optional<std::size_t> GltfData::view(std::int64_t number) {
   const auto bytes = gltf_view(source_.model, static_cast<int>(number));
   if (!bytes.ok()) return {};
   json copy = source_.document["bufferViews"][std::size_t(number)];
-  copy.erase("extensions");  // of compression, which the bytes at hand are without
+  copy.erase("extensions");  // of compression; these bytes are not compressed
   return at->second = document_.add_view(bytes->data(), bytes->size(), std::move(copy));
 }
 
-// False where the holder names a view that cannot be copied.
+// Returns false if the holder names a view that cannot be copied.
 bool GltfData::renumber_view(json& holder) {
   const auto at = holder.find("bufferView");
   if (at == holder.end()) return true;
@@ -86,8 +86,9 @@ bool GltfData::renumber(json& holder, const char* key) {
   return copied.has_value();
 }
 
-// Primitives often share accessors of a million values of which each uses a few: those of them that
-// have to be put together first are remembered.
+// Primitives often share accessors of a million values, of which each primitive uses a few. The
+// rows are remembered, so that those that must be assembled first (sparse ones) are assembled only
+// once.
 const GltfRows* GltfData::source_rows(int number) {
   const auto [at, is_new] = rows_.try_emplace(number);
   if (is_new) {
@@ -103,7 +104,7 @@ std::optional<std::size_t> GltfData::rows(int number, std::span<const std::uint3
   const GltfRows* rows = source_rows(number);
   if (!rows || vertices.empty()) return {};
   if (*std::max_element(vertices.begin(), vertices.end()) >= rows->count) return {};
-  const std::size_t stride = (rows->row_bytes + 3) / 4 * 4;  // as the format wants it
+  const std::size_t stride = (rows->row_bytes + 3) / 4 * 4;  // the format requires multiples of 4
   std::string bytes(vertices.size() * stride, '\0');
   for (std::size_t i = 0; i < vertices.size(); ++i)
     std::memcpy(&bytes[i * stride], rows->data + vertices[i] * rows->stride, rows->row_bytes);

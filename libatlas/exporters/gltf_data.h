@@ -1,5 +1,5 @@
-// Internal: data of a glTF file that was read, on its way into one that is written. Includes
-// tinygltf, so it is for .cpp files only.
+// Internal: GltfData, which copies data of a glTF file that was read into one that is written.
+// Includes tinygltf, so it is for .cpp files only.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,23 @@
 
 namespace atlas {
 
-// Numbers are those of accessors: in the source they are asked for, in the document they are given.
-// Nothing is given for those that do not exist or leave their buffers.
+// Numbers are accessor numbers: parameters count the accessors of the source, results those of the
+// document. Functions return nothing for accessors that do not exist or exceed their buffers.
 class GltfData {
  public:
   // Both must outlive it.
   GltfData(const GltfSource& source, GltfDocument& document)
       : source_(source), document_(document) {}
 
-  // The accessor as it is, sparse parts and all; each is copied once.
+  // Copies the accessor unchanged, including its sparse part. Each is copied only once.
   std::optional<std::size_t> accessor(std::int64_t number);
-  // The same where `holder[key]` is such a number, which becomes the new one. False where there is
-  // none; the key is gone then.
+  // Copies the accessor that `holder[key]` names, and replaces the number by the new one. Returns
+  // false if there is no such accessor; the key is erased then.
   bool renumber(nlohmann::json& holder, const char* key);
 
-  // A new accessor of the values of these vertices, in the types of the source. Nothing is given
-  // where one of them is beyond the accessor's end, either. `bounds`: with its least and largest
-  // values.
+  // Adds an accessor with the values of these vertices only, in the types of the source. Returns
+  // nothing also if there are no vertices, or one is beyond the accessor's end. `bounds`: whether
+  // the smallest and largest values are stored.
   std::optional<std::size_t> rows(int number, std::span<const std::uint32_t> vertices, bool bounds);
 
  private:
@@ -38,7 +38,8 @@ class GltfData {
 
   const GltfSource& source_;
   GltfDocument& document_;
-  std::map<std::int64_t, std::optional<std::size_t>> accessors_, views_;  // those that are copied
+  // The new number of each accessor and view that was copied.
+  std::map<std::int64_t, std::optional<std::size_t>> accessors_, views_;
   std::map<int, std::optional<GltfRows>> rows_;
 };
 

@@ -23,7 +23,7 @@ std::string word(std::size_t value) {
   return bytes;
 }
 
-// GLB: a header and two chunks, each padded to 4 bytes.
+// Writes a GLB file: a header and one or two chunks, each padded to 4 bytes.
 void write_glb(TextFile& file, std::string text, const std::string& binary) {
   text.resize((text.size() + 3) / 4 * 4, ' ');
   const std::size_t padded = (binary.size() + 3) / 4 * 4;
@@ -118,7 +118,7 @@ nlohmann::json GltfDocument::image_beside(const std::string& file_name) {
   return {{"uri", encode_uri(file_name)}};
 }
 
-// `buffer_uri` is empty for GLB.
+// Returns the document as text. `buffer_uri` is empty for GLB.
 std::string GltfDocument::text(const std::string& buffer_uri) {
   nlohmann::json buffer = {{"byteLength", bytes_.size()}};
   if (!buffer_uri.empty()) buffer["uri"] = buffer_uri;

@@ -1,4 +1,5 @@
-// Internal: a glTF document in the making, its binary data, and the files that it becomes.
+// Internal: GltfDocument, a glTF document under construction, with its binary data and the files
+// that it becomes.
 #pragma once
 
 #include <cstddef>
@@ -17,33 +18,36 @@ namespace atlas {
 
 class GltfDocument {
  public:
-  // `binary`: for a .glb. Begins with the world's title and information.
+  // The document begins with the world's title and information. `binary`: whether it becomes a
+  // .glb.
   GltfDocument(const World& world, bool binary);
 
-  // The top level of the document, for what has no function here.
+  // The top level of the document, for parts that have no function here.
   nlohmann::json json;
   bool binary() const { return binary_; }
 
-  // Each adds an accessor and gives its number. Positions carry their bounds; uvs, of which v
-  // points up, are turned to glTF's.
+  // Each adds an accessor and returns its number. Positions carry their bounds. The v coordinates
+  // of uvs point up in `values`; they are reversed as glTF requires.
   std::size_t add_positions(std::span<const Vec3f> values);
   std::size_t add_vectors(std::span<const Vec3f> values);
   std::size_t add_uvs(std::vector<Vec2f> values);
   std::size_t add_indices(std::span<const std::uint32_t> values);
 
-  // Data of any kind: `view` is what its buffer view says besides where the bytes lie, `accessor`
-  // names a view. Each gives its number.
+  // Add data of any kind, and return its number. `view` holds the properties of the buffer view
+  // except where its bytes are; `accessor` names a view.
   std::size_t add_view(const void* data, std::size_t size, nlohmann::json view);
   std::size_t add_accessor(nlohmann::json accessor);
 
-  // One line more of information on the whole file.
+  // Adds a line of information on the whole file.
   void add_info(const std::string& line);
 
-  // An image whose file is embedded in a .glb, and an image that lies beside a .gltf.
+  // Returns an image whose file is embedded in a .glb (embedded_image), or lies beside a .gltf
+  // (image_beside).
   nlohmann::json embedded_image(std::span<const char> bytes, const char* mime_type);
   static nlohmann::json image_beside(const std::string& file_name);
 
-  // Writes the files under their temporary names; adds to result.bytes.
+  // Writes the files under their temporary names, and adds their sizes to result.bytes. Errors: io,
+  // unsupported (more than 4 GB of data).
   Status write(const std::filesystem::path& path, AtomicFiles& files, WorldFile& result);
 
  private:
@@ -54,8 +58,8 @@ class GltfDocument {
   std::string bytes_;
 };
 
-// The node that turns the world's up to +Y, scales to metres and adds the origin, without its
-// children.
+// Returns the node, still without children, that turns the world's up axis to +Y, scales to metres
+// and adds the origin.
 nlohmann::json gltf_root(const World& world);
 
 }  // namespace atlas

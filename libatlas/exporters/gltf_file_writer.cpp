@@ -1,5 +1,5 @@
-// glTF 2.0 and GLB of a scene that was read from glTF: the file as it was, with one more set of
-// uvs.
+// glTF 2.0 and GLB of a scene that was read from glTF: the file as it was, with an additional set
+// of uvs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::string_view kTexcoord = "TEXCOORD_";
 
-// The sets of uvs among attributes.
+// Returns the numbers of the uv sets among the attributes.
 std::set<std::int64_t> sets_of(const std::map<std::string, int>& attributes) {
   std::set<std::int64_t> sets;
   for (const auto& [name, accessor] : attributes) {
@@ -33,8 +33,8 @@ std::set<std::int64_t> sets_of(const std::map<std::string, int>& attributes) {
   return sets;
 }
 
-// The first set behind TEXCOORD_0 that nothing shown has: one for the whole file, as engines ask
-// for it by its number.
+// Returns the first uv set after TEXCOORD_0 that no primitive shown has. It is the same for the
+// whole file, because engines select it by its number.
 std::int64_t free_set(const GltfSource& source) {
   std::set<std::int64_t> taken;
   for (const GltfPlace& place : source.places)
@@ -101,7 +101,8 @@ class FileWriter {
     return source_.document["meshes"][mesh]["primitives"][primitive];
   }
 
-  // A mesh that is not shown, or that others show as well, or points and lines of one that is.
+  // Returns a copy of a mesh that gets no new uvs: it is not shown, or its number is kept for nodes
+  // that are not shown.
   json unchanged_mesh(std::size_t number) {
     json mesh = source_.document["meshes"][number];
     mesh["primitives"] = json::array();
@@ -119,7 +120,7 @@ class FileWriter {
       losses_.add("primitives whose data cannot be read");
   }
 
-  // Its accessors copied as they are; false where one cannot be.
+  // Copies the primitive's accessors unchanged. Returns false if one cannot be copied.
   bool unchanged(json& primitive) {
     bool whole = true;
     const auto copy_all = [&](json& attributes) {
@@ -145,11 +146,11 @@ class FileWriter {
     const auto number = static_cast<std::size_t>(place.mesh);
     json mesh = source_.document["meshes"][number];
     mesh["primitives"] = json::array();
-    std::size_t next = 0;  // of those before it are points and lines
+    std::size_t next = 0;  // primitives that are not shown are points and lines
     for (const GltfShownPrimitive& shown : place.primitives) {
       for (; next < std::size_t(shown.primitive); ++next) add_unchanged(number, next, mesh);
       next = std::size_t(shown.primitive) + 1;
-      if (shown.triangles == 0) continue;  // all of them were defects
+      if (shown.triangles == 0) continue;  // all its triangles were defects
       mesh["primitives"].push_back(primitive_of(number, shown, result));
     }
     for (; next < model_mesh(number).primitives.size(); ++next) add_unchanged(number, next, mesh);
@@ -157,7 +158,8 @@ class FileWriter {
     return mesh;
   }
 
-  // Corner k of the primitive, of 3 a triangle in the file's own order, as a corner of the scene.
+  // Returns the scene's corner for corner k of the primitive, where k counts 3 per triangle in the
+  // file's own order.
   static std::size_t corner_of(const GltfShownPrimitive& shown, std::size_t k) {
     return 3 * (shown.first_triangle + k / 3) + (shown.mirrored ? 2 - k % 3 : k % 3);
   }
@@ -168,7 +170,7 @@ class FileWriter {
             "Scene::source)"};
   }
 
-  // Whether the scene's triangles are those that were read.
+  // Refuses a scene whose triangles are not those that were read.
   Status check_triangles() const {
     std::size_t triangles = 0;
     for (const GltfPlace& place : source_.places) {
@@ -237,14 +239,15 @@ class FileWriter {
     return names;
   }
 
-  // The format knows no set without those before it: sets that the primitive lacks are the new one.
+  // The format allows no uv set without those before it, so the sets that the primitive lacks refer
+  // to the new uvs, too.
   void add_uvs(const std::vector<Key>& vertices, const std::set<std::int64_t>& own, json& to) {
     const std::size_t uvs = document_.add_uvs(gather(world_.uvs, vertices, 1));
     for (std::int64_t set = 0; set <= set_; ++set)
       if (!own.contains(set)) to[texcoord_name(set)] = uvs;
   }
 
-  // Of another file, beside what the vertices carry of their own.
+  // Adds light that came from another file, beside the primitive's own attributes.
   void add_light(const GltfShownPrimitive& shown, const std::vector<std::uint32_t>& vertices,
                  json& to) {
     if (!source_.other_light || !scene_.lit()) return;
@@ -261,7 +264,7 @@ class FileWriter {
   Losses losses_;
   GltfData data_;
   KeptMaterials materials_;
-  const std::int64_t set_;  // of the new uvs
+  const std::int64_t set_;  // number of the new uv set
   VertexUnifier<2> unifier_;
 };
 

@@ -8,8 +8,8 @@ namespace atlas {
 using nlohmann::json;
 namespace {
 
-// Takes the textures out of a material, or a part of one, for which `stays` is false; gives their
-// number. All of them, those of extensions included, have keys that end in "Texture".
+// Removes the textures for which `stays` is false from a material, or from a part of one, and
+// returns their number. The keys of all textures, including those of extensions, end in "Texture".
 std::size_t strip_textures(json& part, const std::function<bool(const json&)>& stays) {
   std::size_t stripped = 0;
   for (auto at = part.begin(); at != part.end();) {
@@ -29,7 +29,7 @@ std::size_t strip_textures(json& part, const std::function<bool(const json&)>& s
   return stripped;
 }
 
-// The set of uvs that a texture lies in. KHR_texture_transform may name another than the texture.
+// Returns the uv set that a texture uses. KHR_texture_transform may override the texture's own.
 std::int64_t set_of(const json& texture) {
   const std::int64_t own = integer_at(texture, "texCoord", 0);
   const auto extensions = texture.find("extensions");
@@ -42,7 +42,9 @@ std::int64_t set_of(const json& texture) {
 
 }  // namespace
 
-// Extensions name images of kinds that glTF itself has not, which have become PNG by now.
+// Gives a texture the new number of its image, and returns whether it has one. Extensions refer to
+// images in formats that glTF itself does not have; these images have become PNG by now, so the
+// texture itself refers to them.
 bool KeptMaterials::name_image(json& texture,
                                const std::vector<std::optional<std::size_t>>& images) {
   const auto image = [&](const json& object) {

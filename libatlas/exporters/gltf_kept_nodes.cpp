@@ -14,18 +14,18 @@ namespace atlas {
 using nlohmann::json;
 namespace {
 
-// Takes the mesh from a node, and its skin and weights, which the format allows only with a mesh.
+// Removes the mesh from a node, and its skin and weights, which the format allows only with a mesh.
 void leave_mesh(json& node) {
   for (const char* key : {"mesh", "skin", "weights"}) node.erase(key);
 }
 
-// Walks as the reader did, so that visits have its numbers.
+// Visits the nodes in the order of the reader, so that the visits have the reader's numbers.
 class Walk {
  public:
   Walk(const GltfSource& source, const std::vector<std::size_t>& meshes, json& nodes)
       : source_(source), meshes_(meshes), nodes_(nodes), visited_(source.model.nodes.size()) {}
 
-  // The number of the node that shows what `node` shows on this visit.
+  // Returns the number of the node that shows what `node` shows on this visit.
   std::size_t visit(int node) {
     const auto number = static_cast<std::size_t>(node);
     std::size_t own = number;
@@ -41,10 +41,10 @@ class Walk {
   }
 
  private:
-  // Gives the node its mesh; instances are the new nodes that are returned.
+  // Gives the node its mesh. If it has instances, returns the new nodes for them.
   json show(std::size_t node, std::size_t visit) {
     json instances = json::array();
-    json holder;  // what goes with the mesh
+    json holder;  // skin and weights, which go with the mesh
     for (; next_ < meshes_.size() && source_.places[next_].visit == visit; ++next_) {
       if (!source_.places[next_].instance) {
         nodes_[node]["mesh"] = meshes_[next_];
@@ -88,7 +88,7 @@ class Walk {
   std::size_t visits_ = 0, next_ = 0;
 };
 
-// The roots of what is shown, as the scene that readers show.
+// Makes `roots` the root nodes of the scene that readers show.
 void set_roots(const GltfSource& source, json roots, json& document) {
   json& scenes = document["scenes"];
   if (!scenes.is_array()) scenes = json::array();
@@ -108,7 +108,8 @@ std::vector<std::size_t> number_kept_meshes(const GltfSource& source) {
   std::vector<bool> shows(model.nodes.size()), taken(model.meshes.size());
   for (const GltfPlace& place : source.places)
     if (place.node >= 0) shows[std::size_t(place.node)] = true;
-  for (std::size_t n = 0; n < model.nodes.size(); ++n) {  // nodes of other scenes, hidden ones
+  // Nodes that are not shown, because they are hidden or in other scenes, keep their meshes.
+  for (std::size_t n = 0; n < model.nodes.size(); ++n) {
     const int mesh = model.nodes[n].mesh;
     if (!shows[n] && mesh >= 0 && std::size_t(mesh) < taken.size()) taken[std::size_t(mesh)] = true;
   }

@@ -10,18 +10,20 @@
 
 namespace atlas {
 
-// For each place of the source the number of its own mesh: that of the mesh it shows where no other
-// place or node has that number, else one behind the source's meshes.
+// Returns for each place of the source the number of its mesh, which no other place and no other
+// node has: that of the mesh that the place shows if it is free, otherwise one behind the source's
+// meshes.
 std::vector<std::size_t> number_kept_meshes(const GltfSource& source);
 
-// Puts meshes of these numbers, one a place, into the nodes of `document`, which are those of the
-// source; instances of a node become children of it, a node of several parents one for each. Above
-// the nodes that are shown stands another where the world is not in metres or not y-up.
+// Puts meshes of these numbers, one per place, into the nodes of `document`, which are those of the
+// source. Instances of a node become its children; a node with several parents becomes one node per
+// parent. If the world is not in metres or not y-up, another node is added above those that are
+// shown.
 void place_kept_meshes(const World& world, const std::vector<std::size_t>& meshes,
                        nlohmann::json& document);
 
-// Removes meshes that have lost all of their primitives, since the format allows none without, and
-// takes them from their nodes. The other meshes get new numbers.
+// Removes meshes that have lost all of their primitives, because the format forbids them, and
+// removes them from their nodes. The other meshes get new numbers.
 void drop_empty_meshes(nlohmann::json& document, Losses& losses);
 
 }  // namespace atlas

@@ -10,8 +10,8 @@ namespace atlas {
 using nlohmann::json;
 namespace {
 
-// Whether a part has a key that is a number of an accessor or a buffer view wherever extensions
-// have it.
+// Returns whether a part has a key that, in extensions, always is the number of an accessor or a
+// buffer view.
 bool names_data(const json& part) {
   constexpr std::string_view kKeys[] = {"accessor",    "accessors", "attributes", "bufferView",
                                         "bufferViews", "indices",   "values"};
@@ -23,7 +23,7 @@ bool names_data(const json& part) {
   return false;
 }
 
-// The names of all extensions that a part of a document has.
+// Collects the names of all extensions in a part of a document.
 void collect_extensions(const json& part, std::set<std::string>& names) {
   if (!part.is_structured()) return;
   for (const auto& [key, value] : part.items()) {
@@ -43,7 +43,8 @@ std::set<std::string> listed(const json& document, const char* list) {
   return names;
 }
 
-// What is used is what is there, and what a file may have without any mark (quantised values).
+// Lists as used the extensions that are in the document, and those that the source lists as used
+// without containing them, such as that for quantised values.
 void list_extensions(const json& before, json& document) {
   std::set<std::string> had, has;
   collect_extensions(before, had);
@@ -58,7 +59,7 @@ void list_extensions(const json& before, json& document) {
   if (!required.empty()) document["extensionsRequired"] = required;
 }
 
-// Data of an animation; false where some of it is missing.
+// Renumbers the data of an animation. Returns false if some of it is missing.
 bool renumber_animation(json& animation, GltfData& data) {
   const auto samplers = animation.is_object() ? animation.find("samplers") : animation.end();
   if (!animation.is_object() || samplers == animation.end() || !samplers->is_array()) return false;
@@ -91,7 +92,7 @@ void keep_skins(GltfData& data, json& document, Losses& losses) {
       losses.add("matrices of skins that cannot be read");
 }
 
-// Nodes that are shown have their instances as nodes by now.
+// The instances of nodes that are shown have become nodes by now; these are those of other nodes.
 void keep_instances(GltfData& data, json& node, Losses& losses) {
   json& attributes = node["extensions"][kGltfInstancing]["attributes"];
   bool whole = attributes.is_object();
@@ -112,7 +113,7 @@ json merge_assets(const json& source, json own) {
   json& extras = merged["extras"];
   if (!extras.is_null() && !extras.is_object()) extras = {{"source", std::move(extras)}};
   if (extras.is_null()) extras = json::object();
-  json& info = extras["info"];  // of an earlier export: no longer true
+  json& info = extras["info"];  // that of an earlier export is no longer true
   if (info.is_null() || ours) info = json::array();
   if (!info.is_array()) info = json::array({std::move(info)});
   const json added = own.value("extras", json::object());

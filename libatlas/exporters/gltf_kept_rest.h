@@ -1,5 +1,5 @@
-// Internal: what else of a glTF file goes into one that is written again. Includes tinygltf, so it
-// is for .cpp files only.
+// Internal: the other parts of a glTF file that is written again. Includes tinygltf, so it is for
+// .cpp files only.
 #pragma once
 
 #include "libatlas/exporters/gltf_data.h"
@@ -7,16 +7,18 @@
 
 namespace atlas {
 
-// The asset that is written: what the source says of its author and licence, its title if it has
-// one, and the information of both; that of an earlier export is replaced.
+// Returns the asset to write: what the source says of its author and licence, its title (if it has
+// none, the new one), and the information of both. If the source is an earlier export, its
+// information is replaced.
 nlohmann::json merge_assets(const nlohmann::json& source, nlohmann::json own);
 
-// Takes extensions out of a part of the document that name data by number, and do so where only
-// they know: data gets new numbers.
+// Removes from a part of the document the extensions that refer to data by number, except
+// EXT_mesh_gpu_instancing. Data gets new numbers, and only such an extension knows where its own
+// are.
 void drop_data_extensions(nlohmann::json& part, Losses& losses);
 
-// Skins, animations, instances of nodes that are not shown, extensions, and the lists of those that
-// are used. To be called last.
+// Handles skins, animations, instances of nodes that are not shown, extensions, and the lists of
+// extensions that are used. Must be called last.
 void keep_rest(const GltfSource& source, GltfData& data, nlohmann::json& document, Losses& losses);
 
 }  // namespace atlas

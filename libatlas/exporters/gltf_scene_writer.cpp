@@ -1,4 +1,5 @@
-// glTF 2.0 and GLB of a scene with atlas coordinates: a mesh an object, a primitive a material.
+// glTF 2.0 and GLB of a scene with atlas coordinates: one mesh per object, one primitive per
+// material.
 #include <algorithm>
 #include <map>
 #include <tuple>
@@ -20,12 +21,13 @@ namespace {
 constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kClampToEdge = 33071,
               kMirroredRepeat = 33648;
 
-// A texture that shapes it is not read, and without it all of the surface would glow.
+// Returns whether the material's emission is written. If a texture modulates it, it is left out:
+// the texture is not read, and without it the whole surface would glow.
 bool keeps_emission(const Material& material) {
   return material.emission != Vec3f{} && !material.emission_textured;
 }
 
-// glTF's factors are up to 1; what is stronger needs an extension.
+// glTF's factors are at most 1; stronger emission needs an extension.
 void add_emission(const Material& material, json& entry) {
   const Vec3f& e = material.emission;
   const float strength = std::max({1.f, e.x, e.y, e.z});
@@ -34,7 +36,7 @@ void add_emission(const Material& material, json& entry) {
     entry["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = strength;
 }
 
-// A material without its texture.
+// Returns a material without its texture.
 json look_of(const Material& material) {
   const Vec3f& d = material.diffuse;
   json surface = {{"metallicFactor", 0}, {"roughnessFactor", 1}};
@@ -53,14 +55,15 @@ json look_of(const Material& material) {
   return entry;
 }
 
-// The scene's materials and textures as far as they are used, each written once.
+// Writes those of the scene's materials and textures that are used, each once.
 class MaterialWriter {
  public:
   MaterialWriter(const World& world, GltfDocument& document, GltfTextures& textures)
       : scene_(*world.scene), document_(document), files_(textures) {}
 
-  // The number of a material in the document. Without texture coordinates a reader takes no
-  // texture, while a viewer would take one texel of it: then the texture is left out.
+  // Returns the number of the part's material in the document. If the part has no texture
+  // coordinates, the texture is left out: a reader would use none, while a viewer would show one of
+  // its texels.
   Result<std::size_t> material(const ScenePart& part) {
     const Material& material = scene_.materials[part.material];
     const bool textured = part.texcoords && material.texture >= 0;
@@ -79,7 +82,7 @@ class MaterialWriter {
   }
 
  private:
-  // One a texture and way to go on outside it.
+  // Returns the number of a texture. There is one for each image and pair of wrap modes.
   Result<std::size_t> texture(const Material& material) {
     const auto key = std::tuple(material.texture, material.wrap_u, material.wrap_v);
     const auto [at, is_new] = textures_.try_emplace(key, textures_.size());
@@ -100,7 +103,7 @@ class MaterialWriter {
     return at->second;
   }
 
-  // Textures repeat without a word on it.
+  // Returns the number of a sampler. Repeating is the default, so it has no entry.
   std::size_t sampler(TextureWrap u, TextureWrap v) {
     const auto [at, is_new] = samplers_.try_emplace({u, v}, samplers_.size());
     if (!is_new) return at->second;
@@ -122,8 +125,8 @@ class MaterialWriter {
   std::map<std::pair<TextureWrap, TextureWrap>, std::size_t> samplers_;
 };
 
-// What vertices carry is a colour to viewers as long as it can be one; the name of what cannot be
-// is this library's own.
+// Returns the attribute that holds the vertices' light. Values within 0 to 1 are a colour to
+// viewers; for others, the attribute has a name of this library's own.
 const char* light_attribute(const std::vector<Vec3f>& light) {
   const auto is_colour = [](const Vec3f& v) {
     return std::min({v.x, v.y, v.z}) >= 0 && std::max({v.x, v.y, v.z}) <= 1;
@@ -141,7 +144,7 @@ class SceneWriter {
         normal_(first_equals(scene_.normals)),
         light_(light_attribute(scene_.illumination)) {}
 
-  // The part as a primitive of its object's mesh.
+  // Adds the part as a primitive to its object's mesh.
   void add(const ScenePart& part, std::size_t material, WorldFile& result) {
     const auto unified = unifier_.unify(3 * part.triangles.size(), [&](std::size_t k) {
       const std::size_t corner = 3 * std::size_t(part.triangles[k / 3]) + k % 3;
@@ -158,7 +161,8 @@ class SceneWriter {
     result.uvs += unified.vertices.size();
   }
 
-  // The nodes, once the meshes are known. Whatever is as glTF wants it needs no node above.
+  // Adds the nodes; to be called when all meshes are known. If up axis, unit and origin are as glTF
+  // requires, no node above the objects is needed.
   void add_nodes() {
     json& file = document_.json;
     const bool as_is =
@@ -183,8 +187,8 @@ class SceneWriter {
  private:
   using Key = std::array<std::uint32_t, 4>;  // position, uv, texture coordinate, normal
 
-  // Engines look for light in the second set. glTF has no second without a first, so what has no
-  // uvs of its own gets the new ones twice, from the same bytes.
+  // Engines look for light maps in the second uv set. glTF has no second set without a first, so a
+  // part without uvs of its own refers to the new ones in both.
   json attributes(const ScenePart& part, const std::vector<Key>& vertices) {
     json result;
     result["POSITION"] = document_.add_positions(gather(world_.positions, vertices, 0));
@@ -197,8 +201,8 @@ class SceneWriter {
     return result;
   }
 
-  // Readers take 0 for vertices without light in a scene where others have some. Viewers would draw
-  // them black, so a part without any gets none.
+  // Readers use 0 for vertices without light in a scene where others have some. Viewers would draw
+  // them black, so a part whose vertices all have 0 gets no light.
   void add_light(const std::vector<Key>& vertices, json& to) {
     if (!scene_.lit()) return;
     const std::vector<Vec3f> light = gather(scene_.illumination, vertices, 0);
@@ -206,7 +210,8 @@ class SceneWriter {
     if (any) to[light_] = document_.add_vectors(light);
   }
 
-  // Parts come object by object.
+  // Returns the object's mesh. Parts are added object by object, so it is the last mesh or a new
+  // one.
   json& mesh_of(std::uint32_t object) {
     json& meshes = document_.json["meshes"];
     if (meshes.empty() || object != object_) {
@@ -221,14 +226,14 @@ class SceneWriter {
   const World& world_;
   const Scene& scene_;
   GltfDocument& document_;
-  std::vector<std::uint32_t> texcoord_, normal_;  // the index that stands for each
-  const char* light_;                             // the attribute that holds it
+  std::vector<std::uint32_t> texcoord_, normal_;  // index of the first equal value
+  const char* light_;                             // name of the light's attribute
   VertexUnifier<4> unifier_;
-  std::uint32_t object_ = 0;  // that of the last mesh
+  std::uint32_t object_ = 0;  // the object of the last mesh
 };
 
-// Counts what an MTL says of materials and this file does not, what the reader left in the scene's
-// file, and colours beyond glTF's range.
+// Counts what is lost: what an MTL says of materials and this file does not, what the reader left
+// in the scene's file, and colours that exceed glTF's range.
 std::vector<std::string> losses_of(const Scene& scene) {
   Losses losses;
   losses.add(scene.not_read);

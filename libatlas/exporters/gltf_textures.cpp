@@ -13,7 +13,8 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
 
-// PNG holds up to four channels; of more the first three are the colour.
+// Returns an image of up to four channels, which is what PNG holds. If there are more, the first
+// three are the colour.
 Image8 colour_of(const Image8& image) {
   if (image.channels <= 4) return image;
   Image8 colour(image.width, image.height, 3);

@@ -1,4 +1,4 @@
-// Internal: the textures of a kept scene as images of a glTF document.
+// Internal: GltfTextures, which writes the textures of a kept scene as images of a glTF document.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +11,14 @@ namespace atlas {
 
 class GltfTextures {
  public:
-  // `target` is the .gltf or .glb; files beside it are written through `files`. All must outlive
-  // it.
+  // `target` is the .gltf or .glb; files beside it are written through `files`. All arguments must
+  // outlive the object.
   GltfTextures(const Scene& scene, const std::filesystem::path& target, GltfDocument& document,
                AtomicFiles& files)
       : scene_(scene), path_(target), document_(document), files_(files) {}
 
-  // The image of Scene::textures[index], embedded in a .glb or written beside a .gltf; to be called
-  // once for each. Errors: io.
+  // Returns the image of Scene::textures[index], embedded in a .glb or written beside a .gltf. Must
+  // be called only once for each texture. Errors: io.
   Result<nlohmann::json> image(std::size_t index) {
     return document_.binary() ? embed(index) : write_beside(index);
   }

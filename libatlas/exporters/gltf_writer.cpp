@@ -1,4 +1,4 @@
-// glTF 2.0 and GLB with unlit materials (KHR_materials_unlit), one a page.
+// glTF 2.0 and GLB with unlit materials (KHR_materials_unlit), one per page.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ class PagesWriter {
     return add_material(page, fmt::format("page{}", number));
   }
 
-  // The nodes, once the meshes are known.
+  // Adds the nodes and the camera; to be called when all meshes are known.
   void add_scene() {
     const auto turn = [&](const glm::dvec3& v) { return world_.up == Up::z ? z_up_to_y_up(v) : v; };
     const double scale = world_.metres_per_unit;
@@ -71,7 +71,7 @@ class PagesWriter {
   }
 
  private:
-  // From the first viewpoint to a position, in scene units.
+  // Returns the distance from the viewpoint to the farthest position, in scene units.
   double farthest() const {
     const glm::dvec3 eye = to_glm(world_.viewpoint.position);
     double farthest = 1e-6;
@@ -85,7 +85,8 @@ class PagesWriter {
     json& file = document_.json;
     json material = {{"name", name}, {"doubleSided", true}};
     material["pbrMetallicRoughness"] = {{"metallicFactor", 0}, {"roughnessFactor", 1}};
-    if (!page.image.empty()) {  // else viewers light it: unlit it would be a silhouette
+    // A page without an image is lit by the viewer: unlit, it would be a silhouette.
+    if (!page.image.empty()) {
       material["extensions"]["KHR_materials_unlit"] = json::object();
       file["extensionsUsed"] = {"KHR_materials_unlit"};
       file["samplers"] = json::array({{{"magFilter", kLinear},

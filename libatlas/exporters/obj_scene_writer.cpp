@@ -17,7 +17,7 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
-// A name as OBJ can hold it: it ends with its line, and at a '#' behind a blank.
+// Returns a name as OBJ can hold it: there, a name ends with its line, or at a '#' after a blank.
 std::string obj_name(const std::string& name) {
   std::string result = one_line(name);
   for (std::size_t i = 0; i < result.size(); ++i) {
@@ -29,7 +29,8 @@ std::string obj_name(const std::string& name) {
   return result.substr(first, result.find_last_not_of(" \t") + 1 - first);
 }
 
-// The materials' names, all different: MTL knows a material by nothing else.
+// Returns the names of the materials, all different, because MTL identifies a material only by its
+// name.
 std::vector<std::string> material_names(const Scene& scene) {
   std::vector<std::string> names;
   std::set<std::string> taken;
@@ -48,7 +49,7 @@ std::vector<std::string> material_names(const Scene& scene) {
   return names;
 }
 
-// Whether a line of an MTL names a texture.
+// Returns whether a line of an MTL names a texture.
 bool names_texture(std::string_view line) {
   const std::string keyword = small_letters(std::string(line.substr(0, line.find_first_of(" \t"))));
   constexpr std::string_view kOthers[] = {"bump", "disp", "decal", "refl", "norm"};
@@ -56,11 +57,13 @@ bool names_texture(std::string_view line) {
          std::find(std::begin(kOthers), std::end(kOthers), keyword) != std::end(kOthers);
 }
 
-// The material as its MTL had it. Textures would be drawn at the new uvs, so they are comments.
+// Returns the lines that the material's MTL had. Those that name textures become comments, because
+// the textures would be drawn at the new uvs.
 std::string other_lines(const Material& material, Losses& losses) {
   std::string text;
   for (const std::string& line : material.mtl_lines) {
-    if (line.starts_with("d ") && material.opacity < 1) continue;  // it is written as a number
+    if (line.starts_with("d ") && material.opacity < 1)
+      continue;  // already written, see write_materials()
     const bool texture = names_texture(line);
     if (texture) losses.add("textures of materials (lines of the MTL, now comments)");
     if (texture) text += '#';
@@ -97,7 +100,7 @@ void write_materials(TextFile& mtl, const Scene& scene, const std::vector<std::s
   }
 }
 
-// Counts what the scene's file has and this one does not. If the scene holds its file, the file
+// Counts what the scene's file has and this one does not. If the scene holds its source file, that
 // tells more than what the reader has counted.
 void count_file_losses(const Scene& scene, Losses& losses) {
   if (scene.source) return count_losses(scene.source->model, losses);
@@ -106,7 +109,7 @@ void count_file_losses(const Scene& scene, Losses& losses) {
     losses.add("textures of materials", material.mtl_lines.empty() && material.texture >= 0);
 }
 
-// The corners of all parts, one after the other, numbered as the file has its lines.
+// The corners of all parts, one after the other, as numbers of the file's lines.
 struct Lines {
   Compactor::Compact points, uvs, normals;  // normals: of the parts that have them
 };
@@ -140,7 +143,8 @@ void write_normals(TextFile& file, const Scene& scene, const std::vector<std::ui
   });
 }
 
-// An object without a name begins the file as it did where the scene comes from, else it gets one.
+// Returns the line that begins an object. The first object may have no name, as in the scene's own
+// file; others without a name get one.
 std::string object_line(const Scene& scene, std::uint32_t object) {
   const std::string name =
       object < scene.object_names.size() ? obj_name(scene.object_names[object]) : "";

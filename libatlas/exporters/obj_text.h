@@ -1,4 +1,4 @@
-// Internal: what all OBJ files here have in common.
+// Internal: the parts that all OBJ files have in common.
 #pragma once
 
 #include <cstdint>
@@ -12,20 +12,20 @@
 
 namespace atlas {
 
-// A comment or a name must stay on its line.
+// Replaces line ends and backslashes by blanks, so that a comment or a name stays on its line.
 std::string one_line(std::string text);
 
-// The title, what else is to be said of the world, and the name of its MTL.
+// Writes the title and the information of the world as comments, and the name of its MTL.
 void write_obj_head(TextFile& file, const World& world, const std::filesystem::path& mtl);
 
-// Lines `v` and `vt` of the positions and uvs of a world with these indices; positions carry the
-// light of a scene that is kept.
+// Write the lines `v` and `vt` of the world's positions and uvs with these indices. If a scene is
+// kept, positions carry its light.
 void write_obj_points(TextFile& file, const World& world, std::span<const std::uint32_t> points,
                       const Context& context);
 void write_obj_uvs(TextFile& file, const World& world, std::span<const std::uint32_t> uvs,
                    const Context& context);
 
-// Corners as faces name them, 3 a triangle, counted from 0; normals may be empty.
+// Corners as faces refer to them: 3 per triangle, counted from 0; `normals` may be empty.
 struct ObjCorners {
   std::span<const std::uint32_t> points, uvs, normals = {};
 };

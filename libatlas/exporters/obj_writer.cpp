@@ -1,4 +1,4 @@
-// Wavefront OBJ with atlas coordinates: one material a page.
+// Wavefront OBJ with atlas coordinates: one material per page.
 #include <fmt/format.h>
 
 #include <span>

@@ -1,4 +1,4 @@
-// Internal: World::scene as files, one function a format. check_world() has been called.
+// Internal: functions that write World::scene, one per format. The caller has called check_world().
 #pragma once
 
 #include "libatlas/exporters/world.h"
@@ -7,7 +7,7 @@ namespace atlas {
 
 Result<WorldFile> write_gltf_scene(const World& world, const std::filesystem::path& path,
                                    AtomicFiles& files, const Context& context);
-// The glTF file that the scene was read from (Scene::source, not null), with the new uvs.
+// Writes the glTF file that the scene was read from (Scene::source, not null), with the new uvs.
 Result<WorldFile> write_gltf_file(const World& world, const std::filesystem::path& path,
                                   AtomicFiles& files, const Context& context);
 Result<WorldFile> write_obj_scene(const World& world, const std::filesystem::path& path,

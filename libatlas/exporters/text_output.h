@@ -1,4 +1,4 @@
-// Internal: large text files from pieces that are formatted in parallel.
+// Internal: TextFile, which writes large text files in pieces that are formatted in parallel.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@
 
 namespace atlas {
 
-// A relative reference in plain ASCII without blanks: some readers split lists there, some choke on
-// UTF-8. Names from safe_file_name() stay as they are.
+// Returns a relative reference in plain ASCII without blanks, because some readers split lists at
+// blanks and some fail on UTF-8. Names from safe_file_name() stay unchanged.
 std::string encode_uri(const std::string& name);
 
 // A file, plain or gzipped, that remembers its first error.
@@ -27,10 +27,11 @@ class TextFile {
   TextFile& operator=(const TextFile&) = delete;
 
   void write(std::string_view bytes);
-  // Formats items [0, n) in pieces, in parallel, and writes the pieces in order.
+  // Formats the items [0, n) in pieces, in parallel, and writes the pieces in order.
   void write_items(std::size_t n, const Context& context,
                    const std::function<void(TextBuffer& out, std::size_t item)>& format);
-  // Closes; io with the system's reason if anything failed, cancelled if writing was cut short.
+  // Closes the file. Errors: io with the system's reason if anything failed; cancelled if writing
+  // was cut short.
   Status finish();
   std::int64_t bytes() const { return bytes_; }
 

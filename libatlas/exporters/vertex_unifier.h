@@ -1,4 +1,5 @@
-// Internal: one index a corner, for formats that know no more, from several.
+// Internal: VertexUnifier, which turns several indices per corner into one, for formats that allow
+// only one.
 #pragma once
 
 #include <array>
@@ -9,21 +10,21 @@
 
 namespace atlas {
 
-// Every tuple of indices that occurs is a vertex, numbered by first use.
+// Each distinct tuple of indices is a vertex; vertices are numbered by first use.
 template <std::size_t N>
 struct UnifiedMesh {
   std::vector<std::array<std::uint32_t, N>> vertices;
-  std::vector<std::uint32_t> indices;  // 1 a corner, into vertices
+  std::vector<std::uint32_t> indices;  // 1 per corner, into `vertices`
 };
 
-// Tuples are found in a hash table and not along the positions of a uv: a mesh whose triangles take
-// their colours from a few texels has a hundred thousand positions at one uv.
+// Tuples are found in a hash table, not by searching the positions that have the same uv: in a mesh
+// whose triangles take their colours from a few texels, a hundred thousand positions have one uv.
 template <std::size_t N>
 class VertexUnifier {
  public:
   using Key = std::array<std::uint32_t, N>;
 
-  // `key_of(k)` is the tuple of corner k, of `corners`.
+  // `key_of(k)` returns the tuple of corner k, for k < corners.
   template <class KeyOf>
   UnifiedMesh<N> unify(std::size_t corners, const KeyOf& key_of) {
     UnifiedMesh<N> result;
@@ -44,12 +45,13 @@ class VertexUnifier {
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  // Where the tuple's vertex stands, or is to stand.
+  // Returns the entry of the table where the tuple's vertex stands, or the free one where it
+  // belongs.
   std::uint32_t& find(const Key& key, const std::vector<Key>& vertices) {
     std::uint64_t hash = 0;
     for (const std::uint32_t i : key) hash = (hash ^ i) * 0x9E3779B97F4A7C15u;
     const int shift = 64 - std::countr_zero(table_.size());
-    // Fibonacci hashing; half of the table stays empty, so walks are short.
+    // Fibonacci hashing. At least half of the table stays empty, so searches are short.
     std::size_t at = shift < 64 ? hash >> shift : 0;
     for (;; at = (at + 1) & (table_.size() - 1)) {
       const std::uint32_t v = table_[at];
@@ -60,7 +62,7 @@ class VertexUnifier {
   std::vector<std::uint32_t> table_;
 };
 
-// The values that index `which` of the vertices names.
+// Returns the values that index `which` of each vertex refers to.
 template <class T, std::size_t N>
 std::vector<T> gather(const std::vector<T>& values,
                       const std::vector<std::array<std::uint32_t, N>>& vertices,

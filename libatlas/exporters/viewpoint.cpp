@@ -13,17 +13,20 @@ namespace {
 constexpr double kEyeMetres = 1.6, kHeadroomMetres = 1.9;
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kFov = 1.0;                  // radians
-constexpr std::size_t kMaxCandidates = 1500;  // places tried; each costs some seventy rays
-constexpr int kHeadings = 24;                 // level directions looked along
-// Share of directions that must meet a front face: a room without a ceiling has some 0.75, a pocket
-// under an overhanging part of a single object up to 0.6.
+constexpr std::size_t kMaxCandidates = 1500;  // places tried; each costs about seventy rays
+constexpr int kHeadings = 24;                 // horizontal directions tried
+// The least share of directions that must meet a front face; kTightlyEnclosed is for places where
+// nobody can stand. A room without a ceiling has about 0.75; a pocket under an overhanging part of
+// a single object has up to 0.6.
 constexpr double kEnclosed = 0.68, kTightlyEnclosed = 0.85;  // the latter where nobody can stand
-// What a view is worth that ends at the back of a wall: thin shells confuse a coarse grid.
+// The factor on the length of a view that ends at the back of a wall: thin shells confuse a coarse
+// grid.
 constexpr double kBackFace = 0.7;
-constexpr double kRoomy = 0.1;  // mean free level distance, as a share of the floor's diagonal
+constexpr double kRoomy =
+    0.1;  // least mean free horizontal distance, relative to the floor's diagonal
 
-// The scene in a frame whose third axis points up, in voxels. Cells know the sum of the
-// area-weighted normals of what they hold, which tells a wall's front from its back.
+// The scene as voxels, in a frame whose third axis points up. Each cell holds the sum of the
+// area-weighted normals of the triangles in it, which tells the front of a wall from its back.
 class Grid {
  public:
   Grid(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices,
@@ -72,7 +75,8 @@ class Grid {
     Hit hit = Hit::nothing;
   };
 
-  // Walks in steps of half a cell, which may clip a corner and does not matter here.
+  // Walks in steps of half a cell. A step may miss the corner of a cell, which does not matter
+  // here.
   Ray cast(const glm::dvec3& from, const glm::dvec3& direction) const {
     Ray ray;
     const double step = cell_ / 2;
@@ -128,7 +132,8 @@ struct Eye {
   bool tall = false;  // a person can stand there
 };
 
-// For each column of cells, above each floor with air over it.
+// Returns possible positions of the eye: in each column of cells, one above each floor that has at
+// least two cells of height to the next filled one.
 std::vector<Eye> eyes_of_columns(const Grid& grid, double metres_per_unit) {
   const double eye = kEyeMetres / metres_per_unit, headroom = kHeadroomMetres / metres_per_unit;
   std::vector<Eye> eyes;
@@ -140,7 +145,7 @@ std::vector<Eye> eyes_of_columns(const Grid& grid, double metres_per_unit) {
         while (z + 1 < grid.size(2) && !grid.filled(x, y, z + 1)) ++z;
         if (z - floor < 2) continue;
         const double air = (z - floor) * grid.cell();
-        // Half a cell above the floor's cell there is air for certain.
+        // From half a cell above the centre of the floor's cell, there is certainly air.
         const double height = air >= headroom ? std::max(eye, grid.cell()) : 0.55 * air;
         glm::dvec3 p = grid.centre(x, y, floor);
         p.z += grid.cell() / 2 + std::min(height, 0.8 * air);
@@ -151,10 +156,11 @@ std::vector<Eye> eyes_of_columns(const Grid& grid, double metres_per_unit) {
   return eyes;
 }
 
-// Those where people can stand, on the floor that most such columns share, so that nobody starts on
-// a table or under a seat.
+// Returns the positions where people can stand, on the floor that most such columns share, so that
+// nobody starts on a table or under a seat.
 std::vector<Eye> standing(const Grid& grid, const std::vector<Eye>& eyes) {
-  std::vector<std::size_t> columns(grid.size(2) + 1, 0);  // with a floor at z or z + 1
+  // For each z, the number of such positions with a floor at z or z + 1.
+  std::vector<std::size_t> columns(grid.size(2) + 1, 0);
   for (const Eye& eye : eyes) {
     columns[eye.floor] += eye.tall;
     if (eye.floor > 0) columns[eye.floor - 1] += eye.tall;
@@ -167,7 +173,7 @@ std::vector<Eye> standing(const Grid& grid, const std::vector<Eye>& eyes) {
   return result;
 }
 
-// Directions spread evenly over the sphere (a Fibonacci lattice).
+// Returns directions that are spread evenly over the sphere (a Fibonacci lattice).
 std::vector<glm::dvec3> sphere(int count) {
   std::vector<glm::dvec3> result;
   for (int i = 0; i < count; ++i) {
@@ -183,11 +189,12 @@ struct Judged {
   glm::dvec3 direction{1, 0, 0};
 };
 
-// The best place sees front faces all round, has air at every side, and a long view.
+// Scores a position. The best ones see front faces all around, and have air on every side and a
+// long view.
 Judged judge(const Grid& grid, const Eye& candidate, const std::vector<glm::dvec3>& around) {
   const glm::dvec3& eye = candidate.position;
   Judged result;
-  // Most places of a scene seen from outside are not enclosed: a few rays tell.
+  // Most positions in a scene that is seen from outside are not enclosed, which a few rays show.
   double enclosed = 1;
   std::size_t open = 0;
   for (const glm::dvec3& d : around) {
@@ -204,11 +211,12 @@ Judged judge(const Grid& grid, const Eye& candidate, const std::vector<glm::dvec
     nearest = std::min(nearest, ray.distance);
     mean += ray.distance / kHeadings;
   }
-  // A pocket between an object's parts is no room.
+  // A pocket between parts of an object is not a room.
   if (nearest < 1.5 * grid.cell() || mean < kRoomy * grid.level_diagonal()) return result;
   double best = -1;
   for (int i = 0; i < kHeadings; ++i) {
-    // The shorter side counts twice: down the middle of an aisle, not along its wall.
+    // The shorter of the two neighbouring directions counts for both, so that the view leads down
+    // the middle of an aisle, not along its wall.
     const double side = std::min(free[(i + kHeadings - 1) % kHeadings], free[(i + 1) % kHeadings]);
     const double view = 2 * free[i] + 2 * side;
     if (view <= best) continue;
@@ -225,7 +233,7 @@ struct Best : Judged {
   glm::dvec3 eye{0};
 };
 
-// Tries at most kMaxCandidates of them, spread over all.
+// Returns the best of at most kMaxCandidates positions, which are spread over all of them.
 Best best_of(const Grid& grid, const std::vector<Eye>& eyes, const Context& context) {
   const std::vector<glm::dvec3> around = sphere(48);
   Best best;
@@ -243,7 +251,8 @@ Best best_of(const Grid& grid, const std::vector<Eye>& eyes, const Context& cont
 Viewpoint from_outside(const Grid& grid) {
   const glm::dvec3 centre = (grid.low() + grid.high()) / 2.0;
   const double radius = std::max(glm::distance(grid.low(), grid.high()) / 2, 1e-30);
-  const glm::dvec3 towards = glm::normalize(glm::dvec3(0.75, 0.55, 0.4));  // three sides seen
+  const glm::dvec3 towards =
+      glm::normalize(glm::dvec3(0.75, 0.55, 0.4));  // three sides are visible
   const glm::dvec3 eye = centre + towards * (radius / std::sin(kFov / 2));
   Viewpoint view;
   const glm::dvec3 position = grid.from_frame(eye), direction = grid.from_frame(-towards);

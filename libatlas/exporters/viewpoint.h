@@ -1,4 +1,4 @@
-// Where a viewer should start in a scene that nobody has described.
+// Chooses where a viewer starts in a scene that has no viewpoint.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,12 @@ struct ViewpointOptions {
   int cells = 96;              // voxels along the longest side of the box, 8 to 512
 };
 
-// Chooses a point inside the scene, standing on some floor, with free distance around and the
-// longest view ahead; where nothing surrounds any such point (a single object seen from outside),
-// a point outside that sees the whole. Positions are relative to World::origin, as given.
-// Works on a voxel grid (every triangle marks the cells it passes), so the cost is linear in
-// triangles plus a constant; deterministic. Preconditions: indices in range, positions finite.
+// Chooses a point inside the scene, above a floor, with free space around it and the longest view
+// ahead. If the scene surrounds no such point (a single object seen from outside), chooses a point
+// outside from which the whole scene is seen. Positions and the result are relative to
+// World::origin. The scene is examined on a voxel grid, in which every triangle marks the cells
+// that it passes, so the cost is linear in the triangles plus a constant. The result is
+// deterministic. Preconditions: indices are in range, positions finite.
 Viewpoint choose_viewpoint(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices,
                            const ViewpointOptions& options, const Context& context);
 

@@ -1,4 +1,4 @@
-// VRML97 (ISO/IEC 14772-1:1997), the subset that every reader agrees on.
+// VRML97 (ISO/IEC 14772-1:1997), limited to the subset that all readers agree on.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,8 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
-// The inside of an SFString: ASCII, quotes and backslashes escaped.
+// Returns the text as an SFString: in quotes, with other characters than ASCII replaced by '?', and
+// quotes and backslashes escaped.
 std::string quoted(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
@@ -26,8 +27,9 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-// Viewers of VRML hold single floats. So many sizes from zero these keep 17 bits of a place within
-// the world; beyond that what is seen from near begins to shake and to tear.
+// Viewers of VRML hold single floats. At a distance of so many world sizes from zero, floats keep
+// 17 bits of a position within the world; farther away, what is seen from near begins to shake and
+// to tear.
 constexpr double kFarSizes = 128;
 
 bool too_far_for_floats(const World& world) {
@@ -52,7 +54,7 @@ void vector(TextBuffer& out, const glm::dvec3& v) {
   }
 }
 
-// As axis and angle.
+// Writes the rotation to `direction` as axis and angle.
 void orientation(TextBuffer& out, const glm::dvec3& direction) {
   const std::array<double, 4> q = camera_rotation(direction);
   const glm::dvec3 axis(q[0], q[1], q[2]);
@@ -62,7 +64,8 @@ void orientation(TextBuffer& out, const glm::dvec3& direction) {
   out.number(static_cast<float>(2 * std::atan2(sine, q[3])));
 }
 
-// Else viewers light it: without a light it would be a silhouette.
+// Returns whether a page has an image. If none has, viewers light the world: without a light it
+// would be a silhouette.
 bool carries_light(const World& world) {
   return std::any_of(world.pages.begin(), world.pages.end(),
                      [](const Page& page) { return !page.image.empty(); });
@@ -79,8 +82,8 @@ std::string header(const World& world, const Vec3d& origin_left_out) {
   out.text(carries_light(world) ? "FALSE" : "TRUE");
   out.text("\n  type [ ");
   out.text(world.viewpoint.inside ? "\"WALK\", \"ANY\" ]\n" : "\"EXAMINE\", \"ANY\" ]\n");
-  // A person: 0.25 m wide, eyes at 1.6 m, stepping over 0.75 m, walking 1.5 m/s. In units however
-  // small or large, these must stay floats above 0.
+  // A person: 0.25 m wide, eyes at 1.6 m, stepping over 0.75 m, walking 1.5 m/s. However small or
+  // large the unit is, these must stay floats above 0.
   const auto length = [&](double metres) {
     return static_cast<float>(std::clamp(metres / world.metres_per_unit, 1e-30, 1e30));
   };
@@ -95,7 +98,8 @@ std::string header(const World& world, const Vec3d& origin_left_out) {
   return out.bytes();
 }
 
-// Viewers take +Y of a Viewpoint's own system for up, also when walking: a Transform turns it.
+// Viewers use the +Y axis of a Viewpoint's own coordinate system as up, also when walking, so a
+// Transform turns it.
 std::string viewpoint(const World& world, const Vec3d& origin) {
   glm::dvec3 position = to_glm(origin) + to_glm(world.viewpoint.position);
   glm::dvec3 direction = to_glm(world.viewpoint.direction);
@@ -127,7 +131,7 @@ void write_triangles(TextFile& file, const std::vector<std::uint32_t>& indices,
   });
 }
 
-// The part of a page: its corners, and what is added to their positions.
+// The geometry of a page: its corners, and what is added to their positions.
 struct Part {
   Compactor::Compact points, uvs;
   Vec3d origin;
@@ -135,7 +139,8 @@ struct Part {
 
 void write_part(TextFile& file, const World& world, const Part& part, const Context& context) {
   const Compactor::Compact &points = part.points, &uvs = part.uvs;
-  if (!carries_light(world)) file.write("    creaseAngle 0.7\n");  // rounds what is round
+  if (!carries_light(world))
+    file.write("    creaseAngle 0.7\n");  // smooth shading of round surfaces
   file.write("    solid FALSE\n    coord Coordinate { point [\n");
   file.write_items(points.used.size(), context, [&](TextBuffer& out, std::size_t i) {
     out.position(part.origin, world.positions[points.used[i]]);
@@ -184,7 +189,7 @@ Result<WorldFile> write_vrml(const World& world, const fs::path& path, AtomicFil
   Compactor positions(world.positions.size()), texcoords(world.uvs.size());
   for (std::size_t i = 0; i < world.pages.size(); ++i) {
     const Page& page = world.pages[i];
-    if (page.indices.empty()) continue;  // an IndexedFaceSet without faces draws warnings
+    if (page.indices.empty()) continue;  // viewers warn of an IndexedFaceSet without faces
     const Part part{positions.compact(page.indices), texcoords.compact(page.uv_indices), origin};
     file.write(fmt::format("DEF Page_{} Shape {{\n", i));
     file.write(appearance(page, carries_light(world)));
@@ -197,7 +202,7 @@ Result<WorldFile> write_vrml(const World& world, const fs::path& path, AtomicFil
     context.report("writing the world", double(i + 1) / double(world.pages.size()));
   }
   if (Status s = file.finish(); !s.ok()) return s;
-  std::error_code error;  // a pipe has none
+  std::error_code error;  // a pipe has no size
   const auto bytes = fs::file_size(temporary, error);
   result.bytes = error ? file.bytes() : static_cast<std::int64_t>(bytes);
   return result;

@@ -38,7 +38,7 @@ Status check_numbers(const World& world) {
   return {};
 }
 
-// Of a page's list of corners, all below `count`.
+// Checks that the indices of a page's list are all below `count`.
 Status check_indices(std::size_t page, const char* list, const std::vector<std::uint32_t>& indices,
                      std::size_t count) {
   for (std::size_t i = 0; i < indices.size(); ++i) {
@@ -109,7 +109,7 @@ std::string safe_file_name(const std::string& text) {
   }
   if (name.empty()) return "world";
   if (name == text) return name;
-  // Names of another script would all become the same row of '_'.
+  // Without the hash, names in another script would all become the same row of '_'.
   const std::uint32_t hash = text_hash(text);
   return fmt::format("{}-{:04x}", name, (hash ^ (hash >> 16)) & 0xffff);
 }
