@@ -12,7 +12,7 @@
 namespace atlas::app {
 namespace {
 
-// Options that arrive as text and become quantities once all are known.
+// Options that are read as text and become quantities once all options are known.
 struct RawText {
   std::string unit = "m", texel, memory, tone = "linear";
 };
@@ -168,10 +168,10 @@ void add_run_options(CLI::App& app, ExportCommand& command) {
       ->capture_default_str();
 }
 
-constexpr double kMostPages = 1e6;              // as --atlases takes
+constexpr double kMostPages = 1e6;              // the limit of --atlases
 constexpr double kBytesPerTexel = 4.0 * 4 / 3;  // RGBA8 and its mip chain
 
-// Turns text into numbers; gives the message of the first that cannot be.
+// Converts the texts into numbers. Returns a message about the first text that is wrong.
 std::optional<std::string> interpret(const RawText& raw, ExportCommand& command) {
   ExportOptions& options = command.options;
   const auto unit = parse_unit(raw.unit);

@@ -17,8 +17,8 @@ struct ExportCommand {
   int threads = 0;
 };
 
-// Parses argv. Nothing: the program ends with exit_code (help was asked for, or an option is
-// wrong; both have been told to the user).
+// Parses argv. Returns nothing if the program should end with exit_code: help was asked for, or an
+// option is wrong; the user has been told of either.
 std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& exit_code);
 
 }  // namespace atlas::app

@@ -1,4 +1,5 @@
-// The library's messages name fields of its option structs; users of the program know its flags.
+// Replaces the option fields in the library's messages by the program's flags, which its users
+// know.
 #pragma once
 
 #include <string>
@@ -6,7 +7,7 @@
 
 namespace atlas::app {
 
-// The text with the flag in place of every field that has one (--atlas-size for
+// Returns the text with every field that has a flag replaced by the flag (--atlas-size for
 // ExportOptions::atlas_size).
 std::string with_flag_names(std::string_view text);
 

@@ -43,7 +43,8 @@ void print_result(const ExportReport& report, bool kept, app::Terminal& terminal
                     : plain_pages_text(plain)));
 }
 
-// Pages of an earlier export to the same name, which had more of them, are no part of this world.
+// Names the pages that an earlier export to the same name, with more pages, has left: they are not
+// part of this world.
 void name_old_pages(const ExportReport& report, app::Terminal& terminal) {
   const std::filesystem::path folder = report.target.parent_path();
   const auto page = [&](std::size_t p) { return folder / (page_name(report.target, p) + ".png"); };
@@ -70,7 +71,8 @@ StageReport reading_stage(const LoadedScene& loaded, double cpu, double wall) {
   return stage;
 }
 
-// Whether a file has the name of a page's image, or of a kept texture's.
+// Returns whether a file has the name of a page's image, or of a kept texture's if `kind` is
+// "texture".
 bool named_as_page(const std::filesystem::path& file, const std::filesystem::path& target,
                    const char* kind = "") {
   const std::string pages = safe_file_name(target.stem().string()) + "_" + kind;
@@ -79,8 +81,8 @@ bool named_as_page(const std::filesystem::path& file, const std::filesystem::pat
          name.find_first_not_of("0123456789", pages.size()) == std::string::npos;
 }
 
-// Images that this export may write and whose names are taken: by an earlier export's pages, or by
-// links to anything.
+// Returns the existing files that have names of images that this export may write: pages of an
+// earlier export, or links to any file.
 std::vector<std::filesystem::path> images_there(const Scene& scene, const ExportOptions& options) {
   const std::filesystem::path& target = options.target;
   const auto folder = target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
@@ -103,7 +105,8 @@ std::vector<std::filesystem::path> images_there(const Scene& scene, const Export
   return there;
 }
 
-// What is written with the target.
+// Returns the file that is written beside the target: the .mtl or the .bin; empty for other
+// formats.
 std::filesystem::path beside(const std::filesystem::path& target) {
   const std::string extension = lower_extension(target);
   if (extension == ".obj") return std::filesystem::path(target).replace_extension("mtl");
@@ -128,8 +131,9 @@ Status check_outputs(const app::ExportCommand& command) {
   return {};
 }
 
-// A scene's material files, buffers and textures are known only when it has been read. A world that
-// is exported again brings textures that have the names of the new pages.
+// Refuses outputs that would overwrite files of the scene: its material files, buffers and textures
+// are known only when it has been read. A world that is exported again has textures with the names
+// of the new pages.
 Status check_files_stay(const LoadedScene& loaded, const app::ExportCommand& command) {
   const std::filesystem::path& target = command.options.target;
   std::vector<std::filesystem::path> known = loaded.files;
@@ -150,7 +154,8 @@ Status check_files_stay(const LoadedScene& loaded, const app::ExportCommand& com
   return {};
 }
 
-// The export's own figures and those of reading, which came before it.
+// Writes the report, if asked for, with the export's own figures and those of reading, which came
+// before it.
 Status write_report(ExportReport report, const StageReport& reading,
                     const app::ExportCommand& command, app::Terminal& terminal) {
   if (command.report.empty()) return {};
@@ -165,8 +170,8 @@ Status write_report(ExportReport report, const StageReport& reading,
   return {};
 }
 
-// Prints what would run, and reports it where that is asked for. What would end the export before
-// its first stage is an error here, too.
+// Prints what would run, and writes the report if asked for. Errors that would end the export
+// before its first stage are returned here, too.
 Status plan(const app::ExportCommand& command, const LoadedScene& loaded,
             const StageReport& reading, app::Terminal& terminal) {
   const ExportPlan plan = make_plan(loaded.scene, command.options);
@@ -180,13 +185,13 @@ bool is_gltf(const std::filesystem::path& path) {
   return extension == ".gltf" || extension == ".glb";
 }
 
-// What of the scene this export has a use for.
+// Returns options for reading only what this export uses of the scene.
 ReadOptions read_options(const app::ExportCommand& command) {
   ReadOptions read = command.read;
   read.load_textures = !command.options.charts_only;
   read.unlit_textures = false;  // without light no page has an image
   if (!command.options.keep_scene) return read;
-  // A glTF file that is written again has its normals by itself.
+  // A glTF file that is written again keeps its normals by itself.
   read.normals = !(is_gltf(command.scene) && is_gltf(command.options.target));
   read.encoded_textures = read.rest = true;
   read.load_textures = read.unlit_textures = lower_extension(command.options.target) != ".obj";

@@ -14,7 +14,7 @@
 namespace atlas::app {
 namespace {
 
-// "2048x1024" or "2048"; "2048x0" is a strip.
+// Parses "2048x1024" or "2048"; "2048x0" is a strip. Returns a complaint, empty if there is none.
 std::string parse_page(const std::string& text, Extent& page) {
   constexpr std::int32_t kMost = 1 << 30;
   const auto read = [](std::string_view digits, std::int32_t least, std::int32_t& side) {
@@ -35,7 +35,7 @@ std::string parse_page(const std::string& text, Extent& page) {
   return {};
 }
 
-// "1s", "500ms", "2m" or seconds.
+// Parses "1s", "500ms", "2m" or a number of seconds. Returns a complaint, empty if there is none.
 std::string parse_seconds(const std::string& text, double& seconds) {
   double value = 0;
   const char* end = parse_number(text.data(), text.data() + text.size(), value);
@@ -103,7 +103,7 @@ void add_run_options(CLI::App& app, PackCommand& c) {
   app.add_flag("-q,--quiet", c.quiet, "Print errors only");
 }
 
-// Options that would change nothing, which nobody wants who gives them.
+// Returns a complaint about options that would change nothing, which nobody wants who gives them.
 std::string about_effort(const CLI::App& command, const PackCommand& c) {
   for (const char* option : {"--budget", "--effort"})
     if (command.count(option) > 0 && c.options.preset != PackPreset::best)
@@ -111,7 +111,8 @@ std::string about_effort(const CLI::App& command, const PackCommand& c) {
   return {};
 }
 
-// What rectangles and images know and charts do not: any page, as many as it takes, quarter turns.
+// Adds the options that rectangles and images have and charts do not: any page, as many pages as
+// needed, quarter turns.
 void add_rect_options(CLI::App& app, PackCommand& c) {
   const OptionGroup group(app, "Pages");
   app.add_option_function<std::string>("--page",

@@ -13,7 +13,7 @@ struct PackCommand {
   enum class Kind { none, rects, images, mesh } kind = Kind::none;
   std::filesystem::path input, output, preview;
   PackOptions options;
-  bool page_given = false;  // rects: else that of the instance, where the list is one
+  bool page_given = false;  // whether the page was given; if not, rects uses an instance's own
   DataFormat format = DataFormat::hash;
   bool json = false, quiet = false;
   int threads = 0;
@@ -25,8 +25,8 @@ struct PackCommand {
   int page_side = 2048;
 };
 
-// Fills in the command; returns -1 to go on, or the exit code with which the program should end
-// (help, version, or an error already printed).
+// Fills in the command. Returns -1 to go on, or the exit code with which the program should end
+// (after help, version, or an error that has been printed).
 int parse_command_line(int argc, char** argv, PackCommand& command);
 
 }  // namespace atlas::app

@@ -9,7 +9,8 @@
 namespace atlas::app {
 
 // Each reads its input, packs, writes its files (whole or not at all), and returns the layout for
-// the summary. Not everything placed is an error for images, and reported in the atlas for rects.
+// the summary. Items that cannot be placed are an error for images; for rects they are reported in
+// the atlas.
 Result<PackedAtlas> run_rects(const PackCommand& command, const Context& context);
 Result<PackedAtlas> run_images(const PackCommand& command, const Context& context);
 Result<PackedAtlas> run_mesh(const PackCommand& command, const Context& context);

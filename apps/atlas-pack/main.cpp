@@ -16,7 +16,8 @@ namespace {
 
 using namespace atlas;
 
-// Each page is a file to load and a texture to bind: where larger ones would do, they are named.
+// Warns of many pages, each of which is a file to load and a texture to bind, and names larger ones
+// that would do.
 void advise_on_pages(const app::PackCommand& command, const app::PackedAtlas& atlas,
                      const Context& context) {
   constexpr std::size_t kMany = 64;
@@ -40,7 +41,7 @@ void advise_on_pages(const app::PackCommand& command, const app::PackedAtlas& at
       atlas.pages.size(), wanted, count()));
 }
 
-// Sprites seldom want a page of 2048 x 2048 for themselves.
+// Warns of a mostly empty page: sprites rarely need a page of 2048 x 2048.
 void advise_on_room(const app::PackCommand& command, const app::PackedAtlas& atlas,
                     const Context& context) {
   constexpr double kMostlyEmpty = 0.25;
@@ -91,7 +92,7 @@ int main_of(int argc, char** argv) {
                   atlas->cpu_seconds));
   if (atlas->unplaced == 0) advise_on_pages(command, *atlas, context);
   advise_on_room(command, *atlas, context);
-  // Whatever was left out has been named; scripts need to know as well.
+  // The items that were left out have been named; the exit code tells it to scripts.
   if (atlas->unplaced > 0) {
     terminal.error(
         fmt::format("no place for {} of {} items (give a larger --page or more --max-pages)",

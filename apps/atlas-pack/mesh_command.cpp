@@ -25,7 +25,7 @@ struct RepackedMesh {
   const Scene& scene;
   const UvCharts& charts;
   const FitResult& fit;
-  std::vector<Vec2d> uvs;  // new ones in texels from the page's lower left corner, 3 a triangle
+  std::vector<Vec2d> uvs;  // new uvs, texels from the page's lower left corner, 3 per triangle
 };
 
 RepackedMesh repack(const Scene& scene, const UvCharts& charts, const FitResult& fit) {
@@ -48,7 +48,8 @@ class UvLines {
   explicit UvLines(const RepackedMesh& mesh)
       : mesh_(mesh), numbers_(mesh.scene.texcoords.size(), 0) {}
 
-  // The number of a corner's uv on a page of that size; adds its line to `text` if it is new.
+  // Returns the number of a corner's uv on a page of this size; adds its line to `text` if it is
+  // new.
   std::size_t number_of(std::size_t corner, Extent page, TextBuffer& text) {
     std::size_t& vt = numbers_[mesh_.charts.same[mesh_.scene.texcoord_indices[corner]]];
     if (vt != 0) return vt;
@@ -70,12 +71,12 @@ class UvLines {
   std::size_t count_ = 0;
 };
 
-// The mesh with its new uvs: one material a page.
+// Returns the mesh with its new uvs as OBJ: one material per page.
 std::string to_obj(const RepackedMesh& mesh, const std::string& material_file) {
   const auto& [s, charts, fit, uvs] = mesh;
   TextBuffer text;
   text.text("# repacked by atlas-pack\n");
-  for (std::size_t page = 0; page < fit.pages.size(); ++page)  // the shape textures must have
+  for (std::size_t page = 0; page < fit.pages.size(); ++page)  // the shape that textures must have
     text.text(fmt::format("# page_{}: {} x {} texels\n", page, fit.pages[page].width,
                           fit.pages[page].height));
   text.text(fmt::format("mtllib {}\n", material_file));
@@ -136,7 +137,7 @@ std::int32_t round_up(std::int32_t side) {
   return static_cast<std::int32_t>(std::bit_ceil(static_cast<std::uint32_t>(side)));
 }
 
-// Every chart a path of its triangles, y down.
+// Returns a picture in which each chart is a path of its triangles, y down.
 std::string to_svg(const RepackedMesh& mesh) {
   const auto& [scene, charts, fit, uvs] = mesh;
   const PageRow row(fit.pages);
@@ -204,11 +205,12 @@ PackedAtlas describe(const FitResult& fit) {
   return atlas;
 }
 
-// At scale 1 the triangles have the area of the pages; where they lie on each other, more fits.
+// Returns the largest scale that can fit. At scale 1 the triangles have the area of the pages; if
+// they overlap each other, a larger scale fits.
 double largest_scale(std::span<const ChartShape> shapes, double page_area, const Context& context) {
   constexpr double kRounding = 1e-6;
   const Result<double> measured = covered_area(shapes, context);
-  const double covered = measured.ok() ? *measured : 0;  // what is refused the packer refuses, too
+  const double covered = measured.ok() ? *measured : 0;  // the packer refuses the same shapes
   if (!(covered > 0) || covered > (1 - kRounding) * page_area) return 1;
   context.say(
       fmt::format("charts lie on themselves, as those of tiled textures do: all together "
@@ -217,7 +219,7 @@ double largest_scale(std::span<const ChartShape> shapes, double page_area, const
   return std::sqrt(page_area / covered);
 }
 
-// Charts on pages whose border is kept free: packed without it, then moved.
+// Packs the charts on pages whose border is kept free: they are packed without it, then moved.
 Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> items,
                              std::span<const ChartShape> shapes, const Context& context) {
   const PackOptions& o = c.options;
@@ -318,7 +320,8 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   }
   Result<FitResult> fitted = fit_charts(c, items, shapes, context);
   if (!fitted.ok()) return fitted.status();
-  if (context.cancelled()) return Status::cancelled();  // a search gives what it has so far
+  // A cancelled search returns what it has found so far.
+  if (context.cancelled()) return Status::cancelled();
   const RepackedMesh mesh = repack(scene, charts, *fitted);
   AtomicFiles files;  // so that mesh, materials and preview appear together
   if (Status s = write_mesh(c.output, mesh, files); !s.ok()) return s;

@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A name as a CSV field: quoted where it must be.
+// Returns a name as a CSV field, quoted if it must be.
 std::string csv_field(const std::string& name) {
   if (name.find_first_of(",\"\n\r") == std::string::npos) return name;
   std::string quoted = "\"";
@@ -84,7 +84,7 @@ std::string to_json(const PackedAtlas& atlas, DataFormat format, std::uint32_t p
     meta["pages"] = Json::array();
     for (Extent e : atlas.pages) meta["pages"].push_back(size(e));
   }
-  // Names come from files and lists: bytes that are no UTF-8 are replaced.
+  // Names come from files and lists, so bytes that are not UTF-8 are replaced.
   return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

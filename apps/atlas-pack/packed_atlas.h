@@ -21,24 +21,25 @@ struct PackedItem {
 struct PackedAtlas {
   std::vector<PackedItem> items;
   std::vector<Extent> pages;
-  std::vector<std::string> images;           // file name a page; empty where no images were written
-  std::vector<std::filesystem::path> files;  // all that were written, a preview last
+  std::vector<std::string> images;  // one file name per page; empty if no images are written
+  std::vector<std::filesystem::path> files;  // all files written, the preview last
   std::size_t unplaced = 0, aliases = 0;
   double utilization = 0;
   double cpu_seconds = 0;
 };
 
-// Takes the library's placements with y down instead of up: turned round, items would no longer
-// begin at multiples of the alignment where blocks of texels are counted, from the upper edge.
+// Uses the library's placements with y down instead of up. If they were converted, items would no
+// longer begin at multiples of the alignment, which blocks of texels count from the upper edge.
 PackedAtlas make_atlas(std::vector<PackedItem> items, const PackResult& result);
 
 std::string to_csv(const PackedAtlas& atlas);
 
-// The layouts that game tools read. Page kAllPages lists everything, each frame with its page.
+// Returns the layout as JSON that game tools read. For the page kAllPages it lists all pages, each
+// frame with its page.
 inline constexpr std::uint32_t kAllPages = 0xffffffffu;
 std::string to_json(const PackedAtlas& atlas, DataFormat format, std::uint32_t page);
 
-// The one-object summary for --json.
+// Returns the summary for --json, a single object.
 std::string to_summary(const PackedAtlas& atlas);
 
 }  // namespace atlas::app

@@ -18,7 +18,7 @@ constexpr std::int32_t kGap = 16;
 std::string xml_text(const std::string& text) {
   std::string safe;
   for (char c : text)
-    safe += static_cast<unsigned char>(c) < 0x20 ? "?"  // no XML takes these
+    safe += static_cast<unsigned char>(c) < 0x20 ? "?"  // XML does not allow these
             : c == '&'                           ? "&amp;"
             : c == '<'                           ? "&lt;"
             : c == '>'                           ? "&gt;"
@@ -49,7 +49,7 @@ std::string to_svg(const PackedAtlas& atlas) {
 }  // namespace
 
 void item_color(std::size_t i, std::uint8_t rgb[3]) {
-  // Golden-ratio steps through the hues, brightness alternating.
+  // The hue advances in golden-ratio steps, and the brightness alternates.
   const double hue = std::fmod(static_cast<double>(i) * 0.61803398875, 1.0) * 6;
   const double value = 0.7 + 0.1 * static_cast<double>(i % 4);
   for (int c = 0; c < 3; ++c) {

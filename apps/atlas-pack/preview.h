@@ -16,28 +16,28 @@
 
 namespace atlas::app {
 
-// A colour for item i, RGB; neighbours in the list differ in hue.
+// Computes a colour for item i as RGB; neighbours in the list differ in hue.
 void item_color(std::size_t i, std::uint8_t rgb[3]);
 
-// Where pages lie beside each other with gaps between them, texels.
+// The positions of pages side by side with gaps between them, in texels.
 struct PageRow {
-  std::vector<std::int64_t> left;      // 1 a page
-  std::int64_t width = 1, height = 1;  // of all
+  std::vector<std::int64_t> left;      // 1 per page
+  std::int64_t width = 1, height = 1;  // of the whole row
 
   explicit PageRow(std::span<const Extent> pages);
 };
 
-// A picture of them, items drawn upon it by `items`: SVG elements, y down.
+// Returns a picture of the pages, with `items` drawn upon it: SVG elements, y down.
 std::string to_svg(const PageRow& row, std::span<const Extent> pages, const std::string& items);
 
-// Pages side by side with a gap, drawn at every step-th texel so that the picture has at most about
-// 4096 pixels a side, however large the pages are.
+// A picture of pages side by side with gaps. It shows every step-th texel, so that it has at most
+// about 4096 pixels per side, however large the pages are.
 class PreviewSheet {
  public:
   explicit PreviewSheet(std::span<const Extent> pages);
 
-  // Calls inside(x, y) for the drawn texels of a page's part [x0, x1) x [y0, y1), from its lower
-  // left corner, and colours those for which it is true.
+  // Calls inside(x, y) for the texels drawn in this part of a page, with coordinates from its lower
+  // left corner, and colours those for which it returns true.
   template <class Inside>
   void fill(std::uint32_t page, const Rect& part, const std::uint8_t rgb[3], const Inside& inside) {
     const Drawn& to = pages_[page];
@@ -54,12 +54,12 @@ class PreviewSheet {
   struct Drawn {
     std::int32_t left = 0, width = 0, height = 0;  // pixels
   };
-  std::int32_t step_ = 1;  // texels a pixel
+  std::int32_t step_ = 1;  // texels per pixel
   std::vector<Drawn> pages_;
   Image8 image_;
 };
 
-// Whether the command's preview, if any, has a format that is known and can be written.
+// Checks that the command's preview, if any, has a known format and can be written.
 Status check_preview(const PackCommand& command);
 
 // Draws the frames as one of `files`; the extension (.svg or .png) chooses the format.

@@ -33,7 +33,8 @@ bool has_digit(const std::string& field) {
   return field.find_first_of("0123456789") != std::string::npos;
 }
 
-// Splits at commas (or semicolons, tabs, spaces where there is no comma), minding quotes.
+// Splits a line at commas, or at semicolons, tabs or spaces (in this order) if it has none;
+// separators inside quotes do not count.
 std::vector<std::string> split(const std::string& line) {
   const char separator = line.find(',') != std::string::npos    ? ','
                          : line.find(';') != std::string::npos  ? ';'
@@ -57,7 +58,8 @@ std::vector<std::string> split(const std::string& line) {
   return fields;
 }
 
-// A '#' begins a comment at the line's start and after two numbers; within a name it is a letter.
+// Removes the comment. A '#' begins one at the line's start and after two numbers; inside a name it
+// is a letter.
 std::string without_comment(const std::string& line) {
   for (std::size_t i = 0; (i = line.find('#', i)) != std::string::npos; ++i) {
     const std::string before = line.substr(0, i);
@@ -72,10 +74,10 @@ std::string without_comment(const std::string& line) {
   return line;
 }
 
-// What a file of rectangles holds.
+// The contents of a file of rectangles.
 struct RectList {
   std::vector<PackedItem> items;
-  std::optional<Extent> page;  // of an instance
+  std::optional<Extent> page;  // the page of an instance
 };
 
 struct CsvLine {
@@ -83,7 +85,8 @@ struct CsvLine {
   std::vector<std::string> fields;
 };
 
-// Lines may end by carriage returns, with line feeds or alone.
+// Makes all lines end with line feeds. They may end with carriage returns, with line feeds or
+// alone.
 std::string with_line_feeds(std::string text) {
   std::size_t to = 0;
   for (std::size_t i = 0; i < text.size(); ++i)
@@ -118,8 +121,9 @@ Result<std::vector<CsvLine>> csv_lines(const PackCommand& c, const std::string& 
   return result;
 }
 
-// The form of published instances: a first line `width height count` of the page (height 0: a
-// strip), then one rectangle a line without a name.
+// Reads the head of published instances. Their first line is `width height count` with the sides of
+// the page (height 0: a strip); then each line is a rectangle without a name. Leaves other lists as
+// they are.
 Status read_instance_head(const PackCommand& c, std::vector<CsvLine>& lines, RectList& list) {
   const auto unnamed = [](const CsvLine& line) { return line.fields.size() == 2; };
   std::int32_t width = 0, height = 0, count = 0;
@@ -176,7 +180,8 @@ Status read_json(const PackCommand& c, const std::string& text, std::vector<Pack
   if (!list.is_array()) return bad("expected an array of [w, h] or {\"name\", \"w\", \"h\"}");
   for (std::size_t i = 0; i < list.size(); ++i) {
     const nlohmann::json& e = list[i];
-    // Looked at in place: a copy calls itself for each level, and a million brackets end the stack.
+    // Elements are not copied: a copy calls itself for each level, so a million brackets would
+    // overflow the stack.
     const auto side = [&](std::size_t at, const char* brief, const char* full) -> std::int64_t {
       const nlohmann::json* v = e.is_array() && e.size() == 2 ? &e[at] : nullptr;
       for (const char* name : {full, brief})
@@ -199,7 +204,7 @@ Status read_json(const PackCommand& c, const std::string& text, std::vector<Pack
   return {};
 }
 
-// A JSON object keeps one item a name.
+// Refuses equal names if the output is a JSON object, which holds only one item per name.
 Status check_names(const PackCommand& c, const std::vector<PackedItem>& items) {
   if (lower_extension(c.output) != ".json" || c.format != DataFormat::hash) return {};
   std::set<std::string_view> names;
@@ -211,12 +216,13 @@ Status check_names(const PackCommand& c, const std::vector<PackedItem>& items) {
   return {};
 }
 
-// A pipe serves as well as a file.
+// Reads the list from a file or a pipe.
 Status read_list(const PackCommand& c, const Context& context, RectList& list) {
   Result<std::string> read = read_text(c.input, context);
   if (!read.ok()) return read.status();
   std::string& text = *read;
-  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // as spreadsheets write it
+  // Spreadsheets write a byte order mark.
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
   const bool json = lower_extension(c.input) == ".json" && !text.empty();
   if (Status s = json ? read_json(c, text, list.items) : read_csv(c, text, list); !s.ok()) return s;
   if (list.items.empty())
@@ -227,7 +233,7 @@ Status read_list(const PackCommand& c, const Context& context, RectList& list) {
   return check_names(c, list.items);
 }
 
-// A line for each of the first few, and one for all others.
+// Reports the first few unplaced items in a line each, and all others in one line.
 void tell_unplaced(std::span<const UnplacedItem> unplaced, std::span<const PackedItem> items,
                    const Context& context) {
   constexpr std::size_t kTold = 10;

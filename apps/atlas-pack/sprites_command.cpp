@@ -43,7 +43,7 @@ Image8 to_rgba(const Image8& in) {
   return out;
 }
 
-// Cuts to the box of texels with alpha above the threshold; at least one texel stays.
+// Cuts the image to the box of texels whose alpha is above the threshold; at least one texel stays.
 void trim(Sprite& sprite, int threshold) {
   const Image8& in = sprite.image;
   int x0 = in.width, x1 = -1, y0 = in.height, y1 = -1;
@@ -107,7 +107,7 @@ Result<std::vector<Sprite>> read_sprites(const PackCommand& c, const Context& co
   return sprites;
 }
 
-// Finds images with the same texels; the first by name keeps them.
+// Finds images with the same texels. The first by name keeps them; the others become its aliases.
 void find_aliases(std::vector<Sprite>& sprites) {
   const auto before = [&](std::int32_t a, std::int32_t b) {
     const Image8 &x = sprites[std::size_t(a)].image, &y = sprites[std::size_t(b)].image;
@@ -120,7 +120,8 @@ void find_aliases(std::vector<Sprite>& sprites) {
   }
 }
 
-// Copies a sprite to its frame, y down, turned clockwise if rotated, edges repeated outwards.
+// Copies a sprite to its frame (y down), turned clockwise if rotated, and repeats its edge texels
+// outwards.
 void blit(const Sprite& sprite, const Placement& at, int extrude, Image8& page) {
   const Image8& in = sprite.image;
   const int w = at.rotated ? in.height : in.width, h = at.rotated ? in.width : in.height;
@@ -134,8 +135,8 @@ void blit(const Sprite& sprite, const Placement& at, int extrude, Image8& page) 
     }
 }
 
-// Who names the page's image or its list means the base of both names; of images that are no PNG
-// there are none.
+// Returns the command with the base name of the outputs: NAME.png and NAME.json both mean NAME.
+// Refuses other image formats, because pages are PNG images.
 Result<PackCommand> with_base_name(const PackCommand& command) {
   const std::string ending = lower_extension(command.output);
   PackCommand c = command;
@@ -148,7 +149,7 @@ Result<PackCommand> with_base_name(const PackCommand& command) {
   return c;
 }
 
-// As no program reads images that take more memory than that.
+// Refuses pages of more than 2^30 texels (4 GiB), because no program reads larger images.
 Status check_sizes(const PackedAtlas& atlas) {
   constexpr std::int64_t kMostTexels = std::int64_t{1} << 30;
   for (const Extent& page : atlas.pages)
@@ -165,8 +166,8 @@ std::string page_image(const PackCommand& c, std::size_t page, std::size_t pages
   return pages == 1 ? base + ".png" : fmt::format("{}-{}.png", base, page);
 }
 
-// Pages of an earlier run to the same name, which had more or fewer of them, are no part of this
-// atlas.
+// Names the pages that an earlier run to the same name, with more or fewer pages, has left: they
+// are not part of this atlas.
 void name_old_pages(const PackCommand& c, std::size_t pages, const Context& context) {
   const auto there = [&](const std::string& image) {
     std::error_code error;
@@ -182,7 +183,7 @@ void name_old_pages(const PackCommand& c, std::size_t pages, const Context& cont
       (c.output.parent_path() / old.front()).string(), old.size() == 1 ? "" : " to " + old.back()));
 }
 
-// Wherever links lead.
+// Returns whether a path lies in a folder, after following links.
 bool lies_in(const fs::path& path, const fs::path& folder) {
   std::error_code error;
   for (fs::path up = fs::weakly_canonical(path, error);; up = up.parent_path()) {
@@ -200,7 +201,7 @@ Status check_links(const PackCommand& c, const fs::path& page) {
                       page.string())};
 }
 
-// Writes the pages, the data of what lies where on them, and the preview. They appear together.
+// Writes the pages, the data of the frames on them, and the preview. All appear together.
 Status write_files(const PackCommand& c, const std::vector<Sprite>& sprites, PackedAtlas& atlas) {
   AtomicFiles files;
   for (std::size_t p = 0; p < atlas.pages.size(); ++p)
@@ -225,8 +226,8 @@ Status write_files(const PackCommand& c, const std::vector<Sprite>& sprites, Pac
   return files.commit();
 }
 
-// Pages in the folder that is read could replace a sprite, and would be sprites themselves the next
-// time.
+// Refuses outputs that cannot be written or lie in the folder that is read: there, pages could
+// replace a sprite, and would be read as sprites the next time.
 Status check_pages(const PackCommand& c) {
   if (!c.output.has_filename())
     return {ErrorCode::bad_option,
@@ -262,7 +263,8 @@ Result<PackedAtlas> run_images(const PackCommand& command, const Context& contex
     item.trim_x = s.trim_x;
     item.trim_y = s.trim_y;
     items.push_back(item);
-    // Aliases take no room: sides of 0 are reported at the corner and replaced below.
+    // Aliases take no space: items with sides of 0 are placed at a corner, and get their original's
+    // place below.
     const bool stored = s.alias_of < 0;
     aliases += !stored;
     sizes.push_back(stored ? Extent{s.image.width + 2 * c.extrude, s.image.height + 2 * c.extrude}

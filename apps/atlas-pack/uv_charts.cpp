@@ -16,12 +16,12 @@ double area_of(const Vec2d* p) {
          2;
 }
 
-// Corners that share place and texcoord.
+// Finds corners that have the same position and the same texcoord.
 class CornerPlaces {
  public:
   explicit CornerPlaces(const Scene& s) : scene_(s) { first_.reserve(s.texcoords.size()); }
 
-  // The texcoord that was first seen with this corner's place and value.
+  // Returns the texcoord that was first seen with this corner's position and value.
   std::uint32_t first_at(std::size_t corner) {
     const std::uint32_t texcoord = scene_.texcoord_indices[corner];
     const Vec3f p = scene_.positions[scene_.indices[corner]];

@@ -1,4 +1,4 @@
-// The charts that a mesh's own uvs make.
+// The charts that a mesh's own uvs form.
 #pragma once
 
 #include <cstddef>
@@ -10,22 +10,22 @@
 
 namespace atlas::app {
 
-// The uv charts of a mesh: triangles joined by common texcoord indices, or by equal texcoords at
-// one place, since many programs write each corner's own.
+// The uv charts of a mesh. Triangles are in one chart if they share texcoord indices, or have equal
+// texcoords at the same position, since many programs write separate texcoords for each corner.
 struct UvCharts {
-  std::vector<std::uint32_t> chart;                 // 1 a triangle, or kNone
-  std::vector<std::uint32_t> same;                  // 1 a texcoord: one that is equal, or itself
-  std::vector<std::vector<std::uint32_t>> members;  // triangles a chart
-  std::vector<std::vector<Vec2d>> corners;          // 3 a triangle, texels at scale 1
+  std::vector<std::uint32_t> chart;  // 1 per triangle; kNone: without uvs
+  std::vector<std::uint32_t> same;   // 1 per texcoord: the first equal one, maybe itself
+  std::vector<std::vector<std::uint32_t>> members;  // triangles of each chart
+  std::vector<std::vector<Vec2d>> corners;  // of each chart, 3 per triangle, texels at scale 1
   std::size_t without_uv = 0, without_area = 0;
   static constexpr std::uint32_t kNone = 0xffffffffu;
 };
 
-// All but `corners`.
+// Finds the charts: fills all members except `corners` and `without_area`.
 UvCharts find_charts(const Scene& scene);
 
-// Scales every chart so that its area is that of its surface, and all together fill the pages:
-// fills `corners` and `without_area`.
+// Scales every chart so that its area is proportional to that of its surface, and all charts
+// together have the area `page_area`, in texels. Fills `corners` and `without_area`.
 void make_uniform(const Scene& scene, double page_area, UvCharts& charts);
 
 }  // namespace atlas::app

@@ -134,7 +134,7 @@ void add_shadow_options(CLI::App& app, CommandLine& l) {
   add_off_flag(app, "--no-slices", l.render.schedule.sliced, "draw a key in one frame");
 }
 
-// What arrives as text and becomes the light's path once all options are known.
+// Texts that become the light's path once all options are known.
 struct LightText {
   std::string path = "sun:172,50.45,9", end = "loop", up = "y";
 };
@@ -220,7 +220,7 @@ void add_bench_options(CLI::App& app, CommandLine& l) {
   app.add_flag("--no-errors", l.no_errors, "measure times only")->needs(bench);
 }
 
-// Options for the other way of running would change nothing.
+// Returns a complaint about options for the other way of running, which would change nothing.
 std::string about_window(const CLI::App& app, const CommandLine& l) {
   if (l.in_window() && app.count("--frames") > 0)
     return "--frames is for --headless (give that too, or --close-after for a window)";
@@ -229,7 +229,7 @@ std::string about_window(const CLI::App& app, const CommandLine& l) {
   return {};
 }
 
-// Texts that CLI11 cannot turn into their values itself.
+// Interprets the texts that CLI11 cannot turn into their values itself.
 Status finish(CommandLine& l, const LightText& light) {
   const std::string &up = light.up, &end = light.end;
   const Vec3d axis = up == "x" ? Vec3d{1, 0, 0} : up == "y" ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};

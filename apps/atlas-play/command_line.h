@@ -18,8 +18,8 @@ struct CommandLine {
   std::optional<bool> baked_textures;  // nothing: chosen by the file
   std::filesystem::path bench;         // a folder; empty: no bench
   bool no_errors = false;              // bench: times only
-  double unit = 1;                     // metres a scene unit
-  std::string camera;                  // "x,y,z;x,y,z"; empty: looks at the whole
+  double unit = 1;                     // metres per scene unit
+  std::string camera;                  // "x,y,z;x,y,z"; empty: see camera_of()
   double fov = 60;
   std::optional<double> key_degrees;  // nothing: 16 in a window, 90 without
   std::vector<double> north;          // of the sun; empty: chosen by the up axis
@@ -30,15 +30,15 @@ struct CommandLine {
   bool in_window() const { return !headless && bench.empty() && !plan; }
 };
 
-// What was asked for, or an exit code after the help or a complaint has been printed.
+// The command line, or an exit code if the help or a complaint has been printed.
 struct Parsed {
   CommandLine line;
   std::optional<int> exit_code;
 };
 Parsed parse_command_line(int argc, char** argv);
 
-// The camera of "eye;target", or, without one, where a visitor would enter the scene; bad_option if
-// the text is something else.
+// Returns the camera of "eye;target", or, if that is empty, the one where a visitor would enter the
+// scene (start_camera()). Errors: bad_option if the text is something else.
 Result<Camera> camera_of(const CommandLine& line, const ViewScene& scene);
 
 }  // namespace atlas::app

@@ -1,4 +1,5 @@
-// atlas-play: shows a scene under a moving light. Parses, calls libatlas/view, prints.
+// atlas-play: shows a scene under a moving light. Parses the command line, calls libatlas/view, and
+// prints.
 #include <fmt/format.h>
 
 #include <memory>
@@ -49,7 +50,8 @@ Status write_measured(const BenchResult& result, const std::filesystem::path& fo
   return {};
 }
 
-// What would else be found out after all frames are drawn.
+// Refuses outputs that cannot be written, which would otherwise be noticed only after all frames
+// are drawn.
 Status check_outputs(const CommandLine& line) {
   const std::filesystem::path& picture = line.play.screenshot;
   if (!picture.empty() && lower_extension(picture) != ".png")
@@ -57,7 +59,7 @@ Status check_outputs(const CommandLine& line) {
             fmt::format("{}: the screenshot must end in .png", picture.string())};
   if (Status s = check_output(picture, {line.scene}); !s.ok()) return s;
   for (const std::filesystem::path& folder : {line.play.record, line.bench}) {
-    std::error_code error;  // what cannot be looked at is told where the folder is made
+    std::error_code error;  // errors are reported where the folder is made
     const auto there = std::filesystem::status(folder, error);
     if (std::filesystem::exists(there) && !std::filesystem::is_directory(there))
       return {ErrorCode::bad_option,
@@ -69,12 +71,13 @@ Status check_outputs(const CommandLine& line) {
 
 Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   const bool headless = !line.in_window();
-  // The march is good up to keys this far apart; a slow machine would stretch them further.
+  // The march method works well with keys up to this far apart; a slow machine would otherwise
+  // place them farther apart.
   constexpr double kWindowKeyDegrees = 16;
   line.render.schedule.max_key_degrees =
       line.key_degrees.value_or(headless ? kMaxKeyDegrees : kWindowKeyDegrees);
   if (Status s = check_outputs(line); !s.ok()) return s;
-  // The scene first: a wrong file name should not open a window.
+  // The scene is loaded first, so that a wrong file name does not open a window.
   const bool baked = line.baked_textures.value_or(textures_hold_light(line.scene));
   Result<ViewScene> scene = load_view(line.scene, baked, context);
   if (!scene.ok()) return scene.status();

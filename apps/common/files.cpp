@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error)) return true;
-  // Not there yet: the same name in the same folder.
+  // Files that do not exist yet are the same if they have the same name in the same folder.
   const auto folder = [](const fs::path& p) {
     return p.has_parent_path() ? p.parent_path() : fs::path(".");
   };
@@ -30,7 +30,8 @@ bool same_file(const fs::path& a, const fs::path& b) {
 
 Status check_output(const fs::path& output, std::initializer_list<fs::path> others) {
   if (output.empty()) return {};
-  if (output == "-")  // elsewhere it is standard output: a file of that name helps nobody
+  // Other programs take it for standard output, so a file of that name would help nobody.
+  if (output == "-")
     return {ErrorCode::bad_option,
             "-: is no name of an output (/dev/stdout is standard output, ./- a file of that name)"};
   for (const fs::path& other : others)
@@ -44,14 +45,14 @@ Status check_output(const fs::path& output, std::initializer_list<fs::path> othe
 
 Result<std::string> read_text(const fs::path& path, const Context& context) {
   constexpr std::size_t kMost = std::size_t{1} << 30, kPart = 1 << 16;
-  constexpr int kWait = 100;  // ms between two looks at the context
+  constexpr int kWait = 100;  // ms between two checks of the context
   const auto failed = [&](ErrorCode code, const std::string& why) {
     return Status(code, fmt::format("{}: {}", path.string(), why));
   };
   std::error_code ignored;  // what cannot be looked at cannot be opened either
   if (fs::is_directory(path, ignored))
     return failed(ErrorCode::bad_input, "is a directory (name a file inside it)");
-  // Would else wait for the writer of a pipe, and no signal would end that.
+  // Without O_NONBLOCK, open() would wait for the writer of a pipe, and no signal would end that.
   const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (file < 0 && errno == ENOENT)
     return failed(ErrorCode::not_found, "no such file (check the name)");

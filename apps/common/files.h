@@ -1,4 +1,4 @@
-// What the programs ask of the files they write, before long work.
+// Checks of the files that the programs write, before long work, and the reading of text files.
 #pragma once
 
 #include <filesystem>
@@ -10,13 +10,13 @@
 
 namespace atlas::app {
 
-// Whether `output` can be written and is none of `others`: the files that are read, and other
-// outputs. Empty paths are no files. Errors: io, bad_option.
+// Checks that `output` can be written and is none of `others`: the files that are read, and other
+// outputs. Empty paths are ignored. Errors: io, bad_option.
 Status check_output(const std::filesystem::path& output,
                     std::initializer_list<std::filesystem::path> others);
 
-// The whole of a file or of a pipe, whose writer may take its time until the context is cancelled.
-// Up to 1 GiB. Errors: not_found, io, bad_input, cancelled.
+// Reads a whole file or pipe of up to 1 GiB; the writer of a pipe may take its time until the
+// context is cancelled. Errors: not_found, io, bad_input, cancelled.
 Result<std::string> read_text(const std::filesystem::path& path, const Context& context);
 
 }  // namespace atlas::app

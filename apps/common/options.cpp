@@ -16,7 +16,8 @@
 namespace atlas::app {
 namespace {
 
-// Letters to add, leave out, change or swap with the next between two words (Damerau's distance).
+// Returns how many letters must be added, left out, changed or swapped with the next one to turn
+// one word into the other (Damerau's distance).
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before, last, row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -32,24 +33,24 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-// The command that was chosen, or the program where it has none.
+// Returns the command that was chosen, or the program if none was.
 const CLI::App& command_of(const CLI::App& app) {
   const auto chosen = app.get_subcommands();
   return chosen.empty() ? app : *chosen.front();
 }
 
-// What users wrote may be anything: its beginning is shown.
+// Returns the beginning of a text that users wrote, which may have any length.
 std::string start_of(const std::string& text) {
   constexpr std::size_t kLongest = 120;
   return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
 }
 
-// Differences at which one word is still taken for another that was meant.
+// Returns the largest distance at which another word is taken for a misspelling of this one.
 std::size_t near(std::string_view word) {
   return std::max<std::size_t>(1, word.size() / 5);
 }
 
-// Programs that have commands need one before all else.
+// Returns whether the program needs a command and none was given.
 bool lacks_command(const CLI::App& app) {
   return app.get_require_subcommand_min() > 0 && app.get_subcommands().empty();
 }
@@ -64,7 +65,7 @@ std::string about_command(const CLI::App& app, const std::string& word) {
   return fmt::format("'{}' is none of the commands {}{}", start_of(word), names, meant);
 }
 
-// The options that a word is the beginning of, as some programs let them be shortened.
+// Returns the options that begin with this word: some programs let options be shortened.
 std::string begun_by(const CLI::App& app, const std::string& word) {
   std::string names;
   if (word.size() < 4 || !word.starts_with("--")) return names;
@@ -74,11 +75,12 @@ std::string begun_by(const CLI::App& app, const std::string& word) {
   return names;
 }
 
-// Words that no option takes. They are told first: --ouput is the reason why --output is missing.
+// Returns a complaint about words that no option takes. It comes before others: --ouput is the
+// reason why --output is missing.
 std::string about_unknown(const CLI::App& app) {
   const std::vector<std::string> words = app.remaining(true);
   if (words.empty()) return {};
-  // A later word may be a command by chance, as a folder that is called so.
+  // A later word may be a command by chance, for example the name of a folder.
   const std::vector<std::string> own = app.remaining(false);
   if (app.get_require_subcommand_min() > 0 && !own.empty() && !own.front().starts_with("-"))
     return about_command(app, own.front());
@@ -96,7 +98,7 @@ std::string about_unknown(const CLI::App& app) {
   return "unknown option or one name too many: " + start_of(word);
 }
 
-// An option that is there and empty, as "$OUT" is where no one set it.
+// Returns a complaint about an option whose value is empty, like "$OUT" if that is not set.
 std::string about_empty(const CLI::App& app) {
   for (const CLI::Option* option : command_of(app).get_options())
     for (const std::string& value : option->results())
@@ -117,7 +119,8 @@ std::string about_value(const CLI::App& app, const std::string& name, const std:
                      flag ? "is neither true nor false" : "not a number that it can be");
 }
 
-// CLI11's words for what is wrong, where a user would not know what they mean.
+// Returns a complaint about a parse error. Where a user would not understand CLI11's words, others
+// replace them.
 std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
   const std::string text = error.what();
   constexpr std::string_view kConfig = "INI was not able to parse ";

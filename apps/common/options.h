@@ -1,5 +1,5 @@
-// What the command lines have in common: how numbers and names are checked, and how a line that is
-// wrong is answered.
+// What the command lines have in common: the checks of numbers and names, and the answers to wrong
+// command lines.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,13 +8,13 @@
 
 namespace atlas::app {
 
-// Finite numbers within [low, high]; `text` says so in the help and in complaints.
+// Accept finite numbers within [low, high]; `text` describes them in the help and in complaints.
 CLI::Validator within(double low, double high, const std::string& text);
 CLI::Validator within(int low, int high);
 CLI::Validator not_negative();
 CLI::Validator positive();
 
-// One of `names`, in any case; what it stands for is put in its place.
+// Accepts one of `names`, in any case, and replaces it by its number.
 CLI::Validator one_of(const std::map<std::string, int>& names);
 
 template <class T>
@@ -28,11 +28,11 @@ CLI::Validator choices(const std::map<std::string, T>& names) {
 CLI::Option* add_off_flag(CLI::App& app, const std::string& name, bool& value,
                           const std::string& help);
 
-// Parses, knowing --version. Returns -1 to go on, or the exit code with which the program should
-// end: 0 after the help, 2 after one line about what is wrong.
+// Parses the command line, after adding --version. Returns -1 to go on, or the exit code with which
+// the program should end: 0 after the help or the version, 2 after one line about what is wrong.
 int parse(CLI::App& app, int argc, char** argv);
 
-// The heading of --help under which options stand that are added while this lives.
+// While it lives, options that are added appear under the heading `name` of --help.
 class OptionGroup {
  public:
   OptionGroup(CLI::App& app, const char* name) : app_(app) { app_.option_defaults()->group(name); }

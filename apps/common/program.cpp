@@ -22,7 +22,7 @@ void note_stdout(bool written) {
 
 void open_closed_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    // The lowest number that is free is the stream's own.
+    // open() returns the lowest free number, which is the stream's own.
     if (::fcntl(stream, F_GETFD) == -1 && errno == EBADF && ::open("/dev/null", O_RDWR) < 0) return;
   }
 }
@@ -45,7 +45,8 @@ std::string shortened(std::string_view word) {
   return fmt::format("{}...{}", word.substr(0, head), word.substr(tail));
 }
 
-// Unicode has two ranges of control characters; UTF-8 writes the second one in two bytes.
+// Replaces control characters except line feeds by '?'. Unicode has two ranges of them; UTF-8
+// encodes the second one in two bytes.
 std::string without_controls(std::string_view text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -91,7 +92,8 @@ void print_error(std::string_view program, std::string_view text) {
 
 int run_program(const char* name, int argc, char** argv, int (*body)(int, char**)) {
   open_closed_streams();
-  // A reader that has left and a limit on the size of files are errors of writing, to be told.
+  // A reader that has left, and a limit on the size of files, become errors of writing, which are
+  // reported.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   int code = 1;

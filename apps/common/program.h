@@ -1,4 +1,5 @@
-// What every application does around its own work: exceptions, and output that nobody takes.
+// What every application does around its own work: it handles exceptions, signals and standard
+// streams.
 #pragma once
 
 #include <cstdio>
@@ -7,24 +8,25 @@
 
 namespace atlas::app {
 
-// Runs `body` and gives the exit code of the program. What it throws (no memory is left, ...) is
-// one line on stderr and 1, and what was begun is cleaned up. Standard streams that are closed
-// are opened on /dev/null, so that no file written takes their place. A reader that leaves does
-// not end the program; other failures to write to stdout make an exit code of 0 a 1.
+// Runs `body` and returns the exit code of the program. An exception (out of memory, ...) becomes
+// one line on stderr and exit code 1, after what was begun has been cleaned up. Standard streams
+// that are closed are opened on /dev/null, so that no file that is written takes their place. A
+// reader that closes its end of a pipe does not end the program; other failures to write to stdout
+// turn exit code 0 into 1.
 int run_program(const char* name, int argc, char** argv, int (*body)(int argc, char** argv));
 
-// To stdout or stderr; never throws. A failure on stdout is told when the program ends.
+// Writes to stdout or stderr; never throws. A failure on stdout is reported when the program ends.
 void print(std::FILE* stream, std::string_view text);
 
-// Text for a terminal that may quote what files hold: control characters but line ends, which could
-// change how all that follows looks, become '?', and words longer than a path can be lose their
-// middle.
+// Returns a text, which may quote the contents of files, so that a terminal can show it: control
+// characters except line ends, which could change how everything after them looks, become '?', and
+// words longer than any path lose their middle.
 std::string printable(std::string_view text);
 
-// The same with spaces for line ends, as messages of image libraries bring them.
+// The same with spaces instead of line ends, which messages of image libraries contain.
 std::string one_line(std::string_view text);
 
-// "program: error: text" as one line on stderr.
+// Prints "program: error: text" as one line on stderr.
 void print_error(std::string_view program, std::string_view text);
 
 }  // namespace atlas::app

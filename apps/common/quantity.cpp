@@ -48,7 +48,7 @@ std::optional<double> parse_unit(const std::string& text) {
   if (const auto metres = length_of(text)) return metres;
   const auto split = leading_number(text);
   if (!split || !split->second.empty()) return std::nullopt;
-  // Far beyond atoms and galaxies areas are no numbers any more.
+  // With units far below atoms or beyond galaxies, areas would not be numbers any more.
   constexpr double kShortest = 1e-12, kLongest = 1e24;
   if (split->first < kShortest || split->first > kLongest) return std::nullopt;
   return split->first;

@@ -12,11 +12,11 @@
 namespace atlas::app {
 namespace {
 
-std::atomic<bool> g_cancelled{false};  // the one thing a signal handler may touch
+std::atomic<bool> g_cancelled{false};  // the only variable that the signal handler uses
 
 extern "C" void on_interrupt(int) {
-  // After a second one a third ends the program at once, in case a stage does not poll. The second
-  // does not, since timeout(1) sends each signal twice.
+  // After a second signal, a third ctrl-C ends the program at once, in case a stage does not poll.
+  // The second one does not, because timeout(1) sends each signal twice.
   if (g_cancelled.exchange(true)) std::signal(SIGINT, SIG_DFL);
 }
 

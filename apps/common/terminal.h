@@ -1,4 +1,4 @@
-// What the applications share on a terminal: a progress line, warnings, ctrl-C.
+// What the applications share on a terminal: a progress bar, warnings, and ctrl-C.
 #pragma once
 
 #include <functional>
@@ -11,8 +11,8 @@
 
 namespace atlas::app {
 
-// Draws one progress bar a stage on stderr where that is a terminal, none otherwise or when quiet.
-// Ctrl-C raises the context's cancel flag. One at a time.
+// Draws one progress bar per stage on stderr, if that is a terminal and the program is not quiet.
+// Ctrl-C sets the context's cancel flag. Only one Terminal may exist at a time.
 class Terminal {
  public:
   Terminal(std::string program, bool quiet);
@@ -20,11 +20,12 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  // A context whose progress, warnings and cancel flag are this terminal's; it must not outlive it.
+  // Returns a context with this terminal's progress, warnings and cancel flag; it must not outlive
+  // the terminal.
   Context context(int threads);
 
-  // How warnings and errors of the library are worded for the program's users; as they are, at
-  // first.
+  // Sets the function that rewords warnings and errors of the library for the program's users.
+  // Until then they stay as they are.
   void reword(std::function<std::string(std::string_view)> words) { words_ = std::move(words); }
 
   void line(std::string_view text);   // to stdout, after clearing the bar; not when quiet
@@ -41,7 +42,7 @@ class Terminal {
   int shown_percent_ = -1;
 };
 
-// The exit code of every application: 0 done, 1 failed, 2 bad command line, 130 cancelled.
+// Returns the exit code of every application: 0 done, 1 failed, 2 bad command line, 130 cancelled.
 int exit_code(const Status& status);
 
 }  // namespace atlas::app

@@ -22,8 +22,7 @@ constexpr double kEnclosed = 0.68, kTightlyEnclosed = 0.85;  // the latter where
 // The factor on the length of a view that ends at the back of a wall: thin shells confuse a coarse
 // grid.
 constexpr double kBackFace = 0.7;
-constexpr double kRoomy =
-    0.1;  // least mean free horizontal distance, relative to the floor's diagonal
+constexpr double kRoomy = 0.1;  // least mean free horizontal distance, per floor diagonal
 
 // The scene as voxels, in a frame whose third axis points up. Each cell holds the sum of the
 // area-weighted normals of the triangles in it, which tells the front of a wall from its back.
@@ -251,8 +250,7 @@ Best best_of(const Grid& grid, const std::vector<Eye>& eyes, const Context& cont
 Viewpoint from_outside(const Grid& grid) {
   const glm::dvec3 centre = (grid.low() + grid.high()) / 2.0;
   const double radius = std::max(glm::distance(grid.low(), grid.high()) / 2, 1e-30);
-  const glm::dvec3 towards =
-      glm::normalize(glm::dvec3(0.75, 0.55, 0.4));  // three sides are visible
+  const glm::dvec3 towards = glm::normalize(glm::dvec3(0.75, 0.55, 0.4));  // shows three sides
   const glm::dvec3 eye = centre + towards * (radius / std::sin(kFov / 2));
   Viewpoint view;
   const glm::dvec3 position = grid.from_frame(eye), direction = grid.from_frame(-towards);

@@ -139,8 +139,7 @@ struct Part {
 
 void write_part(TextFile& file, const World& world, const Part& part, const Context& context) {
   const Compactor::Compact &points = part.points, &uvs = part.uvs;
-  if (!carries_light(world))
-    file.write("    creaseAngle 0.7\n");  // smooth shading of round surfaces
+  if (!carries_light(world)) file.write("    creaseAngle 0.7\n");  // smooths round surfaces
   file.write("    solid FALSE\n    coord Coordinate { point [\n");
   file.write_items(points.used.size(), context, [&](TextBuffer& out, std::size_t i) {
     out.position(part.origin, world.positions[points.used[i]]);

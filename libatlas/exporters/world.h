@@ -21,7 +21,7 @@ enum class Up { y, z };
 // Where a viewer starts, in the coordinates of World::positions, that is, relative to the origin.
 struct Viewpoint {
   Vec3d position;
-  Vec3d direction{0, 0, -1};  // not zero, not along the up axis
+  Vec3d direction{0, 0, -1};  // of view; not zero, not along the up axis
   double fov = 1.0;           // radians, in (0, pi); of the smaller side of the window
   // Whether the scene surrounds the viewpoint: viewers then walk, otherwise they turn the object.
   bool inside = false;
