@@ -18,7 +18,7 @@ Status wrong(fmt::format_string<Arguments...> text, Arguments&&... arguments) {
           "scene: " + fmt::format(text, std::forward<Arguments>(arguments)...)};
 }
 
-// The first element that is not finite, or size().
+// Returns the index of the first element that is not finite, or size().
 template <class Vector>
 std::size_t first_not_finite(const std::vector<Vector>& values) {
   return std::size_t(
@@ -43,7 +43,7 @@ Status check_vertices(const Scene& scene) {
     return wrong("texcoords[{}] is not finite", v);
   for (std::size_t i = 0; i < scene.normals.size(); ++i) {
     const Vec3f& n = scene.normals[i];
-    // Not std::hypot, which gives 0 for (0, 0, NaN) in GCC 12.
+    // std::hypot is not used, since GCC 12 returns 0 for (0, 0, NaN).
     const double length = std::sqrt(double(n.x) * n.x + double(n.y) * n.y + double(n.z) * n.z);
     if (!(std::abs(length - 1) <= 0.01))
       return wrong("normals[{}] has length {:g} (must be 1)", i, length);
@@ -51,7 +51,8 @@ Status check_vertices(const Scene& scene) {
   return {};
 }
 
-// Every value is below `limit`, or `none`.
+// Checks that every value is below `limit`, or is kNoTexcoord (equal to kNoNormal) if `may_be_none`
+// is set.
 Status check_range(const char* name, std::span<const std::uint32_t> values, std::size_t limit,
                    const char* of, bool may_be_none = false) {
   for (std::size_t i = 0; i < values.size(); ++i) {

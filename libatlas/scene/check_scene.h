@@ -6,17 +6,18 @@
 
 namespace atlas {
 
-// Whether the scene keeps what scene.h says of its arrays: their lengths, the ranges of indices,
-// finite numbers, images as large as their sizes say. What a reader gives always does; all that
-// takes a Scene presumes it. Linear. Error: bad_input, naming array and element.
+// Checks that the scene keeps what scene.h promises of its arrays: their lengths, the ranges of
+// indices, finite numbers, and images as large as their sizes say. Scenes from the readers always
+// pass, and every function that takes a Scene relies on it. Takes linear time. Error: bad_input,
+// naming array and element.
 Status check_scene(const Scene& scene);
 
-// Whether every texture has its image, and none is encoded: what samples textures presumes it.
-// Error: bad_input, naming the first.
+// Checks that every texture has a decoded image, which all functions that sample textures rely on.
+// Error: bad_input, naming the first texture without one.
 Status check_images(const Scene& scene);
 
-// Fills in what positions and indices alone leave open, one white material and one object for all
-// triangles, each where its arrays are empty; then check_scene().
+// Completes a scene that has only positions and indices: where the arrays of materials or objects
+// are empty, all triangles get one white material or one object. Then returns check_scene().
 Status complete_scene(Scene& scene);
 
 }  // namespace atlas

@@ -1,4 +1,4 @@
-// What was wrong with a file that could still be used: counted by kind, the first few named.
+// Reports what is wrong with a file that can still be used: counted by kind, with the first places.
 #pragma once
 
 #include <cstddef>
@@ -19,25 +19,25 @@ enum class DefectKind : std::uint8_t {
   too_few_corners,          // face left out: fewer than three corners
   bad_position_used,        // triangle left out: a corner's position is not a finite float
   position_not_finite,      // vertex with a NaN, infinite or beyond-float coordinate
-  polygon_too_large,        // concave polygon too large to clip ears: cut as a fan
+  polygon_too_large,        // concave polygon too large for ear clipping: cut as a fan
   texcoord_out_of_range,    // triangle kept without texture coordinates: no such coordinate
   texcoord_partial,         // triangle kept without texture coordinates: some corners lack one
   texcoord_not_finite,      // texture coordinate replaced by (0, 0)
   normal_out_of_range,      // triangle kept without normals: no such normal
   normal_partial,           // triangle kept without normals: some corners lack one
-  normal_unusable,          // normal of no direction or not finite: that of its triangles instead
-  illumination_not_finite,  // or beyond kMostLight (scene.h): value replaced by 0
+  normal_unusable,          // normal of length 0 or not finite: replaced by that of its triangles
+  illumination_not_finite,  // not finite or beyond kMostLight (scene.h): value replaced by 0
   illumination_negative,    // value kept as it is
-  illumination_missing,     // vertex without a value where others have one: 0
-  illumination_elsewhere,   // value used, though its vertex lies elsewhere in the light's own file
-  material_file_missing,    // its materials are white
-  material_unknown,         // white is used
-  reflectance_unknown,      // no red, green and blue: white, or what the material had before
-  reflectance_beyond_one,   // or below 0: value kept as it is
-  texture_missing,          // the material's plain diffuse colour is used
-  texture_unreadable,       // likewise
+  illumination_missing,     // vertex without a value where others have one: 0 is used
+  illumination_elsewhere,   // vertex lies elsewhere in the illumination's file: value used
+  material_file_missing,    // material library not found: its materials are white
+  material_unknown,         // material not defined: white is used
+  reflectance_unknown,      // colour not given as RGB: white, or the material's former colour
+  reflectance_beyond_one,   // a component is below 0 or above 1: value kept as it is
+  texture_missing,          // image not found: the material's plain diffuse colour is used
+  texture_unreadable,       // image that cannot be decoded: likewise
   texture_option_ignored,   // a texture option that has no counterpart here
-  node_hidden,              // what its file hides is left out
+  node_hidden,              // node that its file hides: left out
   element_ignored,          // lines, points, curves, unknown keywords: nothing to bake
 };
 
@@ -61,7 +61,7 @@ struct DefectReport {
   bool empty() const { return defects.empty(); }
   std::uint64_t count(DefectKind kind) const;
 
-  // Counts one more; `place` is called only while places are still collected.
+  // Counts `times` more. Calls `place` only while places are still collected.
   template <class Place>
   void add(DefectKind kind, const Place& place, std::uint64_t times = 1) {
     Defect& defect = find_or_insert(kind);
@@ -69,7 +69,7 @@ struct DefectReport {
     if (defect.first_places.size() < kMaxPlaces) defect.first_places.push_back(place());
   }
 
-  // "12 x description (first at a, b, ...)", one string a kind.
+  // Returns "12 x description (first at a, b, ...)", one string for each kind.
   std::vector<std::string> lines() const;
 
  private:

@@ -14,8 +14,9 @@ namespace {
 
 constexpr std::string_view kMark = "\xef\xbb\xbf";
 
-// Lines of old Macs, and of programs that keep to them, end by a carriage return. In files of both
-// worlds any mixture is found; only before a newline it is but a blank.
+// Lines end in a lone carriage return in files of old Macs and of programs that keep to their
+// convention. Files edited on several systems mix all line ends. A carriage return before a newline
+// counts as a blank and stays.
 void turn_returns(char* at, char* end) {
   while ((at = static_cast<char*>(std::memchr(at, '\r', std::size_t(end - at))))) {
     char* after = std::find_if(at, end, [](char c) { return c != '\r'; });
@@ -41,7 +42,7 @@ Result<FileBytes> read_file_bytes(const fs::path& path) {
     return Status(ErrorCode::io,
                   fmt::format("{}: cannot be read: {}", path.string(), error.message()));
   }
-  // Asked before it is opened: a pipe that nobody writes to would never open.
+  // A pipe that nobody writes to would never open, so this is asked before the file is opened.
   const bool regular = fs::is_regular_file(status);
   std::FILE* file = regular ? std::fopen(path.c_str(), "rb") : nullptr;
   if (!file) {

@@ -1,4 +1,4 @@
-// Internal: numbers of files as floats.
+// Internal: turns numbers of files into floats.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,8 @@
 
 namespace atlas {
 
-// The nearest float that is finite; text holds numbers beyond float. Not for NaN.
+// Returns the nearest finite float, since text may hold numbers beyond the range of float. `number`
+// must not be NaN.
 inline float finite_float(double number) {
   constexpr double kMost = std::numeric_limits<float>::max();
   return float(std::clamp(number, -kMost, kMost));

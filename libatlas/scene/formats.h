@@ -1,4 +1,4 @@
-// Internal: one function a format. Each fills a builder with the file's vertices and faces.
+// Internal: one reader for each format. It fills a builder with the file's vertices and faces.
 #pragma once
 
 #include "libatlas/scene/scene_builder.h"
@@ -12,17 +12,18 @@ Status read_stl(const std::filesystem::path& path, SceneBuilder& builder, const 
 Status read_gltf(const std::filesystem::path& path, SceneBuilder& builder, const Context& context);
 Status read_vrml(const std::filesystem::path& path, SceneBuilder& builder, const Context& context);
 
-// Appends the materials of an MTL library, and their textures.
+// Appends the materials of an MTL library and their textures.
 Status read_mtl(const std::filesystem::path& path, SceneBuilder& builder);
 
-// Replaces the builder's illumination by that of a file with the same vertices.
+// Replaces the builder's illumination with that of another file, which must have the same vertices.
 Status read_illumination(const std::filesystem::path& path, SceneBuilder& builder,
                          const Context& context);
 
-// Whether the extension (in any case) names one of the formats above.
+// Returns whether the extension (in any case) names one of the formats above.
 bool known_extension(const std::filesystem::path& path);
 
-// Calls the reader that the extension names; unsupported where there is none.
+// Calls the reader that the extension names. Errors: unsupported if there is none; bad_input for an
+// empty file or a directory; those of the reader.
 Status read_by_extension(const std::filesystem::path& path, SceneBuilder& builder,
                          const Context& context);
 

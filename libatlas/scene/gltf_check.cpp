@@ -13,12 +13,12 @@ namespace {
 
 using nlohmann::json;
 
-// Extensions that are read, or without which a scene has the same shapes.
+// Extensions that are read, or that do not change the shapes of a scene.
 constexpr std::string_view kUnderstood[] = {"KHR_mesh_quantization",   "KHR_texture_transform",
                                             "KHR_lights_punctual",     "KHR_technique_webgl",
                                             "EXT_mesh_gpu_instancing", "EXT_texture_webp",
                                             "KHR_node_visibility"};
-constexpr std::string_view kMaterials = "KHR_materials_";  // their diffuse part is read
+constexpr std::string_view kMaterials = "KHR_materials_";  // the diffuse part of these is read
 
 std::uint32_t word_at(std::string_view bytes, std::size_t at) {
   std::uint32_t word;
@@ -32,8 +32,8 @@ Status old_version(const fs::path& path, const std::string& version) {
                       path.string(), version)};
 }
 
-// What copies JSON or takes it apart calls itself for each level, and a file of brackets would end
-// the stack.
+// Code that copies or takes apart JSON recurses once for each level, so a file of nothing but
+// brackets would overflow the stack.
 bool nested_too_deeply(std::string_view text) {
   constexpr int kMost = 1000;
   int depth = 0;
@@ -54,9 +54,9 @@ bool nested_too_deeply(std::string_view text) {
   return false;
 }
 
-// The chunks of a GLB container, all of which lie inside the file (tinygltf's own check of the
-// binary chunk forgets the chunk's header). The JSON comes first; the binary chunk may be missing,
-// be empty, lack its padding, or follow chunks of other kinds.
+// Finds the chunks of a GLB container and checks that all lie inside the file (tinygltf's own check
+// of the binary chunk forgets the chunk's header). The JSON comes first. The binary chunk may be
+// missing, be empty, lack its padding, or follow chunks of other kinds.
 Result<GltfParts> glb_parts(const fs::path& path, std::string_view bytes) {
   constexpr std::uint32_t kBinary = 0x004e4942;
   if (bytes.size() < 20) return malformed_gltf(path, "too short for a GLB file");
@@ -88,7 +88,8 @@ Result<GltfParts> glb_parts(const fs::path& path, std::string_view bytes) {
 Status check_version(const fs::path& path, const json& file) {
   const auto asset = file.find("asset");
   const bool given = asset != file.end() && asset->is_object() && asset->contains("version");
-  if (!given) {  // drafts of version 1 had none; it named its elements, version 2 numbers them
+  // Drafts of version 1 did not state it. They name their elements, whereas version 2 numbers them.
+  if (!given) {
     const auto meshes = file.find("meshes");
     const bool named = meshes != file.end() && meshes->is_object();
     return named ? old_version(path, "1") : Status();
@@ -116,7 +117,7 @@ Status check_extensions(const fs::path& path, const json& file) {
   return {};
 }
 
-// tinygltf takes anything else for an empty list.
+// tinygltf treats anything that is not a list as an empty list.
 Status check_lists(const fs::path& path, const json& file) {
   for (const char* name : {"accessors", "buffers", "bufferViews", "images", "materials", "meshes",
                            "nodes", "scenes", "skins", "textures"}) {
@@ -146,8 +147,9 @@ Status check_lists(const fs::path& path, const json& file) {
   return {};
 }
 
-// What an extension alone holds has no place in a buffer. tinygltf calls such indices malformed,
-// and a validator, which its message would lead to, finds no fault in them.
+// Returns whether the primitive's indices exist only in compressed form, so that their accessor has
+// no buffer view. tinygltf calls such indices malformed, but a glTF validator, to which that
+// message would refer the user, finds no fault in them.
 bool indices_are_compressed(const json& file, const json& primitive) {
   const auto extensions = primitive.find("extensions");
   if (extensions == primitive.end() || !extensions->is_object() ||
@@ -160,7 +162,8 @@ bool indices_are_compressed(const json& file, const json& primitive) {
   return integer_at((*accessors)[std::size_t(indices)], "bufferView", -1) < 0;
 }
 
-// A file that holds nothing else should say that it requires the extension; not all do.
+// A file whose data exist only in compressed form should list the extension as required, but some
+// do not.
 Status check_compression(const fs::path& path, const json& file) {
   const auto meshes = file.find("meshes");
   for (std::size_t i = 0; meshes != file.end() && i < meshes->size(); ++i) {
@@ -177,7 +180,7 @@ Status check_compression(const fs::path& path, const json& file) {
   return {};
 }
 
-// tinygltf takes the address of an embedded image's first byte without a look at the ranges.
+// tinygltf takes the address of an embedded image's first byte without checking the ranges.
 bool image_views_fit(const json& file) {
   const auto element = [&](const char* array, std::int64_t i) -> const json* {
     const auto at = file.find(array);

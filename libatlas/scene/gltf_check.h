@@ -1,4 +1,4 @@
-// Internal: what is looked at in a glTF file before tinygltf parses it.
+// Internal: checks a glTF file before tinygltf parses it.
 #pragma once
 
 #include <cstdint>
@@ -12,26 +12,25 @@
 
 namespace atlas {
 
-// The file breaks the rules of glTF: `what` says how.
+// Returns the error for a file that breaks the rules of glTF; `what` says how.
 Status malformed_gltf(const std::filesystem::path& path, const std::string& what);
 
 inline constexpr const char* kGltfDraco = "KHR_draco_mesh_compression";
 
-// The whole number that an object has under a key; `absent` where it has none.
+// Returns the integer that an object has under a key, or `absent` if it has none.
 std::int64_t integer_at(const nlohmann::json& object, const char* key, std::int64_t absent);
 
-// The parts of a file: of a .gltf its JSON is all.
+// The parts of a file. A .gltf file is JSON as a whole.
 struct GltfParts {
   std::string_view json, binary;
   nlohmann::json document;             // the JSON, parsed; an object
-  std::vector<double> external_bytes;  // what the buffers need that lie in files of their own
+  std::vector<double> external_bytes;  // sizes of the buffers that are files of their own
   bool container = false;              // a .glb
-  bool plain = true;  // false: a .glb in a form that the format allows, or many write, but tinygltf
-                      // refuses
+  bool plain = true;  // false: a .glb whose form is allowed, or common, but refused by tinygltf
 };
 
-// Finds the parts, and checks in the JSON what tinygltf passes over in silence or trusts: the
-// version, required extensions, lists that are none, indices that are there only compressed, ranges
+// Finds the parts, and checks in the JSON what tinygltf ignores or trusts: the version, required
+// extensions, lists that are not arrays, indices that exist only in compressed form, and the ranges
 // of embedded images. Errors: bad_input, unsupported.
 Result<GltfParts> check_gltf(const std::filesystem::path& path, std::string_view bytes);
 

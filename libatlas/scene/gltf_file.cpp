@@ -1,4 +1,4 @@
-#include <fstream>  // tinygltf.h forgets it where TINYGLTF_NO_FS is set
+#include <fstream>  // tinygltf.h does not include it if TINYGLTF_NO_FS is set
 #define TINYGLTF_IMPLEMENTATION
 #include "libatlas/scene/gltf_file.h"
 
@@ -16,16 +16,16 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
-// What the file callbacks of tinygltf are given.
+// What tinygltf passes to the file callbacks.
 struct Folder {
   fs::path path;
-  std::vector<fs::path>& buffers;    // that were read
+  std::vector<fs::path>& buffers;    // paths of those that were read
   const std::vector<double>& bytes;  // of each buffer in a file, in their order
-  Status status;                     // of the first one that could not be
+  Status status;                     // error of the first one that could not be read
   std::size_t read = 0;
 };
 
-// Embedded images stay encoded; tinygltf has already put data URIs into `bytes`.
+// Keeps embedded images encoded. tinygltf has already decoded data URIs into `bytes`.
 bool keep_image(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
                 const unsigned char* bytes, int size, void*) {
   if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
@@ -41,7 +41,7 @@ bool read_buffer(std::vector<unsigned char>* out, std::string*, const std::strin
     return false;
   }
   out->assign(bytes->begin(), bytes->end());
-  // A file may be longer than its buffer; tinygltf wants the same.
+  // A file may be longer than its buffer, but tinygltf requires equal lengths.
   const std::size_t index = folder.read++;
   if (index < folder.bytes.size() && folder.bytes[index] < double(out->size())) {
     out->resize(static_cast<std::size_t>(folder.bytes[index]));
@@ -62,7 +62,8 @@ bool never_write(std::string*, const std::string&, const std::vector<unsigned ch
   return false;
 }
 
-// Newer versions of tinygltf also ask for a file's size, to refuse large ones; read_buffer decides.
+// Newer versions of tinygltf also ask for a file's size, to refuse large files. Here read_buffer
+// decides.
 [[maybe_unused]] bool any_size(std::size_t* size, std::string*, const std::string&, void*) {
   *size = 0;
   return true;
@@ -80,7 +81,8 @@ Callbacks file_access(Folder& folder) {
   return access;
 }
 
-// The same file with its chunks padded as they should be, and an empty one left out.
+// Returns the same file with its chunks padded as the format requires, and without an empty binary
+// chunk.
 std::string plain_glb(const GltfParts& parts) {
   const auto padded = [](std::string_view bytes, char with) {
     std::string result(bytes);
@@ -98,7 +100,7 @@ std::string plain_glb(const GltfParts& parts) {
   return "glTF" + std::string(reinterpret_cast<const char*>(header), 8) + result;
 }
 
-// The first line, without the megabytes of a data URI that it may quote.
+// Returns the first line, shortened, since it may quote megabytes of a data URI.
 std::string short_line(const std::string& text) {
   constexpr std::size_t kLongest = 120;
   const std::string line = text.substr(0, text.find('\n'));
@@ -127,7 +129,7 @@ double component(const std::uint8_t* at, int type, bool normalized) {
       return normalized ? std::max(load<std::int16_t>(at) / 32767.0, -1.0) : load<std::int16_t>(at);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
       return normalized ? load<std::uint16_t>(at) / 65535.0 : load<std::uint16_t>(at);
-    case TINYGLTF_COMPONENT_TYPE_INT:  // glTF has none, but tinygltf lets it pass
+    case TINYGLTF_COMPONENT_TYPE_INT:  // glTF has no such type, but tinygltf accepts it
       return load<std::int32_t>(at);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
       return load<std::uint32_t>(at);
@@ -142,7 +144,7 @@ Status bad_accessor(int accessor, const std::string& what) {
   return {ErrorCode::bad_input, fmt::format("accessor {} {}", accessor, what)};
 }
 
-// Where an accessor's rows lie in a buffer view, by the file.
+// Where the file says that an accessor's rows lie in a buffer view.
 struct RowsAsked {
   int view = -1;
   std::size_t offset = 0, count = 0, row_bytes = 0;
@@ -248,7 +250,7 @@ Result<std::vector<T>> read_accessor(const tinygltf::Model& model, int index, in
   return values;
 }
 
-// Of a matrix each column begins at a multiple of 4 bytes.
+// Each column of a matrix begins at a multiple of 4 bytes.
 std::size_t row_bytes_of(const tinygltf::Accessor& a) {
   const std::size_t size = component_size(a.componentType);
   const std::size_t columns = a.type == TINYGLTF_TYPE_MAT2   ? 2
@@ -273,7 +275,7 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, std::vector<fs::path>& b
   if (!parts.ok()) return parts.status();
   nlohmann::json parsed = std::move(parts->document);
   if (document != nullptr) *document = std::move(parsed);
-  parsed = nullptr;  // what nobody wants makes room for the second parser
+  parsed = nullptr;  // frees an unwanted JSON to make room for the second parser
   const std::string rebuilt = parts->plain ? std::string() : plain_glb(*parts);
   const std::string_view data = parts->plain ? bytes->text() : std::string_view(rebuilt);
 
@@ -293,7 +295,7 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, std::vector<fs::path>& b
                  : loader.LoadASCIIFromString(&model, &error, &warning, data.data(), size, base);
   } catch (const std::bad_alloc&) {
     throw;
-  } catch (const std::exception& exception) {  // tinygltf trusts some indices
+  } catch (const std::exception& exception) {  // tinygltf does not check some indices
     error = fmt::format("its parser gave up: {}", exception.what());
   }
   if (!folder.status.ok()) return folder.status;

@@ -1,5 +1,5 @@
-// Internal: a glTF file and checked access to its accessors. Includes tinygltf, so it is for the
-// reader's .cpp files only.
+// Internal: loads a glTF file and reads its accessors with range checks. Includes tinygltf, so only
+// the reader's .cpp files may include it.
 #pragma once
 
 #include <cstdint>
@@ -24,40 +24,44 @@
 
 namespace atlas {
 
-// Accessors without a view are zeros that a sparse part fills; their count has no data behind it.
+// The largest count of an accessor without a buffer view. Its values are zeros, which a sparse part
+// can replace; the file need not hold any data for the count.
 inline constexpr std::size_t kMostGltfZeros = std::size_t{1} << 24;
 
-// Parses .gltf and .glb and loads the buffers, the files of which `buffers` names. Images stay
-// encoded: embedded ones keep their bytes in image.image, others their uri. `document`, where it is
-// not null, becomes the file's JSON, an object. Errors: not_found (the file or a buffer),
-// bad_input, unsupported (the file requires an extension other than those that are read; the
-// message names it).
+// Parses .gltf and .glb and loads the buffers. Appends the paths of buffers that are files to
+// `buffers`. Images stay encoded: those in data URIs are in image.image, those in buffer views stay
+// there, and the others keep their uri. If `document` is not null, it becomes the file's JSON, an
+// object. Errors: not_found (the file or a buffer), bad_input, unsupported (the file is larger than
+// 4 GiB, of another version, or requires an extension that is not read, which the message names).
 Result<tinygltf::Model> load_gltf(const std::filesystem::path& path,
                                   std::vector<std::filesystem::path>& buffers,
                                   nlohmann::json* document = nullptr);
 
-// The bytes of a buffer view; bad_input where it leaves its buffer.
+// Returns the bytes of a buffer view. Error: bad_input if it reaches beyond its buffer.
 Result<std::span<const std::uint8_t>> gltf_view(const tinygltf::Model& model, int view);
 
-// All values of an accessor, `components` a row, normalised integers as fractions, sparse ones
-// filled in. The accessor may have more components than asked for, not fewer.
+// Returns all values of an accessor, `components` per row: normalised integers as fractions, with
+// the sparse part filled in. The accessor may have more components than `components`, but not
+// fewer.
 Result<std::vector<float>> gltf_floats(const tinygltf::Model& model, int accessor, int components);
 
-// The values of a scalar accessor of unsigned integers.
+// Returns the values of a scalar accessor of unsigned integers.
 Result<std::vector<std::uint32_t>> gltf_integers(const tinygltf::Model& model, int accessor);
 
-// The values of an accessor as the file has them, a row of `row_bytes` each, `stride` apart.
+// The values of an accessor as the file has them: rows of `row_bytes` bytes, whose beginnings are
+// `stride` bytes apart.
 struct GltfRows {
-  const std::uint8_t* data = nullptr;  // of the model, or of `filled`
+  const std::uint8_t* data = nullptr;  // points into the model, or into `filled`
   std::size_t stride = 0, row_bytes = 0, count = 0;
-  std::vector<std::uint8_t> filled;  // where a sparse part, or nothing, stands for them
+  std::vector<std::uint8_t> filled;  // the rows, if the accessor is sparse or has no buffer view
 };
 
-// The columns of matrices are padded to 4 bytes, as in the file. Must not outlive the model.
-// Errors: bad_input, for what leaves its buffer or has no data.
+// Returns the rows of an accessor. The columns of matrices are padded to 4 bytes, as in the file.
+// The result must not outlive the model. Errors: bad_input if rows reach beyond their buffer or
+// have no data.
 Result<GltfRows> gltf_rows(const tinygltf::Model& model, int accessor);
 
-// A number of a row, not normalised; `type` is the accessor's componentType.
+// Returns a number of a row, not normalised; `type` is the accessor's componentType.
 double gltf_component(const std::uint8_t* at, int type);
 
 }  // namespace atlas

@@ -8,7 +8,8 @@
 namespace atlas {
 namespace {
 
-// One of the extension's attributes, `components` values an instance; none where it is not given.
+// Returns one of the extension's attributes, `components` values for each instance; empty if it is
+// not given.
 Result<std::vector<float>> attribute(const tinygltf::Model& model, const tinygltf::Value& list,
                                      const char* name, int components) {
   if (!list.Has(name)) return std::vector<float>{};
@@ -57,7 +58,7 @@ Result<std::vector<glm::dmat4>> gltf_instances(const tinygltf::Model& model,
                                               " than of other values of its instances"};
     count = a.values.size() / a.components;
   }
-  if (!count) return std::vector{glm::dmat4(1)};  // attributes of a viewer's own only
+  if (!count) return std::vector{glm::dmat4(1)};  // it has only attributes that viewers define
   std::vector<glm::dmat4> matrices(*count);
   for (std::size_t i = 0; i < *count; ++i)
     matrices[i] = matrix_of(attributes[0].of(i), attributes[1].of(i), attributes[2].of(i));

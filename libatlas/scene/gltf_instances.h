@@ -1,4 +1,4 @@
-// Internal: EXT_mesh_gpu_instancing, one node that shows its mesh at many places.
+// Internal: reads EXT_mesh_gpu_instancing, with which one node shows its mesh at many places.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -10,8 +10,8 @@ namespace atlas {
 
 inline constexpr const char* kGltfInstancing = "EXT_mesh_gpu_instancing";
 
-// Where the node shows its mesh, relative to the node: at its own place (one unit matrix), or where
-// the extension says. Errors: bad_input.
+// Returns the matrices at which the node shows its mesh, relative to the node: those of the
+// extension, or one unit matrix without it. Errors: bad_input.
 Result<std::vector<glm::dmat4>> gltf_instances(const tinygltf::Model& model,
                                                const tinygltf::Node& node);
 

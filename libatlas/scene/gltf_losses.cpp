@@ -30,7 +30,7 @@ std::size_t other_textures(const tinygltf::Material& m) {
   return count;
 }
 
-// Whether it is more than a base colour, light of its own, and their textures.
+// Returns whether the material has more than a base colour, emission and their textures.
 bool shaded(const tinygltf::Material& m) {
   const auto& pbr = m.pbrMetallicRoughness;
   return !m.extensions.empty() || pbr.metallicFactor != 1 || pbr.roughnessFactor != 1;

@@ -1,5 +1,5 @@
-// Internal: what of a glTF file is not in a Scene, or not in a format that keeps one. Includes
-// tinygltf, so it is for .cpp files only.
+// Internal: counts what of a glTF file a Scene, or an OBJ file, does not hold. Includes tinygltf,
+// so only .cpp files may include it.
 #pragma once
 
 #include "libatlas/scene/gltf_file.h"
@@ -7,11 +7,12 @@
 
 namespace atlas {
 
-// Returns what a Scene holds only by Scene::source. Its arrays hold meshes at rest with names,
-// normals, colours, one set of uvs, and materials of a base colour with its texture.
+// Counts what a Scene holds only in Scene::source. Its arrays hold meshes at rest with names,
+// normals, colours and one set of uvs, and materials of a base colour with its texture.
 LossCounts gltf_not_read(const tinygltf::Model& model);
 
-// Adds what OBJ cannot hold, uvs and textures among it, since the new uvs are the only ones.
+// Adds what an OBJ file cannot hold, including the file's uvs and textures, since the new uvs are
+// the only ones there.
 void count_losses(const tinygltf::Model& model, Losses& losses);
 
 }  // namespace atlas

@@ -51,7 +51,8 @@ Status add_images(const tinygltf::Model& model, SceneBuilder& builder) {
   return {};
 }
 
-// The image of a texture, which an extension names where its format is none of glTF's own; or -1.
+// Returns the image of a texture, or -1. An extension names it if glTF itself does not have its
+// format.
 int image_of(const tinygltf::Model& model, int texture) {
   if (texture < 0 || std::size_t(texture) >= model.textures.size()) return -1;
   const tinygltf::Texture& t = model.textures[texture];
@@ -64,7 +65,7 @@ int image_of(const tinygltf::Model& model, int texture) {
   return source >= 0 && std::size_t(source) < model.images.size() ? source : -1;
 }
 
-// `count` numbers of a list, or `absent`.
+// Returns `count` numbers of a list, or `absent` for each that is not given.
 template <std::size_t count>
 std::array<double, count> numbers(const tinygltf::Value& object, const char* key, double absent) {
   std::array<double, count> result;
@@ -77,7 +78,8 @@ std::array<double, count> numbers(const tinygltf::Value& object, const char* key
   return result;
 }
 
-// The diffuse part of a material: glTF's own, or that of an older model of shading.
+// The diffuse part of a material, from glTF's own model of shading or from the older
+// specular-glossiness extension.
 struct Diffuse {
   Vec3f colour{1, 1, 1};
   double opacity = 1;
@@ -111,7 +113,8 @@ Diffuse diffuse_of(const tinygltf::Material& material) {
   return diffuse;
 }
 
-// In any unit: factors of the core are up to 1, an extension makes them stronger.
+// Reads the emission, which has no defined unit: glTF's own factors are at most 1, and an extension
+// multiplies them.
 void add_emission(const tinygltf::Material& m, RawMaterial& material) {
   if (m.emissiveFactor.size() < 3) return;
   double strength = 1;
@@ -137,7 +140,7 @@ void add_transparency(const tinygltf::Material& m, double opacity, RawMaterial& 
   material.double_sided = m.doubleSided;
 }
 
-// KHR_texture_transform may name another set than its texture does.
+// KHR_texture_transform may name another set of texture coordinates than its texture does.
 int texcoord_set(const tinygltf::TextureInfo& info) {
   const auto at = info.extensions.find("KHR_texture_transform");
   const bool given =
@@ -145,7 +148,8 @@ int texcoord_set(const tinygltf::TextureInfo& info) {
   return given ? at->second.Get("texCoord").GetNumberAsInt() : info.texCoord;
 }
 
-// KHR_texture_transform scales, turns and moves coordinates whose v points down; here it points up.
+// KHR_texture_transform scales, rotates and moves coordinates whose v axis points down. Here v
+// points up.
 void add_transform(const tinygltf::TextureInfo& info, RawMaterial& material) {
   const auto at = info.extensions.find("KHR_texture_transform");
   if (at == info.extensions.end() || !at->second.IsObject()) return;

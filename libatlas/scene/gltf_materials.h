@@ -1,4 +1,4 @@
-// Internal: the materials and images of a glTF file.
+// Internal: reads the materials and images of a glTF file.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,9 @@
 
 namespace atlas {
 
-// Appends them to the builder, and one material more, for primitives without one. Returns for each
-// material which set of texture coordinates it asks for. Errors: bad_input.
+// Appends the images and materials to the builder, and then one white material for primitives
+// without one. Returns for each material the set of texture coordinates that it uses. Errors:
+// bad_input.
 Result<std::vector<int>> add_gltf_materials(const tinygltf::Model& model, SceneBuilder& builder);
 
 }  // namespace atlas

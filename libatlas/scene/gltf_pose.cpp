@@ -20,8 +20,8 @@ std::vector<glm::dvec3> vectors(const std::vector<float>& values) {
   return result;
 }
 
-// What turns normals where `m` moves points: its inverse transpose but for a positive factor, in a
-// form that also exists where m flattens what it moves.
+// Returns the matrix that transforms normals where `m` transforms points: its inverse transpose
+// times a positive factor, computed in a form that also exists if m is singular.
 glm::dmat3 normal_matrix(const glm::dmat4& m) {
   const glm::dvec3 x(m[0]), y(m[1]), z(m[2]);
   const glm::dmat3 cofactors(glm::cross(y, z), glm::cross(z, x), glm::cross(x, y));
@@ -64,8 +64,8 @@ GltfPose::GltfPose(const tinygltf::Model& model, bool normals)
 
 glm::dmat4 GltfPose::world_of(int node) const {
   glm::dmat4 m(1);
-  // Cycles and chains that are too deep are refused where the scene is walked through; joints need
-  // not be part of it, and here it only must end.
+  // The limit only ends the loop. Cycles and chains that are too deep are refused where the scene's
+  // nodes are visited, but joints need not be among those.
   for (int steps = 0; node >= 0 && steps <= kMostNodeDepth; ++steps) {
     m = gltf_local_matrix(model_.nodes[node]) * m;
     node = parent_[node];
@@ -85,7 +85,7 @@ const std::vector<glm::dmat4>& GltfPose::joints(const tinygltf::Node& node,
   std::vector<float> inverse;
   if (skin.inverseBindMatrices >= 0) {
     auto values = gltf_floats(model_, skin.inverseBindMatrices, 16);
-    if (!values.ok()) return matrices;  // as without a skin
+    if (!values.ok()) return matrices;  // treated as no skin
     inverse = std::move(*values);
   }
   for (std::size_t j = 0; j < skin.joints.size(); ++j) {
@@ -156,7 +156,8 @@ Status GltfPose::bend(const std::vector<glm::dmat4>& joints, const tinygltf::Pri
       total[k / 4] += w;
     }
   }
-  for (std::size_t i = 0; i < points.size(); ++i) {  // weights are rounded, and not always to 1
+  // Weights are rounded, so their sum may not be 1.
+  for (std::size_t i = 0; i < points.size(); ++i) {
     const glm::dmat4& m = total[i] > 0 ? blend[i] / total[i] : joints[0];
     points[i] = glm::dvec3(m * glm::dvec4(points[i], 1));
     if (!vertices.normals.empty()) vertices.normals[i] = normal_matrix(m) * vertices.normals[i];

@@ -1,4 +1,4 @@
-// Internal: where the vertices of a glTF mesh are at rest, before any animation runs.
+// Internal: computes where the vertices of a glTF mesh are at rest, before any animation runs.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,15 @@
 
 namespace atlas {
 
-// Nodes that are nested deeper are refused.
+// Nodes that are nested more deeply are refused.
 inline constexpr int kMostNodeDepth = 512;
 
-// What a node's transform is, relative to its parent.
+// Returns a node's transform relative to its parent.
 glm::dmat4 gltf_local_matrix(const tinygltf::Node& node);
 
-// Vertices of a primitive in the world. Normals are perpendicular to the surface there and point
-// to the side that they did; their lengths mean nothing. None where the primitive has none, or
-// nobody wants them.
+// The vertices of a primitive in world coordinates. Normals are perpendicular to the surface and
+// keep pointing to the same side of it; their lengths mean nothing. `normals` is empty if the
+// primitive has none or they are not wanted.
 struct GltfVertices {
   std::vector<glm::dvec3> positions, normals;
 };
@@ -27,17 +27,19 @@ class GltfPose {
  public:
   GltfPose(const tinygltf::Model& model, bool normals);
 
-  // Vertices moved by the morph targets that have weights, then by the joints of the node's skin,
-  // which replace the node's own transform, or else by `world`. Errors: bad_input.
+  // Returns the primitive's vertices, moved by the morph targets that have weights, and then by the
+  // joints of the node's skin, which replace the node's own transform, or by `world` without a
+  // skin. Errors: bad_input.
   Result<GltfVertices> vertices(const tinygltf::Node& node, const tinygltf::Primitive& primitive,
                                 const glm::dmat4& world);
 
-  // Whether the primitive's triangles are turned inside out on their way into the world.
+  // Returns whether the transform into the world turns the primitive's triangles inside out.
   bool mirrors(const tinygltf::Node& node, const tinygltf::Primitive& primitive,
                const glm::dmat4& world);
 
  private:
-  // Of each joint from the mesh into the world; empty where no skin bends the primitive.
+  // Returns the matrix of each joint from the mesh into the world; empty if no skin bends the
+  // primitive.
   const std::vector<glm::dmat4>& joints(const tinygltf::Node& node,
                                         const tinygltf::Primitive& primitive);
   glm::dmat4 world_of(int node) const;

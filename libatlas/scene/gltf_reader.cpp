@@ -1,4 +1,4 @@
-// glTF 2.0: the nodes of a scene as one mesh in world coordinates.
+// Reads glTF 2.0: merges the nodes of a scene into one mesh in world coordinates.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,19 +20,19 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
-// Of nodes and of instances, those of several parents counted at each: a hundred of them can stand
-// for 2^100.
+// Limit on the visits to nodes and instances. Nodes of several parents are visited from each, so a
+// hundred nodes can require 2^100 visits.
 constexpr std::size_t kMaxVisits = std::size_t{1} << 20;
 
-// Of vertices and corners, those of meshes that are shown several times counted at each: some ten
-// gigabytes. A file of a few kilobytes can ask for a million times as much as it holds.
+// Limit on vertices plus corners, some ten gigabytes. Meshes count as often as they are shown: a
+// file of a few kilobytes can ask for a million times as much as it holds.
 constexpr double kMaxShown = double(1 << 29);
 
 Vec3f three(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
-// As floats. A node's scale may lie beyond those; other lengths are left as the file has them.
+// Converts to floats, and normalises a vector that a node's scale has made too long or short.
 Vec3f direction(const glm::dvec3& v) {
   const double length = glm::length(v);
   const bool fits = length == 0 || (length > 1e-20 && length < 1e20);
@@ -73,19 +73,19 @@ class GltfParser {
   }
 
  private:
-  // The builder's vertices of one set of attributes; normals, where it has any, are as many.
+  // The builder's vertices from one set of attributes; if `normals` is set, with as many normals.
   struct Vertices {
     std::size_t first = 0, count = 0, first_normal = 0;
     bool normals = false;
   };
 
   struct Primitive {
-    std::vector<std::uint32_t> corners;  // 3 a triangle, numbered within the primitive
+    std::vector<std::uint32_t> corners;  // 3 per triangle, numbered within the primitive
     Vertices vertices;
     std::size_t texcoord_base = 0, texcoord_count = 0;
     bool has_texcoords = false, mirrored = false;
     std::uint32_t material = 0, object = 0;
-    int number = 0;  // in its mesh
+    int number = 0;  // index in its mesh
     std::string name;
   };
 
@@ -111,7 +111,7 @@ class GltfParser {
                         builder_.file, why)};
   }
 
-  // Of the default scene; of all nodes that are nobody's child where the file has no scene.
+  // Returns those of the default scene, or of the first; without scenes, all nodes without parent.
   std::vector<int> roots() const {
     const int chosen = model_.defaultScene >= 0 ? model_.defaultScene : 0;
     if (std::size_t(chosen) < model_.scenes.size()) return model_.scenes[chosen].nodes;
@@ -128,7 +128,7 @@ class GltfParser {
     return result;
   }
 
-  // What nodes above say of those below them.
+  // What a node inherits from the nodes above it.
   struct Above {
     glm::dmat4 matrix{1};
     bool hidden = false;
@@ -139,7 +139,7 @@ class GltfParser {
     if (index < 0 || std::size_t(index) >= model_.nodes.size()) {
       return malformed(where, "does not exist");
     }
-    // A node should have one parent; one of several is shown at each, as most programs do.
+    // A node should have one parent. One with several is shown at each, as in most programs.
     if (on_path_[index] || depth > kMostNodeDepth || ++visits_ > kMaxVisits) {
       return malformed(where, "the nodes form no tree");
     }
@@ -178,7 +178,7 @@ class GltfParser {
     return {};
   }
 
-  // White, behind the file's own, where there is none.
+  // Returns the white material after the file's own if the primitive has none.
   std::uint32_t material_of(const tinygltf::Primitive& raw, const std::string& name) {
     const std::size_t count = model_.materials.size();
     if (raw.material >= 0 && std::size_t(raw.material) < count) return std::uint32_t(raw.material);
@@ -227,7 +227,7 @@ class GltfParser {
     return {};
   }
 
-  // A file that has no other vertices should say that it requires the extension; not all do.
+  // A file of compressed vertices only should list the extension as required, but some do not.
   bool attributes_are_compressed(const tinygltf::Primitive& raw) const {
     const auto position = static_cast<std::size_t>(attribute(raw, "POSITION"));
     return raw.extensions.contains(kGltfDraco) && position < model_.accessors.size() &&
@@ -298,7 +298,7 @@ class GltfParser {
     } else {
       for (std::size_t i = 0; i < vertices; ++i) list.push_back(static_cast<std::uint32_t>(i));
     }
-    for (std::uint32_t& i : list) {  // what is out of the primitive is out of everything
+    for (std::uint32_t& i : list) {  // an index out of range must not reach other primitives
       if (i >= vertices) i = kOutside;
     }
     if (mode == TINYGLTF_MODE_TRIANGLES) {
@@ -314,7 +314,7 @@ class GltfParser {
     }
     for (std::size_t i = 2; i < list.size(); ++i) {
       const bool fan = mode == TINYGLTF_MODE_TRIANGLE_FAN;
-      const std::size_t odd = i % 2;  // every other triangle of a strip turns the other way
+      const std::size_t odd = i % 2;  // every other triangle of a strip is reversed
       const std::uint32_t a = fan ? list[0] : list[i - 2 + odd];
       const std::uint32_t b = fan ? list[i - 1] : list[i - 1 - odd];
       primitive.corners.insert(primitive.corners.end(), {a, b, list[i]});
@@ -322,7 +322,7 @@ class GltfParser {
     return {};
   }
 
-  // Vertices without values in a scene where others have some.
+  // Sets vertices without values to 0 in a scene where others have some.
   void finish_values() {
     std::size_t next = 0;
     for (std::size_t i = 0; i < builder_.illumination.size(); ++i) {
@@ -344,7 +344,7 @@ class GltfParser {
       builder_.object = p.object;
       const std::size_t first = builder_.triangle_count();
       for (std::size_t t = 0; t < p.corners.size() / 3; ++t) add_face(p, t);
-      if (builder_.source) {  // objects and places are one each
+      if (builder_.source) {  // each object has one place
         builder_.source->places[p.object].primitives.push_back(
             {p.number, p.vertices.first, p.vertices.count, first, builder_.triangle_count() - first,
              p.mirrored});
@@ -358,7 +358,7 @@ class GltfParser {
       const std::uint32_t local = p.corners[3 * t + (p.mirrored ? 2 - c : c)];
       vertices[c] = local == kOutside ? -1 : static_cast<std::int64_t>(p.vertices.first + local);
       normals[c] = static_cast<std::int64_t>(p.vertices.first_normal + local);
-      // What follows in the list belongs to other primitives.
+      // A larger index would reach the texture coordinates of other primitives.
       uvs[c] = local < p.texcoord_count ? static_cast<std::int64_t>(p.texcoord_base + local)
                                         : static_cast<std::int64_t>(builder_.texcoords.size());
     }
@@ -373,13 +373,13 @@ class GltfParser {
   const tinygltf::Model& model_;
   SceneBuilder& builder_;
   const Context& context_;
-  std::vector<int> texcoord_set_;  // 1 a material
+  std::vector<int> texcoord_set_;  // 1 per material
   GltfPose pose_;
-  std::vector<bool> on_path_;  // 1 a node: from the root to the one at hand
+  std::vector<bool> on_path_;  // 1 per node: from the root to the current one
   std::size_t visits_ = 0, nodes_visited_ = 0;
-  std::map<int, std::pair<std::size_t, std::size_t>> texcoords_;  // by accessor: first, count
+  std::map<int, std::pair<std::size_t, std::size_t>> texcoords_;  // first and count, by accessor
   std::vector<Primitive> primitives_;
-  std::vector<std::pair<std::size_t, std::size_t>> lit_ranges_;  // of vertices, ascending
+  std::vector<std::pair<std::size_t, std::size_t>> lit_ranges_;  // ranges of vertices, ascending
   std::size_t coloured_ = 0;
 };
 

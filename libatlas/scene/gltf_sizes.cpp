@@ -24,7 +24,8 @@ class ShownSize {
     return sum;
   }
 
-  // Of a node and all below it; 0 for one that is below itself, or deeper than any is read.
+  // Returns the size of a node and all below it. A node that is below itself, or deeper than nodes
+  // are read, adds 0 there.
   double of_node(int index, int depth = 0) {
     if (index < 0 || std::size_t(index) >= nodes_.size() || depth > kMostNodeDepth) return 0;
     double& known = nodes_[std::size_t(index)];
@@ -42,7 +43,7 @@ class ShownSize {
  private:
   static constexpr double kUnknown = -1;
 
-  // None where there is less behind it.
+  // Returns the accessor's count, or 0 if its data hold less.
   double count(int accessor) const {
     if (accessor < 0 || std::size_t(accessor) >= model_.accessors.size()) return 0;
     const tinygltf::Accessor& a = model_.accessors[std::size_t(accessor)];
@@ -81,7 +82,7 @@ class ShownSize {
   }
 
   const tinygltf::Model& model_;
-  std::vector<double> meshes_, nodes_;  // 1 a mesh, 1 a node
+  std::vector<double> meshes_, nodes_;  // 1 per mesh, 1 per node
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Internal: how much a glTF file shows, told before any of it is read.
+// Internal: computes how much a glTF file shows before its data are read.
 #pragma once
 
 #include <span>
@@ -7,13 +7,14 @@
 
 namespace atlas {
 
-// Whether KHR_node_visibility hides the node, and with it all below it.
+// Returns whether KHR_node_visibility hides the node, and with it all nodes below it.
 bool gltf_hidden(const tinygltf::Node& node);
 
-// Vertices and corners of triangles of all meshes, each as often as `roots` and what is below them
-// show it; of all meshes once where the file has no nodes. As many as the accessors announce, but
-// for those that announce more than there is: these are refused when they are read, and so are
-// nodes that form no tree. Linear in the file's size, however often nodes are shared.
+// Returns the sum of vertices and triangle corners of all meshes, each counted as often as `roots`
+// and the nodes below them show it, or once if the file has no nodes. Takes the counts that the
+// accessors announce. An accessor that announces more than its data hold counts 0, because it is
+// refused when it is read, and so are nodes that do not form a tree. Takes time linear in the
+// file's size, however often nodes are shared.
 double gltf_shown_size(const tinygltf::Model& model, std::span<const int> roots);
 
 }  // namespace atlas

@@ -1,4 +1,4 @@
-// Illumination from a second file.
+// Reads illumination from a second file.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
-// One `r g b`, or one grey value, a line; blank lines and # comments are skipped.
+// Reads one `r g b`, or one grey value, per line; skips blank lines and # comments.
 Result<std::vector<Vec3f>> read_text(const fs::path& path) {
   auto bytes = read_text_bytes(path);
   if (!bytes.ok()) return bytes.status();
@@ -51,7 +51,7 @@ bool of_illumination(const Defect& defect) {
          defect.kind == DefectKind::illumination_missing;
 }
 
-// Fills `other` where the file is a mesh as well.
+// Returns the file's illumination. If the file is a mesh, fills `other` with it.
 Result<std::vector<Vec3f>> read_values(const fs::path& path, const Context& context,
                                        SceneBuilder& other) {
   const Status status = read_by_extension(path, other, context);
@@ -86,10 +86,11 @@ double distance(const Vec3d& a, const Vec3d& b) {
   return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
 }
 
-// Light that another program wrote in an order of its own would lie about in pieces. Positions tell
-// only where both files mean the same place: in another unit, or without any, their boxes differ.
+// Reports vertices that lie elsewhere in the other file, since illumination in another order of
+// vertices would land on the wrong ones. Positions are only compared if both files have the same
+// bounding box and number of vertices: a file in another unit, or without positions, tells nothing.
 void check_order(const SceneBuilder& other, SceneBuilder& builder) {
-  constexpr double kSameBox = 1e-3, kSamePlace = 1e-2;  // of the diagonal
+  constexpr double kSameBox = 1e-3, kSamePlace = 1e-2;  // relative to the diagonal
   if (other.positions.size() != builder.positions.size()) return;
   const Box own(builder.positions), theirs(other.positions);
   const double diagonal = distance(own.low, own.high);
@@ -117,7 +118,7 @@ Status read_illumination(const fs::path& path, SceneBuilder& builder, const Cont
                     path.string(), values->size(), builder.positions.size(), builder.file)};
   }
   builder.files.insert(builder.files.end(), other.files.begin(), other.files.end());
-  // What is wrong with the light is that of this file; the mesh's own is not used.
+  // Defects of the illumination are now those of this file, since the mesh's own is not used.
   auto& defects = builder.defects.defects;
   std::erase_if(defects, of_illumination);
   std::copy_if(other.defects.defects.begin(), other.defects.defects.end(),

@@ -1,4 +1,4 @@
-// Internal: what of a scene an export that keeps it has to leave out.
+// Internal: counts what an export that keeps the scene has to leave out.
 #pragma once
 
 #include <cstddef>
@@ -22,14 +22,14 @@ class Losses {
 
   const LossCounts& counts() const { return counts_; }
 
-  // "2 x animations", one string a kind, by name (WorldFile::not_kept).
+  // Returns "2 x animations", one string for each kind, sorted by name (WorldFile::not_kept).
   std::vector<std::string> lines() const;
 
  private:
   LossCounts counts_;
 };
 
-// Adds those of Material::mtl_lines that say what no other member of Material holds, by keyword.
+// Adds, by keyword, the Material::mtl_lines that say what no other member of Material holds.
 void count_mtl_losses(const Material& material, Losses& losses);
 
 }  // namespace atlas

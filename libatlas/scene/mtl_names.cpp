@@ -11,8 +11,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kBlanks = " \t";
-constexpr int kMostWords =
-    32;  // of one name; every run of words is asked about, and lines may be long
+// Limit on the words of one name, since lines may be long and each run of words is looked up.
+constexpr int kMostWords = 32;
 
 fs::path path_in(const fs::path& folder, std::string_view name) {
   std::string path(name);
@@ -21,11 +21,11 @@ fs::path path_in(const fs::path& folder, std::string_view name) {
 }
 
 bool is_file(const fs::path& path) {
-  std::error_code ignored;  // what cannot be asked about is not a file
+  std::error_code ignored;  // a path that cannot be examined is not a file
   return fs::is_regular_file(path, ignored);
 }
 
-// Where the word that begins at `begin` ends.
+// Returns where the word that begins at `begin` ends.
 std::size_t word_end(std::string_view text, std::size_t begin) {
   return std::min(text.find_first_of(kBlanks, begin), text.size());
 }
@@ -34,7 +34,7 @@ std::size_t next_word(std::string_view text, std::size_t end) {
   return std::min(text.find_first_not_of(kBlanks, end), text.size());
 }
 
-// The longest run of words at the beginning that is a file, or 0.
+// Returns the length of the longest run of words at the beginning that is a file, or 0.
 std::size_t longest_file(const fs::path& folder, std::string_view names) {
   std::size_t longest = 0, end = word_end(names, 0);
   for (int words = 1; words <= kMostWords; ++words) {
@@ -45,7 +45,7 @@ std::size_t longest_file(const fs::path& folder, std::string_view names) {
   return longest;
 }
 
-// How far a name goes that is no file as it stands.
+// Returns the length of a name at the beginning that is no file.
 std::size_t unknown_name(const fs::path& folder, std::string_view names) {
   std::size_t end = word_end(names, 0);
   for (int words = 1; words < kMostWords; ++words) {
@@ -74,15 +74,14 @@ const NamedFiles::Listing& NamedFiles::listing(const fs::path& folder) {
   return at->second;
 }
 
-// Returns the file or folder of this name in `folder`, whether in capitals or small letters, or an
-// empty path.
+// Returns the file or folder of this name in `folder` without regard to case, or an empty path.
 fs::path NamedFiles::in_any_case(const fs::path& folder, const fs::path& name) {
   const Listing& names = listing(folder);
   const auto found = names.find(small_letters(name.string()));
   return found == names.end() ? fs::path() : folder / found->second;
 }
 
-// Returns the file of this path, folder by folder in any case from `folder` on, or an empty path.
+// Returns the file of this path below `folder`, each part without regard to case, or an empty path.
 fs::path NamedFiles::file_in_any_case(const fs::path& folder, const fs::path& path) {
   if (path.is_absolute()) return {};
   fs::path at = folder;
@@ -99,7 +98,7 @@ fs::path NamedFiles::file(const fs::path& folder, std::string_view name) {
   std::error_code ignored;
   if (fs::exists(exact, ignored)) return exact;
   if (is_file(beside)) return beside;
-  // Where the file was written capitals may have meant nothing.
+  // The file may come from a system that ignores case.
   for (const fs::path& path : {exact.lexically_relative(folder), exact.filename()}) {
     if (fs::path found = file_in_any_case(folder, path); !found.empty()) return found;
   }

@@ -1,4 +1,4 @@
-// Internal: which files the names in OBJ and MTL files mean.
+// Internal: finds the files that names in OBJ and MTL files mean.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +10,8 @@
 
 namespace atlas {
 
-// What the quotes at the beginning of `text` enclose, which some programs write around names with
-// blanks; empty where there are none.
+// Returns what the quotes at the beginning of `text` enclose, or an empty string if there are none.
+// Some programs write quotes around names that contain blanks.
 std::string_view quoted_name(std::string_view text);
 
 struct LibraryFile {
@@ -19,25 +19,25 @@ struct LibraryFile {
   bool exists;
 };
 
-// Finds files by their names. It lists each folder once only, since thousands of names may be
-// missing in a folder of thousands of files.
+// Finds files by their names. Lists each folder only once, since thousands of names may be missing
+// in a folder of thousands of files.
 class NamedFiles {
  public:
-  // The file that `name` means in a file of `folder`: backslashes part folders as slashes do, and a
-  // file that is not where the name says, as those of another machine, is looked for in `folder`,
-  // and both once more in any mix of capitals and small letters. Where there is none it is the
-  // first.
+  // Returns the file that `name` means in a file of `folder`. Backslashes separate folders as
+  // slashes do. A file that is not where the name says, as with paths of another machine, is looked
+  // for in `folder` itself; then both places are searched again without regard to case. If no file
+  // is found, returns the first path.
   std::filesystem::path file(const std::filesystem::path& folder, std::string_view name);
 
-  // The files of an `mtllib` line, whose names are apart by blanks, and may hold blanks. The
-  // longest run of words that is a file wins; what is none goes as far as ".mtl". What begins with
-  // '#' where a name could is a comment.
+  // Returns the files of an `mtllib` line, whose names are separated by blanks and may contain
+  // blanks. The longest run of words that is a file is taken as a name. A name that is no file
+  // extends to ".mtl". A '#' where a name could begin starts a comment.
   std::vector<LibraryFile> library_files(const std::filesystem::path& folder,
                                          std::string_view names);
 
  private:
-  // The entries of a folder by their names in small letters. Of entries whose names differ only in
-  // case it has the first in the order of their bytes.
+  // The entries of a folder, by their names in small letters. Of entries whose names differ only in
+  // case, it holds the first in byte order.
   using Listing = std::unordered_map<std::string, std::filesystem::path>;
 
   const Listing& listing(const std::filesystem::path& folder);

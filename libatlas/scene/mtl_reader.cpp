@@ -1,5 +1,5 @@
-// MTL: its diffuse part, opacity and emission, and its other lines, of which the builder lists or
-// counts those of materials in use.
+// Reads MTL: the diffuse part of materials, their opacity and emission, and their other lines. The
+// builder lists or counts those lines for materials in use.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
-// A keyword that is read here as the format spells it: some programs write kd and map_kd.
+// Returns a keyword as the format spells it if it is read here: some programs write kd and map_kd.
 std::string_view spelled(std::string_view keyword) {
   const std::string wanted = small_letters(std::string(keyword));
   for (const std::string_view known : {"newmtl", "Kd", "map_Kd", "d", "map_d", "Ke", "map_Ke"}) {
@@ -71,7 +71,7 @@ class MtlParser {
     return keyword == "Kd" ? parse_colour() : parse_map();
   }
 
-  // The line whose keyword has just been read, up to `at`, but for its indentation.
+  // Keeps the line whose keyword has just been read and ends at `at`, without its indentation.
   void keep_line(std::string_view keyword, const char* at) {
     if (keyword.starts_with('#')) return;
     TextScanner rest = scan_;
@@ -79,8 +79,8 @@ class MtlParser {
     line.append(at, rest.rest_with_comment().end());
   }
 
-  // What is no share (`d -halo 0.5`) is left out, and so is Tr, which some write for 1 - d and some
-  // for d.
+  // Ignores a value that is not a fraction (`d -halo 0.5`). Tr is not read at all, since some
+  // programs write it for 1 - d and others for d.
   Status parse_opacity() {
     double share = 0;
     if (!inside_ || !scan_.number(share) || !(share >= 0 && share <= 1)) return {};
@@ -90,8 +90,8 @@ class MtlParser {
     return {};
   }
 
-  // A texture by itself is as bright as it says. What is no colour (`Ke spectral a.rfl`) is left
-  // out.
+  // An emission texture without Ke is taken with the factor 1. A value that is not a colour (`Ke
+  // spectral a.rfl`) is ignored.
   void parse_emission(bool texture) {
     RawMaterial& material = builder_.materials.back();
     if (texture) {
@@ -108,7 +108,7 @@ class MtlParser {
     emission_given_ = true;
   }
 
-  // The format has colours as curves (`spectral FILE`) and as CIE XYZ, too.
+  // Returns whether a colour is given as a curve (`spectral FILE`) or as CIE XYZ.
   bool is_other_colour() const {
     TextScanner ahead = scan_;
     const std::string_view form = ahead.word();
@@ -141,19 +141,19 @@ class MtlParser {
     return {};
   }
 
-  // What follows a '#' after a blank is a comment, and quotes enclose the name, unless a file is
-  // named so.
+  // Returns the texture file that `name` means. Unless there is a file of the whole name, a '#'
+  // after a blank begins a comment, and quotes enclose the name.
   fs::path texture_file(std::string_view name) const {
     const fs::path folder = path_.parent_path();
     const fs::path whole = builder_.named_files.file(folder, name);
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // a path that cannot be examined does not exist
     if (fs::exists(whole, ignored)) return whole;
     const std::string_view quoted = quoted_name(name);
     return builder_.named_files.file(folder,
                                      quoted.empty() ? TextScanner::without_comment(name) : quoted);
   }
 
-  // Options come first; what follows them is the name, which may have blanks.
+  // Options come first. The rest of the line is the name, which may contain blanks.
   Status parse_map() {
     std::string_view rest = scan_.rest_with_comment();
     while (rest.size() > 1 && rest[0] == '-') {
@@ -221,7 +221,7 @@ class MtlParser {
   SceneBuilder& builder_;
   std::uint32_t line_ = 1;
   bool inside_ = false;
-  bool emission_given_ = false;  // by the present material's Ke
+  bool emission_given_ = false;  // whether the current material has Ke
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Internal: materials of one kind, for a line of text about them.
+// Internal: counts materials of one kind and describes them in a line of text.
 #pragma once
 
 #include <fmt/format.h>
@@ -10,7 +10,7 @@
 
 namespace atlas {
 
-// How many, and the first.
+// The number of materials, and the first one's name.
 struct NamedMaterials {
   std::size_t count = 0;
   std::string first;

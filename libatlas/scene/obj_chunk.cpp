@@ -13,8 +13,8 @@
 namespace atlas {
 namespace {
 
-// Keywords of the format that carry nothing for us: smoothing, settings of viewers, and normals
-// that nobody asked for.
+// Keywords that are skipped silently: smoothing, settings of viewers, and normals that are not
+// wanted.
 constexpr std::string_view kSilent[] = {"vn",     "vp",       "s",          "mg",
                                         "bevel",  "c_interp", "lod",        "usemap",
                                         "maplib", "d_interp", "shadow_obj", "trace_obj"};
@@ -28,7 +28,7 @@ class Parser {
  public:
   Parser(const char* begin, const char* end, bool normals) : scan_(begin, end), normals_(normals) {
     const auto bytes = static_cast<std::size_t>(end - begin);
-    chunk_.positions.reserve(bytes / 100);  // typical: 100 bytes a vertex with its two faces
+    chunk_.positions.reserve(bytes / 100);  // typical: 100 bytes for a vertex with its two faces
     chunk_.position.index.reserve(bytes / 16);
     chunk_.face_end.reserve(bytes / 48);
     chunk_.face_line.reserve(bytes / 48);
@@ -65,7 +65,8 @@ class Parser {
     chunk_.error_line = line_;
   }
 
-  // Up to `most` numbers until the line's end; -1 after an error.
+  // Reads up to `most` numbers until the end of the line. Returns their count, or -1 after an
+  // error.
   int parse_numbers(double* values, int most, const char* what) {
     int count = 0;
     while (count < most && !scan_.at_line_end()) {
@@ -139,7 +140,7 @@ class Parser {
     std::int64_t v = 0, t = 0, n = 0;
     bool has_t = false, has_n = false;
     if (!scan_.integer_here(v)) return false;
-    if (scan_.take('/')) {  // what follows may be left out: v/, v// and v/vt/ are written, too
+    if (scan_.take('/')) {  // the rest may be missing: v/, v// and v/vt/ occur, too
       has_t = scan_.integer_here(t);
       if (scan_.take('/')) has_n = scan_.integer_here(n);
     }
@@ -156,7 +157,7 @@ class Parser {
         clamp_index(index < 0 ? static_cast<std::int64_t>(so_far) + index : index - 1));
   }
 
-  // Of the corner whose position has been added last.
+  // Adds an attribute's index to the corner whose position was added last.
   void add_attribute(bool given, std::int64_t index, std::size_t so_far,
                      ObjChunk::Corners& corners) {
     if (given && corners.index.empty()) {

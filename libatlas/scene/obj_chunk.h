@@ -1,4 +1,4 @@
-// Internal: one piece of an OBJ file, parsed on its own so that pieces can be parsed in parallel.
+// Internal: parses one chunk of an OBJ file on its own, so that chunks can be parsed in parallel.
 #pragma once
 
 #include <cstdint>
@@ -15,40 +15,40 @@ namespace atlas {
 struct ObjEvent {
   enum Kind { object, group, material, library };
   Kind kind{};
-  std::uint32_t face = 0;  // number of faces of the chunk before it
+  std::uint32_t face = 0;  // number of the chunk's faces before it
   std::uint32_t line = 0;
   std::string_view text;
 };
 
-// Lines count from 0 at the chunk's start. Corners hold index - 1 as the file gives it; those
-// listed in Corners::relative were negative and hold (elements of the chunk so far) + index, to
-// which the elements of the chunks before have to be added.
+// Lines count from 0 at the chunk's start. Corners hold the file's index minus 1. Corners listed in
+// Corners::relative had negative indices; they hold the index plus the number of elements so far in
+// the chunk, to which the number of elements in earlier chunks must be added.
 struct ObjChunk {
   static constexpr std::int32_t kNoIndex = -0x7fffffff - 1;
 
-  // What corners name of one kind of attribute; empty while no corner has named any, else 1 a
-  // corner, kNoIndex where it names none.
+  // The indices of one kind of attribute: empty while no corner has named one, else 1 per corner,
+  // and kNoIndex where it names none.
   struct Corners {
     std::vector<std::int32_t> index;
     std::vector<std::uint32_t> relative;
   };
 
   std::vector<Vec3d> positions;
-  std::vector<Vec3f> colours;  // empty, or 1 a position; x is NaN where the line has none
+  std::vector<Vec3f> colours;  // empty, or 1 per position; x is NaN where the line has none
   std::vector<Vec2f> texcoords;
   std::vector<Vec3f> normals;
   Corners position, texcoord, normal;
   std::vector<std::uint32_t> face_end, face_line;  // face i has the corners up to face_end[i]
   std::vector<ObjEvent> events;
-  // Lines of positions that are no finite floats, of non-finite colours, of ignored elements.
+  // Lines of positions that are not finite floats, of non-finite colours, and of ignored elements.
   std::vector<std::uint32_t> bad_positions, bad_values, ignored;
   std::uint32_t lines = 0;
-  std::string error;  // not empty: malformed at error_line
+  std::string error;  // if not empty, the chunk is malformed at error_line
   std::uint32_t error_line = 0;
 };
 
-// Parses [begin, end), which starts and ends at line borders; without `normals` these are passed
-// over. Never fails but by chunk.error.
+// Parses [begin, end), which begins and ends at line boundaries. Skips normals unless `normals` is
+// set. Reports errors only in chunk.error.
 ObjChunk parse_obj_chunk(const char* begin, const char* end, bool normals);
 
 }  // namespace atlas

@@ -1,4 +1,5 @@
-// OBJ: cut into pieces at line ends, parsed in parallel, merged in file order.
+// Reads OBJ: cuts the file into chunks at line ends, parses them in parallel, and merges them in
+// file order.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +19,8 @@ namespace {
 
 constexpr std::size_t kChunkBytes = std::size_t{4} << 20;
 
-// Borders of pieces of about kChunkBytes; a line that a backslash continues is not cut.
+// Returns the boundaries of chunks of about kChunkBytes. A line that a backslash continues is not
+// cut.
 std::vector<const char*> cut(const FileBytes& bytes) {
   std::vector<const char*> borders{bytes.begin()};
   for (;;) {
@@ -161,7 +163,7 @@ class Merger {
     return {};
   }
 
-  // Some programs name one library before each object: it is read once.
+  // Some programs name a library before each object. It is read only once.
   Status read_library_list(const ObjEvent& event) {
     for (const LibraryFile& file :
          builder_.named_files.library_files(path_.parent_path(), event.text)) {
@@ -177,7 +179,7 @@ class Merger {
     return {};
   }
 
-  // The corners [begin, end) as the builder takes them; none where the chunk names none.
+  // Copies the corners [begin, end) in the builder's form; none if the chunk names none.
   static void copy_corners(const ObjChunk::Corners& corners, std::uint32_t begin, std::uint32_t end,
                            std::vector<std::int64_t>& to) {
     to.clear();
@@ -228,15 +230,16 @@ class Merger {
 
   fs::path path_;
   SceneBuilder& builder_;
-  std::uint32_t line_ = 1;               // of the file, where the chunk at hand begins
-  bool has_objects_ = false;             // then groups do not count as objects
-  std::vector<Counts> counts_;           // 1 a chunk
-  std::vector<std::string> bad_places_;  // of the first unusable positions
+  std::uint32_t line_ = 1;               // of the file, where the current chunk begins
+  bool has_objects_ = false;             // if so, groups do not count as objects
+  std::vector<Counts> counts_;           // 1 per chunk
+  std::vector<std::string> bad_places_;  // places of the first unusable positions
   std::map<std::string, std::uint32_t> material_id_, object_id_;
-  std::set<fs::path> libraries_;  // that have been looked at
+  std::set<fs::path> libraries_;  // those already read or reported
 };
 
-// A face at the very end that lost its corners, in a last line without a line end, was cut off.
+// Refuses a file whose last line has no line end and is a face of fewer than three corners: it was
+// cut off there.
 Status check_tail(const fs::path& path, const FileBytes& bytes, const ObjChunk& last,
                   std::uint32_t lines) {
   if (bytes.size == 0 || bytes.end()[-1] == '\n' || last.face_end.empty()) return {};

@@ -1,6 +1,7 @@
-// OFF, the format of Geomview: text and binary. OpenMesh reads it too, but not fit for a scene: its
-// reader (9.0) keeps floats only, and takes a file that ends early, a word in place of a number or
-// a comment between vertices for read, repeating the last face or naming vertices at random.
+// Reads OFF, the format of Geomview, in text and binary. OpenMesh also reads it, but not well
+// enough for a scene: its reader (9.0) keeps only floats, and accepts a file that ends early, a
+// word in place of a number, or a comment between vertices; it then repeats the last face or uses
+// arbitrary vertices.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
-// What [ST][C][N]OFF says of a vertex: x y z, then these, in this order.
+// The attributes that [ST][C][N]OFF declares for a vertex: x y z, then these, in this order.
 struct OffLayout {
   bool normal = false, colour = false, texture = false, binary = false;
 
@@ -35,8 +36,9 @@ Status cut_short(const std::string& file, std::string_view what) {
                   file, what)};
 }
 
-// Colours as light. Whole numbers of which none exceeds 255 are shares of it, as most programs
-// write them; anything else is taken as it is, as Geomview and simulations write it.
+// Collects colours as illumination. If all are whole numbers and the largest is above 1 and at most
+// 255, they are divided by 255, as most programs write them. Otherwise they are used unchanged, as
+// Geomview and simulations write them.
 class Colours {
  public:
   explicit Colours(SceneBuilder& builder) : values_(builder.illumination) {}
@@ -57,7 +59,7 @@ class Colours {
   double largest_ = 0;
 };
 
-// Texture coordinates and normals are one a vertex.
+// Texture coordinates and normals are given per vertex.
 FaceCorners corners_of(const std::vector<std::int64_t>& vertices, const OffLayout& layout,
                        const SceneBuilder& builder) {
   const std::span<const std::int64_t> all(vertices);
@@ -82,7 +84,7 @@ class TextOff {
   }
 
  private:
-  static constexpr int kMost = 32;  // numbers of a vertex
+  static constexpr int kMost = 32;  // limit on the numbers of a vertex
 
   std::string place() const { return fmt::format("{}:{}", builder_.file, line_ + 1); }
 
@@ -102,8 +104,8 @@ class TextOff {
         return malformed(place(), kWhat);
       }
     }
-    scan_.next_line();  // the number of edges is of no use, and often missing
-    // A vertex takes six bytes at least, a face two.
+    scan_.next_line();  // the number of edges is not needed, and often missing
+    // A vertex takes at least six bytes, a face two.
     const auto left = static_cast<std::uint64_t>(end_ - scan_.position()) + 1;
     vertices_ = static_cast<std::uint64_t>(counts[0]);
     faces_ = static_cast<std::uint64_t>(counts[1]);
@@ -114,7 +116,8 @@ class TextOff {
     return {};
   }
 
-  // The numbers of a line; -1 after a word that is none.
+  // Reads the numbers of a line. Returns their count, or -1 after a word that is not a number.
+  // Clears `whole` if a colour is not written in whole numbers.
   int read_numbers(double* n, bool& whole) {
     int count = 0;
     while (count < kMost && !scan_.at_line_end()) {
@@ -172,7 +175,7 @@ class TextOff {
     if (layout_.colour) colours_.add(n + layout_.before_colour(), whole);
     const double* uv = n + layout_.before_colour() + colour;
     if (layout_.texture) builder_.texcoords.push_back({float(uv[0]), float(uv[1])});
-    if (count > least + colour) {  // what they mean the header does not say
+    if (count > least + colour) {  // the header does not say what they mean
       builder_.defects.add(DefectKind::element_ignored, [&] {
         return fmt::format("{}, the last {} numbers", place(), count - least - colour);
       });
@@ -190,13 +193,14 @@ class TextOff {
       }
       if (Status s = read_corners(corners, f); !s.ok()) return s;
       builder_.add_face(corners_of(corners, layout_, builder_), [&] { return place(); });
-      scan_.next_line();  // with the face's colour
+      scan_.next_line();  // skips the face's colour, too
     }
     return {};
   }
 
-  // Some programs spread a face over lines. Its colour is told from the next face by the line's
-  // end, so nothing may follow such a face on its last line: an index too few would shift the rest.
+  // Some programs spread a face over several lines. Only the end of a line separates the face's
+  // colour from the next face, so nothing may follow such a face on its last line: with an index
+  // missing, the faces after it would be read from the wrong place.
   Status read_corners(std::vector<std::int64_t>& corners, std::uint64_t face) {
     corners.clear();
     std::int64_t count = 0;
@@ -234,10 +238,12 @@ class TextOff {
   std::uint32_t line_ = 0;
 };
 
-// Geomview writes big-endian words and after each face's corners the number of its colour's
-// components; OpenMesh writes the machine's order and no such number. The header does not tell
-// them apart, so that is taken after which the file ends where it should. Without numbers all faces
-// need three corners, or a file cut short behind the number of no colour would look whole.
+// Geomview writes big-endian words and, after each face's corners, the number of components of its
+// colour. OpenMesh writes words in the machine's byte order and no such number. The header does not
+// distinguish them, so the form is taken with which the data end at the file's end. Without these
+// numbers, all faces need at least three corners; otherwise the 0 that Geomview writes for a face
+// without a colour would look like a face without corners, and a file cut short after it would look
+// complete.
 class BinaryOff {
  public:
   BinaryOff(std::string_view data, OffLayout layout, SceneBuilder& builder)
@@ -266,7 +272,8 @@ class BinaryOff {
   std::size_t vertex_words() const {
     return std::size_t(layout_.before_colour()) + 4 * layout_.colour + 2 * layout_.texture;
   }
-  // The word after a face that begins at `at`, or nothing beyond the file's end.
+  // Returns the index of the word after the face that begins at `at`, or nothing if it reaches
+  // beyond the file's end.
   std::optional<std::size_t> after_face(std::size_t at) const {
     if (at >= words() || word(at) >= words() - at) return {};
     const std::uint32_t corners = word(at);
@@ -325,7 +332,7 @@ class BinaryOff {
   std::size_t vertices_ = 0, faces_ = 0, first_face_ = 0;
 };
 
-// Takes the keyword, which many files lack and some write without a blank before the counts.
+// Reads the keyword, which many files lack and some write without a blank before the counts.
 Status read_keyword(TextScanner& scan, const std::string& file, OffLayout& layout) {
   while (!scan.at_end() && scan.at_line_end()) scan.next_line();
   const auto error = [&](ErrorCode code, std::string_view what) {

@@ -27,8 +27,9 @@ std::optional<PlyType> type_named(std::string_view name) {
   return {};
 }
 
-// Rhinoceros 6 ends the lines of binary files by carriage returns alone. The first line tells: the
-// one behind `end_header` may be followed by data that begin with any byte, a newline's included.
+// Turns lone carriage returns that end lines into newlines; Rhinoceros 6 writes them even in binary
+// files. The first line decides, because the data after the line end of `end_header` may begin with
+// any byte, even a newline.
 void turn_line_ends(FileBytes& bytes) {
   char *line = bytes.data.get(), *end = line + bytes.size;
   if (begins_with_mark(bytes)) std::fill_n(line, 3, ' ');

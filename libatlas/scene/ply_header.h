@@ -1,4 +1,4 @@
-// Internal: the header of a PLY file.
+// Internal: parses the header of a PLY file.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,8 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 
   int find(std::string_view property) const;  // -1: none
-  // What one element takes at least: with empty lists, and one character and a blank a number.
+  // Returns how many bytes one element takes at least: with empty lists, and in ascii with one
+  // character and a blank for each number.
   std::size_t least_bytes(PlyFormat format) const;
 };
 
@@ -39,12 +40,12 @@ struct PlyHeader {
   PlyFormat format{};
   std::vector<PlyElement> elements;
   std::vector<std::string> texture_files;  // `comment TextureFile NAME`, as MeshLab writes it
-  std::size_t bytes = 0;                   // data begins here
+  std::size_t bytes = 0;                   // length of the header: the data begin here
   std::uint32_t lines = 0;
 };
 
-// Where the header's lines end by carriage returns alone, it turns them into newlines, and those of
-// an ascii file's data with them. Errors: bad_input, naming the line.
+// Parses the header. If its lines end in lone carriage returns, turns these into newlines, and in
+// an ascii file also those of the data. Errors: bad_input, naming the line.
 Result<PlyHeader> read_ply_header(FileBytes& bytes, const std::string& file);
 
 }  // namespace atlas

@@ -1,4 +1,4 @@
-// PLY: ascii and both binary orders.
+// Reads PLY: ascii and both binary byte orders.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
-// Numbers one after the other, whatever the format. Every type fits a double exactly.
+// Reads numbers one after the other, whatever the format. A double holds every type exactly.
 class Numbers {
  public:
   Numbers(const FileBytes& bytes, const PlyHeader& header)
@@ -74,7 +74,7 @@ class Numbers {
   std::uint32_t first_line_;
 };
 
-// Integer colours mean fractions of their type's largest value.
+// Integer colours are fractions of their type's largest value.
 double colour_scale(PlyType type) {
   return type == PlyType::u8 ? 1 / 255.0 : type == PlyType::u16 ? 1 / 65535.0 : 1;
 }
@@ -183,7 +183,7 @@ class PlyParser {
     return {};
   }
 
-  // The first of several groups of names that the element has in full.
+  // Returns the properties of the first group whose names the element has in full, or none.
   std::vector<int> find_group(std::initializer_list<std::vector<const char*>> groups) const {
     for (const auto& group : groups) {
       std::vector<int> found;
@@ -245,7 +245,7 @@ class PlyParser {
     return {};
   }
 
-  // Faces do not say which of several elements they number.
+  // Faces do not say to which of several vertex elements their indices refer.
   Status more_vertices() const {
     if (element_->count == 0) return {};
     return {ErrorCode::bad_input,
@@ -253,7 +253,7 @@ class PlyParser {
                         builder_.file, element_->count)};
   }
 
-  // Files without any vertex have none after the faces either.
+  // Returns whether a later element has vertices. If none has, the file has no vertices at all.
   bool vertices_follow() const {
     const PlyElement* end = header_.elements.data() + header_.elements.size();
     return std::any_of(element_ + 1, end,
@@ -296,7 +296,7 @@ class PlyParser {
     return {};
   }
 
-  // Strips of triangles, one after the other in one list, with a -1 after each.
+  // Reads triangle strips, which follow each other in one list, with a -1 after each.
   Status read_strips(const Context& context) {
     const int list = element_->find("vertex_indices");
     if (list < 0 || !element_->properties[list].list) return skip(context);
@@ -309,7 +309,7 @@ class PlyParser {
         if (strip[k] == -1) {
           first = k + 1;
         } else if (k >= first + 2) {
-          const std::size_t odd = (k - first) % 2;  // every other triangle turns the other way
+          const std::size_t odd = (k - first) % 2;  // every other triangle is reversed
           const std::int64_t corners[3] = {to_index(strip[k - 2 + odd]),
                                            to_index(strip[k - 1 - odd]), to_index(strip[k])};
           const std::span<const std::int64_t> all(corners);
@@ -321,7 +321,7 @@ class PlyParser {
     return {};
   }
 
-  // Normals are one a vertex.
+  // Normals are given per vertex.
   std::span<const std::int64_t> normals_of(std::span<const std::int64_t> corners) const {
     return corners.first(builder_.normals.empty() ? 0 : corners.size());
   }
@@ -342,7 +342,7 @@ class PlyParser {
   SceneBuilder& builder_;
   const PlyElement* element_ = nullptr;
   std::uint64_t index_ = 0;
-  std::uint32_t line_ = 0;  // of the element at hand, in ascii files
+  std::uint32_t line_ = 0;  // of the current element, in ascii files
   std::vector<double> scalars_;
   std::vector<std::vector<double>> lists_;
   bool vertex_uvs_ = false;

@@ -13,9 +13,10 @@
 namespace atlas {
 namespace {
 
-constexpr std::size_t kMaxConcave = std::size_t{1} << 20;  // no surface of use has more
+constexpr std::size_t kMaxConcave = std::size_t{1} << 20;  // no useful surface has more
 
-// Drops the coordinate along which the polygon's normal is largest and keeps it counter-clockwise.
+// Drops the coordinate along which the polygon's normal is largest, and keeps the polygon
+// counter-clockwise.
 std::vector<Vec2d> project(std::span<const Vec3d> corners) {
   glm::dvec3 normal(0);
   const glm::dvec3 base = to_glm(corners[0]);
@@ -37,7 +38,7 @@ std::vector<Vec2d> project(std::span<const Vec3d> corners) {
   return flat;
 }
 
-// Turns left at every corner and goes round once.
+// Returns whether the polygon never turns right and winds once.
 bool convex(const std::vector<Vec2d>& p) {
   int sign_changes = 0;
   double last = 0;
@@ -56,10 +57,10 @@ bool inside(Vec2d a, Vec2d b, Vec2d c, Vec2d p) {
   return orientation(a, b, p) >= 0 && orientation(b, c, p) >= 0 && orientation(c, a, p) >= 0;
 }
 
-// Points in square cells, about one in each, so that a triangle meets few of them.
+// Sorts points into square cells, about one point in each, so that a triangle meets few of them.
 class PointGrid {
  public:
-  // Of the points that `members` numbers.
+  // Takes the points that `members` lists.
   PointGrid(const std::vector<Vec2d>& points, const std::vector<std::uint32_t>& members) {
     low_ = points[members[0]];
     Vec2d high = low_;
@@ -78,8 +79,8 @@ class PointGrid {
         [&](std::size_t i, std::uint32_t at) { members_[at] = members[i]; });
   }
 
-  // Whether `blocks(i)` holds for a point of the cells that the triangle's box meets, but for those
-  // left of and right of the triangle in each row.
+  // Returns whether `blocks(i)` holds for a point i in the cells that the triangle's bounding box
+  // meets, except the cells left and right of the triangle in each row.
   template <class Blocks>
   bool any(const std::array<Vec2d, 3>& t, Blocks&& blocks) const {
     const auto [low, high] = std::minmax({t[0].y, t[1].y, t[2].y});
@@ -95,11 +96,12 @@ class PointGrid {
  private:
   std::size_t cell(double distance) const {
     const double c = distance / side_;
-    return c > 0 ? std::size_t(std::min(c, double(kMaxConcave))) : 0;  // 0 / 0 as well
+    return c > 0 ? std::size_t(std::min(c, double(kMaxConcave))) : 0;  // 0 / 0 gives 0, too
   }
   std::size_t at(Vec2d p) const { return cell(p.y - low_.y) * columns_ + cell(p.x - low_.x); }
 
-  // The columns that the triangle meets in a row of cells, with a little room for rounding.
+  // Returns the columns that the triangle meets in a row of cells, with a small margin for
+  // rounding.
   std::pair<std::size_t, std::size_t> columns_in(std::size_t row,
                                                  const std::array<Vec2d, 3>& t) const {
     const double bottom = low_.y + (double(row) - 0.01) * side_, top = bottom + 1.02 * side_;
@@ -122,12 +124,12 @@ class PointGrid {
   Vec2d low_;
   double side_ = 0;
   std::size_t columns_ = 1;
-  std::vector<std::uint32_t> first_, members_;  // of a cell: members_[first_[c]..first_[c + 1])
+  std::vector<std::uint32_t> first_, members_;  // cell c has members_[first_[c]..first_[c + 1])
 };
 
-// Cuts corners off a ring while no other corner lies in the triangle. A corner that is none such
-// stays so while its neighbours stay, but in outlines that cross themselves: these are looked over
-// again when no corner is left to try.
+// Clips ears: corners of a ring whose triangle contains no other corner. A corner that is no ear
+// stays one as long as its neighbours stay, except in outlines that cross themselves. Therefore all
+// corners are tried again when no candidate is left.
 class EarClipper {
  public:
   EarClipper(const std::vector<Vec2d>& points, std::vector<std::array<std::uint32_t, 3>>& triangles)
@@ -142,7 +144,7 @@ class EarClipper {
   }
 
   void run() {
-    std::uint32_t start = 1;  // going on after the last ear avoids long slivers at one corner
+    std::uint32_t start = 1;  // continuing after the last ear avoids long slivers at one corner
     while (size_ > 3) {
       std::uint32_t ear = find_ear(start);
       if (ear == kNone && clipped_ && again_ > 0) {
@@ -161,7 +163,7 @@ class EarClipper {
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  // The first ear from `start` on, around the ring.
+  // Returns the first ear around the ring from `start` on, or kNone.
   std::uint32_t find_ear(std::uint32_t start) {
     for (const auto& [from, to] : {std::pair(start, std::uint32_t(points_.size())), {0u, start}}) {
       for (std::uint32_t i = next_candidate(from, to); i < to; i = next_candidate(i, to)) {
@@ -215,7 +217,7 @@ class EarClipper {
     clipped_ = false;
   }
 
-  // What is left, in a grid; few corners are looked at one by one sooner.
+  // Puts the remaining corners into a grid; a few corners are tested faster one by one.
   void index() {
     constexpr std::uint32_t kFew = 32;
     indexed_ = size_;
@@ -232,10 +234,10 @@ class EarClipper {
   std::uint32_t size_, indexed_ = 0;
   std::vector<std::uint32_t> before_, after_;
   std::vector<bool> alive_;
-  std::vector<std::uint64_t> candidate_;  // 1 bit a corner: may be an ear
+  std::vector<std::uint64_t> candidate_;  // 1 bit per corner: whether it may be an ear
   std::optional<PointGrid> grid_;
-  bool clipped_ = false;  // since all were looked over
-  int again_ = 200;       // times that all may be: enough for outlines of hundreds of corners
+  bool clipped_ = false;  // since the last look_over()
+  int again_ = 200;  // further calls of look_over(): enough for outlines of hundreds of corners
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Internal: polygons in space as triangles.
+// Internal: cuts polygons in space into triangles.
 #pragma once
 
 #include <array>
@@ -10,12 +10,12 @@
 
 namespace atlas {
 
-// Cuts a polygon of n >= 3 corners into n - 2 triangles of its corner numbers, in its orientation.
-// Convex ones become a fan from corner 0, concave ones lose ears, in the projection along the
-// polygon's largest normal component (Newell's normal). Degenerate or crossing outlines still give
-// n - 2 triangles. Ears are found by exact predicates in the projection, so that a simple
-// outline gives triangles of its own orientation there, however thin they are. False: concave with
-// more than 2^20 corners, cut as a fan.
+// Cuts a polygon of n >= 3 corners into n - 2 triangles of corner numbers, which keep its
+// orientation. Convex polygons become a fan from corner 0. Concave ones are cut by ear clipping in
+// the projection along the largest component of the polygon's normal (Newell's normal). Degenerate
+// or self-intersecting outlines also give n - 2 triangles. Ears are found with exact predicates in
+// the projection, so a simple outline gives triangles of its own orientation there, however thin
+// they are. Returns false for a concave polygon of more than 2^20 corners, which is cut as a fan.
 bool triangulate(std::span<const Vec3d> corners,
                  std::vector<std::array<std::uint32_t, 3>>& triangles);
 

@@ -33,9 +33,10 @@ bool known_extension(const fs::path& path) {
 }
 
 Status read_by_extension(const fs::path& path, SceneBuilder& builder, const Context& context) {
-  std::error_code error;  // what cannot be looked at is told by the reader
+  std::error_code error;  // the reader reports what cannot be examined
   if (const Reader read = reader_for(path)) {
-    // Of such a file every format would say something else is missing.
+    // Otherwise the reader of each format would report something else as missing from an empty
+    // file.
     if (fs::is_regular_file(path, error) && fs::is_empty(path, error))
       return {ErrorCode::bad_input,
               fmt::format("{}: is empty (was writing it cut short? export the scene again)",
@@ -74,7 +75,7 @@ Result<LoadedScene> read_scene(const fs::path& path, const ReadOptions& given,
   }
   auto result = builder.finish(options, context);
   if (result.ok()) result->files = std::move(builder.files);
-  return_freed_memory();  // half of what reading took
+  return_freed_memory();  // half of the memory that reading took
   context.report("reading", 1);
   return result;
 }

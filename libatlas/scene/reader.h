@@ -1,4 +1,4 @@
-// Reading illuminated scenes: OBJ + MTL, PLY, OFF, STL, glTF 2.0 and GLB, and worlds written by
+// Reads illuminated scenes: OBJ + MTL, PLY, OFF, STL, glTF 2.0 and GLB, and worlds written by
 // exporters/.
 #pragma once
 
@@ -14,43 +14,46 @@ namespace atlas {
 
 struct ReadOptions {
   double metres_per_unit = 1;  // length of one unit of the file, > 0
-  // Takes the illumination from this file instead: OBJ, PLY, OFF or glTF with the same vertices in
-  // the same order, or plain text with one `r g b` (or one grey value) a line.
+  // If not empty, the illumination is taken from this file instead: OBJ, PLY, OFF or glTF with the
+  // same vertices in the same order, or plain text with one `r g b` (or one grey value) per line.
   std::filesystem::path illumination_file = {};
-  bool load_textures = true;   // false: materials have their diffuse colour only
-  bool unlit_textures = true;  // false: the same where the scene carries no illumination
-  // PNG and JPEG textures stay as they are, in Texture::encoded: for what only hands them on.
+  bool load_textures = true;   // false: materials only have their diffuse colour
+  bool unlit_textures = true;  // false: the same if the scene carries no illumination
+  // Keeps PNG and JPEG textures encoded, in Texture::encoded, for programs that only pass them on.
   bool encoded_textures = false;
-  bool normals = false;  // true: the file's normals too, in Scene::normals
-  // What Scene has no arrays for, in Scene::source (glTF) and Material::mtl_lines (OBJ). All images
-  // of a glTF file are textures then, in the file's order. If false, Scene::not_read counts it.
+  bool normals = false;  // true: reads the file's normals into Scene::normals
+  // Keeps what Scene has no arrays for, in Scene::source (glTF) and Material::mtl_lines (OBJ). All
+  // images of a glTF file are then textures, in the file's order. If false, Scene::not_read counts
+  // what is missing.
   bool rest = false;
-  // true: sets encoded_textures, normals and rest, which exports that keep the scene need.
+  // If true, sets encoded_textures, normals and rest, which exports that keep the scene need.
   bool keep_scene = false;
 };
 
 struct LoadedScene {
   Scene scene = {};
   DefectReport defects = {};  // what was left out or replaced
-  // Read besides its own: material files, buffers.
+  // Files that were read besides the scene's own: material libraries, buffers.
   std::vector<std::filesystem::path> files = {};
 };
 
 // Reads the scene at `path`; the extension (.obj .ply .off .stl .gltf .glb .wrl .wrz, any case)
 // chooses the format.
 //
-// Positions are parsed in double. When the centre of the box of the used vertices is farther from 0
-// than the box's diagonal, Scene::origin is that centre rounded to a multiple of a quarter of the
-// next power of two above the diagonal, and positions are stored relative to it; otherwise the
-// origin is 0 and positions are the file's own, rounded to float. Materials and objects without a
-// triangle are not listed; those that are come in the order of first use.
-// Illumination: OBJ `v x y z r g b`; PLY red/green/blue, r/g/b or illuminance_r/g/b (integers are
-// normalised); the colours of COFF; glTF _ILLUMINANCE, else COLOR_0. Values are never clamped.
-// Normals: OBJ vn; PLY nx, ny, nz; NOFF; glTF NORMAL, turned with its node, skin and morph targets.
+// Positions are parsed in double precision. If the centre of the bounding box of the used vertices
+// is farther from 0 than the length of the box's diagonal, Scene::origin is that centre, rounded to
+// a multiple of a quarter of the diagonal's next larger power of two, and positions are stored
+// relative to it. Otherwise the origin is 0 and positions are the file's own, rounded to float.
+// Materials and objects without a triangle are not listed; the others are listed in the order of
+// first use.
+// Illumination is read from OBJ `v x y z r g b`; PLY red/green/blue, r/g/b or illuminance_r/g/b
+// (integers are normalised); the colours of COFF; glTF _ILLUMINANCE, else COLOR_0. Values are never
+// clamped. Normals are read from OBJ vn; PLY nx, ny, nz; NOFF; glTF NORMAL, transformed by its
+// node, skin and morph targets.
 //
-// Errors: not_found (no such file, no such buffer); bad_input (see scene/defects.h for what counts
-// as malformed; also: no usable triangle, an illumination file with another vertex count);
-// unsupported (unknown extension, compressed glTF); bad_option; cancelled.
+// Errors: not_found (no such file, no such buffer); bad_input (malformed as scene/defects.h defines
+// it; no usable triangle; an illumination file with another number of vertices); unsupported
+// (unknown extension, compressed glTF); bad_option; cancelled.
 Result<LoadedScene> read_scene(const std::filesystem::path& path, const ReadOptions& options,
                                const Context& context);
 

@@ -1,4 +1,4 @@
-// Internal: what all readers share between parsing and the finished Scene.
+// Internal: SceneBuilder, with which all readers turn parsed vertices and faces into a Scene.
 #pragma once
 
 #include <array>
@@ -22,12 +22,13 @@ namespace atlas {
 struct RawTexture {
   std::filesystem::path path;  // of the file, or a name for messages
   std::vector<std::uint8_t> bytes;
-  std::string place;  // where it is asked for
+  std::string place;  // where the scene's file names it
 };
 
-// Its texture is one of SceneBuilder::textures.
+// `texture` is an index into SceneBuilder::textures.
 struct RawMaterial : Material {
-  // Texture coordinates of its triangles become row[0] u + row[1] v + row[2].
+  // The texture coordinates of its triangles become row[0] u + row[1] v + row[2], with one row each
+  // for u and v.
   std::array<double, 3> uv_u{1, 0, 0}, uv_v{0, 1, 0};
 
   bool moves_uv() const {
@@ -35,15 +36,15 @@ struct RawMaterial : Material {
   }
 };
 
-// Whether a position can be kept as floats.
+// Returns whether a position can be stored as floats.
 inline bool usable_position(const Vec3d& p) {
   constexpr double kMax = std::numeric_limits<float>::max();
   return std::abs(p.x) <= kMax && std::abs(p.y) <= kMax && std::abs(p.z) <= kMax;
 }
 
-// The corners of a polygon: lists of one length each, the last two empty where there are none.
-// `vertices` index positions, `uvs` texcoords, `normals` normals, or are kNoIndex; all may be out
-// of range.
+// The corners of a polygon, in lists of equal length; `uvs` and `normals` are empty if there are
+// none. `vertices` are indices into positions, `uvs` into texcoords and `normals` into normals.
+// Indices may be kNoIndex or out of range.
 struct FaceCorners {
   std::span<const std::int64_t> vertices;
   std::span<const std::int64_t> uvs = {}, normals = {};
@@ -57,21 +58,21 @@ class SceneBuilder {
   static constexpr std::int64_t kNoIndex = std::numeric_limits<std::int64_t>::min();
 
   std::string file;               // for messages
-  std::string illumination_file;  // likewise, where the illumination is another file's
+  std::string illumination_file;  // for messages, if the illumination is another file's
   std::vector<Vec3d> positions;
-  std::vector<Vec3f> illumination;  // empty or 1 a vertex; checked by finish()
+  std::vector<Vec3f> illumination;  // empty or 1 per vertex; checked by finish()
   std::vector<Vec2f> texcoords;
-  std::vector<Vec3f> normals;  // of any length; only filled where wants_normals
+  std::vector<Vec3f> normals;  // of any length; only filled if wants_normals is set
   std::vector<RawMaterial> materials;
   std::vector<RawTexture> textures;
   std::vector<std::string> objects;
   DefectReport defects;
   bool wants_textures = true;                // false: `textures` need not hold any bytes
-  bool wants_normals = false;                // false: normals are passed over, whatever they hold
+  bool wants_normals = false;                // false: normals are ignored, whatever they hold
   bool wants_rest = false;                   // ReadOptions::rest
-  std::shared_ptr<GltfSource> source;        // Scene::source; then all of `textures` are kept
-  NamedFiles named_files;                    // material libraries and their textures
-  LossCounts not_read;                       // Scene::not_read, but for materials' MTL lines
+  std::shared_ptr<GltfSource> source;        // Scene::source; if set, all of `textures` are kept
+  NamedFiles named_files;                    // finds material libraries and their textures
+  LossCounts not_read;                       // Scene::not_read, without the materials' MTL lines
   std::vector<std::filesystem::path> files;  // LoadedScene::files
 
   // What the next faces belong to.
@@ -87,7 +88,8 @@ class SceneBuilder {
     }
   }
 
-  // The texture of this file, one for all that ask for it; `place` is the first that does.
+  // Returns the index of this file's texture, which all that ask for it share. `place` says where
+  // it is asked for; the first one is kept for messages.
   std::int32_t texture_of(const std::filesystem::path& texture_file, const std::string& place);
 
   void reserve_triangles(std::size_t count, bool with_texcoords);
@@ -119,8 +121,8 @@ class SceneBuilder {
 
   std::size_t triangle_count() const { return indices_.size() / 3; }
 
-  // Everything after parsing: sanitises illumination and texture coordinates, chooses the origin,
-  // drops what no triangle uses, decodes textures.
+  // Completes the scene after parsing: sanitises illumination and texture coordinates, chooses the
+  // origin, drops materials, objects and textures that no triangle uses, and decodes textures.
   Result<LoadedScene> finish(const ReadOptions& options, const Context& context);
 
  private:
@@ -138,7 +140,8 @@ class SceneBuilder {
   static constexpr AttributeDefects kNormalDefects{DefectKind::normal_out_of_range,
                                                    DefectKind::normal_partial};
 
-  // Whether every corner names one of `count` attributes; where only some do, that is a defect.
+  // Returns whether every corner names one of `count` attributes. Adds a defect if only some do, or
+  // if an index is out of range.
   template <class Place>
   bool all_given(std::span<const std::int64_t> indices, std::size_t count,
                  const AttributeDefects& kinds, const Place& place) {
@@ -186,7 +189,7 @@ class SceneBuilder {
   std::vector<std::uint32_t> triangle_material_, triangle_object_;
   std::vector<Vec3d> corners_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
-  std::map<std::filesystem::path, std::int32_t> texture_files_;  // by what texture_of() was asked
+  std::map<std::filesystem::path, std::int32_t> texture_files_;  // by texture_of()'s argument
 };
 
 }  // namespace atlas

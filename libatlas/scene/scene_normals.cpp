@@ -1,4 +1,4 @@
-// What readers make of a file's normals: unit vectors, whatever it holds.
+// Turns the normals of a file, whatever it holds, into unit vectors.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -10,9 +10,9 @@
 namespace atlas {
 namespace {
 
-constexpr double kKept = 1e-3;  // as far from unit length values are left as the file has them
+constexpr double kKept = 1e-3;  // values this close to unit length stay as the file has them
 
-// False where it has no direction.
+// Returns false if the normal has no direction.
 bool make_unit(Vec3f& normal) {
   const glm::dvec3 n = to_dvec(normal);
   const double length = glm::length(n);
@@ -23,8 +23,9 @@ bool make_unit(Vec3f& normal) {
 
 }  // namespace
 
-// Exporters give triangles without area normals of length 0; viewers draw what has none black, so
-// each such normal becomes the mean of its triangles', weighted by area.
+// Some exporters give triangles without area normals of length 0, and viewers draw surfaces without
+// a normal black. Therefore each such normal becomes the area-weighted mean normal of its
+// triangles.
 void SceneBuilder::place_normals(Scene& scene) {
   if (!any_normal_) return;
   std::unordered_map<std::uint32_t, glm::dvec3> unusable;

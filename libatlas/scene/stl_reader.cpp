@@ -1,6 +1,7 @@
-// STL: text and binary, a soup of triangles whose corners are joined where they are equal. OpenMesh
-// reads it too, but not fit for a scene: its reader (9.0) keeps floats, takes a binary file that
-// was cut short for an empty one, and text that ends or errs inside a facet for read.
+// Reads STL, in text and binary: a soup of triangles, whose corners are joined where they are
+// equal. OpenMesh also reads it, but not well enough for a scene: its reader (9.0) keeps only
+// floats, takes a binary file that was cut short for an empty one, and accepts text that ends or is
+// wrong inside a facet.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,14 +24,14 @@ bool same_word(std::string_view word, std::string_view lower) {
                     [](char a, char b) { return small_letter(a) == b; });
 }
 
-// Faces whose corners are points: numbers the points in the order in which they come.
+// Joins equal corner points of faces, and numbers the points in the order in which they come.
 class Soup {
  public:
   explicit Soup(SceneBuilder& builder) : builder_(builder) {}
 
   void reserve(std::size_t triangles) {
     corners_.reserve(3 * triangles);
-    builder_.positions.reserve(triangles / 2);  // closed meshes have half as many vertices
+    builder_.positions.reserve(triangles / 2);  // as a closed mesh has
   }
 
   template <class Place>
@@ -49,7 +50,7 @@ class Soup {
   std::size_t corner_count() const { return corners_.size(); }
   std::span<const std::uint32_t> corners() const { return corners_; }
 
-  // All points are known: from here on faces can be added.
+  // Ends the list of points. Faces can only be added after this.
   void finish_points() {
     std::vector<std::uint32_t>().swap(table_);
     auto next_bad = bad_.begin();
@@ -59,7 +60,7 @@ class Soup {
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  // The entry of a point, by its bits: NaN is equal to itself here.
+  // Returns the table entry of a point, which is compared by its bits: NaN is equal to itself here.
   std::uint32_t& find(const Vec3d& p) {
     std::uint64_t key[3];
     std::memcpy(key, &p, sizeof key);
@@ -153,7 +154,7 @@ class TextStl {
 
  private:
   struct Face {
-    std::uint32_t end, line, object;  // corners up to here
+    std::uint32_t end, line, object;  // the face's corners end at `end`
   };
 
   std::string place(std::uint32_t line) const {
@@ -172,14 +173,14 @@ class TextStl {
                         place(line_), word.substr(0, 40), wanted)};
   }
 
-  // Empty at the end of the file.
+  // Returns the next word, which is empty at the end of the file.
   std::string_view next_word() {
     while (!scan_.at_end() && scan_.at_line_end()) scan_.next_line();
     line_ = scan_.line();
     return scan_.word();
   }
 
-  // A name may hold what would begin a comment.
+  // Returns the rest of the line as a name. It may contain characters that would begin a comment.
   std::string rest_of_line() {
     const char* start = scan_.position();
     const char* stop = std::find(start, end_, '\n');
@@ -206,7 +207,7 @@ class TextStl {
     const std::uint32_t line = line_;
     std::string_view word = next_word();
     for (int skipped = 0; skipped < 4 && !word.empty() && !same_word(word, "outer"); ++skipped) {
-      word = next_word();  // normal and its numbers, which follow from the corners
+      word = next_word();  // `normal` and its numbers, which follow from the corners
     }
     if (!same_word(word, "outer")) return unexpected(word, "'outer loop'");
     if (word = next_word(); !same_word(word, "loop")) return unexpected(word, "'loop'");
@@ -254,7 +255,7 @@ class TextStl {
   std::uint32_t line_ = 0;
 };
 
-// The headers of some binary files begin with 'solid' too; their size tells.
+// The headers of some binary files also begin with 'solid', so the file's size decides.
 bool is_text(const FileBytes& bytes) {
   if (bytes.size >= kHeader) {
     std::uint32_t count;

@@ -1,4 +1,5 @@
-// Internal: numbers and words out of lines of text, without allocation or locale.
+// Internal: TextScanner, which reads numbers and words from lines of text, without allocation or
+// locale.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +10,8 @@
 
 namespace atlas {
 
-// Walks over text that ends with a newline at or after `end`. A backslash before a line break joins
-// the lines, as OBJ has it; never_joined takes it as any other character.
+// Scans text that has a newline at or after `end`. With Lines::joined, a backslash before a line
+// break joins the lines, as in OBJ. With never_joined it is an ordinary character.
 class TextScanner {
  public:
   enum class Lines { joined, never_joined };
@@ -22,7 +23,7 @@ class TextScanner {
   const char* position() const { return at_; }
   std::uint32_t line() const { return line_; }  // 0 for the first
 
-  // Skips blanks and continued line ends. Afterwards the scanner is at a word or a line's end.
+  // Skips blanks and continued line ends. Afterwards the scanner is at a word or at a line's end.
   void skip_blanks() {
     for (;;) {
       while (*at_ == ' ' || *at_ == '\t' || *at_ == '\r') ++at_;
@@ -39,7 +40,8 @@ class TextScanner {
     }
   }
 
-  // At the end of the line, where a comment counts as its end.
+  // Skips blanks. Returns whether the scanner is then at the end of the line; a comment counts as
+  // its end.
   bool at_line_end() {
     skip_blanks();
     return at_ >= end_ || *at_ == '\n' || *at_ == '#';
@@ -60,7 +62,7 @@ class TextScanner {
     begin_of_line_ = at_;
   }
 
-  // The next word, empty at the end of the line.
+  // Returns the next word, which is empty at the end of the line.
   std::string_view word() {
     skip_blanks();
     const char* start = at_;
@@ -68,10 +70,10 @@ class TextScanner {
     return {start, std::size_t(at_ - start)};
   }
 
-  // The rest of the line without blanks at either end; a comment set off by a blank is cut.
+  // Returns the rest of the line without blanks at either end, and without a comment after a blank.
   std::string_view rest() { return without_comment(rest_with_comment()); }
 
-  // The same with what may be a comment, or the end of a file's name that holds " #".
+  // Returns the same, but with text after " #", which may be a comment or part of a file's name.
   std::string_view rest_with_comment() {
     skip_blanks();
     const char* start = at_;
@@ -79,7 +81,7 @@ class TextScanner {
     return {start, std::size_t(trimmed(start, at_) - start)};
   }
 
-  // What stands before the first '#' that is set off by a blank.
+  // Returns the text before the first '#' that follows a blank.
   static std::string_view without_comment(std::string_view line) {
     for (std::size_t i = 1; i < line.size(); ++i)
       if (line[i] == '#' && is_space(line[i - 1]))
@@ -87,8 +89,8 @@ class TextScanner {
     return line;
   }
 
-  // Reads a number that a blank, a comment or the line's end follows. False (and no move) where
-  // there is none.
+  // Reads a number that is followed by a blank, a comment or the end of the line. Returns false,
+  // and stays before the word, if there is none.
   bool number(double& value) {
     skip_blanks();
     const char* start = at_;
@@ -99,7 +101,8 @@ class TextScanner {
     return false;
   }
 
-  // Reads a decimal integer here, without skipping blanks; saturates.
+  // Reads a decimal integer at the current position without skipping blanks. Ignores further digits
+  // of huge numbers, which stay huge.
   bool integer_here(std::int64_t& value) {
     const char* p = at_;
     const bool negative = *p == '-';

@@ -1,4 +1,5 @@
-// Internal: the area of a scene's triangle, in double so that small scenes do not vanish.
+// Internal: computes the area of a scene's triangle in double precision, so that the areas of small
+// scenes do not vanish.
 #pragma once
 
 #include <glm/geometric.hpp>

@@ -1,5 +1,5 @@
-// VRML97 worlds: the part of the language that this project's exporter writes, and what is like it.
-// Everything else is skipped by its brackets.
+// Reads VRML97 worlds: the part of the language that this project's exporter writes, and similar
+// files. Everything else is skipped by its brackets.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -85,7 +85,8 @@ class VrmlParser : VrmlScanner {
     }
   }
 
-  // The writer's note of an origin that single floats would not have borne.
+  // Reads the exporter's note of an origin for which single-precision coordinates would not
+  // suffice.
   void world_info() {
     constexpr std::string_view kNote = "\"origin ";
     fields([&](std::string_view name) {
@@ -103,7 +104,8 @@ class VrmlParser : VrmlScanner {
     });
   }
 
-  // The children of a Transform may come before its numbers: they are read in a second pass.
+  // The children of a Transform may come before its translation, rotation and scale, so they are
+  // read in a second pass.
   void group(const glm::dmat4& matrix, int depth) {
     glm::dvec3 translation(0), centre(0), scale(1);
     glm::dvec4 turn(0, 0, 1, 0);
@@ -232,7 +234,7 @@ class VrmlParser : VrmlScanner {
     std::size_t face = 0;
     for (std::size_t k = 0; k <= shape.corners.size(); ++k) {
       if (k < shape.corners.size() && shape.corners[k] != -1) {
-        // An index out of its own list must not reach into the next shape's.
+        // An index beyond its own list must not reach into the next shape's.
         const std::size_t points = base.points(builder_, bases_, number);
         vertices.push_back(index(shape.corners[k], points, base.position));
         const double uv = textured && k < own.size() ? own[k] : -2;

@@ -1,4 +1,4 @@
-// Internal: the words of a VRML97 file, its lists of numbers and its fields.
+// Internal: VrmlScanner, which reads the words, lists of numbers and fields of a VRML97 file.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,13 @@
 
 namespace atlas {
 
-// What every method below throws where the file is not what it should be, or the work cancelled:
-// the scanner then tells what was wrong and on which line.
+// All methods below throw this if the file is malformed or the work is cancelled. The scanner then
+// says what was wrong and on which line.
 class MalformedVrml {};
 
 class VrmlScanner {
  public:
-  // `text` ends by a newline that is not part of it.
+  // `text` must end with a newline, which is not scanned.
   VrmlScanner(const std::string& text, const Context& context)
       : begin_(text.data()),
         at_(text.data()),
@@ -29,16 +29,17 @@ class VrmlScanner {
   const std::string& what() const { return what_; }
   [[noreturn]] void fail(std::string what);
 
-  // A bracket, a string with its quotes, or a word; empty at the end of the file.
+  // Returns a bracket, a string with its quotes, or a word; empty at the end of the file.
   std::string_view next();
   std::string_view peek();
   void expect(std::string_view token);
 
-  // `[ numbers ]`, in rows of `width`.
+  // Reads `[ numbers ]`, whose count must be a multiple of `width`.
   std::vector<double> list(std::size_t width);
   glm::dvec4 row(int width);
 
-  // Calls field(name) for each field up to the closing bracket; what it does not take is skipped.
+  // Calls field(name) for each field up to the closing bracket. If it returns false, the field's
+  // value is skipped.
   template <class Field>
   void fields(const Field& field) {
     expect("{");
@@ -47,10 +48,10 @@ class VrmlScanner {
       if (!field(token)) skip_value();
     }
   }
-  // From behind an opening bracket to behind its closing one.
+  // Skips from after an opening bracket to after its closing bracket.
   void skip_brackets();
 
-  // A place to go back to.
+  // Returns the current position, for go_to().
   const char* place() const { return at_; }
   void go_to(const char* place) { at_ = place; }
 
