@@ -44,7 +44,7 @@ std::uint64_t spin(std::uint64_t rounds) {
 
 class Control {
  public:
-  // So many rounds as last `seconds`.
+  // Sets the number of rounds so that they last about `seconds`.
   void fit(double seconds) {
     constexpr std::uint64_t kTrial = 1 << 20;
     double fastest = std::numeric_limits<double>::infinity();
@@ -65,7 +65,7 @@ class Control {
 
  private:
   std::uint64_t rounds_ = 0;
-  volatile std::uint64_t sink_ = 0;  // keeps the compiler from leaving the work out
+  volatile std::uint64_t sink_ = 0;  // keeps the compiler from removing the work
   std::vector<double> wall_, cpu_;
 };
 
@@ -118,7 +118,7 @@ BenchError finish(const ErrorSums& s, ShadowMethod method, int interval) {
   return e;
 }
 
-// One method at one interval: draws visibility and colours, sums their errors.
+// Draws visibility and colours with one method at one interval, and sums their errors.
 class ErrorProbe {
  public:
   static Result<ErrorProbe> make(const Renderer& first, RenderOptions options) {
@@ -131,7 +131,7 @@ class ErrorProbe {
     return ErrorProbe(std::move(*v), std::move(*c));
   }
 
-  // Colours are drawn in every frame too: their keys must be as old as those of the visibility.
+  // Colours are drawn in every frame too, so that their keys are as old as those of the visibility.
   Status step(const Camera& camera, const FrameLight& light) {
     Result<FrameTime> t = timed_frame(visibility_, camera, light);
     if (!t.ok()) return t.status();
@@ -149,7 +149,7 @@ class ErrorProbe {
   Renderer visibility_, colours_;
 };
 
-// At the interval that options.render has.
+// Measures all methods at the interval of options.render.
 Result<std::vector<BenchError>> errors_of_interval(const Renderer& first, const LightPath& path,
                                                    const BenchOptions& options,
                                                    const Context& context) {
@@ -167,7 +167,8 @@ Result<std::vector<BenchError>> errors_of_interval(const Renderer& first, const 
     probes.emplace_back(method, std::move(*probe));
   }
   const int k = render.schedule.interval_frames;
-  const int count = (options.error_frames + k - 1) / k * k;  // whole intervals: every t as often
+  // A whole number of intervals, so that every t occurs equally often.
+  const int count = (options.error_frames + k - 1) / k * k;
   for (int f = 0; f < count; ++f) {
     if (context.cancelled()) return Status::cancelled();
     const FrameLight light = light_at(path, options.degrees_per_frame, f);
@@ -186,7 +187,7 @@ Result<std::vector<BenchError>> errors_of_interval(const Renderer& first, const 
   return errors;
 }
 
-// Every shading with every method.
+// Makes a renderer for every shading with every method.
 Result<std::vector<Contender>> make_contenders(const Renderer& first, const BenchOptions& options) {
   std::vector<Contender> contenders;
   for (Shading shading : options.shadings)

@@ -15,20 +15,21 @@
 namespace atlas {
 
 struct BenchOptions {
-  RenderOptions render;  // size, filter, interval and all the rest; shading and method are varied
+  // size, filter, interval and all other settings; shading and method are varied
+  RenderOptions render;
   Camera camera;
   double degrees_per_frame = 0.5;  // the light's speed along the path
   std::vector<Shading> shadings{Shading::lambert, Shading::blinn_phong, Shading::ward};
   std::vector<ShadowMethod> methods{std::begin(kAllMethods), std::end(kAllMethods)};
-  double seconds = 0;  // a combination's measured time at least; 0: `frames` decides
-  int frames = 160;    // a combination's measured frames at least
-  int warm_up = 24;    // frames before, not measured; at least two intervals are warmed up
+  double seconds = 0;  // least measured time of a combination; 0: `frames` decides
+  int frames = 160;    // least number of measured frames of a combination
+  int warm_up = 24;    // frames before those, not measured; at least two intervals are warmed up
   std::vector<int> error_intervals{2, 4, 8, 16, 32};
   int error_frames = 48;  // light positions at which errors are measured
 };
 
-// Times of one frame, seconds. CPU time is that of all threads of the process: on the software
-// renderer it is the whole cost of the frame, whatever else the machine is doing.
+// Times of one frame in seconds. `cpu` is the CPU time of all threads of the process: on the
+// software renderer it is the whole cost of the frame, whatever else the machine does.
 struct FrameTime {
   float wall = 0, cpu = 0, gpu_shadow = 0, gpu_lit = 0;
   std::uint32_t triangles_shadow = 0, triangles_lit = 0;
@@ -43,16 +44,17 @@ struct BenchRun {
   Shading shading{};
   ShadowMethod method{};
   std::vector<FrameTime> frames;
-  Spread wall, cpu;                      // seconds a frame
+  Spread wall, cpu;                      // seconds per frame
   double shadow_share = 0;               // of the GPU time
-  double work_mean = 0, work_worst = 0;  // triangles submitted a frame, both passes
+  double work_mean = 0, work_worst = 0;  // triangles submitted per frame, both passes
 };
 
-// The same arithmetic again and again, beside the frames: what it spreads by is the machine's doing
-// (other programs, clock rates), and no frame can be steadier.
+// Times of the same arithmetic, repeated beside the frames. Its spread comes from the machine
+// (other programs, clock rates), so no frame times can be steadier.
 struct BenchControl {
-  std::uint64_t rounds = 0;  // as many as last about as long as a frame in the warm-up
-  Spread wall, cpu;          // seconds
+  // their number is set so that they last about as long as a frame in the warm-up
+  std::uint64_t rounds = 0;
+  Spread wall, cpu;  // seconds
 };
 
 struct BenchTimes {
@@ -64,8 +66,9 @@ struct BenchError {
   ShadowMethod method{};
   int interval = 0;  // k
   VisibilityError visibility;
-  double psnr = 0, ssim = 0;  // of the shaded pictures; psnr of the mean squared error of all
-  double cpu_median = 0;      // seconds a frame while measuring visibility (same shader output)
+  // of the shaded pictures; psnr from the mean squared error of all of them
+  double psnr = 0, ssim = 0;
+  double cpu_median = 0;  // seconds per frame while measuring visibility (same shader output)
 };
 
 struct BenchResult {
@@ -78,21 +81,23 @@ struct BenchResult {
 };
 
 // Runs every shading with every method. The combinations take turns frame by frame, so that a busy
-// machine slows all of them alike and their ratios stand; the control takes its turn with them.
+// machine slows all of them alike and their ratios stay valid; the control takes its turn with
+// them.
 Result<BenchTimes> bench_times(const Renderer& first, const LightPath& path,
                                const BenchOptions& options, const Context& context = {});
 
-// Errors of every method but none, for every interval in options.error_intervals.
+// Measures the errors of every method except none and classic, for every interval in
+// options.error_intervals.
 Result<std::vector<BenchError>> bench_errors(const Renderer& first, const LightPath& path,
                                              const BenchOptions& options,
                                              const Context& context = {});
 
-// frames.csv, summary.json, summary.md, and plots.gp with its data: `gnuplot plots.gp` draws frames
-// a second for each method (the paper's figures 2 to 5), CPU time of every frame for each shading,
-// and error against frame time.
+// Writes frames.csv, summary.json, summary.md, and plots.gp with its data: `gnuplot plots.gp` draws
+// frames per second for each method (the paper's figures 2 to 5), the CPU time of every frame for
+// each shading, and error against frame time.
 Status write_bench(const BenchResult& result, const std::filesystem::path& folder);
 
-// The table of the summary, for the terminal and for documents (Markdown).
+// Returns the table of the summary in Markdown, for the terminal and for documents.
 std::string bench_table(const BenchResult& result);
 
 }  // namespace atlas

@@ -1,4 +1,4 @@
-// The bench's files: CSV, JSON, gnuplot scripts.
+// Writes the bench's files: CSV, JSON, Markdown, and a gnuplot script with its data.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ json summary(const BenchResult& r) {
                     {"triangles_mean", run.work_mean},
                     {"triangles_worst", run.work_worst}});
   for (const BenchError& e : r.errors) {
-    // JSON has no infinity: equal pictures have no PSNR.
+    // JSON has no infinity, so the PSNR of equal pictures is null.
     const json quality = std::isfinite(e.psnr) ? json(e.psnr) : json();
     errors.push_back({{"shadows", name_of(e.method)},
                       {"k", e.interval},
@@ -86,7 +86,8 @@ std::string frames_csv(const BenchResult& r) {
   return csv;
 }
 
-// Frames a second of every run of a method, one gnuplot block a run (the paper's figures 2 to 5).
+// Returns frames per second of every run of a method, one gnuplot block per run (the paper's
+// figures 2 to 5).
 std::string fps_data(const BenchResult& r, ShadowMethod method, std::string& plot) {
   std::string data;
   int block = 0;
@@ -102,7 +103,8 @@ std::string fps_data(const BenchResult& r, ShadowMethod method, std::string& plo
   return data;
 }
 
-// CPU time of every frame, one block a method: who stalls, whatever else the machine does.
+// Returns the CPU time of every frame, one block per method: it shows which method stalls, whatever
+// else the machine does.
 std::string cpu_data(const BenchResult& r, Shading shading, std::string& plot) {
   std::string data;
   int block = 0;
@@ -118,7 +120,8 @@ std::string cpu_data(const BenchResult& r, Shading shading, std::string& plot) {
   return data;
 }
 
-// Median CPU time of a frame against the mean visibility error, one block a method, one row a k.
+// Returns the median CPU time of a frame and the mean visibility error, one block per method, one
+// row per k.
 std::string error_data(const BenchResult& r, std::string& plot) {
   std::string data;
   int block = 0;
@@ -137,7 +140,8 @@ std::string error_data(const BenchResult& r, std::string& plot) {
         "{0}'error.dat' index {1} using 1:2 with linespoints lc {3} title '{2}', '' index {1} "
         "using 1:2:3 with labels offset {4} tc lt {3} notitle",
         block ? ", " : "plot ", block, name_of(method), block + 1,
-        block % 2 == 0 ? "-1,-0.8" : "1,0.6");  // curves that coincide are both labelled
+        // so that both labels of coinciding curves are legible
+        block % 2 == 0 ? "-1,-0.8" : "1,0.6");
     ++block;
     data += rows + "\n\n";
   }

@@ -13,14 +13,14 @@ struct Axes {
   glm::dvec3 forward, right, up;
 };
 
-// The axis that is farthest from parallel to v.
+// Returns the axis that is farthest from parallel to v.
 glm::dvec3 axis_beside(const glm::dvec3& v) {
   const glm::dvec3 a = glm::abs(v);
   if (a.x <= a.y && a.x <= a.z) return {1, 0, 0};
   return a.y <= a.z ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
 }
 
-// A camera that looks straight up or down has some axis at the image's upper edge.
+// If the camera looks along its `up`, another axis takes the place of `up`.
 Axes axes_of(const Camera& camera) {
   Axes a;
   a.forward = glm::normalize(to_glm(camera.target) - to_glm(camera.eye));
@@ -62,14 +62,14 @@ void fit_planes(Camera& camera, const Box3& box) {
   const double radius = std::max(glm::length(to_glm(box.high) - centre), 1e-30);
   const double distance = glm::length(to_glm(camera.eye) - centre);
   camera.far_plane = distance + radius * 1.01;
-  // So that a walker in a hall of a kilometre sees a wall at arm's length. Depths are floats,
-  // densest far away: a floor of two triangles from the feet to the horizon measured as clean at
-  // 1e-6.
+  // Near enough that a walker in a hall of a kilometre sees a wall at arm's length. Depths are
+  // floats, which are densest far away: a floor of two triangles from the feet to the horizon was
+  // measured to be as clean even with a factor of 1e-6.
   camera.near_plane = std::max(distance - radius * 1.01, camera.far_plane * 1e-4);
 }
 
 Camera camera_for(const Box3& box, const Vec3d& up, double fov_degrees) {
-  // Of the distance at which the box's ball touches the image's upper and lower edge.
+  // Relative to the distance at which the box's sphere touches the image's upper and lower edge.
   constexpr double kRoom = 1.05;
   Camera camera;
   camera.fov_degrees = fov_degrees;
@@ -92,7 +92,7 @@ void fly(Camera& camera, const Vec3d& step, double yaw, double pitch) {
   const double height = std::asin(std::clamp(glm::dot(a.forward, up), -1.0, 1.0));
   const double limit = glm::radians(88.0);
   const double raised = std::clamp(height + glm::radians(pitch), -limit, limit);
-  // From the axis to the right, which there is even where the view is vertical.
+  // Derived from the axis to the right, which exists even where the view is vertical.
   const glm::dvec3 flat = glm::cross(up, a.right);
   const double turn = glm::radians(-yaw);
   const glm::dvec3 ahead = flat * std::cos(turn) + glm::cross(up, flat) * std::sin(turn);

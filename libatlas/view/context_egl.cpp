@@ -42,7 +42,7 @@ class EglContext : public GlContext {
 Result<std::unique_ptr<GlContext>> open_display(EGLDisplay display, const ContextOptions& options) {
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr))
     return Status{ErrorCode::unsupported, "EGL: the display cannot be initialised"};
-  // Desktop GL; no surface type is asked for, since none will be made.
+  // Asks for desktop GL, and for no surface type, since no surface will be made.
   const EGLint config_attributes[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, 0,
                                       EGL_NONE};
   EGLint context_attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
@@ -67,7 +67,7 @@ Result<std::unique_ptr<GlContext>> open_display(EGLDisplay display, const Contex
                               context_attributes);
     };
     context = create();
-    if (context == EGL_NO_CONTEXT) {  // a driver that cannot tell of resets refuses to be asked
+    if (context == EGL_NO_CONTEXT) {  // drivers that cannot report resets refuse the request
       strategy = EGL_NONE;
       context = create();
     }
@@ -83,7 +83,7 @@ Result<std::unique_ptr<GlContext>> open_display(EGLDisplay display, const Contex
   return std::unique_ptr<GlContext>(std::move(made));
 }
 
-// The first EGL device that is a GPU and opens.
+// Returns a context on the first EGL device that is a GPU and opens, or null.
 std::unique_ptr<GlContext> open_gpu(const ContextOptions& options) {
   EGLDeviceEXT devices[16];
   EGLint count = 0;

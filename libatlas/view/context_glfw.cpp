@@ -13,7 +13,7 @@
 namespace atlas {
 namespace {
 
-// GLFW reports through a callback only; the last text is kept for the Status.
+// GLFW reports errors only through a callback. The last text is kept for the Status.
 std::string& last_error() {
   static std::string text;
   return text;
@@ -23,12 +23,12 @@ void on_error(int, const char* text) {
   last_error() = text;
 }
 
-// Xlib's Display* is a void* here. GLFW has one for all windows of the process. The program may
-// have others, whose errors are left to the program.
+// Xlib's Display* is a void* here. GLFW has one connection for all windows of the process. The
+// program may have others, whose errors are left to the program.
 using Handler = int (*)(void*);
 struct DisplayWatch {
-  void* connection = nullptr;  // GLFW's
-  Handler before = nullptr;    // what the program had set
+  void* connection = nullptr;  // GLFW's connection
+  Handler before = nullptr;    // the handler that the program had set
   std::atomic<bool> lost = false;
 };
 
@@ -45,9 +45,9 @@ int on_display_lost(void* display) {
 }
 void keep_running(void*, void*) {}
 
-// Xlib ends the process with a message of its own when the X server goes, unless both handlers are
-// set (the second exists since libX11 1.7). The functions are looked up in what GLFW has loaded
-// (3.4 keeps the library to itself): there may be no X11 at all.
+// When the X server goes, Xlib ends the process with a message of its own unless both handlers are
+// set (the second exists since libX11 1.7). The functions are looked up in the libraries that GLFW
+// has loaded, since there may be no X11 at all; GLFW 3.4 keeps libX11 to itself.
 void watch_display() {
   using ExitHandler = void (*)(void*, void*);
   void* const x11 = dlopen("libX11.so.6", RTLD_NOW | RTLD_NOLOAD);
@@ -66,7 +66,7 @@ void watch_display() {
   if (before != on_display_lost) watch().before = before;
   reinterpret_cast<void (*)(void*, ExitHandler, void*)>(set_exit)(connection, keep_running,
                                                                   nullptr);
-  // A write to a connection that is gone is to fail, not to end the process before they are called.
+  // A write to a lost connection must fail, and not end the process before the handlers are called.
   struct sigaction present {};
   if (sigaction(SIGPIPE, nullptr, &present) == 0 && present.sa_handler == SIG_DFL) {
     std::signal(SIGPIPE, SIG_IGN);
@@ -107,7 +107,7 @@ class GlfwUse {
   bool begun_ = false;
 };
 
-// Keeps the text of errors while it lives, then gives the callback back to the program.
+// Keeps the text of errors while it exists, then restores the program's callback.
 class GlfwCall {
  public:
   GlfwCall() : before_(glfwSetErrorCallback(on_error)) {}
@@ -122,7 +122,7 @@ class GlfwCall {
 class GlfwWindow : public GlWindow {
  public:
   ~GlfwWindow() override {
-    // A dead connection takes no requests, not even to destroy its window.
+    // A lost connection accepts no requests, not even to destroy its window.
     if (window_ && !lost()) glfwDestroyWindow(window_);
   }
   GLFWwindow* handle() override { return window_; }
@@ -137,7 +137,7 @@ class GlfwWindow : public GlWindow {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, options.debug);
-    // Left out by GLFW where the driver does not have it.
+    // GLFW ignores this hint if the driver does not support it.
     glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
     glfwWindowHint(GLFW_VISIBLE, wanted.visible);
     window_ = glfwCreateWindow(wanted.width, wanted.height, wanted.title.c_str(), nullptr, nullptr);
@@ -151,7 +151,7 @@ class GlfwWindow : public GlWindow {
   }
 
  private:
-  GlfwUse use_;  // ends after the window
+  GlfwUse use_;  // destroyed after the window
   GLFWwindow* window_ = nullptr;
 };
 

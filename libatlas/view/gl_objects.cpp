@@ -15,7 +15,8 @@ std::string log_of_shader(GLuint shader) {
   return log.c_str();
 }
 
-// The first line of a driver's log that holds text: a message to the user is one line.
+// Returns the first line of a driver's log that holds text, since a message to the user is one
+// line.
 std::string first_line(const std::string& log) {
   const std::size_t start = log.find_first_not_of("\r\n \t");
   if (start == std::string::npos) return "the driver gives no reason";
@@ -92,7 +93,7 @@ Result<GlProgram> link_program(const std::string& name, const std::string& verte
 Status check_gl(const char* where) {
   const GLenum first = glGetError();
   if (first == GL_NO_ERROR) return {};
-  // A lost context reports its error for ever: the loop must end.
+  // A lost context reports its error for ever, so the loop is limited.
   for (int i = 0; i < 64 && glGetError() != GL_NO_ERROR; ++i) {
   }
   if (first == GL_CONTEXT_LOST)

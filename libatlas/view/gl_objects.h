@@ -13,8 +13,8 @@
 
 namespace atlas {
 
-// A GL name and what deletes it: the address of one of epoxy's function pointers, such as
-// &glDeleteBuffers. Move-only; 0 is "none".
+// Owns a GL name and deletes it with `Delete`, the address of one of epoxy's function pointers,
+// such as &glDeleteBuffers. Move-only; 0 means none.
 template <auto* Delete>
 class GlName {
  public:
@@ -53,7 +53,7 @@ using GlRenderbuffer = GlName<&glDeleteRenderbuffers>;
 using GlQuery = GlName<&glDeleteQueries>;
 using GlProgram = GlName<&glDeleteProgram>;
 
-// Name made by one of the glCreate* functions; of those that take a target first, too:
+// Returns a name made by one of the glCreate* functions, including those that take a target first:
 // create<GlTexture>(glCreateTextures, GL_TEXTURE_2D).
 template <class Name, class Create, class... Target>
 Name create(Create function, Target... target) {
@@ -62,15 +62,15 @@ Name create(Create function, Target... target) {
   return Name(name);
 }
 
-// An immutable buffer of `bytes` bytes (at least one, since GL refuses none).
+// Makes an immutable buffer of `bytes` bytes (at least one, since GL refuses empty buffers).
 GlBuffer make_buffer(const void* data, std::size_t bytes, GLbitfield flags = 0);
 GlTexture make_texture(GLenum format, int width, int height, int levels = 1);
 
-// Compiles and links; bad_input with `name` and the driver's log on failure.
+// Compiles and links a program. Error: bad_input with `name` and the driver's log.
 Result<GlProgram> link_program(const std::string& name, const std::string& vertex,
                                const std::string& fragment);
 
-// The first pending GL error as a Status naming `where`, and clears all of them.
+// Returns the first pending GL error as a Status that names `where`, and clears all of them.
 Status check_gl(const char* where);
 
 }  // namespace atlas

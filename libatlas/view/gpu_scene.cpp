@@ -21,7 +21,7 @@ std::vector<Vec3f> moved(std::vector<Vec3f> positions, const glm::dvec3& origin)
   return positions;
 }
 
-// One value a vertex, `stride` bytes apart.
+// One value per vertex, `stride` bytes apart.
 struct Attribute {
   const GlBuffer& buffer;
   int components;
@@ -38,7 +38,7 @@ void attach(const GlVertexArray& array, GLuint index, const Attribute& attribute
   glVertexArrayVertexBuffer(a, index, attribute.buffer.get(), 0, attribute.stride);
 }
 
-// Reflectances as 16-bit fractions: half the bytes of floats, finer than any display.
+// Stores reflectances as 16-bit fractions: half the bytes of floats, and finer than any display.
 GlBuffer colour_buffer(const std::vector<Vec3f>& colours) {
   std::vector<std::uint16_t> packed;
   packed.reserve(colours.size() * 4);
@@ -57,7 +57,7 @@ Result<GlTexture> texture_of(const Texture& texture) {
                   fmt::format("{}: a texture of {} x {} texels; the driver takes 1 to {}",
                               texture.path.string(), image.width, image.height, largest)};
   const int n = image.channels;
-  // Greys are spread to three channels here: sRGB formats exist for three and four only.
+  // Grey is expanded to three channels, since sRGB formats exist for three and four only.
   std::vector<std::uint8_t> rgba(std::size_t(image.width) * image.height * 4);
   for (std::size_t i = 0; i < rgba.size() / 4; ++i)
     for (int c = 0; c < 4; ++c)
@@ -75,13 +75,13 @@ GLint wrap_of(TextureWrap wrap) {
   return wrap == TextureWrap::mirror ? GL_MIRRORED_REPEAT : GL_REPEAT;
 }
 
-// The smallest level of an atlas page that is shown: those after it mix charts that lie side by
-// side, and dark floors at a grazing angle have bright specks along their borders. Pictures of the
-// sample cabin, 100 to 400 pixels wide, differ 13 to 21 % less from ones taken finer than without a
-// limit.
+// The smallest mip level of an atlas page that is shown. Smaller levels mix charts that lie side by
+// side, and give dark floors at a grazing angle bright specks along their borders. Measured on
+// pictures of the sample cabin, 100 to 400 pixels wide: with this limit they differ 13 to 21 % less
+// from pictures with finer sampling than without a limit.
 constexpr GLint kPageLevels = 3;
 
-// With `pages`, textures that do not go on beyond their edges are atlas pages.
+// If `pages` is set, textures that are clamped at their edges are atlas pages.
 void make_samplers(GpuScene& gpu, bool pages) {
   for (int u = 0; u < 3; ++u)
     for (int v = 0; v < 3; ++v) {

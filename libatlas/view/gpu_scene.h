@@ -14,23 +14,24 @@ struct GpuScene {
   GlBuffer caster_positions, caster_indices;
   GlVertexArray lit, casters;
   std::vector<ViewScene::Cluster> clusters;
-  std::vector<GlTexture> textures;  // one a scene texture
-  GlTexture blank;  // for triangles without one: white, or black where textures hold light
-  // How textures are sampled: by wrap_u, then by wrap_v.
+  std::vector<GlTexture> textures;  // one per scene texture
+  GlTexture blank;  // for triangles without a texture: white, or black where textures hold light
+  // The samplers of textures, by wrap_u, then by wrap_v.
   std::array<std::array<GlSampler, 3>, 3> samplers;
   const GlSampler& sampler(const ViewScene::Look& look) const {
     return samplers[std::size_t(look.wrap_u)][std::size_t(look.wrap_v)];
   }
   std::uint32_t triangles = 0;
-  Box3 bounds;   // in the scene's own coordinates, as the clusters' balls
-  Vec3d origin;  // the box's middle, which uploaded positions are relative to: floats are finest
-                 // near zero
+  Box3 bounds;  // in the scene's own coordinates, like the clusters' spheres
+  // The box's centre, to which uploaded positions are relative, since floats are finest near zero.
+  Vec3d origin;
+  // near zero
   bool textured = false, baked_vertices = false, baked_textures = false, emits = false;
   double light_scale = 1;
 };
 
-// Needs a current context. `unsupported` if a texture is larger than the driver takes or memory
-// runs out.
+// Uploads a scene. Needs a current context. Error: `unsupported` if a texture is larger than the
+// driver allows or memory runs out.
 Result<GpuScene> upload(const ViewScene& scene);
 
 }  // namespace atlas

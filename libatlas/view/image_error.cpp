@@ -9,7 +9,7 @@
 namespace atlas {
 namespace {
 
-// Sums of one row of windows, slid along: value, square and product sums of both images.
+// Sums of values, squares and products of two images, over one window or one column of a window.
 struct Sums {
   double a = 0, b = 0, aa = 0, bb = 0, ab = 0;
   void add(double x, double y, double sign) {

@@ -1,4 +1,4 @@
-// The pass that the camera sees.
+// Draws the pass that the camera sees.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace atlas {
 namespace {
 
-// The planes of a view volume, inward normals; the far plane is left out.
+// The planes of a view volume with inward normals, without the far plane.
 struct Frustum {
   std::array<glm::dvec4, 5> planes;
   bool touches(const glm::vec3& centre, double radius) const {
@@ -22,7 +22,7 @@ struct Frustum {
   }
 };
 
-// Sums and differences of the matrix's rows (Gribb and Hartmann 2001).
+// Returns planes that are sums and differences of the matrix's rows (Gribb and Hartmann 2001).
 Frustum frustum_of(const Camera& camera, double aspect) {
   const Matrix4 m = view_projection(camera, aspect);
   const auto row = [&](int r) { return glm::dvec4(m[r], m[4 + r], m[8 + r], m[12 + r]); };
@@ -31,7 +31,7 @@ Frustum frustum_of(const Camera& camera, double aspect) {
   return f;
 }
 
-// std140 layout of the shaders' uniform block (shaders.cpp).
+// Must have the std140 layout of the shaders' uniform block (shaders.cpp).
 struct FrameBlock {
   float view_projection[16];
   float to_map[2][16];
@@ -62,41 +62,44 @@ KeyBlend blend_of(ShadowMethod method) {
   return method == ShadowMethod::slerp_normalised ? KeyBlend::slerp_normalised : KeyBlend::linear;
 }
 
-// How far behind a point the march looks for the blocker of an edge that the filter touches: the
-// reach of a 3x3 filter.
+// How many texels behind a point the march looks for the blocker of an edge that the filter
+// touches: the reach of a 3x3 filter.
 constexpr double kBehindTexels = 1.5;
 
-// A light whose rays leave the key's by less than this over the whole depth of the map stands where
-// the key does.
+// If the light's rays leave the key's by fewer texels than this over the whole depth of the map,
+// the light counts as standing where the key does.
 constexpr double kExactTexels = 0.05;
 
-// How far a point's depth may lie behind the depth of itself in a map of `bits`, in depths: a step
-// of the map, and some units in the last place of floats, which both passes compute in; the
-// point's are of its distance from the eye, `far` at most.
+// Returns the largest amount by which rounding can put a point behind its own depth in a map of
+// `bits`, in depths: a step of the map, plus some units in the last place of floats, with which
+// both passes compute. The point's error grows with its distance from the eye, which is `far` at
+// most.
 double rounding_of_depths(int bits, double far) {
   return (bits < 32 ? std::exp2(-bits) : 0) + (1 + far) * 0x1p-21;
 }
 
-// A key's map and the layer that holds it.
+// A key's map, and the layer that holds it.
 struct KeyMap {
   const LightFit& fit;
   int layer;
 };
 
-// The ray to the current light in the map of key 0 or 1.
+// Stores the ray to the current light in the map of key 0 or 1.
 void put_ray(FrameBlock& b, int key, const KeyMap& map, const glm::dvec3& l) {
   const LightFit& fit = map.fit;
   const Vec3d ray = transform_vector(fit.to_texture, from_glm(l));
   glm::dvec2 shift(0);
   double rise = -ray.z;
-  // More than 89.9 degrees off the key's own ray: the map is sampled where the ray starts.
+  // If the light is more than 89.9 degrees off the key's own ray, the map is sampled where the ray
+  // starts.
   if (rise * fit.depth_range > 1e-3)
     shift = {ray.x / rise, ray.y / rise};
   else
     rise = 1 / fit.depth_range;
   put(b.ray[key], {shift, rise, map.layer});
   double texels = glm::length(shift) / b.weights[3];
-  // The light stands at this key: what rounding leaves is no direction to search along.
+  // The light stands at this key. What rounding leaves of the shift is no direction to search
+  // along.
   if (texels < kExactTexels) {
     texels = 0;
     put(b.ray[key], {0, 0, rise, map.layer});
@@ -107,7 +110,7 @@ void put_ray(FrameBlock& b, int key, const KeyMap& map, const glm::dvec3& l) {
   b.march[key] = float(texels);
 }
 
-// Where rays to the light leave the scene's box.
+// Stores where rays to the light leave the scene's box.
 void put_box(FrameBlock& b, const glm::dvec3& l, const Box3& box, const Vec3d& origin) {
   const glm::dvec3 low = to_glm(box.low) - to_glm(origin);
   const glm::dvec3 high = to_glm(box.high) - to_glm(origin);
@@ -115,13 +118,13 @@ void put_box(FrameBlock& b, const glm::dvec3& l, const Box3& box, const Vec3d& o
     b.corner[i] = float(l[i] > 0 ? high[i] : low[i]);
     b.inverse[i] = float(1 / l[i]);
     if (std::abs(l[i]) > 1e-6) continue;
-    b.corner[i] = 1e30f;  // along this axis they never do
+    b.corner[i] = 1e30f;  // along this axis they never leave it
     b.inverse[i] = 1;
   }
 }
 
-// The view's projection with depth from 1 at the near plane to 0 at the far one: floats are dense
-// where perspective is not.
+// Changes the view's projection to a depth of 1 at the near plane and 0 at the far plane, since
+// floats are dense where perspective is not.
 Matrix4 reversed_depth(Matrix4 m) {
   for (int c = 0; c < 4; ++c) m[4 * c + 2] = 0.5 * (m[4 * c + 3] - m[4 * c + 2]);
   return m;
@@ -133,7 +136,7 @@ Camera relative_to(Camera camera, const Vec3d& origin) {
   return camera;
 }
 
-// What finds a pixel's point again from its depth.
+// Stores what the second pass needs to compute a pixel's point from its depth.
 void put_rays(FrameBlock& b, const Camera& camera, int width, int height) {
   const double aspect = double(width) / height, n = camera.near_plane, f = camera.far_plane;
   const std::array<Vec3d, 8> corners = view_corners(camera, aspect, n);
@@ -168,8 +171,8 @@ void Renderer::Impl::fill_block(const Camera& world_camera, const FrameLight& li
     put(b.to_map[1], relative_to(shadow->fit(other).to_texture, scene->origin));
     const double between = angle_between(plan.from_direction, plan.to_direction);
     const BlendWeights w = blend_weights(blend_of(options.shadows), plan.t, between);
-    // A filter of n bilinear taps reaches (n + 1) / 2 texels to each side: so far a plane would
-    // shadow itself.
+    // A filter of n bilinear taps per side reaches (n + 1) / 2 texels to each side. Up to that
+    // distance a plane would shadow itself.
     const double reach = std::max(1.0, (options.pcf + 1) / 2.0) * from.texel;
     put(b.weights, {w.from, w.to, options.normal_offset * reach, 1.0 / options.map_resolution});
     b.eye[3] = float(rounding_of_depths(options.map_bits, camera.far_plane / from.depth_range));
@@ -213,7 +216,7 @@ void Renderer::Impl::draw_lit(const Camera& camera, const FrameLight& light, con
   glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
 }
 
-// Into the picture itself if nothing is lit.
+// Draws the surfaces, into the picture itself if nothing is lit.
 void Renderer::Impl::draw_surfaces(const Camera& camera, FrameStats& stats) {
   const GLuint into = lighting ? surface_target.get() : target.get();
   glBindFramebuffer(GL_FRAMEBUFFER, into);
@@ -226,7 +229,8 @@ void Renderer::Impl::draw_surfaces(const Camera& camera, FrameStats& stats) {
   draw_clusters(camera, stats);
 }
 
-// Where the first pass left a surface: the depth is read and tested, never written.
+// Lights the pixels where the first pass left a surface. The depth is read and tested, never
+// written.
 void Renderer::Impl::draw_lighting(const FramePlan& plan, int nearest) {
   glBindFramebuffer(GL_FRAMEBUFFER, target.get());
   glDepthMask(GL_FALSE);
@@ -248,8 +252,8 @@ void Renderer::Impl::draw_lighting(const FramePlan& plan, int nearest) {
   glDepthMask(GL_TRUE);
 }
 
-// Front to back, without what is out of view: hidden surfaces are then not shaded at all. Textured
-// scenes keep that order within each texture only.
+// Draws the clusters front to back, without those out of view, so that hidden surfaces are not
+// shaded at all. Textured scenes keep that order only within each look.
 void Renderer::Impl::draw_clusters(const Camera& camera, FrameStats& stats) {
   const Frustum frustum = frustum_of(camera, double(target_width) / target_height);
   const glm::vec3 eye(to_glm(camera.eye));

@@ -1,4 +1,4 @@
-// Internal: pictures that are whole or absent.
+// Internal: writes pictures so that files are either whole or absent.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace atlas {
 
-// Errors: io, naming the file.
+// Writes a PNG file. Errors: io, naming the file.
 inline Status write_picture(const std::filesystem::path& path, const Image8& image) {
   AtomicFiles files;
   if (Status s = write_png(files.path_for(path), image, {}); !s.ok())

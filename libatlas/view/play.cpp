@@ -23,7 +23,7 @@ bool textures_hold_light(const fs::path& path) {
   const std::string extension = lower_extension(path);
   if (extension == ".wrl" || extension == ".wrz") return true;
   if (extension != ".gltf" && extension != ".glb") return false;
-  // The extension is named in the document's text, maybe after megabytes of embedded data.
+  // The document's text names the extension, perhaps after megabytes of embedded data.
   constexpr std::string_view kName = "KHR_materials_unlit";
   std::ifstream file(path, std::ios::binary);
   std::string text;
@@ -96,7 +96,7 @@ Result<PlaySummary> play_headless(GlContext& gl, Renderer& renderer, const PlayO
                            [&](int n) { return options.light.direction((f + n) * step); }};
     Result<FrameStats> stats = renderer.draw(options.camera, light);
     renderer.finish();
-    if (Status s = gl.check_alive(); !s.ok()) return s;  // the reason of whatever else failed
+    if (Status s = gl.check_alive(); !s.ok()) return s;  // it explains whatever else failed
     if (!stats.ok()) return stats.status();
     times.push_back(wall_seconds() - start);
     if (!options.record.empty()) {

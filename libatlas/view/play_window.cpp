@@ -1,4 +1,4 @@
-// The player in a window.
+// Runs the player in a window.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
@@ -41,7 +41,7 @@ class Gui {
   }
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
-  // False if the display has gone: the sizes that GLFW asked it for are anything then.
+  // Returns false if the display has gone: the sizes that GLFW asked it for are then arbitrary.
   bool begin(const GlWindow& window) {
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
@@ -74,7 +74,7 @@ class Player {
         gui_(window.handle()),
         clock_({options.max_step}) {
     const Box3& b = renderer.bounds();
-    // The whole in eight seconds: a hall at a walk, a city in flight.
+    // Crosses the whole scene in eight seconds: a hall at walking pace, a city in flight.
     stride_range_ = glm::length(to_glm(b.high) - to_glm(b.low));
     stride_ = stride_range_ / 8;
     speed_ = float(options.degrees_per_second);
@@ -115,7 +115,7 @@ class Player {
     }
     wanted_.width = width;
     wanted_.height = height;
-    // A setting that cannot be had is said and the former ones stay.
+    // If a setting is not possible, the message says so and the former settings stay.
     if (Status s = renderer_.set_options(wanted_); !s.ok()) {
       message_ = s.message();
       wanted_ = renderer_.options();
@@ -176,7 +176,7 @@ class Player {
     fit_planes(camera_, renderer_.bounds());
   }
 
-  // Keys that act once a press.
+  // Handles the keys that act once per press.
   void keys() {
     if (pressed(GLFW_KEY_F12)) shoot_ = true;
     if (pressed(GLFW_KEY_H)) panel_shown_ = !panel_shown_;
@@ -193,7 +193,7 @@ class Player {
     return std::exchange(was_down_[std::size_t(key)], down) != down && down;
   }
 
-  // What the window shows, with its panel.
+  // Returns what the window shows, including its panel.
   static Image8 window_image(int width, int height) {
     Image8 image(width, height, 3);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);

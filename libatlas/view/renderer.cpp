@@ -63,7 +63,7 @@ int march_samples(int least, double key_degrees) {
 
 namespace {
 
-// To draw into and then to fetch from: integers are never filtered.
+// Makes a texture that is drawn into and then fetched from. Integers are never filtered.
 GlTexture target_texture(GLenum format, int width, int height) {
   GlTexture t = make_texture(format, width, height);
   glTextureParameteri(t.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
@@ -119,7 +119,7 @@ Status Renderer::Impl::allocate_target(int width, int height, bool lit) {
   }
   target_width = width;
   target_height = height;
-  const Status made = check_gl("making the image");  // whatever is returned, none stays pending
+  const Status made = check_gl("making the image");  // no error stays pending, whatever is returned
   for (const GlFramebuffer* f : {&target, &surface_target})
     if (*f && glCheckNamedFramebufferStatus(f->get(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
       return {ErrorCode::unsupported,
@@ -180,13 +180,14 @@ Result<LightFit> Renderer::Impl::fit(const Camera& camera, const Vec3d& directio
   f.resolution = options.map_resolution;
   f.up = options.up;
   f.snap = options.snap;
-  // Room for filters, and for the march to look beside what is fitted.
+  // Leaves room for filters, and for the march to look beside the fitted part.
   f.border_texels = options.map_resolution / 128.0;
   if (options.fit_view) {
     f.view = true;
     const glm::dvec3 size = to_glm(scene->bounds.high) - to_glm(scene->bounds.low);
     const double reach = options.view_distance > 0 ? options.view_distance : glm::length(size) / 4;
-    // A third more than is seen: the camera may go some way before the keys have to be drawn anew.
+    // A third more than is visible, so that the camera can move some way before the keys must be
+    // drawn anew.
     f.view_corners = view_corners(camera, double(options.width) / options.height, reach * 1.33);
   }
   return fit_light(direction, scene->bounds, f);
@@ -235,7 +236,7 @@ Result<FrameStats> Renderer::Impl::draw(const Camera& camera, const FrameLight& 
     stats.t = plan.t;
     stats.key_degrees = angle_between(plan.from_direction, plan.to_direction) * 57.29577951308232;
     if (Status s = draw_shadow_maps(camera, plan, stats); !s.ok()) {
-      schedule->invalidate();  // it takes the maps for drawn
+      schedule->invalidate();  // the schedule assumes that the maps were drawn
       return s;
     }
     sampled[0] = plan.from;
@@ -273,7 +274,7 @@ Result<Renderer> Renderer::share(const RenderOptions& options) const {
 
 Status Renderer::set_options(const RenderOptions& options) {
   const Status s = impl_->apply(options);
-  // What was compiled or freed on the way to the failure is made again.
+  // Makes again what was replaced before the failure.
   if (!s.ok())
     if (Status back = impl_->apply(impl_->options); !back.ok()) return back;
   return s;

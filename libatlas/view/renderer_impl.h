@@ -21,7 +21,7 @@ struct Renderer::Impl {
   GlFramebuffer target;
   GlRenderbuffer colour;
   GlTexture depth;
-  // Of lit scenes, the first pass's.
+  // Targets of the first pass of lit scenes.
   GlFramebuffer surface_target;
   GlTexture surfaces;
   GlVertexArray no_vertices;
@@ -30,19 +30,20 @@ struct Renderer::Impl {
   int shadow_maps = 0;
   std::optional<KeySchedule> schedule;
   std::optional<PassTimer> shadow_timer, lit_timer;
-  std::int64_t earlier_passes = 0;  // of schedules replaced by set_options
+  std::int64_t earlier_passes = 0;  // of schedules that set_options has replaced
   LightFit view_fit;                // fit_view: what the newest key covers
   bool view_fit_valid = false;
-  int sampled[2] = {0, 0};  // slots of the last frame's keys, fitted up to three intervals ago
+  // slots of the last frame's keys, which were fitted up to three intervals ago
+  int sampled[2] = {0, 0};
 
-  // A cluster to draw; sorted by look, then from near to far.
+  // A cluster to draw. Clusters are sorted by look, then from near to far.
   struct Visible {
     ViewScene::Look look;
     float distance;
     std::uint32_t cluster;
     auto operator<=>(const Visible&) const = default;
   };
-  std::vector<Visible> order;  // scratch of a frame, as the next two
+  std::vector<Visible> order;  // scratch memory of a frame, like the next two
   std::vector<GLsizei> counts;
   std::vector<const void*> offsets;
 
@@ -62,10 +63,10 @@ struct Renderer::Impl {
                   int nearest);
 };
 
-// What a scene and its settings need compiled.
+// Returns the features that a scene and its settings need compiled.
 ShaderFeatures needed_features(const GpuScene& scene, const RenderOptions& options);
 ScheduleOptions schedule_for(const RenderOptions& options);
-// Depth textures that a method holds.
+// Returns how many depth textures a method holds.
 int maps_of(ShadowMethod method);
 
 }  // namespace atlas

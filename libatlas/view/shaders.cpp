@@ -31,9 +31,9 @@ layout(std140, binding = 0) uniform Frame {
 } frame;
 )";
 
-// What a lit scene's first pass leaves in each pixel, 16 bits a value: reflectance, the light that
-// no shadow touches (exposed; from 2 on it is white whatever is added), and the normal on the
-// octahedron (Meyer et al. 2010).
+// The first pass of a lit scene stores in each pixel, 16 bits per value: the reflectance, the light
+// that shadows do not affect (exposed; from 2 on, the pixel is white whatever is added), and the
+// normal in octahedral encoding (Meyer et al. 2010).
 constexpr const char* kWriteSurface = R"(
 vec2 fold(vec3 n) {
   n /= max(abs(n.x) + abs(n.y) + abs(n.z), 1e-30);
@@ -57,7 +57,7 @@ vec3 unfold(vec2 f) {
 }
 )";
 
-// One triangle over the whole image, at the depth of the background.
+// Draws one triangle over the whole image, at the depth of the background.
 constexpr const char* kWholeImage = R"(#version 450 core
 void main() {
   gl_Position = vec4(4.0 * (gl_VertexID & 1) - 1.0, 4.0 * (gl_VertexID >> 1) - 1.0, 0.0, 1.0);
@@ -110,7 +110,8 @@ std::string vertex_text(const ShaderFeatures& f) {
   return s + "void main() {\n" + body + "}\n";
 }
 
-// `reflectance` and `own`, what the surface shows without the moving light, exposed.
+// Computes `reflectance`, and `own`, the exposed light that the surface shows without the moving
+// light.
 std::string colours_text(const ShaderFeatures& f) {
   std::string s = "  vec3 reflectance = v_colour;\n";
   if (f.textured && !f.baked_textures) s += "  reflectance *= texture(diffuse, v_texcoord).rgb;\n";
@@ -126,7 +127,7 @@ std::string colours_text(const ShaderFeatures& f) {
   return s + "  own *= frame.ambient.w;\n";
 }
 
-// sRGB's own curve: textures are decoded with it, and pages of baked light show what they hold.
+// sRGB's own curve: textures are decoded with it, so pages of baked light show what they hold.
 constexpr const char* kEncode = R"(
 vec4 encoded(vec3 colour) {
   colour = clamp(colour, 0.0, 1.0);
@@ -161,7 +162,7 @@ std::string fragment_text(const ShaderFeatures& f) {
   return s + "}\n";
 }
 
-// The second pass of a lit scene: each pixel's surface meets the moving light once, however many
+// Returns the second pass of a lit scene. It lights each pixel's surface once, however many
 // triangles were drawn there.
 std::string lighting_text(const ShaderFeatures& f) {
   const bool shadows = f.shadow != ShadowSampling::none;
@@ -185,12 +186,12 @@ std::string lighting_text(const ShaderFeatures& f) {
   if (!shadows)
     s += "  float seen = nl > 0.0 ? 1.0 : 0.0;\n";
   else
-    // The offset is what takes a plane out of its own texels up to the filter's corners: as far as
-    // its normal leans along each of the map's axes, the filter's reach once. The depth bias grows
-    // with the tangent of the angle to the light, which a plane's depth changes by across a texel,
-    // but never to nothing: a plane that faces the light is as deep as the map says, give or take
-    // rounding. Both act here and not on the casters: maps then hold true depths, which the march
-    // needs.
+    // The offset moves a plane out of its own texels up to the filter's corners: along each of the
+    // map's axes, by the filter's reach times how far the normal leans that way. The depth bias
+    // grows with the tangent of the angle to the light, by which a plane's depth changes across a
+    // texel. It is never 0, since even a plane that faces the light is only as deep as the map says
+    // up to rounding. Both act here and not on the casters, so that maps hold true depths, which
+    // the march needs.
     s += R"(  float sine = sqrt(max(1.0 - nl * nl, 0.0));
   float lean = abs(dot(n, frame.map_x.xyz)) + abs(dot(n, frame.map_y.xyz));
   vec3 p = frame.eye.xyz + away + n * (frame.weights.z * lean);

@@ -1,5 +1,5 @@
-// The player's shaders, put together from the pieces that a scene and its settings need: what is
-// not listed in the features is not in the text that the driver compiles.
+// The player's shaders, assembled from the pieces that a scene and its settings need: what the
+// features do not list is not in the text that the driver compiles.
 #pragma once
 
 #include <string>
@@ -30,14 +30,15 @@ struct ShaderFeatures {
   bool baked_vertices = false;  // illumination at the vertices
   bool baked_textures = false;  // the textures hold light (an exported atlas), not reflectance
   bool emission = false;        // materials that emit light
-  int pcf = 3;              // 0: nearest texel; 1: bilinear; 3, 5: that many bilinear taps a side
+  int pcf = 3;              // 0: nearest texel; 1: bilinear; 3, 5: that many bilinear taps per side
   bool visibility = false;  // write the light's visibility instead of a colour
   bool operator==(const ShaderFeatures&) const = default;
 };
 
-// Unlit scenes are drawn in one pass. Lit ones are drawn as surfaces (reflectance, own light and
-// normal in four 32-bit integers, and a depth) and lit in a second pass over the image: what is
-// hidden later, or covers a part of a pixel's neighbourhood only, is then never asked for shadows.
+// Unlit scenes are drawn in one pass. Lit scenes are drawn as surfaces (reflectance, own light and
+// normal in four 32-bit integers, and a depth), which a second pass over the image lights: shadows
+// are then never computed for fragments that are hidden later, or that cover only part of a pixel's
+// neighbourhood.
 struct ShaderText {
   std::string vertex, fragment;
   std::string lighting_vertex, lighting_fragment;  // of the second pass; empty if there is none
@@ -45,7 +46,8 @@ struct ShaderText {
 
 ShaderText shader_text(const ShaderFeatures& features);
 
-// One word for each thing compiled in, for the plan: "lambert", "march", "pcf 3", ...
+// Returns one word for each thing that is compiled in, for the plan: "lambert", "march", "pcf 3",
+// ...
 std::vector<std::string> feature_names(const ShaderFeatures& features);
 
 const char* name_of(Shading shading);

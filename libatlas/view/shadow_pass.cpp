@@ -60,7 +60,7 @@ Result<ShadowPass> ShadowPass::make(int resolution, int maps, int bits) {
                                         maps, resolution, resolution, s.message())};
   for (int i = 0; i < maps; ++i) {
     Map map;
-    map.view = create<GlTexture>(glGenTextures);  // a view takes a name that was never bound
+    map.view = create<GlTexture>(glGenTextures);  // a view needs a name that was never bound
     glTextureView(map.view.get(), GL_TEXTURE_2D, layers, format, 0, 1, GLuint(i), 1);
     map.frame = create<GlFramebuffer>(glCreateFramebuffers);
     const GLuint f = map.frame.get();
@@ -98,7 +98,7 @@ std::uint32_t ShadowPass::draw(const GpuScene& scene, const MapWork& work, const
   glUniformMatrix4fv(0, 1, GL_FALSE, matrix);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
-  glEnable(GL_DEPTH_CLAMP);  // casters in front of the range still cast
+  glEnable(GL_DEPTH_CLAMP);  // casters in front of the range still cast shadows
   glBindVertexArray(scene.casters.get());
   glDrawElements(GL_TRIANGLES, GLsizei(count * 3), GL_UNSIGNED_INT,
                  reinterpret_cast<const void*>(std::uintptr_t(first) * 12));

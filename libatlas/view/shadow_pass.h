@@ -1,4 +1,4 @@
-// Internal: shadow maps of one light, and drawing any slice of the casters into one of them.
+// Internal: the shadow maps of one light, into each of which any slice of the casters can be drawn.
 #pragma once
 
 #include <vector>
@@ -11,17 +11,19 @@ namespace atlas {
 
 class ShadowPass {
  public:
-  // `maps` square depth textures of `resolution` texels a side, `bits` (16, 24, 32) each.
+  // Makes `maps` square depth textures of `resolution` texels a side and `bits` (16, 24, 32) per
+  // texel.
   static Result<ShadowPass> make(int resolution, int maps, int bits);
 
-  // Draws the triangles of `work` into its map; work.begin == 0 clears that first and remembers
+  // Draws the triangles of `work` into its map. If work.begin is 0, first clears the map and stores
   // `fit`. Returns the number of triangles submitted.
   std::uint32_t draw(const GpuScene& scene, const MapWork& work, const LightFit& fit);
 
   const LightFit& fit(int slot) const { return maps_[std::size_t(slot)].fit; }
-  // Binds map `slot` for depth comparison (bilinear, lit outside).
+  // Binds map `slot` for depth comparison (bilinear; lit outside the map).
   void bind_compare(int slot, int unit) const;
-  // Binds all maps, a layer a slot, for depth comparison or for their depths (nearest, 1 outside).
+  // Binds all maps, one layer per slot, for depth comparison, or for reading their depths (nearest;
+  // 1 outside the map).
   void bind_all_compare(int unit) const;
   void bind_all_depths(int unit) const;
   int resolution() const { return resolution_; }

@@ -1,10 +1,10 @@
-// The texts that look a point up in shadow maps.
+// The shader texts that look a point up in shadow maps.
 #include "libatlas/view/shadow_text.h"
 
 namespace atlas {
 namespace {
 
-// A map by itself, or a layer of all of them: what the filters below are written in.
+// The filters below use these macros, which stand for a single map or for one layer of all maps.
 constexpr const char* kPlainMap = R"(
 #define MAP sampler2DShadow map
 #define LOOK(uv, depth) texture(map, vec3(uv, depth))
@@ -78,17 +78,17 @@ float visibility(vec3 p, float bias) {
 }
 )";
 
-// See docs/player.md, "March". A height is a depth difference towards a key's light; the ray to the
-// current light is over m.xy + h * ray.xy at height h. A sample of height d, found there, stands
-// beside the ray by |d - h| times the trace's texels per height: its miss. What hides from one key
-// (a seat's shaded part next to a window's patch) is seen by the other, so both are searched, and
-// the filter is evaluated once, at the sample that misses least. The two constants, in texels: a
-// blocker this near to the ray is sure, the search ends (1); no blocker as near as this, the point
-// is lit (2.5: with 2 smooth shadows lose a little of their rims, with 4 a cabin's seats under a
-// low sun have three times as many wrong pixels, with 8 more). A point over which the first
-// key sees nothing at all along the ray is lit as that key says: its search ends too. That the
-// loop's bound is no constant keeps compilers from unrolling it: the software renderer leaves a
-// loop early but never skips a branch.
+// See docs/player.md, "March". A height is a depth difference towards a key's light. At height h,
+// the ray to the current light is over m.xy + h * ray.xy. A sample of height d that is found there
+// lies beside the ray by |d - h| times the trace's texels per height, which is called its miss. A
+// blocker that one key does not see (a seat's shaded part next to a window's patch) is seen by the
+// other key, so both are searched, and the filter is evaluated once, at the sample with the
+// smallest miss. There are two constants, in texels. A miss of at most 1 is certain and ends the
+// search. If no miss is at most 2.5, the point is lit: with 2, smooth shadows lose a little of
+// their rims; with 4, a cabin's seats under a low sun have three times as many wrong pixels; with
+// 8, even more. If the first key sees nothing at all above the point along the ray, the point is
+// lit as that key says and its search ends, too. The loop's bound is not a constant, which keeps
+// compilers from unrolling it: the software renderer leaves a loop early but never skips a branch.
 constexpr const char* kMarch = R"(
 layout(binding = 1) uniform sampler2DArrayShadow maps;
 layout(binding = 2) uniform sampler2DArray depths;

@@ -1,4 +1,4 @@
-// Internal: the part of the fragment shader that looks a point up in shadow maps.
+// Internal: returns the part of the fragment shader that looks a point up in shadow maps.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace atlas {
 
-// Declares the maps and `float visibility(vec3 point, float depth_bias)`; reads the uniform block
-// `frame` of shaders.cpp. Only for features.shadow != none.
+// Returns text that declares the maps and `float visibility(vec3 point, float depth_bias)`, which
+// reads the uniform block `frame` of shaders.cpp. Only for features.shadow != none.
 std::string shadow_text(const ShaderFeatures& features);
 
 }  // namespace atlas

@@ -1,4 +1,4 @@
-// Where a visitor enters a scene.
+// Chooses where a visitor enters a scene.
 #pragma once
 
 #include "libatlas/view/camera.h"
@@ -6,8 +6,9 @@
 
 namespace atlas {
 
-// Inside, where the scene surrounds a visitor, as exported worlds begin (choose_viewpoint()); else
-// a little above its side, looking at the whole, as where `up` is the x axis. `up` is an axis.
+// Returns a camera inside the scene if the scene surrounds a visitor, as where exported worlds
+// begin (choose_viewpoint()). Otherwise, and if `up` is the x axis, the camera looks at the whole
+// scene from a little above its side. `up` must be an axis.
 Camera start_camera(const ViewScene& scene, const Vec3d& up,
                     double fov_degrees = Camera{}.fov_degrees);
 

@@ -1,4 +1,5 @@
-// Internal: GPU time of a pass without waiting for it, from a ring of GL_TIME_ELAPSED queries.
+// Internal: measures a pass's GPU time without waiting for it, with a ring of GL_TIME_ELAPSED
+// queries.
 #pragma once
 
 #include <array>
@@ -19,12 +20,13 @@ class PassTimer {
     ++at_;
     poll();
   }
-  // Of the newest pass whose time has arrived; NaN before that.
+  // Returns the time of the newest pass whose time has arrived; NaN before that.
   double seconds() const { return seconds_; }
 
-  // Takes in what has arrived. Called by end(); call it after glFinish for the frame just drawn.
+  // Takes in the times that have arrived. end() calls it; call it after glFinish() to get the time
+  // of the frame just drawn.
   void poll() {
-    // Results older than the ring are lost: their query objects have been used again.
+    // Results older than the ring are lost, since their query objects have been used again.
     if (at_ - read_ > kRing - 1) read_ = at_ - (kRing - 1);
     for (; read_ < at_; ++read_) {
       const GLuint query = queries_[read_ % kRing].get();

@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::uint32_t kNone = Scene::kNoTexcoord;
 
-// Positions that are equal bit for bit become one: readers keep what files say, and many files
-// repeat every corner, which would make every edge a crease.
+// Welds positions that are equal (-0 and 0 are). Readers keep what files say, and many files repeat
+// every corner, which would otherwise make every edge a crease.
 std::vector<std::uint32_t> weld(const std::vector<Vec3f>& positions) {
   struct Hash {
     std::size_t operator()(const Vec3f& v) const {
@@ -40,15 +40,15 @@ std::vector<std::uint32_t> weld(const std::vector<Vec3f>& positions) {
   return out;
 }
 
-// Corners at each welded vertex.
+// Returns the corners at each welded vertex.
 Buckets corners_by_vertex(const std::vector<std::uint32_t>& welded,
                           const std::vector<std::uint32_t>& indices) {
   return sort_into_buckets(indices.size(), welded.size(),
                            [&](std::size_t corner) { return welded[indices[corner]]; });
 }
 
-// Area-weighted normals of all triangles, in the square of the largest coordinate, since areas
-// leave the range of floats sooner than lengths; zero for degenerate ones.
+// Returns area-weighted normals of all triangles, relative to the square of the largest coordinate,
+// since areas leave the range of float sooner than lengths. Degenerate triangles have the normal 0.
 std::vector<glm::vec3> face_normals(const Scene& scene) {
   std::vector<glm::vec3> normals(scene.triangle_count());
   double largest = 1e-300;
@@ -65,18 +65,18 @@ std::vector<glm::vec3> face_normals(const Scene& scene) {
 }
 
 glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) {
-  // In double: the squares of small scenes' areas underflow floats.
+  // Computed in double, since the squares of small scenes' areas underflow floats.
   const glm::dvec3 d(v);
   const double length = glm::length(d);
   return length > 0 ? glm::vec3(d / length) : otherwise;
 }
 
-// A vertex with more corners is the hub of slivers, which keep normals of their own: to compare
-// each with all others takes quadratic time.
+// A vertex with more corners is the hub of thin triangles, which keep their own normals: comparing
+// each of them with all others would take quadratic time.
 constexpr std::size_t kHub = 1024;
 
-// The normal of a corner: the mean of the faces at its vertex that lie within the crease angle of
-// its own face. Faces of opposite winding count as if they were turned.
+// Returns the normal of a corner: the area-weighted mean of the faces at its vertex whose normals
+// are within the crease angle of its own face's. Faces of opposite winding are flipped first.
 glm::vec3 corner_normal(std::span<const std::uint32_t> corners_there,
                         const std::vector<glm::vec3>& faces, std::uint32_t own,
                         float least_cosine) {
@@ -91,7 +91,8 @@ glm::vec3 corner_normal(std::span<const std::uint32_t> corners_there,
   return unit_or(sum, mine);
 }
 
-// The low 10 bits of a value with two zeros after each: three of them interleave to a Morton code.
+// Returns the low 10 bits of a value with two zeros after each bit. Three such values interleave to
+// a Morton code.
 std::uint32_t spread(double value) {
   std::uint32_t x = std::uint32_t(value) & 1023u;
   x = (x | x << 16) & 0x030000ffu;
@@ -100,7 +101,7 @@ std::uint32_t spread(double value) {
   return (x | x << 2) & 0x09249249u;
 }
 
-// One drawn vertex for each different corner.
+// One vertex is drawn for each different corner.
 struct CornerKey {
   std::uint32_t position, texcoord, material;
   std::int16_t normal[3];
@@ -118,7 +119,8 @@ struct CornerHash {
   }
 };
 
-// Textures of emission are not read; their factor alone would light up what they leave dark.
+// Returns no emission if a texture shapes it. Such textures are not read, and their factor alone
+// would light up what they leave dark.
 Vec3f plain_emission(const Material& material) {
   return material.emission_textured ? Vec3f{} : material.emission;
 }
@@ -143,7 +145,8 @@ class Builder {
     return {m.texture, m.wrap_u, m.wrap_v};
   }
 
-  // Triangles grouped by look and, within one, along a curve that keeps neighbours together.
+  // Returns the triangles grouped by look, and within each look along a curve that keeps neighbours
+  // together.
   std::vector<std::uint32_t> order() const {
     glm::dvec3 low(1e300), high(-1e300);
     for (const Vec3f& p : scene_.positions) {
@@ -201,7 +204,7 @@ class Builder {
     return it->second;
   }
 
-  // The ball around the middle of the cluster's box.
+  // Computes a sphere around the centre of the cluster's box.
   void enclose(ViewScene::Cluster& c) const {
     constexpr float kMost = std::numeric_limits<float>::max();
     glm::vec3 low(kMost), high(-kMost);
@@ -211,11 +214,11 @@ class Builder {
     }
     const glm::vec3 centre = low + (high - low) * 0.5f;
     c.centre = from_glm(centre);
-    double radius = 0;  // the squares of small scenes' lengths underflow floats
+    double radius = 0;  // in double, since squares of small lengths underflow floats
     for (std::uint32_t i = c.first; i < c.first + c.count; ++i)
       radius = std::max(
           radius, glm::length(to_dvec(view_.positions[view_.indices[i]]) - glm::dvec3(centre)));
-    c.radius = float(radius * 1.0001);  // rounding
+    c.radius = float(radius * 1.0001);  // margin for rounding
   }
 
   void add_casters() {
@@ -236,7 +239,7 @@ class Builder {
 
   const Scene& scene_;
   std::vector<std::uint32_t> welded_;
-  Buckets corners_at_;  // each welded vertex
+  Buckets corners_at_;  // of each welded vertex
   std::vector<glm::vec3> faces_;
   float cosine_;
   bool textured_ = false, emits_ = false;

@@ -1,4 +1,5 @@
-// A scene as arrays that can be drawn: normals made, corners welded, triangles grouped by texture.
+// Turns a scene into arrays that can be drawn: computes normals, welds corners, and groups
+// triangles by texture.
 #pragma once
 
 #include <compare>
@@ -18,24 +19,24 @@ struct ViewScene {
   // Per vertex; an array is empty where the scene has no such thing.
   std::vector<Vec3f> positions, normals;
   std::vector<Vec3f> colours;   // diffuse reflectance of the material, linear
-  std::vector<Vec3f> emission;  // of the material, where it is no texture's; 1 is white
+  std::vector<Vec3f> emission;  // of the material, unless a texture shapes it; 1 is white
   std::vector<Vec2f> texcoords;
   std::vector<Vec3f> illumination;  // linear, as given
   std::vector<std::uint32_t> indices;
 
-  // A texture (-1: none, drawn with a white one) and how it goes on beyond its edges.
+  // A texture (-1: none) and how it continues beyond its edges.
   struct Look {
     std::int32_t texture = -1;
     TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
     auto operator<=>(const Look&) const = default;
   };
 
-  // Consecutive triangles that lie close together and look alike, so that a frame can skip what is
-  // out of view and draw the nearest first.
+  // Consecutive triangles that lie close together and look alike. A frame can skip clusters that
+  // are out of view and draw the nearest first.
   struct Cluster {
     std::uint32_t first = 0, count = 0;  // indices
     Look look;
-    Vec3f centre;  // of a ball that holds them
+    Vec3f centre;  // of a sphere that contains them
     float radius = 0;
   };
   std::vector<Cluster> clusters;  // grouped by look
@@ -45,10 +46,10 @@ struct ViewScene {
   std::vector<std::uint32_t> caster_indices;
 
   std::vector<Texture> textures;
-  bool textures_hold_light = false;  // atlases with baked light
+  bool textures_hold_light = false;  // whether they are atlases with baked light
   Box3 bounds;                       // of the positions that triangles use
-  Vec3d origin;                      // added to positions gives the coordinates of the file
-  double metres_per_unit = 1;        // > 0; for the height of a visitor's eye
+  Vec3d origin;                      // added to a position, gives the coordinates of the file
+  double metres_per_unit = 1;        // > 0; used for the height of a visitor's eye
   double light_scale = 1;            // exposure that puts the 99th percentile of the light at 1
 
   std::size_t triangle_count() const { return caster_indices.size() / 3; }
@@ -59,12 +60,12 @@ struct ViewScene {
 struct ViewSceneOptions {
   double crease_degrees = 40;  // faces that meet at less than this are shaded as one surface
   bool textures_hold_light = false;
-  // Triangles a cluster: few enough to follow the depth order, many enough that their draw calls
+  // Triangles per cluster: few enough to follow the depth order, many enough that their draw calls
   // cost little (256 to 1024 measured alike on the software renderer).
   std::uint32_t cluster_triangles = 512;
 };
 
-// bad_input if no triangle is left to draw, or as check_scene() says.
+// Errors: bad_input if there is no triangle to draw; those of check_scene().
 Result<ViewScene> make_view_scene(const Scene& scene, const ViewSceneOptions& options);
 
 }  // namespace atlas
