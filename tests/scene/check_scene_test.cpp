@@ -1,5 +1,5 @@
-// Scenes that programs build by themselves: every array out of step is named, nothing is read past
-// an end.
+// Scenes that programs build by themselves: the check names every array that does not fit the
+// others, so that nothing is read past an end.
 #include "libatlas/scene/check_scene.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ void add_texture(Scene& scene) {
 
 TEST(CheckScene, CompletesPositionsAndIndices) {
   Scene scene = square();
-  EXPECT_FALSE(check_scene(scene).ok());  // no material a triangle
+  EXPECT_FALSE(check_scene(scene).ok());  // triangles have no material
   ASSERT_TRUE(complete_scene(scene).ok());
   EXPECT_EQ(scene.materials.size(), 1u);
   EXPECT_EQ(scene.triangle_material, std::vector<std::uint32_t>(2, 0));

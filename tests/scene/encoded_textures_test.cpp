@@ -1,4 +1,4 @@
-// Textures that stay the files that they were, for exports that only hand them on.
+// Textures that stay encoded, for exports that only pass them on.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -26,7 +26,7 @@ TEST(EncodedTextures, BesideAnObj) {
   const TempFolder folder;
   const std::string bytes = png(folder);
   folder.write("broken.png", "\x89PNG no more");
-  // What others know as an image format is decoded; a file of no image is told as ever.
+  // Other image formats are decoded. A file that is no image is reported as without this option.
   folder.write("grey.pgm", "P5\n2 1\n255\n\x10\x20");
   folder.write("m.mtl",
                "newmtl a\nmap_Kd made.png\nnewmtl b\nmap_Kd grey.pgm\nnewmtl c\nmap_Kd broken.png\n"

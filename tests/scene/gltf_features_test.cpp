@@ -1,4 +1,4 @@
-// What glTF files say in more than one way, or only in part.
+// Tests what glTF files can say in more than one way, or only in part.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,8 +18,8 @@ using test::kSquare;
 using test::load_glb;
 using test::TempFolder;
 
-// The same transform as numbers, as a matrix, and of a node above; a file without scenes shows all
-// nodes that are nobody's children.
+// The same transform is given as numbers, as a matrix, and by a node above. A file without scenes
+// shows all nodes that have no parent.
 TEST(Gltf, MatricesAndScenesThatAreNotNamed) {
   const TempFolder folder;
   const auto positions_of = [&](const std::function<void(json&)>& arrange) {
@@ -55,7 +55,7 @@ TEST(Gltf, MatricesAndScenesThatAreNotNamed) {
   }));
 }
 
-// KHR_mesh_quantization: the most negative whole number is -1 as well.
+// KHR_mesh_quantization: the most negative integer also stands for -1.
 TEST(Gltf, ShortPositionsAreFractions) {
   const TempFolder folder;
   for (const bool normalized : {false, true}) {
@@ -77,8 +77,8 @@ TEST(Gltf, ShortPositionsAreFractions) {
   }
 }
 
-// The format has no signed integers of 32 bits; who writes them all the same has them read as such,
-// and nothing behind the last of them.
+// The format has no signed 32-bit integers. If a file has them all the same, they are read as such,
+// and nothing after the last of them is read.
 TEST(Gltf, SignedWordsAreWholeNumbers) {
   const TempFolder folder;
   Gltf g;
@@ -92,8 +92,8 @@ TEST(Gltf, SignedWordsAreWholeNumbers) {
   EXPECT_EQ(loaded->scene.positions[2], (Vec3f{0, -70000, 0}));
 }
 
-// Two primitives: the first is lit and its texture coordinates are one short, the second has
-// neither light nor trouble.
+// Of two primitives, the first is lit and lacks one texture coordinate; the second has no light and
+// no defect.
 TEST(Gltf, WhatOnlySomePrimitivesHave) {
   const TempFolder folder;
   Gltf g;
@@ -147,7 +147,7 @@ TEST(Gltf, InstancesAreShownWhereTheyStand) {
   EXPECT_EQ(s.positions[6], (Vec3f{3, -2, 1}));  // half a turn about z, twice as large
   EXPECT_EQ(s.positions[10], (Vec3f{1, 8, 1}));
   EXPECT_EQ(s.indices[6], 4u);
-  EXPECT_EQ(s.indices[12], 10u);  // mirrored: its corners run the other way
+  EXPECT_EQ(s.indices[12], 10u);  // mirrored: its corners have the opposite order
   EXPECT_EQ(s.object_names.size(), 3u);
   const auto broken = [&](const char* name, const json& value) {
     Gltf bad = g;
@@ -159,7 +159,8 @@ TEST(Gltf, InstancesAreShownWhereTheyStand) {
   EXPECT_EQ(broken("TRANSLATION", "x").code(), ErrorCode::bad_input);
 }
 
-// A mesh of 1500 vertices half a million times would be 50 GB: refused before anything is kept.
+// A mesh of 1500 vertices that is shown half a million times would take 50 GB. It is refused before
+// anything is allocated.
 TEST(Gltf, MeshesShownBeyondAllMemoryAreRefused) {
   const TempFolder folder;
   const auto zeros = [](Gltf& g, int count) {
@@ -188,7 +189,7 @@ TEST(Gltf, MeshesShownBeyondAllMemoryAreRefused) {
   EXPECT_LT(peak_memory(), std::int64_t{1} << 30);
 }
 
-// KHR_node_visibility: a node that is hidden hides all nodes below it, whatever they say.
+// KHR_node_visibility: a hidden node hides all nodes below it, whatever they say.
 TEST(Gltf, HiddenNodesAreLeftOut) {
   const TempFolder folder;
   Gltf g;
@@ -215,7 +216,7 @@ TEST(Gltf, HiddenNodesAreLeftOut) {
             std::string::npos);
 }
 
-// A file without nodes is a library: each mesh once, as it is.
+// A file without nodes is a library. Each mesh is read once, without a transform.
 TEST(Gltf, MeshesWithoutNodes) {
   const TempFolder folder;
   for (const bool empty_scene : {false, true}) {
@@ -236,7 +237,7 @@ TEST(Gltf, MeshesWithoutNodes) {
   }
 }
 
-// Some exporters share a node between parents, which the format forbids and viewers show.
+// Some exporters share a node between parents, which the format forbids but viewers show.
 TEST(Gltf, NodesOfSeveralParents) {
   const TempFolder folder;
   Gltf g;
@@ -251,7 +252,8 @@ TEST(Gltf, NodesOfSeveralParents) {
   ASSERT_EQ(loaded->scene.positions.size(), 8u);
   EXPECT_EQ(loaded->scene.positions[2], (Vec3f{1, 1, 1}));
   EXPECT_EQ(loaded->scene.positions[6], (Vec3f{2, 2, 0}));
-  // A ladder of 60 nodes with both feet on the next one stands for 2^60.
+  // In a ladder of 60 nodes, each with the next one twice as its child, the last is reached 2^60
+  // times.
   for (int i = 3; i < 63; ++i) g.j["nodes"].push_back({{"children", {i + 1, i + 1}}});
   g.j["nodes"].push_back({{"mesh", 0}});
   g.j["scenes"][0]["nodes"] = {3};
@@ -259,7 +261,7 @@ TEST(Gltf, NodesOfSeveralParents) {
   EXPECT_EQ(ladder.status().code(), ErrorCode::bad_input);
 }
 
-// The node of a skinned mesh is moved by its joints alone; weights need not add up to 1.
+// Only its joints move the node of a skinned mesh. Weights need not add up to 1.
 TEST(Gltf, SkinsAndMorphTargetsAtRest) {
   const TempFolder folder;
   for (const bool mirrored : {false, true}) {
@@ -304,7 +306,7 @@ TEST(Gltf, SkinsAndMorphTargetsAtRest) {
   }
 }
 
-// Chunks without padding or bytes, of other kinds, and buffer files longer than their buffer.
+// Chunks without padding or bytes or of other kinds, and buffer files longer than their buffer.
 TEST(Gltf, ContainersThatManyWrite) {
   const TempFolder folder;
   Gltf g;
@@ -334,7 +336,8 @@ TEST(Gltf, ContainersThatManyWrite) {
   EXPECT_EQ(load(false, word(4) + "KINDdata", g.bytes), 1u);
 }
 
-// What an extension compressed is missing, whether or not the file says that it needs it.
+// Data that an extension has compressed are missing, whether or not the file requires the
+// extension.
 TEST(Gltf, CompressedVerticesAreNoZeros) {
   const TempFolder folder;
   Gltf g;

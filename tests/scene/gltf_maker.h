@@ -1,4 +1,4 @@
-// Small glTF files, made value by value.
+// Makes small glTF files value by value.
 #pragma once
 
 #include <cstring>
@@ -13,7 +13,7 @@ namespace atlas::test {
 
 using nlohmann::json;
 
-// A glTF file in the making: binary data with a view and an accessor for each array.
+// Builds a glTF file: binary data, with a view and an accessor for each array.
 struct Gltf {
   json j = {{"asset", {{"version", "2.0"}}}};
   std::string bytes;
@@ -46,7 +46,7 @@ struct Gltf {
                      {"type", "SCALAR"},
                      {"count", values.size()}});
   }
-  // One mesh with one primitive, under one node.
+  // Adds one mesh with one primitive, under one node.
   void single(json primitive, json node = json::object()) {
     j["meshes"] = json::array({{{"primitives", json::array({std::move(primitive)})}}});
     node["mesh"] = 0;

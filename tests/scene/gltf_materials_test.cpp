@@ -1,4 +1,5 @@
-// Materials of glTF files: textures, where they lie and how they go on, colours of extensions.
+// Materials of glTF files: textures with their transforms and wrap modes, and colours of
+// extensions.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -50,7 +51,7 @@ TEST(Gltf, TexturesMayNameASetAndATurn) {
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   const Scene& s = loaded->scene;
   EXPECT_EQ(s.texcoords[s.texcoord_indices[1]], (Vec2f{2, 0}));
-  // Counterclockwise where v points down: (4, 1) becomes (4 c + s, -4 s + c).
+  // The rotation is counterclockwise where v points down: (4, 1) becomes (4 c + s, -4 s + c).
   const double c = std::cos(0.5), sine = std::sin(0.5);
   const Vec2f turned = s.texcoords[s.texcoord_indices[4]];
   EXPECT_NEAR(turned.x, 4 * c + sine, 1e-6);
@@ -58,7 +59,7 @@ TEST(Gltf, TexturesMayNameASetAndATurn) {
   EXPECT_TRUE(loaded->defects.empty());
 }
 
-// Scaled first, then turned, then moved, as Blender's importer has it.
+// The coordinates are first scaled, then rotated, then moved, as in Blender's importer.
 TEST(Gltf, TexturesAreScaledTurnedAndMoved) {
   const TempFolder folder;
   ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());
@@ -80,7 +81,7 @@ TEST(Gltf, TexturesAreScaledTurnedAndMoved) {
   const Scene& s = loaded->scene;
   EXPECT_EQ(s.materials[0].wrap_u, TextureWrap::clamp);
   EXPECT_EQ(s.materials[0].wrap_v, TextureWrap::mirror);
-  // A quarter turn takes (u, v) to (v, -u), v pointing down.
+  // A quarter turn takes (u, v) to (v, -u), with v pointing down.
   const Vec2f expected[] = {{0.25f, 0.5f}, {0.25f, 2.5f}, {3.25f, 0.5f}};
   for (int k = 0; k < 3; ++k) {
     EXPECT_NEAR(s.texcoords[s.texcoord_indices[k]].x, expected[k].x, 1e-6) << k;
@@ -106,7 +107,8 @@ TEST(Gltf, EmissionAndReflectancesBeyondOne) {
   EXPECT_TRUE(loaded->defects.defects[0].first_places[0].ends_with(": material 'bright'"));
 }
 
-// JSON's numbers go beyond float, and so may coordinates that a texture's scale moves.
+// JSON's numbers can exceed the range of float, and so can coordinates that a texture's scale
+// moves.
 TEST(Gltf, NumbersBeyondFloatLeaveFiniteMaterialsAndCoordinates) {
   const TempFolder folder;
   ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());
@@ -162,7 +164,7 @@ TEST(Gltf, MaterialsThatDoNotExistAreTold) {
             std::string::npos);
 }
 
-// An older model of shading, and an image in a format that glTF itself does not know.
+// An older model of shading, and an image in a format that glTF itself does not have.
 TEST(Gltf, DiffuseColoursOfExtensions) {
   const TempFolder folder;
   ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());

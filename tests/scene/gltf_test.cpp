@@ -35,7 +35,7 @@ TEST(Gltf, TransformsColoursAndFlippedV) {
               {"COLOR_0", colours},
               {"_ILLUMINANCE", light}}},
             {"indices", indices}});
-  // A turn by 90 degrees about z, a scale, and a mirroring parent moved far away.
+  // A rotation by 90 degrees about z, a scale, and a mirroring parent that is moved far away.
   g.j["nodes"][0]["rotation"] = {0, 0, std::sqrt(0.5), std::sqrt(0.5)};
   g.j["nodes"][0]["scale"] = {2, 2, 2};
   g.j["nodes"].push_back({{"children", {0}}, {"scale", {-1, 1, 1}}, {"translation", {10, 20, 30}}});
@@ -49,7 +49,8 @@ TEST(Gltf, TransformsColoursAndFlippedV) {
   EXPECT_NEAR(s.origin.y + s.positions[1].y, 22, 1e-6);
   EXPECT_NEAR(s.origin.z + s.positions[1].z, 30, 1e-6);
   EXPECT_NEAR(s.origin.x + s.positions[3].x, 12, 1e-6);
-  EXPECT_EQ(s.indices, (std::vector<std::uint32_t>{2, 1, 0, 3, 2, 0}));  // mirrored: turned round
+  // mirrored, so the order is reversed
+  EXPECT_EQ(s.indices, (std::vector<std::uint32_t>{2, 1, 0, 3, 2, 0}));
   EXPECT_EQ(s.illumination[1], (Vec3f{400, 5, 6}));
   EXPECT_EQ(s.texcoords[0], (Vec2f{0, 1}));
   EXPECT_EQ(s.texcoords[3], (Vec2f{-2, -2}));
@@ -59,7 +60,7 @@ TEST(Gltf, TransformsColoursAndFlippedV) {
 TEST(Gltf, NormalisedStridedAndSparseData) {
   const TempFolder folder;
   Gltf g;
-  // Positions and 8-bit colours interleaved, 16 bytes a vertex.
+  // Positions and 8-bit colours are interleaved, 16 bytes per vertex.
   std::vector<float> packed;
   for (int i = 0; i < 4; ++i) {
     packed.insert(packed.end(), kSquare.begin() + 3 * i, kSquare.begin() + 3 * i + 3);
@@ -264,7 +265,7 @@ TEST(Gltf, RandomDamageNeverCrashes) {
       bytes.resize(random() % bytes.size());
     } else {
       for (int hits = 1 + int(random() % 3); hits > 0; --hits) {
-        // Digits for digits keep the JSON valid and reach the range checks.
+        // Replacing digits with digits keeps the JSON valid, so that the range checks are reached.
         char& c = bytes[random() % bytes.size()];
         c = c >= '0' && c <= '9' ? char('0' + random() % 10) : round % 4 == 1 ? char(random()) : c;
       }

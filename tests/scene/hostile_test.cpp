@@ -1,4 +1,4 @@
-// Files that are wrong: each must end in one line that names the file and says what to do.
+// Wrong files: each must give an error of one line that names the file and says what to do.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -166,7 +166,7 @@ const Case kCases[] = {
     {"draco.gltf",
      R"({"asset":{"version":"2.0"},"extensionsRequired":["KHR_draco_mesh_compression"]})",
      ErrorCode::unsupported, "KHR_draco_mesh_compression"},
-    {"compressed.gltf",  // draco that the file uses without a word that it needs it
+    {"compressed.gltf",  // uses draco without requiring it
      R"({"asset":{"version":"2.0"},"accessors":[{"type":"VEC3","componentType":5126,"count":3},{"type":"SCALAR","componentType":5123,"count":3}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0}}}]}]})",
      ErrorCode::unsupported, "mesh 0 holds nothing but KHR_draco_mesh_compression"},
     {"unversioned.gltf", R"({"asset":{"version":""}})", ErrorCode::unsupported,
@@ -235,7 +235,7 @@ TEST(Reader, MissingFilesFoldersAndOptions) {
   EXPECT_EQ(read_scene(folder / "any.obj", options, {}).status().code(), ErrorCode::bad_option);
 }
 
-// Nobody writes to the pipe: who opened it would wait without end.
+// Nobody writes to the pipe, so opening it would wait without end.
 TEST(Reader, ReadsNoPipes) {
   const TempFolder folder;
   const auto pipe = folder / "pipe.obj";

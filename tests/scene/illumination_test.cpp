@@ -37,7 +37,7 @@ TEST(Illumination, FromASecondFile) {
   };
   EXPECT_EQ(status_with("short.txt", "1 2 3\n").code(), ErrorCode::bad_input);
   EXPECT_NE(status_with("two.txt", "1 2\n").message().find("two.txt:1:"), std::string::npos);
-  // A lightmap, say: its first line is nothing to correct.
+  // A lightmap, for example: the message must not ask to correct its first line.
   EXPECT_NE(status_with("map.png", std::string("\x89PNG\r\n\0\0\0", 9))
                 .message()
                 .find("map.png: is no text"),
@@ -48,7 +48,7 @@ TEST(Illumination, FromASecondFile) {
   EXPECT_EQ(read_scene(mesh, missing, {}).status().code(), ErrorCode::not_found);
 }
 
-// The order of vertices is all that joins the files; where they mean the same places, it is
+// Only the order of vertices links the two files. If both have the same bounding box, it is
 // checked.
 TEST(Illumination, AnotherOrderOfTheSameVerticesIsTold) {
   const TempFolder folder;
@@ -67,8 +67,8 @@ TEST(Illumination, AnotherOrderOfTheSameVerticesIsTold) {
   EXPECT_EQ(elsewhere("v nan 0 0 1 1 1\nv 1 0 0 2 2 2\nv 0 1 0 3 3 3\n"), 0u);
 }
 
-// What is wrong with the second file's light is told, and told of that file; the first one's light
-// is not used.
+// Defects of the second file's light are reported with that file's name. The first file's light is
+// not used.
 TEST(Illumination, DefectsAreTheSecondFiles) {
   const TempFolder folder;
   const auto mesh = folder.write(

@@ -1,4 +1,5 @@
-// The same files with the line ends of three worlds, and with the mark that editors put first.
+// The same files with the line ends of three systems, and with the byte order mark that editors
+// write.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -49,7 +50,7 @@ TEST(LineEnds, OfAnyKindAndMixed) {
     for (const std::string end : {"\n", "\r\n", "\r"}) {
       for (const bool marked : {false, true}) {
         if (marked && !file.may_be_marked) continue;
-        for (const bool cut : {false, true}) {  // the last line may lack its end
+        for (const bool cut : {false, true}) {  // the last line may lack its line end
           std::string bytes = (marked ? "\xef\xbb\xbf" : "") + with_ends(file.text, end);
           if (cut) bytes.resize(bytes.size() - end.size());
           folder.write("a.mtl", with_ends("# by a test\nnewmtl m\nKd 0 1 0\n", end));
@@ -62,7 +63,7 @@ TEST(LineEnds, OfAnyKindAndMixed) {
         }
       }
     }
-    // A line that another program added.
+    // Another program has added a line.
     const auto loaded =
         read_scene(folder.write(file.name, with_ends(file.text, "\r") + "\n"), {}, {});
     ASSERT_TRUE(loaded.ok()) << loaded.status().message();
@@ -85,7 +86,8 @@ TEST(LineEnds, OfMaterialsAndIllumination) {
   }
 }
 
-// What follows the end of the header's last line belongs to the data, be it the byte of a newline.
+// What follows the line end of the header's last line belongs to the data, even if it is a
+// newline's byte.
 TEST(LineEnds, OfBinaryPly) {
   const TempFolder folder;
   for (const std::string end : {"\n", "\r\n", "\r\r\n", "\r"}) {
@@ -112,7 +114,7 @@ TEST(LineEnds, OfBinaryPly) {
   }
 }
 
-// A file that is whole, but holds more than can be read, is not called damaged.
+// A file that is intact, but holds more than can be read, is not called damaged.
 TEST(TextFiles, TooMuchTextInAGzipFileIsToldApartFromDamage) {
   const TempFolder folder;
   const std::filesystem::path path = folder / "s.wrz";

@@ -1,4 +1,4 @@
-// A scene file that a test expects to load.
+// Loads a scene file that must be readable.
 #pragma once
 
 #include <gtest/gtest.h>

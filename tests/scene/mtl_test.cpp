@@ -68,7 +68,7 @@ TEST(Mtl, MissingTexturesOfLargeFoldersTakeNoTime) {
   EXPECT_LT(cpu_seconds() - begin, 3);
 }
 
-// As scenes that were written where capitals mean nothing.
+// Such scenes were written on systems that ignore case.
 TEST(Mtl, FilesAreFoundInAnyCase) {
   const TempFolder folder;
   std::filesystem::create_directory(folder / "Maps");
@@ -84,9 +84,9 @@ TEST(Mtl, FilesAreFoundInAnyCase) {
   };
   EXPECT_EQ(texture("maps\\wood.png"), "Wood.PNG");
   EXPECT_EQ(texture("MAPS/../Maps/WOOD.png"), "Wood.PNG");
-  EXPECT_EQ(texture("beside.png"), "beside.png");  // exactly this one
+  EXPECT_EQ(texture("beside.png"), "beside.png");  // exactly this one, not BESIDE.png
   EXPECT_EQ(texture("C:\\x\\Beside.Png"), "BESIDE.png");
-  EXPECT_EQ(texture("wood.png"), "");  // it is in another folder
+  EXPECT_EQ(texture("wood.png"), "");  // the file is in another folder
 }
 
 TEST(Mtl, KeywordsMayBeInAnyCase) {
@@ -103,7 +103,7 @@ TEST(Mtl, KeywordsMayBeInAnyCase) {
   EXPECT_EQ(material.opacity, 0.5f);
 }
 
-// The format has them; they are no reason to refuse the scene.
+// The format has such colours, so they are no reason to refuse the scene.
 TEST(Mtl, ColoursThatAreNoRgbAreADefect) {
   const TempFolder folder;
   folder.write("m.mtl",
@@ -141,7 +141,7 @@ TEST(Mtl, NamesMayHoldWhatElseBeginsAComment) {
   }
 }
 
-// As programs write names that hold blanks, and as they name files of the machine that they run on.
+// Programs write names that contain blanks, and names of files on the machine on which they run.
 TEST(Mtl, NamesOfLibrariesMayHoldBlanksAndStandInQuotes) {
   const TempFolder folder;
   ASSERT_TRUE(write_png(folder / "my wood.png", Image8(2, 2, 3, 77), {}).ok());
@@ -159,7 +159,7 @@ TEST(Mtl, NamesOfLibrariesMayHoldBlanksAndStandInQuotes) {
   }
 }
 
-// Each of them was read anew, and a file of a megabyte could ask for a million times as much.
+// When each was read again, a file of a megabyte could ask for a million times as much.
 TEST(Mtl, ALibraryThatIsNamedAgainIsReadOnce) {
   const TempFolder folder;
   ASSERT_TRUE(write_png(folder / "wood.png", Image8(2, 2, 3, 77), {}).ok());
@@ -225,7 +225,7 @@ TEST(Mtl, NumbersBeyondFloatLeaveFiniteMaterialsAndCoordinates) {
   EXPECT_EQ(loaded.defects.count(DefectKind::reflectance_beyond_one), 1u);
 }
 
-// A zero is what many programs write for every material.
+// Many programs write zero for every material.
 TEST(Mtl, Emission) {
   const TempFolder folder;
   const auto material = [&](const std::string& lines) {
@@ -248,8 +248,8 @@ TEST(Mtl, Emission) {
     EXPECT_EQ(material(off).emission, Vec3f{}) << off;
 }
 
-// Options before a texture's name: what changes nothing is passed over, what cannot be followed is
-// told.
+// Options before a texture's name: those that change nothing are ignored, those that are not
+// supported are reported.
 TEST(Mtl, TextureOptions) {
   const TempFolder folder;
   std::filesystem::create_directory(folder / "maps");
@@ -277,8 +277,8 @@ TEST(Mtl, TextureOptions) {
   EXPECT_EQ(ignored("-clamp on -mm 1 1 -blendu off"), 1u);
 }
 
-// `d` alone is clear: what is no share of it, and Tr, which is 1 - d to some, leave a material
-// opaque.
+// Only `d` with a fraction is unambiguous. Other values of it, and Tr, which some programs write
+// for 1 - d, leave a material opaque.
 TEST(Mtl, Opacity) {
   const TempFolder folder;
   const auto read = [&](const std::string& line) {

@@ -1,5 +1,5 @@
-// Normals are read where they are asked for: from every format that has them, turned as what they
-// belong to, and mended or left out where they are damaged.
+// Normals are read if they are asked for: from every format that has them, transformed with their
+// surface, and repaired or left out where they are damaged.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -46,10 +46,10 @@ const std::string kObjSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\n";
 TEST(Normals, AreLeftOutUnlessAskedFor) {
   const TempFolder folder;
   const auto obj = folder.write("a.obj", kObjSquare + "vn x\nf 1//9 2//9 3//9\n");
-  const LoadedScene loaded = load(obj);  // a line that is none is passed over, too
+  const LoadedScene loaded = load(obj);  // a malformed line is skipped, too
   EXPECT_TRUE(loaded.scene.normals.empty() && loaded.scene.normal_indices.empty());
   EXPECT_TRUE(loaded.defects.empty());
-  // Where none are found the arrays stay empty.
+  // If there are none, the arrays stay empty.
   const LoadedScene asked = load_normals(folder.write("b.obj", kObjSquare + "vn 0 0 1\nf 1 2 3\n"));
   EXPECT_TRUE(asked.scene.normals.empty() && asked.scene.normal_indices.empty());
 }
@@ -69,7 +69,7 @@ TEST(Normals, OfObjPolygonsGoWithTheirCorners) {
   EXPECT_EQ(loaded.defects.count(DefectKind::normal_out_of_range), 0u);
 }
 
-// Files of several pieces are parsed in parallel; negative indices count from their own line.
+// Long files are parsed in parallel chunks. Negative indices count from their own line.
 TEST(Normals, OfLongObjFilesCountAcrossPieces) {
   const TempFolder folder;
   std::string text;
@@ -113,7 +113,7 @@ TEST(Normals, LinesOfObjThatAreNoneEndTheReading) {
   }
 }
 
-// What has no direction takes that of its triangles; those without area have none to give.
+// Normals without direction take that of their triangles. Triangles without area have none to give.
 TEST(Normals, WithoutDirectionAreReplacedAndCounted) {
   const TempFolder folder;
   for (const char* bad : {"0 0 0", "nan 0 1", "0 inf 0", "-1e999 0 0", "-1.#IND 0 0"}) {
@@ -162,7 +162,7 @@ TEST(Normals, OfPlyAreThoseOfTheVertices) {
         folder.write("c.ply", ply("binary_little_endian", binary.substr(0, binary.size() - cut)));
     EXPECT_EQ(read_scene(path, {.normals = true}, {}).status().code(), ErrorCode::bad_input);
   }
-  // Two of three are no normal.
+  // Two of the three components do not make a normal.
   std::string two = ply("ascii", ascii);
   two.replace(two.find("nz\n"), 2, "qz");
   EXPECT_TRUE(load_normals(folder.write("d.ply", two)).scene.normals.empty());
@@ -190,8 +190,8 @@ TEST(Normals, OfOffInTextAndBinary) {
   EXPECT_EQ(normal_at(binary.scene, 2), (Vec3f{1, 0, 0}));
 }
 
-// A slanted triangle under transforms of every kind: the normal stays perpendicular to it, and on
-// the side that its corners turn to, which mirroring swaps.
+// Transforms of every kind are applied to a slanted triangle. The normal stays perpendicular to it,
+// on the side from which its corners run counter-clockwise, which mirroring swaps.
 TEST(Normals, OfGltfStayPerpendicularUnderTransforms) {
   const TempFolder folder;
   const double s = 1 / std::sqrt(3.0);
@@ -203,7 +203,7 @@ TEST(Normals, OfGltfStayPerpendicularUnderTransforms) {
       {{"scale", {-2, -3, -0.5}}, {"rotation", {0.5, 0.5, 0.5, 0.5}}},
       {{"scale", {1e-4, 1e-4, 1e-4}}},
       {{"matrix", {1, 0, 0, 0, 0.7, 1, 0, 0, 0.2, -0.3, 2, 0, 5, 6, 7, 1}}},
-      {{"scale", {1, 1, 0}}},  // flat, so that its normal is the plane's
+      {{"scale", {1, 1, 0}}},  // flat: the normal is that of the plane
   };
   for (const json& node : nodes) {
     Gltf gltf;
@@ -232,7 +232,7 @@ TEST(Normals, OfGltfFollowSkinsMorphsAndInstances) {
                {"targets", json::array({target})}},
               {{"weights", {0.5}}});
   expect_near(normal_at(load_normals(folder.write("m.glb", gltf.glb())).scene, 1), {1, 0, 0});
-  // A joint that turns z to y replaces the node's own transform.
+  // A joint that rotates z to y replaces the node's own transform.
   Gltf bent = gltf;
   const int joints = bent.accessor({{"bufferView", bent.view(std::vector<std::uint8_t>(12, 0))},
                                     {"componentType", 5121},
@@ -273,7 +273,7 @@ TEST(Normals, OfGltfInAnotherNumberAreMalformed) {
   EXPECT_TRUE(read_scene(path, {}, {}).ok());
 }
 
-// Primitives of one set of vertices, and one without normals beside them.
+// Primitives that share one set of vertices, and one without normals.
 TEST(Normals, OfGltfPrimitivesWithAndWithout) {
   const TempFolder folder;
   Gltf gltf;
@@ -291,11 +291,11 @@ TEST(Normals, OfGltfPrimitivesWithAndWithout) {
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(scene.normal_indices[k], Scene::kNoNormal);
   EXPECT_EQ(normal_at(scene, 4), (Vec3f{0, 1, 0}));
   EXPECT_EQ(normal_at(scene, 7), (Vec3f{1, 0, 0}));
-  EXPECT_EQ(normal_at(scene, 8), (Vec3f{0, 0, 1}));  // it had no length
+  EXPECT_EQ(normal_at(scene, 8), (Vec3f{0, 0, 1}));  // its length was 0
   EXPECT_EQ(loaded.defects.count(DefectKind::normal_unusable), 1u);
 }
 
-// Whatever becomes of the bytes: a status, or a scene that keeps its promises.
+// Whatever happens to the bytes, the result is an error or a scene that keeps its promises.
 TEST(Normals, OfDamagedFilesAreSoundOrRefused) {
   const TempFolder folder;
   Gltf gltf;

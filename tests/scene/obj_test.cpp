@@ -71,7 +71,7 @@ TEST(Obj, EverythingAtOnce) {
   EXPECT_EQ(loaded.defects.defects.size(), 1u);  // nothing else, not even the unused texture
 }
 
-// As editors of other systems leave text: the first vertex must not go with the byte order mark.
+// Text as editors of other systems write it: the byte order mark must not hide the first vertex.
 TEST(Obj, ByteOrderMarksAndOtherSystemsLineEnds) {
   const TempFolder folder;
   const std::string mark = "\xef\xbb\xbf";
@@ -160,7 +160,8 @@ TEST(Obj, BadElementsAreCountedAndNamed) {
   EXPECT_EQ(d.lines().size(), d.defects.size());
 }
 
-// A file of several pieces, with every trap at piece borders, against a reader of ten lines.
+// Makes a file of several chunks, with every difficulty at chunk boundaries, and the result that a
+// simple reader would give.
 std::string large_obj(std::vector<std::array<double, 3>>& vertices,
                       std::vector<std::array<long, 3>>& faces) {
   std::mt19937 random(3);
@@ -232,7 +233,7 @@ TEST(Obj, LineNumbersSurvivePieces) {
       << result.status().message();
 }
 
-// What a right angle's turn in double leaves of 0, beside 0 itself.
+// A rotation by a right angle in double precision leaves such numbers in place of 0.
 TEST(Obj, CoordinatesThatAreNothingButRoundingAreZero) {
   const TempFolder folder;
   const auto path = folder.write("a.obj",

@@ -25,7 +25,8 @@ Scene scene_of(const std::string& bytes) {
 
 const std::string kCorners = "0 0 0\n2 0 0\n2 3 0\n0 3 0\n";
 
-// The keyword may be missing, stand alone, or touch the counts; comments may stand anywhere.
+// The keyword may be missing, have a line of its own, or touch the counts. Comments may be
+// anywhere.
 TEST(Off, HeadersAlike) {
   const Scene plain = scene_of("OFF\n4 1 0\n" + kCorners + "4 0 1 2 3\n");
   EXPECT_EQ(plain.indices, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}));
@@ -59,7 +60,7 @@ TEST(Off, NormalsColoursAndTexcoordsInThisOrder) {
   EXPECT_TRUE(bare.texcoords.empty());
 }
 
-// Whole numbers up to 255 are shares of it; fractions and larger values are what they are.
+// Whole numbers up to 255 are divided by 255. Fractions and larger values are used unchanged.
 TEST(Off, ScalesOfColours) {
   const auto first = [](const char* a, const char* b) {
     return scene_of(std::string("COFF\n3 1 0\n0 0 0 ") + a + "\n1 0 0 " + b + "\n0 1 0 " + b +
@@ -84,7 +85,7 @@ TEST(Off, DefectsAreCounted) {
   EXPECT_EQ(loaded->defects.count(DefectKind::bad_position_used), 1u);
   EXPECT_EQ(loaded->defects.count(DefectKind::index_out_of_range), 2u);
   EXPECT_EQ(loaded->defects.count(DefectKind::too_few_corners), 1u);
-  // Numbers that the header does not explain, and a face more than it announces.
+  // Two numbers that the header does not explain, and one face more than it announces.
   EXPECT_EQ(loaded->defects.count(DefectKind::element_ignored), 2u);
   const std::string lines = loaded->defects.lines().back();
   EXPECT_NE(lines.find("a.off:3, the last 2 numbers"), std::string::npos) << lines;
@@ -99,8 +100,8 @@ TEST(Off, FarCoordinatesKeepTheirDigits) {
   EXPECT_NEAR(x(1) - x(0), 0.001, 1e-9);
 }
 
-// Binary, as Geomview has it (big-endian, faces with the number of their colour's components), and
-// as OpenMesh writes it (little-endian, without).
+// Binary files as Geomview has them (big-endian, faces with the number of their colour's
+// components), and as OpenMesh writes them (little-endian, without that number).
 class BinaryOff : public ::testing::TestWithParam<bool> {
  protected:
   std::string bytes_ = "OFF BINARY\n";

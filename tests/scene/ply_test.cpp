@@ -14,7 +14,7 @@ namespace {
 
 using test::TempFolder;
 
-// Writes one PLY in any format and types, one value after the other.
+// Writes a PLY file in any format and with any types, one value after the other.
 class Writer {
  public:
   Writer(std::string format, std::string header) : format_(std::move(format)) {
@@ -114,7 +114,7 @@ TEST_P(PlyFormats, StripsOfTriangles) {
   EXPECT_EQ(loaded->defects.count(DefectKind::index_out_of_range), 1u);
 }
 
-// Cutting a file anywhere gives an error, never a crash, and never a scene with fewer triangles.
+// A file that is cut anywhere gives an error, but no crash and no scene with fewer triangles.
 TEST_P(PlyFormats, EveryTruncationIsNoticed) {
   const TempFolder folder;
   Writer w(GetParam(),
@@ -164,7 +164,7 @@ TEST_P(PlyFormats, RandomDamageNeverCrashes) {
   EXPECT_GT(survived, 0);
 }
 
-// As MeshLab writes textures: a comment for each, and a number in each face.
+// MeshLab writes textures like this: a comment for each, and a number in each face.
 TEST(Ply, TexturesAreNamedInComments) {
   const TempFolder folder;
   const auto path =

@@ -26,9 +26,9 @@ double polygon_area2(const std::vector<Vec2d>& p) {
   return sum;
 }
 
-// Lifts a flat polygon into a random plane, triangulates it there, and checks in the plane: n - 2
-// triangles, all turning the polygon's way, whose areas add up. For a simple polygon that means
-// they cover it exactly.
+// Lifts a flat polygon into a random plane, triangulates it there, and checks in the plane that it
+// gives n - 2 triangles of the polygon's orientation whose areas add up to the polygon's. The
+// triangles then cover a simple polygon exactly.
 void check(const std::vector<Vec2d>& polygon, std::mt19937& random) {
   std::normal_distribution<double> normal;
   const glm::dvec3 u = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
@@ -82,7 +82,7 @@ TEST(Polygon, CombsSpiralsAndCollinearRuns) {
   check({{0, 0}, {1, 0}, {2, 0}, {2, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}, random);
 }
 
-// A polygon with holes as one ring, cut open to each hole: the ends of a cut are there twice.
+// A polygon with holes as one ring, with a cut to each hole: the ends of a cut occur twice.
 TEST(Polygon, HolesThatCutsLeadTo) {
   std::mt19937 random(3);
   for (int holes = 1; holes <= 4; ++holes) {
@@ -103,7 +103,8 @@ TEST(Polygon, HolesThatCutsLeadTo) {
   }
 }
 
-// One dent in a round outline: the ears go round it, and no corner gets them all.
+// A round outline with one dent: ears are clipped around it, and no corner belongs to all
+// triangles.
 TEST(Polygon, EarsAreNotAllAtOneCorner) {
   constexpr int n = 96;
   std::vector<Vec3d> corners;
@@ -120,8 +121,8 @@ TEST(Polygon, EarsAreNotAllAtOneCorner) {
   EXPECT_LE(*std::max_element(at.begin(), at.end()), 20);
 }
 
-// Twice the area of a triangle in units of 2^-106, without rounding: coordinates are multiples of
-// 2^-53 below 64.
+// Returns twice the area of a triangle in units of 2^-106, without rounding. Coordinates must be
+// multiples of 2^-53 below 64.
 __int128 exact_area2(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const auto whole = [](double v) { return static_cast<__int128>(std::ldexp(v, 53)); };
   return (whole(b.x) - whole(a.x)) * (whole(c.y) - whole(a.y)) -
@@ -133,7 +134,7 @@ int exact_side(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return (area > 0) - (area < 0);
 }
 
-// Whether segments ab and cd touch or cross.
+// Returns whether segments ab and cd touch or cross.
 bool meet(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
   const auto boxes = [](double p, double q, double r, double s) {
     return std::max(p, q) >= std::min(r, s) && std::max(r, s) >= std::min(p, q);
@@ -143,7 +144,7 @@ bool meet(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
          exact_side(c, d, a) * exact_side(c, d, b) <= 0;
 }
 
-// Whether edges meet at their shared corners only.
+// Returns whether edges meet only at their shared corners.
 bool simple(const std::vector<Vec3d>& p) {
   const std::size_t n = p.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -154,8 +155,8 @@ bool simple(const std::vector<Vec3d>& p) {
   return true;
 }
 
-// Corners along a diagonal, closer to it than products are rounded, which takes them to either side
-// of it, and a corner far from it.
+// Returns corners along a diagonal, and a corner far from it. They are closer to the diagonal than
+// the rounding of products, which can move them to either side of it.
 std::vector<Vec3d> near_a_line(std::mt19937& random) {
   std::vector<Vec3d> corners;
   const std::size_t count = 3 + random() % 4;
@@ -204,7 +205,7 @@ TEST(Polygon, DegenerateOnesStillGiveTriangles) {
   EXPECT_EQ(triangles.size(), 2u);
 }
 
-// Coast lines, contour maps and floors of whole towns come as one polygon.
+// Coastlines, contour maps and floors of whole towns occur as one polygon.
 TEST(Polygon, ManyCornersTakeNoLongerEach) {
   std::mt19937 random(4);
   constexpr int n = 100'000;
@@ -227,7 +228,8 @@ TEST(Polygon, ManyCornersTakeNoLongerEach) {
   const auto start = std::chrono::steady_clock::now();
   for (const auto& polygon : {star, spiral, saw, rough}) check(polygon, random);
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-  EXPECT_LT(spent.count(), 60);  // a second; looking at all corners for each would take hours
+  // takes a second; testing all corners for each ear would take hours
+  EXPECT_LT(spent.count(), 60);
 }
 
 TEST(Polygon, BeyondAMillionCornersAFanIsCut) {

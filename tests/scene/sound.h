@@ -1,4 +1,4 @@
-// What must hold of every scene that a reader gives back, however damaged its file was.
+// Checks what must hold for every scene that a reader returns, however damaged its file was.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace atlas::test {
 
-// Indices name positions, and those are finite.
+// Returns whether all indices name positions, and all positions are finite.
 inline bool sound(const Scene& scene) {
   const auto named = [&](std::uint32_t i) { return i < scene.positions.size(); };
   const auto finite = [](const Vec3f& p) { return std::isfinite(p.x + p.y + p.z); };

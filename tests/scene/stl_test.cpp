@@ -52,7 +52,7 @@ const std::vector<Triangle> kFan{{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
                                  {{{1, 0, 0}, {1, 1, 0.5}, {0, 1, 0}}},
                                  {{{-0.0, 1, 0}, {1, 1, 0.5}, {0, 2, 0}}}};
 
-// Corners at one place are one vertex; vertices are numbered as they come.
+// Corners at the same place become one vertex. Vertices are numbered in the order of the file.
 TEST(Stl, SoupIsJoined) {
   for (const std::string& bytes : {binary(kFan), binary(kFan, ""), text(kFan)}) {
     const auto loaded = load(bytes);
@@ -82,8 +82,8 @@ TEST(Stl, ManyVertices) {
   }
 }
 
-// Names with what else means comments or joined lines, keywords in any case, several solids, loops
-// of more corners, all of it on few lines.
+// Names that contain characters for comments or joined lines, keywords in any case, several solids,
+// and loops of more corners, all of it on few lines.
 TEST(Stl, TextAsProgramsWriteIt) {
   const auto loaded = load(
       "\r\nSOLID C:\\parts\\#1 facet\\\r\nFACET NORMAL nan nan nan OUTER LOOP VERTEX 0 0 0 VERTEX "
@@ -151,7 +151,7 @@ TEST(Stl, RandomDamageNeverCrashes) {
   EXPECT_GT(survived, 100);
 }
 
-// The small letter of I has no dot in Turkish.
+// In Turkish, the small letter of I has no dot.
 TEST(Stl, KeywordsAreTheSameInEveryLocale) {
   const test::ForeignLocale turkish(LC_CTYPE, "tr_TR", "ISO-8859-9");
   if (!turkish.entered()) GTEST_SKIP() << "no Turkish locale can be made here";

@@ -1,4 +1,4 @@
-// A folder of its own for a test, removed with everything in it.
+// A temporary folder for one test, which is removed with everything in it.
 #pragma once
 
 #include <gtest/gtest.h>
