@@ -1,5 +1,5 @@
-// What an independent VRML97 library makes of a written world: libcoin parses it, and every index
-// it holds is checked against the arrays it holds.
+// Reads a written world with an independent VRML97 library: libcoin parses it, and every index is
+// checked against the arrays that it refers to.
 #include <gtest/gtest.h>
 
 #include <Inventor/SoDB.h>
@@ -126,7 +126,7 @@ TEST_F(Coin, ReadsEveryPage) {
   }
 }
 
-// The check above can fail: Coin complains about a damaged file.
+// Shows that the check above can fail: Coin reports a damaged file.
 TEST_F(Coin, NoticesDamage) {
   const TempFolder folder;
   AtomicFiles files;

@@ -1,4 +1,5 @@
-// glTF files that keep a scene of glTF: writing them, and what every one must have of the first.
+// Writes glTF files that keep a scene of glTF, and checks what each of them must share with the
+// first.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@
 
 namespace atlas::test {
 
-// Written again, it needs no normals of the scene.
+// A glTF file that is written again does not need the scene's normals.
 inline const ReadOptions kGltfRest{.unlit_textures = true, .encoded_textures = true, .rest = true};
 
 inline WorldFile keep(const std::filesystem::path& input, const std::filesystem::path& output,
@@ -28,7 +29,7 @@ inline bool near(const std::vector<double>& a, const std::vector<double>& b) {
          });
 }
 
-// Every triangle has what it had, in the same order, and new uvs as well.
+// Expects that every triangle has what it had, in the same order, and new uvs.
 inline void expect_kept(const std::vector<OracleTriangle>& before,
                         const std::vector<OracleTriangle>& after, const std::string& set) {
   ASSERT_EQ(before.size(), after.size());

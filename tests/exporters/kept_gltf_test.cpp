@@ -1,5 +1,5 @@
-// World::scene that was read from glTF: the file that is written against the one that was read, by
-// a reader of the tests' own.
+// Tests a World::scene that was read from glTF: compares the written file with the one that was
+// read, with an independent reader.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -31,10 +31,10 @@ void add_image(Gltf& gltf, const std::string& bytes) {
       {{"bufferView", view}, {"mimeType", "image/png"}, {"name", "picture"}});
 }
 
-// A square of two triangles with every attribute that glTF knows, some of them in small integers.
+// A square of two triangles with every attribute of glTF, some of them in small integers.
 json rich_attributes(Gltf& gltf) {
   json a = {{"POSITION", gltf.floats(kSquare, "VEC3", 3)}};
-  // Neither unit vectors nor finite: what the file has is what it gets.
+  // These are not all unit vectors. They must be written as the file has them.
   a["NORMAL"] = gltf.floats({0, 0, 1, 0, 0, 2, 0, 0, 0, 0.6f, 0, 0.8f}, "VEC3", 3);
   a["TANGENT"] = gltf.floats({1, 0, 0, 1, 1, 0, 0, -1, 0, 1, 0, 1, 0, 1, 0, -1}, "VEC4", 4);
   a["TEXCOORD_0"] = gltf.floats({0, 0, 3, 0, 3, 3, 0, 3}, "VEC2", 2);
@@ -87,7 +87,7 @@ json rich_material() {
             {"KHR_materials_sheen", {{"sheenColorFactor", {1, 0, 0}}}}}}};
 }
 
-// Two textures with samplers, of which the second is an image that is there twice.
+// Adds two textures with samplers; the image of the second is in the file twice.
 void add_textures(Gltf& gltf, const TempFolder& folder) {
   add_image(gltf, png(folder, 40));
   add_image(gltf, png(folder, 90));
@@ -96,8 +96,8 @@ void add_textures(Gltf& gltf, const TempFolder& folder) {
       {{{"source", 1}, {"sampler", 1}, {"name", "t"}}, {{"source", 0}, {"sampler", 0}}});
 }
 
-// A tree of nodes that shows one mesh twice, once mirrored; a skin, an animation, morph targets, a
-// camera, a light, points, another scene.
+// A tree of nodes that shows one mesh twice, once mirrored, with a skin, an animation, morph
+// targets, a camera, a light, points, and another scene.
 Gltf rich_file(const TempFolder& folder) {
   Gltf gltf;
   add_textures(gltf, folder);
@@ -144,7 +144,7 @@ Gltf rich_file(const TempFolder& folder) {
   return gltf;
 }
 
-// But for the numbers of data, which may be others.
+// Removes the numbers of data, which may change.
 json without_data(json document) {
   for (const char* list : {"accessors", "bufferViews", "buffers", "extensionsUsed"})
     document.erase(list);
@@ -161,7 +161,7 @@ json without_data(json document) {
   return document;
 }
 
-// Strips become lists for the oracle, which reads nothing else.
+// Turns strips into lists, since the oracle reads nothing else.
 Gltf with_lists(Gltf gltf) {
   const int list = gltf.indices<std::uint16_t>({0, 1, 2, 2, 1, 3});
   for (json& mesh : gltf.j["meshes"]) {
@@ -184,7 +184,7 @@ TEST(KeptGltf, IsTheFileThatItWas) {
               (std::vector<std::string>{"1 x meshes that are not shown and get no new uvs"}));
     expect_kept(before.triangles(), after.triangles(), "TEXCOORD_2");
     json expected = without_data(before.document), is = without_data(after.document);
-    // The mirrored node has a mesh of its own.
+    // The mirrored node gets a mesh of its own.
     EXPECT_EQ(is["nodes"][2]["mesh"], 2);
     is["nodes"][2]["mesh"] = 0;
     EXPECT_EQ(is, expected) << json::diff(expected, is).dump(1);
@@ -211,10 +211,10 @@ TEST(KeptGltf, HasItsMeshesAssetAndExtensions) {
     EXPECT_EQ(mesh["name"], "m");
     EXPECT_EQ(mesh["weights"], json::array({0}));
     ASSERT_EQ(mesh["primitives"].size(), 3u);
-    EXPECT_EQ(mesh["primitives"][0]["mode"], 0);  // points: as they are
+    EXPECT_EQ(mesh["primitives"][0]["mode"], 0);  // points stay as they are
     EXPECT_FALSE(mesh["primitives"][0]["attributes"].contains("TEXCOORD_2"));
     EXPECT_EQ(mesh["primitives"][1]["extras"], json({{"own", 1}}));
-    // Sets before the new one that a primitive lacks are the new one.
+    // Sets before the new one that a primitive lacks are filled with the new one.
     const json& strip = mesh["primitives"][2]["attributes"];
     EXPECT_EQ(strip["TEXCOORD_0"], strip["TEXCOORD_2"]);
     EXPECT_EQ(strip["TEXCOORD_1"], strip["TEXCOORD_2"]);
@@ -224,12 +224,12 @@ TEST(KeptGltf, HasItsMeshesAssetAndExtensions) {
   for (const char* name : {"KHR_materials_ior", "KHR_materials_unlit", "KHR_texture_transform",
                            "KHR_mesh_quantization", "KHR_lights_punctual"})
     EXPECT_TRUE(used.contains(name)) << name;
-  // Vertices are those of the corners, which all have uvs of their own here.
+  // There is one vertex for each corner, since all corners have uvs of their own here.
   for (const json& accessor : after["accessors"])
     EXPECT_TRUE(!accessor.contains("max") || accessor["count"] == 6) << accessor;
 }
 
-// Whatever else a file has there stays; what an earlier export said of its uvs does not.
+// Other information in a file stays. What an earlier export said about its uvs is replaced.
 TEST(KeptGltf, InformationIsAdded) {
   const struct {
     json asset, info;
@@ -252,7 +252,7 @@ TEST(KeptGltf, InformationIsAdded) {
   }
 }
 
-// What the library reads from both is the same, corner by corner and in the world.
+// What the library reads from both files is the same, corner by corner, in world coordinates.
 TEST(KeptGltf, StandsWhereItStoodWithTheNewUvsAtItsCorners) {
   const TempFolder folder;
   const path input = folder.write("s.glb", rich_file(folder).glb());
@@ -265,7 +265,7 @@ TEST(KeptGltf, StandsWhereItStoodWithTheNewUvsAtItsCorners) {
     EXPECT_EQ(before->scene.positions[before->scene.indices[k]],
               after->scene.positions[after->scene.indices[k]]);
   EXPECT_EQ(before->scene.object_names, after->scene.object_names);
-  // Corners of the mirrored node's triangles are the scene's from behind.
+  // The corners of the mirrored node's triangles are in the opposite order in the scene.
   const auto triangles = GltfOracle(folder / "w.glb").triangles();
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const bool mirrored = triangles[t].node == "right";

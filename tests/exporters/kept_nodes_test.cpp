@@ -1,4 +1,4 @@
-// World::scene that was read from glTF: nodes, which place each mesh once.
+// Tests a World::scene that was read from glTF: its nodes, each of which shows a mesh in one place.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -13,7 +13,7 @@ namespace {
 
 using std::filesystem::path;
 
-// Each place of a mesh has charts of its own, so it has a mesh of its own.
+// Each place of a mesh has charts of its own, so it gets a mesh of its own.
 TEST(KeptGltf, InstancesBecomeNodes) {
   const TempFolder folder;
   Gltf gltf;
@@ -42,7 +42,7 @@ TEST(KeptGltf, InstancesBecomeNodes) {
   EXPECT_EQ(first, (std::set<double>{0, 5.0 / 64, 6.0 / 64}));  // the second is mirrored
 }
 
-// A file should have a tree; many programs show one of which a node has two parents.
+// The nodes of a file should form a tree, but many programs show a node that has two parents.
 TEST(KeptGltf, NodesOfSeveralParentsBecomeSeveral) {
   const TempFolder folder;
   Gltf gltf;
@@ -74,10 +74,11 @@ TEST(KeptGltf, ANodeAboveTurnsAndScales) {
   const auto triangles = GltfOracle(folder / "w.glb").triangles();
   ASSERT_EQ(triangles.size(), 1u);
   EXPECT_TRUE(near(triangles[0].matrix, {0.5, 0, 0, 0, 0, 0, -0.5, 0, 0, 0.5, 0, 0, 1e6, 0, 0, 1}));
-  EXPECT_EQ(triangles[0].attributes.at("POSITION")[8], 1);  // its own, without an origin
+  // its own coordinates, without an origin
+  EXPECT_EQ(triangles[0].attributes.at("POSITION")[8], 1);
 }
 
-// A library of meshes, without nodes and scenes.
+// The file is a library of meshes, without nodes and scenes.
 TEST(KeptGltf, MeshesWithoutNodesGetSome) {
   const TempFolder folder;
   Gltf gltf;

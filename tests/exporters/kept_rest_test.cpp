@@ -1,4 +1,4 @@
-// World::scene: what cannot be kept is told, and what is wrong with a file does no harm.
+// Tests World::scene: what cannot be kept is reported, and what is wrong with a file does no harm.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -21,7 +21,7 @@ using Lines = std::vector<std::string>;
 const ReadOptions kRest{
     .unlit_textures = true, .encoded_textures = true, .normals = true, .rest = true};
 
-// A triangle with uvs and a texture that is there.
+// A triangle with uvs and a texture that exists.
 Gltf textured(const TempFolder& folder) {
   Gltf gltf;
   const path made = folder / "made.png";
@@ -75,7 +75,7 @@ TEST(KeptRest, TexturesThatAreNotThereAreToldAndLeftOut) {
          j["materials"][0]["normalTexture"] = {{"index", 0}, {"texCoord", 7}};
        }},
       {kNoUvs,
-       [](json& j) {  // the new set, which is no set of the material
+       [](json& j) {  // this is the new set, not one of the material's
          j["materials"][0]["normalTexture"] = {{"index", 0}, {"texCoord", 1}};
        }},
       {kNoUvs,
@@ -105,7 +105,7 @@ TEST(KeptRest, TexturesThatAreNotThereAreToldAndLeftOut) {
   }
 }
 
-// Textures of a kind that glTF itself does not know are PNG in what is written.
+// Textures in a format that glTF itself does not have are written as PNG.
 TEST(KeptRest, ImagesOfExtensionsBecomePlainOnes) {
   const TempFolder folder;
   Gltf gltf = textured(folder);
@@ -187,8 +187,7 @@ TEST(KeptRest, OfGltfInObjIsCounted) {
                    "2 x textures of materials"}));
 }
 
-// Everything an MTL says stays, textures as comments: the uvs that they are for are not in the
-// file.
+// All lines of an MTL stay. Textures become comments, because the uvs for them are not in the file.
 TEST(KeptRest, LinesOfMtl) {
   const TempFolder folder;
   folder.write("m.mtl",
@@ -220,7 +219,7 @@ TEST(KeptRest, LinesOfMtl) {
              "1 x lines of the MTL: map_Bump", "1 x lines of the MTL: map_d"}));
 }
 
-// glTF's factor is up to 1; a texture that shapes the light is not read, and is a loss.
+// glTF's factor is at most 1. A texture that shapes the emission is not read, and counts as a loss.
 TEST(KeptRest, EmissionOfMtlInGltfAndBack) {
   const TempFolder folder;
   folder.write(
@@ -249,7 +248,7 @@ TEST(KeptRest, EmissionOfMtlInGltfAndBack) {
   EXPECT_EQ(mtl.find("newmtl off\nKd 1 1 1\nKe"), std::string::npos) << mtl;
 }
 
-// What of an MTL glTF knows as well: opacity, and textures that end at their edges.
+// Tests what both MTL and glTF have: opacity, and textures that are clamped at their edges.
 TEST(KeptRest, OpacityAndClampingOfMtlInGltf) {
   const TempFolder folder;
   ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());
@@ -271,7 +270,7 @@ TEST(KeptRest, OpacityAndClampingOfMtlInGltf) {
   EXPECT_EQ(back->scene.textures.size(), 1u);
 }
 
-// Who changes the triangles of a scene takes its source away.
+// A program that changes the triangles of a scene must remove its source.
 TEST(KeptRest, OtherTrianglesThanWereReadAreRefused) {
   const TempFolder folder;
   const path input = folder.write("s.glb", textured(folder).glb());
@@ -300,7 +299,7 @@ TEST(KeptRest, OtherTrianglesThanWereReadAreRefused) {
   }
 }
 
-// Light of another file comes beside the colours that the vertices have.
+// Light of another file is written beside the colours that the vertices have.
 TEST(KeptRest, LightOfAnotherFileIsWritten) {
   const TempFolder folder;
   Gltf gltf = textured(folder);
@@ -357,7 +356,7 @@ TEST(KeptRest, DefectiveTrianglesAreLeftOut) {
   EXPECT_EQ(triangles[1].attributes.at("TEXCOORD_1")[0], 3.0 / 64);
 }
 
-// Whatever becomes of the bytes: a status, or a file that reads.
+// Whatever happens to the bytes, the result is an error or a file that can be read.
 TEST(KeptRest, DamagedFilesAreWrittenSoundOrRefused) {
   const TempFolder folder;
   Gltf gltf = textured(folder);
@@ -369,7 +368,8 @@ TEST(KeptRest, DamagedFilesAreWrittenSoundOrRefused) {
   gltf.j["samplers"] = json::array({json::object()});
   const std::string good = gltf.glb();
   ASSERT_EQ(read_scene(folder.write("d.glb", good), kGltfRest, {}).status().message(), "");
-  std::vector<std::size_t> digits;  // of the JSON: numbers of other things, of nothing
+  // Digits of the JSON: changing them refers to other elements, or to none.
+  std::vector<std::size_t> digits;
   for (std::size_t i = 20; i < good.find("BIN"); ++i)
     if (good[i] >= '0' && good[i] <= '9') digits.push_back(i);
   std::mt19937 random(11);

@@ -1,4 +1,4 @@
-// World::scene: what a scene has of its own beside new uvs, read back by readers of the tests' own.
+// Tests World::scene: what a scene has besides its new uvs, read back by independent readers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using test::KeptTriangle;
 using test::TempFolder;
 using test::world_of;
 
-// Four triangles of a square and its back: two objects, two materials.
+// Four triangles: a square and its back, of two objects and two materials.
 Scene small_scene() {
   Scene scene;
   scene.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -66,7 +66,8 @@ TEST(KeptScene, OfGltfHasBothUvsNormalsNamesAndMaterials) {
       }
     }
     const auto gltf = gltf_of(folder / name);
-    EXPECT_EQ(gltf["nodes"].size(), 2u);  // nothing to turn, scale or move; no camera
+    // there is nothing to rotate, scale or move, and no camera
+    EXPECT_EQ(gltf["nodes"].size(), 2u);
     EXPECT_FALSE(gltf.contains("cameras") || gltf.contains("extensionsUsed"));
     EXPECT_EQ(gltf["materials"].size(), 2u);
     EXPECT_EQ(gltf["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"],
@@ -74,11 +75,11 @@ TEST(KeptScene, OfGltfHasBothUvsNormalsNamesAndMaterials) {
   }
 }
 
-// Engines expect light in TEXCOORD_1, whatever else there is.
+// Engines expect lightmap uvs in TEXCOORD_1, whatever else there is.
 TEST(KeptScene, OfGltfWithoutUvsOfItsOwnHasTheNewOnesTwice) {
   const TempFolder folder;
   Scene scene = small_scene();
-  scene.texcoord_indices[4] = Scene::kNoTexcoord;  // one corner: none for its triangle
+  scene.texcoord_indices[4] = Scene::kNoTexcoord;  // if one corner has none, its triangle has none
   scene.normal_indices[0] = Scene::kNoNormal;
   scene.texcoord_indices[6] = scene.texcoord_indices[9] = Scene::kNoTexcoord;
   const World world = world_of(scene);
@@ -99,7 +100,7 @@ TEST(KeptScene, OfGltfWithoutUvsOfItsOwnHasTheNewOnesTwice) {
     EXPECT_FALSE(t.has_texcoords || t.has_normals);
 }
 
-// Vertices are split where they must be, and not where a file repeats a value.
+// Vertices are split where necessary, and not where a file repeats a value.
 TEST(KeptScene, OfGltfSharesVerticesOfEqualAttributes) {
   const TempFolder folder;
   Scene scene = small_scene();
@@ -134,7 +135,7 @@ void add_textures(Scene& scene, const TempFolder& folder) {
   std::filesystem::remove(folder / "made.png");
   scene.textures.resize(2);
   scene.textures[0].encoded.assign(png.begin(), png.end());
-  scene.textures[1].image = Image8(2, 2, 5, 9);  // of more channels than PNG has
+  scene.textures[1].image = Image8(2, 2, 5, 9);  // PNG does not have that many channels
   scene.textures[1].image.at(1, 1)[2] = 250;
   scene.materials[0].texture = 1;
   scene.materials[1].texture = 0;
@@ -162,7 +163,8 @@ TEST(KeptScene, TexturesGoWithAGltf) {
   }
 }
 
-// A reader takes the plain colour where uvs are missing; a viewer would take one texel's.
+// Where uvs are missing, a reader uses the plain colour; a viewer would use the colour of one
+// texel.
 TEST(KeptScene, TexturesNeedUvs) {
   const TempFolder folder;
   Scene scene = small_scene();
@@ -195,7 +197,7 @@ TEST(KeptScene, MaterialsStayAsTransparentAsTheyWere) {
   EXPECT_NE(TempFolder::read(folder / "w.mtl").find("\nd 0.5\n"), std::string::npos);
 }
 
-// Colours stay colours; what no colour can be has a name that only readers of light know.
+// Colours stay colours. Values that cannot be colours get a name that only readers of light know.
 TEST(KeptScene, WhatVerticesCarryStays) {
   const TempFolder folder;
   for (const float largest : {1.f, 70000.f}) {
@@ -220,7 +222,7 @@ TEST(KeptScene, WhatVerticesCarryStays) {
   }
 }
 
-// As readers have it: 0 where one mesh of a file has colours and another none.
+// Readers use 0 if one mesh of a file has colours and another has none.
 TEST(KeptScene, PartsWithoutLightAreNotBlack) {
   const TempFolder folder;
   Scene scene = small_scene();
@@ -261,7 +263,7 @@ TEST(KeptScene, OfObjHasNewUvsNormalsNamesAndColours) {
   ASSERT_EQ(triangles.size(), 4u);
   for (std::size_t t = 0; t < 4; ++t) {
     EXPECT_EQ(triangles[t].object, scene.object_names[scene.triangle_object[t]]);
-    // A '#' behind a blank would begin a comment.
+    // A '#' after a blank would begin a comment.
     EXPECT_EQ(triangles[t].material, t == 1 ? "wood _ 2" : "paint");
     for (std::size_t c = 0; c < 3; ++c) {
       const auto& corner = triangles[t].corners[c];
@@ -275,7 +277,7 @@ TEST(KeptScene, OfObjHasNewUvsNormalsNamesAndColours) {
   EXPECT_EQ(mtl.find("\nmap_Kd"), std::string::npos);
 }
 
-// MTL tells materials apart by their names alone.
+// MTL distinguishes materials only by their names.
 TEST(KeptScene, OfObjHasMaterialsOfDifferentNames) {
   const TempFolder folder;
   Scene scene = small_scene();

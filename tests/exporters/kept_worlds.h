@@ -1,4 +1,4 @@
-// Worlds that keep a scene (World::scene).
+// Makes worlds that keep a scene (World::scene).
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,8 +12,7 @@
 
 namespace atlas::test {
 
-// The scene with new uvs, one a corner, so that each can be told from the others. `scene` must
-// outlive it.
+// Returns the scene with new uvs, a different one for each corner. `scene` must outlive it.
 inline World world_of(const Scene& scene) {
   World world;
   world.positions = scene.positions;
@@ -37,7 +36,7 @@ inline Result<WorldFile> write_kept(const World& world, const std::filesystem::p
   return committed.ok() ? written : Result<WorldFile>(committed);
 }
 
-// Reads `input` and writes it to `output` with new uvs; a failure fails the test.
+// Reads `input` and writes it to `output` with new uvs. An error fails the test.
 inline WorldFile read_and_keep(const std::filesystem::path& input,
                                const std::filesystem::path& output, const ReadOptions& options) {
   const auto loaded = read_scene(input, options, {});

@@ -1,4 +1,4 @@
-// OBJ and glTF worlds, read back by the library's own scene readers.
+// Reads OBJ and glTF worlds back with the library's own scene readers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -56,7 +56,7 @@ TEST(ObjWorld, ReadsBackExactly) {
   EXPECT_TRUE(loaded->defects.empty()) << loaded->defects.lines().front();
   const Scene& s = loaded->scene;
   EXPECT_EQ(s.textures.size(), 4u);
-  EXPECT_EQ(s.positions.size(), 900u);  // shared by the pages
+  EXPECT_EQ(s.positions.size(), 900u);  // the pages share them
   EXPECT_EQ(written->vertices, 900u);
   const auto corners = corners_of(s);
   std::size_t k = 0;
@@ -124,14 +124,15 @@ TEST(GltfWorld, AWorldWithoutLightIsLitByTheViewer) {
   }
 }
 
-// What the standard asks for beyond what readers here notice: data begins at multiples of its
-// components' size, wherever an image of any length precedes it, and the far plane is in metres.
+// Tests what the standard requires but the readers here do not check: data begin at multiples of
+// their components' size, whatever the length of an image before them, and the far plane is in
+// metres.
 TEST(GltfWorld, DataIsAlignedAndTheFarPlaneIsInMetres) {
   for (const double metres : {0.01, 1.0, 1000.0}) {
     const TempFolder folder;
     World world = wavy_world(9, 4);
     world.metres_per_unit = metres;
-    std::set<std::size_t> rests;  // of the images' lengths
+    std::set<std::size_t> rests;  // of the images' lengths, modulo 4
     for (int i = 0; i < 4; ++i) {
       Page& page = world.pages[std::size_t(i)];
       const auto path = page.image_source = folder / page.image;
@@ -206,7 +207,8 @@ Transform { children [
   const auto loaded = read_scene(path, {}, {});
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   const Scene& s = loaded->scene;
-  EXPECT_EQ(s.indices, (std::vector<std::uint32_t>{3, 2, 1, 3, 1, 0}));  // mirrored: turned round
+  // mirrored, so the order is reversed
+  EXPECT_EQ(s.indices, (std::vector<std::uint32_t>{3, 2, 1, 3, 1, 0}));
   EXPECT_EQ(s.texcoord_indices, s.indices);
   EXPECT_NEAR(s.origin.x + s.positions[1].x, 10, 1e-6);
   EXPECT_NEAR(s.origin.y + s.positions[1].y, 2, 1e-6);
@@ -237,7 +239,7 @@ TEST(VrmlWorld, DamageIsNoticed) {
     for (std::size_t length = 0; length + 2 < good.size(); length += 7) {
       const auto loaded =
           read_scene(folder.write(std::string("d") + name, good.substr(0, length)), {}, {});
-      // Only between two top-level nodes may a shortened text still be a whole world.
+      // A shortened text can only be a whole world if it ends between two top-level nodes.
       if (loaded.ok()) {
         EXPECT_EQ(good.substr(length - 3).find("\nDEF"), 2u) << length;
       }
@@ -260,7 +262,7 @@ TEST(VrmlWorld, DamageIsNoticed) {
             ErrorCode::bad_input);
 }
 
-// Colours from one texel: 150 000 positions at one uv, which were compared with each other.
+// Colours from one texel: 150 000 positions at one uv, which were once compared with each other.
 TEST(GltfWorld, OneUvForAllTakesLittleTime) {
   const TempFolder folder;
   World world = wavy_world(387, 1);
@@ -303,7 +305,7 @@ TEST(CheckWorld, NamesPageListAndElement) {
   expect("metres_per_unit is 0", [](World& w) { w.metres_per_unit = 0; });
 }
 
-// Comments end with their line: what was asked for as one, with breaks of any system, stays one.
+// Comments end with their line, so texts with line breaks of any system must stay on one line.
 TEST(ObjWorld, CommentsStayOnTheirLines) {
   const TempFolder folder;
   World world = wavy_world(4, 1);

@@ -1,4 +1,4 @@
-// Where a visitor of an exported world begins.
+// Tests where a visitor of an exported world starts.
 #include "libatlas/exporters/viewpoint.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace {
 using test::TempFolder;
 using test::wavy_world;
 
-// An axis-aligned box; walls face in for a room, out for an object. z is up.
+// Adds an axis-aligned box whose faces point inward for a room, outward for an object. z is up.
 void add_box(std::vector<Vec3f>& positions, std::vector<std::uint32_t>& indices, Vec3f low,
              Vec3f high, bool inward) {
   const auto base = std::uint32_t(positions.size());
@@ -63,7 +63,7 @@ TEST(ViewpointChoice, StandsInTheRoomAndLooksAlongIt) {
       EXPECT_FALSE(p.x * metres > 4 && p.x * metres < 6 && p.y * metres > 1 && p.y * metres < 3);
       EXPECT_GT(std::abs(d.x), 0.8) << "should look along the room";
       EXPECT_EQ(d.z, 0);
-      // Most of the room lies ahead.
+      // Most of the room lies in front.
       EXPECT_GT(d.x > 0 ? 20 - p.x * metres : p.x * metres, 8);
     }
   }
@@ -93,7 +93,7 @@ TEST(ViewpointChoice, DegenerateScenes) {
   EXPECT_TRUE(check_world(world).ok());
 }
 
-// What is said to ignore the viewpoint does, and nothing else does.
+// Formats that are said to ignore the viewpoint do so, and no others do.
 TEST(ViewpointChoice, IsHeldByFormatsThatSaySo) {
   World world = wavy_world(4, 1);
   world.pages[0].image.clear();

@@ -110,7 +110,7 @@ class Parser {
     } else {
       auto& list = owner.tokens[field];
       list.push_back(token);
-      // Single-valued fields of several numbers go on until the next field.
+      // A single-valued field of several numbers extends to the next field.
       for (token = peek();
            !token.empty() && token != "}" && !std::islower(static_cast<unsigned char>(token[0]));
            token = peek()) {

@@ -1,4 +1,5 @@
-// An independent reader of the VRML97 subset: a plain token tree, used to check what was written.
+// An independent reader of the VRML97 subset, which builds a plain token tree to check what was
+// written.
 #pragma once
 
 #include <map>
@@ -8,7 +9,7 @@
 
 namespace atlas::test {
 
-// A node with its fields; a field is a list of tokens (numbers, words, strings with their quotes)
+// A node with its fields. A field is a list of tokens (numbers, words, strings with their quotes),
 // or of nodes.
 struct VrmlNode {
   std::string type, def;
@@ -21,10 +22,10 @@ struct VrmlNode {
 };
 
 // Throws std::runtime_error with the offset where the text breaks the grammar: numbers other than
-// [+-]?digits[.digits][e[+-]digits], DEF names that are no identifiers, unbalanced brackets.
+// [+-]?digits[.digits][e[+-]digits], DEF names that are not identifiers, unbalanced brackets.
 std::vector<std::shared_ptr<VrmlNode>> parse_vrml(const std::string& text);
 
-// A number by the strictest of the readers; throws.
+// Returns a number, parsed as strictly as by the strictest reader; throws.
 double vrml_number(const std::string& token);
 
 }  // namespace atlas::test

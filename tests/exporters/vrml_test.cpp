@@ -45,7 +45,7 @@ std::vector<const VrmlNode*> of_type(const Nodes& nodes, const std::string& type
   return result;
 }
 
-// Three indices and a -1, in range, and as often as there are triangles.
+// Expects three indices in range and a -1 for each triangle, and returns the indices.
 std::vector<int> triangle_list(const VrmlNode& faces, const std::string& field, std::size_t limit) {
   std::vector<int> corners;
   const auto list = numbers(faces.field(field));
@@ -84,7 +84,7 @@ void expect_shape(const VrmlNode& shape, const World& world, std::size_t number)
     const double* q = &points[3 * corners[k]];
     const double origin[3] = {world.origin.x, world.origin.y, world.origin.z};
     const float offset[3] = {p.x, p.y, p.z};
-    for (int i = 0; i < 3; ++i) {  // an axis without an origin keeps its floats
+    for (int i = 0; i < 3; ++i) {  // without an origin along an axis, floats are kept
       if (origin[i] == 0) {
         ASSERT_EQ(float(q[i]), offset[i]);
       } else {
@@ -94,7 +94,7 @@ void expect_shape(const VrmlNode& shape, const World& world, std::size_t number)
     const double* t = &uvs[2 * uv_corners[k]];
     ASSERT_EQ((Vec2f{float(t[0]), float(t[1])}), world.uvs[page.uv_indices[k]]);
   }
-  // Only what is used, and each once.
+  // Only what is used is written, each value once.
   EXPECT_EQ(std::set<int>(corners.begin(), corners.end()).size(), points.size() / 3);
   EXPECT_EQ(std::set<int>(uv_corners.begin(), uv_corners.end()).size(), uvs.size() / 2);
 }
@@ -112,7 +112,7 @@ TEST(Vrml, ReadsBackExactly) {
   EXPECT_EQ(folder.count(), 1u);  // no temporary file is left
 }
 
-// Viewers hold floats, which tear a room in national grid coordinates apart.
+// Viewers use floats, which would tear apart a room in national grid coordinates.
 TEST(Vrml, AnOriginTooFarForFloatsIsNotedAndNotAdded) {
   const TempFolder folder;
   World world = wavy_world(40, 2);
@@ -167,8 +167,8 @@ TEST(Vrml, InfoAndNavigation) {
   EXPECT_EQ(of_type(outside, "NavigationInfo")[0]->field("type")[0], "\"EXAMINE\"");
 }
 
-// An atom's or a galaxy's units: the avatar's lengths were written as "inf" and 0, which no viewer
-// reads.
+// In units of an atom or a galaxy, the avatar's lengths were once written as "inf" and 0, which no
+// viewer reads.
 TEST(Vrml, AvatarsStayFloatsInAnyUnit) {
   const TempFolder folder;
   World world = wavy_world(4, 1);
@@ -187,7 +187,7 @@ glm::dmat3 rotation_of(const std::vector<double>& r) {
   return glm::mat3_cast(glm::angleAxis(r[3], glm::normalize(glm::dvec3(r[0], r[1], r[2]))));
 }
 
-// Follows the nodes as a viewer does, and looks where the camera ends up.
+// Follows the nodes as a viewer does, and checks where the camera ends up.
 TEST(Vrml, ViewpointLooksWhereItShould) {
   const TempFolder folder;
   const glm::dvec3 directions[] = {{0, 0, -1},     {0, 0, 1},      {1, 0, 0},
@@ -331,7 +331,8 @@ TEST(Vrml, FailuresLeaveNothingBehind) {
   EXPECT_EQ(folder.count(), 0u);
 }
 
-// Small worlds fail when the file is closed, large ones before; so do all formats.
+// Writing small worlds fails when the file is closed, writing large ones before that. This holds
+// for all formats.
 TEST(Worlds, AFullDiskIsNoticed) {
   const TempFolder folder;
   for (const int side : {5, 200}) {

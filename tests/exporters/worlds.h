@@ -1,4 +1,4 @@
-// Worlds to write.
+// Makes worlds to write.
 #pragma once
 
 #include <fmt/format.h>
@@ -10,8 +10,8 @@
 
 namespace atlas::test {
 
-// A wavy sheet of n x n vertices in `pages` pages, each with uvs of its own, so that page borders
-// are seams: one position, two uvs.
+// Returns a wavy sheet of n x n vertices in `pages` pages, each with uvs of its own, so that page
+// borders are seams: one position, two uvs.
 inline World wavy_world(int n, int pages) {
   World world;
   world.title = "a \"wavy\" \\ sheet";
@@ -24,7 +24,7 @@ inline World wavy_world(int n, int pages) {
                                  1e4f * std::sin(float(i * j)) + jitter(random)});
     }
   }
-  world.positions[0] = {-0.f, 0.f, 1e-6f};  // near the least that readers do not take for 0
+  world.positions[0] = {-0.f, 0.f, 1e-6f};  // close to the least that readers do not round to 0
   const int rows = n - 1;
   for (int p = 0; p < pages; ++p) {
     Page page;
