@@ -79,7 +79,7 @@ Scene room() {
   add_box(s, {-w - 0.1f, -0.1f, -d}, {-w, h + 0.1f, d});
   add_box(s, {-w, 0, -d - 0.1f}, {w, h, -d});
   add_box(s, {-w, 0, d}, {w, h, d + 0.1f});
-  // The wall at x = w around a window and a doorway.
+  // The wall at x = w, around a window and a doorway.
   add_box(s, {w, -0.1f, -d}, {w + 0.1f, h + 0.1f, -2.4f});
   add_box(s, {w, -0.1f, -2.4f}, {w + 0.1f, 0.8f, -0.4f});
   add_box(s, {w, 2.1f, -2.4f}, {w + 0.1f, h + 0.1f, -0.4f});
@@ -139,8 +139,8 @@ View pavilion_view() {
 }
 
 GlContext& software_context() {
-  // Never destroyed: its driver would be unloaded, and what that keeps could not be named any more
-  // (lsan.supp).
+  // Never destroyed, because its driver would be unloaded, and the leak checker could then not name
+  // what the driver keeps (lsan.supp).
   static GlContext* const context = [] {
     ContextOptions options;
     options.debug = true;

@@ -1,4 +1,4 @@
-// Scenes and a context for the tests of the view.
+// Makes scenes and a context for the tests of the view.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace atlas::testing {
 
-// Appends to a scene with one white material; nothing is welded.
+// These append to a scene with one white material. Nothing is welded.
 void add_quad(Scene& scene, const Vec3f (&corners)[4], int cuts = 1);
 void add_box(Scene& scene, const Vec3f& low, const Vec3f& high);
 void add_sphere(Scene& scene, const Vec3f& centre, float radius, int cuts);
@@ -30,13 +30,13 @@ View courtyard_view();
 View room_view();
 View pavilion_view();
 
-// The software renderer's debug context; one a process, since making them is slow.
+// The software renderer's debug context. There is one per process, since making contexts is slow.
 GlContext& software_context();
 
-// A renderer that must come about.
+// Returns a renderer, and fails the test if it cannot be made.
 Renderer must_render(const Scene& scene, const RenderOptions& options);
 
-// A frame of a light that does not move.
+// Returns a frame's light that does not move.
 FrameLight still(const Vec3d& direction);
 
 }  // namespace atlas::testing

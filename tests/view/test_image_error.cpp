@@ -16,7 +16,7 @@ Image8 noise(int width, int height, unsigned seed) {
   return image;
 }
 
-// Window by window, straight from the paper's formula.
+// Computes it window by window, directly from the paper's formula.
 double slow_ssim(const Image8& a, const Image8& b) {
   double total = 0;
   int windows = 0;
@@ -61,7 +61,7 @@ TEST(ImageError, VisibilityCountsAndSetsEdgesApart) {
   *truth.at(4, 0) = 128;  // an edge pixel
   *got.at(4, 0) = 0;
   *got.at(0, 0) = 255;  // wrong
-  *got.at(9, 0) = 204;  // a fifth off
+  *got.at(9, 0) = 204;  // differs by a fifth
   const VisibilityError e = visibility_error(got, truth);
   EXPECT_NEAR(e.mean, (128.0 / 255 + 1 + 0.2) / 10, 1e-9);
   EXPECT_NEAR(e.wrong, 0.2, 1e-9);

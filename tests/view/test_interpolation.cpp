@@ -1,4 +1,4 @@
-// How well the methods between keys stand in for the classic map.
+// Tests how well the methods that interpolate between keys replace the classic map.
 #include <gtest/gtest.h>
 
 #include "libatlas/shadow/light_path.h"
@@ -66,7 +66,7 @@ TEST(Interpolation, TheMarchHasAtMostAQuarterOfTheLinearError) {
   expect_a_quarter(pavilion_view(), sun());
 }
 
-// What a window lights moves over furniture: each key's map hides what the other sees.
+// Light from a window moves over furniture: each key's map hides what the other sees.
 TEST(Interpolation, TheMarchLeavesNoOutlinesBesideWindows) {
   expect_a_quarter(room_view(), through_the_window());
 }
@@ -83,8 +83,8 @@ TEST(Interpolation, TheMarchWinsAtEveryInterval) {
     const VisibilityError &linear = r[i].visibility, &march = r[i + 1].visibility;
     EXPECT_LT(march.mean, linear.mean);
     EXPECT_LE(march.wrong, linear.wrong / 4);
-    // Edges apart: there two classic maps with other texels differ as much. 2e-5 is such texels'
-    // noise too.
+    // Edges are left out, since two classic maps with other texels differ there by as much. 2e-5 is
+    // also the noise of such texels.
     EXPECT_LE(march.mean_off_edges, linear.mean_off_edges / 4 + 2e-5);
   }
 }
@@ -119,7 +119,7 @@ TEST(Interpolation, TheMarchLooksOftenerWhereKeysAreFarApart) {
   EXPECT_EQ(march_samples(4, 16), 16);
   EXPECT_EQ(march_samples(4, 90), kMostMarchSamples);
   EXPECT_EQ(march_samples(40, 90), 40);
-  // What adapts is nearly as good as what always takes the most.
+  // An adaptive number of samples is nearly as good as always taking the most.
   const View view = room_view();
   BenchOptions o = options_for(view);
   o.methods = {ShadowMethod::march};
@@ -133,8 +133,8 @@ TEST(Interpolation, TheMarchLooksOftenerWhereKeysAreFarApart) {
   EXPECT_LT(adapted[0].visibility.mean, 1.2 * plain[0].visibility.mean);
 }
 
-// A pole's shadow falls on one place at a time: the cross-fade shows two half shadows, the march
-// one whole one.
+// A pole's shadow falls on one place at a time. The cross-fade shows two half shadows, the march
+// one whole shadow.
 TEST(Interpolation, TheMarchMovesAShadowInsteadOfShowingTwo) {
   View view;
   add_quad(view.scene, {{-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}}, 2);

@@ -1,4 +1,5 @@
-// Classic shadow maps against rays: Embree traces what each pixel sees and from there to the light.
+// Compares classic shadow maps with rays: Embree traces what each pixel sees, and from there to the
+// light.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -73,10 +74,10 @@ class Rays {
 
 struct Agreement {
   int compared = 0, agreed = 0, edge = 0, lit = 0, shadowed = 0;
-  int all = 0, leaked = 0;  // edges included; lit where the ray is blocked
+  int all = 0, leaked = 0;  // edges included; `leaked` are lit where the ray is blocked
 };
 
-// The ray through a pixel's centre.
+// Returns the direction of the ray through a pixel's centre.
 glm::dvec3 pixel_ray(const Camera& c, int x, int y, int width, int height) {
   const glm::dvec3 f = glm::normalize(to_glm(c.target) - to_glm(c.eye));
   const glm::dvec3 r = glm::normalize(glm::cross(f, to_glm(c.up))), u = glm::cross(r, f);
@@ -110,13 +111,13 @@ Agreement compare(const View& view, const Vec3d& light, const RenderOptions& opt
       const bool lit = truth(hit.point);
       ++a.all;
       a.leaked += !lit && *image.at(x, y) > 127;
-      // Within 2 texels of an edge if a ray from 2 texels beside, on the same plane, says
-      // otherwise.
+      // A point is within 2 texels of an edge if a ray from 2 texels beside it, on the same plane,
+      // gives another result.
       bool edge = false;
       for (int i = 0; i < 8 && nl > 0 && !edge; ++i) {
         const double angle = i * 0.7853981633974483;
         const glm::dvec3 o = (side * std::cos(angle) + other * std::sin(angle)) * (2 * fit.texel);
-        // Lifted a little: a neighbouring face may bend up into the plane.
+        // The ray starts slightly above, since a neighbouring face may bend up into the plane.
         const glm::dvec3 lift = hit.normal * (0.5 * fit.texel);
         edge = truth(hit.point + o - l * (glm::dot(o, hit.normal) / nl) + lift) != lit;
       }
@@ -202,7 +203,7 @@ TEST(Oracle, PlanesOfAnyLeanDoNotShadowThemselves) {
         view.camera.fov_degrees = 80;
         RenderOptions o = classic_visibility(pcf);
         o.map_resolution = 256;
-        o.up = {0.3, 0.1, 1};  // the map's axes lie aslant
+        o.up = {0.3, 0.1, 1};  // so that the map's axes are oblique
         Renderer renderer = must_render(view.scene, o);
         ASSERT_TRUE(
             renderer.draw(view.camera, still({std::cos(turn), height, std::sin(turn)})).ok());
@@ -212,7 +213,8 @@ TEST(Oracle, PlanesOfAnyLeanDoNotShadowThemselves) {
       }
 }
 
-// Depths must find every point of it again, half a metre below the eye and at the horizon.
+// The second pass must reconstruct every point of the floor from its depth, half a metre below the
+// eye and at the horizon.
 TEST(Oracle, AFloorIsLitFromTheFeetToTheHorizon) {
   View view;
   add_quad(view.scene, {{-1000, 0, 1000}, {1000, 0, 1000}, {1000, 0, -1000}, {-1000, 0, -1000}});

@@ -88,7 +88,7 @@ TEST_F(Play, AFullDiskLeavesNoPicture) {
     EXPECT_NE(done.status().message().find("p.png"), std::string::npos);
     EXPECT_EQ(done.status().message().find(".part"), std::string::npos) << done.status().message();
     if (file == &o.screenshot) {
-      EXPECT_EQ(fs::file_size(*file), 21u);  // as it was
+      EXPECT_EQ(fs::file_size(*file), 21u);  // unchanged
       fs::remove(*file);
     }
     EXPECT_TRUE(fs::is_empty(file == &o.record ? *file : path_));
@@ -133,7 +133,7 @@ TEST_F(Play, ALostContextIsOneLineThatSaysWhy) {
   EXPECT_TRUE(show.play().ok());
 }
 
-// The driver is asked to tell of resets, not only our code.
+// The driver is asked to report resets, not only our code.
 TEST_F(Play, ContextsAreMadeSoThatTheyTellOfResets) {
   software_context();
   GLint strategy = 0;
@@ -233,7 +233,7 @@ TEST_F(Bench, MeasuresEveryCombinationAndWritesItsFiles) {
   for (const BenchRun& run : r.times.runs) {
     EXPECT_EQ(run.frames.size(), 4u);
     EXPECT_LE(run.cpu.p50, run.cpu.worst);
-    // Classic submits every caster in every frame, none never.
+    // The classic method submits every caster in every frame, `none` never does.
     const std::uint32_t casters = run.frames[0].triangles_shadow;
     if (run.method == ShadowMethod::classic) {
       EXPECT_EQ(casters, view.scene.triangle_count());
@@ -242,7 +242,7 @@ TEST_F(Bench, MeasuresEveryCombinationAndWritesItsFiles) {
       EXPECT_EQ(casters, 0u);
     }
   }
-  // The control does as much in every round as a frame of the warm-up took.
+  // Each round of the control does as much arithmetic as fits into a frame of the warm-up.
   EXPECT_GT(r.times.control.rounds, 0u);
   EXPECT_GT(r.times.control.cpu.p50, 0.0);
   EXPECT_LE(r.times.control.cpu.p50, 1.1 * r.times.control.wall.worst);

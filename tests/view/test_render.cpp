@@ -1,4 +1,4 @@
-// The renderer's promises: passes counted, work even, errors said in a line, no OpenGL errors.
+// Tests the renderer's promises: counted passes, even work, errors of one line, no OpenGL errors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -60,7 +60,7 @@ TEST(Render, SlicedWorkIsEven) {
   EXPECT_LE(most, 1.1 * sum);
 }
 
-// A map drawn in slices over eight frames is the map drawn in one.
+// A map that is drawn in slices over eight frames equals the map drawn in one.
 TEST(Render, SlicesMakeTheSameMap) {
   const View view = courtyard_view();
   const LightPath path = *LightPath::make({});
@@ -141,7 +141,7 @@ TEST(Render, ACameraThatLeavesTheFittedPartRefreshesTheKeys) {
 
 // Keys are sampled for up to three intervals after they were fitted.
 TEST(Render, AMovingCameraSeesFittedShadowsAtAnySpeed) {
-  Scene scene;  // a floor that is all in the shadow of a roof
+  Scene scene;  // a floor that is wholly in the shadow of a roof
   add_quad(scene, {{-30, 0, 30}, {30, 0, 30}, {30, 0, -30}, {-30, 0, -30}});
   add_quad(scene, {{-60, 5, 60}, {60, 5, 60}, {60, 5, -60}, {-60, 5, -60}});
   RenderOptions o = small();
@@ -179,7 +179,7 @@ TEST(Render, ThePlanSaysWhatIsMissingAndWhy) {
   EXPECT_NE(plan[4].find("no baked light"), std::string::npos);
 }
 
-// Floats still hold every position of the moved scene; what is computed from them must not round.
+// Floats hold every position of the moved scene exactly; what is computed from them must not round.
 TEST(Render, AFarSceneLooksLikeANearOne) {
   View near;
   add_quad(near.scene, {{-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}}, 8);
@@ -230,7 +230,7 @@ TEST(Render, WrongOptionsAreSaidAndChangeNothing) {
   }
 }
 
-// Also where only the driver says so, after half of the way.
+// This includes settings that only the driver refuses, after some have been applied.
 TEST(Render, SettingsThatCannotBeHadLeaveTheFormerPicture) {
   const View view = courtyard_view();
   const RenderOptions o = small();
@@ -242,7 +242,8 @@ TEST(Render, SettingsThatCannotBeHadLeaveTheFormerPicture) {
     RenderOptions bad = o;
     if (i == 0) bad.map_resolution = 1 << 20;
     if (i == 1) bad.show_visibility = true, bad.map_resolution = 8;
-    if (i == 2) bad.map_resolution = 16384;  // three gigabytes, more than llvmpipe gives a texture
+    // three gigabytes, more than llvmpipe allows for a texture
+    if (i == 2) bad.map_resolution = 16384;
     const Status s = r.set_options(bad);
     EXPECT_FALSE(s.ok()) << i;
     EXPECT_EQ(s.message().find("does not draw"), std::string::npos) << s.message();

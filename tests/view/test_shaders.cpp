@@ -9,7 +9,7 @@ bool has(const std::string& text, const char* word) {
   return text.find(word) != std::string::npos;
 }
 
-// Behind the uniform block, which all shaders share.
+// Returns the text after the uniform block, which all shaders share.
 std::string body_of(const std::string& text) {
   return text.substr(text.find("} frame;"));
 }
@@ -39,7 +39,7 @@ TEST(Shaders, NothingIsCompiledThatIsNotUsed) {
           EXPECT_EQ(has(t.fragment, "v_normal"), lit);
           EXPECT_EQ(!t.lighting_vertex.empty(), lit);
           EXPECT_EQ(!t.lighting_fragment.empty(), lit);
-          // The first pass asks nothing about the moving light, the second nothing about materials.
+          // The first pass uses nothing of the moving light, the second nothing of the materials.
           for (const char* word : {"visibility_at(", "frame.light", "specular("})
             EXPECT_FALSE(has(body_of(t.fragment), word)) << word;
           for (const char* word :

@@ -1,4 +1,4 @@
-// Colours of single pixels against the formulas evaluated here, in double.
+// Compares colours of single pixels with the formulas, evaluated here in double precision.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace atlas::testing {
 namespace {
 
-// As sRGB.
+// Returns the value in sRGB encoding, 0 to 255.
 double encoded(double value) {
   const double v = std::clamp(value, 0.0, 1.0);
   return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
@@ -27,11 +27,11 @@ class Plane : public ::testing::Test {
     scene_.materials[0].diffuse = {0.6f, 0.4f, 0.2f};
     camera_.eye = {1, 3, 2};
     camera_.near_plane = 0.5;
-    options_.width = options_.height = 65;  // a pixel in the very middle
+    options_.width = options_.height = 65;  // odd, so that there is a pixel in the centre
     options_.map_resolution = 256;
     options_.shadows = ShadowMethod::classic;
   }
-  // The middle pixel, which sees the origin.
+  // Returns the colour of the centre pixel, which sees the origin.
   std::array<int, 3> middle(const Vec3d& light) {
     Renderer r = must_render(scene_, options_);
     EXPECT_TRUE(r.draw(camera_, still(light)).ok());
@@ -87,7 +87,7 @@ TEST_F(Plane, BakedLightIsShownAndTheSunAdded) {
   scene_.illumination.assign(scene_.positions.size(), {200, 100, 50});
   options_.exposure = 0.5;
   options_.shading = Shading::unlit;
-  // The scale puts the luminance of this even light at one.
+  // The scale puts the luminance of this uniform light at one.
   const double y = 0.2126 * 200 + 0.7152 * 100 + 0.0722 * 50;
   EXPECT_NEAR(middle({0, 1, 0})[0], encoded(0.5 * 0.6 * 200 / y), 1.5);
   options_.shading = Shading::lambert;
@@ -107,7 +107,7 @@ TEST_F(Plane, EmissionIsAddedToWhatIsReflected) {
     EXPECT_NEAR(p[1], encoded(0.5 * 0.4 * options_.ambient), 1.5);
     EXPECT_EQ(p[2], 255);
   }
-  m.emission_textured = true;  // whose texture is not read: most of it may be dark
+  m.emission_textured = true;  // the texture is not read, and most of it may be dark
   EXPECT_NEAR(middle({0, -1, 0})[2], encoded(0.5 * 0.2 * options_.ambient), 1.5);
 }
 
@@ -153,7 +153,7 @@ TEST_F(Plane, TexturesGoOnBeyondTheirEdgesAsMaterialsSay) {
   EXPECT_EQ(shown(TextureWrap::repeat, -0.25f), 255);
 }
 
-// A dark chart eight texels from bright ones, seen at a grazing angle.
+// A dark chart, eight texels from bright ones, is seen at a grazing angle.
 TEST_F(Plane, ChartsOfAPageDoNotMixFarAway) {
   Texture t;
   t.image = Image8(512, 512, 3, 255);
@@ -180,7 +180,7 @@ TEST_F(Plane, ChartsOfAPageDoNotMixFarAway) {
   for (int x = 22; x <= 42; ++x) EXPECT_LE(*image.at(x, 32), 1) << x;
 }
 
-// Dark ones above all: there a power of 1 / 2.2 differs most from sRGB.
+// Dark values matter most: there a power of 1 / 2.2 differs most from sRGB.
 TEST_F(Plane, BakedPagesAreShownAsTheyAreStored) {
   scene_.materials[0].texture = 0;
   scene_.texcoords = {{0, 0}};

@@ -37,7 +37,7 @@ TEST(ViewScene, EveryTriangleIsInOneClusterAndInItsBall) {
     }
 }
 
-// The same multiset of triangles, by position, whatever order they are drawn in.
+// Both must have the same multiset of triangles, by position, in whatever order they are drawn.
 TEST(ViewScene, DrawsAndCastsTheTrianglesOfTheScene) {
   const Scene scene = room();
   const ViewScene v = *make_view_scene(scene, {});
@@ -57,7 +57,7 @@ TEST(ViewScene, DrawsAndCastsTheTrianglesOfTheScene) {
   EXPECT_EQ(triangles(v.caster_positions, v.caster_indices), wanted);
 }
 
-// Each facet was compared with all others at the tip: a minute for half as many.
+// Each facet at the tip was once compared with all others, which took a minute for half as many.
 TEST(ViewScene, ATipOfManyFacetsTakesNoMinutes) {
   constexpr std::uint32_t kFacets = 100000;
   Scene cone;
@@ -165,7 +165,7 @@ TEST(StartCamera, AThingFillsTheViewWhateverItsFieldIs) {
     const Camera camera = start_camera(thing, {0, 1, 0}, fov);
     EXPECT_EQ(camera.fov_degrees, fov);
     const glm::dvec3 eye = to_glm(camera.eye), axis = glm::normalize(to_glm(camera.target) - eye);
-    double widest = 0;  // from the image's middle, as a share of the way to its edge
+    double widest = 0;  // distance from the image's centre, relative to that of its edge
     for (const Vec3f& p : thing.positions) {
       const double cosine = glm::dot(axis, glm::normalize(to_dvec(p) - eye));
       widest = std::max(widest, glm::degrees(std::acos(std::min(cosine, 1.0))) / (fov / 2));
@@ -192,7 +192,7 @@ TEST(ViewScene, ASceneWithoutTrianglesIsSaidToBeOne) {
   EXPECT_NE(v.status().message().find("no triangles"), std::string::npos);
 }
 
-// A program's own scene whose arrays do not fit together would be read past their ends.
+// Arrays of a program's own scene that do not fit together would be read past their ends.
 TEST(ViewScene, ScenesOutOfStepAreRefusedByName) {
   Scene scene = room();
   scene.indices[7] = 1u << 30;

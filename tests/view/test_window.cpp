@@ -1,4 +1,4 @@
-// Windows beside those of the program that uses the library.
+// Tests windows beside those of the program that uses the library.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ class Window : public testing::Test {
     auto made = make_window({}, {.width = 64, .height = 48, .visible = false});
     return made.ok() ? std::move(made.value()) : nullptr;
   }
-  // Whether GLFW, and so every window, is alive.
+  // Returns whether GLFW is initialised, which every window needs.
   static bool glfw_runs() {
     glfwGetError(nullptr);
     glfwGetTime();
@@ -66,7 +66,7 @@ TEST_F(Window, LeavesTheProgramsOwnOpen) {
   glfwGetWindowSize(own, &width, &height);
   EXPECT_EQ(width, 32);
   told = 0;
-  glfwWindowHint(-1, 0);  // an error, which is the program's again
+  glfwWindowHint(-1, 0);  // an error, which again goes to the program
   EXPECT_EQ(told, 1);
   glfwTerminate();
   glfwSetErrorCallback(nullptr);
