@@ -1,4 +1,4 @@
-// Files that claim more than they hold, or more than anyone should read.
+// Tests files that claim more than they hold, or more than anyone should read.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -44,7 +44,7 @@ std::string deflated(const std::string& raw) {
   return packed;
 }
 
-// `kind`: bits, colour type, compression, filter, interlace.
+// Makes a PNG file. `kind`: bits, colour type, compression, filter, interlace.
 std::string png(std::uint32_t width, std::uint32_t height, const std::string& kind,
                 const std::string& raw) {
   const bool palette = kind[1] == 3;
@@ -151,7 +151,7 @@ TEST(HostileImage, EmbeddedOnesAreJudgedAsFilesAre) {
   EXPECT_LT(peak_memory(), std::int64_t{800} << 20);
 }
 
-// The most that a byte of PNG can hold: a palette of one colour, deflated.
+// A palette of one colour, deflated, is the most that a byte of PNG can hold.
 TEST(HostileImage, LargePlainImagesAreRead) {
   const TempFolder folder;
   constexpr int kWidth = 16384, kHeight = 2048;
@@ -177,7 +177,7 @@ TEST(HostileImage, TheLimitLetsTheLargestPagesPass) {
   EXPECT_EQ(check_claim({0, 5, 3, 1, 1}, large, "a").code(), ErrorCode::bad_input);
 }
 
-// Readers told of these by a message only, and the missing rest was grey or black.
+// For these files, the readers only gave a message, and the missing rest was grey or black.
 TEST(HostileImage, CutFilesAreNotTakenForWholeOnes) {
   const TempFolder folder;
   for (const Hostile& file :
@@ -192,7 +192,7 @@ TEST(HostileImage, CutFilesAreNotTakenForWholeOnes) {
 TEST(HostileImage, HarmlessComplaintsAreNotDamage) {
   const TempFolder folder;
   std::string whole = jpeg(8, '\xc0');
-  whole.insert(2, std::string(3, '\0'));  // bytes that belong to nothing: decoders skip them
+  whole.insert(2, std::string(3, '\0'));  // stray bytes, which decoders skip
   const auto read = read_image8(folder.write("a.jpg", whole));
   ASSERT_TRUE(read.ok()) << read.status().message();
   EXPECT_EQ(read->width, 8);

@@ -1,4 +1,5 @@
-// Says why no image can be read, in a process of its own: the module is looked for once.
+// Says why no image can be read. It is a separate process because the module is looked for only
+// once.
 #include <cstdio>
 
 #include "libatlas/image/image_io.h"

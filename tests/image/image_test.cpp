@@ -28,7 +28,7 @@ std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
   return value;
 }
 
-// Shorter texels than the sizes say would be read past their end.
+// If there were fewer texels than the sizes say, writing would read past their end.
 TEST(Image, ImagesOutOfStepAreRefused) {
   const TempFolder folder;
   Image8 image = noise(37, 5, 3);
@@ -62,7 +62,7 @@ TEST(Image, PngReadsBackExactly) {
   }
 }
 
-// What baked pages are: slopes with a little noise. Levels 1 to 5 are one.
+// Baked pages look like this: slopes with a little noise. Levels 1 to 5 give the same file.
 TEST(Image, SmoothPngReadsBackExactlyAndTakesLessRoom) {
   const TempFolder folder;
   Image8 image = noise(300, 200, 3);
@@ -86,7 +86,7 @@ TEST(Image, SmoothPngReadsBackExactlyAndTakesLessRoom) {
   EXPECT_GT(file({0, true}).size(), image.texels.size());
 }
 
-// By a second route: the file's own bytes, unfiltered by hand. Row 0 in memory is the bottom one.
+// Checks the file's own bytes, which are unfiltered by hand. Row 0 in memory is the bottom row.
 TEST(Image, PngRowsAreTopDownInTheFile) {
   const TempFolder folder;
   Image8 image(1, 2, 3, 0);
@@ -110,7 +110,7 @@ TEST(Image, PngRowsAreTopDownInTheFile) {
             Z_OK);
   ASSERT_EQ(size, 8u);
   int first[3], second[3];
-  for (int c = 0; c < 3; ++c) {  // filters none, sub, up, average, paeth, for one texel a row
+  for (int c = 0; c < 3; ++c) {  // filters none, sub, up, average, paeth, for one texel per row
     first[c] = rows[1 + c];
     const int filter = rows[4], above = filter == 0 || filter == 1 ? 0 : first[c];
     second[c] = (rows[5 + c] + (filter == 3 ? above / 2 : above)) & 255;
@@ -163,7 +163,7 @@ TEST(Image, ExrKeepsLinearValuesBeyondOne) {
   }
 }
 
-// A half float ends at 65504, and below 6e-5 it loses digit after digit.
+// The largest half float is 65504, and below 6e-5 half floats lose one digit after another.
 TEST(Image, ExrKeepsSunlightAndDimScenes) {
   const TempFolder folder;
   for (const float largest : {65504.0f, 65536.0f, 110000.0f, 1e30f, 0.01f, 1e-3f, 1e-6f, 1e-30f}) {

@@ -1,4 +1,4 @@
-// Which image module a program takes.
+// Tests which image module a program loads.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::TempFolder;
 
-// What the probe says of an image, and its line's end.
+// Returns what the probe says about an image, with its newline.
 std::string said_by(const fs::path& probe, const fs::path& image) {
   std::FILE* pipe = ::popen((probe.string() + " " + image.string()).c_str(), "r");
   std::string said;
@@ -32,7 +32,7 @@ TEST(ImageModule, IsFoundInTheTreeItWasBuiltIn) {
   EXPECT_EQ(said_by(LIBATLAS_TEST_PROBE, image_in(folder)), "read\n");
 }
 
-// A program that has left the build's tree must not load what lies there.
+// A program that has left the build's tree must not load the module that lies there.
 TEST(ImageModule, OfTheBuildIsNotLoadedFromElsewhere) {
   const fs::path module = LIBATLAS_TEST_OTHER_MODULE;
   if (fs::exists(fs::path(LIBATLAS_TEST_INSTALL_FOLDER) / module.filename()))

@@ -1,4 +1,4 @@
-// A module of the same name from another build.
+// An image module of the same name from another build.
 #include "libatlas/image/image_files.h"
 
 extern "C" const atlas::ImageFiles* libatlas_image_files() {
