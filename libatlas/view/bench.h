@@ -15,7 +15,7 @@
 namespace atlas {
 
 struct BenchOptions {
-  // size, filter, interval and all other settings; shading and method are varied
+  // Size, filter, interval and all other settings; shading and method are varied.
   RenderOptions render;
   Camera camera;
   double degrees_per_frame = 0.5;  // the light's speed along the path
@@ -52,7 +52,7 @@ struct BenchRun {
 // Times of the same arithmetic, repeated beside the frames. Its spread comes from the machine
 // (other programs, clock rates), so no frame times can be steadier.
 struct BenchControl {
-  // their number is set so that they last about as long as a frame in the warm-up
+  // Their number is set so that they last about as long as a frame in the warm-up.
   std::uint64_t rounds = 0;
   Spread wall, cpu;  // seconds
 };
@@ -66,7 +66,7 @@ struct BenchError {
   ShadowMethod method{};
   int interval = 0;  // k
   VisibilityError visibility;
-  // of the shaded pictures; psnr from the mean squared error of all of them
+  // Of the shaded pictures; psnr from the mean squared error of all of them.
   double psnr = 0, ssim = 0;
   double cpu_median = 0;  // seconds per frame while measuring visibility (same shader output)
 };

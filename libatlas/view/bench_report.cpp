@@ -140,7 +140,7 @@ std::string error_data(const BenchResult& r, std::string& plot) {
         "{0}'error.dat' index {1} using 1:2 with linespoints lc {3} title '{2}', '' index {1} "
         "using 1:2:3 with labels offset {4} tc lt {3} notitle",
         block ? ", " : "plot ", block, name_of(method), block + 1,
-        // so that both labels of coinciding curves are legible
+        // So that both labels of coinciding curves are legible.
         block % 2 == 0 ? "-1,-0.8" : "1,0.6");
     ++block;
     data += rows + "\n\n";

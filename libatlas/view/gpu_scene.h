@@ -25,7 +25,6 @@ struct GpuScene {
   Box3 bounds;  // in the scene's own coordinates, like the clusters' spheres
   // The box's centre, to which uploaded positions are relative, since floats are finest near zero.
   Vec3d origin;
-  // near zero
   bool textured = false, baked_vertices = false, baked_textures = false, emits = false;
   double light_scale = 1;
 };

@@ -20,7 +20,7 @@ double ssim(const Image8& a, const Image8& b);
 struct VisibilityError {
   double mean = 0;   // mean of |difference|, 0 to 1
   double wrong = 0;  // share of pixels that differ by more than a half
-  // sums over the pixels outside the edge band, as shares of all pixels
+  // Sums over the pixels outside the edge band, as shares of all pixels.
   double mean_off_edges = 0, wrong_off_edges = 0;
   double edge_share = 0;  // share of pixels in the edge band
 };

@@ -41,7 +41,7 @@ struct RenderOptions {
   int map_resolution = 2048;
   int map_bits = 32;  // of each depth in a map: 16 or 24 (integers), 32 (floats)
   int pcf = 3;        // see ShaderFeatures::pcf
-  // march: at least so many even map samples along the ray, see march_samples()
+  // march: the least number of even map samples along the ray, see march_samples().
   int march_steps = 4;
   // Both are in units of the filter's reach. The normal offset is multiplied by how far the normal
   // leans along each of the map's axes, which is exactly what a plane needs. The slope bias is
@@ -50,7 +50,7 @@ struct RenderOptions {
   // a wall one texel thick leaks from 0.1 on.
   double slope_bias = 0.07, normal_offset = 1.0;
   bool fit_view = false;  // fits maps to the view instead of the whole scene
-  // fit_view: how far shadows reach; 0: a quarter of the scene's diagonal
+  // fit_view: how far shadows reach; 0: a quarter of the scene's diagonal.
   double view_distance = 0;
   bool snap = true;
   ScheduleOptions schedule;  // interval and slicing; the method sets `blend`

@@ -33,7 +33,7 @@ struct Renderer::Impl {
   std::int64_t earlier_passes = 0;  // of schedules that set_options has replaced
   LightFit view_fit;                // fit_view: what the newest key covers
   bool view_fit_valid = false;
-  // slots of the last frame's keys, which were fitted up to three intervals ago
+  // Slots of the last frame's keys, which were fitted up to three intervals ago.
   int sampled[2] = {0, 0};
 
   // A cluster to draw. Clusters are sorted by look, then from near to far.

@@ -74,7 +74,7 @@ TEST(KeptGltf, ANodeAboveTurnsAndScales) {
   const auto triangles = GltfOracle(folder / "w.glb").triangles();
   ASSERT_EQ(triangles.size(), 1u);
   EXPECT_TRUE(near(triangles[0].matrix, {0.5, 0, 0, 0, 0, 0, -0.5, 0, 0, 0.5, 0, 0, 1e6, 0, 0, 1}));
-  // its own coordinates, without an origin
+  // Its own coordinates, without an origin.
   EXPECT_EQ(triangles[0].attributes.at("POSITION")[8], 1);
 }
 

@@ -66,7 +66,7 @@ TEST(KeptScene, OfGltfHasBothUvsNormalsNamesAndMaterials) {
       }
     }
     const auto gltf = gltf_of(folder / name);
-    // there is nothing to rotate, scale or move, and no camera
+    // There is nothing to rotate, scale or move, and no camera.
     EXPECT_EQ(gltf["nodes"].size(), 2u);
     EXPECT_FALSE(gltf.contains("cameras") || gltf.contains("extensionsUsed"));
     EXPECT_EQ(gltf["materials"].size(), 2u);

@@ -207,7 +207,7 @@ Transform { children [
   const auto loaded = read_scene(path, {}, {});
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   const Scene& s = loaded->scene;
-  // mirrored, so the order is reversed
+  // Mirrored, so the order is reversed.
   EXPECT_EQ(s.indices, (std::vector<std::uint32_t>{3, 2, 1, 3, 1, 0}));
   EXPECT_EQ(s.texcoord_indices, s.indices);
   EXPECT_NEAR(s.origin.x + s.positions[1].x, 10, 1e-6);

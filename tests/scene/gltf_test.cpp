@@ -49,7 +49,7 @@ TEST(Gltf, TransformsColoursAndFlippedV) {
   EXPECT_NEAR(s.origin.y + s.positions[1].y, 22, 1e-6);
   EXPECT_NEAR(s.origin.z + s.positions[1].z, 30, 1e-6);
   EXPECT_NEAR(s.origin.x + s.positions[3].x, 12, 1e-6);
-  // mirrored, so the order is reversed
+  // Mirrored, so the order is reversed.
   EXPECT_EQ(s.indices, (std::vector<std::uint32_t>{2, 1, 0, 3, 2, 0}));
   EXPECT_EQ(s.illumination[1], (Vec3f{400, 5, 6}));
   EXPECT_EQ(s.texcoords[0], (Vec2f{0, 1}));

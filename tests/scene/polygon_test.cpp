@@ -228,7 +228,7 @@ TEST(Polygon, ManyCornersTakeNoLongerEach) {
   const auto start = std::chrono::steady_clock::now();
   for (const auto& polygon : {star, spiral, saw, rough}) check(polygon, random);
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-  // takes a second; testing all corners for each ear would take hours
+  // Takes a second; testing all corners for each ear would take hours.
   EXPECT_LT(spent.count(), 60);
 }
 

@@ -242,7 +242,7 @@ TEST(Render, SettingsThatCannotBeHadLeaveTheFormerPicture) {
     RenderOptions bad = o;
     if (i == 0) bad.map_resolution = 1 << 20;
     if (i == 1) bad.show_visibility = true, bad.map_resolution = 8;
-    // three gigabytes, more than llvmpipe allows for a texture
+    // Three gigabytes, more than llvmpipe allows for a texture.
     if (i == 2) bad.map_resolution = 16384;
     const Status s = r.set_options(bad);
     EXPECT_FALSE(s.ok()) << i;
