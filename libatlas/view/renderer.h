@@ -100,7 +100,8 @@ class Renderer {
   Status set_options(const RenderOptions& options);
   const RenderOptions& options() const;
 
-  // Draws one frame. Error: `bad_input` with the GL error if there was one.
+  // Draws one frame. Errors: `bad_input` with the first GL error, or `unsupported` if memory ran
+  // out or the context was lost.
   Result<FrameStats> draw(const Camera& camera, const FrameLight& light);
 
   // Waits until the GPU has finished.
