@@ -201,13 +201,6 @@ Result<FitResult> fit_outlines(std::span<const FitItem> items,
   by_quarters.rotations = std::min(by_cells.rotations, 4u);
   OutlineFit quarters(items, outlines, by_quarters, context);
   OutlineFit all(items, outlines, by_cells, context);
-  // Where cells fill more than rows, they mostly do so by far and with the first order. On 68
-  // pages, a search as long as elsewhere took as long as the rows did, and gained a hundredth of a
-  // percentage point.
-  if (pressed && options.free_aspect) {
-    quarters.search_little();
-    all.search_little();
-  }
   OutlineFit* fit = &quarters;
   OutlineLayout best;
   bool found = search_scale(quarters, result, best);

@@ -179,11 +179,6 @@ NestSearchOptions OutlineFit::search_of(std::size_t page) const {
     search.layouts = std::max(kLayouts, share);
     search.work = std::clamp(std::min(share, kBestWork) * kWordsALayout, kWork, kBestWork);
   }
-  constexpr std::uint64_t kLittle = 6;
-  if (search_little_) {
-    search.layouts /= kLittle;
-    search.work /= kLittle;
-  }
   search.work /= options_.pages;
   return search;
 }

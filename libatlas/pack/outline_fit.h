@@ -45,9 +45,6 @@ class OutlineFit {
   // Sets the order in which pages are filled from now on. At first it is by cells.
   void place(LargestBy by) { by_ = by; }
 
-  // From now on, only few other orders are searched if the first order fails.
-  void search_little() { search_little_ = true; }
-
   // Returns the share of all pages that the masks take at this scale. The masks are rasterised for
   // it, but not packed.
   double share(double scale) const;
@@ -101,7 +98,6 @@ class OutlineFit {
   std::int32_t side_ = 0;
   double area_ = 0;
   LargestBy by_ = LargestBy::cells;
-  bool search_little_ = false;
   double groups_fail_at_ = std::numeric_limits<double>::infinity();
 };
 

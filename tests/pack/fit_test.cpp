@@ -356,20 +356,7 @@ TEST(FitPages, FewStraightChartsFillAPageAsWellAsByCells) {
     EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, either), either.pages, o.padding),
               "");
     o.any_angle = false;
-    EXPECT_GE(either.utilization, 0.97 * fit(charts.items, o).utilization) << seed;
-  }
-}
-
-// Beside rows, cells are searched little: ten failed packings of fifty layouts each.
-TEST(FitPages, CellsBesideRowsTakeFewLayouts) {
-  constexpr std::uint64_t kOfRows = 16 * 20;
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const test::ChartItems charts = straight_charts(seed, 12);
-    FitOptions o = tight(512);
-    o.max_scale = 100;
-    o.free_aspect = true;
-    o.shapes = charts.shapes;
-    EXPECT_LE(fit(charts.items, o).layouts, kOfRows + o.max_packings + 500) << seed;
+    EXPECT_GE(either.utilization, fit(charts.items, o).utilization) << seed;
   }
 }
 
