@@ -28,7 +28,7 @@ struct Cost {
 std::vector<Cost> costs(const Topology& topology, const Partition& partition,
                         std::span<const FlatChart> charts) {
   std::vector<Cost> costs(topology.component_count);
-  for (const FlatChart& chart : charts) ++costs[topology.component[chart.triangles.front()]].charts;
+  for (const FlatChart& chart : charts) ++costs[chart.piece(topology)].charts;
   for (std::uint32_t h = 0; h < topology.opposite.size(); ++h) {
     const std::uint32_t o = topology.opposite[h];
     if (o == kNoIndex || partition.chart[h / 3] == kNoIndex) continue;
@@ -51,9 +51,7 @@ class BestCharts {
       if (better[piece]) least_[piece] = made[piece];
     }
     if (least_.empty()) least_ = made;
-    const auto changes = [&](const FlatChart& chart) {
-      return better[topology_.component[chart.triangles.front()]];
-    };
+    const auto changes = [&](const FlatChart& chart) { return better[chart.piece(topology_)]; };
     std::erase_if(charts_, changes);
     std::copy_if(std::move_iterator(charts.begin()), std::move_iterator(charts.end()),
                  std::back_inserter(charts_), changes);

@@ -229,30 +229,26 @@ class GivenSet {
     for (std::size_t k = 0; k < wanted.size(); ++k) wanted[k] = verdicts_[k] == Verdict::bad;
     std::vector<FlatChart> whole = flatten_outlines(wanted);
     std::vector<std::uint32_t> count(verdicts_.size(), 0), other(verdicts_.size(), 0);
-    for (const FlatChart& chart : whole) ++count[component(chart)];
+    for (const FlatChart& chart : whole) ++count[chart.piece(topology_)];
     for (std::size_t k = 0; k < wanted.size(); ++k) {
       wanted[k] = verdicts_[k] == Verdict::useless || count[k] > 1;
     }
     if (context_.cancelled()) return;
     std::vector<FlatChart> parts = flatten_segments(wanted);
-    for (const FlatChart& chart : parts) ++other[component(chart)];
+    for (const FlatChart& chart : parts) ++other[chart.piece(topology_)];
     // Whether the segments are better than the chart as a whole.
     const auto better = [&](std::uint32_t k) {
       return other[k] > 0 && (count[k] == 0 || other[k] < count[k]);
     };
     for (FlatChart& chart : whole) {
-      if (!better(component(chart))) result_.charts.push_back(std::move(chart));
+      if (!better(chart.piece(topology_))) result_.charts.push_back(std::move(chart));
     }
     for (FlatChart& chart : parts) {
-      if (better(component(chart))) result_.charts.push_back(std::move(chart));
+      if (better(chart.piece(topology_))) result_.charts.push_back(std::move(chart));
     }
     for (std::uint32_t k = 0; k < count.size(); ++k) {
       result_.split_charts += verdicts_[k] == Verdict::bad && (count[k] > 1 || better(k));
     }
-  }
-
-  std::uint32_t component(const FlatChart& chart) const {
-    return topology_.component[chart.triangles.front()];
   }
 
   static bool any(const std::vector<std::uint8_t>& wanted) {

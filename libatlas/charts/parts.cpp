@@ -32,10 +32,6 @@ class Repeater {
   }
 
  private:
-  std::uint32_t piece_of(const FlatChart& chart) const {
-    return mesh_.topology.component[chart.triangles.front()];
-  }
-
   // Gives the copies their originals' charts. Returns the copies that cannot take them.
   std::vector<std::uint32_t> copy_charts() {
     const std::vector<std::uint32_t> first = charts_by_piece();
@@ -81,11 +77,12 @@ class Repeater {
 
   // Sorts the charts by piece. Returns where those of each piece start.
   std::vector<std::uint32_t> charts_by_piece() {
-    std::stable_sort(
-        out_.charts.begin(), out_.charts.end(),
-        [&](const FlatChart& a, const FlatChart& b) { return piece_of(a) < piece_of(b); });
+    std::stable_sort(out_.charts.begin(), out_.charts.end(),
+                     [&](const FlatChart& a, const FlatChart& b) {
+                       return a.piece(mesh_.topology) < b.piece(mesh_.topology);
+                     });
     std::vector<std::uint32_t> first(copies_.original.size() + 1, 0);
-    for (const FlatChart& chart : out_.charts) ++first[piece_of(chart) + 1];
+    for (const FlatChart& chart : out_.charts) ++first[chart.piece(mesh_.topology) + 1];
     for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
     return first;
   }

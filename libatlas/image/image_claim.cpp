@@ -47,7 +47,7 @@ std::optional<ImageClaim> gif_claim(Bytes b) {
   return ImageClaim{b[6] | b[7] << 8, b[8] | b[9] << 8, 4, 1, kPackedByte};
 }
 
-// Returns whether this is a bare JPEG 2000 code stream, or one in the boxes of a JP2 file.
+// Returns whether this is a bare JPEG-2000 code stream, or one in the boxes of a JP2 file.
 bool is_jpeg2000(Bytes b) {
   return begins_with(b, kCodeStream) || (b.size() > 8 && begins_with(b.subspan(4), "jP  "));
 }

@@ -29,7 +29,7 @@ constexpr double kPackedByte = 1032.0 * 8 * 4;
 constexpr double kFlatByte = 1 << 20;
 
 // Returns whether OpenImageIO allocates the image's memory already when it opens a file of this
-// format (JPEG, GIF and JPEG 2000), so that the size must be found before. `head` holds the first
+// format (JPEG, GIF and JPEG-2000), so that the size must be found before. `head` holds the first
 // 16 bytes of the file.
 bool takes_memory_to_open(std::span<const std::uint8_t> head);
 

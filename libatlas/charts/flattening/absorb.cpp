@@ -120,9 +120,7 @@ class Absorber {
     return options.preset == ChartPreset::best ? kBest : kSmooth;
   }
 
-  double piece_area(std::uint32_t k) const {
-    return piece_area_[topology_.component[charts_[k].triangles.front()]];
-  }
+  double piece_area(std::uint32_t k) const { return piece_area_[charts_[k].piece(topology_)]; }
   bool small(std::uint32_t k) const { return area_[k] < kSmallArea * piece_area(k); }
 
   bool worth_a_try(std::uint32_t k) const {
@@ -316,7 +314,7 @@ class Absorber {
       double area = 0;
       for (const std::uint32_t t : chart.triangles) area += topology_.areas[t];
       area_.push_back(area);
-      piece_area_[topology_.component[chart.triangles.front()]] += area;
+      piece_area_[chart.piece(topology_)] += area;
     }
   }
 

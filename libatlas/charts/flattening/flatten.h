@@ -32,6 +32,10 @@ struct FlatChart {
   // What its stretch costs, relative to its area.
   double excess() const { return distortion.stretch_l2 * distortion.stretch_l2 - 1; }
   double box_area() const { return size.x * size.y; }
+  // The connected piece of the mesh that it belongs to.
+  std::uint32_t piece(const Topology& topology) const {
+    return topology.component[triangles.front()];
+  }
 };
 
 struct FlattenInput {

@@ -50,8 +50,8 @@ class Reliever {
         label[t] = k;
         chart_area_[k] += topology_.areas[t];
       }
-      piece_area_[piece(charts_[k])] += chart_area_[k];
-      piece_triangles_[piece(charts_[k])] += double(charts_[k].triangles.size());
+      piece_area_[charts_[k].piece(topology_)] += chart_area_[k];
+      piece_triangles_[charts_[k].piece(topology_)] += double(charts_[k].triangles.size());
     }
     const std::size_t grain = std::max<std::size_t>(4, charts_.size() / 64);
     parallel_for(context, charts_.size(), grain, [&](std::size_t begin, std::size_t end) {
@@ -68,10 +68,6 @@ class Reliever {
  private:
   using Dart = std::vector<std::uint32_t>;  // half-edges of the topology, both sides
 
-  std::uint32_t piece(const FlatChart& chart) const {
-    return topology_.component[chart.triangles.front()];
-  }
-
   // The stretch energy of chart k as it is flattened in `flat`: its area times (L2 stretch squared
   // - 1). Like the price of a dart, it does not depend on the density.
   double energy(std::size_t k, const FlatChart& flat) const {
@@ -81,7 +77,7 @@ class Reliever {
   // Charts with less energy are not worth trying, which takes time in proportion to their
   // triangles.
   double least_energy(const FlatChart& chart) const {
-    const std::uint32_t p = piece(chart);
+    const std::uint32_t p = chart.piece(topology_);
     return kLeastEnergy * seam_worth_ * piece_area_[p] * double(chart.triangles.size()) /
            std::sqrt(piece_triangles_[p]);
   }
@@ -94,7 +90,7 @@ class Reliever {
     double least = energy(k, chart);
     const std::vector<Dart> darts = darts_for(chart, scratch.chart);
     for (const Dart& dart : darts) {
-      const double price = price_of(dart, piece_area_[piece(chart)]);
+      const double price = price_of(dart, piece_area_[chart.piece(topology_)]);
       if (price > kMostPrice * energy(k, chart)) continue;
       for (const std::uint32_t h : dart) partition_.cut(h);
       ChartOutcome outcome =

@@ -13,6 +13,7 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/core/drop_rounding.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/is_finite.h"
 #include "libatlas/core/parallel.h"
 
 namespace atlas {
@@ -58,10 +59,6 @@ Status check_input(const MeshView& mesh) {
   return {};
 }
 
-bool finite(const Vec3f& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
 // One per vertex: whether any triangle uses it.
 std::vector<std::uint8_t> used_vertices(const MeshView& mesh) {
   std::vector<std::uint8_t> used(mesh.positions.size(), 0);
@@ -71,10 +68,10 @@ std::vector<std::uint8_t> used_vertices(const MeshView& mesh) {
 
 Status check_positions(const MeshView& mesh, const std::vector<std::uint8_t>& used) {
   bool all = true;
-  for (std::size_t v = 0; v < used.size(); ++v) all &= !used[v] || finite(mesh.positions[v]);
+  for (std::size_t v = 0; v < used.size(); ++v) all &= !used[v] || is_finite(mesh.positions[v]);
   if (all) return {};
   const auto at = std::find_if(mesh.indices.begin(), mesh.indices.end(),
-                               [&](std::uint32_t v) { return !finite(mesh.positions[v]); });
+                               [&](std::uint32_t v) { return !is_finite(mesh.positions[v]); });
   return {ErrorCode::bad_input,
           fmt::format("triangle {}: vertex {} has a position that is not finite",
                       (at - mesh.indices.begin()) / 3, *at)};
