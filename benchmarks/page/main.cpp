@@ -28,6 +28,10 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "atlas-bench-page: {}\n", s.message());
     return 1;
   }
+  if (machine_count(input.files) > 1)
+    fmt::print(stderr,
+               "atlas-bench-page: the results are of different machines or builds; run the whole "
+               "bench on one to compare times\n");
   fmt::print("{}/index.html\n", folder);
   return 0;
 }

@@ -44,6 +44,11 @@ void machines(const PageInput& input, Document& page) {
     if (std::find(rows.begin(), rows.end(), cells) == rows.end()) rows.push_back(cells);
   }
   page.table({"processor", "system", "compiler"}, rows);
+  if (const std::size_t count = machine_count(input.files); count > 1)
+    page.paragraph(
+        fmt::format("These results are of {} different machines or builds: times must be compared "
+                    "within one JSON file only.",
+                    count));
 }
 
 void noise(const Results& all, Document& page) {

@@ -14,6 +14,7 @@ namespace atlas::bench {
 
 struct StabilityOptions {
   bool full = false;  // also large cases (10^5 fans, 10^6 items); the tests run the small ones
+  bool gpu = false;   // only the shadow maps, as a GPU draws them, not the software renderer
   std::vector<std::filesystem::path> models;  // meshes for scale, offset and rotation, if any
 };
 

@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   std::string out;
   bool failures_only = false;
   app.add_flag("--full", options.full, "the large cases too");
+  app.add_flag("--gpu", options.gpu, "only the shadow maps, drawn by a GPU");
   app.add_option("--models", options.models, "meshes for scale, offset and rotation")
       ->check(CLI::ExistingFile);
   app.add_option("--out,-o", out, "JSON file to write");

@@ -229,12 +229,13 @@ void add_rows(CheckList& list, const Stress& stress) {
 
 void check_shadow_maps(CheckList& list) {
   ContextOptions wanted;
-  wanted.software = true;
+  wanted.software = !list.options.gpu;
   const auto gl = make_headless_context(wanted);
   if (!gl.ok()) {
     list.context.say(gl.status().message());
     return;
   }
+  if (list.options.gpu) list.context.say("drawn by " + (*gl)->info().renderer);
   for (const int bits : {16, 24, 32})
     for (const double elevation :
          {0.1, 0.2, kLowestShadow, 1.0, 2.0, 5.0, 10.0, 45.0, 80.0, 89.0, 90.0}) {

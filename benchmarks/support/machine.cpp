@@ -2,7 +2,9 @@
 
 #include <ctime>
 #include <fstream>
+#include <set>
 #include <thread>
+#include <tuple>
 
 #include "benchmarks/support/results.h"
 
@@ -20,6 +22,13 @@ std::string processor_name() {
 }
 
 }  // namespace
+
+std::size_t machine_count(std::span<const Results> files) {
+  std::set<std::tuple<std::string, int, std::string, std::string>> seen;
+  for (const Results& r : files)
+    seen.emplace(r.machine.processor, r.machine.cores, r.machine.compiler, r.machine.build);
+  return seen.size();
+}
 
 Machine describe_machine(int argc, const char* const* argv) {
   Machine m;

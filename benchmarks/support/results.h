@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -64,6 +65,10 @@ struct Results {
   std::vector<Fit> fits;
   std::vector<Check> checks;
 };
+
+// Counts different machines and builds, by processor, number of cores, compiler and kind of build:
+// times of one cannot be compared with times of another.
+std::size_t machine_count(std::span<const Results> files);
 
 // Returns the joined argv; the other members come from the system and the build.
 Machine describe_machine(int argc, const char* const* argv);

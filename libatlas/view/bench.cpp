@@ -70,12 +70,13 @@ class Control {
 };
 
 void summarise(BenchRun& run) {
-  std::vector<double> wall, cpu;
+  std::vector<double> wall, cpu, gpu;
   double shadow = 0, lit = 0;
   for (const FrameTime& f : run.frames) {
     wall.push_back(f.wall);
     cpu.push_back(f.cpu);
     if (std::isfinite(f.gpu_shadow) && std::isfinite(f.gpu_lit)) {
+      gpu.push_back(double(f.gpu_shadow) + f.gpu_lit);
       shadow += f.gpu_shadow;
       lit += f.gpu_lit;
     }
@@ -85,6 +86,7 @@ void summarise(BenchRun& run) {
   }
   run.wall = spread_of(wall);
   run.cpu = spread_of(cpu);
+  run.gpu = spread_of(gpu);
   run.shadow_share = shadow + lit > 0 ? shadow / (shadow + lit) : 0;
 }
 
@@ -92,7 +94,7 @@ void summarise(BenchRun& run) {
 struct ErrorSums {
   VisibilityError v;
   double squares = 0, ssim = 0;
-  std::vector<double> cpu;
+  std::vector<double> cpu, gpu;
   int count = 0;
 };
 
@@ -115,6 +117,7 @@ BenchError finish(const ErrorSums& s, ShadowMethod method, int interval) {
   e.psnr = s.squares > 0 ? 10 * std::log10(n / s.squares) : std::numeric_limits<double>::infinity();
   e.ssim = s.ssim / n;
   e.cpu_median = spread_of(s.cpu).p50;
+  e.gpu_median = spread_of(s.gpu).p50;
   return e;
 }
 
@@ -136,6 +139,8 @@ class ErrorProbe {
     Result<FrameTime> t = timed_frame(visibility_, camera, light);
     if (!t.ok()) return t.status();
     sums.cpu.push_back(t->cpu);
+    const double gpu = double(t->gpu_shadow) + t->gpu_lit;
+    if (std::isfinite(gpu)) sums.gpu.push_back(gpu);
     Result<FrameStats> s = colours_.draw(camera, light);
     return s.ok() ? Status{} : s.status();
   }

@@ -28,8 +28,10 @@ struct BenchOptions {
   int error_frames = 48;  // light positions at which errors are measured
 };
 
-// Times of one frame in seconds. `cpu` is the CPU time of all threads of the process: on the
-// software renderer it is the whole cost of the frame, whatever else the machine does.
+// Times of one frame in seconds. `wall` ends when the frame is drawn, not when it is submitted.
+// `cpu` is the CPU time of all threads of the process: on the software renderer it is the whole
+// cost of the frame, whatever else the machine does. On a GPU that cost is `gpu_shadow` and
+// `gpu_lit`, which the driver measures (NaN if it has not).
 struct FrameTime {
   float wall = 0, cpu = 0, gpu_shadow = 0, gpu_lit = 0;
   std::uint32_t triangles_shadow = 0, triangles_lit = 0;
@@ -44,7 +46,7 @@ struct BenchRun {
   Shading shading{};
   ShadowMethod method{};
   std::vector<FrameTime> frames;
-  Spread wall, cpu;                      // seconds per frame
+  Spread wall, cpu, gpu;                 // seconds per frame; gpu: 0 if nothing was measured
   double shadow_share = 0;               // of the GPU time
   double work_mean = 0, work_worst = 0;  // triangles submitted per frame, both passes
 };
@@ -68,7 +70,8 @@ struct BenchError {
   VisibilityError visibility;
   // Of the shaded pictures; psnr from the mean squared error of all of them.
   double psnr = 0, ssim = 0;
-  double cpu_median = 0;  // seconds per frame while measuring visibility (same shader output)
+  // Seconds per frame while measuring visibility (same shader output); gpu: 0 if not measured.
+  double cpu_median = 0, gpu_median = 0;
 };
 
 struct BenchResult {
@@ -94,7 +97,7 @@ Result<std::vector<BenchError>> bench_errors(const Renderer& first, const LightP
 
 // Writes frames.csv, summary.json, summary.md, and plots.gp with its data: `gnuplot plots.gp` draws
 // frames per second for each method (the paper's figures 2 to 5), the CPU time of every frame for
-// each shading, and error against frame time.
+// each shading (the GPU's time if one was used), and error against that time.
 Status write_bench(const BenchResult& result, const std::filesystem::path& folder);
 
 // Returns the table of the summary in Markdown, for the terminal and for documents.

@@ -38,6 +38,7 @@ json summary(const BenchResult& r) {
                     {"fps_mean", run.wall.mean > 0 ? 1 / run.wall.mean : 0},
                     {"wall_ms", milliseconds(run.wall)},
                     {"cpu_ms", milliseconds(run.cpu)},
+                    {"gpu_ms", milliseconds(run.gpu)},
                     {"shadow_share", run.shadow_share},
                     {"triangles_mean", run.work_mean},
                     {"triangles_worst", run.work_worst}});
@@ -53,7 +54,8 @@ json summary(const BenchResult& r) {
                       {"edge_band", e.visibility.edge_share},
                       {"psnr_db", quality},
                       {"ssim", e.ssim},
-                      {"cpu_ms_median", e.cpu_median * 1e3}});
+                      {"cpu_ms_median", e.cpu_median * 1e3},
+                      {"gpu_ms_median", e.gpu_median * 1e3}});
   }
   return {{"device", r.device},
           {"opengl", r.version},
@@ -103,24 +105,33 @@ std::string fps_data(const BenchResult& r, ShadowMethod method, std::string& plo
   return data;
 }
 
-// Returns the CPU time of every frame, one block per method: it shows which method stalls, whatever
+// Names the processor whose time a frame costs: the software renderer draws on the CPU.
+const char* cost_name(const BenchResult& r) {
+  return r.software ? "cpu" : "gpu";
+}
+
+double cost_of(const BenchResult& r, const FrameTime& f) {
+  return r.software ? f.cpu : double(f.gpu_shadow) + f.gpu_lit;
+}
+
+// Returns what every frame cost, one block per method: it shows which method stalls, whatever
 // else the machine does.
-std::string cpu_data(const BenchResult& r, Shading shading, std::string& plot) {
+std::string cost_data(const BenchResult& r, Shading shading, std::string& plot) {
   std::string data;
   int block = 0;
   for (const BenchRun& run : r.times.runs) {
     if (run.shading != shading) continue;
-    plot += fmt::format("{}'cpu-{}.dat' index {} with lines title '{}'", block ? ", " : "plot ",
-                        name_of(shading), block, name_of(run.method));
+    plot += fmt::format("{}'{}-{}.dat' index {} with lines title '{}'", block ? ", " : "plot ",
+                        cost_name(r), name_of(shading), block, name_of(run.method));
     ++block;
     for (std::size_t i = 0; i < run.frames.size(); ++i)
-      data += fmt::format("{} {:.3f}\n", i, run.frames[i].cpu * 1e3);
+      data += fmt::format("{} {:.4f}\n", i, cost_of(r, run.frames[i]) * 1e3);
     data += "\n\n";
   }
   return data;
 }
 
-// Returns the median CPU time of a frame and the mean visibility error, one block per method, one
+// Returns the median cost of a frame and the mean visibility error, one block per method, one
 // row per k.
 std::string error_data(const BenchResult& r, std::string& plot) {
   std::string data;
@@ -133,8 +144,8 @@ std::string error_data(const BenchResult& r, std::string& plot) {
                      [](const auto* a, const auto* b) { return a->interval < b->interval; });
     std::string rows;
     for (const BenchError* e : of_method)
-      rows +=
-          fmt::format("{:.4f} {:.8f} {}\n", e->cpu_median * 1e3, e->visibility.mean, e->interval);
+      rows += fmt::format("{:.4f} {:.8f} {}\n", (r.software ? e->cpu_median : e->gpu_median) * 1e3,
+                          e->visibility.mean, e->interval);
     if (rows.empty()) continue;
     plot += fmt::format(
         "{0}'error.dat' index {1} using 1:2 with linespoints lc {3} title '{2}', '' index {1} "
@@ -171,28 +182,49 @@ Status write_bench(const BenchResult& result, const fs::path& folder) {
     script += fmt::format("set title 'shadows: {0}'\nset output 'fps-{0}.png'\n{1}\n",
                           name_of(method), plot);
   }
-  script += "set ylabel 'CPU time of a frame, ms'\n";
+  const std::string cost = result.software ? "CPU time of a frame, ms" : "GPU time of a frame, ms";
+  script += fmt::format("set ylabel '{}'\n", cost);
   for (Shading shading : {Shading::unlit, Shading::lambert, Shading::blinn_phong, Shading::ward}) {
     std::string plot;
-    const std::string data = cpu_data(result, shading, plot);
+    const std::string data = cost_data(result, shading, plot);
     if (data.empty()) continue;
     if (status.ok())
-      status = write_file(folder / fmt::format("cpu-{}.dat", name_of(shading)), data);
-    script += fmt::format("set title 'shading: {0}'\nset output 'cpu-{0}.png'\n{1}\n",
-                          name_of(shading), plot);
+      status =
+          write_file(folder / fmt::format("{}-{}.dat", cost_name(result), name_of(shading)), data);
+    script += fmt::format("set title 'shading: {0}'\nset output '{2}-{0}.png'\n{1}\n",
+                          name_of(shading), plot, cost_name(result));
   }
   std::string plot;
   if (const std::string data = error_data(result, plot); !data.empty()) {
     if (status.ok()) status = write_file(folder / "error.dat", data);
-    script +=
+    script += fmt::format(
         "set title 'error against frame time, labels: k'\nset output 'error.png'\n"
-        "set xlabel 'CPU time of a frame, ms'\nset ylabel 'mean |visibility error|'\n"
-        "set logscale y\nset yrange [*:*]\nset offsets graph 0.06, graph 0.06, 0, 0\n" +
-        plot + "\n";
+        "set xlabel '{}'\nset ylabel 'mean |visibility error|'\n"
+        "set logscale y\nset yrange [*:*]\nset offsets graph 0.06, graph 0.06, 0, 0\n{}\n",
+        cost, plot);
   }
   if (status.ok()) status = write_file(folder / "plots.gp", script);
   return status;
 }
+
+namespace {
+
+// Returns milliseconds with three digits, so that frames of 90 ms and of 0.2 ms are both legible.
+std::string ms(double seconds) {
+  const double t = seconds * 1e3;
+  return fmt::format("{:.{}f}", t, t < 1 ? 3 : t < 10 ? 2 : 1);
+}
+
+std::string percentiles(const Spread& s) {
+  return fmt::format("{} | {} | {} | {} | {} | {:.2f}", ms(s.p50), ms(s.p95), ms(s.p99), ms(s.p999),
+                     ms(s.worst), spread_ratio(s));
+}
+
+std::string medians(const Spread& s) {
+  return fmt::format("{} | {} | {:.2f}", ms(s.p50), ms(s.p95), spread_ratio(s));
+}
+
+}  // namespace
 
 std::string bench_table(const BenchResult& r) {
   std::string s = fmt::format("{} ({}), {} x {}, maps {}², k = {}, pcf {}, {} triangles\n\n",
@@ -200,25 +232,17 @@ std::string bench_table(const BenchResult& r) {
                               r.map_resolution, r.interval, r.pcf, r.triangles);
   if (!r.times.runs.empty())
     s += "| shading | shadows | mean fps | wall ms: p50 | p95 | p99 | p99.9 | worst | p95 / p50 | "
-         "CPU "
-         "ms: p50 | p95 | p95 / p50 | shadow share | triangles: mean | worst |\n|---|---|---|---|"
-         "---|---|---|---|---|---|---|---|---|---|---|\n";
+         "CPU ms: p50 | p95 | p95 / p50 | GPU ms: p50 | p95 | p95 / p50 | shadow share | "
+         "triangles: mean | worst |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"
+         "---|---|---|\n";
   for (const BenchRun& b : r.times.runs)
-    s += fmt::format(
-        "| {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.2f} | {:.1f} | "
-        "{:.1f} | {:.2f} | {:.0f} % | {:.0f} | {:.0f} |\n",
-        name_of(b.shading), name_of(b.method), b.wall.mean > 0 ? 1 / b.wall.mean : 0,
-        b.wall.p50 * 1e3, b.wall.p95 * 1e3, b.wall.p99 * 1e3, b.wall.p999 * 1e3, b.wall.worst * 1e3,
-        spread_ratio(b.wall), b.cpu.p50 * 1e3, b.cpu.p95 * 1e3, spread_ratio(b.cpu),
-        b.shadow_share * 100, b.work_mean, b.work_worst);
-  if (r.times.control.rounds > 0) {
-    const Spread &w = r.times.control.wall, &c = r.times.control.cpu;
-    s += fmt::format(
-        "| control | fixed arithmetic | | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.2f} | "
-        "{:.1f} | {:.1f} | {:.2f} | | | |\n",
-        w.p50 * 1e3, w.p95 * 1e3, w.p99 * 1e3, w.p999 * 1e3, w.worst * 1e3, spread_ratio(w),
-        c.p50 * 1e3, c.p95 * 1e3, spread_ratio(c));
-  }
+    s += fmt::format("| {} | {} | {:.1f} | {} | {} | {} | {:.0f} % | {:.0f} | {:.0f} |\n",
+                     name_of(b.shading), name_of(b.method), b.wall.mean > 0 ? 1 / b.wall.mean : 0,
+                     percentiles(b.wall), medians(b.cpu), medians(b.gpu), b.shadow_share * 100,
+                     b.work_mean, b.work_worst);
+  if (r.times.control.rounds > 0)
+    s += fmt::format("| control | fixed arithmetic | | {} | {} | | | | | | |\n",
+                     percentiles(r.times.control.wall), medians(r.times.control.cpu));
   if (!r.errors.empty())
     s +=
         "\n| shadows | k | mean \\|Δ visibility\\| | wrong pixels | off edges: mean | wrong | PSNR "

@@ -78,6 +78,12 @@ double rounding_of_depths(int bits, double far) {
   return (bits < 32 ? std::exp2(-bits) : 0) + (1 + far) * 0x1p-21;
 }
 
+// Returns the width of a pixel plus its height, at a view depth of 1.
+double pixel_size(const FrameBlock& b) {
+  const auto length = [](const float* v) { return glm::length(glm::dvec3(v[0], v[1], v[2])); };
+  return length(b.ray_x) + length(b.ray_y);
+}
+
 // A key's map, and the layer that holds it.
 struct KeyMap {
   const LightFit& fit;
@@ -184,7 +190,7 @@ void Renderer::Impl::fill_block(const Camera& world_camera, const FrameLight& li
     b.ray_y[3] = float(1.0 / march_samples(options.march_steps, glm::degrees(between)));
     put_box(b, l, scene->bounds, scene->origin);
     const MapAxes axes = map_axes(light.direction, options.up);
-    put(b.map_x, {to_glm(axes.x), 0});
+    put(b.map_x, {to_glm(axes.x), pixel_size(b) * subpixel});
     put(b.map_y, {to_glm(axes.y), 0});
   }
   put(b.specular, {options.specular, options.shininess, options.roughness, options.map_resolution});
@@ -213,6 +219,9 @@ void Renderer::Impl::draw_lit(const Camera& camera, const FrameLight& light, con
   glClearNamedFramebufferfv(target.get(), GL_COLOR, 0, clear);
   draw_surfaces(camera, stats);
   if (lighting) draw_lighting(plan, nearest);
+  // Drivers check the current program against what is bound even where nothing is drawn, and this
+  // program's maps may be deleted before another one is used.
+  glUseProgram(0);
   glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
 }
 
@@ -235,7 +244,6 @@ void Renderer::Impl::draw_lighting(const FramePlan& plan, int nearest) {
   glBindFramebuffer(GL_FRAMEBUFFER, target.get());
   glDepthMask(GL_FALSE);
   glDepthFunc(GL_LESS);
-  glUseProgram(lighting.get());
   glBindTextureUnit(0, surfaces.get());
   glBindTextureUnit(3, depth.get());
   glBindSampler(0, 0);
@@ -247,6 +255,7 @@ void Renderer::Impl::draw_lighting(const FramePlan& plan, int nearest) {
     shadow->bind_compare(nearest, 1);
     if (features.shadow == ShadowSampling::two) shadow->bind_compare(plan.to, 2);
   }
+  glUseProgram(lighting.get());
   glBindVertexArray(no_vertices.get());
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glDepthMask(GL_TRUE);

@@ -266,6 +266,9 @@ Result<Renderer> Renderer::make(const ViewScene& scene, const RenderOptions& opt
 Result<Renderer> Renderer::share(const RenderOptions& options) const {
   auto impl = std::make_unique<Impl>();
   impl->scene = impl_->scene;
+  GLint bits = 0;
+  glGetIntegerv(GL_SUBPIXEL_BITS, &bits);
+  impl->subpixel = std::exp2(-bits);
   impl->shadow_timer.emplace();
   impl->lit_timer.emplace();
   if (Status s = impl->apply(options); !s.ok()) return s;

@@ -26,6 +26,7 @@ struct Renderer::Impl {
   GlTexture surfaces;
   GlVertexArray no_vertices;
   int target_width = 0, target_height = 0;
+  double subpixel = 0;  // the driver rounds corners of triangles to multiples of it (pixels)
   std::optional<ShadowPass> shadow;
   int shadow_maps = 0;
   std::optional<KeySchedule> schedule;

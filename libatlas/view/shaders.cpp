@@ -27,7 +27,8 @@ layout(std140, binding = 0) uniform Frame {
   vec4 first_ray, ray_x, ray_y;  // from the eye, one unit of view depth long: through the image's
                                  // corner, and its change for each pixel; w: view depth is 1 / (w + w
                                  // * depth) with the first two, 1 / march's samples the third
-  vec4 map_x, map_y;  // axes of a map of the current light
+  vec4 map_x, map_y;  // axes of a map of the current light; how far a point may be off for each unit
+                      // of view depth (world), unused
 } frame;
 )";
 
@@ -177,7 +178,8 @@ std::string lighting_text(const ShaderFeatures& f) {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   uvec4 surface = texelFetch(surfaces, pixel, 0);
   vec3 ray = frame.first_ray.xyz + gl_FragCoord.x * frame.ray_x.xyz + gl_FragCoord.y * frame.ray_y.xyz;
-  vec3 away = ray / (frame.first_ray.w + frame.ray_x.w * texelFetch(depth, pixel, 0).x);
+  float far = 1.0 / (frame.first_ray.w + frame.ray_x.w * texelFetch(depth, pixel, 0).x);
+  vec3 away = ray * far;
   vec3 n = unfold(unpackSnorm2x16(surface.w));
   if (dot(n, away) > 0.0) n = -n;
   vec3 l = frame.light.xyz;
@@ -190,11 +192,13 @@ std::string lighting_text(const ShaderFeatures& f) {
     // map's axes, by the filter's reach times how far the normal leans that way. The depth bias
     // grows with the tangent of the angle to the light, by which a plane's depth changes across a
     // texel. It is never 0, since even a plane that faces the light is only as deep as the map says
-    // up to rounding. Both act here and not on the casters, so that maps hold true depths, which
-    // the march needs.
+    // up to rounding. Graphics hardware snaps corners to fractions of a pixel before it
+    // interpolates depths, so the point may be off by what lies between two such fractions: the
+    // offset is enlarged by that. All act here and not on the casters, so that maps hold true
+    // depths, which the march needs.
     s += R"(  float sine = sqrt(max(1.0 - nl * nl, 0.0));
   float lean = abs(dot(n, frame.map_x.xyz)) + abs(dot(n, frame.map_y.xyz));
-  vec3 p = frame.eye.xyz + away + n * (frame.weights.z * lean);
+  vec3 p = frame.eye.xyz + away + n * (frame.weights.z * lean + far * frame.map_x.w);
   float bias = frame.eye.w + frame.corner.w * min(sine, 8.0 * nl) / max(nl, 1e-3);
   float seen = nl > 0.0 ? visibility(p, bias) : 0.0;
 )";

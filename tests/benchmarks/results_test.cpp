@@ -57,6 +57,17 @@ TEST(Results, SurviveTheirFile) {
   ASSERT_EQ(back->fits.size(), results.fits.size());
 }
 
+TEST(Results, MachinesAreCounted) {
+  EXPECT_EQ(machine_count({}), 0u);
+  Results same = some_results(), other = some_results();
+  same.machine.date = "another day";
+  same.machine.system = "another kernel";
+  same.machine.command = "another command";
+  EXPECT_EQ(machine_count(std::vector{some_results(), same}), 1u);
+  other.machine.processor = "another processor";
+  EXPECT_EQ(machine_count(std::vector{some_results(), same, other}), 2u);
+}
+
 TEST(Results, FilesOfOthersAreNamedAsSuch) {
   const TempFolder folder;
   const auto complaint = [&](const char* text) {

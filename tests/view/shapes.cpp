@@ -138,13 +138,13 @@ View pavilion_view() {
   return view_of(pavilion(), {5.5, 4, 6.5}, {0, 0.5, 0});
 }
 
-GlContext& software_context() {
+GlContext& test_context() {
   // Never destroyed, because its driver would be unloaded, and the leak checker could then not name
   // what the driver keeps (lsan.supp).
   static GlContext* const context = [] {
     ContextOptions options;
     options.debug = true;
-    options.software = true;
+    options.software = std::getenv("LIBATLAS_GPU") == nullptr;
     Result<std::unique_ptr<GlContext>> made = make_headless_context(options);
     EXPECT_TRUE(made.ok()) << made.status().message();
     return made.value().release();
@@ -153,7 +153,7 @@ GlContext& software_context() {
 }
 
 Renderer must_render(const Scene& scene, const RenderOptions& options) {
-  software_context();
+  test_context();
   Result<ViewScene> view = make_view_scene(scene, {});
   EXPECT_TRUE(view.ok()) << view.status().message();
   Result<Renderer> made = Renderer::make(*view, options);

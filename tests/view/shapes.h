@@ -30,8 +30,9 @@ View courtyard_view();
 View room_view();
 View pavilion_view();
 
-// The software renderer's debug context. There is one per process, since making contexts is slow.
-GlContext& software_context();
+// The debug context that tests draw with, of the software renderer, or of a GPU if the environment
+// has LIBATLAS_GPU. There is one per process, since making contexts is slow.
+GlContext& test_context();
 
 // Returns a renderer, and fails the test if it cannot be made.
 Renderer must_render(const Scene& scene, const RenderOptions& options);

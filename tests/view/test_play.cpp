@@ -50,7 +50,7 @@ struct Show {
     options.frames = 3;
   }
   Result<PlaySummary> play(const Context& context = {}) {
-    return play_headless(software_context(), renderer, options, context);
+    return play_headless(test_context(), renderer, options, context);
   }
 
   View view = courtyard_view();
@@ -113,7 +113,7 @@ TEST_F(Play, ErrorsAreOneLine) {
 
 TEST_F(Play, ALostContextIsOneLineThatSaysWhy) {
   Show show;
-  GlContext& gl = software_context();
+  GlContext& gl = test_context();
   EXPECT_TRUE(gl.check_alive().ok());
   const std::pair<unsigned, const char*> cases[] = {{GL_GUILTY_CONTEXT_RESET, "this program"},
                                                     {GL_INNOCENT_CONTEXT_RESET, "another program"},
@@ -135,7 +135,7 @@ TEST_F(Play, ALostContextIsOneLineThatSaysWhy) {
 
 // The driver is asked to report resets, not only our code.
 TEST_F(Play, ContextsAreMadeSoThatTheyTellOfResets) {
-  software_context();
+  test_context();
   GLint strategy = 0;
   glGetIntegerv(GL_RESET_NOTIFICATION_STRATEGY, &strategy);
   EXPECT_EQ(strategy, GL_LOSE_CONTEXT_ON_RESET);
@@ -219,7 +219,8 @@ TEST_F(Bench, MeasuresEveryCombinationAndWritesItsFiles) {
   o.error_frames = 4;
   const Renderer first = must_render(view.scene, o.render);
   BenchResult r;
-  r.device = software_context().info().renderer;
+  r.device = test_context().info().renderer;
+  r.software = test_context().info().software;
   const LightPath path = *LightPath::make({});
   std::atomic<bool> stop{true};
   Context stopped;
@@ -233,6 +234,10 @@ TEST_F(Bench, MeasuresEveryCombinationAndWritesItsFiles) {
   for (const BenchRun& run : r.times.runs) {
     EXPECT_EQ(run.frames.size(), 4u);
     EXPECT_LE(run.cpu.p50, run.cpu.worst);
+    std::vector<double> gpu;
+    for (const FrameTime& f : run.frames) gpu.push_back(double(f.gpu_shadow) + f.gpu_lit);
+    EXPECT_GT(run.gpu.p50, 0.0);
+    EXPECT_EQ(run.gpu.worst, *std::max_element(gpu.begin(), gpu.end()));
     // The classic method submits every caster in every frame, `none` never does.
     const std::uint32_t casters = run.frames[0].triangles_shadow;
     if (run.method == ShadowMethod::classic) {
@@ -258,7 +263,9 @@ TEST_F(Bench, MeasuresEveryCombinationAndWritesItsFiles) {
   int lines = 0;
   for (std::string line; std::getline(csv, line);) ++lines;
   EXPECT_EQ(lines, 1 + 21 * 4);
-  for (const char* name : {"plots.gp", "fps-march.dat", "cpu-lambert.dat", "cpu-ward.dat"})
+  const std::string cost = r.software ? "cpu" : "gpu";
+  for (const std::string& name : {std::string("plots.gp"), std::string("fps-march.dat"),
+                                  cost + "-lambert.dat", cost + "-ward.dat"})
     EXPECT_TRUE(fs::exists(path_ / "out" / name)) << name;
 }
 

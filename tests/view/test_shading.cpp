@@ -94,6 +94,28 @@ TEST_F(Plane, BakedLightIsShownAndTheSunAdded) {
   EXPECT_NEAR(middle({0, 1, 0})[0], encoded(0.5 * 0.6 * (200 / y + options_.intensity)), 1.5);
 }
 
+// A floor that faces the light lies at one depth in the map, so only rounding can put points behind
+// it. How far off they are depends on the size of a pixel.
+TEST_F(Plane, IsLitWhateverTheSizeOfAPixel) {
+  options_.show_visibility = true;
+  fit_planes(camera_, {{-4, 0, -4}, {4, 0, 4}});
+  for (const ShadowMethod method : {ShadowMethod::classic, ShadowMethod::march})
+    for (const int bits : {16, 24, 32})
+      for (const int size : {5, 33, 65, 257}) {
+        options_.shadows = method;
+        options_.map_bits = bits;
+        options_.width = options_.height = size;
+        for (const double x : {0.2, 1.0, 7.0}) {
+          camera_.eye = {x, 3, 2};
+          Renderer r = must_render(scene_, options_);
+          ASSERT_TRUE(r.draw(camera_, still({0, 1, 0})).ok());
+          const Image8 image = r.read_image();
+          const auto dark = std::count(image.texels.begin(), image.texels.end(), 0);
+          EXPECT_EQ(dark, 0) << name_of(method) << ", " << bits << " bits, " << size << " pixels";
+        }
+      }
+}
+
 TEST_F(Plane, EmissionIsAddedToWhatIsReflected) {
   Material& m = scene_.materials[0];
   m.emission = {0.1f, 0, 3};
@@ -120,7 +142,7 @@ TEST_F(Plane, TexturesReflectOrShine) {
   scene_.texcoord_indices.assign(scene_.indices.size(), 0);
   const double light = options_.ambient + options_.intensity;
   EXPECT_NEAR(middle({0, 1, 0})[0], encoded(0.6 * 0.2158 * light), 1.5);
-  software_context();
+  test_context();
   ViewSceneOptions baked;
   baked.textures_hold_light = true;
   const ViewScene view = *make_view_scene(scene_, baked);
@@ -169,7 +191,7 @@ TEST_F(Plane, ChartsOfAPageDoNotMixFarAway) {
   }
   camera_.eye = {0, 0.3, 8};
   options_.shading = Shading::unlit;
-  software_context();
+  test_context();
   ViewSceneOptions baked;
   baked.textures_hold_light = true;
   const ViewScene view = *make_view_scene(scene_, baked);
@@ -185,7 +207,7 @@ TEST_F(Plane, BakedPagesAreShownAsTheyAreStored) {
   scene_.materials[0].texture = 0;
   scene_.texcoords = {{0, 0}};
   scene_.texcoord_indices.assign(scene_.indices.size(), 0);
-  software_context();
+  test_context();
   ViewSceneOptions baked;
   baked.textures_hold_light = true;
   options_.shading = Shading::unlit;
