@@ -218,7 +218,7 @@ void Renderer::Impl::draw_lit(const Camera& camera, const FrameLight& light, con
                           features.visibility ? 1 : c.z, 1};
   glClearNamedFramebufferfv(target.get(), GL_COLOR, 0, clear);
   draw_surfaces(camera, stats);
-  if (lighting) draw_lighting(plan, nearest);
+  if (lighting) draw_lighting();
   // Drivers check the current program against what is bound even where nothing is drawn, and this
   // program's maps may be deleted before another one is used.
   glUseProgram(0);
@@ -238,27 +238,20 @@ void Renderer::Impl::draw_surfaces(const Camera& camera, FrameStats& stats) {
   draw_clusters(camera, stats);
 }
 
-// Lights the pixels where the first pass left a surface. The depth is read and tested, never
-// written.
-void Renderer::Impl::draw_lighting(const FramePlan& plan, int nearest) {
+// Lights the pixels where the first pass left a surface. What that pass drew is read, and therefore
+// not attached to this one's framebuffer (OpenGL 4.5, 9.3.1: feedback loops).
+void Renderer::Impl::draw_lighting() {
   glBindFramebuffer(GL_FRAMEBUFFER, target.get());
-  glDepthMask(GL_FALSE);
-  glDepthFunc(GL_LESS);
+  glDisable(GL_DEPTH_TEST);
   glBindTextureUnit(0, surfaces.get());
   glBindTextureUnit(3, depth.get());
   glBindSampler(0, 0);
   glBindSampler(3, 0);
-  if (shadow && features.shadow == ShadowSampling::march) {
-    shadow->bind_all_compare(1);
-    shadow->bind_all_depths(2);
-  } else if (shadow) {
-    shadow->bind_compare(nearest, 1);
-    if (features.shadow == ShadowSampling::two) shadow->bind_compare(plan.to, 2);
-  }
+  if (shadow) shadow->bind_compare(1);
+  if (features.shadow == ShadowSampling::march) shadow->bind_depths(2);
   glUseProgram(lighting.get());
   glBindVertexArray(no_vertices.get());
   glDrawArrays(GL_TRIANGLES, 0, 3);
-  glDepthMask(GL_TRUE);
 }
 
 // Draws the clusters front to back, without those out of view, so that hidden surfaces are not

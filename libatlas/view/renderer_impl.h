@@ -58,7 +58,7 @@ struct Renderer::Impl {
   void draw_lit(const Camera& camera, const FrameLight& light, const FramePlan& plan,
                 FrameStats& stats);
   void draw_surfaces(const Camera& camera, FrameStats& stats);
-  void draw_lighting(const FramePlan& plan, int nearest);
+  void draw_lighting();
   void draw_clusters(const Camera& camera, FrameStats& stats);
   void fill_block(const Camera& camera, const FrameLight& light, const FramePlan& plan,
                   int nearest);

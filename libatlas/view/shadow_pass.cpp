@@ -60,8 +60,6 @@ Result<ShadowPass> ShadowPass::make(int resolution, int maps, int bits) {
                                         maps, resolution, resolution, s.message())};
   for (int i = 0; i < maps; ++i) {
     Map map;
-    map.view = create<GlTexture>(glGenTextures);  // a view needs a name that was never bound
-    glTextureView(map.view.get(), GL_TEXTURE_2D, layers, format, 0, 1, GLuint(i), 1);
     map.frame = create<GlFramebuffer>(glCreateFramebuffers);
     const GLuint f = map.frame.get();
     glNamedFramebufferTextureLayer(f, GL_DEPTH_ATTACHMENT, layers, 0, i);
@@ -106,17 +104,12 @@ std::uint32_t ShadowPass::draw(const GpuScene& scene, const MapWork& work, const
   return count;
 }
 
-void ShadowPass::bind_compare(int slot, int unit) const {
-  glBindTextureUnit(GLuint(unit), maps_[std::size_t(slot)].view.get());
-  glBindSampler(GLuint(unit), compare_.get());
-}
-
-void ShadowPass::bind_all_compare(int unit) const {
+void ShadowPass::bind_compare(int unit) const {
   glBindTextureUnit(GLuint(unit), layers_.get());
   glBindSampler(GLuint(unit), compare_.get());
 }
 
-void ShadowPass::bind_all_depths(int unit) const {
+void ShadowPass::bind_depths(int unit) const {
   glBindTextureUnit(GLuint(unit), layers_.get());
   glBindSampler(GLuint(unit), plain_.get());
 }

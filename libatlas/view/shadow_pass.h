@@ -20,22 +20,19 @@ class ShadowPass {
   std::uint32_t draw(const GpuScene& scene, const MapWork& work, const LightFit& fit);
 
   const LightFit& fit(int slot) const { return maps_[std::size_t(slot)].fit; }
-  // Binds map `slot` for depth comparison (bilinear; lit outside the map).
-  void bind_compare(int slot, int unit) const;
-  // Binds all maps, one layer per slot, for depth comparison, or for reading their depths (nearest;
-  // 1 outside the map).
-  void bind_all_compare(int unit) const;
-  void bind_all_depths(int unit) const;
+  // Binds all maps, one layer per slot, for depth comparison (bilinear; lit outside the map), or
+  // for reading their depths (nearest; 1 outside the map).
+  void bind_compare(int unit) const;
+  void bind_depths(int unit) const;
   int resolution() const { return resolution_; }
   int bits() const { return bits_; }
 
  private:
   struct Map {
-    GlTexture view;  // this layer alone
     GlFramebuffer frame;
     LightFit fit;
   };
-  GlTexture layers_;  // declared before the views of it
+  GlTexture layers_;
   std::vector<Map> maps_;
   GlSampler compare_, plain_;
   GlProgram program_;

@@ -4,41 +4,34 @@
 namespace atlas {
 namespace {
 
-// The filters below use these macros, which stand for a single map or for one layer of all maps.
-constexpr const char* kPlainMap = R"(
-#define MAP sampler2DShadow map
-#define LOOK(uv, depth) texture(map, vec3(uv, depth))
-#define GATHER(uv, depth) textureGather(map, uv, depth)
-)";
-constexpr const char* kLayeredMap = R"(
-#define MAP sampler2DArrayShadow map, float layer
-#define LOOK(uv, depth) texture(map, vec4(uv, layer, depth))
-#define GATHER(uv, depth) textureGather(map, vec3(uv, layer), depth)
+// All maps are layers of one texture.
+constexpr const char* kMaps = R"(
+layout(binding = 1) uniform sampler2DArrayShadow maps;
 )";
 
 constexpr const char* kNearest = R"(
-float visibility_at(MAP, vec2 uv, float depth) {
-  return LOOK((floor(uv * frame.specular.w) + 0.5) * frame.weights.w, depth);
+float visibility_at(float layer, vec2 uv, float depth) {
+  return texture(maps, vec4((floor(uv * frame.specular.w) + 0.5) * frame.weights.w, layer, depth));
 }
 )";
 
 constexpr const char* kBilinear = R"(
-float visibility_at(MAP, vec2 uv, float depth) {
-  return LOOK(uv, depth);
+float visibility_at(float layer, vec2 uv, float depth) {
+  return texture(maps, vec4(uv, layer, depth));
 }
 )";
 
 // The mean of 3x3 bilinear taps is a weighted sum over 4x4 texels, and four gathers read those.
 constexpr const char* kPcf3 = R"(
-float visibility_at(MAP, vec2 uv, float depth) {
+float visibility_at(float layer, vec2 uv, float depth) {
   vec2 texel = uv * frame.specular.w - 0.5;
   vec2 f = fract(texel);
   float s = frame.weights.w;
   vec2 corner = floor(texel) * s;
-  vec4 a = GATHER(corner, depth);
-  vec4 b = GATHER(corner + vec2(2.0 * s, 0.0), depth);
-  vec4 c = GATHER(corner + vec2(0.0, 2.0 * s), depth);
-  vec4 d = GATHER(corner + vec2(2.0 * s), depth);
+  vec4 a = textureGather(maps, vec3(corner, layer), depth);
+  vec4 b = textureGather(maps, vec3(corner + vec2(2.0 * s, 0.0), layer), depth);
+  vec4 c = textureGather(maps, vec3(corner + vec2(0.0, 2.0 * s), layer), depth);
+  vec4 d = textureGather(maps, vec3(corner + vec2(2.0 * s), layer), depth);
   vec2 g = 1.0 - f;
   // Gathers come as (0,1) (1,1) (1,0) (0,0).
   float row0 = g.x * a.w + a.z + b.w + f.x * b.z;
@@ -50,30 +43,28 @@ float visibility_at(MAP, vec2 uv, float depth) {
 )";
 
 constexpr const char* kPcf5 = R"(
-float visibility_at(MAP, vec2 uv, float depth) {
+float visibility_at(float layer, vec2 uv, float depth) {
   float sum = 0.0;
   for (int y = -2; y <= 2; ++y)
-    for (int x = -2; x <= 2; ++x) sum += LOOK(uv + vec2(x, y) * frame.weights.w, depth);
+    for (int x = -2; x <= 2; ++x)
+      sum += texture(maps, vec4(uv + vec2(x, y) * frame.weights.w, layer, depth));
   return sum * 0.04;
 }
 )";
 
 constexpr const char* kOneMap = R"(
-layout(binding = 1) uniform sampler2DShadow map0;
 float visibility(vec3 p, float bias) {
   vec3 m = (frame.to_map0 * vec4(p, 1.0)).xyz;
-  return visibility_at(map0, m.xy, m.z - bias);
+  return visibility_at(frame.ray0.w, m.xy, m.z - bias);
 }
 )";
 
 constexpr const char* kTwoMaps = R"(
-layout(binding = 1) uniform sampler2DShadow map0;
-layout(binding = 2) uniform sampler2DShadow map1;
 float visibility(vec3 p, float bias) {
   vec3 m0 = (frame.to_map0 * vec4(p, 1.0)).xyz;
   vec3 m1 = (frame.to_map1 * vec4(p, 1.0)).xyz;
-  float v = frame.weights.x * visibility_at(map0, m0.xy, m0.z - bias) +
-            frame.weights.y * visibility_at(map1, m1.xy, m1.z - bias);
+  float v = frame.weights.x * visibility_at(frame.ray0.w, m0.xy, m0.z - bias) +
+            frame.weights.y * visibility_at(frame.ray1.w, m1.xy, m1.z - bias);
   return min(v, 1.0);
 }
 )";
@@ -87,10 +78,13 @@ float visibility(vec3 p, float bias) {
 // search. If no miss is at most 2.5, the point is lit: with 2, smooth shadows lose a little of
 // their rims; with 4, a cabin's seats under a low sun have three times as many wrong pixels; with
 // 8, even more. If the first key sees nothing at all above the point along the ray, the point is
-// lit as that key says and its search ends, too. The loop's bound is not a constant, which keeps
-// compilers from unrolling it: the software renderer leaves a loop early but never skips a branch.
+// lit as that key says and its search ends, too. If nothing is near, the last part of the ray that
+// is under the height field (from `low` on) and then over it again (at `high`) is bisected, which
+// finds steep blockers between two samples. What it finds must lie within a texel: within 2.5, it
+// is the rim of an opening as often as a blocker. The loops' bounds are not constants, which keeps
+// compilers from unrolling them: the software renderer leaves a loop early but never skips a
+// branch.
 constexpr const char* kMarch = R"(
-layout(binding = 1) uniform sampler2DArrayShadow maps;
 layout(binding = 2) uniform sampler2DArray depths;
 float height(vec3 m, vec2 uv, float layer) {
   return m.z - texture(depths, vec3(uv, layer)).x;
@@ -127,16 +121,26 @@ float visibility(vec3 p, float bias) {
     float under = max(max(over_other, here), d - over_other);
     if (d > least && g < gap) { best = d; gap = g; }
     float rung = top * ray.z * frame.ray_y.w;
+    float low = 0.0, high = here > 0.0 ? 1e30 : 0.0;
     for (int i = 1; i < steps; ++i) {
       float h = rung * float(i);
       d = height(m, m.xy + h * ray.xy, ray.w);
       g = abs(d - h);
       under = max(under, d - h);
+      if (d > h) { low = h; high = 1e30; } else high = min(high, h);
       if (d > least && g < gap) { best = d; gap = g; }
     }
     d = height(m, m.xy + best * ray.xy, ray.w);
     g = abs(d - best);
     if (d > least && g < gap) { best = d; gap = g; }
+    high = min(high, top * ray.z);
+    for (int i = 0; i < 4 && gap * texels > 2.5 && high > low; ++i) {
+      float h = 0.5 * (low + high);
+      d = height(m, m.xy + h * ray.xy, ray.w);
+      g = abs(d - h);
+      if (d > h) low = h; else high = h;
+      if (d > least && g * texels < 1.0) { best = d; gap = g; }
+    }
     float miss = gap * texels;
     if (miss < nearest) {
       nearest = miss;
@@ -151,7 +155,7 @@ float visibility(vec3 p, float bias) {
     texels = frame.march.y;
     over_other = here;
   }
-  return nearest <= 2.5 || open ? visibility_at(maps, layer, at.xy, at.z) : 1.0;
+  return nearest <= 2.5 || open ? visibility_at(layer, at.xy, at.z) : 1.0;
 }
 )";
 
@@ -176,7 +180,7 @@ const char* sampling_text(ShadowSampling shadow) {
 }  // namespace
 
 std::string shadow_text(const ShaderFeatures& f) {
-  std::string s = f.shadow == ShadowSampling::march ? kLayeredMap : kPlainMap;
+  std::string s = kMaps;
   s += filter_text(f.pcf);
   return s + sampling_text(f.shadow);
 }
