@@ -287,13 +287,36 @@ class PlyParser {
       } else if (vertex_uvs_) {
         uvs = corners;
       }
-      builder_.material = 0;
-      if (number >= 0 && scalars_[number] >= 0 && scalars_[number] < builder_.materials.size()) {
-        builder_.material = static_cast<std::uint32_t>(scalars_[number]);
-      }
+      builder_.material = number < 0 ? 0 : material_of(number);
       builder_.add_face({corners, uvs, normals_of(corners)}, [&] { return place(); });
     }
     return {};
+  }
+
+  // Returns the material of the current face, whose texture number is property `number`. Programs
+  // that write every property of a face as a list give one value, or the same one at each corner.
+  std::uint32_t material_of(int number) {
+    const std::size_t count = header_.texture_files.size();
+    double value = scalars_[number];
+    if (element_->properties[number].list && count > 0) {
+      const std::vector<double>& list = lists_[number];
+      if (list.empty()) return white();  // it names no texture
+      value = list[0];
+      if (std::count(list.begin(), list.end(), value) != std::ptrdiff_t(list.size())) {
+        builder_.defects.add(DefectKind::material_unknown, [&] {
+          return fmt::format("{}: texnumber has different values (give the face one)", place());
+        });
+        return white();
+      }
+    }
+    return value >= 0 && value < double(count) ? static_cast<std::uint32_t>(value) : 0;
+  }
+
+  // Returns the material without a texture behind those of the textures.
+  std::uint32_t white() {
+    const std::size_t count = header_.texture_files.size();
+    if (builder_.materials.size() == count) builder_.materials.push_back({});
+    return static_cast<std::uint32_t>(count);
   }
 
   // Reads triangle strips, which follow each other in one list, with a -1 after each.

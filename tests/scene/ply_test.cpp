@@ -196,6 +196,49 @@ TEST(Ply, TexturesAreNamedInComments) {
   }
 }
 
+// A list must be read by its values. Its length, here 1, is no texture's number.
+TEST(Ply, TextureNumbersInLists) {
+  const TempFolder folder;
+  const auto path =
+      folder.write("t.ply",
+                   "ply\nformat ascii 1.0\ncomment TextureFile a.png\ncomment TextureFile b.png\n"
+                   "comment TextureFile c.png\nelement vertex 3\nproperty float x\n"
+                   "property float y\nproperty float z\nelement face 6\n"
+                   "property list uchar int vertex_indices\n"
+                   "property list uchar int texnumber\nend_header\n"
+                   "0 0 0\n1 0 0\n0 1 0\n"
+                   "3 0 1 2 1 2\n3 0 1 2 1 0\n3 0 1 2 3 1 1 1\n3 0 1 2 3 1 1 2\n3 0 1 2 0\n"
+                   "3 0 1 2 1 9\n");
+  const auto loaded = read_scene(path, {}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  const Scene& s = loaded->scene;
+  std::vector<std::string> names;
+  for (const std::uint32_t m : s.triangle_material) names.push_back(s.materials[m].name);
+  EXPECT_EQ(names, (std::vector<std::string>{"c.png", "a.png", "b.png", "", "", "a.png"}));
+  EXPECT_EQ(loaded->defects.count(DefectKind::material_unknown), 1u);
+  for (const Defect& d : loaded->defects.defects) {
+    if (d.kind == DefectKind::material_unknown) {
+      EXPECT_EQ(d.first_places[0],
+                path.string() + ":20: texnumber has different values (give the face one)");
+    }
+  }
+}
+
+// Numbers mean nothing where no texture is named.
+TEST(Ply, TextureNumbersWithoutTextures) {
+  const TempFolder folder;
+  const auto path = folder.write("t.ply",
+                                 "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                                 "property float y\nproperty float z\nelement face 2\n"
+                                 "property list uchar int vertex_indices\n"
+                                 "property list uchar int texnumber\nend_header\n"
+                                 "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 3 0 1 2\n3 0 1 2 1 0\n");
+  const auto loaded = read_scene(path, {}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->scene.materials.size(), 1u);
+  EXPECT_TRUE(loaded->defects.empty());
+}
+
 INSTANTIATE_TEST_SUITE_P(All, PlyFormats,
                          ::testing::Values("ascii", "binary_little_endian", "binary_big_endian"));
 
