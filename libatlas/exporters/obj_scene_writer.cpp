@@ -62,7 +62,7 @@ bool names_texture(std::string_view line) {
 std::string other_lines(const Material& material, Losses& losses) {
   std::string text;
   for (const std::string& line : material.mtl_lines) {
-    if (line.starts_with("d ") && material.opacity < 1) continue;  // see write_materials()
+    if (is_opacity_line(line) && material.opacity < 1) continue;  // see write_materials()
     const bool texture = names_texture(line);
     if (texture) losses.add("textures of materials (lines of the MTL, now comments)");
     if (texture) text += '#';

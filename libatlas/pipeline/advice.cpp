@@ -87,7 +87,8 @@ float shown(const ExportReport& report, double luminance) {
 bool is_open(const Material& m, const Scene& scene) {
   const bool holes =
       m.texture >= 0 && scene.textures[std::size_t(m.texture)].image.channels % 2 == 0;
-  return m.opacity_textured || (m.alpha_mode != AlphaMode::opaque && (m.opacity < 1 || holes));
+  return m.opacity_textured || m.opacity_by_view ||
+         (m.alpha_mode != AlphaMode::opaque && (m.opacity < 1 || holes));
 }
 
 }  // namespace

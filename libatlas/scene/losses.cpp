@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "libatlas/scene/text_scanner.h"
+
 namespace atlas {
 
 std::vector<std::string> Losses::lines() const {
@@ -10,11 +12,17 @@ std::vector<std::string> Losses::lines() const {
   return result;
 }
 
+bool is_opacity_line(const std::string& mtl_line) {
+  const std::string text = mtl_line + '\n';  // scanners need a newline at the end
+  TextScanner scan(text.data(), text.data() + text.size());
+  double share = 0;
+  return scan.word() == "d" && scan.number(share) && share >= 0 && share <= 1 && scan.at_line_end();
+}
+
 void count_mtl_losses(const Material& material, Losses& losses) {
   for (const std::string& line : material.mtl_lines) {
     const std::string keyword = line.substr(0, line.find_first_of(" \t"));
-    const bool halo = line.find("-halo") != line.npos;  // then the opacity depends on the view
-    if (keyword == "map_Kd" || (keyword == "d" && !halo)) continue;
+    if (keyword == "map_Kd" || is_opacity_line(line)) continue;
     if (keyword == "Ke" && !material.emission_textured) continue;
     losses.add("lines of the MTL: " + keyword);
   }

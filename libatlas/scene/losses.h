@@ -29,6 +29,10 @@ class Losses {
   LossCounts counts_;
 };
 
+// Returns whether a line of an MTL is `d` with a fraction, which Material::opacity holds. It does
+// not hold `d -halo`, where the opacity depends on the view, and values that are no fraction.
+bool is_opacity_line(const std::string& mtl_line);
+
 // Adds, by keyword, the Material::mtl_lines that say what no other member of Material holds.
 void count_mtl_losses(const Material& material, Losses& losses);
 

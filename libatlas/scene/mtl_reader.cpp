@@ -79,12 +79,19 @@ class MtlParser {
     line.append(at, rest.rest_with_comment().end());
   }
 
-  // Ignores a value that is not a fraction (`d -halo 0.5`). Tr is not read at all, since some
-  // programs write it for 1 - d and others for d.
+  // Of `d -halo 0.5`, only notes that it is there if it lets anything through. Ignores a value that
+  // is not a fraction. Tr is not read at all, since some programs write it for 1 - d and others for
+  // d.
   Status parse_opacity() {
-    double share = 0;
-    if (!inside_ || !scan_.number(share) || !(share >= 0 && share <= 1)) return {};
+    if (!inside_) return {};
     RawMaterial& material = builder_.materials.back();
+    TextScanner ahead = scan_;
+    const bool halo = small_letters(std::string(ahead.word())) == "-halo";
+    if (halo) scan_ = ahead;
+    double share = 0;
+    if (!scan_.number(share) || !(share >= 0 && share <= 1)) return {};
+    material.opacity_by_view = halo && share < 1;
+    if (halo) return {};
     material.opacity = static_cast<float>(share);
     material.alpha_mode = material.opacity < 1 ? AlphaMode::blend : AlphaMode::opaque;
     return {};

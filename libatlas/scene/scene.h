@@ -46,6 +46,7 @@ struct Material {
   Vec3f emission{0, 0, 0};
   bool emission_textured = false;
   bool opacity_textured = false;  // by a texture of its own (map_d), which is not read
+  bool opacity_by_view = false;   // by the direction of view (d -halo), which is not read
   // The material's lines in the MTL file, except newmtl and Kd, if asked for (ReadOptions::rest):
   // for exports that keep the scene.
   std::vector<std::string> mtl_lines = {};

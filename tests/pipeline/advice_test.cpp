@@ -84,6 +84,9 @@ TEST(Advice, TransparencyIsNamed) {
                     "2 materials ('fence', ...) are transparent or have holes"));
   scene.materials[0].opacity_textured = true;
   EXPECT_TRUE(holds(advice_on_materials(scene, Quantity::illuminance), "3 materials ('wall'"));
+  scene.materials[0].opacity_textured = false;
+  scene.materials[0].opacity_by_view = true;
+  EXPECT_TRUE(holds(advice_on_materials(scene, Quantity::illuminance), "3 materials ('wall'"));
 }
 
 TEST(Advice, UvChartsOfWhichNoneIsKeptAreNamed) {

@@ -295,6 +295,9 @@ TEST(Mtl, Opacity) {
     EXPECT_FALSE(read(line).opacity_textured) << line;
   }
   EXPECT_TRUE(read("map_d holes.png").opacity_textured);
+  EXPECT_TRUE(read("d -halo 0.5").opacity_by_view);
+  for (const char* line : {"d -halo 1", "d -halo", "d -halo 7", "d -halo 0.5\nd 1"})
+    EXPECT_FALSE(read(line).opacity_by_view) << line;
 }
 
 }  // namespace
