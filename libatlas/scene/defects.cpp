@@ -43,6 +43,9 @@ constexpr Names kNames[] = {
     {"texture_unreadable", "textures that cannot be decoded, plain diffuse colour used"},
     {"texture_option_ignored", "texture options ignored"},
     {"node_hidden", "hidden nodes left out"},
+    {"skin_repeated",
+     "nodes and instances of skinned meshes that lie upon another one, since joints place them "
+     "wherever their node is (give each a skin with joints of its own)"},
     {"element_ignored", "elements ignored (not a surface, or an unknown keyword)"},
 };
 

@@ -38,6 +38,7 @@ enum class DefectKind : std::uint8_t {
   texture_unreadable,       // image that cannot be decoded: likewise
   texture_option_ignored,   // a texture option that has no counterpart here
   node_hidden,              // node that its file hides: left out
+  skin_repeated,            // node or instance whose joints put its mesh where another one is: kept
   element_ignored,          // lines, points, curves, unknown keywords: nothing to bake
 };
 

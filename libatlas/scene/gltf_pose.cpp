@@ -8,11 +8,6 @@
 namespace atlas {
 namespace {
 
-int attribute(const std::map<std::string, int>& attributes, const std::string& name) {
-  const auto at = attributes.find(name);
-  return at == attributes.end() ? -1 : at->second;
-}
-
 std::vector<glm::dvec3> vectors(const std::vector<float>& values) {
   std::vector<glm::dvec3> result(values.size() / 3);
   for (std::size_t i = 0; i < result.size(); ++i)
@@ -29,6 +24,11 @@ glm::dmat3 normal_matrix(const glm::dmat4& m) {
 }
 
 }  // namespace
+
+int gltf_attribute(const std::map<std::string, int>& attributes, const std::string& name) {
+  const auto at = attributes.find(name);
+  return at == attributes.end() ? -1 : at->second;
+}
 
 glm::dmat4 gltf_local_matrix(const tinygltf::Node& node) {
   glm::dmat4 m(1);
@@ -76,8 +76,8 @@ glm::dmat4 GltfPose::world_of(int node) const {
 const std::vector<glm::dmat4>& GltfPose::joints(const tinygltf::Node& node,
                                                 const tinygltf::Primitive& primitive) {
   const bool bent = node.skin >= 0 && std::size_t(node.skin) < model_.skins.size() &&
-                    attribute(primitive.attributes, "JOINTS_0") >= 0 &&
-                    attribute(primitive.attributes, "WEIGHTS_0") >= 0;
+                    gltf_attribute(primitive.attributes, "JOINTS_0") >= 0 &&
+                    gltf_attribute(primitive.attributes, "WEIGHTS_0") >= 0;
   const auto [at, is_new] = joints_.try_emplace(bent ? node.skin : -1);
   std::vector<glm::dmat4>& matrices = at->second;
   if (!is_new || !bent) return matrices;
@@ -97,6 +97,27 @@ const std::vector<glm::dmat4>& GltfPose::joints(const tinygltf::Node& node,
     matrices.push_back(exists ? world_of(skin.joints[j]) * bind : glm::dmat4(1));
   }
   return matrices;
+}
+
+int GltfPose::first_alike(int skin, const std::vector<glm::dmat4>& matrices) {
+  const auto [at, is_new] = alike_.try_emplace(skin, skin);
+  if (!is_new) return at->second;
+  std::string bytes;
+  for (const glm::dmat4& m : matrices) {
+    for (int i = 0; i < 16; ++i) {
+      const float value = float(m[i / 4][i % 4]) + 0.f;  // -0 becomes 0
+      bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+  }
+  return at->second = skin_of_.try_emplace(std::move(bytes), skin).first->second;
+}
+
+bool GltfPose::lies_on_earlier(const tinygltf::Node& node) {
+  for (const tinygltf::Primitive& primitive : model_.meshes[std::size_t(node.mesh)].primitives) {
+    const auto& bent = joints(node, primitive);
+    if (!bent.empty()) return !skinned_.emplace(node.mesh, first_alike(node.skin, bent)).second;
+  }
+  return false;
 }
 
 bool GltfPose::mirrors(const tinygltf::Node& node, const tinygltf::Primitive& primitive,
@@ -122,11 +143,11 @@ Status GltfPose::morph(const tinygltf::Node& node, const tinygltf::Primitive& pr
       node.weights.empty() ? model_.meshes[std::size_t(node.mesh)].weights : node.weights;
   for (std::size_t t = 0; t < std::min(weights.size(), primitive.targets.size()); ++t) {
     if (weights[t] == 0) continue;
-    const int position = attribute(primitive.targets[t], "POSITION");
+    const int position = gltf_attribute(primitive.targets[t], "POSITION");
     if (position >= 0) {
       if (Status s = add_moves(position, weights[t], vertices.positions); !s.ok()) return s;
     }
-    const int normal = attribute(primitive.targets[t], "NORMAL");
+    const int normal = gltf_attribute(primitive.targets[t], "NORMAL");
     if (normal >= 0 && !vertices.normals.empty()) {
       if (Status s = add_moves(normal, weights[t], vertices.normals); !s.ok()) return s;
     }
@@ -140,8 +161,8 @@ Status GltfPose::bend(const std::vector<glm::dmat4>& joints, const tinygltf::Pri
   std::vector<glm::dmat4> blend(points.size(), glm::dmat4(0));
   std::vector<double> total(points.size(), 0);
   for (int set = 0;; ++set) {
-    const int which = attribute(primitive.attributes, fmt::format("JOINTS_{}", set));
-    const int weight = attribute(primitive.attributes, fmt::format("WEIGHTS_{}", set));
+    const int which = gltf_attribute(primitive.attributes, fmt::format("JOINTS_{}", set));
+    const int weight = gltf_attribute(primitive.attributes, fmt::format("WEIGHTS_{}", set));
     if (which < 0 || weight < 0) break;
     auto ids = gltf_floats(model_, which, 4), weights = gltf_floats(model_, weight, 4);
     if (!ids.ok()) return ids.status();
@@ -166,10 +187,10 @@ Status GltfPose::bend(const std::vector<glm::dmat4>& joints, const tinygltf::Pri
 }
 
 Status GltfPose::read(const tinygltf::Primitive& primitive, GltfVertices& vertices) const {
-  auto positions = gltf_floats(model_, attribute(primitive.attributes, "POSITION"), 3);
+  auto positions = gltf_floats(model_, gltf_attribute(primitive.attributes, "POSITION"), 3);
   if (!positions.ok()) return positions.status();
   vertices.positions = vectors(*positions);
-  const int normal = attribute(primitive.attributes, "NORMAL");
+  const int normal = gltf_attribute(primitive.attributes, "NORMAL");
   if (!wants_normals_ || normal < 0) return {};
   auto normals = gltf_floats(model_, normal, 3);
   if (!normals.ok()) return normals.status();

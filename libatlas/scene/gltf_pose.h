@@ -4,6 +4,9 @@
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <map>
+#include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "libatlas/scene/gltf_file.h"
@@ -12,6 +15,9 @@ namespace atlas {
 
 // Nodes that are nested more deeply are refused.
 inline constexpr int kMostNodeDepth = 512;
+
+// Returns the accessor of an attribute, or -1 if there is none of that name.
+int gltf_attribute(const std::map<std::string, int>& attributes, const std::string& name);
 
 // Returns a node's transform relative to its parent.
 glm::dmat4 gltf_local_matrix(const tinygltf::Node& node);
@@ -37,11 +43,18 @@ class GltfPose {
   bool mirrors(const tinygltf::Node& node, const tinygltf::Primitive& primitive,
                const glm::dmat4& world);
 
+  // Returns whether the node's skin puts its mesh where that of a node of an earlier call is.
+  // Transforms of nodes and instances do not move a mesh that joints place, so such meshes lie upon
+  // each other.
+  bool lies_on_earlier(const tinygltf::Node& node);
+
  private:
   // Returns the matrix of each joint from the mesh into the world; empty if no skin bends the
   // primitive.
   const std::vector<glm::dmat4>& joints(const tinygltf::Node& node,
                                         const tinygltf::Primitive& primitive);
+  // Returns the first skin asked for whose joints have the same matrices, as far as floats tell.
+  int first_alike(int skin, const std::vector<glm::dmat4>& matrices);
   glm::dmat4 world_of(int node) const;
   Status morph(const tinygltf::Node& node, const tinygltf::Primitive& primitive,
                GltfVertices& vertices) const;
@@ -54,6 +67,9 @@ class GltfPose {
   bool wants_normals_;
   std::vector<int> parent_;                        // of each node, or -1
   std::map<int, std::vector<glm::dmat4>> joints_;  // by skin
+  std::map<int, int> alike_;                       // first_alike(), by skin
+  std::map<std::string, int> skin_of_;             // by the bytes of its matrices
+  std::set<std::pair<int, int>> skinned_;          // meshes that joints placed, with their skins
 };
 
 }  // namespace atlas

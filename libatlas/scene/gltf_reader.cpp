@@ -193,6 +193,10 @@ class GltfParser {
     const tinygltf::Mesh& mesh = model_.meshes[node.mesh];
     const auto object = static_cast<std::uint32_t>(builder_.objects.size());
     builder_.objects.push_back(!node.name.empty() ? node.name : mesh.name);
+    if (pose_.lies_on_earlier(node))
+      builder_.defects.add(DefectKind::skin_repeated, [&] {
+        return fmt::format("{}: node {} '{}'", builder_.file, place.node, node.name);
+      });
     if (builder_.source) builder_.source->places.push_back(place);
     // Primitives often share one set of vertices and differ in their indices and materials.
     using Attributes = std::map<std::string, int>;
@@ -229,19 +233,14 @@ class GltfParser {
 
   // A file of compressed vertices only should list the extension as required, but some do not.
   bool attributes_are_compressed(const tinygltf::Primitive& raw) const {
-    const auto position = static_cast<std::size_t>(attribute(raw, "POSITION"));
+    const auto position = static_cast<std::size_t>(gltf_attribute(raw.attributes, "POSITION"));
     return raw.extensions.contains(kGltfDraco) && position < model_.accessors.size() &&
            model_.accessors[position].bufferView < 0;
   }
 
-  static int attribute(const tinygltf::Primitive& raw, const std::string& name) {
-    const auto at = raw.attributes.find(name);
-    return at == raw.attributes.end() ? -1 : at->second;
-  }
-
   Result<Vertices> add_vertices(const tinygltf::Node& node, const tinygltf::Primitive& raw,
                                 const glm::dmat4& matrix, const std::string& where) {
-    if (attribute(raw, "POSITION") < 0) return malformed(where, "has no POSITION");
+    if (gltf_attribute(raw.attributes, "POSITION") < 0) return malformed(where, "has no POSITION");
     if (attributes_are_compressed(raw)) {
       return Status{ErrorCode::unsupported,
                     fmt::format("{}: {} holds nothing but {}, which is not supported (export "
@@ -254,8 +253,8 @@ class GltfParser {
     for (const glm::dvec3& p : posed->positions) builder_.positions.push_back(from_glm(p));
     const Vertices added{base, count, builder_.normals.size(), !posed->normals.empty()};
     for (const glm::dvec3& n : posed->normals) builder_.normals.push_back(direction(n));
-    int values = attribute(raw, "_ILLUMINANCE");
-    if (values < 0) values = attribute(raw, "COLOR_0");
+    int values = gltf_attribute(raw.attributes, "_ILLUMINANCE");
+    if (values < 0) values = gltf_attribute(raw.attributes, "COLOR_0");
     builder_.illumination.resize(base + count, {NAN, NAN, NAN});
     if (values < 0) return added;
     auto light = gltf_floats(model_, values, 3);
@@ -271,7 +270,7 @@ class GltfParser {
 
   Status add_texcoords(const tinygltf::Primitive& raw, Primitive& primitive) {
     const int set = texcoord_set_[primitive.material];
-    const int accessor = attribute(raw, fmt::format("TEXCOORD_{}", set));
+    const int accessor = gltf_attribute(raw.attributes, fmt::format("TEXCOORD_{}", set));
     if (accessor < 0) return {};
     const auto [at, is_new] = texcoords_.try_emplace(accessor);
     if (is_new) {

@@ -60,6 +60,42 @@ TEST(KeptGltf, NodesOfSeveralParentsBecomeSeveral) {
   EXPECT_NE(after[0].attributes.at("TEXCOORD_1"), after[1].attributes.at("TEXCOORD_1"));
 }
 
+// Each node gets a mesh of its own and keeps its skin, whose joints place it. The node's own
+// transform, which skins ignore, stays in the file.
+TEST(KeptGltf, SkinnedMeshesStayWhereTheirJointsAre) {
+  const TempFolder folder;
+  Gltf gltf;
+  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+  const int joints = gltf.accessor({{"bufferView", gltf.view(std::vector<std::uint8_t>(12, 0))},
+                                    {"componentType", 5121},
+                                    {"type", "VEC4"},
+                                    {"count", 3}});
+  const int weights = gltf.floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4", 4);
+  gltf.single(
+      {{"attributes", {{"POSITION", positions}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}}},
+      {{"name", "left"}, {"skin", 0}, {"translation", {3, 3, 3}}});
+  gltf.j["nodes"].push_back({{"name", "right"}, {"mesh", 0}, {"skin", 1}});
+  gltf.j["nodes"].push_back({{"translation", {-2, 0, 0}}});
+  gltf.j["nodes"].push_back({{"translation", {0, 2, 0}}, {"scale", {2, 2, 2}}});
+  gltf.j["skins"] = {{{"joints", {2}}}, {{"joints", {3}}}};
+  gltf.j["scenes"][0]["nodes"] = {0, 1, 2, 3};
+  const path input = folder.write("s.glb", gltf.glb());
+  EXPECT_TRUE(keep(input, folder / "w.glb").not_kept.empty());
+  const json after = GltfOracle(folder / "w.glb").document;
+  EXPECT_EQ(after["nodes"][0]["translation"], (json{3, 3, 3}));
+  for (const std::size_t n : {0, 1}) {
+    EXPECT_EQ(after["nodes"][n]["mesh"], n);
+    EXPECT_EQ(after["nodes"][n]["skin"], n);
+    EXPECT_EQ(after["skins"][n]["joints"], json{n + 2});
+  }
+  const auto back = read_scene(folder / "w.glb", {}, {});
+  ASSERT_TRUE(back.ok()) << back.status().message();
+  EXPECT_TRUE(back->defects.empty());
+  const std::vector<Vec3f> places{{-2, 0, 0}, {-1, 0, 0}, {-2, 1, 0},
+                                  {0, 2, 0},  {2, 2, 0},  {0, 4, 0}};
+  EXPECT_EQ(back->scene.positions, places);
+}
+
 TEST(KeptGltf, ANodeAboveTurnsAndScales) {
   const TempFolder folder;
   Gltf gltf;

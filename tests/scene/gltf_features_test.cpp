@@ -306,6 +306,44 @@ TEST(Gltf, SkinsAndMorphTargetsAtRest) {
   }
 }
 
+// Joints place a skinned mesh, not its node. Nodes and instances that share joints therefore show
+// it at one place, which is told. Skins with joints of their own, here nodes 5 and 6, part them.
+TEST(Gltf, SkinnedMeshesThatLieUponEachOtherAreTold) {
+  const TempFolder folder;
+  Gltf g;
+  const int positions = g.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+  const int joints = g.accessor({{"bufferView", g.view(std::vector<std::uint8_t>(12, 0))},
+                                 {"componentType", 5121},
+                                 {"type", "VEC4"},
+                                 {"count", 3}});
+  const int weights = g.floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4", 4);
+  g.single(
+      {{"attributes", {{"POSITION", positions}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}}},
+      {{"name", "first"}, {"skin", 0}});
+  const auto add = [&](json node) { g.j["nodes"].push_back(std::move(node)); };
+  add({{"name", "other skin"}, {"mesh", 0}, {"skin", 1}, {"translation", {9, 0, 0}}});
+  add({{"name", "same skin"}, {"mesh", 0}, {"skin", 0}, {"translation", {5, 0, 0}}});
+  add({{"name", "same joint"}, {"mesh", 0}, {"skin", 2}});
+  const int moves = g.floats({0, 0, 0, 7, 0, 0}, "VEC3", 3);
+  const json instancing = {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", moves}}}}}};
+  add({{"name", "instances"}, {"mesh", 0}, {"skin", 3}, {"extensions", instancing}});
+  for (const int x : {10, 20, 30}) add({{"translation", {x, 0, 0}}});
+  g.j["skins"] = {{{"joints", {5}}}, {{"joints", {6}}}, {{"joints", {5}}}, {{"joints", {7}}}};
+  g.j["scenes"][0]["nodes"] = {0, 1, 2, 3, 4, 5, 6, 7};
+  const auto loaded = load_glb(folder, g);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  const Scene& s = loaded->scene;
+  std::vector<double> places;
+  for (std::size_t i = 0; i < s.positions.size(); i += 3)
+    places.push_back(s.origin.x + double(s.positions[i].x));
+  EXPECT_EQ(places, (std::vector<double>{10, 20, 10, 10, 30, 30}));
+  ASSERT_EQ(loaded->defects.count(DefectKind::skin_repeated), 3u);
+  const std::string file = (folder / "scene.glb").string();
+  EXPECT_EQ(loaded->defects.defects[0].first_places,
+            (std::vector<std::string>{file + ": node 2 'same skin'", file + ": node 3 'same joint'",
+                                      file + ": node 4 'instances'"}));
+}
+
 // Chunks without padding or bytes or of other kinds, and buffer files longer than their buffer.
 TEST(Gltf, ContainersThatManyWrite) {
   const TempFolder folder;
