@@ -70,6 +70,7 @@ class FileWriter {
 
   Status run(GltfTextures& textures, const Context& context, WorldFile& result) {
     if (Status s = check_triangles(); !s.ok()) return s;
+    if (positions_mark(scene_) != source_.positions_mark) return other_positions();
     if (Status s = materials_.write_images(textures); !s.ok()) return s;
     const std::vector<std::size_t> numbers = number_kept_meshes(source_);
     const std::set<std::size_t> own(numbers.begin(), numbers.end());
@@ -168,6 +169,16 @@ class FileWriter {
     return {ErrorCode::bad_input,
             "the scene to keep is not as it was read: its triangles are other ones (give it no "
             "Scene::source)"};
+  }
+
+  // The file's positions are written, relative to nodes and joints that move them. Those of the
+  // scene cannot be written in their place.
+  static Status other_positions() {
+    return {ErrorCode::bad_input,
+            "the scene to keep is not as it was read: Scene::positions or Scene::origin has "
+            "changed, but its glTF file would be written with its own positions (move its nodes "
+            "instead, or set Scene::source to null: then the scene's arrays are written, and what "
+            "only the file holds is counted as not kept)"};
   }
 
   // Refuses a scene whose triangles are not those that were read.

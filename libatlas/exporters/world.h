@@ -96,8 +96,9 @@ Result<WorldFile> write_obj(const World& world, const std::filesystem::path& pat
 // attributes, skins and animations stay as they are. The new uvs are in the first set after
 // TEXCOORD_0 that no primitive shown has (sets before it that a primitive lacks refer to the new
 // uvs, too). A mesh that nodes show several times is written once for each. A scene is refused
-// (bad_input) if the number of its triangles, or the range of positions that they use, is not that
-// of its source.
+// (bad_input) if the number of its triangles, the range of positions that they use, or a position
+// or its origin is not that of its source. Other members of the scene are not written; see
+// Scene::source for programs that change them.
 //
 // If World::scene has no source, each object becomes a node and a mesh, and each material a
 // primitive, with NORMAL, the scene's own uvs as TEXCOORD_0 and the new ones as TEXCOORD_1 (as both

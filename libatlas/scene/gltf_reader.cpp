@@ -391,7 +391,7 @@ Status read_gltf(const fs::path& path, SceneBuilder& builder, const Context& con
   source->model = std::move(*model);
   if (Status s = builder.wants_rest ? take_data_out(path, *source) : Status(); !s.ok()) return s;
   if (builder.wants_rest) builder.source = source;
-  if (!builder.wants_rest) builder.not_read = gltf_not_read(source->model);
+  builder.not_read = gltf_not_read(source->model);
   return GltfParser(source->model, builder, context).run();
 }
 

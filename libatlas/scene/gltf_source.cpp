@@ -1,9 +1,24 @@
 #include "libatlas/scene/gltf_source.h"
 
+#include <bit>
+
 #include "libatlas/scene/gltf_check.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
+
+std::uint64_t positions_mark(const Scene& scene) {
+  std::uint64_t mark = scene.positions.size();
+  const auto mix = [&mark](std::uint64_t bits) {
+    mark = (mark ^ bits) * 0x9e3779b97f4a7c15u;  // odd, so that no difference is lost
+    mark ^= mark >> 32;
+  };
+  for (const double c : {scene.origin.x, scene.origin.y, scene.origin.z})
+    mix(std::bit_cast<std::uint64_t>(c));
+  for (const Vec3f& p : scene.positions)
+    for (const float c : {p.x, p.y, p.z}) mix(std::bit_cast<std::uint32_t>(c));
+  return mark;
+}
 
 Status take_data_out(const fs::path& path, GltfSource& source) {
   const auto length = [](const nlohmann::json& of, const char* list) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libatlas/scene/gltf_file.h"
+#include "libatlas/scene/scene.h"
 
 namespace atlas {
 
@@ -41,7 +42,11 @@ struct GltfSource {
   std::vector<GltfPlace> places;
   std::vector<std::int32_t> image_texture;  // index of each image in Scene::textures, or -1
   bool other_light = false;                 // whether Scene::illumination is from another file
+  std::uint64_t positions_mark = 0;         // positions_mark() of the scene as it was read
 };
+
+// Returns a number that tells by 64 bits whether positions and origin of a scene have changed.
+std::uint64_t positions_mark(const Scene& scene);
 
 // For a file that has just been loaded: removes from `document` the data that `model` holds, and
 // checks that both have the same elements. Error: bad_input if a parser has skipped some.

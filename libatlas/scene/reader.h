@@ -23,8 +23,9 @@ struct ReadOptions {
   bool encoded_textures = false;
   bool normals = false;  // true: reads the file's normals into Scene::normals
   // Keeps what Scene has no arrays for, in Scene::source (glTF) and Material::mtl_lines (OBJ). All
-  // images of a glTF file are then textures, in the file's order. If false, Scene::not_read counts
-  // what is missing.
+  // images of a glTF file are then textures, in the file's order. Scene::not_read counts what the
+  // arrays lack in any case. An export to glTF refuses a scene with a source whose positions have
+  // been changed, see Scene::source.
   bool rest = false;
   // If true, sets encoded_textures, normals and rest, which exports that keep the scene need.
   bool keep_scene = false;

@@ -91,10 +91,13 @@ struct Scene {
   std::vector<Texture> textures;
   std::vector<std::string> object_names;
   // The glTF file itself, if asked for (ReadOptions::rest). An export to glTF that keeps the scene
-  // writes it again, so triangles and positions must still be those that were read.
+  // writes it again, so triangles, positions and origin must still be those that were read: others
+  // are refused. Changes to the other arrays are not written, except to light that came from
+  // another file. A program that changes the scene sets `source` to null. The export then writes
+  // the arrays, and lists `not_read` as not kept.
   std::shared_ptr<const GltfSource> source;
-  // Counts what the file has but the other members do not hold, if ReadOptions::rest was not set.
-  // An export that keeps the scene lists it as not kept.
+  // Counts what the file has but the other members, except `source`, do not hold. An export that
+  // keeps the scene without `source` lists it as not kept.
   LossCounts not_read = {};
 
   static constexpr std::uint32_t kNoTexcoord = 0xffffffffu;

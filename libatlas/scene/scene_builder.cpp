@@ -281,7 +281,10 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   }
   scene.indices = std::move(indices_);
   place_normals(scene);
-  if (source) source->other_light = !options.illumination_file.empty();
+  if (source) {
+    source->other_light = !options.illumination_file.empty();
+    source->positions_mark = positions_mark(scene);
+  }
   scene.source = std::move(source);
   if (any_texcoord_) scene.texcoord_indices = std::move(texcoord_indices_);
   scene.texcoords = std::move(texcoords);

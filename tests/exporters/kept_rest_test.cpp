@@ -187,6 +187,43 @@ TEST(KeptRest, OfGltfInObjIsCounted) {
                    "2 x textures of materials"}));
 }
 
+// Positions of the file would be written in their place.
+TEST(KeptRest, OtherPositionsThanWereReadAreRefused) {
+  const TempFolder folder;
+  Gltf gltf = textured(folder);
+  gltf.j["cameras"] =
+      json::array({{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}});
+  const path input = folder.write("s.glb", gltf.glb());
+  const std::function<void(Scene&)> changes[] = {
+      [](Scene& s) { s.positions[1].x += 1e-6f; },
+      [](Scene& s) { std::swap(s.positions[0], s.positions[1]); },
+      [](Scene& s) { s.positions.push_back({}); },
+      [](Scene& s) { s.origin.y = 7; },
+  };
+  for (const auto& change : changes) {
+    auto loaded = read_scene(input, {.keep_scene = true}, {});
+    ASSERT_TRUE(loaded.ok());
+    change(loaded->scene);
+    const World world = world_of(loaded->scene);
+    const Result<WorldFile> refused = write_kept(world, folder / "w.glb");
+    EXPECT_EQ(refused.status().code(), ErrorCode::bad_input);
+    EXPECT_NE(refused.status().message().find("set Scene::source to null"), std::string::npos);
+    EXPECT_TRUE(write_kept(world, folder / "w.obj").ok());  // writes the scene's positions
+    loaded->scene.source = nullptr;
+    const Result<WorldFile> written = write_kept(world, folder / "w.glb");
+    ASSERT_TRUE(written.ok()) << written.status().message();
+    EXPECT_EQ(written->not_kept, Lines{"1 x cameras"});
+    const auto back = read_scene(folder / "w.glb", {}, {});
+    ASSERT_TRUE(back.ok());
+    const auto second = [](const Scene& s) {
+      const Vec3f p = s.positions[1];
+      return std::pair(s.origin.x + double(p.x), s.origin.y + double(p.y));
+    };
+    EXPECT_EQ(second(back->scene), second(loaded->scene));
+    std::filesystem::remove(folder / "w.glb");
+  }
+}
+
 // A program that changes the triangles of a scene must remove its source.
 TEST(KeptRest, OtherTrianglesThanWereReadAreRefused) {
   const TempFolder folder;
