@@ -238,11 +238,14 @@ void Renderer::Impl::draw_surfaces(const Camera& camera, FrameStats& stats) {
   draw_clusters(camera, stats);
 }
 
-// Lights the pixels where the first pass left a surface. What that pass drew is read, and therefore
-// not attached to this one's framebuffer (OpenGL 4.5, 9.3.1: feedback loops).
+// Lights the pixels where the first pass left a surface. The depth is read and tested, never
+// written. It is attached all the while, so only a barrier makes sure that what the first pass
+// wrote is read (OpenGL 4.5, 9.3.1: feedback loops).
 void Renderer::Impl::draw_lighting() {
+  glTextureBarrier();
   glBindFramebuffer(GL_FRAMEBUFFER, target.get());
-  glDisable(GL_DEPTH_TEST);
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_LESS);
   glBindTextureUnit(0, surfaces.get());
   glBindTextureUnit(3, depth.get());
   glBindSampler(0, 0);
@@ -252,6 +255,7 @@ void Renderer::Impl::draw_lighting() {
   glUseProgram(lighting.get());
   glBindVertexArray(no_vertices.get());
   glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDepthMask(GL_TRUE);
 }
 
 // Draws the clusters front to back, without those out of view, so that hidden surfaces are not

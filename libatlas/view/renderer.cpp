@@ -106,7 +106,7 @@ Status Renderer::Impl::allocate_target(int width, int height, bool lit) {
   depth = target_texture(GL_DEPTH_COMPONENT32F, width, height);
   target = create<GlFramebuffer>(glCreateFramebuffers);
   glNamedFramebufferRenderbuffer(target.get(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour.get());
-  if (!lit) glNamedFramebufferTexture(target.get(), GL_DEPTH_ATTACHMENT, depth.get(), 0);
+  glNamedFramebufferTexture(target.get(), GL_DEPTH_ATTACHMENT, depth.get(), 0);
   surfaces = GlTexture();
   surface_target = GlFramebuffer();
   if (lit) {

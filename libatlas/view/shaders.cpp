@@ -58,7 +58,7 @@ vec3 unfold(vec2 f) {
 }
 )";
 
-// Draws one triangle over the whole image.
+// Draws one triangle over the whole image, at the depth of the background.
 constexpr const char* kWholeImage = R"(#version 450 core
 void main() {
   gl_Position = vec4(4.0 * (gl_VertexID & 1) - 1.0, 4.0 * (gl_VertexID >> 1) - 1.0, 0.0, 1.0);
@@ -178,9 +178,7 @@ std::string lighting_text(const ShaderFeatures& f) {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   uvec4 surface = texelFetch(surfaces, pixel, 0);
   vec3 ray = frame.first_ray.xyz + gl_FragCoord.x * frame.ray_x.xyz + gl_FragCoord.y * frame.ray_y.xyz;
-  float stored = texelFetch(depth, pixel, 0).x;
-  if (stored == 0.0) discard;  // no surface
-  float far = 1.0 / (frame.first_ray.w + frame.ray_x.w * stored);
+  float far = 1.0 / (frame.first_ray.w + frame.ray_x.w * texelFetch(depth, pixel, 0).x);
   vec3 away = ray * far;
   vec3 n = unfold(unpackSnorm2x16(surface.w));
   if (dot(n, away) > 0.0) n = -n;
