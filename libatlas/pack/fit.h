@@ -58,7 +58,8 @@ struct FitOptions {
   // A single page that is filled less than this share is of no use to the caller. So the search for
   // a layout of outlines ends early if the page is far emptier after the first draws. If charts are
   // laid in rows and `best` has an effort, it also ends if the page is still below this share after
-  // a further round. 0: the search is as long as usual.
+  // a further round. Several pages are no longer pressed once they are unlikely to become so full.
+  // 0: the search is as long as usual.
   double wanted_fill = 0;
   // Limits of `best` on a single page of outlines. The result depends on effort and seed only,
   // unless effort is 0 and time is the limit.

@@ -56,7 +56,11 @@ struct Goal {
   }
   bool reached(const PageLayout& layout) const {
     const bool dense = !options.free_aspect && layout.scale >= 1;
-    return dense || layout.with_lost_room * covered(layout) >= enough(layout.placements.size());
+    return dense || covered(layout) >= full(layout);
+  }
+  // Returns the share of the pages that the charts of a layout must cover for it to be reached.
+  double full(const PageLayout& layout) const {
+    return enough(layout.placements.size()) / layout.with_lost_room;
   }
   // Returns the share of the pages that pieces must cover. `seams` is by how much seams become
   // longer, relative to the square root of the surface's area.
@@ -86,8 +90,9 @@ class PageFiller {
         context_(context),
         goal_{options_, charts.distortion.uv_area * uvs.density * uvs.density} {
     // Several pages are pressed only if it may decide between ways, and at the end, because it
-    // takes a second or more for each way.
-    unpressed_.press_pages = false;
+    // takes a second or more for each way. For the same reason, more work goes into a single page
+    // only if it may make it full enough, and at the end.
+    unpressed_.press_pages = unpressed_.more_work = false;
   }
 
   // Replaces the charts by those that are laid out.
@@ -96,12 +101,14 @@ class PageFiller {
     if (!first.ok()) return first;
     Way best{charts, std::move(*first)};
     if (may_cut(charts) && !goal_.reached(best.layout)) {
-      if (Status s = press(best, kFilledFree); !s.ok()) return s;
+      if (Status s = work(best, unpressed_, goal_.full(best.layout)); !s.ok()) return s;
+      if (Status s = press(best, options_, kFilledFree); !s.ok()) return s;
       if (!goal_.reached(best.layout)) {
         if (Status s = cut(charts, best); !s.ok()) return s;
       }
     }
-    if (Status s = press(best, 0); !s.ok()) return s;
+    if (Status s = work(best, unpressed_, 0); !s.ok()) return s;
+    if (Status s = press(best, options_, 0); !s.ok()) return s;
     charts = std::move(best.charts);
     return std::move(best.layout);
   }
@@ -121,18 +128,29 @@ class PageFiller {
 
   Result<PageLayout> lay_out(const ChartSet& charts, const LayoutOptions& options) const {
     return lay_out_pages(charts, densities(charts), options,
-                         part(0, goal_.several() ? kLaidOut : 1));
+                         part(0, kLaidOut));
+  }
+
+  // Spends more effort on a single page, if it may then cover the share `wanted`.
+  Status work(Way& way, LayoutOptions options, double wanted) const {
+    options.wanted_fill = wanted;
+    const std::vector<Vec2d> wanted_densities = densities(way.charts);
+    Result<PageLayout> fuller = work_on_layout({way.charts, wanted_densities}, options,
+                                               std::move(way.layout), part(kLaidOut, 1));
+    if (!fuller.ok()) return fuller.status();
+    way.layout = std::move(*fuller);
+    return {};
   }
 
   // Presses the pages, if they may then cover the share `wanted`.
-  Status press(Way& way, double wanted) const {
+  Status press(Way& way, const LayoutOptions& options, double wanted) const {
     if (way.pressed || !options_.press_pages || way.layout.pages.size() < 2 ||
         kMostPressed * goal_.covered(way.layout) < wanted) {
       return {};
     }
     const std::vector<Vec2d> wanted_densities = densities(way.charts);
     Result<PageLayout> pressed =
-        press_layout({way.charts, wanted_densities}, options_, way.layout, part(kLaidOut, 1));
+        press_layout({way.charts, wanted_densities}, options, way.layout, part(kLaidOut, 1));
     if (!pressed.ok()) return pressed.status();
     way.layout = std::move(*pressed);
     way.pressed = true;
@@ -184,9 +202,7 @@ class PageFiller {
       if (!layout.ok()) return {};
       way.layout = std::move(*layout);
       if (goal_.covered(way.layout) < kHopeless * goal_.covered(best.layout)) return {};
-      if (vain < kMostVain) {
-        if (Status s = press(way, std::max(wanted, kFilledFree)); !s.ok()) return s;
-      }
+      if (Status s = improve(way, further, vain < kMostVain); !s.ok()) return s;
       if (goal_.covered(way.layout) < wanted) {
         vain += way.pressed;
         continue;
@@ -197,7 +213,21 @@ class PageFiller {
     return {};
   }
 
-  static constexpr double kLaidOut = 0.4;  // share of a part; pressing several pages is the rest
+  // Lays pieces out better if that may make a single page full enough, or several pages as full as
+  // they are wanted. Several pages are only pressed if `may_press`.
+  Status improve(Way& way, const LayoutOptions& further, bool may_press) const {
+    const double full = std::max(further.wanted_fill, goal_.full(way.layout));
+    if (!goal_.reached(way.layout)) {
+      if (Status s = work(way, further, full); !s.ok()) return s;
+    }
+    if (!may_press) return {};
+    LayoutOptions pressed = further;
+    pressed.press_pages = true;
+    return press(way, pressed, std::max(further.wanted_fill, kFilledFree));
+  }
+
+  // Share of a part; more work, or pressing several pages, is the rest.
+  static constexpr double kLaidOut = 0.4;
 
   const PlainUvs& uvs_;
   const LayoutOptions& options_;

@@ -244,7 +244,7 @@ double taken(const ChartSet& charts, const PageLayout& layout, const LayoutOptio
 // page would be less full than the caller wants.
 bool worth_more_work(const ChartSet& charts, const PageLayout& layout,
                      const LayoutOptions& options) {
-  return options.free_aspect && options.preset == PackPreset::standard &&
+  return options.free_aspect && options.preset == PackPreset::standard && layout.won == 0 &&
          charts.charts.size() > 1 && charts.charts.size() <= kMostCharts &&
          layout.with_lost_room * layout.uv_utilization < kPoor &&
          options.most_won * layout.uv_utilization >= options.wanted_fill &&
@@ -267,19 +267,13 @@ Result<PageLayout> lay_out_better(const ChartSet& charts, std::span<const Vec2d>
   if (!options.outlines || (boxed.ok() && (full() || !worth_outlining(charts, texels_per_unit))))
     return boxed;
   Result<PageLayout> best = lay_out(charts, texels_per_unit, options, part(0.2, 0.6));
-  const std::uint64_t tried = best.ok() ? best->layouts : 0;
-  if (boxed.ok() && best.ok()) boxed->with_lost_room = best->with_lost_room;
+  if (boxed.ok() && best.ok()) {
+    boxed->with_lost_room = best->with_lost_room;
+    boxed->layouts = best->layouts;
+  }
   if (!best.ok() || (boxed.ok() && !better(*best, *boxed, options))) best = std::move(boxed);
-  if (!best.ok() || !worth_more_work(charts, *best, options)) return best;
-  LayoutOptions harder = options;
-  harder.preset = PackPreset::best;
-  harder.tried = tried;
-  harder.wanted_fill = std::max(options.wanted_fill, best->uv_utilization);
-  Result<PageLayout> more = lay_out(charts, texels_per_unit, harder, part(0.6, 1));
-  const double before = best->uv_utilization;
-  if (more.ok() && better(*more, *best, options)) best = std::move(more);
-  if (best.ok()) best->won = before > 0 ? best->uv_utilization / before : 1;
-  return best;
+  if (!best.ok() || !options.more_work) return best;
+  return work_on_layout({charts, texels_per_unit}, options, std::move(*best), part(0.6, 1));
 }
 
 }  // namespace
@@ -324,6 +318,21 @@ Result<PageLayout> press_layout(const WantedCharts& wanted, const LayoutOptions&
   if (!pressed.ok()) return pressed.status();
   if (!(pressed->scale > unpressed.scale)) return unpressed;
   return layout_of(std::move(*pressed), problem);
+}
+
+Result<PageLayout> work_on_layout(const WantedCharts& wanted, const LayoutOptions& options,
+                                  PageLayout standard, const Context& context) {
+  if (!options.outlines || !worth_more_work(wanted.charts, standard, options)) return standard;
+  LayoutOptions harder = options;
+  harder.preset = PackPreset::best;
+  harder.tried = standard.layouts;
+  harder.wanted_fill = std::max(options.wanted_fill, standard.uv_utilization);
+  Result<PageLayout> more = lay_out(wanted.charts, wanted.texels_per_unit, harder, context);
+  if (context.cancelled()) return Status::cancelled();
+  const double before = standard.uv_utilization;
+  if (more.ok() && better(*more, standard, options)) standard = std::move(*more);
+  standard.won = before > 0 ? standard.uv_utilization / before : 1;
+  return standard;
 }
 
 }  // namespace atlas

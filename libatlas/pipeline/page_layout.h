@@ -30,6 +30,7 @@ struct LayoutOptions {
   double wanted_fill = 0;      // as in FitOptions
   std::uint64_t tried = 0;     // as in FitOptions
   double most_won = 1.1;       // by which factor more effort may make a poorly filled page fuller
+  bool more_work = true;       // spend more effort on a poorly filled page; see work_on_layout()
   bool square = false;         // pages are as wide as high; free_aspect overrides it
   bool allow_rotation = true;  // turn charts to pack better; else they lie as their uvs do
   PackPreset preset = PackPreset::standard;
@@ -74,5 +75,11 @@ struct WantedCharts {
 // same charts and options. The pages of outlines are then only pressed, and not searched for again.
 Result<PageLayout> press_layout(const WantedCharts& wanted, const LayoutOptions& options,
                                 const PageLayout& unpressed, const Context& context);
+
+// Packs a poorly filled page again with more effort, if it may then be filled to wanted_fill.
+// `standard` is what lay_out_pages() returned without more_work for the same charts and options.
+// Returns the better layout of the two.
+Result<PageLayout> work_on_layout(const WantedCharts& wanted, const LayoutOptions& options,
+                                  PageLayout standard, const Context& context);
 
 }  // namespace atlas
