@@ -27,9 +27,9 @@ constexpr std::size_t kMostCharts = 64;
 // pages are kept. Pages of 135 triangles, at 0.96 to 0.97 of the fit's scale, were drawn three
 // times in vain for 15 s. 22 models on 2, 4 and 8 pages lose nothing by this rule.
 constexpr double kMostRedrawn = 1.02;
-// If the caller wants the pages fuller than the fit, they may grow by this factor in scale after the
-// first draws, and by kMostExchanged after all draws. Both are estimates: the first is what all draws
-// and exchanges gained for one model, 65 charts on four pages.
+// If the caller wants the pages fuller than the fit, they may grow by this factor in scale after
+// the first draws, and by kMostExchanged after all draws. Both are estimates: the first is what all
+// draws and exchanges gained for one model, 65 charts on four pages.
 constexpr double kMostGained = 1.035, kMostExchanged = 1.015;
 // Minimum gain in scale, by an exchange or by all together.
 constexpr double kLeastGain = 1.002;

@@ -127,8 +127,7 @@ class PageFiller {
   }
 
   Result<PageLayout> lay_out(const ChartSet& charts, const LayoutOptions& options) const {
-    return lay_out_pages(charts, densities(charts), options,
-                         part(0, kLaidOut));
+    return lay_out_pages(charts, densities(charts), options, part(0, kLaidOut));
   }
 
   // Spends more effort on a single page, if it may then cover the share `wanted`.
