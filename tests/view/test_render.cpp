@@ -107,6 +107,24 @@ TEST(Render, SixHundredFramesOfEverythingWithoutAnError) {
   EXPECT_EQ(gl.debug_errors(), 0) << gl.first_debug_error();
 }
 
+// What a pass has not finished writing must not be read by the next one.
+TEST(Render, FramesOfOneViewAreTheSame) {
+  const View view = courtyard_view();
+  RenderOptions o = small();
+  o.shadows = ShadowMethod::classic;
+  o.show_visibility = true;
+  Renderer r = must_render(view.scene, o);
+  Image8 first;
+  for (int frame = 0; frame < 200; ++frame) {
+    // The light moves to and fro, so that each frame draws its map.
+    const bool back = frame % 2 == 1;
+    ASSERT_TRUE(r.draw(view.camera, still({0.6, 1, back ? 0.1 : 0.35})).ok());
+    if (back) continue;
+    if (frame == 0) first = r.read_image();
+    ASSERT_EQ(r.read_image().texels, first.texels) << frame;
+  }
+}
+
 TEST(Render, FittingToTheViewShowsTheSameShadowsFiner) {
   const View view = courtyard_view();
   RenderOptions o = small();
