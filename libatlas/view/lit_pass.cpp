@@ -238,16 +238,15 @@ void Renderer::Impl::draw_surfaces(const Camera& camera, FrameStats& stats) {
   draw_clusters(camera, stats);
 }
 
-// Lights the pixels where the first pass left a surface. The depth is read and tested, never
-// written. It is attached all the while, so only a barrier makes sure that what the first pass
-// wrote is read (OpenGL 4.5, 9.3.1: feedback loops).
+// Lights the pixels where the first pass left a surface. The depth is tested, never written. It is
+// read from a texture of its own, since a texture should not be read while it is attached (OpenGL
+// 4.5, 9.3.1: feedback loops).
 void Renderer::Impl::draw_lighting() {
-  glTextureBarrier();
   glBindFramebuffer(GL_FRAMEBUFFER, target.get());
   glDepthMask(GL_FALSE);
   glDepthFunc(GL_LESS);
   glBindTextureUnit(0, surfaces.get());
-  glBindTextureUnit(3, depth.get());
+  glBindTextureUnit(3, surface_depths.get());
   glBindSampler(0, 0);
   glBindSampler(3, 0);
   if (shadow) shadow->bind_compare(1);

@@ -103,18 +103,24 @@ Status Renderer::Impl::allocate_target(int width, int height, bool lit) {
   if (width == target_width && height == target_height && lit == bool(surfaces)) return {};
   colour = create<GlRenderbuffer>(glCreateRenderbuffers);
   glNamedRenderbufferStorage(colour.get(), GL_RGBA8, width, height);
-  depth = target_texture(GL_DEPTH_COMPONENT32F, width, height);
+  depth = create<GlRenderbuffer>(glCreateRenderbuffers);
+  glNamedRenderbufferStorage(depth.get(), GL_DEPTH_COMPONENT32F, width, height);
   target = create<GlFramebuffer>(glCreateFramebuffers);
   glNamedFramebufferRenderbuffer(target.get(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour.get());
-  glNamedFramebufferTexture(target.get(), GL_DEPTH_ATTACHMENT, depth.get(), 0);
+  glNamedFramebufferRenderbuffer(target.get(), GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth.get());
   surfaces = GlTexture();
+  surface_depths = GlTexture();
   surface_target = GlFramebuffer();
   if (lit) {
     surfaces = target_texture(GL_RGBA32UI, width, height);
+    surface_depths = target_texture(GL_R32F, width, height);
     surface_target = create<GlFramebuffer>(glCreateFramebuffers);
     const GLuint f = surface_target.get();
     glNamedFramebufferTexture(f, GL_COLOR_ATTACHMENT0, surfaces.get(), 0);
-    glNamedFramebufferTexture(f, GL_DEPTH_ATTACHMENT, depth.get(), 0);
+    glNamedFramebufferTexture(f, GL_COLOR_ATTACHMENT1, surface_depths.get(), 0);
+    glNamedFramebufferRenderbuffer(f, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth.get());
+    const GLenum both[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    glNamedFramebufferDrawBuffers(f, 2, both);
     no_vertices = create<GlVertexArray>(glCreateVertexArrays);
   }
   target_width = width;

@@ -19,11 +19,10 @@ struct Renderer::Impl {
   GlProgram program, lighting;  // lighting: none if the scene is unlit
   GlBuffer frame_block;
   GlFramebuffer target;
-  GlRenderbuffer colour;
-  GlTexture depth;
+  GlRenderbuffer colour, depth;
   // Targets of the first pass of lit scenes.
   GlFramebuffer surface_target;
-  GlTexture surfaces;
+  GlTexture surfaces, surface_depths;
   GlVertexArray no_vertices;
   int target_width = 0, target_height = 0;
   double subpixel = 0;  // the driver rounds corners of triangles to multiples of it (pixels)

@@ -34,7 +34,7 @@ layout(std140, binding = 0) uniform Frame {
 
 // The first pass of a lit scene stores in each pixel, 16 bits per value: the reflectance, the light
 // that shadows do not affect (exposed; from 2 on, the pixel is white whatever is added), and the
-// normal in octahedral encoding (Meyer et al. 2010).
+// normal in octahedral encoding (Meyer et al. 2010). A texture of its own takes the depth.
 constexpr const char* kWriteSurface = R"(
 vec2 fold(vec3 n) {
   n /= max(abs(n.x) + abs(n.y) + abs(n.z), 1e-30);
@@ -49,7 +49,7 @@ uvec4 surface_of(vec3 n, vec3 reflectance, vec3 own) {
 )";
 constexpr const char* kReadSurface = R"(
 layout(binding = 0) uniform usampler2D surfaces;
-layout(binding = 3) uniform sampler2D depth;
+layout(binding = 3) uniform sampler2D surface_depths;
 vec3 unfold(vec2 f) {
   vec3 n = vec3(f, 1.0 - abs(f.x) - abs(f.y));
   float below = max(-n.z, 0.0);
@@ -147,12 +147,13 @@ std::string fragment_text(const ShaderFeatures& f) {
          "diffuse;\n";
   if (coloured(f) && f.baked_vertices) s += "layout(location = 4) in vec3 v_illumination;\n";
   if (coloured(f) && f.emission) s += "layout(location = 5) in vec3 v_emission;\n";
-  s += lit(f) ? "layout(location = 0) out uvec4 result;\n"
+  s += lit(f) ? "layout(location = 0) out uvec4 result;\nlayout(location = 1) out float depth;\n"
               : "layout(location = 0) out vec4 result;\n";
   if (lit(f)) s += kWriteSurface;
   if (!lit(f) && coloured(f)) s += kEncode;
   s += "void main() {\n";
   if (coloured(f)) s += colours_text(f);
+  if (lit(f)) s += "  depth = gl_FragCoord.z;\n";
   if (lit(f))
     s += coloured(f) ? "  result = surface_of(v_normal, reflectance, own);\n"
                      : "  result = uvec4(0, 0, 0, packSnorm2x16(fold(v_normal)));\n";
@@ -178,7 +179,7 @@ std::string lighting_text(const ShaderFeatures& f) {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   uvec4 surface = texelFetch(surfaces, pixel, 0);
   vec3 ray = frame.first_ray.xyz + gl_FragCoord.x * frame.ray_x.xyz + gl_FragCoord.y * frame.ray_y.xyz;
-  float far = 1.0 / (frame.first_ray.w + frame.ray_x.w * texelFetch(depth, pixel, 0).x);
+  float far = 1.0 / (frame.first_ray.w + frame.ray_x.w * texelFetch(surface_depths, pixel, 0).x);
   vec3 away = ray * far;
   vec3 n = unfold(unpackSnorm2x16(surface.w));
   if (dot(n, away) > 0.0) n = -n;
