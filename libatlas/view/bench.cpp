@@ -75,8 +75,8 @@ void summarise(BenchRun& run) {
   for (const FrameTime& f : run.frames) {
     wall.push_back(f.wall);
     cpu.push_back(f.cpu);
-    if (std::isfinite(f.gpu_shadow) && std::isfinite(f.gpu_lit)) {
-      gpu.push_back(double(f.gpu_shadow) + f.gpu_lit);
+    if (std::isfinite(f.gpu())) {
+      gpu.push_back(f.gpu());
       shadow += f.gpu_shadow;
       lit += f.gpu_lit;
     }
@@ -139,8 +139,7 @@ class ErrorProbe {
     Result<FrameTime> t = timed_frame(visibility_, camera, light);
     if (!t.ok()) return t.status();
     sums.cpu.push_back(t->cpu);
-    const double gpu = double(t->gpu_shadow) + t->gpu_lit;
-    if (std::isfinite(gpu)) sums.gpu.push_back(gpu);
+    if (std::isfinite(t->gpu())) sums.gpu.push_back(t->gpu());
     Result<FrameStats> s = colours_.draw(camera, light);
     return s.ok() ? Status{} : s.status();
   }

@@ -34,6 +34,7 @@ struct BenchOptions {
 // `gpu_lit`, which the driver measures (NaN if it has not).
 struct FrameTime {
   float wall = 0, cpu = 0, gpu_shadow = 0, gpu_lit = 0;
+  double gpu() const { return double(gpu_shadow) + gpu_lit; }
   std::uint32_t triangles_shadow = 0, triangles_lit = 0;
 };
 

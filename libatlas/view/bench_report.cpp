@@ -19,6 +19,21 @@ double spread_ratio(const Spread& s) {
   return s.p50 > 0 ? s.p95 / s.p50 : 0;
 }
 
+// Returns milliseconds with three digits, so that frames of 90 ms and of 0.2 ms are both legible.
+std::string ms(double seconds) {
+  const double t = seconds * 1e3;
+  return fmt::format("{:.{}f}", t, t < 1 ? 3 : t < 10 ? 2 : 1);
+}
+
+std::string percentiles(const Spread& s) {
+  return fmt::format("{} | {} | {} | {} | {} | {:.2f}", ms(s.p50), ms(s.p95), ms(s.p99), ms(s.p999),
+                     ms(s.worst), spread_ratio(s));
+}
+
+std::string medians(const Spread& s) {
+  return fmt::format("{} | {} | {:.2f}", ms(s.p50), ms(s.p95), spread_ratio(s));
+}
+
 json milliseconds(const Spread& s) {
   return {{"mean", s.mean * 1e3},
           {"p50", s.p50 * 1e3},
@@ -111,7 +126,7 @@ const char* cost_name(const BenchResult& r) {
 }
 
 double cost_of(const BenchResult& r, const FrameTime& f) {
-  return r.software ? f.cpu : double(f.gpu_shadow) + f.gpu_lit;
+  return r.software ? f.cpu : f.gpu();
 }
 
 // Returns what every frame cost, one block per method: it shows which method stalls, whatever
@@ -206,25 +221,6 @@ Status write_bench(const BenchResult& result, const fs::path& folder) {
   if (status.ok()) status = write_file(folder / "plots.gp", script);
   return status;
 }
-
-namespace {
-
-// Returns milliseconds with three digits, so that frames of 90 ms and of 0.2 ms are both legible.
-std::string ms(double seconds) {
-  const double t = seconds * 1e3;
-  return fmt::format("{:.{}f}", t, t < 1 ? 3 : t < 10 ? 2 : 1);
-}
-
-std::string percentiles(const Spread& s) {
-  return fmt::format("{} | {} | {} | {} | {} | {:.2f}", ms(s.p50), ms(s.p95), ms(s.p99), ms(s.p999),
-                     ms(s.worst), spread_ratio(s));
-}
-
-std::string medians(const Spread& s) {
-  return fmt::format("{} | {} | {:.2f}", ms(s.p50), ms(s.p95), spread_ratio(s));
-}
-
-}  // namespace
 
 std::string bench_table(const BenchResult& r) {
   std::string s = fmt::format("{} ({}), {} x {}, maps {}², k = {}, pcf {}, {} triangles\n\n",

@@ -153,11 +153,11 @@ std::string fragment_text(const ShaderFeatures& f) {
   if (!lit(f) && coloured(f)) s += kEncode;
   s += "void main() {\n";
   if (coloured(f)) s += colours_text(f);
-  if (lit(f)) s += "  depth = gl_FragCoord.z;\n";
-  if (lit(f))
+  if (lit(f)) {
+    s += "  depth = gl_FragCoord.z;\n";
     s += coloured(f) ? "  result = surface_of(v_normal, reflectance, own);\n"
                      : "  result = uvec4(0, 0, 0, packSnorm2x16(fold(v_normal)));\n";
-  else if (coloured(f))
+  } else if (coloured(f))
     s += "  result = encoded(own);\n";
   else
     s += "  result = vec4(1.0);\n";

@@ -1,6 +1,5 @@
-// An atlas drawn by the graphics driver, as programs that render light into it do: no texel is
-// drawn twice, whatever the library counted itself, and charts cover the area that the library
-// says.
+// Draws atlases with the graphics driver, as programs that render light into them do: no texel is
+// drawn twice, as the library counts itself, and charts cover the area that the library says.
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
