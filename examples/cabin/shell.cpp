@@ -11,7 +11,43 @@
 namespace cabin {
 namespace {
 
-constexpr double kBandHalf = 0.25;  // half the height of the wall band that holds the windows
+constexpr double kBandHalf = 0.25;    // half the height of the wall band that holds the windows
+constexpr double kCrownAngle = 0.66;  // where the lining ends and the crown begins, from the axis
+
+// How many rows of quads each part of the wall has, from the floor up, and columns in a bay.
+struct WallRows {
+  int dado, band, lining, crown;
+  int columns;
+};
+
+WallRows wall_rows(const Builder& builder) {
+  const bool coarse = builder.coarse();
+  const double middle = wall_height(kWindowHeight);
+  const double dado = middle - kBandHalf - wall_height(0),
+               lining = kRadius * kCrownAngle - middle - kBandHalf;
+  const int bay = builder.segments(kBay, coarse ? 2 : 4);
+  return {builder.segments(dado, coarse ? 3 : 6), bay, builder.segments(lining, coarse ? 2 : 3),
+          builder.segments(kRadius * 1.8) / 2 + 2, bay};
+}
+
+// Returns a height of the crown, for v in [0, 1] from one side over the top to the other.
+double crown_height(double v) {
+  return kRadius * (kCrownAngle + (std::numbers::pi - 2 * kCrownAngle) * v);
+}
+
+// Returns the heights along the wall of all rows' borders, from the floor to the top of the crown.
+std::vector<double> row_heights(const WallRows& rows) {
+  const double floor = wall_height(0), middle = wall_height(kWindowHeight);
+  std::vector<double> heights;
+  const auto add = [&](double from, double to, int count) {
+    for (int i = 0; i < count; ++i) heights.push_back(from + (to - from) * i / count);
+  };
+  add(floor, middle - kBandHalf, rows.dado);
+  add(middle - kBandHalf, middle + kBandHalf, rows.band);
+  add(middle + kBandHalf, kRadius * kCrownAngle, rows.lining);
+  for (int i = 0; i <= rows.crown / 2; ++i) heights.push_back(crown_height(double(i) / rows.crown));
+  return heights;
+}
 
 // A piece of wall between two positions along the cabin and two heights.
 struct WallPiece {
@@ -117,44 +153,46 @@ void add_reveal(Builder& builder, const Window& window, int n) {
 
 void add_bay(Builder& builder, int side, int bay) {
   const glm::dvec2 x(bay * kBay, (bay + 1) * kBay);
-  const double middle = wall_height(kWindowHeight), floor = wall_height(0), top = kRadius * 0.66;
-  const int n = builder.segments(kBay, builder.coarse() ? 2 : 4);
+  const double middle = wall_height(kWindowHeight), floor = wall_height(0);
+  const WallRows rows = wall_rows(builder);
   builder.begin("lining", "lining");
-  add_wall(builder, {side, x, {middle + kBandHalf, top}},
-           {n, builder.segments(top - middle - kBandHalf, builder.coarse() ? 2 : 3)});
+  add_wall(builder, {side, x, {middle + kBandHalf, kRadius * kCrownAngle}},
+           {rows.columns, rows.lining});
   builder.begin("dado", "dado");
-  add_wall(builder, {side, x, {floor, middle - kBandHalf}},
-           {n, builder.segments(middle - kBandHalf - floor, builder.coarse() ? 3 : 6)});
+  add_wall(builder, {side, x, {floor, middle - kBandHalf}}, {rows.columns, rows.dado});
   builder.begin("lining", "lining");
   if (!has_window(bay))
-    return add_wall(builder, {side, x, {middle - kBandHalf, middle + kBandHalf}}, {n, n});
+    return add_wall(builder, {side, x, {middle - kBandHalf, middle + kBandHalf}},
+                    {rows.columns, rows.band});
   const Window window{side, bay, {(x.x + x.y) / 2, middle}};
-  add_window_wall(builder, window, n);
-  add_reveal(builder, window, n);
+  add_window_wall(builder, window, rows.columns);
+  add_reveal(builder, window, rows.columns);
 }
 
 // Adds the crown of the fuselage above the bins and the ceiling, which no light reaches.
 void add_crown(Builder& builder) {
   builder.begin("crown", "dado");
   GridShape crown;
-  crown.surface = [](double u, double v) {
-    return wall_point(1, kLength * u, kRadius * (0.66 + (std::numbers::pi - 1.32) * v), 0);
-  };
+  crown.surface = [](double u, double v) { return wall_point(1, kLength * u, crown_height(v), 0); };
   crown.nu = builder.segments(kLength) / 2 + 1;
-  crown.nv = builder.segments(kRadius * 1.8) / 2 + 2;
+  crown.nv = wall_rows(builder).crown;
   add_grid(builder, crown);
 }
 
+// Adds a bulkhead, whose border has the vertices of the wall's and the crown's ends: no gap opens
+// beside their chords.
 void add_bulkhead(Builder& builder, double x, bool faces_aft, const std::string& name) {
   builder.begin(name, faces_aft ? "trim" : "wood_panel");
+  const std::vector<double> heights = row_heights(wall_rows(builder));
   GridShape wall;
-  constexpr double kTop = 2.3;
-  wall.surface = [=](double u, double v) {
-    const double z = kTop * v;
-    return glm::dvec3(x, (2 * u - 1) * half_width(z), z);
-  };
   wall.nu = builder.segments(2 * kRadius);
-  wall.nv = builder.segments(kTop, builder.coarse() ? 6 : 12);
+  wall.nv = int(heights.size()) - 1;
+  wall.surface = [&, rows = wall.nv](double u, double v) {
+    const int row = std::clamp(int(v * rows), 0, rows - 1);
+    const glm::dvec3 border =
+        wall_point(1, x, glm::mix(heights[row], heights[row + 1], v * rows - row), 0);
+    return glm::dvec3(x, (2 * u - 1) * border.y, border.z);
+  };
   wall.flip = !faces_aft;
   wall.tiles_of = [](glm::dvec3 p) { return glm::dvec2(p.y, p.z) * 0.8; };
   add_grid(builder, wall);
