@@ -2,6 +2,8 @@
 // on errors.
 #include "benchmarks/support/compare.h"
 
+#include <cstdio>
+
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

@@ -1,5 +1,6 @@
 // atlas-bench-leak: the door's light leak against the texel size, as rows of stage "light_leak".
 #include <fmt/format.h>
+#include <cstdio>
 
 #include <CLI/CLI.hpp>
 

@@ -1,5 +1,6 @@
 // atlas-bench-page RESULT.json... -o FOLDER: draws the page.
 #include <fmt/format.h>
+#include <cstdio>
 
 #include <CLI/CLI.hpp>
 

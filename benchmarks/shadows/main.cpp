@@ -1,6 +1,7 @@
 // atlas-bench-shadows: error against time of the interpolated shadow maps, as rows of stage
 // "shadows".
 #include <fmt/format.h>
+#include <cstdio>
 
 #include <CLI/CLI.hpp>
 

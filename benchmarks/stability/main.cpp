@@ -1,5 +1,6 @@
 // atlas-bench-stability: the stress cases of stability/checks.h. Fails if a bound does not hold.
 #include <fmt/format.h>
+#include <cstdio>
 
 #include <CLI/CLI.hpp>
 

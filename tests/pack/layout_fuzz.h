@@ -1,6 +1,7 @@
 // Random sequences of operations, inputs and options, checked by brute force.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "libatlas/pack/engines.h"
 #include "libatlas/pack/gap_fill.h"

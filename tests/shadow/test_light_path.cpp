@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <locale>
 #include <numbers>
 
 #include "libatlas/shadow/blend.h"

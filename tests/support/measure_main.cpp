@@ -3,6 +3,7 @@
 //   atlas-measure world SCENE.obj WORLD.(wrl|obj) [CAMERAS] how the world looks beside the scene
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 

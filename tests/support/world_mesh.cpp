@@ -1,5 +1,6 @@
 #include "tests/support/world_mesh.h"
 
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstring>

@@ -1,5 +1,6 @@
 // Tests how well the methods that interpolate between keys replace the classic map.
 #include <gtest/gtest.h>
+#include <cstdio>
 
 #include "libatlas/shadow/light_path.h"
 #include "libatlas/view/bench.h"

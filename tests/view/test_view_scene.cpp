@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <set>
+#include <tuple>
 
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/scene/check_scene.h"

@@ -1,6 +1,7 @@
 // Tests atlas-pack images, which packs sprites.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>

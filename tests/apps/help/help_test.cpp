@@ -1,6 +1,7 @@
 // Checks that docs/programs.md lists exactly the options that --help prints.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
