@@ -295,21 +295,35 @@ class PlyParser {
 
   // Returns the material of the current face, whose texture number is property `number`. Programs
   // that write every property of a face as a list give one value, or the same one at each corner.
+  // MeshLab writes -1 where a face has no texture.
   std::uint32_t material_of(int number) {
     const std::size_t count = header_.texture_files.size();
+    if (count == 0) return 0;
     double value = scalars_[number];
-    if (element_->properties[number].list && count > 0) {
+    if (element_->properties[number].list) {
       const std::vector<double>& list = lists_[number];
       if (list.empty()) return white();  // it names no texture
       value = list[0];
       if (std::count(list.begin(), list.end(), value) != std::ptrdiff_t(list.size())) {
-        builder_.defects.add(DefectKind::material_unknown, [&] {
-          return fmt::format("{}: texnumber has different values (give the face one)", place());
-        });
-        return white();
+        return unknown([] { return "texnumber has different values (give the face one)"; });
       }
     }
-    return value >= 0 && value < double(count) ? static_cast<std::uint32_t>(value) : 0;
+    if (value == -1) return white();
+    if (!(value >= 0 && value < double(count))) {
+      return unknown([&] {
+        return fmt::format("texnumber {}, but the textures are 0 to {} (name all in the header)",
+                           value, count - 1);
+      });
+    }
+    return static_cast<std::uint32_t>(value);
+  }
+
+  // Counts the current face among those of unknown materials, and returns the white one.
+  template <typename Reason>
+  std::uint32_t unknown(Reason reason) {
+    builder_.defects.add(DefectKind::material_unknown,
+                         [&] { return fmt::format("{}: {}", place(), reason()); });
+    return white();
   }
 
   // Returns the material without a texture behind those of the textures.

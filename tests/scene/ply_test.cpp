@@ -172,19 +172,22 @@ TEST(Ply, TexturesAreNamedInComments) {
                    "ply\nformat ascii 1.0\ncomment TextureFile a b.png\ncomment TextureFile c.png\n"
                    "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
                    "property float illuminance\n"
-                   "element face 4\nproperty list uchar int vertex_indices\n"
+                   "element face 5\nproperty list uchar int vertex_indices\n"
                    "property list uchar float texcoord\nproperty int texnumber\nend_header\n"
                    "0 0 0 1\n1 0 0 2\n0 1 nan 3\n"
                    "3 0 1 1 6 0 0 1 0 0.5 1 1\n3 0 1 0 6 0 0 1 0 0 1 0\n3 0 0 1 6 0 0 1 0 0 1 7\n"
-                   "3 0 1 2 6 0 0 1 0 0 1 0\n");
+                   "3 0 1 2 6 0 0 1 0 0 1 0\n3 0 1 1 6 0 0 1 0 0 1 -1\n");
   const auto loaded = read_scene(path, {}, {});
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   const Scene& s = loaded->scene;
-  ASSERT_EQ(s.triangle_count(), 3u);
-  ASSERT_EQ(s.materials.size(), 2u);
+  ASSERT_EQ(s.triangle_count(), 4u);
+  ASSERT_EQ(s.materials.size(), 3u);
   EXPECT_EQ(s.materials[s.triangle_material[0]].name, "c.png");
   EXPECT_EQ(s.materials[s.triangle_material[1]].name, "a b.png");
-  EXPECT_EQ(s.triangle_material[2], s.triangle_material[1]);  // no texture has that number
+  EXPECT_EQ(s.triangle_material[2], 2u);  // no texture has that number
+  EXPECT_EQ(s.triangle_material[3], 2u);  // -1: the face has no texture
+  EXPECT_EQ(s.materials[2].name, "");
+  EXPECT_EQ(loaded->defects.count(DefectKind::material_unknown), 1u);
   EXPECT_EQ(s.texcoords[s.texcoord_indices[2]], (Vec2f{0.5f, 1}));
   EXPECT_EQ(s.illumination[1], (Vec3f{2, 2, 2}));
   EXPECT_EQ(loaded->defects.count(DefectKind::texture_missing), 2u);
@@ -192,6 +195,11 @@ TEST(Ply, TexturesAreNamedInComments) {
   for (const Defect& d : loaded->defects.defects) {
     if (d.kind == DefectKind::position_not_finite) {
       EXPECT_EQ(d.first_places[0], path.string() + ":17");
+    }
+    if (d.kind == DefectKind::material_unknown) {
+      EXPECT_EQ(
+          d.first_places[0],
+          path.string() + ":20: texnumber 7, but the textures are 0 to 1 (name all in the header)");
     }
   }
 }
@@ -214,8 +222,8 @@ TEST(Ply, TextureNumbersInLists) {
   const Scene& s = loaded->scene;
   std::vector<std::string> names;
   for (const std::uint32_t m : s.triangle_material) names.push_back(s.materials[m].name);
-  EXPECT_EQ(names, (std::vector<std::string>{"c.png", "a.png", "b.png", "", "", "a.png"}));
-  EXPECT_EQ(loaded->defects.count(DefectKind::material_unknown), 1u);
+  EXPECT_EQ(names, (std::vector<std::string>{"c.png", "a.png", "b.png", "", "", ""}));
+  EXPECT_EQ(loaded->defects.count(DefectKind::material_unknown), 2u);
   for (const Defect& d : loaded->defects.defects) {
     if (d.kind == DefectKind::material_unknown) {
       EXPECT_EQ(d.first_places[0],
