@@ -272,7 +272,8 @@ Tail ArapSolver::lower_tail(double bound, std::span<Vec2d> uvs) {
 
 bool ArapSolver::separate_borders(std::span<Vec2d> uvs) {
   wake(uvs);
-  return w_.separator.separate(mesh_, w_.elements, corners(), w_.relaxer, uvs);
+  w_.separator.take(mesh_, w_.elements, corners());
+  return w_.separator.separate(w_.relaxer, uvs);
 }
 
 void ArapSolver::settle_borders(std::span<Vec2d> uvs) {
@@ -280,7 +281,7 @@ void ArapSolver::settle_borders(std::span<Vec2d> uvs) {
   w_.separator.settle_further(w_.relaxer, uvs);
 }
 
-IsometricResult ArapSolver::measure(std::span<const Vec2d> uvs) {
+MapEnergy ArapSolver::measure(std::span<const Vec2d> uvs) {
   wake(uvs);
   return measure_energy(w_.elements, uvs);
 }

@@ -66,7 +66,7 @@ class ArapSolver {
   // If the last call failed: the crossings of the round with the fewest.
   std::span<const BorderCrossing> crossings_left() const { return w_.separator.left(); }
 
-  IsometricResult measure(std::span<const Vec2d> uvs);
+  MapEnergy measure(std::span<const Vec2d> uvs);
 
   // Frees the memory that a large mesh takes; later calls build again what they need. Steps then
   // continue from the current uvs.

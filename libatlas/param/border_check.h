@@ -9,7 +9,7 @@
 namespace atlas::param {
 
 // Sets loops, crossings, close and nested of `out`. out.flipped must be filled.
-void check_border(const HalfEdges& half_edges, const HalfEdges::Border& border,
-                  std::span<const Vec2d> uvs, const InjectivityOptions& options, Injectivity& out);
+void check_border(const BorderView& view, std::span<const Vec2d> uvs,
+                  const InjectivityOptions& options, Injectivity& out);
 
 }  // namespace atlas::param

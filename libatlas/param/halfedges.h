@@ -49,4 +49,10 @@ class HalfEdges {
   std::vector<std::uint32_t> found_, first_, out_;
 };
 
+// The half-edges of a mesh, and those of them that are its border.
+struct BorderView {
+  const HalfEdges& all;
+  const HalfEdges::Border& border;
+};
+
 }  // namespace atlas::param

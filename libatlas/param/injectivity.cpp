@@ -211,9 +211,9 @@ void check_triangles(const LocalMesh& mesh, std::span<const Vec2d> uvs, double c
 
 }  // namespace
 
-void param::check_border(const HalfEdges& half_edges, const HalfEdges::Border& border,
-                         std::span<const Vec2d> uvs, const InjectivityOptions& options,
-                         Injectivity& out) {
+void param::check_border(const BorderView& view, std::span<const Vec2d> uvs,
+                         const InjectivityOptions& options, Injectivity& out) {
+  const auto& [half_edges, border] = view;
   out.loops = static_cast<std::uint32_t>(border.loop_start.size() - 1);
   std::vector<Edge> edges;
   edges.reserve(border.half_edges.size());
@@ -245,7 +245,7 @@ Injectivity check_injectivity(const LocalMesh& mesh, std::span<const Vec2d> uvs,
   half_edges.build(mesh);
   HalfEdges::Border border;
   half_edges.border(border);
-  param::check_border(half_edges, border, uvs, options, out);
+  param::check_border({half_edges, border}, uvs, options, out);
   out.injective = out.flipped.empty() && out.crossings.empty() && !out.nested;
   return out;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "libatlas/param/arap_solver.h"
 #include "libatlas/param/workspace.h"
@@ -14,13 +15,14 @@ ParamWorkspace::ParamWorkspace(ParamWorkspace&&) noexcept = default;
 ParamWorkspace& ParamWorkspace::operator=(ParamWorkspace&&) noexcept = default;
 
 IsometricResult flatten_isometric(const LocalMesh& mesh, const IsometricStart& start,
-                                  const IsometricOptions& options, std::span<Vec2d> uvs,
-                                  ParamWorkspace& workspace) {
-  assert(uvs.size() == mesh.positions.size() && !mesh.triangles.empty());
+                                  const IsometricOptions& options, ParamWorkspace& workspace) {
+  assert(!mesh.triangles.empty());
+  std::vector<Vec2d> uvs(mesh.positions.size());
   param::ArapSolver solver(mesh, options, workspace.impl());
   solver.start(start);
   solver.iterate(std::max(options.iterations, 1), uvs);
-  return solver.measure(uvs);
+  const param::MapEnergy measured = solver.measure(uvs);
+  return {std::move(uvs), measured.energy, measured.flips};
 }
 
 }  // namespace atlas

@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "libatlas/core/vec.h"
 #include "libatlas/param/local_mesh.h"
@@ -65,6 +66,7 @@ struct IsometricStart {
 };
 
 struct IsometricResult {
+  std::vector<Vec2d> uvs;  // one per vertex
   // Sum over triangles of area * |J - R|² after the last step, where J is uv per surface length and
   // R the nearest rotation, independent of shear_weight.
   double energy = 0;
@@ -72,13 +74,11 @@ struct IsometricResult {
   std::uint64_t flips = 0;
 };
 
-// Minimizes the energy with `options.shear_weight` in `options.iterations` steps, and writes uvs
-// (one per vertex). `start.uvs` may be the same memory as `uvs`. The scale is that of the surface
-// (times density), but not exactly area-preserving. A step takes O(n) up to factors that grow
-// slowly: it uses a band solver for small charts, a sparse factorization up to some ten thousand
-// triangles, and a multilevel-preconditioned solver above.
+// Minimizes the energy with `options.shear_weight` in `options.iterations` steps. The scale is that
+// of the surface (times density), but not exactly area-preserving. A step takes O(n) up to factors
+// that grow slowly: it uses a band solver for small charts, a sparse factorization up to some ten
+// thousand triangles, and a multilevel-preconditioned solver above.
 IsometricResult flatten_isometric(const LocalMesh& mesh, const IsometricStart& start,
-                                  const IsometricOptions& options, std::span<Vec2d> uvs,
-                                  ParamWorkspace& workspace);
+                                  const IsometricOptions& options, ParamWorkspace& workspace);
 
 }  // namespace atlas

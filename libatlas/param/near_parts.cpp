@@ -31,12 +31,12 @@ glm::dvec2 unit(glm::dvec2 d) {
 
 }  // namespace
 
-NearParts::NearParts(const LocalMesh& mesh, const HalfEdges& half_edges,
-                     const HalfEdges::Border& border, double clearance, std::span<const Vec2d> uvs)
-    : half_edges_(half_edges), clearance_(clearance), cell_(kCell * clearance) {
-  for (const std::uint32_t h : border.half_edges) {
-    const glm::dvec3 a = to_glm(mesh.positions[half_edges.from(h)]);
-    const glm::dvec3 b = to_glm(mesh.positions[half_edges.to(h)]);
+NearParts::NearParts(const LocalMesh& mesh, const BorderView& edges, double clearance,
+                     std::span<const Vec2d> uvs)
+    : half_edges_(edges.all), clearance_(clearance), cell_(kCell * clearance) {
+  for (const std::uint32_t h : edges.border.half_edges) {
+    const glm::dvec3 a = to_glm(mesh.positions[half_edges_.from(h)]);
+    const glm::dvec3 b = to_glm(mesh.positions[half_edges_.to(h)]);
     const double length = glm::distance(at(h, 0, uvs), at(h, 1, uvs));
     const double count = std::clamp(std::ceil(length / (kPiece * clearance)), 1.0, kMostPieces);
     const double density = mesh.density.empty() ? 1 : mesh.density[h / 3];

@@ -28,10 +28,9 @@ class NearParts {
     glm::dvec2 away;  // unit vector away from the other place
   };
 
-  // `clearance` is in uv units, > 0. `half_edges`, and the mesh that it was built from, must
-  // outlive the object.
-  NearParts(const LocalMesh& mesh, const HalfEdges& half_edges, const HalfEdges::Border& border,
-            double clearance, std::span<const Vec2d> uvs);
+  // `clearance` is in uv units, > 0. The mesh and its half-edges must outlive the object.
+  NearParts(const LocalMesh& mesh, const BorderView& edges, double clearance,
+            std::span<const Vec2d> uvs);
 
   // Returns the places in the order of the border, which must not cross itself. O(n log n).
   std::span<const Place> find(std::span<const Vec2d> uvs);

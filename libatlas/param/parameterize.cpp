@@ -22,30 +22,33 @@ void scale_to_surface_area(ParamResult& r) {
   r.distortion.uv_area *= scale * scale;
 }
 
-// Lists flipped triangles first, then those at crossings, then those beyond the bound, worst first.
-// `stretch`, one per triangle, is only used if r is not within the bound.
-void list_offenders(const LocalMesh& mesh, ParamResult& r, const Injectivity& check,
-                    std::span<const double> stretch, double bound) {
-  r.crossings = check.crossings;
-  r.offenders = check.flipped;
-  std::vector<bool> listed(mesh.triangles.size(), false);
-  for (const std::uint32_t t : r.offenders) listed[t] = true;
-  const auto add = [&](std::uint32_t t) {
-    if (!listed[t]) r.offenders.push_back(t);
-    listed[t] = true;
-  };
-  for (const BorderCrossing& c : check.crossings) {
-    add(c.triangle_a);
-    add(c.triangle_b);
-  }
-  if (r.within_bound) return;
+// Returns the triangles with more stretch than `bound`, worst first.
+std::vector<std::uint32_t> beyond_bound(std::span<const double> stretch, double bound) {
   std::vector<std::uint32_t> beyond;
   for (std::uint32_t t = 0; t < stretch.size(); ++t) {
     if (stretch[t] > bound) beyond.push_back(t);
   }
   std::stable_sort(beyond.begin(), beyond.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return stretch[a] > stretch[b]; });
+  return beyond;
+}
+
+// Returns flipped triangles first, then those at crossings, then those beyond the bound.
+std::vector<std::uint32_t> list_offenders(const LocalMesh& mesh, const Injectivity& check,
+                                          std::span<const std::uint32_t> beyond) {
+  std::vector<std::uint32_t> offenders = check.flipped;
+  std::vector<bool> listed(mesh.triangles.size(), false);
+  for (const std::uint32_t t : offenders) listed[t] = true;
+  const auto add = [&](std::uint32_t t) {
+    if (!listed[t]) offenders.push_back(t);
+    listed[t] = true;
+  };
+  for (const BorderCrossing& c : check.crossings) {
+    add(c.triangle_a);
+    add(c.triangle_b);
+  }
   for (const std::uint32_t t : beyond) add(t);
+  return offenders;
 }
 
 // Measures, scales and judges r.uvs. `known` is their distortion, if it has been measured.
@@ -65,7 +68,10 @@ void finish(const LocalMesh& mesh, const ParamOptions& options, ParamResult& r,
   // without limit.
   r.within_bound =
       std::max(r.distortion.stretch_999, r.distortion.stretch_l2) <= options.max_stretch;
-  list_offenders(mesh, r, check, stretch, options.max_stretch);
+  r.crossings = check.crossings;
+  std::vector<std::uint32_t> beyond;
+  if (!r.within_bound) beyond = beyond_bound(stretch, options.max_stretch);
+  r.offenders = list_offenders(mesh, check, beyond);
 }
 
 // Writes the projection along `axis` to uvs. Returns its distortion if that is within the bound.

@@ -128,7 +128,7 @@ void Separator::draw_out(const Arc& arc, double share, std::span<const Vec2d> uv
 // Triangles stay positive all the time, so only the border has to be checked.
 Injectivity Separator::check(std::span<const Vec2d> uvs) const {
   Injectivity out;
-  check_border(half_edges_, border_, uvs, {.max_crossings = most_crossings}, out);
+  check_border({half_edges_, border_}, uvs, {.max_crossings = most_crossings}, out);
   return out;
 }
 
@@ -225,12 +225,14 @@ bool Separator::draw_until_simple(Relaxer& relaxer, std::span<Vec2d> uvs) {
   return false;
 }
 
-bool Separator::separate(const LocalMesh& mesh, ElementView elements, const CornerLists& corners,
-                         Relaxer& relaxer, std::span<Vec2d> uvs) {
+void Separator::take(const LocalMesh& mesh, ElementView elements, const CornerLists& corners) {
   elements_ = elements;
   corners_ = &corners;
-  fineness_ = std::max(1.0, std::sqrt(double(uvs.size()) / fine_chart));
+  fineness_ = std::max(1.0, std::sqrt(double(mesh.positions.size()) / fine_chart));
   map_border(mesh);
+}
+
+bool Separator::separate(Relaxer& relaxer, std::span<Vec2d> uvs) {
   left_.clear();
   const std::vector<double> areas = loop_areas(uvs);
   width_ = std::sqrt(std::max(0.0, std::accumulate(areas.begin(), areas.end(), 0.0)));

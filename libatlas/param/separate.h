@@ -18,10 +18,12 @@ namespace atlas::param {
 // the chart's width, are left alone: they need a cut.
 class Separator {
  public:
+  // Sets the chart. The mesh, its elements and its corner lists must outlive the calls below.
+  void take(const LocalMesh& mesh, ElementView elements, const CornerLists& corners);
+
   // Removes overlaps; all triangles must be positive. Returns whether the map is injective
   // afterwards. If not, uvs are unchanged.
-  bool separate(const LocalMesh& mesh, ElementView elements, const CornerLists& corners,
-                Relaxer& relaxer, std::span<Vec2d> uvs);
+  bool separate(Relaxer& relaxer, std::span<Vec2d> uvs);
 
   // To be called after that, if distortion around the moved vertices is too high: lets it spread
   // further.

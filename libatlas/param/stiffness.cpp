@@ -226,8 +226,8 @@ double add_energy(const Element& e, std::span<const Vec2d> uvs, double& energy) 
 
 }  // namespace
 
-IsometricResult measure_energy(const Elements& elements, std::span<const Vec2d> uvs) {
-  IsometricResult out;
+MapEnergy measure_energy(const Elements& elements, std::span<const Vec2d> uvs) {
+  MapEnergy out;
   for (std::size_t t = 0; t < elements.size(); ++t) {
     out.flips += !(add_energy(elements[t], uvs, out.energy) > 0);
   }

@@ -157,9 +157,15 @@ struct LocalStep {
 double update_rotations(const Elements& elements, const LocalStep& step, Rotations& rotations,
                         std::span<glm::dvec2> load);
 
+// IsometricResult without its uvs.
+struct MapEnergy {
+  double energy = 0;
+  std::uint64_t flips = 0;
+};
+
 // Returns the energy of uvs with each triangle's nearest rotation (without weights), and the number
 // of non-positive triangles.
-IsometricResult measure_energy(const Elements& elements, std::span<const Vec2d> uvs);
+MapEnergy measure_energy(const Elements& elements, std::span<const Vec2d> uvs);
 
 // Whether that energy exceeds the limit. Visits no more triangles than needed.
 bool energy_exceeds(double limit, const Elements& elements, std::span<const Vec2d> uvs);

@@ -57,7 +57,7 @@ class Widener {
   }
 
   Widened run() {
-    NearParts near(mesh_, half_edges_, border_, options_.clearance, uvs_);
+    NearParts near(mesh_, {half_edges_, border_}, options_.clearance, uvs_);
     std::span<const NearParts::Place> places = near.find(uvs_);
     Widened result;
     result.border = length_of(border_, half_edges_, uvs_);
@@ -169,7 +169,7 @@ Widened measure_gaps(const LocalMesh& mesh, double clearance, std::span<const Ve
   param::HalfEdges::Border border;
   half_edges.build(mesh);
   half_edges.border(border);
-  NearParts near(mesh, half_edges, border, clearance, uvs);
+  NearParts near(mesh, {half_edges, border}, clearance, uvs);
   Widened result;
   result.border = length_of(border, half_edges, uvs);
   result.near_before = result.near_after = length_of(near.find(uvs));

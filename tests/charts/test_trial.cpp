@@ -143,8 +143,9 @@ TEST(FanSolver, AgreesWithTheGeneralSolver) {
   std::vector<Vec2d> expected = cap.uvs;
   ParamWorkspace workspace;
   for (int i = 0; i < 4; ++i) {  // without over-relaxation
-    flatten_isometric(cap.view(), {expected, {}}, {.iterations = 1, .shear_weight = 1}, expected,
-                      workspace);
+    expected = flatten_isometric(cap.view(), {expected, {}}, {.iterations = 1, .shear_weight = 1},
+                                 workspace)
+                   .uvs;
   }
   for (int i = 0; i < 4; ++i) cap.solver.step(1, cap.uvs);
   for (std::size_t v = 1; v < cap.uvs.size(); ++v) {
