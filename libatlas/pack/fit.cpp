@@ -120,7 +120,7 @@ Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& gi
   }
   if (options.shapes.empty()) return pack::fit_boxes(items, options, context);
   const std::vector<pack::ChartOutline> outlines = pack::outlines_of(options.shapes, context);
-  Result<FitResult> fitted = pack::fit_outlines(items, outlines, options, context);
+  Result<FitResult> fitted = pack::fit_outlines({items, outlines}, options, context);
   if (fitted.ok()) note_lost_area(outlines, options, context, *fitted);
   if (context.cancelled()) return Status::cancelled();
   return fitted;
@@ -133,7 +133,7 @@ Result<FitResult> press_fit(FitResult fitted, std::span<const FitItem> items,
     return Status(ErrorCode::bad_input, "fit: only a fit of these items to outlines is pressed");
   const FitOptions options = for_items(items.size(), given);
   const std::vector<pack::ChartOutline> outlines = pack::outlines_of(options.shapes, context);
-  std::optional<FitResult> denser = pack::press_pages(fitted, items, outlines, options, context);
+  std::optional<FitResult> denser = pack::press_pages(fitted, {items, outlines}, options, context);
   if (denser) note_lost_area(outlines, options, context, *denser);
   if (context.cancelled()) return Status::cancelled();
   return denser ? std::move(*denser) : std::move(fitted);

@@ -181,11 +181,11 @@ constexpr std::size_t kFewInRows = 64;  // charts
 
 }  // namespace
 
-Result<FitResult> fit_outlines(std::span<const FitItem> items,
-                               std::span<const ChartOutline> outlines, const FitOptions& options,
+Result<FitResult> fit_outlines(const FitCharts& charts, const FitOptions& options,
                                const Context& context) {
+  const auto [items, outlines] = charts;
   FitResult result;
-  std::optional<FitResult> pressed = fit_pressed(items, outlines, options, context);
+  std::optional<FitResult> pressed = fit_pressed(charts, options, context);
   // Straight charts are laid in rows on a page of any shape, or pressed by `best` on a page of
   // given shape. The search over cells may fill more. With many charts, rows are about as good, and
   // far cheaper.
@@ -222,7 +222,7 @@ Result<FitResult> fit_outlines(std::span<const FitItem> items,
     pressed->layouts += result.layouts;
     return std::move(*pressed);
   }
-  std::optional<FitResult> denser = press_pages(result, items, outlines, options, context);
+  std::optional<FitResult> denser = press_pages(result, charts, options, context);
   if (context.cancelled()) return Status::cancelled();
   if (denser) return std::move(*denser);
   return result;

@@ -12,25 +12,28 @@ namespace atlas::pack {
 Result<FitResult> fit_boxes(std::span<const FitItem> items, const FitOptions& options,
                             const Context& context);
 
+// Charts given by their outlines, which have an item each.
+struct FitCharts {
+  std::span<const FitItem> items;
+  std::span<const ChartOutline> outlines;
+};
+
 // Does fit_pages for charts given by their outlines. The arguments must have been checked. The
 // caller has to set lost_area.
-Result<FitResult> fit_outlines(std::span<const FitItem> items,
-                               std::span<const ChartOutline> outlines, const FitOptions& options,
+Result<FitResult> fit_outlines(const FitCharts& charts, const FitOptions& options,
                                const Context& context);
 
 // Does the same for one page of few charts by pressing. Returns nothing if pressing is not worth a
 // try (worth_pressing), finds nothing, or does not give what was asked for: if all charts fit at
 // the largest scale and the page could be smaller, or if some charts reach their minimum sides.
-std::optional<FitResult> fit_pressed(std::span<const FitItem> items,
-                                     std::span<const ChartOutline> outlines,
-                                     const FitOptions& options, const Context& context);
+std::optional<FitResult> fit_pressed(const FitCharts& charts, const FitOptions& options,
+                                     const Context& context);
 
 // Makes a fit to several pages of few charts each denser. Every page is pressed, and charts change
 // pages until no page is much tighter than the others. Returns nothing if this is not worth a try
 // or finds no larger scale than the fit has. The layouts tried are added to those of the fit in any
 // case.
-std::optional<FitResult> press_pages(FitResult& fitted, std::span<const FitItem> items,
-                                     std::span<const ChartOutline> outlines,
+std::optional<FitResult> press_pages(FitResult& fitted, const FitCharts& charts,
                                      const FitOptions& options, const Context& context);
 
 // Groups these areas by F(A) = N. It does not search below the bisection's result, because it is

@@ -10,9 +10,9 @@
 
 namespace atlas::pack {
 
-std::optional<FitResult> fit_pressed(std::span<const FitItem> items,
-                                     std::span<const ChartOutline> outlines,
-                                     const FitOptions& options, const Context& context) {
+std::optional<FitResult> fit_pressed(const FitCharts& charts, const FitOptions& options,
+                                     const Context& context) {
+  const auto [items, outlines] = charts;
   if (!worth_pressing(outlines, options)) return std::nullopt;
   const bool straight = outlines.size() > 1 && is_straight(outlines);
   // On a page of given shape, the search over cells fills more with straight charts than pressing

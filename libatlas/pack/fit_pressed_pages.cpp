@@ -126,7 +126,7 @@ class PagePress {
         continue;
       }
       const std::vector<ChartOutline> own = outlines_of(g);
-      g.settled = settle_at(scale, {g.page.targets, g.page.target_scale}, own, options_, context_);
+      g.settled = settle_at(scale, {own, g.page.targets, g.page.target_scale}, options_, context_);
       if (g.settled.scale == 0) return false;
     }
     return true;
@@ -286,15 +286,14 @@ bool below_minimum(std::span<const FitItem> items, const FitOptions& options, do
 
 }  // namespace
 
-std::optional<FitResult> press_pages(FitResult& fitted, std::span<const FitItem> items,
-                                     std::span<const ChartOutline> outlines,
+std::optional<FitResult> press_pages(FitResult& fitted, const FitCharts& charts,
                                      const FitOptions& options, const Context& context) {
   if (!options.press_pages || options.pages < 2 || fitted.pages.size() < options.pages ||
       options.free_aspect || fitted.scale >= options.max_scale ||
-      options.preset == PackPreset::fast || below_minimum(items, options, fitted.scale)) {
+      options.preset == PackPreset::fast || below_minimum(charts.items, options, fitted.scale)) {
     return std::nullopt;
   }
-  PagePress press(outlines, options, context);
+  PagePress press(charts.outlines, options, context);
   const bool best = options.preset == PackPreset::best;
   const bool started = press.start(fitted);
   if (started) press.exchange((best ? kBestExchanges : kExchanges) * options.pages);
@@ -314,8 +313,8 @@ std::optional<FitResult> press_pages(FitResult& fitted, std::span<const FitItem>
   press.write(result);
   double shapes = 0;
   result.moved_items = 0;
-  for (std::size_t i = 0; i < outlines.size(); ++i) {
-    shapes += outlines[i].area * scale * scale;
+  for (std::size_t i = 0; i < charts.outlines.size(); ++i) {
+    shapes += charts.outlines[i].area * scale * scale;
     result.moved_items += result.placements[i].page != result.grouping.group[i];
   }
   result.utilization = share_of_pages(shapes, result);

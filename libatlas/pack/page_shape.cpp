@@ -84,54 +84,76 @@ std::int32_t square_width(const Problem& problem, std::int32_t most) {
 
 namespace {
 
-// Returns the layout with the smallest page over all widths to try, or `best` if none is smaller.
-// `best` may be empty.
-Layout solve_widths(const Problem& problem, const PackOptions& options, const Context& context,
-                    PackResult& result, Layout best) {
-  const bool free = options.page.width == 0;
-  const std::vector<std::int32_t> widths = widths_to_try(problem, options);
-  PackOptions share = options;
-  share.page.height = 0;  // strips
-  share.time_budget /= static_cast<double>(widths.size());
-  if (options.effort > 0) share.effort = std::max<std::uint64_t>(1, options.effort / widths.size());
-  const auto cost = [&](const Problem& tried, const Layout& layout) {
-    const Extent used = used_page(tried, layout, options);
-    const bool too_high = !free && used.height > options.page.height;
-    return std::pair(layout.unplaced + too_high, shaped_page(used, options).area());
-  };
-  std::pair least{UINT32_MAX, INT64_MAX};
-  if (!best.placements.empty()) least = cost(problem, best);
-  std::uint64_t layouts = 0;
-  for (const std::int32_t width : widths) {
-    Problem tried = problem;
-    tried.page = {width, Cells(options).page((1 << 30) - options.padding)};
-    tried.max_pages = 1;
-    Layout layout = solve(tried, share, context, result);
-    layouts += result.layouts_tried;
-    const auto now = cost(tried, layout);
-    if (now >= least) continue;
-    least = now;
-    best = std::move(layout);
+class ShapeSolver {
+ public:
+  ShapeSolver(const Problem& problem, const PackOptions& options, const Context& context,
+              PackResult& result)
+      : problem_(problem), options_(options), context_(context), result_(result) {}
+
+  Layout run() {
+    const bool fast = options_.preset == PackPreset::fast;
+    if (!problem_.pinned.empty()) return solve_with(options_);
+    if (options_.page.width == 0 && !fast) return solve_widths({});
+    if (!options_.crop || options_.page.height == 0) return solve_with(options_);
+    PackOptions quick = options_;
+    if (!fast) quick.preset = PackPreset::standard;
+    Layout whole = solve_with(quick);
+    if (whole.pages == 1 && whole.unplaced == 0) return solve_widths(std::move(whole));
+    if (options_.preset == quick.preset) return whole;
+    return solve_with(options_);
   }
-  result.layouts_tried = layouts;
-  return best;
-}
+
+ private:
+  using Cost = std::pair<std::uint32_t, std::int64_t>;  // items that do not fit, the page's area
+
+  Layout solve_with(const PackOptions& options) {
+    return solve(problem_, options, context_, result_);
+  }
+
+  Cost cost(const Problem& tried, const Layout& layout) const {
+    const Extent used = used_page(tried, layout, options_);
+    const bool too_high = options_.page.width != 0 && used.height > options_.page.height;
+    return {layout.unplaced + too_high, shaped_page(used, options_).area()};
+  }
+
+  // Returns the layout with the smallest page over all widths to try, or `best` if none is smaller.
+  // `best` may be empty.
+  Layout solve_widths(Layout best) {
+    const std::vector<std::int32_t> widths = widths_to_try(problem_, options_);
+    PackOptions share = options_;
+    share.page.height = 0;  // strips
+    share.time_budget /= static_cast<double>(widths.size());
+    if (options_.effort > 0)
+      share.effort = std::max<std::uint64_t>(1, options_.effort / widths.size());
+    Cost least{UINT32_MAX, INT64_MAX};
+    if (!best.placements.empty()) least = cost(problem_, best);
+    std::uint64_t layouts = 0;
+    for (const std::int32_t width : widths) {
+      Problem tried = problem_;
+      tried.page = {width, Cells(options_).page((1 << 30) - options_.padding)};
+      tried.max_pages = 1;
+      Layout layout = solve(tried, share, context_, result_);
+      layouts += result_.layouts_tried;
+      const Cost now = cost(tried, layout);
+      if (now >= least) continue;
+      least = now;
+      best = std::move(layout);
+    }
+    result_.layouts_tried = layouts;
+    return best;
+  }
+
+  const Problem& problem_;
+  const PackOptions& options_;
+  const Context& context_;
+  PackResult& result_;
+};
 
 }  // namespace
 
 Layout solve_shape(const Problem& problem, const PackOptions& options, const Context& context,
                    PackResult& result) {
-  const bool fast = options.preset == PackPreset::fast;
-  if (!problem.pinned.empty()) return solve(problem, options, context, result);
-  if (options.page.width == 0 && !fast) return solve_widths(problem, options, context, result, {});
-  if (!options.crop || options.page.height == 0) return solve(problem, options, context, result);
-  PackOptions quick = options;
-  if (!fast) quick.preset = PackPreset::standard;
-  Layout whole = solve(problem, quick, context, result);
-  if (whole.pages == 1 && whole.unplaced == 0)
-    return solve_widths(problem, options, context, result, std::move(whole));
-  if (options.preset == quick.preset) return whole;
-  return solve(problem, options, context, result);
+  return ShapeSolver(problem, options, context, result).run();
 }
 
 }  // namespace atlas::pack

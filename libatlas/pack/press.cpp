@@ -195,7 +195,7 @@ class Press {
       targets[i].angle = s.poses[i].second;
       targets[i].from = {-center.x / starts_.scale(), -center.y / starts_.scale()};
     }
-    PressedPage page = settle({targets, starts_.scale() * grow}, outlines_, options_, context_);
+    PressedPage page = settle({outlines_, targets, starts_.scale() * grow}, options_, context_);
     page.targets = std::move(targets);
     page.target_scale = starts_.scale() * grow;
     return page;

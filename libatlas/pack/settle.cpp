@@ -13,11 +13,10 @@ namespace {
 
 class Settler {
  public:
-  Settler(const SettleTargets& targets, std::span<const ChartOutline> outlines,
-          const FitOptions& options, const Context& context)
-      : targets_(targets.places),
-        outlines_(outlines),
-        scale_(targets.scale),
+  Settler(const SettleCharts& charts, const FitOptions& options, const Context& context)
+      : targets_(charts.targets),
+        outlines_(charts.outlines),
+        scale_(charts.scale),
         options_(options),
         context_(context) {
     order_.resize(targets_.size());
@@ -237,9 +236,8 @@ class Settler {
 
 }  // namespace
 
-PressedPage settle(const SettleTargets& targets, std::span<const ChartOutline> outlines,
-                   const FitOptions& options, const Context& context) {
-  Settler settler(targets, outlines, options, context);
+PressedPage settle(const SettleCharts& charts, const FitOptions& options, const Context& context) {
+  Settler settler(charts, options, context);
   PressedPage best, tried;
   // The bodies' outlines are exact to half a cell, so the full scale hardly ever fits. Shares
   // between it and the first one are not tried, because a tenth of a percent of the scale is not
@@ -270,12 +268,11 @@ PressedPage settle(const SettleTargets& targets, std::span<const ChartOutline> o
   return best;
 }
 
-PressedPage settle_at(double scale, const SettleTargets& targets,
-                      std::span<const ChartOutline> outlines, const FitOptions& options,
+PressedPage settle_at(double scale, const SettleCharts& charts, const FitOptions& options,
                       const Context& context) {
-  Settler settler(targets, outlines, options, context);
+  Settler settler(charts, options, context);
   PressedPage page;
-  if (!settler.place_at(scale / targets.scale, page)) return {};
+  if (!settler.place_at(scale / charts.scale, page)) return {};
   settler.close_up(page);
   page.scale = scale;
   return page;

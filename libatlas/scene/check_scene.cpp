@@ -51,13 +51,23 @@ Status check_vertices(const Scene& scene) {
   return {};
 }
 
-// Checks that every value is below `limit`, or is kNoTexcoord (equal to kNoNormal) if `may_be_none`
+struct IndexList {
+  const char* name;
+  std::span<const std::uint32_t> values;
+};
+// The elements that an index list names.
+struct Indexed {
+  const char* name;
+  std::size_t count;
+};
+
+// Checks that every index names an element, or is kNoTexcoord (equal to kNoNormal) if `may_be_none`
 // is set.
-Status check_range(const char* name, std::span<const std::uint32_t> values, std::size_t limit,
-                   const char* of, bool may_be_none = false) {
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (values[i] < limit || (may_be_none && values[i] == Scene::kNoTexcoord)) continue;
-    return wrong("{}[{}] is {}, but there are {} {}", name, i, values[i], limit, of);
+Status check_range(const IndexList& list, const Indexed& of, bool may_be_none = false) {
+  for (std::size_t i = 0; i < list.values.size(); ++i) {
+    const std::uint32_t value = list.values[i];
+    if (value < of.count || (may_be_none && value == Scene::kNoTexcoord)) continue;
+    return wrong("{}[{}] is {}, but there are {} {}", list.name, i, value, of.count, of.name);
   }
   return {};
 }
@@ -71,7 +81,7 @@ Status check_triangles(const Scene& scene) {
                : wrong("{} has {} entries for {} triangles (must be {}{})", name, size, triangles,
                        wanted, size == 0 ? "; complete_scene() fills them in" : "");
   };
-  Status s = check_range("indices", scene.indices, scene.positions.size(), "positions");
+  Status s = check_range({"indices", scene.indices}, {"positions", scene.positions.size()});
   if (s.ok()) s = one_each("triangle_material", scene.triangle_material.size(), triangles);
   if (s.ok() && !scene.triangle_object.empty())
     s = one_each("triangle_object", scene.triangle_object.size(), triangles);
@@ -80,16 +90,17 @@ Status check_triangles(const Scene& scene) {
   if (s.ok() && !scene.normal_indices.empty())
     s = one_each("normal_indices", scene.normal_indices.size(), corners);
   if (s.ok())
-    s = check_range("triangle_material", scene.triangle_material, scene.materials.size(),
-                    "materials");
+    s = check_range({"triangle_material", scene.triangle_material},
+                    {"materials", scene.materials.size()});
   if (s.ok())
-    s = check_range("triangle_object", scene.triangle_object, scene.object_names.size(),
-                    "object_names");
+    s = check_range({"triangle_object", scene.triangle_object},
+                    {"object_names", scene.object_names.size()});
   if (s.ok())
-    s = check_range("texcoord_indices", scene.texcoord_indices, scene.texcoords.size(), "texcoords",
+    s = check_range({"texcoord_indices", scene.texcoord_indices},
+                    {"texcoords", scene.texcoords.size()}, true);
+  if (s.ok())
+    s = check_range({"normal_indices", scene.normal_indices}, {"normals", scene.normals.size()},
                     true);
-  if (s.ok())
-    s = check_range("normal_indices", scene.normal_indices, scene.normals.size(), "normals", true);
   return s;
 }
 

@@ -85,16 +85,22 @@ void multiply_narrow(const TextureRow& row, const Texels& texels, std::span<Lane
 
 using Places = std::uint32_t __attribute__((vector_size(16)));
 
-// Does bilinear() for two positions at once. `at` holds the indices of their lower left texels.
+// Two positions, each as the index of its lower left texel and the shares of the texels to the
+// right and above.
+struct TwoPositions {
+  std::size_t at[2];
+  Lanes2 right_share, high_share;
+};
+
+// Does bilinear() for two positions at once.
 template <class Texels>
-ATLAS_INLINE Lanes2 bilinear_two(const Texels& texel, std::size_t width, const std::size_t at[2],
-                                 Lanes2 right_share, Lanes2 high_share) {
-  const std::size_t i = at[0], j = at[1];
+ATLAS_INLINE Lanes2 bilinear_two(const Texels& texel, std::size_t width, const TwoPositions& p) {
+  const std::size_t i = p.at[0], j = p.at[1];
   const Lanes2 a = join_lanes(texel(i), texel(j)), b = join_lanes(texel(i + 1), texel(j + 1));
   const Lanes2 c = join_lanes(texel(i + width), texel(j + width));
   const Lanes2 d = join_lanes(texel(i + width + 1), texel(j + width + 1));
-  const Lanes2 low = a + right_share * (b - a), high = c + right_share * (d - c);
-  return low + high_share * (high - low);
+  const Lanes2 low = a + p.right_share * (b - a), high = c + p.right_share * (d - c);
+  return low + p.high_share * (high - low);
 }
 
 // Multiplies four colours. None of the four texels around any of the positions may lie beyond the
@@ -106,13 +112,15 @@ ATLAS_INLINE void multiply_four(const TextureRow& row, const Texels& texels, con
   // Unsigned, because the largest textures have more texels than a signed number can count.
   const Places at = reinterpret_cast<Places>(p.low) * static_cast<std::uint32_t>(width) +
                     reinterpret_cast<Places>(p.left);
-  const std::size_t place[4] = {at[0], at[1], at[2], at[3]};
   const Lanes x = p.right_share, y = p.high_share;
-  const Lanes2 two[2] = {
-      bilinear_two(texels, width, place, __builtin_shufflevector(x, x, 0, 0, 0, 0, 1, 1, 1, 1),
-                   __builtin_shufflevector(y, y, 0, 0, 0, 0, 1, 1, 1, 1)),
-      bilinear_two(texels, width, place + 2, __builtin_shufflevector(x, x, 2, 2, 2, 2, 3, 3, 3, 3),
-                   __builtin_shufflevector(y, y, 2, 2, 2, 2, 3, 3, 3, 3))};
+  const Lanes2 two[2] = {bilinear_two(texels, width,
+                                      {{at[0], at[1]},
+                                       __builtin_shufflevector(x, x, 0, 0, 0, 0, 1, 1, 1, 1),
+                                       __builtin_shufflevector(y, y, 0, 0, 0, 0, 1, 1, 1, 1)}),
+                         bilinear_two(texels, width,
+                                      {{at[2], at[3]},
+                                       __builtin_shufflevector(x, x, 2, 2, 2, 2, 3, 3, 3, 3),
+                                       __builtin_shufflevector(y, y, 2, 2, 2, 2, 3, 3, 3, 3)})};
   for (int k = 0; k < 2; ++k) {
     // Two colours are loaded and joined, because they were stored one by one. A single load of both
     // would have to wait until the processor has completed both stores.

@@ -86,7 +86,7 @@ TEST(PressPages, ChartsChangePages) {
   uneven.grouping.group.assign(12, 0);
   for (std::size_t i = 9; i < 12; ++i) uneven.placements[i].page = uneven.grouping.group[i] = 1;
   const std::vector<pack::ChartOutline> outlines = pack::outlines_of(charts.shapes, {});
-  const std::optional<FitResult> fit = pack::press_pages(uneven, charts.items, outlines, o, {});
+  const std::optional<FitResult> fit = pack::press_pages(uneven, {charts.items, outlines}, o, {});
   ASSERT_TRUE(fit.has_value());
   EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *fit), fit->pages, o.padding), "");
   std::uint32_t moved = 0, second = 0;
@@ -188,8 +188,8 @@ TEST(PressPages, WhatCannotWinIsGivenUp) {
   FitResult full = *cells, fuller = *cells;
   full.layouts = fuller.layouts = 0;
   fuller.scale *= 1.2;
-  EXPECT_TRUE(pack::press_pages(full, charts.items, outlines, o, {}).has_value());
-  EXPECT_FALSE(pack::press_pages(fuller, charts.items, outlines, o, {}).has_value());
+  EXPECT_TRUE(pack::press_pages(full, {charts.items, outlines}, o, {}).has_value());
+  EXPECT_FALSE(pack::press_pages(fuller, {charts.items, outlines}, o, {}).has_value());
   constexpr std::uint64_t kADraw = 20 * 32;  // layouts per draw
   EXPECT_GT(fuller.layouts, 0u);
   EXPECT_LE(fuller.layouts, 2 * kADraw);

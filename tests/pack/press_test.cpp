@@ -196,7 +196,7 @@ TEST(Settle, PlacesAreExactAndClosedUp) {
   o.page_size = 256;
   o.padding = 2;
   o.alignment = 1;
-  const PressedPage page = settle({targets, 1}, outlines, o, {});
+  const PressedPage page = settle({outlines, targets, 1}, o, {});
   ASSERT_GT(page.scale, 0.85);
   EXPECT_LE(page.scale, 1);
   std::vector<test::PlacedShape> placed;
