@@ -101,8 +101,10 @@ struct Bench {
     }
     return list;
   }
-  ChartOutcome flatten(std::uint32_t chart, const ChartEffort& effort = {}) {
-    return flatten_chart(input(), partition, triangles(chart), effort, scratch);
+  ChartOutcome flatten(std::uint32_t chart, ChartTask task = {}) {
+    const std::vector<std::uint32_t> own = triangles(chart);
+    task.triangles = own;
+    return flatten_chart(input(), partition, task, scratch);
   }
   bool any_seam() const {
     return std::any_of(partition.seams.begin(), partition.seams.end(),

@@ -140,9 +140,9 @@ TEST(Slits, BanksThatHaveChangedSidesAreFoundAndClosed) {
     const std::vector<BorderCrossing> turned = turned_loops(chart, uvs);
     EXPECT_EQ(turned.size(), gap > 0 ? 0u : 8u);
     // Cuts that are not darts stay, because they may be what makes a chart a disc.
-    EXPECT_FALSE(close_cuts(*topology, chart, turned, partition, none));
+    EXPECT_FALSE(none.close_crossed(*topology, chart, turned, partition));
     EXPECT_TRUE(none.closed.empty());
-    EXPECT_EQ(close_cuts(*topology, chart, turned, partition, darts), gap < 0);
+    EXPECT_EQ(darts.close_crossed(*topology, chart, turned, partition), gap < 0);
     EXPECT_EQ(darts.closed.size(), gap > 0 ? 0u : 4u);
     chart.build(*topology, partition, triangles);
     EXPECT_EQ(chart.loops.size(), gap > 0 ? 2u : 1u);

@@ -230,8 +230,9 @@ class Absorber {
     std::vector<std::uint32_t> both = joint.triangles();
     const std::vector<Vec2d> joined = joint.uvs();
     ChartOutcome outcome = flatten_chart(
-        input_.flatten, input_.partition, both,
-        {.cuts = 0, .joined = joined, .little = little, .whole = true}, input_.scratch);
+        input_.flatten, input_.partition,
+        {.triangles = both, .cuts = 0, .joined = joined, .little = little, .whole = true},
+        input_.scratch);
     outcome.flat.triangles = std::move(both);
     if (outcome.parts.empty() && is_better(outcome.flat, k, {into, 0, glue})) {
       outcome.flat.fragment = a.fragment && b.fragment;

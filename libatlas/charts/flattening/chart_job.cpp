@@ -61,17 +61,17 @@ constexpr std::size_t kMostFirstCrossings = 3;
 
 class ChartJob {
  public:
-  ChartJob(const FlattenInput& input, Partition& partition, ChartScratch& scratch,
-           const ChartEffort& effort)
+  ChartJob(const FlattenInput& input, Partition& partition, const ChartTask& task,
+           ChartScratch& scratch)
       : input_(input),
         partition_(partition),
         scratch_(scratch),
         chart_(scratch.chart),
-        effort_(effort) {}
+        task_(task) {}
 
-  ChartOutcome run(std::span<const std::uint32_t> triangles) {
-    build(triangles);
-    kept_uvs_.assign(effort_.resumed.begin(), effort_.resumed.end());
+  ChartOutcome run() {
+    build(task_.triangles);
+    kept_uvs_.assign(task_.resumed.begin(), task_.resumed.end());
     ChartOutcome outcome;
     if (chart_.component_count > 1) {
       outcome.parts = component_parts();
@@ -84,11 +84,11 @@ class ChartJob {
         if (stretched_widely() && (cuts > 0 || chart_.loops.size() == 1)) break;
         keep_uvs();
         if (!cut_open_timed(cuts)) break;
-        build(triangles);
+        build(task_.triangles);
       }
-      if (!effort_.whole && result_.within_bound && !hopeless(0)) list_removable(outcome);
+      if (!task_.whole && result_.within_bound && !hopeless(0)) list_removable(outcome);
     }
-    outcome.parts = effort_.whole ? std::vector<std::uint8_t>(1, 0) : halves();
+    outcome.parts = task_.whole ? std::vector<std::uint8_t>(1, 0) : halves();
     outcome.failed = true;
     return outcome;
   }
@@ -158,9 +158,9 @@ class ChartJob {
   // Under scan noise, may instead close cuts whose banks cross. Returns false if there is nothing
   // to do.
   bool cut_open(int cuts) {
-    const int closings = effort_.whole || !noisy() ? effort_.closings : kMostClosings;
+    const int closings = task_.whole || !noisy() ? task_.closings : kMostClosings;
     if (noisy() && result_.within_bound && !result_.injective && closings_ < closings &&
-        close_cuts(input_.topology, chart_, crossings_to_undo(), partition_, darts_)) {
+        darts_.close_crossed(input_.topology, chart_, crossings_to_undo(), partition_)) {
       ++closings_;
       return true;
     }
@@ -169,7 +169,7 @@ class ChartJob {
     if (!only_darts() || hole_in_the_way(cuts)) return join_loops();
     if (cuts >= most_cuts() || result_.within_bound || result_.offenders.empty()) return false;
     cut_to_tips_ = true;
-    return cut_to_border(input_.topology, chart_, result_.offenders, darts_, partition_);
+    return darts_.cut_to_border(input_.topology, chart_, result_.offenders, partition_);
   }
 
   bool cut_open_timed(int cuts) {
@@ -185,7 +185,7 @@ class ChartJob {
   void list_removable(ChartOutcome& outcome) const {
     if (result_.crossings.empty()) return;
     outcome.crossings = result_.crossings.size();
-    const auto around = around_crossings(chart_, result_.crossings, effort_.rings);
+    const auto around = around_crossings(chart_, result_.crossings, task_.rings);
     if (around.size() > std::max<std::size_t>(2, chart_.triangles().size() / 20)) return;
     for (const std::uint32_t t : around) outcome.remove.push_back(chart_.triangles()[t]);
     outcome.uvs = corner_uvs();
@@ -202,11 +202,11 @@ class ChartJob {
   }
 
   bool tried_enough(int cuts) const {
-    if (effort_.whole) return cuts >= kMostJoints;
+    if (task_.whole) return cuts >= kMostJoints;
     if (!noisy() || !only_darts()) return false;
     return cuts >= kMostCuts + (result_.within_bound ? kLastClosings : 0);
   }
-  int most_cuts() const { return noisy() && !effort_.whole ? kMostCuts : effort_.cuts; }
+  int most_cuts() const { return noisy() && !task_.whole ? kMostCuts : task_.cuts; }
 
   // Whether a chart beyond the bound can no longer be saved by cuts to single vertices. This does
   // not hold for charts with slits or holes: a terrain of terraces is one chart by such cuts, and
@@ -280,10 +280,10 @@ class ChartJob {
     if (best || (options.preset == ChartPreset::standard && mesh.triangles.size() < kLargeChart)) {
       param.aimed_stretch = std::min(options.max_stretch, aim);
     }
-    param.local = noisy() || effort_.little;
+    param.local = noisy() || task_.little;
     param.rough = noisy();
     // This gives 6 in 1000 fewer charts than cutting such charts open (80 meshes).
-    param.leave_crossings = !noisy() && !effort_.little;
+    param.leave_crossings = !noisy() && !task_.little;
     if (best) param.iterations = kBestIterations;
     param.max_planar_stretch =
         std::min(options.max_stretch,
@@ -294,9 +294,9 @@ class ChartJob {
       param.start.uvs = start_uvs_;
       param.resume = true;
       param.aimed_stretch = 0;  // it has been squeezed before
-    } else if (!effort_.joined.empty()) {
-      param.joined = effort_.joined;
-      param.patch = effort_.little;
+    } else if (!task_.joined.empty()) {
+      param.joined = task_.joined;
+      param.patch = task_.little;
     } else if (!input_.frames.empty()) {
       param.start.frames = [this](std::size_t i) {
         return input_.frames.at(input_.topology, chart_.triangles()[i]);
@@ -373,7 +373,7 @@ class ChartJob {
   Partition& partition_;
   ChartScratch& scratch_;
   LocalChart& chart_;
-  ChartEffort effort_;
+  ChartTask task_;
   Darts darts_;
   int closings_ = 0;
   bool cut_to_tips_ = false;
@@ -386,10 +386,9 @@ class ChartJob {
 
 }  // namespace
 
-ChartOutcome flatten_chart(const FlattenInput& input, Partition& partition,
-                           std::span<const std::uint32_t> triangles, const ChartEffort& effort,
+ChartOutcome flatten_chart(const FlattenInput& input, Partition& partition, const ChartTask& task,
                            ChartScratch& scratch) {
-  return ChartJob(input, partition, scratch, effort).run(triangles);
+  return ChartJob(input, partition, task, scratch).run();
 }
 
 }  // namespace atlas

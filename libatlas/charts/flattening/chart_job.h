@@ -32,7 +32,9 @@ struct ChartOutcome {
   bool failed = false;        // the chart could not be flattened as it was
 };
 
-struct ChartEffort {
+// A chart, how to begin with it, and how much to try.
+struct ChartTask {
+  std::span<const std::uint32_t> triangles = {};
   // Rings of triangles around a crossing of the border that are listed for removal.
   int rings = 1;
   int cuts = 3;      // rounds of cutting the chart open before it is divided
@@ -50,8 +52,7 @@ struct ChartEffort {
 
 // Flattens one chart, and cuts it open where that helps (only seams of its own triangles are
 // changed).
-ChartOutcome flatten_chart(const FlattenInput& input, Partition& partition,
-                           std::span<const std::uint32_t> triangles, const ChartEffort& effort,
+ChartOutcome flatten_chart(const FlattenInput& input, Partition& partition, const ChartTask& task,
                            ChartScratch& scratch);
 
 }  // namespace atlas

@@ -127,14 +127,14 @@ Corner lowest_corner(const LocalChart& chart, std::span<const Vec2d> uvs, std::u
 
 }  // namespace
 
-bool close_cuts(const Topology& topology, const LocalChart& chart,
-                std::span<const BorderCrossing> crossings, Partition& partition, Darts& darts) {
+bool Darts::close_crossed(const Topology& topology, const LocalChart& chart,
+                          std::span<const BorderCrossing> crossings, Partition& partition) {
   std::vector<std::uint32_t> triangles;
   for (const BorderCrossing& crossing : crossings) {
     triangles.push_back(chart.triangles()[crossing.triangle_a]);
     triangles.push_back(chart.triangles()[crossing.triangle_b]);
   }
-  return CutGraph(topology, chart, partition, darts).zip(triangles);
+  return CutGraph(topology, chart, partition, *this).zip(triangles);
 }
 
 bool close_flat_slits(const Topology& topology, const LocalChart& chart, std::span<const Vec2d> uvs,

@@ -285,9 +285,9 @@ std::vector<std::uint32_t> choose_tips(const Topology& topology, const LocalChar
 
 }  // namespace
 
-bool cut_to_border(const Topology& topology, const LocalChart& chart,
-                   std::span<const std::uint32_t> offenders, Darts& darts, Partition& partition) {
-  EdgePaths paths(topology, chart, &darts.closed);
+bool Darts::cut_to_border(const Topology& topology, const LocalChart& chart,
+                          std::span<const std::uint32_t> offenders, Partition& partition) {
+  EdgePaths paths(topology, chart, &closed);
   std::vector<std::uint32_t> tips = choose_tips(topology, chart, offenders, paths);
   if (tips.empty()) return false;
   paths.spread_from_border();
@@ -302,7 +302,7 @@ bool cut_to_border(const Topology& topology, const LocalChart& chart,
     std::vector<std::uint32_t> path = paths.way_out(*nearest);
     tips.erase(nearest);
     if (path.size() > kLongestDart) path.resize(kLongestDart);
-    for (const std::uint32_t h : path) darts.cut.insert(dart_edge(chart, h));
+    for (const std::uint32_t h : path) cut.insert(dart_edge(chart, h));
     mark_seams(chart, path, partition);
     any = any || !path.empty();
   }

@@ -70,10 +70,9 @@ class Flattener {
       parallel_for(context, todo_.size(), grain, [&](std::size_t begin, std::size_t end) {
         auto scratch = pool_.take();
         for (std::size_t i = begin; i < end; ++i) {
-          const State& state = charts_[todo_[i]];
-          fit_scratch(state.triangles.size(), *scratch);
-          ChartOutcome outcome =
-              flatten_chart(input_, partition_, state.triangles, effort_for(todo_[i]), *scratch);
+          const ChartTask task = task_for(todo_[i]);
+          fit_scratch(task.triangles.size(), *scratch);
+          ChartOutcome outcome = flatten_chart(input_, partition_, task, *scratch);
           if (outcome.parts.empty()) {
             flats_[todo_[i]] = std::move(outcome.flat);
           } else {
@@ -133,10 +132,13 @@ class Flattener {
     return std::max(1, static_cast<int>(kRemovalWidth * width)) << state.removals;
   }
 
-  ChartEffort effort_for(std::uint32_t chart) const {
+  ChartTask task_for(std::uint32_t chart) const {
     const State& state = charts_[chart];
     const bool was_flat = !state.uvs.empty() && !flats_[chart].corners.empty();
-    return {.rings = removal_rings(state), .resumed = state.uvs, .little = was_flat};
+    return {.triangles = state.triangles,
+            .rings = removal_rings(state),
+            .resumed = state.uvs,
+            .little = was_flat};
   }
 
   // Renumbers charts by their first triangle.

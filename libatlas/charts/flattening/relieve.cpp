@@ -93,8 +93,8 @@ class Reliever {
       const double price = price_of(dart, piece_area_[chart.piece(topology_)]);
       if (price > kMostPrice * energy(k, chart)) continue;
       for (const std::uint32_t h : dart) partition_.cut(h);
-      ChartOutcome outcome =
-          flatten_chart(input_, partition_, chart.triangles, {.cuts = 0, .whole = true}, scratch);
+      ChartOutcome outcome = flatten_chart(
+          input_, partition_, {.triangles = chart.triangles, .cuts = 0, .whole = true}, scratch);
       for (const std::uint32_t h : dart) partition_.close(h);
       if (!outcome.parts.empty() || outcome.flat.box_area() > kMostBox * chart.box_area()) continue;
       const double cost = energy(k, outcome.flat) + price;

@@ -24,7 +24,6 @@ struct Visit {
     return node != other.node ? node > other.node : source > other.source;
   }
 };
-using Heap = std::priority_queue<Visit, std::vector<Visit>, std::greater<>>;
 
 glm::dvec3 centroid(const LocalChart& chart, std::uint32_t t) {
   const auto& v = chart.corners[t];
@@ -38,35 +37,56 @@ double fold(const Topology& topology, const LocalChart& chart, std::uint32_t s, 
                       to_dvec(topology.normals[chart.triangles()[t]]));
 }
 
-// Dijkstra's algorithm over the triangles; `owner` may be null.
-void spread(const Topology& topology, const LocalChart& chart, Heap& heap,
-            std::vector<double>& distance, std::vector<std::uint8_t>* owner) {
-  while (!heap.empty()) {
-    const Visit visit = heap.top();
-    heap.pop();
-    if (visit.distance >= distance[visit.node]) continue;
-    distance[visit.node] = visit.distance;
-    if (owner) (*owner)[visit.node] = static_cast<std::uint8_t>(visit.source);
-    const glm::dvec3 from = centroid(chart, visit.node);
+// Grows regions over the triangles by Dijkstra's algorithm.
+class Regions {
+ public:
+  Regions(const Topology& topology, const LocalChart& chart, std::span<const std::uint32_t> seeds)
+      : topology_(topology),
+        chart_(chart),
+        distance_(chart.corners.size(), kFar),
+        owner_(chart.corners.size(), 0) {
+    // No seed may take another one.
+    for (const std::uint32_t seed : seeds) distance_[seed] = 0;
+    for (std::uint32_t s = 0; s < seeds.size(); ++s) take({0, seeds[s], s});
+    while (!heap_.empty()) {
+      const Visit visit = heap_.top();
+      heap_.pop();
+      if (visit.distance < distance_[visit.node]) take(visit);
+    }
+  }
+
+  const std::vector<double>& distance() const { return distance_; }
+  // One per triangle: the number of the seed that is nearest.
+  std::vector<std::uint8_t> take_owners() { return std::move(owner_); }
+
+ private:
+  void take(const Visit& visit) {
+    distance_[visit.node] = visit.distance;
+    owner_[visit.node] = static_cast<std::uint8_t>(visit.source);
+    const glm::dvec3 from = centroid(chart_, visit.node);
     for (std::uint32_t h = 3 * visit.node; h < 3 * visit.node + 3; ++h) {
-      if (chart.opposite[h] == kNoIndex) continue;
-      const std::uint32_t next = chart.opposite[h] / 3;
-      if (distance[next] <= visit.distance) continue;
-      const double step = glm::distance(from, centroid(chart, next)) *
-                          (1 + kNormalWeight * fold(topology, chart, visit.node, next));
-      if (visit.distance + step < distance[next]) {
-        heap.push({visit.distance + step, next, visit.source});
+      if (chart_.opposite[h] == kNoIndex) continue;
+      const std::uint32_t next = chart_.opposite[h] / 3;
+      if (distance_[next] <= visit.distance) continue;
+      const double step = glm::distance(from, centroid(chart_, next)) *
+                          (1 + kNormalWeight * fold(topology_, chart_, visit.node, next));
+      if (visit.distance + step < distance_[next]) {
+        heap_.push({visit.distance + step, next, visit.source});
       }
     }
   }
-}
+
+  const Topology& topology_;
+  const LocalChart& chart_;
+  std::vector<double> distance_;
+  std::vector<std::uint8_t> owner_;
+  std::priority_queue<Visit, std::vector<Visit>, std::greater<>> heap_;
+};
 
 std::uint32_t farthest_from(const Topology& topology, const LocalChart& chart,
                             std::uint32_t start) {
-  std::vector<double> distance(chart.corners.size(), kFar);
-  Heap heap;
-  heap.push({0, start, 0});
-  spread(topology, chart, heap, distance, nullptr);
+  const Regions region(topology, chart, {&start, 1});
+  const std::vector<double>& distance = region.distance();
   std::uint32_t farthest = start;
   for (std::uint32_t t = 0; t < distance.size(); ++t) {
     if (distance[t] < kFar && distance[t] > distance[farthest]) farthest = t;
@@ -95,25 +115,7 @@ std::array<std::uint32_t, 2> far_pair(const Topology& topology, const LocalChart
 
 std::vector<std::uint8_t> divide(const Topology& topology, const LocalChart& chart,
                                  std::span<const std::uint32_t> seeds) {
-  std::vector<double> distance(chart.corners.size(), kFar);
-  std::vector<std::uint8_t> owner(chart.corners.size(), 0);
-  Heap heap;
-  for (std::uint32_t s = 0; s < seeds.size(); ++s) {
-    distance[seeds[s]] = 0;  // no other seed may take it
-    owner[seeds[s]] = static_cast<std::uint8_t>(s);
-  }
-  for (std::uint32_t s = 0; s < seeds.size(); ++s) {
-    const glm::dvec3 from = centroid(chart, seeds[s]);
-    for (std::uint32_t h = 3 * seeds[s]; h < 3 * seeds[s] + 3; ++h) {
-      if (chart.opposite[h] == kNoIndex) continue;
-      const std::uint32_t next = chart.opposite[h] / 3;
-      heap.push({glm::distance(from, centroid(chart, next)) *
-                     (1 + kNormalWeight * fold(topology, chart, seeds[s], next)),
-                 next, s});
-    }
-  }
-  spread(topology, chart, heap, distance, &owner);
-  return owner;
+  return Regions(topology, chart, seeds).take_owners();
 }
 
 std::vector<std::uint32_t> around_crossings(const LocalChart& chart,

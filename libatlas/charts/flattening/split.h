@@ -39,13 +39,19 @@ bool join_loops(const Topology& topology, const LocalChart& chart,
 struct Darts {
   std::unordered_set<std::uint32_t> cut;     // all that were cut, including those closed since
   std::unordered_set<std::uint32_t> closed;  // those closed since
-};
 
-// Cuts a disc open from its border to the vertex, of those in the offending triangles (local ids),
-// where curvature is most concentrated, and possibly to further sharp ones. It stays a disc. Adds
-// the edges to `darts`. Returns false if there is no such vertex inside.
-bool cut_to_border(const Topology& topology, const LocalChart& chart,
-                   std::span<const std::uint32_t> offenders, Darts& darts, Partition& partition);
+  // Cuts a disc open from its border to the vertex, of those in the offending triangles (local
+  // ids), where curvature is most concentrated, and possibly to further sharp ones. It stays a
+  // disc. Returns false if there is no such vertex inside.
+  bool cut_to_border(const Topology& topology, const LocalChart& chart,
+                     std::span<const std::uint32_t> offenders, Partition& partition);
+
+  // Closes darts inside a chart where their banks cross, and those that then lead to no tip. The
+  // remainder of a dart is a slit that does not reach the border. Other cuts stay, since they may
+  // be what makes the chart a disc. Returns false if no dart is there.
+  bool close_crossed(const Topology& topology, const LocalChart& chart,
+                     std::span<const BorderCrossing> crossings, Partition& partition);
+};
 
 // Returns ways to cut a disc open from its border, each as half-edges of the chart beginning at the
 // tip: to the sharpest tip in the triangles (local ids), and to the tip farthest from the border,
@@ -54,12 +60,6 @@ bool cut_to_border(const Topology& topology, const LocalChart& chart,
 std::vector<std::vector<std::uint32_t>> ways_to_tips(const Topology& topology,
                                                      const LocalChart& chart,
                                                      std::span<const std::uint32_t> triangles);
-
-// Closes darts inside a chart where their banks cross, and those that then lead to no tip. The
-// remainder of a dart is a slit that does not reach the border. Other cuts stay, since they may be
-// what makes the chart a disc. Returns false if no dart is there.
-bool close_cuts(const Topology& topology, const LocalChart& chart,
-                std::span<const BorderCrossing> crossings, Partition& partition, Darts& darts);
 
 // Closes cuts inside a chart whose banks lie on each other in `uvs`, since they are no longer
 // needed. Returns false if there are none.
