@@ -74,20 +74,20 @@ TEST(TrialMesh, ChartsKeepWhatIsJoinedInThem) {
   TrialScratch at_once(mesh), in_turn(mesh);
   TrialMesh whole(mesh, at_once), grown(mesh, in_turn);
   const auto joined = halves.joined(mesh, true);
-  whole.assemble(all_cells(mesh), {}, all_arcs(halves), joined);
+  whole.assemble({all_cells(mesh), {}, all_arcs(halves)}, joined);
   EXPECT_EQ(whole.euler(), 1);
   const auto apart = halves.joined(mesh, false);
-  grown.assemble(halves.first, {}, halves.inside_first, apart);
+  grown.assemble({halves.first, {}, halves.inside_first}, apart);
   grown.commit();
-  grown.assemble(halves.second, {}, halves.inside_second, apart);
+  grown.assemble({halves.second, {}, halves.inside_second}, apart);
   grown.commit();
   // A trial that is not accepted leaves nothing behind.
-  grown.assemble(halves.first, halves.second, halves.glue, joined);
-  grown.assemble(halves.first, halves.second, {}, apart);
+  grown.assemble({halves.first, halves.second, halves.glue}, joined);
+  grown.assemble({halves.first, halves.second, {}}, apart);
   EXPECT_EQ(grown.euler(), 2);
   EXPECT_EQ(grown.joined_euler(1, 1, halves.glue), 1);
   EXPECT_EQ(grown.joined_euler(1, 1, {}), 2);
-  grown.assemble(halves.first, halves.second, halves.glue, joined);
+  grown.assemble({halves.first, halves.second, halves.glue}, joined);
   EXPECT_EQ(grown.euler(), 1);
   EXPECT_EQ(grown.vertex_count(), whole.vertex_count());
   EXPECT_EQ(grown.border().size(), whole.border().size());
@@ -106,7 +106,7 @@ struct CapFans {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 
   CapFans() {
-    trial.assemble(all_cells(mesh), {}, all_arcs(halves), halves.joined(mesh, true));
+    trial.assemble({all_cells(mesh), {}, all_arcs(halves)}, halves.joined(mesh, true));
     uvs.resize(trial.vertex_count());
     place();
     for (std::size_t v = 0; v < uvs.size(); ++v) uvs[v] = {places[v].x, places[v].y};
@@ -241,10 +241,10 @@ TrialOutcome try_ramp(double turns) {
   limits.high_area = 100;
   for (const auto& [cells, arcs] : {std::pair{&halves.first, &halves.inside_first},
                                     std::pair{&halves.second, &halves.inside_second}}) {
-    trial.join_flat(*cells, {}, *arcs, joined);
+    trial.join_flat({*cells, {}, *arcs}, joined);
     trial.commit();
   }
-  return trial.run(halves.first, halves.second, halves.glue, joined, limits);
+  return trial.run({halves.first, halves.second, halves.glue}, joined, limits);
 }
 
 TEST(Trial, TellsWhatCrossesItselfFromWhatFits) {

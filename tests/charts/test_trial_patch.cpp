@@ -40,7 +40,7 @@ struct JoinedCap {
       joined[arc] = mesh.arcs[arc].cell[1] != kNoIndex;
       if (joined[arc]) glue.push_back(arc);
     }
-    trial.assemble(first, second, glue, joined);
+    trial.assemble({first, second, glue}, joined);
     uvs.resize(trial.vertex_count());
     for (const JoinedFans::Triangle& t : trial.triangles()) {
       const Vec3d a = mesh.slot_position[t.slot], c = mesh.cells[trial.cells()[t.centre]].centre;

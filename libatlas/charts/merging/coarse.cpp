@@ -23,11 +23,9 @@ constexpr double kNoisyCosine = 0.988, kNoisyShare = 0.6, kNoisyCell = 20;
 
 class CoarseBuilder {
  public:
-  CoarseBuilder(const Topology& topology, double crease_degrees, const Cells& cells,
-                const std::vector<std::uint32_t>& tips, Rims rims)
+  CoarseBuilder(const Topology& topology, double crease_degrees, const Cells& cells, Rims rims)
       : topology_(topology),
         cells_(cells),
-        tips_(tips),
         rims_(std::move(rims)),
         crease_cosine_(std::cos(crease_degrees * M_PI / 180)) {}
 
@@ -40,8 +38,6 @@ class CoarseBuilder {
     arc_at_.assign(topology_.opposite.size(), kNoIndex);
     for (std::uint32_t k = 0; k < cells_.count; ++k) add_rim(k);
     for (CoarseCell& cell : mesh_.cells) centre_fan(mesh_, cell);
-    mark_tips();
-    unroll_cells(topology_, cells_, mesh_);
     return std::move(mesh_);
   }
 
@@ -126,14 +122,14 @@ class CoarseBuilder {
     if (loops.empty()) return;
     const RimLoop loop = loops[longest_loop(loops)];
     const auto n = loop.end - loop.begin;
-    const std::uint32_t* path = &rims_.path[loop.begin];
+    const std::span path(&rims_.path[loop.begin], n);
     std::uint32_t first = 0;
     while (first < n && !corner_[from(path[first])]) ++first;
     for (std::uint32_t i = 0; i < n;) {
       std::uint32_t end = i;
       do ++end;
       while (end < n && !corner_[from(path[(first + end) % n])]);
-      add_arc(k, path[(first + i) % n], path[(first + end - 1) % n], path, n, first + i, end - i);
+      add_arc(k, path, first + i, end - i);
       i = end;
     }
     cell.slot_count = static_cast<std::uint32_t>(mesh_.slot_position.size()) - cell.first_slot;
@@ -181,8 +177,12 @@ class CoarseBuilder {
     return h == kNoIndex ? place(head) : sum / double(count);
   }
 
-  void add_arc(std::uint32_t k, std::uint32_t head, std::uint32_t tail, const std::uint32_t* path,
-               std::uint32_t n, std::uint32_t begin, std::uint32_t count) {
+  // Adds `count` half-edges of the closed path around cell k as an arc.
+  void add_arc(std::uint32_t k, std::span<const std::uint32_t> path, std::uint32_t begin,
+               std::uint32_t count) {
+    const auto n = static_cast<std::uint32_t>(path.size());
+    const auto at = [&](std::uint32_t i) { return path[(begin + i) % n]; };
+    const std::uint32_t head = at(0), tail = at(count - 1);
     const auto slot = static_cast<std::uint32_t>(mesh_.slot_position.size());
     mesh_.slot_position.push_back(from_glm(corner_position(head)));
     mesh_.slot_half_edge.push_back(head);
@@ -193,7 +193,7 @@ class CoarseBuilder {
       mesh_.arcs[known].cell[1] = k;
       mesh_.slot_arc.push_back(known);
       for (std::uint32_t i = 0; i < count; ++i) {
-        mesh_.rim_half_edges.push_back(path[(begin + i) % n]);
+        mesh_.rim_half_edges.push_back(at(i));
         mesh_.rim_arcs.push_back(known);
       }
       return;
@@ -202,7 +202,7 @@ class CoarseBuilder {
     arc.slot[0] = slot;
     arc.cell[0] = k;
     for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t h = path[(begin + i) % n], o = topology_.opposite[h];
+      const std::uint32_t h = at(i), o = topology_.opposite[h];
       const double length = edge_length(topology_, h);
       arc.length += length;
       mesh_.rim_half_edges.push_back(h);
@@ -217,16 +217,8 @@ class CoarseBuilder {
     mesh_.arcs.push_back(arc);
   }
 
-  void mark_tips() {
-    if (tips_.empty()) return;
-    std::vector<std::uint8_t> tip(topology_.points.size(), 0);
-    for (const std::uint32_t h : tips_) tip[from(h)] = 1;
-    for (const std::uint32_t h : mesh_.slot_half_edge) mesh_.slot_tip.push_back(tip[from(h)]);
-  }
-
   const Topology& topology_;
   const Cells& cells_;
-  const std::vector<std::uint32_t>& tips_;
   Rims rims_;
   double crease_cosine_;
   CoarseMesh mesh_;
@@ -234,13 +226,24 @@ class CoarseBuilder {
   std::vector<std::uint32_t> arc_at_;  // by the half-edge that begins side 0
 };
 
+void mark_tips(const Topology& topology, const std::vector<std::uint32_t>& tips, CoarseMesh& mesh) {
+  if (tips.empty()) return;
+  const auto from = [&](std::uint32_t h) { return topology.corner_vertex[h]; };
+  std::vector<std::uint8_t> tip(topology.points.size(), 0);
+  for (const std::uint32_t h : tips) tip[from(h)] = 1;
+  for (const std::uint32_t h : mesh.slot_half_edge) mesh.slot_tip.push_back(tip[from(h)]);
+}
+
 }  // namespace
 
 CoarseMesh build_coarse(const Topology& topology, double crease_degrees, Cells& cells) {
   const std::vector<std::uint32_t> tips = find_tips(topology);
   divide_at_tips(topology, tips, cells);
   Rims rims = divide_rings(topology, cells);
-  return CoarseBuilder(topology, crease_degrees, cells, tips, std::move(rims)).run();
+  CoarseMesh mesh = CoarseBuilder(topology, crease_degrees, cells, std::move(rims)).run();
+  mark_tips(topology, tips, mesh);
+  unroll_cells(topology, cells, mesh);
+  return mesh;
 }
 
 }  // namespace atlas

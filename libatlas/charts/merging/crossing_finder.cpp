@@ -18,25 +18,31 @@ using Edges = std::span<const std::array<std::uint32_t, 2>>;
 constexpr double kTouching = 1e-3;  // as a share of the depth that counts as deep
 constexpr std::size_t kLongBorder = 256, kGroup = 32;
 
+struct Segment {
+  Vec2d from, to;
+};
+
 // Returns how far one of two crossing edges would have to move for them not to cross.
-double crossing_depth(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& d) {
-  const auto nearest = [](const Vec2d& p, const Vec2d& q, const Vec2d& r, const Vec2d& s) {
-    const double length = std::hypot(q.x - p.x, q.y - p.y);
-    return std::min(std::abs(cross(p, q, r)), std::abs(cross(p, q, s))) / length;
+double crossing_depth(const Segment& e, const Segment& f) {
+  const auto nearest = [](const Segment& line, const Segment& ends) {
+    const double length = std::hypot(line.to.x - line.from.x, line.to.y - line.from.y);
+    return std::min(std::abs(cross(line.from, line.to, ends.from)),
+                    std::abs(cross(line.from, line.to, ends.to))) /
+           length;
   };
-  return std::min(nearest(a, b, c, d), nearest(c, d, a, b));
+  return std::min(nearest(e, f), nearest(f, e));
 }
 
 // Whether an end of one segment is closer than `distance` to the other.
-bool touch(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& d, double distance) {
-  const auto near = [&](const Vec2d& p, const Vec2d& q, const Vec2d& r) {
-    const double x = r.x - q.x, y = r.y - q.y, squared = x * x + y * y;
-    const double t =
-        squared > 0 ? std::clamp(((p.x - q.x) * x + (p.y - q.y) * y) / squared, 0.0, 1.0) : 0;
-    const double u = p.x - q.x - t * x, v = p.y - q.y - t * y;
+bool touch(const Segment& e, const Segment& f, double distance) {
+  const auto near = [&](const Vec2d& p, const Segment& s) {
+    const double x = s.to.x - s.from.x, y = s.to.y - s.from.y, squared = x * x + y * y;
+    const double a = p.x - s.from.x, b = p.y - s.from.y;
+    const double t = squared > 0 ? std::clamp((a * x + b * y) / squared, 0.0, 1.0) : 0;
+    const double u = a - t * x, v = b - t * y;
     return u * u + v * v < distance * distance;
   };
-  return near(a, c, d) || near(b, c, d) || near(c, a, b) || near(d, a, b);
+  return near(e.from, f) || near(e.to, f) || near(f.from, e) || near(f.to, e);
 }
 
 struct Box {
@@ -107,14 +113,17 @@ std::size_t find_near_narrow(const Boxes& boxes, const Box& box, std::size_t nex
   return find_near(boxes, box, next, count);
 }
 
-// Calls visit(i) for the boxes from `next` to `count` that meet `box`, until it returns false.
-// Returns whether it never did.
+struct Range {
+  std::size_t begin, end;
+};
+
+// Calls visit(i) for the boxes in the range that meet `box`, until it returns false. Returns
+// whether it never did.
 template <class Visit>
-bool visit_near(const Boxes& boxes, const Box& box, std::size_t next, std::size_t count,
-                const Visit& visit) {
+bool visit_near(const Boxes& boxes, const Box& box, Range range, const Visit& visit) {
   const auto near = has_wide_vectors ? find_near_wide : find_near_narrow;
-  for (std::size_t i = near(boxes, box, next, count); i < count;
-       i = near(boxes, box, i + 1, count)) {
+  for (std::size_t i = near(boxes, box, range.begin, range.end); i < range.end;
+       i = near(boxes, box, i + 1, range.end)) {
     if (!visit(i)) return false;
   }
   return true;
@@ -133,9 +142,10 @@ Crossing CrossingFinder::find(Edges border, std::span<const Vec2d> uvs, double d
     const auto test = [&, a = a, b = b](std::size_t j) {
       const auto [c, d] = border[j];
       if (a == c || a == d || b == c || b == d) return true;
-      const bool crosses = cross_each_other(uvs[a], uvs[b], uvs[c], uvs[d]);
-      if (!crosses && !touch(uvs[a], uvs[b], uvs[c], uvs[d], kTouching * deep)) return true;
-      const double depth = crosses ? crossing_depth(uvs[a], uvs[b], uvs[c], uvs[d]) : 0;
+      const Segment e{uvs[a], uvs[b]}, f{uvs[c], uvs[d]};
+      const bool crosses = cross_each_other(e.from, e.to, f.from, f.to);
+      if (!crosses && !touch(e, f, kTouching * deep)) return true;
+      const double depth = crosses ? crossing_depth(e, f) : 0;
       crossing = depth > deep ? Crossing::deep : Crossing::shallow;
       return depth <= deep;
     };
@@ -143,12 +153,12 @@ Crossing CrossingFinder::find(Edges border, std::span<const Vec2d> uvs, double d
     const double t = kTouching * deep;
     box = {box.left - t, box.right + t, box.low - t, box.high + t};
     if (!grouped) {
-      visit_near(edges_, box, i + 1, n, test);
+      visit_near(edges_, box, {i + 1, n}, test);
       continue;
     }
-    visit_near(groups_, box, (i + 1) / kGroup, (n + kGroup - 1) / kGroup, [&](std::size_t group) {
-      return visit_near(edges_, box, std::max(i + 1, group * kGroup),
-                        std::min((group + 1) * kGroup, n), test);
+    visit_near(groups_, box, {(i + 1) / kGroup, (n + kGroup - 1) / kGroup}, [&](std::size_t group) {
+      return visit_near(edges_, box,
+                        {std::max(i + 1, group * kGroup), std::min((group + 1) * kGroup, n)}, test);
     });
   }
   return crossing;

@@ -51,24 +51,26 @@ ATLAS_INLINE void take_root(Quad& x) {
 struct Sides {
   Quad ax, ay, bx, by;
 };
-// Returns the coordinates of four points in x and y.
-ATLAS_INLINE void gather(const Pair& p0, const Pair& p1, const Pair& p2, const Pair& p3, Quad& x,
-                         Quad& y) {
+// The coordinates of four points.
+struct FourPoints {
+  Quad x, y;
+};
+ATLAS_INLINE FourPoints gather(const Pair& p0, const Pair& p1, const Pair& p2, const Pair& p3) {
   const Quad even = __builtin_shufflevector(p0, p2, 0, 1, 2, 3),
              odd = __builtin_shufflevector(p1, p3, 0, 1, 2, 3);
-  x = __builtin_shufflevector(even, odd, 0, 4, 2, 6);
-  y = __builtin_shufflevector(even, odd, 1, 5, 3, 7);
+  return {__builtin_shufflevector(even, odd, 0, 4, 2, 6),
+          __builtin_shufflevector(even, odd, 1, 5, 3, 7)};
 }
 ATLAS_INLINE void find_sides(const JoinedFans::Triangle* four, const Vec2d* uvs,
                              const Vec2d& centre, Sides& sides) {
-  gather(pair_at(uvs[four[0].a]), pair_at(uvs[four[1].a]), pair_at(uvs[four[2].a]),
-         pair_at(uvs[four[3].a]), sides.ax, sides.ay);
-  gather(pair_at(uvs[four[0].b]), pair_at(uvs[four[1].b]), pair_at(uvs[four[2].b]),
-         pair_at(uvs[four[3].b]), sides.bx, sides.by);
-  sides.ax -= centre.x;
-  sides.ay -= centre.y;
-  sides.bx -= centre.x;
-  sides.by -= centre.y;
+  const FourPoints a = gather(pair_at(uvs[four[0].a]), pair_at(uvs[four[1].a]),
+                              pair_at(uvs[four[2].a]), pair_at(uvs[four[3].a]));
+  const FourPoints b = gather(pair_at(uvs[four[0].b]), pair_at(uvs[four[1].b]),
+                              pair_at(uvs[four[2].b]), pair_at(uvs[four[3].b]));
+  sides.ax = a.x - centre.x;
+  sides.ay = a.y - centre.y;
+  sides.bx = b.x - centre.x;
+  sides.by = b.y - centre.y;
 }
 
 }  // namespace atlas

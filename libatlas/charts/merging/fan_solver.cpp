@@ -50,8 +50,8 @@ struct FanSolver::Kernels {
   struct Products {
     Quad upper, lower;  // with the upper and the lower row of `other`; each sum is in two parts
   };
-  ATLAS_INLINE static void multiply(const double* own, const double* other, std::uint32_t begin,
-                                    std::uint32_t end, Products& products) {
+  ATLAS_INLINE static Products multiply(const double* own, const double* other, std::uint32_t begin,
+                                        std::uint32_t end) {
     Quad upper{}, lower{};
     for (std::uint32_t k = 2 * begin; k < 2 * end; k += 4) {
       const Quad both = QuadAt(own + k).quad;
@@ -59,18 +59,16 @@ struct FanSolver::Kernels {
       upper += both * __builtin_shufflevector(c, c, 0, 1, 0, 1);
       lower += both * __builtin_shufflevector(d, d, 0, 1, 0, 1);
     }
-    products.upper = upper;
-    products.lower = lower;
+    return {upper, lower};
   }
 
   // Computes two rows of the factor, when all rows above are done.
   ATLAS_INLINE static void eliminate(const Factor& factor, std::uint32_t pair) {
     const std::uint32_t i = 2 * pair, begin = factor.first[pair];
     double *const own = factor.blocks(pair), *const inverse = factor.inverse_pivot;
-    Products p;
     for (std::uint32_t j = begin; j < i; j += 2) {
       const double* const other = factor.blocks(j / 2);
-      multiply(own, other, std::max(begin, factor.first[j / 2]), j, p);
+      const Products p = multiply(own, other, std::max(begin, factor.first[j / 2]), j);
       const Quad rest =
           QuadAt(own + 2 * j).quad - (__builtin_shufflevector(p.upper, p.lower, 0, 4, 2, 6) +
                                       __builtin_shufflevector(p.upper, p.lower, 1, 5, 3, 7));
@@ -78,7 +76,7 @@ struct FanSolver::Kernels {
       const Quad odd = (rest - even * other[2 * j + 2]) * inverse[j + 1];
       put_quad(own + 2 * j, __builtin_shufflevector(even, odd, 0, 5, 2, 7));
     }
-    multiply(own, own, begin, i, p);
+    const Products p = multiply(own, own, begin, i);
     double* const corner = own + 2 * i;
     // In a connected chart without held vertices the last pivot is mere rounding, so that vertex is
     // held.

@@ -54,13 +54,23 @@ struct Border {
   double length, crease;
 };
 
+// What the mergers of all pieces share.
+struct MergeTask {
+  const CoarseMesh& mesh;
+  const MergeOptions& options;
+  std::vector<std::uint32_t>& place;  // scratch, one per cell: its index in its piece's list
+  MergeResult& result;
+};
+
 // Merges the cells of one piece of the mesh.
 class Merger {
  public:
-  // `place` (one per cell) is scratch: a cell's index in its piece's list.
-  Merger(const CoarseMesh& mesh, const MergeOptions& options, std::vector<std::uint32_t>& place,
-         MergeResult& result, Trial& trial)
-      : mesh_(mesh), options_(options), place_(place), result_(result), trial_(trial) {}
+  Merger(const MergeTask& task, Trial& trial)
+      : mesh_(task.mesh),
+        options_(task.options),
+        place_(task.place),
+        result_(task.result),
+        trial_(trial) {}
 
   void run(const std::vector<std::uint32_t>& cells, const Context& context) {
     charts_.resize(cells.size());
@@ -221,7 +231,7 @@ class Merger {
       energy_ = high_area_ = 0;
       euler_ = trial_.euler(chart(a).euler, chart(b).euler, glue_);
       unrolls_ = chart(a).unrolls && chart(b).unrolls;
-      trial_.join_flat(chart(a).cells, chart(b).cells, glue_, result_.joined);
+      trial_.join_flat({chart(a).cells, chart(b).cells, glue_}, result_.joined);
       return true;
     }
     const TrialOutcome outcome = attempt(a, b);
@@ -275,7 +285,7 @@ class Merger {
     if (refused(a, b, spare, spare_area) || refused(b, a, spare, spare_area)) {
       return {.euler = trial_.euler(p.euler, q.euler, glue_)};
     }
-    const TrialOutcome outcome = trial_.run(p.cells, q.cells, glue_, result_.joined, limits);
+    const TrialOutcome outcome = trial_.run({p.cells, q.cells, glue_}, result_.joined, limits);
     unrolls_ = outcome.unrolled;
     high_area_ = outcome.high_area;
     euler_ = outcome.euler;
@@ -385,7 +395,7 @@ MergeResult merge_cells(const CoarseMesh& mesh, const std::vector<std::uint32_t>
   parallel_for(context, pieces.size(), grain, [&](std::size_t begin, std::size_t end) {
     Trial trial(mesh, fans, scratch, result.uv);
     for (std::size_t i = begin; i < end; ++i) {
-      Merger merger(mesh, options, place, result, trial);
+      Merger merger({mesh, options, place, result}, trial);
       merger.run(pieces[i], context);
       trials += merger.trials;
       rejections += merger.rejections;

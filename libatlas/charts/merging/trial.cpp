@@ -60,9 +60,8 @@ constexpr double kDeepCrossing = 0.002;
 
 }  // namespace
 
-void Trial::assemble(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
-                     std::span<const std::uint32_t> glue, const std::vector<std::uint8_t>& joined) {
-  joined_.assemble(first, second, glue, joined);
+void Trial::assemble(const TrialPair& charts, const std::vector<std::uint8_t>& joined) {
+  joined_.assemble(charts, joined);
   area_ = 0;
   for (const std::uint32_t k : joined_.cells()) area_ += mesh_.cells[k].area;
 }
@@ -233,23 +232,21 @@ Crossing Trial::border_crossing() {
   return crossings_.find(joined_.border(), uvs_, kDeepCrossing * std::sqrt(area_));
 }
 
-TrialOutcome Trial::run(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
-                        std::span<const std::uint32_t> glue, std::vector<std::uint8_t>& joined,
+TrialOutcome Trial::run(const TrialPair& charts, std::vector<std::uint8_t>& joined,
                         const TrialLimits& limits) {
-  for (const std::uint32_t arc : glue) joined[arc] = 1;
-  assemble(first, second, glue, joined);
-  const TrialOutcome outcome = judge(glue, limits);
+  for (const std::uint32_t arc : charts.glue) joined[arc] = 1;
+  assemble(charts, joined);
+  const TrialOutcome outcome = judge(charts.glue, limits);
   if (!outcome.accepted) {
-    for (const std::uint32_t arc : glue) joined[arc] = 0;
+    for (const std::uint32_t arc : charts.glue) joined[arc] = 0;
   }
   return outcome;
 }
 
-void Trial::join_flat(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
-                      std::span<const std::uint32_t> glue, std::vector<std::uint8_t>& joined) {
-  for (const std::uint32_t arc : glue) joined[arc] = 1;
-  assemble(first, second, glue, joined);
-  align(glue);
+void Trial::join_flat(const TrialPair& charts, std::vector<std::uint8_t>& joined) {
+  for (const std::uint32_t arc : charts.glue) joined[arc] = 1;
+  assemble(charts, joined);
+  align(charts.glue);
 }
 
 // Whether the aligned halves keep all lengths, as those of boxes and tubes do. A descent would then

@@ -45,15 +45,13 @@ class Trial {
   Trial(const CoarseMesh& mesh, const Fans& fans, TrialScratch& scratch, CoarseUv& uv)
       : mesh_(mesh), fans_(fans), uv_(uv), joined_(mesh, scratch), solver_(fans), measure_(fans) {}
 
-  // Flattens the cells of two charts (`second` may be empty), with the arcs `glue` joined in
-  // addition to those where `joined` (one per arc) is set. If the trial is accepted, sets `glue` in
-  // `joined`, too. The coordinates are not stored until commit().
-  TrialOutcome run(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
-                   std::span<const std::uint32_t> glue, std::vector<std::uint8_t>& joined,
+  // Flattens two charts as one, with their glue joined in addition to those arcs where `joined`
+  // (one per arc) is set. If the trial is accepted, sets the glue in `joined`, too. The coordinates
+  // are not stored until commit().
+  TrialOutcome run(const TrialPair& charts, std::vector<std::uint8_t>& joined,
                    const TrialLimits& limits);
   // The same for two charts in one plane: they are aligned but not flattened, and always accepted.
-  void join_flat(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
-                 std::span<const std::uint32_t> glue, std::vector<std::uint8_t>& joined);
+  void join_flat(const TrialPair& charts, std::vector<std::uint8_t>& joined);
   // Returns the Euler characteristic of the union of two charts whose own ones are given.
   int euler(int first, int second, std::span<const std::uint32_t> glue) {
     return joined_.joined_euler(first, second, glue);
@@ -66,8 +64,7 @@ class Trial {
  private:
   struct Move;
 
-  void assemble(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
-                std::span<const std::uint32_t> glue, const std::vector<std::uint8_t>& joined);
+  void assemble(const TrialPair& charts, const std::vector<std::uint8_t>& joined);
   TrialOutcome judge(std::span<const std::uint32_t> glue, const TrialLimits& limits);
   void align(std::span<const std::uint32_t> glue);
   void place(const Move& of_second);

@@ -48,11 +48,9 @@ int TrialMesh::joined_euler(int first, int second, std::span<const std::uint32_t
   return first + second + static_cast<int>(glue.size()) - fewer_vertices;
 }
 
-void TrialMesh::assemble(std::span<const std::uint32_t> first,
-                         std::span<const std::uint32_t> second, std::span<const std::uint32_t> glue,
-                         const std::vector<std::uint8_t>& joined) {
-  list_cells(first, second);
-  unite(glue);
+void TrialMesh::assemble(const TrialPair& charts, const std::vector<std::uint8_t>& joined) {
+  list_cells(charts.first, charts.second);
+  unite(charts.glue);
   list_triangles(joined);
   number_vertices();
   part();

@@ -21,15 +21,19 @@ struct TrialScratch {
   std::vector<std::uint32_t> place;   // of a cell on trial: its index among them
 };
 
+// Two charts by their cells, and the arcs along which they are to be joined. `second` may be empty.
+struct TrialPair {
+  std::span<const std::uint32_t> first, second, glue;
+};
+
 class TrialMesh {
  public:
   TrialMesh(const CoarseMesh& mesh, TrialScratch& scratch) : mesh_(mesh), scratch_(scratch) {}
 
-  // Joins the cells of two charts along the arcs `glue`, in addition to those joined already;
-  // `joined` (one per arc) is set for all of these. The vertices of a fan get numbers close to each
-  // other, which makes factorization cheaper.
-  void assemble(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
-                std::span<const std::uint32_t> glue, const std::vector<std::uint8_t>& joined);
+  // Joins two charts, in addition to the arcs joined already; `joined` (one per arc) is set for all
+  // of these. The vertices of a fan get numbers close to each other, which makes factorization
+  // cheaper.
+  void assemble(const TrialPair& charts, const std::vector<std::uint8_t>& joined);
   // Returns what euler() would be for two charts whose own values are given.
   int joined_euler(int first, int second, std::span<const std::uint32_t> glue);
   // Makes the slots joined on trial stay joined.
