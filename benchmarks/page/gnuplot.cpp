@@ -44,8 +44,10 @@ double round_step(double step) {
 class Axis {
  public:
   // `after` is the space in pixels beyond the last point for its label.
-  Axis(const Panel& panel, double PlotPoint::*coordinate, bool log, double pixels, double after)
-      : coordinate_(coordinate), log_(log), pixels_(pixels) {
+  Axis(const Panel& panel, double PlotPoint::*coordinate, double pixels, double after)
+      : coordinate_(coordinate),
+        log_(coordinate == &PlotPoint::x ? panel.log_x : panel.log_y),
+        pixels_(pixels) {
     double low = 1e300, high = -1e300;
     for (const Series& s : panel.series)
       for (const PlotPoint& p : s.points) {
@@ -58,11 +60,11 @@ class Axis {
       low_ = low - kRoom * span;
       high_ = high + span * std::max(kRoom, (1 + kRoom) * after / (pixels - after));
     } else {
-      const double room = log ? 0.3 : std::max(0.5 * std::abs(high), 1e-12);
+      const double room = log_ ? 0.3 : std::max(0.5 * std::abs(high), 1e-12);
       low_ = low - room;
       high_ = high + room;
     }
-    if (!log && low >= 0) low_ = std::max(low_, 0.0);
+    if (!log_ && low >= 0) low_ = std::max(low_, 0.0);
   }
 
   double pixel(const PlotPoint& p) const {
@@ -255,8 +257,8 @@ double longest_label(const Panel& panel) {
 
 std::string panel_script(const Plot& plot, int index, const Box& axes) {
   const Panel& panel = plot.panels[std::size_t(index)];
-  const Axis x(panel, &PlotPoint::x, panel.log_x, axes.x1 - axes.x0, longest_label(panel));
-  const Axis y(panel, &PlotPoint::y, panel.log_y, axes.y1 - axes.y0, 0);
+  const Axis x(panel, &PlotPoint::x, axes.x1 - axes.x0, longest_label(panel));
+  const Axis y(panel, &PlotPoint::y, axes.y1 - axes.y0, 0);
   std::string data, commands,
       text = fmt::format("set title '{}'\nunset label\n", plain(panel.title));
   text += x.commands('x', 0) + y.commands('y', panel.floor);

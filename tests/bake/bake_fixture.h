@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "libatlas/bake/bake.h"
-#include "libatlas/core/rect.h"
 #include "libatlas/texture/srgb.h"
 #include "tests/texture/lit_shapes.h"
 
@@ -22,19 +22,23 @@ inline Vec3f shown(double d) {
   return {v, v, v};
 }
 
-// Places chart `id` with the corner of its inner box at `corner`.
-inline ChartPlacement place(const ChartSet& charts, std::uint32_t id, Vec2d density, Rect corner,
-                            bool rotated = false) {
+// The lower left corner of a chart's inner box.
+struct Spot {
+  std::int32_t x, y;
+  bool rotated = false;
+};
+
+inline ChartPlacement place(const ChartSet& charts, std::uint32_t id, Vec2d density, Spot at) {
   ChartPlacement p;
   p.chart = id;
   p.page = 0;
-  p.x = corner.x;
-  p.y = corner.y;
+  p.x = at.x;
+  p.y = at.y;
   p.texels_per_unit = density;
   const TexelSize size = texel_size(charts.charts[id].size, density);
-  p.width = rotated ? size.height : size.width;
-  p.height = rotated ? size.width : size.height;
-  turn_in_box(p, rotated);
+  p.width = at.rotated ? size.height : size.width;
+  p.height = at.rotated ? size.width : size.height;
+  turn_in_box(p, at.rotated);
   return p;
 }
 

@@ -12,21 +12,24 @@
 namespace atlas {
 namespace {
 
-// The errors over all points of a chart with the display values a + b u + c v, looked up in the
-// page.
+// Display values a + b u + c v.
+struct Ramp {
+  double a, b, c;
+};
+
+// The errors over all points of a chart with such values, looked up in the page.
 struct WorstErrors {
   double inside = 0, border = 0;  // at least a texel from the border; nearer
 };
 
-WorstErrors ramp_errors(const Image8& page, const ChartPlacement& p, Vec2d size, double a, double b,
-                        double c) {
+WorstErrors ramp_errors(const Image8& page, const ChartPlacement& p, Vec2d size, const Ramp& ramp) {
   std::mt19937 random(5);
   WorstErrors worst;
   for (int i = 0; i < 20000; ++i) {
     Vec2d uv{size.x * (random() % 10001) / 10000.0, size.y * (random() % 10001) / 10000.0};
     if (i % 10 == 0) uv.x = i % 20 ? 0 : size.x;  // exactly on the border
     if (i % 15 == 0) uv.y = i % 30 ? 0 : size.y;
-    const double want = a + b * uv.x + c * uv.y;
+    const double want = ramp.a + ramp.b * uv.x + ramp.c * uv.y;
     const double error = std::fabs(look_up(page, page_texel(p, uv), 1) / 255 - want);
     const double to_border =
         std::min({uv.x * p.texels_per_unit.x, uv.y * p.texels_per_unit.y,
@@ -47,10 +50,10 @@ TEST(BakePage, ReproducesALinearRampUpToTheBorder) {
         const LitShape shape =
             make_sheet({size.x, size.y, cells, cells, 0.2},
                        [](double u, double v) { return shown(0.1 + 0.3 * u + 0.5 * v); });
-        const ChartPlacement p = place(shape.charts, 0, density, {6, 10, 0, 0}, rotated);
+        const ChartPlacement p = place(shape.charts, 0, density, {6, 10, rotated});
         const auto page = bake(shape, {p}, small_page(128));
         ASSERT_TRUE(page.ok());
-        const WorstErrors worst = ramp_errors(page->display, p, size, 0.1, 0.3, 0.5);
+        const WorstErrors worst = ramp_errors(page->display, p, size, {0.1, 0.3, 0.5});
         EXPECT_LE(worst.inside, 0.75 / 255) << cells << ' ' << rotated << ' ' << density.x;
         EXPECT_LE(worst.border, 1.2 / 255) << cells << ' ' << rotated << ' ' << density.x;
       }
@@ -59,7 +62,7 @@ TEST(BakePage, ReproducesALinearRampUpToTheBorder) {
 TEST(BakePage, AverageReproducesARampInside) {
   const LitShape shape = make_sheet(
       {1, 1, 80, 80, 0.2}, [](double u, double v) { return shown(0.1 + 0.3 * u + 0.5 * v); });
-  const ChartPlacement p = place(shape.charts, 0, {50, 50}, {4, 4, 0, 0});
+  const ChartPlacement p = place(shape.charts, 0, {50, 50}, {4, 4});
   const auto page = bake(shape, {p}, small_page(64, BakeMethod::average));
   ASSERT_TRUE(page.ok());
   for (double v = 0.05; v < 0.95; v += 0.013)
@@ -93,7 +96,7 @@ TEST(BakePage, ShowsLightAndTexturesThroughAnyToneCurve) {
         if (textured) add_texture(shape, Image8(8, 8, 3, 170), {3, 3});
         const float reflectance = textured ? srgb_decode(170.0f / 255) : 1;
         const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
-        const ChartPlacement p = place(shape.charts, 0, {20, 20}, {4, 4, 0, 0});
+        const ChartPlacement p = place(shape.charts, 0, {20, 20}, {4, 4});
         for (const BakeMethod method : {BakeMethod::least_squares, BakeMethod::average}) {
           const auto page = bake_page({sampler, shape.charts, *tone}, std::vector{p},
                                       small_page(32, method), Context{});
@@ -122,8 +125,8 @@ TEST(BakePage, LeastSquaresIsNearerToTheLightThanTheAverage) {
     return shown(0.2 + 0.6 * edge + 0.05 * (random() % 100) / 100.0);
   };
   const LitShape shape = make_sheet({1, 1, 50, 50, 0.2}, light);
-  const ChartPlacement p = place(shape.charts, 0, {64, 64}, {4, 4, 0, 0});
-  const ChartPlacement fine = place(shape.charts, 0, {960, 960}, {8, 8, 0, 0});
+  const ChartPlacement p = place(shape.charts, 0, {64, 64}, {4, 4});
+  const ChartPlacement fine = place(shape.charts, 0, {960, 960}, {8, 8});
   const auto truth = bake(shape, {fine}, small_page(1024));
   ASSERT_TRUE(truth.ok());
   double square[2] = {0, 0};
@@ -146,7 +149,7 @@ TEST(BakePage, GivesSceneLinearValuesOnRequest) {
   const LitShape shape = make_sheet({1, 1, 20, 20}, [](double u, double v) {
     return Vec3f{static_cast<float>(100 * u), static_cast<float>(5000 * v), 0.25f};
   });
-  const ChartPlacement p = place(shape.charts, 0, {40, 40}, {4, 4, 0, 0});
+  const ChartPlacement p = place(shape.charts, 0, {40, 40}, {4, 4});
   BakeOptions options = small_page(64);
   options.linear = true;
   for (const BakeMethod method : {BakeMethod::least_squares, BakeMethod::average}) {
@@ -172,7 +175,7 @@ TEST(BakePage, SceneLinearValuesAreNegativeOnlyWhereTheSignalIs) {
       const float v = base + (u < 0.5 ? 0.0f : 2.0f);
       return Vec3f{v, v, v};
     });
-    const ChartPlacement p = place(shape.charts, 0, {40, 40}, {4, 4, 0, 0});
+    const ChartPlacement p = place(shape.charts, 0, {40, 40}, {4, 4});
     BakeOptions options = small_page(64);
     options.linear = true;
     const auto page = bake(shape, {p}, options);
@@ -195,7 +198,7 @@ LitShape many_charts(std::vector<ChartPlacement>& placements) {
                       [i](double u, double v) { return shown(std::fmod(u * 3 + v * i, 1.0)); }),
            {0, 0, static_cast<float>(i)});
     placements.push_back(
-        place(shape.charts, static_cast<std::uint32_t>(i), {60, 60}, {x, y, 0, 0}, i % 3 == 0));
+        place(shape.charts, static_cast<std::uint32_t>(i), {60, 60}, {x, y, i % 3 == 0}));
     x += 52;
     if (x > 200) x = 4, y += 52;
   }
@@ -231,7 +234,7 @@ TEST(BakePage, TakesSliversAndTrianglesWithoutArea) {
   for (const BakeMethod method : {BakeMethod::least_squares, BakeMethod::average}) {
     BakeOptions options = small_page(64, method);
     options.linear = true;
-    const auto page = bake(shape, {place(shape.charts, 0, {50, 50}, {4, 4, 0, 0})}, options);
+    const auto page = bake(shape, {place(shape.charts, 0, {50, 50}, {4, 4})}, options);
     ASSERT_TRUE(page.ok());
     for (const float v : page->linear.texels) ASSERT_TRUE(v >= 0 && v <= 1.01f) << v;
   }
@@ -239,7 +242,7 @@ TEST(BakePage, TakesSliversAndTrianglesWithoutArea) {
 
 TEST(BakePage, RefusesWhatCannotBe) {
   const LitShape shape = make_sheet({1, 1, 2, 2}, [](double, double) { return shown(1); });
-  const ChartPlacement good = place(shape.charts, 0, {20, 20}, {4, 4, 0, 0});
+  const ChartPlacement good = place(shape.charts, 0, {20, 20}, {4, 4});
   const auto code = [&](auto change) {
     BakeOptions o = small_page(32);
     ChartPlacement p = good;
@@ -265,7 +268,7 @@ TEST(BakePage, ShowsTheLightOfChartsFarBelowATexel) {
   for (const BakeMethod method : {BakeMethod::least_squares, BakeMethod::average})
     for (const double density : {1e-2, 1e-5, 1e-20, 1e-200}) {
       const LitShape shape = make_sheet({1, 1, 3, 3}, [](double, double) { return shown(0.8); });
-      const ChartPlacement p = place(shape.charts, 0, {density, density}, {4, 4, 0, 0});
+      const ChartPlacement p = place(shape.charts, 0, {density, density}, {4, 4});
       BakeOptions options = small_page(16, method);
       options.linear = true;
       const auto page = bake(shape, {p}, options);
@@ -277,7 +280,7 @@ TEST(BakePage, ShowsTheLightOfChartsFarBelowATexel) {
 
 TEST(BakePage, RefusesPlacementsBeyondCounting) {
   const LitShape shape = make_sheet({1, 1, 2, 2}, [](double, double) { return shown(1); });
-  const ChartPlacement good = place(shape.charts, 0, {20, 20}, {4, 4, 0, 0});
+  const ChartPlacement good = place(shape.charts, 0, {20, 20}, {4, 4});
   for (const double bad : {1e6, 1e300, double(INFINITY)}) {
     ChartPlacement p = good;
     p.texels_per_unit = {bad, bad};
@@ -294,7 +297,7 @@ TEST(BakePage, RefusesPlacementsBeyondCounting) {
 TEST(BakePage, RefusesLightThatIsNotFinite) {
   for (const float bad : {NAN, INFINITY, -INFINITY}) {
     LitShape shape = make_sheet({1, 1, 9, 9}, [](double u, double) { return shown(u); });
-    const ChartPlacement p = place(shape.charts, 0, {20, 20}, {4, 4, 0, 0});
+    const ChartPlacement p = place(shape.charts, 0, {20, 20}, {4, 4});
     shape.scene.illumination[35].y = bad;
     const auto page = bake(shape, {p}, small_page(32));
     ASSERT_EQ(page.status().code(), ErrorCode::bad_input) << bad;
@@ -311,7 +314,7 @@ TEST(BakePage, StopsWhenCancelled) {
   const std::atomic<bool> stop{true};
   Context context;
   context.cancel = &stop;
-  const std::vector<ChartPlacement> p{place(shape.charts, 0, {20, 20}, {4, 4, 0, 0})};
+  const std::vector<ChartPlacement> p{place(shape.charts, 0, {20, 20}, {4, 4})};
   const auto page = bake_page({sampler, shape.charts, kPlain}, p, small_page(32), context);
   EXPECT_EQ(page.status().code(), ErrorCode::cancelled);
 }

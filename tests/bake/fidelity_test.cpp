@@ -30,9 +30,9 @@ std::unique_ptr<Setup> two_pages() {
   LuminanceSampler sampler(shape.scene, Quantity::illuminance);
   auto s = std::unique_ptr<Setup>(new Setup{std::move(shape), std::move(sampler), {}});
   s->sampler = LuminanceSampler(s->shape.scene, Quantity::illuminance);
-  s->placements = {place(s->shape.charts, 0, {100, 100}, {4, 4, 0, 0}),
-                   place(s->shape.charts, 1, {100, 100}, {4, 4, 0, 0}, true),
-                   place(s->shape.charts, 2, {8, 16}, {108, 4, 0, 0})};
+  s->placements = {place(s->shape.charts, 0, {100, 100}, {4, 4}),
+                   place(s->shape.charts, 1, {100, 100}, {4, 4, true}),
+                   place(s->shape.charts, 2, {8, 16}, {108, 4})};
   s->placements[1].page = s->placements[2].page = 1;
   return s;
 }
@@ -98,7 +98,7 @@ TEST(Fidelity, WeighsAPartOfATriangleByItsArea) {
   LitShape shape = make_sheet({1, 1, 1, 1}, [](double, double) { return shown(0.5); });
   const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
   const ChartLight light{sampler, shape.charts, kPlain};
-  const std::vector<ChartPlacement> placements{place(shape.charts, 0, {96, 96}, {4, 4, 0, 0})};
+  const std::vector<ChartPlacement> placements{place(shape.charts, 0, {96, 96}, {4, 4})};
   const auto baked = bake_page(light, placements, small_page(128), Context{});
   ASSERT_TRUE(baked.ok());
   const auto square_error = [&](auto inside) {

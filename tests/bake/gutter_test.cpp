@@ -40,11 +40,11 @@ LitShape tiled(int levels, int page, std::vector<ChartPlacement>& placements) {
     });
     LitShape trial = shape;
     append(trial, sheet, {0, 0, static_cast<float>(i)});
-    ChartPlacement p = place(trial.charts, i, {97, 97}, {0, 0, 0, 0}, i % 2);
+    ChartPlacement p = place(trial.charts, i, {97, 97}, {0, 0, i % 2 == 1});
     const int bw = up(p.width + 2 * pad), bh = up(p.height + 2 * pad);
     if (x + bw > page) x = 0, y += shelf, shelf = 0;
     if (y + bh > page) return shape;
-    p = place(trial.charts, i, {97, 97}, {x + pad, y + pad, 0, 0}, i % 2);
+    p = place(trial.charts, i, {97, 97}, {x + pad, y + pad, i % 2 == 1});
     placements.push_back(p);
     shape = trial;
     x += bw;
@@ -135,7 +135,7 @@ LitShape crowded(bool outlined, std::vector<ChartPlacement>& placements) {
                         return Vec3f{srgb_decode(float(red)), srgb_decode(float(green)), 1};
                       }),
            {0, 0, float(i)});
-    ChartPlacement p = place(shape.charts, i, {79.9, 79.9}, {4, 4, 0, 0});
+    ChartPlacement p = place(shape.charts, i, {79.9, 79.9}, {4, 4});
     EXPECT_EQ(p.width, 16);  // the box is nearly full, so rounding reaches no further texel
     p.x += 18 * static_cast<int>(i % 8);
     p.y += 18 * static_cast<int>(i / 8);

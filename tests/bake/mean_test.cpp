@@ -42,7 +42,7 @@ TEST(BakePage, AverageIsTheAreaMeanOverEachTexel) {
     const LitShape shape = make_sheet({1, 1, cells, cells, 0.25}, [&](double, double) {
       return Vec3f{(random() % 100) / 100.0f, 0, 0};
     });
-    const ChartPlacement p = place(shape.charts, 0, {24, 24}, {2, 2, 0, 0});
+    const ChartPlacement p = place(shape.charts, 0, {24, 24}, {2, 2});
     BakeOptions options = small_page(32, BakeMethod::average);
     options.shifts = 1;
     options.mip_levels = 0;
@@ -94,7 +94,7 @@ TEST(BakePage, CountsEveryTriangleHoweverSmall) {
   const double mean = 255 * (2 * changing + 3 * 0.2) / 5;
   for (const BakeMethod method : {BakeMethod::least_squares, BakeMethod::average})
     for (const int shifts : {1, 4}) {
-      const ChartPlacement p = place(shape.charts, 0, {20, 20}, {4, 4, 0, 0});
+      const ChartPlacement p = place(shape.charts, 0, {20, 20}, {4, 4});
       BakeOptions options = small_page(32, method);
       options.shifts = shifts;
       const auto page = bake(shape, {p}, options);

@@ -17,10 +17,15 @@ FlatChart flattened(const Shape& shape, const ChartOptions& options = {}) {
   return std::move(result.charts.front());
 }
 
+struct Counts {
+  int around, along;
+};
+
 // Rings around the vertex (0, 0, 0); the last ring is a circle around (`off`, 0). `height` returns
 // the height at distance 1 for an angle.
 template <class Height>
-Shape rings(const char* name, int around, int along, double off, const Height& height) {
+Shape rings(const char* name, Counts counts, double off, const Height& height) {
+  const auto [around, along] = counts;
   Shape shape;
   shape.name = name;
   shape.positions.push_back({0, 0, 0});
@@ -32,7 +37,7 @@ Shape rings(const char* name, int around, int along, double off, const Height& h
           {float(x), float(y), float(std::hypot(x, y) * height(std::atan2(y, x)))});
     }
   }
-  const auto at = [&](int i, int j) {
+  const auto at = [&, around = around](int i, int j) {
     return j == 0 ? 0u : std::uint32_t(1 + (j - 1) * around + i % around);
   };
   for (int j = 0; j < along; ++j) {
@@ -48,12 +53,12 @@ Shape rings(const char* name, int around, int along, double off, const Height& h
 // A cone whose tip lies near its border and lacks the angle `defect` (radians) of the full angle.
 Shape cone_lacking(double defect, int around, int along) {
   const double cosine = 1 - defect / (2 * M_PI), height = std::sqrt(1 / (cosine * cosine) - 1);
-  return rings("cone", around, along, 0.6, [&](double) { return height; });
+  return rings("cone", {around, along}, 0.6, [&](double) { return height; });
 }
 
 // A saddle, whose middle has more than the full angle.
 Shape saddle(int around, int along, double height) {
-  return rings("saddle", around, along, 0, [&](double a) { return height * std::cos(2 * a); });
+  return rings("saddle", {around, along}, 0, [&](double a) { return height * std::cos(2 * a); });
 }
 
 // With a dart to its tip, a cone is flat without stretch.

@@ -38,6 +38,19 @@ class Twins {
     return entry.key;
   }
 
+  // Pushes and pops at random, with keys up to `reach` ahead of the last one popped.
+  void mix(std::uint32_t start, std::uint32_t reach, int steps, std::mt19937& random) {
+    std::uint32_t last = start;
+    for (int i = 0; i < steps; ++i) {
+      const bool pushes = empty() || random() % 100 < (i < steps / 2 ? 60u : 40u);
+      if (pushes)
+        push(last + (random() % 4 == 0 ? 0 : random() % (reach + 1)));
+      else
+        last = pop();
+    }
+    while (!empty()) pop();
+  }
+
   void restart() { queue_.restart(); }
   bool empty() const { return expected_.empty(); }
   RingQueue<Entry>& queue() { return queue_; }
@@ -48,19 +61,6 @@ class Twins {
   std::uint32_t number_ = 0;
 };
 
-// Pushes and pops at random, with keys up to `reach` ahead of the last one popped.
-void mix(Twins& twins, std::uint32_t start, std::uint32_t reach, int steps, std::mt19937& random) {
-  std::uint32_t last = start;
-  for (int i = 0; i < steps; ++i) {
-    const bool pushes = twins.empty() || random() % 100 < (i < steps / 2 ? 60u : 40u);
-    if (pushes)
-      twins.push(last + (random() % 4 == 0 ? 0 : random() % (reach + 1)));
-    else
-      last = twins.pop();
-  }
-  while (!twins.empty()) twins.pop();
-}
-
 TEST(RingQueue, TakesTheSmallestKeyHoweverFarTheNextOnesLie) {
   std::mt19937 random(1);
   // The keys cover few values, several words of the ring, about the size of the ring, and far more.
@@ -68,7 +68,7 @@ TEST(RingQueue, TakesTheSmallestKeyHoweverFarTheNextOnesLie) {
     Twins twins;
     for (int round = 0; round < 5; ++round) {
       twins.restart();
-      mix(twins, 0, reach, 4000, random);
+      twins.mix(0, reach, 4000, random);
     }
   }
 }
@@ -78,7 +78,7 @@ TEST(RingQueue, StartsAgainFromAnyKey) {
   Twins twins;
   for (const std::uint32_t start : {4000000000u, 0u, 1000000u, 5u, 4095u, 4096u}) {
     twins.restart();
-    mix(twins, start, 6000, 3000, random);
+    twins.mix(start, 6000, 3000, random);
   }
 }
 

@@ -19,42 +19,46 @@ namespace {
 using test::TempFolder;
 using test::wavy_world;
 
+struct Triangles {
+  std::vector<Vec3f> positions;
+  std::vector<std::uint32_t> indices;
+};
+
 // Adds an axis-aligned box whose faces point inward for a room, outward for an object. z is up.
-void add_box(std::vector<Vec3f>& positions, std::vector<std::uint32_t>& indices, Vec3f low,
-             Vec3f high, bool inward) {
-  const auto base = std::uint32_t(positions.size());
+void add_box(Triangles& to, Vec3f low, Vec3f high, bool inward) {
+  const auto base = std::uint32_t(to.positions.size());
   for (int i = 0; i < 8; ++i) {
-    positions.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
+    to.positions.push_back(
+        {i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
   }
   const std::uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                      {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
   for (const auto& q : quads) {
     for (const auto& [a, b, c] : {std::array{0, 1, 2}, std::array{0, 2, 3}}) {
       const std::uint32_t t[3] = {q[a], q[inward ? c : b], q[inward ? b : c]};
-      for (const std::uint32_t v : t) indices.push_back(base + v);
+      for (const std::uint32_t v : t) to.indices.push_back(base + v);
     }
   }
 }
 
 TEST(ViewpointChoice, StandsInTheRoomAndLooksAlongIt) {
   for (const double metres : {1.0, 0.01, 1000.0}) {  // units of a metre, a centimetre, a kilometre
-    std::vector<Vec3f> positions;
-    std::vector<std::uint32_t> indices;
-    add_box(positions, indices, {0, 0, 0}, {20, 6, 3}, true);
-    add_box(positions, indices, {4, 1, 0}, {6, 3, 1}, false);  // a table
-    for (Vec3f& p : positions) {
+    Triangles room;
+    add_box(room, {0, 0, 0}, {20, 6, 3}, true);
+    add_box(room, {4, 1, 0}, {6, 3, 1}, false);  // a table
+    for (Vec3f& p : room.positions) {
       const float s = float(1 / metres);
       p = {p.x * s, p.y * s, p.z * s};
     }
     for (const Up up : {Up::z, Up::y}) {
-      std::vector<Vec3f> turned = positions;
+      std::vector<Vec3f> turned = room.positions;
       if (up == Up::y) {
         for (Vec3f& p : turned) p = {p.y, p.z, p.x};
       }
       ViewpointOptions options;
       options.up = up;
       options.metres_per_unit = metres;
-      const Viewpoint view = choose_viewpoint(turned, indices, options, {});
+      const Viewpoint view = choose_viewpoint(turned, room.indices, options, {});
       EXPECT_TRUE(view.inside);
       Vec3d p = view.position, d = view.direction;
       if (up == Up::y) p = {p.z, p.x, p.y}, d = {d.z, d.x, d.y};
@@ -70,10 +74,9 @@ TEST(ViewpointChoice, StandsInTheRoomAndLooksAlongIt) {
 }
 
 TEST(ViewpointChoice, StaysOutOfSingleObjects) {
-  std::vector<Vec3f> positions;
-  std::vector<std::uint32_t> indices;
-  add_box(positions, indices, {-1, -2, -3}, {1, 2, 3}, false);
-  const Viewpoint view = choose_viewpoint(positions, indices, {}, {});
+  Triangles box;
+  add_box(box, {-1, -2, -3}, {1, 2, 3}, false);
+  const Viewpoint view = choose_viewpoint(box.positions, box.indices, {}, {});
   EXPECT_FALSE(view.inside);
   const Vec3d &p = view.position, &d = view.direction;
   const double distance = std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);

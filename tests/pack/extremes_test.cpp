@@ -22,12 +22,15 @@ std::vector<Vec2d> turned_quad(double width, double height, double angle) {
   return {at(0, 0), at(width, 0), at(width, height), at(0, 0), at(width, height), at(0, height)};
 }
 
-test::ChartItems needles(int count, double length, double width, double least_angle,
-                         double most_angle) {
+struct AngleRange {
+  double least, most;
+};
+
+test::ChartItems needles(int count, double length, double width, AngleRange angles) {
   test::Noise noise{7};
   std::vector<std::vector<Vec2d>> charts;
   for (int i = 0; i < count; ++i) {
-    const double angle = least_angle + (most_angle - least_angle) * noise.unit();
+    const double angle = angles.least + (angles.most - angles.least) * noise.unit();
     charts.push_back(turned_quad(length, width, angle));
   }
   return test::ChartItems(std::move(charts));
@@ -66,7 +69,7 @@ void expect_refused(const test::ChartItems& charts, const FitOptions& options, d
 TEST(Extremes, NeedlesOfAnyLengthTakeThePagesLength) {
   for (const double length : {1e4, 1e6, 5e8}) {
     for (const int count : {1, 20, 60}) {
-      const auto charts = needles(count, length, 1, 0, 3);
+      const auto charts = needles(count, length, 1, {0, 3});
       for (const bool free_aspect : {false, true}) {
         FitOptions o = outlines(charts);
         o.free_aspect = free_aspect;
@@ -152,7 +155,7 @@ TEST(Extremes, PetalsAroundOneCornerTakeLittleTime) {
 }
 
 TEST(Extremes, NeedlesKeepTheirGutters) {
-  const auto charts = needles(12, 1e5, 10, 0, 3);
+  const auto charts = needles(12, 1e5, 10, {0, 3});
   FitOptions o = outlines(charts);
   o.page_size = 256;
   for (const std::uint32_t pages : {1u, 3u}) {
@@ -165,7 +168,7 @@ TEST(Extremes, NeedlesKeepTheirGutters) {
 }
 
 TEST(Extremes, BoxesOfNeedles) {
-  const auto charts = needles(50, 1e8, 1, 0.01, 0.02);
+  const auto charts = needles(50, 1e8, 1, {0.01, 0.02});
   FitOptions o = outlines(charts);
   o.shapes = {};
   o.max_scale = 1e6;  // far above what fits; the search must not end before it gets down to that

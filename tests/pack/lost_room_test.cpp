@@ -10,13 +10,17 @@
 namespace atlas {
 namespace {
 
-void add_quad(Vec2d a, Vec2d b, Vec2d c, Vec2d d, std::vector<Vec2d>& corners) {
-  corners.insert(corners.end(), {a, b, c, a, c, d});
+struct Quad {
+  Vec2d a, b, c, d;
+};
+
+void add_quad(const Quad& q, std::vector<Vec2d>& corners) {
+  corners.insert(corners.end(), {q.a, q.b, q.c, q.a, q.c, q.d});
 }
 
 std::vector<Vec2d> rectangle(double width, double height) {
   std::vector<Vec2d> corners;
-  add_quad({0, 0}, {width, 0}, {width, height}, {0, height}, corners);
+  add_quad({{0, 0}, {width, 0}, {width, height}, {0, height}}, corners);
   return corners;
 }
 
@@ -37,7 +41,6 @@ double lost_area(std::vector<std::vector<Vec2d>> shapes) {
 // triangle).
 std::vector<Vec2d> perforated(int n, double cell, double hole) {
   std::vector<Vec2d> corners;
-  const auto quad = [&](Vec2d a, Vec2d b, Vec2d c, Vec2d d) { add_quad(a, b, c, d, corners); };
   const double in = (cell - hole) / 2;
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
@@ -45,10 +48,8 @@ std::vector<Vec2d> perforated(int n, double cell, double hole) {
       const Vec2d a{x0, y0}, b{x1, y0}, c{x1, y1}, d{x0, y1};
       const Vec2d e{x0 + in, y0 + in}, f{x0 + in + hole, y0 + in};
       const Vec2d g{x0 + in + hole, y0 + in + hole}, h{x0 + in, y0 + in + hole};
-      quad(a, b, f, e);
-      quad(b, c, g, f);
-      quad(c, d, h, g);
-      quad(d, a, e, h);
+      for (const Quad& q : {Quad{a, b, f, e}, {b, c, g, f}, {c, d, h, g}, {d, a, e, h}})
+        add_quad(q, corners);
     }
   return corners;
 }
@@ -73,11 +74,11 @@ std::vector<Vec2d> teeth_of(const Comb& comb) {
   const double top = comb.spine + comb.length;
   for (int k = 0; k < comb.teeth; ++k) {
     const double left = k * (comb.tooth + comb.gap), right = left + comb.tooth;
-    add_quad({left, 0}, {right, 0}, {right, comb.spine}, {left, comb.spine}, corners);
-    add_quad({left, comb.spine}, {right, comb.spine}, {right, top}, {left, top}, corners);
+    add_quad({{left, 0}, {right, 0}, {right, comb.spine}, {left, comb.spine}}, corners);
+    add_quad({{left, comb.spine}, {right, comb.spine}, {right, top}, {left, top}}, corners);
     if (k + 1 == comb.teeth) break;
     const double next = left + comb.tooth + comb.gap;
-    add_quad({right, 0}, {next, 0}, {next, comb.spine}, {right, comb.spine}, corners);
+    add_quad({{right, 0}, {next, 0}, {next, comb.spine}, {right, comb.spine}}, corners);
   }
   return corners;
 }
@@ -107,7 +108,7 @@ class Spiral {
     std::vector<Vec2d> corners;
     for (int k = 0; k < kSteps; ++k) {
       const double from = angle_of(double(k) / kSteps), to = angle_of(double(k + 1) / kSteps);
-      add_quad(at(from, 0), at(from, kStrip), at(to, kStrip), at(to, 0), corners);
+      add_quad({at(from, 0), at(from, kStrip), at(to, kStrip), at(to, 0)}, corners);
     }
     return corners;
   }

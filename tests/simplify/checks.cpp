@@ -135,9 +135,14 @@ struct Scale {
   double density, texel, stretch;
 };
 
-void sample(const Flat& fine, const Finder& finder, const Scale& scale, std::mt19937& random,
-            Tally& tally) {
-  const auto [density, texel, stretch] = scale;
+// A chart of the simplified mesh, by its triangles in uv.
+struct SampledChart {
+  const Finder& finder;
+  Scale scale;
+};
+
+void sample(const Flat& fine, const SampledChart& chart, std::mt19937& random, Tally& tally) {
+  const auto [density, texel, stretch] = chart.scale;
   SampledSlip& out = tally.slip;
   std::uniform_real_distribution<double> unit(0, 1);
   double x = unit(random), y = unit(random);
@@ -150,7 +155,7 @@ void sample(const Flat& fine, const Finder& finder, const Scale& scale, std::mt1
   const glm::dvec3 w(1 - x - y, x, y);
   const glm::dvec2 u = Finder::at(fine, w);
   const glm::dvec3 p = w.x * fine.p[0] + w.y * fine.p[1] + w.z * fine.p[2];
-  const auto [coarse, v] = finder.find(u, p, density, texel);
+  const auto [coarse, v] = chart.finder.find(u, p, density, texel);
   if (!coarse) {
     out.outside = INFINITY;
     return;
@@ -246,7 +251,7 @@ SampledSlip sample_slip(const ChartedMesh& mesh, const SimplifiedMesh& coarse,
                       std::max(1.0, chart.distortion.stretch_linf)};
     for (const Flat& f : fine) {
       for (int s = 0; s < samples; ++s, ++tally.all) {
-        sample(f, finder, scale, random, tally);
+        sample(f, {finder, scale}, random, tally);
       }
     }
   }

@@ -22,12 +22,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns a mesh whose uvs are its x and y, mapped by (a x + b, c y + d).
-UvMesh flat_mesh(const Shape& shape, double a, double b, double c, double d) {
+// (x, y) to (a x + b, c y + d).
+struct UvMap {
+  double a, b, c, d;
+};
+
+// Returns a mesh whose uvs are its x and y, mapped.
+UvMesh flat_mesh(const Shape& shape, const UvMap& map) {
   UvMesh mesh;
   for (const Vec3f& p : shape.positions) {
     mesh.positions.push_back({p.x, p.y, p.z});
-    mesh.uvs.push_back({a * p.x + b, c * p.y + d});
+    mesh.uvs.push_back({map.a * p.x + map.b, map.c * p.y + map.d});
   }
   for (std::size_t t = 0; t < shape.indices.size(); t += 3) {
     const std::array<std::uint32_t, 3> v{shape.indices[t], shape.indices[t + 1],
@@ -51,7 +56,7 @@ void append(UvMesh& mesh, const UvMesh& other) {
 }
 
 TEST(AtlasMeasure, AnIsometryIsPerfect) {
-  const AtlasMeasures m = measure_atlas(flat_mesh(grid(8, 8), 0.5, 0.25, 0.5, 0.25), 64, 64);
+  const AtlasMeasures m = measure_atlas(flat_mesh(grid(8, 8), {0.5, 0.25, 0.5, 0.25}), 64, 64);
   EXPECT_EQ(m.triangles, 128u);
   EXPECT_EQ(m.charts, 1u);
   EXPECT_NEAR(m.scale, 32, 1e-9);
@@ -70,7 +75,7 @@ TEST(AtlasMeasure, AnAnisotropicMapHasItsClosedForm) {
   // area-preserving scale.
   const double k = 1.25;
   const AtlasMeasures m =
-      measure_atlas(flat_mesh(grid(5, 7), 0.5 * k, 0.1, 0.5 / k, 0.1), 128, 128);
+      measure_atlas(flat_mesh(grid(5, 7), {0.5 * k, 0.1, 0.5 / k, 0.1}), 128, 128);
   EXPECT_NEAR(m.stretch_l2, std::sqrt((k * k + 1 / (k * k)) / 2), 1e-9);
   EXPECT_NEAR(m.stretch_linf, k, 1e-9);
   EXPECT_NEAR(m.conformal_mean, k * k, 1e-9);
@@ -79,8 +84,8 @@ TEST(AtlasMeasure, AnAnisotropicMapHasItsClosedForm) {
 }
 
 TEST(AtlasMeasure, AMirroredChartAndAFlippedTriangleAreSeen) {
-  EXPECT_EQ(measure_atlas(flat_mesh(grid(3, 3), -0.5, 0.9, 0.5, 0.1), 32, 32).mirrored, 1u);
-  UvMesh mesh = flat_mesh(grid(3, 3), 0.5, 0.1, 0.5, 0.1);
+  EXPECT_EQ(measure_atlas(flat_mesh(grid(3, 3), {-0.5, 0.9, 0.5, 0.1}), 32, 32).mirrored, 1u);
+  UvMesh mesh = flat_mesh(grid(3, 3), {0.5, 0.1, 0.5, 0.1});
   mesh.uvs[0] = {0.9, 0.9};  // the triangles of that corner flip and cover others
   const AtlasMeasures m = measure_atlas(mesh, 64, 64);
   EXPECT_GE(m.flipped, 1u);
@@ -88,8 +93,8 @@ TEST(AtlasMeasure, AMirroredChartAndAFlippedTriangleAreSeen) {
 }
 
 TEST(AtlasMeasure, OverlapCountsEveryTexelOnce) {
-  UvMesh mesh = flat_mesh(grid(1, 1), 0.5, 0, 0.5, 0);
-  append(mesh, flat_mesh(moved(grid(1, 1), 1, {3, 0, 0}), 0.5, -1.25, 0.5, 0.25));
+  UvMesh mesh = flat_mesh(grid(1, 1), {0.5, 0, 0.5, 0});
+  append(mesh, flat_mesh(moved(grid(1, 1), 1, {3, 0, 0}), {0.5, -1.25, 0.5, 0.25}));
   // [0, 1/2]² and [1/4, 3/4] x [1/4, 3/4] share a quarter of 1/4.
   const AtlasMeasures m = measure_atlas(mesh, 64, 64);
   EXPECT_EQ(m.charts, 2u);
@@ -100,9 +105,9 @@ TEST(AtlasMeasure, OverlapCountsEveryTexelOnce) {
 TEST(AtlasMeasure, BleedBeginsWithinOneTexel) {
   for (const int gap : {0, 1, 2, 3}) {
     // Two squares of 8 texels are `gap` texels apart, with their edges on texel borders.
-    UvMesh mesh = flat_mesh(grid(1, 1), 8 / 64.0, 8 / 64.0, 8 / 64.0, 8 / 64.0);
-    append(mesh, flat_mesh(moved(grid(1, 1), 1, {4, 0, 0}), 8 / 64.0, (16 + gap - 32) / 64.0,
-                           8 / 64.0, 8 / 64.0));
+    UvMesh mesh = flat_mesh(grid(1, 1), {8 / 64.0, 8 / 64.0, 8 / 64.0, 8 / 64.0});
+    append(mesh, flat_mesh(moved(grid(1, 1), 1, {4, 0, 0}),
+                           {8 / 64.0, (16 + gap - 32) / 64.0, 8 / 64.0, 8 / 64.0}));
     const AtlasMeasures m = measure_atlas(mesh, 64, 64);
     EXPECT_EQ(m.overlap, 0u);
     // Lookups read one texel beyond each square. The columns that both read are 10 texels high.
@@ -111,8 +116,8 @@ TEST(AtlasMeasure, BleedBeginsWithinOneTexel) {
 }
 
 TEST(AtlasMeasure, SeamIsTheLengthOfCutEdges) {
-  UvMesh mesh = flat_mesh(grid(1, 1), 0.25, 0, 0.25, 0);
-  append(mesh, flat_mesh(moved(grid(1, 1), 1, {1, 0, 0}), 0.25, 0.25, 0.25, 0));
+  UvMesh mesh = flat_mesh(grid(1, 1), {0.25, 0, 0.25, 0});
+  append(mesh, flat_mesh(moved(grid(1, 1), 1, {1, 0, 0}), {0.25, 0.25, 0.25, 0}));
   // One edge of length 1 lies between them. Its positions are shared, its texture coordinates are
   // not.
   const AtlasMeasures m = measure_atlas(mesh, 64, 64);
@@ -121,9 +126,9 @@ TEST(AtlasMeasure, SeamIsTheLengthOfCutEdges) {
 }
 
 TEST(AtlasMeasure, DegenerateAndOutsideAreCounted) {
-  UvMesh mesh = flat_mesh(grid(1, 1), 0.5, 0, 0.5, 0);
-  append(mesh, flat_mesh(moved(grid(1, 1), 1, {5, 0, 0}), 0, 0.75, 0.1, 0.5));
-  append(mesh, flat_mesh(moved(grid(1, 1), 1, {9, 0, 0}), 0.5, -3.5, 0.1, 0.75));
+  UvMesh mesh = flat_mesh(grid(1, 1), {0.5, 0, 0.5, 0});
+  append(mesh, flat_mesh(moved(grid(1, 1), 1, {5, 0, 0}), {0, 0.75, 0.1, 0.5}));
+  append(mesh, flat_mesh(moved(grid(1, 1), 1, {9, 0, 0}), {0.5, -3.5, 0.1, 0.75}));
   const AtlasMeasures m = measure_atlas(mesh, 64, 64);
   EXPECT_EQ(m.degenerate, 2u);
   EXPECT_EQ(m.outside, 2u);

@@ -14,11 +14,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Adds the two triangles of the quad a b c d, which is anticlockwise.
-void quad(Shape& shape, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-  for (std::uint32_t v : {a, b, c, a, c, d}) shape.indices.push_back(v);
-}
-
 // Returns a lattice of (columns + 1) x (rows + 1) vertices. If `wrap`, it is closed in the first
 // direction, which then has `columns` vertices.
 template <class Place>
@@ -31,7 +26,7 @@ Shape lattice(int columns, int rows, bool wrap, const Place& place) {
     for (int i = 0; i < columns; ++i) {
       const std::uint32_t i1 = std::uint32_t(i + 1) % width;
       const std::uint32_t low = std::uint32_t(j) * width, high = low + width;
-      quad(shape, low + i, low + i1, high + i1, high + i);
+      shape.add_quad(low + i, low + i1, high + i1, high + i);
     }
   return shape;
 }
@@ -59,7 +54,8 @@ void add_face(Shape& shape, Welder& weld, const std::array<glm::dvec3, 3>& face,
     return weld(corner + du * (double(i) / n) + dv * (double(j) / n));
   };
   for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i) quad(shape, at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+    for (int i = 0; i < n; ++i)
+      shape.add_quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
 }
 
 double uniform(std::mt19937_64& random) {
@@ -67,6 +63,10 @@ double uniform(std::mt19937_64& random) {
 }
 
 }  // namespace
+
+void Shape::add_quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+  for (std::uint32_t v : {a, b, c, a, c, d}) indices.push_back(v);
+}
 
 Shape grid(int nx, int ny, double width, double height) {
   Shape shape = lattice(
@@ -105,7 +105,7 @@ Shape sphere(int around, int rings, double radius) {
   for (int i = 0; i < around; ++i) {
     for (std::uint32_t v : {std::uint32_t(0), at(1, i + 1), at(1, i)}) shape.indices.push_back(v);
     for (int j = 1; j + 1 < rings; ++j)
-      quad(shape, at(j, i), at(j, i + 1), at(j + 1, i + 1), at(j + 1, i));
+      shape.add_quad(at(j, i), at(j, i + 1), at(j + 1, i + 1), at(j + 1, i));
     for (std::uint32_t v : {at(rings - 1, i), at(rings - 1, i + 1), top})
       shape.indices.push_back(v);
   }
@@ -158,7 +158,7 @@ Shape torus(int around, int across, double major, double minor) {
       const auto at = [&](int u, int v) {
         return std::uint32_t((u % around) * across + v % across);
       };
-      quad(shape, at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+      shape.add_quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
     }
   return shape;
 }
@@ -188,7 +188,7 @@ Shape cone(int around, int along, double half_angle, double slant) {
   for (int i = 0; i < around; ++i) {
     for (std::uint32_t v : {std::uint32_t(0), at(1, i), at(1, i + 1)}) shape.indices.push_back(v);
     for (int j = 1; j < along; ++j)
-      quad(shape, at(j, i), at(j + 1, i), at(j + 1, i + 1), at(j, i + 1));
+      shape.add_quad(at(j, i), at(j + 1, i), at(j + 1, i + 1), at(j, i + 1));
   }
   return shape;
 }
@@ -226,7 +226,7 @@ Shape cap(int around, int rings, double theta) {
   for (int i = 0; i < around; ++i) {
     for (std::uint32_t v : {std::uint32_t(0), at(1, i), at(1, i + 1)}) shape.indices.push_back(v);
     for (int j = 1; j < rings; ++j)
-      quad(shape, at(j, i), at(j + 1, i), at(j + 1, i + 1), at(j, i + 1));
+      shape.add_quad(at(j, i), at(j + 1, i), at(j + 1, i + 1), at(j, i + 1));
   }
   return shape;
 }

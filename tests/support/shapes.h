@@ -16,6 +16,8 @@ struct Shape {
   std::vector<std::uint32_t> indices;  // three per triangle, anticlockwise seen from outside
 
   std::size_t triangle_count() const { return indices.size() / 3; }
+  // Adds the two triangles of the quad a b c d, which is anticlockwise.
+  void add_quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d);
 };
 
 // A flat grid of nx * ny quads over [0, width] x [0, height], facing +z.

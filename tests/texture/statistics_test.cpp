@@ -15,11 +15,15 @@ LuminanceStatistics measure(const LitShape& shape) {
   return *s;
 }
 
-// Adds a closed box of six sheets with its corner at `at`. The floor has the illumination
-// `floor_value`, the other sides have `value`.
-void add_box(LitShape& to, Vec3f at, float size, float value, float floor_value) {
+// The illumination of a box: of its floor, and of its other sides.
+struct BoxLight {
+  float sides, floor;
+};
+
+// Adds a closed box of six sheets with its corner at `at`.
+void add_box(LitShape& to, Vec3f at, float size, BoxLight light) {
   for (int side = 0; side < 6; ++side) {
-    const float v = side == 0 ? floor_value : value;
+    const float v = side == 0 ? light.floor : light.sides;
     LitShape sheet = make_sheet({size, size, 2, 2}, [&](double, double) { return Vec3f{v, v, v}; });
     for (Vec3f& p : sheet.scene.positions) {
       const float far = side % 2 ? size : 0.0f;
@@ -55,22 +59,22 @@ TEST(Statistics, AreWeightedByArea) {
 TEST(Statistics, LeaveOutWhatIsClosedIn) {
   // A room at 1 with a bright floor at 2 contains small closed boxes, which are lit inside at 50.
   LitShape room;
-  add_box(room, {0, 0, 0}, 10, 1, 2);
-  for (int i = 0; i < 6; ++i) add_box(room, {1.5f + static_cast<float>(i), 5, 5}, 0.7f, 50, 50);
+  add_box(room, {0, 0, 0}, 10, {1, 2});
+  for (int i = 0; i < 6; ++i) add_box(room, {1.5f + static_cast<float>(i), 5, 5}, 0.7f, {50, 50});
   const LuminanceStatistics s = measure(room);
   EXPECT_TRUE(s.seen);
   // The outsides of the boxes are the same surface, so a few sight lines do end on them. They are 3
   // % of the surface, and less of what is seen.
   EXPECT_GT(s.percentile99, 1.5);
   LitShape empty;
-  add_box(empty, {0, 0, 0}, 10, 1, 2);
+  add_box(empty, {0, 0, 0}, 10, {1, 2});
   EXPECT_NEAR(measure(empty).percentile99, 2, 1e-5);
 }
 
 TEST(Statistics, DoNotChangeWithScaleOrPlace) {
   const auto room = [](float scale, Vec3f at) {
     LitShape out;
-    add_box(out, at, 4 * scale, 1, 1);
+    add_box(out, at, 4 * scale, {1, 1});
     for (std::size_t i = 0; i < out.scene.positions.size(); ++i) {
       const Vec3f p = out.scene.positions[i];
       const float v = 1 + std::fabs(p.x - at.x) / scale + std::fabs(p.z - at.z) / scale;

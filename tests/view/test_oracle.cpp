@@ -79,12 +79,13 @@ struct Agreement {
 };
 
 // Returns the direction of the ray through a pixel's centre.
-glm::dvec3 pixel_ray(const Camera& c, int x, int y, int width, int height) {
+glm::dvec3 pixel_ray(const Camera& c, const Image8& image, int x, int y) {
   const glm::dvec3 f = glm::normalize(to_glm(c.target) - to_glm(c.eye));
   const glm::dvec3 r = glm::normalize(glm::cross(f, to_glm(c.up))), u = glm::cross(r, f);
   const double t = std::tan(glm::radians(c.fov_degrees) / 2);
-  return glm::normalize(f + r * (t * width / height * (2 * (x + 0.5) / width - 1)) +
-                        u * (t * (2 * (y + 0.5) / height - 1)));
+  return glm::normalize(f +
+                        r * (t * image.width / image.height * (2 * (x + 0.5) / image.width - 1)) +
+                        u * (t * (2 * (y + 0.5) / image.height - 1)));
 }
 
 Agreement compare(const View& view, const Vec3d& light, const RenderOptions& options) {
@@ -102,8 +103,8 @@ Agreement compare(const View& view, const Vec3d& light, const RenderOptions& opt
   Agreement a;
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
-      const Rays::Hit hit = rays.first(to_glm(view.camera.eye),
-                                       pixel_ray(view.camera, x, y, image.width, image.height));
+      const Rays::Hit hit =
+          rays.first(to_glm(view.camera.eye), pixel_ray(view.camera, image, x, y));
       if (!hit.found) continue;
       const double nl = glm::dot(hit.normal, l);
       const auto truth = [&](const glm::dvec3& p) {
