@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "apps/common/program.h"
+#include "libatlas/core/small_letters.h"
 
 namespace atlas::app {
 namespace {
@@ -129,12 +130,14 @@ std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
   constexpr std::string_view kMissing = " missing", kCount = " required ";
   if (const auto at = text.find(": "); text.ends_with(kMissing) && text.find(kCount) != text.npos)
     return text.substr(0, at) + " needs a value after it";
-  constexpr std::string_view kTwice = ": At Most 1 required";
-  if (const auto at = text.find(kTwice); at != std::string::npos)
+  // Versions of CLI11 differ in capitals.
+  const std::string small = small_letters(text);
+  constexpr std::string_view kTwice = ": at most 1 required";
+  if (const auto at = small.find(kTwice); at != std::string::npos)
     return text.substr(0, at) + " is given more than once";
   constexpr std::string_view kReceived = " required but received ";
-  for (const std::string_view bound : {": At least ", ": At Most "})
-    if (const auto at = text.find(bound), to = text.find(kReceived);
+  for (const std::string_view bound : {": at least ", ": at most "})
+    if (const auto at = small.find(bound), to = small.find(kReceived);
         at != std::string::npos && to != std::string::npos)
       return fmt::format("{} takes {} values with commas between them, not {}", text.substr(0, at),
                          text.substr(at + bound.size(), to - at - bound.size()),

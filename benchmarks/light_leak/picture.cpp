@@ -19,14 +19,16 @@ glm::dvec3 place(const Vec3f& p) {
   return {p.x, p.y, p.z};
 }
 
-// Returns the one of 64 points along the edge that has the most others around it.
-glm::dvec3 busiest(const std::vector<Vec3f>& points, double radius) {
+// Returns the one of 64 points along the edge around which light falls most, summed over points.
+glm::dvec3 sharpest(const ShadowEdge& edge, double radius) {
+  const std::vector<Vec3f>& points = edge.points;
   const std::size_t step = std::max<std::size_t>(1, points.size() / 64);
   glm::dvec3 best = place(points.front());
-  std::size_t most = 0;
+  double most = 0;
   for (std::size_t i = 0; i < points.size(); i += step) {
-    std::size_t near = 0;
-    for (const Vec3f& p : points) near += glm::distance(place(p), place(points[i])) < radius;
+    double near = 0;
+    for (std::size_t k = 0; k < points.size(); ++k)
+      if (glm::distance(place(points[k]), place(points[i])) < radius) near += edge.drops[k];
     if (near <= most) continue;
     most = near;
     best = place(points[i]);
@@ -41,7 +43,7 @@ std::array<glm::dvec3, 3> corners(const Scene& scene, std::uint32_t t) {
 }
 
 Patch choose_patch(const Scene& scene, const ShadowEdge& edge, double side) {
-  Patch patch{busiest(edge.points, side / 2), {}, {}, glm::dvec3(0), side};
+  Patch patch{sharpest(edge, side / 2), {}, {}, glm::dvec3(0), side};
   for (const std::uint32_t t : edge.triangles) {
     const auto p = corners(scene, t);
     if (glm::distance(p[0], patch.centre) < side / 4)

@@ -105,13 +105,14 @@ Result<std::string> read_text_or_gzip(const fs::path& path, std::size_t most) {
   }
   int error = Z_OK;
   gzerror(file, &error);
-  gzclose(file);
+  // Some versions of zlib tell only here that the last read ended within a stream.
+  const int closed = gzclose(file);
   if (text.size() >= most) {
     return Status(ErrorCode::unsupported,
                   fmt::format("{}: holds {} MiB of text or more, unpacked (split the scene)",
                               path.string(), most >> 20));
   }
-  if (got != 0 || (error != Z_OK && error != Z_STREAM_END)) {
+  if (got != 0 || (error != Z_OK && error != Z_STREAM_END) || closed != Z_OK) {
     return Status(
         ErrorCode::bad_input,
         fmt::format("{}: damaged or cut short gzip data (copy the file again)", path.string()));

@@ -125,6 +125,15 @@ std::vector<Hostile> hostile_files() {
                         little(60000, 2) + std::string("\x18\0\xff\xff\xff", 5)}};
 }
 
+// Since version 3.1, readers of OpenImageIO refuse some of these files by themselves, and name the
+// size that is claimed in words of their own.
+bool tells_what_is_claimed(const std::string& message, const std::string& path) {
+  const auto has = [&](const std::string& words) { return message.find(words) != message.npos; };
+  if (has(path + ": claims ")) return has("cannot hold");
+  return has(path + ": cannot be read as an image: ") &&
+         (has("claims") || has("exceeds the") || has("implausible"));
+}
+
 TEST(HostileImage, NoMemoryForWhatAFileCannotHold) {
   const TempFolder folder;
   const test::IgnoreLeaks readers;  // libpng and libjpeg leave OpenImageIO's functions by longjmp
@@ -133,8 +142,7 @@ TEST(HostileImage, NoMemoryForWhatAFileCannotHold) {
     const auto read = read_image8(path);
     ASSERT_FALSE(read.ok()) << file.name;
     const std::string& message = read.status().message();
-    EXPECT_NE(message.find(path.string() + ": claims "), message.npos) << message;
-    EXPECT_NE(message.find("cannot hold"), message.npos) << message;
+    EXPECT_TRUE(tells_what_is_claimed(message, path.string())) << message;
     EXPECT_FALSE(read_image_float(path).ok()) << file.name;
   }
   EXPECT_LT(peak_memory(), std::int64_t{800} << 20);

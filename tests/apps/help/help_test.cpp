@@ -1,36 +1,33 @@
 // Checks that docs/programs.md lists exactly the options that --help prints.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 
 namespace {
 
 using Names = std::set<std::string>;
 
-// Returns the options in the first column of lines that begin with `start`. The column ends at the
-// first character that is in `ends`.
-Names options_in(const std::string& text, const std::string& start, const std::string& ends) {
-  Names names;
+// Returns the options in the first group of `names` in the lines that it matches.
+Names options_in(const std::string& text, const std::regex& names) {
+  Names found;
   const std::regex option("--[a-z0-9-]+");
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string line = text.substr(at, end - at);
-    at = end + 1;
-    if (!line.starts_with(start)) continue;
-    const std::string column =
-        line.substr(0, line.find_first_of(ends, line.find('-', start.size() - 1)));
+  std::istringstream lines(text);
+  std::smatch match;
+  for (std::string line; std::getline(lines, line);) {
+    if (!std::regex_search(line, match, names)) continue;
+    const std::string column = match[1];
     for (std::sregex_iterator i(column.begin(), column.end(), option), none; i != none; ++i)
-      names.insert(i->str());
+      found.insert(i->str());
   }
-  names.erase("--help");
-  names.erase("--version");
-  return names;
+  found.erase("--help");
+  found.erase("--version");
+  return found;
 }
 
 Names of_help(const std::string& command) {
@@ -39,7 +36,8 @@ Names of_help(const std::string& command) {
   char buffer[4096];
   while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) text.append(buffer, n);
   EXPECT_EQ(::pclose(pipe), 0);
-  return options_in(text, "  -", " :=");
+  // Names begin the line, with commas between them. Versions of CLI11 indent them differently.
+  return options_in(text, std::regex("^ +((?:--?[A-Za-z0-9-]+(?:, *)?)+)"));
 }
 
 Names of_page(const std::string& program) {
@@ -47,7 +45,8 @@ Names of_page(const std::string& program) {
   const std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   const std::size_t begin = page.find("\n## " + program + "\n");
   if (begin == std::string::npos) return {};
-  return options_in(page.substr(begin, page.find("\n## ", begin + 1) - begin), "| `-", "|");
+  return options_in(page.substr(begin, page.find("\n## ", begin + 1) - begin),
+                    std::regex("^\\| (`-[^|]*)"));
 }
 
 TEST(Help, ThePageOfProgramsNamesEveryOption) {
