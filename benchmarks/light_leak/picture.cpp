@@ -19,16 +19,14 @@ glm::dvec3 place(const Vec3f& p) {
   return {p.x, p.y, p.z};
 }
 
-// Returns the one of 64 points along the edge around which light falls most, summed over points.
-glm::dvec3 sharpest(const ShadowEdge& edge, double radius) {
-  const std::vector<Vec3f>& points = edge.points;
+// Returns the one of 64 points along the edge that has the most others around it.
+glm::dvec3 busiest(const std::vector<Vec3f>& points, double radius) {
   const std::size_t step = std::max<std::size_t>(1, points.size() / 64);
   glm::dvec3 best = place(points.front());
-  double most = 0;
+  std::size_t most = 0;
   for (std::size_t i = 0; i < points.size(); i += step) {
-    double near = 0;
-    for (std::size_t k = 0; k < points.size(); ++k)
-      if (glm::distance(place(points[k]), place(points[i])) < radius) near += edge.drops[k];
+    std::size_t near = 0;
+    for (const Vec3f& p : points) near += glm::distance(place(p), place(points[i])) < radius;
     if (near <= most) continue;
     most = near;
     best = place(points[i]);
@@ -42,12 +40,23 @@ std::array<glm::dvec3, 3> corners(const Scene& scene, std::uint32_t t) {
           place(scene.positions[scene.indices[3 * t + 2]])};
 }
 
+// Returns the light of a triangle's corners, summed over corners and channels.
+double light_of(const Scene& scene, std::uint32_t t) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3f& e = scene.illumination[scene.indices[3 * t + k]];
+    sum += e.x + e.y + e.z;
+  }
+  return sum;
+}
+
 Patch choose_patch(const Scene& scene, const ShadowEdge& edge, double side) {
-  Patch patch{sharpest(edge, side / 2), {}, {}, glm::dvec3(0), side};
+  Patch patch{busiest(edge.points, side / 2), {}, {}, glm::dvec3(0), side};
   for (const std::uint32_t t : edge.triangles) {
     const auto p = corners(scene, t);
+    // Weighted by its light, the lit side of a thin object outweighs its dark back.
     if (glm::distance(p[0], patch.centre) < side / 4)
-      patch.normal += glm::cross(p[1] - p[0], p[2] - p[0]);
+      patch.normal += light_of(scene, t) * glm::cross(p[1] - p[0], p[2] - p[0]);
   }
   const double length = glm::length(patch.normal);
   patch.normal = length > 0 ? patch.normal / length : glm::dvec3(0, 0, 1);

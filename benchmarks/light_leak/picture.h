@@ -19,8 +19,8 @@ struct LeakPicture {
   Image8 input, baked;
 };
 
-// Draws the square in which the shadow edge is sharpest and longest. `pages` must be baked from
-// staged.layout; pages without triangles of the object may be empty.
+// Draws the square in which the shadow edge is longest. `pages` must be baked from staged.layout;
+// pages without triangles of the object may be empty.
 LeakPicture draw_patch(const Staged& staged, const std::vector<Image8>& pages,
                        const ShadowEdge& edge, const PatchOptions& options);
 

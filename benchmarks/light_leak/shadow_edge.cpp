@@ -31,16 +31,11 @@ double mean_luma(const Scene& scene, const std::vector<std::uint32_t>& triangles
   return areas > 0 ? sum / areas : 0;
 }
 
-struct Crossing {
-  glm::dvec3 place;
-  double drop;  // of the luma
-};
-
 // Returns the crossings on a triangle's three edges (at most three) of which one end has at least
 // the given light.
-std::vector<Crossing> crossings(const Scene& scene, std::uint32_t triangle, double light,
-                                const ShadowEdgeOptions& options) {
-  std::vector<Crossing> found;
+std::vector<glm::dvec3> crossings(const Scene& scene, std::uint32_t triangle, double light,
+                                  const ShadowEdgeOptions& options) {
+  std::vector<glm::dvec3> found;
   for (int k = 0; k < 3; ++k) {
     const std::uint32_t a = scene.indices[3 * triangle + k];
     const std::uint32_t b = scene.indices[3 * triangle + (k + 1) % 3];
@@ -49,15 +44,9 @@ std::vector<Crossing> crossings(const Scene& scene, std::uint32_t triangle, doub
     const glm::dvec3 pa = to_dvec(scene.positions[a]), pb = to_dvec(scene.positions[b]);
     if (std::abs(la - lb) <= options.drop * std::max(la, lb)) continue;
     if (glm::distance(pa, pb) * scene.metres_per_unit > options.length) continue;
-    // The light is linear between both ends, so its mean value lies half-way.
-    found.push_back({0.5 * (pa + pb), std::abs(la - lb)});
+    found.push_back(0.5 * (pa + pb));  // linear between both ends, so the mean value lies half-way
   }
   return found;
-}
-
-void add_point(ShadowEdge& edge, glm::dvec3 place, double drop) {
-  edge.points.push_back(from_glm(glm::vec3(place)));
-  edge.drops.push_back(float(drop));
 }
 
 }  // namespace
@@ -71,16 +60,14 @@ ShadowEdge find_shadow_edge(const Scene& scene, const ShadowEdgeOptions& options
   }
   const double light = mean_luma(scene, edge.triangles);
   for (const std::uint32_t t : edge.triangles) {
-    const std::vector<Crossing> ends = crossings(scene, t, light, options);
-    if (ends.size() == 1) add_point(edge, ends[0].place, ends[0].drop);
+    const std::vector<glm::dvec3> ends = crossings(scene, t, light, options);
+    if (ends.size() == 1) edge.points.push_back(from_glm(glm::vec3(ends[0])));
     for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
       for (std::size_t j = i + 1; j < ends.size(); ++j) {
-        const Crossing &a = ends[i], &b = ends[j];
-        const double length = glm::distance(a.place, b.place);
+        const double length = glm::distance(ends[i], ends[j]);
         const int steps = std::max(1, int(std::ceil(length / spacing)));
         for (int s = 0; s <= steps; ++s)
-          add_point(edge, glm::mix(a.place, b.place, double(s) / steps),
-                    glm::mix(a.drop, b.drop, double(s) / steps));
+          edge.points.push_back(from_glm(glm::vec3(glm::mix(ends[i], ends[j], double(s) / steps))));
         edge.length += length * scene.metres_per_unit;
       }
     }

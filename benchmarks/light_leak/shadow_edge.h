@@ -26,7 +26,6 @@ struct ShadowEdgeOptions {
 struct ShadowEdge {
   std::vector<std::uint32_t> triangles;  // triangles of the object
   std::vector<Vec3f> points;             // along the edge, at most `spacing` apart; scene units
-  std::vector<float> drops;              // at each point, by how much the luma falls
   double length = 0;                     // of all pieces, metres
 };
 
