@@ -98,21 +98,21 @@ Result<std::string> read_text_or_gzip(const fs::path& path, std::size_t most) {
   if (!file) return Status(ErrorCode::io, path.string() + ": cannot be read");
   gzbuffer(file, 1 << 18);
   std::string piece(std::size_t{1} << 20, '\0');
-  int got = 0;
-  while (text.size() < most &&
-         (got = gzread(file, piece.data(), static_cast<unsigned>(piece.size()))) > 0) {
-    text.append(piece.data(), static_cast<std::size_t>(got));
-  }
-  int error = Z_OK;
-  gzerror(file, &error);
-  // Some versions of zlib tell only here that the last read ended within a stream.
-  const int closed = gzclose(file);
+  int got = 0, error = Z_OK;
+  do {
+    got = gzread(file, piece.data(), static_cast<unsigned>(piece.size()));
+    if (got > 0) text.append(piece.data(), static_cast<std::size_t>(got));
+    // Asked after every read: from zlib 1.3.2 on, the next read forgets that the file ended within
+    // a stream.
+    gzerror(file, &error);
+  } while (got > 0 && error == Z_OK && text.size() < most);
+  gzclose(file);
   if (text.size() >= most) {
     return Status(ErrorCode::unsupported,
                   fmt::format("{}: holds {} MiB of text or more, unpacked (split the scene)",
                               path.string(), most >> 20));
   }
-  if (got != 0 || (error != Z_OK && error != Z_STREAM_END) || closed != Z_OK) {
+  if (error != Z_OK) {
     return Status(
         ErrorCode::bad_input,
         fmt::format("{}: damaged or cut short gzip data (copy the file again)", path.string()));
