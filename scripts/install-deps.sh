@@ -53,7 +53,7 @@ fi
 # The lists of a fresh system are empty, and say nothing about what the release has.
 [ -z "$missing" ] || $as_root apt-get update -qq
 for package in $missing_if_any; do
-  if apt-cache policy "$package" | grep -q 'Candidate: [^(]'; then
+  if LC_ALL=C apt-cache policy "$package" | grep -q 'Candidate: [^(]'; then
     missing="$missing $package"
   else
     echo "not in this release, so tests that need it are skipped: $package"
