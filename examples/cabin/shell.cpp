@@ -14,10 +14,10 @@ namespace {
 constexpr double kBandHalf = 0.25;    // half the height of the wall band that holds the windows
 constexpr double kCrownAngle = 0.66;  // where the lining ends and the crown begins, from the axis
 
-// How many rows of quads each part of the wall has, from the floor up, and columns in a bay.
+// How many rows of quads each part of the wall has, from the floor up. A bay has as many columns as
+// the band has rows.
 struct WallRows {
   int dado, band, lining, crown;
-  int columns;
 };
 
 WallRows wall_rows(const Builder& builder) {
@@ -25,9 +25,8 @@ WallRows wall_rows(const Builder& builder) {
   const double middle = wall_height(kWindowHeight);
   const double dado = middle - kBandHalf - wall_height(0),
                lining = kRadius * kCrownAngle - middle - kBandHalf;
-  const int bay = builder.segments(kBay, coarse ? 2 : 4);
-  return {builder.segments(dado, coarse ? 3 : 6), bay, builder.segments(lining, coarse ? 2 : 3),
-          builder.segments(kRadius * 1.8) / 2 + 2, bay};
+  return {builder.segments(dado, coarse ? 3 : 6), builder.segments(kBay, coarse ? 2 : 4),
+          builder.segments(lining, coarse ? 2 : 3), builder.segments(kRadius * 1.8) / 2 + 2};
 }
 
 // Returns a height of the crown, for v in [0, 1] from one side over the top to the other.
@@ -157,16 +156,16 @@ void add_bay(Builder& builder, int side, int bay) {
   const WallRows rows = wall_rows(builder);
   builder.begin("lining", "lining");
   add_wall(builder, {side, x, {middle + kBandHalf, kRadius * kCrownAngle}},
-           {rows.columns, rows.lining});
+           {rows.band, rows.lining});
   builder.begin("dado", "dado");
-  add_wall(builder, {side, x, {floor, middle - kBandHalf}}, {rows.columns, rows.dado});
+  add_wall(builder, {side, x, {floor, middle - kBandHalf}}, {rows.band, rows.dado});
   builder.begin("lining", "lining");
   if (!has_window(bay))
     return add_wall(builder, {side, x, {middle - kBandHalf, middle + kBandHalf}},
-                    {rows.columns, rows.band});
+                    {rows.band, rows.band});
   const Window window{side, bay, {(x.x + x.y) / 2, middle}};
-  add_window_wall(builder, window, rows.columns);
-  add_reveal(builder, window, rows.columns);
+  add_window_wall(builder, window, rows.band);
+  add_reveal(builder, window, rows.band);
 }
 
 // Adds the crown of the fuselage above the bins and the ceiling, which no light reaches.
