@@ -6,8 +6,8 @@
 #include <queue>
 
 #include "libatlas/charts/geometry/moments.h"
+#include "libatlas/charts/merging/coarse_chart.h"
 #include "libatlas/charts/merging/cost_classes.h"
-#include "libatlas/charts/merging/refusal.h"
 #include "libatlas/charts/merging/runs.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
@@ -15,30 +15,11 @@
 namespace atlas {
 namespace {
 
-// Normals count as lying in one plane if 1 - |mean normal| is below this: they then differ by about
-// a thousandth of a radian, the noise of float coordinates.
-constexpr double kFlatSpread = 1e-6;
 // A seam along a crease is hidden, so removing it is worth less by this share.
 constexpr double kHiddenSeam = 0.75;
 // Under a cone limit charts are small and their outlines hardly matter; the number of charts does.
 constexpr double kConeWeight = 1;
 constexpr double kConeFill = 0.4;  // of both convex hull and rectangle
-
-struct CoarseChart {
-  std::vector<std::uint32_t> cells;
-  std::vector<std::uint32_t> arcs;  // arcs that are not joined, in any order
-  Moments moments{};
-  glm::dvec3 normal_sum{0};
-  double area = 0, perimeter = 0;
-  double energy = 0;     // area times (L2 stretch squared - 1) of its coarse flattening
-  double high_area = 0;  // area of that flattening stretched beyond TrialLimits::stretch_high
-  double box = 0;        // area of the smallest rectangle around it; 0: not known yet
-  int euler = 1;         // Euler characteristic
-  bool flat = false;     // all cells in one plane
-  bool unrolls = false;  // exactly, without stretch
-  std::uint32_t version = 0;
-  std::vector<Refusal> refusals;  // each is stored with one of its two charts
-};
 
 struct Candidate {
   double cost;
@@ -119,7 +100,7 @@ class Merger {
     own.normal_sum = to_glm(cell.normal_sum);
     own.area = cell.area;
     own.version = 1;
-    own.flat = 1 - glm::length(own.normal_sum) / own.area < kFlatSpread;
+    own.flat = in_one_plane(own);
     if (options_.cone > 0) result_.chart_axis[k] = from_glm(glm::vec3(to_glm(cell.normal)));
     result_.chart_of_cell[k] = k;
     own.unrolls = cell.unrolls;
@@ -203,11 +184,6 @@ class Merger {
     return cone.angle <= options_.cone;
   }
 
-  static glm::dvec3 unit(const glm::dvec3& v) {
-    const double length = glm::length(v);
-    return length > 0 ? v / length : glm::dvec3(0, 0, 1);
-  }
-
   void try_merge(std::uint32_t a, std::uint32_t b) {
     const bool within = within_cone(a, b);
     if (chart(a).cells.size() < chart(b).cells.size()) std::swap(a, b);
@@ -227,7 +203,9 @@ class Merger {
       if ((c0 == a && c1 == b) || (c0 == b && c1 == a)) glue_.push_back(arc);
     }
     std::sort(glue_.begin(), glue_.end());
-    if (coplanar(a, b)) {
+    // Without a trial, whatever the outline: nothing is stretched, and an oriented surface in a
+    // plane does not overlap itself.
+    if (coplanar(chart(a), chart(b))) {
       energy_ = high_area_ = 0;
       euler_ = trial_.euler(chart(a).euler, chart(b).euler, glue_);
       unrolls_ = chart(a).unrolls && chart(b).unrolls;
@@ -245,14 +223,6 @@ class Merger {
     return std::any_of(glue_.begin(), glue_.end(), [&](std::uint32_t arc) {
       return is_tip(mesh_.arcs[arc].slot[0]) || is_tip(mesh_.arcs[arc].slot[1]);
     });
-  }
-
-  // Whether both charts lie in one plane. They then join without a trial, whatever their outline:
-  // nothing is stretched, and an oriented surface in a plane does not overlap itself.
-  bool coplanar(std::uint32_t a, std::uint32_t b) const {
-    const CoarseChart &p = chart(a), &q = chart(b);
-    if (!p.flat || !q.flat) return false;
-    return 1 - glm::dot(unit(p.normal_sum), unit(q.normal_sum)) < kFlatSpread;
   }
 
   TrialOutcome attempt(std::uint32_t a, std::uint32_t b) {
@@ -334,7 +304,7 @@ class Merger {
     std::erase_if(p.arcs, [&](std::uint32_t arc) { return result_.joined[arc] != 0; });
     for (const std::uint32_t arc : glue_) p.perimeter -= 2 * mesh_.arcs[arc].length;
     p.perimeter += q.perimeter;
-    p.flat = coplanar(a, b);
+    p.flat = coplanar(p, q);
     p.energy = energy_;
     p.high_area = high_area_;
     p.euler = euler_;
