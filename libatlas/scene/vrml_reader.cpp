@@ -61,7 +61,7 @@ class VrmlParser : VrmlScanner {
       token = next();
     }
     if (token.empty() || token[0] < 'A' || token[0] > 'Z') {
-      fail(fmt::format("'{}' where a node should be", token.substr(0, 40)));
+      fail(fmt::format("'{}' where a node should be", start_of(token)));
     }
     return token;
   }

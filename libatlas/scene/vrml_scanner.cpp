@@ -57,6 +57,10 @@ std::string_view VrmlScanner::peek() {
   return token;
 }
 
+std::string_view VrmlScanner::start_of(std::string_view token) {
+  return token.substr(0, std::min<std::size_t>(40, token.find('\n')));
+}
+
 void VrmlScanner::expect(std::string_view token) {
   if (next() != token) fail(fmt::format("'{}' expected", token));
 }
@@ -74,7 +78,7 @@ std::vector<double> VrmlScanner::list(std::size_t width) {
   expect("[");
   double value;
   while (number(value)) values.push_back(value);
-  if (peek() != "]") fail(fmt::format("'{}' is not a number", peek().substr(0, 40)));
+  if (peek() != "]") fail(fmt::format("'{}' is not a number", start_of(peek())));
   expect("]");
   if (values.size() % width != 0) fail(fmt::format("a list of rows of {} with an odd end", width));
   if (context_.cancelled()) throw MalformedVrml();
@@ -112,7 +116,7 @@ void VrmlScanner::skip_value() {
 }
 
 void VrmlScanner::check_field(std::string_view token) {
-  if (!is_field(token)) fail(fmt::format("'{}' where a field should be", token.substr(0, 40)));
+  if (!is_field(token)) fail(fmt::format("'{}' where a field should be", start_of(token)));
 }
 
 }  // namespace atlas

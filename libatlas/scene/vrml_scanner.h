@@ -33,6 +33,8 @@ class VrmlScanner {
   std::string_view next();
   std::string_view peek();
   void expect(std::string_view token);
+  // The beginning of a token, for messages: at most 40 bytes of its first line.
+  static std::string_view start_of(std::string_view token);
 
   // Reads `[ numbers ]`, whose count must be a multiple of `width`.
   std::vector<double> list(std::size_t width);

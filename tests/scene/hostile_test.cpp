@@ -187,6 +187,8 @@ const Case kCases[] = {
     {"empty.wrz", "", ErrorCode::bad_input, "empty.wrz: is empty"},
     {"route.wrl", "#VRML V2.0 utf8\nROUTE a.b TO c.d\n", ErrorCode::bad_input,
      "ROUTE is not supported"},
+    {"lines.wrl", "#VRML V2.0 utf8\nGroup { \"two\nlines\" }\n", ErrorCode::bad_input,
+     "'\"two' where a field should be"},
     {"scene.xyz", "1 2 3\n", ErrorCode::unsupported, "no reader"},
 };
 

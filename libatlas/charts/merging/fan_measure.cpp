@@ -29,11 +29,12 @@ struct FanMeasure::Kernels {
     for (std::size_t c = 0; c < joined.cells.size(); ++c) {
       const Fan fan = fan_of(joined, uvs, c);
       for (std::uint32_t i = fan.begin; i < fan.end; i += 4) {
-        const Quad g1x = QuadAt(m.fans_.slot_gradient_x.data() + fan.slot + i).quad,
-                   g1y = QuadAt(m.fans_.slot_gradient_y.data() + fan.slot + i).quad,
-                   g2x = QuadAt(m.fans_.next_gradient_x.data() + fan.slot + i).quad,
-                   g2y = QuadAt(m.fans_.next_gradient_y.data() + fan.slot + i).quad;
-        const Quad inverse = QuadAt(m.fans_.inverse_area.data() + fan.slot + i).quad;
+        const std::size_t slot = fan.slot + i;  // one sum: fan.slot alone may be below 0
+        const Quad g1x = QuadAt(m.fans_.slot_gradient_x.data() + slot).quad,
+                   g1y = QuadAt(m.fans_.slot_gradient_y.data() + slot).quad,
+                   g2x = QuadAt(m.fans_.next_gradient_x.data() + slot).quad,
+                   g2y = QuadAt(m.fans_.next_gradient_y.data() + slot).quad;
+        const Quad inverse = QuadAt(m.fans_.inverse_area.data() + slot).quad;
         Sides d;
         find_sides(joined.triangles.data() + i, uvs, fan.centre, d);
         // The columns of the map, times the area.
@@ -42,7 +43,7 @@ struct FanMeasure::Kernels {
         const Quad scale = inverse * inverse;
         put_quad(squares + i, ((xx * xx + xy * xy) + (yx * yx + yy * yy)) * scale);
         put_quad(product + i, (xx * yy - xy * yx) * scale);
-        put_quad(area + i, QuadAt(m.fans_.area.data() + fan.slot + i).quad);
+        put_quad(area + i, QuadAt(m.fans_.area.data() + slot).quad);
       }
     }
     put_quad(area + m.count_, Quad{});
@@ -101,7 +102,7 @@ struct FanMeasure::Kernels {
         Sides d;
         find_sides(joined.triangles.data() + i, uvs, fan.centre, d);
         put_quad(twice + i, d.ax * d.by - d.ay * d.bx);
-        put_quad(area + i, QuadAt(m.fans_.area.data() + fan.slot + i).quad);
+        put_quad(area + i, QuadAt(m.fans_.area.data() + (fan.slot + i)).quad);
       }
     }
     put_quad(area + m.count_, Quad{});
