@@ -89,7 +89,7 @@ std::string to_obj(const RepackedMesh& mesh, const std::string& material_file) {
   UvLines uv_lines(mesh);
   const Buckets charts_of =
       sort_into_buckets(charts.members.size(), fit.pages.size(),
-                        [&fit = fit](std::size_t c) { return fit.placements[c].page; });
+                        [&](std::size_t c) { return mesh.fit.placements[c].page; });
   for (std::size_t page = 0; page < charts_of.size(); ++page) {
     if (!charts_of[page].empty()) faces += fmt::format("usemtl page_{}\n", page);
     for (const std::uint32_t c : charts_of[page]) {

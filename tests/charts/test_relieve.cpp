@@ -25,7 +25,7 @@ struct Counts {
 // the height at distance 1 for an angle.
 template <class Height>
 Shape rings(const char* name, Counts counts, double off, const Height& height) {
-  const auto [around, along] = counts;
+  const int around = counts.around, along = counts.along;
   Shape shape;
   shape.name = name;
   shape.positions.push_back({0, 0, 0});
@@ -37,7 +37,7 @@ Shape rings(const char* name, Counts counts, double off, const Height& height) {
           {float(x), float(y), float(std::hypot(x, y) * height(std::atan2(y, x)))});
     }
   }
-  const auto at = [&, around = around](int i, int j) {
+  const auto at = [&](int i, int j) {
     return j == 0 ? 0u : std::uint32_t(1 + (j - 1) * around + i % around);
   };
   for (int j = 0; j < along; ++j) {

@@ -138,8 +138,8 @@ Crossing CrossingFinder::find(Edges border, std::span<const Vec2d> uvs, double d
   if (grouped) fill_groups(edges_, n, groups_);
   Crossing crossing = Crossing::none;
   for (std::size_t i = 0; i < n && crossing != Crossing::deep; ++i) {
-    const auto [a, b] = border[i];
-    const auto test = [&, a = a, b = b](std::size_t j) {
+    const std::uint32_t a = border[i][0], b = border[i][1];
+    const auto test = [&](std::size_t j) {
       const auto [c, d] = border[j];
       if (a == c || a == d || b == c || b == d) return true;
       const Segment e{uvs[a], uvs[b]}, f{uvs[c], uvs[d]};
