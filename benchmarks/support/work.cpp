@@ -83,7 +83,8 @@ Shape assembly(std::uint64_t triangles) {
         part = test::moved(part, size / 3);
         break;
     }
-    append(all, part, uniform(0, 6.28), {uniform(0, 10), uniform(0, 10), uniform(0, 2)});
+    const Vec3d at{uniform(0, 10), uniform(0, 10), uniform(0, 2)};
+    append(all, part, uniform(0, 6.28), at);
   }
   return all;
 }

@@ -76,7 +76,7 @@ class MaterialWriter {
       entry["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", *number}};
     }
     if (entry.contains("extensions"))
-      document_.json["extensionsUsed"] = {"KHR_materials_emissive_strength"};
+      document_.json["extensionsUsed"] = json::array({"KHR_materials_emissive_strength"});
     document_.json["materials"].push_back(std::move(entry));
     return at->second;
   }

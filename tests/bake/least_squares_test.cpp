@@ -123,7 +123,7 @@ TEST(LeastSquares, RowsEqualSingleSamples) {
   for (int trial = 0; trial < 200; ++trial) {
     const int x = static_cast<int>(random() % 10), y = static_cast<int>(random() % 5);
     const int n = 1 + static_cast<int>(random() % 9);
-    const LeastSquares::Splat splat((random() % 100) / 100.0f, (random() % 100) / 100.0f, 0.25f);
+    const LeastSquares::Splat splat{(random() % 100) / 100.0f, (random() % 100) / 100.0f, 0.25f};
     std::vector<Lanes> colours;
     for (int i = 0; i < n; ++i) {
       colours.push_back(Lanes{(random() % 100) / 100.0f, 0.5f, 0.25f, 1});

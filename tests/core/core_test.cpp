@@ -29,7 +29,7 @@ TEST(DisjointSets, JoinInAnyOrderToTheLeastMember) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   std::vector<std::uint32_t> least(500);  // spread until nothing changes
   for (std::uint32_t i = 0; i < least.size(); ++i) least[i] = i;
-  for (int i = 0; i < 300; ++i) pairs.emplace_back(random() % 500, random() % 500);
+  for (int i = 0; i < 300; ++i) pairs.push_back({random() % 500, random() % 500});
   for (bool changed = true; changed;) {
     changed = false;
     for (const auto& [a, b] : pairs) {

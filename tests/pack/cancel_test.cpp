@@ -64,8 +64,10 @@ void cancel_at_any_time(const test::ChartItems& charts, const FitOptions& option
 test::ChartItems blobs(int count, int largest) {
   test::Noise noise{9};
   std::vector<std::vector<Vec2d>> shapes;
-  for (int k = 0; k < count; ++k)
-    shapes.push_back(test::blob(noise, noise.in(10, largest), noise.in(5, 12)));
+  for (int k = 0; k < count; ++k) {
+    const int corners = noise.in(5, 12), radius = noise.in(10, largest);
+    shapes.push_back(test::blob(noise, radius, corners));
+  }
   return test::ChartItems(std::move(shapes));
 }
 

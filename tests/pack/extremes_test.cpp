@@ -269,8 +269,11 @@ TEST(Extremes, BoundsHoldForCharts) {
   test::Noise noise{11};
   for (int round = 0; round < 20; ++round) {
     std::vector<std::vector<Vec2d>> blobs;
-    for (int i = noise.in(1, 20); i > 0; --i)
-      blobs.push_back(test::blob(noise, 100 * noise.unit() + 1, noise.in(3, 9)));
+    for (int i = noise.in(1, 20); i > 0; --i) {
+      const int corners = noise.in(3, 9);
+      const double radius = 100 * noise.unit() + 1;
+      blobs.push_back(test::blob(noise, radius, corners));
+    }
     const test::ChartItems charts(std::move(blobs));
     FitOptions o = outlines(charts);
     o.page_size = 256;

@@ -69,8 +69,9 @@ std::vector<FitItem> items_of(std::size_t count, double scale, std::uint64_t see
 TEST(FitPages, RandomProblems) {
   test::Noise noise{2};
   for (int round = 0; round < 60; ++round) {
-    const auto items =
-        items_of(static_cast<std::size_t>(noise.in(1, 150)), 0.2 + 3 * noise.unit(), noise.next());
+    const std::uint64_t seed = noise.next();
+    const double spread = 0.2 + 3 * noise.unit();
+    const auto items = items_of(static_cast<std::size_t>(noise.in(1, 150)), spread, seed);
     FitOptions o;
     o.pages = static_cast<std::uint32_t>(noise.in(1, 4));
     o.page_size = 512;

@@ -144,7 +144,9 @@ inline std::string fuzz_outlines(std::uint64_t seed) {
   Noise noise{seed * 131 + 17};
   std::vector<std::vector<Vec2d>> blobs;
   for (int n = noise.in(1, 9); n > 0; --n) {
-    blobs.push_back(blob(noise, noise.in(0, 9) ? 4 + 30 * noise.unit() : 0, noise.in(3, 9)));
+    const int corners = noise.in(3, 9);
+    const double radius = noise.in(0, 9) ? 4 + 30 * noise.unit() : 0;
+    blobs.push_back(blob(noise, radius, corners));
     if (noise.in(0, 9) == 0)  // without width
       for (Vec2d& p : blobs.back()) p.y = 0;
   }

@@ -21,9 +21,11 @@ using namespace pack;
 
 std::vector<Piece> blob_pieces(test::Noise& noise, int count, std::uint32_t directions) {
   std::vector<ChartOutline> outlines;
-  for (int k = 0; k < count; ++k)
-    outlines.push_back(
-        outline_of({test::blob(noise, 4.0 + 20 * noise.unit(), noise.in(3, 9)), {}}));
+  for (int k = 0; k < count; ++k) {
+    const int corners = noise.in(3, 9);
+    const double radius = 4.0 + 20 * noise.unit();
+    outlines.push_back(outline_of({test::blob(noise, radius, corners), {}}));
+  }
   PieceOptions options;
   options.cell = 2;
   options.directions = directions;
@@ -127,7 +129,8 @@ TEST(PlainPage, KnowsWhatIsFree) {
   BitPage known(width, height, width);
   std::vector<std::pair<Mask, BitPage::Place>> lying;
   for (int k = 0; k < 4000; ++k) {
-    const auto shape = test::blob(noise, noise.in(2, 60), noise.in(3, 8));
+    const int corners = noise.in(3, 8), radius = noise.in(2, 60);
+    const auto shape = test::blob(noise, radius, corners);
     Vec2d origin;
     const Mask mask = rasterize(outline_of({shape, {}}), {}, origin);
     if (mask.width > width || mask.height > height) continue;

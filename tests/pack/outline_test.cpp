@@ -15,8 +15,11 @@ namespace {
 std::vector<std::vector<Vec2d>> blobs(int count, double radius, std::uint64_t seed) {
   test::Noise noise{seed};
   std::vector<std::vector<Vec2d>> shapes;
-  for (int k = 0; k < count; ++k)
-    shapes.push_back(test::blob(noise, radius * (0.3 + noise.unit()), noise.in(3, 12)));
+  for (int k = 0; k < count; ++k) {
+    const int corners = noise.in(3, 12);
+    const double size = radius * (0.3 + noise.unit());
+    shapes.push_back(test::blob(noise, size, corners));
+  }
   return shapes;
 }
 
@@ -298,7 +301,8 @@ TEST(BitPage, FindsTheLowestLeftmostPlace) {
     BitPage page(width, height, width);
     std::vector<std::vector<bool>> taken(height, std::vector<bool>(std::size_t(width)));
     for (int k = 0; k < 25; ++k) {
-      const auto shape = test::blob(noise, noise.in(2, 14), noise.in(3, 8));
+      const int corners = noise.in(3, 8), radius = noise.in(2, 14);
+      const auto shape = test::blob(noise, radius, corners);
       Vec2d origin;
       const Mask m = pack::rasterize(pack::outline_of({shape, {}}), {}, origin);
       const auto free_at = [&](int x, int y) {

@@ -15,8 +15,9 @@ test::ChartItems blobs(std::size_t count, double smallest, double largest, std::
   test::Noise noise{seed};
   std::vector<std::vector<Vec2d>> shapes;
   for (std::size_t k = 0; k < count; ++k) {
-    shapes.push_back(
-        test::blob(noise, smallest + (largest - smallest) * noise.unit(), noise.in(5, 12)));
+    const int corners = noise.in(5, 12);
+    const double radius = smallest + (largest - smallest) * noise.unit();
+    shapes.push_back(test::blob(noise, radius, corners));
   }
   return test::ChartItems(std::move(shapes));
 }

@@ -229,7 +229,7 @@ TEST(Gltf, MeshesWithoutNodes) {
     g.j.erase("nodes");
     g.j.erase("scene");
     g.j.erase("scenes");
-    if (empty_scene) g.j["scenes"] = {json::object()};
+    if (empty_scene) g.j["scenes"] = json::array({json::object()});
     const auto loaded = load_glb(folder, g);
     ASSERT_TRUE(loaded.ok()) << loaded.status().message();
     EXPECT_EQ(loaded->scene.triangle_count(), 4u);

@@ -31,9 +31,9 @@ double polygon_area2(const std::vector<Vec2d>& p) {
 // triangles then cover a simple polygon exactly.
 void check(const std::vector<Vec2d>& polygon, std::mt19937& random) {
   std::normal_distribution<double> normal;
-  const glm::dvec3 u = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
-  const glm::dvec3 w = glm::normalize(glm::cross(u, glm::dvec3(normal(random), normal(random), 1)));
-  const glm::dvec3 at(normal(random) * 50, normal(random) * 50, normal(random));
+  const glm::dvec3 u = glm::normalize(glm::dvec3{normal(random), normal(random), normal(random)});
+  const glm::dvec3 w = glm::normalize(glm::cross(u, glm::dvec3{normal(random), normal(random), 1}));
+  const glm::dvec3 at{normal(random) * 50, normal(random) * 50, normal(random)};
   std::vector<Vec3d> corners;
   for (const Vec2d& p : polygon) corners.push_back(from_glm(at + u * p.x + w * p.y));
   std::vector<std::array<std::uint32_t, 3>> triangles;

@@ -62,6 +62,12 @@ double uniform(std::mt19937_64& random) {
   return double(random() >> 11) * 0x1p-53;
 }
 
+// In the unit cube. Drawn one after the other, since compilers evaluate arguments in any order.
+glm::dvec3 random_point(std::mt19937_64& random) {
+  const double z = uniform(random), y = uniform(random), x = uniform(random);
+  return {x, y, z};
+}
+
 }  // namespace
 
 void Shape::add_quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
@@ -259,9 +265,9 @@ Shape soup(int n, std::uint64_t seed) {
   shape.name = "soup";
   std::mt19937_64 random(seed);
   for (int i = 0; i < n; ++i) {
-    const glm::dvec3 centre(uniform(random), uniform(random), uniform(random));
+    const glm::dvec3 centre = random_point(random);
     for (int k = 0; k < 3; ++k) {
-      const glm::dvec3 offset(uniform(random) - 0.5, uniform(random) - 0.5, uniform(random) - 0.5);
+      const glm::dvec3 offset = random_point(random) - 0.5;
       shape.positions.push_back(from_glm(glm::vec3(centre + 0.2 * offset)));
       shape.indices.push_back(std::uint32_t(3 * i + k));
     }
