@@ -1,41 +1,31 @@
-// Unwraps a small mesh that the fuzzer makes up, and judges the atlas with the tests' own measures.
-//
-// Bytes 0 and 1 choose options, bytes 2 to 4 the kind of mesh, its size and how materials
-// alternate. Vertices follow, then triangles as three bytes each.
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <string>
 #include <vector>
 
 #include "libatlas/pipeline/unwrap.h"
-#include "tests/fuzz/fuzz_files.h"
+#include "tests/fuzz/targets.h"
 #include "tests/support/atlas_measure.h"
 
+namespace atlas::test {
 namespace {
-
-using atlas::Vec2f;
-using atlas::Vec3f;
-using atlas::test::require;
 
 class Bytes {
  public:
-  Bytes(const std::uint8_t* data, std::size_t size) : data_(data), left_(size) {}
-  std::size_t left() const { return left_; }
+  explicit Bytes(FuzzBytes bytes) : bytes_(bytes) {}
+  std::size_t left() const { return bytes_.size(); }
   std::uint8_t byte() {
-    if (left_ == 0) return 0;
-    --left_;
-    return *data_++;
+    if (bytes_.empty()) return 0;
+    const std::uint8_t first = bytes_.front();
+    bytes_ = bytes_.subspan(1);
+    return first;
   }
   // Of sixteen bits and an exponent: sizes differ by up to a billion.
   float wide_number() {
-    const int number = int(byte() << 8 | byte()) - 32768;
-    return std::ldexp(float(number), -int(byte() % 16));
+    const int high = byte(), low = byte();
+    return std::ldexp(float(256 * high + low - 32768), -int(byte() % 16));
   }
 
  private:
-  const std::uint8_t* data_;
-  std::size_t left_;
+  FuzzBytes bytes_;
 };
 
 struct Mesh {
@@ -95,13 +85,13 @@ Mesh mesh_of(Bytes& bytes, unsigned more) {
   return mesh;
 }
 
-atlas::UnwrapOptions options_of(unsigned choice, unsigned more, const Mesh& mesh) {
-  atlas::UnwrapOptions options;
+UnwrapOptions options_of(unsigned choice, unsigned more, const Mesh& mesh) {
+  UnwrapOptions options;
   options.page_size = 256;
   // Pressing a hundred charts takes seconds.
   const bool press = more & 8 && mesh.indices.size() < 3 * 32;
-  options.packing = press ? atlas::PackPreset::standard : atlas::PackPreset::fast;
-  options.charts.preset = atlas::ChartPreset(choice % 3);
+  options.packing = press ? PackPreset::standard : PackPreset::fast;
+  options.charts.preset = ChartPreset(choice % 3);
   options.charts.keep_uv_charts = more & 1;
   options.charts.split_at_materials = !(more & 16);
   if (options.charts.keep_uv_charts) options.charts.min_fill = 0;
@@ -114,12 +104,12 @@ atlas::UnwrapOptions options_of(unsigned choice, unsigned more, const Mesh& mesh
   return options;
 }
 
-atlas::test::UvMesh as_measured(const Mesh& mesh, const atlas::UnwrappedMesh& flat) {
-  atlas::test::UvMesh out;
+UvMesh as_measured(const Mesh& mesh, const UnwrappedMesh& flat) {
+  UvMesh out;
   for (const Vec3f& p : mesh.positions) out.positions.push_back({p.x, p.y, p.z});
   for (const Vec2f& uv : flat.uvs) out.uvs.push_back({uv.x, uv.y});
   for (std::size_t t = 0; t < flat.triangle_page.size(); ++t) {
-    atlas::test::UvMesh::Face face;
+    UvMesh::Face face;
     for (std::size_t k = 0; k < 3; ++k) {
       face.position[k] = mesh.indices[3 * t + k];
       face.uv[k] = flat.indices[3 * t + k];
@@ -131,53 +121,52 @@ atlas::test::UvMesh as_measured(const Mesh& mesh, const atlas::UnwrappedMesh& fl
   return out;
 }
 
-void judge(const Mesh& mesh, const atlas::UnwrappedMesh& flat, const atlas::ChartOptions& options) {
-  require(flat.indices.size() == mesh.indices.size(), "triangles were lost");
-  require(!flat.pages.empty(), "no page");
+std::string judge(const Mesh& mesh, const UnwrappedMesh& flat, const ChartOptions& options) {
+  if (flat.indices.size() != mesh.indices.size()) return "triangles were lost";
+  if (flat.pages.empty()) return "no page";
   for (const Vec2f& uv : flat.uvs)
-    require(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1, "a uv outside its page");
-  const auto measured = atlas::test::measure_atlas(as_measured(mesh, flat), flat.pages[0].width,
-                                                   flat.pages[0].height);
-  require(measured.overlap <= flat.texels_drawn_twice,
-          "overlap: " + std::to_string(measured.overlap) + " texels, reported " +
-              std::to_string(flat.texels_drawn_twice));
+    if (!(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1)) return "a uv outside its page";
+  const AtlasMeasures measured =
+      measure_atlas(as_measured(mesh, flat), flat.pages[0].width, flat.pages[0].height);
+  if (measured.overlap > flat.texels_drawn_twice)
+    return "overlap: " + std::to_string(measured.overlap) + " texels, reported " +
+           std::to_string(flat.texels_drawn_twice);
   // Triangles without area are lines on the page, which the measure takes for charts of their own.
-  require(measured.bleed == 0 || flat.charts.repairs.degenerate_triangles > 0,
-          "bleed: " + std::to_string(measured.bleed));
-  require(measured.mirrored <= flat.charts.flipped_triangles.size(),
-          "mirrored: " + std::to_string(measured.mirrored));
+  if (measured.bleed > 0 && flat.charts.repairs.degenerate_triangles == 0)
+    return "bleed: " + std::to_string(measured.bleed) + " texels";
+  if (measured.mirrored > flat.charts.flipped_triangles.size())
+    return "mirrored charts: " + std::to_string(measured.mirrored);
   const double cone = options.cone_degrees > 0 ? options.cone_degrees : 180;
-  for (const atlas::Chart& chart : flat.charts.charts) {
-    require(chart.kept || chart.distortion.stretch_999 <= options.max_stretch * (1 + 1e-6),
-            "stretch: " + std::to_string(chart.distortion.stretch_999));
-    require(chart.cone_degrees <= cone + 1e-3, "cone: " + std::to_string(chart.cone_degrees));
+  for (const Chart& chart : flat.charts.charts) {
+    if (!chart.kept && chart.distortion.stretch_999 > options.max_stretch * (1 + 1e-6))
+      return "stretch: " + std::to_string(chart.distortion.stretch_999);
+    if (chart.cone_degrees > cone + 1e-3) return "cone: " + std::to_string(chart.cone_degrees);
   }
+  return {};
 }
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size < 8) return -1;
-  Bytes bytes(data, size);
+std::string fuzz_unwrap(FuzzBytes data) {
+  if (data.size() < 8) return {};
+  Bytes bytes(data);
   const unsigned choice = bytes.byte(), more = bytes.byte();
   const Mesh mesh = mesh_of(bytes, more);
-  if (mesh.indices.empty()) return -1;
-  const atlas::UnwrapOptions options = options_of(choice, more, mesh);
-  atlas::Context context;
-  context.threads = 1;  // one thread, so that a finding repeats
-  atlas::MeshView view;
+  if (mesh.indices.empty()) return {};
+  const UnwrapOptions options = options_of(choice, more, mesh);
+  MeshView view;
   view.positions = mesh.positions;
   view.indices = mesh.indices;
   view.texcoords = mesh.texcoords;
   view.materials = mesh.materials;
   view.density = mesh.density;
-  const auto flat = atlas::unwrap_mesh(view, options, context);
-  if (flat.ok()) {
-    judge(mesh, *flat, options.charts);
-  } else {
-    require(flat.status().code() == atlas::ErrorCode::no_solution ||
-                flat.status().code() == atlas::ErrorCode::bad_input,
-            "refused: " + flat.status().message());
-  }
-  return 0;
+  Context context;
+  context.threads = 1;
+  const Result<UnwrappedMesh> flat = unwrap_mesh(view, options, context);
+  if (flat.ok()) return judge(mesh, *flat, options.charts);
+  const ErrorCode code = flat.status().code();
+  const bool may_be = code == ErrorCode::no_solution || code == ErrorCode::bad_input;
+  return may_be ? "" : "refused: " + flat.status().message();
 }
+
+}  // namespace atlas::test

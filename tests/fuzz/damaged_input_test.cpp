@@ -1,0 +1,242 @@
+// Runs the fuzz targets on inputs that random changes have damaged.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <vector>
+
+#include "tests/fuzz/targets.h"
+#include "tests/scene/gltf_maker.h"
+
+namespace atlas {
+namespace {
+
+using test::json;
+
+const std::string kObj = R"(mtllib second.mtl
+o a
+v 0 0 0 1 0.5 .25
+v 1 0 0 2 0 0
+v 1 1 .5 3 0 0
+v 0 1 0 4 0 0
+vt 0 0
+vt 1 0
+vt 1 1 0
+vn 0 0 1
+usemtl red
+f 1/1/1 2/2/1 3/3/1
+g b c
+usemtl blue
+f -1//-1 -2//-1 1//1 2//1
+f 1/1 2/2 \
+ 3/3
+l 1 2
+%%
+newmtl red
+Kd 1 .5 0.25
+Ke 0 1 0
+d .5
+map_Kd -s 1 2 1 -o 0 0 0 -clamp on -mm 0 1 a.png
+newmtl blue
+Kd 0.2
+Tr 0.3
+)";
+
+const std::string kPly = R"(ply
+format ascii 1.0
+comment TextureFile a.png
+element vertex 4
+property float x
+property float y
+property double z
+property uchar red
+property uchar green
+property uchar blue
+property float nx
+property float ny
+property float nz
+element face 2
+property list uchar int vertex_indices
+property list uchar float texcoord
+property int texnumber
+end_header
+0 0 0 255 3 4 0 0 1
+1 0 0 255 3 4 0 0 1
+1 1 .5 0 3 4 0 0 1
+0 1 0 255 3 4 0 0 1
+3 0 1 2 6 0 0 1 0 1 1 0
+4 0 1 2 3 8 0 0 1 0 1 1 0 1 -1
+)";
+
+const std::string kOff = R"(STCNOFF
+4 2 0
+0 0 0 0 0 1 255 51 0 255 .25 .5
+1 0 0 0 0 1 0 0 0 255 1 0
+0 1 0 0 0 1 0 102 0 255 -2 3
+1 1 0 0 0 1 1 2 3 255 0 0
+3 2 1 0
+4 0 1 3 2 255 0 0
+)";
+
+const std::string kStl = R"(solid x
+facet normal 0 0 1
+outer loop
+vertex 0 0 0
+vertex 1 0 0
+vertex 0 1 0
+endloop
+endfacet
+endsolid x
+)";
+
+const std::string kWrl = R"(#VRML V2.0 utf8
+WorldInfo { title "x" info [ "a" ] }
+DEF a Transform { translation 1 2 3 rotation 0 0 1 .5 scale 2 2 2 children [
+  Shape {
+    appearance Appearance {
+      material Material { diffuseColor 1 1 1 }
+      texture ImageTexture { url [ "a.png" ] repeatS FALSE }
+    }
+    geometry IndexedFaceSet {
+      coord Coordinate { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0 ] }
+      texCoord TextureCoordinate { point [ 0 0, 1 0, 1 1, 0 1 ] }
+      coordIndex [ 0 1 2 -1 0 2 3 -1 ]
+      texCoordIndex [ 0 1 2 -1 0 2 3 -1 ]
+    }
+  }
+] }
+)";
+
+// Two meshes under three nodes, with a skin, a morph target, instances and an animation.
+std::string glb() {
+  test::Gltf g;
+  const int positions = g.floats(test::kSquare, "VEC3", 3);
+  const int light = g.floats({1, 2, 3, 4, 5, 6, 7, 8, 9, 1, 1, 1}, "VEC3", 3);
+  const int uvs = g.floats({0, 0, 1, 0, 1, 1, 0, 1}, "VEC2", 2);
+  const int weights = g.floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4", 4);
+  const int joints = g.accessor({{"bufferView", g.view(std::vector<std::uint8_t>(16))},
+                                 {"componentType", 5121},
+                                 {"type", "VEC4"},
+                                 {"count", 4}});
+  const int places = g.floats({0, 0, 0, 5, 0, 0}, "VEC3", 3);
+  const int times = g.floats({0, 1}, "SCALAR", 1);
+  const int indices = g.indices(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3});
+  g.single({{"attributes",
+             {{"POSITION", positions},
+              {"_ILLUMINANCE", light},
+              {"TEXCOORD_0", uvs},
+              {"JOINTS_0", joints},
+              {"WEIGHTS_0", weights}}},
+            {"indices", indices},
+            {"material", 0}},
+           {{"skin", 0}, {"children", {1}}});
+  g.j["meshes"].push_back(
+      {{"weights", {0.5}},
+       {"primitives", json::array({{{"attributes", {{"POSITION", positions}}},
+                                    {"targets", json::array({{{"POSITION", light}}})},
+                                    {"mode", 5}}})}});
+  g.j["nodes"].push_back({{"name", "joint"}, {"translation", {1, 2, 3}}});
+  g.j["nodes"].push_back(
+      {{"mesh", 1},
+       {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}}}}}}}});
+  g.j["scenes"][0]["nodes"] = {0, 2};
+  g.j["skins"] = json::array({{{"joints", {1}}}});
+  g.j["materials"] =
+      json::array({{{"name", "a"},
+                    {"alphaMode", "MASK"},
+                    {"pbrMetallicRoughness", {{"baseColorFactor", {1, .5, .2, 1}}}}}});
+  g.j["animations"] = json::array(
+      {{{"channels",
+         json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}})},
+        {"samplers", json::array({{{"input", times}, {"output", places}}})}}});
+  return g.glb();
+}
+
+using Input = std::vector<std::uint8_t>;
+
+Input bytes_of(const std::string& text) {
+  return {text.begin(), text.end()};
+}
+
+// Changes, copies, removes or inserts some bytes. What is inserted is often a number that readers
+// may stumble over.
+void damage(Input& bytes, std::size_t most, std::mt19937& random) {
+  static const std::string hostile[] = {"-1", "4294967295", "1e39", "nan", "-",
+                                        "\n", "\"",         "[",    "0"};
+  for (auto hits = 1 + random() % most; hits > 0 && bytes.size() > 8; --hits) {
+    const auto at = bytes.begin() + std::ptrdiff_t(random() % (bytes.size() - 8));
+    switch (random() % 5) {
+      case 0:
+        *at = std::uint8_t(random());
+        break;
+      case 1:
+        *at ^= std::uint8_t(1u << random() % 8);
+        break;
+      case 2:
+        bytes.erase(at, at + std::ptrdiff_t(random() % 8));
+        break;
+      case 3: {
+        const Input copy(at, at + 8);
+        bytes.insert(bytes.begin() + std::ptrdiff_t(random() % bytes.size()), copy.begin(),
+                     copy.end());
+        break;
+      }
+      default: {
+        const std::string& text = hostile[random() % std::size(hostile)];
+        bytes.insert(at, text.begin(), text.end());
+      }
+    }
+  }
+  if (random() % 16 == 0) bytes.resize(random() % bytes.size());
+}
+
+struct Seed {
+  const char* extension;
+  std::string bytes;
+};
+
+class DamagedFiles : public ::testing::TestWithParam<Seed> {};
+
+TEST_P(DamagedFiles, AreSoundUndamaged) {
+  const test::TempFolder folder;
+  const auto loaded =
+      read_scene(folder.write(std::string("a.") + GetParam().extension, GetParam().bytes), {}, {});
+  EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+}
+
+TEST_P(DamagedFiles, AreReadOrRefused) {
+  std::mt19937 random(1);
+  for (int round = 0; round < 1000; ++round) {
+    Input bytes = bytes_of(GetParam().bytes);
+    damage(bytes, 4, random);
+    ASSERT_EQ(test::fuzz_reader(bytes, GetParam().extension), "") << "round " << round;
+  }
+}
+
+TEST_P(DamagedFiles, AreExportedAndReadAgain) {
+  std::mt19937 random(2);
+  for (int round = 0; round < 40; ++round) {
+    Input bytes = bytes_of(GetParam().bytes);
+    damage(bytes, 1, random);
+    ASSERT_EQ(test::fuzz_export(bytes, GetParam().extension), "") << "round " << round;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, DamagedFiles,
+                         ::testing::Values(Seed{"obj", kObj}, Seed{"ply", kPly}, Seed{"off", kOff},
+                                           Seed{"stl", kStl}, Seed{"wrl", kWrl},
+                                           Seed{"glb", glb()}),
+                         [](const auto& test) { return test.param.extension; });
+
+TEST(MadeUpMeshes, AreUnwrapped) {
+  std::mt19937 random(3);
+  for (int round = 0; round < 200; ++round) {
+    Input bytes(20 + random() % 500);
+    for (std::uint8_t& b : bytes) b = std::uint8_t(random());
+    ASSERT_EQ(test::fuzz_unwrap(bytes), "") << "round " << round;
+  }
+}
+
+}  // namespace
+}  // namespace atlas

@@ -1,0 +1,13 @@
+// A program for libFuzzer, of the target FUZZ_TARGET(bytes).
+#include <cstdio>
+#include <cstdlib>
+
+#include "tests/fuzz/targets.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const atlas::test::FuzzBytes bytes(data, size);
+  const std::string wrong = FUZZ_TARGET;
+  if (wrong.empty()) return 0;
+  std::fprintf(stderr, "%s\n", wrong.c_str());
+  std::abort();  // so that the fuzzer keeps the input
+}

@@ -1,0 +1,29 @@
+#include "libatlas/scene/check_scene.h"
+#include "libatlas/scene/reader.h"
+#include "tests/fuzz/fuzz_files.h"
+
+namespace atlas::test {
+
+std::string fuzz_reader(FuzzBytes bytes, const std::string& extension) {
+  const unsigned choice = sum_of(bytes);
+  ReadOptions options;
+  options.load_textures = choice & 1;
+  options.encoded_textures = choice & 2;
+  options.normals = choice & 4;
+  options.rest = choice & 8;
+  Context context;
+  context.threads = 1;
+  const FuzzFolder folder;
+  const Result<LoadedScene> loaded =
+      read_scene(folder.write_scene(bytes, extension), options, context);
+  if (!loaded.ok()) {
+    const std::string& message = loaded.status().message();
+    const bool named = message.find(folder.path().string()) != message.npos;
+    return named && clear_error(message) ? "" : "an unclear error: " + message;
+  }
+  if (const Status sound = check_scene(loaded->scene); !sound.ok())
+    return "an unsound scene: " + sound.message();
+  return loaded->scene.triangle_count() > 0 ? "" : "a scene without a triangle";
+}
+
+}  // namespace atlas::test
