@@ -23,7 +23,7 @@ struct CoarseChart {
   int euler = 1;         // Euler characteristic
   bool flat = false;     // all cells in one plane
   bool unrolls = false;  // exactly, without stretch
-  std::uint32_t version = 0;
+  std::uint32_t version = 0;  // raised by each merger; candidates of earlier versions are stale
   std::vector<Refusal> refusals;  // each is stored with one of its two charts
 };
 
