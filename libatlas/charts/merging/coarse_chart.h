@@ -17,12 +17,12 @@ struct CoarseChart {
   Moments moments{};
   glm::dvec3 normal_sum{0};
   double area = 0, perimeter = 0;
-  double energy = 0;     // area times (L2 stretch squared - 1) of its coarse flattening
-  double high_area = 0;  // area of that flattening stretched beyond TrialLimits::stretch_high
-  double box = 0;        // area of the smallest rectangle around it; 0: not known yet
-  int euler = 1;         // Euler characteristic
-  bool flat = false;     // all cells in one plane
-  bool unrolls = false;  // exactly, without stretch
+  double energy = 0;          // area times (L2 stretch squared - 1) of its coarse flattening
+  double high_area = 0;       // area of that flattening stretched beyond TrialLimits::stretch_high
+  double box = 0;             // area of the smallest rectangle around it; 0: not known yet
+  int euler = 1;              // Euler characteristic
+  bool flat = false;          // all cells in one plane
+  bool unrolls = false;       // exactly, without stretch
   std::uint32_t version = 0;  // raised by each merger; candidates of earlier versions are stale
   std::vector<Refusal> refusals;  // each is stored with one of its two charts
 };
