@@ -20,7 +20,7 @@ ExportOptions options_of(unsigned choice, const FuzzFolder& folder) {
 
 }  // namespace
 
-std::string fuzz_export(FuzzBytes bytes, const std::string& extension) {
+FuzzResult fuzz_export(FuzzBytes bytes, const std::string& extension) {
   const FuzzFolder folder;
   const ExportOptions options = options_of(sum_of(bytes), folder);
   ReadOptions read;
@@ -33,14 +33,14 @@ std::string fuzz_export(FuzzBytes bytes, const std::string& extension) {
   const Result<ExportReport> report = export_world(*loaded, options, {}, context);
   if (!report.ok()) {
     const std::string& message = report.status().message();
-    return clear_error(message) ? "" : "an unclear error: " + message;
+    return {clear_error(message) ? "" : "an unclear error: " + message};
   }
   const Result<LoadedScene> again = read_scene(options.target, {}, context);
-  if (!again.ok()) return "the export cannot be read: " + again.status().message();
+  if (!again.ok()) return {"the export cannot be read: " + again.status().message(), true};
   const std::size_t before = loaded->scene.triangle_count(), now = again->scene.triangle_count();
   const bool simplified = options.simplify && !options.charts_only && loaded->scene.lit();
-  if (now == before || (simplified && now < before)) return {};
-  return std::to_string(before) + " triangles became " + std::to_string(now);
+  const bool kept = now == before || (simplified && now < before);
+  return {kept ? "" : std::to_string(before) + " triangles became " + std::to_string(now), true};
 }
 
 }  // namespace atlas::test

@@ -6,8 +6,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const atlas::test::FuzzBytes bytes(data, size);
-  const std::string wrong = FUZZ_TARGET;
-  if (wrong.empty()) return 0;
-  std::fprintf(stderr, "%s\n", wrong.c_str());
+  const std::string fault = FUZZ_TARGET.fault;
+  if (fault.empty()) return 0;
+  std::fprintf(stderr, "%s\n", fault.c_str());
   std::abort();  // so that the fuzzer keeps the input
 }

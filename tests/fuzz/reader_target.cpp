@@ -4,7 +4,7 @@
 
 namespace atlas::test {
 
-std::string fuzz_reader(FuzzBytes bytes, const std::string& extension) {
+FuzzResult fuzz_reader(FuzzBytes bytes, const std::string& extension) {
   const unsigned choice = sum_of(bytes);
   ReadOptions options;
   options.load_textures = choice & 1;
@@ -19,11 +19,11 @@ std::string fuzz_reader(FuzzBytes bytes, const std::string& extension) {
   if (!loaded.ok()) {
     const std::string& message = loaded.status().message();
     const bool named = message.find(folder.path().string()) != message.npos;
-    return named && clear_error(message) ? "" : "an unclear error: " + message;
+    return {named && clear_error(message) ? "" : "an unclear error: " + message};
   }
   if (const Status sound = check_scene(loaded->scene); !sound.ok())
-    return "an unsound scene: " + sound.message();
-  return loaded->scene.triangle_count() > 0 ? "" : "a scene without a triangle";
+    return {"an unsound scene: " + sound.message(), true};
+  return {loaded->scene.triangle_count() > 0 ? "" : "a scene without a triangle", true};
 }
 
 }  // namespace atlas::test

@@ -1,6 +1,5 @@
-// What the fuzzers call: each target works on any bytes, and returns "" or what is wrong with the
-// result. Crashes and what sanitizers report are faults, too. Everything runs on one thread, so
-// that a finding repeats.
+// What the fuzzers call: each target works on any bytes. Crashes and what sanitizers report are
+// faults, too. Everything runs on one thread, so that a finding repeats.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +10,23 @@ namespace atlas::test {
 
 using FuzzBytes = std::span<const std::uint8_t>;
 
+struct FuzzResult {
+  std::string fault = {};  // what is wrong; empty if nothing is
+  bool accepted = false;   // the input was not refused: there was a result to judge
+};
+
 // Reads the bytes as a scene file with this extension ("obj"), with options that their sum chooses.
 // What follows a line `%%` is a second file, second.mtl and second.bin, which the scene may name.
 // The reader must return a sound scene, or an error of one line that names a file and a remedy.
-std::string fuzz_reader(FuzzBytes bytes, const std::string& extension);
+FuzzResult fuzz_reader(FuzzBytes bytes, const std::string& extension);
 
 // Reads them likewise, exports the scene to any format, lit or as plain uvs, and reads the result
 // again. All triangles must come back.
-std::string fuzz_export(FuzzBytes bytes, const std::string& extension);
+FuzzResult fuzz_export(FuzzBytes bytes, const std::string& extension);
 
 // Unwraps a small mesh, and judges the atlas with the tests' own measures. Bytes 0 and 1 choose
 // options, bytes 2 to 4 the kind of mesh, its size and how materials alternate; vertices follow,
 // then triangles as three bytes each.
-std::string fuzz_unwrap(FuzzBytes bytes);
+FuzzResult fuzz_unwrap(FuzzBytes bytes);
 
 }  // namespace atlas::test

@@ -147,7 +147,7 @@ std::string judge(const Mesh& mesh, const UnwrappedMesh& flat, const ChartOption
 
 }  // namespace
 
-std::string fuzz_unwrap(FuzzBytes data) {
+FuzzResult fuzz_unwrap(FuzzBytes data) {
   if (data.size() < 8) return {};
   Bytes bytes(data);
   const unsigned choice = bytes.byte(), more = bytes.byte();
@@ -163,10 +163,10 @@ std::string fuzz_unwrap(FuzzBytes data) {
   Context context;
   context.threads = 1;
   const Result<UnwrappedMesh> flat = unwrap_mesh(view, options, context);
-  if (flat.ok()) return judge(mesh, *flat, options.charts);
+  if (flat.ok()) return {judge(mesh, *flat, options.charts), true};
   // The mesh and the options are valid; only the page may be too small.
   const bool too_small = flat.status().code() == ErrorCode::no_solution;
-  return too_small ? "" : "refused: " + flat.status().message();
+  return {too_small ? "" : "refused: " + flat.status().message()};
 }
 
 }  // namespace atlas::test
