@@ -35,29 +35,43 @@ void add_probes(const Mask& mask, std::int32_t r, std::vector<Probe>& probes) {
   }
 }
 
-// Words per row: as many as a page of this width needs, or the next number that has specialised
-// code. Words beyond the width are never free.
+// Words per row: as many as a page of this width needs, or four or eight for short rows. Words
+// beyond the width are never free.
 std::size_t words_of(std::int32_t width) {
   const std::size_t words = (static_cast<std::size_t>(width) + 63) / 64;
-  return words <= 2 ? 2 : words == 7 ? 8 : words;
-}
-
-// Calls each(integral_constant) for 0 .. kCount - 1. Since this loop has no counter at run time,
-// arrays that it indexes may be kept in registers.
-template <std::size_t kCount, class Each>
-void unrolled(Each each) {
-  [&]<std::size_t... k>(std::index_sequence<k...>) {
-    (each(std::integral_constant<std::size_t, k>()), ...);
-  }
-  (std::make_index_sequence<kCount>());
-}
-
-// Word w of a row that is moved down by `shift` cells; `shift` is below 64.
-inline std::uint64_t shifted(const std::uint64_t* bits, std::size_t w, unsigned shift) {
-  return bits[w] >> shift | bits[w + 1] << 1 << (63 - shift);
+  return words <= 4 ? 4 : words <= 8 ? 8 : words;
 }
 
 }  // namespace
+
+// Returns the length of the longest run of ones.
+std::int32_t longest_run(std::span<const std::uint64_t> bits) {
+  std::int32_t longest = 0, current = 0;
+  for (std::uint64_t word : bits) {
+    if (word == ~std::uint64_t{0}) {
+      current += 64;
+      continue;
+    }
+    int left = 64;
+    while (word != 0) {
+      const int zeros = std::countr_zero(word);
+      if (zeros > 0) {
+        longest = std::max(longest, current);
+        current = 0;
+      }
+      word >>= zeros;
+      const int ones = std::countr_one(word);  // below 64, because the word is not all ones
+      current += ones;
+      word >>= ones;
+      left -= zeros + ones;
+    }
+    if (left > 0) {
+      longest = std::max(longest, current);
+      current = 0;
+    }
+  }
+  return std::max(longest, current);
+}
 
 MaskTests test_order(const Mask& mask) {
   MaskTests tests;
@@ -92,7 +106,7 @@ BitPage::BitPage(std::int32_t width, std::int32_t height, std::int32_t longest_r
       height_(height),
       levels_(level_of(std::max(1, std::min(width, longest_run))) + 1),
       words_(words_of(width)),
-      stride_(words_ + 1),
+      stride_(has_short_rows() ? words_ : words_ + 1),
       classes_(static_cast<std::size_t>(class_of(std::max(1, width))) + 1),
       candidates_(words_) {
   empty_.assign(stride_ * static_cast<std::size_t>(levels_), 0);
@@ -177,25 +191,12 @@ void BitPage::all_candidates(std::int32_t x0, std::int32_t x1) {
 }
 
 bool BitPage::find_in_row(const MaskTests& tests, Window window, std::int32_t y, Place& place) {
-  switch (words_) {
-    case 2:
-      return find_narrow<2>(tests, window, y, place);
-    case 3:
-      return find_narrow<3>(tests, window, y, place);
-    case 4:
-      return find_narrow<4>(tests, window, y, place);
-    case 5:
-      return find_narrow<5>(tests, window, y, place);
-    case 6:
-      return find_narrow<6>(tests, window, y, place);
-    case 8:
-      return find_narrow<8>(tests, window, y, place);
-    default:
-      return find_wide(tests, window, y, place);
-  }
+  return has_short_rows() ? find_in_short_row(tests, window, y, place)
+                          : find_in_long_row(tests, window, y, place);
 }
 
-bool BitPage::find_wide(const MaskTests& tests, Window window, std::int32_t y, Place& place) {
+bool BitPage::find_in_long_row(const MaskTests& tests, Window window, std::int32_t y,
+                               Place& place) {
   all_candidates(window.x0, window.x1);
   std::int32_t row_before = -1;
   for (const Probe& p : tests.probes) {
@@ -209,29 +210,6 @@ bool BitPage::find_wide(const MaskTests& tests, Window window, std::int32_t y, P
   }
   while (candidates_[low_] == 0) ++low_;
   place = {static_cast<std::int32_t>(64 * low_) + std::countr_zero(candidates_[low_]), y};
-  return true;
-}
-
-template <std::size_t kWords>
-bool BitPage::find_narrow(const MaskTests& tests, Window window, std::int32_t y, Place& place) {
-  all_candidates(window.x0, window.x1);
-  std::uint64_t left[kWords];
-  unrolled<kWords>([&](auto w) { left[w] = w >= low_ && w < high_ ? candidates_[w] : 0; });
-  // Words beyond the row's end are read, but no candidate reaches them.
-  for (const Probe& p : tests.probes) {
-    if (y + p.row >= rows_) continue;
-    const std::uint64_t* from = row(static_cast<int>(p.level), y + p.row) + p.offset / 64;
-    const unsigned shift = p.offset % 64;
-    std::uint64_t any = 0;
-    unrolled<kWords>([&](auto w) { any |= left[w] &= shifted(from, w, shift); });
-    work_ += high_ - low_;
-    if (any == 0) return false;
-  }
-  place.y = y;
-  unrolled<kWords>([&](auto k) {
-    constexpr std::size_t w = kWords - 1 - k;
-    if (left[w] != 0) place.x = static_cast<std::int32_t>(64 * w) + std::countr_zero(left[w]);
-  });
   return true;
 }
 
@@ -249,60 +227,14 @@ bool BitPage::find(const MaskTests& tests, Window window, Place& place) {
   return false;
 }
 
-// Returns the length of the longest run of ones in level 0.
-std::int32_t BitPage::longest_free(std::int32_t y) const {
-  const std::uint64_t* bits = row(0, y);
-  std::int32_t longest = 0, current = 0;
-  for (std::size_t w = 0; w < words_; ++w) {
-    std::uint64_t word = bits[w];
-    if (word == ~std::uint64_t{0}) {
-      current += 64;
-      continue;
-    }
-    int left = 64;
-    while (word != 0) {
-      const int zeros = std::countr_zero(word);
-      if (zeros > 0) {
-        longest = std::max(longest, current);
-        current = 0;
-      }
-      word >>= zeros;
-      const int ones = std::countr_one(word);  // below 64, because the word is not all ones
-      current += ones;
-      word >>= ones;
-      left -= zeros + ones;
-    }
-    if (left > 0) {
-      longest = std::max(longest, current);
-      current = 0;
-    }
-  }
-  return std::max(longest, current);
-}
-
 // Derives the levels of a row from level 0, in which cells [begin, end) have changed.
 void BitPage::rebuild(std::int32_t y, std::int32_t begin, std::int32_t end) {
   const std::size_t last = static_cast<std::size_t>(end - 1) / 64 + 1;
   work_ += static_cast<std::uint64_t>(levels_) * (last - static_cast<std::size_t>(begin) / 64);
-  switch (words_) {
-    case 2:
-      return rebuild_narrow<2>(y);
-    case 3:
-      return rebuild_narrow<3>(y);
-    case 4:
-      return rebuild_narrow<4>(y);
-    case 5:
-      return rebuild_narrow<5>(y);
-    case 6:
-      return rebuild_narrow<6>(y);
-    case 8:
-      return rebuild_narrow<8>(y);
-    default:
-      return rebuild_wide(y, begin, end);
-  }
+  has_short_rows() ? rebuild_short_row(y) : rebuild_long_row(y, begin, end);
 }
 
-void BitPage::rebuild_wide(std::int32_t y, std::int32_t begin, std::int32_t end) {
+void BitPage::rebuild_long_row(std::int32_t y, std::int32_t begin, std::int32_t end) {
   const std::size_t last = std::min(words_, static_cast<std::size_t>(end - 1) / 64 + 1);
   for (int k = 1; k < levels_; ++k) {
     const std::uint64_t* below = row(k - 1, y);
@@ -320,73 +252,35 @@ void BitPage::rebuild_wide(std::int32_t y, std::int32_t begin, std::int32_t end)
       bits[w] = below[w] & ahead;
     }
   }
-  set_longest(y, longest_free(y));
+  set_longest(y, longest_run({row(0, y), words_}));
 }
 
-// Computes all words and all levels, also those beyond the longest run asked for: from these it
-// finds the longest free run, exactly enough for its class, in a few steps.
-template <std::size_t kWords>
-void BitPage::rebuild_narrow(std::int32_t y) {
-  constexpr std::size_t kMostLevels = std::bit_width(64 * kWords);
-  std::uint64_t free[kMostLevels][2 * kWords + 1];  // the upper halves are 0
-  std::uint64_t* bits = row(0, y);
-  int top = -1;
-  unrolled<kMostLevels>([&](auto k) {
-    std::uint64_t* words = free[k];
-    std::uint64_t any = 0;
-    if constexpr (k == 0) {
-      unrolled<kWords>([&](auto w) { any |= words[w] = bits[w]; });
-    } else {
-      constexpr std::size_t kStep = std::size_t{1} << (k - 1);
-      const std::uint64_t* below = free[k - 1];
-      unrolled<kWords>(
-          [&](auto w) { any |= words[w] = below[w] & shifted(below + kStep / 64, w, kStep % 64); });
-      if (static_cast<int>(k) < levels_)
-        unrolled<kWords>([&](auto w) { bits[k * stride_ + w] = words[w]; });
-    }
-    unrolled<kWords + 1>([&](auto w) { words[kWords + w] = 0; });
-    if (any != 0) top = k;
-  });
-  std::int32_t longest = top < 0 ? 0 : 1 << top;
-  for (int k = top - 1; k >= std::max(0, top - 3); --k) {
-    std::uint64_t longer[kWords];  // where longest + 2^k cells are free
-    std::uint64_t any = 0;
-    unrolled<kWords>([&](auto w) {
-      any |= longer[w] = free[top][w] & shifted(free[k] + longest / 64, w, unsigned(longest) % 64);
-    });
-    if (any == 0) continue;
-    unrolled<kWords>([&](auto w) { free[top][w] = longer[w]; });
-    longest += 1 << k;
+void BitPage::set_cells(const Mask& mask, Place place, bool free) {
+  for (std::int32_t r = 0; r < mask.height; ++r) {
+    std::uint64_t* bits = row(0, place.y + r);
+    for (const Run& run : mask.row(r))
+      for (std::int32_t x = place.x + run.begin; x < place.x + run.end;) {
+        const std::int32_t n = std::min(64 - x % 64, place.x + run.end - x);
+        const std::uint64_t cells = (n == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << n) - 1)
+                                    << (x % 64);
+        bits[x / 64] = free ? bits[x / 64] | cells : bits[x / 64] & ~cells;
+        x += n;
+      }
   }
-  set_longest(y, longest);
+  // The levels are derived in a loop of their own, because a row cannot be read as vectors at once
+  // after its words were written one by one: the processor would wait for them.
+  for (std::int32_t r = 0; r < mask.height; ++r)
+    rebuild(place.y + r, place.x, place.x + mask.width);
 }
 
 void BitPage::put(const Mask& mask, Place place) {
   grow(place.y + mask.height);
   used_height_ = std::max(used_height_, place.y + mask.height);
-  for (std::int32_t r = 0; r < mask.height; ++r) {
-    std::uint64_t* bits = row(0, place.y + r);
-    for (const Run& run : mask.row(r))
-      for (std::int32_t x = place.x + run.begin; x < place.x + run.end;) {
-        const std::int32_t n = std::min(64 - x % 64, place.x + run.end - x);
-        bits[x / 64] &= ~((n == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << n) - 1) << (x % 64));
-        x += n;
-      }
-    rebuild(place.y + r, place.x, place.x + mask.width);
-  }
+  set_cells(mask, place, false);
 }
 
 void BitPage::take_away(const Mask& mask, Place place) {
-  for (std::int32_t r = 0; r < mask.height; ++r) {
-    std::uint64_t* bits = row(0, place.y + r);
-    for (const Run& run : mask.row(r))
-      for (std::int32_t x = place.x + run.begin; x < place.x + run.end;) {
-        const std::int32_t n = std::min(64 - x % 64, place.x + run.end - x);
-        bits[x / 64] |= (n == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << n) - 1) << (x % 64);
-        x += n;
-      }
-    rebuild(place.y + r, place.x, place.x + mask.width);
-  }
+  set_cells(mask, place, true);
 }
 
 bool BitPage::is_free(std::int32_t x, std::int32_t y) const {

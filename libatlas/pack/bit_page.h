@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "libatlas/pack/outline_mask.h"
@@ -30,6 +31,9 @@ struct MaskTests {
   std::vector<Probe> probes;
 };
 MaskTests test_order(const Mask& mask);
+
+// Returns the length of the longest run of ones.
+std::int32_t longest_run(std::span<const std::uint64_t> bits);
 
 // In level k of a row, bit x is set if the 2^k cells from x on are free. A run of length L at x is
 // free if and only if level floor(log2 L) has the bits x and x + L - 2^floor(log2 L). So two
@@ -84,25 +88,26 @@ class BitPage {
   std::uint64_t* row(int level, std::int32_t y) {
     return bits_.data() + (std::size_t(y) * levels_ + level) * stride_;
   }
-  // Pages with few words per row, which the search for a plan uses, keep rows in registers.
-  template <std::size_t kWords>
-  bool find_narrow(const MaskTests& tests, Window window, std::int32_t y, Place& place);
-  template <std::size_t kWords>
-  void rebuild_narrow(std::int32_t y);
-  bool find_wide(const MaskTests& tests, Window window, std::int32_t y, Place& place);
-  void rebuild_wide(std::int32_t y, std::int32_t begin, std::int32_t end);
+  // Short rows, which most pages have, are kept in registers; see short_rows.cpp.
+  struct ShortRows;
+  bool has_short_rows() const { return words_ <= 8; }
+  bool find_in_short_row(const MaskTests& tests, Window window, std::int32_t y, Place& place);
+  void rebuild_short_row(std::int32_t y);
+  bool find_in_long_row(const MaskTests& tests, Window window, std::int32_t y, Place& place);
+  void rebuild_long_row(std::int32_t y, std::int32_t begin, std::int32_t end);
+  void set_cells(const Mask& mask, Place place, bool free);
   void rebuild(std::int32_t y, std::int32_t begin, std::int32_t end);
 
   bool narrows(const std::uint64_t* bits, std::uint32_t offset);
   void all_candidates(std::int32_t x0, std::int32_t x1);
-  std::int32_t longest_free(std::int32_t y) const;
   void set_longest(std::int32_t y, std::int32_t longest);
   void grow(std::int32_t rows);
 
   std::int32_t width_, height_;
   int levels_;
-  std::size_t words_, stride_;  // words per row; stride_ has a spare word for shifted reads
-  std::int32_t rows_ = 0;       // number of rows that exist in bits_; all rows above are free
+  // Words per row. With long rows, stride_ has a spare word for shifted reads.
+  std::size_t words_, stride_;
+  std::int32_t rows_ = 0;  // number of rows that exist in bits_; all rows above are free
   std::int32_t used_height_ = 0;
   std::vector<std::uint64_t> bits_;
   std::vector<std::int32_t> longest_;  // one per row: the length of its longest free run

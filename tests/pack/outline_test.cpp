@@ -293,18 +293,27 @@ TEST(OutlineMask, QuarterTurnsTurn) {
   }
 }
 
-// Compares the search for a place with a scan over all cells.
+// Compares the search for a place with a scan over all cells, on pages of short and of long rows,
+// for small and for long flat masks, within windows.
 TEST(BitPage, FindsTheLowestLeftmostPlace) {
   test::Noise noise{17};
-  for (int round = 0; round < 60; ++round) {
-    const int width = noise.in(20, round % 3 == 0 ? 700 : 150), height = 60;
+  int in_windows = 0;
+  for (int round = 0; round < 120; ++round) {
+    const int width = noise.in(20, round % 3 == 0 ? 700 : 300), height = 60;
+    const bool flat = round % 2 == 1;
     BitPage page(width, height, width);
     std::vector<std::vector<bool>> taken(height, std::vector<bool>(std::size_t(width)));
     for (int k = 0; k < 25; ++k) {
-      const int corners = noise.in(3, 8), radius = noise.in(2, 14);
-      const auto shape = test::blob(noise, radius, corners);
+      const int corners = noise.in(3, 8), radius = noise.in(2, flat ? width / 2 : 14);
+      auto shape = test::blob(noise, radius, corners);
+      if (flat) {
+        for (Vec2d& p : shape) p.y *= 8.0 / width;
+      }
       Vec2d origin;
       const Mask m = pack::rasterize(pack::outline_of({shape, {}}), {}, origin);
+      BitPage::Window window;
+      const bool bounded = noise.in(0, 2) == 0;
+      if (bounded) window = {noise.in(0, width / 2), noise.in(0, width), noise.in(0, 20), 40};
       const auto free_at = [&](int x, int y) {
         for (int r = 0; r < m.height; ++r)
           for (const pack::Run& run : m.row(r))
@@ -313,12 +322,15 @@ TEST(BitPage, FindsTheLowestLeftmostPlace) {
         return true;
       };
       BitPage::Place expected{-1, -1}, found{-1, -1};
-      for (int y = 0; y + m.height <= height && expected.y < 0; ++y)
-        for (int x = 0; x + m.width <= width && expected.y < 0; ++x)
+      const int last_x = std::min(window.x1, width - m.width);
+      const int last_y = std::min(window.y1, height - m.height);
+      for (int y = window.y0; y <= last_y && expected.y < 0; ++y)
+        for (int x = window.x0; x <= last_x && expected.y < 0; ++x)
           if (free_at(x, y)) expected = {x, y};
-      const bool ok = page.find(pack::test_order(m), {}, found);
+      const bool ok = page.find(pack::test_order(m), window, found);
       ASSERT_EQ(ok, expected.y >= 0);
       if (!ok) continue;
+      in_windows += bounded;
       ASSERT_EQ(found.x, expected.x);
       ASSERT_EQ(found.y, expected.y);
       page.put(m, found);
@@ -328,6 +340,7 @@ TEST(BitPage, FindsTheLowestLeftmostPlace) {
             taken[std::size_t(found.y + r)][std::size_t(found.x + c)] = true;
     }
   }
+  EXPECT_GT(in_windows, 100);
 }
 
 }  // namespace

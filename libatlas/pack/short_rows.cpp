@@ -1,0 +1,221 @@
+#include <bit>
+#include <utility>
+
+#include "libatlas/core/wide_vectors.h"
+#include "libatlas/pack/bit_page.h"
+
+// GCC warns that functions pass such vectors differently with and without AVX. Here only inlined
+// functions take or return them.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+namespace atlas::pack {
+namespace {
+
+using Words = std::uint64_t __attribute__((vector_size(32)));
+using WordsInPlace = std::uint64_t __attribute__((vector_size(32), aligned(8), may_alias));
+
+ATLAS_INLINE Words load(const std::uint64_t* from) {
+  return *reinterpret_cast<const WordsInPlace*>(from);
+}
+ATLAS_INLINE void store(Words words, std::uint64_t* to) {
+  *reinterpret_cast<WordsInPlace*>(to) = words;
+}
+
+// Returns words moved down by `shift` < 64 bits. `next` are the words that follow each.
+ATLAS_INLINE Words moved_down(Words words, Words next, unsigned shift) {
+  return words >> shift | next << 1 << (63 - shift);
+}
+
+// Four words of the bits of a, followed by those of b, from a word of a on.
+template <int kFirst>
+ATLAS_INLINE Words words_from(Words a, Words b) {
+  return __builtin_shufflevector(a, b, kFirst, kFirst + 1, kFirst + 2, kFirst + 3);
+}
+
+// The bits of a row of four or eight words.
+template <int kVectors>
+struct Bits {
+  Words at[kVectors];
+
+  ATLAS_INLINE static Bits load_from(const std::uint64_t* from) {
+    Bits bits;
+    for (int v = 0; v < kVectors; ++v) bits.at[v] = load(from + 4 * v);
+    return bits;
+  }
+  ATLAS_INLINE void store_to(std::uint64_t* to) const {
+    for (int v = 0; v < kVectors; ++v) store(at[v], to + 4 * v);
+  }
+
+  // Bits first .. last of the row.
+  ATLAS_INLINE static Bits range(std::int32_t first, std::int32_t last) {
+    const std::uint64_t all = ~std::uint64_t{0};
+    const auto low = std::uint64_t(first) / 64, high = std::uint64_t(last) / 64;
+    const std::uint64_t from = all << (first % 64), to = all >> (63 - last % 64);
+    Bits bits;
+    for (int v = 0; v < kVectors; ++v) {
+      const Words word = Words{0, 1, 2, 3} + std::uint64_t(4 * v);
+      bits.at[v] = (Words(word > low) | (Words(word == low) & from)) &
+                   (Words(word < high) | (Words(word == high) & to));
+    }
+    return bits;
+  }
+
+  // Keeps the bits x for which bit x + shift from `bits` on is set, with shift < 64.
+  ATLAS_INLINE void narrow(const std::uint64_t* bits, unsigned shift) {
+    for (int v = 0; v < kVectors; ++v)
+      at[v] &= moved_down(load(bits + 4 * v), load(bits + 4 * v + 1), shift);
+  }
+
+  // Keeps the bits x for which bit x + kStep is set, too. Bits beyond the row are not.
+  template <int kStep>
+  ATLAS_INLINE void narrow() {
+    const Words none{};
+    for (int v = 0; v < kVectors; ++v) {
+      const Words beyond = v + 1 < kVectors ? at[v + 1] : none;
+      if constexpr (kStep < 64) {
+        at[v] &= moved_down(at[v], words_from<1>(at[v], beyond), unsigned(kStep));
+      } else if constexpr (kStep < 256) {
+        at[v] &= words_from<kStep / 64>(at[v], beyond);
+      } else {
+        at[v] &= beyond;
+      }
+    }
+  }
+
+  ATLAS_INLINE bool none() const {
+    Words any = at[0];
+    for (int v = 1; v < kVectors; ++v) any |= at[v];
+    return (any[0] | any[1] | any[2] | any[3]) == 0;
+  }
+
+  // Returns the first bit that is set. There must be one.
+  ATLAS_INLINE std::int32_t first() const {
+    std::int32_t first = 0;
+    for (int w = 4 * kVectors - 1; w >= 0; --w) {
+      const std::uint64_t word = at[w / 4][w % 4];
+      if (word != 0) first = 64 * w + std::countr_zero(word);
+    }
+    return first;
+  }
+};
+
+// Derives the levels of a row, all that it can have, each from the one below.
+template <int kVectors>
+class Levels {
+ public:
+  // `bits` is level 0 in the page, which is followed by the others that the page has.
+  ATLAS_INLINE Levels(std::uint64_t* bits, int levels)
+      : bits_(bits), levels_(levels), row_(Bits<kVectors>::load_from(bits)) {
+    keep(0);
+    derive(std::make_integer_sequence<int, kHighest>());
+  }
+
+  // Returns the length of the longest free run. It comes from the highest level that has bits left,
+  // because this has the fewest runs of bits.
+  ATLAS_INLINE std::int32_t longest() const {
+    return top_ < 0 ? 0 : longest_run(free_[top_]) + (1 << top_) - 1;
+  }
+
+ private:
+  static constexpr int kStride = 4 * kVectors, kHighest = std::bit_width(64u * kStride) - 1;
+
+  template <int... kBelow>
+  ATLAS_INLINE void derive(std::integer_sequence<int, kBelow...>) {
+    (derive_from<kBelow>(), ...);
+  }
+  template <int kBelow>
+  ATLAS_INLINE void derive_from() {
+    row_.template narrow<1 << kBelow>();
+    keep(kBelow + 1);
+    if (kBelow + 1 < levels_) row_.store_to(bits_ + (kBelow + 1) * kStride);
+  }
+  ATLAS_INLINE void keep(int level) {
+    row_.store_to(free_[level]);
+    if (!row_.none()) top_ = level;
+  }
+
+  std::uint64_t* bits_;
+  int levels_;
+  Bits<kVectors> row_;  // the last level
+  int top_ = -1;
+  std::uint64_t free_[kHighest + 1][kStride];  // one row per level
+};
+
+}  // namespace
+
+struct BitPage::ShortRows {
+  // Finds the leftmost place with the foot in row window.y0.
+  template <int kVectors>
+  ATLAS_INLINE static bool find_in(BitPage& page, const MaskTests& tests, Window window,
+                                   Place& place) {
+    constexpr std::size_t kStride = 4 * kVectors;
+    const std::int32_t y = window.y0, rows = page.rows_ - y;
+    const std::uint64_t* foot = page.row(0, y);
+    const auto levels = static_cast<std::size_t>(page.levels_);
+    const auto span = static_cast<std::uint64_t>(window.x1 / 64 + 1 - window.x0 / 64);
+    auto left = Bits<kVectors>::range(window.x0, window.x1);
+    std::uint64_t tested = 0;
+    bool found = true;
+    for (const Probe& p : tests.probes) {
+      if (p.row >= rows) continue;
+      const std::size_t row = std::size_t(p.row) * levels + p.level;
+      // Words beyond the row's end are read, but no candidate reaches them.
+      left.narrow(foot + row * kStride + p.offset / 64, p.offset % 64);
+      ++tested;
+      if (left.none()) {
+        found = false;
+        break;
+      }
+    }
+    page.work_ += tested * span;
+    if (found) place = {left.first(), y};
+    return found;
+  }
+
+  template <int kVectors>
+  ATLAS_INLINE static void rebuild_in(BitPage& page, std::int32_t y) {
+    page.set_longest(y, Levels<kVectors>(page.row(0, y), page.levels_).longest());
+  }
+
+  // The same functions compiled for processors with and without wide vectors.
+  template <int kVectors>
+  static bool find_narrow(BitPage& page, const MaskTests& tests, const Window& window,
+                          Place& place) {
+    return find_in<kVectors>(page, tests, window, place);
+  }
+  template <int kVectors>
+  ATLAS_WIDE static bool find_wide(BitPage& page, const MaskTests& tests, const Window& window,
+                                   Place& place) {
+    return find_in<kVectors>(page, tests, window, place);
+  }
+  template <int kVectors>
+  static void rebuild_narrow(BitPage& page, std::int32_t y) {
+    rebuild_in<kVectors>(page, y);
+  }
+  template <int kVectors>
+  ATLAS_WIDE static void rebuild_wide(BitPage& page, std::int32_t y) {
+    rebuild_in<kVectors>(page, y);
+  }
+
+  template <int kVectors>
+  static bool find(BitPage& page, const MaskTests& tests, const Window& window, Place& place) {
+    return (has_wide_vectors ? find_wide<kVectors> : find_narrow<kVectors>)(page, tests, window,
+                                                                            place);
+  }
+  template <int kVectors>
+  static void rebuild(BitPage& page, std::int32_t y) {
+    (has_wide_vectors ? rebuild_wide<kVectors> : rebuild_narrow<kVectors>)(page, y);
+  }
+};
+
+bool BitPage::find_in_short_row(const MaskTests& tests, Window window, std::int32_t y,
+                                Place& place) {
+  window.y0 = y;
+  return (words_ == 4 ? ShortRows::find<1> : ShortRows::find<2>)(*this, tests, window, place);
+}
+
+void BitPage::rebuild_short_row(std::int32_t y) {
+  (words_ == 4 ? ShortRows::rebuild<1> : ShortRows::rebuild<2>)(*this, y);
+}
+
+}  // namespace atlas::pack
