@@ -1,4 +1,5 @@
 #include <bit>
+#include <cstring>
 #include <utility>
 
 #include "libatlas/core/wide_vectors.h"
@@ -12,13 +13,14 @@ namespace atlas::pack {
 namespace {
 
 using Words = std::uint64_t __attribute__((vector_size(32)));
-using WordsInPlace = std::uint64_t __attribute__((vector_size(32), aligned(8), may_alias));
 
 ATLAS_INLINE Words load(const std::uint64_t* from) {
-  return *reinterpret_cast<const WordsInPlace*>(from);
+  Words words;
+  std::memcpy(&words, from, sizeof words);
+  return words;
 }
 ATLAS_INLINE void store(Words words, std::uint64_t* to) {
-  *reinterpret_cast<WordsInPlace*>(to) = words;
+  std::memcpy(to, &words, sizeof words);
 }
 
 // Returns words moved down by `shift` < 64 bits. `next` are the words that follow each.
