@@ -143,6 +143,10 @@ TEST(ChartTextures, SayWhatTheirErrorCovers) {
   EXPECT_EQ(r.sampled_texels, 100 * 100);
   EXPECT_GT(r.rms_error, 0);
   EXPECT_NEAR(r.rms_error, r.charts[0].rms_error, 1e-7);
+  EXPECT_GE(r.max_error, r.rms_error);
+  EXPECT_EQ(r.max_error, r.charts[0].max_error);
+  EXPECT_GT(r.charts[0].halvings, 0);
+  EXPECT_EQ(r.halved, 1u);
 }
 
 TEST(ChartTextures, DoNotDependOnTheNumberOfThreads) {

@@ -39,6 +39,20 @@ TEST(LightRow, EncodesAsOneByOne) {
   }
 }
 
+// Multiplies n colours by the texture at the row's positions, and expects what one look-up after
+// another gives.
+void expect_as_one_by_one(const TextureRow& row, int n) {
+  std::vector<Lanes> colours(static_cast<std::size_t>(n), Lanes{1, 2, 3, 1});
+  multiply_by_texture(row, n, colours.data());
+  for (int i = 0; i < n; ++i) {
+    const auto f = static_cast<float>(row.first + i);
+    const Vec2f at{row.at.x + f * row.step.x, row.at.y + f * row.step.y};
+    const Lanes one = look_up(row.level, at, row.wraps);
+    for (int k = 0; k < 3; ++k)
+      ASSERT_NEAR(colours[i][k], (k + 1) * one[k], 1e-5) << at.x << ' ' << at.y;
+  }
+}
+
 TEST(LightRow, LooksUpAsOneByOne) {
   std::mt19937 random(2);
   for (const int channels : {1, 2, 3, 4}) {
@@ -47,17 +61,16 @@ TEST(LightRow, LooksUpAsOneByOne) {
     for (auto& t : texture.image.texels) t = static_cast<std::uint8_t>(random());
     TextureLevels levels(texture);
     if (channels % 2 == 0) levels.decode();
-    for (const TextureWrap u : {TextureWrap::repeat, TextureWrap::mirror, TextureWrap::clamp})
+    for (const TextureWrap wrap : {TextureWrap::repeat, TextureWrap::mirror, TextureWrap::clamp})
       for (int n = 0; n < 20; ++n) {
         const TextureRow row{
-            levels.levels[0], {u, TextureWrap::repeat}, {-1.3f, 2.1f}, {0.7f, -0.3f}, n};
-        std::vector<Lanes> colours(static_cast<std::size_t>(n), Lanes{1, 2, 3, 1});
-        multiply_by_texture(row, n, colours.data());
-        for (int i = 0; i < n; ++i) {
-          const auto f = static_cast<float>(n + i);
-          const Lanes one = look_up(row.level, {-1.3f + f * 0.7f, 2.1f + f * -0.3f}, row.wraps);
-          for (int k = 0; k < 3; ++k) ASSERT_NEAR(colours[i][k], (k + 1) * one[k], 1e-5);
-        }
+            levels.levels[0], {wrap, TextureWrap::repeat}, {-1.3f, 2.1f}, {0.7f, -0.3f}, n};
+        expect_as_one_by_one(row, n);
+        // Short steps from each edge, so that rows of four samples lie close to one edge and far
+        // from the others.
+        for (const Vec2f step : {Vec2f{0.1f, 0.05f}, Vec2f{-0.05f, 0.1f}})
+          for (const Vec2f at : {Vec2f{6.2f, 2}, Vec2f{0.4f, 2}, Vec2f{3, 4.2f}, Vec2f{3, 0.4f}})
+            expect_as_one_by_one({levels.levels[0], {wrap, wrap}, at, step, 0}, n);
       }
   }
 }

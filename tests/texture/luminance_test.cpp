@@ -139,13 +139,22 @@ TEST(LuminanceSampler, ReadsCoarserLevelsForWiderSamples) {
 }
 
 TEST(LuminanceSampler, AveragesLevelsOfOddSizes) {
-  // One of 5 x 3 texels is white. Every level must keep the mean over the whole texture.
-  Image8 image(5, 3, 1);
-  image.at(2, 1)[0] = 255;
-  LitShape shape = make_sheet({1, 1, 1, 1}, [](double, double) { return Vec3f{1, 1, 1}; });
-  add_texture(shape, image, {1, 1});
-  const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
-  EXPECT_NEAR(LuminanceSampler::sample(sampler.prepare(0, 1e9), 1, 0, 0).x, 1 / 15.0, 0.002);
+  // One texel is white. Every level must keep the mean over the whole texture, and the last level
+  // is a single texel.
+  constexpr int kSizes[][2] = {{5, 3}, {8, 2}, {2, 8}, {3, 9}};
+  for (const auto& [width, height] : kSizes) {
+    Image8 image(width, height, 1);
+    image.at(width / 2, height / 2)[0] = 255;
+    LitShape shape = make_sheet({1, 1, 1, 1}, [](double, double) { return Vec3f{1, 1, 1}; });
+    shape.scene.materials[0].wrap_u = shape.scene.materials[0].wrap_v = TextureWrap::clamp;
+    add_texture(shape, image, {1, 1});
+    const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+    const auto coarsest = sampler.prepare(0, 1e9);
+    for (const Vec2f b : {Vec2f{0, 0}, Vec2f{1, 0}, Vec2f{0, 1}})
+      EXPECT_NEAR(LuminanceSampler::sample(coarsest, 1 - b.x - b.y, b.x, b.y).x,
+                  1.0 / (width * height), 0.002)
+          << width << ' ' << height;
+  }
 }
 
 TEST(LuminanceSampler, GivesTheMeanWhereCoordinatesAreBeyondPrecision) {
