@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 
 #include "tests/pack/checks.h"
@@ -50,7 +51,12 @@ void expect_consistent(const Sizes& sizes, const GroupingResult& r, std::uint32_
     totals[r.group[i]] += sizes[i];
   }
   EXPECT_EQ(totals, r.group_size);
-  for (std::uint64_t t : totals) EXPECT_LE(t, r.capacity);
+  const std::uint64_t all = std::accumulate(totals.begin(), totals.end(), std::uint64_t{0});
+  const std::uint64_t largest = *std::max_element(totals.begin(), totals.end());
+  EXPECT_LE(largest, r.capacity);
+  EXPECT_EQ(r.largest_group, largest);
+  const double mean = static_cast<double>(all) / r.group_count;
+  EXPECT_NEAR(r.imbalance, static_cast<double>(largest) / mean - 1, 1e-12);
 }
 
 TEST(Grouping, CountsAsThePaperDoes) {
@@ -156,6 +162,37 @@ TEST(Grouping, EnormousSizes) {
   two.groups = 2;
   const Sizes too_much(5, huge);
   EXPECT_EQ(group_sizes(too_much, two, {}).status().code(), ErrorCode::bad_input);
+}
+
+// Each run of the refinement visits every item once, and its limit counts these visits.
+TEST(Grouping, RefinementKeepsToItsWork) {
+  test::Noise noise{19};
+  Sizes sizes(60);
+  for (auto& s : sizes) s = static_cast<std::uint64_t>(noise.in(1, 1'000'000));
+  GroupingOptions options;
+  options.groups = 17;
+  std::vector<std::size_t> steps;
+  for (const std::uint64_t work : {0u, 59u, 60u, 60u * 3 + 59u}) {
+    options.refine_work = work;
+    const Result<GroupingResult> r = group_sizes(sizes, options, {});
+    ASSERT_TRUE(r.ok());
+    expect_consistent(sizes, *r, 17);
+    EXPECT_FALSE(r->proved_smallest);
+    steps.push_back(r->trace.size());
+  }
+  EXPECT_EQ(steps[1], steps[0]);
+  EXPECT_EQ(steps[2], steps[0] + 1);
+  EXPECT_EQ(steps[3], steps[0] + 3);
+}
+
+TEST(Grouping, StopsWhenCancelled) {
+  const std::atomic<bool> stop{true};
+  Context context;
+  context.cancel = &stop;
+  GroupingOptions options;
+  options.groups = 3;
+  const Sizes sizes{44, 24, 24, 22, 21, 17, 8, 8, 6, 6};
+  EXPECT_EQ(group_sizes(sizes, options, context).status().code(), ErrorCode::cancelled);
 }
 
 TEST(Grouping, PageThatHoldsAllNeedsFewerGroups) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "libatlas/core/clock.h"
@@ -16,6 +17,28 @@ PackResult pack(const std::vector<Extent>& items, const PackOptions& options, in
   Result<PackResult> r = pack_rects(items, options, context);
   EXPECT_TRUE(r.ok()) << r.status().message();
   return r.ok() ? std::move(*r) : PackResult{};
+}
+
+// Adds up the areas that the result states from its placements and pages.
+void expect_stated_areas(const std::vector<Extent>& items, const PackResult& r) {
+  std::vector<double> filled(r.pages.size());
+  double items_area = 0;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (!r.placements[i].placed() || items[i].area() == 0) continue;
+    items_area += static_cast<double>(items[i].area());
+    filled[r.placements[i].page] += static_cast<double>(items[i].area());
+  }
+  EXPECT_EQ(static_cast<double>(r.placed_area), items_area);
+  const auto fill = [&](std::size_t pages, double of_none) {
+    double area = 0, total = 0;
+    for (std::size_t p = 0; p < pages; ++p) {
+      area += filled[p];
+      total += static_cast<double>(r.pages[p].area());
+    }
+    return total > 0 ? area / total : of_none;
+  };
+  EXPECT_NEAR(r.utilization, fill(filled.size(), 0), 1e-12);
+  EXPECT_NEAR(r.fill_without_last, fill(std::max<std::size_t>(filled.size(), 1) - 1, 1), 1e-12);
 }
 
 TEST(PackRects, RandomOptionsKeepTheRules) {
@@ -49,6 +72,7 @@ TEST(PackRects, RandomOptionsKeepTheRules) {
     std::size_t missing = 0;
     for (std::size_t i = 0; i < items.size(); ++i) missing += !r.placements[i].placed();
     ASSERT_EQ(missing, r.unplaced.size());
+    expect_stated_areas(items, r);
     for (const UnplacedItem& u : r.unplaced) {
       if (o.max_pages == 0 && o.page.height > 0) {
         EXPECT_EQ(u.reason, UnplacedReason::too_large) << "round " << round;
