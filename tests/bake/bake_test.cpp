@@ -259,6 +259,8 @@ TEST(BakePage, RefusesWhatCannotBe) {
   EXPECT_EQ(code([](O&, P& p) { p.chart = 7; }), ErrorCode::bad_input);
   EXPECT_EQ(code([](O&, P& p) { p.texels_per_unit.y = 0; }), ErrorCode::bad_input);
   EXPECT_EQ(code([](O& o, P&) { o.shifts = 0; }), ErrorCode::bad_option);
+  EXPECT_EQ(code([](O& o, P&) { o.shifts = 65; }), ErrorCode::bad_option);
+  EXPECT_EQ(code([](O& o, P&) { o.shifts = 64; }), ErrorCode::ok);
   EXPECT_EQ(code([](O& o, P&) { o.mip_levels = 30; }), ErrorCode::bad_option);
   EXPECT_EQ(code([](O& o, P&) { o.page_width = 0; }), ErrorCode::bad_option);
 }
