@@ -68,6 +68,16 @@ TEST(Blend, FiniteAndContinuousWhereTheFormulaIsNot) {
   EXPECT_NEAR(below.to, above.to, 1e-8);
 }
 
+// Beyond 90 degrees the spherical weights would grow without bound.
+TEST(Blend, KeysTooFarApartAreBlendedLinearly) {
+  for (const KeyBlend blend : kAll)
+    for (const double angle : {kPi / 2 + 1e-6, 2.0, 3.0}) {
+      const BlendWeights w = blend_weights(blend, 0.25, angle);
+      EXPECT_EQ(w.from, 0.75) << angle;
+      EXPECT_EQ(w.to, 0.25) << angle;
+    }
+}
+
 TEST(Blend, TimeOutsideTheIntervalIsClamped) {
   for (KeyBlend blend : kAll) {
     EXPECT_EQ(blend_weights(blend, -3, 0.4).from, blend_weights(blend, 0, 0.4).from);

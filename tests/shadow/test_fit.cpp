@@ -48,6 +48,7 @@ TEST(Fit, ItIsASimilarityWithTheStatedTexelAndDepth) {
   const Box3 box{{0, 0, 0}, {3, 2, 7}};
   for (int i = 0; i < 100; ++i) {
     LightFitOptions o;
+    o.up = random_direction(rng);
     const LightFit fit = *fit_light(random_direction(rng), box, o);
     // A step of one unit towards the light changes the depth by 1/range and nothing else.
     const Vec3d along = transform_vector(fit.to_texture, fit.direction);
@@ -59,6 +60,24 @@ TEST(Fit, ItIsASimilarityWithTheStatedTexelAndDepth) {
     const double scale = fit.texel * o.resolution;
     EXPECT_NEAR(std::hypot(m.x * scale, m.y * scale, m.z * fit.depth_range),
                 std::hypot(v.x, v.y, v.z), 1e-9);
+    // The map is no larger than the sphere around the box and the border.
+    EXPECT_NEAR(fit.texel * (o.resolution - 2 * o.border_texels), std::hypot(3, 2, 7), 1e-9);
+  }
+}
+
+TEST(Fit, PointsMayBeRelativeToAnOrigin) {
+  std::mt19937 rng(10);
+  for (int i = 0; i < 20; ++i) {
+    LightFitOptions o;
+    o.up = random_direction(rng);
+    const LightFit fit = *fit_light(random_direction(rng), {{0, 0, 0}, {3, 2, 7}}, o);
+    const Vec3d origin = random_direction(rng), p = random_direction(rng);
+    const Vec3d want = transform_point(fit.to_clip, p);
+    const Vec3d got = transform_point(relative_to(fit.to_clip, origin),
+                                      {p.x - origin.x, p.y - origin.y, p.z - origin.z});
+    EXPECT_NEAR(got.x, want.x, 1e-12);
+    EXPECT_NEAR(got.y, want.y, 1e-12);
+    EXPECT_NEAR(got.z, want.z, 1e-12);
   }
 }
 

@@ -106,6 +106,8 @@ TEST(LightPath, EndsLoopReturnOrStay) {
     EXPECT_NEAR(path.length(), 180, 1e-9);
     EXPECT_NEAR(path.direction(90).y, 1, 1e-9);
     EXPECT_NEAR(path.direction(180).z, 1, 1e-9);
+    EXPECT_LT(angle_between(path.direction(30), {std::sqrt(3), 1, 0}), 1e-9);
+    EXPECT_LT(angle_between(path.direction(150), {0, 1, std::sqrt(3)}), 1e-9);
     const Vec3d d = path.direction(180 + 90 + 30);
     const Vec3d want = end == PathEnd::loop   ? path.direction(120)
                        : end == PathEnd::back ? path.direction(60)
@@ -181,9 +183,30 @@ TEST(LightPath, SaysWhatIsWrong) {
   EXPECT_FALSE(LightPath::make(sun).ok());
 }
 
+TEST(LightPath, TakesEveryDayPlaceAndHour) {
+  const auto made = [](int day, double latitude, double hour) {
+    LightPathOptions o;
+    o.sun.day_of_year = day;
+    o.sun.latitude = latitude;
+    o.sun.start_hour = hour;
+    return LightPath::make(o).ok();
+  };
+  EXPECT_TRUE(made(1, 0, 0));
+  EXPECT_TRUE(made(366, 0, 23.99));
+  EXPECT_TRUE(made(172, 90, 12));
+  EXPECT_TRUE(made(355, -90, 12));
+  EXPECT_FALSE(made(0, 0, 12));
+  EXPECT_FALSE(made(367, 0, 12));
+  EXPECT_FALSE(made(172, 90.01, 12));
+  EXPECT_FALSE(made(172, 0, 24));
+  EXPECT_FALSE(made(172, 0, -0.01));
+}
+
 TEST(LightPath, Text) {
   EXPECT_EQ(parse_light_path("sun:10,-33.5,8", {})->sun.latitude, -33.5);
   EXPECT_EQ(parse_light_path("sun", {})->kind, PathKind::sun);
+  EXPECT_EQ(parse_light_path("sun:1,0,0", {})->sun.day_of_year, 1);
+  EXPECT_EQ(parse_light_path("sun:366,0,0", {})->sun.day_of_year, 366);
   EXPECT_EQ(parse_light_path("line:1,2,3;4,5,6", {})->kind, PathKind::line);
   EXPECT_EQ(parse_light_path("fixed:1,2,3", {})->directions, (std::vector<Vec3d>{{1, 2, 3}}));
   const Result<LightPathOptions> keys = parse_light_path("keys:1,2,3;4,5,6;-7,8,1e-3", {});
@@ -195,7 +218,7 @@ TEST(LightPath, Text) {
   EXPECT_EQ(arc->directions[1], (Vec3d{-1, 0.5, 10}));
   for (const char* bad :
        {"", "moon:1,2,3", "arc", "arc:", "arc:1,2", "arc:1,2,3;", "sun:1,2", "sun:1,2,x",
-        "fixed:1,2,3,4", "sun:1e99,0,0", "sun:1.5,0,0", "fixed:1,,2"})
+        "fixed:1,2,3,4", "sun:1e99,0,0", "sun:1.5,0,0", "sun:0,0,0", "sun:367,0,0", "fixed:1,,2"})
     EXPECT_FALSE(parse_light_path(bad, {}).ok()) << bad;
 }
 
