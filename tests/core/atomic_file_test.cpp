@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "libatlas/core/leftovers.h"
 #include "tests/scene/temp_folder.h"
 #include "tests/support/full_disk.h"
 
@@ -262,14 +263,18 @@ TEST(AtomicFiles, WhatAKilledProcessLeftGoesWithTheNextOutput) {
   folder.write("world.obj", "old");
   folder.write(".world.0badf00d-1234567.part.obj", "of another machine");
   folder.write(".notes.part.obj", "the user's own");
+  const std::string mark = process_mark(), world = mark.substr(0, mark.rfind('-') + 1);
+  const std::string nobodys = ".world." + world + "none.part.obj";  // names no process
+  folder.write(nobodys, "the user's own");
   KilledWriter writer(folder / "world.obj");
-  wait_for_files(folder, 5);
+  wait_for_files(folder, 6);
   ASSERT_TRUE(write_file(folder / "other.txt", "x").ok());
-  EXPECT_EQ(folder.count(), 6u) << "files of a process at work are taken away";
+  EXPECT_EQ(folder.count(), 7u) << "files of a process at work are taken away";
   writer.kill();
   ASSERT_TRUE(write_file(folder / "world.obj", "new").ok());
   EXPECT_EQ(TempFolder::read(folder / "world.obj"), "new");
-  EXPECT_EQ(folder.count(), 4u);
+  EXPECT_EQ(folder.count(), 5u);
+  EXPECT_TRUE(std::filesystem::exists(folder / nobodys));
   EXPECT_TRUE(std::filesystem::exists(folder / ".world.0badf00d-1234567.part.obj"));
   EXPECT_TRUE(std::filesystem::exists(folder / ".notes.part.obj"));
 }
