@@ -146,6 +146,22 @@ TEST(KeptRest, DataThatIsNotThereIsToldAndLeftOut) {
        [](json& j) {
          j["meshes"][0]["primitives"][0]["extensions"]["ACME_outline"] = {{"indices", 0}};
        }},
+      {"1 x ACME_outline (an extension with data of its own)",
+       [](json& j) {
+         j["meshes"][0]["extensions"]["ACME_outline"] = {{"indices", 0}};
+       }},
+      {"1 x ACME_outline (an extension with data of its own)",
+       [](json& j) {
+         j["nodes"][0]["extensions"]["ACME_outline"] = {{"indices", 0}};
+       }},
+      {"1 x ACME_outline (an extension with data of its own)",
+       [](json& j) {  // of points, which are copied
+         json& primitives = j["meshes"][0]["primitives"];
+         const json positions = {{"POSITION", primitives[0]["attributes"]["POSITION"]}};
+         primitives.push_back({{"attributes", positions},
+                               {"mode", 0},
+                               {"extensions", {{"ACME_outline", {{"indices", 0}}}}}});
+       }},
       {"1 x KHR_draco_mesh_compression (an extension with data of its own)",
        [](json& j) {
          j["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {

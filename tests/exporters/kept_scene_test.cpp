@@ -272,6 +272,9 @@ TEST(KeptScene, OfObjHasNewUvsNormalsNamesAndColours) {
       EXPECT_EQ(corner.normal, scene.normals[scene.normal_indices[3 * t + c]]);
     }
   }
+  const std::string obj = TempFolder::read(folder / "w.obj"), front = "\no front\n";
+  ASSERT_NE(obj.find(front), std::string::npos);
+  EXPECT_EQ(obj.find(front), obj.rfind(front)) << "an object of two materials is one object";
   const std::string mtl = TempFolder::read(folder / "w.mtl");
   EXPECT_NE(mtl.find("newmtl paint\nKd 0.5 0.25 1\n"), std::string::npos) << mtl;
   EXPECT_EQ(mtl.find("\nmap_Kd"), std::string::npos);

@@ -111,6 +111,24 @@ TEST(GltfWorld, ReadsBackInMetresAndYUp) {
   }
 }
 
+// Pages are looked up with mip levels, and never beyond their edges.
+TEST(GltfWorld, PagesAreFilteredAndClamped) {
+  const TempFolder folder;
+  const World world = wavy_world(6, 2);
+  AtomicFiles files;
+  ASSERT_TRUE(write_gltf(world, folder / "w.gltf", files, {}).ok() && files.commit().ok());
+  const auto json = nlohmann::json::parse(TempFolder::read(folder / "w.gltf"));
+  constexpr int kLinear = 0x2601, kLinearMipmapLinear = 0x2703, kClampToEdge = 0x812f;  // OpenGL's
+  ASSERT_EQ(json["textures"].size(), 2u);
+  for (const auto& texture : json["textures"]) {
+    const auto& sampler = json["samplers"].at(texture["sampler"].get<std::size_t>());
+    EXPECT_EQ(sampler["magFilter"], kLinear);
+    EXPECT_EQ(sampler["minFilter"], kLinearMipmapLinear);
+    EXPECT_EQ(sampler["wrapS"], kClampToEdge);
+    EXPECT_EQ(sampler["wrapT"], kClampToEdge);
+  }
+}
+
 TEST(GltfWorld, AWorldWithoutLightIsLitByTheViewer) {
   for (const bool image : {false, true}) {
     const TempFolder folder;

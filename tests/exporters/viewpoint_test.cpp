@@ -73,6 +73,20 @@ TEST(ViewpointChoice, StandsInTheRoomAndLooksAlongIt) {
   }
 }
 
+TEST(ViewpointChoice, MovesWithTheScene) {
+  Triangles room;
+  add_box(room, {0, 0, 0}, {20, 6, 3}, true);
+  add_box(room, {4, 1, 0}, {6, 3, 1}, false);
+  const Viewpoint here = choose_viewpoint(room.positions, room.indices, {}, {});
+  for (Vec3f& p : room.positions) p = {p.x - 512, p.y + 256, p.z + 64};
+  const Viewpoint there = choose_viewpoint(room.positions, room.indices, {}, {});
+  EXPECT_TRUE(there.inside);
+  EXPECT_NEAR(there.position.x, here.position.x - 512, 1e-3);
+  EXPECT_NEAR(there.position.y, here.position.y + 256, 1e-3);
+  EXPECT_NEAR(there.position.z, here.position.z + 64, 1e-3);
+  EXPECT_EQ(there.direction, here.direction);
+}
+
 TEST(ViewpointChoice, StaysOutOfSingleObjects) {
   Triangles box;
   add_box(box, {-1, -2, -3}, {1, 2, 3}, false);
@@ -82,6 +96,16 @@ TEST(ViewpointChoice, StaysOutOfSingleObjects) {
   const double distance = std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
   EXPECT_GT(distance, std::sqrt(14.0));
   EXPECT_NEAR((p.x * d.x + p.y * d.y + p.z * d.z) / distance, -1, 1e-6) << "looks at the centre";
+}
+
+// People could stand on the ground, but no walls are around them.
+TEST(ViewpointChoice, SeesAnObjectOnAGroundFromOutside) {
+  Triangles yard;
+  add_box(yard, {0, 0, -0.2f}, {20, 20, 0}, false);
+  add_box(yard, {8, 8, 0}, {12, 12, 4}, false);
+  const Viewpoint view = choose_viewpoint(yard.positions, yard.indices, {}, {});
+  EXPECT_FALSE(view.inside);
+  EXPECT_TRUE(view.position.x > 20 || view.position.y > 20 || view.position.z > 4);
 }
 
 TEST(ViewpointChoice, DegenerateScenes) {
