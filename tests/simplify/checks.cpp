@@ -168,6 +168,7 @@ void sample(const Flat& fine, const SampledChart& chart, std::mt19937& random, T
     ++tally.outside;
   } else {
     out.inside = std::max(out.inside, gap);
+    if (x == 0 || y == 0) return;  // on an edge, the triangle found may be the neighbour's
     const double twice = glm::length(glm::cross(fine.p[1] - fine.p[0], fine.p[2] - fine.p[0]));
     if (twice > 0 && glm::dot(fine.normal(), coarse->normal()) < tally.least_cosine) {
       tally.turned += twice;

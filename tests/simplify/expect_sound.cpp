@@ -31,7 +31,7 @@ void expect_sound(const ChartedMesh& mesh, const SimplifiedMesh& coarse,
   // They may be shorter, because borders with different steps along one line may come to match.
   EXPECT_LE(after.length, before.length * 1.001);
 
-  const SampledSlip slip = sample_slip(mesh, coarse, densities, options.max_turn_degrees);
+  const SampledSlip slip = sample_slip(mesh, coarse, densities, coarse.max_turn_degrees);
   EXPECT_LE(slip.inside, coarse.max_slip_texels + 1e-6);
   EXPECT_LE(slip.outside, options.max_slip_texels);
   EXPECT_LE(slip.turned_share, 1e-3);

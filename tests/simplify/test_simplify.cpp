@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/simplify/expect_sound.h"
 
 namespace atlas {
@@ -122,6 +124,15 @@ TEST(Simplify, ScaleFree) {
   for (Vec3f& p : large.positions) p = {kScale * p.x, kScale * p.y, kScale * p.z};
   for (Vec2d& u : large.charts.uvs) u = {kScale * u.x, kScale * u.y};
   EXPECT_EQ(simplify(mesh, 64).uv_indices, simplify(large, 64.0 / kScale).uv_indices);
+}
+
+TEST(Simplify, PlaceFree) {
+  ChartedMesh mesh = bumpy(32, 0.05);
+  const auto on_grid = [](float x) { return std::round(x * 4096) / 4096; };  // exact when moved
+  for (Vec3f& p : mesh.positions) p = {on_grid(p.x), on_grid(p.y), on_grid(p.z)};
+  ChartedMesh moved = mesh;
+  for (Vec3f& p : moved.positions) p = {p.x + 256, p.y - 512, p.z + 64};
+  EXPECT_EQ(simplify(mesh, 64).uv_indices, simplify(moved, 64).uv_indices);
 }
 
 // Charts of random outline over a height field: seams of every kind, points where many charts meet,
