@@ -181,6 +181,17 @@ TEST(KeptRest, DataThatIsNotThereIsToldAndLeftOut) {
   }
 }
 
+TEST(KeptRest, AMaterialThatIsNotThereIsLeftOut) {
+  for (const std::size_t beyond : {0, 1, 7}) {
+    const TempFolder folder;
+    Gltf gltf = textured(folder);
+    gltf.j["meshes"][0]["primitives"][0]["material"] = gltf.j["materials"].size() + beyond;
+    keep(folder.write("s.glb", gltf.glb()), folder / "w.glb");
+    const json after = GltfOracle(folder / "w.glb").document;
+    EXPECT_FALSE(after["meshes"][0]["primitives"][0].contains("material")) << beyond;
+  }
+}
+
 TEST(KeptRest, OfGltfInObjIsCounted) {
   const TempFolder folder;
   Gltf gltf = textured(folder);
