@@ -270,6 +270,12 @@ Tail ArapSolver::lower_tail(double bound, std::span<Vec2d> uvs) {
   return w_.relaxer.lower_tail(w_.elements, corners(), bound, uvs);
 }
 
+void ArapSolver::smooth(std::span<const std::uint32_t> triangles, bool border_moves,
+                        std::span<Vec2d> uvs) {
+  wake(uvs);
+  w_.relaxer.smooth(w_.elements, corners(), {triangles, border_moves}, uvs);
+}
+
 bool ArapSolver::separate_borders(std::span<Vec2d> uvs) {
   wake(uvs);
   w_.separator.take(mesh_, w_.elements, corners());

@@ -58,6 +58,9 @@ class ArapSolver {
   // Relaxer::lower_tail.
   Tail lower_tail(double bound, std::span<Vec2d> uvs);
 
+  // Relaxer::smooth.
+  void smooth(std::span<const std::uint32_t> triangles, bool border_moves, std::span<Vec2d> uvs);
+
   // Moves borders apart that overlap a little. All triangles must be positive. Returns whether uvs
   // are injective now.
   bool separate_borders(std::span<Vec2d> uvs);

@@ -9,70 +9,13 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/param/arap_solver.h"
+#include "libatlas/param/judge.h"
+#include "libatlas/param/mend.h"
 #include "libatlas/param/planar.h"
 #include "libatlas/param/rest_shape.h"
 
 namespace atlas {
 namespace {
-
-void scale_to_surface_area(ParamResult& r) {
-  const double scale = area_preserving_scale(r.distortion);
-  if (!(scale > 0) || scale == 1) return;
-  for (Vec2d& p : r.uvs) p = {p.x * scale, p.y * scale};
-  r.distortion.uv_area *= scale * scale;
-}
-
-// Returns the triangles with more stretch than `bound`, worst first.
-std::vector<std::uint32_t> beyond_bound(std::span<const double> stretch, double bound) {
-  std::vector<std::uint32_t> beyond;
-  for (std::uint32_t t = 0; t < stretch.size(); ++t) {
-    if (stretch[t] > bound) beyond.push_back(t);
-  }
-  std::stable_sort(beyond.begin(), beyond.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return stretch[a] > stretch[b]; });
-  return beyond;
-}
-
-// Returns flipped triangles first, then those at crossings, then those beyond the bound.
-std::vector<std::uint32_t> list_offenders(const LocalMesh& mesh, const Injectivity& check,
-                                          std::span<const std::uint32_t> beyond) {
-  std::vector<std::uint32_t> offenders = check.flipped;
-  std::vector<bool> listed(mesh.triangles.size(), false);
-  for (const std::uint32_t t : offenders) listed[t] = true;
-  const auto add = [&](std::uint32_t t) {
-    if (!listed[t]) offenders.push_back(t);
-    listed[t] = true;
-  };
-  for (const BorderCrossing& c : check.crossings) {
-    add(c.triangle_a);
-    add(c.triangle_b);
-  }
-  for (const std::uint32_t t : beyond) add(t);
-  return offenders;
-}
-
-// Measures, scales and judges r.uvs. `known` is their distortion, if it has been measured.
-void finish(const LocalMesh& mesh, const ParamOptions& options, ParamResult& r,
-            const Distortion* known = nullptr) {
-  std::vector<double> stretch;
-  if (known && known->stretch_999 <= options.max_stretch) {
-    r.distortion = *known;
-  } else {
-    stretch.resize(mesh.triangles.size());
-    r.distortion = measure_distortion(mesh, r.uvs, stretch);
-  }
-  scale_to_surface_area(r);
-  const Injectivity check = check_injectivity(mesh, r.uvs);
-  r.injective = check.injective;
-  // The L2 stretch as well: beyond 99.9 % of the area there may be a sliver that is stretched
-  // without limit.
-  r.within_bound =
-      std::max(r.distortion.stretch_999, r.distortion.stretch_l2) <= options.max_stretch;
-  r.crossings = check.crossings;
-  std::vector<std::uint32_t> beyond;
-  if (!r.within_bound) beyond = beyond_bound(stretch, options.max_stretch);
-  r.offenders = list_offenders(mesh, check, beyond);
-}
 
 // Writes the projection along `axis` to uvs. Returns its distortion if that is within the bound.
 std::optional<Distortion> project(const LocalMesh& mesh, Vec3d axis, double bound,
@@ -93,10 +36,6 @@ constexpr int kUnrollingRounds = 4;
 // 1. Of 60 charts of more than 400 triangles where it fell by less, none came down by more than a
 // fifth in a round.
 constexpr double kUnrollingFall = 3;
-
-// The goal when single places are relaxed, as a share of the bound, so that rounding does not cross
-// it.
-constexpr double kWithin = 1 - 1e-4;
 
 // On rough surfaces, borders that cross themselves in more places can hardly ever be moved apart,
 // and closing the cuts that cross is cheaper: with 16, eight noisy meshes took a quarter more time
@@ -209,7 +148,7 @@ Distortion unroll(const Descent& d, double fall, Distortion now, std::span<Vec2d
 // whole, since cuts would not help there.
 void lower_tail(const Descent& d, ParamResult& r) {
   const auto& [mesh, options, solver, laid] = d;
-  const double bound = kWithin * options.max_stretch;
+  const double bound = param::just_within * options.max_stretch;
   if (solver.lower_tail(bound, r.uvs) != param::Tail::wide) return;
   solver.squeeze({bound, bound, options.squeeze_iterations, options.squeeze_ratio, options.rough},
                  r.uvs);
@@ -231,15 +170,15 @@ void draw_apart(const Descent& d, ParamResult& r) {
     r.stubborn_crossings.assign(left.begin(), left.end());
     return;
   }
-  finish(mesh, options, r);
+  param::judge(mesh, options, r);
   if (!r.within_bound && r.injective) {
     solver.settle_borders(r.uvs);
-    finish(mesh, options, r);
+    param::judge(mesh, options, r);
   }
   const bool stretched = !r.within_bound && r.distortion.flips == 0;
   if (options.local && stretched &&
-      solver.lower_tail(kWithin * options.max_stretch, r.uvs) == param::Tail::lowered) {
-    finish(mesh, options, r);
+      solver.lower_tail(param::just_within * options.max_stretch, r.uvs) == param::Tail::lowered) {
+    param::judge(mesh, options, r);
   }
   if (!r.within_bound && options.leave_crossings) r = std::move(crossed);
 }
@@ -285,9 +224,10 @@ void descend(const Descent& d, PhaseClock& clock, ParamResult& r) {
                    r.uvs);
   }
   clock.book(&Phase::solve);
-  finish(mesh, options, r, last ? &*last : nullptr);
+  param::judge(mesh, options, r, last ? &*last : nullptr);
   clock.book(&Phase::overlaps);
   draw_apart(d, r);
+  param::mend_ruined(mesh, options, solver, r);
   clock.book(&Phase::overlaps);
 }
 
@@ -347,7 +287,7 @@ ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
   }
   if (only_planar || projected) {
     r.planar = true;
-    finish(mesh, options, r, projected ? &*projected : nullptr);
+    param::judge(mesh, options, r, projected ? &*projected : nullptr);
     if (r.injective || only_planar) return r;
     r = {};
     r.uvs.resize(mesh.positions.size());

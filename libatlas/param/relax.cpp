@@ -223,6 +223,28 @@ void Relaxer::pull(ElementView elements, const CornerLists& corners, const Pull&
   awake_.clear();
 }
 
+// Around an inner vertex, the last corner of each triangle is the next one of another.
+bool Relaxer::on_border(std::uint32_t v) const {
+  std::uint64_t next = 0, last = 0;
+  for (std::uint32_t i = corners_->first[v]; i < corners_->first[v + 1]; ++i) {
+    const auto& triangle = elements_[corners_->corner[i] / 3].v;
+    const std::uint32_t k = corners_->corner[i] % 3;
+    next += triangle[(k + 1) % 3];
+    last += triangle[(k + 2) % 3];
+  }
+  return next != last;
+}
+
+void Relaxer::smooth(ElementView elements, const CornerLists& corners, const Places& places,
+                     std::span<Vec2d> uvs) {
+  constexpr int rings = 2, sweeps = 8;
+  begin(elements, corners, uvs);
+  gather(places.triangles, rings);
+  if (!places.border_moves) std::erase_if(vertices_, [&](std::uint32_t v) { return on_border(v); });
+  energy_ = VertexEnergy::symmetric_dirichlet;
+  for (int i = 0; i < sweeps; ++i) sweep();
+}
+
 void Relaxer::measure_again(std::span<const std::uint32_t> triangles) {
   for (const std::uint32_t t : triangles) {
     const SingularValues s = singular_values(jacobian(t));

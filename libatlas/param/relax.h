@@ -57,6 +57,16 @@ class Relaxer {
   void pull(ElementView elements, const CornerLists& corners, const Pull& pull,
             std::span<Vec2d> uvs);
 
+  struct Places {
+    std::span<const std::uint32_t> triangles;
+    bool border_moves;
+  };
+
+  // Lowers the symmetric Dirichlet energy in two rings around some triangles, by a few sweeps: each
+  // widens a squeezed triangle by about a third. All triangles must be positive, and stay so.
+  void smooth(ElementView elements, const CornerLists& corners, const Places& places,
+              std::span<Vec2d> uvs);
+
   // Lowers max(s1, 1/s2) of the uv-to-surface map's singular values, at the area-preserving scale,
   // where it exceeds `bound`, until 99.9 % of the area is within it; most of the other 0.1 % is
   // spared. Only vertices near those triangles move. All triangles must be positive, and stay so.
@@ -67,6 +77,7 @@ class Relaxer {
  private:
   void begin(ElementView elements, const CornerLists& corners, std::span<Vec2d> uvs);
   void gather(std::span<const std::uint32_t> seeds, int rings);
+  bool on_border(std::uint32_t v) const;
   void load_vertex(std::uint32_t v);
   double energy(glm::dvec2 m) const;
   glm::dvec2 newton_step() const;

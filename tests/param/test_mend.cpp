@@ -1,0 +1,91 @@
+// Tests of mending single triangles that are squeezed to almost nothing.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libatlas/param/arap_solver.h"
+#include "libatlas/param/judge.h"
+#include "libatlas/param/mend.h"
+#include "tests/param/shapes.h"
+
+namespace atlas {
+namespace {
+
+using testing::Disc;
+
+constexpr std::uint32_t kSide = 80;
+
+std::uint32_t at(std::uint32_t x, std::uint32_t y) {
+  return y * (kSide + 1) + x;
+}
+
+// A flat plate with flat uvs. The vertex (x, y) has moved almost to its neighbour, so that the
+// triangles between both have a twentieth of their width.
+struct SqueezedPlate {
+  Disc disc = testing::make_grid(kSide, kSide, [](double u, double v) { return Vec3d{u, v, 0}; });
+  std::vector<Vec2d> uvs;
+
+  SqueezedPlate(std::uint32_t x, std::uint32_t y) {
+    for (const Vec3d& p : disc.positions) uvs.push_back({p.x, p.y});
+    uvs[at(x, y)].x += 0.95 / kSide;
+  }
+};
+
+ParamResult judged(const SqueezedPlate& plate, const ParamOptions& options) {
+  ParamResult r;
+  r.uvs = plate.uvs;
+  param::judge(plate.disc.view(), options, r);
+  return r;
+}
+
+ParamResult mended(const SqueezedPlate& plate, const ParamOptions& options) {
+  ParamResult r = judged(plate, options);
+  ParamWorkspace workspace;
+  const LocalMesh mesh = plate.disc.view();
+  param::ArapSolver solver(mesh, {}, workspace.impl());
+  param::mend_ruined(mesh, options, solver, r);
+  return r;
+}
+
+TEST(Mend, GivesSqueezedTrianglesTheirShape) {
+  for (const std::uint32_t x : {0u, 3u, 40u}) {  // on the border, near it, and inside
+    const SqueezedPlate plate(x, 40);
+    const ParamResult before = judged(plate, {}), after = mended(plate, {});
+    ASSERT_TRUE(before.within_bound && before.injective);
+    ASSERT_GT(before.distortion.stretch_linf, 19);
+    EXPECT_TRUE(after.within_bound && after.injective);
+    EXPECT_TRUE(check_injectivity(plate.disc.view(), after.uvs).injective);
+    const Distortion measured = measure_distortion(plate.disc.view(), after.uvs);
+    EXPECT_LT(measured.stretch_linf, 1.25) << x;
+    EXPECT_LT(measured.stretch_l2, 1 + 0.01 * (before.distortion.stretch_l2 - 1)) << x;
+  }
+}
+
+// Both sides of a bound that nothing reaches: it is for the caller to cut there.
+TEST(Mend, LeavesWhatIsBeyondTheBound) {
+  SqueezedPlate plate(40, 40);
+  for (std::uint32_t y = 0; y < kSide; y += 3) plate.uvs[at(40, y)].x += 0.5 / kSide;
+  const ParamResult before = judged(plate, {}), after = mended(plate, {});
+  ASSERT_FALSE(before.within_bound);
+  EXPECT_EQ(after.uvs, before.uvs);
+}
+
+TEST(Mend, SmoothingKeepsTheBorderIfAsked) {
+  const SqueezedPlate plate(1, 40);
+  const LocalMesh mesh = plate.disc.view();
+  const std::vector<std::uint32_t> triangles{2 * (40 * kSide + 1)};
+  for (const bool border_moves : {false, true}) {
+    std::vector<Vec2d> uvs = plate.uvs;
+    ParamWorkspace workspace;
+    param::ArapSolver solver(mesh, {}, workspace.impl());
+    solver.smooth(triangles, border_moves, uvs);
+    EXPECT_LT(uvs[at(1, 40)].x, 1.4 / kSide);
+    EXPECT_TRUE(check_injectivity(mesh, uvs).injective);
+    bool moved = false;
+    for (std::uint32_t y = 0; y <= kSide; ++y) moved |= uvs[at(0, y)] != plate.uvs[at(0, y)];
+    EXPECT_EQ(moved, border_moves);
+  }
+}
+
+}  // namespace
+}  // namespace atlas
