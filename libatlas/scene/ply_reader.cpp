@@ -27,7 +27,13 @@ class Numbers {
   std::size_t bytes_left() const {
     return static_cast<std::size_t>(end_ - (format_ == PlyFormat::ascii ? scan_.position() : at_));
   }
-  bool at_end() const { return bytes_left() == 0; }
+  // Returns whether nothing but blanks and line ends follows.
+  bool at_end() const {
+    if (format_ != PlyFormat::ascii) return bytes_left() == 0;
+    TextScanner ahead = scan_;
+    while (!ahead.at_end() && ahead.at_line_end()) ahead.next_line();
+    return ahead.at_end();
+  }
   std::uint32_t line() const { return first_line_ + scan_.line() + 1; }  // ascii only
 
   void begin_element() {

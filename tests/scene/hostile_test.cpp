@@ -72,6 +72,16 @@ const Case kCases[] = {
      "no triangle"},
     {"letters.ply", kPly + "element vertex 2\n" + kXyz + "end_header\n0 0 0\n0 a 0\n",
      ErrorCode::bad_input, "letters.ply:9:"},
+    {"cut_line.ply",
+     kPly + "element vertex 2\n" + kXyz +
+         "element face 3\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n"
+         "3 0 1 0\n3 0 1 \n \n",
+     ErrorCode::bad_input, "cut_line.ply: face 2 of 3 is incomplete, but the file ends before"},
+    {"short_line.ply",
+     kPly + "element vertex 2\n" + kXyz +
+         "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n"
+         "3 0 1\n3 0 1 0\n",
+     ErrorCode::bad_input, "short_line.ply:12: no number for 'vertex_indices'"},
     {"faceless.ply",
      kPly + "element vertex 1\n" + kXyz + "element face 1\nproperty int a\nend_header\n0 0 0\n1\n",
      ErrorCode::bad_input, "no list vertex_indices"},
