@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat4x4.hpp>
+#include <map>
+#include <tuple>
 
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/formats.h"
 #include "libatlas/scene/text_scanner.h"
+#include "libatlas/scene/vrml_appearance.h"
 #include "libatlas/scene/vrml_scanner.h"
 
 namespace atlas {
@@ -23,9 +26,19 @@ struct Shape {
   std::vector<Vec3d> points;
   std::vector<Vec2f> uvs;
   std::vector<double> corners, uv_corners;  // indices, with a -1 after each face
-  std::string image;
-  bool repeat_u = true, repeat_v = true;
+  std::uint32_t material = 0;
 };
+
+bool is_group(std::string_view type) {
+  return type == "Transform" || type == "Group" || type == "Collision" || type == "Anchor" ||
+         type == "Billboard";
+}
+
+// Materials with the same key are the same in all that is read.
+auto key_of(const RawMaterial& m) {
+  return std::tuple(m.name, m.texture, m.wrap_u, m.wrap_v, m.uv_u, m.uv_v, m.opacity, m.diffuse.x,
+                    m.diffuse.y, m.diffuse.z, m.emission.x, m.emission.y, m.emission.z);
+}
 
 class VrmlParser : VrmlScanner {
  public:
@@ -43,6 +56,7 @@ class VrmlParser : VrmlScanner {
     } catch (const MalformedVrml&) {
       return context_.cancelled() ? Status::cancelled() : error(what());
     }
+    if (shapes_.empty() && builder_.defects.count(DefectKind::node_hidden) > 0) return all_hidden();
     finish();
     return {};
   }
@@ -55,34 +69,39 @@ class VrmlParser : VrmlScanner {
                         builder_.file, line(), what)};
   }
 
-  std::string_view node_type(std::string_view token) {
-    if (token == "DEF") {
-      next();
-      token = next();
-    }
-    if (token.empty() || token[0] < 'A' || token[0] > 'Z') {
-      fail(fmt::format("'{}' where a node should be", start_of(token)));
-    }
-    return token;
+  Status all_hidden() const {
+    return {ErrorCode::bad_input,
+            fmt::format("{}: no triangle to work on: it shows none of the children of {} Switch "
+                        "nodes (set their whichChoice)",
+                        builder_.file, builder_.defects.count(DefectKind::node_hidden))};
   }
 
   void node(std::string_view token, const glm::dmat4& matrix, int depth) {
     if (depth > kMaxDepth) fail("nodes are nested too deeply");
-    if (token == "USE" || token == "ROUTE" || token == "PROTO" || token == "EXTERNPROTO") {
+    if (token == "ROUTE" || token == "PROTO" || token == "EXTERNPROTO") {
       fail(fmt::format("{} is not supported", token));
     }
-    token = node_type(token);
-    if (token == "Shape") {
-      shape(matrix);
-    } else if (token == "Transform" || token == "Group" || token == "Collision" ||
-               token == "Anchor") {
-      group(matrix, depth);
-    } else if (token == "WorldInfo") {
-      world_info();
-    } else {
-      expect("{");
-      skip_brackets();
-    }
+    read_node(token, [&](std::string_view type, std::string_view) {
+      if (type == "Shape") return shape(matrix);
+      if (is_group(type)) return group(matrix, depth);
+      if (type == "Switch" || type == "LOD") return choice(type == "LOD", matrix, depth);
+      if (type == "WorldInfo") return world_info();
+      if (type == "Inline") ignored(type);  // the shapes of another file
+      skip();
+    });
+  }
+
+  // Skips a node after its type.
+  void skip() {
+    expect("{");
+    skip_brackets();
+  }
+
+  void ignored(std::string_view type) {
+    builder_.defects.add(DefectKind::element_ignored, [&] { return place_of(place(), type); });
+  }
+  std::string place_of(const char* at, std::string_view type) const {
+    return fmt::format("{}:{}: {}", builder_.file, line_of(at), type);
   }
 
   // Reads the exporter's note of an origin for which single-precision coordinates would not
@@ -126,29 +145,55 @@ class VrmlParser : VrmlScanner {
     local[3] = glm::dvec4(translation + centre - glm::dvec3(local * glm::dvec4(centre, 0)), 1);
     const char* after = place();
     go_to(children);
-    if (peek() != "[") {
-      node(next(), matrix * local, depth + 1);
-    } else {
-      next();
-      for (auto token = next(); token != "]"; token = next())
-        node(token, matrix * local, depth + 1);
+    nodes([&](std::string_view token) { node(token, matrix * local, depth + 1); });
+    go_to(after);
+  }
+
+  // Reads the child of a Switch that whichChoice names, or the first level of an LOD, which is the
+  // finest.
+  void choice(bool lod, const glm::dmat4& matrix, int depth) {
+    const char *begin = place(), *children = nullptr;
+    double chosen = lod ? 0 : -1;
+    fields([&](std::string_view name) {
+      if (name == "whichChoice" && !lod) return chosen = row(1).x, true;
+      if (name == (lod ? "level" : "choice")) children = place();
+      return false;
+    });
+    if (!children) return;
+    const char* after = place();
+    go_to(children);
+    double count = 0;
+    bool shown = false;
+    nodes([&](std::string_view token) {
+      if (count++ != chosen) return skip_node(token);
+      shown = true;
+      node(token, matrix, depth + 1);
+    });
+    if (count > 0 && !shown) {
+      builder_.defects.add(DefectKind::node_hidden, [&] {
+        return place_of(begin, fmt::format("Switch with whichChoice {}", chosen));
+      });
     }
     go_to(after);
   }
 
   void shape(const glm::dmat4& matrix) {
     Shape result;
+    RawMaterial material;
     bool has_faces = false;
     fields([&](std::string_view name) {
-      if (name == "appearance") return appearance(result), true;
+      if (name == "appearance")
+        return material = read_vrml_appearance(next(), *this, builder_), true;
       if (name != "geometry") return false;
-      if (node_type(next()) == "IndexedFaceSet") return face_set(result), has_faces = true;
-      expect("{");
-      skip_brackets();
-      builder_.defects.add(DefectKind::element_ignored, [&] { return builder_.file; });
+      read_node(next(), [&](std::string_view type, std::string_view) {
+        if (type == "IndexedFaceSet") return face_set(result), void(has_faces = true);
+        ignored(type);
+        skip();
+      });
       return true;
     });
     if (!has_faces) return;
+    result.material = material_of(std::move(material));
     const std::size_t base = builder_.positions.size();
     for (const Vec3d& p : result.points) {
       const glm::dvec3 q = glm::dvec3(matrix * glm::dvec4(to_glm(p), 1));
@@ -160,25 +205,20 @@ class VrmlParser : VrmlScanner {
     shapes_.push_back(std::move(result));
   }
 
-  void appearance(Shape& shape) {
-    if (node_type(next()) != "Appearance") fail("an Appearance expected");
-    fields([&](std::string_view name) {
-      if (name != "texture") return false;
-      if (node_type(next()) != "ImageTexture") fail("an ImageTexture expected");
-      fields([&](std::string_view field) {
-        if (field == "repeatS") return shape.repeat_u = next() != "FALSE", true;
-        if (field == "repeatT") return shape.repeat_v = next() != "FALSE", true;
-        if (field != "url") return false;
-        std::string_view token = next();
-        const bool many = token == "[";
-        if (many) token = next();
-        if (token.size() < 2 || token[0] != '"') fail("a url in quotes expected");
-        shape.image = token.substr(1, token.size() - 2);
-        while (many && token != "]" && !token.empty()) token = next();
-        return true;
+  // Returns the index of a material that is the same in all that is read. Those of different names
+  // are kept apart, as in other formats.
+  std::uint32_t material_of(RawMaterial&& material) {
+    const auto next = static_cast<std::uint32_t>(builder_.materials.size());
+    const auto [at, is_new] = material_ids_.try_emplace(key_of(material), next);
+    if (!is_new) return at->second;
+    if (material.name.empty()) material.name = fmt::format("material{}", next);
+    if (!is_reflectance(material.diffuse)) {
+      builder_.defects.add(DefectKind::reflectance_beyond_one, [&] {
+        return fmt::format("{}: material '{}'", builder_.file, material.name);
       });
-      return true;
-    });
+    }
+    builder_.materials.push_back(std::move(material));
+    return next;
   }
 
   void face_set(Shape& shape) {
@@ -187,18 +227,21 @@ class VrmlParser : VrmlScanner {
       if (name == "texCoordIndex") return shape.uv_corners = list(1), true;
       if (name != "coord" && name != "texCoord") return false;
       const bool uv = name == "texCoord";
-      node_type(next());
-      fields([&](std::string_view field) {
-        if (field != "point") return false;
-        const auto values = list(uv ? 2 : 3);
-        for (std::size_t i = 0; !uv && i < values.size(); i += 3) {
-          shape.points.push_back({values[i], values[i + 1], values[i + 2]});
-        }
-        for (std::size_t i = 0; uv && i < values.size(); i += 2) {
-          shape.uvs.push_back({float(values[i]), float(values[i + 1])});
-        }
-        return true;
-      });
+      read_node(next(), [&](std::string_view, std::string_view) { points(uv, shape); });
+      return true;
+    });
+  }
+
+  void points(bool uv, Shape& shape) {
+    fields([&](std::string_view field) {
+      if (field != "point") return false;
+      const auto values = list(uv ? 2 : 3);
+      for (std::size_t i = 0; !uv && i < values.size(); i += 3) {
+        shape.points.push_back({values[i], values[i + 1], values[i + 2]});
+      }
+      for (std::size_t i = 0; uv && i < values.size(); i += 2) {
+        shape.uvs.push_back({float(values[i]), float(values[i + 1])});
+      }
       return true;
     });
   }
@@ -210,23 +253,10 @@ class VrmlParser : VrmlScanner {
     for (std::size_t i = 0; i < shapes_.size(); ++i) add_faces(shapes_[i], i);
   }
 
-  void add_material(const Shape& shape, std::size_t number) {
-    RawMaterial material;
-    material.name = shape.image.empty() ? fmt::format("page{}", number) : shape.image;
-    if (!shape.image.empty()) {
-      const fs::path image = fs::path(builder_.file).parent_path() / shape.image;
-      material.texture = static_cast<std::int32_t>(builder_.textures.size());
-      if (!shape.repeat_u) material.wrap_u = TextureWrap::clamp;
-      if (!shape.repeat_v) material.wrap_v = TextureWrap::clamp;
-      builder_.textures.push_back({image, {}, builder_.file});
-    }
-    builder_.material = builder_.object = static_cast<std::uint32_t>(number);
-    builder_.materials.push_back(std::move(material));
-    builder_.objects.push_back(fmt::format("shape{}", number));
-  }
-
   void add_faces(const Shape& shape, std::size_t number) {
-    add_material(shape, number);
+    builder_.material = shape.material;
+    builder_.object = static_cast<std::uint32_t>(number);
+    builder_.objects.push_back(fmt::format("shape{}", number));
     const Base& base = bases_[number];
     const auto& own = shape.uv_corners.empty() ? shape.corners : shape.uv_corners;
     const bool textured = !shape.uvs.empty();
@@ -278,6 +308,7 @@ class VrmlParser : VrmlScanner {
   glm::dvec3 origin_{0};
   std::vector<Shape> shapes_;
   std::vector<Base> bases_;
+  std::map<decltype(key_of({})), std::uint32_t> material_ids_;
 };
 
 }  // namespace

@@ -8,9 +8,16 @@
 #include "libatlas/scene/text_scanner.h"
 
 namespace atlas {
+namespace {
 
-std::ptrdiff_t VrmlScanner::line() const {
-  return 1 + std::count(begin_, std::min(at_, end_), '\n');
+// Limit on the text that USE repeats. A few nested USE can stand for more nodes than there are
+// bytes in any memory.
+constexpr std::ptrdiff_t kMostRepeated = std::ptrdiff_t{1} << 29;
+
+}  // namespace
+
+std::ptrdiff_t VrmlScanner::line_of(const char* place) const {
+  return 1 + std::count(begin_, std::min(place, end_), '\n');
 }
 
 void VrmlScanner::fail(std::string what) {
@@ -98,11 +105,60 @@ bool VrmlScanner::is_field(std::string_view token) {
 }
 
 void VrmlScanner::skip_brackets() {
+  const char* begin = at_;
   for (int open = 1; open > 0;) {
     const std::string_view token = next();
     if (token.empty()) fail("the file ends inside a node");
     open += token == "{" || token == "[" ? 1 : token == "}" || token == "]" ? -1 : 0;
   }
+  if (uses_ > 0) count_repeated(at_ - begin);
+}
+
+void VrmlScanner::skip_node(std::string_view token) {
+  if (token == "NULL") return;
+  if (token == "USE") return void(next());
+  std::string_view name;
+  type_of(token, name);
+  expect("{");
+  skip_brackets();
+}
+
+std::string_view VrmlScanner::type_of(std::string_view token, std::string_view& name) {
+  if (token == "DEF") {
+    name = next();
+    token = next();
+  }
+  if (token.empty() || token[0] < 'A' || token[0] > 'Z') {
+    fail(fmt::format("'{}' where a node should be", start_of(token)));
+  }
+  return token;
+}
+
+void VrmlScanner::find_definitions() {
+  const char* before = at_;
+  at_ = begin_;
+  for (std::string_view token = next(); !token.empty(); token = next()) {
+    if (token == "DEF") definitions_[next()].push_back(token.data());
+  }
+  at_ = before;
+  definitions_found_ = true;
+}
+
+const char* VrmlScanner::definition_of(std::string_view name, const char* use) {
+  if (!definitions_found_) find_definitions();
+  const auto found = definitions_.find(name);
+  if (found != definitions_.end()) {
+    const auto& places = found->second;
+    const auto after = std::lower_bound(places.begin(), places.end(), use);
+    if (after != places.begin()) return after[-1];
+  }
+  fail(fmt::format("USE of '{}', which no DEF before it names", start_of(name)));
+}
+
+void VrmlScanner::count_repeated(std::ptrdiff_t bytes) {
+  repeated_ += bytes;
+  if (repeated_ > kMostRepeated) fail("USE repeats more nodes than can be read");
+  if (context_.cancelled()) throw MalformedVrml();
 }
 
 void VrmlScanner::skip_value() {

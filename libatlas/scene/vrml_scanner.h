@@ -1,8 +1,10 @@
-// Internal: VrmlScanner, which reads the words, lists of numbers and fields of a VRML97 file.
+// Internal: VrmlScanner, which reads the words, lists of numbers, fields and nodes of a VRML97
+// file.
 #pragma once
 
 #include <cstddef>
 #include <glm/vec4.hpp>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,7 +27,8 @@ class VrmlScanner {
         context_(context) {}
 
   std::string_view text() const { return {begin_, std::size_t(end_ - begin_)}; }
-  std::ptrdiff_t line() const;
+  std::ptrdiff_t line() const { return line_of(at_); }
+  std::ptrdiff_t line_of(const char* place) const;
   const std::string& what() const { return what_; }
   [[noreturn]] void fail(std::string what);
 
@@ -50,6 +53,34 @@ class VrmlScanner {
       if (!field(token)) skip_value();
     }
   }
+  // Calls each(first token) for each node of a field's value: one node, or several in brackets.
+  template <class Each>
+  void nodes(const Each& each) {
+    std::string_view token = next();
+    if (token != "[") return each(token);
+    for (token = next(); token != "]"; token = next()) each(token);
+  }
+  // Reads the node that begins with `token`, or the one that `USE NAME` stands for: calls
+  // read(type, name) before its opening bracket, where `name` is empty unless DEF gives one. Does
+  // nothing for NULL.
+  template <class Read>
+  void read_node(std::string_view token, const Read& read) {
+    if (token == "NULL") return;
+    if (token != "USE") {
+      std::string_view name;
+      token = type_of(token, name);
+      return read(token, name);
+    }
+    const std::string_view name = next();
+    const char* after = at_;
+    const char* begin = at_ = definition_of(name, token.data());
+    ++uses_;
+    read_node(next(), read);
+    --uses_;
+    count_repeated(at_ - begin);
+    at_ = after;
+  }
+  void skip_node(std::string_view token);
   // Skips from after an opening bracket to after its closing bracket.
   void skip_brackets();
 
@@ -64,10 +95,21 @@ class VrmlScanner {
   void check_field(std::string_view token);
   void skip_value();
   bool number(double& value);
+  // Returns the type of the node that begins with `token`, and the name that DEF gives it.
+  std::string_view type_of(std::string_view token, std::string_view& name);
+  // Returns where the last DEF of the name before `use` stands.
+  const char* definition_of(std::string_view name, const char* use);
+  void find_definitions();
+  void count_repeated(std::ptrdiff_t bytes);
 
   const char *begin_, *at_, *end_;
   const Context& context_;
   std::string what_;
+  // Where each name is defined, in the order of the file; filled by the first USE.
+  std::map<std::string_view, std::vector<const char*>> definitions_;
+  bool definitions_found_ = false;
+  int uses_ = 0;                 // how many USE are being followed, one within the other
+  std::ptrdiff_t repeated_ = 0;  // bytes that USE has made the scanner pass once more
 };
 
 }  // namespace atlas

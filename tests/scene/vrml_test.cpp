@@ -1,0 +1,248 @@
+// VRML97: which nodes are read, and which shapes share a material.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "libatlas/core/clock.h"
+#include "libatlas/scene/reader.h"
+#include "tests/scene/load_scene.h"
+#include "tests/scene/temp_folder.h"
+
+namespace atlas {
+namespace {
+
+using test::load;
+using test::TempFolder;
+
+Result<LoadedScene> read(const TempFolder& folder, const std::string& nodes) {
+  ReadOptions options;
+  options.load_textures = false;
+  return read_scene(folder.write("a.wrl", "#VRML V2.0 utf8\n" + nodes), options, {});
+}
+
+Scene scene_of(const TempFolder& folder, const std::string& nodes) {
+  auto loaded = read(folder, nodes);
+  EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+  return loaded.ok() ? std::move(loaded->scene) : Scene{};
+}
+
+// One triangle whose first corner is at `x`, by which it is found again.
+std::string triangle(int x) {
+  return fmt::format(
+      "geometry IndexedFaceSet {{ coord Coordinate {{ point [ {} 0 0, {} 1 0, {} 0 1 ] }}\n"
+      "coordIndex [ 0 1 2 -1 ] }}\n",
+      x, x, x);
+}
+std::string shape(int x, const std::string& appearance = "") {
+  const std::string given = appearance.empty() ? "" : "appearance " + appearance + "\n";
+  return "Shape { " + given + triangle(x) + "}\n";
+}
+std::string painted(int x, const std::string& material) {
+  return shape(x, "Appearance { material " + material + " }");
+}
+
+// The first coordinates of all triangles, in order.
+std::vector<double> places(const Scene& scene) {
+  std::vector<double> result;
+  for (std::size_t k = 0; k < scene.indices.size(); k += 3)
+    result.push_back(scene.origin.x + scene.positions[scene.indices[k]].x);
+  return result;
+}
+std::vector<double> places(const TempFolder& folder, const std::string& nodes) {
+  return places(scene_of(folder, nodes));
+}
+
+using Ids = std::vector<std::uint32_t>;
+using Places = std::vector<double>;
+
+TEST(Vrml, ShapesOfEqualMaterialsShareOne) {
+  const TempFolder folder;
+  const Scene scene = scene_of(
+      folder, painted(0, "Material { diffuseColor 1 0 0 shininess 0.5 }") +
+                  painted(1, "Material { diffuseColor 0 1 0 transparency 0.25 }") +
+                  painted(2, "Material { shininess 0.1 diffuseColor 1.0, 0, 0 transparency 0 }") +
+                  painted(3, "Material { diffuseColor 0 1 0 }") +
+                  painted(4, "Material { diffuseColor 0 1 0 emissiveColor 0 0 2 }") +
+                  painted(5, "Material { transparency .25 diffuseColor 0 1 0 }") + shape(6) +
+                  shape(7, "Appearance { }") + painted(8, "Material { }") + painted(9, "NULL") +
+                  shape(10, "NULL"));
+  EXPECT_EQ(scene.triangle_material, (Ids{0, 1, 0, 2, 3, 1, 4, 4, 5, 4, 4}));
+  ASSERT_EQ(scene.materials.size(), 6u);
+  EXPECT_EQ(scene.object_names.size(), 11u);
+  EXPECT_EQ(scene.materials[0].diffuse, (Vec3f{1, 0, 0}));
+  EXPECT_EQ(scene.materials[1].opacity, 0.75f);
+  EXPECT_EQ(scene.materials[1].alpha_mode, AlphaMode::blend);
+  EXPECT_EQ(scene.materials[3].emission, (Vec3f{0, 0, 2}));
+  EXPECT_EQ(scene.materials[4].diffuse, (Vec3f{1, 1, 1}));
+  EXPECT_EQ(scene.materials[5].diffuse, (Vec3f{0.8f, 0.8f, 0.8f}));
+}
+
+// As in other formats, materials of different names are different ones.
+TEST(Vrml, NamesTellMaterialsApart) {
+  const TempFolder folder;
+  const std::string red = "Material { diffuseColor 1 0 0 }",
+                    blue = "Material { diffuseColor 0 0 1 }";
+  const Scene scene = scene_of(
+      folder, painted(0, "DEF a " + red) + painted(1, "DEF b " + red) + painted(2, "USE a") +
+                  painted(3, "DEF a " + blue) + painted(4, "USE a") + painted(5, "DEF a " + red) +
+                  shape(6, "DEF c Appearance { material " + red + " }") + shape(7, "USE c") +
+                  shape(8, "DEF d Appearance { material USE b }") + painted(9, red));
+  EXPECT_EQ(scene.triangle_material, (Ids{0, 1, 0, 2, 2, 0, 3, 3, 1, 4}));
+  std::vector<std::string> names;
+  for (const Material& material : scene.materials) names.push_back(material.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"a", "b", "a", "c", "material4"}));
+}
+
+TEST(Vrml, TexturesAreSharedAsWell) {
+  const TempFolder folder;
+  folder.write("a.png", "no image");
+  const auto textured = [](int x, const std::string& fields) {
+    return shape(x, "Appearance { material Material { diffuseColor 1 0 0 } " + fields + " }");
+  };
+  const std::string a = "texture ImageTexture { url \"a.png\" }";
+  auto loaded = load(folder.write(
+      "t.wrl", "#VRML V2.0 utf8\n" + textured(0, a) +
+                   textured(1, "texture ImageTexture { url [ \"a.png\" \"http://b/a.png\" ] }") +
+                   textured(2, "texture ImageTexture { url \"a.png\" repeatS FALSE }") +
+                   textured(3, a + " textureTransform TextureTransform { scale 2 2 }") +
+                   textured(4, "texture DEF t ImageTexture { url \"b.png\" }") +
+                   textured(5, "texture USE t") + textured(6, "texture ImageTexture { url [ ] }")));
+  EXPECT_EQ(loaded.scene.triangle_material, (Ids{0, 0, 1, 2, 3, 3, 4}));
+  EXPECT_EQ(loaded.defects.count(DefectKind::texture_unreadable), 1u) << "a.png is one texture";
+  EXPECT_EQ(loaded.defects.count(DefectKind::texture_missing), 1u) << "b.png is one texture";
+  EXPECT_EQ(loaded.scene.materials[0].diffuse, (Vec3f{1, 1, 1})) << "the texture replaces it";
+  EXPECT_EQ(loaded.scene.materials[4].diffuse, (Vec3f{1, 0, 0}));
+  EXPECT_EQ(loaded.scene.materials[0].name, "a.png");
+}
+
+// The values are those of the formula in the standard, worked out by hand.
+TEST(Vrml, TextureTransformsMoveCoordinates) {
+  const TempFolder folder;
+  const auto moved = [&](const std::string& fields) {
+    const Scene scene = scene_of(
+        folder, "Shape { appearance Appearance { textureTransform TextureTransform { " + fields +
+                    " } } geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0 1 0 "
+                    "0 0 1 0 ] } coordIndex [ 0 1 2 -1 ] texCoord TextureCoordinate { "
+                    "point [ 3 4 0 0 1 0 ] } } }");
+    const Vec2f uv = scene.texcoords[scene.texcoord_indices[0]];
+    return std::pair(std::round(uv.x * 1e4f) / 1e4f, std::round(uv.y * 1e4f) / 1e4f);
+  };
+  EXPECT_EQ(moved(""), std::pair(3.f, 4.f));
+  EXPECT_EQ(moved("translation 10 20"), std::pair(13.f, 24.f));
+  EXPECT_EQ(moved("scale 2 3 translation 10 20"), std::pair(26.f, 72.f));
+  EXPECT_EQ(moved("rotation 1.5707963"), std::pair(-4.f, 3.f));
+  EXPECT_EQ(moved("rotation 1.5707963 scale 2 3"), std::pair(-8.f, 9.f));
+  EXPECT_EQ(moved("center -1 -1 scale 2 2"), std::pair(5.f, 7.f));
+}
+
+TEST(Vrml, UseRepeatsWhatTheLastDefBeforeItNames) {
+  const TempFolder folder;
+  EXPECT_EQ(places(folder, "DEF a " + shape(1) + "Transform { translation 5 0 0 children USE a }"),
+            (Places{1, 6}));
+  EXPECT_EQ(places(folder, "DEF a " + shape(1) + "DEF g Group { children [ USE a DEF a " +
+                               shape(2) + "USE a ] } USE a USE g"),
+            (Places{1, 1, 2, 2, 2, 1, 2, 2}))
+      << "what stands in g is what it was when it was read";
+  const std::string face_set =
+      "IndexedFaceSet { coord USE c texCoord USE t coordIndex [ 0 1 2 -1 ] }";
+  const Scene scene = scene_of(
+      folder,
+      "Shape { geometry IndexedLineSet { coord DEF c Coordinate { point [ 7 0 0 7 1 0 7 0 1 ] } } "
+      "}\n"
+      "Shape { geometry IndexedFaceSet { texCoord DEF t TextureCoordinate { point [ 1 2 3 4 5 6 ] "
+      "} } }\n"
+      "Shape { geometry DEF f " +
+          face_set + " } Shape { geometry USE f }");
+  EXPECT_EQ(places(scene), (Places{7, 7}));
+  EXPECT_EQ(scene.texcoords[scene.texcoord_indices[4]], (Vec2f{3, 4}));
+}
+
+TEST(Vrml, UseOfNothingOrWithoutEndIsRefused) {
+  const TempFolder folder;
+  const auto message = [&](const std::string& nodes) {
+    const auto loaded = read(folder, nodes);
+    EXPECT_FALSE(loaded.ok());
+    EXPECT_EQ(loaded.status().code(), ErrorCode::bad_input);
+    return loaded.status().message();
+  };
+  const std::string early = message("Group { children\nUSE a }\nDEF a " + shape(0));
+  EXPECT_NE(early.find("a.wrl:3: USE of 'a', which no DEF before it names"), std::string::npos)
+      << early;
+  const std::string circle = message("DEF a Group { children [ USE a USE a ] }");
+  EXPECT_NE(circle.find("nested too deeply"), std::string::npos) << circle;
+  std::string bomb = "DEF a0 Group { }";
+  for (int i = 0; i < 100; ++i)
+    bomb += fmt::format(
+        "DEF a{} Switch {{ whichChoice 0 choice Group {{ children [ USE a{} USE "
+        "a{} ] }} }}\n",
+        i + 1, i, i);
+  const double begun = cpu_seconds();
+  const std::string much = message("Switch { choice [\n" + bomb + "] } USE a100");
+  EXPECT_NE(much.find("USE repeats more nodes than can be read"), std::string::npos) << much;
+  EXPECT_LT(cpu_seconds() - begun, 60);
+}
+
+TEST(Vrml, SwitchShowsTheChildThatIsChosen) {
+  const TempFolder folder;
+  const std::string children = "choice [ NULL DEF a " + shape(1) +
+                               "USE a Group { children [ DEF b " + shape(2) + "] } " + shape(3) +
+                               "]";
+  const auto chosen = [&](const std::string& which) {
+    return places(folder, "Switch { " + which + children + " } " + shape(9));
+  };
+  EXPECT_EQ(chosen("whichChoice 0 "), (Places{9}));
+  EXPECT_EQ(chosen("whichChoice 1 "), (Places{1, 9}));
+  EXPECT_EQ(chosen("whichChoice 2 "), (Places{1, 9}));
+  EXPECT_EQ(chosen("whichChoice 3 "), (Places{2, 9}));
+  EXPECT_EQ(chosen("whichChoice 4 "), (Places{3, 9}));
+  EXPECT_EQ(chosen("whichChoice 5 "), (Places{9}));
+  EXPECT_EQ(chosen("whichChoice -1 "), (Places{9}));
+  EXPECT_EQ(chosen(""), (Places{9})) << "-1 is the default";
+  EXPECT_EQ(places(folder, "Switch { choice " + shape(1) + "whichChoice 0 }"), (Places{1}));
+  EXPECT_EQ(places(folder, "Switch { whichChoice -1 " + children + " } USE a USE b"),
+            (Places{1, 2}))
+      << "names inside are defined, whatever is shown";
+}
+
+TEST(Vrml, SwitchThatShowsNothingIsReported) {
+  const TempFolder folder;
+  const std::string hidden = "Group {\nchildren Switch { choice [ " + shape(1) + "] } }\n";
+  const auto loaded = read(folder, hidden + shape(9) + "Switch { choice [ ] }");
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->defects.count(DefectKind::node_hidden), 1u);
+  EXPECT_NE(loaded->defects.lines()[0].find("a.wrl:3: Switch with whichChoice -1"),
+            std::string::npos)
+      << loaded->defects.lines()[0];
+  const auto none = read(folder, hidden);
+  ASSERT_FALSE(none.ok());
+  EXPECT_NE(none.status().message().find("1 Switch nodes (set their whichChoice)"),
+            std::string::npos)
+      << none.status().message();
+}
+
+TEST(Vrml, GroupsOfEveryKind) {
+  const TempFolder folder;
+  const std::string one = shape(1), two = shape(2);
+  for (const std::string type : {"Group", "Anchor", "Billboard", "Collision", "Transform"})
+    EXPECT_EQ(places(folder, type + " { children [ " + one + two + "] }"), (Places{1, 2})) << type;
+  EXPECT_EQ(places(folder, "Collision { proxy " + one + "children " + two + "}"), (Places{2}));
+  EXPECT_EQ(places(folder, "LOD { range [ 5 10 ] level [ " + one + two + "] }"), (Places{1}))
+      << "the first level is the finest";
+  EXPECT_EQ(places(folder, "LOD { level [ DEF a " + one + "DEF b " + two + "] } USE b"),
+            (Places{1, 2}));
+}
+
+TEST(Vrml, WhatIsNotReadIsNamedWithItsLine) {
+  const TempFolder folder;
+  const auto loaded = read(folder, shape(0) +
+                                       "Inline { url \"b.wrl\" }\nShape { geometry\nBox { } }\n"
+                                       "Shape { geometry NULL }\nPointLight { }");
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  ASSERT_EQ(loaded->defects.lines().size(), 1u);
+  const std::string line = loaded->defects.lines()[0];
+  EXPECT_EQ(line.find("2 x elements ignored"), 0u) << line;
+  EXPECT_NE(line.find("a.wrl:5: Inline"), std::string::npos) << line;
+  EXPECT_NE(line.find("a.wrl:7: Box"), std::string::npos) << line;
+}
+
+}  // namespace
+}  // namespace atlas
