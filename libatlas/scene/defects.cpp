@@ -46,6 +46,7 @@ constexpr Names kNames[] = {
     {"skin_repeated",
      "nodes and instances of skinned meshes that lie upon another one, since joints place them "
      "wherever their node is (give each a skin with joints of its own)"},
+    {"text_not_utf8", "bytes of names that are not UTF-8, replaced by '?'"},
     {"element_ignored", "elements ignored (not a surface, or an unknown keyword)"},
 };
 

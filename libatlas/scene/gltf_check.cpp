@@ -7,6 +7,8 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "libatlas/scene/utf8.h"
+
 namespace atlas {
 namespace fs = std::filesystem;
 namespace {
@@ -18,6 +20,9 @@ constexpr std::string_view kUnderstood[] = {"KHR_mesh_quantization",   "KHR_text
                                             "KHR_lights_punctual",     "KHR_technique_webgl",
                                             "EXT_mesh_gpu_instancing", "EXT_texture_webp",
                                             "KHR_node_visibility"};
+// Extensions that only say in which format the images of textures are.
+constexpr std::string_view kTextures[] = {"KHR_texture_basisu", "KHR_texture_ktx",
+                                          "EXT_texture_avif", "MSFT_texture_dds"};
 constexpr std::string_view kMaterials = "KHR_materials_";  // the diffuse part of these is read
 
 std::uint32_t word_at(std::string_view bytes, std::size_t at) {
@@ -100,19 +105,41 @@ Status check_version(const fs::path& path, const json& file) {
   return text.starts_with("2") ? Status() : old_version(path, text.substr(0, 20));
 }
 
-Status check_extensions(const fs::path& path, const json& file) {
+// Replaces bytes that are not UTF-8. No parser takes them, and browsers replace them as well.
+// Outside of strings a '?' is as wrong as they are.
+void replace_bad_bytes(const fs::path& path, FileBytes& bytes, std::string_view text,
+                       DefectReport& defects) {
+  char* at = bytes.data.get() + (text.data() - bytes.begin());
+  for (char* const end = at + text.size(); at != end;) {
+    const std::size_t length = utf8_length(at, end);
+    if (length == 0) {
+      *at = '?';
+      defects.add(DefectKind::text_not_utf8,
+                  [&] { return fmt::format("{}: byte {}", path.string(), at - bytes.begin()); });
+    }
+    at += std::max<std::size_t>(length, 1);
+  }
+}
+
+template <std::size_t count>
+bool is_one_of(const std::string_view (&names)[count], std::string_view name) {
+  return std::find(std::begin(names), std::end(names), name) != std::end(names);
+}
+
+Status check_extensions(const fs::path& path, const json& file, bool textures) {
   const auto required = file.find("extensionsRequired");
   if (required == file.end() || !required->is_array()) return {};
   for (const auto& name : *required) {
     const std::string extension = name.is_string() ? name.get<std::string>() : name.dump();
-    if (extension.starts_with(kMaterials) ||
-        std::find(std::begin(kUnderstood), std::end(kUnderstood), extension) !=
-            std::end(kUnderstood)) {
+    const bool of_texture = is_one_of(kTextures, extension);
+    if (extension.starts_with(kMaterials) || is_one_of(kUnderstood, extension) ||
+        (of_texture && !textures)) {
       continue;
     }
-    return {ErrorCode::unsupported,
-            fmt::format("{}: needs the extension {}, which is not supported (export without it)",
-                        path.string(), extension)};
+    return {
+        ErrorCode::unsupported,
+        fmt::format("{}: needs the extension {}, which is not supported (export without it{})",
+                    path.string(), extension, of_texture ? ", or read it without textures" : "")};
   }
   return {};
 }
@@ -213,10 +240,12 @@ Status malformed_gltf(const fs::path& path, const std::string& what) {
           fmt::format("{}: {} (check it with a glTF validator)", path.string(), what)};
 }
 
-Result<GltfParts> check_gltf(const fs::path& path, std::string_view bytes) {
-  Result<GltfParts> parts = GltfParts{bytes, {}, {}, {}, false, true};
-  if (bytes.starts_with("glTF")) parts = glb_parts(path, bytes);
+Result<GltfParts> check_gltf(const fs::path& path, FileBytes& bytes, bool textures,
+                             DefectReport& defects) {
+  Result<GltfParts> parts = GltfParts{bytes.text(), {}, {}, {}, false, true};
+  if (bytes.text().starts_with("glTF")) parts = glb_parts(path, bytes.text());
   if (!parts.ok()) return parts;
+  replace_bad_bytes(path, bytes, parts->json, defects);
   const std::string_view text = parts->json;
   if (nested_too_deeply(text)) return malformed_gltf(path, "its JSON is nested too deeply");
   json file;
@@ -232,7 +261,7 @@ Result<GltfParts> check_gltf(const fs::path& path, std::string_view bytes) {
   }
   if (!file.is_object()) return malformed_gltf(path, "its JSON is not an object");
   if (Status s = check_version(path, file); !s.ok()) return s;
-  if (Status s = check_extensions(path, file); !s.ok()) return s;
+  if (Status s = check_extensions(path, file, textures); !s.ok()) return s;
   if (Status s = check_lists(path, file); !s.ok()) return s;
   if (Status s = check_compression(path, file); !s.ok()) return s;
   if (!image_views_fit(file)) return malformed_gltf(path, "an embedded image leaves its buffer");

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "libatlas/core/status.h"
+#include "libatlas/scene/defects.h"
+#include "libatlas/scene/file_bytes.h"
 
 namespace atlas {
 
@@ -31,7 +33,10 @@ struct GltfParts {
 
 // Finds the parts, and checks in the JSON what tinygltf ignores or trusts: the version, required
 // extensions, lists that are not arrays, indices that exist only in compressed form, and the ranges
-// of embedded images. Errors: bad_input, unsupported.
-Result<GltfParts> check_gltf(const std::filesystem::path& path, std::string_view bytes);
+// of embedded images. If `textures` is false, extensions that only concern textures are not
+// refused. Bytes of the JSON that are not UTF-8 become '?' in `bytes`, which is what strings hold
+// in their place, and are added to the defects. Errors: bad_input, unsupported.
+Result<GltfParts> check_gltf(const std::filesystem::path& path, FileBytes& bytes, bool textures,
+                             DefectReport& defects);
 
 }  // namespace atlas

@@ -264,23 +264,22 @@ std::size_t row_bytes_of(const tinygltf::Accessor& a) {
 
 }  // namespace
 
-Result<tinygltf::Model> load_gltf(const fs::path& path, std::vector<fs::path>& buffers,
-                                  nlohmann::json* document) {
+Result<tinygltf::Model> load_gltf(const fs::path& path, const GltfLoading& loading) {
   auto bytes = read_file_bytes(path);
   if (!bytes.ok()) return bytes.status();
   if (bytes->size > 0xffffffffu) {
     return Status(ErrorCode::unsupported, path.string() + ": larger than 4 GiB (split the scene)");
   }
-  auto parts = check_gltf(path, bytes->text());
+  auto parts = check_gltf(path, *bytes, loading.textures, loading.defects);
   if (!parts.ok()) return parts.status();
   nlohmann::json parsed = std::move(parts->document);
-  if (document != nullptr) *document = std::move(parsed);
+  if (loading.document != nullptr) *loading.document = std::move(parsed);
   parsed = nullptr;  // frees an unwanted JSON to make room for the second parser
   const std::string rebuilt = parts->plain ? std::string() : plain_glb(*parts);
   const std::string_view data = parts->plain ? bytes->text() : std::string_view(rebuilt);
 
   tinygltf::TinyGLTF loader;
-  Folder folder{path.parent_path(), buffers, parts->external_bytes, {}};
+  Folder folder{path.parent_path(), loading.buffers, parts->external_bytes, {}};
   loader.SetImageLoader(keep_image, nullptr);
   loader.SetFsCallbacks(file_access<tinygltf::FsCallbacks>(folder));
   tinygltf::Model model;

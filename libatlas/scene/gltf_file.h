@@ -21,6 +21,7 @@
 #pragma GCC diagnostic pop
 
 #include "libatlas/core/status.h"
+#include "libatlas/scene/defects.h"
 
 namespace atlas {
 
@@ -28,14 +29,19 @@ namespace atlas {
 // can replace; the file need not hold any data for the count.
 inline constexpr std::size_t kMostGltfZeros = std::size_t{1} << 24;
 
-// Parses .gltf and .glb and loads the buffers. Appends the paths of buffers that are files to
-// `buffers`. Images stay encoded: those in data URIs are in image.image, those in buffer views stay
-// there, and the others keep their uri. If `document` is not null, it becomes the file's JSON, an
-// object. Errors: not_found (the file or a buffer), bad_input, unsupported (the file is larger than
-// 4 GiB, of another version, or requires an extension that is not read, which the message names).
-Result<tinygltf::Model> load_gltf(const std::filesystem::path& path,
-                                  std::vector<std::filesystem::path>& buffers,
-                                  nlohmann::json* document = nullptr);
+// What load_gltf() is asked for, and where it puts what is not in the model.
+struct GltfLoading {
+  bool textures = true;   // false: formats of textures that are not read are no error
+  DefectReport& defects;  // gets bytes that are not UTF-8
+  std::vector<std::filesystem::path>& buffers;  // gets the paths of buffers that are files
+  nlohmann::json* document = nullptr;           // if not null, becomes the file's JSON, an object
+};
+
+// Parses .gltf and .glb and loads the buffers. Images stay encoded: those in data URIs are in
+// image.image, those in buffer views stay there, and the others keep their uri. Errors: not_found
+// (the file or a buffer), bad_input, unsupported (the file is larger than 4 GiB, of another
+// version, or requires an extension that is not read, which the message names).
+Result<tinygltf::Model> load_gltf(const std::filesystem::path& path, const GltfLoading& loading);
 
 // Returns the bytes of a buffer view. Error: bad_input if it reaches beyond its buffer.
 Result<std::span<const std::uint8_t>> gltf_view(const tinygltf::Model& model, int view);

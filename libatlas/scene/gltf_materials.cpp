@@ -65,6 +65,15 @@ int image_of(const tinygltf::Model& model, int texture) {
   return source >= 0 && std::size_t(source) < model.images.size() ? source : -1;
 }
 
+// Returns the names of a texture's extensions, in brackets after a blank, or nothing.
+std::string extensions_of(const tinygltf::Model& model, int texture) {
+  std::string names;
+  if (std::size_t(texture) >= model.textures.size()) return names;
+  for (const auto& [name, value] : model.textures[texture].extensions)
+    names += (names.empty() ? " (" : ", ") + name;
+  return names.empty() ? names : names + ')';
+}
+
 // Returns `count` numbers of a list, or `absent` for each that is not given.
 template <std::size_t count>
 std::array<double, count> numbers(const tinygltf::Value& object, const char* key, double absent) {
@@ -196,8 +205,9 @@ Result<std::vector<int>> add_gltf_materials(const tinygltf::Model& model, SceneB
     material.texture = image_of(model, diffuse.texture.index);
     if (diffuse.texture.index >= 0 && material.texture < 0) {
       builder.defects.add(DefectKind::texture_unreadable, [&] {
-        return fmt::format("{}: material '{}': its texture names no image of a kind that is read",
-                           builder.file, material.name);
+        return fmt::format("{}: material '{}': its texture names no image of a kind that is read{}",
+                           builder.file, material.name,
+                           extensions_of(model, diffuse.texture.index));
       });
     }
     add_transform(diffuse.texture, material);

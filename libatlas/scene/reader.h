@@ -17,7 +17,9 @@ struct ReadOptions {
   // If not empty, the illumination is taken from this file instead: OBJ, PLY, OFF or glTF with the
   // same vertices in the same order, or plain text with one `r g b` (or one grey value) per line.
   std::filesystem::path illumination_file = {};
-  bool load_textures = true;   // false: materials only have their diffuse colour
+  // false: materials only have their diffuse colour, and glTF files may require formats of textures
+  // that are not read, unless `rest` is set
+  bool load_textures = true;
   bool unlit_textures = true;  // false: the same if the scene carries no illumination
   // Keeps PNG and JPEG textures encoded, in Texture::encoded, for programs that only pass them on.
   bool encoded_textures = false;

@@ -150,6 +150,42 @@ TEST(Gltf, TexturesWithoutAnImageThatIsReadAreTold) {
   EXPECT_NE(loaded->defects.lines().front().find("bark"), std::string::npos);
 }
 
+TEST(Gltf, FormatsOfTexturesAreOnlyRequiredWhereTexturesAreRead) {
+  const TempFolder folder;
+  const auto read = [&](const char* extension, bool textures, bool rest) {
+    Gltf g;
+    g.j["images"] = {{{"uri", "a.ktx2"}, {"mimeType", "image/ktx2"}}};
+    g.j["textures"] = json::array({json::object()});
+    g.j["textures"][0]["extensions"][extension]["source"] = 0;
+    g.j["extensionsUsed"] = g.j["extensionsRequired"] = {extension, "KHR_texture_transform"};
+    g.j["materials"] = {
+        {{"name", "bark"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+    g.single({{"attributes", {{"POSITION", g.floats(kSquare, "VEC3", 3)}}},
+              {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})},
+              {"material", 0}});
+    ReadOptions options;
+    options.load_textures = textures;
+    options.rest = rest;
+    return read_scene(folder.write("a.glb", g.glb()), options, {});
+  };
+  for (const char* extension : {"KHR_texture_basisu", "KHR_texture_ktx", "MSFT_texture_dds"}) {
+    const auto plain = read(extension, false, false);
+    ASSERT_TRUE(plain.ok()) << plain.status().message();
+    EXPECT_EQ(plain->scene.materials[0].texture, -1);
+    ASSERT_EQ(plain->defects.lines().size(), 1u);
+    const std::string line = plain->defects.lines()[0];
+    EXPECT_NE(line.find(std::string("'bark'")), std::string::npos) << line;
+    EXPECT_NE(line.find(extension), std::string::npos) << line;
+    for (const auto& [textures, rest] : {std::pair(true, false), {false, true}, {true, true}}) {
+      const auto full = read(extension, textures, rest);
+      ASSERT_FALSE(full.ok());
+      EXPECT_EQ(full.status().code(), ErrorCode::unsupported);
+      EXPECT_NE(full.status().message().find(extension), std::string::npos);
+    }
+  }
+  EXPECT_FALSE(read("MAGNUMX_mesh_views", false, false).ok()) << "this one changes shapes";
+}
+
 TEST(Gltf, MaterialsThatDoNotExistAreTold) {
   const TempFolder folder;
   Gltf g;

@@ -1,5 +1,7 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -247,6 +249,66 @@ TEST(Gltf, AMessageQuotesNoMegabytesOfData) {
   const std::string& message = loaded.status().message();
   EXPECT_NE(message.find("long.gltf: "), std::string::npos) << message;
   EXPECT_LT(message.size(), 400u);
+}
+
+// The parser of JSON says what is UTF-8: strings that it takes stay, others become such strings.
+TEST(Gltf, BytesOfNamesThatAreNotUtf8AreReplaced) {
+  const TempFolder folder;
+  Gltf g;
+  g.single({{"attributes", {{"POSITION", g.floats(kSquare, "VEC3", 3)}}},
+            {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})}},
+           {{"name", "########"}});
+  const std::string plain = g.glb();
+  const std::size_t at = plain.find("########");
+  const unsigned char kBytes[] = {'a',  0x7f, 0x80, 0x8f, 0x90, 0x9f, 0xa0, 0xbf, 0xc0, 0xc1, 0xc2,
+                                  0xdf, 0xe0, 0xe1, 0xec, 0xed, 0xee, 0xef, 0xf0, 0xf1, 0xf4, 0xf5};
+  std::mt19937 random(7);
+  int kept = 0, replaced = 0;
+  for (int round = 0; round < 6000; ++round) {
+    std::string name(8, 'a'), bytes = plain;
+    const std::size_t length = 1 + random() % 4;
+    for (std::size_t i = 0; i < length; ++i) {
+      const bool follows = i > 0 && random() % 8 != 0;  // else hardly any would be right
+      name[2 + i] = char(kBytes[follows ? 2 + random() % 6 : random() % 22]);
+    }
+    bytes.replace(at, 8, name);
+    const auto loaded = read_scene(folder.write("a.glb", bytes), {}, {});
+    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+    const std::string got = loaded->scene.object_names[0];
+    const std::uint64_t count = loaded->defects.count(DefectKind::text_not_utf8);
+    if (json::accept('"' + name + '"')) {
+      ASSERT_EQ(got, name);
+      ASSERT_EQ(count, 0u);
+      ++kept;
+      continue;
+    }
+    ASSERT_TRUE(json::accept('"' + got + '"'));
+    ASSERT_EQ(std::uint64_t(std::count(got.begin(), got.end(), '?')), count);
+    ASSERT_GT(count, 0u);
+    for (std::size_t i = 0; i < 8; ++i) ASSERT_TRUE(got[i] == name[i] || got[i] == '?');
+    ++replaced;
+  }
+  EXPECT_GT(kept, 500);
+  EXPECT_GT(replaced, 500);
+}
+
+TEST(Gltf, BytesThatAreNotUtf8AreNamed) {
+  const TempFolder folder;
+  const std::string begin = R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0,"name":"M)";
+  const std::string file =
+      begin + "\xfc" +
+      R"(ller"}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"byteLength":36,"uri":"a.bin"}],"bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}]})";
+  const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  folder.write("a.bin", std::string(reinterpret_cast<const char*>(corners), 36));
+  const auto loaded = read_scene(folder.write("a.gltf", file), {}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->scene.object_names[0], "M?ller");
+  const std::string line = loaded->defects.lines().at(0);
+  EXPECT_NE(line.find(fmt::format("a.gltf: byte {}", begin.size())), std::string::npos) << line;
+  // Outside of a string, such a byte is an error as before.
+  const auto outside = read_scene(folder.write("b.gltf", "{\n\xfc\"asset\":{}}"), {}, {});
+  EXPECT_NE(outside.status().message().find("b.gltf:2: not valid JSON"), std::string::npos)
+      << outside.status().message();
 }
 
 TEST(Gltf, RandomDamageNeverCrashes) {
