@@ -2,9 +2,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "libatlas/core/clock.h"
 #include "libatlas/scene/reader.h"
 #include "tests/scene/load_scene.h"
+#include "tests/scene/sound.h"
 #include "tests/scene/temp_folder.h"
 
 namespace atlas {
@@ -229,6 +232,34 @@ TEST(Vrml, GroupsOfEveryKind) {
       << "the first level is the finest";
   EXPECT_EQ(places(folder, "LOD { level [ DEF a " + one + "DEF b " + two + "] } USE b"),
             (Places{1, 2}));
+}
+
+// Damaged nodes are refused or read, but never crash the reader.
+TEST(Vrml, RandomDamageNeverCrashes) {
+  const TempFolder folder;
+  const std::string good =
+      "DEF a " + shape(1, "DEF l Appearance { material DEF m Material { diffuseColor 1 0 0 } }") +
+      "Switch { whichChoice 1 choice [ DEF b Group { children [ USE a NULL ] }\n" +
+      shape(2, "USE l") + "] }\nLOD { level [ USE b " + painted(3, "USE m") +
+      "] range [ 1 ] }\nTransform { children USE b translation 1 2 3 }\n" +
+      shape(4,
+            "Appearance { texture DEF t ImageTexture { url \"a.png\" } textureTransform "
+            "TextureTransform { rotation 1 } }");
+  std::mt19937 random(5);
+  int read_well = 0;
+  for (int round = 0; round < 3000; ++round) {
+    std::string bytes = good;
+    const std::size_t at = random() % bytes.size(), from = random() % bytes.size();
+    const std::size_t count = 1 + random() % 20;
+    if (round % 3 == 0) bytes[at] = char(random());
+    if (round % 3 == 1) bytes.erase(at, count);
+    if (round % 3 == 2) bytes.replace(at, count, good.substr(from, count));
+    const auto loaded = read(folder, bytes);
+    if (!loaded.ok()) continue;
+    ++read_well;
+    ASSERT_TRUE(test::sound(loaded->scene)) << bytes;
+  }
+  EXPECT_GT(read_well, 300);
 }
 
 TEST(Vrml, WhatIsNotReadIsNamedWithItsLine) {
