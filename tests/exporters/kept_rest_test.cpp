@@ -181,6 +181,67 @@ TEST(KeptRest, DataThatIsNotThereIsToldAndLeftOut) {
   }
 }
 
+// What another scene shows is copied as it is: sparse positions, morph targets, and the instances
+// of a node.
+TEST(KeptRest, OtherScenesKeepAllTheirData) {
+  const TempFolder folder;
+  Gltf gltf = textured(folder);
+  const std::vector<float> rest{1, 2, 3, 4, 5, 6, 7, 8, 9}, moved{40, 50, 60};
+  const int all = gltf.view(rest), which = gltf.view(std::vector<std::uint16_t>{1}),
+            instead = gltf.view(moved);
+  const int positions =
+      gltf.accessor({{"bufferView", all},
+                     {"componentType", 5126},
+                     {"type", "VEC3"},
+                     {"count", 3},
+                     {"sparse",
+                      {{"count", 1},
+                       {"indices", {{"bufferView", which}, {"componentType", 5123}}},
+                       {"values", {{"bufferView", instead}}}}}});
+  const std::vector<float> target{0, 0, 1, 0, 1, 0, 1, 0, 0}, places{0, 0, 0, 9, 8, 7};
+  const json morph = {{"POSITION", gltf.floats(target, "VEC3", 3)}};
+  const json stars = {
+      {"attributes", {{"POSITION", positions}}}, {"mode", 0}, {"targets", json::array({morph})}};
+  gltf.j["meshes"].push_back({{"name", "stars"}, {"primitives", json::array({stars})}});
+  const json instances = {{"TRANSLATION", gltf.floats(places, "VEC3", 3)}};
+  gltf.j["nodes"].push_back(
+      {{"mesh", 1},
+       {"name", "sky"},
+       {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", instances}}}}}});
+  gltf.j["scenes"].push_back({{"nodes", {1}}});  // it is not shown
+  gltf.j["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  const path in = folder.write("s.glb", gltf.glb());
+  EXPECT_EQ(keep(in, folder / "w.glb").not_kept,
+            Lines{"1 x meshes that are not shown and get no new uvs"});
+
+  GltfOracle after(folder / "w.glb");
+  const auto named = [&](const char* list, const char* name) -> const json& {
+    for (const json& item : after.document[list])
+      if (item.value("name", "") == name) return item;
+    throw std::runtime_error(name);
+  };
+  const auto values = [&](const json& number) {
+    const std::vector<double> read = after.values(number);
+    return std::vector<float>(read.begin(), read.end());
+  };
+  const json& points = named("meshes", "stars")["primitives"][0];
+  EXPECT_EQ(values(points["targets"][0]["POSITION"]), target);
+  const json& node = named("nodes", "sky");
+  EXPECT_EQ(values(node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"]),
+            places);
+  json& sparse = after.document["accessors"][points["attributes"]["POSITION"].get<std::size_t>()];
+  const json list = sparse["sparse"];
+  sparse.erase("sparse");
+  EXPECT_EQ(values(points["attributes"]["POSITION"]), rest);
+  sparse["bufferView"] = list["values"]["bufferView"];
+  sparse["count"] = 1;
+  EXPECT_EQ(values(points["attributes"]["POSITION"]), moved);
+  sparse["bufferView"] = list["indices"]["bufferView"];
+  sparse["componentType"] = list["indices"]["componentType"];
+  sparse["type"] = "SCALAR";
+  EXPECT_EQ(values(points["attributes"]["POSITION"]), std::vector<float>{1});
+}
+
 TEST(KeptRest, AMaterialThatIsNotThereIsLeftOut) {
   for (const std::size_t beyond : {0, 1, 7}) {
     const TempFolder folder;
