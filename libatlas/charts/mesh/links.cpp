@@ -3,16 +3,11 @@
 #include <algorithm>
 #include <vector>
 
+#include "libatlas/charts/mesh/fan_pairs.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
 namespace {
-
-// Of several triangles at an edge, two are linked as neighbours only if they fold by less than 60
-// degrees.
-constexpr double kFlatPair = 0.5;
-// Larger fans around one edge are left open, since pairing takes quadratic time.
-constexpr std::size_t kMaxPairedFan = 32;
 
 glm::dvec3 point(const Topology& topology, std::uint32_t corner) {
   return to_dvec(topology.points[topology.corner_vertex[corner]]);
@@ -39,6 +34,7 @@ class Linker {
       }
       link_bucket(edges_.data() + first_[v], edges_.data() + first_[v + 1]);
     }
+    link_lone_fins();
   }
 
   bool needs_turning() const { return topology_.defects.misoriented_edges > 0; }
@@ -46,6 +42,12 @@ class Linker {
  private:
   struct Edge {
     std::uint32_t upper, half_edge;
+  };
+
+  // Coincident triangles of opposite orientation, at an edge of these two alone or of a fan.
+  struct Fin {
+    std::uint32_t g, h;
+    bool fan;
   };
 
   std::uint32_t from(std::uint32_t h) const { return topology_.corner_vertex[h]; }
@@ -103,7 +105,11 @@ class Linker {
   void link_pair(std::uint32_t g, std::uint32_t h) {
     if (third(g) == third(h)) {
       mark_duplicate(g, h);
-      topology_.cut_length += length(g);
+      if (from(g) != from(h)) {
+        fins_.push_back({g, h, false});
+      } else {
+        topology_.cut_length += length(g);
+      }
     } else if (!may_link(g, h)) {
       topology_.cut_length += length(g);
     } else {
@@ -113,50 +119,62 @@ class Linker {
 
   void link_fan(const Edge* begin, const Edge* end) {
     ++topology_.defects.nonmanifold_edges;
-    std::vector<std::uint32_t> fan;
-    for (const Edge* e = begin; e < end; ++e) fan.push_back(e->half_edge);
-    std::sort(fan.begin(), fan.end(), [&](std::uint32_t g, std::uint32_t h) {
-      return third(g) != third(h) ? third(g) < third(h) : g < h;
-    });
-    // The first layer holds the first triangle with each third vertex, the second layer the first
-    // duplicates of these, and so on. There are as many layers as the surface has coincident copies
-    // here.
-    std::vector<std::vector<std::uint32_t>> layers;
-    for (std::size_t i = 0, layer = 0; i < fan.size(); ++i) {
-      const bool copy = i > 0 && third(fan[i]) == third(fan[i - 1]);
-      if (copy) mark_duplicate(fan[i - 1], fan[i]);
-      layer = copy ? layer + 1 : 0;
-      if (layer == layers.size()) layers.emplace_back();
-      layers[layer].push_back(fan[i]);
+    fan_.clear();
+    for (const Edge* e = begin; e < end; ++e) {
+      const std::uint32_t h = e->half_edge;
+      fan_.push_back({h, third(h), from(h) < to(h), wing(h), to_dvec(topology_.normals[h / 3])});
     }
-    for (const std::vector<std::uint32_t>& layer : layers) pair_by_flatness(layer);
+    std::sort(fan_.begin(), fan_.end(), [](const FanFace& a, const FanFace& b) {
+      return a.third != b.third ? a.third < b.third : a.half_edge < b.half_edge;
+    });
+    for (std::size_t i = 1; i < fan_.size(); ++i) {
+      if (fan_[i].third != fan_[i - 1].third) continue;
+      mark_duplicate(fan_[i - 1].half_edge, fan_[i].half_edge);
+    }
+    const auto allowed = [&](std::uint32_t g, std::uint32_t h) { return may_link(g, h); };
+    for (const auto& [g, h] : pairing_.run(fan_, allowed)) {
+      link(g, h);
+      topology_.fan_links.push_back(std::min(g, h));
+    }
+    for (std::size_t i = 1; i < fan_.size(); ++i) {
+      const FanFace &a = fan_[i - 1], &b = fan_[i];
+      if (a.third != b.third || a.layer != b.layer) continue;
+      fins_.push_back({a.half_edge, b.half_edge, true});
+    }
   }
 
-  void pair_by_flatness(const std::vector<std::uint32_t>& fan) {
-    if (fan.size() < 2 || fan.size() > kMaxPairedFan) return;
-    struct Pair {
-      double flatness;
-      std::uint32_t g, h;
-    };
-    std::vector<Pair> pairs;
-    for (std::size_t i = 0; i < fan.size(); ++i) {
-      for (std::size_t j = i + 1; j < fan.size(); ++j) {
-        const double flatness = -glm::dot(wing(fan[i]), wing(fan[j]));
-        if (flatness > kFlatPair && may_link(fan[i], fan[j])) {
-          pairs.push_back({flatness, std::min(fan[i], fan[j]), std::max(fan[i], fan[j])});
-        }
-      }
+  // Coincident triangles of opposite orientation that nothing else continues are the two sides of a
+  // fin of one triangle. Scans that were merged from volumes have thousands of these. Linked at
+  // their longest edge, they become one chart instead of two.
+  void link_lone_fins() {
+    for (const Fin& fin : fins_) {
+      const bool joined = longest(fin.g) && alone(fin.g / 3) && alone(fin.h / 3) && unfolds(fin);
+      if (joined) link(fin.g, fin.h);
+      if (joined && fin.fan) topology_.fan_links.push_back(std::min(fin.g, fin.h));
+      if (!joined && !fin.fan) topology_.cut_length += length(fin.g);
     }
-    std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) {
-      if (a.flatness != b.flatness) return a.flatness > b.flatness;
-      return a.g != b.g ? a.g < b.g : a.h < b.h;
-    });
-    for (const Pair& pair : pairs) {
-      if (topology_.opposite[pair.g] == kNoIndex && topology_.opposite[pair.h] == kNoIndex) {
-        link(pair.g, pair.h);
-        topology_.fan_links.push_back(pair.g);
-      }
+  }
+
+  // Given texcoords may lay the two sides upon each other. Then they are two charts.
+  bool unfolds(const Fin& fin) const {
+    if (!may_link(fin.g, fin.h)) return false;
+    return !options_.cut_at_uv_seams || mesh_.texcoord_indices.empty() ||
+           !same_texcoord(previous_half_edge(fin.g), previous_half_edge(fin.h));
+  }
+
+  bool alone(std::uint32_t t) const {
+    const std::uint32_t* across = topology_.opposite.data() + 3 * std::size_t{t};
+    return across[0] == kNoIndex && across[1] == kNoIndex && across[2] == kNoIndex;
+  }
+
+  // Whether h is the longest half-edge of its triangle. Coincident triangles agree on it.
+  bool longest(std::uint32_t h) const {
+    const double own = edge_length(topology_, h);
+    for (const std::uint32_t other : {next_half_edge(h), previous_half_edge(h)}) {
+      const double length = edge_length(topology_, other);
+      if (length > own || (length == own && third(other) < third(h))) return false;
     }
+    return true;
   }
 
   // Returns the unit direction, perpendicular to the edge, in which the triangle of h lies.
@@ -210,6 +228,9 @@ class Linker {
   std::vector<std::uint32_t> first_;
   std::vector<Edge> edges_;
   std::vector<std::uint8_t> duplicate_;
+  std::vector<FanFace> fan_;
+  std::vector<Fin> fins_;
+  FanPairing pairing_;
 };
 
 }  // namespace
