@@ -8,17 +8,20 @@ namespace {
 // A pair costs 1 - cos of its bend, and a triangle that stays alone costs this. So a pair bends by
 // at most 104 degrees.
 constexpr double kAlone = 0.625;
-// A pair of which one triangle must be turned costs this more, and so bends by at most 60 degrees.
-// That lets a sheet of mixed orientation go through where another one ends at a right angle.
-constexpr double kTurned = 0.75;
-// The same where as many triangles run along the edge as against it. Two right angles cost less
-// then, since this is what two cubes at a common edge look like.
+// A pair of which one triangle must be turned costs this more. A fan that has more triangles along
+// the edge than against it, or fewer, often has a sheet that was turned in part.
+constexpr double kTurned = 0.1;
+// In balance, orientation counts for more. Four walls whose normals alternate look like two cubes
+// at a common edge, whose right angles must cost less than two flat pairs.
 constexpr double kTurnedInBalance = 1.1;
+// Such a pair bends by at most 60 degrees.
+constexpr double kTurnedBend = 0.5;
 // Of equally flat pairs, those around the solid are taken, as where two cubes share an edge. So the
 // partners do not change from one edge to the next.
 constexpr double kConvex = 0.02;
-// Exchanges that save less are rounding.
-constexpr double kLeastSaving = 1e-9;
+// Exchanges that save less than this, or less than this more than another one, are no better. So
+// rounding does not decide ties, and a rotated mesh gets the same pairs.
+constexpr double kLeastSaving = 1e-4;
 // Layers from here on hold triangles that cancel each other.
 constexpr std::uint32_t kCancelled = 1u << 31;
 
@@ -57,7 +60,8 @@ double FanPairing::turned_cost(const std::vector<FanFace>& faces) const {
 
 double FanPairing::cost(const FanFace& a, const FanFace& b, double turned) {
   const double bend = 1 + glm::dot(a.wing, b.wing);
-  return bend + (a.forward == b.forward ? turned : kConvex * glm::dot(a.normal, b.wing));
+  if (a.forward != b.forward) return bend + kConvex * glm::dot(a.normal, b.wing);
+  return bend < kTurnedBend ? bend + turned : kNever;
 }
 
 double FanPairing::cost_of(std::size_t i, std::size_t j) const {
@@ -72,7 +76,7 @@ void FanPairing::consider(std::size_t i, std::size_t j, Exchange& best) const {
   const std::size_t left = k != i ? k : l;  // j if none is left
   const double saving = cost_of(i, k) + cost_of(j, l) - cost_of(i, j);
   const auto offer = [&](std::size_t partner, double saved) {
-    if (saved > best.saving) best = {i, j, left, partner, saved};
+    if (saved > best.saving + kLeastSaving) best = {i, j, left, partner, saved};
   };
   offer(n, saving - (two_left ? 2 * kAlone : left == j ? 0 : kAlone));
   if (two_left) return offer(l, saving - cost_of(k, l));
@@ -87,7 +91,7 @@ void FanPairing::consider(std::size_t i, std::size_t j, Exchange& best) const {
 // others are better together.
 bool FanPairing::exchange() {
   const std::size_t n = mates_.size();
-  Exchange best{n, n, n, n, kLeastSaving};
+  Exchange best{n, n, n, n, 0};
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
       if (mates_[i] != j) consider(i, j, best);

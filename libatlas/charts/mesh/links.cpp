@@ -117,7 +117,8 @@ class Linker {
     }
   }
 
-  void link_fan(const Edge* begin, const Edge* end) {
+  // Not inlined, since the loop over all edges takes a thirtieth longer around it.
+  [[gnu::noinline]] void link_fan(const Edge* begin, const Edge* end) {
     ++topology_.defects.nonmanifold_edges;
     fan_.clear();
     for (const Edge* e = begin; e < end; ++e) {

@@ -87,9 +87,9 @@ struct TopologyOptions {
 // two triangles are linked in the pairs that continue each other best (see FanPairing), and
 // otherwise left open. An edge that no orientation satisfies (as on a Möbius strip) is cut.
 // Duplicate triangles (with the same three vertices) are linked to their original only where the
-// two are turned against each other and nothing else continues them. Errors: bad_input for an index out of range, a
-// position that is not finite, no triangle, or wrong materials or densities; unsupported for more
-// than 2^30 triangles; cancelled.
+// two are turned against each other and nothing else continues them. Errors: bad_input for an index
+// out of range, a position that is not finite, no triangle, or wrong materials or densities;
+// unsupported for more than 2^30 triangles; cancelled.
 Result<Topology> build_topology(const MeshView& mesh, const TopologyOptions& options,
                                 const Context& context);
 
