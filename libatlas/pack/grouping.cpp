@@ -61,7 +61,7 @@ std::vector<std::uint32_t> descending_order(std::span<const std::uint64_t> sizes
   return order;
 }
 
-// The search for the smallest capacity. The sizes must be sorted in descending order.
+// The search for the smallest capacity. There must be sizes, sorted in descending order.
 class Search {
  public:
   Search(std::vector<std::uint64_t> sorted, std::uint32_t groups, GroupingResult& result)
@@ -70,19 +70,10 @@ class Search {
   // Returns F(capacity), counted up to groups + 1, and adds it to the trace.
   std::uint32_t evaluate(std::uint64_t capacity) {
     fit_.reset(capacity);
-    std::uint32_t count = 0;
-    if (!sorted_.empty() && sorted_.front() > capacity) {
-      count = groups_ + 1;
-    } else {
-      for (std::uint64_t size : sorted_)
-        if (fit_.place(size) == groups_) {
-          count = groups_ + 1;
-          break;
-        }
-      if (count == 0) count = fit_.used();
-    }
-    result_.trace.push_back({capacity, count});
-    return count;
+    const bool all = std::all_of(sorted_.begin(), sorted_.end(),
+                                 [&](std::uint64_t size) { return fit_.place(size) < groups_; });
+    result_.trace.push_back({capacity, all ? fit_.used() : groups_ + 1});
+    return result_.trace.back().groups;
   }
 
   // Bisection. `low` is a capacity known to be too small (or one below the lower bound), `high` one
@@ -110,8 +101,8 @@ class Search {
   // its true largest load.
   std::uint64_t refine(std::uint64_t best, std::uint64_t lower, std::uint64_t work,
                        const Context& context) {
-    const std::uint64_t cost = std::max<std::uint64_t>(sorted_.size(), 1);
-    FirstFit open(0, static_cast<std::uint32_t>(std::max<std::size_t>(sorted_.size(), 1)));
+    const std::uint64_t cost = sorted_.size();
+    FirstFit open(0, static_cast<std::uint32_t>(sorted_.size()));
     std::uint64_t capacity = best;
     while (capacity > lower) {
       if (work < cost || context.cancelled()) return best;
@@ -172,7 +163,7 @@ std::uint32_t count_groups(std::span<const std::uint64_t> sizes, std::uint64_t c
   const auto most = static_cast<std::uint32_t>(std::min<std::size_t>(limit, sizes.size()));
   FirstFit fit(capacity, most);
   for (std::uint32_t item : descending_order(sizes))
-    if (sizes[item] > capacity || fit.place(sizes[item]) == most) return limit + 1;
+    if (fit.place(sizes[item]) == most) return limit + 1;
   return fit.used();
 }
 
