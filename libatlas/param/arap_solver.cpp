@@ -27,6 +27,12 @@ constexpr double first_inexactness = 1e-6, rough_share = 0.05;
 // If no more energy than this share of the area is left, the shape may unroll, and each step must
 // be exact: errors of a solve are smooth, and later steps take long to remove them.
 constexpr double may_unroll = 3e-4, exact_first = 1e-9;
+// An iteration is given up after this number of steps times the square root of the number of
+// vertices, and after `most_iterations` at the latest. So many steps take a little longer than to
+// order and factorize the matrix instead (24 steps for 9000 vertices), so no solve takes much more
+// than twice as long as with the better method. Scans take 1 to 15 steps, parts from CAD with
+// needles 15 to more than 60.
+constexpr double most_steps = 0.25;
 constexpr int most_iterations = 60;
 // Lengths of steps, relative to the step to the minimum for the current rotations: of every other
 // step, and of those in between. A step mends at once what a long step before it overshoots: three
@@ -77,7 +83,9 @@ void ArapSolver::factorize() {
     area_ += e.weight * e.area();
   }
   const std::size_t n = mesh_.positions.size();
-  if (n > direct_limit) {
+  // With other weights an iteration that was slow is slow again. Large meshes try it each time, for
+  // they cannot rest with a factor.
+  if (n > direct_limit && (!slow_ || n >= large_mesh)) {
     w_.half_edges.build(mesh_);
     method_ = Method::multigrid;
     if (w_.multigrid.build(w_.elements, w_.half_edges, n)) {
@@ -126,9 +134,11 @@ void ArapSolver::factorize_envelope() {
 // Solves for w_.load, which is overwritten. `uvs` come in as an initial guess.
 void ArapSolver::solve(const Inexactness& inexactness, std::span<Vec2d> uvs) {
   if (method_ == Method::multigrid) {
+    const int most = static_cast<int>(most_steps * std::sqrt(static_cast<double>(uvs.size())));
     const MultigridAccuracy accuracy{inexactness.area_share * area_, inexactness.found_share,
-                                     most_iterations};
+                                     std::min(most, most_iterations)};
     if (w_.multigrid.solve(accuracy, w_.load, uvs)) return;
+    slow_ = true;
     w_.solution.resize(uvs.size());
     factorize_directly();  // slivers can make the iteration slow
     solve_directly();

@@ -114,6 +114,7 @@ class ArapSolver {
   bool analyzed_ = false, ordered_ = false;  // by the direct and the envelope solver
   bool wide_ = false;                        // valid once ordered_
   bool cornered_ = false;                    // the workspace's corner lists are this mesh's
+  bool slow_ = false;                        // multigrid failed once
   double area_ = 0;                          // weighted
   bool weighted_ = false;
   bool factorized_ = false, resting_ = false;
