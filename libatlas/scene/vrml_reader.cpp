@@ -64,8 +64,7 @@ class VrmlParser : VrmlScanner {
  private:
   Status error(const std::string& what) const {
     return {ErrorCode::bad_input,
-            fmt::format("{}:{}: {} (only worlds as this program writes them are "
-                        "read; use the original scene)",
+            fmt::format("{}:{}: {} (not all of VRML97 is read; give the scene in another format)",
                         builder_.file, line(), what)};
   }
 
