@@ -261,6 +261,12 @@ ChartSet checked_charts(const Mesh& mesh, double min_fill) {
   return std::move(*set);
 }
 
+Topology topology_of(const Mesh& mesh) {
+  Result<Topology> result = build_topology(mesh.view(), {}, {});
+  EXPECT_TRUE(result.ok());
+  return std::move(*result);
+}
+
 double box_fill(const ChartSet& set) {
   double area = 0, boxes = 0;
   for (const Chart& chart : set.charts) {

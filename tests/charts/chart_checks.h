@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libatlas/charts/charts.h"
+#include "libatlas/charts/mesh/topology.h"
 #include "tests/support/shapes.h"
 
 namespace atlas::test {
@@ -39,7 +40,10 @@ struct ChartFindings {
 ChartFindings check_charts(const MeshView& mesh, const ChartSet& set);
 
 // Returns the charts of a mesh for the given ChartOptions::min_fill. A violation fails the test.
-ChartSet checked_charts(const Mesh& mesh, double min_fill);
+ChartSet checked_charts(const Mesh& mesh, double min_fill = ChartOptions{}.min_fill);
+
+// Returns the topology of a mesh for the default options.
+Topology topology_of(const Mesh& mesh);
 
 // Returns the area of the charts divided by the area of their boxes.
 double box_fill(const ChartSet& set);

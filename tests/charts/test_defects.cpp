@@ -12,14 +12,6 @@
 namespace atlas::test {
 namespace {
 
-ChartSet whole(const Mesh& mesh) {
-  Result<ChartSet> set = make_charts(mesh.view(), {}, {});
-  EXPECT_TRUE(set.ok()) << set.status().message();
-  if (!set.ok()) return {};
-  EXPECT_EQ(check_charts(mesh.view(), *set).fault, "");
-  return std::move(*set);
-}
-
 // A band of n quads that is twisted by half_turns * 180 degrees before its ends meet.
 Mesh band(int n, int half_turns) {
   Mesh mesh;
@@ -111,7 +103,7 @@ TEST(Defects, PiecesOfCubesStayWithinAWideCone) {
 }
 
 TEST(Defects, AMoebiusStripIsCut) {
-  const ChartSet set = whole(band(40, 1));
+  const ChartSet set = checked_charts(band(40, 1));
   EXPECT_LE(set.charts.size(), 6u);
   EXPECT_GT(set.seam_length, 0.5);
 }
@@ -121,14 +113,14 @@ TEST(Defects, PiecesOfMixedOrientationAreTurned) {
   for (std::size_t t = 0; t < mesh.indices.size() / 3; t += 3) {
     std::swap(mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]);
   }
-  const ChartSet set = whole(mesh);
+  const ChartSet set = checked_charts(mesh);
   EXPECT_EQ(set.charts.size(), 1u);
   EXPECT_EQ(set.flipped_triangles.size(), (mesh.indices.size() / 3 + 2) / 3);
   EXPECT_GT(set.repairs.misoriented_edges, 0u);
 }
 
 TEST(Defects, FansOfSheetsAroundAnEdge) {
-  const ChartSet set = whole(Mesh(sheets(7)));
+  const ChartSet set = checked_charts(Mesh(sheets(7)));
   EXPECT_EQ(set.repairs.nonmanifold_edges, 1u);
   EXPECT_LE(set.charts.size(), 7u);
 }
@@ -145,14 +137,14 @@ TEST(Defects, TwoConesAtOneVertex) {
       for (const std::uint32_t v : {0u, first + i, first + (i + 1) % 6}) mesh.indices.push_back(v);
     }
   }
-  EXPECT_EQ(whole(mesh).repairs.nonmanifold_vertices, 1u);
+  EXPECT_EQ(checked_charts(mesh).repairs.nonmanifold_vertices, 1u);
 }
 
 TEST(Defects, DuplicatesGetPlacesOfTheirOwn) {
   Mesh mesh(grid(4, 4));
   const std::vector<std::uint32_t> copy(mesh.indices.begin(), mesh.indices.begin() + 12);
   mesh.indices.insert(mesh.indices.end(), copy.begin(), copy.end());
-  const ChartSet set = whole(mesh);
+  const ChartSet set = checked_charts(mesh);
   EXPECT_EQ(set.repairs.duplicate_triangles, 4u);
 }
 
@@ -162,7 +154,7 @@ TEST(Defects, ADoubledSurfaceIsTwoSheets) {
   for (std::size_t i = 0; i < front.size(); i += 3) {
     for (const std::size_t k : {i, i + 2, i + 1}) mesh.indices.push_back(front[k]);
   }
-  EXPECT_LE(whole(mesh).charts.size(), 4u);
+  EXPECT_LE(checked_charts(mesh).charts.size(), 4u);
 }
 
 // Each of the coincident sheets becomes a chart, however many there are.
@@ -170,7 +162,7 @@ TEST(Defects, FortySheetsUponEachOther) {
   Mesh mesh(grid(6, 6));
   const std::vector<std::uint32_t> sheet = mesh.indices;
   for (int k = 1; k < 40; ++k) mesh.indices.insert(mesh.indices.end(), sheet.begin(), sheet.end());
-  const ChartSet set = whole(mesh);
+  const ChartSet set = checked_charts(mesh);
   EXPECT_EQ(set.charts.size(), 40u);
   EXPECT_EQ(set.repairs.duplicate_triangles, 39 * sheet.size() / 3);
 }
@@ -183,7 +175,7 @@ TEST(Defects, TrianglesWithoutAreaJoinTheirNeighbours) {
   for (const std::uint32_t v : {0u, 0u, 1u, 0u, 1u, 2u, apart, apart, apart}) {
     mesh.indices.push_back(v);
   }
-  const ChartSet set = whole(mesh);
+  const ChartSet set = checked_charts(mesh);
   EXPECT_EQ(set.repairs.degenerate_triangles, 3u);
   EXPECT_EQ(set.charts.size(), 1u);
   EXPECT_EQ(set.triangle_chart.size(), before + 3);
@@ -193,7 +185,7 @@ TEST(Defects, NothingButTrianglesWithoutArea) {
   Mesh mesh;
   mesh.positions = {{1, 2, 3}, {1, 2, 3}, {4, 5, 6}};
   mesh.indices = {0, 1, 2, 2, 2, 2};
-  const ChartSet set = whole(mesh);
+  const ChartSet set = checked_charts(mesh);
   EXPECT_EQ(set.charts.size(), 1u);
   EXPECT_EQ(set.seam_length, 0);
 }
@@ -224,8 +216,8 @@ TEST(Defects, TrianglesWithoutAreaJoinTheirMaterial) {
 }
 
 TEST(Defects, SlicedNeedlesAndSoup) {
-  EXPECT_EQ(whole(Mesh(needles(200, 1e5))).charts.size(), 1u);
-  EXPECT_EQ(whole(Mesh(soup(300, 4))).charts.size(), 300u);
+  EXPECT_EQ(checked_charts(Mesh(needles(200, 1e5))).charts.size(), 1u);
+  EXPECT_EQ(checked_charts(Mesh(soup(300, 4))).charts.size(), 300u);
 }
 
 TEST(Defects, ManyTinyPiecesAreQuick) {
@@ -238,7 +230,7 @@ TEST(Defects, ManyTinyPiecesAreQuick) {
     }
     for (const std::uint32_t v : shape.indices) mesh.indices.push_back(base + v);
   }
-  const ChartSet set = whole(mesh);
+  const ChartSet set = checked_charts(mesh);
   EXPECT_LE(set.charts.size(), 3000u * 6);
   EXPECT_NEAR(set.distortion.stretch_l2, 1, 1e-6);
   // About ten microseconds per triangle are expected, so taking seconds would be a defect on any

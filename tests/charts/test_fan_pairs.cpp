@@ -14,21 +14,6 @@
 namespace atlas::test {
 namespace {
 
-Topology topology_of(const Mesh& mesh) {
-  Result<Topology> result = build_topology(mesh.view(), {}, {});
-  EXPECT_TRUE(result.ok());
-  return std::move(*result);
-}
-
-// Every triangle gets a place, and none overlaps another.
-ChartSet charts_of(const Mesh& mesh) {
-  Result<ChartSet> set = make_charts(mesh.view(), {}, {});
-  EXPECT_TRUE(set.ok()) << set.status().message();
-  if (!set.ok()) return {};
-  EXPECT_EQ(check_charts(mesh.view(), *set).fault, "");
-  return std::move(*set);
-}
-
 std::size_t open_half_edges(const Topology& topology) {
   return std::size_t(std::count(topology.opposite.begin(), topology.opposite.end(), kNoIndex));
 }
@@ -167,7 +152,7 @@ TEST(FanPairs, TwoCubesAtAnEdgeAreTwoCubes) {
   EXPECT_EQ(topology.defects.nonmanifold_edges, 1u);
   EXPECT_EQ(topology.component_count, 2u);
   EXPECT_EQ(open_half_edges(topology), 0u);
-  charts_of(mesh);
+  checked_charts(mesh);
 }
 
 // Then the faces in one plane agree, so these go through.
@@ -179,7 +164,7 @@ TEST(FanPairs, ACubeInsideOutAtAnotherOne) {
   const Topology topology = topology_of(mesh);
   EXPECT_EQ(topology.component_count, 1u);
   EXPECT_EQ(open_half_edges(topology), 0u);
-  charts_of(mesh);
+  checked_charts(mesh);
 }
 
 // At each edge of the loop the flatter pairs are taken: through the point of contact where the
@@ -192,8 +177,8 @@ TEST(FanPairs, BodiesThatTouchAlongALoop) {
   const Topology blunt = topology_of(lens_in_ring(1.5, 1.7));
   EXPECT_EQ(open_half_edges(blunt), 0u);
   EXPECT_EQ(blunt.component_count, 2u);
-  charts_of(lens_in_ring(0.3, 1));
-  charts_of(lens_in_ring(1.5, 1.7));
+  checked_charts(lens_in_ring(0.3, 1));
+  checked_charts(lens_in_ring(1.5, 1.7));
 }
 
 // One sheet goes through, and the other one ends there, however they are oriented.
@@ -204,7 +189,7 @@ TEST(FanPairs, ATJunctionKeepsTheSheetThatGoesThrough) {
       const Topology topology = topology_of(mesh);
       EXPECT_TRUE(linked(topology, 0, 2)) << degrees << " " << turned;
       EXPECT_EQ(topology.component_count, 2u);
-      charts_of(mesh);
+      checked_charts(mesh);
     }
   }
 }
@@ -218,14 +203,14 @@ TEST(FanPairs, SheetsThatCrossBothGoThrough) {
     const bool solids = turned == 5 || turned == 10;
     EXPECT_EQ(linked(topology, 0, 2) && linked(topology, 1, 3), !solids) << turned;
     EXPECT_EQ(topology.component_count, 2u);
-    charts_of(mesh);
+    checked_charts(mesh);
   }
 }
 
 TEST(FanPairs, ABookFallsIntoPages) {
   const Mesh mesh = pages({{0, true}, {12, false}, {24, true}, {36, false}, {48, true}});
   EXPECT_EQ(topology_of(mesh).component_count, 5u);
-  EXPECT_EQ(charts_of(mesh).charts.size(), 5u);
+  EXPECT_EQ(checked_charts(mesh).charts.size(), 5u);
 }
 
 // The flattest pair alone would leave the other two apart.
@@ -243,7 +228,7 @@ TEST(FanPairs, ASurfaceGoesOnBesideAFin) {
   EXPECT_EQ(topology.defects.duplicate_triangles, 1u);
   EXPECT_EQ(topology.defects.misoriented_edges, 0u);
   EXPECT_EQ(topology.component_count, 2u) << "the surface, and both sides of the fin";
-  const ChartSet set = charts_of(mesh);
+  const ChartSet set = checked_charts(mesh);
   EXPECT_EQ(set.charts.size(), 2u);
 }
 
@@ -276,7 +261,7 @@ TEST(FanPairs, ATriangleWithAPairOfCopies) {
   EXPECT_EQ(topology.defects.nonmanifold_edges, 3u);
   EXPECT_EQ(topology.component_count, 2u);
   EXPECT_EQ(topology.defects.misoriented_edges, 0u);
-  charts_of(mesh);
+  checked_charts(mesh);
 }
 
 TEST(FanPairs, CopiesAreSheetsOfTheirOwn) {
@@ -337,7 +322,7 @@ TEST(FanPairs, AnyFanIsPlaced) {
       ASSERT_EQ(topology.opposite[o], h);
       ASSERT_EQ(topology.corner_vertex[h], topology.corner_vertex[next_half_edge(o)]);
     }
-    charts_of(mesh);
+    checked_charts(mesh);
   }
 }
 

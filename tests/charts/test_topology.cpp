@@ -13,12 +13,6 @@
 namespace atlas::test {
 namespace {
 
-Topology topology_of(const Mesh& mesh) {
-  Result<Topology> result = build_topology(mesh.view(), {}, {});
-  EXPECT_TRUE(result.ok());
-  return std::move(*result);
-}
-
 TEST(Topology, LinksAgreeWithAMapOfEdges) {
   for (const Shape& shape : zoo()) {
     const Mesh mesh(shape);
