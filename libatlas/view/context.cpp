@@ -42,6 +42,13 @@ Status GlContext::check_alive() const {
   }
 }
 
+bool draws_in_software() {
+  const std::string renderer = text_of(GL_RENDERER);
+  for (const char* name : {"llvmpipe", "softpipe", "swrast", "Software"})
+    if (renderer.find(name) != std::string::npos) return true;
+  return false;
+}
+
 Status GlContext::initialise(bool debug) {
   info_.vendor = text_of(GL_VENDOR);
   info_.renderer = text_of(GL_RENDERER);
@@ -51,8 +58,7 @@ Status GlContext::initialise(bool debug) {
             fmt::format("OpenGL 4.5 is needed, {} offers {} (update the driver, or set "
                         "LIBGL_ALWAYS_SOFTWARE=1 to use Mesa's software renderer)",
                         info_.renderer, info_.version)};
-  for (const char* name : {"llvmpipe", "softpipe", "swrast", "Software"})
-    info_.software |= info_.renderer.find(name) != std::string::npos;
+  info_.software = draws_in_software();
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &info_.max_texture);
   if (debug) {
     glEnable(GL_DEBUG_OUTPUT);

@@ -22,6 +22,9 @@ struct GlInfo {
   int max_texture = 0;    // texels
 };
 
+// Returns whether the current context draws on the CPU, as GlInfo::software says.
+bool draws_in_software();
+
 // A context that is current on the thread that made it, from construction to destruction.
 class GlContext {
  public:

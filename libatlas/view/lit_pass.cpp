@@ -47,6 +47,7 @@ struct FrameBlock {
   float specular[4];
   float first_ray[4], ray_x[4], ray_y[4];
   float map_x[4], map_y[4];
+  float background[4];
 };
 
 void put(float (&to)[16], const Matrix4& from) {
@@ -154,6 +155,10 @@ void put_rays(FrameBlock& b, const Camera& camera, int width, int height) {
   put(b.ray_y, {y, 0});
 }
 
+glm::dvec4 background_of(const RenderOptions& options, const ShaderFeatures& features) {
+  return {features.visibility ? glm::dvec3(1) : glm::dvec3(to_glm(options.background)), 1};
+}
+
 }  // namespace
 
 void Renderer::Impl::fill_block(const Camera& world_camera, const FrameLight& light,
@@ -165,6 +170,7 @@ void Renderer::Impl::fill_block(const Camera& world_camera, const FrameLight& li
       reversed_depth(view_projection(camera, double(target_width) / target_height)));
   put_rays(b, camera, target_width, target_height);
   put(b.eye, {to_glm(camera.eye), 0});
+  put(b.background, background_of(options, features));
   const glm::dvec3 l = glm::normalize(to_glm(light.direction));
   put(b.light, {l, options.intensity});
   const double ambient = scene->baked_vertices || scene->baked_textures ? 0 : options.ambient;
@@ -213,10 +219,11 @@ void Renderer::Impl::draw_lit(const Camera& camera, const FrameLight& light, con
   glEnable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
-  const Vec3f& c = options.background;
-  const float clear[4] = {features.visibility ? 1 : c.x, features.visibility ? 1 : c.y,
-                          features.visibility ? 1 : c.z, 1};
-  glClearNamedFramebufferfv(target.get(), GL_COLOR, 0, clear);
+  if (!lighting || software) {
+    float background[4];
+    put(background, background_of(options, features));
+    glClearNamedFramebufferfv(target.get(), GL_COLOR, 0, background);
+  }
   draw_surfaces(camera, stats);
   if (lighting) draw_lighting();
   // Drivers check the current program against what is bound even where nothing is drawn, and this
@@ -238,15 +245,21 @@ void Renderer::Impl::draw_surfaces(const Camera& camera, FrameStats& stats) {
   draw_clusters(camera, stats);
 }
 
-// Lights the pixels where the first pass left a surface. The depth is tested, never written. It is
-// read from a texture of its own, since a texture should not be read while it is attached (OpenGL
-// 4.5, 9.3.1: feedback loops).
+// Lights each pixel's surface, and shows the background where the first pass left none. A GPU skips
+// the rest of the shader there. A software renderer executes all of it for every pixel, so there
+// the depth is tested, too, against a copy.
 void Renderer::Impl::draw_lighting() {
-  glBindFramebuffer(GL_FRAMEBUFFER, target.get());
+  if (software) {
+    glCopyImageSubData(depth.get(), GL_TEXTURE_2D, 0, 0, 0, 0, depth_copy.get(), GL_RENDERBUFFER, 0,
+                       0, 0, 0, target_width, target_height, 1);
+    glDepthFunc(GL_LESS);
+  } else {
+    glDepthFunc(GL_ALWAYS);
+  }
   glDepthMask(GL_FALSE);
-  glDepthFunc(GL_LESS);
+  glBindFramebuffer(GL_FRAMEBUFFER, target.get());
   glBindTextureUnit(0, surfaces.get());
-  glBindTextureUnit(3, surface_depths.get());
+  glBindTextureUnit(3, depth.get());
   glBindSampler(0, 0);
   glBindSampler(3, 0);
   if (shadow) shadow->bind_compare(1);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/view/context.h"
 #include "libatlas/view/renderer_impl.h"
 
 namespace atlas {
@@ -103,26 +104,28 @@ Status Renderer::Impl::allocate_target(int width, int height, bool lit) {
   if (width == target_width && height == target_height && lit == bool(surfaces)) return {};
   colour = create<GlRenderbuffer>(glCreateRenderbuffers);
   glNamedRenderbufferStorage(colour.get(), GL_RGBA8, width, height);
-  depth = create<GlRenderbuffer>(glCreateRenderbuffers);
-  glNamedRenderbufferStorage(depth.get(), GL_DEPTH_COMPONENT32F, width, height);
+  depth = target_texture(GL_DEPTH_COMPONENT32F, width, height);
   target = create<GlFramebuffer>(glCreateFramebuffers);
   glNamedFramebufferRenderbuffer(target.get(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour.get());
-  glNamedFramebufferRenderbuffer(target.get(), GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth.get());
   surfaces = GlTexture();
-  surface_depths = GlTexture();
   surface_target = GlFramebuffer();
+  depth_copy = GlRenderbuffer();
   if (lit) {
     surfaces = target_texture(GL_RGBA32UI, width, height);
-    surface_depths = target_texture(GL_R32F, width, height);
     surface_target = create<GlFramebuffer>(glCreateFramebuffers);
-    const GLuint f = surface_target.get();
-    glNamedFramebufferTexture(f, GL_COLOR_ATTACHMENT0, surfaces.get(), 0);
-    glNamedFramebufferTexture(f, GL_COLOR_ATTACHMENT1, surface_depths.get(), 0);
-    glNamedFramebufferRenderbuffer(f, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth.get());
-    const GLenum both[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
-    glNamedFramebufferDrawBuffers(f, 2, both);
+    glNamedFramebufferTexture(surface_target.get(), GL_COLOR_ATTACHMENT0, surfaces.get(), 0);
     no_vertices = create<GlVertexArray>(glCreateVertexArrays);
   }
+  if (lit && software) {
+    depth_copy = create<GlRenderbuffer>(glCreateRenderbuffers);
+    glNamedRenderbufferStorage(depth_copy.get(), GL_DEPTH_COMPONENT32F, width, height);
+    glNamedFramebufferRenderbuffer(target.get(), GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
+                                   depth_copy.get());
+  }
+  // The second pass reads the depth, so it is never attached then: what is read of an attached
+  // texture is undefined unless drivers order it (OpenGL 4.5, 9.3.1: feedback loops).
+  const GLuint first = lit ? surface_target.get() : target.get();
+  glNamedFramebufferTexture(first, GL_DEPTH_ATTACHMENT, depth.get(), 0);
   target_width = width;
   target_height = height;
   const Status made = check_gl("making the image");  // no error stays pending, whatever is returned
@@ -275,6 +278,7 @@ Result<Renderer> Renderer::share(const RenderOptions& options) const {
   GLint bits = 0;
   glGetIntegerv(GL_SUBPIXEL_BITS, &bits);
   impl->subpixel = std::exp2(-bits);
+  impl->software = draws_in_software();
   impl->shadow_timer.emplace();
   impl->lit_timer.emplace();
   if (Status s = impl->apply(options); !s.ok()) return s;

@@ -19,10 +19,13 @@ struct Renderer::Impl {
   GlProgram program, lighting;  // lighting: none if the scene is unlit
   GlBuffer frame_block;
   GlFramebuffer target;
-  GlRenderbuffer colour, depth;
-  // Targets of the first pass of lit scenes.
+  GlRenderbuffer colour;
+  GlTexture depth;
+  // Targets of the first pass of lit scenes. The depth belongs to them then.
   GlFramebuffer surface_target;
-  GlTexture surfaces, surface_depths;
+  GlTexture surfaces;
+  bool software = false;      // the context draws on the CPU
+  GlRenderbuffer depth_copy;  // lit scenes on the CPU: what the second pass tests
   GlVertexArray no_vertices;
   int target_width = 0, target_height = 0;
   double subpixel = 0;  // the driver rounds corners of triangles to multiples of it (pixels)

@@ -29,12 +29,13 @@ layout(std140, binding = 0) uniform Frame {
                                  // * depth) with the first two, 1 / march's samples the third
   vec4 map_x, map_y;  // axes of a map of the current light; how far a point may be off for each unit
                       // of view depth (world), unused
+  vec4 background;  // rgb, encoded as the image is
 } frame;
 )";
 
 // The first pass of a lit scene stores in each pixel, 16 bits per value: the reflectance, the light
 // that shadows do not affect (exposed; from 2 on, the pixel is white whatever is added), and the
-// normal in octahedral encoding (Meyer et al. 2010). A texture of its own takes the depth.
+// normal in octahedral encoding (Meyer et al. 2010).
 constexpr const char* kWriteSurface = R"(
 vec2 fold(vec3 n) {
   n /= max(abs(n.x) + abs(n.y) + abs(n.z), 1e-30);
@@ -147,14 +148,13 @@ std::string fragment_text(const ShaderFeatures& f) {
          "diffuse;\n";
   if (coloured(f) && f.baked_vertices) s += "layout(location = 4) in vec3 v_illumination;\n";
   if (coloured(f) && f.emission) s += "layout(location = 5) in vec3 v_emission;\n";
-  s += lit(f) ? "layout(location = 0) out uvec4 result;\nlayout(location = 1) out float depth;\n"
+  s += lit(f) ? "layout(location = 0) out uvec4 result;\n"
               : "layout(location = 0) out vec4 result;\n";
   if (lit(f)) s += kWriteSurface;
   if (!lit(f) && coloured(f)) s += kEncode;
   s += "void main() {\n";
   if (coloured(f)) s += colours_text(f);
   if (lit(f)) {
-    s += "  depth = gl_FragCoord.z;\n";
     s += coloured(f) ? "  result = surface_of(v_normal, reflectance, own);\n"
                      : "  result = uvec4(0, 0, 0, packSnorm2x16(fold(v_normal)));\n";
   } else if (coloured(f))
@@ -177,9 +177,14 @@ std::string lighting_text(const ShaderFeatures& f) {
   if (coloured(f) && shiny(f)) s += f.shading == Shading::ward ? kWard : kBlinnPhong;
   s += R"(void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
+  float depth = texelFetch(surface_depths, pixel, 0).x;
+  if (depth == 0.0) {
+    result = frame.background;
+    return;
+  }
   uvec4 surface = texelFetch(surfaces, pixel, 0);
   vec3 ray = frame.first_ray.xyz + gl_FragCoord.x * frame.ray_x.xyz + gl_FragCoord.y * frame.ray_y.xyz;
-  float far = 1.0 / (frame.first_ray.w + frame.ray_x.w * texelFetch(surface_depths, pixel, 0).x);
+  float far = 1.0 / (frame.first_ray.w + frame.ray_x.w * depth);
   vec3 away = ray * far;
   vec3 n = unfold(unpackSnorm2x16(surface.w));
   if (dot(n, away) > 0.0) n = -n;
