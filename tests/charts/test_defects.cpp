@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -108,6 +109,27 @@ TEST(Defects, AMoebiusStripIsCut) {
   EXPECT_GT(set.seam_length, 0.5);
 }
 
+// The edges between two triangles count as seams where the strip is cut, and those with a fin do
+// not.
+TEST(Defects, TheCutOfAMoebiusStripIsMeasured) {
+  for (const bool fins : {false, true}) {
+    for (const bool reversed : {false, true}) {
+      Mesh mesh = band(40, 1);
+      for (std::uint32_t v = 0; fins && v < 80; v += 2) {
+        const Vec3f p = mesh.positions[v], q = mesh.positions[v + 1];
+        const auto tip = std::uint32_t(mesh.positions.size());
+        mesh.positions.push_back({0.6f * (p.x + q.x), 0.6f * (p.y + q.y), 0.5f * (p.z + q.z) + 1});
+        mesh.indices.insert(mesh.indices.end(), {v, v + 1, tip});
+      }
+      if (reversed) std::reverse(mesh.indices.begin(), mesh.indices.end());
+      for (Vec3f& p : mesh.positions) p = {50 * p.x, 50 * p.y, 50 * p.z};
+      const ChartSet set = checked_charts(mesh);
+      const double seam = check_charts(mesh.view(), set).seam;
+      EXPECT_NEAR(set.seam_length, seam, 1e-4 * (1 + seam)) << fins << reversed;
+    }
+  }
+}
+
 TEST(Defects, PiecesOfMixedOrientationAreTurned) {
   Mesh mesh(grid(10, 10));
   for (std::size_t t = 0; t < mesh.indices.size() / 3; t += 3) {
@@ -117,6 +139,27 @@ TEST(Defects, PiecesOfMixedOrientationAreTurned) {
   EXPECT_EQ(set.charts.size(), 1u);
   EXPECT_EQ(set.flipped_triangles.size(), (mesh.indices.size() / 3 + 2) / 3);
   EXPECT_GT(set.repairs.misoriented_edges, 0u);
+}
+
+// Few triangles with most of the area count for more than many small ones.
+TEST(Defects, APieceKeepsTheOrientationOfMostOfItsArea) {
+  for (const bool large_first : {true, false}) {
+    for (const bool large_turned : {true, false}) {
+      Mesh mesh(grid(10, 1));
+      for (Vec3f& p : mesh.positions) p.x = p.x > 0.75f ? 100 * p.x : p.x;
+      if (large_first) std::reverse(mesh.indices.begin(), mesh.indices.end());
+      std::vector<std::uint32_t> small;
+      for (std::uint32_t t = 0; t < mesh.indices.size() / 3; ++t) {
+        std::uint32_t* const v = &mesh.indices[3 * std::size_t{t}];
+        const bool large =
+            std::any_of(v, v + 3, [&](std::uint32_t k) { return mesh.positions[k].x > 1; });
+        if (large == large_turned) std::swap(v[1], v[2]);
+        if (!large) small.push_back(t);
+      }
+      ASSERT_EQ(small.size(), 14u);
+      EXPECT_EQ(checked_charts(mesh).flipped_triangles, small) << large_first << large_turned;
+    }
+  }
 }
 
 TEST(Defects, FansOfSheetsAroundAnEdge) {
@@ -179,6 +222,42 @@ TEST(Defects, TrianglesWithoutAreaJoinTheirNeighbours) {
   EXPECT_EQ(set.repairs.degenerate_triangles, 3u);
   EXPECT_EQ(set.charts.size(), 1u);
   EXPECT_EQ(set.triangle_chart.size(), before + 3);
+}
+
+// Corners of such a triangle that the neighbour has get the neighbour's uvs.
+TEST(Defects, TrianglesWithoutAreaLieOnTheirNeighbours) {
+  Mesh mesh(box(2));
+  const std::size_t first = mesh.indices.size();
+  for (std::uint32_t t = 0; t < first / 3; ++t) {
+    const std::uint32_t a = mesh.indices[3 * t], b = mesh.indices[3 * t + 1];
+    for (const std::uint32_t v : {a, a, b, b, a, b, a, b, b}) mesh.indices.push_back(v);
+  }
+  const ChartSet set = checked_charts(mesh);
+  for (std::size_t i = first; i < mesh.indices.size(); ++i) {
+    EXPECT_EQ(mesh.positions[set.uv_vertex[set.triangle_uv[i]]], mesh.positions[mesh.indices[i]]);
+  }
+}
+
+// A common corner will do, but not a chart of another material.
+TEST(Defects, TrianglesWithoutAreaJoinTheChartAtTheirCorner) {
+  Mesh mesh(together(grid(3, 3), moved(grid(3, 3), 1, {0, 0, 5})));
+  const auto apart = std::uint32_t(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), {{7, 7, 7}, {8, 8, 8}});
+  const std::uint32_t plate = mesh.indices.back();  // a corner of the second plate
+  mesh.materials.assign(mesh.indices.size() / 3, 0);
+  std::fill(mesh.materials.begin() + 18, mesh.materials.end(), 1);
+  for (const std::uint32_t v : {apart, plate, apart, apart, apart, plate, plate, apart + 1, plate})
+    mesh.indices.push_back(v);
+  mesh.materials.insert(mesh.materials.end(), {1, 0, 1});
+  const ChartSet set = checked_charts(mesh);
+  ASSERT_EQ(set.charts.size(), 2u);
+  EXPECT_EQ(set.triangle_chart[36], set.triangle_chart[18]);
+  EXPECT_EQ(set.triangle_chart[37], set.triangle_chart[0]);
+  EXPECT_EQ(set.triangle_chart[38], set.triangle_chart[18]);
+  mesh.materials.clear();
+  const ChartSet alike = checked_charts(mesh);
+  for (const std::size_t t : {36, 37, 38})
+    EXPECT_EQ(alike.triangle_chart[t], alike.triangle_chart[18]) << t;
 }
 
 TEST(Defects, NothingButTrianglesWithoutArea) {

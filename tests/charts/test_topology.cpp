@@ -94,6 +94,29 @@ TEST(Topology, NamesTheTriangleWhosePositionIsNotFinite) {
   EXPECT_NE(message.find("triangle 2"), std::string::npos) << message;
 }
 
+// Neither unit nor links depend on such vertices, however far away they lie.
+TEST(Topology, VerticesThatNoTriangleUsesChangeNothing) {
+  Mesh mesh(icosphere(2));
+  const Topology alone = topology_of(mesh);
+  mesh.positions.insert(mesh.positions.end(), {{1e6f, 0, 0}, {0, 0, -1e9f}, mesh.positions[0]});
+  const Topology topology = topology_of(mesh);
+  EXPECT_EQ(topology.scale, alone.scale);
+  EXPECT_EQ(topology.points, alone.points);
+  EXPECT_EQ(topology.corner_vertex, alone.corner_vertex);
+}
+
+// The height of three points over their longest side decides, whichever of them comes first.
+TEST(Topology, AnyFirstCornerMayHaveNoArea) {
+  for (const float height : {0.95e-12f, 2e-12f}) {
+    for (std::uint32_t first = 0; first < 3; ++first) {
+      Mesh mesh;
+      mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0.5f, height, 0}};
+      mesh.indices = {first, (first + 1) % 3, (first + 2) % 3};
+      EXPECT_EQ(topology_of(mesh).degenerate(0), height < 1e-12f) << height << ' ' << first;
+    }
+  }
+}
+
 // Two halves of a sheet that were rotated in double by a right angle each, so that their common
 // edge lies at 0 in one half and at 1e-16 in the other.
 TEST(Topology, RoundingAroundZeroLeavesNoCrack) {
