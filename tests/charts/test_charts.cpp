@@ -280,8 +280,10 @@ TEST(Charts, BadInputAndOptionsAreNamed) {
   };
   EXPECT_EQ(code(Mesh()), ErrorCode::bad_input);
   Mesh mesh(grid(2, 2));
-  mesh.indices[4] = 1000;
-  EXPECT_EQ(code(mesh), ErrorCode::bad_input);
+  for (const std::size_t beyond : {mesh.positions.size(), std::size_t{1000}}) {
+    mesh.indices[4] = static_cast<std::uint32_t>(beyond);
+    EXPECT_EQ(code(mesh), ErrorCode::bad_input);
+  }
   mesh = Mesh(grid(2, 2));
   mesh.positions[0].y = std::nanf("");
   EXPECT_EQ(code(mesh), ErrorCode::bad_input);
@@ -289,13 +291,17 @@ TEST(Charts, BadInputAndOptionsAreNamed) {
   mesh.indices.pop_back();
   EXPECT_EQ(code(mesh), ErrorCode::bad_input);
   mesh = Mesh(grid(2, 2));
-  mesh.materials.assign(7, 0);
-  EXPECT_EQ(code(mesh), ErrorCode::bad_input);
+  for (const std::size_t wrong : {7, 9}) {
+    mesh.materials.assign(wrong, 0);
+    EXPECT_EQ(code(mesh), ErrorCode::bad_input) << wrong;
+  }
   mesh = Mesh(grid(2, 2));
-  const std::vector<float> densities(9, 1.0f);
   MeshView dense = mesh.view();
-  dense.density = densities;
-  EXPECT_EQ(make_charts(dense, {}, {}).status().code(), ErrorCode::bad_input);
+  for (const std::size_t wrong : {7, 9}) {
+    const std::vector<float> densities(wrong, 1.0f);
+    dense.density = densities;
+    EXPECT_EQ(make_charts(dense, {}, {}).status().code(), ErrorCode::bad_input) << wrong;
+  }
   for (const float bad : {0.0f, -1.0f, std::nanf(""), std::numeric_limits<float>::infinity()}) {
     std::vector<float> one_bad(8, 1.0f);
     one_bad[5] = bad;
@@ -305,12 +311,19 @@ TEST(Charts, BadInputAndOptionsAreNamed) {
     EXPECT_NE(status.message().find("triangle 5"), std::string::npos) << status.message();
   }
   ChartOptions options;
-  options.max_stretch = 1;
-  EXPECT_EQ(code(Mesh(grid(2, 2)), options), ErrorCode::bad_option);
+  for (const double bound : {1.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
+    options.max_stretch = bound;
+    EXPECT_EQ(code(Mesh(grid(2, 2)), options), ErrorCode::bad_option) << bound;
+  }
+  for (const double aspect : {0.9e-6, 1.1e6, std::nan("")}) {
+    options = {};
+    options.uv_aspect = aspect;
+    EXPECT_EQ(code(Mesh(grid(2, 2)), options), ErrorCode::bad_option) << aspect;
+  }
   options = {};
   options.cone_degrees = 181;
   EXPECT_EQ(code(Mesh(grid(2, 2)), options), ErrorCode::bad_option);
-  for (const double crease : {-1.0, 181.0, std::nan("")}) {
+  for (const double crease : {-1.0, 0.0, 181.0, std::nan("")}) {
     options = {};
     options.crease_degrees = crease;
     EXPECT_EQ(code(Mesh(grid(2, 2)), options), ErrorCode::bad_option) << crease;
