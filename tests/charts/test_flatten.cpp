@@ -88,5 +88,13 @@ TEST(Noise, IsFoundOnSomeHundredTriangles) {
   EXPECT_FALSE(calmed(noisy_along_normals(geodesic_sphere(3), 0.15)));
 }
 
+TEST(Noise, IsTakenFromTheNormalsOfItsPieceOnly) {
+  const Shape smooth = geodesic_sphere(7), rough = noisy_along_normals(geodesic_sphere(10), 0.15);
+  const Topology topology = topology_of(Mesh(together(smooth, moved(rough, 1, {3, 0, 0}))));
+  ASSERT_EQ(topology.calm_normals.size(), topology.triangle_count());
+  for (std::uint32_t t = 0; t < topology.triangle_count(); ++t)
+    ASSERT_EQ(topology.calm_normals[t] == topology.normals[t], t < smooth.triangle_count()) << t;
+}
+
 }  // namespace
 }  // namespace atlas::test

@@ -40,6 +40,17 @@ TEST(Frames, ASharedMapIsTurnedToEachNormal) {
   EXPECT_NEAR(frames.at(topology, 1)[1].y, 1, kTolerance);
 }
 
+TEST(Frames, TowardsTheOppositeNormalAMapIsNotTurned) {
+  const Topology topology = with_normals({{0, 0, -1}, {0, 0.001f, -0.9999995f}});
+  Frames frames;
+  frames.resize(2);
+  const std::uint32_t map = frames.add({{0, 0, 1}, {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}}});
+  for (std::uint32_t t = 0; t < 2; ++t) {
+    frames.share(t, map);
+    EXPECT_EQ(frames.at(topology, t), (Frames::Frame{Vec3f{1, 0, 0}, Vec3f{0, 1, 0}}));
+  }
+}
+
 TEST(Frames, TrianglesMayHaveMapsOfTheirOwn) {
   const Topology topology = with_normals({{0, 0, 1}, {0, 0, 1}, {0, 0, 1}});
   const Frames::Frame turned = {Vec3f{0, 1, 0}, Vec3f{-1, 0, 0}};

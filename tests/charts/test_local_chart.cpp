@@ -53,6 +53,17 @@ TEST(LocalChart, ACutChartHasLinksOfItsOwn) {
   EXPECT_EQ(moved.opposite[o], kNoIndex);
 }
 
+// Large charts give up memory, but not the numbers of their parts.
+TEST(LocalChart, PartsOfAnyChartAreNumbered) {
+  for (const int n : {4, 130}) {
+    Whole mesh(test::together(test::grid(n, n), test::moved(test::grid(n, n), 1, {3, 0, 0})));
+    LocalChart chart;
+    chart.build(mesh.topology, mesh.partition, mesh.triangles);
+    EXPECT_EQ(chart.component_count, 2u);
+    EXPECT_EQ(chart.component, mesh.topology.component) << n;
+  }
+}
+
 TEST(LocalChart, PositionsAreRelativeToTheFirstOne) {
   test::Shape shape = test::grid(6, 5);
   for (Vec3f& p : shape.positions) p.x += 1000;

@@ -39,10 +39,14 @@ std::vector<std::uint32_t> from_to(std::uint32_t first, std::uint32_t last) {
 
 TEST(Pieces, AreTheWholeMeshRenamed) {
   const Mesh mesh = shuffled_parts();
-  const Result<Topology> built = build_topology(mesh.view(), {}, {});
+  Result<Topology> built = build_topology(mesh.view(), {}, {});
   ASSERT_TRUE(built.ok());
-  const Topology& whole = *built;
+  Topology& whole = *built;
   ASSERT_EQ(whole.component_count, 4u);
+  for (std::uint32_t t = 0; t < whole.triangle_count(); ++t) {
+    whole.calm_normals.push_back({float(t), 0, 0});
+    if (t % 5 == 0) whole.flags[t] |= Topology::kFlipped;
+  }
   PieceCutter cutter(whole);
   for (const auto& [first, last] : {std::pair{0u, 2u}, {2u, 3u}, {1u, 4u}, {0u, 4u}}) {
     const PieceMesh part = cutter.cut(from_to(first, last));
@@ -51,11 +55,15 @@ TEST(Pieces, AreTheWholeMeshRenamed) {
     for (const std::uint32_t k : whole.component) expected += k >= first && k < last;
     ASSERT_EQ(t.triangle_count(), expected);
     EXPECT_EQ(t.component_count, last - first);
+    EXPECT_EQ(t.scale, whole.scale);
+    EXPECT_EQ(t.whole_triangles, whole.triangle_count());
     for (std::uint32_t i = 0; i < expected; ++i) {
       const std::uint32_t w = part.triangles[i];
       EXPECT_EQ(t.component[i] + first, whole.component[w]);
       EXPECT_EQ(t.normals[i], whole.normals[w]);
+      EXPECT_EQ(t.calm_normals[i], whole.calm_normals[w]);
       EXPECT_EQ(t.areas[i], whole.areas[w]);
+      EXPECT_EQ(t.flags[i], whole.flags[w]);
       for (std::uint32_t c = 0; c < 3; ++c) {
         const std::uint32_t h = 3 * i + c, v = t.corner_vertex[h];
         ASSERT_LT(v, t.points.size());
