@@ -153,6 +153,118 @@ TEST(Copies, AreNothingButCongruent) {
   EXPECT_EQ(copied_beside(part, part, density), 0u);
 }
 
+// Walls that are bent by a right angle each, and a needle beside the last wall, so thin that its
+// lean is within the tolerance of congruence. Parts lie side by side; every second one is wider.
+Mesh leaning(const std::vector<double>& lean_degrees, bool interleaved) {
+  constexpr double kThin = 1e-5;
+  Shape all;
+  std::vector<Shape> parts;
+  for (std::size_t i = 0; i < lean_degrees.size(); ++i) {
+    const double lean = lean_degrees[i] * M_PI / 180;
+    Shape part;
+    part.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0},
+                      {0, 1, 1}, {1, 1, 1}, {0, 2, 1}, {1, 2, 1}};
+    for (const std::uint32_t k : {4u, 2u, 0u}) part.add_quad(k, k + 1, k + 3, k + 2);
+    part.positions.push_back(
+        {0.5f, float(-kThin * std::cos(lean)), float(-kThin * std::sin(lean))});
+    part.indices.insert(part.indices.end(), {0, 8, 1});
+    if (i % 2) {
+      for (Vec3f& p : part.positions) p.x *= 2;
+    }
+    parts.push_back(moved(part, 1, {4.0 * double(i), 0, 0}));
+    all = together(all, parts.back());
+  }
+  if (interleaved) {
+    const std::vector<std::uint32_t> order = all.indices;
+    const std::size_t triangles = parts[0].triangle_count();
+    for (std::size_t t = 0; t < all.triangle_count(); ++t) {
+      const std::size_t from = t % parts.size() * triangles + t / parts.size();
+      std::copy_n(&order[3 * from], 3, &all.indices[3 * t]);
+    }
+  }
+  return Mesh(all);
+}
+
+// What is congruent but for something tiny need not have the same cone. Such a copy is cut anew.
+TEST(Copies, BeyondTheConeGetChartsOfTheirOwn) {
+  ChartOptions options;
+  options.cone_degrees = 30;
+  for (const bool interleaved : {false, true}) {
+    for (const std::vector<double>& leans : {std::vector<double>{0, 0, 100, 0, 100, 0},
+                                             {0, 0, 100, 100},
+                                             {0, 0, 0, 100, 0},
+                                             {0, 0, 0, 0}}) {
+      const Mesh mesh = leaning(leans, interleaved);
+      const ChartSet set = charts_of(mesh.view(), options);
+      const ChartFindings found = check_charts(mesh.view(), set);
+      EXPECT_EQ(found.fault, "");
+      EXPECT_LE(found.cone_degrees, 30 + 1e-4);
+      const auto alike = std::count(leans.begin(), leans.end(), 0.0);
+      EXPECT_EQ(set.copied_pieces, std::size_t(alike - 2));
+      // A needle that leans is a chart by itself.
+      EXPECT_EQ(set.charts.size(), 3 * leans.size() + leans.size() - std::size_t(alike));
+      EXPECT_EQ(bytes(charts_of(mesh.view(), options, 4)), bytes(set));
+    }
+  }
+}
+
+// Strips so narrow that one twice as wide is congruent. Stretched to the other's width it would
+// exceed the bound.
+TEST(Copies, KeepToTheBound) {
+  Shape strip;
+  strip.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1e-5f, 0}, {0, 1e-5f, 0}};
+  strip.add_quad(0, 1, 2, 3);
+  Shape wide = strip;
+  for (Vec3f& p : wide.positions) p.y *= 2;
+  const Mesh mesh(together(strip, moved(wide, 1, {2, 0, 0})));
+  const ChartSet set = charts_of(mesh.view());
+  const ChartFindings found = check_charts(mesh.view(), set);
+  EXPECT_EQ(found.fault, "");
+  EXPECT_LE(found.stretch_999, ChartOptions{}.max_stretch);
+}
+
+// Plates whose density doubles along them are flat only with that density.
+TEST(Copies, HaveTheStretchOfTheirOriginals) {
+  const Shape plate = grid(40, 8, 5, 1);
+  const Mesh mesh(together(plate, moved(plate, 1, {0, 4, 0})));
+  std::vector<float> density;
+  for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t)
+    density.push_back(std::exp2(mesh.positions[mesh.indices[3 * t]].x / 5));
+  MeshView view = mesh.view();
+  view.density = density;
+  const ChartSet set = charts_of(view);
+  ASSERT_EQ(set.charts.size(), 2u);
+  EXPECT_EQ(set.copied_pieces, 1u);
+  const Distortion &a = set.charts[0].distortion, &b = set.charts[1].distortion;
+  EXPECT_LT(a.stretch_999, 1.1);
+  EXPECT_NEAR(b.stretch_999, a.stretch_999, 1e-5);
+  EXPECT_NEAR(b.stretch_l2, a.stretch_l2, 1e-5);
+  EXPECT_NEAR(b.surface_area, a.surface_area, 1e-5 * a.surface_area);
+}
+
+// Copies of two kinds, each with a density of its own: charts have the area of their surface times
+// the density squared.
+TEST(Copies, HaveTheDensityOfTheirKind) {
+  const Shape square = grid(3, 3), strip = grid(9, 2, 3, 0.5);
+  Shape all;
+  std::vector<float> density;
+  for (int i = 0; i < 6; ++i) {
+    const Shape& part = i % 2 ? strip : square;
+    all = together(all, moved(part, 1, {0, 2.0 * i, 0}));
+    density.insert(density.end(), part.triangle_count(), i % 2 ? 5.0f : 2.0f);
+  }
+  const Mesh mesh(all);
+  MeshView view = mesh.view();
+  view.density = density;
+  const ChartSet set = charts_of(view);
+  ASSERT_EQ(set.charts.size(), 6u);
+  EXPECT_EQ(set.copied_pieces, 4u);
+  for (const Chart& chart : set.charts) {
+    const std::uint32_t t = set.chart_triangles[chart.first_triangle];
+    EXPECT_NEAR(chart.size.x * chart.size.y, density[t] == 5.0f ? 25 * 1.5 : 4, 1e-4);
+  }
+}
+
 // A flap that is bent up and one that is bent down have the same edge lengths in order.
 TEST(Copies, FoldToTheSameSide) {
   Shape up;
