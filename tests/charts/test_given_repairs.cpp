@@ -39,13 +39,57 @@ TEST(GivenUvs, AFlippedTriangleCostsItsChartOnly) {
 }
 
 TEST(GivenUvs, AFoldWithABadHalfIsFlattenedWhole) {
-  Mesh mesh = mapped(grid(6, 6), [](Vec3f p) { return Vec2f{p.x <= 0.5f ? p.x : 1 - p.x, p.y}; });
-  mesh.texcoords[7 + 5] = {0.9f, 0.9f};  // moves an inner vertex of the right half far away
-  const ChartSet set = keep(mesh);
-  EXPECT_EQ(set.repairs.kept_charts, 0u);
-  EXPECT_EQ(set.repairs.reflattened_charts, 1u);
-  ASSERT_EQ(set.charts.size(), 1u);
-  EXPECT_NEAR(set.charts[0].size.y, 1, 1e-5);
+  for (const std::size_t column : {1, 5}) {
+    Mesh mesh = mapped(grid(6, 6), [](Vec3f p) { return Vec2f{p.x <= 0.5f ? p.x : 1 - p.x, p.y}; });
+    mesh.texcoords[7 + column] = {0.9f, 0.9f};  // moves an inner vertex of this half far away
+    const ChartSet set = keep(mesh);
+    EXPECT_EQ(set.repairs.kept_charts, 0u);
+    EXPECT_EQ(set.repairs.reflattened_charts, 1u);
+    ASSERT_EQ(set.charts.size(), 1u);
+    EXPECT_NEAR(set.charts[0].size.y, 1, 1e-5);
+  }
+}
+
+// The band goes around more than once, and then back on its other side, or the other way around.
+TEST(GivenUvs, AFoldWithAHalfThatCoversItselfIsFlattenedWhole) {
+  for (const bool back_first : {false, true}) {
+    const Mesh mesh = mapped(grid(60, 2, 12, 0.4), [&](Vec3f p) {
+      const float x = back_first ? 12 - p.x : p.x, angle = x <= 8 ? x : 16 - x, r = 1 + p.y;
+      return Vec2f{-r * std::cos(angle), r * std::sin(angle)};
+    });
+    const ChartSet set = keep(mesh);
+    EXPECT_EQ(set.repairs.kept_charts, 0u);
+    EXPECT_EQ(set.repairs.reflattened_charts, 1u);
+    ASSERT_EQ(set.charts.size(), 1u);
+    EXPECT_NEAR(set.charts[0].size.x, 12, 1e-3);
+  }
+}
+
+// One chart is folded so close to its border that it is flattened whole, the other in its middle.
+TEST(GivenUvs, EachFoldedChartIsJudgedByItself) {
+  for (const bool narrow_first : {true, false}) {
+    const Mesh mesh = halves(60, [&](Vec3f p, int half) {
+      const bool narrow = (half == 0) == narrow_first;
+      const float fold = narrow ? 59.0f / 60 : 0.5f;
+      return Vec2f{p.x + 2 * float(half), p.y <= fold ? p.y : 2 * fold - p.y};
+    });
+    const ChartSet set = keep(mesh);
+    EXPECT_EQ(set.repairs.kept_charts, 2u);
+    EXPECT_EQ(set.repairs.reflattened_charts, 1u);
+    EXPECT_EQ(set.charts.size(), 3u);
+  }
+}
+
+// The least altitude of a triangle in uvs is that of rounding.
+TEST(GivenUvs, NeedlesThatRoundingMayFlipAreRepaired) {
+  for (const float altitude : {1e-9f, 1e-3f}) {
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0.5f, 0.5f, 0}, {0.5f, 1, 0}};
+    mesh.indices = {0, 1, 2, 1, 3, 2, 3, 0, 2};
+    mesh.texcoords = {{0, 0}, {1, 0}, {0.5f, altitude}, {0.5f, 1}};
+    mesh.texcoord_indices = mesh.indices;
+    EXPECT_EQ(keep(mesh).repairs.kept_charts, altitude < 1e-7f ? 0u : 1u) << altitude;
+  }
 }
 
 TEST(GivenUvs, AChartThatCoversItselfIsRepaired) {
@@ -67,6 +111,7 @@ TEST(GivenUvs, ClosedSurfacesGetTheChartsTheyNeed) {
   EXPECT_EQ(set.repairs.reflattened_charts, 1u);
   EXPECT_LE(set.charts.size(), cut(mesh).charts.size());
   EXPECT_LE(set.distortion.stretch_999, 1.25);
+  EXPECT_EQ(set.repairs.split_charts, 1u);
 }
 
 TEST(GivenUvs, FlatTrianglesOfRealOnesAreRepaired) {
@@ -83,11 +128,13 @@ TEST(GivenUvs, FlatTrianglesOfRealOnesAreRepaired) {
 TEST(GivenUvs, AChartWithABadCornerIsRepairedInItsOutline) {
   for (const float bad : {kNan, std::numeric_limits<float>::infinity()}) {
     Mesh mesh = halves(6, apart);
-    mesh.texcoords[2 * 7 + 1] = {bad, 0.25f};
-    const ChartSet set = keep(mesh);
-    EXPECT_EQ(set.charts.size(), 2u);
-    EXPECT_EQ(set.repairs.kept_charts, 1u);
-    EXPECT_EQ(set.repairs.reflattened_charts, 1u);
+    for (const Vec2f uv : {Vec2f{bad, 0.25f}, Vec2f{0.25f, bad}}) {
+      mesh.texcoords[2 * 7 + 1] = uv;
+      const ChartSet set = keep(mesh);
+      EXPECT_EQ(set.charts.size(), 2u);
+      EXPECT_EQ(set.repairs.kept_charts, 1u);
+      EXPECT_EQ(set.repairs.reflattened_charts, 1u);
+    }
   }
 }
 

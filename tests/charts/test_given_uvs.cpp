@@ -58,6 +58,19 @@ TEST(GivenUvs, OneAVertexNeedsNoIndices) {
   EXPECT_EQ(bytes(*set), bytes(named));
 }
 
+// What counts is where texcoords are, not which index they have.
+TEST(GivenUvs, EachCornerMayHaveATexcoordOfItsOwn) {
+  Mesh mesh = halves(6, apart);
+  const ChartSet shared = keep(mesh);
+  std::vector<Vec2f> corners;
+  for (std::uint32_t& i : mesh.texcoord_indices) {
+    corners.push_back(mesh.texcoords[i]);
+    i = static_cast<std::uint32_t>(corners.size()) - 1;
+  }
+  mesh.texcoords = corners;
+  EXPECT_EQ(bytes(keep(mesh)), bytes(shared));
+}
+
 TEST(GivenUvs, OwnChartsComeBackAsTheyWere) {
   for (const Shape& shape : {torus(60, 30), icosphere(4), box(6), plate_with_holes(2, 6),
                              noisy(sphere(40, 20), 0.02, 3), cone(30, 8, 0.4)}) {
@@ -227,6 +240,23 @@ TEST(GivenUvs, TheConeStaysAHardLimit) {
   const ChartSet set = keep(mesh, options);
   EXPECT_GT(set.repairs.reflattened_charts, 0u);
   EXPECT_LE(check_charts(mesh.view(), set).cone_degrees, 30 + 1e-4);
+}
+
+// Two walls of a roof, in one chart. Its cone is half the angle between them.
+TEST(GivenUvs, ChartsBeyondTheConeAreCutHoweverLittle) {
+  Mesh mesh = mapped(grid(2, 2), [](Vec3f p) { return Vec2f{p.x, p.y}; });
+  const double half = 29.5 * M_PI / 180;
+  for (Vec3f& p : mesh.positions) {
+    p = {float(std::cos(half) * p.x), p.y, float(std::sin(half) * std::min(p.x, 1 - p.x))};
+  }
+  ChartOptions options;
+  for (const double cone : {29.0, 29.49, 29.51, 30.0}) {
+    options.cone_degrees = cone;
+    const ChartSet set = keep(mesh, options);
+    EXPECT_EQ(set.charts.size(), cone < 29.5 ? 2u : 1u) << cone;
+    EXPECT_EQ(set.repairs.kept_charts, cone < 29.5 ? 0u : 1u) << cone;
+    EXPECT_LE(check_charts(mesh.view(), set).cone_degrees, cone + 1e-4);
+  }
 }
 
 TEST(GivenUvs, DensityScalesKeptCharts) {
