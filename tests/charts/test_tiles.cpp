@@ -127,11 +127,15 @@ TEST(Tiles, WhatIsWithinItsLimitStays) {
 
 // A spike of less than a thousandth of a sheet may stretch beyond the bound, but not in a small
 // piece of it.
-TEST(Tiles, APieceKeepsToTheBoundThatTheWholeKeeps) {
-  Shape sheet = grid(60, 60);
+Mesh spike() {
+  Mesh sheet(grid(60, 60));
   for (Vec3f& p : sheet.positions) p.z = 0.2f * (p.x * p.x - p.y * p.y);
   sheet.positions[61 * 30 + 30].z += 0.014f;
-  const Mesh mesh(sheet);
+  return sheet;
+}
+
+TEST(Tiles, APieceKeepsToTheBoundThatTheWholeKeeps) {
+  const Mesh mesh = spike();
   ChartSet set = charts_of(mesh);
   ASSERT_EQ(set.charts.size(), 1u);
   ASSERT_GT(set.charts[0].distortion.stretch_linf, 1.3);
@@ -164,6 +168,76 @@ TEST(Tiles, PiecesOfGivenChartsKeepTheirShape) {
     ASSERT_NEAR(uv_edge(pieces, corner), uv_edge(*given, corner), 1e-9);
 }
 
+// So does a piece with the spike of a given chart that keeps to the bound.
+TEST(Tiles, PiecesOfGivenChartsKeepTheirShapeBeyondTheBound) {
+  Mesh mesh = spike();
+  const ChartSet own = charts_of(mesh);
+  for (const Vec2d& uv : own.uvs) mesh.texcoords.push_back({float(uv.x), float(uv.y)});
+  mesh.texcoord_indices = own.triangle_uv;
+  const auto given = make_charts(mesh.view(), {.keep_uv_charts = true}, {});
+  ASSERT_TRUE(given.ok()) << given.status().message();
+  ASSERT_EQ(given->repairs.kept_charts, 1u);
+  ASSERT_LE(given->charts[0].distortion.stretch_999, kMaxStretch);
+  ChartSet pieces = *given;
+  EXPECT_EQ(cut(mesh, 0.15, pieces), 1u);
+  for (std::size_t corner = 0; corner < mesh.indices.size(); ++corner)
+    ASSERT_NEAR(uv_edge(pieces, corner), uv_edge(*given, corner), 1e-9);
+}
+
+// Pieces are measured at scales of their own, and so is the whole.
+TEST(Tiles, TheWholeIsMeasuredAnew) {
+  Mesh mesh(grid(24, 6, 4, 1));
+  for (const Vec3f& p : mesh.positions) mesh.texcoords.push_back({p.x * p.x / 16 + p.x / 20, p.y});
+  mesh.texcoord_indices = mesh.indices;
+  const auto given = make_charts(mesh.view(), {.keep_uv_charts = true}, {});
+  ASSERT_TRUE(given.ok()) << given.status().message();
+  ChartSet pieces = *given;
+  EXPECT_EQ(cut(mesh, given->charts[0].size.x / 3.5, pieces), 1u);
+  const ChartFindings found = check_charts(mesh.view(), pieces);
+  EXPECT_EQ(found.fault, "");
+  EXPECT_NEAR(pieces.distortion.stretch_999, found.stretch_999, 1e-4);
+  EXPECT_NEAR(pieces.distortion.stretch_l2, found.stretch_l2, 1e-4);
+  EXPECT_GT(given->distortion.stretch_999, found.stretch_999 + 0.01);
+}
+
+// Triangles that are turned against their chart stay so in its pieces.
+TEST(Tiles, MayHaveTurnedTriangles) {
+  Mesh mesh(grid(60, 6, 10, 1));
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 9)
+    std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+  ChartSet set = charts_of(mesh);
+  const std::vector<std::uint32_t> turned = set.flipped_triangles;
+  ASSERT_FALSE(turned.empty());
+  EXPECT_EQ(cut(mesh, 2.6, set), 1u);
+  EXPECT_EQ(set.charts.size(), 4u);
+  EXPECT_EQ(set.flipped_triangles, turned);
+  EXPECT_EQ(check_charts(mesh.view(), set).fault, "");
+}
+
+// A plate whose density doubles along it stretches only as seen without the density. Its pieces are
+// as large as they were in the whole, and know how much they stretch.
+TEST(Tiles, KeepTheDensityOfTheWhole) {
+  const Mesh mesh(grid(80, 8, 10, 1));
+  std::vector<float> density;
+  for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t)
+    density.push_back(std::exp2(mesh.positions[mesh.indices[3 * t]].x / 5));
+  MeshView view = mesh.view();
+  view.density = density;
+  const auto whole = make_charts(view, {}, {});
+  ASSERT_TRUE(whole.ok());
+  ASSERT_EQ(whole->charts.size(), 1u);
+  ASSERT_LT(whole->distortion.stretch_999, 1.1);
+  ChartSet set = *whole;
+  const std::vector<double> sides{set.charts[0].size.x / 2.5};
+  ASSERT_TRUE(cut_to_limits(view, {sides, 1.1}, set, {}).ok());
+  EXPECT_EQ(set.charts.size(), 3u);
+  for (std::size_t corner = 0; corner < mesh.indices.size(); ++corner)
+    ASSERT_NEAR(uv_edge(set, corner), uv_edge(*whole, corner), 1e-9);
+  EXPECT_NEAR(set.distortion.stretch_l2, whole->distortion.stretch_l2, 1e-3);
+  EXPECT_NEAR(set.distortion.surface_area, whole->distortion.surface_area,
+              1e-9 * whole->distortion.surface_area);
+}
+
 // Triangles without area go to the piece that their edge or corner belongs to.
 TEST(Tiles, TakeTrianglesWithoutAreaAlong) {
   Shape sheet = grid(40, 4, 10, 1);
@@ -172,12 +246,17 @@ TEST(Tiles, TakeTrianglesWithoutAreaAlong) {
     const std::uint32_t a = vertex(x, 2), b = vertex(x + 1, 2);
     sheet.indices.insert(sheet.indices.end(), {a, b, b, a, a, a});
   }
-  const Mesh mesh(sheet);
-  ChartSet set = charts_of(mesh);
-  ASSERT_GT(set.repairs.degenerate_triangles, 20u);
-  EXPECT_EQ(cut(mesh, 2.6, set), 1u);
-  EXPECT_EQ(set.charts.size(), 4u);
-  EXPECT_EQ(check_charts(mesh.view(), set).fault, "");
+  for (const bool first : {false, true}) {
+    Mesh mesh(sheet);
+    if (first) std::reverse(mesh.indices.begin(), mesh.indices.end());
+    ChartSet set = charts_of(mesh);
+    ASSERT_GT(set.repairs.degenerate_triangles, 20u);
+    EXPECT_EQ(cut(mesh, 2.6, set), 1u);
+    EXPECT_EQ(set.charts.size(), 4u);
+    EXPECT_EQ(check_charts(mesh.view(), set).fault, "");
+    for (std::size_t i = 0; i < mesh.indices.size(); ++i)
+      EXPECT_EQ(mesh.positions[set.uv_vertex[set.triangle_uv[i]]], mesh.positions[mesh.indices[i]]);
+  }
 }
 
 }  // namespace
