@@ -56,6 +56,23 @@ ChartSet flat_stairs(const Mesh& mesh) {
   return set;
 }
 
+double surface_area(const ChartSet& set) {
+  double area = 0;
+  for (const Chart& chart : set.charts) area += chart.distortion.surface_area;
+  return area;
+}
+
+// Returns the area that the triangles cover, computed from their corners.
+double uv_area(const ChartSet& set) {
+  double area = 0;
+  for (std::size_t i = 0; i < set.triangle_uv.size(); i += 3) {
+    const Vec2d p = set.uvs[set.triangle_uv[i]], q = set.uvs[set.triangle_uv[i + 1]],
+                r = set.uvs[set.triangle_uv[i + 2]];
+    area += 0.5 * std::abs((q.x - p.x) * (r.y - p.y) - (r.x - p.x) * (q.y - p.y));
+  }
+  return area;
+}
+
 TEST(Gaps, ChartsKeepWhatTheyPromise) {
   std::size_t changed = 0;
   for (const Shape& shape : zoo()) {
@@ -93,15 +110,89 @@ TEST(Gaps, EndsOfAStairPart) {
   EXPECT_DOUBLE_EQ(report.near_before, before.near_before);
   const GapReport after = measure_gaps(mesh.view(), clearance, set, {});
   EXPECT_LT(after.near_before, 0.1 * before.near_before);
+  const ChartFindings found = check_charts(mesh.view(), set);
+  EXPECT_EQ(found.fault, "");
+  EXPECT_NEAR(found.stretch_l2, set.distortion.stretch_l2, 1e-6);
+  EXPECT_NEAR(found.stretch_999, set.distortion.stretch_999, 1e-4);
+  EXPECT_NEAR(uv_area(set), surface_area(set), 1e-6);
+  EXPECT_NEAR(set.distortion.uv_area, surface_area(set), 1e-6);
+}
+
+// Neither the unit nor a density that is the same everywhere changes what is reported.
+TEST(Gaps, AreCountedInClearances) {
+  constexpr double kLittle = 1.001;  // a bound that leaves most of the gaps
+  const Mesh mesh = stairs(2);
+  const ChartSet charts = flat_stairs(mesh);
+  ChartSet set = charts;
+  const GapReport one = widen_gaps(mesh.view(), {clearances(set, 0.05), kLittle}, set, {});
+  ASSERT_GT(one.near_after, 0);
+  Mesh large = mesh;
+  for (Vec3f& p : large.positions) p = {8 * p.x, 8 * p.y, 8 * p.z};
+  const std::vector<float> density(mesh.indices.size() / 3, 8.0f);
+  MeshView dense = mesh.view();
+  dense.density = density;
+  for (const MeshView& view : {large.view(), dense}) {
+    ChartSet scaled = charts;
+    for (Vec2d& p : scaled.uvs) p = {8 * p.x, 8 * p.y};
+    std::vector<double> clearance = clearances(charts, 0.05);
+    for (double& c : clearance) c *= 8;
+    for (Chart& chart : scaled.charts) {
+      chart.size = {8 * chart.size.x, 8 * chart.size.y};
+      chart.distortion.surface_area *= 64;
+      chart.distortion.uv_area *= 64;
+    }
+    const GapReport report = widen_gaps(view, {clearance, kLittle}, scaled, {});
+    EXPECT_EQ(report.charts, one.charts);
+    EXPECT_NEAR(report.border, one.border, 1e-9 * one.border);
+    EXPECT_NEAR(report.near_before, one.near_before, 1e-9 * one.near_before);
+    EXPECT_NEAR(report.near_after, one.near_after, 1e-6 * one.near_before);
+    for (std::size_t i = 0; i < set.uvs.size(); ++i) {
+      ASSERT_NEAR(scaled.uvs[i].x, 8 * set.uvs[i].x, 1e-6);
+      ASSERT_NEAR(scaled.uvs[i].y, 8 * set.uvs[i].y, 1e-6);
+    }
+  }
+}
+
+// Triangles that are turned against their chart, and triangles without area, are no obstacle.
+TEST(Gaps, EndThoughTrianglesAreTurnedOrWithoutArea) {
+  Mesh mesh = stairs(1);
+  for (std::size_t i = 0; i + 3 < mesh.indices.size(); i += 9) {
+    std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+    std::swap(mesh.texcoord_indices[i + 1], mesh.texcoord_indices[i + 2]);
+  }
+  for (const std::uint32_t v : {0u, 0u, 1u, 3u, 3u, 3u}) {
+    mesh.indices.push_back(v);
+    mesh.texcoord_indices.push_back(v);
+  }
+  ChartSet set = flat_stairs(mesh);
+  ASSERT_GT(set.flipped_triangles.size(), 0u);
+  ASSERT_EQ(set.repairs.degenerate_triangles, 2u);
+  EXPECT_EQ(widen_gaps(mesh.view(), {clearances(set, 0.05), kMaxStretch}, set, {}).charts, 1u);
   EXPECT_EQ(check_charts(mesh.view(), set).fault, "");
+}
+
+TEST(Gaps, WideningKeepsToTheBound) {
+  const Mesh mesh = stairs(1);
+  for (const double bound : {1.05, 1.1, 1.15}) {
+    ChartSet set = flat_stairs(mesh);
+    if (check_charts(mesh.view(), set).stretch_999 > bound) continue;
+    widen_gaps(mesh.view(), {clearances(set, 0.09), bound}, set, {});
+    EXPECT_LE(check_charts(mesh.view(), set).stretch_999, bound * (1 + 1e-6));
+  }
 }
 
 TEST(Gaps, KeptChartsAndThoseOfNoInterestStay) {
   const Mesh mesh = stairs(1);
   const ChartSet before = flat_stairs(mesh);
   ChartSet set = before;
-  EXPECT_EQ(widen_gaps(mesh.view(), {clearances(set, 0), kMaxStretch}, set, {}).charts, 0u);
+  const GapReport nothing = widen_gaps(mesh.view(), {clearances(set, 0), kMaxStretch}, set, {});
+  EXPECT_EQ(nothing.charts, 0u);
+  EXPECT_EQ(nothing.border, 0);
+  EXPECT_EQ(nothing.near_before, 0);
+  EXPECT_EQ(nothing.near_after, 0);
   EXPECT_EQ(widen_gaps(mesh.view(), {clearances(set, 0.21), kMaxStretch}, set, {}).charts, 0u);
+  EXPECT_EQ(measure_gaps(mesh.view(), clearances(set, 0.21), set, {}).border, 0);
+  EXPECT_GT(measure_gaps(mesh.view(), clearances(set, 0.19), set, {}).border, 0);
   EXPECT_EQ(bytes(set), bytes(before));
   set.charts[0].kept = true;
   EXPECT_EQ(widen_gaps(mesh.view(), {clearances(set, 0.05), kMaxStretch}, set, {}).charts, 0u);
