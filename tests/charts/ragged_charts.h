@@ -67,6 +67,30 @@ struct RaggedCharts {
     }
   }
 
+  // Cuts about one in `rate` of the edges within charts.
+  void cut_at_random(unsigned rate, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    for (std::uint32_t h = 0; h < topology.opposite.size(); ++h) {
+      const std::uint32_t o = topology.opposite[h];
+      if (o == kNoIndex || partition.chart[h / 3] != partition.chart[o / 3]) continue;
+      if (h < o || random() % rate != 0) continue;
+      partition.cut(h);
+      partition.cut(o);
+    }
+  }
+
+  // Returns the number of sides of seams whose other side is no seam, or in another chart.
+  std::size_t seam_faults() const {
+    std::size_t faults = 0;
+    for (std::uint32_t h = 0; h < topology.opposite.size(); ++h) {
+      if (!partition.seam(h)) continue;
+      const std::uint32_t o = topology.opposite[h];
+      faults +=
+          o == kNoIndex || !partition.seam(o) || partition.chart[h / 3] != partition.chart[o / 3];
+    }
+    return faults;
+  }
+
   double border_length() const {
     double length = 0;
     for (std::uint32_t h = 0; h < topology.opposite.size(); ++h) {

@@ -177,6 +177,23 @@ TEST(Straighten, KeepsWhatChartsAre) {
   EXPECT_GT(shorter, 24);  // of 48 cases
 }
 
+// Triangles at seams of a chart with itself stay where they are.
+TEST(Straighten, SeamsHaveTwoSidesInOneChart) {
+  for (const Shape& shape : {grid(30, 30), sphere(40, 20), torus(48, 16)}) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      RaggedCharts charts(shape);
+      charts.grow(5, seed);
+      charts.cut_at_random(30, seed);
+      const std::vector<std::uint8_t> seams = charts.partition.seams;
+      const std::vector<std::uint32_t> before = charts.partition.chart;
+      charts.straighten(8, 180);
+      EXPECT_EQ(charts.partition.seams, seams) << shape.name;
+      EXPECT_EQ(charts.seam_faults(), 0u) << shape.name;
+      EXPECT_NE(charts.partition.chart, before) << shape.name;
+    }
+  }
+}
+
 // Applied in order, the listed changes lead from the charts before to those after. The result does
 // not depend on how many borders are processed at once.
 TEST(Straighten, BordersAtOnceComeOutAsOneByOne) {
