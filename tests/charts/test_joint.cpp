@@ -6,6 +6,8 @@
 #include <random>
 
 #include "libatlas/charts/flattening/fitting_run.h"
+#include "libatlas/charts/geometry/rigid_fit.h"
+#include "libatlas/core/random.h"
 #include "tests/charts/chart_checks.h"
 
 namespace atlas::test {
@@ -106,6 +108,28 @@ struct TwoRows {
     return std::sqrt(spread(best)) / length;
   }
 };
+
+// The sums since some pair are those of the later pairs alone.
+TEST(RigidFit, OfTheLaterPairs) {
+  std::mt19937_64 random(3);
+  std::vector<std::pair<glm::dvec2, glm::dvec2>> pairs;
+  for (int i = 0; i < 12; ++i) {
+    const glm::dvec2 p(uniform(random), uniform(random)), stray(uniform(random), uniform(random));
+    pairs.emplace_back(p, glm::dvec2(3 - p.y, 5 + p.x) + 0.1 * stray);
+  }
+  RigidFit all(pairs[0].first, pairs[0].second), early = all;
+  RigidFit later(pairs[5].first, pairs[5].second);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const double weight = 1 + double(i % 3);
+    all.add(pairs[i].first, pairs[i].second, weight);
+    (i < 5 ? early : later).add(pairs[i].first, pairs[i].second, weight);
+  }
+  const Motion since = all.since(early).motion(), alone = later.motion();
+  EXPECT_NEAR(glm::distance(since.turn, alone.turn), 0, 1e-12);
+  EXPECT_NEAR(glm::distance(since.shift, alone.shift), 0, 1e-12);
+  EXPECT_NEAR(since.misfit, alone.misfit, 1e-9);
+  EXPECT_GT(alone.misfit, 1e-3);
+}
 
 TEST(Joint, TakesOneChartToTheOther) {
   const TwoRows rows(std::vector<double>(kColumns, 0.0));

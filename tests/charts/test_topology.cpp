@@ -164,6 +164,12 @@ TEST(NormalCone, IsTheSmallestOfThreeNormals) {
   EXPECT_NEAR(normal_cone(normals, one).angle, 0, 1e-5);
 }
 
+TEST(NormalCone, TrianglesWithoutNormalDoNotCount) {
+  const std::vector<Vec3f> normals = {{0, 0, 0}, {0.6f, 0, 0.8f}, {0, 0, 0}, {-0.6f, 0, 0.8f}};
+  EXPECT_NEAR(normal_cone(normals).angle, std::asin(0.6), 1e-6);
+  EXPECT_NEAR(normal_cone(normals).axis.z, 1, 1e-6);
+}
+
 // The part has opposite sides of a box, so the sum of its normals is the worst possible axis. The
 // axis of the whole is within 90 degrees of all of them.
 TEST(NormalCone, OfAPartIsNotWiderThanTheWhole) {

@@ -301,6 +301,14 @@ TEST(CostClasses, OfManyEachHasTheFirstOfItsNeighbours) {
   EXPECT_GT(values.size(), 2000u);
 }
 
+TEST(Hull, ASegmentEndsAtItsEnds) {
+  const Vec2d a{1, 2}, b{4, 6};  // 5 long
+  EXPECT_DOUBLE_EQ(squared_distance_to_segment({1 + 1.5 - 4, 2 + 2 + 3}, a, b), 25);
+  EXPECT_DOUBLE_EQ(squared_distance_to_segment({1 - 3, 2 - 4}, a, b), 25);
+  EXPECT_DOUBLE_EQ(squared_distance_to_segment({4 + 6, 6 + 8}, a, b), 100);
+  EXPECT_DOUBLE_EQ(squared_distance_to_segment({4, 2}, a, a), 9);
+}
+
 TEST(Hull, OfFewPoints) {
   std::vector<Vec2d> none, hull, three{{0, 0}, {2, 0}, {0, 2}}, line{{0, 0}, {1, 1}, {2, 2}};
   EXPECT_EQ(hull_area(none, hull), 0);
