@@ -253,5 +253,47 @@ TEST(PartOfChart, WhatHangsTogetherByWholeSides) {
   EXPECT_EQ(parts({1, 2, 6, 7}), (Parts{{1, 2}, {6, 7}}));
 }
 
+// Two columns of squares that are joined at the far end only: one part, its triangles ascending.
+TEST(PartOfChart, TrianglesOfAPartAreAscending) {
+  const Shape shape = grid(3, 6);
+  FlatChart chart;
+  std::vector<std::uint32_t> triangles;
+  for (std::uint32_t t = 0; t < shape.triangle_count(); ++t) {
+    chart.triangles.push_back(t);
+    chart.corners.push_back(
+        {shape.indices[3 * t], shape.indices[3 * t + 1], shape.indices[3 * t + 2]});
+    const bool between = t / 2 % 3 == 1 && t / 6 < 5;
+    if (!between) triangles.push_back(t);
+  }
+  for (const Vec3f& p : shape.positions) chart.uvs.push_back({p.x, p.y});
+  EXPECT_EQ(connected_parts(chart, triangles), std::vector<std::vector<std::uint32_t>>{triangles});
+}
+
+// All of a chart as its own part is stretched as it was, also where the density varies.
+TEST(PartOfChart, KnowsItsStretch) {
+  const Mesh mesh(grid(40, 8, 5, 1));
+  const Topology topology = topology_of(mesh);
+  std::vector<float> density;
+  std::vector<std::uint32_t> all;
+  for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
+    density.push_back(std::exp2(mesh.positions[mesh.indices[3 * t]].x / 5));
+    all.push_back(t);
+  }
+  Partition partition;
+  partition.chart.assign(all.size(), 0);
+  Frames none;
+  const ChartOptions options;
+  const FlattenInput input{topology, density, options, none};
+  const FlattenResult flat = flatten_charts(input, partition, {});
+  ASSERT_EQ(flat.charts.size(), 1u);
+  const FlatChart part = part_of_chart(input, flat.charts[0], all);
+  const Distortion &a = flat.charts[0].distortion, &b = part.distortion;
+  EXPECT_LT(a.stretch_999, 1.1);
+  EXPECT_NEAR(b.stretch_999, a.stretch_999, 1e-6);
+  EXPECT_NEAR(b.stretch_l2, a.stretch_l2, 1e-6);
+  EXPECT_NEAR(b.surface_area, a.surface_area, 1e-6 * a.surface_area);
+  EXPECT_NEAR(b.uv_area, a.uv_area, 1e-6 * a.uv_area);
+}
+
 }  // namespace
 }  // namespace atlas::test
