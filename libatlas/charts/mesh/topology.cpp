@@ -249,9 +249,9 @@ class Pieces {
       const bool differ = turned_[h / 3] != turned_[o / 3];
       if (differ == misoriented(h, o)) continue;
       topology_.opposite[h] = topology_.opposite[o] = kNoIndex;
+      // The list has the lower half-edge of each pair.
       const bool fan =
-          std::binary_search(topology_.fan_links.begin(), topology_.fan_links.end(), h) ||
-          std::binary_search(topology_.fan_links.begin(), topology_.fan_links.end(), o);
+          std::binary_search(topology_.fan_links.begin(), topology_.fan_links.end(), h);
       if (!fan) topology_.cut_length += edge_length(topology_, h) / topology_.scale;
     }
   }
