@@ -59,6 +59,7 @@ class PairStraightener {
   // Returns the triangle's index in the band; kNoIndex: not in the band.
   std::uint32_t place(std::uint32_t t) const { return side(t) == 2 ? kNoIndex : places_[t]; }
 
+  // Adds t to the band, unless it lies at a seam of its chart with itself.
   void reach(std::uint32_t t) {
     if (side(t) == 2 || places_[t] != kNoIndex || partition_.seams[t]) return;
     places_[t] = static_cast<std::uint32_t>(band_.size());
@@ -168,7 +169,7 @@ class PairStraightener {
 
   void add_edge(std::uint32_t h, double unit, bool (&anchored)[2]) {
     const std::uint32_t o = topology_.opposite[h], i = places_[h / 3] - first_;
-    if (o == kNoIndex || partition_.seam(h)) return;
+    if (o == kNoIndex) return;
     const bool within = in_band(o / 3);
     if (within && o < h) return;  // added once for both directions
     const std::int32_t w = steps(border_weight(topology_, h, crease_cosine_) / unit);
@@ -264,7 +265,7 @@ class PairStraightener {
         const std::uint32_t t = list_[k];
         for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
           const std::uint32_t o = topology_.opposite[h];
-          if (o == kNoIndex || partition_.seam(h)) continue;
+          if (o == kNoIndex) continue;
           if (side_at(o / 3, true) != side_at(t, true)) continue;
           if (!in_band(o / 3)) {
             hold = true;
