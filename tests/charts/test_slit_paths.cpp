@@ -242,5 +242,38 @@ TEST(SlitPaths, BordersMoveAcrossClosedSlits) {
   EXPECT_GT(shorter, 10);
 }
 
+// While the slits are closed, the lower of two tubes loses rings to the upper one. What is left of
+// its slit is cut again, and the upper one's is extended to the new border.
+TEST(SlitPaths, EndAtTheBorderWhereverItIs) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Slitted charts = tube(24, 24, 6);
+    const auto place_border = [&](double height) {
+      for (std::uint32_t t = 0; t < charts.topology.triangle_count(); ++t) {
+        double sum = 0;
+        for (int c = 0; c < 3; ++c) sum += charts.height(charts.topology.corner_vertex[3 * t + c]);
+        charts.partition.chart[t] = sum > 3 * height;
+      }
+    };
+    const auto at = [&](double height) {
+      return
+          [&charts, height](std::uint32_t v) { return std::abs(charts.height(v) - height) < 1e-3; };
+    };
+    place_border(3);
+    charts.cut(0, at(0), at(3), seed);
+    charts.cut(1, at(3), at(6), seed + 100);
+    ASSERT_EQ(charts.topologies().at(0), Disc(1, 1));
+    ASSERT_EQ(charts.topologies().at(1), Disc(1, 1));
+    Slits slits(charts.topology, {{40, {}}, kBands}, charts.partition, charts.frames);
+    slits.close();
+    ASSERT_EQ(charts.slit_length(), 0);
+    place_border(2.25);
+    slits.reopen();
+    EXPECT_EQ(charts.topologies().at(0), Disc(1, 1)) << seed;
+    EXPECT_EQ(charts.topologies().at(1), Disc(1, 1)) << seed;
+    EXPECT_EQ(charts.seam_faults(), 0u) << seed;
+    EXPECT_EQ(charts.slit_ends().size(), 4u) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace atlas::test
