@@ -265,6 +265,27 @@ TEST(Copies, HaveTheDensityOfTheirKind) {
   }
 }
 
+// Charts of another piece are divided, and counted, as beside a plate that is no copy.
+TEST(Copies, DoNotHideThatOtherChartsAreDivided) {
+  ChartOptions options;
+  options.max_stretch = 1.02;
+  std::uint64_t divided = 0;
+  for (const Shape& shape : {icosphere(3), torus(30, 16), noisy(icosphere(2), 0.1, 3)}) {
+    std::uint64_t split[2];
+    for (const bool copied : {false, true}) {
+      const Shape plate = moved(grid(20, 20), 1, {9, 0, 0});
+      const Shape other = moved(grid(20, 20, copied ? 1 : 1.5), 1, {9, 5, 0});
+      const Mesh mesh(together(together(shape, plate), other));
+      const ChartSet set = charts_of(mesh.view(), options);
+      EXPECT_EQ(set.copied_pieces, copied ? 1u : 0u) << shape.name;
+      split[copied] = set.repairs.split_charts;
+    }
+    EXPECT_EQ(split[0], split[1]) << shape.name;
+    divided += split[0];
+  }
+  EXPECT_GT(divided, 0u);
+}
+
 // A flap that is bent up and one that is bent down have the same edge lengths in order.
 TEST(Copies, FoldToTheSameSide) {
   Shape up;
