@@ -32,6 +32,10 @@ std::vector<std::uint32_t> list_offenders(const LocalMesh& mesh, const Injectivi
 
 }  // namespace
 
+bool is_within(const Distortion& distortion, double bound) {
+  return std::max(distortion.stretch_999, distortion.stretch_l2) <= bound;
+}
+
 std::vector<std::uint32_t> beyond_bound(std::span<const double> stretch, double bound) {
   std::vector<std::uint32_t> beyond;
   for (std::uint32_t t = 0; t < stretch.size(); ++t) {
@@ -45,7 +49,7 @@ std::vector<std::uint32_t> beyond_bound(std::span<const double> stretch, double 
 void judge(const LocalMesh& mesh, const ParamOptions& options, ParamResult& r,
            const Distortion* known) {
   std::vector<double> stretch;
-  if (known && known->stretch_999 <= options.max_stretch) {
+  if (known && is_within(*known, options.max_stretch)) {
     r.distortion = *known;
   } else {
     stretch.resize(mesh.triangles.size());
@@ -54,10 +58,7 @@ void judge(const LocalMesh& mesh, const ParamOptions& options, ParamResult& r,
   scale_to_surface_area(r);
   const Injectivity check = check_injectivity(mesh, r.uvs);
   r.injective = check.injective;
-  // The L2 stretch as well: beyond 99.9 % of the area there may be a sliver that is stretched
-  // without limit.
-  r.within_bound =
-      std::max(r.distortion.stretch_999, r.distortion.stretch_l2) <= options.max_stretch;
+  r.within_bound = is_within(r.distortion, options.max_stretch);
   r.crossings = check.crossings;
   std::vector<std::uint32_t> beyond;
   if (!r.within_bound) beyond = beyond_bound(stretch, options.max_stretch);

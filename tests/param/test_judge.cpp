@@ -117,6 +117,22 @@ struct PlateWithSlivers {
   }
 };
 
+// Whoever has measured the stretch before gets the same answer, whatever the stretch.
+TEST(Judge, AKnownDistortionSavesOnlyTheMeasuring) {
+  const PlateWithSlivers plate;
+  std::vector<Vec2d> sheared;
+  for (const Vec3d& p : plate.disc.positions) sheared.push_back({p.x + 0.8 * p.y, p.y});
+  for (const std::vector<Vec2d>& uvs : {plate.uvs, sheared}) {
+    const Distortion known = measure_distortion(plate.disc.view(), uvs);
+    const ParamResult fresh = judged(plate.disc, uvs), r = judged(plate.disc, uvs, &known);
+    ASSERT_FALSE(fresh.within_bound);
+    EXPECT_FALSE(r.within_bound);
+    EXPECT_FALSE(fresh.offenders.empty());
+    EXPECT_EQ(r.offenders, fresh.offenders);
+    EXPECT_EQ(r.uvs, fresh.uvs);
+  }
+}
+
 TEST(Judge, ASliverWithoutLimitIsBeyondTheBound) {
   const PlateWithSlivers plate;
   const ParamResult r = judged(plate.disc, plate.uvs);
