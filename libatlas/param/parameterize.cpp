@@ -24,7 +24,7 @@ std::optional<Distortion> project(const LocalMesh& mesh, Vec3d axis, double boun
   if (mesh.density.empty() && !(bound * bound * projected_share(mesh, axis) >= 1)) return {};
   project_planar(mesh, axis, uvs);
   const Distortion d = measure_distortion(mesh, uvs);
-  if (!(d.stretch_999 <= bound) || d.flips > 0) return {};
+  if (!param::is_within(d, bound) || d.flips > 0) return {};
   return d;
 }
 

@@ -21,8 +21,9 @@ enum class ParamMethod {
 };
 
 struct ParamOptions {
-  double max_stretch = 1.25;  // bound on Distortion::stretch_999; > 1
-  // The projection is used if its own stretch_999 is at most this; <= max_stretch. 0: max_stretch.
+  double max_stretch = 1.25;  // bound on Distortion::stretch_999 and stretch_l2; > 1
+  // The projection is used if its own stretch_999 and stretch_l2 are at most this; <= max_stretch.
+  // 0: max_stretch.
   double max_planar_stretch = 0;
   ParamMethod method = ParamMethod::automatic;
   Vec3d axis = {};              // of the projection; (0, 0, 0): the mean normal

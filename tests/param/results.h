@@ -21,7 +21,8 @@ inline void expect_consistent(const Disc& d, const ParamResult& r, double max_st
   for (const Vec2d p : r.uvs) ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y));
   const Distortion m = measure_distortion(d.view(), r.uvs);
   EXPECT_NEAR(m.stretch_999, r.distortion.stretch_999, 1e-4 * m.stretch_999);
-  EXPECT_EQ(r.within_bound, r.distortion.stretch_999 <= max_stretch);
+  EXPECT_EQ(r.within_bound,
+            r.distortion.stretch_999 <= max_stretch && r.distortion.stretch_l2 <= max_stretch);
   if (m.surface_area > 0) {
     EXPECT_NEAR(m.uv_area, m.surface_area, 1e-6 * m.surface_area);
   }

@@ -33,6 +33,23 @@ TEST(Parameterize, ProjectsWhatIsNearlyFlat) {
   EXPECT_LT(other.distortion.stretch_l2, r.distortion.stretch_l2);
 }
 
+// One vertex of a plate stands above its neighbour. Seen from above, the triangles between both are
+// mere slivers: too little area for the bound, but the L2 stretch is far beyond it.
+TEST(Parameterize, UnfoldsWhatAProjectionTurnsIntoSlivers) {
+  const std::uint32_t n = 80;
+  Disc d = testing::make_grid(n, n, [](double u, double v) { return Vec3d{u, v, 0}; });
+  Vec3d& vertex = d.positions[40 * (n + 1) + 40];
+  vertex = {vertex.x + (1 - 1e-5) / n, vertex.y, 0.6 / n};
+  const ParamResult projected = run(d, {.method = ParamMethod::planar, .axis = {0, 0, 1}});
+  ASSERT_LT(projected.distortion.stretch_999, 1.25);
+  ASSERT_FALSE(projected.within_bound);
+  const ParamResult r = run(d);
+  expect_consistent(d, r, 1.25);
+  EXPECT_FALSE(r.planar);
+  EXPECT_TRUE(r.injective && r.within_bound);
+  EXPECT_LT(measure_distortion(d.view(), r.uvs).stretch_l2, 1.01);
+}
+
 // Between solving and measuring, large meshes release the solver's memory.
 TEST(Parameterize, LargeMeshesGoOnAfterTheyWereMeasured) {
   const Disc cylinder = testing::make_cylinder(5, 2, 500, 220);
