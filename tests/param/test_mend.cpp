@@ -1,6 +1,7 @@
 // Tests of mending single triangles that are squeezed to almost nothing.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "libatlas/param/arap_solver.h"
@@ -85,6 +86,52 @@ TEST(Mend, SmoothingKeepsTheBorderIfAsked) {
     for (std::uint32_t y = 0; y <= kSide; ++y) moved |= uvs[at(0, y)] != plate.uvs[at(0, y)];
     EXPECT_EQ(moved, border_moves);
   }
+}
+
+// Smoothing spreads the distortion of the two squeezed triangles over more of them than a bound
+// leaves out.
+TEST(Mend, StaysWithinTheBoundHoweverTight) {
+  const SqueezedPlate plate(40, 40);
+  const double least = judged(plate, {}).distortion.stretch_l2;
+  for (const double slack : {1e-6, 1e-3, 3e-3, 1e-2, 3e-2, 0.1}) {
+    const ParamOptions options{.max_stretch = least * (1 + slack)};
+    const ParamResult before = judged(plate, options), after = mended(plate, options);
+    ASSERT_TRUE(before.within_bound) << slack;
+    const Distortion measured = measure_distortion(plate.disc.view(), after.uvs);
+    EXPECT_LE(std::max(measured.stretch_999, measured.stretch_l2), options.max_stretch) << slack;
+    EXPECT_TRUE(check_injectivity(plate.disc.view(), after.uvs).injective) << slack;
+  }
+}
+
+// A plate with a slit whose banks almost touch. A vertex near one bank has moved towards it.
+SqueezedPlate slit_plate() {
+  SqueezedPlate plate(39, 70);
+  const auto first = static_cast<std::uint32_t>(plate.disc.positions.size());
+  for (std::uint32_t y = 41; y <= kSide; ++y) {
+    const Vec3d p = plate.disc.positions[at(40, y)];
+    plate.disc.positions.push_back(p);
+    plate.uvs.push_back({p.x - 0.01 / kSide, p.y});
+  }
+  for (auto& triangle : plate.disc.triangles) {
+    double middle = 0;
+    for (const std::uint32_t v : triangle) middle += plate.disc.positions[v].x / 3;
+    for (std::uint32_t& v : triangle) {
+      if (middle < 0.5 && v % (kSide + 1) == 40 && v >= at(40, 41) && v < first)
+        v = first + v / (kSide + 1) - 41;
+    }
+  }
+  return plate;
+}
+
+// Smoothing that moves the border would push one bank over the other.
+TEST(Mend, BanksThatAlmostTouchDoNotCross) {
+  const SqueezedPlate plate = slit_plate();
+  const ParamResult before = judged(plate, {}), after = mended(plate, {});
+  ASSERT_TRUE(before.within_bound && before.injective);
+  ASSERT_GT(before.distortion.stretch_linf, 19);
+  EXPECT_TRUE(after.within_bound && after.injective);
+  EXPECT_TRUE(check_injectivity(plate.disc.view(), after.uvs).injective);
+  EXPECT_LT(measure_distortion(plate.disc.view(), after.uvs).stretch_linf, 4);
 }
 
 }  // namespace
