@@ -158,5 +158,47 @@ TEST(Relax, ATailThatIsTheWholeChartIsLeftAlone) {
   EXPECT_TRUE(std::equal(uv.begin(), uv.end(), start.begin()));
 }
 
+// A plate on which some vertices, far from each other, have moved almost to a neighbour. A
+// thousandth of the area, which is twelve of these triangles, may stay as it is.
+TEST(Relax, TheTailBeginsBeyondAThousandthOfTheArea) {
+  const std::uint32_t n = 80;
+  const double bound = 1.25;
+  const Disc d = plate(n);
+  const System s = system_of(d);
+  int within = 0, beyond = 0;
+  for (std::uint32_t moved = 0; moved < 6; ++moved) {
+    std::vector<Vec2d> uv = flat(d);
+    for (std::uint32_t i = 0; i < moved; ++i) uv[(10 + 12 * i) * (n + 1) + 40].x += 0.7 / n;
+    const std::vector<Vec2d> start = uv;
+    const bool reached = measure_distortion(d.view(), uv).stretch_999 <= bound;
+    ++(reached ? within : beyond);
+    param::Relaxer relaxer;
+    EXPECT_EQ(relaxer.lower_tail(s.elements, s.corners, bound, uv), param::Tail::lowered) << moved;
+    EXPECT_EQ(uv == start, reached) << moved;
+    EXPECT_LE(measure_distortion(d.view(), uv).stretch_999, bound) << moved;
+  }
+  EXPECT_GT(within, 1);
+  EXPECT_GT(beyond, 1);
+}
+
+// By symmetry the energy is least in the middle, wherever the vertex starts.
+TEST(Relax, AVertexWithinAFixedSquareGoesToTheMiddle) {
+  Disc d;
+  d.positions = {{0, 0, 0}, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  d.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}};
+  const System s = system_of(d);
+  const std::vector<std::uint32_t> all{0, 1, 2, 3};
+  for (const double far : {0.1, 0.5, 0.9, 0.99}) {
+    for (const Vec2d at : {Vec2d{far, 0}, {0, far}, {-far, 0}, {0, -far}, {far, 0.7 * far}}) {
+      std::vector<Vec2d> uv = flat(d);
+      uv[0] = at;
+      param::Relaxer relaxer;
+      for (int i = 0; i < 3; ++i) relaxer.smooth(s.elements, s.corners, {all, false}, uv);
+      EXPECT_NEAR(uv[0].x, 0, 1e-6) << at.x << " " << at.y;
+      EXPECT_NEAR(uv[0].y, 0, 1e-6) << at.x << " " << at.y;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace atlas
