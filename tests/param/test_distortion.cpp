@@ -123,6 +123,19 @@ TEST(Distortion, CountsFlippedAndDegenerate) {
   EXPECT_TRUE(std::isinf(stretch[2]));
 }
 
+// Triangles without area stretch nothing, whatever area they have in uv.
+TEST(Distortion, TrianglesWithoutAreaDoNotStretch) {
+  Disc d = bumpy(6);
+  const std::vector<Vec2d> uv = flat(d);
+  const auto& corner = d.triangles.back();
+  d.positions[corner[2]] = d.positions[corner[1]];
+  std::vector<double> stretch(d.triangles.size());
+  const Distortion m = measure_distortion(d.view(), uv, stretch);
+  EXPECT_EQ(stretch.back(), 1);
+  EXPECT_EQ(m.degenerate, 0u);
+  EXPECT_TRUE(std::isfinite(m.stretch_linf) && std::isfinite(m.conformal_max));
+}
+
 TEST(Distortion, CollapsedToALineIsInfinite) {
   // No scale fits. Some triangles keep a length, others become a point.
   std::vector<TriangleStretch> triangles(1000);

@@ -131,6 +131,70 @@ TEST(Orient, StraightBordersWinWithinTheSlack) {
   EXPECT_NEAR(axis_aligned, 3, 1e-3);
 }
 
+using Border = std::vector<std::array<std::uint32_t, 2>>;
+
+// Returns the edges of a polygon given by its corners.
+Border around(std::size_t corners) {
+  Border border;
+  for (std::uint32_t i = 0; i < corners; ++i)
+    border.push_back({i, (i + 1) % static_cast<std::uint32_t>(corners)});
+  return border;
+}
+
+std::vector<Vec2d> turned(std::vector<Vec2d> points, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  for (Vec2d& p : points) p = {c * p.x - s * p.y, s * p.x + c * p.y};
+  return points;
+}
+
+// A plate with two long straight sides. The others consist of short edges, some of which are nearly
+// parallel to the long ones, and of edges without length. However it lies, the long sides end along
+// the axes.
+TEST(Orient, LongStraightSidesEndAlongTheAxes) {
+  std::vector<Vec2d> plate{{0, 0}, {10, 0}};
+  for (int i = 0; i <= 10; ++i) plate.push_back({10 + (i % 2 ? 0.3 : 0.0), 0.5 * i + 0.01});
+  for (int i = 0; i < 8; ++i) plate.push_back({10 - 1.25 * i, 5.02 + 0.005 * i});
+  for (int i = 0; i < 2; ++i) plate.push_back({0, 5.05});
+  for (int degrees = 0; degrees < 90; degrees += 2) {
+    std::vector<Vec2d> points = turned(plate, degrees * std::numbers::pi / 180);
+    orient_for_packing(points, around(points.size()));
+    const double x = points[1].x - points[0].x, y = points[1].y - points[0].y;
+    EXPECT_LT(std::min(std::abs(x), std::abs(y)), 1e-3) << degrees;
+  }
+}
+
+// No direction holds a fifth of an ellipse's border, so the smallest box counts.
+TEST(Orient, ARoundBorderHasTheSmallestBox) {
+  std::vector<Vec2d> ellipse;
+  for (int i = 0; i < 50; ++i) {
+    const double angle = i * std::numbers::pi / 25;
+    ellipse.push_back({1.02 * std::cos(angle), std::sin(angle)});
+  }
+  for (const double angle : {0.0, 0.3, 1.0}) {
+    std::vector<Vec2d> points = turned(ellipse, angle);
+    const double smallest = sampled_box(points);
+    const Orientation o = orient_for_packing(points, around(points.size()));
+    EXPECT_LE(o.size.x * o.size.y, smallest * (1 + 1e-9)) << angle;
+  }
+}
+
+// All edges of a stair are straight, but the box along them is far larger than the smallest one.
+TEST(Orient, StraightBordersLoseBeyondTheSlack) {
+  std::vector<Vec2d> stair;
+  for (int i = 0; i < 20; ++i) {
+    stair.push_back({double(i), double(i)});
+    stair.push_back({i + 1.0, double(i)});
+  }
+  for (int i = 20; i > 0; --i) {
+    stair.push_back({double(i), i + 1.0});
+    stair.push_back({i - 1.0, i + 1.0});
+  }
+  std::vector<Vec2d> points = stair;
+  const double smallest = sampled_box(points);
+  const Orientation o = orient_for_packing(points, around(points.size()));
+  EXPECT_LE(o.size.x * o.size.y, smallest * (1 + 1e-9));
+}
+
 TEST(Orient, HandlesPointsAndLines) {
   std::vector<Vec2d> none;
   EXPECT_EQ(orient_for_packing(none).size, (Vec2d{0, 0}));
