@@ -1,0 +1,129 @@
+// What the caller of parameterize() gives is respected: the axis of the projection, the bounds of
+// each way, uvs to go on from, and parts that are flat already.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "libatlas/param/parameterize.h"
+#include "tests/param/results.h"
+#include "tests/param/shapes.h"
+
+namespace atlas {
+namespace {
+
+using testing::Disc;
+using testing::expect_consistent;
+using testing::run;
+
+constexpr std::uint32_t kSide = 40;
+
+Disc plate() {
+  return testing::make_grid(kSide, kSide, [](double u, double v) { return Vec3d{u, v, 0}; });
+}
+
+// The shear of a plate is within the bound, but no solver would leave it.
+Vec2d sheared(Vec3d p) {
+  return {p.x + 0.2 * p.y, p.y};
+}
+
+// Expects a sheared plate, at any scale near 1, except within `near` edges of the middle.
+void expect_sheared_far_from_the_middle(const Disc& d, const ParamResult& r, double near) {
+  const double scale = r.uvs.back().y / sheared(d.positions.back()).y;
+  EXPECT_NEAR(scale, 1, 0.01);
+  for (std::size_t v = 0; v < r.uvs.size(); ++v) {
+    const Vec3d p = d.positions[v];
+    if (std::max(std::abs(p.x - 0.5), std::abs(p.y - 0.5)) * kSide < near) continue;
+    ASSERT_NEAR(r.uvs[v].x, scale * sheared(p).x, 1e-12) << v;
+    ASSERT_NEAR(r.uvs[v].y, scale * sheared(p).y, 1e-12) << v;
+  }
+}
+
+// A plane at the angle a to the axis is squeezed by cos a in one direction.
+TEST(GivenStarts, TheProjectionHasTheGivenAxis) {
+  const double tilt = std::numbers::pi / 6;
+  for (const int turn : {0, 1, 2}) {  // each axis of space in turn
+    const auto at = [&](double x, double y, double z) {
+      const std::array<double, 3> p{x, y, z};
+      return Vec3d{p[(3 - turn) % 3], p[(4 - turn) % 3], p[(5 - turn) % 3]};
+    };
+    const Disc d = testing::make_grid(
+        5, 5, [&](double u, double v) { return at(u, v * std::cos(tilt), v * std::sin(tilt)); });
+    const ParamOptions along_z{.method = ParamMethod::planar, .axis = at(0, 0, 2)};
+    EXPECT_NEAR(run(d, along_z).distortion.conformal_mean, 1 / std::cos(tilt), 1e-6) << turn;
+    const ParamOptions along_y{.method = ParamMethod::planar, .axis = at(0, -1, 0)};
+    EXPECT_NEAR(run(d, along_y).distortion.conformal_mean, 1 / std::sin(tilt), 1e-6) << turn;
+    const ParamOptions mean{.method = ParamMethod::planar};
+    EXPECT_NEAR(run(d, mean).distortion.conformal_mean, 1, 1e-6) << turn;
+  }
+}
+
+TEST(GivenStarts, AProjectionBeyondItsOwnBoundIsNotTaken) {
+  const Disc d = testing::make_cylinder(1, 1, 20, 10);
+  const double stretch = run(d, {.method = ParamMethod::planar}).distortion.stretch_999;
+  ASSERT_GT(stretch, 1.01);
+  ASSERT_LT(stretch, 1.25);
+  EXPECT_TRUE(run(d, {.max_planar_stretch = 1 + 1.1 * (stretch - 1)}).planar);
+  const ParamResult unrolled = run(d, {.max_planar_stretch = 1 + 0.9 * (stretch - 1)});
+  EXPECT_FALSE(unrolled.planar);
+  EXPECT_LT(unrolled.distortion.stretch_999, 1.001);
+}
+
+// Whoever is content with the bound for small places does not get the whole lowered to an aim.
+TEST(GivenStarts, NothingIsAimedAtWhereTheBoundIsEnough) {
+  const Disc d = testing::make_cap(0.9, 16);
+  ParamOptions options{.method = ParamMethod::isometric};
+  options.local = true;
+  const ParamResult plain = run(d, options);
+  ASSERT_TRUE(plain.within_bound);
+  options.aimed_stretch = 1.01;
+  EXPECT_EQ(run(d, options).uvs, plain.uvs);
+}
+
+TEST(GivenStarts, ResumingMovesOnlyWhatIsAtFault) {
+  const Disc d = plate();
+  std::vector<Vec2d> start;
+  for (const Vec3d& p : d.positions) start.push_back(sheared(p));
+  for (const double far : {0.0, 0.7, 1.5}) {  // none; almost at the next vertex; beyond it
+    std::vector<Vec2d> uvs = start;
+    uvs[kSide / 2 * (kSide + 1) + kSide / 2].x += far / kSide;
+    ParamOptions options{.method = ParamMethod::isometric};
+    options.resume = options.local = true;
+    options.start.uvs = uvs;
+    const ParamResult r = run(d, options);
+    expect_consistent(d, r, options.max_stretch);
+    EXPECT_TRUE(r.injective && r.within_bound) << far;
+    expect_sheared_far_from_the_middle(d, r, far > 0 ? 15 : 0);
+  }
+}
+
+// Nine quads in the middle are flat at another scale than the plate around them.
+TEST(GivenStarts, APatchIsFittedInWhereItIs) {
+  const Disc d = plate();
+  std::vector<Vec2d> corners;
+  for (const auto& triangle : d.triangles) {
+    double x = 0, y = 0;
+    for (const std::uint32_t v : triangle) {
+      x += d.positions[v].x / 3 - 0.5 / 3;
+      y += d.positions[v].y / 3 - 0.5 / 3;
+    }
+    const double size = std::max(std::abs(x), std::abs(y)) * kSide < 2 ? 1.1 : 1;
+    for (const std::uint32_t v : triangle) {
+      const Vec3d p = d.positions[v];
+      corners.push_back(sheared({0.5 + size * (p.x - 0.5), 0.5 + size * (p.y - 0.5), 0}));
+    }
+  }
+  ParamOptions options{.method = ParamMethod::isometric};
+  options.joined = corners;
+  options.patch = options.local = true;
+  const ParamResult r = run(d, options);
+  expect_consistent(d, r, options.max_stretch);
+  EXPECT_TRUE(r.injective && r.within_bound);
+  expect_sheared_far_from_the_middle(d, r, 10);
+}
+
+}  // namespace
+}  // namespace atlas

@@ -1,0 +1,75 @@
+// Borders that overlap are moved apart, or everything stays as it was.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "libatlas/param/injectivity.h"
+#include "libatlas/param/separate.h"
+#include "tests/param/shapes.h"
+
+namespace atlas {
+namespace {
+
+using testing::Disc;
+
+// A flat ring of one turn and `excess` more, whose ends lie on each other. Waves along its borders
+// make them cross in several places.
+Disc overlapping_ring(double excess, double wave) {
+  return testing::make_grid(90, 6, [=](double u, double v) {
+    const double angle = (2 * std::numbers::pi + excess) * u;
+    const double r = 1.5 - 0.5 * v + wave * (1 - 2 * v) * std::sin(17 * angle);
+    return Vec3d{r * std::cos(angle), r * std::sin(angle), 0};
+  });
+}
+
+struct Separated {
+  bool apart;
+  std::vector<Vec2d> uvs;
+  std::vector<std::array<std::uint32_t, 2>> left;  // edges of the crossings that were left
+};
+
+Separated separate(const Disc& d, param::Relaxer& relaxer, param::Separator& separator) {
+  param::Elements elements;
+  param::CornerLists corners;
+  elements.build(d.view(), 0);
+  corners.build(elements, d.positions.size());
+  const LocalMesh mesh = d.view();
+  Separated out;
+  for (const Vec3d& p : d.positions) out.uvs.push_back({p.x, p.y});
+  separator.take(mesh, elements, corners);
+  out.apart = separator.separate(relaxer, out.uvs);
+  for (const BorderCrossing& c : separator.left()) out.left.insert(out.left.end(), {c.a, c.b});
+  return out;
+}
+
+// One separator takes all charts one after the other, and nothing of an earlier chart remains.
+TEST(Separate, BordersEndApartOrWhereTheyWere) {
+  int apart = 0, as_before = 0;
+  param::Relaxer relaxer;
+  param::Separator separator;
+  for (const double excess : {0.01, 0.03, 0.06, 0.1, 0.2, 0.3, 0.5, 1.0}) {
+    for (const double wave : {0.0, 0.02, 0.05}) {
+      const Disc d = overlapping_ring(excess, wave);
+      std::vector<Vec2d> before;
+      for (const Vec3d& p : d.positions) before.push_back({p.x, p.y});
+      ASSERT_FALSE(check_injectivity(d.view(), before).injective);
+      const Separated r = separate(d, relaxer, separator);
+      ++(r.apart ? apart : as_before);
+      EXPECT_EQ(check_injectivity(d.view(), r.uvs).injective, r.apart) << excess << " " << wave;
+      EXPECT_TRUE(r.apart || (r.uvs == before && !r.left.empty())) << excess << " " << wave;
+      param::Relaxer fresh_relaxer;
+      param::Separator fresh_separator;
+      const Separated fresh = separate(d, fresh_relaxer, fresh_separator);
+      EXPECT_EQ(r.uvs, fresh.uvs) << excess << " " << wave;
+      EXPECT_EQ(r.left, fresh.left) << excess << " " << wave;
+    }
+  }
+  EXPECT_GT(apart, 3);
+  EXPECT_GT(as_before, 3);
+}
+
+}  // namespace
+}  // namespace atlas
