@@ -280,6 +280,21 @@ TEST(Injectivity, DecidesTheLastDigit) {
       check_injectivity(d.view(), std::vector<Vec2d>{{0, 0}, {0.3, 0.3}, {next, 0.1}}).injective);
 }
 
+// A vertex lies on the opposite edge of a triangle. No border is involved.
+TEST(Injectivity, AnInnerTriangleWithoutAreaCountsAsFlipped) {
+  const Disc d = testing::make_grid(4, 4, [](double u, double v) { return Vec3d{u, v, 0}; });
+  auto uv = drop_z(d);
+  const auto triangle =
+      std::find(d.triangles.begin(), d.triangles.end(), std::array<std::uint32_t, 3>{6, 7, 12});
+  ASSERT_NE(triangle, d.triangles.end());
+  uv[7] = {0.375, 0.375};  // between the vertices 6 and 12
+  const Injectivity result = check_injectivity(d.view(), uv);
+  EXPECT_FALSE(testing::injective_by_pairs(d.view(), uv));
+  EXPECT_FALSE(result.injective);
+  EXPECT_EQ(result.flipped, std::vector{std::uint32_t(triangle - d.triangles.begin())});
+  EXPECT_TRUE(result.crossings.empty());
+}
+
 TEST(Injectivity, ClearanceSurvivesRounding) {
   const Disc d = testing::make_grid(6, 6, [](double u, double v) { return Vec3d{u, v, 0}; });
   std::mt19937 random(1);
