@@ -37,10 +37,10 @@ bool points_inside(const Edge& e, Vec2d p) {
 }
 
 // Whether the triangles at two boundary vertices in the same point overlap there. Triangles fill
-// the corners, so these must not overlap.
+// the corners, so these must not overlap: neither may begin within the other. (If both begin in the
+// same direction, their edges overlap along their length.)
 bool corners_overlap(const Edge& e, const Edge& f) {
-  return points_inside(e, f.b) || points_inside(e, f.before) || points_inside(f, e.b) ||
-         points_inside(f, e.before);
+  return points_inside(e, f.b) || points_inside(f, e.b);
 }
 
 double distance(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
