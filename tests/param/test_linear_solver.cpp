@@ -57,7 +57,8 @@ std::vector<float> random_weights(std::size_t count, unsigned seed) {
 
 // Solves for a known solution and expects it up to a constant per piece. The first vertices of the
 // pieces are given.
-void expect_solution(const Eigen::MatrixXd& k, param::EnvelopeSolver& solver,
+template <class Solver>
+void expect_solution(const Eigen::MatrixXd& k, Solver& solver,
                      const std::vector<std::uint32_t>& first_of_piece) {
   const Eigen::MatrixXd wanted = Eigen::MatrixXd::Random(k.rows(), 2);
   const Eigen::MatrixXd load = k * wanted;
@@ -155,6 +156,65 @@ TEST(EnvelopeSolver, ForgetsEarlierMeshes) {
     solutions.push_back(x);
   }
   EXPECT_EQ(solutions[0], solutions[1]);
+}
+
+param::SymmetricMatrix stiffness_of(const param::Elements& elements, std::size_t vertices) {
+  param::CornerLists corners;
+  corners.build(elements, vertices);
+  param::SymmetricMatrix matrix;
+  param::build_stiffness(elements, corners, matrix);
+  return matrix;
+}
+
+TEST(SparseDirectSolver, SolvesTheCotangentSystemWithAnyWeights) {
+  for (const auto& [columns, rows] : {std::pair{1u, 1u}, {17u, 5u}, {15u, 15u}}) {
+    const Disc disc = rough_grid(columns, rows, columns);
+    param::Elements elements;
+    elements.build(disc.view(), 0);
+    param::SparseDirectSolver solver;
+    for (const unsigned seed : {1u, 2u}) {  // the second time with the ordering of the first
+      const std::vector<float> weights = random_weights(disc.triangles.size(), seed);
+      for (std::size_t t = 0; t < weights.size(); ++t) elements.set_weight(t, weights[t]);
+      ASSERT_TRUE(solver.factorize(stiffness_of(elements, disc.positions.size()), seed > 1));
+      expect_solution(cotangent_matrix(disc, weights), solver, {0});
+    }
+  }
+}
+
+// A chain of three vertices. The second link is so stiff that the sum with the first loses it.
+param::SymmetricMatrix chain_without_hold() {
+  const double stiff = 1e17;
+  param::SymmetricMatrix matrix;
+  matrix.diagonal = {1, stiff + 1, stiff};
+  matrix.first = {0, 1, 3, 4};
+  matrix.column = {1, 0, 2, 1};
+  matrix.value = {-1, -1, -stiff, -stiff};
+  return matrix;
+}
+
+template <class Solver>
+void expect_finite(Solver& solver) {
+  std::vector<glm::dvec2> x(3);
+  solver.solve(std::vector<glm::dvec2>{{-1, 0}, {0.5, 0.25}, {0.5, -0.25}}, x);
+  for (const glm::dvec2& v : x) EXPECT_TRUE(std::isfinite(v.x) && std::isfinite(v.y));
+}
+
+TEST(LinearSolvers, WhatRoundingMadeSingularHasAFiniteSolution) {
+  const param::SymmetricMatrix matrix = chain_without_hold();
+  ASSERT_EQ(matrix.diagonal[1], matrix.diagonal[2]);
+  param::SparseDirectSolver direct;
+  ASSERT_TRUE(direct.factorize(matrix, false));
+  expect_finite(direct);
+  param::EnvelopeSolver envelope;
+  envelope.factorize(matrix);
+  expect_finite(envelope);
+}
+
+TEST(SparseDirectSolver, SaysWhenAMatrixIsNotDefinite) {
+  param::SymmetricMatrix matrix = chain_without_hold();
+  matrix.diagonal[2] = -1;
+  param::SparseDirectSolver solver;
+  EXPECT_FALSE(solver.factorize(matrix, false));
 }
 
 }  // namespace

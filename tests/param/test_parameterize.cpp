@@ -123,6 +123,9 @@ TEST(Parameterize, ReportsWhatCannotBeFlattenedWithoutOverlap) {
   EXPECT_FALSE(r.injective);
   EXPECT_FALSE(r.crossings.empty());
   EXPECT_FALSE(testing::injective_by_pairs(d.view(), r.uvs));
+  EXPECT_TRUE(r.within_bound);
+  EXPECT_FALSE(r.stubborn_crossings.empty());
+  EXPECT_LE(r.stubborn_crossings.size(), r.crossings.size());
 }
 
 TEST(Parameterize, DrawsApartBordersThatOverlapALittle) {

@@ -144,5 +144,50 @@ TEST(Widen, LooksWithoutMoving) {
   EXPECT_NEAR(seen.near_before, 0.8, 0.25);
 }
 
+// Two parallel legs of a strip that climbs, one edge of each `gap` apart from the other leg's.
+// Their vertices do not face each other.
+Flat legs(double gap, double angle) {
+  Flat flat;
+  flat.disc = testing::make_grid(60, 2, [&](double u, double v) {
+    const double side = 0.5 * gap + 0.2 * (1 - v), c = std::cos(angle), s = std::sin(angle);
+    const double below = 0.3 + 0.2 * (1 - v);
+    double x = below * (u - 0.5) / 0.1, y = -below;
+    if (u < 0.4) x = -side, y = 1 - u / 0.4;
+    if (u > 0.6) x = side, y = 0.0125 + (u - 0.6) / 0.4;
+    flat.uvs.push_back({c * x - s * y, s * x + c * y});
+    return Vec3d{x, y, 2 * u};
+  });
+  return flat;
+}
+
+TEST(Widen, FindsWhatIsNearerThanTheClearanceAndNothingElse) {
+  for (int degrees = 0; degrees < 360; degrees += 15) {
+    const double angle = degrees * kPi / 180;
+    const auto near = [&](double gap) {
+      const Flat flat = legs(gap, angle);
+      return measure_gaps(flat.disc.view(), kClearance, flat.uvs).near_before;
+    };
+    EXPECT_NEAR(near(0.99 * kClearance), 2, 0.2) << degrees;  // both legs
+    EXPECT_EQ(near(1.01 * kClearance), 0) << degrees;
+  }
+}
+
+// With density, the surface is as large as the uvs. What is one place and what is not depends on
+// that size.
+TEST(Widen, DensityScalesTheSurface) {
+  for (const double rise : {2 * kClearance, 4 * kClearance, 10 * kClearance}) {
+    const Flat plain = stair(rise, kGap);
+    Flat dense = plain;
+    for (Vec2d& p : dense.uvs) p = {2 * p.x, 2 * p.y};
+    const std::vector<double> two(dense.disc.triangles.size(), 2);
+    LocalMesh mesh = dense.disc.view();
+    mesh.density = two;
+    const Widened seen = measure_gaps(mesh, 2 * kClearance, dense.uvs);
+    const Widened wanted = measure_gaps(plain.disc.view(), kClearance, plain.uvs);
+    EXPECT_EQ(wanted.near_before > 0, rise > 3 * kClearance);
+    EXPECT_EQ(seen.near_before, 2 * wanted.near_before) << rise;
+  }
+}
+
 }  // namespace
 }  // namespace atlas
