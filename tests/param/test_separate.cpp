@@ -71,5 +71,34 @@ TEST(Separate, BordersEndApartOrWhereTheyWere) {
   EXPECT_GT(as_before, 3);
 }
 
+// A slit of two edges in the middle of a plate. The vertices of its banks have changed sides, so
+// that the hole is inside out. No edges cross, and no triangle is flipped.
+TEST(Separate, HolesThatAreInsideOutAreTurned) {
+  const std::uint32_t n = 20, middle = 10 * (n + 1) + 10;
+  Disc d = testing::make_grid(n, n, [](double u, double v) { return Vec3d{u, v, 0}; });
+  const auto left = static_cast<std::uint32_t>(d.positions.size());
+  d.positions.push_back(d.positions[middle]);
+  for (auto& triangle : d.triangles) {
+    double x = 0;
+    for (const std::uint32_t v : triangle) x += d.positions[v].x / 3;
+    for (std::uint32_t& v : triangle) v = v == middle && x < 0.5 ? left : v;
+  }
+  const Disc flat = d;
+  for (const double over : {0.1, 0.3}) {
+    d = flat;
+    d.positions[left].x += over / n;
+    d.positions[middle].x -= over / n;
+    std::vector<Vec2d> before;
+    for (const Vec3d& p : d.positions) before.push_back({p.x, p.y});
+    const Injectivity check = check_injectivity(d.view(), before);
+    ASSERT_TRUE(check.nested && check.crossings.empty() && check.flipped.empty());
+    param::Relaxer relaxer;
+    param::Separator separator;
+    const Separated r = separate(d, relaxer, separator);
+    EXPECT_TRUE(r.apart) << over;
+    EXPECT_TRUE(check_injectivity(d.view(), r.uvs).injective) << over;
+  }
+}
+
 }  // namespace
 }  // namespace atlas
