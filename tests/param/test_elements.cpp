@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "libatlas/param/stiffness.h"
@@ -51,6 +52,59 @@ TEST(Elements, WeightsOfASmallMeshReturnToOne) {
   EXPECT_EQ(elements[6].weight, 1.0f);
   elements.reset_weights();
   EXPECT_EQ(elements[5].weight, 1.0f);
+}
+
+// Also in a large mesh, whose elements are stored in another way.
+TEST(Elements, TrianglesWithoutLengthAreRightAngledAndOfTheLeastSize) {
+  for (const Disc& plain : {hills(4, 3), hills(260, 200)}) {
+    Disc disc = plain;
+    const auto corners = disc.triangles[7];
+    for (const std::uint32_t v : corners) disc.positions[v] = {1, 2, 3};
+    for (const double least : {0.0, 1e-6, 0.01}) {
+      param::Elements elements;
+      elements.build(disc.view(), least);
+      const param::Element e = elements[7];
+      EXPECT_EQ(e.foot, 0);
+      EXPECT_GT(e.length, 0);
+      EXPECT_GT(e.altitude, 0);
+      if (least > 0) {
+        EXPECT_EQ(e.length, least);
+        EXPECT_EQ(e.altitude, least);
+      }
+      const param::ElementStiffness s = e.stiffness();
+      for (int k = 0; k < 3; ++k) EXPECT_TRUE(std::isfinite(s.own[k] + s.across[k]));
+    }
+  }
+}
+
+// A map that is a rotation, a stretch along the axes, and another rotation.
+TEST(Jacobian, HasTheSingularValuesThatItWasMadeOf) {
+  const auto turned = [](glm::dvec2 v, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return glm::dvec2(c * v.x - s * v.y, s * v.x + c * v.y);
+  };
+  for (const double large : {0.5, 1.0, 3.0}) {
+    for (const double share : {-1.0, -0.5, -1e-9, 0.0, 1e-9, 0.5, 1.0}) {
+      for (const auto& [first, second] : {std::pair{0.0, 0.0}, {0.3, 2.0}, {-2.5, 1.0}}) {
+        const double small = share * large;
+        const auto map = [&](glm::dvec2 v) {
+          v = turned(v, first);
+          return turned({large * v.x, small * v.y}, second);
+        };
+        const param::Jacobian j{map({1, 0}), map({0, 1})};
+        const param::SingularValues s = param::singular_values(j);
+        EXPECT_NEAR(s.large, large, 1e-12) << share;
+        EXPECT_NEAR(s.small, small, 1e-12) << share;
+        if (share <= -1) continue;  // every rotation is as near
+        const glm::dvec2 r = param::nearest_rotation(j);
+        EXPECT_NEAR(r.x, std::cos(first + second), 1e-6) << share;
+        EXPECT_NEAR(r.y, std::sin(first + second), 1e-6) << share;
+      }
+    }
+  }
+  const param::Jacobian none{{0, 0}, {0, 0}};
+  EXPECT_EQ(param::singular_values(none).small, 0);
+  EXPECT_EQ(param::nearest_rotation(none), glm::dvec2(1, 0));
 }
 
 TEST(PositionView, SinglePrecisionLosesNothingFarAway) {

@@ -6,8 +6,10 @@
 #include <functional>
 #include <numbers>
 #include <random>
+#include <set>
 
 #include "libatlas/core/predicates.h"
+#include "libatlas/param/halfedges.h"
 #include "libatlas/param/injectivity.h"
 #include "tests/param/oracles.h"
 #include "tests/param/shapes.h"
@@ -100,6 +102,8 @@ TEST(Injectivity, ReportsALoopThatOverlapsItself) {
   for (const BorderCrossing& c : result.crossings) {
     EXPECT_TRUE(segments_cross(uv[c.a[0]], uv[c.a[1]], uv[c.b[0]], uv[c.b[1]]));
   }
+  for (const std::size_t most : {0u, 1u, 5u})
+    EXPECT_FALSE(check_injectivity(d.view(), uv, {.max_crossings = most}).injective) << most;
 }
 
 // Returns quads between pairs of points to the left and right of a path.
@@ -328,6 +332,48 @@ TEST(Injectivity, FindsACloseSlit) {
     found |= (c.a[0] == 3 || c.a[1] == 3) && (c.b[0] == 3 || c.b[1] == 3);
   }
   EXPECT_TRUE(found);
+}
+
+double distance(Vec2d p, Vec2d a, Vec2d b) {
+  const double x = b.x - a.x, y = b.y - a.y;
+  const double t = std::clamp(((p.x - a.x) * x + (p.y - a.y) * y) / (x * x + y * y), 0.0, 1.0);
+  return std::hypot(p.x - a.x - t * x, p.y - a.y - t * y);
+}
+
+// The windings of a spiral band approach each other more and more. Of edges that have no common
+// vertex, exactly those below the clearance are listed.
+TEST(Injectivity, CloseEdgesAreThoseOfAllPairs) {
+  const Disc d = make_band(90, 0.3, [](double t) {
+    const double a = 6 * std::numbers::pi * t, r = 1 + 1.2 * t * (1 - 0.06 * t);
+    return Vec2d{r * std::cos(a), r * std::sin(a)};
+  });
+  const auto uv = drop_z(d);
+  param::HalfEdges half_edges;
+  half_edges.build(d.view());
+  param::HalfEdges::Border border;
+  half_edges.border(border);
+  for (const double clearance : {0.02, 0.06, 0.09, 0.15}) {
+    const Injectivity result =
+        check_injectivity(d.view(), uv, {.clearance = clearance, .max_crossings = 100000});
+    ASSERT_TRUE(result.injective);
+    std::set<std::array<std::uint32_t, 2>> listed, wanted;
+    for (const BorderCrossing& c : result.close) {
+      if (c.a[1] == c.b[0] || c.b[1] == c.a[0]) continue;
+      listed.insert({std::min(c.a[0], c.b[0]), std::max(c.a[0], c.b[0])});
+    }
+    for (const std::uint32_t g : border.half_edges) {
+      for (const std::uint32_t h : border.half_edges) {
+        const std::uint32_t a = half_edges.from(g), b = half_edges.to(g);
+        const std::uint32_t p = half_edges.from(h), q = half_edges.to(h);
+        if (g / 3 == h / 3 || a >= p || b == p || q == a) continue;
+        const double gap = std::min({distance(uv[a], uv[p], uv[q]), distance(uv[b], uv[p], uv[q]),
+                                     distance(uv[p], uv[a], uv[b]), distance(uv[q], uv[a], uv[b])});
+        if (gap < clearance) wanted.insert({a, p});
+      }
+    }
+    EXPECT_EQ(listed, wanted) << clearance;
+    EXPECT_EQ(wanted.empty(), clearance < 0.05) << clearance;
+  }
 }
 
 TEST(Injectivity, ManyBorderEdgesAreFast) {

@@ -63,6 +63,25 @@ TEST(Planar, FlipsExactlyTheTrianglesThatLookAway) {
   EXPECT_TRUE(std::isinf(planar_stretch_bound(d.view(), axis)));
 }
 
+TEST(Planar, TheProjectedShareIsThatOfTheSignedArea) {
+  const Disc d = hills(5, 0.4);
+  for (const Vec3d axis : {Vec3d{0, 0, 1}, {0.3, 0.9, 0.2}, {0, 0, -2}}) {
+    std::vector<Vec2d> uv(d.positions.size());
+    project_planar(d.view(), axis, uv);
+    std::vector<TriangleStretch> s(d.triangles.size());
+    measure_triangles(d.view(), uv, s);
+    double area = 0, projected = 0;
+    for (const TriangleStretch& t : s) {
+      area += t.area;
+      projected += t.uv_area;
+    }
+    EXPECT_NEAR(projected_share(d.view(), axis), projected / area, 1e-12);
+  }
+  Disc points = d;
+  points.positions.assign(d.positions.size(), {1, 2, 3});
+  EXPECT_EQ(projected_share(points.view(), {0, 0, 1}), 1);
+}
+
 TEST(Planar, SurvivesAClosedMeanNormal) {
   Disc d;
   d.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
