@@ -193,8 +193,6 @@ void Relaxer::begin(ElementView elements, const CornerLists& corners, std::span<
   uvs_ = uvs;
   vertex_in_.assign(uvs.size(), 0);
   triangle_in_.assign(elements.size(), 0);
-  spring_of_.clear();
-  spring_ = nullptr;
 }
 
 void Relaxer::pull(ElementView elements, const CornerLists& corners, const Pull& pull,
