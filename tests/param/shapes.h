@@ -86,6 +86,22 @@ inline Disc make_cone(double slope, double arc, std::uint32_t columns, std::uint
   });
 }
 
+// Returns a band of quads along a curve in the plane.
+inline Disc make_band(int n, double width, const std::function<Vec2d(double)>& curve) {
+  return make_grid(static_cast<std::uint32_t>(n), 1, [&](double t, double side) {
+    const Vec2d a = curve(t), b = curve(t + 1e-6);
+    const double l = std::hypot(b.x - a.x, b.y - a.y), w = width * side;
+    return Vec3d{a.x - w * (b.y - a.y) / l, a.y + w * (b.x - a.x) / l, 0};
+  });
+}
+
+// The vertices of a flat surface.
+inline std::vector<Vec2d> drop_z(const Disc& d) {
+  std::vector<Vec2d> uv;
+  for (const Vec3d& p : d.positions) uv.push_back({p.x, p.y});
+  return uv;
+}
+
 inline double mean_edge(const Disc& disc) {
   double sum = 0;
   for (const auto& t : disc.triangles) {
