@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 #include <set>
+#include <span>
 
 #include "libatlas/param/halfedges.h"
 #include "libatlas/param/injectivity.h"
@@ -61,40 +62,80 @@ double distance(Vec2d p, Vec2d a, Vec2d b) {
   return std::hypot(p.x - a.x - t * x, p.y - a.y - t * y);
 }
 
-// The windings of a spiral band approach each other more and more. Of edges that have no common
-// vertex, exactly those below the clearance are listed.
+using Pairs = std::set<std::array<std::uint32_t, 2>>;  // of the vertices where edges begin
+
+// Returns the pairs of border edges of different triangles of which an end, unless they share it,
+// is closer to the other edge than the clearance.
+Pairs close_pairs(const Disc& d, std::span<const Vec2d> uv, double clearance) {
+  param::HalfEdges half_edges;
+  half_edges.build(d.view());
+  param::HalfEdges::Border border;
+  half_edges.border(border);
+  Pairs pairs;
+  for (const std::uint32_t g : border.half_edges) {
+    for (const std::uint32_t h : border.half_edges) {
+      const std::array e{half_edges.from(g), half_edges.to(g)};
+      const std::array f{half_edges.from(h), half_edges.to(h)};
+      if (g / 3 == h / 3) continue;
+      double gap = 1e300;
+      for (const std::uint32_t v : e) {
+        if (v != f[0] && v != f[1]) gap = std::min(gap, distance(uv[v], uv[f[0]], uv[f[1]]));
+      }
+      for (const std::uint32_t v : f) {
+        if (v != e[0] && v != e[1]) gap = std::min(gap, distance(uv[v], uv[e[0]], uv[e[1]]));
+      }
+      if (gap < clearance) pairs.insert({std::min(e[0], f[0]), std::max(e[0], f[0])});
+    }
+  }
+  return pairs;
+}
+
+Pairs listed_pairs(const Disc& d, std::span<const Vec2d> uv, double clearance) {
+  const Injectivity result =
+      check_injectivity(d.view(), uv, {.clearance = clearance, .max_crossings = 100000});
+  EXPECT_TRUE(result.injective);
+  Pairs pairs;
+  for (const BorderCrossing& c : result.close)
+    pairs.insert({std::min(c.a[0], c.b[0]), std::max(c.a[0], c.b[0])});
+  return pairs;
+}
+
+// The windings of a spiral band approach each other more and more.
 TEST(Clearance, CloseEdgesAreThoseOfAllPairs) {
   const Disc d = make_band(90, 0.3, [](double t) {
     const double a = 6 * std::numbers::pi * t, r = 1 + 1.2 * t * (1 - 0.06 * t);
     return Vec2d{r * std::cos(a), r * std::sin(a)};
   });
   const auto uv = drop_z(d);
-  param::HalfEdges half_edges;
-  half_edges.build(d.view());
-  param::HalfEdges::Border border;
-  half_edges.border(border);
   for (const double clearance : {0.02, 0.06, 0.09, 0.15}) {
-    const Injectivity result =
-        check_injectivity(d.view(), uv, {.clearance = clearance, .max_crossings = 100000});
-    ASSERT_TRUE(result.injective);
-    std::set<std::array<std::uint32_t, 2>> listed, wanted;
-    for (const BorderCrossing& c : result.close) {
-      if (c.a[1] == c.b[0] || c.b[1] == c.a[0]) continue;
-      listed.insert({std::min(c.a[0], c.b[0]), std::max(c.a[0], c.b[0])});
-    }
-    for (const std::uint32_t g : border.half_edges) {
-      for (const std::uint32_t h : border.half_edges) {
-        const std::uint32_t a = half_edges.from(g), b = half_edges.to(g);
-        const std::uint32_t p = half_edges.from(h), q = half_edges.to(h);
-        if (g / 3 == h / 3 || a >= p || b == p || q == a) continue;
-        const double gap = std::min({distance(uv[a], uv[p], uv[q]), distance(uv[b], uv[p], uv[q]),
-                                     distance(uv[p], uv[a], uv[b]), distance(uv[q], uv[a], uv[b])});
-        if (gap < clearance) wanted.insert({a, p});
-      }
-    }
-    EXPECT_EQ(listed, wanted) << clearance;
+    const Pairs wanted = close_pairs(d, uv, clearance);
+    EXPECT_EQ(listed_pairs(d, uv, clearance), wanted) << clearance;
     EXPECT_EQ(wanted.empty(), clearance < 0.05) << clearance;
   }
+}
+
+// Edges that meet in the tips and notches of a star have very unequal lengths.
+TEST(Clearance, SharpCornersAreCloseByTheirShorterEdge) {
+  std::size_t found = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> radius(0.1, 1);
+    Disc star;
+    star.positions = {{0, 0, 0}};
+    const std::uint32_t n = 24;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const double a = 2 * std::numbers::pi * i / n, r = radius(random);
+      star.positions.push_back({r * std::cos(a), r * std::sin(a), 0});
+      star.triangles.push_back({0, 1 + i, 1 + (i + 1) % n});
+    }
+    const auto uv = drop_z(star);
+    for (const double clearance : {0.01, 0.03, 0.1, 0.3}) {
+      const Pairs wanted = close_pairs(star, uv, clearance);
+      EXPECT_EQ(listed_pairs(star, uv, clearance), wanted) << seed << " " << clearance;
+      found += wanted.size();
+    }
+  }
+  EXPECT_GT(found, 100u);
 }
 
 }  // namespace

@@ -134,6 +134,33 @@ TEST(Distortion, TrianglesWithoutAreaDoNotStretch) {
   EXPECT_EQ(stretch.back(), 1);
   EXPECT_EQ(m.degenerate, 0u);
   EXPECT_TRUE(std::isfinite(m.stretch_linf) && std::isfinite(m.conformal_max));
+  std::vector<TriangleStretch> s(d.triangles.size());
+  measure_triangles(d.view(), uv, s);
+  EXPECT_EQ(s.back().area, 0);
+  EXPECT_EQ(s.back().s1, 1);
+  EXPECT_EQ(s.back().s2, 1);
+}
+
+// A scale that is given counts, whatever the areas are.
+TEST(Distortion, AGivenScaleMultipliesTheSingularValues) {
+  const Disc d = bumpy(10);
+  const auto uv = flat(d, 0.01);
+  std::vector<TriangleStretch> s(d.triangles.size());
+  measure_triangles(d.view(), uv, s);
+  for (const double scale : {0.4, 1.0, 3.0}) {
+    double l2 = 0, area = 0, worst = 1, least = 1e300;
+    for (std::size_t t = 0; t < s.size(); ++t) {
+      const auto [s1, s2] = sander(d, uv, t);
+      l2 += s[t].area * scale * scale * (s1 * s1 + s2 * s2) / 2;
+      area += s[t].area;
+      worst = std::max({worst, scale * s1, 1 / (scale * s2)});
+      least = std::min(least, scale * scale * s1 * s2);
+    }
+    const Distortion m = summarize_distortion(s, scale);
+    EXPECT_NEAR(m.stretch_l2, std::sqrt(l2 / area), 1e-5 * scale);
+    EXPECT_NEAR(m.stretch_linf, worst, 1e-5 * worst) << scale;
+    EXPECT_NEAR(m.area_min, least, 1e-5 * least) << scale;
+  }
 }
 
 TEST(Distortion, CollapsedToALineIsInfinite) {
@@ -231,6 +258,28 @@ TEST(Distortion, APartOfTheValuesHasTheirPercentile) {
       EXPECT_EQ(param::value_above_budget(tail.values(), share * total),
                 param::upper_percentile(coming, share))
           << share << " " << order;
+    }
+  }
+}
+
+// With whole weights, the weight of larger values often is exactly the budget.
+TEST(Distortion, APercentileLeavesOutAtMostTheBudget) {
+  std::mt19937 random(3);
+  std::uniform_int_distribution<int> value(1, 9), weight(1, 3);
+  for (const std::size_t size : {1u, 2u, 5u, 40u}) {
+    std::vector<param::WeightedValue> values(size);
+    for (param::WeightedValue& v : values) v = {double(value(random)), double(weight(random))};
+    for (int budget = 0; budget < 20; ++budget) {
+      double wanted = 1e300;
+      for (const param::WeightedValue& candidate : values) {
+        double larger = 0;
+        for (const param::WeightedValue& v : values) {
+          if (v.value > candidate.value) larger += v.weight;
+        }
+        if (larger <= budget) wanted = std::min(wanted, candidate.value);
+      }
+      std::vector<param::WeightedValue> sorted = values;
+      EXPECT_EQ(param::value_above_budget(sorted, budget), wanted) << size << " " << budget;
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "libatlas/core/predicates.h"
 #include "libatlas/param/injectivity.h"
@@ -211,6 +212,21 @@ TEST(Injectivity, ReportsTwoPiecesOnTopOfEachOther) {
   EXPECT_TRUE(result.crossings.empty());
   EXPECT_TRUE(result.nested);
   EXPECT_FALSE(result.injective);
+}
+
+// The sides of a square have vertices between their ends. Wherever the list of triangles begins,
+// and so the border, the square is on the inside.
+TEST(Injectivity, ABorderMayBeginAnywhere) {
+  for (const auto& [x, y] : {std::pair{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) {  // the first side's way
+    Disc d = testing::make_grid(4, 4, [&](double u, double v) {
+      return Vec3d{x * u - y * v, y * u + x * v, 0};
+    });
+    for (std::size_t begin = 0; begin < d.triangles.size(); ++begin) {
+      std::rotate(d.triangles.begin(), d.triangles.begin() + 1, d.triangles.end());
+      EXPECT_TRUE(check_injectivity(d.view(), drop_z(d)).injective)
+          << x << " " << y << " " << begin;
+    }
+  }
 }
 
 TEST(Injectivity, AcceptsARingWithAHole) {
