@@ -107,7 +107,7 @@ TEST(Clearance, CloseEdgesAreThoseOfAllPairs) {
     return Vec2d{r * std::cos(a), r * std::sin(a)};
   });
   const auto uv = drop_z(d);
-  for (const double clearance : {0.02, 0.06, 0.09, 0.15}) {
+  for (const double clearance : {0.02, 0.06, 0.09, 0.15, 0.4}) {
     const Pairs wanted = close_pairs(d, uv, clearance);
     EXPECT_EQ(listed_pairs(d, uv, clearance), wanted) << clearance;
     EXPECT_EQ(wanted.empty(), clearance < 0.05) << clearance;

@@ -63,6 +63,7 @@ TEST(Distortion, LinearMapsHaveTheirSingularValues) {
   EXPECT_NEAR(m.stretch_l2, std::sqrt((4 + 0.25) / 2), 1e-6);
   EXPECT_NEAR(m.stretch_linf, 2, 1e-6);
   EXPECT_NEAR(m.conformal_mean, 4, 1e-5);
+  EXPECT_NEAR(m.conformal_max, 4, 1e-5);
   EXPECT_NEAR(m.area_min, 1, 1e-6);
   EXPECT_NEAR(m.uv_area, 1, 1e-12);
   EXPECT_EQ(m.flips, 0u);
@@ -121,6 +122,7 @@ TEST(Distortion, CountsFlippedAndDegenerate) {
   EXPECT_EQ(m.degenerate, 1u);
   EXPECT_TRUE(std::isinf(stretch[1]));
   EXPECT_TRUE(std::isinf(stretch[2]));
+  EXPECT_NEAR(m.uv_area, 0.5 + 0.5, 1e-12);  // of the first two
 }
 
 // Triangles without area stretch nothing, whatever area they have in uv.
@@ -174,6 +176,32 @@ TEST(Distortion, CollapsedToALineIsInfinite) {
   const double infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(summarize_distortion(triangles).stretch_999, infinity);
   EXPECT_EQ(summarize_distortion(triangles).stretch_linf, infinity);
+}
+
+// What a speck of rounding noise does in uv spoils neither extremes nor means.
+TEST(Distortion, NegligibleTrianglesCountOnlyForAreasAndFlips) {
+  std::vector<TriangleStretch> triangles(3, {.area = 1, .uv_area = 1, .s1 = 1.25f, .s2 = 0.8f});
+  const Distortion plain = summarize_distortion(triangles);
+  const float infinity = std::numeric_limits<float>::infinity();
+  triangles.push_back({.area = 1e-16, .uv_area = 0, .s1 = infinity, .s2 = infinity});
+  triangles.push_back({.area = 1e-16, .uv_area = -1e-16, .s1 = 1e6f, .s2 = 1e-6f});
+  const Distortion m = summarize_distortion(triangles);
+  EXPECT_EQ(m.flips, 1u);
+  EXPECT_EQ(m.degenerate, 0u);
+  EXPECT_NEAR(m.stretch_l2, plain.stretch_l2, 1e-12);
+  EXPECT_NEAR(m.stretch_linf, plain.stretch_linf, 1e-6);
+  EXPECT_NEAR(m.stretch_999, plain.stretch_999, 1e-6);
+  EXPECT_NEAR(m.conformal_mean, plain.conformal_mean, 1e-12);
+  EXPECT_NEAR(m.conformal_max, plain.conformal_max, 1e-12);
+  EXPECT_NEAR(m.area_min, plain.area_min, 1e-12);
+  EXPECT_NEAR(m.area_max, plain.area_max, 1e-12);
+}
+
+TEST(Distortion, WithoutAreaNoScalePreservesIt) {
+  EXPECT_EQ(area_preserving_scale({.surface_area = 1, .uv_area = 4}), 0.5);
+  EXPECT_EQ(area_preserving_scale({.surface_area = 1, .uv_area = 0}), 0);
+  EXPECT_EQ(area_preserving_scale({.surface_area = 0, .uv_area = 1}), 0);
+  EXPECT_EQ(area_preserving_scale({.surface_area = 0, .uv_area = 0}), 0);
 }
 
 TEST(Distortion, PartsAddUpToTheWhole) {

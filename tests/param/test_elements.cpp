@@ -41,6 +41,9 @@ TEST(Elements, ALargeMeshHasThoseOfItsTriangles) {
   }
   elements.reset_weights();
   EXPECT_EQ(elements[500].weight, 1.0f);
+  elements.set_weight(500, 0.25f);
+  elements.build(disc.view(), 0);
+  EXPECT_EQ(elements[500].weight, 1.0f);
 }
 
 TEST(Elements, WeightsOfASmallMeshReturnToOne) {
@@ -75,6 +78,33 @@ TEST(Elements, TrianglesWithoutLengthAreRightAngledAndOfTheLeastSize) {
       for (int k = 0; k < 3; ++k) EXPECT_TRUE(std::isfinite(s.own[k] + s.across[k]));
     }
   }
+}
+
+// Then there is no size to compare with, and any will do.
+TEST(Elements, NothingButPointsHasTrianglesOfSomeSize) {
+  Disc disc = hills(4, 3);
+  disc.positions.assign(disc.positions.size(), {1, 2, 3});
+  param::Elements elements;
+  elements.build(disc.view(), 0);
+  for (std::size_t t = 0; t < elements.size(); ++t) {
+    EXPECT_GT(elements[t].area(), 0);
+    const param::ElementStiffness s = elements[t].stiffness();
+    for (int k = 0; k < 3; ++k) EXPECT_TRUE(std::isfinite(s.own[k] + s.across[k]));
+  }
+}
+
+TEST(Elements, AFlipIsEveryTriangleThatIsNotPositive) {
+  const Disc disc = hills(12, 9);
+  param::Elements elements;
+  elements.build(disc.view(), 0);
+  const auto flips = [&](double x) {  // of the projection, stretched by x
+    std::vector<Vec2d> uv;
+    for (const Vec3d& p : disc.positions) uv.push_back({x * p.x, std::abs(x) * p.y});
+    return param::measure_energy(elements, uv).flips;
+  };
+  EXPECT_EQ(flips(1), 0u);
+  EXPECT_EQ(flips(-1), disc.triangles.size());
+  EXPECT_EQ(flips(0), disc.triangles.size());
 }
 
 // A map that is a rotation, a stretch along the axes, and another rotation.

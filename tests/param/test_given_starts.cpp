@@ -100,6 +100,49 @@ TEST(GivenStarts, ResumingMovesOnlyWhatIsAtFault) {
   }
 }
 
+// A sheared plate whose stretch is so small that a descent would make it isometric.
+TEST(GivenStarts, ResumingKeepsWhatIsAlmostIsometric) {
+  const Disc d = plate();
+  std::vector<Vec2d> start;
+  for (const Vec3d& p : d.positions) start.push_back({p.x + 0.002 * p.y, p.y});
+  const Distortion before = measure_distortion(d.view(), start);
+  ParamOptions options{.method = ParamMethod::isometric};
+  options.resume = true;
+  options.start.uvs = start;
+  const ParamResult r = run(d, options);
+  ASSERT_TRUE(r.injective && r.within_bound);
+  EXPECT_NEAR(r.distortion.stretch_999 - 1, before.stretch_999 - 1, 1e-6);
+  for (std::size_t v = 0; v < start.size(); ++v) {
+    ASSERT_NEAR(r.uvs[v].x, start[v].x, 1e-9) << v;
+    ASSERT_NEAR(r.uvs[v].y, start[v].y, 1e-9) << v;
+  }
+}
+
+// One row of quads has no area on the surface. What is given folds it over.
+TEST(GivenStarts, TrianglesWithoutAreaGetTheLeastAltitude) {
+  const double altitude = 1e-4;
+  Disc d = plate();
+  std::vector<Vec2d> start, corners;
+  for (Vec3d& p : d.positions) {
+    if (std::abs(p.y - 0.5) < 1e-9) p.y -= 1.0 / kSide;
+    start.push_back({p.x, p.y});
+  }
+  for (const auto& triangle : d.triangles) {
+    for (const std::uint32_t v : triangle) corners.push_back(start[v]);
+  }
+  ParamOptions resumed{.method = ParamMethod::isometric, .min_altitude = altitude};
+  resumed.resume = true;
+  resumed.start.uvs = start;
+  ParamOptions joined{.method = ParamMethod::isometric, .min_altitude = altitude};
+  joined.joined = corners;
+  for (const ParamOptions& options : {resumed, joined}) {
+    const ParamResult r = run(d, options);
+    EXPECT_TRUE(r.injective);
+    const Injectivity check = check_injectivity(d.view(), r.uvs, {.clearance = 0.3 * altitude});
+    EXPECT_TRUE(check.thin.empty()) << check.thin.size() << " " << options.resume;
+  }
+}
+
 // Nine quads in the middle are flat at another scale than the plate around them.
 TEST(GivenStarts, APatchIsFittedInWhereItIs) {
   const Disc d = plate();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libatlas/param/halfedges.h"
+#include "libatlas/param/local_mesh.h"
 
 namespace atlas {
 namespace {
@@ -38,6 +39,21 @@ TEST(HalfEdges, OppositesAreTheFirstThatAreFree) {
     for (std::uint32_t h = 0; h < count; ++h)
       EXPECT_EQ(half_edges.opposite(h), wanted[h]) << seed << " " << h;
   }
+}
+
+// The mesh may keep edges apart that have the same vertices.
+TEST(HalfEdges, OppositesThatAreGivenCount) {
+  const std::vector<Vec3d> positions(4);
+  const std::vector<std::array<std::uint32_t, 3>> triangles{{0, 1, 2}, {0, 2, 3}};
+  const std::vector<std::uint32_t> none(6, param::HalfEdges::none);
+  LocalMesh mesh{positions, triangles, {}};
+  mesh.opposite = none;
+  param::HalfEdges half_edges;
+  param::HalfEdges::Border border;
+  half_edges.build(mesh);
+  half_edges.border(border);
+  EXPECT_EQ(border.half_edges.size(), 6u);
+  EXPECT_EQ(border.loop_start.size(), 3u);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -181,6 +183,24 @@ TEST(SparseDirectSolver, SolvesTheCotangentSystemWithAnyWeights) {
   }
 }
 
+// Around holes, there are more edges than vertices and triangles together.
+TEST(SparseDirectSolver, SolvesTheCotangentSystemAroundHoles) {
+  const std::uint32_t n = 21;
+  Disc disc = rough_grid(n, n, 8);
+  std::vector<std::array<std::uint32_t, 3>> kept;
+  for (std::uint32_t t = 0; t < disc.triangles.size(); ++t) {
+    const std::uint32_t column = t / 2 % n, row = t / 2 / n;
+    if (column % 2 == 0 || row % 2 == 0) kept.push_back(disc.triangles[t]);
+  }
+  disc.triangles = kept;
+  param::Elements elements;
+  elements.build(disc.view(), 0);
+  param::SparseDirectSolver solver;
+  ASSERT_TRUE(solver.factorize(stiffness_of(elements, disc.positions.size()), false));
+  const std::vector<float> even(disc.triangles.size(), 1);
+  expect_solution(cotangent_matrix(disc, even), solver, {0});
+}
+
 // A chain of three vertices. The second link is so stiff that the sum with the first loses it.
 param::SymmetricMatrix chain_without_hold() {
   const double stiff = 1e17;
@@ -208,6 +228,33 @@ TEST(LinearSolvers, WhatRoundingMadeSingularHasAFiniteSolution) {
   param::EnvelopeSolver envelope;
   envelope.factorize(matrix);
   expect_finite(envelope);
+}
+
+// Stiff pairs of vertices, each of which hangs on the next by a link that rounding loses.
+TEST(EnvelopeSolver, LinksThatRoundingLosesLeaveTheirPairsSolved) {
+  const std::uint32_t pairs = 10;
+  const double stiff = 1e17;
+  param::SymmetricMatrix matrix;
+  matrix.first = {0};
+  std::vector<glm::dvec2> load, x(2 * pairs);
+  for (std::uint32_t v = 0; v < 2 * pairs; ++v) {
+    matrix.diagonal.push_back(0);
+    for (const std::uint32_t w : {v - 1, v + 1}) {
+      if (w >= 2 * pairs) continue;  // beyond the ends of the chain
+      matrix.column.push_back(w);
+      matrix.value.push_back(std::max(v, w) % 2 == 1 ? -stiff : -1);
+      matrix.diagonal.back() -= matrix.value.back();
+    }
+    matrix.first.push_back(static_cast<std::uint32_t>(matrix.column.size()));
+    load.push_back(v % 2 == 0 ? glm::dvec2(stiff, 0) : glm::dvec2(-stiff, 0));
+  }
+  param::EnvelopeSolver solver;
+  solver.factorize(matrix);
+  solver.solve(load, x);
+  for (std::uint32_t v = 0; v < 2 * pairs; v += 2) {
+    EXPECT_NEAR(x[v].x - x[v + 1].x, 1, 1e-12) << v;
+    EXPECT_EQ(x[v].y, x[v + 1].y) << v;
+  }
 }
 
 TEST(SparseDirectSolver, SaysWhenAMatrixIsNotDefinite) {

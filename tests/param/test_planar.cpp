@@ -182,6 +182,21 @@ TEST(Orient, LongStraightSidesEndAlongTheAxes) {
   }
 }
 
+// Most of the points lie along the sides, where rounding could put them outside.
+TEST(Orient, NoPointIsBelowZero) {
+  for (int turn = 0; turn < 200; ++turn) {
+    const double c = std::cos(turn), s = std::sin(turn);
+    std::vector<Vec2d> points;
+    for (int i = 0; i < 60; ++i) {
+      for (const Vec2d p :
+           {Vec2d{i / 59.0, 0}, {1, i / 59.0}, {1 - i / 59.0, 1}, {0, 1 - i / 59.0}})
+        points.push_back({7 + c * p.x - s * p.y, 3 + s * p.x + c * p.y});
+    }
+    orient_for_packing(points);
+    for (const Vec2d p : points) EXPECT_TRUE(p.x >= 0 && p.y >= 0) << turn;
+  }
+}
+
 // No direction holds a fifth of a rugged circle's border, so the smallest box counts.
 TEST(Orient, ARoundBorderHasTheSmallestBox) {
   for (unsigned seed = 0; seed < 10; ++seed) {

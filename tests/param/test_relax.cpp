@@ -181,6 +181,20 @@ TEST(Relax, TheTailBeginsBeyondAThousandthOfTheArea) {
   EXPECT_GT(beyond, 1);
 }
 
+// An isometry at another scale has no tail.
+TEST(Relax, TheTailIsMeasuredAtTheChartsOwnScale) {
+  const Disc d = plate(20);
+  const System s = system_of(d);
+  for (const double scale : {0.5, 0.75, 1.4, 2.0}) {
+    std::vector<Vec2d> uv = flat(d);
+    for (Vec2d& p : uv) p = {scale * p.x, scale * p.y};
+    const std::vector<Vec2d> start = uv;
+    param::Relaxer relaxer;
+    EXPECT_EQ(relaxer.lower_tail(s.elements, s.corners, 1.25, uv), param::Tail::lowered) << scale;
+    EXPECT_EQ(uv, start) << scale;
+  }
+}
+
 // By symmetry the energy is least in the middle, wherever the vertex starts.
 TEST(Relax, AVertexWithinAFixedSquareGoesToTheMiddle) {
   Disc d;
