@@ -147,6 +147,24 @@ TEST(Isometric, SolversAgreeAcrossTheirLimits) {
   }
 }
 
+// Needles from one end of a cylinder to the other, which is jagged. An iteration is slow there, and
+// the solver falls back on another one.
+TEST(Isometric, LargeMeshesOfNeedlesUnroll) {
+  const std::uint32_t n = 4000;
+  Disc d = testing::make_cylinder(3, 4, n, 1);
+  for (std::uint32_t i = 0; i <= n; i += 40) d.positions[i].z -= 0.5 * (i % 3);
+  const auto uv = flatten(d, 3);
+  const Distortion m = measure_distortion(d.view(), uv);
+  EXPECT_LT(m.stretch_linf, 1.001);
+  EXPECT_EQ(m.flips, 0u);
+  std::vector<Vec2d> sheared;
+  for (const Vec2d p : uv) sheared.push_back({p.x + 0.3 * p.y, p.y});
+  const double weight = IsometricOptions{}.shear_weight;
+  const auto step = flatten(d, 1, {.uvs = sheared});
+  EXPECT_LT(testing::isometric_energy(d.view(), step, weight),
+            0.5 * testing::isometric_energy(d.view(), sheared, weight));
+}
+
 TEST(Isometric, WorkspaceLeavesNoTrace) {
   const Disc small = testing::make_cap(1, 4), large = testing::make_cap(1.3, 40);
   ParamWorkspace shared;

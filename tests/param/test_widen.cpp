@@ -8,6 +8,7 @@
 
 #include "libatlas/param/distortion.h"
 #include "libatlas/param/halfedges.h"
+#include "libatlas/param/injectivity.h"
 #include "libatlas/param/widen.h"
 #include "tests/param/oracles.h"
 #include "tests/param/shapes.h"
@@ -118,6 +119,30 @@ TEST(Widen, TheBoundIsKept) {
     EXPECT_LE(measure_distortion(flat.disc.view(), flat.uvs).stretch_999, bound) << slack;
     EXPECT_GE(least_gap(flat, 4 * kClearance), gap * (1 - 1e-9)) << slack;
     EXPECT_TRUE(testing::injective_by_pairs(flat.disc.view(), flat.uvs)) << slack;
+  }
+}
+
+// What stretches already, far from the ends, does not forbid to move them.
+TEST(Widen, TheBoundIsNotBelowTheStretchBefore) {
+  Flat flat = stair(1, kGap);
+  const std::uint32_t columns = 60, middle = 30;
+  for (std::uint32_t row = 1; row < 6; row += 2) flat.uvs[row * (columns + 1) + middle].x -= 0.02;
+  const double before = measure_distortion(flat.disc.view(), flat.uvs).stretch_999;
+  const Widened widened = widen_gaps(flat.disc.view(), with(kClearance, 1.01), flat.uvs);
+  EXPECT_TRUE(widened.moved);
+  EXPECT_EQ(widened.near_after, 0);
+  EXPECT_GT(least_gap(flat, 4 * kClearance), 0.99 * kClearance);
+  EXPECT_LE(measure_distortion(flat.disc.view(), flat.uvs).stretch_999, before);
+}
+
+// Between places that almost touch, rounding decides about the direction.
+TEST(Widen, PartsThatAlmostTouchAreMovedApart) {
+  for (const double gap : {1e-6, 1e-12, 1e-15}) {
+    Flat flat = stair(1, gap);
+    ASSERT_TRUE(check_injectivity(flat.disc.view(), flat.uvs).injective) << gap;
+    EXPECT_TRUE(widen_gaps(flat.disc.view(), with(kClearance), flat.uvs).moved) << gap;
+    EXPECT_GT(least_gap(flat, 4 * kClearance), 0.99 * kClearance) << gap;
+    EXPECT_TRUE(check_injectivity(flat.disc.view(), flat.uvs).injective) << gap;
   }
 }
 
