@@ -1,6 +1,7 @@
 // Borders that overlap are moved apart, or everything stays as it was.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -97,6 +98,38 @@ TEST(Separate, HolesThatAreInsideOutAreTurned) {
     const Separated r = separate(d, relaxer, separator);
     EXPECT_TRUE(r.apart) << over;
     EXPECT_TRUE(check_injectivity(d.view(), r.uvs).injective) << over;
+  }
+}
+
+// A slit from the right side to the middle of a plate. Near its end, the banks have changed sides,
+// so that they cross each other once; the border goes around the end from one bank to the other.
+TEST(Separate, BanksThatCrossNearTheEndOfASlitComeApart) {
+  const std::uint32_t n = 20, row = 10;
+  const Disc whole = testing::make_grid(n, n, [](double u, double v) { return Vec3d{u, v, 0}; });
+  for (const std::uint32_t crossed : {1u, 2u, 3u, 4u}) {
+    for (const double over : {0.1, 0.25}) {
+      Disc d = whole;
+      for (std::uint32_t i = n / 2 + 1; i <= n; ++i) {
+        const std::uint32_t lower = row * (n + 1) + i;
+        const auto upper = static_cast<std::uint32_t>(d.positions.size());
+        d.positions.push_back(d.positions[lower]);
+        const double shift = (i <= n / 2 + crossed ? over : -over) / n;
+        d.positions[lower].y += shift;
+        d.positions[upper].y -= shift;
+        for (std::size_t t = 2 * n * row; t < d.triangles.size(); ++t)
+          std::replace(d.triangles[t].begin(), d.triangles[t].end(), lower, upper);
+      }
+      std::vector<Vec2d> before;
+      for (const Vec3d& p : d.positions) before.push_back({p.x, p.y});
+      const Injectivity check = check_injectivity(d.view(), before);
+      ASSERT_TRUE(check.flipped.empty());
+      ASSERT_EQ(check.crossings.size(), 1u);
+      param::Relaxer relaxer;
+      param::Separator separator;
+      const Separated r = separate(d, relaxer, separator);
+      EXPECT_TRUE(r.apart) << crossed << " " << over;
+      EXPECT_TRUE(check_injectivity(d.view(), r.uvs).injective) << crossed << " " << over;
+    }
   }
 }
 
