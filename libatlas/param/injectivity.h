@@ -23,7 +23,8 @@ struct InjectivityOptions {
   // Margin for rounding: uvs written with an absolute error of at most e in each coordinate keep a
   // map injective that passes with clearance = 3 e (uv units). The check then lists as thin and
   // close what is below the clearance: the smallest altitude of a triangle, or the gap between two
-  // border edges without a common vertex. 0: no such check.
+  // border edges of different triangles. With a common vertex, the gap is that of the shorter
+  // edge's other end. 0: no such check.
   double clearance = 0;
   std::size_t max_crossings = 64;  // listing stops there; the verdict does not change
 };

@@ -138,5 +138,17 @@ TEST(Clearance, SharpCornersAreCloseByTheirShorterEdge) {
   EXPECT_GT(found, 100u);
 }
 
+TEST(Clearance, ListsNoMorePairsThanAskedFor) {
+  const Disc d = testing::make_grid(6, 6, [](double u, double v) { return Vec3d{u, v, 0}; });
+  const auto uv = drop_z(d);
+  ASSERT_GT(listed_pairs(d, uv, 0.3).size(), 5u);
+  for (const std::size_t most : {1u, 2u, 5u}) {
+    const Injectivity result =
+        check_injectivity(d.view(), uv, {.clearance = 0.3, .max_crossings = most});
+    EXPECT_TRUE(result.injective);
+    EXPECT_EQ(result.close.size(), most);
+  }
+}
+
 }  // namespace
 }  // namespace atlas
