@@ -165,8 +165,11 @@ TEST(Squeeze, CurvedSurfacesComeDownToTheAim) {
 TEST(Squeeze, NeverRaisesTheStretch) {
   Disc rough = testing::make_cap(0.8, 10);
   testing::add_radial_noise(rough, 0.4 * testing::mean_edge(rough), 3);
-  for (const Disc& d : {testing::make_cylinder(3, 1, 16, 6), testing::make_cap(0.8, 10), rough}) {
-    for (const int iterations : {1, 2, 5, 20}) {
+  Disc rougher = testing::make_cap(0.8, 10);
+  testing::add_radial_noise(rougher, 0.9 * testing::mean_edge(rougher), 5);
+  for (const Disc& d : {testing::make_cylinder(3, 1, 16, 6), testing::make_cap(0.8, 10), rough,
+                        rougher, eared_strip(5, 2.3, 0.1)}) {
+    for (const int iterations : {1, 2, 3, 5, 8, 20}) {
       for (const bool ratio : {false, true}) {
         ParamWorkspace workspace;
         const LocalMesh mesh = d.view();
