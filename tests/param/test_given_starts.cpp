@@ -118,7 +118,7 @@ TEST(GivenStarts, ResumingKeepsWhatIsAlmostIsometric) {
   }
 }
 
-// One row of quads has no area on the surface. What is given folds it over.
+// One row of quads has no area, neither on the surface nor in what is given.
 TEST(GivenStarts, TrianglesWithoutAreaGetTheLeastAltitude) {
   const double altitude = 1e-4;
   Disc d = plate();
