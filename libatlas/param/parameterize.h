@@ -44,9 +44,10 @@ struct ParamOptions {
   // Borders that can be moved apart only beyond max_stretch are left crossing within it, for
   // callers that can remove triangles there.
   bool leave_crossings = false;
-  // Keeps start.uvs, of which nearly all triangles must be positive, except near triangles that are
-  // flipped or stretched beyond the bound. For a flattening that failed, after a cut, or for a
-  // chart that grew.
+  // Begins with start.uvs, of which nearly all triangles must be positive, and solves nothing:
+  // flipped triangles are relaxed where they are. Beyond the bound the whole is squeezed, or, if
+  // `local`, only the places beyond it are relaxed. For a flattening that failed, after a cut, or
+  // for a chart that grew.
   bool resume = false;
   // Three per triangle, or empty: uvs of parts of the mesh that are flat already and placed side by
   // side. They replace `start`. Their stretch is kept as far as they fit each other.
