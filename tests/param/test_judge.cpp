@@ -47,7 +47,7 @@ struct FaultyRing {
     disc = testing::make_grid(columns, rows, [&](double u, double v) {
       return ring(u, v, v < 0.9 ? 0 : 0.15 * (1 + u));
     });
-    for (const Vec3d& p : disc.positions) uvs.push_back({p.x, p.y});
+    uvs = testing::drop_z(disc);
     const std::uint32_t inner = columns + 1 + columns / 2;
     uvs[inner] = {0.7 * uvs[inner].x, 0.7 * uvs[inner].y};
   }
@@ -112,7 +112,7 @@ struct PlateWithSlivers {
   std::vector<Vec2d> uvs;
 
   PlateWithSlivers() {
-    for (const Vec3d& p : disc.positions) uvs.push_back({p.x, p.y});
+    uvs = testing::drop_z(disc);
     uvs[40 * (side + 1) + 40].x += (1 - 1e-4) / side;
   }
 };

@@ -27,7 +27,7 @@ struct SqueezedPlate {
   std::vector<Vec2d> uvs;
 
   SqueezedPlate(std::uint32_t x, std::uint32_t y) {
-    for (const Vec3d& p : disc.positions) uvs.push_back({p.x, p.y});
+    uvs = testing::drop_z(disc);
     uvs[at(x, y)].x += 0.95 / kSide;
   }
 };

@@ -33,12 +33,6 @@ std::size_t flips(const Disc& d, const std::vector<Vec2d>& uv) {
   return count;
 }
 
-std::vector<Vec2d> flat(const Disc& d) {
-  std::vector<Vec2d> uv;
-  for (const Vec3d& p : d.positions) uv.push_back({p.x, p.y});
-  return uv;
-}
-
 Disc plate(std::uint32_t n) {
   return testing::make_grid(n, n, [](double u, double v) { return Vec3d{u, v, 0}; });
 }
@@ -47,7 +41,7 @@ Disc plate(std::uint32_t n) {
 TEST(Relax, ManyFlipsFarFromEachOtherAreAllTurned) {
   const std::uint32_t n = 80;
   const Disc d = plate(n);
-  std::vector<Vec2d> uv = flat(d);
+  std::vector<Vec2d> uv = testing::drop_z(d);
   for (std::uint32_t y = 4; y < n; y += 5) {
     for (std::uint32_t x = 4; x < n; x += 5) uv[y * (n + 1) + x].x += 2.3 / n;
   }
@@ -65,7 +59,7 @@ TEST(Relax, ManyFlipsFarFromEachOtherAreAllTurned) {
 TEST(Relax, AFoldedChartIsGivenUp) {
   const std::uint32_t n = 60;
   const Disc d = plate(n);
-  std::vector<Vec2d> uv = flat(d);
+  std::vector<Vec2d> uv = testing::drop_z(d);
   for (Vec2d& p : uv) {
     if (p.x > 0.5) p.x = 1 - p.x;
   }
@@ -121,7 +115,7 @@ TEST(Relax, TheHighPowerAndItsDerivativesAreRight) {
 TEST(Relax, TheTailIsLoweredWhereItIs) {
   const std::uint32_t n = 60;
   Disc d = plate(n);
-  const std::vector<Vec2d> start = flat(d);
+  const std::vector<Vec2d> start = testing::drop_z(d);
   const auto spike = [](std::uint32_t i) { return i % 20 == 10; };
   for (std::uint32_t y = 0; y <= n; ++y) {
     for (std::uint32_t x = 0; x <= n; ++x) {
@@ -149,8 +143,7 @@ TEST(Relax, TheTailIsLoweredWhereItIs) {
 
 TEST(Relax, ATailThatIsTheWholeChartIsLeftAlone) {
   const Disc d = testing::make_cap(1.3, 20);
-  std::vector<Vec2d> uv;
-  for (const Vec3d& p : d.positions) uv.push_back({p.x, p.y});
+  std::vector<Vec2d> uv = testing::drop_z(d);
   const std::vector<Vec2d> start = uv;
   const System s = system_of(d);
   param::Relaxer relaxer;
@@ -167,7 +160,7 @@ TEST(Relax, TheTailBeginsBeyondAThousandthOfTheArea) {
   const System s = system_of(d);
   int within = 0, beyond = 0;
   for (std::uint32_t moved = 0; moved < 6; ++moved) {
-    std::vector<Vec2d> uv = flat(d);
+    std::vector<Vec2d> uv = testing::drop_z(d);
     for (std::uint32_t i = 0; i < moved; ++i) uv[(10 + 12 * i) * (n + 1) + 40].x += 0.7 / n;
     const std::vector<Vec2d> start = uv;
     const bool reached = measure_distortion(d.view(), uv).stretch_999 <= bound;
@@ -186,7 +179,7 @@ TEST(Relax, TheTailIsMeasuredAtTheChartsOwnScale) {
   const Disc d = plate(20);
   const System s = system_of(d);
   for (const double scale : {0.5, 0.75, 1.4, 2.0}) {
-    std::vector<Vec2d> uv = flat(d);
+    std::vector<Vec2d> uv = testing::drop_z(d);
     for (Vec2d& p : uv) p = {scale * p.x, scale * p.y};
     const std::vector<Vec2d> start = uv;
     param::Relaxer relaxer;
@@ -204,7 +197,7 @@ TEST(Relax, AVertexWithinAFixedSquareGoesToTheMiddle) {
   const std::vector<std::uint32_t> all{0, 1, 2, 3};
   for (const double far : {0.1, 0.5, 0.9, 0.99}) {
     for (const Vec2d at : {Vec2d{far, 0}, {0, far}, {-far, 0}, {0, -far}, {far, 0.7 * far}}) {
-      std::vector<Vec2d> uv = flat(d);
+      std::vector<Vec2d> uv = testing::drop_z(d);
       uv[0] = at;
       param::Relaxer relaxer;
       for (int i = 0; i < 3; ++i) relaxer.smooth(s.elements, s.corners, {all, false}, uv);

@@ -42,7 +42,7 @@ Separated separate(const Disc& d, param::Relaxer& relaxer, param::Separator& sep
   corners.build(elements, d.positions.size());
   const LocalMesh mesh = d.view();
   Separated out;
-  for (const Vec3d& p : d.positions) out.uvs.push_back({p.x, p.y});
+  out.uvs = testing::drop_z(d);
   separator.take(mesh, elements, corners);
   out.apart = separator.separate(relaxer, out.uvs);
   for (const BorderCrossing& c : separator.left()) out.left.insert(out.left.end(), {c.a, c.b});
@@ -57,8 +57,7 @@ TEST(Separate, BordersEndApartOrWhereTheyWere) {
   for (const double excess : {0.01, 0.03, 0.06, 0.1, 0.2, 0.3, 0.5, 1.0}) {
     for (const double wave : {0.0, 0.02, 0.05}) {
       const Disc d = overlapping_ring(excess, wave);
-      std::vector<Vec2d> before;
-      for (const Vec3d& p : d.positions) before.push_back({p.x, p.y});
+      const std::vector<Vec2d> before = testing::drop_z(d);
       ASSERT_FALSE(check_injectivity(d.view(), before).injective);
       const Separated r = separate(d, relaxer, separator);
       ++(r.apart ? apart : as_before);
@@ -92,8 +91,7 @@ TEST(Separate, HolesThatAreInsideOutAreTurned) {
     d = flat;
     d.positions[left].x += over / n;
     d.positions[middle].x -= over / n;
-    std::vector<Vec2d> before;
-    for (const Vec3d& p : d.positions) before.push_back({p.x, p.y});
+    const std::vector<Vec2d> before = testing::drop_z(d);
     const Injectivity check = check_injectivity(d.view(), before);
     ASSERT_TRUE(check.nested && check.crossings.empty() && check.flipped.empty());
     param::Relaxer relaxer;
@@ -122,8 +120,7 @@ TEST(Separate, BanksThatCrossNearTheEndOfASlitComeApart) {
         for (std::size_t t = 2 * n * row; t < d.triangles.size(); ++t)
           std::replace(d.triangles[t].begin(), d.triangles[t].end(), lower, upper);
       }
-      std::vector<Vec2d> before;
-      for (const Vec3d& p : d.positions) before.push_back({p.x, p.y});
+      const std::vector<Vec2d> before = testing::drop_z(d);
       const Injectivity check = check_injectivity(d.view(), before);
       ASSERT_TRUE(check.flipped.empty());
       ASSERT_EQ(check.crossings.size(), 1u);

@@ -35,9 +35,8 @@ Flat stair(double rise, double gap, double scale = 1) {
   };
   Flat flat;
   flat.disc = testing::make_grid(60, 6, [&](double u, double v) { return at(u, v, rise * u); });
-  for (const Vec3d& p :
-       testing::make_grid(60, 6, [&](double u, double v) { return at(u, v, 0); }).positions)
-    flat.uvs.push_back({p.x, p.y});
+  flat.uvs =
+      testing::drop_z(testing::make_grid(60, 6, [&](double u, double v) { return at(u, v, 0); }));
   return flat;
 }
 
