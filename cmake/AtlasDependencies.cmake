@@ -8,6 +8,7 @@ find_package(Eigen3 REQUIRED NO_MODULE)   # libeigen3-dev: sparse solvers
 find_package(glm REQUIRED)                # libglm-dev: vectors and matrices
 find_package(fmt REQUIRED)                # libfmt-dev: text
 find_package(nlohmann_json REQUIRED)      # nlohmann-json3-dev: reports
+find_package(meshoptimizer REQUIRED)      # libmeshoptimizer-dev: compressed glTF
 find_package(ZLIB REQUIRED)               # zlib1g-dev: gzipped worlds
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 find_package(CGAL REQUIRED)               # libcgal-dev: exact predicates

@@ -19,7 +19,7 @@ using nlohmann::json;
 constexpr std::string_view kUnderstood[] = {"KHR_mesh_quantization",   "KHR_texture_transform",
                                             "KHR_lights_punctual",     "KHR_technique_webgl",
                                             "EXT_mesh_gpu_instancing", "EXT_texture_webp",
-                                            "KHR_node_visibility"};
+                                            "EXT_meshopt_compression", "KHR_node_visibility"};
 // Extensions that only say in which format the images of textures are.
 constexpr std::string_view kTextures[] = {"KHR_texture_basisu", "KHR_texture_ktx",
                                           "EXT_texture_avif", "MSFT_texture_dds"};

@@ -11,6 +11,7 @@
 
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/gltf_check.h"
+#include "libatlas/scene/gltf_meshopt.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -273,10 +274,18 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, const GltfLoading& loadi
   auto parts = check_gltf(path, *bytes, loading.textures, loading.defects);
   if (!parts.ok()) return parts.status();
   nlohmann::json parsed = std::move(parts->document);
+  const bool packed = fill_placeholders(parsed);
+  const std::string text = packed ? parsed.dump() : std::string();
+  if (packed) {
+    parts->json = text;
+    parts->plain = false;
+  }
   if (loading.document != nullptr) *loading.document = std::move(parsed);
   parsed = nullptr;  // frees an unwanted JSON to make room for the second parser
-  const std::string rebuilt = parts->plain ? std::string() : plain_glb(*parts);
-  const std::string_view data = parts->plain ? bytes->text() : std::string_view(rebuilt);
+  const std::string rebuilt = parts->container && !parts->plain ? plain_glb(*parts) : std::string();
+  const std::string_view data = parts->plain       ? bytes->text()
+                                : parts->container ? std::string_view(rebuilt)
+                                                   : parts->json;
 
   tinygltf::TinyGLTF loader;
   Folder folder{path.parent_path(), loading.buffers, parts->external_bytes, {}};
@@ -299,6 +308,9 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, const GltfLoading& loadi
   }
   if (!folder.status.ok()) return folder.status;
   if (!loaded) return malformed_gltf(path, error.empty() ? "not a glTF file" : short_line(error));
+  if (packed) {
+    if (Status s = decode_meshopt_views(path, model); !s.ok()) return s;
+  }
   return model;
 }
 

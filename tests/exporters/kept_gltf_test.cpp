@@ -9,6 +9,7 @@
 #include "libatlas/scene/reader.h"
 #include "tests/exporters/kept_gltf.h"
 #include "tests/scene/gltf_maker.h"
+#include "tests/scene/packed_gltf.h"
 #include "tests/scene/temp_folder.h"
 #include "tests/support/gltf_oracle.h"
 
@@ -304,6 +305,32 @@ TEST(KeptGltf, TheNewUvsTakeTheFirstFreeSet) {
     EXPECT_EQ(after.at(c.expected)[2], 1.0 / 64);
     EXPECT_TRUE(after.contains("TEXCOORD_0"));
   }
+}
+
+// The file that is written holds plain data, and so does not need the extension.
+TEST(KeptGltf, OfCompressedDataIsPlain) {
+  const TempFolder folder;
+  const Grid grid;
+  PackedGltf gltf = packed_grid();
+  gltf.j["animations"] = json::array(
+      {{{"samplers",
+         {{{"input", gltf.floats({0, 1}, "SCALAR", 1)},
+           {"output", gltf.packed_positions({0, 0, 0, 5, 6, 7}, 0)}}}},
+        {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}});
+  const WorldFile written = keep(folder.write("packed.glb", gltf.glb()), folder / "kept.glb");
+  EXPECT_EQ(written.not_kept, std::vector<std::string>{});
+  const GltfOracle after(folder / "kept.glb");
+  EXPECT_EQ(after.document.dump().find(kMeshopt), std::string::npos);
+  const std::vector<OracleTriangle> triangles = after.triangles();
+  ASSERT_EQ(3 * triangles.size(), grid.indices.size());
+  double sum = 0, wanted = 0;
+  for (const OracleTriangle& t : triangles)
+    for (const double c : t.attributes.at("POSITION")) sum += c;
+  for (const std::uint32_t v : grid.indices)
+    for (int c = 0; c < 3; ++c) wanted += double(grid.positions[3 * v + c]);
+  EXPECT_NEAR(sum, wanted, 1e-6 * std::abs(wanted));
+  const json& sampler = after.document["animations"][0]["samplers"][0];
+  EXPECT_EQ(after.values(sampler["output"]), (std::vector<double>{0, 0, 0, 5, 6, 7}));
 }
 
 }  // namespace

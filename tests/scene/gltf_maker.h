@@ -54,11 +54,16 @@ struct Gltf {
     j["scenes"] = json::array({{{"nodes", {0}}}});
     j["scene"] = 0;
   }
+  // Buffers that the JSON has already come after that of the bytes.
   std::string glb() const {
     json with_buffer = j;
     std::string binary = bytes;
     binary.resize((binary.size() + 3) / 4 * 4);
-    if (!bytes.empty()) with_buffer["buffers"] = json::array({{{"byteLength", bytes.size()}}});
+    if (!bytes.empty()) {
+      with_buffer["buffers"] = json::array({{{"byteLength", bytes.size()}}});
+      for (const json& more : j.value("buffers", json::array()))
+        with_buffer["buffers"].push_back(more);
+    }
     std::string text = with_buffer.dump();
     text.resize((text.size() + 3) / 4 * 4, ' ');
     const auto word = [](std::size_t v) {

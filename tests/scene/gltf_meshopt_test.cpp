@@ -1,0 +1,202 @@
+// Tests reading buffer views that EXT_meshopt_compression has compressed.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "libatlas/scene/reader.h"
+#include "tests/scene/packed_gltf.h"
+#include "tests/scene/temp_folder.h"
+
+namespace atlas {
+namespace {
+
+using test::Bytes;
+using test::Gltf;
+using test::Grid;
+using test::json;
+using test::kMeshopt;
+using test::load_glb;
+using test::packed_grid;
+using test::PackedGltf;
+using test::TempFolder;
+
+// The codec for triangles may begin each of them at another corner.
+std::vector<std::array<std::uint32_t, 3>> triangles_of(std::vector<std::uint32_t> indices) {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (auto t = indices.begin(); t != indices.end(); t += 3) {
+    std::rotate(t, std::min_element(t, t + 3), t + 3);
+    triangles.push_back({t[0], t[1], t[2]});
+  }
+  return triangles;
+}
+
+void expect_grid(const Result<LoadedScene>& loaded, double tolerance) {
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  const Grid grid;
+  const Scene& s = loaded->scene;
+  ASSERT_EQ(s.positions.size(), grid.positions.size() / 3);
+  EXPECT_EQ(triangles_of(s.indices), triangles_of(grid.indices));
+  for (std::size_t v = 0; v < s.positions.size(); ++v) {
+    EXPECT_NEAR(s.positions[v].x, grid.positions[3 * v], tolerance);
+    EXPECT_NEAR(s.positions[v].y, grid.positions[3 * v + 1], tolerance);
+    EXPECT_NEAR(s.positions[v].z, grid.positions[3 * v + 2], tolerance);
+  }
+}
+
+TEST(GltfMeshopt, EachModeGivesTheDataBack) {
+  const TempFolder folder;
+  for (const bool as_triangles : {true, false}) {
+    for (const int size : {2, 4}) expect_grid(load_glb(folder, packed_grid(as_triangles, size)), 0);
+  }
+}
+
+TEST(GltfMeshopt, ExponentialFilter) {
+  const TempFolder folder;
+  // 16 bits of mantissa and sign, for values of up to 30
+  expect_grid(load_glb(folder, packed_grid(true, 2, 16)), 32.0 / (1 << 15));
+}
+
+// The same file, not in one piece.
+TEST(GltfMeshopt, BufferInAFileOfItsOwn) {
+  const TempFolder folder;
+  PackedGltf g = packed_grid();
+  folder.write("data.bin", g.bytes);
+  g.j["buffers"].insert(g.j["buffers"].begin(),
+                        json({{"uri", "data.bin"}, {"byteLength", g.bytes.size()}}));
+  expect_grid(read_scene(folder.write("scene.gltf", g.j.dump()), {}, {}), 0);
+}
+
+TEST(GltfMeshopt, OctahedralNormals) {
+  const TempFolder folder;
+  const Grid grid;
+  const std::size_t count = grid.positions.size() / 3;
+  std::vector<float> normals;
+  for (std::size_t v = 0; v < count; ++v) {
+    const double around = 0.37 * double(v), up = std::cos(0.11 * double(v));
+    const double out = std::sqrt(1 - up * up);
+    normals.insert(normals.end(),
+                   {float(out * std::cos(around)), float(out * std::sin(around)), float(up), 0.0F});
+  }
+  for (const std::size_t stride : {4, 8}) {
+    PackedGltf g = packed_grid();
+    Bytes filtered(count * stride);
+    meshopt_encodeFilterOct(filtered.data(), count, stride, int(2 * stride), normals.data());
+    const int v = g.packed_vertices(filtered.data(), {count, stride, "ATTRIBUTES", "OCTAHEDRAL"});
+    g.j["bufferViews"][std::size_t(v)]["byteStride"] = stride;
+    g.j["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
+        g.accessor({{"bufferView", v},
+                    {"componentType", stride == 4 ? 5120 : 5122},
+                    {"normalized", true},
+                    {"type", "VEC3"},
+                    {"count", count}});
+    ReadOptions options;
+    options.normals = true;
+    const auto loaded = read_scene(folder.write("scene.glb", g.glb()), options, {});
+    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+    const Scene& s = loaded->scene;
+    ASSERT_EQ(s.normal_indices.size(), s.indices.size());
+    const double tolerance = stride == 4 ? 0.03 : 2e-4;
+    for (std::size_t c = 0; c < s.indices.size(); ++c) {
+      const Vec3f n = s.normals[s.normal_indices[c]];
+      const float* wanted = &normals[4 * s.indices[c]];
+      EXPECT_NEAR(n.x, wanted[0], tolerance);
+      EXPECT_NEAR(n.y, wanted[1], tolerance);
+      EXPECT_NEAR(n.z, wanted[2], tolerance);
+    }
+  }
+}
+
+// Instances of one triangle, turned about z by 30 degrees more each.
+TEST(GltfMeshopt, QuaternionFilter) {
+  const TempFolder folder;
+  constexpr std::size_t count = 12;
+  std::vector<float> turns;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double half = M_PI / 12 * double(i);
+    turns.insert(turns.end(), {0, 0, float(std::sin(half)), float(std::cos(half))});
+  }
+  Bytes filtered(8 * count);
+  meshopt_encodeFilterQuat(filtered.data(), count, 8, 16, turns.data());
+  PackedGltf g;
+  const int v = g.packed_vertices(filtered.data(), {count, 8, "ATTRIBUTES", "QUATERNION"});
+  json node;
+  node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["ROTATION"] =
+      g.accessor({{"bufferView", v},
+                  {"componentType", 5122},
+                  {"normalized", true},
+                  {"type", "VEC4"},
+                  {"count", count}});
+  const int positions = g.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+  g.single({{"attributes", {{"POSITION", positions}}}}, node);
+  const auto loaded = load_glb(folder, g);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  ASSERT_EQ(loaded->scene.positions.size(), 3 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3f p = loaded->scene.positions[3 * i + 1];
+    EXPECT_NEAR(p.x, std::cos(M_PI / 6 * double(i)), 2e-4);
+    EXPECT_NEAR(p.y, std::sin(M_PI / 6 * double(i)), 2e-4);
+  }
+}
+
+// A file for all readers has both kinds of data. Its compressed copy is not needed.
+TEST(GltfMeshopt, PlainDataAreReadAsTheyAre) {
+  const TempFolder folder;
+  Gltf g;
+  const int positions = g.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+  g.single({{"attributes", {{"POSITION", positions}}}});
+  g.j["extensionsUsed"] = {kMeshopt};
+  g.j["bufferViews"][0]["extensions"][kMeshopt] = {{"buffer", 7}, {"mode", "ATTRIBUTES"}};
+  const auto loaded = load_glb(folder, g);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->scene.positions[1], (Vec3f{1, 0, 0}));
+}
+
+TEST(GltfMeshopt, DamageIsNamedWithItsView) {
+  const TempFolder folder;
+  const struct {
+    std::size_t view;
+    json change;
+    const char* message;
+  } cases[] = {
+      {0, {{"buffer", 9}}, "buffer view 0 (EXT_meshopt_compression) names a buffer"},
+      {0, {{"buffer", "x"}}, "names a buffer"},
+      {0, {{"byteOffset", 1 << 20}}, "leaves its buffer"},
+      {0, {{"byteOffset", -4}}, "leaves its buffer"},
+      {0, {{"byteLength", 0}}, "leaves its buffer"},
+      {0, {{"byteLength", 40}}, "is too short for what it should hold"},
+      {0, {{"byteLength", 400}}, "cannot be decompressed"},
+      {0, {{"count", 0}}, "has no count"},
+      {0, {{"count", 1.5}}, "has no count"},
+      {0, {{"count", 1e15}}, "is too short for what it should hold"},
+      {0, {{"byteStride", 6}}, "has a count or byteStride that ATTRIBUTES cannot have"},
+      {0, {{"byteStride", 512}, {"count", 20}}, "byteStride that ATTRIBUTES cannot have"},
+      {0, {{"mode", "OTHER"}}, "is of an unknown mode"},
+      {0, {{"mode", 4}}, "is of an unknown mode"},
+      {0, {{"mode", "TRIANGLES"}}, "byteStride that TRIANGLES cannot have"},
+      {0, {{"filter", "OTHER"}}, "has a filter, OTHER, that it cannot have"},
+      {0, {{"filter", "QUATERNION"}}, "has a filter, QUATERNION, that it cannot have"},
+      {0, {{"filter", "OCTAHEDRAL"}}, "has a filter, OCTAHEDRAL, that it cannot have"},
+      {1, {{"count", 1000}}, "buffer view 1 (EXT_meshopt_compression) has a count"},
+      {1, {{"byteStride", 3}}, "byteStride that TRIANGLES cannot have"},
+      {1, {{"mode", "INDICES"}}, "buffer view 1 (EXT_meshopt_compression) cannot be decompressed"},
+      {1, {{"filter", "EXPONENTIAL"}}, "has a filter, EXPONENTIAL, that it cannot have"},
+  };
+  const PackedGltf whole = packed_grid();
+  for (const auto& c : cases) {
+    PackedGltf g = whole;
+    g.j["bufferViews"][c.view]["extensions"][kMeshopt].update(c.change);
+    const Status status = load_glb(folder, g).status();
+    EXPECT_EQ(status.code(), ErrorCode::bad_input) << c.change;
+    EXPECT_NE(status.message().find(c.message), std::string::npos)
+        << c.change << ": " << status.message();
+    EXPECT_NE(status.message().find("scene.glb"), std::string::npos);
+  }
+  PackedGltf g = whole;
+  g.j["bufferViews"][0].erase("extensions");
+  EXPECT_EQ(load_glb(folder, g).status().code(), ErrorCode::bad_input);
+}
+
+}  // namespace
+}  // namespace atlas
