@@ -132,8 +132,9 @@ class MtlParser {
     double c[3];
     int count = 0;
     for (; count < 3 && !scan_.at_line_end(); ++count) {
+      TextScanner ahead = scan_;
       if (!scan_.number(c[count]) || !std::isfinite(c[count])) {
-        return malformed(fmt::format("'{}' is not a number of Kd r g b", scan_.word()));
+        return malformed(fmt::format("'{}' is not a number of Kd r g b", ahead.word()));
       }
     }
     if (count == 0 || count == 2) return malformed("Kd needs three numbers, or one");
@@ -160,15 +161,22 @@ class MtlParser {
                                      quoted.empty() ? TextScanner::without_comment(name) : quoted);
   }
 
-  // Options come first. The rest of the line is the name, which may contain blanks.
+  // Options come first. The rest of the line is the name, which may contain blanks. A second
+  // texture takes the place of the first one, with its own options.
   Status parse_map() {
     std::string_view rest = scan_.rest_with_comment();
+    RawMaterial& material = builder_.materials.back();
+    const RawMaterial plain;
+    material.uv_u = plain.uv_u;
+    material.uv_v = plain.uv_v;
+    material.wrap_u = plain.wrap_u;
+    material.wrap_v = plain.wrap_v;
     while (rest.size() > 1 && rest[0] == '-') {
       const std::string_view option = next_word(rest);
       if (Status s = parse_option(option, rest); !s.ok()) return s;
     }
     if (rest.empty() || rest[0] == '#') return malformed("map_Kd names no file");
-    builder_.materials.back().texture = builder_.texture_of(texture_file(rest), place());
+    material.texture = builder_.texture_of(texture_file(rest), place());
     return {};
   }
 

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <cmath>
+
 #include "libatlas/core/clock.h"
 #include "libatlas/scene/reader.h"
 #include "tests/scene/temp_folder.h"
@@ -45,6 +47,10 @@ const Case kCases[] = {
     {"option.obj", "mtllib option.obj.mtl\n", ErrorCode::bad_input, "-o of map_Kd needs a number"},
     {"gain.obj", "mtllib gain.obj.mtl\n", ErrorCode::bad_input, "-mm of map_Kd needs two numbers"},
     {"nameless.obj", "mtllib nameless.obj.mtl\n", ErrorCode::bad_input, "map_Kd names no file"},
+    {"infinite.obj", "mtllib infinite.obj.mtl\n", ErrorCode::bad_input,
+     "infinite.obj.mtl:2: 'inf'"},
+    {"early.obj", "mtllib early.obj.mtl\n", ErrorCode::bad_input,
+     "early.obj.mtl:2: map_Kd before the first newmtl"},
     {"colour.obj", "mtllib colour.obj.mtl\n", ErrorCode::bad_input, "three numbers, or one"},
     {"empty.ply", "", ErrorCode::bad_input, "empty.ply: is empty"},
     {"not.ply", "plan\n", ErrorCode::bad_input, "not.ply:1:"},
@@ -52,6 +58,29 @@ const Case kCases[] = {
     {"open.ply", kPly + "element vertex 3\n", ErrorCode::bad_input, "ends inside the header"},
     {"format.ply", "ply\nformat middle 1.0\n", ErrorCode::bad_input, "format.ply:2:"},
     {"count.ply", kPly + "element vertex many\n", ErrorCode::bad_input, "count.ply:3:"},
+    {"early_property.ply", kPly + "property float x\n", ErrorCode::bad_input,
+     "early_property.ply:3:"},
+    {"nameless_property.ply", kPly + "element vertex 1\nproperty float\n", ErrorCode::bad_input,
+     "nameless_property.ply:4:"},
+    {"fractional_list.ply", kPly + "element face 1\nproperty list float int vertex_indices\n",
+     ErrorCode::bad_input, "fractional_list.ply:4:"},
+    {"list_x.ply",
+     kPly + "element vertex 1\nproperty list uchar float x\nproperty float y\nproperty float z\n"
+            "end_header\n1 0 0 0\n",
+     ErrorCode::bad_input, "no x, y and z"},
+    {"short_elements.ply",
+     kPly + "element vertex 1\n" + kXyz +
+         "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n0",
+     ErrorCode::bad_input, "all 1 faces are unusable"},
+    {"half_corner.ply",
+     kPly + "element vertex 1\n" + kXyz +
+         "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n2.5 0 0 0\n",
+     ErrorCode::bad_input, "length 2.5"},
+    {"letters_in_face.ply",
+     kPly + "element vertex 1\n" + kXyz +
+         "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n3 0 0 0\n"
+         "3 0 a 0\n3 0 0 0\n",
+     ErrorCode::bad_input, "letters_in_face.ply:12: no number for 'vertex_indices' of face 1"},
     {"negative.ply", kPly + "element vertex -3\n", ErrorCode::bad_input, "negative.ply:3:"},
     {"type.ply", kPly + "element vertex 1\nproperty quad x\n", ErrorCode::bad_input, "type.ply:4:"},
     {"xy.ply", kPly + "element vertex 1\nproperty float x\nend_header\n0\n", ErrorCode::bad_input,
@@ -107,6 +136,7 @@ const Case kCases[] = {
     {"counts.off", "OFF\n3\n0 0 0\n", ErrorCode::bad_input, "counts.off:2:"},
     {"negative.off", "OFF\n3 -1 0\n0 0 0\n", ErrorCode::bad_input, "negative.off:2:"},
     {"four.off", "4OFF\n1 0 0\n0 0 0 1\n", ErrorCode::unsupported, "four.off:1:"},
+    {"four_flat.off", "4nOFF 3\n1 0 0\n0 0 0\n", ErrorCode::unsupported, "four_flat.off:1:"},
     {"flat.off", "nOFF 2\n1 0 0\n0 0\n", ErrorCode::unsupported, "flat.off:1:"},
     {"faceless.off", "OFF\n1 0 0\n0 0 0\n", ErrorCode::bad_input, "holds no face"},
     {"huge.off", "OFF\n18446744073709551615 1 0\n0 0 0\n", ErrorCode::bad_input, "announced"},
@@ -121,6 +151,10 @@ const Case kCases[] = {
     {"two.off", "OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n", ErrorCode::bad_input, "two.off:4:"},
     {"grey.off", "COFF\n1 0 0\n0 0 0 255\n", ErrorCode::bad_input, "grey.off:3:"},
     {"float_index.off", kOff + "3 0 1.5 2\n", ErrorCode::bad_input, "float_index.off:6:"},
+    {"five_colours.off", "COFF\n1 0 0\n0 0 0 1 2 3 4 5\n", ErrorCode::bad_input,
+     "five_colours.off:3:"},
+    {"short_elements.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n0", ErrorCode::bad_input,
+     "all 1 faces are unusable"},
     {"short_face.off", kOff + "3 0 1\n3 0 1 2\n", ErrorCode::bad_input, "short_face.off:6:"},
     {"all_bad.off", kOff + "3 0 1 7\n", ErrorCode::bad_input, "all 1 faces are unusable"},
     {"binary.off", "OFF BINARY\n\1\2\3", ErrorCode::bad_input, "cut short"},
@@ -150,10 +184,14 @@ const Case kCases[] = {
     {"first.gltf", R"({"asset":{"version":"1.0"},"meshes":{"a":{}}})", ErrorCode::unsupported,
      "glTF version 1.0; only 2.0 is read"},
     {"one.gltf", R"({"asset":{"version":1}})", ErrorCode::unsupported, "glTF version 1;"},
+    {"two.gltf", R"({"asset":{"version":"2"}})", ErrorCode::bad_input, "no triangle"},
     {"draft.gltf", R"({"meshes":{"a":{"primitives":[]}}})", ErrorCode::unsupported,
      "glTF version 1;"},
     {"first.glb", std::string("glTF\1\0\0\0\x18\0\0\0\4\0\0\0\0\0\0\0{}  ", 24),
      ErrorCode::unsupported, "glTF version 1;"},
+    {"second_scene.gltf",
+     R"({"asset":{"version":"2.0"},"scene":1,"scenes":[{"nodes":[0]},{}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{}}]}]})",
+     ErrorCode::bad_input, "scene 1 shows none of its 1 meshes"},
     {"map.gltf", R"({"asset":{"version":"2.0"},"nodes":{"a":{}}})", ErrorCode::bad_input,
      "'nodes' is not a list"},
     {"number.gltf", R"({"asset":{"version":"2.0"},"accessors":[7]})", ErrorCode::bad_input,
@@ -211,6 +249,8 @@ TEST_P(Hostile, EndsInOneClearLine) {
   folder.write("option.obj.mtl", "newmtl a\nmap_Kd -o a.png\n");
   folder.write("gain.obj.mtl", "newmtl a\nmap_Kd -mm 1 a.png\n");
   folder.write("nameless.obj.mtl", "newmtl a\nmap_Kd -clamp on\n");
+  folder.write("infinite.obj.mtl", "newmtl a\nKd inf 0 0\n");
+  folder.write("early.obj.mtl", "# a\nmap_Kd a.png\nnewmtl a\n");
   folder.write("colour.obj.mtl", "newmtl a\nKd 1 0.5\n");
   const auto path = folder.write(c.file, c.bytes);
   const auto loaded = read_scene(path, {}, {});
@@ -243,8 +283,14 @@ TEST(Reader, MissingFilesFoldersAndOptions) {
     EXPECT_NE(result.status().message().find("directory"), std::string::npos);
   }
   ReadOptions options;
-  options.metres_per_unit = 0;
-  EXPECT_EQ(read_scene(folder / "any.obj", options, {}).status().code(), ErrorCode::bad_option);
+  for (const double metres : {0.0, -1.0, HUGE_VAL, double(NAN)}) {
+    options.metres_per_unit = metres;
+    EXPECT_EQ(read_scene(folder / "any.obj", options, {}).status().code(), ErrorCode::bad_option)
+        << metres;
+  }
+  EXPECT_NE(
+      read_scene(folder / "plain", {}, {}).status().message().find("a name without an ending"),
+      std::string::npos);
 }
 
 // Nobody writes to the pipe, so opening it would wait without end.

@@ -193,6 +193,7 @@ TEST(Mtl, LibrariesThatAreMissingAreNamedWhole) {
   EXPECT_EQ(missing("\"my file.mtl\" there.mtl"), "my file.mtl;");
   EXPECT_EQ(missing("one.mtl my other.MTL # of wood"), "one.mtl;my other.MTL;");
   EXPECT_EQ(missing("my file there.mtl"), "my file;");
+  EXPECT_EQ(missing("my file \"other.mtl\""), "my file;other.mtl;");
   EXPECT_EQ(missing("there.mtl \"open.mtl"), "\"open.mtl;");
   EXPECT_EQ(missing("there.mtl \"\""), "\"\";");
   EXPECT_EQ(missing("there.mtl"), "");
@@ -239,7 +240,8 @@ TEST(Mtl, Emission) {
   EXPECT_EQ(material("Ke 0 0 0").emission, Vec3f{});
   EXPECT_EQ(material("Ke 2 0.5 0 # glows").emission, (Vec3f{2, 0.5f, 0}));
   EXPECT_EQ(material("Ke 3").emission, (Vec3f{3, 3, 3}));
-  for (const char* none : {"Ke spectral lamp.rfl", "Ke -1 0 0", "Ke 1e40 0 0", "Ke nan 0 0", "Ke"})
+  for (const char* none :
+       {"Ke spectral lamp.rfl", "Ke -1 0 0", "Ke 1 2", "Ke 1e40 0 0", "Ke nan 0 0", "Ke"})
     EXPECT_EQ(material(none).emission, Vec3f{}) << none;
   EXPECT_FALSE(material("Ke 1 1 1").emission_textured);
   EXPECT_EQ(material("map_Ke a.png").emission, (Vec3f{1, 1, 1}));
@@ -275,6 +277,97 @@ TEST(Mtl, TextureOptions) {
     EXPECT_EQ(ignored(options), 1u) << options;
   }
   EXPECT_EQ(ignored("-clamp on -mm 1 1 -blendu off"), 1u);
+}
+
+// The coordinates of the triangle's corners are (1, 2).
+TEST(Mtl, OffsetsAndScalesMoveTexcoords) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 77), {}).ok());
+  ASSERT_TRUE(write_png(folder / "b.png", Image8(2, 2, 3, 77), {}).ok());
+  const auto moved = [&](const std::string& maps) {
+    folder.write("m.mtl", "newmtl a\n" + maps + "\n");
+    const Scene scene =
+        load(folder.write("s.obj", std::string("mtllib m.mtl\n") + kTexturedTriangle)).scene;
+    EXPECT_EQ(scene.textures.size(), 1u);
+    return scene.texcoords.at(scene.texcoord_indices.at(0));
+  };
+  EXPECT_EQ(moved("map_Kd -o 0.25 0.5 a.png"), (Vec2f{1.25f, 2.5f}));
+  EXPECT_EQ(moved("map_Kd -o 0.25 a.png"), (Vec2f{1.25f, 2}));
+  EXPECT_EQ(moved("map_Kd -s 3 a.png"), (Vec2f{3, 2}));
+  EXPECT_EQ(moved("map_Kd -s 3 4 -o 0.25 0.5 a.png"), (Vec2f{3.25f, 8.5f}));
+  EXPECT_EQ(moved("map_Kd -s 3 4 -o 1 1 a.png\nmap_Kd b.png"), (Vec2f{1, 2}))
+      << "the options are those of the last texture";
+}
+
+// Corners without texture coordinates stay so, and each material moves its own.
+TEST(Mtl, EachMaterialMovesItsOwnTexcoords) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 77), {}).ok());
+  folder.write("m.mtl",
+               "newmtl a\nmap_Kd -s 2 2 a.png\nnewmtl b\nmap_Kd -s 3 3 a.png\nnewmtl c\n"
+               "map_Kd a.png\n");
+  const Scene scene = load(folder.write("s.obj", std::string("mtllib m.mtl\n") + kTexturedTriangle +
+                                                     "f 1 2 3\nusemtl b\nf 1/1 2/1 3/1\n"
+                                                     "usemtl c\nf 1/1 2/1 3/1\n"))
+                          .scene;
+  const auto at = [&](std::size_t corner) {
+    return scene.texcoords.at(scene.texcoord_indices.at(corner));
+  };
+  EXPECT_EQ(at(0), (Vec2f{2, 4}));
+  EXPECT_EQ(scene.texcoord_indices[3], Scene::kNoTexcoord);
+  EXPECT_EQ(at(6), (Vec2f{3, 6}));
+  EXPECT_EQ(at(9), (Vec2f{1, 2}));
+}
+
+TEST(Mtl, OnlyTheLastTextureIsClamped) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 77), {}).ok());
+  folder.write("m.mtl", "newmtl a\nmap_Kd -clamp on a.png\nmap_Kd a.png\n");
+  const Scene scene =
+      load(folder.write("s.obj", std::string("mtllib m.mtl\n") + kTexturedTriangle)).scene;
+  EXPECT_EQ(scene.materials[0].wrap_u, TextureWrap::repeat);
+  EXPECT_EQ(scene.materials[0].wrap_v, TextureWrap::repeat);
+}
+
+TEST(Mtl, LinesBeforeTheFirstMaterialChangeNone) {
+  const TempFolder folder;
+  folder.write("m.mtl", "d 0.5\nKe 1 1 1\nmap_d a.png\nnewmtl a\n");
+  const Scene scene =
+      load(folder.write("s.obj",
+                        "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl a\n"
+                        "f 1 2 3\n"))
+          .scene;
+  ASSERT_EQ(scene.materials.size(), 2u);
+  for (const Material& material : scene.materials) {
+    EXPECT_EQ(material.opacity, 1);
+    EXPECT_EQ(material.emission, Vec3f{});
+    EXPECT_FALSE(material.opacity_textured);
+  }
+}
+
+// Lines are kept if the rest is asked for. Otherwise those are counted that no member holds.
+TEST(Mtl, LinesThatAreNotReadAreCounted) {
+  const TempFolder folder;
+  folder.write("m.mtl",
+               "newmtl a\nKd 1 0 0\n# a comment\nd 0.5\n  Ns 10 # shiny\nNs 20\nKe 1 1 1\nd 2\n"
+               "newmtl b\nKe 1 1 1\nmap_Ke a.png\nd 0.5 0.5\nNi 1\nnewmtl unused\nNs 3\n");
+  const auto path = folder.write(
+      "s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");
+  const Scene scene = load(path).scene;
+  EXPECT_EQ(scene.not_read, (LossCounts{{"lines of the MTL: Ke", 1},
+                                        {"lines of the MTL: Ni", 1},
+                                        {"lines of the MTL: Ns", 2},
+                                        {"lines of the MTL: d", 2},
+                                        {"lines of the MTL: map_Ke", 1}}));
+  EXPECT_TRUE(scene.materials[0].mtl_lines.empty());
+  for (const bool rest : {false, true}) {
+    ReadOptions options;
+    (rest ? options.rest : options.keep_scene) = true;
+    const Scene kept = load(path, options).scene;
+    EXPECT_EQ(kept.not_read, LossCounts{});
+    EXPECT_EQ(kept.materials[0].mtl_lines,
+              (std::vector<std::string>{"d 0.5", "Ns 10 # shiny", "Ns 20", "Ke 1 1 1", "d 2"}));
+  }
 }
 
 // Only `d` with a fraction is unambiguous. Other values of it, and Tr, which some programs write

@@ -91,9 +91,11 @@ TEST(Obj, ByteOrderMarksAndOtherSystemsLineEnds) {
       load(folder.write("s.off", mark + "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
   EXPECT_EQ(off.scene.positions.size(), 3u);
 
-  const auto wide = read_scene(folder.write("w.obj", "\xff\xfev"), {}, {});
-  ASSERT_EQ(wide.status().code(), ErrorCode::unsupported);
-  EXPECT_NE(wide.status().message().find("save it as UTF-8"), std::string::npos);
+  for (const char* begin : {"\xff\xfev", "\xfe\xffv"}) {
+    const auto wide = read_scene(folder.write("w.obj", begin), {}, {});
+    ASSERT_EQ(wide.status().code(), ErrorCode::unsupported);
+    EXPECT_NE(wide.status().message().find("save it as UTF-8"), std::string::npos);
+  }
 }
 
 TEST(Obj, GroupsAreObjectsOnlyWithoutObjects) {
@@ -103,6 +105,56 @@ TEST(Obj, GroupsAreObjectsOnlyWithoutObjects) {
   EXPECT_EQ(groups.scene.triangle_object, (std::vector<std::uint32_t>{0, 1, 0}));
   const auto both = load(folder.write("og.obj", v + "o x\ng a\nf 1 2 3\ng b\nf 1 2 3\n"));
   EXPECT_EQ(both.scene.object_names, std::vector<std::string>{"x"});
+}
+
+// Whatever separates names from comments, a name that comes again is the same object.
+TEST(Obj, NamesEndBeforeComments) {
+  const TempFolder folder;
+  const Scene scene =
+      load(folder.write("g.obj",
+                        "v 0 0 0\nv 1 0 0\nv 0 1 0\ng a # first\nf 1 2 3\ng a\nf 1 2 3\n"
+                        "g b #2\nfo 1 2 3\nusemtl m # steel\nf 1 2 3\nusemtl m\nf 1 2 3\n"))
+          .scene;
+  EXPECT_EQ(scene.object_names, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(scene.triangle_object, (std::vector<std::uint32_t>{0, 0, 1, 1, 1}));
+  EXPECT_EQ(scene.triangle_material, (std::vector<std::uint32_t>{0, 0, 0, 1, 1}));
+  EXPECT_EQ(scene.materials[1].name, "m");
+}
+
+// Weights after the position, fourth components of colours, texture coordinates of one number, and
+// lines that change nothing that is read.
+TEST(Obj, WhatTheFormatAllowsIsNoDefect) {
+  const TempFolder folder;
+  const LoadedScene loaded = load(folder.write(
+      "a.obj",
+      "v 0 0 0 1\nv 1 0 0 1\nv 0 1 0 1\nvt 0.25\nvn 0 0 1\nvp 1 2 3\ns 1\nmg 1 0.5\nbevel on\n"
+      "c_interp on\nlod 3\nusemap a\nmaplib b.map\nd_interp on\nshadow_obj c\ntrace_obj d\n"
+      "f 1/1 2/1 3/1/\nf 1/ 2// 3/1\nf 1 2\nv 1 1 1"));
+  EXPECT_EQ(loaded.defects.lines().size(), 2u);
+  EXPECT_EQ(loaded.defects.count(DefectKind::texcoord_partial), 1u);
+  EXPECT_EQ(loaded.defects.count(DefectKind::too_few_corners), 1u) << "it is not at the end";
+  EXPECT_FALSE(loaded.scene.lit());
+  EXPECT_EQ(loaded.scene.texcoords[0], (Vec2f{0.25f, 0}));
+  const LoadedScene lit =
+      load(folder.write("b.obj", "v 0 0 0\nv 1 0 0 1 2 3 1\nv 0 1 0 4 5 6 1\nv 1 1 0\nf 1 2 3\n"));
+  EXPECT_EQ(lit.scene.illumination, (std::vector<Vec3f>{{}, {1, 2, 3}, {4, 5, 6}, {}}));
+  ASSERT_EQ(lit.defects.count(DefectKind::illumination_missing), 2u);
+  EXPECT_TRUE(lit.defects.defects[0].first_places[0].ends_with("b.obj: vertex 1"));
+  EXPECT_TRUE(lit.defects.defects[0].first_places[1].ends_with("b.obj: vertex 4"));
+}
+
+// A float holds no number below 1.2e-38 with all its digits.
+TEST(Obj, ScenesTooSmallForFloatsAreRefused) {
+  const TempFolder folder;
+  const auto code = [&](const char* size) {
+    const std::string s = size;
+    return read_scene(folder.write("a.obj", "v 0 0 0\nv " + s + " 0 0\nv 0 " + s + " 0\nf 1 2 3\n"),
+                      {}, {})
+        .status()
+        .code();
+  };
+  EXPECT_EQ(code("1e-39"), ErrorCode::unsupported);
+  EXPECT_EQ(code("1e-37"), ErrorCode::ok);
 }
 
 TEST(Obj, BadElementsAreCountedAndNamed) {
@@ -231,6 +283,30 @@ TEST(Obj, LineNumbersSurvivePieces) {
   ASSERT_FALSE(result.ok());
   EXPECT_NE(result.status().message().find(fmt::format(":{}: 'x'", lines + 1)), std::string::npos)
       << result.status().message();
+}
+
+// Names, places and colours go on where a new piece of the file begins.
+TEST(Obj, NamesAndPlacesSurvivePieces) {
+  const TempFolder folder;
+  std::string text = "v 0 0 0 1 2 3\nv 1 0 0 1 2 3\nv 0 1 0 1 2 3\ng first\nf 1 2 3\ng second\n";
+  std::size_t lines = 6;
+  while (text.size() < (std::size_t{5} << 20)) {
+    text += "# " + std::string(1000, 'x') + '\n';
+    ++lines;
+  }
+  text += "f 1 2 3\nv 0 0 1\nv nan 0 0\nnonsense\nmtllib gone.mtl\nusemtl a\nf 1 2 4\n";
+  const LoadedScene loaded = load(folder.write("a.obj", text));
+  EXPECT_EQ(loaded.scene.object_names, (std::vector<std::string>{"first", "second"}));
+  EXPECT_EQ(loaded.scene.triangle_object, (std::vector<std::uint32_t>{0, 1, 1}));
+  std::string places;
+  for (const Defect& defect : loaded.defects.defects) {
+    const std::string& place = defect.first_places[0];
+    places += fmt::format("{} {};", name_of(defect.kind), place.substr(place.rfind("a.obj") + 5));
+  }
+  EXPECT_EQ(places, fmt::format("position_not_finite :{};illumination_missing : vertex 4;"
+                                "material_file_missing :{});material_unknown :{}: 'a';"
+                                "element_ignored :{};",
+                                lines + 3, lines + 5, lines + 6, lines + 4));
 }
 
 // A rotation by a right angle in double precision leaves such numbers in place of 0.
