@@ -17,7 +17,7 @@ namespace {
 std::string decode_uri(const std::string& uri) {
   std::string name;
   for (std::size_t i = 0; i < uri.size(); ++i) {
-    int code = 0;
+    unsigned code = 0;  // a sign is no digit
     if (uri[i] == '%' && i + 2 < uri.size() &&
         std::from_chars(&uri[i + 1], &uri[i + 1] + 2, code, 16).ptr == &uri[i + 1] + 2) {
       name += static_cast<char>(code);

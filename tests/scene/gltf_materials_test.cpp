@@ -227,6 +227,105 @@ TEST(Gltf, DiffuseColoursOfExtensions) {
   EXPECT_EQ(s.texcoords[s.texcoord_indices[1]], (Vec2f{2, 1}));
 }
 
+TEST(Gltf, ValuesOfMaterialsStayInTheirRanges) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());
+  Gltf g;
+  g.j["images"] = {{{"uri", "a.png"}}};
+  g.j["textures"] = {{{"source", 0}}};
+  g.j["materials"] = {{{"alphaMode", "MASK"}, {"alphaCutoff", -1}},
+                      {{"alphaMode", "MASK"}, {"alphaCutoff", 1e30}},
+                      {{"emissiveFactor", {-1, 0.5, 1e39}}, {"emissiveTexture", {{"index", 0}}}},
+                      {{"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 7}}}}},
+                      json::object()};
+  g.j["materials"][4]["extensions"]["KHR_materials_pbrSpecularGlossiness"] = {
+      {"diffuseFactor", {0.5, 0.5, 0.25, 0.75}}};
+  add_triangle_of_each_material(g, {{"POSITION", g.floats(kSquare, "VEC3", 3)}});
+  const auto loaded = load_glb(folder, g);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(check_scene(loaded->scene).message(), "");
+  const std::vector<Material>& m = loaded->scene.materials;
+  EXPECT_EQ(m[0].name, "material0");
+  EXPECT_EQ(m[0].alpha_cutoff, 0);
+  EXPECT_EQ(m[1].alpha_cutoff, 1e6f);
+  EXPECT_EQ(m[2].emission, (Vec3f{0, 0.5f, 1e36f}));
+  EXPECT_TRUE(m[2].emission_textured);
+  EXPECT_EQ(m[3].opacity, 1);
+  EXPECT_EQ(m[4].opacity, 0.75f);
+  EXPECT_FALSE(m[4].emission_textured);
+}
+
+// Numbers of textures, images and samplers that do not exist leave the colour.
+TEST(Gltf, TexturesThatDoNotExistAreTold) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());
+  Gltf g;
+  g.j["images"] = {{{"uri", "a.png"}}};
+  g.j["textures"] = {{{"source", 1}}, {{"source", 0}, {"sampler", 1}}};
+  g.j["textures"][1]["extensions"]["EXT_texture_webp"]["source"] = 7;
+  g.j["samplers"] = {{{"wrapS", 33071}}};
+  for (const int texture : {0, 2, 1})
+    g.j["materials"].push_back(
+        {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}});
+  add_triangle_of_each_material(g, {{"POSITION", g.floats(kSquare, "VEC3", 3)}});
+  const auto loaded = load_glb(folder, g);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->defects.count(DefectKind::texture_unreadable), 2u);
+  const std::vector<Material>& m = loaded->scene.materials;
+  EXPECT_EQ(m[0].texture, -1);
+  EXPECT_EQ(m[1].texture, -1);
+  EXPECT_EQ(m[2].texture, 0);
+  EXPECT_EQ(m[2].wrap_u, TextureWrap::repeat);
+}
+
+// A percent sign that two hexadecimal digits do not follow is one of the name.
+TEST(Gltf, NamesOfImagesArePercentEncoded) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());
+  const auto found = [&](const std::string& uri, const std::string& name) {
+    folder.write(name, TempFolder::read(folder / "a.png"));
+    Gltf g;
+    g.j["images"] = {{{"uri", uri}}};
+    g.j["textures"] = {{{"source", 0}}};
+    g.j["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+    add_triangle_of_each_material(g, {{"POSITION", g.floats(kSquare, "VEC3", 3)}});
+    const auto loaded = load_glb(folder, g);
+    return loaded.ok() && loaded->defects.empty() && loaded->scene.textures.size() == 1 &&
+           loaded->scene.textures[0].path.filename() == name;
+  };
+  EXPECT_TRUE(found("a%2Bb%c3%a9.png", "a+b\xc3\xa9.png"));
+  EXPECT_TRUE(found("end%31", "end1"));
+  EXPECT_TRUE(found("100%.png", "100%.png"));
+  EXPECT_TRUE(found("100%4", "100%4"));
+  EXPECT_TRUE(found("100%-1.png", "100%-1.png"));
+}
+
+TEST(Gltf, WhatIsNotReadIsCounted) {
+  const TempFolder folder;
+  Gltf g;
+  const int positions = g.floats(kSquare, "VEC3", 3);
+  const int uvs = g.floats({0, 0, 1, 0, 1, 1, 0, 1}, "VEC2", 2);
+  g.j["images"] = {{{"uri", "gone.png"}}};
+  g.j["textures"] = {{{"source", 0}}};
+  g.j["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+  g.j["materials"] = {{{"pbrMetallicRoughness", {{"roughnessFactor", 0.5}}}},
+                      {{"pbrMetallicRoughness", {{"metallicFactor", 0}}}},
+                      {{"extensions", {{"KHR_materials_unlit", json::object()}}}},
+                      {{"normalTexture", {{"index", 0}}}},
+                      {{"emissiveTexture", {{"index", 0}}}}};
+  add_triangle_of_each_material(
+      g, {{"POSITION", positions}, {"TEXCOORD_0", uvs}, {"TEXCOORD_1", uvs}});
+  g.j["nodes"][0]["scale"] = {1, 1, 2};
+  const auto loaded = load_glb(folder, g);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->scene.not_read,
+            (LossCounts{{"cameras", 1},
+                        {"materials of more than a base colour", 3},
+                        {"nodes with transforms or children, applied to what they show", 1},
+                        {"primitives with uvs in several sets", 5},
+                        {"textures of materials", 2}}));
+}
+
 TEST(Gltf, TexturesMayBeLeftOutWhereThereIsNoLight) {
   const TempFolder folder;
   ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());

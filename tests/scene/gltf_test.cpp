@@ -173,6 +173,7 @@ TEST(Gltf, RangesAreChecked) {
       {"huge count", [](json& j) { j["accessors"][0]["count"] = 4000000000000ll; }},
       {"offset", [](json& j) { j["accessors"][0]["byteOffset"] = 4; }},
       {"view length", [](json& j) { j["bufferViews"][0]["byteLength"] = 4000; }},
+      {"view end", [](json& j) { j["bufferViews"][0]["byteOffset"] = 60; }},
       {"view offset", [](json& j) { j["bufferViews"][0]["byteOffset"] = 1ll << 40; }},
       {"stride", [](json& j) { j["bufferViews"][0]["byteStride"] = 252; }},
       {"buffer", [](json& j) { j["bufferViews"][0]["buffer"] = 3; }},
