@@ -27,7 +27,15 @@ struct Shape {
   std::vector<Vec2f> uvs;
   std::vector<double> corners, uv_corners;  // indices, with a -1 after each face
   std::uint32_t material = 0;
+  bool clockwise = false;  // the order of a face's corners, seen from its front
 };
+
+glm::dmat4 rotation(const glm::dvec4& axis_and_angle) {
+  const glm::dvec3 axis(axis_and_angle);
+  const double length = glm::length(axis);
+  return length > 0 ? glm::mat4_cast(glm::angleAxis(axis_and_angle.w, axis / length))
+                    : glm::dmat4(1);
+}
 
 bool is_group(std::string_view type) {
   return type == "Transform" || type == "Group" || type == "Collision" || type == "Anchor" ||
@@ -126,21 +134,22 @@ class VrmlParser : VrmlScanner {
   // read in a second pass.
   void group(const glm::dmat4& matrix, int depth) {
     glm::dvec3 translation(0), centre(0), scale(1);
-    glm::dvec4 turn(0, 0, 1, 0);
+    glm::dvec4 turn(0, 0, 1, 0), scale_axes(0, 0, 1, 0);
     const char* children = nullptr;
     fields([&](std::string_view name) {
       if (name == "translation") return translation = glm::dvec3(row(3)), true;
       if (name == "center") return centre = glm::dvec3(row(3)), true;
       if (name == "scale") return scale = glm::dvec3(row(3)), true;
+      if (name == "scaleOrientation") return scale_axes = row(4), true;
       if (name == "rotation") return turn = row(4), true;
       if (name == "children") children = place();
       return false;
     });
     if (!children) return;
-    glm::dmat4 local(1);
-    const double length = glm::length(glm::dvec3(turn));
-    if (length > 0) local = glm::mat4_cast(glm::angleAxis(turn.w, glm::dvec3(turn) / length));
+    const glm::dmat4 axes = rotation(scale_axes);
+    glm::dmat4 local = rotation(turn) * axes;
     for (int c = 0; c < 3; ++c) local[c] *= scale[c];
+    local = local * glm::transpose(axes);
     local[3] = glm::dvec4(translation + centre - glm::dvec3(local * glm::dvec4(centre, 0)), 1);
     const char* after = place();
     go_to(children);
@@ -224,6 +233,7 @@ class VrmlParser : VrmlScanner {
     fields([&](std::string_view name) {
       if (name == "coordIndex") return shape.corners = list(1), true;
       if (name == "texCoordIndex") return shape.uv_corners = list(1), true;
+      if (name == "ccw") return shape.clockwise = next() == "FALSE", true;
       if (name != "coord" && name != "texCoord") return false;
       const bool uv = name == "texCoord";
       read_node(next(), [&](std::string_view, std::string_view) { points(uv, shape); });
@@ -271,7 +281,7 @@ class VrmlParser : VrmlScanner {
         continue;
       }
       if (vertices.empty()) continue;
-      if (base.mirrored) {
+      if (base.mirrored != shape.clockwise) {
         std::reverse(vertices.begin(), vertices.end());
         std::reverse(uvs.begin(), uvs.end());
       }

@@ -9,53 +9,20 @@
 #include "tests/scene/load_scene.h"
 #include "tests/scene/sound.h"
 #include "tests/scene/temp_folder.h"
+#include "tests/scene/vrml_maker.h"
 
 namespace atlas {
 namespace {
 
+using test::Ids;
 using test::load;
+using test::painted;
+using test::Places;
+using test::places;
+using test::read;
+using test::scene_of;
+using test::shape;
 using test::TempFolder;
-
-Result<LoadedScene> read(const TempFolder& folder, const std::string& nodes) {
-  ReadOptions options;
-  options.load_textures = false;
-  return read_scene(folder.write("a.wrl", "#VRML V2.0 utf8\n" + nodes), options, {});
-}
-
-Scene scene_of(const TempFolder& folder, const std::string& nodes) {
-  auto loaded = read(folder, nodes);
-  EXPECT_TRUE(loaded.ok()) << loaded.status().message();
-  return loaded.ok() ? std::move(loaded->scene) : Scene{};
-}
-
-// One triangle whose first corner is at `x`, by which it is found again.
-std::string triangle(int x) {
-  return fmt::format(
-      "geometry IndexedFaceSet {{ coord Coordinate {{ point [ {} 0 0, {} 1 0, {} 0 1 ] }}\n"
-      "coordIndex [ 0 1 2 -1 ] }}\n",
-      x, x, x);
-}
-std::string shape(int x, const std::string& appearance = "") {
-  const std::string given = appearance.empty() ? "" : "appearance " + appearance + "\n";
-  return "Shape { " + given + triangle(x) + "}\n";
-}
-std::string painted(int x, const std::string& material) {
-  return shape(x, "Appearance { material " + material + " }");
-}
-
-// The first coordinates of all triangles, in order.
-std::vector<double> places(const Scene& scene) {
-  std::vector<double> result;
-  for (std::size_t k = 0; k < scene.indices.size(); k += 3)
-    result.push_back(scene.origin.x + scene.positions[scene.indices[k]].x);
-  return result;
-}
-std::vector<double> places(const TempFolder& folder, const std::string& nodes) {
-  return places(scene_of(folder, nodes));
-}
-
-using Ids = std::vector<std::uint32_t>;
-using Places = std::vector<double>;
 
 TEST(Vrml, ShapesOfEqualMaterialsShareOne) {
   const TempFolder folder;
