@@ -48,6 +48,18 @@ TEST(CheckScene, KeepsWhatIsGiven) {
   EXPECT_EQ(scene.triangle_material[0], 2u);
 }
 
+// Encoded images are sound, but cannot be baked.
+TEST(CheckScene, ImagesToBakeMustBeDecoded) {
+  Scene scene = square();
+  ASSERT_TRUE(complete_scene(scene).ok());
+  add_texture(scene);
+  EXPECT_TRUE(check_images(scene).ok());
+  scene.textures.push_back({{}, {}, {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}});
+  EXPECT_EQ(check_scene(scene).message(), "");
+  EXPECT_EQ(check_images(scene).code(), ErrorCode::bad_input);
+  EXPECT_NE(check_images(scene).message().find("textures[1] has no image"), std::string::npos);
+}
+
 TEST(CheckScene, NamesArrayAndElement) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const struct {
@@ -64,12 +76,23 @@ TEST(CheckScene, NamesArrayAndElement) {
          s.illumination[1].y = nan;
        }},
       {"origin", [=](Scene& s) { s.origin.x = nan; }},
+      {"metres_per_unit is inf",
+       [](Scene& s) { s.metres_per_unit = std::numeric_limits<double>::infinity(); }},
       {"metres_per_unit is 0", [](Scene& s) { s.metres_per_unit = 0; }},
       {"triangle_material has 1 entries", [](Scene& s) { s.triangle_material.resize(1); }},
       {"triangle_material[1] is 4", [](Scene& s) { s.triangle_material[1] = 4; }},
       {"triangle_object has 5 entries", [](Scene& s) { s.triangle_object.resize(5); }},
       {"triangle_object[0] is 1", [](Scene& s) { s.triangle_object[0] = 1; }},
       {"materials[0] names texture 1", [](Scene& s) { s.materials[0].texture = 1; }},
+      {"materials[0] names texture -2", [](Scene& s) { s.materials[0].texture = -2; }},
+      {"the diffuse of materials[0]", [=](Scene& s) { s.materials[0].diffuse.y = nan; }},
+      {"the emission of materials[0]", [=](Scene& s) { s.materials[0].emission.x = nan; }},
+      {"the emission of materials[0]", [](Scene& s) { s.materials[0].emission.z = -1; }},
+      {"the opacity of materials[0] is -0.5", [](Scene& s) { s.materials[0].opacity = -0.5f; }},
+      {"the alpha_cutoff of materials[0] is -1",
+       [](Scene& s) { s.materials[0].alpha_cutoff = -1; }},
+      {"the alpha_cutoff of materials[0] is inf",
+       [](Scene& s) { s.materials[0].alpha_cutoff = std::numeric_limits<float>::infinity(); }},
       {"texcoord_indices has 3 entries", [](Scene& s) { s.texcoord_indices.resize(3); }},
       {"texcoord_indices[2] is 7", [](Scene& s) { s.texcoord_indices[2] = 7; }},
       {"texcoords[1]", [=](Scene& s) { s.texcoords[1].x = nan; }},
@@ -79,6 +102,7 @@ TEST(CheckScene, NamesArrayAndElement) {
       {"normal_indices[1] is 1, but there are 1 normals",
        [](Scene& s) { s.normal_indices[1] = 1; }},
       {"normals[0] has length 2", [](Scene& s) { s.normals[0].z = 2; }},
+      {"normals[0] has length 1.02", [](Scene& s) { s.normals[0].z = 1.02f; }},
       {"normals[0] has length nan", [=](Scene& s) { s.normals[0].z = nan; }},
       {"the opacity of materials[0] is 1.5", [](Scene& s) { s.materials[0].opacity = 1.5f; }},
       {"the alpha_cutoff of materials[0]", [=](Scene& s) { s.materials[0].alpha_cutoff = nan; }},

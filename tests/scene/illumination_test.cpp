@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,10 @@ TEST(Illumination, FromASecondFile) {
     return read_scene(mesh, options, {}).status();
   };
   EXPECT_EQ(status_with("short.txt", "1 2 3\n").code(), ErrorCode::bad_input);
+  EXPECT_EQ(status_with("long.txt", "1\n2\n3\n4\n").code(), ErrorCode::bad_input);
   EXPECT_NE(status_with("two.txt", "1 2\n").message().find("two.txt:1:"), std::string::npos);
+  EXPECT_NE(status_with("four.txt", "1\n1 2 3 4\n2\n").message().find("four.txt:2:"),
+            std::string::npos);
   // A lightmap, for example: the message must not ask to correct its first line.
   EXPECT_NE(status_with("map.png", std::string("\x89PNG\r\n\0\0\0", 9))
                 .message()
@@ -46,6 +50,23 @@ TEST(Illumination, FromASecondFile) {
   ReadOptions missing;
   missing.illumination_file = folder / "nowhere.txt";
   EXPECT_EQ(read_scene(mesh, missing, {}).status().code(), ErrorCode::not_found);
+  // What is a scene, though of a kind that is not read, is no text.
+  EXPECT_EQ(status_with("light.gltf",
+                        R"({"asset":{"version":"2.0"},"extensionsRequired":["EXT_unknown"]})")
+                .code(),
+            ErrorCode::unsupported);
+}
+
+TEST(Illumination, FilesThatTheSecondFileNamesAreListed) {
+  const TempFolder folder;
+  const auto mesh = folder.write("mesh.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.write("a.mtl", "newmtl a\n");
+  folder.write("b.mtl", "newmtl b\n");
+  ReadOptions options;
+  options.illumination_file =
+      folder.write("light.obj", "mtllib b.mtl\nv 0 0 0 1 2 3\nv 1 0 0 1 2 3\nv 0 1 0 1 2 3\n");
+  EXPECT_EQ(load(mesh, options).files,
+            (std::vector<std::filesystem::path>{folder / "a.mtl", folder / "b.mtl"}));
 }
 
 // Only the order of vertices links the two files. If both have the same bounding box, it is
@@ -65,6 +86,21 @@ TEST(Illumination, AnotherOrderOfTheSameVerticesIsTold) {
   EXPECT_EQ(elsewhere("v 0.0004 0 0 1 1 1\nv 1 0.001 0 2 2 2\nv 0 1 0 3 3 3\n"), 0u);
   EXPECT_EQ(elsewhere("v 0 0 0 1 1 1\nv 0 1000 0 2 2 2\nv 1000 0 0 3 3 3\n"), 0u);  // in mm
   EXPECT_EQ(elsewhere("v nan 0 0 1 1 1\nv 1 0 0 2 2 2\nv 0 1 0 3 3 3\n"), 0u);
+  ReadOptions options;
+  const auto far =
+      folder.write("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.5 0.5 0\nv 1e300 0 0\nf 1 2 3\n");
+  options.illumination_file =
+      folder.write("light.obj",
+                   "v 0 0 0 1 1 1\nv 1 0 0 1 1 1\nv 0 1 0 1 1 1\nv 0.5 0.55 0 1 1 1\n"
+                   "v 1e300 0 0 1 1 1\n");
+  const LoadedScene loaded = load(far, options);
+  ASSERT_EQ(loaded.defects.count(DefectKind::illumination_elsewhere), 1u)
+      << "a position that is no float hides nothing";
+  for (const Defect& defect : loaded.defects.defects) {
+    if (defect.kind == DefectKind::illumination_elsewhere) {
+      EXPECT_TRUE(defect.first_places[0].ends_with("light.obj: vertex 4"));
+    }
+  }
 }
 
 // Defects of the second file's light are reported with that file's name. The first file's light is
@@ -91,6 +127,15 @@ TEST(Illumination, DefectsAreTheSecondFiles) {
   }
   EXPECT_EQ(defects("light.obj").count(DefectKind::illumination_missing), 1u);
   EXPECT_EQ(defects("light.txt").count(DefectKind::illumination_negative), 1u);
+  EXPECT_TRUE(defects("light.txt").defects[0].first_places[0].ends_with("light.txt: vertex 2"));
+  // Those of both files are in one order, so that each kind is listed once.
+  folder.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\nl 1 2\n");
+  folder.write("wrong.obj", "v 0 0 0 nan 2 3\nv 0 0 0 1 -2 1e38\nv 0 0 0 1 2 3\nv 0 0 0\n");
+  std::vector<DefectKind> kinds;
+  for (const Defect& defect : defects("wrong.obj").defects) kinds.push_back(defect.kind);
+  EXPECT_EQ(kinds, (std::vector<DefectKind>{
+                       DefectKind::illumination_not_finite, DefectKind::illumination_negative,
+                       DefectKind::illumination_missing, DefectKind::element_ignored}));
 }
 
 }  // namespace

@@ -114,6 +114,16 @@ TEST(LineEnds, OfBinaryPly) {
   }
 }
 
+TEST(TextFiles, LineEndsInGzipFiles) {
+  const TempFolder folder;
+  const std::filesystem::path path = folder / "s.wrz";
+  const gzFile file = gzopen(path.c_str(), "wb");
+  ASSERT_NE(file, nullptr);
+  EXPECT_GT(gzputs(file, "a\rb\r\nc\n\rd"), 0);
+  gzclose(file);
+  EXPECT_EQ(*read_text_or_gzip(path), "a\nb\r\nc\n\nd\n");
+}
+
 // A file that is intact, but holds more than can be read, is not called damaged.
 TEST(TextFiles, TooMuchTextInAGzipFileIsToldApartFromDamage) {
   const TempFolder folder;

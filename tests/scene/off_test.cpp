@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 #include <random>
 
 #include "libatlas/scene/reader.h"
@@ -58,6 +59,17 @@ TEST(Off, NormalsColoursAndTexcoordsInThisOrder) {
   const Scene bare = scene_of("NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n");
   EXPECT_FALSE(bare.lit());
   EXPECT_TRUE(bare.texcoords.empty());
+  EXPECT_TRUE(bare.normals.empty()) << "they are not asked for";
+}
+
+// Every element is as short as the format allows.
+TEST(Off, ShortElementsAreNotTakenForACutFile) {
+  std::string vertices, faces;
+  for (int i = 0; i < 40; ++i) {
+    vertices += i % 2 ? "1 0 0\n" : i % 4 ? "0 1 0\n" : "0 0 0\n";
+    faces += "\n0";
+  }
+  EXPECT_EQ(scene_of("OFF\n40 41 0\n" + vertices + "3 0 1 2" + faces).triangle_count(), 1u);
 }
 
 // Whole numbers up to 255 are divided by 255. Fractions and larger values are used unchanged.
@@ -72,6 +84,8 @@ TEST(Off, ScalesOfColours) {
   EXPECT_EQ(first("0.5 0 1", "1 1 1"), (Vec3f{0.5f, 0, 1}));
   EXPECT_EQ(first("200 0 1", "0.5 1 1"), (Vec3f{200, 0, 1}));
   EXPECT_EQ(first("200 0 1", "1 4000 1"), (Vec3f{200, 0, 1}));
+  EXPECT_EQ(first("2E2 0 1", "1 1 1"), (Vec3f{200, 0, 1}));
+  EXPECT_EQ(first("200 0 1", "nan 1 1"), (Vec3f{200, 0, 1}));
   EXPECT_EQ(first("51 0 1 1.0", "1 1 1 .5"), (Vec3f{0.2f, 0, float(1 / 255.0)}));
 }
 
@@ -143,6 +157,59 @@ TEST_P(BinaryOff, IsRead) {
     if (colours) {
       EXPECT_EQ(scene.illumination[2], (Vec3f{200, .5f, -1}));
     }
+  }
+}
+
+TEST_P(BinaryOff, NormalsColoursAndTexcoordsInThisOrder) {
+  bytes_ = "STCNOFF BINARY\n";
+  for (const std::uint32_t v : {3u, 1u, 0u}) word(v);
+  for (int i = 0; i < 3; ++i) {
+    for (const float v : {float(i), float(i * i), 0.f}) number(v);    // position
+    for (const float v : {0.f, 0.6f, 0.8f}) number(v);                // normal
+    for (const float v : {1.f, 2.f, 3.f + float(i), 1.f}) number(v);  // colour
+    for (const float v : {0.25f, float(i)}) number(v);                // texture coordinate
+  }
+  for (const std::uint32_t v : {3u, 0u, 1u, 2u}) word(v);
+  if (GetParam()) word(0);
+  const Scene scene = scene_of(bytes_);
+  EXPECT_EQ(scene.positions, (std::vector<Vec3f>{{0, 0, 0}, {1, 1, 0}, {2, 4, 0}}));
+  EXPECT_EQ(scene.illumination, (std::vector<Vec3f>{{1, 2, 3}, {1, 2, 4}, {1, 2, 5}}));
+  EXPECT_EQ(scene.texcoords, (std::vector<Vec2f>{{.25f, 0}, {.25f, 1}, {.25f, 2}}));
+  EXPECT_TRUE(scene.normals.empty()) << "they are not asked for";
+  const TempFolder folder;
+  const auto asked = read_scene(folder.write("n.off", bytes_), {.normals = true}, {});
+  ASSERT_TRUE(asked.ok()) << asked.status().message();
+  EXPECT_EQ(asked->scene.normals, std::vector<Vec3f>(3, {0, 0.6f, 0.8f}));
+}
+
+TEST_P(BinaryOff, DefectsAreNamedByTheirNumbers) {
+  for (const std::uint32_t v : {4u, 3u, 0u}) word(v);
+  for (const float x : {0.f, NAN, 1.f, 2.f}) {
+    for (const float v : {x, x * x, 1.f}) number(v);
+  }
+  const auto face = [&](std::uint32_t last) {
+    for (const std::uint32_t v : {3u, 0u, 2u, last}) word(v);
+    if (GetParam()) word(0);
+  };
+  face(3);
+  face(4);
+  face(1);
+  const auto loaded = load(bytes_);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->scene.triangle_count(), 1u);
+  const std::vector<std::string> lines = loaded->defects.lines();
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_NE(lines[0].find("a.off: face 1)"), std::string::npos) << lines[0];
+  EXPECT_NE(lines[1].find("a.off: face 2)"), std::string::npos) << lines[1];
+  EXPECT_NE(lines[2].find("a.off: vertex 1)"), std::string::npos) << lines[2];
+}
+
+// The data must end at the file's end, or the bytes are not what the header says.
+TEST_P(BinaryOff, BytesAfterTheLastFaceAreRefused) {
+  square(false);
+  for (int more = 1; more < 9; ++more) {
+    bytes_ += 'x';
+    EXPECT_EQ(load(bytes_).status().code(), ErrorCode::bad_input) << more;
   }
 }
 

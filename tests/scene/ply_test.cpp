@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <random>
 
@@ -164,6 +165,108 @@ TEST_P(PlyFormats, RandomDamageNeverCrashes) {
   EXPECT_GT(survived, 0);
 }
 
+// The values are the least that each type holds, or the greatest where there is no sign.
+TEST_P(PlyFormats, TypesOfEveryName) {
+  const TempFolder folder;
+  const auto positions = [&](const char* x, const char* y, const char* z, const auto&... values) {
+    Writer w(GetParam(), std::string("element vertex 3\nproperty ") + x + " x\nproperty " + y +
+                             " y\nproperty " + z +
+                             " z\nelement face 1\nproperty list int8 uint8 vertex_indices\n");
+    for (int i = 0; i < 3; ++i) {
+      (w.put(values), ...);
+      w.end();
+    }
+    w.put(std::int8_t{3});
+    for (const int v : {0, 1, 2}) w.put(std::uint8_t(v));
+    const auto loaded = read_scene(folder.write("n.ply", w.end().bytes()), {}, {});
+    EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+    if (!loaded.ok()) return Vec3d{};
+    const Vec3f p = loaded->scene.positions[0];
+    return Vec3d{p.x, p.y, p.z};
+  };
+  const std::int8_t i8 = -128;
+  const std::int16_t i16 = -32768;
+  const std::int32_t i32 = -65536;
+  EXPECT_EQ(positions("char", "short", "int", i8, i16, i32), (Vec3d{-128, -32768, -65536}));
+  EXPECT_EQ(positions("int8", "int16", "int32", i8, i16, i32), (Vec3d{-128, -32768, -65536}));
+  const std::uint8_t u8 = 255;
+  const std::uint16_t u16 = 65535;
+  const std::uint32_t u32 = 0x80000000u;
+  EXPECT_EQ(positions("uchar", "ushort", "uint", u8, u16, u32), (Vec3d{255, 65535, 2147483648.0}));
+  EXPECT_EQ(positions("uint8", "uint16", "uint32", u8, u16, u32),
+            (Vec3d{255, 65535, 2147483648.0}));
+  EXPECT_EQ(positions("float", "double", "float32", 1.5f, -2.25, 3.f), (Vec3d{1.5, -2.25, 3}));
+  EXPECT_EQ(positions("float64", "float32", "double", 1.5, -2.25f, 3.0), (Vec3d{1.5, -2.25, 3}));
+}
+
+TEST_P(PlyFormats, ShortElementsAreNotTakenForACutFile) {
+  const TempFolder folder;
+  Writer w(GetParam(),
+           "element vertex 40\nproperty char x\nproperty char y\nproperty char z\n"
+           "element face 200\nproperty list uchar double vertex_indices\n");
+  for (int i = 0; i < 40; ++i)
+    w.put(std::int8_t(i % 2)).put(std::int8_t(i % 3)).put(std::int8_t{0}).end();
+  w.put(std::uint8_t{3}).put(0.0).put(1.0).put(2.0).end();
+  for (int i = 1; i < 200; ++i) w.put(std::uint8_t{0}).end();
+  const auto loaded = read_scene(folder.write("s.ply", w.bytes()), {}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->scene.triangle_count(), 1u);
+  EXPECT_EQ(loaded->defects.count(DefectKind::too_few_corners), 199u);
+  EXPECT_EQ(loaded->defects.lines()[0].find("199 x "), 0u) << "not only those that are named";
+  const bool ascii = std::string(GetParam()) == "ascii";
+  EXPECT_NE(loaded->defects.lines()[0].find(ascii ? "s.ply:52," : "s.ply: face 1,"),
+            std::string::npos)
+      << loaded->defects.lines()[0];
+}
+
+// Strips have what their vertices have.
+TEST_P(PlyFormats, StripsHaveTexcoordsAndNormals) {
+  const TempFolder folder;
+  Writer w(GetParam(),
+           "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+           "property float s\nproperty float t\nproperty float nx\nproperty float ny\n"
+           "property float nz\nelement tristrips 1\nproperty list int int vertex_indices\n");
+  for (int i = 0; i < 4; ++i) {
+    w.put(float(i / 2)).put(float(i % 2)).put(0.f).put(float(i)).put(0.5f);
+    w.put(0.f).put(0.f).put(1.f).end();
+  }
+  for (const int v : {4, 0, 1, 2, 3}) w.put(v);
+  const auto loaded = read_scene(folder.write("s.ply", w.end().bytes()), {.normals = true}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->scene.texcoord_indices, loaded->scene.indices);
+  EXPECT_EQ(loaded->scene.normal_indices, loaded->scene.indices);
+}
+
+// Programs name the same properties differently.
+TEST(Ply, NamesOfColoursAndTexcoords) {
+  const TempFolder folder;
+  const std::array<const char*, 3> colours[] = {
+      {"r", "g", "b"},
+      {"illumination_r", "illumination_g", "illumination_b"},
+      {"illuminance_r", "illuminance_g", "illuminance_b"},
+      {"diffuse_red", "diffuse_green", "diffuse_blue"}};
+  const std::array<const char*, 2> texcoords[] = {
+      {"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}};
+  for (const auto& names : colours) {
+    for (const auto& uv : texcoords) {
+      std::string header = "ply\nformat ascii 1.0\nobj_info none\nelement vertex 3\n";
+      for (const char* name : {"x", "y", "z", names[0], names[1], names[2], uv[0], uv[1]})
+        header += std::string("property float ") + name + "\n";
+      const auto loaded = read_scene(
+          folder.write("n.ply",
+                       header + "element face 1\nproperty list uchar int vertex_indices\n"
+                                "element vertex 0\nproperty float x\nend_header\n"
+                                "0 0 0 1 2 3 .25 .5\n1 0 0 4 5 6 0 0\n0 1 0 7 8 9 0 0\n3 0 1 2\n"),
+          {}, {});
+      ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+      ASSERT_TRUE(loaded->scene.lit()) << names[0];
+      EXPECT_EQ(loaded->scene.illumination[1], (Vec3f{4, 5, 6})) << names[0];
+      ASSERT_FALSE(loaded->scene.texcoord_indices.empty()) << uv[0];
+      EXPECT_EQ(loaded->scene.texcoords[0], (Vec2f{.25f, .5f})) << uv[0];
+    }
+  }
+}
+
 // MeshLab writes textures like this: a comment for each, and a number in each face.
 TEST(Ply, TexturesAreNamedInComments) {
   const TempFolder folder;
@@ -172,22 +275,25 @@ TEST(Ply, TexturesAreNamedInComments) {
                    "ply\nformat ascii 1.0\ncomment TextureFile a b.png\ncomment TextureFile c.png\n"
                    "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
                    "property float illuminance\n"
-                   "element face 5\nproperty list uchar int vertex_indices\n"
+                   "element face 7\nproperty list uchar int vertex_indices\n"
                    "property list uchar float texcoord\nproperty int texnumber\nend_header\n"
                    "0 0 0 1\n1 0 0 2\n0 1 nan 3\n"
                    "3 0 1 1 6 0 0 1 0 0.5 1 1\n3 0 1 0 6 0 0 1 0 0 1 0\n3 0 0 1 6 0 0 1 0 0 1 7\n"
-                   "3 0 1 2 6 0 0 1 0 0 1 0\n3 0 1 1 6 0 0 1 0 0 1 -1\n");
+                   "3 0 1 2 6 0 0 1 0 0 1 0\n3 0 1 1 6 0 0 1 0 0 1 -1\n"
+                   "3 0 1 1 6 0 0 1 0 0 1 2\n3 0 1 1 6 0 0 1 0 0 1 -2\n");
   const auto loaded = read_scene(path, {}, {});
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   const Scene& s = loaded->scene;
-  ASSERT_EQ(s.triangle_count(), 4u);
+  ASSERT_EQ(s.triangle_count(), 6u);
   ASSERT_EQ(s.materials.size(), 3u);
   EXPECT_EQ(s.materials[s.triangle_material[0]].name, "c.png");
   EXPECT_EQ(s.materials[s.triangle_material[1]].name, "a b.png");
   EXPECT_EQ(s.triangle_material[2], 2u);  // no texture has that number
   EXPECT_EQ(s.triangle_material[3], 2u);  // -1: the face has no texture
+  EXPECT_EQ(s.triangle_material[4], 2u);
+  EXPECT_EQ(s.triangle_material[5], 2u);
   EXPECT_EQ(s.materials[2].name, "");
-  EXPECT_EQ(loaded->defects.count(DefectKind::material_unknown), 1u);
+  EXPECT_EQ(loaded->defects.count(DefectKind::material_unknown), 3u);
   EXPECT_EQ(s.texcoords[s.texcoord_indices[2]], (Vec2f{0.5f, 1}));
   EXPECT_EQ(s.illumination[1], (Vec3f{2, 2, 2}));
   EXPECT_EQ(loaded->defects.count(DefectKind::texture_missing), 2u);

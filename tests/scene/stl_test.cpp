@@ -115,6 +115,30 @@ TEST(Stl, DefectsAreCounted) {
   }
 }
 
+TEST(Stl, DefectsAreNamedByTheirPlaces) {
+  std::vector<Triangle> triangles = kFan;
+  triangles[1][1].y = NAN;
+  const auto places = [&](const std::string& bytes) {
+    const auto loaded = load(bytes);
+    EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+    std::string all;
+    for (const std::string& line : loaded->defects.lines())
+      all += line.substr(line.rfind("a.stl") + 5) + ";";
+    return all;
+  };
+  EXPECT_EQ(places(binary(triangles)), ": triangle 1);: triangle 1);");
+  // The facet is named where it begins, the position where its corner is.
+  EXPECT_EQ(places(text(triangles)), ":9);:12);");
+}
+
+// What begins with 'solid' is text, unless the size says otherwise or a zero is near.
+TEST(Stl, TextAndBinaryAreToldApart) {
+  EXPECT_EQ(load("\xef\xbb\xbf \n\t" + text(kFan)).status().message(), "");
+  const Status longer = load("solid" + std::string(100, ' ') + std::string(40, '\0')).status();
+  EXPECT_NE(longer.message().find("triangles are announced"), std::string::npos)
+      << longer.message();
+}
+
 TEST(Stl, FarCoordinatesKeepTheirDigits) {
   const double x = 1000000.001;
   const auto loaded = load(text({{{{x, 0, 0}, {x + 0.001, 0, 0}, {x, 0.001, 0}}}}));
