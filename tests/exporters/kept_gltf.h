@@ -10,7 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "libatlas/image/image_io.h"
 #include "tests/exporters/kept_worlds.h"
+#include "tests/scene/gltf_maker.h"
+#include "tests/scene/temp_folder.h"
 #include "tests/support/gltf_oracle.h"
 
 namespace atlas::test {
@@ -27,6 +30,30 @@ inline bool near(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) {
            return std::abs(x - y) < 1e-9;
          });
+}
+
+// Returns a PNG file of one grey.
+inline std::string png_bytes(const TempFolder& folder, int value) {
+  const std::filesystem::path made = folder / "made.png";
+  EXPECT_TRUE(write_png(made, Image8(4, 2, 3, std::uint8_t(value)), {}).ok());
+  const std::string bytes = TempFolder::read(made);
+  std::filesystem::remove(made);
+  return bytes;
+}
+
+// Returns a triangle with uvs and a texture that exists.
+inline Gltf textured(const TempFolder& folder) {
+  Gltf gltf;
+  const std::string bytes = png_bytes(folder, 77);
+  const int view = gltf.view(std::vector<char>(bytes.begin(), bytes.end()));
+  gltf.j["images"] = json::array({{{"bufferView", view}, {"mimeType", "image/png"}}});
+  gltf.j["textures"] = json::array({{{"source", 0}}});
+  gltf.j["materials"] =
+      json::array({{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}});
+  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+  const int uvs = gltf.floats({0, 0, 1, 0, 0, 1}, "VEC2", 2);
+  gltf.single({{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}}}, {"material", 0}});
+  return gltf;
 }
 
 // Expects that every triangle has what it had, in the same order, and new uvs.

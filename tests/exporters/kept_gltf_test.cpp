@@ -5,8 +5,8 @@
 #include <set>
 #include <string>
 
-#include "libatlas/image/image_io.h"
 #include "libatlas/scene/reader.h"
+#include "tests/exporters/gltf_layout.h"
 #include "tests/exporters/kept_gltf.h"
 #include "tests/scene/gltf_maker.h"
 #include "tests/scene/packed_gltf.h"
@@ -17,14 +17,6 @@ namespace atlas::test {
 namespace {
 
 using std::filesystem::path;
-
-std::string png(const TempFolder& folder, int value) {
-  const path made = folder / "made.png";
-  EXPECT_TRUE(write_png(made, Image8(4, 2, 3, std::uint8_t(value)), {}).ok());
-  const std::string bytes = TempFolder::read(made);
-  std::filesystem::remove(made);
-  return bytes;
-}
 
 void add_image(Gltf& gltf, const std::string& bytes) {
   const int view = gltf.view(std::vector<char>(bytes.begin(), bytes.end()));
@@ -90,8 +82,8 @@ json rich_material() {
 
 // Adds two textures with samplers; the image of the second is in the file twice.
 void add_textures(Gltf& gltf, const TempFolder& folder) {
-  add_image(gltf, png(folder, 40));
-  add_image(gltf, png(folder, 90));
+  add_image(gltf, png_bytes(folder, 40));
+  add_image(gltf, png_bytes(folder, 90));
   gltf.j["samplers"] = json::array({{{"wrapS", 33071}, {"magFilter", 9728}}, {{"wrapT", 33648}}});
   gltf.j["textures"] = json::array(
       {{{"source", 1}, {"sampler", 1}, {"name", "t"}}, {{"source", 0}, {"sampler", 0}}});
@@ -189,7 +181,12 @@ TEST(KeptGltf, IsTheFileThatItWas) {
     EXPECT_EQ(is["nodes"][2]["mesh"], 2);
     is["nodes"][2]["mesh"] = 0;
     EXPECT_EQ(is, expected) << json::diff(expected, is).dump(1);
-    for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(before.image(i), after.image(i));
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(before.image(i), after.image(i));
+      const json& image = after.document["images"][i];
+      EXPECT_NE(image.contains("uri"), image.contains("bufferView")) << "one place only";
+    }
+    expect_gltf_layout(folder / name);
     const json& sampler = after.document["animations"][0]["samplers"][0];
     const json& had = before.document["animations"][0]["samplers"][0];
     for (const char* key : {"input", "output"})
@@ -215,6 +212,7 @@ TEST(KeptGltf, HasItsMeshesAssetAndExtensions) {
     EXPECT_EQ(mesh["primitives"][0]["mode"], 0);  // points stay as they are
     EXPECT_FALSE(mesh["primitives"][0]["attributes"].contains("TEXCOORD_2"));
     EXPECT_EQ(mesh["primitives"][1]["extras"], json({{"own", 1}}));
+    EXPECT_EQ(mesh["primitives"][1]["targets"].size(), 1u);
     // Sets before the new one that a primitive lacks are filled with the new one.
     const json& strip = mesh["primitives"][2]["attributes"];
     EXPECT_EQ(strip["TEXCOORD_0"], strip["TEXCOORD_2"]);

@@ -42,6 +42,29 @@ TEST(KeptGltf, InstancesBecomeNodes) {
   EXPECT_EQ(first, (std::set<double>{0, 5.0 / 64, 6.0 / 64}));  // the second is mirrored
 }
 
+// Weights of morph targets go with the mesh. A node without a name has instances without names, and
+// an instance that stays in its place needs no matrix.
+TEST(KeptGltf, InstancesHaveTheWeightsOfTheirNode) {
+  const TempFolder folder;
+  Gltf gltf;
+  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+  const int places = gltf.floats({0, 0, 0, 5, 0, 0}, "VEC3", 3);
+  const json instancing = {
+      {"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}}}}}};
+  gltf.single({{"attributes", {{"POSITION", positions}}},
+               {"targets", json::array({{{"POSITION", positions}}})}},
+              {{"weights", {0.5}}, {"extensions", instancing}});
+  keep(folder.write("s.glb", gltf.glb()), folder / "w.glb");
+  const json nodes = GltfOracle(folder / "w.glb").document["nodes"];
+  ASSERT_EQ(nodes.size(), 3u);
+  EXPECT_EQ(nodes[0], (json{{"children", {1, 2}}}));
+  for (const std::size_t n : {1, 2}) {
+    EXPECT_EQ(nodes[n]["weights"], json{0.5});
+    EXPECT_FALSE(nodes[n].contains("name"));
+    EXPECT_EQ(nodes[n].contains("matrix"), n == 2);
+  }
+}
+
 // The nodes of a file should form a tree, but many programs show a node that has two parents.
 TEST(KeptGltf, NodesOfSeveralParentsBecomeSeveral) {
   const TempFolder folder;
@@ -114,6 +137,25 @@ TEST(KeptGltf, ANodeAboveTurnsAndScales) {
   EXPECT_EQ(triangles[0].attributes.at("POSITION")[8], 1);
 }
 
+// Either of both needs a node.
+TEST(KeptGltf, ANodeAboveTurnsOrScales) {
+  const TempFolder folder;
+  const auto loaded = read_scene(folder.write("s.glb", textured(folder).glb()), kGltfRest, {});
+  ASSERT_TRUE(loaded.ok());
+  World turned = world_of(loaded->scene), scaled = turned;
+  turned.up = Up::z;
+  scaled.metres_per_unit = 0.5;
+  for (const World& world : {turned, scaled}) {
+    ASSERT_TRUE(write_kept(world, folder / "w.glb").ok());
+    const auto triangles = GltfOracle(folder / "w.glb").triangles();
+    ASSERT_EQ(triangles.size(), 1u);
+    EXPECT_TRUE(near(triangles[0].matrix,
+                     world.up == Up::z
+                         ? std::vector<double>{1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1}
+                         : std::vector<double>{.5, 0, 0, 0, 0, .5, 0, 0, 0, 0, .5, 0, 0, 0, 0, 1}));
+  }
+}
+
 // The file is a library of meshes, without nodes and scenes.
 TEST(KeptGltf, MeshesWithoutNodesGetSome) {
   const TempFolder folder;
@@ -123,6 +165,7 @@ TEST(KeptGltf, MeshesWithoutNodesGetSome) {
   gltf.j["meshes"] = json::array({mesh, mesh});
   keep(folder.write("s.glb", gltf.glb()), folder / "w.glb");
   EXPECT_EQ(GltfOracle(folder / "w.glb").triangles().size(), 2u);
+  EXPECT_EQ(GltfOracle(folder / "w.glb").document["scene"], 0);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <random>
 #include <string>
 
-#include "libatlas/image/image_io.h"
 #include "libatlas/scene/reader.h"
 #include "tests/exporters/kept_gltf.h"
 #include "tests/scene/gltf_maker.h"
@@ -21,24 +20,6 @@ using Lines = std::vector<std::string>;
 
 const ReadOptions kRest{
     .unlit_textures = true, .encoded_textures = true, .normals = true, .rest = true};
-
-// A triangle with uvs and a texture that exists.
-Gltf textured(const TempFolder& folder) {
-  Gltf gltf;
-  const path made = folder / "made.png";
-  EXPECT_TRUE(write_png(made, Image8(4, 2, 3, 77), {}).ok());
-  const std::string bytes = TempFolder::read(made);
-  std::filesystem::remove(made);
-  const int view = gltf.view(std::vector<char>(bytes.begin(), bytes.end()));
-  gltf.j["images"] = json::array({{{"bufferView", view}, {"mimeType", "image/png"}}});
-  gltf.j["textures"] = json::array({{{"source", 0}}});
-  gltf.j["materials"] =
-      json::array({{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}});
-  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
-  const int uvs = gltf.floats({0, 0, 1, 0, 0, 1}, "VEC2", 2);
-  gltf.single({{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}}}, {"material", 0}});
-  return gltf;
-}
 
 constexpr const char* kNoImage = "1 x textures of materials (no image that can be read)";
 constexpr const char* kNoUvs = "1 x textures of materials (no uvs for them in their primitives)";

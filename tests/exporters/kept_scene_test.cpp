@@ -18,24 +18,9 @@ namespace atlas {
 namespace {
 
 using test::KeptTriangle;
+using test::small_scene;
 using test::TempFolder;
 using test::world_of;
-
-// Four triangles: a square and its back, of two objects and two materials.
-Scene small_scene() {
-  Scene scene;
-  scene.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-  scene.indices = {0, 1, 2, 0, 2, 3, 2, 1, 0, 3, 2, 0};
-  scene.texcoords = {{0, 0}, {2, 0}, {2, -2}, {0, -2}};
-  scene.texcoord_indices = {0, 1, 2, 0, 2, 3, 2, 1, 0, 3, 2, 0};
-  scene.normals = {{0, 0, 1}, {0, 0, -1}};
-  scene.normal_indices = {0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1};
-  scene.materials = {{"paint", {0.5f, 0.25f, 1}, -1}, {"wood # 2", {1, 1, 1}, -1}};
-  scene.triangle_material = {0, 1, 0, 0};
-  scene.object_names = {"front", "back"};
-  scene.triangle_object = {0, 0, 1, 1};
-  return scene;
-}
 
 Status write(const World& world, const std::filesystem::path& path) {
   return test::write_kept(world, path).status();

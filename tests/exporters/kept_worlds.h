@@ -12,6 +12,22 @@
 
 namespace atlas::test {
 
+// Returns four triangles: a square and its back, of two objects and two materials.
+inline Scene small_scene() {
+  Scene scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  scene.indices = {0, 1, 2, 0, 2, 3, 2, 1, 0, 3, 2, 0};
+  scene.texcoords = {{0, 0}, {2, 0}, {2, -2}, {0, -2}};
+  scene.texcoord_indices = {0, 1, 2, 0, 2, 3, 2, 1, 0, 3, 2, 0};
+  scene.normals = {{0, 0, 1}, {0, 0, -1}};
+  scene.normal_indices = {0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1};
+  scene.materials = {{"paint", {0.5f, 0.25f, 1}, -1}, {"wood # 2", {1, 1, 1}, -1}};
+  scene.triangle_material = {0, 1, 0, 0};
+  scene.object_names = {"front", "back"};
+  scene.triangle_object = {0, 0, 1, 1};
+  return scene;
+}
+
 // Returns the scene with new uvs, a different one for each corner. `scene` must outlive it.
 inline World world_of(const Scene& scene) {
   World world;

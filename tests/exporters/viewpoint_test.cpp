@@ -98,6 +98,33 @@ TEST(ViewpointChoice, StaysOutOfSingleObjects) {
   EXPECT_NEAR((p.x * d.x + p.y * d.y + p.z * d.z) / distance, -1, 1e-6) << "looks at the centre";
 }
 
+// The narrow objects reach almost to the sphere around them, on both sides of the view.
+TEST(ViewpointChoice, SeesAllOfAnObject) {
+  for (const Vec3f reach : {Vec3f{9, 1, 1}, Vec3f{1, 9, 1}, Vec3f{1, 1, 9}, Vec3f{3, 3, 3}}) {
+    Triangles box;
+    add_box(box, {-reach.x, -reach.y, -reach.z}, reach, false);
+    const Viewpoint view = choose_viewpoint(box.positions, box.indices, {}, {});
+    const Vec3d &eye = view.position, &d = view.direction;
+    for (const Vec3f& p : box.positions) {
+      const double x = p.x - eye.x, y = p.y - eye.y, z = p.z - eye.z;
+      const double length = std::hypot(x, y, z) * std::hypot(d.x, d.y, d.z);
+      EXPECT_LE(std::acos((x * d.x + y * d.y + z * d.z) / length), view.fov / 2);
+    }
+  }
+}
+
+// In a space where nobody can stand, the eye is in the middle of the height.
+TEST(ViewpointChoice, CrawlsWhereNobodyCanStand) {
+  Triangles duct;
+  add_box(duct, {0, 0, 0}, {20, 6, 1.2f}, true);
+  ViewpointOptions options;
+  options.up = Up::z;
+  const Viewpoint view = choose_viewpoint(duct.positions, duct.indices, options, {});
+  EXPECT_TRUE(view.inside);
+  EXPECT_GT(view.position.z, 0.3);
+  EXPECT_LT(view.position.z, 0.9);
+}
+
 // People could stand on the ground, but no walls are around them.
 TEST(ViewpointChoice, SeesAnObjectOnAGroundFromOutside) {
   Triangles yard;

@@ -147,6 +147,21 @@ TEST(Vrml, AnOriginTooFarForFloatsIsNotedAndNotAdded) {
   EXPECT_EQ(k, s.indices.size());
 }
 
+// The limit is 128 times the diagonal of the world's box.
+TEST(Vrml, OriginsWithinTheLimitAreAdded) {
+  const TempFolder folder;
+  World world = wavy_world(4, 1);
+  for (Vec3f& p : world.positions) p = {};
+  world.positions[1] = {3, 4, 0};
+  for (const bool far : {false, true}) {
+    world.origin = {0, far ? 641.0 : 639.0, 0};  // 128 * 5 is 640
+    AtomicFiles files;
+    const auto written = write_vrml(world, folder / "w.wrl", files, {});
+    ASSERT_TRUE(written.ok());
+    EXPECT_EQ(written->origin_left_out, far ? world.origin : Vec3d{});
+  }
+}
+
 TEST(Vrml, InfoAndNavigation) {
   const TempFolder folder;
   World world = wavy_world(4, 1);
@@ -162,9 +177,18 @@ TEST(Vrml, InfoAndNavigation) {
   EXPECT_EQ(navigation[0]->field("headlight"), std::vector<std::string>{"FALSE"});
   EXPECT_EQ(navigation[0]->field("type")[0], "\"WALK\"");
   EXPECT_EQ(numbers(navigation[0]->field("avatarSize")), (std::vector<double>{25, 160, 75}));
+  EXPECT_EQ(numbers(navigation[0]->field("speed")), std::vector<double>{150});  // 1.5 m/s
   world.viewpoint.inside = false;
+  world.viewpoint.fov = 0.5;
+  world.up = Up::z;
+  world.title = "~";
   const Nodes outside = parse_vrml(write(world, folder / "o.wrl"));
   EXPECT_EQ(of_type(outside, "NavigationInfo")[0]->field("type")[0], "\"EXAMINE\"");
+  EXPECT_EQ(of_type(outside, "WorldInfo")[0]->field("title")[0], "\"~\"");
+  EXPECT_EQ(of_type(outside, "WorldInfo")[0]->field("info").back(),
+            '"' + std::string(kZUpNote) + '"');
+  const VrmlNode& view = of_type(outside, "Transform").at(0)->child("children");
+  EXPECT_EQ(numbers(view.field("fieldOfView")), std::vector<double>{0.5});
 }
 
 // In units of an atom or a galaxy, the avatar's lengths were once written as "inf" and 0, which no

@@ -1,0 +1,170 @@
+// Tests what all formats of worlds have in common.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <limits>
+#include <string>
+
+#include "tests/exporters/kept_gltf.h"
+#include "tests/exporters/worlds.h"
+#include "tests/scene/temp_folder.h"
+#include "tests/support/full_disk.h"
+
+namespace atlas::test {
+namespace {
+
+const char* const kNames[] = {"w.wrl", "w.wrz", "w.obj", "w.gltf", "w.glb"};
+
+// Two triangles with a common edge, on one page each.
+World two_pages() {
+  World world;
+  world.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  world.uvs = {{0, 0}, {1, 0}, {0, 1}};
+  world.pages.resize(2);
+  world.pages[0].indices = {0, 1, 2};
+  world.pages[1].indices = {2, 1, 3};
+  for (Page& page : world.pages) page.uv_indices = {0, 1, 2};
+  return world;
+}
+
+void expect_size(const WorldFile& written, const TempFolder& folder) {
+  std::uintmax_t bytes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+    bytes += entry.file_size();
+  EXPECT_EQ(std::uintmax_t(written.bytes), bytes);
+}
+
+// Only OBJ shares positions and uvs among pages.
+TEST(Worlds, WhatIsWrittenIsCounted) {
+  for (const std::string name : kNames) {
+    const TempFolder folder;
+    const auto written = write_kept(two_pages(), folder / name);
+    ASSERT_TRUE(written.ok()) << written.status().message();
+    EXPECT_EQ(written->triangles, 2u) << name;
+    EXPECT_EQ(written->vertices, name == "w.obj" ? 4u : 6u) << name;
+    EXPECT_EQ(written->uvs, name == "w.obj" ? 3u : 6u) << name;
+    expect_size(*written, folder);
+  }
+}
+
+// Each corner has a uv of its own here.
+TEST(Worlds, WhatIsWrittenOfScenesIsCounted) {
+  for (const std::string name : {"w.obj", "w.gltf", "w.glb"}) {
+    const TempFolder folder;
+    const Scene scene = small_scene();
+    const auto written = write_kept(world_of(scene), folder / name);
+    ASSERT_TRUE(written.ok()) << written.status().message();
+    EXPECT_EQ(written->triangles, 4u) << name;
+    EXPECT_EQ(written->vertices, name == "w.obj" ? 4u : 12u) << name;
+    EXPECT_EQ(written->uvs, 12u) << name;
+    expect_size(*written, folder);
+  }
+  const TempFolder folder;
+  const WorldFile written = keep(folder.write("s.glb", textured(folder).glb()), folder / "w.glb");
+  EXPECT_EQ(written.triangles, 1u);
+  EXPECT_EQ(written.vertices, 3u);
+  EXPECT_EQ(written.uvs, 3u);
+}
+
+TEST(Worlds, CancellingLeavesNothingBehind) {
+  const std::atomic<bool> raised{true};
+  Context context;
+  context.cancel = &raised;
+  const TempFolder folder;
+  const Scene scene = small_scene();
+  const auto loaded = read_scene(folder.write("s.glb", textured(folder).glb()), kGltfRest, {});
+  ASSERT_TRUE(loaded.ok());
+  for (const World& world : {two_pages(), world_of(scene), world_of(loaded->scene)}) {
+    for (const char* name : kNames) {
+      if (world.scene && !holds_scene(name)) continue;
+      AtomicFiles files;
+      EXPECT_EQ(write_world(world, folder / name, files, context).status().code(),
+                ErrorCode::cancelled)
+          << name;
+    }
+    EXPECT_EQ(folder.count(), 1u);  // what was read
+  }
+}
+
+// The file beside the world may be the larger one, and the only one that fails.
+TEST(Worlds, AFullDiskIsNoticedInEveryFile) {
+  const TempFolder folder;
+  World world = two_pages();
+  world.pages[0].image = std::string(400, 'x') + ".png";
+  for (const char* name : {"w.obj", "w.gltf"}) {
+    if (name == std::string("w.gltf")) {
+      world = wavy_world(40, 1);
+      world.pages[0].image.clear();
+    }
+    Status status;
+    {
+      AtomicFiles files;
+      const FullDisk full(name == std::string("w.obj") ? 300 : 8192);
+      status = write_world(world, folder / name, files, {}).status();
+    }
+    EXPECT_EQ(status.code(), ErrorCode::io) << name;
+    EXPECT_NE(status.message().find(name[2] == 'o' ? "w.mtl" : "w.bin"), std::string::npos)
+        << status.message();
+    EXPECT_EQ(folder.count(), 0u) << name;
+  }
+}
+
+TEST(Worlds, OriginsAreAddedToObj) {
+  const TempFolder folder;
+  World world = two_pages();
+  world.origin = {4468000.25, -7, 0};
+  ASSERT_TRUE(write_kept(world, folder / "w.obj").ok());
+  const std::string obj = TempFolder::read(folder / "w.obj");
+  EXPECT_NE(obj.find("\nv 4468000.25 -7 0\nv 4468001.25 -7 0\nv 4468000.25 -6 0\n"),
+            std::string::npos)
+      << obj;
+  EXPECT_NE(obj.find("mtllib w.mtl\n"), std::string::npos) << "found in any folder";
+}
+
+// More lines than are formatted at once.
+TEST(Worlds, LongListsAreWrittenInOrder) {
+  const TempFolder folder;
+  World world = two_pages();
+  constexpr std::size_t kCount = 300000;
+  world.positions.resize(kCount);
+  for (std::size_t i = 0; i < kCount; ++i) world.positions[i] = {float(i), 0, 0};
+  world.pages.resize(1);
+  world.pages[0].indices.clear();
+  for (std::uint32_t i = 0; i < kCount; ++i) world.pages[0].indices.push_back(i);
+  world.pages[0].uv_indices.assign(kCount, 0);
+  ASSERT_TRUE(write_kept(world, folder / "w.obj").ok());
+  const std::string obj = TempFolder::read(folder / "w.obj");
+  std::size_t expected = 0;
+  for (std::size_t at = 0; (at = obj.find("\nv ", at)) != std::string::npos; ++at, ++expected)
+    ASSERT_EQ(std::strtod(obj.c_str() + at + 3, nullptr), double(expected));
+  EXPECT_EQ(expected, kCount);
+}
+
+TEST(Worlds, EachAxisAndListIsChecked) {
+  const auto refused = [](auto spoil) {
+    World world = two_pages();
+    spoil(world);
+    return check_world(world).code() == ErrorCode::bad_input;
+  };
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(refused([](World&) {}));
+  EXPECT_TRUE(refused([](World& w) { w.positions[1].x = kNan; }));
+  EXPECT_TRUE(refused([](World& w) { w.positions[1].y = kNan; }));
+  EXPECT_TRUE(refused([](World& w) { w.positions[1].z = kNan; }));
+  EXPECT_TRUE(refused([](World& w) { w.origin.z = 1e39; }));
+  EXPECT_TRUE(refused([](World& w) { w.pages[1].indices[0] = 4; }));
+  EXPECT_TRUE(refused([](World& w) { w.pages[1].uv_indices[2] = 3; }));
+  EXPECT_TRUE(refused([](World& w) { w.pages[0].indices = w.pages[0].uv_indices = {0, 1}; }));
+  EXPECT_TRUE(refused([](World& w) { w.metres_per_unit = INFINITY; }));
+  EXPECT_TRUE(refused([](World& w) { w.viewpoint.fov = 3.1416; }));
+}
+
+TEST(Worlds, NamesOfFilesAndFormats) {
+  EXPECT_EQ(safe_file_name(""), "world");
+  EXPECT_TRUE(check_world_extension("a.WRZ").ok());
+  EXPECT_EQ(check_world_extension("a.stl").message(),
+            "a.stl: the target must end in .wrl, .wrz, .obj, .gltf or .glb");
+}
+
+}  // namespace
+}  // namespace atlas::test
