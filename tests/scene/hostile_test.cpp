@@ -70,8 +70,8 @@ const Case kCases[] = {
      ErrorCode::bad_input, "no x, y and z"},
     {"short_elements.ply",
      kPly + "element vertex 1\n" + kXyz +
-         "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n0",
-     ErrorCode::bad_input, "all 1 faces are unusable"},
+         "element face 3\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n0\n0\n0",
+     ErrorCode::bad_input, "all 3 faces are unusable"},
     {"half_corner.ply",
      kPly + "element vertex 1\n" + kXyz +
          "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n2.5 0 0 0\n",
@@ -174,7 +174,7 @@ const Case kCases[] = {
     {"word.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 zero 0\n", ErrorCode::bad_input,
      "word.stl:4: 'zero'"},
     {"keyword.stl", kStl + "edge\n", ErrorCode::bad_input, "keyword.stl:8: 'edge'"},
-    {"loopless.stl", "solid\nfacet normal 0 0 1 0 0\nouter loop\n", ErrorCode::bad_input,
+    {"loopless.stl", "solid\nfacet normal 0 0 1 0\nouter loop\n", ErrorCode::bad_input,
      "'outer loop' should follow"},
     {"empty.gltf", "", ErrorCode::bad_input, "empty.gltf: is empty"},
     {"empty.glb", "", ErrorCode::bad_input, "empty.glb: is empty"},

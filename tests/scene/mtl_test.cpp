@@ -31,6 +31,8 @@ TEST(Mtl, TexturesThatAreMissingOrBrokenFallBackToTheColour) {
     const bool tells_why =
         defect.first_places.front().find(": cannot be read") != std::string::npos;
     EXPECT_EQ(tells_why, defect.kind == DefectKind::texture_unreadable);
+    const bool ends = defect.first_places.front().ends_with("m.mtl:3)");
+    EXPECT_EQ(ends, defect.kind == DefectKind::texture_missing) << defect.first_places.front();
   }
   EXPECT_EQ(loaded.scene.materials[0].texture, -1);
   EXPECT_EQ(loaded.scene.materials[0].diffuse, (Vec3f{0.1f, 0.2f, 0.3f}));

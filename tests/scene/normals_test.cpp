@@ -202,8 +202,8 @@ TEST(Normals, OfGltfStayPerpendicularUnderTransforms) {
       {{"scale", {-1, 1, 1}}},
       {{"scale", {-2, -3, -0.5}}, {"rotation", {0.5, 0.5, 0.5, 0.5}}},
       {{"scale", {1e-4, 1e-4, 1e-4}}},
-      {{"scale", {1e-22, 1e-22, 1e-22}}},  // areas are too small and too large for floats
-      {{"scale", {1e22, 1e22, 1e22}}},
+      {{"scale", {1e-22, 2e-22, 3e-22}}},  // areas are too small and too large for floats
+      {{"scale", {1e22, 2e22, 3e22}}},
       {{"matrix", {1, 0, 0, 0, 0.7, 1, 0, 0, 0.2, -0.3, 2, 0, 5, 6, 7, 1}}},
       {{"scale", {1, 1, 0}}},  // flat: the normal is that of the plane
   };

@@ -288,16 +288,20 @@ TEST(Obj, LineNumbersSurvivePieces) {
 // Names, places and colours go on where a new piece of the file begins.
 TEST(Obj, NamesAndPlacesSurvivePieces) {
   const TempFolder folder;
-  std::string text = "v 0 0 0 1 2 3\nv 1 0 0 1 2 3\nv 0 1 0 1 2 3\ng first\nf 1 2 3\ng second\n";
-  std::size_t lines = 6;
+  std::string text =
+      "v 0 0 0 1 2 3\nv 1 0 0 1 2 3\nv 0 1 0 1 2 3\ng first\nf 1 2 3\ng second\nvt 0 0\n";
+  std::size_t lines = 7;
   while (text.size() < (std::size_t{5} << 20)) {
     text += "# " + std::string(1000, 'x') + '\n';
     ++lines;
   }
-  text += "f 1 2 3\nv 0 0 1\nv nan 0 0\nnonsense\nmtllib gone.mtl\nusemtl a\nf 1 2 4\n";
+  text +=
+      "f 1 2 3\nv 0 0 1\nv nan 0 0\nnonsense\nmtllib gone.mtl\nusemtl a\n"
+      "vt 0.5 0.5\nf 1/-1 2/-1 4/-1\n";
   const LoadedScene loaded = load(folder.write("a.obj", text));
   EXPECT_EQ(loaded.scene.object_names, (std::vector<std::string>{"first", "second"}));
   EXPECT_EQ(loaded.scene.triangle_object, (std::vector<std::uint32_t>{0, 1, 1}));
+  EXPECT_EQ(loaded.scene.texcoord_indices.at(6), 1u) << "counted from the file's beginning";
   std::string places;
   for (const Defect& defect : loaded.defects.defects) {
     const std::string& place = defect.first_places[0];

@@ -204,6 +204,23 @@ TEST_P(BinaryOff, DefectsAreNamedByTheirNumbers) {
   EXPECT_NE(lines[2].find("a.off: vertex 1)"), std::string::npos) << lines[2];
 }
 
+// Faces of fewer corners are only told apart from colours where these are counted.
+TEST_P(BinaryOff, FacesOfTwoCornersNeedCountedColours) {
+  for (const std::uint32_t v : {3u, 2u, 0u}) word(v);
+  for (int i = 0; i < 3; ++i) {
+    for (const float v : {float(i), float(i * i), 0.f}) number(v);
+  }
+  for (const std::uint32_t v : {3u, 0u, 1u, 2u}) word(v);
+  if (GetParam()) word(0);
+  for (const std::uint32_t v : {2u, 0u, 1u}) word(v);
+  if (GetParam()) word(0);
+  const auto loaded = load(bytes_);
+  ASSERT_EQ(loaded.ok(), GetParam());
+  if (GetParam()) {
+    EXPECT_EQ(loaded->defects.count(DefectKind::too_few_corners), 1u);
+  }
+}
+
 // The data must end at the file's end, or the bytes are not what the header says.
 TEST_P(BinaryOff, BytesAfterTheLastFaceAreRefused) {
   square(false);

@@ -58,6 +58,11 @@ TEST(Vrml, TransformsScaleTurnAndMoveInThisOrder) {
                   shape(3) + "}"),
             (Vec3d{6, 0, 0}))
       << "the axes of the scale are turned, the shape is not";
+  EXPECT_EQ(first("Transform { rotation 1 0 0 1.57079632679 scale 1 2 1 "
+                  "scaleOrientation 0 0 1 1.57079632679 children " +
+                  shape(3) + "}"),
+            (Vec3d{6, 0, 0}))
+      << "the rotation comes after the scale and its axes";
 }
 
 // A mirrored face has its corners, and what belongs to them, in the opposite order.
@@ -112,6 +117,17 @@ TEST(Vrml, NotedOriginsMoveTheScene) {
   EXPECT_EQ(x("\"origin 5 0 0: not in a list\""), 1);
 }
 
+TEST(Vrml, TransformsOfTexturesTellMaterialsApart) {
+  const TempFolder folder;
+  const auto scaled = [](int x, const char* scale) {
+    return shape(
+        x, std::string("Appearance { textureTransform TextureTransform { scale ") + scale + " } }");
+  };
+  const Scene scene =
+      scene_of(folder, scaled(0, "1 1") + scaled(1, "2 1") + scaled(2, "1 2") + scaled(3, "2 1"));
+  EXPECT_EQ(scene.triangle_material, (Ids{0, 1, 2, 1}));
+}
+
 TEST(Vrml, MaterialsOutOfTheirRange) {
   const TempFolder folder;
   const auto loaded =
@@ -154,6 +170,7 @@ TEST(Vrml, FieldsThatAreNotReadAreSkippedWhole) {
                    "children " +
                        shape(1) + "}" + shape(2)),
             (Places{1, 2}));
+  EXPECT_EQ(places(folder, "Group { children " + shape(1) + "other USE children }"), (Places{1}));
 }
 
 TEST(Vrml, WhatIsMalformedIsNamed) {
