@@ -126,6 +126,12 @@ TEST(Normals, WithoutDirectionAreReplacedAndCounted) {
     expect_near(normal_at(loaded.scene, 2), {0.6f, 0, 0.8f});
     EXPECT_EQ(normal_at(loaded.scene, 3), (Vec3f{0, 0, 1})) << bad;
   }
+  // The triangles' edges span (0, 0, 4) and (3, 0, 0), together (3, 0, 4).
+  const LoadedScene mean = load_normals(
+      folder.write("mean.obj",
+                   "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 3 0\nv 0 0 1\nvn 0 0 0\nf 1//1 2//1 3//1\n"
+                   "f 1//1 4//1 5//1\n"));
+  expect_near(normal_at(mean.scene, 0), {0.6f, 0, 0.8f});
 }
 
 std::string ply(const std::string& format, const std::string& data, const char* type = "float") {
