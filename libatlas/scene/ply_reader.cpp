@@ -80,7 +80,7 @@ class Numbers {
   std::uint32_t first_line_;
 };
 
-// Integer colours are fractions of their type's largest value.
+// Unsigned bytes and words are fractions of their largest value; other numbers are values.
 double colour_scale(PlyType type) {
   return type == PlyType::u8 ? 1 / 255.0 : type == PlyType::u16 ? 1 / 65535.0 : 1;
 }

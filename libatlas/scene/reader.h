@@ -50,9 +50,9 @@ struct LoadedScene {
 // Materials and objects without a triangle are not listed; the others are listed in the order of
 // first use.
 // Illumination is read from OBJ `v x y z r g b`; PLY red/green/blue, r/g/b or illuminance_r/g/b
-// (integers are normalised); the colours of COFF; glTF _ILLUMINANCE, else COLOR_0. Values are never
-// clamped. Normals are read from OBJ vn; PLY nx, ny, nz; NOFF; glTF NORMAL, transformed by its
-// node, skin and morph targets.
+// (unsigned integers of 8 and 16 bits are normalised); the colours of COFF; glTF _ILLUMINANCE, else
+// COLOR_0. Values are never clamped. Normals are read from OBJ vn; PLY nx, ny, nz; NOFF; glTF
+// NORMAL, transformed by its node, skin and morph targets.
 //
 // Errors: not_found (no such file, no such buffer); bad_input (malformed as scene/defects.h defines
 // it; no usable triangle; an illumination file with another number of vertices); unsupported
