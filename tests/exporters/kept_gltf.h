@@ -26,6 +26,11 @@ inline WorldFile keep(const std::filesystem::path& input, const std::filesystem:
   return read_and_keep(input, output, options);
 }
 
+// What is said of textures that are left out (WorldFile::not_kept).
+inline constexpr const char* kNoImage = "1 x textures of materials (no image that can be read)";
+inline constexpr const char* kNoUvs =
+    "1 x textures of materials (no uvs for them in their primitives)";
+
 inline bool near(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) {
            return std::abs(x - y) < 1e-9;

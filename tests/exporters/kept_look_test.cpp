@@ -39,19 +39,25 @@ TEST(KeptLook, EachPairOfWrapModesIsOneTexture) {
   Scene scene = small_scene();
   scene.textures.resize(1);
   scene.textures[0].image = Image8(2, 2, 3, 9);
-  const std::pair<TextureWrap, TextureWrap> wraps[] = {{TextureWrap::clamp, TextureWrap::mirror},
-                                                       {TextureWrap::mirror, TextureWrap::clamp},
-                                                       {TextureWrap::clamp, TextureWrap::repeat},
-                                                       {TextureWrap::clamp, TextureWrap::mirror}};
-  scene.materials.resize(4);
-  for (std::uint32_t m = 0; m < 4; ++m) {
-    scene.materials[m].texture = 0;
+  scene.textures.push_back(scene.textures[0]);
+  const std::pair<TextureWrap, TextureWrap> wraps[] = {
+      {TextureWrap::clamp, TextureWrap::mirror},
+      {TextureWrap::mirror, TextureWrap::mirror},
+      {TextureWrap::clamp, TextureWrap::repeat},
+      {TextureWrap::clamp, TextureWrap::mirror},   // the first again
+      {TextureWrap::clamp, TextureWrap::mirror}};  // of the other image
+  for (auto* list : {&scene.indices, &scene.texcoord_indices, &scene.normal_indices})
+    list->insert(list->end(), list->begin(), list->begin() + 3);
+  scene.triangle_object = {0, 0, 0, 0, 0};
+  scene.triangle_material = {0, 1, 2, 3, 4};
+  scene.materials.resize(5);
+  for (std::size_t m = 0; m < 5; ++m) {
+    scene.materials[m].texture = m == 4 ? 1 : 0;
     std::tie(scene.materials[m].wrap_u, scene.materials[m].wrap_v) = wraps[m];
-    scene.triangle_material[m] = m;
   }
   const json file = gltf_of(scene, folder / "w.glb");
-  EXPECT_EQ(file["images"].size(), 1u);
-  EXPECT_EQ(file["textures"].size(), 3u);
+  EXPECT_EQ(file["images"].size(), 2u);
+  EXPECT_EQ(file["textures"].size(), 4u);
   EXPECT_EQ(file["samplers"].size(), 3u);
   // OpenGL's numbers; repeating is the default of the format.
   const std::map<TextureWrap, int> numbers{
@@ -68,10 +74,11 @@ TEST(KeptLook, EachPairOfWrapModesIsOneTexture) {
       EXPECT_EQ(sampler.value("wrapT", 0x2901), numbers.at(wraps[t].second)) << t;
       EXPECT_EQ(sampler["magFilter"], 0x2601);
       EXPECT_EQ(sampler["minFilter"], 0x2703);
+      EXPECT_EQ(texture["source"], t == 4 ? 1 : 0);
       ++t;
     }
   }
-  EXPECT_EQ(t, 4u);
+  EXPECT_EQ(t, 5u);
 }
 
 TEST(KeptLook, ImagesSayWhatTheyAre) {

@@ -12,9 +12,6 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-constexpr const char* kNoImage = "1 x textures of materials (no image that can be read)";
-constexpr const char* kNoUvs = "1 x textures of materials (no uvs for them in their primitives)";
-
 struct Kept {
   WorldFile written;
   json document;
@@ -118,6 +115,47 @@ TEST(KeptParts, OtherAttributesAreNoUvSets) {
   for (const char* name : {"TEXCOORD_1x", "TEXCOORD_", "TEXCOORD_99999999999999"})
     attributes[name] = attributes["TEXCOORD_0"];
   EXPECT_EQ(kept(folder, gltf).written.uv_set, "TEXCOORD_1");
+}
+
+// Vertices are numbered anew, so what the source says of the place and the bounds of all of its
+// rows no longer holds.
+TEST(KeptParts, RowsAreWrittenAsTheyAreRead) {
+  const TempFolder folder;
+  Gltf gltf = textured(folder);
+  const int all = gltf.view(std::vector<float>{9, 9, 1, 2, 3, 4, 5, 6, 70, 80}),
+            which = gltf.view(std::vector<std::uint16_t>{1}),
+            instead = gltf.view(std::vector<float>{30, 40});
+  gltf.j["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
+      gltf.accessor({{"bufferView", all},
+                     {"byteOffset", 8},
+                     {"componentType", 5126},
+                     {"type", "VEC2"},
+                     {"count", 4},
+                     {"min", {1, 2}},
+                     {"max", {70, 80}},
+                     {"sparse",
+                      {{"count", 1},
+                       {"indices", {{"bufferView", which}, {"componentType", 5123}}},
+                       {"values", {{"bufferView", instead}}}}}});
+  kept(folder, gltf);
+  const GltfOracle after(folder / "w.glb");
+  EXPECT_EQ(after.triangles().at(0).attributes.at("TEXCOORD_0"),
+            (std::vector<double>{1, 2, 30, 40, 5, 6}));
+  const json& number = after.document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"];
+  const json& accessor = after.document["accessors"][number.get<std::size_t>()];
+  EXPECT_EQ(accessor.value("max", json{30, 40}), (json{30, 40}));
+}
+
+TEST(KeptParts, AttributesNeedARowForEachVertex) {
+  for (const std::size_t rows : {2, 3}) {
+    const TempFolder folder;
+    Gltf gltf = textured(folder);
+    gltf.j["meshes"][0]["primitives"][0]["attributes"]["_A"] =
+        gltf.floats(std::vector<float>(rows, 7), "SCALAR", 1);
+    const Kept after = kept(folder, gltf);
+    EXPECT_EQ(after.written.not_kept.empty(), rows == 3);
+    EXPECT_EQ(after.document["meshes"][0]["primitives"][0]["attributes"].contains("_A"), rows == 3);
+  }
 }
 
 // Points are copied unless a part of their data is missing.

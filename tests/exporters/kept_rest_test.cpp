@@ -21,9 +21,6 @@ using Lines = std::vector<std::string>;
 const ReadOptions kRest{
     .unlit_textures = true, .encoded_textures = true, .normals = true, .rest = true};
 
-constexpr const char* kNoImage = "1 x textures of materials (no image that can be read)";
-constexpr const char* kNoUvs = "1 x textures of materials (no uvs for them in their primitives)";
-
 TEST(KeptRest, TexturesThatAreNotThereAreToldAndLeftOut) {
   const struct {
     const char* line;

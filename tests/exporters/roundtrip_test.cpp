@@ -301,6 +301,9 @@ TEST(GltfWorld, FailsWithoutItsImagesOrTriangles) {
   {
     AtomicFiles files;
     EXPECT_EQ(write_gltf(world, folder / "w.glb", files, {}).status().code(), ErrorCode::io);
+    folder.write("gone.png", "");
+    EXPECT_EQ(write_gltf(world, folder / "w.glb", files, {}).status().code(), ErrorCode::io);
+    std::filesystem::remove(folder / "gone.png");
     world.pages.clear();
     EXPECT_EQ(write_gltf(world, folder / "w.glb", files, {}).status().code(), ErrorCode::bad_input);
   }

@@ -88,24 +88,29 @@ TEST(Worlds, CancellingLeavesNothingBehind) {
 
 // The file beside the world may be the larger one, and the only one that fails.
 TEST(Worlds, AFullDiskIsNoticedInEveryFile) {
-  const TempFolder folder;
-  World world = two_pages();
-  world.pages[0].image = std::string(400, 'x') + ".png";
-  for (const char* name : {"w.obj", "w.gltf"}) {
-    if (name == std::string("w.gltf")) {
-      world = wavy_world(40, 1);
-      world.pages[0].image.clear();
-    }
+  World named = two_pages(), large = wavy_world(40, 1);
+  named.pages[0].image = std::string(400, 'x') + ".png";
+  large.pages[0].image.clear();
+  Scene scene = small_scene();
+  scene.materials[0].mtl_lines = {"Ns 1 #" + std::string(2000, 'x')};
+  const struct {
+    World world;
+    const char *name, *named;
+    rlim_t space;
+  } cases[] = {{named, "w.obj", "w.mtl", 300},
+               {world_of(scene), "w.obj", "w.mtl", 1500},
+               {large, "w.gltf", "w.bin", 8192}};
+  for (const auto& c : cases) {
+    const TempFolder folder;
     Status status;
     {
       AtomicFiles files;
-      const FullDisk full(name == std::string("w.obj") ? 300 : 8192);
-      status = write_world(world, folder / name, files, {}).status();
+      const FullDisk full(c.space);
+      status = write_world(c.world, folder / c.name, files, {}).status();
     }
-    EXPECT_EQ(status.code(), ErrorCode::io) << name;
-    EXPECT_NE(status.message().find(name[2] == 'o' ? "w.mtl" : "w.bin"), std::string::npos)
-        << status.message();
-    EXPECT_EQ(folder.count(), 0u) << name;
+    EXPECT_EQ(status.code(), ErrorCode::io) << c.named;
+    EXPECT_NE(status.message().find(c.named), std::string::npos) << status.message();
+    EXPECT_EQ(folder.count(), 0u) << c.named;
   }
 }
 
