@@ -274,7 +274,7 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, const GltfLoading& loadi
   auto parts = check_gltf(path, *bytes, loading.textures, loading.defects);
   if (!parts.ok()) return parts.status();
   nlohmann::json parsed = std::move(parts->document);
-  const bool packed = fill_placeholders(parsed);
+  const bool packed = fill_fallback_buffers(parsed);
   const std::string text = packed ? parsed.dump() : std::string();
   if (packed) {
     parts->json = text;
@@ -282,10 +282,9 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, const GltfLoading& loadi
   }
   if (loading.document != nullptr) *loading.document = std::move(parsed);
   parsed = nullptr;  // frees an unwanted JSON to make room for the second parser
-  const std::string rebuilt = parts->container && !parts->plain ? plain_glb(*parts) : std::string();
-  const std::string_view data = parts->plain       ? bytes->text()
-                                : parts->container ? std::string_view(rebuilt)
-                                                   : parts->json;
+  std::string rebuilt;
+  if (!parts->plain) rebuilt = parts->container ? plain_glb(*parts) : text;
+  const std::string_view data = parts->plain ? bytes->text() : std::string_view(rebuilt);
 
   tinygltf::TinyGLTF loader;
   Folder folder{path.parent_path(), loading.buffers, parts->external_bytes, {}};

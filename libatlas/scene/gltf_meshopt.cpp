@@ -27,7 +27,7 @@ struct Packed {
   std::string mode, filter;
 };
 
-bool is_placeholder(const tinygltf::Buffer& buffer) {
+bool is_fallback(const tinygltf::Buffer& buffer) {
   const auto extension = buffer.extensions.find(kGltfMeshopt);
   if (extension == buffer.extensions.end() || !extension->second.Has("fallback")) return false;
   const tinygltf::Value& fallback = extension->second.Get("fallback");
@@ -109,7 +109,7 @@ std::string decode(const Packed& packed, std::vector<unsigned char>& out) {
 
 }  // namespace
 
-bool fill_placeholders(json& document) {
+bool fill_fallback_buffers(json& document) {
   bool any = false;
   const auto buffers = document.find("buffers");
   if (buffers == document.end()) return false;
@@ -133,7 +133,7 @@ Status decode_meshopt_views(const fs::path& path, tinygltf::Model& model) {
     tinygltf::BufferView& view = model.bufferViews[i];
     const auto extension = view.extensions.find(kGltfMeshopt);
     if (extension == view.extensions.end() || view.buffer < 0 ||
-        std::size_t(view.buffer) >= first || !is_placeholder(model.buffers[view.buffer])) {
+        std::size_t(view.buffer) >= first || !is_fallback(model.buffers[view.buffer])) {
       continue;
     }
     Packed packed;

@@ -44,7 +44,7 @@ struct PackedGltf : Gltf {
     out.resize(meshopt_encodeVertexBuffer(out.data(), out.size(), data, rows.count, rows.stride));
     return packed(out, rows);
   }
-  // Adds the grid's positions as floats, filtered if `bits` is not 0.
+  // Adds vectors of three floats, filtered if `bits` is not 0.
   int packed_positions(const std::vector<float>& positions, int bits) {
     const std::size_t count = positions.size() / 3;
     std::vector<float> data = positions;
