@@ -23,7 +23,7 @@ function(atlas_gather target output)
         list(APPEND libraries libatlas::mpfr libatlas::gmp)
       elseif(library STREQUAL atlas_openmesh)
         list(APPEND libraries libatlas::OpenMeshCore)
-      elseif(library STREQUAL CMAKE_DL_LIBS)
+      elseif(library STREQUAL CMAKE_DL_LIBS OR library MATCHES "^libatlas::")
         list(APPEND libraries ${library})
       elseif(NOT library IN_LIST ATLAS_HEADERS_ONLY AND NOT library MATCHES "^atlas_")
         message(FATAL_ERROR "cmake/AtlasInstall.cmake does not know how an installed libatlas links "
@@ -101,7 +101,7 @@ function(atlas_install_package)
 
   # Whoever links a static library links what it needs, too.
   set(needed_packages "tbb fmt zlib mpfr gmp")
-  set(needed_libraries "-lOpenMeshCore -lmeshoptimizer -lpthread -ldl")
+  set(needed_libraries "-lOpenMeshCore -ldraco -lmeshoptimizer -lpthread -ldl")
   get_filename_component(openmesh_dir ${OPENMESH_CORE_LIBRARY} DIRECTORY)
   if(NOT openmesh_dir IN_LIST CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES)
     string(PREPEND needed_libraries "-L${openmesh_dir} ")

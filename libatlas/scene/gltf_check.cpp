@@ -16,10 +16,10 @@ namespace {
 using nlohmann::json;
 
 // Extensions that are read, or that do not change the shapes of a scene.
-constexpr std::string_view kUnderstood[] = {"KHR_mesh_quantization",   "KHR_texture_transform",
-                                            "KHR_lights_punctual",     "KHR_technique_webgl",
-                                            "EXT_mesh_gpu_instancing", "EXT_texture_webp",
-                                            "EXT_meshopt_compression", "KHR_node_visibility"};
+constexpr std::string_view kUnderstood[] = {
+    "KHR_mesh_quantization",   "KHR_texture_transform",   "KHR_lights_punctual",
+    "KHR_technique_webgl",     "EXT_mesh_gpu_instancing", "EXT_texture_webp",
+    "EXT_meshopt_compression", "KHR_node_visibility",     "KHR_draco_mesh_compression"};
 // Extensions that only say in which format the images of textures are.
 constexpr std::string_view kTextures[] = {"KHR_texture_basisu", "KHR_texture_ktx",
                                           "EXT_texture_avif", "MSFT_texture_dds"};
@@ -174,39 +174,6 @@ Status check_lists(const fs::path& path, const json& file) {
   return {};
 }
 
-// Returns whether the primitive's indices exist only in compressed form, so that their accessor has
-// no buffer view. tinygltf calls such indices malformed, but a glTF validator, to which that
-// message would refer the user, finds no fault in them.
-bool indices_are_compressed(const json& file, const json& primitive) {
-  const auto extensions = primitive.find("extensions");
-  if (extensions == primitive.end() || !extensions->is_object() ||
-      !extensions->contains(kGltfDraco))
-    return false;
-  const auto accessors = file.find("accessors");
-  const std::int64_t indices = integer_at(primitive, "indices", -1);
-  if (accessors == file.end() || indices < 0 || std::size_t(indices) >= accessors->size())
-    return false;
-  return integer_at((*accessors)[std::size_t(indices)], "bufferView", -1) < 0;
-}
-
-// A file whose data exist only in compressed form should list the extension as required, but some
-// do not.
-Status check_compression(const fs::path& path, const json& file) {
-  const auto meshes = file.find("meshes");
-  for (std::size_t i = 0; meshes != file.end() && i < meshes->size(); ++i) {
-    const auto primitives = (*meshes)[i].find("primitives");
-    if (primitives == (*meshes)[i].end()) continue;
-    for (const json& primitive : *primitives) {
-      if (!primitive.is_object() || !indices_are_compressed(file, primitive)) continue;
-      return {ErrorCode::unsupported,
-              fmt::format("{}: mesh {} holds nothing but {}, which is not supported (export "
-                          "without it)",
-                          path.string(), i, kGltfDraco)};
-    }
-  }
-  return {};
-}
-
 // tinygltf takes the address of an embedded image's first byte without checking the ranges.
 bool image_views_fit(const json& file) {
   const auto element = [&](const char* array, std::int64_t i) -> const json* {
@@ -263,7 +230,6 @@ Result<GltfParts> check_gltf(const fs::path& path, FileBytes& bytes, bool textur
   if (Status s = check_version(path, file); !s.ok()) return s;
   if (Status s = check_extensions(path, file, textures); !s.ok()) return s;
   if (Status s = check_lists(path, file); !s.ok()) return s;
-  if (Status s = check_compression(path, file); !s.ok()) return s;
   if (!image_views_fit(file)) return malformed_gltf(path, "an embedded image leaves its buffer");
   for (const auto& buffer : file.value("buffers", json::array())) {
     const auto uri = buffer.find("uri");

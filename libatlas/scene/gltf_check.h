@@ -17,8 +17,6 @@ namespace atlas {
 // Returns the error for a file that breaks the rules of glTF; `what` says how.
 Status malformed_gltf(const std::filesystem::path& path, const std::string& what);
 
-inline constexpr const char* kGltfDraco = "KHR_draco_mesh_compression";
-
 // Returns the integer that an object has under a key, or `absent` if it has none.
 std::int64_t integer_at(const nlohmann::json& object, const char* key, std::int64_t absent);
 
@@ -32,8 +30,7 @@ struct GltfParts {
 };
 
 // Finds the parts, and checks in the JSON what tinygltf ignores or trusts: the version, required
-// extensions, lists that are not arrays, indices that exist only in compressed form, and the ranges
-// of embedded images. If `textures` is false, extensions that only concern textures are not
+// extensions, lists that are not arrays, and the ranges of embedded images. If `textures` is false, extensions that only concern textures are not
 // refused. Bytes of the JSON that are not UTF-8 become '?' in `bytes`, which is what strings hold
 // in their place, and are added to the defects. Errors: bad_input, unsupported.
 Result<GltfParts> check_gltf(const std::filesystem::path& path, FileBytes& bytes, bool textures,

@@ -11,6 +11,7 @@
 
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/gltf_check.h"
+#include "libatlas/scene/gltf_draco.h"
 #include "libatlas/scene/gltf_meshopt.h"
 
 namespace atlas {
@@ -275,8 +276,11 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, const GltfLoading& loadi
   if (!parts.ok()) return parts.status();
   nlohmann::json parsed = std::move(parts->document);
   const bool packed = fill_fallback_buffers(parsed);
-  const std::string text = packed ? parsed.dump() : std::string();
-  if (packed) {
+  std::vector<GltfDracoPart> draco;
+  if (Status s = describe_draco(path, parsed, draco); !s.ok()) return s;
+  const bool changed = packed || !draco.empty();
+  const std::string text = changed ? parsed.dump() : std::string();
+  if (changed) {
     parts->json = text;
     parts->plain = false;
   }
@@ -310,6 +314,7 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, const GltfLoading& loadi
   if (packed) {
     if (Status s = decode_meshopt_views(path, model); !s.ok()) return s;
   }
+  if (Status s = decode_draco_parts(path, draco, model, loading.document); !s.ok()) return s;
   return model;
 }
 

@@ -231,22 +231,9 @@ class GltfParser {
     return {};
   }
 
-  // A file of compressed vertices only should list the extension as required, but some do not.
-  bool attributes_are_compressed(const tinygltf::Primitive& raw) const {
-    const auto position = static_cast<std::size_t>(gltf_attribute(raw.attributes, "POSITION"));
-    return raw.extensions.contains(kGltfDraco) && position < model_.accessors.size() &&
-           model_.accessors[position].bufferView < 0;
-  }
-
   Result<Vertices> add_vertices(const tinygltf::Node& node, const tinygltf::Primitive& raw,
                                 const glm::dmat4& matrix, const std::string& where) {
     if (gltf_attribute(raw.attributes, "POSITION") < 0) return malformed(where, "has no POSITION");
-    if (attributes_are_compressed(raw)) {
-      return Status{ErrorCode::unsupported,
-                    fmt::format("{}: {} holds nothing but {}, which is not supported (export "
-                                "without it)",
-                                builder_.file, where, kGltfDraco)};
-    }
     auto posed = pose_.vertices(node, raw, matrix);
     if (!posed.ok()) return malformed(where, posed.status().message());
     const std::size_t count = posed->positions.size(), base = builder_.positions.size();

@@ -374,20 +374,5 @@ TEST(Gltf, ContainersThatManyWrite) {
   EXPECT_EQ(load(false, word(4) + "KINDdata", g.bytes), 1u);
 }
 
-// Data that an extension has compressed are missing, whether or not the file requires the
-// extension.
-TEST(Gltf, CompressedVerticesAreNoZeros) {
-  const TempFolder folder;
-  Gltf g;
-  const int positions = g.accessor({{"componentType", 5126}, {"type", "VEC3"}, {"count", 3}});
-  g.view(kSquare);
-  g.single({{"attributes", {{"POSITION", positions}}},
-            {"extensions", {{"KHR_draco_mesh_compression", {{"bufferView", 0}}}}}});
-  const auto loaded = load_glb(folder, g);
-  EXPECT_EQ(loaded.status().code(), ErrorCode::unsupported);
-  EXPECT_NE(loaded.status().message().find("KHR_draco_mesh_compression"), std::string::npos)
-      << loaded.status().message();
-}
-
 }  // namespace
 }  // namespace atlas

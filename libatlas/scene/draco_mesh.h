@@ -1,0 +1,31 @@
+// Internal: decodes a mesh that the Draco library has compressed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace atlas {
+
+// The values of an attribute: one row per point of the mesh, in the form that an accessor has.
+struct DracoRows {
+  std::uint32_t id = 0;  // unique id of the attribute in the compressed data
+  std::size_t components = 0;
+  int component_type = 0;                // a componentType of glTF
+  std::size_t stride = 0;                // bytes from row to row
+  std::vector<unsigned char> data = {};  // becomes the rows
+};
+
+struct DracoMesh {
+  std::size_t points = 0;
+  std::vector<std::uint32_t> indices = {};  // three per triangle
+};
+
+// Decodes a mesh of Draco's bitstream 2.2, the one that glTF allows, and the attributes that are
+// asked for. Returns what is wrong with the data, or an empty text.
+std::string decode_draco(std::span<const unsigned char> bytes, std::span<DracoRows> asked,
+                         DracoMesh& mesh);
+
+}  // namespace atlas
