@@ -19,7 +19,14 @@ if(LIBATLAS_WERROR AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 if(CMAKE_BUILD_TYPE STREQUAL "RelWithDebInfo" OR CMAKE_BUILD_TYPE STREQUAL "Release")
   target_compile_options(atlas_options INTERFACE -O3 -g1)
+  set(ATLAS_RUN_ONCE_OPTIONS -O1)
 endif()
+
+# atlas_run_once(a.cpp ...): sources of this folder's targets that run once and shortly, such as tests
+# and command lines. At -O1 their compilation is shorter by more than their run is longer.
+function(atlas_run_once)
+  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS ${ATLAS_RUN_ONCE_OPTIONS})
+endfunction()
 
 # atlas_module(NAME SOURCES a.cpp ... [DEPENDS core scene ...] [PRIVATE_LIBS target ...])
 # Declares libatlas/NAME as the static library atlas_NAME. DEPENDS names folders of libatlas;
@@ -44,6 +51,7 @@ function(atlas_test name)
     set(ARG_LABEL quick)
   endif()
   add_executable(test_${name} ${ARG_SOURCES})
+  atlas_run_once(${ARG_SOURCES})
   foreach(module IN LISTS ARG_MODULES)
     target_link_libraries(test_${name} PRIVATE atlas_${module})
   endforeach()
