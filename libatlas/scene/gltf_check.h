@@ -30,9 +30,10 @@ struct GltfParts {
 };
 
 // Finds the parts, and checks in the JSON what tinygltf ignores or trusts: the version, required
-// extensions, lists that are not arrays, and the ranges of embedded images. If `textures` is false, extensions that only concern textures are not
-// refused. Bytes of the JSON that are not UTF-8 become '?' in `bytes`, which is what strings hold
-// in their place, and are added to the defects. Errors: bad_input, unsupported.
+// extensions, lists that are not arrays, and the ranges of embedded images. If `textures` is false,
+// extensions that only concern textures are not refused. Bytes of the JSON that are not UTF-8
+// become '?' in `bytes`, which is what strings hold in their place, and are added to the defects.
+// Errors: bad_input, unsupported.
 Result<GltfParts> check_gltf(const std::filesystem::path& path, FileBytes& bytes, bool textures,
                              DefectReport& defects);
 
