@@ -7,7 +7,7 @@
 #include <set>
 
 #include "libatlas/shadow/fit.h"
-#include "tests/shadow/random_direction.h"
+#include "tests/shadow/directions.h"
 
 namespace atlas {
 namespace {

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "libatlas/shadow/fit.h"
-#include "tests/shadow/random_direction.h"
+#include "tests/shadow/directions.h"
 
 namespace atlas {
 namespace {
@@ -20,21 +20,10 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::array<Vec3d, 3> kAxes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-double dot(const Vec3d& a, const Vec3d& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-Vec3d scaled(const Vec3d& v, double factor) {
-  return {v.x * factor, v.y * factor, v.z * factor};
-}
-
-Vec3d unit(const Vec3d& v) {
-  return scaled(v, 1 / std::hypot(v.x, v.y, v.z));
-}
+using test::cross;
+using test::dot;
+using test::scaled;
+using test::unit;
 
 // Expects unit axes that form, with the direction towards the light, a right-handed system in which
 // `up` lies in the plane of the map's vertical and the light, and points upwards.
