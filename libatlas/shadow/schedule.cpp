@@ -112,8 +112,9 @@ FramePlan KeySchedule::next_unblended(const Vec3d& now) {
   plan.refreshed = !valid_ || degrees_between(last_, now) > options_.jump_degrees;
   const bool by_degrees = options_.interval_degrees > 0;
   const bool late = ++frame_ >= (by_degrees ? options_.max_frames : options_.interval_frames);
-  const bool far =
-      by_degrees && degrees_between(from_.direction, now) >= options_.interval_degrees * (1 - 1e-9);
+  const double most = options_.max_key_degrees;
+  const double limit = by_degrees ? std::min(options_.interval_degrees, most) : most;
+  const bool far = degrees_between(from_.direction, now) >= limit * (1 - 1e-9);
   if (plan.refreshed || ((late || far) && !same(from_.direction, now))) {
     from_ = {0, now};
     draw_whole(0, now, plan);
