@@ -98,9 +98,10 @@ void KeySchedule::begin_interval(const Vec3d& now, const Ahead& ahead) {
   coming_ = to_;
   coming_needs_work_ = false;
   next_length_ = interval_from(length_, ahead);
-  // If the light jumps before the interval ends, everything will be refreshed. Nothing that was
-  // drawn now would be sampled.
-  for (int n = 0; ahead && n < length_; ++n)
+  // If the light jumps before the interval ends or in the frame after it, everything will be
+  // refreshed. Nothing that was drawn now would be sampled, or only by frames before a jump that
+  // comes late, where it would be wrong.
+  for (int n = 0; ahead && n <= length_; ++n)
     if (degrees_between(ahead(n), ahead(n + 1)) > options_.jump_degrees) return;
   const Vec3d target = ahead ? ahead(length_ + next_length_) : now;
   coming_needs_work_ = !same(target, to_.direction);

@@ -90,6 +90,24 @@ TEST(Schedule, ALightThatRestsAtTheLargestDistanceIsFollowedThere) {
   }
 }
 
+TEST(Schedule, AsksForNoMoreThanTwoIntervalsAhead) {
+  for (const double step : {0.0, 0.1, 1.0, 30.0})
+    for (const double degrees : {0.0, 3.0, 500.0})
+      for (const int frames : {1, 2, 7}) {
+        ScheduleOptions o;
+        o.interval_degrees = degrees;
+        o.interval_frames = degrees > 0 ? 1 : frames;  // each is as small as the other allows
+        o.max_frames = degrees > 0 ? frames : 1;
+        KeySchedule schedule(o);
+        for (int f = 0; f < 40; ++f)
+          schedule.next(circled(f * step), [&](int n) {
+            EXPECT_GE(n, 0);
+            EXPECT_LE(n, 2 * std::max(o.interval_frames, o.max_frames));
+            return circled((f + n) * step);
+          });
+      }
+}
+
 // The key after the next one is being drawn already, so a start that comes a few frames early needs
 // no map at once.
 TEST(Schedule, AStartThatWasPredictedForALittleLaterDrawsNothingAtOnce) {
@@ -103,6 +121,29 @@ TEST(Schedule, AStartThatWasPredictedForALittleLaterDrawsNothingAtOnce) {
     r.run(plan);
     EXPECT_EQ(plan.refreshed, f == 0) << f;
   }
+}
+
+// A path that starts again jumps back to its start. Where frames vary in length, the jump may come
+// later than was predicted, and the shadows of the start must not show before it.
+TEST(Schedule, NoFrameShowsAKeyBeyondAJumpThatComesLate) {
+  for (const double turn : {30.0, 60.0, 120.0})
+    for (int predicted = 9; predicted <= 40; ++predicted)
+      for (const int late : {0, 1, 2}) {
+        KeySchedule schedule({});
+        FakeRenderer r;
+        for (int f = 0; f < 64; ++f) {
+          const int jump = std::min(std::max(predicted, f + 1), predicted + late);
+          const auto at = [&](int n) { return circled(f + n < jump ? f + n : f + n + turn); };
+          const FramePlan plan = schedule.next(at(0), at);
+          r.run(plan);
+          EXPECT_LE(degrees_between(plan.from_direction, at(0)), 16)
+              << turn << " at " << predicted << "+" << late << " " << f;
+          if (plan.t > 0) {
+            EXPECT_LE(degrees_between(plan.to_direction, at(0)), 16)
+                << turn << " at " << predicted << "+" << late << " " << f;
+          }
+        }
+      }
 }
 
 // Whether a light stops at a key or between two, the blend must not go on without it.
