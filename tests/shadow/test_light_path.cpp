@@ -247,8 +247,7 @@ TEST(LightPath, TravelThatIsNotFiniteCountsAsNone) {
     }
 }
 
-// At sunset the sun is in the west and on the horizon. The disc's height over the day is the
-// oracle, and not the hours that the path computes.
+// At sunset the sun is in the west and on the horizon, whatever hour that is.
 TEST(LightPath, ASunThatStopsStaysAtSunset) {
   for (const double latitude : {-35.0, 0.0, 50.45}) {
     LightPathOptions o;
