@@ -64,6 +64,28 @@ Basis light_basis(const glm::dvec3& direction, const Vec3d& wanted_up) {
   return b;
 }
 
+// Returns the part of the map's side that is not border.
+double free_part(const LightFitOptions& options) {
+  return 1 - 2 * options.border_texels / options.resolution;
+}
+
+Status check(const glm::dvec3& low, const glm::dvec3& high, const LightFitOptions& options) {
+  if (!is_finite(low) || !is_finite(high) || low.x > high.x || low.y > high.y || low.z > high.z)
+    return {ErrorCode::bad_option, "shadow map: the scene's bounds are empty or not finite"};
+  // Squares of the coordinates are summed later and must not overflow.
+  constexpr double kFarthest = 1e150;
+  if (!(std::max(largest(low), largest(high)) <= kFarthest))
+    return {ErrorCode::bad_option, "shadow map: the scene's bounds reach beyond 1e150"};
+  if (!(options.border_texels >= 0))
+    return {ErrorCode::bad_option,
+            fmt::format("shadow map: a border of {} texels (0 or more)", options.border_texels)};
+  if (options.resolution < 1 || !(free_part(options) > 0))
+    return {ErrorCode::bad_option,
+            fmt::format("shadow map: {} texels a side are too few for a border of {} texels",
+                        options.resolution, options.border_texels)};
+  return {};
+}
+
 }  // namespace
 
 Vec3d transform_point(const Matrix4& m, const Vec3d& p) {
@@ -95,21 +117,7 @@ Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene,
   const glm::dvec3 towards = unit(direction);
   if (!is_finite(towards))
     return Status{ErrorCode::bad_option, "shadow map: the light's direction is zero or not finite"};
-  if (!is_finite(low) || !is_finite(high) || low.x > high.x || low.y > high.y || low.z > high.z)
-    return Status{ErrorCode::bad_option, "shadow map: the scene's bounds are empty or not finite"};
-  // Squares of the coordinates are summed below and must not overflow.
-  constexpr double kFarthest = 1e150;
-  if (!(std::max(largest(low), largest(high)) <= kFarthest))
-    return Status{ErrorCode::bad_option, "shadow map: the scene's bounds reach beyond 1e150"};
-  if (!(options.border_texels >= 0))
-    return Status{
-        ErrorCode::bad_option,
-        fmt::format("shadow map: a border of {} texels (0 or more)", options.border_texels)};
-  const double free = 1 - 2 * options.border_texels / options.resolution;
-  if (options.resolution < 1 || !(free > 0))
-    return Status{ErrorCode::bad_option,
-                  fmt::format("shadow map: {} texels a side are too few for a border of {} texels",
-                              options.resolution, options.border_texels)};
+  if (Status status = check(low, high, options); !status.ok()) return status;
 
   const Basis basis = light_basis(towards, options.up);
   const Sphere whole = around(corners(scene));
@@ -129,7 +137,7 @@ Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene,
   }
   // A scene of one point still needs a map of some size.
   const double smallest = std::max(glm::length(fitted.centre) * 1e-9, 1e-30);
-  double side = std::max(2 * fitted.radius, smallest) / free;
+  double side = std::max(2 * fitted.radius, smallest) / free_part(options);
   if (options.snap && options.view)
     side = std::exp2(std::ceil(std::log2(side) * 8) / 8);  // steps of 9 %: steady while zooming
   const double texel = side / options.resolution;
